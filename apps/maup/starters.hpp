@@ -1,0 +1,20 @@
+#pragma once
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace maup {
+
+/// A model that `maup new NAME` writes.
+struct Starter {
+  std::string_view name;
+  std::string_view text;
+};
+
+/// The fixed ones, from starters/*.lag.
+std::span<const Starter> starters();
+
+/// N pendulums, each hung from the one before.
+std::string chain_starter(int links);
+
+}  // namespace maup

@@ -1,0 +1,17 @@
+# Quick builds where the machine offers them: ccache for compilation, mold or lld for linking.
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+include(CheckLinkerFlag)
+foreach(linker mold lld)
+  find_program(${linker}_PROGRAM NAMES ${linker} ld.${linker})
+  if(${linker}_PROGRAM)
+    check_linker_flag(CXX -fuse-ld=${linker} LINKS_WITH_${linker})
+    if(LINKS_WITH_${linker})
+      add_link_options(-fuse-ld=${linker})
+      break()
+    endif()
+  endif()
+endforeach()

@@ -1,0 +1,17 @@
+#pragma once
+#include <maupertuis/diagnostic.hpp>
+
+#include <span>
+
+/// The catalogue behind `maup explain`: each stage owns the entries of the codes that it gives.
+///   01xx text and grammar · 02xx names and statements · 03xx units · 04xx kinematics and physics lint
+///   05xx not supported yet · 06xx equations · 07xx runs · 08xx files and command line · 09xx expectations
+namespace maupertuis {
+
+std::span<const CodeEntry> syntax_codes();
+std::span<const CodeEntry> system_codes();
+std::span<const CodeEntry> equations_codes();
+std::span<const CodeEntry> simulation_codes();
+std::span<const CodeEntry> verification_codes();
+
+}  // namespace maupertuis

@@ -1,0 +1,68 @@
+#pragma once
+#include <maupertuis/mechanical_system.hpp>
+#include <maupertuis/transform.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace maupertuis {
+
+/// Lagrange's equations of a system in two forms. Rows follow system.coordinates.
+///
+///     R(q,q̇,q̈,u,t) = d/dt ∂L/∂q̇ − ∂L/∂q + ∂D/∂q̇ − Q = M q̈ + h = 0
+struct EquationsOfMotion {
+  std::shared_ptr<const MechanicalSystem> system;
+  ReadingOrder order;
+
+  Expr lagrangian;                   // computational form; may hold TimeDerivative nodes
+  Expr lagrangian_expanded;          // in q, q', u, t alone
+  ExprVector generalized_forces;     // Q [n], in q, q', u, t
+  ExprVector dissipative_terms;      // ∂D/∂q̇ [n]
+  ExprVector residual;               // R [n], computational form with d/dt as an operator: what kernels lower
+  ExprVector momenta;                // ∂L/∂q̇ [n], in q, q', u, t
+  Expr energy_function;              // h_E = q̇·∂L/∂q̇ − L
+  Expr power;                        // dh_E/dt along the motion: −∂L/∂t − q̇·∂D/∂q̇ + Q·q̇
+};
+
+/// Derives the computational form. Errors: E0601 if M is singular wherever it was sampled.
+std::optional<EquationsOfMotion> euler_lagrange(std::shared_ptr<const MechanicalSystem> system,
+                                                Diagnostics& diagnostics);
+
+/// M = ∂²L/∂q̇∂q̇ [n × n] and h [n]; in q, q', u, t. Cost O(n · cost of L).
+ExprMatrix mass_matrix(const EquationsOfMotion& equations);
+ExprVector bias(const EquationsOfMotion& equations);
+
+/// Masses before g before lengths before rates, then as declared; coordinates as declared.
+ReadingOrder reading_order(const MechanicalSystem& system);
+
+/// What is conserved at a glance, without a search: cyclic coordinates and the energy function.
+struct ConservedQuantities {
+  std::vector<std::size_t> cyclic;          // coordinates absent from L
+  std::vector<std::size_t> conserved_momenta;  // cyclic, and Q and ∂D/∂q̇ vanish
+  bool energy_conserved = false;            // power ≡ 0, proved
+  bool energy_is_t_plus_v = false;          // h_E ≡ T + V, proved
+  std::string energy_case;                  // one sentence: why h_E is or is not T + V
+};
+ConservedQuantities conserved_quantities(const EquationsOfMotion& equations);
+
+/// One line of the textbook derivation.
+struct DerivationStep {
+  std::string section;   // "Coordinates", "Kinetic energy", "∂L/∂q̇", …
+  std::string rule;      // "chain rule", "definition of L", "Euler-Lagrange"
+  std::string left;      // plain text of the left side, "d/dt ∂L/∂θ1'"; its LaTeX beside it
+  std::string left_latex;
+  Expr right;            // readable; empty if the step is a sentence alone
+  std::string sentence;
+};
+
+struct Derivation {
+  std::vector<DerivationStep> steps;
+  std::vector<ReadableForm> equations;   // row i: equations[i].value = 0
+  std::vector<Intermediate> intermediates;
+};
+
+/// The equations in readable form (steps left empty), and with the textbook path.
+Derivation readable_derivation(const EquationsOfMotion& equations, bool with_steps);
+
+}  // namespace maupertuis

@@ -1,0 +1,41 @@
+#pragma once
+#include <maupertuis/expression.hpp>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace maupertuis {
+
+using Bindings = std::unordered_map<Expr, double, ExprHash>;
+
+/// Values of expressions in double; NaN where undefined (log of a negative number). Every symbol must be bound.
+/// Precondition: no TimeDerivative nodes.
+std::vector<double> evaluate(std::span<const Expr> roots, const Bindings& bindings);
+double evaluate(Expr e, const Bindings& bindings);
+
+enum class Verdict { Zero, Nonzero, Undecided };
+
+/// What the zero test found and on what ground (docs/theory/zero_test.md).
+struct ZeroTest {
+  Verdict verdict = Verdict::Undecided;
+  int points = 0;                 // random points at which the expression vanished modulo both primes
+  double error_bound = 1;         // probability that a nonzero expression passes; 1: none claimed
+  Bindings witness;               // Nonzero: a real point where interval arithmetic excludes 0 (may be empty)
+  double witness_value = 0;
+  std::string reason;             // Undecided: why
+};
+
+struct ZeroTestOptions {
+  int points = 3;                 // per prime
+  std::uint64_t seed = 0x6d617570;
+};
+
+/// Decides e = 0 as a function of all its symbols (decision 4 of ARCHITECTURE.md). TimeDerivative nodes are expanded.
+ZeroTest zero_test(Expr e, const ZeroTestOptions& options = {});
+/// All of them at once, with shared evaluation: the first that is not zero decides.
+ZeroTest zero_test(std::span<const Expr> differences, const ZeroTestOptions& options = {});
+
+}  // namespace maupertuis

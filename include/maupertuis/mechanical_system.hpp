@@ -1,0 +1,220 @@
+#pragma once
+#include <maupertuis/diagnostic.hpp>
+#include <maupertuis/expression.hpp>
+#include <maupertuis/syntax_tree.hpp>
+#include <maupertuis/units.hpp>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace maupertuis {
+
+/// A vector or a matrix of expressions, by rows.
+using ExprVector = std::vector<Expr>;
+struct ExprMatrix {
+  std::size_t rows = 0, columns = 0;
+  ExprVector entries;  // [rows × columns]
+  Expr& at(std::size_t i, std::size_t j) { return entries[i * columns + j]; }
+  Expr at(std::size_t i, std::size_t j) const { return entries[i * columns + j]; }
+};
+
+struct Coordinate {
+  std::string name;
+  Expr q, velocity, acceleration;   // symbols of order 0, 1, 2
+  Dimension dimension;
+  std::string kind;                 // "angle", "length", "charge", "number", or "" for a unit of its own
+  Span span;
+};
+
+struct Parameter {
+  std::string name;                 // for a Constant: how the number stood in the text, e.g. "3 J"
+  Expr symbol;                      // Role::Parameter, or Role::Constant
+  Expr value;                       // in SI base units, exact: a number, perhaps times powers of π
+  double si_value = 0;              // its double
+  Dimension dimension;
+  std::string unit;                 // as written, "cm"; empty without one
+  Span span;
+};
+
+struct Input {
+  std::string name;
+  Expr symbol;                      // Role::Input
+  Expr formula;                     // u(t)
+  Dimension dimension;
+  Span span;
+};
+
+/// A `let`: of parameters alone it stays a symbol in print, with a legend; others are expanded at once.
+struct Definition {
+  std::string name;
+  Expr symbol;                      // Role::Auxiliary where it stays a symbol in print; else empty
+  Expr value;                       // expanded: no `let` symbols in it
+  Dimension dimension;
+  bool is_vector = false;
+  ExprVector components;            // of a vector
+  Span span;
+};
+
+/// A particle (with mass) or a marked point.
+struct Point {
+  std::string name;
+  Expr mass;                        // empty handle: no mass
+  ExprVector position;              // [dimension] world axes, metres; shared with the points it is defined from
+  Span span;
+};
+
+struct Body {
+  std::string name;
+  Expr mass;                        // empty handle: rotation only
+  ExprMatrix inertia;               // [3 × 3] about the centre of mass, body axes, or [1 × 1] in 2-D
+  ExprVector position;              // [dimension] of the centre of mass, world axes
+  ExprMatrix rotation;              // [dimension × dimension] body → world
+  ExprVector angular_velocity;      // [3] body axes, or [1] in 2-D, in q, q', t
+  ExprVector angular_velocity_world;
+  Span span;
+};
+
+struct Frame {
+  std::string name;
+  ExprVector origin;                // world axes
+  ExprMatrix rotation;              // frame → world
+  ExprVector angular_velocity;      // [3] or [1], frame axes
+  Span span;
+};
+
+/// One additive part of T, V, U, L or D and where it comes from.
+struct EnergyTerm {
+  Expr value;                       // may hold TimeDerivative nodes
+  std::string origin;               // "particle A", "rotation of body sat", "gravity on A", "spring A - B", "T"
+  Span span;
+};
+
+/// A force or torque and its virtual work.
+struct AppliedForce {
+  enum class Kind { OnPoint, Torque, Generalized } kind = Kind::Generalized;
+  std::string target;               // the point, the body, the coordinate
+  std::string reaction_on;          // torque on B from A: A
+  ExprVector components;            // world axes, N or N m; Generalized: one
+  ExprVector lever;                 // OnPoint: position of the point; Torque: the (relative) world angular velocity
+  std::size_t coordinate = 0;       // Generalized
+  Span span;
+};
+
+/// A claimed energy beside the one that points and bodies give: `T = …` in a model with massive points.
+struct EnergyClaim {
+  syntax::EnergyStatement::Which which;
+  Expr value;
+  Span span;
+};
+
+/// A mechanical system as physics: no units to convert, no names to look up, every formula in SI base units.
+struct MechanicalSystem {
+  std::shared_ptr<Context> context;
+  std::string name, title, source;
+  bool dimensionless = false;
+  int space_dimension = 2;          // 2 or 3
+
+  std::vector<Coordinate> coordinates;
+  std::vector<Parameter> parameters;     // in the order of the text; anonymous constants at the end
+  std::vector<Input> inputs;
+  std::vector<Definition> definitions;
+  std::vector<Frame> frames;
+  std::vector<Point> points;
+  std::vector<Body> bodies;
+  ExprVector gravity;                    // [dimension], or empty
+
+  std::vector<EnergyTerm> kinetic;       // T
+  std::vector<EnergyTerm> potential;     // V
+  std::vector<EnergyTerm> generalized_potential;  // U
+  std::vector<EnergyTerm> dissipation;   // D
+  std::vector<EnergyTerm> lagrangian_extra;       // L += …
+  std::optional<EnergyTerm> lagrangian_given;     // L = … : then T, V, U are not used for L
+  std::vector<EnergyClaim> claims;
+  std::vector<AppliedForce> forces;
+  std::vector<std::pair<std::string, std::size_t>> releases;  // reaction NAME = release parameter (index)
+
+  std::size_t freedoms() const { return coordinates.size(); }
+
+  Expr kinetic_energy() const;           // Σ kinetic, 0 if none
+  Expr potential_energy() const;
+  Expr total_generalized_potential() const;
+  Expr dissipation_function() const;
+  /// L = T − V − U (+ what L += adds), or the given L. In q, q', t, inputs; may hold TimeDerivative nodes.
+  Expr lagrangian() const;
+  /// Q_i from the applied forces by virtual work, Σ F·∂r/∂q_i + Σ τ·∂ω/∂q̇_i.           [n]
+  ExprVector generalized_forces() const;
+  const Coordinate* find_coordinate(std::string_view name) const;
+  const Parameter* find_parameter(std::string_view name) const;
+  const Point* find_point(std::string_view name) const;
+  const Body* find_body(std::string_view name) const;
+};
+
+// ------------------------------------------------------------------------------------------------------- experiment
+
+struct StartValue {
+  std::size_t coordinate = 0;
+  int order = 0;                    // 0: q, 1: q'
+  Expr value;                       // parameters and numbers only, SI
+  Span span;
+};
+
+struct Expectation {
+  syntax::ExpectStatement::Kind kind{};
+  bool claim = false;
+  std::string text;                 // as written
+  std::string name, word;
+  Expr subject, subject_right;      // Equation: subject = subject_right; ValueAt and others: subject
+  Expr time, value, tolerance;      // SI; empty where absent
+  bool relative = false;
+  int occurrence = 0;
+  std::vector<Expr> values;
+  Dimension dimension;              // of subject
+  std::string display_unit;         // as written beside the value; empty: SI
+  double display_factor = 1;        // SI value of one display unit
+  Span span;
+};
+
+struct DrawElement {
+  syntax::DrawItem::Kind kind{};
+  std::vector<ExprVector> path;     // positions, world axes
+  std::vector<Expr> sizes;          // metres
+  std::vector<std::string> names;   // of the points of the path, "" where it is an expression
+};
+
+/// What to do with a system: where it starts, how long it runs, what is drawn and what is expected.
+struct Experiment {
+  std::vector<StartValue> start;    // unwritten = 0
+  bool start_exactly = false;
+  Expr start_time;                  // empty: 0
+  Expr duration;                    // of `run 10 s`; empty if the model has none
+  Expr until;                       // `run until A = B`: A − B; empty if none
+  Expr within;                      // the longest time for `until`
+  Expr output_every;                // empty: chosen by the program
+  std::vector<DrawElement> drawing;
+  std::vector<Expectation> expectations;
+};
+
+struct Model {
+  MechanicalSystem system;
+  Experiment experiment;
+};
+
+/// What the command line changes: `--set m=2kg`, `--start θ=1`.
+struct Overrides {
+  std::vector<std::string> parameters;
+  std::vector<std::string> start;
+};
+
+/// Resolves names and units, infers dimensions, builds kinematics and energies. All mistakes go to `diagnostics`;
+/// nothing is returned when there is an error. Physics lint is a pass of its own (`lint`).
+std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics,
+                               const Overrides& overrides = {});
+
+/// Physics lint on an elaborated model: coordinates unused or without kinetic energy, claimed energies against those of
+/// the points, velocities in V, total time derivatives in L, gravity counted twice, more coordinates than freedoms, …
+void lint(const Model& model, const SourceText& source, Diagnostics& diagnostics);
+
+}  // namespace maupertuis

@@ -1,0 +1,54 @@
+#pragma once
+#include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/trajectory.hpp>
+
+#include <atomic>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace maupertuis {
+
+struct SimulationOptions {
+  double tolerance = 0;                     // relative, per step; 0: rounding level of double
+  std::optional<double> duration;           // s, instead of the model's run; negative: backwards in time
+  std::vector<double> at;                   // s: times at which the state is wanted exactly
+  std::optional<double> output_every;       // s
+  std::size_t maximum_steps = 100'000'000;
+  const std::atomic<bool>* interrupt = nullptr;  // set by Ctrl-C
+};
+
+struct State {
+  double t = 0;
+  std::vector<double> q, v, a;              // [n] each
+};
+
+enum class Ending { Finished, UntilReached, UntilNotReached, Interrupted, SingularMass, Overflow, StepUnderflow, Sliding, TooManySteps };
+
+struct SimulationStatistics {
+  std::size_t steps = 0;
+  double seconds = 0;                       // stepping only
+  double compile_seconds = 0;               // model to kernel
+  int order = 0;
+  std::string backend = "interpreter";
+  double energy_drift = 0;                  // docs/theory: |h_E(t) − h_E(0) − work| / max Σ|terms of h_E|
+  double constraint_residual = 0;
+  std::size_t switches = 0;                 // located switch crossings
+};
+
+struct SimulationResult {
+  Trajectory trajectory;
+  State start, final;
+  std::vector<State> at;                    // in the order asked
+  SimulationStatistics statistics;
+  Ending ending = Ending::Finished;
+  std::string reason;                       // one sentence for every ending but Finished
+  bool ok() const { return ending == Ending::Finished || ending == Ending::UntilReached; }
+};
+
+/// Runs the experiment of a model. What was computed is kept whatever the ending.
+/// Nothing is returned when the start or the run length is missing or wrong (then `diagnostics` says so).
+std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMotion& equations,
+                                         const SimulationOptions& options, Diagnostics& diagnostics);
+
+}  // namespace maupertuis

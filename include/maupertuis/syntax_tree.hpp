@@ -1,0 +1,219 @@
+#pragma once
+#include <maupertuis/diagnostic.hpp>
+#include <maupertuis/source.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+/// The tree of a model text: words and structure only. Names are normalized (NFC, theta → θ, θ₁ → θ1) but not
+/// resolved; whether `2 m` is two metres or twice the mass is decided by `system`.
+namespace maupertuis::syntax {
+
+struct Expression;
+using ExpressionPtr = std::shared_ptr<const Expression>;
+
+/// A normalized name with the place where it stands.
+struct Name {
+  std::string text;
+  Span span;
+};
+
+/// A product of unit words with rational exponents, as written: "N m s^-2", "J/(kg K)", "1/s".
+struct UnitExpression {
+  struct Factor {
+    std::string word;
+    int exponent_numerator = 1;
+    int exponent_denominator = 1;
+    Span span;
+  };
+  std::vector<Factor> factors;  // empty: a bare number
+  Span span;
+};
+
+enum class Operator : std::uint8_t {
+  Add, Subtract, Multiply, Juxtapose, Divide, Dot, Cross,  // Dot, Cross: the signs · and ×
+  Power, Negate,
+  Less, LessEqual, Greater, GreaterEqual, And, Or,
+};
+
+struct Expression {
+  enum class Kind : std::uint8_t {
+    Number,       // number
+    Quantity,     // number or vector (arguments[0]) followed by unit words, in a quantity place, or `3 [J]` in a formula
+    Name,         // name, with `primes` time derivatives
+    Member,       // arguments[0] . name, with `primes`: P.x', B.ω
+    Call,         // name(arguments...): functions of rule 7, dot, cross, norm, reaction, multiplier
+    Vector,       // (a, b) or (a, b, c)
+    Binary,       // op, arguments[0], arguments[1]
+    Unary,        // op (Negate), arguments[0]
+    TimeDerivative, // dot(expr) of one argument, or (expr)' : arguments[0], `primes` times
+    Piecewise,    // arguments: condition, value, ..., else value
+  };
+  Kind kind = Kind::Number;
+  Span span;
+  std::string text;             // Number: the digits as written; Name, Member, Call: the normalized name
+  Span name_span;               // of `text`
+  int primes = 0;
+  Operator op = Operator::Add;
+  bool bracketed = false;       // stood in brackets of its own
+  bool bare = false;            // Call without brackets: sin θ
+  std::optional<UnitExpression> unit;  // Quantity
+  std::vector<ExpressionPtr> arguments;
+};
+
+// ------------------------------------------------------------------------------------------------------- statements
+
+struct Comment {
+  std::string text;  // with its #
+  Span span;
+};
+
+struct SystemStatement { Name name; std::string title; };
+struct SourceStatement { std::string citation; };
+struct DimensionlessStatement {};
+
+struct ParamStatement {
+  struct Item { Name name; ExpressionPtr value; };  // value: a Quantity, or a formula (an error of `system` offers let)
+  std::vector<Item> items;
+};
+struct CoordStatement {
+  /// kind is "angle", "length", "charge", "number", or empty with `unit` set for a unit in brackets.
+  struct Item { Name name; Name kind; std::optional<UnitExpression> unit; };
+  std::vector<Item> items;
+};
+struct LetStatement {
+  struct Item { Name name; ExpressionPtr value; };
+  std::vector<Item> items;
+};
+struct InputStatement { Name name; std::optional<UnitExpression> unit; ExpressionPtr value; };
+
+struct Rotation {
+  enum class Kind { Angle, AxisAngle, Euler, RollPitchYaw, Quaternion, QuaternionCoordinates };
+  Kind kind = Kind::Angle;
+  std::string sequence;                  // Euler: "zxz"
+  Span sequence_span;
+  ExpressionPtr axis;                    // AxisAngle
+  std::vector<ExpressionPtr> values;     // 1 angle, 3 angles, 4 components, or none
+  Span span;
+};
+struct FrameStatement { Name name; ExpressionPtr at; std::optional<Rotation> rotation; std::optional<Name> in; };
+struct PointStatement { Name name; ExpressionPtr mass; ExpressionPtr at; std::optional<Name> in; };  // mass may be null
+struct BodyStatement {
+  Name name;
+  ExpressionPtr mass;                    // null: rotation only
+  enum class Inertia { None, Scalar, Diagonal, Full } inertia_kind = Inertia::None;
+  std::vector<ExpressionPtr> inertia;    // 1, 3, or 6 (xx, yy, zz, xy, xz, yz)
+  Span inertia_span;
+  ExpressionPtr at;                      // null: at the origin of its frame
+  std::optional<Rotation> rotation;
+  std::optional<Name> in;
+};
+struct GravityStatement { ExpressionPtr vector; };
+struct SpringStatement { ExpressionPtr from, to, stiffness, length; };     // length null: 0
+struct DamperStatement { ExpressionPtr from, to, coefficient; };
+struct TorsionSpringStatement { Name coordinate; ExpressionPtr stiffness, rest; };  // rest null: 0
+struct EnergyStatement {
+  enum class Which { T, V, U, L, D } which = Which::T;
+  bool adds = false;                     // +=
+  ExpressionPtr value;
+  Span name_span;
+};
+struct ForceStatement {
+  enum class Target { Point, TorqueOnBody, Coordinate } target = Target::Coordinate;
+  Name on;                               // point, body or coordinate
+  std::optional<Name> from;              // torque on B from A
+  ExpressionPtr value;
+  std::optional<Name> in;
+};
+
+struct StartStatement {
+  bool exactly = false;
+  struct Item { ExpressionPtr variable; ExpressionPtr value; };   // variable: Name or Member with primes
+  std::vector<Item> items;
+  ExpressionPtr at;                      // start at 2 s
+};
+struct RunStatement {
+  ExpressionPtr duration;                // run 10 s
+  ExpressionPtr until_left, until_right; // run until A = B
+  ExpressionPtr within;
+};
+struct OutputStatement { ExpressionPtr every; };
+
+struct DrawItem {
+  enum class Kind { Line, Trail, Box, Circle, Spring } kind = Kind::Line;
+  std::vector<ExpressionPtr> path;       // Line: the points; others: one (Spring: two)
+  std::vector<ExpressionPtr> sizes;      // Box: width, height; Circle: radius
+  Span span;
+};
+struct DrawStatement { std::vector<DrawItem> items; };
+
+struct ReactionStatement { Name name; Name released; };            // reaction rod = release l1
+
+/// expect … and claim …
+struct ExpectStatement {
+  enum class Kind {
+    ValueAt,          // subject at `time` = value ± / rel tolerance
+    EnergyConserved,  // expect energy conserved rel 1e-13
+    Conserved,        // expect conserved EXPR [rel 1e-13]
+    NotConserved,     // expect EXPR not conserved
+    Equation,         // expect equation left = right;  claim left = right
+    Freedoms,         // expect freedoms = 2
+    ConstraintClass,  // expect constraint roll is nonholonomic
+    Integral,         // expect integral EXPR
+    Frequencies,      // expect frequencies at θ = 0 : list
+    EventAt,          // expect event hit 3 at T ± tol
+    Error,            // expect error E0412
+    Value,            // expect EXPR = VALUE ± tol (no time: parameters only, or the start)
+  } kind = Kind::ValueAt;
+  bool claim = false;
+  Name name;                             // constraint, event, reaction; or the code of Error
+  Name word;                             // nonholonomic, …
+  ExpressionPtr subject, time, value;    // Equation: subject = value
+  ExpressionPtr tolerance;               // ± (absolute) or rel
+  bool relative = false;
+  int occurrence = 0;                    // EventAt
+  std::vector<ExpressionPtr> values;     // Frequencies
+};
+
+/// A statement of the grammar that a later version carries out: constraint, contact, friction, event, impact, sweep,
+/// field, density, independent, path. It is parsed whole (formatting and messages work) and kept as its expressions.
+struct LaterStatement {
+  std::string what;                      // its first word
+  std::vector<ExpressionPtr> expressions;
+};
+
+using StatementBody =
+    std::variant<SystemStatement, SourceStatement, DimensionlessStatement, ParamStatement, CoordStatement, LetStatement,
+                 InputStatement, FrameStatement, PointStatement, BodyStatement, GravityStatement, SpringStatement,
+                 DamperStatement, TorsionSpringStatement, EnergyStatement, ForceStatement, StartStatement, RunStatement,
+                 OutputStatement, DrawStatement, ReactionStatement, ExpectStatement, LaterStatement>;
+
+struct Statement {
+  StatementBody body;
+  Span span;                             // from its first word to its last
+};
+
+struct SyntaxTree {
+  std::vector<Statement> statements;     // in the order of the text
+  std::vector<Comment> comments;
+};
+
+/// Reads a model text. Errors go to `diagnostics`, all of them; a statement with an error is left out, the rest stands.
+/// Time and memory are linear in the text; nesting is bounded (E0108), so is the size of the text (E0101).
+SyntaxTree parse(const SourceText& source, Diagnostics& diagnostics);
+
+/// The text in canonical layout (`maup fmt`). Idempotent; keeps comments and the order of statements.
+/// Precondition: `source` parsed without errors to `tree`.
+std::string format(const SyntaxTree& tree, const SourceText& source);
+
+/// One expression in canonical layout; used in messages.
+std::string to_string(const Expression& expression);
+
+/// A line a node, indented: `maup derive --emit syntax`.
+std::string dump(const SyntaxTree& tree);
+
+}  // namespace maupertuis::syntax
