@@ -43,14 +43,15 @@ enum class Operator : std::uint8_t {
 struct Expression {
   enum class Kind : std::uint8_t {
     Number,       // number
-    Quantity,     // number or vector (arguments[0]) followed by unit words, in a quantity place, or `3 [J]` in a formula
+    Quantity,     // number or vector (arguments[0]) followed by unit words, in a quantity place, or `3 [J]` in a formula;
+                  // `-10 deg` is Negate(Quantity), a number without unit words is a Number
     Name,         // name, with `primes` time derivatives
     Member,       // arguments[0] . name, with `primes`: P.x', B.ω
     Call,         // name(arguments...): functions of rule 7, dot, cross, norm, reaction, multiplier
     Vector,       // (a, b) or (a, b, c)
     Binary,       // op, arguments[0], arguments[1]
     Unary,        // op (Negate), arguments[0]
-    TimeDerivative, // dot(expr) of one argument, or (expr)' : arguments[0], `primes` times
+    TimeDerivative, // dot(expr) of one argument, or (expr)' : arguments[0], `primes` times; dot(θ) is the Name θ'
     Piecewise,    // arguments: condition, value, ..., else value
   };
   Kind kind = Kind::Number;
@@ -60,7 +61,8 @@ struct Expression {
   int primes = 0;
   Operator op = Operator::Add;
   bool bracketed = false;       // stood in brackets of its own
-  bool bare = false;            // Call without brackets: sin θ
+  bool bare = false;            // Call without brackets: sin θ, reaction rod
+  bool unit_bracketed = false;  // Quantity of a formula, `3 [J]`: the words are units and never names
   std::optional<UnitExpression> unit;  // Quantity
   std::vector<ExpressionPtr> arguments;
 };
@@ -177,12 +179,14 @@ struct ExpectStatement {
   bool relative = false;
   int occurrence = 0;                    // EventAt
   std::vector<ExpressionPtr> values;     // Frequencies
+  std::vector<StartStatement::Item> at;  // Frequencies: the configuration, `at θ = 0`
 };
 
 /// A statement of the grammar that a later version carries out: constraint, contact, friction, event, impact, sweep,
 /// field, density, independent, path. It is parsed whole (formatting and messages work) and kept as its expressions.
 struct LaterStatement {
   std::string what;                      // its first word
+  std::vector<Name> names;               // that it declares: the field and its variable, an event, a constraint
   std::vector<ExpressionPtr> expressions;
 };
 
@@ -200,6 +204,8 @@ struct Statement {
 struct SyntaxTree {
   std::vector<Statement> statements;     // in the order of the text
   std::vector<Comment> comments;
+  /// Declared by statements that were left out because of an error: a use of one of them is no second mistake.
+  std::vector<Name> lost_names;
 };
 
 /// Reads a model text. Errors go to `diagnostics`, all of them; a statement with an error is left out, the rest stands.
