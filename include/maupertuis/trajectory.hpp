@@ -2,11 +2,13 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace maupertuis {
 
 /// A time series with names and units: what a run leaves behind.
+/// Column names differ from each other and from "t", the name of the time in every format.
 struct Trajectory {
   struct Column {
     std::string name;   // "θ1", "θ1'", "B.x", "energy"
@@ -22,15 +24,31 @@ struct Trajectory {
   std::optional<std::size_t> column(const std::string& name) const;
 };
 
-/// Why a file could not be written: the sentence for the user; empty on success.
-/// The text goes to a temporary name in the same folder and is renamed when complete, so that nothing is half
-/// written or lost. The format follows the ending: .csv, .npy, .json.
+/// The formats that `write_trajectory` knows, by their endings.
+inline constexpr std::string_view trajectory_endings[] = {".csv", ".npy", ".json"};
+
+/// Writes the format that the ending of `path` names. Returns the sentence for the user when it could not be written,
+/// empty on success; then nothing at `path` has changed (see write_file).
 std::string write_trajectory(const Trajectory& trajectory, const std::string& path);
+
+/// RFC 4180: one header record `t [s],θ1 [rad],θ1' [rad/s]`, records end with CR LF, names with a comma or a quote are
+/// quoted. Numbers have 17 digits, so that reading gives the same doubles; NaN and infinities are `nan`, `inf`, `-inf`.
+/// UTF-8. Metadata have no place in CSV.
 std::string to_csv(const Trajectory& trajectory);
+
+/// {"schema": "maupertuis-trajectory-1", "metadata": {…}, "columns": [{"name", "unit"}, …], "rows": [[…], …]}; the
+/// first column is t in s, numbers have 17 digits, null where a value is not finite.
 std::string to_json(const Trajectory& trajectory);
+
+/// A NumPy array of records [rows], format 3.0 (UTF-8): `numpy.load(f)["θ1"]`, `["t"]`. Little-endian doubles, as they
+/// were computed. A field's title carries its unit, `a.dtype.fields["θ1"][2]` is `θ1 [rad]`; titles are left out where the
+/// header would pass the 10,000 characters that numpy.load accepts.
 std::string to_npy(const Trajectory& trajectory);
 
-/// Writes any text by way of a temporary name; the sentence for the user, empty on success.
+/// Writes any text or bytes by way of a temporary name in the same folder that is renamed when complete and on the disk:
+/// another program sees the old content or the new, never a part, and a failure leaves the old content.
+/// A link is followed; a device or a pipe is written to as it is. The permissions of an existing file stay.
+/// Returns the sentence for the user, empty on success.
 std::string write_file(const std::string& path, const std::string& content);
 
 }  // namespace maupertuis
