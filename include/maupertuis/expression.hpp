@@ -96,6 +96,13 @@ struct ExprHash {
   std::size_t operator()(const Expr& e) const { return e.id() * 0x9E3779B97F4A7C15ull; }
 };
 
+/// A term split into its numeric coefficient and the rest: -3 x y → (-3, x y); a Number → (value, 1).
+struct ScaledTerm {
+  Rational coefficient;
+  Expr rest;
+};
+ScaledTerm split_coefficient(Expr term);
+
 /// Owns the nodes of a family of expressions. Not thread-safe while nodes are being made; reading is.
 /// Node ids grow in order of creation, so that a child's id is smaller than its parent's: a loop over ids is a
 /// topological walk.
@@ -135,6 +142,7 @@ class Context {
 
  private:
   friend class Expr;
+  friend ScaledTerm split_coefficient(Expr term);
   std::unique_ptr<Storage> storage_;
 };
 
@@ -157,13 +165,6 @@ Expr apply(Kind function, Expr argument);
 Expr sum_of(std::span<const Expr> terms, Context& context);
 Expr sum_of(std::initializer_list<Expr> terms);       // not empty
 Expr product_of(std::initializer_list<Expr> factors); // not empty
-
-/// Splits a term into its numeric coefficient and the rest: -3 x y → (-3, x y); a Number → (value, 1).
-struct ScaledTerm {
-  Rational coefficient;
-  Expr rest;
-};
-ScaledTerm split_coefficient(Expr term);
 
 /// Splits a factor into base and numeric exponent: x^2 → (x, 2); x → (x, 1); x^y → (x^y, 1).
 struct PowerOf {

@@ -8,6 +8,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <vector>
 
 namespace maupertuis {
@@ -36,6 +38,7 @@ struct Parameter {
   double si_value = 0;              // its double
   Dimension dimension;
   std::string unit;                 // as written, "cm"; empty without one
+  bool used = false;                // some other line of the model names it
   Span span;
 };
 
@@ -47,11 +50,14 @@ struct Input {
   Span span;
 };
 
-/// A `let`: of parameters alone it stays a symbol in print, with a legend; others are expanded at once.
+/// A `let`. One of parameters alone stays a symbol in print, with a legend; others are expanded at once.
+/// The expressions of a MechanicalSystem hold no such symbols: see MechanicalSystem::written.
 struct Definition {
   std::string name;
   Expr symbol;                      // Role::Auxiliary where it stays a symbol in print; else empty
-  Expr value;                       // expanded: no `let` symbols in it
+  Expr value;                       // expanded: no `let` symbols in it; empty for a vector
+  Expr formula;                     // as written, with the symbols of other definitions: the legend; empty for a vector
+  bool used = false;
   Dimension dimension;
   bool is_vector = false;
   ExprVector components;            // of a vector
@@ -136,6 +142,11 @@ struct MechanicalSystem {
   std::vector<AppliedForce> forces;
   std::vector<std::pair<std::string, std::size_t>> releases;  // reaction NAME = release parameter (index)
 
+  /// The same system with the symbols of definitions of parameters kept (`I φ''` instead of `1/2 m R^2 φ''`): what
+  /// readable forms are derived from. Null if there are no such symbols. Substituting definition_values() turns its
+  /// expressions into those of this system.
+  std::shared_ptr<const MechanicalSystem> written;
+
   std::size_t freedoms() const { return coordinates.size(); }
 
   Expr kinetic_energy() const;           // Σ kinetic, 0 if none
@@ -146,6 +157,8 @@ struct MechanicalSystem {
   Expr lagrangian() const;
   /// Q_i from the applied forces by virtual work, Σ F·∂r/∂q_i + Σ τ·∂ω/∂q̇_i.           [n]
   ExprVector generalized_forces() const;
+  /// Symbol of a definition → its value, for those that stay symbols in print.
+  std::unordered_map<Expr, Expr, ExprHash> definition_values() const;
   const Coordinate* find_coordinate(std::string_view name) const;
   const Parameter* find_parameter(std::string_view name) const;
   const Point* find_point(std::string_view name) const;
@@ -170,7 +183,7 @@ struct Expectation {
   Expr time, value, tolerance;      // SI; empty where absent
   bool relative = false;
   int occurrence = 0;
-  std::vector<Expr> values;
+  std::vector<Expr> values;         // Frequencies: subject = value is the equilibrium, these the frequencies
   Dimension dimension;              // of subject
   std::string display_unit;         // as written beside the value; empty: SI
   double display_factor = 1;        // SI value of one display unit
@@ -216,5 +229,8 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
 /// Physics lint on an elaborated model: coordinates unused or without kinetic energy, claimed energies against those of
 /// the points, velocities in V, total time derivatives in L, gravity counted twice, more coordinates than freedoms, …
 void lint(const Model& model, const SourceText& source, Diagnostics& diagnostics);
+
+/// The system as text, a line an item: `maup derive --emit system`.
+std::string dump(const MechanicalSystem& system);
 
 }  // namespace maupertuis
