@@ -52,17 +52,16 @@ def elastic_pendulum():
 
 
 def spherical_pendulum():
-    """cos θ = c0 + (c1 − c0) sn²(Ω t, k): Whittaker, Analytical Dynamics, §55. φ has no elementary form: integrated."""
+    """cos θ = c1 − (c1 − c0) sn²(K + Ω t): Whittaker, Analytical Dynamics, §55. φ is an integral of the third kind."""
     c0, rate = D("0.5"), D(2)  # start at the turning point θ = 60°, l = 1
     momentum = (1 - c0 ** 2) * rate
     energy = momentum * rate / 2 - G * c0
     # (dc/dt)² = 2 (E + g c)(1 − c²) − Lz² = −2 g (c − c0)(c − c1)(c − c2); the other two roots by Vieta
-    total, product = -energy / G - c0, -(2 * energy - momentum ** 2) / (-2 * G) / c0
-    product = (2 * energy - momentum ** 2) / (2 * G * c0)
+    total, product = -energy / G - c0, (2 * energy - momentum ** 2) / (2 * G * c0)
     root = sqrt(total ** 2 - 4 * product)
     c1, c2 = (total + root) / 2, (total - root) / 2
     omega, modulus = sqrt(G * (c1 - c2) / 2), (c1 - c0) / (c1 - c2)
-    theta = lambda t: acos(c0 + (c1 - c0) * jacobi(omega * t, modulus)[0] ** 2)
+    theta = lambda t: acos(c1 - (c1 - c0) * jacobi(ellipk(modulus) + omega * t, modulus)[0] ** 2)
 
     def acceleration(_, q, v):
         return [sin(q[0]) * cos(q[0]) * v[1] ** 2 - G * sin(q[0]), -2 * v[0] * v[1] * cos(q[0]) / sin(q[0])]
@@ -181,7 +180,7 @@ def robot_arm():
 
     def acceleration(t, q, v):
         a, w = [q[0], q[0] + q[1], sum(q)], [v[0], v[0] + v[1], sum(v)]
-        joint = [45 + 20 * sin(3 * t), 12 * cos(2 * t), 2 * sin(5 * t), D(0)]
+        joint = [15 * sin(3 * t), 5 * cos(2 * t), sin(5 * t), D(0)]
         joint = [torque - D("0.5") * rate for torque, rate in zip(joint, v + [D(0)])]
         right = [joint[i] - joint[i + 1] - G * lever[i] * cos(a[i])
                  - sum(c[i][k] * sin(a[i] - a[k]) * w[k] ** 2 for k in range(3)) for i in range(3)]
