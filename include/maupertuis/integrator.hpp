@@ -1,0 +1,100 @@
+#pragma once
+#include <maupertuis/kernel.hpp>
+
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+/// Steps of a motion by Taylor polynomials (docs/design/taylor_step.md).
+///
+///     TaylorStepper stepper(kernel, parameters, {});
+///     stepper.start(0, q0, v0);
+///     std::size_t next = 0;
+///     while (stepper.time() != end) {
+///       const Step step = stepper.step(end);                      // never goes past `end`
+///       while (next < times.size() && stepper.covers(times[next])) store(stepper.sample(times[next++]));
+///       if (step.ending != StepEnding::None) { report(step.ending, step.reason); break; }
+///       if (step.event) break;                                    // run until: stepper.time() is the located root
+///     }
+namespace maupertuis {
+
+struct TaylorOptions {
+  double tolerance = 0;                          // relative, per step; 0: rounding level of double
+  int order = 0;                                 // of the polynomial of q̇; 0: from the tolerance
+  std::size_t maximum_steps = 100'000'000;
+  const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
+};
+
+enum class StepEnding {
+  None,           // go on
+  SingularMass,
+  Overflow,       // a value is infinite or undefined
+  StepUnderflow,  // steps shrink below the resolution of time: a collision, an infinite force
+  Sliding,        // both sides of a switch push back to it
+  TooManySteps,
+  Interrupted,
+};
+
+/// One step, or the reason why there is none: then begin == end and the state is the one reached before.
+struct Step {
+  double begin = 0, end = 0;         // s
+  StepEnding ending = StepEnding::None;
+  std::string reason;                // one sentence for every ending but None
+  std::optional<std::size_t> event;  // the step ended at a root of this event function
+  int switches = 0;                  // switch functions whose root the step ended at
+};
+
+/// The motion at one time.
+struct Sample {
+  double t = 0;
+  std::vector<double> q, v, a;      // [n] each
+  std::vector<double> observables;  // [observables]
+  std::vector<double> integrals;    // [integrands], from the start of the run to t
+};
+
+/// Advances a motion by steps whose order and length follow from the tolerance (Jorba and Zou). The state is summed
+/// with compensation. Every zero of a switch function ends a step at its located root, and so do events.
+class TaylorStepper {
+ public:
+  /// Precondition: parameters.size() == kernel.parameters().
+  TaylorStepper(const Kernel& kernel, std::span<const double> parameters, const TaylorOptions& options);
+  ~TaylorStepper();
+  TaylorStepper(TaylorStepper&&) noexcept;
+
+  int order() const;
+  /// Begins a run; integrals and statistics start at zero.
+  void start(double t, std::span<const double> q, std::span<const double> v);
+  /// One step towards `bound`, at most up to it; time() == bound exactly when it is reached. Backwards if bound < time().
+  Step step(double bound);
+
+  double time() const;
+  std::span<const double> q() const;  // [n]
+  std::span<const double> v() const;  // [n]
+  std::size_t steps() const;
+  std::size_t switches() const;       // located crossings so far
+
+  /// Whether t lies in the last step, its ends included.
+  bool covers(double t) const;
+  /// The motion at a time in the last step, from the step's own polynomial; accelerations and observables by the
+  /// kernel at that point. Also at the start, before any step. Where the forces have no value a and observables are NaN.
+  /// Precondition: covers(t).
+  Sample sample(double t) const;
+  /// The state alone, from the polynomial: no evaluation of the kernel. q, v: [n].
+  void state(double t, std::span<double> q, std::span<double> v) const;
+  /// The motion at the beginning of the last step, at no cost: accelerations and observables come with the step.
+  const Sample& step_start() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The order that a tolerance asks for, p = ⌈−½ ln ε + 1⌉, and the tolerance at rounding level.
+int taylor_order(double tolerance);
+double rounding_tolerance();
+
+}  // namespace maupertuis

@@ -1,0 +1,123 @@
+#pragma once
+#include <maupertuis/expression.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+/// From expressions to numbers: a Kernel is an immutable straight-line program, a KernelWorkspace runs it.
+///
+///     KernelSource source;
+///     source.coordinates = {q};  source.parameters = {k};  source.residual = {m * a + k * q};
+///     Kernel kernel = build_kernel(source);
+///     KernelWorkspace work(kernel, 20);
+///     work.set_parameters(values);
+///     if (work.expand(t, q0, v0) == KernelStatus::Ok) ... work.coordinate(k)[i] ...
+///
+/// docs/design/kernel_program.md tells how; nothing here knows mechanics.
+namespace maupertuis {
+
+/// What a kernel is built from. The expressions may hold TimeDerivative nodes, t, numbers, and symbols of the listed
+/// coordinates (orders 0, 1, 2) and parameters; every other symbol (inputs, lets) is already substituted.
+struct KernelSource {
+  std::vector<Expr> coordinates;  // [n] symbols of order 0
+  std::vector<Expr> parameters;   // [p] symbols of Role::Parameter or Role::Constant
+  std::vector<Expr> residual;     // [n] R(q,q̇,q̈,t) = 0, linear in q̈; M = ∂R/∂q̈
+  std::vector<Expr> observables;  // numbers wanted at points of the motion
+  std::vector<Expr> events;       // functions whose roots are to be located
+  std::vector<Expr> integrands;   // functions whose integrals over time are wanted (work, action)
+};
+
+/// A function whose zero changes the formula in force: the argument of abs, sign or step, the difference of the
+/// arguments of min, max or a comparison.
+struct SwitchFunction {
+  Kind kind = Kind::Abs;  // what it first stood in: Abs, Sign, Step, Min, Max, Less, LessEqual
+  Expr left, right;       // the function is left − right; `right` is empty for Abs, Sign, Step
+};
+
+struct Program;
+
+/// An immutable compiled system; cheap to copy, safe to share between threads.
+class Kernel {
+ public:
+  explicit Kernel(std::shared_ptr<const Program> program) : program_(std::move(program)) {}
+
+  std::size_t freedoms() const;
+  std::size_t parameters() const;
+  std::size_t observables() const;
+  std::size_t events() const;
+  std::size_t integrands() const;
+  std::span<const SwitchFunction> switches() const;
+  /// The coordinate's name, for messages.
+  const std::string& coordinate_name(std::size_t index) const;
+  /// One line an instruction: `maup derive --emit program`.
+  std::string print() const;
+
+  const Program& program() const { return *program_; }
+
+ private:
+  std::shared_ptr<const Program> program_;
+};
+
+/// Lowers expressions to a program. Cost about linear in the number of nodes.
+/// Throws std::logic_error for a symbol that the source does not list, for a residual that is not linear in q̈, and for
+/// a third derivative of a coordinate.
+Kernel build_kernel(const KernelSource& source);
+
+enum class KernelStatus {
+  Ok,
+  SingularMass,  // M has no reliable inverse here: `singular_coordinate` is a coordinate whose q̈ is not determined
+  NonFinite,     // a value is infinite or undefined
+};
+
+/// Everything that a run of a kernel changes. One thread at a time; as many as wanted for one kernel.
+///
+/// Coefficients are normalized: x(t + τ) = Σ x_k τ^k.
+class KernelWorkspace {
+ public:
+  /// `order`: of the Taylor polynomial of q̇ (≥ 1); that of q is one higher.
+  KernelWorkspace(const Kernel& kernel, int order);
+  ~KernelWorkspace();
+  KernelWorkspace(KernelWorkspace&&) noexcept;
+
+  int order() const;
+  /// Precondition: values.size() == kernel.parameters(). Constant sub-expressions are computed here, once.
+  void set_parameters(std::span<const double> values);
+  /// Which side of its zero each switch function is taken to be on: +1, −1, or 0 (it vanishes identically).
+  /// [switches]; initially +1.
+  void set_branches(std::span<const std::int8_t> sides);
+
+  /// The Taylor coefficients of the motion through (t, q, q̇) under the branches set, and of the switch functions,
+  /// events and integrands along it; observables at (t, q, q̇) itself.
+  ///
+  /// Order by order: residual with q̈_k = 0, solve M₀ q̈_k = −R_k with the one factorization of M₀, correct by
+  /// tangents. Cost O(order² · program + order · n² + n³).
+  KernelStatus expand(double t, std::span<const double> q, std::span<const double> v);
+  /// The same up to q̈ and the observables alone.
+  KernelStatus evaluate(double t, std::span<const double> q, std::span<const double> v);
+
+  /// The k-th coefficients of q [n], 0 ≤ k ≤ order + 1 (after `evaluate` k ≤ 2).
+  const double* coordinate(int k) const;
+  /// q̈ at the point, q̈_i = 2 · coordinate(2)[i].
+  double acceleration(std::size_t i) const;
+  double observable(std::size_t i) const;
+  /// A coefficient of a function along the motion; zero beyond the orders that are known.
+  double switch_function(std::size_t i, int k) const;
+  double event(std::size_t i, int k) const;
+  double integrand(std::size_t i, int k) const;
+  /// Sizes of the terms that add up to the switch function or event at the point: what its rounding error is
+  /// measured against.
+  double switch_scale(std::size_t i) const;
+  double event_scale(std::size_t i) const;
+  /// After SingularMass.
+  std::size_t singular_coordinate() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace maupertuis
