@@ -53,7 +53,8 @@ struct DerivationStep {
   std::string left;      // plain text of the left side, "d/dt ∂L/∂θ1'"; its LaTeX beside it
   std::string left_latex;
   Expr right;            // readable; empty if the step is a sentence alone
-  std::string sentence;
+  std::string sentence;  // shown instead of, or after, the formula
+  std::vector<Intermediate> intermediates;  // that `right` uses
 };
 
 struct Derivation {
@@ -64,5 +65,15 @@ struct Derivation {
 
 /// The equations in readable form (steps left empty), and with the textbook path.
 Derivation readable_derivation(const EquationsOfMotion& equations, bool with_steps);
+
+/// One block of the equations solved for its accelerations. Coordinates that M does not couple are separate blocks.
+struct SolvedAcceleration {
+  std::size_t coordinate = 0;
+  ReadableForm right;            // q̈ = right; an empty handle where the block is too large to be written out
+  std::vector<std::size_t> coupled_with;  // the coordinates of its block, itself included
+};
+
+/// q̈ by Cramer's rule for blocks of at most two coordinates; larger blocks are left to the numerical solve.
+std::vector<SolvedAcceleration> solved_accelerations(const EquationsOfMotion& equations);
 
 }  // namespace maupertuis

@@ -1,0 +1,39 @@
+#pragma once
+#include <maupertuis/certificate.hpp>
+#include <maupertuis/simulation.hpp>
+
+#include <string>
+#include <vector>
+
+namespace maupertuis {
+
+/// What became of one `expect` or `claim` line.
+struct ExpectationResult {
+  std::uint32_t line = 0;
+  std::string text;         // as written
+  bool claim = false;
+  bool passed = false;
+  std::string actual;       // what came out, in the unit that the line uses
+  std::string expected;
+  std::string tolerance;
+  std::string message;      // one sentence when it failed, or what was proved and on what ground
+  std::string pitfall;      // the known mistake whose signature the difference has; empty if none
+};
+
+struct Verification {
+  std::vector<ExpectationResult> results;   // in the order of the text
+  std::size_t passed() const;
+  std::size_t failed() const { return results.size() - passed(); }
+};
+
+/// Carries out the `expect` and `claim` lines of a model: identities by the zero test, values by runs that land exactly
+/// on the times asked. A run that ends early fails the lines that need it, with its reason.
+Verification verify(const Model& model, const EquationsOfMotion& equations, const SourceText& source,
+                    const SimulationOptions& options, Diagnostics& diagnostics);
+
+/// For a model whose text expects an error (`expect error E0412`): compares with what was found.
+/// Returns nothing if the text has no such line.
+std::optional<Verification> verify_errors(const syntax::SyntaxTree& tree, const SourceText& source,
+                                          const Diagnostics& found);
+
+}  // namespace maupertuis

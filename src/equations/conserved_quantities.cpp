@@ -1,0 +1,46 @@
+#include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/evaluate.hpp>
+
+namespace maupertuis {
+namespace {
+
+bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
+
+/// h_E against T + V when L = T − V − U was built from parts.
+std::string compare_with_energy(const EquationsOfMotion& equations, bool& equal) {
+  const MechanicalSystem& system = *equations.system;
+  const Expr energy = expand_time_derivatives(system.kinetic_energy() + system.potential_energy());
+  equal = vanishes(equations.energy_function - energy);
+  const bool has_generalized_potential = !system.generalized_potential.empty() || !system.lagrangian_extra.empty();
+  if (equal && has_generalized_potential)
+    return "h_E = T + V: the velocity-dependent part of L is linear in the velocities and does no work.";
+  if (equal) return "h_E = T + V: T is a homogeneous quadratic form in the velocities, and V does not depend on them.";
+  if (has_generalized_potential)
+    return "h_E is not T + V: L has a part beside T − V, which enters as q'·∂L/∂q' − L.";
+  return "h_E is not T + V: the prescribed motion gives T terms of degree 1 or 0 in the velocities.";
+}
+
+}  // namespace
+
+ConservedQuantities conserved_quantities(const EquationsOfMotion& equations) {
+  const MechanicalSystem& system = *equations.system;
+  ExprVector q;
+  for (const Coordinate& c : system.coordinates) q.push_back(c.q);
+  const auto forces = gradient(equations.lagrangian_expanded, q);
+
+  ConservedQuantities result;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    if (!vanishes(forces[i])) continue;
+    result.cyclic.push_back(i);
+    if (vanishes(equations.generalized_forces[i] - equations.dissipative_terms[i])) result.conserved_momenta.push_back(i);
+  }
+  result.energy_conserved = vanishes(equations.power);
+  if (system.lagrangian_given) {
+    result.energy_case = "L was given whole: h_E = q'·∂L/∂q' − L, which is T + V where L = T − V with T quadratic in the velocities.";
+  } else {
+    result.energy_case = compare_with_energy(equations, result.energy_is_t_plus_v);
+  }
+  return result;
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,258 @@
+#include "equations/derivation_steps.hpp"
+
+#include <maupertuis/print.hpp>
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace maupertuis {
+namespace {
+
+/// Writes the lines; `section` stays until the next one is opened.
+class StepWriter {
+ public:
+  StepWriter(const EquationsOfMotion& equations) : equations_(equations), system_(*equations.system) {}
+
+  std::vector<DerivationStep> take() { return std::move(steps_); }
+  void open(std::string section) { section_ = std::move(section); }
+
+  void sentence(std::string rule, std::string text) {
+    DerivationStep step;
+    step.section = section_;
+    step.rule = std::move(rule);
+    step.sentence = std::move(text);
+    steps_.push_back(std::move(step));
+  }
+
+  /// left = readable(value). The value may hold d/dt nodes, which are carried out.
+  DerivationStep& formula(std::string left, std::string left_latex, Expr value, std::string rule) {
+    ReadableForm form = readable(expand_time_derivatives(value), equations_.order);
+    return as_is(std::move(left), std::move(left_latex), std::move(form), std::move(rule));
+  }
+
+  /// left = form, as it stands.
+  DerivationStep& as_is(std::string left, std::string left_latex, ReadableForm form, std::string rule) {
+    DerivationStep step;
+    step.section = section_;
+    step.rule = std::move(rule);
+    step.left = std::move(left);
+    step.left_latex = std::move(left_latex);
+    step.right = form.value;
+    step.intermediates = std::move(form.intermediates);
+    steps_.push_back(std::move(step));
+    return steps_.back();
+  }
+
+  const EquationsOfMotion& equations() const { return equations_; }
+  const MechanicalSystem& system() const { return system_; }
+  Context& context() const { return *system_.context; }
+
+ private:
+  const EquationsOfMotion& equations_;
+  const MechanicalSystem& system_;
+  std::string section_;
+  std::vector<DerivationStep> steps_;
+};
+
+constexpr std::array axis_names{"x", "y", "z"};
+
+std::string latex_name(const std::string& name) { return name.size() > 1 ? "\\mathrm{" + name + "}" : name; }
+
+std::string plural(std::size_t n, const char* word) { return fmt::format("{} {}{}", n, word, n == 1 ? "" : "s"); }
+
+void write_coordinates(StepWriter& out) {
+  out.open("Coordinates");
+  std::string list;
+  for (const Coordinate& c : out.system().coordinates) {
+    if (!list.empty()) list += ", ";
+    list += c.kind.empty() ? c.name : fmt::format("{} ({})", c.name, c.kind);
+  }
+  const std::size_t n = out.system().coordinates.size();
+  out.sentence("choice of generalized coordinates",
+               fmt::format("{}: {}, no constraints among them, so {}.", list.empty() ? "none" : list,
+                           plural(n, "generalized coordinate"), plural(n, "freedom")));
+}
+
+/// Positions, then velocities by the chain rule, then speeds squared, of the points that carry mass.
+void write_kinematics(StepWriter& out) {
+  struct Moving { std::string name; const ExprVector* position; };
+  std::vector<Moving> moving;
+  for (const Point& p : out.system().points)
+    if (p.mass) moving.push_back({p.name, &p.position});
+  for (const Body& b : out.system().bodies)
+    if (b.mass) moving.push_back({b.name, &b.position});
+  if (moving.empty()) return;
+
+  const auto each_component = [&](auto&& write) {
+    for (const Moving& point : moving)
+      for (std::size_t axis = 0; axis < point.position->size(); ++axis)
+        write(point.name, axis_names[axis], (*point.position)[axis]);
+  };
+  out.open("Positions");
+  each_component([&](const std::string& name, const char* axis, Expr value) {
+    out.formula(name + "." + axis, fmt::format("{}_{{{}}}", axis, latex_name(name)), value, "definition of the point");
+  });
+  out.open("Velocities");
+  each_component([&](const std::string& name, const char* axis, Expr value) {
+    out.formula(name + "." + axis + "'", fmt::format("\\dot{{{}}}_{{{}}}", axis, latex_name(name)),
+                out.context().time_derivative(value), "chain rule: ṙ = Σ ∂r/∂q q' + ∂r/∂t");
+  });
+  out.open("Speeds");
+  for (const Moving& point : moving) {
+    ExprVector squares;
+    for (const Expr& component : *point.position)
+      squares.push_back(pow(out.context().time_derivative(component), Rational(2)));
+    out.formula("v_" + point.name + "^2", fmt::format("v_{{{}}}^2", latex_name(point.name)), out.context().sum(squares),
+                out.system().space_dimension == 2 ? "v² = x'² + y'²" : "v² = x'² + y'² + z'²");
+  }
+}
+
+void write_angular_velocities(StepWriter& out) {
+  if (out.system().bodies.empty()) return;
+  out.open("Angular velocities");
+  for (const Body& body : out.system().bodies) {
+    const bool planar = body.angular_velocity.size() == 1;
+    for (std::size_t i = 0; i < body.angular_velocity.size(); ++i) {
+      const std::string axis = planar ? "" : fmt::format(".{}", axis_names[i]);
+      const std::string latex_axis = planar ? "" : fmt::format(",{}", axis_names[i]);
+      out.formula(body.name + ".ω" + axis, fmt::format("\\omega_{{{}{}}}", latex_name(body.name), latex_axis),
+                  body.angular_velocity[i], "rotation of the body, in body axes");
+    }
+  }
+}
+
+void write_energy(StepWriter& out, const char* section, const std::string& letter, const std::vector<EnergyTerm>& terms,
+                  const std::string& rule) {
+  if (terms.empty()) return;
+  out.open(section);
+  ExprVector values;
+  for (const EnergyTerm& term : terms) {
+    values.push_back(term.value);
+    if (terms.size() > 1)
+      out.formula(fmt::format("{}({})", letter, term.origin), fmt::format("{}_{{\\text{{{}}}}}", letter, term.origin),
+                  term.value, term.origin);
+  }
+  out.formula(letter, letter, out.context().sum(values), rule);
+}
+
+void write_lagrangian(StepWriter& out) {
+  const MechanicalSystem& s = out.system();
+  if (!s.lagrangian_given) {
+    write_energy(out, "Kinetic energy", "T", s.kinetic, "T = Σ ½ m v² + ½ ω·I ω");
+    write_energy(out, "Potential energy", "V", s.potential, "sum over the potentials");
+    write_energy(out, "Generalized potential", "U", s.generalized_potential, "velocity-dependent potential");
+  }
+  write_energy(out, "Dissipation function", "D", s.dissipation, "Rayleigh's dissipation function");
+  out.open("Lagrangian");
+  const bool extra = !s.lagrangian_extra.empty();
+  std::string rule = s.lagrangian_given ? "as given" : s.generalized_potential.empty() ? "L = T - V" : "L = T - V - U";
+  if (extra) rule += ", and the terms added to L";
+  out.formula("L", "L", out.equations().lagrangian_expanded, rule);
+}
+
+/// The virtual work behind each Q: F·∂r/∂q, τ·∂ω/∂q'.
+void write_virtual_work(StepWriter& out) {
+  const MechanicalSystem& s = out.system();
+  if (s.forces.empty()) return;
+  out.open("Generalized forces");
+  for (const AppliedForce& force : s.forces) {
+    if (force.kind == AppliedForce::Kind::Generalized) {
+      out.sentence("generalized force given directly",
+                   fmt::format("The force on {} is given per coordinate: its virtual work is Q δ{}.", force.target, force.target));
+      continue;
+    }
+    const bool torque = force.kind == AppliedForce::Kind::Torque;
+    for (std::size_t i = 0; i < s.coordinates.size(); ++i) {
+      const Coordinate& c = s.coordinates[i];
+      ExprVector terms;
+      for (std::size_t k = 0; k < force.components.size() && k < force.lever.size(); ++k) {
+        const Expr lever = expand_time_derivatives(force.lever[k]);
+        terms.push_back(force.components[k] * differentiate(lever, torque ? c.velocity : c.q));
+      }
+      const Expr work = out.context().sum(terms);
+      if (work.is_zero()) continue;
+      out.formula(fmt::format("Q_{}({} {})", c.name, torque ? "torque on" : "force on", force.target),
+                  fmt::format("Q_{{{}}}", symbol_to_latex(c.q)), work,
+                  torque ? fmt::format("virtual work: τ·∂ω/∂{}'", c.name) : fmt::format("virtual work: F·∂r/∂{}", c.name));
+    }
+  }
+  for (std::size_t i = 0; i < s.coordinates.size(); ++i)
+    out.formula("Q_" + s.coordinates[i].name, fmt::format("Q_{{{}}}", symbol_to_latex(s.coordinates[i].q)),
+                out.equations().generalized_forces[i], "sum of the virtual works");
+}
+
+/// d/dt ∂L/∂q̇ = Σ_j (∂p/∂q̇_j q̈_j + ∂p/∂q_j q̇_j) + ∂p/∂t (+ ∂p/∂u u̇), each chain-rule term on its own.
+ReadableForm total_derivative_terms(const StepWriter& out, Expr momentum) {
+  Context& context = out.context();
+  ReadableForm form;
+  ExprVector terms;
+  const auto add = [&](Expr symbol) {
+    const Expr partial = differentiate(momentum, symbol);
+    if (partial.is_zero()) return;
+    ReadableForm coefficient = readable(partial, out.equations().order);
+    if (coefficient.value.is_zero()) return;
+    terms.push_back(coefficient.value * context.time_derivative(symbol));
+    for (Intermediate& i : coefficient.intermediates) form.intermediates.push_back(std::move(i));
+  };
+  for (const Coordinate& c : out.system().coordinates) add(c.velocity);
+  for (const Coordinate& c : out.system().coordinates) add(c.q);
+  for (const Expr& s : symbols_of({&momentum, 1}))
+    if (s.role() == Role::Input) add(s);
+  add(context.time());
+  form.value = context.sum(terms);
+  return form;
+}
+
+void write_row(StepWriter& out, std::size_t i, const Derivation& derivation) {
+  const EquationsOfMotion& eq = out.equations();
+  const Coordinate& c = out.system().coordinates[i];
+  const std::string latex = symbol_to_latex(c.q), latex_dot = symbol_to_latex(c.velocity);
+  out.open("Equation of " + c.name);
+  out.formula("∂L/∂" + c.name + "'", fmt::format("\\frac{{\\partial L}}{{\\partial {}}}", latex_dot), eq.momenta[i],
+              "partial derivative, q and t held fixed: the momentum p_" + c.name);
+  out.as_is("d/dt ∂L/∂" + c.name + "'", fmt::format("\\frac{{d}}{{dt}} \\frac{{\\partial L}}{{\\partial {}}}", latex_dot),
+            total_derivative_terms(out, eq.momenta[i]), "total time derivative: chain rule through q', q and t");
+  out.formula("∂L/∂" + c.name, fmt::format("\\frac{{\\partial L}}{{\\partial {}}}", latex),
+              differentiate(eq.lagrangian_expanded, c.q), "partial derivative, q' and t held fixed");
+  if (!eq.dissipative_terms[i].is_zero())
+    out.formula("∂D/∂" + c.name + "'", fmt::format("\\frac{{\\partial D}}{{\\partial {}}}", latex_dot),
+                eq.dissipative_terms[i], "partial derivative of the dissipation function");
+  std::string rule = "d/dt ∂L/∂q' − ∂L/∂q";
+  if (!eq.dissipative_terms[i].is_zero()) rule += " + ∂D/∂q'";
+  rule += eq.generalized_forces[i].is_zero() ? " = 0" : " = Q";
+  out.as_is("0", "0", derivation.equations[i], "Euler-Lagrange: " + rule + ", collected and simplified");
+}
+
+void write_solved(StepWriter& out) {
+  out.open("Solved for the accelerations");
+  bool any_left = false;
+  constexpr std::size_t longest = 400;  // characters: beyond it the solved form hides more than it shows
+  for (SolvedAcceleration& solved : solved_accelerations(out.equations())) {
+    const Coordinate& c = out.system().coordinates[solved.coordinate];
+    const bool is_short = solved.right.value && solved.right.intermediates.empty() &&
+                          to_plain(solved.right.value, out.equations().order).size() <= longest;
+    any_left |= !is_short;
+    if (is_short)
+      out.as_is(c.name + "''", symbol_to_latex(c.acceleration), std::move(solved.right),
+                solved.coupled_with.size() == 1 ? "divided by the coefficient of " + c.name + "''" : "Cramer's rule");
+  }
+  if (any_left)
+    out.sentence("M q'' + h = 0", "The coupled accelerations are long when written out; a run solves M q'' = −h numerically at every step.");
+}
+
+}  // namespace
+
+std::vector<DerivationStep> derivation_steps(const EquationsOfMotion& equations, const Derivation& derivation) {
+  StepWriter out(equations);
+  write_coordinates(out);
+  write_kinematics(out);
+  write_angular_velocities(out);
+  write_lagrangian(out);
+  write_virtual_work(out);
+  for (std::size_t i = 0; i < equations.system->coordinates.size(); ++i) write_row(out, i, derivation);
+  if (!equations.system->coordinates.empty()) write_solved(out);
+  return out.take();
+}
+
+}  // namespace maupertuis

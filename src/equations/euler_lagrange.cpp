@@ -1,0 +1,78 @@
+#include <maupertuis/equations_of_motion.hpp>
+
+#include <array>
+
+namespace maupertuis {
+namespace {
+
+ExprVector symbols_of_order(const MechanicalSystem& system, int order) {
+  ExprVector symbols;
+  for (const Coordinate& c : system.coordinates)
+    symbols.push_back(order == 0 ? c.q : order == 1 ? c.velocity : c.acceleration);
+  return symbols;
+}
+
+/// ∂e/∂t + Σ (∂e/∂u) u̇: the rate of change of e by time and inputs alone, at fixed q and q̇.
+Expr explicit_rate(Expr e) {
+  Context& context = e.context();
+  ExprVector symbols{context.time()};
+  for (const Expr& s : symbols_of({&e, 1}))
+    if (s.role() == Role::Input) symbols.push_back(s);
+  const auto derivatives = gradient(e, symbols);
+  ExprVector terms{derivatives.front()};
+  for (std::size_t i = 1; i < symbols.size(); ++i) terms.push_back(derivatives[i] * context.time_derivative(symbols[i]));
+  return context.sum(terms);
+}
+
+Expr dot(const ExprVector& a, const ExprVector& b, Context& context) {
+  ExprVector terms;
+  for (std::size_t i = 0; i < a.size(); ++i) terms.push_back(a[i] * b[i]);
+  return context.sum(terms);
+}
+
+}  // namespace
+
+std::optional<EquationsOfMotion> euler_lagrange(std::shared_ptr<const MechanicalSystem> system, Diagnostics&) {
+  Context& context = *system->context;
+  const ExprVector q = symbols_of_order(*system, 0), velocities = symbols_of_order(*system, 1);
+
+  EquationsOfMotion equations;
+  equations.order = reading_order(*system);
+  equations.lagrangian = system->lagrangian();
+  equations.lagrangian_expanded = expand_time_derivatives(equations.lagrangian);
+  equations.generalized_forces = expand_time_derivatives(system->generalized_forces());
+  equations.dissipative_terms = gradient(expand_time_derivatives(system->dissipation_function()), velocities);
+
+  equations.residual = variational_residual(equations.lagrangian, q);
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const std::array terms{equations.residual[i], equations.dissipative_terms[i], -equations.generalized_forces[i]};
+    equations.residual[i] = context.sum(terms);
+  }
+
+  equations.momenta = gradient(equations.lagrangian_expanded, velocities);
+  equations.energy_function = dot(velocities, equations.momenta, context) - equations.lagrangian_expanded;
+  equations.power = dot(equations.generalized_forces, velocities, context) -
+                    dot(equations.dissipative_terms, velocities, context) -
+                    explicit_rate(equations.lagrangian_expanded);
+  equations.system = std::move(system);
+  return equations;
+}
+
+ExprMatrix mass_matrix(const EquationsOfMotion& equations) {
+  const ExprVector velocities = symbols_of_order(*equations.system, 1);
+  const std::size_t n = velocities.size();
+  ExprMatrix m{n, n, {}};
+  m.entries.reserve(n * n);
+  for (const Expr& momentum : equations.momenta)
+    for (const Expr& entry : gradient(momentum, velocities)) m.entries.push_back(entry);
+  return m;
+}
+
+ExprVector bias(const EquationsOfMotion& equations) {
+  ExprMap at_rest;
+  Context& context = *equations.system->context;
+  for (const Coordinate& c : equations.system->coordinates) at_rest.emplace(c.acceleration, context.number(0));
+  return substitute(expand_time_derivatives(equations.residual), at_rest);
+}
+
+}  // namespace maupertuis
