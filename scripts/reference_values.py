@@ -11,6 +11,7 @@ import pathlib
 import re
 import sys
 
+from newton_euler import Chain
 from precise import D, PI, acos, asin, atan2, cos, ellipk, jacobi, motion, integrate, sin, solve, sqrt
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -217,8 +218,25 @@ def absolute_value():
         yield "x", f"{t} s", sign * (x0 - a * s * s / 2)
 
 
+def arm_seven_joints():
+    """Recursive Newton-Euler (scripts/newton_euler.py): forces and torques link by link, no Lagrangian."""
+    chain = Chain([2, 1, 2, 1, 2, 1, 2], [D(x) for x in ("0.34", "0.2", "0.2", "0.2", "0.2", "0.1", "0.1")],
+                  [D(x) for x in ("0.17", "0.1", "0.1", "0.1", "0.1", "0.05", "0.05")],
+                  [D(x) for x in ("4", "4", "3", "2.7", "1.7", "1.6", "0.3")],
+                  [[D(x), D(x), D(z)] for x, z in (("0.05", "0.01"), ("0.04", "0.01"), ("0.03", "0.008"), ("0.03", "0.006"),
+                                                   ("0.02", "0.005"), ("0.005", "0.004"), ("0.001", "0.001"))], G)
+    q0, rate = [20, 40, -30, 60, 10, -50, 0], D("0.5")
+    acceleration = lambda t, q, v: chain.acceleration(q, v, [-D("0.02") * x for x in v])
+    start = acceleration(0, [x * DEG for x in q0], [rate] * 7)
+    for i, value in enumerate(start):
+        yield f"q{i + 1}''", "0 s", value
+    (q, v), = motion(acceleration, [x * DEG for x in q0], [rate] * 7, ["0.5"], tolerance=D("1e-16"))
+    for i in range(7):
+        yield f"q{i + 1}", "500 ms", q[i]
+
+
 MODELS = [pendulum, double_pendulum, elastic_pendulum, spherical_pendulum, cart_pendulum, bead_on_hoop, kepler,
-          lagrange_top, satellite, ion_in_fields, rotating_frame, robot_arm, motor_link, absolute_value]
+          lagrange_top, satellite, ion_in_fields, rotating_frame, robot_arm, motor_link, absolute_value, arm_seven_joints]
 UNITS = {"deg": DEG, "ms": D("1e-3"), "µs": D("1e-6"), "h": D(3600)}
 
 
