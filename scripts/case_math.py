@@ -85,18 +85,6 @@ def parse(text):
     return tree
 
 
-def substitute(tree, values):
-    if tree[0] == "name":
-        return values.get(tree[1], tree)
-    return tuple(substitute(part, values) if isinstance(part, tuple) else part for part in tree)
-
-
-def names(tree):
-    if tree[0] == "name":
-        return {tree[1]}
-    return set().union(*(names(part) for part in tree if isinstance(part, tuple)), set())
-
-
 def evaluate(tree, values):
     kind = tree[0]
     if kind == "num":

@@ -13,7 +13,7 @@ import re
 import sys
 
 import case_math
-from case_math import D, greek, names, parse, show, show_long, substitute
+from case_math import D, greek, parse, show, show_long
 from convert_urdf import urdf_model, wrapped
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
