@@ -1,0 +1,180 @@
+#include "plot/label.hpp"
+
+#include <maupertuis/plot.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace maupertuis {
+namespace {
+
+// Bytes of the UTF-8 character that begins with `lead`.
+std::size_t character_length(char lead) {
+  const auto byte = static_cast<unsigned char>(lead);
+  return byte < 0x80 ? 1 : byte < 0xe0 ? 2 : byte < 0xf0 ? 3 : 4;
+}
+
+std::size_t character_count(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+// θ1 → θ, 1; x_cart → x, cart; φs → φ, s; Ip → I, p; energy stays a word.
+void split_index(std::string_view name, NameParts& parts) {
+  const std::size_t first = name.empty() ? 0 : character_length(name[0]);
+  std::size_t split = name.find('_');
+  if (split == std::string_view::npos) {
+    split = name.size();
+    while (split > first && is_digit(name[split - 1])) --split;
+    const bool one_letter_and_index = split == name.size() && character_count(name) == 2;
+    const bool greek = !name.empty() && !is_letter(name[0]);
+    if (one_letter_and_index || (greek && split > first)) split = first;
+  }
+  parts.base = name.substr(0, split);
+  if (split < name.size()) parts.index = name.substr(name[split] == '_' ? split + 1 : split);
+  parts.upright = character_count(parts.base) > 1;
+}
+
+}  // namespace
+
+NameParts name_parts(std::string_view name) {
+  NameParts parts;
+  while (!name.empty() && name.back() == '\'') {
+    name.remove_suffix(1);
+    ++parts.dots;
+  }
+  std::string owner;
+  if (const auto dot = name.rfind('.'); dot != std::string_view::npos && dot + 1 < name.size()) {
+    owner = name.substr(0, dot);
+    name.remove_prefix(dot + 1);
+  }
+  split_index(name, parts);
+  if (!owner.empty()) parts.index = parts.index.empty() ? owner : owner + "," + parts.index;
+  return parts;
+}
+
+void append(RichText& text, const RichText& more) {
+  for (const TextRun& run : more) {
+    const bool joins = !text.empty() && text.back().dots == 0 && text.back().italic == run.italic && text.back().level == run.level;
+    if (joins) text.back().text += run.text;
+    else text.push_back(run);
+  }
+}
+
+void append(RichText& text, std::string_view upright) { append(text, RichText{{std::string(upright), false, 0}}); }
+
+RichText name_text(std::string_view name) {
+  const NameParts parts = name_parts(name);
+  const bool dotted = !parts.upright && parts.dots <= 3;  // a word, or a fourth derivative, has primes
+  RichText text{{parts.base, !parts.upright, 0, dotted ? parts.dots : 0}};
+  if (!dotted)
+    for (int i = 0; i < parts.dots; ++i) text.back().text += "′";
+  if (!parts.index.empty()) text.push_back({parts.index, false, -1});
+  return text;
+}
+
+RichText unit_text(std::string_view unit) {
+  RichText text;
+  std::size_t at = 0;
+  while (at < unit.size()) {
+    const std::size_t caret = std::min(unit.find('^', at), unit.size());
+    if (caret > at) append(text, unit.substr(at, caret - at));
+    if (caret == unit.size()) break;
+    std::size_t end = caret + 1;
+    while (end < unit.size() && (is_digit(unit[end]) || unit[end] == '-')) ++end;
+    std::string exponent(unit.substr(caret + 1, end - caret - 1));
+    if (!exponent.empty() && exponent[0] == '-') exponent.replace(0, 1, "−");
+    text.push_back({exponent, false, 1});
+    at = end;
+  }
+  return text;
+}
+
+RichText power_of_ten(int exponent) {
+  return {{"10", false, 0}, {exponent < 0 ? fmt::format("−{}", -exponent) : fmt::format("{}", exponent), false, 1}};
+}
+
+RichText names_text(const std::vector<std::string>& names) {
+  RichText text;
+  const bool many = names.size() > 4;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (many && i > 0 && i + 1 < names.size()) continue;
+    if (i > 0) append(text, many ? " … " : ", ");
+    append(text, name_text(names[i]));
+  }
+  return text;
+}
+
+double text_width(const RichText& text, double font_size) {
+  double width = 0;
+  for (const auto& run : text) {
+    const auto count = static_cast<double>(character_count(run.text));
+    width += count * font_size * (run.level == 0 ? 0.56 : 0.42);
+  }
+  return width;
+}
+
+namespace {
+
+// Width of an italic letter, and the height that a dot above it takes, in em, as serif faces agree on within a tenth.
+struct LetterSize {
+  double width, dot_height;
+};
+LetterSize letter_size(std::string_view letter) {
+  const auto one_of = [&](std::string_view letters) { return letters.find(letter) != std::string_view::npos; };
+  const bool tall = one_of("bdfhkltABCDEFGHIJKLMNOPQRSTUVWXYZθϑβδλξζΓΔΘΛΞΠΣΦΨΩ");
+  const double width = one_of("iljtrfI") ? 0.34 : one_of("mwωφψϕ") ? 0.66 : one_of("ABCDEFGHKLMNOPQRTUVWXYZΔΘΛΞΠΣΦΨΩ") ? 0.7 : 0.5;
+  return {width, tall ? 0.8 : one_of("φψϕ") ? 0.66 : 0.56};
+}
+
+// Full stops, raised and moved back over the letter: combining marks collide with tall letters in common faces.
+std::string dots_above(const TextRun& run, double font_size) {
+  constexpr double stop = 0.28, slant = 0.09;  // em: advance of a full stop; how far the letter leans at its top
+  const LetterSize letter = letter_size(run.text);
+  const double row = stop * run.dots, back = 0.5 * (letter.width + row) - slant;
+  return fmt::format("<tspan dx=\"{0:.3g}\" dy=\"{1:.3g}\">{2}</tspan><tspan dx=\"{3:.3g}\" dy=\"{4:.3g}\">\u200b</tspan>",
+                     -back * font_size, -letter.dot_height * font_size, std::string(run.dots, '.'),
+                     (back - row) * font_size, letter.dot_height * font_size);
+}
+
+}  // namespace
+
+std::string to_svg(const RichText& text, double font_size) {
+  std::string svg;
+  double shift = 0;
+  for (const auto& run : text) {
+    const double wanted = run.level < 0 ? 0.22 * font_size : run.level > 0 ? -0.36 * font_size : 0;
+    std::string attributes;
+    if (run.italic) attributes += " font-style=\"italic\"";
+    if (run.level != 0) attributes += fmt::format(" font-size=\"{:.3g}\"", 0.72 * font_size);
+    if (wanted != shift) attributes += fmt::format(" dy=\"{:.3g}\"", wanted - shift);
+    shift = wanted;
+    svg += attributes.empty() ? escape_xml(run.text) : fmt::format("<tspan{}>{}</tspan>", attributes, escape_xml(run.text));
+    if (run.dots > 0) svg += dots_above(run, font_size);
+  }
+  return svg;
+}
+
+std::string plain(const RichText& text) {
+  std::string result;
+  for (const auto& run : text) result += (run.level > 0 ? "^" + run.text : run.text) + std::string(run.dots, '\'');
+  return result;
+}
+
+std::string escape_xml(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '&') result += "&amp;";
+    else if (c == '<') result += "&lt;";
+    else if (c == '>') result += "&gt;";
+    else if (c == '"') result += "&quot;";
+    else if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') result += ' ';
+    else result += c;
+  }
+  return result;
+}
+
+}  // namespace maupertuis
