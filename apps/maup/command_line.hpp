@@ -1,8 +1,8 @@
 #pragma once
 
-namespace maup {
+namespace maupertuis::app {
 
-/// The whole program: reads the arguments, runs one command, returns its exit code.
+/// The whole program: reads the arguments, runs one command, returns the exit code.
 int run(int argc, char** argv);
 
-}  // namespace maup
+}  // namespace maupertuis::app

@@ -1,3 +1,3 @@
 #include "command_line.hpp"
 
-int main(int argc, char** argv) { return maup::run(argc, argv); }
+int main(int argc, char** argv) { return maupertuis::app::run(argc, argv); }

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace maup {
+namespace maupertuis::app {
 
 /// A model that `maup new NAME` writes.
 struct Starter {
@@ -17,4 +17,4 @@ std::span<const Starter> starters();
 /// N pendulums, each hung from the one before.
 std::string chain_starter(int links);
 
-}  // namespace maup
+}  // namespace maupertuis::app

@@ -1,0 +1,78 @@
+#include "codes.hpp"
+
+#include <algorithm>
+#include <maupertuis/codes.hpp>
+#include <vector>
+
+namespace maupertuis::app {
+namespace {
+
+constexpr CodeEntry own_codes[] = {
+    {"E0690", "a derivation failed its certificate",
+     "Every derivation is checked by routes that share nothing with it: jets of L along random paths, d'Alembert's "
+     "principle over the particles, the power balance. One of them found a different value, so the derived equations "
+     "are wrong and are not shown. That is a defect of the program, never of the model: please report it.",
+     "", ""},
+    {"W0691", "a check of the certificate was undecided",
+     "A check could neither prove that a difference vanishes nor find a point where it does not, for example because "
+     "the model takes a root or a logarithm of something that is negative almost everywhere. The equations are shown, "
+     "but nothing vouches for them.",
+     "", ""},
+    {"E0692", "equations too coupled to be written out solved",
+     "Solving for the accelerations needs the inverse of the mass matrix. For more than two coupled coordinates its "
+     "formulas fill pages and help nobody; runs factor the matrix in numbers instead. The matrix form shows M and h of "
+     "M q'' + h = 0.",
+     "maup derive chain.lag --form solved", "maup derive chain.lag --form matrix"},
+    {"E0801", "a file cannot be read",
+     "The operating system refused to open or read the file; its reason is quoted. Check the spelling of the path and "
+     "the permission of the file. `-` stands for standard input.",
+     "", ""},
+    {"E0802", "a directory was given where a model file is expected",
+     "Name one file, or let the shell expand a pattern: `maup test models/*.lag`.", "", ""},
+    {"E0803", "a file is too large to be a model",
+     "At most 64 MiB are read, so that a wrong path (a disk image, an endless device) ends with a message instead of a "
+     "full memory.",
+     "", ""},
+    {"E0804", "a file cannot be written",
+     "The system refused to create or complete the file; its reason is quoted. A result goes to a temporary name in the "
+     "same folder and is renamed when complete, so that a file that was there before is untouched.",
+     "", ""},
+    {"E0805", "the result could not be written to standard output",
+     "The disk behind the redirection is full, or the program at the other end of the pipe has stopped reading. The "
+     "result is incomplete there.",
+     "", ""},
+    {"E0806", "a command of a later version",
+     "The command is part of the plan and its name is taken, but this version does not carry it out.", "", ""},
+    {"E0807", "a file exists already",
+     "`maup new` never overwrites a model. Choose another name with -o, or say --force.", "", ""},
+    {"E0808", "there is no starter of this name", "`maup new --list` shows the starters.", "", ""},
+    {"E0809", "an option has a wrong value",
+     "A time is a number with a unit of time: 3s, 250ms, 2 min; a bare number is in seconds. A tolerance is a positive "
+     "number below 1.",
+     "maup simulate pendulum.lag --at 3kg", "maup simulate pendulum.lag --at 3s"},
+    {"E0810", "the ending of a file names no format",
+     "The format of a result follows the ending of its file: .csv, .npy, .json for a trajectory, .svg for a picture, "
+     ".html for a report.",
+     "maup simulate pendulum.lag -o motion.xls", "maup simulate pendulum.lag -o motion.csv"},
+    {"E0811", "there is no such column to plot",
+     "A plot shows the columns of the trajectory: coordinates (θ), velocities (θ'), coordinates of points (B.x), energies.",
+     "maup plot pendulum.lag --y w", "maup plot pendulum.lag --y \"θ'\""},
+};
+
+}  // namespace
+
+std::span<const CodeEntry> all_codes() {
+  static const std::vector<CodeEntry> all = [] {
+    std::vector<CodeEntry> codes(std::begin(own_codes), std::end(own_codes));
+    for (const auto entries :
+         {syntax_codes(), system_codes(), equations_codes(), simulation_codes(), verification_codes()})
+      codes.insert(codes.end(), entries.begin(), entries.end());
+    // By number, so that E0301 and W0302 stand together.
+    std::sort(codes.begin(), codes.end(),
+              [](const CodeEntry& a, const CodeEntry& b) { return a.code.substr(1) < b.code.substr(1); });
+    return codes;
+  }();
+  return all;
+}
+
+}  // namespace maupertuis::app

@@ -1,0 +1,57 @@
+#pragma once
+#include "console.hpp"
+#include "exit_code.hpp"
+
+#include <maupertuis/mechanical_system.hpp>
+
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace maupertuis::app {
+
+/// Does what a command is for, once its options are read.
+using Action = std::function<ExitCode(Console&)>;
+
+/// The command line under construction. Each file of commands/ adds one command to it.
+class CommandLine {
+ public:
+  CommandLine();
+  ~CommandLine();
+
+  /// Adds a command with --json and --color. `examples`: three lines that open its --help.
+  CLI::App& add(const std::string& name, const std::string& summary, const std::string& examples, Action action);
+
+  /// Reads the arguments and runs the command that they name.
+  ExitCode run(int argc, char** argv);
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// The positional MODEL, and --set and --start.
+struct ModelOptions {
+  std::string path;
+  Overrides overrides;
+};
+void add_model_options(CLI::App& command, ModelOptions& options);
+
+void add_check(CommandLine& line);
+void add_derive(CommandLine& line);
+void add_simulate(CommandLine& line);
+void add_test(CommandLine& line);
+void add_plot(CommandLine& line);
+void add_report(CommandLine& line);
+void add_fmt(CommandLine& line);
+void add_new(CommandLine& line);
+void add_explain(CommandLine& line);
+void add_doctor(CommandLine& line);
+/// The commands of later versions: they say so.
+void add_later_commands(CommandLine& line);
+
+}  // namespace maupertuis::app

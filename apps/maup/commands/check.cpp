@@ -1,0 +1,105 @@
+#include "command.hpp"
+#include "outcome.hpp"
+#include "quantity.hpp"
+#include "study.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <maupertuis/print.hpp>
+
+namespace maupertuis::app {
+namespace {
+
+std::string with_unit(const std::string& number, const Dimension& dimension) {
+  const std::string unit = to_string(dimension);
+  return unit == "1" || unit.empty() ? number : number + " " + unit;
+}
+
+std::string joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
+
+/// The coordinates with their kinds, the parts of each energy, … : one line each, in the order of a lecture.
+std::string summary(const Model& model) {
+  const MechanicalSystem& system = model.system;
+  std::string out = system.name + (system.title.empty() ? "" : fmt::format(" — {}", system.title)) + "\n";
+  const auto line = [&out](const char* head, const std::string& text) {
+    if (!text.empty()) out += fmt::format("  {:<22}{}\n", head, text);
+  };
+  const auto energy = [&line](const char* head, const std::vector<EnergyTerm>& terms) {
+    std::vector<std::string> origins;
+    for (const EnergyTerm& term : terms) origins.push_back(term.origin);
+    if (origins.size() > 8) origins = {fmt::format("{} terms, from {} to {}", terms.size(), origins.front(), origins.back())};
+    line(head, joined(origins));
+  };
+
+  std::vector<std::string> words;
+  for (const Coordinate& c : system.coordinates) words.push_back(c.kind.empty() ? c.name : c.name + " : " + c.kind);
+  if (words.size() > 8)
+    words = {fmt::format("{} … {} ({} of them)", words.front(), words.back(), system.coordinates.size())};
+  line("coordinates", joined(words));
+  line("freedoms", std::to_string(system.freedoms()));
+  words.clear();
+  for (const Parameter& p : system.parameters)
+    if (p.symbol.role() == Role::Parameter)
+      words.push_back(fmt::format("{} = {}", p.name, with_unit(brief(p.si_value), p.dimension)));
+  if (words.size() > 12) words = {fmt::format("{} of them", words.size())};
+  line("parameters", joined(words));
+  words.clear();
+  for (const Input& u : system.inputs) words.push_back(u.name);
+  line("inputs", joined(words));
+  if (system.lagrangian_given) {
+    line("Lagrangian L", "given");
+  } else {
+    energy("kinetic energy T", system.kinetic);
+    energy("potential energy V", system.potential);
+    energy("generalized pot. U", system.generalized_potential);
+  }
+  energy("added to L", system.lagrangian_extra);
+  energy("dissipation D", system.dissipation);
+  words.clear();
+  for (const AppliedForce& force : system.forces) words.push_back("on " + force.target);
+  line("forces Q", joined(words));
+  words.clear();
+  for (const StartValue& start : model.experiment.start)
+    words.push_back(fmt::format("{} = {}", system.coordinates[start.coordinate].name + std::string(start.order, '\''),
+                                start.value ? to_plain(start.value, {}) : std::string("0")));
+  if (words.size() > 8) words.resize(8), words.push_back("…");
+  line("start", joined(words));
+  if (!model.experiment.expectations.empty())
+    line("expectations", fmt::format("{} (run them with `maup test`)", model.experiment.expectations.size()));
+  return out;
+}
+
+ExitCode check(const ModelOptions& options, Console& console) {
+  Study study(options.path, options.overrides);
+  const Model* model = study.model();
+  if (model) study.equations();  // a singular mass matrix is found here
+  if (console.json()) {
+    Json document = json_document("check");
+    document["system"] = model ? Json(model->system.name) : Json(nullptr);
+    document["coordinates"] = Json::array();
+    if (model)
+      for (const Coordinate& c : model->system.coordinates) document["coordinates"].push_back(c.name);
+    const Json freedoms = model ? Json(model->system.freedoms()) : Json(nullptr);
+    document["freedoms"] = freedoms;
+    document["instantaneous_freedoms"] = freedoms;
+    document["constraints"] = Json::array();
+    return finish(console, study, document);
+  }
+  if (model && !study.wrong()) console.print(summary(*model) + "No mistakes found.\n");
+  return finish(console, study, {});
+}
+
+}  // namespace
+
+void add_check(CommandLine& line) {
+  const auto options = std::make_shared<ModelOptions>();
+  CLI::App& command = line.add("check", "Look for mistakes in a model; a summary of the system",
+                               "  maup check pendulum.lag\n"
+                               "  maup check pendulum.lag --set l=2m --start θ=90deg\n"
+                               "  maup new double-pendulum -o - | maup check - --json\n",
+                               [options](Console& console) { return check(*options, console); });
+  add_model_options(command, *options);
+}
+
+}  // namespace maupertuis::app

@@ -1,0 +1,151 @@
+#include "command.hpp"
+#include "derivation_text.hpp"
+#include "emit.hpp"
+#include "equation_forms.hpp"
+#include "outcome.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <map>
+#include <maupertuis/print.hpp>
+
+namespace maupertuis::app {
+namespace {
+
+struct DeriveOptions {
+  ModelOptions model;
+  std::string form = "standard";
+  bool steps = false, latex = false, mathml = false, plain = false;
+  std::string certify = "standard";
+  std::string emit;
+
+  Form chosen_form() const {
+    const std::map<std::string, Form> forms = {
+        {"standard", Form::Standard}, {"solved", Form::Solved}, {"matrix", Form::Matrix}, {"residual", Form::Residual}};
+    return forms.at(form);
+  }
+};
+
+Json equations_json(const EquationForm& form, const ReadingOrder& order) {
+  Json list = Json::array();
+  for (const EquationLine& line : form.lines)
+    list.push_back({{"coordinate", line.coordinate}, {"plain", to_text(line, Notation::Plain, order)},
+                    {"latex", to_text(line, Notation::Latex, order)}});
+  return list;
+}
+
+std::string readable_text(Expr e, const ReadingOrder& order) {
+  const ReadableForm form = readable(e, order);
+  std::string text = to_plain(form.value, order);
+  for (const Intermediate& i : form.intermediates)
+    text += fmt::format(" with {} = {}", to_plain(i.symbol, order), to_plain(i.value, order));
+  return text;
+}
+
+Json document_of(const DeriveOptions& options, Study& study, const EquationForm& form, const Certificate* certificate) {
+  Json document = json_document("derive");
+  const EquationsOfMotion* equations = study.equations();
+  if (!equations || !certificate) return document;
+  const ReadingOrder& order = equations->order;
+  document["system"] = equations->system->name;
+  document["form"] = options.form;
+  document["coordinates"] = Json::array();
+  for (const Coordinate& c : equations->system->coordinates) document["coordinates"].push_back(c.name);
+  document["equations"] = equations_json(form, order);
+  document["intermediates"] = Json::array();
+  for (const Intermediate& i : form.intermediates)
+    document["intermediates"].push_back({{"name", to_plain(i.symbol, order)}, {"plain", to_plain(i.value, order)}});
+  const ExprMatrix m = mass_matrix(*equations);
+  document["mass_matrix"] = Json::array();
+  for (std::size_t i = 0; i < m.rows; ++i) {
+    Json row = Json::array();
+    for (std::size_t j = 0; j < m.columns; ++j) row.push_back(readable_text(m.at(i, j), order));
+    document["mass_matrix"].push_back(std::move(row));
+  }
+  document["momenta"] = Json::array();
+  for (const Expr p : equations->momenta) document["momenta"].push_back(readable_text(p, order));
+  document["energy"] = readable_text(equations->energy_function, order);
+  document["power"] = readable_text(equations->power, order);
+  const ConservedQuantities conserved = conserved_quantities(*equations);
+  Json names = Json::array();
+  for (const std::size_t i : conserved.conserved_momenta) names.push_back("p_" + equations->system->coordinates[i].name);
+  if (conserved.energy_conserved) names.push_back("energy");
+  document["conserved"] = std::move(names);
+  document["energy_is_t_plus_v"] = conserved.energy_is_t_plus_v;
+  if (options.steps) document["steps"] = steps_json(*study.derivation(true), order);
+  document["certificate"] = to_json(*certificate);
+  return document;
+}
+
+/// In one notation alone, for another program: the steps if asked for, else the equations.
+std::string in_notation(const DeriveOptions& options, Notation notation, Study& study, const EquationForm& form) {
+  const ReadingOrder& order = study.equations()->order;
+  std::vector<std::string> lines;
+  if (options.steps) lines = step_lines(*study.derivation(true), notation, order);
+  for (const EquationLine& line : form.lines) lines.push_back(to_text(line, notation, order));
+  for (const Intermediate& i : form.intermediates)
+    lines.push_back(to_text({{}, to_plain(i.symbol, order), to_latex(i.symbol, order), to_mathml(i.symbol, order), i.value},
+                            notation, order));
+  if (notation == Notation::Latex) return latex_document(lines);
+  if (notation == Notation::Mathml) return mathml_document(lines);
+  return fmt::format("{}\n", fmt::join(lines, "\n"));
+}
+
+ExitCode emit_stage(const DeriveOptions& options, Study& study, Console& console) {
+  const std::string text = emit(options.emit, study);
+  Json document = json_document("derive");
+  document["emit"] = options.emit;
+  document["text"] = text;
+  if (!console.json() && !study.wrong()) console.print(text);
+  return finish(console, study, document);
+}
+
+ExitCode derive(const DeriveOptions& options, Console& console) {
+  Study study(options.model.path, options.model.overrides);
+  if (!options.emit.empty()) return emit_stage(options, study, console);
+
+  study.derivation(options.steps);
+  const Certificate* certificate = study.certificate({.full = options.certify == "full"});
+  EquationForm form;
+  if (certificate) form = equation_form(options.chosen_form(), study);
+  if (study.wrong()) certificate = nullptr;
+
+  if (console.json()) return finish(console, study, document_of(options, study, form, certificate));
+  if (certificate) {
+    if (options.latex) console.print(in_notation(options, Notation::Latex, study, form));
+    else if (options.mathml) console.print(in_notation(options, Notation::Mathml, study, form));
+    else if (options.plain) console.print(in_notation(options, Notation::Plain, study, form));
+    else console.print(lecture(study, form, *certificate, options.steps));
+  }
+  return finish(console, study, {});
+}
+
+}  // namespace
+
+void add_derive(CommandLine& line) {
+  const auto options = std::make_shared<DeriveOptions>();
+  CLI::App& command = line.add("derive", "The equations of motion, certified",
+                               "  maup derive pendulum.lag\n"
+                               "  maup derive pendulum.lag --steps\n"
+                               "  maup derive pendulum.lag --form solved --latex > equations.tex\n",
+                               [options](Console& console) { return derive(*options, console); });
+  add_model_options(command, options->model);
+  command.add_flag("--steps", options->steps, "The textbook derivation, line by line, each with its rule");
+  command
+      .add_option("--form", options->form,
+                  "standard: R = 0; solved: q'' = …; matrix: M and h of M q'' + h = 0; residual: R")
+      ->check(CLI::IsMember({"standard", "solved", "matrix", "residual"}))
+      ->type_name("FORM");
+  const auto latex = command.add_flag("--latex", options->latex, "A LaTeX document of the equations");
+  const auto mathml = command.add_flag("--mathml", options->mathml, "MathML")->excludes(latex);
+  command.add_flag("--plain", options->plain, "The equations alone, one a line")->excludes(latex)->excludes(mathml);
+  command.add_option("--certify", options->certify, "full: also that a gauge term dG/dt changes nothing")
+      ->check(CLI::IsMember({"standard", "full"}))
+      ->type_name("standard|full");
+  command.add_option("--emit", options->emit, "What a stage made: syntax, system, equations, program or jet")
+      ->check(CLI::IsMember({"syntax", "system", "equations", "program", "jet"}))
+      ->type_name("STAGE");
+}
+
+}  // namespace maupertuis::app

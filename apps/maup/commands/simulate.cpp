@@ -1,0 +1,141 @@
+#include "outcome.hpp"
+#include "quantity.hpp"
+#include "run_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <maupertuis/plot.hpp>
+
+namespace maupertuis::app {
+namespace {
+
+struct SimulateOptions {
+  ModelOptions model;
+  RunOptions run;
+  std::string output, plot;
+};
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Before the run: a wrong ending must not cost an hour of computing.
+void check_endings(const SimulateOptions& options, Diagnostics& diagnostics) {
+  const std::string& output = options.output;
+  if (!output.empty() && !ends_with(output, ".csv") && !ends_with(output, ".npy") && !ends_with(output, ".json"))
+    diagnostics.error("E0810", {}, fmt::format("{} names no format of a trajectory.", output), {},
+                      ends_with(output, ".h5") ? "not supported yet: HDF5. Take .csv, .npy or .json."
+                                               : "Take an ending .csv, .npy or .json.");
+  if (!options.plot.empty() && !ends_with(options.plot, ".svg"))
+    diagnostics.error("E0810", {}, fmt::format("{} names no format of a picture.", options.plot), {}, "Take .svg.");
+}
+
+Json state_json(const State& state, const MechanicalSystem& system) {
+  Json values = Json::object();
+  for (std::size_t i = 0; i < state.q.size(); ++i) {
+    values[system.coordinates[i].name] = state.q[i];
+    values[system.coordinates[i].name + "'"] = state.v[i];
+  }
+  return {{"t", state.t}, {"state", std::move(values)}};
+}
+
+Json document_of(const SimulationResult& result, const MechanicalSystem& system) {
+  Json document = json_document("simulate");
+  document["system"] = system.name;
+  document["final"] = state_json(result.final, system);
+  document["at"] = Json::array();
+  for (const State& state : result.at) {
+    document["at"].push_back(state_json(state, system));
+    document["at"].back()["multipliers"] = Json::object();
+  }
+  const SimulationStatistics& s = result.statistics;
+  document["statistics"] = {{"steps", s.steps}, {"seconds", s.seconds}, {"compile_seconds", s.compile_seconds},
+                            {"order", s.order}, {"backend", s.backend}, {"energy_drift", s.energy_drift},
+                            {"constraint_residual", s.constraint_residual}, {"switches", s.switches},
+                            {"rows", result.trajectory.rows()}};
+  document["events"] = Json::array();
+  document["ended"] = {{"reason", result.reason.empty() ? ending_name(result.ending) : result.reason},
+                       {"kind", ending_name(result.ending)}, {"ok", result.ok()}};
+  return document;
+}
+
+std::string state_text(const State& state, const MechanicalSystem& system) {
+  std::string out = fmt::format("t = {} s\n", exact(state.t));
+  for (std::size_t i = 0; i < state.q.size(); ++i) {
+    const Coordinate& c = system.coordinates[i];
+    const std::string unit = system.dimensionless ? "1" : to_string(c.dimension);
+    const std::string rate = system.dimensionless ? "1" : to_string(c.dimension / dimensions::time());
+    const auto line = [&out](const std::string& name, double value, const std::string& unit_word) {
+      out += fmt::format("  {:<8} {: .17g}{}{}\n", name, value, unit_word == "1" ? "" : " ", unit_word == "1" ? "" : unit_word);
+    };
+    line(c.name, state.q[i], unit);
+    line(c.name + "'", state.v[i], rate);
+  }
+  return out;
+}
+
+std::string text_of(const SimulationResult& result, const MechanicalSystem& system) {
+  std::string out;
+  for (const State& state : result.at) out += state_text(state, system);
+  if (result.at.empty() || result.at.back().t != result.final.t) out += state_text(result.final, system);
+  const SimulationStatistics& s = result.statistics;
+  return out + fmt::format("{} steps of order {} in {} s ({}, compiled in {} s); energy drift {}\n", s.steps, s.order,
+                           brief(s.seconds), s.backend, brief(s.compile_seconds), brief(s.energy_drift));
+}
+
+/// What was computed is written whatever the ending.
+void write_files(const SimulateOptions& options, const SimulationResult& result, Diagnostics& diagnostics) {
+  if (!options.output.empty()) {
+    const std::string failure = write_trajectory(result.trajectory, options.output);
+    if (!failure.empty()) cannot_write(failure, diagnostics);
+  }
+  if (!options.plot.empty()) {
+    PlotOptions picture;
+    picture.title = result.trajectory.metadata.count("title") ? result.trajectory.metadata.at("title") : "";
+    write_result(options.plot, plot_svg(result.trajectory, picture), diagnostics);
+  }
+}
+
+ExitCode simulate_model(const SimulateOptions& options, Console& console) {
+  Study study(options.model.path, options.model.overrides);
+  const bool readable_model = !study.wrong();
+  check_endings(options, study.diagnostics());
+  const SimulationOptions settings = simulation_options(options.run, study.diagnostics());
+  if (readable_model && study.wrong()) {
+    finish(console, study, json_document("simulate"));
+    return ExitCode::Usage;
+  }
+  if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);
+
+  const auto result = run_model(study, settings, console);
+  if (!result) return finish(console, study, json_document("simulate"));
+  write_files(options, *result, study.diagnostics());
+  const MechanicalSystem& system = study.model()->system;
+  if (!console.json()) {
+    console.print(text_of(*result, system));
+    if (result->ending != Ending::Finished)
+      console.say(fmt::format("The run ended at t = {} s: {}\n", exact(result->final.t), result->reason));
+  }
+  const bool files_written = !study.wrong();
+  finish(console, study, document_of(*result, system));
+  return files_written ? exit_code(*result) : ExitCode::RunFailed;
+}
+
+}  // namespace
+
+void add_simulate(CommandLine& line) {
+  const auto options = std::make_shared<SimulateOptions>();
+  CLI::App& command = line.add("simulate", "Run the experiment of a model",
+                               "  maup simulate pendulum.lag\n"
+                               "  maup simulate pendulum.lag --at 3s -o motion.csv --plot motion.svg\n"
+                               "  maup simulate pendulum.lag --set l=2m --start θ=170deg --duration -5s --json\n",
+                               [options](Console& console) { return simulate_model(*options, console); });
+  add_model_options(command, options->model);
+  add_span_options(command, options->run);
+  add_method_options(command, options->run);
+  command.add_option("-o,--output", options->output, "The trajectory: .csv, .npy or .json")->type_name("FILE");
+  command.add_option("--plot", options->plot, "Its time series as a picture: .svg")->type_name("FILE");
+}
+
+}  // namespace maupertuis::app

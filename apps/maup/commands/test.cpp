@@ -1,0 +1,130 @@
+#include "outcome.hpp"
+#include "run_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <maupertuis/verification.hpp>
+
+namespace maupertuis::app {
+namespace {
+
+struct TestOptions {
+  std::vector<std::string> paths;
+  RunOptions run;
+};
+
+/// What came of one file.
+struct FileOutcome {
+  ExitCode code = ExitCode::Fine;
+  std::vector<ExpectationResult> results;
+};
+
+/// A model whose text says `expect error …` is tested by its diagnostics, any other by its motion and equations.
+std::optional<Verification> verify_study(Study& study, const SimulationOptions& settings) {
+  const syntax::SyntaxTree* tree = study.tree();
+  if (!tree) return {};
+  study.equations();
+  if (auto verification = verify_errors(*tree, study.source(), study.diagnostics())) return verification;
+  if (study.wrong() || !study.certificate()) return {};
+  return verify(*study.model(), *study.equations(), study.source(), settings, study.diagnostics());
+}
+
+std::string text_of(const ExpectationResult& r, const std::string& file) {
+  if (r.passed) return {};
+  std::string out = fmt::format("{}:{}: {} fails\n", file, r.line, r.text);
+  if (!r.actual.empty()) out += fmt::format("    found     {}\n    expected  {}{}\n", r.actual, r.expected,
+                                            r.tolerance.empty() ? "" : " " + r.tolerance);
+  if (!r.message.empty()) out += fmt::format("    {}\n", r.message);
+  if (!r.pitfall.empty()) out += fmt::format("    {}\n", r.pitfall);
+  return out;
+}
+
+Json to_json(const ExpectationResult& r, const std::string& file) {
+  return {{"file", file}, {"line", r.line}, {"text", r.text}, {"passed", r.passed}, {"actual", r.actual},
+          {"expected", r.expected}, {"tolerance", r.tolerance}, {"message", r.message}, {"pitfall", r.pitfall}};
+}
+
+FileOutcome test_file(const std::string& path, const SimulationOptions& settings, Console& console, Json& document) {
+  Study study(path);
+  FileOutcome outcome;
+  const std::string& file = study.source().name();
+  const auto verification = verify_study(study, settings);
+  if (verification) {
+    outcome.results = verification->results;
+    if (verification->failed() > 0) outcome.code = ExitCode::ExpectationFailed;
+  }
+  // Errors that the model expects are no errors of the test.
+  const bool expected_errors = verification && !study.equations();
+  if (study.wrong() && !expected_errors) outcome.code = ExitCode::ModelWrong;
+
+  for (const ExpectationResult& r : outcome.results) {
+    document["expectations"].push_back(to_json(r, file));
+    if (!console.json()) console.print(text_of(r, file));
+  }
+  if (!expected_errors) {
+    console.show(study.diagnostics(), study.source());
+    for (Json& d : app::to_json(study.diagnostics(), study.source())) {
+      d["file"] = file;
+      document["diagnostics"].push_back(std::move(d));
+    }
+  }
+  if (!console.json() && outcome.code != ExitCode::ModelWrong)
+    console.print(fmt::format("{}: {} of {} expectations hold\n", file, verification ? verification->passed() : 0,
+                              outcome.results.size()));
+  return outcome;
+}
+
+/// A wrong model outweighs a failed expectation; Ctrl-C outweighs both.
+ExitCode worse(ExitCode a, ExitCode b) {
+  for (const ExitCode code : {ExitCode::Interrupted, ExitCode::ModelWrong, ExitCode::ExpectationFailed})
+    if (a == code || b == code) return code;
+  return ExitCode::Fine;
+}
+
+ExitCode test_models(const TestOptions& options, Console& console) {
+  Diagnostics wrong_options;
+  const SimulationOptions settings = simulation_options(options.run, wrong_options);
+  if (wrong_options.has_errors()) {
+    console.show(wrong_options, SourceText("maup test", ""));
+    return ExitCode::Usage;
+  }
+  Json document = json_document("test");
+  document["expectations"] = Json::array();
+  document["diagnostics"] = Json::array();
+  ExitCode code = ExitCode::Fine;
+  std::size_t passed = 0, failed = 0, wrong = 0;
+  for (const std::string& path : options.paths) {
+    if (settings.interrupt->load()) {
+      code = ExitCode::Interrupted;
+      break;
+    }
+    const FileOutcome outcome = test_file(path, settings, console, document);
+    code = worse(code, outcome.code);
+    wrong += outcome.code == ExitCode::ModelWrong;
+    for (const ExpectationResult& r : outcome.results) ++(r.passed ? passed : failed);
+  }
+  document["passed"] = passed;
+  document["failed"] = failed;
+  document["ok"] = code == ExitCode::Fine;
+  if (console.json()) console.print_document(document);
+  else if (options.paths.size() > 1)
+    console.print(fmt::format("{} models: {} expectations hold, {} fail{}\n", options.paths.size(), passed, failed,
+                              wrong ? fmt::format(", {} models are wrong", wrong) : ""));
+  return code;
+}
+
+}  // namespace
+
+void add_test(CommandLine& line) {
+  const auto options = std::make_shared<TestOptions>();
+  CLI::App& command = line.add("test", "Run the expect and claim lines of models; exit 4 if one fails",
+                               "  maup test pendulum.lag\n"
+                               "  maup test models/*.lag\n"
+                               "  maup test pendulum.lag --json\n",
+                               [options](Console& console) { return test_models(*options, console); });
+  command.add_option("MODEL", options->paths, "Model files, or - for standard input")->required();
+  add_method_options(command, options->run);
+}
+
+}  // namespace maupertuis::app

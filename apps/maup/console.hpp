@@ -1,0 +1,39 @@
+#pragma once
+#include <maupertuis/diagnostic.hpp>
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+namespace maupertuis::app {
+
+/// Where a command puts what it has to say: data on standard output, messages on standard error.
+class Console {
+ public:
+  enum class Color { Auto, Always, Never };
+
+  void use_color(Color color) { color_ = color; }
+  void use_json(bool json) { json_ = json; }
+  bool json() const { return json_; }
+
+  /// Collects data; it is written at once by flush(), so that a full disk or a closed pipe is noticed and said.
+  void print(std::string_view text) { data_ += text; }
+  void print_document(const nlohmann::ordered_json& document);
+  /// Renders to standard error (nothing under --json, whose document holds the diagnostics).
+  void show(const Diagnostics& diagnostics, const SourceText& source) const;
+  void say(std::string_view text) const;
+
+  /// Writes what was printed; the reason when it could not be written, else empty.
+  std::string flush();
+
+  bool colored_messages() const;
+  /// Standard error is a terminal, so that progress may be drawn on it.
+  bool interactive() const;
+
+ private:
+  Color color_ = Color::Auto;
+  bool json_ = false;
+  std::string data_;
+};
+
+}  // namespace maupertuis::app

@@ -1,0 +1,153 @@
+#include "derivation_text.hpp"
+
+#include "quantity.hpp"
+
+#include <fmt/format.h>
+
+#include <maupertuis/print.hpp>
+
+namespace maupertuis::app {
+namespace {
+
+/// Prose inside \\text{}: the preamble of latex_document declares the letters and signs that it may hold.
+std::string latex_text(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '^' || c == '~' || c == '\\') {
+      out += fmt::format("\\char{} ", static_cast<int>(c));
+      continue;
+    }
+    if (std::string_view("#$%&_{}").find(c) != std::string_view::npos) out += '\\';
+    out += c;
+  }
+  return out;
+}
+
+std::string xml_text(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '<') out += "&lt;";
+    else if (c == '>') out += "&gt;";
+    else if (c == '&') out += "&amp;";
+    else out += c;
+  }
+  return out;
+}
+
+std::string step_line(const DerivationStep& step, Notation notation, const ReadingOrder& order) {
+  const std::string rule = step.rule.empty() ? step.section : step.rule;
+  switch (notation) {
+    case Notation::Plain: {
+      if (!step.right) return step.sentence;
+      const std::string note = step.sentence.empty() ? rule : rule + "; " + step.sentence;
+      return fmt::format("{} = {}    ({})", step.left, to_plain(step.right, order), note);
+    }
+    case Notation::Latex:
+      if (!step.right) return fmt::format("& \\text{{{}}}", latex_text(step.sentence));
+      return fmt::format("{} &= {} && \\text{{({})}}", step.left_latex, to_latex(step.right, order), latex_text(rule));
+    case Notation::Mathml:
+      if (!step.right) return fmt::format("<mtext>{}</mtext>", xml_text(step.sentence));
+      return fmt::format("<mtext>{}</mtext><mo>=</mo>{}<mtext>  ({})</mtext>", xml_text(step.left),
+                         to_mathml(step.right, order), xml_text(rule));
+  }
+  return {};
+}
+
+std::string steps_text(const Derivation& derivation, const ReadingOrder& order) {
+  std::string out, section;
+  for (const DerivationStep& step : derivation.steps) {
+    if (step.section != section) {
+      section = step.section;
+      out += fmt::format("{}{}\n", out.empty() ? "" : "\n", section);
+    }
+    out += "  " + step_line(step, Notation::Plain, order) + "\n";
+    for (const Intermediate& i : step.intermediates)
+      out += fmt::format("    with {} = {}\n", to_plain(i.symbol, order), to_plain(i.value, order));
+  }
+  return out;
+}
+
+std::string legend(const MechanicalSystem& system, const ReadingOrder& order) {
+  std::string out;
+  for (const Definition& definition : system.definitions)
+    if (definition.symbol && definition.value)
+      out += fmt::format("  {} = {}\n", to_plain(definition.symbol, order), to_plain(definition.value, order));
+  return out.empty() ? out : "\nDefinitions\n" + out;
+}
+
+std::string readable_line(const std::string& left, Expr value, const ReadingOrder& order) {
+  const ReadableForm form = readable(value, order);
+  std::string out = fmt::format("  {} = {}\n", left, to_plain(form.value, order));
+  for (const Intermediate& i : form.intermediates)
+    out += fmt::format("    with {} = {}\n", to_plain(i.symbol, order), to_plain(i.value, order));
+  return out;
+}
+
+std::string momenta_and_energy(const EquationsOfMotion& equations) {
+  const auto& coordinates = equations.system->coordinates;
+  const ConservedQuantities conserved = conserved_quantities(equations);
+  std::string out = "\nMomenta\n";
+  for (std::size_t i = 0; i < coordinates.size(); ++i)
+    out += readable_line("p_" + coordinates[i].name, equations.momenta[i], equations.order);
+  out += "\nEnergy function\n" + readable_line("h_E", equations.energy_function, equations.order);
+  if (!conserved.energy_case.empty()) out += fmt::format("  {}\n", conserved.energy_case);
+  if (!conserved.energy_conserved) out += readable_line("dh_E/dt", equations.power, equations.order);
+
+  std::vector<std::string> names;
+  for (const std::size_t i : conserved.conserved_momenta)
+    names.push_back(fmt::format("p_{} ({} is cyclic)", coordinates[i].name, coordinates[i].name));
+  if (conserved.energy_conserved) names.emplace_back("h_E");
+  out += fmt::format("\nConserved\n  {}\n", names.empty() ? "nothing among the momenta and h_E"
+                                                          : fmt::format("{}", fmt::join(names, ", ")));
+  return out;
+}
+
+std::string certificate_text(const Certificate& certificate) {
+  std::string out = fmt::format("\nCertificate: {}\n", certificate.passed() ? "passed" : "NOT PASSED");
+  for (const CertificateCheck& check : certificate.checks) {
+    std::string ground;
+    if (!check.applies) ground = "does not apply";
+    else if (check.verdict != Verdict::Zero) ground = fmt::format("{}: {}", verdict_name(check.verdict), check.reason);
+    else if (check.error_bound < 1) ground = fmt::format("{} points, error below {}", check.points, brief(check.error_bound));
+    else ground = fmt::format("{} points, no bound claimed", check.points);
+    out += fmt::format("  {:<18}{} ({})\n", check.name, check.statement, ground);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string lecture(Study& study, const EquationForm& form, const Certificate& certificate, bool with_steps) {
+  const EquationsOfMotion& equations = *study.equations();
+  const ReadingOrder& order = equations.order;
+  std::string out;
+  if (with_steps) out += steps_text(*study.derivation(true), order) + "\n";
+  out += fmt::format("Equations of motion of {}\n", equations.system->name);
+  for (const EquationLine& line : form.lines) out += "  " + to_text(line, Notation::Plain, order) + "\n";
+  if (!form.intermediates.empty()) out += "with\n";
+  for (const Intermediate& i : form.intermediates)
+    out += fmt::format("  {} = {}\n", to_plain(i.symbol, order), to_plain(i.value, order));
+  out += legend(*equations.system, order);
+  out += momenta_and_energy(equations);
+  return out + certificate_text(certificate);
+}
+
+std::vector<std::string> step_lines(const Derivation& derivation, Notation notation, const ReadingOrder& order) {
+  std::vector<std::string> lines;
+  for (const DerivationStep& step : derivation.steps) {
+    lines.push_back(step_line(step, notation, order));
+  }
+  return lines;
+}
+
+Json steps_json(const Derivation& derivation, const ReadingOrder& order) {
+  Json list = Json::array();
+  for (const DerivationStep& step : derivation.steps)
+    list.push_back({{"section", step.section}, {"rule", step.rule}, {"left", step.left},
+                    {"right", step.right ? to_plain(step.right, order) : std::string()},
+                    {"latex", step.right ? step.left_latex + " = " + to_latex(step.right, order) : std::string()},
+                    {"sentence", step.sentence}});
+  return list;
+}
+
+}  // namespace maupertuis::app

@@ -1,0 +1,16 @@
+#pragma once
+#include "equation_forms.hpp"
+#include "json.hpp"
+
+namespace maupertuis::app {
+
+/// The whole answer of `maup derive` for a reader: steps if asked for, equations, momenta, energy, what is conserved,
+/// and the certificate.
+std::string lecture(Study& study, const EquationForm& form, const Certificate& certificate, bool with_steps);
+
+/// The textbook path in one notation, a line a step; LaTeX and MathML leave sentences to \text and <mtext>.
+std::vector<std::string> step_lines(const Derivation& derivation, Notation notation, const ReadingOrder& order);
+/// [{section, rule, left, right, latex, sentence}]
+Json steps_json(const Derivation& derivation, const ReadingOrder& order);
+
+}  // namespace maupertuis::app

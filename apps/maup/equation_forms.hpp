@@ -1,0 +1,35 @@
+#pragma once
+#include "study.hpp"
+
+#include <string>
+#include <vector>
+
+namespace maupertuis::app {
+
+enum class Form { Standard, Solved, Matrix, Residual };
+enum class Notation { Plain, Latex, Mathml };
+
+/// One line `left = right` of a result; an empty left stands for `right = 0`.
+struct EquationLine {
+  std::string coordinate;  // whose equation it is; empty for a line of M
+  std::string left_plain, left_latex, left_mathml;
+  Expr right;
+};
+
+/// The equations of motion in one of their forms, each proved equal to the residual by the zero test before it is
+/// shown; one that is not is an error (E0690) and the list is empty. E0692: too many freedoms for `Solved`.
+struct EquationForm {
+  std::vector<EquationLine> lines;
+  std::vector<Intermediate> intermediates;
+};
+EquationForm equation_form(Form form, Study& study);
+
+/// `left = right`, with nothing around it.
+std::string to_text(const EquationLine& line, Notation notation, const ReadingOrder& order);
+
+/// A LaTeX document that compiles by itself, with one aligned display.
+std::string latex_document(const std::vector<std::string>& lines);
+/// One <math> element with a table of lines.
+std::string mathml_document(const std::vector<std::string>& rows);
+
+}  // namespace maupertuis::app

@@ -1,0 +1,15 @@
+#pragma once
+#include <optional>
+#include <string>
+
+namespace maupertuis::app {
+
+/// A time of the command line in seconds: "3s", "250 ms", "-2 min"; a bare number is in seconds. Nothing otherwise.
+std::optional<double> parse_time(const std::string& text);
+
+/// Six significant digits, as messages show numbers.
+std::string brief(double value);
+/// All 17 digits.
+std::string exact(double value);
+
+}  // namespace maupertuis::app

@@ -1,0 +1,131 @@
+#include "run_options.hpp"
+
+#include "interrupt.hpp"
+#include "quantity.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+namespace maupertuis::app {
+namespace {
+
+std::optional<double> time_option(const char* option, const std::string& text, Diagnostics& diagnostics) {
+  if (text.empty()) return {};
+  const std::optional<double> value = parse_time(text);
+  if (!value || !std::isfinite(*value)) {
+    diagnostics.error("E0809", {}, fmt::format("{} {} is no time.", option, text), {},
+                      "Write a number with a unit of time, such as 3s, 250ms or \"2 min\".");
+    return {};
+  }
+  return value;
+}
+
+/// One line on the terminal, redrawn at most ten times a second, and wiped at the end.
+class Progress {
+ public:
+  explicit Progress(const Console& console) : console_(console) {}
+  ~Progress() {
+    if (drawn_) console_.say("\r\x1b[K");
+  }
+  void operator()(double fraction) {
+    const auto now = Clock::now();
+    if (now - last_ < std::chrono::milliseconds(100)) return;
+    last_ = now;
+    const double passed = std::chrono::duration<double>(now - begin_).count();
+    if (passed < 0.5 || !(fraction > 0)) return;
+    drawn_ = true;
+    console_.say(fmt::format("\r\x1b[K{:3.0f} %, {:.0f} s to go", 100 * fraction, passed / fraction - passed));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const Console& console_;
+  Clock::time_point begin_ = Clock::now(), last_ = begin_;
+  bool drawn_ = false;
+};
+
+}  // namespace
+
+void add_method_options(CLI::App& command, RunOptions& options) {
+  command.add_option("--method", options.method, "How to step: taylor, of an order that follows from the tolerance")
+      ->check(CLI::IsMember({"taylor"}))
+      ->type_name("METHOD");
+  command.add_option("--tol", options.tolerance, "Relative tolerance of a step (default: rounding level)")
+      ->type_name("NUMBER");
+}
+
+void add_span_options(CLI::App& command, RunOptions& options) {
+  const auto duration =
+      command.add_option("--duration", options.duration, "Run this long instead; negative: backwards in time")
+          ->type_name("TIME");
+  const auto until = command.add_option("--until", options.until, "Run until this holds instead, e.g. \"P.y = 0\"")
+                         ->type_name("EQUATION")
+                         ->excludes(duration);
+  command.add_option("--within", options.within, "The longest time for --until (default 60s)")
+      ->type_name("TIME")
+      ->needs(until);
+  command.add_option("--every", options.every, "Time between the rows of the trajectory")->type_name("TIME");
+  command.add_option("--at", options.at, "Also print the state at these times, e.g. 3s or 1s,2s,5s")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("TIME,...");
+}
+
+SimulationOptions simulation_options(const RunOptions& options, Diagnostics& diagnostics) {
+  SimulationOptions out;
+  if (options.tolerance) {
+    if (*options.tolerance > 0 && *options.tolerance < 1) out.tolerance = *options.tolerance;
+    else diagnostics.error("E0809", {}, fmt::format("--tol {} is no tolerance.", brief(*options.tolerance)), {},
+                           "Write a positive number below 1, such as 1e-10.");
+  }
+  out.duration = time_option("--duration", options.duration, diagnostics);
+  out.output_every = time_option("--every", options.every, diagnostics);
+  if (out.output_every && !(*out.output_every > 0))
+    diagnostics.error("E0809", {}, "--every must be a positive time.");
+  for (const std::string& text : options.at)
+    if (const auto t = time_option("--at", text, diagnostics)) out.at.push_back(*t);
+  out.interrupt = &interrupt_flag();
+  return out;
+}
+
+std::string run_statement(const RunOptions& options) {
+  if (options.until.empty()) return {};
+  std::string statement =
+      fmt::format("run until {} within {}", options.until, options.within.empty() ? "60 s" : options.within);
+  for (char& c : statement)
+    if (c == '\n' || c == '#') c = ' ';  // one statement, whatever was typed
+  return statement;
+}
+
+std::optional<SimulationResult> run_model(Study& study, const SimulationOptions& options, const Console& console) {
+  if (study.wrong() || !study.certificate()) return {};
+  Progress progress(console);
+  SimulationOptions with_progress = options;
+  if (console.interactive()) with_progress.progress = [&progress](double fraction) { progress(fraction); };
+  return simulate(*study.model(), *study.equations(), with_progress, study.diagnostics());
+}
+
+ExitCode exit_code(const SimulationResult& result) {
+  if (result.ok()) return ExitCode::Fine;
+  return result.ending == Ending::Interrupted ? ExitCode::Interrupted : ExitCode::RunFailed;
+}
+
+const char* ending_name(Ending ending) {
+  switch (ending) {
+    case Ending::Finished: return "finished";
+    case Ending::UntilReached: return "until reached";
+    case Ending::UntilNotReached: return "until not reached";
+    case Ending::Interrupted: return "interrupted";
+    case Ending::SingularMass: return "singular mass matrix";
+    case Ending::Overflow: return "overflow";
+    case Ending::StepUnderflow: return "step underflow";
+    case Ending::Sliding: return "sliding";
+    case Ending::TooManySteps: return "too many steps";
+  }
+  return "";
+}
+
+}  // namespace maupertuis::app

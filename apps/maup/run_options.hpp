@@ -1,0 +1,40 @@
+#pragma once
+#include "command.hpp"
+#include "study.hpp"
+
+#include <maupertuis/simulation.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace maupertuis::app {
+
+/// How a run is to differ from what the model says; shared by simulate, plot, report and test.
+struct RunOptions {
+  std::string method = "taylor";
+  std::optional<double> tolerance;
+  std::string duration, until, within, every;
+  std::vector<std::string> at;
+};
+
+/// --method and --tol.
+void add_method_options(CLI::App& command, RunOptions& options);
+/// --duration, --backward, --until, --within, --every, --at.
+void add_span_options(CLI::App& command, RunOptions& options);
+
+/// The options in numbers, with the flag of Ctrl-C. A wrong value is a diagnostic (E0809).
+SimulationOptions simulation_options(const RunOptions& options, Diagnostics& diagnostics);
+
+/// The `run` statement that --until writes into the model; empty without.
+std::string run_statement(const RunOptions& options);
+
+/// Certifies, runs, draws progress. Nothing when the model does not allow a run.
+std::optional<SimulationResult> run_model(Study& study, const SimulationOptions& options, const Console& console);
+
+/// 0, 3 or 130 by how a run ended.
+ExitCode exit_code(const SimulationResult& result);
+/// "until reached", "singular mass", … for JSON.
+const char* ending_name(Ending ending);
+
+}  // namespace maupertuis::app

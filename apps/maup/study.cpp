@@ -1,0 +1,86 @@
+#include "study.hpp"
+
+#include "read_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <maupertuis/require.hpp>
+
+namespace maupertuis::app {
+
+Study::Study(const std::string& path, Overrides overrides)
+    : source_(display_name(path), read_file(path, diagnostics_)), overrides_(std::move(overrides)) {}
+
+const syntax::SyntaxTree* Study::tree() {
+  if (!tree_ && !wrong()) tree_ = syntax::parse(source_, diagnostics_);
+  return tree_ ? &*tree_ : nullptr;
+}
+
+void Study::replace_run(const std::string& statement) {
+  MAUP_REQUIRE(!elaborated_);
+  const syntax::SyntaxTree* parsed = tree();
+  if (!parsed || wrong()) return;
+  std::string text(source_.text());
+  const auto run = std::find_if(parsed->statements.begin(), parsed->statements.end(), [](const syntax::Statement& s) {
+    return std::holds_alternative<syntax::RunStatement>(s.body);
+  });
+  if (run != parsed->statements.end())
+    text.replace(run->span.begin, run->span.end - run->span.begin, statement);
+  else
+    text += "\n" + statement + "\n";
+  source_ = SourceText(source_.name(), std::move(text));
+  tree_.reset();
+}
+
+const Model* Study::model() {
+  if (elaborated_) return model_.get();
+  elaborated_ = true;
+  const syntax::SyntaxTree* parsed = tree();
+  // A statement with a mistake is left out of the tree: going on would report what follows from its absence.
+  if (!parsed || wrong()) return nullptr;
+  if (auto model = elaborate(*parsed, source_, diagnostics_, overrides_)) {
+    lint(*model, source_, diagnostics_);
+    if (!wrong()) model_ = std::make_shared<const Model>(std::move(*model));
+  }
+  diagnostics_.sort_by_place();
+  return model_.get();
+}
+
+const EquationsOfMotion* Study::equations() {
+  if (!derived_ && model()) {
+    derived_ = true;
+    equations_ = euler_lagrange(std::shared_ptr<const MechanicalSystem>(model_, &model_->system), diagnostics_);
+  }
+  return equations_ && !wrong() ? &*equations_ : nullptr;
+}
+
+const Derivation* Study::derivation(bool with_steps) {
+  if (!equations()) return nullptr;
+  if (!derivation_ || (with_steps && !has_steps_)) {
+    derivation_ = readable_derivation(*equations_, with_steps);
+    has_steps_ = with_steps;
+  }
+  return &*derivation_;
+}
+
+const Certificate* Study::certificate(const CertifyOptions& options) {
+  if (certificate_ || !equations()) return certificate_ ? &*certificate_ : nullptr;
+  certificate_ = certify(*equations_, derivation_ ? &*derivation_ : nullptr, options);
+  for (const CertificateCheck& check : certificate_->checks) {
+    if (!check.applies || check.verdict == Verdict::Zero) continue;
+    const std::string row = check.row < model_->system.coordinates.size()
+                                ? fmt::format(" (equation of {})", model_->system.coordinates[check.row].name)
+                                : std::string();
+    if (check.verdict == Verdict::Nonzero)
+      diagnostics_.error("E0690", {}, fmt::format("The derivation failed its check `{}`{}.", check.name, row),
+                         check.statement,
+                         "The equations are not shown, because they are wrong. Please report this model.");
+    else
+      diagnostics_.warning("W0691", {}, fmt::format("The check `{}`{} could not be decided.", check.name, row),
+                           check.reason, "The equations are shown, but they are not certified.");
+  }
+  return wrong() ? nullptr : &*certificate_;
+}
+
+}  // namespace maupertuis::app

@@ -1,0 +1,49 @@
+#pragma once
+#include <maupertuis/certificate.hpp>
+#include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/mechanical_system.hpp>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace maupertuis::app {
+
+/// A model file on its way through the stages. Each stage runs once, at first use, and returns null when an earlier
+/// one failed; what went wrong collects in diagnostics().
+class Study {
+ public:
+  /// Reads the file, "-" for standard input.
+  explicit Study(const std::string& path, Overrides overrides = {});
+
+  const SourceText& source() const { return source_; }
+  Diagnostics& diagnostics() { return diagnostics_; }
+  bool wrong() const { return diagnostics_.has_errors(); }
+
+  const syntax::SyntaxTree* tree();
+  /// Puts a `run …` statement in the place of the model's own. Precondition: no later stage was asked for.
+  void replace_run(const std::string& statement);
+  /// Elaborated and past the physics lint.
+  const Model* model();
+  const EquationsOfMotion* equations();
+  /// Readable form; `with_steps` adds the textbook path.
+  const Derivation* derivation(bool with_steps);
+  /// Certifies the equations, and the derivation if there is one. A failed check is an error (E0690): equations that
+  /// are known to be wrong are not shown. An undecided one is a warning (W0691).
+  const Certificate* certificate(const CertifyOptions& options = {});
+
+ private:
+  Diagnostics diagnostics_;
+  SourceText source_;
+  Overrides overrides_;
+  std::optional<syntax::SyntaxTree> tree_;
+  std::shared_ptr<const Model> model_;
+  bool elaborated_ = false;
+  std::optional<EquationsOfMotion> equations_;
+  bool derived_ = false;
+  std::optional<Derivation> derivation_;
+  bool has_steps_ = false;
+  std::optional<Certificate> certificate_;
+};
+
+}  // namespace maupertuis::app
