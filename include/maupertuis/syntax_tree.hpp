@@ -63,6 +63,7 @@ struct Expression {
   bool bracketed = false;       // stood in brackets of its own
   bool bare = false;            // Call without brackets: sin θ, reaction rod
   bool unit_bracketed = false;  // Quantity of a formula, `3 [J]`: the words are units and never names
+  int depth = 1;                // of the tree below; parse bounds it, so that recursion over it is safe
   std::optional<UnitExpression> unit;  // Quantity
   std::vector<ExpressionPtr> arguments;
 };

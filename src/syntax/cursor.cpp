@@ -1,0 +1,102 @@
+#include "syntax/expression_parser.hpp"
+
+#include <fmt/format.h>
+
+/// The cursor of a statement: reading tokens, and saying what was expected.
+namespace maupertuis::syntax {
+
+ExpressionParser::ExpressionParser(const ParseContext& context, const StatementTokens& statement)
+    : context_(context), begin_(statement.begin), index_(statement.begin), end_(statement.end) {
+  const std::uint32_t end = context.list.tokens[end_ - 1].span.end;
+  end_token_.span = {end, end};
+}
+
+const Token& ExpressionParser::peek(std::size_t ahead) const {
+  return index_ + ahead < end_ ? context_.list.tokens[index_ + ahead] : end_token_;
+}
+
+const Token& ExpressionParser::next() {
+  const Token& token = peek();
+  if (!at_end()) ++index_;
+  return token;
+}
+
+bool ExpressionParser::accept(std::string_view sign_or_word) {
+  if (!peek().is(sign_or_word)) return false;
+  ++index_;
+  return true;
+}
+
+const Token& ExpressionParser::expect(std::string_view sign_or_word, std::string_view after) {
+  if (!peek().is(sign_or_word)) fail_expected(fmt::format("`{}` after {}", sign_or_word, after));
+  return next();
+}
+
+void ExpressionParser::expect_end() {
+  if (at_end()) return;
+  const Token& token = peek();
+  std::string help;
+  if (token.is("[")) help = "A unit in square brackets stands directly after a number or a vector of numbers: 3 [J].";
+  if (token.is("=")) help = "A statement has one `=`.";
+  if (token.is("<") || token.is(">") || token.is("<=") || token.is(">=")) help = "Comparisons stand in piecewise( ) and contact.";
+  if (token.line_start) help = "A continued line goes on where the line before ended; a new statement is not indented.";
+  fail("E0111", token.span, fmt::format("the statement should end before {}", describe(token)), "", std::move(help));
+}
+
+std::string ExpressionParser::describe(const Token& token) {
+  switch (token.kind) {
+    case Token::Kind::End: return "the end of the statement";
+    case Token::Kind::Number: return fmt::format("the number {}", token.text);
+    case Token::Kind::String: return "a text in quotes";
+    default: break;
+  }
+  if (token.kind == Token::Kind::Name && is_clause_word(token.text)) return fmt::format("the word `{}`", token.text);
+  return fmt::format("`{}`", token.text);
+}
+
+void ExpressionParser::fail(std::string code, Span span, std::string message, std::string reason, std::string help) {
+  context_.diagnostics.error(std::move(code), span, std::move(message), std::move(reason), std::move(help));
+  throw Abandoned{};
+}
+
+void ExpressionParser::fail_expected(std::string_view what, std::string help) {
+  fail("E0111", peek().span, fmt::format("expected {}, found {}", what, describe(peek())), "", std::move(help));
+}
+
+void ExpressionParser::warn(std::string code, Span span, std::string message, std::string reason, std::string help) {
+  warnings_.push_back({std::move(code), Severity::Warning, span, std::move(message), std::move(reason), std::move(help)});
+}
+
+void ExpressionParser::flush_warnings() {
+  for (Diagnostic& w : warnings_) context_.diagnostics.warning(w.code, w.span, w.message, w.reason, w.help);
+  warnings_.clear();
+}
+
+Name ExpressionParser::new_name(std::string_view what) {
+  const Token& token = peek();
+  if (token.kind != Token::Kind::Name) fail_expected(what);
+  const bool function = find_function(token.text) != nullptr;
+  if (function || is_clause_word(token.text) || token.is("t") || token.is("pi")) {
+    fail("E0112", token.span, fmt::format("`{}` cannot be a name", token.text),
+         function          ? "It is a function of the language."
+         : token.is("t")   ? "It is the time."
+         : token.is("pi")  ? "It is the number π."
+                           : "It is a word of the language that separates the parts of a statement.",
+         fmt::format("Choose another name, for example {}1 or {}_0.", token.text, token.text));
+  }
+  if (peek(1).is("'")) {
+    fail("E0111", cover(token.span, peek(1).span), fmt::format("`{}'` cannot be declared", token.text),
+         "A prime is the time derivative of a name that is declared elsewhere.", fmt::format("Declare {}.", token.text));
+  }
+  next();
+  return {std::string(token.text), token.span};
+}
+
+Name ExpressionParser::used_name(std::string_view what) {
+  const Token& token = peek();
+  if (token.kind != Token::Kind::Name || is_clause_word(token.text)) fail_expected(what);
+  next();
+  return {std::string(token.text), token.span};
+}
+
+}  // namespace maupertuis::syntax

@@ -1,0 +1,80 @@
+#include "syntax/declarations.hpp"
+
+namespace maupertuis::syntax {
+namespace {
+
+using Kind = Declarations::Kind;
+
+struct Declared {
+  Name name;
+  Kind kind;
+};
+
+Name name_of(const Token& token) { return {std::string(token.text), token.span}; }
+
+// param, coord, let: the names at depth 0 that stand before `=`, `:` or `,` and after the first word or a comma.
+void scan_list(const TokenList& list, const StatementTokens& statement, Kind kind, std::vector<Declared>& found) {
+  int depth = 0;
+  std::size_t unnamed = found.size();  // coord x, y : length — the kind comes after the names
+  for (std::size_t i = statement.begin + 1; i < statement.end; ++i) {
+    const Token& token = list.tokens[i];
+    if (token.is("(") || token.is("[")) ++depth;
+    if (token.is(")") || token.is("]")) --depth;
+    const bool first = i == statement.begin + 1 || list.tokens[i - 1].is(",");
+    if (depth == 0 && first && token.kind == Token::Kind::Name) found.push_back({name_of(token), kind});
+    if (kind == Kind::Coordinate && token.is(":")) {
+      const bool angle = i + 1 < statement.end && list.tokens[i + 1].is("angle");
+      for (; unnamed < found.size(); ++unnamed) found[unnamed].kind = angle ? Kind::Angle : Kind::Coordinate;
+    }
+  }
+}
+
+void scan(const TokenList& list, const StatementTokens& statement, std::vector<Declared>& found) {
+  const Token& first = list.tokens[statement.begin];
+  if (first.is("param")) return scan_list(list, statement, Kind::Parameter, found);
+  if (first.is("coord")) return scan_list(list, statement, Kind::Coordinate, found);
+  if (first.is("let")) return scan_list(list, statement, Kind::Definition, found);
+  const Kind kind = first.is("input")                                             ? Kind::Input
+                    : first.is("frame") || first.is("point") || first.is("body")  ? Kind::Place
+                    : first.is("field")                                           ? Kind::Field
+                    : first.is("independent")                                     ? Kind::Parameter
+                                                                                  : Kind::None;
+  if (kind == Kind::None || statement.begin + 1 >= statement.end) return;
+  const auto add = [&](std::size_t i) {
+    if (i < statement.end && list.tokens[i].kind == Token::Kind::Name) found.push_back({name_of(list.tokens[i]), kind});
+  };
+  add(statement.begin + 1);
+  if (kind != Kind::Field) return;
+  for (std::size_t i = statement.begin + 2; i < statement.end && !list.tokens[i].is(")"); ++i) add(i);
+}
+
+}  // namespace
+
+Declarations::Declarations(const TokenList& list, const std::vector<StatementTokens>& statements) {
+  std::vector<Declared> found;
+  for (const StatementTokens& statement : statements) {
+    scan(list, statement, found);
+    dimensionless_ = dimensionless_ || list.tokens[statement.begin].is("dimensionless");
+  }
+  for (Declared& declared : found) names_.emplace(std::move(declared.name.text), declared.kind);
+}
+
+Declarations::Kind Declarations::kind(std::string_view name) const {
+  const auto found = names_.find(std::string(name));
+  if (found != names_.end()) return found->second;
+  // u_x, u_xx of a field u
+  const std::size_t underscore = name.find('_');
+  if (underscore == std::string_view::npos || underscore == 0) return Kind::None;
+  const auto field = names_.find(std::string(name.substr(0, underscore)));
+  return field != names_.end() && field->second == Kind::Field ? Kind::Field : Kind::None;
+}
+
+std::vector<Name> Declarations::of(const TokenList& list, const StatementTokens& statement) {
+  std::vector<Declared> found;
+  scan(list, statement, found);
+  std::vector<Name> names;
+  for (Declared& declared : found) names.push_back(std::move(declared.name));
+  return names;
+}
+
+}  // namespace maupertuis::syntax

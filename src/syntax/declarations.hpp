@@ -1,0 +1,29 @@
+#pragma once
+#include "syntax/token.hpp"
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace maupertuis::syntax {
+
+/// The names that a model declares, found before parsing: they decide what `2e1` and `T = …` mean, and that an
+/// unknown name before a bracket is no product.
+class Declarations {
+ public:
+  enum class Kind { None, Parameter, Coordinate, Angle, Definition, Input, Place, Field };
+
+  Declarations(const TokenList& list, const std::vector<StatementTokens>& statements);
+
+  Kind kind(std::string_view name) const;
+  bool contains(std::string_view name) const { return kind(name) != Kind::None; }
+  bool dimensionless() const { return dimensionless_; }
+  /// The names that one statement declares, for messages and recovery.
+  static std::vector<Name> of(const TokenList& list, const StatementTokens& statement);
+
+ private:
+  std::unordered_map<std::string, Kind> names_;
+  bool dimensionless_ = false;
+};
+
+}  // namespace maupertuis::syntax

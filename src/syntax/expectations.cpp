@@ -1,0 +1,117 @@
+#include "syntax/statement_parser.hpp"
+
+#include <fmt/format.h>
+
+/// expect and claim: the model's own tests.
+namespace maupertuis::syntax {
+
+using Kind = ExpectStatement::Kind;
+
+StatementBody StatementParser::expect_statement() { return expectation(false); }
+StatementBody StatementParser::claim_statement() { return expectation(true); }
+
+void StatementParser::tolerance(ExpectStatement& expect, bool required) {
+  if (accept("±")) {
+    expect.tolerance = quantity();
+  } else if (accept("rel")) {
+    expect.relative = true;
+    expect.tolerance = quantity();
+  } else if (required) {
+    missing_clause("± or rel", "expectation", "expect θ at 10 s = 0.5 rad ± 1e-9");
+  }
+}
+
+ExpectStatement StatementParser::expectation(bool claim) {
+  next();
+  ExpectStatement expect;
+  expect.claim = claim;
+  if (peek().is("energy") && peek(1).is("conserved")) {
+    next(), next();
+    expect.kind = Kind::EnergyConserved;
+    tolerance(expect, false);
+  } else if (accept("conserved")) {
+    expect.kind = Kind::Conserved;
+    expect.subject = formula();
+    tolerance(expect, false);
+  } else if (accept("equation")) {
+    expect.kind = Kind::Equation;
+    expect.subject = formula();
+    this->expect("=", "the left side of the equation");
+    expect.value = formula();
+  } else if (peek().is("freedoms") && peek(1).is("=")) {
+    next(), next();
+    expect.kind = Kind::Freedoms;
+    expect.value = quantity();
+  } else if (accept("constraint")) {
+    expect.kind = Kind::ConstraintClass;
+    expect.name = used_name("the name of a constraint");
+    this->expect("is", "the name of the constraint");
+    expect.word = used_name("its class, holonomic or nonholonomic");
+  } else if (accept("integral")) {
+    expect.kind = Kind::Integral;
+    expect.subject = formula();
+  } else if (accept("frequencies")) {
+    expect_frequencies(expect);
+  } else if (accept("event")) {
+    expect_event(expect);
+  } else if (accept("error")) {
+    expect.kind = Kind::Error;
+    expect.name = used_name("the code of an error, such as E0412");
+  } else {
+    expect_value(expect);
+  }
+  return expect;
+}
+
+// θ at 10 s = 0.5 rad ± 1e-9,   x^2 + y^2 not conserved,   T = 3 J ± 1e-9,   claim θ'' = -g/l sin θ
+void StatementParser::expect_value(ExpectStatement& expect) {
+  expect.subject = formula();
+  if (accept("not")) {
+    if (!peek().is("conserved")) fail_expected("`conserved` after `not`");
+    next();
+    expect.kind = Kind::NotConserved;
+    return;
+  }
+  const bool timed = accept("at");
+  if (timed) expect.time = quantity();
+  this->expect("=", timed ? "the time" : "what is expected");
+  if (expect.claim && !timed) {
+    expect.kind = Kind::Equation;
+    expect.value = formula();
+    return;
+  }
+  expect.kind = timed ? Kind::ValueAt : Kind::Value;
+  expect.value = quantity();
+  tolerance(expect, timed);
+}
+
+// at θ = 0 : 0.5 Hz, 1.2 Hz rel 1e-9
+void StatementParser::expect_frequencies(ExpectStatement& expect) {
+  expect.kind = Kind::Frequencies;
+  if (accept("at")) {
+    do expect.at.push_back(assignment());
+    while (accept(","));
+  }
+  this->expect(":", "the configuration");
+  do expect.values.push_back(quantity());
+  while (accept(","));
+  tolerance(expect, true);
+}
+
+// hit 3 at 0.45 s ± 1e-11
+void StatementParser::expect_event(ExpectStatement& expect) {
+  expect.kind = Kind::EventAt;
+  expect.name = used_name("the name of an event");
+  expect.occurrence = 1;
+  if (peek().kind == Token::Kind::Number) {
+    const Token& count = next();
+    const bool whole = count.text.size() <= 9 && count.text.find_first_not_of("0123456789") == std::string_view::npos;
+    expect.occurrence = whole ? std::stoi(std::string(count.text)) : 0;
+    if (expect.occurrence < 1) fail("E0111", count.span, "expected which occurrence of the event is meant: 1, 2, …");
+  }
+  this->expect("at", "the event");
+  expect.time = quantity();
+  tolerance(expect, true);
+}
+
+}  // namespace maupertuis::syntax

@@ -1,0 +1,295 @@
+#include "syntax/expression_parser.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+/// Formulas: operators, brackets, names.
+namespace maupertuis::syntax {
+namespace {
+
+using Kind = Expression::Kind;
+
+constexpr int kDeepestNesting = 200;
+constexpr int kDeepestTree = 2000;
+
+bool starts_factor(const Token& token) {
+  return token.kind == Token::Kind::Number || token.is("(") ||
+         (token.kind == Token::Kind::Name && !is_clause_word(token.text));
+}
+
+std::optional<Operator> product_operator(const Token& token) {
+  if (token.is("*")) return Operator::Multiply;
+  if (token.is("/")) return Operator::Divide;
+  if (token.is("·")) return Operator::Dot;
+  if (token.is("×")) return Operator::Cross;
+  return std::nullopt;
+}
+
+bool is_not_a_number(std::string_view word) {
+  return word == "nan" || word == "NaN" || word == "NAN" || word == "inf" || word == "Inf" || word == "INF" ||
+         word == "infinity" || word == "Infinity";
+}
+
+}  // namespace
+
+ExpressionParser::Nesting::Nesting(ExpressionParser& p) : parser(p) {
+  if (++parser.nesting_ <= kDeepestNesting) return;
+  --parser.nesting_;
+  parser.fail("E0108", parser.peek().span, "the formula is nested too deeply",
+              fmt::format("Brackets, signs and exponents may be nested {} deep.", kDeepestNesting), "Name its parts with `let`.");
+}
+
+// ------------------------------------------------------------------------------------------------- building nodes
+
+ExpressionParser::Node ExpressionParser::make(Expression::Kind kind, Span span, std::initializer_list<Node> arguments) {
+  auto node = std::make_shared<Expression>();
+  node->kind = kind;
+  node->span = span;
+  node->arguments.assign(arguments.begin(), arguments.end());
+  return finish(std::move(node));
+}
+
+// Sets the depth of a node whose arguments are complete.
+ExpressionParser::Node ExpressionParser::finish(Node node) {
+  node->depth = 1;
+  for (const ExpressionPtr& argument : node->arguments) node->depth = std::max(node->depth, argument->depth + 1);
+  if (node->depth > kDeepestTree) {
+    fail("E0108", node->span, "the formula is too long",
+         fmt::format("A formula may have {} operations in a row.", kDeepestTree), "Name its parts with `let`, or add to an energy with `+=`.");
+  }
+  return node;
+}
+
+ExpressionParser::Node ExpressionParser::binary(Operator op, Node left, Node right) {
+  const Span span = cover(left->span, right->span);
+  Node node = make(Kind::Binary, span, {std::move(left), std::move(right)});
+  node->op = op;
+  return node;
+}
+
+ExpressionParser::Node ExpressionParser::negate(const Token& sign, Node operand) {
+  const Span span = cover(sign.span, operand->span);
+  Node node = make(Kind::Unary, span, {std::move(operand)});
+  node->op = Operator::Negate;
+  return node;
+}
+
+// ------------------------------------------------------------------------------------------------------ operators
+
+ExpressionParser::Node ExpressionParser::sum() {
+  Node left = signed_product();
+  while (peek().is("+") || peek().is("-")) {
+    const Operator op = next().is("+") ? Operator::Add : Operator::Subtract;
+    Node right = signed_product();
+    lint_sum(*left, *right);
+    left = binary(op, std::move(left), std::move(right));
+  }
+  return left;
+}
+
+ExpressionParser::Node ExpressionParser::signed_product() {
+  if (!peek().is("-") && !peek().is("+")) return product();
+  const Nesting nesting(*this);
+  const Token& sign = next();
+  Node operand = signed_product();
+  return sign.is("-") ? negate(sign, std::move(operand)) : operand;
+}
+
+ExpressionParser::Node ExpressionParser::product() {
+  Node left = power();
+  while (true) {
+    const auto written = product_operator(peek());
+    if (!written && !starts_factor(peek())) return left;
+    if (written) next();
+    const Operator op = written.value_or(Operator::Juxtapose);
+    Node right = written ? signed_power() : power();
+    lint_product(*left, op, *right);
+    left = binary(op, std::move(left), std::move(right));
+  }
+}
+
+ExpressionParser::Node ExpressionParser::signed_power() {
+  if (!peek().is("-") && !peek().is("+")) return power();
+  const Nesting nesting(*this);
+  const Token& sign = next();
+  Node operand = signed_power();
+  return sign.is("-") ? negate(sign, std::move(operand)) : operand;
+}
+
+ExpressionParser::Node ExpressionParser::power() {
+  Node base = postfix();
+  if (!accept("^")) return base;
+  const Nesting nesting(*this);
+  return binary(Operator::Power, std::move(base), exponent());
+}
+
+ExpressionParser::Node ExpressionParser::exponent() {
+  if (!peek().is("-") && !peek().is("+")) return power();
+  const Nesting nesting(*this);
+  const Token& sign = next();
+  Node operand = exponent();
+  return sign.is("-") ? negate(sign, std::move(operand)) : operand;
+}
+
+ExpressionParser::Node ExpressionParser::postfix() {
+  Node node = primary();
+  while (true) {
+    const Token& token = peek();
+    if (token.is(".")) {
+      next();
+      if (node->kind == Kind::Number) fail("E0105", cover(node->span, token.span), "a decimal point stands between digits");
+      const Name member = used_name("a component or field after `.`");
+      node = make(Kind::Member, cover(node->span, member.span), {node});
+      node->text = member.text;
+      node->name_span = member.span;
+    } else if (token.is("'")) {
+      next();
+      const bool named = (node->kind == Kind::Name || node->kind == Kind::Member) && !node->bracketed;
+      if (!named && !node->bracketed && node->kind != Kind::TimeDerivative && node->kind != Kind::Vector) {
+        fail("E0125", token.span, fmt::format("`{}` has no time derivative that could be written with '", text_of(*node)),
+             "The prime belongs to a name, a field of a point or body, or a bracket.",
+             fmt::format("Write ({})' or dot({}).", text_of(*node), text_of(*node)));
+      }
+      if (!named && node->kind != Kind::TimeDerivative) node = make(Kind::TimeDerivative, node->span, {node});
+      ++node->primes;
+      node->span = cover(node->span, token.span);
+    } else {
+      return node;
+    }
+  }
+}
+
+// ------------------------------------------------------------------------------------------------------- operands
+
+ExpressionParser::Node ExpressionParser::primary() {
+  const Token& token = peek();
+  if (token.kind == Token::Kind::Number) return number();
+  if (token.is("(")) return bracket();
+  if (token.kind != Token::Kind::Name || is_clause_word(token.text)) {
+    fail_expected("a number, a name or a bracket",
+                  token.is("[") ? "A unit in square brackets stands directly after a number: 3 [J]." : "");
+  }
+  if (const Function* function = find_function(token.text)) return call(*function);
+  return name();
+}
+
+ExpressionParser::Node ExpressionParser::number() {
+  const Token& token = next();
+  check_number(token);
+  Node node = make(Kind::Number, token.span);
+  node->text = token.text;
+  if (peek().is("[")) {
+    UnitExpression unit = bracketed_unit();
+    node = make(Kind::Quantity, cover(token.span, unit.span), {node});
+    node->unit = std::move(unit);
+    node->unit_bracketed = true;
+  }
+  if (peek().kind == Token::Kind::Number) {
+    fail("E0123", cover(token.span, peek().span), "two numbers stand side by side", "A product of numbers needs a sign between them.",
+         fmt::format("Write {} * {}, or {}{} if it is one number.", token.text, peek().text, token.text, peek().text));
+  }
+  return node;
+}
+
+// `2e1` is the number 20, unless e1 is a name of the model: then nobody can know.
+void ExpressionParser::check_number(const Token& token) {
+  const std::size_t e = token.text.find_first_of("eE");
+  if (e == std::string_view::npos) return;
+  const std::string_view word = token.text.substr(e);
+  if (!context_.declarations.contains(word)) return;
+  const std::string_view digits = token.text.substr(0, e);
+  fail("E0117", token.span, fmt::format("`{}` is a number and also {} times {}", token.text, digits, word),
+       fmt::format("{} is a name of this model.", word),
+       fmt::format("Write {} {} for the product, or {}.0{} for the number.", digits, word, digits, word));
+}
+
+ExpressionParser::Node ExpressionParser::name() {
+  const Token& token = next();
+  const bool declared = context_.declarations.contains(token.text);
+  if (!declared && is_not_a_number(token.text)) {
+    fail("E0105", token.span, fmt::format("`{}` is not a number", token.text), "Every quantity of a model is finite.");
+  }
+  check_application(token);
+  Node node = make(Kind::Name, token.span);
+  node->text = token.text;
+  node->name_span = token.span;
+  if (peek().is("[")) {
+    fail("E0119", peek().span, fmt::format("a unit in square brackets cannot follow `{}`", token.text),
+         "A name has its unit from its declaration; in formulas only numbers are given units.", "Write the unit after a number: 3 [J].");
+  }
+  return node;
+}
+
+// A name before a bracket is a factor, θ(t) is a habit, and anything else is a function that does not exist.
+void ExpressionParser::check_application(const Token& name) {
+  if (!peek().is("(")) return;
+  using Declared = Declarations::Kind;
+  const Declared kind = context_.declarations.kind(name.text);
+  const bool of_time = peek(1).is("t") && peek(2).is(")");
+  if (of_time && (kind == Declared::Coordinate || kind == Declared::Angle || kind == Declared::Field || kind == Declared::Input)) {
+    fail("E0121", cover(name.span, peek(2).span), fmt::format("`{}(t)` would be {} times the time", name.text, name.text),
+         fmt::format("{} depends on time by itself.", name.text), fmt::format("Write {}.", name.text));
+  }
+  if (kind != Declared::None || is_predefined(name.text) || energy_of(name.text)) return;
+  std::vector<std::string> candidates;
+  for (const Function& function : functions()) candidates.emplace_back(function.name);
+  const std::string near = did_you_mean(name.text, candidates);
+  fail("E0122", name.span, fmt::format("`{}` is neither a function nor a name of this model", name.text),
+       "Before a bracket stands a function or a factor.",
+       near.empty() ? "Declare it with `param` or `let` if it is a factor." : fmt::format("Did you mean `{}`?", near));
+}
+
+ExpressionParser::Node ExpressionParser::bracket() {
+  const Nesting nesting(*this);
+  const Token& open = next();
+  if (peek().is(")")) fail("E0126", cover(open.span, peek().span), "these brackets are empty", "", "Write a formula or a vector in them.");
+  std::vector<Node> parts;
+  do parts.push_back(in_condition_ ? disjunction() : sum());
+  while (accept(","));
+  if (!peek().is(")")) fail_expected("`,` or `)`");
+  const Span span = cover(open.span, next().span);
+  if (parts.size() == 1) {
+    Node node = parts.front();
+    if (node->bracketed) node = std::make_shared<Expression>(*node);
+    node->bracketed = true;
+    node->span = span;
+    return node;
+  }
+  if (parts.size() > 3) {
+    fail("E0126", span, fmt::format("this vector has {} components", parts.size()), "A model is two- or three-dimensional.",
+         "Write (a, b) or (a, b, c).");
+  }
+  Node vector = make(Kind::Vector, span);
+  vector->arguments.assign(parts.begin(), parts.end());
+  finish(vector);
+  if (!peek().is("[")) return vector;
+  UnitExpression unit = bracketed_unit();
+  Node node = make(Kind::Quantity, cover(span, unit.span), {vector});
+  node->unit = std::move(unit);
+  node->unit_bracketed = true;
+  return node;
+}
+
+// ----------------------------------------------------------------------------------------- restricted operands
+
+ExpressionParser::Node ExpressionParser::operand(std::string_view what) {
+  if (peek().is("(")) return bracket();
+  if (peek().kind != Token::Kind::Name || is_clause_word(peek().text) || find_function(peek().text)) {
+    fail_expected(what, "Here stands the name of a point or a vector in brackets.");
+  }
+  const Name word = used_name(what);
+  Node node = make(Kind::Name, word.span);
+  node->text = word.text;
+  node->name_span = word.span;
+  return node;
+}
+
+ExpressionParser::Node ExpressionParser::variable() {
+  if (peek().kind != Token::Kind::Name || is_clause_word(peek().text) || find_function(peek().text)) {
+    fail_expected("a coordinate or its velocity");
+  }
+  return postfix();
+}
+
+}  // namespace maupertuis::syntax

@@ -1,0 +1,84 @@
+#include "syntax/expression_parser.hpp"
+
+#include <fmt/format.h>
+
+/// Warnings about formulas that read otherwise than they were probably meant (rules 2 and 3).
+namespace maupertuis::syntax {
+namespace {
+
+using Kind = Expression::Kind;
+
+bool is_binary(const Expression& e, Operator op) { return e.kind == Kind::Binary && !e.bracketed && e.op == op; }
+
+// The factor that stands last in an expression that is written without brackets.
+const Expression& last_factor(const Expression& e) {
+  const Expression* last = &e;
+  while (!last->bracketed && ((last->kind == Kind::Binary && last->op != Operator::Power) || last->kind == Kind::Unary)) {
+    last = last->arguments.back().get();
+  }
+  return *last;
+}
+
+
+// cos θ or cos^2 θ; null if it is something else.
+const Expression* bare_call(const Expression& e) {
+  if (is_binary(e, Operator::Power)) return bare_call(*e.arguments[0]);
+  return e.kind == Kind::Call && e.bare && !e.bracketed ? &e : nullptr;
+}
+
+bool is_plain_factor(const Expression& e) {
+  return !e.bracketed && (e.kind == Kind::Name || e.kind == Kind::Member ||
+                          (is_binary(e, Operator::Power) && !e.arguments[0]->bracketed && e.arguments[0]->kind == Kind::Name));
+}
+
+}  // namespace
+
+void ExpressionParser::lint_product(const Expression& left, Operator op, const Expression& right) {
+  const Expression& before = last_factor(left);
+  const bool denominator_is_name = is_binary(left, Operator::Divide) && !before.bracketed &&
+                                   (before.kind == Kind::Name || before.kind == Kind::Member);
+  if (op == Operator::Juxtapose && denominator_is_name && is_plain_factor(right)) {
+    const Expression& numerator = last_factor(*left.arguments[0]);
+    const Span span = cover(numerator.span, right.span);
+    warn("W0101", span, fmt::format("`{}` multiplies by {}", text_of(span), text_of(right)),
+         "Products without a sign bind as division does, from left to right.",
+         fmt::format("Write {}/({} {}) if {} belongs to the denominator, else put {} before the slash.", text_of(numerator),
+                     text_of(before), text_of(right), text_of(right), text_of(right)));
+  }
+  const Expression* function = bare_call(before);
+  if (op == Operator::Divide && function && right.kind == Kind::Number) {
+    const Span span = cover(before.span, right.span);
+    const std::string argument = text_of(*function->arguments[0]);
+    warn("W0102", span, fmt::format("`{}` divides the value of {}, not its argument", text_of(span), function->text),
+         fmt::format("Without brackets {} takes {} alone.", function->text, argument),
+         fmt::format("Write {0}({1}/{2}) for the {0} of {1}/{2}, or 1/{2} {3}.", function->text, argument, text_of(right), text_of(before)));
+  }
+  if (op == Operator::Juxtapose && function && context_.declarations.dimensionless() && right.kind == Kind::Name && right.text == "t") {
+    const Span span = cover(before.span, right.span);
+    warn("W0104", span, fmt::format("`{}` multiplies by the time", text_of(span)),
+         fmt::format("Without brackets {} takes {} alone.", function->text, text_of(*function->arguments[0])),
+         fmt::format("Write {}({} t).", function->text, text_of(*function->arguments[0])));
+  }
+  if (op == Operator::Juxtapose && right.kind == Kind::Number && left.kind != Kind::Number) {
+    const Span span = cover(before.span, right.span);
+    warn("W0105", span, fmt::format("`{}` is a product", text_of(span)), "A number after a factor multiplies it.",
+         fmt::format("Write {0}^{1} for the power, or {1} {0} for the product.", text_of(before), right.text));
+  }
+}
+
+void ExpressionParser::lint_sum(const Expression& left, const Expression& right) {
+  const Expression* function = bare_call(last_factor(left));
+  if (!function || right.kind != Kind::Name || right.bracketed) return;
+  const Expression& argument = last_factor(*function->arguments[0]);
+  const auto is_angle = [&](const Expression& e) {
+    return e.kind == Kind::Name && e.primes == 0 && context_.declarations.kind(e.text) == Declarations::Kind::Angle;
+  };
+  if (!is_angle(argument) || !is_angle(right)) return;
+  const Span span = cover(function->span, right.span);
+  const Span inner = cover(function->arguments[0]->span, right.span);
+  warn("W0103", span, fmt::format("`{}` adds an angle to the value of {}", text_of(span), function->text),
+       fmt::format("Without brackets {} takes {} alone.", function->text, text_of(*function->arguments[0])),
+       fmt::format("Write {}({}).", function->text, text_of(inner)));
+}
+
+}  // namespace maupertuis::syntax

@@ -1,0 +1,226 @@
+#include "syntax/statement_parser.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+/// The table of statements, and those that declare: system, param, coord, let, input.
+namespace maupertuis::syntax {
+
+std::span<const StatementParser::Entry> StatementParser::table() {
+  using P = StatementParser;
+  static constexpr Entry entries[] = {
+      {"system", &P::system_statement},       {"source", &P::source_statement},
+      {"dimensionless", &P::dimensionless_statement}, {"param", &P::param_statement},
+      {"coord", &P::coord_statement},         {"let", &P::let_statement},
+      {"input", &P::input_statement},         {"frame", &P::frame_statement},
+      {"point", &P::point_statement},         {"body", &P::body_statement},
+      {"gravity", &P::gravity_statement},     {"spring", &P::spring_statement},
+      {"damper", &P::damper_statement},       {"torsion", &P::torsion_statement},
+      {"force", &P::force_statement},         {"torque", &P::torque_statement},
+      {"reaction", &P::reaction_statement},   {"start", &P::start_statement},
+      {"run", &P::run_statement},             {"output", &P::output_statement},
+      {"draw", &P::draw_statement},           {"expect", &P::expect_statement},
+      {"claim", &P::claim_statement},         {"constraint", &P::constraint_statement},
+      {"contact", &P::contact_statement},     {"friction", &P::friction_statement},
+      {"event", &P::event_statement},         {"impact", &P::impact_statement},
+      {"sweep", &P::sweep_statement},         {"independent", &P::independent_statement},
+      {"path", &P::path_statement},           {"field", &P::field_statement},
+      {"density", &P::density_statement},     {"T", &P::energy_statement},
+      {"V", &P::energy_statement},            {"U", &P::energy_statement},
+      {"L", &P::energy_statement},            {"D", &P::energy_statement},
+      {"kinetic", &P::energy_statement},      {"potential", &P::energy_statement},
+      {"generalized_potential", &P::energy_statement}, {"lagrangian", &P::energy_statement},
+      {"dissipation", &P::energy_statement},
+  };
+  return entries;
+}
+
+std::vector<Statement> StatementParser::run() {
+  const Token& word = peek();
+  const auto entry = std::find_if(table().begin(), table().end(),
+                                  [&](const Entry& e) { return word.kind == Token::Kind::Name && e.word == word.text; });
+  if (entry == table().end()) unknown_statement();
+  std::vector<Statement> statements;
+  const std::size_t first = index_;
+  StatementBody body = (this->*entry->handler)();
+  statements.push_back(complete(std::move(body), first));
+  if (word.is("system") && peek().is("source")) {
+    const std::size_t second = index_;
+    body = source_statement();
+    statements.push_back(complete(std::move(body), second));
+  }
+  expect_end();
+  flush_warnings();
+  return statements;
+}
+
+Statement StatementParser::complete(StatementBody body, std::size_t first) const {
+  return {std::move(body), cover(context_.list.tokens[first].span, previous().span)};
+}
+
+Span StatementParser::statement_span() const {
+  return cover(context_.list.tokens[begin_].span, context_.list.tokens[std::max(index_, begin_ + 1) - 1].span);
+}
+
+void StatementParser::unknown_statement() {
+  const Token& word = peek();
+  if (word.kind != Token::Kind::Name) {
+    fail("E0110", word.span, fmt::format("a statement cannot begin with {}", describe(word)), "Every statement begins with its word.",
+         "A continued line must be indented, or a bracket be open.");
+  }
+  std::size_t i = index_ + 1;
+  while (i < end_ && context_.list.tokens[i].is("'")) ++i;
+  const bool equation = i < end_ && (context_.list.tokens[i].is("=") || context_.list.tokens[i].is("+="));
+  const std::vector<std::string> words = as_strings(statement_words());
+  std::string lower(word.text);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::string near = is_statement_word(lower) ? lower : did_you_mean(word.text, words);
+  if (near.size() == 1 || (equation && !energy_of(near))) near.clear();
+  std::string help;
+  if (!near.empty()) {
+    help = fmt::format("Did you mean `{}`?", near);
+  } else if (equation) {
+    help = fmt::format("A definition is `let {0} = …`, a parameter `param {0} = …`, an initial value `start {0} = …`.", word.text);
+  } else {
+    help = "Statements begin with param, coord, let, point, T, V, force, start, run, …; a continued line is indented.";
+  }
+  fail("E0110", word.span, fmt::format("`{}` does not begin a statement", word.text), "", std::move(help));
+}
+
+// After a mistake: to the comma before the next `name =` or `name :`, outside brackets.
+void StatementParser::skip_item() {
+  int depth = 0;
+  for (std::size_t i = begin_; i < index_ && i < end_; ++i) {
+    const Token& token = context_.list.tokens[i];
+    depth += token.is("(") || token.is("[") ? 1 : token.is(")") || token.is("]") ? -1 : 0;
+  }
+  for (; !at_end(); next()) {
+    if (peek().is("(") || peek().is("[")) ++depth;
+    if (peek().is(")") || peek().is("]")) --depth;
+    const bool item = peek(1).kind == Token::Kind::Name && (peek(2).is("=") || peek(2).is(":") || peek(2).is("'") || peek(2).is(","));
+    if (depth == 0 && peek().is(",") && item) return;
+  }
+}
+
+StatementBody StatementParser::system_statement() {
+  next();
+  SystemStatement system;
+  system.name = new_name("the name of the system");
+  if (peek().kind == Token::Kind::String) system.title = next().text;
+  return system;
+}
+
+StatementBody StatementParser::source_statement() {
+  next();
+  if (peek().kind != Token::Kind::String) fail_expected("a citation in quotes after `source`");
+  return SourceStatement{std::string(next().text)};
+}
+
+StatementBody StatementParser::dimensionless_statement() {
+  next();
+  return DimensionlessStatement{};
+}
+
+StatementBody StatementParser::param_statement() {
+  next();
+  ParamStatement param;
+  list([&] {
+    ParamStatement::Item item;
+    item.name = new_name("the name of a parameter");
+    expect("=", "the name of a parameter");
+    item.value = quantity();
+    param.items.push_back(std::move(item));
+  });
+  return param;
+}
+
+StatementBody StatementParser::let_statement() {
+  next();
+  LetStatement let;
+  list([&] {
+    LetStatement::Item item;
+    item.name = new_name("the name of a definition");
+    expect("=", "the name of a definition");
+    item.value = formula();
+    let.items.push_back(std::move(item));
+  });
+  return let;
+}
+
+// coord x, y : length, θ : angle — names before a colon share its kind.
+StatementBody StatementParser::coord_statement() {
+  next();
+  CoordStatement coord;
+  std::size_t unnamed = 0;
+  list([&] {
+    CoordStatement::Item item;
+    item.name = new_name("the name of a coordinate");
+    coord.items.push_back(std::move(item));
+    if (peek().is(",")) return;
+    if (!peek().is(":")) fail_expected("`:` and the kind of the coordinate", "Write for example θ : angle.");
+    next();
+    CoordStatement::Item& last = coord.items.back();
+    if (peek().is("[")) {
+      last.unit = bracketed_unit();
+    } else {
+      const Token& kind = peek();
+      if (!kind.is("angle") && !kind.is("length") && !kind.is("charge") && !kind.is("number")) {
+        const std::vector<std::string> kinds = {"angle", "length", "charge", "number"};
+        const std::string near = kind.kind == Token::Kind::Name ? did_you_mean(kind.text, kinds) : "";
+        fail("E0129", kind.span, fmt::format("expected the kind of a coordinate, found {}", describe(kind)),
+             "A coordinate is an angle, a length, a charge, a number, or has a unit in brackets.",
+             !near.empty() ? fmt::format("Did you mean `{}`?", near)
+                           : fmt::format("Write for example {0} : length, or {0} : [m].", last.name.text));
+      }
+      last.kind = {std::string(next().text), kind.span};
+    }
+    for (; unnamed + 1 < coord.items.size(); ++unnamed) {
+      coord.items[unnamed].kind = coord.items.back().kind;
+      coord.items[unnamed].unit = coord.items.back().unit;
+    }
+    unnamed = coord.items.size();
+  });
+  if (unnamed < coord.items.size()) {
+    const Name& name = coord.items.back().name;
+    fail("E0129", name.span, fmt::format("the coordinate {} has no kind", name.text), "",
+         fmt::format("Write {0} : angle, {0} : length, {0} : charge, {0} : number or {0} : [unit].", name.text));
+  }
+  return coord;
+}
+
+StatementBody StatementParser::input_statement() {
+  next();
+  InputStatement input;
+  input.name = new_name("the name of an input");
+  if (accept(":")) {
+    if (!peek().is("[")) fail_expected("a unit in square brackets", "Write for example input u : [N] = ….");
+    input.unit = bracketed_unit();
+  }
+  expect("=", "the name of an input");
+  input.value = formula();
+  return input;
+}
+
+StatementBody StatementParser::energy_statement() {
+  const Token& word = next();
+  const auto which = *energy_of(word.text);
+  if (is_short_energy(word.text) && context_.declarations.contains(word.text)) {
+    fail("E0120", word.span, fmt::format("`{}` is a name of this model and cannot be given here", word.text),
+         fmt::format("A declared {} means that name everywhere.", word.text),
+         fmt::format("Write `{} = …`, or rename the declared {}.", long_energy_name(which), word.text));
+  }
+  EnergyStatement energy;
+  energy.which = which;
+  energy.name_span = word.span;
+  if (accept("+=")) {
+    energy.adds = true;
+  } else {
+    expect("=", fmt::format("`{}`", word.text));
+  }
+  energy.value = formula();
+  return energy;
+}
+
+}  // namespace maupertuis::syntax

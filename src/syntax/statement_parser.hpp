@@ -1,0 +1,93 @@
+#pragma once
+#include "syntax/expression_parser.hpp"
+
+namespace maupertuis::syntax {
+
+/// Reads one statement. Throws Abandoned after a mistake was reported.
+class StatementParser : private ExpressionParser {
+ public:
+  StatementParser(const ParseContext& context, const StatementTokens& statement) : ExpressionParser(context, statement) {}
+
+  /// One statement; `system x "…" source "…"` is two.
+  std::vector<Statement> run();
+
+ private:
+  using Handler = StatementBody (StatementParser::*)();
+  struct Entry {
+    std::string_view word;
+    Handler handler;
+  };
+  static std::span<const Entry> table();
+  [[noreturn]] void unknown_statement();
+  Statement complete(StatementBody body, std::size_t first) const;
+
+  StatementBody system_statement();
+  StatementBody source_statement();
+  StatementBody dimensionless_statement();
+  StatementBody param_statement();
+  StatementBody coord_statement();
+  StatementBody let_statement();
+  StatementBody input_statement();
+  StatementBody frame_statement();
+  StatementBody point_statement();
+  StatementBody body_statement();
+  StatementBody gravity_statement();
+  StatementBody spring_statement();
+  StatementBody damper_statement();
+  StatementBody torsion_statement();
+  StatementBody energy_statement();
+  StatementBody force_statement();
+  StatementBody torque_statement();
+  StatementBody reaction_statement();
+  StatementBody start_statement();
+  StatementBody run_statement();
+  StatementBody output_statement();
+  StatementBody draw_statement();
+  StatementBody expect_statement();
+  StatementBody claim_statement();
+  // later_statements.cpp
+  StatementBody constraint_statement();
+  StatementBody contact_statement();
+  StatementBody friction_statement();
+  StatementBody event_statement();
+  StatementBody impact_statement();
+  StatementBody sweep_statement();
+  StatementBody independent_statement();
+  StatementBody path_statement();
+  StatementBody field_statement();
+  StatementBody density_statement();
+
+  // parts
+  Rotation rotation();
+  std::vector<ExpressionPtr> bracketed_values(std::size_t count, std::string_view form);
+  void inertia(BodyStatement& body);
+  StartStatement::Item assignment();
+  DrawItem draw_item();
+  void tolerance(ExpectStatement& expect, bool required);
+  ExpectStatement expectation(bool claim);
+  void expect_value(ExpectStatement& expect);
+  void expect_frequencies(ExpectStatement& expect);
+  void expect_event(ExpectStatement& expect);
+  ExpressionPtr clause_formula(std::string_view clause, const ExpressionPtr& already);
+  [[noreturn]] void missing_clause(std::string_view clause, std::string_view statement, std::string_view example);
+  Span statement_span() const;
+
+  /// item {"," item}; after a mistake in one item the others are still read, so that all mistakes are told.
+  template <typename Item>
+  void list(Item item) {
+    bool failed = false;
+    do {
+      try {
+        item();
+        if (!at_end() && !peek().is(",")) expect_end();
+      } catch (const Abandoned&) {
+        failed = true;
+        skip_item();
+      }
+    } while (accept(","));
+    if (failed) throw Abandoned{};
+  }
+  void skip_item();
+};
+
+}  // namespace maupertuis::syntax

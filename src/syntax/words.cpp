@@ -1,0 +1,124 @@
+#include "syntax/words.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace maupertuis::syntax {
+namespace {
+
+using namespace std::string_view_literals;
+
+constexpr std::array kStatementWords = {
+    "system"sv,  "source"sv,     "dimensionless"sv, "param"sv,       "coord"sv,   "let"sv,      "input"sv,
+    "frame"sv,   "point"sv,      "body"sv,          "gravity"sv,     "spring"sv,  "damper"sv,   "torsion"sv,
+    "T"sv,       "V"sv,          "U"sv,             "L"sv,           "D"sv,       "kinetic"sv,  "potential"sv,
+    "generalized_potential"sv,   "lagrangian"sv,    "dissipation"sv, "force"sv,   "torque"sv,   "friction"sv,
+    "constraint"sv, "reaction"sv, "contact"sv,      "impact"sv,      "event"sv,   "start"sv,    "run"sv,
+    "output"sv,  "sweep"sv,      "draw"sv,          "independent"sv, "path"sv,    "field"sv,    "density"sv,
+    "expect"sv,  "claim"sv,
+};
+
+constexpr std::array kClauseWords = {
+    "name"sv,     "at"sv,     "in"sv,       "mass"sv,     "length"sv, "stiffness"sv, "coefficient"sv, "inertia"sv,
+    "rotation"sv, "restitution"sv, "friction"sv, "static"sv, "slip"sv, "normal"sv,   "limit"sv,       "when"sv,
+    "rising"sv,   "falling"sv, "within"sv,  "rel"sv,      "on"sv,     "from"sv,      "to"sv,          "by"sv,
+    "steps"sv,    "cells"sv,  "boundary"sv, "rest"sv,     "angle"sv,  "axis"sv,      "until"sv,       "every"sv,
+    "exactly"sv,  "is"sv,     "not"sv,      "and"sv,      "or"sv,     "else"sv,
+};
+
+constexpr std::array<Function, 31> kFunctions = {{
+    {"sin", 1, 1, true},   {"cos", 1, 1, true},   {"tan", 1, 1, true},   {"sec", 1, 1, true},  {"csc", 1, 1, true},
+    {"cot", 1, 1, true},   {"sinh", 1, 1, true},  {"cosh", 1, 1, true},  {"tanh", 1, 1, true}, {"sech", 1, 1, true},
+    {"asin"},              {"acos"},              {"atan"},              {"atan2", 2, 2},      {"asinh"},
+    {"acosh"},             {"atanh"},             {"exp"},               {"log"},              {"sqrt"},
+    {"abs"},               {"sign"},              {"min", 2, 0},         {"max", 2, 0},        {"step"},
+    {"piecewise", 1, 0},   {"dot", 1, 2},         {"cross", 2, 2},       {"norm"},             {"multiplier"},
+    {"reaction"},
+}};
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 35> kGreek = {{
+    {"alpha", "α"}, {"beta", "β"},   {"gamma", "γ"}, {"delta", "δ"},   {"epsilon", "ε"}, {"zeta", "ζ"},
+    {"eta", "η"},   {"theta", "θ"},  {"iota", "ι"},  {"kappa", "κ"},   {"lambda", "λ"},  {"mu", "μ"},
+    {"nu", "ν"},    {"xi", "ξ"},     {"omicron", "ο"}, {"pi", "π"},    {"rho", "ρ"},     {"sigma", "σ"},
+    {"tau", "τ"},   {"upsilon", "υ"}, {"phi", "φ"},  {"chi", "χ"},     {"psi", "ψ"},     {"omega", "ω"},
+    {"Gamma", "Γ"}, {"Delta", "Δ"},  {"Theta", "Θ"}, {"Lambda", "Λ"},  {"Xi", "Ξ"},      {"Pi", "Π"},
+    {"Sigma", "Σ"}, {"Upsilon", "Υ"}, {"Phi", "Φ"},  {"Psi", "Ψ"},     {"Omega", "Ω"},
+}};
+
+bool all_digits(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+// The letter that `stem` names or is; empty when it is neither.
+std::string_view greek_letter(std::string_view stem) {
+  for (const auto& [word, letter] : kGreek) {
+    if (stem == word || stem == letter) return letter;
+  }
+  return {};
+}
+
+constexpr std::array<std::pair<std::string_view, EnergyStatement::Which>, 10> kEnergies = {{
+    {"T", EnergyStatement::Which::T},
+    {"V", EnergyStatement::Which::V},
+    {"U", EnergyStatement::Which::U},
+    {"L", EnergyStatement::Which::L},
+    {"D", EnergyStatement::Which::D},
+    {"kinetic", EnergyStatement::Which::T},
+    {"potential", EnergyStatement::Which::V},
+    {"generalized_potential", EnergyStatement::Which::U},
+    {"lagrangian", EnergyStatement::Which::L},
+    {"dissipation", EnergyStatement::Which::D},
+}};
+
+}  // namespace
+
+std::span<const std::string_view> statement_words() { return kStatementWords; }
+std::span<const std::string_view> clause_words() { return kClauseWords; }
+std::span<const Function> functions() { return kFunctions; }
+
+bool is_statement_word(std::string_view word) {
+  return std::find(kStatementWords.begin(), kStatementWords.end(), word) != kStatementWords.end();
+}
+
+bool is_clause_word(std::string_view word) {
+  return std::find(kClauseWords.begin(), kClauseWords.end(), word) != kClauseWords.end();
+}
+
+const Function* find_function(std::string_view word) {
+  const auto found = std::find_if(kFunctions.begin(), kFunctions.end(), [&](const Function& f) { return f.name == word; });
+  return found == kFunctions.end() ? nullptr : &*found;
+}
+
+std::optional<EnergyStatement::Which> energy_of(std::string_view word) {
+  for (const auto& [name, which] : kEnergies) {
+    if (name == word) return which;
+  }
+  return std::nullopt;
+}
+
+std::string_view long_energy_name(EnergyStatement::Which which) {
+  const auto long_names_begin = kEnergies.begin() + 5;
+  return (long_names_begin + static_cast<int>(which))->first;
+}
+
+bool is_short_energy(std::string_view word) { return word.size() == 1 && energy_of(word).has_value(); }
+
+bool is_predefined(std::string_view word) { return word == "t" || word == "pi" || word == "O"; }
+
+std::vector<std::string> as_strings(std::span<const std::string_view> words) { return {words.begin(), words.end()}; }
+
+std::string normalize_name(std::string name) {
+  // The stem is what stands before the digits or the underscore: theta|1, theta|_rod. Greek letters are not ASCII,
+  // so the scan stops at the first ASCII digit or underscore only.
+  const std::size_t stem_length = std::min(name.find_first_of("0123456789_"), name.size());
+  const std::string_view letter = greek_letter(std::string_view(name).substr(0, stem_length));
+  if (letter.empty()) return name;
+  std::string_view tail = std::string_view(name).substr(stem_length);
+  if (!tail.empty() && tail.front() != '_' && !all_digits(tail.substr(0, std::min(tail.find('_'), tail.size())))) return name;
+  if (tail.empty() && letter == "π") return "pi";
+  if (tail.size() > 1 && tail.front() == '_' && all_digits(tail.substr(1))) tail.remove_prefix(1);
+  return std::string(letter) + std::string(tail);
+}
+
+}  // namespace maupertuis::syntax
