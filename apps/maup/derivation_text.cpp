@@ -9,7 +9,7 @@
 namespace maupertuis::app {
 namespace {
 
-/// Prose inside \\text{}: the preamble of latex_document declares the letters and signs that it may hold.
+/// Prose inside \text{}: the preamble of latex_document declares the letters and signs that it may hold.
 std::string latex_text(const std::string& text) {
   std::string out;
   for (const char c : text) {

@@ -4,6 +4,7 @@
 
 #include <maupertuis/kernel.hpp>
 #include <maupertuis/print.hpp>
+#include <maupertuis/simulation.hpp>
 
 namespace maupertuis::app {
 namespace {
@@ -63,21 +64,12 @@ std::string emit_equations(const EquationsOfMotion& equations) {
          to_dag_text(equations.residual);
 }
 
-/// The kernel of the residual: `let`s and inputs are put in, the parameters stay.
 Kernel kernel_of(const EquationsOfMotion& equations) {
   const MechanicalSystem& system = *equations.system;
-  ExprMap definitions, inputs;
-  for (const Definition& d : system.definitions)
-    if (d.symbol && d.value) definitions[d.symbol] = d.value;
-  for (const Input& u : system.inputs) {
-    Expr value = u.formula;
-    for (int order = 0; order <= 2; ++order, value = total_time_derivative(value))
-      inputs[system.context->symbol(u.name, Role::Input, order)] = value;
-  }
   KernelSource source;
   for (const Coordinate& c : system.coordinates) source.coordinates.push_back(c.q);
   for (const Parameter& p : system.parameters) source.parameters.push_back(p.symbol);
-  source.residual = substitute(substitute(equations.residual, definitions), inputs);
+  source.residual = in_terms_of_motion(system, equations.residual);
   return build_kernel(source);
 }
 
@@ -85,19 +77,15 @@ Kernel kernel_of(const EquationsOfMotion& equations) {
 std::string emit_jet(const Model& model, const EquationsOfMotion& equations) {
   constexpr int order = 20;
   const MechanicalSystem& system = model.system;
-  Bindings parameters;
+  const Bindings parameters = parameter_bindings(system);
   std::vector<double> values;
-  for (const Parameter& p : system.parameters) {
-    parameters[p.symbol] = p.si_value;
-    values.push_back(p.si_value);
-  }
-  for (const Definition& d : system.definitions)
-    if (d.symbol && d.value) parameters[d.symbol] = evaluate(d.value, parameters);
+  for (const Parameter& p : system.parameters) values.push_back(p.si_value);
+  const auto value_of = [&](Expr e) { return evaluate(in_terms_of_motion(system, {&e, 1})[0], parameters); };
   const std::size_t n = system.coordinates.size();
   std::vector<double> q(n, 0.0), v(n, 0.0);
   for (const StartValue& start : model.experiment.start)
-    (start.order == 0 ? q : v)[start.coordinate] = evaluate(start.value, parameters);
-  const double t = model.experiment.start_time ? evaluate(model.experiment.start_time, parameters) : 0;
+    (start.order == 0 ? q : v)[start.coordinate] = value_of(start.value);
+  const double t = model.experiment.start_time ? value_of(model.experiment.start_time) : 0;
 
   const Kernel kernel = kernel_of(equations);
   KernelWorkspace work(kernel, order);

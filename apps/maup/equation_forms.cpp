@@ -40,7 +40,7 @@ EquationForm standard_form(Study& study, bool as_residual) {
   EquationForm form;
   for (std::size_t i = 0; i < derivation.equations.size(); ++i) {
     const std::string& name = equations.system->coordinates[i].name;
-    EquationLine line{name, {}, {}, {}, derivation.equations[i].value};
+    EquationLine line{name, {}, {}, {}, derivation.equations[i]};
     if (as_residual) {
       line.left_plain = fmt::format("R[{}]", name);
       line.left_latex = fmt::format("R_{{{}}}", symbol_to_latex(equations.system->coordinates[i].q));
@@ -67,7 +67,7 @@ EquationForm solved_form(Study& study) {
       return {};
     }
     form.lines.push_back({name, symbol_to_plain(left), symbol_to_latex(left), to_mathml(left, equations.order),
-                          solved.right.value});
+                          solved.right});
     append(form.intermediates, solved.right.intermediates);
     solution[left] = without_intermediates(solved.right.value, solved.right.intermediates);
   }
@@ -88,7 +88,7 @@ EquationForm matrix_form(Study& study) {
     append(form.intermediates, shown.intermediates);
     const Expr whole = without_intermediates(shown.value, shown.intermediates);
     line.coordinate = coordinates[i].name;
-    line.right = shown.value;
+    line.right = std::move(shown);
     form.lines.push_back(std::move(line));
     return whole;
   };

@@ -13,7 +13,7 @@ enum class Notation { Plain, Latex, Mathml };
 struct EquationLine {
   std::string coordinate;  // whose equation it is; empty for a line of M
   std::string left_plain, left_latex, left_mathml;
-  Expr right;
+  ReadableForm right;
 };
 
 /// The equations of motion in one of their forms, each proved equal to the residual by the zero test before it is

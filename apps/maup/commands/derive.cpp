@@ -85,7 +85,7 @@ std::string in_notation(const DeriveOptions& options, Notation notation, Study& 
   if (options.steps) lines = step_lines(*study.derivation(true), notation, order);
   for (const EquationLine& line : form.lines) lines.push_back(to_text(line, notation, order));
   for (const Intermediate& i : form.intermediates)
-    lines.push_back(to_text({{}, to_plain(i.symbol, order), to_latex(i.symbol, order), to_mathml(i.symbol, order), i.value},
+    lines.push_back(to_text({{}, to_plain(i.symbol, order), to_latex(i.symbol, order), to_mathml(i.symbol, order), {i.value, {}}},
                             notation, order));
   if (notation == Notation::Latex) return latex_document(lines);
   if (notation == Notation::Mathml) return mathml_document(lines);
