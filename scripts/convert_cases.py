@@ -104,6 +104,10 @@ def digits(value):
     return "0" if value == 0 or abs(value) < D("1e-15") else case_math.number(text.rstrip("0") if "." in text and "e" not in text.lower() else text)
 
 
+def quoted(text):
+    return '"' + text.replace('"', "'") + '"'
+
+
 class Model:
     def __init__(self, case):
         self.case, self.statement, self.id = case, case["statement"], case["id"]
@@ -119,8 +123,8 @@ class Model:
 
     def write(self, suffix="", start=None):
         self.add(f"# Generated from tests/problems/cases/{self.id}.json by scripts/convert_cases.py: do not edit.")
-        self.add(f"system {self.id}{suffix} \"{self.case['title']}\"")
-        self.add(f"source \"{self.case['source']['where']}\"")
+        self.add(f"system {self.id}{suffix} {quoted(self.case['title'])}")
+        self.add(f"source {quoted(self.case['source']['where'])}")
         if self.dimensionless:
             self.add("dimensionless")
         self.add()
