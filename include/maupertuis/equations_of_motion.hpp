@@ -33,6 +33,11 @@ std::optional<EquationsOfMotion> euler_lagrange(std::shared_ptr<const Mechanical
 ExprMatrix mass_matrix(const EquationsOfMotion& equations);
 ExprVector bias(const EquationsOfMotion& equations);
 
+/// q̈ = −M⁻¹ h as a shared DAG, by Gaussian elimination with division: O(n³) nodes, nothing expanded. For proofs (dI/dt
+/// along the motion); runs solve with numbers instead. Nothing where M is singular as a function.
+std::optional<ExprVector> accelerations(const ExprVector& residual, const MechanicalSystem& system);
+std::optional<ExprVector> accelerations(const EquationsOfMotion& equations);
+
 /// Masses before g before lengths before rates, then as declared; coordinates as declared.
 ReadingOrder reading_order(const MechanicalSystem& system);
 

@@ -1,8 +1,10 @@
 #pragma once
 #include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/evaluate.hpp>
 #include <maupertuis/trajectory.hpp>
 
 #include <atomic>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,18 +14,29 @@ namespace maupertuis {
 struct SimulationOptions {
   double tolerance = 0;                     // relative, per step; 0: rounding level of double
   std::optional<double> duration;           // s, instead of the model's run; negative: backwards in time
-  std::vector<double> at;                   // s: times at which the state is wanted exactly
+  std::vector<double> at;                   // s: times at which the state is wanted exactly; beyond the run: it goes on to them
   std::optional<double> output_every;       // s
   std::size_t maximum_steps = 100'000'000;
   const std::atomic<bool>* interrupt = nullptr;  // set by Ctrl-C
+  std::function<void(double)> progress;     // told the fraction of the run that is done, now and then
 };
 
 struct State {
   double t = 0;
-  std::vector<double> q, v, a;              // [n] each
+  std::vector<double> q, v, a;              // [n] each; a is NaN where the accelerations have no value
 };
 
-enum class Ending { Finished, UntilReached, UntilNotReached, Interrupted, SingularMass, Overflow, StepUnderflow, Sliding, TooManySteps };
+enum class Ending {
+  Finished,
+  UntilReached,     // the condition of `run until` was met
+  UntilNotReached,  // … was not met within the time given
+  Interrupted,
+  SingularMass,
+  Overflow,
+  StepUnderflow,
+  Sliding,
+  TooManySteps,
+};
 
 struct SimulationStatistics {
   std::size_t steps = 0;
@@ -39,16 +52,29 @@ struct SimulationStatistics {
 struct SimulationResult {
   Trajectory trajectory;
   State start, final;
-  std::vector<State> at;                    // in the order asked
+  std::vector<State> at;                    // in the order asked; q is empty where the run ended before
   SimulationStatistics statistics;
   Ending ending = Ending::Finished;
   std::string reason;                       // one sentence for every ending but Finished
   bool ok() const { return ending == Ending::Finished || ending == Ending::UntilReached; }
 };
 
+/// Expressions of a model in coordinates, parameters and t alone: lets and inputs put in, with their time derivatives.
+std::vector<Expr> in_terms_of_motion(const MechanicalSystem& system, std::span<const Expr> expressions);
+
+/// The values of all parameters, as symbols bound to SI values; with t = 0 where `time` is not given.
+Bindings parameter_bindings(const MechanicalSystem& system);
+
+/// Extra functions of q, q', q'', t whose values are wanted at the times `at`.
+struct Probe {
+  std::vector<Expr> expressions;
+  std::vector<std::vector<double>> values;  // [at][expressions], filled by the run
+};
+
 /// Runs the experiment of a model. What was computed is kept whatever the ending.
 /// Nothing is returned when the start or the run length is missing or wrong (then `diagnostics` says so).
 std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMotion& equations,
-                                         const SimulationOptions& options, Diagnostics& diagnostics);
+                                         const SimulationOptions& options, Diagnostics& diagnostics,
+                                         Probe* probe = nullptr);
 
 }  // namespace maupertuis

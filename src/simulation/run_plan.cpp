@@ -1,0 +1,114 @@
+#include "simulation/run_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace maupertuis {
+namespace {
+
+constexpr int default_rows = 1000;         // intervals of the output when the model names none
+constexpr double most_rows = 20'000'000;   // beyond it the trajectory would not fit in memory
+
+class Planner {
+ public:
+  Planner(const Model& model, const SimulationOptions& options, Diagnostics& diagnostics)
+      : model_(model), options_(options), diagnostics_(diagnostics), bindings_(parameter_bindings(model.system)) {}
+
+  std::optional<RunPlan> plan() {
+    plan_.begin = value_of(model_.experiment.start_time, 0);
+    if (!plan_start() || !plan_length() || !plan_output()) return std::nullopt;
+    return plan_;
+  }
+
+ private:
+  double value_of(Expr e, double otherwise) const {
+    if (!e) return otherwise;
+    return evaluate(in_terms_of_motion(model_.system, {&e, 1}).front(), bindings_);
+  }
+
+  bool plan_start() {
+    const std::size_t n = model_.system.coordinates.size();
+    plan_.q.assign(n, 0);
+    plan_.v.assign(n, 0);
+    for (const StartValue& start : model_.experiment.start) {
+      const double value = value_of(start.value, 0);
+      if (!std::isfinite(value)) {
+        diagnostics_.error("E0702", start.span, "this start value is not a finite number",
+                           "A motion can only begin from a definite state.",
+                           "Look for a division by zero or a root of a negative number in it.");
+        return false;
+      }
+      (start.order == 0 ? plan_.q : plan_.v)[start.coordinate] = value;
+    }
+    return true;
+  }
+
+  bool plan_length() {
+    const Experiment& experiment = model_.experiment;
+    std::optional<double> duration = options_.duration;
+    plan_.until = static_cast<bool>(experiment.until) && !duration;
+    if (!duration && experiment.until) duration = value_of(experiment.within, 0);
+    if (!duration && experiment.duration) duration = value_of(experiment.duration, 0);
+    if (!duration && options_.at.empty()) {
+      diagnostics_.error("E0701", std::nullopt, "this model does not say how long to run",
+                         "A motion goes on for ever; a run needs an end.",
+                         "Add a line such as `run 10 s` to the model, or give --duration 10s.");
+      return false;
+    }
+    plan_.end = plan_.begin + duration.value_or(0);
+    for (const double t : options_.at) extend_to(t);
+    if (!std::isfinite(plan_.end) || !std::isfinite(plan_.begin)) {
+      diagnostics_.error("E0703", std::nullopt, "the length of the run is not a finite number",
+                         "A run begins and ends at definite times.", "Give a duration such as 10 s.");
+      return false;
+    }
+    return true;
+  }
+
+  /// A run goes on to the last time that is asked for. Times on the other side of the start are refused by `simulate`.
+  void extend_to(double t) {
+    const bool backwards = plan_.end < plan_.begin || (plan_.end == plan_.begin && t < plan_.begin);
+    plan_.end = backwards ? std::min(plan_.end, t) : std::max(plan_.end, t);
+  }
+
+  bool plan_output() {
+    const double length = std::abs(plan_.end - plan_.begin);
+    double every = options_.output_every ? *options_.output_every : value_of(model_.experiment.output_every, 0);
+    if (every == 0) every = length / default_rows;
+    if (!(every > 0) && length > 0) {
+      diagnostics_.error("E0704", std::nullopt, "the output interval is not a positive time",
+                         "Rows of the trajectory follow one another in time.", "Write a line such as `output every 10 ms`.");
+      return false;
+    }
+    if (length > 0 && length / every > most_rows) {
+      diagnostics_.error("E0705", std::nullopt,
+                         fmt::format("this run would write {:.3g} rows", length / every),
+                         "The whole trajectory is kept in memory until it is written.",
+                         "Choose a longer `output every`, or a shorter run.");
+      return false;
+    }
+    const double direction = plan_.end < plan_.begin ? -1 : 1;
+    const auto rows = length > 0 ? static_cast<std::size_t>(std::floor(length / every * (1 + 1e-12))) : 0;
+    for (std::size_t i = 0; i <= rows; ++i) plan_.output_times.push_back(plan_.begin + direction * every * static_cast<double>(i));
+    double& last = plan_.output_times.back();
+    if (std::abs(last - plan_.end) <= 1e-9 * every) last = plan_.end;
+    else plan_.output_times.push_back(plan_.end);
+    return true;
+  }
+
+  const Model& model_;
+  const SimulationOptions& options_;
+  Diagnostics& diagnostics_;
+  Bindings bindings_;
+  RunPlan plan_;
+};
+
+}  // namespace
+
+std::optional<RunPlan> plan_run(const Model& model, const SimulationOptions& options, Diagnostics& diagnostics) {
+  return Planner(model, options, diagnostics).plan();
+}
+
+}  // namespace maupertuis

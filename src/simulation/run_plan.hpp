@@ -1,0 +1,20 @@
+#pragma once
+#include <maupertuis/simulation.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace maupertuis {
+
+/// Everything about a run that is known before its first step: numbers only, checked.
+struct RunPlan {
+  double begin = 0, end = 0;        // s; end < begin: backwards
+  bool until = false;               // stop at the event; not meeting it by `end` is a failure
+  std::vector<double> q, v;         // [n]
+  std::vector<double> output_times; // in the order of the run, begin and end included
+};
+
+/// Nothing, with a diagnostic, when the run has no length or a number is not finite.
+std::optional<RunPlan> plan_run(const Model& model, const SimulationOptions& options, Diagnostics& diagnostics);
+
+}  // namespace maupertuis

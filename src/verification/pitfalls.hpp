@@ -1,0 +1,17 @@
+#pragma once
+#include <maupertuis/equations_of_motion.hpp>
+
+#include <string>
+#include <vector>
+
+namespace maupertuis {
+
+/// Equations that a known mistake would give, to compare a false claim with.
+struct Pitfall {
+  std::string sentence;   // "the term ∂T/∂q is missing: T depends on the coordinates as well"
+  ExprVector residual;    // [n] may be free of q̈
+};
+
+std::vector<Pitfall> pitfalls(const EquationsOfMotion& equations);
+
+}  // namespace maupertuis

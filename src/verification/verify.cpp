@@ -1,0 +1,289 @@
+#include <maupertuis/print.hpp>
+#include <maupertuis/verification.hpp>
+
+#include "verification/along_motion.hpp"
+#include "verification/claims.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace maupertuis {
+namespace {
+
+using Kind = syntax::ExpectStatement::Kind;
+
+/// Values of the expectations that need a run, gathered so that each direction of time is run once.
+struct Request {
+  std::size_t expectation;
+  double time;
+  bool scan;   // wanted all along the run, not at one time
+};
+
+class Verifier {
+ public:
+  Verifier(const Model& model, const EquationsOfMotion& equations, const SourceText& source,
+           const SimulationOptions& options, Diagnostics& diagnostics)
+      : model_(model), equations_(equations), source_(source), options_(options), diagnostics_(diagnostics),
+        bindings_(parameter_bindings(model.system)) {}
+
+  Verification carry_out() {
+    for (const Expectation& e : model_.experiment.expectations) {
+      results_.push_back(blank(e));
+      decide(e, results_.back());
+    }
+    run_requests();
+    Verification verification;
+    verification.results = std::move(results_);
+    return verification;
+  }
+
+ private:
+  ExpectationResult blank(const Expectation& e) const {
+    ExpectationResult result;
+    result.line = source_.locate(e.span.begin).line;
+    result.text = e.text;
+    result.claim = e.claim;
+    return result;
+  }
+
+  const AlongMotion& along() {
+    if (!along_) along_.emplace(equations_);
+    return *along_;
+  }
+
+  double number(Expr e, double otherwise = 0) const {
+    if (!e) return otherwise;
+    return evaluate(in_terms_of_motion(model_.system, {&e, 1}).front(), bindings_);
+  }
+
+  void decide(const Expectation& e, ExpectationResult& result) {
+    const std::size_t index = results_.size() - 1;
+    switch (e.kind) {
+      case Kind::ValueAt: requests_.push_back({index, number(e.time), false}); return;
+      case Kind::Value: requests_.push_back({index, number(model_.experiment.start_time), false}); return;
+      case Kind::EnergyConserved: energy_ = true; energy_lines_.push_back(index); return;
+      case Kind::Conserved:
+        if (e.tolerance) requests_.push_back({index, 0, true});
+        else decide_conserved(e, result);
+        return;
+      case Kind::NotConserved: decide_not_conserved(e, result); return;
+      case Kind::Equation: decide_equation(e, result); return;
+      case Kind::Freedoms: decide_freedoms(e, result); return;
+      case Kind::Error:
+        result.expected = "error " + e.name;
+        result.actual = "no error";
+        result.message = "The model has no mistake that gives this error.";
+        return;
+      case Kind::ConstraintClass: case Kind::Integral: case Kind::Frequencies: case Kind::EventAt:
+        result.message = "Not supported yet: this kind of expectation waits for a later version.";
+        return;
+    }
+  }
+
+  static std::string ground(const ZeroTest& test) {
+    if (test.error_bound < 1) return fmt::format("proved at {} random points, error bound {:.1e}", test.points, test.error_bound);
+    return test.reason.empty() ? fmt::format("vanishes at {} random points", test.points) : test.reason;
+  }
+
+  bool needs_solvable(ExpectationResult& result) {
+    if (along().solvable()) return true;
+    result.message = "The mass matrix is singular: the equations do not determine the accelerations.";
+    return false;
+  }
+
+  void decide_conserved(const Expectation& e, ExpectationResult& result) {
+    if (!needs_solvable(result)) return;
+    const ZeroTest test = zero_test(along().rate(e.subject));
+    result.expected = "d/dt = 0 along the motion";
+    result.passed = test.verdict == Verdict::Zero;
+    result.actual = result.passed ? result.expected : "d/dt is not 0";
+    result.message = result.passed ? ground(test) : failed_identity(test, "Its time derivative along the motion", e.subject);
+  }
+
+  void decide_not_conserved(const Expectation& e, ExpectationResult& result) {
+    if (!needs_solvable(result)) return;
+    const ZeroTest test = zero_test(along().rate(e.subject));
+    result.expected = "d/dt is not 0 along the motion";
+    result.passed = test.verdict == Verdict::Nonzero;
+    result.actual = result.passed ? result.expected : test.verdict == Verdict::Zero ? "d/dt = 0: it is conserved" : "undecided";
+    result.message = result.passed ? "a state was found at which it changes" : test.reason;
+  }
+
+  void decide_equation(const Expectation& e, ExpectationResult& result) {
+    if (!needs_solvable(result)) return;
+    const Expr difference = e.subject - e.subject_right;
+    const ZeroTest test = along().vanishes(difference);
+    result.expected = "follows from the derived equations";
+    result.passed = test.verdict == Verdict::Zero;
+    if (result.passed) {
+      result.actual = result.expected;
+      result.message = ground(test);
+      return;
+    }
+    result.actual = test.verdict == Verdict::Undecided ? "undecided" : "does not follow";
+    result.message = failed_identity(test, "Along the motion, left side − right side", difference);
+    if (test.verdict == Verdict::Nonzero) result.pitfall = diagnose_claim(difference, equations_);
+  }
+
+  /// Names the difference where it is short enough to be read.
+  std::string failed_identity(const ZeroTest& test, const std::string& what, Expr e) {
+    if (test.verdict == Verdict::Undecided) return "Undecided: " + test.reason;
+    const bool is_rate = what.front() == 'I';
+    const ReadableForm form = readable(is_rate ? along().rate(e) : along().put_in(e), equations_.order);
+    const std::string text = to_plain(form.value, equations_.order);
+    constexpr std::size_t longest = 300;
+    if (form.intermediates.empty() && text.size() <= longest) return fmt::format("{} is {}, not 0.", what, text);
+    return fmt::format("{} is not 0: at a sample state it is {:.6g}.", what, test.witness_value);
+  }
+
+  void decide_freedoms(const Expectation& e, ExpectationResult& result) {
+    const double expected = number(e.value);
+    result.expected = fmt::format("{:g}", expected);
+    result.actual = std::to_string(model_.system.freedoms());
+    result.passed = expected == static_cast<double>(model_.system.freedoms());
+    if (!result.passed) result.message = "The number of freedoms is the number of independent coordinates.";
+  }
+
+  // ------------------------------------------------------------------------------------------------ runs
+
+  void run_requests() {
+    if (requests_.empty() && !energy_) return;
+    const double begin = number(model_.experiment.start_time);
+    run_direction([&](const Request& r) { return r.scan || r.time >= begin; }, true);
+    run_direction([&](const Request& r) { return !r.scan && r.time < begin; }, false);
+  }
+
+  template <class Chosen>
+  void run_direction(Chosen chosen, bool forwards) {
+    std::vector<Request> wanted;
+    std::copy_if(requests_.begin(), requests_.end(), std::back_inserter(wanted), chosen);
+    const bool whole_run = forwards && (energy_ || std::any_of(wanted.begin(), wanted.end(), [](const Request& r) { return r.scan; }));
+    if (wanted.empty() && !whole_run) return;
+
+    SimulationOptions options = options_;
+    if (!whole_run) options.duration = 0.0;      // as far as the times asked for
+    Probe probe;
+    for (const Request& r : wanted) probe.expressions.push_back(model_.experiment.expectations[r.expectation].subject);
+    options.at = times_of(wanted, whole_run);
+    const auto run = simulate(model_, equations_, options, diagnostics_, &probe);
+    for (std::size_t i = 0; i < wanted.size(); ++i) judge(wanted[i], i, options.at, run, probe);
+    if (forwards) judge_energy(run);
+  }
+
+  /// The times asked for; and 200 along the run where a quantity is watched all along it.
+  std::vector<double> times_of(const std::vector<Request>& wanted, bool whole_run) const {
+    std::vector<double> times;
+    bool scan = false;
+    for (const Request& r : wanted) {
+      scan |= r.scan;
+      if (!r.scan) times.push_back(r.time);
+    }
+    if (!scan || !whole_run) return times;
+    const double begin = number(model_.experiment.start_time);
+    const double length = options_.duration ? *options_.duration : number(model_.experiment.duration, number(model_.experiment.within));
+    constexpr int samples = 200;
+    for (int k = 0; k <= samples; ++k) times.push_back(begin + length * k / samples);
+    return times;
+  }
+
+  void judge(const Request& request, std::size_t column, const std::vector<double>& times,
+             const std::optional<SimulationResult>& run, const Probe& probe) {
+    ExpectationResult& result = results_[request.expectation];
+    if (!run) {
+      result.message = "The run could not start.";
+      return;
+    }
+    if (request.scan) return judge_along_run(request, column, *run, probe);
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      if (times[k] != request.time) continue;
+      if (probe.values[k].empty()) result.message = "The run ended before: " + run->reason + ".";
+      else judge_value(request, probe.values[k][column], result);
+      return;
+    }
+  }
+
+  /// |actual − expected| ≤ tolerance, absolute or relative to |expected|. Without a tolerance the digits as written count.
+  void judge_value(const Request& request, double actual, ExpectationResult& result) {
+    const Expectation& e = model_.experiment.expectations[request.expectation];
+    const double expected = number(e.value);
+    const double tolerance = !e.tolerance ? 1e-9 * std::abs(expected) : number(e.tolerance) * (e.relative ? std::abs(expected) : 1.0);
+    const std::string unit = e.display_unit.empty() ? "" : " " + e.display_unit;
+    result.actual = fmt::format("{:.17g}{}", actual / e.display_factor, unit);
+    result.expected = fmt::format("{:.17g}{}", expected / e.display_factor, unit);
+    result.tolerance = e.relative ? fmt::format("rel {:g}", number(e.tolerance)) : fmt::format("± {:g}{}", tolerance / e.display_factor, unit);
+    const double error = std::abs(actual - expected);
+    result.passed = error <= tolerance;
+    result.message = fmt::format("off by {:.2g}{}", error / e.display_factor, unit);
+  }
+
+  void judge_along_run(const Request& request, std::size_t column, const SimulationResult& run, const Probe& probe) {
+    ExpectationResult& result = results_[request.expectation];
+    const Expectation& e = model_.experiment.expectations[request.expectation];
+    double low = std::numeric_limits<double>::infinity(), high = -low, largest = 0;
+    for (const auto& row : probe.values) {
+      if (row.empty()) {
+        result.message = "The run ended before: " + run.reason + ".";
+        return;
+      }
+      low = std::min(low, row[column]);
+      high = std::max(high, row[column]);
+      largest = std::max(largest, std::abs(row[column]));
+    }
+    const double drift = largest > 0 ? (high - low) / largest : 0;
+    report_drift(result, drift, number(e.tolerance));
+  }
+
+  static void report_drift(ExpectationResult& result, double drift, double tolerance) {
+    result.expected = "constant along the run";
+    result.actual = fmt::format("drift {:.3g}", drift);
+    result.tolerance = fmt::format("rel {:g}", tolerance);
+    result.passed = drift <= tolerance;
+    if (!result.passed) result.message = "It changes more than the tolerance along the run.";
+  }
+
+  void judge_energy(const std::optional<SimulationResult>& run) {
+    for (const std::size_t index : energy_lines_) {
+      ExpectationResult& result = results_[index];
+      const Expectation& e = model_.experiment.expectations[index];
+      if (!run) {
+        result.message = "The run could not start.";
+      } else if (!conserved_quantities(equations_).energy_conserved) {
+        result.expected = "constant along the run";
+        result.actual = "not conserved";
+        result.message = "Forces, friction or an explicit time in L change the energy of this system.";
+      } else if (!run->ok()) {
+        result.message = "The run ended before: " + run->reason + ".";
+      } else {
+        report_drift(result, run->statistics.energy_drift, e.tolerance ? number(e.tolerance) : 1e-12);
+      }
+    }
+  }
+
+  const Model& model_;
+  const EquationsOfMotion& equations_;
+  const SourceText& source_;
+  const SimulationOptions& options_;
+  Diagnostics& diagnostics_;
+  Bindings bindings_;
+  std::optional<AlongMotion> along_;
+  std::vector<ExpectationResult> results_;
+  std::vector<Request> requests_;
+  std::vector<std::size_t> energy_lines_;
+  bool energy_ = false;
+};
+
+}  // namespace
+
+std::size_t Verification::passed() const {
+  return static_cast<std::size_t>(std::count_if(results.begin(), results.end(), [](const auto& r) { return r.passed; }));
+}
+
+Verification verify(const Model& model, const EquationsOfMotion& equations, const SourceText& source,
+                    const SimulationOptions& options, Diagnostics& diagnostics) {
+  return Verifier(model, equations, source, options, diagnostics).carry_out();
+}
+
+}  // namespace maupertuis
