@@ -87,6 +87,7 @@ class Lexer {
       const CodePoint c = *decode(text_, position_);
       if (c.value == '\n') {
         line_start_ = true;
+        text_on_line_ = false;
       } else if (c.value == '#') {
         read_comment();
         continue;
@@ -290,8 +291,8 @@ class Lexer {
   void read_string(std::string_view closing) {
     const std::size_t begin = position_;
     const bool attached = line_continues() && list_.tokens.back().span.end == begin;
-    const bool typed_as_prime = attached && list_.tokens.back().kind != Token::Kind::String;
-    const bool inner_quote = attached && !typed_as_prime;
+    const bool inner_quote = attached && text_on_line_;
+    const bool typed_as_prime = attached && !inner_quote;
     const std::size_t opening = closing == "\"" ? 1 : 3;
     const std::size_t line_end = std::min(text_.find('\n', begin), text_.size());
     const std::size_t end = text_.find(closing, begin + opening);
@@ -306,6 +307,7 @@ class Lexer {
       return emit_unreadable(begin);
     }
     position_ = end + closing.size();
+    text_on_line_ = true;
     emit(Token::Kind::String, std::string(text_.substr(begin + opening, end - begin - opening)), begin);
   }
 
@@ -439,6 +441,7 @@ class Lexer {
   std::size_t messages_ = 0;
   int nested_roots_ = 0;
   bool line_start_ = true;
+  bool text_on_line_ = false;  // a text in quotes stands before, on the same line
 };
 
 bool is_control(unsigned char c) { return (c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7F; }
