@@ -1,0 +1,170 @@
+#include "../model_text.hpp"
+
+#include <maupertuis/simulation.hpp>
+
+#include <cmath>
+
+using namespace maupertuis;
+
+namespace {
+
+SimulationResult run(const ModelText& m, SimulationOptions options = {}) {
+  Diagnostics diagnostics;
+  auto result = simulate(m.model, m.equations, options, diagnostics);
+  INFO(render(diagnostics, m.source));
+  REQUIRE(result);
+  return std::move(*result);
+}
+
+const char* const oscillator = R"(system oscillator
+param m = 2 kg, k = 8 N/m
+coord x : length
+T = 1/2 m x'^2
+V = 1/2 k x^2
+start x = 1 m
+run 10 s
+)";
+
+}  // namespace
+
+TEST_CASE("the harmonic oscillator follows its closed form, forwards and backwards") {
+  const ModelText m(oscillator);
+  SimulationOptions options;
+  options.at = {10, 0.3, 4};
+  const SimulationResult forwards = run(m, options);
+  REQUIRE(forwards.ok());
+  for (const State& s : forwards.at) {
+    CHECK(s.q[0] == doctest::Approx(std::cos(2 * s.t)).epsilon(1e-14));
+    CHECK(s.a[0] == doctest::Approx(-4 * std::cos(2 * s.t)).epsilon(1e-13));
+  }
+  CHECK(forwards.at[1].t == 0.3);
+  CHECK(forwards.final.t == 10);
+  CHECK(forwards.statistics.energy_drift < 1e-15);
+
+  options = {};
+  options.duration = -7;
+  const SimulationResult backwards = run(m, options);
+  CHECK(backwards.final.t == -7);
+  CHECK(std::abs(backwards.final.q[0] - std::cos(14.0)) < 1e-14);
+  CHECK(backwards.trajectory.times.front() == 0);
+  CHECK(backwards.trajectory.times.back() == -7);
+}
+
+TEST_CASE("the power balance closes with a drive and friction") {
+  const ModelText m(R"(system driven
+param m = 1 kg, k = 4 N/m, c = 0.3 N s/m, F = 2 N, w = 3 rad/s
+coord x : length
+input u : [N] = F sin(w t)
+T = 1/2 m x'^2
+V = 1/2 k x^2
+D = 1/2 c x'^2
+force x = u
+run 20 s
+)");
+  const SimulationResult r = run(m);
+  REQUIRE(r.ok());
+  CHECK(r.statistics.energy_drift < 1e-14);
+  // Steady response of the driven oscillator: amplitude F / |k − m w² + i c w| after the transient has died (e^{−0.15 t}).
+  SimulationOptions late;
+  late.duration = 300;
+  late.at = {299, 299.3, 299.7};
+  const double amplitude = 2 / std::hypot(4 - 9, 0.9), phase = std::atan2(0.9, -5.0);
+  for (const State& s : run(m, late).at) CHECK(std::abs(s.q[0] - amplitude * std::sin(3 * s.t - phase)) < 1e-12);
+}
+
+TEST_CASE("run until ends at the located root, or says that it was not met") {
+  const ModelText m(R"(system fall
+param m = 1 kg, g = 10 m/s^2, h = 5 m
+coord y : length
+T = 1/2 m y'^2
+V = m g y
+start y = h
+run until y = 0 within 60 s
+)");
+  const SimulationResult r = run(m);
+  CHECK(r.ending == Ending::UntilReached);
+  CHECK(std::abs(r.final.t - 1.0) < 1e-15);
+  CHECK(std::abs(r.final.v[0] + 10.0) < 1e-14);
+  CHECK(r.trajectory.times.back() == r.final.t);
+
+  const ModelText never(R"(system rest
+param m = 1 kg
+coord y : length
+T = 1/2 m y'^2
+start y = 1 m
+run until y = 0 within 2 s
+)");
+  const SimulationResult missed = run(never);
+  CHECK(missed.ending == Ending::UntilNotReached);
+  CHECK_FALSE(missed.ok());
+  CHECK(missed.reason.find("within 2 s") != std::string::npos);
+}
+
+TEST_CASE("a collision ends the run with its reason, and what was computed is kept") {
+  const ModelText m(R"(system plunge
+param m = 1 kg, k = 1 N m^2
+coord r : length
+T = 1/2 m r'^2
+V = -k/r
+start r = 1 m
+run 10 s
+)");
+  const SimulationResult r = run(m);
+  CHECK_FALSE(r.ok());
+  CHECK(r.reason != "");
+  // Free fall from rest at r = 1 with m = k = 1 reaches the centre at t = π/(2√2).
+  CHECK(std::abs(r.final.t - std::acos(-1.0) / (2 * std::sqrt(2.0))) < 1e-6);
+  CHECK(r.trajectory.rows() > 100);
+}
+
+TEST_CASE("requests: out of order, beyond the run, not on its way") {
+  const ModelText m(oscillator);
+  SimulationOptions options;
+  options.at = {12};
+  CHECK(run(m, options).final.t == 12);
+  options.at = {-1};
+  Diagnostics diagnostics;
+  CHECK_FALSE(simulate(m.model, m.equations, options, diagnostics));
+  CHECK(diagnostics.items().front().code == "E0706");
+}
+
+TEST_CASE("a model without a run says so") {
+  const ModelText m("system s\nparam m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n");
+  Diagnostics diagnostics;
+  CHECK_FALSE(simulate(m.model, m.equations, {}, diagnostics));
+  REQUIRE(diagnostics.items().size() == 1);
+  CHECK(diagnostics.items().front().code == "E0701");
+}
+
+TEST_CASE("the output grid begins and ends with the run") {
+  const ModelText m(std::string(oscillator) + "output every 300 ms\n");
+  const SimulationResult r = run(m);
+  CHECK(r.trajectory.times.front() == 0);
+  CHECK(r.trajectory.times[1] == doctest::Approx(0.3));
+  CHECK(r.trajectory.times.back() == 10);
+  CHECK(r.trajectory.rows() == 35);
+  CHECK(r.trajectory.columns.size() == 3);
+  for (std::size_t i = 0; i < r.trajectory.rows(); ++i) CHECK(std::abs(r.trajectory.at(i, 2) - 4.0) < 1e-13);  // ½ k
+}
+
+TEST_CASE("the double pendulum of the reference values") {
+  const ModelText m(R"(system double_pendulum
+param m1 = 1 kg, m2 = 1 kg, l1 = 1 m, l2 = 1 m, g = 9.81 m/s^2
+coord θ1, θ2 : angle
+point A mass m1 at l1 (sin θ1, -cos θ1)
+point B mass m2 at A + l2 (sin θ2, -cos θ2)
+gravity (0, -g)
+start θ1 = 2.0 rad, θ2 = 2.5 rad
+)");
+  SimulationOptions options;
+  options.at = {1, 2, 5, 10};
+  const SimulationResult r = run(m, options);
+  REQUIRE(r.ok());
+  const double expected[4][2] = {{-0.08386042040500097, -1.313096450613925},
+                                 {-2.922032235907541, 0.11738517220261478},
+                                 {8.191078459414503, 0.0150169205862499},
+                                 {-0.753128874295, 1.627933082054}};
+  const double tolerance[4] = {1e-13, 1e-13, 5e-12, 1e-6};
+  for (int k = 0; k < 4; ++k)
+    for (std::size_t i = 0; i < 2; ++i) CHECK(std::abs(r.at[static_cast<std::size_t>(k)].q[i] - expected[k][i]) <= tolerance[k]);
+}

@@ -1,0 +1,112 @@
+#include "../model_text.hpp"
+
+#include <maupertuis/verification.hpp>
+
+using namespace maupertuis;
+
+namespace {
+
+Verification verify_text(const std::string& text) {
+  const ModelText m(text);
+  Diagnostics diagnostics;
+  return verify(m.model, m.equations, m.source, {}, diagnostics);
+}
+
+const std::string pendulum = R"(system pendulum
+param m = 1 kg, l = 2 m, g = 9.81 m/s^2
+coord θ : angle
+T = 1/2 m l^2 θ'^2
+V = -m g l cos θ
+start θ = 60 deg
+run 10 s
+)";
+
+const std::string spherical = R"(system spherical
+param m = 1 kg, l = 1 m, g = 9.81 m/s^2
+coord θ, φ : angle
+point P mass m at l (sin θ cos φ, sin θ sin φ, -cos θ)
+gravity (0, 0, -g)
+start θ = 1 rad, φ' = 2 rad/s
+run 5 s
+)";
+
+ExpectationResult only(const std::string& text) {
+  const Verification v = verify_text(text);
+  REQUIRE(v.results.size() == 1);
+  return v.results.front();
+}
+
+void check_pitfall(const std::string& claim_text, const std::string& word) {
+  const ExpectationResult r = only(claim_text);
+  INFO(r.message, " | ", r.pitfall);
+  CHECK_FALSE(r.passed);
+  CHECK(r.pitfall.find(word) != std::string::npos);
+}
+
+}  // namespace
+
+TEST_CASE("true statements pass") {
+  const Verification v = verify_text(spherical + R"(
+expect freedoms = 2
+expect energy conserved rel 1e-13
+expect conserved m l^2 sin^2 θ φ'
+expect conserved m l^2 sin^2 θ φ' rel 1e-13
+expect θ' not conserved
+expect equation θ'' = sin θ cos θ φ'^2 - g/l sin θ
+expect θ at 0 s = 1 rad ± 1e-15
+claim sin θ φ'' = -2 cos θ θ' φ'
+)");
+  CHECK(v.results.size() == 8);
+  for (const ExpectationResult& r : v.results) {
+    INFO(r.text, ": ", r.message, " ", r.actual);
+    CHECK(r.passed);
+  }
+}
+
+TEST_CASE("false statements fail, each with what came out") {
+  for (const char* line : {"expect freedoms = 3", "expect conserved θ'", "expect conserved θ' rel 1e-3", "expect θ at 1 s = 0 rad ± 1e-3",
+                           "expect m l^2 sin^2 θ φ' not conserved", "expect equation θ'' = 0"}) {
+    const ExpectationResult r = only(spherical + line + "\n");
+    INFO(line, ": ", r.message, " ", r.actual);
+    CHECK_FALSE(r.passed);
+    CHECK_FALSE(r.actual.empty());
+  }
+}
+
+TEST_CASE("a value with friction is not an energy conserved") {
+  CHECK_FALSE(only(pendulum + "D = 1/2 (1 [N m s]) θ'^2\nexpect energy conserved rel 1\n").passed);
+}
+
+TEST_CASE("a false claim is recognised by the mistake that it follows from") {
+  check_pitfall(spherical + "claim θ'' = -g/l sin θ\n", "∂T/∂q");
+  check_pitfall(spherical + "claim φ'' = 0\n", "total time derivative");
+  check_pitfall(pendulum + "claim θ'' = g/l sin θ\n", "sign");
+  check_pitfall(pendulum + "claim θ'' = -g/(2 l) sin θ\n", "½");
+  check_pitfall(pendulum + "D = 1/2 (1 [N m s]) θ'^2\nclaim θ'' = -g/l sin θ\n", "left out");
+  check_pitfall(pendulum + "D = 1/2 (1 [N m s]) θ'^2\nclaim m l^2 θ'' = -m g l sin θ + (1 [N m s]) θ'\n", "wrong sign");
+  check_pitfall(pendulum + "claim l θ = g sin θ\n", "(l θ)²");
+  check_pitfall(spherical + "claim θ'' = -sin θ cos θ φ'^2 - g/l sin θ\n", "conserved momentum");
+}
+
+TEST_CASE("a run that ends early fails the lines that need it, with the reason") {
+  const ExpectationResult r = only(R"(system plunge
+param m = 1 kg, k = 1 N m^2
+coord r : length
+T = 1/2 m r'^2
+V = -k/r
+start r = 1 m
+run 10 s
+expect r at 5 s = 1 m ± 1
+)");
+  CHECK_FALSE(r.passed);
+  CHECK(r.message.find("ended before") != std::string::npos);
+}
+
+TEST_CASE("an expected error is compared with what was found") {
+  const SourceText source("test.lag", "system s\ncoord x : length\nexpect error E0401\n");
+  Diagnostics parsed, found;
+  const auto tree = syntax::parse(source, parsed);
+  found.error("E0401", Span{0, 1}, "made up");
+  CHECK(verify_errors(tree, source, found)->results.front().passed);
+  CHECK_FALSE(verify_errors(tree, source, {})->results.front().passed);
+}
