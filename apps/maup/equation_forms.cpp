@@ -143,6 +143,13 @@ EquationForm equation_form(Form form, Study& study) {
   return {};
 }
 
+EquationLine definition_line(const Intermediate& intermediate, const ReadingOrder& order) {
+  const Expr name = intermediate.symbol;
+  EquationLine line{{}, to_plain(name, order), to_latex(name, order), to_mathml(name, order), {}};
+  line.right.value = intermediate.value;
+  return line;
+}
+
 std::string to_text(const EquationLine& line, Notation notation, const ReadingOrder& order) {
   const bool residual = line.left_plain.empty();
   switch (notation) {

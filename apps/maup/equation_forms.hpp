@@ -24,6 +24,9 @@ struct EquationForm {
 };
 EquationForm equation_form(Form form, Study& study);
 
+/// c1 = value
+EquationLine definition_line(const Intermediate& intermediate, const ReadingOrder& order);
+
 /// `left = right`, with nothing around it.
 std::string to_text(const EquationLine& line, Notation notation, const ReadingOrder& order);
 

@@ -84,9 +84,7 @@ std::string in_notation(const DeriveOptions& options, Notation notation, Study& 
   std::vector<std::string> lines;
   if (options.steps) lines = step_lines(*study.derivation(true), notation, order);
   for (const EquationLine& line : form.lines) lines.push_back(to_text(line, notation, order));
-  for (const Intermediate& i : form.intermediates)
-    lines.push_back(to_text({{}, to_plain(i.symbol, order), to_latex(i.symbol, order), to_mathml(i.symbol, order), {i.value, {}}},
-                            notation, order));
+  for (const Intermediate& i : form.intermediates) lines.push_back(to_text(definition_line(i, order), notation, order));
   if (notation == Notation::Latex) return latex_document(lines);
   if (notation == Notation::Mathml) return mathml_document(lines);
   return fmt::format("{}\n", fmt::join(lines, "\n"));

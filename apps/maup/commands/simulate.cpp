@@ -61,6 +61,7 @@ Json document_of(const SimulationResult& result, const MechanicalSystem& system)
 }
 
 std::string state_text(const State& state, const MechanicalSystem& system) {
+  if (state.q.empty()) return fmt::format("t = {} s\n  not reached\n", exact(state.t));
   std::string out = fmt::format("t = {} s\n", exact(state.t));
   for (std::size_t i = 0; i < state.q.size(); ++i) {
     const Coordinate& c = system.coordinates[i];

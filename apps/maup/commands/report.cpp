@@ -1,0 +1,81 @@
+#include "outcome.hpp"
+#include "run_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <maupertuis/report.hpp>
+#include <maupertuis/verification.hpp>
+
+namespace maupertuis::app {
+namespace {
+
+struct ReportOptions {
+  ModelOptions model;
+  RunOptions run;
+  std::string output;  // empty: NAME.html of the system
+  bool without_run = false;
+};
+
+/// The page; a model that cannot run (no start, no `run`) still gets its equations.
+std::string page_of(Study& study, const std::optional<SimulationResult>& result, const SimulationOptions& settings) {
+  ReportParts parts;
+  Verification verification;
+  if (result) parts.simulation = &*result;
+  if (result && !study.model()->experiment.expectations.empty()) {
+    verification = verify(*study.model(), *study.equations(), study.source(), settings, study.diagnostics());
+    parts.verification = &verification;
+  }
+  return report_html(compose_report(*study.model(), study.source(), *study.equations(), *study.derivation(true),
+                                    *study.certificate(), study.diagnostics(), parts));
+}
+
+ExitCode report(const ReportOptions& options, Console& console) {
+  Study study(options.model.path, options.model.overrides);
+  Json document = json_document("report");
+  const bool readable_model = !study.wrong();
+  const SimulationOptions settings = simulation_options(options.run, study.diagnostics());
+  if (readable_model && study.wrong()) {
+    finish(console, study, document);
+    return ExitCode::Usage;
+  }
+  if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);
+  study.derivation(true);  // before the certificate, so that it vouches for the readable form too
+  if (!study.certificate()) return finish(console, study, document);
+
+  std::optional<SimulationResult> result;
+  if (!options.without_run) result = run_model(study, settings, console);
+  if (study.wrong()) return finish(console, study, document);
+  const std::string page = page_of(study, result, settings);
+  const std::string path = options.output.empty() ? study.model()->system.name + ".html" : options.output;
+  if (path == "-") console.print(page);
+  else write_result(path, page, study.diagnostics());
+  document["file"] = path;
+  document["bytes"] = page.size();
+  const bool written = !study.wrong();
+  if (written && path != "-" && !console.json())
+    console.say(fmt::format("Wrote {} ({} kB). Open it in any browser.\n", path, (page.size() + 999) / 1000));
+  if (result && !result->ok() && !console.json()) console.say(fmt::format("The run ended early: {}\n", result->reason));
+  finish(console, study, document);
+  if (!written) return ExitCode::RunFailed;
+  return result ? exit_code(*result) : ExitCode::Fine;
+}
+
+}  // namespace
+
+void add_report(CommandLine& line) {
+  const auto options = std::make_shared<ReportOptions>();
+  CLI::App& command = line.add("report", "The whole study on one page that needs no network",
+                               "  maup report pendulum.lag               # writes pendulum.html\n"
+                               "  maup report pendulum.lag -o study.html\n"
+                               "  maup report pendulum.lag --set l=2m --duration 60s -o long.html\n",
+                               [options](Console& console) { return report(*options, console); });
+  add_model_options(command, options->model);
+  add_span_options(command, options->run);
+  add_method_options(command, options->run);
+  command.add_option("-o,--output", options->output, "The page (default: SYSTEM.html), or - for standard output")
+      ->type_name("FILE.html");
+  command.add_flag("--no-run", options->without_run, "Equations alone: no motion, no pictures");
+}
+
+}  // namespace maupertuis::app
