@@ -42,6 +42,7 @@ Expr expand(Expr e, std::size_t term_budget = 20000);
 struct ReadingOrder {
   std::vector<Expr> parameters;   // masses before g before lengths before rates, then as declared
   std::vector<Expr> coordinates;  // order 0, as declared
+  Expr own;                       // the coordinate whose equation this is: its terms stand first; empty: none
 };
 
 /// A named intermediate that stands for a large sub-expression in a readable form.
@@ -53,6 +54,7 @@ struct Intermediate {
 struct ReadableForm {
   Expr value;                               // as it is to be printed: printers keep its structure, they only order it
   std::vector<Intermediate> intermediates;  // in order of use; empty for most systems
+  Expr own;                                 // of an equation: the coordinate of its row, for ReadingOrder::own
 };
 
 struct ReadableOptions {

@@ -1,0 +1,275 @@
+#include "symbolic/print/layout.hpp"
+#include "symbolic/print/reading_rank.hpp"
+
+#include <maupertuis/require.hpp>
+
+#include <algorithm>
+
+namespace maupertuis::print {
+namespace {
+
+Layout combined(Shape shape, std::vector<Layout> parts) {
+  Layout layout;
+  layout.shape = shape;
+  layout.parts = std::move(parts);
+  return layout;
+}
+
+Layout number_text(std::string text) {
+  Layout layout;
+  layout.text = std::move(text);
+  return layout;
+}
+
+bool is_odd(Kind kind) {
+  return kind == Kind::Sin || kind == Kind::Tan || kind == Kind::Sinh || kind == Kind::Tanh || kind == Kind::Atan ||
+         kind == Kind::Asin || kind == Kind::Asinh || kind == Kind::Atanh;
+}
+bool is_even(Kind kind) { return kind == Kind::Cos || kind == Kind::Cosh || kind == Kind::Abs; }
+
+class Builder {
+ public:
+  explicit Builder(const ReadingOrder& order) : ranks_(order) {}
+
+  Layout build(Expr e) const {
+    switch (e.kind()) {
+      case Kind::Number: return number(e.number());
+      case Kind::Pi: return combined(Shape::Pi, {});
+      case Kind::Symbol: {
+        Layout layout = combined(Shape::Symbol, {});
+        layout.symbol = e;
+        return layout;
+      }
+      case Kind::Sum: return sum(e, false);
+      case Kind::Product: case Kind::Power: return product(e);
+      case Kind::TimeDerivative: return combined(Shape::Derivative, {build(e[0])});
+      case Kind::Less: case Kind::LessEqual: return with_function(Shape::Comparison, e);
+      case Kind::And: case Kind::Or: return with_function(Shape::Logic, e);
+      case Kind::Piecewise: return with_function(Shape::Cases, e);
+      default: return function(e, {});
+    }
+  }
+
+ private:
+  static Layout number(const Rational& value) {
+    Layout layout = lay_out_number(abs(value));
+    layout.negative = value.sign() < 0;
+    return layout;
+  }
+
+  Layout with_function(Shape shape, Expr e) const {
+    Layout layout = combined(shape, {});
+    layout.function = e.kind();
+    for (std::size_t i = 0; i < e.size(); ++i) layout.parts.push_back(build(e[i]));
+    return layout;
+  }
+
+  /// A sum under a sum with coefficient 1 is no structure that a reader can see.
+  static void flatten(Expr sum, std::vector<Expr>& terms) {
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      if (sum[i].is(Kind::Sum)) flatten(sum[i], terms);
+      else terms.push_back(sum[i]);
+    }
+  }
+
+  Layout sum(Expr e, bool is_angle) const {
+    std::vector<Expr> terms;
+    flatten(e, terms);
+    std::vector<std::pair<Rank, Layout>> ordered;
+    for (const Expr& term : terms)
+      ordered.emplace_back(is_angle ? ranks_.angle_term(term) : ranks_.term(term), build(term));
+    std::stable_sort(ordered.begin(), ordered.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    // a − b, not −b + a: the first positive term leads, except before accelerations, whose order means something.
+    const bool equation = !is_angle && ordered.front().first.front() == 0;
+    const auto positive = std::find_if(ordered.begin(), ordered.end(), [](const auto& t) { return !t.second.negative; });
+    if (!equation && positive != ordered.end()) std::rotate(ordered.begin(), positive, positive + 1);
+    Layout layout = combined(Shape::Sum, {});
+    for (auto& [rank, part] : ordered) {
+      layout.minus.push_back(part.negative);
+      part.negative = false;
+      layout.parts.push_back(std::move(part));
+    }
+    return layout;
+  }
+
+  /// The argument of an even or odd function, turned so that its first coordinate is positive: θ1 − θ2.
+  Layout oriented_argument(Expr argument, bool& turned) const {
+    turned = false;
+    if (!argument.is(Kind::Sum)) return build(argument);
+    Expr first = argument[0];
+    for (std::size_t i = 1; i < argument.size(); ++i)
+      if (ranks_.angle_term(argument[i]) < ranks_.angle_term(first)) first = argument[i];
+    turned = split_coefficient(first).coefficient.sign() < 0;
+    if (!turned) return sum(argument, true);
+    std::vector<Expr> terms;
+    for (std::size_t i = 0; i < argument.size(); ++i) terms.push_back(-argument[i]);
+    return sum(argument.context().sum(terms), true);
+  }
+
+  Layout function(Expr e, std::string exponent) const {
+    Layout layout = combined(Shape::Apply, {});
+    layout.function = e.kind();
+    layout.text = std::move(exponent);
+    if (!is_odd(e.kind()) && !is_even(e.kind())) {
+      for (std::size_t i = 0; i < e.size(); ++i) layout.parts.push_back(build(e[i]));
+      return layout;
+    }
+    bool turned = false;
+    layout.parts.push_back(oriented_argument(e[0], turned));
+    const bool odd_power = layout.text.empty() || (layout.text.back() - '0') % 2 == 1;
+    layout.negative = turned && is_odd(e.kind()) && odd_power;
+    return layout;
+  }
+
+  /// base^exponent for an exponent that is not negative.
+  Layout power(Expr base, Expr exponent) const {
+    const Rational* e = exponent.number_or_null();
+    if (e && e->is_one()) return build(base);
+    if (e && *e == Rational(1, 2)) return combined(Shape::Root, {build(base)});
+    if (e && e->is_integer() && is_circular(base.kind())) return function(base, e->to_string());
+    Layout exponent_layout = e ? lay_out_number(*e) : build(exponent);
+    return combined(Shape::Power, {build(base), std::move(exponent_layout)});
+  }
+
+  Layout product(Expr e) const {
+    std::vector<Expr> above, below;
+    Rational coefficient = 1;
+    gather(e, above, below, coefficient);
+    merge_symbolic_powers(above);
+    const auto by_rank = [&](const Expr& a, const Expr& b) { return ranks_.factor(a) < ranks_.factor(b); };
+    std::stable_sort(above.begin(), above.end(), by_rank);
+    std::stable_sort(below.begin(), below.end(), by_rank);
+    bool negative = coefficient.sign() < 0;
+    // Above a fraction bar 1/2 m/r becomes m/(2 r); without one the number stands in front.
+    Rational over = abs(coefficient), under = 1;
+    const bool exact_parts = lay_out_number(over).shape == Shape::Quotient;
+    if (!below.empty() && exact_parts) {
+      over = *Rational::parse(abs(coefficient).numerator_string());
+      under = *Rational::parse(abs(coefficient).denominator_string());
+    }
+    Layout numerator = row(over, above, negative);
+    if (below.empty()) return signed_layout(std::move(numerator), negative);
+    Layout denominator = row(under, below, negative);
+    return signed_layout(combined(Shape::Quotient, {std::move(numerator), std::move(denominator)}), negative);
+  }
+
+  static Layout signed_layout(Layout layout, bool negative) {
+    layout.negative = negative;
+    return layout;
+  }
+
+  /// A number and factors side by side; signs that factors bring along go to `negative`.
+  Layout row(const Rational& number, const std::vector<Expr>& factors, bool& negative) const {
+    std::vector<Layout> parts;
+    if (!number.is_one() || factors.empty()) parts.push_back(lay_out_number(number));
+    for (const Expr& f : factors) {
+      const bool power_node = f.is(Kind::Power);
+      parts.push_back(power_node ? power(f[0], f[1]) : build(f));
+      negative ^= parts.back().negative;
+      parts.back().negative = false;
+    }
+    if (parts.size() == 1) return std::move(parts.front());
+    return combined(Shape::Product, std::move(parts));
+  }
+
+  static void gather(Expr e, std::vector<Expr>& above, std::vector<Expr>& below, Rational& coefficient) {
+    if (e.is(Kind::Product)) {
+      for (std::size_t i = 0; i < e.size(); ++i) gather(e[i], above, below, coefficient);
+    } else if (e.is_number()) {
+      coefficient *= e.number();
+    } else if (const PowerOf p = split_power(e); p.exponent.sign() < 0) {
+      below.push_back(pow(p.base, -p.exponent));
+    } else {
+      above.push_back(e);
+    }
+  }
+
+  /// x^2 · x^s reads x^(s + 2).
+  static void merge_symbolic_powers(std::vector<Expr>& factors) {
+    for (Expr& f : factors) {
+      if (!f || !f.is(Kind::Power) || f[1].is_number()) continue;
+      for (Expr& other : factors) {
+        if (!other || other == f || split_power(other).base != f[0]) continue;
+        f = f.context().power(f[0], f[1] + split_power(other).exponent);
+        other = Expr();
+      }
+    }
+    std::erase_if(factors, [](const Expr& f) { return !f; });
+  }
+
+  ReadingRanks ranks_;
+};
+
+bool decimal_digits(std::string denominator, int& digits) {
+  // The denominator is 2^a 5^b: how many places the decimal has. Only short ones matter.
+  if (denominator.size() > 12) return false;
+  long long d = std::stoll(denominator);
+  int twos = 0, fives = 0;
+  for (; d % 2 == 0; d /= 2) ++twos;
+  for (; d % 5 == 0; d /= 5) ++fives;
+  digits = std::max(twos, fives);
+  return d == 1 && digits <= 9;
+}
+
+std::string decimal_text(const Rational& value, int digits) {
+  std::string text = (value * maupertuis::pow(Rational(10), digits)).numerator_string();
+  if (text.size() <= static_cast<std::size_t>(digits)) text.insert(0, static_cast<std::size_t>(digits) + 1 - text.size(), '0');
+  text.insert(text.size() - static_cast<std::size_t>(digits), ".");
+  return text;
+}
+
+}  // namespace
+
+Layout lay_out_number(const Rational& value) {
+  if (value.is_integer()) return number_text(value.numerator_string());
+  // Halves, thirds, fifths are fractions to a reader; 981/100 is 9.81.
+  const std::string denominator = value.denominator_string();
+  int digits = 0;
+  const bool decimal = decimal_digits(denominator, digits);
+  const bool plain_fraction = denominator.size() == 1 || (denominator.size() == 2 && denominator.back() != '0' && denominator != "25");
+  if (decimal && !plain_fraction) return number_text(decimal_text(value, digits));
+  return combined(Shape::Quotient, {number_text(value.numerator_string()), number_text(denominator)});
+}
+
+bool is_circular(Kind kind) {
+  switch (kind) {
+    case Kind::Sin: case Kind::Cos: case Kind::Tan: case Kind::Sinh: case Kind::Cosh: case Kind::Tanh: return true;
+    default: return false;
+  }
+}
+
+std::string function_name(Kind kind) {
+  switch (kind) {
+    case Kind::Sin: return "sin";
+    case Kind::Cos: return "cos";
+    case Kind::Tan: return "tan";
+    case Kind::Asin: return "asin";
+    case Kind::Acos: return "acos";
+    case Kind::Atan: return "atan";
+    case Kind::Sinh: return "sinh";
+    case Kind::Cosh: return "cosh";
+    case Kind::Tanh: return "tanh";
+    case Kind::Asinh: return "asinh";
+    case Kind::Acosh: return "acosh";
+    case Kind::Atanh: return "atanh";
+    case Kind::Exp: return "exp";
+    case Kind::Log: return "log";
+    case Kind::Abs: return "abs";
+    case Kind::Sign: return "sign";
+    case Kind::Step: return "step";
+    case Kind::Atan2: return "atan2";
+    case Kind::Min: return "min";
+    case Kind::Max: return "max";
+    default: return {};
+  }
+}
+
+ReadingOrder row_order(const ReadingOrder& order, const ReadableForm& form) {
+  ReadingOrder with_own = order;
+  with_own.own = form.own;
+  return with_own;
+}
+
+Layout lay_out(Expr e, const ReadingOrder& order) { return Builder(order).build(e); }
+
+}  // namespace maupertuis::print

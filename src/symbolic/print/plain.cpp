@@ -1,0 +1,114 @@
+#include <maupertuis/print.hpp>
+
+#include "symbolic/print/layout.hpp"
+
+/// Plain text in the model language: what is printed can be pasted back into a model.
+namespace maupertuis {
+namespace print {
+namespace {
+
+enum Level { SumLevel, ProductLevel, PowerLevel, AtomLevel };
+
+Level level(const Layout& l) {
+  switch (l.shape) {
+    case Shape::Sum: case Shape::Comparison: case Shape::Logic: return SumLevel;
+    case Shape::Product: case Shape::Quotient: return ProductLevel;
+    case Shape::Power: return PowerLevel;
+    case Shape::Apply: return l.text.empty() ? AtomLevel : PowerLevel;
+    default: return AtomLevel;
+  }
+}
+
+std::string write(const Layout& l);
+
+std::string write_at(const Layout& l, Level least) {
+  std::string text = write(l);
+  return level(l) < least || l.negative ? "(" + text + ")" : text;
+}
+
+std::string join(const std::vector<Layout>& parts, const char* separator, Level least) {
+  std::string text;
+  for (std::size_t i = 0; i < parts.size(); ++i) text += (i ? separator : "") + write_at(parts[i], least);
+  return text;
+}
+
+std::string write_sum(const Layout& l) {
+  std::string text;
+  for (std::size_t i = 0; i < l.parts.size(); ++i) {
+    if (i == 0) text += l.minus[i] ? "-" : "";
+    else text += l.minus[i] ? " - " : " + ";
+    text += write_at(l.parts[i], ProductLevel);
+  }
+  return text;
+}
+
+/// Factors side by side. A fraction of numbers leads: 1/2 m; anything else with a slash gets brackets.
+std::string write_product(const Layout& l) {
+  std::string text;
+  for (std::size_t i = 0; i < l.parts.size(); ++i) {
+    const Layout& part = l.parts[i];
+    const bool leading_fraction = i == 0 && part.shape == Shape::Quotient && part.parts[0].shape == Shape::Number;
+    const bool quantity_after_number = i > 0 && part.shape == Shape::Symbol && part.symbol.role() == Role::Constant;
+    if (i) text += ' ';
+    if (quantity_after_number) text += "(" + write(part) + ")";
+    else text += leading_fraction ? write(part) : write_at(part, PowerLevel);
+  }
+  return text;
+}
+
+std::string write_quotient(const Layout& l) {
+  return write_at(l.parts[0], ProductLevel) + "/" + write_at(l.parts[1], PowerLevel);
+}
+
+std::string write_apply(const Layout& l) {
+  std::string text = function_name(l.function);
+  if (!l.text.empty()) text += "^" + l.text;
+  const Layout& first = l.parts.front();
+  const bool bare = is_circular(l.function) && !first.negative &&
+                    (first.shape == Shape::Pi || (first.shape == Shape::Symbol && first.symbol.order() == 0 &&
+                                                  first.symbol.role() != Role::Constant));
+  return bare ? text + " " + write(first) : text + "(" + join(l.parts, ", ", SumLevel) + ")";
+}
+
+std::string write_cases(const Layout& l) {
+  std::string text = "piecewise(";
+  for (std::size_t i = 0; i + 1 < l.parts.size(); i += 2)
+    text += write(l.parts[i]) + " : " + write(l.parts[i + 1]) + ", ";
+  return text + "else : " + write(l.parts.back()) + ")";
+}
+
+std::string write_unsigned(const Layout& l) {
+  switch (l.shape) {
+    case Shape::Number: return l.text;
+    case Shape::Symbol: return symbol_to_plain(l.symbol);
+    case Shape::Pi: return "pi";
+    case Shape::Sum: return write_sum(l);
+    case Shape::Product: return write_product(l);
+    case Shape::Quotient: return write_quotient(l);
+    case Shape::Power: return write_at(l.parts[0], AtomLevel) + "^" + write_at(l.parts[1], AtomLevel);
+    case Shape::Root: return "sqrt(" + write(l.parts[0]) + ")";
+    case Shape::Apply: return write_apply(l);
+    case Shape::Derivative: return "dot(" + write(l.parts[0]) + ")";
+    case Shape::Comparison: return join(l.parts, l.function == Kind::Less ? " < " : " <= ", SumLevel);
+    case Shape::Logic: return join(l.parts, l.function == Kind::And ? " and " : " or ", SumLevel);
+    case Shape::Cases: return write_cases(l);
+  }
+  return {};
+}
+
+std::string write(const Layout& l) { return (l.negative ? "-" : "") + write_unsigned(l); }
+
+}  // namespace
+}  // namespace print
+
+std::string to_plain(Expr e, const ReadingOrder& order) { return print::write(print::lay_out(e, order)); }
+
+std::string to_plain(const ReadableForm& form, const ReadingOrder& order) {
+  return to_plain(form.value, print::row_order(order, form));
+}
+
+std::string symbol_to_plain(Expr symbol) {
+  return symbol.name() + std::string(static_cast<std::size_t>(symbol.order()), '\'');
+}
+
+}  // namespace maupertuis

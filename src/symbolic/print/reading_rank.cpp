@@ -1,0 +1,194 @@
+#include "symbolic/print/reading_rank.hpp"
+
+#include <algorithm>
+
+namespace maupertuis::print {
+namespace {
+
+constexpr std::uint32_t unlisted = 1u << 20;
+
+/// What an expression is made of, as far as its place in a line depends on it.
+struct Contents {
+  int highest_order = -1;   // of coordinates: −1 none, 0 positions, 1 velocities, 2 accelerations
+  bool function_of_position = false;
+  bool time = false, input = false;
+  Expr first_parameter;
+};
+
+bool is_function(Kind kind) { return kind >= Kind::Sin; }
+
+void look_into(Expr e, bool inside_function, Contents& contents) {
+  if (e.is_symbol()) {
+    switch (e.role()) {
+      case Role::Coordinate:
+        contents.highest_order = std::max(contents.highest_order, e.order());
+        contents.function_of_position |= inside_function;
+        break;
+      case Role::Time: contents.time = true; break;
+      case Role::Input: contents.input = true; break;
+      default: break;
+    }
+    return;
+  }
+  const bool root = e.is(Kind::Power) && !(e[1].is_number() && e[1].number().is_integer());
+  for (std::size_t i = 0; i < e.size(); ++i) look_into(e[i], inside_function || root || is_function(e.kind()), contents);
+}
+
+Contents contents_of(Expr e) {
+  Contents contents;
+  look_into(e, false, contents);
+  return contents;
+}
+
+std::vector<Expr> factors_of(Expr e) {
+  if (!e.is(Kind::Product)) return {e};
+  std::vector<Expr> factors;
+  for (std::size_t i = 0; i < e.size(); ++i) factors.push_back(e[i]);
+  return factors;
+}
+
+bool is_denominator(Expr factor) {
+  return factor.is(Kind::Power) && factor[1].is_number() && factor[1].number().sign() < 0;
+}
+
+/// Sines, roots and the like as factors, squares counted twice.
+std::uint32_t count_of_functions(Expr term) {
+  std::uint32_t count = 0;
+  for (const Expr& f : factors_of(term)) {
+    const PowerOf power = split_power(f);
+    const auto times = power.exponent.as_integer();
+    if (is_function(power.base.kind())) count += times && *times == 2 ? 2 : 1;
+  }
+  return count;
+}
+
+enum FactorClass : std::uint32_t { Constants, ParameterSums, Circle, Parameters, ParameterFunctions, Times, Inputs,
+                                   Positions, Functions, Velocities, Accelerations };
+
+}  // namespace
+
+ReadingRanks::ReadingRanks(const ReadingOrder& order) {
+  for (const Expr& p : order.parameters) parameters_.emplace(p.id(), static_cast<std::uint32_t>(parameters_.size() + 1));
+  std::uint32_t next = 1;
+  for (const Expr& q : order.coordinates) coordinates_.emplace(q.name(), next++);
+  if (order.own) own_ = order.own.name();
+}
+
+std::uint32_t ReadingRanks::declared_rank(Expr symbol) const {
+  const auto place = coordinates_.find(symbol.name());
+  return place != coordinates_.end() ? place->second : unlisted + symbol.id();
+}
+
+/// The row's own coordinate stands before the others among accelerations and velocities, but not in sin(θ1 − θ2).
+std::uint32_t ReadingRanks::own_first_rank(Expr symbol) const {
+  return symbol.name() == own_ ? 0 : declared_rank(symbol);
+}
+
+std::uint32_t ReadingRanks::symbol_rank(Expr symbol) const {
+  if (symbol.role() == Role::Coordinate) return declared_rank(symbol);
+  const auto place = parameters_.find(symbol.id());
+  return place != parameters_.end() ? place->second : unlisted + symbol.id();
+}
+
+Rank ReadingRanks::factor(Expr factor) const {
+  const Expr base = split_power(factor).base;
+  if (base.is(Kind::Pi)) return {Circle};
+  if (base.is_symbol()) {
+    const std::uint32_t rank = symbol_rank(base);
+    switch (base.role()) {
+      case Role::Constant: return {Constants, rank};
+      case Role::Time: return {Times, rank};
+      case Role::Input: return {Inputs, rank, static_cast<std::uint32_t>(base.order())};
+      case Role::Coordinate:
+        return {base.order() == 0 ? Positions : base.order() == 1 ? Velocities : Accelerations, rank};
+      default: return {Parameters, rank};
+    }
+  }
+  const Contents contents = contents_of(base);
+  const bool sum = base.is(Kind::Sum) && split_power(factor).exponent.is_integer();
+  std::uint32_t place = Functions;
+  if (contents.highest_order == 2) place = Accelerations;
+  else if (contents.highest_order == 1 && sum) place = Velocities;
+  else if (contents.highest_order < 0 && !contents.time && !contents.input) place = sum ? ParameterSums : ParameterFunctions;
+  else if (sum && !contents.function_of_position && !contents.input) place = Positions;
+  Rank rank{place, sum ? 1u : 0u};
+  // Functions of one coordinate follow the order of coordinates, sines before cosines.
+  std::uint32_t first = unlisted, last = 0;
+  for (const Expr& s : symbols_of({&base, 1}))
+    if (s.role() == Role::Coordinate) first = std::min(first, declared_rank(s)), last = std::max(last, declared_rank(s));
+  rank.insert(rank.end(), {first, last, static_cast<std::uint32_t>(base.kind()), base.id()});
+  return rank;
+}
+
+Rank ReadingRanks::rank_of_rest(Expr term) const {
+  const Contents contents = contents_of(term);
+  std::uint32_t place = 1;
+  if (term.is_number()) place = 0;
+  else if (contents.input || (contents.time && contents.highest_order < 0)) place = 4;
+  else if (contents.function_of_position) place = 3;
+  else if (contents.highest_order >= 0) place = 2;
+  Rank rank{place};
+  if (place == 3) rank.push_back(~count_of_functions(term));   // sin θ cos θ before sin θ: inertia before gravity
+  std::vector<Rank> factors;
+  for (const Expr& f : factors_of(term))
+    if (!f.is_number() && !is_denominator(f)) factors.push_back(factor(f));
+  // A sum (m1 + m2) is filed under its first name.
+  std::size_t i = 0;
+  for (const Expr& f : factors_of(term)) {
+    if (f.is_number() || is_denominator(f)) continue;
+    Rank& key = factors[i++];
+    if (f.is(Kind::Sum) && key[0] == ParameterSums) {
+      std::uint32_t first = ~0u;
+      for (const Expr& s : symbols_of({&f, 1})) first = std::min(first, symbol_rank(s));
+      key = {Parameters, first};
+    } else if (const PowerOf power = split_power(f); power.base.is_symbol()) {
+      key.push_back(power.exponent.sign() > 0 ? 0 : 1);
+    }
+  }
+  std::sort(factors.begin(), factors.end());
+  for (const Rank& f : factors) rank.insert(rank.end(), f.begin(), f.end());
+  rank.push_back(term.id());
+  return rank;
+}
+
+Rank ReadingRanks::term(Expr term) const {
+  const Contents contents = contents_of(term);
+  Rank rank;
+  if (contents.highest_order >= 2) {
+    rank = {0};
+    std::uint32_t first = ~0u;
+    for (const Expr& s : symbols_of({&term, 1}))
+      if (s.role() == Role::Coordinate && s.order() >= 2) first = std::min(first, own_first_rank(s));
+    rank.push_back(first);
+  } else if (contents.highest_order == 1) {
+    std::vector<std::uint32_t> linear, repeated;
+    for (const Expr& f : factors_of(term)) {
+      const PowerOf power = split_power(f);
+      if (!power.base.is_symbol() || power.base.role() != Role::Coordinate || power.base.order() != 1) continue;
+      (power.exponent.is_one() ? linear : repeated).push_back(own_first_rank(power.base));
+    }
+    std::sort(linear.begin(), linear.end());
+    const bool square = !repeated.empty() && linear.empty();
+    const std::uint32_t kind = square ? 0 : linear.size() + repeated.size() >= 2 ? 1 : linear.size() == 1 ? 2 : 3;
+    rank = {1, kind};
+    for (const std::uint32_t r : repeated) rank.push_back(r);
+    for (const std::uint32_t r : linear) rank.push_back(r);
+  } else {
+    rank = {2};
+  }
+  const Rank rest = rank_of_rest(term);
+  rank.insert(rank.end(), rest.begin(), rest.end());
+  return rank;
+}
+
+Rank ReadingRanks::angle_term(Expr term) const {
+  std::uint32_t first = ~0u;
+  for (const Expr& s : symbols_of({&term, 1}))
+    if (s.role() == Role::Coordinate) first = std::min(first, declared_rank(s));
+  Rank rank{first, contents_of(term).time ? 0u : 1u};
+  const Rank rest = rank_of_rest(term);
+  rank.insert(rank.end(), rest.begin(), rest.end());
+  return rank;
+}
+
+}  // namespace maupertuis::print

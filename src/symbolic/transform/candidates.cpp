@@ -1,0 +1,273 @@
+#include "symbolic/transform/candidates.hpp"
+
+#include "symbolic/transform/denominators.hpp"
+#include "symbolic/transform/factor.hpp"
+#include "symbolic/transform/power_form.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+namespace maupertuis::terms {
+
+CandidateChooser::CandidateChooser(Context& context, const ReadingOrder& order, std::size_t term_budget)
+    : algebra_(context, term_budget), reader_(algebra_, Trigonometry::ToSums) {
+  for (const Expr& q : order.coordinates) ranks_.emplace(q.id(), ranks_.size());
+  for (const Expr& p : order.parameters) ranks_.emplace(p.id(), ranks_.size());
+}
+
+Polynomial CandidateChooser::read(Expr e) {
+  const Polynomial p = reader_.read(e);
+  prepare_atoms();
+  return p;
+}
+
+/// Arguments of functions and radicands are made readable too. Inner atoms have smaller numbers than outer ones.
+void CandidateChooser::prepare_atoms() {
+  for (; prepared_ < algebra_.atom_count(); ++prepared_) {
+    const Atom atom = algebra_.info(static_cast<AtomId>(prepared_));
+    if (atom.kind == AtomKind::Base) {
+      algebra_.show(static_cast<AtomId>(prepared_), best(atom.arguments.front()));
+    } else if (atom.kind == AtomKind::Function) {
+      std::vector<Expr> arguments;
+      for (const Polynomial& argument : atom.arguments) arguments.push_back(best(argument));
+      Context& context = algebra_.context();
+      const Expr shown = atom.expr.is(Kind::Power) ? context.power(arguments[0], arguments[1])
+                                                   : context.function(atom.expr.kind(), arguments);
+      algebra_.show(static_cast<AtomId>(prepared_), shown);
+    }
+  }
+}
+
+void CandidateChooser::consider(Choice& best, Expr candidate) {
+  const double cost = cost_(candidate);
+  if (!best.value || cost < best.cost - 1e-9) best = {candidate, cost};
+}
+
+Expr CandidateChooser::best(const Polynomial& p) {
+  if (p.empty()) return algebra_.context().number(0);
+  if (p.size() == 1) return best_basis(p);
+  Choice choice;
+  const auto offer_all = [&](const Polynomial& form) {
+    consider(choice, by_functions(form));
+    consider(choice, by_parameters(form));
+    consider(choice, best_basis(form));
+    if (std::any_of(form.begin(), form.end(), [&](const Term& t) { return select(t.monomial, Part::Rate) != 0; }))
+      consider(choice, by_velocities(form));
+  };
+  offer_all(p);
+  const Polynomial combined = over_common_denominators(algebra_, p);
+  if (combined.size() != p.size() || !std::equal(p.begin(), p.end(), combined.begin(), [](const Term& a, const Term& b) {
+        return a.monomial == b.monomial && a.harmonic == b.harmonic && a.coefficient == b.coefficient;
+      }))
+    offer_all(combined);
+  return choice.value;
+}
+
+Expr CandidateChooser::best_terms(const Polynomial& p) {
+  if (p.size() < 2) return best(p);
+  Choice choice;
+  consider(choice, by_functions(p));
+  consider(choice, by_parameters(p));
+  return choice.value;
+}
+
+// ------------------------------------------------------------------------------------------------------- grouping
+
+bool CandidateChooser::is_rate(AtomId atom) const { return part_of(atom) == Part::Rate; }
+
+CandidateChooser::Part CandidateChooser::part_of(AtomId atom) const {
+  const Atom& info = algebra_.info(atom);
+  if (info.kind == AtomKind::Symbol && info.expr.is_symbol()) {
+    const Role role = info.expr.role();
+    if (role == Role::Coordinate) return info.expr.order() > 0 ? Part::Rate : Part::Other;
+    if (role == Role::Parameter || role == Role::Constant || role == Role::Auxiliary) return Part::Parameter;
+    return Part::Other;
+  }
+  return info.kind != AtomKind::Harmonic && !algebra_.context().depends_on_time(info.expr.id()) ? Part::Parameter
+                                                                                                : Part::Other;
+}
+
+MonomialId CandidateChooser::select(MonomialId monomial, Part part) {
+  Monomial selected = algebra_.monomial(monomial);
+  std::erase_if(selected, [&](const Factor& f) { return part_of(f.atom) != part; });
+  return algebra_.intern(selected);
+}
+
+namespace {
+
+std::string key_text(const Polynomial& p) {
+  std::string key;
+  for (const Term& t : p) {
+    key.append(reinterpret_cast<const char*>(&t.monomial), sizeof t.monomial);
+    key.append(reinterpret_cast<const char*>(&t.harmonic), sizeof t.harmonic);
+    key += t.coefficient.to_string() + ';';
+  }
+  return key;
+}
+
+}  // namespace
+
+/// Splits every term into an outer monomial, key_of(term), and the rest; outer monomials with proportional rests share
+/// one summand: factored(Σ outer monomials) · best_basis(rest).
+template <class KeyOf>
+Expr CandidateChooser::grouped(const Polynomial& p, KeyOf key_of) {
+  std::map<MonomialId, Polynomial> rests;
+  for (const Term& t : p) {
+    const MonomialId outer = key_of(t);
+    rests[outer].push_back({algebra_.quotient(t.monomial, outer), t.harmonic, t.coefficient});
+  }
+  struct Group {
+    Polynomial rest;
+    std::vector<Term> outers;
+  };
+  std::vector<Group> groups;
+  std::unordered_map<std::string, std::size_t> places;
+  for (auto& [outer, raw] : rests) {
+    Polynomial rest = algebra_.normalized(std::move(raw));
+    Rational scale = rational_content(rest);
+    if (rest.front().coefficient.sign() < 0) scale = -scale;
+    rest = algebra_.scale(rest, Rational(1) / scale);
+    const auto [place, fresh] = places.try_emplace(key_text(rest), groups.size());
+    if (fresh) groups.push_back({std::move(rest), {}});
+    groups[place->second].outers.push_back({outer, 0, std::move(scale)});
+  }
+  std::vector<Expr> terms;
+  for (Group& group : groups) {
+    const Polynomial outer = algebra_.normalized(std::move(group.outers));
+    terms.push_back((outer.size() == 1 ? flat(outer) : factored(outer)) * best_basis(group.rest));
+  }
+  return algebra_.context().sum(terms);
+}
+
+Expr CandidateChooser::by_parameters(const Polynomial& p) {
+  return grouped(p, [&](const Term& t) { return select(t.monomial, Part::Parameter); });
+}
+
+Expr CandidateChooser::by_functions(const Polynomial& p) {
+  return grouped(p, [&](const Term& t) {
+    Monomial outer = algebra_.monomial(t.monomial);
+    std::erase_if(outer, [&](const Factor& f) { return algebra_.info(f.atom).kind == AtomKind::Harmonic; });
+    return algebra_.intern(outer);
+  });
+}
+
+Expr CandidateChooser::by_velocities(const Polynomial& p) {
+  std::map<MonomialId, Polynomial> coefficients;
+  for (const Term& t : p) {
+    const MonomialId rate = select(t.monomial, Part::Rate);
+    coefficients[rate].push_back({algebra_.quotient(t.monomial, rate), t.harmonic, t.coefficient});
+  }
+  if (coefficients.size() < 2 && coefficients.begin()->first == 0) return flat(p);
+  std::vector<Expr> terms;
+  for (auto& [rate, raw] : coefficients)
+    terms.push_back(best(algebra_.normalized(std::move(raw))) * algebra_.expression(rate, true));
+  return algebra_.context().sum(terms);
+}
+
+// ---------------------------------------------------------------------------------------------------------- bases
+
+Expr CandidateChooser::best_basis(const Polynomial& p) {
+  const bool multiples = has_multiple_angle(algebra_, p, reader_.angle_units());
+  if (p.size() == 1 && !multiples) return flat(p);
+  const std::string key = key_text(p);
+  if (const auto known = known_bases_.find(key); known != known_bases_.end()) return known->second;
+  const Expr value = search_basis(p);
+  known_bases_.emplace(key, value);
+  return value;
+}
+
+/// From the Fourier form downhill: the angle and the choice of Pythagoras that help most, until none helps; and the
+/// forms with every angle as powers, in case that the way there leads over a hill.
+Expr CandidateChooser::search_basis(const Polynomial& p) {
+  constexpr std::size_t largest_searched = 200;
+  Choice choice;
+  const auto offer = [&](const Polynomial& form) {
+    consider(choice, without_content(form));
+    if (form.size() > 1) consider(choice, factored(form));
+  };
+  offer(p);
+  auto angles = candidate_angles(algebra_, p, reader_.angle_units());
+  if (angles.empty() || p.size() > largest_searched) return choice.value;
+  constexpr std::array ways{Eliminate::SineSquared, Eliminate::CosineSquared};
+  for (const Eliminate way : ways) {
+    Polynomial all = p;
+    for (const auto& angle : angles)
+      if (angle.size() == 1 && all.size() <= 4 * largest_searched) all = power_form(algebra_, all, angle, way);
+    offer(all);
+  }
+  Polynomial current = p;
+  double current_cost = cost_(flat(p));
+  for (bool improved = true; improved;) {
+    improved = false;
+    Polynomial next;
+    for (const auto& angle : angles)
+      for (const Eliminate way : ways) {
+        Polynomial form = power_form(algebra_, current, angle, way);
+        const double cost = cost_(flat(form));
+        if (form.size() > 1 || cost < current_cost) offer(form);
+        if (cost < current_cost - 1e-9) {
+          current_cost = cost;
+          next = std::move(form);
+          improved = true;
+        }
+      }
+    if (improved) current = std::move(next);
+  }
+  return choice.value;
+}
+
+// ------------------------------------------------------------------------------------------------------ factoring
+
+int CandidateChooser::reading_sign(const Polynomial& sum) const {
+  constexpr std::size_t late = 1u << 20;
+  std::size_t first = ~std::size_t{0};
+  int sign = 1;
+  for (const Term& t : sum) {
+    std::size_t rank = 4 * late;
+    if (t.monomial == 0 && t.harmonic == 0) rank = 3 * late;
+    for (const Factor& f : algebra_.monomial(t.monomial)) {
+      const Expr e = algebra_.info(f.atom).expr;
+      if (!e.is_symbol() || f.exponent.num < 0) continue;
+      std::size_t symbol_rank = 2 * late + e.id();
+      if (e.role() == Role::Coordinate) {
+        const Expr position = e.context().symbol(e.name(), Role::Coordinate);
+        const auto place = ranks_.find(position.id());
+        symbol_rank = place == ranks_.end() ? late : place->second + 1;
+        if (own_ && position == own_) symbol_rank = 0;
+      } else if (const auto place = ranks_.find(e.id()); place != ranks_.end()) {
+        symbol_rank = late + place->second;
+      }
+      rank = std::min(rank, symbol_rank);
+    }
+    if (rank < first) {
+      first = rank;
+      sign = t.coefficient.sign();
+    }
+  }
+  return sign;
+}
+
+/// Flat, but for the numeric factor: 2 (a + b), so that a coefficient that is multiplied on later meets it.
+Expr CandidateChooser::without_content(const Polynomial& p) {
+  if (p.size() < 2) return flat(p);
+  const Rational content = rational_content(p);
+  return algebra_.context().number(content) * flat(algebra_.scale(p, Rational(1) / content));
+}
+
+Expr CandidateChooser::factored(const Polynomial& p) {
+  Factored parts = factor(algebra_, p);
+  std::vector<Expr> factors{algebra_.expression(parts.monomial, true)};
+  for (Factored::Part& part : parts.parts) {
+    const int sign = reading_sign(part.sum);
+    if (sign < 0) {
+      part.sum = algebra_.scale(part.sum, -1);
+      if (part.multiplicity % 2 != 0) parts.coefficient = -parts.coefficient;
+    }
+    factors.push_back(pow(flat(part.sum), Rational(part.multiplicity)));
+  }
+  factors.push_back(algebra_.context().number(parts.coefficient));
+  return algebra_.context().product(factors);
+}
+
+}  // namespace maupertuis::terms

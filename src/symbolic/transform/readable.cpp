@@ -1,0 +1,80 @@
+#include <maupertuis/transform.hpp>
+
+#include "symbolic/transform/candidates.hpp"
+#include "symbolic/transform/denominators.hpp"
+#include "symbolic/transform/intermediates.hpp"
+
+#include <map>
+
+namespace maupertuis {
+namespace {
+
+using terms::CandidateChooser;
+using terms::MonomialId;
+using terms::Polynomial;
+
+/// Terms by what they hold of velocities and accelerations; every coefficient in its best form.
+Expr collected_by_rates(CandidateChooser& chooser, const Polynomial& p) {
+  terms::TermAlgebra& algebra = chooser.algebra();
+  std::map<MonomialId, Polynomial> groups;
+  for (const terms::Term& t : p) {
+    terms::Monomial rates = algebra.monomial(t.monomial);
+    std::erase_if(rates, [&](const terms::Factor& f) { return !chooser.is_rate(f.atom); });
+    const MonomialId rate = algebra.intern(rates);
+    groups[rate].push_back({algebra.quotient(t.monomial, rate), t.harmonic, t.coefficient});
+  }
+  std::vector<Expr> parts;
+  for (auto& [rate, raw] : groups) {
+    const Polynomial terms = algebra.normalized(std::move(raw));
+    const Expr coefficient = rate == 0 ? chooser.best_terms(terms) : chooser.best(terms);
+    const Expr factor = algebra.expression(rate, true);
+    // Forces stand as terms of their own; a coefficient of a velocity is one factor.
+    if (rate == 0 && coefficient.is(Kind::Sum)) {
+      for (std::size_t i = 0; i < coefficient.size(); ++i) parts.push_back(coefficient[i]);
+    } else {
+      parts.push_back(coefficient * factor);
+    }
+  }
+  return algebra.context().sum(parts);
+}
+
+Expr readable_row(CandidateChooser& chooser, const Polynomial& p) {
+  const Expr plain = collected_by_rates(chooser, p);
+  const Polynomial combined = terms::over_common_denominators(chooser.algebra(), p);
+  const Expr other = collected_by_rates(chooser, combined);
+  return chooser.cost()(other) < chooser.cost()(plain) ? other : plain;
+}
+
+}  // namespace
+
+ReadableForm readable(Expr e, const ReadingOrder& order, const ReadableOptions& options) {
+  const Expr expanded = expand_time_derivatives(e);
+  try {
+    CandidateChooser chooser(e.context(), order, options.term_budget);
+    return {chooser.best(chooser.read(expanded)), {}, {}};
+  } catch (const terms::TooManyTerms&) {
+    return terms::with_intermediates({&expanded, 1}, order).front();
+  }
+}
+
+std::vector<ReadableForm> readable_equations(std::span<const Expr> residuals, const ReadingOrder& order,
+                                             const ReadableOptions& options) {
+  if (residuals.empty()) return {};
+  const std::vector<Expr> expanded = expand_time_derivatives(residuals);
+  const bool rows_are_coordinates = residuals.size() == order.coordinates.size();
+  std::vector<ReadableForm> rows;
+  try {
+    CandidateChooser chooser(residuals.front().context(), order, options.term_budget);
+    for (std::size_t i = 0; i < expanded.size(); ++i) {
+      const Expr own = rows_are_coordinates ? order.coordinates[i] : Expr();
+      chooser.set_own(own);
+      rows.push_back({readable_row(chooser, chooser.read(expanded[i])), {}, own});
+    }
+  } catch (const terms::TooManyTerms&) {
+    rows = terms::with_intermediates(expanded, order);
+    for (std::size_t i = 0; rows_are_coordinates && i < rows.size(); ++i) rows[i].own = order.coordinates[i];
+  }
+  return rows;
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,90 @@
+#include "symbolic/transform/reading_cost.hpp"
+
+namespace maupertuis::terms {
+namespace {
+
+constexpr double name = 1, lone_number = 0.7, whole_factor = 0.4, fraction_factor = 0.6;
+constexpr double plus = 0.9, brackets = 1.3, light_brackets = 0.8;
+constexpr double exponent = 0.4, root = 0.8, other_exponent = 1, below_the_bar = 0.2;
+constexpr double function_of_name = 1.5, function = 1.1, angle = 0.9, multiple_of_angle = 1.6, name_in_angle = 0.5;
+
+double coefficient_cost(const Rational& value) {
+  if (abs(value).is_one()) return 0;
+  return value.is_integer() ? whole_factor : fraction_factor;
+}
+
+/// (m1 + m2) and (r - l0) are taken in at a glance; brackets around products make the eye go back.
+double brackets_around(Expr sum) {
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const Expr rest = split_coefficient(sum[i]).rest;
+    if (!rest.is_symbol() && !rest.is_one()) return brackets;
+  }
+  return light_brackets;
+}
+
+}  // namespace
+
+double ReadingCost::operator()(Expr e) {
+  if (const auto known = known_.find(e.id()); known != known_.end()) return known->second;
+  const double value = compute(e);
+  known_.emplace(e.id(), value);
+  return value;
+}
+
+double ReadingCost::compute(Expr e) {
+  switch (e.kind()) {
+    case Kind::Number: return lone_number;
+    case Kind::Pi: case Kind::Symbol: return name;
+    case Kind::Power: return of_power(e);
+    case Kind::Product: return of_product(e);
+    case Kind::Sin: case Kind::Cos: case Kind::Tan: return of_circular(e);
+    case Kind::Sum: {
+      double total = plus * static_cast<double>(e.size() - 1);
+      for (std::size_t i = 0; i < e.size(); ++i) total += (*this)(e[i]);
+      return total;
+    }
+    default: {
+      double total = name;
+      for (std::size_t i = 0; i < e.size(); ++i) total += (*this)(e[i]);
+      return total;
+    }
+  }
+}
+
+double ReadingCost::of_power(Expr e) {
+  double total = (*this)(e[0]);
+  const Rational* value = e[1].number_or_null();
+  if (!value) return total + (*this)(e[1]);
+  const Rational size = abs(*value);
+  if (value->sign() < 0) total += below_the_bar;
+  if (size.is_one()) return total;
+  const bool is_root = size == Rational(1, 2);
+  if (!is_root && (e[0].is(Kind::Sum) || e[0].is(Kind::Product))) total += brackets;
+  return total + (is_root ? root : size.is_integer() ? exponent : other_exponent);
+}
+
+double ReadingCost::of_product(Expr e) {
+  double total = 0;
+  for (std::size_t i = 0; i < e.size(); ++i) {
+    if (e[i].is_number()) total += coefficient_cost(e[i].number());
+    else total += (*this)(e[i]) + (e[i].is(Kind::Sum) ? brackets_around(e[i]) : 0);
+  }
+  return total;
+}
+
+double ReadingCost::of_circular(Expr e) {
+  const Expr argument = e[0];
+  if (argument.is_symbol()) return function_of_name;
+  const auto cost_of_term = [](Expr term) {
+    const ScaledTerm scaled = split_coefficient(term);
+    double cost = angle + (abs(scaled.coefficient).is_one() ? 0 : multiple_of_angle);
+    if (scaled.rest.is(Kind::Product)) cost += name_in_angle * static_cast<double>(scaled.rest.size() - 1);
+    return cost;
+  };
+  if (!argument.is(Kind::Sum)) return function + cost_of_term(argument);
+  double total = function;
+  for (std::size_t i = 0; i < argument.size(); ++i) total += cost_of_term(argument[i]);
+  return total;
+}
+
+}  // namespace maupertuis::terms
