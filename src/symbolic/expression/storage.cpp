@@ -28,7 +28,7 @@ NodeId Context::Storage::append(Node node) {
 }
 
 const NodeId* Context::Storage::copy_arguments(std::span<const NodeId> arguments) {
-  if (chunk_used + arguments.size() > chunk_size) {
+  if (chunks.empty() || chunk_used + arguments.size() > chunk_size) {
     chunk_size = std::max<std::size_t>(4096, arguments.size());
     chunk_used = 0;
     chunks.push_back(std::make_unique<NodeId[]>(chunk_size));
