@@ -3,6 +3,7 @@
 
 #include "symbolic/transform/derivative_rules.hpp"
 #include "symbolic/transform/rebuild.hpp"
+#include "symbolic/transform/walk.hpp"
 
 #include <unordered_map>
 
@@ -14,24 +15,24 @@ class ChainRule {
  public:
   explicit ChainRule(Context& context) : context_(context) {}
 
-  /// e without d/dt. Children are visited before parents by an explicit walk, so that depth cannot exhaust the stack.
+  /// e without d/dt.
   Expr plain(Expr e) {
-    if (!context_.has_time_derivative(e.id())) return e;
-    for (const Expr& node : topological_order({&e, 1})) {
-      if (!context_.has_time_derivative(node.id()) || plain_.count(node.id())) continue;
-      const Expr value = node.is(Kind::TimeDerivative) ? rate(done(node[0])) : rebuild(node, [&](Expr a) { return done(a); });
+    const auto is_done = [&](Expr node) { return !context_.has_time_derivative(node.id()) || plain_.count(node.id()); };
+    walk_new(e, is_done, [&](Expr node) {
+      const Expr value = node.is(Kind::TimeDerivative) ? rate(done(node[0]))
+                                                       : rebuild(node, [&](Expr argument) { return done(argument); });
       plain_.emplace(node.id(), value);
-    }
+    });
     return done(e);
   }
 
   /// d/dt of an expression without d/dt.
   Expr rate(Expr e) {
     if (!context_.depends_on_time(e.id())) return context_.number(0);
-    for (const Expr& node : topological_order({&e, 1})) {
-      if (!context_.depends_on_time(node.id()) || rate_.count(node.id())) continue;
+    const auto is_done = [&](Expr node) { return !context_.depends_on_time(node.id()) || rate_.count(node.id()); };
+    walk_new(e, is_done, [&](Expr node) {
       rate_.emplace(node.id(), node.is_symbol() ? context_.time_derivative(node) : chain(node));
-    }
+    });
     return rate_.at(e.id());
   }
 
