@@ -15,10 +15,10 @@ bool is_catalogue(const source_tree::File& file) {
   return std::filesystem::path(file.path).filename() == "codes.cpp";
 }
 
-/// An entry stands alone at the beginning of its initializer: {"E0101", "title", …}.
+/// An entry opens an initializer: {"E0101", "title", …}.
 Places entries() {
   Places found;
-  const std::regex entry(R"re(^\s*\{\s*"([EWN]\d{4})",.*)re");
+  const std::regex entry(R"re(.*\{\s*"([EWN]\d{4})",.*)re");
   for (const source_tree::File& file : source_tree::sources({"src", "apps"})) {
     if (!is_catalogue(file)) continue;
     for (std::size_t i = 0; i < file.lines.size(); ++i) {

@@ -86,14 +86,15 @@ std::string text_of(const SimulationResult& result, const MechanicalSystem& syst
 }
 
 /// What was computed is written whatever the ending.
-void write_files(const SimulateOptions& options, const SimulationResult& result, Diagnostics& diagnostics) {
+void write_files(const SimulateOptions& options, const SimulationResult& result, Study& study) {
+  Diagnostics& diagnostics = study.diagnostics();
   if (!options.output.empty()) {
     const std::string failure = write_trajectory(result.trajectory, options.output);
     if (!failure.empty()) cannot_write(failure, diagnostics);
   }
   if (!options.plot.empty()) {
     PlotOptions picture;
-    picture.title = result.trajectory.metadata.count("title") ? result.trajectory.metadata.at("title") : "";
+    picture.title = study.model()->system.title;
     write_result(options.plot, plot_svg(result.trajectory, picture), diagnostics);
   }
 }
@@ -111,7 +112,7 @@ ExitCode simulate_model(const SimulateOptions& options, Console& console) {
 
   const auto result = run_model(study, settings, console);
   if (!result) return finish(console, study, json_document("simulate"));
-  write_files(options, *result, study.diagnostics());
+  write_files(options, *result, study);
   const MechanicalSystem& system = study.model()->system;
   if (!console.json()) {
     console.print(text_of(*result, system));
