@@ -77,7 +77,7 @@ const Named* find(const Dimension& dimension) {
   return nullptr;
 }
 
-// The same dimension with another power of the radian, which is treated as 1 in comparisons.
+// The radian is treated as 1: l θ is a length, 1/2 m l^2 θ'^2 an energy.
 const Named* find_without_angle(Dimension dimension) {
   dimension.exponents[Dimension::Angle] = {};
   return find(dimension);
@@ -90,7 +90,8 @@ std::string factor(std::string_view unit, int numerator, int denominator) {
   return text;
 }
 
-std::string in_base_units(const Dimension& dimension) {
+std::string in_base_units(Dimension dimension) {
+  if (!dimension.is_one()) dimension.exponents[Dimension::Angle] = {};
   constexpr std::pair<Dimension::Base, std::string_view> order[] = {
       {Dimension::Mass, "kg"}, {Dimension::Length, "m"}, {Dimension::Current, "A"}, {Dimension::Temperature, "K"}, {Dimension::Amount, "mol"},
       {Dimension::Luminosity, "cd"}, {Dimension::Angle, "rad"}, {Dimension::Time, "s"}};
@@ -112,8 +113,9 @@ std::string in_base_units(const Dimension& dimension) {
 }  // namespace
 
 std::string to_string(const Dimension& dimension) {
-  if (const Named* named = find(dimension)) return std::string(named->unit);
-  return in_base_units(dimension);
+  const Named* named = find(dimension);
+  if (!named && !dimension.is_one()) named = find_without_angle(dimension);
+  return named ? std::string(named->unit) : in_base_units(dimension);
 }
 
 std::string physical_name(const Dimension& dimension) {

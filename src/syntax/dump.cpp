@@ -1,0 +1,167 @@
+#include <maupertuis/syntax_tree.hpp>
+
+#include <fmt/format.h>
+
+/// The tree as text, a line a node: what `maup derive --emit syntax` shows. No places, so that two texts with the same
+/// meaning dump alike.
+namespace maupertuis::syntax {
+namespace {
+
+using Kind = Expression::Kind;
+
+constexpr std::string_view kOperators[] = {"+", "-", "*", "juxtaposed", "/", "·", "×", "^", "-", "<", "<=", ">", ">=", "and", "or"};
+constexpr std::string_view kKinds[] = {"number", "quantity", "name",   "member",          "call",
+                                       "vector", "binary",   "unary", "time derivative", "piecewise"};
+constexpr std::string_view kExpectations[] = {"value at", "energy conserved", "conserved", "not conserved", "equation", "freedoms",
+                                              "constraint class", "integral", "frequencies", "event at", "error", "value"};
+constexpr std::string_view kRotations[] = {"angle", "axis and angle", "euler", "roll, pitch, yaw", "quaternion", "quaternion coordinates"};
+constexpr std::string_view kShapes[] = {"line", "trail", "box", "circle", "spring"};
+constexpr std::string_view kInertias[] = {"none", "scalar", "diagonal", "full"};
+
+std::string unit_text(const UnitExpression& unit) {
+  std::string text;
+  for (const UnitExpression::Factor& factor : unit.factors) {
+    text += fmt::format(" {}", factor.word);
+    if (factor.exponent_denominator != 1) text += fmt::format("^({}/{})", factor.exponent_numerator, factor.exponent_denominator);
+    else if (factor.exponent_numerator != 1) text += fmt::format("^{}", factor.exponent_numerator);
+  }
+  return text.empty() ? " 1" : text;
+}
+
+class Dumper {
+ public:
+  std::string text;
+
+  void operator()(const SystemStatement& s) { head("system", s.name.text), word("title", s.title); }
+  void operator()(const SourceStatement& s) { head("source", s.citation); }
+  void operator()(const DimensionlessStatement&) { head("dimensionless"); }
+  void operator()(const ParamStatement& s) {
+    head("param");
+    for (const auto& item : s.items) child(item.name.text, item.value);
+  }
+  void operator()(const CoordStatement& s) {
+    head("coord");
+    for (const auto& item : s.items) word(item.name.text, item.unit ? "unit" + unit_text(*item.unit) : item.kind.text);
+  }
+  void operator()(const LetStatement& s) {
+    head("let");
+    for (const auto& item : s.items) child(item.name.text, item.value);
+  }
+  void operator()(const InputStatement& s) {
+    head("input", s.name.text), word("unit", s.unit ? unit_text(*s.unit) : ""), child("value", s.value);
+  }
+  void operator()(const FrameStatement& s) { head("frame", s.name.text), child("at", s.at), rotation(s.rotation), name("in", s.in); }
+  void operator()(const PointStatement& s) { head("point", s.name.text), child("mass", s.mass), child("at", s.at), name("in", s.in); }
+  void operator()(const BodyStatement& s) {
+    head("body", s.name.text), child("mass", s.mass);
+    children(fmt::format("inertia {}", kInertias[static_cast<int>(s.inertia_kind)]), s.inertia);
+    child("at", s.at), rotation(s.rotation), name("in", s.in);
+  }
+  void operator()(const GravityStatement& s) { head("gravity"), child("vector", s.vector); }
+  void operator()(const SpringStatement& s) {
+    head("spring"), child("from", s.from), child("to", s.to), child("stiffness", s.stiffness), child("length", s.length);
+  }
+  void operator()(const DamperStatement& s) {
+    head("damper"), child("from", s.from), child("to", s.to), child("coefficient", s.coefficient);
+  }
+  void operator()(const TorsionSpringStatement& s) {
+    head("torsion spring", s.coordinate.text), child("stiffness", s.stiffness), child("rest", s.rest);
+  }
+  void operator()(const EnergyStatement& s) {
+    head("energy", fmt::format("{}{}", "TVULD"[static_cast<int>(s.which)], s.adds ? " +=" : "")), child("value", s.value);
+  }
+  void operator()(const ForceStatement& s) {
+    constexpr std::string_view targets[] = {"force on", "torque on", "force along"};
+    head(targets[static_cast<int>(s.target)], s.on.text), name("from", s.from), name("in", s.in), child("value", s.value);
+  }
+  void operator()(const StartStatement& s) {
+    head("start", s.exactly ? "exactly" : ""), child("at", s.at), assignments(s.items);
+  }
+  void operator()(const RunStatement& s) {
+    head("run"), child("duration", s.duration), child("until", s.until_left), child("equals", s.until_right), child("within", s.within);
+  }
+  void operator()(const OutputStatement& s) { head("output"), child("every", s.every); }
+  void operator()(const DrawStatement& s) {
+    head("draw");
+    for (const DrawItem& item : s.items) {
+      word(kShapes[static_cast<int>(item.kind)], "");
+      ++depth_;
+      children("path", item.path), children("sizes", item.sizes);
+      --depth_;
+    }
+  }
+  void operator()(const ReactionStatement& s) { head("reaction", s.name.text), word("released", s.released.text); }
+  void operator()(const ExpectStatement& s) {
+    head(s.claim ? "claim" : "expect", kExpectations[static_cast<int>(s.kind)]);
+    word("name", s.name.text), word("word", s.word.text), word("occurrence", s.occurrence ? std::to_string(s.occurrence) : "");
+    assignments(s.at);
+    child("subject", s.subject), child("time", s.time), child("value", s.value), children("values", s.values);
+    child(s.relative ? "relative tolerance" : "tolerance", s.tolerance);
+  }
+  void operator()(const LaterStatement& s) {
+    head("later", s.what);
+    for (const Name& name : s.names) word("name", name.text);
+    children("expressions", s.expressions);
+  }
+
+ private:
+  void head(std::string_view kind, std::string_view what = {}) { text += what.empty() ? fmt::format("{}\n", kind) : fmt::format("{} {}\n", kind, what); }
+
+  void word(std::string_view label, std::string_view what) {
+    if (what.empty() && depth_ == 1 && label != "line" && label != "trail") return;
+    text += fmt::format("{:{}}{}{}{}\n", "", 2 * depth_, label, what.empty() ? "" : " ", what);
+  }
+
+  void name(std::string_view label, const std::optional<Name>& name) {
+    if (name) word(label, name->text);
+  }
+
+  void child(std::string_view label, const ExpressionPtr& expression) {
+    if (!expression) return;
+    text += fmt::format("{:{}}{}:\n", "", 2 * depth_, label);
+    ++depth_;
+    print(*expression);
+    --depth_;
+  }
+
+  void children(std::string_view label, const std::vector<ExpressionPtr>& expressions) {
+    for (const ExpressionPtr& expression : expressions) child(label, expression);
+  }
+
+  void assignments(const std::vector<StartStatement::Item>& items) {
+    for (const auto& item : items) child("variable", item.variable), child("value", item.value);
+  }
+
+  void rotation(const std::optional<Rotation>& rotation) {
+    if (!rotation) return;
+    word("rotation", fmt::format("{} {}", kRotations[static_cast<int>(rotation->kind)], rotation->sequence));
+    child("axis", rotation->axis);
+    children("value", rotation->values);
+  }
+
+  void print(const Expression& e) {
+    std::string line(kKinds[static_cast<int>(e.kind)]);
+    if (e.kind == Kind::Binary) line = fmt::format("binary {}", kOperators[static_cast<int>(e.op)]);
+    if (e.kind == Kind::Unary) line = "negate";
+    if (!e.text.empty()) line += fmt::format(" {}", e.text);
+    line.append(static_cast<std::size_t>(e.primes), '\'');
+    if (e.bare) line += " bare";
+    if (e.unit) line += fmt::format("{}{}", e.unit_bracketed ? " in brackets" : "", unit_text(*e.unit));
+    text += fmt::format("{:{}}{}\n", "", 2 * depth_, line);
+    ++depth_;
+    for (const ExpressionPtr& argument : e.arguments) print(*argument);
+    --depth_;
+  }
+
+  std::size_t depth_ = 1;
+};
+
+}  // namespace
+
+std::string dump(const SyntaxTree& tree) {
+  Dumper dumper;
+  for (const Statement& statement : tree.statements) std::visit(dumper, statement.body);
+  return std::move(dumper.text);
+}
+
+}  // namespace maupertuis::syntax
