@@ -1,8 +1,21 @@
 #include "outcome.hpp"
 
+#include <algorithm>
 #include <maupertuis/trajectory.hpp>
 
 namespace maupertuis::app {
+
+namespace {
+
+/// The file could not be read at all: nothing is known of the model.
+bool unreadable(const Diagnostics& diagnostics) {
+  const auto items = diagnostics.items();
+  return std::any_of(items.begin(), items.end(), [](const Diagnostic& d) {
+    return d.code == "E0801" || d.code == "E0802" || d.code == "E0803";
+  });
+}
+
+}  // namespace
 
 ExitCode finish(Console& console, Study& study, Json document) {
   if (console.json()) {
@@ -12,6 +25,7 @@ ExitCode finish(Console& console, Study& study, Json document) {
   } else {
     console.show(study.diagnostics(), study.source());
   }
+  if (unreadable(study.diagnostics())) return ExitCode::Usage;
   return study.wrong() ? ExitCode::ModelWrong : ExitCode::Fine;
 }
 

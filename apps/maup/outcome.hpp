@@ -7,7 +7,7 @@
 namespace maupertuis::app {
 
 /// Ends a command that prints one document: the diagnostics go to standard error, or into the document under --json.
-/// Returns ModelWrong if there are errors, else Fine.
+/// Returns Usage if the file could not be read, ModelWrong if there are other errors, else Fine.
 ExitCode finish(Console& console, Study& study, Json document);
 
 /// Writes a file the user asked for; false and E0804 when that fails.

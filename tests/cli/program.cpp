@@ -1,0 +1,79 @@
+#include "program.hpp"
+
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+namespace cli_test {
+namespace {
+
+std::string quoted(const std::string& word) {
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+}  // namespace
+
+Folder::Folder() {
+  static std::atomic<int> count{0};
+  path_ = std::filesystem::temp_directory_path() / ("maup_cli_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
+  std::filesystem::create_directories(path_);
+}
+
+Folder::~Folder() {
+  std::error_code error;
+  std::filesystem::remove_all(path_, error);
+}
+
+std::string Folder::write(const std::string& name, const std::string& text) const {
+  std::ofstream(path(name), std::ios::binary) << text;
+  return path(name);
+}
+
+std::vector<std::string> Folder::names() const {
+  std::vector<std::string> all;
+  for (const auto& entry : std::filesystem::directory_iterator(path_)) all.push_back(entry.path().filename().string());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+std::string read(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+Outcome shell(const std::string& command) {
+  const Folder folder;
+  const std::string script =
+      "MAUP=" + quoted(MAUP_PROGRAM) + "; ulimit -v 2000000; { " + command + "\n} >" + quoted(folder.path("out")) + " 2>" +
+      quoted(folder.path("err"));
+  const auto begin = std::chrono::steady_clock::now();
+  const int status = std::system(script.c_str());
+  Outcome outcome;
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  outcome.out = read(folder.path("out"));
+  outcome.err = read(folder.path("err"));
+  return outcome;
+}
+
+Outcome maup(const std::vector<std::string>& arguments, const std::string& input) {
+  const Folder folder;
+  std::string command = "timeout 60 \"$MAUP\"";
+  for (const std::string& argument : arguments) command += " " + quoted(argument);
+  return shell(command + " <" + quoted(folder.write("in", input)));
+}
+
+}  // namespace cli_test
