@@ -1,0 +1,121 @@
+#pragma once
+#include <maupertuis/plot.hpp>
+#include <maupertuis/simulation.hpp>
+#include <maupertuis/trajectory.hpp>
+#include <maupertuis/verification.hpp>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace maupertuis {
+
+/// The drawing of a model as numbers: positions of every element at the times of the frames, world axes, metres.
+struct Drawing {
+  enum class Kind { Line, Trail, Box, Circle, Spring };
+  struct Element {
+    Kind kind = Kind::Line;
+    std::size_t points = 1;              // Line: at least 2; Spring: 2; others: 1
+    std::vector<double> positions;       // [frames × points × dimension]; NaN where a position has no value
+    std::vector<double> sizes;           // [frames × 1 or 2] Circle: radius; Box: width, height; others: none
+    std::vector<double> rotation;        // [frames] rad, of a Box in 2-D; empty: upright
+    std::vector<double> masses;          // [points] kg, 0 for a point without mass: those with mass are drawn as bobs
+    std::vector<std::string> names;      // [points], "" where the text has an expression
+  };
+  int dimension = 2;                     // 2 or 3
+  std::vector<double> times;             // [frames] s, ascending or descending
+  std::vector<Element> elements;         // the first is drawn first
+  std::vector<double> gravity;           // [dimension] its direction; empty without gravity
+  bool dimensionless = false;            // no metres, no seconds
+
+  bool empty() const { return elements.empty() || times.empty(); }
+};
+
+/// All that a report shows. Formulas are MathML: the children of a <math> element. Everything else is plain text in
+/// UTF-8; nothing needs escaping. Empty parts do not appear on the page.
+struct ReportContent {
+  struct Formula {
+    std::string left, right;             // MathML; left may be empty; a formula without right is a sentence alone
+    std::string rule;                    // "chain rule"
+    std::string sentence;
+  };
+  struct Section {
+    std::string title;
+    std::vector<Formula> lines;
+  };
+  struct Parameter {
+    std::string symbol;                  // MathML
+    std::string value, unit;             // "60", "cm"
+    std::string si;                      // "0.6 m" where the text has other units
+  };
+  struct Coordinate {
+    std::string symbol, velocity;        // MathML
+    std::string kind;                    // "angle", "length in m"
+    std::string start, start_velocity;   // "2 rad", "0 rad/s"
+  };
+  struct Check {
+    std::string name, statement, verdict;
+    bool passed = false, applies = true;
+    int points = 0;
+    double error_bound = 1;              // 1: none claimed
+  };
+  struct Conserved {
+    std::string sentence;
+    Formula formula;
+    std::string value, drift;            // along the run; empty without one
+  };
+  struct Message {
+    Severity severity = Severity::Warning;
+    std::string code, message, reason, help;
+    std::uint32_t line = 0;              // of the model text; 0: none
+    std::string text;                    // that line
+  };
+  struct Picture {
+    std::string caption;
+    PlotOptions options;                 // of `trajectory`; the theme is the page's
+  };
+
+  std::string name, title, source;       // source: the citation
+  std::string file, model_text;
+  std::vector<std::pair<std::string, std::string>> summary;     // "freedoms" → "2"
+  std::vector<Message> messages;
+  std::optional<Drawing> drawing;
+  std::vector<Coordinate> coordinates;
+  std::vector<Parameter> parameters;
+  std::vector<Formula> definitions;      // the legend of lets that stay symbols in print
+  std::vector<Formula> energies;         // T, V, U, D, L
+  std::vector<Formula> equations;        // left = right, with right 0 for the standard form
+  std::vector<Formula> intermediates;    // what the names in the equations stand for
+  std::vector<Section> derivation;
+  bool certified = false;
+  std::vector<Check> certificate;
+  std::vector<Conserved> conserved;
+  std::vector<std::pair<std::string, std::string>> statistics;
+  std::string ending;                    // the reason where the run ended early
+  std::vector<ExpectationResult> expectations;
+  Trajectory trajectory;
+  std::vector<Picture> pictures;
+};
+
+/// One HTML page that needs nothing else: no network, no fonts, no other file. Its policy forbids every request.
+/// The drawing is animated on a canvas; formulas are MathML, plots are SVG; light and dark, narrow and wide, on paper.
+std::string report_html(const ReportContent& content);
+
+/// The positions of the model's drawing at the rows of a run, at most `frames` of them. Where the model has no `draw`,
+/// its massive points and bodies are marked. Nothing where there is neither.
+std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& trajectory, std::size_t frames = 6000);
+
+/// What else a report may show.
+struct ReportParts {
+  const SimulationResult* simulation = nullptr;   // null: no run, no drawing, no plots
+  const Verification* verification = nullptr;     // null: the `expect` lines were not carried out
+};
+
+/// Fills a report from the artifacts of one study. `derivation` with its steps; messages are those of `diagnostics`
+/// that are no errors.
+ReportContent compose_report(const Model& model, const SourceText& source, const EquationsOfMotion& equations,
+                             const Derivation& derivation, const Certificate& certificate,
+                             const Diagnostics& diagnostics, const ReportParts& parts = {});
+
+}  // namespace maupertuis

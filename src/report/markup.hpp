@@ -1,0 +1,28 @@
+#pragma once
+#include <maupertuis/report.hpp>
+
+#include <string>
+#include <string_view>
+
+namespace maupertuis {
+
+std::string escape_html(std::string_view text);
+
+/// "kg m^2/s" with raised exponents.
+std::string unit_html(std::string_view unit);
+/// 1.2e-15 as 1.2 × 10⁻¹⁵; other text as it is.
+std::string number_html(std::string_view number);
+
+/// One <math> element in the line of text; nothing for an empty fragment.
+std::string inline_math(std::string_view fragment);
+/// left = right as display mathematics. A long sum becomes several <math> elements, between which lines may break: one
+/// element would run out of a narrow window, and off the paper.
+std::string display_math(std::string_view left, std::string_view right);
+
+/// A sentence in which names between backquotes are code.
+std::string sentence_html(std::string_view sentence);
+
+/// The model text with its comments and its statement words marked.
+std::string model_html(std::string_view text);
+
+}  // namespace maupertuis

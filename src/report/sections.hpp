@@ -1,0 +1,22 @@
+#pragma once
+#include <maupertuis/report.hpp>
+
+#include <string>
+
+/// The parts of the page, in its order. Each is empty where the content has nothing for it.
+namespace maupertuis {
+
+std::string messages_section(const ReportContent& content);
+std::string drawing_section(const ReportContent& content);
+std::string equations_section(const ReportContent& content);
+std::string model_section(const ReportContent& content);
+std::string derivation_section(const ReportContent& content);
+std::string certificate_section(const ReportContent& content);
+std::string conserved_section(const ReportContent& content);
+std::string motion_section(const ReportContent& content);
+std::string expectations_section(const ReportContent& content);
+
+/// The frames of a drawing for the script.
+std::string drawing_json(const Drawing& drawing);
+
+}  // namespace maupertuis
