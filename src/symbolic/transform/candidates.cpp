@@ -39,6 +39,16 @@ void CandidateChooser::prepare_atoms() {
   }
 }
 
+/// A sum of parts of which some may be sums themselves; their terms join.
+Expr CandidateChooser::flat_sum(const std::vector<Expr>& parts) {
+  std::vector<Expr> terms;
+  for (const Expr& part : parts) {
+    if (!part.is(Kind::Sum)) terms.push_back(part);
+    else for (std::size_t i = 0; i < part.size(); ++i) terms.push_back(part[i]);
+  }
+  return algebra_.context().sum(terms);
+}
+
 void CandidateChooser::consider(Choice& best, Expr candidate) {
   const double cost = cost_(candidate);
   if (!best.value || cost < best.cost - 1e-9) best = {candidate, cost};
@@ -137,7 +147,7 @@ Expr CandidateChooser::grouped(const Polynomial& p, KeyOf key_of) {
     const Polynomial outer = algebra_.normalized(std::move(group.outers));
     terms.push_back((outer.size() == 1 ? flat(outer) : factored(outer)) * best_basis(group.rest));
   }
-  return algebra_.context().sum(terms);
+  return flat_sum(terms);
 }
 
 Expr CandidateChooser::by_parameters(const Polynomial& p) {
@@ -162,7 +172,7 @@ Expr CandidateChooser::by_velocities(const Polynomial& p) {
   std::vector<Expr> terms;
   for (auto& [rate, raw] : coefficients)
     terms.push_back(best(algebra_.normalized(std::move(raw))) * algebra_.expression(rate, true));
-  return algebra_.context().sum(terms);
+  return flat_sum(terms);
 }
 
 // ---------------------------------------------------------------------------------------------------------- bases

@@ -25,6 +25,8 @@ class CandidateChooser {
   /// The cheapest sum of terms without a factor common to all: forces stay apart, as in a free-body diagram.
   Expr best_terms(const Polynomial& p);
 
+  Expr flat_sum(const std::vector<Expr>& parts);
+
   void set_own(Expr coordinate) { own_ = coordinate; }
   /// True for q', q'' as factors.
   bool is_rate(AtomId atom) const;

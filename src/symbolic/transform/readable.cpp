@@ -25,17 +25,13 @@ Expr collected_by_rates(CandidateChooser& chooser, const Polynomial& p) {
   }
   std::vector<Expr> parts;
   for (auto& [rate, raw] : groups) {
+    // Forces stand as terms of their own; a coefficient of a velocity is one factor.
     const Polynomial terms = algebra.normalized(std::move(raw));
     const Expr coefficient = rate == 0 ? chooser.best_terms(terms) : chooser.best(terms);
     const Expr factor = algebra.expression(rate, true);
-    // Forces stand as terms of their own; a coefficient of a velocity is one factor.
-    if (rate == 0 && coefficient.is(Kind::Sum)) {
-      for (std::size_t i = 0; i < coefficient.size(); ++i) parts.push_back(coefficient[i]);
-    } else {
-      parts.push_back(coefficient * factor);
-    }
+    parts.push_back(coefficient * factor);
   }
-  return algebra.context().sum(parts);
+  return chooser.flat_sum(parts);
 }
 
 Expr readable_row(CandidateChooser& chooser, const Polynomial& p) {
