@@ -1,0 +1,15 @@
+#pragma once
+#include <optional>
+#include <span>
+
+namespace maupertuis::taylor {
+
+/// The first x in [0, 1] where the polynomial Σ p_k x^k leaves its side of zero: where side · p goes from ≥ 0 to below
+/// −tolerance. A touch without crossing, to within the tolerance, is none. No pair of close roots is missed: intervals
+/// are excluded only when all Bernstein coefficients of the polynomial say so, and halved until they do or one root is
+/// left. Cost: that of a comparison of coefficients when the polynomial stays clear of zero.
+///
+/// Precondition: side is +1 or −1.
+std::optional<double> first_crossing(std::span<const double> p, int side, double tolerance);
+
+}  // namespace maupertuis::taylor

@@ -1,0 +1,91 @@
+#include "integrator/taylor/step_size.hpp"
+
+#include <maupertuis/integrator.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+/// À. Jorba, M. Zou, A software package for the numerical integration of ODEs by means of high-order Taylor methods,
+/// Experimental Mathematics 14 (2005): the last two coefficients estimate the radius of convergence ρ, and h = ρ/e² with
+/// p = ⌈−½ ln ε + 1⌉ costs least.
+///
+/// One difference: each coordinate is measured against its own size, so that units do not matter (a charge of 10⁻⁹ C
+/// beside an angle of 1 rad). Its size is the largest of the first terms of its velocity over a step, so that it does
+/// not vanish where the velocity passes through zero.
+namespace maupertuis {
+
+double rounding_tolerance() { return std::numeric_limits<double>::epsilon(); }
+
+int taylor_order(double tolerance) {
+  const double epsilon = std::max(tolerance, rounding_tolerance());
+  return std::max(2, static_cast<int>(std::ceil(-0.5 * std::log(epsilon) + 1)));
+}
+
+namespace taylor {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+double velocity(const KernelWorkspace& work, std::size_t i, int k) {
+  return (k + 1) * std::abs(work.coordinate(k + 1)[i]);
+}
+
+/// The size of coordinate i's velocity over a step of length h.
+double size_of(const KernelWorkspace& work, std::size_t i, int order, double h) {
+  double size = 0, power = 1;
+  for (int k = 0; k <= std::min(3, order - 2); ++k, power *= h) size = std::max(size, velocity(work, i, k) * power);
+  // A velocity that moves q by less than its rounding within the step does not count.
+  return std::max(size, rounding_tolerance() * std::abs(work.coordinate(0)[i]) / h);
+}
+
+/// min over the coordinates of (size / |v_k|)^(1/k)
+double radius(const KernelWorkspace& work, std::size_t freedoms, int k, int order, double h) {
+  double largest = 0;
+  for (std::size_t i = 0; i < freedoms; ++i)
+    if (const double last = velocity(work, i, k); last > 0) largest = std::max(largest, last / size_of(work, i, order, h));
+  return largest > 0 ? std::pow(largest, -1.0 / k) : infinity;
+}
+
+/// A length to start from, where no step was made before: the decay from the first coefficients to the last.
+double first_guess(const KernelWorkspace& work, std::size_t freedoms, int order) {
+  double growth = 0;
+  for (std::size_t i = 0; i < freedoms; ++i)
+    for (int k = order - 1; k <= order; ++k) {
+      for (int j = std::min(3, order - 2); j >= 0; --j)
+        if (velocity(work, i, j) > 0 && k > j)
+          growth = std::max(growth, std::pow(velocity(work, i, k) / velocity(work, i, j), 1.0 / (k - j)));
+    }
+  return growth > 0 ? 1 / growth : 1;
+}
+
+}  // namespace
+
+StepControl step_control(double tolerance, int order) {
+  const double epsilon = std::max(tolerance, rounding_tolerance());
+  StepControl control;
+  control.order = order > 0 ? std::max(order, 2) : taylor_order(epsilon);
+  const double safety = std::exp(-0.7 / (control.order - 1));
+  control.factor = safety * std::min(std::exp(-2.0), std::exp(std::log(epsilon) / (control.order - 1)));
+  if (order <= 0) control.factor = safety * std::exp(-2.0);
+  return control;
+}
+
+double step_size(const KernelWorkspace& work, std::size_t freedoms, const StepControl& control, double previous) {
+  const int p = control.order;
+  double h = previous;
+  int turns = 1;
+  if (!(h > 0)) {
+    h = first_guess(work, freedoms, p);
+    turns = 4;
+  }
+  for (int turn = 0; turn < turns; ++turn) {
+    const double reached = std::min(radius(work, freedoms, p - 1, p, h), radius(work, freedoms, p, p, h)) * control.factor;
+    if (!(reached < infinity)) return infinity;
+    h = reached;
+  }
+  return h;
+}
+
+}  // namespace taylor
+}  // namespace maupertuis

@@ -1,0 +1,338 @@
+#include "integrator/dense_output/dense_output.hpp"
+#include "integrator/taylor/step_size.hpp"
+#include "integrator/taylor/switches.hpp"
+
+#include <maupertuis/integrator.hpp>
+#include <maupertuis/require.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace maupertuis {
+
+using taylor::SideChooser;
+using taylor::Watched;
+
+/// A step: expand the motion, decide the sides of switch functions that begin at a zero, choose a length, shorten it to
+/// the first crossing, advance.
+struct TaylorStepper::Impl {
+  Impl(const Kernel& k, std::span<const double> parameters, const TaylorOptions& o)
+      : kernel(k), options(o), control(taylor::step_control(o.tolerance, o.order)), work(k, control.order),
+        probe(k, 1), n(k.freedoms()), switch_state(k.switches().size()), event_state(k.events()) {
+    work.set_parameters(parameters);
+    probe.set_parameters(parameters);
+    dense.resize(n, k.integrands(), control.order + 1);
+    for (auto* state : {&q, &v}) state->resize(n);
+    for (auto* values : {&q_now, &v_now}) values->resize(n);
+    integrals.resize(k.integrands());
+  }
+
+  struct Crossing {
+    double x = 1;       // fraction of the step
+    bool found = false;
+    std::vector<std::size_t> switches;
+    std::optional<std::size_t> event;
+  };
+
+  Step step(double bound);
+  bool expand(double bound, Step& result);
+  bool decide_sides(double bound, Step& result);
+  std::optional<double> trial(double bound);
+  void keep_polynomial();
+  void record_start();
+  Crossing first_crossing(double h) const;
+  std::int8_t event_side(std::size_t index, const taylor::ScaledPolynomial& polynomial) const;
+  void note(Crossing& crossing, double x) const;
+  void advance(double bound, double h, const Crossing& crossing, Step& result);
+  void mark_crossings(const Crossing& crossing, Step& result);
+  void end(Step& result, StepEnding ending, std::string reason) const;
+  bool fail(Step& result, KernelStatus status) const;
+  double remaining(double bound) const { return (bound - t.hi) - t.lo; }
+  double tau_of(double time) const { return (time - begin.hi) - begin.lo; }
+  void set_sides(KernelWorkspace& w) const;
+  Sample sample(double time) const;
+
+  Kernel kernel;
+  TaylorOptions options;
+  taylor::StepControl control;
+  KernelWorkspace work;
+  mutable KernelWorkspace probe;         // for the kernel at points within the step
+  std::size_t n;
+
+  Compensated t, begin;                  // now; the beginning of the last step
+  std::vector<Compensated> q, v, integrals;
+  std::vector<double> q_now, v_now;      // [n] their leading parts
+  DenseOutput dense;
+  std::vector<Watched> switch_state, event_state;
+  bool first = true;                     // no step made yet
+  double length = 0;                     // the last length that the control chose
+  std::size_t steps = 0, switches = 0;
+  int stuck = 0;                         // crossings in a row that did not move time
+  Sample start_sample;
+};
+
+namespace {
+
+std::int8_t sign(double x) { return static_cast<std::int8_t>((x > 0) - (x < 0)); }
+
+}  // namespace
+
+void TaylorStepper::Impl::set_sides(KernelWorkspace& w) const {
+  if (switch_state.empty()) return;
+  std::vector<std::int8_t> sides;
+  for (const Watched& s : switch_state) sides.push_back(s.side);
+  w.set_branches(sides);
+}
+
+void TaylorStepper::Impl::end(Step& result, StepEnding ending, std::string reason) const {
+  result.end = result.begin;
+  result.ending = ending;
+  result.reason = std::move(reason);
+}
+
+bool TaylorStepper::Impl::fail(Step& result, KernelStatus status) const {
+  if (status == KernelStatus::SingularMass)
+    end(result, StepEnding::SingularMass,
+        "The mass matrix is singular here: the equations do not determine the acceleration of " +
+            kernel.coordinate_name(work.singular_coordinate()) + ".");
+  else
+    end(result, StepEnding::Overflow, "A force or an acceleration is infinite or undefined here.");
+  return false;
+}
+
+/// The motion through the present state under the present sides; the length over which to judge it.
+std::optional<double> TaylorStepper::Impl::trial(double bound) {
+  set_sides(work);
+  if (work.expand(t.hi, q_now, v_now) != KernelStatus::Ok) return std::nullopt;
+  const double h = taylor::step_size(work, n, control, length);
+  return std::copysign(std::min(h, std::abs(remaining(bound))), remaining(bound));
+}
+
+bool TaylorStepper::Impl::expand(double bound, Step& result) {
+  set_sides(work);
+  const KernelStatus status = work.expand(t.hi, q_now, v_now);
+  if (status != KernelStatus::Ok) return fail(result, status);
+  return switch_state.empty() || decide_sides(bound, result);
+}
+
+bool TaylorStepper::Impl::decide_sides(double bound, Step& result) {
+  const double h = taylor::step_size(work, n, control, length);
+  SideChooser chooser(work, switch_state, [&](const std::vector<std::int8_t>&) { return trial(bound); });
+  switch (chooser.decide(std::copysign(std::min(h, std::abs(remaining(bound))), remaining(bound)))) {
+    case SideChooser::Outcome::Decided: return true;
+    case SideChooser::Outcome::Failed: return fail(result, KernelStatus::NonFinite);
+    case SideChooser::Outcome::Sliding: break;
+  }
+  end(result, StepEnding::Sliding,
+      "Both sides of a switch push the motion back to it, so that it would slide along the switch.");
+  return false;
+}
+
+void TaylorStepper::Impl::keep_polynomial() {
+  begin = t;
+  for (int k = 0; k <= control.order + 1; ++k) {
+    std::copy_n(work.coordinate(k), n, dense.coefficients(k));
+    for (std::size_t i = 0; i < integrals.size(); ++i) dense.integrand(k)[i] = work.integrand(i, k);
+  }
+  dense.q = q;
+  dense.v = v;
+  dense.integrals = integrals;
+}
+
+void TaylorStepper::Impl::record_start() {
+  start_sample.t = t.hi;
+  start_sample.q = q_now;
+  start_sample.v = v_now;
+  start_sample.a.resize(n);
+  for (std::size_t i = 0; i < n; ++i) start_sample.a[i] = work.acceleration(i);
+  start_sample.observables.resize(kernel.observables());
+  for (std::size_t i = 0; i < kernel.observables(); ++i) start_sample.observables[i] = work.observable(i);
+  start_sample.integrals.resize(integrals.size());
+  for (std::size_t i = 0; i < integrals.size(); ++i) start_sample.integrals[i] = integrals[i].hi;
+}
+
+void TaylorStepper::Impl::note(Crossing& crossing, double x) const {
+  // Roots that rounding does not tell apart are one crossing.
+  if (x < crossing.x * (1 - 4 * std::numeric_limits<double>::epsilon())) {
+    crossing.switches.clear();
+    crossing.event.reset();
+  }
+  crossing.x = std::min(crossing.x, x);
+  crossing.found = true;
+}
+
+/// The sign of an event function, or at a zero the sign that it takes from there.
+std::int8_t TaylorStepper::Impl::event_side(std::size_t index, const taylor::ScaledPolynomial& polynomial) const {
+  const bool at_zero = event_state[index].at_zero || polynomial.begins_at_zero();
+  return at_zero ? polynomial.direction() : sign(polynomial.p[0]);
+}
+
+TaylorStepper::Impl::Crossing TaylorStepper::Impl::first_crossing(double h) const {
+  Crossing first_of_all;
+  const auto is_later = [&](double x) { return x > first_of_all.x * (1 + 4 * std::numeric_limits<double>::epsilon()); };
+  for (std::size_t i = 0; i < switch_state.size(); ++i) {
+    const auto x = taylor::crossing(taylor::switch_polynomial(work, i, h), switch_state[i]);
+    if (!x || is_later(*x)) continue;
+    note(first_of_all, *x);
+    first_of_all.switches.push_back(i);
+  }
+  for (std::size_t i = 0; i < event_state.size(); ++i) {
+    const auto polynomial = taylor::event_polynomial(work, i, h);
+    const std::int8_t before = event_state[i].side, now = event_side(i, polynomial);
+    // A step may have ended just past a root, within rounding: then the root is here.
+    const bool passed = before != 0 && now == -before;
+    const auto x = passed ? std::optional(0.0) : taylor::crossing(polynomial, {now, event_state[i].at_zero});
+    if (!x || is_later(*x)) continue;
+    note(first_of_all, *x);
+    if (!first_of_all.event) first_of_all.event = i;
+  }
+  return first_of_all;
+}
+
+void TaylorStepper::Impl::mark_crossings(const Crossing& crossing, Step& result) {
+  for (Watched& s : switch_state) s.at_zero = false;
+  for (const std::size_t i : crossing.switches) {
+    switch_state[i].at_zero = true;
+    switch_state[i].side = static_cast<std::int8_t>(-switch_state[i].side);
+  }
+  switches += crossing.switches.size();
+  result.switches = static_cast<int>(crossing.switches.size());
+  result.event = crossing.event;
+}
+
+void TaylorStepper::Impl::advance(double bound, double h, const Crossing& crossing, Step& result) {
+  const bool reaches_bound = !crossing.found && h == remaining(bound);
+  // The signs that the events have at the beginning; a root in the step leaves them at zero.
+  for (std::size_t i = 0; i < event_state.size(); ++i) {
+    const auto polynomial = taylor::event_polynomial(work, i, h);
+    event_state[i].side = event_side(i, polynomial);
+    event_state[i].at_zero = crossing.event == i;
+    if (event_state[i].at_zero) event_state[i].side = 0;
+  }
+  const double tau = h * crossing.x;
+  dense.advance(tau, q, v, integrals);
+  if (reaches_bound) t = {bound, 0};
+  else t.add(tau);
+  for (std::size_t i = 0; i < n; ++i) q_now[i] = q[i].hi, v_now[i] = v[i].hi;
+  stuck = crossing.found && t.hi == begin.hi ? stuck + 1 : 0;
+  mark_crossings(crossing, result);
+  result.end = t.hi;
+  first = false;
+  ++steps;
+}
+
+Step TaylorStepper::Impl::step(double bound) {
+  Step result;
+  result.begin = result.end = t.hi;
+  if (remaining(bound) == 0) return result;
+  if (options.interrupt && options.interrupt->load(std::memory_order_relaxed)) {
+    end(result, StepEnding::Interrupted, "The run was interrupted.");
+    return result;
+  }
+  if (steps >= options.maximum_steps) {
+    end(result, StepEnding::TooManySteps, "The run used up its steps.");
+    return result;
+  }
+  if (!expand(bound, result)) return result;
+  const double chosen = taylor::step_size(work, n, control, length);
+  length = std::isfinite(chosen) ? chosen : 0;
+  const double left = remaining(bound);
+  const double h = chosen < std::abs(left) ? std::copysign(chosen, left) : left;
+  if (!(chosen > 2 * std::numeric_limits<double>::epsilon() * std::abs(t.hi)) || chosen < 1e-290) {
+    end(result, StepEnding::StepUnderflow,
+        "The steps shrink below the resolution of time: a force grows without bound, as in a collision.");
+    return result;
+  }
+  keep_polynomial();
+  record_start();
+  const Crossing crossing = first_crossing(h);
+  if (crossing.found && stuck >= 100) {
+    end(result, StepEnding::Sliding, "Switches follow each other in no time: the motion has come to slide along a switch.");
+    return result;
+  }
+  advance(bound, h, crossing, result);
+  return result;
+}
+
+Sample TaylorStepper::Impl::sample(double time) const {
+  std::vector<Compensated> position(n), velocity(n), integral(integrals.size());
+  dense.advance(tau_of(time), position, velocity, integral);
+  Sample result;
+  result.t = time;
+  for (std::size_t i = 0; i < n; ++i) {
+    result.q.push_back(position[i].hi);
+    result.v.push_back(velocity[i].hi);
+  }
+  for (const Compensated& x : integral) result.integrals.push_back(x.hi);
+  const bool ok = probe.evaluate(time, result.q, result.v) == KernelStatus::Ok;
+  constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i < n; ++i) result.a.push_back(ok ? probe.acceleration(i) : nothing);
+  for (std::size_t i = 0; i < kernel.observables(); ++i)
+    result.observables.push_back(ok ? probe.observable(i) : nothing);
+  return result;
+}
+
+// ----------------------------------------------------------------------------------------------------- interface
+
+TaylorStepper::TaylorStepper(const Kernel& kernel, std::span<const double> parameters, const TaylorOptions& options)
+    : impl_(std::make_unique<Impl>(kernel, parameters, options)) {}
+TaylorStepper::~TaylorStepper() = default;
+TaylorStepper::TaylorStepper(TaylorStepper&&) noexcept = default;
+
+int TaylorStepper::order() const { return impl_->control.order; }
+
+void TaylorStepper::start(double t, std::span<const double> q, std::span<const double> v) {
+  Impl& s = *impl_;
+  MAUP_REQUIRE(q.size() == s.n && v.size() == s.n);
+  s.t = {t, 0};
+  for (std::size_t i = 0; i < s.n; ++i) {
+    s.q[i] = {q[i], 0};
+    s.v[i] = {v[i], 0};
+    s.q_now[i] = q[i];
+    s.v_now[i] = v[i];
+  }
+  std::fill(s.integrals.begin(), s.integrals.end(), Compensated{});
+  std::fill(s.switch_state.begin(), s.switch_state.end(), Watched{});
+  std::fill(s.event_state.begin(), s.event_state.end(), Watched{});
+  s.first = true;
+  s.length = 0;
+  s.steps = s.switches = 0;
+  s.stuck = 0;
+  // Before any step the dense output is the starting point.
+  s.dense.resize(s.n, s.kernel.integrands(), s.control.order + 1);
+  s.begin = s.t;
+  s.dense.q = s.q;
+  s.dense.v = s.v;
+  s.start_sample = sample(t);
+}
+
+Step TaylorStepper::step(double bound) { return impl_->step(bound); }
+
+double TaylorStepper::time() const { return impl_->t.hi; }
+std::span<const double> TaylorStepper::q() const { return impl_->q_now; }
+std::span<const double> TaylorStepper::v() const { return impl_->v_now; }
+std::size_t TaylorStepper::steps() const { return impl_->steps; }
+std::size_t TaylorStepper::switches() const { return impl_->switches; }
+
+bool TaylorStepper::covers(double t) const {
+  const double low = std::min(impl_->begin.hi, impl_->t.hi), high = std::max(impl_->begin.hi, impl_->t.hi);
+  return low <= t && t <= high;
+}
+
+Sample TaylorStepper::sample(double t) const {
+  MAUP_REQUIRE(covers(t));
+  return impl_->sample(t);
+}
+
+void TaylorStepper::state(double t, std::span<double> q, std::span<double> v) const {
+  MAUP_REQUIRE(covers(t));
+  const Impl& s = *impl_;
+  std::vector<Compensated> position(s.n), velocity(s.n), integral(s.integrals.size());
+  s.dense.advance(s.tau_of(t), position, velocity, integral);
+  for (std::size_t i = 0; i < s.n; ++i) q[i] = position[i].hi, v[i] = velocity[i].hi;
+}
+
+const Sample& TaylorStepper::step_start() const { return impl_->start_sample; }
+
+}  // namespace maupertuis

@@ -1,0 +1,168 @@
+#include "integrator/taylor/switches.hpp"
+
+#include "integrator/taylor/crossing.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace maupertuis::taylor {
+namespace {
+
+std::int8_t sign(double x) { return static_cast<std::int8_t>((x > 0) - (x < 0)); }
+
+/// Roundings that a coefficient has gone through are some tens; its tolerance is counted in those.
+constexpr double unit = 16 * std::numeric_limits<double>::epsilon();
+
+template <class Coefficient>
+ScaledPolynomial scaled(int degree, double h, double scale, Coefficient&& coefficient) {
+  ScaledPolynomial result;
+  double power = 1, reach = scale;
+  for (int k = 0; k <= degree; ++k, power *= h) {
+    result.p.push_back(coefficient(k) * power);
+    if (k > 0) reach += std::abs(result.p.back());
+  }
+  result.tolerance = unit * reach;
+  return result;
+}
+
+}  // namespace
+
+std::size_t ScaledPolynomial::leading() const {
+  for (std::size_t k = 1; k < p.size(); ++k)
+    if (std::abs(p[k]) > tolerance) return k;
+  return 0;
+}
+
+bool ScaledPolynomial::begins_at_zero() const { return std::abs(p[0]) <= tolerance; }
+
+std::int8_t ScaledPolynomial::direction() const {
+  const std::size_t k = leading();
+  return k == 0 ? std::int8_t{0} : sign(p[k]);
+}
+
+ScaledPolynomial switch_polynomial(const KernelWorkspace& work, std::size_t index, double h) {
+  return scaled(work.order() + 1, h, work.switch_scale(index), [&](int k) { return work.switch_function(index, k); });
+}
+
+ScaledPolynomial event_polynomial(const KernelWorkspace& work, std::size_t index, double h) {
+  return scaled(work.order() + 1, h, work.event_scale(index), [&](int k) { return work.event(index, k); });
+}
+
+std::optional<double> crossing(const ScaledPolynomial& polynomial, const Watched& watched) {
+  if (watched.side == 0) return std::nullopt;
+  std::span<const double> p = polynomial.p;
+  if (watched.at_zero || polynomial.begins_at_zero()) {
+    const std::size_t k = polynomial.leading();
+    if (k == 0) return std::nullopt;
+    p = p.subspan(k);
+  }
+  return first_crossing(p, watched.side, polynomial.tolerance);
+}
+
+std::vector<std::int8_t> SideChooser::sides() const {
+  std::vector<std::int8_t> result;
+  for (const Watched& w : watched_) result.push_back(w.side);
+  return result;
+}
+
+void SideChooser::adopt(const std::vector<std::int8_t>& sides) {
+  for (std::size_t i = 0; i < sides.size(); ++i) watched_[i].side = sides[i];
+}
+
+/// Finds the functions at a zero; the others take their sign. True if that changed a side.
+bool SideChooser::collect(double h) {
+  bool changed = false;
+  at_zero_.clear();
+  for (std::size_t i = 0; i < watched_.size(); ++i) {
+    const ScaledPolynomial polynomial = switch_polynomial(work_, i, h);
+    if (watched_[i].at_zero || polynomial.begins_at_zero()) {
+      at_zero_.push_back(i);
+      watched_[i].at_zero = true;
+    } else if (const std::int8_t side = sign(polynomial.p[0]); side != watched_[i].side) {
+      watched_[i].side = side;
+      changed = true;
+    }
+  }
+  return changed;
+}
+
+/// Whether every function at a zero goes to the side that was assumed.
+bool SideChooser::confirms(double h) const {
+  for (const std::size_t i : at_zero_)
+    if (switch_polynomial(work_, i, h).direction() != watched_[i].side) return false;
+  return true;
+}
+
+std::optional<bool> SideChooser::tries(const std::vector<std::int8_t>& sides) {
+  adopt(sides);
+  const auto h = expand_(sides);
+  if (!h) return std::nullopt;
+  return confirms(*h);
+}
+
+SideChooser::Outcome SideChooser::decide(double h) {
+  if (collect(h)) {
+    const auto again = expand_(sides());
+    if (!again) return Outcome::Failed;
+    h = *again;
+  }
+  if (at_zero_.empty()) return Outcome::Decided;
+  const bool known = watched_[at_zero_[0]].side != 0;
+  if ((known || at_zero_.size() > 1) && confirms(h)) return Outcome::Decided;
+  sliding_ = at_zero_[0];
+  return at_zero_.size() == 1 ? alone(at_zero_[0]) : together();
+}
+
+/// One function at a zero. Both sides confirmed: the motion is not unique, and stays where it is if it can (at rest on
+/// top of a roof). None confirmed: it slides, unless the function vanishes whatever the side.
+SideChooser::Outcome SideChooser::alone(std::size_t index) {
+  auto trial = sides();
+  const bool was_zero = trial[index] == 0;
+  const std::int8_t first = was_zero ? std::int8_t{1} : trial[index];
+  std::optional<bool> confirmed[2];
+  bool vanishes = true;
+  for (int turn = 0; turn < 2; ++turn) {
+    trial[index] = static_cast<std::int8_t>(turn == 0 ? first : -first);
+    adopt(trial);
+    const auto h = expand_(trial);
+    if (!h) return Outcome::Failed;
+    confirmed[turn] = confirms(*h);
+    vanishes = vanishes && switch_polynomial(work_, index, *h).direction() == 0;
+    if (*confirmed[turn] && !was_zero) return Outcome::Decided;
+  }
+  const bool both = *confirmed[0] && *confirmed[1];
+  if (vanishes || both) {
+    trial[index] = 0;
+    const auto stays = tries(trial);
+    if (!stays) return Outcome::Failed;
+    if (*stays) return Outcome::Decided;
+  }
+  if (!*confirmed[0] && !*confirmed[1]) return Outcome::Sliding;
+  trial[index] = static_cast<std::int8_t>(*confirmed[0] ? first : -first);
+  const auto good = tries(trial);
+  return good ? Outcome::Decided : Outcome::Failed;
+}
+
+/// Several functions at a zero: all choices of sides in order, the present one first, zeros last.
+SideChooser::Outcome SideChooser::together() {
+  const auto start = sides();
+  constexpr std::size_t most = 6;  // 3^6 trials
+  const std::size_t count = std::min(at_zero_.size(), most);
+  std::size_t trials = 1;
+  for (std::size_t i = 0; i < count; ++i) trials *= 3;
+  for (std::size_t number = 0; number < trials; ++number) {
+    auto trial = start;
+    std::size_t digits = number;
+    for (std::size_t i = 0; i < count; ++i, digits /= 3) {
+      std::int8_t& side = trial[at_zero_[i]];
+      const std::int8_t first = side == 0 ? std::int8_t{1} : side;
+      side = digits % 3 == 0 ? first : digits % 3 == 1 ? static_cast<std::int8_t>(-first) : std::int8_t{0};
+    }
+    const auto confirmed = tries(trial);
+    if (!confirmed) return Outcome::Failed;
+    if (*confirmed) return Outcome::Decided;
+  }
+  return Outcome::Sliding;
+}
+
+}  // namespace maupertuis::taylor

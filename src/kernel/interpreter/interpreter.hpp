@@ -1,0 +1,44 @@
+#pragma once
+#include "kernel/jet/rules.hpp"
+#include "kernel/program/program.hpp"
+
+#include <span>
+#include <vector>
+
+/// The reference backend: one instruction after the other, one order after the other. A backend offers these
+/// operations on the arrays of a workspace and nothing else.
+namespace maupertuis::interpreter {
+
+/// What the operations work on.
+struct Memory {
+  explicit Memory(const Program& program, int orders);
+
+  double* row(int order) { return rows.data() + static_cast<std::size_t>(order) * stride; }
+  const double* row(int order) const { return rows.data() + static_cast<std::size_t>(order) * stride; }
+  jet::Column<double> column(Slot slot) const { return {rows.data() + slot, stride}; }
+
+  const Program& program;
+  std::size_t stride;
+  std::vector<double> constants;     // [constants]
+  std::vector<double> coefficients;  // [terms], from the constants
+  std::vector<double> rows;          // [orders × stride]: coefficient k of slot s at [k · stride + s]
+};
+
+/// Fills constants and coefficients.
+void compute_constants(Memory& memory, std::span<const double> parameters, std::span<const std::int8_t> sides);
+
+/// Sets the leaves but the coordinates at all orders.
+void set_leaves(Memory& memory, double t, int orders);
+
+/// Every instruction of a section at the order that belongs to the stage.
+void run_section(Memory& memory, Section section, int stage);
+
+/// Directional derivatives of the instructions of Dynamics at order 0, `Width` directions at once: for a slot of lag ℓ,
+/// ∂/∂q^(ℓ) applied to the directions. In: those of the coordinates; out: those of every slot. [slots × Width]
+template <int Width>
+void tangents(const Memory& memory, double* tangent);
+
+/// Sum of the sizes of the terms of a slot at order 0; its own size where it is no sum.
+double term_size(const Memory& memory, const Instruction* producer, Slot slot);
+
+}  // namespace maupertuis::interpreter

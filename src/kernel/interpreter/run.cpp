@@ -1,0 +1,121 @@
+#include "kernel/interpreter/elementary.hpp"
+#include "kernel/interpreter/interpreter.hpp"
+
+#include <cmath>
+
+namespace maupertuis::interpreter {
+namespace {
+
+/// One run of instructions at one order: `row` is that order's row. Each case decides once for the whole run.
+class RunAtOrder {
+ public:
+  RunAtOrder(Memory& memory, int order) : memory_(memory), k_(order), row_(memory.row(order)) {}
+
+  void operator()(const Run& run) {
+    switch (run.op) {
+      case Op::Linear: return each(run, [this](const Instruction& i) { row_[i.out] = linear_part(i); });
+      case Op::Products: return each(run, [this](const Instruction& i) { row_[i.out] = linear_part(i) + products(i); });
+      case Op::Square: return each(run, [this](const Instruction& i) { row_[i.out] = jet::square(column(i.a), k_); });
+      case Op::Quotient: return each(run, [this](const Instruction& i) { quotient(i); });
+      case Op::SquareRoot: return each(run, [this](const Instruction& i) { square_root(i); });
+      case Op::Power: return each(run, [this](const Instruction& i) { power(i); });
+      case Op::SinCos: return each(run, [this](const Instruction& i) { sincos(i); });
+      case Op::SinhCosh: return each(run, [this](const Instruction& i) { sinhcosh(i); });
+      case Op::Function: return each(run, [this](const Instruction& i) { function(i); });
+      case Op::Derivative: return each(run, [this](const Instruction& i) { derivative(i); });
+      case Op::Select: return each(run, [this](const Instruction& i) { select(i); });
+      default: return;  // leaves
+    }
+  }
+
+ private:
+  template <class F>
+  void each(const Run& run, F&& f) {
+    const Instruction* const instructions = memory_.program.instructions.data();
+    for (std::uint32_t i = run.first; i < run.last; ++i) f(instructions[i]);
+  }
+  jet::Column<double> column(Slot slot) const { return memory_.column(slot); }
+
+  double linear_part(const Instruction& i) const {
+    double sum = 0;
+    const Term* const terms = memory_.program.terms.data();
+    for (std::uint32_t t = i.first_term; t < i.first_product; ++t) sum += memory_.coefficients[t] * row_[terms[t].a];
+    return sum;
+  }
+
+  double products(const Instruction& i) const {
+    double sum = 0;
+    const Term* const terms = memory_.program.terms.data();
+    for (std::uint32_t t = i.first_product; t < i.last_term; ++t)
+      sum += memory_.coefficients[t] * jet::product(column(terms[t].a), column(terms[t].b), k_);
+    return sum;
+  }
+
+  void quotient(const Instruction& i) {
+    row_[i.out] = k_ == 0 ? row_[i.a] / row_[i.b] : jet::quotient(row_[i.a], column(i.b), column(i.out), k_);
+  }
+
+  void square_root(const Instruction& i) {
+    row_[i.out] = k_ == 0 ? std::sqrt(row_[i.a]) : jet::square_root(column(i.a), column(i.out), k_);
+  }
+
+  void power(const Instruction& i) {
+    const double p = memory_.constants[i.constant];
+    row_[i.out] = k_ == 0 ? std::pow(row_[i.a], p) : jet::power(column(i.a), column(i.out), p, k_);
+  }
+
+  void sincos(const Instruction& i) {
+    if (k_ == 0) {
+      row_[i.out] = std::sin(row_[i.a]);
+      row_[i.second] = std::cos(row_[i.a]);
+    } else {
+      jet::integral_pair(column(i.out), column(i.second), column(i.a), k_, -1.0, row_[i.out], row_[i.second]);
+    }
+  }
+
+  void sinhcosh(const Instruction& i) {
+    if (k_ == 0) {
+      row_[i.out] = std::sinh(row_[i.a]);
+      row_[i.second] = std::cosh(row_[i.a]);
+    } else {
+      jet::integral_pair(column(i.out), column(i.second), column(i.a), k_, 1.0, row_[i.out], row_[i.second]);
+    }
+  }
+
+  void function(const Instruction& i) {
+    if (k_ == 0) {
+      row_[i.out] = elementary(i.function, row_[i.a], i.b == no_slot ? 0 : row_[i.b]);
+      return;
+    }
+    double sum = 0;
+    for (std::uint32_t t = i.first_term; t < i.last_term; ++t) {
+      const Term& term = memory_.program.terms[t];
+      sum += memory_.coefficients[t] * jet::integral(column(term.a), column(term.b), k_);
+    }
+    row_[i.out] = sum;
+  }
+
+  /// (du/dt)_k = (k + 1) u_{k+1}
+  void derivative(const Instruction& i) { row_[i.out] = (k_ + 1) * row_[memory_.stride + i.a]; }
+
+  void select(const Instruction& i) {
+    std::uint32_t t = i.first_term;
+    while (t + 1 < i.last_term && memory_.coefficients[t] == 0) ++t;
+    row_[i.out] = row_[memory_.program.terms[t].a];
+  }
+
+  Memory& memory_;
+  int k_;
+  double* row_;
+};
+
+}  // namespace
+
+void run_section(Memory& memory, Section section, int stage) {
+  for (const Run& run : memory.program.runs[section]) {
+    const int order = stage + 2 - run.lag;
+    if (order >= 0) RunAtOrder(memory, order)(run);
+  }
+}
+
+}  // namespace maupertuis::interpreter

@@ -1,0 +1,225 @@
+#include "kernel/interpreter/interpreter.hpp"
+#include "kernel/jet/linear_solver.hpp"
+
+#include <maupertuis/require.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+/// The structured Taylor step (docs/design/kernel_program.md). Stage k finds q_{k+2}: with it set to 0 the residual is
+/// evaluated at order k, M₀ q̈_k = −R_k gives the acceleration, and every coefficient that later orders read is
+/// corrected by its derivative in the direction of q̈_k, which is that of order 0 up to a factor.
+namespace maupertuis {
+
+using interpreter::Memory;
+
+struct KernelWorkspace::Impl {
+  Impl(const Kernel& k, int p)
+      : kernel(k), program(k.program()), order(p), orders(p + 2 + (-2 - program.first_stage)), memory(program, orders),
+        parameters(program.parameters, 0.0), sides(program.switches.size(), 1), solver(program.freedoms),
+        unknown(program.freedoms), producer(program.slots, nullptr) {
+    width = program.freedoms <= 1 ? 1 : program.freedoms <= 2 ? 2 : program.freedoms <= 4 ? 4 : 8;
+    tangent.assign(program.slots * static_cast<std::size_t>(width), 0.0);
+    if (program.freedoms > 8) direction.assign(program.slots, 0.0);
+    for (const Instruction& i : program.instructions) producer[i.out] = &i;
+  }
+
+  KernelStatus run(double t, std::span<const double> q, std::span<const double> v, int stages);
+  KernelStatus factor();
+  bool solve(int stage);
+  void correct(int stage);
+  void correct_by_matrix(double* row, Slot first, Slot last, double factor);
+  void sweep_block(std::size_t first);
+  double coefficient(Slot slot, int k) const;
+
+  Kernel kernel;
+  const Program& program;
+  int order, orders;
+  Memory memory;
+  std::vector<double> parameters;
+  std::vector<std::int8_t> sides;
+  bool stale = true;                 // constants to be computed
+  jet::LinearSolver solver;
+  std::vector<double> unknown;       // [n] −R_k, then q̈_k
+  int width;                         // directions a tangent sweep carries
+  std::vector<double> tangent;       // [slots × width]; with n ≤ 8 it holds ∂slot/∂q^(lag) [slots × n]
+  std::vector<double> direction;     // [slots], n > 8: tangents in the direction of q̈_k
+  std::vector<const Instruction*> producer;  // [slots]
+  std::size_t singular = 0;
+  int last_stage = 0;
+};
+
+namespace {
+
+void sweep(int width, const Memory& memory, double* tangent) {
+  switch (width) {
+    case 1: return interpreter::tangents<1>(memory, tangent);
+    case 2: return interpreter::tangents<2>(memory, tangent);
+    case 4: return interpreter::tangents<4>(memory, tangent);
+    default: return interpreter::tangents<8>(memory, tangent);
+  }
+}
+
+template <int Width>
+void add_combination(double* row, const double* tangent, Slot first, Slot last, const double* direction) {
+  for (Slot slot = first; slot < last; ++slot) {
+    double sum = 0;
+    for (int d = 0; d < Width; ++d) sum += tangent[static_cast<std::size_t>(slot) * Width + d] * direction[d];
+    row[slot] += sum;
+  }
+}
+
+}  // namespace
+
+/// Tangents in the directions of q̈_first … q̈_{first + width − 1}.
+void KernelWorkspace::Impl::sweep_block(std::size_t first) {
+  const auto w = static_cast<std::size_t>(width);
+  std::fill_n(tangent.begin(), program.freedoms * w, 0.0);
+  for (std::size_t d = 0; d < w && first + d < program.freedoms; ++d) tangent[(first + d) * w + d] = 1;
+  sweep(width, memory, tangent.data());
+}
+
+/// M₀ = ∂R/∂q̈ at order 0, column by column, and its factors.
+KernelStatus KernelWorkspace::Impl::factor() {
+  const std::size_t n = program.freedoms;
+  const auto matrix = solver.matrix();
+  const auto w = static_cast<std::size_t>(width);
+  double check = 0;
+  for (std::size_t first = 0; first < n; first += w) {
+    sweep_block(first);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Slot slot = program.residual[i];
+      const bool holds_acceleration = program.tangent_lags[slot] == 2;
+      for (std::size_t d = 0; d < w && first + d < n; ++d) {
+        const double value = holds_acceleration ? tangent[slot * w + d] : 0.0;
+        matrix[i * n + first + d] = value;
+        check += value * 0;
+      }
+    }
+  }
+  if (check != 0) return KernelStatus::NonFinite;  // infinity and NaN times 0 are NaN
+  if (const auto undetermined = solver.factor()) {
+    singular = *undetermined;
+    return KernelStatus::SingularMass;
+  }
+  return KernelStatus::Ok;
+}
+
+/// unknown = q̈_k; false if it is not finite.
+bool KernelWorkspace::Impl::solve(int stage) {
+  const double* const row = memory.row(stage);
+  for (std::size_t i = 0; i < unknown.size(); ++i) unknown[i] = -row[program.residual[i]];
+  solver.solve(unknown);
+  double check = 0;
+  for (const double a : unknown) check += a * 0;
+  return check == 0;
+}
+
+void KernelWorkspace::Impl::correct_by_matrix(double* row, Slot first, Slot last, double factor) {
+  double scaled[8] = {};
+  for (std::size_t i = 0; i < unknown.size(); ++i) scaled[i] = unknown[i] * factor;
+  switch (width) {
+    case 1: return add_combination<1>(row, tangent.data(), first, last, scaled);
+    case 2: return add_combination<2>(row, tangent.data(), first, last, scaled);
+    case 4: return add_combination<4>(row, tangent.data(), first, last, scaled);
+    default: return add_combination<8>(row, tangent.data(), first, last, scaled);
+  }
+}
+
+/// Coefficient k + 2 − ℓ of a slot of lag ℓ follows q̈_k with its order-0 tangent times 1, 1/(k+1), 1/((k+1)(k+2)).
+void KernelWorkspace::Impl::correct(int stage) {
+  const std::size_t n = program.freedoms;
+  const double lag1 = 1.0 / (stage + 1), lag0 = lag1 / (stage + 2);
+  const double factors[3] = {lag0, lag1, 1};
+  double* const next = memory.row(stage + 2);
+  for (std::size_t i = 0; i < n; ++i) next[i] = unknown[i] * lag0;
+  const bool by_matrix = n <= 8;
+  if (!by_matrix) {
+    std::copy(unknown.begin(), unknown.end(), direction.begin());
+    interpreter::tangents<1>(memory, direction.data());
+  }
+  Slot first = static_cast<Slot>(n);
+  for (int lag = 0; lag <= 2; ++lag) {
+    const Slot last = program.stored_end[static_cast<std::size_t>(lag)];
+    double* const row = memory.row(stage + 2 - lag);
+    if (by_matrix) correct_by_matrix(row, first, last, factors[lag]);
+    else for (Slot slot = first; slot < last; ++slot) row[slot] += factors[lag] * direction[slot];
+    first = last;
+  }
+}
+
+KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std::span<const double> v, int stages) {
+  MAUP_REQUIRE(q.size() == program.freedoms && v.size() == program.freedoms);
+  if (stale) interpreter::compute_constants(memory, parameters, sides);
+  stale = false;
+  last_stage = stages - 1;
+  interpreter::set_leaves(memory, t, orders);
+  std::copy(q.begin(), q.end(), memory.row(0));
+  std::copy(v.begin(), v.end(), memory.row(1));
+  for (int stage = program.first_stage; stage < stages; ++stage) {
+    if (stage >= 0) std::fill_n(memory.row(stage + 2), program.freedoms, 0.0);
+    interpreter::run_section(memory, Dynamics, stage);
+    if (stage == 0)
+      if (const auto status = factor(); status != KernelStatus::Ok) return status;
+    if (stage >= 0) {
+      if (!solve(stage)) return KernelStatus::NonFinite;
+      correct(stage);
+    }
+    interpreter::run_section(memory, Along, stage);
+    if (stage <= 0) interpreter::run_section(memory, AtPoint, stage);
+  }
+  return KernelStatus::Ok;
+}
+
+double KernelWorkspace::Impl::coefficient(Slot slot, int k) const {
+  return k <= last_stage + 2 - program.lags[slot] && k < orders ? memory.row(k)[slot] : 0.0;
+}
+
+KernelWorkspace::KernelWorkspace(const Kernel& kernel, int order) : impl_(std::make_unique<Impl>(kernel, order)) {
+  MAUP_REQUIRE(order >= 1);
+}
+KernelWorkspace::~KernelWorkspace() = default;
+KernelWorkspace::KernelWorkspace(KernelWorkspace&&) noexcept = default;
+
+int KernelWorkspace::order() const { return impl_->order; }
+
+void KernelWorkspace::set_parameters(std::span<const double> values) {
+  MAUP_REQUIRE(values.size() == impl_->parameters.size());
+  impl_->parameters.assign(values.begin(), values.end());
+  impl_->stale = true;
+}
+
+void KernelWorkspace::set_branches(std::span<const std::int8_t> sides) {
+  MAUP_REQUIRE(sides.size() == impl_->sides.size());
+  impl_->stale = impl_->stale || !std::equal(sides.begin(), sides.end(), impl_->sides.begin());
+  impl_->sides.assign(sides.begin(), sides.end());
+}
+
+KernelStatus KernelWorkspace::expand(double t, std::span<const double> q, std::span<const double> v) {
+  return impl_->run(t, q, v, impl_->order);
+}
+KernelStatus KernelWorkspace::evaluate(double t, std::span<const double> q, std::span<const double> v) {
+  return impl_->run(t, q, v, 1);
+}
+
+const double* KernelWorkspace::coordinate(int k) const { return impl_->memory.row(k); }
+double KernelWorkspace::acceleration(std::size_t i) const { return 2 * impl_->memory.row(2)[i]; }
+double KernelWorkspace::observable(std::size_t i) const { return impl_->memory.row(0)[impl_->program.observables[i]]; }
+double KernelWorkspace::switch_function(std::size_t i, int k) const {
+  return impl_->coefficient(impl_->program.switch_slots[i], k);
+}
+double KernelWorkspace::event(std::size_t i, int k) const { return impl_->coefficient(impl_->program.events[i], k); }
+double KernelWorkspace::integrand(std::size_t i, int k) const {
+  return impl_->coefficient(impl_->program.integrands[i], k);
+}
+double KernelWorkspace::switch_scale(std::size_t i) const {
+  const Slot slot = impl_->program.switch_slots[i];
+  return interpreter::term_size(impl_->memory, impl_->producer[slot], slot);
+}
+double KernelWorkspace::event_scale(std::size_t i) const {
+  const Slot slot = impl_->program.events[i];
+  return interpreter::term_size(impl_->memory, impl_->producer[slot], slot);
+}
+std::size_t KernelWorkspace::singular_coordinate() const { return impl_->singular; }
+
+}  // namespace maupertuis

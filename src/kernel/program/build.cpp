@@ -1,0 +1,70 @@
+#include "kernel/program/lowering.hpp"
+#include "kernel/program/program.hpp"
+
+#include <maupertuis/require.hpp>
+
+namespace maupertuis {
+namespace {
+
+using lowering::Lowering;
+using lowering::NodeIndex;
+using lowering::Outputs;
+
+Outputs lower_outputs(Lowering& lowering, const KernelSource& source) {
+  std::vector<Expr> roots;
+  for (const auto* list : {&source.residual, &source.events, &source.integrands, &source.observables})
+    roots.insert(roots.end(), list->begin(), list->end());
+  const std::vector<NodeIndex> nodes = lowering.lower(roots);
+  auto next = nodes.begin();
+  const auto take = [&](std::size_t count) {
+    std::vector<NodeIndex> part(next, next + static_cast<std::ptrdiff_t>(count));
+    next += static_cast<std::ptrdiff_t>(count);
+    return part;
+  };
+  Outputs outputs;
+  outputs.residual = take(source.residual.size());
+  outputs.events = take(source.events.size());
+  outputs.integrands = take(source.integrands.size());
+  outputs.observables = take(source.observables.size());
+  outputs.switches = lowering.switch_nodes;
+  return outputs;
+}
+
+void fuse_sums(Lowering& lowering, const Outputs& outputs) {
+  std::vector<NodeIndex> roots;
+  for (const auto* list : {&outputs.residual, &outputs.events, &outputs.integrands, &outputs.observables,
+                           &outputs.switches})
+    roots.insert(roots.end(), list->begin(), list->end());
+  lowering::fuse(lowering.graph, roots);
+}
+
+}  // namespace
+
+Kernel build_kernel(const KernelSource& source) {
+  MAUP_REQUIRE(source.residual.size() == source.coordinates.size());
+  auto program = std::make_shared<Program>();
+  Lowering lowering(source);
+  const Outputs outputs = lower_outputs(lowering, source);
+  fuse_sums(lowering, outputs);
+  lowering::schedule(lowering.graph, outputs, *program);
+
+  program->constants = std::move(lowering.graph.constants.constants);
+  program->constant_arguments = std::move(lowering.graph.constants.arguments);
+  program->freedoms = source.coordinates.size();
+  program->parameters = source.parameters.size();
+  program->switches = std::move(lowering.switches);
+  for (const Expr& q : source.coordinates) program->coordinate_names.push_back(q.name());
+  for (const Expr& p : source.parameters) program->parameter_names.push_back(p.name());
+  return Kernel(std::move(program));
+}
+
+std::size_t Kernel::freedoms() const { return program_->freedoms; }
+std::size_t Kernel::parameters() const { return program_->parameters; }
+std::size_t Kernel::observables() const { return program_->observables.size(); }
+std::size_t Kernel::events() const { return program_->events.size(); }
+std::size_t Kernel::integrands() const { return program_->integrands.size(); }
+std::span<const SwitchFunction> Kernel::switches() const { return program_->switches; }
+const std::string& Kernel::coordinate_name(std::size_t index) const { return program_->coordinate_names.at(index); }
+std::string Kernel::print() const { return maupertuis::print(*program_); }
+
+}  // namespace maupertuis

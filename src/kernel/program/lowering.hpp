@@ -1,0 +1,56 @@
+#pragma once
+#include "kernel/program/graph.hpp"
+
+#include <maupertuis/kernel.hpp>
+
+#include <unordered_map>
+
+namespace maupertuis::lowering {
+
+/// Turns expressions into graph nodes, each expression once, children before parents.
+class Lowering {
+ public:
+  explicit Lowering(const KernelSource& source);
+  /// The node of each root.
+  std::vector<NodeIndex> lower(std::span<const Expr> roots);
+
+  Graph graph;
+  std::vector<SwitchFunction> switches;
+  std::vector<NodeIndex> switch_nodes;
+
+ private:
+  Scaled lower_node(Expr e);
+  Scaled of(Expr e) const { return done_.at(e.id()); }
+  Scaled constant(ConstantId id) const { return {id, no_node}; }
+  Scaled constant_function(Expr e);
+  Scaled symbol(Expr e);
+  Scaled sum(Expr e);
+  Scaled product(Expr e);
+  Scaled multiply(std::vector<Scaled> factors);
+  Scaled divide(Scaled numerator, Scaled denominator);
+  Scaled power(Expr e);
+  Scaled integer_power(Scaled base, std::int64_t exponent);
+  Scaled function(Kind kind, Scaled argument);
+  Scaled function_of_integral(Kind kind, NodeIndex u);
+  Scaled hyperbola(Kind kind, NodeIndex u, int sign);
+  Scaled exponential(Scaled argument);
+  Scaled atan2(Scaled y, Scaled x);
+  Scaled time_derivative(Scaled argument);
+
+  // Switches: everything here is linear in its operands once the sides are fixed.
+  Scaled difference(Scaled a, Scaled b);
+  /// The sign, −1, 0 or 1, of a switch function as a constant.
+  ConstantId side(Scaled function, SwitchFunction meaning);
+  Scaled with_switch(Expr e);
+  Scaled extremum(Expr e);
+  Scaled condition(Expr e);
+  Scaled piecewise(Expr e);
+  Scaled select(std::span<const std::pair<ConstantId, Scaled>> choices);
+
+  std::unordered_map<NodeId, Scaled> done_;
+  std::unordered_map<NodeId, std::uint32_t> uses_;
+  std::unordered_map<NodeId, std::uint32_t> coordinates_, parameters_;
+  std::unordered_map<NodeIndex, std::uint32_t> switch_of_node_;
+};
+
+}  // namespace maupertuis::lowering
