@@ -1,0 +1,118 @@
+#include "symbolic/evaluate/degree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+namespace maupertuis::evaluation {
+namespace {
+
+struct Fraction {
+  double up = 0, down = 0;   // degrees
+  double height = 0;
+};
+
+Fraction product(const Fraction& a, const Fraction& b) { return {a.up + b.up, a.down + b.down, a.height + b.height}; }
+
+/// Over the product of the denominators.
+Fraction sum(const std::vector<Fraction>& terms) {
+  Fraction total;
+  double down = 0, height = 0;
+  for (const Fraction& f : terms) {
+    down += f.down;
+    if (f.down > 0) height += f.height;
+  }
+  for (const Fraction& f : terms) {
+    total.up = std::max(total.up, f.up + down - f.down);
+    total.height = std::max(total.height, f.height);
+  }
+  total.down = down;
+  total.height += height + std::log2(static_cast<double>(terms.size()) + 1);
+  return total;
+}
+
+Fraction power(Fraction base, double exponent) {
+  if (exponent < 0) std::swap(base.up, base.down);
+  const double n = std::abs(exponent);
+  return {base.up * n, base.down * n, base.height * n};
+}
+
+double bits(const Rational& value) {
+  const auto parts = value.small();
+  if (!parts) return 4.0 * static_cast<double>(value.numerator_string().size() + value.denominator_string().size());
+  return std::log2(1.0 + std::abs(static_cast<double>(parts->numerator))) + std::log2(static_cast<double>(parts->denominator));
+}
+
+/// e^(i·argument) as a monomial of the basis: the sum of the absolute values of its coefficients over a common
+/// denominator.
+double angle_degree(const Tape& tape, Position argument) {
+  double degree = 0, denominator = 1;
+  const auto add = [&](Position at) {
+    const auto c = term_view(tape, at).coefficient.small();
+    if (!c) { degree = 1e30; return; }
+    degree += std::abs(static_cast<double>(c->numerator)) / static_cast<double>(c->denominator);
+    denominator = std::max(denominator, static_cast<double>(c->denominator));
+  };
+  if (tape.kind(argument) == Kind::Sum) {
+    for (const Position term : tape.arguments(argument)) add(term);
+  } else {
+    add(argument);
+  }
+  return degree * denominator;
+}
+
+}  // namespace
+
+Complexity complexity(const Tape& tape) {
+  Complexity result;
+  std::vector<Fraction> f(tape.size()), terms;
+  std::unordered_map<Position, Position> base_of_exponent;
+  for (Position at = 0; at < tape.size(); ++at) {
+    const auto arguments = tape.arguments(at);
+    switch (tape.kind(at)) {
+      case Kind::Number: f[at].height = bits(tape.expression(at).number()); break;
+      case Kind::Sum: case Kind::Min: case Kind::Max: case Kind::Piecewise:
+        terms.clear();
+        for (const Position a : arguments) terms.push_back(f[a]);
+        f[at] = sum(terms);
+        if (tape.kind(at) == Kind::Min || tape.kind(at) == Kind::Max) ++result.switches;
+        break;
+      case Kind::Product:
+        f[at] = f[arguments[0]];
+        for (std::size_t i = 1; i < arguments.size(); ++i) f[at] = product(f[at], f[arguments[i]]);
+        break;
+      case Kind::Power: {
+        const Expr exponent = tape.expression(arguments[1]);
+        if (!exponent.is_number()) {
+          f[at] = {1, 1, 0};
+          const auto [known, fresh] = base_of_exponent.emplace(arguments[1], arguments[0]);
+          result.claimable &= fresh ? base_of_exponent.size() == 1 : known->second == arguments[0];
+          break;
+        }
+        f[at] = power(f[arguments[0]], exponent.number().to_double());
+        if (!exponent.number().is_integer()) ++result.radicals;
+        break;
+      }
+      case Kind::Sin: case Kind::Cos: case Kind::Tan: case Kind::Sinh: case Kind::Cosh: case Kind::Tanh: case Kind::Exp: {
+        const double d = angle_degree(tape, arguments[0]);
+        f[at] = {2 * d, 2 * d, 1};
+        break;
+      }
+      case Kind::Asin: case Kind::Acos: case Kind::Atan: case Kind::Atan2: case Kind::Acosh:
+        ++result.radicals;
+        f[at] = {1, 0, 0};
+        break;
+      case Kind::Abs: ++result.switches; f[at] = f[arguments[0]]; break;
+      case Kind::Sign: case Kind::Step: ++result.switches; break;
+      case Kind::Less: case Kind::LessEqual: ++result.switches; break;
+      default: f[at] = {1, 0, 0};
+    }
+  }
+  for (const Position root : tape.roots()) {
+    result.degree = std::max(result.degree, std::max(f[root].up, f[root].down));
+    result.height = std::max(result.height, f[root].height);
+  }
+  return result;
+}
+
+}  // namespace maupertuis::evaluation

@@ -1,0 +1,70 @@
+#include "symbolic/evaluate/field_numbers.hpp"
+#include "symbolic/evaluate/interval.hpp"
+#include "symbolic/evaluate/real_numbers.hpp"
+
+#include <numeric>
+
+namespace maupertuis::evaluation {
+namespace {
+
+constexpr std::uint64_t largest_multiple = 1u << 22;
+
+void note_multiple_of_pi(const Tape& tape, Position at, FieldHints& hints) {
+  if (tape.kind(at) == Kind::Sum) {
+    for (const Position term : tape.arguments(at)) note_multiple_of_pi(tape, term, hints);
+    return;
+  }
+  const TermView term = term_view(tape, at);
+  const auto c = term.coefficient.small();
+  if (tape.kind(term.rest) != Kind::Pi || !c || c->denominator > 4096) return;
+  const std::uint64_t used = std::lcm(std::max<std::uint64_t>(hints.m_used, 2), 2 * static_cast<std::uint64_t>(c->denominator));
+  if (std::lcm(used, std::uint64_t{840}) > largest_multiple) return;
+  hints.m_used = used;
+  hints.m = std::lcm(used, std::uint64_t{840});
+}
+
+/// Whether the sign of this node is asked of its first argument.
+bool asks_sign(const Tape& tape, Position at) {
+  switch (tape.kind(at)) {
+    case Kind::Abs: case Kind::Sign: case Kind::Step: case Kind::Log: return true;
+    case Kind::Power: {
+      const Expr exponent = tape.expression(tape.argument(at, 1));
+      return !exponent.is_number() || !exponent.number().is_integer();
+    }
+    default: return false;
+  }
+}
+
+/// Signs that hold for all real values of the symbols, by interval arithmetic over the whole line.
+std::vector<std::int8_t> definite_signs(const Tape& tape) {
+  using Range = Interval<double>;
+  RealNumbers<Range> numbers([](Expr) { return Range::whole(); });
+  std::vector<Range> values;
+  run(tape, numbers, values);
+  std::vector<std::int8_t> signs(tape.size(), 0);
+  for (Position at = 0; at < tape.size(); ++at)
+    signs[at] = values[at].low >= 0 ? 1 : values[at].high <= 0 ? -1 : 0;
+  return signs;
+}
+
+}  // namespace
+
+FieldHints field_hints(const Tape& tape) {
+  FieldHints hints;
+  bool any_sign = false;
+  for (Position at = 0; at < tape.size(); ++at) {
+    const Kind kind = tape.kind(at);
+    if (kind == Kind::Sin || kind == Kind::Cos || kind == Kind::Tan) note_multiple_of_pi(tape, tape.argument(at, 0), hints);
+    if (!asks_sign(tape, at)) continue;
+    any_sign = true;
+    const Expr argument = tape.expression(tape.argument(at, 0));
+    const bool under_root = kind == Kind::Log || kind == Kind::Power;
+    if (argument.is_symbol() && under_root) hints.positive.insert(argument.id());
+  }
+  bool has_time_derivative = false;
+  for (Position at = 0; at < tape.size() && !has_time_derivative; ++at) has_time_derivative = tape.kind(at) == Kind::TimeDerivative;
+  if (any_sign && !has_time_derivative) hints.sign = definite_signs(tape);
+  return hints;
+}
+
+}  // namespace maupertuis::evaluation

@@ -1,0 +1,263 @@
+#include "symbolic/evaluate/field_numbers.hpp"
+
+#include <stdexcept>
+
+namespace maupertuis::evaluation {
+namespace {
+
+// Keys of the random choices, one a purpose.
+enum : std::uint64_t {
+  key_symbol = 0x73796d, key_exponent = 0x657870, key_log = 0x6c6f67,
+};
+
+}  // namespace
+
+FieldNumbers::FieldNumbers(const PrimeTriple& primes, const FieldHints& hints, std::uint64_t seed)
+    : field_(primes.p), exponents_(primes.q), turns_(primes.r), primes_(primes), hints_(hints), seed_(seed) {
+  choose_generators();
+}
+
+void FieldNumbers::set_seed(std::uint64_t seed) {
+  seed_ = seed;
+  angles_.clear();
+  choose_generators();
+}
+
+FieldNumbers::Value FieldNumbers::random(std::uint64_t key, std::uint64_t second) const {
+  return mix(mix(seed_ ^ mix(key)) ^ second) % primes_.p;
+}
+
+FieldNumbers::Value FieldNumbers::symbol(Expr e) const {
+  const Value x = random(key_symbol, e.id());
+  return hints_.positive.count(e.id()) && field_.character(x) < 0 ? field_.negate(x) : x;
+}
+
+FieldNumbers::Value FieldNumbers::inverse(Value a) const {
+  if (a == 0) throw Redraw{};
+  return field_.inverse(a);
+}
+
+// ------------------------------------------------------------------------------------------ signs, roots, powers
+
+int FieldNumbers::sign(Position at, Value value) const {
+  const int sign = field_.character(value);
+  if (sign == 0) throw Redraw{};
+  if (at < hints_.sign.size() && hints_.sign[at] != 0 && hints_.sign[at] != sign) throw Redraw{};
+  return sign;
+}
+
+FieldNumbers::Value FieldNumbers::positive(Value a) const {
+  if (field_.character(a) <= 0) throw Redraw{};
+  return a;
+}
+
+/// p = 3 mod 4: this root is itself a square, hence multiplicative and "positive".
+FieldNumbers::Value FieldNumbers::square_root(Value a) const {
+  return a == 0 ? 0 : field_.power(positive(a), (primes_.p + 1) / 4);
+}
+
+FieldNumbers::Value FieldNumbers::positive_power(Value base, std::uint64_t exponent) const {
+  return field_.power(positive(base), exponent);
+}
+
+std::uint64_t FieldNumbers::residue_of(const Rational& c, const PrimeField& group) const {
+  return group.residue(group.from(c));
+}
+std::uint64_t FieldNumbers::exponent_of(const Rational& c) const { return residue_of(c, exponents_); }
+
+/// What a term c·rest is the multiple of, as a number that names it: its value divided by c.
+FieldNumbers::Value FieldNumbers::term_key(const Tape& tape, const TermView& term, const std::vector<Value>& values) const {
+  const Value value = values[term.rest];
+  const bool rest_holds_coefficient = !term.coefficient.is_one() && tape.kind(term.rest) == Kind::Product &&
+                                      tape.kind(tape.argument(term.rest, 0)) == Kind::Number &&
+                                      tape.arguments(term.rest).size() > 2;
+  return rest_holds_coefficient ? field_.multiply(value, inverse(number(term.coefficient))) : value;
+}
+
+/// An exponent as a residue modulo q: a sum of rational multiples of basis elements, each a random residue.
+std::uint64_t FieldNumbers::exponent_of(const Tape& tape, Position at, const std::vector<Value>& values) {
+  if (tape.kind(at) == Kind::Number) return exponent_of(tape.expression(at).number());
+  if (tape.kind(at) == Kind::Sum) {
+    std::uint64_t sum = 0;
+    for (const Position term : tape.arguments(at)) sum = (sum + exponent_of(tape, term, values)) % primes_.q;
+    return sum;
+  }
+  const TermView term = term_view(tape, at);
+  const std::uint64_t atom = mix(mix(seed_ ^ key_exponent) ^ term_key(tape, term, values)) % primes_.q;
+  return static_cast<std::uint64_t>(static_cast<unsigned __int128>(exponent_of(term.coefficient)) * atom % primes_.q);
+}
+
+FieldNumbers::Value FieldNumbers::power(const Tape& tape, Position at, const std::vector<Value>& values) {
+  const Position base = tape.argument(at, 0), exponent = tape.argument(at, 1);
+  const Rational* number = tape.expression(exponent).number_or_null();
+  if (number) {
+    if (const auto n = number->as_integer()) {
+      if (*n < 0) return field_.power(inverse(values[base]), static_cast<std::uint64_t>(-*n));
+      return field_.power(values[base], static_cast<std::uint64_t>(*n));
+    }
+  }
+  if (sign(base, values[base]) < 0) throw Redraw{};
+  if (number && *number == Rational(1, 2)) return square_root(values[base]);
+  return positive_power(values[base], number ? exponent_of(*number) : exponent_of(tape, exponent, values));
+}
+
+// ------------------------------------------------------------------------------------------------- exp and log
+
+/// Multiplies by exp of one term c·rest. Where rest holds a logarithm, exp(c·s·log u) = u^(c·s).
+void FieldNumbers::multiply_exponential(const Tape& tape, Position at, const std::vector<Value>& values, Value& product) {
+  if (tape.kind(at) == Kind::Sum) {
+    for (const Position term : tape.arguments(at)) multiply_exponential(tape, term, values, product);
+    return;
+  }
+  const TermView term = term_view(tape, at);
+  const std::uint64_t c = exponent_of(term.coefficient);
+  const Position rest = term.rest;
+  const auto times = [&](Value base, std::uint64_t exponent) {
+    product = field_.multiply(product, positive_power(base, exponent));
+  };
+  const auto x = [&] { return values[tape.argument(rest, 0)]; };
+  const auto plus = [&](Value a, Value b) { return field_.add(a, b); };
+  const Value one = field_.one();
+  switch (tape.kind(rest)) {
+    case Kind::Log: return times(x(), c);
+    case Kind::Asinh: return times(plus(x(), square_root(plus(field_.multiply(x(), x()), one))), c);
+    case Kind::Acosh: return times(plus(x(), square_root(field_.subtract(field_.multiply(x(), x()), one))), c);
+    case Kind::Atanh:
+      return times(field_.multiply(plus(one, x()), inverse(field_.subtract(one, x()))), exponent_of(term.coefficient / Rational(2)));
+    case Kind::Product:
+      for (const Position factor : tape.arguments(rest))
+        if (tape.kind(factor) == Kind::Log) {
+          const Value key = field_.multiply(term_key(tape, term, values), inverse(values[factor]));
+          const std::uint64_t s = mix(mix(seed_ ^ key_exponent) ^ key) % primes_.q;
+          return times(values[tape.argument(factor, 0)],
+                       static_cast<std::uint64_t>(static_cast<unsigned __int128>(c) * s % primes_.q));
+        }
+      break;
+    default: break;
+  }
+  product = field_.multiply(product, field_.power(generator_, exponent_of(tape, at, values)));
+}
+
+FieldNumbers::Value FieldNumbers::exponential(const Tape& tape, Position argument, const std::vector<Value>& values) {
+  Value product = field_.one();
+  multiply_exponential(tape, argument, values, product);
+  return product;
+}
+
+FieldNumbers::Value FieldNumbers::logarithm_of_number(const Rational& value) const {
+  const auto parts = value.small();
+  if (!parts) return random(key_log, field_.from(value));
+  Value sum = 0;
+  const auto add_factors = [&](std::uint64_t n, bool below) {
+    const auto add_one = [&](std::uint64_t factor) {
+      const Value log = random(key_log, field_.from_residue(factor));
+      sum = below ? field_.subtract(sum, log) : field_.add(sum, log);
+    };
+    for (std::uint64_t d = 2; d < 1000 && d * d <= n; ++d)
+      for (; n % d == 0; n /= d) add_one(d);
+    if (n > 1) add_one(n);
+  };
+  add_factors(static_cast<std::uint64_t>(std::abs(parts->numerator)), false);
+  add_factors(static_cast<std::uint64_t>(parts->denominator), true);
+  return sum;
+}
+
+/// log |x| by the structure of x: products, powers and exponentials are taken apart, a sum gives up its content.
+FieldNumbers::Value FieldNumbers::absolute_logarithm(const Tape& tape, Position at, const std::vector<Value>& values) {
+  switch (tape.kind(at)) {
+    case Kind::Number: return logarithm_of_number(tape.expression(at).number());
+    case Kind::Exp: case Kind::Abs: {
+      const Position inner = tape.argument(at, 0);
+      return tape.kind(at) == Kind::Exp ? values[inner] : absolute_logarithm(tape, inner, values);
+    }
+    case Kind::Product: {
+      Value sum = 0;
+      for (const Position factor : tape.arguments(at)) sum = field_.add(sum, absolute_logarithm(tape, factor, values));
+      return sum;
+    }
+    case Kind::Power:
+      return field_.multiply(values[tape.argument(at, 1)], absolute_logarithm(tape, tape.argument(at, 0), values));
+    default: break;
+  }
+  Value value = values[at], content = 0;
+  if (tape.kind(at) == Kind::Sum) {
+    const Rational first = tape.kind(tape.argument(at, 0)) == Kind::Number
+                               ? tape.expression(tape.argument(at, 0)).number()
+                               : term_view(tape, tape.argument(at, 0)).coefficient;
+    content = logarithm_of_number(first);
+    value = field_.multiply(value, inverse(number(first)));
+  }
+  const int sign = field_.character(value);
+  if (sign == 0) throw Redraw{};
+  return field_.add(content, random(key_log, sign < 0 ? field_.negate(value) : value));
+}
+
+FieldNumbers::Value FieldNumbers::logarithm(const Tape& tape, Position argument, const std::vector<Value>& values) {
+  if (sign(argument, values[argument]) < 0) throw Redraw{};
+  return absolute_logarithm(tape, argument, values);
+}
+
+// --------------------------------------------------------------------------------------------------- functions
+
+bool FieldNumbers::holds(const Tape& tape, Position condition, const std::vector<Value>& values) {
+  const Position a = tape.argument(condition, 0), b = tape.argument(condition, 1);
+  switch (tape.kind(condition)) {
+    case Kind::And: return holds(tape, a, values) && holds(tape, b, values);
+    case Kind::Or: return holds(tape, a, values) || holds(tape, b, values);
+    default: {
+      const int sign = field_.character(field_.subtract(values[b], values[a]));
+      if (sign == 0) throw Redraw{};
+      return sign > 0;
+    }
+  }
+}
+
+FieldNumbers::Value FieldNumbers::function(const Tape& tape, Position at, const std::vector<Value>& values) {
+  const Position argument = tape.argument(at, 0);
+  const auto half = [&](Value a) { return field_.multiply(a, number(Rational(1, 2))); };
+  const auto smaller = [&] {
+    const Value a = values[argument], b = values[tape.argument(at, 1)];
+    return field_.character(field_.subtract(b, a)) > 0 ? std::pair{a, b} : std::pair{b, a};
+  };
+  switch (tape.kind(at)) {
+    case Kind::Power: return power(tape, at, values);
+    case Kind::Sin: return cos_sin(tape, argument, values).sine;
+    case Kind::Cos: return cos_sin(tape, argument, values).cosine;
+    case Kind::Tan: {
+      const Angle a = cos_sin(tape, argument, values);
+      return field_.multiply(a.sine, inverse(a.cosine));
+    }
+    case Kind::Asin: case Kind::Acos: case Kind::Atan: case Kind::Atan2: return angle_of(direction(tape, at, values));
+    case Kind::Exp: return exponential(tape, argument, values);
+    case Kind::Sinh: case Kind::Cosh: case Kind::Tanh: {
+      const Value e = exponential(tape, argument, values), f = inverse(e);
+      const Value sinh = half(field_.subtract(e, f)), cosh = half(field_.add(e, f));
+      if (tape.kind(at) == Kind::Tanh) return field_.multiply(sinh, inverse(cosh));
+      return tape.kind(at) == Kind::Sinh ? sinh : cosh;
+    }
+    case Kind::Log: return logarithm(tape, argument, values);
+    case Kind::Asinh: case Kind::Acosh: case Kind::Atanh: {
+      // The logarithm of exp of this node, as an odd function where the function is odd.
+      const Value x = values[argument];
+      const bool odd = tape.kind(at) != Kind::Acosh;
+      const bool flip = odd && field_.character(x) < 0;
+      const Value log = random(mix(key_log) + static_cast<std::uint64_t>(tape.kind(at)), flip ? field_.negate(x) : x);
+      return flip ? field_.negate(log) : log;
+    }
+    case Kind::Abs: return sign(argument, values[argument]) < 0 ? field_.negate(values[argument]) : values[argument];
+    case Kind::Sign: return number(sign(argument, values[argument]));
+    case Kind::Step: return number(sign(argument, values[argument]) > 0 ? 1 : 0);
+    case Kind::Min: return smaller().first;
+    case Kind::Max: return smaller().second;
+    case Kind::Piecewise: {
+      const auto arguments = tape.arguments(at);
+      for (std::size_t i = 0; i + 1 < arguments.size(); i += 2)
+        if (holds(tape, arguments[i], values)) return values[arguments[i + 1]];
+      return values[arguments.back()];
+    }
+    case Kind::Less: case Kind::LessEqual: case Kind::And: case Kind::Or: return 0;   // asked by `holds`
+    default: throw std::logic_error("a value of d/dt was asked for over a prime field; please report");
+  }
+}
+
+}  // namespace maupertuis::evaluation

@@ -1,0 +1,100 @@
+#pragma once
+#include "symbolic/evaluate/evaluator.hpp"
+#include "symbolic/evaluate/prime_field.hpp"
+
+#include <unordered_map>
+#include <unordered_set>
+
+namespace maupertuis::evaluation {
+
+/// Thrown where a random point is of no use: a denominator vanishes, a radicand is no square. Draw another.
+struct Redraw {
+  bool another_prime = false;   // a constant is to blame: another point does not help
+};
+
+/// What an evaluation over a prime field must know of an expression beside its nodes.
+struct FieldHints {
+  std::uint64_t m_used = 0;                  // lcm of 2·denominator over the multiples of π in angles; 0: none
+  std::uint64_t m = 840;                     // lcm of that and 840
+  std::vector<std::int8_t> sign;             // [tape] +1, −1 where the value has this sign at all real points, else 0
+  std::unordered_set<NodeId> positive;       // symbols under a root or a logarithm: drawn positive
+};
+FieldHints field_hints(const Tape& tape);
+
+/// The real numbers with their elementary functions, imitated over a prime field: a random homomorphic image in which
+/// every identity that the functions obey by algebra holds exactly.
+///
+///   sign      Legendre's symbol: multiplicative, and −1 at −1. |x| = sign(x) x; √ of a "positive" number is its
+///             "positive" root, so that √(xy) = √x √y and √(x²) = |x|.
+///   powers    positive numbers form a group of prime order q: x^s is a power with exponent in ℤ/q.
+///   exp       a sum of multiples of basis elements goes to a product of powers in that group; log inverts it.
+///   sin, cos  the same in the circle c² + s² = 1, a group of order m·r, whose m-th roots are the multiples of π.
+///   others    (log of a sum, atan …): a random number that depends on the value of the argument alone, with the
+///             symmetries of the function.
+///
+/// docs/theory/zero_test.md proves what follows from a value that is zero here.
+class FieldNumbers {
+ public:
+  using Value = PrimeField::Value;
+  struct Angle { Value cosine, sine; };
+
+  FieldNumbers(const PrimeTriple& primes, const FieldHints& hints, std::uint64_t seed);
+
+  const PrimeField& field() const { return field_; }
+  /// A random number that depends on the seed and the two keys alone.
+  Value random(std::uint64_t key, std::uint64_t second = 0) const;
+  void set_seed(std::uint64_t seed);
+
+  Value number(const Rational& value) const { return field_.from(value); }
+  Value pi() const { return random(0x7069); }
+  Value symbol(Expr e) const;
+  Value add(Value a, Value b) const { return field_.add(a, b); }
+  Value subtract(Value a, Value b) const { return field_.subtract(a, b); }
+  Value multiply(Value a, Value b) const { return field_.multiply(a, b); }
+  Value negate(Value a) const { return field_.negate(a); }
+  Value inverse(Value a) const;
+  bool is_zero(Value a) const { return a == 0; }
+
+  /// `values` need hold only what stands below `at`.
+  Value function(const Tape& tape, Position at, const std::vector<Value>& values);
+  bool holds(const Tape& tape, Position condition, const std::vector<Value>& values);
+  Angle cos_sin(const Tape& tape, Position argument, const std::vector<Value>& values);
+  Value exponential(const Tape& tape, Position argument, const std::vector<Value>& values);
+  Value logarithm(const Tape& tape, Position argument, const std::vector<Value>& values);
+  /// ±1. A value that has one sign at all real points must have it here too.
+  int sign(Position at, Value value) const;
+
+ private:
+  Value power(const Tape& tape, Position at, const std::vector<Value>& values);
+  Value positive_power(Value base, std::uint64_t exponent) const;
+  Value square_root(Value a) const;
+  Value positive(Value a) const;
+  std::uint64_t exponent_of(const Rational& c) const;
+  std::uint64_t exponent_of(const Tape& tape, Position at, const std::vector<Value>& values);
+  void multiply_exponential(const Tape& tape, Position at, const std::vector<Value>& values, Value& product);
+  void rotate(const Tape& tape, Position at, const std::vector<Value>& values, Angle& angle);
+  Angle direction(const Tape& tape, Position at, const std::vector<Value>& values);
+  Value angle_of(Angle direction) const;
+  Value absolute_logarithm(const Tape& tape, Position at, const std::vector<Value>& values);
+  Value logarithm_of_number(const Rational& value) const;
+  Value term_key(const Tape& tape, const TermView& term, const std::vector<Value>& values) const;
+  std::uint64_t residue_of(const Rational& c, const PrimeField& group) const;
+
+  Angle turned(Angle a, Angle b) const;
+  Angle turned(Angle a, std::uint64_t times) const;
+  Angle opposite(Angle a) const { return {a.cosine, field_.negate(a.sine)}; }
+  Angle random_direction(std::uint64_t key) const;
+  void choose_generators();
+  void choose_right_angles();
+
+  PrimeField field_, exponents_, turns_;     // modulo p, q, r
+  PrimeTriple primes_;
+  const FieldHints& hints_;
+  std::uint64_t seed_;
+  Value generator_ = 0;                      // of the positive numbers
+  Angle turn_{};                             // of the rotations of order r
+  Angle root_{};                             // rotation by 2π/m
+  std::unordered_map<Position, Angle> angles_;
+};
+
+}  // namespace maupertuis::evaluation

@@ -1,0 +1,34 @@
+#pragma once
+// The only place that names the 100-digit type; for .cpp files that calculate with it (Boost is slow to compile).
+#include <boost/multiprecision/cpp_bin_float.hpp>
+
+#include "symbolic/evaluate/interval.hpp"
+
+namespace maupertuis::evaluation {
+
+using Real100 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<100>, boost::multiprecision::et_off>;
+
+inline Real100 real100_from(const Rational& value) {
+  return Real100(value.numerator_string()) / Real100(value.denominator_string());
+}
+
+template <>
+struct RealTraits<Real100> {
+  static Real100 infinity() { return std::numeric_limits<Real100>::infinity(); }
+  // Boost's elementary functions err by some units of the 100th digit; ten digits are given away.
+  static Real100 slack(const Real100& x) { return abs(x) * Real100(1e-90) + Real100("1e-1000"); }
+  static Real100 pi() { return boost::math::constants::pi<Real100>(); }
+  static Real100 from(const Rational& value) { return real100_from(value); }
+};
+
+inline void from_rational(Real100& out, const Rational& value) { out = real100_from(value); }
+inline void set_pi(Real100& out) { out = RealTraits<Real100>::pi(); }
+inline std::optional<bool> less(const Real100& a, const Real100& b) {
+  if (isnan(a) || isnan(b)) return std::nullopt;
+  return a < b;
+}
+inline Real100 unknown_between(const Real100&, const Real100&) { return std::numeric_limits<Real100>::quiet_NaN(); }
+inline Real100 integer_power(const Real100& x, long n) { return pow(x, static_cast<int>(n)); }
+inline Real100 real_power(const Real100& x, const Real100& y) { return pow(x, y); }
+
+}  // namespace maupertuis::evaluation

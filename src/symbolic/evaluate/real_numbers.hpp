@@ -1,0 +1,134 @@
+#pragma once
+#include "symbolic/evaluate/evaluator.hpp"
+
+#include <cmath>
+#include <optional>
+#include <functional>
+#include <stdexcept>
+
+namespace maupertuis::evaluation {
+
+/// Numbers of a real type: double, an interval, 100 digits. The type brings its functions by overloads of sin, pow,
+/// … found beside it, and three more: `from_rational(Real&, const Rational&)`, `set_pi(Real&)`, and `less`, which
+/// may not know. A switch that is not known gives `unknown_between`.
+inline void from_rational(double& out, const Rational& value) { out = value.to_double(); }
+inline void set_pi(double& out) { out = 3.14159265358979323846; }
+inline std::optional<bool> less(double a, double b) {
+  if (std::isnan(a) || std::isnan(b)) return std::nullopt;
+  return a < b;
+}
+inline double unknown_between(double, double) { return std::nan(""); }
+inline double integer_power(double x, long n) { return std::pow(x, static_cast<double>(n)); }
+inline double real_power(double x, double y) { return std::pow(x, y); }
+
+template <class Real>
+class RealNumbers {
+ public:
+  using Value = Real;
+  using Lookup = std::function<Real(Expr)>;
+
+  explicit RealNumbers(Lookup symbols) : symbols_(std::move(symbols)) {}
+
+  Real number(const Rational& value) const { Real out; from_rational(out, value); return out; }
+  Real pi() const { Real out; set_pi(out); return out; }
+  Real symbol(Expr e) const { return symbols_(e); }
+  Real add(const Real& a, const Real& b) const { return a + b; }
+  Real subtract(const Real& a, const Real& b) const { return a - b; }
+  Real multiply(const Real& a, const Real& b) const { return a * b; }
+  Real negate(const Real& a) const { return -a; }
+  Real inverse(const Real& a) const { return number(1) / a; }
+
+  Real function(const Tape& tape, Position at, const std::vector<Real>& v) const {
+    const auto arg = [&](std::size_t i) -> const Real& { return v[tape.argument(at, i)]; };
+    switch (tape.kind(at)) {
+      case Kind::Power: return power(tape, at, v);
+      case Kind::Min: return choose(less(arg(1), arg(0)), arg(1), arg(0));
+      case Kind::Max: return choose(less(arg(0), arg(1)), arg(1), arg(0));
+      case Kind::Atan2: { using std::atan2; return atan2(arg(0), arg(1)); }
+      case Kind::Piecewise: return piecewise(tape, at, v);
+      case Kind::Less: case Kind::LessEqual: case Kind::And: case Kind::Or: return number(0);  // asked by `holds`
+      case Kind::TimeDerivative: throw std::logic_error("a value of d/dt was asked for; please report");
+      default: return elementary(tape.kind(at), arg(0));
+    }
+  }
+
+  std::optional<bool> holds(const Tape& tape, Position at, const std::vector<Real>& v) const {
+    const Position a = tape.argument(at, 0), b = tape.argument(at, 1);
+    if (tape.kind(at) == Kind::Less) return less(v[a], v[b]);
+    if (tape.kind(at) == Kind::LessEqual) {
+      const auto greater = less(v[b], v[a]);
+      return greater ? std::optional<bool>(!*greater) : std::nullopt;
+    }
+    const auto first = holds(tape, a, v), second = holds(tape, b, v);
+    const bool decisive = tape.kind(at) == Kind::Or;   // `true` decides an or, `false` an and
+    if ((first && *first == decisive) || (second && *second == decisive)) return decisive;
+    return first && second ? std::optional<bool>(!decisive) : std::nullopt;
+  }
+
+ private:
+  static Real choose(std::optional<bool> condition, const Real& yes, const Real& no) {
+    return condition ? (*condition ? yes : no) : unknown_between(yes, no);
+  }
+
+  Real power(const Tape& tape, Position at, const std::vector<Real>& v) const {
+    const Position base = tape.argument(at, 0), exponent = tape.argument(at, 1);
+    const Rational* number = tape.expression(exponent).number_or_null();
+    if (!number) return real_power(v[base], v[exponent]);
+    if (const auto n = number->as_integer()) return integer_power(v[base], *n);
+    using std::sqrt;
+    if (*number == Rational(1, 2)) return sqrt(v[base]);
+    return real_power(v[base], v[exponent]);
+  }
+
+  Real piecewise(const Tape& tape, Position at, const std::vector<Real>& v) const {
+    const auto arguments = tape.arguments(at);
+    for (std::size_t i = 0; i + 1 < arguments.size(); i += 2) {
+      const auto condition = holds(tape, arguments[i], v);
+      if (!condition) {
+        Real hull = v[arguments[i + 1]];
+        for (std::size_t j = i + 2; j < arguments.size(); ++j)
+          if (!is_condition(j, arguments.size())) hull = unknown_between(hull, v[arguments[j]]);
+        return hull;
+      }
+      if (*condition) return v[arguments[i + 1]];
+    }
+    return v[arguments.back()];
+  }
+
+  Real sign(const Real& x) const {
+    const Real zero = number(0);
+    const auto negative = less(x, zero), positive = less(zero, x);
+    if (!negative || !positive) return unknown_between(number(-1), number(1));
+    return number(*positive ? 1 : *negative ? -1 : 0);
+  }
+
+  Real elementary(Kind kind, const Real& x) const {
+    // The library's for double; overloads beside the type for others.
+    using std::sin, std::cos, std::tan, std::asin, std::acos, std::atan, std::sinh, std::cosh, std::tanh, std::asinh,
+        std::acosh, std::atanh, std::exp, std::log, std::abs;
+    switch (kind) {
+      case Kind::Sin: return sin(x);
+      case Kind::Cos: return cos(x);
+      case Kind::Tan: return tan(x);
+      case Kind::Asin: return asin(x);
+      case Kind::Acos: return acos(x);
+      case Kind::Atan: return atan(x);
+      case Kind::Sinh: return sinh(x);
+      case Kind::Cosh: return cosh(x);
+      case Kind::Tanh: return tanh(x);
+      case Kind::Asinh: return asinh(x);
+      case Kind::Acosh: return acosh(x);
+      case Kind::Atanh: return atanh(x);
+      case Kind::Exp: return exp(x);
+      case Kind::Log: return log(x);
+      case Kind::Abs: return abs(x);
+      case Kind::Sign: return sign(x);
+      case Kind::Step: return choose(less(x, number(0)), number(0), number(1));
+      default: throw std::logic_error("an unknown function was evaluated; please report");
+    }
+  }
+
+  Lookup symbols_;
+};
+
+}  // namespace maupertuis::evaluation

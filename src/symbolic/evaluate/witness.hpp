@@ -1,0 +1,24 @@
+#pragma once
+#include <maupertuis/evaluate.hpp>
+
+#include "symbolic/evaluate/tape.hpp"
+
+#include <optional>
+
+namespace maupertuis::evaluation {
+
+struct Witness {
+  Bindings point;
+  double value = 0;
+  std::size_t root = 0;    // which difference
+};
+
+/// A real point at which interval arithmetic proves one of the roots to differ from 0; `points` are tried.
+std::optional<Witness> find_witness(const Tape& tape, int points, std::uint64_t seed);
+/// The same with 100 digits, for values that cancel in double.
+std::optional<Witness> find_precise_witness(const Tape& tape, int points, std::uint64_t seed);
+
+/// A random real point for the symbols of a tape: mostly of order one, now and then large or small.
+Bindings random_real_point(const Tape& tape, int trial, std::uint64_t seed);
+
+}  // namespace maupertuis::evaluation

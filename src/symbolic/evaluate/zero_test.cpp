@@ -1,0 +1,123 @@
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/transform.hpp>
+
+#include "symbolic/evaluate/degree.hpp"
+#include "symbolic/evaluate/field_numbers.hpp"
+#include "symbolic/evaluate/normalize.hpp"
+#include "symbolic/evaluate/witness.hpp"
+
+#include <cmath>
+
+namespace maupertuis {
+namespace {
+
+using namespace evaluation;
+
+constexpr int largest_number_of_points = 4096;
+constexpr double largest_degree = 1099511627776.0;       // 2^40
+constexpr double log2_of_primes = 33;                     // random_prime_triple draws from more than 2^33
+
+/// Points per prime: each combination of the signs that switches ask for must come up.
+int points_needed(const Complexity& c, int wanted) {
+  if (c.switches == 0) return wanted;
+  const double combinations = std::pow(2.0, std::min(c.switches, 12));
+  return static_cast<int>(std::min<double>(largest_number_of_points, std::max<double>(wanted, 12 * combinations)));
+}
+
+/// The probability that a nonzero expression vanishes at all points modulo both primes (docs/theory/zero_test.md).
+double error_bound(const Complexity& c, int points, double smallest_group) {
+  if (!c.claimable || !(c.degree <= largest_degree) || !(c.height <= largest_degree)) return 1;
+  const double sheets = std::pow(4.0, c.radicals);
+  const double hit = std::min(1.0, (2 * c.degree + 1) * sheets / smallest_group);
+  double at_points = std::pow(hit, points);
+  if (c.switches > 0) {   // the sign combination that differs, with probability 2^-switches a point, must be drawn too
+    const double seen = std::pow(0.5, std::min(c.switches, 60));
+    at_points = std::pow(1 - seen * (1 - hit), points);
+  }
+  const double bad_prime = std::min(1.0, (c.height + c.degree + 61) / 61 / std::pow(2.0, log2_of_primes));
+  const double one_prime = std::min(1.0, at_points + bad_prime);
+  return std::max(one_prime * one_prime, 1e-300);
+}
+
+struct FieldResult {
+  enum class Outcome { AllZero, SomeNonzero, NoPoint } outcome = Outcome::AllZero;
+  int points = 0;
+  double smallest_group = 1;
+};
+
+FieldResult test_over_primes(const Tape& tape, const FieldHints& hints, int points_per_prime, std::uint64_t seed) {
+  FieldResult result;
+  std::vector<FieldNumbers::Value> values;
+  for (int prime = 0; prime < 2; ++prime) {
+    int found = 0;
+    for (int try_prime = 0; try_prime < 40 && found < points_per_prime; ++try_prime) {
+      seed = mix(seed);
+      const PrimeTriple primes = random_prime_triple(hints.m, seed);
+      result.smallest_group = static_cast<double>(std::min(primes.r, primes.q));
+      std::optional<FieldNumbers> numbers;
+      for (int attempt = 0; attempt < 60 + 8 * points_per_prime && found < points_per_prime; ++attempt) {
+        try {
+          seed = mix(seed);
+          numbers ? numbers->set_seed(seed) : static_cast<void>(numbers.emplace(primes, hints, seed));
+          run(tape, *numbers, values);
+        } catch (const Redraw& redraw) {
+          if (redraw.another_prime || (attempt >= 60 && found == 0)) break;
+          continue;
+        }
+        ++found;
+        ++result.points;
+        for (const Position root : tape.roots())
+          if (values[root] != 0) { result.outcome = FieldResult::Outcome::SomeNonzero; return result; }
+      }
+    }
+    if (found < points_per_prime) { result.outcome = FieldResult::Outcome::NoPoint; return result; }
+  }
+  return result;
+}
+
+ZeroTest nonzero(const Witness& witness) {
+  ZeroTest test;
+  test.verdict = Verdict::Nonzero;
+  test.witness = witness.point;
+  test.witness_value = witness.value;
+  test.error_bound = 0;
+  return test;
+}
+
+}  // namespace
+
+ZeroTest zero_test(std::span<const Expr> differences, const ZeroTestOptions& options) {
+  ZeroTest test;
+  std::vector<Expr> roots;
+  for (const Expr& d : expand_time_derivatives(differences))
+    if (!d.is_zero()) roots.push_back(d);
+  if (roots.empty()) {
+    test.verdict = Verdict::Zero;
+    test.error_bound = 0;
+    return test;
+  }
+  // One real point first: it settles most of what is not zero, for the price of one walk.
+  if (const auto witness = find_witness(Tape(roots), 2, options.seed)) return nonzero(*witness);
+
+  const Tape tape(flatten_arguments(roots));
+  const FieldHints hints = field_hints(tape);
+  const Complexity size = complexity(tape);
+  const int points = points_needed(size, options.points);
+  const FieldResult field = test_over_primes(tape, hints, points, options.seed);
+  if (field.outcome == FieldResult::Outcome::AllZero) {
+    test.verdict = Verdict::Zero;
+    test.points = field.points;
+    test.error_bound = error_bound(size, points, field.smallest_group);
+    return test;
+  }
+  if (const auto witness = find_witness(tape, 24, options.seed + 1)) return nonzero(*witness);
+  if (const auto witness = find_precise_witness(tape, 8, options.seed + 2)) return nonzero(*witness);
+  test.reason = field.outcome == FieldResult::Outcome::NoPoint
+                    ? "no point was found at which every root and logarithm is defined"
+                    : "it does not vanish as a formula, but at every real point that was tried it is 0 to 80 digits or undefined";
+  return test;
+}
+
+ZeroTest zero_test(Expr e, const ZeroTestOptions& options) { return zero_test({&e, 1}, options); }
+
+}  // namespace maupertuis
