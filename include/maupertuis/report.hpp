@@ -106,6 +106,10 @@ std::string report_html(const ReportContent& content);
 /// its massive points and bodies are marked. Nothing where there is neither.
 std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& trajectory, std::size_t frames = 6000);
 
+/// `options` with output as fine as an animation wants it (50 rows a second, 1000 to 10,000 in all), where neither they
+/// nor the model say how often.
+SimulationOptions report_run(const Model& model, SimulationOptions options);
+
 /// What else a report may show.
 struct ReportParts {
   const SimulationResult* simulation = nullptr;   // null: no run, no drawing, no plots

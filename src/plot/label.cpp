@@ -9,32 +9,25 @@
 namespace maupertuis {
 namespace {
 
-// Bytes of the UTF-8 character that begins with `lead`.
-std::size_t character_length(char lead) {
-  const auto byte = static_cast<unsigned char>(lead);
-  return byte < 0x80 ? 1 : byte < 0xe0 ? 2 : byte < 0xf0 ? 3 : 4;
-}
-
 std::size_t character_count(std::string_view text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
 }
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
-// θ1 → θ, 1; x_cart → x, cart; φs → φ, s; Ip → I, p; energy stays a word.
+// θ1 → θ, 1; x_cart → x, cart; θ1_max → θ, 1,max; energy stays a word. As formulas print the same names.
 void split_index(std::string_view name, NameParts& parts) {
-  const std::size_t first = name.empty() ? 0 : character_length(name[0]);
-  std::size_t split = name.find('_');
-  if (split == std::string_view::npos) {
-    split = name.size();
-    while (split > first && is_digit(name[split - 1])) --split;
-    const bool one_letter_and_index = split == name.size() && character_count(name) == 2;
-    const bool greek = !name.empty() && !is_letter(name[0]);
-    if (one_letter_and_index || (greek && split > first)) split = first;
+  const std::size_t underscore = name.find('_');
+  const std::string_view stem = name.substr(0, underscore);
+  std::size_t split = stem.size();
+  while (split > 0 && is_digit(stem[split - 1])) --split;
+  if (split == 0) split = stem.size();
+  parts.base = stem.substr(0, split);
+  parts.index = stem.substr(split);
+  if (underscore != std::string_view::npos) {
+    if (!parts.index.empty()) parts.index += ',';
+    parts.index += name.substr(underscore + 1);
   }
-  parts.base = name.substr(0, split);
-  if (split < name.size()) parts.index = name.substr(name[split] == '_' ? split + 1 : split);
   parts.upright = character_count(parts.base) > 1;
 }
 

@@ -19,8 +19,8 @@ TEST_CASE("names split as in print") {
   CHECK(parts("θ1''") == "θ|1|2");
   CHECK(parts("B.x'") == "x|B|1");
   CHECK(parts("x_cart") == "x|cart|0");
-  CHECK(parts("φs") == "φ|s|0");
-  CHECK(parts("Ip") == "I|p|0");
+  CHECK(parts("θ1_max") == "θ|1,max|0");
+  CHECK(parts("Ip") == "Ip||0|upright");
   CHECK(parts("q12") == "q|12|0");
   CHECK(parts("energy") == "energy||0|upright");
   CHECK(parts("") == "||0");

@@ -1,0 +1,144 @@
+#include "report/motion_parts.hpp"
+#include "report/notation.hpp"
+
+#include <maupertuis/print.hpp>
+#include <maupertuis/report.hpp>
+
+#include <fmt/format.h>
+
+#include <array>
+
+/// From the artifacts of a study to plain data: what stands here chooses and names, html.cpp lays out.
+namespace maupertuis {
+namespace {
+
+using Formula = ReportContent::Formula;
+
+std::string unit_of(const MechanicalSystem& system, const Dimension& dimension) {
+  return system.dimensionless ? std::string() : to_string(dimension);
+}
+
+ReportContent::Coordinate coordinate_row(const EquationsOfMotion& equations, std::size_t i, const SimulationResult* run) {
+  const MechanicalSystem& system = *equations.system;
+  const Coordinate& c = system.coordinates[i];
+  const std::string unit = unit_of(system, c.dimension);
+  ReportContent::Coordinate row{to_mathml(c.q, equations.order), to_mathml(c.velocity, equations.order), c.kind, "", ""};
+  if (row.kind.empty() || row.kind == "number") row.kind = unit.empty() || unit == "1" ? "number" : "in " + unit;
+  if (!run || run->start.q.size() <= i) return row;
+  row.start = quantity(run->start.q[i], unit);
+  row.start_velocity = quantity(run->start.v[i], unit_of(system, c.dimension / dimensions::time()));
+  return row;
+}
+
+// The value as the text has it, 60 cm, with 0.6 m beside it; only the latter where the unit cannot be read back.
+ReportContent::Parameter parameter_row(const EquationsOfMotion& equations, const Parameter& parameter) {
+  const std::string si_unit = unit_of(*equations.system, parameter.dimension);
+  const double factor = unit_factor(parameter.unit);
+  const std::string symbol = to_mathml(parameter.symbol, equations.order);
+  if (factor == 0) return {symbol, short_number(parameter.si_value, 10), si_unit == "1" ? "" : si_unit, ""};
+  const bool same = parameter.unit == si_unit || factor == 1;
+  return {symbol, short_number(parameter.si_value / factor, 10), parameter.unit,
+          same ? std::string() : quantity(parameter.si_value, si_unit, 10)};
+}
+
+void add_model(ReportContent& content, const Model& model, const SourceText& source, const EquationsOfMotion& equations,
+               const SimulationResult* run) {
+  const MechanicalSystem& system = model.system;
+  content.name = system.name;
+  content.title = system.title.empty() ? system.name : system.title;
+  content.source = system.source;
+  content.file = source.name() == "-" ? "" : source.name().substr(source.name().rfind('/') + 1);
+  content.model_text = source.text();
+  content.summary.emplace_back("freedoms", fmt::format("{}", system.freedoms()));
+  if (system.dimensionless) content.summary.emplace_back("units", "dimensionless");
+  for (std::size_t i = 0; i < system.coordinates.size(); ++i)
+    content.coordinates.push_back(coordinate_row(equations, i, run));
+  for (const Parameter& parameter : system.parameters)
+    if (parameter.symbol.role() == Role::Parameter) content.parameters.push_back(parameter_row(equations, parameter));
+  for (const Definition& definition : system.definitions)
+    if (definition.symbol)
+      content.definitions.push_back({to_mathml(definition.symbol, equations.order), to_mathml(definition.value, equations.order), "", ""});
+  for (const Input& input : system.inputs)
+    content.definitions.push_back({to_mathml(input.symbol, equations.order), to_mathml(input.formula, equations.order), "", ""});
+}
+
+std::vector<Formula> intermediate_rows(const std::vector<Intermediate>& intermediates, const ReadingOrder& order) {
+  std::vector<Formula> rows;
+  for (const Intermediate& i : intermediates) rows.push_back({to_mathml(i.symbol, order), to_mathml(i.value, order), "", ""});
+  return rows;
+}
+
+void add_equations(ReportContent& content, const Derivation& derivation, const ReadingOrder& order) {
+  for (const ReadableForm& equation : derivation.equations)
+    content.equations.push_back({to_mathml(equation, order), "<mn>0</mn>", "", ""});
+  content.intermediates = intermediate_rows(derivation.intermediates, order);
+  static constexpr std::array<std::string_view, 5> energies{"T", "V", "U", "D", "L"};
+  for (const auto name : energies)
+    for (const DerivationStep& step : derivation.steps)
+      if (step.left == name && step.right)
+        content.energies.push_back({left_side_mathml(step.left), to_mathml(step.right, order), "", ""});
+}
+
+void add_derivation(ReportContent& content, const Derivation& derivation, const ReadingOrder& order) {
+  for (const DerivationStep& step : derivation.steps) {
+    if (content.derivation.empty() || content.derivation.back().title != step.section)
+      content.derivation.push_back({step.section, {}});
+    auto& lines = content.derivation.back().lines;
+    Formula line{left_side_mathml(step.left), "", step.rule, step.sentence};
+    if (step.right) line.right = to_mathml(step.right, order);
+    else line.left.clear();
+    // An equation reads `… = 0`, not `0 = …`.
+    if (step.left == "0") std::swap(line.left, line.right);
+    lines.push_back(line);
+    for (Formula& where : intermediate_rows(step.intermediates, order)) {
+      where.rule = "with";
+      lines.push_back(std::move(where));
+    }
+  }
+}
+
+std::string_view verdict_word(Verdict verdict) {
+  return verdict == Verdict::Zero ? "agrees" : verdict == Verdict::Nonzero ? "differs" : "undecided";
+}
+
+void add_certificate(ReportContent& content, const Certificate& certificate) {
+  content.certified = certificate.passed();
+  for (const CertificateCheck& check : certificate.checks) {
+    std::string statement = check.statement;
+    if (check.applies && check.verdict != Verdict::Zero && !check.reason.empty()) statement += " " + check.reason;
+    content.certificate.push_back({check.name, statement, std::string(verdict_word(check.verdict)),
+                                   check.verdict == Verdict::Zero, check.applies, check.points, check.error_bound});
+  }
+}
+
+void add_messages(ReportContent& content, const Diagnostics& diagnostics, const SourceText& source) {
+  for (const Diagnostic& d : diagnostics.items()) {
+    if (d.severity == Severity::Error) continue;
+    ReportContent::Message message{d.severity, d.code, d.message, d.reason, d.help, 0, ""};
+    if (d.span) {
+      message.line = source.locate(d.span->begin).line;
+      message.text = source.line(message.line);
+    }
+    content.messages.push_back(std::move(message));
+  }
+}
+
+}  // namespace
+
+ReportContent compose_report(const Model& model, const SourceText& source, const EquationsOfMotion& equations,
+                             const Derivation& derivation, const Certificate& certificate,
+                             const Diagnostics& diagnostics, const ReportParts& parts) {
+  ReportContent content;
+  add_model(content, model, source, equations, parts.simulation);
+  add_messages(content, diagnostics, source);
+  add_equations(content, derivation, equations.order);
+  add_derivation(content, derivation, equations.order);
+  add_certificate(content, certificate);
+  const ConservedQuantities conserved = conserved_quantities(equations);
+  add_conserved(content, equations, conserved, parts.simulation);
+  if (parts.simulation) add_motion(content, model, conserved.energy_conserved, *parts.simulation);
+  if (parts.verification) content.expectations = parts.verification->results;
+  return content;
+}
+
+}  // namespace maupertuis

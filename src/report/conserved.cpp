@@ -1,0 +1,97 @@
+#include "report/motion_parts.hpp"
+#include "report/notation.hpp"
+
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/print.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace maupertuis {
+namespace {
+
+constexpr std::size_t most_samples = 1000;
+
+// The values of a function of q, q', t along the rows of a run.
+std::vector<double> along_run(const EquationsOfMotion& equations, Expr function, const Trajectory& run) {
+  const MechanicalSystem& system = *equations.system;
+  const Expr wanted = in_terms_of_motion(system, {&function, 1}).front();
+  Bindings state = parameter_bindings(system);
+  std::vector<double> values;
+  const std::size_t stride = run.rows() / most_samples + 1;
+  for (std::size_t row = 0; row < run.rows(); row += stride) {
+    state[system.context->time()] = run.times[row];
+    for (const Coordinate& c : system.coordinates) {
+      const auto q = run.column(c.name), v = run.column(c.name + "'");
+      if (!q || !v) return {};
+      state[c.q] = run.at(row, *q);
+      state[c.velocity] = run.at(row, *v);
+    }
+    values.push_back(evaluate(wanted, state));
+  }
+  return values;
+}
+
+// Largest change, relative to the largest value; of a quantity that is zero at the start, absolute.
+std::string drift_of(const std::vector<double>& values, const std::string& unit) {
+  double change = 0, size = 0;
+  for (const double value : values) {
+    change = std::max(change, std::abs(value - values[0]));
+    size = std::max(size, std::abs(value));
+  }
+  if (values[0] == 0) return quantity(change, unit, 2) + " (absolute)";
+  return short_number(size > 0 ? change / size : 0, 2);
+}
+
+ReportContent::Formula formula(std::string left, Expr right, const ReadingOrder& order) {
+  const ReadableForm form = readable(expand_time_derivatives(right), order);
+  return {left_side_mathml(left), to_mathml(form.value, order), "", ""};
+}
+
+void add_momentum(ReportContent& content, const EquationsOfMotion& equations, std::size_t i, const SimulationResult* run) {
+  const MechanicalSystem& system = *equations.system;
+  const Coordinate& c = system.coordinates[i];
+  ReportContent::Conserved quantity_row;
+  quantity_row.sentence = fmt::format("{} is cyclic, and nothing acts on it: its momentum is conserved.", c.name);
+  quantity_row.formula = formula("p_" + c.name, equations.momenta[i], equations.order);
+  if (run) {
+    const auto values = along_run(equations, equations.momenta[i], run->trajectory);
+    const std::string unit = system.dimensionless ? "" : to_string(dimensions::action() / c.dimension);
+    if (!values.empty()) {
+      quantity_row.value = quantity(values[0], unit, 10);
+      quantity_row.drift = drift_of(values, unit);
+    }
+  }
+  content.conserved.push_back(std::move(quantity_row));
+}
+
+void add_energy(ReportContent& content, const EquationsOfMotion& equations, const ConservedQuantities& conserved,
+                const SimulationResult* run) {
+  ReportContent::Conserved row;
+  row.sentence = conserved.energy_case;
+  if (!conserved.energy_conserved) {
+    row.sentence += " It is not conserved; along the motion it changes at the rate";
+    row.formula = formula("d/dt h_E", equations.power, equations.order);
+    content.conserved.push_back(std::move(row));
+    return;
+  }
+  row.sentence += " It is conserved.";
+  row.formula = formula("h_E", equations.energy_function, equations.order);
+  if (const auto column = run ? run->trajectory.column("energy") : std::nullopt; column && run->trajectory.rows() > 0) {
+    row.value = quantity(run->trajectory.at(0, *column), run->trajectory.columns[*column].unit, 10);
+    row.drift = short_number(run->statistics.energy_drift, 2);
+  }
+  content.conserved.push_back(std::move(row));
+}
+
+}  // namespace
+
+void add_conserved(ReportContent& content, const EquationsOfMotion& equations, const ConservedQuantities& conserved,
+                   const SimulationResult* run) {
+  add_energy(content, equations, conserved, run);
+  for (const std::size_t i : conserved.conserved_momenta) add_momentum(content, equations, i, run);
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,90 @@
+#include "report/motion_parts.hpp"
+#include "report/notation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace maupertuis {
+namespace {
+
+constexpr std::size_t most_phase_portraits = 4;
+constexpr std::size_t most_numbers = 150'000;   // of a drawing: about a megabyte of page
+constexpr double plot_width = 520;
+
+void add_statistics(ReportContent& content, const SimulationResult& run, bool dimensionless) {
+  const SimulationStatistics& s = run.statistics;
+  const std::string second = dimensionless ? "" : "s";
+  const auto add = [&](const char* name, std::string value) { content.statistics.emplace_back(name, std::move(value)); };
+  add("from", quantity(run.start.t, second) + " to " + quantity(run.final.t, second, 10));
+  add("method", s.order > 0 ? fmt::format("Taylor series of order {}, {}", s.order, s.backend) : s.backend);
+  add("steps", fmt::format("{}", s.steps));
+  if (s.switches > 0) add("switches crossed", fmt::format("{}", s.switches));
+  add("energy drift", short_number(s.energy_drift, 2));
+  if (s.constraint_residual > 0) add("constraint residual", short_number(s.constraint_residual, 2));
+  add("time of computation", short_number(s.seconds, 2) + " s, and " + short_number(s.compile_seconds, 2) + " s for the kernel");
+  if (run.ending != Ending::Finished && !run.reason.empty()) {
+    content.ending = run.reason;
+    content.ending[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(content.ending[0])));
+    content.ending += '.';
+  }
+}
+
+// The column `energy drift`, energy − energy at the start: what is left of a constant is worth a look.
+void add_drift_column(Trajectory& run) {
+  const auto energy = run.column("energy");
+  if (!energy || run.rows() == 0) return;
+  const std::size_t width = run.columns.size();
+  std::vector<double> values;
+  values.reserve(run.rows() * (width + 1));
+  for (std::size_t row = 0; row < run.rows(); ++row) {
+    values.insert(values.end(), run.values.begin() + static_cast<std::ptrdiff_t>(row * width),
+                  run.values.begin() + static_cast<std::ptrdiff_t>((row + 1) * width));
+    values.push_back(run.at(row, *energy) - run.at(0, *energy));
+  }
+  run.columns.push_back({"energy drift", run.columns[*energy].unit});
+  run.values = std::move(values);
+}
+
+void add_picture(ReportContent& content, std::string caption, std::vector<std::string> columns, std::string against = {}) {
+  ReportContent::Picture picture{std::move(caption), {}};
+  picture.options.columns = std::move(columns);
+  picture.options.against = std::move(against);
+  picture.options.width = plot_width;
+  if (!picture.options.columns.empty() && plot_problem(content.trajectory, picture.options).empty())
+    content.pictures.push_back(std::move(picture));
+}
+
+void add_pictures(ReportContent& content, const MechanicalSystem& system, bool energy_conserved) {
+  std::vector<std::string> coordinates, velocities;
+  for (const Coordinate& c : system.coordinates) {
+    coordinates.push_back(c.name);
+    velocities.push_back(c.name + "'");
+  }
+  add_picture(content, "The coordinates.", coordinates);
+  add_picture(content, "Their velocities.", velocities);
+  if (energy_conserved) add_picture(content, "What the computation adds to the energy, which is conserved.", {"energy drift"});
+  else add_picture(content, "The energy function.", {"energy"});
+  for (std::size_t i = 0; i < std::min(coordinates.size(), most_phase_portraits); ++i)
+    add_picture(content, fmt::format("Phase portrait of {}; the dot is the start.", coordinates[i]), {velocities[i]}, coordinates[i]);
+}
+
+std::size_t frames_within_budget(const Model& model) {
+  std::size_t numbers = 0;
+  for (const DrawElement& element : model.experiment.drawing)
+    numbers += element.path.size() * static_cast<std::size_t>(model.system.space_dimension) + element.sizes.size();
+  return std::clamp<std::size_t>(most_numbers / std::max<std::size_t>(numbers, 4), 1500, 12'000);
+}
+
+}  // namespace
+
+void add_motion(ReportContent& content, const Model& model, bool energy_conserved, const SimulationResult& run) {
+  add_statistics(content, run, model.system.dimensionless);
+  content.trajectory = run.trajectory;
+  content.drawing = evaluate_drawing(model, run.trajectory, frames_within_budget(model));
+  if (energy_conserved) add_drift_column(content.trajectory);
+  add_pictures(content, model.system, energy_conserved);
+}
+
+}  // namespace maupertuis
