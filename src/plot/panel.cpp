@@ -1,0 +1,174 @@
+#include "plot/panel.hpp"
+
+#include "plot/polyline.hpp"
+#include "plot/style.hpp"
+
+#include <fmt/format.h>
+
+namespace maupertuis {
+
+// "θ₁, θ₂ (10⁻³ rad from 2 rad)"
+RichText axis_text(const std::vector<std::string>& names, const std::string& unit, const Axis& axis) {
+  RichText text = names_text(names);
+  if (unit.empty() && axis.exponent() == 0 && axis.offset() == 0) return text;
+  append(text, " (");
+  if (axis.exponent() != 0) append(text, power_of_ten(axis.exponent()));
+  if (axis.exponent() != 0 && !unit.empty()) append(text, "\u2009");
+  append(text, unit_text(unit));
+  if (axis.offset() != 0)
+    append(text, fmt::format("{}from {}", unit.empty() && axis.exponent() == 0 ? "" : " ", axis.offset_label()));
+  append(text, ")");
+  return text;
+}
+
+std::string text_element(double x, double y, std::string_view anchor, double size, const RichText& text,
+                         std::string_view more) {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" font-size=\"{}\"{}>{}</text>\n", x, y, anchor,
+                     size, more, to_svg(text, size));
+}
+
+namespace {
+
+std::vector<std::string> names_of(const std::vector<Series>& series) {
+  std::vector<std::string> names;
+  for (const Series& one : series) names.push_back(one.name);
+  return names;
+}
+
+// --------------------------------------------------------------------------------------------------------- legend
+
+struct LegendEntry {
+  std::size_t series;
+  RichText text;
+  double width;
+};
+
+// The curves' names; of very many the first, the last and some between. A single curve is named by its axis.
+std::vector<LegendEntry> legend_entries(const Panel& panel) {
+  std::vector<LegendEntry> entries;
+  const std::size_t count = panel.series.size();
+  if (count < 2) return entries;
+  const std::size_t stride = (count + 11) / 12;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i % stride != 0 && i + 1 != count) continue;
+    const RichText text = name_text(panel.series[i].name);
+    entries.push_back({i, text, 26 + text_width(text, label_size) + 14});
+  }
+  return entries;
+}
+
+// Lines of entries that fit into the width.
+std::vector<std::vector<LegendEntry>> legend_rows(const Panel& panel, double width) {
+  std::vector<std::vector<LegendEntry>> rows;
+  double used = 0;
+  for (const LegendEntry& entry : legend_entries(panel)) {
+    if (rows.empty() || used + entry.width > width) {
+      rows.emplace_back();
+      used = 0;
+    }
+    rows.back().push_back(entry);
+    used += entry.width;
+  }
+  return rows;
+}
+
+// Above the frame, so that it never covers a curve.
+std::string draw_legend(const Panel& panel, const Figure& figure) {
+  std::string svg;
+  double y = panel.top - panel.legend_height + 12;
+  for (const auto& row : legend_rows(panel, figure.frame_width())) {
+    double x = figure.left;
+    for (const LegendEntry& entry : row) {
+      svg += fmt::format("<path class=\"curve {} d=\"M{:.1f} {:.1f}h20\"/>",
+                         series_attributes(entry.series, panel.series.size()), x, y - 4);
+      svg += text_element(x + 26, y, "start", label_size, entry.text);
+      x += entry.width;
+    }
+    y += line_height;
+  }
+  return svg;
+}
+
+// ---------------------------------------------------------------------------------------------------------- curves
+
+Polyline pixels_of(const Figure& figure, const Panel& panel, const Series& series, const Axis& across, const Axis& up) {
+  Polyline points(figure.trajectory.rows());
+  for (std::size_t row = 0; row < points.size(); ++row)
+    points[row] = {figure.left + figure.frame_width() * across.position(figure.horizontal.at(figure.trajectory, row)),
+                   panel.top + panel.height * (1 - up.position(series.at(figure.trajectory, row)))};
+  return points;
+}
+
+std::vector<Polyline> thinned(const std::vector<Polyline>& lines, bool over_time, double width, double height) {
+  constexpr double column = 0.5, tolerance = 0.04;
+  constexpr std::size_t crowded = 20'000;
+  std::vector<Polyline> result;
+  Ink ink(width, height);
+  for (const Polyline& line : lines) {
+    const Polyline straight = straighten(over_time ? thin_columns(line, column) : line, tolerance);
+    if (over_time || straight.size() < crowded) result.push_back(straight);
+    else for (auto& part : ink.draw(straight)) result.push_back(std::move(part));
+  }
+  return result;
+}
+
+std::string draw_curve(const Figure& figure, const Panel& panel, std::size_t index, const Axis& across, const Axis& up) {
+  const std::string attributes = series_attributes(index, panel.series.size());
+  const auto lines = split_at_gaps(pixels_of(figure, panel, panel.series[index], across, up));
+  const bool over_time = figure.horizontal.is_time;
+  const auto drawn = thinned(lines, over_time, figure.options.width, figure.height);
+  std::size_t points = 0;
+  for (const Polyline& line : drawn) points += line.size();
+  std::string svg = fmt::format("<path class=\"curve {}{} d=\"{}\"/>\n", points > 1500 ? "dense " : "", attributes,
+                                path_data(drawn));
+  const auto dot = [&](Pixel p, double radius) {
+    svg += fmt::format("<circle class=\"dot {} cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{}\"/>\n", attributes, p.x, p.y, radius);
+  };
+  // Points without neighbours; the start of a phase portrait.
+  std::size_t alone = 0;
+  for (const Polyline& line : lines)
+    if (line.size() == 1 && ++alone <= 500) dot(line[0], 2);
+  if (!over_time && !lines.empty()) dot(lines[0][0], 3);
+  return svg;
+}
+
+// ----------------------------------------------------------------------------------------------------------- frame
+
+std::string draw_frame(const Figure& figure, const Panel& panel, const Axis& across, const Axis& up, bool lowest) {
+  std::string grid, labels, svg;
+  const double bottom = panel.top + panel.height;
+  for (const Tick& tick : across.ticks()) {
+    const double x = figure.left + tick.position * figure.frame_width();
+    grid += fmt::format("M{:.2f} {:.2f}v{:.2f}", x, panel.top, panel.height);
+    if (lowest) labels += text_element(x, bottom + 17, "middle", tick_size, {{tick.label}}, " class=\"tick\"");
+  }
+  for (const Tick& tick : up.ticks()) {
+    const double y = bottom - tick.position * panel.height;
+    grid += fmt::format("M{:.2f} {:.2f}h{:.2f}", figure.left, y, figure.frame_width());
+    labels += text_element(figure.left - 7, y + 4, "end", tick_size, {{tick.label}}, " class=\"tick\"");
+  }
+  svg += fmt::format("<path class=\"grid\" d=\"{}\"/>\n", grid);
+  svg += fmt::format("<path class=\"axis\" d=\"M{:.2f} {:.2f}v{:.2f}h{:.2f}\"/>\n", figure.left, panel.top, panel.height,
+                     figure.frame_width());
+  return svg + labels;
+}
+
+std::string draw_vertical_label(const Panel& panel, const Axis& up) {
+  const double middle = panel.top + panel.height / 2;
+  return text_element(16, middle, "middle", label_size, axis_text(names_of(panel.series), panel.unit, up),
+                      fmt::format(" transform=\"rotate(-90 16 {:.1f})\"", middle));
+}
+
+}  // namespace
+
+double legend_height(const Panel& panel, double width) {
+  return line_height * static_cast<double>(legend_rows(panel, width).size());
+}
+
+std::string draw_panel(const Figure& figure, const Panel& panel, const Axis& across, const Axis& up, bool lowest) {
+  std::string svg = draw_frame(figure, panel, across, up, lowest);
+  for (std::size_t k = 0; k < panel.series.size(); ++k) svg += draw_curve(figure, panel, k, across, up);
+  return svg + draw_vertical_label(panel, up) + draw_legend(panel, figure);
+}
+
+}  // namespace maupertuis
