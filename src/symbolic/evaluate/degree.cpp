@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
+#include <unordered_set>
 
 namespace maupertuis::evaluation {
 namespace {
@@ -66,7 +66,7 @@ double angle_degree(const Tape& tape, Position argument) {
 Complexity complexity(const Tape& tape) {
   Complexity result;
   std::vector<Fraction> f(tape.size()), terms;
-  std::unordered_map<Position, Position> base_of_exponent;
+  std::unordered_set<Position> bases_of_symbolic_powers;
   for (Position at = 0; at < tape.size(); ++at) {
     const auto arguments = tape.arguments(at);
     switch (tape.kind(at)) {
@@ -85,8 +85,8 @@ Complexity complexity(const Tape& tape) {
         const Expr exponent = tape.expression(arguments[1]);
         if (!exponent.is_number()) {
           f[at] = {1, 1, 0};
-          const auto [known, fresh] = base_of_exponent.emplace(arguments[1], arguments[0]);
-          result.claimable &= fresh ? base_of_exponent.size() == 1 : known->second == arguments[0];
+          bases_of_symbolic_powers.insert(arguments[0]);
+          result.claimable &= bases_of_symbolic_powers.size() == 1;
           break;
         }
         f[at] = power(f[arguments[0]], exponent.number().to_double());

@@ -56,7 +56,7 @@ void FieldNumbers::choose_right_angles() {
   const auto agrees = [&](Angle step) {   // step: rotation by 2π/wanted
     if (wanted > largest_ordered_root) return true;
     Angle a = step;
-    for (std::uint64_t j = 1; 4 * j < wanted; ++j, a = turned(a, step))
+    for (std::uint64_t j = 1; 4 * j <= wanted; ++j, a = turned(a, step))
       if (field_.character(a.cosine) < 0 || field_.character(a.sine) < 0) return false;
     return true;
   };
@@ -103,10 +103,16 @@ void FieldNumbers::rotate(const Tape& tape, Position at, const std::vector<Value
     angle = turned(angle, turned(leaf, static_cast<std::uint64_t>(std::abs(c->numerator))));
     return;
   }
-  const std::uint64_t atom = mix(mix(seed_ ^ key_turn) ^ term_key(tape, term, values)) % primes_.r;
-  const std::uint64_t turns = static_cast<std::uint64_t>(
-      static_cast<unsigned __int128>(atom) * residue_of(term.coefficient, turns_) % primes_.r);
-  angle = turned(angle, turned(turn_, turns));
+  const auto [known, fresh] = units_.try_emplace(term.rest);
+  if (fresh) known->second = turned(turn_, mix(mix(seed_ ^ key_turn) ^ term_key(tape, term, values)) % primes_.r);
+  Angle unit = known->second;
+  if (!c || c->denominator != 1) {
+    unit = turned(unit, residue_of(term.coefficient, turns_));
+  } else {
+    if (c->numerator < 0) unit = opposite(unit);
+    unit = turned(unit, static_cast<std::uint64_t>(std::abs(c->numerator)));
+  }
+  angle = turned(angle, unit);
 }
 
 FieldNumbers::Angle FieldNumbers::cos_sin(const Tape& tape, Position argument, const std::vector<Value>& values) {

@@ -20,6 +20,7 @@ FieldNumbers::FieldNumbers(const PrimeTriple& primes, const FieldHints& hints, s
 void FieldNumbers::set_seed(std::uint64_t seed) {
   seed_ = seed;
   angles_.clear();
+  units_.clear();
   choose_generators();
 }
 
@@ -84,7 +85,7 @@ std::uint64_t FieldNumbers::exponent_of(const Tape& tape, Position at, const std
   }
   const TermView term = term_view(tape, at);
   const std::uint64_t atom = mix(mix(seed_ ^ key_exponent) ^ term_key(tape, term, values)) % primes_.q;
-  return static_cast<std::uint64_t>(static_cast<unsigned __int128>(exponent_of(term.coefficient)) * atom % primes_.q);
+  return static_cast<std::uint64_t>(static_cast<Wide>(exponent_of(term.coefficient)) * atom % primes_.q);
 }
 
 FieldNumbers::Value FieldNumbers::power(const Tape& tape, Position at, const std::vector<Value>& values) {
@@ -130,7 +131,7 @@ void FieldNumbers::multiply_exponential(const Tape& tape, Position at, const std
           const Value key = field_.multiply(term_key(tape, term, values), inverse(values[factor]));
           const std::uint64_t s = mix(mix(seed_ ^ key_exponent) ^ key) % primes_.q;
           return times(values[tape.argument(factor, 0)],
-                       static_cast<std::uint64_t>(static_cast<unsigned __int128>(c) * s % primes_.q));
+                       static_cast<std::uint64_t>(static_cast<Wide>(c) * s % primes_.q));
         }
       break;
     default: break;

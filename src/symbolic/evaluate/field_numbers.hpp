@@ -63,11 +63,11 @@ class FieldNumbers {
   Value logarithm(const Tape& tape, Position argument, const std::vector<Value>& values);
   /// ±1. A value that has one sign at all real points must have it here too.
   int sign(Position at, Value value) const;
+  Value square_root(Value a) const;
 
  private:
   Value power(const Tape& tape, Position at, const std::vector<Value>& values);
   Value positive_power(Value base, std::uint64_t exponent) const;
-  Value square_root(Value a) const;
   Value positive(Value a) const;
   std::uint64_t exponent_of(const Rational& c) const;
   std::uint64_t exponent_of(const Tape& tape, Position at, const std::vector<Value>& values);
@@ -94,7 +94,7 @@ class FieldNumbers {
   Value generator_ = 0;                      // of the positive numbers
   Angle turn_{};                             // of the rotations of order r
   Angle root_{};                             // rotation by 2π/m
-  std::unordered_map<Position, Angle> angles_;
+  std::unordered_map<Position, Angle> angles_, units_;   // of arguments and of their basis elements, at this point
 };
 
 }  // namespace maupertuis::evaluation

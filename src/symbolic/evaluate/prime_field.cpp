@@ -12,9 +12,9 @@ PrimeField::PrimeField(std::uint64_t prime) : prime_(prime) {
   std::uint64_t inverse = prime;                       // Newton's iteration for 1/p modulo 2^64
   for (int i = 0; i < 6; ++i) inverse *= 2 - prime * inverse;
   negative_inverse_ = ~inverse + 1;
-  const auto radix = static_cast<std::uint64_t>((static_cast<unsigned __int128>(1) << 64) % prime);
+  const auto radix = static_cast<std::uint64_t>((static_cast<Wide>(1) << 64) % prime);
   one_ = radix;
-  square_of_radix_ = static_cast<std::uint64_t>(static_cast<unsigned __int128>(radix) * radix % prime);
+  square_of_radix_ = static_cast<std::uint64_t>(static_cast<Wide>(radix) * radix % prime);
 }
 
 PrimeField::Value PrimeField::from(const Rational& value) const {
@@ -79,21 +79,42 @@ bool is_prime(std::uint64_t n) {
 
 namespace {
 
-/// Which of r0, r0 + 2, … have r, m/2·r − 1 and m·r − 1 all without a divisor below 512.
-std::vector<bool> sieve(std::uint64_t r0, std::uint64_t m, std::size_t count) {
-  std::vector<bool> keep(count, true);
-  for (std::uint64_t l = 3; l < 512; l += 2) {
-    bool small_prime = true;
-    for (std::uint64_t d = 3; d * d <= l; d += 2) small_prime &= l % d != 0;
-    if (!small_prime) continue;
+constexpr std::uint64_t sieve_limit = 2048;
+
+std::vector<std::uint32_t> small_primes() {
+  std::vector<std::uint32_t> primes;
+  std::array<bool, sieve_limit> composite{};
+  for (std::uint32_t n = 3; n < sieve_limit; n += 2) {
+    if (composite[n]) continue;
+    primes.push_back(n);
+    for (std::uint32_t k = n * n; k < sieve_limit; k += 2 * n) composite[k] = true;
+  }
+  return primes;
+}
+
+/// 1/x modulo a small prime l, x not 0.
+std::int64_t small_inverse(std::int64_t x, std::int64_t l) {
+  std::int64_t a = l, b = x % l, u = 0, v = 1;
+  while (b != 0) {
+    const std::int64_t quotient = a / b;
+    a -= quotient * b;
+    u -= quotient * v;
+    std::swap(a, b);
+    std::swap(u, v);
+  }
+  return (u % l + l) % l;
+}
+
+/// Which of r0, r0 + 2, … have r, m/2·r − 1 and m·r − 1 all without a small divisor.
+template <std::size_t count>
+std::array<bool, count> sieve(std::uint64_t r0, std::uint64_t m, const std::vector<std::uint32_t>& primes) {
+  std::array<bool, count> keep;
+  keep.fill(true);
+  for (const std::uint64_t l : primes) {
     // The residue classes of r that a divisor l forbids: 0, and the inverses of m and m/2.
-    std::array<std::uint64_t, 3> forbidden{0, 0, 0};
-    for (std::uint64_t c = 1; c < l && m % l != 0; ++c) {
-      if (c * (m % l) % l == 1) forbidden[1] = c;
-      if (c * (m / 2 % l) % l == 1) forbidden[2] = c;
-    }
-    for (const std::uint64_t c : forbidden) {
-      std::uint64_t start = (c + l - r0 % l) % l;      // r0 + start ≡ c; steps of r are 2
+    const std::uint64_t inverse = m % l == 0 ? 0 : static_cast<std::uint64_t>(small_inverse(static_cast<std::int64_t>(m % l), static_cast<std::int64_t>(l)));
+    for (const std::uint64_t forbidden : {std::uint64_t{0}, inverse, 2 * inverse % l}) {
+      std::uint64_t start = (forbidden + l - r0 % l) % l;      // r0 + start is in the class; r grows by 2
       if (start % 2) start += l;
       for (std::uint64_t k = start / 2; k < count; k += l) keep[k] = false;
     }
@@ -101,19 +122,26 @@ std::vector<bool> sieve(std::uint64_t r0, std::uint64_t m, std::size_t count) {
   return keep;
 }
 
+/// Fermat's test in base 2: rejects nearly all composites at the price of one power.
+bool may_be_prime(std::uint64_t n) {
+  const PrimeField field(n);
+  return field.power(field.add(field.one(), field.one()), n - 1) == field.one();
+}
+
 }  // namespace
 
 PrimeTriple random_prime_triple(std::uint64_t m, std::uint64_t seed) {
   MAUP_REQUIRE(m % 840 == 0 && m < (1ull << 24));
-  constexpr std::size_t window = 8192;
+  constexpr std::size_t window = 2048;
+  const auto primes = small_primes();
   const std::uint64_t span = (1ull << 60) / m;         // r in [2^60/m, 2^61/m): p has 61 bits
   for (;; seed = mix(seed)) {
     const std::uint64_t r0 = (span + mix(seed) % (span - 2 * window)) | 1;
-    const std::vector<bool> keep = sieve(r0, m, window);
+    const auto keep = sieve<window>(r0, m, primes);
     for (std::size_t k = 0; k < window; ++k) {
       if (!keep[k]) continue;
       const std::uint64_t r = r0 + 2 * k, p = m * r - 1, q = p / 2;
-      if (is_prime(r) && is_prime(q) && is_prime(p)) return {p, q, r, m};
+      if (may_be_prime(r) && may_be_prime(q) && is_prime(r) && is_prime(q) && is_prime(p)) return {p, q, r, m};
     }
   }
 }

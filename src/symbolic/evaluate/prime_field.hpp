@@ -13,6 +13,8 @@ inline std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
+__extension__ typedef unsigned __int128 Wide;   // g++ and clang have it, ISO C++ does not
+
 /// Residues modulo an odd prime below 2^62, in Montgomery form (x is kept as x·2^64 mod p).
 class PrimeField {
  public:
@@ -29,7 +31,7 @@ class PrimeField {
   Value add(Value a, Value b) const { const Value s = a + b; return s >= prime_ ? s - prime_ : s; }
   Value subtract(Value a, Value b) const { return a >= b ? a - b : a + prime_ - b; }
   Value negate(Value a) const { return a == 0 ? 0 : prime_ - a; }
-  Value multiply(Value a, Value b) const { return reduce(static_cast<unsigned __int128>(a) * b); }
+  Value multiply(Value a, Value b) const { return reduce(static_cast<Wide>(a) * b); }
   Value power(Value base, std::uint64_t exponent) const;
   /// Precondition: a != 0.
   Value inverse(Value a) const { return power(a, prime_ - 2); }
@@ -37,9 +39,9 @@ class PrimeField {
   int character(Value a) const;
 
  private:
-  Value reduce(unsigned __int128 x) const {
+  Value reduce(Wide x) const {
     const std::uint64_t m = static_cast<std::uint64_t>(x) * negative_inverse_;
-    const auto t = static_cast<std::uint64_t>((x + static_cast<unsigned __int128>(m) * prime_) >> 64);
+    const auto t = static_cast<std::uint64_t>((x + static_cast<Wide>(m) * prime_) >> 64);
     return t >= prime_ ? t - prime_ : t;
   }
 

@@ -1,5 +1,6 @@
 #include "symbolic/evaluate/tape.hpp"
 
+#include <algorithm>
 #include <memory>
 
 namespace maupertuis::evaluation {
@@ -17,6 +18,17 @@ Tape::Tape(std::span<const Expr> roots) {
     for (const NodeId id : ids) arguments_.push_back(position[id]);
   }
   for (const Expr& root : roots) roots_.push_back(position[root.id()]);
+}
+
+std::size_t depth_of_time_derivatives(const Tape& tape) {
+  std::vector<std::uint8_t> depth(tape.size(), 0);
+  std::uint8_t deepest = 0;
+  for (Position at = 0; at < tape.size(); ++at) {
+    for (const Position argument : tape.arguments(at)) depth[at] = std::max(depth[at], depth[argument]);
+    if (tape.kind(at) == Kind::TimeDerivative && depth[at] < 255) ++depth[at];
+    deepest = std::max(deepest, depth[at]);
+  }
+  return deepest;
 }
 
 TermView term_view(const Tape& tape, Position at) {

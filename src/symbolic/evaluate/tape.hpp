@@ -34,6 +34,9 @@ class Tape {
   std::vector<Position> roots_;
 };
 
+/// The deepest nesting of d/dt: how many orders of a series an evaluation of the roots uses up.
+std::size_t depth_of_time_derivatives(const Tape& tape);
+
 /// A node c·rest as a coefficient and what it multiplies. `rest` is the node itself where c = 1; where the node is a
 /// product of a number and several factors, no single node holds the rest: then `rest` is the product.
 struct TermView {
