@@ -52,6 +52,11 @@ std::string write_base(const Layout& l) {
   return simple ? write(l) : bracketed(write(l));
 }
 
+/// Fractions in an exponent stand on one line: x^{3/2}.
+std::string write_exponent(const Layout& l) {
+  return l.shape == Shape::Quotient && !l.negative ? write_factor(l.parts[0]) + "/" + write_factor(l.parts[1]) : write(l);
+}
+
 std::string joined(const std::vector<Layout>& parts, const char* separator) {
   std::string text;
   for (std::size_t i = 0; i < parts.size(); ++i) text += (i ? separator : "") + write(parts[i]);
@@ -120,7 +125,7 @@ std::string write_unsigned(const Layout& l) {
     case Shape::Sum: return write_sum(l);
     case Shape::Product: return write_product(l);
     case Shape::Quotient: return "\\frac" + braces(write(l.parts[0])) + braces(write(l.parts[1]));
-    case Shape::Power: return write_base(l.parts[0]) + "^" + braces(write(l.parts[1]));
+    case Shape::Power: return write_base(l.parts[0]) + "^" + braces(write_exponent(l.parts[1]));
     case Shape::Root: return "\\sqrt" + braces(write(l.parts[0]));
     case Shape::Apply: return write_apply(l);
     case Shape::Derivative: return "\\frac{\\mathrm{d}}{\\mathrm{d}t}" + bracketed(write(l.parts[0]));

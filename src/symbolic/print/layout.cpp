@@ -31,6 +31,12 @@ class Builder {
  public:
   explicit Builder(const ReadingOrder& order) : ranks_(order) {}
 
+  /// The whole expression: only here does the row's own coordinate come first.
+  Layout build_top(Expr e) const { return e.is(Kind::Sum) ? sum(e, SumPlace::Top) : build(e); }
+
+ private:
+  enum class SumPlace { Top, Inside, Angle };
+
   Layout build(Expr e) const {
     switch (e.kind()) {
       case Kind::Number: return number(e.number());
@@ -40,7 +46,7 @@ class Builder {
         layout.symbol = e;
         return layout;
       }
-      case Kind::Sum: return sum(e, false);
+      case Kind::Sum: return sum(e, SumPlace::Inside);
       case Kind::Product: case Kind::Power: return product(e);
       case Kind::TimeDerivative: return combined(Shape::Derivative, {build(e[0])});
       case Kind::Less: case Kind::LessEqual: return with_function(Shape::Comparison, e);
@@ -50,7 +56,6 @@ class Builder {
     }
   }
 
- private:
   static Layout number(const Rational& value) {
     Layout layout = lay_out_number(abs(value));
     layout.negative = value.sign() < 0;
@@ -72,15 +77,15 @@ class Builder {
     }
   }
 
-  Layout sum(Expr e, bool is_angle) const {
+  Layout sum(Expr e, SumPlace place) const {
     std::vector<Expr> terms;
     flatten(e, terms);
     std::vector<std::pair<Rank, Layout>> ordered;
     for (const Expr& term : terms)
-      ordered.emplace_back(is_angle ? ranks_.angle_term(term) : ranks_.term(term), build(term));
+      ordered.emplace_back(place == SumPlace::Angle ? ranks_.angle_term(term) : ranks_.term(term, place == SumPlace::Top), build(term));
     std::stable_sort(ordered.begin(), ordered.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     // a − b, not −b + a: the first positive term leads, except before accelerations, whose order means something.
-    const bool equation = !is_angle && ordered.front().first.front() == 0;
+    const bool equation = place != SumPlace::Angle && ordered.front().first.front() == 0;
     const auto positive = std::find_if(ordered.begin(), ordered.end(), [](const auto& t) { return !t.second.negative; });
     if (!equation && positive != ordered.end()) std::rotate(ordered.begin(), positive, positive + 1);
     Layout layout = combined(Shape::Sum, {});
@@ -100,10 +105,10 @@ class Builder {
     for (std::size_t i = 1; i < argument.size(); ++i)
       if (ranks_.angle_term(argument[i]) < ranks_.angle_term(first)) first = argument[i];
     turned = split_coefficient(first).coefficient.sign() < 0;
-    if (!turned) return sum(argument, true);
+    if (!turned) return sum(argument, SumPlace::Angle);
     std::vector<Expr> terms;
     for (std::size_t i = 0; i < argument.size(); ++i) terms.push_back(-argument[i]);
-    return sum(argument.context().sum(terms), true);
+    return sum(argument.context().sum(terms), SumPlace::Angle);
   }
 
   Layout function(Expr e, std::string exponent) const {
@@ -135,7 +140,7 @@ class Builder {
     std::vector<Expr> above, below;
     Rational coefficient = 1;
     gather(e, above, below, coefficient);
-    merge_symbolic_powers(above);
+    merge_symbolic_powers(above, below);
     const auto by_rank = [&](const Expr& a, const Expr& b) { return ranks_.factor(a) < ranks_.factor(b); };
     std::stable_sort(above.begin(), above.end(), by_rank);
     std::stable_sort(below.begin(), below.end(), by_rank);
@@ -153,7 +158,9 @@ class Builder {
     return signed_layout(combined(Shape::Quotient, {std::move(numerator), std::move(denominator)}), negative);
   }
 
+  /// A minus sign before a sum is a product to the writers: they put brackets.
   static Layout signed_layout(Layout layout, bool negative) {
+    if (negative && layout.shape == Shape::Sum) layout = combined(Shape::Product, {std::move(layout)});
     layout.negative = negative;
     return layout;
   }
@@ -184,17 +191,20 @@ class Builder {
     }
   }
 
-  /// x^2 · x^s reads x^(s + 2).
-  static void merge_symbolic_powers(std::vector<Expr>& factors) {
-    for (Expr& f : factors) {
+  /// x^2 · x^s reads x^(s + 2), x^s/x reads x^(s - 1).
+  static void merge_symbolic_powers(std::vector<Expr>& above, std::vector<Expr>& below) {
+    for (Expr& f : above) {
       if (!f || !f.is(Kind::Power) || f[1].is_number()) continue;
-      for (Expr& other : factors) {
-        if (!other || other == f || split_power(other).base != f[0]) continue;
-        f = f.context().power(f[0], f[1] + split_power(other).exponent);
-        other = Expr();
-      }
+      const Expr base = f[0];
+      for (auto* side : {&above, &below})
+        for (Expr& other : *side) {
+          if (!other || other == f || split_power(other).base != base) continue;
+          const Rational exponent = split_power(other).exponent;
+          f = base.context().power(base, f[1] + (side == &above ? exponent : -exponent));
+          other = Expr();
+        }
     }
-    std::erase_if(factors, [](const Expr& f) { return !f; });
+    for (auto* side : {&above, &below}) std::erase_if(*side, [](const Expr& f) { return !f; });
   }
 
   ReadingRanks ranks_;
@@ -270,6 +280,6 @@ ReadingOrder row_order(const ReadingOrder& order, const ReadableForm& form) {
   return with_own;
 }
 
-Layout lay_out(Expr e, const ReadingOrder& order) { return Builder(order).build(e); }
+Layout lay_out(Expr e, const ReadingOrder& order) { return Builder(order).build_top(e); }
 
 }  // namespace maupertuis::print

@@ -89,10 +89,16 @@ std::string write_product(const Layout& l) {
   return row(text);
 }
 
+/// Fractions in an exponent stand on one line: 3/2.
+std::string write_exponent(const Layout& l) {
+  if (l.shape != Shape::Quotient || l.negative) return write(l);
+  return row(write_factor(l.parts[0]) + "<mo>/</mo>" + write_factor(l.parts[1]));
+}
+
 std::string write_power(const Layout& l) {
   const Layout& base = l.parts[0];
   const bool simple = !base.negative && (base.shape == Shape::Symbol || base.shape == Shape::Number || base.shape == Shape::Pi);
-  return tag("msup", (simple ? write(base) : bracketed(write(base))) + write(l.parts[1]));
+  return tag("msup", (simple ? write(base) : bracketed(write(base))) + write_exponent(l.parts[1]));
 }
 
 std::string function_head(Kind kind) {

@@ -26,9 +26,9 @@ std::string write_at(const Layout& l, Level least) {
   return level(l) < least || l.negative ? "(" + text + ")" : text;
 }
 
-std::string join(const std::vector<Layout>& parts, const char* separator, Level least) {
+std::string join(const std::vector<Layout>& parts, const char* separator) {
   std::string text;
-  for (std::size_t i = 0; i < parts.size(); ++i) text += (i ? separator : "") + write_at(parts[i], least);
+  for (std::size_t i = 0; i < parts.size(); ++i) text += (i ? separator : "") + write(parts[i]);
   return text;
 }
 
@@ -67,7 +67,7 @@ std::string write_apply(const Layout& l) {
   const bool bare = is_circular(l.function) && !first.negative &&
                     (first.shape == Shape::Pi || (first.shape == Shape::Symbol && first.symbol.order() == 0 &&
                                                   first.symbol.role() != Role::Constant));
-  return bare ? text + " " + write(first) : text + "(" + join(l.parts, ", ", SumLevel) + ")";
+  return bare ? text + " " + write(first) : text + "(" + join(l.parts, ", ") + ")";
 }
 
 std::string write_cases(const Layout& l) {
@@ -89,8 +89,8 @@ std::string write_unsigned(const Layout& l) {
     case Shape::Root: return "sqrt(" + write(l.parts[0]) + ")";
     case Shape::Apply: return write_apply(l);
     case Shape::Derivative: return "dot(" + write(l.parts[0]) + ")";
-    case Shape::Comparison: return join(l.parts, l.function == Kind::Less ? " < " : " <= ", SumLevel);
-    case Shape::Logic: return join(l.parts, l.function == Kind::And ? " and " : " or ", SumLevel);
+    case Shape::Comparison: return join(l.parts, l.function == Kind::Less ? " < " : " <= ");
+    case Shape::Logic: return join(l.parts, l.function == Kind::And ? " and " : " or ");
     case Shape::Cases: return write_cases(l);
   }
   return {};

@@ -80,8 +80,8 @@ std::uint32_t ReadingRanks::declared_rank(Expr symbol) const {
 }
 
 /// The row's own coordinate stands before the others among accelerations and velocities, but not in sin(θ1 − θ2).
-std::uint32_t ReadingRanks::own_first_rank(Expr symbol) const {
-  return symbol.name() == own_ ? 0 : declared_rank(symbol);
+std::uint32_t ReadingRanks::rate_rank(Expr symbol, bool own_first) const {
+  return own_first && symbol.name() == own_ ? 0 : declared_rank(symbol);
 }
 
 std::uint32_t ReadingRanks::symbol_rank(Expr symbol) const {
@@ -112,10 +112,11 @@ Rank ReadingRanks::factor(Expr factor) const {
   else if (contents.highest_order < 0 && !contents.time && !contents.input) place = sum ? ParameterSums : ParameterFunctions;
   else if (sum && !contents.function_of_position && !contents.input) place = Positions;
   Rank rank{place, sum ? 1u : 0u};
-  // Functions of one coordinate follow the order of coordinates, sines before cosines.
+  // Functions of one coordinate follow the order of coordinates, sines before cosines; then those of several.
   std::uint32_t first = unlisted, last = 0;
   for (const Expr& s : symbols_of({&base, 1}))
     if (s.role() == Role::Coordinate) first = std::min(first, declared_rank(s)), last = std::max(last, declared_rank(s));
+  if (place == Functions) rank.push_back(first != last ? 1 : 0);
   rank.insert(rank.end(), {first, last, static_cast<std::uint32_t>(base.kind()), base.id()});
   return rank;
 }
@@ -151,21 +152,21 @@ Rank ReadingRanks::rank_of_rest(Expr term) const {
   return rank;
 }
 
-Rank ReadingRanks::term(Expr term) const {
+Rank ReadingRanks::term(Expr term, bool own_first) const {
   const Contents contents = contents_of(term);
   Rank rank;
   if (contents.highest_order >= 2) {
     rank = {0};
     std::uint32_t first = ~0u;
     for (const Expr& s : symbols_of({&term, 1}))
-      if (s.role() == Role::Coordinate && s.order() >= 2) first = std::min(first, own_first_rank(s));
+      if (s.role() == Role::Coordinate && s.order() >= 2) first = std::min(first, rate_rank(s, own_first));
     rank.push_back(first);
   } else if (contents.highest_order == 1) {
     std::vector<std::uint32_t> linear, repeated;
     for (const Expr& f : factors_of(term)) {
       const PowerOf power = split_power(f);
       if (!power.base.is_symbol() || power.base.role() != Role::Coordinate || power.base.order() != 1) continue;
-      (power.exponent.is_one() ? linear : repeated).push_back(own_first_rank(power.base));
+      (power.exponent.is_one() ? linear : repeated).push_back(rate_rank(power.base, own_first));
     }
     std::sort(linear.begin(), linear.end());
     const bool square = !repeated.empty() && linear.empty();

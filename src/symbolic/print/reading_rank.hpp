@@ -16,15 +16,15 @@ class ReadingRanks {
 
   /// number, parameter sums, parameters, time and inputs, coordinates, functions, velocities, accelerations.
   Rank factor(Expr factor) const;
-  /// Accelerations (own first), velocities (squares, products, single ones), then what has none of them.
-  Rank term(Expr term) const;
+  /// Accelerations (the own one first, if asked), velocities (squares, products, single ones), then what has none of them.
+  Rank term(Expr term, bool own_first) const;
   /// Inside sin( ) and cos( ): coordinates before everything, in declared order.
   Rank angle_term(Expr term) const;
 
  private:
   std::uint32_t symbol_rank(Expr symbol) const;
   std::uint32_t declared_rank(Expr symbol) const;
-  std::uint32_t own_first_rank(Expr symbol) const;
+  std::uint32_t rate_rank(Expr symbol, bool own_first) const;
   Rank rank_of_rest(Expr term) const;
 
   std::unordered_map<NodeId, std::uint32_t> parameters_;

@@ -14,6 +14,7 @@ CandidateChooser::CandidateChooser(Context& context, const ReadingOrder& order, 
     : algebra_(context, term_budget), reader_(algebra_, Trigonometry::ToSums) {
   for (const Expr& q : order.coordinates) ranks_.emplace(q.id(), ranks_.size());
   for (const Expr& p : order.parameters) ranks_.emplace(p.id(), ranks_.size());
+  algebra_.show_exponents([this](const Polynomial& p) { return p.size() < 2 ? flat(p) : factored(p); });
 }
 
 Polynomial CandidateChooser::read(Expr e) {
@@ -57,6 +58,12 @@ void CandidateChooser::consider(Choice& best, Expr candidate) {
 Expr CandidateChooser::best(const Polynomial& p) {
   if (p.empty()) return algebra_.context().number(0);
   if (p.size() == 1) return best_basis(p);
+  // T2 + T1 + T0 − V: what is of different degree in the velocities is read separately.
+  if (auto parts = by_rate_degree(p); parts.size() > 1 && !has_rates_inside_functions(p)) {
+    std::vector<Expr> sums;
+    for (const auto& [degree, part] : parts) sums.push_back(degree == Fraction{0, 1} ? best_terms(part) : best(part));
+    return flat_sum(sums);
+  }
   Choice choice;
   const auto offer_all = [&](const Polynomial& form) {
     consider(choice, by_functions(form));
@@ -162,6 +169,31 @@ Expr CandidateChooser::by_functions(const Polynomial& p) {
   });
 }
 
+/// sqrt(1 − v²/c²) ties the degrees together.
+bool CandidateChooser::has_rates_inside_functions(const Polynomial& p) const {
+  for (const Term& t : p)
+    for (const Factor& f : algebra_.monomial(t.monomial)) {
+      const Expr e = algebra_.info(f.atom).expr;
+      if (e.is_symbol()) continue;
+      for (const Expr& s : symbols_of({&e, 1}))
+        if (s.role() == Role::Coordinate && s.order() > 0) return true;
+    }
+  return false;
+}
+
+std::vector<std::pair<Fraction, Polynomial>> CandidateChooser::by_rate_degree(const Polynomial& p) const {
+  std::vector<std::pair<Fraction, Polynomial>> parts;
+  for (const Term& t : p) {
+    Fraction degree{0, 1};
+    for (const Factor& f : algebra_.monomial(t.monomial))
+      if (is_rate(f.atom)) degree = degree + f.exponent;
+    auto place = std::find_if(parts.begin(), parts.end(), [&](const auto& part) { return part.first == degree; });
+    if (place == parts.end()) place = parts.insert(parts.end(), {degree, {}});
+    place->second.push_back(t);
+  }
+  return parts;
+}
+
 Expr CandidateChooser::by_velocities(const Polynomial& p) {
   std::map<MonomialId, Polynomial> coefficients;
   for (const Term& t : p) {
@@ -235,11 +267,13 @@ int CandidateChooser::reading_sign(const Polynomial& sum) const {
   int sign = 1;
   for (const Term& t : sum) {
     std::size_t rank = 4 * late;
-    if (t.monomial == 0 && t.harmonic == 0) rank = 3 * late;
+    bool is_function = t.harmonic != 0;
+    if (t.monomial == 0 && t.harmonic == 0) rank = 2 * late;
     for (const Factor& f : algebra_.monomial(t.monomial)) {
       const Expr e = algebra_.info(f.atom).expr;
+      is_function |= !e.is_symbol() || f.exponent.num < 0;
       if (!e.is_symbol() || f.exponent.num < 0) continue;
-      std::size_t symbol_rank = 2 * late + e.id();
+      std::size_t symbol_rank = late + late / 2 + e.id() % (late / 2);
       if (e.role() == Role::Coordinate) {
         const Expr position = e.context().symbol(e.name(), Role::Coordinate);
         const auto place = ranks_.find(position.id());
@@ -250,6 +284,7 @@ int CandidateChooser::reading_sign(const Polynomial& sum) const {
       }
       rank = std::min(rank, symbol_rank);
     }
+    if (is_function) rank += 3 * late;   // 1 - l0/r, l - a cos θ: what is no function leads
     if (rank < first) {
       first = rank;
       sign = t.coefficient.sign();
@@ -267,6 +302,21 @@ Expr CandidateChooser::without_content(const Polynomial& p) {
 
 Expr CandidateChooser::factored(const Polynomial& p) {
   Factored parts = factor(algebra_, p);
+  Choice choice;
+  consider(choice, product_of(parts));
+  // (d + x)/d for 1 + x/d: with the denominators in front.
+  if (!parts.split && !parts.parts.empty()) {
+    const MonomialId lowest = lowest_powers(algebra_, parts.parts.front().sum);
+    if (lowest != 0) {
+      parts.parts.front().sum = algebra_.times_monomial(parts.parts.front().sum, algebra_.power(lowest, {-1, 1}));
+      parts.monomial = algebra_.product(parts.monomial, lowest);
+      consider(choice, product_of(parts));
+    }
+  }
+  return choice.value;
+}
+
+Expr CandidateChooser::product_of(Factored parts) {
   std::vector<Expr> factors{algebra_.expression(parts.monomial, true)};
   for (Factored::Part& part : parts.parts) {
     const int sign = reading_sign(part.sum);

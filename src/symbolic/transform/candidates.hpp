@@ -1,6 +1,7 @@
 #pragma once
 #include <maupertuis/transform.hpp>
 
+#include "symbolic/transform/factor.hpp"
 #include "symbolic/transform/polynomial_of.hpp"
 #include "symbolic/transform/reading_cost.hpp"
 
@@ -45,12 +46,16 @@ class CandidateChooser {
   /// Σ over velocity monomials, each with its coefficient's best form: 1/2 m r^2 θ'^2 + 1/2 m r'^2.
   Expr by_velocities(const Polynomial& p);
 
+  bool has_rates_inside_functions(const Polynomial& p) const;
+  std::vector<std::pair<Fraction, Polynomial>> by_rate_degree(const Polynomial& p) const;
+
   /// One polynomial in the cheapest of its trigonometric bases, flat or factored, without regrouping.
   Expr best_basis(const Polynomial& p);
   Expr search_basis(const Polynomial& p);
   Expr flat(const Polynomial& p) { return algebra_.expression(p, true); }
   Expr without_content(const Polynomial& p);
   Expr factored(const Polynomial& p);
+  Expr product_of(Factored parts);
 
   enum class Part { Parameter, Rate, Other };
   Part part_of(AtomId atom) const;

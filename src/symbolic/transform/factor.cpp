@@ -79,7 +79,8 @@ class Variables {
   std::vector<Name> names_;
 };
 
-/// The smallest exponent of every atom over all terms, 0 where a term has none.
+}  // namespace
+
 MonomialId lowest_powers(TermAlgebra& algebra, const Polynomial& p) {
   std::unordered_map<AtomId, std::pair<Fraction, std::size_t>> lowest;   // and in how many terms
   for (const Term& t : p)
@@ -96,8 +97,6 @@ MonomialId lowest_powers(TermAlgebra& algebra, const Polynomial& p) {
   std::sort(result.begin(), result.end(), [](const Factor& a, const Factor& b) { return a.atom < b.atom; });
   return algebra.intern(result);
 }
-
-}  // namespace
 
 MonomialId common_monomial(TermAlgebra& algebra, const Polynomial& p) {
   Monomial common = algebra.monomial(p.front().monomial);

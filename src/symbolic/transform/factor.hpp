@@ -29,4 +29,8 @@ Polynomial exact_quotient(TermAlgebra& algebra, const Polynomial& p, const Polyn
 /// The atoms' smallest exponents over all terms, where every term has the atom with the same sign.
 MonomialId common_monomial(TermAlgebra& algebra, const Polynomial& p);
 
+/// The smallest exponent of every atom over all terms, 0 counted where a term has none: dividing by it leaves no
+/// negative powers.
+MonomialId lowest_powers(TermAlgebra& algebra, const Polynomial& p);
+
 }  // namespace maupertuis::terms

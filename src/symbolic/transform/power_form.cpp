@@ -132,7 +132,7 @@ std::vector<std::vector<Frequency>> candidate_angles(const TermAlgebra& algebra,
       offer({{f.angle, size}});
       whole = gcd(whole, f.multiple / size);
     }
-    if (h.argument.size() < 2 || whole.is_zero()) continue;
+    if (h.argument.size() < 2 || whole.num < 2) continue;   // a product of two sines of it would leave its double
     std::vector<Frequency> combination = h.argument;
     for (Frequency& f : combination) f.multiple = f.multiple / whole;
     combinations.push_back(std::move(combination));

@@ -13,8 +13,8 @@ enum class Eliminate { SineSquared, CosineSquared };
 /// cos(kα + β) = cos kα cos β − sin kα sin β, with cos kα, sin kα as polynomials in cos α and sin α.
 Polynomial power_form(TermAlgebra& algebra, const Polynomial& p, const std::vector<Frequency>& angle, Eliminate eliminate);
 
-/// The angles worth trying: every single angle of the polynomial in its unit, and every combination that occurs as
-/// the argument of a harmonic and is not among them, or half of it (sin²(θ1 − θ2) has the harmonic 2θ1 − 2θ2).
+/// The angles worth trying: every single angle of the polynomial in its unit, and combinations of which a multiple
+/// occurs (sin²(θ1 − θ2) has the harmonic 2θ1 − 2θ2).
 std::vector<std::vector<Frequency>> candidate_angles(const TermAlgebra& algebra, const Polynomial& p,
                                                      const std::unordered_map<NodeId, Fraction>& units);
 

@@ -4,6 +4,8 @@
 #include "symbolic/transform/denominators.hpp"
 #include "symbolic/transform/intermediates.hpp"
 
+#include <algorithm>
+#include <functional>
 #include <map>
 
 namespace maupertuis {
@@ -13,13 +15,15 @@ using terms::CandidateChooser;
 using terms::MonomialId;
 using terms::Polynomial;
 
-/// Terms by what they hold of velocities and accelerations; every coefficient in its best form.
+/// Terms by accelerations, then by velocities; every coefficient in its best form.
 Expr collected_by_rates(CandidateChooser& chooser, const Polynomial& p) {
   terms::TermAlgebra& algebra = chooser.algebra();
   std::map<MonomialId, Polynomial> groups;
   for (const terms::Term& t : p) {
     terms::Monomial rates = algebra.monomial(t.monomial);
     std::erase_if(rates, [&](const terms::Factor& f) { return !chooser.is_rate(f.atom); });
+    const auto accelerates = [&](const terms::Factor& f) { return algebra.info(f.atom).expr.order() >= 2; };
+    if (std::any_of(rates.begin(), rates.end(), accelerates)) std::erase_if(rates, std::not_fn(accelerates));
     const MonomialId rate = algebra.intern(rates);
     groups[rate].push_back({algebra.quotient(t.monomial, rate), t.harmonic, t.coefficient});
   }
@@ -34,6 +38,9 @@ Expr collected_by_rates(CandidateChooser& chooser, const Polynomial& p) {
   return chooser.flat_sum(parts);
 }
 
+/// A line of more terms than this is not read by anybody, however well they are arranged.
+std::size_t longest_row(const ReadableOptions& options) { return options.term_budget / 8; }
+
 Expr readable_row(CandidateChooser& chooser, const Polynomial& p) {
   const Expr plain = collected_by_rates(chooser, p);
   const Polynomial combined = terms::over_common_denominators(chooser.algebra(), p);
@@ -47,7 +54,9 @@ ReadableForm readable(Expr e, const ReadingOrder& order, const ReadableOptions& 
   const Expr expanded = expand_time_derivatives(e);
   try {
     CandidateChooser chooser(e.context(), order, options.term_budget);
-    return {chooser.best(chooser.read(expanded)), {}, {}};
+    const Polynomial p = chooser.read(expanded);
+    if (p.size() > longest_row(options)) throw terms::TooManyTerms{};
+    return {chooser.best(p), {}, {}};
   } catch (const terms::TooManyTerms&) {
     return terms::with_intermediates({&expanded, 1}, order).front();
   }
@@ -61,10 +70,15 @@ std::vector<ReadableForm> readable_equations(std::span<const Expr> residuals, co
   std::vector<ReadableForm> rows;
   try {
     CandidateChooser chooser(residuals.front().context(), order, options.term_budget);
+    std::vector<Polynomial> polynomials;
+    for (const Expr& e : expanded) {
+      polynomials.push_back(chooser.read(e));
+      if (polynomials.back().size() > longest_row(options)) throw terms::TooManyTerms{};
+    }
     for (std::size_t i = 0; i < expanded.size(); ++i) {
       const Expr own = rows_are_coordinates ? order.coordinates[i] : Expr();
       chooser.set_own(own);
-      rows.push_back({readable_row(chooser, chooser.read(expanded[i])), {}, own});
+      rows.push_back({readable_row(chooser, polynomials[i]), {}, own});
     }
   } catch (const terms::TooManyTerms&) {
     rows = terms::with_intermediates(expanded, order);

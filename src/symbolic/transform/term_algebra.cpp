@@ -172,8 +172,10 @@ Polynomial TermAlgebra::times_monomial(const Polynomial& a, MonomialId monomial)
 }
 
 Polynomial TermAlgebra::multiply(const Polynomial& a, const Polynomial& b) {
-  // Far beyond the budget like terms cannot be expected to save the day; below, collecting decides.
-  if (a.size() * b.size() > 64 * budget_) throw TooManyTerms{};
+  // Far beyond the budget like terms cannot be expected to save the day; below, collecting decides. The work as a
+  // whole is bounded too: a large system must not take seconds before its form turns out to be too long.
+  work_ += a.size() * b.size();
+  if (a.size() * b.size() > 16 * budget_ || work_ > 250 * budget_) throw TooManyTerms{};
   std::vector<Term> raw;
   raw.reserve(a.size() * b.size());
   for (const Term& x : a) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <unordered_map>
 #include <vector>
 
@@ -96,6 +97,8 @@ class TermAlgebra {
   AtomId atom(Expr e, AtomKind kind, std::vector<Polynomial> arguments = {});
   const Atom& info(AtomId id) const { return atoms_[id]; }
   void show(AtomId id, Expr shown) { atoms_[id].shown = shown; }
+  /// How the collected argument of an exponential is shown; the flat sum by default.
+  void show_exponents(std::function<Expr(const Polynomial&)> form) { exponent_form_ = std::move(form); }
   std::size_t atom_count() const { return atoms_.size(); }
 
   const Monomial& monomial(MonomialId id) const { return monomials_[id]; }
@@ -142,6 +145,8 @@ class TermAlgebra {
 
   Context* context_;
   std::size_t budget_;
+  std::size_t work_ = 0;   // products of terms so far
+  std::function<Expr(const Polynomial&)> exponent_form_;
   std::vector<Atom> atoms_;
   std::unordered_map<NodeId, AtomId> atom_ids_;
   std::vector<Monomial> monomials_;

@@ -20,12 +20,11 @@ Expr TermAlgebra::expression_of_harmonic(HarmonicId id) {
 
 /// All exponentials of a monomial as one: exp(a)^2 exp(b)^-1 = exp(2a − b).
 Expr TermAlgebra::exponential(const Monomial& monomial, bool shown) {
-  std::vector<Expr> exponents;
-  for (const Factor& f : monomial) {
-    if (atoms_[f.atom].kind != AtomKind::Exponential) continue;
-    exponents.push_back(to_rational(f.exponent) * expression(atoms_[f.atom].arguments.front(), shown));
-  }
-  return apply(Kind::Exp, context_->sum(exponents));
+  Polynomial exponent;
+  for (const Factor& f : monomial)
+    if (atoms_[f.atom].kind == AtomKind::Exponential)
+      exponent = add(exponent, scale(atoms_[f.atom].arguments.front(), to_rational(f.exponent)));
+  return apply(Kind::Exp, shown && exponent_form_ ? exponent_form_(exponent) : expression(exponent, shown));
 }
 
 Expr TermAlgebra::expression(MonomialId id, bool shown) {
