@@ -9,56 +9,6 @@
 namespace maupertuis::app {
 namespace {
 
-class Listing {
- public:
-  explicit Listing(const ReadingOrder& order) : order_(order) {}
-  void section(const std::string& head) { text_ += head + "\n"; }
-  void line(const std::string& name, const std::string& text) { text_ += fmt::format("  {} = {}\n", name, text); }
-  void line(const std::string& name, Expr e) { line(name, plain(e)); }
-  void line(const std::string& name, const ExprVector& v) {
-    std::vector<std::string> parts;
-    for (const Expr e : v) parts.push_back(plain(e));
-    line(name, fmt::format("({})", fmt::join(parts, ", ")));
-  }
-  std::string take() { return std::move(text_); }
-
- private:
-  std::string plain(Expr e) const { return e ? to_plain(expand_time_derivatives(e), order_) : std::string("-"); }
-
-  ReadingOrder order_;
-  std::string text_;
-};
-
-std::string emit_system(const MechanicalSystem& system) {
-  Listing out(reading_order(system));
-  out.section(fmt::format("system {} ({}-dimensional)", system.name, system.space_dimension));
-  for (const Coordinate& c : system.coordinates) out.line("coord " + c.name, to_string(c.dimension));
-  for (const Parameter& p : system.parameters)
-    out.line("param " + p.name, fmt::format("{:.17g} {}", p.si_value, to_string(p.dimension)));
-  for (const Definition& d : system.definitions) {
-    if (d.is_vector) out.line("let " + d.name, d.components);
-    else out.line("let " + d.name, d.value);
-  }
-  for (const Input& u : system.inputs) out.line("input " + u.name, u.formula);
-  for (const Point& p : system.points) out.line("point " + p.name, p.position);
-  for (const Body& b : system.bodies) {
-    out.line("body " + b.name, b.position);
-    out.line(b.name + ".ω", b.angular_velocity);
-  }
-  const auto energy = [&out](const char* name, const std::vector<EnergyTerm>& terms) {
-    for (const EnergyTerm& term : terms) out.line(fmt::format("{} [{}]", name, term.origin), term.value);
-  };
-  energy("T", system.kinetic);
-  energy("V", system.potential);
-  energy("U", system.generalized_potential);
-  energy("D", system.dissipation);
-  energy("L +", system.lagrangian_extra);
-  out.line("L", system.lagrangian());
-  const ExprVector forces = system.generalized_forces();
-  for (std::size_t i = 0; i < forces.size(); ++i) out.line("Q[" + system.coordinates[i].name + "]", forces[i]);
-  return out.take();
-}
-
 std::string emit_equations(const EquationsOfMotion& equations) {
   return "# nodes of the computational form; the last ones named are R, row by row\n" +
          to_dag_text(equations.residual);
@@ -105,7 +55,7 @@ std::string emit_jet(const Model& model, const EquationsOfMotion& equations) {
 
 std::string emit(const std::string& stage, Study& study) {
   if (stage == "syntax") return study.tree() ? syntax::dump(*study.tree()) : std::string();
-  if (stage == "system") return study.model() ? emit_system(study.model()->system) : std::string();
+  if (stage == "system") return study.model() ? dump(study.model()->system) : std::string();
   if (!study.equations()) return {};
   if (stage == "equations") return emit_equations(*study.equations());
   if (stage == "program") return kernel_of(*study.equations()).print();

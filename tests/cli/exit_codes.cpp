@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 using namespace cli_test;
 
 TEST_CASE("0: a right model goes through every command") {
