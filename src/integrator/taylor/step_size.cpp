@@ -66,8 +66,7 @@ StepControl step_control(double tolerance, int order) {
   StepControl control;
   control.order = order > 0 ? std::max(order, 2) : taylor_order(epsilon);
   const double safety = std::exp(-0.7 / (control.order - 1));
-  control.factor = safety * std::min(std::exp(-2.0), std::exp(std::log(epsilon) / (control.order - 1)));
-  if (order <= 0) control.factor = safety * std::exp(-2.0);
+  control.factor = safety * std::exp(std::log(epsilon) / (control.order - 1));
   return control;
 }
 

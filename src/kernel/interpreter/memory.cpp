@@ -50,7 +50,9 @@ double term_size(const Memory& memory, const Instruction* producer, Slot slot) {
   double size = 0;
   for (std::uint32_t i = producer->first_term; i < producer->last_term; ++i) {
     const Term& term = memory.program.terms[i];
-    size += std::abs(memory.coefficients[i] * now[term.a] * (term.b == no_slot ? 1 : now[term.b]));
+    const double factor = term.shift == 2 ? 2 : 1;
+    const double a = factor * memory.row(static_cast<int>(term.shift))[term.a];
+    size += std::abs(memory.coefficients[i] * a * (term.b == no_slot ? 1 : now[term.b]));
   }
   return size;
 }

@@ -9,7 +9,11 @@ namespace {
 /// One run of instructions at one order: `row` is that order's row. Each case decides once for the whole run.
 class RunAtOrder {
  public:
-  RunAtOrder(Memory& memory, int order) : memory_(memory), k_(order), row_(memory.row(order)) {}
+  RunAtOrder(Memory& memory, int order) : memory_(memory), k_(order), row_(memory.row(order)) {
+    shifted_[0] = {row_, 1};
+    shifted_[1] = {row_ + memory.stride, order + 1.0};
+    shifted_[2] = {row_ + 2 * memory.stride, (order + 1.0) * (order + 2.0)};
+  }
 
   void operator()(const Run& run) {
     switch (run.op) {
@@ -39,7 +43,10 @@ class RunAtOrder {
   double linear_part(const Instruction& i) const {
     double sum = 0;
     const Term* const terms = memory_.program.terms.data();
-    for (std::uint32_t t = i.first_term; t < i.first_product; ++t) sum += memory_.coefficients[t] * row_[terms[t].a];
+    for (std::uint32_t t = i.first_term; t < i.first_product; ++t) {
+      const Shifted& from = shifted_[terms[t].shift];
+      sum += memory_.coefficients[t] * (from.factor * from.row[terms[t].a]);
+    }
     return sum;
   }
 
@@ -104,9 +111,16 @@ class RunAtOrder {
     row_[i.out] = row_[memory_.program.terms[t].a];
   }
 
+  /// (dʳu/dtʳ)_k = (k + 1) … (k + r) u_{k+r}
+  struct Shifted {
+    const double* row;
+    double factor;
+  };
+
   Memory& memory_;
   int k_;
   double* row_;
+  Shifted shifted_[Term::most_shift + 1];
 };
 
 }  // namespace

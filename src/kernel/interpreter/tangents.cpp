@@ -28,10 +28,7 @@ class Tangents {
       case Op::SinCos: pair(i, out, -1); break;
       case Op::SinhCosh: pair(i, out, 1); break;
       case Op::Function: differential(i, out); break;
-      case Op::Derivative:
-        lag_ = i.lag - 1;
-        add(out, 1, i.a);
-        break;
+      case Op::Derivative: add(out, 1, i.a, 1); break;
       case Op::Select: select(i, out); break;
       default: return;
     }
@@ -39,8 +36,8 @@ class Tangents {
   }
 
  private:
-  void add(double* out, double factor, Slot operand) const {
-    if (lags_[operand] != lag_) return;
+  void add(double* out, double factor, Slot operand, std::uint32_t shift = 0) const {
+    if (lags_[operand] + static_cast<int>(shift) != lag_) return;
     const double* const from = tangent_ + static_cast<std::size_t>(operand) * Width;
     for (int d = 0; d < Width; ++d) out[d] += factor * from[d];
   }
@@ -53,7 +50,7 @@ class Tangents {
     for (std::uint32_t t = i.first_term; t < i.last_term; ++t) {
       const Term& term = memory_.program.terms[t];
       const double c = memory_.coefficients[t];
-      if (term.b == no_slot) { add(out, c, term.a); continue; }
+      if (term.b == no_slot) { add(out, c, term.a, term.shift); continue; }
       add(out, c * now_[term.b], term.a);
       add(out, c * now_[term.a], term.b);
     }

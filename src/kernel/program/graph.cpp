@@ -70,7 +70,7 @@ ConstantId ConstantPool::add(ConstantId a, ConstantId b) {
 NodeIndex Graph::intern(Node node) {
   std::vector<std::uint32_t> key{static_cast<std::uint32_t>(node.op), static_cast<std::uint32_t>(node.function),
                                  node.constant, node.a, node.b};
-  for (const Term& term : node.terms) key.insert(key.end(), {term.coefficient, term.a, term.b});
+  for (const Term& term : node.terms) key.insert(key.end(), {term.coefficient, term.a, term.b, term.shift});
   const auto [place, fresh] = by_key_.try_emplace(std::move(key), static_cast<NodeIndex>(nodes.size()));
   if (!fresh) return place->second;
   const auto raise = [&](NodeIndex operand) {

@@ -85,7 +85,7 @@ class Graph {
   ByKey<NodeIndex> by_key_;
 };
 
-/// Merges sums and products that are used once into the sum that uses them.
+/// Merges sums and products that are used once into the sum that uses them, and d/dt into its terms.
 void fuse(Graph& graph, std::span<const NodeIndex> roots);
 
 /// What the outputs of a source became.

@@ -119,7 +119,9 @@ class Printer {
     if (is_function) out_ += "  with d =";
     for (std::uint32_t i = instruction.first_term; i < instruction.last_term; ++i) {
       const Term& term = program_.terms[i];
-      out_ += fmt::format("{} c{}·s{}", i > instruction.first_term ? " +" : "", term.coefficient, term.a);
+      constexpr std::array derivatives{"", "d/dt ", "d²/dt² "};
+      out_ += fmt::format("{} c{}·{}s{}", i > instruction.first_term ? " +" : "", term.coefficient,
+                          derivatives[term.shift], term.a);
       if (term.b != no_slot) out_ += fmt::format("·{}s{}", is_function ? "d " : "", term.b);
     }
     out_ += fmt::format("    [lag {}]\n", instruction.lag);

@@ -28,8 +28,8 @@ enum class Op : std::uint8_t {
   Coordinate,
   Companion,     // the second result of SinCos, SinhCosh
   // instructions
-  Linear,        // Σ c a
-  Products,      // Σ c a + Σ c a b
+  Linear,        // Σ c dʳa/dtʳ
+  Products,      // Σ c dʳa/dtʳ + Σ c a b
   Square,        // a²
   Quotient,      // a / b
   SquareRoot,    // √a
@@ -41,11 +41,13 @@ enum class Op : std::uint8_t {
   Select,        // the first operand whose condition (a constant) holds
 };
 
-/// c · a, c · a · b, or of a Function's differential c · w du (a = w, b = u), or of a Select (c: condition, a: value).
+/// c · dʳa/dtʳ with r = shift, c · a · b, or of a Function's differential c · w du (a = w, b = u), or of a Select (c: condition, a: value).
 struct Term {
   ConstantId coefficient;
   Slot a;
   Slot b = no_slot;
+  std::uint32_t shift = 0;
+  static constexpr std::uint32_t most_shift = 2;
 };
 
 struct Instruction {

@@ -32,15 +32,16 @@ class Scheduler {
   }
 
  private:
-  /// Calls f(operand) for every node whose value of the same order must be known before. A Function does not wait for
+  /// Calls f(operand, number of d/dt taken of it) for every node whose value of the same order must be known before. A Function does not wait for
   /// the factors w of its differential: it reads their earlier orders only, and w may itself be made from it.
   template <class F>
   void for_operands(const Node& node, F&& f) const {
-    if (node.a != no_node) f(node.a);
-    if (node.b != no_node) f(node.b);
+    const int shift = node.op == Op::Derivative ? 1 : 0;
+    if (node.a != no_node) f(node.a, shift);
+    if (node.b != no_node) f(node.b, 0);
     for (const Term& term : node.terms) {
-      if (node.op != Op::Function) f(term.a);
-      if (term.b != no_node) f(term.b);
+      if (node.op != Op::Function) f(term.a, static_cast<int>(term.shift));
+      if (term.b != no_node) f(term.b, 0);
     }
   }
 
@@ -73,7 +74,7 @@ class Scheduler {
     int depth = 0;  // how often functions of t alone are differentiated
     for (std::size_t i = 0; i < count; ++i) {
       moved_[i] = graph_.nodes[i].op == Op::Coordinate;
-      for_operands(graph_.nodes[i], [&](NodeIndex operand) { moved_[i] = moved_[i] || moved_[operand]; });
+      for_operands(graph_.nodes[i], [&](NodeIndex operand, int) { moved_[i] = moved_[i] || moved_[operand]; });
       lag_[i] = lag_of(i, 0);
       if (section_[i] != dead && !moved_[i]) depth = std::max(depth, lag_[i]);
     }
@@ -90,8 +91,11 @@ class Scheduler {
     const Node& node = graph_.nodes[index];
     if (node.op == Op::Coordinate) return 0;
     int lag = lowest;
-    for_operands(node, [&](NodeIndex operand) { lag = std::max(lag, lag_[operand]); });
-    return node.op == Op::Derivative ? lag + 1 : lag;
+    for_operands(node, [&](NodeIndex operand, int shift) {
+      // The derivatives of the constant 1 vanish at every order and wait for nothing.
+      if (graph_.nodes[operand].op != Op::One) lag = std::max(lag, lag_[operand] + shift);
+    });
+    return lag;
   }
 
   void check_linear() const {
@@ -114,7 +118,7 @@ class Scheduler {
     level_.assign(graph_.nodes.size(), 0);
     for (std::size_t i = 0; i < graph_.nodes.size(); ++i) {
       if (is_leaf(graph_.nodes[i].op)) continue;
-      for_operands(graph_.nodes[i], [&](NodeIndex operand) { level_[i] = std::max(level_[i], level_[operand] + 1); });
+      for_operands(graph_.nodes[i], [&](NodeIndex operand, int) { level_[i] = std::max(level_[i], level_[operand] + 1); });
     }
   }
 
@@ -125,8 +129,8 @@ class Scheduler {
     for (std::size_t i = 0; i < graph_.nodes.size(); ++i) {
       const Node& node = graph_.nodes[i];
       if (section_[i] == dead) continue;
-      for_operands(node, [&](NodeIndex operand) {
-        const bool other_lag = lag_[operand] != lag_[i] && node.op != Op::Derivative;
+      for_operands(node, [&](NodeIndex operand, int shift) {
+        const bool other_lag = lag_[operand] + shift != lag_[i];
         if (other_lag || section_[operand] < section_[i]) store(operand);
       });
       if (node.op == Op::Linear || node.op == Op::Derivative || node.op == Op::Select) continue;
@@ -194,7 +198,7 @@ class Scheduler {
     if (node.op == Op::SinCos || node.op == Op::SinhCosh) result.second = slot_[companion(index)];
     result.first_term = result.first_product = static_cast<std::uint32_t>(program_.terms.size());
     for (const Term& term : node.terms) {
-      program_.terms.push_back({term.coefficient, slot_or_none(term.a), slot_or_none(term.b)});
+      program_.terms.push_back({term.coefficient, slot_or_none(term.a), slot_or_none(term.b), term.shift});
       if (term.b == no_node) ++result.first_product;
     }
     result.last_term = static_cast<std::uint32_t>(program_.terms.size());

@@ -1,0 +1,96 @@
+#include <doctest/doctest.h>
+#include <maupertuis/kernel.hpp>
+#include <maupertuis/transform.hpp>
+
+#include <stdexcept>
+#include <string>
+
+namespace {
+
+using namespace maupertuis;
+
+std::size_t lines_with(const std::string& text, const std::string& word) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + word.size())) ++count;
+  return count;
+}
+
+Kernel chain(Context& context, int links) {
+  KernelSource source;
+  const Expr l = context.symbol("l", Role::Parameter);
+  source.parameters = {l};
+  Expr x = context.number(0), y = x, lagrangian = x;
+  for (int i = 0; i < links; ++i) {
+    const Expr angle = context.symbol("a" + std::to_string(i), Role::Coordinate);
+    source.coordinates.push_back(angle);
+    x = x + l * sin(angle);
+    y = y - l * cos(angle);
+    lagrangian = lagrangian + pow(context.time_derivative(x), 2) + pow(context.time_derivative(y), 2) - y;
+  }
+  source.residual = variational_residual(lagrangian, source.coordinates);
+  return build_kernel(source);
+}
+
+}  // namespace
+
+TEST_CASE("a chain of pendulums costs one sincos and two products a link") {
+  Context context;
+  const std::string text = chain(context, 10).print();
+  CHECK(lines_with(text, "sincos") == 10);
+  CHECK(lines_with(text, "products") == 10);
+  CHECK(lines_with(text, "square") == 0);
+}
+
+TEST_CASE("the residual of a chain is about linear in the number of links") {
+  Context context;
+  const auto size = [](const std::string& text) { return text.size(); };
+  const auto ten = size(chain(context, 10).print()), eighty = size(chain(context, 80).print());
+  CHECK(eighty < 10 * ten);
+}
+
+TEST_CASE("sums that share exponentially stay linear") {
+  Context context;
+  const Expr q = context.symbol("q", Role::Coordinate);
+  Expr e = q;
+  for (int i = 0; i < 200; ++i) e = sin(e) * e + e;
+  KernelSource source;
+  source.coordinates = {q};
+  source.residual = {context.symbol("q", Role::Coordinate, 2) + e};
+  const Kernel kernel = build_kernel(source);
+  CHECK(kernel.print().size() < 100000);
+}
+
+TEST_CASE("what depends on parameters alone is a constant, and unused nodes are gone") {
+  Context context;
+  const Expr q = context.symbol("q", Role::Coordinate), k = context.symbol("k", Role::Parameter);
+  KernelSource source;
+  source.coordinates = {q};
+  source.parameters = {k};
+  source.residual = {context.symbol("q", Role::Coordinate, 2) + sin(k) * apply(Kind::Exp, k) * q};
+  const std::string text = build_kernel(source).print();
+  CHECK(lines_with(text, "sincos") == 0);
+  CHECK(lines_with(text, "linear") == 1);
+  CHECK(text.find("1 instructions") != std::string::npos);
+}
+
+TEST_CASE("equal switch functions are one switch, whatever their factor") {
+  Context context;
+  const Expr q = context.symbol("q", Role::Coordinate);
+  KernelSource source;
+  source.coordinates = {q};
+  source.residual = {context.symbol("q", Role::Coordinate, 2) + apply(Kind::Sign, q) + apply(Kind::Abs, Rational(-2) * q)};
+  CHECK(build_kernel(source).switches().size() == 1);
+}
+
+TEST_CASE("a symbol that nobody listed, and a residual that is not linear in the acceleration, are internal errors") {
+  Context context;
+  const Expr q = context.symbol("q", Role::Coordinate), a = context.symbol("q", Role::Coordinate, 2);
+  KernelSource source;
+  source.coordinates = {q};
+  source.residual = {a + context.symbol("k", Role::Parameter)};
+  CHECK_THROWS_AS(build_kernel(source), std::logic_error);
+  source.residual = {a * a};
+  CHECK_THROWS_AS(build_kernel(source), std::logic_error);
+  source.residual = {context.time_derivative(a)};
+  CHECK_THROWS_AS(build_kernel(source), std::logic_error);
+}

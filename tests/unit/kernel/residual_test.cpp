@@ -1,0 +1,121 @@
+#include <doctest/doctest.h>
+#include <maupertuis/kernel.hpp>
+#include <maupertuis/transform.hpp>
+
+#include <cmath>
+#include <string>
+
+// The motion that a workspace finds must satisfy the equations: the residual, written out by the chain rule and
+// evaluated along the motion as an independent function, vanishes at every order.
+
+namespace {
+
+using namespace maupertuis;
+
+struct System {
+  Context context;
+  KernelSource source;
+  std::vector<double> parameters, q, v;
+
+  Expr coordinate(const std::string& name, double position, double velocity) {
+    const Expr e = context.symbol(name, Role::Coordinate);
+    source.coordinates.push_back(e);
+    q.push_back(position);
+    v.push_back(velocity);
+    return e;
+  }
+  Expr parameter(const std::string& name, double value) {
+    const Expr e = context.symbol(name, Role::Parameter);
+    source.parameters.push_back(e);
+    parameters.push_back(value);
+    return e;
+  }
+  Expr dot(Expr e) { return context.time_derivative(e); }
+  void from_lagrangian(Expr lagrangian) { source.residual = variational_residual(lagrangian, source.coordinates); }
+};
+
+void check_motion(System& system, int order, double tolerance) {
+  const auto written_out = expand_time_derivatives(system.source.residual);
+  for (const Expr& r : written_out) system.source.events.push_back(r);
+  KernelWorkspace work(build_kernel(system.source), order);
+  work.set_parameters(system.parameters);
+  REQUIRE(work.expand(0.3, system.q, system.v) == KernelStatus::Ok);
+  for (std::size_t i = 0; i < written_out.size(); ++i) {
+    double size = 1;
+    for (int k = 0; k < order; ++k) {
+      for (std::size_t j = 0; j < system.q.size(); ++j) size = std::max(size, std::abs(work.coordinate(k + 2)[j]) * (k + 1) * (k + 2));
+      CAPTURE(i);
+      CAPTURE(k);
+      CHECK(std::abs(work.event(i, k)) <= tolerance * size * (k + 1));
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("chains of pendulums from points satisfy their equations at every order") {
+  for (const int links : {1, 2, 3, 5, 8, 9, 12}) {
+    CAPTURE(links);
+    System s;
+    const Expr l = s.parameter("l", 0.7), m = s.parameter("m", 1.3), g = s.parameter("g", 9.81);
+    Expr x = s.context.number(0), y = s.context.number(0), lagrangian = s.context.number(0);
+    for (int i = 0; i < links; ++i) {
+      const Expr angle = s.coordinate("a" + std::to_string(i), 0.3 + 0.4 * i, 0.5 - 0.1 * i);
+      x = x + l * sin(angle);
+      y = y - l * cos(angle);
+      lagrangian = lagrangian + Rational(1, 2) * m * (pow(s.dot(x), 2) + pow(s.dot(y), 2)) - m * g * y;
+    }
+    s.from_lagrangian(lagrangian);
+    check_motion(s, 12, 1e-12);
+  }
+}
+
+TEST_CASE("a moving support, a magnetic term and a mass that depends on the velocity") {
+  System s;
+  const Expr m = s.parameter("m", 1.5), w = s.parameter("w", 2.5), c = s.parameter("c", 3.0), b = s.parameter("B", 0.4);
+  const Expr t = s.context.time();
+  const Expr x = s.coordinate("x", 0.3, 0.2), y = s.coordinate("y", -0.4, 0.6);
+  const Expr support = sin(w * t) * apply(Kind::Exp, -t);
+  const Expr px = s.dot(x + support), py = s.dot(y);
+  const Expr relativistic = -m * pow(c, 2) * sqrt(s.context.number(1) - (pow(px, 2) + pow(py, 2)) / pow(c, 2));
+  const Expr lagrangian = relativistic + b * (x * py - y * px) - Rational(1, 2) * (pow(x, 2) + pow(x, 4)) -
+                          apply(Kind::Log, pow(y, 2) + Rational(2));
+  s.from_lagrangian(lagrangian);
+  check_motion(s, 12, 1e-10);
+}
+
+TEST_CASE("coordinates whose equation holds no acceleration give a singular mass matrix with the coordinate's index") {
+  System s;
+  const Expr x = s.coordinate("x", 1, 0), y = s.coordinate("y", 1, 0);
+  s.from_lagrangian(Rational(1, 2) * pow(s.dot(x), 2) - pow(x, 2) - pow(y, 2));
+  KernelWorkspace work(build_kernel(s.source), 8);
+  CHECK(work.expand(0, s.q, s.v) == KernelStatus::SingularMass);
+  CHECK(work.singular_coordinate() == 1);
+}
+
+TEST_CASE("an indefinite mass matrix with zero diagonal is solved") {
+  System s;  // Bateman: L = x' y' + (x y' − x' y)/5 − x y
+  const Expr x = s.coordinate("x", 1, 0.5), y = s.coordinate("y", 0.3, -0.2);
+  s.from_lagrangian(s.dot(x) * s.dot(y) + (x * s.dot(y) - s.dot(x) * y) / Rational(5) - x * y);
+  check_motion(s, 12, 1e-13);
+}
+
+TEST_CASE("units do not make a mass matrix singular") {
+  System s;
+  const Expr x = s.coordinate("x", 1e-9, 0), y = s.coordinate("y", 1, 0);
+  s.from_lagrangian(Rational::parse("1e-24").value() * pow(s.dot(x), 2) + Rational::parse("1e12").value() * pow(s.dot(y), 2) - pow(y, 2));
+  KernelWorkspace work(build_kernel(s.source), 8);
+  CHECK(work.expand(0, s.q, s.v) == KernelStatus::Ok);
+}
+
+TEST_CASE("no freedoms: functions of time alone") {
+  Context context;
+  KernelSource source;
+  source.observables = {sin(context.time())};
+  source.integrands = {context.time()};
+  KernelWorkspace work(build_kernel(source), 4);
+  REQUIRE(work.expand(0.5, {}, {}) == KernelStatus::Ok);
+  CHECK(work.observable(0) == std::sin(0.5));
+  CHECK(work.integrand(0, 0) == 0.5);
+  CHECK(work.integrand(0, 1) == 1);
+}
