@@ -183,7 +183,8 @@ struct Expectation {
   Expr time, value, tolerance;      // SI; empty where absent
   bool relative = false;
   int occurrence = 0;
-  std::vector<Expr> values;         // Frequencies: subject = value is the equilibrium, these the frequencies
+  std::vector<StartValue> at;       // Frequencies: the configuration, `at θ = 0`
+  std::vector<Expr> values;         // Frequencies: angular, rad/s
   Dimension dimension;              // of subject
   std::string display_unit;         // as written beside the value; empty: SI
   double display_factor = 1;        // SI value of one display unit

@@ -1,0 +1,90 @@
+#include "system/elaboration.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+/// Checks that the parts of the elaboration share.
+namespace maupertuis::elaboration {
+namespace {
+
+using syntax::Expression;
+
+/// What most often lies behind a wrong dimension in an energy.
+std::string advice(const Dimension& found, const Dimension& expected) {
+  using namespace dimensions;
+  if (expected.same_as(energy()) && found.same_as(dimensions::power())) return "A power belongs in the dissipation function: D = ….";
+  if (expected.same_as(dimensions::power()) && found.same_as(energy())) return "The dissipation function is half a dissipated power, for linear damping D = 1/2 c x'^2.";
+  if (expected.same_as(energy()) && found.same_as(torque())) return "";
+  if ((found * velocity()).same_as(expected)) return "A velocity is missing as a factor.";
+  if ((found * length()).same_as(expected)) return "A length is missing as a factor.";
+  if ((found / length()).same_as(expected)) return "There is a length too many among its factors.";
+  if ((found / velocity()).same_as(expected)) return "There is a velocity too many among its factors.";
+  if ((found * mass()).same_as(expected)) return "A mass is missing as a factor.";
+  if ((found * time()).same_as(expected) || (found / time()).same_as(expected)) return "A time derivative (') is missing or too many.";
+  if ((found * acceleration()).same_as(expected)) return "An acceleration such as g is missing as a factor.";
+  return "";
+}
+
+}  // namespace
+
+bool check_dimension(Elaboration& e, const Value& v, const Dimension& expected, const std::string& what, const Expression& x) {
+  if (v.poisoned || v.fits_any || e.dimensionless) return !v.poisoned;
+  if (!v.dimension.same_as(expected)) {
+    e.diagnostics.error("E0304", x.span, fmt::format("{} is {}, this is {}", what, describe(expected), describe(v.dimension)),
+                        "Both sides of an equation have one dimension.", advice(v.dimension, expected));
+    return false;
+  }
+  if (v.hertz && expected.angle() != Dimension::Exponent{}) {
+    e.diagnostics.error("E0306", x.span, fmt::format("{} is an angular velocity, this is a frequency in Hz", what),
+                        "1 Hz is one turn a second: 2π rad/s, not 1 rad/s.", "Write rev/s for turns, or rad/s.");
+    return false;
+  }
+  return true;
+}
+
+std::optional<double> constant_value(const Elaboration& e, Expr value) {
+  const Expr roots[] = {value};
+  for (const Expr& s : symbols_of(roots))
+    if (e.values.find(s) == e.values.end()) return std::nullopt;
+  return maupertuis::evaluate(value, e.values);
+}
+
+Span culprit_of_order(Elaboration& e, const Expression& x, int order) {
+  using K = Expression::Kind;
+  if (x.kind == K::Name || x.kind == K::Member || x.kind == K::TimeDerivative) {
+    const Value v = evaluate_formula(e, x);  // it was evaluated before: no new message can come of it
+    if (!v.poisoned && v.order >= order) return x.span;
+    return {};
+  }
+  for (const syntax::ExpressionPtr& a : x.arguments) {
+    const Span s = culprit_of_order(e, *a, order);
+    if (s.end > s.begin) return s;
+  }
+  return {};
+}
+
+bool refuse_acceleration(Elaboration& e, const Value& v, const Expression& x, const std::string& where) {
+  if (v.poisoned || v.order < 2) return false;
+  Span at = culprit_of_order(e, x, 2);
+  if (at.end <= at.begin) at = x.span;
+  e.diagnostics.error("E0401", at, fmt::format("an acceleration stands in {}", where),
+                      "Energies and forces depend on positions, velocities and time; accelerations are what the equations give.",
+                      "Write it with velocities.");
+  return true;
+}
+
+bool check_components(Elaboration& e, std::size_t count, Span span) {
+  if (static_cast<int>(count) == e.system().space_dimension) return true;
+  if (e.dimension_clash) return false;
+  e.dimension_clash = true;
+  e.diagnostics.error("E0211", span,
+                      fmt::format("this vector has {} components in a {}-dimensional model", count, e.system().space_dimension == 2 ? "two" : "three"),
+                      e.dimension_from ? fmt::format("The model is {}-dimensional since line {}.", e.system().space_dimension == 2 ? "two" : "three",
+                                                     e.source.locate(e.dimension_from->begin).line)
+                                       : "",
+                      e.system().space_dimension == 2 ? "Give every vector three components for a model in space." : "Give every vector three components.");
+  return false;
+}
+
+}  // namespace maupertuis::elaboration

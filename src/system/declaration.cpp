@@ -1,0 +1,123 @@
+#include "system/declaration.hpp"
+
+#include <fmt/format.h>
+
+namespace maupertuis::elaboration {
+
+using Kind = Declaration::Kind;
+using Which = syntax::EnergyStatement::Which;
+
+const char* word_of(Kind kind) {
+  switch (kind) {
+    case Kind::Parameter: return "parameter";
+    case Kind::Coordinate: return "coordinate";
+    case Kind::Definition: return "definition";
+    case Kind::Input: return "input";
+    case Kind::Frame: return "frame";
+    case Kind::Point: return "point";
+    case Kind::Body: return "body";
+    case Kind::Energy: return "energy";
+  }
+  return "";
+}
+
+const char* name_of_energy(Which which) {
+  switch (which) {
+    case Which::T: return "kinetic energy";
+    case Which::V: return "potential energy";
+    case Which::U: return "generalized potential";
+    case Which::L: return "Lagrangian";
+    case Which::D: return "dissipation function";
+  }
+  return "";
+}
+
+namespace {
+
+constexpr const char* kShort[] = {"T", "V", "U", "L", "D"};
+constexpr const char* kLong[] = {"kinetic", "potential", "generalized_potential", "lagrangian", "dissipation"};
+
+bool has_a_meaning_already(const std::string& name) {
+  if (name == "t" || name == "pi") return true;
+  for (const char* word : kLong)
+    if (name == word) return true;
+  return false;
+}
+
+}  // namespace
+
+SymbolTable::SymbolTable(const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics)
+    : diagnostics_(diagnostics), source_(source) {
+  for (const char* name : kShort) {
+    Declaration d;
+    d.kind = Kind::Energy;
+    d.name = name;
+    declarations_.push_back(std::move(d));
+  }
+  for (const syntax::Statement& s : tree.statements) {
+    const auto list = [&](const auto& items, Kind kind) {
+      for (std::size_t i = 0; i < items.size(); ++i) add(kind, items[i].name, s, i);
+    };
+    if (const auto* p = std::get_if<syntax::ParamStatement>(&s.body)) list(p->items, Kind::Parameter);
+    if (const auto* c = std::get_if<syntax::CoordStatement>(&s.body)) list(c->items, Kind::Coordinate);
+    if (const auto* l = std::get_if<syntax::LetStatement>(&s.body)) list(l->items, Kind::Definition);
+    if (const auto* i = std::get_if<syntax::InputStatement>(&s.body)) add(Kind::Input, i->name, s, 0);
+    if (const auto* f = std::get_if<syntax::FrameStatement>(&s.body)) add(Kind::Frame, f->name, s, 0);
+    if (const auto* p = std::get_if<syntax::PointStatement>(&s.body)) add(Kind::Point, p->name, s, 0);
+    if (const auto* b = std::get_if<syntax::BodyStatement>(&s.body)) add(Kind::Body, b->name, s, 0);
+    if (const auto* later = std::get_if<syntax::LaterStatement>(&s.body))
+      for (const syntax::Name& n : later->names) lost_.emplace(n.text, true);
+  }
+  for (const syntax::Name& n : tree.lost_names) lost_.emplace(n.text, true);
+}
+
+void SymbolTable::add(Kind kind, const syntax::Name& name, const syntax::Statement& statement, std::size_t item) {
+  if (has_a_meaning_already(name.text)) {
+    diagnostics_.error("E0206", name.span, fmt::format("`{}` cannot be declared", name.text),
+                       name.text == "t"    ? "t is the time in every formula."
+                       : name.text == "pi" ? "pi is the ratio of a circle's circumference to its diameter."
+                                           : "This is the long name of an energy, which works in every model.",
+                       "Choose another name.");
+    lost_.emplace(name.text, true);
+    return;
+  }
+  Declaration d;
+  d.kind = kind;
+  d.name = name.text;
+  d.span = name.span;
+  d.statement = &statement;
+  d.item = item;
+  const auto [found, added] = by_name_.emplace(name.text, declarations_.size());
+  if (added) {
+    declarations_.push_back(std::move(d));
+    return;
+  }
+  const Declaration& first = declarations_[found->second];
+  diagnostics_.error("E0202", name.span, fmt::format("`{}` is declared twice", name.text),
+                     fmt::format("It is already a {} in line {}.", word_of(first.kind),
+                                 source_.locate(first.span.begin).line),
+                     "Give one of them another name.");
+}
+
+Declaration* SymbolTable::find(const std::string& name) {
+  const auto found = by_name_.find(name);
+  if (found != by_name_.end()) return &declarations_[found->second];
+  if (is_lost(name)) return nullptr;
+  for (std::size_t i = 0; i < 5; ++i)
+    if (name == kShort[i] || name == kLong[i]) return &declarations_[i];
+  return nullptr;
+}
+
+void SymbolTable::adopt(const SymbolTable& other) {
+  declarations_ = other.declarations_;
+  by_name_ = other.by_name_;
+  lost_ = other.lost_;
+}
+
+std::vector<std::string> SymbolTable::names() const {
+  std::vector<std::string> out;
+  for (std::size_t i = 5; i < declarations_.size(); ++i) out.push_back(declarations_[i].name);
+  return out;
+}
+
+}  // namespace maupertuis::elaboration

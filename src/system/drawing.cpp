@@ -1,0 +1,26 @@
+#include "system/elaboration.hpp"
+
+/// What is drawn: lines through points, trails, boxes, circles, springs.
+namespace maupertuis::elaboration {
+
+void elaborate_drawing(Elaboration& e, const syntax::DrawStatement& s) {
+  for (const syntax::DrawItem& item : s.items) {
+    DrawElement element;
+    element.kind = item.kind;
+    bool poisoned = false;
+    for (const syntax::ExpressionPtr& x : item.path) {
+      const Value v = position_of(e, *x, nullptr);
+      poisoned = poisoned || v.poisoned;
+      element.path.push_back(v.parts);
+      element.names.push_back(x->kind == syntax::Expression::Kind::Name ? x->text : "");
+    }
+    for (const syntax::ExpressionPtr& x : item.sizes) {
+      const Value v = constant_of(e, *x, dimensions::length(), "a size");
+      poisoned = poisoned || v.poisoned;
+      if (!v.poisoned) element.sizes.push_back(v.scalar());
+    }
+    if (!poisoned) e.experiment().drawing.push_back(std::move(element));
+  }
+}
+
+}  // namespace maupertuis::elaboration

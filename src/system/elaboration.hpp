@@ -1,0 +1,135 @@
+#pragma once
+#include "system/declaration.hpp"
+#include "system/pose.hpp"
+
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/transform.hpp>
+
+#include <map>
+#include <unordered_set>
+
+/// The state of one `elaborate`, passed through its parts, and the parts themselves (a file each).
+namespace maupertuis::elaboration {
+
+/// Where a formula stands.
+struct Place {
+  const Pose* frame = nullptr;             // bracketed vectors are components along its axes (`in F`); null: world
+  std::optional<Dimension> expected;       // the dimension that is asked for: chooses the culprit of a bad sum
+  bool in_parameter = false;               // `param`: words after a number are units alone
+  bool inline_constants = false;           // start, run, …: a quantity is its value, not an anonymous parameter
+};
+
+struct Elaboration {
+  const syntax::SyntaxTree& tree;
+  const SourceText& source;
+  Diagnostics& diagnostics;
+  SymbolTable table;
+  Model model;
+  Context& context;
+  std::map<DeclarationId, Pose> poses;     // of frames and bodies, and of the world under kWorld
+  std::unordered_set<Expr, ExprHash> constants;  // the anonymous ones so far
+  Bindings values;                                // of parameters, and of definitions that stay symbols
+  ExprMap exact_values;                           // the same, exactly
+  ExprMap exact_definitions;                      // symbols of definitions, by parameters
+  std::unordered_set<std::string> unknown_names;  // told already
+  bool dimension_clash = false;                   // told already
+  bool dimensionless = false;
+  std::optional<Span> dimension_from;      // the first vector: its length is the dimension of space
+
+  Elaboration(const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics);
+  /// Of a fragment of the command line, which shares the context and the values of `outer`.
+  Elaboration(const Elaboration& outer, const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics);
+
+  MechanicalSystem& system() { return model.system; }
+  Experiment& experiment() { return model.experiment; }
+  Expr number(const Rational& r) { return context.number(r); }
+  Dimension dimension(const Dimension& d) const { return dimensionless ? Dimension{} : d; }
+};
+
+// ---------------------------------------------------------------------------------------------------- expressions
+
+/// The meaning of a formula. Mistakes are reported; the value is poisoned then.
+Value evaluate_formula(Elaboration& e, const syntax::Expression& x, const Place& place = {});
+/// The same, where one number of `expected` dimension must stand; `what` names the place: "a mass".
+Value scalar_of(Elaboration& e, const syntax::Expression& x, const Dimension& expected, const std::string& what,
+                Place place = {});
+/// The same for a vector of space.
+Value vector_of(Elaboration& e, const syntax::Expression& x, const Dimension& expected, const std::string& what,
+                Place place = {});
+/// A name as it stands in a formula. Unknown ones are reported.
+Value value_of_name(Elaboration& e, const syntax::Expression& x, const Place& place);
+Value value_of_member(Elaboration& e, const syntax::Expression& x, const Place& place);
+Value value_of_call(Elaboration& e, const syntax::Expression& x, const Place& place);
+/// A number or vector with unit words.
+Value value_of_number(Elaboration& e, const syntax::Expression& x);
+Value value_of_quantity(Elaboration& e, const syntax::Expression& x, const Place& place);
+/// A sum, a product, a power of values.
+Value add(Elaboration& e, const Value& a, const Value& b, bool subtract, const syntax::Expression& x, const Place& place);
+Value multiply(Elaboration& e, const Value& a, const Value& b, const syntax::Expression& x);
+Value divide(Elaboration& e, const Value& a, const Value& b, const syntax::Expression& x);
+Value power(Elaboration& e, const Value& base, const Value& exponent, const syntax::Expression& x);
+Value dot_product(Elaboration& e, const Value& a, const Value& b, const syntax::Expression& x);
+Value cross_product(Elaboration& e, const Value& a, const Value& b, const syntax::Expression& x);
+Value negative(Value v);
+Value time_derivative(Elaboration& e, Value v, int times, const syntax::Expression& x);
+
+/// False, and a message, if the dimension of `v` is not `expected`. `what`: "a mass", "the kinetic energy T".
+bool check_dimension(Elaboration& e, const Value& v, const Dimension& expected, const std::string& what,
+                     const syntax::Expression& x);
+/// The value of an expression of parameters and definitions; nothing if time, coordinates or inputs are in it.
+std::optional<double> constant_value(const Elaboration& e, Expr value);
+/// Finds what `text` could be and reports it: unknown name, or a unit that needs brackets.
+void unknown_name(Elaboration& e, const std::string& text, Span span);
+/// A name that a statement mentions; null, and a message, if there is none of it.
+Declaration* find_declared(Elaboration& e, const syntax::Name& name);
+/// The part of `x` that holds a time derivative of this order, for the caret.
+Span culprit_of_order(Elaboration& e, const syntax::Expression& x, int order);
+/// E0401 where an acceleration stands in an energy, force or D.
+bool refuse_acceleration(Elaboration& e, const Value& v, const syntax::Expression& x, const std::string& where);
+
+// ------------------------------------------------------------------------------------------------------ the parts
+
+void fix_space_dimension(Elaboration& e);
+/// Vectors in 2-D and 3-D do not mix (E0211).
+bool check_components(Elaboration& e, std::size_t count, Span span);
+
+void elaborate_parameter(Elaboration& e, Declaration& d);
+void elaborate_coordinate(Elaboration& e, Declaration& d);
+void elaborate_definition(Elaboration& e, Declaration& d);
+void elaborate_input(Elaboration& e, Declaration& d);
+void elaborate_frame(Elaboration& e, Declaration& d);
+void elaborate_point(Elaboration& e, Declaration& d);
+void elaborate_body(Elaboration& e, Declaration& d);
+/// Fills T, V, U, L or D of the system, from statements, masses, gravity, springs and dampers.
+void elaborate_energy(Elaboration& e, syntax::EnergyStatement::Which which, Declaration& d);
+void elaborate_forces(Elaboration& e);
+/// A number that is known before the run, of parameters and quantities alone.
+Value constant_of(Elaboration& e, const syntax::Expression& x, const Dimension& expected, const std::string& what);
+/// `θ' = 2 rad/s` of a start; nothing, and a message, if it is none.
+std::optional<StartValue> start_value(Elaboration& e, const syntax::StartStatement::Item& item);
+void elaborate_experiment(Elaboration& e);
+void elaborate_expectation(Elaboration& e, const syntax::ExpectStatement& s, Span span);
+void elaborate_drawing(Elaboration& e, const syntax::DrawStatement& s);
+
+/// The pose of a frame or body by its name; null, and a message, if it is none.
+const Pose* find_pose(Elaboration& e, const std::optional<syntax::Name>& name);
+/// A place: components along `frame` from its origin, or points and vectors of the world. Null handle parts on error.
+Value position_of(Elaboration& e, const syntax::Expression& x, const Pose* frame);
+/// The pose of a frame or body; its place and its rotation may both be absent. Nothing: a mistake was reported.
+std::optional<Pose> pose_of(Elaboration& e, const syntax::ExpressionPtr& at, const std::optional<syntax::Rotation>& rotation,
+                            const std::optional<syntax::Name>& in);
+/// ½ m v²
+Expr translational_energy(Expr mass, const ExprVector& position);
+
+void refuse_later_statements(Elaboration& e);
+void check_statement_counts(Elaboration& e);
+/// Parameters that nothing names, definitions that nothing uses.
+void warn_unused(Elaboration& e);
+/// Replaces the symbols of definitions everywhere and keeps the system as written beside it.
+void expand_definitions(Model& model);
+
+/// `m=2kg`, `θ=1` of the command line; mistakes are told without a place in the model.
+void apply_parameter_overrides(Elaboration& e, const std::vector<std::string>& overrides);
+void apply_start_overrides(Elaboration& e, const std::vector<std::string>& overrides);
+
+}  // namespace maupertuis::elaboration

@@ -1,0 +1,176 @@
+#include "system/elaboration.hpp"
+#include "system/unit_expression.hpp"
+
+#include <fmt/format.h>
+
+/// expect and claim: what is checked here is that both sides can be equal at all.
+namespace maupertuis::elaboration {
+namespace {
+
+using syntax::ExpectStatement;
+using syntax::Expression;
+using Kind = ExpectStatement::Kind;
+
+/// The quantity below signs, whose unit the value is shown in.
+const Expression& unsigned_quantity(const Expression& x) {
+  return x.kind == Expression::Kind::Unary ? unsigned_quantity(*x.arguments[0]) : x;
+}
+
+void set_display_unit(Elaboration& e, Expectation& out, const Expression& value) {
+  const Expression& q = unsigned_quantity(value);
+  if (q.kind != Expression::Kind::Quantity || !q.unit || !all_units(*q.unit)) return;
+  const std::optional<Unit> unit = unit_of(e, *q.unit);
+  if (!unit || !unit->dimension.same_as(out.dimension)) return;
+  out.display_unit = written_unit(e.source, *q.unit);
+  out.display_factor = maupertuis::evaluate(factor_of(e.context, *unit), Bindings{});
+}
+
+/// ± 1e-9 is in the unit of the value, unless it has a unit of its own; rel 1e-9 is a bare number.
+bool tolerance(Elaboration& e, Expectation& out, const ExpectStatement& s, const Dimension& dimension) {
+  if (!s.tolerance) return true;
+  out.relative = s.relative;
+  const bool own_unit = unsigned_quantity(*s.tolerance).kind == Expression::Kind::Quantity;
+  const Value v = constant_of(e, *s.tolerance, s.relative || !own_unit ? Dimension{} : dimension, s.relative ? "a relative tolerance" : "a tolerance");
+  if (v.poisoned) return false;
+  const bool in_display_unit = !s.relative && !own_unit && !out.display_unit.empty();
+  const std::optional<double> size = constant_value(e, v.scalar());
+  if (size && !(*size >= 0)) {
+    e.diagnostics.error("E0222", s.tolerance->span, "a tolerance is not negative", "It is the largest difference that passes.", "");
+    return false;
+  }
+  out.tolerance = v.scalar();
+  if (in_display_unit) out.tolerance = v.scalar() * Rational::from_double(out.display_factor);
+  return true;
+}
+
+std::optional<Value> number(Elaboration& e, const Expression& x) {
+  const Value v = evaluate_formula(e, x);
+  if (v.poisoned) return std::nullopt;
+  if (!v.is_vector) return v;
+  e.diagnostics.error("E0210", x.span, "an expectation is about a number, not a vector", "", "Take a component with .x or .y, or its length with norm(…).");
+  return std::nullopt;
+}
+
+bool value_at(Elaboration& e, Expectation& out, const ExpectStatement& s) {
+  const std::optional<Value> subject = number(e, *s.subject);
+  if (s.time) {
+    const Value time = constant_of(e, *s.time, dimensions::time(), "the time of an expectation");
+    if (time.poisoned) return false;
+    out.time = time.scalar();
+  }
+  if (!subject) return false;
+  out.subject = subject->scalar();
+  out.dimension = subject->dimension;
+  const Dimension expected = subject->fits_any ? Dimension{} : subject->dimension;
+  const Value value = constant_of(e, *s.value, expected, fmt::format("`{}`", e.source.slice(s.subject->span)));
+  if (value.poisoned) return false;
+  out.value = value.scalar();
+  set_display_unit(e, out, *s.value);
+  return tolerance(e, out, s, out.dimension);
+}
+
+void warn_identity(Elaboration& e, const Expectation& out) {
+  e.diagnostics.warning("W0420", out.span, "this expectation says nothing", "Its two sides are the same formula: it holds for every motion of every system.",
+                        "Expect something that the equations of motion decide.");
+}
+
+bool equation(Elaboration& e, Expectation& out, const ExpectStatement& s) {
+  const Value left = evaluate_formula(e, *s.subject);
+  Place place;
+  if (!left.poisoned) place.expected = left.dimension;
+  const Value right = evaluate_formula(e, *s.value, place);
+  if (left.poisoned || right.poisoned) return false;
+  for (const Value* v : {&left, &right}) {
+    if (!v->is_vector) continue;
+    e.diagnostics.error("E0210", (v == &left ? s.subject : s.value)->span, "an equation is about numbers, not vectors", "", "Write one for each component.");
+    return false;
+  }
+  if (!left.fits_any && !right.fits_any && !left.dimension.same_as(right.dimension) && !e.dimensionless) {
+    e.diagnostics.error("E0304", s.value->span, fmt::format("the left side is {}, this is {}", describe(left.dimension), describe(right.dimension)),
+                        "Both sides of an equation have one dimension.", "");
+    return false;
+  }
+  out.subject = left.scalar();
+  out.subject_right = right.scalar();
+  out.dimension = left.fits_any ? right.dimension : left.dimension;
+  const Expr difference[] = {out.subject - out.subject_right};
+  if (difference[0].is_zero() || zero_test(expand_time_derivatives(difference[0])).verdict == Verdict::Zero) warn_identity(e, out);
+  return true;
+}
+
+bool about_subject(Elaboration& e, Expectation& out, const ExpectStatement& s) {
+  const std::optional<Value> subject = number(e, *s.subject);
+  if (!subject) return false;
+  out.subject = subject->scalar();
+  out.dimension = subject->dimension;
+  if (out.kind != Kind::NotConserved && !e.context.depends_on_time(out.subject.id())) warn_identity(e, out);
+  return tolerance(e, out, s, out.dimension);
+}
+
+bool freedoms(Elaboration& e, Expectation& out, const ExpectStatement& s) {
+  const Value v = constant_of(e, *s.value, Dimension{}, "a number of freedoms");
+  if (v.poisoned) return false;
+  out.value = v.scalar();
+  return true;
+}
+
+bool frequencies(Elaboration& e, Expectation& out, const ExpectStatement& s) {
+  bool good = true;
+  for (const auto& item : s.at) {
+    const std::optional<StartValue> value = start_value(e, item);
+    good = good && value;
+    if (value) out.at.push_back(*value);
+  }
+  out.dimension = e.dimension(Dimension{} / dimensions::time());
+  for (const auto& x : s.values) {
+    const Expression& q = unsigned_quantity(*x);
+    const Value v = constant_of(e, *x, out.dimension, "a frequency");
+    good = good && !v.poisoned;
+    if (q.kind == Expression::Kind::Quantity) set_display_unit(e, out, *x);
+    if (v.poisoned) continue;
+    const Expr turn = v.hertz ? e.number(2) * e.context.pi() : e.number(1);  // kept in rad/s
+    out.values.push_back(v.scalar() * turn);
+    out.display_factor *= maupertuis::evaluate(turn, Bindings{});
+  }
+  return tolerance(e, out, s, out.dimension) && good;
+}
+
+bool later(Elaboration& e, const ExpectStatement& s, Span span) {
+  const char* what = s.kind == Kind::EventAt ? "an expected event" : "an expected class of constraint";
+  e.diagnostics.error("E0503", span, fmt::format("not supported yet: {}", what), "Constraints, contacts and events are carried out by a later version.", "Leave this line out for now.");
+  return false;
+}
+
+bool fill(Elaboration& e, Expectation& out, const ExpectStatement& s) {
+  switch (s.kind) {
+    case Kind::ValueAt:
+    case Kind::Value: return value_at(e, out, s);
+    case Kind::EnergyConserved: return tolerance(e, out, s, dimensions::energy());
+    case Kind::Conserved:
+    case Kind::NotConserved:
+    case Kind::Integral: return about_subject(e, out, s);
+    case Kind::Equation: return equation(e, out, s);
+    case Kind::Freedoms: return freedoms(e, out, s);
+    case Kind::Frequencies: return frequencies(e, out, s);
+    case Kind::ConstraintClass:
+    case Kind::EventAt: return later(e, s, out.span);
+    case Kind::Error: return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void elaborate_expectation(Elaboration& e, const ExpectStatement& s, Span span) {
+  Expectation out;
+  out.kind = s.kind;
+  out.claim = s.claim;
+  out.text = std::string(e.source.slice(span));
+  out.name = s.name.text;
+  out.word = s.word.text;
+  out.occurrence = s.occurrence;
+  out.span = span;
+  if (fill(e, out, s)) e.experiment().expectations.push_back(std::move(out));
+}
+
+}  // namespace maupertuis::elaboration

@@ -1,0 +1,166 @@
+#include "system/elaboration.hpp"
+
+#include <fmt/format.h>
+
+/// start, run, output, draw, reaction.
+namespace maupertuis::elaboration {
+namespace {
+
+using syntax::Expression;
+using Kind = Declaration::Kind;
+
+/// Which coordinate, and which derivative of it, a start names.
+std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
+  if (x.kind == Expression::Kind::Member) {
+    const bool known = x.arguments[0]->kind == Expression::Kind::Name && e.table.find(x.arguments[0]->text);
+    if (!known && x.arguments[0]->kind == Expression::Kind::Name) unknown_name(e, x.arguments[0]->text, x.arguments[0]->name_span);
+    else
+      e.diagnostics.error("E0504", x.span, fmt::format("not supported yet: a start of `{}`", e.source.slice(x.span)),
+                          "A start gives coordinates and their velocities; what follows from them is solved for by a later version.",
+                          "Give the coordinates and velocities that belong to it.");
+    return std::nullopt;
+  }
+  const std::string text(e.source.slice(x.span));
+  Declaration* d = x.kind == Expression::Kind::Name ? e.table.find(x.text) : nullptr;
+  if (x.kind == Expression::Kind::Name && (!d || !d->statement)) {
+    unknown_name(e, x.text, x.name_span);
+    return std::nullopt;
+  }
+  if (!d || d->kind != Kind::Coordinate) {
+    e.diagnostics.error("E0223", x.span, d ? fmt::format("`{}` is a {}, not a coordinate", d->name, word_of(d->kind)) : fmt::format("`{}` is no coordinate", text),
+                        "A start gives the coordinates and their velocities.", "");
+    return std::nullopt;
+  }
+  d->used = true;
+  if (x.primes > 1) {
+    e.diagnostics.error("E0223", x.span, fmt::format("the acceleration `{}` cannot be chosen", text), "The equations of motion give it from positions and velocities.", "Leave it out.");
+    return std::nullopt;
+  }
+  if (d->value.poisoned) return std::nullopt;
+  StartValue s;
+  s.order = x.primes;
+  for (std::size_t i = 0; i < e.system().coordinates.size(); ++i)
+    if (e.system().coordinates[i].name == d->name) s.coordinate = i;
+  return s;
+}
+
+/// `start θ = 60`: sixty radians are hardly meant.
+void warn_of_degrees(Elaboration& e, const Value& v, const Dimension& expected, const Expression& x) {
+  if (e.dimensionless || !v.is_literal || expected != dimensions::angle()) return;
+  const std::optional<double> size = constant_value(e, v.scalar());
+  if (!size || std::abs(*size) <= 6.5) return;
+  e.diagnostics.warning("W0310", x.span, fmt::format("an angle of {} without a unit is in radians", e.source.slice(x.span)),
+                        fmt::format("That is {:.1f} turns.", std::abs(*size) / 6.283185307179586), fmt::format("Write {} deg if degrees are meant.", e.source.slice(x.span)));
+}
+
+void duplicate_start(Elaboration& e, const StartValue& s, const StartValue& first) {
+  e.diagnostics.error("E0208", s.span, fmt::format("`{}` starts twice", e.source.slice(s.span)),
+                      fmt::format("Its start is already given in line {}.", e.source.locate(first.span.begin).line), "Keep one of them.");
+}
+
+}  // namespace
+
+/// A number that is known before the run: parameters and quantities alone.
+Value constant_of(Elaboration& e, const Expression& x, const Dimension& expected, const std::string& what) {
+  Place place;
+  place.inline_constants = true;
+  const Value v = scalar_of(e, x, expected, what, place);
+  if (v.poisoned) return v;
+  if (!e.context.depends_on_time(v.scalar().id())) return v;
+  Span at = culprit_of_order(e, x, 0);
+  e.diagnostics.error("E0222", at.end > at.begin ? at : x.span, fmt::format("{} is a number, known before the run", what),
+                      "Numbers and parameters may stand here; coordinates and time are known only during the run.", "");
+  return Value::poison();
+}
+
+std::optional<StartValue> start_value(Elaboration& e, const syntax::StartStatement::Item& item) {
+  std::optional<StartValue> s = start_variable(e, *item.variable);
+  if (!s) {
+    evaluate_formula(e, *item.value, Place{});
+    return std::nullopt;
+  }
+  const Coordinate& c = e.system().coordinates[s->coordinate];
+  const Dimension expected = s->order == 0 ? c.dimension : c.dimension / e.dimension(dimensions::time());
+  const Value v = constant_of(e, *item.value, expected, fmt::format("{}", e.source.slice(item.variable->span)));
+  if (v.poisoned) return std::nullopt;
+  warn_of_degrees(e, v, expected, *item.value);
+  s->value = v.scalar();
+  s->span = item.variable->span;
+  return s;
+}
+
+namespace {
+
+void start(Elaboration& e, const syntax::StartStatement& s) {
+  Experiment& x = e.experiment();
+  x.start_exactly = x.start_exactly || s.exactly;
+  if (s.at) {
+    const Value t = constant_of(e, *s.at, dimensions::time(), "the start time");
+    if (!t.poisoned) x.start_time = t.scalar();
+  }
+  for (const auto& item : s.items) {
+    const std::optional<StartValue> value = start_value(e, item);
+    if (!value) continue;
+    const StartValue* first = nullptr;
+    for (const StartValue& other : x.start)
+      if (other.coordinate == value->coordinate && other.order == value->order) first = &other;
+    if (first) duplicate_start(e, *value, *first);
+    else x.start.push_back(*value);
+  }
+}
+
+void run(Elaboration& e, const syntax::RunStatement& s) {
+  Experiment& x = e.experiment();
+  if (s.duration) {
+    const Value v = constant_of(e, *s.duration, dimensions::time(), "the duration of a run");
+    if (!v.poisoned) x.duration = v.scalar();
+    return;
+  }
+  const Value left = evaluate_formula(e, *s.until_left);
+  const Value within = constant_of(e, *s.within, dimensions::time(), "the longest time of a run");
+  if (!within.poisoned) x.within = within.scalar();
+  if (left.poisoned) return;
+  Place place;
+  place.inline_constants = true;
+  const Value right = left.is_vector ? Value::poison() : scalar_of(e, *s.until_right, left.dimension, fmt::format("`{}`", e.source.slice(s.until_left->span)), place);
+  if (left.is_vector)
+    e.diagnostics.error("E0210", s.until_left->span, "a run ends when a number reaches its value, not a vector", "", "Take a component with .x or .y.");
+  if (right.poisoned || refuse_acceleration(e, left, *s.until_left, "the end of a run")) return;
+  x.until = left.scalar() - right.scalar();
+}
+
+void output(Elaboration& e, const syntax::OutputStatement& s) {
+  const Value v = constant_of(e, *s.every, dimensions::time(), "the interval of output");
+  if (v.poisoned) return;
+  const std::optional<double> size = constant_value(e, v.scalar());
+  if (size && !(*size > 0)) {
+    e.diagnostics.error("E0222", s.every->span, "the interval of output is not positive", "Rows of output follow each other in time.", "");
+    return;
+  }
+  e.experiment().output_every = v.scalar();
+}
+
+void reaction(Elaboration& e, const syntax::ReactionStatement& s) {
+  Declaration* d = find_declared(e, s.released);
+  if (!d) return;
+  for (std::size_t i = 0; i < e.system().parameters.size(); ++i)
+    if (e.system().parameters[i].name == d->name) e.system().releases.emplace_back(s.name.text, i);
+  if (d->kind != Kind::Parameter)
+    e.diagnostics.error("E0212", s.released.span, fmt::format("`{}` is a {}, not a parameter", d->name, word_of(d->kind)),
+                        "A reaction shows the force that keeps a parameter, such as a length, at its value.", "");
+}
+
+}  // namespace
+
+void elaborate_experiment(Elaboration& e) {
+  for (const syntax::Statement& s : e.tree.statements) {
+    if (const auto* x = std::get_if<syntax::StartStatement>(&s.body)) start(e, *x);
+    if (const auto* x = std::get_if<syntax::RunStatement>(&s.body)) run(e, *x);
+    if (const auto* x = std::get_if<syntax::OutputStatement>(&s.body)) output(e, *x);
+    if (const auto* x = std::get_if<syntax::DrawStatement>(&s.body)) elaborate_drawing(e, *x);
+    if (const auto* x = std::get_if<syntax::ReactionStatement>(&s.body)) reaction(e, *x);
+    if (const auto* x = std::get_if<syntax::ExpectStatement>(&s.body)) elaborate_expectation(e, *x, s.span);
+  }
+}
+
+}  // namespace maupertuis::elaboration

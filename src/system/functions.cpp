@@ -1,0 +1,150 @@
+#include "system/elaboration.hpp"
+
+#include <fmt/format.h>
+
+/// The functions of the language and what they ask of their arguments.
+namespace maupertuis::elaboration {
+namespace {
+
+using syntax::Expression;
+using K = maupertuis::Kind;
+
+struct Function {
+  const char* name;
+  K kind;
+  enum class Rule { Circular, Inverse, Pure } rule;
+  bool reciprocal = false;  // sec, csc, cot, sech
+};
+using Rule = Function::Rule;
+
+constexpr Function kFunctions[] = {
+    {"sin", K::Sin, Rule::Circular},         {"cos", K::Cos, Rule::Circular},         {"tan", K::Tan, Rule::Circular},
+    {"sec", K::Cos, Rule::Circular, true},   {"csc", K::Sin, Rule::Circular, true},   {"cot", K::Tan, Rule::Circular, true},
+    {"asin", K::Asin, Rule::Inverse},        {"acos", K::Acos, Rule::Inverse},        {"atan", K::Atan, Rule::Inverse},
+    {"sinh", K::Sinh, Rule::Pure},           {"cosh", K::Cosh, Rule::Pure},           {"tanh", K::Tanh, Rule::Pure},
+    {"sech", K::Cosh, Rule::Pure, true},     {"asinh", K::Asinh, Rule::Pure},         {"acosh", K::Acosh, Rule::Pure},
+    {"atanh", K::Atanh, Rule::Pure},         {"exp", K::Exp, Rule::Pure},             {"log", K::Log, Rule::Pure},
+};
+
+const Function* find_function(const std::string& name) {
+  for (const Function& f : kFunctions)
+    if (name == f.name) return &f;
+  return nullptr;
+}
+
+bool wrong_count(Elaboration& e, const Expression& x, std::size_t least, std::size_t most) {
+  const std::size_t n = x.arguments.size();
+  if (n >= least && n <= most) return false;
+  e.diagnostics.error("E0213", x.span, fmt::format("`{}` takes {} argument{}, not {}", x.text, least, least == 1 ? "" : "s", n), "", "");
+  return true;
+}
+
+bool refuse_vector(Elaboration& e, const Value& v, const Expression& x, const Expression& argument) {
+  if (!v.is_vector) return false;
+  e.diagnostics.error("E0210", argument.span, fmt::format("`{}` of a vector", x.text), "Its argument is a number.", "Take a component with .x or .y, or its length with norm(…).");
+  return true;
+}
+
+/// `cos ω t` is (cos ω) t: the argument is no angle, and the product was meant.
+std::string help_for_bare(Elaboration& e, const Expression& x) {
+  const std::string argument(e.source.slice(x.arguments[0]->span));
+  return x.bare ? fmt::format("Without brackets {0} takes `{1}` alone: write {0}({1} …) around the whole argument.", x.text, argument) : "";
+}
+
+Value elementary(Elaboration& e, const Function& f, const Expression& x, const Value& a) {
+  if (!a.fits_any && !a.dimension.is_one()) {
+    e.diagnostics.error("E0303", x.arguments[0]->span,
+                        fmt::format("the argument of {} is {}", x.text, describe(a.dimension)),
+                        f.rule == Rule::Circular ? "Its argument is an angle or a bare number." : "Its argument is a bare number.", help_for_bare(e, x));
+    return Value::poison();
+  }
+  if (f.rule == Rule::Circular && a.hertz)
+    e.diagnostics.warning("W0309", x.arguments[0]->span, fmt::format("a frequency in Hz stands in the argument of {} without 2π", x.text),
+                          "A frequency of 1 Hz turns the phase by 2π in a second.", fmt::format("Write {}(2 pi …).", x.text));
+  Expr value = apply(f.kind, a.scalar());
+  if (f.reciprocal) value = pow(value, Rational(-1));
+  Value v = Value::of(value, f.rule == Rule::Inverse ? e.dimension(dimensions::angle()) : Dimension{}, a.order);
+  return v;
+}
+
+Value square_root(Elaboration& e, const Expression& x, const Value& a) {
+  Value v = power(e, a, Value::of(e.number(Rational(1, 2)), Dimension{}), x);
+  v.fits_any = a.fits_any;
+  return v;
+}
+
+/// min, max, atan2: arguments of one dimension.
+Value of_several(Elaboration& e, const Expression& x, std::vector<Value> arguments, K kind) {
+  Value common = arguments.front();
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    common = add(e, common, arguments[i], true, *x.arguments[i], {});
+    if (common.poisoned) return common;
+  }
+  Expr value = arguments.front().scalar();
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    const Expr pair[] = {value, arguments[i].scalar()};
+    value = e.context.function(kind, pair);
+  }
+  common.parts = {value};
+  common.is_literal = false;
+  common.hertz = common.has_pi = false;
+  if (kind == K::Atan2) {
+    common.dimension = e.dimension(dimensions::angle());
+    common.fits_any = false;
+  }
+  return common;
+}
+
+Value of_one(Elaboration& e, const Expression& x, Value a) {
+  if (const Function* f = find_function(x.text)) return elementary(e, *f, x, a);
+  if (x.text == "sqrt") return square_root(e, x, a);
+  const K kind = x.text == "abs" ? K::Abs : x.text == "sign" ? K::Sign : K::Step;
+  a.parts = {apply(kind, a.scalar())};
+  a.hertz = a.is_literal = false;
+  if (kind != K::Abs) {
+    a.dimension = Dimension{};
+    a.fits_any = false;
+  }
+  return a;
+}
+
+Value of_vectors(Elaboration& e, const Expression& x, const std::vector<Value>& arguments) {
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (arguments[i].is_vector) continue;
+    e.diagnostics.error("E0210", x.arguments[i]->span, fmt::format("`{}` of a number", x.text), "Its arguments are vectors.",
+                        x.text == "norm" ? "Write abs(…) for the size of a number." : "");
+    return Value::poison();
+  }
+  if (x.text == "dot") return dot_product(e, arguments[0], arguments[1], x);
+  if (x.text == "cross") return cross_product(e, arguments[0], arguments[1], x);
+  return square_root(e, x, dot_product(e, arguments[0], arguments[0], x));
+}
+
+}  // namespace
+
+Value value_of_call(Elaboration& e, const Expression& x, const Place& place) {
+  if (x.text == "multiplier" || x.text == "reaction") {
+    e.diagnostics.error("E0503", x.span, fmt::format("not supported yet: {}(…)", x.text),
+                        "Forces of constraints need constraints, which a later version carries out.", "Leave this line out for now.");
+    return Value::poison();
+  }
+  const bool vectors = x.text == "dot" || x.text == "cross" || x.text == "norm";
+  const bool several = x.text == "min" || x.text == "max";
+  const bool two = x.text == "dot" || x.text == "cross" || x.text == "atan2";
+  if (several ? wrong_count(e, x, 2, 1000) : wrong_count(e, x, two ? 2 : 1, two ? 2 : 1)) return Value::poison();
+  Place inner = place;
+  inner.expected.reset();
+  std::vector<Value> arguments;
+  bool poisoned = false;
+  for (const syntax::ExpressionPtr& a : x.arguments) {
+    arguments.push_back(evaluate_formula(e, *a, inner));
+    poisoned = poisoned || arguments.back().poisoned || (!vectors && refuse_vector(e, arguments.back(), x, *a));
+  }
+  if (poisoned) return Value::poison();
+  if (vectors) return of_vectors(e, x, arguments);
+  if (several) return of_several(e, x, std::move(arguments), x.text == "min" ? K::Min : K::Max);
+  if (x.text == "atan2") return of_several(e, x, std::move(arguments), K::Atan2);
+  return of_one(e, x, arguments[0]);
+}
+
+}  // namespace maupertuis::elaboration

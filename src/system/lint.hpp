@@ -1,0 +1,42 @@
+#pragma once
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/mechanical_system.hpp>
+#include <maupertuis/transform.hpp>
+
+/// Physics lint: rules about a system whose text is in order. A rule is a function; each says one kind of thing.
+namespace maupertuis::lint_rules {
+
+/// What the rules share.
+struct Subject {
+  const Model& model;
+  const MechanicalSystem& system;
+  const SourceText& source;
+  Diagnostics& diagnostics;
+  ReadingOrder order;
+  Expr lagrangian;        // in q, q', t
+  ExprVector velocities;  // [n]
+  ExprVector momenta;     // ∂L/∂q̇ [n]
+
+  Subject(const Model& model, const SourceText& source, Diagnostics& diagnostics);
+  std::size_t freedoms() const { return system.coordinates.size(); }
+  /// A formula as a reader would write it; empty if it is too long for a message.
+  std::string show(Expr e) const;
+};
+
+/// E0406: nothing depends on the coordinate. The coordinates that it named.
+std::vector<bool> unused_coordinates(Subject& s);
+/// E0407, E0408, E0409, E0417: M is singular wherever it is sampled; W0410: M is not positive definite.
+void mass_matrix_rules(Subject& s, const std::vector<bool>& unused);
+/// E0411: `T = …` beside points says something else than the points.
+void claims(Subject& s);
+/// W0412: a term of L that is a total time derivative.
+void total_derivatives(Subject& s);
+/// W0413: weight enters by `gravity` and again by V.
+void gravity_twice(Subject& s);
+/// W0421: T without a velocity; W0422: D without a velocity.
+void energies_without_velocity(Subject& s);
+
+/// A deterministic sample of the state near the start, with the values of the parameters. `attempt` varies it.
+Bindings sample(const Subject& s, int attempt);
+
+}  // namespace maupertuis::lint_rules

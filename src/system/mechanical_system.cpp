@@ -1,0 +1,68 @@
+#include <maupertuis/mechanical_system.hpp>
+#include <maupertuis/transform.hpp>
+
+namespace maupertuis {
+namespace {
+
+Expr total(const std::vector<EnergyTerm>& terms, Context& context) {
+  ExprVector values;
+  for (const EnergyTerm& t : terms) values.push_back(t.value);
+  return sum_of(values, context);
+}
+
+template <typename Items>
+auto find_by_name(const Items& items, std::string_view name) -> const typename Items::value_type* {
+  for (const auto& item : items)
+    if (item.name == name) return &item;
+  return nullptr;
+}
+
+}  // namespace
+
+Expr MechanicalSystem::kinetic_energy() const { return total(kinetic, *context); }
+Expr MechanicalSystem::potential_energy() const { return total(potential, *context); }
+Expr MechanicalSystem::total_generalized_potential() const { return total(generalized_potential, *context); }
+Expr MechanicalSystem::dissipation_function() const { return total(dissipation, *context); }
+
+Expr MechanicalSystem::lagrangian() const {
+  const Expr extra = total(lagrangian_extra, *context);
+  if (lagrangian_given) return lagrangian_given->value + extra;
+  return sum_of({kinetic_energy(), -potential_energy(), -total_generalized_potential(), extra});
+}
+
+ExprVector MechanicalSystem::generalized_forces() const {
+  ExprVector q, velocities;
+  for (const Coordinate& c : coordinates) {
+    q.push_back(c.q);
+    velocities.push_back(c.velocity);
+  }
+  std::vector<ExprVector> terms(coordinates.size());
+  for (const AppliedForce& f : forces) {
+    if (f.kind == AppliedForce::Kind::Generalized) {
+      terms[f.coordinate].push_back(f.components.front());
+      continue;
+    }
+    const ExprVector lever = expand_time_derivatives(f.lever);
+    for (std::size_t k = 0; k < lever.size(); ++k) {
+      const ExprVector arm = gradient(lever[k], f.kind == AppliedForce::Kind::OnPoint ? q : velocities);
+      for (std::size_t i = 0; i < arm.size(); ++i) terms[i].push_back(f.components[k] * arm[i]);
+    }
+  }
+  ExprVector out;
+  for (const ExprVector& t : terms) out.push_back(sum_of(t, *context));
+  return expand_time_derivatives(out);
+}
+
+std::unordered_map<Expr, Expr, ExprHash> MechanicalSystem::definition_values() const {
+  std::unordered_map<Expr, Expr, ExprHash> out;
+  for (const Definition& d : definitions)
+    if (d.symbol) out.emplace(d.symbol, d.value);
+  return out;
+}
+
+const Coordinate* MechanicalSystem::find_coordinate(std::string_view name) const { return find_by_name(coordinates, name); }
+const Parameter* MechanicalSystem::find_parameter(std::string_view name) const { return find_by_name(parameters, name); }
+const Point* MechanicalSystem::find_point(std::string_view name) const { return find_by_name(points, name); }
+const Body* MechanicalSystem::find_body(std::string_view name) const { return find_by_name(bodies, name); }
+
+}  // namespace maupertuis

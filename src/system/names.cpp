@@ -1,0 +1,158 @@
+#include "system/elaboration.hpp"
+
+#include <fmt/format.h>
+
+/// Names in formulas.
+namespace maupertuis::elaboration {
+namespace {
+
+using syntax::Expression;
+using Kind = Declaration::Kind;
+
+/// A coordinate, a definition, a point, … as it is, without primes. A point is the vector from the frame's origin.
+Value meaning(Declaration& d, const Place& place) {
+  d.used = true;
+  if (!d.done) return Value::poison();  // a member of a cycle, or lost to an error: told there
+  Value v = d.value;
+  if (v.poisoned || !place.frame || !v.is_vector) return v;
+  if (!v.anchored) {
+    v.parts = rotate(place.frame->rotation, v.parts);
+    v.anchored = true;
+  } else if (v.weight) {
+    v.parts = vector_sum(v.parts, scaled(-v.weight, place.frame->origin));
+  }
+  return v;
+}
+
+Value origin(Elaboration& e, const Place& place) {
+  Value v;
+  v.is_vector = v.anchored = true;
+  v.dimension = e.dimension(dimensions::length());
+  v.weight = e.number(1);
+  v.parts.assign(static_cast<std::size_t>(e.system().space_dimension), e.number(0));
+  if (place.frame) v.parts = scaled(e.number(-1), place.frame->origin);
+  return v;
+}
+
+Value derivative_of_coordinate(Elaboration& e, const Declaration& d, int primes) {
+  Value v = d.value;
+  for (int i = 0; i < primes; ++i) {
+    v.parts = {e.context.time_derivative(v.scalar())};
+    v.dimension = v.dimension / e.dimension(dimensions::time());
+  }
+  v.order = primes;
+  return v;
+}
+
+bool refuse_high_order(Elaboration& e, const Expression& x) {
+  if (x.primes <= 2) return false;
+  e.diagnostics.error("E0401", x.span, fmt::format("`{}` is a derivative of order {}", e.source.slice(x.span), x.primes),
+                      "Mechanics knows positions, velocities and accelerations.", "");
+  return true;
+}
+
+Value component(Elaboration& e, const Value& base, const Expression& x) {
+  const std::size_t index = x.text == "x" ? 0 : x.text == "y" ? 1 : x.text == "z" ? 2 : 3;
+  if (!base.is_vector || index == 3) {
+    const std::string text(e.source.slice(x.arguments[0]->span));
+    e.diagnostics.error("E0216", x.name_span, fmt::format("`{}` has no `.{}`", text, x.text),
+                        base.is_vector ? "A vector has the components .x, .y and .z." : "Only points, bodies and vectors have components.",
+                        x.text == "w" && base.is_vector ? "The angular velocity of a body is .ω." : "");
+    return Value::poison();
+  }
+  if (index >= base.parts.size()) {
+    e.diagnostics.error("E0216", x.name_span, fmt::format("there is no .{} in a two-dimensional model", x.text),
+                        "Its vectors have the components .x and .y.", "");
+    return Value::poison();
+  }
+  Value v = base;
+  v.is_vector = v.anchored = false;
+  v.weight = Expr();
+  v.parts = {base.parts[index]};
+  return v;
+}
+
+std::optional<Value> angular_velocity(Elaboration& e, const Expression& x) {
+  const bool world = x.text == "ω_world";
+  if (!world && x.text != "ω") return std::nullopt;
+  if (x.arguments[0]->kind != Expression::Kind::Name) return std::nullopt;
+  Declaration* d = e.table.find(x.arguments[0]->text);
+  if (!d || (d->kind != Kind::Body && d->kind != Kind::Frame)) return std::nullopt;
+  d->used = true;
+  if (!d->done || d->value.poisoned) return Value::poison();
+  const Pose& pose = e.poses.at(e.table.id(*d));
+  Value v;
+  v.parts = world ? pose.omega_world : pose.omega;
+  v.is_vector = v.parts.size() > 1;
+  v.anchored = v.is_vector;
+  v.dimension = e.dimension(dimensions::angle() / dimensions::time());
+  v.order = pose.order >= 0 ? 1 : -1;
+  return v;
+}
+
+/// A poisoned or lost name is no second mistake.
+bool is_silent(Elaboration& e, const std::string& text) { return e.table.is_lost(text); }
+
+}  // namespace
+
+void unknown_name(Elaboration& e, const std::string& text, Span span) {
+  if (is_silent(e, text)) return;
+  if (!e.unknown_names.insert(text).second) return;  // told at its first use
+  std::vector<std::string> names = e.table.names();
+  if (names.size() > 2000) names.resize(2000);
+  const std::string near = did_you_mean(text, names);
+  if (near.empty() && find_unit(text) && !e.dimensionless) {
+    e.diagnostics.error("E0312", span, fmt::format("`{}` is no name of this model", text),
+                        "In a formula a unit stands in square brackets, so that it cannot be taken for a name.",
+                        fmt::format("Write 3 [{0}] for a number with the unit {0}, or declare {0} with `param`.", text));
+    return;
+  }
+  e.diagnostics.error("E0201", span, fmt::format("`{}` is not declared", text), "Every name of a formula is declared somewhere in the model.",
+                      near.empty() ? fmt::format("Declare it: `param {0} = …`, `coord {0} : …` or `let {0} = …`.", text)
+                                   : fmt::format("Did you mean `{}`?", near));
+}
+
+Declaration* find_declared(Elaboration& e, const syntax::Name& name) {
+  Declaration* d = e.table.find(name.text);
+  if (d && d->statement) {
+    d->used = true;
+    return d;
+  }
+  unknown_name(e, name.text, name.span);
+  return nullptr;
+}
+
+Value value_of_name(Elaboration& e, const Expression& x, const Place& place) {
+  Declaration* d = e.table.find(x.text);
+  if (d) {
+    if (refuse_high_order(e, x)) return Value::poison();
+    if (d->kind == Kind::Coordinate && d->done && !d->value.poisoned) {
+      d->used = true;
+      return derivative_of_coordinate(e, *d, x.primes);
+    }
+    return time_derivative(e, meaning(*d, place), x.primes, x);
+  }
+  if (e.table.is_lost(x.text)) return Value::poison();
+  if (x.text == "t") return time_derivative(e, Value::of(e.context.time(), e.dimension(dimensions::time())), x.primes, x);
+  if (x.text == "pi") {
+    Value v = Value::of(e.context.pi(), Dimension{});
+    v.has_pi = true;
+    return time_derivative(e, v, x.primes, x);
+  }
+  if (x.text == "O") return origin(e, place);
+  unknown_name(e, x.text, x.name_span);
+  return Value::poison();
+}
+
+Value value_of_member(Elaboration& e, const Expression& x, const Place& place) {
+  if (refuse_high_order(e, x)) return Value::poison();
+  if (const std::optional<Value> omega = angular_velocity(e, x)) return time_derivative(e, *omega, x.primes, x);
+  Place world = place;
+  world.frame = nullptr;  // .x is a world component
+  const Value base = evaluate_formula(e, *x.arguments[0], world);
+  if (base.poisoned) return base;
+  Value v = component(e, base, x);
+  return time_derivative(e, v, x.primes, x);
+}
+
+}  // namespace maupertuis::elaboration

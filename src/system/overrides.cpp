@@ -1,0 +1,116 @@
+#include "system/elaboration.hpp"
+
+#include <fmt/format.h>
+
+/// `--set m=2kg` and `--start θ=1` of the command line: each is read as a statement of its own (`param m = 2kg`), and
+/// its value takes the place of the model's. A mistake in it has no place in the model text.
+namespace maupertuis::elaboration {
+namespace {
+
+/// One override as a model text of one statement.
+struct Fragment {
+  std::string option, text;
+  SourceText source;
+  Diagnostics diagnostics;
+  syntax::SyntaxTree tree;
+
+  Fragment(const char* option, const char* statement, const std::string& text)
+      : option(option), text(text), source("command line", fmt::format("{} {}\n", statement, text)), tree(syntax::parse(source, diagnostics)) {}
+};
+
+void refuse(Elaboration& e, const Fragment& f, const std::string& message, std::string reason, std::string help) {
+  e.diagnostics.error("E0224", std::nullopt, fmt::format("{} {}: {}", f.option, f.text, message), std::move(reason), std::move(help));
+}
+
+/// The first mistake inside the fragment, told as one of the option; true if there was any.
+bool hand_over(Elaboration& e, const Fragment& f) {
+  for (const Diagnostic& d : f.diagnostics.items()) {
+    if (d.severity != Severity::Error) continue;
+    refuse(e, f, d.message, d.reason, d.help);
+    return true;
+  }
+  return false;
+}
+
+void unknown_parameter(Elaboration& e, const Fragment& f, const std::string& name, const Declaration* d) {
+  std::vector<std::string> names;
+  for (const Declaration& other : e.table.declarations())
+    if (other.kind == Declaration::Kind::Parameter) names.push_back(other.name);
+  const std::string near = did_you_mean(name, names);
+  refuse(e, f, d && d->statement ? fmt::format("`{}` is a {}, not a parameter", name, word_of(d->kind)) : fmt::format("the model has no parameter `{}`", name),
+         "Only parameters can be set.", near.empty() ? "" : fmt::format("Did you mean `{}`?", near));
+}
+
+/// Puts the value and unit that the fragment gave in place of the model's.
+void replace(Elaboration& e, Declaration& d, const Elaboration& inner) {
+  for (const Parameter& given : inner.model.system.parameters)
+    for (Parameter& p : e.system().parameters) {
+      if (p.symbol != given.symbol) continue;
+      p.value = given.value;
+      p.si_value = given.si_value;
+      p.unit = given.unit;
+      if (d.value.fits_any) p.dimension = given.dimension;
+      e.values[p.symbol] = p.si_value;
+      e.exact_values[p.symbol] = p.value;
+    }
+}
+
+void set_parameter(Elaboration& e, Fragment& f, Elaboration& inner, Declaration& given) {
+  Declaration* d = e.table.find(given.name);
+  if (!d || d->kind != Declaration::Kind::Parameter) return unknown_parameter(e, f, given.name, d);
+  elaborate_parameter(inner, given);
+  if (hand_over(e, f) || d->value.poisoned || given.value.poisoned) return;
+  const bool fits = d->value.fits_any || given.value.fits_any || given.value.dimension.same_as(d->value.dimension);
+  if (!fits || given.value.parts.size() != d->value.parts.size())
+    return refuse(e, f, fmt::format("`{}` is {}, this is {}", d->name, describe(d->value.dimension), describe(given.value.dimension)),
+                  "A parameter keeps its dimension.", fmt::format("Write --set {}=… with a unit of the same dimension.", d->name));
+  replace(e, *d, inner);
+  if (d->value.fits_any) {
+    d->value.dimension = given.value.dimension;
+    d->value.fits_any = given.value.fits_any;
+  }
+}
+
+}  // namespace
+
+Elaboration::Elaboration(const Elaboration& outer, const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics)
+    : tree(tree), source(source), diagnostics(diagnostics), table(tree, source, diagnostics),
+      model{MechanicalSystem{}, Experiment{}}, context(outer.context), values(outer.values), exact_values(outer.exact_values), dimensionless(outer.dimensionless) {
+  model.system.context = outer.model.system.context;
+  model.system.space_dimension = outer.model.system.space_dimension;
+}
+
+void apply_parameter_overrides(Elaboration& e, const std::vector<std::string>& overrides) {
+  for (const std::string& text : overrides) {
+    Fragment f("--set", "param", text);
+    if (hand_over(e, f)) continue;
+    Elaboration inner(e, f.tree, f.source, f.diagnostics);
+    for (Declaration& given : inner.table.declarations())
+      if (given.kind == Declaration::Kind::Parameter) set_parameter(e, f, inner, given);
+  }
+}
+
+void apply_start_overrides(Elaboration& e, const std::vector<std::string>& overrides) {
+  for (const std::string& text : overrides) {
+    Fragment f("--start", "start", text);
+    if (hand_over(e, f)) continue;
+    Elaboration inner(e, f.tree, f.source, f.diagnostics);
+    inner.table.adopt(e.table);
+    inner.system().coordinates = e.system().coordinates;
+    for (const syntax::Statement& s : f.tree.statements) {
+      const auto* start = std::get_if<syntax::StartStatement>(&s.body);
+      if (!start) continue;
+      for (const auto& item : start->items) {
+        const std::optional<StartValue> value = start_value(inner, item);
+        if (hand_over(e, f)) break;
+        if (!value) continue;
+        auto& list = e.experiment().start;
+        std::erase_if(list, [&](const StartValue& old) { return old.coordinate == value->coordinate && old.order == value->order; });
+        list.push_back(*value);
+        list.back().span = {};
+      }
+    }
+  }
+}
+
+}  // namespace maupertuis::elaboration

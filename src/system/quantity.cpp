@@ -1,0 +1,125 @@
+#include "system/elaboration.hpp"
+#include "system/unit_expression.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+/// Numbers and quantities (rule 1 of the language): `3 [J]` of a formula, `2 m` of a quantity place, where `m` may be
+/// the metre or a mass of the model: the reading whose dimension fits wins.
+namespace maupertuis::elaboration {
+namespace {
+
+using syntax::Expression;
+
+bool all_names(Elaboration& e, const syntax::UnitExpression& words) {
+  for (const auto& word : words.factors) {
+    const Declaration* d = e.table.find(word.word);
+    if (!d || !d->statement) return false;
+  }
+  return !words.factors.empty();
+}
+
+Dimension dimension_of_names(Elaboration& e, const syntax::UnitExpression& words) {
+  Dimension out;
+  for (const auto& word : words.factors)
+    out = out * pow(e.table.find(word.word)->value.dimension, word.exponent_numerator, word.exponent_denominator);
+  return out;
+}
+
+Value product_of_names(Elaboration& e, const Expression& x, const Place& place) {
+  Value out = evaluate_formula(e, *x.arguments[0], place);
+  for (const auto& word : x.unit->factors) {
+    Expression name;
+    name.kind = Expression::Kind::Name;
+    name.text = word.word;
+    name.span = name.name_span = word.span;
+    Value factor = value_of_name(e, name, place);
+    const Rational exponent(word.exponent_numerator, word.exponent_denominator);
+    if (!exponent.is_one()) factor = power(e, factor, Value::of(e.number(exponent), Dimension{}), name);
+    out = multiply(e, out, factor, x);
+  }
+  return out;
+}
+
+/// Whether the words are the names of the model rather than units. Nothing: both fit, which was reported.
+std::optional<bool> words_are_names(Elaboration& e, const Expression& x, const Place& place) {
+  const syntax::UnitExpression& words = *x.unit;
+  if (x.unit_bracketed || place.in_parameter || !all_names(e, words)) return false;
+  if (!all_units(words)) return true;
+  if (!place.expected || e.dimensionless) return e.dimensionless;
+  Dimension as_units;
+  for (const auto& w : words.factors) as_units = as_units * pow(find_unit(w.word)->dimension, w.exponent_numerator, w.exponent_denominator);
+  const bool units_fit = as_units.same_as(*place.expected);
+  const bool names_fit = dimension_of_names(e, words).same_as(*place.expected);
+  if (units_fit && names_fit) {
+    const std::string text(e.source.slice(words.span));
+    e.diagnostics.error("E0307", words.span, fmt::format("`{}` is a unit and also a name of this model", text),
+                        fmt::format("Both readings give {} here.", describe(*place.expected)),
+                        fmt::format("Write {} [{}] for the unit or {} * {} for the name.", e.source.slice(x.arguments[0]->span), text,
+                                    e.source.slice(x.arguments[0]->span), text));
+    return std::nullopt;
+  }
+  return names_fit;
+}
+
+/// An anonymous parameter for a number with a unit in a formula.
+Expr anonymous_constant(Elaboration& e, const std::string& name, Expr value, const Unit& unit, const std::string& written, Span span) {
+  const Expr symbol = e.context.symbol(name, Role::Constant);
+  if (!e.constants.insert(symbol).second) return symbol;
+  Parameter p;
+  p.name = name;
+  p.symbol = symbol;
+  p.value = value;
+  p.si_value = maupertuis::evaluate(value, Bindings{});
+  p.dimension = unit.dimension;
+  p.unit = written;
+  p.used = true;
+  p.span = span;
+  e.values[symbol] = p.si_value;
+  e.exact_values[symbol] = value;
+  e.system().parameters.push_back(std::move(p));
+  return symbol;
+}
+
+}  // namespace
+
+Value value_of_number(Elaboration& e, const Expression& x) {
+  const std::optional<Rational> r = x.text.size() <= 1000 ? Rational::parse(x.text) : std::nullopt;
+  if (!r || !std::isfinite(r->to_double()) || (r->to_double() == 0 && !r->is_zero())) {
+    e.diagnostics.error("E0218", x.span, fmt::format("the number {} is beyond the range of computation", x.text.substr(0, 40)),
+                        "Numbers have at most 1000 digits and lie between 1e-308 and 1e308 in size.", "Choose units in which it is of moderate size.");
+    return Value::poison();
+  }
+  Value v = Value::of(e.number(*r), Dimension{});
+  v.fits_any = r->is_zero();
+  v.is_literal = true;
+  return v;
+}
+
+Value value_of_quantity(Elaboration& e, const Expression& x, const Place& place) {
+  const std::optional<bool> names = words_are_names(e, x, place);
+  if (!names) return Value::poison();
+  if (*names) return product_of_names(e, x, place);
+  const std::optional<Unit> unit = unit_of(e, *x.unit);
+  Value v = evaluate_formula(e, *x.arguments[0], place);
+  if (!unit || v.poisoned) return Value::poison();
+  v.fits_any = false;
+  v.is_literal = false;
+  v.dimension = unit->dimension;
+  v.hertz = unit->is_hertz;
+  const Expr factor = factor_of(e.context, *unit);
+  const bool constant = x.unit_bracketed && !place.inline_constants && !unit->dimension.is_one();
+  for (Expr& part : v.parts) {
+    const Expr si = part * factor;
+    const std::string written = written_unit(e.source, *x.unit);
+    // A component of a vector is named by its own value: (3, 4) [N] is 3 N and 4 N.
+    if (constant && part.is_number() && !part.is_zero())
+      part = anonymous_constant(e, fmt::format("{} {}", v.is_vector ? part.number().to_string() : std::string(e.source.slice(x.arguments[0]->span)), written), si, *unit, written, x.span);
+    else
+      part = si;
+  }
+  return v;
+}
+
+}  // namespace maupertuis::elaboration

@@ -1,0 +1,87 @@
+#include "system/elaboration.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+/// Statements as a whole: those of a later version, those that may stand once.
+namespace maupertuis::elaboration {
+namespace {
+
+const char* reason_for(const std::string& what) {
+  if (what == "sweep") return "Parameter studies are carried out by a later version; the model itself is not concerned.";
+  if (what == "field" || what == "density") return "Fields are carried out by a later version.";
+  if (what == "independent" || what == "path") return "Variational problems are carried out by a later version.";
+  return "Constraints, contacts, Coulomb friction and events are carried out by a later version.";
+}
+
+void once(Elaboration& e, std::optional<Span>& first, Span span, const char* what) {
+  if (!first) {
+    first = span;
+    return;
+  }
+  e.diagnostics.error("E0208", span, fmt::format("{} is given twice", what), fmt::format("It is already given in line {}.", e.source.locate(first->begin).line), "Keep one of them.");
+}
+
+}  // namespace
+
+void refuse_later_statements(Elaboration& e) {
+  std::set<std::string> told;
+  for (const syntax::Statement& s : e.tree.statements) {
+    const auto* later = std::get_if<syntax::LaterStatement>(&s.body);
+    if (!later || !told.insert(later->what).second) continue;
+    e.diagnostics.error("E0501", s.span, fmt::format("not supported yet: {}", later->what), reason_for(later->what), "Leave this statement out for now.");
+  }
+}
+
+void check_statement_counts(Elaboration& e) {
+  std::optional<Span> gravity, run, output, source;
+  for (const syntax::Statement& s : e.tree.statements) {
+    if (std::get_if<syntax::GravityStatement>(&s.body)) once(e, gravity, s.span, "gravity");
+    if (std::get_if<syntax::RunStatement>(&s.body)) once(e, run, s.span, "the run");
+    if (std::get_if<syntax::OutputStatement>(&s.body)) once(e, output, s.span, "the interval of output");
+    if (std::get_if<syntax::SourceStatement>(&s.body)) once(e, source, s.span, "the source");
+  }
+}
+
+namespace {
+
+/// A name in a quantity place may have been read as a unit; a name in a statement of a later version counts as used.
+void mark_used(Elaboration& e, const syntax::ExpressionPtr& x) {
+  if (!x) return;
+  if (x->kind == syntax::Expression::Kind::Name)
+    if (Declaration* d = e.table.find(x->text)) d->used = true;
+  for (const syntax::ExpressionPtr& a : x->arguments) mark_used(e, a);
+}
+
+/// `L = …` is the whole Lagrangian: a T or V beside it has an effect only if L names it.
+void warn_idle_energies(Elaboration& e) {
+  using Which = syntax::EnergyStatement::Which;
+  if (!e.system().lagrangian_given) return;
+  for (const syntax::Statement& s : e.tree.statements) {
+    const auto* x = std::get_if<syntax::EnergyStatement>(&s.body);
+    if (!x || x->which == Which::L || x->which == Which::D || e.table.energy(x->which).used) continue;
+    e.diagnostics.warning("W0418", x->name_span, fmt::format("this {} has no effect", name_of_energy(x->which)), "The Lagrangian is given whole, and it does not name it.",
+                          "Write L = T - V …, or leave one of them out.");
+  }
+}
+
+}  // namespace
+
+void warn_unused(Elaboration& e) {
+  warn_idle_energies(e);
+  for (const syntax::Statement& s : e.tree.statements)
+    if (const auto* later = std::get_if<syntax::LaterStatement>(&s.body))
+      for (const syntax::ExpressionPtr& x : later->expressions) mark_used(e, x);
+  for (const Declaration& d : e.table.declarations()) {
+    if (d.kind != Declaration::Kind::Parameter && d.kind != Declaration::Kind::Definition) continue;
+    for (Parameter& p : e.system().parameters) p.used = p.used || (p.name == d.name && d.used);
+    for (Definition& f : e.system().definitions) f.used = f.used || (f.name == d.name && d.used);
+    if (d.used) continue;
+    const bool parameter = d.kind == Declaration::Kind::Parameter;
+    e.diagnostics.warning(parameter ? "W0415" : "W0416", d.span, fmt::format("the {} `{}` is never used", word_of(d.kind), d.name),
+                          parameter ? "Nothing in the model depends on it." : "No formula of the model names it.", "Remove it, or check the formula that should contain it.");
+  }
+}
+
+}  // namespace maupertuis::elaboration

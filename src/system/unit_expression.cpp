@@ -1,0 +1,82 @@
+#include "system/unit_expression.hpp"
+
+#include <fmt/format.h>
+
+namespace maupertuis::elaboration {
+namespace {
+
+void unknown_unit(Elaboration& e, const syntax::UnitExpression::Factor& word) {
+  const std::string near = did_you_mean(word.word, unit_words());
+  const Declaration* named = e.table.find(word.word);
+  if (named && named->statement) {
+    e.diagnostics.error("E0209", word.span, fmt::format("`{}` is a {} of this model, not a unit", word.word, word_of(named->kind)),
+                        "Here stands a quantity: a number followed by its unit.",
+                        "Use `let` for a formula.");
+    return;
+  }
+  e.diagnostics.error("E0301", word.span, fmt::format("`{}` is no unit", word.word),
+                      "Units are SI units with their prefixes, derived units, and common ones such as deg, rpm, bar, inch.",
+                      near.empty() ? "" : fmt::format("Did you mean `{}`?", near));
+}
+
+std::optional<Rational> exact_power(const Rational& base, int numerator, int denominator) {
+  const Rational raised = pow(base, numerator);
+  return denominator == 1 ? std::optional(raised) : exact_root(raised, denominator);
+}
+
+}  // namespace
+
+bool all_units(const syntax::UnitExpression& words) {
+  for (const auto& word : words.factors)
+    if (!find_unit(word.word)) return false;
+  return true;
+}
+
+std::optional<Unit> unit_of(Elaboration& e, const syntax::UnitExpression& words) {
+  Unit out;
+  bool known = true;
+  for (const auto& word : words.factors) {
+    const std::optional<Unit> unit = find_unit(word.word);
+    if (!unit) {
+      unknown_unit(e, word);
+      known = false;
+      continue;
+    }
+    const int n = word.exponent_numerator, d = word.exponent_denominator;
+    const std::optional<Rational> factor =
+        std::abs(n) <= 30 && d <= 30 ? exact_power(unit->factor, n, d) : std::nullopt;
+    if (!factor || (unit->pi_power * n) % d != 0) {
+      e.diagnostics.error("E0301", word.span, fmt::format("`{}^{}` is no unit that a quantity has", word.word, d == 1 ? fmt::format("{}", n) : fmt::format("({}/{})", n, d)),
+                          "The power of this unit is no exact number of SI units.", "Write the value in SI base units.");
+      known = false;
+      continue;
+    }
+    out.dimension = out.dimension * pow(unit->dimension, n, d);
+    out.factor *= *factor;
+    out.pi_power += unit->pi_power * n / d;
+    out.is_hertz = out.is_hertz || (unit->is_hertz && n == d);
+  }
+  if (!known) return std::nullopt;
+  if (e.dimensionless && !out.dimension.is_one()) {
+    e.diagnostics.error("E0308", words.span, "a unit in a model without units",
+                        "`dimensionless` turns units off: every quantity is a bare number.",
+                        "Leave the unit out, or remove `dimensionless` and give every quantity its unit.");
+    return std::nullopt;
+  }
+  if (e.dimensionless) out.dimension = Dimension{};
+  return out;
+}
+
+Expr factor_of(Context& context, const Unit& unit) {
+  const Expr factor = context.number(unit.factor);
+  return unit.pi_power == 0 ? factor : factor * pow(context.pi(), Rational(unit.pi_power));
+}
+
+std::string written_unit(const SourceText& source, const syntax::UnitExpression& words) {
+  if (words.factors.empty()) return {};
+  std::string text(source.slice(words.span));
+  const std::size_t first = text.find_first_not_of("[ "), last = text.find_last_not_of("] ");
+  return first == std::string::npos ? std::string() : text.substr(first, last - first + 1);
+}
+
+}  // namespace maupertuis::elaboration
