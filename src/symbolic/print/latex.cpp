@@ -78,9 +78,7 @@ std::string write_product(const Layout& l) {
   std::string text;
   for (std::size_t i = 0; i < l.parts.size(); ++i) {
     const bool after_function = i > 0 && l.parts[i - 1].shape == Shape::Apply;
-    const bool quantity = i > 0 && l.parts[i].shape == Shape::Symbol && l.parts[i].symbol.role() == Role::Constant;
-    const bool numbers = i > 0 && l.parts[i].shape == Shape::Number;
-    if (i > 0) text += quantity || numbers ? " \\cdot " : after_function ? "\\, " : " ";
+    if (i > 0) text += starts_with_number(l.parts[i]) ? " \\cdot " : after_function ? "\\, " : " ";
     text += write_factor(l.parts[i]);
   }
   return text;

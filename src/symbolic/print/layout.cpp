@@ -274,6 +274,12 @@ std::string function_name(Kind kind) {
   }
 }
 
+bool starts_with_number(const Layout& layout) {
+  if (layout.shape == Shape::Symbol) return layout.symbol.role() == Role::Constant;
+  if (layout.shape == Shape::Power) return starts_with_number(layout.parts.front());
+  return layout.shape == Shape::Number;
+}
+
 ReadingOrder row_order(const ReadingOrder& order, const ReadableForm& form) {
   ReadingOrder with_own = order;
   with_own.own = form.own;

@@ -41,6 +41,9 @@ Layout lay_out(Expr e, const ReadingOrder& order);
 /// A nonnegative rational as a reader writes it: 1/2, 9.81, 3.
 Layout lay_out_number(const Rational& value);
 
+/// True if the text of a factor would begin with a digit: 2^(3/2), 3 [J]. Not to be put right after another number.
+bool starts_with_number(const Layout& layout);
+
 /// The order with the coordinate of the form's row in front.
 ReadingOrder row_order(const ReadingOrder& order, const ReadableForm& form);
 

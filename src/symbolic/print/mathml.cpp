@@ -82,8 +82,7 @@ std::string write_sum(const Layout& l) {
 std::string write_product(const Layout& l) {
   std::string text;
   for (std::size_t i = 0; i < l.parts.size(); ++i) {
-    const bool quantity = l.parts[i].shape == Shape::Symbol && l.parts[i].symbol.role() == Role::Constant;
-    if (i > 0) text += quantity || l.parts[i].shape == Shape::Number ? "<mo>&#x22C5;</mo>" : times;
+    if (i > 0) text += starts_with_number(l.parts[i]) ? "<mo>&#x22C5;</mo>" : times;
     text += write_factor(l.parts[i]);
   }
   return row(text);

@@ -42,15 +42,15 @@ std::string write_sum(const Layout& l) {
   return text;
 }
 
-/// Factors side by side. A fraction of numbers leads: 1/2 m; anything else with a slash gets brackets.
+/// Factors side by side. A fraction of numbers leads: 1/2 m; anything else with a slash gets brackets, and so does a
+/// number that is not the first.
 std::string write_product(const Layout& l) {
   std::string text;
   for (std::size_t i = 0; i < l.parts.size(); ++i) {
     const Layout& part = l.parts[i];
     const bool leading_fraction = i == 0 && part.shape == Shape::Quotient && part.parts[0].shape == Shape::Number;
-    const bool quantity_after_number = i > 0 && part.shape == Shape::Symbol && part.symbol.role() == Role::Constant;
     if (i) text += ' ';
-    if (quantity_after_number) text += "(" + write(part) + ")";
+    if (i > 0 && starts_with_number(part)) text += "(" + write(part) + ")";
     else text += leading_fraction ? write(part) : write_at(part, PowerLevel);
   }
   return text;
