@@ -12,7 +12,7 @@ void StatementParser::missing_clause(std::string_view clause, std::string_view s
 
 // The formula after a clause word that has been read; each clause stands once.
 ExpressionPtr StatementParser::clause_formula(std::string_view clause, const ExpressionPtr& already) {
-  if (already) fail("E0127", previous().span, fmt::format("`{}` is given twice", clause));
+  if (already) fail("E0127", previous().span, fmt::format("`{}` is given twice", clause), "Each part of a statement stands once.", "Remove one of them.");
   return formula();
 }
 
@@ -68,7 +68,7 @@ Rotation StatementParser::rotation() {
 
 // After the word `inertia`.
 void StatementParser::inertia(BodyStatement& body) {
-  if (body.inertia_kind != BodyStatement::Inertia::None) fail("E0127", previous().span, "`inertia` is given twice");
+  if (body.inertia_kind != BodyStatement::Inertia::None) fail("E0127", previous().span, "`inertia` is given twice", "Each part of a statement stands once.", "Remove one of them.");
   const Span first = peek().span;
   if (peek().is("diag") && peek(1).is("(")) {
     next();

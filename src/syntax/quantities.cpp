@@ -15,6 +15,8 @@ using Kind = Expression::Kind;
 constexpr int kLargestExponent = 99;
 
 bool is_unit_word(const Token& token, const Token& after) {
+  const Function* function = find_function(token.text);
+  if (function && function->bare) return false;  // 2 cos θ; but min is a unit too
   return token.kind == Token::Kind::Name && !is_clause_word(token.text) && !token.is("pi") && !after.is("'") && !after.is(".");
 }
 

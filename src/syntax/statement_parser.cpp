@@ -149,6 +149,11 @@ StatementBody StatementParser::let_statement() {
   return let;
 }
 
+void StatementParser::coordinate_without_kind(const Name& name) {
+  fail("E0129", name.span, fmt::format("the coordinate {} has no kind", name.text), "",
+       fmt::format("Write {0} : angle, {0} : length, {0} : charge, {0} : number or {0} : [unit].", name.text));
+}
+
 // coord x, y : length, θ : angle — names before a colon share its kind.
 StatementBody StatementParser::coord_statement() {
   next();
@@ -159,6 +164,7 @@ StatementBody StatementParser::coord_statement() {
     item.name = new_name("the name of a coordinate");
     coord.items.push_back(std::move(item));
     if (peek().is(",")) return;
+    if (at_end()) coordinate_without_kind(coord.items.back().name);
     if (!peek().is(":")) fail_expected("`:` and the kind of the coordinate", "Write for example θ : angle.");
     next();
     CoordStatement::Item& last = coord.items.back();
@@ -182,11 +188,6 @@ StatementBody StatementParser::coord_statement() {
     }
     unnamed = coord.items.size();
   });
-  if (unnamed < coord.items.size()) {
-    const Name& name = coord.items.back().name;
-    fail("E0129", name.span, fmt::format("the coordinate {} has no kind", name.text), "",
-         fmt::format("Write {0} : angle, {0} : length, {0} : charge, {0} : number or {0} : [unit].", name.text));
-  }
   return coord;
 }
 

@@ -19,6 +19,7 @@ class StatementParser : private ExpressionParser {
   };
   static std::span<const Entry> table();
   [[noreturn]] void unknown_statement();
+  [[noreturn]] void coordinate_without_kind(const Name& name);
   Statement complete(StatementBody body, std::size_t first) const;
 
   StatementBody system_statement();

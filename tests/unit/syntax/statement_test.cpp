@@ -1,0 +1,225 @@
+#include <doctest/doctest.h>
+
+#include "support.hpp"
+
+using namespace maupertuis;
+using namespace maupertuis::syntax;
+using namespace maupertuis::syntax::test;
+
+namespace {
+
+// The one statement of a text.
+template <typename Body>
+Body only(const std::string& text) {
+  Parsed parsed(text + "\n");
+  REQUIRE_MESSAGE(parsed.fine(), parsed.messages());
+  REQUIRE(parsed.tree.statements.size() == 1);
+  REQUIRE(std::holds_alternative<Body>(parsed.tree.statements[0].body));
+  return std::get<Body>(parsed.tree.statements[0].body);
+}
+
+std::string codes(const std::string& text) { return Parsed(text + "\n").codes(); }
+
+std::string text_of(const ExpressionPtr& e) { return e ? to_string(*e) : "none"; }
+
+}  // namespace
+
+TEST_CASE("declarations") {
+  const auto system = only<SystemStatement>("system double_pendulum \"Two rods\"");
+  CHECK(system.name.text == "double_pendulum");
+  CHECK(system.title == "Two rods");
+  CHECK(Parsed("system a \"b\" source \"c\"\n").tree.statements.size() == 2);
+  CHECK(only<SourceStatement>("source “Goldstein, § 1.4”").citation == "Goldstein, § 1.4");
+
+  const auto param = only<ParamStatement>("param m = 1 kg, l = 60 cm");
+  REQUIRE(param.items.size() == 2);
+  CHECK(param.items[1].name.text == "l");
+  CHECK(shape(*param.items[1].value) == "[60 cm:1]");
+
+  const auto coord = only<CoordStatement>("coord x, y : length, θ : angle, s : [m^2]");
+  REQUIRE(coord.items.size() == 4);
+  CHECK(coord.items[0].kind.text == "length");
+  CHECK(coord.items[1].kind.text == "length");
+  CHECK(coord.items[2].kind.text == "angle");
+  CHECK(coord.items[3].unit->factors[0].exponent_numerator == 2);
+
+  CHECK(only<LetStatement>("let a = b c, d = 2").items.size() == 2);
+  const auto input = only<InputStatement>("input u : [N] = sin(t)");
+  CHECK(input.unit->factors[0].word == "N");
+  CHECK_FALSE(only<InputStatement>("input u = 3").unit);
+}
+
+TEST_CASE("places and masses") {
+  const auto point = only<PointStatement>("point P mass 2 m at A + 3 l*(1, 0) in F");
+  CHECK(text_of(point.mass) == "2 m");
+  CHECK(point.in->text == "F");
+  CHECK(text_of(only<PointStatement>("point P at (0, 0)").mass) == "none");
+
+  const auto frame = only<FrameStatement>("frame F at (x, 0) rotation angle θ in G");
+  CHECK(frame.rotation->kind == Rotation::Kind::Angle);
+  CHECK(text_of(frame.rotation->values.at(0)) == "θ");
+  CHECK(frame.in->text == "G");
+
+  const auto axis = only<FrameStatement>("frame F at (0, 0, 0) rotation axis (0, 0, 1) angle φ");
+  CHECK(axis.rotation->kind == Rotation::Kind::AxisAngle);
+  CHECK(text_of(axis.rotation->axis) == "(0, 0, 1)");
+
+  const auto body = only<BodyStatement>("body B mass m inertia diag(I1, I2, I3) at (0, 0, l) rotation euler zxz (φ, θ, ψ)");
+  CHECK(body.inertia_kind == BodyStatement::Inertia::Diagonal);
+  CHECK(body.inertia.size() == 3);
+  CHECK(body.rotation->sequence == "zxz");
+  CHECK(body.rotation->values.size() == 3);
+  CHECK(only<BodyStatement>("body B inertia full(1, 2, 3, 0, 0, 0) rotation rpy (a, b, c)").inertia.size() == 6);
+  CHECK(only<BodyStatement>("body B mass m inertia 1/12 m l^2 at (x, y) rotation angle θ").inertia_kind == BodyStatement::Inertia::Scalar);
+  CHECK(only<BodyStatement>("body B inertia 1 rotation quaternion").rotation->kind == Rotation::Kind::QuaternionCoordinates);
+  CHECK(only<BodyStatement>("body B rotation quaternion (a, b, c, d)").rotation->kind == Rotation::Kind::Quaternion);
+  CHECK(codes("body B rotation euler zzx (a, b, c)") == "E0111");
+  CHECK(codes("body B rotation euler zxz (a, b)") == "E0116");
+}
+
+TEST_CASE("forces and energies") {
+  CHECK(text_of(only<GravityStatement>("gravity (0, -g)").vector) == "(0, -g)");
+  const auto spring = only<SpringStatement>("spring A - (0, 1) stiffness k/2 length l0");
+  CHECK(text_of(spring.to) == "(0, 1)");
+  CHECK(text_of(spring.stiffness) == "k/2");
+  CHECK(text_of(only<SpringStatement>("spring A - B stiffness k").length) == "none");
+  CHECK(text_of(only<DamperStatement>("damper A - B coefficient c").coefficient) == "c");
+  const auto torsion = only<TorsionSpringStatement>("torsion spring on θ stiffness k rest θ0");
+  CHECK(torsion.coordinate.text == "θ");
+  CHECK(text_of(torsion.rest) == "θ0");
+
+  CHECK(only<EnergyStatement>("V += k x").adds);
+  CHECK(only<EnergyStatement>("generalized_potential = q").which == EnergyStatement::Which::U);
+  CHECK(codes("param U = 12 V\nU = 3") == "E0120");
+
+  const auto on_point = only<ForceStatement>("force on P = (1, 2) in F");
+  CHECK(on_point.target == ForceStatement::Target::Point);
+  CHECK(on_point.in->text == "F");
+  CHECK(only<ForceStatement>("force on P in F = (1, 2)").in->text == "F");
+  const auto torque = only<ForceStatement>("torque on B from A = (0, 0, τ)");
+  CHECK(torque.target == ForceStatement::Target::TorqueOnBody);
+  CHECK(torque.from->text == "A");
+  CHECK(only<ForceStatement>("force θ = -c θ'").target == ForceStatement::Target::Coordinate);
+  CHECK(only<ReactionStatement>("reaction rod = release l1").released.text == "l1");
+}
+
+TEST_CASE("experiments") {
+  const auto start = only<StartStatement>("start exactly at 2 s, θ = 60 deg, sat.ω = (0.01, 2, 0.01) rad/s, x' = v");
+  CHECK(start.exactly);
+  CHECK(text_of(start.at) == "2 s");
+  REQUIRE(start.items.size() == 3);
+  CHECK(text_of(start.items[1].variable) == "sat.ω");
+  CHECK(shape(*start.items[1].value) == "[(vector 0.01 2 0.01) rad:1 s:-1]");
+  CHECK(start.items[2].variable->primes == 1);
+  CHECK(only<StartStatement>("start at 2 s").items.empty());
+
+  const auto until = only<RunStatement>("run until P.y = 2 mm within 60 s");
+  CHECK(text_of(until.until_left) == "P.y");
+  CHECK(text_of(until.until_right) == "2 mm");
+  CHECK(text_of(until.within) == "60 s");
+  CHECK(text_of(only<RunStatement>("run -10 s").duration) == "-10 s");
+  CHECK(text_of(only<OutputStatement>("output every 10 ms").every) == "10 ms");
+  CHECK(codes("run until x = 0") == "E0127");
+
+  const auto draw = only<DrawStatement>("draw O - A - B, trail B, box cart 0.4 m by 0.2 m, circle A r, spring A - (0, 1)");
+  REQUIRE(draw.items.size() == 5);
+  CHECK(draw.items[0].path.size() == 3);
+  CHECK(draw.items[1].kind == DrawItem::Kind::Trail);
+  CHECK(draw.items[2].sizes.size() == 2);
+  CHECK(draw.items[3].kind == DrawItem::Kind::Circle);
+  CHECK(draw.items[4].kind == DrawItem::Kind::Spring);
+  CHECK(only<DrawStatement>("draw box - trail").items[0].path.size() == 2);
+}
+
+TEST_CASE("expectations") {
+  using Kind = ExpectStatement::Kind;
+  const auto at = only<ExpectStatement>("expect θ at 10 s = 0.123456789012 rad ± 1e-11");
+  CHECK(at.kind == Kind::ValueAt);
+  CHECK(text_of(at.time) == "10 s");
+  CHECK(text_of(at.value) == "0.123456789012 rad");
+  CHECK(text_of(at.tolerance) == "1e-11");
+  CHECK_FALSE(at.relative);
+  CHECK(only<ExpectStatement>("expect θ'' at 10 s = 1 rad/s^2 rel 1e-10").relative);
+  CHECK(only<ExpectStatement>("expect θ at 10 s = 1 rad +/- 1e-3").tolerance);
+  CHECK(text_of(only<ExpectStatement>("expect reaction rod at 3 s = 12.3 N ± 1e-9").subject) == "reaction rod");
+  CHECK(only<ExpectStatement>("expect energy conserved rel 1e-13").kind == Kind::EnergyConserved);
+  CHECK(text_of(only<ExpectStatement>("expect conserved m x' + 1 rel 1e-13").tolerance) == "1e-13");
+  CHECK_FALSE(only<ExpectStatement>("expect conserved x'").tolerance);
+  CHECK(only<ExpectStatement>("expect x' + 1 not conserved").kind == Kind::NotConserved);
+  const auto equation = only<ExpectStatement>("expect equation m l^2 θ'' + m g l sin θ = 0");
+  CHECK(equation.kind == Kind::Equation);
+  CHECK(text_of(equation.subject) == "m l^2 θ'' + m g l sin θ");
+  CHECK(text_of(only<ExpectStatement>("expect freedoms = 2").value) == "2");
+  const auto kind = only<ExpectStatement>("expect constraint roll is nonholonomic");
+  CHECK(kind.name.text == "roll");
+  CHECK(kind.word.text == "nonholonomic");
+  CHECK(only<ExpectStatement>("expect integral (m1 + m2) x' + m2 l θ' cos θ").kind == Kind::Integral);
+  const auto frequencies = only<ExpectStatement>("expect frequencies at θ1 = 0, θ2 = 0 : 0.5 Hz, 1.2 Hz rel 1e-9");
+  CHECK(frequencies.at.size() == 2);
+  CHECK(frequencies.values.size() == 2);
+  const auto event = only<ExpectStatement>("expect event hit 3 at 0.4515236409857 s ± 1e-11");
+  CHECK(event.name.text == "hit");
+  CHECK(event.occurrence == 3);
+  CHECK(only<ExpectStatement>("expect error E0412").name.text == "E0412");
+  const auto claim = only<ExpectStatement>("claim θ'' = -g/l sin θ");
+  CHECK(claim.claim);
+  CHECK(claim.kind == Kind::Equation);
+  CHECK(only<ExpectStatement>("expect m1 + m2 = 3 kg ± 1e-9").kind == Kind::Value);
+  CHECK(codes("expect θ at 10 s = 1 rad") == "E0127");
+}
+
+TEST_CASE("statements for later are read whole") {
+  const char* const texts[] = {
+      "constraint x' = R φ' cos ψ name roll",
+      "constraint integral sqrt(1 + y'^2) = 2",
+      "contact r >= R restitution 0",
+      "contact y <= 0 restitution e friction μ static μs slip x' name floor",
+      "friction x coefficient μ static μs normal m g",
+      "friction x coefficient μ normal reaction(floor)",
+      "friction θ limit τ0",
+      "impact simultaneous",
+      "event hit when x = 0 rising : record",
+      "event hit when x - 2 = 3 m falling : stop",
+      "event hit when x = 0 : set x' = -e x', y' = y'",
+      "sweep Ω = 0 .. 12 rad/s steps 121",
+      "independent x",
+      "path from (0, 1) at 0 to (2, 3) at 1",
+      "field u(x) : angle on x = -20 m .. 20 m cells 800 boundary u_x = 0",
+      "density = 1/2 u'^2 - 1/2 c^2 u_x^2",
+  };
+  for (const char* text : texts) {
+    CAPTURE(text);
+    Parsed parsed(std::string(text) + "\n");
+    CHECK_MESSAGE(parsed.fine(), parsed.messages());
+    REQUIRE(parsed.tree.statements.size() == 1);
+    CHECK(std::holds_alternative<LaterStatement>(parsed.tree.statements[0].body));
+    CHECK(formatted(std::string(text) + "\n") == std::string(text) + "\n");
+  }
+  CHECK(codes("contact x = 3") == "E0111");
+  CHECK(codes("sweep x = 0 .. 3") == "E0127");
+  CHECK(only<LaterStatement>("field u(x) : angle").names.size() == 2);
+}
+
+TEST_CASE("lines continue in brackets and by indentation") {
+  CHECK(only<LetStatement>("let a = (1 +\n2)").items.size() == 1);
+  CHECK(text_of(only<LetStatement>("let a = 1\n  + 2").items[0].value) == "1 + 2");
+  CHECK(text_of(only<LetStatement>("let a = 1 # one\n\n# two\n  + 2").items[0].value) == "1 + 2");
+  CHECK(Parsed("  param m = 1\n  coord x : number\n").tree.statements.size() == 2);
+  CHECK(Parsed("  param m = 1,\n    n = 2\n  coord x : number\n").tree.statements.size() == 2);
+  CHECK(Parsed("param m = 1\r\ncoord x : number\r\n").fine());
+  CHECK(Parsed("\xEF\xBB\xBFparam m = 1\ncoord x : number\n").tree.statements.size() == 2);
+  CHECK(Parsed("param\tm = 1,\n\tn = 2").fine());
+  CHECK(Parsed("L = \n  T - V\n").fine());
+  CHECK(Parsed("contact y >= 0 restitution e\n  friction μ slip x'\n").fine());
+  CHECK(codes("param m = 1\n  coord x : number") == "E0107");
+  CHECK(codes("V = x\n  T = y") == "E0107");
+}
+
+TEST_CASE("statement words are free inside lines, clause words are not") {
+  CHECK(Parsed("param m = 1\nlet path = m, source = path\n").fine());
+  CHECK(codes("param mass = 1 kg") == "E0112");
+  CHECK(codes("coord at : length") == "E0112");
+  CHECK(codes("let t = 3") == "E0112");
+  CHECK(codes("let sin = 3") == "E0112");
+  CHECK(codes("let pi = 3") == "E0112");
+}
