@@ -53,21 +53,29 @@ int sign_changes(const Coefficients& b) {
 
 class Search {
  public:
-  Search(std::span<const double> p, int side, double tolerance) : p_(p), side_(side), tolerance_(tolerance) {}
+  Search(std::span<const double> p, int side, double unit, double scale)
+      : p_(p), side_(side), unit_(unit), scale_(scale) {}
 
   std::optional<double> in(double low, double high, Coefficients b) const {
-    if (*std::min_element(b.begin(), b.end()) >= -tolerance_) return std::nullopt;
-    if (b.front() < -tolerance_) return low;
-    if (b.front() >= 0 && b.back() < -tolerance_ && sign_changes(b) == 1) return refine(low, high);
+    const double tolerance = error_up_to(high);
+    if (*std::min_element(b.begin(), b.end()) >= -tolerance) return std::nullopt;
+    if (b.front() < -error_up_to(low)) return low;
+    if (b.front() >= 0 && b.back() < -tolerance && sign_changes(b) == 1) return refine(low, high);
     const double middle = 0.5 * (low + high);
     if (!(low < middle && middle < high) || high - low < 1e-17)
-      return b.back() < -tolerance_ ? std::optional(high) : std::nullopt;
+      return b.back() < -tolerance ? std::optional(high) : std::nullopt;
     Coefficients right = split(b);
     if (const auto left = in(low, middle, std::move(b))) return left;
     return in(middle, high, std::move(right));
   }
 
  private:
+  double error_up_to(double x) const {
+    double reach = 0;
+    for (std::size_t k = p_.size(); k-- > 1;) reach = (reach + std::abs(p_[k])) * x;
+    return unit_ * (scale_ + reach);
+  }
+
   double side_value(double x) const { return side_ * value(p_, x); }
 
   /// Bisection with a secant in every other turn; [low, high] brackets one simple root.
@@ -91,18 +99,18 @@ class Search {
 
   std::span<const double> p_;
   int side_;
-  double tolerance_;
+  double unit_, scale_;
 };
 
 }  // namespace
 
-std::optional<double> first_crossing(std::span<const double> p, int side, double tolerance) {
+std::optional<double> first_crossing(std::span<const double> p, int side, double unit, double scale) {
   while (p.size() > 1 && p.back() == 0) p = p.first(p.size() - 1);
   if (p.empty()) return std::nullopt;
   double reach = 0;
   for (std::size_t k = 1; k < p.size(); ++k) reach += std::abs(p[k]);
-  if (side * p[0] >= reach - tolerance) return std::nullopt;
-  return Search(p, side, tolerance).in(0, 1, to_bernstein(p, side));
+  if (side * p[0] >= reach) return std::nullopt;
+  return Search(p, side, unit, scale).in(0, 1, to_bernstein(p, side));
 }
 
 }  // namespace maupertuis::taylor

@@ -51,6 +51,7 @@ struct TaylorStepper::Impl {
   double remaining(double bound) const { return (bound - t.hi) - t.lo; }
   double tau_of(double time) const { return (time - begin.hi) - begin.lo; }
   void set_sides(KernelWorkspace& w) const;
+  void choose_first_sides();
   Sample sample(double time) const;
 
   Kernel kernel;
@@ -83,6 +84,14 @@ void TaylorStepper::Impl::set_sides(KernelWorkspace& w) const {
   std::vector<std::int8_t> sides;
   for (const Watched& s : switch_state) sides.push_back(s.side);
   w.set_branches(sides);
+}
+
+/// Signs of the switch functions at the start, zeros left open: enough for the values there.
+void TaylorStepper::Impl::choose_first_sides() {
+  set_sides(work);
+  if (!switch_state.empty() && work.evaluate(t.hi, q_now, v_now) == KernelStatus::Ok)
+    for (std::size_t i = 0; i < switch_state.size(); ++i) switch_state[i].side = sign(work.switch_function(i, 0));
+  set_sides(probe);
 }
 
 void TaylorStepper::Impl::end(Step& result, StepEnding ending, std::string reason) const {
@@ -131,6 +140,7 @@ bool TaylorStepper::Impl::decide_sides(double bound, Step& result) {
 
 void TaylorStepper::Impl::keep_polynomial() {
   begin = t;
+  set_sides(probe);
   for (int k = 0; k <= control.order + 1; ++k) {
     std::copy_n(work.coordinate(k), n, dense.coefficients(k));
     for (std::size_t i = 0; i < integrals.size(); ++i) dense.integrand(k)[i] = work.integrand(i, k);
@@ -304,6 +314,7 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.begin = s.t;
   s.dense.q = s.q;
   s.dense.v = s.v;
+  s.choose_first_sides();
   s.start_sample = sample(t);
 }
 

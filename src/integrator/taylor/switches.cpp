@@ -2,6 +2,7 @@
 
 #include "integrator/taylor/crossing.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -16,12 +17,12 @@ constexpr double unit = 16 * std::numeric_limits<double>::epsilon();
 template <class Coefficient>
 ScaledPolynomial scaled(int degree, double h, double scale, Coefficient&& coefficient) {
   ScaledPolynomial result;
-  double power = 1, reach = scale;
+  double power = 1;
+  result.scale = result.reach = scale;
   for (int k = 0; k <= degree; ++k, power *= h) {
     result.p.push_back(coefficient(k) * power);
-    if (k > 0) reach += std::abs(result.p.back());
+    if (k > 0) result.reach += std::abs(result.p.back());
   }
-  result.tolerance = unit * reach;
   return result;
 }
 
@@ -29,11 +30,11 @@ ScaledPolynomial scaled(int degree, double h, double scale, Coefficient&& coeffi
 
 std::size_t ScaledPolynomial::leading() const {
   for (std::size_t k = 1; k < p.size(); ++k)
-    if (std::abs(p[k]) > tolerance) return k;
+    if (std::abs(p[k]) > unit * reach) return k;
   return 0;
 }
 
-bool ScaledPolynomial::begins_at_zero() const { return std::abs(p[0]) <= tolerance; }
+bool ScaledPolynomial::begins_at_zero() const { return std::abs(p[0]) <= unit * scale; }
 
 std::int8_t ScaledPolynomial::direction() const {
   const std::size_t k = leading();
@@ -48,15 +49,34 @@ ScaledPolynomial event_polynomial(const KernelWorkspace& work, std::size_t index
   return scaled(work.order() + 1, h, work.event_scale(index), [&](int k) { return work.event(index, k); });
 }
 
+namespace {
+
+/// Newton on the whole polynomial: a zero that was divided out is zero to rounding only, and what rounding left there
+/// must not be counted twice.
+double polished(std::span<const double> p, double x) {
+  for (int turn = 0; turn < 2; ++turn) {
+    double value = 0, slope = 0;
+    for (std::size_t k = p.size(); k-- > 0;) {
+      slope = slope * x + value;
+      value = value * x + p[k];
+    }
+    const double better = x - value / slope;
+    if (!(std::abs(better - x) < 1e-10 * x)) break;
+    x = better;
+  }
+  return x;
+}
+
+}  // namespace
+
 std::optional<double> crossing(const ScaledPolynomial& polynomial, const Watched& watched) {
   if (watched.side == 0) return std::nullopt;
-  std::span<const double> p = polynomial.p;
-  if (watched.at_zero || polynomial.begins_at_zero()) {
-    const std::size_t k = polynomial.leading();
-    if (k == 0) return std::nullopt;
-    p = p.subspan(k);
-  }
-  return first_crossing(p, watched.side, polynomial.tolerance);
+  const std::span<const double> p = polynomial.p;
+  if (!watched.at_zero && !polynomial.begins_at_zero()) return first_crossing(p, watched.side, unit, polynomial.scale);
+  const std::size_t k = polynomial.leading();
+  if (k == 0) return std::nullopt;
+  const auto x = first_crossing(p.subspan(k), watched.side, unit, 0);
+  return x ? std::optional(std::min(1.0, polished(p, *x))) : x;
 }
 
 std::vector<std::int8_t> SideChooser::sides() const {

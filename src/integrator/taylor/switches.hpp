@@ -17,7 +17,8 @@ struct Watched {
 /// The polynomial of a watched function over a step of length h, in x = τ/h.
 struct ScaledPolynomial {
   std::vector<double> p;
-  double tolerance = 0;     // below it a value is not told from zero
+  double scale = 0;         // sizes of the terms of p_0
+  double reach = 0;         // scale + Σ_{k≥1} |p_k|
 
   /// Index of the first coefficient after p_0 that is told from zero; 0 if there is none.
   std::size_t leading() const;
