@@ -37,6 +37,8 @@ Fraction power(Fraction base, double exponent) {
   return {base.up * n, base.down * n, base.height * n};
 }
 
+Fraction derivative(const Fraction& f) { return {f.up + f.down, 2 * f.down, 2 * f.height + 8}; }
+
 double bits(const Rational& value) {
   const auto parts = value.small();
   if (!parts) return 4.0 * static_cast<double>(value.numerator_string().size() + value.denominator_string().size());
@@ -61,7 +63,31 @@ double angle_degree(const Tape& tape, Position argument) {
   return degree * denominator;
 }
 
+constexpr int largest_number_of_points = 4096;
+constexpr double largest_degree = 1099511627776.0;   // 2^40
+constexpr double log2_of_primes = 33;                 // random_prime_triple draws from more than 2^33
+
 }  // namespace
+
+int points_needed(const Complexity& c, int wanted) {
+  if (c.switches == 0) return wanted;
+  const double combinations = std::pow(2.0, std::min(c.switches, 12));
+  return static_cast<int>(std::min<double>(largest_number_of_points, std::max<double>(wanted, 12 * combinations)));
+}
+
+double error_bound(const Complexity& c, int points, double smallest_group) {
+  if (!c.claimable || !(c.degree <= largest_degree) || !(c.height <= largest_degree)) return 1;
+  const double sheets = std::pow(4.0, c.radicals);
+  const double hit = std::min(1.0, (2 * c.degree + 1) * sheets / smallest_group);
+  double at_points = std::pow(hit, points);
+  if (c.switches > 0) {   // the sign combination that differs, with probability 2^-switches a point, must be drawn too
+    const double seen = std::pow(0.5, std::min(c.switches, 60));
+    at_points = std::pow(1 - seen * (1 - hit), points);
+  }
+  const double bad_prime = std::min(1.0, (c.height + c.degree + 61) / 61 / std::pow(2.0, log2_of_primes));
+  const double one_prime = std::min(1.0, at_points + bad_prime);
+  return std::max(one_prime * one_prime, 1e-300);
+}
 
 Complexity complexity(const Tape& tape) {
   Complexity result;
@@ -102,6 +128,7 @@ Complexity complexity(const Tape& tape) {
         ++result.radicals;
         f[at] = {1, 0, 0};
         break;
+      case Kind::TimeDerivative: f[at] = derivative(f[arguments[0]]); break;
       case Kind::Abs: ++result.switches; f[at] = f[arguments[0]]; break;
       case Kind::Sign: case Kind::Step: ++result.switches; break;
       case Kind::Less: case Kind::LessEqual: ++result.switches; break;

@@ -13,4 +13,11 @@ struct Complexity {
 };
 Complexity complexity(const Tape& tape);
 
+/// Points per prime so that each combination of the signs that switches ask for is likely to come up.
+int points_needed(const Complexity& c, int wanted);
+
+/// The probability that a nonzero expression vanishes at `points` points modulo each of two random primes; the exponent
+/// groups of the image have at least `smallest_group` elements. 1 where none is claimed.
+double error_bound(const Complexity& c, int points, double smallest_group);
+
 }  // namespace maupertuis::evaluation

@@ -35,10 +35,18 @@ bool asks_sign(const Tape& tape, Position at) {
   }
 }
 
+/// Ranges over the whole line; a rate d/dt may be anything.
+struct RangeNumbers : RealNumbers<Interval<double>> {
+  using RealNumbers::RealNumbers;
+  Value function(const Tape& tape, Position at, const std::vector<Value>& values) const {
+    return tape.kind(at) == Kind::TimeDerivative ? Value::whole() : RealNumbers::function(tape, at, values);
+  }
+};
+
 /// Signs that hold for all real values of the symbols, by interval arithmetic over the whole line.
 std::vector<std::int8_t> definite_signs(const Tape& tape) {
   using Range = Interval<double>;
-  RealNumbers<Range> numbers([](Expr) { return Range::whole(); });
+  RangeNumbers numbers([](Expr) { return Range::whole(); });
   std::vector<Range> values;
   run(tape, numbers, values);
   std::vector<std::int8_t> signs(tape.size(), 0);
@@ -61,9 +69,7 @@ FieldHints field_hints(const Tape& tape) {
     const bool under_root = kind == Kind::Log || kind == Kind::Power;
     if (argument.is_symbol() && under_root) hints.positive.insert(argument.id());
   }
-  bool has_time_derivative = false;
-  for (Position at = 0; at < tape.size() && !has_time_derivative; ++at) has_time_derivative = tape.kind(at) == Kind::TimeDerivative;
-  if (any_sign && !has_time_derivative) hints.sign = definite_signs(tape);
+  if (any_sign) hints.sign = definite_signs(tape);
   return hints;
 }
 

@@ -32,7 +32,12 @@ class JetNumbers {
 
   /// `orders` coefficients of t are kept. Precondition: orders <= Jet::max_orders.
   JetNumbers(Base& base, std::size_t orders, Lookup symbols)
-      : base_(base), orders_(orders), zero_(base.number(0)), symbols_(std::move(symbols)) {}
+      : base_(base), orders_(orders), zero_(base.number(0)), symbols_(std::move(symbols)) {
+    for (std::size_t k = 0; k <= Value::max_orders; ++k) {
+      integers_[k] = base.number(static_cast<std::int64_t>(k));
+      reciprocals_[k] = k == 0 ? zero_ : base.inverse(integers_[k]);
+    }
+  }
 
   Value constant(const Scalar& value) const {
     Value out;
@@ -136,7 +141,7 @@ class JetNumbers {
   Scalar times(long n, const Scalar& a) const {
     if (n == 1) return a;
     if (n == 2) return base_.add(a, a);
-    return base_.multiply(base_.number(n), a);
+    return base_.multiply(integers_[static_cast<std::size_t>(n)], a);
   }
 
   Scalar convolution(const Value& a, std::size_t pa, const Value& b, std::size_t pb, std::size_t k) const {
@@ -170,7 +175,7 @@ class JetNumbers {
     return with_variations(f, slope, x);
   }
 
-  Scalar reciprocal(std::size_t k) const { return base_.number(Rational(1, static_cast<std::int64_t>(k))); }
+  const Scalar& reciprocal(std::size_t k) const { return reciprocals_[k]; }
 
   Value exponential(const Scalar& first, const Value& x) const {
     Value f = constant(first);
@@ -206,7 +211,7 @@ class JetNumbers {
     for (std::size_t k = 1; k < orders_; ++k) {
       Scalar sum = zero_;
       for (std::size_t j = 1; j <= k; ++j) {
-        const Scalar weight = base_.subtract(times(static_cast<long>(j), a), base_.number(static_cast<std::int64_t>(k - j)));
+        const Scalar weight = base_.subtract(times(static_cast<long>(j), a), integers_[k - j]);
         sum = base_.add(sum, base_.multiply(weight, base_.multiply(x(0, j), f(0, k - j))));
       }
       f(0, k) = base_.multiply(base_.multiply(sum, inverse_x), reciprocal(k));
@@ -279,6 +284,7 @@ class JetNumbers {
   Base& base_;
   std::size_t orders_;
   Scalar zero_;
+  std::array<Scalar, Value::max_orders + 1> integers_{}, reciprocals_{};
   Lookup symbols_;
   std::vector<Scalar> leading_;
   Position copied_ = 0;

@@ -48,6 +48,7 @@ Expr with_arguments(Expr node, std::span<const Expr> arguments) {
     case Kind::Sum: return context.sum(arguments);
     case Kind::Product: return context.product(arguments);
     case Kind::Power: return context.power(arguments[0], arguments[1]);
+    case Kind::TimeDerivative: return context.time_derivative(arguments[0]);
     default: return context.function(node.kind(), arguments);
   }
 }

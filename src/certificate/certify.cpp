@@ -1,0 +1,100 @@
+#include <maupertuis/certificate.hpp>
+
+#include "certificate/forms_agree.hpp"
+#include "certificate/route_results.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace maupertuis {
+namespace {
+
+using namespace certification;
+
+constexpr std::size_t largest_checked_matrix = 6;   // beyond it M and h are compared on `full` alone: O(n²) of them
+constexpr int real_points = 4;
+
+struct RouteText {
+  const char* name;
+  const char* statement;
+};
+constexpr std::array<RouteText, RouteCount> texts{{
+    {"jet_residual", "the equations follow from the action principle along random paths"},
+    {"dalembert", "the particles and bodies obey d'Alembert's principle"},
+    {"power_balance", "the energy function changes by the power of the forces (blind to gyroscopic terms)"},
+}};
+
+/// The verdict over the primes, and over the reals where those leave it open.
+CertificateCheck check_of(Route route, const RoutesResult& primes, const RoutesResult* reals) {
+  CertificateCheck check;
+  check.name = texts[route].name;
+  check.statement = texts[route].statement;
+  const RouteResult& exact = primes.routes[route];
+  check.row = exact.row;
+  if (primes.complete && !exact.fails) {
+    check.verdict = Verdict::Zero;
+    check.points = exact.points;
+    check.error_bound = primes.error_bound;
+    return check;
+  }
+  const RouteResult& digits = reals->routes[route];
+  if (digits.fails) {
+    check.verdict = Verdict::Nonzero;
+    check.reason = fmt::format("the two sides differ by {:.6g} at a random point", digits.difference);
+  } else if (reals->complete) {
+    check.verdict = Verdict::Zero;
+    check.points = digits.points;
+    check.statement += fmt::format(", to 60 digits at {} points, not proved", digits.points);
+  } else {
+    check.reason = "no point was found at which every root, logarithm and denominator is defined";
+  }
+  return check;
+}
+
+void explain_dalembert(CertificateCheck& check, const MechanicalSystem& system, bool has_matter) {
+  if (!has_matter) {
+    check.applies = false;
+    check.verdict = Verdict::Undecided;
+    check.points = 0;
+    check.error_bound = 1;
+    check.statement = system.lagrangian_given ? "d'Alembert's principle does not apply: L is given whole"
+                                              : "d'Alembert's principle does not apply: no particle or body has mass";
+    return;
+  }
+  const auto given = [](const EnergyTerm& term) { return term.origin == "T"; };
+  if (std::any_of(system.kinetic.begin(), system.kinetic.end(), given))
+    check.statement += "; the part of T that is given enters as it stands";
+}
+
+}  // namespace
+
+bool Certificate::passed() const {
+  for (const CertificateCheck& check : checks)
+    if (check.applies && check.verdict != Verdict::Zero) return false;
+  return true;
+}
+
+Certificate certify(const EquationsOfMotion& equations, const Derivation* readable, const CertifyOptions& options) {
+  Certificate certificate;
+  if (readable) certificate.checks.push_back(forms_agree(equations, *readable, options.seed));
+
+  const bool with_matrix = options.full || equations.residual.size() <= largest_checked_matrix;
+  const Questions questions(equations, with_matrix);
+  const RoutesResult primes = compare_over_primes(questions, options.seed);
+  bool open = !primes.complete;
+  for (const RouteResult& r : primes.routes) open |= r.fails;
+  std::optional<RoutesResult> reals;
+  if (open) reals = compare_over_reals(questions, options.seed, real_points);
+
+  for (const Route route : {Action, Dalembert, Power}) {
+    CertificateCheck check = check_of(route, primes, reals ? &*reals : nullptr);
+    if (route == Dalembert) explain_dalembert(check, *equations.system, questions.has_matter);
+    certificate.checks.push_back(std::move(check));
+  }
+  if (options.full) certificate.checks.push_back(gauge_invariance(equations, options.seed));
+  return certificate;
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,38 @@
+#pragma once
+#include "certificate/route_results.hpp"
+#include "certificate/routes.hpp"
+
+#include <algorithm>
+
+namespace maupertuis::certification {
+
+inline std::size_t orders_needed(const evaluation::Tape& tape) {
+  return std::max<std::size_t>(3, 2 + evaluation::depth_of_time_derivatives(tape));
+}
+
+/// Walks the questions once along the random path that belongs to `numbers` and the direction.
+template <class Numbers>
+std::array<std::vector<typename Numbers::Value>, RouteCount> differences(
+    const Questions& questions, const evaluation::Tape& tape, Numbers& numbers,
+    const std::vector<typename Numbers::Value>& direction, std::vector<Jet<typename Numbers::Value>>& values) {
+  const std::size_t orders = orders_needed(tape);
+  RandomPath<Numbers> path(questions, numbers, orders, direction);
+  JetNumbers<Numbers> jets(numbers, orders, [&](Expr symbol) { return path(symbol); });
+  evaluation::run(tape, jets, values);
+  const PathValues<Numbers> along{questions, jets, tape, values, direction};
+  std::array<std::vector<typename Numbers::Value>, RouteCount> out;
+  out[Action] = action_route(along);
+  if (questions.has_matter) out[Dalembert] = dalembert_route(along);
+  out[Power] = power_route(along);
+  return out;
+}
+
+/// The direction of one equation alone.
+template <class Numbers>
+std::vector<typename Numbers::Value> unit_direction(const Numbers& numbers, std::size_t n, std::size_t row) {
+  std::vector<typename Numbers::Value> direction(n, numbers.number(0));
+  direction[row] = numbers.number(1);
+  return direction;
+}
+
+}  // namespace maupertuis::certification

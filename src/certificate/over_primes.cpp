@@ -1,0 +1,103 @@
+#include "certificate/compare.hpp"
+
+#include "symbolic/evaluate/degree.hpp"
+#include "symbolic/evaluate/field_numbers.hpp"
+#include "symbolic/evaluate/normalize.hpp"
+
+#include <optional>
+
+namespace maupertuis::certification {
+namespace {
+
+using evaluation::FieldNumbers;
+using evaluation::mix;
+using Values = std::vector<Jet<FieldNumbers::Value>>;
+
+constexpr int points_per_prime = 3;
+constexpr double node_budget = 1e6;   // bounds the extra points that switches ask for
+
+std::vector<FieldNumbers::Value> random_direction(const FieldNumbers& numbers, std::size_t n) {
+  std::vector<FieldNumbers::Value> direction;
+  for (std::size_t i = 0; i < n; ++i) direction.push_back(numbers.random(0x646972, i));
+  return direction;
+}
+
+bool any_nonzero(const std::vector<FieldNumbers::Value>& differences) {
+  return std::any_of(differences.begin(), differences.end(), [](FieldNumbers::Value v) { return v != 0; });
+}
+
+/// One direction at a time at the same point, to name the equation.
+void find_rows(const Questions& questions, const evaluation::Tape& tape, FieldNumbers& numbers, RoutesResult& result) {
+  const std::size_t n = questions.system.freedoms();
+  std::array<bool, RouteCount> found{};
+  Values values;
+  for (std::size_t row = 0; row < n; ++row) {
+    const auto difference = differences(questions, tape, numbers, unit_direction(numbers, n, row), values);
+    for (std::size_t route = 0; route < RouteCount; ++route) {
+      if (found[route] || !result.routes[route].fails || !any_nonzero(difference[route])) continue;
+      found[route] = true;
+      result.routes[route].row = row;
+    }
+  }
+}
+
+/// False: no point was found modulo this prime within the attempts.
+bool compare_at_points(const Questions& questions, const evaluation::Tape& tape, const evaluation::FieldHints& hints,
+                       int wanted, std::uint64_t& seed, RoutesResult& result, double& smallest_group) {
+  const std::size_t n = questions.system.freedoms();
+  Values values;
+  int found = 0;
+  for (int prime = 0; prime < 20 && found < wanted; ++prime) {
+    seed = mix(seed);
+    const evaluation::PrimeTriple primes = evaluation::random_prime_triple(hints.m, seed);
+    smallest_group = static_cast<double>(std::min(primes.q, primes.r));
+    std::optional<FieldNumbers> numbers;
+    for (int attempt = 0; attempt < 60 + 8 * wanted && found < wanted; ++attempt) {
+      try {
+        seed = mix(seed);
+        if (numbers) numbers->set_seed(seed);
+        else numbers.emplace(primes, hints, seed);
+        const auto difference = differences(questions, tape, *numbers, random_direction(*numbers, n), values);
+        bool fails = false;
+        for (std::size_t route = 0; route < RouteCount; ++route) {
+          RouteResult& r = result.routes[route];
+          if (any_nonzero(difference[route])) fails = r.fails = true;
+          else if (!r.fails) ++r.points;
+        }
+        ++found;
+        if (fails) { find_rows(questions, tape, *numbers, result); return true; }
+      } catch (const evaluation::Redraw& redraw) {
+        if (redraw.another_prime || (attempt >= 60 && found == 0)) break;
+      }
+    }
+  }
+  return found >= wanted;
+}
+
+}  // namespace
+
+RoutesResult compare_over_primes(const Questions& questions, std::uint64_t seed) {
+  RoutesResult result;
+  const evaluation::Tape tape(evaluation::flatten_arguments(questions.roots));
+  if (orders_needed(tape) > Jet<FieldNumbers::Value>::max_orders) {
+    result.complete = false;
+    return result;
+  }
+  const evaluation::FieldHints hints = evaluation::field_hints(tape);
+  evaluation::Complexity size = evaluation::complexity(tape);
+  const int affordable = static_cast<int>(std::max<double>(points_per_prime, node_budget / static_cast<double>(tape.size())));
+  const int wanted = std::min(evaluation::points_needed(size, points_per_prime), affordable);
+  double smallest_group = 1;
+  for (int prime = 0; prime < 2 && result.complete; ++prime) {
+    result.complete = compare_at_points(questions, tape, hints, wanted, seed, result, smallest_group);
+    for (const RouteResult& r : result.routes)
+      if (r.fails) return result;
+  }
+  // Two derivatives of L multiply its degree by at most 8; one more factor is c or q̇.
+  size.degree = 8 * size.degree + 1;
+  size.height = 8 * size.height + 8;
+  if (result.complete) result.error_bound = evaluation::error_bound(size, wanted, smallest_group);
+  return result;
+}
+
+}  // namespace maupertuis::certification

@@ -1,0 +1,77 @@
+#include "certificate/questions.hpp"
+
+#include <maupertuis/transform.hpp>
+
+namespace maupertuis::certification {
+namespace {
+
+bool starts_with(const std::string& text, std::string_view prefix) { return text.compare(0, prefix.size(), prefix) == 0; }
+
+bool comes_from_matter(const EnergyTerm& term) {
+  for (const std::string_view prefix : {"particle ", "motion of body ", "rotation of body ", "gravity on "})
+    if (starts_with(term.origin, prefix)) return true;
+  return false;
+}
+
+}  // namespace
+
+Questions::Questions(const EquationsOfMotion& equations, bool with_matrix) : system(*equations.system) {
+  lagrangian = ask(system.lagrangian());
+  dissipation = ask(system.dissipation_function());
+  for (const AppliedForce& f : system.forces) forces.push_back({f.kind, ask(f.components), ask(f.lever), f.coordinate});
+  for (const Coordinate& c : system.coordinates) {
+    velocities.push_back(ask(c.velocity));
+    accelerations.push_back(ask(c.acceleration));
+  }
+  if (!system.lagrangian_given) ask_about_matter();
+
+  residual = ask(equations.residual);
+  momenta = ask(equations.momenta);
+  generalized_forces = ask(equations.generalized_forces);
+  dissipative_terms = ask(equations.dissipative_terms);
+  energy_function = ask(equations.energy_function);
+  power = ask(equations.power);
+  if (with_matrix) {
+    mass_matrix = ask(maupertuis::mass_matrix(equations).entries);
+    bias = ask(maupertuis::bias(equations));
+  }
+  // A `let` that stays a symbol in print stands for its value.
+  const ExprMap definitions = system.definition_values();
+  if (!definitions.empty()) roots = substitute(roots, definitions);
+}
+
+void Questions::ask_about_matter() {
+  Context& context = *system.context;
+  for (const Point& p : system.points)
+    if (p.mass) particles.push_back({ask(p.mass), ask(p.position)});
+  for (const Body& b : system.bodies) {
+    if (b.mass) particles.push_back({ask(b.mass), ask(b.position)});
+    bodies.push_back({ask(b.inertia.entries), ask(b.rotation.entries)});
+  }
+  has_matter = !particles.empty() || !bodies.empty();
+  if (!has_matter) return;
+  gravity = ask(system.gravity);
+  ExprVector terms;
+  const auto gather = [&](const std::vector<EnergyTerm>& list, int sign) {
+    for (const EnergyTerm& term : list)
+      if (!comes_from_matter(term)) terms.push_back(context.number(sign) * term.value);
+  };
+  gather(system.kinetic, 1);
+  gather(system.potential, -1);
+  gather(system.generalized_potential, -1);
+  gather(system.lagrangian_extra, 1);
+  given_energies = ask(context.sum(terms));
+}
+
+Root Questions::ask(Expr e) {
+  roots.push_back(e);
+  return roots.size() - 1;
+}
+
+Roots Questions::ask(const ExprVector& list) {
+  Roots out;
+  for (const Expr& e : list) out.push_back(ask(e));
+  return out;
+}
+
+}  // namespace maupertuis::certification

@@ -1,0 +1,55 @@
+#pragma once
+#include <maupertuis/equations_of_motion.hpp>
+
+#include <optional>
+
+namespace maupertuis::certification {
+
+/// An expression whose value along a path a check asks for, by its place in `Questions::roots`.
+using Root = std::size_t;
+using Roots = std::vector<Root>;
+
+struct ForceQuestion {
+  AppliedForce::Kind kind;
+  Roots components, lever;
+  std::size_t coordinate = 0;
+};
+struct ParticleQuestion {
+  Root mass;
+  Roots position;
+};
+struct BodyQuestion {
+  Roots inertia, rotation;   // by rows
+};
+
+/// Everything that the checks look at, gathered once so that one evaluation serves them all. Expressions of the model
+/// (L, D, forces, positions) stand beside those that the derivation claims (R, p, h_E, …).
+struct Questions {
+  explicit Questions(const EquationsOfMotion& equations, bool with_matrix);
+
+  const MechanicalSystem& system;
+  std::vector<Expr> roots;
+
+  // what the model says
+  Root lagrangian, dissipation;
+  std::vector<ForceQuestion> forces;
+  Roots velocities, accelerations;
+  // the same mechanics without T: particles, bodies, and the energies that are given beside them
+  bool has_matter = false;
+  std::vector<ParticleQuestion> particles;
+  std::vector<BodyQuestion> bodies;
+  Roots gravity;
+  Root given_energies = 0;   // L without what particles, bodies and gravity give
+
+  // what the derivation claims
+  Roots residual, momenta, generalized_forces, dissipative_terms;
+  Root energy_function, power;
+  Roots mass_matrix, bias;   // empty: not asked
+
+ private:
+  Root ask(Expr e);
+  Roots ask(const ExprVector& list);
+  void ask_about_matter();
+};
+
+}  // namespace maupertuis::certification
