@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t most_phase_portraits = 4;
 constexpr std::size_t most_numbers = 150'000;   // of a drawing: about a megabyte of page
-constexpr double plot_width = 520;
+constexpr double plot_width = 440;
 
 void add_statistics(ReportContent& content, const SimulationResult& run, bool dimensionless) {
   const SimulationStatistics& s = run.statistics;

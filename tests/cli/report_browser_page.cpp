@@ -78,7 +78,7 @@ PlotOptions plot_of(std::vector<std::string> columns, std::string against = {}) 
   PlotOptions options;
   options.columns = std::move(columns);
   options.against = std::move(against);
-  options.width = 560;
+  options.width = 440;
   return options;
 }
 

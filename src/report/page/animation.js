@@ -241,6 +241,7 @@
     context.strokeStyle = style;
     context.lineWidth = 1;
     context.stroke(wholeWay(element));
+    context.lineCap = 'butt';  // round ends would show as beads where pieces meet
     const from = Math.max(0, s - fade);
     let last = null;
     for (let i = 0; i <= parts; ++i) {
@@ -250,6 +251,7 @@
       last = next;
     }
     context.globalAlpha = 1;
+    context.lineCap = 'round';
   }
 
   // The whole way of a point as a path, made anew when the view changes.
