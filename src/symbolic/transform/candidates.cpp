@@ -10,6 +10,26 @@
 
 namespace maupertuis::terms {
 
+namespace {
+
+std::string key_text(const Polynomial& p) {
+  std::string key;
+  for (const Term& t : p) {
+    key.append(reinterpret_cast<const char*>(&t.monomial), sizeof t.monomial);
+    key.append(reinterpret_cast<const char*>(&t.harmonic), sizeof t.harmonic);
+    key += t.coefficient.to_string() + ';';
+  }
+  return key;
+}
+
+bool same(const Polynomial& a, const Polynomial& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Term& x, const Term& y) {
+    return x.monomial == y.monomial && x.harmonic == y.harmonic && x.coefficient == y.coefficient;
+  });
+}
+
+}  // namespace
+
 CandidateChooser::CandidateChooser(Context& context, const ReadingOrder& order, std::size_t term_budget)
     : algebra_(context, term_budget), reader_(algebra_, Trigonometry::ToSums) {
   for (const Expr& q : order.coordinates) ranks_.emplace(q.id(), ranks_.size());
@@ -29,10 +49,11 @@ void CandidateChooser::prepare_atoms() {
     const Atom atom = algebra_.info(static_cast<AtomId>(prepared_));
     if (atom.kind == AtomKind::Base) {
       algebra_.show(static_cast<AtomId>(prepared_), best(atom.arguments.front()));
-    } else if (atom.kind == AtomKind::Function) {
+    } else if (atom.kind == AtomKind::Function && atom.shown == atom.expr) {
       std::vector<Expr> arguments;
       for (const Polynomial& argument : atom.arguments) arguments.push_back(best(argument));
       Context& context = algebra_.context();
+      if (arguments.size() == 1 && atom.expr.is(Kind::Power)) continue;   // a root made on the way, shown already
       const Expr shown = atom.expr.is(Kind::Power) ? context.power(arguments[0], arguments[1])
                                                    : context.function(atom.expr.kind(), arguments);
       algebra_.show(static_cast<AtomId>(prepared_), shown);
@@ -58,6 +79,14 @@ void CandidateChooser::consider(Choice& best, Expr candidate) {
 Expr CandidateChooser::best(const Polynomial& p) {
   if (p.empty()) return algebra_.context().number(0);
   if (p.size() == 1) return best_basis(p);
+  const std::string key = key_text(p) + (own_ ? own_.name() : "");
+  if (const auto known = known_best_.find(key); known != known_best_.end()) return known->second;
+  const Expr value = search_best(p);
+  known_best_.emplace(key, value);
+  return value;
+}
+
+Expr CandidateChooser::search_best(const Polynomial& p) {
   // T2 + T1 + T0 − V: what is of different degree in the velocities is read separately.
   if (auto parts = by_rate_degree(p); parts.size() > 1 && !has_rates_inside_functions(p)) {
     std::vector<Expr> sums;
@@ -71,25 +100,43 @@ Expr CandidateChooser::best(const Polynomial& p) {
     consider(choice, best_basis(form));
     if (std::any_of(form.begin(), form.end(), [&](const Term& t) { return select(t.monomial, Part::Rate) != 0; }))
       consider(choice, by_velocities(form));
+    if (const Expr collected = by_one_parameter(form, false)) consider(choice, collected);
   };
+  if (is_parametric(p)) {   // no angles, no coordinates: only the factoring is open
+    consider(choice, by_functions(p));
+    if (const Expr collected = by_one_parameter(p, false)) consider(choice, collected);
+    return choice.value;
+  }
   offer_all(p);
-  const Polynomial combined = over_common_denominators(algebra_, p);
-  if (combined.size() != p.size() || !std::equal(p.begin(), p.end(), combined.begin(), [](const Term& a, const Term& b) {
-        return a.monomial == b.monomial && a.harmonic == b.harmonic && a.coefficient == b.coefficient;
-      }))
-    offer_all(combined);
+  if (const Polynomial combined = over_common_denominators(algebra_, p); !same(p, combined)) offer_all(combined);
+  if (const Polynomial rooted = with_roots(p); !rooted.empty()) offer_all(rooted);
   return choice.value;
 }
 
 Expr CandidateChooser::best_terms(const Polynomial& p) {
   if (p.size() < 2) return best(p);
   Choice choice;
-  consider(choice, by_functions(p));
-  consider(choice, by_parameters(p));
+  const auto offer_all = [&](const Polynomial& form) {
+    consider(choice, by_functions(form));
+    consider(choice, by_parameters(form));
+    if (const Expr collected = by_one_parameter(form, true)) consider(choice, collected);
+  };
+  offer_all(p);
+  if (const Polynomial rooted = with_roots(p); !rooted.empty()) offer_all(rooted);
   return choice.value;
 }
 
 // ------------------------------------------------------------------------------------------------------- grouping
+
+/// One harmonic at most, which all terms share, times parameters that are names.
+bool CandidateChooser::is_parametric(const Polynomial& p) const {
+  return std::all_of(p.begin(), p.end(), [&](const Term& t) {
+    const Monomial& m = algebra_.monomial(t.monomial);
+    return t.harmonic == p.front().harmonic && std::all_of(m.begin(), m.end(), [&](const Factor& f) {
+      return part_of(f.atom) == Part::Parameter && algebra_.info(f.atom).kind == AtomKind::Symbol;
+    });
+  });
+}
 
 bool CandidateChooser::is_rate(AtomId atom) const { return part_of(atom) == Part::Rate; }
 
@@ -110,20 +157,6 @@ MonomialId CandidateChooser::select(MonomialId monomial, Part part) {
   std::erase_if(selected, [&](const Factor& f) { return part_of(f.atom) != part; });
   return algebra_.intern(selected);
 }
-
-namespace {
-
-std::string key_text(const Polynomial& p) {
-  std::string key;
-  for (const Term& t : p) {
-    key.append(reinterpret_cast<const char*>(&t.monomial), sizeof t.monomial);
-    key.append(reinterpret_cast<const char*>(&t.harmonic), sizeof t.harmonic);
-    key += t.coefficient.to_string() + ';';
-  }
-  return key;
-}
-
-}  // namespace
 
 /// Splits every term into an outer monomial, key_of(term), and the rest; outer monomials with proportional rests share
 /// one summand: factored(Σ outer monomials) · best_basis(rest).
@@ -167,6 +200,53 @@ Expr CandidateChooser::by_functions(const Polynomial& p) {
     std::erase_if(outer, [&](const Factor& f) { return algebra_.info(f.atom).kind == AtomKind::Harmonic; });
     return algebra_.intern(outer);
   });
+}
+
+Expr CandidateChooser::by_one_parameter(const Polynomial& p, bool apart) {
+  constexpr std::size_t longest = 24;
+  if (p.size() < 3 || p.size() > longest) return {};
+  std::map<AtomId, std::size_t> occurrences;
+  for (const Term& t : p)
+    for (const Factor& f : algebra_.monomial(t.monomial))
+      if (part_of(f.atom) == Part::Parameter && f.exponent == Fraction{1, 1}) ++occurrences[f.atom];
+  AtomId name = 0;
+  std::size_t most = 1;
+  for (const auto& [atom, times] : occurrences)
+    if (times > most && times < p.size()) name = atom, most = times;
+  if (most < 2) return {};
+  Polynomial with, without;
+  for (const Term& t : p) {
+    const Monomial& m = algebra_.monomial(t.monomial);
+    const bool has = std::find(m.begin(), m.end(), Factor{name, Fraction{1, 1}}) != m.end();
+    (has ? with : without).push_back(t);
+  }
+  if (apart) {
+    if (std::any_of(with.begin(), with.end(), [&](const Term& t) { return t.harmonic != with[0].harmonic; })) return {};
+    return flat_sum({by_functions(with), best_terms(without)});
+  }
+  const Polynomial inside = algebra_.times_monomial(with, algebra_.intern({{name, Fraction{-1, 1}}}));
+  Choice choice;
+  consider(choice, by_functions(inside));
+  consider(choice, by_parameters(inside));
+  return flat_sum({choice.value * algebra_.info(name).expr, best(without)});
+}
+
+Polynomial CandidateChooser::with_roots(const Polynomial& p) {
+  Polynomial result;
+  std::vector<AtomId> bases;
+  for (const Term& t : p)
+    for (const Factor& f : algebra_.monomial(t.monomial))
+      if (algebra_.info(f.atom).kind == AtomKind::Base && f.exponent == Fraction{1, 2} &&
+          std::find(bases.begin(), bases.end(), f.atom) == bases.end())
+        bases.push_back(f.atom);
+  for (const AtomId base : bases) {
+    const Expr root = sqrt(algebra_.info(base).expr), shown = sqrt(algebra_.info(base).shown);
+    const AtomId atom = algebra_.atom(root, AtomKind::Function, algebra_.info(base).arguments);
+    algebra_.show(atom, shown);
+    const Polynomial found = with_square_of_root(algebra_, result.empty() ? p : result, base, atom);
+    if (!found.empty()) result = found;
+  }
+  return result;
 }
 
 /// sqrt(1 − v²/c²) ties the degrees together.
@@ -271,7 +351,8 @@ int CandidateChooser::reading_sign(const Polynomial& sum) const {
     if (t.monomial == 0 && t.harmonic == 0) rank = 2 * late;
     for (const Factor& f : algebra_.monomial(t.monomial)) {
       const Expr e = algebra_.info(f.atom).expr;
-      is_function |= !e.is_symbol() || f.exponent.num < 0;
+      if (e.is(Kind::Power) && f.exponent.num > 0) rank = std::min(rank, late);   // r - l for a root r
+      else is_function |= !e.is_symbol() || f.exponent.num < 0;
       if (!e.is_symbol() || f.exponent.num < 0) continue;
       std::size_t symbol_rank = late + late / 2 + e.id() % (late / 2);
       if (e.role() == Role::Coordinate) {
@@ -301,7 +382,7 @@ Expr CandidateChooser::without_content(const Polynomial& p) {
 }
 
 Expr CandidateChooser::factored(const Polynomial& p) {
-  Factored parts = factor(algebra_, p);
+  Factored parts = factored_parts(p);
   Choice choice;
   consider(choice, product_of(parts));
   // (d + x)/d for 1 + x/d: with the denominators in front.
@@ -314,6 +395,20 @@ Expr CandidateChooser::factored(const Polynomial& p) {
     }
   }
   return choice.value;
+}
+
+/// The same sums of masses stand in many places: what is left without number and monomial is factored once.
+Factored CandidateChooser::factored_parts(const Polynomial& p) {
+  const Rational content = rational_content(p);
+  const MonomialId common = common_monomial(algebra_, p);
+  const Polynomial rest = algebra_.scale(algebra_.times_monomial(p, algebra_.power(common, {-1, 1})), Rational(1) / content);
+  const std::string key = key_text(rest);
+  auto known = known_factors_.find(key);
+  if (known == known_factors_.end()) known = known_factors_.emplace(key, factor(algebra_, rest)).first;
+  Factored result = known->second;
+  result.coefficient *= content;
+  result.monomial = algebra_.product(result.monomial, common);
+  return result;
 }
 
 Expr CandidateChooser::product_of(Factored parts) {

@@ -46,6 +46,12 @@ class CandidateChooser {
   /// Σ over velocity monomials, each with its coefficient's best form: 1/2 m r^2 θ'^2 + 1/2 m r'^2.
   Expr by_velocities(const Polynomial& p);
 
+  /// s (what s multiplies) + the rest, for the parameter s that occurs most: m2 (l1^2 + a^2 + 2 l1 a cos θ) + I.
+  /// `apart`: only where what s multiplies has one function of angles. Empty where no parameter occurs twice.
+  Expr by_one_parameter(const Polynomial& p, bool apart);
+  /// k (r − l)² for k r² − 2 k l r + k l², r a root. Empty where there is no such root.
+  Polynomial with_roots(const Polynomial& p);
+
   bool has_rates_inside_functions(const Polynomial& p) const;
   std::vector<std::pair<Fraction, Polynomial>> by_rate_degree(const Polynomial& p) const;
 
@@ -55,10 +61,13 @@ class CandidateChooser {
   Expr flat(const Polynomial& p) { return algebra_.expression(p, true); }
   Expr without_content(const Polynomial& p);
   Expr factored(const Polynomial& p);
+  Factored factored_parts(const Polynomial& p);
   Expr product_of(Factored parts);
 
+  Expr search_best(const Polynomial& p);
   enum class Part { Parameter, Rate, Other };
   Part part_of(AtomId atom) const;
+  bool is_parametric(const Polynomial& p) const;
   MonomialId select(MonomialId monomial, Part part);
   template <class KeyOf>
   Expr grouped(const Polynomial& p, KeyOf key_of);
@@ -73,7 +82,8 @@ class CandidateChooser {
   std::unordered_map<NodeId, std::size_t> ranks_;   // of symbols: coordinates, then parameters
   Expr own_;
   std::size_t prepared_ = 0;                        // atoms whose shown form is set
-  std::unordered_map<std::string, Expr> known_bases_;
+  std::unordered_map<std::string, Expr> known_bases_, known_best_;
+  std::unordered_map<std::string, Factored> known_factors_;
 };
 
 }  // namespace maupertuis::terms

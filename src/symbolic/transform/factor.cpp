@@ -165,4 +165,34 @@ Polynomial exact_quotient(TermAlgebra& algebra, const Polynomial& p, const Polyn
   }
 }
 
+Polynomial with_square_of_root(TermAlgebra& algebra, const Polynomial& p, AtomId base, AtomId root) {
+  Polynomial rational, result;
+  for (const Term& t : p) {
+    Monomial m = algebra.monomial(t.monomial);
+    const auto place = std::find_if(m.begin(), m.end(), [&](const Factor& f) { return f.atom == base; });
+    if (place == m.end()) {
+      rational.push_back(t);
+      continue;
+    }
+    const Fraction exponent = place->exponent * Fraction{2, 1};
+    m.erase(place);
+    const Polynomial rest{Term{algebra.intern(m), t.harmonic, t.coefficient}};
+    result = algebra.add(result, algebra.multiply(rest, algebra.of_atom(root, exponent)));
+  }
+  const Polynomial radicand = algebra.info(base).arguments.front();
+  if (rational.size() > most_terms || radicand.size() > most_terms) return {};
+  try {
+    const MonomialId lowest = lowest_powers(algebra, rational);
+    const Polynomial whole = algebra.times_monomial(rational, algebra.power(lowest, {-1, 1}));
+    const Variables variables(algebra, {&whole, &radicand});
+    const Division division = divide(variables.small(whole), variables.small(radicand));
+    if (division.quotient.empty()) return {};
+    const Polynomial squares = algebra.multiply(variables.large(division.quotient), algebra.of_atom(root, Fraction{2, 1}));
+    const Polynomial found = algebra.add(squares, variables.large(division.rest));
+    return algebra.add(result, algebra.times_monomial(found, lowest));
+  } catch (const NotWorthIt&) {
+    return {};
+  }
+}
+
 }  // namespace maupertuis::terms

@@ -26,6 +26,14 @@ Factored factor(TermAlgebra& algebra, const Polynomial& p);
 /// p / divisor if it divides without rest, else nothing (empty). Precondition: divisor is not empty.
 Polynomial exact_quotient(TermAlgebra& algebra, const Polynomial& p, const Polynomial& divisor);
 
+/// p with every square of the root that stands in it as r² again: for the atom r = B^(1/2),
+///
+///     k (x² + a²) + k l² − 2 k l r  =  k r² − 2 k l r + k l²,     which factors to k (r − l)²
+///
+/// `root` is the atom that stands for r in the result (squares of a Base atom itself would be multiplied out again).
+/// Empty where the radicand is not found in p.
+Polynomial with_square_of_root(TermAlgebra& algebra, const Polynomial& p, AtomId base, AtomId root);
+
 /// The atoms' smallest exponents over all terms, where every term has the atom with the same sign.
 MonomialId common_monomial(TermAlgebra& algebra, const Polynomial& p);
 

@@ -126,6 +126,24 @@ std::optional<SmallPolynomial> quotient(const SmallPolynomial& a, const SmallPol
   return result;
 }
 
+Division divide(const SmallPolynomial& a, const SmallPolynomial& b) {
+  Division result;
+  SmallPolynomial left = a;
+  const auto& [lead, lead_coefficient] = *b.rbegin();
+  while (!left.empty()) {
+    const auto [exponents, value] = *left.rbegin();
+    if (const auto factor = difference(exponents, lead)) {
+      const Rational c = value / lead_coefficient;
+      result.quotient.emplace(*factor, c);
+      left = left - times_term(b, *factor, c);
+    } else {
+      result.rest.emplace(exponents, value);
+      left.erase(exponents);
+    }
+  }
+  return result;
+}
+
 std::optional<SmallPolynomial> square_root(const SmallPolynomial& a) {
   if (a.empty()) return a;
   const auto& [top, top_coefficient] = *a.rbegin();

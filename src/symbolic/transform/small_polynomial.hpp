@@ -23,6 +23,11 @@ SmallPolynomial constant_polynomial(const Rational& value, std::size_t variables
 
 /// a/b where b divides a, else nothing.
 std::optional<SmallPolynomial> quotient(const SmallPolynomial& a, const SmallPolynomial& b);
+/// a = quotient · b + rest; the rest has no term that the last term of b divides.
+struct Division {
+  SmallPolynomial quotient, rest;
+};
+Division divide(const SmallPolynomial& a, const SmallPolynomial& b);
 /// The square root where the polynomial is a square.
 std::optional<SmallPolynomial> square_root(const SmallPolynomial& a);
 /// Coprime integer coefficients, the lexicographically last one positive; `content` is what was divided out.
