@@ -32,6 +32,9 @@ struct Lagrangian {
     return Rational(1, 2) * mass * square;
   }
 
+  Expr dot(Expr e) { return context.time_derivative(e); }
+  std::string text(Expr e) { return to_plain(readable(e, order).value, order); }
+
   std::vector<Expr> residuals() { return variational_residual(value, order.coordinates); }
   std::vector<ReadableForm> forms() { return readable_equations(residuals(), order); }
   std::vector<std::string> equations() {
@@ -40,5 +43,7 @@ struct Lagrangian {
     return lines;
   }
 };
+
+inline Expr square(Expr e) { return pow(e, Rational(2)); }
 
 }  // namespace maupertuis::test
