@@ -9,6 +9,13 @@
 /// operations on the arrays of a workspace and nothing else.
 namespace maupertuis::interpreter {
 
+/// A linear term ready for use: coefficient · factor of the shift · row[offset].
+struct LinearTerm {
+  double coefficient;
+  std::uint32_t offset;  // from the row of the result's order: slot + shift · stride
+  std::uint32_t shift;
+};
+
 /// What the operations work on.
 struct Memory {
   explicit Memory(const Program& program, int orders);
@@ -21,6 +28,8 @@ struct Memory {
   std::size_t stride;
   std::vector<double> constants;     // [constants]
   std::vector<double> coefficients;  // [terms], from the constants
+  std::vector<LinearTerm> linear;    // [terms], the same made ready
+  std::vector<double> shift_factors; // [orders × 3]: 1, k + 1, (k + 1)(k + 2)
   std::vector<double> rows;          // [orders × stride]: coefficient k of slot s at [k · stride + s]
 };
 

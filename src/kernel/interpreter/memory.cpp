@@ -16,7 +16,9 @@ std::size_t padded(std::size_t slots) {
 
 Memory::Memory(const Program& p, int orders)
     : program(p), stride(padded(p.slots)), constants(p.constants.size()), coefficients(p.terms.size()),
-      rows(static_cast<std::size_t>(orders) * stride, 0.0) {}
+      linear(p.terms.size()), rows(static_cast<std::size_t>(orders) * stride, 0.0) {
+  for (int k = 0; k < orders; ++k) shift_factors.insert(shift_factors.end(), {1.0, k + 1.0, (k + 1.0) * (k + 2.0)});
+}
 
 void compute_constants(Memory& memory, std::span<const double> parameters, std::span<const std::int8_t> sides) {
   const Program& program = memory.program;
@@ -32,8 +34,12 @@ void compute_constants(Memory& memory, std::span<const double> parameters, std::
       operands.push_back(memory.constants[program.constant_arguments[constant.first_argument + k]]);
     value = constant_operation(constant.kind, operands);
   }
-  for (std::size_t i = 0; i < program.terms.size(); ++i)
-    memory.coefficients[i] = memory.constants[program.terms[i].coefficient];
+  for (std::size_t i = 0; i < program.terms.size(); ++i) {
+    const Term& term = program.terms[i];
+    memory.coefficients[i] = memory.constants[term.coefficient];
+    memory.linear[i] = {memory.coefficients[i], static_cast<std::uint32_t>(term.a + term.shift * memory.stride),
+                        term.shift};
+  }
 }
 
 void set_leaves(Memory& memory, double t, int orders) {

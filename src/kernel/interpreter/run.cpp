@@ -9,11 +9,10 @@ namespace {
 /// One run of instructions at one order: `row` is that order's row. Each case decides once for the whole run.
 class RunAtOrder {
  public:
-  RunAtOrder(Memory& memory, int order) : memory_(memory), k_(order), row_(memory.row(order)) {
-    shifted_[0] = {row_, 1};
-    shifted_[1] = {row_ + memory.stride, order + 1.0};
-    shifted_[2] = {row_ + 2 * memory.stride, (order + 1.0) * (order + 2.0)};
-  }
+  RunAtOrder(Memory& memory, int order)
+      : memory_(memory), k_(order), row_(memory.row(order)), instructions_(memory.program.instructions.data()),
+        terms_(memory.program.terms.data()), linear_(memory.linear.data()),
+        factors_(memory.shift_factors.data() + 3 * order) {}
 
   void operator()(const Run& run) {
     switch (run.op) {
@@ -35,26 +34,23 @@ class RunAtOrder {
  private:
   template <class F>
   void each(const Run& run, F&& f) {
-    const Instruction* const instructions = memory_.program.instructions.data();
-    for (std::uint32_t i = run.first; i < run.last; ++i) f(instructions[i]);
+    const Instruction* const last = instructions_ + run.last;
+    for (const Instruction* i = instructions_ + run.first; i != last; ++i) f(*i);
   }
   jet::Column<double> column(Slot slot) const { return memory_.column(slot); }
 
   double linear_part(const Instruction& i) const {
     double sum = 0;
-    const Term* const terms = memory_.program.terms.data();
-    for (std::uint32_t t = i.first_term; t < i.first_product; ++t) {
-      const Shifted& from = shifted_[terms[t].shift];
-      sum += memory_.coefficients[t] * (from.factor * from.row[terms[t].a]);
-    }
+    const LinearTerm* const last = linear_ + i.first_product;
+    for (const LinearTerm* term = linear_ + i.first_term; term != last; ++term)
+      sum += term->coefficient * (factors_[term->shift] * row_[term->offset]);
     return sum;
   }
 
   double products(const Instruction& i) const {
     double sum = 0;
-    const Term* const terms = memory_.program.terms.data();
     for (std::uint32_t t = i.first_product; t < i.last_term; ++t)
-      sum += memory_.coefficients[t] * jet::product(column(terms[t].a), column(terms[t].b), k_);
+      sum += linear_[t].coefficient * jet::product(column(terms_[t].a), column(terms_[t].b), k_);
     return sum;
   }
 
@@ -111,16 +107,13 @@ class RunAtOrder {
     row_[i.out] = row_[memory_.program.terms[t].a];
   }
 
-  /// (dʳu/dtʳ)_k = (k + 1) … (k + r) u_{k+r}
-  struct Shifted {
-    const double* row;
-    double factor;
-  };
-
   Memory& memory_;
   int k_;
   double* row_;
-  Shifted shifted_[Term::most_shift + 1];
+  const Instruction* instructions_;
+  const Term* terms_;
+  const LinearTerm* linear_;
+  const double* factors_;
 };
 
 }  // namespace

@@ -49,22 +49,38 @@ T square(Column<T> a, int k) {
   return k == 0 ? a[0] * a[0] : self_product(a, k, 0);
 }
 
+/// Σ_{j=1..k} j u_j w_{k−j}, in two chains
+template <class T>
+T weighted_product(Column<T> w, Column<T> u, int k) {
+  const T *rising = &u[1], *falling = &w[k - 1];
+  const auto up = static_cast<std::ptrdiff_t>(u.stride);
+  T odd = T(0), even = T(0), j = T(1);
+  for (int left = k; left > 0; left -= 2) {
+    odd += j * *rising * *falling;
+    if (left == 1) break;
+    even += (j + T(1)) * rising[up] * falling[-up];
+    j += T(2), rising += 2 * up, falling -= 2 * up;
+  }
+  return odd + even;
+}
+
 /// The coefficient of y with dy = w du: Σ_{j=1..k} (j/k) u_j w_{k−j}
 template <class T>
 T integral(Column<T> w, Column<T> u, int k) {
-  T sum = T(0);
-  for (int j = 1; j <= k; ++j) sum += (T(j) * u[j]) * w[k - j];
-  return sum / T(k);
+  return weighted_product(w, u, k) / T(k);
 }
 
 /// Both coefficients of (y, z) with dy = z du, dz = ± y du.
 template <class T>
 void integral_pair(Column<T> y, Column<T> z, Column<T> u, int k, T sign, T& y_k, T& z_k) {
-  T sum_y = T(0), sum_z = T(0);
-  for (int j = 1; j <= k; ++j) {
-    const T du = T(j) * u[j];
-    sum_y += du * z[k - j];
-    sum_z += du * y[k - j];
+  const auto up = static_cast<std::ptrdiff_t>(u.stride);
+  const T *from_u = &u[1], *from_y = &y[k - 1], *from_z = &z[k - 1];
+  T sum_y = T(0), sum_z = T(0), j = T(1);
+  for (int left = k; left > 0; --left) {
+    const T du = j * *from_u;
+    sum_y += du * *from_z;
+    sum_z += du * *from_y;
+    j += T(1), from_u += up, from_y -= up, from_z -= up;
   }
   y_k = sum_y / T(k);
   z_k = sign * sum_z / T(k);
