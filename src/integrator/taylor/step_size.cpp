@@ -35,6 +35,8 @@ double velocity(const KernelWorkspace& work, std::size_t i, int k) {
 double size_of(const KernelWorkspace& work, std::size_t i, int order, double h) {
   double size = 0, power = 1;
   for (int k = 0; k <= std::min(3, order - 2); ++k, power *= h) size = std::max(size, velocity(work, i, k) * power);
+  // A coordinate that others set in motion late begins with a higher power of time.
+  for (int k = 4; size == 0 && k <= order; ++k) size = velocity(work, i, k) * std::pow(h, k);
   // A velocity that moves q by less than its rounding within the step does not count.
   return std::max(size, rounding_tolerance() * std::abs(work.coordinate(0)[i]) / h);
 }
