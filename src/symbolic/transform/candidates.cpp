@@ -43,12 +43,28 @@ Polynomial CandidateChooser::read(Expr e) {
   return p;
 }
 
+/// 2 (a + b) for 2 a + 2 b, −(a + b) for −a − b: below a fraction bar the number can cancel.
+Expr CandidateChooser::content_outside(Expr e) {
+  if (!e.is(Kind::Sum)) return e;
+  Polynomial coefficients;
+  bool all_negative = true;
+  for (std::size_t i = 0; i < e.size(); ++i) {
+    coefficients.push_back({0, 0, split_coefficient(e[i]).coefficient});
+    all_negative &= coefficients.back().coefficient.sign() < 0;
+  }
+  const Rational content = all_negative ? -rational_content(coefficients) : rational_content(coefficients);
+  if (content.is_one()) return e;
+  std::vector<Expr> terms;
+  for (std::size_t i = 0; i < e.size(); ++i) terms.push_back(e[i] / content);
+  return content * algebra_.context().sum(terms);
+}
+
 /// Arguments of functions and radicands are made readable too. Inner atoms have smaller numbers than outer ones.
 void CandidateChooser::prepare_atoms() {
   for (; prepared_ < algebra_.atom_count(); ++prepared_) {
     const Atom atom = algebra_.info(static_cast<AtomId>(prepared_));
     if (atom.kind == AtomKind::Base) {
-      algebra_.show(static_cast<AtomId>(prepared_), best(atom.arguments.front()));
+      algebra_.show(static_cast<AtomId>(prepared_), content_outside(best(atom.arguments.front())));
     } else if (atom.kind == AtomKind::Function && atom.shown == atom.expr) {
       std::vector<Expr> arguments;
       for (const Polynomial& argument : atom.arguments) arguments.push_back(best(argument));
@@ -87,6 +103,16 @@ Expr CandidateChooser::best(const Polynomial& p) {
 }
 
 Expr CandidateChooser::search_best(const Polynomial& p) {
+  // One fraction for all where every term stands over the same sum.
+  if (const MonomialId bar = common_denominator(p); bar != 0) {
+    const Polynomial numerator = algebra_.times_monomial(p, algebra_.power(bar, {-1, 1}));
+    const Expr below = algebra_.expression(bar, true);
+    Choice choice;
+    consider(choice, content_outside(best(numerator)) * below);
+    consider(choice, best_basis(numerator) * below);
+    consider(choice, factored(numerator) * below);
+    return choice.value;
+  }
   // T2 + T1 + T0 − V: what is of different degree in the velocities is read separately.
   if (auto parts = by_rate_degree(p); parts.size() > 1 && !has_rates_inside_functions(p)) {
     std::vector<Expr> sums;
@@ -249,6 +275,18 @@ Polynomial CandidateChooser::with_roots(const Polynomial& p) {
   return result;
 }
 
+MonomialId CandidateChooser::common_denominator(const Polynomial& p) {
+  if (p.size() < 2) return 0;
+  const auto is_base = [&](const Factor& f) { return algebra_.info(f.atom).kind == AtomKind::Base; };
+  Monomial sums = algebra_.monomial(common_monomial(algebra_, p));
+  std::erase_if(sums, [&](const Factor& f) { return f.exponent.num > 0 || !is_base(f); });
+  if (sums.empty()) return 0;
+  // Single names go below the bar with them, also where only some terms have them there.
+  Monomial names = algebra_.monomial(lowest_powers(algebra_, p));
+  std::erase_if(names, [&](const Factor& f) { return f.exponent.num > 0 || algebra_.info(f.atom).kind != AtomKind::Symbol; });
+  return algebra_.product(algebra_.intern(sums), algebra_.intern(names));
+}
+
 /// sqrt(1 − v²/c²) ties the degrees together.
 bool CandidateChooser::has_rates_inside_functions(const Polynomial& p) const {
   for (const Term& t : p)
@@ -360,6 +398,7 @@ int CandidateChooser::reading_sign(const Polynomial& sum) const {
         const auto place = ranks_.find(position.id());
         symbol_rank = place == ranks_.end() ? late : place->second + 1;
         if (own_ && position == own_) symbol_rank = 0;
+        if (e.order() > 0) symbol_rank += late + late / 4;   // c^2 - v^2
       } else if (const auto place = ranks_.find(e.id()); place != ranks_.end()) {
         symbol_rank = late + place->second;
       }

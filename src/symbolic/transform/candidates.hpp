@@ -52,6 +52,10 @@ class CandidateChooser {
   /// k (r − l)² for k r² − 2 k l r + k l², r a root. Empty where there is no such root.
   Polynomial with_roots(const Polynomial& p);
 
+  /// What all terms stand over, if a sum is in it; else 1.
+  MonomialId common_denominator(const Polynomial& p);
+  Expr content_outside(Expr e);
+
   bool has_rates_inside_functions(const Polynomial& p) const;
   std::vector<std::pair<Fraction, Polynomial>> by_rate_degree(const Polynomial& p) const;
 
