@@ -12,7 +12,7 @@ class RunAtOrder {
   RunAtOrder(Memory& memory, int order)
       : memory_(memory), k_(order), row_(memory.row(order)), instructions_(memory.program.instructions.data()),
         terms_(memory.program.terms.data()), linear_(memory.linear.data()),
-        factors_(memory.shift_factors.data() + 3 * order) {}
+        factors_(memory.shift_factors.data() + 3 * order), pairing_(order, memory.stride) {}
 
   void operator()(const Run& run) {
     switch (run.op) {
@@ -49,8 +49,9 @@ class RunAtOrder {
 
   double products(const Instruction& i) const {
     double sum = 0;
+    const double* const rows = memory_.rows.data();
     for (std::uint32_t t = i.first_product; t < i.last_term; ++t)
-      sum += linear_[t].coefficient * jet::product(column(terms_[t].a), column(terms_[t].b), k_);
+      sum += linear_[t].coefficient * jet::product(rows + terms_[t].a, rows + terms_[t].b, pairing_);
     return sum;
   }
 
@@ -114,6 +115,7 @@ class RunAtOrder {
   const Term* terms_;
   const LinearTerm* linear_;
   const double* factors_;
+  jet::Pairing pairing_;
 };
 
 }  // namespace

@@ -16,21 +16,37 @@ struct Column {
   const T& operator[](int k) const { return first[static_cast<std::size_t>(k) * stride]; }
 };
 
+/// Where the pairs (j, k − j) of a convolution of order k lie: the same for all columns.
+struct Pairing {
+  Pairing(int k, std::size_t row) : stride(static_cast<std::ptrdiff_t>(row)), pairs((k + 1) / 2), has_middle(k % 2 == 0) {
+    low = (pairs - 1) * stride;
+    high = (k + 1 - pairs) * stride;
+    middle = k / 2 * stride;
+  }
+  std::ptrdiff_t stride;
+  int pairs;
+  bool has_middle;
+  std::ptrdiff_t low, high;  // of the innermost pair
+  std::ptrdiff_t middle;
+};
+
 /// (a b)_k = Σ_{j=0..k} a_j b_{k−j}
 template <class T>
-T product(Column<T> a, Column<T> b, int k) {
-  int low = (k - 1) / 2, high = k - low;
+T product(const T* a, const T* b, const Pairing& pairing) {
   T rising = T(0), falling = T(0);
-  if (k % 2 == 0) rising = a[k / 2] * b[k / 2];
-  if (k == 0) return rising;
-  const T *a_low = &a[low], *a_high = &a[high], *b_low = &b[low], *b_high = &b[high];
-  for (;;) {
-    rising += *a_low * *b_high;
-    falling += *a_high * *b_low;
-    if (low-- == 0) break;
-    a_low -= a.stride, b_low -= b.stride, a_high += a.stride, b_high += b.stride;
+  if (pairing.has_middle) rising = a[pairing.middle] * b[pairing.middle];
+  std::ptrdiff_t low = pairing.low, high = pairing.high;
+  for (int left = pairing.pairs; left > 0; --left) {
+    rising += a[low] * b[high];
+    falling += a[high] * b[low];
+    low -= pairing.stride, high += pairing.stride;
   }
   return rising + falling;
+}
+
+template <class T>
+T product(Column<T> a, Column<T> b, int k) {
+  return product(a.first, b.first, Pairing(k, a.stride));
 }
 
 /// Σ_{j=first..k−first} a_j a_{k−j}, each pair once.
@@ -49,19 +65,14 @@ T square(Column<T> a, int k) {
   return k == 0 ? a[0] * a[0] : self_product(a, k, 0);
 }
 
-/// Σ_{j=1..k} j u_j w_{k−j}, in two chains
+/// Σ_{j=1..k} j u_j w_{k−j}
 template <class T>
 T weighted_product(Column<T> w, Column<T> u, int k) {
-  const T *rising = &u[1], *falling = &w[k - 1];
-  const auto up = static_cast<std::ptrdiff_t>(u.stride);
-  T odd = T(0), even = T(0), j = T(1);
-  for (int left = k; left > 0; left -= 2) {
-    odd += j * *rising * *falling;
-    if (left == 1) break;
-    even += (j + T(1)) * rising[up] * falling[-up];
-    j += T(2), rising += 2 * up, falling -= 2 * up;
-  }
-  return odd + even;
+  const auto stride = static_cast<std::ptrdiff_t>(u.stride);
+  T sum = T(0), j = T(1);
+  for (std::ptrdiff_t up = stride, down = (k - 1) * stride; down >= 0; up += stride, down -= stride, j += T(1))
+    sum += (j * u.first[up]) * w.first[down];
+  return sum;
 }
 
 /// The coefficient of y with dy = w du: Σ_{j=1..k} (j/k) u_j w_{k−j}
@@ -73,14 +84,12 @@ T integral(Column<T> w, Column<T> u, int k) {
 /// Both coefficients of (y, z) with dy = z du, dz = ± y du.
 template <class T>
 void integral_pair(Column<T> y, Column<T> z, Column<T> u, int k, T sign, T& y_k, T& z_k) {
-  const auto up = static_cast<std::ptrdiff_t>(u.stride);
-  const T *from_u = &u[1], *from_y = &y[k - 1], *from_z = &z[k - 1];
+  const auto stride = static_cast<std::ptrdiff_t>(u.stride);
   T sum_y = T(0), sum_z = T(0), j = T(1);
-  for (int left = k; left > 0; --left) {
-    const T du = j * *from_u;
-    sum_y += du * *from_z;
-    sum_z += du * *from_y;
-    j += T(1), from_u += up, from_y -= up, from_z -= up;
+  for (std::ptrdiff_t up = stride, down = (k - 1) * stride; down >= 0; up += stride, down -= stride, j += T(1)) {
+    const T du = j * u.first[up];
+    sum_y += du * z.first[down];
+    sum_z += du * y.first[down];
   }
   y_k = sum_y / T(k);
   z_k = sign * sum_z / T(k);
