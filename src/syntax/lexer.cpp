@@ -1,6 +1,7 @@
 #include "syntax/lexer.hpp"
 
 #include "syntax/unicode.hpp"
+#include "syntax/word_letters.hpp"
 #include "syntax/words.hpp"
 
 #include <fmt/format.h>
@@ -15,13 +16,29 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr std::size_t kMostBytes = 8u << 20;
 constexpr std::size_t kMostTokens = 1'000'000;
 constexpr std::size_t kMostMessages = 100;
 constexpr std::size_t kLongestWord = 200;      // bytes of a name or number
 constexpr int kMostNestedRoots = 100;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// Whether the leading digit stands between 1e-307 and 1e307; zero is fine.
+bool within_range(const std::string& number) {
+  const std::size_t e = std::min(number.find_first_of("eE"), number.size());
+  const std::size_t point = std::min(number.find('.'), e);
+  const std::size_t leading = number.find_first_of("123456789");
+  if (leading >= e) return true;
+  long exponent = 0;
+  if (e < number.size()) {
+    for (char c : number.substr(e + 1)) {
+      if (is_digit(c)) exponent = std::min(exponent * 10 + (c - '0'), 100'000L);
+    }
+    if (number[e + 1] == '-') exponent = -exponent;
+  }
+  const long magnitude = exponent + static_cast<long>(point) - static_cast<long>(leading) - (leading < point ? 1 : 0);
+  return magnitude >= -307 && magnitude < 308;
+}
 
 struct Fraction {
   char32_t sign;
@@ -124,71 +141,18 @@ class Lexer {
 
   // ---------------------------------------------------------------------------------------------------- words
 
-  struct Letter {
-    char32_t base;
-    int dots = 0;
-    std::string marks;  // other marks that do not compose
-  };
-
   void read_name() {
     const std::size_t begin = position_;
-    std::vector<Letter> letters;
+    WordLetters letters;
     while (position_ < text_.size()) {
       const CodePoint c = *decode(text_, position_);
-      const char32_t letter = canonical_letter(c.value);
-      if (is_combining_mark(c.value) && !letters.empty()) {
-        add_mark(letters.back(), c.value);
-      } else if (const auto dotted = decompose_dots(letter)) {
-        letters.push_back({dotted->letter, dotted->dots, {}});
-      } else if (const auto digit = subscript_digit(c.value)) {
-        letters.push_back({static_cast<char32_t>('0' + *digit), 0, {}});
-      } else if (is_letter(letter) || letter == '_' || (letter < 0x80 && is_digit(static_cast<char>(letter)))) {
-        letters.push_back({letter, 0, {}});
-      } else {
-        break;
-      }
+      if (!letters.add(c.value)) break;
       position_ += c.length;
     }
     if (position_ - begin > kLongestWord) return too_long("name", begin);
-    const int dots = take_dots(letters);
-    emit(Token::Kind::Name, normalize_name(spell(letters)), begin);
+    const int dots = letters.take_dots();
+    emit(Token::Kind::Name, normalize_name(letters.spelling()), begin);
     for (int i = 0; i < dots; ++i) emit(Token::Kind::Sign, "'", begin, true);
-  }
-
-  static void add_mark(Letter& letter, char32_t mark) {
-    if (const int dots = dots_of_mark(mark)) {
-      letter.dots += dots;
-    } else if (const auto composed = compose(letter.base, mark)) {
-      letter.base = *composed;
-    } else {
-      append_utf8(letter.marks, mark);
-    }
-  }
-
-  // Dots over the first letter are Newton's: θ̇, ẍ_rod, φ̇s; so are dots over a last digit. Two dots over a Latin letter
-  // that begins a longer word (über) belong to the spelling.
-  static int take_dots(std::vector<Letter>& letters) {
-    Letter& first = letters.front();
-    const bool greek = first.base >= 0x370 && first.base < 0x400;
-    const bool suffix = letters.size() == 1 || letters[1].base == '_' ||
-                        std::all_of(letters.begin() + 1, letters.end(), [](const Letter& l) { return l.base >= '0' && l.base <= '9'; });
-    if (first.dots > 0 && (greek || suffix || first.dots != 2)) return std::exchange(first.dots, 0);
-    Letter& last = letters.back();
-    if (last.dots > 0 && last.base >= '0' && last.base <= '9') return std::exchange(last.dots, 0);
-    return 0;
-  }
-
-  static std::string spell(const std::vector<Letter>& letters) {
-    std::string word;
-    for (const Letter& letter : letters) {
-      constexpr char32_t marks[] = {0, 0x307, 0x308, 0x20DB, 0x20DC};
-      const char32_t mark = marks[std::min(letter.dots, 4)];
-      const auto composed = mark ? compose(letter.base, mark) : std::nullopt;
-      append_utf8(word, composed.value_or(letter.base));
-      if (mark && !composed) append_utf8(word, mark);
-      word += letter.marks;
-    }
-    return word;
   }
 
   // -------------------------------------------------------------------------------------------------- numbers
@@ -225,23 +189,6 @@ class Lexer {
     if (!is_digit_at(digits)) return;
     position_ = digits;
     skip_digits();
-  }
-
-  // Whether the leading digit stands between 1e-307 and 1e307; zero is fine.
-  static bool within_range(const std::string& number) {
-    const std::size_t e = std::min(number.find_first_of("eE"), number.size());
-    const std::size_t point = std::min(number.find('.'), e);
-    const std::size_t leading = number.find_first_of("123456789");
-    if (leading >= e) return true;
-    long exponent = 0;
-    if (e < number.size()) {
-      for (char c : number.substr(e + 1)) {
-        if (is_digit(c)) exponent = std::min(exponent * 10 + (c - '0'), 100'000L);
-      }
-      if (number[e + 1] == '-') exponent = -exponent;
-    }
-    const long magnitude = exponent + static_cast<long>(point) - static_cast<long>(leading) - (leading < point ? 1 : 0);
-    return magnitude >= -307 && magnitude < 308;
   }
 
   // ½ m reads 1/2 m, and x^½ reads x^(1/2): brackets where the fraction does not begin a product.
@@ -318,7 +265,7 @@ class Lexer {
     emit(Token::Kind::Name, "sqrt", begin);
     while (position_ < text_.size() && text_[position_] == ' ') ++position_;
     if (position_ >= text_.size() || text_[position_] == '(' || text_[position_] == '\n') return;
-    if (++nested_roots_ > kMostNestedRoots) return malformed(begin, "Write the root with brackets: √(x).");
+    if (++nested_roots_ > kMostNestedRoots) return too_many_roots(begin);
     emit(Token::Kind::Sign, "(", begin, true);
     read_token();
     while (position_ < text_.size() && (text_[position_] == '\'' || (text_[position_] == '.' && !starts_with(".."))) &&
@@ -328,6 +275,11 @@ class Lexer {
     }
     emit(Token::Kind::Sign, ")", begin, true);
     --nested_roots_;
+  }
+
+  void too_many_roots(std::size_t begin) {
+    while (starts_with("√")) position_ += std::string_view("√").size();
+    malformed(begin, "Write the root with brackets: √(x).");
   }
 
   void read_degree() {
@@ -444,49 +396,10 @@ class Lexer {
   bool text_on_line_ = false;  // a text in quotes stands before, on the same line
 };
 
-bool is_control(unsigned char c) { return (c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7F; }
-
-// One message for a file that is no model text at all.
-bool check_bytes(const SourceText& source, Diagnostics& diagnostics) {
-  const std::string_view text = source.text();
-  if (text.size() > kMostBytes) {
-    diagnostics.error("E0101", std::nullopt, fmt::format("{} is too large: {} bytes", source.name(), text.size()),
-                      fmt::format("A model text may have {} bytes (8 MiB).", kMostBytes),
-                      "Is it a model? Data belong into files of their own.");
-    return false;
-  }
-  if (text.substr(0, 2) == "\xFF\xFE" || text.substr(0, 2) == "\xFE\xFF") {
-    diagnostics.error("E0102", std::nullopt, fmt::format("{} is UTF-16 text", source.name()), "Model texts are UTF-8.",
-                      "Save it as UTF-8.");
-    return false;
-  }
-  const auto control = std::find_if(text.begin(), text.end(), [](char c) { return is_control(static_cast<unsigned char>(c)); });
-  if (control != text.end()) {
-    const auto at = static_cast<std::uint32_t>(control - text.begin());
-    diagnostics.error("E0103", std::nullopt, fmt::format("{} is no text file", source.name()),
-                      fmt::format("Byte {} (line {}) is the control character 0x{:02X}.", at, source.locate(at).line,
-                                  static_cast<unsigned char>(*control)),
-                      "A model is plain UTF-8 text.");
-    return false;
-  }
-  for (std::size_t i = 0; i < text.size();) {
-    const auto c = decode(text, i);
-    if (!c) {
-      const auto at = static_cast<std::uint32_t>(i);
-      diagnostics.error("E0102", Span{at, at + 1},
-                        fmt::format("the byte 0x{:02X} is not UTF-8", static_cast<unsigned char>(text[i])),
-                        "Model texts are UTF-8; in other encodings θ, ° and é are other bytes.", "Save the file as UTF-8.");
-      return false;
-    }
-    i += c->length;
-  }
-  return true;
-}
-
 }  // namespace
 
 std::optional<TokenList> lex(const SourceText& source, Diagnostics& diagnostics) {
-  if (!check_bytes(source, diagnostics)) return std::nullopt;
+  if (!check_text(source, diagnostics)) return std::nullopt;
   return Lexer(source, diagnostics).run();
 }
 

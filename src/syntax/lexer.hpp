@@ -8,6 +8,9 @@
 
 namespace maupertuis::syntax {
 
+/// Whether a file can be a model text at all: size, UTF-8, no control characters. One message if not (E0101 … E0103).
+bool check_text(const SourceText& source, Diagnostics& diagnostics);
+
 /// Reads characters into tokens. Nothing when the text is too large or is no text (E0101, E0102, E0103); other
 /// mistakes leave an unreadable token, and reading goes on.
 std::optional<TokenList> lex(const SourceText& source, Diagnostics& diagnostics);

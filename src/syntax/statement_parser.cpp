@@ -89,10 +89,10 @@ void StatementParser::unknown_statement() {
   fail("E0110", word.span, fmt::format("`{}` does not begin a statement", word.text), "", std::move(help));
 }
 
-// After a mistake: to the comma before the next `name =` or `name :`, outside brackets.
-void StatementParser::skip_item() {
+// After a mistake in the item that begins at `first`: to the comma before the next `name =` or `name :`, outside brackets.
+void StatementParser::skip_item(std::size_t first) {
   int depth = 0;
-  for (std::size_t i = begin_; i < index_ && i < end_; ++i) {
+  for (std::size_t i = first; i < index_ && i < end_; ++i) {
     const Token& token = context_.list.tokens[i];
     depth += token.is("(") || token.is("[") ? 1 : token.is(")") || token.is("]") ? -1 : 0;
   }

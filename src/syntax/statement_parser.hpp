@@ -78,17 +78,18 @@ class StatementParser : private ExpressionParser {
   void list(Item item) {
     bool failed = false;
     do {
+      const std::size_t first = index_;
       try {
         item();
         if (!at_end() && !peek().is(",")) expect_end();
       } catch (const Abandoned&) {
         failed = true;
-        skip_item();
+        skip_item(first);
       }
     } while (accept(","));
     if (failed) throw Abandoned{};
   }
-  void skip_item();
+  void skip_item(std::size_t first);
 };
 
 }  // namespace maupertuis::syntax

@@ -98,6 +98,7 @@ std::optional<char32_t> compose(char32_t letter, char32_t mark) {
 }
 
 std::optional<Dotted> decompose_dots(char32_t c) {
+  if (c < 0xC0) return std::nullopt;
   for (const Composition& entry : kCompositions) {
     if (entry.composed == c && dots_of_mark(entry.mark) > 0) return Dotted{entry.letter, dots_of_mark(entry.mark)};
   }

@@ -142,6 +142,7 @@ TEST_CASE("size, depth and length are bounded, and so is the time") {
   CHECK(Parsed("system a \"" + std::string(1'000'000, 'x') + "\"\n").fine());
   CHECK(Parsed("# " + std::string(1'000'000, 'x') + "\nparam a = 1\n").fine());
   CHECK(Parsed("param a = 1" + repeat(100'000, ", b = 2 kg") + "\n").fine());
+  CHECK(Parsed("param a = 1" + repeat(100'000, ", b = ") + "\n").diagnostics.has_errors());
   CHECK(Parsed(repeat(200'000, "bad\n")).diagnostics.has_errors());
   CHECK(Parsed(repeat(2'000'000, "a ")).codes() == "E0101");
   CHECK(Parsed("gravity " + repeat(20'000, "(1,") + "\n").codes() == "E0106");
