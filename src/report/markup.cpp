@@ -1,10 +1,11 @@
 #include "report/markup.hpp"
 
+#include "report/mathml.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <vector>
 
 namespace maupertuis {
 
@@ -56,81 +57,80 @@ std::string number_html(std::string_view number) {
 
 namespace {
 
-// The elements of a MathML fragment that stand side by side.
-std::vector<std::string_view> children_of(std::string_view fragment) {
-  std::vector<std::string_view> children;
-  std::size_t begin = 0;
-  int depth = 0;
-  for (std::size_t at = fragment.find('<'); at != std::string_view::npos; at = fragment.find('<', at + 1)) {
-    const std::size_t end = fragment.find('>', at);
-    if (end == std::string_view::npos) return {fragment};
-    if (fragment[at + 1] == '/') --depth;
-    else if (depth++ == 0) begin = at;
-    if (fragment[end - 1] == '/') --depth;
-    if (depth == 0) children.push_back(fragment.substr(begin, end + 1 - begin));
-  }
-  return children;
-}
-
-std::vector<std::string_view> terms_side_by_side(std::string_view fragment) {
-  auto children = children_of(fragment);
-  while (children.size() == 1 && children[0].rfind("<mrow>", 0) == 0)
-    children = children_of(children[0].substr(6, children[0].size() - 13));
-  return children;
-}
-
-bool is_sum_sign(std::string_view child) {
-  if (child.rfind("<mo", 0) != 0) return false;
-  const auto content = child.substr(child.find('>') + 1);
-  return content == "+</mo>" || content == "−</mo>" || content == "-</mo>" || content == "&#x2212;</mo>" ||
-         content == "&minus;</mo>";
-}
-
-// Terms with the sign in front of each.
-std::vector<std::string> signed_terms(std::string_view fragment) {
-  std::vector<std::string> terms;
-  bool first = true;
-  for (const std::string_view child : terms_side_by_side(fragment)) {
-    const bool sign = is_sum_sign(child);
-    if (first || sign) terms.emplace_back();
-    if (sign && !first) terms.back() += "<mo form=\"infix\">" + std::string(child.substr(child.find('>') + 1));
-    else terms.back() += child;
-    first = false;
-  }
-  return terms;
-}
-
 constexpr std::size_t longest_in_one_piece = 3;  // terms
+
+MathRow typeset_row(std::string_view fragment) {
+  MathRow row = parse_mathml(fragment);
+  typeset(row);
+  return row;
+}
 
 }  // namespace
 
 std::string inline_math(std::string_view fragment) {
-  return fragment.empty() ? std::string() : fmt::format("<math>{}</math>", fragment);
+  return fragment.empty() ? std::string() : fmt::format("<math>{}</math>", to_string(typeset_row(fragment)));
 }
 
 std::string display_math(std::string_view left, std::string_view right) {
-  const std::string equals = left.empty() || right.empty() ? "" : "<mo>=</mo>";
-  auto left_terms = signed_terms(left), right_terms = signed_terms(right);
-  if (left_terms.size() + right_terms.size() <= longest_in_one_piece + 1)
-    return fmt::format("<math displaystyle=\"true\"><mrow>{}{}{}</mrow></math>", left, equals, right);
+  const MathRow left_row = typeset_row(left), right_row = typeset_row(right);
+  const bool both = !left.empty() && !right.empty();
+  auto pieces = signed_terms(left_row);
+  const auto right_terms = signed_terms(right_row);
+  if (pieces.size() + right_terms.size() <= longest_in_one_piece + 1)
+    return fmt::format("<math displaystyle=\"true\"><mrow>{}{}{}</mrow></math>", to_string(left_row), both ? "<mo>=</mo>" : "",
+                       to_string(right_row));
+  if (both) pieces.push_back({{"mo", " form=\"infix\"", "=", {}}});
+  for (std::size_t i = 0; i < right_terms.size(); ++i) {
+    if (both && i == 0) pieces.back().insert(pieces.back().end(), right_terms[0].begin(), right_terms[0].end());
+    else pieces.push_back(right_terms[i]);
+  }
   std::string html;
-  const auto piece = [&](const std::string& content) {
-    html += fmt::format("{}<math displaystyle=\"true\"><mrow>{}</mrow></math>", html.empty() ? "" : "<wbr>", content);
-  };
-  for (const auto& term : left_terms) piece(term);
-  if (!right_terms.empty() && !equals.empty()) right_terms[0] = "<mo form=\"infix\">=</mo>" + right_terms[0];
-  for (const auto& term : right_terms) piece(term);
+  for (const MathRow& piece : pieces)
+    html += fmt::format("{}<math displaystyle=\"true\"><mrow>{}</mrow></math>", html.empty() ? "" : "<wbr>", to_string(piece));
   return html;
 }
 
 // ------------------------------------------------------------------------------------------------------------- text
+
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_greek_lead(char c) { return c == '\xce' || c == '\xcf'; }
+bool is_word(char c) { return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c & 0x80); }
+
+// θ1 with its index below the line, p_θ1 and h_E likewise; a minus sign between spaces as one.
+std::string prose_html(std::string_view text) {
+  std::string html;
+  for (std::size_t i = 0; i < text.size();) {
+    if (is_greek_lead(text[i]) && i + 2 < text.size() && is_digit(text[i + 2])) {
+      const std::size_t end = std::min(text.find_first_not_of("0123456789", i + 2), text.size());
+      html += fmt::format("{}<sub>{}</sub>", text.substr(i, 2), text.substr(i + 2, end - i - 2));
+      i = end;
+    } else if (text[i] == '_' && i > 0 && is_word(text[i - 1]) && i + 1 < text.size() && is_word(text[i + 1])) {
+      std::size_t end = i + 1;
+      while (end < text.size() && is_word(text[end])) ++end;
+      html += fmt::format("<sub>{}</sub>", prose_html(text.substr(i + 1, end - i - 1)));
+      i = end;
+    } else if (text.substr(i, 3) == " - ") {
+      html += " − ";
+      i += 3;
+    } else {
+      html += escape_html(text.substr(i, 1));
+      ++i;
+    }
+  }
+  return html;
+}
+
+}  // namespace
 
 std::string sentence_html(std::string_view sentence) {
   std::string html;
   bool code = false;
   for (std::size_t at = 0; at <= sentence.size();) {
     const std::size_t next = std::min(sentence.find('`', at), sentence.size());
-    html += escape_html(sentence.substr(at, next - at));
+    const std::string_view part = sentence.substr(at, next - at);
+    html += code ? escape_html(part) : prose_html(part);
     if (next == sentence.size()) break;
     html += code ? "</code>" : "<code>";
     code = !code;

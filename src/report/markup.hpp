@@ -19,7 +19,7 @@ std::string inline_math(std::string_view fragment);
 /// element would run out of a narrow window, and off the paper.
 std::string display_math(std::string_view left, std::string_view right);
 
-/// A sentence in which names between backquotes are code.
+/// A sentence: what stands between backquotes is code, names have their indices below the line.
 std::string sentence_html(std::string_view sentence);
 
 /// The model text with its comments and its statement words marked.

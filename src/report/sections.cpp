@@ -103,22 +103,39 @@ std::string equations_section(const ReportContent& content) {
   return section("equations", "Equations of motion", html);
 }
 
-std::string model_section(const ReportContent& content) {
-  std::string coordinates, parameters, tables;
+namespace {
+
+std::string coordinates_table(const ReportContent& content) {
   bool started = false;
   for (const auto& c : content.coordinates) started = started || !c.start.empty();
+  std::string rows;
   for (const auto& c : content.coordinates) {
-    coordinates += fmt::format("<tr><td>{}</td><td>{}</td>", inline_math(c.symbol), unit_html(c.kind));
+    rows += fmt::format("<tr><td>{}</td><td>{}</td>", inline_math(c.symbol), unit_html(c.kind));
     if (started)
-      coordinates += fmt::format("<td class=\"number\">{}</td><td class=\"number\">{}</td>", number_html(c.start), number_html(c.start_velocity));
-    coordinates += "</tr>\n";
+      rows += fmt::format("<td class=\"number\">{}</td><td class=\"number\">{}</td>", number_html(c.start),
+                          number_html(c.start_velocity));
+    rows += "</tr>\n";
   }
+  return table(started ? "<th>coordinate</th><th>kind</th><th>start</th><th>velocity</th>" : "<th>coordinate</th><th>kind</th>",
+               rows);
+}
+
+std::string parameters_table(const ReportContent& content) {
+  bool converted = false;
+  for (const auto& p : content.parameters) converted = converted || !p.si.empty();
+  std::string rows;
   for (const auto& p : content.parameters)
-    parameters += fmt::format("<tr><td>{}</td><td class=\"number\">{}</td><td class=\"unit\">{}</td><td class=\"muted\">{}</td></tr>\n",
-                              inline_math(p.symbol), number_html(p.value), unit_html(p.unit), number_html(p.si));
-  const std::string head = started ? "<th>coordinate</th><th>kind</th><th>start</th><th>velocity</th>" : "<th>coordinate</th><th>kind</th>";
-  for (const auto& part : {table(head, coordinates),
-                           table("<th>parameter</th><th>value</th><th>unit</th><th>in SI</th>", parameters)})
+    rows += fmt::format("<tr><td>{}</td><td class=\"number\">{}</td><td class=\"unit\">{}</td>{}</tr>\n", inline_math(p.symbol),
+                        number_html(p.value), unit_html(p.unit),
+                        converted ? fmt::format("<td class=\"muted\">{}</td>", number_html(p.si)) : "");
+  return table(fmt::format("<th>parameter</th><th>value</th><th>unit</th>{}", converted ? "<th>in SI</th>" : ""), rows);
+}
+
+}  // namespace
+
+std::string model_section(const ReportContent& content) {
+  std::string tables;
+  for (const auto& part : {coordinates_table(content), parameters_table(content)})
     if (!part.empty()) tables += "<div>" + part + "</div>\n";
   std::string html = facts_list(content.summary);
   if (!tables.empty()) html += "<div class=\"two\">\n" + tables + "</div>\n";
@@ -137,7 +154,7 @@ std::string derivation_section(const ReportContent& content) {
   std::string html;
   for (const auto& part : content.derivation) {
     html += fmt::format("<details{}><summary>{}<span class=\"muted\">{}</span></summary>\n", lines <= 24 ? " open" : "",
-                        escape_html(part.title), part.lines.size() == 1 ? "1 line" : fmt::format("{} lines", part.lines.size()));
+                        sentence_html(part.title), part.lines.size() == 1 ? "1 line" : fmt::format("{} lines", part.lines.size()));
     for (const auto& line : part.lines)
       html += fmt::format("<div class=\"step\">{}<div class=\"rule\">{}</div></div>\n", formula_block(line), sentence_html(line.rule));
     html += "</details>\n";
