@@ -35,7 +35,6 @@ TEST_CASE("one mistake gives one message, under the right words, with a way out"
       {"coord θ : angel", "E0129", "angel", "`angle`"},
       {"coord x : m", "E0129", "m", "[m]"},
       {"point P mass m", "E0127", "point P mass m", "`at`"},
-      {"point P at (0, 0) mas m", "E0122", "", ""},
       {"point P at (0, 0) at (0, 1)", "E0127", "at", "twice"},
       {"spring A B stiffness k", "E0111", "B", "`-`"},
       {"damper A - B", "E0127", "damper A - B", "coefficient"},
@@ -78,7 +77,6 @@ TEST_CASE("one mistake gives one message, under the right words, with a way out"
     CAPTURE(mistake.text);
     Parsed parsed(std::string(mistake.text) + "\nparam zzz = 1\n");
     INFO(parsed.messages());
-    if (std::string(mistake.says).empty()) continue;
     REQUIRE(parsed.codes().substr(0, 5) == mistake.code);
     const Diagnostic& d = parsed.diagnostics.items()[0];
     const bool repeated_sign = mistake.text == std::string("let a = |x|") || mistake.text == std::string("let a = {2}");
