@@ -52,11 +52,15 @@ bool compare_at_points(const Questions& questions, const evaluation::Tape& tape,
     const evaluation::PrimeTriple primes = evaluation::random_prime_triple(hints.m, seed);
     smallest_group = static_cast<double>(std::min(primes.q, primes.r));
     std::optional<FieldNumbers> numbers;
-    for (int attempt = 0; attempt < 60 + 8 * wanted && found < wanted; ++attempt) {
+    bool mended = false;
+    for (int attempt = 0; attempt < 60 + 8 * wanted && found < wanted; attempt += !mended) {
       try {
-        seed = mix(seed);
-        if (numbers) numbers->set_seed(seed);
-        else numbers.emplace(primes, hints, seed);
+        if (!mended) {
+          seed = mix(seed);
+          if (numbers) numbers->set_seed(seed);
+          else numbers.emplace(primes, hints, seed);
+        }
+        mended = false;
         const auto difference = differences(questions, tape, *numbers, random_direction(*numbers, n), values);
         bool fails = false;
         for (std::size_t route = 0; route < RouteCount; ++route) {
@@ -68,6 +72,7 @@ bool compare_at_points(const Questions& questions, const evaluation::Tape& tape,
         if (fails) { find_rows(questions, tape, *numbers, result); return true; }
       } catch (const evaluation::Redraw& redraw) {
         if (redraw.another_prime || (attempt >= 60 && found == 0)) break;
+        mended = numbers && numbers->mend(redraw);
       }
     }
   }

@@ -92,7 +92,7 @@ double error_bound(const Complexity& c, int points, double smallest_group) {
 Complexity complexity(const Tape& tape) {
   Complexity result;
   std::vector<Fraction> f(tape.size()), terms;
-  std::unordered_set<Position> bases_of_symbolic_powers;
+  std::unordered_set<Position> bases_of_symbolic_powers, bases_of_roots;
   for (Position at = 0; at < tape.size(); ++at) {
     const auto arguments = tape.arguments(at);
     switch (tape.kind(at)) {
@@ -116,12 +116,14 @@ Complexity complexity(const Tape& tape) {
           break;
         }
         f[at] = power(f[arguments[0]], exponent.number().to_double());
-        if (!exponent.number().is_integer()) ++result.radicals;
+        if (!exponent.number().is_integer() && bases_of_roots.insert(arguments[0]).second) ++result.radicals;
         break;
       }
       case Kind::Sin: case Kind::Cos: case Kind::Tan: case Kind::Sinh: case Kind::Cosh: case Kind::Tanh: case Kind::Exp: {
+        // A Laurent monomial of the group elements: `error_bound` counts exponents of both signs.
+        const bool quotient = tape.kind(at) == Kind::Tan || tape.kind(at) == Kind::Tanh;
         const double d = angle_degree(tape, arguments[0]);
-        f[at] = {2 * d, 2 * d, 1};
+        f[at] = {d, quotient ? d : 0, 1};
         break;
       }
       case Kind::Asin: case Kind::Acos: case Kind::Atan: case Kind::Atan2: case Kind::Acosh:

@@ -55,16 +55,31 @@ std::vector<std::int8_t> definite_signs(const Tape& tape) {
   return signs;
 }
 
+/// Walks below a node that asks for a sign; the symbols met for the first time are free to be drawn again for it.
+void find_free_symbol(const Tape& tape, Position at, std::vector<bool>& seen, FieldHints& hints) {
+  std::vector<Position> open{tape.argument(at, 0)};
+  while (!open.empty()) {
+    const Position node = open.back();
+    open.pop_back();
+    if (seen[node]) continue;
+    seen[node] = true;
+    if (tape.kind(node) == Kind::Symbol) hints.free.emplace(at, tape.expression(node).id());
+    for (const Position argument : tape.arguments(node)) open.push_back(argument);
+  }
+}
+
 }  // namespace
 
 FieldHints field_hints(const Tape& tape) {
   FieldHints hints;
   bool any_sign = false;
+  std::vector<bool> seen(tape.size(), false);
   for (Position at = 0; at < tape.size(); ++at) {
     const Kind kind = tape.kind(at);
     if (kind == Kind::Sin || kind == Kind::Cos || kind == Kind::Tan) note_multiple_of_pi(tape, tape.argument(at, 0), hints);
     if (!asks_sign(tape, at)) continue;
     any_sign = true;
+    find_free_symbol(tape, at, seen, hints);
     const Expr argument = tape.expression(tape.argument(at, 0));
     const bool under_root = kind == Kind::Log || kind == Kind::Power;
     if (argument.is_symbol() && under_root) hints.positive.insert(argument.id());

@@ -21,7 +21,17 @@ void FieldNumbers::set_seed(std::uint64_t seed) {
   seed_ = seed;
   angles_.clear();
   units_.clear();
+  drawn_again_.clear();
   choose_generators();
+}
+
+bool FieldNumbers::mend(const Redraw& redraw) {
+  const auto free = hints_.free.find(redraw.at);
+  if (redraw.another_prime || free == hints_.free.end()) return false;
+  std::uint64_t& times = drawn_again_[free->second];
+  angles_.clear();
+  units_.clear();
+  return ++times < 40;
 }
 
 FieldNumbers::Value FieldNumbers::random(std::uint64_t key, std::uint64_t second) const {
@@ -29,7 +39,8 @@ FieldNumbers::Value FieldNumbers::random(std::uint64_t key, std::uint64_t second
 }
 
 FieldNumbers::Value FieldNumbers::symbol(Expr e) const {
-  const Value x = random(key_symbol, e.id());
+  const auto again = drawn_again_.find(e.id());
+  const Value x = random(again == drawn_again_.end() ? key_symbol : mix(key_symbol + again->second), e.id());
   return hints_.positive.count(e.id()) && field_.character(x) < 0 ? field_.negate(x) : x;
 }
 
@@ -40,11 +51,16 @@ FieldNumbers::Value FieldNumbers::inverse(Value a) const {
 
 // ------------------------------------------------------------------------------------------ signs, roots, powers
 
-int FieldNumbers::sign(Position at, Value value) const {
+int FieldNumbers::sign(Position argument, Value value) const {
   const int sign = field_.character(value);
-  if (sign == 0) throw Redraw{};
-  if (at < hints_.sign.size() && hints_.sign[at] != 0 && hints_.sign[at] != sign) throw Redraw{};
+  if (sign == 0 || !has_sign(argument, value, sign)) throw Redraw{};
   return sign;
+}
+
+/// Is it of this sign, and may it be, by what is known of the argument at real points?
+bool FieldNumbers::has_sign(Position argument, Value value, int sign) const {
+  const int known = argument < hints_.sign.size() ? hints_.sign[argument] : 0;
+  return field_.character(value) == sign && (known == 0 || known == sign);
 }
 
 FieldNumbers::Value FieldNumbers::positive(Value a) const {
@@ -97,7 +113,7 @@ FieldNumbers::Value FieldNumbers::power(const Tape& tape, Position at, const std
       return field_.power(values[base], static_cast<std::uint64_t>(*n));
     }
   }
-  if (sign(base, values[base]) < 0) throw Redraw{};
+  if (!has_sign(base, values[base], 1)) throw Redraw{false, at};
   if (number && *number == Rational(1, 2)) return square_root(values[base]);
   return positive_power(values[base], number ? exponent_of(*number) : exponent_of(tape, exponent, values));
 }
@@ -194,7 +210,7 @@ FieldNumbers::Value FieldNumbers::absolute_logarithm(const Tape& tape, Position 
 }
 
 FieldNumbers::Value FieldNumbers::logarithm(const Tape& tape, Position argument, const std::vector<Value>& values) {
-  if (sign(argument, values[argument]) < 0) throw Redraw{};
+  if (!has_sign(argument, values[argument], 1)) throw Redraw{};
   return absolute_logarithm(tape, argument, values);
 }
 

@@ -10,6 +10,7 @@ namespace maupertuis::evaluation {
 /// Thrown where a random point is of no use: a denominator vanishes, a radicand is no square. Draw another.
 struct Redraw {
   bool another_prime = false;   // a constant is to blame: another point does not help
+  Position at = ~Position{0};   // the node whose argument has the wrong sign
 };
 
 /// What an evaluation over a prime field must know of an expression beside its nodes.
@@ -18,6 +19,7 @@ struct FieldHints {
   std::uint64_t m = 840;                     // lcm of that and 840
   std::vector<std::int8_t> sign;             // [tape] +1, −1 where the value has this sign at all real points, else 0
   std::unordered_set<NodeId> positive;       // symbols under a root or a logarithm: drawn positive
+  std::unordered_map<Position, NodeId> free; // of a node with a sign to meet: a symbol that no earlier such node sees
 };
 FieldHints field_hints(const Tape& tape);
 
@@ -44,6 +46,9 @@ class FieldNumbers {
   /// A random number that depends on the seed and the two keys alone.
   Value random(std::uint64_t key, std::uint64_t second = 0) const;
   void set_seed(std::uint64_t seed);
+  /// Another value for one symbol, such that the signs that were met before stay as they are: many roots cost a few
+  /// draws each and not 2^roots. False where no such symbol exists.
+  bool mend(const Redraw& redraw);
 
   Value number(const Rational& value) const { return field_.from(value); }
   Value pi() const { return random(0x7069); }
@@ -62,10 +67,11 @@ class FieldNumbers {
   Value exponential(const Tape& tape, Position argument, const std::vector<Value>& values);
   Value logarithm(const Tape& tape, Position argument, const std::vector<Value>& values);
   /// ±1. A value that has one sign at all real points must have it here too.
-  int sign(Position at, Value value) const;
+  int sign(Position argument, Value value) const;
   Value square_root(Value a) const;
 
  private:
+  bool has_sign(Position argument, Value value, int sign) const;
   Value power(const Tape& tape, Position at, const std::vector<Value>& values);
   Value positive_power(Value base, std::uint64_t exponent) const;
   Value positive(Value a) const;
@@ -94,6 +100,7 @@ class FieldNumbers {
   Value generator_ = 0;                      // of the positive numbers
   Angle turn_{};                             // of the rotations of order r
   Angle root_{};                             // rotation by 2π/m
+  std::unordered_map<NodeId, std::uint64_t> drawn_again_;
   std::unordered_map<Position, Angle> angles_, units_;   // of arguments and of their basis elements, at this point
 };
 

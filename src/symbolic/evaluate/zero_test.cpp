@@ -29,13 +29,18 @@ FieldResult test_over_primes(const Tape& tape, const FieldHints& hints, int poin
       const PrimeTriple primes = random_prime_triple(hints.m, seed);
       result.smallest_group = static_cast<double>(std::min(primes.r, primes.q));
       std::optional<FieldNumbers> numbers;
-      for (int attempt = 0; attempt < 60 + 8 * points_per_prime && found < points_per_prime; ++attempt) {
+      bool mended = false;
+      for (int attempt = 0; attempt < 60 + 8 * points_per_prime && found < points_per_prime; attempt += !mended) {
         try {
-          seed = mix(seed);
-          numbers ? numbers->set_seed(seed) : static_cast<void>(numbers.emplace(primes, hints, seed));
+          if (!mended) {
+            seed = mix(seed);
+            numbers ? numbers->set_seed(seed) : static_cast<void>(numbers.emplace(primes, hints, seed));
+          }
+          mended = false;
           run(tape, *numbers, values);
         } catch (const Redraw& redraw) {
           if (redraw.another_prime || (attempt >= 60 && found == 0)) break;
+          mended = numbers && numbers->mend(redraw);
           continue;
         }
         ++found;
