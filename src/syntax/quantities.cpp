@@ -65,7 +65,8 @@ ExpressionParser::Node ExpressionParser::quantity_or_null() {
                                        [&](const auto& factor) { return context_.declarations.contains(factor.word); });
     if (all_names) return nullptr;
     fail("E0118", *ambiguous_slash_, fmt::format("`{}` has two meanings", text_of(*ambiguous_slash_)),
-         "It is not clear whether the second unit belongs to the denominator.", "Write J/(kg K), or J K/kg.");
+         "It is not clear whether the second unit belongs to the denominator.",
+         fmt::format("Write /({}) if both belong below the slash, else put the second one before it.", text_of(*ambiguous_slash_)));
   }
   if (value->kind == Kind::Number) check_number(number);
   Node node = make(Kind::Quantity, cover(value->span, unit->span), {value});
@@ -96,7 +97,8 @@ UnitExpression ExpressionParser::bracketed_unit() {
   }
   if (ambiguous_slash_) {
     fail("E0118", *ambiguous_slash_, fmt::format("`{}` has two meanings", text_of(*ambiguous_slash_)),
-         "It is not clear whether the second unit belongs to the denominator.", "Write J/(kg K), or J K/kg.");
+         "It is not clear whether the second unit belongs to the denominator.",
+         fmt::format("Write /({}) if both belong below the slash, else put the second one before it.", text_of(*ambiguous_slash_)));
   }
   unit.span = cover(open, next().span);
   return unit;

@@ -69,7 +69,7 @@ TEST_CASE("one mistake gives one message, under the right words, with a way out"
       {"system a \"title", "E0104", "\"", "Close it"},
       {"let a = θ\"", "E0104", "\"", "θ''"},
       {"source \"a test of \"words\" and\"", "E0104", "\"", "Use '"},
-      {"param c = 1 J/kg K", "E0118", "kg K", "J/(kg K)"},
+      {"param c = 1 J/kg K", "E0118", "kg K", "/(kg K)"},
       {"param T0 = 20 °C", "E0104", "°C", "K"},
       {"param a = 2 m [s]", "E0119", "[", "after a number"},
   };
