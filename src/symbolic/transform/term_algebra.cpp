@@ -193,6 +193,16 @@ Polynomial TermAlgebra::multiply(const Polynomial& a, const Polynomial& b) {
   return normalized(std::move(raw));
 }
 
+std::string key_text(const Polynomial& p) {
+  std::string key;
+  for (const Term& t : p) {
+    key.append(reinterpret_cast<const char*>(&t.monomial), sizeof t.monomial);
+    key.append(reinterpret_cast<const char*>(&t.harmonic), sizeof t.harmonic);
+    key += t.coefficient.to_string() + ';';
+  }
+  return key;
+}
+
 Rational rational_content(const Polynomial& p) {
   // gcd(a/b, c/d) of fractions in lowest terms, by Euclid's algorithm on exact rationals.
   const auto euclid = [](Rational a, Rational b) {

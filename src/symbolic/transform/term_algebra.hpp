@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -157,6 +158,9 @@ class TermAlgebra {
   std::unordered_map<Harmonic, HarmonicId, KeyHash> harmonic_ids_;
   std::unordered_map<std::uint64_t, std::vector<Term>> harmonic_products_;
 };
+
+/// The terms as bytes, to be looked up by.
+std::string key_text(const Polynomial& p);
 
 /// gcd of the coefficients, positive; 1 for an empty polynomial.
 Rational rational_content(const Polynomial& p);
