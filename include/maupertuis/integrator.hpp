@@ -53,7 +53,7 @@ struct Sample {
   double t = 0;
   std::vector<double> q, v, a;      // [n] each
   std::vector<double> observables;  // [observables]
-  std::vector<double> integrals;    // [integrands], from the start of the run to t
+  std::vector<double> integrals;    // [integrands], from the start of the run to t; the step follows the motion alone
 };
 
 /// Advances a motion by steps whose order and length follow from the tolerance (Jorba and Zou). The state is summed

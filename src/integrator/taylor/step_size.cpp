@@ -7,7 +7,7 @@
 #include <limits>
 
 /// À. Jorba, M. Zou, A software package for the numerical integration of ODEs by means of high-order Taylor methods,
-/// Experimental Mathematics 14 (2005): the last two coefficients estimate the radius of convergence ρ, and h = ρ/e² with
+/// Experimental Mathematics 14 (2005): the last two coefficients estimate the radius of convergence ρ, and h near ρ/e² with
 /// p = ⌈−½ ln ε + 1⌉ costs least.
 ///
 /// One difference: each coordinate is measured against its own size, so that units do not matter (a charge of 10⁻⁹ C
@@ -67,8 +67,8 @@ StepControl step_control(double tolerance, int order) {
   const double epsilon = std::max(tolerance, rounding_tolerance());
   StepControl control;
   control.order = order > 0 ? std::max(order, 2) : taylor_order(epsilon);
-  const double safety = std::exp(-0.7 / (control.order - 1));
-  control.factor = safety * std::exp(std::log(epsilon) / (control.order - 1));
+  // With h = ρ ε^{1/p} the last term kept is ε times the size, the first one left out a sixth of that at rounding level.
+  control.factor = std::exp(std::log(epsilon) / control.order);
   return control;
 }
 
