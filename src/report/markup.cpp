@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 namespace maupertuis {
 
@@ -41,7 +42,9 @@ std::string unit_html(std::string_view unit) {
 std::string number_html(std::string_view number) {
   const auto e = number.find('e');
   const bool plain = e == std::string_view::npos || e == 0 || number.find_first_not_of("+-0123456789.", 0) != e;
-  std::string mantissa = escape_html(number.substr(0, plain ? number.size() : e));
+  const bool quantity = !number.empty() && std::string_view("+-.0123456789").find(number[0]) != std::string_view::npos;
+  const std::string_view rest = number.substr(0, plain ? number.size() : e);
+  std::string mantissa = quantity ? unit_html(rest) : escape_html(rest);
   if (!mantissa.empty() && mantissa[0] == '-' && mantissa.size() > 1) mantissa.replace(0, 1, "−");
   if (plain) return mantissa;
   std::size_t end = e + 1;
@@ -50,19 +53,34 @@ std::string number_html(std::string_view number) {
   for (const char c : number.substr(e + 1, end - e - 1))
     if (c >= '0' && c <= '9') exponent = 10 * exponent + (c - '0');
   const std::string factor = mantissa == "1" ? "" : mantissa + " × ";
-  return fmt::format("{}10<sup>{}{}</sup>{}", factor, number[e + 1] == '-' ? "−" : "", exponent, escape_html(number.substr(end)));
+  return fmt::format("{}10<sup>{}{}</sup>{}", factor, number[e + 1] == '-' ? "−" : "", exponent, unit_html(number.substr(end)));
 }
 
 // ------------------------------------------------------------------------------------------------------ mathematics
 
 namespace {
 
-constexpr std::size_t longest_in_one_piece = 3;  // terms
+constexpr std::size_t one_line = 70;      // characters that fit into a line of the page, about
+constexpr std::size_t surely_fits = 36;   // … of a narrow window
 
 MathRow typeset_row(std::string_view fragment) {
   MathRow row = parse_mathml(fragment);
   typeset(row);
   return row;
+}
+
+std::string math_element(const MathRow& row) {
+  return fmt::format("<math displaystyle=\"true\"><mrow>{}</mrow></math>", to_string(row));
+}
+
+// The places where a line may break: before the signs of the sum, and of sums in brackets that are longer than a line.
+std::vector<MathRow> pieces_of(const MathRow& sum) {
+  std::vector<MathRow> pieces;
+  for (MathRow& term : signed_terms(sum)) {
+    if (letters_in(term) <= one_line) pieces.push_back(std::move(term));
+    else for (MathRow& part : open_longest_bracket(std::move(term))) pieces.push_back(std::move(part));
+  }
+  return pieces;
 }
 
 }  // namespace
@@ -72,22 +90,32 @@ std::string inline_math(std::string_view fragment) {
 }
 
 std::string display_math(std::string_view left, std::string_view right) {
-  const MathRow left_row = typeset_row(left), right_row = typeset_row(right);
-  const bool both = !left.empty() && !right.empty();
-  auto pieces = signed_terms(left_row);
-  const auto right_terms = signed_terms(right_row);
-  if (pieces.size() + right_terms.size() <= longest_in_one_piece + 1)
-    return fmt::format("<math displaystyle=\"true\"><mrow>{}{}{}</mrow></math>", to_string(left_row), both ? "<mo>=</mo>" : "",
-                       to_string(right_row));
-  if (both) pieces.push_back({{"mo", " form=\"infix\"", "=", {}}});
-  for (std::size_t i = 0; i < right_terms.size(); ++i) {
-    if (both && i == 0) pieces.back().insert(pieces.back().end(), right_terms[0].begin(), right_terms[0].end());
-    else pieces.push_back(right_terms[i]);
+  MathRow whole = typeset_row(left);
+  const MathRow right_row = typeset_row(right);
+  const std::size_t letters = letters_in(whole) + letters_in(right_row);
+  const MathElement equals{"mo", " form=\"infix\"", "=", {}};
+  std::vector<MathRow> pieces;
+  if (letters <= surely_fits) {
+    if (!left.empty() && !right.empty()) whole.push_back(equals);
+    whole.insert(whole.end(), right_row.begin(), right_row.end());
+    pieces = {whole};
+  } else {
+    pieces = pieces_of(whole);
+    auto further = pieces_of(right_row);
+    // `= 0` stays with the last term, a longer right side begins with its sign.
+    const bool short_right = further.size() == 1 && letters_in(further[0]) <= 2;
+    if (!pieces.empty() && !further.empty()) {
+      further[0].insert(further[0].begin(), equals);
+      if (short_right || letters_in(pieces.back()) <= 12) {
+        pieces.back().insert(pieces.back().end(), further[0].begin(), further[0].end());
+        further.erase(further.begin());
+      }
+    }
+    pieces.insert(pieces.end(), further.begin(), further.end());
   }
   std::string html;
-  for (const MathRow& piece : pieces)
-    html += fmt::format("{}<math displaystyle=\"true\"><mrow>{}</mrow></math>", html.empty() ? "" : "<wbr>", to_string(piece));
-  return html;
+  for (const MathRow& piece : pieces) html += (html.empty() ? "" : "<wbr>") + math_element(piece);
+  return fmt::format("<div class=\"formula{}\">{}</div>", letters > one_line ? " long" : "", html);
 }
 
 // ------------------------------------------------------------------------------------------------------------- text

@@ -15,8 +15,8 @@ std::string number_html(std::string_view number);
 
 /// One <math> element in the line of text; nothing for an empty fragment.
 std::string inline_math(std::string_view fragment);
-/// left = right as display mathematics. A long sum becomes several <math> elements, between which lines may break: one
-/// element would run out of a narrow window, and off the paper.
+/// left = right as a block of display mathematics. A long sum becomes several <math> elements, between which lines may
+/// break: one element would run out of a narrow window, and off the paper.
 std::string display_math(std::string_view left, std::string_view right);
 
 /// A sentence: what stands between backquotes is code, names have their indices below the line.

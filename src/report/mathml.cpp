@@ -145,6 +145,46 @@ void typeset(MathRow& row) {
   }
 }
 
+std::size_t letters_in(const MathRow& row) {
+  std::size_t count = 0;
+  for (const MathElement& e : row) {
+    const bool invisible = e.text == invisible_times || e.text == function_application;
+    if (!invisible && e.text.size() > 1 && e.text[0] == '&') ++count;
+    else if (!invisible)
+      count += static_cast<std::size_t>(std::count_if(e.text.begin(), e.text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+    // A fraction is as wide as its wider part.
+    if (e.name == "mfrac" && e.children.size() == 2) count += std::max(letters_in({e.children[0]}), letters_in({e.children[1]}));
+    else count += letters_in(e.children);
+  }
+  return count;
+}
+
+std::vector<MathRow> open_longest_bracket(MathRow term) {
+  if (term.size() == 1 && term[0].name == "mrow" && !is_bracketed(term[0])) term = MathRow(term[0].children);
+  // A sign in front and one factor: the factors stand a level deeper.
+  if (term.size() == 2 && term[1].name == "mrow" && !is_bracketed(term[1])) {
+    MathRow flat{term[0]};
+    flat.insert(flat.end(), term[1].children.begin(), term[1].children.end());
+    term = std::move(flat);
+  }
+  std::size_t longest = term.size();
+  for (std::size_t i = 0; i < term.size(); ++i)
+    if (is_bracketed(term[i]) && (longest == term.size() || letters_in({term[i]}) > letters_in({term[longest]}))) longest = i;
+  if (longest == term.size()) return {term};
+
+  MathElement open = term[longest].children.front(), close = term[longest].children.back();
+  if (is_tall(term[longest])) open.attributes = close.attributes = " stretchy=\"true\" minsize=\"2.4em\" maxsize=\"2.4em\"";
+  open.attributes += " form=\"prefix\"";
+  close.attributes += " form=\"postfix\"";
+  auto pieces = signed_terms(MathRow(term[longest].children.begin() + 1, term[longest].children.end() - 1));
+  if (pieces.size() < 2) return {term};
+  pieces.front().insert(pieces.front().begin(), open);
+  pieces.front().insert(pieces.front().begin(), term.begin(), term.begin() + static_cast<std::ptrdiff_t>(longest));
+  pieces.back().push_back(close);
+  pieces.back().insert(pieces.back().end(), term.begin() + static_cast<std::ptrdiff_t>(longest) + 1, term.end());
+  return pieces;
+}
+
 std::vector<MathRow> signed_terms(MathRow row) {
   while (row.size() == 1 && row[0].name == "mrow" && row[0].attributes.empty()) {
     MathRow inner = std::move(row[0].children);

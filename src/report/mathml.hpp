@@ -25,4 +25,11 @@ void typeset(MathRow& row);
 /// The terms of a sum, each with its sign; an outer <mrow> is opened.
 std::vector<MathRow> signed_terms(MathRow row);
 
+/// A term in pieces that end inside its longest bracket, before the signs there; one piece where there is no bracket
+/// that holds a sum. The two brackets then stand in different pieces, at the height of what they enclose.
+std::vector<MathRow> open_longest_bracket(MathRow term);
+
+/// Characters that a reader sees.
+std::size_t letters_in(const MathRow& row);
+
 }  // namespace maupertuis

@@ -31,7 +31,7 @@ std::string table(std::string_view head, const std::string& rows, std::string_vi
 std::string formula_block(const ReportContent::Formula& formula) {
   std::string html;
   if (!formula.right.empty() || !formula.left.empty())
-    html += fmt::format("<div class=\"formula\">{}</div>", display_math(formula.left, formula.right));
+    html += display_math(formula.left, formula.right);
   if (!formula.sentence.empty()) html += fmt::format("<p class=\"sentence\">{}</p>", sentence_html(formula.sentence));
   return html;
 }
@@ -93,7 +93,7 @@ std::string equations_section(const ReportContent& content) {
   std::string html;
   std::size_t number = 0;
   for (const auto& equation : content.equations)
-    html += fmt::format("<div class=\"equation\"><div class=\"formula\">{}</div><div class=\"number\">({})</div></div>\n",
+    html += fmt::format("<div class=\"equation\">{}<div class=\"number\">({})</div></div>\n",
                         display_math(equation.left, equation.right), ++number);
   if (!content.intermediates.empty()) html += "<p>with</p>\n";
   for (const auto& intermediate : content.intermediates)

@@ -407,10 +407,17 @@
     for (const factor of [0.1, 0.25, 0.5, 1, 2, 5, 10]) {
       const option = document.createElement('option'), speed = pleasant * factor;
       option.value = String(speed);
-      option.textContent = '× ' + (speed >= 1e-3 && speed < 1e4 ? Number(speed.toPrecision(2)) : speed.toExponential(1).replace('.0', ''));
+      option.textContent = '× ' + speedText(Number(speed.toPrecision(2)));
       option.selected = factor === 1;
       select.append(option);
     }
+  }
+
+  function speedText(speed) {
+    if (speed >= 1e-3 && speed < 1e6) return speed.toLocaleString('en');
+    const [mantissa, exponent] = speed.toExponential().split('e');
+    const raised = [...exponent.replace('+', '')].map(c => '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'['-0123456789'.indexOf(c)]).join('');
+    return (mantissa === '1' ? '' : mantissa + ' · ') + '10' + raised;
   }
 
   function onKey(event) {

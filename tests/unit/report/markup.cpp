@@ -25,6 +25,8 @@ TEST_CASE("units and numbers as in print") {
   CHECK(unit_html("s^-1") == "s<sup>−1</sup>");
   CHECK(number_html("1.2e-15") == "1.2 × 10<sup>−15</sup>");
   CHECK(number_html("1e+20 m") == "10<sup>20</sup> m");
+  CHECK(number_html("3.98e+14 m^3/s^2") == "3.98 × 10<sup>14</sup> m<sup>3</sup>/s<sup>2</sup>");
+  CHECK(number_html("2 m^2") == "2 m<sup>2</sup>");
   CHECK(number_html("-3.5") == "−3.5");
   CHECK(number_html("3.2e-15 J") == "3.2 × 10<sup>−15</sup> J");
   CHECK(number_html("energy") == "energy");
@@ -34,23 +36,33 @@ TEST_CASE("units and numbers as in print") {
 
 TEST_CASE("a short equation is one formula, a long sum breaks before its signs") {
   CHECK(display_math("<mi>T</mi>", "<mi>x</mi>") ==
-        "<math displaystyle=\"true\"><mrow><mi>T</mi><mo>=</mo><mi>x</mi></mrow></math>");
-  const std::string term = "<mrow><mi>a</mi><mo>+</mo><mi>b</mi></mrow>";
-  const std::string sum = "<mrow>" + term + "<mo>+</mo><mi>c</mi><mo>−</mo><mi>d</mi><mo>+</mo><mi>e</mi></mrow>";
+        "<div class=\"formula\"><math displaystyle=\"true\"><mrow><mi>T</mi><mo form=\"infix\">=</mo><mi>x</mi></mrow></math></div>");
+  const std::string ten = "<mi>abcdefghij</mi>", term = "<mrow>" + ten + "<mo>+</mo>" + ten + "</mrow>";
+  const std::string sum = "<mrow>" + term + "<mo>+</mo>" + ten + "<mo>−</mo>" + ten + "<mo>+</mo>" + ten + "</mrow>";
   const std::string html = display_math(sum, "<mn>0</mn>");
-  CHECK(count(html, "<math") == 5);
-  CHECK(count(html, "<wbr>") == 4);
-  CHECK(html.find("<mrow>" + term + "</mrow></math>") != std::string::npos);  // signs inside a bracket do not break
-  CHECK(html.find("<mrow><mo form=\"infix\">−</mo><mi>d</mi></mrow>") != std::string::npos);
-  CHECK(html.find("<mrow><mo form=\"infix\">=</mo><mn>0</mn></mrow>") != std::string::npos);
+  CHECK(count(html, "<math") == 4);
+  CHECK(count(html, "<wbr>") == 3);
+  CHECK(html.find("<mrow>" + term + "</mrow></math>") != std::string::npos);  // signs inside a term do not break
+  CHECK(html.find("<mrow><mo form=\"infix\">−</mo>" + ten + "</mrow>") != std::string::npos);
+  CHECK(html.find(ten + "<mo form=\"infix\">=</mo><mn>0</mn></mrow>") != std::string::npos);  // = 0 stays with the last term
   CHECK(inline_math("") == "");
 }
 
+TEST_CASE("a bracket longer than a line breaks inside") {
+  std::string inner;
+  for (int i = 0; i < 5; ++i) inner += std::string(i ? "<mo>+</mo>" : "") + "<mi>abcdefghijklmnopqrst</mi>";
+  const std::string html = display_math("<mrow><mi>m</mi><mrow><mo>(</mo>" + inner + "<mo>)</mo></mrow><mi>x</mi></mrow>", "<mn>0</mn>");
+  CHECK(count(html, "<math") == 5);
+  CHECK(count(html, ">(</mo>") == 1);
+  CHECK(count(html, ">)</mo>") == 1);
+  CHECK(html.find("class=\"formula long\"") != std::string::npos);
+}
+
 TEST_CASE("the first sign of a sum belongs to its first term") {
-  const std::string html = display_math("<mrow><mo>−</mo><mi>a</mi><mo>+</mo><mi>b</mi><mo>+</mo><mi>c</mi></mrow>", "<mn>0</mn>");
-  CHECK(count(html, "<math") == 1);
-  const std::string longer = display_math("<mrow><mo>−</mo><mi>a</mi><mo>+</mo><mi>b</mi><mo>+</mo><mi>c</mi><mo>+</mo><mi>d</mi></mrow>", "<mn>0</mn>");
-  CHECK(longer.find("<mrow><mo>−</mo><mi>a</mi></mrow>") != std::string::npos);
+  const std::string ten = "<mi>abcdefghij</mi>";
+  const std::string html = display_math("<mrow><mo>−</mo>" + ten + "<mo>+</mo>" + ten + "<mo>+</mo>" + ten + "<mo>+</mo>" + ten + "</mrow>", "<mn>0</mn>");
+  CHECK(count(html, "<math") == 4);
+  CHECK(html.find("<mrow><mo>−</mo>" + ten + "</mrow>") != std::string::npos);
 }
 
 TEST_CASE("the model text: statement words and comments are marked") {
