@@ -56,7 +56,7 @@ void report_sum(Elaboration& e, const Value& a, const Value& b, const Expression
                                       : fmt::format("this {} {} to {}", verb, describe(b.dimension), describe(a.dimension));
   const std::string text(e.source.slice((left_is_wrong ? left : right)->span));
   e.diagnostics.error("E0302", (left_is_wrong ? left : right)->span, message, reason,
-                      left_is_wrong ? fmt::format("Here {} is needed.", describe(*place.expected)) : "");
+                      dimension_advice(left_is_wrong ? a.dimension : b.dimension, place.expected.value_or(a.dimension)));
 }
 
 bool same_shape(Elaboration& e, const Value& a, const Value& b, const Expression& x) {
@@ -110,7 +110,7 @@ Value multiply(Elaboration& e, const Value& a, const Value& b, const Expression&
   if (a.poisoned || b.poisoned) return Value::poison();
   if (a.is_vector && b.is_vector) {
     e.diagnostics.error("E0210", x.span, "the product of two vectors is not written like this",
-                        "There are two of them.", "Write dot(u, v) for the number, cross(u, v) for the vector.");
+                        "Vectors have two products.", "Write dot(u, v) for the number, cross(u, v) for the vector.");
     return Value::poison();
   }
   const Value& v = b.is_vector ? b : a;

@@ -10,8 +10,9 @@ namespace {
 
 using syntax::Expression;
 
-/// What most often lies behind a wrong dimension in an energy.
-std::string advice(const Dimension& found, const Dimension& expected) {
+}  // namespace
+
+std::string dimension_advice(const Dimension& found, const Dimension& expected) {
   using namespace dimensions;
   if (expected.same_as(energy()) && found.same_as(dimensions::power())) return "A power belongs in the dissipation function: D = ….";
   if (expected.same_as(dimensions::power()) && found.same_as(energy())) return "The dissipation function is half a dissipated power, for linear damping D = 1/2 c x'^2.";
@@ -26,13 +27,12 @@ std::string advice(const Dimension& found, const Dimension& expected) {
   return "";
 }
 
-}  // namespace
-
 bool check_dimension(Elaboration& e, const Value& v, const Dimension& expected, const std::string& what, const Expression& x) {
   if (v.poisoned || v.fits_any || e.dimensionless) return !v.poisoned;
   if (!v.dimension.same_as(expected)) {
     e.diagnostics.error("E0304", x.span, fmt::format("{} is {}, this is {}", what, describe(expected), describe(v.dimension)),
-                        "Both sides of an equation have one dimension.", advice(v.dimension, expected));
+                        "Both sides of an equation have one dimension.",
+                        x.kind == Expression::Kind::Quantity || x.kind == Expression::Kind::Number ? "" : dimension_advice(v.dimension, expected));
     return false;
   }
   if (v.hertz && expected.angle() != Dimension::Exponent{}) {

@@ -37,13 +37,6 @@ namespace {
 constexpr const char* kShort[] = {"T", "V", "U", "L", "D"};
 constexpr const char* kLong[] = {"kinetic", "potential", "generalized_potential", "lagrangian", "dissipation"};
 
-bool has_a_meaning_already(const std::string& name) {
-  if (name == "t" || name == "pi") return true;
-  for (const char* word : kLong)
-    if (name == word) return true;
-  return false;
-}
-
 }  // namespace
 
 SymbolTable::SymbolTable(const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics)
@@ -72,15 +65,6 @@ SymbolTable::SymbolTable(const syntax::SyntaxTree& tree, const SourceText& sourc
 }
 
 void SymbolTable::add(Kind kind, const syntax::Name& name, const syntax::Statement& statement, std::size_t item) {
-  if (has_a_meaning_already(name.text)) {
-    diagnostics_.error("E0206", name.span, fmt::format("`{}` cannot be declared", name.text),
-                       name.text == "t"    ? "t is the time in every formula."
-                       : name.text == "pi" ? "pi is the ratio of a circle's circumference to its diameter."
-                                           : "This is the long name of an energy, which works in every model.",
-                       "Choose another name.");
-    lost_.emplace(name.text, true);
-    return;
-  }
   Declaration d;
   d.kind = kind;
   d.name = name.text;

@@ -72,7 +72,7 @@ Dimension dimension_of_kind(const std::string& kind) {
 
 /// A definition of parameters alone: it stays a symbol in print. Plain numbers and other names for one symbol do not.
 bool stays_a_symbol(Elaboration& e, const Value& v) {
-  if (v.is_vector || v.scalar().is_symbol()) return false;
+  if (v.is_vector || v.scalar().is_symbol() || e.context.depends_on_time(v.scalar().id())) return false;
   const Expr roots[] = {v.scalar()};
   const std::vector<Expr> symbols = symbols_of(roots);
   for (const Expr& s : symbols)
@@ -124,6 +124,7 @@ void elaborate_coordinate(Elaboration& e, Declaration& d) {
     c.dimension = e.dimension(dimension_of_kind(item.kind.text));
   }
   d.value = Value::of(c.q, c.dimension, 0);
+  d.index = e.system().coordinates.size();
   e.system().coordinates.push_back(std::move(c));
 }
 

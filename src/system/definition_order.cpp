@@ -89,7 +89,15 @@ class Dependencies {
   std::vector<Ids> of_;
 };
 
-void report_cycle(SymbolTable& table, const Ids& path, DeclarationId again, Diagnostics& diagnostics) {
+/// Where the text gives an energy.
+std::optional<Span> span_of_energy(const syntax::SyntaxTree& tree, DeclarationId id) {
+  for (const syntax::Statement& s : tree.statements)
+    if (const auto* e = std::get_if<syntax::EnergyStatement>(&s.body))
+      if (static_cast<DeclarationId>(e->which) == id) return e->name_span;
+  return std::nullopt;
+}
+
+void report_cycle(SymbolTable& table, const syntax::SyntaxTree& tree, const Ids& path, DeclarationId again, Diagnostics& diagnostics) {
   auto at = std::find(path.begin(), path.end(), again);
   const Ids members(at, path.end());
   const Declaration* first = nullptr;  // an energy has no place in the text of its own
@@ -102,7 +110,7 @@ void report_cycle(SymbolTable& table, const Ids& path, DeclarationId again, Diag
     table[id].value = Value::poison();
     table[id].done = true;
   }
-  diagnostics.error("E0203", first ? std::optional<Span>(first->span) : std::nullopt,
+  diagnostics.error("E0203", first ? std::optional<Span>(first->span) : span_of_energy(tree, again),
                     fmt::format("`{}` is defined by itself", first ? first->name : table[again].name),
                     fmt::format("The definitions go round in a circle: {}{}.", chain, table[again].name),
                     "Define one of them from names that do not lead back to it.");
@@ -136,7 +144,7 @@ std::vector<DeclarationId> definition_order(SymbolTable& table, const syntax::Sy
         state[other] = Open;
         path.push_back(other);
       } else if (state[other] == Open && !table[other].done) {
-        report_cycle(table, path, other, diagnostics);
+        report_cycle(table, tree, path, other, diagnostics);
       }
     }
   }

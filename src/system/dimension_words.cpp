@@ -14,7 +14,7 @@ Dimension without_angle(Dimension dimension) {
 }
 
 std::string describe(const Dimension& dimension) {
-  const Dimension shown = without_angle(dimension);
+  const Dimension shown = physical_name(dimension).empty() ? without_angle(dimension) : dimension;
   if (shown == Dimension{}) return "a bare number";
   const std::string name = physical_name(shown), unit = to_string(shown);
   if (name.empty()) return fmt::format("a quantity in {}", unit);

@@ -49,13 +49,13 @@ SpaceClue clue_of(const syntax::Statement& s) {
   if (const auto* p = std::get_if<syntax::PointStatement>(&s.body)) clue_of_vector(clue, p->at);
   if (const auto* g = std::get_if<syntax::GravityStatement>(&s.body)) clue_of_vector(clue, g->vector);
   if (const auto* f = std::get_if<syntax::FrameStatement>(&s.body)) {
-    clue_of_rotation(clue, f->rotation);
     clue_of_vector(clue, f->at);
+    clue_of_rotation(clue, f->rotation);
   }
   if (const auto* b = std::get_if<syntax::BodyStatement>(&s.body)) {
-    clue_of_rotation(clue, b->rotation);
-    if (!clue.dimension && b->inertia.size() > 1) clue = {3, b->inertia_span};
+    if (b->inertia.size() > 1) clue = {3, b->inertia_span};
     clue_of_vector(clue, b->at);
+    clue_of_rotation(clue, b->rotation);
   }
   if (const auto* l = std::get_if<syntax::LetStatement>(&s.body))
     for (const auto& item : l->items) clue_of_vector(clue, item.value);
@@ -73,15 +73,9 @@ SpaceClue clue_of(const syntax::Statement& s) {
 // --------------------------------------------------------------------------------------------------------- headings
 
 void headings(Elaboration& e) {
-  const syntax::Statement* first = nullptr;
   for (const syntax::Statement& s : e.tree.statements) {
     if (const auto* h = std::get_if<syntax::SystemStatement>(&s.body)) {
-      if (first) {
-        e.diagnostics.error("E0205", s.span, "a second system in one file", fmt::format("A model text describes one system; the first begins in line {}.", e.source.locate(first->span.begin).line),
-                            "Put each system into a file of its own.");
-        continue;
-      }
-      first = &s;
+      if (!e.system().name.empty()) continue;  // the grammar allows one, and said so
       e.system().name = h->name.text;
       e.system().title = h->title;
     }
@@ -157,13 +151,13 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
     any_coordinate = any_coordinate || d.kind == Declaration::Kind::Coordinate;
   }
   apply_parameter_overrides(e, overrides.parameters);
-  require_coordinates(e, any_coordinate);
 
   for (const DeclarationId id : definition_order(e.table, tree, diagnostics)) elaborate_declaration(e, id);
   elaborate_forces(e);
   elaborate_experiment(e);
   apply_start_overrides(e, overrides.start);
 
+  require_coordinates(e, any_coordinate);
   if (!diagnostics.has_errors()) warn_unused(e);
   diagnostics.sort_by_place();
   if (diagnostics.has_errors()) return std::nullopt;

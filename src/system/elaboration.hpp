@@ -76,6 +76,8 @@ Value time_derivative(Elaboration& e, Value v, int times, const syntax::Expressi
 /// False, and a message, if the dimension of `v` is not `expected`. `what`: "a mass", "the kinetic energy T".
 bool check_dimension(Elaboration& e, const Value& v, const Dimension& expected, const std::string& what,
                      const syntax::Expression& x);
+/// What most often lies behind a wrong dimension: "A velocity is missing as a factor."; empty if nothing is near.
+std::string dimension_advice(const Dimension& found, const Dimension& expected);
 /// The value of an expression of parameters and definitions; nothing if time, coordinates or inputs are in it.
 std::optional<double> constant_value(const Elaboration& e, Expr value);
 /// Finds what `text` could be and reports it: unknown name, or a unit that needs brackets.

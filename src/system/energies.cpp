@@ -115,20 +115,8 @@ void from_parts(Elaboration& e, Which which) {
 
 // ---------------------------------------------------------------------------------------------- what the text gives
 
-bool short_name_is_taken(Elaboration& e, const EnergyStatement& s) {
-  const std::string name(e.source.slice(s.name_span));
-  const Declaration* d = e.table.find(name);
-  if (!d || d->kind == Declaration::Kind::Energy) return false;
-  const char* long_names[] = {"kinetic", "potential", "generalized_potential", "lagrangian", "dissipation"};
-  e.diagnostics.error("E0215", s.name_span, fmt::format("`{}` is a {} of this model, not the {}", name, word_of(d->kind), name_of_energy(s.which)),
-                      fmt::format("A short name that the model declares means that name everywhere (line {}).", e.source.locate(d->span.begin).line),
-                      fmt::format("Write {} {} ….", long_names[static_cast<int>(s.which)], s.adds ? "+=" : "="));
-  return true;
-}
-
 /// The value of a given energy, with what each of them may depend on; nothing after a mistake.
 std::optional<Expr> given_value(Elaboration& e, const EnergyStatement& s) {
-  if (short_name_is_taken(e, s)) return std::nullopt;
   const std::string name = fmt::format("the {}", name_of_energy(s.which));
   const Value v = scalar_of(e, *s.value, dimension_of(s.which), name);
   if (v.poisoned || refuse_acceleration(e, v, *s.value, name)) return std::nullopt;

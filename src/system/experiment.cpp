@@ -12,8 +12,9 @@ using Kind = Declaration::Kind;
 /// Which coordinate, and which derivative of it, a start names.
 std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
   if (x.kind == Expression::Kind::Member) {
-    const bool known = x.arguments[0]->kind == Expression::Kind::Name && e.table.find(x.arguments[0]->text);
-    if (!known && x.arguments[0]->kind == Expression::Kind::Name) unknown_name(e, x.arguments[0]->text, x.arguments[0]->name_span);
+    const Declaration* base = x.arguments[0]->kind == Expression::Kind::Name ? e.table.find(x.arguments[0]->text) : nullptr;
+    if (base && base->value.poisoned) return std::nullopt;
+    if (!base && x.arguments[0]->kind == Expression::Kind::Name) unknown_name(e, x.arguments[0]->text, x.arguments[0]->name_span);
     else
       e.diagnostics.error("E0504", x.span, fmt::format("not supported yet: a start of `{}`", e.source.slice(x.span)),
                           "A start gives coordinates and their velocities; what follows from them is solved for by a later version.",
@@ -39,8 +40,7 @@ std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
   if (d->value.poisoned) return std::nullopt;
   StartValue s;
   s.order = x.primes;
-  for (std::size_t i = 0; i < e.system().coordinates.size(); ++i)
-    if (e.system().coordinates[i].name == d->name) s.coordinate = i;
+  s.coordinate = d->index;
   return s;
 }
 
@@ -68,8 +68,8 @@ Value constant_of(Elaboration& e, const Expression& x, const Dimension& expected
   if (v.poisoned) return v;
   if (!e.context.depends_on_time(v.scalar().id())) return v;
   Span at = culprit_of_order(e, x, 0);
-  e.diagnostics.error("E0222", at.end > at.begin ? at : x.span, fmt::format("{} is a number, known before the run", what),
-                      "Numbers and parameters may stand here; coordinates and time are known only during the run.", "");
+  e.diagnostics.error("E0222", at.end > at.begin ? at : x.span, fmt::format("{} must be known before the run", what),
+                      "Numbers and parameters are; coordinates and the time change during it.", "");
   return Value::poison();
 }
 
@@ -81,7 +81,7 @@ std::optional<StartValue> start_value(Elaboration& e, const syntax::StartStateme
   }
   const Coordinate& c = e.system().coordinates[s->coordinate];
   const Dimension expected = s->order == 0 ? c.dimension : c.dimension / e.dimension(dimensions::time());
-  const Value v = constant_of(e, *item.value, expected, fmt::format("{}", e.source.slice(item.variable->span)));
+  const Value v = constant_of(e, *item.value, expected, fmt::format("`{}`", e.source.slice(item.variable->span)));
   if (v.poisoned) return std::nullopt;
   warn_of_degrees(e, v, expected, *item.value);
   s->value = v.scalar();

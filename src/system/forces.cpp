@@ -62,8 +62,7 @@ std::optional<AppliedForce> generalized(Elaboration& e, const ForceStatement& s)
   AppliedForce f;
   f.kind = AppliedForce::Kind::Generalized;
   f.components = {v.scalar()};
-  for (std::size_t i = 0; i < e.system().coordinates.size(); ++i)
-    if (e.system().coordinates[i].name == d->name) f.coordinate = i;
+  f.coordinate = d->index;
   return f;
 }
 

@@ -1,5 +1,7 @@
 #include "system/elaboration.hpp"
 
+#include <maupertuis/require.hpp>
+
 #include <fmt/format.h>
 
 /// The functions of the language and what they ask of their arguments.
@@ -32,13 +34,6 @@ const Function* find_function(const std::string& name) {
   return nullptr;
 }
 
-bool wrong_count(Elaboration& e, const Expression& x, std::size_t least, std::size_t most) {
-  const std::size_t n = x.arguments.size();
-  if (n >= least && n <= most) return false;
-  e.diagnostics.error("E0213", x.span, fmt::format("`{}` takes {} argument{}, not {}", x.text, least, least == 1 ? "" : "s", n), "", "");
-  return true;
-}
-
 bool refuse_vector(Elaboration& e, const Value& v, const Expression& x, const Expression& argument) {
   if (!v.is_vector) return false;
   e.diagnostics.error("E0210", argument.span, fmt::format("`{}` of a vector", x.text), "Its argument is a number.", "Take a component with .x or .y, or its length with norm(…).");
@@ -48,7 +43,8 @@ bool refuse_vector(Elaboration& e, const Value& v, const Expression& x, const Ex
 /// `cos ω t` is (cos ω) t: the argument is no angle, and the product was meant.
 std::string help_for_bare(Elaboration& e, const Expression& x) {
   const std::string argument(e.source.slice(x.arguments[0]->span));
-  return x.bare ? fmt::format("Without brackets {0} takes `{1}` alone: write {0}({1} …) around the whole argument.", x.text, argument) : "";
+  return x.bare ? fmt::format("Without brackets {0} takes `{1}` alone: put the whole argument in brackets, such as {0}({1} t).", x.text, argument)
+                : "Divide it by a quantity of the same dimension.";
 }
 
 Value elementary(Elaboration& e, const Function& f, const Expression& x, const Value& a) {
@@ -131,7 +127,7 @@ Value value_of_call(Elaboration& e, const Expression& x, const Place& place) {
   const bool vectors = x.text == "dot" || x.text == "cross" || x.text == "norm";
   const bool several = x.text == "min" || x.text == "max";
   const bool two = x.text == "dot" || x.text == "cross" || x.text == "atan2";
-  if (several ? wrong_count(e, x, 2, 1000) : wrong_count(e, x, two ? 2 : 1, two ? 2 : 1)) return Value::poison();
+  MAUP_REQUIRE(several ? x.arguments.size() >= 2 : x.arguments.size() == (two ? 2u : 1u));  // the grammar counts them
   Place inner = place;
   inner.expected.reset();
   std::vector<Value> arguments;

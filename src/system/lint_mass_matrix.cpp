@@ -215,7 +215,7 @@ void mass_matrix_rules(Subject& s, const std::vector<bool>& unused) {
   if (!found.defined) return;
   if (!found.singular) {
     if (!found.positive)
-      s.diagnostics.warning("W0410", s.system.coordinates.front().span, "the kinetic energy is not positive",
+      s.diagnostics.warning("W0410", s.system.lagrangian_given ? s.system.lagrangian_given->span : s.system.kinetic.empty() ? s.system.coordinates.front().span : s.system.kinetic.front().span, "the kinetic energy is not positive",
                             "Some motion has a negative kinetic energy: the mass matrix is indefinite. The equations of motion can still be solved.",
                             "Check the signs in T, unless this is meant (as in Bateman's Lagrangian).");
     return;

@@ -123,12 +123,12 @@ void claims(Subject& s) {
     const ZeroTest test = zero_test(must_vanish);
     if (test.verdict == Verdict::Zero) continue;
     const std::string text = s.show(difference);
-    const char* parts = c.which == Which::T ? "points and bodies" : c.which == Which::V ? "gravity and springs" : "parts";
+    const char* parts = c.which == Which::T ? "the points and bodies" : c.which == Which::V ? "gravity and springs" : "points, bodies, springs and gravity";
     if (test.verdict == Verdict::Undecided) {
-      s.diagnostics.warning("W0411", c.span, fmt::format("whether this {} is that of the {} could not be decided", long_name[k], parts), test.reason, "");
+      s.diagnostics.warning("W0411", c.span, fmt::format("whether this is the {} that {} give could not be decided", long_name[k], parts), test.reason, "");
       continue;
     }
-    s.diagnostics.error("E0411", c.span, fmt::format("this is not the {} of the {}", long_name[k], parts),
+    s.diagnostics.error("E0411", c.span, fmt::format("this is not the {} that {} give", long_name[k], parts),
                         text.empty() ? fmt::format("Beside them `{} = …` is a claim, and it is false.", name[k]) : fmt::format("It differs by {}.", text),
                         fmt::format("Remove the line, correct it, or write `{} += …` for a further part.", name[k]));
   }

@@ -14,12 +14,12 @@ using Inertia = syntax::BodyStatement::Inertia;
 /// A mass in kg; poisoned with a message if its value cannot be one.
 Value mass_of(Elaboration& e, const Expression& x, const std::string& name) {
   Value m = scalar_of(e, x, dimensions::mass(), fmt::format("the mass of {}", name));
-  if (m.poisoned) return m;
+  if (m.poisoned || m.scalar().is_zero()) return m;  // `mass 0` says that it has none
   const std::optional<double> size = constant_value(e, m.scalar());
   if (!size || *size > 0) return m;
   const bool zero = *size == 0;
   e.diagnostics.error("E0403", x.span, fmt::format("the mass of {} is {}", name, zero ? "zero" : "negative"),
-                      zero ? "Without mass it has no inertia, and no force could be answered by an acceleration." : "Masses are positive: a negative one would gain speed against every force.",
+                      zero ? "Without mass there is no inertia: no force would have a finite acceleration as its answer." : "Masses are positive: a negative one would gain speed against every force.",
                       zero ? "Leave `mass` out where the point only marks a place." : "Give it a positive value.");
   return Value::poison();
 }
@@ -120,7 +120,7 @@ void elaborate_point(Elaboration& e, Declaration& d) {
   if (s.mass) {
     const Value m = mass_of(e, *s.mass, d.name);
     poisoned = m.poisoned;
-    if (!m.poisoned) p.mass = m.scalar();
+    if (!m.poisoned && !m.scalar().is_zero()) p.mass = m.scalar();
   }
   const Pose* frame = find_pose(e, s.in);
   if (!frame) return;
@@ -142,7 +142,7 @@ void elaborate_body(Elaboration& e, Declaration& d) {
   if (s.mass) {
     const Value m = mass_of(e, *s.mass, d.name);
     poisoned = m.poisoned;
-    if (!m.poisoned) b.mass = m.scalar();
+    if (!m.poisoned && !m.scalar().is_zero()) b.mass = m.scalar();
   }
   const std::optional<ExprMatrix> inertia = inertia_of(e, s, d.name);
   const std::optional<Pose> pose = pose_of(e, s.at, s.rotation, s.in);

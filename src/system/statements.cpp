@@ -30,6 +30,7 @@ void refuse_later_statements(Elaboration& e) {
   for (const syntax::Statement& s : e.tree.statements) {
     const auto* later = std::get_if<syntax::LaterStatement>(&s.body);
     if (!later || !told.insert(later->what).second) continue;
+    if (later->what == "density" && told.count("field")) continue;  // it belongs to the field
     e.diagnostics.error("E0501", s.span, fmt::format("not supported yet: {}", later->what), reason_for(later->what), "Leave this statement out for now.");
   }
 }
@@ -75,13 +76,17 @@ void warn_unused(Elaboration& e) {
       for (const syntax::ExpressionPtr& x : later->expressions) mark_used(e, x);
   for (const Declaration& d : e.table.declarations()) {
     if (d.kind != Declaration::Kind::Parameter && d.kind != Declaration::Kind::Definition) continue;
-    for (Parameter& p : e.system().parameters) p.used = p.used || (p.name == d.name && d.used);
-    for (Definition& f : e.system().definitions) f.used = f.used || (f.name == d.name && d.used);
     if (d.used) continue;
     const bool parameter = d.kind == Declaration::Kind::Parameter;
     e.diagnostics.warning(parameter ? "W0415" : "W0416", d.span, fmt::format("the {} `{}` is never used", word_of(d.kind), d.name),
                           parameter ? "Nothing in the model depends on it." : "No formula of the model names it.", "Remove it, or check the formula that should contain it.");
   }
+  const auto named = [&](const std::string& name) {
+    const Declaration* d = e.table.find(name.substr(0, name.find('.')));  // v.x is a component of v
+    return d && d->used;
+  };
+  for (Parameter& p : e.system().parameters) p.used = p.used || named(p.name);
+  for (Definition& f : e.system().definitions) f.used = named(f.name);
 }
 
 }  // namespace maupertuis::elaboration

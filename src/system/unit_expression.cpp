@@ -6,12 +6,14 @@ namespace maupertuis::elaboration {
 namespace {
 
 void unknown_unit(Elaboration& e, const syntax::UnitExpression::Factor& word) {
-  const std::string near = did_you_mean(word.word, unit_words());
+  std::vector<std::string> candidates = {"kg", "mm", "cm", "km", "ms", "kN", "mN", "kW", "mH", "mA", "kHz"};
+  for (std::string& unit : unit_words()) candidates.push_back(std::move(unit));
+  const std::string near = did_you_mean(word.word, candidates);
   const Declaration* named = e.table.find(word.word);
   if (named && named->statement) {
     e.diagnostics.error("E0209", word.span, fmt::format("`{}` is a {} of this model, not a unit", word.word, word_of(named->kind)),
                         "Here stands a quantity: a number followed by its unit.",
-                        "Use `let` for a formula.");
+                        "Write a formula with `*`, in a `let` if it defines something.");
     return;
   }
   e.diagnostics.error("E0301", word.span, fmt::format("`{}` is no unit", word.word),

@@ -1,0 +1,80 @@
+#include "support.hpp"
+
+#include <cmath>
+
+using namespace maupertuis;
+using namespace maupertuis::test;
+using doctest::Approx;
+
+namespace {
+
+/// The message that `V = <formula>` gives, in a model with a few quantities; empty if it is an energy.
+std::string message_of(const std::string& formula) {
+  const Elaborated e("param m = 1 kg, l = 2 m, g = 9.81 m/s^2, k = 3 N/m, τ = 1 s, f = 5 Hz, ω = 2 rad/s, n = 3, Q = 1 C\n"
+                     "coord x : length, θ : angle\nT = 1/2 m x'^2 + 1/2 m l^2 θ'^2\nV = " + formula + "\n");
+  for (const Diagnostic& d : e.diagnostics.items())
+    if (d.severity == Severity::Error) return d.code + " " + d.message;
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("formulas of one dimension pass") {
+  for (const char* good : {"m g l cos θ", "1/2 k x^2", "k x l sin θ + 0", "m g l (1 - cos θ) + 0 + k (x - l θ)^2", "3 [J] cos 2θ", "m (l/τ)^2 n", "m g sqrt(x^2 + l^2)",
+                           "k l^2 exp(-x/l)", "k abs(x) l", "k max(x, l)^2", "piecewise(x < l : k x l, else : 0)", "m g l atan2(x, l)", "k l^2 (x/l)^n", "m l^n g/l^2",
+                           "k l^2 sin(2 pi f t)", "k l^2 sin(ω t)", "m (ω l)^2", "k norm((x, l)) l", "k dot((x, l), (x, l))", "k cross((x, l), (l, x))", "10 [N] x", "2 [kcal] θ"})
+    CHECK_MESSAGE(message_of(good) == "", good << ": " << message_of(good));
+}
+
+TEST_CASE("messages name both sides in words of physics") {
+  CHECK(message_of("k x^2 + k x") == "E0302 this adds a force (N) to an energy (J)");
+  CHECK(message_of("k x^2 - m g") == "E0302 this subtracts a force (N) from an energy (J)");
+  CHECK(message_of("m g") == "E0304 the potential energy is an energy (J), this is a force (N)");
+  CHECK(message_of("k x^2 cos x") == "E0303 the argument of cos is a length (m)");
+  CHECK(message_of("k l^2 * 2^x") == "E0305 the exponent is a length (m)");
+  CHECK(message_of("piecewise(x < τ : k x^2, else : 0)") == "E0302 this compares a length (m) with a time (s)");
+  CHECK(message_of("k max(x, τ) x") == "E0302 a time (s) meets a length (m)");
+  CHECK(message_of("k (x, τ)^2") == "E0302 this component is a time (s), the ones before it are a length (m)");
+  CHECK(message_of("l (θ + f t) m g") == "E0306 a frequency in Hz meets an angular velocity in rad/s" + std::string());
+}
+
+TEST_CASE("dimensions of definitions are inferred, quantities converted exactly") {
+  const Elaborated e("param m = 2 g, v = 36 km/h, α = 180 deg, p = 1 bar, n = 60 rpm\ncoord x : length\nlet E = 1/2 m v^2, β = α/2\nT = 1/2 m x'^2\nV = E p x/(1 [Pa m])\nforce x = 1 [N] sin β\nstart x' = 1 cm/s\n"
+                     "expect x at n 1 [s^2/rad] = 3 mm ± 0.5\n");
+  CHECK_MESSAGE(e.model.has_value(), e.messages());
+  const MechanicalSystem& s = e.system();
+  CHECK(s.find_parameter("m")->si_value == 0.002);
+  CHECK(s.find_parameter("v")->si_value == 10);
+  CHECK(s.find_parameter("v")->unit == "km/h");
+  CHECK(s.find_parameter("α")->value == s.context->pi());
+  CHECK(s.find_parameter("p")->si_value == 1e5);
+  CHECK(s.find_parameter("n")->si_value == 2 * std::acos(-1.0));
+  CHECK(physical_name(s.definitions[0].dimension) == "energy");
+  CHECK(evaluate(e.experiment().start[0].value, e.at({0}, {0})) == 0.01);
+  // a tolerance without a unit is in the unit of the value
+  CHECK(evaluate(e.experiment().expectations[0].tolerance, e.at({0}, {0})) == Approx(0.0005));
+}
+
+TEST_CASE("a word after a number is a unit or a name, whichever fits") {
+  const Elaborated e("param m = 1 kg, R = 2 m, s = 3 m\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nV = 1 [N/m] R^2 + s 1 [N]\nstart x = 2 m, y = 2 R, z = 2 s\n");
+  REQUIRE_MESSAGE(e.model.has_value(), e.messages());
+  const auto at = e.at({0, 0, 0}, {0, 0, 0});
+  CHECK(evaluate(e.experiment().start[0].value, at) == 2);  // metres, since twice the mass is no length
+  CHECK(evaluate(e.experiment().start[1].value, at) == 4);
+  CHECK(evaluate(e.experiment().start[2].value, at) == 6);  // seconds are no length
+}
+
+TEST_CASE("numbers with units in formulas become anonymous constants, angles do not") {
+  const Elaborated e("param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\nV = 3 [J] cos(x/(2 [m]) + 30 [deg]) + 3 [J]\n");
+  const MechanicalSystem& s = e.system();
+  REQUIRE(s.parameters.size() == 3);
+  CHECK(s.parameters[1].name == "3 J");
+  CHECK(s.parameters[1].symbol.role() == Role::Constant);
+  CHECK(s.parameters[2].name == "2 m");
+  CHECK(value(s.potential_energy(), e.at({1}, {0})) == Approx(3 * std::cos(0.5 + std::acos(-1.0) / 6) + 3));
+}
+
+TEST_CASE("dimensionless models have no units") {
+  const Elaborated e("dimensionless\nparam μ = 0.0123\ncoord x, y : length, θ : angle\nT = x'^2 + y' + y'^2 + θ'^2\nV = x + y^2 + sin x\nstart θ = 90 deg\n");
+  CHECK_MESSAGE(!e.diagnostics.has_errors(), e.messages());
+}

@@ -1,0 +1,56 @@
+#pragma once
+#include <doctest/doctest.h>
+
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/mechanical_system.hpp>
+#include <maupertuis/transform.hpp>
+
+#include <string>
+
+namespace maupertuis::test {
+
+/// A model text, elaborated and linted.
+struct Elaborated {
+  SourceText source;
+  Diagnostics diagnostics;
+  std::optional<Model> model;
+
+  explicit Elaborated(std::string text, const Overrides& overrides = {}) : source("test.lag", std::move(text)) {
+    const syntax::SyntaxTree tree = syntax::parse(source, diagnostics);
+    model = elaborate(tree, source, diagnostics, overrides);
+    if (model) lint(*model, source, diagnostics);
+  }
+  const MechanicalSystem& system() const {
+    REQUIRE_MESSAGE(model.has_value(), messages());
+    return model->system;
+  }
+  const Experiment& experiment() const {
+    REQUIRE_MESSAGE(model.has_value(), messages());
+    return model->experiment;
+  }
+  bool fine() const { return model.has_value() && diagnostics.empty(); }
+  std::string messages() const { return render(diagnostics, source); }
+  std::string codes() const {
+    std::string all;
+    for (const Diagnostic& d : diagnostics.items()) all += (all.empty() ? "" : " ") + d.code;
+    return all;
+  }
+  std::string first_message() const { return diagnostics.empty() ? "" : diagnostics.items()[0].message; }
+
+  /// The parameters at their values; q and q' as given, in the order of the coordinates; t.
+  Bindings at(const std::vector<double>& q, const std::vector<double>& v, double t = 0) const {
+    Bindings b;
+    const MechanicalSystem& s = system();
+    for (const Parameter& p : s.parameters) b[p.symbol] = p.si_value;
+    for (std::size_t i = 0; i < s.coordinates.size(); ++i) {
+      b[s.coordinates[i].q] = q[i];
+      b[s.coordinates[i].velocity] = v[i];
+    }
+    b[s.context->time()] = t;
+    return b;
+  }
+};
+
+inline double value(Expr e, const Bindings& b) { return evaluate(expand_time_derivatives(e), b); }
+
+}  // namespace maupertuis::test
