@@ -160,7 +160,7 @@ def ion_in_fields():
     w, t = q * b / m, D("200e-6")
     yield "x", "200 µs", e / (b * w) * (1 - cos(w * t))
     yield "y", "200 µs", -e / b * (t - sin(w * t) / w)
-    yield "z", "200 µs", 1000 * t
+    yield "z", "200 µs", 5000 * t
 
 
 def rotating_frame():
