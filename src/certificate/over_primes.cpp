@@ -46,7 +46,7 @@ bool compare_at_points(const Questions& questions, const evaluation::Tape& tape,
                        int wanted, std::uint64_t& seed, RoutesResult& result, double& smallest_group) {
   const std::size_t n = questions.system.freedoms();
   Values values;
-  int found = 0;
+  int found = 0, mends_left = evaluation::mends_allowed(tape);
   for (int prime = 0; prime < 20 && found < wanted; ++prime) {
     seed = mix(seed);
     const evaluation::PrimeTriple primes = evaluation::random_prime_triple(hints.m, seed);
@@ -72,7 +72,7 @@ bool compare_at_points(const Questions& questions, const evaluation::Tape& tape,
         if (fails) { find_rows(questions, tape, *numbers, result); return true; }
       } catch (const evaluation::Redraw& redraw) {
         if (redraw.another_prime || (attempt >= 60 && found == 0)) break;
-        mended = numbers && numbers->mend(redraw);
+        mended = numbers && mends_left-- > 0 && numbers->mend(redraw);
       }
     }
   }

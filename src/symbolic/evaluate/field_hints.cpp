@@ -2,6 +2,7 @@
 #include "symbolic/evaluate/interval.hpp"
 #include "symbolic/evaluate/real_numbers.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 namespace maupertuis::evaluation {
@@ -55,36 +56,54 @@ std::vector<std::int8_t> definite_signs(const Tape& tape) {
   return signs;
 }
 
-/// Walks below a node that asks for a sign; the symbols met for the first time are free to be drawn again for it.
-void find_free_symbol(const Tape& tape, Position at, std::vector<bool>& seen, FieldHints& hints) {
-  std::vector<Position> open{tape.argument(at, 0)};
-  while (!open.empty()) {
-    const Position node = open.back();
-    open.pop_back();
-    if (seen[node]) continue;
-    seen[node] = true;
-    if (tape.kind(node) == Kind::Symbol) hints.free.emplace(at, tape.expression(node).id());
-    for (const Position argument : tape.arguments(node)) open.push_back(argument);
+/// For each node that asks for a sign, the symbol below it that was met last: by the smallest number of earlier such nodes.
+void find_free_symbols(const Tape& tape, const std::vector<Position>& askers, FieldHints& hints) {
+  constexpr Position none = ~Position{0};
+  std::vector<Position> rank(tape.size(), none);       // of a node below an asker: the first asker above it
+  for (Position k = 0; k < askers.size(); ++k) {
+    std::vector<Position> open{tape.argument(askers[k], 0)};
+    while (!open.empty()) {
+      const Position node = open.back();
+      open.pop_back();
+      if (rank[node] != none) continue;
+      rank[node] = k;
+      for (const Position argument : tape.arguments(node)) open.push_back(argument);
+    }
+  }
+  std::vector<Position> latest(tape.size(), none);     // the symbol of highest rank below a node
+  for (Position at = 0; at < tape.size(); ++at) {
+    if (rank[at] == none) continue;
+    if (tape.kind(at) == Kind::Symbol) latest[at] = at;
+    for (const Position argument : tape.arguments(at)) {
+      const Position candidate = latest[argument];
+      if (candidate != none && (latest[at] == none || rank[candidate] > rank[latest[at]])) latest[at] = candidate;
+    }
+  }
+  for (const Position asker : askers) {
+    const Position symbol = latest[tape.argument(asker, 0)];
+    if (symbol != none) hints.free.emplace(asker, tape.expression(symbol).id());
   }
 }
 
 }  // namespace
 
+int mends_allowed(const Tape& tape) { return static_cast<int>(std::min<std::size_t>(4000, 20'000'000 / (tape.size() + 1))); }
+
 FieldHints field_hints(const Tape& tape) {
   FieldHints hints;
-  bool any_sign = false;
-  std::vector<bool> seen(tape.size(), false);
+  std::vector<Position> askers;
   for (Position at = 0; at < tape.size(); ++at) {
     const Kind kind = tape.kind(at);
     if (kind == Kind::Sin || kind == Kind::Cos || kind == Kind::Tan) note_multiple_of_pi(tape, tape.argument(at, 0), hints);
     if (!asks_sign(tape, at)) continue;
-    any_sign = true;
-    find_free_symbol(tape, at, seen, hints);
+    askers.push_back(at);
     const Expr argument = tape.expression(tape.argument(at, 0));
     const bool under_root = kind == Kind::Log || kind == Kind::Power;
     if (argument.is_symbol() && under_root) hints.positive.insert(argument.id());
   }
-  if (any_sign) hints.sign = definite_signs(tape);
+  if (askers.empty()) return hints;
+  hints.sign = definite_signs(tape);
+  find_free_symbols(tape, askers, hints);
   return hints;
 }
 

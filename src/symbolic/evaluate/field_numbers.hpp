@@ -19,9 +19,11 @@ struct FieldHints {
   std::uint64_t m = 840;                     // lcm of that and 840
   std::vector<std::int8_t> sign;             // [tape] +1, −1 where the value has this sign at all real points, else 0
   std::unordered_set<NodeId> positive;       // symbols under a root or a logarithm: drawn positive
-  std::unordered_map<Position, NodeId> free; // of a node with a sign to meet: a symbol that no earlier such node sees
+  std::unordered_map<Position, NodeId> free; // of a node with a sign to meet: the symbol that fewest earlier such nodes see
 };
 FieldHints field_hints(const Tape& tape);
+/// How many roots may be mended before a search for points is given up: bounded work for a hopeless one.
+int mends_allowed(const Tape& tape);
 
 /// The real numbers with their elementary functions, imitated over a prime field: a random homomorphic image in which
 /// every identity that the functions obey by algebra holds exactly.
@@ -46,8 +48,8 @@ class FieldNumbers {
   /// A random number that depends on the seed and the two keys alone.
   Value random(std::uint64_t key, std::uint64_t second = 0) const;
   void set_seed(std::uint64_t seed);
-  /// Another value for one symbol, such that the signs that were met before stay as they are: many roots cost a few
-  /// draws each and not 2^roots. False where no such symbol exists.
+  /// Another value for one symbol, such that most signs that were met before stay as they are: many roots cost a few
+  /// draws each and not 2^roots. False where no symbol stands below the root.
   bool mend(const Redraw& redraw);
 
   Value number(const Rational& value) const { return field_.from(value); }

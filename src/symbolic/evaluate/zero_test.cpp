@@ -23,7 +23,7 @@ FieldResult test_over_primes(const Tape& tape, const FieldHints& hints, int poin
   FieldResult result;
   std::vector<FieldNumbers::Value> values;
   for (int prime = 0; prime < 2; ++prime) {
-    int found = 0;
+    int found = 0, mends_left = mends_allowed(tape);
     for (int try_prime = 0; try_prime < 40 && found < points_per_prime; ++try_prime) {
       seed = mix(seed);
       const PrimeTriple primes = random_prime_triple(hints.m, seed);
@@ -40,7 +40,7 @@ FieldResult test_over_primes(const Tape& tape, const FieldHints& hints, int poin
           run(tape, *numbers, values);
         } catch (const Redraw& redraw) {
           if (redraw.another_prime || (attempt >= 60 && found == 0)) break;
-          mended = numbers && numbers->mend(redraw);
+          mended = numbers && mends_left-- > 0 && numbers->mend(redraw);
           continue;
         }
         ++found;

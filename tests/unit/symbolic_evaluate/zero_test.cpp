@@ -89,6 +89,23 @@ TEST_CASE_FIXTURE(Names, "radicals") {
   is_nonzero(sqrt(x * x + y * y) - x - y);
 }
 
+TEST_CASE_FIXTURE(Names, "many roots over few symbols") {
+  // Fifteen distances between six points of the plane: 2^-15 of the random points serve all of them.
+  std::vector<Expr> px, py, terms;
+  for (const char* name : {"1", "2", "3", "4", "5", "6"}) {
+    px.push_back(c.symbol(std::string("x") + name, Role::Coordinate));
+    py.push_back(c.symbol(std::string("y") + name, Role::Coordinate));
+  }
+  for (std::size_t i = 0; i < px.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const Expr dx = px[i] - px[j], dy = py[i] - py[j];
+      terms.push_back(sqrt(sq(dx) + sq(dy)) - sqrt(sq(px[i]) - 2 * px[i] * px[j] + sq(px[j]) + sq(dy)));
+    }
+  is_zero(c.sum(terms), false);
+  terms.push_back(sqrt(sq(px[0]) + sq(py[0])) - px[0]);
+  is_nonzero(c.sum(terms));
+}
+
 TEST_CASE_FIXTURE(Names, "powers with symbolic exponents") {
   is_zero(c.power(a, n) - a * c.power(a, n - number(1)));
   is_zero(c.power(a, 2 * n) - sq(c.power(a, n)));
