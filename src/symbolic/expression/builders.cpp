@@ -53,11 +53,17 @@ std::optional<Rational> folded_power(const Rational& base, const Rational& expon
 }
 
 /// (x^a)^b = x^(ab) holds for every real x where the left side is defined if b is an integer, or if x must be
-/// nonnegative because a has an even denominator. (x^2)^(1/2) stays: it is |x|.
+/// nonnegative because a has an even denominator.
 bool powers_combine(const Rational& inner, const Rational& outer) {
   if (outer.is_integer()) return true;
   const auto parts = inner.small();
   return parts && parts->denominator % 2 == 0;
+}
+
+/// (x^a)^b = |x|^(ab) for even a: √(x²) = |x|. Taken only where the root disappears.
+bool root_of_even_power(const Rational& inner, const Rational& outer) {
+  const auto a = inner.as_integer();
+  return a && *a % 2 == 0 && !outer.is_integer() && (inner * outer).is_integer();
 }
 
 }  // namespace
@@ -135,6 +141,8 @@ Expr Context::power(Expr base, Expr exponent) {
       if (const auto folded = folded_power(base.number(), *e)) return number(*folded);
     if (base.is(Kind::Power) && base[1].is_number() && powers_combine(base[1].number(), *e))
       return power(base[0], number(base[1].number() * *e));
+    if (base.is(Kind::Power) && base[1].is_number() && root_of_even_power(base[1].number(), *e))
+      return power(apply(Kind::Abs, base[0]), number(base[1].number() * *e));
     if (base.is(Kind::Product) && e->is_integer()) {
       std::vector<Expr> factors;
       for (const NodeId id : base.argument_ids()) factors.push_back(power(Expr(this, id), exponent));
@@ -155,8 +163,9 @@ bool leads_with_minus(const Expr& e) {
   if (e.is(Kind::Product)) return e[0].is_number() && e[0].number().sign() < 0;
   if (e.is(Kind::Sum)) {
     // The numeric term is left out of the decision, so that x + 1 and −x − 1 are seen as opposites either way.
+    // An inner sum counts as positive whatever it begins with: its opposite is −1 times it, and leads with a minus.
     const Expr first = e[0].is_number() ? e[1] : e[0];
-    return leads_with_minus(first);
+    return !first.is(Kind::Sum) && leads_with_minus(first);
   }
   return false;
 }
