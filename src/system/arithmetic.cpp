@@ -17,9 +17,23 @@ bool bounded(Elaboration& e, const Value& v, const Expression& x) {
   for (const Expr& part : v.parts) {
     if (!part.is_number() || part.number().small()) continue;
     const double size = part.number().to_double();
-    if (std::isfinite(size) && part.number().numerator_string().size() < 4000 && part.number().denominator_string().size() < 4000) continue;
+    if (std::isfinite(size) && part.number().numerator_string().size() < 4000 &&
+        part.number().denominator_string().size() < 4000)
+      continue;
     e.diagnostics.error("E0218", x.span, "this number is beyond the range of computation",
-                        "Numbers lie between 1e-308 and 1e308 in size.", "Choose units in which it is of moderate size.");
+                        "Numbers lie between 1e-308 and 1e308 in size.",
+                        "Choose units in which it is of moderate size.");
+    return false;
+  }
+  return true;
+}
+
+/// Nor does a long product have a dimension beyond all physics.
+bool known_dimension(Elaboration& e, const Value& v, const Expression& x) {
+  for (const Dimension::Exponent& exponent : v.dimension.exponents) {
+    if (std::abs(exponent.numerator) <= 1000 && exponent.denominator <= 1000) continue;
+    e.diagnostics.error("E0305", x.span, "the dimension of this product has an exponent beyond 1000",
+                        "No quantity of physics has such a dimension.", "");
     return false;
   }
   return true;
@@ -35,40 +49,45 @@ Value product(Elaboration& e, const Value& a, const Value& b, ExprVector parts, 
   v.hertz = (a.hertz || b.hertz) && !v.has_pi;
   v.order = std::max(a.order, b.order);
   v.is_literal = a.is_literal && b.is_literal;
-  return bounded(e, v, x) ? v : Value::poison();
+  return bounded(e, v, x) && known_dimension(e, v, x) ? v : Value::poison();
 }
 
-/// "the terms before it are", in the words of the operation.
 void report_sum(Elaboration& e, const Value& a, const Value& b, const Expression& x, const Place& place) {
   const Expression* right = x.arguments.size() > 1 ? x.arguments[1].get() : &x;
   const Expression* left = x.arguments.size() > 1 ? x.arguments[0].get() : &x;
   const bool left_is_wrong = place.expected && b.dimension.same_as(*place.expected);
   const bool compares = x.kind == Expression::Kind::Binary && x.op >= Operator::Less;
-  const char* reason = compares ? "Only quantities of one dimension can be compared." : "Only quantities of one dimension can be added.";
+  const char* reason =
+      compares ? "Only quantities of one dimension can be compared." : "Only quantities of one dimension can be added.";
   if (x.kind != Expression::Kind::Binary) {
-    e.diagnostics.error("E0302", x.span, fmt::format("{} meets {}", describe(b.dimension), describe(a.dimension)), reason, "");
+    e.diagnostics.error("E0302", x.span, fmt::format("{} meets {}", describe(b.dimension), describe(a.dimension)),
+                        reason, "");
     return;
   }
   const char* verb = compares ? "compares" : x.op == Operator::Subtract ? "subtracts" : "adds";
   const std::string message =
-      compares                        ? fmt::format("this compares {} with {}", describe(a.dimension), describe(b.dimension))
-      : x.op == Operator::Subtract ? fmt::format("this {} {} from {}", verb, describe(b.dimension), describe(a.dimension))
-                                      : fmt::format("this {} {} to {}", verb, describe(b.dimension), describe(a.dimension));
+      compares ? fmt::format("this compares {} with {}", describe(a.dimension), describe(b.dimension))
+      : x.op == Operator::Subtract
+          ? fmt::format("this {} {} from {}", verb, describe(b.dimension), describe(a.dimension))
+          : fmt::format("this {} {} to {}", verb, describe(b.dimension), describe(a.dimension));
   const std::string text(e.source.slice((left_is_wrong ? left : right)->span));
-  e.diagnostics.error("E0302", (left_is_wrong ? left : right)->span, message, reason,
-                      dimension_advice(left_is_wrong ? a.dimension : b.dimension, place.expected.value_or(a.dimension)));
+  e.diagnostics.error(
+      "E0302", (left_is_wrong ? left : right)->span, message, reason,
+      dimension_advice(left_is_wrong ? a.dimension : b.dimension, place.expected.value_or(a.dimension)));
 }
 
 bool same_shape(Elaboration& e, const Value& a, const Value& b, const Expression& x) {
   if (a.is_vector == b.is_vector) return true;
   e.diagnostics.error("E0210", x.span, a.is_vector ? "a number is added to a vector" : "a vector is added to a number",
-                      "Vectors are added to vectors, component by component.", "Write the number as a vector, or take a component with .x or .y.");
+                      "Vectors are added to vectors, component by component.",
+                      "Write the number as a vector, or take a component with .x or .y.");
   return false;
 }
 
 void frequency_meets_rate(Elaboration& e, const Expression& x) {
   e.diagnostics.error("E0306", x.span, "a frequency in Hz meets an angular velocity in rad/s",
-                      "1 Hz is one turn a second: 2π rad/s, not 1 rad/s.", "Multiply the frequency by 2 pi, or give it in rad/s or rev/s.");
+                      "1 Hz is one turn a second: 2π rad/s, not 1 rad/s.",
+                      "Multiply the frequency by 2 pi, or give it in rad/s or rev/s.");
 }
 
 bool is_angle_rate(const Dimension& d) { return d.angle() != Dimension::Exponent{}; }
@@ -87,10 +106,12 @@ Value add(Elaboration& e, const Value& a, const Value& b, bool subtract, const E
     report_sum(e, a, b, x, place);
     return Value::poison();
   }
-  if ((a.hertz && !b.fits_any && is_angle_rate(b.dimension)) || (b.hertz && !a.fits_any && is_angle_rate(a.dimension))) {
+  if ((a.hertz && !b.fits_any && is_angle_rate(b.dimension)) ||
+      (b.hertz && !a.fits_any && is_angle_rate(a.dimension))) {
     frequency_meets_rate(e, x);
     return Value::poison();
   }
+  warn_of_degrees(e, a.is_literal ? a : b, a.is_literal ? b.dimension : a.dimension, x);
   Value v = a;
   if (a.fits_any || (!b.fits_any && is_angle_rate(b.dimension))) v.dimension = b.dimension;
   v.fits_any = a.fits_any && b.fits_any;
@@ -125,7 +146,8 @@ Value multiply(Elaboration& e, const Value& a, const Value& b, const Expression&
 Value divide(Elaboration& e, const Value& a, const Value& b, const Expression& x) {
   if (a.poisoned || b.poisoned) return Value::poison();
   if (b.is_vector) {
-    e.diagnostics.error("E0210", x.arguments[1]->span, "division by a vector", "A vector has no inverse.", "Divide by its length: norm(…).");
+    e.diagnostics.error("E0210", x.arguments[1]->span, "division by a vector", "A vector has no inverse.",
+                        "Divide by its length: norm(…).");
     return Value::poison();
   }
   if (b.scalar().is_zero()) {
@@ -171,38 +193,47 @@ Value power(Elaboration& e, const Value& base, const Value& exponent, const Expr
   if (base.poisoned || exponent.poisoned) return Value::poison();
   const Span exponent_span = x.arguments.size() > 1 ? x.arguments[1]->span : x.span;
   if (exponent.is_vector || (!exponent.dimension.is_one() && !exponent.fits_any)) {
-    e.diagnostics.error("E0305", exponent_span, exponent.is_vector ? "a vector as an exponent" : fmt::format("the exponent is {}", describe(exponent.dimension)),
+    e.diagnostics.error("E0305", exponent_span,
+                        exponent.is_vector ? "a vector as an exponent"
+                                           : fmt::format("the exponent is {}", describe(exponent.dimension)),
                         "An exponent is a bare number.", "");
     return Value::poison();
   }
   const Expr n = exponent.scalar();
   if (base.is_vector) {
     if (n.is_number() && n.number() == Rational(2)) return dot_product(e, base, base, x);
-    e.diagnostics.error("E0210", x.span, "a power of a vector", "Only its square has a meaning: v^2 is dot(v, v).", "Use norm(v) for its length.");
+    e.diagnostics.error("E0210", x.span, "a power of a vector", "Only its square has a meaning: v^2 is dot(v, v).",
+                        "Use norm(v) for its length.");
     return Value::poison();
   }
   const bool bare = base.dimension.is_one();
   const std::optional<Rational> exact = n.is_number() || !bare ? exact_exponent(e, n) : std::nullopt;
   const auto ratio = exact ? exact->small() : std::nullopt;
   if (!bare && !base.fits_any && !ratio) {
-    e.diagnostics.error("E0305", exponent_span, fmt::format("{} to a power that is no known number", describe(base.dimension)),
-                        "The dimension of the result would not be known.", "Divide the base by a quantity of its dimension first.");
+    e.diagnostics.error(
+        "E0305", exponent_span, fmt::format("{} to a power that is no known number", describe(base.dimension)),
+        "The dimension of the result would not be known.", "Divide the base by a quantity of its dimension first.");
     return Value::poison();
   }
   const bool huge = exact && (!ratio || std::llabs(ratio->numerator) > 4000 || ratio->denominator > 4000);
   const Expr b = base.scalar();
-  const bool explodes = exact && b.is_number() && exact->is_integer() && !huge && digits(b.number()) * static_cast<std::size_t>(std::llabs(ratio->numerator)) > 8000 &&
+  const bool explodes = exact && b.is_number() && exact->is_integer() && !huge &&
+                        digits(b.number()) * static_cast<std::size_t>(std::llabs(ratio->numerator)) > 8000 &&
                         !b.is_one() && !b.is_zero() && !(-b).is_one();
-  if ((huge && !(b.is_one() || b.is_zero())) || (explodes && !std::isfinite(std::pow(b.number().to_double(), exact->to_double()))) ||
-      (explodes && digits(b.number()) > 19) || (!bare && ratio && (std::llabs(ratio->numerator) > 100 || ratio->denominator > 100))) {
-    e.diagnostics.error("E0218", x.span, "this power is beyond the range of computation", "Numbers lie between 1e-308 and 1e308 in size.", "");
+  if ((huge && !(b.is_one() || b.is_zero())) ||
+      (explodes && !std::isfinite(std::pow(b.number().to_double(), exact->to_double()))) ||
+      (explodes && digits(b.number()) > 19) ||
+      (!bare && ratio && (std::llabs(ratio->numerator) > 100 || ratio->denominator > 100))) {
+    e.diagnostics.error("E0218", x.span, "this power is beyond the range of computation",
+                        "Numbers lie between 1e-308 and 1e308 in size.", "");
     return Value::poison();
   }
   if (b.is_zero() && exact && exact->sign() < 0) {
     e.diagnostics.error("E0219", x.span, "division by zero", "A negative power of zero has no value.", "");
     return Value::poison();
   }
-  Value v = Value::of(e.context.power(b, n), ratio && !bare ? pow(base.dimension, ratio->numerator, ratio->denominator) : Dimension{},
+  Value v = Value::of(e.context.power(b, n),
+                      ratio && !bare ? pow(base.dimension, ratio->numerator, ratio->denominator) : Dimension{},
                       std::max(base.order, exponent.order));
   if (bare && ratio && n.is_number() && std::llabs(ratio->numerator) <= 100 && ratio->denominator <= 100)
     v.dimension = pow(base.dimension, ratio->numerator, ratio->denominator);
@@ -219,7 +250,8 @@ Value time_derivative(Elaboration& e, Value v, int times, const Expression& x) {
   if (!moves) {
     const std::string text(e.source.slice(x.span));
     e.diagnostics.error("E0217", x.span, fmt::format("`{}` does not change in time", text.substr(0, text.find('\''))),
-                        "The time derivative of a constant is zero.", "Leave the term out, or take the derivative of a coordinate.");
+                        "The time derivative of a constant is zero.",
+                        "Leave the term out, or take the derivative of a coordinate.");
     return Value::poison();
   }
   for (int i = 0; i < times; ++i) {

@@ -14,25 +14,32 @@ using syntax::Expression;
 
 std::string dimension_advice(const Dimension& found, const Dimension& expected) {
   using namespace dimensions;
-  if (expected.same_as(energy()) && found.same_as(dimensions::power())) return "A power belongs in the dissipation function: D = ….";
-  if (expected.same_as(dimensions::power()) && found.same_as(energy())) return "The dissipation function is half a dissipated power, for linear damping D = 1/2 c x'^2.";
+  if (expected.same_as(energy()) && found.same_as(dimensions::power()))
+    return "A power belongs in the dissipation function: D = ….";
+  if (expected.same_as(dimensions::power()) && found.same_as(energy()))
+    return "The dissipation function is half a dissipated power, for linear damping D = 1/2 c x'^2.";
   if (expected.same_as(energy()) && found.same_as(torque())) return "";
   if ((found * velocity()).same_as(expected)) return "A velocity is missing as a factor.";
   if ((found * length()).same_as(expected)) return "A length is missing as a factor.";
   if ((found / length()).same_as(expected)) return "There is a length too many among its factors.";
   if ((found / velocity()).same_as(expected)) return "There is a velocity too many among its factors.";
   if ((found * mass()).same_as(expected)) return "A mass is missing as a factor.";
-  if ((found * time()).same_as(expected) || (found / time()).same_as(expected)) return "A time derivative (') is missing or too many.";
+  if ((found * time()).same_as(expected) || (found / time()).same_as(expected))
+    return "A time derivative (') is missing or too many.";
   if ((found * acceleration()).same_as(expected)) return "An acceleration such as g is missing as a factor.";
   return "";
 }
 
-bool check_dimension(Elaboration& e, const Value& v, const Dimension& expected, const std::string& what, const Expression& x) {
+bool check_dimension(Elaboration& e, const Value& v, const Dimension& expected, const std::string& what,
+                     const Expression& x) {
   if (v.poisoned || v.fits_any || e.dimensionless) return !v.poisoned;
   if (!v.dimension.same_as(expected)) {
-    e.diagnostics.error("E0304", x.span, fmt::format("{} is {}, this is {}", what, describe(expected), describe(v.dimension)),
+    e.diagnostics.error("E0304", x.span,
+                        fmt::format("{} is {}, this is {}", what, describe(expected), describe(v.dimension)),
                         "Both sides of an equation have one dimension.",
-                        x.kind == Expression::Kind::Quantity || x.kind == Expression::Kind::Number ? "" : dimension_advice(v.dimension, expected));
+                        x.kind == Expression::Kind::Quantity || x.kind == Expression::Kind::Number
+                            ? ""
+                            : dimension_advice(v.dimension, expected));
     return false;
   }
   if (v.hertz && expected.angle() != Dimension::Exponent{}) {
@@ -48,6 +55,25 @@ std::optional<double> constant_value(const Elaboration& e, Expr value) {
   for (const Expr& s : symbols_of(roots))
     if (e.values.find(s) == e.values.end()) return std::nullopt;
   return maupertuis::evaluate(value, e.values);
+}
+
+bool is_finite(Elaboration& e, Expr value, const Expression& x, const std::string& what) {
+  const std::optional<double> size = constant_value(e, value);
+  if (!size || std::isfinite(*size)) return true;
+  e.diagnostics.error(
+      "E0218", x.span, fmt::format("{} is no finite number", what),
+      "With the values of the parameters it is a division by zero, a root of a negative number, or beyond 1e308.", "");
+  return false;
+}
+
+void warn_of_degrees(Elaboration& e, const Value& v, const Dimension& beside, const Expression& x) {
+  if (e.dimensionless || !v.is_literal || v.is_vector || beside != dimensions::angle()) return;
+  const std::optional<double> size = constant_value(e, v.scalar());
+  if (!size || std::abs(*size) <= 6.5) return;
+  e.diagnostics.warning(
+      "W0310", x.span, fmt::format("an angle of {:g} without a unit is in radians", *size),
+      fmt::format("That is {:.1f} turns.", std::abs(*size) / 6.283185307179586),
+      fmt::format("Write {:g}{} if degrees are meant.", *size, x.kind == Expression::Kind::Number ? " deg" : " [deg]"));
 }
 
 Span culprit_of_order(Elaboration& e, const Expression& x, int order) {
@@ -68,9 +94,10 @@ bool refuse_acceleration(Elaboration& e, const Value& v, const Expression& x, co
   if (v.poisoned || v.order < 2) return false;
   Span at = culprit_of_order(e, x, 2);
   if (at.end <= at.begin) at = x.span;
-  e.diagnostics.error("E0401", at, fmt::format("an acceleration stands in {}", where),
-                      "Energies and forces depend on positions, velocities and time; accelerations are what the equations give.",
-                      "Write it with velocities.");
+  e.diagnostics.error(
+      "E0401", at, fmt::format("an acceleration stands in {}", where),
+      "Energies and forces depend on positions, velocities and time; accelerations are what the equations give.",
+      "Write it with velocities.");
   return true;
 }
 
@@ -79,11 +106,14 @@ bool check_components(Elaboration& e, std::size_t count, Span span) {
   if (e.dimension_clash) return false;
   e.dimension_clash = true;
   e.diagnostics.error("E0211", span,
-                      fmt::format("this vector has {} components in a {}-dimensional model", count, e.system().space_dimension == 2 ? "two" : "three"),
-                      e.dimension_from ? fmt::format("The model is {}-dimensional since line {}.", e.system().space_dimension == 2 ? "two" : "three",
+                      fmt::format("this vector has {} components in a {}-dimensional model", count,
+                                  e.system().space_dimension == 2 ? "two" : "three"),
+                      e.dimension_from ? fmt::format("The model is {}-dimensional since line {}.",
+                                                     e.system().space_dimension == 2 ? "two" : "three",
                                                      e.source.locate(e.dimension_from->begin).line)
                                        : "",
-                      e.system().space_dimension == 2 ? "Give every vector three components for a model in space." : "Give every vector three components.");
+                      e.system().space_dimension == 2 ? "Give every vector three components for a model in space."
+                                                      : "Give every vector three components.");
   return false;
 }
 

@@ -9,25 +9,38 @@ using Which = syntax::EnergyStatement::Which;
 
 const char* word_of(Kind kind) {
   switch (kind) {
-    case Kind::Parameter: return "parameter";
-    case Kind::Coordinate: return "coordinate";
-    case Kind::Definition: return "definition";
-    case Kind::Input: return "input";
-    case Kind::Frame: return "frame";
-    case Kind::Point: return "point";
-    case Kind::Body: return "body";
-    case Kind::Energy: return "energy";
+    case Kind::Parameter:
+      return "parameter";
+    case Kind::Coordinate:
+      return "coordinate";
+    case Kind::Definition:
+      return "definition";
+    case Kind::Input:
+      return "input";
+    case Kind::Frame:
+      return "frame";
+    case Kind::Point:
+      return "point";
+    case Kind::Body:
+      return "body";
+    case Kind::Energy:
+      return "energy";
   }
   return "";
 }
 
 const char* name_of_energy(Which which) {
   switch (which) {
-    case Which::T: return "kinetic energy";
-    case Which::V: return "potential energy";
-    case Which::U: return "generalized potential";
-    case Which::L: return "Lagrangian";
-    case Which::D: return "dissipation function";
+    case Which::T:
+      return "kinetic energy";
+    case Which::V:
+      return "potential energy";
+    case Which::U:
+      return "generalized potential";
+    case Which::L:
+      return "Lagrangian";
+    case Which::D:
+      return "dissipation function";
   }
   return "";
 }
@@ -77,10 +90,10 @@ void SymbolTable::add(Kind kind, const syntax::Name& name, const syntax::Stateme
     return;
   }
   const Declaration& first = declarations_[found->second];
-  diagnostics_.error("E0202", name.span, fmt::format("`{}` is declared twice", name.text),
-                     fmt::format("It is already a {} in line {}.", word_of(first.kind),
-                                 source_.locate(first.span.begin).line),
-                     "Give one of them another name.");
+  diagnostics_.error(
+      "E0202", name.span, fmt::format("`{}` is declared twice", name.text),
+      fmt::format("It is already a {} in line {}.", word_of(first.kind), source_.locate(first.span.begin).line),
+      "Give one of them another name.");
 }
 
 Declaration* SymbolTable::find(const std::string& name) {

@@ -18,7 +18,7 @@ struct Declaration {
   std::size_t item = 0;                          // of a statement that declares a list
   std::size_t index = 0;                         // of a coordinate: in MechanicalSystem::coordinates
   bool used = false;
-  bool done = false;                             // `value` is there
+  bool done = false;  // `value` is there
   Value value;
 };
 

@@ -15,13 +15,16 @@ using syntax::Expression;
 bool is_quantity(const Expression& x) {
   switch (x.kind) {
     case Expression::Kind::Number:
-    case Expression::Kind::Quantity: return true;
-    case Expression::Kind::Unary: return is_quantity(*x.arguments[0]);
+    case Expression::Kind::Quantity:
+      return true;
+    case Expression::Kind::Unary:
+      return is_quantity(*x.arguments[0]);
     case Expression::Kind::Vector:
       for (const auto& a : x.arguments)
         if (!is_quantity(*a)) return false;
       return true;
-    default: return false;
+    default:
+      return false;
   }
 }
 
@@ -30,7 +33,8 @@ std::string unit_text(Elaboration& e, const Expression& x) {
   return x.unit ? written_unit(e.source, *x.unit) : std::string();
 }
 
-Expr add_parameter(Elaboration& e, const Declaration& d, const std::string& name, Expr value, const Dimension& dimension, const std::string& unit) {
+Expr add_parameter(Elaboration& e, const Declaration& d, const std::string& name, Expr value,
+                   const Dimension& dimension, const std::string& unit) {
   Parameter p;
   p.name = name;
   p.symbol = e.context.symbol(name, Role::Parameter);
@@ -55,7 +59,8 @@ bool is_possible(Elaboration& e, const Declaration& d, const Value& v, const Exp
       return false;
     }
     if (!e.dimensionless && v.dimension == dimensions::mass() && si < 0) {
-      e.diagnostics.error("E0403", x.span, fmt::format("the mass `{}` is negative", d.name), "Masses are positive: a negative one would gain speed against every force.",
+      e.diagnostics.error("E0403", x.span, fmt::format("the mass `{}` is negative", d.name),
+                          "Masses are positive: a negative one would gain speed against every force.",
                           "Give it a positive value.");
       return false;
     }
@@ -88,7 +93,8 @@ void elaborate_parameter(Elaboration& e, Declaration& d) {
   d.value = Value::poison();
   if (!is_quantity(x)) {
     e.diagnostics.error("E0209", x.span, "a parameter is given by a quantity, not by a formula",
-                        "A parameter is a number with its unit, which a study may change; what follows from other quantities is a definition.",
+                        "A parameter is a number with its unit, which a study may change; what follows from other "
+                        "quantities is a definition.",
                         fmt::format("Write `let {} = …`.", d.name));
     return;
   }
@@ -146,6 +152,10 @@ void elaborate_definition(Elaboration& e, Declaration& d) {
     if (stays_a_symbol(e, d.value)) {
       definition.symbol = e.context.symbol(d.name, Role::Auxiliary);
       definition.value = substitute(definition.formula, e.exact_definitions);
+      if (!is_finite(e, definition.formula, x, fmt::format("`{}`", d.name))) {
+        d.value = Value::poison();
+        return;
+      }
       e.values[definition.symbol] = maupertuis::evaluate(definition.formula, e.values);
       e.exact_values[definition.symbol] = substitute(definition.formula, e.exact_values);
       e.exact_definitions[definition.symbol] = definition.value;
@@ -166,7 +176,8 @@ void elaborate_input(Elaboration& e, Declaration& d) {
   if (v.order >= 0) {
     Span at = culprit_of_order(e, *s.value, 0);
     e.diagnostics.error("E0222", at, fmt::format("the input `{}` depends on the motion", d.name),
-                        "An input is a drive from outside: a formula of t and parameters.", "Write what depends on coordinates as a force or a `let`.");
+                        "An input is a drive from outside: a formula of t and parameters.",
+                        "Write what depends on coordinates as a force or a `let`.");
     return;
   }
   Input input;

@@ -97,7 +97,8 @@ std::optional<Span> span_of_energy(const syntax::SyntaxTree& tree, DeclarationId
   return std::nullopt;
 }
 
-void report_cycle(SymbolTable& table, const syntax::SyntaxTree& tree, const Ids& path, DeclarationId again, Diagnostics& diagnostics) {
+void report_cycle(SymbolTable& table, const syntax::SyntaxTree& tree, const Ids& path, DeclarationId again,
+                  Diagnostics& diagnostics) {
   auto at = std::find(path.begin(), path.end(), again);
   const Ids members(at, path.end());
   const Declaration* first = nullptr;  // an energy has no place in the text of its own
@@ -105,8 +106,10 @@ void report_cycle(SymbolTable& table, const syntax::SyntaxTree& tree, const Ids&
     if (table[id].statement && !first) first = &table[id];
   std::string chain;
   for (const DeclarationId id : members) {
-    if (members.size() <= 8 || id == members.front() || id == members.back()) chain += table[id].name + " → ";
-    else if (id == members[1]) chain += "… → ";
+    if (members.size() <= 8 || id == members.front() || id == members.back())
+      chain += table[id].name + " → ";
+    else if (id == members[1])
+      chain += "… → ";
     table[id].value = Value::poison();
     table[id].done = true;
   }

@@ -17,27 +17,40 @@ class Dump {
   }
 
   std::string text() {
-    line("system {}{}", system_.name.empty() ? "(unnamed)" : system_.name, system_.title.empty() ? "" : " \"" + system_.title + "\"");
+    line("system {}{}", system_.name.empty() ? "(unnamed)" : system_.name,
+         system_.title.empty() ? "" : " \"" + system_.title + "\"");
     line("space {}{}", system_.space_dimension, system_.dimensionless ? ", dimensionless" : "");
-    for (const Coordinate& c : system_.coordinates) line("coordinate {} : {} [{}]", c.name, c.kind.empty() ? "unit" : c.kind, to_string(c.dimension));
-    for (const Parameter& p : system_.parameters) line("{} {} = {} [{}]", p.symbol.role() == Role::Constant ? "constant" : "parameter", p.name, p.si_value, to_string(p.dimension));
+    for (const Coordinate& c : system_.coordinates)
+      line("coordinate {} : {} [{}]", c.name, c.kind.empty() ? "unit" : c.kind, to_string(c.dimension));
+    for (const Parameter& p : system_.parameters)
+      line("{} {} = {} [{}]", p.symbol.role() == Role::Constant ? "constant" : "parameter", p.name, p.si_value,
+           to_string(p.dimension));
     for (const Input& i : system_.inputs) line("input {} = {} [{}]", i.name, show(i.formula), to_string(i.dimension));
     for (const Definition& d : system_.definitions) definition(d);
-    for (const Frame& f : system_.frames) line("frame {} at {} rotation {} ω {}", f.name, show(f.origin), show(f.rotation.entries), show(f.angular_velocity));
-    for (const Point& p : system_.points) line("point {}{} at {}", p.name, p.mass ? " mass " + show(p.mass) : "", show(p.position));
+    for (const Frame& f : system_.frames)
+      line("frame {} at {} rotation {} ω {}", f.name, show(f.origin), show(f.rotation.entries),
+           show(f.angular_velocity));
+    for (const Point& p : system_.points)
+      line("point {}{} at {}", p.name, p.mass ? " mass " + show(p.mass) : "", show(p.position));
     for (const Body& b : system_.bodies)
-      line("body {}{}{} at {} rotation {} ω {}", b.name, b.mass ? " mass " + show(b.mass) : "", b.inertia.rows ? " inertia " + show(b.inertia.entries) : "",
-           show(b.position), show(b.rotation.entries), show(b.angular_velocity));
+      line("body {}{}{} at {} rotation {} ω {}", b.name, b.mass ? " mass " + show(b.mass) : "",
+           b.inertia.rows ? " inertia " + show(b.inertia.entries) : "", show(b.position), show(b.rotation.entries),
+           show(b.angular_velocity));
     terms("T", system_.kinetic);
     terms("V", system_.potential);
     terms("U", system_.generalized_potential);
     terms("D", system_.dissipation);
     terms("L", system_.lagrangian_extra);
     if (system_.lagrangian_given) line("L = {}", show(system_.lagrangian_given->value));
-    for (const EnergyClaim& c : system_.claims) line("claim {} = {}", "TVULD"[static_cast<int>(c.which)], show(c.value));
+    for (const EnergyClaim& c : system_.claims)
+      line("claim {} = {}", "TVULD"[static_cast<int>(c.which)], show(c.value));
     for (const AppliedForce& f : system_.forces)
-      line("force {} on {}{}: {} along {}", f.kind == AppliedForce::Kind::OnPoint ? "at a point" : f.kind == AppliedForce::Kind::Torque ? "(torque)" : "(generalized)",
-           f.target, f.reaction_on.empty() ? "" : " from " + f.reaction_on, show(f.components), f.lever.empty() ? f.target : show(f.lever));
+      line("force {} on {}{}: {} along {}",
+           f.kind == AppliedForce::Kind::OnPoint  ? "at a point"
+           : f.kind == AppliedForce::Kind::Torque ? "(torque)"
+                                                  : "(generalized)",
+           f.target, f.reaction_on.empty() ? "" : " from " + f.reaction_on, show(f.components),
+           f.lever.empty() ? f.target : show(f.lever));
     return out_;
   }
 

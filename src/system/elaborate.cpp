@@ -10,8 +10,12 @@ namespace maupertuis {
 namespace elaboration {
 
 Elaboration::Elaboration(const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics)
-    : tree(tree), source(source), diagnostics(diagnostics), table(tree, source, diagnostics),
-      model{MechanicalSystem{}, Experiment{}}, context(*(model.system.context = std::make_shared<Context>())) {}
+    : tree(tree),
+      source(source),
+      diagnostics(diagnostics),
+      table(tree, source, diagnostics),
+      model{MechanicalSystem{}, Experiment{}},
+      context(*(model.system.context = std::make_shared<Context>())) {}
 
 namespace {
 
@@ -88,25 +92,34 @@ void elaborate_declaration(Elaboration& e, DeclarationId id) {
   Declaration& d = e.table[id];
   switch (d.kind) {
     case Kind::Parameter:
-    case Kind::Coordinate: return;  // they depend on nothing and came first
-    case Kind::Definition: return elaborate_definition(e, d);
-    case Kind::Input: return elaborate_input(e, d);
-    case Kind::Frame: return elaborate_frame(e, d);
-    case Kind::Point: return elaborate_point(e, d);
-    case Kind::Body: return elaborate_body(e, d);
-    case Kind::Energy: return elaborate_energy(e, static_cast<syntax::EnergyStatement::Which>(id), d);
+    case Kind::Coordinate:
+      return;  // they depend on nothing and came first
+    case Kind::Definition:
+      return elaborate_definition(e, d);
+    case Kind::Input:
+      return elaborate_input(e, d);
+    case Kind::Frame:
+      return elaborate_frame(e, d);
+    case Kind::Point:
+      return elaborate_point(e, d);
+    case Kind::Body:
+      return elaborate_body(e, d);
+    case Kind::Energy:
+      return elaborate_energy(e, static_cast<syntax::EnergyStatement::Which>(id), d);
   }
 }
 
 template <typename Items>
 void sort_by_place(Items& items) {
-  std::stable_sort(items.begin(), items.end(), [](const auto& a, const auto& b) { return a.span.begin < b.span.begin; });
+  std::stable_sort(items.begin(), items.end(),
+                   [](const auto& a, const auto& b) { return a.span.begin < b.span.begin; });
 }
 
 /// As declared, whatever the order of dependence was; anonymous constants after the parameters.
 void restore_order_of_text(MechanicalSystem& s) {
   sort_by_place(s.parameters);
-  std::stable_partition(s.parameters.begin(), s.parameters.end(), [](const Parameter& p) { return p.symbol.role() == Role::Parameter; });
+  std::stable_partition(s.parameters.begin(), s.parameters.end(),
+                        [](const Parameter& p) { return p.symbol.role() == Role::Parameter; });
   sort_by_place(s.inputs);
   sort_by_place(s.definitions);
   sort_by_place(s.frames);
@@ -117,9 +130,11 @@ void restore_order_of_text(MechanicalSystem& s) {
 void require_coordinates(Elaboration& e, bool any_declared) {
   if (any_declared || e.diagnostics.has_errors()) return;
   const bool empty = e.tree.statements.empty();
-  e.diagnostics.error("E0204", empty ? std::nullopt : std::optional<Span>(e.tree.statements.front().span),
-                      empty ? "the model is empty" : "the model has no coordinate", "Lagrange's equations are written in generalized coordinates: without one nothing can move.",
-                      empty ? "`maup new` writes a model to start from." : "Declare one, for example `coord θ : angle`.");
+  e.diagnostics.error(
+      "E0204", empty ? std::nullopt : std::optional<Span>(e.tree.statements.front().span),
+      empty ? "the model is empty" : "the model has no coordinate",
+      "Lagrange's equations are written in generalized coordinates: without one nothing can move.",
+      empty ? "`maup new` writes a model to start from." : "Declare one, for example `coord θ : angle`.");
 }
 
 }  // namespace
@@ -136,7 +151,8 @@ void fix_space_dimension(Elaboration& e) {
 
 }  // namespace elaboration
 
-std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics, const Overrides& overrides) {
+std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics,
+                               const Overrides& overrides) {
   using namespace elaboration;
   Elaboration e(tree, source, diagnostics);
   headings(e);

@@ -13,10 +13,10 @@ namespace maupertuis::elaboration {
 
 /// Where a formula stands.
 struct Place {
-  const Pose* frame = nullptr;             // bracketed vectors are components along its axes (`in F`); null: world
-  std::optional<Dimension> expected;       // the dimension that is asked for: chooses the culprit of a bad sum
-  bool in_parameter = false;               // `param`: words after a number are units alone
-  bool inline_constants = false;           // start, run, …: a quantity is its value, not an anonymous parameter
+  const Pose* frame = nullptr;        // bracketed vectors are components along its axes (`in F`); null: world
+  std::optional<Dimension> expected;  // the dimension that is asked for: chooses the culprit of a bad sum
+  bool in_parameter = false;          // `param`: words after a number are units alone
+  bool inline_constants = false;      // start, run, …: a quantity is its value, not an anonymous parameter
 };
 
 struct Elaboration {
@@ -26,19 +26,20 @@ struct Elaboration {
   SymbolTable table;
   Model model;
   Context& context;
-  std::map<DeclarationId, Pose> poses;     // of frames and bodies, and of the world under kWorld
-  std::unordered_set<Expr, ExprHash> constants;  // the anonymous ones so far
+  std::map<DeclarationId, Pose> poses;            // of frames and bodies, and of the world under kWorld
+  std::unordered_set<Expr, ExprHash> constants;   // the anonymous ones so far
   Bindings values;                                // of parameters, and of definitions that stay symbols
   ExprMap exact_values;                           // the same, exactly
   ExprMap exact_definitions;                      // symbols of definitions, by parameters
   std::unordered_set<std::string> unknown_names;  // told already
   bool dimension_clash = false;                   // told already
   bool dimensionless = false;
-  std::optional<Span> dimension_from;      // the first vector: its length is the dimension of space
+  std::optional<Span> dimension_from;  // the first vector: its length is the dimension of space
 
   Elaboration(const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics);
   /// Of a fragment of the command line, which shares the context and the values of `outer`.
-  Elaboration(const Elaboration& outer, const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics);
+  Elaboration(const Elaboration& outer, const syntax::SyntaxTree& tree, const SourceText& source,
+              Diagnostics& diagnostics);
 
   MechanicalSystem& system() { return model.system; }
   Experiment& experiment() { return model.experiment; }
@@ -64,7 +65,8 @@ Value value_of_call(Elaboration& e, const syntax::Expression& x, const Place& pl
 Value value_of_number(Elaboration& e, const syntax::Expression& x);
 Value value_of_quantity(Elaboration& e, const syntax::Expression& x, const Place& place);
 /// A sum, a product, a power of values.
-Value add(Elaboration& e, const Value& a, const Value& b, bool subtract, const syntax::Expression& x, const Place& place);
+Value add(Elaboration& e, const Value& a, const Value& b, bool subtract, const syntax::Expression& x,
+          const Place& place);
 Value multiply(Elaboration& e, const Value& a, const Value& b, const syntax::Expression& x);
 Value divide(Elaboration& e, const Value& a, const Value& b, const syntax::Expression& x);
 Value power(Elaboration& e, const Value& base, const Value& exponent, const syntax::Expression& x);
@@ -80,6 +82,10 @@ bool check_dimension(Elaboration& e, const Value& v, const Dimension& expected, 
 std::string dimension_advice(const Dimension& found, const Dimension& expected);
 /// The value of an expression of parameters and definitions; nothing if time, coordinates or inputs are in it.
 std::optional<double> constant_value(const Elaboration& e, Expr value);
+/// False, and a message, if the values of the parameters make it infinite or undefined.
+bool is_finite(Elaboration& e, Expr value, const syntax::Expression& x, const std::string& what);
+/// W0310 where a bare number meets an angle and can hardly be in radians: `start θ = 60`, `cos(θ + 30)`.
+void warn_of_degrees(Elaboration& e, const Value& v, const Dimension& beside, const syntax::Expression& x);
 /// Finds what `text` could be and reports it: unknown name, or a unit that needs brackets.
 void unknown_name(Elaboration& e, const std::string& text, Span span);
 /// A name that a statement mentions; null, and a message, if there is none of it.
@@ -118,8 +124,8 @@ const Pose* find_pose(Elaboration& e, const std::optional<syntax::Name>& name);
 /// A place: components along `frame` from its origin, or points and vectors of the world. Null handle parts on error.
 Value position_of(Elaboration& e, const syntax::Expression& x, const Pose* frame);
 /// The pose of a frame or body; its place and its rotation may both be absent. Nothing: a mistake was reported.
-std::optional<Pose> pose_of(Elaboration& e, const syntax::ExpressionPtr& at, const std::optional<syntax::Rotation>& rotation,
-                            const std::optional<syntax::Name>& in);
+std::optional<Pose> pose_of(Elaboration& e, const syntax::ExpressionPtr& at,
+                            const std::optional<syntax::Rotation>& rotation, const std::optional<syntax::Name>& in);
 /// ½ m v²
 Expr translational_energy(Expr mass, const ExprVector& position);
 

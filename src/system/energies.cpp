@@ -13,11 +13,16 @@ Dimension dimension_of(Which which) { return which == Which::D ? dimensions::pow
 
 std::vector<EnergyTerm>& terms_of(MechanicalSystem& s, Which which) {
   switch (which) {
-    case Which::T: return s.kinetic;
-    case Which::V: return s.potential;
-    case Which::U: return s.generalized_potential;
-    case Which::D: return s.dissipation;
-    case Which::L: break;
+    case Which::T:
+      return s.kinetic;
+    case Which::V:
+      return s.potential;
+    case Which::U:
+      return s.generalized_potential;
+    case Which::D:
+      return s.dissipation;
+    case Which::L:
+      break;
   }
   return s.lagrangian_extra;
 }
@@ -41,7 +46,8 @@ void gravity(Elaboration& e, const syntax::GravityStatement& g, Span span) {
   MechanicalSystem& s = e.system();
   s.gravity = v.parts;
   const auto weigh = [&](Expr mass, const ExprVector& position, const std::string& name) {
-    if (mass) s.potential.push_back({-(mass * dot_of(s.gravity, position)), "gravity on " + name, span});
+    if (mass && !dot_of(s.gravity, position).is_zero())
+      s.potential.push_back({-(mass * dot_of(s.gravity, position)), "gravity on " + name, span});
   };
   for (const Point& p : s.points) weigh(p.mass, p.position, p.name);
   for (const Body& b : s.bodies) weigh(b.mass, b.position, b.name);
@@ -67,37 +73,47 @@ void check_positive(Elaboration& e, const Value& v, const syntax::Expression& x,
 void spring(Elaboration& e, const syntax::SpringStatement& s, Span span) {
   const std::optional<ExprVector> r = between(e, *s.from, *s.to);
   const Value k = scalar_of(e, *s.stiffness, dimensions::force() / dimensions::length(), "a stiffness");
-  const Value l0 = s.length ? scalar_of(e, *s.length, dimensions::length(), "the rest length of a spring") : Value::of(e.number(0), Dimension{});
-  check_positive(e, k, *s.stiffness, "this stiffness", "Such a spring pushes away from its rest length: every rest is unstable.");
+  const Value l0 = s.length ? scalar_of(e, *s.length, dimensions::length(), "the rest length of a spring")
+                            : Value::of(e.number(0), Dimension{});
+  check_positive(e, k, *s.stiffness, "this stiffness",
+                 "Such a spring pushes away from its rest length: every rest is unstable.");
   if (!r || k.poisoned || l0.poisoned) return;
   const Expr square = dot_of(*r, *r);
   const Expr stretch = l0.scalar().is_zero() ? square : pow(sqrt(square) - l0.scalar(), Rational(2));
-  e.system().potential.push_back({Rational(1, 2) * (k.scalar() * stretch), "spring " + pair_name(e, s.from, s.to), span});
+  e.system().potential.push_back(
+      {Rational(1, 2) * (k.scalar() * stretch), "spring " + pair_name(e, s.from, s.to), span});
 }
 
 void torsion_spring(Elaboration& e, const syntax::TorsionSpringStatement& s, Span span) {
   Declaration* d = find_declared(e, s.coordinate);
   if (d && d->kind != Declaration::Kind::Coordinate && d->kind != Declaration::Kind::Definition) {
-    e.diagnostics.error("E0212", s.coordinate.span, fmt::format("`{}` is a {}, not a coordinate", s.coordinate.text, word_of(d->kind)), "A torsion spring acts on an angle.", "");
+    e.diagnostics.error("E0212", s.coordinate.span,
+                        fmt::format("`{}` is a {}, not a coordinate", s.coordinate.text, word_of(d->kind)),
+                        "A torsion spring acts on an angle.", "");
     d = nullptr;
   }
   const Dimension angle = d && d->done && !d->value.poisoned ? d->value.dimension : dimensions::angle();
-  const Value k = scalar_of(e, *s.stiffness, dimensions::energy() / (angle * angle), "the stiffness of a torsion spring");
+  const Value k =
+      scalar_of(e, *s.stiffness, dimensions::energy() / (angle * angle), "the stiffness of a torsion spring");
   const Value rest = s.rest ? scalar_of(e, *s.rest, angle, "its rest angle") : Value::of(e.number(0), angle);
-  check_positive(e, k, *s.stiffness, "this stiffness", "Such a spring pushes away from its rest angle: every rest is unstable.");
+  check_positive(e, k, *s.stiffness, "this stiffness",
+                 "Such a spring pushes away from its rest angle: every rest is unstable.");
   if (!d || !d->done || d->value.poisoned || d->value.is_vector || k.poisoned || rest.poisoned) return;
   const Expr turn = d->value.scalar() - rest.scalar();
-  e.system().potential.push_back({Rational(1, 2) * (k.scalar() * pow(turn, Rational(2))), "torsion spring " + d->name, span});
+  e.system().potential.push_back(
+      {Rational(1, 2) * (k.scalar() * pow(turn, Rational(2))), "torsion spring " + d->name, span});
 }
 
 /// D = ½ c (d|r|/dt)².
 void damper(Elaboration& e, const syntax::DamperStatement& s, Span span) {
   const std::optional<ExprVector> r = between(e, *s.from, *s.to);
   const Value c = scalar_of(e, *s.coefficient, dimensions::force() / dimensions::velocity(), "a damping coefficient");
-  check_positive(e, c, *s.coefficient, "this damping coefficient", "Such a damper feeds energy in instead of taking it out.");
+  check_positive(e, c, *s.coefficient, "this damping coefficient",
+                 "Such a damper feeds energy in instead of taking it out.");
   if (!r || c.poisoned) return;
   const Expr rate = e.context.time_derivative(sqrt(dot_of(*r, *r)));
-  e.system().dissipation.push_back({Rational(1, 2) * (c.scalar() * pow(rate, Rational(2))), "damper " + pair_name(e, s.from, s.to), span});
+  e.system().dissipation.push_back(
+      {Rational(1, 2) * (c.scalar() * pow(rate, Rational(2))), "damper " + pair_name(e, s.from, s.to), span});
 }
 
 void from_parts(Elaboration& e, Which which) {
@@ -122,7 +138,8 @@ std::optional<Expr> given_value(Elaboration& e, const EnergyStatement& s) {
   if (v.poisoned || refuse_acceleration(e, v, *s.value, name)) return std::nullopt;
   if (s.which != Which::V || v.order < 1) return v.scalar();
   e.diagnostics.error("E0405", culprit_of_order(e, *s.value, 1), "a velocity stands in the potential energy V",
-                      "A potential energy depends on positions (and perhaps on time); what depends on velocities is a generalized potential or a friction.",
+                      "A potential energy depends on positions (and perhaps on time); what depends on velocities is a "
+                      "generalized potential or a friction.",
                       "Write `U = …` for a magnetic or similar force, `D = …` for friction.");
   return std::nullopt;
 }
@@ -130,7 +147,7 @@ std::optional<Expr> given_value(Elaboration& e, const EnergyStatement& s) {
 /// Whether points, bodies, springs or gravity give this energy already, so that `=` claims what it is.
 bool given_by_parts(const MechanicalSystem& s, Which which) {
   if (which == Which::T) return !s.kinetic.empty();
-  if (which == Which::V) return !s.potential.empty();
+  if (which == Which::V) return !s.potential.empty() || !s.gravity.empty();
   if (which == Which::D) return !s.dissipation.empty();
   return which == Which::L && (!s.kinetic.empty() || !s.potential.empty());
 }
@@ -150,25 +167,35 @@ void given_twice(Elaboration& e, const EnergyStatement& s, Span first) {
 }
 
 void refuse_over_dampers(Elaboration& e, const EnergyStatement& s) {
-  e.diagnostics.error("E0220", s.name_span, "the dissipation function is given beside dampers", "Each damper gives its part of D.", "Write `D += …` to add to them.");
+  e.diagnostics.error("E0220", s.name_span, "the dissipation function is given beside dampers",
+                      "Each damper gives its part of D.", "Write `D += …` to add to them.");
 }
 
 void place_value_of(Elaboration& e, const EnergyStatement& s, Expr value, bool claimed) {
   MechanicalSystem& system = e.system();
   const EnergyTerm term{value, std::string(1, "TVULD"[static_cast<int>(s.which)]), s.value->span};
-  if (s.adds) terms_of(system, s.which).push_back(term);
-  else if (claimed) system.claims.push_back({s.which, value, s.value->span});
-  else if (s.which == Which::L) system.lagrangian_given = term;
-  else terms_of(system, s.which).push_back(term);
+  if (s.adds)
+    terms_of(system, s.which).push_back(term);
+  else if (claimed)
+    system.claims.push_back({s.which, value, s.value->span});
+  else if (s.which == Which::L)
+    system.lagrangian_given = term;
+  else
+    terms_of(system, s.which).push_back(term);
 }
 
 Expr total(const MechanicalSystem& s, Which which) {
   switch (which) {
-    case Which::T: return s.kinetic_energy();
-    case Which::V: return s.potential_energy();
-    case Which::U: return s.total_generalized_potential();
-    case Which::D: return s.dissipation_function();
-    case Which::L: break;
+    case Which::T:
+      return s.kinetic_energy();
+    case Which::V:
+      return s.potential_energy();
+    case Which::U:
+      return s.total_generalized_potential();
+    case Which::D:
+      return s.dissipation_function();
+    case Which::L:
+      break;
   }
   return s.lagrangian();
 }
@@ -193,11 +220,14 @@ void elaborate_energy(Elaboration& e, Which which, Declaration& d) {
     const std::optional<Expr> value = given_value(e, *s);
     poisoned = poisoned || !value;
     if (!value) continue;
-    if (!s->adds && which == Which::D && by_parts) refuse_over_dampers(e, *s);
-    else place_value_of(e, *s, *value, by_parts);
+    if (!s->adds && which == Which::D && by_parts)
+      refuse_over_dampers(e, *s);
+    else
+      place_value_of(e, *s, *value, by_parts);
   }
   d.done = true;
-  d.value = poisoned ? Value::poison() : Value::of(total(e.system(), which), e.dimension(dimension_of(which)), order_of(which));
+  d.value = poisoned ? Value::poison()
+                     : Value::of(total(e.system(), which), e.dimension(dimension_of(which)), order_of(which));
 }
 
 }  // namespace maupertuis::elaboration

@@ -35,7 +35,8 @@ void for_each_expression(MechanicalSystem& s, const std::function<void(Expr&)>& 
     vector(b.angular_velocity_world);
   }
   vector(s.gravity);
-  for (auto* list : {&s.kinetic, &s.potential, &s.generalized_potential, &s.dissipation, &s.lagrangian_extra}) terms(*list);
+  for (auto* list : {&s.kinetic, &s.potential, &s.generalized_potential, &s.dissipation, &s.lagrangian_extra})
+    terms(*list);
   if (s.lagrangian_given) visit(s.lagrangian_given->value);
   for (EnergyClaim& c : s.claims) visit(c.value);
   for (AppliedForce& f : s.forces) {

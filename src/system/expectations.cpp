@@ -30,12 +30,14 @@ bool tolerance(Elaboration& e, Expectation& out, const ExpectStatement& s, const
   if (!s.tolerance) return true;
   out.relative = s.relative;
   const bool own_unit = unsigned_quantity(*s.tolerance).kind == Expression::Kind::Quantity;
-  const Value v = constant_of(e, *s.tolerance, s.relative || !own_unit ? Dimension{} : dimension, s.relative ? "a relative tolerance" : "a tolerance");
+  const Value v = constant_of(e, *s.tolerance, s.relative || !own_unit ? Dimension{} : dimension,
+                              s.relative ? "a relative tolerance" : "a tolerance");
   if (v.poisoned) return false;
   const bool in_display_unit = !s.relative && !own_unit && !out.display_unit.empty();
   const std::optional<double> size = constant_value(e, v.scalar());
   if (size && !(*size >= 0)) {
-    e.diagnostics.error("E0222", s.tolerance->span, "a tolerance is not negative", "It is the largest difference that passes.", "");
+    e.diagnostics.error("E0222", s.tolerance->span, "a tolerance is not negative",
+                        "It is the largest difference that passes.", "");
     return false;
   }
   out.tolerance = v.scalar();
@@ -47,7 +49,8 @@ std::optional<Value> number(Elaboration& e, const Expression& x) {
   const Value v = evaluate_formula(e, x);
   if (v.poisoned) return std::nullopt;
   if (!v.is_vector) return v;
-  e.diagnostics.error("E0210", x.span, "an expectation is about a number, not a vector", "", "Take a component with .x or .y, or its length with norm(…).");
+  e.diagnostics.error("E0210", x.span, "an expectation is about a number, not a vector", "",
+                      "Take a component with .x or .y, or its length with norm(…).");
   return std::nullopt;
 }
 
@@ -70,7 +73,8 @@ bool value_at(Elaboration& e, Expectation& out, const ExpectStatement& s) {
 }
 
 void warn_identity(Elaboration& e, const Expectation& out) {
-  e.diagnostics.warning("W0420", out.span, "this expectation says nothing", "Its two sides are the same formula: it holds for every motion of every system.",
+  e.diagnostics.warning("W0420", out.span, "this expectation says nothing",
+                        "Its two sides are the same formula: it holds for every motion of every system.",
                         "Expect something that the equations of motion decide.");
 }
 
@@ -82,19 +86,23 @@ bool equation(Elaboration& e, Expectation& out, const ExpectStatement& s) {
   if (left.poisoned || right.poisoned) return false;
   for (const Value* v : {&left, &right}) {
     if (!v->is_vector) continue;
-    e.diagnostics.error("E0210", (v == &left ? s.subject : s.value)->span, "an equation is about numbers, not vectors", "", "Write one for each component.");
+    e.diagnostics.error("E0210", (v == &left ? s.subject : s.value)->span, "an equation is about numbers, not vectors",
+                        "", "Write one for each component.");
     return false;
   }
   if (!left.fits_any && !right.fits_any && !left.dimension.same_as(right.dimension) && !e.dimensionless) {
-    e.diagnostics.error("E0304", s.value->span, fmt::format("the left side is {}, this is {}", describe(left.dimension), describe(right.dimension)),
-                        "Both sides of an equation have one dimension.", "");
+    e.diagnostics.error(
+        "E0304", s.value->span,
+        fmt::format("the left side is {}, this is {}", describe(left.dimension), describe(right.dimension)),
+        "Both sides of an equation have one dimension.", "");
     return false;
   }
   out.subject = left.scalar();
   out.subject_right = right.scalar();
   out.dimension = left.fits_any ? right.dimension : left.dimension;
   const Expr difference[] = {out.subject - out.subject_right};
-  if (difference[0].is_zero() || zero_test(expand_time_derivatives(difference[0])).verdict == Verdict::Zero) warn_identity(e, out);
+  if (difference[0].is_zero() || zero_test(expand_time_derivatives(difference[0])).verdict == Verdict::Zero)
+    warn_identity(e, out);
   return true;
 }
 
@@ -137,24 +145,34 @@ bool frequencies(Elaboration& e, Expectation& out, const ExpectStatement& s) {
 
 bool later(Elaboration& e, const ExpectStatement& s, Span span) {
   const char* what = s.kind == Kind::EventAt ? "an expected event" : "an expected class of constraint";
-  e.diagnostics.error("E0503", span, fmt::format("not supported yet: {}", what), "Constraints, contacts and events are carried out by a later version.", "Leave this line out for now.");
+  e.diagnostics.error("E0503", span, fmt::format("not supported yet: {}", what),
+                      "Constraints, contacts and events are carried out by a later version.",
+                      "Leave this line out for now.");
   return false;
 }
 
 bool fill(Elaboration& e, Expectation& out, const ExpectStatement& s) {
   switch (s.kind) {
     case Kind::ValueAt:
-    case Kind::Value: return value_at(e, out, s);
-    case Kind::EnergyConserved: return tolerance(e, out, s, dimensions::energy());
+    case Kind::Value:
+      return value_at(e, out, s);
+    case Kind::EnergyConserved:
+      return tolerance(e, out, s, dimensions::energy());
     case Kind::Conserved:
     case Kind::NotConserved:
-    case Kind::Integral: return about_subject(e, out, s);
-    case Kind::Equation: return equation(e, out, s);
-    case Kind::Freedoms: return freedoms(e, out, s);
-    case Kind::Frequencies: return frequencies(e, out, s);
+    case Kind::Integral:
+      return about_subject(e, out, s);
+    case Kind::Equation:
+      return equation(e, out, s);
+    case Kind::Freedoms:
+      return freedoms(e, out, s);
+    case Kind::Frequencies:
+      return frequencies(e, out, s);
     case Kind::ConstraintClass:
-    case Kind::EventAt: return later(e, s, out.span);
-    case Kind::Error: return true;
+    case Kind::EventAt:
+      return later(e, s, out.span);
+    case Kind::Error:
+      return true;
   }
   return false;
 }

@@ -12,13 +12,16 @@ using Kind = Declaration::Kind;
 /// Which coordinate, and which derivative of it, a start names.
 std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
   if (x.kind == Expression::Kind::Member) {
-    const Declaration* base = x.arguments[0]->kind == Expression::Kind::Name ? e.table.find(x.arguments[0]->text) : nullptr;
+    const Declaration* base =
+        x.arguments[0]->kind == Expression::Kind::Name ? e.table.find(x.arguments[0]->text) : nullptr;
     if (base && base->value.poisoned) return std::nullopt;
-    if (!base && x.arguments[0]->kind == Expression::Kind::Name) unknown_name(e, x.arguments[0]->text, x.arguments[0]->name_span);
+    if (!base && x.arguments[0]->kind == Expression::Kind::Name)
+      unknown_name(e, x.arguments[0]->text, x.arguments[0]->name_span);
     else
-      e.diagnostics.error("E0504", x.span, fmt::format("not supported yet: a start of `{}`", e.source.slice(x.span)),
-                          "A start gives coordinates and their velocities; what follows from them is solved for by a later version.",
-                          "Give the coordinates and velocities that belong to it.");
+      e.diagnostics.error(
+          "E0504", x.span, fmt::format("not supported yet: a start of `{}`", e.source.slice(x.span)),
+          "A start gives coordinates and their velocities; what follows from them is solved for by a later version.",
+          "Give the coordinates and velocities that belong to it.");
     return std::nullopt;
   }
   const std::string text(e.source.slice(x.span));
@@ -28,13 +31,16 @@ std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
     return std::nullopt;
   }
   if (!d || d->kind != Kind::Coordinate) {
-    e.diagnostics.error("E0223", x.span, d ? fmt::format("`{}` is a {}, not a coordinate", d->name, word_of(d->kind)) : fmt::format("`{}` is no coordinate", text),
+    e.diagnostics.error("E0223", x.span,
+                        d ? fmt::format("`{}` is a {}, not a coordinate", d->name, word_of(d->kind))
+                          : fmt::format("`{}` is no coordinate", text),
                         "A start gives the coordinates and their velocities.", "");
     return std::nullopt;
   }
   d->used = true;
   if (x.primes > 1) {
-    e.diagnostics.error("E0223", x.span, fmt::format("the acceleration `{}` cannot be chosen", text), "The equations of motion give it from positions and velocities.", "Leave it out.");
+    e.diagnostics.error("E0223", x.span, fmt::format("the acceleration `{}` cannot be chosen", text),
+                        "The equations of motion give it from positions and velocities.", "Leave it out.");
     return std::nullopt;
   }
   if (d->value.poisoned) return std::nullopt;
@@ -44,18 +50,10 @@ std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
   return s;
 }
 
-/// `start θ = 60`: sixty radians are hardly meant.
-void warn_of_degrees(Elaboration& e, const Value& v, const Dimension& expected, const Expression& x) {
-  if (e.dimensionless || !v.is_literal || expected != dimensions::angle()) return;
-  const std::optional<double> size = constant_value(e, v.scalar());
-  if (!size || std::abs(*size) <= 6.5) return;
-  e.diagnostics.warning("W0310", x.span, fmt::format("an angle of {} without a unit is in radians", e.source.slice(x.span)),
-                        fmt::format("That is {:.1f} turns.", std::abs(*size) / 6.283185307179586), fmt::format("Write {} deg if degrees are meant.", e.source.slice(x.span)));
-}
-
 void duplicate_start(Elaboration& e, const StartValue& s, const StartValue& first) {
   e.diagnostics.error("E0208", s.span, fmt::format("`{}` starts twice", e.source.slice(s.span)),
-                      fmt::format("Its start is already given in line {}.", e.source.locate(first.span.begin).line), "Keep one of them.");
+                      fmt::format("Its start is already given in line {}.", e.source.locate(first.span.begin).line),
+                      "Keep one of them.");
 }
 
 }  // namespace
@@ -66,7 +64,7 @@ Value constant_of(Elaboration& e, const Expression& x, const Dimension& expected
   place.inline_constants = true;
   const Value v = scalar_of(e, x, expected, what, place);
   if (v.poisoned) return v;
-  if (!e.context.depends_on_time(v.scalar().id())) return v;
+  if (!e.context.depends_on_time(v.scalar().id())) return is_finite(e, v.scalar(), x, what) ? v : Value::poison();
   Span at = culprit_of_order(e, x, 0);
   e.diagnostics.error("E0222", at.end > at.begin ? at : x.span, fmt::format("{} must be known before the run", what),
                       "Numbers and parameters are; coordinates and the time change during it.", "");
@@ -104,8 +102,10 @@ void start(Elaboration& e, const syntax::StartStatement& s) {
     const StartValue* first = nullptr;
     for (const StartValue& other : x.start)
       if (other.coordinate == value->coordinate && other.order == value->order) first = &other;
-    if (first) duplicate_start(e, *value, *first);
-    else x.start.push_back(*value);
+    if (first)
+      duplicate_start(e, *value, *first);
+    else
+      x.start.push_back(*value);
   }
 }
 
@@ -122,9 +122,12 @@ void run(Elaboration& e, const syntax::RunStatement& s) {
   if (left.poisoned) return;
   Place place;
   place.inline_constants = true;
-  const Value right = left.is_vector ? Value::poison() : scalar_of(e, *s.until_right, left.dimension, fmt::format("`{}`", e.source.slice(s.until_left->span)), place);
+  const Value right = left.is_vector ? Value::poison()
+                                     : scalar_of(e, *s.until_right, left.dimension,
+                                                 fmt::format("`{}`", e.source.slice(s.until_left->span)), place);
   if (left.is_vector)
-    e.diagnostics.error("E0210", s.until_left->span, "a run ends when a number reaches its value, not a vector", "", "Take a component with .x or .y.");
+    e.diagnostics.error("E0210", s.until_left->span, "a run ends when a number reaches its value, not a vector", "",
+                        "Take a component with .x or .y.");
   if (right.poisoned || refuse_acceleration(e, left, *s.until_left, "the end of a run")) return;
   x.until = left.scalar() - right.scalar();
 }
@@ -134,7 +137,8 @@ void output(Elaboration& e, const syntax::OutputStatement& s) {
   if (v.poisoned) return;
   const std::optional<double> size = constant_value(e, v.scalar());
   if (size && !(*size > 0)) {
-    e.diagnostics.error("E0222", s.every->span, "the interval of output is not positive", "Rows of output follow each other in time.", "");
+    e.diagnostics.error("E0222", s.every->span, "the interval of output is not positive",
+                        "Rows of output follow each other in time.", "");
     return;
   }
   e.experiment().output_every = v.scalar();
@@ -146,7 +150,8 @@ void reaction(Elaboration& e, const syntax::ReactionStatement& s) {
   for (std::size_t i = 0; i < e.system().parameters.size(); ++i)
     if (e.system().parameters[i].name == d->name) e.system().releases.emplace_back(s.name.text, i);
   if (d->kind != Kind::Parameter)
-    e.diagnostics.error("E0212", s.released.span, fmt::format("`{}` is a {}, not a parameter", d->name, word_of(d->kind)),
+    e.diagnostics.error("E0212", s.released.span,
+                        fmt::format("`{}` is a {}, not a parameter", d->name, word_of(d->kind)),
                         "A reaction shows the force that keeps a parameter, such as a length, at its value.", "");
 }
 

@@ -9,17 +9,20 @@ namespace {
 using syntax::ForceStatement;
 using Kind = Declaration::Kind;
 
-Declaration* target(Elaboration& e, const syntax::Name& name, std::initializer_list<Kind> kinds, const char* needed, const char* help) {
+Declaration* target(Elaboration& e, const syntax::Name& name, std::initializer_list<Kind> kinds, const char* needed,
+                    const char* help) {
   Declaration* d = find_declared(e, name);
   if (!d) return nullptr;
   for (const Kind k : kinds)
     if (d->kind == k) return d->done && !d->value.poisoned ? d : nullptr;
-  e.diagnostics.error("E0212", name.span, fmt::format("`{}` is a {}, not {}", name.text, word_of(d->kind), needed), "", help);
+  e.diagnostics.error("E0212", name.span, fmt::format("`{}` is a {}, not {}", name.text, word_of(d->kind), needed), "",
+                      help);
   return nullptr;
 }
 
 std::optional<AppliedForce> on_point(Elaboration& e, const ForceStatement& s) {
-  Declaration* d = target(e, s.on, {Kind::Point, Kind::Body}, "a point", "A force on a coordinate is written `force q = …`.");
+  Declaration* d =
+      target(e, s.on, {Kind::Point, Kind::Body}, "a point", "A force on a coordinate is written `force q = …`.");
   const Pose* frame = find_pose(e, s.in);
   if (!frame) return std::nullopt;
   Place place;
@@ -42,7 +45,8 @@ std::optional<AppliedForce> torque(Elaboration& e, const ForceStatement& s) {
   Place place;
   place.frame = s.in ? frame : nullptr;
   const bool plane = e.system().space_dimension == 2;
-  const Value v = plane ? scalar_of(e, *s.value, dimensions::torque(), "a torque", place) : vector_of(e, *s.value, dimensions::torque(), "a torque", place);
+  const Value v = plane ? scalar_of(e, *s.value, dimensions::torque(), "a torque", place)
+                        : vector_of(e, *s.value, dimensions::torque(), "a torque", place);
   if (!d || (s.from && !from) || v.poisoned || refuse_acceleration(e, v, *s.value, "a torque")) return std::nullopt;
   AppliedForce f;
   f.kind = AppliedForce::Kind::Torque;
@@ -54,10 +58,12 @@ std::optional<AppliedForce> torque(Elaboration& e, const ForceStatement& s) {
 }
 
 std::optional<AppliedForce> generalized(Elaboration& e, const ForceStatement& s) {
-  Declaration* d = target(e, s.on, {Kind::Coordinate}, "a coordinate", "A force on a point is written `force on P = (…)`.");
+  Declaration* d =
+      target(e, s.on, {Kind::Coordinate}, "a coordinate", "A force on a point is written `force on P = (…)`.");
   const Dimension q = d ? d->value.dimension : Dimension{};
   const std::string what = fmt::format("the force along {}", s.on.text);
-  const Value v = d ? scalar_of(e, *s.value, e.dimension(dimensions::energy()) / q, what) : evaluate_formula(e, *s.value);
+  const Value v =
+      d ? scalar_of(e, *s.value, e.dimension(dimensions::energy()) / q, what) : evaluate_formula(e, *s.value);
   if (!d || v.poisoned || refuse_acceleration(e, v, *s.value, what)) return std::nullopt;
   AppliedForce f;
   f.kind = AppliedForce::Kind::Generalized;

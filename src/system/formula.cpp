@@ -45,12 +45,18 @@ Value binary(Elaboration& e, const Expression& x, const Place& place) {
   if (a.poisoned || b.poisoned) return Value::poison();
   switch (x.op) {
     case Operator::Multiply:
-    case Operator::Juxtapose: return multiply(e, a, b, x);
-    case Operator::Divide: return divide(e, a, b, x);
-    case Operator::Dot: return a.is_vector && b.is_vector ? dot_product(e, a, b, x) : multiply(e, a, b, x);
-    case Operator::Cross: return a.is_vector && b.is_vector ? cross_product(e, a, b, x) : multiply(e, a, b, x);
-    case Operator::Power: return power(e, a, b, x);
-    default: break;
+    case Operator::Juxtapose:
+      return multiply(e, a, b, x);
+    case Operator::Divide:
+      return divide(e, a, b, x);
+    case Operator::Dot:
+      return a.is_vector && b.is_vector ? dot_product(e, a, b, x) : multiply(e, a, b, x);
+    case Operator::Cross:
+      return a.is_vector && b.is_vector ? cross_product(e, a, b, x) : multiply(e, a, b, x);
+    case Operator::Power:
+      return power(e, a, b, x);
+    default:
+      break;
   }
   e.diagnostics.error("E0221", x.span, "a comparison stands where a formula is needed",
                       "Conditions stand in piecewise(cond : value, …, else : value).", "Write piecewise around it.");
@@ -59,7 +65,8 @@ Value binary(Elaboration& e, const Expression& x, const Place& place) {
 
 Value condition(Elaboration& e, const Expression& x, const Place& place) {
   if (x.kind != Kind::Binary) {
-    e.diagnostics.error("E0221", x.span, "this is no condition", "A condition compares two quantities with <, <=, > or >=.", "");
+    e.diagnostics.error("E0221", x.span, "this is no condition",
+                        "A condition compares two quantities with <, <=, > or >=.", "");
     return Value::poison();
   }
   const bool logical = x.op == Operator::And || x.op == Operator::Or;
@@ -68,7 +75,8 @@ Value condition(Elaboration& e, const Expression& x, const Place& place) {
   if (a.poisoned || b.poisoned) return Value::poison();
   if (!logical && add(e, a, b, true, x, place).poisoned) return Value::poison();
   if (!logical && a.is_vector) {
-    e.diagnostics.error("E0210", x.span, "vectors have no order", "Only numbers can be compared.", "Compare their norms or components.");
+    e.diagnostics.error("E0210", x.span, "vectors have no order", "Only numbers can be compared.",
+                        "Compare their norms or components.");
     return Value::poison();
   }
   const Expr l = a.scalar(), r = b.scalar();
@@ -77,15 +85,23 @@ Value condition(Elaboration& e, const Expression& x, const Place& place) {
     return Value::of(e.context.function(kind, arguments), Dimension{}, std::max(a.order, b.order));
   };
   switch (x.op) {
-    case Operator::Less: return make(maupertuis::Kind::Less, l, r);
-    case Operator::LessEqual: return make(maupertuis::Kind::LessEqual, l, r);
-    case Operator::Greater: return make(maupertuis::Kind::Less, r, l);
-    case Operator::GreaterEqual: return make(maupertuis::Kind::LessEqual, r, l);
-    case Operator::And: return make(maupertuis::Kind::And, l, r);
-    case Operator::Or: return make(maupertuis::Kind::Or, l, r);
-    default: break;
+    case Operator::Less:
+      return make(maupertuis::Kind::Less, l, r);
+    case Operator::LessEqual:
+      return make(maupertuis::Kind::LessEqual, l, r);
+    case Operator::Greater:
+      return make(maupertuis::Kind::Less, r, l);
+    case Operator::GreaterEqual:
+      return make(maupertuis::Kind::LessEqual, r, l);
+    case Operator::And:
+      return make(maupertuis::Kind::And, l, r);
+    case Operator::Or:
+      return make(maupertuis::Kind::Or, l, r);
+    default:
+      break;
   }
-  e.diagnostics.error("E0221", x.span, "this is no condition", "A condition compares two quantities with <, <=, > or >=.", "");
+  e.diagnostics.error("E0221", x.span, "this is no condition",
+                      "A condition compares two quantities with <, <=, > or >=.", "");
   return Value::poison();
 }
 
@@ -97,15 +113,19 @@ Value piecewise(Elaboration& e, const Expression& x, const Place& place) {
     const bool is_condition = i % 2 == 0 && i + 1 < x.arguments.size();
     const Value v = is_condition ? condition(e, *x.arguments[i], {}) : evaluate_formula(e, *x.arguments[i], place);
     if (v.poisoned || v.is_vector) {
-      if (!v.poisoned) e.diagnostics.error("E0210", x.arguments[i]->span, "a vector as a value of piecewise", "Its values are numbers.", "Write a piecewise for each component.");
+      if (!v.poisoned)
+        e.diagnostics.error("E0210", x.arguments[i]->span, "a vector as a value of piecewise",
+                            "Its values are numbers.", "Write a piecewise for each component.");
       poisoned = true;
       continue;
     }
     arguments.push_back(v.scalar());
     const int order = std::max(common.order, v.order);
     if (!is_condition) {
-      if (common.parts.empty()) common = v;
-      else common = add(e, common, v, true, *x.arguments[i], place);
+      if (common.parts.empty())
+        common = v;
+      else
+        common = add(e, common, v, true, *x.arguments[i], place);
       if (common.poisoned) return common;
     }
     common.order = order;
@@ -127,13 +147,17 @@ Value vector(Elaboration& e, const Expression& x, const Place& place) {
     poisoned = poisoned || v.poisoned;
     if (v.poisoned) continue;
     if (v.is_vector) {
-      e.diagnostics.error("E0210", part->span, "a vector as a component of a vector", "The components of a vector are numbers.", "Write its components with .x and .y.");
+      e.diagnostics.error("E0210", part->span, "a vector as a component of a vector",
+                          "The components of a vector are numbers.", "Write its components with .x and .y.");
       poisoned = true;
       continue;
     }
-    if (out.fits_any) out.dimension = v.dimension;
+    if (out.fits_any)
+      out.dimension = v.dimension;
     else if (!v.fits_any && !v.dimension.same_as(out.dimension)) {
-      e.diagnostics.error("E0302", part->span, fmt::format("this component is {}, the ones before it are {}", describe(v.dimension), describe(out.dimension)),
+      e.diagnostics.error("E0302", part->span,
+                          fmt::format("this component is {}, the ones before it are {}", describe(v.dimension),
+                                      describe(out.dimension)),
                           "The components of a vector have one dimension.", "");
       poisoned = true;
     }
@@ -154,16 +178,26 @@ Value vector(Elaboration& e, const Expression& x, const Place& place) {
 
 Value evaluate_formula(Elaboration& e, const Expression& x, const Place& place) {
   switch (x.kind) {
-    case Kind::Number: return value_of_number(e, x);
-    case Kind::Quantity: return value_of_quantity(e, x, place);
-    case Kind::Name: return value_of_name(e, x, place);
-    case Kind::Member: return value_of_member(e, x, place);
-    case Kind::Call: return value_of_call(e, x, place);
-    case Kind::Vector: return vector(e, x, place);
-    case Kind::Binary: return binary(e, x, place);
-    case Kind::Unary: return negative(evaluate_formula(e, *x.arguments[0], place));
-    case Kind::Piecewise: return piecewise(e, x, place);
-    case Kind::TimeDerivative: return time_derivative(e, evaluate_formula(e, *x.arguments[0], place), x.primes, x);
+    case Kind::Number:
+      return value_of_number(e, x);
+    case Kind::Quantity:
+      return value_of_quantity(e, x, place);
+    case Kind::Name:
+      return value_of_name(e, x, place);
+    case Kind::Member:
+      return value_of_member(e, x, place);
+    case Kind::Call:
+      return value_of_call(e, x, place);
+    case Kind::Vector:
+      return vector(e, x, place);
+    case Kind::Binary:
+      return binary(e, x, place);
+    case Kind::Unary:
+      return negative(evaluate_formula(e, *x.arguments[0], place));
+    case Kind::Piecewise:
+      return piecewise(e, x, place);
+    case Kind::TimeDerivative:
+      return time_derivative(e, evaluate_formula(e, *x.arguments[0], place), x.primes, x);
   }
   return Value::poison();
 }
@@ -185,8 +219,9 @@ Value vector_of(Elaboration& e, const Expression& x, const Dimension& expected, 
   Value v = evaluate_formula(e, x, place);
   if (v.poisoned) return v;
   if (!v.is_vector) {
-    e.diagnostics.error("E0210", x.span, fmt::format("{} is a vector, not a number", what), "",
-                        e.system().space_dimension == 2 ? "Write its components: (a, b)." : "Write its components: (a, b, c).");
+    e.diagnostics.error(
+        "E0210", x.span, fmt::format("{} is a vector, not a number", what), "",
+        e.system().space_dimension == 2 ? "Write its components: (a, b)." : "Write its components: (a, b, c).");
     return Value::poison();
   }
   return check_dimension(e, v, expected, what, x) ? v : Value::poison();

@@ -14,7 +14,8 @@ std::optional<Expr> angle_of(Elaboration& e, const syntax::Expression& x, int& o
   const Value v = scalar_of(e, x, dimensions::angle(), "an angle");
   if (v.poisoned) return std::nullopt;
   if (v.order > 0) {
-    e.diagnostics.error("E0401", culprit_of_order(e, x, 1), "a velocity stands in an angle of rotation", "A rotation depends on the coordinates and on time alone.", "");
+    e.diagnostics.error("E0401", culprit_of_order(e, x, 1), "a velocity stands in an angle of rotation",
+                        "A rotation depends on the coordinates and on time alone.", "");
     return std::nullopt;
   }
   order = std::max(order, v.order);
@@ -23,7 +24,8 @@ std::optional<Expr> angle_of(Elaboration& e, const syntax::Expression& x, int& o
 
 std::optional<Pose> in_the_plane(Elaboration& e, const Pose& pose, const Rotation& r, int& order) {
   if (r.kind != Rotation::Kind::Angle) {
-    e.diagnostics.error("E0402", r.span, "a rotation of space in a two-dimensional model", "In the plane a frame has one angle.", "Write `rotation angle θ`.");
+    e.diagnostics.error("E0402", r.span, "a rotation of space in a two-dimensional model",
+                        "In the plane a frame has one angle.", "Write `rotation angle θ`.");
     return std::nullopt;
   }
   const std::optional<Expr> angle = angle_of(e, *r.values[0], order);
@@ -35,21 +37,23 @@ std::optional<Pose> about_axis(Elaboration& e, const Pose& pose, const Rotation&
   const std::optional<Expr> angle = angle_of(e, *r.values[0], order);
   if (axis.poisoned || !angle) return std::nullopt;
   if (!axis.is_vector) {
-    e.diagnostics.error("E0210", r.axis->span, "an axis is a vector, not a number", "", "Write its components: axis (0, 0, 1).");
+    e.diagnostics.error("E0210", r.axis->span, "an axis is a vector, not a number", "",
+                        "Write its components: axis (0, 0, 1).");
     return std::nullopt;
   }
   const Expr square = dot_of(axis.parts, axis.parts);
   const std::optional<double> size = constant_value(e, square);
   if (square.is_zero() || (size && *size == 0)) {
-    e.diagnostics.error("E0402", r.axis->span, "this axis has no direction", "An axis of rotation is a vector other than zero.", "");
+    e.diagnostics.error("E0402", r.axis->span, "this axis has no direction",
+                        "An axis of rotation is a vector other than zero.", "");
     return std::nullopt;
   }
   return turned_about(pose, scaled(pow(sqrt(square), Rational(-1)), axis.parts), *angle);
 }
 
 /// Turns about the axes of the frame itself, one after the other.
-std::optional<Pose> in_sequence(Elaboration& e, Pose pose, const Rotation& r, const std::string& sequence, bool reversed,
-                                int& order) {
+std::optional<Pose> in_sequence(Elaboration& e, Pose pose, const Rotation& r, const std::string& sequence,
+                                bool reversed, int& order) {
   std::vector<Expr> angles;
   for (const syntax::ExpressionPtr& x : r.values) {
     const std::optional<Expr> angle = angle_of(e, *x, order);
@@ -69,16 +73,19 @@ bool is_sequence(const std::string& s) {
 
 bool complete(Elaboration& e, const Rotation& r, std::size_t count) {
   if (r.values.size() == count) return true;
-  e.diagnostics.error("E0402", r.span, fmt::format("this rotation has {} angles, not {}", r.values.size(), count), "A rotation of space is made of three turns.", "");
+  e.diagnostics.error("E0402", r.span, fmt::format("this rotation has {} angles, not {}", r.values.size(), count),
+                      "A rotation of space is made of three turns.", "");
   return false;
 }
 
 std::optional<Pose> in_space(Elaboration& e, const Pose& pose, const Rotation& r, int& order) {
   switch (r.kind) {
     case Rotation::Kind::Angle:
-      e.diagnostics.error("E0402", r.span, "a rotation in space needs an axis", "An angle alone turns in the plane.", "Write `rotation axis (0, 0, 1) angle θ`.");
+      e.diagnostics.error("E0402", r.span, "a rotation in space needs an axis", "An angle alone turns in the plane.",
+                          "Write `rotation axis (0, 0, 1) angle θ`.");
       return std::nullopt;
-    case Rotation::Kind::AxisAngle: return about_axis(e, pose, r, order);
+    case Rotation::Kind::AxisAngle:
+      return about_axis(e, pose, r, order);
     case Rotation::Kind::Euler:
       if (!is_sequence(r.sequence)) {
         e.diagnostics.error("E0402", r.sequence_span, fmt::format("`{}` is no sequence of Euler angles", r.sequence),
@@ -87,12 +94,15 @@ std::optional<Pose> in_space(Elaboration& e, const Pose& pose, const Rotation& r
       }
       return complete(e, r, 3) ? in_sequence(e, pose, r, r.sequence, false, order) : std::nullopt;
     // Roll about x, pitch about y, yaw about z, axes fixed: the same as yaw, pitch, roll about the axes of the body.
-    case Rotation::Kind::RollPitchYaw: return complete(e, r, 3) ? in_sequence(e, pose, r, "zyx", true, order) : std::nullopt;
+    case Rotation::Kind::RollPitchYaw:
+      return complete(e, r, 3) ? in_sequence(e, pose, r, "zyx", true, order) : std::nullopt;
     case Rotation::Kind::Quaternion:
-    case Rotation::Kind::QuaternionCoordinates: break;
+    case Rotation::Kind::QuaternionCoordinates:
+      break;
   }
   e.diagnostics.error("E0502", r.span, "not supported yet: rotation by a quaternion",
-                      "The norm of the quaternion is a constraint, and constraints are carried out by a later version.", "Use Euler angles: `rotation euler zxz (φ, θ, ψ)`.");
+                      "The norm of the quaternion is a constraint, and constraints are carried out by a later version.",
+                      "Use Euler angles: `rotation euler zxz (φ, θ, ψ)`.");
   return std::nullopt;
 }
 
@@ -109,7 +119,8 @@ const Pose* find_pose(Elaboration& e, const std::optional<syntax::Name>& name) {
   Declaration* d = find_declared(e, *name);
   if (!d) return nullptr;
   if (d->kind != Kind::Frame && d->kind != Kind::Body) {
-    e.diagnostics.error("E0212", name->span, fmt::format("`{}` is a {}, not a frame", name->text, word_of(d->kind)), "Axes belong to frames and bodies.",
+    e.diagnostics.error("E0212", name->span, fmt::format("`{}` is a {}, not a frame", name->text, word_of(d->kind)),
+                        "Axes belong to frames and bodies.",
                         d->kind == Kind::Point ? "Declare a frame there, or leave `in` out." : "");
     return nullptr;
   }
@@ -123,7 +134,8 @@ Value position_of(Elaboration& e, const syntax::Expression& x, const Pose* frame
   Value v = vector_of(e, x, dimensions::length(), "a position", place);
   if (v.poisoned) return v;
   if (v.order > 0) {
-    e.diagnostics.error("E0401", culprit_of_order(e, x, 1), "a velocity stands in a position", "A position depends on the coordinates and on time alone.", "");
+    e.diagnostics.error("E0401", culprit_of_order(e, x, 1), "a velocity stands in a position",
+                        "A position depends on the coordinates and on time alone.", "");
     return Value::poison();
   }
   if (frame) {
@@ -134,13 +146,15 @@ Value position_of(Elaboration& e, const syntax::Expression& x, const Pose* frame
 }
 
 /// The pose of a frame or body; the place and the rotation may both be absent.
-std::optional<Pose> pose_of(Elaboration& e, const syntax::ExpressionPtr& at, const std::optional<Rotation>& rotation, const std::optional<syntax::Name>& in) {
+std::optional<Pose> pose_of(Elaboration& e, const syntax::ExpressionPtr& at, const std::optional<Rotation>& rotation,
+                            const std::optional<syntax::Name>& in) {
   const Pose* parent = find_pose(e, in);
   if (!parent) return std::nullopt;
   std::optional<Pose> pose = *parent;
   if (at) {
     const Value place = position_of(e, *at, in ? parent : nullptr);
-    if (place.poisoned) pose.reset();
+    if (place.poisoned)
+      pose.reset();
     else {
       pose->origin = place.parts;
       pose->order = std::max(pose->order, place.order);
@@ -148,8 +162,9 @@ std::optional<Pose> pose_of(Elaboration& e, const syntax::ExpressionPtr& at, con
   }
   if (!rotation) return pose;
   int order = pose ? pose->order : -1;
-  std::optional<Pose> after = e.system().space_dimension == 2 ? in_the_plane(e, pose ? *pose : *parent, *rotation, order)
-                                                                     : in_space(e, pose ? *pose : *parent, *rotation, order);
+  std::optional<Pose> after = e.system().space_dimension == 2
+                                  ? in_the_plane(e, pose ? *pose : *parent, *rotation, order)
+                                  : in_space(e, pose ? *pose : *parent, *rotation, order);
   if (after) after->order = order;
   return pose ? after : std::nullopt;
 }

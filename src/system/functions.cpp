@@ -20,12 +20,12 @@ struct Function {
 using Rule = Function::Rule;
 
 constexpr Function kFunctions[] = {
-    {"sin", K::Sin, Rule::Circular},         {"cos", K::Cos, Rule::Circular},         {"tan", K::Tan, Rule::Circular},
-    {"sec", K::Cos, Rule::Circular, true},   {"csc", K::Sin, Rule::Circular, true},   {"cot", K::Tan, Rule::Circular, true},
-    {"asin", K::Asin, Rule::Inverse},        {"acos", K::Acos, Rule::Inverse},        {"atan", K::Atan, Rule::Inverse},
-    {"sinh", K::Sinh, Rule::Pure},           {"cosh", K::Cosh, Rule::Pure},           {"tanh", K::Tanh, Rule::Pure},
-    {"sech", K::Cosh, Rule::Pure, true},     {"asinh", K::Asinh, Rule::Pure},         {"acosh", K::Acosh, Rule::Pure},
-    {"atanh", K::Atanh, Rule::Pure},         {"exp", K::Exp, Rule::Pure},             {"log", K::Log, Rule::Pure},
+    {"sin", K::Sin, Rule::Circular},       {"cos", K::Cos, Rule::Circular},       {"tan", K::Tan, Rule::Circular},
+    {"sec", K::Cos, Rule::Circular, true}, {"csc", K::Sin, Rule::Circular, true}, {"cot", K::Tan, Rule::Circular, true},
+    {"asin", K::Asin, Rule::Inverse},      {"acos", K::Acos, Rule::Inverse},      {"atan", K::Atan, Rule::Inverse},
+    {"sinh", K::Sinh, Rule::Pure},         {"cosh", K::Cosh, Rule::Pure},         {"tanh", K::Tanh, Rule::Pure},
+    {"sech", K::Cosh, Rule::Pure, true},   {"asinh", K::Asinh, Rule::Pure},       {"acosh", K::Acosh, Rule::Pure},
+    {"atanh", K::Atanh, Rule::Pure},       {"exp", K::Exp, Rule::Pure},           {"log", K::Log, Rule::Pure},
 };
 
 const Function* find_function(const std::string& name) {
@@ -36,27 +36,33 @@ const Function* find_function(const std::string& name) {
 
 bool refuse_vector(Elaboration& e, const Value& v, const Expression& x, const Expression& argument) {
   if (!v.is_vector) return false;
-  e.diagnostics.error("E0210", argument.span, fmt::format("`{}` of a vector", x.text), "Its argument is a number.", "Take a component with .x or .y, or its length with norm(…).");
+  e.diagnostics.error("E0210", argument.span, fmt::format("`{}` of a vector", x.text), "Its argument is a number.",
+                      "Take a component with .x or .y, or its length with norm(…).");
   return true;
 }
 
 /// `cos ω t` is (cos ω) t: the argument is no angle, and the product was meant.
 std::string help_for_bare(Elaboration& e, const Expression& x) {
   const std::string argument(e.source.slice(x.arguments[0]->span));
-  return x.bare ? fmt::format("Without brackets {0} takes `{1}` alone: put the whole argument in brackets, such as {0}({1} t).", x.text, argument)
+  return x.bare ? fmt::format(
+                      "Without brackets {0} takes `{1}` alone: put the whole argument in brackets, such as {0}({1} t).",
+                      x.text, argument)
                 : "Divide it by a quantity of the same dimension.";
 }
 
 Value elementary(Elaboration& e, const Function& f, const Expression& x, const Value& a) {
   if (!a.fits_any && !a.dimension.is_one()) {
-    e.diagnostics.error("E0303", x.arguments[0]->span,
-                        fmt::format("the argument of {} is {}", x.text, describe(a.dimension)),
-                        f.rule == Rule::Circular ? "Its argument is an angle or a bare number." : "Its argument is a bare number.", help_for_bare(e, x));
+    e.diagnostics.error(
+        "E0303", x.arguments[0]->span, fmt::format("the argument of {} is {}", x.text, describe(a.dimension)),
+        f.rule == Rule::Circular ? "Its argument is an angle or a bare number." : "Its argument is a bare number.",
+        help_for_bare(e, x));
     return Value::poison();
   }
   if (f.rule == Rule::Circular && a.hertz)
-    e.diagnostics.warning("W0309", x.arguments[0]->span, fmt::format("a frequency in Hz stands in the argument of {} without 2π", x.text),
-                          "A frequency of 1 Hz turns the phase by 2π in a second.", fmt::format("Write {}(2 pi …).", x.text));
+    e.diagnostics.warning(
+        "W0309", x.arguments[0]->span, fmt::format("a frequency in Hz stands in the argument of {} without 2π", x.text),
+        "A frequency of 1 Hz turns the phase by 2π in a second.", fmt::format("Write {}(2 pi …).", x.text));
+  if (f.rule == Rule::Circular) warn_of_degrees(e, a, dimensions::angle(), *x.arguments[0]);
   Expr value = apply(f.kind, a.scalar());
   if (f.reciprocal) value = pow(value, Rational(-1));
   Value v = Value::of(value, f.rule == Rule::Inverse ? e.dimension(dimensions::angle()) : Dimension{}, a.order);
@@ -107,8 +113,8 @@ Value of_one(Elaboration& e, const Expression& x, Value a) {
 Value of_vectors(Elaboration& e, const Expression& x, const std::vector<Value>& arguments) {
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (arguments[i].is_vector) continue;
-    e.diagnostics.error("E0210", x.arguments[i]->span, fmt::format("`{}` of a number", x.text), "Its arguments are vectors.",
-                        x.text == "norm" ? "Write abs(…) for the size of a number." : "");
+    e.diagnostics.error("E0210", x.arguments[i]->span, fmt::format("`{}` of a number", x.text),
+                        "Its arguments are vectors.", x.text == "norm" ? "Write abs(…) for the size of a number." : "");
     return Value::poison();
   }
   if (x.text == "dot") return dot_product(e, arguments[0], arguments[1], x);
@@ -121,7 +127,8 @@ Value of_vectors(Elaboration& e, const Expression& x, const std::vector<Value>& 
 Value value_of_call(Elaboration& e, const Expression& x, const Place& place) {
   if (x.text == "multiplier" || x.text == "reaction") {
     e.diagnostics.error("E0503", x.span, fmt::format("not supported yet: {}(…)", x.text),
-                        "Forces of constraints need constraints, which a later version carries out.", "Leave this line out for now.");
+                        "Forces of constraints need constraints, which a later version carries out.",
+                        "Leave this line out for now.");
     return Value::poison();
   }
   const bool vectors = x.text == "dot" || x.text == "cross" || x.text == "norm";

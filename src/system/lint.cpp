@@ -18,7 +18,11 @@ double scattered(std::size_t index, int attempt) {
 }  // namespace
 
 Subject::Subject(const Model& m, const SourceText& text, Diagnostics& d)
-    : model(m), system(m.system), source(text), diagnostics(d), lagrangian(expand_time_derivatives(m.system.lagrangian())) {
+    : model(m),
+      system(m.system),
+      source(text),
+      diagnostics(d),
+      lagrangian(expand_time_derivatives(m.system.lagrangian())) {
   for (const Parameter& p : system.parameters) order.parameters.push_back(p.symbol);
   for (const Coordinate& c : system.coordinates) {
     order.coordinates.push_back(c.q);

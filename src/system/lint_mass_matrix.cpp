@@ -161,7 +161,8 @@ std::string combination(const Subject& s, const Row& v, double unit) {
   for (std::size_t i = 0; i < v.size(); ++i)
     if (v[i] != 0) parts.push_back(fmt::format("{}' by {:.4g}", s.system.coordinates[i].name, v[i] / unit));
   std::string out;
-  for (std::size_t i = 0; i < parts.size(); ++i) out += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    out += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
   return out;
 }
 
@@ -170,17 +171,21 @@ std::string names(const Subject& s, const Row& v) {
   for (std::size_t i = 0; i < v.size(); ++i)
     if (v[i] != 0) parts.push_back("`" + s.system.coordinates[i].name + "`");
   std::string out;
-  for (std::size_t i = 0; i < parts.size(); ++i) out += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    out += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
   return out;
 }
 
 void report_massless(Subject& s, std::size_t coordinate) {
   const Coordinate& c = s.system.coordinates[coordinate];
   const bool from_masses = kinetic_energy_of_masses_alone(s.system);
-  s.diagnostics.error("E0407", c.span, fmt::format("the coordinate `{}` has no kinetic energy", c.name),
-                      from_masses ? fmt::format("No mass moves when {0} changes, so that no equation gives its acceleration {0}''.", c.name)
-                                  : fmt::format("{0}' does not enter T, so that no equation gives its acceleration {0}''.", c.name),
-                      from_masses ? "Give a point that moves with it a mass, or a body its inertia." : fmt::format("Add its part to T, or remove the coordinate.", c.name));
+  s.diagnostics.error(
+      "E0407", c.span, fmt::format("the coordinate `{}` has no kinetic energy", c.name),
+      from_masses
+          ? fmt::format("No mass moves when {0} changes, so that no equation gives its acceleration {0}''.", c.name)
+          : fmt::format("{0}' does not enter T, so that no equation gives its acceleration {0}''.", c.name),
+      from_masses ? "Give a point that moves with it a mass, or a body its inertia."
+                  : fmt::format("Add its part to T, or remove the coordinate.", c.name));
 }
 
 void report_combination(Subject& s, const Row& v) {
@@ -190,20 +195,30 @@ void report_combination(Subject& s, const Row& v) {
   const Coordinate& c = s.system.coordinates[last];
   const std::string change = combination(s, v, v[last]);
   if (kinetic_energy_of_masses_alone(s.system)) {
-    s.diagnostics.error("E0417", c.span, fmt::format("the masses cannot tell {} apart", names(s, v)),
-                        fmt::format("Changing {} moves no mass: there are more coordinates than the points have ways to move.", change),
-                        fmt::format("Remove `{}`, or give a mass to a point that it moves by itself.", c.name));
+    s.diagnostics.error(
+        "E0417", c.span, fmt::format("the masses cannot tell {} apart", names(s, v)),
+        fmt::format("Changing {} moves no mass: there are more coordinates than the points have ways to move.", change),
+        fmt::format("Remove `{}`, or give a mass to a point that it moves by itself.", c.name));
     return;
   }
-  s.diagnostics.error("E0408", c.span, fmt::format("the kinetic energy cannot tell {} apart", names(s, v)),
-                      fmt::format("Changing {} leaves T as it is: the mass matrix is singular, and the accelerations are not determined.", change),
-                      "Add the missing part of T, or use fewer coordinates.");
+  s.diagnostics.error(
+      "E0408", c.span, fmt::format("the kinetic energy cannot tell {} apart", names(s, v)),
+      fmt::format(
+          "Changing {} leaves T as it is: the mass matrix is singular, and the accelerations are not determined.",
+          change),
+      "Add the missing part of T, or use fewer coordinates.");
 }
 
 void report_zero_parameter(Subject& s, const Parameter& p) {
   const bool length = p.dimension.same_as(dimensions::length()), mass = p.dimension.same_as(dimensions::mass());
-  s.diagnostics.error("E0409", p.span, fmt::format("the {} `{}` is zero", length ? "length" : mass ? "mass" : "parameter", p.name),
-                      "With it the kinetic energy of a motion vanishes: the mass matrix is singular, and the accelerations are not determined.",
+  s.diagnostics.error("E0409", p.span,
+                      fmt::format("the {} `{}` is zero",
+                                  length ? "length"
+                                  : mass ? "mass"
+                                         : "parameter",
+                                  p.name),
+                      "With it the kinetic energy of a motion vanishes: the mass matrix is singular, and the "
+                      "accelerations are not determined.",
                       "Give it a value other than zero.");
 }
 
@@ -215,8 +230,13 @@ void mass_matrix_rules(Subject& s, const std::vector<bool>& unused) {
   if (!found.defined) return;
   if (!found.singular) {
     if (!found.positive)
-      s.diagnostics.warning("W0410", s.system.lagrangian_given ? s.system.lagrangian_given->span : s.system.kinetic.empty() ? s.system.coordinates.front().span : s.system.kinetic.front().span, "the kinetic energy is not positive",
-                            "Some motion has a negative kinetic energy: the mass matrix is indefinite. The equations of motion can still be solved.",
+      s.diagnostics.warning("W0410",
+                            s.system.lagrangian_given  ? s.system.lagrangian_given->span
+                            : s.system.kinetic.empty() ? s.system.coordinates.front().span
+                                                       : s.system.kinetic.front().span,
+                            "the kinetic energy is not positive",
+                            "Some motion has a negative kinetic energy: the mass matrix is indefinite. The equations "
+                            "of motion can still be solved.",
                             "Check the signs in T, unless this is meant (as in Bateman's Lagrangian).");
     return;
   }
@@ -225,8 +245,10 @@ void mass_matrix_rules(Subject& s, const std::vector<bool>& unused) {
   for (const Row& v : found.null) {
     const auto count = std::count_if(v.begin(), v.end(), [](double x) { return x != 0; });
     const auto first = std::find_if(v.begin(), v.end(), [](double x) { return x != 0; }) - v.begin();
-    if (count == 1) report_massless(s, static_cast<std::size_t>(first));
-    else report_combination(s, v);
+    if (count == 1)
+      report_massless(s, static_cast<std::size_t>(first));
+    else
+      report_combination(s, v);
   }
 }
 

@@ -39,8 +39,10 @@ bool is_linear_in_velocities(Expr term) {
   const std::size_t factors = term.is(Kind::Product) ? term.size() : 1;
   for (std::size_t i = 0; i < factors; ++i) {
     const Expr factor = term.is(Kind::Product) ? term[i] : term;
-    if (is_velocity(factor)) ++degree;
-    else if (has_velocity(factor)) return false;
+    if (is_velocity(factor))
+      ++degree;
+    else if (has_velocity(factor))
+      return false;
   }
   return degree == 1;
 }
@@ -52,9 +54,11 @@ void check_terms(Subject& s, const EnergyTerm& energy) {
     if (!is_linear_in_velocities(term)) continue;
     if (zero_test(variational_residual(term, s.order.coordinates)).verdict != Verdict::Zero) continue;
     const std::string text = s.show(term);
-    s.diagnostics.warning("W0412", energy.span, text.empty() ? "a term of the Lagrangian has no effect" : fmt::format("the term {} has no effect", text),
-                          "It is the total time derivative of a function of the coordinates, which adds nothing to Lagrange's equations.",
-                          "Leave it out. If friction was meant, write D = 1/2 c q'^2.");
+    s.diagnostics.warning(
+        "W0412", energy.span,
+        text.empty() ? "a term of the Lagrangian has no effect" : fmt::format("the term {} has no effect", text),
+        "It is the total time derivative of a function of the coordinates, which adds nothing to Lagrange's equations.",
+        "Leave it out. If friction was meant, write D = 1/2 c q'^2.");
   }
 }
 
@@ -71,7 +75,8 @@ std::vector<bool> unused_coordinates(Subject& s) {
     out.push_back(unused);
     if (unused)
       s.diagnostics.error("E0406", c.span, fmt::format("the coordinate `{}` is never used", c.name),
-                          "No energy and no force depends on it: nothing determines its motion.", "Remove it, or use it in a position or an energy.");
+                          "No energy and no force depends on it: nothing determines its motion.",
+                          "Remove it, or use it in a position or an energy.");
   }
   return out;
 }
@@ -95,27 +100,38 @@ void gravity_twice(Subject& s) {
   for (const EnergyTerm& t : s.system.potential) {
     if (t.origin != "V") continue;
     const Symbols here = symbols_in({t.value});
-    const auto in = [&](const Symbols& set) { return std::any_of(set.begin(), set.end(), [&](const Expr& x) { return here.count(x) != 0; }); };
+    const auto in = [&](const Symbols& set) {
+      return std::any_of(set.begin(), set.end(), [&](const Expr& x) { return here.count(x) != 0; });
+    };
     if (in(g) && in(mass))
-      s.diagnostics.warning("W0413", t.span, "the weight is counted twice", "`gravity` already gives every mass its potential energy.", "Remove this part of V, or the `gravity` statement.");
+      s.diagnostics.warning("W0413", t.span, "the weight is counted twice",
+                            "`gravity` already gives every mass its potential energy.",
+                            "Remove this part of V, or the `gravity` statement.");
   }
 }
 
 void energies_without_velocity(Subject& s) {
   for (const EnergyTerm& t : s.system.kinetic)
     if (t.origin == "T" && !s.system.lagrangian_given && !has_velocity(s.system.kinetic_energy()))
-      s.diagnostics.warning("W0421", t.span, "no velocity stands in the kinetic energy", "A kinetic energy is made of velocities: 1/2 m x'^2.", "Write x' for a velocity; a potential energy belongs in V.");
+      s.diagnostics.warning("W0421", t.span, "no velocity stands in the kinetic energy",
+                            "A kinetic energy is made of velocities: 1/2 m x'^2.",
+                            "Write x' for a velocity; a potential energy belongs in V.");
   for (const EnergyTerm& t : s.system.dissipation)
     if (t.origin == "D" && !has_velocity(t.value))
-      s.diagnostics.warning("W0422", t.span, "no velocity stands in the dissipation function", "It enters as ∂D/∂q̇: without a velocity it has no effect.", "Linear damping is D = 1/2 c x'^2.");
+      s.diagnostics.warning("W0422", t.span, "no velocity stands in the dissipation function",
+                            "It enters as ∂D/∂q̇: without a velocity it has no effect.",
+                            "Linear damping is D = 1/2 c x'^2.");
 }
 
 void claims(Subject& s) {
   const char* name[] = {"T", "V", "U", "L", "D"};
-  const char* long_name[] = {"kinetic energy", "potential energy", "generalized potential", "Lagrangian", "dissipation function"};
+  const char* long_name[] = {"kinetic energy", "potential energy", "generalized potential", "Lagrangian",
+                             "dissipation function"};
   for (const EnergyClaim& c : s.system.claims) {
     const int k = static_cast<int>(c.which);
-    const Expr actual = c.which == Which::T ? s.system.kinetic_energy() : c.which == Which::V ? s.system.potential_energy() : s.system.lagrangian();
+    const Expr actual = c.which == Which::T   ? s.system.kinetic_energy()
+                        : c.which == Which::V ? s.system.potential_energy()
+                                              : s.system.lagrangian();
     const Expr difference = expand_time_derivatives(c.value - actual);
     ExprVector must_vanish = {difference};
     if (c.which == Which::V) must_vanish = gradient(difference, s.order.coordinates);  // its zero level is free
@@ -123,13 +139,18 @@ void claims(Subject& s) {
     const ZeroTest test = zero_test(must_vanish);
     if (test.verdict == Verdict::Zero) continue;
     const std::string text = s.show(difference);
-    const char* parts = c.which == Which::T ? "the points and bodies" : c.which == Which::V ? "gravity and springs" : "points, bodies, springs and gravity";
+    const char* parts = c.which == Which::T   ? "the points and bodies"
+                        : c.which == Which::V ? "gravity and springs"
+                                              : "points, bodies, springs and gravity";
     if (test.verdict == Verdict::Undecided) {
-      s.diagnostics.warning("W0411", c.span, fmt::format("whether this is the {} that {} give could not be decided", long_name[k], parts), test.reason, "");
+      s.diagnostics.warning(
+          "W0411", c.span, fmt::format("whether this is the {} that {} give could not be decided", long_name[k], parts),
+          test.reason, "");
       continue;
     }
     s.diagnostics.error("E0411", c.span, fmt::format("this is not the {} that {} give", long_name[k], parts),
-                        text.empty() ? fmt::format("Beside them `{} = …` is a claim, and it is false.", name[k]) : fmt::format("It differs by {}.", text),
+                        text.empty() ? fmt::format("Beside them `{} = …` is a claim, and it is false.", name[k])
+                                     : fmt::format("It differs by {}.", text),
                         fmt::format("Remove the line, correct it, or write `{} += …` for a further part.", name[k]));
   }
 }

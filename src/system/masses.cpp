@@ -19,7 +19,9 @@ Value mass_of(Elaboration& e, const Expression& x, const std::string& name) {
   if (!size || *size > 0) return m;
   const bool zero = *size == 0;
   e.diagnostics.error("E0403", x.span, fmt::format("the mass of {} is {}", name, zero ? "zero" : "negative"),
-                      zero ? "Without mass there is no inertia: no force would have a finite acceleration as its answer." : "Masses are positive: a negative one would gain speed against every force.",
+                      zero
+                          ? "Without mass there is no inertia: no force would have a finite acceleration as its answer."
+                          : "Masses are positive: a negative one would gain speed against every force.",
                       zero ? "Leave `mass` out where the point only marks a place." : "Give it a positive value.");
   return Value::poison();
 }
@@ -55,7 +57,8 @@ bool second_moments_possible(const double i[3][3]) {
     const int c = (r + 1) % 3;
     if (s[r][r] * s[c][c] - s[r][c] * s[r][c] < -slack * std::abs(half)) return false;
   }
-  const double determinant = s[0][0] * (s[1][1] * s[2][2] - s[1][2] * s[2][1]) - s[0][1] * (s[1][0] * s[2][2] - s[1][2] * s[2][0]) +
+  const double determinant = s[0][0] * (s[1][1] * s[2][2] - s[1][2] * s[2][1]) -
+                             s[0][1] * (s[1][0] * s[2][2] - s[1][2] * s[2][0]) +
                              s[0][2] * (s[1][0] * s[2][1] - s[1][1] * s[2][0]);
   return determinant >= -slack * half * half;
 }
@@ -70,12 +73,14 @@ bool check_inertia(Elaboration& e, const ExprMatrix& m, Span span, const std::st
     }
   for (std::size_t i = 0; i < m.rows; ++i) {
     if (value[i][i] >= 0) continue;
-    e.diagnostics.error("E0404", span, fmt::format("a moment of inertia of {} is negative", name), "A moment of inertia is a sum of masses times squared distances.", "");
+    e.diagnostics.error("E0404", span, fmt::format("a moment of inertia of {} is negative", name),
+                        "A moment of inertia is a sum of masses times squared distances.", "");
     return false;
   }
   if (m.rows == 1 || second_moments_possible(value)) return true;
   e.diagnostics.error("E0404", span, fmt::format("no body has the moments of inertia of {}", name),
-                      "Principal moments satisfy the triangle inequality: each is at most the sum of the other two.", "Check the values; they are about the centre of mass, along the axes of the body.");
+                      "Principal moments satisfy the triangle inequality: each is at most the sum of the other two.",
+                      "Check the values; they are about the centre of mass, along the axes of the body.");
   return false;
 }
 
@@ -93,7 +98,9 @@ std::optional<ExprMatrix> inertia_of(Elaboration& e, const syntax::BodyStatement
   const std::size_t needed = s.inertia_kind == Inertia::Scalar ? 1 : s.inertia_kind == Inertia::Diagonal ? 3 : 6;
   if (values.size() != needed || (e.system().space_dimension == 2 && needed != 1)) {
     e.diagnostics.error("E0404", s.inertia_span, fmt::format("the inertia of {} has {} numbers", name, values.size()),
-                        e.system().space_dimension == 2 ? "In the plane a body has one moment of inertia." : "In space: diag(xx, yy, zz) or full(xx, yy, zz, xy, xz, yz).", "");
+                        e.system().space_dimension == 2 ? "In the plane a body has one moment of inertia."
+                                                        : "In space: diag(xx, yy, zz) or full(xx, yy, zz, xy, xz, yz).",
+                        "");
     return std::nullopt;
   }
   const ExprMatrix m = inertia_matrix(e, values, s.inertia_kind);

@@ -60,8 +60,12 @@ std::unordered_map<Expr, Expr, ExprHash> MechanicalSystem::definition_values() c
   return out;
 }
 
-const Coordinate* MechanicalSystem::find_coordinate(std::string_view name) const { return find_by_name(coordinates, name); }
-const Parameter* MechanicalSystem::find_parameter(std::string_view name) const { return find_by_name(parameters, name); }
+const Coordinate* MechanicalSystem::find_coordinate(std::string_view name) const {
+  return find_by_name(coordinates, name);
+}
+const Parameter* MechanicalSystem::find_parameter(std::string_view name) const {
+  return find_by_name(parameters, name);
+}
 const Point* MechanicalSystem::find_point(std::string_view name) const { return find_by_name(points, name); }
 const Body* MechanicalSystem::find_body(std::string_view name) const { return find_by_name(bodies, name); }
 

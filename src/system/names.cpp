@@ -46,7 +46,8 @@ Value derivative_of_coordinate(Elaboration& e, const Declaration& d, int primes)
 
 bool refuse_high_order(Elaboration& e, const Expression& x) {
   if (x.primes <= 2) return false;
-  e.diagnostics.error("E0401", x.span, fmt::format("`{}` is a derivative of order {}", e.source.slice(x.span), x.primes),
+  e.diagnostics.error("E0401", x.span,
+                      fmt::format("`{}` is a derivative of order {}", e.source.slice(x.span), x.primes),
                       "Mechanics knows positions, velocities and accelerations.", "");
   return true;
 }
@@ -56,7 +57,8 @@ Value component(Elaboration& e, const Value& base, const Expression& x) {
   if (!base.is_vector || index == 3) {
     const std::string text(e.source.slice(x.arguments[0]->span));
     e.diagnostics.error("E0216", x.name_span, fmt::format("`{}` has no `.{}`", text, x.text),
-                        base.is_vector ? "A vector has the components .x, .y and .z." : "Only points, bodies and vectors have components.",
+                        base.is_vector ? "A vector has the components .x, .y and .z."
+                                       : "Only points, bodies and vectors have components.",
                         x.text == "w" && base.is_vector ? "The angular velocity of a body is .ω." : "");
     return Value::poison();
   }
@@ -102,12 +104,14 @@ void unknown_name(Elaboration& e, const std::string& text, Span span) {
   if (names.size() > 2000) names.resize(2000);
   const std::string near = did_you_mean(text, names);
   if (near.empty() && find_unit(text) && !e.dimensionless) {
-    e.diagnostics.error("E0312", span, fmt::format("`{}` is no name of this model", text),
-                        "In a formula a unit stands in square brackets, so that it cannot be taken for a name.",
-                        fmt::format("Write 3 [{0}] for a number with the unit {0}, or declare {0} with `param`.", text));
+    e.diagnostics.error(
+        "E0312", span, fmt::format("`{}` is no name of this model", text),
+        "In a formula a unit stands in square brackets, so that it cannot be taken for a name.",
+        fmt::format("Write 3 [{0}] for a number with the unit {0}, or declare {0} with `param`.", text));
     return;
   }
-  e.diagnostics.error("E0201", span, fmt::format("`{}` is not declared", text), "Every name of a formula is declared somewhere in the model.",
+  e.diagnostics.error("E0201", span, fmt::format("`{}` is not declared", text),
+                      "Every name of a formula is declared somewhere in the model.",
                       near.empty() ? fmt::format("Declare it: `param {0} = …`, `coord {0} : …` or `let {0} = …`.", text)
                                    : fmt::format("Did you mean `{}`?", near));
 }
@@ -133,7 +137,8 @@ Value value_of_name(Elaboration& e, const Expression& x, const Place& place) {
     return time_derivative(e, meaning(*d, place), x.primes, x);
   }
   if (e.table.is_lost(x.text)) return Value::poison();
-  if (x.text == "t") return time_derivative(e, Value::of(e.context.time(), e.dimension(dimensions::time())), x.primes, x);
+  if (x.text == "t")
+    return time_derivative(e, Value::of(e.context.time(), e.dimension(dimensions::time())), x.primes, x);
   if (x.text == "pi") {
     Value v = Value::of(e.context.pi(), Dimension{});
     v.has_pi = true;

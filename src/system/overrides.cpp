@@ -15,11 +15,15 @@ struct Fragment {
   syntax::SyntaxTree tree;
 
   Fragment(const char* option, const char* statement, const std::string& text)
-      : option(option), text(text), source("command line", fmt::format("{} {}\n", statement, text)), tree(syntax::parse(source, diagnostics)) {}
+      : option(option),
+        text(text),
+        source("command line", fmt::format("{} {}\n", statement, text)),
+        tree(syntax::parse(source, diagnostics)) {}
 };
 
 void refuse(Elaboration& e, const Fragment& f, const std::string& message, std::string reason, std::string help) {
-  e.diagnostics.error("E0224", std::nullopt, fmt::format("{} {}: {}", f.option, f.text, message), std::move(reason), std::move(help));
+  e.diagnostics.error("E0224", std::nullopt, fmt::format("{} {}: {}", f.option, f.text, message), std::move(reason),
+                      std::move(help));
 }
 
 /// The first mistake inside the fragment, told as one of the option; true if there was any.
@@ -37,7 +41,9 @@ void unknown_parameter(Elaboration& e, const Fragment& f, const std::string& nam
   for (const Declaration& other : e.table.declarations())
     if (other.kind == Declaration::Kind::Parameter) names.push_back(other.name);
   const std::string near = did_you_mean(name, names);
-  refuse(e, f, d && d->statement ? fmt::format("`{}` is a {}, not a parameter", name, word_of(d->kind)) : fmt::format("the model has no parameter `{}`", name),
+  refuse(e, f,
+         d && d->statement ? fmt::format("`{}` is a {}, not a parameter", name, word_of(d->kind))
+                           : fmt::format("the model has no parameter `{}`", name),
          "Only parameters can be set.", near.empty() ? "" : fmt::format("Did you mean `{}`?", near));
 }
 
@@ -62,8 +68,11 @@ void set_parameter(Elaboration& e, Fragment& f, Elaboration& inner, Declaration&
   if (hand_over(e, f) || d->value.poisoned || given.value.poisoned) return;
   const bool fits = d->value.fits_any || given.value.fits_any || given.value.dimension.same_as(d->value.dimension);
   if (!fits || given.value.parts.size() != d->value.parts.size())
-    return refuse(e, f, fmt::format("`{}` is {}, this is {}", d->name, describe(d->value.dimension), describe(given.value.dimension)),
-                  "A parameter keeps its dimension.", fmt::format("Write --set {}=… with a unit of the same dimension.", d->name));
+    return refuse(
+        e, f,
+        fmt::format("`{}` is {}, this is {}", d->name, describe(d->value.dimension), describe(given.value.dimension)),
+        "A parameter keeps its dimension.",
+        fmt::format("Write --set {}=… with a unit of the same dimension.", d->name));
   replace(e, *d, inner);
   if (d->value.fits_any) {
     d->value.dimension = given.value.dimension;
@@ -73,9 +82,17 @@ void set_parameter(Elaboration& e, Fragment& f, Elaboration& inner, Declaration&
 
 }  // namespace
 
-Elaboration::Elaboration(const Elaboration& outer, const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics)
-    : tree(tree), source(source), diagnostics(diagnostics), table(tree, source, diagnostics),
-      model{MechanicalSystem{}, Experiment{}}, context(outer.context), values(outer.values), exact_values(outer.exact_values), dimensionless(outer.dimensionless) {
+Elaboration::Elaboration(const Elaboration& outer, const syntax::SyntaxTree& tree, const SourceText& source,
+                         Diagnostics& diagnostics)
+    : tree(tree),
+      source(source),
+      diagnostics(diagnostics),
+      table(tree, source, diagnostics),
+      model{MechanicalSystem{}, Experiment{}},
+      context(outer.context),
+      values(outer.values),
+      exact_values(outer.exact_values),
+      dimensionless(outer.dimensionless) {
   model.system.context = outer.model.system.context;
   model.system.space_dimension = outer.model.system.space_dimension;
 }
@@ -105,7 +122,9 @@ void apply_start_overrides(Elaboration& e, const std::vector<std::string>& overr
         if (hand_over(e, f)) break;
         if (!value) continue;
         auto& list = e.experiment().start;
-        std::erase_if(list, [&](const StartValue& old) { return old.coordinate == value->coordinate && old.order == value->order; });
+        std::erase_if(list, [&](const StartValue& old) {
+          return old.coordinate == value->coordinate && old.order == value->order;
+        });
         list.push_back(*value);
         list.back().span = {};
       }

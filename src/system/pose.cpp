@@ -9,9 +9,7 @@ ExprMatrix identity(Context& c, std::size_t n) {
   return m;
 }
 
-ExprMatrix planar(Expr angle) {
-  return {2, 2, {cos(angle), -sin(angle), sin(angle), cos(angle)}};
-}
+ExprMatrix planar(Expr angle) { return {2, 2, {cos(angle), -sin(angle), sin(angle), cos(angle)}}; }
 
 ExprMatrix about_axis(int axis, Expr angle) {
   ExprMatrix m = identity(angle.context(), 3);
@@ -30,8 +28,10 @@ ExprMatrix about_vector(const ExprVector& n, Expr angle) {
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) {
       m.at(i, j) = rest * n[i] * n[j];
-      if (i == j) m.at(i, j) = m.at(i, j) + c;
-      else m.at(i, j) = m.at(i, j) + ((j + 3 - i) % 3 == 1 ? -(s * n[3 - i - j]) : s * n[3 - i - j]);
+      if (i == j)
+        m.at(i, j) = m.at(i, j) + c;
+      else
+        m.at(i, j) = m.at(i, j) + ((j + 3 - i) % 3 == 1 ? -(s * n[3 - i - j]) : s * n[3 - i - j]);
     }
   return m;
 }

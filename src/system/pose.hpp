@@ -11,13 +11,13 @@ namespace maupertuis::elaboration {
 ///
 /// ω in the axes of the frame follows the same way, ω ← Rᵢᵀ ω + α̇ᵢ nᵢ, so that no matrix is differentiated.
 struct Pose {
-  ExprVector origin;          // world axes [dimension]
-  ExprMatrix rotation;        // frame → world [dimension × dimension]
-  ExprVector omega;           // frame axes [3], [1] in 2-D
-  ExprVector omega_world;     // world axes [3], [1] in 2-D
-  Expr angle;                 // 2-D: the sum of the turns; 3-D: of the last turn, if about a coordinate axis
-  int order = -1;             // 0: a coordinate stands in it; -1: it rests, or moves with time alone
-  int last_axis = -1;         // 3-D: 0, 1, 2 of the last turn; -1: none or another axis
+  ExprVector origin;       // world axes [dimension]
+  ExprMatrix rotation;     // frame → world [dimension × dimension]
+  ExprVector omega;        // frame axes [3], [1] in 2-D
+  ExprVector omega_world;  // world axes [3], [1] in 2-D
+  Expr angle;              // 2-D: the sum of the turns; 3-D: of the last turn, if about a coordinate axis
+  int order = -1;          // 0: a coordinate stands in it; -1: it rests, or moves with time alone
+  int last_axis = -1;      // 3-D: 0, 1, 2 of the last turn; -1: none or another axis
   std::shared_ptr<const Pose> before_last;
 };
 

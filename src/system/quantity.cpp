@@ -49,22 +49,25 @@ std::optional<bool> words_are_names(Elaboration& e, const Expression& x, const P
   if (!all_units(words)) return true;
   if (!place.expected || e.dimensionless) return e.dimensionless;
   Dimension as_units;
-  for (const auto& w : words.factors) as_units = as_units * pow(find_unit(w.word)->dimension, w.exponent_numerator, w.exponent_denominator);
+  for (const auto& w : words.factors)
+    as_units = as_units * pow(find_unit(w.word)->dimension, w.exponent_numerator, w.exponent_denominator);
   const bool units_fit = as_units.same_as(*place.expected);
   const bool names_fit = dimension_of_names(e, words).same_as(*place.expected);
   if (units_fit && names_fit) {
     const std::string text(e.source.slice(words.span));
-    e.diagnostics.error("E0307", words.span, fmt::format("`{}` is a unit and also a name of this model", text),
-                        fmt::format("Both readings give {} here.", describe(*place.expected)),
-                        fmt::format("Write {} [{}] for the unit or {} * {} for the name.", e.source.slice(x.arguments[0]->span), text,
-                                    e.source.slice(x.arguments[0]->span), text));
+    e.diagnostics.error(
+        "E0307", words.span, fmt::format("`{}` is a unit and also a name of this model", text),
+        fmt::format("Both readings give {} here.", describe(*place.expected)),
+        fmt::format("Write {} [{}] for the unit or {} * {} for the name.", e.source.slice(x.arguments[0]->span), text,
+                    e.source.slice(x.arguments[0]->span), text));
     return std::nullopt;
   }
   return names_fit;
 }
 
 /// An anonymous parameter for a number with a unit in a formula.
-Expr anonymous_constant(Elaboration& e, const std::string& name, Expr value, const Unit& unit, const std::string& written, Span span) {
+Expr anonymous_constant(Elaboration& e, const std::string& name, Expr value, const Unit& unit,
+                        const std::string& written, Span span) {
   const Expr symbol = e.context.symbol(name, Role::Constant);
   if (!e.constants.insert(symbol).second) return symbol;
   Parameter p;
@@ -87,8 +90,10 @@ Expr anonymous_constant(Elaboration& e, const std::string& name, Expr value, con
 Value value_of_number(Elaboration& e, const Expression& x) {
   const std::optional<Rational> r = x.text.size() <= 1000 ? Rational::parse(x.text) : std::nullopt;
   if (!r || !std::isfinite(r->to_double()) || (r->to_double() == 0 && !r->is_zero())) {
-    e.diagnostics.error("E0218", x.span, fmt::format("the number {} is beyond the range of computation", x.text.substr(0, 40)),
-                        "Numbers have at most 1000 digits and lie between 1e-308 and 1e308 in size.", "Choose units in which it is of moderate size.");
+    e.diagnostics.error("E0218", x.span,
+                        fmt::format("the number {} is beyond the range of computation", x.text.substr(0, 40)),
+                        "Numbers have at most 1000 digits and lie between 1e-308 and 1e308 in size.",
+                        "Choose units in which it is of moderate size.");
     return Value::poison();
   }
   Value v = Value::of(e.number(*r), Dimension{});
@@ -115,7 +120,12 @@ Value value_of_quantity(Elaboration& e, const Expression& x, const Place& place)
     const std::string written = written_unit(e.source, *x.unit);
     // A component of a vector is named by its own value: (3, 4) [N] is 3 N and 4 N.
     if (constant && part.is_number() && !part.is_zero())
-      part = anonymous_constant(e, fmt::format("{} {}", v.is_vector ? part.number().to_string() : std::string(e.source.slice(x.arguments[0]->span)), written), si, *unit, written, x.span);
+      part = anonymous_constant(
+          e,
+          fmt::format("{} {}",
+                      v.is_vector ? part.number().to_string() : std::string(e.source.slice(x.arguments[0]->span)),
+                      written),
+          si, *unit, written, x.span);
     else
       part = si;
   }

@@ -9,7 +9,8 @@ namespace maupertuis::elaboration {
 namespace {
 
 const char* reason_for(const std::string& what) {
-  if (what == "sweep") return "Parameter studies are carried out by a later version; the model itself is not concerned.";
+  if (what == "sweep")
+    return "Parameter studies are carried out by a later version; the model itself is not concerned.";
   if (what == "field" || what == "density") return "Fields are carried out by a later version.";
   if (what == "independent" || what == "path") return "Variational problems are carried out by a later version.";
   return "Constraints, contacts, Coulomb friction and events are carried out by a later version.";
@@ -20,7 +21,9 @@ void once(Elaboration& e, std::optional<Span>& first, Span span, const char* wha
     first = span;
     return;
   }
-  e.diagnostics.error("E0208", span, fmt::format("{} is given twice", what), fmt::format("It is already given in line {}.", e.source.locate(first->begin).line), "Keep one of them.");
+  e.diagnostics.error("E0208", span, fmt::format("{} is given twice", what),
+                      fmt::format("It is already given in line {}.", e.source.locate(first->begin).line),
+                      "Keep one of them.");
 }
 
 }  // namespace
@@ -31,7 +34,8 @@ void refuse_later_statements(Elaboration& e) {
     const auto* later = std::get_if<syntax::LaterStatement>(&s.body);
     if (!later || !told.insert(later->what).second) continue;
     if (later->what == "density" && told.count("field")) continue;  // it belongs to the field
-    e.diagnostics.error("E0501", s.span, fmt::format("not supported yet: {}", later->what), reason_for(later->what), "Leave this statement out for now.");
+    e.diagnostics.error("E0501", s.span, fmt::format("not supported yet: {}", later->what), reason_for(later->what),
+                        "Leave this statement out for now.");
   }
 }
 
@@ -62,7 +66,8 @@ void warn_idle_energies(Elaboration& e) {
   for (const syntax::Statement& s : e.tree.statements) {
     const auto* x = std::get_if<syntax::EnergyStatement>(&s.body);
     if (!x || x->which == Which::L || x->which == Which::D || e.table.energy(x->which).used) continue;
-    e.diagnostics.warning("W0418", x->name_span, fmt::format("this {} has no effect", name_of_energy(x->which)), "The Lagrangian is given whole, and it does not name it.",
+    e.diagnostics.warning("W0418", x->name_span, fmt::format("this {} has no effect", name_of_energy(x->which)),
+                          "The Lagrangian is given whole, and it does not name it.",
                           "Write L = T - V …, or leave one of them out.");
   }
 }
@@ -78,8 +83,10 @@ void warn_unused(Elaboration& e) {
     if (d.kind != Declaration::Kind::Parameter && d.kind != Declaration::Kind::Definition) continue;
     if (d.used) continue;
     const bool parameter = d.kind == Declaration::Kind::Parameter;
-    e.diagnostics.warning(parameter ? "W0415" : "W0416", d.span, fmt::format("the {} `{}` is never used", word_of(d.kind), d.name),
-                          parameter ? "Nothing in the model depends on it." : "No formula of the model names it.", "Remove it, or check the formula that should contain it.");
+    e.diagnostics.warning(parameter ? "W0415" : "W0416", d.span,
+                          fmt::format("the {} `{}` is never used", word_of(d.kind), d.name),
+                          parameter ? "Nothing in the model depends on it." : "No formula of the model names it.",
+                          "Remove it, or check the formula that should contain it.");
   }
   const auto named = [&](const std::string& name) {
     const Declaration* d = e.table.find(name.substr(0, name.find('.')));  // v.x is a component of v

@@ -11,14 +11,16 @@ void unknown_unit(Elaboration& e, const syntax::UnitExpression::Factor& word) {
   const std::string near = did_you_mean(word.word, candidates);
   const Declaration* named = e.table.find(word.word);
   if (named && named->statement) {
-    e.diagnostics.error("E0209", word.span, fmt::format("`{}` is a {} of this model, not a unit", word.word, word_of(named->kind)),
+    e.diagnostics.error("E0209", word.span,
+                        fmt::format("`{}` is a {} of this model, not a unit", word.word, word_of(named->kind)),
                         "Here stands a quantity: a number followed by its unit.",
                         "Write a formula with `*`, in a `let` if it defines something.");
     return;
   }
-  e.diagnostics.error("E0301", word.span, fmt::format("`{}` is no unit", word.word),
-                      "Units are SI units with their prefixes, derived units, and common ones such as deg, rpm, bar, inch.",
-                      near.empty() ? "" : fmt::format("Did you mean `{}`?", near));
+  e.diagnostics.error(
+      "E0301", word.span, fmt::format("`{}` is no unit", word.word),
+      "Units are SI units with their prefixes, derived units, and common ones such as deg, rpm, bar, inch.",
+      near.empty() ? "" : fmt::format("Did you mean `{}`?", near));
 }
 
 std::optional<Rational> exact_power(const Rational& base, int numerator, int denominator) {
@@ -48,8 +50,11 @@ std::optional<Unit> unit_of(Elaboration& e, const syntax::UnitExpression& words)
     const std::optional<Rational> factor =
         std::abs(n) <= 30 && d <= 30 ? exact_power(unit->factor, n, d) : std::nullopt;
     if (!factor || (unit->pi_power * n) % d != 0) {
-      e.diagnostics.error("E0301", word.span, fmt::format("`{}^{}` is no unit that a quantity has", word.word, d == 1 ? fmt::format("{}", n) : fmt::format("({}/{})", n, d)),
-                          "The power of this unit is no exact number of SI units.", "Write the value in SI base units.");
+      e.diagnostics.error("E0301", word.span,
+                          fmt::format("`{}^{}` is no unit that a quantity has", word.word,
+                                      d == 1 ? fmt::format("{}", n) : fmt::format("({}/{})", n, d)),
+                          "The power of this unit is no exact number of SI units.",
+                          "Write the value in SI base units.");
       known = false;
       continue;
     }

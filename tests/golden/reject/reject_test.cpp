@@ -58,8 +58,10 @@ TEST_CASE("one mistake gives one message") {
     const Diagnostics diagnostics = check(source);
     // A model that is meant to have several mistakes says so in its first line.
     const bool several = read(path).rfind("# several", 0) == 0;
-    if (several) CHECK(diagnostics.items().size() > 1);
-    else CHECK(diagnostics.items().size() == 1);
+    if (several)
+      CHECK(diagnostics.items().size() > 1);
+    else
+      CHECK(diagnostics.items().size() == 1);
   }
 }
 

@@ -10,8 +10,10 @@ namespace {
 
 /// The message that `V = <formula>` gives, in a model with a few quantities; empty if it is an energy.
 std::string message_of(const std::string& formula) {
-  const Elaborated e("param m = 1 kg, l = 2 m, g = 9.81 m/s^2, k = 3 N/m, τ = 1 s, f = 5 Hz, ω = 2 rad/s, n = 3, Q = 1 C\n"
-                     "coord x : length, θ : angle\nT = 1/2 m x'^2 + 1/2 m l^2 θ'^2\nV = " + formula + "\n");
+  const Elaborated e(
+      "param m = 1 kg, l = 2 m, g = 9.81 m/s^2, k = 3 N/m, τ = 1 s, f = 5 Hz, ω = 2 rad/s, n = 3, Q = 1 C\n"
+      "coord x : length, θ : angle\nT = 1/2 m x'^2 + 1/2 m l^2 θ'^2\nV = " +
+      formula + "\n");
   for (const Diagnostic& d : e.diagnostics.items())
     if (d.severity == Severity::Error) return d.code + " " + d.message;
   return "";
@@ -20,9 +22,28 @@ std::string message_of(const std::string& formula) {
 }  // namespace
 
 TEST_CASE("formulas of one dimension pass") {
-  for (const char* good : {"m g l cos θ", "1/2 k x^2", "k x l sin θ + 0", "m g l (1 - cos θ) + 0 + k (x - l θ)^2", "3 [J] cos 2θ", "m (l/τ)^2 n", "m g sqrt(x^2 + l^2)",
-                           "k l^2 exp(-x/l)", "k abs(x) l", "k max(x, l)^2", "piecewise(x < l : k x l, else : 0)", "m g l atan2(x, l)", "k l^2 (x/l)^n", "m l^n g/l^2",
-                           "k l^2 sin(2 pi f t)", "k l^2 sin(ω t)", "m (ω l)^2", "k norm((x, l)) l", "k dot((x, l), (x, l))", "k cross((x, l), (l, x))", "10 [N] x", "2 [kcal] θ"})
+  for (const char* good : {"m g l cos θ",
+                           "1/2 k x^2",
+                           "k x l sin θ + 0",
+                           "m g l (1 - cos θ) + 0 + k (x - l θ)^2",
+                           "3 [J] cos 2θ",
+                           "m (l/τ)^2 n",
+                           "m g sqrt(x^2 + l^2)",
+                           "k l^2 exp(-x/l)",
+                           "k abs(x) l",
+                           "k max(x, l)^2",
+                           "piecewise(x < l : k x l, else : 0)",
+                           "m g l atan2(x, l)",
+                           "k l^2 (x/l)^n",
+                           "m l^n g/l^2",
+                           "k l^2 sin(2 pi f t)",
+                           "k l^2 sin(ω t)",
+                           "m (ω l)^2",
+                           "k norm((x, l)) l",
+                           "k dot((x, l), (x, l))",
+                           "k cross((x, l), (l, x))",
+                           "10 [N] x",
+                           "2 [kcal] θ"})
     CHECK_MESSAGE(message_of(good) == "", good << ": " << message_of(good));
 }
 
@@ -39,8 +60,10 @@ TEST_CASE("messages name both sides in words of physics") {
 }
 
 TEST_CASE("dimensions of definitions are inferred, quantities converted exactly") {
-  const Elaborated e("param m = 2 g, v = 36 km/h, α = 180 deg, p = 1 bar, n = 60 rpm\ncoord x : length\nlet E = 1/2 m v^2, β = α/2\nT = 1/2 m x'^2\nV = E p x/(1 [Pa m])\nforce x = 1 [N] sin β\nstart x' = 1 cm/s\n"
-                     "expect x at n 1 [s^2/rad] = 3 mm ± 0.5\n");
+  const Elaborated e(
+      "param m = 2 g, v = 36 km/h, α = 180 deg, p = 1 bar, n = 60 rpm\ncoord x : length\nlet E = 1/2 m v^2, β = α/2\nT "
+      "= 1/2 m x'^2\nV = E p x/(1 [Pa m])\nforce x = 1 [N] sin β\nstart x' = 1 cm/s\n"
+      "expect x at n 1 [s^2/rad] = 3 mm ± 0.5\n");
   CHECK_MESSAGE(e.model.has_value(), e.messages());
   const MechanicalSystem& s = e.system();
   CHECK(s.find_parameter("m")->si_value == 0.002);
@@ -56,7 +79,9 @@ TEST_CASE("dimensions of definitions are inferred, quantities converted exactly"
 }
 
 TEST_CASE("a word after a number is a unit or a name, whichever fits") {
-  const Elaborated e("param m = 1 kg, R = 2 m, s = 3 m\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nV = 1 [N/m] R^2 + s 1 [N]\nstart x = 2 m, y = 2 R, z = 2 s\n");
+  const Elaborated e(
+      "param m = 1 kg, R = 2 m, s = 3 m\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nV = 1 [N/m] R^2 + s 1 "
+      "[N]\nstart x = 2 m, y = 2 R, z = 2 s\n");
   REQUIRE_MESSAGE(e.model.has_value(), e.messages());
   const auto at = e.at({0, 0, 0}, {0, 0, 0});
   CHECK(evaluate(e.experiment().start[0].value, at) == 2);  // metres, since twice the mass is no length
@@ -75,6 +100,23 @@ TEST_CASE("numbers with units in formulas become anonymous constants, angles do 
 }
 
 TEST_CASE("dimensionless models have no units") {
-  const Elaborated e("dimensionless\nparam μ = 0.0123\ncoord x, y : length, θ : angle\nT = x'^2 + y' + y'^2 + θ'^2\nV = x + y^2 + sin x\nstart θ = 90 deg\n");
+  const Elaborated e(
+      "dimensionless\nparam μ = 0.0123\ncoord x, y : length, θ : angle\nT = x'^2 + y' + y'^2 + θ'^2\nV = x + y^2 + sin "
+      "x\nstart θ = 90 deg\n");
   CHECK_MESSAGE(!e.diagnostics.has_errors(), e.messages());
+}
+
+TEST_CASE("degrees that were written without a unit are asked for, in starts and in formulas") {
+  const std::string model = "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ : angle\nT = 1/2 m l^2 θ'^2\n";
+  CHECK(Elaborated(model + "V = m g l cos(θ + 30)\n").codes() == "W0310");
+  CHECK(Elaborated(model + "V = m g l cos θ sin(30)\n").codes() == "W0310");
+  CHECK(Elaborated(model + "V = m g l cos(θ + 30 [deg]) + m g l sin(1)\n").fine());
+  CHECK(Elaborated(model + "V = m g l cos θ\nstart θ = 3.2\n").fine());
+}
+
+TEST_CASE("values that no run could begin with") {
+  const std::string model = "param m = 1 kg, a = 0 m, b = 2 m\ncoord x : length\nT = 1/2 m x'^2\n";
+  CHECK(Elaborated(model + "let c = b/a\nV = 1 [J] c x/b\n").codes() == "E0218");
+  CHECK(Elaborated(model + "start x = b^2/a\n").codes() == "E0218");
+  CHECK(Elaborated(model + "V = 1 [J] sqrt(a - b) x/b^(3/2)\nstart x = sqrt(a - b) sqrt(b)\n").codes() == "E0218");
 }

@@ -7,17 +7,21 @@ using namespace maupertuis::test;
 using doctest::Approx;
 
 TEST_CASE("the kinetic energy of points is that of their velocities") {
-  const Elaborated e("param m1 = 2 kg, m2 = 3 kg, l1 = 0.7 m, l2 = 1.3 m\ncoord θ1, θ2 : angle\n"
-                     "point A mass m1 at l1 (sin θ1, -cos θ1)\npoint B mass m2 at A + l2 (sin θ2, -cos θ2)\n");
+  const Elaborated e(
+      "param m1 = 2 kg, m2 = 3 kg, l1 = 0.7 m, l2 = 1.3 m\ncoord θ1, θ2 : angle\n"
+      "point A mass m1 at l1 (sin θ1, -cos θ1)\npoint B mass m2 at A + l2 (sin θ2, -cos θ2)\n");
   const double a = 0.4, b = -1.2, da = 1.5, db = 0.8;
-  const double expected = 0.5 * 5 * 0.49 * da * da + 0.5 * 3 * 1.69 * db * db + 3 * 0.7 * 1.3 * da * db * std::cos(a - b);
+  const double expected =
+      0.5 * 5 * 0.49 * da * da + 0.5 * 3 * 1.69 * db * db + 3 * 0.7 * 1.3 * da * db * std::cos(a - b);
   CHECK(value(e.system().kinetic_energy(), e.at({a, b}, {da, db})) == Approx(expected));
 }
 
 TEST_CASE("a rigid body: ½ m v² + ½ ω·I ω, with products of inertia") {
-  const Elaborated e("param m = 2 kg, l = 0.5 m\ncoord φ, θ, ψ : angle\n"
-                     "body B mass m inertia full(0.3 [kg m^2], 0.4 [kg m^2], 0.5 [kg m^2], 0.01 [kg m^2], 0.02 [kg m^2], -0.03 [kg m^2]) "
-                     "at l (sin θ cos φ, sin θ sin φ, cos θ) rotation euler zyz (φ, θ, ψ)\n");
+  const Elaborated e(
+      "param m = 2 kg, l = 0.5 m\ncoord φ, θ, ψ : angle\n"
+      "body B mass m inertia full(0.3 [kg m^2], 0.4 [kg m^2], 0.5 [kg m^2], 0.01 [kg m^2], 0.02 [kg m^2], -0.03 [kg "
+      "m^2]) "
+      "at l (sin θ cos φ, sin θ sin φ, cos θ) rotation euler zyz (φ, θ, ψ)\n");
   const std::vector<double> q = {0.3, 0.9, -0.5}, v = {0.7, -0.2, 1.1};
   const auto at = e.at(q, v);
   const ExprVector& omega = e.system().bodies[0].angular_velocity;
@@ -31,9 +35,11 @@ TEST_CASE("a rigid body: ½ m v² + ½ ω·I ω, with products of inertia") {
 }
 
 TEST_CASE("springs with and without a rest length, torsion springs, dampers, gravity") {
-  const Elaborated e("param m = 2 kg, k = 3 N/m, l0 = 0.5 m, κ = 4 N m/rad, c = 0.6 N s/m, g = 10 m/s^2, J = 1 kg m^2\ncoord x, y : length, θ : angle\n"
-                     "point P mass m at (x, y)\nspring O - P stiffness k length l0\nspring (0, 1 [m]) - P stiffness k\n"
-                     "torsion spring θ stiffness κ rest 0.25 [rad]\ndamper O - P coefficient c\ngravity (0, -g)\nT += 1/2 J θ'^2\n");
+  const Elaborated e(
+      "param m = 2 kg, k = 3 N/m, l0 = 0.5 m, κ = 4 N m/rad, c = 0.6 N s/m, g = 10 m/s^2, J = 1 kg m^2\ncoord x, y : "
+      "length, θ : angle\n"
+      "point P mass m at (x, y)\nspring O - P stiffness k length l0\nspring (0, 1 [m]) - P stiffness k\n"
+      "torsion spring θ stiffness κ rest 0.25 [rad]\ndamper O - P coefficient c\ngravity (0, -g)\nT += 1/2 J θ'^2\n");
   const double x = 0.6, y = -0.8, th = 0.9, vx = 0.3, vy = 0.5;
   const auto at = e.at({x, y, th}, {vx, vy, 0});
   const double V = 0.5 * 3 * 0.25 + 0.5 * 3 * (x * x + (y - 1) * (y - 1)) + 0.5 * 4 * 0.65 * 0.65 + 2 * 10 * y;
@@ -43,9 +49,11 @@ TEST_CASE("springs with and without a rest length, torsion springs, dampers, gra
 }
 
 TEST_CASE("virtual work: forces at points, torques, torques between bodies, forces along coordinates") {
-  const Elaborated e("param m = 1 kg, l = 2 m, F = 3 N, τ = 5 N m, J = 1 kg m^2\ncoord x : length, θ, φ : angle\n"
-                     "frame A at (x, 0) rotation angle θ\nbody B mass m inertia J at (l, 0) rotation angle φ in A\n"
-                     "force on B = (F, 2 F)\nforce on B = (0, F) in A\ntorque on B from A = τ\ntorque on A = 2 τ\nforce x = F\nT += 1/2 J θ'^2\n");
+  const Elaborated e(
+      "param m = 1 kg, l = 2 m, F = 3 N, τ = 5 N m, J = 1 kg m^2\ncoord x : length, θ, φ : angle\n"
+      "frame A at (x, 0) rotation angle θ\nbody B mass m inertia J at (l, 0) rotation angle φ in A\n"
+      "force on B = (F, 2 F)\nforce on B = (0, F) in A\ntorque on B from A = τ\ntorque on A = 2 τ\nforce x = F\nT += "
+      "1/2 J θ'^2\n");
   const double th = 0.6;
   const ExprVector q = e.system().generalized_forces();
   const auto at = e.at({0.1, th, 0.3}, {0, 0, 0});
@@ -56,14 +64,18 @@ TEST_CASE("virtual work: forces at points, torques, torques between bodies, forc
 }
 
 TEST_CASE("given energies add, and names of energies in formulas mean them") {
-  const Elaborated e("param m = 2 kg, k = 3 N/m, b = 0.1 kg/s\ncoord x, y : length\nT = 1/2 m x'^2\nT += 1/2 m y'^2\nV = 1/2 k (x^2 + y^2)\nL = T - V + b (x y' - y x')\n");
+  const Elaborated e(
+      "param m = 2 kg, k = 3 N/m, b = 0.1 kg/s\ncoord x, y : length\nT = 1/2 m x'^2\nT += 1/2 m y'^2\nV = 1/2 k (x^2 + "
+      "y^2)\nL = T - V + b (x y' - y x')\n");
   const auto at = e.at({0.5, 0.25}, {2, 3});
   CHECK(value(e.system().lagrangian(), at) == Approx(13 - 1.5 * 0.3125 + 0.1 * (0.5 * 3 - 0.25 * 2)));
   CHECK_MESSAGE(e.fine(), e.messages());
 }
 
 TEST_CASE("short names of energies may be names of the model; the long names always work") {
-  const Elaborated e("param V = 2 m^3, p = 3 Pa, m = 1 kg\ncoord x : number\nkinetic = 1 [m^2] m x'^2/2\npotential = p V x^2\nlet E = kinetic + potential\nexpect conserved E\n");
+  const Elaborated e(
+      "param V = 2 m^3, p = 3 Pa, m = 1 kg\ncoord x : number\nkinetic = 1 [m^2] m x'^2/2\npotential = p V x^2\nlet E = "
+      "kinetic + potential\nexpect conserved E\n");
   CHECK_MESSAGE(e.fine(), e.messages());
   CHECK(value(e.system().potential_energy(), e.at({2}, {0})) == Approx(24));
 }

@@ -11,11 +11,13 @@ namespace {
 const std::vector<double> kAngles = {0.7, 1.1, -0.4}, kRates = {0.3, -0.8, 1.7};
 
 Elaborated body(const std::string& rotation, const std::string& before = "") {
-  return Elaborated("param I = 1 kg m^2\ncoord φ, θ, ψ : angle\n" + before + "body B inertia diag(I, I, I) rotation " + rotation + "\n");
+  return Elaborated("param I = 1 kg m^2\ncoord φ, θ, ψ : angle\n" + before + "body B inertia diag(I, I, I) rotation " +
+                    rotation + "\n");
 }
 
 /// Rᵀ Ṙ by central differences: the angular velocity along the axes of the body, by its definition.
-std::array<double, 3> omega_by_differences(const Elaborated& e, const ExprMatrix& r, const std::vector<double>& q, const std::vector<double>& v, double t) {
+std::array<double, 3> omega_by_differences(const Elaborated& e, const ExprMatrix& r, const std::vector<double>& q,
+                                           const std::vector<double>& v, double t) {
   const double h = 1e-5;
   const auto rotation = [&](double dt) {
     std::vector<double> moved = q;
@@ -84,32 +86,41 @@ TEST_CASE("axis and angle, nested frames, moving axes, motion in time: the angul
   SUBCASE("an axis that is no coordinate axis") { check_omega(body("axis (1, 2, -2) angle φ + θ ψ"), kAngles, kRates); }
   SUBCASE("an axis that moves") { check_omega(body("axis (cos φ, sin φ, θ) angle ψ"), kAngles, kRates); }
   SUBCASE("frames in frames") {
-    check_omega(Elaborated("param I = 1 kg m^2, a = 1 m\ncoord φ, θ, ψ : angle\nframe F at (a, 0, 0) rotation axis (0, 0, 1) angle φ\n"
-                           "frame G at (0, a, 0) rotation euler xyz (θ, φ, 2 [rad]) in F\nbody B inertia diag(I, I, I) at (0, 0, a) rotation rpy (ψ, θ, φ) in G\n"),
-                kAngles, kRates);
+    check_omega(
+        Elaborated(
+            "param I = 1 kg m^2, a = 1 m\ncoord φ, θ, ψ : angle\nframe F at (a, 0, 0) rotation axis (0, 0, 1) angle φ\n"
+            "frame G at (0, a, 0) rotation euler xyz (θ, φ, 2 [rad]) in F\nbody B inertia diag(I, I, I) at (0, 0, a) "
+            "rotation rpy (ψ, θ, φ) in G\n"),
+        kAngles, kRates);
   }
   SUBCASE("about one axis again and again") {
-    const Elaborated e("param I = 1 kg m^2\ncoord φ, θ, ψ : angle\nframe F at (0, 0, 0) rotation axis (0, 1, 0) angle φ\n"
-                       "frame G at (0, 0, 0) rotation axis (0, -2, 0) angle θ in F\nbody B inertia diag(I, I, I) rotation axis (0, 1, 0) angle ψ in G\n");
+    const Elaborated e(
+        "param I = 1 kg m^2\ncoord φ, θ, ψ : angle\nframe F at (0, 0, 0) rotation axis (0, 1, 0) angle φ\n"
+        "frame G at (0, 0, 0) rotation axis (0, -2, 0) angle θ in F\nbody B inertia diag(I, I, I) rotation axis (0, 1, "
+        "0) angle ψ in G\n");
     check_omega(e, kAngles, kRates);
     // turns about one axis add their angles: one sine and one cosine are left
     CHECK(topological_order(e.system().bodies[0].rotation.entries).size() <= 12);
   }
   SUBCASE("in time") {
-    check_omega(Elaborated("param I = 1 kg m^2, Ω = 3 rad/s\ncoord φ, θ, ψ : angle\nframe F at (0, 0, 0) rotation axis (0, 0, 1) angle Ω t\n"
+    check_omega(Elaborated("param I = 1 kg m^2, Ω = 3 rad/s\ncoord φ, θ, ψ : angle\nframe F at (0, 0, 0) rotation axis "
+                           "(0, 0, 1) angle Ω t\n"
                            "body B inertia diag(I, I, I) rotation euler xzx (φ, θ, ψ) in F\n"),
                 kAngles, kRates, 0.35);
   }
 }
 
 TEST_CASE("places in frames: components along the axes of the frame, points of the world") {
-  const Elaborated e("param m = 1 kg, a = 2 m, b = 3 m\ncoord x : length, θ, φ : angle\n"
-                     "frame F at (x, 0) rotation angle θ\nframe G at (a, 0) rotation angle φ in F\n"
-                     "point P mass m at (b, 0) in G\npoint Q mass m at P + (0, b) in F\npoint R mass m at (P + Q)/2\n"
-                     "let d = (b, b)\npoint S mass m at d in G\n");
+  const Elaborated e(
+      "param m = 1 kg, a = 2 m, b = 3 m\ncoord x : length, θ, φ : angle\n"
+      "frame F at (x, 0) rotation angle θ\nframe G at (a, 0) rotation angle φ in F\n"
+      "point P mass m at (b, 0) in G\npoint Q mass m at P + (0, b) in F\npoint R mass m at (P + Q)/2\n"
+      "let d = (b, b)\npoint S mass m at d in G\n");
   const double x = 0.4, th = 0.7, phi = -0.3, a = 2, b = 3;
   const auto at = e.at({x, th, phi}, {0, 0, 0});
-  const auto place = [&](const char* name, int k) { return value(e.system().find_point(name)->position[static_cast<std::size_t>(k)], at); };
+  const auto place = [&](const char* name, int k) {
+    return value(e.system().find_point(name)->position[static_cast<std::size_t>(k)], at);
+  };
   const double px = x + a * std::cos(th) + b * std::cos(th + phi), py = a * std::sin(th) + b * std::sin(th + phi);
   CHECK(place("P", 0) == Approx(px));
   CHECK(place("P", 1) == Approx(py));
@@ -120,6 +131,8 @@ TEST_CASE("places in frames: components along the axes of the frame, points of t
 }
 
 TEST_CASE("in the plane the angular velocity is the sum of the rates") {
-  const Elaborated e("param J = 1 kg m^2, Ω = 2 rad/s\ncoord θ, φ : angle\nframe F at (0, 0) rotation angle θ + Ω t\nbody B inertia J rotation angle 2 φ in F\n");
+  const Elaborated e(
+      "param J = 1 kg m^2, Ω = 2 rad/s\ncoord θ, φ : angle\nframe F at (0, 0) rotation angle θ + Ω t\nbody B inertia J "
+      "rotation angle 2 φ in F\n");
   CHECK(value(e.system().bodies[0].angular_velocity[0], e.at({0.1, 0.2}, {0.5, 0.25})) == Approx(0.5 + 2 + 0.5));
 }

@@ -6,7 +6,9 @@ using doctest::Approx;
 
 namespace {
 
-const char* kModel = "param m = 1 kg, l = 60 cm, b = 0\nlet J = m l^2\ncoord θ : angle\nT = 1/2 J θ'^2\nD = 1/2 b θ'^2\nstart θ = 10 deg, θ' = 1 rad/s\n";
+const char* kModel =
+    "param m = 1 kg, l = 60 cm, b = 0\nlet J = m l^2\ncoord θ : angle\nT = 1/2 J θ'^2\nD = 1/2 b θ'^2\nstart θ = 10 "
+    "deg, θ' = 1 rad/s\n";
 
 Elaborated with(std::vector<std::string> parameters, std::vector<std::string> start = {}) {
   return Elaborated(kModel, Overrides{std::move(parameters), std::move(start)});
