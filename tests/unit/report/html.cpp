@@ -1,4 +1,4 @@
-// The page as text; that it works in a browser is tests/cli/report_browser.mjs.
+// The page as text; that it works in a browser is tests/cli/report_browser/browser.mjs.
 #include <maupertuis/report.hpp>
 
 #include <doctest/doctest.h>

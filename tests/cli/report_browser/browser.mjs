@@ -1,5 +1,5 @@
 // Opens reports in a real headless Chromium, over the DevTools protocol on its pipe, and uses them as a reader would.
-//   node report_browser.mjs WRITER [REPORT.html ...]
+//   node browser.mjs WRITER [REPORT.html ...]
 // WRITER (report_browser_page) makes two reports of made-up numbers; further reports get the checks that hold for any.
 // Fails on any error that the browser reports, on any request, and when there is no Chromium: nothing is skipped.
 import {spawn, spawnSync} from 'node:child_process';
