@@ -23,7 +23,7 @@ void append(std::vector<Intermediate>& all, const std::vector<Intermediate>& mor
 
 /// Nothing is shown that was not proved; `what` names the form in the message.
 bool proved(const std::vector<Expr>& differences, const char* what, Study& study) {
-  const ZeroTest test = zero_test(differences);
+  const ZeroTest test = zero_test(substitute(differences, study.model()->system.definition_values()));
   if (test.verdict == Verdict::Zero) return true;
   if (test.verdict == Verdict::Nonzero)
     study.diagnostics().error("E0690", {}, fmt::format("The {} form differs from the derived equations.", what), {},
@@ -56,7 +56,7 @@ EquationForm solved_form(Study& study) {
   const EquationsOfMotion& equations = *study.equations();
   EquationForm form;
   ExprMap solution;
-  for (const SolvedAcceleration& solved : solved_accelerations(equations)) {
+  for (const SolvedAcceleration& solved : solved_accelerations(equations.shown())) {
     const std::string& name = equations.system->coordinates[solved.coordinate].name;
     const Expr left = acceleration(equations, solved.coordinate);
     if (!solved.right.value) {
@@ -80,8 +80,8 @@ EquationForm matrix_form(Study& study) {
   const EquationsOfMotion& equations = *study.equations();
   const auto& coordinates = equations.system->coordinates;
   const std::size_t n = coordinates.size();
-  const ExprMatrix m = mass_matrix(equations);
-  const ExprVector h = bias(equations);
+  const ExprMatrix m = mass_matrix(equations.shown());
+  const ExprVector h = bias(equations.shown());
   EquationForm form;
   const auto add = [&](std::size_t i, EquationLine line, Expr value) -> Expr {
     ReadableForm shown = readable(value, equations.order);
@@ -110,6 +110,18 @@ EquationForm matrix_form(Study& study) {
   return proved(rows, "matrix", study) ? form : EquationForm{};
 }
 
+/// The definitions of the model that the lines use, before their named sub-expressions.
+EquationForm with_definitions(EquationForm form, Study& study) {
+  std::vector<Expr> roots;
+  for (const EquationLine& line : form.lines) roots.push_back(line.right.value);
+  for (const Intermediate& i : form.intermediates) roots.push_back(i.value);
+  if (roots.empty()) return form;
+  std::vector<Intermediate> legend = definitions_used(*study.equations()->shown().system, roots);
+  append(legend, form.intermediates);
+  form.intermediates = std::move(legend);
+  return form;
+}
+
 /// The letters and signs of rules and sentences that pdflatex does not know by itself.
 std::string unicode_declarations() {
   constexpr std::pair<const char*, const char*> signs[] = {
@@ -136,8 +148,8 @@ EquationForm equation_form(Form form, Study& study) {
   if (!study.equations()) return {};
   switch (form) {
     case Form::Standard: return standard_form(study, false);
-    case Form::Solved: return solved_form(study);
-    case Form::Matrix: return matrix_form(study);
+    case Form::Solved: return with_definitions(solved_form(study), study);
+    case Form::Matrix: return with_definitions(matrix_form(study), study);
     case Form::Residual: return standard_form(study, true);
   }
   return {};

@@ -23,9 +23,15 @@ struct EquationsOfMotion {
   ExprVector momenta;                // ∂L/∂q̇ [n], in q, q', u, t
   Expr energy_function;              // h_E = q̇·∂L/∂q̇ − L
   Expr power;                        // dh_E/dt along the motion: −∂L/∂t − q̇·∂D/∂q̇ + Q·q̇
+
+  /// The same with the symbols of parameter definitions kept (`let I = 1/2 m R^2`); null if the model has none.
+  std::shared_ptr<const EquationsOfMotion> written;
+  /// What is shown to a reader: `written` where it exists. Computations and proofs use *this.
+  const EquationsOfMotion& shown() const { return written ? *written : *this; }
 };
 
-/// Derives the computational form. Errors: E0601 if M is singular wherever it was sampled.
+/// Derives the computational form. Precondition: `system` passed the physics lint, which tells of a singular M.
+/// Cost O(nodes of L).
 std::optional<EquationsOfMotion> euler_lagrange(std::shared_ptr<const MechanicalSystem> system,
                                                 Diagnostics& diagnostics);
 
@@ -65,11 +71,14 @@ struct DerivationStep {
 struct Derivation {
   std::vector<DerivationStep> steps;
   std::vector<ReadableForm> equations;   // row i: equations[i].value = 0
-  std::vector<Intermediate> intermediates;
+  std::vector<Intermediate> intermediates;   // the legend: definitions of the model that are used, then named sub-expressions
 };
 
 /// The equations in readable form (steps left empty), and with the textbook path.
 Derivation readable_derivation(const EquationsOfMotion& equations, bool with_steps);
+
+/// The definitions of the model (`let I = 1/2 m R^2`) whose symbols stand in `roots`, in the order of the text: the legend.
+std::vector<Intermediate> definitions_used(const MechanicalSystem& system, std::span<const Expr> roots);
 
 /// One block of the equations solved for its accelerations. Coordinates that M does not couple are separate blocks.
 struct SolvedAcceleration {

@@ -3,17 +3,41 @@
 
 #include "equations/derivation_steps.hpp"
 
+#include <algorithm>
+
 namespace maupertuis {
 
-Derivation readable_derivation(const EquationsOfMotion& equations, bool with_steps) {
+std::vector<Intermediate> definitions_used(const MechanicalSystem& system, std::span<const Expr> roots) {
+  std::vector<Expr> symbols = symbols_of(roots);
+  std::vector<Intermediate> used;
+  const auto stands = [&](Expr symbol) { return std::find(symbols.begin(), symbols.end(), symbol) != symbols.end(); };
+  // A definition may use earlier ones: going backwards, what its formula names counts as used.
+  for (auto d = system.definitions.rbegin(); d != system.definitions.rend(); ++d) {
+    if (!d->symbol || !d->formula || !stands(d->symbol)) continue;
+    for (const Expr& s : symbols_of({&d->formula, 1})) symbols.push_back(s);
+    used.insert(used.begin(), {d->symbol, d->formula});
+  }
+  return used;
+}
+
+Derivation readable_derivation(const EquationsOfMotion& derived, bool with_steps) {
+  const EquationsOfMotion& equations = derived.shown();
   Derivation derivation;
   derivation.equations = readable_equations(equations.residual, equations.order);
+  std::vector<Expr> roots;
+  for (const ReadableForm& row : derivation.equations) {
+    roots.push_back(row.value);
+    for (const Intermediate& i : row.intermediates) roots.push_back(i.value);
+  }
+  roots.push_back(equations.lagrangian_expanded);  // momenta and energies are shown beside the equations
+  roots.insert(roots.end(), equations.generalized_forces.begin(), equations.generalized_forces.end());
+  roots.insert(roots.end(), equations.dissipative_terms.begin(), equations.dissipative_terms.end());
+  derivation.intermediates = definitions_used(*equations.system, roots);
   for (const ReadableForm& row : derivation.equations)
-    for (const Intermediate& intermediate : row.intermediates) {
-      const auto known = [&](const Intermediate& other) { return other.symbol == intermediate.symbol; };
-      bool found = false;
-      for (const Intermediate& other : derivation.intermediates) found |= known(other);
-      if (!found) derivation.intermediates.push_back(intermediate);
+    for (const Intermediate& i : row.intermediates) {
+      const bool known = std::any_of(derivation.intermediates.begin(), derivation.intermediates.end(),
+                                     [&](const Intermediate& other) { return other.symbol == i.symbol; });
+      if (!known) derivation.intermediates.push_back(i);
     }
   if (with_steps) derivation.steps = derivation_steps(equations, derivation);
   return derivation;

@@ -32,7 +32,7 @@ Expr dot(const ExprVector& a, const ExprVector& b, Context& context) {
 
 }  // namespace
 
-std::optional<EquationsOfMotion> euler_lagrange(std::shared_ptr<const MechanicalSystem> system, Diagnostics&) {
+std::optional<EquationsOfMotion> euler_lagrange(std::shared_ptr<const MechanicalSystem> system, Diagnostics& diagnostics) {
   Context& context = *system->context;
   const ExprVector q = symbols_of_order(*system, 0), velocities = symbols_of_order(*system, 1);
 
@@ -54,6 +54,9 @@ std::optional<EquationsOfMotion> euler_lagrange(std::shared_ptr<const Mechanical
   equations.power = dot(equations.generalized_forces, velocities, context) -
                     dot(equations.dissipative_terms, velocities, context) -
                     explicit_rate(equations.lagrangian_expanded);
+  if (system->written)
+    if (auto written = euler_lagrange(system->written, diagnostics))
+      equations.written = std::make_shared<const EquationsOfMotion>(std::move(*written));
   equations.system = std::move(system);
   return equations;
 }

@@ -55,7 +55,7 @@ void add_momentum(ReportContent& content, const EquationsOfMotion& equations, st
   const Coordinate& c = system.coordinates[i];
   ReportContent::Conserved quantity_row;
   quantity_row.sentence = fmt::format("{} is cyclic, and nothing acts on it: its momentum is conserved.", c.name);
-  quantity_row.formula = formula("p_" + c.name, equations.momenta[i], equations.order);
+  quantity_row.formula = formula("p_" + c.name, equations.shown().momenta[i], equations.order);
   if (run) {
     const auto values = along_run(equations, equations.momenta[i], run->trajectory);
     const std::string unit = system.dimensionless ? "" : to_string(dimensions::action() / c.dimension);
@@ -73,12 +73,12 @@ void add_energy(ReportContent& content, const EquationsOfMotion& equations, cons
   row.sentence = conserved.energy_case;
   if (!conserved.energy_conserved) {
     row.sentence += " It is not conserved; along the motion it changes at the rate";
-    row.formula = formula("d/dt h_E", equations.power, equations.order);
+    row.formula = formula("d/dt h_E", equations.shown().power, equations.order);
     content.conserved.push_back(std::move(row));
     return;
   }
   row.sentence += " It is conserved.";
-  row.formula = formula("h_E", equations.energy_function, equations.order);
+  row.formula = formula("h_E", equations.shown().energy_function, equations.order);
   if (const auto column = run ? run->trajectory.column("energy") : std::nullopt; column && run->trajectory.rows() > 0) {
     row.value = quantity(run->trajectory.at(0, *column), run->trajectory.columns[*column].unit, 10);
     row.drift = short_number(run->statistics.energy_drift, 2);

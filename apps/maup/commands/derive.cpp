@@ -56,7 +56,7 @@ Json document_of(const DeriveOptions& options, Study& study, const EquationForm&
   document["intermediates"] = Json::array();
   for (const Intermediate& i : form.intermediates)
     document["intermediates"].push_back({{"name", to_plain(i.symbol, order)}, {"plain", to_plain(i.value, order)}});
-  const ExprMatrix m = mass_matrix(*equations);
+  const ExprMatrix m = mass_matrix(equations->shown());
   document["mass_matrix"] = Json::array();
   for (std::size_t i = 0; i < m.rows; ++i) {
     Json row = Json::array();
@@ -64,9 +64,9 @@ Json document_of(const DeriveOptions& options, Study& study, const EquationForm&
     document["mass_matrix"].push_back(std::move(row));
   }
   document["momenta"] = Json::array();
-  for (const Expr p : equations->momenta) document["momenta"].push_back(readable_text(p, order));
-  document["energy"] = readable_text(equations->energy_function, order);
-  document["power"] = readable_text(equations->power, order);
+  for (const Expr p : equations->shown().momenta) document["momenta"].push_back(readable_text(p, order));
+  document["energy"] = readable_text(equations->shown().energy_function, order);
+  document["power"] = readable_text(equations->shown().power, order);
   const ConservedQuantities conserved = conserved_quantities(*equations);
   Json names = Json::array();
   for (const std::size_t i : conserved.conserved_momenta) names.push_back("p_" + equations->system->coordinates[i].name);
