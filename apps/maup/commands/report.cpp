@@ -44,7 +44,7 @@ ExitCode report(const ReportOptions& options, Console& console) {
   if (!study.certificate()) return finish(console, study, document);
 
   std::optional<SimulationResult> result;
-  if (!options.without_run) result = run_model(study, settings, console);
+  if (!options.without_run) result = run_model(study, report_run(*study.model(), settings), console);
   if (study.wrong()) return finish(console, study, document);
   const std::string page = page_of(study, result, settings);
   const std::string path = options.output.empty() ? study.model()->system.name + ".html" : options.output;
