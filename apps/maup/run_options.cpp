@@ -13,10 +13,9 @@ namespace maupertuis::app {
 namespace {
 
 std::optional<double> time_option(const char* option, const std::string& text, Diagnostics& diagnostics) {
-  if (text.empty()) return {};
   const std::optional<double> value = parse_time(text);
   if (!value || !std::isfinite(*value)) {
-    diagnostics.error("E0809", {}, fmt::format("{} {} is no time.", option, text), {},
+    diagnostics.error("E0809", {}, fmt::format("{} \"{}\" is no time.", option, text), {},
                       "Write a number with a unit of time, such as 3s, 250ms or \"2 min\".");
     return {};
   }
@@ -81,8 +80,8 @@ SimulationOptions simulation_options(const RunOptions& options, Diagnostics& dia
     else diagnostics.error("E0809", {}, fmt::format("--tol {} is no tolerance.", brief(*options.tolerance)), {},
                            "Write a positive number below 1, such as 1e-10.");
   }
-  out.duration = time_option("--duration", options.duration, diagnostics);
-  out.output_every = time_option("--every", options.every, diagnostics);
+  if (options.duration) out.duration = time_option("--duration", *options.duration, diagnostics);
+  if (options.every) out.output_every = time_option("--every", *options.every, diagnostics);
   if (out.output_every && !(*out.output_every > 0))
     diagnostics.error("E0809", {}, "--every must be a positive time.");
   for (const std::string& text : options.at)

@@ -14,7 +14,8 @@ namespace maupertuis::app {
 struct RunOptions {
   std::string method = "taylor";
   std::optional<double> tolerance;
-  std::string duration, until, within, every;
+  std::optional<std::string> duration, every;  // as written
+  std::string until, within;
   std::vector<std::string> at;
 };
 

@@ -66,7 +66,7 @@ TEST_CASE("3: a run that cannot go on keeps what it computed") {
   // Free fall into a centre of force: a collision at a finite time.
   const std::string model = folder.write("fall.lag",
                                          "system fall\ndimensionless\nparam k = 1\ncoord x : number\nT = 1/2 x'^2\n"
-                                         "V = -k/x\nstart x = 1\nrun 10 s\n");
+                                         "V = -k/x\nstart x = 1\nrun 10\n");
   const Outcome outcome = maup({"simulate", model, "-o", folder.path("fall.csv"), "--json"});
   CHECK(outcome.code == 3);
   CHECK(contains(outcome.out, "\"ok\": false"));

@@ -6,7 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <maupertuis/print.hpp>
+#include <cmath>
+#include <maupertuis/simulation.hpp>
 
 namespace maupertuis::app {
 namespace {
@@ -17,6 +18,16 @@ std::string with_unit(const std::string& number, const Dimension& dimension) {
 }
 
 std::string joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
+
+/// θ = 120 deg, x' = 2 m/s: angles in degrees, the rest in SI.
+std::string start_text(const StartValue& start, const MechanicalSystem& system) {
+  const Coordinate& c = system.coordinates[start.coordinate];
+  const double value = evaluate(in_terms_of_motion(system, {&start.value, 1})[0], parameter_bindings(system));
+  const std::string name = c.name + std::string(static_cast<std::size_t>(start.order), '\'');
+  if (system.dimensionless) return fmt::format("{} = {}", name, brief(value));
+  if (c.kind == "angle" && start.order == 0) return fmt::format("{} = {} deg", name, brief(value * 180 / std::acos(-1.0)));
+  return fmt::format("{} = {}", name, with_unit(brief(value), start.order ? c.dimension / dimensions::time() : c.dimension));
+}
 
 /// The coordinates with their kinds, the parts of each energy, … : one line each, in the order of a lecture.
 std::string summary(const Model& model) {
@@ -60,9 +71,7 @@ std::string summary(const Model& model) {
   for (const AppliedForce& force : system.forces) words.push_back("on " + force.target);
   line("forces Q", joined(words));
   words.clear();
-  for (const StartValue& start : model.experiment.start)
-    words.push_back(fmt::format("{} = {}", system.coordinates[start.coordinate].name + std::string(start.order, '\''),
-                                start.value ? to_plain(start.value, {}) : std::string("0")));
+  for (const StartValue& start : model.experiment.start) words.push_back(start_text(start, system));
   if (words.size() > 8) words.resize(8), words.push_back("…");
   line("start", joined(words));
   if (!model.experiment.expectations.empty())
