@@ -1,6 +1,7 @@
 #include <maupertuis/print.hpp>
 
 #include "symbolic/print/layout.hpp"
+#include "symbolic/print/symbol_name.hpp"
 
 /// Plain text in the model language: what is printed can be pasted back into a model.
 namespace maupertuis {
@@ -108,6 +109,10 @@ std::string to_plain(const ReadableForm& form, const ReadingOrder& order) {
 }
 
 std::string symbol_to_plain(Expr symbol) {
+  if (symbol.role() == Role::Constant) {  // as the language reads it in a formula: 3 [J]
+    const print::QuantityName quantity = print::split_quantity(symbol.name());
+    return quantity.unit.empty() ? quantity.number : quantity.number + " [" + quantity.unit + "]";
+  }
   return symbol.name() + std::string(static_cast<std::size_t>(symbol.order()), '\'');
 }
 
