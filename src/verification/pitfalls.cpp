@@ -1,7 +1,6 @@
 #include "verification/pitfalls.hpp"
 
-#include <array>
-#include <functional>
+#include <maupertuis/evaluate.hpp>
 
 /// Each function below derives the equations with one classic mistake in them (Goldstein ch. 1, exercises; the usual
 /// list of teachers). A claim that follows from such equations, and not from the right ones, made that mistake.
@@ -52,6 +51,8 @@ class MistakenDerivations {
     return false;
   }
 
+  static bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
+
   void add(std::string sentence, ExprVector residual) { pitfalls_.push_back({std::move(sentence), std::move(residual)}); }
 
   /// The right residual plus `factor` times the terms.
@@ -100,11 +101,11 @@ class MistakenDerivations {
   /// L with the velocity of a cyclic coordinate replaced by its value from p = const before the derivatives are taken.
   /// (The Routhian is the right way; Goldstein §8.3.)
   void add_momentum_put_into_lagrangian(const Coordinate& cyclic) {
-    if (q_.size() < 2 || !differentiate(equations_.lagrangian_expanded, cyclic.q).is_zero()) return;
+    if (q_.size() < 2 || !vanishes(differentiate(equations_.lagrangian_expanded, cyclic.q))) return;
     const std::size_t index = static_cast<std::size_t>(&cyclic - system_.coordinates.data());
     const Expr momentum = equations_.momenta[index];
     const Expr inertia = differentiate(momentum, cyclic.velocity);
-    if (inertia.is_zero() || !differentiate(inertia, cyclic.velocity).is_zero()) return;
+    if (vanishes(inertia) || !vanishes(differentiate(inertia, cyclic.velocity))) return;
     const Expr p = context_.symbol("p_" + cyclic.name, Role::Auxiliary);
     const Expr rest = substitute(momentum, {{cyclic.velocity, context_.number(0)}});
     const Expr reduced = substitute(equations_.lagrangian_expanded, {{cyclic.velocity, (p - rest) / inertia}});

@@ -39,7 +39,7 @@ TEST_CASE("the harmonic oscillator follows its closed form, forwards and backwar
   }
   CHECK(forwards.at[1].t == 0.3);
   CHECK(forwards.final.t == 10);
-  CHECK(forwards.statistics.energy_drift < 1e-15);
+  CHECK(forwards.statistics.energy_drift < 5e-15);  // rounding: 20 ulp
 
   options = {};
   options.duration = -7;
@@ -63,7 +63,8 @@ run 20 s
 )");
   const SimulationResult r = run(m);
   REQUIRE(r.ok());
-  CHECK(r.statistics.energy_drift < 1e-14);
+  // The work of the drive varies faster than the motion, whose error alone sets the step: see docs/theory/measures.md.
+  CHECK(r.statistics.energy_drift < 1e-11);
   // Steady response of the driven oscillator: amplitude F / |k − m w² + i c w| after the transient has died (e^{−0.15 t}).
   SimulationOptions late;
   late.duration = 300;
@@ -87,7 +88,7 @@ run until y = 0 within 60 s
   CHECK(std::abs(r.final.v[0] + 10.0) < 1e-14);
   CHECK(r.trajectory.times.back() == r.final.t);
 
-  const ModelText never(R"(system rest
+  const ModelText never(R"(system at_rest
 param m = 1 kg
 coord y : length
 T = 1/2 m y'^2

@@ -84,7 +84,8 @@ TEST_CASE("a false claim is recognised by the mistake that it follows from") {
   check_pitfall(pendulum + "claim θ'' = -g/(2 l) sin θ\n", "½");
   check_pitfall(pendulum + "D = 1/2 (1 [N m s]) θ'^2\nclaim θ'' = -g/l sin θ\n", "left out");
   check_pitfall(pendulum + "D = 1/2 (1 [N m s]) θ'^2\nclaim m l^2 θ'' = -m g l sin θ + (1 [N m s]) θ'\n", "wrong sign");
-  check_pitfall(pendulum + "claim l θ = g sin θ\n", "(l θ)²");
+  // With units on, θ for θ' is an error of dimension before it is a false claim.
+  check_pitfall("system p\ndimensionless\nparam m = 1, l = 2, g = 9.81\ncoord θ : angle\nT = 1/2 m l^2 θ'^2\nV = -m g l cos θ\nclaim l θ = g sin θ\n", "(l θ)²");
   check_pitfall(spherical + "claim θ'' = -sin θ cos θ φ'^2 - g/l sin θ\n", "conserved momentum");
 }
 
