@@ -127,22 +127,22 @@ void write_energy(StepWriter& out, const char* section, const std::string& lette
   if (terms.empty()) return;
   out.open(section);
   ExprVector values;
+  bool given = true;  // T = …, V = … of the model, nothing from points and springs
   for (const EnergyTerm& term : terms) {
     values.push_back(term.value);
+    given &= term.origin == letter;
     if (terms.size() > 1)
       out.formula(fmt::format("{}({})", letter, term.origin), fmt::format("{}_{{\\text{{{}}}}}", letter, term.origin),
                   term.value, term.origin);
   }
-  out.formula(letter, letter, out.context().sum(values), rule);
+  out.formula(letter, letter, out.context().sum(values), given ? "as given" : rule);
 }
 
 void write_lagrangian(StepWriter& out) {
   const MechanicalSystem& s = out.system();
-  if (!s.lagrangian_given) {
-    write_energy(out, "Kinetic energy", "T", s.kinetic, "T = Σ ½ m v² + ½ ω·I ω");
-    write_energy(out, "Potential energy", "V", s.potential, "sum over the potentials");
-    write_energy(out, "Generalized potential", "U", s.generalized_potential, "velocity-dependent potential");
-  }
+  write_energy(out, "Kinetic energy", "T", s.kinetic, "T = Σ ½ m v² + ½ ω·I ω");
+  write_energy(out, "Potential energy", "V", s.potential, "sum over the potentials");
+  write_energy(out, "Generalized potential", "U", s.generalized_potential, "velocity-dependent potential");
   write_energy(out, "Dissipation function", "D", s.dissipation, "Rayleigh's dissipation function");
   out.open("Lagrangian");
   const bool extra = !s.lagrangian_extra.empty();
@@ -172,7 +172,8 @@ void write_virtual_work(StepWriter& out) {
       }
       const Expr work = out.context().sum(terms);
       if (work.is_zero()) continue;
-      out.formula(fmt::format("Q_{}({} {})", c.name, torque ? "torque on" : "force on", force.target),
+      const std::string from = force.reaction_on.empty() ? "" : " from " + force.reaction_on;
+      out.formula(fmt::format("Q_{}({} {}{})", c.name, torque ? "torque on" : "force on", force.target, from),
                   fmt::format("Q_{{{}}}", symbol_to_latex(c.q)), work,
                   torque ? fmt::format("virtual work: τ·∂ω/∂{}'", c.name) : fmt::format("virtual work: F·∂r/∂{}", c.name));
     }

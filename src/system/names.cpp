@@ -46,8 +46,9 @@ Value derivative_of_coordinate(Elaboration& e, const Declaration& d, int primes)
 
 bool refuse_high_order(Elaboration& e, const Expression& x) {
   if (x.primes <= 2) return false;
-  e.diagnostics.error("E0401", x.span,
-                      fmt::format("`{}` is a derivative of order {}", e.source.slice(x.span), x.primes),
+  constexpr int shown = 8;  // a thousand primes are not read, they are counted
+  const std::string written = x.primes <= shown ? std::string(e.source.slice(x.span)) : x.text + "''…";
+  e.diagnostics.error("E0401", x.span, fmt::format("`{}` is a derivative of order {}", written, x.primes),
                       "Mechanics knows positions, velocities and accelerations.", "");
   return true;
 }

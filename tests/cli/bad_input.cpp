@@ -55,7 +55,7 @@ TEST_CASE("depth") {
   refuses("100,000 open brackets", "system s\nlet a = " + std::string(100'000, '(') + "\n");
   refuses("100,000 minus signs", "system s\ncoord x : length\nlet a = " + std::string(100'000, '-') + "1\nT = a\n");
   refuses("100,000 powers", "system s\nlet a = " + repeated("2^", 100'000) + "2\n");
-  refuses("10,000 primes", "system s\ncoord x : length\nT = x" + std::string(10'000, '\'') + "\n");
+  refuses("100,000 primes", "system s\ncoord x : length\nT = x" + std::string(100'000, '\'') + "\n");
 }
 
 TEST_CASE("definitions that go round, or grow") {
