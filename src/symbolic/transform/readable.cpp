@@ -41,6 +41,10 @@ Expr collected_by_rates(CandidateChooser& chooser, const Polynomial& p) {
 /// A line of more terms than this is not read by anybody, however well they are arranged.
 std::size_t longest_row(const ReadableOptions& options) { return options.term_budget / 8; }
 
+/// Beyond this number of terms an expression is arranged by its rates, as an equation is: trying every common factor
+/// of every group of terms costs the cube of their number.
+constexpr std::size_t longest_search = 24;
+
 Expr readable_row(CandidateChooser& chooser, const Polynomial& p) {
   const Expr plain = collected_by_rates(chooser, p);
   const Polynomial combined = terms::over_common_denominators(chooser.algebra(), p);
@@ -56,7 +60,7 @@ ReadableForm readable(Expr e, const ReadingOrder& order, const ReadableOptions& 
     CandidateChooser chooser(e.context(), order, options.term_budget);
     const Polynomial p = chooser.read(expanded);
     if (p.size() > longest_row(options)) throw terms::TooManyTerms{};
-    return {chooser.best(p), {}, {}};
+    return {p.size() > longest_search ? readable_row(chooser, p) : chooser.best(p), {}, {}};
   } catch (const terms::TooManyTerms&) {
     return terms::with_intermediates({&expanded, 1}, order).front();
   }
