@@ -37,9 +37,10 @@ const Model* Study::model() {
   if (elaborated_) return model_.get();
   elaborated_ = true;
   const syntax::SyntaxTree* parsed = tree();
-  // A statement with a mistake is left out of the tree: going on would report what follows from its absence.
-  if (!parsed || wrong()) return nullptr;
-  if (auto model = elaborate(*parsed, source_, diagnostics_, overrides_)) {
+  // All mistakes of a file at once: after a wrong statement the others are still looked at. The tree knows the names
+  // that were lost with it, so that their absence is not reported again.
+  if (!parsed || parsed->statements.empty()) return nullptr;
+  if (auto model = elaborate(*parsed, source_, diagnostics_, overrides_); model && !wrong()) {
     lint(*model, source_, diagnostics_);
     if (!wrong()) model_ = std::make_shared<const Model>(std::move(*model));
   }
