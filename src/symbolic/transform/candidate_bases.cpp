@@ -23,6 +23,7 @@ Expr CandidateChooser::search_basis(const Polynomial& p) {
   Choice choice;
   const auto offer = [&](const Polynomial& form) {
     consider(choice, without_content(form));
+    if (!rational_content(form).is_integer()) consider(choice, flat(form));  // J + 1/4 m l^2 beside 1/4 (4 J + m l^2)
     if (form.size() > 1) consider(choice, factored(form));
   };
   offer(p);
