@@ -11,6 +11,11 @@ if(MAUPERTUIS_SANITIZE)
   target_link_options(maup_flags INTERFACE -fsanitize=${MAUPERTUIS_SANITIZE})
 endif()
 
+if(MAUPERTUIS_FUZZ)
+  # Coverage of the whole library, not of the fuzz target alone, leads the fuzzer.
+  target_compile_options(maup_flags INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+
 # What modules and their tests see; programs (apps/) see include/ alone.
 add_library(maup_options INTERFACE)
 target_link_libraries(maup_options INTERFACE maup_flags)
