@@ -51,8 +51,9 @@ class Context;
 /// are the same after the constructor's rewrites. Cheap to copy; valid as long as its context.
 ///
 /// The constructors rewrite only this: constant folding in exact rationals; x + 0, x·1, x·0, x^1, x^0; like terms of
-/// one sum (2x + 3x); equal bases with numeric exponents in one product (x·x^2); √(x²) = |x|; products inside a product are flattened; a numeric factor of a one-term sum is
-/// multiplied in. Sums inside sums are NOT flattened, so that shared partial sums stay shared: `expand` does that.
+/// one sum (2x + 3x); equal bases with numeric exponents in one product (x·x^2); √(x²) = |x|; products inside a
+/// product are flattened; a numeric factor of a one-term sum is multiplied in. Sums inside sums are NOT
+/// flattened, so that shared partial sums stay shared: `expand` does that.
 /// Odd and even functions of an argument with a leading minus sign are normalized: sin(-x) = -sin x, cos(-x) = cos x.
 class Expr {
  public:
