@@ -4,6 +4,7 @@
 #include <rapidcheck.h>
 
 #include <array>
+#include <ostream>
 #include <vector>
 
 /// Random expressions that shrink: a recipe is a list of numbers, each of which makes one more expression out of those
@@ -57,6 +58,10 @@ inline Expr build(const Recipe& recipe, const std::vector<Expr>& leaves, Functio
   return made.back();
 }
 
+inline void showValue(const Recipe& recipe, std::ostream& out) {
+  for (const std::uint32_t step : recipe.steps) out << step << ' ';
+}
+
 }  // namespace maupertuis::property
 
 namespace rc {
@@ -68,8 +73,6 @@ struct Arbitrary<maupertuis::property::Recipe> {
     return gen::map(std::move(steps), [](std::vector<std::uint32_t> s) { return maupertuis::property::Recipe{std::move(s)}; });
   }
 };
-
-inline void showValue(const maupertuis::property::Recipe& recipe, std::ostream& out) { show(recipe.steps, out); }
 
 /// Runs a property inside a doctest case and reports what falsified it.
 template <class Property>

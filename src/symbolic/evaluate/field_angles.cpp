@@ -138,8 +138,10 @@ FieldNumbers::Angle FieldNumbers::direction(const Tape& tape, Position at, const
 
 /// The angle as a number, by its symmetries from an angle between 0 and π/4, which is random.
 FieldNumbers::Value FieldNumbers::angle_of(Angle a) const {
-  if (a.sine == 0 || a.cosine == 0) throw Redraw{};
+  if (a.sine == 0 && a.cosine == 0) throw Redraw{};
+  if (a.sine == 0) return field_.character(a.cosine) > 0 ? 0 : pi();
   if (field_.character(a.sine) < 0) return field_.negate(angle_of(opposite(a)));
+  if (a.cosine == 0) return field_.multiply(pi(), number(Rational(1, 2)));
   if (field_.character(a.cosine) < 0) return field_.subtract(pi(), angle_of({field_.negate(a.cosine), a.sine}));
   if (a.cosine == a.sine) return field_.multiply(pi(), number(Rational(1, 4)));
   if (a.cosine < a.sine)

@@ -31,7 +31,8 @@ bool is_flat(Expr e, bool inside_sum = false) {
       for (std::size_t i = 0; i < e.size(); ++i)
         if (!is_flat(e[i], true)) return false;
       return true;
-    case Kind::Power: return !(e[0].is(Kind::Sum) && e[1].is_number() && e[1].number().is_integer() && e[1].number().sign() > 0);
+    // A sum below is multiplied out, or gives up its content where the exponent is not a positive integer.
+    case Kind::Power: return !(e[0].is(Kind::Sum) && e[1].is_number());
     default: return true;
   }
 }
@@ -40,6 +41,21 @@ Expr flat(Expr e) {
   if (is_flat(e)) return e;
   const Expr expanded = expand(e, argument_budget);
   return expanded ? expanded : e;
+}
+
+/// The factors of the argument of a logarithm stay apart, since log takes products apart; but each sum among them is
+/// flat, so that its content does not depend on how it is nested: log(2 + (2 + x)) is log(4 + x).
+Expr flat_factors(Expr e) {
+  switch (e.kind()) {
+    case Kind::Sum: return flat(e);
+    case Kind::Power: return e.context().power(flat_factors(e[0]), e[1]);
+    case Kind::Product: {
+      std::vector<Expr> factors;
+      for (std::size_t i = 0; i < e.size(); ++i) factors.push_back(flat_factors(e[i]));
+      return e.context().product(factors);
+    }
+    default: return e;
+  }
 }
 
 Expr with_arguments(Expr node, std::span<const Expr> arguments) {
@@ -68,8 +84,10 @@ std::vector<Expr> flatten_arguments(std::span<const Expr> roots) {
     arguments.clear();
     for (std::size_t i = 0; i < node.size(); ++i) {
       Expr argument = changed.empty() ? node[i] : current(node[i]);
+      const bool has_logarithm = node.is(Kind::Log) || (node.is(Kind::Power) && !node[1].is_number());
       const bool is_exponent = node.is(Kind::Power) && i == 1 && !argument.is_number();
-      if (is_exponent || takes_flat_argument(node.kind())) argument = flat(argument);
+      if (has_logarithm && i == 0) argument = flat_factors(argument);
+      else if (is_exponent || takes_flat_argument(node.kind())) argument = flat(argument);
       differs |= argument != node[i];
       arguments.push_back(argument);
     }

@@ -126,11 +126,20 @@ TEST_CASE_FIXTURE(Names, "exponentials and logarithms") {
   is_zero(sq(apply(Kind::Cosh, x)) - sq(apply(Kind::Sinh, x)) - Rational(1));
   is_zero(apply(Kind::Tanh, x) - apply(Kind::Sinh, x) / apply(Kind::Cosh, x));
   is_zero(apply(Kind::Sinh, apply(Kind::Asinh, x)) - x);
+  is_zero(log(sq(sqrt(sq(x) + Rational(2))) + Rational(2)) - log(sq(x) + Rational(4)));
   is_nonzero(exp(x + y) - exp(x) - exp(y));
   is_nonzero(log(a + b) - log(a) - log(b));
 }
 
+TEST_CASE_FIXTURE(Names, "contents of sums below a fraction line inside a function") {
+  is_zero(sin(x / (Rational(2) + 4 * sq(x))) - sin(x / Rational(2) / (Rational(1) + 2 * sq(x))));
+  is_zero(apply(Kind::Tanh, 2 * y / (Rational(2) + 4 * sq(x))) - apply(Kind::Tanh, y / (Rational(1) + 2 * sq(x))));
+}
+
 TEST_CASE_FIXTURE(Names, "inverse functions") {
+  const auto atan2 = [&](Expr s, Expr along) { return c.function(Kind::Atan2, std::array{s, along}); };
+  is_zero(atan2(number(0), Rational(2) + sq(x)));
+  is_zero(atan2(number(0), -sq(x) - Rational(2)) - pi);
   is_zero(sin(apply(Kind::Asin, x)) - x);
   is_zero(cos(apply(Kind::Asin, x)) - sqrt(number(1) - sq(x)));
   is_zero(sin(apply(Kind::Atan, x)) - x / sqrt(number(1) + sq(x)));
