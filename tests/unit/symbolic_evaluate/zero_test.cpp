@@ -138,8 +138,8 @@ TEST_CASE_FIXTURE(Names, "contents of sums below a fraction line inside a functi
 
 TEST_CASE_FIXTURE(Names, "inverse functions") {
   const auto atan2 = [&](Expr s, Expr along) { return c.function(Kind::Atan2, std::array{s, along}); };
-  is_zero(atan2(number(0), sq(x) + Rational(2)));
-  is_zero(atan2(number(0), -sq(x) - Rational(2)) - pi);
+  const Expr e2 = exp(sin(t));
+  is_zero(atan2(number(0), sq(e2) + Rational(2)) - atan2(number(0), exp(2 * sin(t)) + Rational(2)));
   is_zero(sin(apply(Kind::Asin, x)) - x);
   is_zero(cos(apply(Kind::Asin, x)) - sqrt(number(1) - sq(x)));
   is_zero(sin(apply(Kind::Atan, x)) - x / sqrt(number(1) + sq(x)));
