@@ -10,7 +10,7 @@ namespace maupertuis {
 
 /// Lagrange's equations of a system in two forms. Rows follow system.coordinates.
 ///
-///     R(q,q̇,q̈,u,t) = d/dt ∂L/∂q̇ − ∂L/∂q + ∂D/∂q̇ − Q = M q̈ + h = 0
+///     R(q,q̇,q̈,u,t) = d/dt ∂L/∂q̇ − ∂L/∂q + ∂D/∂q̇ − Q = M q̈ + h = Aᵀλ,   A q̈ = b
 struct EquationsOfMotion {
   std::shared_ptr<const MechanicalSystem> system;
   ReadingOrder order;
@@ -19,15 +19,22 @@ struct EquationsOfMotion {
   Expr lagrangian_expanded;          // in q, q', u, t alone
   ExprVector generalized_forces;     // Q [n], in q, q', u, t
   ExprVector dissipative_terms;      // ∂D/∂q̇ [n]
-  ExprVector residual;               // R [n], computational form with d/dt as an operator: what kernels lower
+  ExprVector residual;               // R [n], computational form with d/dt as an operator; without Aᵀλ
+  // With constraints, [m] in the order of system.constraints; empty without.
+  ExprVector multipliers;            // λ, symbols
+  ExprVector constraint_forces;      // Aᵀλ [n], by reverse mode
+  ExprVector constraint_rates;       // dφ/dt or ψ; computational form
+  ExprVector constraint_accelerations;  // d²φ/dt² or dψ/dt = A q̈ − b; computational form
   ExprVector momenta;                // ∂L/∂q̇ [n], in q, q', u, t
   Expr energy_function;              // h_E = q̇·∂L/∂q̇ − L
-  Expr power;                        // dh_E/dt along the motion: −∂L/∂t − q̇·∂D/∂q̇ + Q·q̇
+  Expr power;                        // dh_E/dt along the motion: −∂L/∂t − q̇·∂D/∂q̇ + Q·q̇ + λ·A q̇
 
   /// The same with the symbols of parameter definitions kept (`let I = 1/2 m R^2`); null if the model has none.
   std::shared_ptr<const EquationsOfMotion> written;
   /// What is shown to a reader: `written` where it exists. Computations and proofs use *this.
   const EquationsOfMotion& shown() const { return written ? *written : *this; }
+  /// R − Aᵀλ [n]: vanishes along the motion. What kernels lower.
+  ExprVector balance() const;
 };
 
 /// Derives the computational form. Precondition: `system` passed the physics lint, which tells of a singular M.
@@ -38,6 +45,9 @@ std::optional<EquationsOfMotion> euler_lagrange(std::shared_ptr<const Mechanical
 /// M = ∂²L/∂q̇∂q̇ [n × n] and h [n]; in q, q', u, t. Cost O(n · cost of L).
 ExprMatrix mass_matrix(const EquationsOfMotion& equations);
 ExprVector bias(const EquationsOfMotion& equations);
+/// A = ∂φ/∂q or ∂ψ/∂q̇ [m × n] and b [m] of A q̈ = b; in q, q', t. Cost O(m · cost of the constraints).
+ExprMatrix constraint_matrix(const EquationsOfMotion& equations);
+ExprVector constraint_bias(const EquationsOfMotion& equations);
 
 /// q̈ = −M⁻¹ h as a shared DAG, by Gaussian elimination with division: O(n³) nodes, nothing expanded. For proofs (dI/dt
 /// along the motion); runs solve with numbers instead. Nothing where M is singular as a function.

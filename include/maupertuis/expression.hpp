@@ -41,6 +41,7 @@ enum class Role : std::uint8_t {
   Coordinate,  // q, q', q'' by order
   Input,       // u, u' by order
   Time,
+  Multiplier,  // λ of a constraint, or a reaction; depends on time, and no derivative of it is ever taken
   Auxiliary,   // a named intermediate or an unknown of an algorithm; constant under d/dt
 };
 

@@ -20,12 +20,20 @@
 /// docs/design/kernel_program.md tells how; nothing here knows mechanics.
 namespace maupertuis {
 
+/// f(q, t) = 0 (level 0) or f(q, q̇, t) = 0 (level 1) along the motion.
+struct KernelConstraint {
+  Expr value;
+  int level = 0;
+};
+
 /// What a kernel is built from. The expressions may hold TimeDerivative nodes, t, numbers, and symbols of the listed
-/// coordinates (orders 0, 1, 2) and parameters; every other symbol (inputs, lets) is already substituted.
+/// coordinates (orders 0, 1, 2), multipliers and parameters; every other symbol (inputs, lets) is already substituted.
 struct KernelSource {
   std::vector<Expr> coordinates;  // [n] symbols of order 0
   std::vector<Expr> parameters;   // [p] symbols of Role::Parameter or Role::Constant
-  std::vector<Expr> residual;     // [n] R(q,q̇,q̈,t) = 0, linear in q̈; M = ∂R/∂q̈
+  std::vector<Expr> residual;     // [n] R(q,q̇,q̈,λ,t) = 0, linear in q̈ and λ; M = ∂R/∂q̈
+  std::vector<Expr> multipliers;  // [m] symbols of the unknown λ, one a constraint
+  std::vector<KernelConstraint> constraints;  // [m]
   std::vector<Expr> observables;  // numbers wanted at points of the motion
   std::vector<Expr> events;       // functions whose roots are to be located
   std::vector<Expr> integrands;   // functions whose integrals over time are wanted (work, action)

@@ -109,6 +109,27 @@ struct AppliedForce {
   Span span;
 };
 
+/// A relation that the motion obeys: φ(q,t) = 0 between coordinates, or ψ(q,q̇,t) = 0 between velocities. The value is
+/// left − right, in SI units; its force is +Aᵀλ with A = ∂φ/∂q or ∂ψ/∂q̇.
+struct Constraint {
+  enum class Level { Position, Velocity } level = Level::Position;  // Velocity: some q' stands in it
+  std::string name;                 // as written; empty if it has none
+  Expr value;                       // φ or ψ; no TimeDerivative nodes
+  Expr multiplier;                  // its λ, Role::Multiplier
+  Expr reaction;                    // symbol, Role::Multiplier: what `reaction(name)` stands for; see `reactions`
+  Dimension dimension;              // of the value
+  std::string body;                 // of the norm constraint that `rotation quaternion` adds: the body; else empty
+  Span span;
+};
+
+/// reaction NAME = release PARAMETER: the force that holds the parameter constant.
+struct Release {
+  std::string name;
+  std::size_t parameter = 0;        // index in MechanicalSystem::parameters
+  Expr reaction;                    // symbol, Role::Multiplier: what `reaction(name)` stands for
+  Span span;
+};
+
 /// A claimed energy beside the one that points and bodies give: `T = …` in a model with massive points.
 struct EnergyClaim {
   syntax::EnergyStatement::Which which;
@@ -140,14 +161,15 @@ struct MechanicalSystem {
   std::optional<EnergyTerm> lagrangian_given;     // L = … : then T, V, U are not used for L
   std::vector<EnergyClaim> claims;
   std::vector<AppliedForce> forces;
-  std::vector<std::pair<std::string, std::size_t>> releases;  // reaction NAME = release parameter (index)
+  std::vector<Constraint> constraints;   // as written; those of quaternions at the end
+  std::vector<Release> releases;
 
   /// The same system with the symbols of definitions of parameters kept (`I φ''` instead of `1/2 m R^2 φ''`): what
   /// readable forms are derived from. Null if there are no such symbols. Substituting definition_values() turns its
   /// expressions into those of this system.
   std::shared_ptr<const MechanicalSystem> written;
 
-  std::size_t freedoms() const { return coordinates.size(); }
+  bool constrained() const { return !constraints.empty(); }
 
   Expr kinetic_energy() const;           // Σ kinetic, 0 if none
   Expr potential_energy() const;
@@ -163,6 +185,9 @@ struct MechanicalSystem {
   const Parameter* find_parameter(std::string_view name) const;
   const Point* find_point(std::string_view name) const;
   const Body* find_body(std::string_view name) const;
+  const Constraint* find_constraint(std::string_view name) const;
+  /// How messages call a constraint: `rod`, "constraint 2" where it has no name, "the norm of sat".
+  std::string constraint_label(std::size_t index) const;
 };
 
 // ------------------------------------------------------------------------------------------------------- experiment
@@ -198,9 +223,17 @@ struct DrawElement {
   std::vector<std::string> names;   // of the points of the path, "" where it is an expression
 };
 
+/// start sat.ω = (0.01, 2, 0.01) rad/s: a body rate that the velocities must give.
+struct StartRate {
+  Expr rate;                        // in q, q', parameters
+  Expr value;
+  Span span;
+};
+
 /// What to do with a system: where it starts, how long it runs, what is drawn and what is expected.
 struct Experiment {
   std::vector<StartValue> start;    // unwritten = 0
+  std::vector<StartRate> start_rates;
   bool start_exactly = false;
   Expr start_time;                  // empty: 0
   Expr duration;                    // of `run 10 s`; empty if the model has none

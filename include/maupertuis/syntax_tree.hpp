@@ -183,7 +183,13 @@ struct ExpectStatement {
   std::vector<StartStatement::Item> at;  // Frequencies: the configuration, `at θ = 0`
 };
 
-/// A statement of the grammar that a later version carries out: constraint, contact, friction, event, impact, sweep,
+/// constraint LEFT = RIGHT name rod. (`constraint integral …` is a LaterStatement.)
+struct ConstraintStatement {
+  ExpressionPtr left, right;
+  std::optional<Name> name;
+};
+
+/// A statement of the grammar that a later version carries out: contact, friction, event, impact, sweep,
 /// field, density, independent, path. It is parsed whole (formatting and messages work) and kept as its expressions.
 struct LaterStatement {
   std::string what;                      // its first word
@@ -195,7 +201,7 @@ using StatementBody =
     std::variant<SystemStatement, SourceStatement, DimensionlessStatement, ParamStatement, CoordStatement, LetStatement,
                  InputStatement, FrameStatement, PointStatement, BodyStatement, GravityStatement, SpringStatement,
                  DamperStatement, TorsionSpringStatement, EnergyStatement, ForceStatement, StartStatement, RunStatement,
-                 OutputStatement, DrawStatement, ReactionStatement, ExpectStatement, LaterStatement>;
+                 OutputStatement, DrawStatement, ReactionStatement, ExpectStatement, ConstraintStatement, LaterStatement>;
 
 struct Statement {
   StatementBody body;

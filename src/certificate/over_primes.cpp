@@ -28,7 +28,7 @@ bool any_nonzero(const std::vector<FieldNumbers::Value>& differences) {
 
 /// One direction at a time at the same point, to name the equation.
 void find_rows(const Questions& questions, const evaluation::Tape& tape, FieldNumbers& numbers, RoutesResult& result) {
-  const std::size_t n = questions.system.freedoms();
+  const std::size_t n = questions.system.coordinates.size();
   std::array<bool, RouteCount> found{};
   Values values;
   for (std::size_t row = 0; row < n; ++row) {
@@ -44,7 +44,7 @@ void find_rows(const Questions& questions, const evaluation::Tape& tape, FieldNu
 /// False: no point was found modulo this prime within the attempts.
 bool compare_at_points(const Questions& questions, const evaluation::Tape& tape, const evaluation::FieldHints& hints,
                        int wanted, std::uint64_t& seed, RoutesResult& result, double& smallest_group) {
-  const std::size_t n = questions.system.freedoms();
+  const std::size_t n = questions.system.coordinates.size();
   Values values;
   int found = 0, mends_left = evaluation::mends_allowed(tape);
   for (int prime = 0; prime < 20 && found < wanted; ++prime) {

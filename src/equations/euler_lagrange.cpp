@@ -30,7 +30,43 @@ Expr dot(const ExprVector& a, const ExprVector& b, Context& context) {
   return context.sum(terms);
 }
 
+/// λ, Aᵀλ and the derivatives of the constraints. Aᵀλ is the gradient of Σ λφ by q, or of Σ λψ by q̇ (d'Alembert and
+/// Lagrange; Chetaev where ψ is not linear), so that it costs no more than the constraints.
+void add_constraints(EquationsOfMotion& equations, const MechanicalSystem& system, const ExprVector& q, const ExprVector& velocities) {
+  if (!system.constrained()) return;
+  Context& context = *system.context;
+  ExprVector on_positions, on_velocities;
+  for (const Constraint& c : system.constraints) {
+    const bool position = c.level == Constraint::Level::Position;
+    (position ? on_positions : on_velocities).push_back(c.multiplier * c.value);
+    const Expr rate = position ? context.time_derivative(c.value) : c.value;
+    equations.multipliers.push_back(c.multiplier);
+    equations.constraint_rates.push_back(rate);
+    equations.constraint_accelerations.push_back(context.time_derivative(rate));
+  }
+  const auto by_q = gradient(context.sum(on_positions), q), by_velocity = gradient(context.sum(on_velocities), velocities);
+  for (std::size_t i = 0; i < q.size(); ++i) equations.constraint_forces.push_back(by_q[i] + by_velocity[i]);
+}
+
+/// λ·A q̇ on the constraints, where A q̇ = −∂φ/∂t, or q̇·∂ψ/∂q̇ − ψ: zero for constraints that do no work.
+Expr constraint_power(const MechanicalSystem& system, const ExprVector& velocities) {
+  Context& context = *system.context;
+  ExprVector terms;
+  for (const Constraint& c : system.constraints) {
+    if (c.level == Constraint::Level::Position) terms.push_back(-(c.multiplier * explicit_rate(c.value)));
+    else terms.push_back(c.multiplier * (dot(velocities, gradient(c.value, velocities), context) - c.value));
+  }
+  return context.sum(terms);
+}
+
 }  // namespace
+
+ExprVector EquationsOfMotion::balance() const {
+  if (constraint_forces.empty()) return residual;
+  ExprVector out;
+  for (std::size_t i = 0; i < residual.size(); ++i) out.push_back(residual[i] - constraint_forces[i]);
+  return out;
+}
 
 std::optional<EquationsOfMotion> euler_lagrange(std::shared_ptr<const MechanicalSystem> system, Diagnostics& diagnostics) {
   Context& context = *system->context;
@@ -53,7 +89,8 @@ std::optional<EquationsOfMotion> euler_lagrange(std::shared_ptr<const Mechanical
   equations.energy_function = dot(velocities, equations.momenta, context) - equations.lagrangian_expanded;
   equations.power = dot(equations.generalized_forces, velocities, context) -
                     dot(equations.dissipative_terms, velocities, context) -
-                    explicit_rate(equations.lagrangian_expanded);
+                    explicit_rate(equations.lagrangian_expanded) + constraint_power(*system, velocities);
+  add_constraints(equations, *system, q, velocities);
   if (system->written)
     if (auto written = euler_lagrange(system->written, diagnostics))
       equations.written = std::make_shared<const EquationsOfMotion>(std::move(*written));
@@ -76,6 +113,24 @@ ExprVector bias(const EquationsOfMotion& equations) {
   Context& context = *equations.system->context;
   for (const Coordinate& c : equations.system->coordinates) at_rest.emplace(c.acceleration, context.number(0));
   return substitute(expand_time_derivatives(equations.residual), at_rest);
+}
+
+ExprMatrix constraint_matrix(const EquationsOfMotion& equations) {
+  const MechanicalSystem& system = *equations.system;
+  const ExprVector q = symbols_of_order(system, 0), velocities = symbols_of_order(system, 1);
+  ExprMatrix a{system.constraints.size(), q.size(), {}};
+  for (const Constraint& c : system.constraints)
+    for (const Expr& entry : gradient(c.value, c.level == Constraint::Level::Position ? q : velocities)) a.entries.push_back(entry);
+  return a;
+}
+
+ExprVector constraint_bias(const EquationsOfMotion& equations) {
+  ExprMap at_rest;
+  Context& context = *equations.system->context;
+  for (const Coordinate& c : equations.system->coordinates) at_rest.emplace(c.acceleration, context.number(0));
+  ExprVector b = substitute(expand_time_derivatives(equations.constraint_accelerations), at_rest);
+  for (Expr& entry : b) entry = -entry;
+  return b;
 }
 
 }  // namespace maupertuis

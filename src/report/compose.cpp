@@ -49,7 +49,7 @@ void add_model(ReportContent& content, const Model& model, const SourceText& sou
   content.source = system.source;
   content.file = source.name() == "-" ? "" : source.name().substr(source.name().rfind('/') + 1);
   content.model_text = source.text();
-  content.summary.emplace_back("freedoms", fmt::format("{}", system.freedoms()));
+  content.summary.emplace_back("freedoms", fmt::format("{}", system.coordinates.size()));
   if (system.dimensionless) content.summary.emplace_back("units", "dimensionless");
   for (std::size_t i = 0; i < system.coordinates.size(); ++i)
     content.coordinates.push_back(coordinate_row(equations, i, run));

@@ -98,6 +98,9 @@ class Dumper {
     child("subject", s.subject), child("time", s.time), child("value", s.value), children("values", s.values);
     child(s.relative ? "relative tolerance" : "tolerance", s.tolerance);
   }
+  void operator()(const ConstraintStatement& s) {
+    head("constraint", s.name ? s.name->text : ""), child("left", s.left), child("right", s.right);
+  }
   void operator()(const LaterStatement& s) {
     head("later", s.what);
     for (const Name& name : s.names) word("name", name.text);

@@ -16,12 +16,17 @@ LaterStatement later(const Token& word) {
 
 // constraint EXPR = EXPR name rod,   constraint integral EXPR = VALUE
 StatementBody StatementParser::constraint_statement() {
-  LaterStatement statement = later(next());
+  const Token word = next();
   const bool integral = peek().is("integral") && !peek(1).is("=") && !context_.declarations.contains("integral") && accept("integral");
-  statement.expressions.push_back(formula());
+  ConstraintStatement constraint;
+  constraint.left = formula();
   expect("=", "the left side of the constraint");
-  statement.expressions.push_back(integral ? quantity() : formula());
-  if (accept("name")) statement.names.push_back(new_name("the name of the constraint"));
+  constraint.right = integral ? quantity() : formula();
+  if (accept("name")) constraint.name = new_name("the name of the constraint");
+  if (!integral) return constraint;
+  LaterStatement statement = later(word);
+  statement.expressions = {constraint.left, constraint.right};
+  if (constraint.name) statement.names.push_back(*constraint.name);
   return statement;
 }
 

@@ -148,7 +148,7 @@ void reaction(Elaboration& e, const syntax::ReactionStatement& s) {
   Declaration* d = find_declared(e, s.released);
   if (!d) return;
   for (std::size_t i = 0; i < e.system().parameters.size(); ++i)
-    if (e.system().parameters[i].name == d->name) e.system().releases.emplace_back(s.name.text, i);
+    if (e.system().parameters[i].name == d->name) e.system().releases.push_back({s.name.text, i, e.context.symbol("reaction(" + s.name.text + ")", Role::Multiplier), s.name.span});
   if (d->kind != Kind::Parameter)
     e.diagnostics.error("E0212", s.released.span,
                         fmt::format("`{}` is a {}, not a parameter", d->name, word_of(d->kind)),

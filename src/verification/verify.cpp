@@ -142,8 +142,8 @@ class Verifier {
   void decide_freedoms(const Expectation& e, ExpectationResult& result) {
     const double expected = number(e.value);
     result.expected = fmt::format("{:g}", expected);
-    result.actual = std::to_string(model_.system.freedoms());
-    result.passed = expected == static_cast<double>(model_.system.freedoms());
+    result.actual = std::to_string(model_.system.coordinates.size());
+    result.passed = expected == static_cast<double>(model_.system.coordinates.size());
     if (!result.passed) result.message = "The number of freedoms is the number of independent coordinates.";
   }
 

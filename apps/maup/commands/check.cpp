@@ -48,7 +48,7 @@ std::string summary(const Model& model) {
   if (words.size() > 8)
     words = {fmt::format("{} … {} ({} of them)", words.front(), words.back(), system.coordinates.size())};
   line("coordinates", joined(words));
-  line("freedoms", std::to_string(system.freedoms()));
+  line("freedoms", std::to_string(system.coordinates.size()));
   words.clear();
   for (const Parameter& p : system.parameters)
     if (p.symbol.role() == Role::Parameter)
@@ -89,7 +89,7 @@ ExitCode check(const ModelOptions& options, Console& console) {
     document["coordinates"] = Json::array();
     if (model)
       for (const Coordinate& c : model->system.coordinates) document["coordinates"].push_back(c.name);
-    const Json freedoms = model ? Json(model->system.freedoms()) : Json(nullptr);
+    const Json freedoms = model ? Json(model->system.coordinates.size()) : Json(nullptr);
     document["freedoms"] = freedoms;
     document["instantaneous_freedoms"] = freedoms;
     document["constraints"] = Json::array();

@@ -67,7 +67,7 @@ Expr Context::symbol(std::string_view name, Role role, int order) {
     Storage::Node node;
     node.kind = Kind::Symbol;
     node.payload = static_cast<std::uint32_t>(storage_->symbols.size());
-    node.time_dependent = role == Role::Coordinate || role == Role::Input || role == Role::Time;
+    node.time_dependent = role == Role::Coordinate || role == Role::Input || role == Role::Time || role == Role::Multiplier;
     storage_->symbols.push_back({std::string(name), role, order});
     id = storage_->append(node);
   }
