@@ -252,9 +252,9 @@ constexpr CodeEntry kEntries[] = {
     // ------------------------------------------------------------------------------------------------ not supported
     // yet
     {"E0501", "a statement that is not supported yet",
-     "The language describes constraints, contacts, Coulomb friction, events, sweeps, variational problems and fields. "
+     "The language describes contacts, Coulomb friction, events, sweeps, variational problems and fields. "
      "They are read and checked for their grammar, and carried out by a later version.",
-     "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = y\n",
+     "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\ncontact x >= y\n",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\n"},
     {"E0502", "quaternions are not supported yet",
      "A unit quaternion needs its norm as a constraint. Use Euler angles, roll-pitch-yaw or axis and angle.",

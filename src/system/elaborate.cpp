@@ -170,6 +170,7 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
 
   for (const DeclarationId id : definition_order(e.table, tree, diagnostics)) elaborate_declaration(e, id);
   elaborate_forces(e);
+  elaborate_constraints(e);
   elaborate_experiment(e);
   apply_start_overrides(e, overrides.start);
 

@@ -111,6 +111,8 @@ void elaborate_body(Elaboration& e, Declaration& d);
 /// Fills T, V, U, L or D of the system, from statements, masses, gravity, springs and dampers.
 void elaborate_energy(Elaboration& e, syntax::EnergyStatement::Which which, Declaration& d);
 void elaborate_forces(Elaboration& e);
+/// Fills `constraints`, and names their multipliers.
+void elaborate_constraints(Elaboration& e);
 /// A number that is known before the run, of parameters and quantities alone.
 Value constant_of(Elaboration& e, const syntax::Expression& x, const Dimension& expected, const std::string& what);
 /// `θ' = 2 rad/s` of a start; nothing, and a message, if it is none.

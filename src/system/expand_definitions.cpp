@@ -43,6 +43,7 @@ void for_each_expression(MechanicalSystem& s, const std::function<void(Expr&)>& 
     vector(f.components);
     vector(f.lever);
   }
+  for (Constraint& c : s.constraints) visit(c.value);
 }
 
 void for_each_expression(Experiment& x, const std::function<void(Expr&)>& visit) {
@@ -53,6 +54,8 @@ void for_each_expression(Experiment& x, const std::function<void(Expr&)>& visit)
     for (StartValue& s : list) visit(s.value);
   };
   starts(x.start);
+  for (StartRate& r : x.start_rates)
+    for (Expr* e : {&r.rate, &r.value}) visit(*e);
   for (Expr* e : {&x.start_time, &x.duration, &x.until, &x.within, &x.output_every}) present(*e);
   for (DrawElement& d : x.drawing) {
     for (ExprVector& p : d.path)

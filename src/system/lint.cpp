@@ -64,7 +64,7 @@ Bindings sample(const Subject& s, int attempt) {
 void lint(const Model& model, const SourceText& source, Diagnostics& diagnostics) {
   if (model.system.coordinates.empty()) return;
   lint_rules::Subject subject(model, source, diagnostics);
-  lint_rules::mass_matrix_rules(subject, lint_rules::unused_coordinates(subject));
+  if (!model.system.constrained()) lint_rules::mass_matrix_rules(subject, lint_rules::unused_coordinates(subject));
   lint_rules::claims(subject);
   lint_rules::total_derivatives(subject);
   lint_rules::gravity_twice(subject);

@@ -13,7 +13,7 @@ const char* reason_for(const std::string& what) {
     return "Parameter studies are carried out by a later version; the model itself is not concerned.";
   if (what == "field" || what == "density") return "Fields are carried out by a later version.";
   if (what == "independent" || what == "path") return "Variational problems are carried out by a later version.";
-  return "Constraints, contacts, Coulomb friction and events are carried out by a later version.";
+  return "Contacts, Coulomb friction and events are carried out by a later version.";
 }
 
 void once(Elaboration& e, std::optional<Span>& first, Span span, const char* what) {
