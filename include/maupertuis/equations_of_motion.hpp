@@ -50,9 +50,21 @@ ExprMatrix constraint_matrix(const EquationsOfMotion& equations);
 ExprVector constraint_bias(const EquationsOfMotion& equations);
 
 /// q̈ = −M⁻¹ h as a shared DAG, by Gaussian elimination with division: O(n³) nodes, nothing expanded. For proofs (dI/dt
-/// along the motion); runs solve with numbers instead. Nothing where M is singular as a function.
+/// along the motion); runs solve with numbers instead. Nothing where M is singular as a function. The form that takes
+/// the equations solves the bordered system where there are constraints.
 std::optional<ExprVector> accelerations(const ExprVector& residual, const MechanicalSystem& system);
 std::optional<ExprVector> accelerations(const EquationsOfMotion& equations);
+
+/// q̈ [n] and λ [m] of the bordered system M q̈ + h = Aᵀλ, A q̈ = b in the same way; M may be singular. Nothing where the
+/// bordered matrix is singular as a function of q and q̇, as it is with redundant constraints.
+struct ConstrainedMotion {
+  ExprVector accelerations, multipliers;
+};
+std::optional<ConstrainedMotion> accelerations_and_multipliers(const EquationsOfMotion& equations);
+/// From R − Aᵀλ and A q̈ − b, of which the caller may have replaced symbols (inputs by their formulas).
+std::optional<ConstrainedMotion> accelerations_and_multipliers(const ExprVector& balance,
+                                                               const ExprVector& constraint_accelerations,
+                                                               const MechanicalSystem& system);
 
 /// Masses before g before lengths before rates, then as declared; coordinates as declared.
 ReadingOrder reading_order(const MechanicalSystem& system);
@@ -60,7 +72,7 @@ ReadingOrder reading_order(const MechanicalSystem& system);
 /// What is conserved at a glance, without a search: cyclic coordinates and the energy function.
 struct ConservedQuantities {
   std::vector<std::size_t> cyclic;          // coordinates absent from L
-  std::vector<std::size_t> conserved_momenta;  // cyclic, and Q and ∂D/∂q̇ vanish
+  std::vector<std::size_t> conserved_momenta;  // cyclic, and Q, ∂D/∂q̇ and Aᵀλ vanish
   bool energy_conserved = false;            // power ≡ 0, proved
   bool energy_is_t_plus_v = false;          // h_E ≡ T + V, proved
   std::string energy_case;                  // one sentence: why h_E is or is not T + V
@@ -78,9 +90,17 @@ struct DerivationStep {
   std::vector<Intermediate> intermediates;  // that `right` uses
 };
 
+/// A constraint as two sides whose difference is φ or ψ, term by term as the model has them.
+struct ConstraintEquation {
+  std::string name;      // `rod`; "constraint 2" where it has none
+  Expr left, right;
+};
+
 struct Derivation {
   std::vector<DerivationStep> steps;
-  std::vector<ReadableForm> equations;   // row i: equations[i].value = 0
+  std::vector<ReadableForm> equations;   // row i: equations[i].value = 0, or = constraint_forces[i].value
+  std::vector<ReadableForm> constraint_forces;   // (Aᵀλ)[i], collected by multipliers; empty without constraints
+  std::vector<ConstraintEquation> constraints;
   std::vector<Intermediate> intermediates;   // the legend: definitions of the model that are used, then named sub-expressions
 };
 

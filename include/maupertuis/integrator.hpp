@@ -32,6 +32,7 @@ struct TaylorOptions {
 enum class StepEnding {
   None,           // go on
   SingularMass,
+  SingularConstraints,  // the constraints contradict each other here, or do not determine where the motion goes
   Overflow,       // a value is infinite or undefined
   StepUnderflow,  // steps shrink below the resolution of time: a collision, an infinite force
   Sliding,        // both sides of a switch push back to it
@@ -53,6 +54,7 @@ struct Sample {
   double t = 0;
   std::vector<double> q, v, a;      // [n] each
   std::vector<double> observables;  // [observables]
+  std::vector<double> multipliers;  // [constraints]; NaN where the equations do not determine λ
   std::vector<double> integrals;    // [integrands], from the start of the run to t; the step follows the motion alone
 };
 
@@ -87,6 +89,8 @@ class TaylorStepper {
   void state(double t, std::span<double> q, std::span<double> v) const;
   /// The motion at the beginning of the last step, at no cost: accelerations and observables come with the step.
   const Sample& step_start() const;
+  /// The largest of φ and of dφ/dt or ψ so far, each in units of the sizes of its terms, as the steps began.
+  double constraint_residual() const;
 
  private:
   struct Impl;

@@ -20,10 +20,11 @@
 /// docs/design/kernel_program.md tells how; nothing here knows mechanics.
 namespace maupertuis {
 
-/// f(q, t) = 0 (level 0) or f(q, q̇, t) = 0 (level 1) along the motion.
+/// f(q, t) = 0 (level 0) or f(q, q̇, t) = 0 (level 1) along the motion. Its row of A is ∂f/∂q or ∂f/∂q̇.
 struct KernelConstraint {
   Expr value;
   int level = 0;
+  std::string name;  // for messages
 };
 
 /// What a kernel is built from. The expressions may hold TimeDerivative nodes, t, numbers, and symbols of the listed
@@ -54,6 +55,7 @@ class Kernel {
   explicit Kernel(std::shared_ptr<const Program> program) : program_(std::move(program)) {}
 
   std::size_t freedoms() const;
+  std::size_t constraints() const;
   std::size_t parameters() const;
   std::size_t observables() const;
   std::size_t events() const;
@@ -61,6 +63,7 @@ class Kernel {
   std::span<const SwitchFunction> switches() const;
   /// The coordinate's name, for messages.
   const std::string& coordinate_name(std::size_t index) const;
+  const std::string& constraint_name(std::size_t index) const;
   /// One line an instruction: `maup derive --emit program`.
   std::string print() const;
 
@@ -78,6 +81,7 @@ Kernel build_kernel(const KernelSource& source);
 enum class KernelStatus {
   Ok,
   SingularMass,  // M has no reliable inverse here: `singular_coordinate` is a coordinate whose q̈ is not determined
+  Contradiction, // the constraints ask for accelerations that exclude each other: `contradicting_constraint` is one of them
   NonFinite,     // a value is infinite or undefined
 };
 
@@ -101,8 +105,9 @@ class KernelWorkspace {
   /// The Taylor coefficients of the motion through (t, q, q̇) under the branches set, and of the switch functions,
   /// events and integrands along it; observables at (t, q, q̇) itself.
   ///
-  /// Order by order: residual with q̈_k = 0, solve M₀ q̈_k = −R_k with the one factorization of M₀, correct by
-  /// tangents. Cost O(order² · program + order · n² + n³).
+  /// Order by order: residual with q̈_k = 0 and λ_k = 0, solve M₀ q̈_k = −R_k with the one factorization of M₀ (bordered
+  /// by A where there are constraints), correct by tangents. Cost O(order² · program + order · (n + m)² + (n + m)³).
+  /// Where rows of A depend on others, an independent set of them is kept for all orders.
   KernelStatus expand(double t, std::span<const double> q, std::span<const double> v);
   /// The same up to q̈ and the observables alone.
   KernelStatus evaluate(double t, std::span<const double> q, std::span<const double> v);
@@ -112,6 +117,21 @@ class KernelWorkspace {
   /// q̈ at the point, q̈_i = 2 · coordinate(2)[i].
   double acceleration(std::size_t i) const;
   double observable(std::size_t i) const;
+  /// λ_i at the point, and whether the equations determine it: not where its row of A depends on others.
+  double multiplier(std::size_t i) const;
+  bool multiplier_is_determined(std::size_t i) const;
+  /// f_i of a constraint of level 0 at the point (0 for level 1), and df_i/dt or f_i of level 1; the sizes of the terms
+  /// that add up to the latter two.
+  double constraint_value(std::size_t i) const;
+  double constraint_rate(std::size_t i) const;
+  double constraint_scale(std::size_t i) const;
+  double constraint_rate_scale(std::size_t i) const;
+  /// The smallest changes of q and q̇, in the metric M, that bring the constraints back to zero, to first order.
+  /// [n] each. Precondition: the last call returned Ok.
+  void corrections(std::span<double> dq, std::span<double> dv);
+  /// M and A at the point, whatever the status.
+  double mass(std::size_t i, std::size_t j) const;
+  double constraint_matrix(std::size_t constraint, std::size_t coordinate) const;
   /// A coefficient of a function along the motion; zero beyond the orders that are known.
   double switch_function(std::size_t i, int k) const;
   double event(std::size_t i, int k) const;
@@ -122,6 +142,8 @@ class KernelWorkspace {
   double event_scale(std::size_t i) const;
   /// After SingularMass.
   std::size_t singular_coordinate() const;
+  /// After Contradiction.
+  std::size_t contradicting_constraint() const;
 
  private:
   struct Impl;

@@ -24,6 +24,7 @@ struct SimulationOptions {
 struct State {
   double t = 0;
   std::vector<double> q, v, a;              // [n] each; a is NaN where the accelerations have no value
+  std::vector<double> multipliers;          // [constraints] λ; NaN where the equations do not determine it
 };
 
 enum class Ending {
@@ -32,6 +33,7 @@ enum class Ending {
   UntilNotReached,  // … was not met within the time given
   Interrupted,
   SingularMass,
+  SingularConstraints,
   Overflow,
   StepUnderflow,
   Sliding,
@@ -45,7 +47,7 @@ struct SimulationStatistics {
   int order = 0;
   std::string backend = "interpreter";
   double energy_drift = 0;                  // docs/theory: |h_E(t) − h_E(0) − work| / max Σ|terms of h_E|
-  double constraint_residual = 0;
+  double constraint_residual = 0;           // docs/theory: largest φ, dφ/dt, ψ, each by the sizes of its terms
   std::size_t switches = 0;                 // located switch crossings
 };
 

@@ -45,7 +45,13 @@ Kernel kernel_of(const Model& model, const EquationsOfMotion& equations, const O
   KernelSource source;
   for (const Coordinate& c : system.coordinates) source.coordinates.push_back(c.q);
   for (const Parameter& p : system.parameters) source.parameters.push_back(p.symbol);
-  source.residual = in_terms_of_motion(system, equations.residual);
+  source.residual = in_terms_of_motion(system, equations.balance());
+  source.multipliers = equations.multipliers;
+  for (std::size_t i = 0; i < system.constraints.size(); ++i) {
+    const Constraint& c = system.constraints[i];
+    const Expr value = in_terms_of_motion(system, {&c.value, 1}).front();
+    source.constraints.push_back({value, c.level == Constraint::Level::Position ? 0 : 1, system.constraint_label(i)});
+  }
   source.observables = in_terms_of_motion(system, observables.expressions);
   if (until) source.events = in_terms_of_motion(system, {&model.experiment.until, 1});
   source.integrands = in_terms_of_motion(system, {&equations.power, 1});
@@ -55,6 +61,7 @@ Kernel kernel_of(const Model& model, const EquationsOfMotion& equations, const O
 Ending ending_of(StepEnding ending) {
   switch (ending) {
     case StepEnding::SingularMass: return Ending::SingularMass;
+    case StepEnding::SingularConstraints: return Ending::SingularConstraints;
     case StepEnding::Overflow: return Ending::Overflow;
     case StepEnding::StepUnderflow: return Ending::StepUnderflow;
     case StepEnding::Sliding: return Ending::Sliding;
@@ -199,7 +206,7 @@ class Run {
     values.push_back(balance_.energy_of(sample));
   }
 
-  static State state_of(const Sample& sample) { return {sample.t, sample.q, sample.v, sample.a}; }
+  static State state_of(const Sample& sample) { return {sample.t, sample.q, sample.v, sample.a, sample.multipliers}; }
 
   void finish() {
     const Sample last = stepper_.sample(stepper_.time());
@@ -213,6 +220,7 @@ class Run {
     }
     result_.statistics.steps = stepper_.steps();
     result_.statistics.switches = stepper_.switches();
+    result_.statistics.constraint_residual = stepper_.constraint_residual();
     result_.statistics.energy_drift = balance_.drift();
   }
 

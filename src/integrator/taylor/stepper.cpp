@@ -1,4 +1,5 @@
 #include "integrator/dense_output/dense_output.hpp"
+#include "integrator/taylor/constraint_error.hpp"
 #include "integrator/taylor/step_size.hpp"
 #include "integrator/taylor/switches.hpp"
 
@@ -25,6 +26,7 @@ struct TaylorStepper::Impl {
     dense.resize(n, k.integrands(), control.order + 1);
     for (auto* state : {&q, &v}) state->resize(n);
     for (auto* values : {&q_now, &v_now}) values->resize(n);
+    for (auto* values : {&dq, &dv}) values->resize(n);
     integrals.resize(k.integrands());
   }
 
@@ -37,6 +39,7 @@ struct TaylorStepper::Impl {
 
   Step step(double bound);
   bool expand(double bound, Step& result);
+  bool project(Step& result);
   bool decide_sides(double bound, Step& result);
   std::optional<double> trial(double bound);
   void keep_polynomial();
@@ -64,6 +67,8 @@ struct TaylorStepper::Impl {
   Compensated t, begin;                  // now; the beginning of the last step
   std::vector<Compensated> q, v, integrals;
   std::vector<double> q_now, v_now;      // [n] their leading parts
+  std::vector<double> dq, dv;            // [n] back to the constraints
+  double constraint_residual = 0;
   DenseOutput dense;
   std::vector<Watched> switch_state, event_state;
   bool first = true;                     // no step made yet
@@ -74,6 +79,13 @@ struct TaylorStepper::Impl {
 };
 
 namespace {
+
+std::vector<double> multipliers_of(const KernelWorkspace& work, std::size_t count) {
+  std::vector<double> values(count);
+  for (std::size_t i = 0; i < count; ++i)
+    values[i] = work.multiplier_is_determined(i) ? work.multiplier(i) : std::numeric_limits<double>::quiet_NaN();
+  return values;
+}
 
 std::int8_t sign(double x) { return static_cast<std::int8_t>((x > 0) - (x < 0)); }
 
@@ -105,6 +117,10 @@ bool TaylorStepper::Impl::fail(Step& result, KernelStatus status) const {
     end(result, StepEnding::SingularMass,
         "The mass matrix is singular here: the equations do not determine the acceleration of " +
             kernel.coordinate_name(work.singular_coordinate()) + ".");
+  else if (status == KernelStatus::Contradiction)
+    end(result, StepEnding::SingularConstraints,
+        "The constraints are singular here: what " + kernel.constraint_name(work.contradicting_constraint()) +
+            " asks of the accelerations, the others exclude.");
   else
     end(result, StepEnding::Overflow, "A force or an acceleration is infinite or undefined here.");
   return false;
@@ -122,7 +138,35 @@ bool TaylorStepper::Impl::expand(double bound, Step& result) {
   set_sides(work);
   const KernelStatus status = work.expand(t.hi, q_now, v_now);
   if (status != KernelStatus::Ok) return fail(result, status);
+  if (kernel.constraints() > 0 && !project(result)) return false;
   return switch_state.empty() || decide_sides(bound, result);
+}
+
+/// Brings q and q̇ back to the constraints. The expansion has factored the bordered matrix, so that this costs two
+/// solves; only where the corrections are above rounding is the motion expanded anew.
+bool TaylorStepper::Impl::project(Step& result) {
+  const double before = taylor::constraint_error(work, n, kernel.constraints(), length);
+  const double allowed = std::max(1e-7, 1e3 * options.tolerance);
+  if (!first && !(before <= allowed)) {
+    end(result, StepEnding::SingularConstraints,
+        "The constraints are singular near here: they do not determine where the motion goes.");
+    return false;
+  }
+  if (!first) constraint_residual = std::max(constraint_residual, before);
+  double error = before;
+  for (int turn = 0; turn < 20; ++turn) {
+    work.corrections(dq, dv);
+    for (std::size_t i = 0; i < n; ++i) {
+      q[i].add(dq[i]), v[i].add(dv[i]);
+      q_now[i] = q[i].hi, v_now[i] = v[i].hi;
+    }
+    if (error <= taylor::rounding_of_constraints) return true;
+    if (const KernelStatus status = work.expand(t.hi, q_now, v_now); status != KernelStatus::Ok) return fail(result, status);
+    const double now = taylor::constraint_error(work, n, kernel.constraints(), length);
+    if (turn > 2 && now > 0.5 * error) return now < 1e-10 ? true : (end(result, StepEnding::SingularConstraints, "The constraints cannot be met near here."), false);
+    error = now;
+  }
+  return true;
 }
 
 bool TaylorStepper::Impl::decide_sides(double bound, Step& result) {
@@ -158,6 +202,7 @@ void TaylorStepper::Impl::record_start() {
   for (std::size_t i = 0; i < n; ++i) start_sample.a[i] = work.acceleration(i);
   start_sample.observables.resize(kernel.observables());
   for (std::size_t i = 0; i < kernel.observables(); ++i) start_sample.observables[i] = work.observable(i);
+  start_sample.multipliers = multipliers_of(work, kernel.constraints());
   start_sample.integrals.resize(integrals.size());
   for (std::size_t i = 0; i < integrals.size(); ++i) start_sample.integrals[i] = integrals[i].hi;
 }
@@ -278,6 +323,7 @@ Sample TaylorStepper::Impl::sample(double time) const {
   const bool ok = probe.evaluate(time, result.q, result.v) == KernelStatus::Ok;
   constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 0; i < n; ++i) result.a.push_back(ok ? probe.acceleration(i) : nothing);
+  result.multipliers = ok ? multipliers_of(probe, kernel.constraints()) : std::vector<double>(kernel.constraints(), nothing);
   for (std::size_t i = 0; i < kernel.observables(); ++i)
     result.observables.push_back(ok ? probe.observable(i) : nothing);
   return result;
@@ -308,6 +354,7 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.first = true;
   s.length = 0;
   s.steps = s.switches = 0;
+  s.constraint_residual = 0;
   s.stuck = 0;
   // Before any step the dense output is the starting point.
   s.dense.resize(s.n, s.kernel.integrands(), s.control.order + 1);
@@ -344,6 +391,7 @@ void TaylorStepper::state(double t, std::span<double> q, std::span<double> v) co
   for (std::size_t i = 0; i < s.n; ++i) q[i] = position[i].hi, v[i] = velocity[i].hi;
 }
 
+double TaylorStepper::constraint_residual() const { return impl_->constraint_residual; }
 const Sample& TaylorStepper::step_start() const { return impl_->start_sample; }
 
 }  // namespace maupertuis

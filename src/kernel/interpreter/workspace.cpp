@@ -1,5 +1,5 @@
 #include "kernel/interpreter/interpreter.hpp"
-#include "kernel/jet/linear_solver.hpp"
+#include "kernel/jet/bordered_solver.hpp"
 
 #include <maupertuis/require.hpp>
 
@@ -16,11 +16,12 @@ using interpreter::Memory;
 struct KernelWorkspace::Impl {
   Impl(const Kernel& k, int p)
       : kernel(k), program(k.program()), order(p), orders(p + 2 + (-2 - program.first_stage)), memory(program, orders),
-        parameters(program.parameters, 0.0), sides(program.switches.size(), 1), solver(program.freedoms),
-        unknown(program.freedoms), producer(program.slots, nullptr) {
-    width = program.freedoms <= 1 ? 1 : program.freedoms <= 2 ? 2 : program.freedoms <= 4 ? 4 : 8;
+        parameters(program.parameters, 0.0), sides(program.switches.size(), 1), unknowns(program.unknowns),
+        solver(program.freedoms, unknowns - program.freedoms), bordered(unknowns * unknowns), unknown(unknowns),
+        producer(program.slots, nullptr) {
+    width = unknowns <= 1 ? 1 : unknowns <= 2 ? 2 : unknowns <= 4 ? 4 : 8;
     tangent.assign(program.slots * static_cast<std::size_t>(width), 0.0);
-    if (program.freedoms > 8) direction.assign(program.slots, 0.0);
+    if (unknowns > 8) direction.assign(program.slots, 0.0);
     for (const Instruction& i : program.instructions) producer[i.out] = &i;
   }
 
@@ -30,6 +31,7 @@ struct KernelWorkspace::Impl {
   void correct(int stage);
   void correct_by_matrix(double* row, Slot first, Slot last, double factor);
   void sweep_block(std::size_t first);
+  bool constraints_agree();
   double coefficient(Slot slot, int k) const;
 
   Kernel kernel;
@@ -39,13 +41,15 @@ struct KernelWorkspace::Impl {
   std::vector<double> parameters;
   std::vector<std::int8_t> sides;
   bool stale = true;                 // constants to be computed
-  jet::LinearSolver solver;
-  std::vector<double> unknown;       // [n] −R_k, then q̈_k
+  std::size_t unknowns;              // n + m
+  jet::BorderedSolver solver;
+  std::vector<double> bordered;      // [(n + m) × (n + m)] ∂R/∂(q̈, λ) at order 0
+  std::vector<double> unknown;       // [n + m] −R_k, then q̈_k and λ_k
   int width;                         // directions a tangent sweep carries
-  std::vector<double> tangent;       // [slots × width]; with n ≤ 8 it holds ∂slot/∂q^(lag) [slots × n]
-  std::vector<double> direction;     // [slots], n > 8: tangents in the direction of q̈_k
+  std::vector<double> tangent;       // [slots × width]; with n + m ≤ 8 it holds ∂slot/∂q^(lag) [slots × (n + m)]
+  std::vector<double> direction;     // [slots], n + m > 8: tangents in the direction of q̈_k
   std::vector<const Instruction*> producer;  // [slots]
-  std::size_t singular = 0;
+  std::size_t singular = 0, contradicting = 0;
   int last_stage = 0;
 };
 
@@ -74,15 +78,15 @@ void add_combination(double* row, const double* tangent, Slot first, Slot last, 
 /// Tangents in the directions of q̈_first … q̈_{first + width − 1}.
 void KernelWorkspace::Impl::sweep_block(std::size_t first) {
   const auto w = static_cast<std::size_t>(width);
-  std::fill_n(tangent.begin(), program.freedoms * w, 0.0);
-  for (std::size_t d = 0; d < w && first + d < program.freedoms; ++d) tangent[(first + d) * w + d] = 1;
+  std::fill_n(tangent.begin(), unknowns * w, 0.0);
+  for (std::size_t d = 0; d < w && first + d < unknowns; ++d) tangent[(first + d) * w + d] = 1;
   sweep(width, memory, tangent.data());
 }
 
-/// M₀ = ∂R/∂q̈ at order 0, column by column, and its factors.
+/// M₀ = ∂R/∂q̈ at order 0, bordered by the constraints, column by column, and its factors.
 KernelStatus KernelWorkspace::Impl::factor() {
-  const std::size_t n = program.freedoms;
-  const auto matrix = solver.matrix();
+  const std::size_t n = unknowns;
+  auto& matrix = bordered;
   const auto w = static_cast<std::size_t>(width);
   double check = 0;
   for (std::size_t first = 0; first < n; first += w) {
@@ -98,6 +102,7 @@ KernelStatus KernelWorkspace::Impl::factor() {
     }
   }
   if (check != 0) return KernelStatus::NonFinite;  // infinity and NaN times 0 are NaN
+  std::copy(matrix.begin(), matrix.end(), solver.matrix().begin());
   if (const auto undetermined = solver.factor()) {
     singular = *undetermined;
     return KernelStatus::SingularMass;
@@ -115,6 +120,25 @@ bool KernelWorkspace::Impl::solve(int stage) {
   return check == 0;
 }
 
+/// Whether the rows of A that were dropped as dependent hold for the accelerations of the others.
+bool KernelWorkspace::Impl::constraints_agree() {
+  const std::size_t n = program.freedoms;
+  for (std::size_t j = 0; n + j < unknowns; ++j) {
+    if (solver.keeps(j)) continue;
+    const Slot slot = program.residual[n + j];
+    double rest = memory.row(0)[slot], size = interpreter::term_size(memory, producer[slot], slot);
+    for (std::size_t i = 0; i < n; ++i) {
+      const double term = bordered[(n + j) * unknowns + i] * unknown[i];
+      rest += term;
+      size += std::abs(term);
+    }
+    if (std::abs(rest) <= 1e-6 * size) continue;
+    contradicting = j;
+    return false;
+  }
+  return true;
+}
+
 void KernelWorkspace::Impl::correct_by_matrix(double* row, Slot first, Slot last, double factor) {
   double scaled[8] = {};
   for (std::size_t i = 0; i < unknown.size(); ++i) scaled[i] = unknown[i] * factor;
@@ -128,7 +152,7 @@ void KernelWorkspace::Impl::correct_by_matrix(double* row, Slot first, Slot last
 
 /// Coefficient k + 2 − ℓ of a slot of lag ℓ follows q̈_k with its order-0 tangent times 1, 1/(k+1), 1/((k+1)(k+2)).
 void KernelWorkspace::Impl::correct(int stage) {
-  const std::size_t n = program.freedoms;
+  const std::size_t n = unknowns;
   const double lag1 = 1.0 / (stage + 1), lag0 = lag1 / (stage + 2);
   const double factors[3] = {lag0, lag1, 1};
   double* const next = memory.row(stage + 2);
@@ -154,15 +178,17 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   stale = false;
   last_stage = stages - 1;
   interpreter::set_leaves(memory, t, orders);
+  for (int k = 0; k < 2; ++k) std::fill_n(memory.row(k), unknowns, 0.0);
   std::copy(q.begin(), q.end(), memory.row(0));
   std::copy(v.begin(), v.end(), memory.row(1));
   for (int stage = program.first_stage; stage < stages; ++stage) {
-    if (stage >= 0) std::fill_n(memory.row(stage + 2), program.freedoms, 0.0);
+    if (stage >= 0) std::fill_n(memory.row(stage + 2), unknowns, 0.0);
     interpreter::run_section(memory, Dynamics, stage);
     if (stage == 0)
       if (const auto status = factor(); status != KernelStatus::Ok) return status;
     if (stage >= 0) {
       if (!solve(stage)) return KernelStatus::NonFinite;
+      if (stage == 0 && !constraints_agree()) return KernelStatus::Contradiction;
       correct(stage);
     }
     interpreter::run_section(memory, Along, stage);
@@ -221,5 +247,48 @@ double KernelWorkspace::event_scale(std::size_t i) const {
   return interpreter::term_size(impl_->memory, impl_->producer[slot], slot);
 }
 std::size_t KernelWorkspace::singular_coordinate() const { return impl_->singular; }
+std::size_t KernelWorkspace::contradicting_constraint() const { return impl_->contradicting; }
+
+// ---------------------------------------------------------------------------------------------------- constraints
+
+double KernelWorkspace::multiplier(std::size_t i) const { return 2 * impl_->memory.row(2)[impl_->program.freedoms + i]; }
+bool KernelWorkspace::multiplier_is_determined(std::size_t i) const { return impl_->solver.determines(i); }
+
+double KernelWorkspace::constraint_value(std::size_t i) const {
+  const Slot slot = impl_->program.constraint_values[i];
+  return slot == no_slot ? 0.0 : impl_->memory.row(0)[slot];
+}
+double KernelWorkspace::constraint_rate(std::size_t i) const {
+  return impl_->memory.row(0)[impl_->program.constraint_rates[i]];
+}
+double KernelWorkspace::constraint_scale(std::size_t i) const {
+  const Slot slot = impl_->program.constraint_values[i];
+  return slot == no_slot ? 0.0 : interpreter::term_size(impl_->memory, impl_->producer[slot], slot);
+}
+double KernelWorkspace::constraint_rate_scale(std::size_t i) const {
+  const Impl& s = *impl_;
+  double size = interpreter::term_size(s.memory, s.producer[s.program.constraint_rates[i]], s.program.constraint_rates[i]);
+  for (std::size_t k = 0; k < s.program.freedoms; ++k) size = std::max(size, std::abs(constraint_matrix(i, k) * s.memory.row(1)[k]));
+  return size;
+}
+
+void KernelWorkspace::corrections(std::span<double> dq, std::span<double> dv) {
+  Impl& s = *impl_;
+  const std::size_t n = s.program.freedoms, m = s.unknowns - n;
+  MAUP_REQUIRE(dq.size() == n && dv.size() == n);
+  const auto solve_for = [&](auto&& error, std::span<double> out) {
+    std::fill_n(s.unknown.begin(), n, 0.0);
+    for (std::size_t j = 0; j < m; ++j) s.unknown[n + j] = error(j);  // −A δ = error
+    s.solver.solve(s.unknown);
+    std::copy_n(s.unknown.begin(), n, out.begin());
+  };
+  solve_for([&](std::size_t j) { return constraint_value(j); }, dq);
+  solve_for([&](std::size_t j) { return constraint_rate(j); }, dv);
+}
+
+double KernelWorkspace::mass(std::size_t i, std::size_t j) const { return impl_->bordered[i * impl_->unknowns + j]; }
+double KernelWorkspace::constraint_matrix(std::size_t constraint, std::size_t coordinate) const {
+  return -impl_->bordered[(impl_->program.freedoms + constraint) * impl_->unknowns + coordinate];
+}
 
 }  // namespace maupertuis

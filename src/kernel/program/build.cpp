@@ -11,8 +11,15 @@ using lowering::NodeIndex;
 using lowering::Outputs;
 
 Outputs lower_outputs(Lowering& lowering, const KernelSource& source) {
-  std::vector<Expr> roots;
-  for (const auto* list : {&source.residual, &source.events, &source.integrands, &source.observables})
+  std::vector<Expr> roots, values, rates, rows;
+  for (const KernelConstraint& c : source.constraints) {
+    rates.push_back(c.level == 0 ? c.value.context().time_derivative(c.value) : c.value);
+    rows.push_back(-c.value.context().time_derivative(rates.back()));
+    values.push_back(c.value);
+  }
+  using Roots = const std::vector<Expr>;
+  for (Roots* list : std::initializer_list<Roots*>{&source.residual, &rows, &values, &rates, &source.events,
+                                                   &source.integrands, &source.observables})
     roots.insert(roots.end(), list->begin(), list->end());
   const std::vector<NodeIndex> nodes = lowering.lower(roots);
   auto next = nodes.begin();
@@ -22,7 +29,11 @@ Outputs lower_outputs(Lowering& lowering, const KernelSource& source) {
     return part;
   };
   Outputs outputs;
-  outputs.residual = take(source.residual.size());
+  outputs.residual = take(source.residual.size() + rows.size());
+  outputs.constraint_values = take(values.size());
+  outputs.constraint_rates = take(rates.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (source.constraints[i].level != 0) outputs.constraint_values[i] = lowering::no_node;
   outputs.events = take(source.events.size());
   outputs.integrands = take(source.integrands.size());
   outputs.observables = take(source.observables.size());
@@ -32,8 +43,8 @@ Outputs lower_outputs(Lowering& lowering, const KernelSource& source) {
 
 void fuse_sums(Lowering& lowering, const Outputs& outputs) {
   std::vector<NodeIndex> roots;
-  for (const auto* list : {&outputs.residual, &outputs.events, &outputs.integrands, &outputs.observables,
-                           &outputs.switches})
+  for (const auto* list : {&outputs.residual, &outputs.constraint_values, &outputs.constraint_rates, &outputs.events,
+                           &outputs.integrands, &outputs.observables, &outputs.switches})
     roots.insert(roots.end(), list->begin(), list->end());
   lowering::fuse(lowering.graph, roots);
 }
@@ -42,6 +53,7 @@ void fuse_sums(Lowering& lowering, const Outputs& outputs) {
 
 Kernel build_kernel(const KernelSource& source) {
   MAUP_REQUIRE(source.residual.size() == source.coordinates.size());
+  MAUP_REQUIRE(source.multipliers.size() == source.constraints.size());
   auto program = std::make_shared<Program>();
   Lowering lowering(source);
   const Outputs outputs = lower_outputs(lowering, source);
@@ -51,6 +63,8 @@ Kernel build_kernel(const KernelSource& source) {
   program->constants = std::move(lowering.graph.constants.constants);
   program->constant_arguments = std::move(lowering.graph.constants.arguments);
   program->freedoms = source.coordinates.size();
+  program->unknowns = source.coordinates.size() + source.multipliers.size();
+  for (const KernelConstraint& c : source.constraints) program->constraint_names.push_back(c.name);
   program->parameters = source.parameters.size();
   program->switches = std::move(lowering.switches);
   for (const Expr& q : source.coordinates) program->coordinate_names.push_back(q.name());
@@ -59,12 +73,14 @@ Kernel build_kernel(const KernelSource& source) {
 }
 
 std::size_t Kernel::freedoms() const { return program_->freedoms; }
+std::size_t Kernel::constraints() const { return program_->unknowns - program_->freedoms; }
 std::size_t Kernel::parameters() const { return program_->parameters; }
 std::size_t Kernel::observables() const { return program_->observables.size(); }
 std::size_t Kernel::events() const { return program_->events.size(); }
 std::size_t Kernel::integrands() const { return program_->integrands.size(); }
 std::span<const SwitchFunction> Kernel::switches() const { return program_->switches; }
 const std::string& Kernel::coordinate_name(std::size_t index) const { return program_->coordinate_names.at(index); }
+const std::string& Kernel::constraint_name(std::size_t index) const { return program_->constraint_names.at(index); }
 std::string Kernel::print() const { return maupertuis::print(*program_); }
 
 }  // namespace maupertuis

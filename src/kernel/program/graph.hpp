@@ -91,6 +91,7 @@ void fuse(Graph& graph, std::span<const NodeIndex> roots);
 /// What the outputs of a source became.
 struct Outputs {
   std::vector<NodeIndex> residual, switches, events, integrands, observables;
+  std::vector<NodeIndex> constraint_values, constraint_rates;  // no_node: level 1
 };
 
 /// Orders the live nodes, gives them lags and slots. Throws std::logic_error on a residual non-linear in q̈.

@@ -9,8 +9,10 @@ namespace maupertuis::lowering {
 Lowering::Lowering(const KernelSource& source) {
   for (const Expr& q : source.coordinates) coordinates_.emplace(q.id(), static_cast<std::uint32_t>(coordinates_.size()));
   for (const Expr& p : source.parameters) parameters_.emplace(p.id(), static_cast<std::uint32_t>(parameters_.size()));
+  for (const Expr& m : source.multipliers)
+    multipliers_.emplace(m.id(), static_cast<std::uint32_t>(coordinates_.size() + multipliers_.size()));
   // The coordinates are nodes even when no expression holds them.
-  for (std::uint32_t i = 0; i < source.coordinates.size(); ++i) graph.leaf(Op::Coordinate, i);
+  for (std::uint32_t i = 0; i < coordinates_.size() + multipliers_.size(); ++i) graph.leaf(Op::Coordinate, i);
 }
 
 std::vector<NodeIndex> Lowering::lower(std::span<const Expr> roots) {
@@ -62,6 +64,8 @@ Scaled Lowering::symbol(Expr e) {
   if (e.role() == Role::Time) return graph.scaled(graph.leaf(Op::Time));
   if (const auto found = parameters_.find(e.id()); found != parameters_.end())
     return constant(graph.constants.parameter(found->second));
+  if (const auto found = multipliers_.find(e.id()); found != multipliers_.end())
+    return time_derivative(time_derivative(graph.scaled(graph.leaf(Op::Coordinate, found->second))));
   const Expr base = e.order() == 0 ? e : e.context().symbol(e.name(), e.role(), 0);
   const auto found = coordinates_.find(base.id());
   if (found == coordinates_.end())

@@ -49,7 +49,7 @@ class Lowering {
 
   std::unordered_map<NodeId, Scaled> done_;
   std::unordered_map<NodeId, std::uint32_t> uses_;
-  std::unordered_map<NodeId, std::uint32_t> coordinates_, parameters_;
+  std::unordered_map<NodeId, std::uint32_t> coordinates_, multipliers_, parameters_;
   std::unordered_map<NodeIndex, std::uint32_t> switch_of_node_;
 };
 

@@ -102,13 +102,18 @@ struct Program {
   Slot one = no_slot, time = no_slot;     // no_slot: not used
   int first_stage = -2;                   // −2, or less when functions of t alone are differentiated
 
-  std::size_t freedoms = 0, parameters = 0;
-  std::vector<Slot> residual;             // [n]
+  /// Unknowns of each stage: the accelerations, then the multipliers. A multiplier is the second derivative of a
+  /// coordinate of its own that stands nowhere else, so that it is found, corrected and differentiated like a q̈.
+  std::size_t freedoms = 0, unknowns = 0, parameters = 0;
+  std::vector<Slot> residual;             // [unknowns] R, then −A q̈ + b of the constraints
+  std::vector<Slot> constraint_values;    // [m]; no_slot: level 1
+  std::vector<Slot> constraint_rates;     // [m]
   std::vector<Slot> switch_slots;         // [switches]
   std::vector<Slot> events, observables, integrands;
 
   std::vector<SwitchFunction> switches;
   std::vector<std::string> coordinate_names;  // [n]
+  std::vector<std::string> constraint_names;  // [m]
   std::vector<std::string> parameter_names;   // [p]
 };
 

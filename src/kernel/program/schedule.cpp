@@ -19,7 +19,7 @@ class Scheduler {
       : graph_(graph), outputs_(outputs), program_(program), section_(graph.nodes.size(), dead) {}
 
   void run() {
-    mark(outputs_.residual, Dynamics);
+    for (const auto* roots : {&outputs_.residual, &outputs_.constraint_values, &outputs_.constraint_rates}) mark(*roots, Dynamics);
     for (const auto* roots : {&outputs_.switches, &outputs_.events, &outputs_.integrands}) mark(*roots, Along);
     mark(outputs_.observables, AtPoint);
     find_lags();
@@ -219,10 +219,12 @@ class Scheduler {
     }
     const auto slots = [&](const std::vector<NodeIndex>& nodes) {
       std::vector<Slot> result;
-      for (const NodeIndex node : nodes) result.push_back(slot_[node]);
+      for (const NodeIndex node : nodes) result.push_back(slot_or_none(node));
       return result;
     };
     program_.residual = slots(outputs_.residual);
+    program_.constraint_values = slots(outputs_.constraint_values);
+    program_.constraint_rates = slots(outputs_.constraint_rates);
     program_.switch_slots = slots(outputs_.switches);
     program_.events = slots(outputs_.events);
     program_.integrands = slots(outputs_.integrands);

@@ -1,0 +1,13 @@
+#pragma once
+#include <maupertuis/kernel.hpp>
+
+namespace maupertuis::taylor {
+
+/// What the evaluation of a constraint leaves by rounding, relative to the sizes of its terms.
+inline constexpr double rounding_of_constraints = 1e-14;
+
+/// The largest of φ, and of dφ/dt or ψ, at the point of the workspace, each divided by the sizes of its terms and by how
+/// far they change in a step of length h, so that a constraint such as y = 0 has a measure too.
+double constraint_error(const KernelWorkspace& work, std::size_t freedoms, std::size_t constraints, double h);
+
+}  // namespace maupertuis::taylor
