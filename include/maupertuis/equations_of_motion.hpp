@@ -117,7 +117,20 @@ struct SolvedAcceleration {
   std::vector<std::size_t> coupled_with;  // the coordinates of its block, itself included
 };
 
-/// q̈ by Cramer's rule for blocks of at most two coordinates; larger blocks are left to the numerical solve.
+/// q̈ by Cramer's rule for blocks of at most two coordinates; larger or singular blocks are left to the numerical solve.
+/// With constraints in terms of λ.
 std::vector<SolvedAcceleration> solved_accelerations(const EquationsOfMotion& equations);
+
+/// λ = (A M⁻¹ Aᵀ)⁻¹ (b + A M⁻¹ h) [m] for at most two constraints on coordinates as in solved_accelerations; else empty.
+std::vector<ReadableForm> solved_multipliers(const EquationsOfMotion& equations);
+
+/// The equations with the multipliers eliminated: Zᵀ(M q̈ + h) = 0 with A Z = 0, a row for each independent acceleration.
+struct EliminatedEquations {
+  std::vector<std::size_t> dependent, independent;  // coordinates; the row's own one is independent
+  std::vector<ReadableForm> rows;                   // row = 0
+  bool dependent_replaced = false;                  // the dependent accelerations were put in from A q̈ = b
+};
+/// Nothing where A has no full row rank as a function, or a row would fill more than some lines. Each row is proved.
+std::optional<EliminatedEquations> eliminate_multipliers(const EquationsOfMotion& equations);
 
 }  // namespace maupertuis

@@ -218,9 +218,9 @@ struct Expectation {
 
 struct DrawElement {
   syntax::DrawItem::Kind kind{};
-  std::vector<ExprVector> path;     // positions, world axes
+  std::vector<ExprVector> path;     // positions, world axes; Reaction: none
   std::vector<Expr> sizes;          // metres
-  std::vector<std::string> names;   // of the points of the path, "" where it is an expression
+  std::vector<std::string> names;   // of the points of the path, "" where it is an expression; Reaction: of what acts
 };
 
 /// start sat.ω = (0.01, 2, 0.01) rad/s: a body rate that the velocities must give.

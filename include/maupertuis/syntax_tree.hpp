@@ -147,8 +147,8 @@ struct RunStatement {
 struct OutputStatement { ExpressionPtr every; };
 
 struct DrawItem {
-  enum class Kind { Line, Trail, Box, Circle, Spring } kind = Kind::Line;
-  std::vector<ExpressionPtr> path;       // Line: the points; others: one (Spring: two)
+  enum class Kind { Line, Trail, Box, Circle, Spring, Reaction } kind = Kind::Line;
+  std::vector<ExpressionPtr> path;       // Line: the points; others: one (Spring: two; Reaction: the call, `reaction rod`)
   std::vector<ExpressionPtr> sizes;      // Box: width, height; Circle: radius
   Span span;
 };

@@ -20,6 +20,26 @@ std::string compare_with_energy(const EquationsOfMotion& equations, bool& equal)
   return "h_E is not T + V: the prescribed motion gives T terms of degree 1 or 0 in the velocities.";
 }
 
+/// No constraint acts on coordinate i, whatever the multipliers are.
+bool free_of_constraints(const EquationsOfMotion& equations, std::size_t i) {
+  return equations.constraint_forces.empty() || vanishes(equations.constraint_forces[i]);
+}
+
+/// λ·A q̇ holds q̇·∂ψ/∂q̇ − ψ, and ψ vanishes along the motion: where ψ is homogeneous in the velocities, of any degree,
+/// the constraint does no work.
+Expr power_on_constraints(const EquationsOfMotion& equations) {
+  Expr power = equations.power;
+  for (const Constraint& c : equations.system->constraints) {
+    if (c.level == Constraint::Level::Position) continue;
+    ExprVector terms;
+    for (const Coordinate& q : equations.system->coordinates) terms.push_back(q.velocity * differentiate(c.value, q.velocity));
+    const Expr work = c.value.context().sum(terms);
+    for (const int degree : {2, 3, 4})
+      if (vanishes(work - Rational(degree) * c.value)) power = power - Rational(degree - 1) * (c.multiplier * c.value);
+  }
+  return power;
+}
+
 }  // namespace
 
 ConservedQuantities conserved_quantities(const EquationsOfMotion& equations) {
@@ -32,9 +52,10 @@ ConservedQuantities conserved_quantities(const EquationsOfMotion& equations) {
   for (std::size_t i = 0; i < q.size(); ++i) {
     if (!vanishes(forces[i])) continue;
     result.cyclic.push_back(i);
-    if (vanishes(equations.generalized_forces[i] - equations.dissipative_terms[i])) result.conserved_momenta.push_back(i);
+    if (vanishes(equations.generalized_forces[i] - equations.dissipative_terms[i]) && free_of_constraints(equations, i))
+      result.conserved_momenta.push_back(i);
   }
-  result.energy_conserved = vanishes(equations.power);
+  result.energy_conserved = vanishes(equations.power) || vanishes(power_on_constraints(equations));
   if (system.lagrangian_given) {
     result.energy_case = "L was given whole: h_E = q'·∂L/∂q' − L, which is T + V where L = T − V with T quadratic in the velocities.";
   } else {

@@ -1,4 +1,5 @@
 #include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/evaluate.hpp>
 
 #include <functional>
 #include <numeric>
@@ -31,12 +32,11 @@ ReadableForm quotient(Expr numerator, Expr denominator, const ReadingOrder& orde
   return result;
 }
 
-}  // namespace
+bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict != Verdict::Nonzero; }
 
-std::vector<SolvedAcceleration> solved_accelerations(const EquationsOfMotion& equations) {
+std::vector<SolvedAcceleration> solved_for(const EquationsOfMotion& equations, const ExprVector& h) {
   const std::size_t n = equations.system->coordinates.size();
   ExprMatrix m = mass_matrix(equations);
-  const ExprVector h = bias(equations);
   for (Expr& entry : m.entries)
     if (const Expr canonical = fourier_form(entry)) entry = canonical;  // zeros become visible to the grouping
 
@@ -48,15 +48,63 @@ std::vector<SolvedAcceleration> solved_accelerations(const EquationsOfMotion& eq
     }
     if (block.size() == 1) {
       const std::size_t i = block[0];
-      solved[i].right = quotient(-h[i], m.at(i, i), equations.order);
+      if (!vanishes(m.at(i, i))) solved[i].right = quotient(-h[i], m.at(i, i), equations.order);
     } else if (block.size() == 2) {
       const std::size_t i = block[0], j = block[1];
       const Expr determinant = m.at(i, i) * m.at(j, j) - m.at(i, j) * m.at(j, i);
+      if (vanishes(determinant)) continue;
       solved[i].right = quotient(m.at(i, j) * h[j] - m.at(j, j) * h[i], determinant, equations.order);
       solved[j].right = quotient(m.at(j, i) * h[i] - m.at(i, i) * h[j], determinant, equations.order);
     }
   }
   return solved;
+}
+
+Expr row_times(const ExprMatrix& a, std::size_t row, const ExprVector& x) {
+  ExprVector terms;
+  for (std::size_t i = 0; i < x.size(); ++i) terms.push_back(a.at(row, i) * x[i]);
+  return x.front().context().sum(terms);
+}
+
+/// M⁻¹ applied to a vector, block by block; empty where a block is singular or larger than two.
+ExprVector apply_inverse_mass(const EquationsOfMotion& equations, const ExprVector& vector) {
+  ExprVector negated, result;
+  for (const Expr& entry : vector) negated.push_back(-entry);
+  for (const SolvedAcceleration& solved : solved_for(equations, negated)) {
+    if (!solved.right.value || !solved.right.intermediates.empty()) return {};
+    result.push_back(solved.right.value);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<SolvedAcceleration> solved_accelerations(const EquationsOfMotion& equations) {
+  ExprVector h = bias(equations);
+  for (std::size_t i = 0; i < equations.constraint_forces.size(); ++i) h[i] = h[i] - equations.constraint_forces[i];
+  return solved_for(equations, h);
+}
+
+std::vector<ReadableForm> solved_multipliers(const EquationsOfMotion& equations) {
+  const ExprMatrix a = constraint_matrix(equations);
+  if (a.rows == 0 || a.rows > 2) return {};
+  // λ = (A M⁻¹ Aᵀ)⁻¹ (b + A M⁻¹ h)
+  const ExprVector drift = apply_inverse_mass(equations, bias(equations)), b = constraint_bias(equations);
+  if (drift.empty()) return {};
+  ExprMatrix g{a.rows, a.rows, {}};
+  ExprVector c;
+  for (std::size_t k = 0; k < a.rows; ++k) {
+    const ExprVector column(a.entries.begin() + static_cast<std::ptrdiff_t>(k * a.columns),
+                            a.entries.begin() + static_cast<std::ptrdiff_t>((k + 1) * a.columns));
+    const ExprVector response = apply_inverse_mass(equations, column);
+    for (std::size_t l = 0; l < a.rows; ++l) g.entries.push_back(readable(row_times(a, l, response), equations.order).value);
+    c.push_back(b[k] + row_times(a, k, drift));
+  }
+  if (a.rows == 1) return vanishes(g.entries[0]) ? std::vector<ReadableForm>{} : std::vector{quotient(c[0], g.entries[0], equations.order)};
+  const Expr determinant = g.at(0, 0) * g.at(1, 1) - g.at(0, 1) * g.at(1, 0);
+  if (vanishes(determinant)) return {};
+  return {quotient(g.at(1, 1) * c[0] - g.at(0, 1) * c[1], determinant, equations.order),
+          quotient(g.at(0, 0) * c[1] - g.at(1, 0) * c[0], determinant, equations.order)};
 }
 
 }  // namespace maupertuis

@@ -32,6 +32,7 @@ Drawing::Kind kind_of(syntax::DrawItem::Kind kind) {
     case syntax::DrawItem::Kind::Box: return Drawing::Kind::Box;
     case syntax::DrawItem::Kind::Circle: return Drawing::Kind::Circle;
     case syntax::DrawItem::Kind::Spring: return Drawing::Kind::Spring;
+    case syntax::DrawItem::Kind::Reaction: break;
   }
   return Drawing::Kind::Line;
 }
@@ -55,8 +56,10 @@ Outline outline_of(const MechanicalSystem& system, Drawing::Kind kind, const std
 std::vector<Outline> outlines_of(const Model& model, const Bindings& parameters) {
   const MechanicalSystem& system = model.system;
   std::vector<Outline> outlines;
-  for (const DrawElement& element : model.experiment.drawing)
+  for (const DrawElement& element : model.experiment.drawing) {
+    if (element.kind == syntax::DrawItem::Kind::Reaction) continue;
     outlines.push_back(outline_of(system, kind_of(element.kind), element.path, element.names, element.sizes, parameters));
+  }
   if (!outlines.empty()) return outlines;
   const auto mark = [&](const std::string& name, const ExprVector& position) {
     outlines.push_back(outline_of(system, Drawing::Kind::Trail, {position}, {name}, {}, parameters));

@@ -72,6 +72,13 @@ Declarations::Kind Declarations::kind(std::string_view name) const {
 std::vector<Name> Declarations::of(const TokenList& list, const StatementTokens& statement) {
   std::vector<Declared> found;
   scan(list, statement, found);
+  const Token& first = list.tokens[statement.begin];
+  const bool reaction = first.is("reaction");
+  if (reaction || first.is("constraint") || first.is("contact")) {  // names that stand in no formula
+    std::size_t at = statement.begin + 1;
+    while (!reaction && at < statement.end && !list.tokens[at - 1].is("name")) ++at;
+    if (at < statement.end && list.tokens[at].kind == Token::Kind::Name) found.push_back({name_of(list.tokens[at]), Kind::None});
+  }
   std::vector<Name> names;
   for (Declared& declared : found) names.push_back(std::move(declared.name));
   return names;

@@ -15,7 +15,7 @@ constexpr std::string_view kKinds[] = {"number", "quantity", "name",   "member",
 constexpr std::string_view kExpectations[] = {"value at", "energy conserved", "conserved", "not conserved", "equation", "freedoms",
                                               "constraint class", "integral", "frequencies", "event at", "error", "value"};
 constexpr std::string_view kRotations[] = {"angle", "axis and angle", "euler", "roll, pitch, yaw", "quaternion", "quaternion coordinates"};
-constexpr std::string_view kShapes[] = {"line", "trail", "box", "circle", "spring"};
+constexpr std::string_view kShapes[] = {"line", "trail", "box", "circle", "spring", "reaction"};
 constexpr std::string_view kInertias[] = {"none", "scalar", "diagonal", "full"};
 
 std::string unit_text(const UnitExpression& unit) {

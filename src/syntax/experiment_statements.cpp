@@ -55,7 +55,10 @@ DrawItem StatementParser::draw_item() {
   const Span first = peek().span;
   const bool shape = peek(1).kind == Token::Kind::Name || peek(1).is("(");
   const auto keyword = [&](std::string_view word) { return shape && accept(word); };
-  if (keyword("trail")) {
+  if (keyword("reaction")) {
+    item.kind = DrawItem::Kind::Reaction;
+    item.path = {bare_reaction(previous())};
+  } else if (keyword("trail")) {
     item.kind = DrawItem::Kind::Trail;
     item.path = {operand("a point after `trail`")};
   } else if (keyword("box")) {

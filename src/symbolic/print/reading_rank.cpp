@@ -11,7 +11,7 @@ constexpr std::uint32_t unlisted = 1u << 20;
 struct Contents {
   int highest_order = -1;   // of coordinates: −1 none, 0 positions, 1 velocities, 2 accelerations
   bool function_of_position = false;
-  bool time = false, input = false;
+  bool time = false, input = false, multiplier = false;
   Expr first_parameter;
 };
 
@@ -26,6 +26,7 @@ void look_into(Expr e, bool inside_function, Contents& contents) {
         break;
       case Role::Time: contents.time = true; break;
       case Role::Input: contents.input = true; break;
+      case Role::Multiplier: contents.multiplier = true; break;
       default: break;
     }
     return;
@@ -63,7 +64,7 @@ std::uint32_t count_of_functions(Expr term) {
 }
 
 enum FactorClass : std::uint32_t { Constants, ParameterSums, Circle, Parameters, ParameterFunctions, Times, Inputs,
-                                   Positions, Functions, Velocities, Accelerations };
+                                   Positions, Functions, Velocities, Accelerations, Multipliers };
 
 }  // namespace
 
@@ -101,6 +102,7 @@ Rank ReadingRanks::factor(Expr factor) const {
       case Role::Input: return {Inputs, rank, static_cast<std::uint32_t>(base.order())};
       case Role::Coordinate:
         return {base.order() == 0 ? Positions : base.order() == 1 ? Velocities : Accelerations, rank};
+      case Role::Multiplier: return {Multipliers, rank};
       default: return {Parameters, rank};
     }
   }
@@ -155,7 +157,11 @@ Rank ReadingRanks::rank_of_rest(Expr term) const {
 Rank ReadingRanks::term(Expr term, bool own_first) const {
   const Contents contents = contents_of(term);
   Rank rank;
-  if (contents.highest_order >= 2) {
+  if (contents.multiplier) {
+    rank = {3};   // forces of constraints after the others
+    for (const Expr& s : symbols_of({&term, 1}))
+      if (s.role() == Role::Multiplier) rank.push_back(symbol_rank(s));
+  } else if (contents.highest_order >= 2) {
     rank = {0};
     std::uint32_t first = ~0u;
     for (const Expr& s : symbols_of({&term, 1}))

@@ -121,13 +121,16 @@ TEST_CASE("experiments") {
   CHECK(text_of(only<OutputStatement>("output every 10 ms").every) == "10 ms");
   CHECK(codes("run until x = 0") == "E0127");
 
-  const auto draw = only<DrawStatement>("draw O - A - B, trail B, box cart 0.4 m by 0.2 m, circle A r, spring A - (0, 1)");
-  REQUIRE(draw.items.size() == 5);
+  const auto draw = only<DrawStatement>("draw O - A - B, trail B, box cart 0.4 m by 0.2 m, circle A r, spring A - (0, 1), reaction rod");
+  REQUIRE(draw.items.size() == 6);
   CHECK(draw.items[0].path.size() == 3);
   CHECK(draw.items[1].kind == DrawItem::Kind::Trail);
   CHECK(draw.items[2].sizes.size() == 2);
   CHECK(draw.items[3].kind == DrawItem::Kind::Circle);
   CHECK(draw.items[4].kind == DrawItem::Kind::Spring);
+  CHECK(draw.items[5].kind == DrawItem::Kind::Reaction);
+  CHECK(text_of(draw.items[5].path.at(0)) == "reaction rod");
+  CHECK(codes("draw reaction 3") == "E0111");
   CHECK(only<DrawStatement>("draw box - trail").items[0].path.size() == 2);
 }
 
@@ -168,9 +171,23 @@ TEST_CASE("expectations") {
   CHECK(codes("expect θ at 10 s = 1 rad") == "E0127");
 }
 
+TEST_CASE("constraints") {
+  const auto roll = only<ConstraintStatement>("constraint x' = R φ' cos ψ name roll");
+  CHECK(text_of(roll.left) == "x'");
+  CHECK(text_of(roll.right) == "R φ' cos ψ");
+  CHECK(roll.name->text == "roll");
+  CHECK_FALSE(only<ConstraintStatement>("constraint x^2 + y^2 = l^2").name);
+  CHECK(codes("constraint x^2 + y^2") == "E0111");
+  CHECK(codes("constraint x = y name") == "E0111");
+  CHECK(codes("constraint x = y name mass") == "E0112");
+  CHECK(formatted("constraint   -x=y   name   rod\n") == "constraint -x = y name rod\n");
+  // What a broken line would have declared is known, so that its use is no second mistake.
+  CHECK(Parsed("constraint x + = y name rod\n").tree.lost_names.at(0).text == "rod");
+  CHECK(Parsed("reaction rod = relaese l\n").tree.lost_names.at(0).text == "rod");
+}
+
 TEST_CASE("statements for later are read whole") {
   const char* const texts[] = {
-      "constraint x' = R φ' cos ψ name roll",
       "constraint integral sqrt(1 + y'^2) = 2",
       "contact r >= R restitution 0",
       "contact y <= 0 restitution e friction μ static μs slip x' name floor",
