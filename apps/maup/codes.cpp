@@ -20,9 +20,14 @@ constexpr CodeEntry own_codes[] = {
      "", ""},
     {"E0692", "equations too coupled to be written out solved",
      "Solving for the accelerations needs the inverse of the mass matrix. For more than two coupled coordinates its "
-     "formulas fill pages and help nobody; runs factor the matrix in numbers instead. The matrix form shows M and h of "
-     "M q'' + h = 0.",
+     "formulas fill pages and help nobody; runs factor the matrix in numbers instead. The same holds for the multipliers "
+     "of more than two constraints, and where M is singular and only the constraints make the motion unique. The matrix "
+     "form shows M and h of M q'' + h = 0, with A and b of M q'' + h = Aᵀλ, A q'' = b.",
      "maup derive chain.lag --form solved", "maup derive chain.lag --form matrix"},
+    {"E0693", "multipliers too long to be eliminated",
+     "Combinations Zᵀ(M q'' + h) = 0 with A Z = 0 hold no multipliers. They are written out where they are short; with many "
+     "constraints, or where one constraint repeats others so that A has no full rank, they are not.",
+     "maup derive linkage.lag --eliminate", "maup derive linkage.lag --form matrix"},
     {"E0801", "a file cannot be read",
      "The operating system refused to open or read the file; its reason is quoted. Check the spelling of the path and "
      "the permission of the file. `-` stands for standard input.",

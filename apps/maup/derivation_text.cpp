@@ -9,31 +9,6 @@
 namespace maupertuis::app {
 namespace {
 
-/// Prose inside \text{}: the preamble of latex_document declares the letters and signs that it may hold.
-std::string latex_text(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '^' || c == '~' || c == '\\') {
-      out += fmt::format("\\char{} ", static_cast<int>(c));
-      continue;
-    }
-    if (std::string_view("#$%&_{}").find(c) != std::string_view::npos) out += '\\';
-    out += c;
-  }
-  return out;
-}
-
-std::string xml_text(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<') out += "&lt;";
-    else if (c == '>') out += "&gt;";
-    else if (c == '&') out += "&amp;";
-    else out += c;
-  }
-  return out;
-}
-
 std::string step_line(const DerivationStep& step, Notation notation, const ReadingOrder& order) {
   const std::string rule = step.rule.empty() ? step.section : step.rule;
   switch (notation) {
@@ -124,6 +99,7 @@ std::string lecture(Study& study, const EquationForm& form, const Certificate& c
   if (with_steps) out += steps_text(*study.derivation(true), order) + "\n";
   out += fmt::format("Equations of motion of {}\n", equations.system->name);
   for (const EquationLine& line : form.lines) out += "  " + to_text(line, Notation::Plain, order) + "\n";
+  for (const EquationLine& line : form.constraints) out += "  " + to_text(line, Notation::Plain, order) + "\n";
   if (!form.intermediates.empty()) out += "with\n";
   for (const Intermediate& i : form.intermediates)
     out += fmt::format("  {} = {}\n", to_plain(i.symbol, order), to_plain(i.value, order));

@@ -34,13 +34,26 @@ bool proved(const std::vector<Expr>& differences, const char* what, Study& study
   return test.verdict == Verdict::Undecided;
 }
 
+std::vector<EquationLine> constraint_lines(const Derivation& derivation) {
+  std::vector<EquationLine> lines;
+  for (const ConstraintEquation& c : derivation.constraints) {
+    EquationLine line;
+    line.right.value = c.left;
+    line.equal_to = c.right;
+    line.note = c.name;
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
 EquationForm standard_form(Study& study, bool as_residual) {
   const EquationsOfMotion& equations = *study.equations();
   const Derivation& derivation = *study.derivation(false);
   EquationForm form;
   for (std::size_t i = 0; i < derivation.equations.size(); ++i) {
     const std::string& name = equations.system->coordinates[i].name;
-    EquationLine line{name, {}, {}, {}, derivation.equations[i]};
+    EquationLine line{name, {}, {}, {}, derivation.equations[i], {}, {}};
+    if (!as_residual && equations.system->constrained()) line.equal_to = derivation.constraint_forces[i].value;
     if (as_residual) {
       line.left_plain = fmt::format("R[{}]", name);
       line.left_latex = fmt::format("R_{{{}}}", symbol_to_latex(equations.system->coordinates[i].q));
@@ -48,32 +61,138 @@ EquationForm standard_form(Study& study, bool as_residual) {
     }
     form.lines.push_back(std::move(line));
   }
+  if (as_residual)
+    for (std::size_t i = 0; i < derivation.constraint_forces.size(); ++i) {
+      const Coordinate& c = equations.system->coordinates[i];
+      form.lines.push_back({c.name, fmt::format("(Aᵀλ)[{}]", c.name),
+                            fmt::format("(A^{{T}} \\lambda)_{{{}}}", symbol_to_latex(c.q)),
+                            fmt::format("<msub><mrow><mo>(</mo><msup><mi>A</mi><mi>T</mi></msup><mi>λ</mi><mo>)</mo></mrow>{}</msub>",
+                                        to_mathml(c.q, {})),
+                            derivation.constraint_forces[i], {}, {}});
+    }
+  form.constraints = constraint_lines(derivation);
   form.intermediates = derivation.intermediates;
   return form;
 }
 
+void refuse_solved(Study& study, const SolvedAcceleration& solved) {
+  const MechanicalSystem& system = study.model()->system;
+  const std::string left = symbol_to_plain(system.coordinates[solved.coordinate].acceleration);
+  const std::size_t others = solved.coupled_with.size() - 1;
+  if (others <= 1)
+    study.diagnostics().error("E0692", {}, fmt::format("The mass matrix gives no {} by itself.", left),
+                              "It is singular: only the constraints together with it determine this acceleration.",
+                              "`--eliminate` shows the equations without multipliers, `--form matrix` shows M, h, A and b.");
+  else
+    study.diagnostics().error("E0692", {}, fmt::format("{} is coupled with {} other accelerations.", left, others),
+                              "Written out, the inverse of their mass matrix would fill pages and help nobody; runs factor it numerically.",
+                              system.constrained() ? "`--form matrix` shows M, h, A and b of M q'' + h = Aᵀλ, A q'' = b."
+                                                   : "`--form matrix` shows M and h of M q'' + h = 0.");
+}
+
+/// λ = …, one line each; false after an error.
+bool add_multipliers(EquationForm& form, ExprMap& solution, Study& study) {
+  const EquationsOfMotion& equations = study.equations()->shown();
+  const std::vector<ReadableForm> solved = solved_multipliers(equations);
+  constexpr std::size_t longest = 600;   // characters
+  bool is_short = !solved.empty();
+  for (const ReadableForm& value : solved)
+    is_short &= value.intermediates.empty() && to_plain(value.value, equations.order).size() <= longest;
+  if (!is_short) {
+    study.diagnostics().error("E0692", {}, "The multipliers are long when they are written out.",
+                              "They follow from A M⁻¹ Aᵀ λ = b + A M⁻¹ h; runs solve that numerically at every step.",
+                              "`--form matrix` shows M, h, A and b; `--eliminate` the equations without multipliers.");
+    return false;
+  }
+  for (std::size_t k = 0; k < solved.size(); ++k) {
+    const Expr symbol = equations.multipliers[k];
+    form.lines.push_back({{}, symbol_to_plain(symbol), symbol_to_latex(symbol), to_mathml(symbol, equations.order), solved[k], {}, {}});
+    solution[symbol] = solved[k].value;
+  }
+  return true;
+}
+
 EquationForm solved_form(Study& study) {
   const EquationsOfMotion& equations = *study.equations();
+  const bool constrained = equations.system->constrained();
   EquationForm form;
   ExprMap solution;
   for (const SolvedAcceleration& solved : solved_accelerations(equations.shown())) {
     const std::string& name = equations.system->coordinates[solved.coordinate].name;
     const Expr left = acceleration(equations, solved.coordinate);
-    if (!solved.right.value) {
-      study.diagnostics().error(
-          "E0692", {}, fmt::format("{} is coupled with {} other accelerations.", symbol_to_plain(left), solved.coupled_with.size() - 1),
-          "Written out, the inverse of their mass matrix would fill pages and help nobody; runs factor it numerically.",
-          "`--form matrix` shows M and h of M q'' + h = 0.");
-      return {};
-    }
+    if (!solved.right.value) return refuse_solved(study, solved), EquationForm{};
     form.lines.push_back({name, symbol_to_plain(left), symbol_to_latex(left), to_mathml(left, equations.order),
-                          solved.right});
+                          solved.right, {}, {}});
     append(form.intermediates, solved.right.intermediates);
     solution[left] = without_intermediates(solved.right.value, solved.right.intermediates);
   }
-  // Put into R they must annihilate it.
-  std::vector<Expr> residual = expand_time_derivatives(std::span<const Expr>(equations.residual));
-  return proved(substitute(residual, solution), "solved", study) ? form : EquationForm{};
+  ExprMap multipliers;
+  if (constrained && !add_multipliers(form, multipliers, study)) return {};
+  // Put into R − Aᵀλ and A q'' − b they must annihilate them.
+  ExprVector rows = equations.balance();
+  rows.insert(rows.end(), equations.constraint_accelerations.begin(), equations.constraint_accelerations.end());
+  rows = substitute(expand_time_derivatives(rows), solution);
+  return proved(substitute(rows, multipliers), "solved", study) ? form : EquationForm{};
+}
+
+EquationForm eliminated_form(Study& study) {
+  const EquationsOfMotion& equations = *study.equations();
+  if (!equations.system->constrained()) return standard_form(study, false);
+  const auto eliminated = eliminate_multipliers(equations.shown());
+  if (!eliminated) {
+    study.diagnostics().error(
+        "E0693", {}, "The multipliers cannot be eliminated in a few lines.",
+        "The combinations of the equations in which they cancel are too long to be read, or some constraint repeats others.",
+        "`--form matrix` shows M, h, A and b of M q'' + h = Aᵀλ, A q'' = b, which runs solve numerically.");
+    return {};
+  }
+  EquationForm form;
+  for (std::size_t i = 0; i < eliminated->rows.size(); ++i)
+    form.lines.push_back({equations.system->coordinates[eliminated->independent[i]].name, {}, {}, {}, eliminated->rows[i], {}, {}});
+  form.constraints = constraint_lines(*study.derivation(false));
+  return form;
+}
+
+/// Lines `name[row, column] = value`, whose values put together must give what was derived.
+class MatrixLines {
+ public:
+  explicit MatrixLines(const EquationsOfMotion& equations) : equations_(equations) {}
+
+  /// The value as it is shown.
+  Expr add(const std::string& letter, const std::string& names, const std::string& indices, const std::string& coordinate, Expr value) {
+    ReadableForm shown = readable(value, equations_.order);
+    append(form.intermediates, shown.intermediates);
+    const Expr whole = without_intermediates(shown.value, shown.intermediates);
+    form.lines.push_back({coordinate, fmt::format("{}[{}]", letter, names), fmt::format("{}_{{{}}}", letter, indices),
+                          fmt::format("<msub><mi>{}</mi><mrow><mn>{}</mn></mrow></msub>", letter, indices), std::move(shown), {}, {}});
+    return whole;
+  }
+
+  EquationForm form;
+
+ private:
+  const EquationsOfMotion& equations_;
+};
+
+std::string index_pair(std::size_t i, std::size_t j) { return fmt::format("{},{}", i + 1, j + 1); }
+
+/// A and b, beside the differences A q'' − b of what is shown and what was derived.
+void add_constraint_matrix(MatrixLines& lines, const EquationsOfMotion& equations, ExprVector& differences) {
+  const auto& coordinates = equations.system->coordinates;
+  const ExprMatrix a = constraint_matrix(equations.shown());
+  const ExprVector b = constraint_bias(equations.shown());
+  ExprVector rows;
+  for (std::size_t k = 0; k < a.rows; ++k) {
+    rows.push_back(-equations.constraint_accelerations[k]);
+    for (std::size_t j = 0; j < a.columns; ++j) {
+      if (a.at(k, j).is_zero()) continue;
+      const std::string names = fmt::format("{}, {}", equations.system->constraint_label(k), coordinates[j].name);
+      rows[k] = rows[k] + lines.add("A", names, index_pair(k, j), {}, a.at(k, j)) * acceleration(equations, j);
+    }
+  }
+  for (std::size_t k = 0; k < a.rows; ++k)
+    rows[k] = rows[k] - lines.add("b", equations.system->constraint_label(k), std::to_string(k + 1), {}, b[k]);
+  differences.insert(differences.end(), rows.begin(), rows.end());
 }
 
 EquationForm matrix_form(Study& study) {
@@ -82,38 +201,26 @@ EquationForm matrix_form(Study& study) {
   const std::size_t n = coordinates.size();
   const ExprMatrix m = mass_matrix(equations.shown());
   const ExprVector h = bias(equations.shown());
-  EquationForm form;
-  const auto add = [&](std::size_t i, EquationLine line, Expr value) -> Expr {
-    ReadableForm shown = readable(value, equations.order);
-    append(form.intermediates, shown.intermediates);
-    const Expr whole = without_intermediates(shown.value, shown.intermediates);
-    line.coordinate = coordinates[i].name;
-    line.right = std::move(shown);
-    form.lines.push_back(std::move(line));
-    return whole;
-  };
+  MatrixLines lines(equations);
   std::vector<Expr> rows(n, equations.system->context->number(0));
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = i; j < n; ++j) {
-      EquationLine line{{}, fmt::format("M[{}, {}]", coordinates[i].name, coordinates[j].name),
-                        fmt::format("M_{{{},{}}}", i + 1, j + 1),
-                        fmt::format("<msub><mi>M</mi><mrow><mn>{}</mn><mo>,</mo><mn>{}</mn></mrow></msub>", i + 1, j + 1), {}};
-      const Expr entry = add(i, std::move(line), m.at(i, j));
+      const std::string names = fmt::format("{}, {}", coordinates[i].name, coordinates[j].name);
+      const Expr entry = lines.add("M", names, index_pair(i, j), coordinates[i].name, m.at(i, j));
       rows[i] = rows[i] + entry * acceleration(equations, j);
       if (j != i) rows[j] = rows[j] + entry * acceleration(equations, i);
     }
-  for (std::size_t i = 0; i < n; ++i) {
-    EquationLine line{{}, fmt::format("h[{}]", coordinates[i].name), fmt::format("h_{{{}}}", i + 1),
-                      fmt::format("<msub><mi>h</mi><mn>{}</mn></msub>", i + 1), {}};
-    rows[i] = rows[i] + add(i, std::move(line), h[i]) - equations.residual[i];
-  }
-  return proved(rows, "matrix", study) ? form : EquationForm{};
+  for (std::size_t i = 0; i < n; ++i)
+    rows[i] = rows[i] + lines.add("h", coordinates[i].name, std::to_string(i + 1), coordinates[i].name, h[i]) - equations.residual[i];
+  if (equations.system->constrained()) add_constraint_matrix(lines, equations, rows);
+  return proved(rows, "matrix", study) ? std::move(lines.form) : EquationForm{};
 }
 
 /// The definitions of the model that the lines use, before their named sub-expressions.
 EquationForm with_definitions(EquationForm form, Study& study) {
   std::vector<Expr> roots;
   for (const EquationLine& line : form.lines) roots.push_back(line.right.value);
+  for (const EquationLine& line : form.constraints) roots.insert(roots.end(), {line.right.value, line.equal_to});
   for (const Intermediate& i : form.intermediates) roots.push_back(i.value);
   if (roots.empty()) return form;
   std::vector<Intermediate> legend = definitions_used(*study.equations()->shown().system, roots);
@@ -144,6 +251,30 @@ std::string unicode_declarations() {
 
 }  // namespace
 
+std::string latex_text(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '^' || c == '~' || c == '\\') {
+      out += fmt::format("\\char{} ", static_cast<int>(c));
+      continue;
+    }
+    if (std::string_view("#$%&_{}").find(c) != std::string_view::npos) out += '\\';
+    out += c;
+  }
+  return out;
+}
+
+std::string xml_text(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '<') out += "&lt;";
+    else if (c == '>') out += "&gt;";
+    else if (c == '&') out += "&amp;";
+    else out += c;
+  }
+  return out;
+}
+
 EquationForm equation_form(Form form, Study& study) {
   if (!study.equations()) return {};
   switch (form) {
@@ -151,31 +282,37 @@ EquationForm equation_form(Form form, Study& study) {
     case Form::Solved: return with_definitions(solved_form(study), study);
     case Form::Matrix: return with_definitions(matrix_form(study), study);
     case Form::Residual: return standard_form(study, true);
+    case Form::Eliminated: return with_definitions(eliminated_form(study), study);
   }
   return {};
 }
 
 EquationLine definition_line(const Intermediate& intermediate, const ReadingOrder& order) {
   const Expr name = intermediate.symbol;
-  EquationLine line{{}, to_plain(name, order), to_latex(name, order), to_mathml(name, order), {}};
+  EquationLine line{{}, to_plain(name, order), to_latex(name, order), to_mathml(name, order), {}, {}, {}};
   line.right.value = intermediate.value;
   return line;
 }
 
 std::string to_text(const EquationLine& line, Notation notation, const ReadingOrder& order) {
-  const bool residual = line.left_plain.empty();
+  const bool named = !line.left_plain.empty();
   switch (notation) {
     case Notation::Plain: {
       const std::string right = to_plain(line.right, order);
-      return residual ? right + " = 0" : line.left_plain + " = " + right;
+      if (named) return line.left_plain + " = " + right;
+      return right + " = " + (line.equal_to ? to_plain(line.equal_to, order) : "0") + (line.note.empty() ? "" : "    (" + line.note + ")");
     }
     case Notation::Latex: {
       const std::string right = to_latex(line.right, order);
-      return residual ? right + " &= 0" : line.left_latex + " &= " + right;
+      if (named) return line.left_latex + " &= " + right;
+      return right + " &= " + (line.equal_to ? to_latex(line.equal_to, order) : "0") +
+             (line.note.empty() ? "" : fmt::format(" && \\text{{({})}}", latex_text(line.note)));
     }
     case Notation::Mathml: {
       const std::string right = to_mathml(line.right, order);
-      return residual ? right + "<mo>=</mo><mn>0</mn>" : line.left_mathml + "<mo>=</mo>" + right;
+      if (named) return line.left_mathml + "<mo>=</mo>" + right;
+      return right + "<mo>=</mo>" + (line.equal_to ? to_mathml(line.equal_to, order) : "<mn>0</mn>") +
+             (line.note.empty() ? "" : fmt::format("<mtext>  ({})</mtext>", xml_text(line.note)));
     }
   }
   return {};

@@ -7,8 +7,8 @@
 namespace maupertuis::certification {
 namespace {
 
-/// Fills in what a zero test of all rows found; where it is not zero, which row it was.
-void judge(CertificateCheck& check, const ExprVector& differences, std::uint64_t seed) {
+/// Fills in what a zero test of all differences found; where they are not zero, which of the `rows` equations it was.
+void judge(CertificateCheck& check, const ExprVector& differences, std::size_t rows, std::uint64_t seed) {
   ZeroTestOptions options;
   options.seed = seed;
   const ZeroTest all = zero_test(differences, options);
@@ -19,7 +19,7 @@ void judge(CertificateCheck& check, const ExprVector& differences, std::uint64_t
   for (std::size_t row = 0; row < differences.size(); ++row) {
     const ZeroTest one = zero_test(differences[row], options);
     if (one.verdict == Verdict::Zero) continue;
-    check.row = row;
+    check.row = row % rows;
     check.reason = one.verdict == Verdict::Nonzero
                        ? fmt::format("they differ by {:.6g} at a real point", one.witness_value)
                        : one.reason;
@@ -41,8 +41,10 @@ CertificateCheck forms_agree(const EquationsOfMotion& equations, const Derivatio
   ExprVector differences;
   for (std::size_t row = 0; row < equations.residual.size(); ++row)
     differences.push_back(readable.equations[row].value - equations.residual[row]);
+  for (std::size_t row = 0; row < equations.constraint_forces.size(); ++row)
+    differences.push_back(readable.constraint_forces[row].value - equations.constraint_forces[row]);
   if (!meaning.empty()) differences = substitute(differences, meaning);
-  judge(check, differences, seed);
+  judge(check, differences, equations.residual.size(), seed);
   return check;
 }
 
@@ -64,7 +66,7 @@ CertificateCheck gauge_invariance(const EquationsOfMotion& equations, std::uint6
   const auto plain = variational_residual(equations.lagrangian, q);
   ExprVector differences;
   for (std::size_t i = 0; i < q.size(); ++i) differences.push_back(changed[i] - plain[i]);
-  judge(check, differences, seed);
+  judge(check, differences, q.size(), seed);
   return check;
 }
 

@@ -16,11 +16,12 @@ namespace {
 struct DeriveOptions {
   ModelOptions model;
   std::string form = "standard";
-  bool steps = false, latex = false, mathml = false, plain = false;
+  bool eliminate = false, steps = false, latex = false, mathml = false, plain = false;
   std::string certify = "standard";
   std::string emit;
 
   Form chosen_form() const {
+    if (eliminate) return Form::Eliminated;
     const std::map<std::string, Form> forms = {
         {"standard", Form::Standard}, {"solved", Form::Solved}, {"matrix", Form::Matrix}, {"residual", Form::Residual}};
     return forms.at(form);
@@ -49,7 +50,7 @@ Json document_of(const DeriveOptions& options, Study& study, const EquationForm&
   if (!equations || !certificate) return document;
   const ReadingOrder& order = equations->order;
   document["system"] = equations->system->name;
-  document["form"] = options.form;
+  document["form"] = options.eliminate ? "eliminated" : options.form;
   document["coordinates"] = Json::array();
   for (const Coordinate& c : equations->system->coordinates) document["coordinates"].push_back(c.name);
   document["equations"] = equations_json(form, order);
@@ -84,6 +85,7 @@ std::string in_notation(const DeriveOptions& options, Notation notation, Study& 
   std::vector<std::string> lines;
   if (options.steps) lines = step_lines(*study.derivation(true), notation, order);
   for (const EquationLine& line : form.lines) lines.push_back(to_text(line, notation, order));
+  for (const EquationLine& line : form.constraints) lines.push_back(to_text(line, notation, order));
   for (const Intermediate& i : form.intermediates) lines.push_back(to_text(definition_line(i, order), notation, order));
   if (notation == Notation::Latex) return latex_document(lines);
   if (notation == Notation::Mathml) return mathml_document(lines);
@@ -130,11 +132,13 @@ void add_derive(CommandLine& line) {
                                [options](Console& console) { return derive(*options, console); });
   add_model_options(command, options->model);
   command.add_flag("--steps", options->steps, "The textbook derivation, line by line, each with its rule");
-  command
+  CLI::Option* form = command
       .add_option("--form", options->form,
-                  "standard: R = 0; solved: q'' = …; matrix: M and h of M q'' + h = 0; residual: R")
+                  "standard: R = Aᵀλ; solved: q'' = …, λ = …; matrix: M, h, A and b of M q'' + h = Aᵀλ, A q'' = b; residual: R")
       ->check(CLI::IsMember({"standard", "solved", "matrix", "residual"}))
       ->type_name("FORM");
+  command.add_flag("--eliminate", options->eliminate, "The equations without multipliers: combinations in which Aᵀλ cancels")
+      ->excludes(form);
   const auto latex = command.add_flag("--latex", options->latex, "A LaTeX document of the equations");
   const auto mathml = command.add_flag("--mathml", options->mathml, "MathML")->excludes(latex);
   command.add_flag("--plain", options->plain, "The equations alone, one a line")->excludes(latex)->excludes(mathml);

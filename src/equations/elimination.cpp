@@ -1,0 +1,153 @@
+#include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/print.hpp>
+
+#include <algorithm>
+
+namespace maupertuis {
+namespace {
+
+constexpr std::size_t longest_row = 400;   // characters: beyond it elimination hides more than it shows
+
+/// 0: a number; 1: parameters alone; 2: depends on the motion.
+int pivot_class(Expr e) {
+  if (e.is_number()) return 0;
+  for (const Expr& s : symbols_of({&e, 1}))
+    if (s.role() != Role::Parameter && s.role() != Role::Constant && s.role() != Role::Auxiliary) return 2;
+  return 1;
+}
+
+/// A brought to a form in which every row has a pivot column of its own, without fractions.
+class RowReduction {
+ public:
+  RowReduction(const EquationsOfMotion& equations) : order_(equations.order), a_(constraint_matrix(equations)), b_(constraint_bias(equations)) {
+    for (std::size_t row = 0; row < a_.rows; ++row) tidy(row);
+  }
+
+  /// False: the rank is less than the number of rows, as far as can be seen.
+  bool reduce() {
+    for (std::size_t row = 0; row < a_.rows; ++row) {
+      const auto column = best_pivot(row);
+      if (!column) return false;
+      pivots_.push_back(*column);
+      for (std::size_t other = 0; other < a_.rows; ++other)
+        if (other != row && !a_.at(other, *column).is_zero()) clear(other, row, *column);
+    }
+    return true;
+  }
+
+  const ExprMatrix& matrix() const { return a_; }
+  const std::vector<std::size_t>& pivots() const { return pivots_; }
+  Expr pivot(std::size_t row) const { return a_.at(row, pivots_[row]); }
+  Expr bias(std::size_t row) const { return b_[row]; }
+  bool is_dependent(std::size_t column) const { return std::find(pivots_.begin(), pivots_.end(), column) != pivots_.end(); }
+  bool constant_pivots() const {
+    for (std::size_t row = 0; row < a_.rows; ++row)
+      if (pivot_class(pivot(row)) == 2) return false;
+    return true;
+  }
+
+ private:
+  /// Entries in their best form, a numeric factor of the whole row taken out: zeros become visible.
+  void tidy(std::size_t row) {
+    std::optional<Rational> factor;
+    bool common = true;
+    for (std::size_t j = 0; j < a_.columns; ++j) {
+      Expr& entry = a_.at(row, j);
+      entry = readable(entry, order_).value;
+      if (entry.is_zero()) continue;
+      Rational size = split_coefficient(entry).coefficient;
+      if (size.sign() < 0) size = Rational(0) - size;
+      if (factor && !(*factor == size)) common = false;
+      factor = size;
+    }
+    if (!factor || !common) return;
+    for (std::size_t j = 0; j < a_.columns; ++j) a_.at(row, j) = a_.at(row, j) / *factor;
+    b_[row] = b_[row] / *factor;
+  }
+
+  std::optional<std::size_t> best_pivot(std::size_t row) const {
+    std::optional<std::size_t> best;
+    for (std::size_t j = 0; j < a_.columns; ++j) {
+      if (a_.at(row, j).is_zero() || is_dependent(j)) continue;
+      if (!best || pivot_class(a_.at(row, j)) < pivot_class(a_.at(row, *best))) best = j;
+    }
+    return best;
+  }
+
+  void clear(std::size_t row, std::size_t by, std::size_t column) {
+    const Expr p = a_.at(by, column), f = a_.at(row, column);
+    const Expr ratio = pivot_class(p) == 0 ? f / p : Expr();   // a number needs no common denominator
+    const auto combined = [&](Expr own, Expr other) { return ratio ? own - ratio * other : p * own - f * other; };
+    for (std::size_t j = 0; j < a_.columns; ++j) a_.at(row, j) = combined(a_.at(row, j), a_.at(by, j));
+    b_[row] = combined(b_[row], b_[by]);
+    tidy(row);
+  }
+
+  const ReadingOrder& order_;
+  ExprMatrix a_;
+  ExprVector b_;
+  std::vector<std::size_t> pivots_;
+};
+
+/// A vector of ker A with the component `column` of the independent coordinates alone, its denominators multiplied away.
+ExprVector kernel_vector(const RowReduction& reduction, std::size_t column, Context& context) {
+  const ExprMatrix& a = reduction.matrix();
+  Expr scale = context.number(1);
+  for (std::size_t row = 0; row < a.rows; ++row)
+    if (!a.at(row, column).is_zero() && pivot_class(reduction.pivot(row)) == 2) scale = scale * reduction.pivot(row);
+  ExprVector z(a.columns, context.number(0));
+  z[column] = scale;
+  for (std::size_t row = 0; row < a.rows; ++row)
+    z[reduction.pivots()[row]] = -(scale * a.at(row, column) / reduction.pivot(row));
+  return z;
+}
+
+/// The dependent accelerations from A q̈ = b.
+ExprMap dependent_accelerations(const RowReduction& reduction, const MechanicalSystem& system) {
+  ExprMap replaced;
+  const ExprMatrix& a = reduction.matrix();
+  for (std::size_t row = 0; row < a.rows; ++row) {
+    ExprVector terms{reduction.bias(row)};
+    for (std::size_t j = 0; j < a.columns; ++j)
+      if (!reduction.is_dependent(j)) terms.push_back(-(a.at(row, j) * system.coordinates[j].acceleration));
+    replaced.emplace(system.coordinates[reduction.pivots()[row]].acceleration,
+                     system.context->sum(terms) / reduction.pivot(row));
+  }
+  return replaced;
+}
+
+}  // namespace
+
+std::optional<EliminatedEquations> eliminate_multipliers(const EquationsOfMotion& equations) {
+  const MechanicalSystem& system = *equations.system;
+  Context& context = *system.context;
+  RowReduction reduction(equations);
+  if (!reduction.reduce()) return std::nullopt;
+  EliminatedEquations result;
+  result.dependent = reduction.pivots();
+  result.dependent_replaced = reduction.constant_pivots();
+  const ExprVector residual = expand_time_derivatives(equations.residual);
+  const ExprVector balance = expand_time_derivatives(equations.balance());
+  const ExprMap replaced = result.dependent_replaced ? dependent_accelerations(reduction, system) : ExprMap{};
+  for (std::size_t j = 0; j < system.coordinates.size(); ++j) {
+    if (reduction.is_dependent(j)) continue;
+    const ExprVector z = kernel_vector(reduction, j, context);
+    ExprVector of_residual, of_balance;
+    for (std::size_t i = 0; i < z.size(); ++i) {
+      of_residual.push_back(z[i] * residual[i]);
+      of_balance.push_back(z[i] * balance[i]);
+    }
+    const ExprVector row{substitute(context.sum(of_residual), replaced)};
+    ReadableForm form = readable_equations(row, equations.order).front();
+    form.own = system.coordinates[j].q;
+    if (!form.intermediates.empty() || to_plain(form, equations.order).size() > longest_row) return std::nullopt;
+    // The multipliers cancel: the row is a combination of the equations with Aᵀλ.
+    if (zero_test(form.value - substitute(context.sum(of_balance), replaced)).verdict != Verdict::Zero) return std::nullopt;
+    result.independent.push_back(j);
+    result.rows.push_back(std::move(form));
+  }
+  return result;
+}
+
+}  // namespace maupertuis
