@@ -24,6 +24,7 @@ constexpr std::array<RouteText, RouteCount> texts{{
     {"jet_residual", "the equations follow from the action principle along random paths"},
     {"dalembert", "the particles and bodies obey d'Alembert's principle"},
     {"power_balance", "the energy function changes by the power of the forces (blind to gyroscopic terms)"},
+    {"constraint_rows", "the forces of constraint do the virtual work λ δφ, and A q'' − b is the second derivative of φ along random paths"},
 }};
 
 /// The verdict over the primes, and over the reals where those leave it open.
@@ -88,7 +89,8 @@ Certificate certify(const EquationsOfMotion& equations, const Derivation* readab
   std::optional<RoutesResult> reals;
   if (open) reals = compare_over_reals(questions, options.seed, real_points);
 
-  for (const Route route : {Action, Dalembert, Power}) {
+  for (const Route route : {Action, Dalembert, Power, ConstraintRows}) {
+    if (route == ConstraintRows && !equations.system->constrained()) continue;
     CertificateCheck check = check_of(route, primes, reals ? &*reals : nullptr);
     if (route == Dalembert) explain_dalembert(check, *equations.system, questions.has_matter);
     certificate.checks.push_back(std::move(check));

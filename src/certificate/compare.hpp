@@ -24,6 +24,7 @@ std::array<std::vector<typename Numbers::Value>, RouteCount> differences(
   out[Action] = action_route(along);
   if (questions.has_matter) out[Dalembert] = dalembert_route(along);
   out[Power] = power_route(along);
+  if (!questions.constraints.empty()) out[ConstraintRows] = constraint_route(along);
   return out;
 }
 

@@ -26,13 +26,16 @@ bool any_nonzero(const std::vector<FieldNumbers::Value>& differences) {
   return std::any_of(differences.begin(), differences.end(), [](FieldNumbers::Value v) { return v != 0; });
 }
 
-/// One direction at a time at the same point, to name the equation.
+/// One direction at a time at the same point, to name the equation. Of the differences about constraints only the first
+/// depends on the direction.
 void find_rows(const Questions& questions, const evaluation::Tape& tape, FieldNumbers& numbers, RoutesResult& result) {
   const std::size_t n = questions.system.coordinates.size();
   std::array<bool, RouteCount> found{};
+  result.routes[ConstraintRows].row = n;
   Values values;
   for (std::size_t row = 0; row < n; ++row) {
-    const auto difference = differences(questions, tape, numbers, unit_direction(numbers, n, row), values);
+    auto difference = differences(questions, tape, numbers, unit_direction(numbers, n, row), values);
+    difference[ConstraintRows].resize(questions.constraints.empty() ? 0 : 1);
     for (std::size_t route = 0; route < RouteCount; ++route) {
       if (found[route] || !result.routes[route].fails || !any_nonzero(difference[route])) continue;
       found[route] = true;

@@ -35,6 +35,7 @@ Questions::Questions(const EquationsOfMotion& equations, bool with_matrix) : sys
     mass_matrix = ask(maupertuis::mass_matrix(equations).entries);
     bias = ask(maupertuis::bias(equations));
   }
+  ask_about_constraints(equations, with_matrix);
   // A `let` that stays a symbol in print stands for its value.
   const ExprMap definitions = system.definition_values();
   if (!definitions.empty()) roots = substitute(roots, definitions);
@@ -61,6 +62,25 @@ void Questions::ask_about_matter() {
   gather(system.generalized_potential, -1);
   gather(system.lagrangian_extra, 1);
   given_energies = ask(context.sum(terms));
+}
+
+void Questions::ask_about_constraints(const EquationsOfMotion& equations, bool with_matrix) {
+  if (!system.constrained()) return;
+  constraint_forces = ask(equations.constraint_forces);
+  ExprMatrix a;
+  ExprVector b;
+  if (with_matrix) {
+    a = constraint_matrix(equations);
+    b = constraint_bias(equations);
+  }
+  for (std::size_t k = 0; k < system.constraints.size(); ++k) {
+    const Constraint& c = system.constraints[k];
+    ConstraintQuestion question{c.level, ask(c.value), ask(c.multiplier), ask(equations.constraint_rates[k]),
+                                ask(equations.constraint_accelerations[k]), {}, 0};
+    for (std::size_t j = 0; j < a.columns; ++j) question.row.push_back(ask(a.at(k, j)));
+    if (with_matrix) question.bias = ask(b[k]);
+    constraints.push_back(std::move(question));
+  }
 }
 
 Root Questions::ask(Expr e) {

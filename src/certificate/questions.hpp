@@ -18,6 +18,13 @@ struct ParticleQuestion {
   Root mass;
   Roots position;
 };
+struct ConstraintQuestion {
+  Constraint::Level level;
+  Root value, multiplier;             // of the model: φ or ψ, λ
+  Root rate, acceleration;            // claimed
+  Roots row;                          // claimed: of A; empty: not asked
+  Root bias = 0;                      // claimed, with `row`
+};
 struct BodyQuestion {
   Roots inertia, rotation;   // by rows
 };
@@ -45,11 +52,14 @@ struct Questions {
   Roots residual, momenta, generalized_forces, dissipative_terms;
   Root energy_function, power;
   Roots mass_matrix, bias;   // empty: not asked
+  std::vector<ConstraintQuestion> constraints;
+  Roots constraint_forces;   // empty without constraints
 
  private:
   Root ask(Expr e);
   Roots ask(const ExprVector& list);
   void ask_about_matter();
+  void ask_about_constraints(const EquationsOfMotion& equations, bool with_matrix);
 };
 
 }  // namespace maupertuis::certification

@@ -6,11 +6,11 @@
 
 namespace maupertuis::certification {
 
-enum Route : std::size_t { Action, Dalembert, Power, RouteCount };
+enum Route : std::size_t { Action, Dalembert, Power, ConstraintRows, RouteCount };
 
 struct RouteResult {
   bool fails = false;
-  std::size_t row = 0;     // the first equation that fails
+  std::size_t row = 0;     // the first equation that fails; n: a constraint's own row
   int points = 0;          // at which all differences vanished
   double difference = 0;   // over the reals: of the failing row
 };

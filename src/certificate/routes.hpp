@@ -101,15 +101,58 @@ auto action_route(const P& path) {
   return differences;
 }
 
-/// (d) q̇·R = dh_E/dt + ∂L/∂t + q̇·∂D/∂q̇ − Q·q̇ for any q̈.
+/// The virtual work of the forces of constraint in the displacement c: λ·δ₁φ, and λ·δ₂ψ by d'Alembert, Lagrange and
+/// Chetaev. The vakonomic δ of ∫ λψ dt is another thing.
+template <class P>
+auto constraint_work(const P& path) {
+  auto work = path.zero();
+  for (const ConstraintQuestion& c : path.questions.constraints) {
+    const Variation kind = c.level == Constraint::Level::Position ? Shift : Ramp;
+    work = path.add(work, path.multiply(path.of(c.multiplier)(Base, 0), path.of(c.value)(kind, 0)));
+  }
+  return work;
+}
+
+/// The constraints in the equations: Aᵀλ first, then of each constraint dφ/dt or ψ and A q̈ − b against φ or ψ along the
+/// path, the row of A and b, and that no velocity stands in φ.
+template <class P>
+auto constraint_route(const P& path) {
+  const Questions& ask = path.questions;
+  const auto claimed = path.along_direction(ask.constraint_forces);
+  std::vector<typename P::Scalar> differences{path.subtract(claimed, constraint_work(path))};
+  auto from_rows = path.zero();
+  for (const ConstraintQuestion& c : ask.constraints) {
+    const auto& value = path.of(c.value);
+    const bool position = c.level == Constraint::Level::Position;
+    const auto rate = value(Base, position ? 1 : 0);
+    const auto acceleration = position ? path.add(value(Base, 2), value(Base, 2)) : value(Base, 1);
+    differences.push_back(path.subtract(path.of(c.rate)(Base, 0), rate));
+    differences.push_back(path.subtract(path.of(c.acceleration)(Base, 0), acceleration));
+    if (position) differences.push_back(value(Ramp, 0));
+    if (c.row.empty()) continue;
+    differences.push_back(path.subtract(path.dot(c.row, ask.accelerations), path.add(path.of(c.bias)(Base, 0), acceleration)));
+    from_rows = path.add(from_rows, path.multiply(path.of(c.multiplier)(Base, 0), path.along_direction(c.row)));
+  }
+  if (!ask.constraints.front().row.empty()) differences.push_back(path.subtract(from_rows, claimed));
+  return differences;
+}
+
+/// (d) q̇·R = dh_E/dt + ∂L/∂t + q̇·∂D/∂q̇ − Q·q̇ for any q̈, and the power that is claimed, with λ·A q̇.
 template <class P>
 auto power_route(const P& path) {
   const Questions& ask = path.questions;
   const auto outflow = path.subtract(path.dot(ask.velocities, ask.dissipative_terms), path.dot(ask.velocities, ask.generalized_forces));
   const auto power = path.add(path.of(ask.lagrangian)(Clock, 0), outflow);   // minus what drives h_E
   const auto change = path.add(path.of(ask.energy_function)(Base, 1), power);
+  // λ·A q̇, of which dφ/dt and ψ vanish along the motion.
+  auto of_constraints = path.zero();
+  if (!ask.constraints.empty()) of_constraints = path.dot(ask.velocities, ask.constraint_forces);
+  for (const ConstraintQuestion& c : ask.constraints) {
+    const auto rate = path.of(c.value)(Base, c.level == Constraint::Level::Position ? 1 : 0);
+    of_constraints = path.subtract(of_constraints, path.multiply(path.of(c.multiplier)(Base, 0), rate));
+  }
   return std::vector<typename P::Scalar>{path.subtract(path.dot(ask.velocities, ask.residual), change),
-                                         path.add(path.of(ask.power)(Base, 0), power)};
+                                         path.subtract(path.add(path.of(ask.power)(Base, 0), power), of_constraints)};
 }
 
 template <class P>
@@ -170,7 +213,8 @@ auto euler_term(const P& path, const BodyQuestion& body) {
   return sum;
 }
 
-/// (c) d'Alembert: Σ (d/dt(m ṙ) − m g)·δr + Σ d/dt(I ω)·δθ, with the given energies, D and the applied forces.
+/// (c) d'Alembert: Σ (d/dt(m ṙ) − m g)·δr + Σ d/dt(I ω)·δθ, with the given energies, D, the applied forces and those of
+/// the constraints.
 template <class P>
 auto dalembert_route(const P& path) {
   const Questions& ask = path.questions;
@@ -187,7 +231,12 @@ auto dalembert_route(const P& path) {
   }
   for (const BodyQuestion& body : ask.bodies) sum = path.add(sum, euler_term(path, body));
   sum = path.add(sum, path.subtract(dissipative_force(path), virtual_work(path)));
-  return std::vector<typename P::Scalar>{path.subtract(path.along_direction(ask.residual), sum)};
+  auto claimed = path.along_direction(ask.residual);
+  if (!ask.constraints.empty()) {
+    sum = path.subtract(sum, constraint_work(path));
+    claimed = path.subtract(claimed, path.along_direction(ask.constraint_forces));
+  }
+  return std::vector<typename P::Scalar>{path.subtract(claimed, sum)};
 }
 
 /// The jets of the symbols along a random path.

@@ -90,16 +90,26 @@ class RowReduction {
   std::vector<std::size_t> pivots_;
 };
 
+/// A denominator in it changes with the motion.
+bool has_moving_denominator(Expr e) {
+  for (const Expr& node : topological_order({&e, 1}))
+    if (node.is(Kind::Power) && node[1].is_number() && node[1].number().sign() < 0 && pivot_class(node[0]) == 2) return true;
+  return false;
+}
+
 /// A vector of ker A with the component `column` of the independent coordinates alone, its denominators multiplied away.
-ExprVector kernel_vector(const RowReduction& reduction, std::size_t column, Context& context) {
+ExprVector kernel_vector(const RowReduction& reduction, std::size_t column, const EquationsOfMotion& equations) {
   const ExprMatrix& a = reduction.matrix();
+  Context& context = *equations.system->context;
   Expr scale = context.number(1);
-  for (std::size_t row = 0; row < a.rows; ++row)
-    if (!a.at(row, column).is_zero() && pivot_class(reduction.pivot(row)) == 2) scale = scale * reduction.pivot(row);
+  ExprVector ratios;
+  for (std::size_t row = 0; row < a.rows; ++row) {
+    ratios.push_back(readable(a.at(row, column) / reduction.pivot(row), equations.order).value);
+    if (has_moving_denominator(ratios[row])) scale = scale * reduction.pivot(row);
+  }
   ExprVector z(a.columns, context.number(0));
   z[column] = scale;
-  for (std::size_t row = 0; row < a.rows; ++row)
-    z[reduction.pivots()[row]] = -(scale * a.at(row, column) / reduction.pivot(row));
+  for (std::size_t row = 0; row < a.rows; ++row) z[reduction.pivots()[row]] = -(scale * ratios[row]);
   return z;
 }
 
@@ -132,7 +142,7 @@ std::optional<EliminatedEquations> eliminate_multipliers(const EquationsOfMotion
   const ExprMap replaced = result.dependent_replaced ? dependent_accelerations(reduction, system) : ExprMap{};
   for (std::size_t j = 0; j < system.coordinates.size(); ++j) {
     if (reduction.is_dependent(j)) continue;
-    const ExprVector z = kernel_vector(reduction, j, context);
+    const ExprVector z = kernel_vector(reduction, j, equations);
     ExprVector of_residual, of_balance;
     for (std::size_t i = 0; i < z.size(); ++i) {
       of_residual.push_back(z[i] * residual[i]);
