@@ -245,6 +245,12 @@ Value power(Elaboration& e, const Value& base, const Value& exponent, const Expr
 
 Value time_derivative(Elaboration& e, Value v, int times, const Expression& x) {
   if (v.poisoned || times == 0) return v;
+  for (const Expr& s : symbols_of(v.parts)) {
+    if (s.role() != Role::Multiplier) continue;
+    e.diagnostics.error("E0225", x.span, "the derivative of a force of constraint is not known",
+                        "The equations of motion give the force itself at each moment.", "Leave the derivative out.");
+    return Value::poison();
+  }
   bool moves = false;
   for (const Expr& part : v.parts) moves = moves || e.context.depends_on_time(part.id());
   if (!moves) {

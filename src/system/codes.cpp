@@ -94,6 +94,27 @@ constexpr CodeEntry kEntries[] = {
      "--set takes a parameter and a quantity of its dimension, --set m=2kg; --start takes a coordinate or its "
      "velocity, --start θ=30deg.",
      "", ""},
+    {"E0225", "a force of constraint where it cannot stand",
+     "Multipliers and reactions follow from the equations of motion. They may be expected and claimed; energies, forces "
+     "and constraints, from which the equations come, cannot be made of them.",
+     "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = y name rod\nforce x = "
+     "reaction(rod)\n",
+     "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = y name rod\nexpect reaction(rod) "
+     "at 1 s = 0 N ± 1e-9\n"},
+    {"E0226", "no constraint of this name",
+     "multiplier(rod), reaction(rod), draw reaction rod and `expect constraint rod is …` mean the constraint whose line "
+     "ends with `name rod`. The name of `reaction rod = release l` has a reaction, and no multiplier.",
+     "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = y\nexpect multiplier(rod) at 1 s "
+     "= 0 N ± 1e-9\n",
+     "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = y name rod\nexpect "
+     "multiplier(rod) at 1 s = 0 N ± 1e-9\n"},
+    {"E0227", "no class of constraints",
+     "A constraint is holonomic, or nonholonomic; a holonomic one is scleronomic, or rheonomic if time stands in it; a "
+     "constraint of velocities is integrable where it comes from one of positions.",
+     "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = y name rod\nexpect constraint rod "
+     "is elastic\n",
+     "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = y name rod\nexpect constraint rod "
+     "is holonomic\n"},
     // ----------------------------------------------------------------------------------------------------------- units
     {"E0301", "a unit is not known",
      "Units are SI base and derived units with the SI prefixes, and common ones without: min, h, deg, rev, rpm, bar, "
@@ -157,7 +178,7 @@ constexpr CodeEntry kEntries[] = {
      "coord x : length\nparam m = 1 kg, k = 1 N/m\nT = 1/2 m x'^2\nV = 1/2 k x^2\n"},
     {"E0402", "a rotation is not complete",
      "In the plane a rotation is `angle θ`. In space it is `axis (…) angle θ`, `euler zxz (φ, θ, ψ)` with three axes, "
-     "neighbours different, or `rpy (roll, pitch, yaw)`.",
+     "neighbours different, `rpy (roll, pitch, yaw)`, or `quaternion`.",
      "coord θ : angle\nparam m = 1 kg, l = 1 m\nframe F at (0, 0, 0) rotation axis (0, 0, 0) angle θ\npoint P mass m "
      "at (l, 0, 0) in F\n",
      "coord θ : angle\nparam m = 1 kg, l = 1 m\nframe F at (0, 0, 0) rotation axis (0, 0, 1) angle θ\npoint P mass m "
@@ -249,6 +270,26 @@ constexpr CodeEntry kEntries[] = {
      "D enters the equations as ∂D/∂q̇; a term without a velocity has no effect. Linear damping is D = 1/2 c x'^2.",
      "coord x : length\nparam m = 1 kg, P = 1 W\nT = 1/2 m x'^2\nD = P\n",
      "coord x : length\nparam m = 1 kg, c = 1 N s/m\nT = 1/2 m x'^2\nD = 1/2 c x'^2\n"},
+    {"E0423", "a constraint without coordinates",
+     "A constraint relates coordinates or velocities. A relation of parameters and time alone is true or false, whatever "
+     "the motion; what is computed from parameters is a definition.",
+     "coord x : length\nparam m = 1 kg, a = 1 m, b = 2 m\nT = 1/2 m x'^2\nconstraint a = b\n",
+     "coord x : length\nparam m = 1 kg, a = 1 m\nlet b = 2 a\nT = 1/2 m x'^2\nconstraint x = b\n"},
+    {"E0424", "a constraint that is always true",
+     "Both sides are the same function of the coordinates, so that every motion obeys it: often a term has the wrong "
+     "name or sign.",
+     "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint (x + y)^2 = x^2 + 2 x y + y^2\n",
+     "coord x, y : length\nparam m = 1 kg, l = 1 m\nT = 1/2 m (x'^2 + y'^2)\nconstraint x^2 + y^2 = l^2\n"},
+    {"W0425", "a constraint is written twice",
+     "The second one takes no freedom away. The motion is the same, but how the force is shared between the two is not "
+     "determined.",
+     "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = y\nconstraint y - x = 0\n",
+     "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = y\n"},
+    {"E0426", "a constraint with a switch",
+     "The force of a constraint needs its second derivative along the motion. abs, sign, step, min, max and piecewise "
+     "have none at their switches; neither has an input that is made of them. An inequality is a contact.",
+     "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint y = abs(x)\n",
+     "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint y = x\n"},
     // ------------------------------------------------------------------------------------------------ not supported
     // yet
     {"E0501", "a statement that is not supported yet",
@@ -256,20 +297,15 @@ constexpr CodeEntry kEntries[] = {
      "They are read and checked for their grammar, and carried out by a later version.",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\ncontact x >= y\n",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\n"},
-    {"E0502", "quaternions are not supported yet",
-     "A unit quaternion needs its norm as a constraint. Use Euler angles, roll-pitch-yaw or axis and angle.",
-     "param I = 1 kg m^2\ncoord θ : angle\nbody B inertia diag(I, I, I) rotation quaternion\n",
-     "param I = 1 kg m^2\ncoord φ, θ, ψ : angle\nbody B inertia diag(I, I, I) rotation euler zxz (φ, θ, ψ)\n"},
-    {"E0503", "an expression that is not supported yet",
-     "Multipliers, reactions, classes of constraints and events belong to constraints and contacts, which a later "
-     "version carries out.",
-     "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nexpect multiplier(rod) at 1 s = 0 ± 1\n",
+    {"E0503", "an expectation that is not supported yet",
+     "Events belong to contacts, which a later version carries out.",
+     "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nexpect event hit at 1 s ± 1e-9\n",
      "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\n"},
     {"E0504", "a start that is not supported yet",
-     "A start gives coordinates and their velocities. What follows from them, such as an angular velocity, is solved "
-     "for by a later version.",
-     "coord θ : angle\nparam I = 1 kg m^2\nbody B inertia I rotation angle θ\nstart B.ω = 1 rad/s\n",
-     "coord θ : angle\nparam I = 1 kg m^2\nbody B inertia I rotation angle θ\nstart θ' = 1 rad/s\n"},
+     "A start gives coordinates, their velocities, and the angular velocities of bodies, B.ω. What else follows from "
+     "them, such as the velocity of a point, is solved for by a later version.",
+     "coord x : length\nparam m = 1 kg\npoint P mass m at (x, x)\nstart P.x' = 1 m/s\n",
+     "coord x : length\nparam m = 1 kg\npoint P mass m at (x, x)\nstart x' = 1 m/s\n"},
 };
 
 }  // namespace

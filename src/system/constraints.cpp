@@ -1,3 +1,4 @@
+#include "system/constraint_checks.hpp"
 #include "system/elaboration.hpp"
 
 #include <fmt/format.h>
@@ -64,18 +65,21 @@ std::optional<Value> difference(Elaboration& e, const ConstraintStatement& s) {
   return v.poisoned ? std::nullopt : std::optional(v);
 }
 
-/// λ_rod, or λ alone, or λ1, λ2, …; Λ where the model uses λ for something else.
-std::string multiplier_name(Elaboration& e, const Constraint& c, std::size_t index, std::size_t count) {
-  const std::string tail = !c.name.empty() ? "_" + c.name : count == 1 ? std::string() : std::to_string(index + 1);
+/// λ_rod, or λ alone, or λ1, λ2, …; Λ where the model uses λ for something else. `written`: without those of quaternions.
+std::string multiplier_name(Elaboration& e, const Constraint& c, std::size_t index, std::size_t written) {
+  const std::string tail = !c.name.empty()   ? "_" + c.name
+                           : !c.body.empty() ? "_" + c.body
+                           : written == 1    ? std::string()
+                                             : std::to_string(index + 1);
   for (const char* letter : {"λ", "Λ", "λ̃"})
     if (!e.table.find(letter + tail)) return letter + tail;
   throw std::logic_error("no name is left for a multiplier; please report");
 }
 
-void name_multipliers(Elaboration& e) {
+void name_multipliers(Elaboration& e, std::size_t written) {
   std::vector<Constraint>& list = e.system().constraints;
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const std::string name = multiplier_name(e, list[i], i, list.size());
+    const std::string name = multiplier_name(e, list[i], i, written);
     list[i].multiplier = e.context.symbol(name, Role::Multiplier);
     list[i].reaction = e.context.symbol(fmt::format("reaction({})", list[i].name.empty() ? name : list[i].name), Role::Multiplier);
   }
@@ -92,12 +96,17 @@ void elaborate_constraints(Elaboration& e) {
     Constraint c;
     c.name = s->name ? s->name->text : "";
     c.value = with_inputs_as_formulas(e.system(), expand_time_derivatives(v->scalar()));
-    c.level = settle_level(c.value);
     c.dimension = v->dimension;
     c.span = statement.span;
+    if (refuse_switch(e, *s, c.value) || refuse_without_coordinates(e, c)) continue;
+    c.level = settle_level(c.value);
+    if (refuse_identity(e, c)) continue;
     e.system().constraints.push_back(std::move(c));
   }
-  name_multipliers(e);
+  warn_of_repetition(e);
+  const std::size_t written = e.system().constraints.size();
+  constrain_quaternions(e);
+  name_multipliers(e, written);
 }
 
 }  // namespace maupertuis::elaboration

@@ -23,6 +23,10 @@ const char* word_of(Kind kind) {
       return "point";
     case Kind::Body:
       return "body";
+    case Kind::Constraint:
+      return "constraint";
+    case Kind::Reaction:
+      return "reaction";
     case Kind::Energy:
       return "energy";
   }
@@ -71,6 +75,9 @@ SymbolTable::SymbolTable(const syntax::SyntaxTree& tree, const SourceText& sourc
     if (const auto* f = std::get_if<syntax::FrameStatement>(&s.body)) add(Kind::Frame, f->name, s, 0);
     if (const auto* p = std::get_if<syntax::PointStatement>(&s.body)) add(Kind::Point, p->name, s, 0);
     if (const auto* b = std::get_if<syntax::BodyStatement>(&s.body)) add(Kind::Body, b->name, s, 0);
+    if (const auto* c = std::get_if<syntax::ConstraintStatement>(&s.body))
+      if (c->name) add(Kind::Constraint, *c->name, s, 0);
+    if (const auto* r = std::get_if<syntax::ReactionStatement>(&s.body)) add(Kind::Reaction, r->name, s, 0);
     if (const auto* later = std::get_if<syntax::LaterStatement>(&s.body))
       for (const syntax::Name& n : later->names) lost_.emplace(n.text, true);
   }

@@ -10,13 +10,13 @@ namespace maupertuis::elaboration {
 /// One name of the model and what is known of it. The five energies are declarations as well, since T and V may stand
 /// in formulas.
 struct Declaration {
-  enum class Kind { Parameter, Coordinate, Definition, Input, Frame, Point, Body, Energy };
+  enum class Kind { Parameter, Coordinate, Definition, Input, Frame, Point, Body, Constraint, Reaction, Energy };
   Kind kind = Kind::Parameter;
   std::string name;
   Span span;
   const syntax::Statement* statement = nullptr;  // null for energies
   std::size_t item = 0;                          // of a statement that declares a list
-  std::size_t index = 0;                         // of a coordinate: in MechanicalSystem::coordinates
+  std::size_t index = 0;  // in MechanicalSystem::coordinates: of a coordinate, of the first of a body's own quaternion
   bool used = false;
   bool done = false;  // `value` is there
   Value value;

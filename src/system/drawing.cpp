@@ -7,6 +7,12 @@ void elaborate_drawing(Elaboration& e, const syntax::DrawStatement& s) {
   for (const syntax::DrawItem& item : s.items) {
     DrawElement element;
     element.kind = item.kind;
+    if (item.kind == syntax::DrawItem::Kind::Reaction) {
+      const syntax::Expression& name = *item.path[0]->arguments[0];
+      element.names = {name.text};
+      if (names_a_reaction(e, {name.text, name.span})) e.experiment().drawing.push_back(std::move(element));
+      continue;
+    }
     bool poisoned = false;
     for (const syntax::ExpressionPtr& x : item.path) {
       const Value v = position_of(e, *x, nullptr);

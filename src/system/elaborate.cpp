@@ -104,6 +104,9 @@ void elaborate_declaration(Elaboration& e, DeclarationId id) {
       return elaborate_point(e, d);
     case Kind::Body:
       return elaborate_body(e, d);
+    case Kind::Constraint:
+    case Kind::Reaction:
+      return;  // nothing is defined from them
     case Kind::Energy:
       return elaborate_energy(e, static_cast<syntax::EnergyStatement::Which>(id), d);
   }
@@ -164,7 +167,8 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
   for (Declaration& d : e.table.declarations()) {
     if (d.kind == Declaration::Kind::Parameter) elaborate_parameter(e, d);
     if (d.kind == Declaration::Kind::Coordinate) elaborate_coordinate(e, d);
-    any_coordinate = any_coordinate || d.kind == Declaration::Kind::Coordinate;
+    if (has_own_quaternion(d)) add_quaternion_coordinates(e, d);
+    any_coordinate = any_coordinate || d.kind == Declaration::Kind::Coordinate || has_own_quaternion(d);
   }
   apply_parameter_overrides(e, overrides.parameters);
 
@@ -173,6 +177,7 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
   elaborate_constraints(e);
   elaborate_experiment(e);
   apply_start_overrides(e, overrides.start);
+  start_quaternions(e);
 
   require_coordinates(e, any_coordinate);
   if (!diagnostics.has_errors()) warn_unused(e);

@@ -17,6 +17,7 @@ struct Place {
   std::optional<Dimension> expected;  // the dimension that is asked for: chooses the culprit of a bad sum
   bool in_parameter = false;          // `param`: words after a number are units alone
   bool inline_constants = false;      // start, run, …: a quantity is its value, not an anonymous parameter
+  bool reactions = false;             // expect, claim: multiplier(rod) and reaction(rod) may stand in it
 };
 
 struct Elaboration {
@@ -61,6 +62,8 @@ Value vector_of(Elaboration& e, const syntax::Expression& x, const Dimension& ex
 Value value_of_name(Elaboration& e, const syntax::Expression& x, const Place& place);
 Value value_of_member(Elaboration& e, const syntax::Expression& x, const Place& place);
 Value value_of_call(Elaboration& e, const syntax::Expression& x, const Place& place);
+/// multiplier(rod) or reaction(rod).
+Value value_of_reaction(Elaboration& e, const syntax::Expression& x, const Place& place);
 /// A number or vector with unit words.
 Value value_of_number(Elaboration& e, const syntax::Expression& x);
 Value value_of_quantity(Elaboration& e, const syntax::Expression& x, const Place& place);
@@ -113,10 +116,32 @@ void elaborate_energy(Elaboration& e, syntax::EnergyStatement::Which which, Decl
 void elaborate_forces(Elaboration& e);
 /// Fills `constraints`, and names their multipliers.
 void elaborate_constraints(Elaboration& e);
+/// The name of a constraint or of a release; false, and a message, if it is none.
+bool names_a_reaction(Elaboration& e, const syntax::Name& name);
+/// `expect constraint roll is nonholonomic`: whether there is such a constraint, and such a class.
+bool check_class_of_constraint(Elaboration& e, const syntax::ExpectStatement& s);
+void elaborate_release(Elaboration& e, const syntax::ReactionStatement& s);
+
+/// `rotation quaternion` without components: the body or frame has four coordinates, whose norm is constrained.
+bool has_own_quaternion(const Declaration& d);
+void add_quaternion_coordinates(Elaboration& e, Declaration& d);
+ExprVector quaternion_coordinates(Elaboration& e, const Declaration& d);
+/// Index of the coordinate that `sat.qw` names; nothing if `x` is none.
+std::optional<std::size_t> quaternion_component(Elaboration& e, const syntax::Expression& x);
+void constrain_quaternions(Elaboration& e);
+/// (1, 0, 0, 0) where the model does not say otherwise.
+void start_quaternions(Elaboration& e);
 /// A number that is known before the run, of parameters and quantities alone.
 Value constant_of(Elaboration& e, const syntax::Expression& x, const Dimension& expected, const std::string& what);
+/// The same for a vector.
+Value constant_vector_of(Elaboration& e, const syntax::Expression& x, const Dimension& expected,
+                         const std::string& what);
 /// `θ' = 2 rad/s` of a start; nothing, and a message, if it is none.
 std::optional<StartValue> start_value(Elaboration& e, const syntax::StartStatement::Item& item);
+/// Whether a start gives a body rate: `sat.ω`, `sat.ω_world`, `sat.ω.x`.
+bool is_body_rate(Elaboration& e, const syntax::Expression& x);
+/// `sat.ω = (0, 2, 0) rad/s`: one rate a component; none, and a message, after a mistake.
+std::vector<StartRate> start_rates(Elaboration& e, const syntax::StartStatement::Item& item);
 void elaborate_experiment(Elaboration& e);
 void elaborate_expectation(Elaboration& e, const syntax::ExpectStatement& s, Span span);
 void elaborate_drawing(Elaboration& e, const syntax::DrawStatement& s);
@@ -125,8 +150,8 @@ void elaborate_drawing(Elaboration& e, const syntax::DrawStatement& s);
 const Pose* find_pose(Elaboration& e, const std::optional<syntax::Name>& name);
 /// A place: components along `frame` from its origin, or points and vectors of the world. Null handle parts on error.
 Value position_of(Elaboration& e, const syntax::Expression& x, const Pose* frame);
-/// The pose of a frame or body; its place and its rotation may both be absent. Nothing: a mistake was reported.
-std::optional<Pose> pose_of(Elaboration& e, const syntax::ExpressionPtr& at,
+/// The pose of the frame or body `d`; its place and its rotation may both be absent. Nothing: a mistake was reported.
+std::optional<Pose> pose_of(Elaboration& e, const Declaration& d, const syntax::ExpressionPtr& at,
                             const std::optional<syntax::Rotation>& rotation, const std::optional<syntax::Name>& in);
 /// ½ m v²
 Expr translational_energy(Expr mass, const ExprVector& position);

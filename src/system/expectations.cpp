@@ -45,8 +45,8 @@ bool tolerance(Elaboration& e, Expectation& out, const ExpectStatement& s, const
   return true;
 }
 
-std::optional<Value> number(Elaboration& e, const Expression& x) {
-  const Value v = evaluate_formula(e, x);
+std::optional<Value> number(Elaboration& e, const Expression& x, const Place& place = {}) {
+  const Value v = evaluate_formula(e, x, place);
   if (v.poisoned) return std::nullopt;
   if (!v.is_vector) return v;
   e.diagnostics.error("E0210", x.span, "an expectation is about a number, not a vector", "",
@@ -55,7 +55,9 @@ std::optional<Value> number(Elaboration& e, const Expression& x) {
 }
 
 bool value_at(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  const std::optional<Value> subject = number(e, *s.subject);
+  Place place;
+  place.reactions = true;
+  const std::optional<Value> subject = number(e, *s.subject, place);
   if (s.time) {
     const Value time = constant_of(e, *s.time, dimensions::time(), "the time of an expectation");
     if (time.poisoned) return false;
@@ -79,8 +81,9 @@ void warn_identity(Elaboration& e, const Expectation& out) {
 }
 
 bool equation(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  const Value left = evaluate_formula(e, *s.subject);
   Place place;
+  place.reactions = true;
+  const Value left = evaluate_formula(e, *s.subject, place);
   if (!left.poisoned) place.expected = left.dimension;
   const Value right = evaluate_formula(e, *s.value, place);
   if (left.poisoned || right.poisoned) return false;
@@ -143,10 +146,9 @@ bool frequencies(Elaboration& e, Expectation& out, const ExpectStatement& s) {
   return tolerance(e, out, s, out.dimension) && good;
 }
 
-bool later(Elaboration& e, const ExpectStatement& s, Span span) {
-  const char* what = s.kind == Kind::EventAt ? "an expected event" : "an expected class of constraint";
-  e.diagnostics.error("E0503", span, fmt::format("not supported yet: {}", what),
-                      "Constraints, contacts and events are carried out by a later version.",
+bool later(Elaboration& e, Span span) {
+  e.diagnostics.error("E0503", span, "not supported yet: an expected event",
+                      "Contacts and events are carried out by a later version.",
                       "Leave this line out for now.");
   return false;
 }
@@ -169,8 +171,9 @@ bool fill(Elaboration& e, Expectation& out, const ExpectStatement& s) {
     case Kind::Frequencies:
       return frequencies(e, out, s);
     case Kind::ConstraintClass:
+      return check_class_of_constraint(e, s);
     case Kind::EventAt:
-      return later(e, s, out.span);
+      return later(e, out.span);
     case Kind::Error:
       return true;
   }

@@ -2,15 +2,28 @@
 
 #include <fmt/format.h>
 
-/// start, run, output, draw, reaction.
+#include <algorithm>
+
+/// start, run, output.
 namespace maupertuis::elaboration {
 namespace {
 
 using syntax::Expression;
 using Kind = Declaration::Kind;
 
+bool refuse_acceleration_of_start(Elaboration& e, const Expression& x) {
+  if (x.primes <= 1) return false;
+  e.diagnostics.error("E0223", x.span, fmt::format("the acceleration `{}` cannot be chosen", e.source.slice(x.span)),
+                      "The equations of motion give it from positions and velocities.", "Leave it out.");
+  return true;
+}
+
 /// Which coordinate, and which derivative of it, a start names.
 std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
+  if (const std::optional<std::size_t> q = quaternion_component(e, x)) {
+    if (refuse_acceleration_of_start(e, x)) return std::nullopt;
+    return StartValue{*q, x.primes, {}, {}};
+  }
   if (x.kind == Expression::Kind::Member) {
     const Declaration* base =
         x.arguments[0]->kind == Expression::Kind::Name ? e.table.find(x.arguments[0]->text) : nullptr;
@@ -20,7 +33,8 @@ std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
     else
       e.diagnostics.error(
           "E0504", x.span, fmt::format("not supported yet: a start of `{}`", e.source.slice(x.span)),
-          "A start gives coordinates and their velocities; what follows from them is solved for by a later version.",
+          "A start gives coordinates, their velocities and the angular velocities of bodies; what else follows from them "
+          "is solved for by a later version.",
           "Give the coordinates and velocities that belong to it.");
     return std::nullopt;
   }
@@ -38,11 +52,7 @@ std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
     return std::nullopt;
   }
   d->used = true;
-  if (x.primes > 1) {
-    e.diagnostics.error("E0223", x.span, fmt::format("the acceleration `{}` cannot be chosen", text),
-                        "The equations of motion give it from positions and velocities.", "Leave it out.");
-    return std::nullopt;
-  }
+  if (refuse_acceleration_of_start(e, x)) return std::nullopt;
   if (d->value.poisoned) return std::nullopt;
   StartValue s;
   s.order = x.primes;
@@ -50,25 +60,43 @@ std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
   return s;
 }
 
-void duplicate_start(Elaboration& e, const StartValue& s, const StartValue& first) {
-  e.diagnostics.error("E0208", s.span, fmt::format("`{}` starts twice", e.source.slice(s.span)),
-                      fmt::format("Its start is already given in line {}.", e.source.locate(first.span.begin).line),
+void duplicate_start(Elaboration& e, Span second, Span first) {
+  e.diagnostics.error("E0208", second, fmt::format("`{}` starts twice", e.source.slice(second)),
+                      fmt::format("Its start is already given in line {}.", e.source.locate(first.begin).line),
                       "Keep one of them.");
 }
 
 }  // namespace
 
-/// A number that is known before the run: parameters and quantities alone.
+namespace {
+
+Value known_before_the_run(Elaboration& e, const Value& v, const Expression& x, const std::string& what) {
+  if (v.poisoned) return v;
+  for (const Expr& part : v.parts) {
+    if (!e.context.depends_on_time(part.id())) {
+      if (!is_finite(e, part, x, what)) return Value::poison();
+      continue;
+    }
+    const Span at = culprit_of_order(e, x, 0);
+    e.diagnostics.error("E0222", at.end > at.begin ? at : x.span, fmt::format("{} must be known before the run", what),
+                        "Numbers and parameters are; coordinates and the time change during it.", "");
+    return Value::poison();
+  }
+  return v;
+}
+
+}  // namespace
+
 Value constant_of(Elaboration& e, const Expression& x, const Dimension& expected, const std::string& what) {
   Place place;
   place.inline_constants = true;
-  const Value v = scalar_of(e, x, expected, what, place);
-  if (v.poisoned) return v;
-  if (!e.context.depends_on_time(v.scalar().id())) return is_finite(e, v.scalar(), x, what) ? v : Value::poison();
-  Span at = culprit_of_order(e, x, 0);
-  e.diagnostics.error("E0222", at.end > at.begin ? at : x.span, fmt::format("{} must be known before the run", what),
-                      "Numbers and parameters are; coordinates and the time change during it.", "");
-  return Value::poison();
+  return known_before_the_run(e, scalar_of(e, x, expected, what, place), x, what);
+}
+
+Value constant_vector_of(Elaboration& e, const Expression& x, const Dimension& expected, const std::string& what) {
+  Place place;
+  place.inline_constants = true;
+  return known_before_the_run(e, vector_of(e, x, expected, what, place), x, what);
 }
 
 std::optional<StartValue> start_value(Elaboration& e, const syntax::StartStatement::Item& item) {
@@ -89,6 +117,15 @@ std::optional<StartValue> start_value(Elaboration& e, const syntax::StartStateme
 
 namespace {
 
+void start_of_rates(Elaboration& e, const syntax::StartStatement::Item& item) {
+  std::vector<StartRate>& list = e.experiment().start_rates;
+  const std::vector<StartRate> rates = start_rates(e, item);
+  for (const StartRate& rate : rates)
+    for (const StartRate& first : list)
+      if (first.rate == rate.rate) return duplicate_start(e, rate.span, first.span);
+  list.insert(list.end(), rates.begin(), rates.end());
+}
+
 void start(Elaboration& e, const syntax::StartStatement& s) {
   Experiment& x = e.experiment();
   x.start_exactly = x.start_exactly || s.exactly;
@@ -97,13 +134,17 @@ void start(Elaboration& e, const syntax::StartStatement& s) {
     if (!t.poisoned) x.start_time = t.scalar();
   }
   for (const auto& item : s.items) {
+    if (is_body_rate(e, *item.variable)) {
+      start_of_rates(e, item);
+      continue;
+    }
     const std::optional<StartValue> value = start_value(e, item);
     if (!value) continue;
     const StartValue* first = nullptr;
     for (const StartValue& other : x.start)
       if (other.coordinate == value->coordinate && other.order == value->order) first = &other;
     if (first)
-      duplicate_start(e, *value, *first);
+      duplicate_start(e, value->span, first->span);
     else
       x.start.push_back(*value);
   }
@@ -144,26 +185,16 @@ void output(Elaboration& e, const syntax::OutputStatement& s) {
   e.experiment().output_every = v.scalar();
 }
 
-void reaction(Elaboration& e, const syntax::ReactionStatement& s) {
-  Declaration* d = find_declared(e, s.released);
-  if (!d) return;
-  for (std::size_t i = 0; i < e.system().parameters.size(); ++i)
-    if (e.system().parameters[i].name == d->name) e.system().releases.push_back({s.name.text, i, e.context.symbol("reaction(" + s.name.text + ")", Role::Multiplier), s.name.span});
-  if (d->kind != Kind::Parameter)
-    e.diagnostics.error("E0212", s.released.span,
-                        fmt::format("`{}` is a {}, not a parameter", d->name, word_of(d->kind)),
-                        "A reaction shows the force that keeps a parameter, such as a length, at its value.", "");
-}
-
 }  // namespace
 
 void elaborate_experiment(Elaboration& e) {
+  for (const syntax::Statement& s : e.tree.statements)
+    if (const auto* x = std::get_if<syntax::ReactionStatement>(&s.body)) elaborate_release(e, *x);
   for (const syntax::Statement& s : e.tree.statements) {
     if (const auto* x = std::get_if<syntax::StartStatement>(&s.body)) start(e, *x);
     if (const auto* x = std::get_if<syntax::RunStatement>(&s.body)) run(e, *x);
     if (const auto* x = std::get_if<syntax::OutputStatement>(&s.body)) output(e, *x);
     if (const auto* x = std::get_if<syntax::DrawStatement>(&s.body)) elaborate_drawing(e, *x);
-    if (const auto* x = std::get_if<syntax::ReactionStatement>(&s.body)) reaction(e, *x);
     if (const auto* x = std::get_if<syntax::ExpectStatement>(&s.body)) elaborate_expectation(e, *x, s.span);
   }
 }

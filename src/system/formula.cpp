@@ -111,7 +111,9 @@ Value piecewise(Elaboration& e, const Expression& x, const Place& place) {
   bool poisoned = false;
   for (std::size_t i = 0; i < x.arguments.size(); ++i) {
     const bool is_condition = i % 2 == 0 && i + 1 < x.arguments.size();
-    const Value v = is_condition ? condition(e, *x.arguments[i], {}) : evaluate_formula(e, *x.arguments[i], place);
+    Place free = place;
+    free.expected.reset();
+    const Value v = is_condition ? condition(e, *x.arguments[i], free) : evaluate_formula(e, *x.arguments[i], place);
     if (v.poisoned || v.is_vector) {
       if (!v.poisoned)
         e.diagnostics.error("E0210", x.arguments[i]->span, "a vector as a value of piecewise",

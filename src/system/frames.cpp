@@ -71,6 +71,24 @@ bool is_sequence(const std::string& s) {
   return s[0] != s[1] && s[1] != s[2];
 }
 
+std::optional<Pose> by_quaternion(Elaboration& e, const Pose& pose, const Rotation& r, int& order) {
+  ExprVector q;
+  bool poisoned = false;
+  for (const syntax::ExpressionPtr& x : r.values) {
+    const Value v = scalar_of(e, *x, Dimension{}, "a component of a quaternion");
+    poisoned = poisoned || v.poisoned;
+    if (v.poisoned) continue;
+    if (v.order > 0) {
+      e.diagnostics.error("E0401", culprit_of_order(e, *x, 1), "a velocity stands in a quaternion of rotation",
+                          "A rotation depends on the coordinates and on time alone.", "");
+      poisoned = true;
+    }
+    order = std::max(order, v.order);
+    q.push_back(v.scalar());
+  }
+  return poisoned ? std::nullopt : std::optional(turned_by(pose, q));
+}
+
 bool complete(Elaboration& e, const Rotation& r, std::size_t count) {
   if (r.values.size() == count) return true;
   e.diagnostics.error("E0402", r.span, fmt::format("this rotation has {} angles, not {}", r.values.size(), count),
@@ -78,7 +96,7 @@ bool complete(Elaboration& e, const Rotation& r, std::size_t count) {
   return false;
 }
 
-std::optional<Pose> in_space(Elaboration& e, const Pose& pose, const Rotation& r, int& order) {
+std::optional<Pose> in_space(Elaboration& e, const Declaration& d, const Pose& pose, const Rotation& r, int& order) {
   switch (r.kind) {
     case Rotation::Kind::Angle:
       e.diagnostics.error("E0402", r.span, "a rotation in space needs an axis", "An angle alone turns in the plane.",
@@ -97,12 +115,11 @@ std::optional<Pose> in_space(Elaboration& e, const Pose& pose, const Rotation& r
     case Rotation::Kind::RollPitchYaw:
       return complete(e, r, 3) ? in_sequence(e, pose, r, "zyx", true, order) : std::nullopt;
     case Rotation::Kind::Quaternion:
+      return by_quaternion(e, pose, r, order);
     case Rotation::Kind::QuaternionCoordinates:
-      break;
+      order = std::max(order, 0);
+      return turned_by(pose, quaternion_coordinates(e, d));
   }
-  e.diagnostics.error("E0502", r.span, "not supported yet: rotation by a quaternion",
-                      "The norm of the quaternion is a constraint, and constraints are carried out by a later version.",
-                      "Use Euler angles: `rotation euler zxz (φ, θ, ψ)`.");
   return std::nullopt;
 }
 
@@ -146,8 +163,8 @@ Value position_of(Elaboration& e, const syntax::Expression& x, const Pose* frame
 }
 
 /// The pose of a frame or body; the place and the rotation may both be absent.
-std::optional<Pose> pose_of(Elaboration& e, const syntax::ExpressionPtr& at, const std::optional<Rotation>& rotation,
-                            const std::optional<syntax::Name>& in) {
+std::optional<Pose> pose_of(Elaboration& e, const Declaration& d, const syntax::ExpressionPtr& at,
+                            const std::optional<Rotation>& rotation, const std::optional<syntax::Name>& in) {
   const Pose* parent = find_pose(e, in);
   if (!parent) return std::nullopt;
   std::optional<Pose> pose = *parent;
@@ -164,7 +181,7 @@ std::optional<Pose> pose_of(Elaboration& e, const syntax::ExpressionPtr& at, con
   int order = pose ? pose->order : -1;
   std::optional<Pose> after = e.system().space_dimension == 2
                                   ? in_the_plane(e, pose ? *pose : *parent, *rotation, order)
-                                  : in_space(e, pose ? *pose : *parent, *rotation, order);
+                                  : in_space(e, d, pose ? *pose : *parent, *rotation, order);
   if (after) after->order = order;
   return pose ? after : std::nullopt;
 }
@@ -173,7 +190,7 @@ void elaborate_frame(Elaboration& e, Declaration& d) {
   const auto& s = std::get<syntax::FrameStatement>(d.statement->body);
   d.done = true;
   d.value = Value::poison();
-  const std::optional<Pose> pose = pose_of(e, s.at, s.rotation, s.in);
+  const std::optional<Pose> pose = pose_of(e, d, s.at, s.rotation, s.in);
   if (!pose) return;
   e.system().frames.push_back({d.name, pose->origin, pose->rotation, pose->omega, d.span});
   e.poses.emplace(e.table.id(d), *pose);

@@ -125,12 +125,7 @@ Value of_vectors(Elaboration& e, const Expression& x, const std::vector<Value>& 
 }  // namespace
 
 Value value_of_call(Elaboration& e, const Expression& x, const Place& place) {
-  if (x.text == "multiplier" || x.text == "reaction") {
-    e.diagnostics.error("E0503", x.span, fmt::format("not supported yet: {}(…)", x.text),
-                        "Forces of constraints need constraints, which a later version carries out.",
-                        "Leave this line out for now.");
-    return Value::poison();
-  }
+  if (x.text == "multiplier" || x.text == "reaction") return value_of_reaction(e, x, place);
   const bool vectors = x.text == "dot" || x.text == "cross" || x.text == "norm";
   const bool several = x.text == "min" || x.text == "max";
   const bool two = x.text == "dot" || x.text == "cross" || x.text == "atan2";

@@ -152,7 +152,7 @@ void elaborate_body(Elaboration& e, Declaration& d) {
     if (!m.poisoned && !m.scalar().is_zero()) b.mass = m.scalar();
   }
   const std::optional<ExprMatrix> inertia = inertia_of(e, s, d.name);
-  const std::optional<Pose> pose = pose_of(e, s.at, s.rotation, s.in);
+  const std::optional<Pose> pose = pose_of(e, d, s.at, s.rotation, s.in);
   if (poisoned || !inertia || !pose) return;
   b.inertia = *inertia;
   b.position = pose->origin;

@@ -34,14 +34,21 @@ Value origin(Elaboration& e, const Place& place) {
   return v;
 }
 
-Value derivative_of_coordinate(Elaboration& e, const Declaration& d, int primes) {
-  Value v = d.value;
+Value derivative_of_coordinate(Elaboration& e, Value v, int primes) {
   for (int i = 0; i < primes; ++i) {
     v.parts = {e.context.time_derivative(v.scalar())};
     v.dimension = v.dimension / e.dimension(dimensions::time());
   }
   v.order = primes;
   return v;
+}
+
+Value refuse_as_quantity(Elaboration& e, Declaration& d, const Expression& x) {
+  e.diagnostics.error("E0212", x.name_span, fmt::format("`{}` is a {}, not a quantity", d.name, word_of(d.kind)),
+                      "The name of a constraint stands for the whole relation.",
+                      fmt::format("Its force is reaction({0}){1}.", d.name,
+                                  d.kind == Kind::Constraint ? fmt::format(", its multiplier multiplier({})", d.name) : ""));
+  return Value::poison();
 }
 
 bool refuse_high_order(Elaboration& e, const Expression& x) {
@@ -60,7 +67,10 @@ Value component(Elaboration& e, const Value& base, const Expression& x) {
     e.diagnostics.error("E0216", x.name_span, fmt::format("`{}` has no `.{}`", text, x.text),
                         base.is_vector ? "A vector has the components .x, .y and .z."
                                        : "Only points, bodies and vectors have components.",
-                        x.text == "w" && base.is_vector ? "The angular velocity of a body is .ω." : "");
+                        x.text == "w" && base.is_vector ? "The angular velocity of a body is .ω."
+                        : x.text.size() == 2 && x.text[0] == 'q'
+                            ? "A body or frame has .qw, .qx, .qy and .qz where it is declared with `rotation quaternion`."
+                            : "");
     return Value::poison();
   }
   if (index >= base.parts.size()) {
@@ -133,8 +143,9 @@ Value value_of_name(Elaboration& e, const Expression& x, const Place& place) {
     if (refuse_high_order(e, x)) return Value::poison();
     if (d->kind == Kind::Coordinate && d->done && !d->value.poisoned) {
       d->used = true;
-      return derivative_of_coordinate(e, *d, x.primes);
+      return derivative_of_coordinate(e, d->value, x.primes);
     }
+    if (d->kind == Kind::Constraint || d->kind == Kind::Reaction) return refuse_as_quantity(e, *d, x);
     return time_derivative(e, meaning(*d, place), x.primes, x);
   }
   if (e.table.is_lost(x.text)) return Value::poison();
@@ -153,6 +164,10 @@ Value value_of_name(Elaboration& e, const Expression& x, const Place& place) {
 Value value_of_member(Elaboration& e, const Expression& x, const Place& place) {
   if (refuse_high_order(e, x)) return Value::poison();
   if (const std::optional<Value> omega = angular_velocity(e, x)) return time_derivative(e, *omega, x.primes, x);
+  if (const std::optional<std::size_t> q = quaternion_component(e, x)) {
+    e.table.find(x.arguments[0]->text)->used = true;
+    return derivative_of_coordinate(e, Value::of(e.system().coordinates[*q].q, Dimension{}, 0), x.primes);
+  }
   Place world = place;
   world.frame = nullptr;  // .x is a world component
   const Value base = evaluate_formula(e, *x.arguments[0], world);

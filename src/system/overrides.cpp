@@ -107,6 +107,18 @@ void apply_parameter_overrides(Elaboration& e, const std::vector<std::string>& o
   }
 }
 
+namespace {
+
+void override_rates(Elaboration& e, const std::vector<StartRate>& rates) {
+  std::vector<StartRate>& list = e.experiment().start_rates;
+  for (const StartRate& rate : rates) {
+    std::erase_if(list, [&](const StartRate& old) { return old.rate == rate.rate; });
+    list.push_back({rate.rate, rate.value, {}});
+  }
+}
+
+}  // namespace
+
 void apply_start_overrides(Elaboration& e, const std::vector<std::string>& overrides) {
   for (const std::string& text : overrides) {
     Fragment f("--start", "start", text);
@@ -114,10 +126,16 @@ void apply_start_overrides(Elaboration& e, const std::vector<std::string>& overr
     Elaboration inner(e, f.tree, f.source, f.diagnostics);
     inner.table.adopt(e.table);
     inner.system().coordinates = e.system().coordinates;
+    inner.poses = e.poses;
     for (const syntax::Statement& s : f.tree.statements) {
       const auto* start = std::get_if<syntax::StartStatement>(&s.body);
       if (!start) continue;
       for (const auto& item : start->items) {
+        if (is_body_rate(inner, *item.variable)) {
+          override_rates(e, start_rates(inner, item));
+          if (hand_over(e, f)) break;
+          continue;
+        }
         const std::optional<StartValue> value = start_value(inner, item);
         if (hand_over(e, f)) break;
         if (!value) continue;

@@ -158,4 +158,36 @@ Pose turned_about(const Pose& pose, const ExprVector& axis, Expr angle) {
   return compose(pose, about_vector(axis, angle), rate);
 }
 
+namespace {
+
+/// v → q v q̄
+ExprMatrix of_quaternion(const ExprVector& q) {
+  const Expr w = q[0], x = q[1], y = q[2], z = q[3];
+  const Expr ww = w * w, xx = x * x, yy = y * y, zz = z * z;
+  const auto twice = [](Expr a, Expr b) { return Rational(2) * sum_of({a, b}); };
+  return {3, 3, {sum_of({ww, xx, -yy, -zz}), twice(x * y, -(w * z)), twice(x * z, w * y),
+                 twice(x * y, w * z), sum_of({ww, -xx, yy, -zz}), twice(y * z, -(w * x)),
+                 twice(x * z, -(w * y)), twice(y * z, w * x), sum_of({ww, -xx, -yy, zz})}};
+}
+
+}  // namespace
+
+Pose turned_by(const Pose& pose, const ExprVector& q) {
+  Context& context = q[0].context();
+  ExprVector rates;
+  for (const Expr& c : q) rates.push_back(context.time_derivative(c));
+  const ExprVector v = {q[1], q[2], q[3]}, v_rate = {rates[1], rates[2], rates[3]};
+  const ExprVector common = vector_sum(scaled(q[0], v_rate), scaled(-rates[0], v)), turning = cross_of(v, v_rate);
+  const auto twice = [&](const ExprVector& u) { return scaled(context.number(2), u); };
+  Pose out = pose;
+  out.before_last = nullptr;
+  out.last_axis = -1;
+  const ExprMatrix r = of_quaternion(q);
+  out.rotation = matrix_product(pose.rotation, r);
+  // ω is twice the vector part of q̄ q̇ along the axes after the turn, of q̇ q̄ along those before it.
+  out.omega = vector_sum(rotate_back(r, pose.omega), twice(vector_sum(common, scaled(context.number(-1), turning))));
+  out.omega_world = vector_sum(pose.omega_world, rotate(pose.rotation, twice(vector_sum(common, turning))));
+  return out;
+}
+
 }  // namespace maupertuis::elaboration

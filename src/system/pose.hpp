@@ -27,6 +27,9 @@ Pose world_pose(Context& context, int dimension);
 Pose turned(const Pose& pose, Expr angle);
 /// Turns about a coordinate axis of the frame (0, 1, 2). Successive turns about one axis add their angles.
 Pose turned_about(const Pose& pose, int axis, Expr angle);
+/// Turns by the quaternion (w, x, y, z) of norm 1, whose components may move. The matrix and the rates are polynomials
+/// of degree 2 in them, not divided by the norm: off the norm they are |q|² times a rotation and its rates.
+Pose turned_by(const Pose& pose, const ExprVector& quaternion);
 /// Turns about a unit vector given in the axes of the frame, which may move.
 Pose turned_about(const Pose& pose, const ExprVector& axis, Expr angle);
 

@@ -1,0 +1,143 @@
+#include "system/constraint_checks.hpp"
+
+#include "system/elaboration.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace maupertuis::elaboration {
+namespace {
+
+using syntax::Expression;
+
+/// How the language calls a function that is not smooth; null for the others.
+const char* switch_word(Kind kind) {
+  switch (kind) {
+    case Kind::Abs:
+      return "abs";
+    case Kind::Sign:
+      return "sign";
+    case Kind::Step:
+      return "step";
+    case Kind::Min:
+      return "min";
+    case Kind::Max:
+      return "max";
+    case Kind::Piecewise:
+      return "piecewise";
+    default:
+      return nullptr;
+  }
+}
+
+const char* first_switch(Expr value) {
+  const Expr roots[] = {value};
+  for (const Expr& x : topological_order(roots))
+    if (const char* word = switch_word(x.kind())) return word;
+  return nullptr;
+}
+
+/// Where the text calls the function, or names an input or definition that does; the whole side if nothing is found.
+Span culprit_of_switch(Elaboration& e, const Expression& x, const std::string& word) {
+  if ((x.kind == Expression::Kind::Call && x.text == word) ||
+      (x.kind == Expression::Kind::Piecewise && word == "piecewise"))
+    return x.span;
+  if (x.kind == Expression::Kind::Name) {
+    for (const Input& u : e.system().inputs)
+      if (u.name == x.text && first_switch(u.formula)) return x.span;
+    const Declaration* d = e.table.find(x.text);
+    for (const Expr& part : d ? d->value.parts : ExprVector{})
+      if (first_switch(substitute(part, e.exact_definitions))) return x.span;
+  }
+  for (const syntax::ExpressionPtr& a : x.arguments) {
+    const Span s = culprit_of_switch(e, *a, word);
+    if (s.end > s.begin) return s;
+  }
+  return {};
+}
+
+/// Two numbers at fixed states, by which equal constraints are found before they are proved equal.
+std::vector<double> fingerprints(const Elaboration& e, Expr value) {
+  std::vector<double> out;
+  for (const double shift : {0.37, 0.71}) {
+    Bindings b = e.values;
+    const Expr roots[] = {value};
+    double next = shift;
+    for (const Expr& s : symbols_of(roots)) {
+      if (e.values.count(s)) continue;
+      next = std::fmod(next + 0.6180339887498949 + 0.01 * static_cast<double>(s.id() % 89), 1.0);
+      b[s] = 0.3 + next;
+    }
+    out.push_back(maupertuis::evaluate(value, b));
+  }
+  return out;
+}
+
+/// +1 or −1 where the two seem equal or opposite; 0 else.
+int seems_equal(const std::vector<double>& a, const std::vector<double>& b) {
+  for (const int sign : {1, -1}) {
+    bool equal = true;
+    for (std::size_t i = 0; i < a.size(); ++i)
+      equal = equal && std::abs(a[i] - sign * b[i]) <= 1e-9 * (std::abs(a[i]) + std::abs(b[i]));
+    if (equal) return sign;
+  }
+  return 0;
+}
+
+}  // namespace
+
+bool refuse_switch(Elaboration& e, const syntax::ConstraintStatement& s, Expr value) {
+  const char* word = first_switch(value);
+  if (!word) return false;
+  Span at = culprit_of_switch(e, *s.left, word);
+  if (at.end <= at.begin) at = culprit_of_switch(e, *s.right, word);
+  if (at.end <= at.begin) at = s.left->span;
+  e.diagnostics.error("E0426", at, fmt::format("a constraint cannot be made of {}", word),
+                      "The force of a constraint follows from its second derivative along the motion, which has no value "
+                      "where such a function switches.",
+                      "Write a smooth relation; an inequality is written with `contact`.");
+  return true;
+}
+
+bool refuse_without_coordinates(Elaboration& e, const Constraint& c) {
+  const Expr roots[] = {c.value};
+  for (const Expr& s : symbols_of(roots))
+    if (s.role() == Role::Coordinate) return false;
+  const std::optional<double> difference = constant_value(e, c.value);
+  e.diagnostics.error(
+      "E0423", c.span, "this constraint contains no coordinate",
+      !difference         ? "It is a relation of parameters and time, which no motion can fulfil or break."
+      : *difference == 0 ? "It is true whatever the motion: it constrains nothing."
+                          : "With the values of the parameters it is false, whatever the motion.",
+      "Write a relation of coordinates or velocities; what follows from parameters is a `let`.");
+  return true;
+}
+
+bool refuse_identity(Elaboration& e, const Constraint& c) {
+  if (zero_test(c.value).verdict != Verdict::Zero) return false;
+  e.diagnostics.error("E0424", c.span, "this constraint is always true",
+                      "Its two sides are the same function: every motion obeys it, and it exerts no force.",
+                      "Check its names and signs, or leave it out.");
+  return true;
+}
+
+void warn_of_repetition(Elaboration& e) {
+  const std::vector<Constraint>& list = e.system().constraints;
+  std::vector<std::vector<double>> numbers;
+  for (const Constraint& c : list) numbers.push_back(fingerprints(e, c.value));
+  for (std::size_t i = 0; i < list.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const int sign = seems_equal(numbers[i], numbers[j]);
+      if (sign == 0 || zero_test(list[i].value - Rational(sign) * list[j].value).verdict != Verdict::Zero) continue;
+      e.diagnostics.warning(
+          "W0425", list[i].span, "this constraint is written already",
+          fmt::format("It is that of line {}: the motion stays the same, but which of the two exerts the force is not "
+                      "determined.",
+                      e.source.locate(list[j].span.begin).line),
+          "Leave one of them out.");
+      break;
+    }
+}
+
+}  // namespace maupertuis::elaboration

@@ -1,0 +1,138 @@
+#include "system/elaboration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+/// Forces of constraint in formulas: multiplier(rod), reaction(rod), and `reaction rod = release l`.
+namespace maupertuis::elaboration {
+namespace {
+
+using syntax::Expression;
+using Kind = Declaration::Kind;
+
+const char* const kReasonOfPlace =
+    "A force of constraint follows from the equations of motion: energies, forces and constraints cannot be made of it.";
+
+/// λ is conjugate to the constraint: λ δφ is an energy, λ ψ a power.
+Dimension dimension_of_multiplier(Elaboration& e, const Constraint& c) {
+  const bool position = c.level == Constraint::Level::Position;
+  return e.dimension(position ? dimensions::energy() : dimensions::power()) / c.dimension;
+}
+
+bool is_power_of_length(Dimension d) {
+  d.exponents[Dimension::Length] = {};
+  return d.is_one();
+}
+
+/// A reaction is a force, or a torque. Which of them, the multiplier says where its own unit is one; else the
+/// coordinates that the constraint ties, or the unit of φ: x² + y² = l² is a relation of lengths.
+Dimension dimension_of_reaction(Elaboration& e, const Constraint& c) {
+  if (e.dimensionless) return {};
+  const auto all = [&](const Dimension& kind) {
+    const Expr roots[] = {c.value};
+    for (const Coordinate& q : e.system().coordinates)
+      for (const Expr& s : symbols_of(roots))
+        if ((s == q.q || s == q.velocity) && (!q.dimension.same_as(kind) || q.dimension.angle() != kind.angle()))
+          return false;
+    return true;
+  };
+  const Dimension multiplier = dimension_of_multiplier(e, c);
+  if (all(dimensions::length()) || multiplier.same_as(dimensions::force())) return dimensions::force();
+  if (all(dimensions::angle()) && multiplier.same_as(dimensions::torque())) return dimensions::torque();
+  if (!c.dimension.is_one() && is_power_of_length(c.dimension)) return dimensions::force();
+  return dimensions::torque();
+}
+
+Declaration* find_named(Elaboration& e, const syntax::Name& name) {
+  Declaration* d = e.table.find(name.text);
+  if (!d && e.table.is_lost(name.text)) return nullptr;
+  if (d && (d->kind == Kind::Constraint || d->kind == Kind::Reaction)) return d;
+  std::vector<std::string> names;
+  for (const Declaration& other : e.table.declarations())
+    if (other.kind == Kind::Constraint || other.kind == Kind::Reaction) names.push_back(other.name);
+  const std::string near = did_you_mean(name.text, names);
+  e.diagnostics.error("E0226", name.span,
+                      d && d->statement ? fmt::format("`{}` is a {}, not a constraint", name.text, word_of(d->kind))
+                                        : fmt::format("the model has no constraint `{}`", name.text),
+                      "A constraint is called by the name that stands at its end.",
+                      near.empty() ? fmt::format("Name the one that is meant: constraint … = … name {}.",
+                                                 d && d->statement ? "rod" : name.text)
+                                   : fmt::format("Did you mean `{}`?", near));
+  return nullptr;
+}
+
+Value of_constraint(Elaboration& e, const Constraint& c, bool multiplier) {
+  return Value::of(multiplier ? c.multiplier : c.reaction,
+                   multiplier ? dimension_of_multiplier(e, c) : dimension_of_reaction(e, c), 2);
+}
+
+Value of_release(Elaboration& e, const Release& r, bool multiplier, const Expression& x) {
+  if (multiplier) {
+    e.diagnostics.error("E0226", x.span, fmt::format("`{}` is a reaction without a multiplier", r.name),
+                        "The choice of coordinates has removed its constraint from the equations.",
+                        fmt::format("Write reaction({}).", r.name));
+    return Value::poison();
+  }
+  return Value::of(r.reaction, e.dimension(dimensions::energy()) / e.system().parameters[r.parameter].dimension, 2);
+}
+
+}  // namespace
+
+Value value_of_reaction(Elaboration& e, const Expression& x, const Place& place) {
+  const Expression& name = *x.arguments[0];
+  if (name.kind != Expression::Kind::Name || name.primes > 0) {
+    e.diagnostics.error("E0226", name.span, fmt::format("`{}` takes the name of a constraint", x.text), "",
+                        fmt::format("Name the constraint, constraint … = … name rod, and write {}(rod).", x.text));
+    return Value::poison();
+  }
+  if (!place.reactions) {
+    e.diagnostics.error("E0225", x.span, fmt::format("`{}` cannot stand here", e.source.slice(x.span)), kReasonOfPlace,
+                        "Write it in `expect` or `claim`.");
+    return Value::poison();
+  }
+  Declaration* d = find_named(e, {name.text, name.span});
+  if (!d) return Value::poison();
+  const bool multiplier = x.text == "multiplier";
+  for (const Constraint& c : e.system().constraints)
+    if (c.name == name.text) return of_constraint(e, c, multiplier);
+  for (const Release& r : e.system().releases)
+    if (r.name == name.text) return of_release(e, r, multiplier, x);
+  return Value::poison();  // its own line has a mistake
+}
+
+bool names_a_reaction(Elaboration& e, const syntax::Name& name) { return find_named(e, name) != nullptr; }
+
+bool check_class_of_constraint(Elaboration& e, const syntax::ExpectStatement& s) {
+  static const std::array<std::string, 5> classes = {"holonomic", "nonholonomic", "scleronomic", "rheonomic",
+                                                     "integrable"};
+  Declaration* d = find_named(e, s.name);
+  if (d && d->kind == Kind::Reaction) {
+    e.diagnostics.error("E0226", s.name.span, fmt::format("`{}` is a reaction, not a constraint", d->name),
+                        "The choice of coordinates has removed its constraint.", "");
+    d = nullptr;
+  }
+  if (std::find(classes.begin(), classes.end(), s.word.text) != classes.end()) return d != nullptr;
+  const std::string near = did_you_mean(s.word.text, classes);
+  e.diagnostics.error("E0227", s.word.span, fmt::format("`{}` is no class of constraints", s.word.text),
+                      "A constraint is holonomic, nonholonomic, scleronomic, rheonomic or integrable.",
+                      near.empty() ? "" : fmt::format("Did you mean `{}`?", near));
+  return false;
+}
+
+void elaborate_release(Elaboration& e, const syntax::ReactionStatement& s) {
+  Declaration* d = find_declared(e, s.released);
+  if (!d) return;
+  if (d->kind != Kind::Parameter) {
+    e.diagnostics.error("E0212", s.released.span,
+                        fmt::format("`{}` is a {}, not a parameter", d->name, word_of(d->kind)),
+                        "A reaction shows the force that keeps a parameter, such as a length, at its value.", "");
+    return;
+  }
+  const Expr symbol = e.context.symbol(fmt::format("reaction({})", s.name.text), Role::Multiplier);
+  for (std::size_t i = 0; i < e.system().parameters.size(); ++i)
+    if (e.system().parameters[i].name == d->name) e.system().releases.push_back({s.name.text, i, symbol, s.name.span});
+}
+
+}  // namespace maupertuis::elaboration
