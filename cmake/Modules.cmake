@@ -53,7 +53,8 @@ function(maup_library)
   add_library(maupertuis::maupertuis ALIAS maupertuis)
   set_target_properties(maupertuis PROPERTIES LINKER_LANGUAGE CXX)
   target_compile_features(maupertuis INTERFACE cxx_std_20)
-  target_link_libraries(maupertuis PRIVATE fmt::fmt)
+  get_property(libraries GLOBAL PROPERTY MAUP_LIBRARIES)  # of the system, that modules were found to need
+  target_link_libraries(maupertuis PRIVATE fmt::fmt ${libraries})
   target_include_directories(maupertuis INTERFACE
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
 endfunction()

@@ -38,6 +38,7 @@ enum class StepEnding {
   Sliding,        // both sides of a switch push back to it
   TooManySteps,
   Interrupted,
+  NoConvergence,  // the equations of an implicit step were not solved, or no step meets the tolerance
 };
 
 /// One step, or the reason why there is none: then begin == end and the state is the one reached before.

@@ -1,0 +1,56 @@
+#pragma once
+#include <maupertuis/integrator.hpp>
+#include <maupertuis/motion_functions.hpp>
+
+#include <memory>
+#include <span>
+
+/// Steps of a stiff motion by backward differentiation formulas (docs/theory/stiff.md); used as a TaylorStepper is.
+namespace maupertuis {
+
+/// Whether this build has the stiff method: it needs the SUNDIALS library.
+bool has_stiff_method();
+
+struct StiffOptions {
+  double tolerance = 1e-10;                      // relative, per step
+  double absolute = 0;                           // in the unit of each coordinate and velocity; 0: 1e-4 · tolerance
+  std::size_t maximum_steps = 100'000'000;
+  const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
+};
+
+/// Variable order (1 to 5) and step, by CVODE. The unknowns are q and v; a and λ follow at each point from the bordered
+/// system, with exact derivatives for Newton's iteration. After each step the state is projected onto φ = 0 and the
+/// velocity constraints, with what projection does to the error estimate taken into account. Redundant constraints are
+/// left out by pivoting. Integrals ride along, without a part in the control of the error.
+class StiffStepper {
+ public:
+  /// Preconditions: has_stiff_method(); parameters.size() == functions' parameters; tolerance > 0.
+  StiffStepper(const MotionFunctions& functions, std::span<const double> parameters, const StiffOptions& options);
+  ~StiffStepper();
+  StiffStepper(StiffStepper&&) noexcept;
+
+  int order() const { return 5; }  // the highest
+  void start(double t, std::span<const double> q, std::span<const double> v);
+  /// One step towards `bound`, at most up to it; time() == bound exactly when it is reached. Backwards if bound < time().
+  Step step(double bound);
+
+  double time() const;
+  std::span<const double> q() const;  // [n]
+  std::span<const double> v() const;  // [n]
+  std::size_t steps() const;
+  std::size_t switches() const { return 0; }
+
+  bool covers(double t) const;
+  /// The motion at a time in the last step, from the formula's own polynomial, projected. Precondition: covers(t).
+  Sample sample(double t) const;
+  /// The state alone. q, v: [n].
+  void state(double t, std::span<double> q, std::span<double> v) const;
+  /// The motion at the beginning of the last step.
+  const Sample& step_start() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace maupertuis

@@ -1,0 +1,290 @@
+#include "integrator/variational/stages.hpp"
+
+#include <maupertuis/require.hpp>
+#include <maupertuis/variational.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace maupertuis {
+
+using variational::Phase;
+using variational::StageSolver;
+using variational::StageStatus;
+
+namespace {
+
+variational::Tableau tableau_for(int order, bool constrained) {
+  const auto half = static_cast<std::size_t>((order + 1) / 2);
+  return constrained ? variational::lobatto(half + 1) : variational::gauss(half);
+}
+
+}  // namespace
+
+struct VariationalStepper::Impl {
+  Impl(const VariationalFunctions& f, std::span<const double> parameters, const VariationalOptions& o)
+      : functions(f.motion), options(o), n(f.motion.freedoms), at_point(f.motion, parameters),
+        solver(f, parameters, tableau_for(o.order, f.motion.constraints > 0)), partial(solver),
+        observables(f.motion.observables), events(f.motion.events), integrands(f.motion.integrands) {
+    for (FunctionWorkspace* work : {&observables, &events, &integrands}) work->set_parameters(parameters);
+    event_values.resize(functions.events.outputs());
+    integrals.resize(functions.integrands.outputs());
+  }
+
+  void start(double t, std::span<const double> q, std::span<const double> v);
+  Step step(double bound);
+  bool find_event(Step& result);
+  double event_value(std::size_t i, const Phase& phase) const;
+  StageStatus part_of_step(double t, Phase& end) const;
+  void add_integrals(StageSolver& stages, double h, std::vector<Compensated>& sums) const;
+  Sample sample(double t) const;
+  Sample sample_at(const Phase& phase, const std::vector<Compensated>& sums) const;
+  Step ended(StepEnding ending, std::string reason) const { return {now.t, now.t, ending, std::move(reason), {}, 0}; }
+
+  MotionFunctions functions;
+  VariationalOptions options;
+  std::size_t n;
+  mutable PointSolver at_point;
+  StageSolver solver;
+  mutable StageSolver partial;  // shorter steps within the last one
+  mutable FunctionWorkspace observables, events, integrands;
+  mutable std::vector<double> event_values;
+
+  Phase before, now;            // the ends of the last step
+  std::vector<double> q_now, p_now;
+  std::vector<Compensated> integrals, integrals_before;
+  double t_start = 0, h = 0;    // of the run; the last step
+  std::size_t steps = 0, counted = 0;
+  PointStatus first_status = PointStatus::Ok;
+  bool first = true;            // the last step does not tell where the next one begins to iterate
+  mutable Sample start_sample;
+};
+
+namespace {
+
+std::vector<double> leading(const std::vector<Compensated>& values) {
+  std::vector<double> out;
+  for (const Compensated& value : values) out.push_back(value.hi);
+  return out;
+}
+
+std::string reason_of(StageStatus status, double t, double h) {
+  switch (status) {
+    case StageStatus::Singular:
+      return fmt::format("the discrete equations of motion have no unique solution after t = {:.17g} s: the mass matrix is "
+                         "singular there on the motions that the constraints allow", t);
+    case StageStatus::NonFinite:
+      return fmt::format("a value is infinite or undefined on the step from t = {:.17g} s to {:.17g} s", t, t + h);
+    case StageStatus::NoConvergence:
+      return fmt::format("Newton's iteration does not solve the discrete equations of motion on the step from t = {:.17g} s to "
+                         "{:.17g} s: the step is too long there, or no motion obeys the constraints", t, t + h);
+    case StageStatus::Ok: break;
+  }
+  return {};
+}
+
+StepEnding ending_of(StageStatus status) {
+  return status == StageStatus::Singular    ? StepEnding::SingularMass
+         : status == StageStatus::NonFinite ? StepEnding::Overflow
+                                            : StepEnding::NoConvergence;
+}
+
+}  // namespace
+
+void VariationalStepper::Impl::start(double t, std::span<const double> q, std::span<const double> v) {
+  now = {};
+  now.t = t_start = t;
+  now.q.resize(n), now.p.resize(n);
+  for (std::size_t i = 0; i < n; ++i) now.q[i].hi = q[i];
+  now.v.assign(v.begin(), v.end());
+  std::vector<double> p(n);
+  solver.momenta(t, q, v, p);
+  for (std::size_t i = 0; i < n; ++i) now.p[i].hi = p[i];
+  q_now.assign(q.begin(), q.end()), p_now = p;
+  before = now;
+  integrals.assign(integrals.size(), {});
+  integrals_before = integrals;
+  steps = counted = 0;
+  h = 0;
+  first = true;
+  at_point.forget_rows();
+  first_status = at_point.solve(t, q, v);
+  solver.set_rows(at_point.rows());
+  partial.set_rows(at_point.rows());
+}
+
+Step VariationalStepper::Impl::step(double bound) {
+  if (options.interrupt && *options.interrupt) return ended(StepEnding::Interrupted, "the run was interrupted");
+  if (steps >= options.maximum_steps)
+    return ended(StepEnding::TooManySteps, fmt::format("the run reached its limit of {} steps", options.maximum_steps));
+  if (first_status == PointStatus::Singular) return ended(StepEnding::SingularMass, reason_of(StageStatus::Singular, now.t, 0));
+  if (first_status == PointStatus::NonFinite) return ended(StepEnding::Overflow, reason_of(StageStatus::NonFinite, now.t, 0));
+
+  // Times are counted from the start, so that their rounding does not add up.
+  const double direction = bound < now.t ? -1 : 1, length = direction * options.step;
+  if (h * direction < 0) t_start = now.t, counted = 0;
+  double end_time = t_start + length * static_cast<double>(counted + 1);
+  if ((bound - end_time) * direction <= 1e-9 * options.step) end_time = bound;
+  const double next = end_time - now.t;
+  // A step of the common length is exactly of that length: the same map from step to step.
+  const double this_h = std::abs(next - length) <= 1e-9 * options.step ? length : next;
+
+  if (first) solver.guess(this_h, now.v, at_point.a(), at_point.lambda());
+  else solver.extrapolate(solver, 1, this_h / h);
+  Phase end;
+  const StageStatus status = solver.solve(now, this_h, end_time, end);
+  if (status != StageStatus::Ok) return ended(ending_of(status), reason_of(status, now.t, this_h));
+
+  before = std::move(now);
+  now = std::move(end);
+  h = this_h;
+  first = false;
+  integrals_before = integrals;
+  ++steps, ++counted;
+  Step result;
+  result.begin = before.t;
+  if (!find_event(result)) add_integrals(solver, h, integrals);
+  result.end = now.t;
+  q_now = leading(now.q), p_now = leading(now.p);
+  return result;
+}
+
+/// The same step again, but only to the time t; `partial` keeps its stages.
+StageStatus VariationalStepper::Impl::part_of_step(double t, Phase& end) const {
+  partial.extrapolate(solver, 0, (t - before.t) / h);
+  return partial.solve(before, t - before.t, t, end);
+}
+
+double VariationalStepper::Impl::event_value(std::size_t i, const Phase& phase) const {
+  at_point.solve(phase.t, leading(phase.q), phase.v);
+  events.evaluate(at_point.point(), event_values);
+  return event_values[i];
+}
+
+/// Shortens the step to the first root of an event function between its ends. A zero at the very beginning does not count.
+bool VariationalStepper::Impl::find_event(Step& result) {
+  constexpr int parts = 4;
+  if (event_values.empty()) return false;
+  std::vector<double> last(event_values.size());
+  double last_t = before.t;
+  for (int part = 0; part <= parts; ++part) {
+    const double t = part == parts ? now.t : before.t + h * part / parts;
+    Phase phase = part == 0 ? before : now;
+    if (part > 0 && part < parts && part_of_step(t, phase) != StageStatus::Ok) continue;
+    for (std::size_t i = 0; i < last.size(); ++i) {
+      const double value = event_value(i, phase);
+      if (part > 0 && last[i] != 0 && (value == 0 || (value > 0) != (last[i] > 0))) {
+        double low = last_t, high = t;
+        const bool rising = last[i] < 0;
+        while (true) {
+          const double middle = low + (high - low) / 2;
+          if (middle == low || middle == high || part_of_step(middle, phase) != StageStatus::Ok) break;
+          const double at_middle = event_value(i, phase);
+          (at_middle != 0 && (at_middle < 0) == rising ? low : high) = middle;
+        }
+        if (high != now.t && part_of_step(high, phase) == StageStatus::Ok) {
+          add_integrals(partial, high - before.t, integrals);
+          now = std::move(phase);
+          h = high - before.t;
+          solver = partial;
+        } else {
+          add_integrals(solver, h, integrals);
+        }
+        t_start = now.t, counted = 0;
+        result.event = i;
+        return true;
+      }
+      last[i] = value;
+    }
+    last_t = t;
+  }
+  return false;
+}
+
+void VariationalStepper::Impl::add_integrals(StageSolver& stages, double length, std::vector<Compensated>& sums) const {
+  if (sums.empty()) return;
+  std::vector<double> values(sums.size());
+  const variational::Tableau& tableau = stages.tableau();
+  for (std::size_t j = 0; j < tableau.stages; ++j) {
+    integrands.evaluate(stages.node_point(j), values);
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i].add(static_cast<double>(length * tableau.b[j] * values[i]));
+  }
+}
+
+Sample VariationalStepper::Impl::sample_at(const Phase& phase, const std::vector<Compensated>& sums) const {
+  Sample out;
+  out.t = phase.t, out.q = leading(phase.q), out.v = phase.v, out.integrals = leading(sums);
+  out.observables.resize(functions.observables.outputs());
+  const PointStatus status = at_point.solve(phase.t, out.q, out.v);
+  if (status == PointStatus::Ok) {
+    out.a.assign(at_point.a().begin(), at_point.a().end());
+  } else {
+    out.a.assign(n, std::numeric_limits<double>::quiet_NaN());
+  }
+  observables.evaluate(at_point.point(), out.observables);
+  return out;
+}
+
+Sample VariationalStepper::Impl::sample(double t) const {
+  if (t == now.t) return sample_at(now, integrals);
+  if (t == before.t) return sample_at(before, integrals_before);
+  Phase phase;
+  std::vector<Compensated> sums = integrals_before;
+  if (part_of_step(t, phase) == StageStatus::Ok) {
+    add_integrals(partial, t - before.t, sums);
+    return sample_at(phase, sums);
+  }
+  // A shorter step than one that was solved should always be solvable; the polynomials are what there is otherwise.
+  phase = before;
+  phase.t = t;
+  for (std::size_t i = 0; i < n; ++i) {
+    phase.q[i] = {solver.position_at((t - before.t) / h, i), 0};
+    phase.v[i] = solver.velocity_at((t - before.t) / h, i);
+  }
+  return sample_at(phase, sums);
+}
+
+VariationalStepper::VariationalStepper(const VariationalFunctions& functions, std::span<const double> parameters,
+                                       const VariationalOptions& options)
+    : impl_((MAUP_REQUIRE(options.step > 0 && options.order >= 2 && options.order <= 12),
+             MAUP_REQUIRE(functions.motion.holonomic && "constraints between velocities have no variational step"),
+             std::make_unique<Impl>(functions, parameters, options))) {}
+VariationalStepper::~VariationalStepper() = default;
+VariationalStepper::VariationalStepper(VariationalStepper&&) noexcept = default;
+
+int VariationalStepper::order() const { return 2 * ((impl_->options.order + 1) / 2); }
+void VariationalStepper::start(double t, std::span<const double> q, std::span<const double> v) { impl_->start(t, q, v); }
+Step VariationalStepper::step(double bound) { return impl_->step(bound); }
+double VariationalStepper::time() const { return impl_->now.t; }
+std::span<const double> VariationalStepper::q() const { return impl_->q_now; }
+std::span<const double> VariationalStepper::v() const { return impl_->now.v; }
+std::span<const double> VariationalStepper::p() const { return impl_->p_now; }
+std::size_t VariationalStepper::steps() const { return impl_->steps; }
+
+bool VariationalStepper::covers(double t) const {
+  const auto [low, high] = std::minmax(impl_->before.t, impl_->now.t);
+  return low <= t && t <= high;
+}
+
+Sample VariationalStepper::sample(double t) const {
+  MAUP_REQUIRE(covers(t));
+  return impl_->sample(t);
+}
+
+void VariationalStepper::state(double t, std::span<double> q, std::span<double> v) const {
+  MAUP_REQUIRE(covers(t));
+  const long double x = impl_->h == 0 ? 0 : (t - impl_->before.t) / impl_->h;
+  for (std::size_t i = 0; i < impl_->n; ++i) {
+    q[i] = impl_->h == 0 ? impl_->q_now[i] : impl_->solver.position_at(x, i);
+    v[i] = impl_->h == 0 ? impl_->now.v[i] : impl_->solver.velocity_at(x, i);
+  }
+}
+
+const Sample& VariationalStepper::step_start() const {
+  return impl_->start_sample = impl_->sample_at(impl_->before, impl_->integrals_before);
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,99 @@
+#include "simulation/function_kernels.hpp"
+
+#include <maupertuis/transform.hpp>
+
+namespace maupertuis {
+namespace {
+
+/// Lowers functions of one system, all with the inputs that MotionFunctions tells.
+class Lowering {
+ public:
+  explicit Lowering(const EquationsOfMotion& equations) : system_(*equations.system) {
+    for (const Coordinate& c : system_.coordinates) {
+      inputs_.push_back(c.q);
+      velocities_.push_back(c.velocity);
+    }
+    inputs_.insert(inputs_.end(), velocities_.begin(), velocities_.end());
+    for (const Coordinate& c : system_.coordinates) inputs_.push_back(c.acceleration);
+    inputs_.insert(inputs_.end(), equations.multipliers.begin(), equations.multipliers.end());
+    inputs_.push_back(system_.context->time());
+    for (const Parameter& p : system_.parameters) parameters_.push_back(p.symbol);
+  }
+
+  FunctionKernel function(std::span<const Expr> expressions) const { return build_function(source(expressions)); }
+  DifferentiableKernel differentiable(std::span<const Expr> expressions) const { return build_differentiable(source(expressions)); }
+  const ExprVector& velocities() const { return velocities_; }
+  ExprVector positions() const { return {inputs_.begin(), inputs_.begin() + static_cast<std::ptrdiff_t>(velocities_.size())}; }
+
+ private:
+  FunctionSource source(std::span<const Expr> expressions) const {
+    return {inputs_, parameters_, expand_time_derivatives(in_terms_of_motion(system_, expressions))};
+  }
+
+  const MechanicalSystem& system_;
+  ExprVector inputs_, velocities_, parameters_;
+};
+
+MotionFunctions lower_motion(const Lowering& lowering, const EquationsOfMotion& equations, const WantedFunctions& wanted) {
+  const MechanicalSystem& system = *equations.system;
+  MotionFunctions out;
+  out.freedoms = system.coordinates.size();
+  out.constraints = system.constraints.size();
+  ExprVector positions;
+  for (const Constraint& c : system.constraints) {
+    const bool position = c.level == Constraint::Level::Position;
+    out.holonomic &= position;
+    positions.push_back(position ? c.value : system.context->number(0));
+  }
+  out.balance = lowering.differentiable(equations.balance());
+  out.accelerations = lowering.differentiable(equations.constraint_accelerations);
+  out.rates = lowering.differentiable(equations.constraint_rates);
+  out.positions = lowering.differentiable(positions);
+  out.observables = lowering.function(wanted.observables);
+  out.events = lowering.function(wanted.events);
+  out.integrands = lowering.function(wanted.integrands);
+  return out;
+}
+
+/// ½ c φ̇² for the norms of quaternions.
+Expr norm_rates(const EquationsOfMotion& equations) {
+  const MechanicalSystem& system = *equations.system;
+  ExprVector terms{system.context->number(0)};
+  for (std::size_t k = 0; k < system.constraints.size(); ++k) {
+    const Body* body = system.constraints[k].body.empty() ? nullptr : system.find_body(system.constraints[k].body);
+    if (!body) continue;
+    Expr trace = system.context->number(0);
+    for (std::size_t i = 0; i < body->inertia.rows; ++i) trace = trace + body->inertia.at(i, i);
+    terms.push_back(Rational(1, 6) * (trace * pow(equations.constraint_rates[k], 2)));
+  }
+  return system.context->sum(terms);
+}
+
+}  // namespace
+
+MotionFunctions motion_functions(const EquationsOfMotion& equations, const WantedFunctions& wanted) {
+  return lower_motion(Lowering(equations), equations, wanted);
+}
+
+VariationalFunctions variational_functions(const EquationsOfMotion& equations, const WantedFunctions& wanted) {
+  const Lowering lowering(equations);
+  const Expr lagrangian = expand_time_derivatives(equations.lagrangian_expanded + norm_rates(equations));
+  VariationalFunctions out;
+  out.motion = lower_motion(lowering, equations, wanted);
+  out.momenta = lowering.differentiable(gradient(lagrangian, lowering.velocities()));
+  ExprVector forces = gradient(lagrangian, lowering.positions());
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    forces[i] = forces[i] + equations.generalized_forces[i] - equations.dissipative_terms[i];
+    if (!equations.constraint_forces.empty()) forces[i] = forces[i] + equations.constraint_forces[i];
+  }
+  out.forces = lowering.differentiable(forces);
+  return out;
+}
+
+std::vector<double> parameter_values(const MechanicalSystem& system) {
+  std::vector<double> values;
+  for (const Parameter& p : system.parameters) values.push_back(p.si_value);
+  return values;
+}
+
+}  // namespace maupertuis
