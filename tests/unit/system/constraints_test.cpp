@@ -65,3 +65,66 @@ TEST_CASE("definitions of parameters stay in the system as written and are expan
   CHECK(evaluate(c.value, m.at({3, 5}, {0, 0})) == doctest::Approx(9 + 25 - 16));
   CHECK(symbol(m, "l").role() == Role::Parameter);
 }
+
+TEST_CASE("what is no constraint") {
+  const auto codes = [](const std::string& line) {
+    return Elaborated("param m = 1 kg, l = 2 m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = 1 [N/m] l x\n" + line + "\n").codes();
+  };
+  CHECK(codes("constraint l = 2 [m]") == "E0423");
+  CHECK(codes("constraint 1 = 2") == "E0423");
+  CHECK(codes("constraint l = 3 [m/s] t") == "E0423");
+  CHECK(codes("constraint x = x") == "E0423");
+  CHECK(codes("constraint (x - y)^2 + 2 x y = x^2 + y^2") == "E0424");
+  CHECK(codes("constraint x'' = y''") == "E0401");
+  CHECK(codes("constraint x = y^2") == "E0304");
+  CHECK(codes("constraint (x, y) = (y, x)") == "E0210");
+  CHECK(codes("constraint x = y\nconstraint y = x") == "W0425");
+  CHECK(codes("constraint x = y\nconstraint x = 2 y") == "");
+  CHECK(codes("constraint x = abs(y)") == "E0426");
+  CHECK(codes("constraint x = max(y, l)") == "E0426");
+  CHECK(codes("input u : [m] = l step(t)\nconstraint x = u") == "E0426");
+  CHECK(codes("input u : [m] = l sin(t/1 [s])\nconstraint x = u") == "");
+  CHECK(codes("constraint x = y name m") == "E0202");
+  CHECK(codes("constraint x = y name y") == "E0202");
+  CHECK(codes("constraint x = y name a\nconstraint x = 2 y name a") == "E0202");
+  CHECK(codes("reaction a = release l\nconstraint x = y name a") == "E0202");
+  CHECK(codes("constraint x = y name a\nV += a") == "E0212");
+}
+
+TEST_CASE("multipliers and reactions have their units, and their place") {
+  const std::string head = "param m = 1 kg, l = 2 m\ncoord x, y : length, θ : angle\n"
+                           "T = 1/2 m (x'^2 + y'^2 + l^2 θ'^2)\nconstraint x^2 + y^2 = l^2 name rod\n"
+                           "constraint x' = l θ' name roll\nconstraint θ = 1 name stop\nreaction bar = release l\n";
+  const auto codes = [&](const std::string& line) { return Elaborated(head + line + "\n").codes(); };
+  CHECK(codes("expect multiplier(rod) at 1 s = 3 N/m ± 1") == "");
+  CHECK(codes("expect multiplier(rod) at 1 s = 3 N ± 1") == "E0304");
+  CHECK(codes("expect reaction rod at 1 s = 3 N ± 1") == "");
+  CHECK(codes("expect reaction rod at 1 s = 3 N/m ± 1") == "E0304");
+  CHECK(codes("expect reaction(roll) at 1 s = 3 N ± 1") == "");
+  CHECK(codes("expect multiplier(stop) at 1 s = 3 N m ± 1") == "");
+  CHECK(codes("expect reaction(stop) at 1 s = 3 N ± 1") == "E0304");
+  CHECK(codes("expect reaction(bar) at 1 s = 3 N ± 1") == "");
+  CHECK(codes("expect multiplier(bar) at 1 s = 3 N ± 1") == "E0226");
+  CHECK(codes("expect reaction(bra) at 1 s = 3 N ± 1") == "E0226");
+  CHECK(codes("expect multiplier(x) at 1 s = 3 N ± 1") == "E0226");
+  CHECK(codes("expect multiplier(2 x) at 1 s = 3 N ± 1") == "E0226");
+  CHECK(codes("claim reaction(roll) = 0") == "");
+  CHECK(codes("expect conserved reaction(roll)") == "E0225");
+  CHECK(codes("expect (2 reaction(roll))' at 1 s = 3 N/s ± 1") == "E0225");
+  CHECK(codes("V = l reaction(roll)") == "E0225");
+  CHECK(codes("constraint reaction(roll) x = 0") == "E0225");
+  CHECK(codes("force x = reaction(roll)") == "E0225");
+  CHECK(codes("draw O - (x, y), reaction roll, reaction bar") == "");
+  CHECK(codes("draw reaction rope") == "E0226");
+  for (const char* word : {"holonomic", "nonholonomic", "scleronomic", "rheonomic", "integrable"})
+    CHECK(codes(std::string("expect constraint roll is ") + word) == "");
+  CHECK(codes("expect constraint roll is nonholomonic") == "E0227");
+  CHECK(codes("expect constraint role is holonomic") == "E0226");
+  CHECK(codes("expect constraint bar is holonomic") == "E0226");
+
+  const Elaborated m(head + "draw reaction roll\nexpect constraint roll is nonholonomic\nexpect reaction roll at 1 s = 3 N ± 1\n");
+  CHECK(m.experiment().drawing.at(0).names.at(0) == "roll");
+  CHECK(m.experiment().expectations.at(0).name == "roll");
+  CHECK(m.experiment().expectations.at(0).word == "nonholonomic");
+  CHECK(m.experiment().expectations.at(1).subject == m.system().constraints[1].reaction);
+}
