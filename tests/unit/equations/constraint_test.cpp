@@ -1,0 +1,168 @@
+#include "../model_text.hpp"
+
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/print.hpp>
+
+using namespace maupertuis;
+
+namespace {
+
+const char* const pendulum = R"(system pendulum
+param m = 1 kg, l = 1 m, g = 9.81 m/s^2
+coord x, y : length
+point P mass m at (x, y)
+gravity (0, -g)
+constraint x^2 + y^2 = l^2 name rod
+)";
+
+const char* const rolling_disk = R"(system rolling_disk
+param m = 1 kg, R = 20 cm
+let I = 1/2 m R^2, J = 1/4 m R^2
+coord x, y : length
+coord φ, ψ : angle
+T = 1/2 m (x'^2 + y'^2) + 1/2 I φ'^2 + 1/2 J ψ'^2
+constraint x' = R φ' cos ψ
+constraint y' = R φ' sin ψ
+)";
+
+const char* const planetary_gear = R"(system planetary_gear
+param Rs = 20 mm, Rp = 15 mm, n = 3, mp = 50 g, τ = 0.1 N m
+param Is = 1e-5 kg m^2, Ip = 4e-6 kg m^2, Ic = 8e-5 kg m^2
+coord φs, φp, φc, φr : angle
+let Rr = Rs + 2 Rp, a = Rs + Rp
+T = 1/2 Is φs'^2 + n/2 Ip φp'^2 + 1/2 (Ic + n mp a^2) φc'^2
+constraint Rs (φs - φc) = -Rp (φp - φc)
+constraint Rr (φr - φc) =  Rp (φp - φc)
+constraint φr = 0 name hold
+force φs = τ
+)";
+
+bool zero(Expr e) { return zero_test(e).verdict == Verdict::Zero; }
+bool equal(Expr a, Expr b) { return zero(a - b); }
+Expr square(Expr e) { return pow(e, Rational(2)); }
+
+std::vector<std::string> printed(const std::vector<ReadableForm>& rows, const ReadingOrder& order) {
+  std::vector<std::string> out;
+  for (const ReadableForm& row : rows) out.push_back(to_plain(row, order));
+  return out;
+}
+using Lines = std::vector<std::string>;
+
+}  // namespace
+
+TEST_CASE("a pendulum in x and y prints as in a textbook") {
+  const ModelText m(pendulum);
+  const Derivation d = readable_derivation(m.equations, false);
+  CHECK(printed(d.equations, m.equations.order) == Lines{"m x''", "m y'' + m g"});
+  CHECK(printed(d.constraint_forces, m.equations.order) == Lines{"2 x λ_rod", "2 y λ_rod"});
+  REQUIRE(d.constraints.size() == 1);
+  CHECK(d.constraints[0].name == "rod");
+  CHECK(to_plain(d.constraints[0].left, m.equations.order) == "x^2 + y^2");
+  CHECK(to_plain(d.constraints[0].right, m.equations.order) == "l^2");
+  CHECK(to_latex(d.constraint_forces[0], m.equations.order) == "2 x \\lambda_{\\mathrm{rod}}");
+}
+
+TEST_CASE("A and b of the bordered system") {
+  const ModelText m(pendulum);
+  const ExprMatrix a = constraint_matrix(m.equations);
+  CHECK(equal(a.at(0, 0), Rational(2) * m.q(0)));
+  CHECK(equal(a.at(0, 1), Rational(2) * m.q(1)));
+  CHECK(equal(constraint_bias(m.equations)[0], Rational(-2) * (square(m.v(0)) + square(m.v(1)))));
+  CHECK(m.equations.power.is_zero());
+}
+
+TEST_CASE("a driven rod does work: the power is −λ ∂φ/∂t") {
+  const ModelText m("system s\nparam m = 1 kg, l = 1 m, v = 1 m/s\ncoord x, y : length\npoint P mass m at (x, y)\n"
+                    "constraint x^2 + y^2 = (l + v t)^2 name rod\n");
+  const Expr length = m.p("l") + m.p("v") * m.system->context->time();
+  CHECK(equal(m.equations.power, Rational(2) * m.equations.multipliers[0] * length * m.p("v")));
+  CHECK_FALSE(conserved_quantities(m.equations).energy_conserved);
+}
+
+TEST_CASE("a momentum is conserved only where no constraint acts") {
+  const ModelText rolling(rolling_disk);
+  const ConservedQuantities c = conserved_quantities(rolling.equations);
+  CHECK(c.cyclic.size() == 4);
+  CHECK(c.conserved_momenta == std::vector<std::size_t>{3});
+  CHECK(c.energy_conserved);
+}
+
+TEST_CASE("velocity constraints of any degree in the velocities do no work, affine ones do") {
+  const std::string head = "system s\nparam m = 1 kg, c = 2 m/s\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\n";
+  CHECK(conserved_quantities(ModelText(head + "constraint x'^2 + y'^2 = z'^2\n").equations).energy_conserved);
+  CHECK(conserved_quantities(ModelText(head + "constraint x' = y'\n").equations).energy_conserved);
+  CHECK_FALSE(conserved_quantities(ModelText(head + "constraint x'^2 + y'^2 = c^2\n").equations).energy_conserved);
+  CHECK_FALSE(conserved_quantities(ModelText(head + "constraint x' = c\n").equations).energy_conserved);
+}
+
+TEST_CASE("accelerations and multipliers solve the bordered system, also where M is singular") {
+  for (const char* text : {pendulum, rolling_disk, planetary_gear}) {
+    const ModelText m(text);
+    const auto motion = accelerations_and_multipliers(m.equations);
+    REQUIRE(motion);
+    ExprMap solution;
+    for (std::size_t i = 0; i < motion->accelerations.size(); ++i) solution.emplace(m.a(i), motion->accelerations[i]);
+    for (std::size_t k = 0; k < motion->multipliers.size(); ++k) solution.emplace(m.equations.multipliers[k], motion->multipliers[k]);
+    ExprVector rows = m.equations.balance();
+    rows.insert(rows.end(), m.equations.constraint_accelerations.begin(), m.equations.constraint_accelerations.end());
+    CHECK(zero_test(substitute(expand_time_derivatives(rows), solution)).verdict == Verdict::Zero);
+  }
+}
+
+TEST_CASE("a planetary gear speeds up as its reduced inertia says") {
+  const ModelText m(planetary_gear);
+  const auto motion = accelerations_and_multipliers(m.equations);
+  REQUIRE(motion);
+  Bindings at;
+  for (const Parameter& p : m.system->parameters) at[p.symbol] = p.si_value;
+  for (std::size_t i = 0; i < 4; ++i) at[m.q(i)] = 0.1 * static_cast<double>(i), at[m.v(i)] = 0.3;
+  // Ring held: φs' = (1 + Rr/Rs) φc', φp' = (1 − Rr/Rp) φc'.
+  const double rs = 0.02, rp = 0.015, rr = rs + 2 * rp, a = rs + rp, sun = 1 + rr / rs, planet = 1 - rr / rp;
+  const double inertia = 1e-5 * sun * sun + 3 * 4e-6 * planet * planet + 8e-5 + 3 * 0.05 * a * a;
+  CHECK(evaluate(motion->accelerations[2], at) == doctest::Approx(0.1 * sun / inertia).epsilon(1e-12));
+  CHECK(std::abs(evaluate(motion->accelerations[3], at)) < 1e-9);
+}
+
+TEST_CASE("redundant constraints have no unique multipliers") {
+  const ModelText m("system s\nparam m = 1 kg\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\n"
+                    "constraint x = y name a\nconstraint 2 x = 2 y name b\n");
+  CHECK_FALSE(accelerations_and_multipliers(m.equations));
+  CHECK_FALSE(eliminate_multipliers(m.equations));
+}
+
+TEST_CASE("multipliers eliminated") {
+  const ModelText disk(rolling_disk);
+  const auto rolling = eliminate_multipliers(disk.equations.shown());
+  REQUIRE(rolling);
+  CHECK(printed(rolling->rows, disk.equations.order) == Lines{"(m R^2 + I) φ''", "J ψ''"});
+  CHECK(rolling->dependent == std::vector<std::size_t>{0, 1});
+
+  const ModelText plane(pendulum);
+  const auto swinging = eliminate_multipliers(plane.equations);
+  REQUIRE(swinging);
+  CHECK(printed(swinging->rows, plane.equations.order) == Lines{"m x y'' - m y x'' + m g x"});
+}
+
+TEST_CASE("the multiplier written out: the pendulum") {
+  const ModelText m(pendulum);
+  const auto solved = solved_multipliers(m.equations);
+  REQUIRE(solved.size() == 1);
+  CHECK(to_plain(solved[0], m.equations.order) == "m (g y - x'^2 - y'^2)/(2 (x^2 + y^2))");
+}
+
+TEST_CASE("the multipliers of a chain of two rods are what the bordered system gives") {
+  const ModelText m(R"(system s
+param m1 = 1 kg, m2 = 2 kg, a = 1 m, b = 2 m, g = 9.81 m/s^2
+coord x1, y1, x2, y2 : length
+point A mass m1 at (x1, y1)
+point B mass m2 at (x2, y2)
+gravity (0, -g)
+constraint x1^2 + y1^2 = a^2 name upper
+constraint (x2 - x1)^2 + (y2 - y1)^2 = b^2 name lower
+)");
+  const auto solved = solved_multipliers(m.equations);
+  const auto motion = accelerations_and_multipliers(m.equations);
+  REQUIRE(solved.size() == 2);
+  REQUIRE(motion);
+  for (std::size_t k = 0; k < 2; ++k) CHECK(equal(solved[k].value, motion->multipliers[k]));
+}
