@@ -1,6 +1,7 @@
 #include <maupertuis/equations_of_motion.hpp>
 
 #include "equations/constraint_forms.hpp"
+#include "equations/simplified.hpp"
 
 namespace maupertuis {
 
@@ -33,9 +34,8 @@ std::vector<ReadableForm> readable_constraint_forces(const EquationsOfMotion& eq
     ExprVector terms;
     for (std::size_t k = 0; k < a.rows; ++k) {
       if (a.at(k, i).is_zero()) continue;
-      const ReadableForm factor = readable(a.at(k, i), equations.order);
-      const bool whole = factor.intermediates.empty();   // names of one row would mean something else in the next
-      terms.push_back((whole ? factor.value : a.at(k, i)) * equations.multipliers[k]);
+      // Never by intermediates: their names would mean something else in the next row.
+      terms.push_back(simplified(a.at(k, i), equations.order) * equations.multipliers[k]);
     }
     rows[i].value = system.context->sum(terms);
     rows[i].own = system.coordinates[i].q;

@@ -3,6 +3,8 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/transform.hpp>
 
+#include "equations/simplified.hpp"
+
 #include <algorithm>
 #include <set>
 
@@ -57,7 +59,7 @@ bool turns(const ExprVector& arm, Expr q) {
 
 /// d² − φ/k where that is a constant: l², of which the root is known where l is a positive parameter.
 Expr constant_distance(const MechanicalSystem& system, Expr squared, Expr value, Expr slope) {
-  const Expr rest = readable(squared - value / slope, {}).value;
+  const Expr rest = simplified(squared - value / slope);
   if (!coordinates_in({&rest, 1}).empty()) return sqrt(squared);
   const PowerOf power = split_power(rest);
   if (power.base.is_symbol() && power.exponent == Rational(2))
@@ -84,7 +86,7 @@ std::optional<RodConstraint> between(const MechanicalSystem& system, const Const
   if (pivot == q.size()) return std::nullopt;
   for (std::size_t i = 0; i < q.size(); ++i)
     if (i != pivot && !vanishes(of_phi[i] * of_squared[pivot] - of_phi[pivot] * of_squared[i])) return std::nullopt;
-  const Expr slope = readable(readable(of_phi[pivot], {}).value / readable(of_squared[pivot], {}).value, {}).value;
+  const Expr slope = simplified(simplified(of_phi[pivot]) / simplified(of_squared[pivot]));
   return RodConstraint{from, to, constant_distance(system, squared, c.value, slope), slope};
 }
 

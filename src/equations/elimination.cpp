@@ -2,6 +2,8 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/print.hpp>
 
+#include "equations/simplified.hpp"
+
 #include <algorithm>
 
 namespace maupertuis {
@@ -54,7 +56,7 @@ class RowReduction {
     bool common = true;
     for (std::size_t j = 0; j < a_.columns; ++j) {
       Expr& entry = a_.at(row, j);
-      entry = readable(entry, order_).value;
+      entry = simplified(entry, order_);
       if (entry.is_zero()) continue;
       Rational size = split_coefficient(entry).coefficient;
       if (size.sign() < 0) size = Rational(0) - size;
@@ -104,7 +106,7 @@ ExprVector kernel_vector(const RowReduction& reduction, std::size_t column, cons
   Expr scale = context.number(1);
   ExprVector ratios;
   for (std::size_t row = 0; row < a.rows; ++row) {
-    ratios.push_back(readable(a.at(row, column) / reduction.pivot(row), equations.order).value);
+    ratios.push_back(simplified(a.at(row, column) / reduction.pivot(row), equations.order));
     if (has_moving_denominator(ratios[row])) scale = scale * reduction.pivot(row);
   }
   ExprVector z(a.columns, context.number(0));

@@ -3,6 +3,7 @@
 
 #include "equations/distance_constraints.hpp"
 #include "equations/released.hpp"
+#include "equations/simplified.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -120,7 +121,7 @@ bool as_contact(const Tie& tie, Reaction& r) {
   ExprVector squares;
   for (const Expr& component : direction) squares.push_back(pow(component, Rational(2)));
   r.kind = Reaction::Kind::Contact;
-  r.value = tie.constraint.multiplier * sqrt(readable(tie.context().sum(squares), {}).value);
+  r.value = tie.constraint.multiplier * sqrt(simplified(tie.context().sum(squares)));
   r.arrows.push_back({*place->name, position, scaled(direction, tie.constraint.multiplier)});
   r.sentence = fmt::format("the force on {} along the normal of the constraint, positive towards increasing left − right", *place->name);
   return true;
@@ -162,7 +163,7 @@ void as_generalized(const Tie& tie, Reaction& r) {
     return;
   }
   r.kind = Reaction::Kind::Generalized;
-  r.value = tie.constraint.multiplier * sqrt(readable(tie.context().sum(squares), {}).value);
+  r.value = tie.constraint.multiplier * sqrt(simplified(tie.context().sum(squares)));
   r.sentence = fmt::format("the size of the generalized {} λ ∂φ/∂q over {}, positive towards increasing left − right",
                            force ? "force" : "torque", fmt::join(names, ", "));
 }

@@ -1,6 +1,8 @@
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/evaluate.hpp>
 
+#include "equations/simplified.hpp"
+
 #include <functional>
 #include <numeric>
 
@@ -97,7 +99,7 @@ std::vector<ReadableForm> solved_multipliers(const EquationsOfMotion& equations)
     const ExprVector column(a.entries.begin() + static_cast<std::ptrdiff_t>(k * a.columns),
                             a.entries.begin() + static_cast<std::ptrdiff_t>((k + 1) * a.columns));
     const ExprVector response = apply_inverse_mass(equations, column);
-    for (std::size_t l = 0; l < a.rows; ++l) g.entries.push_back(readable(row_times(a, l, response), equations.order).value);
+    for (std::size_t l = 0; l < a.rows; ++l) g.entries.push_back(simplified(row_times(a, l, response), equations.order));
     c.push_back(b[k] + row_times(a, k, drift));
   }
   if (a.rows == 1) return vanishes(g.entries[0]) ? std::vector<ReadableForm>{} : std::vector{quotient(c[0], g.entries[0], equations.order)};
