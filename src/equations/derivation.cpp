@@ -56,7 +56,7 @@ Derivation readable_derivation(const EquationsOfMotion& derived, bool with_steps
   for (std::size_t k = 0; k < equations.system->constraints.size(); ++k)
     derivation.constraints.push_back(constraint_equation(equations, k));
   derivation.intermediates = legend_of(equations, derivation);
-  if (with_steps) derivation.steps = derivation_steps(equations, derivation);
+  if (with_steps) derivation.steps = derivation_steps(equations, derivation, reactions(derived));
   return derivation;
 }
 

@@ -1,4 +1,6 @@
+#include "equations/constraint_steps.hpp"
 #include "equations/derivation_steps.hpp"
+#include "equations/step_writer.hpp"
 
 #include <maupertuis/print.hpp>
 
@@ -9,57 +11,7 @@
 namespace maupertuis {
 namespace {
 
-/// Writes the lines; `section` stays until the next one is opened.
-class StepWriter {
- public:
-  StepWriter(const EquationsOfMotion& equations) : equations_(equations), system_(*equations.system) {}
-
-  std::vector<DerivationStep> take() { return std::move(steps_); }
-  void open(std::string section) { section_ = std::move(section); }
-
-  void sentence(std::string rule, std::string text) {
-    DerivationStep step;
-    step.section = section_;
-    step.rule = std::move(rule);
-    step.sentence = std::move(text);
-    steps_.push_back(std::move(step));
-  }
-
-  /// left = readable(value). The value may hold d/dt nodes, which are carried out.
-  DerivationStep& formula(std::string left, std::string left_latex, Expr value, std::string rule) {
-    ReadableForm form = readable(expand_time_derivatives(value), equations_.order);
-    return as_is(std::move(left), std::move(left_latex), std::move(form), std::move(rule));
-  }
-
-  /// left = form, as it stands.
-  DerivationStep& as_is(std::string left, std::string left_latex, ReadableForm form, std::string rule) {
-    DerivationStep step;
-    step.section = section_;
-    step.rule = std::move(rule);
-    step.left = std::move(left);
-    step.left_latex = std::move(left_latex);
-    step.right = form.value;
-    step.intermediates = std::move(form.intermediates);
-    steps_.push_back(std::move(step));
-    return steps_.back();
-  }
-
-  const EquationsOfMotion& equations() const { return equations_; }
-  const MechanicalSystem& system() const { return system_; }
-  Context& context() const { return *system_.context; }
-
- private:
-  const EquationsOfMotion& equations_;
-  const MechanicalSystem& system_;
-  std::string section_;
-  std::vector<DerivationStep> steps_;
-};
-
 constexpr std::array axis_names{"x", "y", "z"};
-
-std::string latex_name(const std::string& name) { return name.size() > 1 ? "\\mathrm{" + name + "}" : name; }
-
-std::string plural(std::size_t n, const char* word) { return fmt::format("{} {}{}", n, word, n == 1 ? "" : "s"); }
 
 void write_coordinates(StepWriter& out) {
   out.open("Coordinates");
@@ -69,9 +21,10 @@ void write_coordinates(StepWriter& out) {
     list += c.kind.empty() ? c.name : fmt::format("{} ({})", c.name, c.kind);
   }
   const std::size_t n = out.system().coordinates.size();
+  const std::string count = fmt::format("{}: {}", list.empty() ? "none" : list, plural(n, "generalized coordinate"));
   out.sentence("choice of generalized coordinates",
-               fmt::format("{}: {}, no constraints among them, so {}.", list.empty() ? "none" : list,
-                           plural(n, "generalized coordinate"), plural(n, "freedom")));
+               out.system().constrained() ? fmt::format("{}, {}", count, counting_sentence(out.system()))
+                                          : fmt::format("{}, no constraints among them, so {}.", count, plural(n, "freedom")));
 }
 
 /// Positions, then velocities by the chain rule, then speeds squared, of the points that carry mass.
@@ -221,12 +174,19 @@ void write_row(StepWriter& out, std::size_t i, const Derivation& derivation) {
                 eq.dissipative_terms[i], "partial derivative of the dissipation function");
   std::string rule = "d/dt ∂L/∂q' − ∂L/∂q";
   if (!eq.dissipative_terms[i].is_zero()) rule += " + ∂D/∂q'";
-  rule += eq.generalized_forces[i].is_zero() ? " = 0" : " = Q";
-  out.as_is("0", "0", derivation.equations[i], "Euler-Lagrange: " + rule + ", collected and simplified");
+  rule += eq.generalized_forces[i].is_zero() ? " = " : " = Q";
+  if (derivation.constraint_forces.empty()) {
+    rule += eq.generalized_forces[i].is_zero() ? "0" : "";
+    out.as_is("0", "0", derivation.equations[i], "Euler-Lagrange: " + rule + ", collected and simplified");
+    return;
+  }
+  rule += eq.generalized_forces[i].is_zero() ? "Aᵀλ" : " + Aᵀλ";
+  out.as_is(to_plain(derivation.equations[i], eq.order), to_latex(derivation.equations[i], eq.order),
+            derivation.constraint_forces[i], "Lagrange with multipliers: " + rule + ", collected and simplified");
 }
 
 void write_solved(StepWriter& out) {
-  out.open("Solved for the accelerations");
+  out.open(out.system().constrained() ? "Solved for the accelerations and multipliers" : "Solved for the accelerations");
   bool any_left = false;
   constexpr std::size_t longest = 400;  // characters: beyond it the solved form hides more than it shows
   for (SolvedAcceleration& solved : solved_accelerations(out.equations())) {
@@ -238,21 +198,26 @@ void write_solved(StepWriter& out) {
       out.as_is(c.name + "''", symbol_to_latex(c.acceleration), std::move(solved.right),
                 solved.coupled_with.size() == 1 ? "divided by the coefficient of " + c.name + "''" : "Cramer's rule");
   }
+  if (out.system().constrained()) return write_solved_multipliers(out, any_left);
   if (any_left)
     out.sentence("M q'' + h = 0", "The coupled accelerations are long when written out; a run solves M q'' = −h numerically at every step.");
 }
 
 }  // namespace
 
-std::vector<DerivationStep> derivation_steps(const EquationsOfMotion& equations, const Derivation& derivation) {
+std::vector<DerivationStep> derivation_steps(const EquationsOfMotion& equations, const Derivation& derivation,
+                                             const std::vector<Reaction>& reactions) {
   StepWriter out(equations);
   write_coordinates(out);
   write_kinematics(out);
   write_angular_velocities(out);
   write_lagrangian(out);
   write_virtual_work(out);
+  if (equations.system->constrained()) write_constraints(out);
   for (std::size_t i = 0; i < equations.system->coordinates.size(); ++i) write_row(out, i, derivation);
+  if (equations.system->constrained()) write_constraint_accelerations(out);
   if (!equations.system->coordinates.empty()) write_solved(out);
+  write_reactions(out, reactions);
   return out.take();
 }
 

@@ -1,11 +1,12 @@
 #pragma once
-#include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/reactions.hpp>
 
 #include <vector>
 
 namespace maupertuis {
 
 /// The textbook path from coordinates to the equations of `derivation`, each line with its rule.
-std::vector<DerivationStep> derivation_steps(const EquationsOfMotion& equations, const Derivation& derivation);
+std::vector<DerivationStep> derivation_steps(const EquationsOfMotion& equations, const Derivation& derivation,
+                                             const std::vector<Reaction>& reactions);
 
 }  // namespace maupertuis

@@ -29,10 +29,10 @@ constraint y' = R φ' sin ψ
 )";
 
 const char* const appell = R"(system appell
-param m = 1 kg, a = 2, c = 1 m/s
+param m = 1 kg, a = 2, c = 1 m/s, w = 1 rad/s
 coord x, y, z : length
 point P mass m at (x, y, z)
-constraint sqrt(x'^2 + y'^2) = a z' + c sin t name edge
+constraint sqrt(x'^2 + y'^2) = a z' + c sin(w t) name edge
 )";
 
 using Names = std::set<std::string>;

@@ -1,0 +1,124 @@
+#include "equations/constraint_steps.hpp"
+
+#include <maupertuis/print.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "equations/simplified.hpp"
+
+namespace maupertuis {
+namespace {
+
+constexpr std::size_t longest = 400;   // characters: beyond it a solved form hides more than it shows
+
+bool on_positions(const Constraint& c) { return c.level == Constraint::Level::Position; }
+
+/// φ_rod, ψ_2, and in LaTeX.
+struct ConstraintName {
+  std::string plain, latex;
+};
+ConstraintName name_of(const MechanicalSystem& system, std::size_t k) {
+  const Constraint& c = system.constraints[k];
+  const std::string tail = !c.name.empty() ? c.name : !c.body.empty() ? c.body : std::to_string(k + 1);
+  return {(on_positions(c) ? "φ_" : "ψ_") + tail, fmt::format("{}_{{{}}}", on_positions(c) ? "\\varphi" : "\\psi", latex_name(tail))};
+}
+
+bool is_short(const ReadableForm& form, const ReadingOrder& order) {
+  return form.value && form.intermediates.empty() && to_plain(form.value, order).size() <= longest;
+}
+
+void write_eliminated(StepWriter& out) {
+  const auto eliminated = eliminate_multipliers(out.equations());
+  if (!eliminated) return;
+  std::string rule = "multipliers eliminated: Zᵀ(M q'' + h) = 0 with A Z = 0";
+  if (eliminated->dependent_replaced) {
+    rule += ", and from A q'' = b ";
+    for (std::size_t i = 0; i < eliminated->dependent.size(); ++i)
+      rule += (i ? ", " : "") + out.system().coordinates[eliminated->dependent[i]].name + "''";
+  }
+  out.open("Multipliers eliminated");
+  for (const ReadableForm& row : eliminated->rows)
+    out.as_is(to_plain(row, out.equations().order), to_latex(row, out.equations().order), {out.context().number(0), {}, {}}, rule);
+}
+
+}  // namespace
+
+std::string counting_sentence(const MechanicalSystem& system) {
+  const auto& all = system.constraints;
+  const std::size_t n = system.coordinates.size();
+  const auto positions = static_cast<std::size_t>(std::count_if(all.begin(), all.end(), on_positions));
+  const std::size_t velocities = all.size() - positions;
+  const std::size_t freedoms = n - std::min(n, positions), free = n - std::min(n, all.size());
+  if (velocities == 0)
+    return fmt::format("tied by {}: {} − {} = {} if none repeats another.", plural(positions, "constraint"), n, positions,
+                       plural(freedoms, "freedom"));
+  return fmt::format("tied by {} and by {}: {} of the velocities can be chosen freely if none repeats another.",
+                     plural(positions, "constraint"), plural(velocities, "constraint") + " on the velocities", free);
+}
+
+void write_constraints(StepWriter& out) {
+  const MechanicalSystem& s = out.system();
+  const ExprMatrix a = constraint_matrix(out.equations());
+  out.open("Constraints");
+  for (std::size_t k = 0; k < s.constraints.size(); ++k) {
+    const Constraint& c = s.constraints[k];
+    const ConstraintName name = name_of(s, k);
+    out.as_is(name.plain, name.latex, {c.value, {}, {}}, "left − right of the constraint: zero along the motion");
+    for (std::size_t i = 0; i < a.columns; ++i) {
+      if (a.at(k, i).is_zero()) continue;
+      const Coordinate& q = s.coordinates[i];
+      const std::string prime = on_positions(c) ? "" : "'";
+      out.formula(fmt::format("∂{}/∂{}{}", name.plain, q.name, prime),
+                  fmt::format("\\frac{{\\partial {}}}{{\\partial {}}}", name.latex, symbol_to_latex(on_positions(c) ? q.q : q.velocity)),
+                  a.at(k, i), fmt::format("row of A: the force on {} is this times {}", q.name, symbol_to_plain(c.multiplier)));
+    }
+  }
+}
+
+void write_constraint_accelerations(StepWriter& out) {
+  const MechanicalSystem& s = out.system();
+  const ReadingOrder& order = out.equations().order;
+  const ExprMatrix a = constraint_matrix(out.equations());
+  const ExprVector b = constraint_bias(out.equations());
+  out.open("Constraints differentiated");
+  for (std::size_t k = 0; k < a.rows; ++k) {
+    ExprVector terms;
+    for (std::size_t i = 0; i < a.columns; ++i)
+      if (!a.at(k, i).is_zero()) terms.push_back(simplified(a.at(k, i), order) * s.coordinates[i].acceleration);
+    const Expr left = out.context().sum(terms);
+    const bool position = on_positions(s.constraints[k]);
+    out.formula(to_plain(left, order), to_latex(left, order), b[k],
+                fmt::format("A q'' = b: the {} derivative of {} is zero", position ? "second" : "first", name_of(s, k).plain));
+  }
+}
+
+void write_solved_multipliers(StepWriter& out, bool any_left) {
+  const ReadingOrder& order = out.equations().order;
+  std::vector<ReadableForm> solved = solved_multipliers(out.equations());
+  const bool all_short = !solved.empty() &&
+                         std::all_of(solved.begin(), solved.end(), [&](const ReadableForm& f) { return is_short(f, order); });
+  for (std::size_t k = 0; all_short && k < solved.size(); ++k) {
+    const Expr symbol = out.equations().multipliers[k];
+    out.as_is(symbol_to_plain(symbol), symbol_to_latex(symbol), std::move(solved[k]), "A M⁻¹ Aᵀ λ = b + A M⁻¹ h");
+  }
+  if (any_left || !all_short)
+    out.sentence("M q'' + h = Aᵀλ, A q'' = b",
+                 "Written out in full this is long; a run solves M q'' + h = Aᵀλ, A q'' = b numerically at every step.");
+  write_eliminated(out);
+}
+
+void write_reactions(StepWriter& out, const std::vector<Reaction>& reactions) {
+  if (reactions.empty()) return;
+  out.open("Reactions");
+  for (const Reaction& r : reactions) {
+    if (!r.value) {
+      out.sentence("reaction " + r.name, r.sentence);
+      continue;
+    }
+    out.formula(fmt::format("reaction({})", r.name), fmt::format("F_{{\\text{{{}}}}}", r.name), r.value, r.sentence);
+  }
+}
+
+}  // namespace maupertuis
