@@ -1,5 +1,6 @@
 #include "simulation/function_kernels.hpp"
 
+#include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/transform.hpp>
 
 namespace maupertuis {

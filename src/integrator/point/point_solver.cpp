@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace maupertuis {
 namespace {
@@ -31,20 +30,23 @@ void PointSolver::set_point(double t, std::span<const double> q, std::span<const
   point_.back() = t;
 }
 
-bool PointSolver::choose_rows() {
-  rows_.resize(m_);
-  std::iota(rows_.begin(), rows_.end(), std::size_t{0});
+void PointSolver::choose_rows() {
+  rows_.clear();
+  determined_.assign(m_, true);
   rows_chosen_ = true;
-  if (m_ == 0) return true;
+  if (m_ == 0) return;
   MatrixXd columns = (a_matrix_ * scale_.head(index(n_)).asDiagonal()).transpose();
   for (Index k = 0; k < columns.cols(); ++k)
     if (const double size = columns.col(k).norm(); size > 0) columns.col(k) /= size;
   Eigen::ColPivHouseholderQR<MatrixXd> qr(columns);
   qr.setThreshold(dependent);
-  rows_.clear();
   for (Index k = 0; k < qr.rank(); ++k) rows_.push_back(static_cast<std::size_t>(qr.colsPermutation().indices()[k]));
   std::sort(rows_.begin(), rows_.end());
-  return true;
+  if (rows_.size() == m_) return;
+  Eigen::FullPivLU<MatrixXd> lu(columns);
+  lu.setThreshold(dependent);
+  const MatrixXd dependences = lu.kernel();
+  for (std::size_t k = 0; k < m_; ++k) determined_[k] = dependences.row(index(k)).cwiseAbs().maxCoeff() < 1e-8;
 }
 
 PointStatus PointSolver::factor() {

@@ -45,6 +45,8 @@ class PointSolver {
   PointStatus solve(double t, std::span<const double> q, std::span<const double> v);
   std::span<const double> a() const { return {&point_[functions_.a_at(0)], functions_.freedoms}; }
   std::span<const double> lambda() const { return {&point_[functions_.a_at(0)] + functions_.freedoms, functions_.constraints}; }
+  /// Whether the equations determine λ_k: no dependence between rows of A involves row k.
+  bool determined(std::size_t k) const { return determined_[k]; }
   /// The point (q, v, a, λ, t) of the last solve, for other kernels.
   std::span<const double> point() const { return point_; }
   const std::vector<std::size_t>& rows() const { return rows_; }
@@ -58,7 +60,7 @@ class PointSolver {
 
  private:
   PointStatus factor();
-  bool choose_rows();
+  void choose_rows();
   bool move_onto(Linearization& rows, std::span<double> changed, std::size_t first);
   void set_point(double t, std::span<const double> q, std::span<const double> v);
   /// The solution of the bordered system for a right side [n + rows].
@@ -70,6 +72,7 @@ class PointSolver {
   std::vector<double> point_;
   bool rows_chosen_ = false;
   std::vector<std::size_t> rows_;   // independent constraints
+  std::vector<bool> determined_;    // [m]
   Eigen::MatrixXd mass_, to_forces_, a_matrix_, bordered_;
   Eigen::VectorXd scale_;           // [n + rows]
   Eigen::PartialPivLU<Eigen::MatrixXd> factored_;

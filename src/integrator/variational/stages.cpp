@@ -175,9 +175,10 @@ StageStatus StageSolver::iterate() {
       velocities_.col(index(i)) -= step;
       if (constrained() && i + 1 < s_) multipliers_.col(index(i)) -= change.segment(index(s_) * n + index(i) * r, r) / h_;
     }
-    // Corrections that no longer shrink are rounding if they are small.
+    // Corrections that no longer shrink are rounding if they are small; the next one is foreseen from the last two.
     const bool small = size <= 1e-11 * reference + 1e3 * resolution;
-    if (size == 0 || (small && size >= 0.3 * last) || size <= 0.1 * epsilon * reference) return StageStatus::Ok;
+    const double next = std::isfinite(last) ? size * size / last : size;
+    if (size == 0 || (small && size >= 0.8 * last) || next <= 0.01 * epsilon * reference) return StageStatus::Ok;
     if (!small && size > 0.5 * last && (iterations_ > 3 || !fresh)) {
       if (place_nodes(), !renew()) return StageStatus::NonFinite;
       last = std::numeric_limits<double>::infinity();

@@ -1,3 +1,4 @@
+#include "integrator/point/sample.hpp"
 #include "integrator/variational/stages.hpp"
 
 #include <maupertuis/require.hpp>
@@ -217,14 +218,7 @@ void VariationalStepper::Impl::add_integrals(StageSolver& stages, double length,
 Sample VariationalStepper::Impl::sample_at(const Phase& phase, const std::vector<Compensated>& sums) const {
   Sample out;
   out.t = phase.t, out.q = leading(phase.q), out.v = phase.v, out.integrals = leading(sums);
-  out.observables.resize(functions.observables.outputs());
-  const PointStatus status = at_point.solve(phase.t, out.q, out.v);
-  if (status == PointStatus::Ok) {
-    out.a.assign(at_point.a().begin(), at_point.a().end());
-  } else {
-    out.a.assign(n, std::numeric_limits<double>::quiet_NaN());
-  }
-  observables.evaluate(at_point.point(), out.observables);
+  fill_sample(at_point, observables, functions.observables.outputs(), out);
   return out;
 }
 
