@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <maupertuis/print.hpp>
+#include <maupertuis/reactions.hpp>
 
 namespace maupertuis::app {
 namespace {
@@ -77,6 +78,17 @@ std::string momenta_and_energy(const EquationsOfMotion& equations) {
   return out;
 }
 
+/// With what force the constraints hold, and what its sign means.
+std::string reactions_text(const EquationsOfMotion& equations) {
+  std::string out;
+  for (const Reaction& r : reactions(equations)) {
+    if (out.empty()) out = "\nReactions\n";
+    if (r.value) out += readable_line(r.name, r.value, equations.order) + "    " + r.sentence + "\n";
+    else out += fmt::format("  {}: {}\n", r.name, r.sentence);
+  }
+  return out;
+}
+
 std::string certificate_text(const Certificate& certificate) {
   std::string out = fmt::format("\nCertificate: {}\n", certificate.passed() ? "passed" : "NOT PASSED");
   for (const CertificateCheck& check : certificate.checks) {
@@ -104,6 +116,7 @@ std::string lecture(Study& study, const EquationForm& form, const Certificate& c
   for (const Intermediate& i : form.intermediates)
     out += fmt::format("  {} = {}\n", to_plain(i.symbol, order), to_plain(i.value, order));
   out += legend(*equations.system, order);
+  out += reactions_text(equations);
   out += momenta_and_energy(equations);
   return out + certificate_text(certificate);
 }

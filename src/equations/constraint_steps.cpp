@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "equations/constraint_forms.hpp"
 #include "equations/simplified.hpp"
 
 namespace maupertuis {
@@ -65,14 +66,17 @@ void write_constraints(StepWriter& out) {
   for (std::size_t k = 0; k < s.constraints.size(); ++k) {
     const Constraint& c = s.constraints[k];
     const ConstraintName name = name_of(s, k);
-    out.as_is(name.plain, name.latex, {c.value, {}, {}}, "left − right of the constraint: zero along the motion");
+    const ConstraintEquation written = constraint_equation(out.equations(), k);
+    const ReadingOrder& order = out.equations().order;
+    out.as_is(to_plain(written.left, order), to_latex(written.left, order), {written.right, {}, {}},
+              fmt::format("{}: {} = left − right, zero along the motion", written.name, name.plain));
     for (std::size_t i = 0; i < a.columns; ++i) {
       if (a.at(k, i).is_zero()) continue;
       const Coordinate& q = s.coordinates[i];
       const std::string prime = on_positions(c) ? "" : "'";
       out.formula(fmt::format("∂{}/∂{}{}", name.plain, q.name, prime),
                   fmt::format("\\frac{{\\partial {}}}{{\\partial {}}}", name.latex, symbol_to_latex(on_positions(c) ? q.q : q.velocity)),
-                  a.at(k, i), fmt::format("row of A: the force on {} is this times {}", q.name, symbol_to_plain(c.multiplier)));
+                  a.at(k, i), fmt::format("row of A: the generalized force on {} is this times {}", q.name, symbol_to_plain(c.multiplier)));
     }
   }
 }
@@ -117,7 +121,8 @@ void write_reactions(StepWriter& out, const std::vector<Reaction>& reactions) {
       out.sentence("reaction " + r.name, r.sentence);
       continue;
     }
-    out.formula(fmt::format("reaction({})", r.name), fmt::format("F_{{\\text{{{}}}}}", r.name), r.value, r.sentence);
+    const bool named = r.name.find(' ') == std::string::npos;
+    out.formula(named ? fmt::format("reaction({})", r.name) : r.name, fmt::format("F_{{\\text{{{}}}}}", r.name), r.value, r.sentence);
   }
 }
 

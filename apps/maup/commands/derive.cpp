@@ -9,6 +9,7 @@
 
 #include <map>
 #include <maupertuis/print.hpp>
+#include <maupertuis/reactions.hpp>
 
 namespace maupertuis::app {
 namespace {
@@ -44,6 +45,44 @@ std::string readable_text(Expr e, const ReadingOrder& order) {
   return text;
 }
 
+/// multipliers, constraints, A and b of A q'' = b.
+void add_constraints(Json& document, Study& study) {
+  const EquationsOfMotion& equations = study.equations()->shown();
+  const ReadingOrder& order = equations.order;
+  document["multipliers"] = Json::array();
+  for (const Expr& multiplier : equations.multipliers) document["multipliers"].push_back(symbol_to_plain(multiplier));
+  document["constraints"] = Json::array();
+  const std::vector<ConstraintEquation>& written = study.derivation(false)->constraints;
+  for (std::size_t k = 0; k < written.size(); ++k) {
+    const bool position = equations.system->constraints[k].level == Constraint::Level::Position;
+    document["constraints"].push_back(
+        {{"name", written[k].name}, {"level", position ? "position" : "velocity"},
+         {"plain", to_plain(written[k].left, order) + " = " + to_plain(written[k].right, order)},
+         {"latex", to_latex(written[k].left, order) + " = " + to_latex(written[k].right, order)}});
+  }
+  const ExprMatrix a = constraint_matrix(equations);
+  document["constraint_matrix"] = Json::array();
+  for (std::size_t k = 0; k < a.rows; ++k) {
+    Json row = Json::array();
+    for (std::size_t j = 0; j < a.columns; ++j) row.push_back(readable_text(a.at(k, j), order));
+    document["constraint_matrix"].push_back(std::move(row));
+  }
+  document["constraint_bias"] = Json::array();
+  for (const Expr& b : constraint_bias(equations)) document["constraint_bias"].push_back(readable_text(b, order));
+}
+
+Json reactions_json(const EquationsOfMotion& equations) {
+  Json list = Json::array();
+  for (const Reaction& r : reactions(equations)) {
+    Json arrows = Json::array();
+    for (const ForceArrow& arrow : r.arrows) arrows.push_back(arrow.point);
+    list.push_back({{"name", r.name}, {"plain", r.value ? Json(readable_text(r.value, equations.order)) : Json()},
+                    {"unit", equations.system->dimensionless ? std::string("1") : to_string(r.dimension)}, {"meaning", r.sentence},
+                    {"acts_on", std::move(arrows)}});
+  }
+  return list;
+}
+
 Json document_of(const DeriveOptions& options, Study& study, const EquationForm& form, const Certificate* certificate) {
   Json document = json_document("derive");
   const EquationsOfMotion* equations = study.equations();
@@ -64,6 +103,8 @@ Json document_of(const DeriveOptions& options, Study& study, const EquationForm&
     for (std::size_t j = 0; j < m.columns; ++j) row.push_back(readable_text(m.at(i, j), order));
     document["mass_matrix"].push_back(std::move(row));
   }
+  if (equations->system->constrained()) add_constraints(document, study);
+  if (Json list = reactions_json(*equations); !list.empty()) document["reactions"] = std::move(list);
   document["momenta"] = Json::array();
   for (const Expr p : equations->shown().momenta) document["momenta"].push_back(readable_text(p, order));
   document["energy"] = readable_text(equations->shown().energy_function, order);
