@@ -290,6 +290,18 @@ constexpr CodeEntry kEntries[] = {
      "have none at their switches; neither has an input that is made of them. An inequality is a contact.",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint y = abs(x)\n",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint y = x\n"},
+    {"W0427", "a quaternion that is not of norm 1",
+     "A rotation needs a unit quaternion: another one stretches what it turns. `rotation quaternion` alone adds the four "
+     "components and their norm; where the components are given, the model sees to it.",
+     "param I = 1 kg m^2\ncoord w, x, y, z : number\nbody B inertia diag(I, I, I) rotation quaternion (w, x, y, z)\n"
+     "constraint w = 1\n",
+     "param I = 1 kg m^2\ncoord w, x, y, z : number\nbody B inertia diag(I, I, I) rotation quaternion (w, x, y, z)\n"
+     "constraint w^2 + x^2 + y^2 + z^2 = 1\n"},
+    {"N0428", "a coordinate without kinetic energy of its own",
+     "The mass matrix is singular, but regular on what the constraints leave, so that the accelerations are determined. "
+     "That is as it should be for a gear without inertia or an auxiliary coordinate; else a mass was forgotten.",
+     "coord x, y : length\nparam m = 1 kg\nT = 1/2 m x'^2\nconstraint y = 2 x\n",
+     "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint y = 2 x\n"},
     // ------------------------------------------------------------------------------------------------ not supported
     // yet
     {"E0501", "a statement that is not supported yet",

@@ -102,9 +102,13 @@ bool refuse_switch(Elaboration& e, const syntax::ConstraintStatement& s, Expr va
 
 bool refuse_without_coordinates(Elaboration& e, const Constraint& c) {
   const Expr roots[] = {c.value};
+  ExprVector motion;
+  ExprMap at_zero;
   for (const Expr& s : symbols_of(roots))
-    if (s.role() == Role::Coordinate) return false;
-  const std::optional<double> difference = constant_value(e, c.value);
+    if (s.role() == Role::Coordinate) motion.push_back(s), at_zero[s] = e.number(0);
+  // In x = x + l the coordinate cancels.
+  if (!motion.empty() && zero_test(gradient(c.value, motion)).verdict != Verdict::Zero) return false;
+  const std::optional<double> difference = constant_value(e, motion.empty() ? c.value : substitute(c.value, at_zero));
   e.diagnostics.error(
       "E0423", c.span, "this constraint contains no coordinate",
       !difference         ? "It is a relation of parameters and time, which no motion can fulfil or break."

@@ -42,6 +42,15 @@ Constraint::Level settle_level(Expr& value) {
   return Constraint::Level::Position;
 }
 
+bool refuse_acceleration_in_constraint(Elaboration& e, const Value& v, const syntax::Expression& side) {
+  if (v.order < 2) return false;
+  const Span at = culprit_of_order(e, side, 2);
+  e.diagnostics.error("E0401", at.end > at.begin ? at : side.span, "an acceleration stands in a constraint",
+                      "A constraint relates positions, or velocities; what it asks of accelerations follows from it.",
+                      "Write the relation between velocities of which this is the derivative.");
+  return true;
+}
+
 /// Both sides of the constraint; nothing after a mistake.
 std::optional<Value> difference(Elaboration& e, const ConstraintStatement& s) {
   const Value left = evaluate_formula(e, *s.left);
@@ -58,7 +67,7 @@ std::optional<Value> difference(Elaboration& e, const ConstraintStatement& s) {
     return std::nullopt;
   }
   if (!left.fits_any && !check_dimension(e, right, left.dimension, "the left side", *s.right)) return std::nullopt;
-  if (refuse_acceleration(e, left, *s.left, "a constraint") || refuse_acceleration(e, right, *s.right, "a constraint"))
+  if (refuse_acceleration_in_constraint(e, left, *s.left) || refuse_acceleration_in_constraint(e, right, *s.right))
     return std::nullopt;
   Value v = add(e, left, right, true, *s.right, {});
   if (!v.poisoned) v.parts = {left.scalar() - right.scalar()};
@@ -98,9 +107,10 @@ void elaborate_constraints(Elaboration& e) {
     c.value = with_inputs_as_formulas(e.system(), expand_time_derivatives(v->scalar()));
     c.dimension = v->dimension;
     c.span = statement.span;
-    if (refuse_switch(e, *s, c.value) || refuse_without_coordinates(e, c)) continue;
+    const bool names_coordinates = v->order >= 0;  // they may cancel
+    if (refuse_switch(e, *s, c.value) || (names_coordinates && refuse_identity(e, c)) || refuse_without_coordinates(e, c))
+      continue;
     c.level = settle_level(c.value);
-    if (refuse_identity(e, c)) continue;
     e.system().constraints.push_back(std::move(c));
   }
   warn_of_repetition(e);

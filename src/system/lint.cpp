@@ -64,7 +64,8 @@ Bindings sample(const Subject& s, int attempt) {
 void lint(const Model& model, const SourceText& source, Diagnostics& diagnostics) {
   if (model.system.coordinates.empty()) return;
   lint_rules::Subject subject(model, source, diagnostics);
-  if (!model.system.constrained()) lint_rules::mass_matrix_rules(subject, lint_rules::unused_coordinates(subject));
+  if (!lint_rules::mass_matrix_rules(subject, lint_rules::unused_coordinates(subject)))
+    lint_rules::quaternion_norms(subject);
   lint_rules::claims(subject);
   lint_rules::total_derivatives(subject);
   lint_rules::gravity_twice(subject);

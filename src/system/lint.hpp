@@ -25,8 +25,17 @@ struct Subject {
 
 /// E0406: nothing depends on the coordinate. The coordinates that it named.
 std::vector<bool> unused_coordinates(Subject& s);
-/// E0407, E0408, E0409, E0417: M is singular wherever it is sampled; W0410: M is not positive definite.
-void mass_matrix_rules(Subject& s, const std::vector<bool>& unused);
+/// E0407, E0408, E0409, E0417: M is singular wherever it is sampled, also on the directions that the constraints leave;
+/// N0428: they make it regular; W0410: M is not positive definite. True after an error.
+bool mass_matrix_rules(Subject& s, const std::vector<bool>& unused);
+/// A frame or body whose quaternion nothing holds at norm 1.
+struct Stretched {
+  std::string name;
+  Span span;
+};
+std::optional<Stretched> stretched_rotation(const Subject& s);
+/// W0427: there is one.
+void quaternion_norms(Subject& s);
 /// E0411: `T = …` beside points says something else than the points.
 void claims(Subject& s);
 /// W0412: a term of L that is a total time derivative.

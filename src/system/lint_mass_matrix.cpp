@@ -1,16 +1,15 @@
-#include "system/lint.hpp"
+#include "system/lint_manifold.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
-/// Whether M = ∂²L/∂q̇∂q̇ can be solved for the accelerations, seen from numbers: M is sampled near the start.
+/// Whether M = ∂²L/∂q̇∂q̇ can be solved for the accelerations, seen from numbers: M is sampled near the start. Under
+/// constraints it may be singular, as long as it is regular on the directions that they leave.
 namespace maupertuis::lint_rules {
 namespace {
-
-using Row = std::vector<double>;
-using Matrix = std::vector<Row>;
 
 /// M at a point. Up to a dozen freedoms by exact second derivatives; beyond, by unit differences of the momenta, which
 /// are exact where T is quadratic in the velocities. Empty where L is undefined.
@@ -48,103 +47,42 @@ class MassMatrix {
   ExprVector exact_;  // [n × n], or empty
 };
 
-/// Coordinates have units: each is scaled so that the diagonal of M is 1.
-Row scale(Matrix& m) {
-  const std::size_t n = m.size();
-  Row scales(n, 1);
-  for (std::size_t i = 0; i < n; ++i) {
-    double size = std::abs(m[i][i]);
-    if (size == 0)
-      for (std::size_t j = 0; j < n; ++j) size = std::max(size, std::abs(m[i][j]));
-    if (size > 0) scales[i] = 1 / std::sqrt(size);
-  }
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j) m[i][j] *= scales[i] * scales[j];
-  return scales;
-}
-
-/// Directions of q̇ that M sends to zero, by elimination with full pivoting; empty if M is regular.
-std::vector<Row> null_vectors(Matrix m) {
-  const std::size_t n = m.size();
-  const Row scales = scale(m);
-  std::vector<std::size_t> pivot_column, free;
-  std::vector<bool> used(n, false);
-  for (std::size_t step = 0; step < n; ++step) {
-    std::size_t row = step, column = n;
-    double best = 1e-9;
-    for (std::size_t i = step; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j)
-        if (!used[j] && std::abs(m[i][j]) > best) best = std::abs(m[row = i][column = j]);
-    if (column == n) break;
-    used[column] = true;
-    pivot_column.push_back(column);
-    std::swap(m[step], m[row]);
-    const double pivot = m[step][column];
-    for (double& x : m[step]) x /= pivot;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double factor = m[i][column];
-      if (i == step || factor == 0) continue;
-      for (std::size_t j = 0; j < n; ++j) m[i][j] -= factor * m[step][j];
-    }
-  }
-  std::vector<Row> out;
-  for (std::size_t f = 0; f < n; ++f) {
-    if (used[f]) continue;
-    Row v(n, 0);
-    v[f] = scales[f];
-    for (std::size_t k = 0; k < pivot_column.size(); ++k) {
-      const double x = -m[k][f];
-      if (std::abs(x) > 1e-7) v[pivot_column[k]] = x * scales[pivot_column[k]];
-    }
-    out.push_back(std::move(v));
-  }
-  return out;
-}
-
-bool is_positive_definite(Matrix m) {
-  scale(m);
-  const std::size_t n = m.size();
-  for (std::size_t j = 0; j < n; ++j) {
-    if (!(m[j][j] > 1e-9)) return false;
-    for (std::size_t i = j + 1; i < n; ++i) {
-      const double f = m[i][j] / m[j][j];
-      for (std::size_t k = j; k < n; ++k) m[i][k] -= f * m[j][k];
-    }
-  }
-  return true;
-}
-
-/// Null vectors that M has at every sample where it is defined.
+/// What M is at every sample where it is defined.
 struct Findings {
   bool defined = false;
   bool singular = false;
   bool positive = true;
-  std::vector<Row> null;
+  std::vector<Row> null;           // of M on the directions that the constraints leave
+  Row massless;                    // not 0 for coordinates without kinetic energy, where the constraints tie them
 };
 
-Findings examine(const Subject& s, const MassMatrix& matrix, const Bindings& changed) {
+Findings examine(const Subject& s, const MassMatrix& matrix, const Manifold& manifold, const Bindings& changed) {
   Findings out;
   for (int attempt = 0, good = 0; attempt < 9 && good < 2; ++attempt) {
     Bindings point = sample(s, attempt);
     for (const auto& [symbol, value] : changed) point[symbol] = value;
-    const Matrix m = matrix.at(point);
+    if (!manifold.reach(point)) continue;
+    const Matrix m = matrix.at(point), a = manifold.rows(point);
     if (m.empty()) continue;
     ++good;
     out.defined = true;
-    out.null = null_vectors(m);
+    const ReducedMass reduced = reduce(m, a);
+    out.null = reduced.null;
     out.singular = !out.null.empty();
     if (out.singular) continue;
-    out.positive = is_positive_definite(m);
+    out.positive = reduced.positive;
+    for (const Row& row : m)
+      out.massless.push_back(!a.empty() && std::all_of(row.begin(), row.end(), [](double x) { return x == 0; }));
     return out;
   }
   return out;
 }
 
 /// A parameter whose value 0 alone makes M singular.
-const Parameter* zero_parameter_at_fault(const Subject& s, const MassMatrix& matrix) {
+const Parameter* zero_parameter_at_fault(const Subject& s, const MassMatrix& matrix, const Manifold& manifold) {
   for (const Parameter& p : s.system.parameters) {
     if (p.si_value != 0) continue;
-    const Findings found = examine(s, matrix, {{p.symbol, 1.0}});
+    const Findings found = examine(s, matrix, manifold, {{p.symbol, 1.0}});
     if (found.defined && !found.singular) return &p;
   }
   return nullptr;
@@ -176,16 +114,36 @@ std::string names(const Subject& s, const Row& v) {
   return out;
 }
 
+/// Under constraints: nor do they.
+std::string nor_constraint(const Subject& s, const char* does) {
+  return s.system.constrained() ? fmt::format(", and no constraint {}", does) : "";
+}
+
 void report_massless(Subject& s, std::size_t coordinate) {
   const Coordinate& c = s.system.coordinates[coordinate];
   const bool from_masses = kinetic_energy_of_masses_alone(s.system);
+  const std::string tied = nor_constraint(s, "determines it");
   s.diagnostics.error(
       "E0407", c.span, fmt::format("the coordinate `{}` has no kinetic energy", c.name),
       from_masses
-          ? fmt::format("No mass moves when {0} changes, so that no equation gives its acceleration {0}''.", c.name)
-          : fmt::format("{0}' does not enter T, so that no equation gives its acceleration {0}''.", c.name),
+          ? fmt::format("No mass moves when {0} changes{1}, so that no equation gives its acceleration {0}''.", c.name, tied)
+          : fmt::format("{0}' does not enter T{1}, so that no equation gives its acceleration {0}''.", c.name, tied),
       from_masses ? "Give a point that moves with it a mass, or a body its inertia."
                   : fmt::format("Add its part to T, or remove the coordinate.", c.name));
+}
+
+/// The norm of the quaternion that turns in this direction; null if none does.
+const Constraint* quaternion_in(const Subject& s, const Row& v) {
+  for (const Constraint& c : s.system.constraints)
+    for (std::size_t i = 0; i < v.size() && !c.body.empty(); ++i)
+      if (v[i] != 0 && s.system.coordinates[i].name.rfind(c.body + ".q", 0) == 0) return &c;
+  return nullptr;
+}
+
+void report_massless_turn(Subject& s, const Constraint& norm) {
+  s.diagnostics.error("E0407", norm.span, fmt::format("a rotation of `{}` has no kinetic energy", norm.body),
+                      "Some turn of it moves no mass, so that no equation gives its angular acceleration.",
+                      "Give the body its inertia about all three axes.");
 }
 
 void report_combination(Subject& s, const Row& v) {
@@ -197,16 +155,25 @@ void report_combination(Subject& s, const Row& v) {
   if (kinetic_energy_of_masses_alone(s.system)) {
     s.diagnostics.error(
         "E0417", c.span, fmt::format("the masses cannot tell {} apart", names(s, v)),
-        fmt::format("Changing {} moves no mass: there are more coordinates than the points have ways to move.", change),
+        fmt::format("Changing {} moves no mass{}: there are more coordinates than the points have ways to move.", change,
+                    nor_constraint(s, "forbids it")),
         fmt::format("Remove `{}`, or give a mass to a point that it moves by itself.", c.name));
     return;
   }
   s.diagnostics.error(
       "E0408", c.span, fmt::format("the kinetic energy cannot tell {} apart", names(s, v)),
       fmt::format(
-          "Changing {} leaves T as it is: the mass matrix is singular, and the accelerations are not determined.",
-          change),
+          "Changing {} leaves T as it is{}: the mass matrix is singular, and the accelerations are not determined.",
+          change, nor_constraint(s, "forbids it")),
       "Add the missing part of T, or use fewer coordinates.");
+}
+
+void report_norm(Subject& s, const Stretched& x) {
+  s.diagnostics.error("E0408", x.span, fmt::format("nothing holds the quaternion of `{}` at norm 1", x.name),
+                      "No kinetic energy belongs to a change of its norm: the mass matrix is singular, and the "
+                      "accelerations are not determined.",
+                      "Add the constraint w^2 + x^2 + y^2 + z^2 = 1 for its components, or write `rotation quaternion` "
+                      "alone, which brings both.");
 }
 
 void report_zero_parameter(Subject& s, const Parameter& p) {
@@ -222,12 +189,24 @@ void report_zero_parameter(Subject& s, const Parameter& p) {
                       "Give it a value other than zero.");
 }
 
+/// N0428: M is singular, and the constraints make up for it.
+void note_of_tied_coordinates(Subject& s, const Row& massless) {
+  const auto first = std::find_if(massless.begin(), massless.end(), [](double x) { return x != 0; });
+  if (first == massless.end()) return;
+  const bool one = std::count_if(first, massless.end(), [](double x) { return x != 0; }) == 1;
+  s.diagnostics.note("N0428", s.system.coordinates[static_cast<std::size_t>(first - massless.begin())].span,
+                     fmt::format("the coordinate{} {} {} no kinetic energy", one ? "" : "s", names(s, massless),
+                                 one ? "has" : "have"),
+                     "The mass matrix is singular; the constraints determine the accelerations all the same.", "");
+}
+
 }  // namespace
 
-void mass_matrix_rules(Subject& s, const std::vector<bool>& unused) {
+bool mass_matrix_rules(Subject& s, const std::vector<bool>& unused) {
   const MassMatrix matrix(s);
-  const Findings found = examine(s, matrix, {});
-  if (!found.defined) return;
+  const Manifold manifold(s);
+  const Findings found = examine(s, matrix, manifold, {});
+  if (!found.defined) return false;
   if (!found.singular) {
     if (!found.positive)
       s.diagnostics.warning("W0410",
@@ -238,11 +217,24 @@ void mass_matrix_rules(Subject& s, const std::vector<bool>& unused) {
                             "Some motion has a negative kinetic energy: the mass matrix is indefinite. The equations "
                             "of motion can still be solved.",
                             "Check the signs in T, unless this is meant (as in Bateman's Lagrangian).");
-    return;
+    note_of_tied_coordinates(s, found.massless);
+    return false;
   }
-  if (std::any_of(unused.begin(), unused.end(), [](bool x) { return x; })) return;  // told
-  if (const Parameter* p = zero_parameter_at_fault(s, matrix)) return report_zero_parameter(s, *p);
+  if (std::any_of(unused.begin(), unused.end(), [](bool x) { return x; })) return true;  // told
+  if (const Parameter* p = zero_parameter_at_fault(s, matrix, manifold)) {
+    report_zero_parameter(s, *p);
+    return true;
+  }
+  if (const std::optional<Stretched> x = stretched_rotation(s)) {
+    report_norm(s, *x);
+    return true;
+  }
+  std::set<std::string> told;
   for (const Row& v : found.null) {
+    if (const Constraint* norm = quaternion_in(s, v)) {
+      if (told.insert(norm->body).second) report_massless_turn(s, *norm);
+      continue;
+    }
     const auto count = std::count_if(v.begin(), v.end(), [](double x) { return x != 0; });
     const auto first = std::find_if(v.begin(), v.end(), [](double x) { return x != 0; }) - v.begin();
     if (count == 1)
@@ -250,6 +242,7 @@ void mass_matrix_rules(Subject& s, const std::vector<bool>& unused) {
     else
       report_combination(s, v);
   }
+  return true;
 }
 
 }  // namespace maupertuis::lint_rules

@@ -68,6 +68,7 @@ std::vector<bool> unused_coordinates(Subject& s) {
   ExprVector roots = {s.lagrangian, expand_time_derivatives(s.system.dissipation_function())};
   for (const AppliedForce& f : s.system.forces)
     for (const ExprVector* v : {&f.components, &f.lever}) roots.insert(roots.end(), v->begin(), v->end());
+  for (const Constraint& c : s.system.constraints) roots.push_back(c.value);
   const Symbols used = symbols_in(expand_time_derivatives(roots));
   std::vector<bool> out;
   for (const Coordinate& c : s.system.coordinates) {
@@ -75,7 +76,9 @@ std::vector<bool> unused_coordinates(Subject& s) {
     out.push_back(unused);
     if (unused)
       s.diagnostics.error("E0406", c.span, fmt::format("the coordinate `{}` is never used", c.name),
-                          "No energy and no force depends on it: nothing determines its motion.",
+                          s.system.constrained()
+                              ? "No energy, force or constraint depends on it: nothing determines its motion."
+                              : "No energy and no force depends on it: nothing determines its motion.",
                           "Remove it, or use it in a position or an energy.");
   }
   return out;

@@ -73,7 +73,8 @@ TEST_CASE("what is no constraint") {
   CHECK(codes("constraint l = 2 [m]") == "E0423");
   CHECK(codes("constraint 1 = 2") == "E0423");
   CHECK(codes("constraint l = 3 [m/s] t") == "E0423");
-  CHECK(codes("constraint x = x") == "E0423");
+  CHECK(codes("constraint x = x") == "E0424");
+  CHECK(codes("constraint x = x + l") == "E0423");
   CHECK(codes("constraint (x - y)^2 + 2 x y = x^2 + y^2") == "E0424");
   CHECK(codes("constraint x'' = y''") == "E0401");
   CHECK(codes("constraint x = y^2") == "E0304");

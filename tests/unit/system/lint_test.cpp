@@ -41,3 +41,48 @@ TEST_CASE("many coordinates: the rank is found from differences of the momenta")
   const Elaborated e(text + ")\n");  // a ring: moving all together costs nothing
   CHECK(e.codes() == "E0408");
 }
+
+TEST_CASE("under constraints the mass matrix may be singular, but not on what they leave") {
+  const auto codes = [](const std::string& text) { return Elaborated(text).codes(); };
+  const std::string gear =
+      "param Rs = 20 mm, Rp = 15 mm, n = 3, mp = 50 g, τ = 0.1 N m\n"
+      "param Is = 1e-5 kg m^2, Ip = 4e-6 kg m^2, Ic = 8e-5 kg m^2\ncoord φs, φp, φc, φr : angle\n"
+      "let Rr = Rs + 2 Rp, a = Rs + Rp\nT = 1/2 Is φs'^2 + n/2 Ip φp'^2 + 1/2 (Ic + n mp a^2) φc'^2\n"
+      "constraint Rs (φs - φc) = -Rp (φp - φc)\nforce φs = τ\n";
+  const std::string mesh = "constraint Rr (φr - φc) = Rp (φp - φc)\n";
+  CHECK(codes(gear + mesh) == "N0428");
+  CHECK(codes(gear + mesh + "constraint φr = 0\n") == "N0428");
+  CHECK(codes(gear + "V = 1 [J] φr + 1 [J] (Rr/Rs) φr\n") == "E0407");
+  // A chain of two massless ends, each tied to the next.
+  const std::string chain = "param m = 1 kg\ncoord x, y, z : length\nT = 1/2 m x'^2\nconstraint y = 2 x\n";
+  CHECK(codes(chain + "constraint z = x + y\n") == "N0428");
+  CHECK(codes(chain + "V = 1 [N] z\n") == "E0407");
+  CHECK(codes(chain + "constraint z' = x'\n") == "N0428");
+  // Only y + z is tied: its two parts are not told apart.
+  CHECK(codes(chain + "coord w : length\nconstraint z + w = x\n") == "E0408");
+  // An indefinite T that is positive on what the constraints leave.
+  CHECK(codes("param m = 1 kg\ncoord x, y : length\nT = 1/2 m (x'^2 - y'^2)\n") == "W0410");
+  CHECK(codes("param m = 1 kg\ncoord x, y : length\nT = 1/2 m (x'^2 - y'^2)\nconstraint x = 2 y\n") == "");
+  CHECK(codes("param m = 1 kg\ncoord x, y : length\nT = 1/2 m (x'^2 - y'^2)\nconstraint 2 x = y\n") == "W0410");
+  // The null direction turns with the state.
+  CHECK(codes("param I = 1 kg m^2\nbody sat inertia diag(I, I, I) rotation quaternion\n") == "");
+  CHECK(codes("param m = 1 kg\nbody sat mass m rotation quaternion\n") == "E0407");
+  CHECK(codes("param m = 1 kg, l = 1 m\ncoord x, y : length\npoint P mass m at (x, 0)\nconstraint x^2 + y^2 = l^2\n") ==
+        "N0428");
+}
+
+TEST_CASE("a coordinate in a constraint alone is used") {
+  CHECK(Elaborated("param m = 1 kg\ncoord x, y : length\nT = 1/2 m x'^2\nconstraint y = x\n").codes() == "N0428");
+  CHECK(Elaborated("param m = 1 kg\ncoord x, y, z : length\nT = 1/2 m x'^2\nconstraint y = x\n").codes() == "E0406");
+}
+
+TEST_CASE("a quaternion of given components needs its norm, whatever holds it") {
+  const auto codes = [](const std::string& text) {
+    return Elaborated("param I = 1 kg m^2\ncoord w, x, y, z : number\nbody B inertia diag(I, I, I) rotation quaternion "
+                      "(w, x, y, z)\n" + text).codes();
+  };
+  CHECK(codes("constraint w^2 + x^2 + y^2 + z^2 = 1\n") == "");
+  CHECK(codes("constraint sqrt(w^2 + x^2 + y^2 + z^2) = 1\n") == "");
+  CHECK(codes("constraint w^2 + x^2 + y^2 + z^2 = 2\n") == "W0427");
+  CHECK(codes("constraint w + x = 1\n") == "W0427");
+}
