@@ -10,6 +10,19 @@ inline std::size_t orders_needed(const evaluation::Tape& tape) {
   return std::max<std::size_t>(3, 2 + evaluation::depth_of_time_derivatives(tape));
 }
 
+/// d'Alembert's principle where quaternions turn bodies: along a path of rotations.
+template <class Numbers>
+std::vector<typename Numbers::Value> dalembert_among_rotations(
+    const Questions& questions, const evaluation::Tape& tape, Numbers& numbers,
+    std::vector<typename Numbers::Value> direction, std::vector<Jet<typename Numbers::Value>>& values) {
+  const std::size_t orders = orders_needed(tape);
+  RandomPath<Numbers> path(questions, numbers, orders, direction);
+  path.keep_to_rotations(questions, direction);
+  JetNumbers<Numbers> jets(numbers, orders, [&](Expr symbol) { return path(symbol); });
+  evaluation::run(tape, jets, values);
+  return dalembert_route(PathValues<Numbers>{questions, jets, tape, values, std::move(direction)});
+}
+
 /// Walks the questions once along the random path that belongs to `numbers` and the direction.
 template <class Numbers>
 std::array<std::vector<typename Numbers::Value>, RouteCount> differences(
@@ -22,9 +35,11 @@ std::array<std::vector<typename Numbers::Value>, RouteCount> differences(
   const PathValues<Numbers> along{questions, jets, tape, values, direction};
   std::array<std::vector<typename Numbers::Value>, RouteCount> out;
   out[Action] = action_route(along);
-  if (questions.has_matter) out[Dalembert] = dalembert_route(along);
+  const bool rotations = !questions.unit_quaternions.empty();
+  if (questions.has_matter && !rotations) out[Dalembert] = dalembert_route(along);
   out[Power] = power_route(along);
   if (!questions.constraints.empty()) out[ConstraintRows] = constraint_route(along);
+  if (questions.has_matter && rotations) out[Dalembert] = dalembert_among_rotations(questions, tape, numbers, direction, values);
   return out;
 }
 

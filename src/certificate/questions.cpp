@@ -1,6 +1,9 @@
 #include "certificate/questions.hpp"
 
+#include <maupertuis/evaluate.hpp>
 #include <maupertuis/transform.hpp>
+
+#include <algorithm>
 
 namespace maupertuis::certification {
 namespace {
@@ -11,6 +14,22 @@ bool comes_from_matter(const EnergyTerm& term) {
   for (const std::string_view prefix : {"particle ", "motion of body ", "rotation of body ", "gravity on "})
     if (starts_with(term.origin, prefix)) return true;
   return false;
+}
+
+/// The coordinates of w² + x² + y² + z² − 1, of either sign; nothing for another constraint.
+std::optional<std::array<std::size_t, 4>> unit_quaternion(const MechanicalSystem& system, const Constraint& c) {
+  std::vector<std::size_t> found;
+  ExprVector terms{system.context->number(-1)};
+  const std::vector<Expr> symbols = symbols_of({&c.value, 1});
+  for (std::size_t i = 0; i < system.coordinates.size(); ++i)
+    if (std::find(symbols.begin(), symbols.end(), system.coordinates[i].q) != symbols.end()) {
+      found.push_back(i);
+      terms.push_back(pow(system.coordinates[i].q, Rational(2)));
+    }
+  if (found.size() != 4 || c.level != Constraint::Level::Position) return std::nullopt;
+  const Expr norm = system.context->sum(terms);
+  if (zero_test(c.value - norm).verdict != Verdict::Zero && zero_test(c.value + norm).verdict != Verdict::Zero) return std::nullopt;
+  return std::array<std::size_t, 4>{found[0], found[1], found[2], found[3]};
 }
 
 }  // namespace
@@ -75,6 +94,7 @@ void Questions::ask_about_constraints(const EquationsOfMotion& equations, bool w
   }
   for (std::size_t k = 0; k < system.constraints.size(); ++k) {
     const Constraint& c = system.constraints[k];
+    if (const auto four = unit_quaternion(system, c); four && !bodies.empty()) unit_quaternions.push_back(*four);
     ConstraintQuestion question{c.level, ask(c.value), ask(c.multiplier), ask(equations.constraint_rates[k]),
                                 ask(equations.constraint_accelerations[k]), {}, 0};
     for (std::size_t j = 0; j < a.columns; ++j) question.row.push_back(ask(a.at(k, j)));

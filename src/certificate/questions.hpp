@@ -1,6 +1,7 @@
 #pragma once
 #include <maupertuis/equations_of_motion.hpp>
 
+#include <array>
 #include <optional>
 
 namespace maupertuis::certification {
@@ -54,6 +55,7 @@ struct Questions {
   Roots mass_matrix, bias;   // empty: not asked
   std::vector<ConstraintQuestion> constraints;
   Roots constraint_forces;   // empty without constraints
+  std::vector<std::array<std::size_t, 4>> unit_quaternions;   // coordinates w, x, y, z whose constraint is their norm
 
  private:
   Root ask(Expr e);

@@ -9,6 +9,7 @@
 // so that the residual in the direction c is  c·(d/dt ∂L/∂q̇ − ∂L/∂q) = [t¹] δ₂L − 2 [t⁰] δ₁L: the action principle,
 // in which no derivative of L is ever written down.
 #include "certificate/questions.hpp"
+#include "certificate/unit_quaternion.hpp"
 #include "symbolic/evaluate/jet_numbers.hpp"
 #include "symbolic/evaluate/prime_field.hpp"
 
@@ -249,6 +250,26 @@ class RandomPath {
       : numbers_(numbers), orders_(orders) {
     const auto& coordinates = questions.system.coordinates;
     for (std::size_t i = 0; i < coordinates.size(); ++i) tracks_.emplace(coordinates[i].name, Track{track_of(coordinates[i]), direction[i]});
+  }
+
+  /// Moves the quaternions to the unit sphere and the direction into its tangent space.
+  void keep_to_rotations(const Questions& questions, std::vector<Scalar>& direction) {
+    const UnitQuaternion<Numbers> unit(numbers_);
+    const auto& coordinates = questions.system.coordinates;
+    for (const std::array<std::size_t, 4>& four : questions.unit_quaternions) {
+      typename UnitQuaternion<Numbers>::Quaternion track;
+      std::array<Scalar, 4> c;
+      for (std::size_t k = 0; k < 4; ++k) {
+        track[k] = tracks_.at(coordinates[four[k]].name).coefficients;
+        c[k] = direction[four[k]];
+      }
+      track = unit.from(track);
+      c = unit.tangent(c, track);
+      for (std::size_t k = 0; k < 4; ++k) {
+        direction[four[k]] = c[k];
+        tracks_.at(coordinates[four[k]].name) = {track[k], c[k]};
+      }
+    }
   }
 
   Jet<Scalar> operator()(Expr symbol) {

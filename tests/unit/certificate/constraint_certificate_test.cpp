@@ -152,3 +152,29 @@ TEST_CASE("a velocity constraint declared as one of positions") {
   REQUIRE(equations);
   CHECK(failed(certify(*equations, nullptr)).count("constraint_rows"));
 }
+
+TEST_CASE("a body turned by a unit quaternion obeys d'Alembert's principle on the sphere of its norm") {
+  const ModelText model(R"(system satellite
+param I1 = 1 kg m^2, I2 = 2 kg m^2, I3 = 3 kg m^2, τ = 1 N m, m = 1 kg, g = 9.81 m/s^2, a = 1 m
+body sat mass m inertia diag(I1, I2, I3) at (0, 0, 0) rotation quaternion
+point tip mass m at (a, 0, 0) in sat
+gravity (0, 0, -g)
+torque on sat = (τ, 0, 0)
+)");
+  const auto check = [&](const EquationsOfMotion& equations) {
+    for (const CertificateCheck& c : certify(equations, nullptr).checks)
+      if (c.name == "dalembert") return c;
+    return CertificateCheck{};
+  };
+  CHECK(check(model.equations).verdict == Verdict::Zero);
+  CHECK(certify(model.equations, nullptr).passed());
+  // A wrong moment of inertia, and a wrong lever of the torque.
+  auto broken = std::make_shared<MechanicalSystem>(*model.system);
+  for (EnergyTerm& term : broken->kinetic)
+    if (term.origin == "rotation of body sat") term.value = term.value * Rational(2);
+  Diagnostics diagnostics;
+  CHECK(check(*euler_lagrange(broken, diagnostics)).verdict == Verdict::Nonzero);
+  EquationsOfMotion wrong = model.equations;
+  wrong.residual[1] = wrong.residual[1] + model.p("τ");
+  CHECK(check(wrong).verdict == Verdict::Nonzero);
+}
