@@ -242,7 +242,7 @@ std::string unicode_declarations() {
       {"2211", "\\sum"}, {"2212", "-"}, {"22C5", "\\cdot"}, {"2248", "\\approx"}, {"2261", "\\equiv"},
       {"2260", "\\ne"}, {"1E59", "\\dot{r}"}, {"1E8B", "\\dot{x}"}, {"1E8F", "\\dot{y}"}, {"0307", "\\dot{}"},
       {"0308", "\\ddot{}"}, {"2080", "{}_0"}, {"2081", "{}_1"}, {"2082", "{}_2"}, {"1D40", "{}^{T}"},
-      {"207B", "{}^{-}"}, {"1D62", "{}_i"}, {"2C7C", "{}_j"}, {"2192", "\\to"}};
+      {"207B", "{}^{-}"}, {"00B9", "{}^{1}"}, {"1D62", "{}_i"}, {"2C7C", "{}_j"}, {"2192", "\\to"}};
   std::string out;
   for (const auto& [code, command] : signs)
     out += fmt::format("\\DeclareUnicodeCharacter{{{}}}{{\\ensuremath{{{}}}}}\n", code, command);
