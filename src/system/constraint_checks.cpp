@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace maupertuis::elaboration {
@@ -57,32 +58,44 @@ Span culprit_of_switch(Elaboration& e, const Expression& x, const std::string& w
   return {};
 }
 
-/// Two numbers at fixed states, by which equal constraints are found before they are proved equal.
-std::vector<double> fingerprints(const Elaboration& e, Expr value) {
-  std::vector<double> out;
-  for (const double shift : {0.37, 0.71}) {
-    Bindings b = e.values;
-    const Expr roots[] = {value};
-    double next = shift;
-    for (const Expr& s : symbols_of(roots)) {
-      if (e.values.count(s)) continue;
-      next = std::fmod(next + 0.6180339887498949 + 0.01 * static_cast<double>(s.id() % 89), 1.0);
-      b[s] = 0.3 + next;
-    }
-    out.push_back(maupertuis::evaluate(value, b));
-  }
+/// Every quantity of the model at a scattered value, the parameters at theirs.
+Bindings scattered_state(Elaboration& e, double shift) {
+  Bindings b = e.values;
+  double next = shift;
+  const auto bind = [&](Expr symbol) {
+    next = std::fmod(next + 0.6180339887498949, 1.0);
+    b[symbol] = 0.3 + next;
+  };
+  for (const Coordinate& c : e.system().coordinates) bind(c.q), bind(c.velocity);
+  bind(e.context.time());
+  return b;
+}
+
+/// Values at two states. Constraints that are equal, or opposite, have the same up to the sign.
+struct Fingerprint {
+  std::size_t index = 0;
+  double first = 0, second = 0;
+};
+
+/// In order of size, so that equal constraints are neighbours.
+std::vector<Fingerprint> fingerprints(Elaboration& e) {
+  ExprVector values;
+  for (const Constraint& c : e.system().constraints) values.push_back(c.value);
+  const std::vector<double> first = maupertuis::evaluate(values, scattered_state(e, 0.37));
+  const std::vector<double> second = maupertuis::evaluate(values, scattered_state(e, 0.71));
+  std::vector<Fingerprint> out;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (std::isfinite(first[i]) && std::isfinite(second[i])) out.push_back({i, first[i], second[i]});
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Fingerprint& a, const Fingerprint& b) { return std::abs(a.first) < std::abs(b.first); });
   return out;
 }
 
 /// +1 or −1 where the two seem equal or opposite; 0 else.
-int seems_equal(const std::vector<double>& a, const std::vector<double>& b) {
-  for (const int sign : {1, -1}) {
-    bool equal = true;
-    for (std::size_t i = 0; i < a.size(); ++i)
-      equal = equal && std::abs(a[i] - sign * b[i]) <= 1e-9 * (std::abs(a[i]) + std::abs(b[i]));
-    if (equal) return sign;
-  }
-  return 0;
+int seems_equal(const Fingerprint& a, const Fingerprint& b) {
+  const auto near = [](double x, double y) { return std::abs(x - y) <= 1e-9 * (std::abs(x) + std::abs(y)); };
+  if (near(a.first, b.first) && near(a.second, b.second)) return 1;
+  return near(a.first, -b.first) && near(a.second, -b.second) ? -1 : 0;
 }
 
 }  // namespace
@@ -128,20 +141,19 @@ bool refuse_identity(Elaboration& e, const Constraint& c) {
 
 void warn_of_repetition(Elaboration& e) {
   const std::vector<Constraint>& list = e.system().constraints;
-  std::vector<std::vector<double>> numbers;
-  for (const Constraint& c : list) numbers.push_back(fingerprints(e, c.value));
-  for (std::size_t i = 0; i < list.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) {
-      const int sign = seems_equal(numbers[i], numbers[j]);
-      if (sign == 0 || zero_test(list[i].value - Rational(sign) * list[j].value).verdict != Verdict::Zero) continue;
-      e.diagnostics.warning(
-          "W0425", list[i].span, "this constraint is written already",
-          fmt::format("It is that of line {}: the motion stays the same, but which of the two exerts the force is not "
-                      "determined.",
-                      e.source.locate(list[j].span.begin).line),
-          "Leave one of them out.");
-      break;
-    }
+  const std::vector<Fingerprint> all = fingerprints(e);
+  for (std::size_t k = 1; k < all.size(); ++k) {
+    const int sign = seems_equal(all[k - 1], all[k]);
+    const Constraint& a = list[std::min(all[k - 1].index, all[k].index)];
+    const Constraint& b = list[std::max(all[k - 1].index, all[k].index)];
+    if (sign == 0 || zero_test(a.value - Rational(sign) * b.value).verdict != Verdict::Zero) continue;
+    e.diagnostics.warning(
+        "W0425", b.span, "this constraint is written already",
+        fmt::format("It is that of line {}: the motion stays the same, but which of the two exerts the force is not "
+                    "determined.",
+                    e.source.locate(a.span.begin).line),
+        "Leave one of them out.");
+  }
 }
 
 }  // namespace maupertuis::elaboration

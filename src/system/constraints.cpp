@@ -12,11 +12,14 @@ using syntax::ConstraintStatement;
 /// A relation is differentiated twice along the motion: a drive in it is taken as the formula of t that it is.
 Expr with_inputs_as_formulas(const MechanicalSystem& s, Expr value) {
   ExprMap formulas;
-  for (const Input& u : s.inputs) {
-    Expr derivative = u.formula;
-    for (int order = 0; order <= 2; ++order) {
-      formulas[u.symbol.context().symbol(u.name, Role::Input, order)] = derivative;
-      derivative = total_time_derivative(derivative);
+  const Expr roots[] = {value};
+  for (const Expr& symbol : symbols_of(roots)) {
+    if (symbol.role() != Role::Input) continue;
+    for (const Input& u : s.inputs) {
+      if (u.name != symbol.name()) continue;
+      Expr derivative = u.formula;
+      for (int order = 0; order < symbol.order(); ++order) derivative = total_time_derivative(derivative);
+      formulas[symbol] = derivative;
     }
   }
   return formulas.empty() ? value : substitute(value, formulas);

@@ -171,7 +171,7 @@ ReducedMass reduce(const Matrix& mass, const Matrix& constraints) {
   ReducedMass out;
   if (free.cols() == 0) return out;  // the constraints prescribe the motion
   const Eigen::VectorXd energies = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(reduced).eigenvalues();
-  out.positive = energies.minCoeff() > kSmall;
+  out.positive = energies.minCoeff() > -kSmall;
   if (energies.cwiseAbs().minCoeff() > kSmall) return out;
   // v is free, A v = 0, and no free direction feels it: (free)ᵀ M v = 0.
   Matrix both = a;

@@ -183,3 +183,21 @@ TEST_CASE("a quaternion of expressions: half angles turn as the angle does") {
   CHECK(Elaborated("param I = 1 kg m^2\ncoord a : length\nbody B inertia diag(I, I, I) rotation quaternion (a, 0, 0, 0)\n")
             .codes() == "E0304");
 }
+
+TEST_CASE("quaternions without units, in frames, and not in the plane") {
+  const auto codes = [](const std::string& text) { return Elaborated(text + "\n").codes(); };
+  CHECK(codes("dimensionless\nparam I = 1\nbody B inertia diag(I, I, I) rotation quaternion\nstart B.ω = (1, 2, 3)") == "");
+  CHECK(codes("param I = 1 kg m^2\ncoord x : length\nparam m = 1 kg\npoint P mass m at (x, 0)\n"
+              "body B inertia I rotation quaternion") == "E0402");
+  // A frame that turns as it likes, with three particles in it: the kinetic energy of the body that they are.
+  const Elaborated f("param m = 1 kg, a = 1 m\nframe F at (0, 0, 0) rotation quaternion\npoint A mass m at (a, 0, 0) in F\n"
+                     "point B mass m at (0, 2 a, 0) in F\npoint C mass m at (0, 0, 3 a) in F\n");
+  const Elaborated b("param m = 1 kg, a = 1 m\nbody F inertia diag(13 m a^2, 10 m a^2, 5 m a^2) rotation quaternion\n");
+  REQUIRE_MESSAGE(f.codes() == "", f.messages());
+  REQUIRE_MESSAGE(b.codes() == "", b.messages());
+  CHECK(f.system().constraints[0].body == "F");
+  const std::vector<double> q = {0.1, 0.5, -0.7, 0.5}, v = {0.6, -0.9, 0.2, 1.06};  // |q| = 1, q·v = 0
+  CHECK(q[0] * v[0] + q[1] * v[1] + q[2] * v[2] + q[3] * v[3] == doctest::Approx(0));
+  CHECK(test::value(f.system().kinetic_energy(), f.at(q, v)) ==
+        doctest::Approx(test::value(b.system().kinetic_energy(), b.at(q, v))));
+}
