@@ -1,5 +1,6 @@
 #pragma once
 #include <maupertuis/kernel.hpp>
+#include <maupertuis/step.hpp>
 
 #include <atomic>
 #include <cstddef>
@@ -27,36 +28,6 @@ struct TaylorOptions {
   int order = 0;                                 // of the polynomial of q̇; 0: from the tolerance
   std::size_t maximum_steps = 100'000'000;
   const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
-};
-
-enum class StepEnding {
-  None,           // go on
-  SingularMass,
-  SingularConstraints,  // the constraints contradict each other here, or do not determine where the motion goes
-  Overflow,       // a value is infinite or undefined
-  StepUnderflow,  // steps shrink below the resolution of time: a collision, an infinite force
-  Sliding,        // both sides of a switch push back to it
-  TooManySteps,
-  Interrupted,
-  NoConvergence,  // the equations of an implicit step were not solved, or no step meets the tolerance
-};
-
-/// One step, or the reason why there is none: then begin == end and the state is the one reached before.
-struct Step {
-  double begin = 0, end = 0;         // s
-  StepEnding ending = StepEnding::None;
-  std::string reason;                // one sentence for every ending but None
-  std::optional<std::size_t> event;  // the step ended at a root of this event function
-  int switches = 0;                  // switch functions whose root the step ended at
-};
-
-/// The motion at one time.
-struct Sample {
-  double t = 0;
-  std::vector<double> q, v, a;      // [n] each
-  std::vector<double> observables;  // [observables]
-  std::vector<double> multipliers;  // [constraints]; NaN where the equations do not determine λ
-  std::vector<double> integrals;    // [integrands], from the start of the run to t; the step follows the motion alone
 };
 
 /// Advances a motion by steps whose order and length follow from the tolerance (Jorba and Zou). The state is summed

@@ -17,6 +17,7 @@ struct MotionFunctions {
   DifferentiableKernel accelerations;         // [m]
   DifferentiableKernel rates;                 // [m]
   DifferentiableKernel positions;             // [m]; 0 for a constraint between velocities
+  FunctionKernel constraint_scales;           // [2m] Σ |terms| of φ, then of the rates: what their rounding is measured against
   FunctionKernel observables, events, integrands;
 
   std::size_t inputs() const { return 3 * freedoms + constraints + 1; }

@@ -1,7 +1,8 @@
 #pragma once
-#include <maupertuis/integrator.hpp>
 #include <maupertuis/motion_functions.hpp>
+#include <maupertuis/step.hpp>
 
+#include <atomic>
 #include <memory>
 #include <span>
 
@@ -39,6 +40,8 @@ class StiffStepper {
   std::span<const double> v() const;  // [n]
   std::size_t steps() const;
   std::size_t switches() const { return 0; }
+  /// The largest so far of φ and its rate at the ends of steps, as TaylorStepper::constraint_residual measures it.
+  double constraint_residual() const;
 
   bool covers(double t) const;
   /// The motion at a time in the last step, from the formula's own polynomial, projected. Precondition: covers(t).

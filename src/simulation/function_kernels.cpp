@@ -35,6 +35,15 @@ class Lowering {
   ExprVector inputs_, velocities_, parameters_;
 };
 
+/// Σ |terms|
+Expr size_of_terms(Expr e) {
+  ExprVector sizes;
+  if (e.is(Kind::Sum))
+    for (std::size_t i = 0; i < e.size(); ++i) sizes.push_back(apply(Kind::Abs, e[i]));
+  else sizes.push_back(apply(Kind::Abs, e));
+  return e.context().sum(sizes);
+}
+
 MotionFunctions lower_motion(const Lowering& lowering, const EquationsOfMotion& equations, const WantedFunctions& wanted) {
   const MechanicalSystem& system = *equations.system;
   MotionFunctions out;
@@ -50,6 +59,10 @@ MotionFunctions lower_motion(const Lowering& lowering, const EquationsOfMotion& 
   out.accelerations = lowering.differentiable(equations.constraint_accelerations);
   out.rates = lowering.differentiable(equations.constraint_rates);
   out.positions = lowering.differentiable(positions);
+  ExprVector scales;
+  for (const Expr& e : positions) scales.push_back(size_of_terms(e));
+  for (const Expr& e : equations.constraint_rates) scales.push_back(size_of_terms(expand_time_derivatives(e)));
+  out.constraint_scales = lowering.function(scales);
   out.observables = lowering.function(wanted.observables);
   out.events = lowering.function(wanted.events);
   out.integrands = lowering.function(wanted.integrands);

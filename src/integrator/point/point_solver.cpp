@@ -20,8 +20,12 @@ Index index(std::size_t i) { return static_cast<Index>(i); }
 
 PointSolver::PointSolver(const MotionFunctions& functions, std::span<const double> parameters)
     : functions_(functions), balance_(functions.balance, parameters), accelerations_(functions.accelerations, parameters),
-      rates_(functions.rates, parameters), positions_(functions.positions, parameters), n_(functions.freedoms),
-      m_(functions.constraints), point_(functions.inputs()), mass_(n_, n_), to_forces_(n_, m_), a_matrix_(m_, n_) {}
+      rates_(functions.rates, parameters), positions_(functions.positions, parameters),
+      scales_work_(functions.constraint_scales), n_(functions.freedoms),
+      m_(functions.constraints), point_(functions.inputs()), scales_(2 * functions.constraints), mass_(n_, n_),
+      to_forces_(n_, m_), a_matrix_(m_, n_) {
+  scales_work_.set_parameters(parameters);
+}
 
 void PointSolver::set_point(double t, std::span<const double> q, std::span<const double> v) {
   std::copy(q.begin(), q.end(), point_.begin());
@@ -144,6 +148,28 @@ bool PointSolver::project(double t, std::span<double> q, std::span<double> v) {
   set_point(t, q, v);
   if (factor() != PointStatus::Ok) return false;
   return move_onto(positions_, q, 0) && move_onto(rates_, v, functions_.v_at(0));
+}
+
+/// |A| |q̇| over the step, by Cauchy and Schwarz in the metric of the diagonal of M; coordinates without inertia count by
+/// themselves.
+double PointSolver::constraint_residual(double h) {
+  double largest = 0;
+  if (m_ == 0) return largest;
+  scales_work_.evaluate(point_, scales_);
+  const auto phi = positions_.values(point_), rates = rates_.values(point_);
+  const auto ratio = [](double value, double scale) { return value == 0 ? 0.0 : std::abs(value) / scale; };
+  for (std::size_t k = 0; k < m_; ++k) {
+    double motion = 0, gradient = 0, rest = 0;
+    for (std::size_t i = 0; i < n_; ++i) {
+      const double a = a_matrix_(index(k), index(i)), mass = mass_(index(i), index(i));
+      const double speed = std::abs(point_[functions_.v_at(i)]) + std::abs(h * point_[functions_.a_at(i)]);
+      if (mass > 0) motion += mass * speed * speed, gradient += a * a / mass;
+      else rest += std::abs(a) * speed;
+    }
+    const double rate = std::sqrt(motion * gradient) + rest;
+    largest = std::max({largest, ratio(phi[k], scales_[k] + std::abs(h) * rate), ratio(rates[k], scales_[m_ + k] + rate)});
+  }
+  return largest;
 }
 
 void PointSolver::make_tangent(std::span<double> dq, std::span<double> dv) {

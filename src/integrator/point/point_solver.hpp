@@ -55,6 +55,8 @@ class PointSolver {
   /// Moves (q, v) by the least kinetic change onto φ = 0, then rates = 0, to rounding. False if it does not converge.
   /// Costs one solve, and nothing without constraints.
   bool project(double t, std::span<double> q, std::span<double> v);
+  /// After solve: the largest of φ and the rates, each by the sizes of its terms and by what a motion over h does to it.
+  double constraint_residual(double h);
   /// Takes out of (dq, dv) what is normal to the constraints at the point of the last solve.
   void make_tangent(std::span<double> dq, std::span<double> dv);
 
@@ -68,8 +70,10 @@ class PointSolver {
 
   MotionFunctions functions_;
   Linearization balance_, accelerations_, rates_, positions_;
+  FunctionWorkspace scales_work_;
   std::size_t n_, m_;
   std::vector<double> point_;
+  std::vector<double> scales_;      // [2m]
   bool rows_chosen_ = false;
   std::vector<std::size_t> rows_;   // independent constraints
   std::vector<bool> determined_;    // [m]

@@ -1,7 +1,7 @@
 #pragma once
 #include "integrator/point/point_solver.hpp"
 
-#include <maupertuis/integrator.hpp>
+#include <maupertuis/step.hpp>
 
 namespace maupertuis {
 

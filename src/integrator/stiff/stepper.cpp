@@ -60,6 +60,7 @@ struct StiffStepper::Impl {
   double direction = 0;
   int stuck = 0;                    // steps in a row that did not move time
   std::size_t steps = 0;
+  double residual = 0;              // of the constraints, the largest so far
   Eigen::MatrixXd by_q, by_v;
   mutable Sample start_sample;
 };
@@ -148,6 +149,7 @@ void StiffStepper::Impl::start(double time, std::span<const double> q, std::span
   std::copy(v.begin(), v.end(), now.begin() + static_cast<std::ptrdiff_t>(n));
   before = now;
   steps = 0;
+  residual = 0;
   sizes.assign(2 * n, 0);
   at_point.forget_rows();
   last_status = at_point.solve(t, q, v);
@@ -197,6 +199,8 @@ Step StiffStepper::Impl::step(double bound) {
     result.event = static_cast<std::size_t>(std::find_if(found.begin(), found.end(), [](int f) { return f != 0; }) - found.begin());
     at_point.project(t, std::span(now).first(n), std::span(now).subspan(n, n));
   }
+  if (functions.constraints > 0 && at_point.solve(t, q_of(now), v_of(now)) == PointStatus::Ok)
+    residual = std::max(residual, at_point.constraint_residual(t - t_before));
   stuck = t == t_before ? stuck + 1 : 0;
   if (stuck > 20) {
     result.ending = StepEnding::StepUnderflow;
@@ -272,6 +276,8 @@ double StiffStepper::time() const { return impl_->t; }
 std::span<const double> StiffStepper::q() const { return impl_->q_of(impl_->now); }
 std::span<const double> StiffStepper::v() const { return impl_->v_of(impl_->now); }
 std::size_t StiffStepper::steps() const { return impl_->steps; }
+
+double StiffStepper::constraint_residual() const { return impl_->residual; }
 
 bool StiffStepper::covers(double t) const {
   const auto [low, high] = std::minmax(impl_->t_before, impl_->t);

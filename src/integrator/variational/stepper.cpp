@@ -59,6 +59,7 @@ struct VariationalStepper::Impl {
   std::vector<Compensated> integrals, integrals_before;
   double t_start = 0, h = 0;    // of the run; the last step
   std::size_t steps = 0, counted = 0;
+  double residual = 0;          // of the constraints, the largest so far
   PointStatus first_status = PointStatus::Ok;
   bool first = true;            // the last step does not tell where the next one begins to iterate
   mutable Sample start_sample;
@@ -109,6 +110,7 @@ void VariationalStepper::Impl::start(double t, std::span<const double> q, std::s
   integrals.assign(integrals.size(), {});
   integrals_before = integrals;
   steps = counted = 0;
+  residual = 0;
   h = 0;
   first = true;
   at_point.forget_rows();
@@ -150,6 +152,8 @@ Step VariationalStepper::Impl::step(double bound) {
   if (!find_event(result)) add_integrals(solver, h, integrals);
   result.end = now.t;
   q_now = leading(now.q), p_now = leading(now.p);
+  if (functions.constraints > 0 && at_point.solve(now.t, q_now, now.v) == PointStatus::Ok)
+    residual = std::max(residual, at_point.constraint_residual(h));
   return result;
 }
 
@@ -257,6 +261,8 @@ std::span<const double> VariationalStepper::q() const { return impl_->q_now; }
 std::span<const double> VariationalStepper::v() const { return impl_->now.v; }
 std::span<const double> VariationalStepper::p() const { return impl_->p_now; }
 std::size_t VariationalStepper::steps() const { return impl_->steps; }
+
+double VariationalStepper::constraint_residual() const { return impl_->residual; }
 
 bool VariationalStepper::covers(double t) const {
   const auto [low, high] = std::minmax(impl_->before.t, impl_->now.t);

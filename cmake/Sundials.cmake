@@ -1,0 +1,16 @@
+# sundials_libraries: what the stiff method links, or nothing where SUNDIALS 6 is not installed.
+set(sundials_libraries "")
+find_path(SUNDIALS_INCLUDE_DIR sundials/sundials_config.h)
+foreach(library cvode nvecserial sunlinsoldense sunmatrixdense)
+  find_library(SUNDIALS_${library} sundials_${library})
+  list(APPEND sundials_libraries ${SUNDIALS_${library}})
+endforeach()
+set(sundials_version "")
+if(SUNDIALS_INCLUDE_DIR)
+  file(STRINGS ${SUNDIALS_INCLUDE_DIR}/sundials/sundials_config.h sundials_version
+    REGEX "#define SUNDIALS_VERSION_MAJOR 6" LIMIT_COUNT 1)
+endif()
+if(NOT sundials_version OR sundials_libraries MATCHES "NOTFOUND")
+  set(sundials_libraries "")
+  message(STATUS "SUNDIALS 6 is not here: maup is built without the stiff method")
+endif()

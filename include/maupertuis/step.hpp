@@ -1,0 +1,40 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// What every stepper gives, whatever its method.
+namespace maupertuis {
+
+enum class StepEnding {
+  None,           // go on
+  SingularMass,
+  SingularConstraints,  // the constraints contradict each other here, or do not determine where the motion goes
+  Overflow,       // a value is infinite or undefined
+  StepUnderflow,  // steps shrink below the resolution of time: a collision, an infinite force
+  Sliding,        // both sides of a switch push back to it
+  TooManySteps,
+  Interrupted,
+  NoConvergence,  // the equations of an implicit step were not solved, or no step meets the tolerance
+};
+
+/// One step, or the reason why there is none: then begin == end and the state is the one reached before.
+struct Step {
+  double begin = 0, end = 0;         // s
+  StepEnding ending = StepEnding::None;
+  std::string reason;                // one sentence for every ending but None
+  std::optional<std::size_t> event;  // the step ended at a root of this event function
+  int switches = 0;                  // switch functions whose root the step ended at
+};
+
+/// The motion at one time.
+struct Sample {
+  double t = 0;
+  std::vector<double> q, v, a;      // [n] each
+  std::vector<double> observables;  // [observables]
+  std::vector<double> multipliers;  // [constraints]; NaN where the equations do not determine λ
+  std::vector<double> integrals;    // [integrands], from the start of the run to t; the step follows the motion alone
+};
+
+}  // namespace maupertuis
