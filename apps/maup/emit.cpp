@@ -10,8 +10,14 @@ namespace maupertuis::app {
 namespace {
 
 std::string emit_equations(const EquationsOfMotion& equations) {
-  return "# nodes of the computational form; the last ones named are R, row by row\n" +
-         to_dag_text(equations.residual);
+  ExprVector roots = equations.residual;
+  std::string heading = "# nodes of the computational form; the last ones named are R, row by row";
+  if (equations.system->constrained()) {
+    heading += ", then Aᵀλ, then A q'' − b";
+    for (const ExprVector* part : {&equations.constraint_forces, &equations.constraint_accelerations})
+      roots.insert(roots.end(), part->begin(), part->end());
+  }
+  return heading + "\n" + to_dag_text(roots);
 }
 
 Kernel kernel_of(const EquationsOfMotion& equations) {
@@ -19,23 +25,26 @@ Kernel kernel_of(const EquationsOfMotion& equations) {
   KernelSource source;
   for (const Coordinate& c : system.coordinates) source.coordinates.push_back(c.q);
   for (const Parameter& p : system.parameters) source.parameters.push_back(p.symbol);
-  source.residual = in_terms_of_motion(system, equations.residual);
+  source.residual = in_terms_of_motion(system, equations.balance());
+  source.multipliers = equations.multipliers;
+  for (std::size_t k = 0; k < system.constraints.size(); ++k) {
+    const Constraint& c = system.constraints[k];
+    source.constraints.push_back({in_terms_of_motion(system, {&c.value, 1}).front(),
+                                  c.level == Constraint::Level::Position ? 0 : 1, system.constraint_label(k)});
+  }
   return build_kernel(source);
 }
 
 /// The Taylor coefficients of the motion at its start, q(t0 + τ) = Σ q_k τ^k.
-std::string emit_jet(const Model& model, const EquationsOfMotion& equations) {
+std::string emit_jet(const Model& model, const EquationsOfMotion& equations, Diagnostics& diagnostics) {
   constexpr int order = 20;
   const MechanicalSystem& system = model.system;
-  const Bindings parameters = parameter_bindings(system);
   std::vector<double> values;
   for (const Parameter& p : system.parameters) values.push_back(p.si_value);
-  const auto value_of = [&](Expr e) { return evaluate(in_terms_of_motion(system, {&e, 1})[0], parameters); };
   const std::size_t n = system.coordinates.size();
-  std::vector<double> q(n, 0.0), v(n, 0.0);
-  for (const StartValue& start : model.experiment.start)
-    (start.order == 0 ? q : v)[start.coordinate] = value_of(start.value);
-  const double t = model.experiment.start_time ? value_of(model.experiment.start_time) : 0;
+  const auto start = consistent_start(model, equations, diagnostics);
+  if (!start) return {};
+  const auto& [t, q, v] = start->state;
 
   const Kernel kernel = kernel_of(equations);
   KernelWorkspace work(kernel, order);
@@ -59,7 +68,7 @@ std::string emit(const std::string& stage, Study& study) {
   if (!study.equations()) return {};
   if (stage == "equations") return emit_equations(*study.equations());
   if (stage == "program") return kernel_of(*study.equations()).print();
-  if (stage == "jet") return emit_jet(*study.model(), *study.equations());
+  if (stage == "jet") return emit_jet(*study.model(), *study.equations(), study.diagnostics());
   return {};
 }
 

@@ -166,3 +166,20 @@ constraint (x2 - x1)^2 + (y2 - y1)^2 = b^2 name lower
   REQUIRE(motion);
   for (std::size_t k = 0; k < 2; ++k) CHECK(equal(solved[k].value, motion->multipliers[k]));
 }
+
+TEST_CASE("the textbook path with multipliers") {
+  const ModelText m(rolling_disk);
+  const Derivation d = readable_derivation(m.equations, true);
+  const auto find = [&](const std::string& left) {
+    for (const DerivationStep& step : d.steps)
+      if (step.left == left && step.right) return to_plain(step.right, m.equations.order);
+    return std::string("missing");
+  };
+  CHECK(d.steps.front().sentence.find("2 of the velocities can be chosen freely") != std::string::npos);
+  CHECK(find("∂ψ_1/∂φ'") == "-R cos ψ");
+  CHECK(find("I φ''") == "-R cos ψ λ1 - R sin ψ λ2");
+  CHECK(find("x'' - R cos ψ φ''") == "-R sin ψ φ' ψ'");
+  CHECK(find("(m R^2 + I) φ''") == "0");
+  CHECK(find("λ1") == "-m R sin ψ φ' ψ'");
+  CHECK(find("constraint 1") == "λ1");
+}

@@ -119,6 +119,35 @@ constraint (x1 - x2)^2 + (y1 - y2)^2 = l2^2 name lower
   CHECK(equal(released[1].value, polar.p("m2") * total(along) + polar.p("F") * sin(polar.q(1))));
 }
 
+TEST_CASE("the force that holds a length is Lagrange's for the length as a coordinate") {
+  // The same model with l as a parameter and as a coordinate; spring, damper, force, torque, a body and a driven pivot.
+  const auto text = [](const std::string& length, const std::string& rest) {
+    return "system s\nparam m = 1 kg, M = 2 kg, J = 3 kg m^2, k = 5 N/m, r = 1 m, c = 2 N s/m, F = 3 N, τ = 4 N m, g = 9.81 m/s^2, "
+           "w = 2 rad/s, a = 1 m" + length + "\ncoord θ, φ : angle" + rest +
+           "point A mass m at (a sin(w t), 0) + l (sin θ, -cos θ)\n"
+           "body B mass M inertia J at A + l (sin φ, cos φ) rotation angle φ + θ\npoint W at (a, a)\ngravity (0, -g)\n"
+           "spring B - W stiffness k length r\ndamper A - B coefficient c\ndamper A - W coefficient c\n"
+           "force on B = (F, 2 F)\ntorque on B = τ\n";
+  };
+  const ModelText held(text(", l = 2 m", "\n") + "reaction rod = release l\n");
+  const ModelText free(text("", ", l : length\n"));
+  Bindings at_free, at_held;   // the same state, l at rest
+  double value = 0.3;
+  const auto bind = [&](Expr a, Expr b, double x) { at_free[a] = x; at_held[b] = x; };
+  for (const Parameter& p : free.system->parameters) bind(p.symbol, held.p(p.name), p.si_value);
+  for (std::size_t i = 0; i < 2; ++i) {
+    bind(free.q(i), held.q(i), value += 0.41);
+    bind(free.v(i), held.v(i), value += 0.37);
+    bind(free.a(i), held.a(i), value -= 1.23);
+  }
+  bind(free.q(2), held.p("l"), 2);
+  at_free[free.v(2)] = at_free[free.a(2)] = 0;
+  at_free[free.system->context->time()] = at_held[held.system->context->time()] = 0.7;
+  const double lagrange = evaluate(expand_time_derivatives(free.equations.residual[2]), at_free);
+  CHECK(std::abs(lagrange) > 1);
+  CHECK(evaluate(only_reaction(held).value, at_held) == doctest::Approx(-lagrange).epsilon(1e-12));
+}
+
 TEST_CASE("a length held in a damper's path: its force is felt") {
   const ModelText m(R"(system s
 param m = 1 kg, l = 2 m, c = 3 N s/m, w = 5 m
