@@ -91,6 +91,14 @@ void SymbolTable::add(Kind kind, const syntax::Name& name, const syntax::Stateme
   d.span = name.span;
   d.statement = &statement;
   d.item = item;
+  if (kind == Kind::Constraint || kind == Kind::Reaction)  // T and V stand in formulas, a constraint does not
+    for (std::size_t i = 0; i < 5; ++i)
+      if (name.text == kShort[i] || name.text == kLong[i]) {
+        diagnostics_.error("E0202", name.span, fmt::format("`{}` is declared twice", name.text),
+                           fmt::format("It is the {} already.", name_of_energy(static_cast<Which>(i))),
+                           "Give the constraint another name.");
+        return;
+      }
   const auto [found, added] = by_name_.emplace(name.text, declarations_.size());
   if (added) {
     declarations_.push_back(std::move(d));

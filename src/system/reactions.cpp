@@ -27,7 +27,8 @@ bool is_power_of_length(Dimension d) {
 }
 
 /// A reaction is a force, or a torque. Which of them, the multiplier says where its own unit is one; else the
-/// coordinates that the constraint ties, or the unit of φ: x² + y² = l² is a relation of lengths.
+/// coordinates that the constraint ties, or the unit of φ: x² + y² = l² is a relation of lengths. Between charges it is
+/// the multiplier itself, a voltage.
 Dimension dimension_of_reaction(Elaboration& e, const Constraint& c) {
   if (e.dimensionless) return {};
   const auto all = [&](const Dimension& kind) {
@@ -40,9 +41,8 @@ Dimension dimension_of_reaction(Elaboration& e, const Constraint& c) {
   };
   const Dimension multiplier = dimension_of_multiplier(e, c);
   if (all(dimensions::length()) || multiplier.same_as(dimensions::force())) return dimensions::force();
-  if (all(dimensions::angle()) && multiplier.same_as(dimensions::torque())) return dimensions::torque();
   if (!c.dimension.is_one() && is_power_of_length(c.dimension)) return dimensions::force();
-  return dimensions::torque();
+  return all(dimensions::angle()) ? dimensions::torque() : multiplier;
 }
 
 Declaration* find_named(Elaboration& e, const syntax::Name& name) {

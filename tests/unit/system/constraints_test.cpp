@@ -90,6 +90,7 @@ TEST_CASE("what is no constraint") {
   CHECK(codes("constraint x = y name a\nconstraint x = 2 y name a") == "E0202");
   CHECK(codes("reaction a = release l\nconstraint x = y name a") == "E0202");
   CHECK(codes("constraint x = y name a\nV += a") == "E0212");
+  CHECK(codes("constraint x = y name L") == "E0202");
 }
 
 TEST_CASE("multipliers and reactions have their units, and their place") {
@@ -104,6 +105,8 @@ TEST_CASE("multipliers and reactions have their units, and their place") {
   CHECK(codes("expect reaction(roll) at 1 s = 3 N ± 1") == "");
   CHECK(codes("expect multiplier(stop) at 1 s = 3 N m ± 1") == "");
   CHECK(codes("expect reaction(stop) at 1 s = 3 N ± 1") == "E0304");
+  CHECK(Elaborated("param L0 = 1 H\ncoord q, p : charge\nL = 1/2 L0 (q'^2 + p'^2)\nconstraint q' = p' name node\n"
+                   "expect reaction(node) at 1 s = 3 V ± 1\n").codes() == "");
   CHECK(codes("expect reaction(bar) at 1 s = 3 N ± 1") == "");
   CHECK(codes("expect multiplier(bar) at 1 s = 3 N ± 1") == "E0226");
   CHECK(codes("expect reaction(bra) at 1 s = 3 N ± 1") == "E0226");
