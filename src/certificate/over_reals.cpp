@@ -73,9 +73,10 @@ RoutesResult compare_over_reals(const Questions& questions, std::uint64_t seed, 
     const auto all = differences(questions, tape, numbers, some_direction(numbers, n), values);
     const Real100 scale = largest(values), tolerance = scale * Real100(1e-60);
     const auto undefined = [](const Real100& x) { return !isfinite(x); };
-    if (!isfinite(scale) || std::any_of(all[Action].begin(), all[Action].end(), undefined) ||
-        std::any_of(all[Power].begin(), all[Power].end(), undefined))
-      continue;
+    const bool any_undefined = std::any_of(all.begin(), all.end(), [&](const std::vector<Real100>& route) {
+      return std::any_of(route.begin(), route.end(), undefined);
+    });
+    if (!isfinite(scale) || any_undefined) continue;
     ++found;
     for (std::size_t route = 0; route < RouteCount; ++route) {
       RouteResult& r = result.routes[route];

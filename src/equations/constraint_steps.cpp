@@ -30,6 +30,11 @@ bool is_short(const ReadableForm& form, const ReadingOrder& order) {
   return form.value && form.intermediates.empty() && to_plain(form.value, order).size() <= longest;
 }
 
+bool depends_on_velocities(Expr e) {
+  const std::vector<Expr> symbols = symbols_of({&e, 1});
+  return std::any_of(symbols.begin(), symbols.end(), [](Expr s) { return s.role() == Role::Coordinate && s.order() == 1; });
+}
+
 void write_eliminated(StepWriter& out) {
   const auto eliminated = eliminate_multipliers(out.equations());
   if (!eliminated) return;
@@ -62,23 +67,27 @@ std::string counting_sentence(const MechanicalSystem& system) {
 void write_constraints(StepWriter& out) {
   const MechanicalSystem& s = out.system();
   const ExprMatrix a = constraint_matrix(out.equations());
+  const ReadingOrder& order = out.equations().order;
   out.open("Constraints");
+  bool chetaev = false;
   for (std::size_t k = 0; k < s.constraints.size(); ++k) {
     const Constraint& c = s.constraints[k];
     const ConstraintName name = name_of(s, k);
     const ConstraintEquation written = constraint_equation(out.equations(), k);
-    const ReadingOrder& order = out.equations().order;
     out.as_is(to_plain(written.left, order), to_latex(written.left, order), {written.right, {}, {}},
               fmt::format("{}: {} = left − right, zero along the motion", written.name, name.plain));
     for (std::size_t i = 0; i < a.columns; ++i) {
       if (a.at(k, i).is_zero()) continue;
       const Coordinate& q = s.coordinates[i];
       const std::string prime = on_positions(c) ? "" : "'";
-      out.formula(fmt::format("∂{}/∂{}{}", name.plain, q.name, prime),
+      chetaev |= !on_positions(c) && depends_on_velocities(a.at(k, i));
+      out.as_is(fmt::format("∂{}/∂{}{}", name.plain, q.name, prime),
                   fmt::format("\\frac{{\\partial {}}}{{\\partial {}}}", name.latex, symbol_to_latex(on_positions(c) ? q.q : q.velocity)),
-                  a.at(k, i), fmt::format("row of A: the generalized force on {} is this times {}", q.name, symbol_to_plain(c.multiplier)));
+                  {simplified(a.at(k, i), order), {}, {}}, fmt::format("row of A: the generalized force on {} is this times {}", q.name, symbol_to_plain(c.multiplier)));
     }
   }
+  if (chetaev)
+    out.sentence("Chetaev's rule", "Not linear in the velocities: by Chetaev's rule the forces of constraint act along ∂ψ/∂q'.");
 }
 
 void write_constraint_accelerations(StepWriter& out) {

@@ -50,13 +50,41 @@ class RowReduction {
   }
 
  private:
-  /// Entries in their best form, a numeric factor of the whole row taken out: zeros become visible.
+  /// Entries in their best form, common denominators and a numeric factor of the whole row taken out: zeros become visible.
   void tidy(std::size_t row) {
+    for (std::size_t j = 0; j < a_.columns; ++j) a_.at(row, j) = simplified(a_.at(row, j), order_);
+    for (const Expr& factor : common_denominators(row)) {
+      for (std::size_t j = 0; j < a_.columns; ++j) a_.at(row, j) = a_.at(row, j) / factor;
+      b_[row] = b_[row] / factor;
+    }
+    take_out_number(row);
+  }
+
+  /// Factors u^(-k) that stand in every entry of the row.
+  ExprVector common_denominators(std::size_t row) const {
+    const auto factors_of = [](Expr e) {
+      ExprVector factors;
+      if (!e.is(Kind::Product)) return ExprVector{e};
+      for (std::size_t i = 0; i < e.size(); ++i) factors.push_back(e[i]);
+      return factors;
+    };
+    std::optional<ExprVector> common;
+    for (std::size_t j = 0; j < a_.columns; ++j) {
+      if (a_.at(row, j).is_zero()) continue;
+      const ExprVector here = factors_of(a_.at(row, j));
+      if (!common) common = here;
+      std::erase_if(*common, [&](Expr f) {
+        return split_power(f).exponent.sign() > 0 || std::find(here.begin(), here.end(), f) == here.end();
+      });
+    }
+    return common.value_or(ExprVector{});
+  }
+
+  void take_out_number(std::size_t row) {
     std::optional<Rational> factor;
     bool common = true;
     for (std::size_t j = 0; j < a_.columns; ++j) {
-      Expr& entry = a_.at(row, j);
-      entry = simplified(entry, order_);
+      const Expr entry = a_.at(row, j);
       if (entry.is_zero()) continue;
       Rational size = split_coefficient(entry).coefficient;
       if (size.sign() < 0) size = Rational(0) - size;
@@ -104,14 +132,16 @@ ExprVector kernel_vector(const RowReduction& reduction, std::size_t column, cons
   const ExprMatrix& a = reduction.matrix();
   Context& context = *equations.system->context;
   Expr scale = context.number(1);
-  ExprVector ratios;
+  ExprVector ratios;   // empty: as a fraction of the pivot, which is a factor of the scale
   for (std::size_t row = 0; row < a.rows; ++row) {
-    ratios.push_back(simplified(a.at(row, column) / reduction.pivot(row), equations.order));
-    if (has_moving_denominator(ratios[row])) scale = scale * reduction.pivot(row);
+    const Expr ratio = simplified(a.at(row, column) / reduction.pivot(row), equations.order);
+    ratios.push_back(has_moving_denominator(ratio) ? Expr() : ratio);
+    if (!ratios[row]) scale = scale * reduction.pivot(row);
   }
   ExprVector z(a.columns, context.number(0));
   z[column] = scale;
-  for (std::size_t row = 0; row < a.rows; ++row) z[reduction.pivots()[row]] = -(scale * ratios[row]);
+  for (std::size_t row = 0; row < a.rows; ++row)
+    z[reduction.pivots()[row]] = -(ratios[row] ? scale * ratios[row] : scale / reduction.pivot(row) * a.at(row, column));
   return z;
 }
 

@@ -143,6 +143,15 @@ TEST_CASE("multipliers eliminated") {
   CHECK(printed(swinging->rows, plane.equations.order) == Lines{"m x y'' - m y x'' + m g x"});
 }
 
+TEST_CASE("a denominator that a whole row of A shares is left out") {
+  const ModelText m("system s\nparam m = 1 kg, l = 1 m\ncoord x, y : length\npoint P mass m at (x, y)\nconstraint norm(P) = l name rod\n");
+  const Derivation d = readable_derivation(m.equations, false);
+  CHECK(to_plain(d.constraint_forces[0], m.equations.order) == "x λ_rod/sqrt(x^2 + y^2)");
+  const auto eliminated = eliminate_multipliers(m.equations);
+  REQUIRE(eliminated);
+  CHECK(printed(eliminated->rows, m.equations.order) == Lines{"m x y'' - m y x''"});
+}
+
 TEST_CASE("the multiplier written out: the pendulum") {
   const ModelText m(pendulum);
   const auto solved = solved_multipliers(m.equations);
