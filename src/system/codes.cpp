@@ -95,14 +95,16 @@ constexpr CodeEntry kEntries[] = {
      "velocity, --start θ=30deg.",
      "", ""},
     {"E0225", "a force of constraint where it cannot stand",
-     "Multipliers and reactions follow from the equations of motion. They may be expected and claimed; energies, forces "
+     "Multipliers and reactions follow from the equations of motion. They may be expected and claimed; energies, "
+     "forces "
      "and constraints, from which the equations come, cannot be made of them.",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = y name rod\nforce x = "
      "reaction(rod)\n",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = y name rod\nexpect reaction(rod) "
      "at 1 s = 0 N ± 1e-9\n"},
     {"E0226", "no constraint of this name",
-     "multiplier(rod), reaction(rod), draw reaction rod and `expect constraint rod is …` mean the constraint whose line "
+     "multiplier(rod), reaction(rod), draw reaction rod and `expect constraint rod is …` mean the constraint whose "
+     "line "
      "ends with `name rod`. The name of `reaction rod = release l` has a reaction, and no multiplier.",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = y\nexpect multiplier(rod) at 1 s "
      "= 0 N ± 1e-9\n",
@@ -271,7 +273,8 @@ constexpr CodeEntry kEntries[] = {
      "coord x : length\nparam m = 1 kg, P = 1 W\nT = 1/2 m x'^2\nD = P\n",
      "coord x : length\nparam m = 1 kg, c = 1 N s/m\nT = 1/2 m x'^2\nD = 1/2 c x'^2\n"},
     {"E0423", "a constraint without coordinates",
-     "A constraint relates coordinates or velocities. A relation of parameters and time alone is true or false, whatever "
+     "A constraint relates coordinates or velocities. A relation of parameters and time alone is true or false, "
+     "whatever "
      "the motion; what is computed from parameters is a definition.",
      "coord x : length\nparam m = 1 kg, a = 1 m, b = 2 m\nT = 1/2 m x'^2\nconstraint a = b\n",
      "coord x : length\nparam m = 1 kg, a = 1 m\nlet b = 2 a\nT = 1/2 m x'^2\nconstraint x = b\n"},
@@ -291,14 +294,16 @@ constexpr CodeEntry kEntries[] = {
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint y = abs(x)\n",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint y = x\n"},
     {"W0427", "a quaternion that is not of norm 1",
-     "A rotation needs a unit quaternion: another one stretches what it turns. `rotation quaternion` alone adds the four "
+     "A rotation needs a unit quaternion: another one stretches what it turns. `rotation quaternion` alone adds the "
+     "four "
      "components and their norm; where the components are given, the model sees to it.",
      "param I = 1 kg m^2\ncoord w, x, y, z : number\nbody B inertia diag(I, I, I) rotation quaternion (w, x, y, z)\n"
      "constraint w = 1\n",
      "param I = 1 kg m^2\ncoord w, x, y, z : number\nbody B inertia diag(I, I, I) rotation quaternion (w, x, y, z)\n"
      "constraint w^2 + x^2 + y^2 + z^2 = 1\n"},
     {"N0428", "a coordinate without kinetic energy of its own",
-     "The mass matrix is singular, but regular on what the constraints leave, so that the accelerations are determined. "
+     "The mass matrix is singular, but regular on what the constraints leave, so that the accelerations are "
+     "determined. "
      "That is as it should be for a gear without inertia or an auxiliary coordinate; else a mass was forgotten.",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m x'^2\nconstraint y = 2 x\n",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint y = 2 x\n"},

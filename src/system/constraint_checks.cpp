@@ -106,10 +106,11 @@ bool refuse_switch(Elaboration& e, const syntax::ConstraintStatement& s, Expr va
   Span at = culprit_of_switch(e, *s.left, word);
   if (at.end <= at.begin) at = culprit_of_switch(e, *s.right, word);
   if (at.end <= at.begin) at = s.left->span;
-  e.diagnostics.error("E0426", at, fmt::format("a constraint cannot be made of {}", word),
-                      "The force of a constraint follows from its second derivative along the motion, which has no value "
-                      "where such a function switches.",
-                      "Write a smooth relation; an inequality is written with `contact`.");
+  e.diagnostics.error(
+      "E0426", at, fmt::format("a constraint cannot be made of {}", word),
+      "The force of a constraint follows from its second derivative along the motion, which has no value "
+      "where such a function switches.",
+      "Write a smooth relation; an inequality is written with `contact`.");
   return true;
 }
 
@@ -122,12 +123,11 @@ bool refuse_without_coordinates(Elaboration& e, const Constraint& c) {
   // In x = x + l the coordinate cancels.
   if (!motion.empty() && zero_test(gradient(c.value, motion)).verdict != Verdict::Zero) return false;
   const std::optional<double> difference = constant_value(e, motion.empty() ? c.value : substitute(c.value, at_zero));
-  e.diagnostics.error(
-      "E0423", c.span, "this constraint contains no coordinate",
-      !difference         ? "It is a relation of parameters and time, which no motion can fulfil or break."
-      : *difference == 0 ? "It is true whatever the motion: it constrains nothing."
-                          : "With the values of the parameters it is false, whatever the motion.",
-      "Write a relation of coordinates or velocities; what follows from parameters is a `let`.");
+  e.diagnostics.error("E0423", c.span, "this constraint contains no coordinate",
+                      !difference ? "It is a relation of parameters and time, which no motion can fulfil or break."
+                      : *difference == 0 ? "It is true whatever the motion: it constrains nothing."
+                                         : "With the values of the parameters it is false, whatever the motion.",
+                      "Write a relation of coordinates or velocities; what follows from parameters is a `let`.");
   return true;
 }
 

@@ -77,7 +77,8 @@ std::optional<Value> difference(Elaboration& e, const ConstraintStatement& s) {
   return v.poisoned ? std::nullopt : std::optional(v);
 }
 
-/// λ_rod, or λ alone, or λ1, λ2, …; Λ where the model uses λ for something else. `written`: without those of quaternions.
+/// λ_rod, or λ alone, or λ1, λ2, …; Λ where the model uses λ for something else. `written`: without those of
+/// quaternions.
 std::string multiplier_name(Elaboration& e, const Constraint& c, std::size_t index, std::size_t written) {
   const std::string tail = !c.name.empty()   ? "_" + c.name
                            : !c.body.empty() ? "_" + c.body
@@ -93,7 +94,8 @@ void name_multipliers(Elaboration& e, std::size_t written) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string name = multiplier_name(e, list[i], i, written);
     list[i].multiplier = e.context.symbol(name, Role::Multiplier);
-    list[i].reaction = e.context.symbol(fmt::format("reaction({})", list[i].name.empty() ? name : list[i].name), Role::Multiplier);
+    list[i].reaction =
+        e.context.symbol(fmt::format("reaction({})", list[i].name.empty() ? name : list[i].name), Role::Multiplier);
   }
 }
 
@@ -111,7 +113,8 @@ void elaborate_constraints(Elaboration& e) {
     c.dimension = v->dimension;
     c.span = statement.span;
     const bool names_coordinates = v->order >= 0;  // they may cancel
-    if (refuse_switch(e, *s, c.value) || (names_coordinates && refuse_identity(e, c)) || refuse_without_coordinates(e, c))
+    if (refuse_switch(e, *s, c.value) || (names_coordinates && refuse_identity(e, c)) ||
+        refuse_without_coordinates(e, c))
       continue;
     c.level = settle_level(c.value);
     e.system().constraints.push_back(std::move(c));

@@ -53,8 +53,8 @@ class Dump {
            f.lever.empty() ? f.target : show(f.lever));
     for (const Constraint& c : system_.constraints)
       line("{} constraint {}: {} = 0 [{}], multiplier {}",
-           c.level == Constraint::Level::Position ? "position" : "velocity", c.body.empty() ? c.name : "norm of " + c.body,
-           show(c.value), to_string(c.dimension), show(c.multiplier));
+           c.level == Constraint::Level::Position ? "position" : "velocity",
+           c.body.empty() ? c.name : "norm of " + c.body, show(c.value), to_string(c.dimension), show(c.multiplier));
     return out_;
   }
 

@@ -148,8 +148,7 @@ bool frequencies(Elaboration& e, Expectation& out, const ExpectStatement& s) {
 
 bool later(Elaboration& e, Span span) {
   e.diagnostics.error("E0503", span, "not supported yet: an expected event",
-                      "Contacts and events are carried out by a later version.",
-                      "Leave this line out for now.");
+                      "Contacts and events are carried out by a later version.", "Leave this line out for now.");
   return false;
 }
 

@@ -31,11 +31,11 @@ std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
     if (!base && x.arguments[0]->kind == Expression::Kind::Name)
       unknown_name(e, x.arguments[0]->text, x.arguments[0]->name_span);
     else
-      e.diagnostics.error(
-          "E0504", x.span, fmt::format("not supported yet: a start of `{}`", e.source.slice(x.span)),
-          "A start gives coordinates, their velocities and the angular velocities of bodies; what else follows from them "
-          "is solved for by a later version.",
-          "Give the coordinates and velocities that belong to it.");
+      e.diagnostics.error("E0504", x.span, fmt::format("not supported yet: a start of `{}`", e.source.slice(x.span)),
+                          "A start gives coordinates, their velocities and the angular velocities of bodies; what else "
+                          "follows from them "
+                          "is solved for by a later version.",
+                          "Give the coordinates and velocities that belong to it.");
     return std::nullopt;
   }
   const std::string text(e.source.slice(x.span));

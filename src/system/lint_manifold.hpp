@@ -20,9 +20,9 @@ class Manifold {
  private:
   bool settle(Bindings& point, const ExprVector& unknowns, const ExprVector& values, const ExprVector& jacobian) const;
 
-  ExprVector coordinates_, velocities_;           // [n]
-  ExprVector positions_, position_jacobian_;      // φ, ∂φ/∂q
-  ExprVector rates_, rate_jacobian_;              // dφ/dt and ψ, by q̇; the jacobian is A
+  ExprVector coordinates_, velocities_;       // [n]
+  ExprVector positions_, position_jacobian_;  // φ, ∂φ/∂q
+  ExprVector rates_, rate_jacobian_;          // dφ/dt and ψ, by q̇; the jacobian is A
 };
 
 /// Directions that both matrices of n columns send to zero, by elimination: few entries each. `scales` [n]: units of

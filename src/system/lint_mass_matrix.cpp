@@ -52,8 +52,8 @@ struct Findings {
   bool defined = false;
   bool singular = false;
   bool positive = true;
-  std::vector<Row> null;           // of M on the directions that the constraints leave
-  Row massless;                    // not 0 for coordinates without kinetic energy, where the constraints tie them
+  std::vector<Row> null;  // of M on the directions that the constraints leave
+  Row massless;           // not 0 for coordinates without kinetic energy, where the constraints tie them
 };
 
 Findings examine(const Subject& s, const MassMatrix& matrix, const Manifold& manifold, const Bindings& changed) {
@@ -126,7 +126,8 @@ void report_massless(Subject& s, std::size_t coordinate) {
   s.diagnostics.error(
       "E0407", c.span, fmt::format("the coordinate `{}` has no kinetic energy", c.name),
       from_masses
-          ? fmt::format("No mass moves when {0} changes{1}, so that no equation gives its acceleration {0}''.", c.name, tied)
+          ? fmt::format("No mass moves when {0} changes{1}, so that no equation gives its acceleration {0}''.", c.name,
+                        tied)
           : fmt::format("{0}' does not enter T{1}, so that no equation gives its acceleration {0}''.", c.name, tied),
       from_masses ? "Give a point that moves with it a mass, or a body its inertia."
                   : fmt::format("Add its part to T, or remove the coordinate.", c.name));
@@ -155,8 +156,8 @@ void report_combination(Subject& s, const Row& v) {
   if (kinetic_energy_of_masses_alone(s.system)) {
     s.diagnostics.error(
         "E0417", c.span, fmt::format("the masses cannot tell {} apart", names(s, v)),
-        fmt::format("Changing {} moves no mass{}: there are more coordinates than the points have ways to move.", change,
-                    nor_constraint(s, "forbids it")),
+        fmt::format("Changing {} moves no mass{}: there are more coordinates than the points have ways to move.",
+                    change, nor_constraint(s, "forbids it")),
         fmt::format("Remove `{}`, or give a mass to a point that it moves by itself.", c.name));
     return;
   }
@@ -194,10 +195,10 @@ void note_of_tied_coordinates(Subject& s, const Row& massless) {
   const auto first = std::find_if(massless.begin(), massless.end(), [](double x) { return x != 0; });
   if (first == massless.end()) return;
   const bool one = std::count_if(first, massless.end(), [](double x) { return x != 0; }) == 1;
-  s.diagnostics.note("N0428", s.system.coordinates[static_cast<std::size_t>(first - massless.begin())].span,
-                     fmt::format("the coordinate{} {} {} no kinetic energy", one ? "" : "s", names(s, massless),
-                                 one ? "has" : "have"),
-                     "The mass matrix is singular; the constraints determine the accelerations all the same.", "");
+  s.diagnostics.note(
+      "N0428", s.system.coordinates[static_cast<std::size_t>(first - massless.begin())].span,
+      fmt::format("the coordinate{} {} {} no kinetic energy", one ? "" : "s", names(s, massless), one ? "has" : "have"),
+      "The mass matrix is singular; the constraints determine the accelerations all the same.", "");
 }
 
 }  // namespace

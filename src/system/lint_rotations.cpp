@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-/// A quaternion of given components turns only where its norm is 1: R Rᵀ = |q|⁴ 1. Where the constraints of the model (or
-/// its half angles) hold the norm, this is so at every state that they allow.
+/// A quaternion of given components turns only where its norm is 1: R Rᵀ = |q|⁴ 1. Where the constraints of the model
+/// (or its half angles) hold the norm, this is so at every state that they allow.
 namespace maupertuis::lint_rules {
 namespace {
 
@@ -48,10 +48,11 @@ std::optional<Stretched> stretched_rotation(const Subject& s) {
 void quaternion_norms(Subject& s) {
   const std::optional<Stretched> x = stretched_rotation(s);
   if (!x) return;
-  s.diagnostics.warning("W0427", x->span, fmt::format("nothing holds the quaternion of `{}` at norm 1", x->name),
-                        "A quaternion of another norm stretches what it turns.",
-                        "Add the constraint w^2 + x^2 + y^2 + z^2 = 1 for its components, or write `rotation quaternion` "
-                        "alone, which brings both.");
+  s.diagnostics.warning(
+      "W0427", x->span, fmt::format("nothing holds the quaternion of `{}` at norm 1", x->name),
+      "A quaternion of another norm stretches what it turns.",
+      "Add the constraint w^2 + x^2 + y^2 + z^2 = 1 for its components, or write `rotation quaternion` "
+      "alone, which brings both.");
 }
 
 }  // namespace maupertuis::lint_rules

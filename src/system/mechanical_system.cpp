@@ -68,7 +68,9 @@ const Parameter* MechanicalSystem::find_parameter(std::string_view name) const {
 }
 const Point* MechanicalSystem::find_point(std::string_view name) const { return find_by_name(points, name); }
 const Body* MechanicalSystem::find_body(std::string_view name) const { return find_by_name(bodies, name); }
-const Constraint* MechanicalSystem::find_constraint(std::string_view name) const { return find_by_name(constraints, name); }
+const Constraint* MechanicalSystem::find_constraint(std::string_view name) const {
+  return find_by_name(constraints, name);
+}
 
 std::string MechanicalSystem::constraint_label(std::size_t index) const {
   const Constraint& c = constraints[index];

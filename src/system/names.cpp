@@ -44,10 +44,11 @@ Value derivative_of_coordinate(Elaboration& e, Value v, int primes) {
 }
 
 Value refuse_as_quantity(Elaboration& e, Declaration& d, const Expression& x) {
-  e.diagnostics.error("E0212", x.name_span, fmt::format("`{}` is a {}, not a quantity", d.name, word_of(d.kind)),
-                      "The name of a constraint stands for the whole relation.",
-                      fmt::format("Its force is reaction({0}){1}.", d.name,
-                                  d.kind == Kind::Constraint ? fmt::format(", its multiplier multiplier({})", d.name) : ""));
+  e.diagnostics.error(
+      "E0212", x.name_span, fmt::format("`{}` is a {}, not a quantity", d.name, word_of(d.kind)),
+      "The name of a constraint stands for the whole relation.",
+      fmt::format("Its force is reaction({0}){1}.", d.name,
+                  d.kind == Kind::Constraint ? fmt::format(", its multiplier multiplier({})", d.name) : ""));
   return Value::poison();
 }
 
@@ -64,13 +65,14 @@ Value component(Elaboration& e, const Value& base, const Expression& x) {
   const std::size_t index = x.text == "x" ? 0 : x.text == "y" ? 1 : x.text == "z" ? 2 : 3;
   if (!base.is_vector || index == 3) {
     const std::string text(e.source.slice(x.arguments[0]->span));
-    e.diagnostics.error("E0216", x.name_span, fmt::format("`{}` has no `.{}`", text, x.text),
-                        base.is_vector ? "A vector has the components .x, .y and .z."
-                                       : "Only points, bodies and vectors have components.",
-                        x.text == "w" && base.is_vector ? "The angular velocity of a body is .ω."
-                        : x.text.size() == 2 && x.text[0] == 'q'
-                            ? "A body or frame has .qw, .qx, .qy and .qz where it is declared with `rotation quaternion`."
-                            : "");
+    e.diagnostics.error(
+        "E0216", x.name_span, fmt::format("`{}` has no `.{}`", text, x.text),
+        base.is_vector ? "A vector has the components .x, .y and .z."
+                       : "Only points, bodies and vectors have components.",
+        x.text == "w" && base.is_vector ? "The angular velocity of a body is .ω."
+        : x.text.size() == 2 && x.text[0] == 'q'
+            ? "A body or frame has .qw, .qx, .qy and .qz where it is declared with `rotation quaternion`."
+            : "");
     return Value::poison();
   }
   if (index >= base.parts.size()) {

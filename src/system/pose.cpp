@@ -165,9 +165,11 @@ ExprMatrix of_quaternion(const ExprVector& q) {
   const Expr w = q[0], x = q[1], y = q[2], z = q[3];
   const Expr ww = w * w, xx = x * x, yy = y * y, zz = z * z;
   const auto twice = [](Expr a, Expr b) { return Rational(2) * sum_of({a, b}); };
-  return {3, 3, {sum_of({ww, xx, -yy, -zz}), twice(x * y, -(w * z)), twice(x * z, w * y),
-                 twice(x * y, w * z), sum_of({ww, -xx, yy, -zz}), twice(y * z, -(w * x)),
-                 twice(x * z, -(w * y)), twice(y * z, w * x), sum_of({ww, -xx, -yy, zz})}};
+  return {3,
+          3,
+          {sum_of({ww, xx, -yy, -zz}), twice(x * y, -(w * z)), twice(x * z, w * y), twice(x * y, w * z),
+           sum_of({ww, -xx, yy, -zz}), twice(y * z, -(w * x)), twice(x * z, -(w * y)), twice(y * z, w * x),
+           sum_of({ww, -xx, -yy, zz})}};
 }
 
 }  // namespace

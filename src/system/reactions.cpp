@@ -13,7 +13,8 @@ using syntax::Expression;
 using Kind = Declaration::Kind;
 
 const char* const kReasonOfPlace =
-    "A force of constraint follows from the equations of motion: energies, forces and constraints cannot be made of it.";
+    "A force of constraint follows from the equations of motion: energies, forces and constraints cannot be made of "
+    "it.";
 
 /// λ is conjugate to the constraint: λ δφ is an energy, λ ψ a power.
 Dimension dimension_of_multiplier(Elaboration& e, const Constraint& c) {

@@ -25,7 +25,8 @@ bool has_velocity(Expr rate) {
 
 std::vector<StartRate> refuse_fixed(Elaboration& e, const Expression& x, const std::string& name) {
   e.diagnostics.error("E0223", x.span, fmt::format("no velocity of the model gives `{}` this value", name),
-                      "The rotation leaves a component of it no freedom.", "Check the rotation, or leave the start out.");
+                      "The rotation leaves a component of it no freedom.",
+                      "Check the rotation, or leave the start out.");
   return {};
 }
 
@@ -54,7 +55,8 @@ std::vector<StartRate> start_rates(Elaboration& e, const syntax::StartStatement:
     const StartRate part{expand_time_derivatives(rate.parts[i]), v.parts[i], x.span};
     if (has_velocity(part.rate))
       out.push_back(part);
-    else if (constant_value(e, part.rate - part.value) != 0.0)  // (0, 0, θ') = (0, 0, 2 rad/s) asks nothing of its zeros
+    else if (constant_value(e, part.rate - part.value) !=
+             0.0)  // (0, 0, θ') = (0, 0, 2 rad/s) asks nothing of its zeros
       return refuse_fixed(e, x, name);
   }
   return out;

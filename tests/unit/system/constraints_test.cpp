@@ -39,17 +39,20 @@ TEST_CASE("a velocity makes a velocity constraint; one that cancels does not") {
 TEST_CASE("multipliers are named after their constraints, or numbered") {
   const Elaborated one(std::string(kPendulum) + "constraint x^2 + y^2 = l^2\n");
   CHECK(one.system().constraints[0].multiplier.name() == "λ");
-  const Elaborated two("param m = 1 kg\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\n"
-                       "constraint x = y\nconstraint y = z name belt\n");
+  const Elaborated two(
+      "param m = 1 kg\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\n"
+      "constraint x = y\nconstraint y = z name belt\n");
   CHECK(two.system().constraints[0].multiplier.name() == "λ1");
   CHECK(two.system().constraints[1].multiplier.name() == "λ_belt");
-  const Elaborated taken("param m = 1 kg, λ = 1 m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = y + λ\n");
+  const Elaborated taken(
+      "param m = 1 kg, λ = 1 m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = y + λ\n");
   CHECK(taken.system().constraints[0].multiplier.name() == "Λ");
 }
 
 TEST_CASE("an input in a constraint stands for its formula of t") {
-  const Elaborated m("param m = 1 kg, a = 3 m, w = 2 rad/s\ncoord x : length\nT = 1/2 m x'^2\n"
-                     "input u : [m] = a sin(w t)\nconstraint x' + 1 [1/s] x = u'\n");
+  const Elaborated m(
+      "param m = 1 kg, a = 3 m, w = 2 rad/s\ncoord x : length\nT = 1/2 m x'^2\n"
+      "input u : [m] = a sin(w t)\nconstraint x' + 1 [1/s] x = u'\n");
   const Bindings b = m.at({5}, {7}, 0.4);
   CHECK(evaluate(m.system().constraints[0].value, b) == doctest::Approx(7 + 5 - 3 * 2 * std::cos(0.8)));
 }
@@ -68,7 +71,9 @@ TEST_CASE("definitions of parameters stay in the system as written and are expan
 
 TEST_CASE("what is no constraint") {
   const auto codes = [](const std::string& line) {
-    return Elaborated("param m = 1 kg, l = 2 m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = 1 [N/m] l x\n" + line + "\n").codes();
+    return Elaborated("param m = 1 kg, l = 2 m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = 1 [N/m] l x\n" +
+                      line + "\n")
+        .codes();
   };
   CHECK(codes("constraint l = 2 [m]") == "E0423");
   CHECK(codes("constraint 1 = 2") == "E0423");
@@ -94,9 +99,10 @@ TEST_CASE("what is no constraint") {
 }
 
 TEST_CASE("multipliers and reactions have their units, and their place") {
-  const std::string head = "param m = 1 kg, l = 2 m\ncoord x, y : length, θ : angle\n"
-                           "T = 1/2 m (x'^2 + y'^2 + l^2 θ'^2)\nconstraint x^2 + y^2 = l^2 name rod\n"
-                           "constraint x' = l θ' name roll\nconstraint θ = 1 name stop\nreaction bar = release l\n";
+  const std::string head =
+      "param m = 1 kg, l = 2 m\ncoord x, y : length, θ : angle\n"
+      "T = 1/2 m (x'^2 + y'^2 + l^2 θ'^2)\nconstraint x^2 + y^2 = l^2 name rod\n"
+      "constraint x' = l θ' name roll\nconstraint θ = 1 name stop\nreaction bar = release l\n";
   const auto codes = [&](const std::string& line) { return Elaborated(head + line + "\n").codes(); };
   CHECK(codes("expect multiplier(rod) at 1 s = 3 N/m ± 1") == "");
   CHECK(codes("expect multiplier(rod) at 1 s = 3 N ± 1") == "E0304");
@@ -106,7 +112,8 @@ TEST_CASE("multipliers and reactions have their units, and their place") {
   CHECK(codes("expect multiplier(stop) at 1 s = 3 N m ± 1") == "");
   CHECK(codes("expect reaction(stop) at 1 s = 3 N ± 1") == "E0304");
   CHECK(Elaborated("param L0 = 1 H\ncoord q, p : charge\nL = 1/2 L0 (q'^2 + p'^2)\nconstraint q' = p' name node\n"
-                   "expect reaction(node) at 1 s = 3 V ± 1\n").codes() == "");
+                   "expect reaction(node) at 1 s = 3 V ± 1\n")
+            .codes() == "");
   CHECK(codes("expect reaction(bar) at 1 s = 3 N ± 1") == "");
   CHECK(codes("expect multiplier(bar) at 1 s = 3 N ± 1") == "E0226");
   CHECK(codes("expect reaction(bra) at 1 s = 3 N ± 1") == "E0226");
@@ -126,7 +133,8 @@ TEST_CASE("multipliers and reactions have their units, and their place") {
   CHECK(codes("expect constraint role is holonomic") == "E0226");
   CHECK(codes("expect constraint bar is holonomic") == "E0226");
 
-  const Elaborated m(head + "draw reaction roll\nexpect constraint roll is nonholonomic\nexpect reaction roll at 1 s = 3 N ± 1\n");
+  const Elaborated m(
+      head + "draw reaction roll\nexpect constraint roll is nonholonomic\nexpect reaction roll at 1 s = 3 N ± 1\n");
   CHECK(m.experiment().drawing.at(0).names.at(0) == "roll");
   CHECK(m.experiment().expectations.at(0).name == "roll");
   CHECK(m.experiment().expectations.at(0).word == "nonholonomic");

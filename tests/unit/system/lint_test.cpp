@@ -78,8 +78,11 @@ TEST_CASE("a coordinate in a constraint alone is used") {
 
 TEST_CASE("a quaternion of given components needs its norm, whatever holds it") {
   const auto codes = [](const std::string& text) {
-    return Elaborated("param I = 1 kg m^2\ncoord w, x, y, z : number\nbody B inertia diag(I, I, I) rotation quaternion "
-                      "(w, x, y, z)\n" + text).codes();
+    return Elaborated(
+               "param I = 1 kg m^2\ncoord w, x, y, z : number\nbody B inertia diag(I, I, I) rotation quaternion "
+               "(w, x, y, z)\n" +
+               text)
+        .codes();
   };
   CHECK(codes("constraint w^2 + x^2 + y^2 + z^2 = 1\n") == "");
   CHECK(codes("constraint sqrt(w^2 + x^2 + y^2 + z^2) = 1\n") == "");

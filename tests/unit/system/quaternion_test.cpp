@@ -25,10 +25,9 @@ double norm2(const Quaternion& q) { return q[0] * q[0] + q[1] * q[1] + q[2] * q[
 /// q v q̄ by Hamilton's product: independent of the matrix.
 std::array<double, 3> turn(const Quaternion& q, const std::array<double, 3>& v) {
   const auto product = [](const Quaternion& a, const Quaternion& b) {
-    return Quaternion{a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
-                      a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-                      a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
-                      a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
+    return Quaternion{
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3], a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1], a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
   };
   const Quaternion turned = product(product(q, {0, v[0], v[1], v[2]}), {q[0], -q[1], -q[2], -q[3]});
   return {turned[1], turned[2], turned[3]};
@@ -152,15 +151,17 @@ TEST_CASE("body rates at the start, for every kind of rotation") {
   CHECK(codes(wheel + "start wheel.ω = 2 m") == "E0304");
   CHECK(codes(wheel + "start wheel.ω' = 2 rad/s^2") == "E0223");
   CHECK(codes(wheel + "start wheel.ω = θ'") == "E0222");
-  const std::string top = "param I = 1 kg m^2\ncoord φ, θ, ψ : angle\n"
-                          "body B inertia diag(I, I, I) rotation euler zxz (φ, θ, ψ)\nstart θ = 1 rad\n";
+  const std::string top =
+      "param I = 1 kg m^2\ncoord φ, θ, ψ : angle\n"
+      "body B inertia diag(I, I, I) rotation euler zxz (φ, θ, ψ)\nstart θ = 1 rad\n";
   CHECK(codes(top + "start B.ω = (1, 2, 3) rad/s") == "");
   CHECK(codes(top + "start B.ω_world = (1, 2, 3) rad/s") == "");
   CHECK(codes(top + "start B.ω.x = 1 rad/s, B.ω.z = 2 rad/s") == "");
   CHECK(codes(top + "start B.ω = 3 rad/s") == "E0210");
   CHECK(codes(top + "start B.ω = (1, 2, 3) rad/s, B.ω.x = 1 rad/s") == "E0208");
-  const std::string axle = "param I = 1 kg m^2\ncoord θ : angle\n"
-                           "body B inertia diag(I, I, I) rotation axis (0, 0, 1) angle θ\n";
+  const std::string axle =
+      "param I = 1 kg m^2\ncoord θ : angle\n"
+      "body B inertia diag(I, I, I) rotation axis (0, 0, 1) angle θ\n";
   CHECK(codes(axle + "start B.ω = (0, 0, 3) rad/s") == "");
   CHECK(codes(axle + "start B.ω = (0, 1, 3) rad/s") == "E0223");
   CHECK(codes(axle + "start B.qw = 1") == "E0504");
@@ -168,10 +169,12 @@ TEST_CASE("body rates at the start, for every kind of rotation") {
 }
 
 TEST_CASE("a quaternion of expressions: half angles turn as the angle does") {
-  const Elaborated q("param I = 1 kg m^2, J = 2 kg m^2\ncoord θ : angle\nbody B inertia diag(I, I, J) rotation "
-                     "quaternion (cos(θ/2), 0, 0, sin(θ/2))\n");
-  const Elaborated a("param I = 1 kg m^2, J = 2 kg m^2\ncoord θ : angle\nbody B inertia diag(I, I, J) rotation "
-                     "axis (0, 0, 1) angle θ\n");
+  const Elaborated q(
+      "param I = 1 kg m^2, J = 2 kg m^2\ncoord θ : angle\nbody B inertia diag(I, I, J) rotation "
+      "quaternion (cos(θ/2), 0, 0, sin(θ/2))\n");
+  const Elaborated a(
+      "param I = 1 kg m^2, J = 2 kg m^2\ncoord θ : angle\nbody B inertia diag(I, I, J) rotation "
+      "axis (0, 0, 1) angle θ\n");
   CHECK_MESSAGE(q.fine(), q.messages());
   for (const double θ : {0.3, 2.0}) {
     const Bindings x = q.at({θ}, {1.5}), y = a.at({θ}, {1.5});
@@ -180,18 +183,21 @@ TEST_CASE("a quaternion of expressions: half angles turn as the angle does") {
             doctest::Approx(evaluate(a.system().bodies[0].rotation.entries[i], y)));
     CHECK(test::value(q.system().kinetic_energy(), x) == doctest::Approx(test::value(a.system().kinetic_energy(), y)));
   }
-  CHECK(Elaborated("param I = 1 kg m^2\ncoord a : length\nbody B inertia diag(I, I, I) rotation quaternion (a, 0, 0, 0)\n")
+  CHECK(Elaborated(
+            "param I = 1 kg m^2\ncoord a : length\nbody B inertia diag(I, I, I) rotation quaternion (a, 0, 0, 0)\n")
             .codes() == "E0304");
 }
 
 TEST_CASE("quaternions without units, in frames, and not in the plane") {
   const auto codes = [](const std::string& text) { return Elaborated(text + "\n").codes(); };
-  CHECK(codes("dimensionless\nparam I = 1\nbody B inertia diag(I, I, I) rotation quaternion\nstart B.ω = (1, 2, 3)") == "");
+  CHECK(codes("dimensionless\nparam I = 1\nbody B inertia diag(I, I, I) rotation quaternion\nstart B.ω = (1, 2, 3)") ==
+        "");
   CHECK(codes("param I = 1 kg m^2\ncoord x : length\nparam m = 1 kg\npoint P mass m at (x, 0)\n"
               "body B inertia I rotation quaternion") == "E0402");
   // A frame that turns as it likes, with three particles in it: the kinetic energy of the body that they are.
-  const Elaborated f("param m = 1 kg, a = 1 m\nframe F at (0, 0, 0) rotation quaternion\npoint A mass m at (a, 0, 0) in F\n"
-                     "point B mass m at (0, 2 a, 0) in F\npoint C mass m at (0, 0, 3 a) in F\n");
+  const Elaborated f(
+      "param m = 1 kg, a = 1 m\nframe F at (0, 0, 0) rotation quaternion\npoint A mass m at (a, 0, 0) in F\n"
+      "point B mass m at (0, 2 a, 0) in F\npoint C mass m at (0, 0, 3 a) in F\n");
   const Elaborated b("param m = 1 kg, a = 1 m\nbody F inertia diag(13 m a^2, 10 m a^2, 5 m a^2) rotation quaternion\n");
   REQUIRE_MESSAGE(f.codes() == "", f.messages());
   REQUIRE_MESSAGE(b.codes() == "", b.messages());
