@@ -25,6 +25,13 @@ void equilibrate(MatrixXd& m, VectorXd& rows, VectorXd& columns) {
   m = m * columns.asDiagonal();
 }
 
+/// The whole of a long double goes into the sum.
+void add(Compensated& sum, long double increment) {
+  const auto leading = static_cast<double>(increment);
+  sum.add(leading);
+  sum.add(static_cast<double>(increment - leading));
+}
+
 }  // namespace
 
 StageSolver::StageSolver(const VariationalFunctions& functions, std::span<const double> parameters, Tableau tableau)
@@ -33,6 +40,7 @@ StageSolver::StageSolver(const VariationalFunctions& functions, std::span<const 
       tableau_(std::move(tableau)), n_(functions.motion.freedoms), m_(functions.motion.constraints),
       s_(tableau_.stages), point_(functions.motion.inputs()), point_end_(point_.size()) {
   for (MatrixXd* matrix : {&positions_at_, &velocities_, &forces_at_}) matrix->setZero(index(n_), index(s_));
+  nodes_.resize(s_);
   q_begin_.resize(n_);
   weights_.setOnes(index(n_));
   set_rows({});
@@ -85,14 +93,14 @@ void StageSolver::place_nodes() {
 
 bool StageSolver::residual() {
   place_nodes();
-  MatrixXd& p = forces_at_;  // first the forces; the momenta are compared with their sums below
-  std::vector<double> momenta_now(n_ * s_);
+  MatrixXd momenta_at(index(n_), index(s_));
   for (std::size_t i = 0; i < s_; ++i) {
     fill_point(i);
-    const auto f = forces_.values(point_);
-    for (std::size_t k = 0; k < n_; ++k) p(index(k), index(i)) = f[k];
-    const auto momentum = momenta_.values(point_);
-    std::copy(momentum.begin(), momentum.end(), momenta_now.begin() + static_cast<std::ptrdiff_t>(i * n_));
+    const auto force = forces_.values(point_), momentum = momenta_.values(point_);
+    for (std::size_t k = 0; k < n_; ++k) {
+      forces_at_(index(k), index(i)) = force[k];
+      momenta_at(index(k), index(i)) = momentum[k];
+    }
     if (i == 0 || !constrained()) continue;
     const auto phi = positions_.values(point_);
     for (std::size_t k = 0; k < rows_.size(); ++k)
@@ -102,52 +110,58 @@ bool StageSolver::residual() {
     for (std::size_t k = 0; k < n_; ++k) {
       long double sum = begin_->p[k].lo;
       for (std::size_t j = 0; j < s_; ++j) sum += h_ * tableau_.at(tableau_.dual, i, j) * forces_at_(index(k), index(j));
-      residual_[index(i * n_ + k)] = static_cast<double>((momenta_now[i * n_ + k] - static_cast<long double>(begin_->p[k].hi)) - sum);
+      const long double gained = static_cast<long double>(momenta_at(index(k), index(i))) - begin_->p[k].hi;
+      residual_[index(i * n_ + k)] = static_cast<double>(gained - sum);
     }
   return residual_.allFinite();
 }
 
-bool StageSolver::jacobian() {
+/// Derivatives of p, ṗ and φ at the nodes.
+bool StageSolver::linearize_nodes() {
   const Index n = index(n_), r = index(rows_.size());
-  const std::size_t inputs = point_.size();
-  std::vector<MatrixXd> pq(s_), pv(s_), fq(s_), fv(s_), fl(s_), phi(s_);
-  MatrixXd all(n, index(inputs)), all_rows(index(m_), index(inputs));
-  weights_.setZero();
+  MatrixXd by_all(n, index(point_.size())), by_q(index(m_), n);
+  weights_.setZero(n);
   for (std::size_t i = 0; i < s_; ++i) {
+    NodeDerivatives& node = nodes_[i];
     fill_point(i);
     momenta_.linearize(point_);
     forces_.linearize(point_);
     if (!momenta_.finite() || !forces_.finite()) return false;
-    momenta_.block(0, all);
-    pq[i] = all.leftCols(n), pv[i] = all.middleCols(n, n);
-    forces_.block(0, all);
-    fq[i] = all.leftCols(n), fv[i] = all.middleCols(n, n);
-    weights_ = weights_.cwiseMax(pv[i].diagonal().cwiseAbs());
+    momenta_.block(0, by_all);
+    node.p_q = by_all.leftCols(n), node.p_v = by_all.middleCols(n, n);
+    forces_.block(0, by_all);
+    node.f_q = by_all.leftCols(n), node.f_v = by_all.middleCols(n, n);
+    weights_ = weights_.cwiseMax(node.p_v.diagonal().cwiseAbs());
     if (!constrained()) continue;
-    fl[i].resize(n, r), phi[i].resize(r, n);
     positions_.linearize(point_);
-    positions_.block(0, all_rows);
+    positions_.block(0, by_q);
+    node.f_lambda.resize(n, r), node.phi_q.resize(r, n);
     for (Index k = 0; k < r; ++k) {
-      const auto row = rows_[static_cast<std::size_t>(k)];
-      fl[i].col(k) = all.col(index(functions_.motion.lambda_at(row)));
-      phi[i].row(k) = all_rows.row(index(row)).head(n);
+      const std::size_t row = rows_[static_cast<std::size_t>(k)];
+      node.f_lambda.col(k) = by_all.col(index(functions_.motion.lambda_at(row)));
+      node.phi_q.row(k) = by_q.row(index(row));
     }
   }
   weights_ = weights_.cwiseSqrt();
+  return true;
+}
 
-  // Unknowns: V_1 … V_s, then h Λ_1 … h Λ_{s−1}.
+/// By the unknowns V_1 … V_s, then h Λ_1 … h Λ_{s−1}.
+bool StageSolver::jacobian() {
+  if (!linearize_nodes()) return false;
+  const Index n = index(n_), r = index(rows_.size()), first_row = index(s_) * n;
   MatrixXd j = MatrixXd::Zero(index(unknowns()), index(unknowns()));
   const auto a = [&](std::size_t row, std::size_t column) { return static_cast<double>(tableau_.at(tableau_.a, row, column)); };
   const auto dual = [&](std::size_t row, std::size_t column) { return static_cast<double>(tableau_.at(tableau_.dual, row, column)); };
   for (std::size_t i = 0; i < s_; ++i)
     for (std::size_t k = 0; k < s_; ++k) {
       auto block = j.block(index(i) * n, index(k) * n, n, n);
-      if (i == k) block += pv[i];
-      block += h_ * a(i, k) * pq[i] - h_ * dual(i, k) * fv[k];
-      for (std::size_t l = 0; l < s_; ++l) block -= h_ * h_ * dual(i, l) * a(l, k) * fq[l];
+      if (i == k) block += nodes_[i].p_v;
+      block += h_ * a(i, k) * nodes_[i].p_q - h_ * dual(i, k) * nodes_[k].f_v;
+      for (std::size_t l = 0; l < s_; ++l) block -= h_ * h_ * dual(i, l) * a(l, k) * nodes_[l].f_q;
       if (!constrained()) continue;
-      if (k + 1 < s_) j.block(index(i) * n, index(s_) * n + index(k) * r, n, r) = -dual(i, k) * fl[k];
-      if (i > 0) j.block(index(s_) * n + index(i - 1) * r, index(k) * n, r, n) = a(i, k) * phi[i];
+      if (k + 1 < s_) j.block(index(i) * n, first_row + index(k) * r, n, r) = -dual(i, k) * nodes_[k].f_lambda;
+      if (i > 0) j.block(first_row + index(i - 1) * r, index(k) * n, r, n) = a(i, k) * nodes_[i].phi_q;
     }
   equilibrate(j, row_scale_, column_scale_);
   factored_.compute(j);
@@ -156,35 +170,40 @@ bool StageSolver::jacobian() {
   return true;
 }
 
-StageStatus StageSolver::iterate() {
+/// Takes a correction of the unknowns, and measures it in the metric of the diagonal of M.
+StageSolver::Correction StageSolver::apply(const VectorXd& change) {
   const Index n = index(n_), r = index(rows_.size());
-  double last = std::numeric_limits<double>::infinity();
-  bool fresh = false;
-  const auto renew = [&] { return fresh = jacobian(); };
-  if ((!have_factors_ || factored_h_ != h_ || iterations_ > slow) && (place_nodes(), !renew())) return StageStatus::NonFinite;
+  Correction out;
+  for (std::size_t i = 0; i < s_; ++i) {
+    const auto column = index(i);
+    const VectorXd step = change.segment(column * n, n);
+    velocities_.col(column) -= step;
+    if (constrained() && i + 1 < s_) multipliers_.col(column) -= change.segment(index(s_) * n + column * r, r) / h_;
+    out.size = std::max(out.size, weights_.cwiseProduct(step).norm());
+    out.speed = std::max(out.speed, weights_.cwiseProduct(velocities_.col(column)).norm());
+    out.resolution = std::max(out.resolution, weights_.cwiseProduct(positions_at_.col(column)).norm() * epsilon / std::abs(h_));
+  }
+  return out;
+}
+
+StageStatus StageSolver::iterate() {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const bool renew = !have_factors_ || factored_h_ != h_ || iterations_ > slow;
+  place_nodes();
+  if (renew && !jacobian()) return StageStatus::NonFinite;
+  double last = infinity;
   for (iterations_ = 1; iterations_ <= most_iterations; ++iterations_) {
     if (!residual()) return StageStatus::NonFinite;
     const VectorXd change = column_scale_.cwiseProduct(factored_.solve(row_scale_.cwiseProduct(residual_)));
     if (!change.allFinite()) return factored_.rcond() > singular ? StageStatus::NonFinite : StageStatus::Singular;
-    double size = 0, reference = 0, resolution = 0;
-    for (std::size_t i = 0; i < s_; ++i) {
-      const VectorXd step = change.segment(index(i) * n, n);
-      size = std::max(size, weights_.cwiseProduct(step).norm());
-      reference = std::max(reference, weights_.cwiseProduct(velocities_.col(index(i))).norm());
-      resolution = std::max(resolution, weights_.cwiseProduct(positions_at_.col(index(i))).norm() * epsilon / std::abs(h_));
-      velocities_.col(index(i)) -= step;
-      if (constrained() && i + 1 < s_) multipliers_.col(index(i)) -= change.segment(index(s_) * n + index(i) * r, r) / h_;
-    }
+    const Correction made = apply(change);
     // Corrections that no longer shrink are rounding if they are small; the next one is foreseen from the last two.
-    const bool small = size <= 1e-11 * reference + 1e3 * resolution;
-    const double next = std::isfinite(last) ? size * size / last : size;
-    if (size == 0 || (small && size >= 0.8 * last) || next <= 0.01 * epsilon * reference) return StageStatus::Ok;
-    if (!small && size > 0.5 * last && (iterations_ > 3 || !fresh)) {
-      if (place_nodes(), !renew()) return StageStatus::NonFinite;
-      last = std::numeric_limits<double>::infinity();
-    } else {
-      last = size;
-    }
+    const bool small = made.size <= 1e-11 * made.speed + 1e3 * made.resolution;
+    const double next = last < infinity ? made.size * made.size / last : made.size;
+    if (made.size == 0 || (small && made.size >= 0.8 * last) || next <= 0.01 * epsilon * made.speed) return StageStatus::Ok;
+    const bool too_slow = !small && made.size > 0.5 * last;
+    if (too_slow && (place_nodes(), !jacobian())) return StageStatus::NonFinite;
+    last = too_slow ? infinity : made.size;
   }
   return factored_.rcond() > singular ? StageStatus::NoConvergence : StageStatus::Singular;
 }
@@ -198,87 +217,95 @@ StageStatus StageSolver::solve(const Phase& begin, double h, double end_time, Ph
   return finish(end_time, end);
 }
 
-/// q₁, p₁ by compensated sums; then v₁ with p₁ = ∂L/∂v(q₁,v₁) and, under constraints, the last multiplier, which only
-/// gives p₁ its last part so that φ̇(q₁,v₁) = 0.
 StageStatus StageSolver::finish(double end_time, Phase& end) {
-  const Index n = index(n_), r = index(rows_.size());
   if (constrained()) multipliers_.col(index(s_ - 1)).setZero();
   if (!residual()) return StageStatus::NonFinite;
-  std::vector<Compensated> q = begin_->q, p = begin_->p;
+  Phase next{end_time, begin_->q, begin_->p, {}};
   for (std::size_t k = 0; k < n_; ++k) {
     long double dq = 0, dp = 0;
     for (std::size_t j = 0; j < s_; ++j) {
       dq += tableau_.b[j] * velocities_(index(k), index(j));
       dp += tableau_.b[j] * forces_at_(index(k), index(j));
     }
-    for (const auto& [sum, increment] : {std::pair(&q[k], h_ * dq), std::pair(&p[k], h_ * dp)}) {
-      const auto leading = static_cast<double>(increment);
-      sum->add(leading);
-      sum->add(static_cast<double>(increment - leading));
-    }
+    add(next.q[k], h_ * dq);
+    add(next.p[k], h_ * dp);
   }
+  const StageStatus status = end_velocity(next);
+  if (status == StageStatus::Ok) end = std::move(next);
+  return status;
+}
 
+/// v₁ from p₁ = ∂L/∂v(q₁,v₁), by Newton. Under constraints p₁ still lacks the impulse of the last multiplier, which is what
+/// makes φ̇(q₁,v₁) = 0: it is an unknown beside v₁.
+StageStatus StageSolver::end_velocity(Phase& end) {
+  const Index n = index(n_), r = index(rows_.size());
   std::vector<double>& x = point_end_;
   std::fill(x.begin(), x.end(), 0.0);
   for (std::size_t k = 0; k < n_; ++k) {
-    x[k] = q[k].hi;
+    x[k] = end.q[k].hi;
     x[n_ + k] = velocity_at(1, k);
   }
-  x.back() = end_time;
-  const Index inputs = index(x.size());
-  MatrixXd all(n, inputs), all_rows(index(m_), inputs), bordered = MatrixXd::Zero(n + r, n + r), normals(n, r);
-  VectorXd right(n + r), impulse = VectorXd::Zero(r), rows_scaled, columns_scaled;
-  if (constrained()) {
-    forces_.linearize(x);
-    forces_.block(0, all);
-    for (Index k = 0; k < r; ++k) normals.col(k) = all.col(index(functions_.motion.lambda_at(rows_[static_cast<std::size_t>(k)])));
-  }
+  x.back() = end.t;
+  const MatrixXd normals = normals_at(x);
+  VectorXd impulse = VectorXd::Zero(r), rows_scaled, columns_scaled;
   double last = std::numeric_limits<double>::infinity();
   for (int turn = 0; turn < most_iterations; ++turn) {
-    momenta_.linearize(x);
-    if (!momenta_.finite()) return StageStatus::NonFinite;
-    momenta_.block(n_, bordered.topLeftCorner(n, n));
-    const VectorXd pushed = normals * impulse;
-    for (std::size_t k = 0; k < n_; ++k)
-      right[index(k)] = momenta_.value(k) - p[k].hi - p[k].lo - (constrained() ? pushed[index(k)] : 0);
-    if (constrained()) {
-      rates_.linearize(x);
-      rates_.block(0, all_rows);
-      for (Index k = 0; k < r; ++k) {
-        const auto row = rows_[static_cast<std::size_t>(k)];
-        bordered.row(n + k).head(n) = all_rows.row(index(row)).segment(n, n);
-        right[n + k] = rates_.value(row);
-      }
-      bordered.topRightCorner(n, r) = -normals;
-      bordered.bottomRightCorner(r, r).setZero();
-    }
-    MatrixXd scaled = bordered;
-    equilibrate(scaled, rows_scaled, columns_scaled);
-    const Eigen::PartialPivLU<MatrixXd> lu(scaled);
+    MatrixXd matrix = MatrixXd::Zero(n + r, n + r);
+    VectorXd right(n + r);
+    if (!legendre_equations(x, end, normals, impulse, matrix, right)) return StageStatus::NonFinite;
+    equilibrate(matrix, rows_scaled, columns_scaled);
+    const Eigen::PartialPivLU<MatrixXd> lu(matrix);
     const VectorXd change = columns_scaled.cwiseProduct(lu.solve(rows_scaled.cwiseProduct(right)));
     if (!change.allFinite()) return StageStatus::Singular;
-    double size = 0, reference = 0;
-    for (std::size_t k = 0; k < n_; ++k) {
-      x[n_ + k] -= change[index(k)];
-      size += std::pow(weights_[index(k)] * change[index(k)], 2);
-      reference += std::pow(weights_[index(k)] * x[n_ + k], 2);
-    }
+    Eigen::Map<VectorXd> v(x.data() + n_, n);
+    v -= change.head(n);
     impulse -= change.tail(r);
-    const bool small = size <= 1e-20 * reference;
-    if (size == 0 || (small && size >= 0.1 * last) || size < 1e-32 * reference) break;
+    const double size = weights_.cwiseProduct(change.head(n)).norm(), reference = weights_.cwiseProduct(v).norm();
+    const bool small = size <= 1e-10 * reference;
+    if (size == 0 || (small && size >= 0.3 * last) || size < 0.5 * epsilon * reference) break;
     if (turn > 20 && size >= last) return lu.rcond() > singular ? StageStatus::NoConvergence : StageStatus::Singular;
     last = size;
   }
   if (constrained()) {
-    const VectorXd pushed = normals * impulse;
-    for (std::size_t k = 0; k < n_; ++k) p[k].add(pushed[index(k)]);
+    const VectorXd push = normals * impulse;
+    for (std::size_t k = 0; k < n_; ++k) end.p[k].add(push[index(k)]);
     multipliers_.col(index(s_ - 1)) = impulse / (h_ * static_cast<double>(tableau_.b.back()));
   }
-  end.t = end_time;
-  end.q = std::move(q);
-  end.p = std::move(p);
   end.v.assign(x.begin() + static_cast<std::ptrdiff_t>(n_), x.begin() + static_cast<std::ptrdiff_t>(2 * n_));
   return StageStatus::Ok;
+}
+
+/// Aᵀ of the rows in use, at a point.
+MatrixXd StageSolver::normals_at(std::span<const double> point) {
+  MatrixXd normals(index(n_), index(rows_.size()));
+  if (!constrained()) return normals;
+  MatrixXd by_multipliers(index(n_), index(m_));
+  forces_.linearize(point);
+  forces_.block(functions_.motion.lambda_at(0), by_multipliers);
+  for (std::size_t k = 0; k < rows_.size(); ++k) normals.col(index(k)) = by_multipliers.col(index(rows_[k]));
+  return normals;
+}
+
+/// ∂L/∂v − p₁ − Aᵀ impulse = 0 and φ̇ = 0, with their derivatives by v and the impulse.
+bool StageSolver::legendre_equations(std::span<const double> point, const Phase& end, const MatrixXd& normals, const VectorXd& impulse,
+                                     MatrixXd& matrix, VectorXd& right) {
+  const Index n = index(n_), r = index(rows_.size());
+  momenta_.linearize(point);
+  if (!momenta_.finite()) return false;
+  momenta_.block(n_, matrix.topLeftCorner(n, n));
+  for (std::size_t k = 0; k < n_; ++k) right[index(k)] = momenta_.value(k) - end.p[k].hi - end.p[k].lo;
+  if (!constrained()) return true;
+  right.head(n) -= normals * impulse;
+  rates_.linearize(point);
+  MatrixXd by_velocity(index(m_), n);
+  rates_.block(n_, by_velocity);
+  for (Index k = 0; k < r; ++k) {
+    const std::size_t row = rows_[static_cast<std::size_t>(k)];
+    matrix.row(n + k).head(n) = by_velocity.row(index(row));
+    right[n + k] = rates_.value(row);
+  }
+  matrix.topRightCorner(n, r) = -normals;
+  return true;
 }
 
 void StageSolver::momenta(double t, std::span<const double> q, std::span<const double> v, std::span<double> p) {

@@ -49,6 +49,15 @@ class StageSolver {
   int iterations() const { return iterations_; }
 
  private:
+  struct NodeDerivatives {
+    Eigen::MatrixXd p_q, p_v, f_q, f_v;  // [n × n]
+    Eigen::MatrixXd f_lambda, phi_q;     // [n × rows], [rows × n]
+  };
+  /// Sizes in the metric of the diagonal of M: of a correction, of the velocities, of what rounding of q does to them.
+  struct Correction {
+    double size = 0, speed = 0, resolution = 0;
+  };
+
   static Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
   bool constrained() const { return !rows_.empty(); }
   std::size_t unknowns() const { return s_ * n_ + (s_ - 1) * rows_.size(); }
@@ -56,9 +65,15 @@ class StageSolver {
   void place_nodes();
   /// The residual of the stage equations at the present V, Λ; false where it is not finite.
   bool residual();
+  bool linearize_nodes();
   bool jacobian();
+  Correction apply(const Eigen::VectorXd& change);
   StageStatus iterate();
   StageStatus finish(double end_time, Phase& end);
+  StageStatus end_velocity(Phase& end);
+  Eigen::MatrixXd normals_at(std::span<const double> point);
+  bool legendre_equations(std::span<const double> point, const Phase& end, const Eigen::MatrixXd& normals,
+                          const Eigen::VectorXd& impulse, Eigen::MatrixXd& matrix, Eigen::VectorXd& right);
   void fill_point(std::size_t i);
 
   VariationalFunctions functions_;
@@ -73,6 +88,7 @@ class StageSolver {
   Eigen::MatrixXd positions_at_, velocities_, forces_at_;  // [n × s]
   Eigen::MatrixXd multipliers_;                            // [rows × s]
   std::vector<double> q_begin_;                            // [n]
+  std::vector<NodeDerivatives> nodes_;                     // [s]
   Eigen::VectorXd residual_, weights_;                     // [unknowns]; [n] √|M_ii|
   Eigen::VectorXd row_scale_, column_scale_;
   Eigen::PartialPivLU<Eigen::MatrixXd> factored_;

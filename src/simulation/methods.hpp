@@ -1,0 +1,23 @@
+#pragma once
+#include "simulation/function_kernels.hpp"
+#include "simulation/method.hpp"
+
+#include <maupertuis/diagnostic.hpp>
+#include <maupertuis/stiff.hpp>
+#include <maupertuis/variational.hpp>
+
+#include <memory>
+
+/// The methods beside Taylor's, from the equations of a system.
+namespace maupertuis {
+
+/// Nothing, with a diagnostic, for constraints between velocities (E0720), without a positive step (E0721), and for an
+/// order that there is none of (E0722).
+std::unique_ptr<Method> variational_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
+                                           const VariationalOptions& options, Diagnostics& diagnostics);
+
+/// Nothing, with a diagnostic, in a build without SUNDIALS (E0723) and for a tolerance that is no positive number (E0724).
+std::unique_ptr<Method> stiff_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
+                                     const StiffOptions& options, Diagnostics& diagnostics);
+
+}  // namespace maupertuis
