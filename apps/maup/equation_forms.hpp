@@ -1,4 +1,5 @@
 #pragma once
+#include "notation.hpp"
 #include "study.hpp"
 
 #include <string>
@@ -7,7 +8,6 @@
 namespace maupertuis::app {
 
 enum class Form { Standard, Solved, Matrix, Residual, Eliminated };
-enum class Notation { Plain, Latex, Mathml };
 
 /// One line `left = right` of a result; an empty left stands for `right = equal_to`, or `right = 0`.
 struct EquationLine {
@@ -32,14 +32,5 @@ EquationLine definition_line(const Intermediate& intermediate, const ReadingOrde
 
 /// `left = right`, with nothing around it.
 std::string to_text(const EquationLine& line, Notation notation, const ReadingOrder& order);
-
-/// Prose inside \text{}: the preamble of latex_document declares the letters and signs that it may hold.
-std::string latex_text(const std::string& text);
-std::string xml_text(const std::string& text);
-
-/// A LaTeX document that compiles by itself, with one aligned display.
-std::string latex_document(const std::vector<std::string>& lines);
-/// One <math> element with a table of lines.
-std::string mathml_document(const std::vector<std::string>& rows);
 
 }  // namespace maupertuis::app
