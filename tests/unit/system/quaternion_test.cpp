@@ -1,5 +1,7 @@
 #include "support.hpp"
 
+#include <eigen3/Eigen/LU>
+
 #include <array>
 #include <cmath>
 #include <random>
@@ -206,4 +208,59 @@ TEST_CASE("quaternions without units, in frames, and not in the plane") {
   CHECK(q[0] * v[0] + q[1] * v[1] + q[2] * v[2] + q[3] * v[3] == doctest::Approx(0));
   CHECK(test::value(f.system().kinetic_energy(), f.at(q, v)) ==
         doctest::Approx(test::value(b.system().kinetic_energy(), b.at(q, v))));
+}
+
+TEST_CASE("with its norm as a constraint a quaternion moves by Euler's equations") {
+  const Elaborated m(std::string(kSatellite) + "param a = 3 N m, b = 5 N m\ntorque on sat = (a, 0, b)\n");
+  const MechanicalSystem& s = m.system();
+  const Body& body = s.bodies[0];
+  ExprVector q, accelerations;
+  for (const Coordinate& c : s.coordinates) q.push_back(c.q), accelerations.push_back(c.acceleration);
+  const ExprVector forces = s.generalized_forces();
+  ExprVector balance = expand_time_derivatives(variational_residual(s.lagrangian(), q));
+  for (std::size_t i = 0; i < 4; ++i) balance[i] = balance[i] - forces[i];
+  const Expr norm = total_time_derivative(total_time_derivative(s.constraints[0].value));
+  const ExprVector row = gradient(s.constraints[0].value, q);
+
+  std::mt19937 generator(3);
+  for (int trial = 0; trial < 10; ++trial) {
+    Quaternion x = random(generator), v = random(generator);
+    const double size = std::sqrt(norm2(x));
+    double along = 0;
+    for (std::size_t i = 0; i < 4; ++i) along += (x[i] /= size) * v[i];
+    for (std::size_t i = 0; i < 4; ++i) v[i] -= along * x[i];
+    Bindings at = m.at({x.begin(), x.end()}, {v.begin(), v.end()});
+    for (const Expr& a : accelerations) at[a] = 0;
+    // M q̈ − Aᵀ λ = −h,  A q̈ = b
+    Eigen::Matrix<double, 5, 5> left = Eigen::Matrix<double, 5, 5>::Zero();
+    Eigen::Matrix<double, 5, 1> right;
+    for (int i = 0; i < 4; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      right(i) = -evaluate(balance[k], at);
+      const std::vector<double> mass = evaluate(gradient(balance[k], accelerations), at);
+      for (int j = 0; j < 4; ++j) left(i, j) = mass[static_cast<std::size_t>(j)];
+      left(4, i) = evaluate(row[k], at);
+      left(i, 4) = -left(4, i);
+    }
+    right(4) = -evaluate(norm, at);
+    Eigen::FullPivLU<Eigen::Matrix4d> mass_matrix(left.topLeftCorner<4, 4>());
+    CHECK(mass_matrix.setThreshold(1e-10).rank() == 3);
+    const Eigen::Matrix<double, 5, 1> solution = left.fullPivLu().solve(right);
+    for (int i = 0; i < 4; ++i) at[accelerations[static_cast<std::size_t>(i)]] = solution(i);
+
+    const Matrix r = rotation_of(m, body, x);
+    const double inertia[] = {1, 2, 3}, torque[] = {3, 0, 5};
+    std::array<double, 3> w = {}, rate = {};
+    for (std::size_t i = 0; i < 3; ++i) {
+      w[i] = test::value(body.angular_velocity[i], at);
+      rate[i] = evaluate(total_time_derivative(body.angular_velocity[i]), at);
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+      double along_axis = 0;
+      for (std::size_t l = 0; l < 3; ++l) along_axis += r[l][i] * torque[l];
+      CHECK(inertia[i] * rate[i] ==
+            doctest::Approx((inertia[j] - inertia[k]) * w[j] * w[k] + along_axis).epsilon(1e-10).scale(1));
+    }
+  }
 }
