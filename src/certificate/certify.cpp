@@ -54,16 +54,18 @@ CertificateCheck check_of(Route route, const RoutesResult& primes, const RoutesR
   return check;
 }
 
-void explain_dalembert(CertificateCheck& check, const MechanicalSystem& system, bool has_matter) {
-  if (!has_matter) {
-    check.applies = false;
-    check.verdict = Verdict::Undecided;
-    check.points = 0;
-    check.error_bound = 1;
-    check.statement = system.lagrangian_given ? "d'Alembert's principle does not apply: L is given whole"
-                                              : "d'Alembert's principle does not apply: no particle or body has mass";
-    return;
-  }
+void leave_out(CertificateCheck& check, std::string statement) {
+  check = {check.name, std::move(statement), Verdict::Undecided, false, 0, 1, {}, 0};
+}
+
+void explain_dalembert(CertificateCheck& check, const Questions& questions) {
+  const MechanicalSystem& system = questions.system;
+  if (questions.stretching)
+    return leave_out(check, fmt::format("d'Alembert's principle does not apply: nothing keeps the quaternion of {} at norm 1",
+                                        questions.stretching->name));
+  if (!questions.has_matter)
+    return leave_out(check, system.lagrangian_given ? "d'Alembert's principle does not apply: L is given whole"
+                                                    : "d'Alembert's principle does not apply: no particle or body has mass");
   const auto given = [](const EnergyTerm& term) { return term.origin == "T"; };
   if (std::any_of(system.kinetic.begin(), system.kinetic.end(), given))
     check.statement += "; the part of T that is given enters as it stands";
@@ -82,8 +84,12 @@ Certificate certify(const EquationsOfMotion& equations, const Derivation* readab
   if (readable) certificate.checks.push_back(forms_agree(equations, *readable, options.seed));
 
   const bool with_matrix = options.full || equations.residual.size() <= largest_checked_matrix;
-  const Questions questions(equations, with_matrix);
-  const RoutesResult primes = compare_over_primes(questions, options.seed);
+  Questions questions(equations, with_matrix);
+  RoutesResult primes = compare_over_primes(questions, options.seed);
+  if (primes.routes[Dalembert].fails && (questions.stretching = questions.body_without_rotation())) {
+    questions.has_matter = false;
+    primes = compare_over_primes(questions, options.seed);
+  }
   bool open = !primes.complete;
   for (const RouteResult& r : primes.routes) open |= r.fails;
   std::optional<RoutesResult> reals;
@@ -92,7 +98,7 @@ Certificate certify(const EquationsOfMotion& equations, const Derivation* readab
   for (const Route route : {Action, Dalembert, Power, ConstraintRows}) {
     if (route == ConstraintRows && !equations.system->constrained()) continue;
     CertificateCheck check = check_of(route, primes, reals ? &*reals : nullptr);
-    if (route == Dalembert) explain_dalembert(check, *equations.system, questions.has_matter);
+    if (route == Dalembert) explain_dalembert(check, questions);
     certificate.checks.push_back(std::move(check));
   }
   if (options.full) certificate.checks.push_back(gauge_invariance(equations, options.seed));

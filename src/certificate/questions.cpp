@@ -16,19 +16,29 @@ bool comes_from_matter(const EnergyTerm& term) {
   return false;
 }
 
-/// The coordinates of w² + x² + y² + z² − 1, of either sign; nothing for another constraint.
+/// p p/|p|², which is on the unit sphere for all p, in the place of the four numbers p.
+void put_on_sphere(const ExprVector& p, ExprMap& map) {
+  ExprVector squares;
+  for (const Expr& component : p) squares.push_back(pow(component, Rational(2)));
+  const Expr norm = p[0].context().sum(squares);
+  map.emplace(p[0], (Rational(2) * squares[0] - norm) / norm);
+  for (std::size_t k = 1; k < 4; ++k) map.emplace(p[k], Rational(2) * p[0] * p[k] / norm);
+}
+
+/// The four coordinates of a constraint that holds on their unit sphere.
 std::optional<std::array<std::size_t, 4>> unit_quaternion(const MechanicalSystem& system, const Constraint& c) {
-  std::vector<std::size_t> found;
-  ExprVector terms{system.context->number(-1)};
   const std::vector<Expr> symbols = symbols_of({&c.value, 1});
+  std::vector<std::size_t> found;
+  ExprVector p;
   for (std::size_t i = 0; i < system.coordinates.size(); ++i)
-    if (std::find(symbols.begin(), symbols.end(), system.coordinates[i].q) != symbols.end()) {
+    if (const Expr q = system.coordinates[i].q; std::find(symbols.begin(), symbols.end(), q) != symbols.end()) {
       found.push_back(i);
-      terms.push_back(pow(system.coordinates[i].q, Rational(2)));
+      p.push_back(q);
     }
   if (found.size() != 4 || c.level != Constraint::Level::Position) return std::nullopt;
-  const Expr norm = system.context->sum(terms);
-  if (zero_test(c.value - norm).verdict != Verdict::Zero && zero_test(c.value + norm).verdict != Verdict::Zero) return std::nullopt;
+  ExprMap on_sphere;
+  put_on_sphere(p, on_sphere);
+  if (zero_test(substitute(c.value, on_sphere)).verdict != Verdict::Zero) return std::nullopt;
   return std::array<std::size_t, 4>{found[0], found[1], found[2], found[3]};
 }
 
@@ -101,6 +111,27 @@ void Questions::ask_about_constraints(const EquationsOfMotion& equations, bool w
     if (with_matrix) question.bias = ask(b[k]);
     constraints.push_back(std::move(question));
   }
+}
+
+const Body* Questions::body_without_rotation() const {
+  ExprMap on_sphere;
+  for (const std::array<std::size_t, 4>& four : unit_quaternions) {
+    ExprVector p;
+    for (const std::size_t i : four) p.push_back(system.coordinates[i].q);
+    put_on_sphere(p, on_sphere);
+  }
+  for (const Body& body : system.bodies) {
+    const ExprMatrix& r = body.rotation;
+    ExprVector differences;   // R Rᵀ − 1
+    for (std::size_t i = 0; i < r.rows; ++i)
+      for (std::size_t j = 0; j <= i; ++j) {
+        ExprVector terms{system.context->number(i == j ? -1 : 0)};
+        for (std::size_t k = 0; k < r.columns; ++k) terms.push_back(r.at(i, k) * r.at(j, k));
+        differences.push_back(substitute(system.context->sum(terms), on_sphere));
+      }
+    if (zero_test(differences).verdict == Verdict::Nonzero) return &body;
+  }
+  return nullptr;
 }
 
 Root Questions::ask(Expr e) {

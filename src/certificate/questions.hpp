@@ -44,6 +44,7 @@ struct Questions {
   Roots velocities, accelerations;
   // the same mechanics without T: particles, bodies, and the energies that are given beside them
   bool has_matter = false;
+  const Body* stretching = nullptr;   // a body_without_rotation: then nothing is asked about matter
   std::vector<ParticleQuestion> particles;
   std::vector<BodyQuestion> bodies;
   Roots gravity;
@@ -56,6 +57,9 @@ struct Questions {
   std::vector<ConstraintQuestion> constraints;
   Roots constraint_forces;   // empty without constraints
   std::vector<std::array<std::size_t, 4>> unit_quaternions;   // coordinates w, x, y, z whose constraint is their norm
+
+  /// A body whose rotation matrix is none, since nothing keeps its quaternion at norm 1; null if there is none.
+  const Body* body_without_rotation() const;
 
  private:
   Root ask(Expr e);

@@ -178,3 +178,23 @@ torque on sat = (τ, 0, 0)
   wrong.residual[1] = wrong.residual[1] + model.p("τ");
   CHECK(check(wrong).verdict == Verdict::Nonzero);
 }
+
+TEST_CASE("the norm of a quaternion in another form") {
+  for (const std::string norm : {"2 w^2 + 2 x^2 + 2 y^2 + 2 z^2 = 2", "sqrt(w^2 + x^2 + y^2 + z^2) = 1", "1 = w^2 + x^2 + y^2 + z^2"}) {
+    CAPTURE(norm);
+    const ModelText model("system s\nparam I1 = 1 kg m^2, I2 = 2 kg m^2, I3 = 3 kg m^2\ncoord w, x, y, z : number\n"
+                          "body B inertia diag(I1, I2, I3) rotation quaternion (w, x, y, z)\nconstraint " + norm + "\n");
+    CHECK(certify(model.equations, nullptr).passed());
+  }
+}
+
+TEST_CASE("d'Alembert's principle says nothing of a quaternion that may stretch") {
+  const ModelText model("system s\nparam I1 = 1 kg m^2, I2 = 2 kg m^2, I3 = 3 kg m^2\ncoord w, x, y, z : number\n"
+                        "body B inertia diag(I1, I2, I3) rotation quaternion (w, x, y, z)\n");
+  for (const CertificateCheck& check : certify(model.equations, nullptr).checks) {
+    const bool dalembert = check.name == "dalembert";
+    CHECK(check.applies != dalembert);
+    if (dalembert) CHECK(check.statement.find("quaternion of B") != std::string::npos);
+    else CHECK(check.error_bound < 1e-6);
+  }
+}
