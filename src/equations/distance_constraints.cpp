@@ -99,16 +99,21 @@ std::optional<RodConstraint> find_rod(const MechanicalSystem& system, const Cons
   const std::vector<RodEnd> places = places_of(system);
   std::vector<std::set<NodeId>> reach;
   for (const RodEnd& place : places) reach.push_back(coordinates_in(place.position));
+  struct Pair { std::size_t first, second, reach; };
+  std::vector<Pair> pairs;
   for (std::size_t i = 0; i < places.size(); ++i)
     for (std::size_t j = i + 1; j < places.size(); ++j) {
       std::set<NodeId> both = reach[i];
       both.insert(reach[j].begin(), reach[j].end());
-      if (!std::includes(both.begin(), both.end(), support.begin(), support.end())) continue;
-      const bool last_fixed = places[j].fixed;   // told from the fixed end
-      auto rod = last_fixed ? between(system, constraint, places[j], places[i], support)
-                            : between(system, constraint, places[i], places[j], support);
-      if (rod) return rod;
+      if (std::includes(both.begin(), both.end(), support.begin(), support.end())) pairs.push_back({i, j, both.size()});
     }
+  // Those that depend on no other coordinates first: nearly always it is one of them.
+  std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.reach < b.reach; });
+  for (const Pair& pair : pairs) {
+    const RodEnd &a = places[pair.first], &b = places[pair.second];
+    auto rod = b.fixed ? between(system, constraint, b, a, support) : between(system, constraint, a, b, support);   // from the fixed end
+    if (rod) return rod;
+  }
   return std::nullopt;
 }
 
