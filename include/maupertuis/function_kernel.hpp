@@ -70,7 +70,7 @@ struct JacobianEntry {
   std::size_t row = 0, column = 0;
 };
 
-/// A vector function and its derivatives by all inputs, exact and sparse: the entries follow the values in one program.
+/// A vector function and its derivatives by inputs, exact and sparse: the entries follow the values in one program.
 struct DifferentiableKernel {
   FunctionKernel values;              // outputs: the values alone
   FunctionKernel values_and_entries;  // outputs: the values, then one a JacobianEntry
@@ -78,7 +78,8 @@ struct DifferentiableKernel {
   std::size_t size() const { return values.outputs(); }
 };
 
-/// Derivatives by reverse mode, one sweep a value.
+/// Derivatives by reverse mode, one sweep a value; of inputs [first, last) alone, or of all.
 DifferentiableKernel build_differentiable(const FunctionSource& source);
+DifferentiableKernel build_differentiable(const FunctionSource& source, std::size_t first, std::size_t last);
 
 }  // namespace maupertuis

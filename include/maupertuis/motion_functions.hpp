@@ -15,6 +15,8 @@ struct MotionFunctions {
   bool holonomic = true;                      // no constraint between velocities
   DifferentiableKernel balance;               // [n]
   DifferentiableKernel accelerations;         // [m]
+  DifferentiableKernel balance_by_unknowns;   // the same with derivatives by a and λ alone: M and −Aᵀ
+  DifferentiableKernel accelerations_by_unknowns;  // … A
   DifferentiableKernel rates;                 // [m]
   DifferentiableKernel positions;             // [m]; 0 for a constraint between velocities
   FunctionKernel constraint_scales;           // [2m] Σ |terms| of φ, then of the rates: what their rounding is measured against

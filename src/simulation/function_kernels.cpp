@@ -23,6 +23,10 @@ class Lowering {
 
   FunctionKernel function(std::span<const Expr> expressions) const { return build_function(source(expressions)); }
   DifferentiableKernel differentiable(std::span<const Expr> expressions) const { return build_differentiable(source(expressions)); }
+  /// With derivatives by a and λ alone.
+  DifferentiableKernel by_unknowns(std::span<const Expr> expressions) const {
+    return build_differentiable(source(expressions), 2 * velocities_.size(), inputs_.size() - 1);
+  }
   const ExprVector& velocities() const { return velocities_; }
   ExprVector positions() const { return {inputs_.begin(), inputs_.begin() + static_cast<std::ptrdiff_t>(velocities_.size())}; }
 
@@ -57,6 +61,8 @@ MotionFunctions lower_motion(const Lowering& lowering, const EquationsOfMotion& 
   }
   out.balance = lowering.differentiable(equations.balance());
   out.accelerations = lowering.differentiable(equations.constraint_accelerations);
+  out.balance_by_unknowns = lowering.by_unknowns(equations.balance());
+  out.accelerations_by_unknowns = lowering.by_unknowns(equations.constraint_accelerations);
   out.rates = lowering.differentiable(equations.constraint_rates);
   out.positions = lowering.differentiable(positions);
   ExprVector scales;

@@ -19,7 +19,9 @@ Index index(std::size_t i) { return static_cast<Index>(i); }
 }  // namespace
 
 PointSolver::PointSolver(const MotionFunctions& functions, std::span<const double> parameters)
-    : functions_(functions), balance_(functions.balance, parameters), accelerations_(functions.accelerations, parameters),
+    : functions_(functions), balance_(functions.balance_by_unknowns, parameters),
+      accelerations_(functions.accelerations_by_unknowns, parameters), full_balance_(functions.balance, parameters),
+      full_accelerations_(functions.accelerations, parameters),
       rates_(functions.rates, parameters), positions_(functions.positions, parameters),
       scales_work_(functions.constraint_scales), n_(functions.freedoms),
       m_(functions.constraints), point_(functions.inputs()), scales_(2 * functions.constraints), mass_(n_, n_),
@@ -110,12 +112,12 @@ PointStatus PointSolver::solve(double t, std::span<const double> q, std::span<co
 }
 
 void PointSolver::derivatives(MatrixXd& by_q, MatrixXd& by_v) {
-  balance_.linearize(point_);
-  accelerations_.linearize(point_);
+  full_balance_.linearize(point_);
+  full_accelerations_.linearize(point_);
   const Index n = index(n_), r = index(rows_.size());
   MatrixXd moved(n + r, 2 * n), of_balance(n, 2 * n), of_rows(index(m_), 2 * n);
-  balance_.block(0, of_balance);
-  accelerations_.block(0, of_rows);
+  full_balance_.block(0, of_balance);
+  full_accelerations_.block(0, of_rows);
   moved.topRows(n) = of_balance;
   for (Index k = 0; k < r; ++k) moved.row(n + k) = of_rows.row(index(rows_[static_cast<std::size_t>(k)]));
   const MatrixXd solved = scale_.asDiagonal() * factored_.solve(MatrixXd(scale_.asDiagonal() * moved));

@@ -69,7 +69,9 @@ class PointSolver {
   Eigen::VectorXd unscaled(const Eigen::VectorXd& right) const;
 
   MotionFunctions functions_;
-  Linearization balance_, accelerations_, rates_, positions_;
+  Linearization balance_, accelerations_;        // with derivatives by a and λ
+  Linearization full_balance_, full_accelerations_;  // … by q and v too
+  Linearization rates_, positions_;
   FunctionWorkspace scales_work_;
   std::size_t n_, m_;
   std::vector<double> point_;

@@ -237,14 +237,19 @@ FunctionKernel build_function(const FunctionSource& source) {
 }
 
 DifferentiableKernel build_differentiable(const FunctionSource& source) {
+  return build_differentiable(source, 0, source.inputs.size());
+}
+
+DifferentiableKernel build_differentiable(const FunctionSource& source, std::size_t first, std::size_t last) {
+  const auto variables = std::span(source.inputs).subspan(first, last - first);
   DifferentiableKernel result;
   result.values = build_function(source);
   FunctionSource with_entries = source;
   for (std::size_t row = 0; row < source.outputs.size(); ++row) {
-    const auto derivatives = gradient(source.outputs[row], source.inputs);
+    const auto derivatives = gradient(source.outputs[row], variables);
     for (std::size_t column = 0; column < derivatives.size(); ++column) {
       if (derivatives[column].is_zero()) continue;
-      result.entries.push_back({row, column});
+      result.entries.push_back({row, first + column});
       with_entries.outputs.push_back(derivatives[column]);
     }
   }

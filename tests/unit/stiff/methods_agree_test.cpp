@@ -1,0 +1,72 @@
+// One constrained motion by two methods that share nothing but the equations, and in independent coordinates.
+#include "../model_text.hpp"
+#include "simulation/methods.hpp"
+
+#include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/kernel.hpp>
+
+#include <cmath>
+
+namespace {
+
+using namespace maupertuis;
+using State = std::vector<double>;
+
+/// Two rods in Cartesian coordinates, the upper one rheonomic: its hinge moves.
+constexpr const char* kRods =
+    "system rods\ndimensionless\nparam m1 = 1, m2 = 1.5, g = 9.81\ncoord x1, y1, x2, y2 : number\n"
+    "T = 1/2 m1 (x1'^2 + y1'^2) + 1/2 m2 (x2'^2 + y2'^2)\nV = g (m1 y1 + m2 y2)\nD = 0.05 (x2'^2 + y2'^2)\n"
+    "constraint (x1 - sin(3 t)/10)^2 + y1^2 = 1 name upper\nconstraint (x2 - x1)^2 + (y2 - y1)^2 = 0.64 name lower\n";
+
+constexpr const char* kAngles =
+    "system rods\ndimensionless\nparam m1 = 1, m2 = 1.5, g = 9.81\ncoord a, b : angle\n"
+    "let X1 = sin(3 t)/10 + sin a\nlet Y1 = -cos a\nlet X2 = X1 + 0.8 sin b\nlet Y2 = Y1 - 0.8 cos b\n"
+    "T = 1/2 m1 (X1'^2 + Y1'^2) + 1/2 m2 (X2'^2 + Y2'^2)\nV = g (m1 Y1 + m2 Y2)\nD = 0.05 (X2'^2 + Y2'^2)\n";
+
+State run(Method& method, const State& q, const State& v, double end) {
+  method.start(0, q, v);
+  while (method.time() != end) {
+    const Step step = method.step(end);
+    INFO(step.reason);
+    REQUIRE(step.ending == StepEnding::None);
+  }
+  State out = method.sample(end).q;
+  const Sample sample = method.sample(end);
+  out.insert(out.end(), sample.multipliers.begin(), sample.multipliers.end());
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("variational, stiff and independent coordinates give one motion, and one λ") {
+  const ModelText rods(kRods), angles(kAngles);
+  Diagnostics diagnostics;
+  VariationalOptions fine;
+  fine.step = 0.01, fine.order = 8;
+  StiffOptions tight;
+  tight.tolerance = 1e-12;
+  const auto variational = variational_method(rods.equations, {}, fine, diagnostics);
+  const auto stiff = stiff_method(rods.equations, {}, tight, diagnostics);
+  const auto independent = variational_method(angles.equations, {}, fine, diagnostics);
+  const double a = 0.5, b = -0.4, end = 2;
+  const State q{std::sin(a), -std::cos(a), std::sin(a) + 0.8 * std::sin(b), -std::cos(a) - 0.8 * std::cos(b)};
+  const State v{0.3, 0, 0.3, 0};  // the hinge starts with 3/10; both angles at rest
+  const State one = run(*variational, q, v, end), two = run(*stiff, q, v, end), three = run(*independent, {a, b}, {0, 0}, end);
+  REQUIRE(one.size() == 6);
+  for (std::size_t i = 0; i < 6; ++i) CHECK(two[i] == doctest::Approx(one[i]).epsilon(1e-7));
+  const double x1 = std::sin(6.0) / 10 + std::sin(three[0]);
+  CHECK(one[0] == doctest::Approx(x1).epsilon(1e-11));
+  CHECK(one[2] == doctest::Approx(x1 + 0.8 * std::sin(three[1])).epsilon(1e-11));
+  CHECK(variational->constraint_residual() < 1e-15);
+  CHECK(stiff->constraint_residual() < 1e-15);
+}
+
+TEST_CASE("what the stiff method refuses") {
+  const ModelText rods(kRods);
+  Diagnostics diagnostics;
+  StiffOptions options;
+  options.tolerance = -1;
+  CHECK(stiff_method(rods.equations, {}, options, diagnostics) == nullptr);
+  REQUIRE(diagnostics.items().size() == 1);
+  CHECK(diagnostics.items()[0].code == "E0724");
+}
