@@ -30,6 +30,7 @@ struct StiffStepper::Impl {
   void restart();
   Step step(double bound);
   Step failed(int flag);
+  bool stands_still(double bound);
   Step ended(StepEnding ending, std::string reason) const { return {t, t, ending, std::move(reason), {}, 0}; }
   Sample sample(double time) const;
   void state_at(double time, std::span<double> out) const;
@@ -58,7 +59,7 @@ struct StiffStepper::Impl {
   bool history = false;             // CVODE holds the polynomials of the last step
   bool after_event = false;         // the last step was cut: CVODE's history goes beyond its end
   double direction = 0;
-  int stuck = 0;                    // steps in a row that did not move time
+  double t_window = 0;              // a thousand steps ago
   std::size_t steps = 0;
   double residual = 0;              // of the constraints, the largest so far
   Eigen::MatrixXd by_q, by_v;
@@ -143,7 +144,7 @@ int StiffStepper::Impl::roots(double t, N_Vector y, double* out, void* self) {
 }
 
 void StiffStepper::Impl::start(double time, std::span<const double> q, std::span<const double> v) {
-  t = t_before = time;
+  t = t_before = t_window = time;
   std::fill(now.begin(), now.end(), 0.0);
   std::copy(q.begin(), q.end(), now.begin());
   std::copy(v.begin(), v.end(), now.begin() + static_cast<std::ptrdiff_t>(n));
@@ -162,7 +163,6 @@ void StiffStepper::Impl::restart() {
   stiff::require_success(CVodeReInit(cvode.memory, t, cvode.state));
   history = after_event = false;
   direction = 0;
-  stuck = 0;
 }
 
 Step StiffStepper::Impl::step(double bound) {
@@ -201,12 +201,21 @@ Step StiffStepper::Impl::step(double bound) {
   }
   if (functions.constraints > 0 && at_point.solve(t, q_of(now), v_of(now)) == PointStatus::Ok)
     residual = std::max(residual, at_point.constraint_residual(t - t_before));
-  stuck = t == t_before ? stuck + 1 : 0;
-  if (stuck > 20) {
+  if (stands_still(bound)) {
     result.ending = StepEnding::StepUnderflow;
-    result.reason = fmt::format("steps shrink below the resolution of time at t = {:.17g} s: a collision or an infinite force", t);
+    result.reason = fmt::format("time stands still at t = {:.17g} s, so short have the steps become: a collision, an infinite force, or a "
+                                "switch with forces that push back to it from both sides, as dry friction at rest does", t);
   }
   return result;
+}
+
+/// A thousand steps that make less than a ten-billionth of the way: the rest would take longer than anyone waits.
+bool StiffStepper::Impl::stands_still(double bound) {
+  constexpr std::size_t window = 1000;
+  if (steps % window != 0) return false;
+  const double advanced = std::abs(t - t_window);
+  t_window = t;
+  return advanced < 1e-10 * std::max(std::abs(t), std::abs(bound - t));
 }
 
 Step StiffStepper::Impl::failed(int flag) {

@@ -82,7 +82,7 @@ std::string reason_of(StageStatus status, double t, double h) {
       return fmt::format("a value is infinite or undefined on the step from t = {:.17g} s to {:.17g} s", t, t + h);
     case StageStatus::NoConvergence:
       return fmt::format("Newton's iteration does not solve the discrete equations of motion on the step from t = {:.17g} s to "
-                         "{:.17g} s: the step is too long there, or no motion obeys the constraints", t, t + h);
+                         "{:.17g} s: the step is too long there, a switch lies in it, or no motion obeys the constraints", t, t + h);
     case StageStatus::Ok: break;
   }
   return {};

@@ -215,5 +215,6 @@ TEST_CASE("a run ends with its reason") {
   CHECK(ending("system fall\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - sqrt(x)\n", {1}, {0}, 10) != StepEnding::None);
   CHECK(ending("system flat\ndimensionless\ncoord x, y : number\nL = 1/2 (x' + y')^2 - x^2 - y\n", {1, 0}, {0, 0}, 1) == StepEnding::SingularMass);
   CHECK(ending("system collide\ndimensionless\ncoord x : number\nL = 1/2 x'^2 + 1/x^2\n", {1}, {0}, 10) != StepEnding::None);
+  CHECK(ending("system rubbing\ndimensionless\ncoord x : number\nL = 1/2 x'^2\nforce x = -sign(x')\n", {0}, {1}, 3) == StepEnding::StepUnderflow);
   CHECK(ending("system undefined\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - x sqrt(x)\n", {-1}, {0}, 10) == StepEnding::Overflow);
 }
