@@ -1,6 +1,7 @@
 #ifdef MAUPERTUIS_SUNDIALS
 #include "integrator/point/sample.hpp"
 #include "integrator/stiff/cvode_handles.hpp"
+#include "integrator/stiff/reason.hpp"
 
 #include <maupertuis/require.hpp>
 #include <maupertuis/stiff.hpp>
@@ -29,7 +30,10 @@ struct StiffStepper::Impl {
   void start(double time, std::span<const double> q, std::span<const double> v);
   void restart();
   Step step(double bound);
-  Step failed(int flag);
+  Step failed(int flag) const {
+    auto [ending, reason] = stiff::reason_of(flag, last_status, t);
+    return ended(ending, std::move(reason));
+  }
   bool stands_still(double bound);
   Step ended(StepEnding ending, std::string reason) const { return {t, t, ending, std::move(reason), {}, 0}; }
   Sample sample(double time) const;
@@ -216,35 +220,6 @@ bool StiffStepper::Impl::stands_still(double bound) {
   const double advanced = std::abs(t - t_window);
   t_window = t;
   return advanced < 1e-10 * std::max(std::abs(t), std::abs(bound - t));
-}
-
-Step StiffStepper::Impl::failed(int flag) {
-  const auto at = [this](const char* text) { return fmt::format("{} at t = {:.17g} s", text, t); };
-  switch (flag) {
-    case CV_RHSFUNC_FAIL:
-    case CV_FIRST_RHSFUNC_ERR:
-    case CV_REPTD_RHSFUNC_ERR:
-    case CV_UNREC_RHSFUNC_ERR:
-    case CV_RTFUNC_FAIL:
-    case CV_LSETUP_FAIL:
-      if (last_status == PointStatus::Singular)
-        return ended(StepEnding::SingularMass, at("the accelerations have no unique value: the mass matrix is singular on the "
-                                                  "motions that the constraints allow"));
-      return ended(StepEnding::Overflow, at("a value is infinite or undefined"));
-    case CV_PROJFUNC_FAIL:
-    case CV_REPTD_PROJFUNC_ERR:
-      return ended(StepEnding::NoConvergence, at("no state on the constraints was found near the one that the step reached"));
-    case CV_TOO_MUCH_ACC:
-      return ended(StepEnding::NoConvergence, at("the tolerance is finer than double precision resolves"));
-    case CV_ERR_FAILURE:
-      return ended(StepEnding::StepUnderflow, at("no step, however short, meets the tolerance: a collision, an impact or an infinite force"));
-    case CV_CONV_FAILURE:
-      return ended(StepEnding::NoConvergence, at("Newton's iteration does not converge, however short the step"));
-    case CV_ILL_INPUT:
-      return ended(StepEnding::Overflow, at("a value is infinite or undefined"));
-    default:
-      throw std::logic_error(fmt::format("the stiff method failed with code {}; please report", flag));
-  }
 }
 
 /// q, v and the integrals at a time of the last step, projected.

@@ -5,10 +5,18 @@
 
 #include <eigen3/Eigen/Dense>
 
+#include <limits>
 #include <span>
 #include <vector>
 
 namespace maupertuis::variational {
+
+inline constexpr double epsilon = std::numeric_limits<double>::epsilon();
+inline constexpr double singular = 1e-15;  // reciprocal condition of a scaled matrix
+inline constexpr int most_iterations = 60;
+
+/// Scales rows and columns of m by their largest entries, so that units do not decide what is small.
+void equilibrate(Eigen::MatrixXd& m, Eigen::VectorXd& rows, Eigen::VectorXd& columns);
 
 /// A point of the discrete motion: what one step begins and ends with.
 struct Phase {
