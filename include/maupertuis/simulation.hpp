@@ -1,4 +1,5 @@
 #pragma once
+#include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/trajectory.hpp>
@@ -61,11 +62,27 @@ struct SimulationResult {
   bool ok() const { return ending == Ending::Finished || ending == Ending::UntilReached; }
 };
 
-/// Expressions of a model in coordinates, parameters and t alone: lets and inputs put in, with their time derivatives.
-std::vector<Expr> in_terms_of_motion(const MechanicalSystem& system, std::span<const Expr> expressions);
+/// A component of the start that the constraints changed.
+struct StartAdjustment {
+  std::size_t coordinate = 0;
+  int order = 0;                            // 0: q, 1: q'
+  double from = 0, to = 0;                  // SI
+  bool written = false;                     // the model gave it: moved only because what it gives contradicts itself
+};
 
-/// The values of all parameters, as symbols bound to SI values; with t = 0 where `time` is not given.
-Bindings parameter_bindings(const MechanicalSystem& system);
+/// Where a run begins.
+struct ConsistentStart {
+  MotionState state;
+  std::vector<StartAdjustment> adjustments; // in the order of the coordinates, positions first
+  bool searched = false;                    // the unwritten coordinates were found by a search from several points
+};
+
+/// The start of the model, moved onto the constraints: what is written is kept, the rest moves by the least kinetic
+/// change, positions first, then velocities. Written values move only where they contradict the constraints or each other,
+/// with a warning; `start exactly` makes that an error. Nothing is returned where the constraints cannot be met: then
+/// `diagnostics` names a smallest set of them that clashes.
+std::optional<ConsistentStart> consistent_start(const Model& model, const EquationsOfMotion& equations,
+                                                Diagnostics& diagnostics);
 
 /// Extra functions of q, q', q'', t whose values are wanted at the times `at`.
 struct Probe {

@@ -28,6 +28,48 @@ constexpr std::array entries{
               "A run goes one way from its start: forwards, or backwards with a negative duration. States on the other "
               "side of the start need a run of their own.",
               "", ""},
+    CodeEntry{"E0707", "the start violates a constraint",
+              "`start exactly` keeps every written value as it stands. Here the written values do not lie on the "
+              "constraints, whatever the others are. Without `exactly` they are moved by the least kinetic change, with a "
+              "warning.",
+              "", ""},
+    CodeEntry{"E0708", "the constraints cannot be met",
+              "From the start, and from several other configurations, no configuration was found on which all "
+              "constraints hold: a loop that cannot close, or constraints that contradict each other. The message names a "
+              "smallest set of them that clashes. The search is local: a start near a configuration that you know to "
+              "be possible helps it.",
+              "", ""},
+    CodeEntry{"E0709", "no velocities satisfy the constraints",
+              "At the configuration of the start the constraints on the velocities contradict each other or the rates "
+              "that the start asks for.",
+              "", ""},
+    CodeEntry{"W0701", "written start values were moved onto the constraints",
+              "The values that the start gives contradict the constraints or each other, so that no choice of the "
+              "others can make them hold. They were moved by the least kinetic change. `start exactly` makes this an "
+              "error.",
+              "", ""},
+    CodeEntry{"N0701", "the start was found by a search",
+              "The coordinates that the start does not give have no solution near zero, so that one was searched for from "
+              "several points. A mechanism can often be assembled in more than one way: give more start values to choose.",
+              "", ""},
+    CodeEntry{"E0720", "the variational method does not take constraints between velocities",
+              "A constraint between velocities that no constraint between positions implies follows d'Alembert's principle, not "
+              "Hamilton's: variations obey other conditions than motions do. The default method takes it.",
+              "", ""},
+    CodeEntry{"E0721", "the variational method needs the length of its step",
+              "The steps of a variational integrator are all alike, which is why it keeps momenta and the symplectic form; its "
+              "length is given with --step.",
+              "", ""},
+    CodeEntry{"E0722", "there is no variational step of this order",
+              "Steps on s Gauss nodes have order 2s, on s Lobatto nodes 2s - 2 (under constraints). Orders from 2 to 12 are "
+              "offered; an odd number counts as the next even one.",
+              "", ""},
+    CodeEntry{"E0723", "this build has no stiff method",
+              "The stiff method is CVODE of the library SUNDIALS, which is optional when maup is built.", "", ""},
+    CodeEntry{"E0724", "the tolerance of the stiff method is no number between 0 and 1",
+              "It is relative: the error of a step is compared with the size of each coordinate and velocity times the "
+              "tolerance.",
+              "", ""},
 };
 
 }  // namespace

@@ -13,11 +13,10 @@ constexpr double most_rows = 20'000'000;   // beyond it the trajectory would not
 
 class Planner {
  public:
-  Planner(const Model& model, const SimulationOptions& options, Diagnostics& diagnostics)
-      : model_(model), options_(options), diagnostics_(diagnostics), bindings_(parameter_bindings(model.system)) {}
+  Planner(const Model& model, const EquationsOfMotion& equations, const SimulationOptions& options, Diagnostics& diagnostics)
+      : model_(model), equations_(equations), options_(options), diagnostics_(diagnostics), bindings_(parameter_bindings(model.system)) {}
 
   std::optional<RunPlan> plan() {
-    plan_.begin = value_of(model_.experiment.start_time, 0);
     if (!plan_start() || !plan_length() || !plan_output()) return std::nullopt;
     return plan_;
   }
@@ -29,19 +28,11 @@ class Planner {
   }
 
   bool plan_start() {
-    const std::size_t n = model_.system.coordinates.size();
-    plan_.q.assign(n, 0);
-    plan_.v.assign(n, 0);
-    for (const StartValue& start : model_.experiment.start) {
-      const double value = value_of(start.value, 0);
-      if (!std::isfinite(value)) {
-        diagnostics_.error("E0702", start.span, "this start value is not a finite number",
-                           "A motion can only begin from a definite state.",
-                           "Look for a division by zero or a root of a negative number in it.");
-        return false;
-      }
-      (start.order == 0 ? plan_.q : plan_.v)[start.coordinate] = value;
-    }
+    const auto start = consistent_start(model_, equations_, diagnostics_);
+    if (!start) return false;
+    plan_.begin = start->state.t;
+    plan_.q = start->state.q;
+    plan_.v = start->state.v;
     return true;
   }
 
@@ -99,6 +90,7 @@ class Planner {
   }
 
   const Model& model_;
+  const EquationsOfMotion& equations_;
   const SimulationOptions& options_;
   Diagnostics& diagnostics_;
   Bindings bindings_;
@@ -107,8 +99,9 @@ class Planner {
 
 }  // namespace
 
-std::optional<RunPlan> plan_run(const Model& model, const SimulationOptions& options, Diagnostics& diagnostics) {
-  return Planner(model, options, diagnostics).plan();
+std::optional<RunPlan> plan_run(const Model& model, const EquationsOfMotion& equations, const SimulationOptions& options,
+                                Diagnostics& diagnostics) {
+  return Planner(model, equations, options, diagnostics).plan();
 }
 
 }  // namespace maupertuis

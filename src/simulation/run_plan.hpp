@@ -15,6 +15,7 @@ struct RunPlan {
 };
 
 /// Nothing, with a diagnostic, when the run has no length or a number is not finite.
-std::optional<RunPlan> plan_run(const Model& model, const SimulationOptions& options, Diagnostics& diagnostics);
+std::optional<RunPlan> plan_run(const Model& model, const EquationsOfMotion& equations, const SimulationOptions& options,
+                                Diagnostics& diagnostics);
 
 }  // namespace maupertuis

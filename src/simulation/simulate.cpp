@@ -253,7 +253,7 @@ bool requests_lie_ahead(const RunPlan& plan, const SimulationOptions& options, D
 
 std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMotion& equations,
                                          const SimulationOptions& options, Diagnostics& diagnostics, Probe* probe) {
-  const auto plan = plan_run(model, options, diagnostics);
+  const auto plan = plan_run(model, equations, options, diagnostics);
   if (!plan || !requests_lie_ahead(*plan, options, diagnostics)) return std::nullopt;
 
   const auto begin = Clock::now();

@@ -1,0 +1,57 @@
+#pragma once
+#include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/evaluate.hpp>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace maupertuis {
+
+/// Expressions of a model in coordinates, multipliers, parameters and t alone: lets and inputs put in, with their time
+/// derivatives.
+std::vector<Expr> in_terms_of_motion(const MechanicalSystem& system, std::span<const Expr> expressions);
+
+/// The values of all parameters, as symbols bound to SI values; with t = 0.
+Bindings parameter_bindings(const MechanicalSystem& system);
+
+/// A time, a configuration and velocities.
+struct MotionState {
+  double t = 0;
+  std::vector<double> q, v;  // [n] each
+};
+
+/// The configurations and velocities that the constraints of a system allow, in numbers: for starts and for ranks at
+/// points of the manifold. Runs keep to it by the kernel.
+class ConstraintManifold {
+ public:
+  /// `rates`: further functions of q, q̇, t that the velocities must bring to zero.
+  /// Cost: that of the symbolic rows of A and of M.
+  explicit ConstraintManifold(const EquationsOfMotion& equations, std::vector<Expr> rates = {});
+  ~ConstraintManifold();
+  ConstraintManifold(ConstraintManifold&&) noexcept;
+
+  std::size_t constraints() const;  // m, without the rates
+  /// A [m × n] by rows, M [n × n] by rows; φ or ψ [m]; ψ of velocity rows, dφ/dt of the others [m].
+  std::vector<double> matrix(const MotionState& state) const;
+  std::vector<double> mass(const MotionState& state) const;
+  std::vector<double> values(const MotionState& state) const;
+  std::vector<double> rates(const MotionState& state) const;
+  /// |φ_i| divided by the sum of the sizes of its terms, 0 for constraints of velocities [m].
+  std::vector<double> relative_values(const MotionState& state) const;
+  /// |dφ_i/dt| or |ψ_i|, and the further rates, each divided by the sum of the sizes of its terms [m + rates].
+  std::vector<double> relative_rates(const MotionState& state) const;
+
+  /// Moves the coordinates that are not `fixed` [n] onto φ = 0 by the least kinetic change (Gauss-Newton in the metric M,
+  /// or in the scaled Euclidean one where M is not positive definite). Rows that are not `active` [m] are left out;
+  /// empty: all are in. False, with the best point reached in `state`, where it does not get there.
+  bool move_positions(MotionState& state, const std::vector<bool>& fixed, const std::vector<bool>& active = {}) const;
+  /// The same for the velocities, at a configuration that is on the manifold: dφ/dt = 0, ψ = 0 and the rates.
+  bool move_velocities(MotionState& state, const std::vector<bool>& fixed, const std::vector<bool>& active = {}) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace maupertuis

@@ -1,0 +1,226 @@
+#include <maupertuis/simulation.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+/// The start in stages: what is written, positions on the constraints, velocities on the constraints, what was moved.
+namespace maupertuis {
+namespace {
+
+constexpr int searches = 40;
+/// A written value that moves by less was meant: its digits end there.
+constexpr double rounding_of_digits = 1e-9;
+
+class Start {
+ public:
+  Start(const Model& model, const EquationsOfMotion& equations, Diagnostics& diagnostics)
+      : model_(model), system_(model.system), equations_(equations), diagnostics_(diagnostics),
+        bindings_(parameter_bindings(model.system)), n_(model.system.coordinates.size()) {}
+
+  std::optional<ConsistentStart> find() {
+    if (!read()) return std::nullopt;
+    if (!system_.constrained() && model_.experiment.start_rates.empty()) return ConsistentStart{state_, {}, false};
+    const ConstraintManifold manifold(equations_, rates());
+    if (!place(manifold) || !set_going(manifold)) return std::nullopt;
+    ConsistentStart out{state_, {}, searched_};
+    list(out.adjustments, state_.q, written_state_.q, written_q_, 0);
+    list(out.adjustments, state_.v, written_state_.v, written_v_, 1);
+    warn(out);
+    return out;
+  }
+
+ private:
+  double value_of(Expr e) const { return evaluate(in_terms_of_motion(system_, {&e, 1}).front(), bindings_); }
+
+  bool read() {
+    state_.q.assign(n_, 0);
+    state_.v.assign(n_, 0);
+    written_q_.assign(n_, false);
+    written_v_.assign(n_, false);
+    if (model_.experiment.start_time) state_.t = value_of(model_.experiment.start_time);
+    for (const StartValue& start : model_.experiment.start) {
+      const double value = value_of(start.value);
+      if (!std::isfinite(value)) {
+        diagnostics_.error("E0702", start.span, "this start value is not a finite number",
+                           "A motion can only begin from a definite state.",
+                           "Look for a division by zero or a root of a negative number in it.");
+        return false;
+      }
+      (start.order == 0 ? state_.q : state_.v)[start.coordinate] = value;
+      (start.order == 0 ? written_q_ : written_v_)[start.coordinate] = true;
+    }
+    written_state_ = state_;
+    return true;
+  }
+
+  std::vector<Expr> rates() const {
+    std::vector<Expr> out;
+    for (const StartRate& r : model_.experiment.start_rates) out.push_back(r.rate - r.value);
+    return out;
+  }
+
+  std::optional<Span> span() const {
+    if (!model_.experiment.start.empty()) return model_.experiment.start.front().span;
+    return std::nullopt;
+  }
+
+  std::vector<bool> nothing() const { return std::vector<bool>(n_, false); }
+
+  // ------------------------------------------------------------------------------------------------ positions
+
+  /// The written coordinates stay; then, unless they are exact, all may move; then a search over the unwritten ones.
+  bool place(const ConstraintManifold& manifold) {
+    if (system_.constraints.empty() || try_from(manifold, state_, written_q_)) return true;
+    if (search(manifold, written_q_)) return true;
+    if (model_.experiment.start_exactly && !possible_elsewhere(manifold)) return refuse_clash(manifold);
+    if (model_.experiment.start_exactly) return refuse_written(manifold);
+    if (try_from(manifold, written_state_, nothing()) || search(manifold, nothing())) return true;
+    return refuse_clash(manifold);
+  }
+
+  bool try_from(const ConstraintManifold& manifold, const MotionState& from, const std::vector<bool>& fixed) {
+    MotionState trial = from;
+    trial.v.assign(n_, 0);
+    if (!manifold.move_positions(trial, fixed)) return false;
+    state_.q = trial.q;
+    return true;
+  }
+
+  /// Newton from scattered values of the free coordinates: first near, then far. The same points in every run.
+  bool search(const ConstraintManifold& manifold, const std::vector<bool>& fixed) {
+    std::mt19937_64 random(1744);
+    double length = 0;
+    for (const Parameter& p : system_.parameters)
+      if (p.dimension == dimensions::length()) length = std::max(length, std::abs(p.si_value));
+    for (int attempt = 0; attempt < searches; ++attempt) {
+      MotionState trial = written_state_;
+      for (std::size_t i = 0; i < n_; ++i) {
+        if (fixed[i]) continue;
+        const bool is_length = system_.coordinates[i].kind == "length" && length > 0;
+        const double size = (is_length ? length : attempt < searches / 2 ? 0.5 : 3.0);
+        trial.q[i] += size * (std::generate_canonical<double, 53>(random) * 2 - 1 + (attempt == 0 ? 1 : 0));
+      }
+      if (!try_from(manifold, trial, fixed)) continue;
+      searched_ = true;
+      return true;
+    }
+    return false;
+  }
+
+  bool possible_elsewhere(const ConstraintManifold& manifold) {
+    const MotionState keep = state_;
+    const bool possible = try_from(manifold, written_state_, nothing()) || search(manifold, nothing());
+    state_ = keep;
+    return possible;
+  }
+
+  bool refuse_written(const ConstraintManifold& manifold) {
+    const auto off = manifold.relative_values(written_state_);
+    const auto worst = static_cast<std::size_t>(std::max_element(off.begin(), off.end()) - off.begin());
+    diagnostics_.error("E0707", span(), fmt::format("the start violates {}", system_.constraint_label(worst)),
+                       "`start exactly` keeps the written values, and no choice of the others satisfies the constraints.",
+                       "Correct the values, give fewer of them, or leave out `exactly`.");
+    return false;
+  }
+
+  /// Leaves out one constraint after the other as long as the rest still clashes.
+  bool refuse_clash(const ConstraintManifold& manifold) {
+    std::vector<bool> active(manifold.constraints(), true);
+    for (std::size_t i = 0; i < active.size(); ++i) {
+      active[i] = false;
+      MotionState trial = written_state_;
+      trial.v.assign(n_, 0);
+      if (manifold.move_positions(trial, nothing(), active)) active[i] = true;
+    }
+    std::string names;
+    std::optional<Span> place;
+    for (std::size_t i = 0; i < active.size(); ++i) {
+      if (!active[i]) continue;
+      names += (names.empty() ? "" : ", ") + system_.constraint_label(i);
+      place = system_.constraints[i].span;
+    }
+    diagnostics_.error("E0708", place, fmt::format("no configuration satisfies {}", names),
+                       "These constraints exclude each other from where the motion starts: the loop cannot close.",
+                       "Check the lengths in them, or start nearer to a configuration that is possible.");
+    return false;
+  }
+
+  // ----------------------------------------------------------------------------------------------- velocities
+
+  bool set_going(const ConstraintManifold& manifold) {
+    if (move(manifold, written_v_)) return true;
+    const auto off = manifold.relative_rates(written_state_at(state_.q));
+    const auto worst = static_cast<std::size_t>(std::max_element(off.begin(), off.end()) - off.begin());
+    const bool is_rate = worst >= manifold.constraints();
+    const std::string label = is_rate ? "the angular velocity of the start" : system_.constraint_label(worst);
+    if (model_.experiment.start_exactly) {
+      diagnostics_.error("E0707", span(), fmt::format("the velocities of the start violate {}", label),
+                         "`start exactly` keeps the written values, and no choice of the others satisfies the constraints.",
+                         "Correct the values, give fewer of them, or leave out `exactly`.");
+      return false;
+    }
+    if (move(manifold, nothing())) return true;
+    diagnostics_.error("E0709", is_rate ? model_.experiment.start_rates.front().span : system_.constraints[worst].span,
+                       fmt::format("no velocities satisfy {} at the start", label),
+                       "At this configuration the constraints on the velocities exclude each other.",
+                       "Start from another configuration, or check the constraints.");
+    return false;
+  }
+
+  MotionState written_state_at(const std::vector<double>& q) const { return {state_.t, q, written_state_.v}; }
+
+  bool move(const ConstraintManifold& manifold, const std::vector<bool>& fixed) {
+    MotionState trial = written_state_at(state_.q);
+    if (!manifold.move_velocities(trial, fixed)) return false;
+    state_.v = trial.v;
+    return true;
+  }
+
+  // --------------------------------------------------------------------------------------------------- report
+
+  static void list(std::vector<StartAdjustment>& out, const std::vector<double>& now, const std::vector<double>& before,
+                   const std::vector<bool>& written, int order) {
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      const double change = std::abs(now[i] - before[i]);
+      if (change > (written[i] ? rounding_of_digits * std::abs(before[i]) : 0)) out.push_back({i, order, before[i], now[i], written[i]});
+    }
+  }
+
+  void warn(const ConsistentStart& out) {
+    std::string moved;
+    for (const StartAdjustment& a : out.adjustments)
+      if (a.written)
+        moved += fmt::format("{}{}{} from {:g} to {:g}", moved.empty() ? "" : ", ", system_.coordinates[a.coordinate].name,
+                             a.order == 0 ? "" : "'", a.from, a.to);
+    if (!moved.empty())
+      diagnostics_.warning("W0701", span(), fmt::format("the start was moved onto the constraints: {} (SI units)", moved),
+                           "The written values contradict the constraints, so that the least kinetic change was made.",
+                           "Correct the values, or give fewer of them.");
+    else if (out.searched)
+      diagnostics_.note("N0701", span(), "the start was found by a search",
+                        "There is no solution near zero for the coordinates that the start does not give; others may exist.",
+                        "Give more start values to choose how the system is assembled.");
+  }
+
+  const Model& model_;
+  const MechanicalSystem& system_;
+  const EquationsOfMotion& equations_;
+  Diagnostics& diagnostics_;
+  Bindings bindings_;
+  std::size_t n_;
+  MotionState state_, written_state_;
+  std::vector<bool> written_q_, written_v_;
+  bool searched_ = false;
+};
+
+}  // namespace
+
+std::optional<ConsistentStart> consistent_start(const Model& model, const EquationsOfMotion& equations,
+                                                Diagnostics& diagnostics) {
+  return Start(model, equations, diagnostics).find();
+}
+
+}  // namespace maupertuis
