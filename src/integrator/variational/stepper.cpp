@@ -37,7 +37,13 @@ struct VariationalStepper::Impl {
 
   void start(double t, std::span<const double> q, std::span<const double> v);
   Step step(double bound);
-  bool find_event(Step& result);
+  struct Root {
+    std::size_t event = 0;
+    double t = 0;
+  };
+  double refine(std::size_t i, double low, double high, bool rising) const;
+  std::optional<Root> first_root() const;
+  void end_at(double t);
   double event_value(std::size_t i, const Phase& phase) const;
   StageStatus part_of_step(double t, Phase& end) const;
   void add_integrals(StageSolver& stages, double h, std::vector<Compensated>& sums) const;
@@ -149,7 +155,11 @@ Step VariationalStepper::Impl::step(double bound) {
   ++steps, ++counted;
   Step result;
   result.begin = before.t;
-  if (!find_event(result)) add_integrals(solver, h, integrals);
+  if (const auto root = event_values.empty() ? std::nullopt : first_root()) {
+    result.event = root->event;
+    end_at(root->t);
+  }
+  add_integrals(solver, h, integrals);
   result.end = now.t;
   q_now = leading(now.q), p_now = leading(now.p);
   if (functions.constraints > 0 && at_point.solve(now.t, q_now, now.v) == PointStatus::Ok)
@@ -169,44 +179,53 @@ double VariationalStepper::Impl::event_value(std::size_t i, const Phase& phase) 
   return event_values[i];
 }
 
-/// Shortens the step to the first root of an event function between its ends. A zero at the very beginning does not count.
-bool VariationalStepper::Impl::find_event(Step& result) {
+/// Halves [low, high] until nothing lies between: the time just at or after the root of event i.
+double VariationalStepper::Impl::refine(std::size_t i, double low, double high, bool rising) const {
+  Phase phase;
+  while (true) {
+    const double middle = low + (high - low) / 2;
+    if (middle == low || middle == high || part_of_step(middle, phase) != StageStatus::Ok) return high;
+    const double value = event_value(i, phase);
+    (value != 0 && (value < 0) == rising ? low : high) = middle;
+  }
+}
+
+/// The first root of an event function in the step, seen by its signs at a few times. A zero at the very beginning does not
+/// count.
+std::optional<VariationalStepper::Impl::Root> VariationalStepper::Impl::first_root() const {
   constexpr int parts = 4;
-  if (event_values.empty()) return false;
   std::vector<double> last(event_values.size());
+  for (std::size_t i = 0; i < last.size(); ++i) last[i] = event_value(i, before);
   double last_t = before.t;
-  for (int part = 0; part <= parts; ++part) {
+  for (int part = 1; part <= parts; ++part) {
     const double t = part == parts ? now.t : before.t + h * part / parts;
-    Phase phase = part == 0 ? before : now;
-    if (part > 0 && part < parts && part_of_step(t, phase) != StageStatus::Ok) continue;
+    Phase phase = now;
+    if (part < parts && part_of_step(t, phase) != StageStatus::Ok) continue;
+    std::optional<Root> root;
     for (std::size_t i = 0; i < last.size(); ++i) {
       const double value = event_value(i, phase);
-      if (part > 0 && last[i] != 0 && (value == 0 || (value > 0) != (last[i] > 0))) {
-        double low = last_t, high = t;
-        const bool rising = last[i] < 0;
-        while (true) {
-          const double middle = low + (high - low) / 2;
-          if (middle == low || middle == high || part_of_step(middle, phase) != StageStatus::Ok) break;
-          const double at_middle = event_value(i, phase);
-          (at_middle != 0 && (at_middle < 0) == rising ? low : high) = middle;
-        }
-        if (high != now.t && part_of_step(high, phase) == StageStatus::Ok) {
-          add_integrals(partial, high - before.t, integrals);
-          now = std::move(phase);
-          h = high - before.t;
-          solver = partial;
-        } else {
-          add_integrals(solver, h, integrals);
-        }
-        t_start = now.t, counted = 0;
-        result.event = i;
-        return true;
+      const bool crosses = last[i] != 0 && (value == 0 || (value > 0) != (last[i] > 0));
+      if (crosses) {
+        const double at = refine(i, last_t, t, last[i] < 0);
+        if (!root || std::abs(at - before.t) < std::abs(root->t - before.t)) root = Root{i, at};
       }
       last[i] = value;
     }
+    if (root) return root;
     last_t = t;
   }
-  return false;
+  return std::nullopt;
+}
+
+/// Shortens the last step so that it ends at t; the next one begins a new count.
+void VariationalStepper::Impl::end_at(double t) {
+  Phase phase;
+  if (t != now.t && part_of_step(t, phase) == StageStatus::Ok) {
+    now = std::move(phase);
+    h = t - before.t;
+    solver = partial;
+  }
+  t_start = now.t, counted = 0;
 }
 
 void VariationalStepper::Impl::add_integrals(StageSolver& stages, double length, std::vector<Compensated>& sums) const {

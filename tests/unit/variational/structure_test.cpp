@@ -187,6 +187,21 @@ TEST_CASE("a run ends with its reason: a step too long, a singular mass, a value
   CHECK(ending("system stiff\ndimensionless\ncoord a : angle\nL = 1/2 a'^2 + 1000 cos(a + sin a)\n", {1}, {70}, 3) == StepEnding::NoConvergence);
 }
 
+TEST_CASE("of two events in one step the earlier one ends it") {
+  const ModelText model("system line\ndimensionless\ncoord x : number\nL = 1/2 x'^2\n");
+  const Expr x = model.q(0);
+  const VariationalFunctions functions = variational_functions(model.equations, {{}, {x - Rational(3, 5), x - Rational(11, 20)}, {}});
+  VariationalOptions options;
+  options.step = 1, options.order = 2;
+  VariationalStepper stepper(functions, {}, options);
+  stepper.start(0, State{0}, State{1});
+  const Step step = stepper.step(10);
+  REQUIRE(step.event);
+  CHECK(*step.event == 1);
+  CHECK(step.end == doctest::Approx(0.55).epsilon(1e-15));
+  CHECK(*stepper.step(10).event == 0);
+}
+
 TEST_CASE("an event is located by the method itself") {
   const ModelText model("system pendulum\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\n");
   const VariationalFunctions functions = variational_functions(model.equations, {{}, {model.q(0)}, {}});
