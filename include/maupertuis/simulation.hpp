@@ -12,8 +12,14 @@
 
 namespace maupertuis {
 
+/// How steps are made. Automatic: Taylor's, and the stiff method from where stability limits them.
+enum class StepMethod { Automatic, Taylor, Variational, Stiff };
+
 struct SimulationOptions {
-  double tolerance = 0;                     // relative, per step; 0: rounding level of double
+  StepMethod method = StepMethod::Automatic;
+  double step = 0;                          // s, Variational: the length of its steps
+  int order = 0;                            // 0: from the tolerance (Taylor), 4 (Variational)
+  double tolerance = 0;                     // relative, per step; 0: rounding level of double (Stiff: 1e-10)
   std::optional<double> duration;           // s, instead of the model's run; negative: backwards in time
   std::vector<double> at;                   // s: times at which the state is wanted exactly; beyond the run: it goes on to them
   std::optional<double> output_every;       // s
@@ -35,6 +41,7 @@ enum class Ending {
   Interrupted,
   SingularMass,
   SingularConstraints,
+  NoConvergence,    // the equations of an implicit step were not solved
   Overflow,
   StepUnderflow,
   Sliding,
@@ -47,6 +54,7 @@ struct SimulationStatistics {
   double compile_seconds = 0;               // model to kernel
   int order = 0;
   std::string backend = "interpreter";
+  std::string method = "taylor";            // of the last step: taylor, variational, stiff
   double energy_drift = 0;                  // docs/theory: |h_E(t) − h_E(0) − work| / max Σ|terms of h_E|
   double constraint_residual = 0;           // docs/theory: largest φ, dφ/dt, ψ, each by the sizes of its terms
   std::size_t switches = 0;                 // located switch crossings
@@ -61,6 +69,10 @@ struct SimulationResult {
   std::string reason;                       // one sentence for every ending but Finished
   bool ok() const { return ending == Ending::Finished || ending == Ending::UntilReached; }
 };
+
+/// Expressions with the values of reactions in place of their symbols. A reaction that the model does not determine
+/// stays a symbol.
+std::vector<Expr> with_reactions(const EquationsOfMotion& equations, std::span<const Expr> expressions);
 
 /// A component of the start that the constraints changed.
 struct StartAdjustment {

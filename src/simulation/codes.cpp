@@ -48,6 +48,12 @@ constexpr std::array entries{
               "others can make them hold. They were moved by the least kinetic change. `start exactly` makes this an "
               "error.",
               "", ""},
+    CodeEntry{"N0702", "the stiff method took over",
+              "Where a fast, strongly damped motion has died out, an explicit method still has to follow its time scale. "
+              "The default method sees that its steps are far shorter than the times in which the velocities change and "
+              "goes on with backward differentiation formulas. They keep a tolerance (1e-10, or --tol), not rounding "
+              "level. --method taylor forbids the change, --method stiff uses it from the start.",
+              "", ""},
     CodeEntry{"N0701", "the start was found by a search",
               "The coordinates that the start does not give have no solution near zero, so that one was searched for from "
               "several points. A mechanism can often be assembled in more than one way: give more start values to choose.",

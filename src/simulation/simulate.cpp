@@ -2,7 +2,10 @@
 #include <maupertuis/simulation.hpp>
 
 #include "simulation/energy_terms.hpp"
+#include "simulation/methods.hpp"
+#include "simulation/observables.hpp"
 #include "simulation/run_plan.hpp"
+#include "simulation/stiffness.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +16,7 @@
 #include <numeric>
 
 /// One run, in named stages: plan (numbers), kernel (program), steps, measures. The observables of the kernel are, in
-/// this order: the terms of h_E, the positions of the points, the probes.
+/// this order: the terms of h_E, the positions of the points, the reactions, the probes.
 namespace maupertuis {
 namespace {
 
@@ -21,27 +24,8 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-struct Observables {
-  std::size_t energy_terms = 0, points = 0, probes = 0;
-  std::vector<Expr> expressions;
-};
-
-Observables collect_observables(const EquationsOfMotion& equations, const Probe* probe) {
-  Observables out;
-  out.expressions = energy_terms(equations);
-  out.energy_terms = out.expressions.size();
-  for (const Point& point : equations.system->points)
-    out.expressions.insert(out.expressions.end(), point.position.begin(), point.position.end());
-  out.points = out.expressions.size() - out.energy_terms;
-  if (probe) {
-    out.expressions.insert(out.expressions.end(), probe->expressions.begin(), probe->expressions.end());
-    out.probes = probe->expressions.size();
-  }
-  return out;
-}
-
-Kernel kernel_of(const Model& model, const EquationsOfMotion& equations, const Observables& observables, bool until) {
-  const MechanicalSystem& system = model.system;
+Kernel kernel_of(const EquationsOfMotion& equations, const WantedFunctions& wanted) {
+  const MechanicalSystem& system = *equations.system;
   KernelSource source;
   for (const Coordinate& c : system.coordinates) source.coordinates.push_back(c.q);
   for (const Parameter& p : system.parameters) source.parameters.push_back(p.symbol);
@@ -52,16 +36,52 @@ Kernel kernel_of(const Model& model, const EquationsOfMotion& equations, const O
     const Expr value = in_terms_of_motion(system, {&c.value, 1}).front();
     source.constraints.push_back({value, c.level == Constraint::Level::Position ? 0 : 1, system.constraint_label(i)});
   }
-  source.observables = in_terms_of_motion(system, observables.expressions);
-  if (until) source.events = in_terms_of_motion(system, {&model.experiment.until, 1});
-  source.integrands = in_terms_of_motion(system, {&equations.power, 1});
+  source.observables = in_terms_of_motion(system, wanted.observables);
+  source.events = in_terms_of_motion(system, wanted.events);
+  source.integrands = in_terms_of_motion(system, wanted.integrands);
   return build_kernel(source);
+}
+
+std::unique_ptr<Method> taylor_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
+                                      const SimulationOptions& options) {
+  TaylorOptions out;
+  out.tolerance = options.tolerance;
+  out.order = options.order;
+  out.maximum_steps = options.maximum_steps;
+  out.interrupt = options.interrupt;
+  return method_of(TaylorStepper(kernel_of(equations, wanted), parameter_values(*equations.system), out));
+}
+
+std::unique_ptr<Method> stiff_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
+                                     const SimulationOptions& options, Diagnostics& diagnostics) {
+  StiffOptions out;
+  if (options.tolerance != 0) out.tolerance = options.tolerance;
+  out.maximum_steps = options.maximum_steps;
+  out.interrupt = options.interrupt;
+  return stiff_method(equations, wanted, out, diagnostics);
+}
+
+std::unique_ptr<Method> first_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
+                                     const SimulationOptions& options, Diagnostics& diagnostics) {
+  if (options.method == StepMethod::Stiff) return stiff_method(equations, wanted, options, diagnostics);
+  if (options.method != StepMethod::Variational) return taylor_method(equations, wanted, options);
+  VariationalOptions out;
+  out.step = options.step;
+  if (options.order != 0) out.order = options.order;
+  out.maximum_steps = options.maximum_steps;
+  out.interrupt = options.interrupt;
+  return variational_method(equations, wanted, out, diagnostics);
+}
+
+std::string_view word_of(StepMethod method) {
+  return method == StepMethod::Stiff ? "stiff" : method == StepMethod::Variational ? "variational" : "taylor";
 }
 
 Ending ending_of(StepEnding ending) {
   switch (ending) {
     case StepEnding::SingularMass: return Ending::SingularMass;
     case StepEnding::SingularConstraints: return Ending::SingularConstraints;
+    case StepEnding::NoConvergence: return Ending::NoConvergence;
     case StepEnding::Overflow: return Ending::Overflow;
     case StepEnding::StepUnderflow: return Ending::StepUnderflow;
     case StepEnding::Sliding: return Ending::Sliding;
@@ -77,6 +97,9 @@ class EnergyBalance {
  public:
   explicit EnergyBalance(std::size_t terms) : terms_(terms) {}
 
+  /// Another method takes over: its integrals start at zero again.
+  void carry_over(const Sample& last) { work_before_ += last.integrals[0]; }
+
   void add(const Sample& sample) {
     double energy = 0, scale = 0;
     for (std::size_t i = 0; i < terms_; ++i) {
@@ -87,7 +110,7 @@ class EnergyBalance {
     if (!begun_) first_ = energy;
     begun_ = true;
     largest_scale_ = std::max(largest_scale_, scale);
-    largest_error_ = std::max(largest_error_, std::abs(energy - first_ - sample.integrals[0]));
+    largest_error_ = std::max(largest_error_, std::abs(energy - first_ - work_before_ - sample.integrals[0]));
   }
 
   double energy_of(const Sample& sample) const {
@@ -98,45 +121,36 @@ class EnergyBalance {
  private:
   std::size_t terms_;
   bool begun_ = false;
-  double first_ = 0, largest_scale_ = 0, largest_error_ = 0;
+  double first_ = 0, largest_scale_ = 0, largest_error_ = 0, work_before_ = 0;
 };
 
 class Run {
  public:
+  /// `stiff` makes the method that takes over where stability limits the steps; it may be empty.
   Run(const Model& model, const SimulationOptions& options, const RunPlan& plan, const Observables& observables,
-      const Kernel& kernel, Probe* probe)
+      std::unique_ptr<Method> method, std::function<std::unique_ptr<Method>()> stiff, Probe* probe)
       : model_(model), options_(options), plan_(plan), observables_(observables), probe_(probe),
-        stepper_(kernel, parameter_values(model.system), stepper_options(options)), balance_(observables.energy_terms) {
+        method_(std::move(method)), stiff_(std::move(stiff)), balance_(observables.energy_terms) {
+    result_.statistics.method = word_of(options.method);
     name_columns();
     sort_requests();
   }
 
   SimulationResult carry_out() {
-    stepper_.start(plan_.begin, plan_.q, plan_.v);
-    result_.start = state_of(stepper_.sample(plan_.begin));
-    result_.statistics.order = stepper_.order();
+    method_->start(plan_.begin, plan_.q, plan_.v);
+    result_.start = state_of(method_->sample(plan_.begin));
+    result_.statistics.order = method_->order();
     const auto begin = Clock::now();
     record_covered();
-    while (stepper_.time() != plan_.end && advance()) record_covered();
+    while (method_->time() != plan_.end && advance()) record_covered();
     result_.statistics.seconds = seconds_since(begin);
     finish();
     return std::move(result_);
   }
 
- private:
-  static std::vector<double> parameter_values(const MechanicalSystem& system) {
-    std::vector<double> values;
-    for (const Parameter& p : system.parameters) values.push_back(p.si_value);
-    return values;
-  }
-  static TaylorOptions stepper_options(const SimulationOptions& options) {
-    TaylorOptions out;
-    out.tolerance = options.tolerance;
-    out.maximum_steps = options.maximum_steps;
-    out.interrupt = options.interrupt;
-    return out;
-  }
+  bool turned_stiff() const { return turned_stiff_; }
 
+ private:
   void name_columns() {
     auto& columns = result_.trajectory.columns;
     const auto unit = [&](const Dimension& d) { return model_.system.dimensionless ? std::string() : to_string(d); };
@@ -146,6 +160,7 @@ class Run {
     for (const Point& p : model_.system.points)
       for (std::size_t axis = 0; axis < p.position.size(); ++axis)
         columns.push_back({p.name + "." + "xyz"[axis], unit(dimensions::length())});
+    for (const Observables::Named& r : observables_.reactions) columns.push_back({r.name, unit(r.dimension)});
     columns.push_back({"energy", unit(dimensions::energy())});
   }
 
@@ -163,8 +178,8 @@ class Run {
 
   /// One step. False when the run ends here.
   bool advance() {
-    const Step step = stepper_.step(plan_.end);
-    if (step.begin != step.end) balance_.add(stepper_.step_start());
+    const Step step = method_->step(plan_.end);
+    if (step.begin != step.end) balance_.add(method_->step_start());
     if (step.ending != StepEnding::None) {
       result_.ending = ending_of(step.ending);
       result_.reason = step.reason;
@@ -173,26 +188,51 @@ class Run {
     }
     if (step.event && plan_.until) {
       result_.ending = Ending::UntilReached;
-      result_.reason = fmt::format("the condition of `run until` was met at t = {:.17g} s", stepper_.time());
+      result_.reason = fmt::format("the condition of `run until` was met at t = {:.17g} s", method_->time());
       record_covered();
       return false;
     }
-    if (options_.progress && stepper_.steps() % 1024 == 0)
-      options_.progress((stepper_.time() - plan_.begin) / (plan_.end - plan_.begin));
+    if (stiff_ && watch_.sees_stiffness(method_->step_start(), step, plan_.end)) change_method();
+    if (options_.progress && method_->steps() % 1024 == 0)
+      options_.progress((method_->time() - plan_.begin) / (plan_.end - plan_.begin));
     return true;
   }
 
+  /// From the state that is reached. What the last step covers has to be recorded before.
+  void change_method() {
+    auto stiff = std::exchange(stiff_, nullptr)();
+    if (!stiff) return;
+    record_covered();
+    const Sample last = method_->sample(method_->time());
+    balance_.carry_over(last);
+    steps_before_ += method_->steps();
+    residual_before_ = method_->constraint_residual();
+    method_ = std::move(stiff);
+    method_->start(last.t, last.q, last.v);
+    result_.statistics.method = word_of(StepMethod::Stiff);
+    result_.statistics.order = method_->order();
+    turned_stiff_ = true;
+  }
+
   void record_covered() {
-    while (next_output_ < plan_.output_times.size() && stepper_.covers(plan_.output_times[next_output_]))
-      add_row(stepper_.sample(plan_.output_times[next_output_++]));
-    while (next_request_ < requests_.size() && stepper_.covers(options_.at[requests_[next_request_]])) {
+    while (next_output_ < plan_.output_times.size() && method_->covers(plan_.output_times[next_output_]))
+      add_row(sample(plan_.output_times[next_output_++]));
+    while (next_request_ < requests_.size() && method_->covers(options_.at[requests_[next_request_]])) {
       const std::size_t index = requests_[next_request_++];
-      const Sample sample = stepper_.sample(options_.at[index]);
-      answers_[index] = state_of(sample);
+      const Sample found = sample(options_.at[index]);
+      answers_[index] = state_of(found);
       if (probe_)
-        probe_->values[index].assign(sample.observables.end() - static_cast<std::ptrdiff_t>(observables_.probes),
-                                     sample.observables.end());
+        probe_->values[index].assign(found.observables.end() - static_cast<std::ptrdiff_t>(observables_.probes),
+                                     found.observables.end());
     }
+  }
+
+  /// What depends on a multiplier that the equations do not determine is no number.
+  Sample sample(double t) const {
+    Sample out = method_->sample(t);
+    for (const Observables::Dependence& d : observables_.dependences)
+      if (std::isnan(out.multipliers[d.constraint])) out.observables[d.observable] = std::numeric_limits<double>::quiet_NaN();
+    return out;
   }
 
   void add_row(const Sample& sample) {
@@ -202,14 +242,15 @@ class Run {
     values.insert(values.end(), sample.q.begin(), sample.q.end());
     values.insert(values.end(), sample.v.begin(), sample.v.end());
     const auto points = sample.observables.begin() + static_cast<std::ptrdiff_t>(observables_.energy_terms);
-    values.insert(values.end(), points, points + static_cast<std::ptrdiff_t>(observables_.points));
+    const std::size_t shown = observables_.points + observables_.reactions.size();
+    values.insert(values.end(), points, points + static_cast<std::ptrdiff_t>(shown));
     values.push_back(balance_.energy_of(sample));
   }
 
   static State state_of(const Sample& sample) { return {sample.t, sample.q, sample.v, sample.a, sample.multipliers}; }
 
   void finish() {
-    const Sample last = stepper_.sample(stepper_.time());
+    const Sample last = sample(method_->time());
     balance_.add(last);
     if (result_.trajectory.times.empty() || result_.trajectory.times.back() != last.t) add_row(last);
     result_.final = state_of(last);
@@ -218,9 +259,9 @@ class Run {
       result_.ending = Ending::UntilNotReached;
       result_.reason = fmt::format("the condition of `run until` was not met within {:g} s", std::abs(plan_.end - plan_.begin));
     }
-    result_.statistics.steps = stepper_.steps();
-    result_.statistics.switches = stepper_.switches();
-    result_.statistics.constraint_residual = stepper_.constraint_residual();
+    result_.statistics.steps = steps_before_ + method_->steps();
+    result_.statistics.switches = method_->switches();
+    result_.statistics.constraint_residual = std::max(residual_before_, method_->constraint_residual());
     result_.statistics.energy_drift = balance_.drift();
   }
 
@@ -229,13 +270,30 @@ class Run {
   const RunPlan& plan_;
   const Observables& observables_;
   Probe* probe_;
-  TaylorStepper stepper_;
+  std::unique_ptr<Method> method_;
+  std::function<std::unique_ptr<Method>()> stiff_;
+  StiffnessWatch watch_;
+  bool turned_stiff_ = false;
+  std::size_t steps_before_ = 0;
+  double residual_before_ = 0;
   EnergyBalance balance_;
   SimulationResult result_;
   std::vector<std::size_t> requests_;
   std::vector<State> answers_;
   std::size_t next_output_ = 0, next_request_ = 0;
 };
+
+std::string title_of(const std::string& method) {
+  return method == "taylor" ? "Taylor" : method == "stiff" ? "stiff (backward differentiation)" : "variational";
+}
+
+void note_stiffness(const SimulationResult& result, Diagnostics& diagnostics) {
+  diagnostics.note("N0702", std::nullopt, "the stiff method took over",
+                   fmt::format("Fast, strongly damped parts of the motion had died out, and yet limited Taylor's steps; "
+                               "the backward differentiation formulas went on with a tolerance of {:g} to t = {:g} s.",
+                               1e-10, result.final.t),
+                   "Use --method taylor to keep Taylor's steps, or --tol for another tolerance.");
+}
 
 bool requests_lie_ahead(const RunPlan& plan, const SimulationOptions& options, Diagnostics& diagnostics) {
   for (const double t : options.at) {
@@ -258,14 +316,21 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
 
   const auto begin = Clock::now();
   const Observables observables = collect_observables(equations, probe);
-  const Kernel kernel = kernel_of(model, equations, observables, plan->until);
-  Run run(model, options, *plan, observables, kernel, probe);
+  WantedFunctions wanted{observables.expressions, {}, {equations.power}};
+  if (plan->until) wanted.events.push_back(model.experiment.until);
+  auto method = first_method(equations, wanted, options, diagnostics);
+  if (!method) return std::nullopt;
+  std::function<std::unique_ptr<Method>()> stiff;
+  if (options.method == StepMethod::Automatic && has_stiff_method())
+    stiff = [&] { return stiff_method(equations, wanted, options, diagnostics); };
+  Run run(model, options, *plan, observables, std::move(method), std::move(stiff), probe);
   const double compile_seconds = seconds_since(begin);
 
   SimulationResult result = run.carry_out();
+  if (run.turned_stiff()) note_stiffness(result, diagnostics);
   result.statistics.compile_seconds = compile_seconds;
   result.trajectory.metadata["system"] = model.system.name;
-  result.trajectory.metadata["method"] = fmt::format("Taylor, order {}", result.statistics.order);
+  result.trajectory.metadata["method"] = fmt::format("{}, order {}", title_of(result.statistics.method), result.statistics.order);
   return result;
 }
 

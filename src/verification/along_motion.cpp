@@ -4,9 +4,11 @@
 
 namespace maupertuis {
 
-AlongMotion::AlongMotion(const EquationsOfMotion& equations) : AlongMotion(equations, equations.residual) {}
+AlongMotion::AlongMotion(const EquationsOfMotion& equations) : AlongMotion(equations, equations.balance()) {}
 
-AlongMotion::AlongMotion(const EquationsOfMotion& equations, const ExprVector& residual) : equations_(equations) {
+AlongMotion::AlongMotion(const EquationsOfMotion& equations, const ExprVector& residual)
+    : equations_(equations), residual_(residual) {
+  if (constrained()) return;
   const MechanicalSystem& system = *equations.system;
   const auto solved = accelerations(in_terms_of_motion(system, residual), system);
   if (!solved) return;
@@ -16,14 +18,46 @@ AlongMotion::AlongMotion(const EquationsOfMotion& equations, const ExprVector& r
 }
 
 Expr AlongMotion::put_in(Expr e) const {
+  e = with_reactions(equations_, {&e, 1}).front();
   const Expr plain = expand_time_derivatives(in_terms_of_motion(*equations_.system, {&e, 1}).front());
   return accelerations_ ? substitute(plain, *accelerations_) : plain;
 }
 
-ZeroTest AlongMotion::vanishes(Expr e) const { return zero_test(put_in(e)); }
+ZeroTest AlongMotion::vanishes(Expr e) const {
+  const Expr plain = put_in(e);
+  if (!constrained() || plain.is_zero()) return zero_test(plain);
+  ExprVector unknowns = equations_.multipliers;
+  for (const Coordinate& c : equations_.system->coordinates) unknowns.insert(unknowns.end(), {c.q, c.velocity, c.acceleration});
+  return zero_test_where({&plain, 1}, relations(), unknowns, center());
+}
 
 Expr AlongMotion::rate(Expr integral) const {
   return put_in(total_time_derivative(in_terms_of_motion(*equations_.system, {&integral, 1}).front()));
+}
+
+/// φ, dφ/dt or ψ, A q̈ − b, and R − Aᵀλ: what the motion satisfies at each point.
+std::vector<Expr> AlongMotion::relations() const {
+  const MechanicalSystem& system = *equations_.system;
+  std::vector<Expr> out;
+  for (const Constraint& c : system.constraints)
+    if (c.level == Constraint::Level::Position) out.push_back(c.value);
+  for (const auto* list : {&equations_.constraint_rates, &equations_.constraint_accelerations, &residual_})
+    out.insert(out.end(), list->begin(), list->end());
+  return in_terms_of_motion(system, expand_time_derivatives(out));
+}
+
+Bindings AlongMotion::center() const {
+  const MechanicalSystem& system = *equations_.system;
+  Bindings out = parameter_bindings(system);
+  for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
+    const Coordinate& c = system.coordinates[i];
+    out[c.q] = start_ ? start_->q[i] : 0.0;
+    out[c.velocity] = start_ ? start_->v[i] : 0.0;
+    out[c.acceleration] = 0.0;
+  }
+  for (const Expr& multiplier : equations_.multipliers) out[multiplier] = 0.0;
+  if (start_) out[system.context->time()] = start_->t;
+  return out;
 }
 
 }  // namespace maupertuis

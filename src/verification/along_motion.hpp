@@ -1,5 +1,5 @@
 #pragma once
-#include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/evaluate.hpp>
 
 #include <optional>
@@ -7,7 +7,9 @@
 
 namespace maupertuis {
 
-/// Proofs about functions along the motion: q̈ is replaced by −M⁻¹ h as a shared DAG, and the rest is the zero test's.
+/// Proofs about functions along the motion. Without constraints q̈ is replaced by −M⁻¹ h as a shared DAG, and the rest is
+/// the zero test's. With constraints nothing is put in: the test looks at points that satisfy the constraints and the
+/// equations with their multipliers, near the start, to 60 digits.
 class AlongMotion {
  public:
   explicit AlongMotion(const EquationsOfMotion& equations);
@@ -15,15 +17,23 @@ class AlongMotion {
   AlongMotion(const EquationsOfMotion& equations, const ExprVector& residual);
 
   /// False where M is singular: then nothing can be said.
-  bool solvable() const { return accelerations_.has_value(); }
-  /// e with q̈ put in; lets and inputs as well.
+  bool solvable() const { return constrained() || accelerations_.has_value(); }
+  /// e with q̈ put in; lets, inputs and reactions as well.
   Expr put_in(Expr e) const;
   ZeroTest vanishes(Expr e) const;
   /// dI/dt along the motion, q̈ put in.
   Expr rate(Expr integral) const;
+  /// Where the motion starts: points near it are looked at.
+  void set_start(const MotionState& start) { start_ = start; }
 
  private:
+  bool constrained() const { return equations_.system->constrained(); }
+  std::vector<Expr> relations() const;
+  Bindings center() const;
+
   const EquationsOfMotion& equations_;
+  ExprVector residual_;
+  std::optional<MotionState> start_;
   std::optional<ExprMap> accelerations_;
 };
 

@@ -1,0 +1,61 @@
+#include "simulation/observables.hpp"
+
+#include "simulation/energy_terms.hpp"
+
+#include <maupertuis/reactions.hpp>
+
+#include <algorithm>
+
+namespace maupertuis {
+namespace {
+
+void add_reactions(Observables& out, const EquationsOfMotion& equations) {
+  const MechanicalSystem& system = *equations.system;
+  const auto add = [&](std::string name, const Dimension& dimension, Expr value) {
+    out.expressions.push_back(value);
+    out.reactions.push_back({std::move(name), dimension});
+  };
+  for (const Constraint& c : system.constraints)
+    if (c.name.empty() && c.body.empty())
+      add(c.multiplier.name(), (c.level == Constraint::Level::Position ? dimensions::energy() : dimensions::energy() / dimensions::time()) / c.dimension,
+          c.multiplier);
+  const bool named = !system.releases.empty() || std::any_of(system.constraints.begin(), system.constraints.end(),
+                                                             [](const Constraint& c) { return !c.name.empty(); });
+  if (!named) return;
+  for (const Reaction& r : reactions(equations)) {
+    const Constraint* constraint = system.find_constraint(r.name);
+    const bool released = r.kind == Reaction::Kind::Released;
+    if (r.value && (released || constraint)) add("reaction(" + r.name + ")", r.dimension, r.value);
+  }
+}
+
+void find_dependences(Observables& out, const EquationsOfMotion& equations) {
+  const auto& multipliers = equations.multipliers;
+  if (multipliers.empty()) return;
+  for (std::size_t i = out.energy_terms + out.points; i < out.expressions.size(); ++i)
+    for (const Expr& symbol : symbols_of({&out.expressions[i], 1})) {
+      const auto found = std::find(multipliers.begin(), multipliers.end(), symbol);
+      if (found != multipliers.end()) out.dependences.push_back({i, static_cast<std::size_t>(found - multipliers.begin())});
+    }
+}
+
+}  // namespace
+
+Observables collect_observables(const EquationsOfMotion& equations, const Probe* probe) {
+  Observables out;
+  out.expressions = energy_terms(equations);
+  out.energy_terms = out.expressions.size();
+  for (const Point& point : equations.system->points)
+    out.expressions.insert(out.expressions.end(), point.position.begin(), point.position.end());
+  out.points = out.expressions.size() - out.energy_terms;
+  add_reactions(out, equations);
+  if (probe) {
+    const std::vector<Expr> wanted = with_reactions(equations, probe->expressions);
+    out.expressions.insert(out.expressions.end(), wanted.begin(), wanted.end());
+    out.probes = wanted.size();
+  }
+  find_dependences(out, equations);
+  return out;
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,29 @@
+#pragma once
+#include <maupertuis/simulation.hpp>
+
+#include <string>
+#include <vector>
+
+namespace maupertuis {
+
+/// What a run evaluates besides the motion, in this order: the terms of h_E, the positions of the points, the reactions of
+/// named constraints and releases (λ of constraints without a name), the probes.
+struct Observables {
+  struct Named {
+    std::string name;
+    Dimension dimension;
+  };
+  /// An observable that holds the multiplier of a constraint.
+  struct Dependence {
+    std::size_t observable, constraint;
+  };
+
+  std::vector<Expr> expressions;
+  std::size_t energy_terms = 0, points = 0, probes = 0;
+  std::vector<Named> reactions;
+  std::vector<Dependence> dependences;
+};
+
+Observables collect_observables(const EquationsOfMotion& equations, const Probe* probe);
+
+}  // namespace maupertuis
