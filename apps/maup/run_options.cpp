@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <map>
 
 namespace maupertuis::app {
 namespace {
@@ -49,9 +50,13 @@ class Progress {
 }  // namespace
 
 void add_method_options(CLI::App& command, RunOptions& options) {
-  command.add_option("--method", options.method, "How to step: taylor, of an order that follows from the tolerance")
-      ->check(CLI::IsMember({"taylor"}))
+  command.add_option("--method", options.method,
+                     "How to step: auto (Taylor's, and the stiff one from where stability limits them), taylor, variational "
+                     "(needs --step), stiff")
+      ->check(CLI::IsMember({"auto", "taylor", "variational", "stiff"}))
       ->type_name("METHOD");
+  command.add_option("--step", options.step, "The length of the steps of --method variational")->type_name("TIME");
+  command.add_option("--order", options.order, "The order of the steps (variational: 2, 4, … 12)")->type_name("NUMBER");
   command.add_option("--tol", options.tolerance, "Relative tolerance of a step (default: rounding level)")
       ->type_name("NUMBER");
 }
@@ -80,6 +85,20 @@ SimulationOptions simulation_options(const RunOptions& options, Diagnostics& dia
     else diagnostics.error("E0809", {}, fmt::format("--tol {} is no tolerance.", brief(*options.tolerance)), {},
                            "Write a positive number below 1, such as 1e-10.");
   }
+  static const std::map<std::string, StepMethod> methods{{"auto", StepMethod::Automatic}, {"taylor", StepMethod::Taylor},
+                                                         {"variational", StepMethod::Variational}, {"stiff", StepMethod::Stiff}};
+  if (const auto method = methods.find(options.method); method != methods.end()) out.method = method->second;
+  if (options.step)
+    if (const auto step = time_option("--step", *options.step, diagnostics)) out.step = *step;
+  if (options.order) out.order = *options.order;
+  const bool fixed_steps = out.method == StepMethod::Variational;
+  if (options.step && !fixed_steps)
+    diagnostics.error("E0809", {}, "--step belongs to --method variational.", "The other methods choose their steps by the tolerance.",
+                      "Add --method variational, or use --tol.");
+  if (options.order && !fixed_steps && (*options.order < 2 || *options.order > 60 || out.method == StepMethod::Stiff))
+    diagnostics.error("E0809", {}, fmt::format("--order {} is no order of this method.", *options.order),
+                      out.method == StepMethod::Stiff ? "The stiff method chooses its order from 1 to 5 itself." : "Taylor's steps take orders from 2 to 60.",
+                      "Leave --order out, or use --tol.");
   if (options.duration) out.duration = time_option("--duration", *options.duration, diagnostics);
   if (options.every) out.output_every = time_option("--every", *options.every, diagnostics);
   if (out.output_every && !(*out.output_every > 0))
@@ -119,6 +138,8 @@ const char* ending_name(Ending ending) {
     case Ending::UntilNotReached: return "until not reached";
     case Ending::Interrupted: return "interrupted";
     case Ending::SingularMass: return "singular mass matrix";
+    case Ending::SingularConstraints: return "singular constraints";
+    case Ending::NoConvergence: return "no convergence";
     case Ending::Overflow: return "overflow";
     case Ending::StepUnderflow: return "step underflow";
     case Ending::Sliding: return "sliding";

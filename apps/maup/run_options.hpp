@@ -12,7 +12,9 @@ namespace maupertuis::app {
 
 /// How a run is to differ from what the model says; shared by simulate, plot, report and test.
 struct RunOptions {
-  std::string method = "taylor";
+  std::string method = "auto";
+  std::optional<std::string> step;             // as written
+  std::optional<int> order;
   std::optional<double> tolerance;
   std::optional<std::string> duration, every;  // as written
   std::string until, within;

@@ -37,9 +37,10 @@ class ConstraintManifold {
   std::vector<double> mass(const MotionState& state) const;
   std::vector<double> values(const MotionState& state) const;
   std::vector<double> rates(const MotionState& state) const;
-  /// |φ_i| divided by the sum of the sizes of its terms, 0 for constraints of velocities [m].
+  /// |φ_i| divided by the sum of the sizes of its terms and of |A_ij q_j|, 0 for constraints of velocities [m].
   std::vector<double> relative_values(const MotionState& state) const;
-  /// |dφ_i/dt| or |ψ_i|, and the further rates, each divided by the sum of the sizes of its terms [m + rates].
+  /// |dφ_i/dt| or |ψ_i|, and the further rates, each divided by the sum of the sizes of its terms and of
+  /// |A_ij q̇_j| [m + rates].
   std::vector<double> relative_rates(const MotionState& state) const;
 
   /// Moves the coordinates that are not `fixed` [n] onto φ = 0 by the least kinetic change (Gauss-Newton in the metric M,
@@ -48,6 +49,9 @@ class ConstraintManifold {
   bool move_positions(MotionState& state, const std::vector<bool>& fixed, const std::vector<bool>& active = {}) const;
   /// The same for the velocities, at a configuration that is on the manifold: dφ/dt = 0, ψ = 0 and the rates.
   bool move_velocities(MotionState& state, const std::vector<bool>& fixed, const std::vector<bool>& active = {}) const;
+  /// Constraints that no positions near `from`, or no velocities there, satisfy together, though all but any one of them
+  /// can be: one is left out after the other as long as the rest still clashes. Precondition: all together do clash.
+  std::vector<std::size_t> smallest_clash(const MotionState& from) const;
 
  private:
   struct Impl;

@@ -85,7 +85,7 @@ struct ReportContent {
   std::vector<Parameter> parameters;
   std::vector<Formula> definitions;      // the legend of lets that stay symbols in print
   std::vector<Formula> energies;         // T, V, U, D, L
-  std::vector<Formula> equations;        // left = right, with right 0 for the standard form
+  std::vector<Formula> equations;        // left = right, with right 0 or Aᵀλ; then the constraints, `sentence` their names
   std::vector<Formula> intermediates;    // what the names in the equations stand for
   std::vector<Section> derivation;
   bool certified = false;

@@ -32,6 +32,7 @@ struct State {
   double t = 0;
   std::vector<double> q, v, a;              // [n] each; a is NaN where the accelerations have no value
   std::vector<double> multipliers;          // [constraints] λ; NaN where the equations do not determine it
+  std::vector<double> reactions;            // [SimulationResult::reactions]
 };
 
 enum class Ending {
@@ -62,6 +63,7 @@ struct SimulationStatistics {
 
 struct SimulationResult {
   Trajectory trajectory;
+  std::vector<Trajectory::Column> reactions;            // names and units: columns of the trajectory as well
   State start, final;
   std::vector<State> at;                    // in the order asked; q is empty where the run ended before
   SimulationStatistics statistics;

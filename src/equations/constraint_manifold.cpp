@@ -49,6 +49,7 @@ struct ConstraintManifold::Impl {
 
   Bindings bind(const MotionState& state) const;
   Sizes sizes(const Functions& functions, const MotionState& state) const;
+  Sizes sizes(bool positions, const MotionState& state, const Matrix& rows) const;
   Matrix matrix(const std::vector<Expr>& entries, const MotionState& state) const;
   Matrix metric(const MotionState& state) const;
   bool move(MotionState& state, bool positions, const std::vector<bool>& fixed, const std::vector<bool>& active) const;
@@ -99,6 +100,16 @@ Sizes ConstraintManifold::Impl::sizes(const Functions& functions, const MotionSt
       out.value[static_cast<Index>(i)] += terms[k];
       out.scale[static_cast<Index>(i)] += std::abs(terms[k]);
     }
+  return out;
+}
+
+/// Terms hide in products of sums: what the unknowns themselves contribute counts as well.
+Sizes ConstraintManifold::Impl::sizes(bool positions, const MotionState& state, const Matrix& rows) const {
+  Sizes out = sizes(positions ? values : rates, state);
+  const std::vector<double>& x = positions ? state.q : state.v;
+  for (Index i = 0; i < out.scale.size(); ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      if (const double size = std::abs(rows(i, static_cast<Index>(j)) * x[j]); std::isfinite(size)) out.scale[i] += size;
   return out;
 }
 
@@ -189,10 +200,10 @@ bool ConstraintManifold::Impl::move(MotionState& state, bool positions, const st
     if (!fixed[i]) free.push_back(static_cast<Index>(i));
 
   std::vector<double>& x = positions ? state.q : state.v;
-  Sizes f = sizes(functions, state);
+  Matrix all = matrix(a, state);
+  Sizes f = sizes(positions, state, all);
   double error = largest_relative(f, chosen);
   for (int turn = 0; turn < most_turns && error > rounding && !free.empty(); ++turn) {
-    const Matrix all = matrix(a, state);
     if (!all.allFinite() || !f.value.allFinite()) return false;
     const Rows rows = weighted(all, f, chosen);
     const Vector step = least_step(rows.a, rows.error, metric(state), free);
@@ -207,6 +218,8 @@ bool ConstraintManifold::Impl::move(MotionState& state, bool positions, const st
       x = before;
       break;
     }
+    all = matrix(a, state);
+    f = sizes(positions, state, all);
     error = largest_relative(f, chosen);
   }
   return error <= reached;
@@ -250,19 +263,37 @@ std::vector<double> ConstraintManifold::rates(const MotionState& state) const {
   return list(impl_->sizes(impl_->rates, state).value, impl_->m);
 }
 std::vector<double> ConstraintManifold::relative_values(const MotionState& state) const {
-  std::vector<double> out = relative(impl_->sizes(impl_->values, state));
+  std::vector<double> out = relative(impl_->sizes(true, state, impl_->matrix(impl_->a, state)));
   for (std::size_t i = 0; i < out.size(); ++i)
     if (!impl_->on_positions[i]) out[i] = 0;
   return out;
 }
 std::vector<double> ConstraintManifold::relative_rates(const MotionState& state) const {
-  return relative(impl_->sizes(impl_->rates, state));
+  return relative(impl_->sizes(false, state, impl_->matrix(impl_->a, state)));
 }
 bool ConstraintManifold::move_positions(MotionState& state, const std::vector<bool>& fixed, const std::vector<bool>& active) const {
   return impl_->move(state, true, fixed, active);
 }
 bool ConstraintManifold::move_velocities(MotionState& state, const std::vector<bool>& fixed, const std::vector<bool>& active) const {
   return impl_->move(state, false, fixed, active);
+}
+
+std::vector<std::size_t> ConstraintManifold::smallest_clash(const MotionState& from) const {
+  const std::vector<bool> nothing(impl_->n, false);
+  std::vector<bool> active(impl_->m, true);
+  const auto possible = [&](bool velocities) {
+    MotionState trial = from;
+    return move_positions(trial, nothing, active) && (!velocities || move_velocities(trial, nothing, active));
+  };
+  const bool velocities_clash = possible(false);
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    active[i] = false;
+    if (possible(velocities_clash)) active[i] = true;
+  }
+  std::vector<std::size_t> clash;
+  for (std::size_t i = 0; i < active.size(); ++i)
+    if (active[i]) clash.push_back(i);
+  return clash;
 }
 
 }  // namespace maupertuis

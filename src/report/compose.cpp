@@ -69,8 +69,13 @@ std::vector<Formula> intermediate_rows(const std::vector<Intermediate>& intermed
 }
 
 void add_equations(ReportContent& content, const Derivation& derivation, const ReadingOrder& order) {
-  for (const ReadableForm& equation : derivation.equations)
-    content.equations.push_back({to_mathml(equation, order), "<mn>0</mn>", "", ""});
+  for (std::size_t i = 0; i < derivation.equations.size(); ++i) {
+    const bool constrained = !derivation.constraint_forces.empty();
+    content.equations.push_back({to_mathml(derivation.equations[i], order),
+                                 constrained ? to_mathml(derivation.constraint_forces[i], order) : "<mn>0</mn>", "", ""});
+  }
+  for (const ConstraintEquation& c : derivation.constraints)
+    content.equations.push_back({to_mathml(c.left, order), to_mathml(c.right, order), "", c.name});
   content.intermediates = intermediate_rows(derivation.intermediates, order);
   static constexpr std::array<std::string_view, 5> energies{"T", "V", "U", "D", "L"};
   for (const auto name : energies)

@@ -92,9 +92,12 @@ std::string drawing_section(const ReportContent& content) {
 std::string equations_section(const ReportContent& content) {
   std::string html;
   std::size_t number = 0;
-  for (const auto& equation : content.equations)
+  for (const auto& equation : content.equations) {
+    ++number;
+    const std::string label = equation.sentence.empty() ? std::to_string(number) : escape_html(equation.sentence);
     html += fmt::format("<div class=\"equation\">{}<div class=\"number\">({})</div></div>\n",
-                        display_math(equation.left, equation.right), ++number);
+                        display_math(equation.left, equation.right), label);
+  }
   if (!content.intermediates.empty()) html += "<p>with</p>\n";
   for (const auto& intermediate : content.intermediates)
     html += fmt::format("<div class=\"where\">{}</div>\n", formula_block(intermediate));

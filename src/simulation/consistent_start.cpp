@@ -50,7 +50,9 @@ class Start {
         return false;
       }
       (start.order == 0 ? state_.q : state_.v)[start.coordinate] = value;
-      (start.order == 0 ? written_q_ : written_v_)[start.coordinate] = true;
+      // A body's quaternion begins at 1 where the model gives none: a guess, in the place of the body itself.
+      const bool given = start.span != system_.coordinates[start.coordinate].span;
+      (start.order == 0 ? written_q_ : written_v_)[start.coordinate] = given;
     }
     written_state_ = state_;
     return true;
@@ -126,19 +128,12 @@ class Start {
     return false;
   }
 
-  /// Leaves out one constraint after the other as long as the rest still clashes.
   bool refuse_clash(const ConstraintManifold& manifold) {
-    std::vector<bool> active(manifold.constraints(), true);
-    for (std::size_t i = 0; i < active.size(); ++i) {
-      active[i] = false;
-      MotionState trial = written_state_;
-      trial.v.assign(n_, 0);
-      if (manifold.move_positions(trial, nothing(), active)) active[i] = true;
-    }
+    MotionState trial = written_state_;
+    trial.v.assign(n_, 0);
     std::string names;
     std::optional<Span> place;
-    for (std::size_t i = 0; i < active.size(); ++i) {
-      if (!active[i]) continue;
+    for (const std::size_t i : manifold.smallest_clash(trial)) {
       names += (names.empty() ? "" : ", ") + system_.constraint_label(i);
       place = system_.constraints[i].span;
     }

@@ -138,7 +138,7 @@ class Run {
 
   SimulationResult carry_out() {
     method_->start(plan_.begin, plan_.q, plan_.v);
-    result_.start = state_of(method_->sample(plan_.begin));
+    result_.start = state_of(sample(plan_.begin));
     result_.statistics.order = method_->order();
     const auto begin = Clock::now();
     record_covered();
@@ -160,7 +160,10 @@ class Run {
     for (const Point& p : model_.system.points)
       for (std::size_t axis = 0; axis < p.position.size(); ++axis)
         columns.push_back({p.name + "." + "xyz"[axis], unit(dimensions::length())});
-    for (const Observables::Named& r : observables_.reactions) columns.push_back({r.name, unit(r.dimension)});
+    for (const Observables::Named& r : observables_.reactions) {
+      result_.reactions.push_back({r.name, unit(r.dimension)});
+      columns.push_back(result_.reactions.back());
+    }
     columns.push_back({"energy", unit(dimensions::energy())});
   }
 
@@ -247,7 +250,11 @@ class Run {
     values.push_back(balance_.energy_of(sample));
   }
 
-  static State state_of(const Sample& sample) { return {sample.t, sample.q, sample.v, sample.a, sample.multipliers}; }
+  State state_of(const Sample& sample) const {
+    const auto reactions = sample.observables.begin() + static_cast<std::ptrdiff_t>(observables_.energy_terms + observables_.points);
+    return {sample.t, sample.q, sample.v, sample.a, sample.multipliers,
+            {reactions, reactions + static_cast<std::ptrdiff_t>(observables_.reactions.size())}};
+  }
 
   void finish() {
     const Sample last = sample(method_->time());

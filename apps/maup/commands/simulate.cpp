@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include <maupertuis/plot.hpp>
 
 namespace maupertuis::app {
@@ -31,27 +33,31 @@ void check_endings(const SimulateOptions& options, Diagnostics& diagnostics) {
     diagnostics.error("E0810", {}, fmt::format("{} names no format of a picture.", options.plot), {}, "Take .svg.");
 }
 
-Json state_json(const State& state, const MechanicalSystem& system) {
+/// A λ that the equations do not determine is null.
+Json number_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+Json state_json(const State& state, const SimulationResult& result, const MechanicalSystem& system) {
   Json values = Json::object();
   for (std::size_t i = 0; i < state.q.size(); ++i) {
     values[system.coordinates[i].name] = state.q[i];
     values[system.coordinates[i].name + "'"] = state.v[i];
   }
-  return {{"t", state.t}, {"state", std::move(values)}};
+  Json multipliers = Json::object(), reactions = Json::object();
+  for (std::size_t i = 0; i < state.multipliers.size(); ++i)
+    multipliers[system.constraints[i].multiplier.name()] = number_or_null(state.multipliers[i]);
+  for (std::size_t i = 0; i < state.reactions.size(); ++i) reactions[result.reactions[i].name] = number_or_null(state.reactions[i]);
+  return {{"t", state.t}, {"state", std::move(values)}, {"multipliers", std::move(multipliers)}, {"reactions", std::move(reactions)}};
 }
 
 Json document_of(const SimulationResult& result, const MechanicalSystem& system) {
   Json document = json_document("simulate");
   document["system"] = system.name;
-  document["final"] = state_json(result.final, system);
+  document["final"] = state_json(result.final, result, system);
   document["at"] = Json::array();
-  for (const State& state : result.at) {
-    document["at"].push_back(state_json(state, system));
-    document["at"].back()["multipliers"] = Json::object();
-  }
+  for (const State& state : result.at) document["at"].push_back(state_json(state, result, system));
   const SimulationStatistics& s = result.statistics;
   document["statistics"] = {{"steps", s.steps}, {"seconds", s.seconds}, {"compile_seconds", s.compile_seconds},
-                            {"order", s.order}, {"backend", s.backend}, {"energy_drift", s.energy_drift},
+                            {"order", s.order}, {"method", s.method}, {"backend", s.backend}, {"energy_drift", s.energy_drift},
                             {"constraint_residual", s.constraint_residual}, {"switches", s.switches},
                             {"rows", result.trajectory.rows()}};
   document["events"] = Json::array();
@@ -60,7 +66,7 @@ Json document_of(const SimulationResult& result, const MechanicalSystem& system)
   return document;
 }
 
-std::string state_text(const State& state, const MechanicalSystem& system) {
+std::string state_text(const State& state, const SimulationResult& result, const MechanicalSystem& system) {
   if (state.q.empty()) return fmt::format("t = {} s\n  not reached\n", exact(state.t));
   std::string out = fmt::format("t = {} s\n", exact(state.t));
   for (std::size_t i = 0; i < state.q.size(); ++i) {
@@ -73,16 +79,24 @@ std::string state_text(const State& state, const MechanicalSystem& system) {
     line(c.name, state.q[i], unit);
     line(c.name + "'", state.v[i], rate);
   }
+  for (std::size_t i = 0; i < state.reactions.size(); ++i) {
+    const Trajectory::Column& column = result.reactions[i];
+    if (std::isnan(state.reactions[i])) out += fmt::format("  {:<8}  not determined\n", column.name);
+    else out += fmt::format("  {:<8} {: .17g}{}{}\n", column.name, state.reactions[i], column.unit.empty() ? "" : " ", column.unit);
+  }
   return out;
 }
 
 std::string text_of(const SimulationResult& result, const MechanicalSystem& system) {
   std::string out;
-  for (const State& state : result.at) out += state_text(state, system);
-  if (result.at.empty() || result.at.back().t != result.final.t) out += state_text(result.final, system);
+  for (const State& state : result.at) out += state_text(state, result, system);
+  if (result.at.empty() || result.at.back().t != result.final.t) out += state_text(result.final, result, system);
   const SimulationStatistics& s = result.statistics;
-  return out + fmt::format("{} steps of order {} in {} s ({}, compiled in {} s); energy drift {}\n", s.steps, s.order,
-                           brief(s.seconds), s.backend, brief(s.compile_seconds), brief(s.energy_drift));
+  const std::string method = s.method == "taylor" ? fmt::format("of order {}", s.order)
+                             : s.method == "stiff" ? "of the stiff method" : fmt::format("of the variational method, order {},", s.order);
+  const std::string residual = system.constrained() ? fmt::format("; constraint residual {}", brief(s.constraint_residual)) : "";
+  return out + fmt::format("{} steps {} in {} s ({}, compiled in {} s); energy drift {}{}\n", s.steps, method, brief(s.seconds),
+                           s.backend, brief(s.compile_seconds), brief(s.energy_drift), residual);
 }
 
 /// What was computed is written whatever the ending.

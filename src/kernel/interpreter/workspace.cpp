@@ -156,7 +156,8 @@ void KernelWorkspace::Impl::correct(int stage) {
   const double lag1 = 1.0 / (stage + 1), lag0 = lag1 / (stage + 2);
   const double factors[3] = {lag0, lag1, 1};
   double* const next = memory.row(stage + 2);
-  for (std::size_t i = 0; i < n; ++i) next[i] = unknown[i] * lag0;
+  // A division: the error of a rounded reciprocal would be the same in every step and so add up.
+  for (std::size_t i = 0; i < n; ++i) next[i] = unknown[i] / ((stage + 1.0) * (stage + 2.0));
   const bool by_matrix = n <= 8;
   if (!by_matrix) {
     std::copy(unknown.begin(), unknown.end(), direction.begin());
