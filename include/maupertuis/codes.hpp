@@ -13,5 +13,6 @@ std::span<const CodeEntry> system_codes();
 std::span<const CodeEntry> equations_codes();
 std::span<const CodeEntry> simulation_codes();
 std::span<const CodeEntry> verification_codes();
+std::span<const CodeEntry> comparison_codes();
 
 }  // namespace maupertuis

@@ -35,7 +35,6 @@ void add_later_commands(CommandLine& line) {
       {"animate", "GIF, MP4, HTML"},
       {"export", "c, python, latex, fmu, html"},
       {"studio", "the interactive browser page"},
-      {"compare", "whether two models give the same motion"},
       {"reduce", "independent coordinates of a constrained model"},
   };
   for (const auto& [name, what] : commands) {

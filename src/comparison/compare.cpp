@@ -1,0 +1,128 @@
+#include "comparison/cross_check.hpp"
+#include "comparison/differences.hpp"
+#include "comparison/freedoms.hpp"
+
+#include <fmt/format.h>
+
+/// The proof in its order: constraints of A, equations of A, freedoms; then energies and runs.
+namespace maupertuis {
+namespace {
+
+using comparison::Differences;
+using comparison::Motions;
+using comparison::PullBack;
+
+class Comparer {
+ public:
+  Comparer(const Model& a, const EquationsOfMotion& a_equations, const CoordinateMap& map,
+           const EquationsOfMotion& b_equations, const ComparisonOptions& options, const PullBack& pull_back)
+      : a_(a), b_(*map.b), a_equations_(a_equations), b_equations_(b_equations), options_(options), pull_back_(pull_back),
+        motions_(b_, b_equations), runs_(a, a_equations, b_, b_equations, pull_back, motions_, options.simulation) {}
+
+  Comparison carry_out() {
+    if (motions_.states().empty()) {
+      out_.reason = fmt::format("{} has no consistent start to look at", b_.system.name);
+      return out_;
+    }
+    comparison::count_freedoms(a_equations_, b_equations_, pull_back_, motions_, out_);
+    if (constraints_hold() && equations_hold()) compare_freedoms();
+    out_.energies = compare_energies();
+    if (out_.verdict == Sameness::Different) out_.disagreement = runs_.disagreement();
+    if (options_.run) out_.run = runs_.run();
+    return out_;
+  }
+
+ private:
+  /// True and the ground where the functions vanish along B; else the verdict with its reason. `what(k)` names function k.
+  template <class What>
+  bool hold(const ExprVector& functions, What what) {
+    if (functions.empty()) return true;
+    ZeroTest test = motions_.vanish(functions);
+    if (test.verdict == Verdict::Nonzero) {
+      const ZeroTest at_values = motions_.vanish_at_these_values(functions);
+      if (at_values.verdict == Verdict::Zero) out_.only_at_these_values = true, test = at_values;
+    }
+    merge(test);
+    if (test.verdict == Verdict::Zero) return true;
+    out_.verdict = test.verdict == Verdict::Nonzero ? Sameness::Different : Sameness::Undecided;
+    if (test.verdict == Verdict::Undecided) {
+      out_.reason = test.reason.empty() ? "the zero test came to no answer" : test.reason;
+      return false;
+    }
+    for (std::size_t k = 0; k < functions.size(); ++k)
+      if (motions_.vanish({&functions[k], 1}).verdict == Verdict::Nonzero) {
+        out_.reason = what(k);
+        return false;
+      }
+    out_.reason = what(0);
+    return false;
+  }
+
+  void merge(const ZeroTest& test) {
+    const bool first = out_.ground.points == 0;
+    const double bound = first ? test.error_bound : std::max(out_.ground.error_bound, test.error_bound);
+    const int points = first ? test.points : std::min(out_.ground.points, test.points);
+    out_.ground = test;
+    out_.ground.error_bound = bound;
+    out_.ground.points = points;
+  }
+
+  bool constraints_hold() {
+    return hold(comparison::mapped_constraints(a_.system, pull_back_), [&](std::size_t k) {
+      return fmt::format("the motions of {} do not obey {} of {}", b_.system.name, a_.system.constraint_label(k), a_.system.name);
+    });
+  }
+
+  bool equations_hold() {
+    const Differences rest = comparison::without_multipliers(a_equations_, pull_back_, motions_.at(motions_.states().back()));
+    return hold(rest.values, [&](std::size_t k) {
+      return fmt::format("the equation of {} of {} does not hold along the motions of {}",
+                         a_.system.coordinates[rest.coordinates[k]].name, a_.system.name, b_.system.name);
+    });
+  }
+
+  void compare_freedoms() {
+    const bool same = out_.freedoms_a == out_.freedoms_b && out_.instantaneous_freedoms_a == out_.instantaneous_freedoms_b;
+    out_.verdict = Sameness::Part;
+    if (out_.instantaneous_freedoms_a > out_.instantaneous_freedoms_b || out_.freedoms_a > out_.freedoms_b)
+      out_.reason = fmt::format("{} has motions that {} does not reach", a_.system.name, b_.system.name);
+    else if (!same || out_.rank < out_.instantaneous_freedoms_b)
+      out_.reason = fmt::format("several motions of {} are mapped to one of {}", b_.system.name, a_.system.name);
+    else
+      out_.verdict = Sameness::Same;
+  }
+
+  EnergyRelation compare_energies() const {
+    const MechanicalSystem& b = b_.system;
+    const Expr own = comparison::with_constants_as_numbers(
+        b, expand_time_derivatives(in_terms_of_motion(b, {&b_equations_.energy_function, 1}))).front();
+    const Expr difference = pull_back_(a_equations_.energy_function) - own;
+    const ZeroTest equal = motions_.vanish({&difference, 1});
+    if (equal.verdict != Verdict::Nonzero) return equal.verdict == Verdict::Zero ? EnergyRelation::Equal : EnergyRelation::Undecided;
+    ExprVector derivatives{differentiate(difference, b.context->time())};
+    for (const Coordinate& c : b.coordinates)
+      for (const Expr& s : {c.q, c.velocity}) derivatives.push_back(differentiate(difference, s));
+    return zero_test(derivatives).verdict == Verdict::Zero ? EnergyRelation::EqualButConstant : EnergyRelation::Different;
+  }
+
+  const Model& a_;
+  const Model& b_;
+  const EquationsOfMotion& a_equations_;
+  const EquationsOfMotion& b_equations_;
+  const ComparisonOptions& options_;
+  const PullBack& pull_back_;
+  const Motions motions_;
+  const comparison::CrossCheck runs_;
+  Comparison out_;
+};
+
+}  // namespace
+
+Comparison compare(const Model& a, const EquationsOfMotion& a_equations, const CoordinateMap& map,
+                   const EquationsOfMotion& b_equations, const ComparisonOptions& options, Diagnostics& diagnostics) {
+  const PullBack pull_back(a.system, map, diagnostics);
+  if (diagnostics.has_errors()) return {};
+  return Comparer(a, a_equations, map, b_equations, options, pull_back).carry_out();
+}
+
+}  // namespace maupertuis

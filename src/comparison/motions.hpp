@@ -1,0 +1,33 @@
+#pragma once
+#include <maupertuis/comparison.hpp>
+
+namespace maupertuis::comparison {
+
+/// What holds along the motions of a model, and states of it to look at.
+class Motions {
+ public:
+  Motions(const Model& model, const EquationsOfMotion& equations);
+
+  /// Where the model starts, then other consistent states near it; at least one unless the model has no consistent start.
+  const std::vector<MotionState>& states() const { return states_; }
+  /// Every symbol of q, q̇, t and the parameters at a state.
+  Bindings at(const MotionState& state) const;
+
+  /// Do the functions of q, q̇, q̈, t vanish along all motions? Exact without constraints; with them, and where roots or
+  /// inverse functions keep the exact test from an answer, at points to 60 digits.
+  ZeroTest vanish(std::span<const Expr> functions) const;
+  /// The same where the parameters have the values of the model, and only these.
+  ZeroTest vanish_at_these_values(std::span<const Expr> functions) const;
+
+ private:
+  ZeroTest at_points(std::span<const Expr> functions) const;
+  void find_states();
+
+  const Model& model_;
+  const EquationsOfMotion& equations_;
+  std::vector<MotionState> states_;
+  ExprVector relations_;                  // φ, dφ/dt or ψ, A q̈ − b, R − Aᵀλ
+  std::optional<ExprMap> accelerations_;  // without constraints: q̈ solved for
+};
+
+}  // namespace maupertuis::comparison

@@ -1,0 +1,93 @@
+#include "comparison/pull_back.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace maupertuis::comparison {
+namespace {
+
+Expr rebuilt(Expr node, const std::vector<Expr>& arguments, const ExprMap& replacements, Context& to) {
+  switch (node.kind()) {
+    case Kind::Number: return to.number(node.number());
+    case Kind::Pi: return to.pi();
+    case Kind::Symbol: {
+      const auto found = replacements.find(node);
+      if (found == replacements.end())
+        throw std::logic_error("no counterpart for the symbol " + node.name() + "; please report");
+      return found->second;
+    }
+    case Kind::Sum: return to.sum(arguments);
+    case Kind::Product: return to.product(arguments);
+    case Kind::Power: return to.power(arguments[0], arguments[1]);
+    case Kind::TimeDerivative: throw std::logic_error("d/dt is to be carried out first; please report");
+    default: return to.function(node.kind(), arguments);
+  }
+}
+
+bool same_value(double a, double b) { return std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b)); }
+
+}  // namespace
+
+ExprVector carried_over(std::span<const Expr> roots, const ExprMap& replacements, Context& to) {
+  ExprMap done;
+  for (const Expr& node : topological_order(roots)) {
+    std::vector<Expr> arguments;
+    for (std::size_t i = 0; i < node.size(); ++i) arguments.push_back(done.at(node[i]));
+    done.emplace(node, rebuilt(node, arguments, replacements, to));
+  }
+  ExprVector out;
+  for (const Expr& root : roots) out.push_back(done.at(root));
+  return out;
+}
+
+ExprVector with_constants_as_numbers(const MechanicalSystem& system, std::span<const Expr> expressions) {
+  ExprMap numbers;
+  for (const Parameter& p : system.parameters)
+    if (p.symbol.role() == Role::Constant) numbers.emplace(p.symbol, p.value);
+  return numbers.empty() ? ExprVector(expressions.begin(), expressions.end()) : substitute(expressions, numbers);
+}
+
+PullBack::PullBack(const MechanicalSystem& a, const CoordinateMap& map, Diagnostics& diagnostics)
+    : a_(a), context_(*map.b->system.context) {
+  const MechanicalSystem& b = map.b->system;
+  positions_ = with_constants_as_numbers(b, in_terms_of_motion(b, map.values));
+  for (std::size_t i = 0; i < positions_.size(); ++i) {
+    velocities_.push_back(total_time_derivative(positions_[i]));
+    accelerations_.push_back(total_time_derivative(velocities_[i]));
+    const Coordinate& c = a.coordinates[i];
+    replacements_.emplace(c.q, positions_[i]);
+    replacements_.emplace(c.velocity, velocities_[i]);
+    replacements_.emplace(c.acceleration, accelerations_[i]);
+  }
+  replacements_.emplace(a.context->time(), context_.time());
+  const Bindings values = parameter_bindings(b);
+  for (std::size_t i = 0; i < a.parameters.size(); ++i) {
+    const Parameter& p = a.parameters[i];
+    Expr counterpart = map.parameters[i];
+    if (counterpart) {
+      counterpart = with_constants_as_numbers(b, in_terms_of_motion(b, {&counterpart, 1})).front();
+      const double other = evaluate(counterpart, values);
+      if (!same_value(p.si_value, other))
+        diagnostics.error("E0825", {}, fmt::format("the parameter `{}` differs: {:.12g} in {}, {:.12g} in {} (SI units)", p.name,
+                                                   p.si_value, a.name, other, b.name),
+                          "Two models with different values move differently, whatever their equations.",
+                          fmt::format("Give both the same value, or say in the map what `{}` is in the second model.", p.name));
+    } else {
+      counterpart = carried_over({&p.value, 1}, {}, context_).front();
+      if (p.symbol.role() == Role::Parameter && p.used)
+        diagnostics.note("N0826", {}, fmt::format("`{}` is no name of {}: its value is put in", p.name, b.name),
+                         fmt::format("What is shown then holds for {} = {:.12g} (SI units) alone.", p.name, p.si_value),
+                         fmt::format("A map may say what it is: `{} = …`.", p.name));
+    }
+    replacements_.emplace(p.symbol, counterpart);
+  }
+}
+
+ExprVector PullBack::operator()(std::span<const Expr> of_a) const {
+  if (of_a.empty()) return {};
+  return carried_over(expand_time_derivatives(in_terms_of_motion(a_, of_a)), replacements_, context_);
+}
+
+}  // namespace maupertuis::comparison
