@@ -101,6 +101,11 @@ def evaluate(tree, values):
     return {"+": lambda: a + b, "-": lambda: a - b, "*": lambda: a * b, "/": lambda: a / b, "^": lambda: a ** b}[kind]()
 
 
+def names(tree):
+    """Every name of a tree, as often as it stands there."""
+    return [tree[1]] if tree[0] == "name" else [n for part in tree[1:] if isinstance(part, tuple) for n in names(part)]
+
+
 def derivative(tree, values, t):
     """Of a closed form of t, by a central difference: 44 digits leave 20 after it."""
     h = D("1e-11")
@@ -112,7 +117,9 @@ def derivative(tree, values, t):
 
 
 def greek(name):
-    """theta → θ, q1 → q1, omega2 → ω2: whole Greek names only."""
+    """theta → θ, q1 → q1, omega2 → ω2: whole Greek names only. lambda3 is the multiplier of the third constraint."""
+    if name.startswith("lambda"):
+        return f"multiplier(c{name[6:]})"
     stem = re.fullmatch(r"([A-Za-z]+?)(\d*)", name)
     return GREEK[stem[1]] + stem[2] if stem and stem[1] in GREEK else name
 
