@@ -12,7 +12,7 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using Index = Eigen::Index;
 
-constexpr double rounding = 1e-14;   // what the evaluation of a constraint leaves, relative to the sizes of its terms
+constexpr double rounding = 1e-16;   // below it there is nothing to gain
 constexpr double reached = 1e-11;    // good enough where rounding does not let it come closer
 constexpr int most_turns = 60;
 
