@@ -1,4 +1,5 @@
 #include "command.hpp"
+#include "constraint_text.hpp"
 #include "outcome.hpp"
 #include "quantity.hpp"
 #include "study.hpp"
@@ -29,8 +30,24 @@ std::string start_text(const StartValue& start, const MechanicalSystem& system) 
   return fmt::format("{} = {}", name, with_unit(brief(value), start.order ? c.dimension / dimensions::time() : c.dimension));
 }
 
+/// What the check finds out beyond the text: the start on the constraints, and what these are.
+struct Findings {
+  std::optional<ConsistentStart> start;
+  ConstraintAnalysis analysis;
+};
+
+Findings look_into(const Model& model, const EquationsOfMotion& equations, Diagnostics& diagnostics) {
+  Findings out;
+  out.start = consistent_start(model, equations, diagnostics);
+  const MotionState* start = out.start ? &out.start->state : nullptr;
+  out.analysis = analyse_constraints(equations, start);
+  report_constraints(out.analysis, equations, start, diagnostics);
+  diagnostics.sort_by_place();
+  return out;
+}
+
 /// The coordinates with their kinds, the parts of each energy, … : one line each, in the order of a lecture.
-std::string summary(const Model& model) {
+std::string summary(const Model& model, const EquationsOfMotion& equations, const Findings& findings) {
   const MechanicalSystem& system = model.system;
   std::string out = system.name + (system.title.empty() ? "" : fmt::format(" — {}", system.title)) + "\n";
   const auto line = [&out](const char* head, const std::string& text) {
@@ -48,7 +65,7 @@ std::string summary(const Model& model) {
   if (words.size() > 8)
     words = {fmt::format("{} … {} ({} of them)", words.front(), words.back(), system.coordinates.size())};
   line("coordinates", joined(words));
-  line("freedoms", std::to_string(system.coordinates.size()));
+  summarise_constraints(equations, findings.analysis, line);
   words.clear();
   for (const Parameter& p : system.parameters)
     if (p.symbol.role() == Role::Parameter)
@@ -74,6 +91,7 @@ std::string summary(const Model& model) {
   for (const StartValue& start : model.experiment.start) words.push_back(start_text(start, system));
   if (words.size() > 8) words.resize(8), words.push_back("…");
   line("start", joined(words));
+  if (findings.start) line("moved to", moved_start(system, *findings.start));
   if (!model.experiment.expectations.empty())
     line("expectations", fmt::format("{} (run them with `maup test`)", model.experiment.expectations.size()));
   return out;
@@ -82,20 +100,23 @@ std::string summary(const Model& model) {
 ExitCode check(const ModelOptions& options, Console& console) {
   Study study(options.path, options.overrides);
   const Model* model = study.model();
-  if (model) study.equations();  // a singular mass matrix is found here
+  const EquationsOfMotion* equations = study.equations();  // a singular mass matrix is found here
+  std::optional<Findings> findings;
+  if (equations) findings = look_into(*model, *equations, study.diagnostics());
   if (console.json()) {
     Json document = json_document("check");
     document["system"] = model ? Json(model->system.name) : Json(nullptr);
     document["coordinates"] = Json::array();
     if (model)
       for (const Coordinate& c : model->system.coordinates) document["coordinates"].push_back(c.name);
-    const Json freedoms = model ? Json(model->system.coordinates.size()) : Json(nullptr);
-    document["freedoms"] = freedoms;
-    document["instantaneous_freedoms"] = freedoms;
-    document["constraints"] = Json::array();
+    // Numbers are given only where they are known.
+    const bool counted = findings && !study.wrong();
+    document["freedoms"] = counted ? Json(findings->analysis.configuration_freedoms) : Json(nullptr);
+    document["instantaneous_freedoms"] = counted ? Json(findings->analysis.instantaneous_freedoms) : Json(nullptr);
+    document["constraints"] = counted ? constraints_to_json(*equations, findings->analysis) : Json::array();
     return finish(console, study, document);
   }
-  if (model && !study.wrong()) console.print(summary(*model) + "No mistakes found.\n");
+  if (findings && !study.wrong()) console.print(summary(*model, *equations, *findings) + "No mistakes found.\n");
   return finish(console, study, {});
 }
 

@@ -1,0 +1,252 @@
+#include <maupertuis/constraint_analysis.hpp>
+
+#include "equations/antiderivative.hpp"
+#include "equations/integrable_part.hpp"
+#include "equations/manifold_samples.hpp"
+#include "equations/row_reduction.hpp"
+#include "equations/simplified.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+/// In this order: ranks of A at consistent points, dependent rows, one-forms and their integrable part, freedoms.
+namespace maupertuis {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Index = Eigen::Index;
+
+bool zero(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
+
+class Analysis {
+ public:
+  Analysis(const EquationsOfMotion& equations, const MotionState* start)
+      : equations_(equations), system_(*equations.system), n_(system_.coordinates.size()),
+        m_(system_.constraints.size()), manifold_(equations), start_(start) {
+    for (const Coordinate& c : system_.coordinates) variables_.push_back(c.q), velocities_.push_back(c.velocity);
+    variables_.push_back(system_.context->time());
+  }
+
+  ConstraintAnalysis carry_out() {
+    out_.constraints.resize(m_);
+    out_.configuration_freedoms = out_.instantaneous_freedoms = n_;
+    if (m_ == 0) return out_;
+    make_forms();
+    take_samples();
+    if (points_.empty()) return out_;
+    take_ranks();
+    find_dependent_rows();
+    if (has_velocity_forms()) classify();
+    out_.configuration_freedoms = n_ - out_.holonomic_rank - out_.integrable_rank;
+    out_.instantaneous_freedoms = n_ - out_.rank;
+    return out_;
+  }
+
+ private:
+  // ------------------------------------------------------------------------------------------------- one-forms
+
+  /// dφ or a·dq + a₀ dt; constraints that are not affine in the velocities have none.
+  void make_forms() {
+    forms_.resize(m_);
+    for (std::size_t i = 0; i < m_; ++i) {
+      const Expr value = in_terms_of_motion(system_, {&system_.constraints[i].value, 1}).front();
+      ConstraintReport& report = out_.constraints[i];
+      if (is_holonomic(i)) {
+        forms_[i].components = gradient(value, variables_);
+        report.scleronomic = zero(forms_[i].components[n_]);
+        continue;
+      }
+      if (affine_form(value, forms_[i])) {
+        report.constraint_class = ConstraintClass::Nonholonomic;
+        report.scleronomic = zero(forms_[i].components[n_]) && free_of_time(forms_[i].components);
+      } else {
+        forms_[i].components.clear();
+        report.constraint_class = ConstraintClass::Nonlinear;
+        report.scleronomic = zero(differentiate(value, variables_[n_]));
+      }
+    }
+  }
+
+  bool is_holonomic(std::size_t i) const { return system_.constraints[i].level == Constraint::Level::Position; }
+
+  bool affine_form(Expr value, OneForm& form) const {
+    form.components = gradient(value, velocities_);
+    for (const Expr& a : form.components)
+      for (const Expr& second : gradient(a, velocities_))
+        if (!zero(second)) return false;
+    ExprMap at_rest;
+    for (const Expr& v : velocities_) at_rest.emplace(v, system_.context->number(Rational(0)));
+    form.components = substitute(form.components, at_rest);
+    form.components.push_back(substitute(value, at_rest));
+    return true;
+  }
+
+  bool free_of_time(const ExprVector& form) const {
+    return std::all_of(form.begin(), form.end(), [&](Expr a) { return zero(differentiate(a, variables_[n_])); });
+  }
+
+  bool has_velocity_forms() const {
+    for (std::size_t i = 0; i < m_; ++i)
+      if (!is_holonomic(i) && !forms_[i].components.empty()) return true;
+    return false;
+  }
+
+  // ------------------------------------------------------------------------------------------ points and ranks
+
+  void take_samples() {
+    ManifoldSamples samples = sample_manifold(manifold_, system_, start_);
+    out_.clashing = samples.clashing;
+    for (MotionState& state : samples.states) points_.push_back(std::move(state));
+    // Without a general point the start alone stands for the manifold.
+    if (points_.empty() && start_) points_.push_back(*start_);
+  }
+
+  /// A with its columns in the scale of the masses.
+  Matrix rows_at(const MotionState& state) const {
+    const std::vector<double> a = manifold_.matrix(state), mass = manifold_.mass(state);
+    Matrix out(static_cast<Index>(m_), static_cast<Index>(n_));
+    for (std::size_t j = 0; j < n_; ++j) {
+      const double diagonal = mass[j * n_ + j];
+      const double scale = std::isfinite(diagonal) && diagonal > 0 ? std::sqrt(diagonal) : 1;
+      for (std::size_t i = 0; i < m_; ++i)
+        out(static_cast<Index>(i), static_cast<Index>(j)) = a[i * n_ + j] / scale;
+    }
+    return out;
+  }
+
+  void take_ranks() {
+    for (const MotionState& point : points_) rows_.push_back(rows_at(point));
+    Matrix at_start = start_ ? rows_at(*start_) : rows_[0];
+    for (Index i = 0; i < static_cast<Index>(m_); ++i) {
+      double length = 0;
+      for (const Matrix& a : rows_) length = std::max(length, a.row(i).norm());
+      if (length == 0) continue;
+      for (Matrix& a : rows_) a.row(i) /= length;
+      at_start.row(i) /= length;
+    }
+    std::vector<std::size_t> ranks;
+    for (const Matrix& a : rows_) {
+      ranks.push_back(numerical_rank(a));
+      out_.holonomic_rank = std::max(out_.holonomic_rank, numerical_rank(holonomic(a)));
+    }
+    best_ = static_cast<std::size_t>(std::max_element(ranks.begin(), ranks.end()) - ranks.begin());
+    out_.rank = ranks[best_];
+    out_.rank_varies = *std::min_element(ranks.begin(), ranks.end()) < out_.rank;
+    out_.start_rank = start_ ? std::min(numerical_rank(at_start), out_.rank) : out_.rank;
+  }
+
+  Matrix holonomic(const Matrix& a) const {
+    Matrix out = a;
+    for (std::size_t i = 0; i < m_; ++i)
+      if (!is_holonomic(i)) out.row(static_cast<Index>(i)).setZero();
+    return out;
+  }
+
+  /// Each row that adds nothing to the earlier ones, as their combination. What takes part in one has no definite λ.
+  void find_dependent_rows() {
+    const Matrix& a = rows_[best_];
+    const std::vector<std::size_t> chosen = independent_rows(a);
+    std::vector<bool> undetermined(m_, false);
+    for (std::size_t i = 0; i < m_; ++i) {
+      if (std::find(chosen.begin(), chosen.end(), i) != chosen.end()) continue;
+      ConstraintReport& report = out_.constraints[i];
+      report.redundant = undetermined[i] = true;
+      std::vector<std::size_t> earlier;
+      for (const std::size_t k : chosen)
+        if (k < i) earlier.push_back(k);
+      for (const std::size_t k : part_taking(a, i, earlier)) {
+        report.depends_on.push_back(k);
+        undetermined[k] = true;
+      }
+    }
+    for (std::size_t i = 0; i < m_; ++i)
+      if (undetermined[i]) out_.undetermined.push_back(i);
+  }
+
+  static std::vector<std::size_t> part_taking(const Matrix& a, std::size_t row, const std::vector<std::size_t>& of) {
+    if (of.empty()) return {};
+    Matrix basis(a.cols(), static_cast<Index>(of.size()));
+    for (std::size_t k = 0; k < of.size(); ++k) basis.col(static_cast<Index>(k)) = a.row(static_cast<Index>(of[k])).transpose();
+    const Eigen::VectorXd target = a.row(static_cast<Index>(row)).transpose();
+    const Eigen::VectorXd weights = least_squares(basis, target);
+    std::vector<std::size_t> out;
+    for (std::size_t k = 0; k < of.size(); ++k)
+      if (std::abs(weights[static_cast<Index>(k)]) * basis.col(static_cast<Index>(k)).norm() > 1e-7 * target.norm()) out.push_back(of[k]);
+    return out;
+  }
+
+  // -------------------------------------------------------------------------------------------- classification
+
+  std::vector<Bindings> bindings() const {
+    std::vector<Bindings> out;
+    for (const MotionState& point : points_) {
+      Bindings b = parameter_bindings(system_);
+      b[variables_[n_]] = point.t;
+      for (std::size_t i = 0; i < n_; ++i) b[variables_[i]] = point.q[i];
+      out.push_back(std::move(b));
+    }
+    return out;
+  }
+
+  void classify() {
+    std::vector<OneForm> forms;
+    std::vector<std::size_t> owner;
+    for (std::size_t i = 0; i < m_; ++i)
+      if (!forms_[i].components.empty()) forms.push_back(forms_[i]), owner.push_back(i);
+    const IntegrablePart part = integrable_part(forms, variables_, bindings());
+    out_.integrable_rank = part.integrable_rank > out_.holonomic_rank ? part.integrable_rank - out_.holonomic_rank : 0;
+    for (std::size_t k = 0; k < forms.size(); ++k) {
+      ConstraintReport& report = out_.constraints[owner[k]];
+      if (is_holonomic(owner[k]) || !part.integrable[k]) continue;
+      report.constraint_class = ConstraintClass::Integrable;
+      report.integral = first_integral(forms[k], variables_, equations_.order);
+    }
+    for (const IntegrablePart::Combination& found : part.combinations) {
+      IntegrableCombination combination;
+      for (const std::size_t k : found.forms) combination.constraints.push_back(owner[k]);
+      std::sort(combination.constraints.begin(), combination.constraints.end());
+      combination.integral = first_integral(found.form, variables_, equations_.order);
+      out_.combinations.push_back(std::move(combination));
+    }
+  }
+
+  const EquationsOfMotion& equations_;
+  const MechanicalSystem& system_;
+  std::size_t n_, m_;
+  ConstraintManifold manifold_;
+  const MotionState* start_;
+  ExprVector variables_, velocities_;  // q and t [n + 1]; q̇ [n]
+  std::vector<OneForm> forms_;         // [m]; without components where ψ is not affine
+  std::vector<MotionState> points_;
+  std::vector<Matrix> rows_;           // A at the points, scaled
+  std::size_t best_ = 0;               // a point of the largest rank
+  ConstraintAnalysis out_;
+};
+
+}  // namespace
+
+const char* word(ConstraintClass constraint_class) {
+  switch (constraint_class) {
+    case ConstraintClass::Holonomic: return "holonomic";
+    case ConstraintClass::Nonholonomic: return "nonholonomic";
+    case ConstraintClass::Integrable: return "integrable";
+    case ConstraintClass::Nonlinear: return "nonlinear";
+  }
+  return "";
+}
+
+const char* words(ConstraintClass constraint_class) {
+  switch (constraint_class) {
+    case ConstraintClass::Holonomic: return "holonomic";
+    case ConstraintClass::Nonholonomic: return "non-holonomic";
+    case ConstraintClass::Integrable: return "holonomic in disguise";
+    case ConstraintClass::Nonlinear: return "non-linear in the velocities (Chetaev)";
+  }
+  return "";
+}
+
+ConstraintAnalysis analyse_constraints(const EquationsOfMotion& equations, const MotionState* start) {
+  return Analysis(equations, start).carry_out();
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,95 @@
+#include "equations/first_integral.hpp"
+
+#include "equations/antiderivative.hpp"
+#include "equations/simplified.hpp"
+
+#include <algorithm>
+
+/// A form is tried with factors f until f · form is closed and its antiderivative is elementary.
+namespace maupertuis {
+namespace {
+
+constexpr std::size_t most_nodes = 400;  // of a form: what is larger has no integral that anyone would read
+
+bool zero(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
+
+bool closed(const ExprVector& form, const ExprVector& variables) {
+  for (std::size_t i = 0; i < form.size(); ++i)
+    for (std::size_t j = i + 1; j < form.size(); ++j)
+      if (!zero(differentiate(form[i], variables[j]) - differentiate(form[j], variables[i]))) return false;
+  return true;
+}
+
+/// F of a closed form: variable by variable what is still missing.
+Expr potential(const ExprVector& form, const ExprVector& variables, const ReadingOrder& order) {
+  Context& context = variables[0].context();
+  Expr out = context.number(Rational(0));
+  for (std::size_t i = 0; i < form.size(); ++i) {
+    const Expr missing = form[i] - differentiate(out, variables[i]);
+    if (zero(missing)) continue;
+    Expr part = antiderivative(missing, variables[i]);
+    if (!part) part = antiderivative(simplified(missing, order), variables[i]);
+    if (!part) return {};
+    out = out + part;
+  }
+  for (std::size_t i = 0; i < form.size(); ++i)
+    if (!zero(differentiate(out, variables[i]) - form[i])) return {};
+  return out;
+}
+
+/// The product of the factors of e that are functions of other variables than z: what separation divides by.
+Expr foreign_factors(Expr e, const ExprVector& variables, Expr z) {
+  Expr out = e.context().number(Rational(1));
+  for (const Expr& factor : factors_of(e)) {
+    const bool moves = std::any_of(variables.begin(), variables.end(), [&](Expr v) { return depends_on(factor, v); });
+    if (moves && !depends_on(factor, z)) out = out * factor;
+  }
+  return out;
+}
+
+/// 1; 1/a_i; what separates two variables, 1/(p q) for p(y) … dx + q(x) … dy; 1/(a_i a_j).
+ExprVector candidate_factors(const ExprVector& form, const ExprVector& variables) {
+  ExprVector out{variables[0].context().number(Rational(1))};
+  const auto add = [&out](Expr divisor) {
+    const Expr factor = pow(divisor, Rational(-1));
+    if (std::find(out.begin(), out.end(), factor) == out.end()) out.push_back(factor);
+  };
+  std::vector<std::size_t> present;
+  for (std::size_t i = 0; i < form.size(); ++i)
+    if (!form[i].is_zero()) present.push_back(i);
+  for (const std::size_t i : present) add(form[i]);
+  for (const std::size_t i : present)
+    for (const std::size_t j : present)
+      if (i < j) add(foreign_factors(form[i], variables, variables[i]) * foreign_factors(form[j], variables, variables[j]));
+  for (const std::size_t i : present)
+    for (const std::size_t j : present)
+      if (i < j) add(form[i] * form[j]);
+  return out;
+}
+
+/// Readable, with its numeric factor taken out, so that the first term has the coefficient 1.
+Expr presentable(Expr e, const ReadingOrder& order) {
+  const Expr plain = simplified(e, order);
+  const Expr first = plain.is(Kind::Sum) ? plain[0] : plain;
+  const Rational scale = split_coefficient(first).coefficient;
+  if (scale.sign() == 0 || scale == Rational(1)) return plain;
+  const Expr scaled = expand(plain / scale);
+  return scaled ? scaled : plain / scale;
+}
+
+}  // namespace
+
+FirstIntegral first_integral(const OneForm& form, const ExprVector& variables, const ReadingOrder& order) {
+  if (topological_order(form.components).size() > most_nodes) return {};
+  ExprVector plain;
+  for (const Expr& a : form.components) plain.push_back(zero(a) ? a.context().number(Rational(0)) : simplified(a, order));
+  for (const Expr& factor : candidate_factors(plain, variables)) {
+    ExprVector trial;
+    for (const Expr& a : plain) trial.push_back(a * factor);
+    if (!closed(trial, variables)) continue;
+    if (const Expr value = potential(trial, variables, order)) return {presentable(value, order)};
+  }
+  return {};
+}
+
+}  // namespace maupertuis
