@@ -16,6 +16,8 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Index = Eigen::Index;
 
+constexpr double vanishing = 1e-4;  // a row on the manifold against beside it
+
 bool zero(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
 
 class Analysis {
@@ -96,9 +98,8 @@ class Analysis {
   void take_samples() {
     ManifoldSamples samples = sample_manifold(manifold_, system_, start_);
     out_.clashing = samples.clashing;
-    for (MotionState& state : samples.states) points_.push_back(std::move(state));
-    // Without a general point the start alone stands for the manifold.
-    if (points_.empty() && start_) points_.push_back(*start_);
+    points_ = std::move(samples.states);
+    beside_ = std::move(samples.beside);
   }
 
   /// A with its columns in the scale of the masses.
@@ -118,11 +119,13 @@ class Analysis {
     for (const MotionState& point : points_) rows_.push_back(rows_at(point));
     Matrix at_start = start_ ? rows_at(*start_) : rows_[0];
     for (Index i = 0; i < static_cast<Index>(m_); ++i) {
-      double length = 0;
+      double length = 0, length_beside = 0;
       for (const Matrix& a : rows_) length = std::max(length, a.row(i).norm());
-      if (length == 0) continue;
-      for (Matrix& a : rows_) a.row(i) /= length;
-      at_start.row(i) /= length;
+      for (const MotionState& point : beside_) length_beside = std::max(length_beside, rows_at(point).row(i).norm());
+      // φ = 0 where its gradient vanishes is met to half of the digits only.
+      const double scale = length > vanishing * length_beside ? 1 / length : 0;
+      for (Matrix& a : rows_) a.row(i) *= scale;
+      at_start.row(i) *= scale;
     }
     std::vector<std::size_t> ranks;
     for (const Matrix& a : rows_) {
@@ -217,7 +220,7 @@ class Analysis {
   const MotionState* start_;
   ExprVector variables_, velocities_;  // q and t [n + 1]; q̇ [n]
   std::vector<OneForm> forms_;         // [m]; without components where ψ is not affine
-  std::vector<MotionState> points_;
+  std::vector<MotionState> points_, beside_;  // on the constraints, and where they were taken from
   std::vector<Matrix> rows_;           // A at the points, scaled
   std::size_t best_ = 0;               // a point of the largest rank
   ConstraintAnalysis out_;

@@ -30,10 +30,16 @@ class Messages {
  private:
   Span span(std::size_t i) const { return system_.constraints[i].span; }
 
+  /// `rod`, or: constraint 2.
+  std::string label(std::size_t i) const {
+    const std::string plain = system_.constraint_label(i);
+    return system_.constraints[i].name.empty() ? plain : "`" + plain + "`";
+  }
+
   std::string labels(const std::vector<std::size_t>& of) const {
     std::string out;
     for (std::size_t k = 0; k < of.size(); ++k)
-      out += (k == 0 ? "" : k + 1 == of.size() ? " and " : ", ") + system_.constraint_label(of[k]);
+      out += (k == 0 ? "" : k + 1 == of.size() ? " and " : ", ") + label(of[k]);
     return out;
   }
 
@@ -57,7 +63,7 @@ class Messages {
   void redundant(std::size_t i, const ConstraintReport& report) {
     if (told_of(span(i))) return;  // written twice
     if (report.depends_on.empty()) {
-      diagnostics_.warning("W0602", span(i), fmt::format("the gradient of {} vanishes wherever it holds", system_.constraint_label(i)),
+      diagnostics_.warning("W0602", span(i), fmt::format("the gradient of {} vanishes wherever it holds", label(i)),
                            "It has no direction in which a force could keep it, so that its multiplier is not determined.",
                            "Write it in another form: x = y instead of (x - y)^2 = 0.");
       return;
@@ -65,7 +71,7 @@ class Messages {
     std::vector<std::size_t> all = report.depends_on;
     all.push_back(i);
     diagnostics_.warning("W0602", span(i),
-                         fmt::format("{} is redundant: it follows from {}", system_.constraint_label(i), labels(report.depends_on)),
+                         fmt::format("{} is redundant: it follows from {}", label(i), labels(report.depends_on)),
                          fmt::format("The motion stays the same, but how {} share the forces is not determined.", labels(all)),
                          "Leave one of them out where their forces matter.");
   }
@@ -85,27 +91,27 @@ class Messages {
   }
 
   void disguised(std::size_t i, const ConstraintReport& report) {
-    const std::string label = system_.constraint_label(i);
+    const std::string name = label(i);
     if (!report.integral.found()) {
-      diagnostics_.warning("W0603", span(i), fmt::format("{} is holonomic in disguise", label),
+      diagnostics_.warning("W0603", span(i), fmt::format("{} is holonomic in disguise", name),
                            "It can be integrated to a relation between the coordinates, which the velocities alone do not hold exactly.",
                            "Write that relation instead.");
       return;
     }
     const Expr value = report.integral.value;
     if (value.is_symbol() && value.role() == Role::Coordinate) {
-      diagnostics_.note("N0605", span(i), fmt::format("{} fixes the coordinate `{}`", label, value.name()),
+      diagnostics_.note("N0605", span(i), fmt::format("{} fixes the coordinate `{}`", name, value.name()),
                         "A velocity that is always 0 leaves the coordinate at its start value: it is a parameter.",
                         fmt::format("Make `{}` a parameter, or give its value as a constraint.", value.name()));
       return;
     }
-    diagnostics_.warning("W0603", span(i), fmt::format("{} is holonomic in disguise: {} = const", label, text(value)),
+    diagnostics_.warning("W0603", span(i), fmt::format("{} is holonomic in disguise: {} = const", name, text(value)),
                          "Given for the velocities it loses the level of the positions: the constant is whatever the start makes it.",
                          line_to_write(report.integral));
   }
 
   void nonlinear(std::size_t i) {
-    diagnostics_.note("N0607", span(i), fmt::format("{} is not linear in the velocities", system_.constraint_label(i)),
+    diagnostics_.note("N0607", span(i), fmt::format("{} is not linear in the velocities", label(i)),
                       "Its force follows Chetaev's rule, ∂ψ/∂q' times λ, which is a choice beyond d'Alembert's principle.", "");
   }
 

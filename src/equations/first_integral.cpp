@@ -4,6 +4,7 @@
 #include "equations/simplified.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 /// A form is tried with factors f until f · form is closed and its antiderivative is elementary.
 namespace maupertuis {
@@ -67,14 +68,26 @@ ExprVector candidate_factors(const ExprVector& form, const ExprVector& variables
   return out;
 }
 
-/// Readable, with its numeric factor taken out, so that the first term has the coefficient 1.
+/// What makes the coefficients of the terms whole numbers without a common divisor.
+Rational common_scale(Expr sum) {
+  std::int64_t multiple = 1, divisor = 0;
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const auto part = split_coefficient(sum[i]).coefficient.small();
+    if (!part || part->denominator > 1000 || multiple > 1000000) return Rational(1);
+    multiple = std::lcm(multiple, part->denominator);
+    divisor = std::gcd(divisor, part->numerator);
+  }
+  return divisor == 0 ? Rational(1) : Rational(multiple, divisor);
+}
+
+/// Readable, in whole numbers where that is possible, the term that is printed first positive.
 Expr presentable(Expr e, const ReadingOrder& order) {
   const Expr plain = simplified(e, order);
-  const Expr first = plain.is(Kind::Sum) ? plain[0] : plain;
-  const Rational scale = split_coefficient(first).coefficient;
-  if (scale.sign() == 0 || scale == Rational(1)) return plain;
-  const Expr scaled = expand(plain / scale);
-  return scaled ? scaled : plain / scale;
+  Rational scale = plain.is(Kind::Sum) ? common_scale(plain) : Rational(1) / split_coefficient(plain).coefficient;
+  const auto scaled = [&] { return expand(plain * scale, 200); };
+  if (!scaled()) return plain;
+  if (to_plain(scaled(), order).front() == '-') scale = -scale;
+  return scale == Rational(1) ? plain : scaled();
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int attempts = 40;
 constexpr std::size_t wanted = 4;
-constexpr double near = 0.1;           // of the reach of a coordinate: on the branch of the start, away from it
+constexpr double near = 0.1;           // of the reach of a coordinate: on the branch of the start
 constexpr double longest_time = 0.01;  // s after the start: driven linkages need not close much later
 
 class Sampler {
@@ -31,10 +31,12 @@ class Sampler {
     return std::nullopt;
   }
 
-  std::vector<MotionState> around(const MotionState& start) {
-    std::vector<MotionState> out;
-    for (int attempt = 0; attempt < attempts && out.size() < wanted; ++attempt)
-      if (auto state = consistent(scattered(start, near))) out.push_back(std::move(*state));
+  ManifoldSamples around(const MotionState& start) {
+    ManifoldSamples out;
+    for (int attempt = 0; attempt < attempts && out.states.size() < wanted; ++attempt) {
+      const MotionState from = scattered(start, near * (1 + attempt % 4));  // farther ones leave a singular start
+      if (auto state = consistent(from)) out.states.push_back(std::move(*state)), out.beside.push_back(from);
+    }
     return out;
   }
 
@@ -68,7 +70,7 @@ ManifoldSamples sample_manifold(const ConstraintManifold& manifold, const Mechan
   Sampler sampler(manifold, system);
   const std::optional<MotionState> any = start ? *start : sampler.find();
   ManifoldSamples out;
-  if (any) out.states = sampler.around(*any);
+  if (any) out = sampler.around(*any);
   const MotionState origin{0, std::vector<double>(system.coordinates.size(), 0), std::vector<double>(system.coordinates.size(), 0)};
   if (out.states.empty()) out.clashing = manifold.smallest_clash(sampler.scattered(any.value_or(origin), near));
   return out;

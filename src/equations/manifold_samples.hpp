@@ -6,6 +6,7 @@ namespace maupertuis {
 /// Random consistent states, the same in every run.
 struct ManifoldSamples {
   std::vector<MotionState> states;
+  std::vector<MotionState> beside;    // [states] where each was taken from: off the constraints
   std::vector<std::size_t> clashing;  // no state was found: a smallest set of constraints that clashes
 };
 

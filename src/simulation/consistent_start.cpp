@@ -64,6 +64,13 @@ class Start {
     return out;
   }
 
+  std::string labels(const std::vector<std::size_t>& of) const {
+    std::string out;
+    for (std::size_t k = 0; k < of.size(); ++k)
+      out += (k == 0 ? "" : k + 1 == of.size() ? " and " : ", ") + system_.constraint_label(of[k]);
+    return out;
+  }
+
   std::optional<Span> span() const {
     if (!model_.experiment.start.empty()) return model_.experiment.start.front().span;
     return std::nullopt;
@@ -131,12 +138,9 @@ class Start {
   bool refuse_clash(const ConstraintManifold& manifold) {
     MotionState trial = written_state_;
     trial.v.assign(n_, 0);
-    std::string names;
-    std::optional<Span> place;
-    for (const std::size_t i : manifold.smallest_clash(trial)) {
-      names += (names.empty() ? "" : ", ") + system_.constraint_label(i);
-      place = system_.constraints[i].span;
-    }
+    const std::vector<std::size_t> clash = manifold.smallest_clash(trial);
+    const std::string names = labels(clash);
+    const std::optional<Span> place = clash.empty() ? std::nullopt : std::optional(system_.constraints[clash.back()].span);
     diagnostics_.error("E0708", place, fmt::format("no configuration satisfies {}", names),
                        "These constraints exclude each other from where the motion starts: the loop cannot close.",
                        "Check the lengths in them, or start nearer to a configuration that is possible.");
@@ -158,8 +162,9 @@ class Start {
       return false;
     }
     if (move(manifold, nothing())) return true;
+    const auto clash = is_rate ? std::vector<std::size_t>{} : manifold.smallest_clash(written_state_at(state_.q));
     diagnostics_.error("E0709", is_rate ? model_.experiment.start_rates.front().span : system_.constraints[worst].span,
-                       fmt::format("no velocities satisfy {} at the start", label),
+                       fmt::format("no velocities satisfy {} at the start", clash.empty() ? label : labels(clash)),
                        "At this configuration the constraints on the velocities exclude each other.",
                        "Start from another configuration, or check the constraints.");
     return false;

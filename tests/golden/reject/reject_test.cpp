@@ -1,7 +1,8 @@
 #include <doctest/doctest.h>
 
 #include <maupertuis/codes.hpp>
-#include <maupertuis/mechanical_system.hpp>
+#include <maupertuis/constraint_analysis.hpp>
+#include <maupertuis/simulation.hpp>
 
 #include <algorithm>
 #include <cstdlib>
@@ -34,6 +35,12 @@ Diagnostics check(const SourceText& source) {
   const syntax::SyntaxTree tree = syntax::parse(source, diagnostics);
   const std::optional<Model> model = elaborate(tree, source, diagnostics);
   if (model) lint(*model, source, diagnostics);
+  if (!model || diagnostics.has_errors()) return diagnostics;
+  const auto equations = euler_lagrange(std::make_shared<const MechanicalSystem>(model->system), diagnostics);
+  if (!equations) return diagnostics;
+  const auto begin = consistent_start(*model, *equations, diagnostics);
+  const MotionState* start = begin ? &begin->state : nullptr;
+  report_constraints(analyse_constraints(*equations, start), *equations, start, diagnostics);
   return diagnostics;
 }
 
@@ -65,14 +72,14 @@ TEST_CASE("one mistake gives one message") {
   }
 }
 
-TEST_CASE("every code of the text and of the physics has a model here") {
+TEST_CASE("every code of the text, of the physics and of the constraints has a model here") {
   std::set<std::string> given;
   for (const fs::path& path : models()) {
     const SourceText source(path.filename().string(), read(path));
     const Diagnostics diagnostics = check(source);
     for (const Diagnostic& d : diagnostics.items()) given.insert(d.code);
   }
-  const std::span<const CodeEntry> catalogues[] = {syntax_codes(), system_codes()};
+  const std::span<const CodeEntry> catalogues[] = {syntax_codes(), system_codes(), equations_codes()};
   for (const auto codes : catalogues)
     for (const CodeEntry& entry : codes) {
       if (entry.wrong.empty()) continue;
