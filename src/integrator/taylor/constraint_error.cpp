@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace maupertuis::taylor {
 namespace {
@@ -25,14 +26,25 @@ double rate_bound(const KernelWorkspace& work, std::size_t row, std::size_t free
   return std::sqrt(motion * gradient) + rest;
 }
 
+/// What rounding of the coordinates makes of φ: a rate that moves φ by less than that in a step does not count, so that a
+/// motion which comes to rest ends in peace.
+double rounding_of_position(const KernelWorkspace& work, std::size_t row, std::size_t freedoms) {
+  double size = work.constraint_scale(row);
+  for (std::size_t i = 0; i < freedoms; ++i) size += std::abs(work.constraint_matrix(row, i) * work.coordinate(0)[i]);
+  return 64 * std::numeric_limits<double>::epsilon() * size;
+}
+
+double beyond(double value, double threshold) { return std::max(0.0, std::abs(value) - threshold); }
+
 }  // namespace
 
 double constraint_error(const KernelWorkspace& work, std::size_t freedoms, std::size_t constraints, double h) {
   double largest = 0;
   for (std::size_t j = 0; j < constraints; ++j) {
     const double rate = rate_bound(work, j, freedoms, h);
+    const double unseen = h > 0 ? rounding_of_position(work, j, freedoms) / h : 0;
     largest = std::max({largest, ratio(work.constraint_value(j), work.constraint_scale(j) + h * rate),
-                        ratio(work.constraint_rate(j), work.constraint_rate_scale(j) + rate)});
+                        ratio(beyond(work.constraint_rate(j), unseen), work.constraint_rate_scale(j) + rate)});
   }
   return largest;
 }

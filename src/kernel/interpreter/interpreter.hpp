@@ -42,10 +42,16 @@ void set_leaves(Memory& memory, double t, int orders);
 /// Every instruction of a section at the order that belongs to the stage.
 void run_section(Memory& memory, Section section, int stage);
 
-/// Directional derivatives of the instructions of Dynamics at order 0, `Width` directions at once: for a slot of lag ℓ,
-/// ∂/∂q^(ℓ) applied to the directions. In: those of the coordinates; out: those of every slot. [slots × Width]
+/// Directional derivatives of instructions of Dynamics at order 0, `Width` directions at once: for a slot of lag ℓ,
+/// ∂/∂q^(ℓ) applied to the directions. In: those of the coordinates; out: those of the slots of the instructions, which
+/// are named by index and in order. [slots × Width]
 template <int Width>
-void tangents(const Memory& memory, double* tangent);
+void tangents(const Memory& memory, double* tangent, std::span<const std::uint32_t> instructions);
+
+/// Every instruction of Dynamics that q has an influence on.
+std::vector<std::uint32_t> moved_instructions(const Program& program);
+/// Those of them that the derivatives of the residual by q̈ go through.
+std::vector<std::uint32_t> instructions_of_mass(const Program& program);
 
 /// Sum of the sizes of the terms of a slot at order 0; its own size where it is no sum.
 double term_size(const Memory& memory, const Instruction* producer, Slot slot);

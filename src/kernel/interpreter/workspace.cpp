@@ -22,6 +22,8 @@ struct KernelWorkspace::Impl {
     width = unknowns <= 1 ? 1 : unknowns <= 2 ? 2 : unknowns <= 4 ? 4 : 8;
     tangent.assign(program.slots * static_cast<std::size_t>(width), 0.0);
     if (unknowns > 8) direction.assign(program.slots, 0.0);
+    moved = interpreter::moved_instructions(program);
+    of_mass = unknowns > 8 ? interpreter::instructions_of_mass(program) : moved;
     for (const Instruction& i : program.instructions) producer[i.out] = &i;
   }
 
@@ -48,6 +50,7 @@ struct KernelWorkspace::Impl {
   int width;                         // directions a tangent sweep carries
   std::vector<double> tangent;       // [slots × width]; with n + m ≤ 8 it holds ∂slot/∂q^(lag) [slots × (n + m)]
   std::vector<double> direction;     // [slots], n + m > 8: tangents in the direction of q̈_k
+  std::vector<std::uint32_t> moved, of_mass;  // instructions that tangents go through: for corrections, for M₀
   std::vector<const Instruction*> producer;  // [slots]
   std::size_t singular = 0, contradicting = 0;
   int last_stage = 0;
@@ -55,12 +58,12 @@ struct KernelWorkspace::Impl {
 
 namespace {
 
-void sweep(int width, const Memory& memory, double* tangent) {
+void sweep(int width, const Memory& memory, double* tangent, std::span<const std::uint32_t> instructions) {
   switch (width) {
-    case 1: return interpreter::tangents<1>(memory, tangent);
-    case 2: return interpreter::tangents<2>(memory, tangent);
-    case 4: return interpreter::tangents<4>(memory, tangent);
-    default: return interpreter::tangents<8>(memory, tangent);
+    case 1: return interpreter::tangents<1>(memory, tangent, instructions);
+    case 2: return interpreter::tangents<2>(memory, tangent, instructions);
+    case 4: return interpreter::tangents<4>(memory, tangent, instructions);
+    default: return interpreter::tangents<8>(memory, tangent, instructions);
   }
 }
 
@@ -80,7 +83,7 @@ void KernelWorkspace::Impl::sweep_block(std::size_t first) {
   const auto w = static_cast<std::size_t>(width);
   std::fill_n(tangent.begin(), unknowns * w, 0.0);
   for (std::size_t d = 0; d < w && first + d < unknowns; ++d) tangent[(first + d) * w + d] = 1;
-  sweep(width, memory, tangent.data());
+  sweep(width, memory, tangent.data(), of_mass);
 }
 
 /// M₀ = ∂R/∂q̈ at order 0, bordered by the constraints, column by column, and its factors.
@@ -161,7 +164,7 @@ void KernelWorkspace::Impl::correct(int stage) {
   const bool by_matrix = n <= 8;
   if (!by_matrix) {
     std::copy(unknown.begin(), unknown.end(), direction.begin());
-    interpreter::tangents<1>(memory, direction.data());
+    interpreter::tangents<1>(memory, direction.data(), moved);
   }
   Slot first = static_cast<Slot>(n);
   for (int lag = 0; lag <= 2; ++lag) {

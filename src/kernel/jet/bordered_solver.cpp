@@ -50,14 +50,21 @@ struct BorderedSolver::Impl {
 /// Ruiz, A scaling algorithm to equilibrate both rows and columns norms in matrices (2001), symmetric.
 void BorderedSolver::Impl::equilibrate() {
   std::fill(scale.begin(), scale.end(), 1.0);
+  std::vector<double> step(size);
   for (int sweep = 0; sweep < 3; ++sweep) {
-    std::vector<double> step(size, 1.0);
-    for (std::size_t i = 0; i < size; ++i) {
-      double largest = 0;
-      for (std::size_t j = 0; j < size; ++j)
-        largest = std::max({largest, std::abs(entries[i * size + j]), std::abs(entries[j * size + i])});
-      if (largest > 0) step[i] = std::ldexp(1.0, -std::ilogb(largest) / 2);
+    std::fill(step.begin(), step.end(), 0.0);  // first the largest entry of row and column
+    for (std::size_t i = 0; i < size; ++i)
+      for (std::size_t j = 0; j < size; ++j) {
+        const double entry = std::abs(entries[i * size + j]);
+        step[i] = std::max(step[i], entry);
+        step[j] = std::max(step[j], entry);
+      }
+    bool done = true;
+    for (double& s : step) {
+      s = s > 0 ? std::ldexp(1.0, -std::ilogb(s) / 2) : 1.0;
+      done &= s == 1.0;
     }
+    if (done) return;
     for (std::size_t i = 0; i < size; ++i)
       for (std::size_t j = 0; j < size; ++j) entries[i * size + j] *= step[i] * step[j];
     for (std::size_t i = 0; i < size; ++i) scale[i] *= step[i];
