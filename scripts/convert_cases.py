@@ -103,7 +103,7 @@ def tolerance(expectation):
     """The tolerance in doubles of the recomputed values, out of the words of the case: "± 1e-12" or "rel 1e-12"."""
     words = expectation["tolerance"]
     number = r"(\d[\d.e+-]*\d)"
-    relative = re.search("recomputed: .*" + number + " in double", words) or re.search("recomputed relative " + number, words)
+    relative = re.search("recomputed: .*?" + number + " in double", words) or re.search("recomputed relative " + number, words)
     if relative:
         return "rel " + relative[1]
     at = re.search(rf"t={expectation.get('time')}: {number}", words)
