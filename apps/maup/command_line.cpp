@@ -113,6 +113,7 @@ int run(int argc, char** argv) {
     add_simulate(line);
     add_test(line);
     add_compare(line);
+    add_reduce(line);
     add_plot(line);
     add_report(line);
     add_fmt(line);

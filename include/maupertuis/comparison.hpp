@@ -80,4 +80,20 @@ struct ComparisonOptions {
 Comparison compare(const Model& a, const EquationsOfMotion& a_equations, const CoordinateMap& map,
                    const EquationsOfMotion& b_equations, const ComparisonOptions& options, Diagnostics& diagnostics);
 
+/// A constrained model in independent coordinates.
+struct Reduction {
+  std::vector<std::string> dependent, independent;  // coordinates: pivots of A at the start in the metric of M, and the rest
+  std::vector<std::string> steps;                   // a sentence for each constraint that was removed, for each line that was left out
+  std::string text;                                 // the model; empty where the elimination is not elementary
+  std::optional<Comparison> proof;                  // that the two are the same motion
+};
+
+/// Solves the holonomic constraints and writes the model in what is left: linear ones for a coordinate, spheres and ellipsoids
+/// in two or three coordinates by angles. The old coordinates live on as `let` lines, so that the other lines stay as they
+/// are. Velocity constraints stay. The text is given back only when it elaborates and `compare` proves it.
+/// Errors: no holonomic constraint (E0830), none that is solved in closed form (E0831), a line that cannot be carried over
+/// (E0832), a reduction that is not proved (E0833).
+Reduction reduce(const Model& model, const EquationsOfMotion& equations, const syntax::SyntaxTree& tree,
+                 const SourceText& source, Diagnostics& diagnostics);
+
 }  // namespace maupertuis

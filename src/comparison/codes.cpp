@@ -28,6 +28,19 @@ constexpr CodeEntry entries[] = {
      "The first model has a parameter that the second does not have. Its value is put into the equations as an exact number, so that "
      "a proof holds for that value alone.",
      "", ""},
+    {"E0830", "nothing to reduce",
+     "Constraints between positions tie coordinates to each other, so that some can be expressed by the rest. Constraints between "
+     "velocities do not: they leave every configuration within reach. A model without constraints is in independent coordinates.",
+     "", ""},
+    {"E0831", "a constraint without a closed form",
+     "Constraints are solved one by one: one that is linear in a coordinate, with a factor that does not change, for that coordinate; "
+     "a circle, sphere or ellipsoid in two or three coordinates by angles. A closed loop of links is neither: its angles are roots "
+     "of polynomials with several branches, and the constrained model is the better description of it.",
+     "", ""},
+    {"E0832", "a line that cannot be carried over to independent coordinates",
+     "Old coordinates become definitions. A line that needs a coordinate, not a quantity, has no place for them.", "", ""},
+    {"E0833", "a reduction that is not proved",
+     "A reduced model is shown only when its motion is proved to be that of the model it comes from.", "", ""},
 };
 
 }  // namespace

@@ -35,7 +35,6 @@ void add_later_commands(CommandLine& line) {
       {"animate", "GIF, MP4, HTML"},
       {"export", "c, python, latex, fmu, html"},
       {"studio", "the interactive browser page"},
-      {"reduce", "independent coordinates of a constrained model"},
   };
   for (const auto& [name, what] : commands) {
     CLI::App& command = line.add(name, fmt::format("Not supported yet: {}", what), "  (none yet)\n",

@@ -1,0 +1,75 @@
+#include "command.hpp"
+#include "outcome.hpp"
+#include "quantity.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <maupertuis/comparison.hpp>
+
+namespace maupertuis::app {
+namespace {
+
+struct ReduceOptions {
+  std::string path, output;
+};
+
+std::string joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
+
+/// What was done and on what ground it is believed.
+std::string account(const Reduction& r) {
+  std::string out;
+  for (const std::string& step : r.steps) out += fmt::format("  {}\n", step);
+  if (!r.proof) return out;
+  const ZeroTest& ground = r.proof->ground;
+  out += ground.error_bound < 1
+             ? fmt::format("  the same motion: proved (at {} random points, error bound {:.1e})\n", ground.points, ground.error_bound)
+             : fmt::format("  the same motion: holds to 60 digits at {} states that meet the remaining constraints\n", ground.points);
+  if (r.proof->run.ran)
+    out += fmt::format("  run of both for {} s: they differ by {:.2g}\n", brief(r.proof->run.duration), r.proof->run.difference);
+  return out;
+}
+
+ExitCode reduce_model(const ReduceOptions& options, Console& console) {
+  Study study(options.path);
+  Json document = json_document("reduce");
+  const EquationsOfMotion* equations = study.equations();
+  if (!equations || !study.certificate()) return finish(console, study, document);
+  const Reduction r = reduce(*study.model(), *equations, *study.tree(), study.source(), study.diagnostics());
+  document["dependent"] = r.dependent;
+  document["independent"] = r.independent;
+  document["steps"] = r.steps;
+  document["text"] = r.text.empty() ? Json(nullptr) : Json(r.text);
+  document["proof"] = nullptr;
+  if (r.proof)
+    document["proof"] = {{"points", r.proof->ground.points}, {"error_bound", r.proof->ground.error_bound},
+                         {"run_difference", r.proof->run.ran ? Json(r.proof->run.difference) : Json(nullptr)}};
+  if (!r.text.empty() && !options.output.empty()) {
+    if (!write_result(options.output, r.text, study.diagnostics())) {
+      finish(console, study, document);
+      return ExitCode::RunFailed;
+    }
+    if (!console.json()) console.print(fmt::format("{}\n{}", options.output, account(r)));
+  } else if (!r.text.empty() && !console.json()) {
+    console.print(r.text);
+    console.say(account(r));
+  } else if (!console.json() && !r.dependent.empty()) {
+    console.say(fmt::format("independent coordinates near the start: {}; dependent: {}\n", joined(r.independent), joined(r.dependent)));
+  }
+  return finish(console, study, document);
+}
+
+}  // namespace
+
+void add_reduce(CommandLine& line) {
+  const auto options = std::make_shared<ReduceOptions>();
+  CLI::App& command = line.add("reduce", "Independent coordinates of a constrained model, and the model in them",
+                               "  maup reduce cartesian_pendulum.lag\n"
+                               "  maup reduce cartesian_pendulum.lag -o pendulum.lag\n"
+                               "  maup reduce planetary_gear.lag --json\n",
+                               [options](Console& console) { return reduce_model(*options, console); });
+  command.add_option("MODEL", options->path, "The model file (.lag), or - for standard input")->required();
+  command.add_option("-o,--output", options->output, "Write the reduced model to this file");
+}
+
+}  // namespace maupertuis::app
