@@ -146,12 +146,46 @@ void long_run() {
   row("its peak memory", fmt::format("{:.1f} MB", median(peaks)), "50 MB", median(peaks) <= 50);
 }
 
+/// Median stepping time of `maup simulate MODEL`, after `maup test` has found its reference values right.
+nlohmann::json constrained_run(const std::string& model, const char* duration, double& seconds) {
+  std::vector<double> times;
+  nlohmann::json statistics;
+  for (int i = 0; i < 5; ++i) {
+    const auto run = bench::run_process({MAUP_PROGRAM, "simulate", model, "--duration", duration, "--json"});
+    require(run.exit_code == 0, "a constrained run");
+    statistics = nlohmann::json::parse(run.output).at("statistics");
+    times.push_back(statistics.at("seconds").get<double>());
+  }
+  seconds = median(times);
+  return statistics;
+}
+
+void constrained_runs() {
+  const std::string problems = PROJECT_DIR "/tests/problems/";
+  double seconds = 0;
+  // The model's own expectations: 14 states and 7 accelerations at 0.03 s to 1e-10 relative.
+  require(bench::run_process({MAUP_PROGRAM, "test", problems + "ivp_andrews.lag"}).exit_code == 0, "Andrews' squeezer");
+  constrained_run(problems + "ivp_andrews.lag", "0.03s", seconds);
+  row("Andrews' squeezer to t = 0.03, values to 1e-10 relative", milliseconds(seconds), "50 ms", seconds <= 0.05);
+
+  require(bench::run_process({MAUP_PROGRAM, "test", problems + "ivp_fekete.lag"}).exit_code == 0, "Fekete's points");
+  constrained_run(problems + "ivp_fekete.lag", "1000s", seconds);
+  row("Fekete's points, 60 coordinates and 20 constraints, to t = 1000", fmt::format("{:.2f} s", seconds), "2 s", seconds <= 2);
+
+  // 10,000 periods of 4 K(1/√2) √(l/g) from rest at 90°.
+  const auto statistics = constrained_run(problems + "iftomm_a01_pendulum.lag", "23678.419475762374493s", seconds);
+  const double residual = statistics.at("constraint_residual").get<double>(), drift = statistics.at("energy_drift").get<double>();
+  row("pendulum in x and y over 10,000 periods", fmt::format("{:.2f} s", seconds), "", true);
+  row("its constraint residual", fmt::format("{:.1e}", residual), "1e-14", residual <= 1e-14);
+  row("its relative energy error", fmt::format("{:.1e}", drift), "1e-12", drift <= 1e-12);
+}
+
 }  // namespace
 
 int main() {
   fmt::print("| what | measured | at most |\n|---|---|---|\n");
   int wrong = 0;
-  for (const auto& section : {derive_double_pendulum, check_chain, readable_chain, computational_chain, long_run}) {
+  for (const auto& section : {derive_double_pendulum, check_chain, readable_chain, computational_chain, long_run, constrained_runs}) {
     try {
       section();
     } catch (const std::exception& error) {
