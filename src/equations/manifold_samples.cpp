@@ -8,7 +8,7 @@
 namespace maupertuis {
 namespace {
 
-constexpr int attempts = 40;
+constexpr std::size_t attempts = 40;
 constexpr std::size_t wanted = 4;
 constexpr double near = 0.1;           // of the reach of a coordinate: on the branch of the start
 constexpr double longest_time = 0.01;  // s after the start: driven linkages need not close much later
@@ -26,18 +26,27 @@ class Sampler {
   /// Any consistent state: the first that is reached from points farther and farther from zero.
   std::optional<MotionState> find() {
     MotionState origin{0, std::vector<double>(free_.size(), 0), std::vector<double>(free_.size(), 0)};
-    for (int attempt = 0; attempt < attempts; ++attempt)
-      if (auto state = consistent(scattered(origin, 2.0 * (attempt + 1) / attempts))) return state;
+    for (std::size_t attempt = 1; attempt <= attempts; ++attempt)
+      if (auto state = consistent(scattered(origin, 2.0 * static_cast<double>(attempt) / attempts), free_)) return state;
     return std::nullopt;
   }
 
+  /// One coordinate is held where it was put, if that is possible: a singular start draws Newton's method to itself. Points
+  /// there count only where there are no others.
   ManifoldSamples around(const MotionState& start) {
-    ManifoldSamples out;
-    for (int attempt = 0; attempt < attempts && out.states.size() < wanted; ++attempt) {
-      const MotionState from = scattered(start, near * (1 + attempt % 4));  // farther ones leave a singular start
-      if (auto state = consistent(from)) out.states.push_back(std::move(*state)), out.beside.push_back(from);
+    ManifoldSamples away, at_start;
+    for (std::size_t attempt = 0; attempt < attempts && away.states.size() < wanted; ++attempt) {
+      const MotionState from = scattered(start, near * static_cast<double>(1 + attempt / 4));
+      std::vector<bool> held = free_;
+      held[attempt % held.size()] = true;
+      auto state = consistent(from, held);
+      if (!state) state = consistent(from, free_);
+      if (!state) continue;
+      ManifoldSamples& kept = distance(*state, start) > near / 1000 ? away : at_start;
+      kept.states.push_back(std::move(*state));
+      kept.beside.push_back(from);
     }
-    return out;
+    return away.states.empty() ? at_start : away;
   }
 
   MotionState scattered(const MotionState& from, double size) {
@@ -53,8 +62,14 @@ class Sampler {
  private:
   double random() { return std::generate_canonical<double, 53>(random_) * 2 - 1; }
 
-  std::optional<MotionState> consistent(MotionState state) const {
-    if (manifold_.move_positions(state, free_) && manifold_.move_velocities(state, free_)) return state;
+  double distance(const MotionState& a, const MotionState& b) const {
+    double largest = 0;
+    for (std::size_t i = 0; i < a.q.size(); ++i) largest = std::max(largest, std::abs(a.q[i] - b.q[i]) / reach_[i]);
+    return largest;
+  }
+
+  std::optional<MotionState> consistent(MotionState state, const std::vector<bool>& held) const {
+    if (manifold_.move_positions(state, held) && manifold_.move_velocities(state, free_)) return state;
     return std::nullopt;
   }
 

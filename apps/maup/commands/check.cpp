@@ -91,7 +91,7 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
   for (const StartValue& start : model.experiment.start) words.push_back(start_text(start, system));
   if (words.size() > 8) words.resize(8), words.push_back("…");
   line("start", joined(words));
-  if (findings.start) line("moved to", moved_start(system, *findings.start));
+  if (findings.start) line("consistent start", moved_start(system, *findings.start));
   if (!model.experiment.expectations.empty())
     line("expectations", fmt::format("{} (run them with `maup test`)", model.experiment.expectations.size()));
   return out;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <maupertuis/constraint_analysis.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/reactions.hpp>
 
@@ -53,10 +54,12 @@ void add_constraints(Json& document, Study& study) {
   for (const Expr& multiplier : equations.multipliers) document["multipliers"].push_back(symbol_to_plain(multiplier));
   document["constraints"] = Json::array();
   const std::vector<ConstraintEquation>& written = study.derivation(false)->constraints;
+  const ConstraintAnalysis analysis = analyse_constraints(*study.equations());
   for (std::size_t k = 0; k < written.size(); ++k) {
     const bool position = equations.system->constraints[k].level == Constraint::Level::Position;
     document["constraints"].push_back(
         {{"name", written[k].name}, {"level", position ? "position" : "velocity"},
+         {"class", word(analysis.constraints[k].constraint_class)},
          {"plain", to_plain(written[k].left, order) + " = " + to_plain(written[k].right, order)},
          {"latex", to_latex(written[k].left, order) + " = " + to_latex(written[k].right, order)}});
   }
