@@ -87,6 +87,7 @@ class Messages {
       value = evaluate(moving, b);
     }
     if (std::abs(value) < 1e-12) return fmt::format("Write `constraint {} = 0` instead.", text(integral.value));
+    if (!std::isfinite(value)) return fmt::format("Write it as `constraint {} = …`, in a form that the start allows.", text(integral.value));
     return fmt::format("Write `constraint {} = …` instead; the value at the start is {:g} in SI units.", text(integral.value), value);
   }
 

@@ -80,9 +80,35 @@ Rational common_scale(Expr sum) {
   return divisor == 0 ? Rational(1) : Rational(multiple, divisor);
 }
 
+/// exp F where F has logarithms of the motion: a log x - log y + c z becomes x^a exp(c z)/y. The logarithm of a length is
+/// nothing that a model could say. F itself where the factor of one is a function.
+Expr without_logarithms(Expr sum, const ExprVector& variables) {
+  Context& context = sum.context();
+  const auto moves = [&](Expr e) { return std::any_of(variables.begin(), variables.end(), [&](Expr v) { return depends_on(e, v); }); };
+  Expr rest = context.number(Rational(0)), first;
+  std::vector<std::pair<Expr, Expr>> powers;
+  for (std::size_t i = 0; i < (sum.is(Kind::Sum) ? sum.size() : 1); ++i) {
+    const Expr term = sum.is(Kind::Sum) ? sum[i] : sum;
+    const std::vector<Expr> factors = factors_of(term);
+    const auto log = std::find_if(factors.begin(), factors.end(), [&](Expr f) { return f.is(Kind::Log) && moves(f); });
+    if (log == factors.end()) {
+      rest = rest + term;
+      continue;
+    }
+    const Expr coefficient = term / *log;
+    if (moves(coefficient)) return sum;
+    if (!first) first = coefficient;
+    powers.emplace_back((*log)[0], coefficient / first);
+  }
+  if (!first) return sum;
+  Expr out = rest.is_zero() ? context.number(Rational(1)) : apply(Kind::Exp, rest / first);
+  for (const auto& [base, exponent] : powers) out = out * context.power(base, exponent);
+  return out;
+}
+
 /// Readable, in whole numbers where that is possible, the term that is printed first positive.
-Expr presentable(Expr e, const ReadingOrder& order) {
-  const Expr plain = simplified(e, order);
+Expr presentable(Expr e, const ExprVector& variables, const ReadingOrder& order) {
+  const Expr plain = without_logarithms(simplified(e, order), variables);
   Rational scale = plain.is(Kind::Sum) ? common_scale(plain) : Rational(1) / split_coefficient(plain).coefficient;
   const auto scaled = [&] { return expand(plain * scale, 200); };
   if (!scaled()) return plain;
@@ -100,7 +126,7 @@ FirstIntegral first_integral(const OneForm& form, const ExprVector& variables, c
     ExprVector trial;
     for (const Expr& a : plain) trial.push_back(a * factor);
     if (!closed(trial, variables)) continue;
-    if (const Expr value = potential(trial, variables, order)) return {presentable(value, order)};
+    if (const Expr value = potential(trial, variables, order)) return {presentable(value, variables, order)};
   }
   return {};
 }

@@ -206,3 +206,10 @@ TEST_CASE("integrals are certified: their differential is a multiple of the form
     CHECK(zero_test(rate * differentiate(psi, m.v(0)) - psi * differentiate(rate, m.v(0))).verdict == Verdict::Zero);
   }
 }
+
+TEST_CASE("integrals are written without logarithms of lengths") {
+  CHECK(Analysed(space("constraint x y' = y x'")).integral(0) == "x/y");
+  CHECK(Analysed(space("constraint y' = a y x'")).class_of(0) == integrable);
+  CHECK(Analysed("param m = 1 kg, k = 1 [1/m]\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint y' = k y x'\n").integral(0) ==
+        "y exp(-k x)");
+}
