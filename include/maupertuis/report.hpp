@@ -13,10 +13,10 @@ namespace maupertuis {
 
 /// The drawing of a model as numbers: positions of every element at the times of the frames, world axes, metres.
 struct Drawing {
-  enum class Kind { Line, Trail, Box, Circle, Spring };
+  enum class Kind { Line, Trail, Box, Circle, Spring, Reaction };
   struct Element {
     Kind kind = Kind::Line;
-    std::size_t points = 1;              // Line: at least 2; Spring: 2; others: 1
+    std::size_t points = 1;              // Line: at least 2; Spring: 2; Reaction: 2, foot and tip of the arrow; others: 1
     std::vector<double> positions;       // [frames × points × dimension]; NaN where a position has no value
     std::vector<double> sizes;           // [frames × 1 or 2] Circle: radius; Box: width, height; others: none
     std::vector<double> rotation;        // [frames] rad, of a Box in 2-D; empty: upright
@@ -104,7 +104,9 @@ std::string report_html(const ReportContent& content);
 
 /// The positions of the model's drawing at the rows of a run, at most `frames` of them. Where the model has no `draw`,
 /// its massive points and bodies are marked. Nothing where there is neither.
-std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& trajectory, std::size_t frames = 6000);
+/// With the equations the forces of `draw reaction rod` too: arrows on the points, the longest a third of the scene.
+std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& trajectory, std::size_t frames = 6000,
+                                        const EquationsOfMotion* equations = nullptr);
 
 /// `options` with output as fine as an animation wants it (50 rows a second, 1000 to 10,000 in all), where neither they
 /// nor the model say how often.

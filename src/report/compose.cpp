@@ -1,6 +1,7 @@
 #include "report/motion_parts.hpp"
 #include "report/notation.hpp"
 
+#include <maupertuis/constraint_analysis.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/report.hpp>
 
@@ -41,6 +42,24 @@ ReportContent::Parameter parameter_row(const EquationsOfMotion& equations, const
           same ? std::string() : quantity(parameter.si_value, si_unit, 10)};
 }
 
+/// Freedoms, and what each constraint is, near where the run begins.
+void add_freedoms(ReportContent& content, const EquationsOfMotion& equations, const SimulationResult* run) {
+  const MechanicalSystem& system = *equations.system;
+  const auto add = [&](std::string name, std::string value) { content.summary.emplace_back(std::move(name), std::move(value)); };
+  if (!system.constrained()) return add("freedoms", fmt::format("{}", system.coordinates.size()));
+  MotionState start;
+  if (run) start = {run->start.t, run->start.q, run->start.v};
+  const ConstraintAnalysis analysis = analyse_constraints(equations, run ? &start : nullptr);
+  add("freedoms", fmt::format("{}", analysis.configuration_freedoms));
+  if (analysis.instantaneous_freedoms != analysis.configuration_freedoms)
+    add("instantaneous freedoms", fmt::format("{}", analysis.instantaneous_freedoms));
+  for (std::size_t i = 0; i < analysis.constraints.size(); ++i) {
+    const ConstraintReport& c = analysis.constraints[i];
+    add(system.constraint_label(i), fmt::format("{}, {}{}", words(c.constraint_class), c.scleronomic ? "scleronomic" : "rheonomic",
+                                                c.redundant ? ", redundant" : ""));
+  }
+}
+
 void add_model(ReportContent& content, const Model& model, const SourceText& source, const EquationsOfMotion& equations,
                const SimulationResult* run) {
   const MechanicalSystem& system = model.system;
@@ -49,7 +68,7 @@ void add_model(ReportContent& content, const Model& model, const SourceText& sou
   content.source = system.source;
   content.file = source.name() == "-" ? "" : source.name().substr(source.name().rfind('/') + 1);
   content.model_text = source.text();
-  content.summary.emplace_back("freedoms", fmt::format("{}", system.coordinates.size()));
+  add_freedoms(content, equations, run);
   if (system.dimensionless) content.summary.emplace_back("units", "dimensionless");
   for (std::size_t i = 0; i < system.coordinates.size(); ++i)
     content.coordinates.push_back(coordinate_row(equations, i, run));
@@ -141,7 +160,7 @@ ReportContent compose_report(const Model& model, const SourceText& source, const
   add_certificate(content, certificate);
   const ConservedQuantities conserved = conserved_quantities(equations);
   add_conserved(content, equations, conserved, parts.simulation);
-  if (parts.simulation) add_motion(content, model, conserved.energy_conserved, *parts.simulation);
+  if (parts.simulation) add_motion(content, model, equations, conserved.energy_conserved, *parts.simulation);
   if (parts.verification) content.expectations = parts.verification->results;
   return content;
 }

@@ -1,4 +1,5 @@
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/reactions.hpp>
 #include <maupertuis/report.hpp>
 
 #include <algorithm>
@@ -16,6 +17,8 @@ constexpr std::size_t fewest_frames = 600;
 struct Outline {
   Drawing::Element element;
   std::vector<Expr> positions, sizes, rotation;
+  std::optional<std::size_t> reaction = std::nullopt;  // Reaction: the column of the run with its value
+  std::vector<Expr> force = {};                        // … and the force for each newton of it [dimension]
 };
 
 double mass_of(const MechanicalSystem& system, const std::string& name, const Bindings& parameters) {
@@ -32,7 +35,7 @@ Drawing::Kind kind_of(syntax::DrawItem::Kind kind) {
     case syntax::DrawItem::Kind::Box: return Drawing::Kind::Box;
     case syntax::DrawItem::Kind::Circle: return Drawing::Kind::Circle;
     case syntax::DrawItem::Kind::Spring: return Drawing::Kind::Spring;
-    case syntax::DrawItem::Kind::Reaction: break;
+    case syntax::DrawItem::Kind::Reaction: return Drawing::Kind::Reaction;
   }
   return Drawing::Kind::Line;
 }
@@ -52,12 +55,41 @@ Outline outline_of(const MechanicalSystem& system, Drawing::Kind kind, const std
   return outline;
 }
 
+/// The arrows of one reaction. Its value and its force are proportional to one multiplier, so that their ratio depends on
+/// the configuration alone: the run knows the value.
+void add_arrows(std::vector<Outline>& outlines, const std::string& name, const EquationsOfMotion& equations, const Trajectory& run) {
+  const MechanicalSystem& system = *equations.system;
+  ExprMap once;  // λ = 1 at rest
+  for (const Expr& multiplier : equations.multipliers) once.emplace(multiplier, system.context->number(1));
+  for (const Coordinate& c : system.coordinates) once.emplace(c.acceleration, system.context->number(0));
+  const auto column = run.column("reaction(" + name + ")");
+  if (!column) return;
+  for (const Reaction& r : reactions(equations)) {
+    if (r.name != name || !r.value) continue;
+    for (const ForceArrow& arrow : r.arrows) {
+      Outline outline;
+      outline.element.kind = Drawing::Kind::Reaction;
+      outline.element.points = 2;
+      outline.element.names = {name, ""};
+      outline.element.masses = {0, 0};
+      outline.positions = arrow.position;
+      outline.reaction = column;
+      for (const Expr& f : arrow.force) outline.force.push_back(substitute(f / r.value, once));
+      outlines.push_back(std::move(outline));
+    }
+  }
+}
+
 // What the model asks for; without a `draw`, what has mass.
-std::vector<Outline> outlines_of(const Model& model, const Bindings& parameters) {
+std::vector<Outline> outlines_of(const Model& model, const Bindings& parameters, const EquationsOfMotion* equations,
+                                 const Trajectory& run) {
   const MechanicalSystem& system = model.system;
   std::vector<Outline> outlines;
   for (const DrawElement& element : model.experiment.drawing) {
-    if (element.kind == syntax::DrawItem::Kind::Reaction) continue;
+    if (element.kind == syntax::DrawItem::Kind::Reaction) {
+      if (equations && !element.names.empty()) add_arrows(outlines, element.names[0], *equations, run);
+      continue;
+    }
     outlines.push_back(outline_of(system, kind_of(element.kind), element.path, element.names, element.sizes, parameters));
   }
   if (!outlines.empty()) return outlines;
@@ -98,6 +130,11 @@ class Motion {
     return bindings_;
   }
 
+  double column(std::size_t index, std::size_t row, double u) const {
+    const std::size_t next = std::min(row + 1, run_.rows() - 1);
+    return (1 - u) * run_.at(row, index) + u * run_.at(next, index);
+  }
+
   double time(std::size_t row, double u) const {
     const std::size_t next = std::min(row + 1, run_.rows() - 1);
     return run_.times[row] + u * (run_.times[next] - run_.times[row]);
@@ -115,10 +152,12 @@ class Motion {
   std::vector<std::pair<std::optional<std::size_t>, std::optional<std::size_t>>> columns_;
 };
 
-void add_frame(std::vector<Outline>& outlines, const std::vector<double>& values) {
+void add_frame(std::vector<Outline>& outlines, const std::vector<double>& values, const Motion& motion, std::size_t row, double u) {
   std::size_t at = 0;
   for (Outline& outline : outlines) {
     for (std::size_t i = 0; i < outline.positions.size(); ++i) outline.element.positions.push_back(values[at++]);
+    for (std::size_t i = 0; i < outline.force.size(); ++i)  // the tip in newtons; metres come at the end
+      outline.element.positions.push_back(values[at++] * motion.column(*outline.reaction, row, u));
     for (std::size_t i = 0; i < outline.sizes.size(); ++i) outline.element.sizes.push_back(values[at++]);
     if (outline.rotation.empty()) continue;
     outline.element.rotation.push_back(std::atan2(values[at + 1], values[at]));
@@ -132,6 +171,33 @@ void unwind(std::vector<double>& angles) {
   for (std::size_t i = 1; i < angles.size(); ++i) angles[i] -= turn * std::round((angles[i] - angles[i - 1]) / turn);
 }
 
+/// Turns the newtons of arrows into metres from their feet: the longest arrow is a third of the size of the scene.
+void scale_arrows(std::vector<Outline>& outlines, std::size_t dimension) {
+  double longest = 0;
+  std::vector<double> low(dimension, HUGE_VAL), high(dimension, -HUGE_VAL);
+  const auto each_arrow = [&](auto&& visit) {
+    for (Outline& o : outlines)
+      for (std::size_t i = 0; o.reaction && i + 2 * dimension <= o.element.positions.size(); i += 2 * dimension)
+        visit(&o.element.positions[i], &o.element.positions[i + dimension]);
+  };
+  each_arrow([&](const double*, const double* force) {
+    double square = 0;
+    for (std::size_t k = 0; k < dimension; ++k) square += force[k] * force[k];
+    if (std::isfinite(square)) longest = std::max(longest, std::sqrt(square));
+  });
+  for (const Outline& o : outlines)
+    for (std::size_t i = 0; !o.reaction && i < o.element.positions.size(); ++i) {
+      low[i % dimension] = std::min(low[i % dimension], o.element.positions[i]);
+      high[i % dimension] = std::max(high[i % dimension], o.element.positions[i]);
+    }
+  double extent = 0;
+  for (std::size_t k = 0; k < dimension; ++k) extent = std::max(extent, high[k] - low[k]);
+  const double metres = longest > 0 && extent > 0 ? extent / 3 / longest : 0;
+  each_arrow([&](const double* foot, double* tip) {
+    for (std::size_t k = 0; k < dimension; ++k) tip[k] = foot[k] + metres * tip[k];
+  });
+}
+
 std::vector<double> gravity_of(const MechanicalSystem& system, const Bindings& parameters) {
   if (system.gravity.empty()) return {};
   Bindings start = parameters;
@@ -141,16 +207,17 @@ std::vector<double> gravity_of(const MechanicalSystem& system, const Bindings& p
 
 }  // namespace
 
-std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& run, std::size_t frames) {
+std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& run, std::size_t frames,
+                                        const EquationsOfMotion* equations) {
   const MechanicalSystem& system = model.system;
   const Bindings parameters = parameter_bindings(system);
-  auto outlines = outlines_of(model, parameters);
+  auto outlines = outlines_of(model, parameters, equations, run);
   Motion motion(system, run, parameters);
   if (outlines.empty() || run.rows() == 0 || frames == 0 || !motion.complete()) return std::nullopt;
 
   std::vector<Expr> wanted;
   for (const Outline& outline : outlines)
-    for (const auto* part : {&outline.positions, &outline.sizes, &outline.rotation})
+    for (const auto* part : {&outline.positions, &outline.force, &outline.sizes, &outline.rotation})
       wanted.insert(wanted.end(), part->begin(), part->end());
   wanted = in_terms_of_motion(system, wanted);
 
@@ -164,8 +231,9 @@ std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& ru
     for (std::size_t k = 0; k < (row + 1 == rows ? 1 : stride == 1 ? parts : 1); ++k) {
       const double u = static_cast<double>(k) / static_cast<double>(parts);
       drawing.times.push_back(motion.time(row, u));
-      add_frame(outlines, evaluate(wanted, motion.state(row, u)));
+      add_frame(outlines, evaluate(wanted, motion.state(row, u)), motion, row, u);
     }
+  scale_arrows(outlines, static_cast<std::size_t>(system.space_dimension));
   for (Outline& outline : outlines) {
     unwind(outline.element.rotation);
     drawing.elements.push_back(std::move(outline.element));

@@ -28,6 +28,7 @@ std::string_view kind_name(Drawing::Kind kind) {
     case Drawing::Kind::Box: return "box";
     case Drawing::Kind::Circle: return "circle";
     case Drawing::Kind::Spring: return "spring";
+    case Drawing::Kind::Reaction: return "reaction";
   }
   return "line";
 }
@@ -44,7 +45,9 @@ std::string drawing_json(const Drawing& drawing) {
     const auto& element = drawing.elements[i];
     MAUP_REQUIRE(element.positions.size() ==
                  drawing.times.size() * element.points * static_cast<std::size_t>(drawing.dimension));
-    out += fmt::format("{}{{\"kind\":\"{}\",\"points\":{},\"masses\":", i ? "," : "", kind_name(element.kind), element.points);
+    out += fmt::format("{}{{\"kind\":\"{}\",\"points\":{},", i ? "," : "", kind_name(element.kind), element.points);
+    if (element.kind == Drawing::Kind::Reaction) out += fmt::format("\"name\":\"{}\",", element.names[0]);  // a name holds no quotes
+    out += "\"masses\":";
     append_numbers(out, element.masses, 6);
     out += ",\"sizes\":";
     append_numbers(out, element.sizes, 6);

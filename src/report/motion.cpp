@@ -18,7 +18,9 @@ void add_statistics(ReportContent& content, const SimulationResult& run, bool di
   const std::string second = dimensionless ? "" : "s";
   const auto add = [&](const char* name, std::string value) { content.statistics.emplace_back(name, std::move(value)); };
   add("from", quantity(run.start.t, second) + " to " + quantity(run.final.t, second, 10));
-  add("method", s.order > 0 ? fmt::format("Taylor series of order {}, {}", s.order, s.backend) : s.backend);
+  const std::string method = s.method == "variational" ? "variational steps" : "Taylor series";
+  if (s.method == "stiff") add("method", "stiff: backward differentiation formulas");
+  else add("method", s.order > 0 ? fmt::format("{} of order {}, {}", method, s.order, s.backend) : s.backend);
   add("steps", fmt::format("{}", s.steps));
   if (s.switches > 0) add("switches crossed", fmt::format("{}", s.switches));
   add("energy drift", short_number(s.energy_drift, 2));
@@ -56,7 +58,8 @@ void add_picture(ReportContent& content, std::string caption, std::vector<std::s
     content.pictures.push_back(std::move(picture));
 }
 
-void add_pictures(ReportContent& content, const MechanicalSystem& system, bool energy_conserved) {
+void add_pictures(ReportContent& content, const MechanicalSystem& system, const std::vector<Trajectory::Column>& reactions,
+                  bool energy_conserved) {
   std::vector<std::string> coordinates, velocities;
   for (const Coordinate& c : system.coordinates) {
     coordinates.push_back(c.name);
@@ -66,6 +69,9 @@ void add_pictures(ReportContent& content, const MechanicalSystem& system, bool e
   add_picture(content, "Their velocities.", velocities);
   if (energy_conserved) add_picture(content, "What the computation adds to the energy, which is conserved.", {"energy drift"});
   else add_picture(content, "The energy function.", {"energy"});
+  std::vector<std::string> forces;
+  for (const auto& reaction : reactions) forces.push_back(reaction.name);
+  if (!forces.empty()) add_picture(content, "The forces of the constraints.", forces);
   for (std::size_t i = 0; i < std::min(coordinates.size(), most_phase_portraits); ++i)
     add_picture(content, fmt::format("Phase portrait of {}; the dot is the start.", coordinates[i]), {velocities[i]}, coordinates[i]);
 }
@@ -79,12 +85,13 @@ std::size_t frames_within_budget(const Model& model) {
 
 }  // namespace
 
-void add_motion(ReportContent& content, const Model& model, bool energy_conserved, const SimulationResult& run) {
+void add_motion(ReportContent& content, const Model& model, const EquationsOfMotion& equations, bool energy_conserved,
+                const SimulationResult& run) {
   add_statistics(content, run, model.system.dimensionless);
   content.trajectory = run.trajectory;
-  content.drawing = evaluate_drawing(model, run.trajectory, frames_within_budget(model));
+  content.drawing = evaluate_drawing(model, run.trajectory, frames_within_budget(model), &equations);
   if (energy_conserved) add_drift_column(content.trajectory);
-  add_pictures(content, model.system, energy_conserved);
+  add_pictures(content, model.system, run.reactions, energy_conserved);
 }
 
 }  // namespace maupertuis

@@ -9,6 +9,7 @@ void add_conserved(ReportContent& content, const EquationsOfMotion& equations, c
                    const SimulationResult* run);
 
 /// Drawing, statistics and plots.
-void add_motion(ReportContent& content, const Model& model, bool energy_conserved, const SimulationResult& run);
+void add_motion(ReportContent& content, const Model& model, const EquationsOfMotion& equations, bool energy_conserved,
+                const SimulationResult& run);
 
 }  // namespace maupertuis

@@ -275,15 +275,16 @@
     return choice === 'all' ? duration : choice === 'none' ? 0 : Math.min(duration, 3 * rate());
   }
 
-  function arrow(from, to, style) {
+  function arrow(from, to, style, weight = 1.3) {
     const dx = to[0] - from[0], dy = to[1] - from[1], length = Math.hypot(dx, dy);
     if (length < 4) return;
     const u = [dx / length, dy / length];
-    stroke([from, [to[0] - 5 * u[0], to[1] - 5 * u[1]]], style, 1.3);
+    stroke([from, [to[0] - 5 * u[0], to[1] - 5 * u[1]]], style, weight);
     context.beginPath();
+    const long = 8 * Math.sqrt(weight / 1.3), half = 0.4 * long;
     context.moveTo(to[0], to[1]);
-    context.lineTo(to[0] - 8 * u[0] - 3.2 * u[1], to[1] - 8 * u[1] + 3.2 * u[0]);
-    context.lineTo(to[0] - 8 * u[0] + 3.2 * u[1], to[1] - 8 * u[1] - 3.2 * u[0]);
+    context.lineTo(to[0] - long * u[0] - half * u[1], to[1] - long * u[1] + half * u[0]);
+    context.lineTo(to[0] - long * u[0] + half * u[1], to[1] - long * u[1] - half * u[0]);
     context.closePath();
     context.fillStyle = style;
     context.fill();
@@ -347,12 +348,23 @@
     });
   }
 
-  const painters = {line: drawLine, spring: drawSpring, box: drawBox, circle: drawCircle};
+  // The force of a constraint on a point, named at its tip.
+  function drawReaction(element, s) {
+    const ends = pointsAt(element, s);
+    if (!ends.every(finite)) return;
+    const [foot, tip] = ends.map(project), style = palette.series[1];
+    arrow(foot, tip, style, 2.2);
+    const dx = tip[0] - foot[0], dy = tip[1] - foot[1], length = Math.hypot(dx, dy);
+    if (length > 24) label(element.name, tip[0] - 14 * dy / length, tip[1] + 14 * dx / length, dy > 0.3 * length ? 'right' : dy < -0.3 * length ? 'left' : 'center');
+  }
+
+  const painters = {reaction: drawReaction, line: drawLine, spring: drawSpring, box: drawBox, circle: drawCircle};
   function draw() {
     context.clearRect(0, 0, width, height);
     if (spatial) drawFloor();
     elements.forEach((element, i) => element.kind === 'trail' && drawTrail(element, elapsed, i));
-    elements.forEach(element => element.kind !== 'trail' && painters[element.kind](element, elapsed));
+    for (const last of [false, true])  // forces over everything else
+      elements.forEach(element => element.kind !== 'trail' && (element.kind === 'reaction') === last && painters[element.kind](element, elapsed));
     drawGravity();
     if (!spatial) drawScaleBar();
   }
