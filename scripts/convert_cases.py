@@ -364,6 +364,7 @@ def with_integral(case, expectation):
     end = re.search(r"over \[0,(\d+)\]", expectation["quantity"])[1]
     model = Model(other)
     model.write("_integral")
+    model.claims = []
     model.add(f"# {expectation['quantity']}: a coordinate without inertia, whose constraint takes no force (Chetaev)")
     model.value(("name", "W"), end, D(expectation["value_recomputed"]), tolerance(expectation))
     return {f"{case['id']}_integral.lag": model.text()}
