@@ -54,7 +54,8 @@ struct Comparison {
   Sameness verdict = Sameness::Undecided;
   std::string reason;                     // one sentence where it is not Same
   ZeroTest ground;                        // what the equations' zero test found
-  bool only_at_these_values = false;      // the identity needs the values of the parameters
+  /// For which values of the parameters: all; those near the model's (a root's sign depends on them); the model's alone.
+  enum class Parameters { Any, NearThese, TheseAlone } parameters = Parameters::Any;
   std::size_t freedoms_a = 0, freedoms_b = 0;                            // of the configuration
   std::size_t instantaneous_freedoms_a = 0, instantaneous_freedoms_b = 0;
   std::size_t rank = 0;                   // of ∂f/∂q on the velocities that B allows
@@ -74,7 +75,8 @@ struct ComparisonOptions {
 ///     φ_A(f, t) = 0,  ψ_A(f, ḟ, t) = 0,  R_A(f, ḟ, f̈, t) ∈ image of A_Aᵀ      along the motions of B
 ///     rank of ∂f/∂q on ker A_B = freedoms of A = freedoms of B
 ///
-/// λ_A is eliminated from the first line by Gaussian elimination in the DAG; q̈_B is put in by B's equations. Where B has
+/// Most pairs do the same virtual work identically, (∂f/∂q)ᵀ R_A = R_B for all q, q̇, q̈: that is tried first. Else λ_A is
+/// eliminated from the first line by Gaussian elimination in the DAG; q̈_B is put in by B's equations. Where B has
 /// constraints the identities are tested on them to 60 digits, which is evidence and no proof: error bound 1.
 /// Errors: parameters of one name that differ (E0825). Notes: a parameter without a counterpart (N0826).
 Comparison compare(const Model& a, const EquationsOfMotion& a_equations, const CoordinateMap& map,

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 /// The proof in its order: constraints of A, equations of A, freedoms; then energies and runs.
 namespace maupertuis {
 namespace {
@@ -27,6 +29,10 @@ class Comparer {
     comparison::count_freedoms(a_equations_, b_equations_, pull_back_, motions_, out_);
     if (constraints_hold() && equations_hold()) compare_freedoms();
     out_.energies = compare_energies();
+    if (off_constraints_) {
+      out_.run.reason = "the mapped start does not obey the constraints of " + a_.system.name;
+      return out_;
+    }
     if (out_.verdict == Sameness::Different) out_.disagreement = runs_.disagreement();
     if (options_.run) out_.run = runs_.run();
     return out_;
@@ -35,12 +41,14 @@ class Comparer {
  private:
   /// True and the ground where the functions vanish along B; else the verdict with its reason. `what(k)` names function k.
   template <class What>
-  bool hold(const ExprVector& functions, What what) {
-    if (functions.empty()) return true;
-    ZeroTest test = motions_.vanish(functions);
+  bool hold(const ExprVector& functions, ZeroTest test, What what) {
     if (test.verdict == Verdict::Nonzero) {
       const ZeroTest at_values = motions_.vanish_at_these_values(functions);
-      if (at_values.verdict == Verdict::Zero) out_.only_at_these_values = true, test = at_values;
+      if (at_values.verdict == Verdict::Zero) {
+        test = at_values;
+        out_.parameters = motions_.at_points(functions).verdict == Verdict::Zero ? Comparison::Parameters::NearThese
+                                                                                : Comparison::Parameters::TheseAlone;
+      }
     }
     merge(test);
     if (test.verdict == Verdict::Zero) return true;
@@ -58,35 +66,62 @@ class Comparer {
     return false;
   }
 
+  /// Both grounds together: the weaker bound; points only where some were needed.
   void merge(const ZeroTest& test) {
-    const bool first = out_.ground.points == 0;
-    const double bound = first ? test.error_bound : std::max(out_.ground.error_bound, test.error_bound);
-    const int points = first ? test.points : std::min(out_.ground.points, test.points);
+    const ZeroTest before = out_.ground;
     out_.ground = test;
-    out_.ground.error_bound = bound;
-    out_.ground.points = points;
+    if (!merged_) {
+      merged_ = true;
+      return;
+    }
+    out_.ground.error_bound = std::max(before.error_bound, test.error_bound);
+    out_.ground.points = before.points == 0 || test.points == 0 ? std::max(before.points, test.points) : std::min(before.points, test.points);
   }
 
   bool constraints_hold() {
-    return hold(comparison::mapped_constraints(a_.system, pull_back_), [&](std::size_t k) {
-      return fmt::format("the motions of {} do not obey {} of {}", b_.system.name, a_.system.constraint_label(k), a_.system.name);
+    const ExprVector mapped = comparison::mapped_constraints(a_.system, pull_back_);
+    return mapped.empty() || hold(mapped, motions_.constraints_vanish(mapped), [&](std::size_t k) {
+      off_constraints_ = true;
+      return fmt::format("the motions of {} do not obey {} of {}: {}", b_.system.name, a_.system.constraint_label(k),
+                         a_.system.name, violation(mapped[k]));
     });
   }
 
+  /// The state at which left − right is largest.
+  std::string violation(Expr value) const {
+    double worst = 0;
+    const MotionState* where = &motions_.states().front();
+    for (const MotionState& state : motions_.states())
+      if (const double here = evaluate(value, motions_.at(state)); std::abs(here) > std::abs(worst)) worst = here, where = &state;
+    return fmt::format("left - right = {:.6g} (SI units) at {}", worst, comparison::describe(*where, b_.system));
+  }
+
   bool equations_hold() {
+    if (same_freedoms()) {
+      const ExprVector work = comparison::work_differences(a_equations_, b_equations_, pull_back_);
+      if (const ZeroTest test = zero_test(work); test.verdict == Verdict::Zero) {
+        merge(test);
+        return true;
+      }
+    }
     const Differences rest = comparison::without_multipliers(a_equations_, pull_back_, motions_.at(motions_.states().back()));
-    return hold(rest.values, [&](std::size_t k) {
+    return rest.values.empty() || hold(rest.values, motions_.vanish(rest.values), [&](std::size_t k) {
       return fmt::format("the equation of {} of {} does not hold along the motions of {}",
                          a_.system.coordinates[rest.coordinates[k]].name, a_.system.name, b_.system.name);
     });
   }
 
+  /// Both have the same freedoms and the map passes all of them on: then ker A_A is the image of ker A_B.
+  bool same_freedoms() const {
+    return out_.freedoms_a == out_.freedoms_b && out_.instantaneous_freedoms_a == out_.instantaneous_freedoms_b &&
+           out_.rank == out_.instantaneous_freedoms_b;
+  }
+
   void compare_freedoms() {
-    const bool same = out_.freedoms_a == out_.freedoms_b && out_.instantaneous_freedoms_a == out_.instantaneous_freedoms_b;
     out_.verdict = Sameness::Part;
     if (out_.instantaneous_freedoms_a > out_.instantaneous_freedoms_b || out_.freedoms_a > out_.freedoms_b)
       out_.reason = fmt::format("{} has motions that {} does not reach", a_.system.name, b_.system.name);
-    else if (!same || out_.rank < out_.instantaneous_freedoms_b)
+    else if (!same_freedoms())
       out_.reason = fmt::format("several motions of {} are mapped to one of {}", b_.system.name, a_.system.name);
     else
       out_.verdict = Sameness::Same;
@@ -114,6 +149,7 @@ class Comparer {
   const Motions motions_;
   const comparison::CrossCheck runs_;
   Comparison out_;
+  bool off_constraints_ = false, merged_ = false;
 };
 
 }  // namespace

@@ -76,6 +76,23 @@ Differences without_multipliers(const EquationsOfMotion& a, const PullBack& pull
   return Elimination(matrix, residual, at).carry_out();
 }
 
+ExprVector work_differences(const EquationsOfMotion& a, const EquationsOfMotion& b, const PullBack& pull_back) {
+  const MechanicalSystem& system = *b.system;
+  const ExprVector of_a = pull_back(expand_time_derivatives(a.residual));
+  const ExprVector of_b =
+      with_constants_as_numbers(system, expand_time_derivatives(in_terms_of_motion(system, expand_time_derivatives(b.residual))));
+  ExprVector q;
+  for (const Coordinate& c : system.coordinates) q.push_back(c.q);
+  std::vector<ExprVector> terms(q.size());
+  for (std::size_t i = 0; i < of_a.size(); ++i) {
+    const ExprVector slopes = gradient(pull_back.positions()[i], q);
+    for (std::size_t k = 0; k < q.size(); ++k) terms[k].push_back(slopes[k] * of_a[i]);
+  }
+  ExprVector out;
+  for (std::size_t k = 0; k < q.size(); ++k) out.push_back(system.context->sum(terms[k]) - of_b[k]);
+  return out;
+}
+
 ExprVector mapped_constraints(const MechanicalSystem& a, const PullBack& pull_back) {
   ExprVector values;
   for (const Constraint& c : a.constraints) values.push_back(c.value);

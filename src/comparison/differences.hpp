@@ -14,6 +14,9 @@ struct Differences {
 /// Cost: O(n m²) nodes.
 Differences without_multipliers(const EquationsOfMotion& a, const PullBack& pull_back, const Bindings& at);
 
+/// (∂f/∂q)ᵀ R_A − R_B [n_B]. Where it vanishes for all q, q̇, q̈, both models do the same virtual work.
+ExprVector work_differences(const EquationsOfMotion& a, const EquationsOfMotion& b, const PullBack& pull_back);
+
 /// The rows of constraints of A along the mapped curve: φ and ψ.
 ExprVector mapped_constraints(const MechanicalSystem& a, const PullBack& pull_back);
 

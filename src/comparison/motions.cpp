@@ -77,6 +77,25 @@ ZeroTest Motions::vanish_at_these_values(std::span<const Expr> functions) const 
   return zero_test(substitute(substitute(functions, *accelerations_), values));
 }
 
+ZeroTest Motions::constraints_vanish(std::span<const Expr> functions) const {
+  ZeroTest exact;
+  exact.error_bound = 0;
+  for (const Expr& f : functions) {
+    ZeroTest best = zero_test(f);
+    for (const Constraint& c : model_.system.constraints) {
+      if (best.verdict == Verdict::Zero) break;
+      const Expr own = with_constants_as_numbers(model_.system, in_terms_of_motion(model_.system, {&c.value, 1})).front();
+      for (const Expr& difference : {f - own, f + own})
+        if (best.verdict != Verdict::Zero) best = zero_test(difference);
+    }
+    if (best.verdict != Verdict::Zero) return vanish(functions);
+    if (exact.verdict != Verdict::Zero || best.points < exact.points) exact.points = best.points;
+    exact.verdict = Verdict::Zero;
+    exact.error_bound += best.error_bound;
+  }
+  return exact;
+}
+
 ZeroTest Motions::at_points(std::span<const Expr> functions) const {
   ZeroTest nothing;
   nothing.reason = "no state was found at which the constraints of the second model hold";

@@ -18,9 +18,12 @@ class Motions {
   ZeroTest vanish(std::span<const Expr> functions) const;
   /// The same where the parameters have the values of the model, and only these.
   ZeroTest vanish_at_these_values(std::span<const Expr> functions) const;
+  /// At states near the start, with parameters within a hundredth of their values.
+  ZeroTest at_points(std::span<const Expr> functions) const;
+  /// Exactly, where each function is one of the constraints or vanishes everywhere; else `vanish`.
+  ZeroTest constraints_vanish(std::span<const Expr> functions) const;
 
  private:
-  ZeroTest at_points(std::span<const Expr> functions) const;
   void find_states();
 
   const Model& model_;

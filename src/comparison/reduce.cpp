@@ -122,9 +122,31 @@ class Reducer {
     return false;
   }
 
+  /// What a coordinate that is now constant leaves behind: z' is 0, and the language takes no derivative of a constant.
+  static std::string with_rests(std::string text) {
+    constexpr int depth = 8;  // of derivatives inside derivatives
+    for (int turn = 0; turn < depth; ++turn) {
+      Diagnostics found;
+      const SourceText source("", text);
+      const syntax::SyntaxTree tree = syntax::parse(source, found);
+      if (found.has_errors()) return text;
+      elaborate(tree, source, found);
+      found.sort_by_place();
+      bool changed = false;
+      const auto items = found.items();
+      for (std::size_t i = items.size(); i-- > 0;) {
+        if (items[i].code != "E0217" || !items[i].span) continue;
+        text.replace(items[i].span->begin, items[i].span->end - items[i].span->begin, "0");
+        changed = true;
+      }
+      if (!changed) break;
+    }
+    return text;
+  }
+
   void prove(const std::string& raw) {
     Diagnostics found;
-    SourceText text(system_.name, raw);
+    SourceText text(system_.name, with_rests(raw));
     const syntax::SyntaxTree first = syntax::parse(text, found);
     if (!found.has_errors()) text = SourceText(system_.name, syntax::format(first, text));
     const syntax::SyntaxTree tree = syntax::parse(text, found);
@@ -152,11 +174,9 @@ class Reducer {
       if (d.severity != Severity::Error) continue;
       const std::string line = d.span ? std::string(text.line(text.locate(d.span->begin).line)) : std::string();
       diagnostics_.error("E0832", {}, fmt::format("a line cannot be carried over{}: {}", line.empty() ? "" : fmt::format(" (`{}`)", line), d.message),
-                         d.reason, "Leave it out, or write it without the coordinates that become dependent: " + listed(gone()) + ".");
+                         d.reason, "Leave it out, or write it without the coordinates that become dependent: " + listed(out_.dependent) + ".");
     }
   }
-
-  std::vector<std::string> gone() const { return out_.dependent; }
 
   const Model& model_;
   const MechanicalSystem& system_;

@@ -1,4 +1,5 @@
 #include "command.hpp"
+#include "comparison_text.hpp"
 #include "outcome.hpp"
 #include "quantity.hpp"
 #include "run_options.hpp"
@@ -34,15 +35,6 @@ const char* energy_word(EnergyRelation relation) {
     case EnergyRelation::Undecided: return "not decided";
   }
   return "";
-}
-
-std::string ground_text(const Comparison& c) {
-  const ZeroTest& test = c.ground;
-  std::string text = test.error_bound < 1
-                         ? fmt::format("proved (at {} random points, error bound {:.1e})", test.points, test.error_bound)
-                         : fmt::format("holds to 60 digits at {} states that meet the constraints", test.points);
-  if (c.only_at_these_values) text += ", for these values of the parameters alone";
-  return text;
 }
 
 std::string verdict_text(const Comparison& c) {
@@ -82,8 +74,11 @@ std::string text_of(const Comparison& c, const Model& a, const CoordinateMap& ma
     line("", fmt::format("{}'' = {:.12g} by {}, {:.12g} by {}", name, d.of_a, a.system.name, d.of_b, b.name));
   }
   if (c.run.ran)
-    line("run of both", fmt::format("{} s from a common start: {} differs by {:.2g} of its size at t = {} s{}", brief(c.run.duration),
-                                    a.system.coordinates[c.run.coordinate].name, c.run.difference, brief(c.run.time),
+    line("run of both", fmt::format("{} s from a common start: {}{}", brief(c.run.duration),
+                                    c.run.difference > 0 ? fmt::format("{} differs by {:.2g} of its size at t = {} s",
+                                                                       a.system.coordinates[c.run.coordinate].name,
+                                                                       c.run.difference, brief(c.run.time))
+                                                         : "the same to the last digit",
                                     c.run.reason.empty() ? "" : "; " + c.run.reason));
   else if (!c.run.reason.empty())
     line("run of both", "none: " + c.run.reason);
@@ -99,7 +94,7 @@ Json to_json(const Comparison& c, const Model& a, const CoordinateMap& map) {
   document["reason"] = c.reason;
   document["points"] = c.ground.points;
   document["error_bound"] = c.ground.error_bound;
-  document["only_at_these_values"] = c.only_at_these_values;
+  document["parameters"] = c.parameters == Comparison::Parameters::Any ? "any" : c.parameters == Comparison::Parameters::NearThese ? "near these" : "these alone";
   document["freedoms"] = {c.freedoms_a, c.freedoms_b};
   document["instantaneous_freedoms"] = {c.instantaneous_freedoms_a, c.instantaneous_freedoms_b};
   document["rank"] = c.rank;

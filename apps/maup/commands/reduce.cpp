@@ -1,4 +1,5 @@
 #include "command.hpp"
+#include "comparison_text.hpp"
 #include "outcome.hpp"
 #include "quantity.hpp"
 
@@ -21,10 +22,7 @@ std::string account(const Reduction& r) {
   std::string out;
   for (const std::string& step : r.steps) out += fmt::format("  {}\n", step);
   if (!r.proof) return out;
-  const ZeroTest& ground = r.proof->ground;
-  out += ground.error_bound < 1
-             ? fmt::format("  the same motion: proved (at {} random points, error bound {:.1e})\n", ground.points, ground.error_bound)
-             : fmt::format("  the same motion: holds to 60 digits at {} states that meet the remaining constraints\n", ground.points);
+  out += fmt::format("  the same motion: {}\n", ground_text(*r.proof));
   if (r.proof->run.ran)
     out += fmt::format("  run of both for {} s: they differ by {:.2g}\n", brief(r.proof->run.duration), r.proof->run.difference);
   return out;

@@ -10,6 +10,8 @@
 
 /// Identities on a manifold. No exact arithmetic reaches its points, so that these are found to double precision by Newton's
 /// method and then to 100 digits by the same method with the Jacobian held: each turn adds some fifteen digits.
+/// What counts as 0 is measured by the sizes of the terms, and by what a change of the unknowns by their own size would
+/// make: the relation ψ'' = 0 has one term, which is never small beside itself.
 namespace maupertuis {
 namespace {
 
@@ -70,9 +72,22 @@ class OnRelations {
  public:
   OnRelations(std::span<const Expr> relations, std::span<const Expr> unknowns, const Bindings& center)
       : relations_(relations), unknowns_(unknowns.begin(), unknowns.end()), center_(center) {
-    for (const Expr& r : relations)
-      for (const Expr& entry : gradient(r, unknowns_)) jacobian_.push_back(entry);
+    jacobian_ = rows_of(relations);
     rows_ = static_cast<Index>(relations.size());
+    reach_.resize(static_cast<Index>(unknowns_.size()));
+    for (std::size_t i = 0; i < unknowns_.size(); ++i) reach_[static_cast<Index>(i)] = own_size(center.at(unknowns_[i]));
+  }
+
+  std::vector<Expr> rows_of(std::span<const Expr> functions) const {
+    std::vector<Expr> rows;
+    for (const Expr& f : functions)
+      for (const Expr& entry : gradient(f, unknowns_)) rows.push_back(entry);
+    return rows;
+  }
+
+  /// How much each function changes when the unknowns change by their own size; `rows` of the functions' gradients.
+  Vector changes(const std::vector<Expr>& rows, const Bindings& at) const {
+    return matrix(rows, at).cwiseAbs() * reach_;
   }
 
   /// A point on the relations to 100 digits, or nothing.
@@ -88,22 +103,27 @@ class OnRelations {
   double spread(Expr symbol, double value) const {
     const bool moves = std::find(unknowns_.begin(), unknowns_.end(), symbol) != unknowns_.end();
     if (symbol.role() == Role::Time) return 1;
-    return moves ? 0.3 * (std::abs(value) > 1e-12 ? std::abs(value) : 1) : 0.01 * std::abs(value);
+    return moves ? 0.3 * own_size(value) : 0.01 * std::abs(value);
   }
+  static double own_size(double value) { return std::abs(value) > 1e-12 ? std::abs(value) : 1; }
 
-  Matrix jacobian(const Bindings& at) const {
-    const std::vector<double> numbers = evaluate(jacobian_, at);
+  Matrix matrix(const std::vector<Expr>& rows, const Bindings& at) const {
+    const std::vector<double> numbers = evaluate(rows, at);
     using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    return Eigen::Map<const ByRows>(numbers.data(), rows_, static_cast<Index>(unknowns_.size()));
+    const auto columns = static_cast<Index>(unknowns_.size());
+    return Eigen::Map<const ByRows>(numbers.data(), static_cast<Index>(rows.size()) / columns, columns);
   }
+  Matrix jacobian(const Bindings& at) const { return matrix(jacobian_, at); }
 
   bool approach(Bindings& at) const {
     std::vector<double> value, size;
+    const Vector change = changes(jacobian_, at);
+    if (!change.allFinite()) return false;
     const auto measure = [&] {
       relations_.evaluate<double>([&](Expr s) { return at.at(s); }, value, size);
       double worst = 0;
       for (std::size_t i = 0; i < value.size(); ++i)
-        worst = std::max(worst, !std::isfinite(value[i]) ? HUGE_VAL : value[i] == 0 ? 0 : std::abs(value[i]) / size[i]);
+        worst = std::max(worst, !std::isfinite(value[i]) ? HUGE_VAL : value[i] == 0 ? 0 : std::abs(value[i]) / (size[i] + change[static_cast<Index>(i)]));
       return worst;
     };
     const auto norm = [&](const Vector& weight) {
@@ -151,6 +171,7 @@ class OnRelations {
     const Vector weight = row_weights(j);
     Eigen::CompleteOrthogonalDecomposition<Matrix> solver(weight.asDiagonal() * j);
     solver.setThreshold(1e-10);
+    const Vector change = j.cwiseAbs() * reach_;
     std::vector<Real100> value, size;
     for (int turn = 0; turn < refining_turns; ++turn) {
       relations_.evaluate<Real100>([&](Expr s) { return point.at(s); }, value, size);
@@ -158,7 +179,7 @@ class OnRelations {
       for (std::size_t i = 0; i < value.size(); ++i) {
         if (!isfinite(value[i])) return std::nullopt;
         largest = std::max(largest, Real100(abs(value[i])));
-        if (value[i] != 0) worst = std::max(worst, Real100(abs(value[i]) / size[i]));
+        if (value[i] != 0) worst = std::max(worst, Real100(abs(value[i]) / (size[i] + Real100(change[static_cast<Index>(i)]))));
       }
       if (worst < refined) return point;
       Vector scaled(rows_);
@@ -174,6 +195,7 @@ class OnRelations {
   const Bindings& center_;
   std::vector<Expr> jacobian_;
   Index rows_ = 0;
+  Vector reach_;
 };
 
 }  // namespace
@@ -183,6 +205,7 @@ ZeroTest zero_test_where(std::span<const Expr> differences, std::span<const Expr
   ZeroTest test;
   OnRelations manifold(relations, unknowns, center);
   const Sums sums(differences);
+  const std::vector<Expr> rows = manifold.rows_of(differences);
   std::mt19937_64 random(options.seed);
   std::vector<Real100> value, size;
   for (int attempt = 0; attempt < options.points * attempts_per_point && test.points < options.points; ++attempt) {
@@ -190,12 +213,16 @@ ZeroTest zero_test_where(std::span<const Expr> differences, std::span<const Expr
     if (!point) continue;
     sums.evaluate<Real100>([&](Expr s) { return point->at(s); }, value, size);
     if (!std::all_of(value.begin(), value.end(), [](const Real100& v) { return isfinite(v); })) continue;
+    Bindings rounded;
+    for (const auto& [symbol, x] : *point) rounded.emplace(symbol, static_cast<double>(x));
+    const Vector change = manifold.changes(rows, rounded);
+    if (!change.allFinite()) continue;
     for (std::size_t i = 0; i < value.size(); ++i) {
-      if (abs(value[i]) <= vanishing * size[i]) continue;
+      if (abs(value[i]) <= vanishing * (size[i] + Real100(change[static_cast<Index>(i)]))) continue;
       test.verdict = Verdict::Nonzero;
       test.error_bound = 0;
       test.witness_value = static_cast<double>(value[i]);
-      for (const auto& [symbol, x] : *point) test.witness.emplace(symbol, static_cast<double>(x));
+      test.witness = rounded;
       return test;
     }
     ++test.points;
