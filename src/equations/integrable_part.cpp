@@ -15,7 +15,7 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Index = Eigen::Index;
 
-/// A vector field: components for all variables, and a bound for the sizes of their terms.
+/// A direction: components for all variables.
 struct Field {
   ExprVector components;
   std::vector<ExprVector> gradients;  // of the components by the variables
@@ -99,15 +99,24 @@ class Closure {
     return out;
   }
 
+  /// X(e) = d/dε e(q + ε X) at ε = 0: all of them in one forward sweep, so that brackets of brackets stay small.
+  ExprVector along(const ExprVector& x, const ExprVector& e) const {
+    const Expr epsilon = zero_.context().symbol("bracket parameter", Role::Auxiliary);
+    ExprMap shift;
+    for (std::size_t l = 0; l < variables_.size(); ++l)
+      if (!x[l].is_zero()) shift.emplace(variables_[l], variables_[l] + epsilon * x[l]);
+    ExprVector out = substitute(e, shift);
+    for (Expr& value : out) value = differentiate(value, epsilon);
+    return substitute(out, {{epsilon, zero_}});
+  }
+
   /// [X, Y] = X(Y) − Y(X). Components that vanish identically become 0.
-  ExprVector bracket(const Field& x, const Field& y) const {
+  ExprVector bracket(const Field& x, const ExprVector& y) const {
     ExprVector out(variables_.size(), zero_);
+    const ExprVector forward = along(x.components, y);
     for (const std::size_t p : pivots_) {
-      ExprVector terms;
-      for (std::size_t l = 0; l < variables_.size(); ++l) {
-        terms.push_back(x.components[l] * y.gradients[p][l]);
-        terms.push_back(-(y.components[l] * x.gradients[p][l]));
-      }
+      ExprVector terms{forward[p]};
+      for (std::size_t l = 0; l < variables_.size(); ++l) terms.push_back(-(y[l] * x.gradients[p][l]));
       const Expr value = sum_of(terms, zero_.context());
       out[p] = value.is_number() || zero_test(value).verdict != Verdict::Zero ? value : zero_;
     }
@@ -115,39 +124,61 @@ class Closure {
   }
 
   void close() {
-    std::vector<Field> newest;
+    bracket_numbers_.assign(points_.size(), Matrix(0, static_cast<Index>(pivots_.size())));
+    std::vector<ExprVector> newest;
     for (std::size_t i = 0; i < directions_.size(); ++i)
-      for (std::size_t j = i + 1; j < directions_.size(); ++j) add(bracket(directions_[i], directions_[j]), newest);
+      for (std::size_t j = i + 1; j < directions_.size(); ++j) add(bracket(directions_[i], directions_[j].components), newest);
     while (!newest.empty() && brackets_.size() < pivots_.size()) {
-      std::vector<Field> next;
+      std::vector<ExprVector> next;
       for (const Field& x : directions_)
-        for (const Field& y : newest) add(bracket(x, y), next);
+        for (const ExprVector& y : newest) add(bracket(x, y), next);
       newest = std::move(next);
     }
   }
 
   /// Keeps a bracket that is new at some point.
-  void add(ExprVector candidate, std::vector<Field>& newest) {
+  void add(ExprVector candidate, std::vector<ExprVector>& newest) {
     if (brackets_.size() == pivots_.size()) return;
     if (std::all_of(candidate.begin(), candidate.end(), [](Expr e) { return e.is_zero(); })) return;
-    std::vector<ExprVector> trial = brackets_;
-    trial.push_back(candidate);
-    if (rank_of(trial) == brackets_.size()) return;
+    const std::vector<Eigen::RowVectorXd> numbers = numbers_of(candidate);
+    bool is_new = false;
+    for (std::size_t k = 0; k < points_.size() && !is_new; ++k) {
+      Matrix m(bracket_numbers_[k].rows() + 1, numbers[k].size());
+      m << bracket_numbers_[k], numbers[k];
+      is_new = m.allFinite() && numerical_rank(scaled_rows(m)) > brackets_.size();
+    }
+    if (!is_new) return;
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      Matrix m(bracket_numbers_[k].rows() + 1, numbers[k].size());
+      m << bracket_numbers_[k], numbers[k];
+      bracket_numbers_[k] = std::move(m);
+    }
     brackets_.push_back(candidate);
-    newest.push_back(with_gradients(std::move(candidate)));
+    newest.push_back(std::move(candidate));
   }
 
-  /// The largest rank at the points; a component that is rounding of its terms counts as zero.
-  std::size_t rank_of(const std::vector<ExprVector>& fields) const {
-    std::size_t best = 0;
-    for (const Bindings& point : points_) {
-      Matrix m(static_cast<Index>(fields.size()), static_cast<Index>(pivots_.size()));
-      for (std::size_t i = 0; i < fields.size(); ++i)
-        for (std::size_t k = 0; k < pivots_.size(); ++k)
-          m(static_cast<Index>(i), static_cast<Index>(k)) = without_rounding(fields[i][pivots_[k]], point);
-      if (m.allFinite()) best = std::max(best, numerical_rank(scaled_rows(m)));
+  /// The pivot components at each point; one that is rounding of its terms counts as zero.
+  std::vector<Eigen::RowVectorXd> numbers_of(const ExprVector& field) const {
+    ExprVector terms;
+    std::vector<std::size_t> first;  // of each component: its value, then its terms
+    for (const std::size_t p : pivots_) {
+      first.push_back(terms.size());
+      terms.push_back(field[p]);
+      for (std::size_t i = 0; field[p].is(Kind::Sum) && i < field[p].size(); ++i) terms.push_back(field[p][i]);
     }
-    return best;
+    first.push_back(terms.size());
+    std::vector<Eigen::RowVectorXd> out;
+    for (const Bindings& point : points_) {
+      const std::vector<double> numbers = evaluate(terms, point);
+      out.emplace_back(static_cast<Index>(pivots_.size()));
+      for (std::size_t k = 0; k < pivots_.size(); ++k) {
+        double size = 0;
+        for (std::size_t i = first[k] + 1; i < first[k + 1]; ++i) size += std::abs(numbers[i]);
+        const double value = numbers[first[k]];
+        out.back()[static_cast<Index>(k)] = std::abs(value) <= rank_tolerance * size ? 0 : value;
+      }
+    }
+    return out;
   }
 
   static double without_rounding(Expr e, const Bindings& point) {
@@ -214,6 +245,7 @@ class Closure {
   std::vector<std::size_t> pivots_;       // variables that are solved for
   std::vector<Field> directions_;
   std::vector<ExprVector> brackets_;      // independent, beyond the directions
+  std::vector<Matrix> bracket_numbers_;   // [points] their pivot components, a row each
 };
 
 }  // namespace

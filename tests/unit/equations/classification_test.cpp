@@ -213,3 +213,19 @@ TEST_CASE("integrals are written without logarithms of lengths") {
   CHECK(Analysed("param m = 1 kg, k = 1 [1/m]\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint y' = k y x'\n").integral(0) ==
         "y exp(-k x)");
 }
+
+TEST_CASE("a car with three trailers goes everywhere, by brackets of brackets of brackets") {
+  std::string text = "param m = 1 kg, a = 1 m\ncoord x, y : length\ncoord δ, θ0, θ1, θ2, θ3 : angle\n"
+                     "T = 1/2 m (x'^2 + y'^2) + 1/2 m a^2 (δ'^2 + θ0'^2 + θ1'^2 + θ2'^2 + θ3'^2)\n"
+                     "constraint x' sin(θ0 + δ) - y' cos(θ0 + δ) - a θ0' cos δ = 0\n";
+  for (int i = 0; i < 4; ++i) {  // no wheel slips sideways
+    const std::string own = "θ" + std::to_string(i);
+    text += "constraint y' cos " + own + " - x' sin " + own;
+    for (int k = 1; k <= i; ++k) text += " - a θ" + std::to_string(k) + "' cos(θ" + std::to_string(k) + " - " + own + ")";
+    text += " = 0\n";
+  }
+  const Analysed m(text);
+  for (std::size_t i = 0; i < 5; ++i) CHECK(m.class_of(i) == nonholonomic);
+  CHECK(m.found.configuration_freedoms == 7);
+  CHECK(m.found.instantaneous_freedoms == 2);
+}
