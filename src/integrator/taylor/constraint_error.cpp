@@ -49,4 +49,20 @@ double constraint_error(const KernelWorkspace& work, std::size_t freedoms, std::
   return largest;
 }
 
+double correction_size(const KernelWorkspace& work, std::span<const double> dq, std::span<const double> dv, double h) {
+  double positions = 0, velocities = 0, motion = 0, place = 0;
+  for (std::size_t i = 0; i < dq.size(); ++i) {
+    const double mass = work.mass(i, i) > 0 ? work.mass(i, i) : 0, moving = speed(work, i, h);
+    positions += mass * dq[i] * dq[i];
+    velocities += mass * dv[i] * dv[i];
+    motion += mass * moving * moving;
+    place += mass * work.coordinate(0)[i] * work.coordinate(0)[i];
+  }
+  // What rounding of q is in a step is no motion.
+  const double rounding = 64 * std::numeric_limits<double>::epsilon() * std::sqrt(place);
+  const double by_position = std::sqrt(positions) <= rounding ? 0 : ratio(std::sqrt(positions), std::sqrt(place) + h * std::sqrt(motion));
+  const double by_velocity = h * std::sqrt(velocities) <= rounding ? 0 : ratio(std::sqrt(velocities), std::sqrt(motion));
+  return std::max(by_position, by_velocity);
+}
+
 }  // namespace maupertuis::taylor

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace maupertuis {
 
@@ -39,7 +40,8 @@ struct TaylorStepper::Impl {
 
   Step step(double bound);
   bool expand(double bound, Step& result);
-  bool project(Step& result);
+  bool project(Step& result, bool known = false);
+  void land(Step& result, double tau);
   bool decide_sides(double bound, Step& result);
   std::optional<double> trial(double bound);
   void keep_polynomial();
@@ -72,6 +74,7 @@ struct TaylorStepper::Impl {
   DenseOutput dense;
   std::vector<Watched> switch_state, event_state;
   bool first = true;                     // no step made yet
+  bool expanded = false;                 // the workspace holds the motion through the present state already
   double length = 0;                     // the last length that the control chose
   std::size_t steps = 0, switches = 0;
   int stuck = 0;                         // crossings in a row that did not move time
@@ -144,18 +147,18 @@ bool TaylorStepper::Impl::expand(double bound, Step& result) {
 
 /// Brings q and q̇ back to the constraints. The expansion has factored the bordered matrix, so that this costs two
 /// solves; only where the corrections are above rounding is the motion expanded anew.
-bool TaylorStepper::Impl::project(Step& result) {
-  const double before = taylor::constraint_error(work, n, kernel.constraints(), length);
+/// `known`: the corrections are there.
+bool TaylorStepper::Impl::project(Step& result, bool known) {
+  double error = taylor::constraint_error(work, n, kernel.constraints(), length);
+  if (!first) constraint_residual = std::max(constraint_residual, error);
   const double allowed = std::max(1e-7, 1e3 * options.tolerance);
-  if (!first && !(before <= allowed)) {
-    end(result, StepEnding::SingularConstraints,
-        "The constraints are singular near here: they do not determine where the motion goes.");
-    return false;
-  }
-  if (!first) constraint_residual = std::max(constraint_residual, before);
-  double error = before;
   for (int turn = 0; turn < 20; ++turn) {
-    work.corrections(dq, dv);
+    if (!std::exchange(known, false)) work.corrections(dq, dv);
+    if (!first && !(error <= allowed && taylor::correction_size(work, dq, dv, length) <= allowed)) {
+      end(result, StepEnding::SingularConstraints,
+          "The constraints are singular near here: they do not determine where the motion goes.");
+      return false;
+    }
     for (std::size_t i = 0; i < n; ++i) {
       q[i].add(dq[i]), v[i].add(dv[i]);
       q_now[i] = q[i].hi, v_now[i] = v[i].hi;
@@ -163,10 +166,36 @@ bool TaylorStepper::Impl::project(Step& result) {
     if (error <= taylor::rounding_of_constraints) return true;
     if (const KernelStatus status = work.expand(t.hi, q_now, v_now); status != KernelStatus::Ok) return fail(result, status);
     const double now = taylor::constraint_error(work, n, kernel.constraints(), length);
-    if (turn > 2 && now > 0.5 * error) return now < 1e-10 ? true : (end(result, StepEnding::SingularConstraints, "The constraints cannot be met near here."), false);
+    if (turn > 2 && now > 0.5 * error) break;
     error = now;
   }
-  return true;
+  if (error < 1e-10) return true;
+  end(result, StepEnding::SingularConstraints, "The constraints cannot be met near here.");
+  return false;
+}
+
+/// Next to a singular configuration of the constraints what rounding left of them is blown up by the projection. The
+/// motion goes through it all the same where it is determined, so that a step must not end just there: then it is made
+/// shorter, and the next one passes. The expansion at its end is that of the next step.
+void TaylorStepper::Impl::land(Step& result, double tau) {
+  const double sound = std::max(1e-12, 1e2 * options.tolerance);
+  for (int trial = 0; trial < 12; ++trial) {
+    set_sides(work);
+    if (work.expand(t.hi, q_now, v_now) == KernelStatus::Ok) {
+      work.corrections(dq, dv);
+      if (taylor::correction_size(work, dq, dv, length) <= sound) {
+        Step projected;
+        expanded = project(projected, true);
+        return;
+      }
+    }
+    tau *= 0.83;
+    dense.advance(tau, q, v, integrals);
+    t = begin;
+    t.add(tau);
+    for (std::size_t i = 0; i < n; ++i) q_now[i] = q[i].hi, v_now[i] = v[i].hi;
+    result.end = t.hi;
+  }
 }
 
 bool TaylorStepper::Impl::decide_sides(double bound, Step& result) {
@@ -289,7 +318,7 @@ Step TaylorStepper::Impl::step(double bound) {
     end(result, StepEnding::TooManySteps, "The run used up its steps.");
     return result;
   }
-  if (!expand(bound, result)) return result;
+  if (!std::exchange(expanded, false) && !expand(bound, result)) return result;
   const double chosen = taylor::step_size(work, n, control, length);
   length = std::isfinite(chosen) ? chosen : 0;
   const double left = remaining(bound);
@@ -307,6 +336,7 @@ Step TaylorStepper::Impl::step(double bound) {
     return result;
   }
   advance(bound, h, crossing, result);
+  if (kernel.constraints() > 0 && switch_state.empty() && event_state.empty()) land(result, h);
   return result;
 }
 
@@ -352,6 +382,7 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   std::fill(s.switch_state.begin(), s.switch_state.end(), Watched{});
   std::fill(s.event_state.begin(), s.event_state.end(), Watched{});
   s.first = true;
+  s.expanded = false;
   s.length = 0;
   s.steps = s.switches = 0;
   s.constraint_residual = 0;

@@ -135,7 +135,7 @@ TEST_CASE("constraints that exclude each other are named, and only they") {
   CHECK(!consistent_start(m.model, m.equations, m.diagnostics));
   REQUIRE(m.diagnostics.items().size() == 1);
   CHECK(m.diagnostics.items()[0].code == "E0708");
-  CHECK(m.diagnostics.items()[0].message == "no configuration satisfies near, far");
+  CHECK(m.diagnostics.items()[0].message == "no configuration satisfies near and far");
 }
 
 TEST_CASE("a loop that cannot close, and velocities that cannot be") {
@@ -169,6 +169,24 @@ TEST_CASE("a singular configuration ends the run with the reason, or is passed w
   CHECK(!end.ok());
   CHECK(!end.reason.empty());
   CHECK(std::abs(std::pow(end.final.q[1], 3) - std::pow(end.final.q[0], 2)) < 1e-9);
+}
+
+TEST_CASE("a parallelogram through its flat position: on with the motion where no force is needed, else the reason") {
+  const std::string linkage = "system p\nparam l = 1 m, d = 2 m, J = 1 kg m^2\ncoord a, b, c : angle\nT = 1/2 J (a'^2 + b'^2 + c'^2)\n"
+                              "constraint l cos a + d cos c = d + l cos b name horizontal\nconstraint l sin a + d sin c = l sin b name vertical\n"
+                              "start a = 60 deg, a' = -1 rad/s, c = 0, b = 60 deg\n";
+  ModelText free(linkage);
+  const auto through = run(free, 5);
+  CHECK(through.ok());
+  CHECK(through.final.q[0] == doctest::Approx(1.0471975511965976 - 5).epsilon(1e-12));
+  CHECK(through.final.q[1] == doctest::Approx(through.final.q[0]).epsilon(1e-12));
+  // With a weight on the crank the coupler would have to carry an infinite force there.
+  ModelText loaded(linkage + "V = 3 [J] sin a\n");
+  const auto stuck = run(loaded, 5);
+  CHECK(stuck.ending == Ending::SingularConstraints);
+  CHECK(std::abs(stuck.final.q[0]) < 0.1);
+  CHECK(stuck.statistics.energy_drift < 1e-12);
+  CHECK(std::abs(stuck.final.q[0] - stuck.final.q[1]) < 1e-9);
 }
 
 TEST_CASE("the stiff method takes over where stability limits the steps, and says so") {
