@@ -11,6 +11,7 @@ import pathlib
 import re
 import sys
 
+import reference_constraints
 from newton_euler import Chain
 from precise import D, PI, acos, asin, atan2, cos, ellipk, jacobi, motion, integrate, sin, solve, sqrt
 
@@ -236,7 +237,7 @@ def arm_seven_joints():
 
 
 MODELS = [pendulum, double_pendulum, elastic_pendulum, spherical_pendulum, cart_pendulum, bead_on_hoop, kepler,
-          lagrange_top, satellite, ion_in_fields, rotating_frame, robot_arm, motor_link, absolute_value, arm_seven_joints]
+          lagrange_top, satellite, ion_in_fields, rotating_frame, robot_arm, motor_link, absolute_value, arm_seven_joints] + reference_constraints.MODELS
 UNITS = {"deg": DEG, "ms": D("1e-3"), "µs": D("1e-6"), "h": D(3600)}
 
 
