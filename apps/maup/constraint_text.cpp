@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <maupertuis/print.hpp>
 
 namespace maupertuis::app {
@@ -49,7 +51,10 @@ void summarise_constraints(const EquationsOfMotion& equations, const ConstraintA
 
 std::string moved_start(const MechanicalSystem& system, const ConsistentStart& start) {
   std::string out;
+  double largest = 0;
+  for (const StartAdjustment& a : start.adjustments) largest = std::max(largest, std::abs(a.to));
   for (const StartAdjustment& a : start.adjustments) {
+    if (std::abs(a.to - a.from) < 1e-14 * largest) continue;  // rounding
     const Coordinate& c = system.coordinates[a.coordinate];
     const std::string unit = to_string(a.order == 0 ? c.dimension : c.dimension / dimensions::time());
     out += fmt::format("{}{}{} = {}{}", out.empty() ? "" : ", ", c.name, a.order == 0 ? "" : "'", brief(a.to),

@@ -175,6 +175,19 @@ double largest_relative(const Sizes& f, const std::vector<std::size_t>& chosen) 
   return largest;
 }
 
+/// What is left of f_i is below the rounding of the unknowns x together, in the metric: their sizes may hide from f_i, as a
+/// spin of 200 rad/s about one axis does from the rate 0 about another.
+bool below_rounding(const Sizes& f, const std::vector<std::size_t>& chosen, const Matrix& a, const Matrix& metric, const std::vector<double>& x) {
+  const Vector lengths = metric.diagonal().cwiseAbs().cwiseSqrt();
+  const double size = lengths.cwiseProduct(Eigen::Map<const Vector>(x.data(), lengths.size())).norm();
+  for (const std::size_t i : chosen) {
+    const auto k = static_cast<Index>(i);
+    const double row = a.row(k).transpose().cwiseQuotient(lengths).norm();
+    if (!(std::abs(f.value[k]) <= std::max(reached * f.scale[k], rounding * row * size))) return false;
+  }
+  return true;
+}
+
 Rows weighted(const Matrix& a, const Sizes& f, const std::vector<std::size_t>& chosen) {
   const auto count = static_cast<Index>(chosen.size());
   Rows out{Matrix(count, a.cols()), chosen_values(f, chosen), Vector::Ones(count)};
@@ -222,7 +235,7 @@ bool ConstraintManifold::Impl::move(MotionState& state, bool positions, const st
     f = sizes(positions, state, all);
     error = largest_relative(f, chosen);
   }
-  return error <= reached;
+  return error <= reached || below_rounding(f, chosen, all, metric(state), x);
 }
 
 ConstraintManifold::ConstraintManifold(const EquationsOfMotion& equations, std::vector<Expr> rates)

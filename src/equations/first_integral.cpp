@@ -106,13 +106,23 @@ Expr without_logarithms(Expr sum, const ExprVector& variables) {
   return out;
 }
 
-/// Readable, in whole numbers where that is possible, the term that is printed first positive.
+/// The first term with the first variable that stands in the sum has a minus sign.
+bool leads_negative(Expr sum, const ExprVector& variables) {
+  for (const Expr& v : variables)
+    for (std::size_t i = 0; i < (sum.is(Kind::Sum) ? sum.size() : 1); ++i) {
+      const Expr term = sum.is(Kind::Sum) ? sum[i] : sum;
+      if (depends_on(term, v)) return split_coefficient(term).coefficient.sign() < 0;
+    }
+  return false;
+}
+
+/// Readable, in whole numbers where that is possible; its sign follows from the order of the coordinates.
 Expr presentable(Expr e, const ExprVector& variables, const ReadingOrder& order) {
   const Expr plain = without_logarithms(simplified(e, order), variables);
   Rational scale = plain.is(Kind::Sum) ? common_scale(plain) : Rational(1) / split_coefficient(plain).coefficient;
   const auto scaled = [&] { return expand(plain * scale, 200); };
   if (!scaled()) return plain;
-  if (to_plain(scaled(), order).front() == '-') scale = -scale;
+  if (leads_negative(scaled(), variables)) scale = -scale;
   return scale == Rational(1) ? plain : scaled();
 }
 

@@ -3,6 +3,8 @@
 #include <maupertuis/constraint_analysis.hpp>
 #include <maupertuis/print.hpp>
 
+#include <cmath>
+
 using namespace maupertuis;
 
 namespace {
@@ -228,4 +230,18 @@ TEST_CASE("a car with three trailers goes everywhere, by brackets of brackets of
   for (std::size_t i = 0; i < 5; ++i) CHECK(m.class_of(i) == nonholonomic);
   CHECK(m.found.configuration_freedoms == 7);
   CHECK(m.found.instantaneous_freedoms == 2);
+}
+
+TEST_CASE("a fast spin about one axis does not forbid the rate 0 about another") {
+  const ModelText m(R"(param J = 1 kg m^2
+body top inertia diag(J, J, J) rotation quaternion
+)");
+  const MechanicalSystem& s = *m.system;
+  const ConstraintManifold manifold(m.equations, {s.bodies[0].angular_velocity[0], s.bodies[0].angular_velocity[1],
+                                                  s.bodies[0].angular_velocity[2] - s.context->number(Rational(200))});
+  MotionState state{0, {std::cos(0.3), std::sin(0.3), 0, 0}, {0, 0, 0, 0}};
+  REQUIRE(manifold.move_velocities(state, std::vector<bool>(4, false)));
+  // q' = ½ q ω
+  CHECK(state.v[2] == doctest::Approx(-100 * std::sin(0.3)).epsilon(1e-13));
+  CHECK(state.v[3] == doctest::Approx(100 * std::cos(0.3)).epsilon(1e-13));
 }
