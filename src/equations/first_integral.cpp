@@ -123,7 +123,7 @@ Expr presentable(Expr e, const ExprVector& variables, const ReadingOrder& order)
   const auto scaled = [&] { return expand(plain * scale, 200); };
   if (!scaled()) return plain;
   if (leads_negative(scaled(), variables)) scale = -scale;
-  return scale == Rational(1) ? plain : scaled();
+  return scale == Rational(1) ? plain : simplified(scaled(), order);
 }
 
 }  // namespace
