@@ -100,6 +100,13 @@ class Analysis {
     out_.clashing = samples.clashing;
     points_ = std::move(samples.states);
     beside_ = std::move(samples.beside);
+    // A start that is consistent proves that constraints without t do not clash: then it stands for the manifold alone.
+    const bool by_time = std::any_of(out_.clashing.begin(), out_.clashing.end(),
+                                     [&](std::size_t i) { return !out_.constraints[i].scleronomic; });
+    if (points_.empty() && start_ && !by_time) {
+      out_.clashing.clear();
+      points_.push_back(*start_);
+    }
   }
 
   /// A with its columns in the scale of the masses.

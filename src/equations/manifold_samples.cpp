@@ -49,6 +49,10 @@ class Sampler {
     return away.states.empty() ? at_start : away;
   }
 
+  /// Where the last attempt began.
+  const MotionState& last() const { return last_; }
+
+ private:
   MotionState scattered(const MotionState& from, double size) {
     MotionState state = from;
     state.t += longest_time * std::abs(random());
@@ -56,10 +60,10 @@ class Sampler {
       state.q[i] += size * std::max(reach_[i], std::abs(from.q[i])) * random();
       state.v[i] += reach_[i] * random();
     }
+    last_ = state;
     return state;
   }
 
- private:
   double random() { return std::generate_canonical<double, 53>(random_) * 2 - 1; }
 
   double distance(const MotionState& a, const MotionState& b) const {
@@ -76,6 +80,7 @@ class Sampler {
   const ConstraintManifold& manifold_;
   std::vector<bool> free_;
   std::vector<double> reach_;
+  MotionState last_;
   std::mt19937_64 random_{1788};
 };
 
@@ -86,8 +91,7 @@ ManifoldSamples sample_manifold(const ConstraintManifold& manifold, const Mechan
   const std::optional<MotionState> any = start ? *start : sampler.find();
   ManifoldSamples out;
   if (any) out = sampler.around(*any);
-  const MotionState origin{0, std::vector<double>(system.coordinates.size(), 0), std::vector<double>(system.coordinates.size(), 0)};
-  if (out.states.empty()) out.clashing = manifold.smallest_clash(sampler.scattered(any.value_or(origin), near));
+  if (out.states.empty()) out.clashing = manifold.smallest_clash(sampler.last());
   return out;
 }
 
