@@ -105,6 +105,21 @@ std::optional<LinearSolution> solve_linear(Expr relation, Expr coordinate, const
   return LinearSolution{coordinate, -with_zeros(relation, {&coordinate, 1}) / slope, pivot};
 }
 
+std::optional<Line> find_line(Expr relation, std::span<const Expr> candidates, const AtStart& at_start) {
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    for (std::size_t k = i + 1; k < candidates.size(); ++k) {
+      const ExprVector xy{candidates[i], candidates[k]}, normal = gradient(relation, xy);
+      if (holds_coordinates(normal[0]) || holds_coordinates(normal[1])) continue;
+      const Expr square = normal[0] * normal[0] + normal[1] * normal[1];
+      if (!(at_start(square) > 0)) continue;
+      const bool unit = vanishes(square - Rational(1));
+      const Expr one = relation.context().number(1), size = unit ? one : sqrt(square);
+      const Expr offset = with_zeros(relation, xy) / (unit ? one : square);
+      return Line{xy, {-offset * normal[0], -offset * normal[1]}, {normal[1] / size, -normal[0] / size}};
+    }
+  return std::nullopt;
+}
+
 std::optional<Ellipsoid> find_ellipsoid(Expr relation, std::span<const Expr> candidates, const AtStart& at_start) {
   const std::size_t n = candidates.size();
   for (std::size_t i = 0; i < n; ++i)

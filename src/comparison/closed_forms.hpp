@@ -23,6 +23,13 @@ struct Ellipsoid {
 };
 std::optional<Ellipsoid> find_ellipsoid(Expr relation, std::span<const Expr> candidates, const AtStart& at_start);
 
+/// a x + b y + c = 0 in two coordinates, a and b functions of time: a line that turns. Its foot is the point nearest to the
+/// origin, its direction a unit vector.
+struct Line {
+  ExprVector coordinates, foot, direction;  // [2]
+};
+std::optional<Line> find_line(Expr relation, std::span<const Expr> candidates, const AtStart& at_start);
+
 /// √u = r as u − r² = 0; other relations as they are.
 Expr without_root(Expr relation);
 

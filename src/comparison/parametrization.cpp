@@ -37,7 +37,7 @@ class Parametrizer {
       if (shown_.constraints[k].level == Constraint::Level::Position && shown_.constraints[k].body.empty()) pending.push_back(k);
     while (!pending.empty()) {
       std::stable_sort(pending.begin(), pending.end(), [&](std::size_t a, std::size_t b) { return open_in(a).size() < open_in(b).size(); });
-      const auto done = std::find_if(pending.begin(), pending.end(), [&](std::size_t k) { return repeated(k) || linear(k) || ellipsoid(k); });
+      const auto done = std::find_if(pending.begin(), pending.end(), [&](std::size_t k) { return repeated(k) || linear(k) || ellipsoid(k) || line(k); });
       if (done == pending.end()) {
         out_.unsolved = pending.front();
         return out_;
@@ -78,9 +78,11 @@ class Parametrizer {
     return substitute(without_root(shown_.constraints[k].value), put_in);
   }
 
+  /// The readable form where it is shorter than the formula as it stands.
   Expr in_short(Expr e) const {
     const ReadableForm form = readable(e, order_);
-    return form.intermediates.empty() ? form.value : e;
+    const bool shorter = form.intermediates.empty() && to_plain(form.value, order_).size() <= to_plain(e, order_).size();
+    return shorter ? form.value : e;
   }
 
   std::string label(std::size_t k) const { return model_.system.constraint_label(k); }
@@ -136,17 +138,46 @@ class Parametrizer {
       const Expr centre = in_short(for_text.centre[i]);
       solved.written.push_back(centre + radius * directions[i]);
       values.push_back(found->centre[i] + found->radii[i] * directions[i]);
-      const auto c = std::find_if(shown_.coordinates.begin(), shown_.coordinates.end(),
-                                  [&](const Coordinate& one) { return one.q == found->coordinates[i]; });
-      solved.dependent.push_back(static_cast<std::size_t>(c - shown_.coordinates.begin()));
-      names += (i ? ", " : "") + c->name;
+      solved.dependent.push_back(index_of(found->coordinates[i]));
+      names += (i ? ", " : "") + found->coordinates[i].name();
     }
     if (found->round) solved.radius = for_text.radii.front();
     std::string fresh;
     for (const NewCoordinate& c : solved.fresh) fresh += (fresh.empty() ? "" : ", ") + c.name;
-    solved.sentence = fmt::format("{} is a {} in {}: {} in their place", label(k),
-                                  directions.size() == 3 ? (found->round ? "sphere" : "ellipsoid") : found->round ? "circle" : "ellipse",
-                                  names, fresh);
+    const char* shape = directions.size() == 3 ? (found->round ? "a sphere" : "an ellipsoid") : found->round ? "a circle" : "an ellipse";
+    solved.sentence = fmt::format("{} is {} in {}: {} in their place", label(k), shape, names, fresh);
+    accept(std::move(solved), values);
+    return true;
+  }
+
+  std::size_t index_of(Expr q) const {
+    const auto found = std::find_if(shown_.coordinates.begin(), shown_.coordinates.end(), [&](const Coordinate& c) { return c.q == q; });
+    return static_cast<std::size_t>(found - shown_.coordinates.begin());
+  }
+
+  /// A line that turns: the distance along it, from the point nearest to the origin.
+  bool line(std::size_t k) {
+    ExprVector candidates;
+    for (const std::size_t i : open_in(k)) candidates.push_back(shown_.coordinates[i].q);
+    const auto found = find_line(relation(k), candidates, at_start());
+    if (!found) return false;
+    Solved solved;
+    solved.constraint = k;
+    solved.dependent = {index_of(found->coordinates[0]), index_of(found->coordinates[1])};
+    const Coordinate& first = shown_.coordinates[solved.dependent[0]];
+    if (!first.dimension.same_as(shown_.coordinates[solved.dependent[1]].dimension)) return false;
+    double along = 0;
+    for (std::size_t i = 0; i < 2; ++i)
+      along += (number(found->coordinates[i]) - number(found->foot[i])) * number(found->direction[i]);
+    const std::string kind = first.kind.empty() ? "[" + to_string(first.dimension) + "]" : first.kind;
+    const Expr s = add(solved, {free_name("s"), kind, {}, first.dimension, along});
+    ExprVector values;
+    for (std::size_t i = 0; i < 2; ++i) {
+      values.push_back(found->foot[i] + s * found->direction[i]);
+      solved.written.push_back(in_short(found->foot[i]) + s * in_short(found->direction[i]));
+    }
+    solved.sentence = fmt::format("{} is a moving line in {}, {}: {} along it in their place", label(k), first.name,
+                                  found->coordinates[1].name(), s.name());
     accept(std::move(solved), values);
     return true;
   }
@@ -174,11 +205,13 @@ class Parametrizer {
   }
 
   Expr add_angle(Solved& solved, const std::string& letter, double start) {
-    NewCoordinate c;
-    c.name = free_name(letter);
+    const bool pure = model_.system.dimensionless;
+    return add(solved, {free_name(letter), pure ? "number" : "angle", {}, pure ? Dimension{} : dimensions::angle(), start});
+  }
+
+  Expr add(Solved& solved, NewCoordinate c) {
     c.q = context_.symbol(c.name, Role::Coordinate);
-    c.start = start;
-    at_[c.q] = start;
+    at_[c.q] = c.start;
     solved.fresh.push_back(c);
     out_.fresh.push_back(c);
     return c.q;

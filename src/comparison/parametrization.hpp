@@ -5,10 +5,11 @@
 
 namespace maupertuis::comparison {
 
-/// A coordinate that replaces others, an angle.
+/// A coordinate that replaces others: an angle, or a distance along a line.
 struct NewCoordinate {
-  std::string name;
+  std::string name, kind;                // kind as in `coord`
   Expr q;
+  Dimension dimension;
   double start = 0;
 };
 

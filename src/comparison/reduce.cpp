@@ -37,7 +37,14 @@ class Reducer {
     for (const auto& solved : p.solved) out_.steps.push_back(solved.sentence);
     for (const std::size_t k : p.repeated) out_.steps.push_back(fmt::format("{} repeats the others", system_.constraint_label(k)));
     const auto rewritten = comparison::rewrite(model_, equations_, tree_, source_, p, start_lines(p));
-    out_.steps.insert(out_.steps.end(), rewritten.notes.begin(), rewritten.notes.end());
+    constexpr std::size_t told = 5;
+    for (std::size_t i = 0; i < rewritten.left_out.size(); ++i) {
+      if (i == told && rewritten.left_out.size() > told + 1) {
+        out_.steps.push_back(fmt::format("and {} lines more that ask for constraints that are gone", rewritten.left_out.size() - told));
+        break;
+      }
+      out_.steps.push_back(fmt::format("left out, since its constraint is gone: `{}`", rewritten.left_out[i]));
+    }
     prove(rewritten.text);
     return out_;
   }
@@ -111,9 +118,14 @@ class Reducer {
       if (const Coordinate* c = system_.find_coordinate(q.name()); c && c->q == q)
         add(c->name, c->dimension, at.at(q), v, !written(q.name(), 0) && at.at(q) != 0, !written(q.name(), 1));
       else
-        add(q.name(), dimensions::angle(), at.at(q), v, true, true);
+        add(q.name(), fresh_dimension(p, q), at.at(q), v, true, true);
     }
     return out;
+  }
+
+  static Dimension fresh_dimension(const Parametrization& p, Expr q) {
+    const auto found = std::find_if(p.fresh.begin(), p.fresh.end(), [&](const NewCoordinate& c) { return c.q == q; });
+    return found->dimension;
   }
 
   bool written(const std::string& name, int order) const {

@@ -45,7 +45,7 @@ class Rewriter {
     constraints();
     for (const Statement& s : tree_.statements) statement(s);
     if (!start_written_ && !start_.empty()) append_ += "start " + start_items() + "\n";
-    return {applied(), notes_};
+    return {applied(), left_out_};
   }
 
  private:
@@ -106,7 +106,7 @@ class Rewriter {
       if (!is_gone(item)) kept.emplace_back(item.name.text, item.unit ? unit_text(*item.unit) : item.kind.text);
     for (const Solved& solved : p_.solved)
       if (!solved.fresh.empty() && std::any_of(s.items.begin(), s.items.end(), [&](const auto& item) { return item.name.text == first_name(solved); }))
-        for (const NewCoordinate& c : solved.fresh) kept.emplace_back(c.name, model_.system.dimensionless ? "number" : "angle");
+        for (const NewCoordinate& c : solved.fresh) kept.emplace_back(c.name, c.kind);
     std::string text;
     for (std::size_t i = 0; i < kept.size(); ++i) {
       text += (i ? ", " : "coord ") + kept[i].first;
@@ -128,7 +128,7 @@ class Rewriter {
   const std::string& first_name(const Solved& s) const { return model_.system.coordinates[s.dependent.front()].name; }
 
   std::string unit_text(const UnitExpression& unit) const {
-    const std::string text = slice(unit.span);
+    const std::string text = slice(unit.span);  // with or without its brackets
     return !text.empty() && text.front() == '[' ? text : "[" + text + "]";
   }
 
@@ -252,7 +252,7 @@ class Rewriter {
       lost = lost || asks_for(e, "reaction", no_reaction_) || asks_for(e, "multiplier", no_multiplier_);
     lost = lost || no_reaction_.count(s.name.text);
     if (!lost) return;
-    notes_.push_back(fmt::format("left out, since its constraint is gone: `{}`", slice(span)));
+    left_out_.push_back(slice(span));
     remove(span);
   }
 
@@ -277,7 +277,7 @@ class Rewriter {
   const std::vector<StartLine>& start_;
   std::set<std::string> gone_, no_reaction_, no_multiplier_;
   std::vector<Edit> edits_;
-  std::vector<std::string> notes_;
+  std::vector<std::string> left_out_;
   std::string append_;
   bool start_written_ = false;
 };

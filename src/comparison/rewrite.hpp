@@ -12,12 +12,11 @@ struct StartLine {
 
 struct Rewritten {
   std::string text;
-  std::vector<std::string> notes;  // what was left out, a sentence each
+  std::vector<std::string> left_out;  // statements that ask for constraints that are gone
 };
 
 /// The text of the model in the independent coordinates: `coord` lines, `let` lines for the old coordinates, constraints
 /// dropped or turned into releases, forces on old coordinates shared out, the start. All other lines stay as they are.
-/// `without`: spans of `source` whose statements are left out.
 Rewritten rewrite(const Model& model, const EquationsOfMotion& equations, const syntax::SyntaxTree& tree,
                   const SourceText& source, const Parametrization& parametrization, const std::vector<StartLine>& start);
 

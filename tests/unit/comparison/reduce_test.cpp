@@ -128,6 +128,25 @@ run 2 s
 )"), 1);
 }
 
+TEST_CASE("a rod that is turned: the distance along it") {
+  const Reduced r = reduce_text(R"(system rod
+param m = 50 g, Ω = 2 rad/s, r0 = 10 cm
+coord x, y : length
+point bead mass m at (x, y)
+constraint y cos(Ω t) = x sin(Ω t)
+start x = r0
+run 1 s
+)");
+  check_reduced(r, 1);
+  CHECK(has_line(r.reduction.text, "coord s : length"));
+  // r = r0 cosh Ωt: Landau and Lifshitz §39.
+  const ModelText small(r.reduction.text + "expect equation s'' = Ω^2 s\n");
+  CHECK(small.model.experiment.expectations.size() == 1);
+  const auto q = accelerations(small.equations);
+  REQUIRE(q);
+  CHECK(zero_test((*q)[0] - small.p("Ω") * small.p("Ω") * small.q(0)).verdict == Verdict::Zero);
+}
+
 TEST_CASE("velocity constraints stay; what is constant leaves a 0") {
   std::string text = rolling_disk;
   text.replace(text.find("coord x, y"), 10, "coord x, y, z");
