@@ -1,20 +1,55 @@
-// Identities on a manifold where a relation has a single term: ψ'' = 0 is met by a number that is never small beside itself.
+#include <doctest/doctest.h>
 #include <maupertuis/evaluate.hpp>
 
-#include <doctest/doctest.h>
+#include <array>
+#include <cmath>
 
 using namespace maupertuis;
 
-TEST_CASE("a relation of one term is met, and what follows from it vanishes") {
+namespace {
+
+struct Circle {
   Context c;
-  const Expr x = c.symbol("x", Role::Coordinate), y = c.symbol("y", Role::Coordinate), m = c.symbol("m", Role::Parameter);
-  const Expr relations[] = {m * sin(x), m * (x * x + y * y) - m};
-  const Expr unknowns[] = {x, y};
-  const Bindings center{{x, 0.1}, {y, 0.9}, {m, 3.0}};
-  const Expr follows[] = {m * x, y * y - c.number(1), x * y};
-  for (const Expr& e : follows) CHECK(zero_test_where({&e, 1}, relations, unknowns, center).verdict == Verdict::Zero);
-  const Expr small = c.number(Rational(1, 1000000000000)) * y;
-  const ZeroTest not_zero = zero_test_where({&small, 1}, relations, unknowns, center);
-  CHECK(not_zero.verdict == Verdict::Nonzero);
-  CHECK(not_zero.witness_value == doctest::Approx(1e-12));
+  Expr x = c.symbol("x", Role::Coordinate), y = c.symbol("y", Role::Coordinate), l = c.symbol("l", Role::Parameter);
+  Expr vx = c.symbol("x", Role::Coordinate, 1), vy = c.symbol("y", Role::Coordinate, 1);
+  std::array<Expr, 2> relations{x * x + y * y - l * l, x * vx + y * vy};
+  std::array<Expr, 4> unknowns{x, y, vx, vy};
+  Bindings center{{x, 0.6}, {y, 0.8}, {l, 1}, {vx, 0}, {vy, 0}};
+
+  ZeroTest test(Expr e) { return zero_test_where({&e, 1}, relations, unknowns, center); }
+};
+
+}  // namespace
+
+TEST_CASE_FIXTURE(Circle, "what vanishes on the circle alone") {
+  for (const Expr e : {x * x + y * y - l * l, sqrt(x * x + y * y) - l, (x * vy - y * vx) * (x * vy - y * vx) - l * l * (vx * vx + vy * vy)}) {
+    const ZeroTest test = this->test(e);
+    CHECK(test.verdict == Verdict::Zero);
+    CHECK(test.points == 3);
+    CHECK(test.error_bound == 1);  // evidence, no proof
+    CHECK(zero_test(e).verdict == Verdict::Nonzero);
+  }
+}
+
+TEST_CASE_FIXTURE(Circle, "what does not vanish there, were it by 1e-30") {
+  const Expr tiny = c.number(Rational(1, 1000000000000000)) * c.number(Rational(1, 1000000000000000));
+  const ZeroTest test = this->test(x * x + y * y - l * l + tiny * x);
+  CHECK(test.verdict == Verdict::Nonzero);
+  CHECK(test.witness_value != 0);
+  CHECK(std::abs(test.witness.at(x) * test.witness.at(x) + test.witness.at(y) * test.witness.at(y) - test.witness.at(l) * test.witness.at(l)) < 1e-14);
+}
+
+TEST_CASE("relations that nothing satisfies leave the question open") {
+  Context c;
+  const Expr x = c.symbol("x", Role::Coordinate), e = x;
+  const Expr relation = x * x + Rational(1);
+  const ZeroTest test = zero_test_where({&e, 1}, {&relation, 1}, {&x, 1}, {{x, 0.5}});
+  CHECK(test.verdict == Verdict::Undecided);
+  CHECK(!test.reason.empty());
+}
+
+TEST_CASE_FIXTURE(Circle, "repeated relations do no harm") {
+  const std::array<Expr, 3> twice{relations[0], relations[1], 2 * relations[0]};
+  const Expr e = sqrt(x * x + y * y) - l;
+  CHECK(zero_test_where({&e, 1}, twice, unknowns, center).verdict == Verdict::Zero);
 }
