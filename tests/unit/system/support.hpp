@@ -28,7 +28,12 @@ struct Elaborated {
     REQUIRE_MESSAGE(model.has_value(), messages());
     return model->experiment;
   }
-  bool fine() const { return model.has_value() && diagnostics.empty(); }
+  /// Nothing but notes, which tell of no mistake.
+  bool fine() const {
+    for (const Diagnostic& d : diagnostics.items())
+      if (d.severity != Severity::Note) return false;
+    return model.has_value();
+  }
   std::string messages() const { return render(diagnostics, source); }
   std::string codes() const {
     std::string all;
