@@ -80,7 +80,7 @@ WAITS = {  # kind of an expectation → the capability that it waits for
 }
 SCALARS = {  # what a scalar or an expression of a case waits for, where the general word does not say it
     "bead_rotating_hoop": "modes", "lagrange_top": "modes", "electro_condenser_microphone": "modes",
-    "sicm_routhian": "hamiltonian", "sicm_free_rigid_body": "mass matrix on the command line",
+    "nonhol_rolling_disc": "modes", "sicm_routhian": "hamiltonian", "sicm_free_rigid_body": "mass matrix on the command line",
 }
 
 

@@ -71,7 +71,7 @@ LEAN, TURN, RADIUS = 70 * DEG, D("1.5"), D("0.3")  # of the leaning disk: θ, φ
 
 
 def leaning_spin():
-    """Of the steady motion: 6 ω3 φ' r sin θ − φ'² r sin θ cos θ + 4 g cos θ = 0 with ω3 = ψ' + φ' cos θ (Kane and Levinson)."""
+    """Of the steady motion: 6 ω3 φ' r sin θ − φ'² r sin θ cos θ + 4 g cos θ = 0 with ω3 = ψ' + φ' cos θ (Neimark and Fufaev)."""
     s, c = sin(LEAN), cos(LEAN)
     return -(5 * TURN ** 2 * RADIUS * s * c + 4 * G * c) / (6 * TURN * RADIUS * s)
 
