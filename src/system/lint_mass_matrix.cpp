@@ -114,6 +114,37 @@ std::string names(const Subject& s, const Row& v) {
   return out;
 }
 
+/// x as a fraction with a small denominator; nothing if it is none.
+std::optional<Rational> small_fraction(double x) {
+  for (std::int64_t below = 1; below <= 12; ++below) {
+    const double above = std::round(x * static_cast<double>(below));
+    if (std::abs(x * static_cast<double>(below) - above) < 1e-9 && std::abs(above) < 1000)
+      return Rational(static_cast<std::int64_t>(above), below);
+  }
+  return std::nullopt;
+}
+
+/// "x + u and y - u": the combinations that T knows, where the null direction is the same everywhere; else empty.
+std::string known_combinations(const Subject& s, const Row& v, std::size_t last) {
+  std::vector<Rational> direction;
+  ExprVector terms;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const auto part = small_fraction(v[i] / v[last]);
+    if (!part) return {};
+    direction.push_back(*part);
+    terms.push_back(*part * s.momenta[i]);
+  }
+  const auto null = gradient(s.system.context->sum(terms), s.velocities);
+  if (zero_test(null).verdict != Verdict::Zero) return {};
+  std::string out;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (i == last || direction[i].is_zero()) continue;
+    const Expr known = s.system.coordinates[i].q - direction[i] * s.system.coordinates[last].q;
+    out += (out.empty() ? "" : " and ") + s.show(known);
+  }
+  return out;
+}
+
 /// Under constraints: nor do they.
 std::string nor_constraint(const Subject& s, const char* does) {
   return s.system.constrained() ? fmt::format(", and no constraint {}", does) : "";
@@ -152,20 +183,21 @@ void report_combination(Subject& s, const Row& v) {
   for (std::size_t i = 0; i < v.size(); ++i)
     if (v[i] != 0) last = i;
   const Coordinate& c = s.system.coordinates[last];
-  const std::string change = combination(s, v, v[last]);
+  const std::string change = combination(s, v, v[last]), known = known_combinations(s, v, last);
+  const std::string only = known.empty() ? "" : fmt::format(" Only {} matter{}.", known, known.find(" and ") == std::string::npos ? "s" : "");
   if (kinetic_energy_of_masses_alone(s.system)) {
     s.diagnostics.error(
         "E0417", c.span, fmt::format("the masses cannot tell {} apart", names(s, v)),
-        fmt::format("Changing {} moves no mass{}: there are more coordinates than the points have ways to move.",
-                    change, nor_constraint(s, "forbids it")),
+        fmt::format("Changing {} moves no mass{}: there are more coordinates than the points have ways to move.{}",
+                    change, nor_constraint(s, "forbids it"), only),
         fmt::format("Remove `{}`, or give a mass to a point that it moves by itself.", c.name));
     return;
   }
   s.diagnostics.error(
       "E0408", c.span, fmt::format("the kinetic energy cannot tell {} apart", names(s, v)),
       fmt::format(
-          "Changing {} leaves T as it is{}: the mass matrix is singular, and the accelerations are not determined.",
-          change, nor_constraint(s, "forbids it")),
+          "Changing {} leaves T as it is{}: the mass matrix is singular, and the accelerations are not determined.{}",
+          change, nor_constraint(s, "forbids it"), only),
       "Add the missing part of T, or use fewer coordinates.");
 }
 
