@@ -12,6 +12,7 @@ import re
 import sys
 
 import reference_constraints
+import reference_rolling
 from newton_euler import Chain
 from precise import D, PI, acos, asin, atan2, cos, ellipk, jacobi, motion, integrate, sin, solve, sqrt
 
@@ -237,7 +238,8 @@ def arm_seven_joints():
 
 
 MODELS = [pendulum, double_pendulum, elastic_pendulum, spherical_pendulum, cart_pendulum, bead_on_hoop, kepler,
-          lagrange_top, satellite, ion_in_fields, rotating_frame, robot_arm, motor_link, absolute_value, arm_seven_joints] + reference_constraints.MODELS
+          lagrange_top, satellite, ion_in_fields, rotating_frame, robot_arm, motor_link, absolute_value, arm_seven_joints,
+          *reference_constraints.MODELS, *reference_rolling.MODELS]
 UNITS = {"deg": DEG, "ms": D("1e-3"), "µs": D("1e-6"), "h": D(3600)}
 
 

@@ -1,0 +1,67 @@
+"""What the reference cases leave unsaid: kinds of coordinates, units, what a scalar means, what an expectation waits for."""
+# The cases do not say what kind of quantity a coordinate is: here for the cases with units; the others are dimensionless.
+KINDS = {
+    "bead_rotating_hoop": {"theta": "angle"},
+    "celest_kepler_e06": {"x": "length", "y": "length"},
+    "double_atwood": {"x": "length", "y": "length"},
+    "double_pendulum_equal": {"q1": "angle", "q2": "angle"},
+    "elastic_pendulum": {"r": "length", "theta": "angle"},
+    "electro_condenser_microphone": {"q": "charge", "x": "length"},
+    "electro_dc_motor": {"q": "charge", "theta": "angle"},
+    "foucault_linear": {"x": "length", "y": "length"},
+    "gear_planetary_ring_fixed": dict.fromkeys(("ts", "tr", "tc", "tp"), "angle"),
+    "iftomm_a01_pendulum": {"x": "length", "y": "length"},
+    "iftomm_a05_flyball": {"phi": "angle", "b1": "angle", "b2": "angle", "s": "length"},
+    "iftomm_spatial_slider_crank": {"th": "angle", "s": "length", "a1": "angle", "a2": "angle", "a3": "angle"},
+    "ivp_andrews": dict.fromkeys(("beta", "theta", "gamma", "phi", "delta", "omega", "epsilon"), "angle"),
+    "lagrange_top": {"theta": "angle", "phi": "angle", "psi": "angle"},
+    "noether_caldirola_kanai": {"x": "length"},
+    "nonhol_knife_edge": {"x": "length", "y": "length", "phi": "angle"},
+    "nonhol_rolling_disc": {"x": "length", "y": "length", "q1": "angle", "q2": "angle", "q3": "angle"},
+    "sympy_four_bar_linkage": {"q1": "angle", "q2": "angle", "q3": "angle"},
+}
+UNITS = {"angle": ("rad", "rad/s", "rad/s^2"), "length": ("m", "m/s", "m/s^2"), "charge": ("C", "A", "A/s")}
+MULTIPLIER_UNIT = {"ivp_andrews": "N", "iftomm_a01_pendulum": "N/m"}
+
+# Numbers of a statement that carry a unit which the statement leaves unsaid.
+UNSAID = {"iftomm_a05_flyball": {"0.3*wd^2/6": "0.3 [kg] wd^2/6"}}
+
+# What a case states as a scalar, an expression or an integral and what the language says otherwise.
+MORE = {
+    "gear_planetary_ring_fixed": ("Willis: the ratio of sun and carrier, the speed of the planets",
+                                  ["equation ts'' = (1 + rr/rs) tc''", "equation tp'' = (1 - rr/rp) tc''"]),
+    "iftomm_a01_pendulum": ("the period; the tension in the rod, -3 m g y/L = -2 L λ, at the turning points and at the bottom",
+                            ["energy conserved rel 5e-14   # of the sum of its terms: 1e-12 J",
+                             "x at 2.3678419475762374493 s = -1 m ± 1e-11", "y at 2.3678419475762374493 s = 0 m ± 1e-11",
+                             "-2 L multiplier(c1) at 0 s = 0 N ± 1e-11",
+                             "-2 L multiplier(c1) at 0.591960486894059362 s = 29.43 N ± 1e-10",
+                             "-2 L multiplier(c1) at 1.18392097378811872 s = 0 N ± 1e-10"]),
+    "celest_kepler_e06": ("the period 2π", ["x at 6.2831853071795864769 s = 0.4 m ± 1e-11",
+                                            "y at 6.2831853071795864769 s = 0 m ± 1e-11"]),
+    "electro_dc_motor": ("the steady speed K V/(R b + K²) and current b V/(R b + K²)",
+                         ["θ' at 20 s = 104.347826086956521739 rad/s ± 1e-9",
+                          "q' at 20 s = 1.04347826086956521739 A ± 1e-9"]),
+    "euler_top_elliptic": ("the period of the body rates", ["wa at 6.485572551922631999 = 0.6 ± 1e-12",
+                                                            "wb at 6.485572551922631999 = 0 ± 1e-12",
+                                                            "wc at 6.485572551922631999 = 1 ± 1e-12"]),
+}
+
+WAITS = {  # kind of an expectation → the capability that it waits for
+    "normal_modes_omega_squared": "modes", "eigenvalues": "modes", "linearisation": "modes", "equilibria": "modes",
+    "characteristic_polynomial": "modes", "floquet_trace": "modes", "hamiltonian": "hamiltonian",
+    "symmetry": "invariants", "action": "action", "extremal_path": "action", "identity": "analysis",
+    "field_equations": "fields", "field_solution": "fields", "conservation_law": "fields",
+    "boundary_conditions": "fields", "event": "contacts", "event_times": "contacts",
+    "matrix": "mass matrix on the command line", "expression": "analysis", "scalar": "analysis", "scalars": "analysis",
+}
+SCALARS = {  # what a scalar or an expression of a case waits for, where the general word does not say it
+    "bead_rotating_hoop": "modes", "lagrange_top": "modes", "electro_condenser_microphone": "modes",
+    "nonhol_rolling_disc": "modes", "sicm_routhian": "hamiltonian", "sicm_free_rigid_body": "mass matrix on the command line",
+}
+
+
+def waits_for(case_id, expectation):
+    kind = expectation["kind"]
+    if kind in ("scalar", "scalars", "expression", "identity") and case_id in SCALARS:
+        return SCALARS[case_id]
+    return WAITS[kind]
