@@ -51,6 +51,7 @@ struct CrossCheck {
 };
 
 struct Comparison {
+  std::string name_a, name_b;             // of the systems; told apart where they are the same
   Sameness verdict = Sameness::Undecided;
   std::string reason;                     // one sentence where it is not Same
   ZeroTest ground;                        // what the equations' zero test found

@@ -35,6 +35,11 @@ Expr root_of(Expr e, const AtStart& at_start) {
     const Expr root = pow(base, Rational(*whole / 2));
     return at_start(root) < 0 ? -root : root;
   };
+  if (e.is(Kind::Sum)) {  // what cancels in it may leave one term
+    const Expr collected = expand(e);
+    if (!collected || collected.is(Kind::Sum)) return sqrt(e);
+    e = collected;
+  }
   if (!e.is(Kind::Product)) return factor_root(e);
   Expr out = context.number(1);
   for (std::size_t i = 0; i < e.size(); ++i) out = out * factor_root(e[i]);

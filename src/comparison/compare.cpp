@@ -19,18 +19,22 @@ class Comparer {
   Comparer(const Model& a, const EquationsOfMotion& a_equations, const CoordinateMap& map,
            const EquationsOfMotion& b_equations, const ComparisonOptions& options, const PullBack& pull_back)
       : a_(a), b_(*map.b), a_equations_(a_equations), b_equations_(b_equations), options_(options), pull_back_(pull_back),
-        motions_(b_, b_equations), runs_(a, a_equations, b_, b_equations, pull_back, motions_, options.simulation) {}
+        motions_(b_, b_equations), runs_(a, a_equations, b_, b_equations, pull_back, motions_, options.simulation) {
+    const bool same_name = a.system.name == b_.system.name;
+    out_.name_a = a.system.name + (same_name ? " (first)" : "");
+    out_.name_b = b_.system.name + (same_name ? " (second)" : "");
+  }
 
   Comparison carry_out() {
     if (motions_.states().empty()) {
-      out_.reason = fmt::format("{} has no consistent start to look at", b_.system.name);
+      out_.reason = fmt::format("{} has no consistent start to look at", out_.name_b);
       return out_;
     }
     comparison::count_freedoms(a_equations_, b_equations_, pull_back_, motions_, out_);
     if (constraints_hold() && equations_hold()) compare_freedoms();
     out_.energies = compare_energies();
     if (off_constraints_) {
-      out_.run.reason = "the mapped start does not obey the constraints of " + a_.system.name;
+      out_.run.reason = "the mapped start does not obey the constraints of " + out_.name_a;
       return out_;
     }
     if (out_.verdict == Sameness::Different) out_.disagreement = runs_.disagreement();
@@ -82,8 +86,8 @@ class Comparer {
     const ExprVector mapped = comparison::mapped_constraints(a_.system, pull_back_);
     return mapped.empty() || hold(mapped, motions_.constraints_vanish(mapped), [&](std::size_t k) {
       off_constraints_ = true;
-      return fmt::format("the motions of {} do not obey {} of {}: {}", b_.system.name, a_.system.constraint_label(k),
-                         a_.system.name, violation(mapped[k]));
+      return fmt::format("the motions of {} do not obey {} of {}: {}", out_.name_b, a_.system.constraint_label(k),
+                         out_.name_a, violation(mapped[k]));
     });
   }
 
@@ -107,7 +111,7 @@ class Comparer {
     const Differences rest = comparison::without_multipliers(a_equations_, pull_back_, motions_.at(motions_.states().back()));
     return rest.values.empty() || hold(rest.values, motions_.vanish(rest.values), [&](std::size_t k) {
       return fmt::format("the equation of {} of {} does not hold along the motions of {}",
-                         a_.system.coordinates[rest.coordinates[k]].name, a_.system.name, b_.system.name);
+                         a_.system.coordinates[rest.coordinates[k]].name, out_.name_a, out_.name_b);
     });
   }
 
@@ -120,9 +124,9 @@ class Comparer {
   void compare_freedoms() {
     out_.verdict = Sameness::Part;
     if (out_.instantaneous_freedoms_a > out_.instantaneous_freedoms_b || out_.freedoms_a > out_.freedoms_b)
-      out_.reason = fmt::format("{} has motions that {} does not reach", a_.system.name, b_.system.name);
+      out_.reason = fmt::format("{} has motions that {} does not reach", out_.name_a, out_.name_b);
     else if (!same_freedoms())
-      out_.reason = fmt::format("several motions of {} are mapped to one of {}", b_.system.name, a_.system.name);
+      out_.reason = fmt::format("several motions of {} are mapped to one of {}", out_.name_b, out_.name_a);
     else
       out_.verdict = Sameness::Same;
   }

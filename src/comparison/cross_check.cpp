@@ -34,7 +34,7 @@ bool finite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
 }
 
-std::optional<SimulationResult> run_from(const Model& model, const EquationsOfMotion& equations, const MotionState& state,
+std::optional<SimulationResult> simulate_from(const Model& model, const EquationsOfMotion& equations, const MotionState& state,
                                          const SimulationOptions& options) {
   if (!finite(state.q) || !finite(state.v)) return std::nullopt;
   Diagnostics silent;
@@ -44,12 +44,12 @@ std::optional<SimulationResult> run_from(const Model& model, const EquationsOfMo
 }  // namespace
 
 std::optional<SimulationResult> CrossCheck::run_b(const MotionState& state, const SimulationOptions& options) const {
-  return run_from(b_, b_equations_, state, options);
+  return simulate_from(b_, b_equations_, state, options);
 }
 
 std::optional<SimulationResult> CrossCheck::run_a(const MotionState& b_state, const SimulationOptions& options) const {
   const Bindings at = motions_.at(b_state);
-  return run_from(a_, a_equations_, {b_state.t, evaluate(pull_back_.positions(), at), evaluate(pull_back_.velocities(), at)},
+  return simulate_from(a_, a_equations_, {b_state.t, evaluate(pull_back_.positions(), at), evaluate(pull_back_.velocities(), at)},
                   options);
 }
 
@@ -80,7 +80,14 @@ maupertuis::CrossCheck CrossCheck::run() const {
     out.reason = "the second model has no consistent start";
     return out;
   }
-  const MotionState& start = motions_.states().front();
+  // The start, unless the map is singular there.
+  for (const MotionState& start : motions_.states())
+    if (run_from(start, out)) break;
+  return out;
+}
+
+/// False where one of them cannot start there.
+bool CrossCheck::run_from(const MotionState& start, maupertuis::CrossCheck& out) const {
   SimulationOptions options = options_;
   options.duration = duration().value_or(default_duration);
   options.at.clear();
@@ -88,9 +95,10 @@ maupertuis::CrossCheck CrossCheck::run() const {
   const auto of_b = run_b(start, options);
   const auto of_a = of_b ? run_a(start, options) : std::nullopt;
   if (!of_a || !of_b) {
-    out.reason = of_b ? "the first model could not start there" : "the second model could not start";
-    return out;
+    out.reason = of_b ? "the first model could not start at the mapped state" : "the second model could not start";
+    return false;
   }
+  out = {};
   const std::size_t n = a_.system.coordinates.size();
   std::vector<std::vector<double>> mapped, own;
   std::vector<double> sizes(n, 0), times;
@@ -114,7 +122,7 @@ maupertuis::CrossCheck CrossCheck::run() const {
       out.coordinate = i;
       out.time = times[k];
     }
-  return out;
+  return true;
 }
 
 std::optional<Disagreement> CrossCheck::disagreement() const {

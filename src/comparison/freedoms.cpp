@@ -56,15 +56,18 @@ Matrix position_rows(const Matrix& m, const MechanicalSystem& system) {
 }  // namespace
 
 std::string describe(const MotionState& state, const MechanicalSystem& system) {
+  constexpr int most = 12;
+  int count = 0;
   std::string out;
   const auto add = [&](const std::string& name, double value) {
+    if (++count > most) return;
     out += fmt::format("{}{} = {:.6g}", out.empty() ? "" : ", ", name, value);
   };
   for (std::size_t i = 0; i < state.q.size(); ++i) add(system.coordinates[i].name, state.q[i]);
   for (std::size_t i = 0; i < state.v.size(); ++i)
     if (state.v[i] != 0) add(system.coordinates[i].name + "'", state.v[i]);
   if (state.t != 0) add("t", state.t);
-  return out;
+  return count > most ? out + ", …" : out;
 }
 
 void count_freedoms(const EquationsOfMotion& a, const EquationsOfMotion& b, const PullBack& pull_back,

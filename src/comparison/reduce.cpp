@@ -71,7 +71,7 @@ class Reducer {
   void refuse(std::size_t k) {
     diagnostics_.error(
         "E0831", system_.constraints[k].span, fmt::format("{} has no closed form that is known here", system_.constraint_label(k)),
-        "It is neither linear with a constant factor in one of its coordinates nor a sphere or an ellipsoid in two or three of them.",
+        "It is neither linear in one of its coordinates nor a circle, a sphere or an ellipsoid in two or three of them.",
         fmt::format("Near the start {} can be chosen as independent, {} as dependent; the constrained model runs as it is.",
                     listed(out_.independent), listed(out_.dependent)));
   }

@@ -7,6 +7,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <maupertuis/comparison.hpp>
 
 namespace maupertuis::app {
@@ -51,9 +53,19 @@ std::string freedoms_text(std::size_t freedoms, std::size_t instantaneous) {
   return freedoms == instantaneous ? std::to_string(freedoms) : fmt::format("{} ({} instantaneous)", freedoms, instantaneous);
 }
 
+/// Coordinates with their velocities, as many as fit some lines; --json has all.
+std::string state_text(const MotionState& state, const MechanicalSystem& system) {
+  constexpr std::size_t most = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, system.coordinates.size()); ++i)
+    text += fmt::format("{0}{1} = {2}, {1}' = {3}", i ? ", " : "", system.coordinates[i].name, brief(state.q[i]), brief(state.v[i]));
+  if (system.coordinates.size() > most) text += ", …";
+  return state.t == 0 ? text : text + fmt::format(", t = {} s", brief(state.t));
+}
+
 std::string text_of(const Comparison& c, const Model& a, const CoordinateMap& map) {
   const MechanicalSystem& b = map.b->system;
-  std::string out = fmt::format("{} and {}\n", a.system.name, b.name);
+  std::string out = fmt::format("{} and {}\n", c.name_a, c.name_b);
   const auto line = [&out](const char* head, const std::string& text) { out += fmt::format("  {:<20}{}\n", head, text); };
   for (std::size_t i = 0; i < map.written.size(); ++i)
     if (map.written[i] != a.system.coordinates[i].name)
@@ -66,12 +78,8 @@ std::string text_of(const Comparison& c, const Model& a, const CoordinateMap& ma
   if (c.disagreement) {
     const Disagreement& d = *c.disagreement;
     const std::string name = a.system.coordinates[d.coordinate].name;
-    std::string state;
-    for (std::size_t i = 0; i < b.coordinates.size(); ++i)
-      state += fmt::format("{} = {}, {}' = {}{}", b.coordinates[i].name, brief(d.state.q[i]), b.coordinates[i].name, brief(d.state.v[i]),
-                           i + 1 < b.coordinates.size() ? ", " : "");
-    line("witness", "at " + state);
-    line("", fmt::format("{}'' = {:.12g} by {}, {:.12g} by {}", name, d.of_a, a.system.name, d.of_b, b.name));
+    line("witness", "at " + state_text(d.state, b));
+    line("", fmt::format("{}'' = {:.12g} by {}, {:.12g} by {}", name, d.of_a, c.name_a, d.of_b, c.name_b));
   }
   if (c.run.ran)
     line("run of both", fmt::format("{} s from a common start: {}{}", brief(c.run.duration),

@@ -180,6 +180,34 @@ TEST_CASE("non-holonomic constraints: the disk by its heading, and turned by a r
   CHECK(wrong.result.instantaneous_freedoms_a == 2);
 }
 
+TEST_CASE("a body by a quaternion and by Euler angles") {
+  const std::string quaternion = R"(system by_quaternion
+param I1 = 1 kg m^2, I2 = 2 kg m^2, I3 = 3 kg m^2
+body sat inertia diag(I1, I2, I3) rotation quaternion
+start sat.ω = (0.01, 2, 0.01) rad/s
+run 3 s
+)";
+  const std::string euler = R"(system by_angles
+param I1 = 1 kg m^2, I2 = 2 kg m^2, I3 = 3 kg m^2
+coord φ, θ, ψ : angle
+body sat inertia diag(I1, I2, I3) rotation euler zxz (φ, θ, ψ)
+start θ = 1 rad, φ' = 1 rad/s, ψ' = 0.5 rad/s
+run 3 s
+)";
+  const std::string map =
+      "sat.qw = cos(θ/2) cos((φ + ψ)/2), sat.qx = sin(θ/2) cos((φ - ψ)/2), "
+      "sat.qy = sin(θ/2) sin((φ - ψ)/2), sat.qz = cos(θ/2) sin((φ + ψ)/2)";
+  check_same(compare_texts(quaternion, euler, map));
+  check_different(compare_texts(quaternion, euler, replaced(map, "sat.qz = ", "sat.qz = -")));
+  check_different(compare_texts(quaternion, replaced(euler, "diag(I1, I2, I3)", "diag(I2, I1, I3)"), map));
+  // Back: the angles are singular where the quaternion starts, which is said; the runs begin elsewhere.
+  const Compared back = compare_texts(euler, quaternion,
+                                      "θ = 2 atan2(sqrt(sat.qx^2 + sat.qy^2), sqrt(sat.qw^2 + sat.qz^2)), "
+                                      "φ = atan2(sat.qz, sat.qw) + atan2(sat.qy, sat.qx), ψ = atan2(sat.qz, sat.qw) - atan2(sat.qy, sat.qx)");
+  check_same(back, false);
+  CHECK(back.result.degenerate.rfind("sat.qw = 1", 0) == 0);
+}
+
 TEST_CASE("fewer freedoms: a part, not the same") {
   const std::string free = R"(system free
 param m = 1 kg, g = 9.81 m/s^2
