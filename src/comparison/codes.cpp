@@ -16,9 +16,10 @@ constexpr CodeEntry entries[] = {
      "Both sides of an equation of the map have one dimension, as in a model.",
      "maup compare cartesian.lag angle.lag --map \"x = sin θ, y = -cos θ\"", "maup compare cartesian.lag angle.lag --map \"x = l sin θ, y = -l cos θ\""},
     {"E0823", "a coordinate mapped twice", "A coordinate has one value in each configuration.", "", ""},
-    {"E0824", "a map that is no function of positions and time",
+    {"E0824", "a map that is no smooth function of positions and time",
      "Two descriptions of one configuration are related by x = f(q, t). Velocities follow by the chain rule; a map that contains them "
-     "would be a change of velocities, which Lagrange's equations do not survive in general.",
+     "would be a change of velocities, which Lagrange's equations do not survive in general. A map with |x|, a step or a piecewise "
+     "formula has no acceleration at its kinks.",
      "", ""},
     {"E0825", "a parameter with two values",
      "Parameters of one name are taken to be the same quantity. With different values the motions differ whatever the equations are. "

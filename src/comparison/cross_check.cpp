@@ -65,6 +65,12 @@ std::optional<double> CrossCheck::duration() const {
   return shortest;
 }
 
+/// Angles by inverse functions come back to their branch: whole turns do not count.
+double CrossCheck::apart(std::size_t coordinate, double x, double y) const {
+  const bool angle = a_.system.coordinates[coordinate].dimension == dimensions::angle();
+  return angle ? std::remainder(x - y, 2 * std::acos(-1.0)) : x - y;
+}
+
 std::vector<double> CrossCheck::common_scale(std::vector<double> sizes) const {
   const auto& coordinates = a_.system.coordinates;
   std::vector<double> out = sizes;
@@ -116,7 +122,7 @@ bool CrossCheck::run_from(const MotionState& start, maupertuis::CrossCheck& out)
   const std::vector<double> scale = common_scale(sizes);
   for (std::size_t k = 0; k < times.size(); ++k)
     for (std::size_t i = 0; i < n; ++i) {
-      const double difference = scale[i] > 0 ? std::abs(mapped[k][i] - own[k][i]) / scale[i] : 0;
+      const double difference = scale[i] > 0 ? std::abs(apart(i, mapped[k][i], own[k][i])) / scale[i] : 0;
       if (!(difference > out.difference)) continue;
       out.difference = difference;
       out.coordinate = i;

@@ -19,6 +19,7 @@ class CrossCheck {
   std::optional<Disagreement> disagreement() const;
 
  private:
+  double apart(std::size_t coordinate, double x, double y) const;
   bool run_from(const MotionState& start, maupertuis::CrossCheck& out) const;
   std::optional<SimulationResult> run_a(const MotionState& b_state, const SimulationOptions& options) const;
   std::optional<SimulationResult> run_b(const MotionState& state, const SimulationOptions& options) const;

@@ -38,6 +38,18 @@ void take_over(const Diagnostics& found, const std::vector<Copied>& parts, Diagn
   diagnostics.append(moved);
 }
 
+/// A function with a jump or a kink in coordinates or time.
+bool has_switch(Expr e) {
+  for (const Expr& node : topological_order({&e, 1})) {
+    if (!e.context().depends_on_time(node.id())) continue;
+    switch (node.kind()) {
+      case Kind::Abs: case Kind::Sign: case Kind::Step: case Kind::Min: case Kind::Max: case Kind::Piecewise: return true;
+      default: break;
+    }
+  }
+  return false;
+}
+
 /// The blanks before the first statement: a line that is indented more would continue it.
 std::string indentation(const SourceText& source) {
   Diagnostics silent;
@@ -204,6 +216,12 @@ class MapReader {
       diagnostics_.error("E0824", one.value_span, fmt::format("`{}` is mapped to something with a velocity in it", c.name),
                          "Two descriptions of one configuration are related by positions and time alone.",
                          "Write the coordinate by coordinates, parameters and t.");
+      return {};
+    }
+    if (has_switch(d.value)) {
+      diagnostics_.error("E0824", one.value_span, fmt::format("the map of `{}` has a jump or a kink", c.name),
+                         "Velocities and accelerations follow from a map by differentiation, so that it has to be smooth.",
+                         "Write a smooth formula; √(x²) is |x|.");
       return {};
     }
     const bool units = !a_.system.dimensionless && !d.value.is_zero();
