@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <maupertuis/stiff.hpp>
 
 #include <cfloat>
 #include <clocale>
@@ -24,9 +25,9 @@ std::vector<Finding> examine() {
       {"arithmetic", FLT_EVAL_METHOD == 0 ? "IEEE double, no excess precision" : "excess precision: results may differ"},
       {"processors", std::to_string(std::thread::hardware_concurrency())},
       {"backends", "interpreter"},
-      {"integrators", "taylor"},
+      {"integrators", has_stiff_method() ? "taylor, variational, stiff (SUNDIALS)" : "taylor, variational; stiff needs SUNDIALS"},
       {"trajectory formats", "csv, npy, json"},
-      {"not in this version", "constraints, contacts, events, fields, sweeps, LLVM backend, HDF5"},
+      {"not in this version", "contacts, friction, events, fields, sweeps, LLVM backend, HDF5"},
   };
 }
 
