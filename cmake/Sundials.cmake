@@ -1,7 +1,7 @@
 # sundials_libraries: what the stiff method links, or nothing where SUNDIALS 6 is not installed.
 set(sundials_libraries "")
 find_path(SUNDIALS_INCLUDE_DIR sundials/sundials_config.h)
-foreach(library cvode nvecserial sunlinsoldense sunmatrixdense)
+foreach(library cvode idas nvecserial sunlinsoldense sunmatrixdense)
   find_library(SUNDIALS_${library} sundials_${library})
   list(APPEND sundials_libraries ${SUNDIALS_${library}})
 endforeach()

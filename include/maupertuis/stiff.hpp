@@ -19,10 +19,11 @@ struct StiffOptions {
   const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
 };
 
-/// Variable order (1 to 5) and step, by CVODE. The unknowns are q and v; a and λ follow at each point from the bordered
-/// system, with exact derivatives for Newton's iteration. After each step the state is projected onto φ = 0 and the
-/// velocity constraints, with what projection does to the error estimate taken into account. Redundant constraints are
-/// left out by pivoting. Integrals ride along, without a part in the control of the error.
+/// Variable order (1 to 5) and step. Without constraints by CVODE: the unknowns are q and v. With constraints by IDA, on the
+/// index-2 form of Gear, Gupta and Leimkuhler: the unknowns are q, v, λ and μ, the last two without a part in the control of
+/// the error. The derivatives for Newton's iteration are exact. What is given out is projected onto φ = 0 and the velocity
+/// constraints, to rounding, and its a and λ follow from the bordered system. Redundant constraints are left out by pivoting.
+/// Integrals ride along, without a part in the control of the error.
 class StiffStepper {
  public:
   /// Preconditions: has_stiff_method(); parameters.size() == functions' parameters; tolerance > 0.

@@ -1,5 +1,5 @@
 #pragma once
-#include "integrator/point/point_solver.hpp"
+#include "integrator/stiff/formula.hpp"
 
 #include <maupertuis/step.hpp>
 
@@ -8,7 +8,7 @@
 
 namespace maupertuis::stiff {
 
-/// What a negative return value of CVode means, with one sentence; `status` tells of the last point that was evaluated.
-std::pair<StepEnding, std::string> reason_of(int flag, PointStatus status, double t);
+/// What a failure means, with one sentence; `status` tells of the point that the motion has reached.
+std::pair<StepEnding, std::string> reason_of(Failure failure, PointStatus status, double t);
 
 }  // namespace maupertuis::stiff
