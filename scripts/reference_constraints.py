@@ -5,7 +5,7 @@ Each function yields (subject, time, value) of the model of its name; scripts/re
 import json
 import pathlib
 
-from precise import D, PI, acos, asin, cos, cosh, ellipk, integrate, jacobi, motion, sin, sinh, sqrt
+from precise import D, PI, acos, asin, atan, cos, cosh, ellipk, integrate, jacobi, motion, sin, sinh, sqrt
 
 G = D("9.81")
 DEG = PI / 180
@@ -205,5 +205,18 @@ def squeezer():
         yield f"multiplier({loop})", "30 ms", -D(forces[f"lambda{k}"])
 
 
-MODELS = [cartesian_pendulum, dumbbell, bead_on_wire, four_bar, slider_crank, squeezer, parallelogram, planetary_gear, heavy_top,
+def bennett_linkage():
+    """tan(θ1/2) tan(θ2/2) = sin((β + α)/2)/sin((β − α)/2), θ3 = −θ1 (Hunt, Kinematic Geometry of Mechanisms)."""
+    alpha = 60 * DEG
+    beta = asin(sin(alpha) / 2)
+    ratio = sin((beta + alpha) / 2) / sin((beta - alpha) / 2)
+    for t in (D("0.5"), D(5)):
+        theta = 60 * DEG + 2 * t
+        second = 2 * atan(ratio * cos(theta / 2) / sin(theta / 2))  # jumps by a turn where θ1 passes one
+        yield "θ1", f"{t} s", theta
+        yield "θ2", f"{t} s", second - 2 * PI * (theta // (2 * PI)) * (1 if ratio > 0 else -1)
+        yield "θ3", f"{t} s", -theta
+
+
+MODELS = [bennett_linkage, cartesian_pendulum, dumbbell, bead_on_wire, four_bar, slider_crank, squeezer, parallelogram, planetary_gear, heavy_top,
           tumbling_satellite, chain, bead_on_rotating_rod]
