@@ -61,7 +61,8 @@ std::optional<Ellipsoid> ellipsoid_in(Expr relation, const ExprVector& chosen, c
     }
   Expr size = -with_zeros(relation, chosen);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
-    if (holds_coordinates(curvatures[i]) || holds_time(curvatures[i]) || at_start(curvatures[i]) == 0) return std::nullopt;
+    if (holds_coordinates(curvatures[i]) || holds_time(curvatures[i]) || at_start(curvatures[i]) == 0)
+      return std::nullopt;
     out.centre.push_back(-with_zeros(slopes[i], chosen) / curvatures[i]);
     size = size + context.number(Rational(1, 2)) * curvatures[i] * pow(out.centre[i], 2);
   }
@@ -94,8 +95,10 @@ Expr without_root(Expr relation) {
   Expr root;
   for (std::size_t i = 0; i < relation.size(); ++i) {
     const auto [base, exponent] = split_power(split_coefficient(relation[i]).rest);
-    if (!root && exponent == Rational(1, 2) && holds_coordinates(base)) root = relation[i];
-    else rest.push_back(relation[i]);
+    if (!root && exponent == Rational(1, 2) && holds_coordinates(base))
+      root = relation[i];
+    else
+      rest.push_back(relation[i]);
   }
   if (!root || rest.empty()) return relation;
   const Expr other = sum_of(rest, relation.context());

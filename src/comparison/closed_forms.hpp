@@ -15,16 +15,16 @@ struct LinearSolution {
 };
 std::optional<LinearSolution> solve_linear(Expr relation, Expr coordinate, const AtStart& at_start);
 
-/// Σ ((x_i − c_i)/r_i)² = 1: where φ is quadratic in two or three coordinates without mixed terms, and nothing else moves
-/// its size.
+/// Σ ((x_i − c_i)/r_i)² = 1: where φ is quadratic in two or three coordinates without mixed terms, and nothing else
+/// moves its size.
 struct Ellipsoid {
   ExprVector coordinates, centre, radii;  // [2] or [3]
   bool round = false;                     // all radii are one
 };
 std::optional<Ellipsoid> find_ellipsoid(Expr relation, std::span<const Expr> candidates, const AtStart& at_start);
 
-/// a x + b y + c = 0 in two coordinates, a and b functions of time: a line that turns. Its foot is the point nearest to the
-/// origin, its direction a unit vector.
+/// a x + b y + c = 0 in two coordinates, a and b functions of time: a line that turns. Its foot is the point nearest to
+/// the origin, its direction a unit vector.
 struct Line {
   ExprVector coordinates, foot, direction;  // [2]
 };

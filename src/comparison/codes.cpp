@@ -5,41 +5,56 @@ namespace {
 
 constexpr CodeEntry entries[] = {
     {"E0820", "a map leaves a coordinate out",
-     "A map gives every coordinate of the first model as a function of the second. Coordinates that both models call by one name "
+     "A map gives every coordinate of the first model as a function of the second. Coordinates that both models call "
+     "by one name "
      "need not be written, nor those for which the second model has a `let` of that name.",
-     "maup compare cartesian.lag angle.lag --map \"x = l sin θ\"", "maup compare cartesian.lag angle.lag --map \"x = l sin θ, y = -l cos θ\""},
+     "maup compare cartesian.lag angle.lag --map \"x = l sin θ\"",
+     "maup compare cartesian.lag angle.lag --map \"x = l sin θ, y = -l cos θ\""},
     {"E0821", "a map that cannot be read",
-     "A map is a list `name = formula`, with commas between. The names are coordinates, or parameters, of the first model; the "
+     "A map is a list `name = formula`, with commas between. The names are coordinates, or parameters, of the first "
+     "model; the "
      "formulas are those of the second, with its coordinates, parameters, points and definitions.",
-     "maup compare cartesian.lag angle.lag --map \"θ = atan2(x, -y)\"", "maup compare angle.lag cartesian.lag --map \"θ = atan2(x, -y)\""},
+     "maup compare cartesian.lag angle.lag --map \"θ = atan2(x, -y)\"",
+     "maup compare angle.lag cartesian.lag --map \"θ = atan2(x, -y)\""},
     {"E0822", "a coordinate mapped to another dimension",
      "Both sides of an equation of the map have one dimension, as in a model.",
-     "maup compare cartesian.lag angle.lag --map \"x = sin θ, y = -cos θ\"", "maup compare cartesian.lag angle.lag --map \"x = l sin θ, y = -l cos θ\""},
+     "maup compare cartesian.lag angle.lag --map \"x = sin θ, y = -cos θ\"",
+     "maup compare cartesian.lag angle.lag --map \"x = l sin θ, y = -l cos θ\""},
     {"E0823", "a coordinate mapped twice", "A coordinate has one value in each configuration.", "", ""},
     {"E0824", "a map that is no smooth function of positions and time",
-     "Two descriptions of one configuration are related by x = f(q, t). Velocities follow by the chain rule; a map that contains them "
-     "would be a change of velocities, which Lagrange's equations do not survive in general. A map with |x|, a step or a piecewise "
+     "Two descriptions of one configuration are related by x = f(q, t). Velocities follow by the chain rule; a map "
+     "that contains them "
+     "would be a change of velocities, which Lagrange's equations do not survive in general. A map with |x|, a step or "
+     "a piecewise "
      "formula has no acceleration at its kinks.",
      "", ""},
     {"E0825", "a parameter with two values",
-     "Parameters of one name are taken to be the same quantity. With different values the motions differ whatever the equations are. "
-     "Where the names mean different things, the map says what the parameter of the first model is in the second: `m = M + m`.",
+     "Parameters of one name are taken to be the same quantity. With different values the motions differ whatever the "
+     "equations are. "
+     "Where the names mean different things, the map says what the parameter of the first model is in the second: `m = "
+     "M + m`.",
      "", ""},
     {"N0826", "a parameter without a counterpart",
-     "The first model has a parameter that the second does not have. Its value is put into the equations as an exact number, so that "
+     "The first model has a parameter that the second does not have. Its value is put into the equations as an exact "
+     "number, so that "
      "a proof holds for that value alone.",
      "", ""},
     {"E0830", "nothing to reduce",
-     "Constraints between positions tie coordinates to each other, so that some can be expressed by the rest. Constraints between "
-     "velocities do not: they leave every configuration within reach. A model without constraints is in independent coordinates.",
+     "Constraints between positions tie coordinates to each other, so that some can be expressed by the rest. "
+     "Constraints between "
+     "velocities do not: they leave every configuration within reach. A model without constraints is in independent "
+     "coordinates.",
      "", ""},
     {"E0831", "a constraint without a closed form",
-     "Constraints are solved one by one: one that is linear in a coordinate, with a factor that does not change, for that coordinate; "
-     "a circle, sphere or ellipsoid in two or three coordinates by angles. A closed loop of links is neither: its angles are roots "
+     "Constraints are solved one by one: one that is linear in a coordinate, with a factor that does not change, for "
+     "that coordinate; "
+     "a circle, sphere or ellipsoid in two or three coordinates by angles. A closed loop of links is neither: its "
+     "angles are roots "
      "of polynomials with several branches, and the constrained model is the better description of it.",
      "", ""},
     {"E0832", "a line that cannot be carried over to independent coordinates",
-     "Old coordinates become definitions. A line that needs a coordinate, not a quantity, has no place for them.", "", ""},
+     "Old coordinates become definitions. A line that needs a coordinate, not a quantity, has no place for them.", "",
+     ""},
     {"E0833", "a reduction that is not proved",
      "A reduced model is shown only when its motion is proved to be that of the model it comes from.", "", ""},
 };

@@ -18,8 +18,14 @@ class Comparer {
  public:
   Comparer(const Model& a, const EquationsOfMotion& a_equations, const CoordinateMap& map,
            const EquationsOfMotion& b_equations, const ComparisonOptions& options, const PullBack& pull_back)
-      : a_(a), b_(*map.b), a_equations_(a_equations), b_equations_(b_equations), options_(options), pull_back_(pull_back),
-        motions_(b_, b_equations), runs_(a, a_equations, b_, b_equations, pull_back, motions_, options.simulation) {
+      : a_(a),
+        b_(*map.b),
+        a_equations_(a_equations),
+        b_equations_(b_equations),
+        options_(options),
+        pull_back_(pull_back),
+        motions_(b_, b_equations),
+        runs_(a, a_equations, b_, b_equations, pull_back, motions_, options.simulation) {
     const bool same_name = a.system.name == b_.system.name;
     out_.name_a = a.system.name + (same_name ? " (first)" : "");
     out_.name_b = b_.system.name + (same_name ? " (second)" : "");
@@ -49,10 +55,12 @@ class Comparer {
     constexpr double apart = 1e-3;
     if (out_.verdict != Sameness::Same || out_.ground.error_bound < 1 || !(out_.run.difference > apart)) return;
     out_.verdict = Sameness::Undecided;
-    out_.reason = fmt::format("near the start the equations agree to 60 digits, but the runs are apart at t = {:.6g} s", out_.run.time);
+    out_.reason = fmt::format("near the start the equations agree to 60 digits, but the runs are apart at t = {:.6g} s",
+                              out_.run.time);
   }
 
-  /// True and the ground where the functions vanish along B; else the verdict with its reason. `what(k)` names function k.
+  /// True and the ground where the functions vanish along B; else the verdict with its reason. `what(k)` names function
+  /// k.
   template <class What>
   bool hold(const ExprVector& functions, ZeroTest test, What what) {
     if (test.verdict == Verdict::Nonzero) {
@@ -60,7 +68,7 @@ class Comparer {
       if (at_values.verdict == Verdict::Zero) {
         test = at_values;
         out_.parameters = motions_.at_points(functions).verdict == Verdict::Zero ? Comparison::Parameters::NearThese
-                                                                                : Comparison::Parameters::TheseAlone;
+                                                                                 : Comparison::Parameters::TheseAlone;
       }
     }
     merge(test);
@@ -88,16 +96,17 @@ class Comparer {
       return;
     }
     out_.ground.error_bound = std::max(before.error_bound, test.error_bound);
-    out_.ground.points = before.points == 0 || test.points == 0 ? std::max(before.points, test.points) : std::min(before.points, test.points);
+    out_.ground.points = before.points == 0 || test.points == 0 ? std::max(before.points, test.points)
+                                                                : std::min(before.points, test.points);
   }
 
   bool constraints_hold() {
     const ExprVector mapped = comparison::mapped_constraints(a_.system, pull_back_);
     return mapped.empty() || hold(mapped, motions_.constraints_vanish(mapped), [&](std::size_t k) {
-      off_constraints_ = true;
-      return fmt::format("the motions of {} do not obey {} of {}: {}", out_.name_b, a_.system.constraint_label(k),
-                         out_.name_a, violation(mapped[k]));
-    });
+             off_constraints_ = true;
+             return fmt::format("the motions of {} do not obey {} of {}: {}", out_.name_b,
+                                a_.system.constraint_label(k), out_.name_a, violation(mapped[k]));
+           });
   }
 
   /// The state at which left − right is largest.
@@ -105,7 +114,8 @@ class Comparer {
     double worst = 0;
     const MotionState* where = &motions_.states().front();
     for (const MotionState& state : motions_.states())
-      if (const double here = evaluate(value, motions_.at(state)); std::abs(here) > std::abs(worst)) worst = here, where = &state;
+      if (const double here = evaluate(value, motions_.at(state)); std::abs(here) > std::abs(worst))
+        worst = here, where = &state;
     return fmt::format("left - right = {:.6g} (SI units) at {}", worst, comparison::describe(*where, b_.system));
   }
 
@@ -117,11 +127,12 @@ class Comparer {
         return true;
       }
     }
-    const Differences rest = comparison::without_multipliers(a_equations_, pull_back_, motions_.at(motions_.states().back()));
+    const Differences rest =
+        comparison::without_multipliers(a_equations_, pull_back_, motions_.at(motions_.states().back()));
     return rest.values.empty() || hold(rest.values, motions_.vanish(rest.values), [&](std::size_t k) {
-      return fmt::format("the equation of {} of {} does not hold along the motions of {}",
-                         a_.system.coordinates[rest.coordinates[k]].name, out_.name_a, out_.name_b);
-    });
+             return fmt::format("the equation of {} of {} does not hold along the motions of {}",
+                                a_.system.coordinates[rest.coordinates[k]].name, out_.name_a, out_.name_b);
+           });
   }
 
   /// Both have the same freedoms and the map passes all of them on: then ker A_A is the image of ker A_B.
@@ -143,14 +154,17 @@ class Comparer {
   EnergyRelation compare_energies() const {
     const MechanicalSystem& b = b_.system;
     const Expr own = comparison::with_constants_as_numbers(
-        b, expand_time_derivatives(in_terms_of_motion(b, {&b_equations_.energy_function, 1}))).front();
+                         b, expand_time_derivatives(in_terms_of_motion(b, {&b_equations_.energy_function, 1})))
+                         .front();
     const Expr difference = pull_back_(a_equations_.energy_function) - own;
     const ZeroTest equal = motions_.vanish({&difference, 1});
-    if (equal.verdict != Verdict::Nonzero) return equal.verdict == Verdict::Zero ? EnergyRelation::Equal : EnergyRelation::Undecided;
+    if (equal.verdict != Verdict::Nonzero)
+      return equal.verdict == Verdict::Zero ? EnergyRelation::Equal : EnergyRelation::Undecided;
     ExprVector derivatives{differentiate(difference, b.context->time())};
     for (const Coordinate& c : b.coordinates)
       for (const Expr& s : {c.q, c.velocity}) derivatives.push_back(differentiate(difference, s));
-    return zero_test(derivatives).verdict == Verdict::Zero ? EnergyRelation::EqualButConstant : EnergyRelation::Different;
+    return zero_test(derivatives).verdict == Verdict::Zero ? EnergyRelation::EqualButConstant
+                                                           : EnergyRelation::Different;
   }
 
   const Model& a_;

@@ -7,7 +7,7 @@ namespace maupertuis::comparison {
 namespace {
 
 constexpr int samples = 50;
-constexpr double default_duration = 1;      // s, where no model has a run
+constexpr double default_duration = 1;  // s, where no model has a run
 constexpr double clearly_different = 1e-6, rounding = 1e-9;
 
 /// The model with another start, and nothing that ends its run.
@@ -34,8 +34,8 @@ bool finite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
 }
 
-std::optional<SimulationResult> simulate_from(const Model& model, const EquationsOfMotion& equations, const MotionState& state,
-                                         const SimulationOptions& options) {
+std::optional<SimulationResult> simulate_from(const Model& model, const EquationsOfMotion& equations,
+                                              const MotionState& state, const SimulationOptions& options) {
   if (!finite(state.q) || !finite(state.v)) return std::nullopt;
   Diagnostics silent;
   return simulate(started_at(model, state.t, state.q, state.v), equations, options, silent);
@@ -49,8 +49,9 @@ std::optional<SimulationResult> CrossCheck::run_b(const MotionState& state, cons
 
 std::optional<SimulationResult> CrossCheck::run_a(const MotionState& b_state, const SimulationOptions& options) const {
   const Bindings at = motions_.at(b_state);
-  return simulate_from(a_, a_equations_, {b_state.t, evaluate(pull_back_.positions(), at), evaluate(pull_back_.velocities(), at)},
-                  options);
+  return simulate_from(a_, a_equations_,
+                       {b_state.t, evaluate(pull_back_.positions(), at), evaluate(pull_back_.velocities(), at)},
+                       options);
 }
 
 std::optional<double> CrossCheck::duration() const {
@@ -59,7 +60,8 @@ std::optional<double> CrossCheck::duration() const {
   for (const Model* model : {&a_, &b_}) {
     const Expr written = model->experiment.duration ? model->experiment.duration : model->experiment.within;
     if (!written) continue;
-    const double length = evaluate(in_terms_of_motion(model->system, {&written, 1}).front(), parameter_bindings(model->system));
+    const double length =
+        evaluate(in_terms_of_motion(model->system, {&written, 1}).front(), parameter_bindings(model->system));
     shortest = shortest ? std::min(*shortest, length) : length;
   }
   return shortest;
@@ -113,7 +115,8 @@ bool CrossCheck::run_from(const MotionState& start, maupertuis::CrossCheck& out)
     mapped.push_back(evaluate(pull_back_.positions(), motions_.at({of_b->at[k].t, of_b->at[k].q, of_b->at[k].v})));
     own.push_back(of_a->at[k].q);
     times.push_back(options.at[k]);
-    for (std::size_t i = 0; i < n; ++i) sizes[i] = std::max({sizes[i], std::abs(mapped.back()[i]), std::abs(own.back()[i])});
+    for (std::size_t i = 0; i < n; ++i)
+      sizes[i] = std::max({sizes[i], std::abs(mapped.back()[i]), std::abs(own.back()[i])});
   }
   if (!of_b->ok()) out.reason = "the second model: " + of_b->reason;
   if (!of_a->ok()) out.reason = "the first model: " + of_a->reason;
@@ -145,7 +148,8 @@ std::optional<Disagreement> CrossCheck::disagreement() const {
     for (std::size_t i = 0; i < of_b->start.a.size(); ++i) at[b_.system.coordinates[i].acceleration] = of_b->start.a[i];
     const std::vector<double> mapped = evaluate(pull_back_.accelerations(), at);
     std::vector<double> sizes;
-    for (std::size_t i = 0; i < mapped.size(); ++i) sizes.push_back(std::max(std::abs(mapped[i]), std::abs(of_a->start.a[i])));
+    for (std::size_t i = 0; i < mapped.size(); ++i)
+      sizes.push_back(std::max(std::abs(mapped[i]), std::abs(of_a->start.a[i])));
     const std::vector<double> scale = common_scale(sizes);
     for (std::size_t i = 0; i < mapped.size(); ++i) {
       const double difference = scale[i] > 0 ? std::abs(mapped[i] - of_a->start.a[i]) / scale[i] : 0;

@@ -9,13 +9,18 @@ class CrossCheck {
  public:
   CrossCheck(const Model& a, const EquationsOfMotion& a_equations, const Model& b, const EquationsOfMotion& b_equations,
              const PullBack& pull_back, const Motions& motions, const SimulationOptions& options)
-      : a_(a), b_(b), a_equations_(a_equations), b_equations_(b_equations), pull_back_(pull_back), motions_(motions),
+      : a_(a),
+        b_(b),
+        a_equations_(a_equations),
+        b_equations_(b_equations),
+        pull_back_(pull_back),
+        motions_(motions),
         options_(options) {}
 
   /// Both from B's start over the shorter of their runs.
   maupertuis::CrossCheck run() const;
-  /// The first state at which the accelerations differ clearly, else the one at which they differ most; nothing where they
-  /// agree to rounding.
+  /// The first state at which the accelerations differ clearly, else the one at which they differ most; nothing where
+  /// they agree to rounding.
   std::optional<Disagreement> disagreement() const;
 
  private:

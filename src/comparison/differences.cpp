@@ -27,7 +27,8 @@ class Elimination {
   }
 
   Differences carry_out() {
-    while (!columns_.empty() && step()) {}
+    while (!columns_.empty() && step()) {
+    }
     Differences out;
     for (const std::size_t i : open_) {
       out.values.push_back(rows_[i].back());
@@ -79,8 +80,8 @@ Differences without_multipliers(const EquationsOfMotion& a, const PullBack& pull
 ExprVector work_differences(const EquationsOfMotion& a, const EquationsOfMotion& b, const PullBack& pull_back) {
   const MechanicalSystem& system = *b.system;
   const ExprVector of_a = pull_back(expand_time_derivatives(a.residual));
-  const ExprVector of_b =
-      with_constants_as_numbers(system, expand_time_derivatives(in_terms_of_motion(system, expand_time_derivatives(b.residual))));
+  const ExprVector of_b = with_constants_as_numbers(
+      system, expand_time_derivatives(in_terms_of_motion(system, expand_time_derivatives(b.residual))));
   ExprVector q;
   for (const Coordinate& c : system.coordinates) q.push_back(c.q);
   std::vector<ExprVector> terms(q.size());

@@ -1,8 +1,8 @@
 #include "comparison/freedoms.hpp"
 
+#include <fmt/format.h>
 #include <eigen3/Eigen/LU>
 #include <eigen3/Eigen/QR>
-#include <fmt/format.h>
 
 namespace maupertuis::comparison {
 namespace {
@@ -39,7 +39,8 @@ Matrix kernel_of(const Matrix& m, Index n) {
 Matrix by_rows(const std::vector<double>& entries, std::size_t rows, std::size_t columns) {
   Matrix m(static_cast<Index>(rows), static_cast<Index>(columns));
   for (std::size_t i = 0; i < rows; ++i)
-    for (std::size_t j = 0; j < columns; ++j) m(static_cast<Index>(i), static_cast<Index>(j)) = entries[i * columns + j];
+    for (std::size_t j = 0; j < columns; ++j)
+      m(static_cast<Index>(i), static_cast<Index>(j)) = entries[i * columns + j];
   return m;
 }
 

@@ -18,7 +18,8 @@ Motions::Motions(const Model& model, const EquationsOfMotion& equations) : model
   const ExprVector balance = equations.balance();
   for (const auto* list : {&equations.constraint_rates, &equations.constraint_accelerations, &balance})
     relations_.insert(relations_.end(), list->begin(), list->end());
-  relations_ = with_constants_as_numbers(system, expand_time_derivatives(in_terms_of_motion(system, expand_time_derivatives(relations_))));
+  relations_ = with_constants_as_numbers(
+      system, expand_time_derivatives(in_terms_of_motion(system, expand_time_derivatives(relations_))));
   if (!system.constrained()) {
     if (const auto solved = maupertuis::accelerations(relations_, system)) {
       accelerations_.emplace();
@@ -84,7 +85,8 @@ ZeroTest Motions::constraints_vanish(std::span<const Expr> functions) const {
     ZeroTest best = zero_test(f);
     for (const Constraint& c : model_.system.constraints) {
       if (best.verdict == Verdict::Zero) break;
-      const Expr own = with_constants_as_numbers(model_.system, in_terms_of_motion(model_.system, {&c.value, 1})).front();
+      const Expr own =
+          with_constants_as_numbers(model_.system, in_terms_of_motion(model_.system, {&c.value, 1})).front();
       for (const Expr& difference : {f - own, f + own})
         if (best.verdict != Verdict::Zero) best = zero_test(difference);
     }

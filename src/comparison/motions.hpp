@@ -8,7 +8,8 @@ class Motions {
  public:
   Motions(const Model& model, const EquationsOfMotion& equations);
 
-  /// Where the model starts, then other consistent states near it; at least one unless the model has no consistent start.
+  /// Where the model starts, then other consistent states near it; at least one unless the model has no consistent
+  /// start.
   const std::vector<MotionState>& states() const { return states_; }
   /// Every symbol of q, q̇, t and the parameters at a state.
   Bindings at(const MotionState& state) const;

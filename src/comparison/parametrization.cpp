@@ -4,7 +4,6 @@
 
 #include <maupertuis/print.hpp>
 
-#include <eigen3/Eigen/QR>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,24 +19,35 @@ class Parametrizer {
  public:
   Parametrizer(const Model& model, const EquationsOfMotion& equations, const MotionState& start,
                const std::set<std::string>& keep, bool numbered)
-      : model_(model), shown_(*equations.shown().system), order_(equations.shown().order), keep_(keep), numbered_(numbered),
-        context_(*model.system.context), at_(parameter_bindings(model.system)), mass_(equations) {
+      : model_(model),
+        shown_(*equations.shown().system),
+        order_(equations.shown().order),
+        keep_(keep),
+        numbered_(numbered),
+        context_(*model.system.context),
+        at_(parameter_bindings(model.system)),
+        mass_(equations) {
     for (std::size_t i = 0; i < model.system.coordinates.size(); ++i) {
       at_[model.system.coordinates[i].q] = start.q[i];
       at_[model.system.coordinates[i].velocity] = start.v[i];
     }
     at_[context_.time()] = start.t;
     const std::vector<double> m = mass_.mass(start);
-    for (std::size_t i = 0, n = start.q.size(); i < n; ++i) weight_.push_back(m[i * n + i] > 0 ? std::sqrt(m[i * n + i]) : 1);
+    for (std::size_t i = 0, n = start.q.size(); i < n; ++i)
+      weight_.push_back(m[i * n + i] > 0 ? std::sqrt(m[i * n + i]) : 1);
   }
 
   Parametrization run() {
     std::vector<std::size_t> pending;
     for (std::size_t k = 0; k < shown_.constraints.size(); ++k)
-      if (shown_.constraints[k].level == Constraint::Level::Position && shown_.constraints[k].body.empty()) pending.push_back(k);
+      if (shown_.constraints[k].level == Constraint::Level::Position && shown_.constraints[k].body.empty())
+        pending.push_back(k);
     while (!pending.empty()) {
-      std::stable_sort(pending.begin(), pending.end(), [&](std::size_t a, std::size_t b) { return open_in(a).size() < open_in(b).size(); });
-      const auto done = std::find_if(pending.begin(), pending.end(), [&](std::size_t k) { return repeated(k) || linear(k) || ellipsoid(k) || line(k); });
+      std::stable_sort(pending.begin(), pending.end(),
+                       [&](std::size_t a, std::size_t b) { return open_in(a).size() < open_in(b).size(); });
+      const auto done = std::find_if(pending.begin(), pending.end(), [&](std::size_t k) {
+        return repeated(k) || linear(k) || ellipsoid(k) || line(k);
+      });
       if (done == pending.end()) {
         out_.unsolved = pending.front();
         return out_;
@@ -49,7 +59,9 @@ class Parametrizer {
 
  private:
   double number(Expr e) const { return evaluate(in_terms_of_motion(model_.system, {&e, 1}).front(), at_); }
-  AtStart at_start() const { return [this](Expr e) { return number(e); }; }
+  AtStart at_start() const {
+    return [this](Expr e) { return number(e); };
+  }
 
   Expr relation(std::size_t k) const { return substitute(without_root(shown_.constraints[k].value), out_.values); }
 
@@ -68,12 +80,15 @@ class Parametrizer {
     return std::find(symbols.begin(), symbols.end(), symbol) != symbols.end();
   }
 
-  /// The relation for the text: solved coordinates stay as names where they are free of those to be solved for and move.
+  /// The relation for the text: solved coordinates stay as names where they are free of those to be solved for and
+  /// move.
   Expr written_relation(std::size_t k, const ExprVector& to_solve) const {
     ExprMap put_in;
-    for (const auto& [q, value] : out_.values) {
+    for (const auto& entry : out_.values) {
+      const Expr value = entry.second;
       const bool moves = holds_coordinates(value) || holds_time(value);
-      if (!moves || std::any_of(to_solve.begin(), to_solve.end(), [&](Expr x) { return depends_on(value, x); })) put_in.emplace(q, value);
+      const auto is_in_it = [&](Expr x) { return depends_on(value, x); };
+      if (!moves || std::any_of(to_solve.begin(), to_solve.end(), is_in_it)) put_in.insert(entry);
     }
     return substitute(without_root(shown_.constraints[k].value), put_in);
   }
@@ -81,7 +96,8 @@ class Parametrizer {
   /// The readable form where it is shorter than the formula as it stands.
   Expr in_short(Expr e) const {
     const ReadableForm form = readable(e, order_);
-    const bool shorter = form.intermediates.empty() && to_plain(form.value, order_).size() <= to_plain(e, order_).size();
+    const bool shorter =
+        form.intermediates.empty() && to_plain(form.value, order_).size() <= to_plain(e, order_).size();
     return shorter ? form.value : e;
   }
 
@@ -144,14 +160,17 @@ class Parametrizer {
     if (found->round) solved.radius = for_text.radii.front();
     std::string fresh;
     for (const NewCoordinate& c : solved.fresh) fresh += (fresh.empty() ? "" : ", ") + c.name;
-    const char* shape = directions.size() == 3 ? (found->round ? "a sphere" : "an ellipsoid") : found->round ? "a circle" : "an ellipse";
+    const char* shape = directions.size() == 3 ? (found->round ? "a sphere" : "an ellipsoid")
+                        : found->round         ? "a circle"
+                                               : "an ellipse";
     solved.sentence = fmt::format("{} is {} in {}: {} in their place", label(k), shape, names, fresh);
     accept(std::move(solved), values);
     return true;
   }
 
   std::size_t index_of(Expr q) const {
-    const auto found = std::find_if(shown_.coordinates.begin(), shown_.coordinates.end(), [&](const Coordinate& c) { return c.q == q; });
+    const auto found = std::find_if(shown_.coordinates.begin(), shown_.coordinates.end(),
+                                    [&](const Coordinate& c) { return c.q == q; });
     return static_cast<std::size_t>(found - shown_.coordinates.begin());
   }
 
@@ -182,31 +201,32 @@ class Parametrizer {
     return true;
   }
 
-  /// The unit vector of the direction: (sin θ, −cos θ), θ from the downward vertical, or (sin θ cos φ, sin θ sin φ, −cos θ)
-  /// about an axis that the start is away from.
+  /// The unit vector of the direction: (sin θ, −cos θ), θ from the downward vertical, or (sin θ cos φ, sin θ sin φ,
+  /// −cos θ) about an axis that the start is away from.
   ExprVector angles(const Ellipsoid& e, Solved& solved) {
     std::vector<double> u;
     for (std::size_t i = 0; i < e.coordinates.size(); ++i)
       u.push_back((number(e.coordinates[i]) - number(e.centre[i])) / number(e.radii[i]));
     if (u.size() == 2) {
-      const Expr θ = add_angle(solved, "θ", std::atan2(u[0], -u[1]));
-      return {sin(θ), -cos(θ)};
+      const Expr theta = add_angle(solved, "θ", std::atan2(u[0], -u[1]));
+      return {sin(theta), -cos(theta)};
     }
     std::size_t axis = 2;
     if (std::hypot(u[0], u[1]) < on_the_axis) axis = 0;
     const std::size_t first = (axis + 1) % 3, second = (axis + 2) % 3;
-    const Expr θ = add_angle(solved, "θ", std::atan2(std::hypot(u[first], u[second]), -u[axis]));
-    const Expr φ = add_angle(solved, "φ", std::atan2(u[second], u[first]));
+    const Expr theta = add_angle(solved, "θ", std::atan2(std::hypot(u[first], u[second]), -u[axis]));
+    const Expr phi = add_angle(solved, "φ", std::atan2(u[second], u[first]));
     ExprVector out(3);
-    out[first] = sin(θ) * cos(φ);
-    out[second] = sin(θ) * sin(φ);
-    out[axis] = -cos(θ);
+    out[first] = sin(theta) * cos(phi);
+    out[second] = sin(theta) * sin(phi);
+    out[axis] = -cos(theta);
     return out;
   }
 
   Expr add_angle(Solved& solved, const std::string& letter, double start) {
     const bool pure = model_.system.dimensionless;
-    return add(solved, {free_name(letter), pure ? "number" : "angle", {}, pure ? Dimension{} : dimensions::angle(), start});
+    return add(solved,
+               {free_name(letter), pure ? "number" : "angle", {}, pure ? Dimension{} : dimensions::angle(), start});
   }
 
   Expr add(Solved& solved, NewCoordinate c) {
@@ -220,9 +240,12 @@ class Parametrizer {
   std::string free_name(const std::string& letter) const {
     const auto taken = [&](const std::string& name) {
       const MechanicalSystem& s = model_.system;
-      const auto among = [&](const auto& list) { return std::any_of(list.begin(), list.end(), [&](const auto& one) { return one.name == name; }); };
-      return among(s.coordinates) || among(s.parameters) || among(s.inputs) || among(s.definitions) || among(s.frames) ||
-             among(s.points) || among(s.bodies) || among(s.constraints) || among(s.releases) || among(out_.fresh);
+      const auto among = [&](const auto& list) {
+        return std::any_of(list.begin(), list.end(), [&](const auto& one) { return one.name == name; });
+      };
+      return among(s.coordinates) || among(s.parameters) || among(s.inputs) || among(s.definitions) ||
+             among(s.frames) || among(s.points) || among(s.bodies) || among(s.constraints) || among(s.releases) ||
+             among(out_.fresh);
     };
     for (const std::string& stem : {letter, std::string("α"), std::string("β"), std::string("γ"), std::string("ψ")}) {
       if (!numbered_ && !taken(stem)) return stem;
@@ -259,31 +282,9 @@ class Parametrizer {
 Parametrization parametrize(const Model& model, const EquationsOfMotion& equations, const MotionState& start,
                             const std::set<std::string>& keep) {
   Parametrization plain = Parametrizer(model, equations, start, keep, false).run();
-  const auto rods = std::count_if(plain.solved.begin(), plain.solved.end(), [](const Solved& s) { return !s.fresh.empty(); });
+  const auto rods =
+      std::count_if(plain.solved.begin(), plain.solved.end(), [](const Solved& s) { return !s.fresh.empty(); });
   return rods > 1 ? Parametrizer(model, equations, start, keep, true).run() : plain;
-}
-
-std::vector<std::size_t> dependent_coordinates(const EquationsOfMotion& equations, const MotionState& start) {
-  const MechanicalSystem& system = *equations.system;
-  const std::size_t n = system.coordinates.size();
-  const ConstraintManifold manifold(equations);
-  const std::vector<double> a = manifold.matrix(start), m = manifold.mass(start);
-  Eigen::MatrixXd rows(0, static_cast<Eigen::Index>(n));
-  for (std::size_t k = 0; k < system.constraints.size(); ++k) {
-    if (system.constraints[k].level != Constraint::Level::Position) continue;
-    Eigen::VectorXd row(static_cast<Eigen::Index>(n));
-    for (std::size_t j = 0; j < n; ++j)
-      row[static_cast<Eigen::Index>(j)] = a[k * n + j] / (m[j * n + j] > 0 ? std::sqrt(m[j * n + j]) : 1);
-    rows.conservativeResize(rows.rows() + 1, Eigen::NoChange);
-    rows.row(rows.rows() - 1) = row.norm() > 0 ? Eigen::VectorXd(row / row.norm()) : row;
-  }
-  if (rows.rows() == 0) return {};
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(rows);
-  qr.setThreshold(1e-9);
-  std::vector<std::size_t> out;
-  for (Eigen::Index k = 0; k < qr.rank(); ++k) out.push_back(static_cast<std::size_t>(qr.colsPermutation().indices()[k]));
-  std::sort(out.begin(), out.end());
-  return out;
 }
 
 }  // namespace maupertuis::comparison

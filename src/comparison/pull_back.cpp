@@ -10,19 +10,26 @@ namespace {
 
 Expr rebuilt(Expr node, const std::vector<Expr>& arguments, const ExprMap& replacements, Context& to) {
   switch (node.kind()) {
-    case Kind::Number: return to.number(node.number());
-    case Kind::Pi: return to.pi();
+    case Kind::Number:
+      return to.number(node.number());
+    case Kind::Pi:
+      return to.pi();
     case Kind::Symbol: {
       const auto found = replacements.find(node);
       if (found == replacements.end())
         throw std::logic_error("no counterpart for the symbol " + node.name() + "; please report");
       return found->second;
     }
-    case Kind::Sum: return to.sum(arguments);
-    case Kind::Product: return to.product(arguments);
-    case Kind::Power: return to.power(arguments[0], arguments[1]);
-    case Kind::TimeDerivative: throw std::logic_error("d/dt is to be carried out first; please report");
-    default: return to.function(node.kind(), arguments);
+    case Kind::Sum:
+      return to.sum(arguments);
+    case Kind::Product:
+      return to.product(arguments);
+    case Kind::Power:
+      return to.power(arguments[0], arguments[1]);
+    case Kind::TimeDerivative:
+      throw std::logic_error("d/dt is to be carried out first; please report");
+    default:
+      return to.function(node.kind(), arguments);
   }
 }
 
@@ -70,10 +77,12 @@ PullBack::PullBack(const MechanicalSystem& a, const CoordinateMap& map, Diagnost
       counterpart = with_constants_as_numbers(b, in_terms_of_motion(b, {&counterpart, 1})).front();
       const double other = evaluate(counterpart, values);
       if (!same_value(p.si_value, other))
-        diagnostics.error("E0825", {}, fmt::format("the parameter `{}` differs: {:.12g} in {}, {:.12g} in {} (SI units)", p.name,
-                                                   p.si_value, a.name, other, b.name),
-                          "Two models with different values move differently, whatever their equations.",
-                          fmt::format("Give both the same value, or say in the map what `{}` is in the second model.", p.name));
+        diagnostics.error(
+            "E0825", {},
+            fmt::format("the parameter `{}` differs: {:.12g} in {}, {:.12g} in {} (SI units)", p.name, p.si_value,
+                        a.name, other, b.name),
+            "Two models with different values move differently, whatever their equations.",
+            fmt::format("Give both the same value, or say in the map what `{}` is in the second model.", p.name));
     } else {
       counterpart = carried_over({&p.value, 1}, {}, context_).front();
       if (p.symbol.role() == Role::Parameter && p.used)

@@ -3,12 +3,12 @@
 
 namespace maupertuis::comparison {
 
-/// Rebuilds expressions of one context in another, symbols replaced. Precondition: no TimeDerivative nodes, every symbol
-/// has a replacement.
+/// Rebuilds expressions of one context in another, symbols replaced. Precondition: no TimeDerivative nodes, every
+/// symbol has a replacement.
 ExprVector carried_over(std::span<const Expr> roots, const ExprMap& replacements, Context& to);
 
-/// A's functions along the mapped curve x = f(q, t): x, ẋ, ẍ replaced by f and its time derivatives, parameters by their
-/// counterparts, so that what comes out is a function of B's q, q̇, q̈, t.
+/// A's functions along the mapped curve x = f(q, t): x, ẋ, ẍ replaced by f and its time derivatives, parameters by
+/// their counterparts, so that what comes out is a function of B's q, q̇, q̈, t.
 class PullBack {
  public:
   /// Parameters that differ in value are errors, those without a counterpart are notes.

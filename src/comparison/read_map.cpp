@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-/// A map is read by the model language itself: its right sides become `let` lines at the end of B's text, so that all that
-/// may stand in a formula of B may stand in them.
+/// A map is read by the model language itself: its right sides become `let` lines at the end of B's text, so that all
+/// that may stand in a formula of B may stand in them.
 namespace maupertuis {
 namespace {
 
@@ -43,8 +43,15 @@ bool has_switch(Expr e) {
   for (const Expr& node : topological_order({&e, 1})) {
     if (!e.context().depends_on_time(node.id())) continue;
     switch (node.kind()) {
-      case Kind::Abs: case Kind::Sign: case Kind::Step: case Kind::Min: case Kind::Max: case Kind::Piecewise: return true;
-      default: break;
+      case Kind::Abs:
+      case Kind::Sign:
+      case Kind::Step:
+      case Kind::Min:
+      case Kind::Max:
+      case Kind::Piecewise:
+        return true;
+      default:
+        break;
     }
   }
   return false;
@@ -98,8 +105,7 @@ class MapReader {
       const bool member = item.variable->kind == syntax::Expression::Kind::Member;
       if (item.variable->primes) {
         diagnostics_.error("E0824", name, fmt::format("`{}` is a velocity", map_.slice(name)),
-                           "A map gives positions; the velocities follow from it by the chain rule.",
-                           "Leave it out.");
+                           "A map gives positions; the velocities follow from it by the chain rule.", "Leave it out.");
         continue;
       }
       read_.push_back({member ? syntax::to_string(*item.variable) : item.variable->text, name, value});
@@ -122,10 +128,11 @@ class MapReader {
       const std::string first = fmt::format("the first model ({})", a_.system.name);
       if (std::find(known.begin(), known.end(), one.name) == known.end()) {
         const std::string near = did_you_mean(one.name, known);
-        diagnostics_.error("E0821", one.name_span, fmt::format("`{}` is no coordinate of {}", one.name, first),
-                           "The left sides are coordinates or parameters of the first model, the right sides formulas of the second.",
-                           near.empty() ? "If the map goes the other way, exchange the two models."
-                                        : fmt::format("Did you mean `{}`?", near));
+        diagnostics_.error(
+            "E0821", one.name_span, fmt::format("`{}` is no coordinate of {}", one.name, first),
+            "The left sides are coordinates or parameters of the first model, the right sides formulas of the second.",
+            near.empty() ? "If the map goes the other way, exchange the two models."
+                         : fmt::format("Did you mean `{}`?", near));
       }
       for (std::size_t k = 0; k < i; ++k)
         if (read_[k].name == one.name)
@@ -197,9 +204,10 @@ class MapReader {
       map.written.push_back(c.name);
       map.values.push_back(same_let->value);
     } else {
-      diagnostics_.error("E0820", {}, fmt::format("the map does not say what `{}` is", c.name),
-                         fmt::format("`{}` is a coordinate of the first model, and {} has nothing of that name.", c.name, b.name),
-                         fmt::format("Add `{} = …` to the map.", c.name));
+      diagnostics_.error(
+          "E0820", {}, fmt::format("the map does not say what `{}` is", c.name),
+          fmt::format("`{}` is a coordinate of the first model, and {} has nothing of that name.", c.name, b.name),
+          fmt::format("Add `{} = …` to the map.", c.name));
       map.written.emplace_back();
       map.values.emplace_back();
     }
@@ -213,23 +221,26 @@ class MapReader {
     }
     for (const Expr& s : symbols_of({&d.value, 1})) {
       if (s.role() != Role::Coordinate || s.order() == 0) continue;
-      diagnostics_.error("E0824", one.value_span, fmt::format("`{}` is mapped to something with a velocity in it", c.name),
+      diagnostics_.error("E0824", one.value_span,
+                         fmt::format("`{}` is mapped to something with a velocity in it", c.name),
                          "Two descriptions of one configuration are related by positions and time alone.",
                          "Write the coordinate by coordinates, parameters and t.");
       return {};
     }
     if (has_switch(d.value)) {
-      diagnostics_.error("E0824", one.value_span, fmt::format("the map of `{}` has a jump or a kink", c.name),
-                         "Velocities and accelerations follow from a map by differentiation, so that it has to be smooth.",
-                         "Write a smooth formula; √(x²) is |x|.");
+      diagnostics_.error(
+          "E0824", one.value_span, fmt::format("the map of `{}` has a jump or a kink", c.name),
+          "Velocities and accelerations follow from a map by differentiation, so that it has to be smooth.",
+          "Write a smooth formula; √(x²) is |x|.");
       return {};
     }
     const bool units = !a_.system.dimensionless && !d.value.is_zero();
     if (units && !d.dimension.same_as(c.dimension)) {
-      diagnostics_.error("E0822", one.value_span,
-                         fmt::format("`{}` is mapped to a quantity of another dimension: {}", c.name, to_string(d.dimension)),
-                         fmt::format("In the first model `{}` is in {}.", c.name, to_string(c.dimension)),
-                         "Check the formula: a factor is missing or too much.");
+      diagnostics_.error(
+          "E0822", one.value_span,
+          fmt::format("`{}` is mapped to a quantity of another dimension: {}", c.name, to_string(d.dimension)),
+          fmt::format("In the first model `{}` is in {}.", c.name, to_string(c.dimension)),
+          "Check the formula: a factor is missing or too much.");
       return {};
     }
     return d.value;

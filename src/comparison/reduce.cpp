@@ -1,7 +1,7 @@
 #include "comparison/rewrite.hpp"
 
-#include <eigen3/Eigen/QR>
 #include <fmt/format.h>
+#include <eigen3/Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -18,9 +18,14 @@ std::string listed(const std::vector<std::string>& words) { return fmt::format("
 
 class Reducer {
  public:
-  Reducer(const Model& model, const EquationsOfMotion& equations, const syntax::SyntaxTree& tree, const SourceText& source,
-          Diagnostics& diagnostics)
-      : model_(model), system_(model.system), equations_(equations), tree_(tree), source_(source), diagnostics_(diagnostics) {}
+  Reducer(const Model& model, const EquationsOfMotion& equations, const syntax::SyntaxTree& tree,
+          const SourceText& source, Diagnostics& diagnostics)
+      : model_(model),
+        system_(model.system),
+        equations_(equations),
+        tree_(tree),
+        source_(source),
+        diagnostics_(diagnostics) {}
 
   Reduction carry_out() {
     if (!has_holonomic()) return out_;
@@ -35,12 +40,14 @@ class Reducer {
       return out_;
     }
     for (const auto& solved : p.solved) out_.steps.push_back(solved.sentence);
-    for (const std::size_t k : p.repeated) out_.steps.push_back(fmt::format("{} repeats the others", system_.constraint_label(k)));
+    for (const std::size_t k : p.repeated)
+      out_.steps.push_back(fmt::format("{} repeats the others", system_.constraint_label(k)));
     const auto rewritten = comparison::rewrite(model_, equations_, tree_, source_, p, start_lines(p));
     constexpr std::size_t told = 5;
     for (std::size_t i = 0; i < rewritten.left_out.size(); ++i) {
       if (i == told && rewritten.left_out.size() > told + 1) {
-        out_.steps.push_back(fmt::format("and {} lines more that ask for constraints that are gone", rewritten.left_out.size() - told));
+        out_.steps.push_back(
+            fmt::format("and {} lines more that ask for constraints that are gone", rewritten.left_out.size() - told));
         break;
       }
       out_.steps.push_back(fmt::format("left out, since its constraint is gone: `{}`", rewritten.left_out[i]));
@@ -53,10 +60,12 @@ class Reducer {
   bool has_holonomic() {
     for (const Constraint& c : system_.constraints)
       if (c.level == Constraint::Level::Position && c.body.empty()) return true;
-    diagnostics_.error("E0830", {}, fmt::format("{} has no constraint between positions", system_.name),
-                       system_.constrained() ? "A constraint between velocities, and the norm of a quaternion, leave all coordinates in use."
-                                             : "Its coordinates are independent already.",
-                       "");
+    diagnostics_.error(
+        "E0830", {}, fmt::format("{} has no constraint between positions", system_.name),
+        system_.constrained()
+            ? "A constraint between velocities, and the norm of a quaternion, leave all coordinates in use."
+            : "Its coordinates are independent already.",
+        "");
     return false;
   }
 
@@ -70,10 +79,13 @@ class Reducer {
 
   void refuse(std::size_t k) {
     diagnostics_.error(
-        "E0831", system_.constraints[k].span, fmt::format("{} has no closed form that is known here", system_.constraint_label(k)),
-        "It is neither linear in one of its coordinates nor a circle, a sphere or an ellipsoid in two or three of them.",
-        fmt::format("Near the start {} can be chosen as independent, {} as dependent; the constrained model runs as it is.",
-                    listed(out_.independent), listed(out_.dependent)));
+        "E0831", system_.constraints[k].span,
+        fmt::format("{} has no closed form that is known here", system_.constraint_label(k)),
+        "It is neither linear in one of its coordinates nor a circle, a sphere or an ellipsoid in two or three of "
+        "them.",
+        fmt::format(
+            "Near the start {} can be chosen as independent, {} as dependent; the constrained model runs as it is.",
+            listed(out_.independent), listed(out_.dependent)));
   }
 
   /// Positions of new angles, velocities by least squares from the old ones, and what the constraints moved elsewhere.
@@ -108,9 +120,11 @@ class Reducer {
     const double rounding = 1e-15 * (velocities.size() ? velocities.cwiseAbs().maxCoeff() : 0);
 
     std::vector<StartLine> out;
-    const auto add = [&](const std::string& name, const Dimension& dimension, double q, double v, bool write_q, bool write_v) {
+    const auto add = [&](const std::string& name, const Dimension& dimension, double q, double v, bool write_q,
+                         bool write_v) {
       if (write_q) out.push_back({name, q, dimension});
-      if (write_v && std::abs(v) > rounding) out.push_back({name + "'", v, system_.dimensionless ? dimension : dimension / dimensions::time()});
+      if (write_v && std::abs(v) > rounding)
+        out.push_back({name + "'", v, system_.dimensionless ? dimension : dimension / dimensions::time()});
     };
     for (Eigen::Index k = 0; k < m; ++k) {
       const Expr q = independent[static_cast<std::size_t>(k)];
@@ -177,7 +191,8 @@ class Reducer {
       return;
     }
     diagnostics_.error("E0833", {}, "the reduced model could not be proved to be the same motion",
-                       out_.proof ? fmt::format("The comparison says: {}.", out_.proof->reason) : "Its equations could not be derived.",
+                       out_.proof ? fmt::format("The comparison says: {}.", out_.proof->reason)
+                                  : "Its equations could not be derived.",
                        "Nothing is written; the constrained model runs as it is.");
   }
 
@@ -185,8 +200,12 @@ class Reducer {
     for (const Diagnostic& d : found.items()) {
       if (d.severity != Severity::Error) continue;
       const std::string line = d.span ? std::string(text.line(text.locate(d.span->begin).line)) : std::string();
-      diagnostics_.error("E0832", {}, fmt::format("a line cannot be carried over{}: {}", line.empty() ? "" : fmt::format(" (`{}`)", line), d.message),
-                         d.reason, "Leave it out, or write it without the coordinates that become dependent: " + listed(out_.dependent) + ".");
+      diagnostics_.error(
+          "E0832", {},
+          fmt::format("a line cannot be carried over{}: {}", line.empty() ? "" : fmt::format(" (`{}`)", line),
+                      d.message),
+          d.reason,
+          "Leave it out, or write it without the coordinates that become dependent: " + listed(out_.dependent) + ".");
     }
   }
 

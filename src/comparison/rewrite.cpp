@@ -1,5 +1,7 @@
 #include "comparison/rewrite.hpp"
 
+#include "comparison/text_edits.hpp"
+
 #include <maupertuis/print.hpp>
 
 #include <fmt/format.h>
@@ -12,31 +14,27 @@ namespace {
 
 using namespace syntax;
 
-struct Edit {
-  std::uint32_t begin, end;
-  std::string text;
-};
-
-bool names(const ExpressionPtr& e, const std::string& name) {
-  if (!e) return false;
-  if (e->kind == syntax::Expression::Kind::Name && e->text == name) return true;
-  return std::any_of(e->arguments.begin(), e->arguments.end(), [&](const ExpressionPtr& a) { return names(a, name); });
-}
-
 /// A call of reaction or multiplier about one of the names.
 bool asks_for(const ExpressionPtr& e, const char* function, const std::set<std::string>& about) {
   if (!e) return false;
   if (e->kind == syntax::Expression::Kind::Call && e->text == function && !e->arguments.empty() &&
       about.count(e->arguments[0]->text))
     return true;
-  return std::any_of(e->arguments.begin(), e->arguments.end(), [&](const ExpressionPtr& a) { return asks_for(a, function, about); });
+  return std::any_of(e->arguments.begin(), e->arguments.end(),
+                     [&](const ExpressionPtr& a) { return asks_for(a, function, about); });
 }
 
 class Rewriter {
  public:
   Rewriter(const Model& model, const EquationsOfMotion& equations, const SyntaxTree& tree, const SourceText& source,
            const Parametrization& parametrization, const std::vector<StartLine>& start)
-      : model_(model), order_(equations.shown().order), tree_(tree), source_(source), p_(parametrization), start_(start) {
+      : model_(model),
+        order_(equations.shown().order),
+        tree_(tree),
+        source_(source),
+        p_(parametrization),
+        start_(start),
+        text_(source) {
     for (const Solved& s : p_.solved)
       for (const std::size_t i : s.dependent) gone_.insert(model.system.coordinates[i].name);
   }
@@ -44,48 +42,13 @@ class Rewriter {
   Rewritten run() {
     constraints();
     for (const Statement& s : tree_.statements) statement(s);
-    if (!start_written_ && !start_.empty()) append_ += "start " + start_items() + "\n";
-    return {applied(), left_out_};
+    if (!start_written_ && !start_.empty()) text_.append("start " + start_items());
+    return {text_.applied(), left_out_};
   }
 
  private:
   std::string slice(Span span) const { return std::string(source_.slice(span)); }
   std::string plain(Expr e) const { return to_plain(e, order_); }
-
-  // --------------------------------------------------------------------------------------------- edits
-  void replace(Span span, std::string text) { edits_.push_back({span.begin, span.end, std::move(text)}); }
-
-  /// The line too, where nothing else stands on it.
-  void remove(Span span) {
-    const std::string_view text = source_.text();
-    std::uint32_t begin = span.begin, end = span.end;
-    while (begin > 0 && (text[begin - 1] == ' ' || text[begin - 1] == '\t')) --begin;
-    while (end < text.size() && text[end] != '\n' && (text[end] == ' ' || text[end] == '\t')) ++end;
-    if (end < text.size() && text[end] == '#')
-      while (end < text.size() && text[end] != '\n') ++end;
-    const bool alone = (begin == 0 || text[begin - 1] == '\n') && (end == text.size() || text[end] == '\n');
-    if (alone && end < text.size()) ++end;
-    edits_.push_back({alone ? begin : span.begin, alone ? end : span.end, ""});
-  }
-
-  std::string applied() {
-    std::stable_sort(edits_.begin(), edits_.end(), [](const Edit& a, const Edit& b) { return a.begin < b.begin; });
-    std::string out;
-    std::uint32_t at = 0;
-    for (const Edit& e : edits_) {
-      out += source_.text().substr(at, e.begin - at);
-      out += e.text;
-      at = std::max(at, e.end);
-    }
-    out += source_.text().substr(at);
-    if (!out.empty() && out.back() != '\n') out += '\n';
-    return out + append_;
-  }
-
-  std::uint32_t end_of_line(std::uint32_t offset) const {
-    const std::size_t found = source_.text().find('\n', offset);
-    return static_cast<std::uint32_t>(found == std::string_view::npos ? source_.text().size() : found);
-  }
 
   // ---------------------------------------------------------------------------------------- statements
   void statement(const Statement& s) {
@@ -105,7 +68,8 @@ class Rewriter {
     for (const CoordStatement::Item& item : s.items)
       if (!is_gone(item)) kept.emplace_back(item.name.text, item.unit ? unit_text(*item.unit) : item.kind.text);
     for (const Solved& solved : p_.solved)
-      if (!solved.fresh.empty() && std::any_of(s.items.begin(), s.items.end(), [&](const auto& item) { return item.name.text == first_name(solved); }))
+      if (!solved.fresh.empty() && std::any_of(s.items.begin(), s.items.end(),
+                                               [&](const auto& item) { return item.name.text == first_name(solved); }))
         for (const NewCoordinate& c : solved.fresh) kept.emplace_back(c.name, c.kind);
     std::string text;
     for (std::size_t i = 0; i < kept.size(); ++i) {
@@ -114,15 +78,15 @@ class Rewriter {
     }
     std::string lets;
     for (const Solved& solved : p_.solved)
-      if (std::any_of(s.items.begin(), s.items.end(), [&](const auto& item) { return item.name.text == first_name(solved); }))
+      if (std::any_of(s.items.begin(), s.items.end(),
+                      [&](const auto& item) { return item.name.text == first_name(solved); }))
         lets += (lets.empty() ? "let " : "\nlet ") + definitions(solved);
     if (text.empty()) {
-      replace(span, lets);
+      text_.replace(span, lets);
       return;
     }
-    replace(span, text);
-    const std::uint32_t end = end_of_line(span.end);
-    if (!lets.empty()) edits_.push_back({end, end, "\n" + lets});
+    text_.replace(span, text);
+    if (!lets.empty()) text_.insert_below(span, lets);
   }
 
   const std::string& first_name(const Solved& s) const { return model_.system.coordinates[s.dependent.front()].name; }
@@ -135,7 +99,8 @@ class Rewriter {
   std::string definitions(const Solved& solved) const {
     std::string out;
     for (std::size_t i = 0; i < solved.dependent.size(); ++i)
-      out += fmt::format("{}{} = {}", i ? ", " : "", model_.system.coordinates[solved.dependent[i]].name, plain(solved.written[i]));
+      out += fmt::format("{}{} = {}", i ? ", " : "", model_.system.coordinates[solved.dependent[i]].name,
+                         plain(solved.written[i]));
     return out;
   }
 
@@ -146,7 +111,8 @@ class Rewriter {
       if (std::holds_alternative<ConstraintStatement>(s.body)) statements.push_back(&s);
     const auto statement_of = [&](std::size_t k) {
       const Span span = model_.system.constraints[k].span;
-      const auto found = std::find_if(statements.begin(), statements.end(), [&](const Statement* s) { return s->span == span; });
+      const auto found =
+          std::find_if(statements.begin(), statements.end(), [&](const Statement* s) { return s->span == span; });
       if (found == statements.end()) throw std::logic_error("a constraint without its line; please report");
       return *found;
     };
@@ -155,15 +121,17 @@ class Rewriter {
       const Statement& s = *statement_of(solved.constraint);
       const std::string& name = model_.system.constraints[solved.constraint].name;
       if (!name.empty()) no_multiplier_.insert(name);
-      if (!name.empty() && can_be_released(solved.radius, s)) replace(s.span, fmt::format("reaction {} = release {}", name, solved.radius.name()));
-      else drop(s, solved.constraint);
+      if (!name.empty() && can_be_released(solved.radius, s))
+        text_.replace(s.span, fmt::format("reaction {} = release {}", name, solved.radius.name()));
+      else
+        drop(s, solved.constraint);
     }
   }
 
   void drop(const Statement& s, std::size_t k) {
     const std::string& name = model_.system.constraints[k].name;
     if (!name.empty()) no_reaction_.insert(name), no_multiplier_.insert(name);
-    remove(s.span);
+    text_.remove_line(s.span);
   }
 
   bool can_be_released(Expr radius, const Statement& own) const {
@@ -198,16 +166,20 @@ class Rewriter {
       if (q.role() != Role::Coordinate) continue;
       const ReadableForm slope = readable(differentiate(value, q), order_);
       const Expr shown = slope.intermediates.empty() ? slope.value : differentiate(value, q);
-      lines += fmt::format("{}force {} = ({}) ({})", lines.empty() ? "" : "\n", q.name(), slice(s.value->span), plain(shown));
+      lines += fmt::format("{}force {} = ({}) ({})", lines.empty() ? "" : "\n", q.name(), slice(s.value->span),
+                           plain(shown));
     }
-    if (lines.empty()) remove(span);
-    else replace(span, lines);
+    if (lines.empty())
+      text_.remove_line(span);
+    else
+      text_.replace(span, lines);
   }
 
   void torsion(Span span, const TorsionSpringStatement& s) {
     if (!gone_.count(s.coordinate.text)) return;
-    const std::string stretch = s.rest ? fmt::format("({} - ({}))", s.coordinate.text, slice(s.rest->span)) : s.coordinate.text;
-    replace(span, fmt::format("V += 1/2 ({}) {}^2", slice(s.stiffness->span), stretch));
+    const std::string stretch =
+        s.rest ? fmt::format("({} - ({}))", s.coordinate.text, slice(s.rest->span)) : s.coordinate.text;
+    text_.replace(span, fmt::format("V += 1/2 ({}) {}^2", slice(s.stiffness->span), stretch));
   }
 
   // --------------------------------------------------------------------------------------------- start
@@ -220,8 +192,10 @@ class Rewriter {
     }
     if (!start_written_ && !start_.empty()) items += (items.empty() ? "" : ", ") + start_items();
     start_written_ = true;
-    if (items.empty()) remove(span);
-    else replace(span, fmt::format("start {}{}", s.exactly ? "exactly " : "", items));
+    if (items.empty())
+      text_.remove_line(span);
+    else
+      text_.replace(span, fmt::format("start {}{}", s.exactly ? "exactly " : "", items));
   }
 
   static std::string to_string_without_primes(const syntax::Expression& e) {
@@ -230,7 +204,8 @@ class Rewriter {
 
   std::string start_items() const {
     std::string out;
-    for (const StartLine& line : start_) out += fmt::format("{}{} = {}", out.empty() ? "" : ", ", line.name, quantity(line));
+    for (const StartLine& line : start_)
+      out += fmt::format("{}{} = {}", out.empty() ? "" : ", ", line.name, quantity(line));
     return out;
   }
 
@@ -253,20 +228,23 @@ class Rewriter {
     lost = lost || no_reaction_.count(s.name.text);
     if (!lost) return;
     left_out_.push_back(slice(span));
-    remove(span);
+    text_.remove_line(span);
   }
 
   void drawing(Span span, const DrawStatement& s) {
     std::string items;
     bool lost = false;
     for (const DrawItem& item : s.items) {
-      const bool asks = std::any_of(item.path.begin(), item.path.end(), [&](const ExpressionPtr& e) { return asks_for(e, "reaction", no_reaction_); });
+      const bool asks = std::any_of(item.path.begin(), item.path.end(),
+                                    [&](const ExpressionPtr& e) { return asks_for(e, "reaction", no_reaction_); });
       lost = lost || asks;
       if (!asks) items += (items.empty() ? "" : ", ") + slice(item.span);
     }
     if (!lost) return;
-    if (items.empty()) remove(span);
-    else replace(span, "draw " + items);
+    if (items.empty())
+      text_.remove_line(span);
+    else
+      text_.replace(span, "draw " + items);
   }
 
   const Model& model_;
@@ -276,16 +254,16 @@ class Rewriter {
   const Parametrization& p_;
   const std::vector<StartLine>& start_;
   std::set<std::string> gone_, no_reaction_, no_multiplier_;
-  std::vector<Edit> edits_;
+  TextEdits text_;
   std::vector<std::string> left_out_;
-  std::string append_;
   bool start_written_ = false;
 };
 
 }  // namespace
 
 Rewritten rewrite(const Model& model, const EquationsOfMotion& equations, const syntax::SyntaxTree& tree,
-                  const SourceText& source, const Parametrization& parametrization, const std::vector<StartLine>& start) {
+                  const SourceText& source, const Parametrization& parametrization,
+                  const std::vector<StartLine>& start) {
   return Rewriter(model, equations, tree, source, parametrization, start).run();
 }
 

@@ -33,8 +33,9 @@ TEST_CASE("compare: 0 when proved, 4 when not, with the witness") {
   CHECK(contains(same.out, "rank of the map 1"));
   CHECK(same.err.empty());
 
-  const std::string wrong = folder.write("wrong.lag", "system wrong\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ : angle\n"
-                                                      "T = 1/2 m l^2 θ'^2\nV = m g l cos θ\nstart θ = 60 deg\nrun 10 s\n");
+  const std::string wrong = folder.write("wrong.lag",
+                                         "system wrong\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ : angle\n"
+                                         "T = 1/2 m l^2 θ'^2\nV = m g l cos θ\nstart θ = 60 deg\nrun 10 s\n");
   const Outcome differs = maup({"compare", b, wrong});
   CHECK(differs.code == 4);
   CHECK(contains(differs.out, "differs: the equation of θ"));
@@ -62,7 +63,8 @@ TEST_CASE("compare --json") {
   CHECK(json.at("run").at("difference").get<double>() < 1e-12);
   CHECK(json.at("diagnostics").empty());
 
-  const Json wrong = Json::parse(maup({"compare", a, b, "--map", "x = l sin θ, y = -cos θ", "--json"}).out, nullptr, false);
+  const Json wrong =
+      Json::parse(maup({"compare", a, b, "--map", "x = l sin θ, y = -cos θ", "--json"}).out, nullptr, false);
   REQUIRE(wrong.is_object());
   CHECK(wrong.at("ok") == false);
   REQUIRE(wrong.at("diagnostics").size() == 1);
@@ -81,7 +83,8 @@ TEST_CASE("compare: mistakes of the map are shown in the map; files that cannot 
   const Outcome unknown = maup({"compare", a, b, "--map", "x = l sin φ, y = -l cos θ"});
   CHECK(unknown.code == 1);
   CHECK(contains(unknown.err, "--map:1:11"));
-  for (const char* text : {"", "x", "x =", "= l", "x = l sin θ,", "x = l sin θ; y = l", "x = (, y = )", "start x = 1", "x = \"", "\n", "#"}) {
+  for (const char* text : {"", "x", "x =", "= l", "x = l sin θ,", "x = l sin θ; y = l", "x = (, y = )", "start x = 1",
+                           "x = \"", "\n", "#"}) {
     CAPTURE(text);
     const Outcome outcome = maup({"compare", a, b, "--map", text});
     CHECK(outcome.code == 1);

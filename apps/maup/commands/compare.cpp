@@ -4,8 +4,8 @@
 #include "quantity.hpp"
 #include "run_options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 
@@ -21,36 +21,49 @@ struct CompareOptions {
 
 const char* verdict_word(Sameness verdict) {
   switch (verdict) {
-    case Sameness::Same: return "same";
-    case Sameness::Part: return "part";
-    case Sameness::Different: return "different";
-    case Sameness::Undecided: return "undecided";
+    case Sameness::Same:
+      return "same";
+    case Sameness::Part:
+      return "part";
+    case Sameness::Different:
+      return "different";
+    case Sameness::Undecided:
+      return "undecided";
   }
   return "";
 }
 
 const char* energy_word(EnergyRelation relation) {
   switch (relation) {
-    case EnergyRelation::Equal: return "equal";
-    case EnergyRelation::EqualButConstant: return "equal up to a constant";
-    case EnergyRelation::Different: return "different functions";
-    case EnergyRelation::Undecided: return "not decided";
+    case EnergyRelation::Equal:
+      return "equal";
+    case EnergyRelation::EqualButConstant:
+      return "equal up to a constant";
+    case EnergyRelation::Different:
+      return "different functions";
+    case EnergyRelation::Undecided:
+      return "not decided";
   }
   return "";
 }
 
 std::string verdict_text(const Comparison& c) {
   switch (c.verdict) {
-    case Sameness::Same: return "the same motion: " + ground_text(c);
-    case Sameness::Part: return fmt::format("not the same: {}\n  equations           {}", c.reason, ground_text(c));
-    case Sameness::Different: return "differs: " + c.reason;
-    case Sameness::Undecided: return "undecided: " + c.reason;
+    case Sameness::Same:
+      return "the same motion: " + ground_text(c);
+    case Sameness::Part:
+      return fmt::format("not the same: {}\n  equations           {}", c.reason, ground_text(c));
+    case Sameness::Different:
+      return "differs: " + c.reason;
+    case Sameness::Undecided:
+      return "undecided: " + c.reason;
   }
   return {};
 }
 
 std::string freedoms_text(std::size_t freedoms, std::size_t instantaneous) {
-  return freedoms == instantaneous ? std::to_string(freedoms) : fmt::format("{} ({} instantaneous)", freedoms, instantaneous);
+  return freedoms == instantaneous ? std::to_string(freedoms)
+                                   : fmt::format("{} ({} instantaneous)", freedoms, instantaneous);
 }
 
 /// Coordinates with their velocities, as many as fit some lines; --json has all.
@@ -58,7 +71,8 @@ std::string state_text(const MotionState& state, const MechanicalSystem& system)
   constexpr std::size_t most = 8;
   std::string text;
   for (std::size_t i = 0; i < std::min(most, system.coordinates.size()); ++i)
-    text += fmt::format("{0}{1} = {2}, {1}' = {3}", i ? ", " : "", system.coordinates[i].name, brief(state.q[i]), brief(state.v[i]));
+    text += fmt::format("{0}{1} = {2}, {1}' = {3}", i ? ", " : "", system.coordinates[i].name, brief(state.q[i]),
+                        brief(state.v[i]));
   if (system.coordinates.size() > most) text += ", …";
   return state.t == 0 ? text : text + fmt::format(", t = {} s", brief(state.t));
 }
@@ -66,14 +80,18 @@ std::string state_text(const MotionState& state, const MechanicalSystem& system)
 std::string text_of(const Comparison& c, const Model& a, const CoordinateMap& map) {
   const MechanicalSystem& b = map.b->system;
   std::string out = fmt::format("{} and {}\n", c.name_a, c.name_b);
-  const auto line = [&out](const char* head, const std::string& text) { out += fmt::format("  {:<20}{}\n", head, text); };
+  const auto line = [&out](const char* head, const std::string& text) {
+    out += fmt::format("  {:<20}{}\n", head, text);
+  };
   for (std::size_t i = 0; i < map.written.size(); ++i)
     if (map.written[i] != a.system.coordinates[i].name)
-      line(i == 0 || out.find("  map ") == std::string::npos ? "map" : "", a.system.coordinates[i].name + " = " + map.written[i]);
+      line(i == 0 || out.find("  map ") == std::string::npos ? "map" : "",
+           a.system.coordinates[i].name + " = " + map.written[i]);
   out += verdict_text(c) + "\n";
-  line("freedoms", fmt::format("{} and {}; rank of the map {}{}", freedoms_text(c.freedoms_a, c.instantaneous_freedoms_a),
-                               freedoms_text(c.freedoms_b, c.instantaneous_freedoms_b), c.rank,
-                               c.degenerate.empty() ? "" : ", less at " + c.degenerate));
+  line("freedoms",
+       fmt::format("{} and {}; rank of the map {}{}", freedoms_text(c.freedoms_a, c.instantaneous_freedoms_a),
+                   freedoms_text(c.freedoms_b, c.instantaneous_freedoms_b), c.rank,
+                   c.degenerate.empty() ? "" : ", less at " + c.degenerate));
   line("energy functions", energy_word(c.energies));
   if (c.disagreement) {
     const Disagreement& d = *c.disagreement;
@@ -102,7 +120,9 @@ Json to_json(const Comparison& c, const Model& a, const CoordinateMap& map) {
   document["reason"] = c.reason;
   document["points"] = c.ground.points;
   document["error_bound"] = c.ground.error_bound;
-  document["parameters"] = c.parameters == Comparison::Parameters::Any ? "any" : c.parameters == Comparison::Parameters::NearThese ? "near these" : "these alone";
+  document["parameters"] = c.parameters == Comparison::Parameters::Any         ? "any"
+                           : c.parameters == Comparison::Parameters::NearThese ? "near these"
+                                                                               : "these alone";
   document["freedoms"] = {c.freedoms_a, c.freedoms_b};
   document["instantaneous_freedoms"] = {c.instantaneous_freedoms_a, c.instantaneous_freedoms_b};
   document["rank"] = c.rank;
@@ -116,18 +136,24 @@ Json to_json(const Comparison& c, const Model& a, const CoordinateMap& map) {
       state[b.coordinates[i].name] = d.state.q[i];
       state[b.coordinates[i].name + "'"] = d.state.v[i];
     }
-    document["witness"] = {{"t", d.state.t}, {"state", state}, {"coordinate", a.system.coordinates[d.coordinate].name},
+    document["witness"] = {{"t", d.state.t},
+                           {"state", state},
+                           {"coordinate", a.system.coordinates[d.coordinate].name},
                            {"accelerations", {d.of_a, d.of_b}}};
   }
   document["run"] = nullptr;
   if (c.run.ran)
-    document["run"] = {{"duration", c.run.duration}, {"difference", c.run.difference},
-                       {"coordinate", a.system.coordinates[c.run.coordinate].name}, {"t", c.run.time}, {"ended", c.run.reason}};
+    document["run"] = {{"duration", c.run.duration},
+                       {"difference", c.run.difference},
+                       {"coordinate", a.system.coordinates[c.run.coordinate].name},
+                       {"t", c.run.time},
+                       {"ended", c.run.reason}};
   return document;
 }
 
 /// Shows what both models and the map have to say; under --json all of it stands in the document.
-ExitCode finish_all(Console& console, Study& a, Study& b, const Diagnostics& of_map, const SourceText& map, Json document, ExitCode code) {
+ExitCode finish_all(Console& console, Study& a, Study& b, const Diagnostics& of_map, const SourceText& map,
+                    Json document, ExitCode code) {
   const bool same_file = a.source().text() == b.source().text();
   if (console.json()) {
     document["ok"] = code == ExitCode::Fine;
@@ -174,18 +200,20 @@ ExitCode compare_models(const CompareOptions& options, Console& console) {
   const Comparison result = compare(*a.model(), *a_equations, *map, *b_equations, how, of_map);
   if (of_map.has_errors()) return end(json_document("compare"), ExitCode::ModelWrong);
   if (!console.json()) console.print(text_of(result, *a.model(), *map));
-  return end(to_json(result, *a.model(), *map), result.verdict == Sameness::Same ? ExitCode::Fine : ExitCode::ExpectationFailed);
+  return end(to_json(result, *a.model(), *map),
+             result.verdict == Sameness::Same ? ExitCode::Fine : ExitCode::ExpectationFailed);
 }
 
 }  // namespace
 
 void add_compare(CommandLine& line) {
   const auto options = std::make_shared<CompareOptions>();
-  CLI::App& command = line.add("compare", "Whether two models give the same motion; exit 4 if not",
-                               "  maup compare cartesian.lag angle.lag --map \"x = l sin θ, y = -l cos θ\"\n"
-                               "  maup compare inertial.lag rotating.lag --map \"x = u cos(Ω t) - v sin(Ω t), y = u sin(Ω t) + v cos(Ω t)\"\n"
-                               "  maup compare lagrangian.lag with_gauge.lag --json\n",
-                               [options](Console& console) { return compare_models(*options, console); });
+  CLI::App& command = line.add(
+      "compare", "Whether two models give the same motion; exit 4 if not",
+      "  maup compare cartesian.lag angle.lag --map \"x = l sin θ, y = -l cos θ\"\n"
+      "  maup compare inertial.lag rotating.lag --map \"x = u cos(Ω t) - v sin(Ω t), y = u sin(Ω t) + v cos(Ω t)\"\n"
+      "  maup compare lagrangian.lag with_gauge.lag --json\n",
+      [options](Console& console) { return compare_models(*options, console); });
   command.add_option("A", options->a, "The first model, or - for standard input")->required();
   command.add_option("B", options->b, "The second model")->required();
   command.add_option("--map", options->map, "Coordinates of A as formulas of B; equal names are mapped to themselves");

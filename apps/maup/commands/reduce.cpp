@@ -3,8 +3,8 @@
 #include "outcome.hpp"
 #include "quantity.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <maupertuis/comparison.hpp>
 
@@ -24,7 +24,8 @@ std::string account(const Reduction& r) {
   if (!r.proof) return out;
   out += fmt::format("  the same motion: {}\n", ground_text(*r.proof));
   if (r.proof->run.ran)
-    out += fmt::format("  run of both for {} s: they differ by {:.2g}\n", brief(r.proof->run.duration), r.proof->run.difference);
+    out += fmt::format("  run of both for {} s: they differ by {:.2g}\n", brief(r.proof->run.duration),
+                       r.proof->run.difference);
   return out;
 }
 
@@ -40,7 +41,8 @@ ExitCode reduce_model(const ReduceOptions& options, Console& console) {
   document["text"] = r.text.empty() ? Json(nullptr) : Json(r.text);
   document["proof"] = nullptr;
   if (r.proof)
-    document["proof"] = {{"points", r.proof->ground.points}, {"error_bound", r.proof->ground.error_bound},
+    document["proof"] = {{"points", r.proof->ground.points},
+                         {"error_bound", r.proof->ground.error_bound},
                          {"run_difference", r.proof->run.ran ? Json(r.proof->run.difference) : Json(nullptr)}};
   if (!r.text.empty() && !options.output.empty()) {
     if (!write_result(options.output, r.text, study.diagnostics())) {
@@ -52,7 +54,8 @@ ExitCode reduce_model(const ReduceOptions& options, Console& console) {
     console.print(r.text);
     console.say(account(r));
   } else if (!console.json() && !r.dependent.empty()) {
-    console.say(fmt::format("independent coordinates near the start: {}; dependent: {}\n", joined(r.independent), joined(r.dependent)));
+    console.say(fmt::format("independent coordinates near the start: {}; dependent: {}\n", joined(r.independent),
+                            joined(r.dependent)));
   }
   return finish(console, study, document);
 }

@@ -21,7 +21,8 @@ Compared compare_texts(const std::string& a_text, const std::string& b_text, con
   const SourceText map_source("map", map_text);
   Compared out;
   if (const auto map = read_map(a.model, b.source, map_source, out.diagnostics)) {
-    const auto equations = euler_lagrange(std::shared_ptr<const MechanicalSystem>(map->b, &map->b->system), out.diagnostics);
+    const auto equations =
+        euler_lagrange(std::shared_ptr<const MechanicalSystem>(map->b, &map->b->system), out.diagnostics);
     REQUIRE(equations);
     out.result = compare(a.model, a.equations, *map, *equations, {}, out.diagnostics);
   }
@@ -83,7 +84,8 @@ TEST_CASE("the pendulum in x, y and in θ, both ways") {
 }
 
 TEST_CASE("an inverse map of a pendulum that turns over: whole turns do not count, other branches do") {
-  const std::string over = replaced(cartesian_pendulum, "start x = 1 m, y' = 0, y = -1.7320508075688772 m", "start y = -l, x' = 12 m/s");
+  const std::string over =
+      replaced(cartesian_pendulum, "start x = 1 m, y' = 0, y = -1.7320508075688772 m", "start y = -l, x' = 12 m/s");
   check_same(compare_texts(angle_pendulum, over, "θ = atan2(x, -y)"), false);
   const Compared half = compare_texts(angle_pendulum, over, "θ = asin(x/l)");  // right below, wrong above
   CHECK(half.result.verdict == Sameness::Undecided);
@@ -101,7 +103,8 @@ TEST_CASE("a wrong sign is found, with the accelerations at a state") {
   CHECK(c.result.disagreement->of_b == doctest::Approx(-x).epsilon(1e-12));
   check_same(compare_texts(cart_of_points, cart_by_hand));
   check_different(compare_texts(angle_pendulum, replaced(angle_pendulum, "V = -m", "V = m")));
-  check_different(compare_texts(cartesian_pendulum, replaced(angle_pendulum, "1/2 m l^2", "m l^2"), "x = l sin θ, y = -l cos θ"));
+  check_different(
+      compare_texts(cartesian_pendulum, replaced(angle_pendulum, "1/2 m l^2", "m l^2"), "x = l sin θ, y = -l cos θ"));
 }
 
 TEST_CASE("a map off the constraints is no description") {
@@ -154,7 +157,8 @@ run 5 s
   check_same(shifted);
   CHECK(shifted.result.energies == EnergyRelation::EqualButConstant);
   // Thrice L: the virtual work differs, the accelerations do not.
-  check_same(compare_texts(angle_pendulum, replaced(given, "L = 1/2 m l^2 θ'^2 + m g l cos θ", "L = 3 (1/2 m l^2 θ'^2 + m g l cos θ)")));
+  check_same(compare_texts(
+      angle_pendulum, replaced(given, "L = 1/2 m l^2 θ'^2 + m g l cos θ", "L = 3 (1/2 m l^2 θ'^2 + m g l cos θ)")));
 }
 
 TEST_CASE("constrained against constrained: λ of A is eliminated") {
@@ -172,14 +176,16 @@ run 2 s
 )";
   check_same(compare_texts(double_pendulum, relative, "x2 = x1 + u, y2 = y1 + v"), false);
   check_same(compare_texts(relative, double_pendulum, "u = x2 - x1, v = y2 - y1"), false);
-  const Compared wrong = compare_texts(double_pendulum, replaced(relative, "gravity (0, -g)", "gravity (0, -2 g)"), "x2 = x1 + u, y2 = y1 + v");
+  const Compared wrong = compare_texts(double_pendulum, replaced(relative, "gravity (0, -g)", "gravity (0, -2 g)"),
+                                       "x2 = x1 + u, y2 = y1 + v");
   check_different(wrong);
 }
 
 TEST_CASE("non-holonomic constraints: the disk by its heading, and turned by a right angle") {
   check_same(compare_texts(rolling_disk, rolling_disk));
-  const std::string turned = replaced(replaced(rolling_disk, "constraint x' = R φ' cos ψ", "constraint x' = -R φ' sin ψ"),
-                                      "constraint y' = R φ' sin ψ", "constraint y' = R φ' cos ψ");
+  const std::string turned =
+      replaced(replaced(rolling_disk, "constraint x' = R φ' cos ψ", "constraint x' = -R φ' sin ψ"),
+               "constraint y' = R φ' sin ψ", "constraint y' = R φ' cos ψ");
   check_same(compare_texts(rolling_disk, turned, "ψ = ψ + pi/2"), false);
   check_same(compare_texts(rolling_disk, turned, "x = y, y = -x"), false);
   const Compared wrong = compare_texts(rolling_disk, turned);
@@ -209,9 +215,10 @@ run 3 s
   check_different(compare_texts(quaternion, euler, replaced(map, "sat.qz = ", "sat.qz = -")));
   check_different(compare_texts(quaternion, replaced(euler, "diag(I1, I2, I3)", "diag(I2, I1, I3)"), map));
   // Back: the angles are singular where the quaternion starts, which is said; the runs begin elsewhere.
-  const Compared back = compare_texts(euler, quaternion,
-                                      "θ = 2 atan2(sqrt(sat.qx^2 + sat.qy^2), sqrt(sat.qw^2 + sat.qz^2)), "
-                                      "φ = atan2(sat.qz, sat.qw) + atan2(sat.qy, sat.qx), ψ = atan2(sat.qz, sat.qw) - atan2(sat.qy, sat.qx)");
+  const Compared back = compare_texts(
+      euler, quaternion,
+      "θ = 2 atan2(sqrt(sat.qx^2 + sat.qy^2), sqrt(sat.qw^2 + sat.qz^2)), "
+      "φ = atan2(sat.qz, sat.qw) + atan2(sat.qy, sat.qx), ψ = atan2(sat.qz, sat.qw) - atan2(sat.qy, sat.qx)");
   check_same(back, false);
   CHECK(back.result.degenerate.rfind("sat.qw = 1", 0) == 0);
 }
@@ -242,7 +249,8 @@ run 1 s
 }
 
 TEST_CASE("parameters: by name, by the map, by value, or different") {
-  const std::string heavy = replaced(replaced(angle_pendulum, "m = 1 kg", "M = 1 kg"), "T = 1/2 m l^2 θ'^2\nV = -m", "T = 1/2 M l^2 θ'^2\nV = -M");
+  const std::string heavy = replaced(replaced(angle_pendulum, "m = 1 kg", "M = 1 kg"), "T = 1/2 m l^2 θ'^2\nV = -m",
+                                     "T = 1/2 M l^2 θ'^2\nV = -M");
   const Compared by_value = compare_texts(angle_pendulum, heavy);
   CHECK(by_value.text.find("N0826") != std::string::npos);
   CHECK(by_value.result.verdict == Sameness::Same);  // the mass cancels

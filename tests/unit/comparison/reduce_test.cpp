@@ -25,9 +25,12 @@ Reduced reduce_text(const std::string& text) {
   return out;
 }
 
-bool has_line(const std::string& text, const std::string& line) { return ("\n" + text).find("\n" + line + "\n") != std::string::npos; }
+bool has_line(const std::string& text, const std::string& line) {
+  return ("\n" + text).find("\n" + line + "\n") != std::string::npos;
+}
 
-/// A reduced model whose last coordinates stand at the same place as those of the full one: runs that share no equation.
+/// A reduced model whose last coordinates stand at the same place as those of the full one: runs that share no
+/// equation.
 void check_reduced(const Reduced& r, std::size_t freedoms) {
   REQUIRE_FALSE(r.reduction.text.empty());
   INFO(r.reduction.text);
@@ -125,7 +128,8 @@ constraint (x - X)^2 + y^2 = l^2
 constraint X = b cos(w t)
 start x = 50 cm, y = -1 m
 run 2 s
-)"), 1);
+)"),
+                1);
 }
 
 TEST_CASE("a rod that is turned: the distance along it") {
