@@ -92,6 +92,13 @@ Step StiffStepper::Impl::step(double bound) {
   std::vector<double> next = now;
   if (close) reached.reached = bound, reached.history_ends = true;
   else reached = formula->advance(bound, next);
+  if (reached.failure && history) {  // other rows of the constraints, or less noise of an old history, may help
+    motion.at_point.forget_rows();
+    restart();
+    direction = towards;
+    next = now;
+    if (motion.status == PointStatus::Ok) reached = formula->advance(bound, next);
+  }
   if (reached.failure) return failed(*reached.failure);
   t_before = t;
   before.swap(now);
