@@ -1,7 +1,11 @@
 #include "simulation/function_kernels.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/evaluate.hpp>
 #include <maupertuis/transform.hpp>
+
+#include <algorithm>
+#include <cmath>
 
 namespace maupertuis {
 namespace {
@@ -75,16 +79,43 @@ MotionFunctions lower_motion(const Lowering& lowering, const EquationsOfMotion& 
   return out;
 }
 
-/// ½ c φ̇² for the norms of quaternions.
-Expr norm_rates(const EquationsOfMotion& equations) {
+/// Whether the constraint holds a coordinate that has no kinetic energy of its own.
+bool holds_massless(const EquationsOfMotion& equations, const Constraint& c) {
+  for (std::size_t i = 0; i < equations.momenta.size(); ++i)
+    if (equations.momenta[i].is_zero() && !differentiate(c.value, equations.system->coordinates[i].q).is_zero()) return true;
+  return false;
+}
+
+/// The largest inertia at rest at q = 0, by numbers: only its order matters.
+Expr typical_inertia(const EquationsOfMotion& equations) {
+  const MechanicalSystem& system = *equations.system;
+  Bindings at = parameter_bindings(system);
+  for (const Coordinate& c : system.coordinates) at.insert({{c.q, 0.0}, {c.velocity, 0.0}});
+  double largest = 0;
+  for (std::size_t i = 0; i < equations.momenta.size(); ++i) {
+    const Expr entry = differentiate(equations.momenta[i], system.coordinates[i].velocity);
+    const double value = evaluate(in_terms_of_motion(system, {&entry, 1}).front(), at);
+    if (std::isfinite(value)) largest = std::max(largest, value);
+  }
+  const int exponent = largest > 0 ? std::ilogb(largest) : 0;
+  return pow(system.context->number(2), Rational(std::clamp(exponent, -40, 40)));
+}
+
+/// ½ c φ̇² for the constraints without which M is singular: the norms of quaternions, and what ties coordinates without
+/// kinetic energy.
+Expr rates_that_make_regular(const EquationsOfMotion& equations) {
   const MechanicalSystem& system = *equations.system;
   ExprVector terms{system.context->number(0)};
   for (std::size_t k = 0; k < system.constraints.size(); ++k) {
-    const Body* body = system.constraints[k].body.empty() ? nullptr : system.find_body(system.constraints[k].body);
-    if (!body) continue;
-    Expr trace = system.context->number(0);
-    for (std::size_t i = 0; i < body->inertia.rows; ++i) trace = trace + body->inertia.at(i, i);
-    terms.push_back(Rational(1, 6) * (trace * pow(equations.constraint_rates[k], 2)));
+    const Constraint& c = system.constraints[k];
+    const Expr square = pow(equations.constraint_rates[k], 2);
+    if (const Body* body = c.body.empty() ? nullptr : system.find_body(c.body)) {
+      Expr trace = system.context->number(0);
+      for (std::size_t i = 0; i < body->inertia.rows; ++i) trace = trace + body->inertia.at(i, i);
+      terms.push_back(Rational(1, 6) * (trace * square));
+    } else if (c.level == Constraint::Level::Position && holds_massless(equations, c)) {
+      terms.push_back(Rational(1, 2) * (typical_inertia(equations) * square));
+    }
   }
   return system.context->sum(terms);
 }
@@ -97,7 +128,7 @@ MotionFunctions motion_functions(const EquationsOfMotion& equations, const Wante
 
 VariationalFunctions variational_functions(const EquationsOfMotion& equations, const WantedFunctions& wanted) {
   const Lowering lowering(equations);
-  const Expr lagrangian = expand_time_derivatives(equations.lagrangian_expanded + norm_rates(equations));
+  const Expr lagrangian = expand_time_derivatives(equations.lagrangian_expanded + rates_that_make_regular(equations));
   VariationalFunctions out;
   out.motion = lower_motion(lowering, equations, wanted);
   out.momenta = lowering.differentiable(gradient(lagrangian, lowering.velocities()));

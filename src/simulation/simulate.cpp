@@ -161,7 +161,9 @@ class Run {
       for (std::size_t axis = 0; axis < p.position.size(); ++axis)
         columns.push_back({p.name + "." + "xyz"[axis], unit(dimensions::length())});
     for (const Observables::Named& r : observables_.reactions) {
-      result_.reactions.push_back({r.name, unit(r.dimension)});
+      // The unit of a torque is that of an energy, but nobody reads it so.
+      const bool torque = r.dimension == dimensions::energy() && !model_.system.dimensionless;
+      result_.reactions.push_back({r.name, torque ? "N m" : unit(r.dimension)});
       columns.push_back(result_.reactions.back());
     }
     columns.push_back({"energy", unit(dimensions::energy())});

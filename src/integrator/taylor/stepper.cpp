@@ -76,6 +76,7 @@ struct TaylorStepper::Impl {
   bool first = true;                     // no step made yet
   bool expanded = false;                 // the workspace holds the motion through the present state already
   double length = 0;                     // the last length that the control chose
+  double restraint = 1;                  // of the lengths that the control chooses
   std::size_t steps = 0, switches = 0;
   int stuck = 0;                         // crossings in a row that did not move time
   Sample start_sample;
@@ -151,6 +152,9 @@ bool TaylorStepper::Impl::expand(double bound, Step& result) {
 bool TaylorStepper::Impl::project(Step& result, bool known) {
   double error = taylor::constraint_error(work, n, kernel.constraints(), length);
   if (!first) constraint_residual = std::max(constraint_residual, error);
+  // In a rotation the radius of convergence is no bound: steps get so long that each order of λ multiplies the rounding
+  // errors of those before it. What a step leaves in the constraints shows it.
+  if (!first && error > taylor::rounding_of_constraints + options.tolerance) restraint = 0.45;
   const double allowed = std::max(1e-7, 1e3 * options.tolerance);
   for (int turn = 0; turn < 20; ++turn) {
     if (!std::exchange(known, false)) work.corrections(dq, dv);
@@ -319,7 +323,7 @@ Step TaylorStepper::Impl::step(double bound) {
     return result;
   }
   if (!std::exchange(expanded, false) && !expand(bound, result)) return result;
-  const double chosen = taylor::step_size(work, n, control, length);
+  const double chosen = restraint * taylor::step_size(work, n, control, length);
   length = std::isfinite(chosen) ? chosen : 0;
   const double left = remaining(bound);
   const double h = chosen < std::abs(left) ? std::copysign(chosen, left) : left;
@@ -384,6 +388,7 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.first = true;
   s.expanded = false;
   s.length = 0;
+  s.restraint = 1;
   s.steps = s.switches = 0;
   s.constraint_residual = 0;
   s.stuck = 0;

@@ -73,6 +73,18 @@ TEST_CASE("a free body turned by a unit quaternion, whose M has rank 3 of 4") {
   CHECK(value(rates[2]) == doctest::Approx(3).epsilon(1e-12));
 }
 
+TEST_CASE("a coordinate without kinetic energy that a constraint ties: every method") {
+  ModelText m("system massless\nparam Is = 1e-5 kg m^2, τ = 0.1 N m\ncoord a, b : angle\nT = 1/2 Is a'^2\nforce a = τ\nconstraint a + b = 0\n");
+  for (const StepMethod method : {StepMethod::Taylor, StepMethod::Variational, StepMethod::Stiff}) {
+    SimulationOptions options;
+    options.method = method;
+    options.step = 0.001;
+    const auto r = run(m, 0.02, options);
+    CHECK(r.final.q[0] == doctest::Approx(2).epsilon(1e-7));   // τ t² / 2 Is
+    CHECK(r.final.q[1] == doctest::Approx(-2).epsilon(1e-7));
+  }
+}
+
 TEST_CASE("a rolling disk runs in a circle of radius R φ'/ψ'") {
   ModelText m("system disk\nparam m = 1 kg, R = 20 cm\nlet I = 1/2 m R^2, J = 1/4 m R^2\ncoord x, y : length\ncoord φ, ψ : angle\n"
               "T = 1/2 m (x'^2 + y'^2) + 1/2 I φ'^2 + 1/2 J ψ'^2\nconstraint x' = R φ' cos ψ\nconstraint y' = R φ' sin ψ\n"
