@@ -79,8 +79,8 @@ IdaFormula::IdaFormula(Motion& motion)
   require_success(IDASetId(memory_, differential_));
   require_success(IDASetSuppressAlg(memory_, SUNTRUE));
   // What Newton's iteration leaves of the constraints returns as noise of v / step: a third of the tolerance, IDA's own choice,
-  // doubles the number of steps. Below 3·10⁻¹⁴ rounding is all that is left to iterate on.
-  require_success(IDASetNonlinConvCoef(memory_, std::clamp(3e-14 / motion.options.tolerance, 0.03, 0.33)));
+  // doubles the number of steps.
+  require_success(IDASetNonlinConvCoef(memory_, 0.03));
   require_success(IDASetMaxErrTestFails(memory_, 30));  // the first step is a guess
   require_success(IDASetMaxConvFails(memory_, 30));
   if (integrals() > 0) require_success(IDAQuadInit(memory_, integrands, integrals_));
