@@ -129,6 +129,11 @@ class KernelWorkspace {
   /// The smallest changes of q and q̇, in the metric M, that bring the constraints back to zero, to first order.
   /// [n] each. Precondition: the last call returned Ok.
   void corrections(std::span<double> dq, std::span<double> dv);
+  /// How far the factored matrix is from a singular one: its smallest pivot against the largest, 1 without constraints.
+  /// It falls towards 0 next to a singular configuration of the constraints, and λ and q̈ lose digits with it.
+  double pivot_ratio() const;
+  /// The number of constraints whose rows of A are in force.
+  std::size_t constraints_in_force() const;
   /// M and A at the point, whatever the status.
   double mass(std::size_t i, std::size_t j) const;
   double constraint_matrix(std::size_t constraint, std::size_t coordinate) const;

@@ -39,6 +39,11 @@ class Reducer {
       refuse(*p.unsolved);
       return out_;
     }
+    if (p.values.size() == system_.coordinates.size() && p.fresh.empty()) {
+      diagnostics_.error("E0830", {}, fmt::format("{} has no freedom", system_.name),
+                         "Its constraints determine every coordinate, so that none is independent.", "");
+      return out_;
+    }
     for (const auto& solved : p.solved) out_.steps.push_back(solved.sentence);
     for (const std::size_t k : p.repeated)
       out_.steps.push_back(fmt::format("{} repeats the others", system_.constraint_label(k)));
@@ -83,9 +88,11 @@ class Reducer {
         fmt::format("{} has no closed form that is known here", system_.constraint_label(k)),
         "It is neither linear in one of its coordinates nor a circle, a sphere or an ellipsoid in two or three of "
         "them.",
-        fmt::format(
-            "Near the start {} can be chosen as independent, {} as dependent; the constrained model runs as it is.",
-            listed(out_.independent), listed(out_.dependent)));
+        out_.independent.empty()
+            ? "The constraints determine every coordinate near the start; the constrained model runs as it is."
+            : fmt::format(
+                  "Near the start {} can be chosen as independent, {} as dependent; the constrained model runs as it is.",
+                  listed(out_.independent), listed(out_.dependent)));
   }
 
   /// Positions of new angles, velocities by least squares from the old ones, and what the constraints moved elsewhere.

@@ -139,6 +139,8 @@ class Rewriter {
     for (const EnergyTerm& term : model_.system.kinetic)
       if (term.origin == "T") return false;  // the given T does not say how it grows with the length's velocity
     if (model_.system.lagrangian_given) return false;
+    for (const AppliedForce& force : model_.system.forces)
+      if (force.kind == AppliedForce::Kind::Generalized) return false;  // its work on the length would be lost
     const Parameter* p = model_.system.find_parameter(radius.name());
     if (!p) return false;
     // Elsewhere the length would be released too.

@@ -136,6 +136,10 @@ std::string obstacle(const MechanicalSystem& s, const Parameter& parameter) {
       return (!given_alone || is_given(term)) && stands_in(parameter.symbol, term.value);
     });
   };
+  for (const AppliedForce& force : s.forces)
+    if (force.kind == AppliedForce::Kind::Generalized)
+      return fmt::format("{0} gives no reaction here: the force on {1} is given per coordinate, which does not say what work it does "
+                         "when {0} changes.", parameter.name, force.target);
   if (s.lagrangian_given) return refuse("the given L");
   if (holds(s.kinetic, true)) return refuse("the given T");
   if (holds(s.generalized_potential, false)) return refuse("U");

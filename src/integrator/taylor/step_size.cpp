@@ -27,6 +27,8 @@ namespace {
 
 /// Earlier coefficients estimate the radius less well: they speak up only where the last ones are silent.
 constexpr double widened = 1.25;
+/// The last terms of λ against the first, at the end of a step; some 1e-15 where its radius is that of q.
+constexpr double converged = 1e-6;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double velocity(const KernelWorkspace& work, std::size_t i, int k) {
@@ -90,6 +92,24 @@ double step_size(const KernelWorkspace& work, std::size_t freedoms, const StepCo
     if (!(reached < infinity)) return infinity;
     h = reached;
   }
+  return h;
+}
+
+double step_within_multipliers(const KernelWorkspace& work, std::size_t freedoms, std::size_t constraints,
+                               const StepControl& control, double h) {
+  const auto size = [&](std::size_t j, int k, double length) {
+    return (k + 1.0) * (k + 2.0) * std::abs(work.coordinate(k + 2)[freedoms + j]) * std::pow(length, k);
+  };
+  const auto converges = [&](double length) {
+    for (std::size_t j = 0; j < constraints; ++j) {
+      double first = 0, last = 0;
+      for (int k = 0; k < std::min(4, control.order); ++k) first = std::max(first, size(j, k, length));
+      for (int k = std::max(0, control.order - 4); k < control.order; ++k) last = std::max(last, size(j, k, length));
+      if (last > converged * first) return false;
+    }
+    return true;
+  };
+  for (int turn = 0; turn < 200 && !converges(h); ++turn) h *= 0.8;
   return h;
 }
 

@@ -42,6 +42,7 @@ struct TaylorStepper::Impl {
   bool expand(double bound, Step& result);
   bool project(Step& result, bool known = false);
   void land(Step& result, double tau);
+  void move_to(double tau, Step& result);
   bool decide_sides(double bound, Step& result);
   std::optional<double> trial(double bound);
   void keep_polynomial();
@@ -76,6 +77,8 @@ struct TaylorStepper::Impl {
   bool first = true;                     // no step made yet
   bool expanded = false;                 // the workspace holds the motion through the present state already
   double length = 0;                     // the last length that the control chose
+  double best_pivot_ratio = 0;           // of the bordered matrix so far
+  std::size_t most_in_force = 0;         // constraints so far
   double restraint = 1;                  // of the lengths that the control chooses
   std::size_t steps = 0, switches = 0;
   int stuck = 0;                         // crossings in a row that did not move time
@@ -178,28 +181,46 @@ bool TaylorStepper::Impl::project(Step& result, bool known) {
   return false;
 }
 
-/// Next to a singular configuration of the constraints what rounding left of them is blown up by the projection. The
+/// Next to a singular configuration of the constraints what rounding left of them is blown up by the projection, and λ and q̈
+/// lose digits as the pivots fall. The
 /// motion goes through it all the same where it is determined, so that a step must not end just there: then it is made
 /// shorter, and the next one passes. The expansion at its end is that of the next step.
 void TaylorStepper::Impl::land(Step& result, double tau) {
-  const double sound = std::max(1e-12, 1e2 * options.tolerance);
+  const double sound = std::max(1e-12, 1e2 * options.tolerance), allowed = std::max(1e-7, 1e3 * options.tolerance);
+  bool defined = false;
   for (int trial = 0; trial < 12; ++trial) {
     set_sides(work);
     if (work.expand(t.hi, q_now, v_now) == KernelStatus::Ok) {
+      defined = true;
       work.corrections(dq, dv);
-      if (taylor::correction_size(work, dq, dv, length) <= sound) {
+      const double error = taylor::constraint_error(work, n, kernel.constraints(), length);
+      const std::size_t in_force = work.constraints_in_force();
+      const bool regular = in_force >= most_in_force && work.pivot_ratio() > 1e-6 * best_pivot_ratio;
+      if (regular && error <= allowed && taylor::correction_size(work, dq, dv, length) <= sound) {
+        if (in_force > most_in_force) best_pivot_ratio = 0;
+        most_in_force = in_force;
+        best_pivot_ratio = std::max(best_pivot_ratio, work.pivot_ratio());
         Step projected;
         expanded = project(projected, true);
         return;
       }
     }
     tau *= 0.83;
-    dense.advance(tau, q, v, integrals);
-    t = begin;
-    t.add(tau);
-    for (std::size_t i = 0; i < n; ++i) q_now[i] = q[i].hi, v_now[i] = v[i].hi;
-    result.end = t.hi;
+    move_to(tau, result);
   }
+  if (!defined) return;  // the next step says why
+  move_to(0, result);
+  end(result, StepEnding::SingularConstraints,
+      "The constraints are singular near here: they do not determine where the motion goes.");
+}
+
+/// Ends the last step earlier.
+void TaylorStepper::Impl::move_to(double tau, Step& result) {
+  dense.advance(tau, q, v, integrals);
+  t = begin;
+  t.add(tau);
+  for (std::size_t i = 0; i < n; ++i) q_now[i] = q[i].hi, v_now[i] = v[i].hi;
+  result.end = t.hi;
 }
 
 bool TaylorStepper::Impl::decide_sides(double bound, Step& result) {
@@ -323,7 +344,9 @@ Step TaylorStepper::Impl::step(double bound) {
     return result;
   }
   if (!std::exchange(expanded, false) && !expand(bound, result)) return result;
-  const double chosen = restraint * taylor::step_size(work, n, control, length);
+  double chosen = restraint * taylor::step_size(work, n, control, length);
+  if (const std::size_t m = kernel.constraints(); m > 0)
+    chosen = taylor::step_within_multipliers(work, n, m, control, std::min(chosen, std::abs(remaining(bound))));
   length = std::isfinite(chosen) ? chosen : 0;
   const double left = remaining(bound);
   const double h = chosen < std::abs(left) ? std::copysign(chosen, left) : left;
@@ -389,6 +412,8 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.expanded = false;
   s.length = 0;
   s.restraint = 1;
+  s.best_pivot_ratio = 0;
+  s.most_in_force = 0;
   s.steps = s.switches = 0;
   s.constraint_residual = 0;
   s.stuck = 0;

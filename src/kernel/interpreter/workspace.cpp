@@ -290,6 +290,13 @@ void KernelWorkspace::corrections(std::span<double> dq, std::span<double> dv) {
   solve_for([&](std::size_t j) { return constraint_rate(j); }, dv);
 }
 
+std::size_t KernelWorkspace::constraints_in_force() const {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i + impl_->program.freedoms < impl_->unknowns; ++i) count += impl_->solver.keeps(i);
+  return count;
+}
+double KernelWorkspace::pivot_ratio() const { return impl_->solver.pivot_ratio(); }
+
 double KernelWorkspace::mass(std::size_t i, std::size_t j) const { return impl_->bordered[i * impl_->unknowns + j]; }
 double KernelWorkspace::constraint_matrix(std::size_t constraint, std::size_t coordinate) const {
   return -impl_->bordered[(impl_->program.freedoms + constraint) * impl_->unknowns + coordinate];

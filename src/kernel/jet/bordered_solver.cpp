@@ -29,16 +29,18 @@ struct BorderedSolver::Impl {
 
   Eigen::Map<Matrix> view() { return {entries.data(), static_cast<Index>(size), static_cast<Index>(size)}; }
 
+  void scale_by_mass();
   void equilibrate();
   bool factor_whole();
   void choose_rows();
   void find_dependences(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr);
-  bool factor_kept();
+  bool factor_independent();
   std::size_t undetermined_coordinate();
 
   std::size_t n, m, size;
   LinearSolver plain;                    // without constraints
   std::vector<double> entries;           // [size × size], equilibrated by factor()
+  std::vector<double> as_given;          // [size × size]
   std::vector<double> scale;             // [size]
   std::vector<bool> kept, determined;    // [m]
   std::vector<Index> rows;               // of the factored system, when rows were dropped
@@ -47,9 +49,32 @@ struct BorderedSolver::Impl {
   mutable Vector scratch;
 };
 
+/// A second way, where the masses are small against A: coordinates by their inertia, constraints by their rows in that measure, coordinates without inertia by their columns:
+/// so that neither the units nor the size of the masses against that of A decide what counts as singular.
+void BorderedSolver::Impl::scale_by_mass() {
+  const auto scale_for = [](double size) { return size > 0 && std::isfinite(size) ? std::ldexp(1.0, -std::ilogb(size)) : 1.0; };
+  const auto row = [&](std::size_t k, std::size_t i) { return std::abs(entries[(n + k) * size + i]); };
+  for (std::size_t i = 0; i < n; ++i) {
+    const double mass = std::abs(entries[i * size + i]);
+    scale[i] = mass > 0 ? std::ldexp(1.0, -std::ilogb(mass) / 2) : 0.0;
+  }
+  for (std::size_t k = 0; k < m; ++k) {
+    double largest = 0, any = 0;
+    for (std::size_t i = 0; i < n; ++i) largest = std::max(largest, row(k, i) * scale[i]), any = std::max(any, row(k, i));
+    scale[n + k] = scale_for(largest > 0 ? largest : any);
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (scale[i] > 0) continue;
+    double largest = 0;
+    for (std::size_t k = 0; k < m; ++k) largest = std::max(largest, row(k, i) * scale[n + k]);
+    scale[i] = scale_for(largest);
+  }
+  for (std::size_t i = 0; i < size; ++i)
+    for (std::size_t j = 0; j < size; ++j) entries[i * size + j] *= scale[i] * scale[j];
+}
+
 /// Ruiz, A scaling algorithm to equilibrate both rows and columns norms in matrices (2001), symmetric.
 void BorderedSolver::Impl::equilibrate() {
-  std::fill(scale.begin(), scale.end(), 1.0);
   std::vector<double> step(size);
   for (int sweep = 0; sweep < 3; ++sweep) {
     std::fill(step.begin(), step.end(), 0.0);  // first the largest entry of row and column
@@ -73,10 +98,12 @@ void BorderedSolver::Impl::equilibrate() {
 
 namespace {
 
-bool has_good_pivots(const Eigen::PartialPivLU<Matrix>& lu) {
+double ratio_of_pivots(const Eigen::PartialPivLU<Matrix>& lu) {
   const auto pivots = lu.matrixLU().diagonal().cwiseAbs();
-  return pivots.minCoeff() > least_pivot * pivots.maxCoeff();
+  return pivots.minCoeff() / pivots.maxCoeff();
 }
+
+bool has_good_pivots(const Eigen::PartialPivLU<Matrix>& lu) { return ratio_of_pivots(lu) > least_pivot; }
 
 }  // namespace
 
@@ -118,7 +145,8 @@ void BorderedSolver::Impl::find_dependences(const Eigen::ColPivHouseholderQR<Eig
   }
 }
 
-bool BorderedSolver::Impl::factor_kept() {
+bool BorderedSolver::Impl::factor_independent() {
+  choose_rows();
   const Index count = static_cast<Index>(rows.size());
   Matrix reduced(count, count);
   const auto full = view();
@@ -151,10 +179,14 @@ std::span<double> BorderedSolver::matrix() { return impl_->m == 0 ? impl_->plain
 std::optional<std::size_t> BorderedSolver::factor() {
   Impl& s = *impl_;
   if (s.m == 0) return s.plain.factor();
+  s.as_given = s.entries;
+  std::fill(s.scale.begin(), s.scale.end(), 1.0);
   s.equilibrate();
-  if (s.factor_whole()) return std::nullopt;
-  s.choose_rows();
-  if (s.factor_kept()) return std::nullopt;
+  if (s.factor_whole() || s.factor_independent()) return std::nullopt;
+  s.entries = s.as_given;
+  s.scale_by_mass();
+  s.equilibrate();
+  if (s.factor_whole() || s.factor_independent()) return std::nullopt;
   return s.undetermined_coordinate();
 }
 
@@ -176,6 +208,7 @@ void BorderedSolver::solve(std::span<double> b) const {
   for (std::size_t i = 0; i < s.size; ++i) b[i] *= s.scale[i];
 }
 
+double BorderedSolver::pivot_ratio() const { return impl_->m == 0 ? 1.0 : ratio_of_pivots(impl_->lu); }
 bool BorderedSolver::keeps(std::size_t constraint) const { return impl_->kept[constraint]; }
 bool BorderedSolver::determines(std::size_t constraint) const { return impl_->determined[constraint]; }
 

@@ -25,6 +25,8 @@ class BorderedSolver {
   /// b → (x, λ) in place; the entries of dropped rows are ignored, and their λ is 0.
   /// Precondition: factor() returned nothing.
   void solve(std::span<double> b) const;
+  /// The smallest pivot of the equilibrated matrix against the largest: what it is worth; 1 without constraints.
+  double pivot_ratio() const;
   /// Whether this row of A is in force, and whether its λ is determined: not where it takes part in a dependence.
   bool keeps(std::size_t constraint) const;
   bool determines(std::size_t constraint) const;
