@@ -256,6 +256,11 @@ const char* words(ConstraintClass constraint_class) {
 }
 
 ConstraintAnalysis analyse_constraints(const EquationsOfMotion& equations, const MotionState* start) {
+  if (!equations.system->constrained()) {
+    ConstraintAnalysis free;
+    free.configuration_freedoms = free.instantaneous_freedoms = equations.system->coordinates.size();
+    return free;
+  }
   return Analysis(equations, start).carry_out();
 }
 
