@@ -1,6 +1,7 @@
 #include "interrupt.hpp"
 
 #include <csignal>
+#include <ctime>
 
 namespace maupertuis::app {
 namespace {
@@ -9,9 +10,25 @@ namespace {
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
+std::atomic<long long> first_at{0};
+static_assert(std::atomic<long long>::is_always_lock_free);
+
+long long milliseconds() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return 1000LL * now.tv_sec + now.tv_nsec / 1'000'000;
+}
+
+/// The first one ends the run in good order; one that follows later, from an impatient user, ends the program. What arrives
+/// at once is the same wish twice: shells and `timeout` signal the process and its group.
 extern "C" void on_interrupt(int signal) {
-  interrupted = true;
+  if (!interrupted.exchange(true)) {
+    first_at = milliseconds();
+    return;
+  }
+  if (milliseconds() - first_at < 500) return;
   std::signal(signal, SIG_DFL);
+  std::raise(signal);
 }
 
 }  // namespace
