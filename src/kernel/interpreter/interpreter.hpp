@@ -2,6 +2,7 @@
 #include "kernel/jet/rules.hpp"
 #include "kernel/program/program.hpp"
 
+#include <boost/align/aligned_allocator.hpp>
 #include <span>
 #include <vector>
 
@@ -16,9 +17,12 @@ struct LinearTerm {
   std::uint32_t shift;
 };
 
-/// What the operations work on.
+/// Aligned to cache lines, so that packs of slots are too.
+using Doubles = std::vector<double, boost::alignment::aligned_allocator<double, 64>>;
+
+/// What the operations work on. `cells`: doubles of a row, at least the slots of the program.
 struct Memory {
-  explicit Memory(const Program& program, int orders);
+  Memory(const Program& program, int orders, std::size_t cells);
 
   double* row(int order) { return rows.data() + static_cast<std::size_t>(order) * stride; }
   const double* row(int order) const { return rows.data() + static_cast<std::size_t>(order) * stride; }
@@ -30,7 +34,7 @@ struct Memory {
   std::vector<double> coefficients;  // [terms], from the constants
   std::vector<LinearTerm> linear;    // [terms], the same made ready
   std::vector<double> shift_factors; // [orders × 3]: 1, k + 1, (k + 1)(k + 2)
-  std::vector<double> rows;          // [orders × stride]: coefficient k of slot s at [k · stride + s]
+  Doubles rows;                      // [orders × stride]: coefficient k of slot s at [k · stride + s]
 };
 
 /// Fills constants and coefficients.
@@ -38,6 +42,9 @@ void compute_constants(Memory& memory, std::span<const double> parameters, std::
 
 /// Sets the leaves but the coordinates at all orders.
 void set_leaves(Memory& memory, double t, int orders);
+
+/// One instruction at one order.
+void run_instruction(Memory& memory, std::uint32_t index, int order);
 
 /// Every instruction of a section at the order that belongs to the stage.
 void run_section(Memory& memory, Section section, int stage);

@@ -14,8 +14,8 @@ std::size_t padded(std::size_t slots) {
 
 }  // namespace
 
-Memory::Memory(const Program& p, int orders)
-    : program(p), stride(padded(p.slots)), constants(p.constants.size()), coefficients(p.terms.size()),
+Memory::Memory(const Program& p, int orders, std::size_t cells)
+    : program(p), stride(padded(cells)), constants(p.constants.size()), coefficients(p.terms.size()),
       linear(p.terms.size()), rows(static_cast<std::size_t>(orders) * stride, 0.0) {
   for (int k = 0; k < orders; ++k) shift_factors.insert(shift_factors.end(), {1.0, k + 1.0, (k + 1.0) * (k + 2.0)});
 }

@@ -120,6 +120,11 @@ class RunAtOrder {
 
 }  // namespace
 
+void run_instruction(Memory& memory, std::uint32_t index, int order) {
+  const Instruction& instruction = memory.program.instructions[index];
+  RunAtOrder(memory, order)({instruction.op, instruction.lag, index, index + 1});
+}
+
 void run_section(Memory& memory, Section section, int stage) {
   for (const Run& run : memory.program.runs[section]) {
     const int order = stage + 2 - run.lag;

@@ -1,5 +1,7 @@
 #include "kernel/interpreter/interpreter.hpp"
 #include "kernel/jet/bordered_solver.hpp"
+#include "kernel/jet/small_inverse.hpp"
+#include "kernel/packed/engine.hpp"
 
 #include <maupertuis/require.hpp>
 
@@ -13,33 +15,49 @@ namespace maupertuis {
 
 using interpreter::Memory;
 
+namespace {
+
+/// Up to here the correction of a stage is a product with a small matrix, and so is the solution where M is positive definite.
+constexpr std::size_t most_by_matrix = 16;
+
+}  // namespace
+
 struct KernelWorkspace::Impl {
   Impl(const Kernel& k, int p)
-      : kernel(k), program(k.program()), order(p), orders(p + 2 + (-2 - program.first_stage)), memory(program, orders),
-        parameters(program.parameters, 0.0), sides(program.switches.size(), 1), unknowns(program.unknowns),
-        solver(program.freedoms, unknowns - program.freedoms), bordered(unknowns * unknowns), unknown(unknowns),
-        producer(program.slots, nullptr) {
-    width = unknowns <= 1 ? 1 : unknowns <= 2 ? 2 : unknowns <= 4 ? 4 : 8;
-    tangent.assign(program.slots * static_cast<std::size_t>(width), 0.0);
-    if (unknowns > 8) direction.assign(program.slots, 0.0);
-    moved = interpreter::moved_instructions(program);
-    of_mass = unknowns > 8 ? interpreter::instructions_of_mass(program) : moved;
+      : kernel(k), packed(packed::pack(k.program())), program(packed.program), order(p),
+        orders(p + 2 + (-2 - program.first_stage)), memory(program, orders, packed.cells), parameters(program.parameters, 0.0),
+        sides(program.switches.size(), 1), unknowns(program.unknowns), solver(program.freedoms, unknowns - program.freedoms),
+        bordered(unknowns * unknowns), unknown(unknowns), by_matrix(unknowns <= most_by_matrix), producer(program.slots, nullptr) {
+    tangent.assign(by_matrix ? unknowns * memory.stride : memory.stride, 0.0);
+    if (!by_matrix) {
+      block_tangent.assign(program.slots * 8, 0.0);
+      of_mass = interpreter::instructions_of_mass(program);
+    }
+    if (by_matrix) inverse.assign(unknowns * padded_unknowns(), 0.0), solution.assign(padded_unknowns(), 0.0);
     for (const Instruction& i : program.instructions) producer[i.out] = &i;
+    bind();
   }
 
+  std::size_t padded_unknowns() const { return (unknowns + packed::lanes - 1) / packed::lanes * packed::lanes; }
+  void bind();
+  void compute_constants();
   KernelStatus run(double t, std::span<const double> q, std::span<const double> v, int stages);
+  void sweep(std::size_t direction);
+  void sweep_block(std::size_t first);
   KernelStatus factor();
   bool solve(int stage);
   void correct(int stage);
-  void correct_by_matrix(double* row, Slot first, Slot last, double factor);
-  void sweep_block(std::size_t first);
   bool constraints_agree();
   double coefficient(Slot slot, int k) const;
 
   Kernel kernel;
-  const Program& program;
+  packed::PackedProgram packed;
+  const Program& program;            // of `packed`
   int order, orders;
-  Memory memory;
+  interpreter::Memory memory;
+  packed::Tables tables;
+  const packed::Engine& engine = packed::engine();
+  std::vector<double> lane_coefficients;  // [packed.coefficients]
   std::vector<double> parameters;
   std::vector<std::int8_t> sides;
   bool stale = true;                 // constants to be computed
@@ -47,65 +65,79 @@ struct KernelWorkspace::Impl {
   jet::BorderedSolver solver;
   std::vector<double> bordered;      // [(n + m) × (n + m)] ∂R/∂(q̈, λ) at order 0
   std::vector<double> unknown;       // [n + m] −R_k, then q̈_k and λ_k
-  int width;                         // directions a tangent sweep carries
-  std::vector<double> tangent;       // [slots × width]; with n + m ≤ 8 it holds ∂slot/∂q^(lag) [slots × (n + m)]
-  std::vector<double> direction;     // [slots], n + m > 8: tangents in the direction of q̈_k
-  std::vector<std::uint32_t> moved, of_mass;  // instructions that tangents go through: for corrections, for M₀
+  bool by_matrix, by_inverse = false;
+  interpreter::Doubles inverse, solution;  // by_inverse: −M⁻¹ and what it gives, both padded
+  interpreter::Doubles tangent;      // by_matrix: ∂slot/∂q^(lag) for each direction [n + m × stride], else for one
+  std::vector<double> block_tangent; // [slots × 8]
+  std::vector<std::uint32_t> of_mass;  // instructions that M₀ goes through
   std::vector<const Instruction*> producer;  // [slots]
   std::size_t singular = 0, contradicting = 0;
   int last_stage = 0;
 };
 
-namespace {
-
-void sweep(int width, const Memory& memory, double* tangent, std::span<const std::uint32_t> instructions) {
-  switch (width) {
-    case 1: return interpreter::tangents<1>(memory, tangent, instructions);
-    case 2: return interpreter::tangents<2>(memory, tangent, instructions);
-    case 4: return interpreter::tangents<4>(memory, tangent, instructions);
-    default: return interpreter::tangents<8>(memory, tangent, instructions);
-  }
+/// The engine's view of this workspace.
+void KernelWorkspace::Impl::bind() {
+  tables.packs = packed.packs.data();
+  tables.pack_count = packed.packs.size();
+  tables.blocks = packed.blocks.data();
+  tables.block_count = packed.blocks.size();
+  tables.columns = packed.columns.data();
+  tables.products = packed.products.data();
+  tables.functions = packed.functions.data();
+  tables.rows = memory.rows.data();
+  tables.stride = memory.stride;
+  tables.scalar.context = this;
+  tables.scalar.value = [](void* self, std::uint32_t instruction, int at) {
+    interpreter::run_instruction(static_cast<Impl*>(self)->memory, instruction, at);
+  };
+  tables.scalar.tangent = [](void* self, std::uint32_t instruction, double* values) {
+    interpreter::tangents<1>(static_cast<Impl*>(self)->memory, values, {&instruction, 1});
+  };
+  lane_coefficients.resize(packed.coefficients.size());
+  tables.coefficients = lane_coefficients.data();
 }
 
-template <int Width>
-void add_combination(double* row, const double* tangent, Slot first, Slot last, const double* direction) {
-  for (Slot slot = first; slot < last; ++slot) {
-    double sum = 0;
-    for (int d = 0; d < Width; ++d) sum += tangent[static_cast<std::size_t>(slot) * Width + d] * direction[d];
-    row[slot] += sum;
-  }
+void KernelWorkspace::Impl::compute_constants() {
+  if (!stale) return;
+  interpreter::compute_constants(memory, parameters, sides);
+  for (std::size_t i = 0; i < lane_coefficients.size(); ++i) lane_coefficients[i] = memory.constants[packed.coefficients[i]];
+  stale = false;
 }
 
-}  // namespace
+/// The tangents of all slots in one direction.
+void KernelWorkspace::Impl::sweep(std::size_t direction) {
+  double* const row = tangent.data() + direction * memory.stride;
+  std::fill_n(row, padded_unknowns(), 0.0);
+  row[direction] = 1;
+  engine.tangents(tables, row);
+}
 
-/// Tangents in the directions of q̈_first … q̈_{first + width − 1}.
+/// Those of the residual in 8 directions.
 void KernelWorkspace::Impl::sweep_block(std::size_t first) {
-  const auto w = static_cast<std::size_t>(width);
-  std::fill_n(tangent.begin(), unknowns * w, 0.0);
-  for (std::size_t d = 0; d < w && first + d < unknowns; ++d) tangent[(first + d) * w + d] = 1;
-  sweep(width, memory, tangent.data(), of_mass);
+  std::fill_n(block_tangent.begin(), unknowns * 8, 0.0);
+  for (std::size_t d = 0; d < 8 && first + d < unknowns; ++d) block_tangent[(first + d) * 8 + d] = 1;
+  interpreter::tangents<8>(memory, block_tangent.data(), of_mass);
 }
 
 /// M₀ = ∂R/∂q̈ at order 0, bordered by the constraints, column by column, and its factors.
 KernelStatus KernelWorkspace::Impl::factor() {
   const std::size_t n = unknowns;
-  auto& matrix = bordered;
-  const auto w = static_cast<std::size_t>(width);
   double check = 0;
-  for (std::size_t first = 0; first < n; first += w) {
-    sweep_block(first);
+  for (std::size_t d = 0; d < n; ++d) {
+    if (by_matrix) sweep(d);
+    else if (d % 8 == 0) sweep_block(d);
     for (std::size_t i = 0; i < n; ++i) {
       const Slot slot = program.residual[i];
-      const bool holds_acceleration = program.tangent_lags[slot] == 2;
-      for (std::size_t d = 0; d < w && first + d < n; ++d) {
-        const double value = holds_acceleration ? tangent[slot * w + d] : 0.0;
-        matrix[i * n + first + d] = value;
-        check += value * 0;
-      }
+      const double value = program.tangent_lags[slot] != 2 ? 0.0
+                           : by_matrix ? tangent[d * memory.stride + slot] : block_tangent[slot * 8 + d % 8];
+      bordered[i * n + d] = value;
+      check += value * 0;
     }
   }
   if (check != 0) return KernelStatus::NonFinite;  // infinity and NaN times 0 are NaN
-  std::copy(matrix.begin(), matrix.end(), solver.matrix().begin());
+  by_inverse = by_matrix && n == program.freedoms && jet::negative_inverse(bordered, n, inverse.data(), padded_unknowns());
+  if (by_inverse) return KernelStatus::Ok;
+  std::copy(bordered.begin(), bordered.end(), solver.matrix().begin());
   if (const auto undetermined = solver.factor()) {
     singular = *undetermined;
     return KernelStatus::SingularMass;
@@ -116,9 +148,16 @@ KernelStatus KernelWorkspace::Impl::factor() {
 /// unknown = q̈_k; false if it is not finite.
 bool KernelWorkspace::Impl::solve(int stage) {
   const double* const row = memory.row(stage);
-  for (std::size_t i = 0; i < unknown.size(); ++i) unknown[i] = -row[program.residual[i]];
-  solver.solve(unknown);
   double check = 0;
+  if (by_inverse) {
+    for (std::size_t i = 0; i < unknowns; ++i) unknown[i] = row[program.residual[i]];
+    std::fill(solution.begin(), solution.end(), 0.0);
+    engine.combine(solution.data(), inverse.data(), padded_unknowns(), unknown.data(), unknowns, padded_unknowns());
+    std::copy_n(solution.begin(), unknowns, unknown.begin());
+  } else {
+    for (std::size_t i = 0; i < unknowns; ++i) unknown[i] = -row[program.residual[i]];
+    solver.solve(unknown);
+  }
   for (const double a : unknown) check += a * 0;
   return check == 0;
 }
@@ -142,17 +181,6 @@ bool KernelWorkspace::Impl::constraints_agree() {
   return true;
 }
 
-void KernelWorkspace::Impl::correct_by_matrix(double* row, Slot first, Slot last, double factor) {
-  double scaled[8] = {};
-  for (std::size_t i = 0; i < unknown.size(); ++i) scaled[i] = unknown[i] * factor;
-  switch (width) {
-    case 1: return add_combination<1>(row, tangent.data(), first, last, scaled);
-    case 2: return add_combination<2>(row, tangent.data(), first, last, scaled);
-    case 4: return add_combination<4>(row, tangent.data(), first, last, scaled);
-    default: return add_combination<8>(row, tangent.data(), first, last, scaled);
-  }
-}
-
 /// Coefficient k + 2 − ℓ of a slot of lag ℓ follows q̈_k with its order-0 tangent times 1, 1/(k+1), 1/((k+1)(k+2)).
 void KernelWorkspace::Impl::correct(int stage) {
   const std::size_t n = unknowns;
@@ -161,25 +189,28 @@ void KernelWorkspace::Impl::correct(int stage) {
   double* const next = memory.row(stage + 2);
   // A division: the error of a rounded reciprocal would be the same in every step and so add up.
   for (std::size_t i = 0; i < n; ++i) next[i] = unknown[i] / ((stage + 1.0) * (stage + 2.0));
-  const bool by_matrix = n <= 8;
   if (!by_matrix) {
-    std::copy(unknown.begin(), unknown.end(), direction.begin());
-    interpreter::tangents<1>(memory, direction.data(), moved);
+    std::copy(unknown.begin(), unknown.end(), tangent.begin());
+    engine.tangents(tables, tangent.data());
   }
-  Slot first = static_cast<Slot>(n);
+  auto first = static_cast<Slot>(padded_unknowns());
+  double scaled[most_by_matrix];
   for (int lag = 0; lag <= 2; ++lag) {
     const Slot last = program.stored_end[static_cast<std::size_t>(lag)];
-    double* const row = memory.row(stage + 2 - lag);
-    if (by_matrix) correct_by_matrix(row, first, last, factors[lag]);
-    else for (Slot slot = first; slot < last; ++slot) row[slot] += factors[lag] * direction[slot];
+    double* const row = memory.row(stage + 2 - lag) + first;
+    if (by_matrix) {
+      for (std::size_t d = 0; d < n; ++d) scaled[d] = unknown[d] * factors[lag];
+      engine.combine(row, tangent.data() + first, memory.stride, scaled, n, last - first);
+    } else {
+      engine.combine(row, tangent.data() + first, memory.stride, factors + lag, 1, last - first);
+    }
     first = last;
   }
 }
 
 KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std::span<const double> v, int stages) {
   MAUP_REQUIRE(q.size() == program.freedoms && v.size() == program.freedoms);
-  if (stale) interpreter::compute_constants(memory, parameters, sides);
-  stale = false;
+  compute_constants();
   last_stage = stages - 1;
   interpreter::set_leaves(memory, t, orders);
   for (int k = 0; k < 2; ++k) std::fill_n(memory.row(k), unknowns, 0.0);
@@ -187,7 +218,7 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   std::copy(v.begin(), v.end(), memory.row(1));
   for (int stage = program.first_stage; stage < stages; ++stage) {
     if (stage >= 0) std::fill_n(memory.row(stage + 2), unknowns, 0.0);
-    interpreter::run_section(memory, Dynamics, stage);
+    engine.run_stage(tables, stage);
     if (stage == 0)
       if (const auto status = factor(); status != KernelStatus::Ok) return status;
     if (stage >= 0) {
@@ -195,6 +226,7 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
       if (stage == 0 && !constraints_agree()) return KernelStatus::Contradiction;
       correct(stage);
     }
+    engine.renew_blocks(tables, stage);
     interpreter::run_section(memory, Along, stage);
     if (stage <= 0) interpreter::run_section(memory, AtPoint, stage);
   }

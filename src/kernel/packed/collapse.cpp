@@ -1,0 +1,145 @@
+#include "kernel/packed/collapse.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace maupertuis::packed {
+namespace {
+
+bool is_sum(const Step& step) { return step.head.op == Op::Linear || step.head.op == Op::Products; }
+
+class Collapse {
+ public:
+  Collapse(Program& program, std::vector<Step>& steps, std::size_t longest)
+      : program_(program), steps_(steps), longest_(longest), sum_of_(program.slots, nullptr) {}
+
+  void run() {
+    for (Step& step : steps_) {
+      if (!is_sum(step)) continue;
+      write_out(step);
+      if (step.products.empty()) sum_of_[step.head.out] = &step;
+    }
+    drop_unread();
+  }
+
+ private:
+  /// The smallest sums first, as long as there is room.
+  void write_out(Step& step) {
+    std::vector<const Term*> by_size;
+    for (const Term& term : step.linear) by_size.push_back(&term);
+    const auto size = [&](const Term* term) { return can_enter(*term) ? sum_of_[term->a]->linear.size() : 0; };
+    std::stable_sort(by_size.begin(), by_size.end(), [&](const Term* x, const Term* y) { return size(x) < size(y); });
+    Terms terms;
+    std::size_t left = by_size.size();
+    for (const Term* term : by_size) {
+      --left;
+      if (size(term) > 0 && terms.size() + size(term) + left <= longest_)
+        for (const Term& inner : sum_of_[term->a]->linear)
+          add(terms, {multiply(term->coefficient, inner.coefficient), inner.a, no_slot, inner.shift + term->shift});
+      else
+        add(terms, *term);
+    }
+    step.linear.clear();
+    for (const auto& [place, coefficient] : terms) step.linear.push_back({coefficient, place.first, no_slot, place.second});
+  }
+
+  using Terms = std::map<std::pair<Slot, std::uint32_t>, ConstantId>;
+
+  bool can_enter(const Term& term) const {
+    const Step* const sum = sum_of_[term.a];
+    if (!sum) return false;
+    return std::all_of(sum->linear.begin(), sum->linear.end(),
+                       [&](const Term& inner) { return inner.shift + term.shift <= Term::most_shift; });
+  }
+
+  void add(Terms& terms, const Term& term) {
+    if (term.shift > 0 && term.a == program_.one) return;
+    const auto [place, fresh] = terms.try_emplace({term.a, term.shift}, term.coefficient);
+    if (!fresh) place->second = apply(Kind::Sum, place->second, term.coefficient);
+  }
+
+  ConstantId multiply(ConstantId x, ConstantId y) {
+    const auto is_one = [&](ConstantId id) {
+      return program_.constants[id].kind == Kind::Number && program_.constants[id].value == 1;
+    };
+    return is_one(x) ? y : is_one(y) ? x : apply(Kind::Product, x, y);
+  }
+
+  ConstantId apply(Kind kind, ConstantId x, ConstantId y) {
+    const auto [place, fresh] = made_.try_emplace({kind, x, y}, 0);
+    if (!fresh) return place->second;
+    const auto first = static_cast<std::uint32_t>(program_.constant_arguments.size());
+    program_.constant_arguments.insert(program_.constant_arguments.end(), {x, y});
+    program_.constants.push_back({.kind = kind, .first_argument = first, .arguments = 2});
+    return place->second = static_cast<ConstantId>(program_.constants.size() - 1);
+  }
+
+  void drop_unread() {
+    std::vector<bool> read(program_.slots, false);
+    const auto reads = [&](Slot slot) { if (slot != no_slot) read[slot] = true; };
+    for (const auto* slots : {&program_.residual, &program_.constraint_values, &program_.constraint_rates, &program_.switch_slots,
+                              &program_.events, &program_.observables, &program_.integrands})
+      for (const Slot slot : *slots) reads(slot);
+    for (const Section section : {Along, AtPoint})
+      for (const Run& run : program_.runs[section])
+        for (std::uint32_t i = run.first; i < run.last; ++i) {
+          const Instruction& instruction = program_.instructions[i];
+          reads(instruction.a), reads(instruction.b);
+          for (std::uint32_t t = instruction.first_term; t < instruction.last_term; ++t)
+            reads(program_.terms[t].a), reads(program_.terms[t].b);
+        }
+    // A Function reads the factors of its differential, which may come after it.
+    for (const Step& step : steps_)
+      if (step.head.op == Op::Function)
+        for (const Term& term : step.products) reads(term.a);
+    std::vector<Step> kept;
+    for (auto step = steps_.rbegin(); step != steps_.rend(); ++step) {
+      const bool needed = !is_sum(*step) || read[step->head.out];
+      if (!needed) continue;
+      for_operands(*step, [&](Slot slot, int) { read[slot] = true; });
+      kept.push_back(std::move(*step));
+    }
+    std::reverse(kept.begin(), kept.end());
+    steps_ = std::move(kept);
+  }
+
+  Program& program_;
+  std::vector<Step>& steps_;
+  std::size_t longest_;
+  std::vector<const Step*> sum_of_;     // [slots]
+  std::map<std::tuple<Kind, ConstantId, ConstantId>, ConstantId> made_;
+};
+
+ConstantId one_of(Program& program) {
+  program.constants.push_back({.kind = Kind::Number, .value = 1});
+  return static_cast<ConstantId>(program.constants.size() - 1);
+}
+
+}  // namespace
+
+std::vector<Step> dynamics_of(const Program& program) {
+  std::vector<Step> steps;
+  for (const Run& run : program.runs[Dynamics])
+    for (std::uint32_t i = run.first; i < run.last; ++i) {
+      Step step{.head = program.instructions[i]};
+      for (std::uint32_t t = step.head.first_term; t < step.head.last_term; ++t) {
+        const Term& term = program.terms[t];
+        (term.b == no_slot ? step.linear : step.products).push_back(term);
+      }
+      steps.push_back(std::move(step));
+    }
+  return steps;
+}
+
+void collapse_sums(Program& program, std::vector<Step>& steps, std::size_t longest) {
+  const ConstantId one = one_of(program);
+  for (Step& step : steps) {
+    if (step.head.op != Op::Derivative) continue;
+    step.linear = {{one, step.head.a, no_slot, 1}};
+    step.head.op = Op::Linear;
+    step.head.a = no_slot;
+  }
+  Collapse(program, steps, longest).run();
+}
+
+}  // namespace maupertuis::packed

@@ -1,0 +1,33 @@
+#pragma once
+#include "kernel/program/program.hpp"
+
+#include <vector>
+
+namespace maupertuis::packed {
+
+/// An instruction with terms of its own.
+struct Step {
+  Instruction head;
+  std::vector<Term> linear, products;   // Function: its differential is in `products`; Select: its choices in `linear`
+};
+
+/// The instructions of section Dynamics, in order; d/dt has become a linear term with a shift.
+std::vector<Step> dynamics_of(const Program& program);
+
+/// Writes sums that sums read out in them, so that fewer wait for each other, and drops those that nothing reads any more.
+/// A sum gets at most `longest` terms that way. New coefficients are appended to the program's constants.
+void collapse_sums(Program& program, std::vector<Step>& steps, std::size_t longest);
+
+/// Calls f(slot, shift) for each operand whose value of the same time is needed.
+template <class F>
+void for_operands(const Step& step, F&& f) {
+  if (step.head.a != no_slot) f(step.head.a, 0);
+  if (step.head.b != no_slot) f(step.head.b, 0);
+  for (const Term& term : step.linear) f(term.a, static_cast<int>(term.shift));
+  for (const Term& term : step.products) {
+    if (step.head.op != Op::Function) f(term.a, 0);
+    f(term.b, 0);
+  }
+}
+
+}  // namespace maupertuis::packed

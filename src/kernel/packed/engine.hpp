@@ -1,0 +1,47 @@
+#pragma once
+#include "kernel/packed/layout.hpp"
+
+#include <cstddef>
+
+/// Runs packs on rows of Taylor coefficients. The same source is compiled for several instruction sets, and the best one that
+/// the processor has is taken at run time. Plain structures alone stand at this border, so that no inline function of another header is
+/// compiled for a processor that may not be there.
+namespace maupertuis::packed {
+
+/// What a pack cannot do: one instruction by the reference rules.
+struct ScalarRules {
+  void* context = nullptr;
+  void (*value)(void* context, std::uint32_t instruction, int order) = nullptr;      // of its result at that order
+  void (*tangent)(void* context, std::uint32_t instruction, double* tangents) = nullptr;  // [slots], one direction
+};
+
+struct Tables {
+  const Pack* packs = nullptr;
+  std::size_t pack_count = 0;
+  const Block* blocks = nullptr;
+  std::size_t block_count = 0;
+  const Column* columns = nullptr;
+  const ProductTerm* products = nullptr;
+  const std::uint32_t* functions = nullptr;
+  const double* coefficients = nullptr;  // values of PackedProgram::coefficients
+  double* rows = nullptr;                // [orders][stride], aligned to 64 bytes
+  std::size_t stride = 0;                // a multiple of 8
+  ScalarRules scalar;
+};
+
+struct Engine {
+  const char* name;
+  /// Every pack at the order that belongs to the stage.
+  void (*run_stage)(const Tables&, int stage);
+  /// Copies of blocks, when the coefficients of the stage are final.
+  void (*renew_blocks)(const Tables&, int stage);
+  /// Tangents of order 0 in one direction: in, those of the coordinates; out, those of all slots of Dynamics. [slots]
+  void (*tangents)(const Tables&, double* tangent);
+  /// out += Σ_d factors[d] · columns[d · stride + …], [size]; all sizes multiples of 8.
+  void (*combine)(double* out, const double* columns, std::size_t stride, const double* factors, std::size_t count, std::size_t size);
+};
+
+/// The best one for this processor.
+const Engine& engine();
+
+}  // namespace maupertuis::packed

@@ -1,0 +1,241 @@
+// No include guard: each engine_*.cpp compiles this once, for its own instruction set, in a namespace of its own.
+#include "kernel/packed/engine.hpp"
+
+namespace maupertuis::packed::MAUP_ENGINE {
+namespace {
+
+typedef double Vector __attribute__((vector_size(64), aligned(64)));
+typedef double Unaligned __attribute__((vector_size(64), aligned(8)));
+
+inline Vector load(const double* p) { return *reinterpret_cast<const Unaligned*>(p); }
+inline void save(double* p, Vector v) { *reinterpret_cast<Unaligned*>(p) = v; }
+inline Vector all(double x) { return Vector{x, x, x, x, x, x, x, x}; }
+inline Vector gather(const double* p, const Slot* slots) {
+  return Vector{p[slots[0]], p[slots[1]], p[slots[2]], p[slots[3]], p[slots[4]], p[slots[5]], p[slots[6]], p[slots[7]]};
+}
+
+/// Σ_{j=first..last} a_j b_{k−j}, the newest coefficients last.
+inline Vector convolution(const double* a, const double* b, int first, int last, int k, std::ptrdiff_t stride) {
+  Vector even = all(0), odd = all(0), rest = all(0), more = all(0);
+  int low = (first + last) / 2, high = low + 1;
+  const double* a_low = a + low * stride;
+  const double* b_low = b + (k - low) * stride;
+  const double* a_high = a + high * stride;
+  const double* b_high = b + (k - high) * stride;
+  for (; low > first && high < last; low -= 2, high += 2) {
+    even += load(a_low) * load(b_low);
+    odd += load(a_high) * load(b_high);
+    rest += load(a_low - stride) * load(b_low + stride);
+    more += load(a_high + stride) * load(b_high - stride);
+    a_low -= 2 * stride, b_low += 2 * stride, a_high += 2 * stride, b_high -= 2 * stride;
+  }
+  for (; low >= first; --low, a_low -= stride, b_low += stride) even += load(a_low) * load(b_low);
+  for (; high <= last; ++high, a_high += stride, b_high -= stride) odd += load(a_high) * load(b_high);
+  return (even + rest) + (odd + more);
+}
+
+class Stage {
+ public:
+  Stage(const Tables& tables, int stage) : t_(tables), stride_(static_cast<std::ptrdiff_t>(tables.stride)), stage_(stage) {}
+
+  void run() {
+    for (std::size_t i = 0; i < t_.pack_count; ++i) {
+      const Pack& pack = t_.packs[i];
+      k_ = stage_ + 2 - pack.lag;
+      if (k_ < 0) continue;
+      row_ = t_.rows + k_ * stride_;
+      switch (pack.kind) {
+        case Pack::Sum: sum(pack); break;
+        case Pack::Integral: integral(pack); break;
+        case Pack::Quotient: quotient(pack); break;
+        case Pack::SquareRoot: square_root(pack); break;
+        case Pack::Scalar: t_.scalar.value(t_.scalar.context, pack.instruction, k_); break;
+      }
+    }
+  }
+
+  void renew() {
+    for (std::size_t i = 0; i < t_.block_count; ++i) {
+      const Block& block = t_.blocks[i];
+      const int order = stage_ + 2 - block.lag;
+      if (!block.direct && order >= 0) copy(block, order);
+    }
+  }
+
+ private:
+  const double* coefficients(std::uint32_t first) const { return t_.coefficients + first; }
+  const double* cells(std::uint32_t block) const { return t_.rows + t_.blocks[block].first; }
+
+  void copy(const Block& block, int order) const {
+    double* const row = t_.rows + order * stride_;
+    const Vector values = gather(row, block.slots.data());
+    save(row + block.first, block.weighted ? values * all(order) : values);
+  }
+
+  /// An operand of the order that is being computed is not final, and its copy not there.
+  void bring(std::uint32_t index) const {
+    const Block& block = t_.blocks[index];
+    const int order = stage_ + 2 - block.lag;
+    if (!block.direct && order >= 0 && order <= k_) copy(block, order);
+  }
+
+  void sum(const Pack& pack) const {
+    Vector plain = all(0), once = all(0), twice = all(0);
+    for (std::uint32_t c = pack.first_column; c < pack.last_column; ++c) {
+      const Column& column = t_.columns[c];
+      const double* const from = row_ + column.shift * stride_;
+      const Vector values = column.kind == Column::Broadcast ? all(from[column.source])
+                            : column.kind == Column::Contiguous ? load(from + column.source) : gather(from, column.sources.data());
+      const Vector term = load(coefficients(column.coefficients)) * values;
+      if (column.shift == 0) plain += term;
+      else if (column.shift == 1) once += term;
+      else twice += term;
+    }
+    Vector result = plain + (all(k_ + 1.0) * once + all((k_ + 1.0) * (k_ + 2.0)) * twice);
+    for (std::uint32_t p = pack.first_product; p < pack.last_product; ++p) {
+      const ProductTerm& term = t_.products[p];
+      bring(term.a);
+      if (term.b != term.a) bring(term.b);
+      const double *a = cells(term.a), *b = cells(term.b);
+      result += load(coefficients(term.coefficients)) *
+                (k_ == 0 ? load(a) * load(b) : term.a == term.b ? self(a, 0) : convolution(a, b, 0, k_, k_, stride_));
+    }
+    save(row_ + pack.out, result);
+  }
+
+  /// Σ_{j=first..k−first} a_j a_{k−j}, each pair once.
+  Vector self(const double* a, int first) const {
+    Vector sum = all(0);
+    for (int j = (k_ - 1) / 2; j >= first; --j) sum += load(a + j * stride_) * load(a + (k_ - j) * stride_);
+    sum += sum;
+    if (k_ % 2 == 0 && k_ / 2 >= first) {
+      const Vector middle = load(a + k_ / 2 * stride_);
+      sum += middle * middle;
+    }
+    return sum;
+  }
+
+  void integral(const Pack& pack) const {
+    if (k_ == 0) {
+      for (std::uint32_t f = pack.first_function; f < pack.last_function; ++f) t_.scalar.value(t_.scalar.context, t_.functions[f], 0);
+      return;
+    }
+    bring(pack.a);
+    bring(pack.b);
+    const Vector sum = k_ == 1 ? load(cells(pack.a) + stride_) * load(cells(pack.b))
+                               : convolution(cells(pack.a), cells(pack.b), 1, k_, k_, stride_);
+    save(row_ + pack.out, load(coefficients(pack.coefficients)) * sum / all(k_));
+  }
+
+  void quotient(const Pack& pack) const {
+    bring(pack.a), bring(pack.b);
+    const Vector a = load(row_ + t_.blocks[pack.a].first);
+    const double *b = cells(pack.b), *y = cells(pack.y);
+    Vector sum = all(0);
+    for (int j = 1; j <= k_; ++j) sum += load(b + j * stride_) * load(y + (k_ - j) * stride_);
+    save(row_ + pack.out, (a - sum) / load(b));
+  }
+
+  void square_root(const Pack& pack) const {
+    bring(pack.a);
+    const Vector u = load(row_ + t_.blocks[pack.a].first);
+    const double* const y = cells(pack.y);
+    Vector result;
+    if (k_ == 0)
+      for (unsigned lane = 0; lane < lanes; ++lane) result[lane] = __builtin_sqrt(u[lane]);
+    else
+      result = (u - self(y, 1)) / (load(y) + load(y));
+    save(row_ + pack.out, result);
+  }
+
+  const Tables& t_;
+  std::ptrdiff_t stride_;
+  int stage_, k_ = 0;
+  double* row_ = nullptr;
+};
+
+void run_stage(const Tables& tables, int stage) { Stage(tables, stage).run(); }
+void renew_blocks(const Tables& tables, int stage) { Stage(tables, stage).renew(); }
+
+/// As the reference: the highest derivative of q in a slot of lag ℓ enters through operands of lag ℓ alone.
+class Tangents {
+ public:
+  Tangents(const Tables& tables, double* tangent) : t_(tables), tangent_(tangent) {}
+
+  void run() const {
+    for (std::size_t i = 0; i < t_.pack_count; ++i) {
+      const Pack& pack = t_.packs[i];
+      switch (pack.kind) {
+        case Pack::Sum: sum(pack); break;
+        case Pack::Integral: integral(pack); break;
+        case Pack::Quotient: quotient(pack); break;
+        case Pack::SquareRoot: save(tangent_ + pack.out, of(pack, pack.a) / (load(value(pack.y)) + load(value(pack.y)))); break;
+        case Pack::Scalar: t_.scalar.tangent(t_.scalar.context, pack.instruction, tangent_); break;
+      }
+    }
+  }
+
+ private:
+  const double* value(std::uint32_t block) const { return t_.rows + t_.blocks[block].first; }
+  Vector value_of(std::uint32_t index) const {
+    const Block& block = t_.blocks[index];
+    return block.direct ? load(t_.rows + block.first) : gather(t_.rows, block.slots.data());
+  }
+  /// The tangents of a block's slots where they pass, else 0.
+  Vector of(const Pack& pack, std::uint32_t index) const {
+    const Block& block = t_.blocks[index];
+    if (block.lag != pack.lag) return all(0);
+    return block.direct ? load(tangent_ + block.first) : gather(tangent_, block.slots.data());
+  }
+
+  void sum(const Pack& pack) const {
+    Vector result = all(0);
+    for (std::uint32_t c = pack.first_column; c < pack.last_column; ++c) {
+      const Column& column = t_.columns[c];
+      if (!column.passes_tangent) continue;
+      const Vector values = column.kind == Column::Broadcast ? all(tangent_[column.source])
+                            : column.kind == Column::Contiguous ? load(tangent_ + column.source) : gather(tangent_, column.sources.data());
+      result += load(t_.coefficients + column.coefficients) * values;
+    }
+    for (std::uint32_t p = pack.first_product; p < pack.last_product; ++p) {
+      const ProductTerm& term = t_.products[p];
+      const Vector change = of(pack, term.a) * value_of(term.b) + value_of(term.a) * of(pack, term.b);
+      result += load(t_.coefficients + term.coefficients) * change;
+    }
+    save(tangent_ + pack.out, result);
+  }
+
+  void integral(const Pack& pack) const {
+    save(tangent_ + pack.out, load(t_.coefficients + pack.coefficients) * value_of(pack.b) * of(pack, pack.a));
+  }
+
+  void quotient(const Pack& pack) const {
+    const Vector y = value_of(pack.y);
+    save(tangent_ + pack.out, (of(pack, pack.a) - y * of(pack, pack.b)) / value_of(pack.b));
+  }
+
+  const Tables& t_;
+  double* tangent_;
+};
+
+void tangents(const Tables& tables, double* tangent) { Tangents(tables, tangent).run(); }
+
+void combine(double* out, const double* columns, std::size_t stride, const double* factors, std::size_t count, std::size_t size) {
+  for (std::size_t i = 0; i < size; i += lanes) {
+    Vector even = load(out + i), odd = all(0);
+    std::size_t d = 0;
+    for (; d + 1 < count; d += 2) {
+      even += all(factors[d]) * load(columns + d * stride + i);
+      odd += all(factors[d + 1]) * load(columns + (d + 1) * stride + i);
+    }
+    if (d < count) even += all(factors[d]) * load(columns + d * stride + i);
+    save(out + i, even + odd);
+  }
+}
+
+}  // namespace
+
+extern const Engine engine;
+const Engine engine{MAUP_ENGINE_NAME, run_stage, renew_blocks, tangents, combine};
+
+}  // namespace maupertuis::packed::MAUP_ENGINE

@@ -1,0 +1,75 @@
+#pragma once
+#include "kernel/program/program.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+/// The same program, laid out for vectors: instructions of one shape that do not wait for each other become a *pack* of up
+/// to 8 lanes, whose results lie side by side, and whose operands do too wherever possible.
+namespace maupertuis::packed {
+
+inline constexpr std::uint32_t lanes = 8;
+inline constexpr std::uint32_t no_block = ~std::uint32_t{0};
+
+/// The coefficients of up to 8 operands at all orders, side by side in a row. A *direct* block is a range of slots; any
+/// other keeps copies in cells of its own behind the slots, renewed when the coefficients of an order are final.
+struct Block {
+  Slot first = 0;                       // of the range, or of the cells of its own
+  bool direct = true;
+  bool weighted = false;                // holds k u_k instead of u_k
+  std::int8_t lag = 0;
+  std::uint32_t width = 0;
+  std::array<Slot, lanes> slots{};      // what is copied
+};
+
+/// Σ over columns: coefficient of the lane · dʳ/dtʳ of an operand.
+struct Column {
+  enum Kind : std::uint8_t { Broadcast, Contiguous, Gather } kind = Broadcast;
+  std::uint8_t shift = 0;
+  bool passes_tangent = false;          // lag of the operand + shift = lag of the pack
+  Slot source = 0;                      // Broadcast, Contiguous (the first)
+  std::array<Slot, lanes> sources{};    // Gather
+  std::uint32_t coefficients = 0;       // in PackedProgram::coefficients, `lanes` of them
+};
+
+/// Coefficient of the lane · a · b.
+struct ProductTerm {
+  std::uint32_t a = 0, b = 0;           // blocks
+  std::uint32_t coefficients = 0;
+};
+
+struct Pack {
+  enum Kind : std::uint8_t {
+    Sum,         // columns + products
+    Integral,    // y with dy = c w du: sines, cosines, exponentials, inverse functions
+    Quotient,    // block a / block b
+    SquareRoot,  // of block a
+    Scalar,      // one instruction, by the reference rules
+  } kind = Scalar;
+  std::int8_t lag = 0;
+  std::int8_t level = 0;
+  std::uint32_t width = 0;              // lanes in use
+  Slot out = 0;                         // first of `lanes` slots, beginning at a multiple of it (not for Scalar)
+  std::uint32_t first_column = 0, last_column = 0, first_product = 0, last_product = 0;  // Sum
+  std::uint32_t a = no_block, b = no_block, y = no_block;  // Integral: u (weighted), w; Quotient: a, b, y; SquareRoot: u, –, y
+  std::uint32_t coefficients = 0;       // Integral: c
+  std::uint32_t instruction = 0;        // Scalar
+  std::uint32_t first_function = 0, last_function = 0;  // Integral: what gives order 0, in PackedProgram::functions
+};
+
+struct PackedProgram {
+  Program program;                      // renumbered, with slots between packs that nothing uses
+  std::size_t cells = 0;                // slots and cells of blocks: doubles of a row
+  std::vector<Pack> packs;              // section Dynamics, in order of execution
+  std::vector<Block> blocks;
+  std::vector<Column> columns;
+  std::vector<ProductTerm> products;
+  std::vector<std::uint32_t> functions; // indices of instructions
+  std::vector<ConstantId> coefficients; // of lanes that are not in use: the constant 0
+};
+
+/// Cost about linear in the size of the program.
+PackedProgram pack(const Program& program);
+
+}  // namespace maupertuis::packed
