@@ -1,14 +1,26 @@
 #pragma once
 #include <maupertuis/expression.hpp>
+#include <maupertuis/rational.hpp>
 
 #include <span>
 
 namespace maupertuis::interpreter {
 
+/// How a number type takes exact numbers. A type of more digits brings its own, beside itself.
+template <class T>
+T pi();
+template <class T>
+T from_rational(const Rational& value);
+
+template <>
+inline double pi<double>() { return 3.14159265358979323846; }
+
 /// f(x) of an elementary function of one argument, or f(x, y) of atan2.
-double elementary(Kind function, double x, double y = 0);
+template <class T>
+T elementary(Kind function, const T& x, const T& y);
 
 /// Any operation on constants: sums, products, powers, functions, comparisons (1 or 0), piecewise.
-double constant_operation(Kind kind, std::span<const double> operands);
+template <class T>
+T constant_operation(Kind kind, std::span<const T> operands);
 
 }  // namespace maupertuis::interpreter

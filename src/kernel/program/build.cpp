@@ -62,6 +62,7 @@ Kernel build_kernel(const KernelSource& source) {
 
   program->constants = std::move(lowering.graph.constants.constants);
   program->constant_arguments = std::move(lowering.graph.constants.arguments);
+  program->literals = std::move(lowering.graph.constants.literals);
   program->freedoms = source.coordinates.size();
   program->unknowns = source.coordinates.size() + source.multipliers.size();
   for (const KernelConstraint& c : source.constraints) program->constraint_names.push_back(c.name);

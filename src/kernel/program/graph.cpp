@@ -22,7 +22,10 @@ ConstantId ConstantPool::append(Constant constant, std::optional<Rational> ratio
 
 ConstantId ConstantPool::literal(const Rational& value) {
   const auto [place, fresh] = literals_.try_emplace(value.to_string(), 0);
-  if (fresh) place->second = append({.kind = Kind::Number, .value = value.to_double()}, value);
+  if (fresh) {
+    place->second = append({.kind = Kind::Number, .value = value.to_double(), .index = static_cast<std::uint32_t>(literals.size())}, value);
+    literals.push_back(value);
+  }
   return place->second;
 }
 

@@ -51,6 +51,7 @@ class ConstantPool {
 
   std::vector<Constant> constants;
   std::vector<ConstantId> arguments;
+  std::vector<Rational> literals;
 
  private:
   ConstantId append(Constant constant, std::optional<Rational> rational);

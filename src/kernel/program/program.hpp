@@ -1,5 +1,6 @@
 #pragma once
 #include <maupertuis/kernel.hpp>
+#include <maupertuis/rational.hpp>
 
 #include <array>
 #include <cstdint>
@@ -66,7 +67,7 @@ struct Instruction {
 struct Constant {
   Kind kind = Kind::Number;
   double value = 0;                          // Number
-  std::uint32_t index = 0;                   // Symbol: parameter; Sign without arguments: switch
+  std::uint32_t index = 0;                   // Number: literal; Symbol: parameter; Sign without arguments: switch
   std::uint32_t first_argument = 0, arguments = 0;  // in Program::constant_arguments
 };
 
@@ -88,6 +89,7 @@ enum Section : std::uint8_t {
 struct Program {
   std::vector<Constant> constants;
   std::vector<ConstantId> constant_arguments;
+  std::vector<Rational> literals;         // the Numbers among the constants, exactly
   std::vector<Instruction> instructions;  // in order of execution
   std::vector<Term> terms;
   std::array<std::vector<Run>, SectionCount> runs;
