@@ -1,0 +1,128 @@
+#pragma once
+#include "kernel/program/program.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+/// A program made ready for lanes. What depends on its structure alone is found once: through which operands tangents at order 0
+/// go, and which of them vanish, so that M₀ and the corrections of stored slots are short lists of products.
+namespace maupertuis::lanes {
+
+/// The partial derivative of an instruction by one operand at order 0.
+struct Factor {
+  enum class Kind : std::uint8_t {
+    Constant,   // c
+    Scaled,     // c x
+    Twice,      // 2 x
+    Reciprocal, // 1 / x
+    Slope,      // −x / y
+    HalfRoot,   // 1 / (2 x)
+    Exponent,   // c x / y
+    Plus,       // x
+    Minus,      // −x
+    One,
+    Chosen,     // not 0 where the operand of term `x` of the Select with terms [constant, y) is the one in force
+  };
+  Kind kind;
+  ConstantId constant = 0;
+  std::uint32_t x = 0, y = 0;  // slots
+};
+
+struct Pair {
+  std::uint32_t factor, tangent;
+};
+
+/// tangents[out] = Σ factor · tangent over pairs, or of a Select the tangent whose factor is not 0.
+struct Combination {
+  std::uint32_t out, first, last;
+  bool chooses;
+};
+
+struct MassEntry {
+  std::uint32_t row, column, tangent;
+};
+
+struct CorrectionTerm {
+  std::uint32_t direction, tangent;
+};
+/// A stored slot follows the accelerations: slot += Σ tangent · direction.
+struct Correction {
+  Slot slot;
+  std::uint32_t first, last;
+};
+
+/// Plain arrays, for code that calls nothing of the standard library.
+struct PlanView {
+  const Instruction* instructions;
+  const Term* terms;
+  const Run* runs;
+  std::size_t run_count;
+  const Factor* factors;
+  std::size_t factor_count;
+  const Pair* pairs;
+  const Combination* combinations;
+  std::size_t combination_count, tangent_count;
+  const MassEntry* mass;
+  std::size_t mass_count;
+  const Correction* corrections;
+  const CorrectionTerm* correction_terms;
+  std::size_t corrections_end[3];  // by lag
+  const Slot* residual;
+  std::size_t unknowns, stride;
+  int first_stage;
+};
+
+class Plan {
+ public:
+  /// The program must outlive the plan. Precondition: it has no constraints.
+  explicit Plan(const Program& program);
+  PlanView view() const;
+
+ private:
+  void find_needed(const Program& program);
+  void add_instruction(const Program& program, const Instruction& i);
+  void add_tangents(const Instruction& i, Slot out, std::uint32_t first_edge);
+  void add_corrections(const Program& program);
+  std::uint32_t tangent_of(Slot slot, std::size_t direction) const;
+
+  /// One operand that passes tangents on to the instruction at hand.
+  struct Edge {
+    std::uint32_t factor;
+    Slot operand;
+  };
+  /// The directions in which a slot moves, ascending, and where its tangents are.
+  struct Moves {
+    std::vector<std::uint32_t> directions;
+    std::uint32_t first = 0;
+  };
+
+  const Program& program_;
+  std::vector<bool> needed_;            // [slots]
+  std::vector<Moves> moves_;            // [slots]
+  std::vector<Edge> edges_;
+  std::uint32_t tangents_ = 0;
+  std::vector<Factor> factors_;
+  std::vector<Pair> pairs_;
+  std::vector<Combination> combinations_;
+  std::vector<MassEntry> mass_;
+  std::vector<Correction> corrections_;
+  std::vector<CorrectionTerm> correction_terms_;
+  std::size_t corrections_end_[3] = {};
+};
+
+/// The elementary functions of the reference interpreter, one lane at a time.
+double elementary_function(Kind function, double x, double y);
+double power_function(double x, double y);
+
+using Expander = void (*)(const PlanView& plan, double* rows, const double* constants, double* quality, double* scratch,
+                          int stages);
+/// One function a width: W = 1, 2, 4, 8, 16; null where the build lacks the instruction set.
+struct Expanders {
+  Expander of_width[5] = {};
+};
+Expanders baseline_expanders();
+Expanders avx2_expanders();
+Expanders avx512_expanders();
+
+}  // namespace maupertuis::lanes

@@ -1,0 +1,102 @@
+#include "kernel/interpreter/elementary.hpp"
+#include "kernel/lanes/lanes.hpp"
+
+#include <maupertuis/lanes.hpp>
+#include <maupertuis/require.hpp>
+
+#include <new>
+
+namespace maupertuis {
+namespace lanes {
+
+void evaluate_constants(const Program& program, std::span<const double> parameters, double* constants, std::size_t width) {
+  std::vector<double> operands;
+  for (std::size_t i = 0; i < program.constants.size(); ++i) {
+    const Constant& constant = program.constants[i];
+    double& value = constants[i * width];
+    if (constant.kind == Kind::Number) { value = constant.value; continue; }
+    if (constant.kind == Kind::Symbol) { value = parameters[constant.index]; continue; }
+    operands.clear();
+    for (std::uint32_t k = 0; k < constant.arguments; ++k)
+      operands.push_back(constants[program.constant_arguments[constant.first_argument + k] * width]);
+    value = interpreter::constant_operation<double>(constant.kind, operands);
+  }
+}
+
+}  // namespace lanes
+
+namespace {
+
+/// Zeros at an address that vector instructions like.
+class AlignedArray {
+ public:
+  explicit AlignedArray(std::size_t size) : data_(static_cast<double*>(::operator new(size * sizeof(double), alignment))) {
+    for (std::size_t i = 0; i < size; ++i) data_[i] = 0;
+  }
+  ~AlignedArray() { ::operator delete(data_, alignment); }
+  AlignedArray(const AlignedArray&) = delete;
+  AlignedArray& operator=(const AlignedArray&) = delete;
+  double* data() { return data_; }
+  const double* data() const { return data_; }
+
+ private:
+  static constexpr std::align_val_t alignment{64};
+  double* data_;
+};
+
+std::size_t orders_of(const Program& program, int order) {
+  return static_cast<std::size_t>(order + 2 + (-2 - program.first_stage));
+}
+
+}  // namespace
+
+struct LaneWorkspace::Impl {
+  Impl(const Kernel& k, int p, std::shared_ptr<const LaneExpansion> e)
+      : kernel(k), program(k.program()), expansion(std::move(e)), order(p),
+        width(static_cast<std::size_t>(expansion->width())), row(lanes::row_stride(program) * width),
+        rows(orders_of(program, p) * row), constants((program.constants.size() + 1) * width), quality(width),
+        scratch(lanes::scratch_size(program) * width), unused_time(width) {
+    for (std::size_t lane = 0; lane < width; ++lane) {
+      if (program.one != no_slot) rows.data()[program.one * width + lane] = 1;
+      if (program.time != no_slot && orders_of(program, p) > 1) rows.data()[row + program.time * width + lane] = 1;
+    }
+  }
+
+  Kernel kernel;
+  const Program& program;
+  std::shared_ptr<const LaneExpansion> expansion;
+  int order;
+  std::size_t width, row;  // doubles of a row
+  AlignedArray rows, constants, quality, scratch, unused_time;
+};
+
+LaneWorkspace::LaneWorkspace(const Kernel& kernel, int order, std::shared_ptr<const LaneExpansion> expansion) {
+  MAUP_REQUIRE(order >= 1 && fits_lanes(kernel));
+  impl_ = std::make_unique<Impl>(kernel, order, std::move(expansion));
+}
+LaneWorkspace::~LaneWorkspace() = default;
+LaneWorkspace::LaneWorkspace(LaneWorkspace&&) noexcept = default;
+
+int LaneWorkspace::width() const { return static_cast<int>(impl_->width); }
+int LaneWorkspace::order() const { return impl_->order; }
+
+void LaneWorkspace::set_parameters(int lane, std::span<const double> values) {
+  MAUP_REQUIRE(values.size() == impl_->program.parameters && lane >= 0 && lane < width());
+  lanes::evaluate_constants(impl_->program, values, impl_->constants.data() + lane, impl_->width);
+}
+
+double* LaneWorkspace::time() {
+  const Slot slot = impl_->program.time;
+  return slot == no_slot ? impl_->unused_time.data() : impl_->rows.data() + slot * impl_->width;
+}
+double* LaneWorkspace::coordinate(int k) { return impl_->rows.data() + static_cast<std::size_t>(k) * impl_->row; }
+const double* LaneWorkspace::coordinate(int k) const { return impl_->rows.data() + static_cast<std::size_t>(k) * impl_->row; }
+
+void LaneWorkspace::expand() {
+  Impl& s = *impl_;
+  s.expansion->expand(s.rows.data(), s.constants.data(), s.quality.data(), s.scratch.data(), s.order);
+}
+
+const double* LaneWorkspace::quality() const { return impl_->quality.data(); }
+
+}  // namespace maupertuis
