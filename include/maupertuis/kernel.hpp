@@ -49,6 +49,11 @@ struct SwitchFunction {
 
 struct Program;
 
+namespace packed {
+struct CompiledKernel;
+struct PackedProgram;
+}
+
 /// An immutable compiled system; cheap to copy, safe to share between threads.
 class Kernel {
  public:
@@ -149,6 +154,11 @@ class KernelWorkspace {
   std::size_t singular_coordinate() const;
   /// After Contradiction.
   std::size_t contradicting_constraint() const;
+
+  /// What a compiler needs to know, and its result: from then on `expand` runs that code.
+  const packed::PackedProgram& packed_program() const;
+  std::size_t row_stride() const;
+  void adopt(const packed::CompiledKernel& compiled);
 
  private:
   struct Impl;

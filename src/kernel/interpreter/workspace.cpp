@@ -1,6 +1,8 @@
+#include "kernel/interpreter/elementary.hpp"
 #include "kernel/interpreter/interpreter.hpp"
 #include "kernel/jet/bordered_solver.hpp"
 #include "kernel/jet/small_inverse.hpp"
+#include "kernel/packed/compiled.hpp"
 #include "kernel/packed/engine.hpp"
 
 #include <maupertuis/require.hpp>
@@ -42,6 +44,8 @@ struct KernelWorkspace::Impl {
   void bind();
   void compute_constants();
   KernelStatus run(double t, std::span<const double> q, std::span<const double> v, int stages);
+  void run_along(int stage);
+  bool run_compiled(int stages);
   void sweep(std::size_t direction);
   void sweep_block(std::size_t first);
   KernelStatus factor();
@@ -73,6 +77,8 @@ struct KernelWorkspace::Impl {
   std::vector<const Instruction*> producer;  // [slots]
   std::size_t singular = 0, contradicting = 0;
   int last_stage = 0;
+  packed::CompiledKernel compiled;
+  packed::CompiledArguments arguments;
 };
 
 /// The engine's view of this workspace.
@@ -216,6 +222,7 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   for (int k = 0; k < 2; ++k) std::fill_n(memory.row(k), unknowns, 0.0);
   std::copy(q.begin(), q.end(), memory.row(0));
   std::copy(v.begin(), v.end(), memory.row(1));
+  if (run_compiled(stages)) return KernelStatus::Ok;
   for (int stage = program.first_stage; stage < stages; ++stage) {
     if (stage >= 0) std::fill_n(memory.row(stage + 2), unknowns, 0.0);
     engine.run_stage(tables, stage);
@@ -227,10 +234,23 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
       correct(stage);
     }
     engine.renew_blocks(tables, stage);
-    interpreter::run_section(memory, Along, stage);
-    if (stage <= 0) interpreter::run_section(memory, AtPoint, stage);
+    run_along(stage);
   }
   return KernelStatus::Ok;
+}
+
+/// What follows the solution of a stage.
+void KernelWorkspace::Impl::run_along(int stage) {
+  if (!program.runs[Along].empty()) interpreter::run_section(memory, Along, stage);
+  if (stage <= 0 && !program.runs[AtPoint].empty()) interpreter::run_section(memory, AtPoint, stage);
+}
+
+/// False: there is no code for this, or its results are not to be trusted.
+bool KernelWorkspace::Impl::run_compiled(int stages) {
+  if (!compiled.expand || stages != compiled.order || compiled.expand(&arguments) != 0) return false;
+  const int last = program.runs[Along].empty() ? 1 : stages;
+  for (int stage = program.first_stage; stage < last; ++stage) run_along(stage);
+  return true;
 }
 
 double KernelWorkspace::Impl::coefficient(Slot slot, int k) const {
@@ -244,6 +264,27 @@ KernelWorkspace::~KernelWorkspace() = default;
 KernelWorkspace::KernelWorkspace(KernelWorkspace&&) noexcept = default;
 
 int KernelWorkspace::order() const { return impl_->order; }
+
+const packed::PackedProgram& KernelWorkspace::packed_program() const { return impl_->packed; }
+std::size_t KernelWorkspace::row_stride() const { return impl_->memory.stride; }
+
+void KernelWorkspace::adopt(const packed::CompiledKernel& compiled) {
+  Impl& s = *impl_;
+  MAUP_REQUIRE(compiled.stride == s.memory.stride && s.by_matrix);
+  s.compiled = compiled;
+  s.arguments = {.rows = s.memory.rows.data(), .coefficients = s.lane_coefficients.data(),
+                 .term_coefficients = s.memory.coefficients.data(), .constants = s.memory.constants.data(),
+                 .bordered = s.bordered.data(), .inverse = s.inverse.data(), .self = &s,
+                 .invert = [](void* self) {
+                   Impl& w = *static_cast<Impl*>(self);
+                   w.by_inverse = jet::negative_inverse(w.bordered, w.unknowns, w.inverse.data(), w.padded_unknowns());
+                   return w.by_inverse;
+                 },
+                 .sincos = s.engine.sine_cosine,
+                 .elementary = [](std::uint8_t kind, double x, double y) {
+                   return static_cast<Kind>(kind) == Kind::Power ? std::pow(x, y) : interpreter::elementary(static_cast<Kind>(kind), x, y);
+                 }};
+}
 
 void KernelWorkspace::set_parameters(std::span<const double> values) {
   MAUP_REQUIRE(values.size() == impl_->parameters.size());

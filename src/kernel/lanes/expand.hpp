@@ -1,7 +1,7 @@
 #pragma once
+#include "kernel/jet/sine_cosine.hpp"
 #include "kernel/lanes/plan.hpp"
 #include "kernel/lanes/recurrences.hpp"
-#include "kernel/lanes/sine_cosine.hpp"
 
 /// The structured Taylor step of docs/design/kernel_program.md for W lanes: the stages of KernelWorkspace without constraints.
 /// Each file that includes this is compiled for one instruction set (see vector.hpp for what that asks).

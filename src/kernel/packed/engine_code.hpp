@@ -1,4 +1,5 @@
 // No include guard: each engine_*.cpp compiles this once, for its own instruction set, in a namespace of its own.
+#include "kernel/jet/sine_cosine.hpp"
 #include "kernel/packed/engine.hpp"
 
 namespace maupertuis::packed::MAUP_ENGINE {
@@ -32,6 +33,20 @@ inline Vector convolution(const double* a, const double* b, int first, int last,
   for (; low >= first; --low, a_low -= stride, b_low += stride) even += load(a_low) * load(b_low);
   for (; high <= last; ++high, a_high += stride, b_high -= stride) odd += load(a_high) * load(b_high);
   return (even + rest) + (odd + more);
+}
+
+template <int W>
+void sine_cosine_of(const double* x, double* out, int count) {
+  alignas(64) double padded[W], s[W], c[W];
+  for (int i = 0; i < W; ++i) padded[i] = x[i < count ? i : 0];
+  const jet::SineCosine<W> value(jet::Vec<W>::load(padded));
+  value.sine.store(s), value.cosine.store(c);
+  for (int i = 0; i < count; ++i) out[i] = s[i], out[count + i] = c[i];
+}
+
+void sine_cosine(const double* x, double* out, int count) {
+  return count <= 1 ? sine_cosine_of<1>(x, out, count) : count <= 2 ? sine_cosine_of<2>(x, out, count)
+         : count <= 4 ? sine_cosine_of<4>(x, out, count) : sine_cosine_of<8>(x, out, count);
 }
 
 class Stage {
@@ -116,15 +131,26 @@ class Stage {
   }
 
   void integral(const Pack& pack) const {
-    if (k_ == 0) {
-      for (std::uint32_t f = pack.first_function; f < pack.last_function; ++f) t_.scalar.value(t_.scalar.context, t_.functions[f], 0);
-      return;
-    }
+    if (k_ == 0) return functions(pack);
     bring(pack.a);
     bring(pack.b);
     const Vector sum = k_ == 1 ? load(cells(pack.a) + stride_) * load(cells(pack.b))
                                : convolution(cells(pack.a), cells(pack.b), 1, k_, k_, stride_);
     save(row_ + pack.out, load(coefficients(pack.coefficients)) * sum / all(k_));
+  }
+
+  void functions(const Pack& pack) const {
+    if (pack.pairs == no_block) {
+      for (std::uint32_t f = pack.first_function; f < pack.last_function; ++f) t_.scalar.value(t_.scalar.context, t_.functions[f], 0);
+      return;
+    }
+    const int count = static_cast<int>(pack.last_function - pack.first_function);
+    if (count == 0) return;  // the cosines of the pack before
+    double u[lanes], values[2 * lanes];
+    const Block& block = t_.blocks[pack.a];
+    for (int i = 0; i < count; ++i) u[i] = row_[block.slots[static_cast<unsigned>(i)]];
+    sine_cosine(u, values, count);
+    for (int i = 0; i < count; ++i) row_[pack.out + static_cast<unsigned>(i)] = values[i], row_[pack.pairs + static_cast<unsigned>(i)] = values[count + i];
   }
 
   void quotient(const Pack& pack) const {
@@ -236,6 +262,6 @@ void combine(double* out, const double* columns, std::size_t stride, const doubl
 }  // namespace
 
 extern const Engine engine;
-const Engine engine{MAUP_ENGINE_NAME, run_stage, renew_blocks, tangents, combine};
+const Engine engine{MAUP_ENGINE_NAME, run_stage, renew_blocks, tangents, sine_cosine, combine};
 
 }  // namespace maupertuis::packed::MAUP_ENGINE

@@ -141,7 +141,8 @@ class Layout {
     std::stable_sort(groups_.begin(), groups_.end(), [](const Group& x, const Group& y) { return x.level < y.level; });
     for (Group& group : groups_) {
       const bool pair = step(group.steps[0]).head.second != no_slot;
-      group.packs = can_pack(step(group.steps[0])) && group.steps.size() * (pair ? 2 : 1) >= 2;
+      const std::size_t terms = std::max<std::size_t>(pair ? 2 : 1, step(group.steps[0]).products.size());
+      group.packs = can_pack(step(group.steps[0])) && group.steps.size() * terms >= 2;
     }
   }
 
@@ -329,7 +330,8 @@ class Layout {
   void write_pack(Members members, const Group& group) {
     const Step& shape = step(members[0]);
     Pack pack{.lag = shape.head.lag, .level = static_cast<std::int8_t>(std::min(group.level, 127)),
-              .width = static_cast<std::uint32_t>(members.size()), .out = number_[shape.head.out]};
+              .width = static_cast<std::uint32_t>(members.size()), .out = number_[shape.head.out],
+              .instruction = index_.at(members[0])};
     switch (shape.head.op) {
       case Op::SinCos: return pairs(pack, members, group, -1);
       case Op::SinhCosh: return pairs(pack, members, group, 1);
@@ -379,6 +381,7 @@ class Layout {
     for (const std::size_t i : members)
       u.push_back(number_[step(i).head.a]), out.push_back(number_[step(i).head.out]), second.push_back(number_[step(i).head.second]);
     functions(pack, members);
+    if (sign < 0) pack.pairs = second[0];
     const std::size_t count = members.size();
     if (2 * group.steps.size() <= lanes) {
       pack.width = static_cast<std::uint32_t>(2 * count);
@@ -405,7 +408,9 @@ class Layout {
     pack.kind = Pack::Sum;
     pack.first_column = static_cast<std::uint32_t>(out_.columns.size());
     columns(members, pack.lag);
-    pack.last_column = static_cast<std::uint32_t>(out_.columns.size());
+    pack.first_aligned = pack.last_column = static_cast<std::uint32_t>(out_.columns.size());
+    aligned_columns(members, pack.lag);
+    pack.last_aligned = static_cast<std::uint32_t>(out_.columns.size());
     pack.first_product = static_cast<std::uint32_t>(out_.products.size());
     const Step& shape = step(members[0]);
     if (shape.head.op == Op::Square) {
@@ -466,6 +471,54 @@ class Layout {
       for (std::size_t lane = 0; lane < sums.size(); ++lane) column.sources[lane] = sums[lane][t].a, c.push_back(sums[lane][t].coefficient);
       add_column(column, c, lag);
     }
+  }
+
+  /// One column a place, whatever the sums hold there: a lane whose sum is shorter reads its own operand times 0. Terms of the
+  /// leaf 1 stand apart, since they vanish beyond order 0.
+  void aligned_columns(Members members, int lag) {
+    using Order = std::tuple<std::uint32_t, int, bool, Slot>;
+    std::vector<std::vector<Term>> sums;
+    std::map<std::pair<std::uint32_t, int>, std::size_t> longest;  // by shift and lag
+    std::vector<ConstantId> of_one(lanes, zero_);
+    bool has_one = false;
+    const auto lag_of = [&](const Term& term) { return static_cast<int>(out_.program.lags[term.a]); };
+    for (std::size_t lane = 0; lane < members.size(); ++lane) {
+      std::vector<Term> terms;
+      for (Term term : step(members[lane]).linear) {
+        term.a = number_[term.a];
+        if (term.a == out_.program.one) has_one = true, of_one[lane] = term.coefficient;
+        else terms.push_back(term);
+      }
+      const auto key = [&](const Term& x) { return Order{x.shift, lag_of(x), false, x.a}; };
+      std::stable_sort(terms.begin(), terms.end(), [&](const Term& x, const Term& y) { return key(x) < key(y); });
+      std::map<std::pair<std::uint32_t, int>, std::size_t> count;
+      for (const Term& term : terms) {
+        const std::pair kind{term.shift, lag_of(term)};
+        longest[kind] = std::max(longest[kind], ++count[kind]);
+      }
+      sums.push_back(std::move(terms));
+    }
+    for (const auto& [kind, count] : longest)
+      for (std::size_t t = 0; t < count; ++t) {
+        Column column{.kind = Column::Gather, .shift = static_cast<std::uint8_t>(kind.first)};
+        std::vector<ConstantId> c;
+        Slot any = no_slot;
+        std::vector<Slot> sources;
+        for (const auto& terms : sums) {
+          std::size_t seen = 0;
+          Slot slot = no_slot;
+          ConstantId coefficient = zero_;
+          for (const Term& term : terms)
+            if (std::pair{term.shift, lag_of(term)} == kind && seen++ == t) slot = term.a, coefficient = term.coefficient;
+          sources.push_back(slot), c.push_back(coefficient);
+          if (slot != no_slot) any = slot;
+        }
+        column.sources.fill(any);
+        for (std::size_t lane = 0; lane < sources.size(); ++lane) column.sources[lane] = sources[lane] == no_slot ? any : sources[lane];
+        column.source = any;
+        add_column(column, c, lag);
+      }
+    if (has_one) add_column({.kind = Column::Broadcast, .source = out_.program.one}, of_one, lag);
   }
 
   /// Whether 8 lanes can be read at once. Lanes beyond the sums are multiplied by 0, so that they must hold numbers: they do if

@@ -52,9 +52,11 @@ struct Pack {
   std::uint32_t width = 0;              // lanes in use
   Slot out = 0;                         // first of `lanes` slots, beginning at a multiple of it (not for Scalar)
   std::uint32_t first_column = 0, last_column = 0, first_product = 0, last_product = 0;  // Sum
+  std::uint32_t first_aligned = 0, last_aligned = 0;  // Sum: the same columns by their place in the sums, for compiled code
   std::uint32_t a = no_block, b = no_block, y = no_block;  // Integral: u (weighted), w; Quotient: a, b, y; SquareRoot: u, –, y
   std::uint32_t coefficients = 0;       // Integral: c
-  std::uint32_t instruction = 0;        // Scalar
+  Slot pairs = no_block;                // Integral of sines: the first of their cosines
+  std::uint32_t instruction = 0;        // of the first lane; those of the others follow
   std::uint32_t first_function = 0, last_function = 0;  // Integral: what gives order 0, in PackedProgram::functions
 };
 

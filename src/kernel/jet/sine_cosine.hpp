@@ -1,13 +1,17 @@
 #pragma once
-#include "kernel/lanes/plan.hpp"
-#include "kernel/lanes/vector.hpp"
+#include "kernel/jet/vector.hpp"
 
 /// sin x and cos x of all lanes with an error below one unit in the last place.
 ///
 /// x − n π/2 is found in twice the precision, with π/2 as a sum of three doubles: exact to 2⁻¹⁰⁰ for |x| < 2²⁰, beyond
 /// which a lane is left to the standard library. On |r| ≤ π/4 the minimax polynomials of fdlibm (k_sin.c, k_cos.c;
 /// Sun Microsystems 1993) with the lower half of r as a correction.
-namespace maupertuis::lanes {
+namespace maupertuis::jet {
+
+/// Those of the standard library, in a file of their own (see vector.hpp).
+double standard_sine(double x);
+double standard_cosine(double x);
+
 namespace {
 
 template <int W>
@@ -79,8 +83,8 @@ struct SineCosine {
     x.store(value), sine.store(s), cosine.store(c);
     for (int lane = 0; lane < W; ++lane) {
       if (value[lane] > -0x1p20 && value[lane] < 0x1p20) continue;
-      s[lane] = elementary_function(Kind::Sin, value[lane], 0);
-      c[lane] = elementary_function(Kind::Cos, value[lane], 0);
+      s[lane] = standard_sine(value[lane]);
+      c[lane] = standard_cosine(value[lane]);
     }
     sine = V::load(s), cosine = V::load(c);
   }
@@ -89,4 +93,4 @@ struct SineCosine {
 };
 
 }  // namespace
-}  // namespace maupertuis::lanes
+}  // namespace maupertuis::jet

@@ -13,7 +13,7 @@
 ///
 /// Results do not depend on W nor on the instruction set: products are fused with sums exactly where fma() is
 /// written (the compiler fuses nothing: -ffp-contract=off), one correctly rounded operation everywhere.
-namespace maupertuis::lanes {
+namespace maupertuis::jet {
 namespace {
 
 #if defined(__AVX512F__)
@@ -177,4 +177,4 @@ inline Vec<W> operator/(const Vec<W>& a, const Divisor& d) {
 }
 
 }  // namespace
-}  // namespace maupertuis::lanes
+}  // namespace maupertuis::jet

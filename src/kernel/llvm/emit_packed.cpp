@@ -1,0 +1,898 @@
+#include "kernel/llvm/emit_packed.hpp"
+
+#include "kernel/packed/compiled.hpp"
+
+#include <llvm/IR/IRBuilder.h>
+#include <llvm/IR/Intrinsics.h>
+#include <llvm/IR/Module.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+
+/// A packed program as straight-line code: every stage unrolled, every sum over orders written out, the newest coefficients
+/// kept in registers and added last, so that a stage waits for the one before as late as possible.
+namespace maupertuis::compiler {
+namespace {
+
+using llvm::ArrayRef;
+using llvm::Type;
+using llvm::Value;
+using packed::Block;
+using packed::Column;
+using packed::Pack;
+using packed::PackedProgram;
+using packed::lanes;
+
+constexpr std::size_t most_unknowns = 8;
+constexpr std::size_t most_operations = 40'000;
+
+unsigned width_of(std::size_t count) { return static_cast<unsigned>(std::bit_ceil(count)); }
+
+/// ∂(lanes of a pack)/∂q̈ at order 0. Diagonal: each lane depends on one direction at most.
+struct Tangent {
+  std::vector<int> direction;           // diagonal: of each lane, −1 for none
+  Value* diagonal = nullptr;
+  std::map<int, Value*> dense;          // by direction
+};
+
+/// A place in a vector that holds a slot at the order of the stage.
+struct Place {
+  Value* vector;
+  unsigned lane;
+};
+
+class Emitter {
+ public:
+  Emitter(llvm::Module& module, const PackedProgram& program, std::size_t stride, int order)
+      : module_(module), context_(module.getContext()), b_(context_), p_(program), stride_(stride), order_(order),
+        n_(program.program.unknowns), pack_of_(program.program.slots, nullptr), tangents_(program.packs.size()) {
+    for (const Pack& pack : p_.packs)
+      for (unsigned lane = 0; lane < pack.width; ++lane) {
+        if (pack.kind == Pack::Scalar && p_.program.instructions[pack.instruction].second != no_slot)
+          pack_of_[p_.program.instructions[pack.instruction].second] = &pack;
+        pack_of_[pack.out + lane] = &pack;
+      }
+  }
+
+  void run() {
+    declare();
+    for (int stage = p_.program.first_stage; stage < order_; ++stage) {
+      begin_stage(stage);
+      for (const Pack& pack : p_.packs) dynamics(pack);
+      if (stage == 0) factor();
+      if (stage >= 0) {
+        solve();
+        correct();
+      }
+      renew_blocks();
+    }
+    finish();
+  }
+
+ private:
+  // ------------------------------------------------------------------------------------------------------- scaffold
+
+  void declare() {
+    Type* const pointer = b_.getPtrTy();
+    auto* const type = llvm::FunctionType::get(b_.getInt32Ty(), {pointer}, false);
+    function_ = llvm::Function::Create(type, llvm::Function::ExternalLinkage, "expand", module_);
+    function_->addFnAttr(llvm::Attribute::NoUnwind);
+    b_.SetInsertPoint(llvm::BasicBlock::Create(context_, "", function_));
+    const auto field = [&](std::size_t offset) {
+      return b_.CreateLoad(pointer, b_.CreateConstInBoundsGEP1_64(b_.getInt8Ty(), function_->getArg(0), offset));
+    };
+    rows_ = field(offsetof(packed::CompiledArguments, rows));
+    coefficients_ = field(offsetof(packed::CompiledArguments, coefficients));
+    term_coefficients_ = field(offsetof(packed::CompiledArguments, term_coefficients));
+    constants_ = field(offsetof(packed::CompiledArguments, constants));
+    bordered_ = field(offsetof(packed::CompiledArguments, bordered));
+    inverse_ = field(offsetof(packed::CompiledArguments, inverse));
+    self_ = field(offsetof(packed::CompiledArguments, self));
+    invert_ = field(offsetof(packed::CompiledArguments, invert));
+    sincos_ = field(offsetof(packed::CompiledArguments, sincos));
+    elementary_ = field(offsetof(packed::CompiledArguments, elementary));
+    wide_ = width_of(n_);
+  }
+
+  /// The sum of all q̈_k times 0 tells whether all were finite.
+  void finish() {
+    Value* const zero = vector_of(0.0, wide_);
+    Value* bad = b_.CreateFCmpUNE(check_, zero);
+    if (wide_ > 1) bad = b_.CreateOrReduce(bad);
+    b_.CreateRet(b_.CreateZExt(bad, b_.getInt32Ty()));
+  }
+
+  Type* type(unsigned width) { return width == 1 ? b_.getDoubleTy() : llvm::FixedVectorType::get(b_.getDoubleTy(), width); }
+  Value* vector_of(double x, unsigned width) {
+    llvm::Constant* const scalar = llvm::ConstantFP::get(b_.getDoubleTy(), x);
+    return width == 1 ? scalar : llvm::ConstantVector::getSplat(llvm::ElementCount::getFixed(width), scalar);
+  }
+  unsigned width(const Value* v) {
+    const auto* const t = llvm::dyn_cast<llvm::FixedVectorType>(v->getType());
+    return t ? t->getNumElements() : 1;
+  }
+  static bool is_zero(const Value* v) {
+    const auto* const c = llvm::dyn_cast<llvm::Constant>(v);
+    return c && c->isZeroValue();
+  }
+  Value* cell(int order, std::size_t slot) {
+    return b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), rows_, static_cast<std::uint64_t>(order) * stride_ + slot);
+  }
+  Value* load(Value* pointer, unsigned w) { return b_.CreateAlignedLoad(type(w), pointer, llvm::Align(8)); }
+  void save(Value* pointer, Value* v) { b_.CreateAlignedStore(v, pointer, llvm::Align(8)); }
+  Value* load_from(Value* table, std::size_t index, unsigned w) {
+    return load(b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), table, index), w);
+  }
+  Value* coefficients(std::uint32_t first, unsigned w) { return load_from(coefficients_, first, w); }
+
+  Value* mul(Value* x, Value* y) { return is_zero(x) ? x : is_zero(y) ? y : b_.CreateFMul(x, y); }
+  /// Null stands for a sum without terms.
+  Value* add(Value* x, Value* y) {
+    if (!x || !y) return x ? x : y;
+    return is_zero(x) ? y : is_zero(y) ? x : b_.CreateFAdd(x, y);
+  }
+  /// x y + sum; a null sum is zero.
+  Value* fma(Value* x, Value* y, Value* sum) {
+    if (is_zero(x) || is_zero(y)) return sum ? sum : is_zero(x) ? x : y;
+    if (!sum || is_zero(sum)) return b_.CreateFMul(x, y);
+    return b_.CreateIntrinsic(llvm::Intrinsic::fma, {x->getType()}, {x, y, sum});
+  }
+  Value* splat(double x, const Value* like) { return vector_of(x, width(like)); }
+  /// x / d for a whole number d, without the rounding of 1/d, which would be the same in every step and add up.
+  Value* over(Value* x, double d) {
+    if (d == 1 || is_zero(x)) return x;
+    const double high = 1 / d, low = std::fma(-high, d, 1.0) / d;
+    return low == 0 ? mul(x, splat(high, x)) : fma(x, splat(high, x), mul(x, splat(low, x)));
+  }
+
+  // --------------------------------------------------------------------------------------------------------- values
+
+  void begin_stage(int stage) {
+    stage_ = stage;
+    open_.clear();
+    if (stage < 0) {
+      const int k = stage + 2;
+      coordinates_ = k < 2 && k >= 0 ? load(cell(k, 0), wide_) : nullptr;
+    } else {
+      coordinates_ = vector_of(0.0, wide_);
+    }
+  }
+
+  /// Where the coefficient of this stage stands; nothing: it was not computed in this stage's registers.
+  std::optional<Place> place(Slot slot) const {
+    if (slot < n_) return coordinates_ ? std::optional<Place>({coordinates_, slot}) : std::nullopt;
+    const Pack* const pack = pack_of_[slot];
+    if (!pack) return std::nullopt;
+    const auto found = open_.find(slot_base(*pack, slot));
+    if (found == open_.end()) return std::nullopt;
+    return Place{found->second, slot - found->first};
+  }
+
+  /// The second results of a scalar pair have a vector of their own.
+  Slot slot_base(const Pack& pack, Slot slot) const { return pack.kind == Pack::Scalar ? slot : pack.out; }
+
+  Value* element(const Place& place) {
+    return width(place.vector) == 1 ? place.vector : b_.CreateExtractElement(place.vector, place.lane);
+  }
+
+  int current_order(Slot slot) const { return stage_ + 2 - p_.program.lags[slot]; }
+
+  /// Lanes from up to two vectors by one shuffle, else one by one.
+  Value* assemble(const std::vector<std::optional<Place>>& places, unsigned w, const std::function<Value*(std::size_t)>& other) {
+    std::vector<Value*> sources;
+    bool shuffles = true;
+    for (const auto& p : places) {
+      if (!p || width(p->vector) == 1) { shuffles = false; break; }
+      if (std::find(sources.begin(), sources.end(), p->vector) == sources.end()) sources.push_back(p->vector);
+    }
+    if (w == 1) return places[0] ? element(*places[0]) : other(0);
+    if (shuffles && sources.size() <= 2 && width(sources[0]) == width(sources.back())) return shuffle(places, sources, w);
+    Value* result = llvm::PoisonValue::get(type(w));
+    for (unsigned lane = 0; lane < w; ++lane) {
+      const std::size_t from = std::min<std::size_t>(lane, places.size() - 1);
+      result = b_.CreateInsertElement(result, places[from] ? element(*places[from]) : other(from), lane);
+    }
+    return result;
+  }
+
+  Value* shuffle(const std::vector<std::optional<Place>>& places, const std::vector<Value*>& sources, unsigned w) {
+    const unsigned size = width(sources[0]);
+    std::vector<int> mask;
+    bool identity = w == size && sources.size() == 1;
+    for (unsigned lane = 0; lane < w; ++lane) {
+      const Place& p = *places[std::min<std::size_t>(lane, places.size() - 1)];
+      mask.push_back(static_cast<int>(p.lane + (p.vector == sources[0] ? 0 : size)));
+      identity = identity && (lane >= places.size() || mask.back() == static_cast<int>(lane));
+    }
+    if (identity) return sources[0];
+    return b_.CreateShuffleVector(sources[0], sources.size() > 1 ? sources[1] : llvm::PoisonValue::get(sources[0]->getType()), mask);
+  }
+
+  /// Slots at given orders (one for each), from registers where they were computed in this stage, else from memory.
+  Value* gather(ArrayRef<Slot> slots, int order, unsigned w) {
+    bool range = true, all_zero = true, any_open = false;
+    std::vector<std::optional<Place>> places;
+    for (std::size_t lane = 0; lane < slots.size(); ++lane) {
+      range = range && slots[lane] == slots[0] + lane;
+      places.push_back(current_order(slots[lane]) == order ? place(slots[lane]) : std::nullopt);
+      any_open = any_open || places.back();
+      all_zero = all_zero && places.back() && is_zero(places.back()->vector);
+    }
+    if (all_zero) return vector_of(0.0, w);
+    if (!any_open && range) return load(cell(order, slots[0]), w);
+    const bool same = std::all_of(slots.begin(), slots.end(), [&](Slot s) { return s == slots[0]; });
+    if (!any_open && same && w > 1) return b_.CreateVectorSplat(w, load(cell(order, slots[0]), 1));
+    return assemble(places, w, [&](std::size_t lane) { return load(cell(order, slots[lane]), 1); });
+  }
+
+  /// A block's coefficients of some order, final or of this stage.
+  Value* operand(std::uint32_t index, int order, unsigned w) {
+    const Block& block = p_.blocks[index];
+    const auto newest = newest_.find({index, order});
+    if (newest != newest_.end() && width(newest->second) == w) return newest->second;
+    const ArrayRef<Slot> slots(block.slots.data(), block.width);
+    if (current_order(block.slots[0]) == order) {
+      Value* const values = gather(slots, order, w);
+      return block.weighted ? mul(values, splat(order, values)) : values;
+    }
+    return load(cell(order, block.first), w);
+  }
+
+  /// Σ_{j=first..last} a_j b_{k−j}, from the middle outward in three chains; the ends, which may be of this stage or the last, come last.
+  template <class A, class B>
+  Value* convolution(A&& a, B&& b, int first, int last, int k) {
+    constexpr int chains = 3;
+    Value* sums[chains] = {};
+    std::vector<int> order;
+    for (int j = first; j <= last; ++j) order.push_back(j);
+    std::stable_sort(order.begin(), order.end(), [&](int x, int y) { return std::abs(2 * x - first - last) < std::abs(2 * y - first - last); });
+    int next = 0;
+    const std::size_t ends = order.size() > 4 ? order.size() - 4 : 0;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      // What is newest is added to one finished sum.
+      if (i == ends && ends > 0) sums[0] = add(add(sums[0], sums[1]), sums[2]), sums[1] = sums[2] = nullptr, next = 0;
+      Value*& sum = sums[i < ends ? next++ % chains : next++ % 2];
+      sum = fma(a(order[i]), b(k - order[i]), sum);
+    }
+    return add(sums[1], add(sums[2], sums[0]));
+  }
+
+  // ------------------------------------------------------------------------------------------------------- dynamics
+
+  void dynamics(const Pack& pack) {
+    k_ = stage_ + 2 - pack.lag;
+    if (k_ < 0) return;
+    const unsigned w = width_of(pack.width);
+    switch (pack.kind) {
+      case Pack::Sum: keep(pack, sum(pack, w)); break;
+      case Pack::Integral: integral(pack, w); break;
+      case Pack::Quotient: keep(pack, quotient(pack, w)); break;
+      case Pack::SquareRoot: keep(pack, square_root(pack, w)); break;
+      case Pack::Scalar: scalar(pack); break;
+    }
+  }
+
+  void keep(const Pack& pack, Value* v) { keep(pack.out, v); }
+  void keep(Slot slot, Value* v) {
+    open_[slot] = v;
+    save(cell(current_order(slot), slot), v);
+  }
+
+  Value* sum(const Pack& pack, unsigned w) {
+    Value* by_shift[3] = {};
+    for (std::uint32_t c = pack.first_aligned; c < pack.last_aligned; ++c) {
+      const Column& column = p_.columns[c];
+      if (column.source == p_.program.one && k_ + column.shift > 0) continue;
+      const unsigned used = column.kind == Column::Broadcast ? 1 : pack.width;
+      const std::vector<Slot> same(pack.width, column.source);
+      const ArrayRef<Slot> slots = used == 1 ? ArrayRef<Slot>(same) : ArrayRef<Slot>(column.sources.data(), pack.width);
+      Value* const values = gather(slots, k_ + column.shift, w);
+      Value*& sum = by_shift[column.shift];
+      sum = fma(values, coefficients(column.coefficients, w), sum);
+    }
+    Value* result = by_shift[0];
+    if (by_shift[1]) result = fma(by_shift[1], splat(k_ + 1.0, by_shift[1]), result);
+    if (by_shift[2]) result = fma(by_shift[2], splat((k_ + 1.0) * (k_ + 2.0), by_shift[2]), result);
+    return products(pack, w, result ? result : vector_of(0.0, w));
+  }
+
+  Value* products(const Pack& pack, unsigned w, Value* result) {
+    const std::uint32_t count = pack.last_product - pack.first_product;
+    if (const unsigned whole = merged_width(pack); whole > 0) return merged_products(pack, w, whole, result);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const packed::ProductTerm& term = p_.products[pack.first_product + i];
+      Value* const value = term.a == term.b ? self(term.a, 0, w) : product(term.a, term.b, w);
+      result = fma(value, coefficients(term.coefficients, w), result);
+    }
+    return result;
+  }
+
+  Value* product(std::uint32_t a, std::uint32_t b, unsigned w) {
+    return convolution([&](int j) { return operand(a, j, w); }, [&](int j) { return operand(b, j, w); }, 0, k_, k_);
+  }
+
+  /// Products of several terms whose operands lie side by side are one convolution of wider vectors.
+  unsigned merged_width(const Pack& pack) const {
+    const std::uint32_t count = pack.last_product - pack.first_product;
+    const std::size_t whole = static_cast<std::size_t>(count) * pack.width;
+    if (count < 2 || whole > lanes || !std::has_single_bit(whole)) return 0;
+    const auto follows = [&](std::uint32_t block, std::uint32_t first, std::uint32_t t) {
+      const Block &x = p_.blocks[block], &y = p_.blocks[first];
+      return x.lag == y.lag && x.slots[0] == y.slots[0] + t * pack.width && is_range(x);
+    };
+    const packed::ProductTerm& first = p_.products[pack.first_product];
+    for (std::uint32_t t = 0; t < count; ++t) {
+      const packed::ProductTerm& term = p_.products[pack.first_product + t];
+      if (term.a == term.b || !follows(term.a, first.a, t) || !follows(term.b, first.b, t)) return 0;
+    }
+    return static_cast<unsigned>(whole);
+  }
+  static bool is_range(const Block& block) {
+    for (std::uint32_t lane = 0; lane < block.width; ++lane)
+      if (block.slots[lane] != block.slots[0] + lane) return false;
+    return !block.weighted;
+  }
+
+  Value* merged_products(const Pack& pack, unsigned w, unsigned whole, Value* result) {
+    const packed::ProductTerm& first = p_.products[pack.first_product];
+    const auto wide = [&](std::uint32_t block) {
+      return [this, block, whole](int j) { return range(p_.blocks[block].slots[0], j, whole); };
+    };
+    Value* const all = convolution(wide(first.a), wide(first.b), 0, k_, k_);
+    for (unsigned t = 0; t * pack.width < whole; ++t) {
+      Value* part = nullptr;
+      if (pack.width == 1) {
+        part = b_.CreateExtractElement(all, t);
+      } else {
+        std::vector<int> mask;
+        for (unsigned lane = 0; lane < w; ++lane) mask.push_back(static_cast<int>(t * pack.width + std::min(lane, pack.width - 1)));
+        part = b_.CreateShuffleVector(all, mask);
+      }
+      result = fma(part, coefficients(p_.products[pack.first_product + t].coefficients, w), result);
+    }
+    return result;
+  }
+
+  /// Neighbouring slots of one lag at an order.
+  Value* range(Slot first, int order, unsigned w) {
+    const auto newest = newest_ranges_.find({first, order, w});
+    if (newest != newest_ranges_.end()) return newest->second;
+    if (current_order(first) != order) return load(cell(order, first), w);
+    std::vector<Slot> slots;
+    for (unsigned lane = 0; lane < w; ++lane) slots.push_back(first + lane);
+    ranges_.insert({first, w});
+    return gather(slots, order, w);
+  }
+
+  /// Σ_{j=first..k−first} a_j a_{k−j}, each pair once.
+  Value* self(std::uint32_t a, int first, unsigned w) {
+    Value* sum = nullptr;
+    for (int j = (k_ - 1) / 2; j >= first && 2 * j < k_; --j) sum = fma(operand(a, j, w), operand(a, k_ - j, w), sum);
+    if (sum) sum = b_.CreateFAdd(sum, sum);
+    if (k_ % 2 == 0 && k_ / 2 >= first) {
+      Value* const middle = operand(a, k_ / 2, w);
+      sum = fma(middle, middle, sum);
+    }
+    return sum ? sum : vector_of(0.0, w);
+  }
+
+  void integral(const Pack& pack, unsigned w) {
+    if (k_ == 0) return functions(pack, w);
+    Value* const sum = convolution([&](int j) { return operand(pack.a, j, w); }, [&](int j) { return operand(pack.b, j, w); }, 1, k_, k_);
+    keep(pack, over(mul(sum, coefficients(pack.coefficients, w)), k_));
+  }
+
+  Value* quotient(const Pack& pack, unsigned w) {
+    Value* const a = operand(pack.a, k_, w);
+    Value* const b0 = operand(pack.b, 0, w);
+    if (k_ == 0) return b_.CreateFDiv(a, b0);
+    Value* const sum = convolution([&](int j) { return operand(pack.b, j, w); }, [&](int j) { return operand(pack.y, j, w); }, 1, k_, k_);
+    return b_.CreateFDiv(b_.CreateFSub(a, sum), b0);
+  }
+
+  Value* square_root(const Pack& pack, unsigned w) {
+    Value* const u = operand(pack.a, k_, w);
+    if (k_ == 0) return b_.CreateUnaryIntrinsic(llvm::Intrinsic::sqrt, u);
+    Value* const y0 = operand(pack.y, 0, w);
+    return b_.CreateFDiv(b_.CreateFSub(u, self(pack.y, 1, w)), b_.CreateFAdd(y0, y0));
+  }
+
+  // ------------------------------------------------------------------------------------------- elementary functions
+
+  Value* call_elementary(Kind kind, Value* x, Value* y = nullptr) {
+    auto* const signature = llvm::FunctionType::get(b_.getDoubleTy(), {b_.getInt8Ty(), b_.getDoubleTy(), b_.getDoubleTy()}, false);
+    return b_.CreateCall(signature, elementary_, {b_.getInt8(static_cast<std::uint8_t>(kind)), x, y ? y : vector_of(0.0, 1)});
+  }
+
+  Value* one_slot(Slot slot, int order) { return gather({slot}, order, 1); }
+
+  void functions(const Pack& pack, unsigned w) {
+    std::vector<Value*> values(w, nullptr);
+    bool second_pack = pack.first_function == pack.last_function;  // cosines of the sines before
+    if (second_pack) {
+      for (unsigned lane = 0; lane < pack.width; ++lane) values[lane] = seconds_.at(pack.out + lane);
+    } else {
+      if (pack.pairs != packed::no_block) return sines_cosines(pack, w);
+      unsigned lane = 0;
+      for (std::uint32_t f = pack.first_function; f < pack.last_function; ++f, ++lane) {
+        const Instruction& i = p_.program.instructions[p_.functions[f]];
+        Value* const u = one_slot(i.a, current_order(i.a));
+        if (i.second == no_slot) { values[lane] = call_elementary(i.function, u); continue; }
+        const auto [first, second] = pair(i.op, u);
+        values[lane] = first;
+        const unsigned count = pack.last_function - pack.first_function;
+        if (pack.width == 2 * count) values[lane + count] = second;
+        else seconds_[i.second] = second;
+      }
+    }
+    Value* result = w == 1 ? values[0] : llvm::PoisonValue::get(type(w));
+    for (unsigned lane = 0; w > 1 && lane < w; ++lane)
+      result = b_.CreateInsertElement(result, values[lane] ? values[lane] : vector_of(0.0, 1), lane);
+    keep(pack, result);
+  }
+
+  /// Through memory: the function takes and gives arrays.
+  void sines_cosines(const Pack& pack, unsigned w) {
+    const unsigned count = pack.last_function - pack.first_function, size = width_of(count);
+    const Block& block = p_.blocks[pack.a];
+    Value* const x = b_.CreateAlloca(type(lanes)), *out = b_.CreateAlloca(type(lanes), b_.getInt32(2));
+    const ArrayRef<Slot> slots(block.slots.data(), count);
+    save(x, gather(slots, current_order(slots[0]), size));
+    auto* const signature = llvm::FunctionType::get(b_.getVoidTy(), {b_.getPtrTy(), b_.getPtrTy(), b_.getInt32Ty()}, false);
+    b_.CreateCall(signature, sincos_, {x, out, b_.getInt32(count)});
+    const auto part = [&](unsigned first, unsigned width) {
+      return load(b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), out, first), width);
+    };
+    if (pack.width == 2 * count) return keep(pack, part(0, w));
+    for (unsigned lane = 0; lane < count; ++lane) seconds_[pack.pairs + lane] = part(count + lane, 1);
+    keep(pack, part(0, w));
+  }
+
+  std::pair<Value*, Value*> pair(Op op, Value* u) {
+    if (op == Op::SinhCosh) return {call_elementary(Kind::Sinh, u), call_elementary(Kind::Cosh, u)};
+    return {call_elementary(Kind::Sin, u), call_elementary(Kind::Cos, u)};
+  }
+
+  // -------------------------------------------------------------------------------------------- single instructions
+
+  Value* history(Slot slot, int order) { return one_slot(slot, order); }
+  Value* constant(ConstantId id) { return load_from(constants_, id, 1); }
+  Value* term_coefficient(std::uint32_t t) { return load_from(term_coefficients_, t, 1); }
+
+  void scalar(const Pack& pack) {
+    const Instruction& i = p_.program.instructions[pack.instruction];
+    switch (i.op) {
+      case Op::Linear: case Op::Products: keep(i.out, scalar_sum(pack.instruction)); break;
+      case Op::Square: keep(i.out, scalar_self(i.a, 0)); break;
+      case Op::Quotient: keep(i.out, scalar_quotient(i)); break;
+      case Op::SquareRoot: keep(i.out, scalar_root(i)); break;
+      case Op::Power: keep(i.out, scalar_power(i)); break;
+      case Op::SinCos: case Op::SinhCosh: scalar_pair(i); break;
+      case Op::Function: keep(i.out, scalar_function(i)); break;
+      case Op::Select: keep(i.out, scalar_select(i)); break;
+      case Op::Derivative: keep(i.out, mul(history(i.a, k_ + 1), vector_of(k_ + 1.0, 1))); break;
+      default: break;
+    }
+  }
+
+  Value* scalar_product(Slot a, Slot b, int first, int last) {
+    return convolution([&](int j) { return history(a, j); }, [&](int j) { return history(b, j); }, first, last, k_);
+  }
+
+  Value* scalar_sum(std::uint32_t index) {
+    const Instruction& i = p_.program.instructions[index];
+    Value* sum = nullptr;
+    for (std::uint32_t t = i.first_term; t < i.last_term; ++t) {
+      const Term& term = p_.program.terms[t];
+      const int order = k_ + static_cast<int>(term.shift);
+      if (term.b == no_slot && term.a == p_.program.one && order > 0) continue;
+      const double factor = term.shift == 0 ? 1 : term.shift == 1 ? k_ + 1.0 : (k_ + 1.0) * (k_ + 2.0);
+      Value* const value = term.b != no_slot ? scalar_product(term.a, term.b, 0, k_) : mul(history(term.a, order), vector_of(factor, 1));
+      sum = fma(value, term_coefficient(t), sum);
+    }
+    return sum ? sum : vector_of(0.0, 1);
+  }
+
+  Value* scalar_self(Slot a, int first) {
+    Value* sum = nullptr;
+    for (int j = (k_ - 1) / 2; j >= first && 2 * j < k_; --j) sum = fma(history(a, j), history(a, k_ - j), sum);
+    if (sum) sum = b_.CreateFAdd(sum, sum);
+    if (k_ % 2 == 0 && k_ / 2 >= first) sum = fma(history(a, k_ / 2), history(a, k_ / 2), sum);
+    return sum ? sum : vector_of(0.0, 1);
+  }
+
+  Value* scalar_quotient(const Instruction& i) {
+    Value* const a = history(i.a, k_);
+    Value* const sum = k_ == 0 ? vector_of(0.0, 1) : scalar_product(i.b, i.out, 1, k_);
+    return b_.CreateFDiv(b_.CreateFSub(a, sum), history(i.b, 0));
+  }
+
+  Value* scalar_root(const Instruction& i) {
+    if (k_ == 0) return b_.CreateUnaryIntrinsic(llvm::Intrinsic::sqrt, history(i.a, 0));
+    Value* const y0 = history(i.out, 0);
+    return b_.CreateFDiv(b_.CreateFSub(history(i.a, k_), scalar_self(i.out, 1)), b_.CreateFAdd(y0, y0));
+  }
+
+  Value* scalar_power(const Instruction& i) {
+    Value* const p = constant(i.constant);
+    if (k_ == 0) return call_elementary(Kind::Power, history(i.a, 0), p);
+    Value* sum = nullptr;
+    for (int j = 1; j <= k_; ++j) {
+      Value* const weight = b_.CreateFSub(b_.CreateFMul(p, vector_of(j, 1)), vector_of(k_ - j, 1));
+      sum = fma(b_.CreateFMul(history(i.a, j), weight), history(i.out, k_ - j), sum);
+    }
+    return b_.CreateFDiv(sum, b_.CreateFMul(vector_of(k_, 1), history(i.a, 0)));
+  }
+
+  Value* scalar_integral(Slot w, Slot u) {
+    Value* sum = nullptr;
+    for (int j = 1; j <= k_; ++j) sum = fma(mul(history(u, j), vector_of(j, 1)), history(w, k_ - j), sum);
+    return over(sum, k_);
+  }
+
+  void scalar_pair(const Instruction& i) {
+    if (k_ == 0) {
+      const auto [first, second] = pair(i.op, history(i.a, 0));
+      keep(i.out, first), keep(i.second, second);
+      return;
+    }
+    Value *const first = scalar_integral(i.second, i.a), *const second = scalar_integral(i.out, i.a);
+    keep(i.out, first);
+    keep(i.second, i.op == Op::SinCos ? b_.CreateFNeg(second) : second);
+  }
+
+  Value* scalar_function(const Instruction& i) {
+    if (k_ == 0) return call_elementary(i.function, history(i.a, 0), i.b == no_slot ? nullptr : history(i.b, 0));
+    Value* sum = nullptr;
+    for (std::uint32_t t = i.first_term; t < i.last_term; ++t)
+      sum = fma(scalar_integral(p_.program.terms[t].a, p_.program.terms[t].b), term_coefficient(t), sum);
+    return sum;
+  }
+
+  template <class F>
+  Value* choose(const Instruction& i, F&& value) {
+    Value* result = value(p_.program.terms[i.last_term - 1].a);
+    for (std::uint32_t t = i.last_term - 1; t-- > i.first_term;) {
+      Value* const holds = b_.CreateFCmpUNE(term_coefficient(t), vector_of(0.0, 1));
+      result = b_.CreateSelect(holds, value(p_.program.terms[t].a), result);
+    }
+    return result;
+  }
+  Value* scalar_select(const Instruction& i) {
+    return choose(i, [&](Slot slot) { return history(slot, k_); });
+  }
+
+  // ------------------------------------------------------------------------------------------------------- tangents
+
+  std::size_t index_of(const Pack& pack) const { return static_cast<std::size_t>(&pack - p_.packs.data()); }
+
+  /// The tangent of one slot in one direction: where it stands; nothing for zero.
+  std::optional<Place> tangent_place(Slot slot, int d) {
+    if (slot < n_) return static_cast<int>(slot) == d ? std::optional<Place>({vector_of(1.0, 2), 0}) : std::nullopt;
+    const Pack* const pack = pack_of_[slot];
+    if (!pack) return std::nullopt;
+    const Tangent& t = pack->kind == Pack::Scalar && slot != pack->out ? second_tangents_[slot] : tangents_[index_of(*pack)];
+    const unsigned lane = pack->kind == Pack::Scalar ? 0 : slot - pack->out;
+    if (t.diagonal) return t.direction[lane] == d ? std::optional<Place>({t.diagonal, lane}) : std::nullopt;
+    const auto found = t.dense.find(d);
+    return found == t.dense.end() ? std::nullopt : std::optional<Place>({found->second, lane});
+  }
+
+  std::set<int> directions(Slot slot) {
+    std::set<int> result;
+    if (slot < n_) return {static_cast<int>(slot)};
+    const Pack* const pack = pack_of_[slot];
+    if (!pack) return result;
+    const Tangent& t = pack->kind == Pack::Scalar && slot != pack->out ? second_tangents_[slot] : tangents_[index_of(*pack)];
+    const unsigned lane = pack->kind == Pack::Scalar ? 0 : slot - pack->out;
+    if (t.diagonal && t.direction[lane] >= 0) result.insert(t.direction[lane]);
+    for (const auto& [d, value] : t.dense) result.insert(d);
+    return result;
+  }
+
+  bool passes(Slot slot, int shift, int lag) const { return p_.program.tangent_lags[slot] + shift == lag; }
+
+  /// Tangents of slots, lane by lane, in the direction given for each lane (−1: zero).
+  Value* gather_tangents(ArrayRef<Slot> slots, ArrayRef<int> direction, unsigned w) {
+    std::vector<std::optional<Place>> places;
+    bool any = false;
+    for (std::size_t lane = 0; lane < slots.size(); ++lane) {
+      places.push_back(direction[lane] < 0 ? std::nullopt : tangent_place(slots[lane], direction[lane]));
+      any = any || places.back();
+    }
+    if (!any) return vector_of(0.0, w);
+    return assemble(places, w, [&](std::size_t) { return vector_of(0.0, 1); });
+  }
+
+  /// One source of a pack's tangent: factor of each lane times the tangent of a slot.
+  struct Source {
+    std::vector<Slot> slots;
+    std::function<Value*(unsigned)> factor;
+  };
+
+  void tangent(const Pack& pack) {
+    if (pack.kind == Pack::Scalar) return scalar_tangent(pack);
+    tangents_[index_of(pack)] = combine(sources(pack), pack.width);
+  }
+
+  Tangent combine(const std::vector<Source>& sources, std::size_t count) {
+    const unsigned w = width_of(count);
+    std::vector<std::set<int>> of_lane(count);
+    std::set<int> all;
+    for (const Source& source : sources)
+      for (std::size_t lane = 0; lane < count; ++lane)
+        for (const int d : directions(source.slots[lane])) of_lane[lane].insert(d), all.insert(d);
+    Tangent result;
+    const auto accumulate = [&](ArrayRef<int> direction) {
+      Value* sum = nullptr;
+      for (const Source& source : sources) {
+        Value* const values = gather_tangents(source.slots, direction, w);
+        if (!is_zero(values)) sum = fma(values, source.factor(w), sum);
+      }
+      return sum ? sum : vector_of(0.0, w);
+    };
+    if (all.empty()) return result;
+    if (std::all_of(of_lane.begin(), of_lane.end(), [](const auto& s) { return s.size() <= 1; })) {
+      for (const auto& s : of_lane) result.direction.push_back(s.empty() ? -1 : *s.begin());
+      result.diagonal = accumulate(result.direction);
+      return result;
+    }
+    for (const int d : all) result.dense[d] = accumulate(std::vector<int>(count, d));
+    return result;
+  }
+
+  static std::vector<Slot> slots_of(const Block& block) { return {block.slots.begin(), block.slots.begin() + block.width}; }
+  Value* value_at_zero(std::uint32_t block, unsigned w) { return operand_unweighted(block, 0, w); }
+  /// Order 0 stands in memory by now, or in registers.
+  Value* operand_unweighted(std::uint32_t index, int order, unsigned w) {
+    const Block& block = p_.blocks[index];
+    return gather(ArrayRef<Slot>(block.slots.data(), block.width), order, w);
+  }
+
+  std::vector<Source> sources(const Pack& pack) {
+    std::vector<Source> result;
+    const auto block_source = [&](std::uint32_t block, std::function<Value*(unsigned)> factor) {
+      if (p_.blocks[block].lag == pack.lag) result.push_back({slots_of(p_.blocks[block]), std::move(factor)});
+    };
+    switch (pack.kind) {
+      case Pack::Sum:
+        for (std::uint32_t c = pack.first_aligned; c < pack.last_aligned; ++c) {
+          const Column& column = p_.columns[c];
+          if (!passes(column.source, column.shift, pack.lag)) continue;
+          std::vector<Slot> slots(pack.width, column.source);
+          if (column.kind != Column::Broadcast) slots.assign(column.sources.begin(), column.sources.begin() + pack.width);
+          result.push_back({std::move(slots), [this, &column](unsigned w) { return coefficients(column.coefficients, w); }});
+        }
+        for (std::uint32_t i = pack.first_product; i < pack.last_product; ++i) {
+          const packed::ProductTerm& term = p_.products[i];
+          const auto times = [&](std::uint32_t other) {
+            return [this, &term, other](unsigned w) { return mul(coefficients(term.coefficients, w), value_at_zero(other, w)); };
+          };
+          block_source(term.a, times(term.b));
+          block_source(term.b, times(term.a));
+        }
+        break;
+      case Pack::Integral:
+        block_source(pack.a, [this, &pack](unsigned w) { return mul(coefficients(pack.coefficients, w), value_at_zero(pack.b, w)); });
+        break;
+      case Pack::Quotient:
+        block_source(pack.a, [this, &pack](unsigned w) { return b_.CreateFDiv(vector_of(1.0, w), value_at_zero(pack.b, w)); });
+        block_source(pack.b, [this, &pack](unsigned w) {
+          return b_.CreateFNeg(b_.CreateFDiv(value_at_zero(pack.y, w), value_at_zero(pack.b, w)));
+        });
+        break;
+      case Pack::SquareRoot:
+        block_source(pack.a, [this, &pack](unsigned w) { return b_.CreateFDiv(vector_of(0.5, w), value_at_zero(pack.y, w)); });
+        break;
+      case Pack::Scalar: break;
+    }
+    return result;
+  }
+
+  void scalar_tangent(const Pack& pack) {
+    const Instruction& i = p_.program.instructions[pack.instruction];
+    std::vector<Source> sources;
+    const auto source = [&](Slot slot, int shift, Value* factor) {
+      if (slot != no_slot && passes(slot, shift, i.lag)) sources.push_back({{slot}, [factor](unsigned) { return factor; }});
+    };
+    const auto now = [&](Slot slot) { return history(slot, 0); };
+    Value* const one = vector_of(1.0, 1);
+    switch (i.op) {
+      case Op::Linear: case Op::Products:
+        for (std::uint32_t t = i.first_term; t < i.last_term; ++t) {
+          const Term& term = p_.program.terms[t];
+          if (term.b == no_slot) { source(term.a, static_cast<int>(term.shift), term_coefficient(t)); continue; }
+          source(term.a, 0, mul(term_coefficient(t), now(term.b)));
+          source(term.b, 0, mul(term_coefficient(t), now(term.a)));
+        }
+        break;
+      case Op::Square: source(i.a, 0, mul(vector_of(2.0, 1), now(i.a))); break;
+      case Op::Quotient:
+        source(i.a, 0, b_.CreateFDiv(one, now(i.b)));
+        source(i.b, 0, b_.CreateFNeg(b_.CreateFDiv(now(i.out), now(i.b))));
+        break;
+      case Op::SquareRoot: source(i.a, 0, b_.CreateFDiv(vector_of(0.5, 1), now(i.out))); break;
+      case Op::Power: source(i.a, 0, b_.CreateFDiv(mul(constant(i.constant), now(i.out)), now(i.a))); break;
+      case Op::SinCos: case Op::SinhCosh: {
+        source(i.a, 0, i.op == Op::SinCos ? b_.CreateFNeg(now(i.out)) : now(i.out));
+        second_tangents_[i.second] = combine(sources, 1);
+        sources.clear();
+        source(i.a, 0, now(i.second));
+        break;
+      }
+      case Op::Function:
+        for (std::uint32_t t = i.first_term; t < i.last_term; ++t)
+          source(p_.program.terms[t].b, 0, mul(term_coefficient(t), now(p_.program.terms[t].a)));
+        break;
+      case Op::Derivative: source(i.a, 1, one); break;
+      default: break;  // Select is declined
+    }
+    tangents_[index_of(pack)] = combine(sources, 1);
+  }
+
+  // ------------------------------------------------------------------------------------------------ solve and correct
+
+  void factor() {
+    for (const Pack& pack : p_.packs)
+      if (p_.program.tangent_lags[pack.out] != Program::unmoved) tangent(pack);
+    for (std::size_t i = 0; i < n_; ++i)
+      for (std::size_t d = 0; d < n_; ++d) {
+        const Slot slot = p_.program.residual[i];
+        const auto found = passes(slot, 0, 2) ? tangent_place(slot, static_cast<int>(d)) : std::nullopt;
+        save(b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), bordered_, i * n_ + d), found ? element(*found) : vector_of(0.0, 1));
+      }
+    auto* const signature = llvm::FunctionType::get(b_.getInt1Ty(), {b_.getPtrTy()}, false);
+    llvm::CallInst* const call = b_.CreateCall(signature, invert_, {self_});
+    call->addRetAttr(llvm::Attribute::ZExt);
+    auto* const good = llvm::BasicBlock::Create(context_, "", function_);
+    auto* const bad = llvm::BasicBlock::Create(context_, "", function_);
+    b_.CreateCondBr(call, good, bad);
+    b_.SetInsertPoint(bad);
+    b_.CreateRet(b_.getInt32(2));
+    b_.SetInsertPoint(good);
+    const std::size_t padded = (n_ + lanes - 1) / lanes * lanes;
+    for (std::size_t d = 0; d < n_; ++d) inverse_rows_.push_back(load_from(inverse_, d * padded, wide_));
+  }
+
+  Value* splat_lane(Value* v, unsigned lane, unsigned w) {
+    if (width(v) == 1) return w == 1 ? v : b_.CreateVectorSplat(w, v);
+    if (w == 1) return b_.CreateExtractElement(v, lane);
+    return b_.CreateShuffleVector(v, std::vector<int>(w, static_cast<int>(lane)));
+  }
+
+  /// a = −M₀⁻¹ R.
+  void solve() {
+    Value *even = nullptr, *odd = nullptr;
+    for (unsigned d = 0; d < n_; ++d) {
+      const Slot slot = p_.program.residual[d];
+      const auto r = place(slot);
+      Value* const value = r ? splat_lane(r->vector, r->lane, wide_) : b_.CreateVectorSplat(wide_, load(cell(stage_, slot), 1));
+      Value*& sum = d % 2 == 0 ? even : odd;
+      sum = fma(value, inverse_rows_[d], sum);
+    }
+    acceleration_ = odd ? add(even, odd) : even;
+    Value* const nothing = b_.CreateFMul(acceleration_, vector_of(0.0, wide_));  // NaN where it is not finite
+    check_ = check_ ? b_.CreateFAdd(check_, nothing) : nothing;
+  }
+
+  void correct() {
+    coordinates_ = over(acceleration_, (stage_ + 1.0) * (stage_ + 2.0));
+    save_coordinates();
+    for (const Pack& pack : p_.packs) {
+      const bool is_stored = pack.out < p_.program.stored_end[2];
+      if (!is_stored || p_.program.tangent_lags[pack.out] == Program::unmoved) continue;
+      correct(pack.out, tangents_[index_of(pack)], pack.lag);
+      if (pack.kind != Pack::Scalar) continue;
+      const Slot second = p_.program.instructions[pack.instruction].second;
+      if (second != no_slot && second < p_.program.stored_end[2]) correct(second, second_tangents_[second], pack.lag);
+    }
+  }
+
+  /// The other lanes of the row's first vector belong to nobody.
+  void save_coordinates() { save(cell(stage_ + 2, 0), coordinates_); }
+
+  void correct(Slot slot, const Tangent& t, int lag) {
+    const auto found = open_.find(slot);
+    if (found == open_.end()) return;
+    Value* result = found->second;
+    const unsigned w = width(result);
+    const double factor = lag == 2 ? 1 : lag == 1 ? 1.0 / (stage_ + 1) : 1.0 / ((stage_ + 1.0) * (stage_ + 2.0));
+    const auto scaled = [&](Value* v) { return factor == 1 ? v : mul(v, splat(factor, v)); };
+    if (t.diagonal) {
+      std::vector<std::optional<Place>> places;
+      for (const int d : t.direction) places.push_back(Place{acceleration_, static_cast<unsigned>(std::max(0, d))});
+      result = fma(assemble(places, w, [&](std::size_t) { return vector_of(0.0, 1); }), scaled(t.diagonal), result);
+    }
+    for (const auto& [d, value] : t.dense) result = fma(splat_lane(acceleration_, static_cast<unsigned>(d), w), scaled(value), result);
+    found->second = result;
+    save(cell(stage_ + 2 - lag, slot), result);
+  }
+
+  // --------------------------------------------------------------------------------------------------------- blocks
+
+  /// Copies of what is final now; the newest two orders stay in registers.
+  void renew_blocks() {
+    std::erase_if(newest_, [&](const auto& entry) { return entry.first.second < stage_ + 1 - p_.blocks[entry.first.first].lag; });
+    std::erase_if(newest_ranges_, [&](const auto& entry) {
+      return std::get<1>(entry.first) < stage_ + 1 - p_.program.lags[std::get<0>(entry.first)];
+    });
+    for (std::uint32_t index = 0; index < p_.blocks.size(); ++index) {
+      const Block& block = p_.blocks[index];
+      const int order = stage_ + 2 - block.lag;
+      if (order < 0) continue;
+      Value* values = gather(ArrayRef<Slot>(block.slots.data(), block.width), order, width_of(block.width));
+      if (block.weighted) values = weighted(block, values, order);
+      if (!block.direct) save(cell(order, block.first), values);
+      newest_[{index, order}] = values;
+    }
+    for (const auto& [first, w] : ranges_) {
+      const int order = stage_ + 2 - p_.program.lags[first];
+      std::vector<Slot> slots;
+      for (unsigned lane = 0; lane < w; ++lane) slots.push_back(first + lane);
+      if (order >= 0) newest_ranges_[{first, order, w}] = gather(slots, order, w);
+    }
+  }
+
+  /// k q_k of a coordinate is q̈/(k−1): one operation fewer to wait for.
+  Value* weighted(const Block& block, Value* values, int order) {
+    const bool coordinates = std::all_of(block.slots.begin(), block.slots.begin() + block.width, [&](Slot s) { return s < n_; });
+    if (!coordinates || stage_ < 0 || order != stage_ + 2) return mul(values, splat(order, values));
+    std::vector<std::optional<Place>> places;
+    for (std::uint32_t lane = 0; lane < block.width; ++lane) places.push_back(Place{acceleration_, block.slots[lane]});
+    return over(assemble(places, width(values), [&](std::size_t) { return vector_of(0.0, 1); }), stage_ + 1.0);
+  }
+
+  llvm::Module& module_;
+  llvm::LLVMContext& context_;
+  llvm::IRBuilder<> b_;
+  const PackedProgram& p_;
+  std::size_t stride_;
+  int order_;
+  std::size_t n_;
+  unsigned wide_ = 1;                   // lanes of q̈
+  llvm::Function* function_ = nullptr;
+  Value *rows_ = nullptr, *coefficients_ = nullptr, *term_coefficients_ = nullptr, *constants_ = nullptr, *bordered_ = nullptr,
+        *inverse_ = nullptr, *self_ = nullptr, *invert_ = nullptr, *sincos_ = nullptr, *elementary_ = nullptr;
+  int stage_ = 0, k_ = 0;
+  std::vector<const Pack*> pack_of_;    // [slots]
+  Value* coordinates_ = nullptr;        // their coefficients of this stage
+  Value *acceleration_ = nullptr, *check_ = nullptr;
+  std::map<Slot, Value*> open_;         // results of this stage by first slot
+  std::map<std::pair<std::uint32_t, int>, Value*> newest_;  // (block, order): final, in registers
+  std::map<std::tuple<Slot, int, unsigned>, Value*> newest_ranges_;
+  std::set<std::pair<Slot, unsigned>> ranges_;
+  std::map<Slot, Value*> seconds_;      // at order 0
+  std::vector<Tangent> tangents_;       // [packs]
+  std::map<Slot, Tangent> second_tangents_;
+  std::vector<Value*> inverse_rows_;
+};
+
+/// Vector operations that the sums over orders take.
+std::size_t operations(const PackedProgram& program, int order) {
+  std::size_t convolutions = 0, others = 0;
+  for (const Pack& pack : program.packs) {
+    convolutions += pack.kind == Pack::Sum ? pack.last_product - pack.first_product : 1;
+    others += 2 + pack.last_aligned - pack.first_aligned;
+  }
+  const auto p = static_cast<std::size_t>(order);
+  return 3 * convolutions * p * p / 2 + others * p;
+}
+
+}  // namespace
+
+bool can_emit_packed(const PackedProgram& program, int order) {
+  const Program& p = program.program;
+  const bool has_select = std::any_of(p.instructions.begin(), p.instructions.end(), [](const Instruction& i) { return i.op == Op::Select; });
+  return p.unknowns == p.freedoms && p.unknowns <= most_unknowns && !has_select && operations(program, order) <= most_operations;
+}
+
+void emit_packed(llvm::Module& module, const PackedProgram& program, std::size_t stride, int order) {
+  Emitter(module, program, stride, order).run();
+}
+
+}  // namespace maupertuis::compiler
