@@ -20,3 +20,6 @@ install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/maupertuis FILES_M
 if(MAUPERTUIS_PROGRAM)
   install(TARGETS maup RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
+if(TARGET maup_kernel_llvm)
+  install(TARGETS maup_kernel_llvm LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/maupertuis)
+endif()

@@ -42,6 +42,35 @@ function(maup_module directory)
   set_property(GLOBAL APPEND PROPERTY MAUP_MODULES maup_${name})
 endfunction()
 
+# What the program has to know of the module kernel/llvm: its file, where it is installed, and the build it belongs to.
+function(maup_describe_llvm_module)
+  include(GNUInstallDirs)
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/src/kernel/compiled/backend.cpp PROPERTIES COMPILE_DEFINITIONS
+    "MAUPERTUIS_BUILD_TAG=\"${MAUPERTUIS_BUILD_TAG}\";MAUPERTUIS_LLVM_FILE=\"libmaup_kernel_llvm.so\";MAUPERTUIS_MODULE_FOLDER=\"${CMAKE_INSTALL_FULL_LIBDIR}/maupertuis\"")
+  target_link_libraries(maup_kernel_compiled PRIVATE ${CMAKE_DL_LIBS})
+  set_property(GLOBAL APPEND PROPERTY MAUP_LIBRARIES ${CMAKE_DL_LIBS})
+endfunction()
+
+# maup_plugin(<directory below src> LINKS <module>... PRIVATE_LINKS <library>...): a shared object that the program opens at run
+# time, lib/maupertuis/libmaup_<name>.so; nothing where its libraries are not installed.
+function(maup_plugin directory)
+  cmake_parse_arguments(ARG "" "" "LINKS;PRIVATE_LINKS" ${ARGN})
+  if(NOT ARG_PRIVATE_LINKS)
+    return()
+  endif()
+  string(REPLACE "/" "_" name ${directory})
+  string(REPLACE "/" "_" links "${ARG_LINKS}")
+  list(TRANSFORM links PREPEND maup_)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${directory}/*.cpp)
+  add_library(maup_${name} MODULE ${sources})
+  target_link_libraries(maup_${name} PRIVATE ${links} maup_options ${ARG_PRIVATE_LINKS})
+  target_include_directories(maup_${name} SYSTEM PRIVATE ${LLVM19_INCLUDE_DIR})
+  target_compile_definitions(maup_${name} PRIVATE MAUPERTUIS_BUILD_TAG="${MAUPERTUIS_BUILD_TAG}")
+  set_target_properties(maup_${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/maupertuis
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  target_link_options(maup_${name} PRIVATE -Wl,--exclude-libs,ALL -Wl,--gc-sections)
+endfunction()
+
 # maup_library(): all modules as one archive, the target that programs link: maupertuis::maupertuis.
 function(maup_library)
   get_property(modules GLOBAL PROPERTY MAUP_MODULES)

@@ -34,10 +34,10 @@ Table table_of_architecture() {
   return table;
 }
 
-/// Lines `maup_module(module LINKS uses)` of src/CMakeLists.txt.
+/// Lines `maup_module(module LINKS uses)` of src/CMakeLists.txt, and `maup_plugin` for what the program opens at run time.
 std::map<std::string, Names> table_of_build() {
   std::map<std::string, Names> table;
-  const std::regex call(R"(maup_module\(([a-z_/]+)(?: LINKS ([a-z_/ ]+?))?(?: PRIVATE_LINKS [^)]*)?\).*)");
+  const std::regex call(R"(maup_(?:module|plugin)\(([a-z_/]+)(?: LINKS ([a-z_/ ]+?))?(?: PRIVATE_LINKS [^)]*)?\).*)");
   for (const std::string& line : source_tree::read(std::string(PROJECT_DIR) + "/src/CMakeLists.txt").lines)
     if (std::smatch m; std::regex_match(line, m, call)) table[m[1]] = words(m[2]);
   return table;
@@ -168,6 +168,18 @@ TEST_CASE("the command line sees include/ alone") {
     for (std::size_t i = 0; i < file.lines.size(); ++i)
       if (std::smatch m; std::regex_match(file.lines[i], m, include) && !std::filesystem::exists(own / m[1].str()))
         FAIL_CHECK(file.path << ":" << i + 1 << ": " << m[1].str() << " is no header of apps/maup");
+}
+
+TEST_CASE("LLVM is included in one folder") {
+  const std::regex include(R"(\s*#\s*include\s*<(llvm|llvm-c)/.*)");
+  std::size_t inside = 0;
+  for (const source_tree::File& file : source_tree::sources({"src", "include", "apps"}))
+    for (std::size_t i = 0; i < file.lines.size(); ++i) {
+      if (!std::regex_match(file.lines[i], include)) continue;
+      if (file.path.rfind("src/kernel/llvm/", 0) == 0) ++inside;
+      else FAIL_CHECK(file.path << ":" << i + 1 << ": " << file.lines[i]);
+    }
+  CHECK(inside > 0);
 }
 
 TEST_CASE("public headers stay light, and the core compiles for a browser") {

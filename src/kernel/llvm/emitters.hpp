@@ -1,0 +1,18 @@
+#pragma once
+#include "kernel/compiled/request.hpp"
+
+#include <stdexcept>
+#include <string>
+
+namespace maupertuis::llvm_backend {
+
+class Emission;
+
+/// An emitter does not do this; the sentence says why.
+struct Declined : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+void emit_self_test(Emission& out, const compiled::Request& request);
+
+}  // namespace maupertuis::llvm_backend
