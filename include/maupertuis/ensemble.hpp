@@ -1,0 +1,89 @@
+#pragma once
+#include <maupertuis/lanes.hpp>
+#include <maupertuis/step.hpp>
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+/// Many motions of one kernel, each with a start, parameters and a duration of its own (docs/design/ensembles.md).
+///
+///     EnsembleStart start;
+///     start.q = positions;  start.v = velocities;    // [trajectories × n], one trajectory after the other
+///     start.parameters = values;                     // [p] for all, or [trajectories × p]
+///     start.end = {&duration, 1};
+///     const EnsembleResult result = advance_ensemble(kernel, start);
+///     for (std::size_t i = 0; i < result.endings.size(); ++i)
+///       if (result.endings[i].ok()) use(result.q_of(i), result.v_of(i));
+namespace maupertuis {
+
+/// Where the motions begin and how far they go. Nothing is copied: the arrays must live as long as the call.
+struct EnsembleStart {
+  std::span<const double> q, v;        // [trajectories × n]
+  std::span<const double> parameters;  // [trajectories × p], or [p] for all
+  std::span<const double> begin;       // s, [trajectories] or [1]; empty: 0
+  std::span<const double> end;         // s, [trajectories] or [1]; before begin: backwards
+  std::span<const double> times;       // s, ascending: the states wanted on the way, of every trajectory
+};
+
+struct EnsembleOptions {
+  double tolerance = 0;                          // relative, per step; 0: rounding level of double
+  int order = 0;                                 // of the polynomial of q̇; 0: from the tolerance
+  std::size_t maximum_steps = 100'000'000;       // of one trajectory
+  int width = 0;                                 // motions side by side: 1, 2, 4, 8, 16; 0: what suits the processor
+  int threads = 0;                               // 0: as many as the machine runs at once
+  std::size_t energy_terms = 0;                  // so many first observables add up to an energy that is conserved
+  const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
+  /// What expands the motions; none: interpreted_lanes. Called once, with the width.
+  std::function<std::shared_ptr<const LaneExpansion>(const Kernel&, int width)> expansion;
+};
+
+/// How and where a trajectory ended.
+struct TrajectoryEnding {
+  StepEnding ending = StepEnding::None;  // None: it reached its end, or an event
+  std::string reason;                    // one sentence for every ending but None
+  double t = 0;                          // s, of the state that it ended with
+  std::size_t steps = 0;
+  std::optional<std::size_t> event;      // it ended at a root of this event function
+  double energy_drift = 0;               // max |E(t) − E(begin)| / max Σ|terms|, over the samples and the end
+  bool alone = false;                    // by a TaylorStepper of its own
+  bool ok() const { return ending == StepEnding::None; }
+};
+
+struct EnsembleResult {
+  std::vector<TrajectoryEnding> endings;   // [trajectories]
+  std::vector<double> q, v;                // [trajectories × n] at the end
+  std::vector<double> sampled_q, sampled_v;  // [trajectories × times × n]; NaN at times that a trajectory did not come to
+  std::size_t freedoms = 0, times = 0;
+  int order = 0, width = 0;                // width 0: every trajectory alone
+  std::string backend;                     // of the lanes; empty: every trajectory alone
+
+  std::span<const double> q_of(std::size_t trajectory) const { return {q.data() + trajectory * freedoms, freedoms}; }
+  std::span<const double> v_of(std::size_t trajectory) const { return {v.data() + trajectory * freedoms, freedoms}; }
+  std::span<const double> q_of(std::size_t trajectory, std::size_t time) const {
+    return {sampled_q.data() + (trajectory * times + time) * freedoms, freedoms};
+  }
+  std::span<const double> v_of(std::size_t trajectory, std::size_t time) const {
+    return {sampled_v.data() + (trajectory * times + time) * freedoms, freedoms};
+  }
+};
+
+/// Advances every trajectory from its begin to its end. Each has steps of its own length, as TaylorStepper chooses them; a
+/// trajectory that is done makes room for the next. Events end a trajectory.
+///
+/// Trajectories go alone, by TaylorStepper, when the kernel does not fit into lanes (fits_lanes), when M₀ comes close to
+/// a singular matrix, when something is not finite, or when steps shrink below the resolution of time: the ending and the state
+/// are then the stepper's own.
+///
+/// The result of a trajectory depends neither on the others and their order, nor on the width, nor on the number of threads,
+/// to the bit. (It may differ from TaylorStepper's by rounding errors, since sums are fused and taken in another order.)
+///
+/// Preconditions: sizes as the comments of EnsembleStart say; times ascending; every number finite; width as above.
+EnsembleResult advance_ensemble(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptions& options = {});
+
+}  // namespace maupertuis

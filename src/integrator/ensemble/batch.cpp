@@ -1,0 +1,277 @@
+#include "integrator/ensemble/batch.hpp"
+#include "integrator/ensemble/lane_steps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <new>
+#include <vector>
+
+namespace maupertuis::ensemble {
+namespace {
+
+/// The best that the processor has: LaneSteps give the same bits on all.
+LaneSteps best_steps() {
+  if (has_instruction_set(InstructionSet::Avx512)) return avx512_steps();
+  if (has_instruction_set(InstructionSet::Avx2)) return avx2_steps();
+  return baseline_steps();
+}
+
+struct AlignedDelete {
+  void operator()(double* data) const { ::operator delete(data, std::align_val_t{64}); }
+};
+using AlignedArray = std::unique_ptr<double[], AlignedDelete>;
+
+AlignedArray aligned(std::size_t size) {
+  AlignedArray array(static_cast<double*>(::operator new(size * sizeof(double), std::align_val_t{64})));
+  std::fill_n(array.get(), size, 0.0);
+  return array;
+}
+
+class Batch {
+ public:
+  explicit Batch(Job& job);
+  void run();
+
+ private:
+  /// The motion that a lane carries.
+  struct Lane {
+    std::size_t trajectory = 0;
+    bool active = false;
+    std::size_t steps = 0;
+    OutputTimes times;
+    EnergyDrift drift;
+  };
+
+  void refill(std::size_t lane);
+  void begin(std::size_t lane, std::size_t trajectory);
+  void step();
+  void interrupt();
+  void expand();
+  void choose_lengths();
+  double first_length(std::size_t lane) const;
+  double velocity(std::size_t lane, std::size_t i, int k) const;
+  void look_at(std::size_t lane);
+  void sample(std::size_t lane, double reached);
+  void state_after(std::size_t lane, double tau, std::span<double> q, std::span<double> v) const;
+  void note_energy(std::size_t lane, double t, std::span<const double> q, std::span<const double> v);
+  void finish(std::size_t lane, StepEnding ending, std::string reason);
+  void go_alone(std::size_t lane);
+
+  std::size_t at(std::size_t i, std::size_t lane) const { return i * width_ + lane; }
+  double* take(std::size_t count) {
+    double* const from = memory_.get() + used_;
+    used_ += count * width_;
+    return from;
+  }
+
+  Job& job_;
+  LaneSteps arithmetic_;
+  std::size_t n_, width_;
+  LaneWorkspace work_;
+  std::unique_ptr<KernelWorkspace> point_;  // energies
+  std::vector<Lane> lanes_;
+  std::vector<double> energy_;
+  AlignedArray memory_;
+  std::size_t used_ = 0;
+  LaneArrays arrays_{};
+  double *end_, *fresh_;
+  double least_quality_;
+  std::size_t active_ = 0;
+  bool shared_parameters_, exhausted_ = false;
+};
+
+Batch::Batch(Job& job)
+    : job_(job), arithmetic_(best_steps()), n_(job.freedoms), width_(static_cast<std::size_t>(job.expansion->width())),
+      work_(job.kernel, job.control.order, job.expansion), lanes_(width_), energy_(job.options.energy_terms),
+      memory_(aligned((4 * n_ + 8) * width_)) {
+  if (job.options.energy_terms > 0) point_ = std::make_unique<KernelWorkspace>(job.kernel, 1);
+  arrays_.width = width_;
+  arrays_.freedoms = n_;
+  arrays_.order = job.control.order;
+  arrays_.factor = job.control.factor;
+  arrays_.coefficients = work_.coordinate(0);
+  arrays_.row = static_cast<std::size_t>(work_.coordinate(1) - work_.coordinate(0));
+  arrays_.q_high = take(n_), arrays_.q_low = take(n_), arrays_.v_high = take(n_), arrays_.v_low = take(n_);
+  arrays_.t_high = take(1), arrays_.t_low = take(1), arrays_.length = take(1), arrays_.step = take(1);
+  arrays_.reaches = take(1), arrays_.shrinks = take(1);
+  arrays_.end = end_ = take(1), fresh_ = take(1);
+  // LinearSolver takes M₀ for singular at a sixteenth of this.
+  least_quality_ = 64 * std::numeric_limits<double>::epsilon() * static_cast<double>(n_);
+  shared_parameters_ = job.start.parameters.size() == job.kernel.parameters();
+  if (!shared_parameters_) return;
+  for (std::size_t lane = 0; lane < width_; ++lane) work_.set_parameters(static_cast<int>(lane), job.start.parameters);
+  if (point_) point_->set_parameters(job.start.parameters);
+}
+
+void Batch::run() {
+  for (std::size_t lane = 0; lane < width_; ++lane) refill(lane);
+  while (active_ > 0) step();
+}
+
+// --------------------------------------------------------------------------------------------------------- filling
+
+/// The next trajectory that has a way to go.
+void Batch::refill(std::size_t lane) {
+  while (!exhausted_ && !lanes_[lane].active) {
+    const std::size_t trajectory = job_.take();
+    if (trajectory == job_.trajectories) exhausted_ = true;
+    else begin(lane, trajectory);
+  }
+}
+
+void Batch::begin(std::size_t lane, std::size_t trajectory) {
+  Lane& l = lanes_[lane];
+  l = {trajectory, true, 0, OutputTimes(job_.start.times, job_.begin(trajectory), job_.end(trajectory)), {}};
+  ++active_;
+  if (!shared_parameters_) work_.set_parameters(static_cast<int>(lane), job_.parameters(trajectory));
+  for (std::size_t i = 0; i < n_; ++i) {
+    arrays_.q_high[at(i, lane)] = job_.q(trajectory)[i];
+    arrays_.v_high[at(i, lane)] = job_.v(trajectory)[i];
+    arrays_.q_low[at(i, lane)] = arrays_.v_low[at(i, lane)] = 0;
+  }
+  arrays_.t_high[lane] = job_.begin(trajectory);
+  arrays_.t_low[lane] = 0;
+  end_[lane] = job_.end(trajectory);
+  arrays_.length[lane] = 0;
+  note_energy(lane, arrays_.t_high[lane], job_.q(trajectory), job_.v(trajectory));
+  if (end_[lane] != arrays_.t_high[lane]) return;
+  sample(lane, end_[lane]);
+  finish(lane, StepEnding::None, {});
+}
+
+// ----------------------------------------------------------------------------------------------------------- steps
+
+void Batch::step() {
+  if (job_.interrupted()) return interrupt();
+  expand();
+  choose_lengths();
+  arithmetic_.cut_to_end(arrays_);
+  for (std::size_t lane = 0; lane < width_; ++lane)
+    if (lanes_[lane].active) look_at(lane);
+  arithmetic_.advance(arrays_);
+  for (std::size_t lane = 0; lane < width_; ++lane) {
+    if (lanes_[lane].active && arrays_.reaches[lane] != 0) finish(lane, StepEnding::None, {});
+    refill(lane);
+  }
+}
+
+void Batch::interrupt() {
+  for (std::size_t lane = 0; lane < width_; ++lane)
+    if (lanes_[lane].active) finish(lane, StepEnding::Interrupted, "The run was interrupted.");
+  // Those that are left end where they begin.
+  for (std::size_t trajectory = job_.take(); trajectory != job_.trajectories; trajectory = job_.take()) run_alone(job_, trajectory);
+}
+
+void Batch::expand() {
+  const std::size_t size = n_ * width_;
+  std::copy_n(arrays_.q_high, size, work_.coordinate(0));
+  std::copy_n(arrays_.v_high, size, work_.coordinate(1));
+  std::copy_n(arrays_.t_high, width_, work_.time());
+  work_.expand();
+}
+
+/// Where no step was made before, the control begins with a guess and takes a few turns.
+void Batch::choose_lengths() {
+  bool any = false;
+  for (std::size_t lane = 0; lane < width_; ++lane) {
+    const bool fresh = lanes_[lane].active && arrays_.length[lane] == 0;
+    fresh_[lane] = fresh;
+    any = any || fresh;
+    if (fresh) arrays_.length[lane] = first_length(lane);
+  }
+  for (int turn = 0; any && turn < 3; ++turn) arithmetic_.choose_length(arrays_, fresh_);
+  arithmetic_.choose_length(arrays_, nullptr);
+}
+
+double Batch::velocity(std::size_t lane, std::size_t i, int k) const {
+  return (k + 1) * std::abs(work_.coordinate(k + 1)[at(i, lane)]);
+}
+
+/// From the decay of the first coefficients to the last: first_guess of integrator/taylor/step_size.cpp.
+double Batch::first_length(std::size_t lane) const {
+  const int p = job_.control.order;
+  double growth = 0;
+  for (std::size_t i = 0; i < n_; ++i)
+    for (int k = p - 1; k <= p; ++k)
+      for (int j = std::min({3, p - 2, k - 1}); j >= 0; --j)
+        if (velocity(lane, i, j) > 0)
+          growth = std::max(growth, std::pow(velocity(lane, i, k) / velocity(lane, i, j), 1.0 / (k - j)));
+  return growth > 0 ? 1 / growth : 1;
+}
+
+/// Decides whether the lane may make its step, and takes from it what is wanted on the way.
+void Batch::look_at(std::size_t lane) {
+  Lane& l = lanes_[lane];
+  if (l.steps >= job_.options.maximum_steps) return finish(lane, StepEnding::TooManySteps, "The run used up its steps.");
+  // Comparisons with NaN are false.
+  if (!(work_.quality()[lane] > least_quality_) || arrays_.shrinks[lane] != 0) return go_alone(lane);
+  if (!std::isfinite(arrays_.length[lane])) arrays_.length[lane] = 0;
+  const double reached = arrays_.reaches[lane] != 0 ? end_[lane] : arrays_.t_high[lane] + (arrays_.t_low[lane] + arrays_.step[lane]);
+  sample(lane, reached);
+  ++l.steps;
+}
+
+void Batch::go_alone(std::size_t lane) {
+  lanes_[lane].active = false;
+  --active_;
+  run_alone(job_, lanes_[lane].trajectory);
+}
+
+// --------------------------------------------------------------------------------------------------------- results
+
+/// The requested times up to `reached`, by the polynomial of the step.
+void Batch::sample(std::size_t lane, double reached) {
+  Lane& l = lanes_[lane];
+  l.times.up_to(reached, [&](std::size_t index, double t) {
+    const std::size_t to = (l.trajectory * job_.result.times + index) * n_;
+    const std::span<double> q = std::span(job_.result.sampled_q).subspan(to, n_), v = std::span(job_.result.sampled_v).subspan(to, n_);
+    state_after(lane, (t - arrays_.t_high[lane]) - arrays_.t_low[lane], q, v);
+    note_energy(lane, t, q, v);
+  });
+}
+
+/// As DenseOutput::advance.
+void Batch::state_after(std::size_t lane, double tau, std::span<double> q, std::span<double> v) const {
+  for (std::size_t i = 0; i < n_; ++i) {
+    double dq = 0, dv = 0;
+    // At the beginning the coefficients may not be there yet.
+    for (int k = job_.control.order + 1; tau != 0 && k >= 2; --k) {
+      const double c = work_.coordinate(k)[at(i, lane)];
+      dq = (dq + c) * tau;
+      dv = dv * tau + k * c;
+    }
+    const std::size_t here = at(i, lane);
+    q[i] = arrays_.q_high[here] + (arrays_.q_low[here] + (dq + (arrays_.v_high[here] + arrays_.v_low[here])) * tau);
+    v[i] = arrays_.v_high[here] + (arrays_.v_low[here] + dv * tau);
+  }
+}
+
+void Batch::note_energy(std::size_t lane, double t, std::span<const double> q, std::span<const double> v) {
+  if (!point_) return;
+  if (!shared_parameters_) point_->set_parameters(job_.parameters(lanes_[lane].trajectory));
+  if (point_->evaluate(t, q, v) != KernelStatus::Ok) return;
+  for (std::size_t i = 0; i < energy_.size(); ++i) energy_[i] = point_->observable(i);
+  lanes_[lane].drift.add(energy_);
+}
+
+void Batch::finish(std::size_t lane, StepEnding reason, std::string sentence) {
+  Lane& l = lanes_[lane];
+  const std::span<double> q = std::span(job_.result.q).subspan(l.trajectory * n_, n_), v = std::span(job_.result.v).subspan(l.trajectory * n_, n_);
+  for (std::size_t i = 0; i < n_; ++i) q[i] = arrays_.q_high[at(i, lane)], v[i] = arrays_.v_high[at(i, lane)];
+  note_energy(lane, arrays_.t_high[lane], q, v);
+  TrajectoryEnding& ending = job_.result.endings[l.trajectory];
+  ending.ending = reason;
+  ending.reason = std::move(sentence);
+  ending.t = arrays_.t_high[lane];
+  ending.steps = l.steps;
+  ending.energy_drift = l.drift.value();
+  l.active = false;
+  --active_;
+}
+
+}  // namespace
+
+void run_in_lanes(Job& job) { Batch(job).run(); }
+
+}  // namespace maupertuis::ensemble

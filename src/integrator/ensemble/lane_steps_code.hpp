@@ -1,0 +1,218 @@
+#pragma once
+#include "integrator/ensemble/lane_steps.hpp"
+
+#include <cstdint>
+
+/// See lane_steps.hpp. Nothing inline of the standard library is called here: a linker keeps one copy of an inline function,
+/// and that must not be one with instructions that the processor lacks.
+namespace maupertuis::ensemble {
+namespace {
+
+#if defined(__AVX512F__)
+constexpr std::size_t register_width = 8;
+#elif defined(__AVX2__)
+constexpr std::size_t register_width = 4;
+#else
+constexpr std::size_t register_width = 2;
+#endif
+
+/// Lanes that go through a register together.
+template <std::size_t Width>
+struct Register {
+  typedef double Reals __attribute__((vector_size(8 * Width), may_alias));
+  typedef std::int64_t Integers __attribute__((vector_size(8 * Width), may_alias));
+};
+template <>
+struct Register<1> {
+  typedef double Reals __attribute__((may_alias));
+  typedef std::int64_t Integers __attribute__((may_alias));
+};
+
+constexpr double infinity = __builtin_huge_val();
+constexpr double epsilon = 0x1p-52;
+
+template <std::size_t Width>
+class Steps {
+ public:
+  using V = typename Register<Width>::Reals;
+  using I = typename Register<Width>::Integers;
+
+  Steps(const LaneArrays& lanes, std::size_t first) : a_(lanes), first_(first) {}
+
+  void choose_length(const double* fresh) const {
+    const V before = get(a_.length);
+    V after = reached(before);
+    after = before < infinity ? after : before;
+    put(a_.length, fresh ? (get(fresh) != 0 ? after : before) : after);
+  }
+
+  void cut_to_end() const {
+    const V left = (get(a_.end) - get(a_.t_high)) - get(a_.t_low), length = get(a_.length);
+    const auto within = length < absolute(left);
+    put(a_.step, within ? (left < 0 ? -length : length) : left);
+    put(a_.reaches, within ? V{} : V{} + 1);
+    const auto long_enough = (length > 2 * epsilon * absolute(get(a_.t_high))) & (length >= V{} + 1e-290);
+    put(a_.shrinks, long_enough ? V{} : V{} + 1);
+  }
+
+  /// q − q_0 and q̇ − q̇_0 by Horner's rule, added with what earlier additions left behind: DenseOutput::advance.
+  void advance() const {
+    const V tau = get(a_.step);
+    for (std::size_t i = 0; i < a_.freedoms; ++i) {
+      V dq{}, dv{};
+      for (int k = a_.order + 1; k >= 2; --k) {
+        const V c = coefficient(k, i);
+        dq = (dq + c) * tau;
+        dv = dv * tau + c * static_cast<double>(k);
+      }
+      const std::size_t at = i * a_.width;
+      add(a_.q_high + at, a_.q_low + at, (dq + (get(a_.v_high + at) + get(a_.v_low + at))) * tau);
+      add(a_.v_high + at, a_.v_low + at, dv * tau);
+    }
+    const auto arrives = get(a_.reaches) != 0;
+    add(a_.t_high, a_.t_low, tau);
+    put(a_.t_high, arrives ? get(a_.end) : get(a_.t_high));
+    put(a_.t_low, arrives ? V{} : get(a_.t_low));
+  }
+
+ private:
+  V get(const double* from) const { return *reinterpret_cast<const V*>(from + first_); }
+  void put(double* to, V value) const { *reinterpret_cast<V*>(to + first_) = value; }
+  V coefficient(int k, std::size_t i) const {
+    return get(a_.coefficients + static_cast<std::size_t>(k) * a_.row + i * a_.width);
+  }
+  static V absolute(V x) { return x < 0 ? -x : x; }
+  static V larger(V x, V y) { return x > y ? x : y; }
+
+  /// Knuth's TwoSum: Compensated::add.
+  void add(double* high, double* low, V increment) const {
+    const V b = get(low) + increment, a = get(high);
+    const V sum = a + b, part = sum - a;
+    put(low, (a - (sum - part)) + (b - part));
+    put(high, sum);
+  }
+
+  // ---------------------------------------------------------------------------------------------------- step length
+
+  V velocity(std::size_t i, int k) const { return absolute(coefficient(k + 1, i)) * static_cast<double>(k + 1); }
+
+  /// The size of coordinate i's velocity over a step of length h: see integrator/taylor/step_size.cpp.
+  V size_of(std::size_t i, V h) const {
+    V size{}, power = V{} + 1;
+    const int last = a_.order - 2 < 3 ? a_.order - 2 : 3;
+    for (int k = 0; k <= last; ++k, power *= h) size = larger(size, velocity(i, k) * power);
+    if (anywhere(size == 0)) size = size_of_late(i, h, size);
+    return larger(size, epsilon * absolute(get(a_.q_high + i * a_.width)) / h);
+  }
+
+  /// A coordinate that others set in motion late begins with a higher power of time.
+  V size_of_late(std::size_t i, V h, V size) const {
+    V power = (h * h) * (h * h);
+    for (int k = 4; k <= a_.order; ++k, power *= h) size = size == 0 ? velocity(i, k) * power : size;
+    return size;
+  }
+
+  static bool anywhere(bool mask) { return mask; }
+  template <class Integers>
+  static bool anywhere(Integers mask) {
+    std::int64_t any = 0;
+    for (std::size_t lane = 0; lane < Width; ++lane) any |= mask[lane];
+    return any != 0;
+  }
+
+  /// factor · min over the last orders of the radius of convergence that each tells, the earlier ones widened.
+  V reached(V h) const {
+    constexpr int most = 6;
+    constexpr double log2_widened = 0.32192809488736235;  // of 1.25
+    const int p = a_.order, lowest = p - 5 < 2 ? (p - 1 < 2 ? p - 1 : 2) : p - 5;
+    V largest[most] = {};
+    for (std::size_t i = 0; i < a_.freedoms; ++i) {
+      const V inverse = 1.0 / size_of(i, h);
+      for (int k = p; k >= lowest; --k) {
+        const V last = velocity(i, k);
+        // 0/0 is no estimate.
+        largest[p - k] = larger(largest[p - k], last > 0 ? last * inverse : V{});
+      }
+    }
+    V exponent = V{} + infinity;
+    for (int k = p; k >= lowest; --k) {
+      const V ratio = largest[p - k];
+      const V by_k = log2_of(ratio) * (-1.0 / k) + (k < p - 1 ? log2_widened : 0.0);
+      exponent = (ratio > 0) & (by_k < exponent) ? by_k : exponent;
+    }
+    const V length = exp2_of(exponent) * a_.factor;
+    return exponent < infinity ? length : V{} + infinity;
+  }
+
+  /// log₂ x for x > 0 to 3·10⁻⁶: minimax on the mantissa.
+  static V log2_of(V x) {
+    I bits;
+    __builtin_memcpy(&bits, &x, sizeof bits);
+    const I whole = ((bits >> 52) & 0x7ff) | 0x4330000000000000;  // 2⁵² + exponent
+    const I fraction = (bits & 0x000fffffffffffff) | 0x3ff0000000000000;
+    V e, f;
+    __builtin_memcpy(&e, &whole, sizeof e);
+    __builtin_memcpy(&f, &fraction, sizeof f);
+    e = e - (0x1p52 + 1023);
+    f = f - 1;
+    V sum = V{} - 0.02456853474529919;
+    sum = sum * f + 0.11761308406665116;
+    sum = sum * f - 0.2726975648528732;
+    sum = sum * f + 0.4545084921997887;
+    sum = sum * f - 0.7173127802648969;
+    sum = sum * f + 1.4424535262106073;
+    return e + (sum * f + 2.4434387202040227e-06);
+  }
+
+  /// 2^x to 10⁻⁷ between 2⁻¹⁰²⁰ and 2¹⁰²⁰, beyond which it stays.
+  static V exp2_of(V x) {
+    x = x < V{} + 1020 ? x : V{} + 1020;
+    x = x > V{} - 1020 ? x : V{} - 1020;
+    const V shifted = x + 0x1.8p52, f = x - (shifted - 0x1.8p52);
+    V sum = V{} + 0.0013390863364671234;
+    sum = sum * f + 0.009676031918322054;
+    sum = sum * f + 0.05550357114219078;
+    sum = sum * f + 0.2402210748530834;
+    sum = sum * f + 0.6931471880262288;
+    sum = sum * f + 1.0000000754548972;
+    I n, bits;
+    __builtin_memcpy(&n, &shifted, sizeof n);
+    __builtin_memcpy(&bits, &sum, sizeof bits);
+    bits = bits + (n << 52);
+    __builtin_memcpy(&sum, &bits, sizeof sum);
+    return sum;
+  }
+
+  const LaneArrays& a_;
+  std::size_t first_;
+};
+
+/// f(Steps) for all lanes, a register at a time.
+template <std::size_t Width, class F>
+inline void for_registers(const LaneArrays& lanes, F&& f) {
+  for (std::size_t first = 0; first < lanes.width; first += Width) f(Steps<Width>(lanes, first));
+}
+template <class F>
+inline void for_lanes(const LaneArrays& lanes, F&& f) {
+  if (lanes.width >= register_width) return for_registers<register_width>(lanes, f);
+  if constexpr (register_width > 4)
+    if (lanes.width == 4) return for_registers<4>(lanes, f);
+  if constexpr (register_width > 2)
+    if (lanes.width == 2) return for_registers<2>(lanes, f);
+  for_registers<1>(lanes, f);
+}
+
+void choose_length(const LaneArrays& lanes, const double* fresh) {
+  for_lanes(lanes, [fresh](auto steps) { steps.choose_length(fresh); });
+}
+void cut_to_end(const LaneArrays& lanes) {
+  for_lanes(lanes, [](auto steps) { steps.cut_to_end(); });
+}
+void advance(const LaneArrays& lanes) {
+  for_lanes(lanes, [](auto steps) { steps.advance(); });
+}
+
+inline LaneSteps steps_of_this_file() { return {choose_length, cut_to_end, advance}; }
+
+}  // namespace
+}  // namespace maupertuis::ensemble
