@@ -13,6 +13,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 
 /// A packed program as straight-line code: every stage unrolled, every sum over orders written out, the newest coefficients
 /// kept in registers and added last, so that a stage waits for the one before as late as possible.
@@ -29,6 +30,8 @@ using packed::PackedProgram;
 using packed::lanes;
 
 constexpr std::size_t most_unknowns = 8;
+constexpr std::size_t most_looking_ahead = 2;
+constexpr double least_pivot = 1e-10;
 constexpr std::size_t most_operations = 40'000;
 
 unsigned width_of(std::size_t count) { return static_cast<unsigned>(std::bit_ceil(count)); }
@@ -38,6 +41,18 @@ struct Tangent {
   std::vector<int> direction;           // diagonal: of each lane, −1 for none
   Value* diagonal = nullptr;
   std::map<int, Value*> dense;          // by direction
+};
+
+/// How a pack of lag ℓ answers, one order behind the leading one, to a change ε τ^m of a coordinate: with falling factorials,
+/// (m)_ℓ A + (m)_{ℓ−1} B. So the residual at order k holds q̈_{k−1} with the factor A + B/k.
+struct SecondTangent {
+  std::map<int, Value*> a, b;           // by direction
+};
+
+/// Coefficients of a stage that is past: without its q̈, which the next stage need not wait for, and final.
+struct Newest {
+  Value *early = nullptr, *final = nullptr;
+  int stage = 0;
 };
 
 /// A place in a vector that holds a slot at the order of the stage.
@@ -50,7 +65,8 @@ class Emitter {
  public:
   Emitter(llvm::Module& module, const PackedProgram& program, std::size_t stride, int order)
       : module_(module), context_(module.getContext()), b_(context_), p_(program), stride_(stride), order_(order),
-        n_(program.program.unknowns), pack_of_(program.program.slots, nullptr), tangents_(program.packs.size()) {
+        n_(program.program.unknowns), pack_of_(program.program.slots, nullptr), tangents_(program.packs.size()),
+        second_order_(program.packs.size()) {
     for (const Pack& pack : p_.packs)
       for (unsigned lane = 0; lane < pack.width; ++lane) {
         if (pack.kind == Pack::Scalar && p_.program.instructions[pack.instruction].second != no_slot)
@@ -61,6 +77,7 @@ class Emitter {
 
   void run() {
     declare();
+    look_ahead_ = has_second_tangents();
     for (int stage = p_.program.first_stage; stage < order_; ++stage) {
       begin_stage(stage);
       for (const Pack& pack : p_.packs) dynamics(pack);
@@ -69,6 +86,7 @@ class Emitter {
         solve();
         correct();
       }
+      if (stage == 1 && look_ahead_) find_second_tangents();
       renew_blocks();
     }
     finish();
@@ -91,9 +109,6 @@ class Emitter {
     term_coefficients_ = field(offsetof(packed::CompiledArguments, term_coefficients));
     constants_ = field(offsetof(packed::CompiledArguments, constants));
     bordered_ = field(offsetof(packed::CompiledArguments, bordered));
-    inverse_ = field(offsetof(packed::CompiledArguments, inverse));
-    self_ = field(offsetof(packed::CompiledArguments, self));
-    invert_ = field(offsetof(packed::CompiledArguments, invert));
     sincos_ = field(offsetof(packed::CompiledArguments, sincos));
     elementary_ = field(offsetof(packed::CompiledArguments, elementary));
     wide_ = width_of(n_);
@@ -128,9 +143,24 @@ class Emitter {
   Value* load_from(Value* table, std::size_t index, unsigned w) {
     return load(b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), table, index), w);
   }
-  Value* coefficients(std::uint32_t first, unsigned w) { return load_from(coefficients_, first, w); }
+  /// Numbers of the model's text are numbers of the code.
+  Value* coefficients(std::uint32_t first, unsigned w) {
+    std::vector<llvm::Constant*> values;
+    for (unsigned lane = 0; lane < w; ++lane) {
+      const Constant& c = p_.program.constants[p_.coefficients[first + lane]];
+      if (c.kind != Kind::Number) return load_from(coefficients_, first, w);
+      values.push_back(llvm::ConstantFP::get(b_.getDoubleTy(), c.value));
+    }
+    return w == 1 ? values[0] : llvm::ConstantVector::get(values);
+  }
 
-  Value* mul(Value* x, Value* y) { return is_zero(x) ? x : is_zero(y) ? y : b_.CreateFMul(x, y); }
+  static bool is_one(const Value* v) {
+    const auto* const c = llvm::dyn_cast<llvm::Constant>(v);
+    return c && (c->getType()->isVectorTy() ? c->getSplatValue() && is_one(c->getSplatValue()) : llvm::cast<llvm::ConstantFP>(c)->isExactlyValue(1.0));
+  }
+  Value* mul(Value* x, Value* y) {
+    return is_zero(x) || is_one(y) ? x : is_zero(y) || is_one(x) ? y : b_.CreateFMul(x, y);
+  }
   /// Null stands for a sum without terms.
   Value* add(Value* x, Value* y) {
     if (!x || !y) return x ? x : y;
@@ -139,7 +169,8 @@ class Emitter {
   /// x y + sum; a null sum is zero.
   Value* fma(Value* x, Value* y, Value* sum) {
     if (is_zero(x) || is_zero(y)) return sum ? sum : is_zero(x) ? x : y;
-    if (!sum || is_zero(sum)) return b_.CreateFMul(x, y);
+    if (!sum || is_zero(sum)) return mul(x, y);
+    if (is_one(x) || is_one(y)) return b_.CreateFAdd(is_one(x) ? y : x, sum);
     return b_.CreateIntrinsic(llvm::Intrinsic::fma, {x->getType()}, {x, y, sum});
   }
   Value* splat(double x, const Value* like) { return vector_of(x, width(like)); }
@@ -155,6 +186,7 @@ class Emitter {
   void begin_stage(int stage) {
     stage_ = stage;
     open_.clear();
+    early_.clear();
     if (stage < 0) {
       const int k = stage + 2;
       coordinates_ = k < 2 && k >= 0 ? load(cell(k, 0), wide_) : nullptr;
@@ -234,7 +266,7 @@ class Emitter {
   Value* operand(std::uint32_t index, int order, unsigned w) {
     const Block& block = p_.blocks[index];
     const auto newest = newest_.find({index, order});
-    if (newest != newest_.end() && width(newest->second) == w) return newest->second;
+    if (newest != newest_.end() && width(newest->second.final) == w) return seen(newest->second);
     const ArrayRef<Slot> slots(block.slots.data(), block.width);
     if (current_order(block.slots[0]) == order) {
       Value* const values = gather(slots, order, w);
@@ -242,6 +274,9 @@ class Emitter {
     }
     return load(cell(order, block.first), w);
   }
+
+  bool looks_ahead(int stage) const { return stage >= 2 && look_ahead_; }
+  Value* seen(const Newest& newest) const { return looks_ahead(stage_) && newest.stage == stage_ - 1 ? newest.early : newest.final; }
 
   /// Σ_{j=first..last} a_j b_{k−j}, from the middle outward in three chains; the ends, which may be of this stage or the last, come last.
   template <class A, class B>
@@ -280,25 +315,29 @@ class Emitter {
   void keep(const Pack& pack, Value* v) { keep(pack.out, v); }
   void keep(Slot slot, Value* v) {
     open_[slot] = v;
-    save(cell(current_order(slot), slot), v);
+    // What is corrected is written when it is final; order 0 of lag 2 is read by the tangents from registers.
+    if (stage_ < 0 || !is_corrected(slot)) save(cell(current_order(slot), slot), v);
+  }
+  bool is_corrected(Slot slot) const {
+    return slot < p_.program.stored_end[2] && p_.program.tangent_lags[slot] != Program::unmoved;
   }
 
   Value* sum(const Pack& pack, unsigned w) {
-    Value* by_shift[3] = {};
+    Value* result = nullptr;
     for (std::uint32_t c = pack.first_aligned; c < pack.last_aligned; ++c) {
       const Column& column = p_.columns[c];
       if (column.source == p_.program.one && k_ + column.shift > 0) continue;
-      const unsigned used = column.kind == Column::Broadcast ? 1 : pack.width;
-      const std::vector<Slot> same(pack.width, column.source);
-      const ArrayRef<Slot> slots = used == 1 ? ArrayRef<Slot>(same) : ArrayRef<Slot>(column.sources.data(), pack.width);
-      Value* const values = gather(slots, k_ + column.shift, w);
-      Value*& sum = by_shift[column.shift];
-      sum = fma(values, coefficients(column.coefficients, w), sum);
+      const std::vector<Slot> slots = sources_of(column, pack.width);
+      const double factor = column.shift == 0 ? 1 : column.shift == 1 ? k_ + 1.0 : (k_ + 1.0) * (k_ + 2.0);
+      Value* const c_k = coefficients(column.coefficients, w);
+      result = fma(gather(slots, k_ + column.shift, w), mul(c_k, splat(factor, c_k)), result);
     }
-    Value* result = by_shift[0];
-    if (by_shift[1]) result = fma(by_shift[1], splat(k_ + 1.0, by_shift[1]), result);
-    if (by_shift[2]) result = fma(by_shift[2], splat((k_ + 1.0) * (k_ + 2.0), by_shift[2]), result);
     return products(pack, w, result ? result : vector_of(0.0, w));
+  }
+
+  static std::vector<Slot> sources_of(const Column& column, std::uint32_t width) {
+    if (column.kind == Column::Broadcast) return std::vector<Slot>(width, column.source);
+    return {column.sources.begin(), column.sources.begin() + width};
   }
 
   Value* products(const Pack& pack, unsigned w, Value* result) {
@@ -361,7 +400,7 @@ class Emitter {
   /// Neighbouring slots of one lag at an order.
   Value* range(Slot first, int order, unsigned w) {
     const auto newest = newest_ranges_.find({first, order, w});
-    if (newest != newest_ranges_.end()) return newest->second;
+    if (newest != newest_ranges_.end()) return seen(newest->second);
     if (current_order(first) != order) return load(cell(order, first), w);
     std::vector<Slot> slots;
     for (unsigned lane = 0; lane < w; ++lane) slots.push_back(first + lane);
@@ -664,9 +703,7 @@ class Emitter {
         for (std::uint32_t c = pack.first_aligned; c < pack.last_aligned; ++c) {
           const Column& column = p_.columns[c];
           if (!passes(column.source, column.shift, pack.lag)) continue;
-          std::vector<Slot> slots(pack.width, column.source);
-          if (column.kind != Column::Broadcast) slots.assign(column.sources.begin(), column.sources.begin() + pack.width);
-          result.push_back({std::move(slots), [this, &column](unsigned w) { return coefficients(column.coefficients, w); }});
+          result.push_back({sources_of(column, pack.width), [this, &column](unsigned w) { return coefficients(column.coefficients, w); }});
         }
         for (std::uint32_t i = pack.first_product; i < pack.last_product; ++i) {
           const packed::ProductTerm& term = p_.products[i];
@@ -746,17 +783,50 @@ class Emitter {
         const auto found = passes(slot, 0, 2) ? tangent_place(slot, static_cast<int>(d)) : std::nullopt;
         save(b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), bordered_, i * n_ + d), found ? element(*found) : vector_of(0.0, 1));
       }
-    auto* const signature = llvm::FunctionType::get(b_.getInt1Ty(), {b_.getPtrTy()}, false);
-    llvm::CallInst* const call = b_.CreateCall(signature, invert_, {self_});
-    call->addRetAttr(llvm::Attribute::ZExt);
+    invert();
+  }
+
+  /// −M₀⁻¹ by Gauss and Jordan without pivoting, a row a vector: stable for a symmetric, positive definite matrix. The smallest
+  /// pivot against its diagonal entry tells whether it is one.
+  void invert() {
+    std::vector<Value*> rows;
+    Value* least = nullptr;
+    for (std::size_t i = 0; i < n_; ++i) {
+      std::vector<Value*> entries;
+      for (std::size_t d = 0; d < n_; ++d) entries.push_back(load_from(bordered_, i * n_ + d, 1));
+      Value* row = wide_ == 1 ? entries[0] : llvm::PoisonValue::get(type(wide_));
+      for (unsigned lane = 0; wide_ > 1 && lane < wide_; ++lane)
+        row = b_.CreateInsertElement(row, lane < n_ ? entries[lane] : vector_of(0.0, 1), lane);
+      rows.push_back(row);
+    }
+    for (unsigned pivot = 0; pivot < n_; ++pivot) {
+      Value* const p = splat_lane(rows[pivot], pivot, 1);
+      Value* const share = b_.CreateFDiv(p, load_from(bordered_, pivot * n_ + pivot, 1));
+      least = least ? b_.CreateSelect(b_.CreateFCmpULT(share, least), share, least) : share;
+      Value* const inverse = b_.CreateFDiv(vector_of(1.0, 1), p);
+      Value* const row = mul(with_lane(rows[pivot], pivot, vector_of(1.0, 1)), spread(inverse));
+      for (unsigned i = 0; i < n_; ++i) {
+        if (i == pivot) continue;
+        Value* const factor = splat_lane(rows[i], pivot, wide_);
+        rows[i] = fma(b_.CreateFNeg(factor), row, with_lane(rows[i], pivot, vector_of(0.0, 1)));
+      }
+      rows[pivot] = row;
+    }
+    for (Value* const row : rows) inverse_rows_.push_back(b_.CreateFNeg(row));  // symmetric: rows are columns
+    trust(b_.CreateFCmpOGT(least, vector_of(least_pivot, 1)));
+  }
+
+  Value* spread(Value* scalar) { return wide_ == 1 ? scalar : b_.CreateVectorSplat(wide_, scalar); }
+  Value* with_lane(Value* v, unsigned lane, Value* scalar) { return width(v) == 1 ? scalar : b_.CreateInsertElement(v, scalar, lane); }
+
+  /// Beyond this point only if the condition holds; else the slow path has to decide.
+  void trust(Value* condition) {
     auto* const good = llvm::BasicBlock::Create(context_, "", function_);
     auto* const bad = llvm::BasicBlock::Create(context_, "", function_);
-    b_.CreateCondBr(call, good, bad);
+    b_.CreateCondBr(condition, good, bad);
     b_.SetInsertPoint(bad);
     b_.CreateRet(b_.getInt32(2));
     b_.SetInsertPoint(good);
-    const std::size_t padded = (n_ + lanes - 1) / lanes * lanes;
-    for (std::size_t d = 0; d < n_; ++d) inverse_rows_.push_back(load_from(inverse_, d * padded, wide_));
   }
 
   Value* splat_lane(Value* v, unsigned lane, unsigned w) {
@@ -765,86 +835,252 @@ class Emitter {
     return b_.CreateShuffleVector(v, std::vector<int>(w, static_cast<int>(lane)));
   }
 
-  /// a = −M₀⁻¹ R.
+  /// q̈_k = −M₀⁻¹ R_k; looking ahead, R_k lacks its part by q̈_{k−1}, which comes last.
   void solve() {
     Value *even = nullptr, *odd = nullptr;
     for (unsigned d = 0; d < n_; ++d) {
       const Slot slot = p_.program.residual[d];
-      const auto r = place(slot);
-      Value* const value = r ? splat_lane(r->vector, r->lane, wide_) : b_.CreateVectorSplat(wide_, load(cell(stage_, slot), 1));
+      const auto r = current_order(slot) == stage_ ? place(slot) : std::nullopt;
+      Value* const value = r ? splat_lane(r->vector, r->lane, wide_) : spread(load(cell(stage_, slot), 1));
       Value*& sum = d % 2 == 0 ? even : odd;
       sum = fma(value, inverse_rows_[d], sum);
     }
-    acceleration_ = odd ? add(even, odd) : even;
-    Value* const nothing = b_.CreateFMul(acceleration_, vector_of(0.0, wide_));  // NaN where it is not finite
+    Value* found = add(even, odd);
+    if (looks_ahead(stage_))
+      for (unsigned d = 0; d < n_; ++d)
+        found = fma(splat_lane(acceleration_, d, wide_), fma(ahead_b_[d], vector_of(1.0 / stage_, wide_), ahead_a_[d]), found);
+    previous_ = std::exchange(acceleration_, found);
+    Value* const nothing = b_.CreateFMul(found, vector_of(0.0, wide_));  // NaN where it is not finite
     check_ = check_ ? b_.CreateFAdd(check_, nothing) : nothing;
   }
 
   void correct() {
     coordinates_ = over(acceleration_, (stage_ + 1.0) * (stage_ + 2.0));
-    save_coordinates();
+    save(cell(stage_ + 2, 0), coordinates_);  // the other lanes of the row's first vector belong to nobody
     for (const Pack& pack : p_.packs) {
-      const bool is_stored = pack.out < p_.program.stored_end[2];
-      if (!is_stored || p_.program.tangent_lags[pack.out] == Program::unmoved) continue;
-      correct(pack.out, tangents_[index_of(pack)], pack.lag);
+      if (!is_corrected(pack.out)) continue;
+      const SecondTangent* const second_order = looks_ahead(stage_) ? &second_order_[index_of(pack)] : nullptr;
+      correct(pack.out, tangents_[index_of(pack)], pack.lag, second_order);
       if (pack.kind != Pack::Scalar) continue;
       const Slot second = p_.program.instructions[pack.instruction].second;
-      if (second != no_slot && second < p_.program.stored_end[2]) correct(second, second_tangents_[second], pack.lag);
+      if (second != no_slot) correct(second, second_tangents_[second], pack.lag, nullptr);
     }
   }
 
-  /// The other lanes of the row's first vector belong to nobody.
-  void save_coordinates() { save(cell(stage_ + 2, 0), coordinates_); }
-
-  void correct(Slot slot, const Tangent& t, int lag) {
+  void correct(Slot slot, const Tangent& t, int lag, const SecondTangent* second_order) {
     const auto found = open_.find(slot);
     if (found == open_.end()) return;
     Value* result = found->second;
     const unsigned w = width(result);
-    const double factor = lag == 2 ? 1 : lag == 1 ? 1.0 / (stage_ + 1) : 1.0 / ((stage_ + 1.0) * (stage_ + 2.0));
-    const auto scaled = [&](Value* v) { return factor == 1 ? v : mul(v, splat(factor, v)); };
-    if (t.diagonal) {
-      std::vector<std::optional<Place>> places;
-      for (const int d : t.direction) places.push_back(Place{acceleration_, static_cast<unsigned>(std::max(0, d))});
-      result = fma(assemble(places, w, [&](std::size_t) { return vector_of(0.0, 1); }), scaled(t.diagonal), result);
+    const double k = stage_;
+    if (second_order) {
+      // (k+1)_ℓ A + (k+1)_{ℓ−1} B over (k+1) k, since q_{k+1} = q̈_{k−1} / ((k+1) k)
+      const double of_a = lag == 2 ? 1 : lag == 1 ? 1 / k : 1 / (k * (k + 1)), of_b = of_a / (k + 2 - lag);
+      for (const auto& [d, values] : joined(*second_order)) {
+        Value* slope = values.first ? mul(values.first, vector_of(of_a, w)) : nullptr;
+        if (values.second) slope = fma(values.second, vector_of(of_b, w), slope);
+        result = fma(direction_of(previous_, t, d, w), slope, result);
+      }
     }
+    found->second = early_[slot] = result;
+    const double factor = lag == 2 ? 1 : lag == 1 ? 1.0 / (k + 1) : 1.0 / ((k + 1) * (k + 2));
+    const auto scaled = [&](Value* v) { return mul(v, splat(factor, v)); };
+    if (t.diagonal) result = fma(direction_of(acceleration_, t, along_lanes, w), scaled(t.diagonal), result);
     for (const auto& [d, value] : t.dense) result = fma(splat_lane(acceleration_, static_cast<unsigned>(d), w), scaled(value), result);
     found->second = result;
     save(cell(stage_ + 2 - lag, slot), result);
   }
 
+  /// Accelerations as the lanes of a diagonal tangent need them, or one for all lanes.
+  Value* direction_of(Value* acceleration, const Tangent& t, int d, unsigned w) {
+    if (d != along_lanes) return splat_lane(acceleration, static_cast<unsigned>(d), w);
+    std::vector<std::optional<Place>> places;
+    for (const int x : t.direction) places.push_back(Place{acceleration, static_cast<unsigned>(std::max(0, x))});
+    return assemble(places, w, [&](std::size_t) { return vector_of(0.0, 1); });
+  }
+
+  static std::map<int, std::pair<Value*, Value*>> joined(const SecondTangent& s) {
+    std::map<int, std::pair<Value*, Value*>> result;
+    for (const auto& [d, value] : s.a) result[d].first = value;
+    for (const auto& [d, value] : s.b) result[d].second = value;
+    return result;
+  }
+
+  // ----------------------------------------------------------------------------------------------------- look-ahead
+
+  /// Whether the second tangents of all packs are found by the rules below.
+  bool has_second_tangents() const {
+    return n_ <= most_looking_ahead && std::all_of(p_.packs.begin(), p_.packs.end(), [&](const Pack& pack) {
+      return pack.kind == Pack::Sum || pack.kind == Pack::Integral || p_.program.tangent_lags[pack.out] == Program::unmoved;
+    });
+  }
+
+  /// After stage 0, when all coefficients of order 1 that it takes are known.
+  void find_second_tangents() {
+    for (const Pack& pack : p_.packs)
+      if (p_.program.tangent_lags[pack.out] != Program::unmoved) second_order_[index_of(pack)] = second_tangent(pack);
+    for (unsigned d = 0; d < n_; ++d) {
+      Value *a = vector_of(0.0, wide_), *b = a;
+      for (unsigned i = 0; i < n_; ++i) {
+        const Slot slot = p_.program.residual[i];
+        if (const auto found = second_place(slot, static_cast<int>(d), true)) a = fma(spread(element(*found)), inverse_rows_[i], a);
+        if (const auto found = second_place(slot, static_cast<int>(d), false)) b = fma(spread(element(*found)), inverse_rows_[i], b);
+      }
+      ahead_a_.push_back(a), ahead_b_.push_back(b);
+    }
+  }
+
+  std::optional<Place> second_place(Slot slot, int d, bool of_a) {
+    if (slot < n_ || !pack_of_[slot]) return std::nullopt;
+    const Pack& pack = *pack_of_[slot];
+    const auto& map = of_a ? second_order_[index_of(pack)].a : second_order_[index_of(pack)].b;
+    const unsigned lane = slot - pack.out;
+    if (const auto found = map.find(d); found != map.end()) return Place{found->second, lane};
+    const auto found = map.find(along_lanes);
+    if (found == map.end() || tangents_[index_of(pack)].direction[lane] != d) return std::nullopt;
+    return Place{found->second, lane};
+  }
+
+  enum class Part { Leading, A, B };
+  /// Lanes of slots in the directions given.
+  Value* gather_part(Part part, ArrayRef<Slot> slots, ArrayRef<int> direction, unsigned w) {
+    if (part == Part::Leading) return gather_tangents(slots, direction, w);
+    std::vector<std::optional<Place>> places;
+    bool any = false;
+    for (std::size_t lane = 0; lane < slots.size(); ++lane) {
+      places.push_back(direction[lane] < 0 ? std::nullopt : second_place(slots[lane], direction[lane], part == Part::A));
+      any = any || places.back();
+    }
+    return any ? assemble(places, w, [&](std::size_t) { return vector_of(0.0, 1); }) : vector_of(0.0, w);
+  }
+
+  SecondTangent second_tangent(const Pack& pack) {
+    const Tangent& t = tangents_[index_of(pack)];
+    SecondTangent result;
+    if (t.diagonal) add_second(pack, along_lanes, t.direction, result);
+    else
+      for (unsigned d = 0; d < n_; ++d) add_second(pack, static_cast<int>(d), std::vector<int>(pack.width, static_cast<int>(d)), result);
+    return result;
+  }
+
+  void add_second(const Pack& pack, int name, ArrayRef<int> direction, SecondTangent& result) {
+    const unsigned w = width_of(pack.width);
+    Value *a = nullptr, *b = nullptr;
+    const auto value = [&](Part part, ArrayRef<Slot> slots) { return gather_part(part, slots, direction, w); };
+    for (std::uint32_t c = pack.first_aligned; pack.kind == Pack::Sum && c < pack.last_aligned; ++c) {
+      const Column& column = p_.columns[c];
+      const std::vector<Slot> slots = sources_of(column, pack.width);
+      Value* const factor = coefficients(column.coefficients, w);
+      if (passes(column.source, column.shift, pack.lag)) {
+        Value* const of_a = value(Part::A, slots);
+        a = fma(of_a, factor, a);
+        b = fma(value(Part::B, slots), factor, b);
+        if (column.shift > 0) b = fma(of_a, mul(factor, vector_of(column.shift, w)), b);
+      } else if (passes(column.source, column.shift, pack.lag - 1)) {
+        b = fma(value(Part::Leading, slots), factor, b);
+      }
+    }
+    for (std::uint32_t i = pack.first_product; pack.kind == Pack::Sum && i < pack.last_product; ++i) {
+      const packed::ProductTerm& term = p_.products[i];
+      Value* const factor = coefficients(term.coefficients, w);
+      for (const auto& [x, y] : {std::pair{term.a, term.b}, std::pair{term.b, term.a}}) {
+        const std::vector<Slot> slots = slots_of(p_.blocks[x]);
+        Value* const y0 = mul(factor, value_at(y, 0, w));
+        if (p_.blocks[x].lag == pack.lag) {
+          a = fma(value(Part::A, slots), y0, a);
+          a = fma(value(Part::Leading, slots), mul(factor, value_at(y, 1, w)), a);
+          b = fma(value(Part::B, slots), y0, b);
+        } else if (p_.blocks[x].lag == pack.lag - 1) {
+          b = fma(value(Part::Leading, slots), y0, b);
+        }
+      }
+    }
+    if (pack.kind == Pack::Integral) {
+      // y' = c w u': the factors (m)_ℓ (m − ℓ)/(m − ℓ + 1) of T_u w₁ are (m)_ℓ − (m)_{ℓ−1}
+      const std::vector<Slot> u = slots_of(p_.blocks[pack.a]), x = slots_of(p_.blocks[pack.b]);
+      Value* const c = coefficients(pack.coefficients, w);
+      Value* const w0 = mul(c, value_at(pack.b, 0, w));
+      if (p_.blocks[pack.a].lag == pack.lag) {
+        Value* const by_w1 = mul(value(Part::Leading, u), mul(c, value_at(pack.b, 1, w)));
+        a = add(fma(value(Part::A, u), w0, a), by_w1);
+        b = fma(value(Part::B, u), w0, b);
+        b = fma(by_w1, vector_of(-1.0, w), b);
+      } else if (p_.blocks[pack.a].lag == pack.lag - 1) {
+        b = fma(value(Part::Leading, u), w0, b);
+      }
+      if (p_.blocks[pack.b].lag == pack.lag) b = fma(value(Part::Leading, x), mul(c, value_at(pack.a, 1, w)), b);
+    }
+    if (a && !is_zero(a)) result.a[name] = a;
+    if (b && !is_zero(b)) result.b[name] = b;
+  }
+
+  /// Final coefficients of a block's slots, after their stage.
+  Value* value_at(std::uint32_t index, int order, unsigned w) {
+    const Block& block = p_.blocks[index];
+    const ArrayRef<Slot> slots(block.slots.data(), block.width);
+    if (current_order(slots[0]) == order) return gather(slots, order, w);
+    bool range = true;
+    for (std::size_t lane = 0; lane < slots.size(); ++lane) range = range && slots[lane] == slots[0] + lane;
+    if (range) return load(cell(order, slots[0]), w);
+    Value* result = w == 1 ? load(cell(order, slots[0]), 1) : llvm::PoisonValue::get(type(w));
+    for (unsigned lane = 0; w > 1 && lane < w; ++lane)
+      result = b_.CreateInsertElement(result, load(cell(order, slots[std::min<std::size_t>(lane, slots.size() - 1)]), 1), lane);
+    return result;
+  }
+
   // --------------------------------------------------------------------------------------------------------- blocks
 
-  /// Copies of what is final now; the newest two orders stay in registers.
+  /// Copies of what is final now; the newest two stages stay in registers.
   void renew_blocks() {
-    std::erase_if(newest_, [&](const auto& entry) { return entry.first.second < stage_ + 1 - p_.blocks[entry.first.first].lag; });
-    std::erase_if(newest_ranges_, [&](const auto& entry) {
-      return std::get<1>(entry.first) < stage_ + 1 - p_.program.lags[std::get<0>(entry.first)];
-    });
+    std::erase_if(newest_, [&](const auto& entry) { return entry.second.stage < stage_ - 1; });
+    std::erase_if(newest_ranges_, [&](const auto& entry) { return entry.second.stage < stage_ - 1; });
     for (std::uint32_t index = 0; index < p_.blocks.size(); ++index) {
       const Block& block = p_.blocks[index];
       const int order = stage_ + 2 - block.lag;
       if (order < 0) continue;
-      Value* values = gather(ArrayRef<Slot>(block.slots.data(), block.width), order, width_of(block.width));
-      if (block.weighted) values = weighted(block, values, order);
-      if (!block.direct) save(cell(order, block.first), values);
-      newest_[{index, order}] = values;
+      Newest entry = newest_of(ArrayRef<Slot>(block.slots.data(), block.width), order, width_of(block.width));
+      if (block.weighted) weigh(block, entry, order);
+      if (!block.direct) save(cell(order, block.first), entry.final);
+      newest_[{index, order}] = entry;
     }
     for (const auto& [first, w] : ranges_) {
       const int order = stage_ + 2 - p_.program.lags[first];
       std::vector<Slot> slots;
       for (unsigned lane = 0; lane < w; ++lane) slots.push_back(first + lane);
-      if (order >= 0) newest_ranges_[{first, order, w}] = gather(slots, order, w);
+      if (order >= 0) newest_ranges_[{first, order, w}] = newest_of(slots, order, w);
     }
   }
 
-  /// k q_k of a coordinate is q̈/(k−1): one operation fewer to wait for.
-  Value* weighted(const Block& block, Value* values, int order) {
-    const bool coordinates = std::all_of(block.slots.begin(), block.slots.begin() + block.width, [&](Slot s) { return s < n_; });
-    if (!coordinates || stage_ < 0 || order != stage_ + 2) return mul(values, splat(order, values));
+  Newest newest_of(ArrayRef<Slot> slots, int order, unsigned w) {
+    Newest entry{.final = gather(slots, order, w), .stage = stage_};
+    entry.early = entry.final;
+    if (!looks_ahead(stage_ + 1)) return entry;
     std::vector<std::optional<Place>> places;
-    for (std::uint32_t lane = 0; lane < block.width; ++lane) places.push_back(Place{acceleration_, block.slots[lane]});
-    return over(assemble(places, width(values), [&](std::size_t) { return vector_of(0.0, 1); }), stage_ + 1.0);
+    for (const Slot slot : slots) {
+      auto p = place(slot);
+      if (slot < n_) p = Place{vector_of(0.0, width(coordinates_)), slot};
+      else if (p)
+        if (const auto early = early_.find(slot - p->lane); early != early_.end()) p->vector = early->second;
+      places.push_back(p);
+    }
+    entry.early = assemble(places, w, [&](std::size_t lane) { return load(cell(order, slots[lane]), 1); });
+    return entry;
+  }
+
+  /// k q_k of a coordinate is q̈/(k−1): one operation fewer to wait for.
+  void weigh(const Block& block, Newest& entry, int order) {
+    const unsigned w = width_of(block.width);
+    const bool coordinates = std::all_of(block.slots.begin(), block.slots.begin() + block.width, [&](Slot s) { return s < n_; });
+    const bool same = entry.early == entry.final;
+    entry.early = mul(entry.early, vector_of(order, w));
+    if (coordinates && stage_ >= 0) {
+      std::vector<std::optional<Place>> places;
+      for (std::uint32_t lane = 0; lane < block.width; ++lane) places.push_back(Place{acceleration_, block.slots[lane]});
+      entry.final = over(assemble(places, w, [&](std::size_t) { return vector_of(0.0, 1); }), stage_ + 1.0);
+    } else {
+      entry.final = mul(entry.final, vector_of(order, w));
+    }
+    if (same) entry.early = entry.final;
   }
 
   llvm::Module& module_;
@@ -857,19 +1093,23 @@ class Emitter {
   unsigned wide_ = 1;                   // lanes of q̈
   llvm::Function* function_ = nullptr;
   Value *rows_ = nullptr, *coefficients_ = nullptr, *term_coefficients_ = nullptr, *constants_ = nullptr, *bordered_ = nullptr,
-        *inverse_ = nullptr, *self_ = nullptr, *invert_ = nullptr, *sincos_ = nullptr, *elementary_ = nullptr;
+        *sincos_ = nullptr, *elementary_ = nullptr;
   int stage_ = 0, k_ = 0;
   std::vector<const Pack*> pack_of_;    // [slots]
   Value* coordinates_ = nullptr;        // their coefficients of this stage
-  Value *acceleration_ = nullptr, *check_ = nullptr;
+  Value *acceleration_ = nullptr, *previous_ = nullptr, *check_ = nullptr;
+  bool look_ahead_ = false;
   std::map<Slot, Value*> open_;         // results of this stage by first slot
-  std::map<std::pair<std::uint32_t, int>, Value*> newest_;  // (block, order): final, in registers
-  std::map<std::tuple<Slot, int, unsigned>, Value*> newest_ranges_;
+  std::map<Slot, Value*> early_;        // the same without q̈ of this stage
+  std::map<std::pair<std::uint32_t, int>, Newest> newest_;  // (block, order): in registers
+  std::map<std::tuple<Slot, int, unsigned>, Newest> newest_ranges_;
   std::set<std::pair<Slot, unsigned>> ranges_;
   std::map<Slot, Value*> seconds_;      // at order 0
   std::vector<Tangent> tangents_;       // [packs]
   std::map<Slot, Tangent> second_tangents_;
-  std::vector<Value*> inverse_rows_;
+  static constexpr int along_lanes = -1;  // the direction of each lane of a diagonal tangent
+  std::vector<SecondTangent> second_order_;  // [packs]
+  std::vector<Value*> inverse_rows_, ahead_a_, ahead_b_;  // −M⁻¹, and q̈_k by q̈_{k−1}: A + B/k
 };
 
 /// Vector operations that the sums over orders take.
