@@ -175,11 +175,15 @@ class Emitter {
   }
   Value* splat(double x, const Value* like) { return vector_of(x, width(like)); }
   /// x / d for a whole number d, without the rounding of 1/d, which would be the same in every step and add up.
-  Value* over(Value* x, double d) {
-    if (d == 1 || is_zero(x)) return x;
+  Value* over(Value* x, double d) { return over(x, d, vector_of(1.0, width(x))); }
+  /// c x / d
+  Value* over(Value* x, double d, Value* c) {
+    if (is_zero(x)) return x;
     const double high = 1 / d, low = std::fma(-high, d, 1.0) / d;
-    return low == 0 ? mul(x, splat(high, x)) : fma(x, splat(high, x), mul(x, splat(low, x)));
+    Value* const by_high = constant_product(c, high);
+    return low == 0 ? mul(x, by_high) : fma(x, by_high, mul(x, constant_product(c, low)));
   }
+  Value* constant_product(Value* c, double factor) { return mul(c, splat(factor, c)); }
 
   // --------------------------------------------------------------------------------------------------------- values
 
@@ -278,11 +282,10 @@ class Emitter {
   bool looks_ahead(int stage) const { return stage >= 2 && look_ahead_; }
   Value* seen(const Newest& newest) const { return looks_ahead(stage_) && newest.stage == stage_ - 1 ? newest.early : newest.final; }
 
-  /// Σ_{j=first..last} a_j b_{k−j}, from the middle outward in three chains; the ends, which may be of this stage or the last, come last.
+  /// Σ_{j=first..last} a_j b_{k−j}, from the middle outward in two chains; the ends, which may be of this stage or the last, come last.
   template <class A, class B>
   Value* convolution(A&& a, B&& b, int first, int last, int k) {
-    constexpr int chains = 3;
-    Value* sums[chains] = {};
+    Value* sums[2] = {};
     std::vector<int> order;
     for (int j = first; j <= last; ++j) order.push_back(j);
     std::stable_sort(order.begin(), order.end(), [&](int x, int y) { return std::abs(2 * x - first - last) < std::abs(2 * y - first - last); });
@@ -290,11 +293,11 @@ class Emitter {
     const std::size_t ends = order.size() > 4 ? order.size() - 4 : 0;
     for (std::size_t i = 0; i < order.size(); ++i) {
       // What is newest is added to one finished sum.
-      if (i == ends && ends > 0) sums[0] = add(add(sums[0], sums[1]), sums[2]), sums[1] = sums[2] = nullptr, next = 0;
-      Value*& sum = sums[i < ends ? next++ % chains : next++ % 2];
+      if (i == ends && ends > 0) sums[0] = add(sums[0], sums[1]), sums[1] = nullptr, next = 0;
+      Value*& sum = sums[next++ % 2];
       sum = fma(a(order[i]), b(k - order[i]), sum);
     }
-    return add(sums[1], add(sums[2], sums[0]));
+    return add(sums[1], sums[0]);
   }
 
   // ------------------------------------------------------------------------------------------------------- dynamics
@@ -423,7 +426,7 @@ class Emitter {
   void integral(const Pack& pack, unsigned w) {
     if (k_ == 0) return functions(pack, w);
     Value* const sum = convolution([&](int j) { return operand(pack.a, j, w); }, [&](int j) { return operand(pack.b, j, w); }, 1, k_, k_);
-    keep(pack, over(mul(sum, coefficients(pack.coefficients, w)), k_));
+    keep(pack, over(sum, k_, coefficients(pack.coefficients, w)));
   }
 
   Value* quotient(const Pack& pack, unsigned w) {
