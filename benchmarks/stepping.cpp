@@ -38,10 +38,12 @@ Chain chain(int links) {
 
 double seconds(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-void measure(int links, double time) {
+void measure(int links, double time, Backend backend) {
   const Chain c = chain(links);
   const auto before = Clock::now();
-  TaylorStepper stepper(*c.kernel, c.parameters, {});
+  TaylorOptions options;
+  options.backend = backend;
+  TaylorStepper stepper(*c.kernel, c.parameters, options);
   const double setup = seconds(before);
   double best = 1e9;
   std::size_t steps = 0;
@@ -55,6 +57,7 @@ void measure(int links, double time) {
   }
   KernelWorkspace work(*c.kernel, 20);
   work.set_parameters(c.parameters);
+  if (backend == Backend::Compiled) work.compile({.cache = false});
   const int turns = std::max(10, 20000 / links);
   double expand = 1e9;
   for (int round = 0; round < 5; ++round) {
@@ -70,9 +73,9 @@ void measure(int links, double time) {
 
 int main(int count, char** arguments) {
   if (count > 2) {
-    measure(std::atoi(arguments[1]), std::atof(arguments[2]));
+    measure(std::atoi(arguments[1]), std::atof(arguments[2]), count > 3 ? Backend::Compiled : Backend::Interpreter);
     return 0;
   }
   for (const auto& [links, time] : std::vector<std::pair<int, double>>{{1, 1000}, {2, 1000}, {4, 200}, {8, 100}, {16, 50}, {32, 10}, {100, 2}})
-    measure(links, time);
+    for (const Backend backend : {Backend::Interpreter, Backend::Compiled}) measure(links, time, backend);
 }

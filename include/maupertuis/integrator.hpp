@@ -28,6 +28,16 @@ struct TaylorOptions {
   int order = 0;                                 // of the polynomial of q̇; 0: from the tolerance
   std::size_t maximum_steps = 100'000'000;
   const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
+  Backend backend = Backend::Automatic;          // what carries out the expansions
+  bool cache = true;                             // of compiled code
+};
+
+/// What carried out the expansions.
+struct BackendUse {
+  bool compiled = false;
+  double compile_seconds = 0;
+  std::string trouble;        // why compiled code that was asked for is not used
+  std::string cache_trouble;  // it could not be kept for the next run
 };
 
 /// Advances a motion by steps whose order and length follow from the tolerance (Jorba and Zou). The state is summed
@@ -50,6 +60,7 @@ class TaylorStepper {
   std::span<const double> v() const;  // [n]
   std::size_t steps() const;
   std::size_t switches() const;       // located crossings so far
+  const BackendUse& backend() const;
 
   /// Whether t lies in the last step, its ends included.
   bool covers(double t) const;

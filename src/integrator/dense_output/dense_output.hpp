@@ -9,7 +9,13 @@ namespace maupertuis {
 struct Compensated {
   double hi = 0, lo = 0;
   /// Adds with Knuth's TwoSum, so that nothing is lost but the rounding of lo itself.
-  void add(double increment);
+  void add(double increment) {
+    const double b = lo + increment;
+    const double sum = hi + b;
+    const double part = sum - hi;
+    lo = (hi - (sum - part)) + (b - part);
+    hi = sum;
+  }
 };
 
 /// The motion within one step: q(begin + τ) = Σ c_k τ^k with its derivative, and time integrals beside it.
@@ -17,8 +23,10 @@ class DenseOutput {
  public:
   void resize(std::size_t freedoms, std::size_t integrals, int degree);
 
-  double* coefficients(int k) { return coefficients_.data() + static_cast<std::size_t>(k) * freedoms_; }
-  const double* coefficients(int k) const { return coefficients_.data() + static_cast<std::size_t>(k) * freedoms_; }
+  /// Takes the coefficients c_k = first[k · stride …] of q from where they are, as long as they stay there …
+  void refer_to(const double* first, std::size_t stride) { first_ = first, stride_ = stride; }
+  /// … or copies them.
+  void copy(const double* first, std::size_t stride);
   /// Of the integrands; their integrals start from `integrals`.
   double* integrand(int k) { return integrands_.data() + static_cast<std::size_t>(k) * integrals.size(); }
 
@@ -30,9 +38,13 @@ class DenseOutput {
   std::vector<Compensated> integrals;   // [m] at τ = 0
 
  private:
+  void increments(double tau, std::size_t i, double& dq, double& dv) const;
+
   std::size_t freedoms_ = 0;
   int degree_ = 0;
-  std::vector<double> coefficients_;    // [degree + 1][n] of q
+  const double* first_ = nullptr;
+  std::size_t stride_ = 0;
+  std::vector<double> coefficients_;    // [degree + 1][n] of q, where they are copied
   std::vector<double> integrands_;      // [degree + 1][m]
 };
 

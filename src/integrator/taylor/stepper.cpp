@@ -7,6 +7,7 @@
 #include <maupertuis/require.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -29,6 +30,7 @@ struct TaylorStepper::Impl {
     for (auto* values : {&q_now, &v_now}) values->resize(n);
     for (auto* values : {&dq, &dv}) values->resize(n);
     integrals.resize(k.integrands());
+    if (options.backend == Backend::Compiled) compile();
   }
 
   struct Crossing {
@@ -39,14 +41,18 @@ struct TaylorStepper::Impl {
   };
 
   Step step(double bound);
+  void compile();
+  void compile_if_it_pays(double bound);
   bool expand(double bound, Step& result);
   bool project(Step& result, bool known = false);
   void land(Step& result, double tau);
   void move_to(double tau, Step& result);
   bool decide_sides(double bound, Step& result);
   std::optional<double> trial(double bound);
+  bool expands_once() const { return kernel.constraints() == 0 && switch_state.empty(); }
   void keep_polynomial();
-  void record_start();
+  void restore_polynomial();
+  void record_start() const;
   Crossing first_crossing(double h) const;
   std::int8_t event_side(std::size_t index, const taylor::ScaledPolynomial& polynomial) const;
   void note(Crossing& crossing, double x) const;
@@ -82,21 +88,35 @@ struct TaylorStepper::Impl {
   double restraint = 1;                  // of the lengths that the control chooses
   std::size_t steps = 0, switches = 0;
   int stuck = 0;                         // crossings in a row that did not move time
-  Sample start_sample;
+  BackendUse backend;
+  double run_begin = 0;
+  mutable Sample start_sample;
+  mutable bool start_is_recorded = false;
 };
 
 namespace {
 
-std::vector<double> multipliers_of(const KernelWorkspace& work, std::size_t count) {
-  std::vector<double> values(count);
-  for (std::size_t i = 0; i < count; ++i)
+void multipliers_of(const KernelWorkspace& work, std::vector<double>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i)
     values[i] = work.multiplier_is_determined(i) ? work.multiplier(i) : std::numeric_limits<double>::quiet_NaN();
-  return values;
 }
 
 std::int8_t sign(double x) { return static_cast<std::int8_t>((x > 0) - (x < 0)); }
 
 }  // namespace
+
+void TaylorStepper::Impl::compile() {
+  const CompileReport report = work.compile({.cache = options.cache, .order = control.order, .long_run = true});
+  backend = {report.compiled, report.seconds, report.trouble, report.cache_trouble};
+}
+
+/// The expected number of steps decides, not the clock and not what the cache holds: so that equal runs give equal results.
+void TaylorStepper::Impl::compile_if_it_pays(double bound) {
+  constexpr std::size_t first_look = 512, enough = 40'000;  // docs/design/kernel_speed.md
+  if (options.backend != Backend::Automatic || steps < first_look || !std::has_single_bit(steps)) return;
+  const double done = std::abs(t.hi - run_begin), left = std::abs(remaining(bound));
+  if (static_cast<double>(steps) * (1 + left / done) >= static_cast<double>(enough) && !backend.compiled && backend.trouble.empty()) compile();
+}
 
 void TaylorStepper::Impl::set_sides(KernelWorkspace& w) const {
   if (switch_state.empty()) return;
@@ -144,7 +164,11 @@ std::optional<double> TaylorStepper::Impl::trial(double bound) {
 bool TaylorStepper::Impl::expand(double bound, Step& result) {
   set_sides(work);
   const KernelStatus status = work.expand(t.hi, q_now, v_now);
-  if (status != KernelStatus::Ok) return fail(result, status);
+  if (status != KernelStatus::Ok) {
+    fail(result, status);
+    restore_polynomial();
+    return false;
+  }
   if (kernel.constraints() > 0 && !project(result)) return false;
   return switch_state.empty() || decide_sides(bound, result);
 }
@@ -236,29 +260,42 @@ bool TaylorStepper::Impl::decide_sides(double bound, Step& result) {
   return false;
 }
 
+/// The expansion that failed has overwritten that of the last step, which is still asked for.
+void TaylorStepper::Impl::restore_polynomial() {
+  if (first || !expands_once()) return;
+  std::vector<double> position(n), velocity(n);
+  for (std::size_t i = 0; i < n; ++i) position[i] = dense.q[i].hi, velocity[i] = dense.v[i].hi;
+  work.expand(begin.hi, position, velocity);
+}
+
+/// Where a step may be expanded more than once, the rows of the workspace do not stay.
 void TaylorStepper::Impl::keep_polynomial() {
   begin = t;
   set_sides(probe);
-  for (int k = 0; k <= control.order + 1; ++k) {
-    std::copy_n(work.coordinate(k), n, dense.coefficients(k));
-    for (std::size_t i = 0; i < integrals.size(); ++i) dense.integrand(k)[i] = work.integrand(i, k);
-  }
-  dense.q = q;
-  dense.v = v;
-  dense.integrals = integrals;
+  if (expands_once()) dense.refer_to(work.coordinate(0), work.row_stride());
+  else dense.copy(work.coordinate(0), work.row_stride());
+  for (std::size_t i = 0; i < integrals.size(); ++i)
+    for (int k = 0; k <= control.order + 1; ++k) dense.integrand(k)[i] = work.integrand(i, k);
+  std::copy(q.begin(), q.end(), dense.q.begin());
+  std::copy(v.begin(), v.end(), dense.v.begin());
+  std::copy(integrals.begin(), integrals.end(), dense.integrals.begin());
 }
 
-void TaylorStepper::Impl::record_start() {
-  start_sample.t = t.hi;
-  start_sample.q = q_now;
-  start_sample.v = v_now;
-  start_sample.a.resize(n);
-  for (std::size_t i = 0; i < n; ++i) start_sample.a[i] = work.acceleration(i);
+/// From what `dense` and the workspace hold; done when it is asked for, where the workspace stays as it is.
+void TaylorStepper::Impl::record_start() const {
+  start_is_recorded = true;
+  start_sample.t = begin.hi;
+  start_sample.q.resize(n), start_sample.v.resize(n), start_sample.a.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    start_sample.q[i] = dense.q[i].hi, start_sample.v[i] = dense.v[i].hi;
+    start_sample.a[i] = work.acceleration(i);
+  }
   start_sample.observables.resize(kernel.observables());
   for (std::size_t i = 0; i < kernel.observables(); ++i) start_sample.observables[i] = work.observable(i);
-  start_sample.multipliers = multipliers_of(work, kernel.constraints());
+  start_sample.multipliers.resize(kernel.constraints());
+  multipliers_of(work, start_sample.multipliers);
   start_sample.integrals.resize(integrals.size());
-  for (std::size_t i = 0; i < integrals.size(); ++i) start_sample.integrals[i] = integrals[i].hi;
+  for (std::size_t i = 0; i < integrals.size(); ++i) start_sample.integrals[i] = dense.integrals[i].hi;
 }
 
 void TaylorStepper::Impl::note(Crossing& crossing, double x) const {
@@ -343,6 +380,7 @@ Step TaylorStepper::Impl::step(double bound) {
     end(result, StepEnding::TooManySteps, "The run used up its steps.");
     return result;
   }
+  compile_if_it_pays(bound);
   if (!std::exchange(expanded, false) && !expand(bound, result)) return result;
   double chosen = restraint * taylor::step_size(work, n, control, length);
   if (const std::size_t m = kernel.constraints(); m > 0)
@@ -356,7 +394,8 @@ Step TaylorStepper::Impl::step(double bound) {
     return result;
   }
   keep_polynomial();
-  record_start();
+  start_is_recorded = false;
+  if (!expands_once()) record_start();
   const Crossing crossing = first_crossing(h);
   if (crossing.found && stuck >= 100) {
     end(result, StepEnding::Sliding, "Switches follow each other in no time: the motion has come to slide along a switch.");
@@ -380,7 +419,8 @@ Sample TaylorStepper::Impl::sample(double time) const {
   const bool ok = probe.evaluate(time, result.q, result.v) == KernelStatus::Ok;
   constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 0; i < n; ++i) result.a.push_back(ok ? probe.acceleration(i) : nothing);
-  result.multipliers = ok ? multipliers_of(probe, kernel.constraints()) : std::vector<double>(kernel.constraints(), nothing);
+  result.multipliers.assign(kernel.constraints(), nothing);
+  if (ok) multipliers_of(probe, result.multipliers);
   for (std::size_t i = 0; i < kernel.observables(); ++i)
     result.observables.push_back(ok ? probe.observable(i) : nothing);
   return result;
@@ -399,6 +439,7 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   Impl& s = *impl_;
   MAUP_REQUIRE(q.size() == s.n && v.size() == s.n);
   s.t = {t, 0};
+  s.run_begin = t;
   for (std::size_t i = 0; i < s.n; ++i) {
     s.q[i] = {q[i], 0};
     s.v[i] = {v[i], 0};
@@ -423,7 +464,8 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.dense.q = s.q;
   s.dense.v = s.v;
   s.choose_first_sides();
-  s.start_sample = sample(t);
+  s.start_sample = s.sample(t);
+  s.start_is_recorded = true;
 }
 
 Step TaylorStepper::step(double bound) { return impl_->step(bound); }
@@ -433,6 +475,7 @@ std::span<const double> TaylorStepper::q() const { return impl_->q_now; }
 std::span<const double> TaylorStepper::v() const { return impl_->v_now; }
 std::size_t TaylorStepper::steps() const { return impl_->steps; }
 std::size_t TaylorStepper::switches() const { return impl_->switches; }
+const BackendUse& TaylorStepper::backend() const { return impl_->backend; }
 
 bool TaylorStepper::covers(double t) const {
   const double low = std::min(impl_->begin.hi, impl_->t.hi), high = std::max(impl_->begin.hi, impl_->t.hi);
@@ -453,6 +496,9 @@ void TaylorStepper::state(double t, std::span<double> q, std::span<double> v) co
 }
 
 double TaylorStepper::constraint_residual() const { return impl_->constraint_residual; }
-const Sample& TaylorStepper::step_start() const { return impl_->start_sample; }
+const Sample& TaylorStepper::step_start() const {
+  if (!impl_->start_is_recorded) impl_->record_start();
+  return impl_->start_sample;
+}
 
 }  // namespace maupertuis

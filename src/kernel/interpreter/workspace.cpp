@@ -1,8 +1,8 @@
+#include "kernel/interpreter/compiled.hpp"
 #include "kernel/interpreter/elementary.hpp"
 #include "kernel/interpreter/interpreter.hpp"
 #include "kernel/jet/bordered_solver.hpp"
 #include "kernel/jet/small_inverse.hpp"
-#include "kernel/packed/compiled.hpp"
 #include "kernel/packed/engine.hpp"
 
 #include <maupertuis/require.hpp>
@@ -46,6 +46,7 @@ struct KernelWorkspace::Impl {
   KernelStatus run(double t, std::span<const double> q, std::span<const double> v, int stages);
   void run_along(int stage);
   bool run_compiled(int stages);
+  void adopt(interpreter::CompiledCode code);
   void sweep(std::size_t direction);
   void sweep_block(std::size_t first);
   KernelStatus factor();
@@ -77,7 +78,7 @@ struct KernelWorkspace::Impl {
   std::vector<const Instruction*> producer;  // [slots]
   std::size_t singular = 0, contradicting = 0;
   int last_stage = 0;
-  packed::CompiledKernel compiled;
+  interpreter::CompiledCode compiled;
   packed::CompiledArguments arguments;
 };
 
@@ -247,7 +248,7 @@ void KernelWorkspace::Impl::run_along(int stage) {
 
 /// False: there is no code for this, or its results are not to be trusted.
 bool KernelWorkspace::Impl::run_compiled(int stages) {
-  if (!compiled.expand || stages != compiled.order || compiled.expand(&arguments) != 0) return false;
+  if (!compiled.expand || stages != order || compiled.expand(&arguments) != 0) return false;
   const int last = program.runs[Along].empty() ? 1 : stages;
   for (int stage = program.first_stage; stage < last; ++stage) run_along(stage);
   return true;
@@ -265,25 +266,24 @@ KernelWorkspace::KernelWorkspace(KernelWorkspace&&) noexcept = default;
 
 int KernelWorkspace::order() const { return impl_->order; }
 
-const packed::PackedProgram& KernelWorkspace::packed_program() const { return impl_->packed; }
 std::size_t KernelWorkspace::row_stride() const { return impl_->memory.stride; }
 
-void KernelWorkspace::adopt(const packed::CompiledKernel& compiled) {
+/// What compiled code is given.
+void KernelWorkspace::Impl::adopt(interpreter::CompiledCode code) {
+  compiled = std::move(code);
+  arguments = {.rows = memory.rows.data(), .coefficients = lane_coefficients.data(),
+               .term_coefficients = memory.coefficients.data(), .constants = memory.constants.data(), .bordered = bordered.data(),
+               .sincos = engine.sine_cosine, .elementary = [](std::uint8_t kind, double x, double y) {
+                 return static_cast<Kind>(kind) == Kind::Power ? std::pow(x, y) : interpreter::elementary(static_cast<Kind>(kind), x, y);
+               }};
+}
+
+CompileReport KernelWorkspace::compile(const CompileOptions& options) {
   Impl& s = *impl_;
-  MAUP_REQUIRE(compiled.stride == s.memory.stride && s.by_matrix);
-  s.compiled = compiled;
-  s.arguments = {.rows = s.memory.rows.data(), .coefficients = s.lane_coefficients.data(),
-                 .term_coefficients = s.memory.coefficients.data(), .constants = s.memory.constants.data(),
-                 .bordered = s.bordered.data(), .inverse = s.inverse.data(), .self = &s,
-                 .invert = [](void* self) {
-                   Impl& w = *static_cast<Impl*>(self);
-                   w.by_inverse = jet::negative_inverse(w.bordered, w.unknowns, w.inverse.data(), w.padded_unknowns());
-                   return w.by_inverse;
-                 },
-                 .sincos = s.engine.sine_cosine,
-                 .elementary = [](std::uint8_t kind, double x, double y) {
-                   return static_cast<Kind>(kind) == Kind::Power ? std::pow(x, y) : interpreter::elementary(static_cast<Kind>(kind), x, y);
-                 }};
+  if (!s.by_matrix) return {.trouble = "it has too many unknowns"};
+  auto [code, report] = interpreter::compile(s.packed, s.order, s.memory.stride, options);
+  if (code.expand) s.adopt(std::move(code));
+  return report;
 }
 
 void KernelWorkspace::set_parameters(std::span<const double> values) {

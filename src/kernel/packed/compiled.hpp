@@ -1,7 +1,6 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 
 /// What compiled code of a packed program is given, and what it calls. Plain, since both sides of a module's border read it.
 namespace maupertuis::packed {
@@ -12,9 +11,6 @@ struct CompiledArguments {
   const double* term_coefficients = nullptr;  // of Program::terms
   const double* constants = nullptr;     // of Program::constants
   double* bordered = nullptr;            // out: M₀, row by row [n × n]
-  double* inverse = nullptr;             // −M₀⁻¹ [n × padded n], by `invert`
-  void* self = nullptr;
-  bool (*invert)(void* self) = nullptr;  // reads bordered, fills inverse; false: the slow path has to decide
   /// sin x and cos x of `count` numbers ≤ 8: out[0 … count), out[count … 2 count).
   void (*sincos)(const double* x, double* out, int count) = nullptr;
   double (*elementary)(std::uint8_t function, double x, double y) = nullptr;
@@ -22,13 +18,5 @@ struct CompiledArguments {
 
 /// All stages of section Dynamics. 0: done; else the reference has to repeat it.
 using CompiledExpand = int (*)(const CompiledArguments*);
-
-/// Code for one program, row stride and order; `code` keeps it in memory.
-struct CompiledKernel {
-  CompiledExpand expand = nullptr;
-  int order = 0;
-  std::size_t stride = 0;
-  std::shared_ptr<const void> code;
-};
 
 }  // namespace maupertuis::packed

@@ -1,0 +1,21 @@
+#pragma once
+#include "kernel/packed/compiled.hpp"
+#include "kernel/packed/layout.hpp"
+
+#include <maupertuis/kernel.hpp>
+
+#include <memory>
+#include <utility>
+
+namespace maupertuis::interpreter {
+
+/// Machine code for one program, row stride and order; `memory` keeps it there.
+struct CompiledCode {
+  packed::CompiledExpand expand = nullptr;
+  std::shared_ptr<const void> memory;
+};
+
+std::pair<CompiledCode, CompileReport> compile(const packed::PackedProgram& program, int order, std::size_t stride,
+                                               const CompileOptions& options);
+
+}  // namespace maupertuis::interpreter
