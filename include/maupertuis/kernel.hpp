@@ -95,6 +95,10 @@ enum class KernelStatus {
   NonFinite,     // a value is infinite or undefined
 };
 
+/// Of Taylor polynomials c_0 + c_1 τ + … beside each other, coefficient k of column i at first[k · stride + i]: what is to be added to
+/// c_1 and c_1 after τ, Σ_{k≥2} c_k τ^{k−1} and Σ_{k≥2} k c_k τ^{k−1}. Rows and results are read and written in eights.
+void polynomial_increments(const double* first, std::size_t stride, std::size_t columns, int degree, double tau, double* dq, double* dv);
+
 /// Everything that a run of a kernel changes. One thread at a time; as many as wanted for one kernel.
 ///
 /// Coefficients are normalized: x(t + τ) = Σ x_k τ^k.
@@ -164,6 +168,9 @@ class KernelWorkspace {
   /// interpreter goes on, and the report says why. Results agree to rounding. Cost: of a small program about 0.1 s, from the cache 1 ms.
   CompileReport compile(const CompileOptions& options = {});
 
+  /// How the coefficients of q decay. With v_k = (k + 1) |q_{k+1}| and s_i the largest of v_k h^k for k ≤ 3 and ε |q_0| / h:
+  /// largest[order − k] = max_i v_k / s_i for k = order … lowest (at most 8). False if some s_i is 0.
+  bool decay(double h, int lowest, double* largest) const;
   /// Doubles from one order of coordinate() to the next.
   std::size_t row_stride() const;
 

@@ -38,14 +38,13 @@ class DenseOutput {
   std::vector<Compensated> integrals;   // [m] at τ = 0
 
  private:
-  void increments(double tau, std::size_t i, double& dq, double& dv) const;
-
   std::size_t freedoms_ = 0;
   int degree_ = 0;
   const double* first_ = nullptr;
   std::size_t stride_ = 0;
   std::vector<double> coefficients_;    // [degree + 1][n] of q, where they are copied
   std::vector<double> integrands_;      // [degree + 1][m]
+  mutable std::vector<double> increments_;  // of q and q̇
 };
 
 }  // namespace maupertuis

@@ -1,5 +1,7 @@
 #include "integrator/taylor/step_size.hpp"
 
+#include "integrator/dense_output/rough_powers.hpp"
+
 #include <maupertuis/integrator.hpp>
 
 #include <algorithm>
@@ -41,6 +43,8 @@ class Decay {
  public:
   Decay(const KernelWorkspace& work, std::size_t freedoms, int order, double h)
       : c_(work.coordinate(0)), stride_(work.row_stride()), order_(order), lowest_(std::max(std::min(2, order - 1), order - 5)), h_(h) {
+    if (work.decay(h, lowest_, largest_.data())) return;
+    largest_.fill(0);
     for (std::size_t i = 0; i < freedoms; ++i) compare(i);
   }
 
@@ -57,7 +61,7 @@ class Decay {
  private:
   double velocity(std::size_t i, int k) const { return (k + 1) * std::abs(c_[static_cast<std::size_t>(k + 1) * stride_ + i]); }
   double largest(int k) const { return largest_[static_cast<std::size_t>(order_ - k)]; }
-  double radius(int k) const { return largest(k) > 0 ? std::exp2(std::log2(largest(k)) * (-1.0 / k)) : infinity; }
+  double radius(int k) const { return largest(k) > 0 ? rough_exp2<double, std::int64_t>(rough_log2<double, std::int64_t>(largest(k)) * (-1.0 / k)) : infinity; }
   static double power(double x, int k) {
     double result = 1;
     for (; k > 0; k /= 2, x *= x)
@@ -87,7 +91,7 @@ class Decay {
   std::size_t stride_;
   int order_, lowest_;
   double h_;
-  std::array<double, 6> largest_{};
+  std::array<double, 8> largest_{};
 };
 
 /// A length to start from, where no step was made before: the decay from the first coefficients to the last.

@@ -106,7 +106,7 @@ std::int8_t sign(double x) { return static_cast<std::int8_t>((x > 0) - (x < 0));
 }  // namespace
 
 void TaylorStepper::Impl::compile() {
-  const CompileReport report = work.compile({.cache = options.cache, .order = control.order, .long_run = true});
+  const CompileReport report = work.compile({options.cache, control.order, true, {}});
   backend = {report.compiled, report.seconds, report.trouble, report.cache_trouble};
 }
 

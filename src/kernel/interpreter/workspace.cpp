@@ -37,6 +37,7 @@ struct KernelWorkspace::Impl {
     }
     if (by_matrix) inverse.assign(unknowns * padded_unknowns(), 0.0), solution.assign(padded_unknowns(), 0.0);
     for (const Instruction& i : program.instructions) producer[i.out] = &i;
+    interpreter::set_leaves(memory, 0.0, orders);
     bind();
   }
 
@@ -219,10 +220,9 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   MAUP_REQUIRE(q.size() == program.freedoms && v.size() == program.freedoms);
   compute_constants();
   last_stage = stages - 1;
-  interpreter::set_leaves(memory, t, orders);
-  for (int k = 0; k < 2; ++k) std::fill_n(memory.row(k), unknowns, 0.0);
-  std::copy(q.begin(), q.end(), memory.row(0));
-  std::copy(v.begin(), v.end(), memory.row(1));
+  if (program.time != no_slot) memory.row(0)[program.time] = t;
+  double *const position = memory.row(0), *const velocity = memory.row(1);
+  for (std::size_t i = 0; i < q.size(); ++i) position[i] = q[i], velocity[i] = v[i];
   if (run_compiled(stages)) return KernelStatus::Ok;
   for (int stage = program.first_stage; stage < stages; ++stage) {
     if (stage >= 0) std::fill_n(memory.row(stage + 2), unknowns, 0.0);
@@ -249,6 +249,7 @@ void KernelWorkspace::Impl::run_along(int stage) {
 /// False: there is no code for this, or its results are not to be trusted.
 bool KernelWorkspace::Impl::run_compiled(int stages) {
   if (!compiled.expand || stages != order || compiled.expand(&arguments) != 0) return false;
+  if (program.runs[Along].empty() && program.runs[AtPoint].empty()) return true;
   const int last = program.runs[Along].empty() ? 1 : stages;
   for (int stage = program.first_stage; stage < last; ++stage) run_along(stage);
   return true;
@@ -266,6 +267,13 @@ KernelWorkspace::KernelWorkspace(KernelWorkspace&&) noexcept = default;
 
 int KernelWorkspace::order() const { return impl_->order; }
 
+bool KernelWorkspace::decay(double h, int lowest, double* largest) const {
+  const Impl& s = *impl_;
+  return s.engine.decay(s.memory.row(0), s.memory.stride, s.program.freedoms, s.order, lowest, h, largest);
+}
+void polynomial_increments(const double* first, std::size_t stride, std::size_t columns, int degree, double tau, double* dq, double* dv) {
+  packed::engine().increments(first, stride, columns, degree, tau, dq, dv);
+}
 std::size_t KernelWorkspace::row_stride() const { return impl_->memory.stride; }
 
 /// What compiled code is given.
@@ -280,7 +288,7 @@ void KernelWorkspace::Impl::adopt(interpreter::CompiledCode code) {
 
 CompileReport KernelWorkspace::compile(const CompileOptions& options) {
   Impl& s = *impl_;
-  if (!s.by_matrix) return {.trouble = "it has too many unknowns"};
+  if (!s.by_matrix) return {false, "it has too many unknowns", {}, false, 0};
   auto [code, report] = interpreter::compile(s.packed, s.order, s.memory.stride, options);
   if (code.expand) s.adopt(std::move(code));
   return report;

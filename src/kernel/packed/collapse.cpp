@@ -121,7 +121,7 @@ std::vector<Step> dynamics_of(const Program& program) {
   std::vector<Step> steps;
   for (const Run& run : program.runs[Dynamics])
     for (std::uint32_t i = run.first; i < run.last; ++i) {
-      Step step{.head = program.instructions[i]};
+      Step step{program.instructions[i], {}, {}};
       for (std::uint32_t t = step.head.first_term; t < step.head.last_term; ++t) {
         const Term& term = program.terms[t];
         (term.b == no_slot ? step.linear : step.products).push_back(term);

@@ -41,6 +41,11 @@ struct Engine {
   /// sin x and cos x of `count` ≤ 8 numbers: out[0 … count) and out[count … 2 count).
   void (*sine_cosine)(const double* x, double* out, int count);
   void (*combine)(double* out, const double* columns, std::size_t stride, const double* factors, std::size_t count, std::size_t size);
+  /// Σ_{k=2..degree} c_k τ^{k−1} and Σ k c_k τ^{k−1} of `count` columns, c_k = first + k · stride: read and written in eights.
+  void (*increments)(const double* first, std::size_t stride, std::size_t count, int degree, double tau, double* dq, double* dv);
+  /// With v_k = (k + 1) |c_{k+1}| and s = max(v_k h^k, k ≤ 3; ε |c_0| / h): max over the columns of v_k / s, for k = order, order − 1, … lowest, in
+  /// `largest`. False if a column has s = 0.
+  bool (*decay)(const double* first, std::size_t stride, std::size_t count, int order, int lowest, double h, double* largest);
 };
 
 /// The best one for this processor.
