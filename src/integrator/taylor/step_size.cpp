@@ -51,17 +51,20 @@ class Decay {
   /// min of (size / |v_k|)^(1/k) over the coordinates and the last two k; earlier k speak up only where these are silent, since a
   /// motion with a symmetry (a pendulum let go at 90°) has coefficients 4 or more orders apart, so that the last two may vanish.
   double radius() const {
-    double best = infinity;
-    for (int k = order_; k >= std::max(lowest_, order_ - 1); --k) best = std::min(best, radius(k));
+    double exponent = infinity;
+    for (int k = order_; k >= std::max(lowest_, order_ - 1); --k) exponent = std::min(exponent, log2_radius(k));
+    double best = exponent < infinity ? rough_exp2<double, std::int64_t>(exponent) : infinity;
     for (int k = order_ - 2; k >= lowest_; --k)
-      if (best == infinity || largest(k) > power(widened / best, k)) best = std::min(best, widened * radius(k));
+      if (best == infinity || largest(k) > power(widened / best, k)) best = std::min(best, widened * std::exp2(log2_radius(k)));
     return best;
   }
 
  private:
   double velocity(std::size_t i, int k) const { return (k + 1) * std::abs(c_[static_cast<std::size_t>(k + 1) * stride_ + i]); }
   double largest(int k) const { return largest_[static_cast<std::size_t>(order_ - k)]; }
-  double radius(int k) const { return largest(k) > 0 ? rough_exp2<double, std::int64_t>(rough_log2<double, std::int64_t>(largest(k)) * (-1.0 / k)) : infinity; }
+  double log2_radius(int k) const {
+    return largest(k) > 0 ? rough_log2<double, std::int64_t>(largest(k)) * (-1.0 / k) : infinity;
+  }
   static double power(double x, int k) {
     double result = 1;
     for (; k > 0; k /= 2, x *= x)

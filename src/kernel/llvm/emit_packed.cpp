@@ -482,17 +482,28 @@ class Emitter {
   void sines_cosines(const Pack& pack, unsigned w) {
     const unsigned count = pack.last_function - pack.first_function, size = width_of(count);
     const Block& block = p_.blocks[pack.a];
-    Value* const x = b_.CreateAlloca(type(lanes)), *out = b_.CreateAlloca(type(lanes), b_.getInt32(2));
+    llvm::AllocaInst *const x = b_.CreateAlloca(type(lanes)), *const out = b_.CreateAlloca(type(lanes), b_.getInt32(2));
+    x->setAlignment(llvm::Align(64)), out->setAlignment(llvm::Align(64));
     const ArrayRef<Slot> slots(block.slots.data(), count);
     save(x, gather(slots, current_order(slots[0]), size));
     auto* const signature = llvm::FunctionType::get(b_.getVoidTy(), {b_.getPtrTy(), b_.getPtrTy(), b_.getInt32Ty()}, false);
     b_.CreateCall(signature, sincos_, {x, out, b_.getInt32(count)});
-    const auto part = [&](unsigned first, unsigned width) {
-      return load(b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), out, first), width);
-    };
-    if (pack.width == 2 * count) return keep(pack, part(0, w));
-    for (unsigned lane = 0; lane < count; ++lane) seconds_[pack.pairs + lane] = part(count + lane, 1);
-    keep(pack, part(0, w));
+    Value *const sines = load_from(out, 0, size), *const cosines = load_from(out, lanes, size);
+    if (pack.width == 2 * count) return keep(pack, joined(sines, cosines, count, w));
+    for (unsigned lane = 0; lane < count; ++lane) seconds_[pack.pairs + lane] = splat_lane(cosines, lane, 1);
+    keep(pack, sines);
+  }
+
+  /// The first `count` lanes of two vectors.
+  Value* joined(Value* first, Value* second, unsigned count, unsigned w) {
+    if (width(first) == 1) {
+      Value* const both = b_.CreateInsertElement(llvm::PoisonValue::get(type(2)), first, std::uint64_t{0});
+      return b_.CreateInsertElement(both, second, std::uint64_t{1});
+    }
+    std::vector<int> mask;
+    for (unsigned lane = 0; lane < w; ++lane)
+      mask.push_back(static_cast<int>(lane < count ? lane : lane < 2 * count ? width(first) + lane - count : 0));
+    return b_.CreateShuffleVector(first, second, mask);
   }
 
   std::pair<Value*, Value*> pair(Op op, Value* u) {

@@ -11,7 +11,7 @@ struct CompiledArguments {
   const double* term_coefficients = nullptr;  // of Program::terms
   const double* constants = nullptr;     // of Program::constants
   double* bordered = nullptr;            // out: M₀, row by row [n × n]
-  /// sin x and cos x of `count` numbers ≤ 8: out[0 … count), out[count … 2 count).
+  /// Engine::sine_cosine
   void (*sincos)(const double* x, double* out, int count) = nullptr;
   double (*elementary)(std::uint8_t function, double x, double y) = nullptr;
 };

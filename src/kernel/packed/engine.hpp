@@ -38,7 +38,7 @@ struct Engine {
   /// Tangents of order 0 in one direction: in, those of the coordinates; out, those of all slots of Dynamics. [slots]
   void (*tangents)(const Tables&, double* tangent);
   /// out += Σ_d factors[d] · columns[d · stride + …], [size]; all sizes multiples of 8.
-  /// sin x and cos x of `count` ≤ 8 numbers: out[0 … count) and out[count … 2 count).
+  /// sin x and cos x of `count` ≤ 8 numbers, in out[0 …) and out[8 …); the next power of two of them is read and written. Aligned to 64 bytes.
   void (*sine_cosine)(const double* x, double* out, int count);
   void (*combine)(double* out, const double* columns, std::size_t stride, const double* factors, std::size_t count, std::size_t size);
   /// Σ_{k=2..degree} c_k τ^{k−1} and Σ k c_k τ^{k−1} of `count` columns, c_k = first + k · stride: read and written in eights.

@@ -36,17 +36,14 @@ inline Vector convolution(const double* a, const double* b, int first, int last,
 }
 
 template <int W>
-void sine_cosine_of(const double* x, double* out, int count) {
-  alignas(64) double padded[W], s[W], c[W];
-  for (int i = 0; i < W; ++i) padded[i] = x[i < count ? i : 0];
-  const jet::SineCosine<W> value(jet::Vec<W>::load(padded));
-  value.sine.store(s), value.cosine.store(c);
-  for (int i = 0; i < count; ++i) out[i] = s[i], out[count + i] = c[i];
+void sine_cosine_of(const double* x, double* out) {
+  const jet::SineCosine<W> value(jet::Vec<W>::load(x));
+  value.sine.store(out), value.cosine.store(out + lanes);
 }
 
 void sine_cosine(const double* x, double* out, int count) {
-  return count <= 1 ? sine_cosine_of<1>(x, out, count) : count <= 2 ? sine_cosine_of<2>(x, out, count)
-         : count <= 4 ? sine_cosine_of<4>(x, out, count) : sine_cosine_of<8>(x, out, count);
+  return count <= 1 ? sine_cosine_of<1>(x, out) : count <= 2 ? sine_cosine_of<2>(x, out)
+         : count <= 4 ? sine_cosine_of<4>(x, out) : sine_cosine_of<8>(x, out);
 }
 
 class Stage {
@@ -146,11 +143,11 @@ class Stage {
     }
     const int count = static_cast<int>(pack.last_function - pack.first_function);
     if (count == 0) return;  // the cosines of the pack before
-    double u[lanes], values[2 * lanes];
+    alignas(64) double u[lanes], values[2 * lanes];
     const Block& block = t_.blocks[pack.a];
-    for (int i = 0; i < count; ++i) u[i] = row_[block.slots[static_cast<unsigned>(i)]];
+    for (unsigned i = 0; i < lanes; ++i) u[i] = row_[block.slots[i]];
     sine_cosine(u, values, count);
-    for (int i = 0; i < count; ++i) row_[pack.out + static_cast<unsigned>(i)] = values[i], row_[pack.pairs + static_cast<unsigned>(i)] = values[count + i];
+    for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) row_[pack.out + i] = values[i], row_[pack.pairs + i] = values[lanes + i];
   }
 
   void quotient(const Pack& pack) const {
