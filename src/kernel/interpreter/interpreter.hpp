@@ -49,6 +49,10 @@ using Memory = MemoryOf<double>;
 template <class T>
 void compute_constants(MemoryOf<T>& memory, std::span<const std::type_identity_t<T>> parameters, std::span<const std::int8_t> sides);
 
+/// Fills coefficients alone.
+template <class T>
+void prepare_terms(MemoryOf<T>& memory);
+
 /// Sets the leaves but the coordinates at all orders.
 template <class T>
 void set_leaves(MemoryOf<T>& memory, const std::type_identity_t<T>& t, int orders);

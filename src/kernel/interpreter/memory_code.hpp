@@ -25,6 +25,17 @@ T literal(const Program& program, const Constant& constant) {
 }
 
 template <class T>
+void prepare_terms(MemoryOf<T>& memory) {
+  const Program& program = memory.program;
+  for (std::size_t i = 0; i < program.terms.size(); ++i) {
+    const Term& term = program.terms[i];
+    memory.coefficients[i] = memory.constants[term.coefficient];
+    memory.linear[i] = {memory.coefficients[i], static_cast<std::uint32_t>(term.a + term.shift * memory.stride),
+                        term.shift};
+  }
+}
+
+template <class T>
 void compute_constants(MemoryOf<T>& memory, std::span<const std::type_identity_t<T>> parameters, std::span<const std::int8_t> sides) {
   const Program& program = memory.program;
   std::vector<T> operands;
@@ -39,12 +50,7 @@ void compute_constants(MemoryOf<T>& memory, std::span<const std::type_identity_t
       operands.push_back(memory.constants[program.constant_arguments[constant.first_argument + k]]);
     value = constant_operation<T>(constant.kind, operands);
   }
-  for (std::size_t i = 0; i < program.terms.size(); ++i) {
-    const Term& term = program.terms[i];
-    memory.coefficients[i] = memory.constants[term.coefficient];
-    memory.linear[i] = {memory.coefficients[i], static_cast<std::uint32_t>(term.a + term.shift * memory.stride),
-                        term.shift};
-  }
+  prepare_terms(memory);
 }
 
 template <class T>

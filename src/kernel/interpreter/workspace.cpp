@@ -1,6 +1,7 @@
 #include "kernel/interpreter/compiled.hpp"
 #include "kernel/interpreter/elementary.hpp"
 #include "kernel/interpreter/interpreter.hpp"
+#include "kernel/interpreter/lifted_solve.hpp"
 #include "kernel/jet/bordered_solver.hpp"
 #include "kernel/jet/small_inverse.hpp"
 #include "kernel/packed/engine.hpp"
@@ -28,13 +29,9 @@ struct KernelWorkspace::Impl {
   Impl(const Kernel& k, int p)
       : kernel(k), packed(packed::pack(k.program())), program(packed.program), order(p),
         orders(p + 2 + (-2 - program.first_stage)), memory(program, orders, packed.cells), parameters(program.parameters, 0.0),
-        sides(program.switches.size(), 1), unknowns(program.unknowns), solver(program.freedoms, unknowns - program.freedoms),
-        bordered(unknowns * unknowns), unknown(unknowns), by_matrix(unknowns <= most_by_matrix), producer(program.slots, nullptr) {
+        sides(program.switches.size(), 1), unknowns(program.unknowns), unknown(unknowns), by_matrix(unknowns <= most_by_matrix), producer(program.slots, nullptr) {
     tangent.assign(by_matrix ? unknowns * memory.stride : memory.stride, 0.0);
-    if (!by_matrix) {
-      block_tangent.assign(program.slots * 8, 0.0);
-      of_mass = interpreter::instructions_of_mass(program);
-    }
+    if (!by_matrix && unknowns == program.freedoms) lifted.emplace(kernel.program(), packed, memory.stride);
     if (by_matrix) inverse.assign(unknowns * padded_unknowns(), 0.0), solution.assign(padded_unknowns(), 0.0);
     for (const Instruction& i : program.instructions) producer[i.out] = &i;
     interpreter::set_leaves(memory, 0.0, orders);
@@ -51,9 +48,13 @@ struct KernelWorkspace::Impl {
   void sweep(std::size_t direction);
   void sweep_block(std::size_t first);
   KernelStatus factor();
-  bool solve(int stage);
+  KernelStatus factor_full();
+  void need_full();
+  KernelStatus solve(int stage);
+  void solve_factored();
   void correct(int stage);
   bool constraints_agree();
+  bool keeps(std::size_t constraint) const { return by_lifting || !solver || solver->keeps(constraint); }
   double coefficient(Slot slot, int k) const;
 
   Kernel kernel;
@@ -68,10 +69,12 @@ struct KernelWorkspace::Impl {
   std::vector<std::int8_t> sides;
   bool stale = true;                 // constants to be computed
   std::size_t unknowns;              // n + m
-  jet::BorderedSolver solver;
-  std::vector<double> bordered;      // [(n + m) × (n + m)] ∂R/∂(q̈, λ) at order 0
+  std::optional<jet::BorderedSolver> solver;
+  std::vector<double> bordered;      // [(n + m) × (n + m)] ∂R/∂(q̈, λ) at order 0; empty until it is asked for
+  bool has_full = false;             // bordered is that of this point
+  std::optional<interpreter::LiftedSolve> lifted;
   std::vector<double> unknown;       // [n + m] −R_k, then q̈_k and λ_k
-  bool by_matrix, by_inverse = false;
+  bool by_matrix, by_inverse = false, by_lifting = false;
   interpreter::Doubles inverse, solution;  // by_inverse: −M⁻¹ and what it gives, both padded
   interpreter::Doubles tangent;      // by_matrix: ∂slot/∂q^(lag) for each direction [n + m × stride], else for one
   std::vector<double> block_tangent; // [slots × 8]
@@ -109,6 +112,7 @@ void KernelWorkspace::Impl::compute_constants() {
   if (!stale) return;
   interpreter::compute_constants(memory, parameters, sides);
   for (std::size_t i = 0; i < lane_coefficients.size(); ++i) lane_coefficients[i] = memory.constants[packed.coefficients[i]];
+  if (lifted) lifted->set_constants(memory);
   stale = false;
 }
 
@@ -127,34 +131,59 @@ void KernelWorkspace::Impl::sweep_block(std::size_t first) {
   interpreter::tangents<8>(memory, block_tangent.data(), of_mass);
 }
 
-/// M₀ = ∂R/∂q̈ at order 0, bordered by the constraints, column by column, and its factors.
-KernelStatus KernelWorkspace::Impl::factor() {
+/// M₀ = ∂R/∂q̈ at order 0, bordered by the constraints, column by column.
+void KernelWorkspace::Impl::need_full() {
+  if (has_full) return;
+  has_full = true;
   const std::size_t n = unknowns;
-  double check = 0;
+  bordered.resize(n * n);
+  if (!by_matrix && of_mass.empty()) {
+    block_tangent.assign(program.slots * 8, 0.0);
+    of_mass = interpreter::instructions_of_mass(program);
+  }
   for (std::size_t d = 0; d < n; ++d) {
     if (by_matrix) sweep(d);
     else if (d % 8 == 0) sweep_block(d);
     for (std::size_t i = 0; i < n; ++i) {
       const Slot slot = program.residual[i];
-      const double value = program.tangent_lags[slot] != 2 ? 0.0
-                           : by_matrix ? tangent[d * memory.stride + slot] : block_tangent[slot * 8 + d % 8];
-      bordered[i * n + d] = value;
-      check += value * 0;
+      bordered[i * n + d] = program.tangent_lags[slot] != 2 ? 0.0
+                            : by_matrix ? tangent[d * memory.stride + slot] : block_tangent[slot * 8 + d % 8];
     }
   }
+}
+
+/// Its factors.
+KernelStatus KernelWorkspace::Impl::factor_full() {
+  const std::size_t n = unknowns;
+  need_full();
+  double check = 0;
+  for (const double value : bordered) check += value * 0;
   if (check != 0) return KernelStatus::NonFinite;  // infinity and NaN times 0 are NaN
   by_inverse = by_matrix && n == program.freedoms && jet::negative_inverse(bordered, n, inverse.data(), padded_unknowns());
   if (by_inverse) return KernelStatus::Ok;
-  std::copy(bordered.begin(), bordered.end(), solver.matrix().begin());
-  if (const auto undetermined = solver.factor()) {
+  if (!solver) solver.emplace(program.freedoms, n - program.freedoms);
+  std::copy(bordered.begin(), bordered.end(), solver->matrix().begin());
+  if (const auto undetermined = solver->factor()) {
     singular = *undetermined;
     return KernelStatus::SingularMass;
   }
   return KernelStatus::Ok;
 }
 
-/// unknown = q̈_k; false if it is not finite.
-bool KernelWorkspace::Impl::solve(int stage) {
+KernelStatus KernelWorkspace::Impl::factor() {
+  has_full = by_inverse = false;
+  by_lifting = lifted && lifted->factor(memory);
+  return by_lifting ? KernelStatus::Ok : factor_full();
+}
+
+/// unknown → its solution.
+void KernelWorkspace::Impl::solve_factored() {
+  if (by_lifting) lifted->solve(unknown);
+  else solver->solve(unknown);
+}
+
+/// unknown = q̈_k.
+KernelStatus KernelWorkspace::Impl::solve(int stage) {
   const double* const row = memory.row(stage);
   double check = 0;
   if (by_inverse) {
@@ -164,17 +193,23 @@ bool KernelWorkspace::Impl::solve(int stage) {
     std::copy_n(solution.begin(), unknowns, unknown.begin());
   } else {
     for (std::size_t i = 0; i < unknowns; ++i) unknown[i] = -row[program.residual[i]];
-    solver.solve(unknown);
+    if (stage > 0 || !by_lifting) {
+      solve_factored();
+    } else if (!lifted->solve_first(unknown)) {
+      by_lifting = false;
+      if (const KernelStatus status = factor_full(); status != KernelStatus::Ok) return status;
+      solve_factored();
+    }
   }
   for (const double a : unknown) check += a * 0;
-  return check == 0;
+  return check == 0 ? KernelStatus::Ok : KernelStatus::NonFinite;
 }
 
 /// Whether the rows of A that were dropped as dependent hold for the accelerations of the others.
 bool KernelWorkspace::Impl::constraints_agree() {
   const std::size_t n = program.freedoms;
   for (std::size_t j = 0; n + j < unknowns; ++j) {
-    if (solver.keeps(j)) continue;
+    if (keeps(j)) continue;
     const Slot slot = program.residual[n + j];
     double rest = memory.row(0)[slot], size = interpreter::term_size(memory, producer[slot], slot);
     for (std::size_t i = 0; i < n; ++i) {
@@ -197,7 +232,8 @@ void KernelWorkspace::Impl::correct(int stage) {
   double* const next = memory.row(stage + 2);
   // A division: the error of a rounded reciprocal would be the same in every step and so add up.
   for (std::size_t i = 0; i < n; ++i) next[i] = unknown[i] / ((stage + 1.0) * (stage + 2.0));
-  if (!by_matrix) {
+  const double* direction = by_lifting ? lifted->tangents() : tangent.data();
+  if (!by_matrix && !by_lifting) {
     std::copy(unknown.begin(), unknown.end(), tangent.begin());
     engine.tangents(tables, tangent.data());
   }
@@ -210,7 +246,7 @@ void KernelWorkspace::Impl::correct(int stage) {
       for (std::size_t d = 0; d < n; ++d) scaled[d] = unknown[d] * factors[lag];
       engine.combine(row, tangent.data() + first, memory.stride, scaled, n, last - first);
     } else {
-      engine.combine(row, tangent.data() + first, memory.stride, factors + lag, 1, last - first);
+      engine.combine(row, direction + first, memory.stride, factors + lag, 1, last - first);
     }
     first = last;
   }
@@ -230,7 +266,7 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
     if (stage == 0)
       if (const auto status = factor(); status != KernelStatus::Ok) return status;
     if (stage >= 0) {
-      if (!solve(stage)) return KernelStatus::NonFinite;
+      if (const auto status = solve(stage); status != KernelStatus::Ok) return status;
       if (stage == 0 && !constraints_agree()) return KernelStatus::Contradiction;
       correct(stage);
     }
@@ -249,6 +285,7 @@ void KernelWorkspace::Impl::run_along(int stage) {
 /// False: there is no code for this, or its results are not to be trusted.
 bool KernelWorkspace::Impl::run_compiled(int stages) {
   if (!compiled.expand || stages != order || compiled.expand(&arguments) != 0) return false;
+  has_full = true;
   if (program.runs[Along].empty() && program.runs[AtPoint].empty()) return true;
   const int last = program.runs[Along].empty() ? 1 : stages;
   for (int stage = program.first_stage; stage < last; ++stage) run_along(stage);
@@ -279,6 +316,7 @@ std::size_t KernelWorkspace::row_stride() const { return impl_->memory.stride; }
 /// What compiled code is given.
 void KernelWorkspace::Impl::adopt(interpreter::CompiledCode code) {
   compiled = std::move(code);
+  bordered.resize(unknowns * unknowns);
   arguments = {.rows = memory.rows.data(), .coefficients = lane_coefficients.data(),
                .term_coefficients = memory.coefficients.data(), .constants = memory.constants.data(), .bordered = bordered.data(),
                .sincos = engine.sine_cosine, .elementary = [](std::uint8_t kind, double x, double y) {
@@ -337,7 +375,9 @@ std::size_t KernelWorkspace::contradicting_constraint() const { return impl_->co
 // ---------------------------------------------------------------------------------------------------- constraints
 
 double KernelWorkspace::multiplier(std::size_t i) const { return 2 * impl_->memory.row(2)[impl_->program.freedoms + i]; }
-bool KernelWorkspace::multiplier_is_determined(std::size_t i) const { return impl_->solver.determines(i); }
+bool KernelWorkspace::multiplier_is_determined(std::size_t i) const {
+  return impl_->by_lifting || !impl_->solver || impl_->solver->determines(i);
+}
 
 double KernelWorkspace::constraint_value(std::size_t i) const {
   const Slot slot = impl_->program.constraint_values[i];
@@ -361,10 +401,13 @@ void KernelWorkspace::corrections(std::span<double> dq, std::span<double> dv) {
   Impl& s = *impl_;
   const std::size_t n = s.program.freedoms, m = s.unknowns - n;
   MAUP_REQUIRE(dq.size() == n && dv.size() == n);
+  std::fill(dq.begin(), dq.end(), 0.0);
+  std::fill(dv.begin(), dv.end(), 0.0);
+  if (m == 0) return;
   const auto solve_for = [&](auto&& error, std::span<double> out) {
     std::fill_n(s.unknown.begin(), n, 0.0);
     for (std::size_t j = 0; j < m; ++j) s.unknown[n + j] = error(j);  // −A δ = error
-    s.solver.solve(s.unknown);
+    s.solve_factored();
     std::copy_n(s.unknown.begin(), n, out.begin());
   };
   solve_for([&](std::size_t j) { return constraint_value(j); }, dq);
@@ -373,13 +416,21 @@ void KernelWorkspace::corrections(std::span<double> dq, std::span<double> dv) {
 
 std::size_t KernelWorkspace::constraints_in_force() const {
   std::size_t count = 0;
-  for (std::size_t i = 0; i + impl_->program.freedoms < impl_->unknowns; ++i) count += impl_->solver.keeps(i);
+  for (std::size_t i = 0; i + impl_->program.freedoms < impl_->unknowns; ++i) count += impl_->keeps(i);
   return count;
 }
-double KernelWorkspace::pivot_ratio() const { return impl_->solver.pivot_ratio(); }
+double KernelWorkspace::pivot_ratio() const {
+  const Impl& s = *impl_;
+  if (s.unknowns == s.program.freedoms) return 1;
+  return s.by_lifting ? s.lifted->least_pivot() : s.solver ? s.solver->pivot_ratio() : 1;
+}
 
-double KernelWorkspace::mass(std::size_t i, std::size_t j) const { return impl_->bordered[i * impl_->unknowns + j]; }
+double KernelWorkspace::mass(std::size_t i, std::size_t j) const {
+  impl_->need_full();
+  return impl_->bordered[i * impl_->unknowns + j];
+}
 double KernelWorkspace::constraint_matrix(std::size_t constraint, std::size_t coordinate) const {
+  impl_->need_full();
   return -impl_->bordered[(impl_->program.freedoms + constraint) * impl_->unknowns + coordinate];
 }
 

@@ -305,6 +305,7 @@ class Layout {
     program_.constants.push_back({.kind = Kind::Number, .value = 0});
     zero_ = static_cast<ConstantId>(program_.constants.size() - 1);
     out_.program = std::move(program_);
+    out_.number = number_;
     next_cell_ = padded(out_.program.slots);
     for (const Group& group : groups_) {
       if (!group.packs) {

@@ -62,6 +62,7 @@ struct Pack {
 
 struct PackedProgram {
   Program program;                      // renumbered, with slots between packs that nothing uses
+  std::vector<Slot> number;             // [slots of the program as it was] where they went; no_slot: written out in the sums that read them
   std::size_t cells = 0;                // slots and cells of blocks: doubles of a row
   std::vector<Pack> packs;              // section Dynamics, in order of execution
   std::vector<Block> blocks;

@@ -1,0 +1,75 @@
+#pragma once
+#include "kernel/interpreter/interpreter.hpp"
+#include "kernel/packed/layout.hpp"
+#include "kernel/sparse/sparse_solver.hpp"
+
+#include <optional>
+
+namespace maupertuis::interpreter {
+
+/// M₀ x = b through the tangents (src/kernel/sparse): for systems so large that a full M₀ costs more.
+///
+/// The pivots are chosen once, so that they may become bad where the motion goes. Nothing is believed: the first solution of each
+/// step is put into the tangents again, and what it leaves of b decides whether the step is solved here, perhaps with a correction of each
+/// solution, or by the full matrix, which alone tells what is singular.
+class LiftedSolve {
+ public:
+  /// `program`: as it was before it was packed.
+  LiftedSolve(const Program& program, const packed::PackedProgram& packed, std::size_t stride);
+
+  void set_constants(const Memory& memory);
+  /// The factors at the point that `memory` holds at order 0; false: the full matrix is to decide.
+  bool factor(const Memory& memory);
+  /// The first solution after factor(), as in solve(); false: it does not hold, and the full matrix is to decide; b is as it was.
+  bool solve_first(std::span<double> b);
+  /// b → q̈_k and λ_k in place.
+  void solve(std::span<double> b);
+  /// In the direction of the last solution, those of the stored slots of the packed program.
+  const double* tangents() const { return cells_.data(); }
+
+  /// The smallest pivot in units of its terms and of its size where the pivots were chosen.
+  double least_pivot() const { return least_pivot_; }
+  /// Nothing before the first factor(), and where there are no pivots.
+  const sparse::SparseSolver* solver() const { return solver_ ? &*solver_ : nullptr; }
+
+ private:
+  /// Σ of the entries of a row with the unknowns before it.
+  struct Row {
+    std::uint32_t column;         // whose unknown it gives; none: of b
+    std::uint32_t residual;       // index in b
+    std::uint32_t first, last;    // in row_entries_
+  };
+
+  struct RowEntry {
+    std::uint32_t entry, column;
+  };
+  struct WithError {
+    double value, error;          // and a bound of its rounding error
+  };
+
+  void order_rows();
+  bool fail();
+  bool choose_pivots(const Memory& memory);
+  std::vector<std::vector<double>> sampled_entries(const Memory& memory) const;
+  void set_random_state(Memory& memory, const Memory& around, int state) const;
+  double remainder(std::span<const double> b);
+  void add_correction();
+
+  const Program& program_;
+  std::size_t stored_;                           // cells that tangents() gives
+  std::optional<sparse::LiftedSystem> system_;
+  std::optional<sparse::Assembly> assembly_;
+  std::optional<sparse::SparseSolver> solver_;
+  std::vector<std::uint32_t> cell_of_column_;    // [columns] slots of the packed program, then cells of their own
+  std::vector<Row> rows_;
+  std::vector<RowEntry> row_entries_;
+  std::vector<double> entries_;                  // [entries]
+  std::vector<WithError> z_;                     // [columns] of remainder()
+  std::vector<double> residual_;                 // [unknowns] b − M₀ x
+  Doubles cells_, change_;                       // [stride + columns]
+  double least_pivot_ = 1;
+  bool refines_ = false;                         // each solution of this step
+  int failures_ = 0;
+};
+
+}  // namespace maupertuis::interpreter

@@ -1,0 +1,81 @@
+#pragma once
+#include "kernel/sparse/elimination.hpp"
+
+/// Factors and solutions of a lifted system as flat loops over index arrays: what is computed from what was decided once, when
+/// the pivots were chosen. Nothing is allocated after construction.
+namespace maupertuis::sparse {
+
+/// Sums of products whose operands are known before: v = start − Σ a b. Sums of one level do not wait for each other; those of
+/// as many products stand together, so that a loop over them has no branches of its own.
+struct SumRun {
+  std::uint32_t products;        // of each sum
+  std::uint32_t first, last;     // sums
+  std::uint32_t first_product;   // of the first sum; they follow each other
+  bool starts;                   // at a value that is there; else at 0
+};
+
+class SparseSolver {
+ public:
+  /// `cells`: [columns] where the unknowns stand in the array that solve() fills.
+  SparseSolver(const LiftedSystem& system, const std::vector<Pivot>& pivots, std::span<const std::uint32_t> cells);
+
+  /// The factors of the matrix with these entries. [entries]
+  /// Returns the smallest pivot in units of the terms that it was computed from (what cancellation left of it) and of its size where
+  /// the pivots were chosen; 0 or NaN where there are no factors.
+  double factor(std::span<const double> entries);
+
+  /// M₀ x = b: x and the wanted tangents in its direction, each in its cell; the cells of other unknowns are scratch.
+  /// b: [unknowns]
+  void solve(std::span<const double> b, double* x) const;
+
+  /// Products of a factorization and of a solution: their cost.
+  std::size_t factor_products() const { return factor_products_; }
+  std::size_t solve_products() const { return forward_.operand.size() + backward_.operand.size(); }
+  /// How many sums wait for each other in a solution.
+  std::size_t solve_depth() const { return forward_depth_ + backward_depth_; }
+
+ private:
+  friend class SparseBuilder;
+
+  /// Sums over factors and unknowns of a solution, in the order in which they are made.
+  struct Sweep {
+    std::vector<SumRun> runs;
+    std::vector<std::uint32_t> target;   // [sums] cells
+    std::vector<std::uint32_t> pivot;    // [sums] forward: of the row
+    std::vector<std::uint32_t> operand;  // [products] cells
+    std::uint32_t first_factor = 0;      // of the first product in factors_; they follow each other
+  };
+
+  struct FactorSum {
+    std::uint32_t target;   // in factors_
+    std::uint32_t entry;    // it starts from; [entries]: 0
+    std::uint32_t pivot;    // U: it is divided by
+    std::uint32_t first, last;  // products
+  };
+  struct FactorProduct {
+    std::uint32_t lower, upper;  // in factors_
+  };
+  /// One stage: pivots, then what stands below and beside them, of pivots that do not wait for each other.
+  struct FactorStage {
+    std::uint32_t first_pivot, first_lower, first_upper, last;  // sums
+  };
+
+  template <int Products>
+  void forward_run(const SumRun& run, double* x) const;
+  template <int Products>
+  void backward_run(const SumRun& run, double* x) const;
+
+  std::vector<std::uint32_t> cell_of_residual_;  // [unknowns] where b_i goes
+  std::vector<std::uint32_t> cleared_;           // cells that a forward sum starts at 0
+  Sweep forward_, backward_;
+  std::vector<FactorStage> stages_;
+  std::vector<FactorSum> sums_;
+  std::vector<FactorProduct> products_;
+  std::vector<double> factors_;                  // L, then U divided by the pivots, in the order of the solution
+  std::vector<double> inverse_;                  // [pivots]
+  std::vector<double> usual_size_;               // [pivots] the largest at the sampled states
+  std::vector<double> entries_;                  // [entries + 1] the last one 0
+  std::size_t factor_products_ = 0, forward_depth_ = 0, backward_depth_ = 0;
+};
+
+}  // namespace maupertuis::sparse

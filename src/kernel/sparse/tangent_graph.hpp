@@ -1,0 +1,41 @@
+#pragma once
+#include "kernel/program/program.hpp"
+
+#include <vector>
+
+/// Directional derivatives of order 0 are linear: ∂(slot)/∂q^(ℓ) is a sum over the operands of equal lag, each with a factor
+/// that the coefficients of order 0 give. The factors are the edges of a graph that leads from q̈ to the residual.
+namespace maupertuis::sparse {
+
+/// What the factor of an edge is made of. x and y are values at order 0, c a coefficient of a term.
+enum class Rule : std::uint8_t {
+  One,             // 1
+  Coefficient,     // c
+  Scaled,          // c x
+  Value,           // x
+  Negative,        // −x
+  Double,          // 2 x
+  Reciprocal,      // 1/x
+  HalfReciprocal,  // 1/(2 x)
+  Ratio,           // −y/x
+  PowerSlope,      // p y/x with the constant p
+  Choice,          // 1 if a Select takes this term, else 0
+};
+
+struct Edge {
+  Rule rule = Rule::One;
+  Slot out = no_slot, operand = no_slot;
+  std::uint32_t index = 0;              // of the constant c or p; Choice: of the term
+  Slot x = no_slot, y = no_slot;        // Choice: first and last term
+};
+
+/// Every edge of section Dynamics, in the order of the instructions.
+std::vector<Edge> tangent_edges(const Program& program);
+
+/// Whether it depends on parameters and sides of switches alone.
+bool is_constant(Rule rule);
+double constant_factor(const Edge& edge, const Program& program, const double* constants);
+/// `now`: [slots] values at order 0.
+double factor_at(const Edge& edge, const double* constants, const double* now);
+
+}  // namespace maupertuis::sparse
