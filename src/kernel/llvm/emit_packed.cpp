@@ -31,6 +31,7 @@ using packed::lanes;
 
 constexpr std::size_t most_unknowns = 8;
 constexpr std::size_t most_looking_ahead = 2;
+constexpr unsigned most_shuffled = 4;   // lanes
 constexpr double least_pivot = 1e-10;
 constexpr std::size_t most_operations = 40'000;
 
@@ -238,6 +239,8 @@ class Emitter {
 
   Value* shuffle(const std::vector<std::optional<Place>>& places, const std::vector<Value*>& sources, unsigned w) {
     const unsigned size = width(sources[0]);
+    const bool one_lane = std::all_of(places.begin(), places.end(), [&](const auto& p) { return p->lane == places[0]->lane; });
+    if (sources.size() == 1 && one_lane) return splat_lane(sources[0], places[0]->lane, w);
     std::vector<int> mask;
     bool identity = w == size && sources.size() == 1;
     for (unsigned lane = 0; lane < w; ++lane) {
@@ -327,15 +330,28 @@ class Emitter {
 
   Value* sum(const Pack& pack, unsigned w) {
     Value* result = nullptr;
-    for (std::uint32_t c = pack.first_aligned; c < pack.last_aligned; ++c) {
-      const Column& column = p_.columns[c];
-      if (column.source == p_.program.one && k_ + column.shift > 0) continue;
-      const std::vector<Slot> slots = sources_of(column, pack.width);
-      const double factor = column.shift == 0 ? 1 : column.shift == 1 ? k_ + 1.0 : (k_ + 1.0) * (k_ + 2.0);
-      Value* const c_k = coefficients(column.coefficients, w);
-      result = fma(gather(slots, k_ + column.shift, w), mul(c_k, splat(factor, c_k)), result);
-    }
+    for (std::uint8_t shift = 0; shift < 3; ++shift) result = shifted_sum(pack, shift, w, result);
     return products(pack, w, result ? result : vector_of(0.0, w));
+  }
+
+  /// The factor of the shift goes to the coefficients where they are few, since nothing waits for those, else to their sum.
+  Value* shifted_sum(const Pack& pack, std::uint8_t shift, unsigned w, Value* result) {
+    const double factor = shift == 0 ? 1 : shift == 1 ? k_ + 1.0 : (k_ + 1.0) * (k_ + 2.0);
+    std::vector<const Column*> columns;
+    for (std::uint32_t c = pack.first_aligned; c < pack.last_aligned; ++c)
+      if (p_.columns[c].shift == shift && (p_.columns[c].source != p_.program.one || k_ + shift == 0)) columns.push_back(&p_.columns[c]);
+    const bool few = columns.size() <= 2;
+    Value* sums[2] = {few ? result : nullptr, nullptr};
+    std::size_t next = 0;
+    for (const Column* const column : columns) {
+      Value* const c = coefficients(column->coefficients, w);
+      Value* const values = gather(sources_of(*column, pack.width), k_ + shift, w);
+      Value*& sum = sums[few ? 0 : next++ % 2];
+      sum = fma(values, few ? mul(c, splat(factor, c)) : c, sum);
+    }
+    if (few) return sums[0];
+    Value* const whole = add(sums[0], sums[1]);
+    return fma(whole, splat(factor, whole), result);
   }
 
   static std::vector<Slot> sources_of(const Column& column, std::uint32_t width) {
@@ -833,6 +849,15 @@ class Emitter {
   Value* spread(Value* scalar) { return wide_ == 1 ? scalar : b_.CreateVectorSplat(wide_, scalar); }
   Value* with_lane(Value* v, unsigned lane, Value* scalar) { return width(v) == 1 ? scalar : b_.CreateInsertElement(v, scalar, lane); }
 
+  /// A copy on the stack: a load that fills all lanes costs nothing where a shuffle takes the place of a multiplication.
+  Value* in_memory(Value* v) {
+    Value*& copy = copies_[v];
+    if (copy) return copy;
+    copy = llvm::IRBuilder<>(&function_->getEntryBlock(), function_->getEntryBlock().begin()).CreateAlloca(v->getType());
+    save(copy, v);
+    return copy;
+  }
+
   /// Beyond this point only if the condition holds; else the slow path has to decide.
   void trust(Value* condition) {
     auto* const good = llvm::BasicBlock::Create(context_, "", function_);
@@ -846,6 +871,7 @@ class Emitter {
   Value* splat_lane(Value* v, unsigned lane, unsigned w) {
     if (width(v) == 1) return w == 1 ? v : b_.CreateVectorSplat(w, v);
     if (w == 1) return b_.CreateExtractElement(v, lane);
+    if (w > most_shuffled && !llvm::isa<llvm::Constant>(v)) return b_.CreateVectorSplat(w, load_from(in_memory(v), lane, 1));
     return b_.CreateShuffleVector(v, std::vector<int>(w, static_cast<int>(lane)));
   }
 
@@ -1118,6 +1144,7 @@ class Emitter {
   std::map<std::pair<std::uint32_t, int>, Newest> newest_;  // (block, order): in registers
   std::map<std::tuple<Slot, int, unsigned>, Newest> newest_ranges_;
   std::set<std::pair<Slot, unsigned>> ranges_;
+  std::map<Value*, Value*> copies_;
   std::map<Slot, Value*> seconds_;      // at order 0
   std::vector<Tangent> tangents_;       // [packs]
   std::map<Slot, Tangent> second_tangents_;
