@@ -7,7 +7,7 @@
 
 namespace maupertuis::app {
 
-std::optional<double> parse_time(const std::string& text) {
+std::optional<Rational> parse_exact_time(const std::string& text) {
   // Not strtod: "0x10", "inf" and "nan" are no times. The exponent's e belongs to the number only before a digit.
   std::size_t end = 0;
   const auto is_digit = [&](std::size_t i) { return i < text.size() && text[i] >= '0' && text[i] <= '9'; };
@@ -26,10 +26,15 @@ std::optional<double> parse_time(const std::string& text) {
   if (!number) return {};
 
   const std::size_t word = text.find_first_not_of(' ', end);
-  if (word == std::string::npos) return number->to_double();
+  if (word == std::string::npos) return number;
   const auto unit = find_unit(std::string_view(text).substr(word));
   if (!unit || !(unit->dimension == dimensions::time()) || unit->pi_power != 0) return {};
-  return (*number * unit->factor).to_double();
+  return *number * unit->factor;
+}
+
+std::optional<double> parse_time(const std::string& text) {
+  const std::optional<Rational> exact_time = parse_exact_time(text);
+  return exact_time ? std::optional(exact_time->to_double()) : std::nullopt;
 }
 
 std::string brief(double value) { return fmt::format("{:.6g}", value); }

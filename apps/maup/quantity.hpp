@@ -1,4 +1,6 @@
 #pragma once
+#include <maupertuis/rational.hpp>
+
 #include <optional>
 #include <string>
 
@@ -6,6 +8,8 @@ namespace maupertuis::app {
 
 /// A time of the command line in seconds: "3s", "250 ms", "-2 min"; a bare number is in seconds. Nothing otherwise.
 std::optional<double> parse_time(const std::string& text);
+/// The same, exactly.
+std::optional<Rational> parse_exact_time(const std::string& text);
 
 /// Six significant digits, as messages show numbers.
 std::string brief(double value);

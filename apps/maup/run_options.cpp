@@ -13,14 +13,19 @@
 namespace maupertuis::app {
 namespace {
 
-std::optional<double> time_option(const char* option, const std::string& text, Diagnostics& diagnostics) {
-  const std::optional<double> value = parse_time(text);
-  if (!value || !std::isfinite(*value)) {
+std::optional<Rational> exact_time_option(const char* option, const std::string& text, Diagnostics& diagnostics) {
+  const std::optional<Rational> value = parse_exact_time(text);
+  if (!value || !std::isfinite(value->to_double())) {
     diagnostics.error("E0809", {}, fmt::format("{} \"{}\" is no time.", option, text), {},
                       "Write a number with a unit of time, such as 3s, 250ms or \"2 min\".");
     return {};
   }
   return value;
+}
+
+std::optional<double> time_option(const char* option, const std::string& text, Diagnostics& diagnostics) {
+  const std::optional<Rational> value = exact_time_option(option, text, diagnostics);
+  return value ? std::optional(value->to_double()) : std::nullopt;
 }
 
 /// One line on the terminal, redrawn at most ten times a second, and wiped at the end.
@@ -78,16 +83,29 @@ void add_span_options(CLI::App& command, RunOptions& options) {
       ->type_name("TIME,...");
 }
 
-SimulationOptions simulation_options(const RunOptions& options, Diagnostics& diagnostics) {
-  SimulationOptions out;
-  if (options.tolerance) {
-    if (*options.tolerance > 0 && *options.tolerance < 1) out.tolerance = *options.tolerance;
-    else diagnostics.error("E0809", {}, fmt::format("--tol {} is no tolerance.", brief(*options.tolerance)), {},
-                           "Write a positive number below 1, such as 1e-10.");
-  }
+namespace {
+
+double tolerance_option(const RunOptions& options, Diagnostics& diagnostics) {
+  if (!options.tolerance) return 0;
+  if (*options.tolerance > 0 && *options.tolerance < 1) return *options.tolerance;
+  diagnostics.error("E0809", {}, fmt::format("--tol {} is no tolerance.", brief(*options.tolerance)), {},
+                    "Write a positive number below 1, such as 1e-10.");
+  return 0;
+}
+
+StepMethod method_option(const RunOptions& options) {
   static const std::map<std::string, StepMethod> methods{{"auto", StepMethod::Automatic}, {"taylor", StepMethod::Taylor},
                                                          {"variational", StepMethod::Variational}, {"stiff", StepMethod::Stiff}};
-  if (const auto method = methods.find(options.method); method != methods.end()) out.method = method->second;
+  const auto method = methods.find(options.method);
+  return method != methods.end() ? method->second : StepMethod::Automatic;
+}
+
+}  // namespace
+
+SimulationOptions simulation_options(const RunOptions& options, Diagnostics& diagnostics) {
+  SimulationOptions out;
+  out.tolerance = tolerance_option(options, diagnostics);
+  out.method = method_option(options);
   if (options.step)
     if (const auto step = time_option("--step", *options.step, diagnostics)) out.step = *step;
   if (options.order) out.order = *options.order;
@@ -109,6 +127,27 @@ SimulationOptions simulation_options(const RunOptions& options, Diagnostics& dia
   return out;
 }
 
+ExtendedSimulationOptions extended_options(const RunOptions& options, Precision precision, Diagnostics& diagnostics) {
+  ExtendedSimulationOptions out;
+  out.precision = precision;
+  out.tolerance = tolerance_option(options, diagnostics);
+  out.method = method_option(options);
+  if (options.step)
+    diagnostics.error("E0809", {}, "--step belongs to --method variational.", "Runs in many digits choose their steps by the tolerance.",
+                      "Leave --step out, or use --tol.");
+  if (options.order && (*options.order < 2 || *options.order > 400))
+    diagnostics.error("E0809", {}, fmt::format("--order {} is no order of this method.", *options.order),
+                      "In many digits Taylor's steps take orders from 2 to 400.", "Leave --order out, or use --tol.");
+  out.order = options.order.value_or(0);
+  if (options.duration) out.duration = exact_time_option("--duration", *options.duration, diagnostics);
+  if (options.every) out.output_every = exact_time_option("--every", *options.every, diagnostics);
+  if (out.output_every && out.output_every->sign() <= 0) diagnostics.error("E0809", {}, "--every must be a positive time.");
+  for (const std::string& text : options.at)
+    if (const auto t = exact_time_option("--at", text, diagnostics)) out.at.push_back(*t);
+  out.interrupt = &interrupt_flag();
+  return out;
+}
+
 std::string run_statement(const RunOptions& options) {
   if (options.until.empty()) return {};
   std::string statement =
@@ -126,9 +165,17 @@ std::optional<SimulationResult> run_model(Study& study, const SimulationOptions&
   return simulate(*study.model(), *study.equations(), with_progress, study.diagnostics());
 }
 
-ExitCode exit_code(const SimulationResult& result) {
-  if (result.ok()) return ExitCode::Fine;
-  return result.ending == Ending::Interrupted ? ExitCode::Interrupted : ExitCode::RunFailed;
+std::optional<ExtendedResult> run_model(Study& study, const ExtendedSimulationOptions& options, const Console& console) {
+  if (study.wrong() || !study.certificate()) return {};
+  Progress progress(console);
+  ExtendedSimulationOptions with_progress = options;
+  if (console.interactive()) with_progress.progress = [&progress](double fraction) { progress(fraction); };
+  return simulate_extended(*study.model(), *study.equations(), with_progress, study.diagnostics());
+}
+
+ExitCode exit_code(Ending ending) {
+  if (ending == Ending::Finished || ending == Ending::UntilReached) return ExitCode::Fine;
+  return ending == Ending::Interrupted ? ExitCode::Interrupted : ExitCode::RunFailed;
 }
 
 const char* ending_name(Ending ending) {

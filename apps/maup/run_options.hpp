@@ -2,6 +2,7 @@
 #include "command.hpp"
 #include "study.hpp"
 
+#include <maupertuis/extended_simulation.hpp>
 #include <maupertuis/simulation.hpp>
 
 #include <optional>
@@ -29,14 +30,20 @@ void add_span_options(CLI::App& command, RunOptions& options);
 /// The options in numbers, with the flag of Ctrl-C. A wrong value is a diagnostic (E0809).
 SimulationOptions simulation_options(const RunOptions& options, Diagnostics& diagnostics);
 
+/// The same for a run in many digits: times exactly as written.
+ExtendedSimulationOptions extended_options(const RunOptions& options, Precision precision, Diagnostics& diagnostics);
+
 /// The `run` statement that --until writes into the model; empty without.
 std::string run_statement(const RunOptions& options);
 
 /// Certifies, runs, draws progress. Nothing when the model does not allow a run.
 std::optional<SimulationResult> run_model(Study& study, const SimulationOptions& options, const Console& console);
 
+/// The same in many digits.
+std::optional<ExtendedResult> run_model(Study& study, const ExtendedSimulationOptions& options, const Console& console);
+
 /// 0, 3 or 130 by how a run ended.
-ExitCode exit_code(const SimulationResult& result);
+ExitCode exit_code(Ending ending);
 /// "until reached", "singular mass", … for JSON.
 const char* ending_name(Ending ending);
 

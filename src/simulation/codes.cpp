@@ -76,6 +76,10 @@ constexpr std::array entries{
               "It is relative: the error of a step is compared with the size of each coordinate and velocity times the "
               "tolerance.",
               "", ""},
+    CodeEntry{"E0725", "this method calculates in double alone",
+              "--precision quad and --precision 100 run Taylor's method, whose order grows with the number of digits. The stiff and the "
+              "variational method have bounded orders.",
+              "", ""},
 };
 
 }  // namespace

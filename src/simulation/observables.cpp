@@ -58,4 +58,21 @@ Observables collect_observables(const EquationsOfMotion& equations, const Probe*
   return out;
 }
 
+void name_trajectory_columns(const MechanicalSystem& system, const Observables& observables, std::vector<Trajectory::Column>& columns,
+                             std::vector<Trajectory::Column>& reactions) {
+  const auto unit = [&](const Dimension& d) { return system.dimensionless ? std::string() : to_string(d); };
+  for (const Coordinate& c : system.coordinates) columns.push_back({c.name, unit(c.dimension)});
+  for (const Coordinate& c : system.coordinates) columns.push_back({c.name + "'", unit(c.dimension / dimensions::time())});
+  for (const Point& p : system.points)
+    for (std::size_t axis = 0; axis < p.position.size(); ++axis)
+      columns.push_back({p.name + "." + "xyz"[axis], unit(dimensions::length())});
+  for (const Observables::Named& r : observables.reactions) {
+    // The unit of a torque is that of an energy, but nobody reads it so.
+    const bool torque = r.dimension == dimensions::energy() && !system.dimensionless;
+    reactions.push_back({r.name, torque ? "N m" : unit(r.dimension)});
+    columns.push_back(reactions.back());
+  }
+  columns.push_back({"energy", unit(dimensions::energy())});
+}
+
 }  // namespace maupertuis

@@ -26,4 +26,8 @@ struct Observables {
 
 Observables collect_observables(const EquationsOfMotion& equations, const Probe* probe);
 
+/// The columns of a trajectory after t: q, q', the points, the reactions (also on their own), the energy.
+void name_trajectory_columns(const MechanicalSystem& system, const Observables& observables, std::vector<Trajectory::Column>& columns,
+                             std::vector<Trajectory::Column>& reactions);
+
 }  // namespace maupertuis

@@ -18,4 +18,7 @@ struct RunPlan {
 std::optional<RunPlan> plan_run(const Model& model, const EquationsOfMotion& equations, const SimulationOptions& options,
                                 Diagnostics& diagnostics);
 
+/// Whether the times asked for lie on the way of the run; E0706 if not.
+bool requests_lie_ahead(const RunPlan& plan, const SimulationOptions& options, Diagnostics& diagnostics);
+
 }  // namespace maupertuis

@@ -3,6 +3,7 @@
 
 #include "simulation/energy_terms.hpp"
 #include "simulation/methods.hpp"
+#include "simulation/motion_kernel.hpp"
 #include "simulation/observables.hpp"
 #include "simulation/run_plan.hpp"
 #include "simulation/stiffness.hpp"
@@ -24,24 +25,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-Kernel kernel_of(const EquationsOfMotion& equations, const WantedFunctions& wanted) {
-  const MechanicalSystem& system = *equations.system;
-  KernelSource source;
-  for (const Coordinate& c : system.coordinates) source.coordinates.push_back(c.q);
-  for (const Parameter& p : system.parameters) source.parameters.push_back(p.symbol);
-  source.residual = in_terms_of_motion(system, equations.balance());
-  source.multipliers = equations.multipliers;
-  for (std::size_t i = 0; i < system.constraints.size(); ++i) {
-    const Constraint& c = system.constraints[i];
-    const Expr value = in_terms_of_motion(system, {&c.value, 1}).front();
-    source.constraints.push_back({value, c.level == Constraint::Level::Position ? 0 : 1, system.constraint_label(i)});
-  }
-  source.observables = in_terms_of_motion(system, wanted.observables);
-  source.events = in_terms_of_motion(system, wanted.events);
-  source.integrands = in_terms_of_motion(system, wanted.integrands);
-  return build_kernel(source);
-}
-
 std::unique_ptr<Method> taylor_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
                                       const SimulationOptions& options) {
   TaylorOptions out;
@@ -49,7 +32,7 @@ std::unique_ptr<Method> taylor_method(const EquationsOfMotion& equations, const 
   out.order = options.order;
   out.maximum_steps = options.maximum_steps;
   out.interrupt = options.interrupt;
-  return method_of(TaylorStepper(kernel_of(equations, wanted), parameter_values(*equations.system), out));
+  return method_of(TaylorStepper(motion_kernel(equations, wanted), parameter_values(*equations.system), out));
 }
 
 std::unique_ptr<Method> stiff_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
@@ -132,7 +115,7 @@ class Run {
       : model_(model), options_(options), plan_(plan), observables_(observables), probe_(probe),
         method_(std::move(method)), stiff_(std::move(stiff)), balance_(observables.energy_terms) {
     result_.statistics.method = word_of(options.method);
-    name_columns();
+    name_trajectory_columns(model.system, observables, result_.trajectory.columns, result_.reactions);
     sort_requests();
   }
 
@@ -151,24 +134,6 @@ class Run {
   bool turned_stiff() const { return turned_stiff_; }
 
  private:
-  void name_columns() {
-    auto& columns = result_.trajectory.columns;
-    const auto unit = [&](const Dimension& d) { return model_.system.dimensionless ? std::string() : to_string(d); };
-    for (const Coordinate& c : model_.system.coordinates) columns.push_back({c.name, unit(c.dimension)});
-    for (const Coordinate& c : model_.system.coordinates)
-      columns.push_back({c.name + "'", unit(c.dimension / dimensions::time())});
-    for (const Point& p : model_.system.points)
-      for (std::size_t axis = 0; axis < p.position.size(); ++axis)
-        columns.push_back({p.name + "." + "xyz"[axis], unit(dimensions::length())});
-    for (const Observables::Named& r : observables_.reactions) {
-      // The unit of a torque is that of an energy, but nobody reads it so.
-      const bool torque = r.dimension == dimensions::energy() && !model_.system.dimensionless;
-      result_.reactions.push_back({r.name, torque ? "N m" : unit(r.dimension)});
-      columns.push_back(result_.reactions.back());
-    }
-    columns.push_back({"energy", unit(dimensions::energy())});
-  }
-
   /// The requested times in the order of the run.
   void sort_requests() {
     requests_.resize(options_.at.size());
@@ -302,18 +267,6 @@ void note_stiffness(const SimulationResult& result, Diagnostics& diagnostics) {
                                "the backward differentiation formulas went on with a tolerance of {:g} to t = {:g} s.",
                                1e-10, result.final.t),
                    "Use --method taylor to keep Taylor's steps, or --tol for another tolerance.");
-}
-
-bool requests_lie_ahead(const RunPlan& plan, const SimulationOptions& options, Diagnostics& diagnostics) {
-  for (const double t : options.at) {
-    const bool ahead = plan.end >= plan.begin ? t >= plan.begin : t <= plan.begin;
-    if (ahead && std::isfinite(t)) continue;
-    diagnostics.error("E0706", std::nullopt, fmt::format("the state at t = {:g} s is not on the way of this run", t),
-                      fmt::format("The run goes from {:g} s to {:g} s.", plan.begin, plan.end),
-                      "Ask for times after the start, or run backwards with a negative duration.");
-    return false;
-  }
-  return true;
 }
 
 }  // namespace

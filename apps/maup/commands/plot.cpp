@@ -45,7 +45,7 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
   const bool written = !study.wrong();
   if (!result->ok()) console.say(fmt::format("The run ended early: {}\n", result->reason));
   finish(console, study, document);
-  return written ? exit_code(*result) : ExitCode::RunFailed;
+  return written ? exit_code(result->ending) : ExitCode::RunFailed;
 }
 
 }  // namespace

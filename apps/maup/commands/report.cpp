@@ -58,7 +58,7 @@ ExitCode report(const ReportOptions& options, Console& console) {
   if (result && !result->ok() && !console.json()) console.say(fmt::format("The run ended early: {}\n", result->reason));
   finish(console, study, document);
   if (!written) return ExitCode::RunFailed;
-  return result ? exit_code(*result) : ExitCode::Fine;
+  return result ? exit_code(result->ending) : ExitCode::Fine;
 }
 
 }  // namespace

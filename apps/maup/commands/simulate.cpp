@@ -1,3 +1,4 @@
+#include "extended_text.hpp"
 #include "outcome.hpp"
 #include "quantity.hpp"
 #include "run_options.hpp"
@@ -16,6 +17,7 @@ struct SimulateOptions {
   ModelOptions model;
   RunOptions run;
   std::string output, plot;
+  std::string precision = "double";
 };
 
 bool ends_with(const std::string& text, const std::string& end) {
@@ -135,7 +137,42 @@ ExitCode simulate_model(const SimulateOptions& options, Console& console) {
   }
   const bool files_written = !study.wrong();
   finish(console, study, document_of(*result, system));
-  return files_written ? exit_code(*result) : ExitCode::RunFailed;
+  return files_written ? exit_code(result->ending) : ExitCode::RunFailed;
+}
+
+/// Pictures and binary trajectories hold doubles.
+void check_extended_files(const SimulateOptions& options, Diagnostics& diagnostics) {
+  if (!options.plot.empty())
+    diagnostics.error("E0809", {}, "--plot draws what double computes.", "A picture shows no more digits.", "Leave --precision out for it.");
+  if (!options.output.empty() && !ends_with(options.output, ".csv"))
+    diagnostics.error("E0810", {}, fmt::format("{} is no format for numbers in many digits.", options.output), {}, "Take an ending .csv.");
+}
+
+ExitCode simulate_extended_model(const SimulateOptions& options, Console& console) {
+  Study study(options.model.path, options.model.overrides);
+  const bool readable_model = !study.wrong();
+  check_extended_files(options, study.diagnostics());
+  const Precision precision = options.precision == "quad" ? Precision::Quad : Precision::Digits100;
+  ExtendedSimulationOptions settings = extended_options(options.run, precision, study.diagnostics());
+  settings.rows = !options.output.empty();
+  if (readable_model && study.wrong()) {
+    finish(console, study, json_document("simulate"));
+    return ExitCode::Usage;
+  }
+  if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);
+
+  const auto result = run_model(study, settings, console);
+  if (!result) return finish(console, study, json_document("simulate"));
+  if (!options.output.empty()) write_result(options.output, to_csv(*result), study.diagnostics());
+  const MechanicalSystem& system = study.model()->system;
+  if (!console.json()) {
+    console.print(extended_text(*result));
+    if (result->ending != Ending::Finished)
+      console.say(fmt::format("The run ended at t = {} s: {}\n", exact(result->reached), result->reason));
+  }
+  const bool files_written = !study.wrong();
+  finish(console, study, extended_document(*result, options.precision, system));
+  return files_written ? exit_code(result->ending) : ExitCode::RunFailed;
 }
 
 }  // namespace
@@ -146,10 +183,16 @@ void add_simulate(CommandLine& line) {
                                "  maup simulate pendulum.lag\n"
                                "  maup simulate pendulum.lag --at 3s -o motion.csv --plot motion.svg\n"
                                "  maup simulate pendulum.lag --set l=2m --start θ=170deg --duration -5s --json\n",
-                               [options](Console& console) { return simulate_model(*options, console); });
+                               [options](Console& console) {
+                                 return options->precision == "double" ? simulate_model(*options, console)
+                                                                       : simulate_extended_model(*options, console);
+                               });
   add_model_options(command, options->model);
   add_span_options(command, options->run);
   add_method_options(command, options->run);
+  command.add_option("--precision", options->precision, "double, quad (113 bits) or 100 (decimal digits): as many digits as two runs agree on")
+      ->check(CLI::IsMember({"double", "quad", "100"}))
+      ->type_name("DIGITS");
   command.add_option("-o,--output", options->output, "The trajectory: .csv, .npy or .json")->type_name("FILE");
   command.add_option("--plot", options->plot, "Its time series as a picture: .svg")->type_name("FILE");
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <span>
+#include <type_traits>
 
 namespace maupertuis::taylor {
 
@@ -12,6 +13,10 @@ namespace maupertuis::taylor {
 /// The rounding error at x is taken to be unit · (scale + Σ_{k≥1} |p_k| x^k).
 ///
 /// Precondition: side is +1 or −1.
-std::optional<double> first_crossing(std::span<const double> p, int side, double unit, double scale);
+template <class T>
+std::optional<T> first_crossing(std::span<const T> p, int side, const std::type_identity_t<T>& unit, const std::type_identity_t<T>& scale);
+inline std::optional<double> first_crossing(std::span<const double> p, int side, double unit, double scale) {
+  return first_crossing<double>(p, side, unit, scale);
+}
 
 }  // namespace maupertuis::taylor

@@ -4,9 +4,20 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 namespace maupertuis::taylor {
+
+/// The number type of a workspace. One of more digits than double (kernel/extended) names its own.
+template <class Work>
+struct ScalarOf {
+  using Type = typename Work::Scalar;
+};
+template <>
+struct ScalarOf<KernelWorkspace> {
+  using Type = double;
+};
 
 /// A function along the motion whose sign changes are to be seen: a switch function or an event.
 struct Watched {
@@ -15,10 +26,11 @@ struct Watched {
 };
 
 /// The polynomial of a watched function over a step of length h, in x = τ/h.
-struct ScaledPolynomial {
-  std::vector<double> p;
-  double scale = 0;         // sizes of the terms of p_0
-  double reach = 0;         // scale + Σ_{k≥1} |p_k|
+template <class T>
+struct ScaledPolynomialOf {
+  std::vector<T> p;
+  T scale = T(0);           // sizes of the terms of p_0
+  T reach = T(0);           // scale + Σ_{k≥1} |p_k|
 
   /// Index of the first coefficient after p_0 that is told from zero; 0 if there is none.
   std::size_t leading() const;
@@ -27,45 +39,54 @@ struct ScaledPolynomial {
   std::int8_t direction() const;
 };
 
-ScaledPolynomial switch_polynomial(const KernelWorkspace& work, std::size_t index, double h);
-ScaledPolynomial event_polynomial(const KernelWorkspace& work, std::size_t index, double h);
+using ScaledPolynomial = ScaledPolynomialOf<double>;
+
+template <class Work, class T = typename ScalarOf<Work>::Type>
+ScaledPolynomialOf<T> switch_polynomial(const Work& work, std::size_t index, const std::type_identity_t<T>& h);
+template <class Work, class T = typename ScalarOf<Work>::Type>
+ScaledPolynomialOf<T> event_polynomial(const Work& work, std::size_t index, const std::type_identity_t<T>& h);
 
 /// The first x in (0, 1] where the function leaves its side. A zero at x = 0 is divided out.
-std::optional<double> crossing(const ScaledPolynomial& polynomial, const Watched& watched);
+template <class T>
+std::optional<T> crossing(const ScaledPolynomialOf<T>& polynomial, const Watched& watched);
 
 /// Decides the sides of the switch functions at the beginning of a step, and with them the formulas in force.
 ///
 /// Away from its zero a function's sign decides. At a zero the side is the one that the motion goes to, by the first
 /// derivative that does not vanish; since the motion may depend on the side, a choice is tried and must confirm itself.
 /// When none does, both sides push back: the motion would slide along the switch.
-class SideChooser {
+template <class Work>
+class SideChooserOf {
  public:
+  using T = typename ScalarOf<Work>::Type;
   /// `expand` computes the motion under given sides and returns the step length over which it is to be judged, or
   /// nothing where that fails.
-  using Expand = std::function<std::optional<double>(const std::vector<std::int8_t>&)>;
+  using Expand = std::function<std::optional<T>(const std::vector<std::int8_t>&)>;
 
-  SideChooser(const KernelWorkspace& work, std::vector<Watched>& watched, Expand expand)
+  SideChooserOf(const Work& work, std::vector<Watched>& watched, Expand expand)
       : work_(work), watched_(watched), expand_(std::move(expand)) {}
 
   enum class Outcome { Decided, Sliding, Failed };
   /// Precondition: the workspace holds the motion under the present sides, judged over h.
-  Outcome decide(double h);
+  Outcome decide(T h);
   std::size_t sliding() const { return sliding_; }
 
  private:
-  bool collect(double h);
-  bool confirms(double h) const;
+  bool collect(const T& h);
+  bool confirms(const T& h) const;
   std::optional<bool> tries(const std::vector<std::int8_t>& sides);
   Outcome alone(std::size_t index);
   Outcome together();
   std::vector<std::int8_t> sides() const;
   void adopt(const std::vector<std::int8_t>& sides);
 
-  const KernelWorkspace& work_;
+  const Work& work_;
   std::vector<Watched>& watched_;
   Expand expand_;
   std::vector<std::size_t> at_zero_;
   std::size_t sliding_ = 0;
 };
+
+using SideChooser = SideChooserOf<KernelWorkspace>;
 
 }  // namespace maupertuis::taylor

@@ -6,14 +6,15 @@
 
 namespace maupertuis::interpreter {
 
-/// How a number type takes exact numbers. A type of more digits brings its own, beside itself.
+/// How a number type takes exact numbers. A type of more digits brings its own specialization (kernel/extended).
 template <class T>
-T pi();
-template <class T>
-T from_rational(const Rational& value);
+struct Exactly;
 
 template <>
-inline double pi<double>() { return 3.14159265358979323846; }
+struct Exactly<double> {
+  static double pi() { return 3.14159265358979323846; }
+  static double from(const Rational& value) { return value.to_double(); }
+};
 
 /// f(x) of an elementary function of one argument, or f(x, y) of atan2.
 template <class T>

@@ -84,7 +84,7 @@ template <class T>
 T constant_operation(Kind kind, std::span<const T> operands) {
   using namespace on_constants;
   switch (kind) {
-    case Kind::Pi: return pi<T>();
+    case Kind::Pi: return Exactly<T>::pi();
     case Kind::Sum: return sum(operands);
     case Kind::Product: return product(operands);
     case Kind::Power: return power(operands[0], operands[1]);

@@ -21,7 +21,7 @@ MemoryOf<T>::MemoryOf(const Program& p, int orders, std::size_t cells)
 template <class T>
 T literal(const Program& program, const Constant& constant) {
   if constexpr (std::is_same_v<T, double>) return constant.value;
-  else return from_rational<T>(program.literals[constant.index]);
+  else return Exactly<T>::from(program.literals[constant.index]);
 }
 
 template <class T>

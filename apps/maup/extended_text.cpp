@@ -1,0 +1,92 @@
+#include "extended_text.hpp"
+
+#include "quantity.hpp"
+#include "run_options.hpp"
+
+#include <fmt/format.h>
+
+namespace maupertuis::app {
+namespace {
+
+std::string number_text(const AgreedNumber& x) {
+  if (x.text.empty()) return "not determined";
+  if (x.digits > 0) return (x.text[0] == '-' ? "" : " ") + x.text;
+  return fmt::format(" 0  (no digit is certain: the runs differ by {})", x.difference);
+}
+
+/// A time that was asked for is exact: its zeros at the end say nothing.
+std::string time_text(const AgreedNumber& t) {
+  std::string text = t.text;
+  if (text.find('.') == std::string::npos || text.find('e') != std::string::npos) return text;
+  while (text.back() == '0') text.pop_back();
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+std::string state_text(const ExtendedState& state, const ExtendedResult& result) {
+  std::string out = fmt::format("t = {} s\n", time_text(state.t));
+  const auto line = [&out](const std::string& name, const AgreedNumber& x, const std::string& unit) {
+    out += fmt::format("  {:<8} {}{}{}\n", name, number_text(x), unit == "1" || unit.empty() ? "" : " ", unit == "1" ? "" : unit);
+  };
+  const std::size_t n = state.q.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    line(result.columns[i].name, state.q[i], result.columns[i].unit);
+    line(result.columns[n + i].name, state.v[i], result.columns[n + i].unit);
+  }
+  for (std::size_t i = 0; i < state.reactions.size(); ++i) line(result.reactions[i].name, state.reactions[i], result.reactions[i].unit);
+  line("energy", state.energy, result.columns.back().unit);
+  return out;
+}
+
+Json number_json(const AgreedNumber& x) { return x.digits > 0 ? Json(x.text) : Json(nullptr); }
+
+Json state_json(const ExtendedState& state, const ExtendedResult& result) {
+  if (!state.reached) return nullptr;
+  Json values = Json::object(), digits = Json::object(), reactions = Json::object();
+  const std::size_t n = state.q.size();
+  const auto add = [&](const std::string& name, const AgreedNumber& x) {
+    values[name] = number_json(x);
+    digits[name] = x.digits;
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    add(result.columns[i].name, state.q[i]);
+    add(result.columns[n + i].name, state.v[i]);
+  }
+  for (std::size_t i = 0; i < state.reactions.size(); ++i) {
+    reactions[result.reactions[i].name] = number_json(state.reactions[i]);
+    digits[result.reactions[i].name] = state.reactions[i].digits;
+  }
+  digits["energy"] = state.energy.digits;
+  return {{"t", time_text(state.t)}, {"state", std::move(values)}, {"reactions", std::move(reactions)},
+          {"energy", number_json(state.energy)}, {"digits", std::move(digits)}};
+}
+
+}  // namespace
+
+std::string extended_text(const ExtendedResult& result) {
+  std::string out;
+  for (const ExtendedState& state : result.at) out += state.reached ? state_text(state, result) : "a time asked for was not reached\n";
+  const bool told = !result.at.empty() && result.at.back().reached && result.at.back().t.text == result.final.t.text;
+  if (result.final.reached && !told) out += state_text(result.final, result);
+  const ExtendedStatistics& s = result.statistics;
+  return out + fmt::format("{} steps of order {} with {} bits in {} s; digits on which {} steps of order {} with {} bits agree, in {} s\n",
+                           s.steps, s.order, s.bits, brief(s.seconds), s.check_steps, s.check_order, s.check_bits, brief(s.check_seconds));
+}
+
+Json extended_document(const ExtendedResult& result, const std::string& precision, const MechanicalSystem& system) {
+  Json document = json_document("simulate");
+  document["system"] = system.name;
+  document["precision"] = precision;
+  document["final"] = state_json(result.final, result);
+  document["at"] = Json::array();
+  for (const ExtendedState& state : result.at) document["at"].push_back(state_json(state, result));
+  const ExtendedStatistics& s = result.statistics;
+  document["statistics"] = {{"steps", s.steps}, {"order", s.order}, {"bits", s.bits}, {"seconds", s.seconds},
+                            {"check_steps", s.check_steps}, {"check_order", s.check_order}, {"check_bits", s.check_bits},
+                            {"check_seconds", s.check_seconds}, {"switches", s.switches}, {"rows", result.rows.size()}};
+  document["ended"] = {{"reason", result.reason.empty() ? ending_name(result.ending) : result.reason},
+                       {"kind", ending_name(result.ending)}, {"ok", result.ok()}};
+  return document;
+}
+
+}  // namespace maupertuis::app

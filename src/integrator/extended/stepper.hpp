@@ -1,0 +1,80 @@
+#pragma once
+#include "integrator/extended/step_size.hpp"
+#include "integrator/taylor/switches.hpp"
+
+#include <maupertuis/extended.hpp>
+
+#include <optional>
+#include <utility>
+
+namespace maupertuis::extended {
+
+/// TaylorStepper over T (docs/design/taylor_step.md): expand, project onto the constraints, decide the sides of switch
+/// functions that begin at a zero, choose a length, shorten it to the first crossing, advance.
+template <class T>
+class Stepper {
+ public:
+  Stepper(const Kernel& kernel, std::span<const T> parameters, const ExtendedOptions& options, double log2_tolerance);
+
+  int order() const { return control_.order; }
+  void start(const T& t, std::vector<T> q, std::vector<T> v);
+  struct Outcome {
+    StepEnding ending = StepEnding::None;
+    std::string reason;
+    bool event = false;
+  };
+  /// One step towards `bound`, at most up to it; time() == bound exactly when it is reached.
+  Outcome step(const T& bound);
+
+  const T& time() const { return t_; }
+  std::size_t steps() const { return steps_; }
+  std::size_t switches() const { return switches_; }
+  bool covers(const T& t) const { return std::min(begin_, t_) <= t && t <= std::max(begin_, t_); }
+  /// Precondition: covers(t).
+  ExtendedSample sample(const T& t);
+
+ private:
+  using Polynomial = taylor::ScaledPolynomialOf<T>;
+  struct Crossing {
+    T x = T(1);                          // fraction of the step
+    bool found = false;
+    std::vector<std::size_t> switches;
+    std::optional<std::size_t> event;
+  };
+
+  std::optional<Outcome> expand(const T& bound);
+  std::optional<Outcome> project();
+  T constraint_error() const;
+  T speed(std::size_t i) const;
+  Outcome failure(KernelStatus status) const;
+  void set_sides(Workspace<T>& work) const;
+  void choose_first_sides();
+  T judged_length(const T& bound) const;
+  std::optional<Outcome> decide_sides(const T& bound);
+  std::int8_t event_side(std::size_t index, const Polynomial& polynomial) const;
+  static bool is_later(const T& x, const Crossing& than) { return x > than.x * (1 + 4 * epsilon<T>()); }
+  static void note(Crossing& crossing, const T& x);
+  Crossing first_crossing(const T& h) const;
+  void leave(const Crossing& crossing, const T& h);
+  Outcome advance(const T& bound, const T& h, bool reaches);
+  void keep_polynomial();
+  void state_after(const T& tau, std::vector<T>& q, std::vector<T>& v) const;
+
+  Kernel kernel_;
+  ExtendedOptions options_;
+  double log2_tolerance_;
+  StepControl control_;
+  Workspace<T> work_, probe_;
+  std::size_t n_;
+  T t_, begin_;
+  std::vector<T> q_, v_, q_begin_, v_begin_;
+  std::vector<T> polynomial_;            // [order + 2][n] of the last step
+  double length_ = std::numeric_limits<double>::quiet_NaN();  // log₂ of the last length that the control chose
+  double restraint_ = 0;                 // log₂ of what the lengths are multiplied by
+  bool first_ = true;
+  std::size_t steps_ = 0, switches_ = 0;
+  std::vector<taylor::Watched> switch_state_, event_state_;
+  int stuck_ = 0;                        // crossings in a row that did not move time
+};
+
+}  // namespace maupertuis::extended

@@ -1,0 +1,292 @@
+#pragma once
+#include "integrator/extended/stepper.hpp"
+#include "integrator/taylor/switches_code.hpp"
+#include "kernel/extended/workspace_code.hpp"
+
+namespace maupertuis::extended {
+
+template <class T>
+Stepper<T>::Stepper(const Kernel& kernel, std::span<const T> parameters, const ExtendedOptions& options, double log2_tolerance)
+    : kernel_(kernel), options_(options), log2_tolerance_(log2_tolerance), control_(step_control(log2_tolerance, options.order)),
+      work_(kernel, control_.order), probe_(kernel, 1), n_(kernel.freedoms()), switch_state_(kernel.switches().size()),
+      event_state_(kernel.events()) {
+  work_.set_parameters(parameters);
+  probe_.set_parameters(parameters);
+  polynomial_.resize(static_cast<std::size_t>(control_.order + 2) * n_);
+}
+
+template <class T>
+void Stepper<T>::start(const T& t, std::vector<T> q, std::vector<T> v) {
+  t_ = begin_ = t;
+  q_ = q_begin_ = std::move(q);
+  v_ = v_begin_ = std::move(v);
+  std::fill(polynomial_.begin(), polynomial_.end(), T(0));
+  std::copy(q_.begin(), q_.end(), polynomial_.begin());
+  length_ = std::numeric_limits<double>::quiet_NaN();
+  restraint_ = 0;
+  first_ = true;
+  steps_ = switches_ = 0;
+  stuck_ = 0;
+  std::fill(switch_state_.begin(), switch_state_.end(), taylor::Watched{});
+  std::fill(event_state_.begin(), event_state_.end(), taylor::Watched{});
+  choose_first_sides();
+}
+
+template <class T>
+typename Stepper<T>::Outcome Stepper<T>::failure(KernelStatus status) const {
+  if (status == KernelStatus::SingularMass)
+    return {StepEnding::SingularMass, "The mass matrix is singular here: the equations do not determine the acceleration of " +
+                                          kernel_.coordinate_name(work_.singular_coordinate()) + "."};
+  if (status == KernelStatus::Contradiction)
+    return {StepEnding::SingularConstraints, "The constraints are singular here: what " +
+                                                 kernel_.constraint_name(work_.contradicting_constraint()) +
+                                                 " asks of the accelerations, the others exclude."};
+  return {StepEnding::Overflow, "A force or an acceleration is infinite or undefined here."};
+}
+
+/// |q̇| + h |q̈| of a coordinate: its speed in the course of a step.
+template <class T>
+T Stepper<T>::speed(std::size_t i) const {
+  T out = abs(work_.coordinate(1)[i]);
+  if (std::isfinite(length_)) out += exp2_of<T>(length_) * abs(work_.acceleration(i));
+  return out;
+}
+
+/// The largest of φ and of dφ/dt or ψ, each by the sizes of its terms and by how far they change in a step.
+template <class T>
+T Stepper<T>::constraint_error() const {
+  T largest = T(0);
+  const auto relative = [&](const T& value, const T& scale) {
+    if (value != 0) largest = std::max(largest, T(abs(value) / scale));
+  };
+  const T h = std::isfinite(length_) ? exp2_of<T>(length_) : T(0);
+  for (std::size_t j = 0; j < kernel_.constraints(); ++j) {
+    T rate = T(0), place = work_.constraint_scale(j);
+    for (std::size_t i = 0; i < n_; ++i) {
+      const T row = abs(work_.constraint_matrix(j, i));
+      rate += row * speed(i);
+      place += row * abs(work_.coordinate(0)[i]);
+    }
+    relative(work_.constraint_value(j), place + h * rate);
+    // A rate that moves φ by less than its rounding within the step does not count.
+    const T unseen = h > 0 ? T(64 * epsilon<T>() * place / h) : T(0);
+    if (abs(work_.constraint_rate(j)) > unseen) relative(work_.constraint_rate(j), work_.constraint_rate_scale(j) + rate);
+  }
+  return largest;
+}
+
+/// Brings q and q̇ back to the constraints, by the factors of the expansion; the motion is expanded anew while that helps.
+template <class T>
+std::optional<typename Stepper<T>::Outcome> Stepper<T>::project() {
+  const T rounding = 64 * epsilon<T>(), allowed = epsilon_to<T>(0.45);
+  T error = constraint_error();
+  // A rotation has no radius of convergence that would bound its steps; what a step leaves in the constraints does.
+  if (!first_ && error > rounding + exp2_of<T>(log2_tolerance_)) restraint_ = std::log2(0.45);
+  std::vector<T> dq(n_), dv(n_);
+  for (int turn = 0; turn < 20; ++turn) {
+    if (!first_ && error > allowed) break;
+    work_.corrections(dq, dv);
+    for (std::size_t i = 0; i < n_; ++i) q_[i] += dq[i], v_[i] += dv[i];
+    if (error <= rounding) return std::nullopt;
+    if (const KernelStatus status = work_.expand(t_, q_, v_); status != KernelStatus::Ok) return failure(status);
+    const T now = constraint_error();
+    if (turn > 2 && now > error / 2) break;
+    error = now;
+  }
+  if (error <= epsilon_to<T>(0.8)) return std::nullopt;
+  return Outcome{StepEnding::SingularConstraints,
+                 "The constraints are singular near here: they do not determine where the motion goes."};
+}
+
+template <class T>
+std::optional<typename Stepper<T>::Outcome> Stepper<T>::expand(const T& bound) {
+  set_sides(work_);
+  if (const KernelStatus status = work_.expand(t_, q_, v_); status != KernelStatus::Ok) return failure(status);
+  if (kernel_.constraints() > 0)
+    if (const auto stopped = project()) return stopped;
+  return switch_state_.empty() ? std::nullopt : decide_sides(bound);
+}
+
+// ------------------------------------------------------------------------------------------------- switches and events
+
+template <class T>
+void Stepper<T>::set_sides(Workspace<T>& work) const {
+  std::vector<std::int8_t> sides;
+  for (const taylor::Watched& s : switch_state_) sides.push_back(s.side);
+  work.set_branches(sides);
+}
+
+/// Signs of the switch functions at the start, zeros left open: enough for the values there.
+template <class T>
+void Stepper<T>::choose_first_sides() {
+  set_sides(work_);
+  if (!switch_state_.empty() && work_.evaluate(t_, q_, v_) == KernelStatus::Ok)
+    for (std::size_t i = 0; i < switch_state_.size(); ++i) switch_state_[i].side = taylor::watching::sign(work_.switch_function(i, 0));
+  set_sides(probe_);
+}
+
+/// The length over which the motion in the workspace is judged, with the sign of the direction of time.
+template <class T>
+T Stepper<T>::judged_length(const T& bound) const {
+  const T left = bound - t_;
+  const double chosen = StepSize<T>(work_, n_, control_).log2_length(length_);
+  if (chosen >= log2_size(left)) return left;
+  return left > 0 ? exp2_of<T>(chosen) : T(-exp2_of<T>(chosen));
+}
+
+template <class T>
+std::optional<typename Stepper<T>::Outcome> Stepper<T>::decide_sides(const T& bound) {
+  using Chooser = taylor::SideChooserOf<Workspace<T>>;
+  Chooser chooser(work_, switch_state_, [&](const std::vector<std::int8_t>&) -> std::optional<T> {
+    set_sides(work_);
+    if (work_.expand(t_, q_, v_) != KernelStatus::Ok) return std::nullopt;
+    return judged_length(bound);
+  });
+  switch (chooser.decide(judged_length(bound))) {
+    case Chooser::Outcome::Decided: return std::nullopt;
+    case Chooser::Outcome::Failed: return failure(KernelStatus::NonFinite);
+    case Chooser::Outcome::Sliding: break;
+  }
+  return Outcome{StepEnding::Sliding, "Both sides of a switch push the motion back to it, so that it would slide along the switch."};
+}
+
+/// The sign of an event function, or at a zero the sign that it takes from there.
+template <class T>
+std::int8_t Stepper<T>::event_side(std::size_t index, const Polynomial& polynomial) const {
+  const bool at_zero = event_state_[index].at_zero || polynomial.begins_at_zero();
+  return at_zero ? polynomial.direction() : taylor::watching::sign(polynomial.p[0]);
+}
+
+/// Roots that rounding does not tell apart are one crossing.
+template <class T>
+void Stepper<T>::note(Crossing& crossing, const T& x) {
+  if (x < crossing.x * (1 - 4 * epsilon<T>())) {
+    crossing.switches.clear();
+    crossing.event.reset();
+  }
+  crossing.x = std::min(crossing.x, x);
+  crossing.found = true;
+}
+
+template <class T>
+typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) const {
+  Crossing first;
+  for (std::size_t i = 0; i < switch_state_.size(); ++i) {
+    const auto x = taylor::crossing(taylor::switch_polynomial(work_, i, h), switch_state_[i]);
+    if (!x || is_later(*x, first)) continue;
+    note(first, *x);
+    first.switches.push_back(i);
+  }
+  for (std::size_t i = 0; i < event_state_.size(); ++i) {
+    const Polynomial polynomial = taylor::event_polynomial(work_, i, h);
+    const std::int8_t before = event_state_[i].side, now = event_side(i, polynomial);
+    // A step may have ended just past a root, within rounding: then the root is here.
+    const bool passed = before != 0 && now == -before;
+    const auto x = passed ? std::optional<T>(T(0)) : taylor::crossing(polynomial, {now, event_state_[i].at_zero});
+    if (!x || is_later(*x, first)) continue;
+    note(first, *x);
+    if (!first.event) first.event = i;
+  }
+  return first;
+}
+
+/// What the step leaves behind in the watched functions: those that it ends at are at a zero.
+template <class T>
+void Stepper<T>::leave(const Crossing& crossing, const T& h) {
+  for (std::size_t i = 0; i < event_state_.size(); ++i) {
+    const Polynomial polynomial = taylor::event_polynomial(work_, i, h);
+    const std::int8_t side = event_side(i, polynomial);
+    event_state_[i].at_zero = crossing.event == i;
+    event_state_[i].side = event_state_[i].at_zero ? std::int8_t{0} : side;
+  }
+  for (taylor::Watched& s : switch_state_) s.at_zero = false;
+  for (const std::size_t i : crossing.switches) {
+    switch_state_[i].at_zero = true;
+    switch_state_[i].side = static_cast<std::int8_t>(-switch_state_[i].side);
+  }
+  switches_ += crossing.switches.size();
+}
+
+template <class T>
+typename Stepper<T>::Outcome Stepper<T>::advance(const T& bound, const T& h, bool reaches) {
+  const Crossing crossing = first_crossing(h);
+  if (crossing.found && stuck_ >= 100)
+    return {StepEnding::Sliding, "Switches follow each other in no time: the motion has come to slide along a switch."};
+  const T tau = h * crossing.x;
+  state_after(tau, q_, v_);
+  t_ = reaches && !crossing.found ? bound : T(begin_ + tau);
+  stuck_ = crossing.found && t_ == begin_ ? stuck_ + 1 : 0;
+  leave(crossing, h);
+  first_ = false;
+  ++steps_;
+  return {StepEnding::None, {}, crossing.event.has_value()};
+}
+
+template <class T>
+void Stepper<T>::keep_polynomial() {
+  begin_ = t_;
+  set_sides(probe_);
+  q_begin_ = q_;
+  v_begin_ = v_;
+  for (int k = 0; k <= control_.order + 1; ++k)
+    std::copy_n(work_.coordinate(k), n_, polynomial_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(k) * n_));
+}
+
+/// Horner's rule for the increments alone: they are small against q and q̇.
+template <class T>
+void Stepper<T>::state_after(const T& tau, std::vector<T>& q, std::vector<T>& v) const {
+  q.resize(n_), v.resize(n_);
+  for (std::size_t i = 0; i < n_; ++i) {
+    T dq = T(0), dv = T(0);
+    for (int k = control_.order + 1; k >= 2; --k) {
+      const T& c = polynomial_[static_cast<std::size_t>(k) * n_ + i];
+      dq = (dq + c) * tau;
+      dv = dv * tau + k * c;
+    }
+    q[i] = q_begin_[i] + (dq + v_begin_[i]) * tau;
+    v[i] = v_begin_[i] + dv * tau;
+  }
+}
+
+template <class T>
+typename Stepper<T>::Outcome Stepper<T>::step(const T& bound) {
+  if (t_ == bound) return {};
+  if (options_.interrupt && options_.interrupt->load(std::memory_order_relaxed)) return {StepEnding::Interrupted, "The run was interrupted."};
+  if (steps_ >= options_.maximum_steps) return {StepEnding::TooManySteps, "The run used up its steps."};
+  if (const auto stopped = expand(bound)) return *stopped;
+  const T left = bound - t_;
+  double chosen = restraint_ + StepSize<T>(work_, n_, control_).log2_length(length_);
+  if (kernel_.constraints() > 0)
+    chosen = within_multipliers(work_, n_, kernel_.constraints(), control_.order, std::min(chosen, log2_size(left)));
+  length_ = chosen;
+  if (!(chosen > 1 + log2_size(epsilon<T>()) + log2_size(t_)) || chosen < -100'000)
+    return {StepEnding::StepUnderflow, "The steps shrink below the resolution of time: a force grows without bound, as in a collision."};
+  const bool reaches = chosen >= log2_size(left);
+  const T h = reaches ? left : left > 0 ? exp2_of<T>(chosen) : T(-exp2_of<T>(chosen));
+  keep_polynomial();
+  return advance(bound, h, reaches);
+}
+
+/// All digits, and the few that tell it from its neighbours.
+template <class T>
+std::string text_of(const T& x) {
+  return is_finite(x) ? x.str(std::numeric_limits<T>::max_digits10, std::ios_base::scientific) : std::string();
+}
+
+template <class T>
+ExtendedSample Stepper<T>::sample(const T& t) {
+  std::vector<T> q, v;
+  state_after(t - begin_, q, v);
+  if (t == t_) q = q_, v = v_;
+  const bool ok = probe_.evaluate(t, q, v) == KernelStatus::Ok;
+  ExtendedSample out;
+  out.reached = true;
+  out.t = text_of(t);
+  for (std::size_t i = 0; i < n_; ++i) out.q.push_back(text_of(q[i])), out.v.push_back(text_of(v[i]));
+  for (std::size_t i = 0; i < kernel_.observables(); ++i) out.observables.push_back(ok ? text_of(probe_.observable(i)) : std::string());
+  for (std::size_t i = 0; i < kernel_.constraints(); ++i)
+    out.multipliers.push_back(ok && probe_.multiplier_is_determined(i) ? text_of(probe_.multiplier(i)) : std::string());
+  return out;
+}
+
+}  // namespace maupertuis::extended

@@ -1,0 +1,212 @@
+#pragma once
+#include "integrator/taylor/crossing_code.hpp"
+#include "integrator/taylor/switches.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace maupertuis::taylor {
+namespace watching {
+
+template <class T>
+std::int8_t sign(const T& x) { return static_cast<std::int8_t>((x > 0) - (x < 0)); }
+
+/// Roundings that a coefficient has gone through are some tens; its tolerance is counted in those.
+template <class T>
+T unit() { return 16 * std::numeric_limits<T>::epsilon(); }
+
+template <class T, class Coefficient>
+ScaledPolynomialOf<T> scaled(int degree, const T& h, const T& scale, Coefficient&& coefficient) {
+  using std::abs;
+  ScaledPolynomialOf<T> result;
+  T power = T(1);
+  result.scale = result.reach = scale;
+  for (int k = 0; k <= degree; ++k, power *= h) {
+    result.p.push_back(coefficient(k) * power);
+    if (k > 0) result.reach += abs(result.p.back());
+  }
+  return result;
+}
+
+}  // namespace watching
+
+template <class T>
+std::size_t ScaledPolynomialOf<T>::leading() const {
+  using std::abs;
+  for (std::size_t k = 1; k < p.size(); ++k)
+    if (abs(p[k]) > watching::unit<T>() * reach) return k;
+  return 0;
+}
+
+template <class T>
+bool ScaledPolynomialOf<T>::begins_at_zero() const {
+  using std::abs;
+  return abs(p[0]) <= watching::unit<T>() * scale;
+}
+
+template <class T>
+std::int8_t ScaledPolynomialOf<T>::direction() const {
+  const std::size_t k = leading();
+  return k == 0 ? std::int8_t{0} : watching::sign(p[k]);
+}
+
+template <class Work, class T>
+ScaledPolynomialOf<T> switch_polynomial(const Work& work, std::size_t index, const std::type_identity_t<T>& h) {
+  return watching::scaled<T>(work.order() + 1, h, work.switch_scale(index), [&](int k) { return work.switch_function(index, k); });
+}
+
+template <class Work, class T>
+ScaledPolynomialOf<T> event_polynomial(const Work& work, std::size_t index, const std::type_identity_t<T>& h) {
+  return watching::scaled<T>(work.order() + 1, h, work.event_scale(index), [&](int k) { return work.event(index, k); });
+}
+
+namespace watching {
+
+/// Newton on the whole polynomial: a zero that was divided out is zero to rounding only, and what rounding left there
+/// must not be counted twice.
+template <class T>
+T polished(std::span<const T> p, T x) {
+  using std::abs;
+  for (int turn = 0; turn < 2; ++turn) {
+    T value = T(0), slope = T(0);
+    for (std::size_t k = p.size(); k-- > 0;) {
+      slope = slope * x + value;
+      value = value * x + p[k];
+    }
+    const T better = x - value / slope;
+    if (!(abs(better - x) < T(1e-10) * x)) break;
+    x = better;
+  }
+  return x;
+}
+
+}  // namespace watching
+
+template <class T>
+std::optional<T> crossing(const ScaledPolynomialOf<T>& polynomial, const Watched& watched) {
+  const T unit = watching::unit<T>();
+  if (watched.side == 0) return std::nullopt;
+  const std::span<const T> p = polynomial.p;
+  if (!watched.at_zero && !polynomial.begins_at_zero()) return first_crossing(p, watched.side, unit, polynomial.scale);
+  const std::size_t k = polynomial.leading();
+  if (k == 0) return std::nullopt;
+  const auto x = first_crossing(p.subspan(k), watched.side, unit, T(0));
+  return x ? std::optional<T>(std::min(T(1), watching::polished(p, *x))) : x;
+}
+
+template <class Work>
+std::vector<std::int8_t> SideChooserOf<Work>::sides() const {
+  std::vector<std::int8_t> result;
+  for (const Watched& w : watched_) result.push_back(w.side);
+  return result;
+}
+
+template <class Work>
+void SideChooserOf<Work>::adopt(const std::vector<std::int8_t>& sides) {
+  for (std::size_t i = 0; i < sides.size(); ++i) watched_[i].side = sides[i];
+}
+
+/// Finds the functions at a zero; the others take their sign. True if that changed a side.
+template <class Work>
+bool SideChooserOf<Work>::collect(const T& h) {
+  bool changed = false;
+  at_zero_.clear();
+  for (std::size_t i = 0; i < watched_.size(); ++i) {
+    const ScaledPolynomialOf<T> polynomial = switch_polynomial(work_, i, h);
+    if (watched_[i].at_zero || polynomial.begins_at_zero()) {
+      at_zero_.push_back(i);
+      watched_[i].at_zero = true;
+    } else if (const std::int8_t side = watching::sign(polynomial.p[0]); side != watched_[i].side) {
+      watched_[i].side = side;
+      changed = true;
+    }
+  }
+  return changed;
+}
+
+/// Whether every function at a zero goes to the side that was assumed.
+template <class Work>
+bool SideChooserOf<Work>::confirms(const T& h) const {
+  for (const std::size_t i : at_zero_)
+    if (switch_polynomial(work_, i, h).direction() != watched_[i].side) return false;
+  return true;
+}
+
+template <class Work>
+std::optional<bool> SideChooserOf<Work>::tries(const std::vector<std::int8_t>& sides) {
+  adopt(sides);
+  const auto h = expand_(sides);
+  if (!h) return std::nullopt;
+  return confirms(*h);
+}
+
+template <class Work>
+typename SideChooserOf<Work>::Outcome SideChooserOf<Work>::decide(T h) {
+  if (collect(h)) {
+    const auto again = expand_(sides());
+    if (!again) return Outcome::Failed;
+    h = *again;
+  }
+  if (at_zero_.empty()) return Outcome::Decided;
+  const bool known = watched_[at_zero_[0]].side != 0;
+  if ((known || at_zero_.size() > 1) && confirms(h)) return Outcome::Decided;
+  sliding_ = at_zero_[0];
+  return at_zero_.size() == 1 ? alone(at_zero_[0]) : together();
+}
+
+/// One function at a zero. Both sides confirmed: the motion is not unique, and stays where it is if it can (at rest on
+/// top of a roof). None confirmed: it slides, unless the function vanishes whatever the side.
+template <class Work>
+typename SideChooserOf<Work>::Outcome SideChooserOf<Work>::alone(std::size_t index) {
+  auto trial = sides();
+  const bool was_zero = trial[index] == 0;
+  const std::int8_t first = was_zero ? std::int8_t{1} : trial[index];
+  std::optional<bool> confirmed[2];
+  bool vanishes = true;
+  for (int turn = 0; turn < 2; ++turn) {
+    trial[index] = static_cast<std::int8_t>(turn == 0 ? first : -first);
+    adopt(trial);
+    const auto h = expand_(trial);
+    if (!h) return Outcome::Failed;
+    confirmed[turn] = confirms(*h);
+    vanishes = vanishes && switch_polynomial(work_, index, *h).direction() == 0;
+    if (*confirmed[turn] && !was_zero) return Outcome::Decided;
+  }
+  const bool both = *confirmed[0] && *confirmed[1];
+  if (vanishes || both) {
+    trial[index] = 0;
+    const auto stays = tries(trial);
+    if (!stays) return Outcome::Failed;
+    if (*stays) return Outcome::Decided;
+  }
+  if (!*confirmed[0] && !*confirmed[1]) return Outcome::Sliding;
+  trial[index] = static_cast<std::int8_t>(*confirmed[0] ? first : -first);
+  const auto good = tries(trial);
+  return good ? Outcome::Decided : Outcome::Failed;
+}
+
+/// Several functions at a zero: all choices of sides in order, the present one first, zeros last.
+template <class Work>
+typename SideChooserOf<Work>::Outcome SideChooserOf<Work>::together() {
+  const auto start = sides();
+  constexpr std::size_t most = 6;  // 3^6 trials
+  const std::size_t count = std::min(at_zero_.size(), most);
+  std::size_t trials = 1;
+  for (std::size_t i = 0; i < count; ++i) trials *= 3;
+  for (std::size_t number = 0; number < trials; ++number) {
+    auto trial = start;
+    std::size_t digits = number;
+    for (std::size_t i = 0; i < count; ++i, digits /= 3) {
+      std::int8_t& side = trial[at_zero_[i]];
+      const std::int8_t first = side == 0 ? std::int8_t{1} : side;
+      side = digits % 3 == 0 ? first : digits % 3 == 1 ? static_cast<std::int8_t>(-first) : std::int8_t{0};
+    }
+    const auto confirmed = tries(trial);
+    if (!confirmed) return Outcome::Failed;
+    if (*confirmed) return Outcome::Decided;
+  }
+  return Outcome::Sliding;
+}
+
+}  // namespace maupertuis::taylor

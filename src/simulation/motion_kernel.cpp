@@ -1,0 +1,25 @@
+#include "simulation/motion_kernel.hpp"
+
+#include <maupertuis/constraint_manifold.hpp>
+
+namespace maupertuis {
+
+Kernel motion_kernel(const EquationsOfMotion& equations, const WantedFunctions& wanted) {
+  const MechanicalSystem& system = *equations.system;
+  KernelSource source;
+  for (const Coordinate& c : system.coordinates) source.coordinates.push_back(c.q);
+  for (const Parameter& p : system.parameters) source.parameters.push_back(p.symbol);
+  source.residual = in_terms_of_motion(system, equations.balance());
+  source.multipliers = equations.multipliers;
+  for (std::size_t i = 0; i < system.constraints.size(); ++i) {
+    const Constraint& c = system.constraints[i];
+    const Expr value = in_terms_of_motion(system, {&c.value, 1}).front();
+    source.constraints.push_back({value, c.level == Constraint::Level::Position ? 0 : 1, system.constraint_label(i)});
+  }
+  source.observables = in_terms_of_motion(system, wanted.observables);
+  source.events = in_terms_of_motion(system, wanted.events);
+  source.integrands = in_terms_of_motion(system, wanted.integrands);
+  return build_kernel(source);
+}
+
+}  // namespace maupertuis
