@@ -51,7 +51,7 @@ int index_of_width(int width) {
 class InterpretedLanes final : public LaneExpansion {
  public:
   InterpretedLanes(const Kernel& kernel, int width, lanes::Expander expander)
-      : kernel_(kernel), plan_(kernel.program(), width), view_(plan_.view()), width_(width), expander_(expander) {}
+      : kernel_(kernel), plan_(kernel.program()), view_(plan_.view()), width_(width), expander_(expander) {}
 
   int width() const override { return width_; }
   std::string_view backend() const override { return "interpreter"; }

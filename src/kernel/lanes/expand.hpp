@@ -14,7 +14,7 @@ class Machine {
   using V = Vec<W>;
 
   Machine(const PlanView& plan, double* rows, const double* constants, double* scratch)
-      : p_(plan), n_(plan.unknowns), step_(static_cast<std::ptrdiff_t>(plan.row)), rows_(rows), constants_(constants) {
+      : p_(plan), n_(plan.unknowns), step_(static_cast<std::ptrdiff_t>(plan.stride) * W), rows_(rows), constants_(constants) {
     const auto take = [&scratch](std::size_t count) {
       double* const from = scratch;
       scratch += count * W;
@@ -47,84 +47,82 @@ class Machine {
   }
 
  private:
-  // Places are in doubles: from the row of the present order, from row 0, among the constants.
-  double* at(std::uint32_t place) const { return row_ + place; }
-  double* row(int order) const { return rows_ + order * step_; }
-  V value(std::uint32_t place) const { return V::load(row_ + place); }
-  V initial(std::uint32_t place) const { return V::load(rows_ + place); }
-  V constant(std::uint32_t place) const { return V::load(constants_ + place); }
-  V tangent(std::uint32_t place) const { return V::load(tangents_ + place); }
+  double* at(Slot slot) const { return row_ + static_cast<std::size_t>(slot) * W; }
+  double* at(int order, Slot slot) const { return rows_ + order * step_ + static_cast<std::size_t>(slot) * W; }
+  V value(Slot slot) const { return V::load(at(slot)); }
+  V initial(Slot slot) const { return V::load(rows_ + static_cast<std::size_t>(slot) * W); }
+  V constant(ConstantId id) const { return V::load(constants_ + static_cast<std::size_t>(id) * W); }
+  V tangent(std::uint32_t index) const { return V::load(tangents_ + static_cast<std::size_t>(index) * W); }
   double* entry(std::size_t i, std::size_t j) const { return matrix_ + (i * n_ + j) * W; }
-  Series<W> series(std::uint32_t place) const { return {rows_ + place, step_}; }
+  Series<W> series(Slot slot) const { return {rows_ + static_cast<std::size_t>(slot) * W, step_}; }
 
   void clear_unknowns(int stage) {
-    double* const q = row(stage + 2);
-    for (std::size_t i = 0; i < n_; ++i) V::all(0).store(q + i * W);
+    for (std::size_t i = 0; i < n_; ++i) V::all(0).store(at(stage + 2, static_cast<Slot>(i)));
   }
 
   // ------------------------------------------------------------------------------------------------ instructions
 
   template <class F>
   void each(const Run& run, F&& f) {
-    const PlacedInstruction* const last = p_.instructions + run.last;
-    for (const PlacedInstruction* i = p_.instructions + run.first; i != last; ++i) f(*i);
+    const Instruction* const last = p_.instructions + run.last;
+    for (const Instruction* i = p_.instructions + run.first; i != last; ++i) f(*i);
   }
 
   void run_at(const Run& run, int order) {
     k_ = order;
-    row_ = row(order);
+    row_ = rows_ + order * step_;
     switch (run.op) {
-      case Op::Linear: return each(run, [this](const PlacedInstruction& i) { linear_part(i).store(at(i.out)); });
-      case Op::Products: return each(run, [this](const PlacedInstruction& i) { (linear_part(i) + products(i)).store(at(i.out)); });
-      case Op::Square: return each(run, [this](const PlacedInstruction& i) { square(series(i.a), k_).store(at(i.out)); });
-      case Op::Quotient: return each(run, [this](const PlacedInstruction& i) { quotient_of(i).store(at(i.out)); });
-      case Op::SquareRoot: return each(run, [this](const PlacedInstruction& i) { square_root_of(i).store(at(i.out)); });
-      case Op::Power: return each(run, [this](const PlacedInstruction& i) { power_of(i).store(at(i.out)); });
-      case Op::SinCos: return each(run, [this](const PlacedInstruction& i) { sincos(i); });
-      case Op::SinhCosh: return each(run, [this](const PlacedInstruction& i) { sinhcosh(i); });
-      case Op::Function: return each(run, [this](const PlacedInstruction& i) { function(i).store(at(i.out)); });
-      case Op::Derivative: return each(run, [this](const PlacedInstruction& i) { derivative(i).store(at(i.out)); });
-      case Op::Select: return each(run, [this](const PlacedInstruction& i) { chosen(i).store(at(i.out)); });
+      case Op::Linear: return each(run, [this](const Instruction& i) { linear_part(i).store(at(i.out)); });
+      case Op::Products: return each(run, [this](const Instruction& i) { (linear_part(i) + products(i)).store(at(i.out)); });
+      case Op::Square: return each(run, [this](const Instruction& i) { square(series(i.a), k_).store(at(i.out)); });
+      case Op::Quotient: return each(run, [this](const Instruction& i) { quotient_of(i).store(at(i.out)); });
+      case Op::SquareRoot: return each(run, [this](const Instruction& i) { square_root_of(i).store(at(i.out)); });
+      case Op::Power: return each(run, [this](const Instruction& i) { power_of(i).store(at(i.out)); });
+      case Op::SinCos: return each(run, [this](const Instruction& i) { sincos(i); });
+      case Op::SinhCosh: return each(run, [this](const Instruction& i) { sinhcosh(i); });
+      case Op::Function: return each(run, [this](const Instruction& i) { function(i).store(at(i.out)); });
+      case Op::Derivative: return each(run, [this](const Instruction& i) { derivative(i).store(at(i.out)); });
+      case Op::Select: return each(run, [this](const Instruction& i) { chosen(i).store(at(i.out)); });
       default: return;  // leaves
     }
   }
 
-  V linear_part(const PlacedInstruction& i) const {
+  V linear_part(const Instruction& i) const {
     const double factors[3] = {1.0, k_ + 1.0, (k_ + 1.0) * (k_ + 2.0)};
     V sum = V::all(0);
     for (std::uint32_t t = i.first_term; t < i.first_product; ++t) {
-      const PlacedTerm& term = p_.terms[t];
-      const V a = term.shift == 0 ? value(term.a) : value(term.a) * factors[term.shift];
-      sum = fma(constant(term.coefficient), a, sum);
+      const Term& term = p_.terms[t];
+      const V a = V::load(at(term.a) + term.shift * step_);
+      sum = fma(constant(term.coefficient), a * factors[term.shift], sum);
     }
     return sum;
   }
 
-  V products(const PlacedInstruction& i) const {
+  V products(const Instruction& i) const {
     V sum = V::all(0);
     for (std::uint32_t t = i.first_product; t < i.last_term; ++t) {
-      const PlacedTerm& term = p_.terms[t];
+      const Term& term = p_.terms[t];
       sum = fma(constant(term.coefficient), product(series(term.a), series(term.b), k_), sum);
     }
     return sum;
   }
 
-  V quotient_of(const PlacedInstruction& i) const {
+  V quotient_of(const Instruction& i) const {
     return k_ == 0 ? value(i.a) / value(i.b) : quotient(value(i.a), series(i.b), series(i.out), k_);
   }
 
-  V square_root_of(const PlacedInstruction& i) const {
+  V square_root_of(const Instruction& i) const {
     if (k_ > 0) return square_root(series(i.a), series(i.out), k_);
-    return by_lane(i, [](const PlacedInstruction&, double x, double) { return __builtin_sqrt(x); });
+    return by_lane(i, [](const Instruction&, double x, double) { return __builtin_sqrt(x); });
   }
 
-  V power_of(const PlacedInstruction& i) const {
+  V power_of(const Instruction& i) const {
     const V exponent = constant(i.constant);
     if (k_ > 0) return power(series(i.a), series(i.out), exponent, k_);
     return by_lane(value(i.a), exponent, [](double x, double y) { return power_function(x, y); });
   }
 
-  void sincos(const PlacedInstruction& i) {
+  void sincos(const Instruction& i) {
     if (k_ == 0) {
       const SineCosine<W> result(value(i.a));
       result.sine.store(at(i.out));
@@ -137,11 +135,11 @@ class Machine {
     (-cosine).store(at(i.second));
   }
 
-  void sinhcosh(const PlacedInstruction& i) {
+  void sinhcosh(const Instruction& i) {
     V sinh, cosh;
     if (k_ == 0) {
-      sinh = by_lane(i, [](const PlacedInstruction&, double x, double) { return elementary_function(Kind::Sinh, x, 0); });
-      cosh = by_lane(i, [](const PlacedInstruction&, double x, double) { return elementary_function(Kind::Cosh, x, 0); });
+      sinh = by_lane(i, [](const Instruction&, double x, double) { return elementary_function(Kind::Sinh, x, 0); });
+      cosh = by_lane(i, [](const Instruction&, double x, double) { return elementary_function(Kind::Cosh, x, 0); });
     } else {
       integral_pair(series(i.out), series(i.second), series(i.a), k_, sinh, cosh);
     }
@@ -149,19 +147,19 @@ class Machine {
     cosh.store(at(i.second));
   }
 
-  V function(const PlacedInstruction& i) const {
-    if (k_ == 0) return by_lane(i, [](const PlacedInstruction& f, double x, double y) { return elementary_function(f.function, x, y); });
+  V function(const Instruction& i) const {
+    if (k_ == 0) return by_lane(i, [](const Instruction& f, double x, double y) { return elementary_function(f.function, x, y); });
     V sum = V::all(0);
     for (std::uint32_t t = i.first_term; t < i.last_term; ++t) {
-      const PlacedTerm& term = p_.terms[t];
+      const Term& term = p_.terms[t];
       sum = fma(constant(term.coefficient), integral(series(term.a), series(term.b), k_), sum);
     }
     return sum;
   }
 
-  V derivative(const PlacedInstruction& i) const { return V::load(at(i.a) + step_) * (k_ + 1.0); }
+  V derivative(const Instruction& i) const { return V::load(at(i.a) + step_) * (k_ + 1.0); }
 
-  V chosen(const PlacedInstruction& i) const {
+  V chosen(const Instruction& i) const {
     std::uint32_t t = i.last_term - 1;
     V result = value(p_.terms[t].a);
     while (t-- > i.first_term)
@@ -178,8 +176,8 @@ class Machine {
     return V::load(first);
   }
   template <class F>
-  V by_lane(const PlacedInstruction& i, F&& f) const {
-    const V x = value(i.a), y = i.two_arguments ? value(i.b) : V::all(0);
+  V by_lane(const Instruction& i, F&& f) const {
+    const V x = value(i.a), y = i.b == no_slot ? V::all(0) : value(i.b);
     return by_lane(x, y, [&](double a, double b) { return f(i, a, b); });
   }
 
@@ -217,11 +215,11 @@ class Machine {
       const Combination& c = p_.combinations[i];
       V sum = V::all(0);
       for (std::uint32_t k = c.first; k < c.last; ++k) {
-        const V factor = V::load(factors_ + p_.pairs[k].factor);
+        const V factor = V::load(factors_ + static_cast<std::size_t>(p_.pairs[k].factor) * W);
         const V operand = tangent(p_.pairs[k].tangent);
         sum = c.chooses ? select(factor == V::all(0), sum, operand) : fma(factor, operand, sum);
       }
-      sum.store(tangents_ + c.out);
+      sum.store(tangents_ + static_cast<std::size_t>(c.out) * W);
     }
   }
 
@@ -279,9 +277,8 @@ class Machine {
   /// q̈_k = −M₀⁻¹ R_k. Returns a sum that is finite where they are.
   V solve(int stage) {
     double* const x = accelerations_;
-    const double* const residual = row(stage);
     for (std::size_t i = 0; i < n_; ++i) {
-      V sum = -V::load(residual + p_.residual[i]);
+      V sum = -V::load(at(stage, p_.residual[i]));
       for (std::size_t k = 0; k < i; ++k) sum = fma(-V::load(entry(i, k)), V::load(x + k * W), sum);
       sum.store(x + i * W);
     }
@@ -298,7 +295,7 @@ class Machine {
   /// Coefficient k + 2 − ℓ of a stored slot of lag ℓ follows q̈_k, divided by (k + 1)(k + 2), k + 1 or 1.
   void correct(int stage) {
     const Divisor by_both((stage + 1.0) * (stage + 2.0)), by_one(stage + 1.0);
-    double* const position = row(stage + 2);
+    double* const position = at(stage + 2, 0);
     for (std::size_t i = 0; i < n_; ++i) {
       const V a = V::load(accelerations_ + i * W);
       (a / by_both).store(position + i * W);
@@ -310,10 +307,16 @@ class Machine {
   }
 
   void correct_lag(int lag, std::size_t first, int order, const double* direction) {
-    double* const to = row(order);
-    const Correction* const last = p_.corrections + p_.corrections_end[lag];
-    for (const Correction* c = p_.corrections + first; c != last; ++c)
-      fma(tangent(c->tangent), V::load(direction + c->direction), V::load(to + c->slot)).store(to + c->slot);
+    for (std::size_t i = first; i < p_.corrections_end[lag]; ++i) {
+      const Correction& c = p_.corrections[i];
+      double* const to = at(order, c.slot);
+      V sum = V::load(to);
+      for (std::uint32_t t = c.first; t < c.last; ++t) {
+        const CorrectionTerm& term = p_.correction_terms[t];
+        sum = fma(tangent(term.tangent), V::load(direction + static_cast<std::size_t>(term.direction) * W), sum);
+      }
+      sum.store(to);
+    }
   }
 
   const PlanView& p_;

@@ -59,11 +59,7 @@ bool is_moved(const Program& program, const Instruction& i) {
 
 }  // namespace
 
-Plan::Plan(const Program& program, int width)
-    : program_(program), width_(static_cast<std::uint32_t>(width)), row_(row_stride(program) * width_),
-      needed_(program.slots, false), moves_(program.slots) {
-  place_terms();
-  place_instructions();
+Plan::Plan(const Program& program) : program_(program), needed_(program.slots, false), moves_(program.slots) {
   find_needed(program);
   for (std::uint32_t d = 0; d < program.unknowns; ++d) moves_[d] = {{d}, 0};  // tangent 0 is the number 1
   tangents_ = 1;
@@ -73,29 +69,9 @@ Plan::Plan(const Program& program, int width)
   for (std::uint32_t row = 0; row < program.unknowns; ++row) {
     const Slot slot = program.residual[row];
     if (program.tangent_lags[slot] != 2) continue;
-    for (const std::uint32_t d : moves_[slot].directions) mass_.push_back({row, d, place(tangent_of(slot, d))});
+    for (const std::uint32_t d : moves_[slot].directions) mass_.push_back({row, d, tangent_of(slot, d)});
   }
   add_corrections(program);
-}
-
-void Plan::place_terms() {
-  for (const Term& term : program_.terms)
-    terms_.push_back({place(term.coefficient), static_cast<std::uint32_t>(place(term.a) + term.shift * row_),
-                      term.b == no_slot ? 0 : place(term.b), term.shift});
-}
-
-void Plan::place_instructions() {
-  const auto place_or_none = [this](Slot slot) { return slot == no_slot ? 0 : place(slot); };
-  for (const Instruction& i : program_.instructions)
-    instructions_.push_back({i.op, i.function, i.b != no_slot, place(i.out), place_or_none(i.second), place_or_none(i.a),
-                             place_or_none(i.b), place(i.constant), i.first_term, i.first_product, i.last_term});
-  for (const Slot slot : program_.residual) residual_.push_back(place(slot));
-}
-
-/// Factors are found with slots and constants; of a Select they hold terms.
-Factor Plan::placed(Factor factor) const {
-  if (factor.kind == Factor::Kind::Chosen) return factor;
-  return {factor.kind, place(factor.constant), place(factor.x), place(factor.y)};
 }
 
 /// Backwards from the residual and the stored slots along the operands that pass the highest derivative on.
@@ -118,7 +94,7 @@ void Plan::add_instruction(const Program& program, const Instruction& i) {
     for_partials(program, i, out, [&](Slot operand, const Factor& factor) {
       if (moves_[operand].directions.empty()) return;
       edges_.push_back({static_cast<std::uint32_t>(factors_.size()), operand});
-      factors_.push_back(placed(factor));
+      factors_.push_back(factor);
     });
     Moves& moves = moves_[out];
     for (const Edge& edge : edges_)
@@ -132,9 +108,9 @@ void Plan::add_instruction(const Program& program, const Instruction& i) {
       for (const Edge& edge : edges_) {
         const auto& of_operand = moves_[edge.operand].directions;
         if (std::binary_search(of_operand.begin(), of_operand.end(), direction))
-          pairs_.push_back({place(edge.factor), place(tangent_of(edge.operand, direction))});
+          pairs_.push_back({edge.factor, tangent_of(edge.operand, direction)});
       }
-      combinations_.push_back({place(tangents_++), first, static_cast<std::uint32_t>(pairs_.size()), i.op == Op::Select});
+      combinations_.push_back({tangents_++, first, static_cast<std::uint32_t>(pairs_.size()), i.op == Op::Select});
     }
   });
 }
@@ -148,16 +124,20 @@ std::uint32_t Plan::tangent_of(Slot slot, std::size_t direction) const {
 void Plan::add_corrections(const Program& program) {
   Slot slot = static_cast<Slot>(program.unknowns);
   for (std::size_t lag = 0; lag <= 2; ++lag) {
-    for (; slot < program.stored_end[lag]; ++slot)
-      for (const std::uint32_t d : moves_[slot].directions) corrections_.push_back({place(slot), place(tangent_of(slot, d)), place(d)});
+    for (; slot < program.stored_end[lag]; ++slot) {
+      const auto first = static_cast<std::uint32_t>(correction_terms_.size());
+      for (const std::uint32_t d : moves_[slot].directions) correction_terms_.push_back({d, tangent_of(slot, d)});
+      const auto last = static_cast<std::uint32_t>(correction_terms_.size());
+      if (last > first) corrections_.push_back({slot, first, last});
+    }
     corrections_end_[lag] = corrections_.size();
   }
 }
 
 PlanView Plan::view() const {
   PlanView v{};
-  v.instructions = instructions_.data();
-  v.terms = terms_.data();
+  v.instructions = program_.instructions.data();
+  v.terms = program_.terms.data();
   v.runs = program_.runs[Dynamics].data();
   v.run_count = program_.runs[Dynamics].size();
   v.factors = factors_.data();
@@ -169,10 +149,11 @@ PlanView Plan::view() const {
   v.mass = mass_.data();
   v.mass_count = mass_.size();
   v.corrections = corrections_.data();
+  v.correction_terms = correction_terms_.data();
   for (std::size_t lag = 0; lag < 3; ++lag) v.corrections_end[lag] = corrections_end_[lag];
-  v.residual = residual_.data();
+  v.residual = program_.residual.data();
   v.unknowns = program_.unknowns;
-  v.row = row_;
+  v.stride = row_stride(program_);
   v.first_stage = program_.first_stage;
   return v;
 }

@@ -5,22 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-/// A program made ready for lanes of one width: slots and constants are replaced by their places in memory, in doubles. What depends on its structure alone is found once: through which operands tangents at order 0
+/// A program made ready for lanes. What depends on its structure alone is found once: through which operands tangents at order 0
 /// go, and which of them vanish, so that M₀ and the corrections of stored slots are short lists of products.
 namespace maupertuis::lanes {
-
-/// c · dʳa/dtʳ, c · a · b and the like: see Term. `a` holds the r orders that it looks ahead.
-struct PlacedTerm {
-  std::uint32_t coefficient, a, b, shift;
-};
-
-struct PlacedInstruction {
-  Op op;
-  Kind function;
-  bool two_arguments;  // Op::Function
-  std::uint32_t out, second, a, b, constant;
-  std::uint32_t first_term, first_product, last_term;
-};
 
 /// The partial derivative of an instruction by one operand at order 0.
 struct Factor {
@@ -38,8 +25,8 @@ struct Factor {
     Chosen,     // not 0 where the operand of term `x` of the Select with terms [constant, y) is the one in force
   };
   Kind kind;
-  std::uint32_t constant = 0;
-  std::uint32_t x = 0, y = 0;
+  ConstantId constant = 0;
+  std::uint32_t x = 0, y = 0;  // slots
 };
 
 struct Pair {
@@ -56,15 +43,19 @@ struct MassEntry {
   std::uint32_t row, column, tangent;
 };
 
-/// A stored slot follows the accelerations: slot += tangent · direction.
+struct CorrectionTerm {
+  std::uint32_t direction, tangent;
+};
+/// A stored slot follows the accelerations: slot += Σ tangent · direction.
 struct Correction {
-  std::uint32_t slot, tangent, direction;
+  Slot slot;
+  std::uint32_t first, last;
 };
 
 /// Plain arrays, for code that calls nothing of the standard library.
 struct PlanView {
-  const PlacedInstruction* instructions;
-  const PlacedTerm* terms;
+  const Instruction* instructions;
+  const Term* terms;
   const Run* runs;
   std::size_t run_count;
   const Factor* factors;
@@ -75,25 +66,23 @@ struct PlanView {
   const MassEntry* mass;
   std::size_t mass_count;
   const Correction* corrections;
+  const CorrectionTerm* correction_terms;
   std::size_t corrections_end[3];  // by lag
-  const std::uint32_t* residual;
-  std::size_t unknowns, row;  // row: doubles from one order to the next
+  const Slot* residual;
+  std::size_t unknowns, stride;
   int first_stage;
 };
 
 class Plan {
  public:
   /// The program must outlive the plan. Precondition: it has no constraints.
-  Plan(const Program& program, int width);
+  explicit Plan(const Program& program);
   PlanView view() const;
 
  private:
-  std::uint32_t place(std::uint32_t index) const { return index * width_; }
-  void place_terms();
-  void place_instructions();
   void find_needed(const Program& program);
   void add_instruction(const Program& program, const Instruction& i);
-  Factor placed(Factor factor) const;
+  void add_tangents(const Instruction& i, Slot out, std::uint32_t first_edge);
   void add_corrections(const Program& program);
   std::uint32_t tangent_of(Slot slot, std::size_t direction) const;
 
@@ -109,11 +98,6 @@ class Plan {
   };
 
   const Program& program_;
-  std::uint32_t width_;
-  std::size_t row_;
-  std::vector<PlacedInstruction> instructions_;
-  std::vector<PlacedTerm> terms_;
-  std::vector<std::uint32_t> residual_;
   std::vector<bool> needed_;            // [slots]
   std::vector<Moves> moves_;            // [slots]
   std::vector<Edge> edges_;
@@ -123,6 +107,7 @@ class Plan {
   std::vector<Combination> combinations_;
   std::vector<MassEntry> mass_;
   std::vector<Correction> corrections_;
+  std::vector<CorrectionTerm> correction_terms_;
   std::size_t corrections_end_[3] = {};
 };
 

@@ -21,11 +21,12 @@ inline Vec<W> product(Series<W> a, Series<W> b, int k) {
   const int pairs = (k + 1) / 2;
   Vec<W> rising = Vec<W>::all(0), falling = rising;
   if (k % 2 == 0) rising = a[k / 2] * b[k / 2];
-  std::ptrdiff_t low = (pairs - 1) * a.step, high = (k + 1 - pairs) * a.step;
+  const double *a_low = a.first + (pairs - 1) * a.step, *b_low = b.first + (pairs - 1) * b.step;
+  const double *a_high = a.first + (k + 1 - pairs) * a.step, *b_high = b.first + (k + 1 - pairs) * b.step;
   for (int left = pairs; left > 0; --left) {
-    rising = fma(Vec<W>::load(a.first + low), Vec<W>::load(b.first + high), rising);
-    falling = fma(Vec<W>::load(a.first + high), Vec<W>::load(b.first + low), falling);
-    low -= a.step, high += a.step;
+    rising = fma(Vec<W>::load(a_low), Vec<W>::load(b_high), rising);
+    falling = fma(Vec<W>::load(a_high), Vec<W>::load(b_low), falling);
+    a_low -= a.step, b_low -= b.step, a_high += a.step, b_high += b.step;
   }
   return rising + falling;
 }
@@ -58,13 +59,13 @@ inline Vec<W> integral(Series<W> w, Series<W> u, int k) {
 template <int W>
 inline void integral_pair(Series<W> y, Series<W> z, Series<W> u, int k, Vec<W>& y_k, Vec<W>& z_k) {
   Vec<W> sum_y = Vec<W>::all(0), sum_z = sum_y;
-  std::ptrdiff_t up = u.step, down = (k - 1) * u.step;
+  const double *up = u.first + u.step, *y_down = y.first + (k - 1) * y.step, *z_down = z.first + (k - 1) * z.step;
   double weight = 1;
   for (int left = k; left > 0; --left) {
-    const Vec<W> du = Vec<W>::load(u.first + up) * weight;
-    sum_y = fma(du, Vec<W>::load(z.first + down), sum_y);
-    sum_z = fma(du, Vec<W>::load(y.first + down), sum_z);
-    up += u.step, down -= u.step, weight += 1;
+    const Vec<W> du = Vec<W>::load(up) * weight;
+    sum_y = fma(du, Vec<W>::load(z_down), sum_y);
+    sum_z = fma(du, Vec<W>::load(y_down), sum_z);
+    up += u.step, y_down -= y.step, z_down -= z.step, weight += 1;
   }
   const Divisor by_order(k);
   y_k = sum_y / by_order;
