@@ -39,6 +39,10 @@ bool has_instruction_set(InstructionSet set);
 /// The width at which a processor carries most motions a second: the doubles of a vector register, 8 with AVX-512.
 int best_lane_width();
 
+/// Whether the processor multiplies and adds in one instruction. Without, lanes give the same results, but slower than
+/// TaylorStepper.
+bool lanes_pay();
+
 /// Whether motions of the kernel can be carried in lanes: not with constraints, whose rank may change, nor with switches or
 /// events, which end steps at different places.
 bool fits_lanes(const Kernel& kernel);

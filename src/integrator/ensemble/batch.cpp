@@ -72,10 +72,12 @@ class Batch {
   std::unique_ptr<KernelWorkspace> point_;  // energies
   std::vector<Lane> lanes_;
   std::vector<double> energy_;
+  std::vector<double> whole_, inverse_;  // see LaneArrays
   AlignedArray memory_;
   std::size_t used_ = 0;
   LaneArrays arrays_{};
   double *end_, *fresh_;
+  const double* quality_;
   double least_quality_;
   std::size_t active_ = 0;
   bool shared_parameters_, exhausted_ = false;
@@ -90,12 +92,19 @@ Batch::Batch(Job& job)
   arrays_.freedoms = n_;
   arrays_.order = job.control.order;
   arrays_.factor = job.control.factor;
+  for (int k = 0; k < arrays_.order + 3; ++k) {
+    whole_.push_back(k);
+    inverse_.push_back(-1.0 / k);
+  }
+  arrays_.whole = whole_.data();
+  arrays_.inverse = inverse_.data();
   arrays_.coefficients = work_.coordinate(0);
   arrays_.row = static_cast<std::size_t>(work_.coordinate(1) - work_.coordinate(0));
   arrays_.q_high = take(n_), arrays_.q_low = take(n_), arrays_.v_high = take(n_), arrays_.v_low = take(n_);
   arrays_.t_high = take(1), arrays_.t_low = take(1), arrays_.length = take(1), arrays_.step = take(1);
   arrays_.reaches = take(1), arrays_.shrinks = take(1);
   arrays_.end = end_ = take(1), fresh_ = take(1);
+  quality_ = work_.quality();
   // LinearSolver takes M₀ for singular at a sixteenth of this.
   least_quality_ = 64 * std::numeric_limits<double>::epsilon() * static_cast<double>(n_);
   shared_parameters_ = job.start.parameters.size() == job.kernel.parameters();
@@ -205,7 +214,7 @@ void Batch::look_at(std::size_t lane) {
   Lane& l = lanes_[lane];
   if (l.steps >= job_.options.maximum_steps) return finish(lane, StepEnding::TooManySteps, "The run used up its steps.");
   // Comparisons with NaN are false.
-  if (!(work_.quality()[lane] > least_quality_) || arrays_.shrinks[lane] != 0) return go_alone(lane);
+  if (!(quality_[lane] > least_quality_) || arrays_.shrinks[lane] != 0) return go_alone(lane);
   if (!std::isfinite(arrays_.length[lane])) arrays_.length[lane] = 0;
   const double reached = arrays_.reaches[lane] != 0 ? end_[lane] : arrays_.t_high[lane] + (arrays_.t_low[lane] + arrays_.step[lane]);
   sample(lane, reached);

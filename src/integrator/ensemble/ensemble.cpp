@@ -25,10 +25,12 @@ void check(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptio
   MAUP_REQUIRE(options.width >= 0 && options.width <= 16 && (options.width & (options.width - 1)) == 0);
 }
 
+/// The interpreter decodes each instruction once for all lanes, so that two registers side by side pay.
 std::shared_ptr<const LaneExpansion> expansion_for(const Kernel& kernel, const EnsembleOptions& options) {
   if (!fits_lanes(kernel)) return nullptr;
-  const int width = options.width > 0 ? options.width : best_lane_width();
-  return options.expansion ? options.expansion(kernel, width) : interpreted_lanes(kernel, width);
+  if (options.expansion) return options.expansion(kernel, options.width > 0 ? options.width : best_lane_width());
+  if (options.width == 0 && !lanes_pay()) return nullptr;
+  return interpreted_lanes(kernel, options.width > 0 ? options.width : 2 * best_lane_width());
 }
 
 EnsembleResult empty_result(const Job& job, std::size_t times) {

@@ -11,6 +11,8 @@ struct LaneArrays {
   std::size_t width, freedoms, row;
   int order;                 // of the polynomial of q̇
   double factor;             // of the estimated radius of convergence
+  const double* whole;       // [order + 3] 0, 1, 2, …
+  const double* inverse;     // [order + 1] −1/k; the first is not used
   const double* coefficients;
   double *q_high, *q_low, *v_high, *v_low;  // [n][width] the state and what rounding left behind
   double *t_high, *t_low;    // [width]

@@ -64,7 +64,7 @@ class Steps {
       for (int k = a_.order + 1; k >= 2; --k) {
         const V c = coefficient(k, i);
         dq = (dq + c) * tau;
-        dv = dv * tau + c * static_cast<double>(k);
+        dv = dv * tau + c * a_.whole[k];
       }
       const std::size_t at = i * a_.width;
       add(a_.q_high + at, a_.q_low + at, (dq + (get(a_.v_high + at) + get(a_.v_low + at))) * tau);
@@ -95,15 +95,15 @@ class Steps {
 
   // ---------------------------------------------------------------------------------------------------- step length
 
-  V velocity(std::size_t i, int k) const { return absolute(coefficient(k + 1, i)) * static_cast<double>(k + 1); }
+  V velocity(std::size_t i, int k) const { return absolute(coefficient(k + 1, i)) * a_.whole[k + 1]; }
 
   /// The size of coordinate i's velocity over a step of length h: see integrator/taylor/step_size.cpp.
-  V size_of(std::size_t i, V h) const {
+  V size_of(std::size_t i, V h, V inverse_of_h) const {
     V size{}, power = V{} + 1;
     const int last = a_.order - 2 < 3 ? a_.order - 2 : 3;
     for (int k = 0; k <= last; ++k, power *= h) size = larger(size, velocity(i, k) * power);
     if (anywhere(size == 0)) size = size_of_late(i, h, size);
-    return larger(size, epsilon * absolute(get(a_.q_high + i * a_.width)) / h);
+    return larger(size, epsilon * absolute(get(a_.q_high + i * a_.width)) * inverse_of_h);
   }
 
   /// A coordinate that others set in motion late begins with a higher power of time.
@@ -126,9 +126,10 @@ class Steps {
     constexpr int most = 6;
     constexpr double log2_widened = 0.32192809488736235;  // of 1.25
     const int p = a_.order, lowest = p - 5 < 2 ? (p - 1 < 2 ? p - 1 : 2) : p - 5;
+    const V inverse_of_h = 1.0 / h;
     V largest[most] = {};
     for (std::size_t i = 0; i < a_.freedoms; ++i) {
-      const V inverse = 1.0 / size_of(i, h);
+      const V inverse = 1.0 / size_of(i, h, inverse_of_h);
       for (int k = p; k >= lowest; --k) {
         const V last = velocity(i, k);
         // 0/0 is no estimate.
@@ -138,7 +139,7 @@ class Steps {
     V exponent = V{} + infinity;
     for (int k = p; k >= lowest; --k) {
       const V ratio = largest[p - k];
-      const V by_k = log2_of(ratio) * (-1.0 / k) + (k < p - 1 ? log2_widened : 0.0);
+      const V by_k = log2_of(ratio) * a_.inverse[k] + (k < p - 1 ? log2_widened : 0.0);
       exponent = (ratio > 0) & (by_k < exponent) ? by_k : exponent;
     }
     const V length = exp2_of(exponent) * a_.factor;

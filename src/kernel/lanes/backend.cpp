@@ -82,6 +82,14 @@ int best_lane_width() {
   }
 }
 
+bool lanes_pay() {
+#if defined(__FP_FAST_FMA)
+  return true;
+#else
+  return has_instruction_set(InstructionSet::Avx2);
+#endif
+}
+
 bool fits_lanes(const Kernel& kernel) {
   return kernel.freedoms() > 0 && kernel.constraints() == 0 && kernel.switches().empty() && kernel.events() == 0;
 }
