@@ -37,7 +37,8 @@ if(MAUPERTUIS_LLVM AND NOT llvm_libraries)
 endif()
 
 # The two sides of the border share types; the tag tells whether they are of one build.
-file(GLOB border CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/kernel/*/*.hpp)
+file(GLOB border CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/kernel/program/*.hpp ${PROJECT_SOURCE_DIR}/src/kernel/packed/*.hpp
+  ${PROJECT_SOURCE_DIR}/src/kernel/lanes/*.hpp ${PROJECT_SOURCE_DIR}/src/kernel/compiled/*.hpp)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${border})
 set(border_text "${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} ${MAUPERTUIS_SANITIZE}")
 foreach(header IN LISTS border)

@@ -1,9 +1,11 @@
 #pragma once
+#include <maupertuis/backend.hpp>
 #include <maupertuis/kernel.hpp>
 
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -51,6 +53,19 @@ bool fits_lanes(const Kernel& kernel);
 /// Precondition: width is 1, 2, 4, 8 or 16; fits_lanes(kernel); the instruction set is there.
 std::shared_ptr<const LaneExpansion> interpreted_lanes(const Kernel& kernel, int width,
                                                        InstructionSet set = InstructionSet::Best);
+
+/// Machine code for a kernel's lanes, and how it came.
+struct CompiledLanes {
+  std::shared_ptr<const LaneExpansion> expansion;  // null: `trouble` says why; take interpreted_lanes
+  std::string trouble;
+  std::string cache_trouble;                       // the code could not be kept for the next run
+  double seconds = 0;
+  bool from_cache = false;
+};
+
+/// The kernel as machine code. Its results are those of interpreted_lanes to rounding, not to the bit.
+/// Precondition: width is 1, 2, 4, 8 or 16; fits_lanes(kernel).
+CompiledLanes compiled_lanes(const Kernel& kernel, int width, const CompileOptions& options = {});
 
 /// Everything that `width` motions change. One thread at a time.
 class LaneWorkspace {

@@ -82,27 +82,27 @@ std::vector<Value*> Emission::loop(Value* begin, Value* end, std::vector<Value*>
                                    const std::function<std::vector<Value*>(Value*, const std::vector<Value*>&)>& body) {
   llvm::Function* const f = b.GetInsertBlock()->getParent();
   llvm::BasicBlock* const before = b.GetInsertBlock();
+  llvm::BasicBlock* const head = llvm::BasicBlock::Create(context, "", f);
   llvm::BasicBlock* const turn = llvm::BasicBlock::Create(context, "", f);
   llvm::BasicBlock* const after = llvm::BasicBlock::Create(context, "", f);
-  b.CreateBr(turn);
-  b.SetInsertPoint(turn);
-  llvm::PHINode* const i = b.CreatePHI(begin->getType(), 2);
-  i->addIncoming(begin, before);
+  b.CreateBr(head);
+  b.SetInsertPoint(head);
   std::vector<llvm::PHINode*> phis;
-  std::vector<Value*> now;
   for (Value* const value : carried) {
     phis.push_back(b.CreatePHI(value->getType(), 2));
     phis.back()->addIncoming(value, before);
-    now.push_back(phis.back());
   }
+  llvm::PHINode* const i = b.CreatePHI(begin->getType(), 2);
+  i->addIncoming(begin, before);
+  b.CreateCondBr(b.CreateICmpSLT(i, end), turn, after);
+  b.SetInsertPoint(turn);
+  std::vector<Value*> now(phis.begin(), phis.end());
   const std::vector<Value*> next = body(i, now);
-  Value* const following = b.CreateNUWAdd(i, llvm::ConstantInt::get(i->getType(), 1));
-  llvm::BasicBlock* const last = b.GetInsertBlock();
-  b.CreateCondBr(b.CreateICmpSLT(following, end), turn, after);
-  i->addIncoming(following, last);
-  for (std::size_t k = 0; k < phis.size(); ++k) phis[k]->addIncoming(next[k], last);
+  i->addIncoming(b.CreateNUWAdd(i, llvm::ConstantInt::get(i->getType(), 1)), b.GetInsertBlock());
+  for (std::size_t k = 0; k < phis.size(); ++k) phis[k]->addIncoming(next[k], b.GetInsertBlock());
+  b.CreateBr(head);
   b.SetInsertPoint(after);
-  return next;
+  return now;
 }
 
 void Emission::when(Value* condition, const std::function<void()>& body) {

@@ -62,7 +62,7 @@ class Emission {
 
   // ------------------------------------------------------------------------------------------------------------- loops
   /// for (i = begin; i < end; ++i) with values carried from turn to turn; returns their last ones. `body` gets i and the
-  /// carried values, and returns the next ones. At least one turn: begin < end.
+  /// carried values, and returns the next ones.
   std::vector<Value*> loop(Value* begin, Value* end, std::vector<Value*> carried,
                            const std::function<std::vector<Value*>(Value* i, const std::vector<Value*>&)>& body);
   /// if (condition) { body }

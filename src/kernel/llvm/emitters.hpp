@@ -14,5 +14,6 @@ struct Declined : std::runtime_error {
 };
 
 void emit_self_test(Emission& out, const compiled::Request& request);
+void emit_lanes(Emission& out, const compiled::Request& request);
 
 }  // namespace maupertuis::llvm_backend

@@ -29,6 +29,7 @@ void emit_packed_program(Emission& out, const Request& request) {
 void emit(Emission& out, const Request& request) {
   switch (request.emitter) {
     case Emitter::SelfTest: return emit_self_test(out, request);
+    case Emitter::Lanes: return emit_lanes(out, request);
     case Emitter::Packed: return emit_packed_program(out, request);
     default: break;
   }
@@ -62,7 +63,6 @@ void answer(const Request& request, Reply& reply) {
   emit(emission, request);
   verify(*emission.module);
   reply.instructions = emission.module->getInstructionCount();
-  if (std::getenv("MAUPERTUIS_PRINT_LLVM")) emission.module->print(llvm::errs(), nullptr);
   const auto emitted = Clock::now();
   const std::vector<char> object = target.compile(*emission.module, request.effort);
   reply.object = copy_of(object.data(), object.size());

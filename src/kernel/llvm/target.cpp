@@ -8,6 +8,7 @@
 #include <llvm/MC/MCSubtargetInfo.h>
 #include <llvm/MC/TargetRegistry.h>
 #include <llvm/Pass.h>
+#include <llvm/Support/CommandLine.h>
 #include <llvm/Support/raw_ostream.h>
 #include <llvm/Support/TargetSelect.h>
 #include <llvm/Target/TargetMachine.h>
@@ -19,8 +20,16 @@ namespace {
 
 constexpr char triple[] = "x86_64-pc-linux-gnu";
 
+/// Loops are emitted with the addresses that they are to have, two that move and constants beside them; strength reduction would give
+/// every operand an address of its own and keep them on the stack.
+void leave_loops_alone() {
+  const char* const options[] = {"maupertuis", "-disable-lsr"};
+  llvm::cl::ParseCommandLineOptions(2, options);
+}
+
 const llvm::Target& x86() {
   static const llvm::Target* const target = [] {
+    leave_loops_alone();
     LLVMInitializeX86TargetInfo();
     LLVMInitializeX86Target();
     LLVMInitializeX86TargetMC();

@@ -1,0 +1,185 @@
+#pragma once
+#include "kernel/lanes/plan.hpp"
+#include "kernel/llvm/emission.hpp"
+
+#include <optional>
+#include <vector>
+
+/// The Taylor expansion of W motions as code: lanes::Expand for one program.
+///
+/// A processor could do the sums of products in a fraction of the time that the chain of operations from one stage to the next takes;
+/// so what hangs on that chain is kept short. Of a convolution Σ a_j b_{m−j}
+///
+///   the *interior*, 2 ≤ j ≤ m − 2, holds coefficients that are final a stage earlier; it is added up there, before that stage is
+///     solved, while the processor would wait. Interiors share a loop, and those of one lag in it the loads of
+///     common operands;
+///   the *newest* products, of orders 1 and m − 1, need the stage before;
+///   those at the *ends*, of orders 0 and m, need the instructions of this stage.
+///
+/// What instructions hand to each other stays in registers; coefficients that later orders read are stored. Coordinates count as 0 at
+/// their new order until the stage is solved, and whatever is linear in them vanishes and is not emitted. The corrections are the sums of lanes::Plan.
+namespace maupertuis::llvm_backend {
+
+class LanesEmitter {
+ public:
+  /// `unrolled`: stages below it are written out one by one; the others are turns of a loop.
+  LanesEmitter(Emission& out, const Program& program, int width, int unrolled);
+  void run();
+
+ private:
+  using Value = llvm::Value;
+
+  // ------------------------------------------------------------------------------------------------ stages (emit_lanes.cpp)
+  void stage();
+  void begin_values();
+  void exit_unless_more(int stage);
+  void rolled_stages();
+  /// Orders are counted from the stage: m = stage + ahead.
+  bool is_known() const { return known_stage_.has_value(); }
+  int known(int ahead) const { return *known_stage_ + ahead; }
+  bool has_order(int ahead) const { return !is_known() || known(ahead) >= 0; }
+  bool is_order_zero(int ahead) const { return is_known() && known(ahead) == 0; }
+  bool is_odd(int ahead) const { return ((is_known() ? known(ahead) : parity_ + ahead) & 1) != 0; }
+  Value* row(int ahead);           // address of the row of that order
+  Value* order_number(int ahead);  // as a double
+  Value* reciprocal(int ahead) { return out_.b.CreateFDiv(out_.number(1, out_.b.getDoubleTy()), order_number(ahead)); }
+  Value* order(int ahead) { return out_.splat(order_number(ahead), real_); }
+  Value* half(int ahead);          // ⌊m / 2⌋, 64-bit integer
+  Value* over_order(Value* x, int ahead) { return over(x, order_number(ahead)); }
+  /// x / (m (m + 1)) in one division: the error of two roundings would be larger, and the same in every step.
+  Value* over_orders(Value* x, int ahead) { return over(x, out_.b.CreateFMul(order_number(ahead), order_number(ahead + 1))); }
+  Value* over(Value* x, Value* divisor);
+  Value* row_of(Value* order);
+
+  // ----------------------------------------------------------------------------------------------------------------- values
+  struct Coefficient {
+    Value* value = nullptr;        // null: it is `unit`, +1 or −1
+    int unit = 0;
+  };
+  Coefficient coefficient(ConstantId id);
+  Value* constant(ConstantId id);
+  bool is_literal(ConstantId id, double value) const;
+  Value* number(double x) { return out_.number(x, real_); }
+  Value* slot_at(Value* row, Slot slot) { return out_.at(row, static_cast<std::int64_t>(slot) * bytes_); }
+  Value* load(Value* row, Slot slot) { return out_.load(real_, slot_at(row, slot)); }
+  Value* first(Slot slot);         // coefficient of order 0, nonzero or not
+  int ahead_of(Slot slot) const { return 2 - program_.lags[slot]; }
+  /// A coefficient that is final or of this stage; null: it is zero.
+  Value* read(Slot slot, int ahead);
+  void define(Slot slot, Value* value);
+  /// sum + x y; null counts as zero.
+  Value* plus(Value* sum, Value* x, Value* y, bool negative = false);
+  Value* plus(Value* sum, Value* x) { return sum && x ? out_.add(sum, x) : sum ? sum : x; }
+  Value* scaled(const Coefficient& c, Value* x);
+  Value* plus_scaled(Value* sum, const Coefficient& c, Value* x);
+  Value* or_zero(Value* x) { return x ? x : number(0); }
+  Value* scratch(std::size_t index) { return out_.at(scratch_, static_cast<std::int64_t>(index) * bytes_); }
+
+  // ------------------------------------------------------------------------------------------ interiors (lanes_interiors.cpp)
+  enum class Shape : std::uint8_t { Product, Square, Weighted, Power };
+  /// Σ a_j b_{m−j}, Σ a_j a_{m−j} (half of it), Σ j a_j b_{m−j}, Σ (p j − (m − j)) a_j b_{m−j}.
+  struct Piece {
+    Shape shape;
+    Slot a, b;
+    bool negative = false;
+    ConstantId exponent = 0;
+  };
+  struct Accumulator {
+    int ahead;                     // its order counts from the stage
+    std::vector<Piece> pieces;
+    Value *sum = nullptr, *next = nullptr;  // interiors of this stage and of the next; null: zero
+  };
+  /// Terms of an instruction that share a coefficient share an accumulator.
+  struct Group {
+    Coefficient coefficient;
+    ConstantId id = 0;
+    std::uint32_t accumulator = 0;
+  };
+  void plan_accumulators();
+  std::uint32_t add_accumulator(int ahead, std::vector<Piece> pieces);
+  void group_terms(const Instruction& i, std::uint32_t first, std::uint32_t last, Shape shape, std::vector<Group>& groups);
+  void prepare_next();
+  void interiors_of(const std::vector<std::uint32_t>& group);
+  struct Turn;                     // one pair (j, m − j)
+  /// Accumulators of one order within a group.
+  struct Shift {
+    int ahead;
+    std::size_t count;
+    bool weighted;
+  };
+  /// Adds a pair to the sums; [sums] which of the turns, or none.
+  using AddTurn = std::function<void(std::vector<Turn>&, const std::vector<std::size_t>&)>;
+  void rolled_pairs(int least, const std::vector<Shift>& shifts, const std::vector<std::size_t>& shift_of, std::vector<Value*>& sums,
+                    std::vector<Value*>& seconds, const AddTurn& add_turn);
+  Value* innermost(int ahead);
+  bool is_weighted(const Accumulator& accumulator) const;
+  Value* add_pair(const Accumulator& accumulator, Turn& turn, Value* sum, bool second_half);
+  Value* middle_of(const Accumulator& accumulator, int ahead);
+  Value* newest(const Piece& piece, int ahead, Value* sum);
+
+  // -------------------------------------------------------------------------------------- instructions (lanes_instructions.cpp)
+  void instruction(std::uint32_t index);
+  Value* linear_part(const Instruction& i);
+  Value* products(std::uint32_t index, Value* sum);
+  Value* ends(const Piece& piece, int ahead, Value* sum, bool late);
+  Value* sum_of(std::uint32_t accumulator);
+  Value* self_sum(std::uint32_t index);
+  Value* square(std::uint32_t index);
+  Value* quotient(std::uint32_t index);
+  Value* square_root(std::uint32_t index);
+  Value* power(std::uint32_t index);
+  void pair(std::uint32_t index);
+  Value* function(std::uint32_t index);
+  Value* derivative(const Instruction& i);
+  Value* select(const Instruction& i);
+  Value* divide_by_first(Value* x, std::uint32_t index, Value* divisor);
+  void keep_reciprocal(std::uint32_t index, Value* divisor);
+
+  // ----------------------------------------------------------------------------------------------- solution (lanes_solution.cpp)
+  void find_stored();
+  void factor();
+  void factor_mass();
+  void find_tangents();
+  Value* factor_value(const lanes::Factor& f);
+  Value* in_force(const lanes::Factor& f);
+  Value* symmetry(const std::vector<Value*>& m);
+  void decompose(std::vector<Value*> m, Value* symmetric);
+  void solve();
+  void correct();
+  void invert(const std::vector<Value*>& m);
+  Value* minus_inverse(std::size_t i, std::size_t j) { return out_.load(real_, scratch(matrix_at_ + i * n_ + j)); }
+  void solve_by_factors();
+  void correct_lag(std::size_t first, std::size_t last, const std::vector<Value*>& direction);
+
+  Emission& out_;
+  const Program& program_;
+  lanes::Plan plan_;
+  lanes::PlanView view_;
+  int width_, unrolled_;
+  std::int64_t bytes_;             // of one number of all lanes
+  std::int64_t row_bytes_;
+  std::size_t n_;
+  llvm::Type* real_;
+  llvm::Function *function_ = nullptr, *factor_ = nullptr;
+  llvm::BasicBlock* done_ = nullptr;
+  Value *rows_ = nullptr, *constants_ = nullptr, *quality_ = nullptr, *scratch_ = nullptr, *stages_ = nullptr;
+
+  std::optional<int> known_stage_; // else `stage_`, of known parity
+  Value* stage_ = nullptr;         // 64-bit integer
+  Value* stage_row_ = nullptr;
+  Value* stage_number_ = nullptr;  // double
+  int parity_ = 0;
+
+  enum class State : std::uint8_t { Unknown, Zero, Known };
+  std::vector<State> state_;       // [slots] at the order of this stage
+  std::vector<Value*> now_;        // [slots]
+  std::vector<bool> stored_, corrected_;  // [slots]
+
+  std::vector<Accumulator> accumulators_;
+  std::vector<std::vector<Group>> groups_;  // [instructions]
+  std::vector<Value*> acceleration_;        // [n]
+  std::vector<Value*> tangents_;            // at stage 0
+  std::size_t matrix_at_, pivots_at_, reciprocals_at_;  // in scratch
+};
+
+}  // namespace maupertuis::llvm_backend
