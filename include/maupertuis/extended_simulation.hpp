@@ -53,8 +53,8 @@ struct ExtendedResult {
 /// Runs the experiment of a model in many digits, twice: the second time with at least a word more of mantissa, a tolerance 1e-4 times
 /// smaller and an order that follows. Only the digits on which both agree are given.
 ///
-/// Parameters, literals, start values and times are taken as written: 9.81 is the decimal, 30 deg is π/6. Coordinates that the start does not
-/// give and the constraints do not determine keep all digits of `consistent_start`, which is exact to double only in the choice, not in the constraints.
+/// Parameters, literals, start values and times are taken as written: 9.81 is the decimal, 30 deg is π/6. Where the constraints leave a choice
+/// between positions that the start does not give, it is the one of `consistent_start`, moved onto the constraints in all digits.
 /// Nothing is returned when the run is not possible in many digits (E0725) or not at all (as `simulate`).
 std::optional<ExtendedResult> simulate_extended(const Model& model, const EquationsOfMotion& equations,
                                                 const ExtendedSimulationOptions& options, Diagnostics& diagnostics);
