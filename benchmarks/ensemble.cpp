@@ -34,8 +34,9 @@ struct Batch {
       }
   }
 
-  EnsembleResult run(double duration, int width) const {
+  EnsembleResult run(double duration, int width, Backend backend) const {
     EnsembleOptions options;
+    options.backend = backend;
     options.width = width;
     options.threads = 1;
     options.energy_terms = motion.energy_terms;
@@ -47,9 +48,9 @@ void require(bool condition, const char* what) {
   if (!condition) throw std::runtime_error(std::string("wrong result: ") + what);
 }
 
-void check(const Batch& batch, int width) {
+void check(const Batch& batch, int width, Backend backend) {
   const double duration = 1;
-  const EnsembleResult result = batch.run(duration, width);
+  const EnsembleResult result = batch.run(duration, width, backend);
   for (const TrajectoryEnding& ending : result.endings)
     require(ending.ok() && !ending.alone && ending.energy_drift < 1e-13, "energy");
   for (std::size_t i = 0; i < trajectories; i += 37) {
@@ -60,14 +61,14 @@ void check(const Batch& batch, int width) {
   }
 }
 
-void ensemble(benchmark::State& state) {
+void ensemble(benchmark::State& state, Backend backend) {
   const Batch batch(static_cast<int>(state.range(0)));
   const int width = static_cast<int>(state.range(1));
-  check(batch, width);
+  check(batch, width, backend);
   const double duration = 10;
   std::size_t steps = 0;
   for (auto _ : state) {
-    const EnsembleResult result = batch.run(duration, width);
+    const EnsembleResult result = batch.run(duration, width, backend);
     for (const TrajectoryEnding& ending : result.endings) steps += ending.steps;
     state.SetLabel(result.backend);
   }
@@ -77,7 +78,10 @@ void ensemble(benchmark::State& state) {
       benchmark::Counter(static_cast<double>(steps), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-BENCHMARK(ensemble)->ArgNames({"links", "width"})->ArgsProduct({{1, 2, 4, 8}, {1, 8, 16}})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(ensemble, interpreter, Backend::Interpreter)
+    ->ArgNames({"links", "width"})->ArgsProduct({{1, 2, 4, 8}, {1, 8, 16}})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(ensemble, compiled, Backend::Compiled)
+    ->ArgNames({"links", "width"})->ArgsProduct({{1, 2, 4, 8}, {8, 16}})->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

@@ -39,7 +39,10 @@ struct EnsembleOptions {
   int threads = 0;                               // 0: as many as the machine runs at once
   std::size_t energy_terms = 0;                  // so many first observables add up to an energy that is conserved
   const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
-  /// What expands the motions; none: interpreted_lanes. Called once, with the width.
+  /// Automatic: compiled code where as many steps are expected as pay for it; that differs from the interpreter by rounding errors.
+  Backend backend = Backend::Automatic;
+  bool cache = true;                             // of compiled code
+  /// What expands the motions, instead of a backend. Called once, with the width.
   std::function<std::shared_ptr<const LaneExpansion>(const Kernel&, int width)> expansion;
 };
 
@@ -61,7 +64,10 @@ struct EnsembleResult {
   std::vector<double> sampled_q, sampled_v;  // [trajectories × times × n]; NaN at times that a trajectory did not come to
   std::size_t freedoms = 0, times = 0;
   int order = 0, width = 0;                // width 0: every trajectory alone
-  std::string backend;                     // of the lanes; empty: every trajectory alone
+  std::string backend;                     // of the lanes, "interpreter" or "compiled"; empty: every trajectory alone
+  std::string trouble;                     // why compiled code that was asked for is not used
+  std::string cache_trouble;               // it could not be kept for the next run
+  double compile_seconds = 0;
 
   std::span<const double> q_of(std::size_t trajectory) const { return {q.data() + trajectory * freedoms, freedoms}; }
   std::span<const double> v_of(std::size_t trajectory) const { return {v.data() + trajectory * freedoms, freedoms}; }
@@ -80,8 +86,9 @@ struct EnsembleResult {
 /// a singular matrix, when something is not finite, or when steps shrink below the resolution of time: the ending and the state
 /// are then the stepper's own.
 ///
-/// The result of a trajectory depends neither on the others and their order, nor on the width, nor on the number of threads,
-/// to the bit. (It may differ from TaylorStepper's by rounding errors, since sums are fused and taken in another order.)
+/// With a given backend the result of a trajectory depends neither on the others and their order, nor on the width, nor on the
+/// number of threads, to the bit. (It may differ from TaylorStepper's by rounding errors, since sums are fused and taken in another
+/// order.) Backend::Automatic looks at the first trajectory and at the durations of all.
 ///
 /// Preconditions: sizes as the comments of EnsembleStart say; times ascending; every number finite; width as above.
 EnsembleResult advance_ensemble(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptions& options = {});

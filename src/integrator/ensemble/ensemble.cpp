@@ -3,6 +3,7 @@
 #include <maupertuis/require.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <limits>
 #include <mutex>
@@ -25,12 +26,44 @@ void check(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptio
   MAUP_REQUIRE(options.width >= 0 && options.width <= 16 && (options.width & (options.width - 1)) == 0);
 }
 
-/// The interpreter decodes each instruction once for all lanes, so that two registers side by side pay.
-std::shared_ptr<const LaneExpansion> expansion_for(const Kernel& kernel, const EnsembleOptions& options) {
-  if (!fits_lanes(kernel)) return nullptr;
-  if (options.expansion) return options.expansion(kernel, options.width > 0 ? options.width : best_lane_width());
-  if (options.width == 0 && !lanes_pay()) return nullptr;
-  return interpreted_lanes(kernel, options.width > 0 ? options.width : 2 * best_lane_width());
+/// Steps of all trajectories together, if all were as long as the first one of the first trajectory. Zero where it has none.
+double expected_steps(const Kernel& kernel, const EnsembleStart& start, const taylor::StepControl& control) {
+  const std::size_t n = kernel.freedoms(), count = start.q.size() / n;
+  if (count == 0) return 0;
+  KernelWorkspace work(kernel, control.order);
+  work.set_parameters(start.parameters.first(kernel.parameters()));
+  const double begin = start.begin.empty() ? 0 : start.begin[0];
+  if (work.expand(begin, start.q.first(n), start.v.first(n)) != KernelStatus::Ok) return 0;
+  double duration = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    duration += std::abs(start.end[start.end.size() == 1 ? 0 : i] - (start.begin.empty() ? 0 : start.begin[start.begin.size() == 1 ? 0 : i]));
+  return duration / taylor::step_size(work, n, control, 0);
+}
+
+/// The steps that pay for a compilation: it takes some tenths of a second, and saves some tenths of a microsecond a step.
+constexpr double enough_steps = 500'000;
+
+/// Decided by the work that is expected, not by the clock nor by what the cache holds, so that equal calls give equal results.
+bool wants_code(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptions& options, const taylor::StepControl& control) {
+  if (options.backend != Backend::Automatic) return options.backend == Backend::Compiled;
+  return expected_steps(kernel, start, control) >= enough_steps;
+}
+
+/// The expansion, with what there is to say of it. None: every trajectory goes alone.
+CompiledLanes lanes_for(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptions& options, const taylor::StepControl& control) {
+  CompiledLanes out;
+  if (!fits_lanes(kernel)) return out;
+  const int width = options.width > 0 ? options.width : best_lane_width();
+  if (options.expansion) {
+    out.expansion = options.expansion(kernel, width);
+    return out;
+  }
+  if (options.width == 0 && !lanes_pay()) return out;
+  if (wants_code(kernel, start, options, control))
+    out = compiled_lanes(kernel, width, {.cache = options.cache, .order = control.order, .long_run = true, .processor = {}});
+  // The interpreter decodes each instruction once for all lanes, so that two registers side by side pay.
+  if (!out.expansion) out.expansion = interpreted_lanes(kernel, options.width > 0 ? options.width : std::min(16, 2 * width));
+  return out;
 }
 
 EnsembleResult empty_result(const Job& job, std::size_t times) {
@@ -88,10 +121,14 @@ void run(Job& job) {
 EnsembleResult advance_ensemble(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptions& options) {
   check(kernel, start, options);
   EnsembleResult result;
-  Job job{.kernel = kernel, .start = start, .options = options, .control = taylor::step_control(options.tolerance, options.order),
-          .expansion = expansion_for(kernel, options), .trajectories = start.q.size() / kernel.freedoms(),
-          .freedoms = kernel.freedoms(), .result = result};
+  const taylor::StepControl control = taylor::step_control(options.tolerance, options.order);
+  const CompiledLanes lanes = lanes_for(kernel, start, options, control);
+  Job job{.kernel = kernel, .start = start, .options = options, .control = control, .expansion = lanes.expansion,
+          .trajectories = start.q.size() / kernel.freedoms(), .freedoms = kernel.freedoms(), .result = result};
   result = empty_result(job, start.times.size());
+  result.trouble = lanes.trouble;
+  result.cache_trouble = lanes.cache_trouble;
+  result.compile_seconds = lanes.seconds;
   if (job.trajectories > 0) run(job);
   return result;
 }

@@ -3,6 +3,9 @@
 #include "integrator/ensemble/lane_steps.hpp"
 
 #include <cstdint>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 /// See lane_steps.hpp. Nothing inline of the standard library is called here: a linker keeps one copy of an inline function,
 /// and that must not be one with instructions that the processor lacks.
@@ -28,6 +31,21 @@ struct Register<1> {
   typedef double Reals __attribute__((may_alias));
   typedef std::int64_t Integers __attribute__((may_alias));
 };
+
+/// a b + c, rounded once, on every processor.
+inline double fused(double a, double b, double c) { return __builtin_fma(a, b, c); }
+template <class V>
+inline V fused(V a, V b, V c) {
+#if defined(__AVX512F__)
+  if constexpr (sizeof(V) == 64) return _mm512_fmadd_pd(a, b, c);
+#endif
+#if defined(__AVX2__) && defined(__FMA__)
+  if constexpr (sizeof(V) == 32) return _mm256_fmadd_pd(a, b, c);
+  if constexpr (sizeof(V) == 16) return _mm_fmadd_pd(a, b, c);
+#endif
+  for (std::size_t lane = 0; lane < sizeof(V) / sizeof(double); ++lane) c[lane] = __builtin_fma(a[lane], b[lane], c[lane]);
+  return c;
+}
 
 constexpr double infinity = __builtin_huge_val();
 constexpr double epsilon = 0x1p-52;
@@ -56,18 +74,18 @@ class Steps {
     put(a_.shrinks, long_enough ? V{} : V{} + 1);
   }
 
-  /// q − q_0 and q̇ − q̇_0 by Horner's rule, added with what earlier additions left behind: DenseOutput::advance.
+  /// q − q_0 and q̇ − q̇_0 by Horner's rule, added with what earlier additions left behind, as DenseOutput::advance does.
   void advance() const {
     const V tau = get(a_.step);
     for (std::size_t i = 0; i < a_.freedoms; ++i) {
-      V dq{}, dv{};
-      for (int k = a_.order + 1; k >= 2; --k) {
-        const V c = coefficient(k, i);
-        dq = (dq + c) * tau;
-        dv = dv * tau + c * a_.whole[k];
-      }
       const std::size_t at = i * a_.width;
-      add(a_.q_high + at, a_.q_low + at, (dq + (get(a_.v_high + at) + get(a_.v_low + at))) * tau);
+      const double* c = a_.coefficients + static_cast<std::size_t>(a_.order + 1) * a_.row + at;
+      V dq{}, dv{};  // Σ c_k τ^{k−2}, Σ k c_k τ^{k−2} over k ≥ 2
+      for (int k = a_.order + 1; k >= 2; --k, c -= a_.row) {
+        dq = fused(dq, tau, get(c));
+        dv = fused(dv, tau, get(c) * a_.whole[k]);
+      }
+      add(a_.q_high + at, a_.q_low + at, fused(dq, tau, get(a_.v_high + at) + get(a_.v_low + at)) * tau);
       add(a_.v_high + at, a_.v_low + at, dv * tau);
     }
     const auto arrives = get(a_.reaches) != 0;
@@ -82,7 +100,13 @@ class Steps {
   V coefficient(int k, std::size_t i) const {
     return get(a_.coefficients + static_cast<std::size_t>(k) * a_.row + i * a_.width);
   }
-  static V absolute(V x) { return x < 0 ? -x : x; }
+  static V absolute(V x) {
+    I bits;
+    __builtin_memcpy(&bits, &x, sizeof bits);
+    bits = bits & 0x7fffffffffffffff;
+    __builtin_memcpy(&x, &bits, sizeof bits);
+    return x;
+  }
   static V larger(V x, V y) { return x > y ? x : y; }
 
   /// Knuth's TwoSum: Compensated::add.
@@ -132,8 +156,8 @@ class Steps {
       const V inverse = 1.0 / size_of(i, h, inverse_of_h);
       for (int k = p; k >= lowest; --k) {
         const V last = velocity(i, k);
-        // 0/0 is no estimate.
-        largest[p - k] = larger(largest[p - k], last > 0 ? last * inverse : V{});
+        // 0/0 is no estimate: a comparison with NaN is false.
+        largest[p - k] = larger(last * inverse, largest[p - k]);
       }
     }
     V exponent = V{} + infinity;

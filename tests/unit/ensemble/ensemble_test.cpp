@@ -62,7 +62,7 @@ TEST_CASE("an ellipse closes after its period, whatever lane carries it") {
   const Trajectories input = ellipses(30);
   const EnsembleResult result = advance_ensemble(kepler(), input.start(), with(8, 1, 2));
   CHECK(result.width == 8);
-  CHECK(result.backend == "interpreter");
+  CHECK(result.backend == "interpreter");  // so little work pays for no compilation
   for (std::size_t i = 0; i < input.count(); ++i) {
     CAPTURE(i);
     const TrajectoryEnding& ending = result.endings[i];
@@ -296,4 +296,44 @@ TEST_CASE("what a backend throws comes out of the call") {
   };
   options.expansion = [](const Kernel&, int) { return std::make_shared<Failing>(); };
   CHECK_THROWS_WITH(advance_ensemble(kepler(), input.start(), options), "no luck");
+}
+
+TEST_CASE("compiled lanes carry the same motions; without a compiler the interpreter does, and says why") {
+  const Kernel kernel = double_pendulum();
+  Trajectories input = pendulums(13);
+  input.times = {0.2, 1};
+  EnsembleOptions options = with(8, 1, 2);
+  options.cache = false;
+  options.backend = Backend::Interpreter;
+  const EnsembleResult interpreted = advance_ensemble(kernel, input.start(), options);
+  CHECK(interpreted.trouble.empty());
+  options.backend = Backend::Compiled;
+  const EnsembleResult compiled = advance_ensemble(kernel, input.start(), options);
+  const bool here = backend_status().compiled;
+  CHECK(compiled.backend == (here ? "compiled" : "interpreter"));
+  CHECK(compiled.trouble.empty() == here);
+  for (std::size_t i = 0; i < input.count(); ++i) {
+    CHECK(compiled.endings[i].ok());
+    CHECK_FALSE(compiled.endings[i].alone);
+    CHECK(compiled.endings[i].energy_drift < 2e-14);
+    CHECK(distance(compiled.q_of(i), interpreted.q_of(i)) < 1e-10);
+    CHECK(distance(compiled.v_of(i), interpreted.v_of(i)) < 1e-9);
+  }
+  for (const auto& [width, threads] : std::vector<std::pair<int, int>>{{1, 1}, {4, 2}}) {
+    options.width = width, options.threads = threads;
+    CHECK(same(advance_ensemble(kernel, input.start(), options), compiled));
+  }
+}
+
+TEST_CASE("short ensembles are interpreted, long ones compiled where there is a compiler") {
+  const Kernel kernel = kepler();
+  Trajectories input = ellipses(4);
+  CHECK(advance_ensemble(kernel, input.start()).backend == "interpreter");
+  EnsembleOptions options;
+  options.maximum_steps = 10;
+  const double long_time = 1e6;
+  EnsembleStart start = input.start();
+  start.end = {&long_time, 1};
+  const EnsembleResult result = advance_ensemble(kernel, start, options);
+  CHECK(result.backend == (backend_status().compiled ? "compiled" : "interpreter"));
 }
