@@ -2,6 +2,7 @@
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/kernel.hpp>
 #include <maupertuis/trajectory.hpp>
 
 #include <atomic>
@@ -97,6 +98,15 @@ struct ConsistentStart {
 /// `diagnostics` names a smallest set of them that clashes.
 std::optional<ConsistentStart> consistent_start(const Model& model, const EquationsOfMotion& equations,
                                                 Diagnostics& diagnostics);
+
+/// What a ForwardDynamics (forward_dynamics.hpp) of a model is made from. The model's inputs are parameters here, whose values each call
+/// gives instead of their formulas; of an input that L depends on its rates u' and u'' are inputs too, after it. The expressions live as long as the system's context.
+struct DynamicsSource {
+  KernelSource kernel;
+  std::vector<double> parameters;           // values in SI units, in the order of kernel.parameters; 0 for inputs
+  std::vector<std::size_t> inputs;          // which of them are inputs, in the order of the model
+};
+DynamicsSource dynamics_source(const EquationsOfMotion& equations);
 
 /// Extra functions of q, q', q'', t whose values are wanted at the times `at`.
 struct Probe {

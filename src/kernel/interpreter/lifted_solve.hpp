@@ -1,6 +1,7 @@
 #pragma once
 #include "kernel/interpreter/interpreter.hpp"
 #include "kernel/packed/layout.hpp"
+#include "kernel/sparse/graph_product.hpp"
 #include "kernel/sparse/sparse_solver.hpp"
 
 #include <optional>
@@ -33,25 +34,8 @@ class LiftedSolve {
   const sparse::SparseSolver* solver() const { return solver_ ? &*solver_ : nullptr; }
 
  private:
-  /// Σ of the entries of a row with the unknowns before it.
-  struct Row {
-    std::uint32_t column;         // whose unknown it gives; none: of b
-    std::uint32_t residual;       // index in b
-    std::uint32_t first, last;    // in row_entries_
-  };
-
-  struct RowEntry {
-    std::uint32_t entry, column;
-  };
-  struct WithError {
-    double value, error;          // and a bound of its rounding error
-  };
-
-  void order_rows();
   bool fail();
   bool choose_pivots(const Memory& memory);
-  std::vector<std::vector<double>> sampled_entries(const Memory& memory) const;
-  void set_random_state(Memory& memory, const Memory& around, int state) const;
   double remainder(std::span<const double> b);
   void add_correction();
 
@@ -59,12 +43,10 @@ class LiftedSolve {
   std::size_t stored_;                           // cells that tangents() gives
   std::optional<sparse::LiftedSystem> system_;
   std::optional<sparse::Assembly> assembly_;
+  std::optional<sparse::GraphProduct> product_;
   std::optional<sparse::SparseSolver> solver_;
   std::vector<std::uint32_t> cell_of_column_;    // [columns] slots of the packed program, then cells of their own
-  std::vector<Row> rows_;
-  std::vector<RowEntry> row_entries_;
   std::vector<double> entries_;                  // [entries]
-  std::vector<WithError> z_;                     // [columns] of remainder()
   std::vector<double> residual_;                 // [unknowns] b − M₀ x
   Doubles cells_, change_;                       // [stride + columns]
   double least_pivot_ = 1;

@@ -1,0 +1,52 @@
+#pragma once
+#include <maupertuis/kernel.hpp>
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+/// Accelerations and forces at a point, for controllers and simulators with methods of their own.
+///
+///     ForwardDynamics dynamics(kernel, inputs);      // inputs: which parameters of the kernel change from call to call
+///     dynamics.set_parameters(values);
+///     if (dynamics.accelerations(t, q, v, u, a) != KernelStatus::Ok) …
+///
+/// docs/design/forward_dynamics.md tells how; `dynamics_source` (simulation.hpp) makes the kernel's source from a model.
+namespace maupertuis {
+
+/// R(q,q̇,q̈,u,t) = M(q,t) q̈ + h(q,q̇,u,t) of a kernel. One thread at a time; as many objects as wanted for one kernel.
+/// Units are those of the kernel: row i of R has the unit of energy per unit of q_i.
+class ForwardDynamics {
+ public:
+  /// `inputs`: parameters of the kernel whose values each call is given.
+  explicit ForwardDynamics(const Kernel& kernel, std::span<const std::size_t> inputs = {});
+  ~ForwardDynamics();
+  ForwardDynamics(ForwardDynamics&&) noexcept;
+
+  /// All parameters of the kernel, the inputs among them (typical values: they do not stay). Constant sub-expressions and the order of
+  /// elimination are found here. Precondition: values.size() == kernel.parameters().
+  void set_parameters(std::span<const double> values);
+  /// As KernelWorkspace::set_branches. [switches]; initially +1
+  void set_branches(std::span<const std::int8_t> sides);
+
+  /// q̈ [n] with R = 0, given q [n], q̇ [n], u [inputs]. Without constraints nothing is allocated, unless M is so close to
+  /// singular that the full matrix has to decide. With constraints by a KernelWorkspace: q̈ obeys them.
+  /// Errors: as KernelWorkspace::evaluate. Cost: about one evaluation of R, and of M as far as it is not zero.
+  KernelStatus accelerations(double t, std::span<const double> q, std::span<const double> v, std::span<const double> u,
+                             std::span<double> a);
+  /// Inverse dynamics: R(q,q̇,q̈,u,t) [n], the generalized forces that are missing for the motion to have the accelerations a.
+  void forces(double t, std::span<const double> q, std::span<const double> v, std::span<const double> a, std::span<const double> u,
+              std::span<double> out);
+  /// h = R(q,q̇,0,u,t) [n]
+  void bias(double t, std::span<const double> q, std::span<const double> v, std::span<const double> u, std::span<double> out);
+  /// M [n × n], row by row. Where it depends on an input, on that of the last call or set_parameters.
+  void mass(double t, std::span<const double> q, std::span<const double> v, std::span<double> out);
+  /// After SingularMass.
+  std::size_t singular_coordinate() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace maupertuis

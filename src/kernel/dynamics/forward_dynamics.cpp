@@ -1,0 +1,237 @@
+#include <maupertuis/forward_dynamics.hpp>
+
+#include "kernel/dynamics/point_program.hpp"
+#include "kernel/interpreter/elementary.hpp"
+#include "kernel/interpreter/sampled_states.hpp"
+#include "kernel/sparse/graph_product.hpp"
+#include "kernel/sparse/sparse_solver.hpp"
+
+#include <maupertuis/require.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+/// q̈ in three parts: the residual with q̈ = 0 by a flat program, the entries of the lifted M₀ from values that it has made on its way, and
+/// the sparse solution.
+namespace maupertuis {
+namespace {
+
+using dynamics::PointProgram;
+
+/// A pivot above this needs no check of the solution; below the lower one the full matrix decides.
+constexpr double sound_pivot = 1e-3, least_sound_pivot = 1e-7;
+/// Of the remainder, in units of its own rounding errors.
+constexpr double sound = 64;
+
+/// Slots whose values at order 0 the factors of the tangents are made of.
+std::vector<bool> slots_of_entries(const Program& program, const std::optional<sparse::LiftedSystem>& system) {
+  std::vector<bool> kept(program.slots, false);
+  if (!system) return kept;
+  for (const sparse::Edge& edge : system->edges) {
+    if (sparse::is_constant(edge.rule)) continue;
+    kept[edge.x] = true;
+    if (edge.y != no_slot) kept[edge.y] = true;
+  }
+  return kept;
+}
+
+}  // namespace
+
+struct ForwardDynamics::Impl {
+  Impl(const Kernel& k, std::span<const std::size_t> which)
+      : kernel(k), program(k.program()), inputs(which.begin(), which.end()), n(program.freedoms),
+        system(sparse::lift(program, std::vector<bool>(program.slots, false))),
+        at_rest(program, false, slots_of_entries(program, system)), moving(program, true, std::vector<bool>(program.slots, false)),
+        full(k, 1), parameters(program.parameters, 0.0), sides(program.switches.size(), 1), constants(program.constants.size()),
+        live(program.constants.size(), false), unknown(program.unknowns), rest(program.unknowns), unit(program.unknowns) {
+    if (system) {
+      assembly.emplace(*system, program, at_rest.flat().value_of_slot);
+      product.emplace(*system);
+      entries.resize(system->entries.size());
+      cell_of_column.resize(system->size);
+      std::iota(cell_of_column.begin(), cell_of_column.end(), 0u);
+      x.resize(system->size);
+    }
+    find_live();
+  }
+
+  void find_live();
+  double constant(std::size_t i);
+  void compute_constants();
+  void set_inputs(std::span<const double> u);
+  void choose_pivots();
+  KernelStatus by_full_matrix(double t, std::span<const double> q, std::span<const double> v, std::span<double> a);
+  bool solve();
+
+  Kernel kernel;
+  const Program& program;
+  std::vector<std::size_t> inputs;
+  std::size_t n;
+  std::optional<sparse::LiftedSystem> system;
+  PointProgram at_rest, moving;          // with q̈ = 0, and with any
+  KernelWorkspace full;
+  std::vector<double> parameters;
+  std::vector<std::int8_t> sides;
+  bool stale = true;
+  std::vector<double> constants;
+  std::vector<bool> live;                // [constants] that follow from inputs
+  std::vector<std::uint32_t> live_order; // their indices
+  std::optional<sparse::Assembly> assembly;
+  std::optional<sparse::GraphProduct> product;
+  std::optional<sparse::SparseSolver> solver;
+  std::vector<std::uint32_t> cell_of_column;
+  std::vector<double> entries, x;        // of the lifted system
+  std::vector<double> unknown, rest, unit;  // [unknowns]
+  double operands[64] = {};
+};
+
+void ForwardDynamics::Impl::find_live() {
+  for (std::uint32_t i = 0; i < program.constants.size(); ++i) {
+    const Constant& c = program.constants[i];
+    if (c.kind == Kind::Symbol) live[i] = std::find(inputs.begin(), inputs.end(), c.index) != inputs.end();
+    for (std::uint32_t k = 0; k < c.arguments; ++k) live[i] = live[i] || live[program.constant_arguments[c.first_argument + k]];
+    if (live[i]) live_order.push_back(i);
+  }
+}
+
+double ForwardDynamics::Impl::constant(std::size_t i) {
+  const Constant& c = program.constants[i];
+  if (c.kind == Kind::Number) return c.value;
+  if (c.kind == Kind::Symbol) return parameters[c.index];
+  if (c.kind == Kind::Sign && c.arguments == 0) return sides[c.index];
+  std::vector<double> many;
+  double* values = operands;
+  if (c.arguments > 64) many.resize(c.arguments), values = many.data();
+  for (std::uint32_t k = 0; k < c.arguments; ++k) values[k] = constants[program.constant_arguments[c.first_argument + k]];
+  return interpreter::constant_operation<double>(c.kind, {values, c.arguments});
+}
+
+void ForwardDynamics::Impl::compute_constants() {
+  if (!stale) return;
+  stale = false;
+  for (std::size_t i = 0; i < constants.size(); ++i) constants[i] = constant(i);
+  at_rest.set_constants(constants);
+  moving.set_constants(constants);
+  if (assembly) assembly->set_constants(constants.data());
+  full.set_parameters(parameters);
+  full.set_branches(sides);
+  if (system && program.unknowns == n) choose_pivots();
+}
+
+void ForwardDynamics::Impl::choose_pivots() {
+  const std::vector<double> origin(n, 0.0);
+  const auto samples = interpreter::sampled_entries(program, *system, constants, 0, origin, origin);
+  solver.reset();
+  if (const auto pivots = sparse::eliminate(*system, samples, {})) solver.emplace(*system, *pivots, cell_of_column);
+}
+
+void ForwardDynamics::Impl::set_inputs(std::span<const double> u) {
+  MAUP_REQUIRE(u.size() == inputs.size());
+  for (std::size_t i = 0; i < inputs.size(); ++i) parameters[inputs[i]] = u[i];
+  compute_constants();
+  if (inputs.empty()) return;
+  for (const std::uint32_t i : live_order) constants[i] = constant(i);
+  at_rest.renew(constants, live);
+  moving.renew(constants, live);
+  if (assembly) assembly->set_constants(constants.data());
+}
+
+/// unknown → x. False: the full matrix is to decide.
+bool ForwardDynamics::Impl::solve() {
+  if (!solver) return false;
+  (*assembly)(at_rest.cells(), entries);
+  const double least = solver->factor(entries);
+  if (!(least > least_sound_pivot)) return false;
+  solver->solve(unknown, x.data());
+  if (!(least > sound_pivot)) {
+    if (!(product->remainder(entries, {x.data(), n}, unknown, rest) <= sound)) return false;
+  }
+  return interpreter::is_finite({x.data(), n});
+}
+
+KernelStatus ForwardDynamics::Impl::by_full_matrix(double t, std::span<const double> q, std::span<const double> v, std::span<double> a) {
+  if (!inputs.empty()) full.set_parameters(parameters);
+  const KernelStatus status = full.evaluate(t, q, v);
+  if (status == KernelStatus::Ok)
+    for (std::size_t i = 0; i < n; ++i) a[i] = full.acceleration(i);
+  return status;
+}
+
+ForwardDynamics::ForwardDynamics(const Kernel& kernel, std::span<const std::size_t> inputs)
+    : impl_(std::make_unique<Impl>(kernel, inputs)) {
+  for (const std::size_t input : inputs) MAUP_REQUIRE(input < kernel.parameters());
+}
+ForwardDynamics::~ForwardDynamics() = default;
+ForwardDynamics::ForwardDynamics(ForwardDynamics&&) noexcept = default;
+
+void ForwardDynamics::set_parameters(std::span<const double> values) {
+  MAUP_REQUIRE(values.size() == impl_->parameters.size());
+  impl_->parameters.assign(values.begin(), values.end());
+  impl_->stale = true;
+  impl_->compute_constants();
+}
+
+void ForwardDynamics::set_branches(std::span<const std::int8_t> sides) {
+  MAUP_REQUIRE(sides.size() == impl_->sides.size());
+  impl_->sides.assign(sides.begin(), sides.end());
+  impl_->stale = true;
+  impl_->compute_constants();
+}
+
+KernelStatus ForwardDynamics::accelerations(double t, std::span<const double> q, std::span<const double> v, std::span<const double> u,
+                                            std::span<double> a) {
+  Impl& s = *impl_;
+  MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && a.size() == s.n);
+  s.set_inputs(u);
+  if (!s.solver) return s.by_full_matrix(t, q, v, a);
+  s.at_rest.evaluate(t, q, v, {});
+  for (std::size_t i = 0; i < s.n; ++i) s.unknown[i] = -s.at_rest.residual(i);
+  if (!s.solve()) return s.by_full_matrix(t, q, v, a);
+  std::copy_n(s.x.begin(), s.n, a.begin());
+  return KernelStatus::Ok;
+}
+
+void ForwardDynamics::forces(double t, std::span<const double> q, std::span<const double> v, std::span<const double> a,
+                             std::span<const double> u, std::span<double> out) {
+  Impl& s = *impl_;
+  MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && a.size() == s.n && out.size() == s.n);
+  s.set_inputs(u);
+  s.moving.evaluate(t, q, v, a);
+  for (std::size_t i = 0; i < s.n; ++i) out[i] = s.moving.residual(i);
+}
+
+void ForwardDynamics::bias(double t, std::span<const double> q, std::span<const double> v, std::span<const double> u,
+                           std::span<double> out) {
+  Impl& s = *impl_;
+  MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && out.size() == s.n);
+  s.set_inputs(u);
+  s.at_rest.evaluate(t, q, v, {});
+  for (std::size_t i = 0; i < s.n; ++i) out[i] = s.at_rest.residual(i);
+}
+
+void ForwardDynamics::mass(double t, std::span<const double> q, std::span<const double> v, std::span<double> out) {
+  Impl& s = *impl_;
+  MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && out.size() == s.n * s.n);
+  s.compute_constants();
+  std::fill(out.begin(), out.end(), 0.0);
+  if (!s.system) {
+    s.full.evaluate(t, q, v);
+    for (std::size_t i = 0; i < s.n; ++i)
+      for (std::size_t j = 0; j < s.n; ++j) out[i * s.n + j] = s.full.mass(i, j);
+    return;
+  }
+  s.at_rest.evaluate(t, q, v, {});
+  (*s.assembly)(s.at_rest.cells(), s.entries);
+  for (std::size_t j = 0; j < s.n; ++j) {
+    std::fill(s.unit.begin(), s.unit.end(), 0.0);
+    s.unit[j] = 1;
+    s.product->multiply(s.entries, s.unit, s.rest);
+    for (std::size_t i = 0; i < s.n; ++i) out[i * s.n + j] = s.rest[i];
+  }
+}
+
+std::size_t ForwardDynamics::singular_coordinate() const { return impl_->full.singular_coordinate(); }
+
+}  // namespace maupertuis
