@@ -315,6 +315,7 @@ class Emitter {
       case Pack::Quotient: keep(pack, quotient(pack, w)); break;
       case Pack::SquareRoot: keep(pack, square_root(pack, w)); break;
       case Pack::Scalar: scalar(pack); break;
+      case Pack::Scan: case Pack::ScanDown: break;  // of large systems alone, which are declined
     }
   }
 
@@ -756,7 +757,7 @@ class Emitter {
       case Pack::SquareRoot:
         block_source(pack.a, [this, &pack](unsigned w) { return b_.CreateFDiv(vector_of(0.5, w), value_at_zero(pack.y, w)); });
         break;
-      case Pack::Scalar: break;
+      default: break;
     }
     return result;
   }

@@ -15,7 +15,7 @@ class Collapse {
 
   void run() {
     for (Step& step : steps_) {
-      if (!is_sum(step)) continue;
+      if (!is_sum(step) || step.chain >= 0) continue;
       write_out(step);
       if (step.products.empty()) sum_of_[step.head.out] = &step;
     }
@@ -121,7 +121,7 @@ std::vector<Step> dynamics_of(const Program& program) {
   std::vector<Step> steps;
   for (const Run& run : program.runs[Dynamics])
     for (std::uint32_t i = run.first; i < run.last; ++i) {
-      Step step{program.instructions[i], {}, {}};
+      Step step{program.instructions[i], {}, {}, -1};
       for (std::uint32_t t = step.head.first_term; t < step.head.last_term; ++t) {
         const Term& term = program.terms[t];
         (term.b == no_slot ? step.linear : step.products).push_back(term);
@@ -131,7 +131,7 @@ std::vector<Step> dynamics_of(const Program& program) {
   return steps;
 }
 
-void collapse_sums(Program& program, std::vector<Step>& steps, std::size_t longest) {
+void write_derivatives(Program& program, std::vector<Step>& steps) {
   const ConstantId one = one_of(program);
   for (Step& step : steps) {
     if (step.head.op != Op::Derivative) continue;
@@ -139,7 +139,85 @@ void collapse_sums(Program& program, std::vector<Step>& steps, std::size_t longe
     step.head.op = Op::Linear;
     step.head.a = no_slot;
   }
+}
+
+void collapse_sums(Program& program, std::vector<Step>& steps, std::size_t longest) {
   Collapse(program, steps, longest).run();
 }
+
+namespace {
+
+class Chains {
+ public:
+  Chains(const Program& program, std::vector<Step>& steps)
+      : program_(program), steps_(steps), sum_of_(program.slots, none), next_(steps.size(), none), before_(steps.size(), none) {}
+
+  void find(std::size_t least) {
+    for (std::size_t i = 0; i < steps_.size(); ++i)
+      if (is_linear(steps_[i])) sum_of_[steps_[i].head.out] = i;
+    for (std::size_t i = 0; i < steps_.size(); ++i)
+      if (is_linear(steps_[i])) link(i);
+    int number = 0;
+    for (std::size_t i = 0; i < steps_.size(); ++i)
+      if (next_[i] != none && before_[i] == none) number += mark(i, number, least);
+  }
+
+ private:
+  static bool is_linear(const Step& step) { return step.head.op == Op::Linear && step.products.empty() && !step.linear.empty(); }
+  bool is_one(ConstantId id) const { return program_.constants[id].kind == Kind::Number && program_.constants[id].value == 1; }
+
+  /// The one sum that this one carries on.
+  void link(std::size_t i) {
+    Step& step = steps_[i];
+    for (Term& term : step.linear) {
+      const std::size_t before = sum_of_[term.a];
+      if (before == none || before >= i || next_[before] != none || term.shift != 0 || !is_one(term.coefficient) ||
+          steps_[before].head.lag != step.head.lag || step.linear.size() > most_terms)
+        continue;
+      std::swap(term, step.linear.front());
+      before_[i] = before, next_[before] = i;
+      return;
+    }
+  }
+
+  /// Members from the first on, as long as what is added does not depend on the members before.
+  bool mark(std::size_t first, int number, std::size_t least) {
+    std::vector<std::size_t> members;
+    std::vector<bool> depends(program_.slots, false);
+    std::size_t at = first;
+    // The first member has nothing before it: what it is, is what the second adds to.
+    for (std::size_t i = next_[first]; i != none; i = next_[i]) {
+      for (; at < i; ++at) spread(at, depends);
+      if (adds_dependent(steps_[i], depends)) break;
+      members.push_back(i);
+      depends[steps_[i].head.out] = true;
+      ++at;
+    }
+    if (members.size() < least) return false;
+    for (const std::size_t i : members) steps_[i].chain = number;
+    return true;
+  }
+
+  void spread(std::size_t i, std::vector<bool>& depends) const {
+    const Step& step = steps_[i];
+    bool any = false;
+    for_operands(step, [&](Slot slot, int) { any = any || depends[slot]; });
+    if (!any) return;
+    depends[step.head.out] = true;
+    if (step.head.second != no_slot) depends[step.head.second] = true;
+  }
+  static bool adds_dependent(const Step& step, const std::vector<bool>& depends) {
+    return std::any_of(step.linear.begin() + 1, step.linear.end(), [&](const Term& term) { return depends[term.a]; });
+  }
+
+  static constexpr std::size_t none = ~std::size_t{0}, most_terms = 6;
+  const Program& program_;
+  std::vector<Step>& steps_;
+  std::vector<std::size_t> sum_of_, next_, before_;
+};
+
+}  // namespace
+
+void find_chains(const Program& program, std::vector<Step>& steps, std::size_t least) { Chains(program, steps).find(least); }
 
 }  // namespace maupertuis::packed

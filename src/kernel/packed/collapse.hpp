@@ -9,10 +9,18 @@ namespace maupertuis::packed {
 struct Step {
   Instruction head;
   std::vector<Term> linear, products;   // Function: its differential is in `products`; Select: its choices in `linear`
+  int chain = -1;                       // number of the running sum that it belongs to; its first linear term is the sum before
 };
 
-/// The instructions of section Dynamics, in order; d/dt has become a linear term with a shift.
+/// The instructions of section Dynamics, in order.
 std::vector<Step> dynamics_of(const Program& program);
+
+/// Finds running sums s_i = s_{i−1} + …, of at least `least` members, and numbers them. What is added must not depend on them. d/dt has to be a
+/// linear term by then (collapse_sums does that).
+void find_chains(const Program& program, std::vector<Step>& steps, std::size_t least);
+
+/// d/dt becomes a linear term with a shift.
+void write_derivatives(Program& program, std::vector<Step>& steps);
 
 /// Writes sums that sums read out in them, so that fewer wait for each other, and drops those that nothing reads any more.
 /// A sum gets at most `longest` terms that way. New coefficients are appended to the program's constants.

@@ -15,6 +15,31 @@ inline Vector gather(const double* p, const Slot* slots) {
   return Vector{p[slots[0]], p[slots[1]], p[slots[2]], p[slots[3]], p[slots[4]], p[slots[5]], p[slots[6]], p[slots[7]]};
 }
 
+typedef long long Places __attribute__((vector_size(64)));
+
+inline Vector column_values(const double* from, const Column& column) {
+  switch (column.kind) {
+    case Column::Broadcast: return all(from[column.source]);
+    case Column::Contiguous: return load(from + column.source);
+    case Column::Reversed: return __builtin_shuffle(load(from + column.source - (lanes - 1)), Places{7, 6, 5, 4, 3, 2, 1, 0});
+    default: return gather(from, column.sources.data());
+  }
+}
+
+/// Each lane with all lanes before it.
+inline Vector running_sum(Vector v) {
+  const Vector zero = all(0);
+  v += __builtin_shuffle(v, zero, Places{8, 0, 1, 2, 3, 4, 5, 6});
+  v += __builtin_shuffle(v, zero, Places{8, 8, 0, 1, 2, 3, 4, 5});
+  return v + __builtin_shuffle(v, zero, Places{8, 8, 8, 8, 0, 1, 2, 3});
+}
+inline Vector running_sum_down(Vector v) {
+  const Vector zero = all(0);
+  v += __builtin_shuffle(v, zero, Places{1, 2, 3, 4, 5, 6, 7, 8});
+  v += __builtin_shuffle(v, zero, Places{2, 3, 4, 5, 6, 7, 8, 8});
+  return v + __builtin_shuffle(v, zero, Places{4, 5, 6, 7, 8, 8, 8, 8});
+}
+
 /// Σ_{j=first..last} a_j b_{k−j}, the newest coefficients last.
 inline Vector convolution(const double* a, const double* b, int first, int last, int k, std::ptrdiff_t stride) {
   Vector even = all(0), odd = all(0), rest = all(0), more = all(0);
@@ -57,7 +82,9 @@ class Stage {
       if (k_ < 0) continue;
       row_ = t_.rows + k_ * stride_;
       switch (pack.kind) {
-        case Pack::Sum: sum(pack); break;
+        case Pack::Sum: save(row_ + pack.out, products(pack, columns(pack))); break;
+        case Pack::Scan: save(row_ + pack.out, running_sum(columns(pack)) + all(row_[pack.carry])); break;
+        case Pack::ScanDown: save(row_ + pack.out, running_sum_down(columns(pack)) + all(row_[pack.carry])); break;
         case Pack::Integral: integral(pack); break;
         case Pack::Quotient: quotient(pack); break;
         case Pack::SquareRoot: square_root(pack); break;
@@ -80,7 +107,7 @@ class Stage {
 
   void copy(const Block& block, int order) const {
     double* const row = t_.rows + order * stride_;
-    const Vector values = gather(row, block.slots.data());
+    const Vector values = block.is_range ? load(row + block.slots[0]) : gather(row, block.slots.data());
     save(row + block.first, block.weighted ? values * all(order) : values);
   }
 
@@ -91,19 +118,19 @@ class Stage {
     if (!block.direct && order >= 0 && order <= k_) copy(block, order);
   }
 
-  void sum(const Pack& pack) const {
+  Vector columns(const Pack& pack) const {
     Vector plain = all(0), once = all(0), twice = all(0);
     for (std::uint32_t c = pack.first_column; c < pack.last_column; ++c) {
       const Column& column = t_.columns[c];
-      const double* const from = row_ + column.shift * stride_;
-      const Vector values = column.kind == Column::Broadcast ? all(from[column.source])
-                            : column.kind == Column::Contiguous ? load(from + column.source) : gather(from, column.sources.data());
-      const Vector term = load(coefficients(column.coefficients)) * values;
+      const Vector term = load(coefficients(column.coefficients)) * column_values(row_ + column.shift * stride_, column);
       if (column.shift == 0) plain += term;
       else if (column.shift == 1) once += term;
       else twice += term;
     }
-    Vector result = plain + (all(k_ + 1.0) * once + all((k_ + 1.0) * (k_ + 2.0)) * twice);
+    return plain + (all(k_ + 1.0) * once + all((k_ + 1.0) * (k_ + 2.0)) * twice);
+  }
+
+  Vector products(const Pack& pack, Vector result) const {
     for (std::uint32_t p = pack.first_product; p < pack.last_product; ++p) {
       const ProductTerm& term = t_.products[p];
       bring(term.a);
@@ -112,7 +139,7 @@ class Stage {
       result += load(coefficients(term.coefficients)) *
                 (k_ == 0 ? load(a) * load(b) : term.a == term.b ? self(a, 0) : convolution(a, b, 0, k_, k_, stride_));
     }
-    save(row_ + pack.out, result);
+    return result;
   }
 
   /// Σ_{j=first..k−first} a_j a_{k−j}, each pair once.
@@ -189,7 +216,9 @@ class Tangents {
     for (std::size_t i = 0; i < t_.pack_count; ++i) {
       const Pack& pack = t_.packs[i];
       switch (pack.kind) {
-        case Pack::Sum: sum(pack); break;
+        case Pack::Sum: save(tangent_ + pack.out, products(pack, columns(pack))); break;
+        case Pack::Scan: save(tangent_ + pack.out, running_sum(columns(pack)) + all(tangent_[pack.carry])); break;
+        case Pack::ScanDown: save(tangent_ + pack.out, running_sum_down(columns(pack)) + all(tangent_[pack.carry])); break;
         case Pack::Integral: integral(pack); break;
         case Pack::Quotient: quotient(pack); break;
         case Pack::SquareRoot: save(tangent_ + pack.out, of(pack, pack.a) / (load(value(pack.y)) + load(value(pack.y)))); break;
@@ -211,21 +240,21 @@ class Tangents {
     return block.direct ? load(tangent_ + block.first) : gather(tangent_, block.slots.data());
   }
 
-  void sum(const Pack& pack) const {
+  Vector columns(const Pack& pack) const {
     Vector result = all(0);
-    for (std::uint32_t c = pack.first_column; c < pack.last_column; ++c) {
-      const Column& column = t_.columns[c];
-      if (!column.passes_tangent) continue;
-      const Vector values = column.kind == Column::Broadcast ? all(tangent_[column.source])
-                            : column.kind == Column::Contiguous ? load(tangent_ + column.source) : gather(tangent_, column.sources.data());
-      result += load(t_.coefficients + column.coefficients) * values;
-    }
+    for (std::uint32_t c = pack.first_column; c < pack.last_column; ++c)
+      if (const Column& column = t_.columns[c]; column.passes_tangent)
+        result += load(t_.coefficients + column.coefficients) * column_values(tangent_, column);
+    return result;
+  }
+
+  Vector products(const Pack& pack, Vector result) const {
     for (std::uint32_t p = pack.first_product; p < pack.last_product; ++p) {
       const ProductTerm& term = t_.products[p];
       const Vector change = of(pack, term.a) * value_of(term.b) + value_of(term.a) * of(pack, term.b);
       result += load(t_.coefficients + term.coefficients) * change;
     }
-    save(tangent_ + pack.out, result);
+    return result;
   }
 
   void integral(const Pack& pack) const {
@@ -281,7 +310,6 @@ inline Vector larger(Vector x, Vector y) { return x > y ? x : y; }
 inline Vector absolute(Vector x) { return x < 0 ? -x : x; }
 
 const Vector lane_numbers = {0, 1, 2, 3, 4, 5, 6, 7};
-typedef long long Places __attribute__((vector_size(64)));
 
 inline double largest_lane(Vector v, std::size_t count) {
   const auto fold = [&v](Places places) {

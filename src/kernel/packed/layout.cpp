@@ -14,6 +14,7 @@ namespace maupertuis::packed {
 namespace {
 
 constexpr std::size_t longest_sum_of_small = 64, longest_sum_of_large = 10;
+constexpr std::size_t most_without_chains = 16, shortest_chain = 8;
 
 std::size_t padded(std::size_t count) { return (count + lanes - 1) / lanes * lanes; }
 
@@ -23,7 +24,10 @@ class Layout {
 
   PackedProgram run() {
     steps_ = dynamics_of(program_);
-    collapse_sums(program_, steps_, in_.unknowns <= 40 ? longest_sum_of_small : longest_sum_of_large);
+    const bool large = in_.unknowns > most_without_chains;
+    write_derivatives(program_, steps_);
+    if (large) find_chains(program_, steps_, shortest_chain);
+    collapse_sums(program_, steps_, large ? longest_sum_of_large : longest_sum_of_small);
     find_producers();
     find_levels();
     find_stored();
@@ -42,6 +46,7 @@ class Layout {
     int level = 0;
     bool stored = false;
     bool packs = false;                 // worth vectors
+    bool down = false;                  // a running sum from the last lane to the first
   };
 
   const Step& step(std::size_t index) const { return steps_[index]; }
@@ -57,12 +62,43 @@ class Layout {
     }
   }
 
+  /// A running sum is one member of the order; what nothing in Dynamics waits for comes last, all at once.
   void find_levels() {
-    level_.assign(steps_.size(), 0);
-    for (std::size_t i = 0; i < steps_.size(); ++i)
+    constexpr int patience = 200;
+    int turn = 0;
+    while (raise_levels() && turn < patience) ++turn;
+    if (turn == patience) {  // running sums that wait for each other
+      for (Step& s : steps_) s.chain = -1;
+      while (raise_levels()) {}
+    }
+    std::vector<bool> read(in_.slots, false);
+    for (const Step& s : steps_) for_operands(s, [&](Slot slot, int) { read[slot] = true; });
+    const int last = level_.empty() ? 0 : *std::max_element(level_.begin(), level_.end());
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+      const Instruction& head = steps_[i].head;
+      if (steps_[i].chain < 0 && !read[head.out] && (head.second == no_slot || !read[head.second])) level_[i] = last;
+    }
+  }
+
+  bool raise_levels() {
+    bool changed = level_.size() != steps_.size();
+    level_.resize(steps_.size(), 0);
+    std::map<int, int> of_chain;
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+      int level = 0;
       for_operands(steps_[i], [&](Slot slot, int) {
-        if (producer_[slot] != none) level_[i] = std::max(level_[i], level_[producer_[slot]] + 1);
+        const std::size_t producer = producer_[slot];
+        if (producer == none || (steps_[i].chain >= 0 && steps_[producer].chain == steps_[i].chain)) return;
+        level = std::max(level, level_[producer] + 1);
       });
+      if (steps_[i].chain >= 0) {
+        int& whole = of_chain[steps_[i].chain];
+        level = whole = std::max({whole, level, level_[i]});
+      }
+      changed = changed || level > level_[i];
+      level_[i] = std::max(level_[i], level);
+    }
+    return changed;
   }
 
   void store(Slot slot) { if (slot != no_slot) stored_[slot] = true; }
@@ -86,6 +122,9 @@ class Layout {
     for (const auto* slots : {&in_.switch_slots, &in_.events, &in_.observables, &in_.integrands, &in_.constraint_values,
                               &in_.constraint_rates})
       for (const Slot slot : *slots) store(slot);
+    std::map<int, bool> of_chain;  // all members or none
+    for (const Step& s : steps_) if (s.chain >= 0 && stored_[s.head.out]) of_chain[s.chain] = true;
+    for (const Step& s : steps_) if (s.chain >= 0 && of_chain[s.chain]) store(s.head.out);
   }
 
   // --------------------------------------------------------------------------------------------------------- groups
@@ -113,6 +152,7 @@ class Layout {
   /// Instructions of one key may share a pack.
   std::vector<int> shape(std::size_t index) const {
     const Step& s = step(index);
+    if (s.chain >= 0) return {level_[index], -1, s.chain};
     std::vector<int> key{level_[index], static_cast<int>(s.head.op), s.head.lag, stored_[s.head.out],
                          in_.tangent_lags[s.head.out] == Program::unmoved};
     if (s.head.a != no_slot) key.push_back(lag(s.head.a));
@@ -135,7 +175,7 @@ class Layout {
     std::map<std::vector<int>, std::size_t> index;
     for (std::size_t i = 0; i < steps_.size(); ++i) {
       const auto [place, fresh] = index.try_emplace(shape(i), groups_.size());
-      if (fresh) groups_.push_back({{}, level_[i], stored_[steps_[i].head.out], false});
+      if (fresh) groups_.push_back({{}, level_[i], stored_[steps_[i].head.out], false, false});
       groups_[place->second].steps.push_back(i);
     }
     std::stable_sort(groups_.begin(), groups_.end(), [](const Group& x, const Group& y) { return x.level < y.level; });
@@ -152,18 +192,24 @@ class Layout {
     for (Slot slot = 0; slot < in_.unknowns; ++slot) place_[slot] = slot;
     std::size_t next = in_.unknowns;
     for (Group& group : groups_) {
-      std::stable_sort(group.steps.begin(), group.steps.end(),
+      if (step(group.steps[0]).chain < 0)
+        std::stable_sort(group.steps.begin(), group.steps.end(),
                        [&](std::size_t x, std::size_t y) { return first_operand(x) < first_operand(y); });
       for (const std::size_t i : group.steps) place_[steps_[i].head.out] = next++;
       for (const std::size_t i : group.steps)
         if (steps_[i].head.second != no_slot) place_[steps_[i].head.second] = next++;
     }
     rank_consumers();
-    for (Group& group : groups_)
-      if (is_linear(step(group.steps[0])))
+    for (Group& group : groups_) {
+      if (step(group.steps[0]).chain >= 0) {
+        group.down = rank_[step(group.steps.front()).head.out] > rank_[step(group.steps.back()).head.out];
+        if (group.down) std::reverse(group.steps.begin(), group.steps.end());
+      } else if (is_linear(step(group.steps[0]))) {
         std::stable_sort(group.steps.begin(), group.steps.end(), [&](std::size_t x, std::size_t y) {
           return rank_[steps_[x].head.out] < rank_[steps_[y].head.out];
         });
+      }
+    }
   }
 
   static bool is_linear(const Step& s) { return s.head.op == Op::Linear && s.products.empty(); }
@@ -263,13 +309,16 @@ class Layout {
       instruction.last_term = static_cast<std::uint32_t>(terms.size());
       program_.instructions.push_back(instruction);
     };
-    for (const Group& group : groups_)
-      for (const std::size_t i : group.steps) {
+    for (const Group& group : groups_) {
+      std::vector<std::size_t> in_order = group.steps;
+      if (group.down) std::reverse(in_order.begin(), in_order.end());
+      for (const std::size_t i : in_order) {
         const auto index = static_cast<std::uint32_t>(program_.instructions.size());
         index_.emplace(i, index);
         append(steps_[i].head, steps_[i].linear, steps_[i].products);
         runs[Dynamics].push_back({steps_[i].head.op, steps_[i].head.lag, index, index + 1});
       }
+    }
     for (const Section section : {Along, AtPoint})
       for (const Run& run : in_.runs[section]) {
         const auto first = static_cast<std::uint32_t>(program_.instructions.size());
@@ -312,7 +361,9 @@ class Layout {
         for (const std::size_t i : group.steps) scalar(i, group.level);
         continue;
       }
-      for (std::size_t first = 0; first < group.steps.size(); first += lanes) {
+      const std::size_t chunks = padded(group.steps.size()) / lanes;
+      for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+        const std::size_t first = lanes * (group.down ? chunks - 1 - chunk : chunk);
         const std::size_t last = std::min<std::size_t>(first + lanes, group.steps.size());
         write_pack({group.steps.begin() + static_cast<std::ptrdiff_t>(first), group.steps.begin() + static_cast<std::ptrdiff_t>(last)},
                    group);
@@ -333,6 +384,7 @@ class Layout {
     Pack pack{.lag = shape.head.lag, .level = static_cast<std::int8_t>(std::min(group.level, 127)),
               .width = static_cast<std::uint32_t>(members.size()), .out = number_[shape.head.out],
               .instruction = index_.at(members[0])};
+    if (shape.chain >= 0) return scan(pack, members, group);
     switch (shape.head.op) {
       case Op::SinCos: return pairs(pack, members, group, -1);
       case Op::SinhCosh: return pairs(pack, members, group, 1);
@@ -405,6 +457,22 @@ class Layout {
     out_.packs.push_back(pack);
   }
 
+  void scan(Pack pack, Members members, const Group& group) {
+    pack.kind = group.down ? Pack::ScanDown : Pack::Scan;
+    pack.carry = number_[step(group.down ? members.back() : members.front()).linear.front().a];
+    pack.first_column = static_cast<std::uint32_t>(out_.columns.size());
+    columns(members, pack.lag);
+    pack.last_column = static_cast<std::uint32_t>(out_.columns.size());
+    out_.packs.push_back(pack);
+  }
+
+  /// Of a running sum: what is added.
+  std::vector<Term> terms_of(std::size_t index) const {
+    std::vector<Term> terms(step(index).linear.begin() + (step(index).chain >= 0 ? 1 : 0), step(index).linear.end());
+    for (Term& term : terms) term.a = number_[term.a];
+    return terms;
+  }
+
   void sum(Pack& pack, Members members) {
     pack.kind = Pack::Sum;
     pack.first_column = static_cast<std::uint32_t>(out_.columns.size());
@@ -437,9 +505,8 @@ class Layout {
     std::vector<std::vector<Term>> sums;
     std::size_t longest = 0;
     for (std::size_t lane = 0; lane < members.size(); ++lane) {
-      std::vector<Term> terms = step(members[lane]).linear;
-      for (Term& term : terms) {
-        term.a = number_[term.a];
+      std::vector<Term> terms = terms_of(members[lane]);
+      for (const Term& term : terms) {
         auto& column = by_operand[{term.shift, term.a}];
         column.resize(lanes, zero_);
         column[lane] = term.coefficient;
@@ -457,7 +524,7 @@ class Layout {
     bool aligned = true;
     for (std::size_t t = 0; t < longest; ++t) aligned = aligned && same_shifts(t);
     std::size_t loads = 0;
-    for (std::size_t t = 0; aligned && t < longest; ++t) loads += is_range(sums, t) ? 1 : 5;
+    for (std::size_t t = 0; aligned && t < longest; ++t) loads += is_range(sums, t) || is_reversed(sums, t) ? 1 : 5;
     const bool by_place = aligned && loads < by_operand.size();
     if (!by_place) {
       for (const auto& [key, column] : by_operand) add_column({.kind = Column::Broadcast, .shift = static_cast<std::uint8_t>(key.first),
@@ -465,7 +532,7 @@ class Layout {
       return;
     }
     for (std::size_t t = 0; t < longest; ++t) {
-      Column column{.kind = is_range(sums, t) ? Column::Contiguous : Column::Gather, .shift = static_cast<std::uint8_t>(sums[0][t].shift),
+      Column column{.kind = is_range(sums, t) ? Column::Contiguous : is_reversed(sums, t) ? Column::Reversed : Column::Gather, .shift = static_cast<std::uint8_t>(sums[0][t].shift),
                     .source = sums[0][t].a};
       std::vector<ConstantId> c;
       column.sources.fill(sums[0][t].a);
@@ -485,8 +552,7 @@ class Layout {
     const auto lag_of = [&](const Term& term) { return static_cast<int>(out_.program.lags[term.a]); };
     for (std::size_t lane = 0; lane < members.size(); ++lane) {
       std::vector<Term> terms;
-      for (Term term : step(members[lane]).linear) {
-        term.a = number_[term.a];
+      for (const Term& term : terms_of(members[lane])) {
         if (term.a == out_.program.one) has_one = true, of_one[lane] = term.coefficient;
         else terms.push_back(term);
       }
@@ -531,6 +597,12 @@ class Layout {
     return sums.size() == lanes || first % lanes == 0;
   }
 
+  static bool is_reversed(const std::vector<std::vector<Term>>& sums, std::size_t t) {
+    for (std::size_t lane = 0; lane < sums.size(); ++lane)
+      if (sums[lane][t].a + lane != sums[0][t].a) return false;
+    return sums.size() == lanes;
+  }
+
   void add_column(Column column, std::vector<ConstantId> c, int lag) {
     column.passes_tangent = out_.program.tangent_lags[column.source] + column.shift == lag;
     column.coefficients = coefficients(std::move(c));
@@ -553,6 +625,8 @@ class Layout {
                  .width = static_cast<std::uint32_t>(slots.size())};
     result.slots.fill(slots[0]);
     std::copy(slots.begin(), slots.end(), result.slots.begin());
+    result.is_range = slots.size() == lanes || slots[0] % lanes == 0;
+    for (std::size_t lane = 0; lane < slots.size(); ++lane) result.is_range = result.is_range && slots[lane] == slots[0] + lane;
     if (!range) {
       result.first = static_cast<Slot>(next_cell_);
       next_cell_ += lanes;

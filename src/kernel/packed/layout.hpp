@@ -21,14 +21,15 @@ struct Block {
   std::int8_t lag = 0;
   std::uint32_t width = 0;
   std::array<Slot, lanes> slots{};      // what is copied
+  bool is_range = false;                // … is side by side
 };
 
 /// Σ over columns: coefficient of the lane · dʳ/dtʳ of an operand.
 struct Column {
-  enum Kind : std::uint8_t { Broadcast, Contiguous, Gather } kind = Broadcast;
+  enum Kind : std::uint8_t { Broadcast, Contiguous, Reversed, Gather } kind = Broadcast;
   std::uint8_t shift = 0;
   bool passes_tangent = false;          // lag of the operand + shift = lag of the pack
-  Slot source = 0;                      // Broadcast, Contiguous (the first)
+  Slot source = 0;                      // Broadcast, Contiguous, Reversed: of the first lane
   std::array<Slot, lanes> sources{};    // Gather
   std::uint32_t coefficients = 0;       // in PackedProgram::coefficients, `lanes` of them
 };
@@ -42,6 +43,8 @@ struct ProductTerm {
 struct Pack {
   enum Kind : std::uint8_t {
     Sum,         // columns + products
+    Scan,        // running sums of columns: each lane adds to the lane before, the first to `carry`
+    ScanDown,    // the same from the last lane to the first
     Integral,    // y with dy = c w du: sines, cosines, exponentials, inverse functions
     Quotient,    // block a / block b
     SquareRoot,  // of block a
@@ -55,6 +58,7 @@ struct Pack {
   std::uint32_t first_aligned = 0, last_aligned = 0;  // Sum: the same columns by their place in the sums, for compiled code
   std::uint32_t a = no_block, b = no_block, y = no_block;  // Integral: u (weighted), w; Quotient: a, b, y; SquareRoot: u, –, y
   std::uint32_t coefficients = 0;       // Integral: c
+  Slot carry = no_slot;                 // Scan: what the first lane adds to
   Slot pairs = no_block;                // Integral of sines: the first of their cosines
   std::uint32_t instruction = 0;        // of the first lane; those of the others follow
   std::uint32_t first_function = 0, last_function = 0;  // Integral: what gives order 0, in PackedProgram::functions
