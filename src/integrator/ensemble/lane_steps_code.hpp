@@ -126,7 +126,7 @@ class Steps {
     V size{}, power = V{} + 1;
     const int last = a_.order - 2 < 3 ? a_.order - 2 : 3;
     for (int k = 0; k <= last; ++k, power *= h) size = larger(size, velocity(i, k) * power);
-    if (anywhere(size == 0)) size = size_of_late(i, h, size);
+    if (vanishes_somewhere(size)) size = size_of_late(i, h, size);
     return larger(size, epsilon * absolute(get(a_.q_high + i * a_.width)) * inverse_of_h);
   }
 
@@ -137,34 +137,41 @@ class Steps {
     return size;
   }
 
-  static bool anywhere(bool mask) { return mask; }
-  template <class Integers>
-  static bool anywhere(Integers mask) {
-    std::int64_t any = 0;
-    for (std::size_t lane = 0; lane < Width; ++lane) any |= mask[lane];
-    return any != 0;
+  static bool vanishes_somewhere(V x) {
+#if defined(__AVX512F__)
+    if constexpr (Width == 8) return _mm512_cmp_pd_mask(x, V{}, _CMP_EQ_OQ) != 0;
+#endif
+    const double* const lanes = reinterpret_cast<const double*>(&x);
+    bool any = false;
+    for (std::size_t lane = 0; lane < Width; ++lane) any = any || lanes[lane] == 0;
+    return any;
   }
 
   /// factor · min over the last orders of the radius of convergence that each tells, the earlier ones widened.
   V reached(V h) const {
-    constexpr int most = 6;
     constexpr double log2_widened = 0.32192809488736235;  // of 1.25
-    const int p = a_.order, lowest = p - 5 < 2 ? (p - 1 < 2 ? p - 1 : 2) : p - 5;
+    constexpr int most = 6;
+    const int p = a_.order, last = p - (p - 5 > 2 ? p - 5 : p - 1 < 2 ? p - 1 : 2);
     const V inverse_of_h = 1.0 / h;
-    V largest[most] = {};
+    V largest[most];
+#pragma GCC unroll 6
+    for (int e = 0; e < most; ++e) largest[e] = V{};
     for (std::size_t i = 0; i < a_.freedoms; ++i) {
       const V inverse = 1.0 / size_of(i, h, inverse_of_h);
-      for (int k = p; k >= lowest; --k) {
-        const V last = velocity(i, k);
+      const double* c = a_.coefficients + static_cast<std::size_t>(p + 1) * a_.row + i * a_.width;
+#pragma GCC unroll 6
+      for (int e = 0; e < most; ++e, c -= a_.row) {
+        if (e > last) break;
         // 0/0 is no estimate: a comparison with NaN is false.
-        largest[p - k] = larger(last * inverse, largest[p - k]);
+        largest[e] = larger(absolute(get(c)) * a_.whole[p + 1 - e] * inverse, largest[e]);
       }
     }
     V exponent = V{} + infinity;
-    for (int k = p; k >= lowest; --k) {
-      const V ratio = largest[p - k];
-      const V by_k = log2_of(ratio) * a_.inverse[k] + (k < p - 1 ? log2_widened : 0.0);
-      exponent = (ratio > 0) & (by_k < exponent) ? by_k : exponent;
+#pragma GCC unroll 6
+    for (int e = 0; e < most; ++e) {
+      if (e > last) break;
+      const V by_order = rough_log2<V, I>(largest[e]) * a_.inverse[p - e] + (e > 1 ? log2_widened : 0.0);
+      exponent = (largest[e] > 0) & (by_order < exponent) ? by_order : exponent;
     }
     const V length = exp2_of(exponent) * a_.factor;
     return exponent < infinity ? length : V{} + infinity;

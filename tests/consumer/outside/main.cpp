@@ -1,5 +1,7 @@
 // A program of somebody else: a pendulum from its text to its motion.
 #include <maupertuis/certificate.hpp>
+#include <maupertuis/ensemble.hpp>
+#include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/simulation.hpp>
 
@@ -7,6 +9,21 @@
 #include <cstdio>
 
 using namespace maupertuis;
+
+/// Pendulums let go at many angles: none may gain or lose energy, and the one from 60° has to move as `expected` did.
+bool ensemble_agrees(const EquationsOfMotion& equations, double expected) {
+  const MotionKernel motion = motion_kernel(equations);
+  std::vector<double> q, v, end{10};
+  for (int i = 1; i <= 30; ++i) q.push_back(i * std::acos(-1.0) / 45), v.push_back(0);
+  EnsembleStart start;
+  start.q = q, start.v = v, start.end = end, start.parameters = motion.parameters;
+  EnsembleOptions options;
+  options.energy_terms = motion.energy_terms;
+  const EnsembleResult result = advance_ensemble(motion.kernel, start, options);
+  for (const TrajectoryEnding& ending : result.endings)
+    if (!ending.ok() || ending.energy_drift > 1e-13) return false;
+  return std::abs(result.q_of(14)[0] - expected) < 1e-12;
+}
 
 int main() {
   const SourceText source("pendulum.lag",
@@ -30,6 +47,7 @@ int main() {
   if (!certify(*equations, &derivation).passed()) return 4;
   const auto result = simulate(*model, *equations, {}, diagnostics);
   if (!result || !result->ok() || result->statistics.energy_drift > 1e-12) return 5;
+  if (!ensemble_agrees(*equations, result->final.q[0])) return 6;
   std::printf("%s\nθ(10 s) = %.15g\n", text.c_str(), result->final.q[0]);
   return 0;
 }
