@@ -3,6 +3,7 @@
 #include "kernel/dynamics/point_program.hpp"
 #include "kernel/interpreter/elementary.hpp"
 #include "kernel/interpreter/sampled_states.hpp"
+#include "kernel/jet/linear_solver.hpp"
 #include "kernel/sparse/graph_product.hpp"
 #include "kernel/sparse/sparse_solver.hpp"
 
@@ -24,6 +25,8 @@ using dynamics::PointProgram;
 constexpr double sound_pivot = 1e-3, least_sound_pivot = 1e-7;
 /// Of the remainder, in units of its own rounding errors.
 constexpr double sound = 64;
+/// Beyond, a full matrix allocates.
+constexpr std::size_t most_full = 8;
 
 /// Slots whose values at order 0 the factors of the tangents are made of.
 std::vector<bool> slots_of_entries(const Program& program, const std::optional<sparse::LiftedSystem>& system) {
@@ -64,6 +67,7 @@ struct ForwardDynamics::Impl {
   void choose_pivots();
   KernelStatus by_full_matrix(double t, std::span<const double> q, std::span<const double> v, std::span<double> a);
   bool solve();
+  bool solve_full();
 
   Kernel kernel;
   const Program& program;
@@ -80,7 +84,8 @@ struct ForwardDynamics::Impl {
   std::vector<std::uint32_t> live_order; // their indices
   std::optional<sparse::Assembly> assembly;
   std::optional<sparse::GraphProduct> product;
-  std::optional<sparse::SparseSolver> solver;
+  std::optional<sparse::SparseSolver> solver;  // of either of the two the cheaper one
+  std::optional<jet::LinearSolver> linear;
   std::vector<std::uint32_t> cell_of_column;
   std::vector<double> entries, x;        // of the lifted system
   std::vector<double> unknown, rest, unit;  // [unknowns]
@@ -124,7 +129,12 @@ void ForwardDynamics::Impl::choose_pivots() {
   const std::vector<double> origin(n, 0.0);
   const auto samples = interpreter::sampled_entries(program, *system, constants, 0, origin, origin);
   solver.reset();
+  linear.reset();
   if (const auto pivots = sparse::eliminate(*system, samples, {})) solver.emplace(*system, *pivots, cell_of_column);
+  const std::size_t full_products = product->matrix_products() + n * n * n / 6 + 2 * n * n;
+  if (n > most_full || (solver && solver->factor_products() + solver->solve_products() < full_products)) return;
+  solver.reset();
+  linear.emplace(n);
 }
 
 void ForwardDynamics::Impl::set_inputs(std::span<const double> u) {
@@ -148,6 +158,16 @@ bool ForwardDynamics::Impl::solve() {
   if (!(least > sound_pivot)) {
     if (!(product->remainder(entries, {x.data(), n}, unknown, rest) <= sound)) return false;
   }
+  return interpreter::is_finite({x.data(), n});
+}
+
+/// The same by M itself, which the tangents give 8 columns at a time.
+bool ForwardDynamics::Impl::solve_full() {
+  (*assembly)(at_rest.cells(), entries);
+  product->matrix(entries, linear->matrix());
+  if (!interpreter::is_finite(linear->matrix()) || linear->factor()) return false;
+  linear->solve(unknown);
+  std::copy_n(unknown.begin(), n, x.begin());
   return interpreter::is_finite({x.data(), n});
 }
 
@@ -185,10 +205,10 @@ KernelStatus ForwardDynamics::accelerations(double t, std::span<const double> q,
   Impl& s = *impl_;
   MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && a.size() == s.n);
   s.set_inputs(u);
-  if (!s.solver) return s.by_full_matrix(t, q, v, a);
+  if (!s.solver && !s.linear) return s.by_full_matrix(t, q, v, a);
   s.at_rest.evaluate(t, q, v, {});
   for (std::size_t i = 0; i < s.n; ++i) s.unknown[i] = -s.at_rest.residual(i);
-  if (!s.solve()) return s.by_full_matrix(t, q, v, a);
+  if (!(s.linear ? s.solve_full() : s.solve())) return s.by_full_matrix(t, q, v, a);
   std::copy_n(s.x.begin(), s.n, a.begin());
   return KernelStatus::Ok;
 }

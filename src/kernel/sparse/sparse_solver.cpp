@@ -1,8 +1,6 @@
 #include "kernel/sparse/sparse_solver.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <tuple>
 #include <unordered_map>
 
@@ -22,10 +20,13 @@ class SparseBuilder {
     for (std::uint32_t p = 0; p < pivots_.size(); ++p)
       pivot_of_row_[pivots_[p].row] = p, pivot_of_column_[pivots_[p].column] = p;
     for (std::uint32_t e = 0; e < system_.entries.size(); ++e) entry_at_[key(system_.entries[e].row, system_.entries[e].column)] = e;
+    is_minus_one_.assign(system_.entries.size() + 1, false);
+    for (const std::uint32_t entry : system_.minus_one) is_minus_one_[entry] = true;
+    for (const std::uint32_t entry : system_.entry_of_edge) is_minus_one_[entry] = false;  // something is added to it
+    s_.inverse_.assign(pivots_.size(), 0.0);
     build_forward();
     build_backward();
     build_factorization();
-    s_.inverse_.assign(pivots_.size(), 0.0);
     for (const Pivot& pivot : pivots_) s_.usual_size_.push_back(pivot.size);
     s_.entries_.assign(system_.entries.size() + 1, 0.0);
   }
@@ -121,46 +122,68 @@ class SparseBuilder {
     return found->second;
   }
 
-  /// An entry of L or U is its entry of the matrix minus the products of all earlier pivots.
+  struct Work {
+    FactorRun::Kind kind;
+    std::uint32_t level;
+    FactorSum sum;
+    std::vector<FactorProduct> products;
+  };
+
+  /// An entry of L or U is its entry of the matrix minus the products of all earlier pivots. What is known early is computed early, with
+  /// much else of its kind.
   void build_factorization() {
-    std::unordered_map<std::uint64_t, std::vector<SparseSolver::FactorProduct>> products;
-    std::uint32_t p = 0;
-    while (p < pivots_.size()) {
-      std::uint32_t last = p;
-      while (last < pivots_.size() && pivots_[last].round == pivots_[p].round) ++last;
-      add_stage(p, last, products);
-      for (; p < last; ++p) {
-        const Pivot& pivot = pivots_[p];
-        for (const std::uint32_t row : pivot.rows)
-          for (const std::uint32_t column : pivot.columns)
-            products[key(row, column)].push_back({factor_at(key(row, pivot.column)), factor_at(key(pivot.row, column))});
-      }
+    std::vector<Work> work;
+    std::vector<std::uint32_t> pivot_level(pivots_.size(), 0);
+    for (std::uint32_t p = 0; p < pivots_.size(); ++p) {
+      const Pivot& pivot = pivots_[p];
+      Work own = work_of(FactorRun::Pivot, pivot.row, pivot.column, p);
+      const bool is_minus_one = own.products.empty() && is_minus_one_[own.sum.entry];
+      pivot_level[p] = is_minus_one ? 0 : own.level + 1;
+      if (is_minus_one) s_.inverse_[p] = -1;
+      else work.push_back(std::move(own));
+      for (const std::uint32_t row : pivot.rows) add_factor(work, FactorRun::Lower, row, pivot.column, p, 0);
+      for (const std::uint32_t column : pivot.columns) add_factor(work, FactorRun::Upper, pivot.row, column, p, pivot_level[p]);
+      for (const std::uint32_t row : pivot.rows)
+        for (const std::uint32_t column : pivot.columns)
+          products_[key(row, column)].push_back({factor_at(key(row, pivot.column)), factor_at(key(pivot.row, column))});
     }
-    s_.factor_products_ = s_.products_.size();
+    lay_out(work);
     s_.factors_.assign(next_factor_, 0.0);
   }
 
-  void add_stage(std::uint32_t first, std::uint32_t last,
-                 const std::unordered_map<std::uint64_t, std::vector<SparseSolver::FactorProduct>>& products) {
-    const auto add = [&](std::uint32_t target, std::uint32_t row, std::uint32_t column, std::uint32_t pivot) {
-      const auto entry = entry_at_.find(key(row, column));
-      const auto from = static_cast<std::uint32_t>(s_.products_.size());
-      if (const auto found = products.find(key(row, column)); found != products.end())
-        s_.products_.insert(s_.products_.end(), found->second.begin(), found->second.end());
-      const auto start = entry == entry_at_.end() ? static_cast<std::uint32_t>(system_.entries.size()) : entry->second;
-      s_.sums_.push_back({target, start, pivot, from, static_cast<std::uint32_t>(s_.products_.size())});
-    };
-    const auto count = [&] { return static_cast<std::uint32_t>(s_.sums_.size()); };
-    SparseSolver::FactorStage stage{count(), 0, 0, 0};
-    for (std::uint32_t p = first; p < last; ++p) add(none, pivots_[p].row, pivots_[p].column, p);
-    stage.first_lower = count();
-    for (std::uint32_t p = first; p < last; ++p)
-      for (const std::uint32_t row : pivots_[p].rows) add(factor_at(key(row, pivots_[p].column)), row, pivots_[p].column, p);
-    stage.first_upper = count();
-    for (std::uint32_t p = first; p < last; ++p)
-      for (const std::uint32_t column : pivots_[p].columns) add(factor_at(key(pivots_[p].row, column)), pivots_[p].row, column, p);
-    stage.last = count();
-    s_.stages_.push_back(stage);
+  Work work_of(FactorRun::Kind kind, std::uint32_t row, std::uint32_t column, std::uint32_t pivot) {
+    const auto entry = entry_at_.find(key(row, column));
+    Work out{kind, 0, {none, entry == entry_at_.end() ? static_cast<std::uint32_t>(system_.entries.size()) : entry->second, pivot}, {}};
+    if (const auto found = products_.find(key(row, column)); found != products_.end()) out.products = std::move(found->second);
+    const auto level = [&](const FactorProduct& p) { return std::max(factor_level_[p.lower], factor_level_[p.upper]); };
+    for (const FactorProduct& product : out.products) out.level = std::max(out.level, level(product) + 1);
+    std::stable_sort(out.products.begin(), out.products.end(),  // the newest last
+                     [&](const FactorProduct& x, const FactorProduct& y) { return level(x) < level(y); });
+    return out;
+  }
+
+  void add_factor(std::vector<Work>& work, FactorRun::Kind kind, std::uint32_t row, std::uint32_t column, std::uint32_t pivot,
+                  std::uint32_t least_level) {
+    work.push_back(work_of(kind, row, column, pivot));
+    Work& w = work.back();
+    w.level = std::max(w.level, least_level);
+    w.sum.target = factor_at(key(row, column));
+    if (factor_level_.size() <= w.sum.target) factor_level_.resize(w.sum.target + 1, 0);
+    factor_level_[w.sum.target] = w.level;
+  }
+
+  void lay_out(std::vector<Work>& work) {
+    const auto order = [](const Work& w) { return std::tuple(w.level, w.kind, w.products.size()); };
+    std::stable_sort(work.begin(), work.end(), [&](const Work& x, const Work& y) { return order(x) < order(y); });
+    for (std::uint32_t i = 0; i < work.size(); ++i) {
+      if (i == 0 || order(work[i - 1]) != order(work[i]))
+        s_.factor_runs_.push_back({work[i].kind, static_cast<std::uint32_t>(work[i].products.size()), i, i,
+                                   static_cast<std::uint32_t>(s_.products_.size())});
+      s_.factor_runs_.back().last = i + 1;
+      s_.sums_.push_back(work[i].sum);
+      s_.products_.insert(s_.products_.end(), work[i].products.begin(), work[i].products.end());
+    }
+    s_.factor_products_ = s_.products_.size();
   }
 
   const LiftedSystem& system_;
@@ -168,8 +191,11 @@ class SparseBuilder {
   std::span<const std::uint32_t> cells_;
   SparseSolver& s_;
   std::vector<std::uint32_t> pivot_of_row_, pivot_of_column_;
-  std::vector<bool> has_y_;  // [pivots]
+  std::vector<bool> has_y_;         // [pivots]
+  std::vector<bool> is_minus_one_;  // [entries]
   std::unordered_map<std::uint64_t, std::uint32_t> entry_at_, factor_at_;
+  std::unordered_map<std::uint64_t, std::vector<FactorProduct>> products_;  // of places that are still to be found
+  std::vector<std::uint32_t> factor_level_;  // [factors]
   std::uint32_t next_factor_ = 0;
 };
 
@@ -179,74 +205,20 @@ SparseSolver::SparseSolver(const LiftedSystem& system, const std::vector<Pivot>&
 
 double SparseSolver::factor(std::span<const double> entries) {
   std::copy(entries.begin(), entries.end(), entries_.begin());
-  double least = 1;
-  const auto value = [&](const FactorSum& sum) {
-    double v = entries_[sum.entry];
-    for (std::uint32_t k = sum.first; k < sum.last; ++k) v -= factors_[products_[k].lower] * factors_[products_[k].upper];
-    return v;
-  };
-  for (const FactorStage& stage : stages_) {
-    for (std::uint32_t i = stage.first_pivot; i < stage.first_lower; ++i) {
-      const FactorSum& sum = sums_[i];
-      double v = entries_[sum.entry], size = std::max(usual_size_[sum.pivot], std::abs(v));
-      for (std::uint32_t k = sum.first; k < sum.last; ++k) {
-        const double term = factors_[products_[k].lower] * factors_[products_[k].upper];
-        v -= term;
-        size += std::abs(term);
-      }
-      if (!(size < std::numeric_limits<double>::infinity())) return std::numeric_limits<double>::quiet_NaN();
-      if (!(std::abs(v) >= least * size)) least = std::abs(v) / size;
-      inverse_[sum.pivot] = 1 / v;
-    }
-    for (std::uint32_t i = stage.first_lower; i < stage.first_upper; ++i) factors_[sums_[i].target] = value(sums_[i]);
-    for (std::uint32_t i = stage.first_upper; i < stage.last; ++i) factors_[sums_[i].target] = value(sums_[i]) * inverse_[sums_[i].pivot];
-  }
-  return least;
-}
-
-template <int Products>
-void SparseSolver::forward_run(const SumRun& run, double* x) const {
-  const double* factor = factors_.data() + forward_.first_factor + run.first_product;
-  const std::uint32_t* operand = forward_.operand.data() + run.first_product;
-  const int count = Products >= 0 ? Products : static_cast<int>(run.products);
-  for (std::uint32_t i = run.first; i < run.last; ++i, factor += count, operand += count) {
-    double sum = x[forward_.target[i]];
-    for (int k = 0; k < count; ++k) sum -= factor[k] * x[operand[k]];
-    x[forward_.target[i]] = sum * inverse_[forward_.pivot[i]];
-  }
-}
-
-template <int Products>
-void SparseSolver::backward_run(const SumRun& run, double* x) const {
-  const double* factor = factors_.data() + backward_.first_factor + run.first_product;
-  const std::uint32_t* operand = backward_.operand.data() + run.first_product;
-  const int count = Products >= 0 ? Products : static_cast<int>(run.products);
-  for (std::uint32_t i = run.first; i < run.last; ++i, factor += count, operand += count) {
-    double sum = run.starts ? x[backward_.target[i]] : 0;
-    for (int k = 0; k < count; ++k) sum -= factor[k] * x[operand[k]];
-    x[backward_.target[i]] = sum;
-  }
+  const FactorRun* const runs = factor_runs_.data();
+  return loops().factor({runs, runs + factor_runs_.size(), sums_.data(), products_.data(), entries_.data(), usual_size_.data(),
+                         factors_.data(), inverse_.data()});
 }
 
 void SparseSolver::solve(std::span<const double> b, double* x) const {
   for (const std::uint32_t cell : cleared_) x[cell] = 0;
   for (std::size_t i = 0; i < b.size(); ++i) x[cell_of_residual_[i]] = b[i];
-  for (const SumRun& run : forward_.runs) switch (run.products) {
-      case 0: forward_run<0>(run, x); break;
-      case 1: forward_run<1>(run, x); break;
-      case 2: forward_run<2>(run, x); break;
-      case 3: forward_run<3>(run, x); break;
-      case 4: forward_run<4>(run, x); break;
-      default: forward_run<-1>(run, x);
-    }
-  for (const SumRun& run : backward_.runs) switch (run.products) {
-      case 0: backward_run<0>(run, x); break;
-      case 1: backward_run<1>(run, x); break;
-      case 2: backward_run<2>(run, x); break;
-      case 3: backward_run<3>(run, x); break;
-      case 4: backward_run<4>(run, x); break;
-      default: backward_run<-1>(run, x);
-    }
+  const auto tables = [&](const Sweep& sweep) {
+    return SweepTables{sweep.runs.data(), sweep.runs.data() + sweep.runs.size(), sweep.target.data(), sweep.operand.data(),
+                       sweep.pivot.data(), factors_.data() + sweep.first_factor};
+  };
+  loops().forward(tables(forward_), inverse_.data(), x);
+  loops().backward(tables(backward_), x);
 }
 
 }  // namespace maupertuis::sparse

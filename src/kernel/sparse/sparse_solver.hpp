@@ -1,18 +1,10 @@
 #pragma once
 #include "kernel/sparse/elimination.hpp"
+#include "kernel/sparse/loops.hpp"
 
 /// Factors and solutions of a lifted system as flat loops over index arrays: what is computed from what was decided once, when
 /// the pivots were chosen. Nothing is allocated after construction.
 namespace maupertuis::sparse {
-
-/// Sums of products whose operands are known before: v = start − Σ a b. Sums of one level do not wait for each other; those of
-/// as many products stand together, so that a loop over them has no branches of its own.
-struct SumRun {
-  std::uint32_t products;        // of each sum
-  std::uint32_t first, last;     // sums
-  std::uint32_t first_product;   // of the first sum; they follow each other
-  bool starts;                   // at a value that is there; else at 0
-};
 
 class SparseSolver {
  public:
@@ -46,29 +38,10 @@ class SparseSolver {
     std::uint32_t first_factor = 0;      // of the first product in factors_; they follow each other
   };
 
-  struct FactorSum {
-    std::uint32_t target;   // in factors_
-    std::uint32_t entry;    // it starts from; [entries]: 0
-    std::uint32_t pivot;    // U: it is divided by
-    std::uint32_t first, last;  // products
-  };
-  struct FactorProduct {
-    std::uint32_t lower, upper;  // in factors_
-  };
-  /// One stage: pivots, then what stands below and beside them, of pivots that do not wait for each other.
-  struct FactorStage {
-    std::uint32_t first_pivot, first_lower, first_upper, last;  // sums
-  };
-
-  template <int Products>
-  void forward_run(const SumRun& run, double* x) const;
-  template <int Products>
-  void backward_run(const SumRun& run, double* x) const;
-
   std::vector<std::uint32_t> cell_of_residual_;  // [unknowns] where b_i goes
   std::vector<std::uint32_t> cleared_;           // cells that a forward sum starts at 0
   Sweep forward_, backward_;
-  std::vector<FactorStage> stages_;
+  std::vector<FactorRun> factor_runs_;
   std::vector<FactorSum> sums_;
   std::vector<FactorProduct> products_;
   std::vector<double> factors_;                  // L, then U divided by the pivots, in the order of the solution

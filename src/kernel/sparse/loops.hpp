@@ -1,0 +1,72 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+/// The loops of the sparse solver, compiled for several instruction sets; the best one of the processor is taken at run time. Plain pointers, so
+/// that no inline function of a container is compiled for a processor that may not be there.
+namespace maupertuis::sparse {
+
+/// Sums of products whose operands are known before: v = start − Σ a b. Sums of one level do not wait for each other; those of
+/// as many products stand together, so that a loop over them has no branches of its own.
+struct SumRun {
+  std::uint32_t products;        // of each sum
+  std::uint32_t first, last;     // sums
+  std::uint32_t first_product;   // of the first sum; they follow each other
+  bool starts;                   // at a value that is there; else at 0
+};
+
+/// Sums that follow each other; x in cells.
+struct SweepTables {
+  const SumRun *runs, *last_run;
+  const std::uint32_t *target, *operand;
+  const std::uint32_t* pivot;    // forward: the sum is divided by it; else null
+  const double* factors;         // of the first product
+};
+
+/// An entry of L or U, or a pivot.
+struct FactorSum {
+  std::uint32_t target;          // in the factors
+  std::uint32_t entry;           // it starts from
+  std::uint32_t pivot;           // Pivot: its number; Upper: it is divided by
+};
+struct FactorProduct {
+  std::uint32_t lower, upper;    // in the factors
+};
+struct FactorRun {
+  enum Kind : std::uint8_t { Pivot, Lower, Upper } kind;
+  std::uint32_t products, first, last, first_product;
+};
+
+struct FactorTables {
+  const FactorRun *runs, *last_run;
+  const FactorSum* sums;
+  const FactorProduct* products;
+  const double *entries, *usual_size;
+  double *factors, *inverse;
+};
+
+/// Rows of a product along the tangent graph, for 8 directions at once.
+struct BlockRow {
+  std::uint32_t target;
+  std::uint32_t first, last;     // its terms
+};
+struct BlockTerm {
+  std::uint32_t entry, operand;
+};
+
+struct Loops {
+  double (*factor)(const FactorTables& tables);
+  void (*forward)(const SweepTables& tables, const double* inverse, double* x);
+  void (*backward)(const SweepTables& tables, double* x);
+  /// z[target · 8 + lane] = Σ entries[entry] · z[operand · 8 + lane]
+  void (*block)(const BlockRow* rows, const BlockRow* last, const BlockTerm* terms, const double* entries, double* z);
+};
+
+Loops baseline_loops();
+/// Null pointers where the compiler lacks the instructions.
+Loops avx2_loops();
+Loops avx512_loops();
+/// The best one that this processor has.
+const Loops& loops();
+
+}  // namespace maupertuis::sparse
