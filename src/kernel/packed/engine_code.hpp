@@ -40,24 +40,42 @@ inline Vector running_sum_down(Vector v) {
   return v + __builtin_shuffle(v, zero, Places{4, 5, 6, 7, 8, 8, 8, 8});
 }
 
-/// Σ_{j=first..last} a_j b_{k−j}, the newest coefficients last.
-inline Vector convolution(const double* a, const double* b, int first, int last, int k, std::ptrdiff_t stride) {
-  Vector even = all(0), odd = all(0), rest = all(0), more = all(0);
-  int low = (first + last) / 2, high = low + 1;
-  const double* a_low = a + low * stride;
-  const double* b_low = b + (k - low) * stride;
-  const double* a_high = a + high * stride;
-  const double* b_high = b + (k - high) * stride;
-  for (; low > first && high < last; low -= 2, high += 2) {
-    even += load(a_low) * load(b_low);
-    odd += load(a_high) * load(b_high);
-    rest += load(a_low - stride) * load(b_low + stride);
-    more += load(a_high + stride) * load(b_high - stride);
-    a_low -= 2 * stride, b_low += 2 * stride, a_high += 2 * stride, b_high -= 2 * stride;
+/// Σ_{j=0..N} a_j b_{N−j}, from the middle outward in four chains. Written out for each N, so that no loop ends in a branch that the processor
+/// did not foresee.
+template <int N>
+Vector convolution_of(const double* a, const double* b, std::ptrdiff_t stride) {
+  Vector sums[4] = {all(0), all(0), all(0), all(0)};
+  constexpr int middle = N / 2;
+#pragma GCC unroll 64
+  for (int i = 0; i <= N; ++i) {
+    const int j = i % 2 == 0 ? middle - i / 2 : middle + (i + 1) / 2;
+    if (j < 0 || j > N) continue;
+    sums[i % 4] += load(a + j * stride) * load(b + (N - j) * stride);
   }
-  for (; low >= first; --low, a_low -= stride, b_low += stride) even += load(a_low) * load(b_low);
-  for (; high <= last; ++high, a_high += stride, b_high -= stride) odd += load(a_high) * load(b_high);
-  return (even + rest) + (odd + more);
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
+inline Vector long_convolution(const double* a, const double* b, int n, std::ptrdiff_t stride) {
+  Vector even = all(0), odd = all(0);
+  for (int j = 0; j < n; j += 2) {
+    even += load(a + j * stride) * load(b + (n - j) * stride);
+    odd += load(a + (j + 1) * stride) * load(b + (n - j - 1) * stride);
+  }
+  if (n % 2 == 0) even += load(a + n * stride) * load(b);
+  return even + odd;
+}
+
+using Convolution = Vector (*)(const double*, const double*, std::ptrdiff_t);
+const Convolution convolutions[] = {
+    convolution_of<0>,  convolution_of<1>,  convolution_of<2>,  convolution_of<3>,  convolution_of<4>,  convolution_of<5>,
+    convolution_of<6>,  convolution_of<7>,  convolution_of<8>,  convolution_of<9>,  convolution_of<10>, convolution_of<11>,
+    convolution_of<12>, convolution_of<13>, convolution_of<14>, convolution_of<15>, convolution_of<16>, convolution_of<17>,
+    convolution_of<18>, convolution_of<19>, convolution_of<20>, convolution_of<21>, convolution_of<22>, convolution_of<23>};
+constexpr int most_written_out = 23;
+
+/// Σ_{j=0..n} a_j b_{n−j}
+inline Vector convolution(const double* a, const double* b, int n, std::ptrdiff_t stride) {
+  return n <= most_written_out ? convolutions[n](a, b, stride) : long_convolution(a, b, n, stride);
 }
 
 template <int W>
@@ -137,7 +155,7 @@ class Stage {
       if (term.b != term.a) bring(term.b);
       const double *a = cells(term.a), *b = cells(term.b);
       result += load(coefficients(term.coefficients)) *
-                (k_ == 0 ? load(a) * load(b) : term.a == term.b ? self(a, 0) : convolution(a, b, 0, k_, k_, stride_));
+                (term.a == term.b ? self(a, 0) : convolution(a, b, k_, stride_));
     }
     return result;
   }
@@ -158,8 +176,7 @@ class Stage {
     if (k_ == 0) return functions(pack);
     bring(pack.a);
     bring(pack.b);
-    const Vector sum = k_ == 1 ? load(cells(pack.a) + stride_) * load(cells(pack.b))
-                               : convolution(cells(pack.a), cells(pack.b), 1, k_, k_, stride_);
+    const Vector sum = convolution(cells(pack.a) + stride_, cells(pack.b), k_ - 1, stride_);
     save(row_ + pack.out, load(coefficients(pack.coefficients)) * sum / all(k_));
   }
 
@@ -181,8 +198,7 @@ class Stage {
     bring(pack.a), bring(pack.b);
     const Vector a = load(row_ + t_.blocks[pack.a].first);
     const double *b = cells(pack.b), *y = cells(pack.y);
-    Vector sum = all(0);
-    for (int j = 1; j <= k_; ++j) sum += load(b + j * stride_) * load(y + (k_ - j) * stride_);
+    const Vector sum = k_ == 0 ? all(0) : convolution(b + stride_, y, k_ - 1, stride_);
     save(row_ + pack.out, (a - sum) / load(b));
   }
 
