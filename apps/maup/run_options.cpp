@@ -64,6 +64,11 @@ void add_method_options(CLI::App& command, RunOptions& options) {
   command.add_option("--order", options.order, "The order of the steps (variational: 2, 4, … 12)")->type_name("NUMBER");
   command.add_option("--tol", options.tolerance, "Relative tolerance of a step (default: rounding level)")
       ->type_name("NUMBER");
+  command.add_option("--backend", options.backend,
+                     "What carries the steps out: auto (machine code where the run is long enough to pay for it), interpreter, compiled")
+      ->check(CLI::IsMember({"auto", "interpreter", "compiled"}))
+      ->type_name("BACKEND");
+  command.add_flag("--no-cache", options.no_cache, "Neither read nor keep machine code of other runs");
 }
 
 void add_span_options(CLI::App& command, RunOptions& options) {
@@ -109,6 +114,8 @@ SimulationOptions simulation_options(const RunOptions& options, Diagnostics& dia
   if (options.step)
     if (const auto step = time_option("--step", *options.step, diagnostics)) out.step = *step;
   if (options.order) out.order = *options.order;
+  out.backend = options.backend == "compiled" ? Backend::Compiled : options.backend == "interpreter" ? Backend::Interpreter : Backend::Automatic;
+  out.cache = !options.no_cache;
   const bool fixed_steps = out.method == StepMethod::Variational;
   if (options.step && !fixed_steps)
     diagnostics.error("E0809", {}, "--step belongs to --method variational.", "The other methods choose their steps by the tolerance.",

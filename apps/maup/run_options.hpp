@@ -19,10 +19,12 @@ struct RunOptions {
   std::optional<double> tolerance;
   std::optional<std::string> duration, every;  // as written
   std::string until, within;
+  std::string backend = "auto";
+  bool no_cache = false;
   std::vector<std::string> at;
 };
 
-/// --method and --tol.
+/// --method, --step, --order, --tol, --backend, --no-cache.
 void add_method_options(CLI::App& command, RunOptions& options);
 /// --duration, --backward, --until, --within, --every, --at.
 void add_span_options(CLI::App& command, RunOptions& options);

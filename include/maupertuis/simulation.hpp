@@ -1,4 +1,5 @@
 #pragma once
+#include <maupertuis/backend.hpp>
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/evaluate.hpp>
@@ -24,6 +25,8 @@ struct SimulationOptions {
   std::optional<double> duration;           // s, instead of the model's run; negative: backwards in time
   std::vector<double> at;                   // s: times at which the state is wanted exactly; beyond the run: it goes on to them
   std::optional<double> output_every;       // s
+  Backend backend = Backend::Automatic;     // of Taylor's steps
+  bool cache = true;                        // of compiled code, on disk
   std::size_t maximum_steps = 100'000'000;
   const std::atomic<bool>* interrupt = nullptr;  // set by Ctrl-C
   std::function<void(double)> progress;     // told the fraction of the run that is done, now and then
@@ -53,9 +56,9 @@ enum class Ending {
 struct SimulationStatistics {
   std::size_t steps = 0;
   double seconds = 0;                       // stepping only
-  double compile_seconds = 0;               // model to kernel
+  double compile_seconds = 0;               // model to kernel, and to machine code
   int order = 0;
-  std::string backend = "interpreter";
+  std::string backend = "interpreter";      // or compiled
   std::string method = "taylor";            // of the last step: taylor, variational, stiff
   double energy_drift = 0;                  // docs/theory: |h_E(t) − h_E(0) − work| / max Σ|terms of h_E|
   double constraint_residual = 0;           // docs/theory: largest φ, dφ/dt, ψ, each by the sizes of its terms

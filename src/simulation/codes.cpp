@@ -48,6 +48,19 @@ constexpr std::array entries{
               "others can make them hold. They were moved by the least kinetic change. `start exactly` makes this an "
               "error.",
               "", ""},
+    CodeEntry{"W0703", "the run was carried out without compiled code",
+              "--backend compiled asks for machine code, which the module with LLVM makes. It may be missing, belong to "
+              "another build, or not do this model: one with constraints, a very large one, or a method other than "
+              "Taylor's. The results of the interpreter are the same to rounding, they only take longer.",
+              "", ""},
+    CodeEntry{"N0704", "compiled code would have paid for this run, and is not here",
+              "A run of many steps takes machine code from the module with LLVM where it can. This installation has none "
+              "that works; the interpreter carried the run out, with the same results to rounding.",
+              "", ""},
+    CodeEntry{"W0705", "the compiled code could not be kept for the next run",
+              "Machine code is kept in $XDG_CACHE_HOME/maupertuis or ~/.cache/maupertuis, so that the next run of the same "
+              "model begins at once. The folder cannot be written. The run itself is not affected.",
+              "", ""},
     CodeEntry{"N0702", "the stiff method took over",
               "Where a fast, strongly damped motion has died out, an explicit method still has to follow its time scale. "
               "The default method sees that its steps are far shorter than the times in which the velocities change and "

@@ -1,4 +1,5 @@
 #pragma once
+#include <maupertuis/integrator.hpp>
 #include <maupertuis/step.hpp>
 
 #include <cstddef>
@@ -22,6 +23,7 @@ class Method {
   virtual std::size_t steps() const = 0;
   virtual std::size_t switches() const = 0;
   virtual double constraint_residual() const = 0;
+  virtual BackendUse backend() const = 0;
 };
 
 template <class Stepper>
@@ -38,6 +40,13 @@ class MethodOf final : public Method {
   std::size_t steps() const override { return stepper_.steps(); }
   std::size_t switches() const override { return stepper_.switches(); }
   double constraint_residual() const override { return stepper_.constraint_residual(); }
+  /// Other methods than Taylor's are interpreted.
+  BackendUse backend() const override {
+    BackendUse use;
+    if constexpr (requires { stepper_.backend(); }) use = stepper_.backend();
+    else use.trouble = "Only Taylor's steps are compiled.";
+    return use;
+  }
 
  private:
   Stepper stepper_;

@@ -32,6 +32,8 @@ std::unique_ptr<Method> taylor_method(const EquationsOfMotion& equations, const 
   out.order = options.order;
   out.maximum_steps = options.maximum_steps;
   out.interrupt = options.interrupt;
+  out.backend = options.backend;
+  out.cache = options.cache;
   return method_of(TaylorStepper(motion_kernel(equations, wanted), parameter_values(*equations.system), out));
 }
 
@@ -123,17 +125,28 @@ class Run {
     method_->start(plan_.begin, plan_.q, plan_.v);
     result_.start = state_of(sample(plan_.begin));
     result_.statistics.order = method_->order();
+    const double compiled_before = method_->backend().compile_seconds;
     const auto begin = Clock::now();
     record_covered();
     while (method_->time() != plan_.end && advance()) record_covered();
     result_.statistics.seconds = seconds_since(begin);
+    note_backend(method_->backend(), compiled_before);
     finish();
     return std::move(result_);
   }
 
   bool turned_stiff() const { return turned_stiff_; }
+  const BackendUse& backend() const { return backend_; }
 
  private:
+  /// Compilation on the way is no stepping.
+  void note_backend(const BackendUse& use, double compiled_before) {
+    if (!turned_stiff_) backend_ = use;
+    if (backend_.compiled) result_.statistics.backend = "compiled";
+    result_.statistics.compile_seconds = backend_.compile_seconds - compiled_before;
+    result_.statistics.seconds -= result_.statistics.compile_seconds;
+  }
+
   /// The requested times in the order of the run.
   void sort_requests() {
     requests_.resize(options_.at.size());
@@ -175,6 +188,7 @@ class Run {
     record_covered();
     const Sample last = method_->sample(method_->time());
     balance_.carry_over(last);
+    backend_ = method_->backend();
     steps_before_ += method_->steps();
     residual_before_ = method_->constraint_residual();
     method_ = std::move(stiff);
@@ -247,6 +261,7 @@ class Run {
   std::unique_ptr<Method> method_;
   std::function<std::unique_ptr<Method>()> stiff_;
   StiffnessWatch watch_;
+  BackendUse backend_;
   bool turned_stiff_ = false;
   std::size_t steps_before_ = 0;
   double residual_before_ = 0;
@@ -267,6 +282,18 @@ void note_stiffness(const SimulationResult& result, Diagnostics& diagnostics) {
                                "the backward differentiation formulas went on with a tolerance of {:g} to t = {:g} s.",
                                1e-10, result.final.t),
                    "Use --method taylor to keep Taylor's steps, or --tol for another tolerance.");
+}
+
+/// What the run had to do without. In automatic runs a program that is not compiled is nothing to be told.
+void warn_of_backend(const BackendUse& use, Backend wanted, Diagnostics& diagnostics) {
+  const char* const help = "`maup doctor` tells what this installation has; --backend interpreter leaves the message out.";
+  if (wanted == Backend::Compiled && !use.compiled)
+    diagnostics.warning("W0703", std::nullopt, "the run was carried out without compiled code", use.trouble, help);
+  if (wanted == Backend::Automatic && !use.compiled && !use.trouble.empty() && !backend_status().compiled)
+    diagnostics.note("N0704", std::nullopt, "compiled code would have paid for this run, and is not here", use.trouble, help);
+  if (!use.cache_trouble.empty())
+    diagnostics.warning("W0705", std::nullopt, "the compiled code could not be kept for the next run", use.cache_trouble,
+                        "Make the folder writable, name another by XDG_CACHE_HOME, or give --no-cache.");
 }
 
 }  // namespace
@@ -290,7 +317,9 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
 
   SimulationResult result = run.carry_out();
   if (run.turned_stiff()) note_stiffness(result, diagnostics);
-  result.statistics.compile_seconds = compile_seconds;
+  if (options.method == StepMethod::Automatic || options.method == StepMethod::Taylor || options.backend == Backend::Compiled)
+    warn_of_backend(run.backend(), options.backend, diagnostics);
+  result.statistics.compile_seconds += compile_seconds;
   result.trajectory.metadata["system"] = model.system.name;
   result.trajectory.metadata["method"] = fmt::format("{}, order {}", title_of(result.statistics.method), result.statistics.order);
   return result;

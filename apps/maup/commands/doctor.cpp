@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <maupertuis/backend.hpp>
+#include <maupertuis/lanes.hpp>
 #include <maupertuis/stiff.hpp>
 
 #include <cfloat>
@@ -17,17 +19,28 @@ struct Finding {
   std::string value;
 };
 
+std::string vector_instructions() {
+  return has_instruction_set(InstructionSet::Avx512) ? "AVX-512" : has_instruction_set(InstructionSet::Avx2) ? "AVX2" : "none that are used";
+}
+
 /// What matters when a result or a speed is questioned.
 std::vector<Finding> examine() {
+  const BackendStatus backend = backend_status();
+  const std::string cache = backend.cache_folder.empty() ? "none: neither XDG_CACHE_HOME nor HOME is set"
+                                                         : fmt::format("{}, {} objects, {:.1f} MB", backend.cache_folder, backend.cache_files,
+                                                                       1e-6 * static_cast<double>(backend.cache_bytes));
   return {
       {"version", MAUPERTUIS_VERSION},
       {"compiler", __VERSION__},
       {"arithmetic", FLT_EVAL_METHOD == 0 ? "IEEE double, no excess precision" : "excess precision: results may differ"},
       {"processors", std::to_string(std::thread::hardware_concurrency())},
-      {"backends", "interpreter"},
+      {"backends", backend.compiled ? fmt::format("interpreter, compiled ({} for {})", backend.compiler, backend.processor) : "interpreter"},
+      {"compiled code", backend.compiled ? "works" : backend.trouble},
+      {"vector instructions", vector_instructions()},
+      {"cache", cache},
       {"integrators", has_stiff_method() ? "taylor, variational, stiff (SUNDIALS)" : "taylor, variational; stiff needs SUNDIALS"},
       {"trajectory formats", "csv, npy, json"},
-      {"not in this version", "contacts, friction, events, fields, sweeps, LLVM backend, HDF5"},
+      {"not in this version", "contacts, friction, events, fields, sweeps, HDF5"},
   };
 }
 

@@ -97,7 +97,7 @@ std::string text_of(const SimulationResult& result, const MechanicalSystem& syst
   const std::string method = s.method == "taylor" ? fmt::format("of order {}", s.order)
                              : s.method == "stiff" ? "of the stiff method" : fmt::format("of the variational method, order {},", s.order);
   const std::string residual = system.constrained() ? fmt::format("; constraint residual {}", brief(s.constraint_residual)) : "";
-  return out + fmt::format("{} steps {} in {} s ({}, compiled in {} s); energy drift {}{}\n", s.steps, method, brief(s.seconds),
+  return out + fmt::format("{} steps {} in {} s ({}, ready in {} s); energy drift {}{}\n", s.steps, method, brief(s.seconds),
                            s.backend, brief(s.compile_seconds), brief(s.energy_drift), residual);
 }
 
