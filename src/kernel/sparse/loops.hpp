@@ -13,6 +13,7 @@ struct SumRun {
   std::uint32_t first, last;     // sums
   std::uint32_t first_product;   // of the first sum; they follow each other
   bool starts;                   // at a value that is there; else at 0
+  bool negates;                  // forward: the pivots are −1
 };
 
 /// Sums that follow each other; x in cells.

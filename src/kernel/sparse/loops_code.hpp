@@ -13,16 +13,28 @@ inline double minus(double sum, double a, double b) {
 #endif
 }
 
-/// Products below 0: as many as the run has.
-template <int Products>
+/// Products below 0: as many as the run has. Division by −1 turns the signs, so that nothing is multiplied last.
+template <int Products, bool Negates>
 void forward_run(const SweepTables& t, const SumRun& run, const double* inverse, double* x) {
   const int count = Products >= 0 ? Products : static_cast<int>(run.products);
   const double* factor = t.factors + run.first_product;
   const std::uint32_t* operand = t.operand + run.first_product;
   for (std::uint32_t i = run.first; i < run.last; ++i, factor += count, operand += count) {
-    double sum = x[t.target[i]];
-    for (int k = 0; k < count; ++k) sum = minus(sum, factor[k], x[operand[k]]);
-    x[t.target[i]] = sum * inverse[t.pivot[i]];
+    double sum = Negates ? -x[t.target[i]] : x[t.target[i]];
+    for (int k = 0; k < count; ++k) sum = minus(sum, Negates ? -factor[k] : factor[k], x[operand[k]]);
+    x[t.target[i]] = Negates ? sum : sum * inverse[t.pivot[i]];
+  }
+}
+
+template <bool Negates>
+void forward_run(const SweepTables& t, const SumRun& run, const double* inverse, double* x) {
+  switch (run.products) {
+    case 0: return forward_run<0, Negates>(t, run, inverse, x);
+    case 1: return forward_run<1, Negates>(t, run, inverse, x);
+    case 2: return forward_run<2, Negates>(t, run, inverse, x);
+    case 3: return forward_run<3, Negates>(t, run, inverse, x);
+    case 4: return forward_run<4, Negates>(t, run, inverse, x);
+    default: return forward_run<-1, Negates>(t, run, inverse, x);
   }
 }
 
@@ -39,14 +51,10 @@ void backward_run(const SweepTables& t, const SumRun& run, double* x) {
 }
 
 void forward(const SweepTables& t, const double* inverse, double* x) {
-  for (const SumRun* run = t.runs; run != t.last_run; ++run) switch (run->products) {
-      case 0: forward_run<0>(t, *run, inverse, x); break;
-      case 1: forward_run<1>(t, *run, inverse, x); break;
-      case 2: forward_run<2>(t, *run, inverse, x); break;
-      case 3: forward_run<3>(t, *run, inverse, x); break;
-      case 4: forward_run<4>(t, *run, inverse, x); break;
-      default: forward_run<-1>(t, *run, inverse, x);
-    }
+  for (const SumRun* run = t.runs; run != t.last_run; ++run) {
+    if (run->negates) forward_run<true>(t, *run, inverse, x);
+    else forward_run<false>(t, *run, inverse, x);
+  }
 }
 
 void backward(const SweepTables& t, double* x) {

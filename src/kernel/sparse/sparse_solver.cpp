@@ -20,9 +20,7 @@ class SparseBuilder {
     for (std::uint32_t p = 0; p < pivots_.size(); ++p)
       pivot_of_row_[pivots_[p].row] = p, pivot_of_column_[pivots_[p].column] = p;
     for (std::uint32_t e = 0; e < system_.entries.size(); ++e) entry_at_[key(system_.entries[e].row, system_.entries[e].column)] = e;
-    is_minus_one_.assign(system_.entries.size() + 1, false);
-    for (const std::uint32_t entry : system_.minus_one) is_minus_one_[entry] = true;
-    for (const std::uint32_t entry : system_.entry_of_edge) is_minus_one_[entry] = false;  // something is added to it
+    find_constant_pivots();
     s_.inverse_.assign(pivots_.size(), 0.0);
     build_forward();
     build_backward();
@@ -34,12 +32,28 @@ class SparseBuilder {
  private:
   struct Sum {
     std::uint32_t pivot, level;
-    bool starts;
+    bool starts, negates;
     std::vector<std::uint32_t> others;  // pivots whose unknowns it reads, the latest known last
   };
 
   static std::uint64_t key(std::uint32_t row, std::uint32_t column) { return (std::uint64_t{row} << 32) | column; }
   std::uint32_t cell(std::uint32_t pivot) const { return cells_[pivots_[pivot].column]; }
+
+  /// Those of slots whose place nothing else enters.
+  void find_constant_pivots() {
+    std::vector<bool> constant(system_.entries.size(), false);
+    for (const std::uint32_t entry : system_.minus_one) constant[entry] = true;
+    for (const std::uint32_t entry : system_.entry_of_edge) constant[entry] = false;
+    is_minus_one_.assign(pivots_.size(), false);
+    for (std::uint32_t p = 0; p < pivots_.size(); ++p) {
+      const auto entry = entry_at_.find(key(pivots_[p].row, pivots_[p].column));
+      is_minus_one_[p] = entry != entry_at_.end() && constant[entry->second];
+    }
+    for (const Pivot& earlier : pivots_)
+      for (const std::uint32_t row : earlier.rows)
+        for (const std::uint32_t column : earlier.columns)
+          if (pivot_of_row_[row] == pivot_of_column_[column]) is_minus_one_[pivot_of_row_[row]] = false;
+  }
 
   /// y is structurally zero where neither b nor an earlier y enters: those rows cost nothing.
   void build_forward() {
@@ -56,7 +70,7 @@ class SparseBuilder {
     std::vector<std::uint32_t> level(n, 0);
     std::vector<Sum> sums;
     for (std::uint32_t p = 0; p < n; ++p) {
-      Sum sum{p, 0, true, {}};
+      Sum sum{p, 0, true, is_minus_one_[p], {}};
       for (const std::uint32_t k : lower[p])
         if (has_y_[k]) sum.others.push_back(k), level[p] = std::max(level[p], level[k] + 1);
       has_y_[p] = has_b[p] || !sum.others.empty();
@@ -82,7 +96,7 @@ class SparseBuilder {
     std::vector<Sum> sums;
     for (std::uint32_t p = static_cast<std::uint32_t>(n); p-- > 0;) {
       if (!needed[p]) continue;
-      Sum sum{p, 0, has_y_[p], {}};
+      Sum sum{p, 0, has_y_[p], false, {}};
       for (const std::uint32_t column : pivots_[p].columns) {
         const std::uint32_t j = pivot_of_column_[column];
         sum.others.push_back(j);
@@ -99,13 +113,13 @@ class SparseBuilder {
 
   template <class Key>
   void lay_out(SparseSolver::Sweep& sweep, std::vector<Sum>& sums, Key&& place) {
-    const auto order = [](const Sum& sum) { return std::tuple(sum.level, sum.others.size(), sum.starts); };
+    const auto order = [](const Sum& sum) { return std::tuple(sum.level, sum.others.size(), sum.starts, sum.negates); };
     std::stable_sort(sums.begin(), sums.end(), [&](const Sum& a, const Sum& b) { return order(a) < order(b); });
     sweep.first_factor = next_factor_;
     for (std::uint32_t i = 0; i < sums.size(); ++i) {
       const Sum& sum = sums[i];
       if (i == 0 || order(sums[i - 1]) != order(sum))
-        sweep.runs.push_back({static_cast<std::uint32_t>(sum.others.size()), i, i, static_cast<std::uint32_t>(sweep.operand.size()), sum.starts});
+        sweep.runs.push_back({static_cast<std::uint32_t>(sum.others.size()), i, i, static_cast<std::uint32_t>(sweep.operand.size()), sum.starts, sum.negates});
       sweep.runs.back().last = i + 1;
       sweep.target.push_back(cell(sum.pivot));
       sweep.pivot.push_back(sum.pivot);
@@ -137,9 +151,8 @@ class SparseBuilder {
     for (std::uint32_t p = 0; p < pivots_.size(); ++p) {
       const Pivot& pivot = pivots_[p];
       Work own = work_of(FactorRun::Pivot, pivot.row, pivot.column, p);
-      const bool is_minus_one = own.products.empty() && is_minus_one_[own.sum.entry];
-      pivot_level[p] = is_minus_one ? 0 : own.level + 1;
-      if (is_minus_one) s_.inverse_[p] = -1;
+      pivot_level[p] = is_minus_one_[p] ? 0 : own.level + 1;
+      if (is_minus_one_[p]) s_.inverse_[p] = -1;
       else work.push_back(std::move(own));
       for (const std::uint32_t row : pivot.rows) add_factor(work, FactorRun::Lower, row, pivot.column, p, 0);
       for (const std::uint32_t column : pivot.columns) add_factor(work, FactorRun::Upper, pivot.row, column, p, pivot_level[p]);
@@ -192,7 +205,7 @@ class SparseBuilder {
   SparseSolver& s_;
   std::vector<std::uint32_t> pivot_of_row_, pivot_of_column_;
   std::vector<bool> has_y_;         // [pivots]
-  std::vector<bool> is_minus_one_;  // [entries]
+  std::vector<bool> is_minus_one_;  // [pivots]
   std::unordered_map<std::uint64_t, std::uint32_t> entry_at_, factor_at_;
   std::unordered_map<std::uint64_t, std::vector<FactorProduct>> products_;  // of places that are still to be found
   std::vector<std::uint32_t> factor_level_;  // [factors]
