@@ -68,6 +68,9 @@ function(maup_plugin directory)
   target_compile_definitions(maup_${name} PRIVATE MAUPERTUIS_BUILD_TAG="${MAUPERTUIS_BUILD_TAG}")
   set_target_properties(maup_${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/maupertuis
     CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  if(MAUPERTUIS_SANITIZE)
+    target_compile_options(maup_${name} PRIVATE -fno-sanitize=all)  # the archives of its libraries are not instrumented either
+  endif()
   target_link_options(maup_${name} PRIVATE -Wl,--exclude-libs,ALL -Wl,--gc-sections)
 endfunction()
 
