@@ -26,7 +26,91 @@ void check_same(const Expansion& found, const Expansion& expected) {
   for (std::size_t i = 0; i < expected.coefficients.size(); ++i) CHECK(same_bits(found.coefficients[i], expected.coefficients[i]));
 }
 
+/// Expressions of every instruction that have a value wherever their operands have one.
+class RandomExpressions {
+ public:
+  RandomExpressions(std::vector<Expr> leaves, unsigned seed) : leaves_(std::move(leaves)), random_(seed) {}
+
+  Expr make(int depth) {
+    if (depth == 0) return leaves_[random_() % leaves_.size()];
+    const Expr x = make(depth - 1), y = make(depth - 1 - static_cast<int>(random_() % static_cast<unsigned>(depth)));
+    const Expr two = x.context().number(2);
+    switch (random_() % 11) {
+      case 0: return x + Rational(1, 3) * y;
+      case 1: return x * y;
+      case 2: return x * x - y;
+      case 3: return sin(x) - cos(y);
+      case 4: return x / (two + y * y);
+      case 5: return sqrt(two + x * x);
+      case 6: return pow(two + x * x, Rational(-3, 2)) * y;
+      case 7: return apply(Kind::Tanh, x) + apply(Kind::Atan, y);
+      case 8: return apply(Kind::Exp, sin(x));
+      case 9: return apply(Kind::Log, two + x * x) - y;
+      default: return apply(Kind::Cosh, sin(x)) * y;
+    }
+  }
+
+ private:
+  std::vector<Expr> leaves_;
+  std::mt19937 random_;
+};
+
+/// Two coordinates with a mass matrix that is definite whatever the expressions are.
+void make_random(System& s, unsigned seed) {
+  const Expr x = s.coordinate("x", 0.4, 0.3), y = s.coordinate("y", -0.6, 0.5), c = s.parameter("c", 0.8);
+  RandomExpressions random({x, y, c, s.context.time(), x, y}, seed);
+  const Expr a = random.make(3), b = random.make(3), potential = random.make(4);
+  s.from_lagrangian(Rational(1, 2) * (pow(s.dot(x), 2) + pow(s.dot(y), 2)) +
+                    Rational(1, 8) * (pow(s.dot(sin(a)), 2) + pow(s.dot(cos(b)), 2)) - sin(potential));
+  s.start.t = 0.2;
+}
+
 }  // namespace
+
+/// The interpreter of lanes shares nothing with the emitter but the program and the sums of lanes::Plan.
+void check_against_interpreter(const Kernel& kernel, const std::vector<Motion>& motions, const Expansion& found) {
+  const Expansion expected = expand(kernel, motions, 1, InstructionSet::Best);
+  const std::size_t n = kernel.freedoms();
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    for (std::size_t k = 0; k <= order + 1; ++k) {
+      double size = 1;
+      for (std::size_t j = 0; j < n; ++j) size = std::max(size, std::abs(expected.coefficients[i][k * n + j]));
+      for (std::size_t j = 0; j < n; ++j) {
+        CAPTURE(k);
+        CHECK(std::abs(found.coefficients[i][k * n + j] - expected.coefficients[i][k * n + j]) <= 1e-13 * static_cast<double>(k + 1) * size);
+      }
+    }
+}
+
+TEST_CASE("random programs: compiled lanes agree with interpreted ones, and with each other at every width to the bit") {
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    CAPTURE(seed);
+    System s;
+    make_random(s, seed);
+    const Kernel kernel = build_kernel(s.source);
+    const auto motions = motions_near(s.start, 5);
+    const Expansion found = expand(kernel, motions, compiled(kernel, 8));
+    check_against_interpreter(kernel, motions, found);
+    check_same(expand(kernel, motions, compiled(kernel, 1)), found);
+    check_same(expand(kernel, motions, compiled(kernel, 16)), found);
+  }
+}
+
+TEST_CASE("other processors: without AVX-512 the same bits, without fused products the same to rounding") {
+  for (const unsigned seed : {3u, 5u}) {
+    System s;
+    make_random(s, seed);
+    const Kernel kernel = build_kernel(s.source);
+    const auto motions = motions_near(s.start, 3);
+    const auto on = [&](const char* processor) {
+      CompileOptions options;
+      options.processor = processor;
+      return expand(kernel, motions, compiled(kernel, 4, options));
+    };
+    if (has_instruction_set(InstructionSet::Avx2)) check_same(on("x86-64-v3"), expand(kernel, motions, compiled(kernel, 4)));
+    check_against_interpreter(kernel, motions, on("x86-64-v2"));
+  }
+}
 
 TEST_CASE("every instruction, compiled, agrees with the reference interpreter; short and long code with each other to the bit") {
   for (const auto& system : systems()) {
