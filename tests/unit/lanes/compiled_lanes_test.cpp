@@ -82,7 +82,7 @@ void check_against_interpreter(const Kernel& kernel, const std::vector<Motion>& 
     }
 }
 
-TEST_CASE("random programs: compiled lanes agree with interpreted ones, and with each other at every width to the bit") {
+TEST_CASE("random programs: compiled lanes agree with interpreted ones and the reference, and with each other at every width to the bit") {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     CAPTURE(seed);
     System s;
@@ -91,6 +91,8 @@ TEST_CASE("random programs: compiled lanes agree with interpreted ones, and with
     const auto motions = motions_near(s.start, 5);
     const Expansion found = expand(kernel, motions, compiled(kernel, 8));
     check_against_interpreter(kernel, motions, found);
+    for (std::size_t i = 0; i < motions.size(); ++i)
+      check_against_reference(kernel, motions[i], found.coefficients[i], found.quality[i]);
     check_same(expand(kernel, motions, compiled(kernel, 1)), found);
     check_same(expand(kernel, motions, compiled(kernel, 16)), found);
   }
