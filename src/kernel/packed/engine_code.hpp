@@ -163,7 +163,7 @@ class Stage {
   /// Σ_{j=first..k−first} a_j a_{k−j}, each pair once.
   Vector self(const double* a, int first) const {
     Vector sum = all(0);
-    for (int j = (k_ - 1) / 2; j >= first; --j) sum += load(a + j * stride_) * load(a + (k_ - j) * stride_);
+    for (int j = (k_ + 1) / 2 - 1; j >= first; --j) sum += load(a + j * stride_) * load(a + (k_ - j) * stride_);
     sum += sum;
     if (k_ % 2 == 0 && k_ / 2 >= first) {
       const Vector middle = load(a + k_ / 2 * stride_);
