@@ -41,6 +41,7 @@ struct TaylorStepper::Impl {
   };
 
   Step step(double bound);
+  bool forces_diverge();
   void compile();
   void compile_if_it_pays(double bound);
   bool expand(double bound, Step& result);
@@ -86,6 +87,8 @@ struct TaylorStepper::Impl {
   double best_pivot_ratio = 0;           // of the bordered matrix so far
   std::size_t most_in_force = 0;         // constraints so far
   double restraint = 1;                  // of the lengths that the control chooses
+  double longest = 0;                    // length so far
+  std::vector<double> largest_row;       // [constraints] of A so far
   std::size_t steps = 0, switches = 0;
   int stuck = 0;                         // crossings in a row that did not move time
   BackendUse backend;
@@ -104,6 +107,22 @@ void multipliers_of(const KernelWorkspace& work, std::vector<double>& values) {
 std::int8_t sign(double x) { return static_cast<std::int8_t>((x > 0) - (x < 0)); }
 
 }  // namespace
+
+/// A row of A that goes to zero while the steps do: its multiplier has a pole there. Rounding errors of the state grow with it, so that
+/// further steps would lead to whatever branch of the configurations they happen to be on.
+bool TaylorStepper::Impl::forces_diverge() {
+  constexpr double vanishing = 1e-6;
+  longest = std::max(longest, length);
+  largest_row.resize(kernel.constraints(), 0.0);
+  bool vanishes = false;
+  for (std::size_t j = 0; j < kernel.constraints(); ++j) {
+    double size = 0;
+    for (std::size_t i = 0; i < n; ++i) size = std::max(size, std::abs(work.constraint_matrix(j, i)));
+    largest_row[j] = std::max(largest_row[j], size);
+    vanishes = vanishes || size < vanishing * largest_row[j];
+  }
+  return vanishes && length > 0 && length < vanishing * longest;
+}
 
 void TaylorStepper::Impl::compile() {
   const CompileReport report = work.compile({options.cache, control.order, true, {}});
@@ -386,6 +405,10 @@ Step TaylorStepper::Impl::step(double bound) {
   if (const std::size_t m = kernel.constraints(); m > 0)
     chosen = taylor::step_within_multipliers(work, n, m, control, std::min(chosen, std::abs(remaining(bound))));
   length = std::isfinite(chosen) ? chosen : 0;
+  if (kernel.constraints() > 0 && forces_diverge()) {
+    end(result, StepEnding::SingularConstraints, "The constraints are singular near here: the forces that they ask for grow without bound.");
+    return result;
+  }
   const double left = remaining(bound);
   const double h = chosen < std::abs(left) ? std::copysign(chosen, left) : left;
   if (!(chosen > 2 * std::numeric_limits<double>::epsilon() * std::abs(t.hi)) || chosen < 1e-290) {
@@ -454,6 +477,8 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.length = 0;
   s.restraint = 1;
   s.best_pivot_ratio = 0;
+  s.longest = 0;
+  s.largest_row.clear();
   s.most_in_force = 0;
   s.steps = s.switches = 0;
   s.constraint_residual = 0;
