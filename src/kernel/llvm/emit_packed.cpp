@@ -949,10 +949,14 @@ class Emitter {
 
   // ----------------------------------------------------------------------------------------------------- look-ahead
 
-  /// Whether the second tangents of all packs are found by the rules below.
+  /// Whether the second tangents of all packs are found by the rules below, and no sum reads what the stage before has just found: that would
+  /// hold the q̈ that is to come last.
   bool has_second_tangents() const {
     return n_ <= most_looking_ahead && std::all_of(p_.packs.begin(), p_.packs.end(), [&](const Pack& pack) {
-      return pack.kind == Pack::Sum || pack.kind == Pack::Integral || p_.program.tangent_lags[pack.out] == Program::unmoved;
+      if (p_.program.tangent_lags[pack.out] == Program::unmoved) return true;
+      for (std::uint32_t c = pack.first_aligned; pack.kind == Pack::Sum && c < pack.last_aligned; ++c)
+        if (passes(p_.columns[c].source, p_.columns[c].shift, pack.lag - 1)) return false;
+      return pack.kind == Pack::Sum || pack.kind == Pack::Integral;
     });
   }
 

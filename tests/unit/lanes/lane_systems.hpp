@@ -124,8 +124,16 @@ void add_undefined_operand(Systems& list) {
   s.source.residual = {s.acceleration("x") + s.dot(s.dot(choice)) / Rational(3) + choice};
 }
 
+/// Two pendulums with friction between them: sums of velocities beside accelerations.
+void add_friction(Systems& list) {
+  System& s = add(list, "friction");
+  const Expr x = s.coordinate("x", 0.7, -0.4), y = s.coordinate("y", -0.3, 0.9), c = s.parameter("c", 0.6);
+  s.source.residual = {s.acceleration("x") + c * (s.dot(x) - s.dot(y)) + sin(x), 2 * s.acceleration("y") + c * (s.dot(y) - s.dot(x)) + sin(y)};
+}
+
 Systems systems() {
   Systems list;
+  add_friction(list);
   add_functions(list);
   for (const int links : {1, 2, 3, 5, 9}) add_chain(list, links);
   add_driven(list);
