@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <maupertuis/forward_dynamics.hpp>
+#include <maupertuis/simulation.hpp>
 #include <stdexcept>
 
 namespace bench {
@@ -34,6 +37,29 @@ EquationsOfMotion derive(const std::shared_ptr<const Model>& model) {
   auto equations = euler_lagrange({model, &model->system}, diagnostics);
   if (!equations) throw std::runtime_error(render(diagnostics, SourceText("benchmark", "")));
   return std::move(*equations);
+}
+
+ChainMotion chain_motion(int links) {
+  const auto model = read(chain_text(links));
+  DynamicsSource source = dynamics_source(derive(model));
+  source.kernel.observables.clear();
+  ChainMotion motion{build_kernel(source.kernel), source.parameters, {}, std::vector<double>(static_cast<std::size_t>(links), 0.0)};
+  for (int i = 0; i < links; ++i) motion.q.push_back(2.0 + 0.5 * i / std::max(1, links - 1));
+  return motion;
+}
+
+ChainEnergy chain_energy(std::span<const double> q, std::span<const double> v) {
+  ChainEnergy energy;
+  double y = 0, vx = 0, vy = 0;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    y -= std::cos(q[i]);
+    vx += v[i] * std::cos(q[i]);
+    vy += v[i] * std::sin(q[i]);
+    const double kinetic = 0.5 * (vx * vx + vy * vy), potential = 9.81 * y;
+    energy.value += kinetic + potential;
+    energy.terms += kinetic + std::abs(potential);
+  }
+  return energy;
 }
 
 }  // namespace bench

@@ -1,89 +1,89 @@
-// Taylor steps of chains of pendulums: what a step costs, by the public API.
+// Taylor steps of chains of pendulums by the public API (Google Benchmark): compiled and by the interpreter alone. Before
+// anything is timed, the energy has to be conserved, and the compiled motion has to be that of the interpreter.
+//
+//     bench_stepping --benchmark_filter=compiled/8
 #include "chain.hpp"
+#include "measure.hpp"
 
-#include <fmt/format.h>
+#include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <ctime>
 #include <maupertuis/integrator.hpp>
-#include <maupertuis/kernel.hpp>
-#include <maupertuis/simulation.hpp>
-#include <stdexcept>
-#include <vector>
+#include <string>
 
 namespace {
 
 using namespace maupertuis;
+using bench::require;
 
-/// The time that this thread ran: others may share the machine.
-struct Clock {
-  static double now() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-  }
-};
-
-struct Chain {
-  std::shared_ptr<const Model> model;
-  std::vector<double> parameters, q, v;
-  std::shared_ptr<Kernel> kernel;
-};
-
-Chain chain(int links) {
-  Chain c;
-  c.model = bench::read(bench::chain_text(links));
-  const EquationsOfMotion equations = bench::derive(c.model);
-  KernelSource source;
-  for (const Coordinate& x : c.model->system.coordinates) source.coordinates.push_back(x.q);
-  for (const Parameter& p : c.model->system.parameters) source.parameters.push_back(p.symbol), c.parameters.push_back(p.name == "g" ? 9.81 : 1.0);
-  source.residual = equations.balance();
-  c.kernel = std::make_shared<Kernel>(build_kernel(source));
-  for (int i = 0; i < links; ++i) c.q.push_back(2.0 + 0.5 * i / std::max(1, links - 1)), c.v.push_back(0);
-  return c;
-}
-
-double seconds(double begin) { return Clock::now() - begin; }
-
-void measure(int links, double time, Backend backend) {
-  const Chain c = chain(links);
-  const auto before = Clock::now();
+TaylorStepper stepper_of(const bench::ChainMotion& chain, Backend backend) {
   TaylorOptions options;
   options.backend = backend;
-  TaylorStepper stepper(*c.kernel, c.parameters, options);
-  const double setup = seconds(before);
-  double best = 1e9;
-  std::size_t steps = 0;
-  for (int round = 0; round < 5; ++round) {
-    stepper.start(0, c.q, c.v);
-    const auto begin = Clock::now();
-    while (stepper.time() != time)
-      if (stepper.step(time).ending != StepEnding::None) throw std::runtime_error("the run ended early");
-    best = std::min(best, seconds(begin));
-    steps = stepper.steps();
-  }
-  KernelWorkspace work(*c.kernel, 20);
-  work.set_parameters(c.parameters);
-  if (backend == Backend::Compiled) work.compile({false, 20, true, {}});
-  const int turns = std::max(10, 20000 / links);
-  double expand = 1e9;
-  for (int round = 0; round < 5; ++round) {
-    const auto begin = Clock::now();
-    for (int i = 0; i < turns; ++i) work.expand(0, c.q, c.v);
-    expand = std::min(expand, seconds(begin) / turns);
-  }
-  fmt::print("n = {:4}: {:9.3f} µs a step ({} steps, {:.1f} ms), expansion alone {:9.3f} µs, set-up {:.1f} ms\n", links,
-             1e6 * best / static_cast<double>(steps), steps, 1e3 * best, 1e6 * expand, 1e3 * setup);
+  return TaylorStepper(chain.kernel, chain.parameters, options);
 }
+
+void run(TaylorStepper& stepper, const bench::ChainMotion& chain, double time) {
+  stepper.start(0, chain.q, chain.v);
+  while (stepper.time() != time) require(stepper.step(time).ending == StepEnding::None, "the run ended early");
+}
+
+/// The largest relative error of the energy after any step.
+double energy_drift(TaylorStepper& stepper, const bench::ChainMotion& chain, double time) {
+  stepper.start(0, chain.q, chain.v);
+  const double begin = bench::chain_energy(chain.q, chain.v).value;
+  double worst = 0, terms = 0;
+  while (stepper.time() != time) {
+    require(stepper.step(time).ending == StepEnding::None, "the run ended early");
+    const bench::ChainEnergy energy = bench::chain_energy(stepper.q(), stepper.v());
+    worst = std::max(worst, std::abs(energy.value - begin));
+    terms = std::max(terms, energy.terms);
+  }
+  return worst / terms;
+}
+
+/// Both motions are computed to rounding errors, which chaos lets grow: a short time.
+void compare_with_interpreter(TaylorStepper& stepper, const bench::ChainMotion& chain, double time) {
+  TaylorStepper other = stepper_of(chain, Backend::Interpreter);
+  run(other, chain, time);
+  run(stepper, chain, time);
+  for (std::size_t i = 0; i < chain.q.size(); ++i) require(std::abs(stepper.q()[i] - other.q()[i]) < 1e-11, "state");
+}
+
+/// Arguments: links, milliseconds of motion.
+void steps(benchmark::State& state, Backend backend) {
+  try {
+    const bench::ChainMotion chain = bench::chain_motion(static_cast<int>(state.range(0)));
+    const double time = 1e-3 * static_cast<double>(state.range(1));
+    TaylorStepper stepper = stepper_of(chain, backend);
+    if (backend == Backend::Compiled) compare_with_interpreter(stepper, chain, std::min(time, 0.5));
+    const double drift = energy_drift(stepper, chain, time);
+    require(drift <= 2e-12, "energy");
+    std::size_t steps = 0;
+    for (auto _ : state) {
+      run(stepper, chain, time);
+      steps += stepper.steps();
+    }
+    state.SetLabel(stepper.backend().compiled ? "compiled" : "interpreter");
+    state.counters["energy_drift"] = drift;
+    state.counters["order"] = stepper.order();
+    state.counters["steps_of_a_run"] = static_cast<double>(stepper.steps());
+    state.counters["step"] = benchmark::Counter(static_cast<double>(steps), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  } catch (const std::exception& error) {
+    state.SkipWithError(error.what());
+  }
+}
+
+void sizes(benchmark::internal::Benchmark* rows) {
+  rows->ArgNames({"links", "ms"})->Unit(benchmark::kMillisecond);
+  for (const auto& [links, milliseconds] :
+       {std::pair{1, 100'000}, {2, 1'000'000}, {4, 100'000}, {8, 20'000}, {16, 10'000}, {32, 5000}, {50, 2000}, {100, 1000}, {200, 500}, {500, 200}, {1000, 100}})
+    rows->Args({links, milliseconds});
+}
+
+BENCHMARK_CAPTURE(steps, compiled, Backend::Compiled)->Apply(sizes);
+BENCHMARK_CAPTURE(steps, interpreter, Backend::Interpreter)->Apply(sizes);
 
 }  // namespace
 
-int main(int count, char** arguments) {
-  if (count > 2) {
-    measure(std::atoi(arguments[1]), std::atof(arguments[2]), count > 3 ? Backend::Compiled : Backend::Interpreter);
-    return 0;
-  }
-  for (const auto& [links, time] : std::vector<std::pair<int, double>>{{1, 1000}, {2, 1000}, {4, 200}, {8, 100}, {16, 50}, {32, 10}, {100, 2}})
-    for (const Backend backend : {Backend::Interpreter, Backend::Compiled}) measure(links, time, backend);
-}
+BENCHMARK_MAIN();
