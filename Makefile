@@ -1,5 +1,5 @@
 # Thin: each rule calls a script of scripts/, which installs what is missing, configures by a CMake preset and builds.
-.PHONY: demo build test bench fuzz format install clean
+.PHONY: demo build test bench instructions fuzz format install clean
 
 demo:     # check, derive, simulate and report models/double_pendulum.lag
 	@scripts/demo
@@ -7,8 +7,10 @@ build:    # build/bin/maup
 	@scripts/build
 test:     # all tests
 	@scripts/test
-bench:    # the table of docs/benchmarks.md, measured here
+bench:    # the tables of docs/benchmarks.md, measured here
 	@scripts/bench
+instructions:  # counts of fixed work under valgrind, against benchmarks/instruction_counts.json
+	@scripts/instructions
 fuzz:     # two minutes of libFuzzer on parse → check → derive
 	@scripts/fuzz
 format:   # clang-format over the sources

@@ -1,5 +1,6 @@
 // bench_first_step LINKS: from the text of a chain to its first compiled step, once, in a fresh process and with nothing read from
-// a cache. Prints {"links", "cpu_seconds", "compile_seconds"}; the processor time is that of the whole process, loading included.
+// a cache. Prints {"links", "cpu_seconds", "compiled"}; the processor time is that of the whole process, loading included. Where compiled
+// code does not apply the step is the interpreter's, and "compiled" is false.
 #include "chain.hpp"
 #include "measure.hpp"
 
@@ -23,8 +24,8 @@ int main(int, char** arguments) {
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
 
   const bench::ChainEnergy begin = bench::chain_energy(chain.q, chain.v), end = bench::chain_energy(stepper.q(), stepper.v());
-  bench::require(step.ending == StepEnding::None && stepper.backend().compiled, "no compiled step: " + stepper.backend().trouble);
+  bench::require(step.ending == StepEnding::None, "no step: " + step.reason);
   bench::require(std::abs(end.value - begin.value) <= 1e-13 * begin.terms, "energy");
-  fmt::print("{{\"links\": {}, \"cpu_seconds\": {:.6f}, \"compile_seconds\": {:.6f}}}\n", chain.q.size(),
-             static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec), stepper.backend().compile_seconds);
+  fmt::print("{{\"links\": {}, \"cpu_seconds\": {:.6f}, \"compiled\": {}}}\n", chain.q.size(),
+             static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec), stepper.backend().compiled);
 }
