@@ -30,7 +30,8 @@ void steps(int links, int count) {
 }
 
 void forward(int links, int count) {
-  const DynamicsSource source = dynamics_source(bench::derive(bench::read(bench::chain_text(links))));
+  const EquationsOfMotion equations = bench::derive(bench::read(bench::chain_text(links)));  // owns the expressions
+  const DynamicsSource source = dynamics_source(equations);
   const Kernel kernel = build_kernel(source.kernel);
   ForwardDynamics dynamics(kernel, source.inputs);
   dynamics.set_parameters(source.parameters);
