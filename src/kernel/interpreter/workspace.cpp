@@ -22,6 +22,8 @@ namespace {
 
 /// Up to here the correction of a stage is a product with a small matrix, and so is the solution where M is positive definite.
 constexpr std::size_t most_by_matrix = 16;
+/// With constraints there is no inverse to gain, and a point alone (an output between steps) needs M₀ but no corrections.
+constexpr std::size_t most_constrained_by_matrix = 8;
 
 }  // namespace
 
@@ -29,7 +31,8 @@ struct KernelWorkspace::Impl {
   Impl(const Kernel& k, int p)
       : kernel(k), packed(packed::pack(k.program())), program(packed.program), order(p),
         orders(p + 2 + (-2 - program.first_stage)), memory(program, orders, packed.cells), parameters(program.parameters, 0.0),
-        sides(program.switches.size(), 1), unknowns(program.unknowns), unknown(unknowns), by_matrix(unknowns <= most_by_matrix), producer(program.slots, nullptr) {
+        sides(program.switches.size(), 1), unknowns(program.unknowns), unknown(unknowns), 
+        by_matrix(unknowns <= (unknowns == program.freedoms ? most_by_matrix : most_constrained_by_matrix)), producer(program.slots, nullptr) {
     tangent.assign(by_matrix ? unknowns * memory.stride : memory.stride, 0.0);
     if (!by_matrix && unknowns == program.freedoms) lifted.emplace(kernel.program(), packed, memory.stride);
     if (by_matrix) inverse.assign(unknowns * padded_unknowns(), 0.0), solution.assign(padded_unknowns(), 0.0);
