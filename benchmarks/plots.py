@@ -51,20 +51,24 @@ def spread(places, distance=16):
     return result
 
 
-def draw(path, series, x_label, y_label, x_ticks=None, label_at=-1):
-    """series: [(label, [(x, y)])]; each is labelled beside one end."""
+def draw(path, series, x_label, y_label, x_ticks=None):
+    """series: [(label, [(x, y)])]; each is labelled beside its last point, above it where the curve ends early."""
     series = [(label, sorted(points)) for label, points in series if points]
     if not series:
         return
     x = Axis([p[0] for _, points in series for p in points], LEFT, WIDTH - RIGHT, x_ticks)
     y = Axis([p[1] for _, points in series for p in points], HEIGHT - BOTTOM, TOP)
     parts = frame(x, y, x_label, y_label)
-    heights = spread([y.at(points[label_at][1]) + 4 for _, points in series])
-    for (label, points), color, height in zip(series, COLORS, heights):
+    ends_early = [x.at(points[-1][0]) < WIDTH - RIGHT - 40 for _, points in series]
+    beside = iter(spread([y.at(points[-1][1]) + 4 for (_, points), early in zip(series, ends_early) if not early]))
+    for (label, points), color, early in zip(series, COLORS, ends_early):
         places = [(x.at(a), y.at(b)) for a, b in points]
         parts.append(f'<polyline points="{" ".join(f"{a:.1f},{b:.1f}" for a, b in places)}" fill="none" stroke="{color}" stroke-width="1.6"/>')
         parts += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="3" fill="{color}"/>' for a, b in places]
-        parts.append(text(places[label_at][0] + 10, height, label, f'fill="{color}"'))
+        if early:
+            parts.append(text(places[-1][0] + 8, places[-1][1] - 12, label, f'fill="{color}" text-anchor="end"'))
+        else:
+            parts.append(text(places[-1][0] + 10, next(beside), label, f'fill="{color}"'))
     body = "\n".join(parts)
     path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" '
                     f'font-family="Latin Modern Roman, STIX Two Text, Georgia, serif" font-size="14" fill="#222">\n'
