@@ -5,7 +5,7 @@ namespace llvm {
 class Module;
 }
 
-namespace maupertuis::compiler {
+namespace maupertuis::llvm_backend {
 
 /// Whether a packed program can be compiled as a whole: few unknowns, no constraints, not too many operations.
 bool can_emit_packed(const packed::PackedProgram& program, int order);
@@ -14,4 +14,4 @@ bool can_emit_packed(const packed::PackedProgram& program, int order);
 /// `stride` doubles.
 void emit_packed(llvm::Module& module, const packed::PackedProgram& program, std::size_t stride, int order);
 
-}  // namespace maupertuis::compiler
+}  // namespace maupertuis::llvm_backend

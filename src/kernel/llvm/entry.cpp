@@ -22,8 +22,8 @@ using Clock = std::chrono::steady_clock;
 
 void emit_packed_program(Emission& out, const Request& request) {
   const auto& program = *static_cast<const packed::PackedProgram*>(request.source);
-  if (!compiler::can_emit_packed(program, request.order)) throw Declined("a program with constraints or of too many operations");
-  compiler::emit_packed(*out.module, program, request.stride, request.order);
+  if (!can_emit_packed(program, request.order)) throw Declined("a program with constraints or of too many operations");
+  emit_packed(*out.module, program, request.stride, request.order);
 }
 
 void emit(Emission& out, const Request& request) {

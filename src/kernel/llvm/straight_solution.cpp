@@ -1,0 +1,151 @@
+#include "kernel/llvm/straight_emitter.hpp"
+
+namespace maupertuis::llvm_backend {
+
+using llvm::Value;
+using packed::Pack;
+using packed::lanes;
+
+static constexpr unsigned most_shuffled = 4;  // lanes
+static constexpr double least_pivot = 1e-10;
+
+void StraightEmitter::factor() {
+  for (const Pack& pack : p_.packs)
+    if (p_.program.tangent_lags[pack.out] != Program::unmoved) tangent(pack);
+  for (std::size_t i = 0; i < n_; ++i)
+    for (std::size_t d = 0; d < n_; ++d) {
+      const Slot slot = p_.program.residual[i];
+      const auto found = passes(slot, 0, 2) ? tangent_place(slot, static_cast<int>(d)) : std::nullopt;
+      save(b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), bordered_, i * n_ + d), found ? element(*found) : vector_of(0.0, 1));
+    }
+  invert();
+}
+
+/// −M₀⁻¹ by Gauss and Jordan without pivoting, a row a vector: stable for a symmetric, positive definite matrix. The smallest
+/// pivot against its diagonal entry tells whether it is one.
+void StraightEmitter::invert() {
+  std::vector<Value*> rows;
+  Value* least = nullptr;
+  for (std::size_t i = 0; i < n_; ++i) {
+    std::vector<Value*> entries;
+    for (std::size_t d = 0; d < n_; ++d) entries.push_back(load_from(bordered_, i * n_ + d, 1));
+    Value* row = wide_ == 1 ? entries[0] : llvm::PoisonValue::get(type(wide_));
+    for (unsigned lane = 0; wide_ > 1 && lane < wide_; ++lane)
+      row = b_.CreateInsertElement(row, lane < n_ ? entries[lane] : vector_of(0.0, 1), lane);
+    rows.push_back(row);
+  }
+  for (unsigned pivot = 0; pivot < n_; ++pivot) {
+    Value* const p = splat_lane(rows[pivot], pivot, 1);
+    Value* const share = b_.CreateFDiv(p, load_from(bordered_, pivot * n_ + pivot, 1));
+    least = least ? b_.CreateSelect(b_.CreateFCmpULT(share, least), share, least) : share;
+    Value* const inverse = b_.CreateFDiv(vector_of(1.0, 1), p);
+    Value* const row = mul(with_lane(rows[pivot], pivot, vector_of(1.0, 1)), spread(inverse));
+    for (unsigned i = 0; i < n_; ++i) {
+      if (i == pivot) continue;
+      Value* const factor = splat_lane(rows[i], pivot, wide_);
+      rows[i] = fma(b_.CreateFNeg(factor), row, with_lane(rows[i], pivot, vector_of(0.0, 1)));
+    }
+    rows[pivot] = row;
+  }
+  for (Value* const row : rows) inverse_rows_.push_back(b_.CreateFNeg(row));  // symmetric: rows are columns
+  trust(b_.CreateFCmpOGT(least, vector_of(least_pivot, 1)));
+}
+
+/// A copy on the stack: a load that fills all lanes costs nothing where a shuffle takes the place of a multiplication.
+Value* StraightEmitter::in_memory(Value* v) {
+  Value*& copy = copies_[v];
+  if (copy) return copy;
+  copy = llvm::IRBuilder<>(&function_->getEntryBlock(), function_->getEntryBlock().begin()).CreateAlloca(v->getType());
+  save(copy, v);
+  return copy;
+}
+
+/// Beyond this point only if the condition holds; else the slow path has to decide.
+void StraightEmitter::trust(Value* condition) {
+  auto* const good = llvm::BasicBlock::Create(context_, "", function_);
+  auto* const bad = llvm::BasicBlock::Create(context_, "", function_);
+  b_.CreateCondBr(condition, good, bad);
+  b_.SetInsertPoint(bad);
+  b_.CreateRet(b_.getInt32(2));
+  b_.SetInsertPoint(good);
+}
+
+Value* StraightEmitter::splat_lane(Value* v, unsigned lane, unsigned w) {
+  if (width(v) == 1) return w == 1 ? v : b_.CreateVectorSplat(w, v);
+  if (w == 1) return b_.CreateExtractElement(v, lane);
+  if (w > most_shuffled && !llvm::isa<llvm::Constant>(v)) return b_.CreateVectorSplat(w, load_from(in_memory(v), lane, 1));
+  return b_.CreateShuffleVector(v, std::vector<int>(w, static_cast<int>(lane)));
+}
+
+/// q̈_k = −M₀⁻¹ R_k; looking ahead, R_k lacks its part by q̈_{k−1}, which comes last.
+void StraightEmitter::solve() {
+  Value *even = nullptr, *odd = nullptr;
+  for (unsigned d = 0; d < n_; ++d) {
+    const Slot slot = p_.program.residual[d];
+    const auto r = current_order(slot) == stage_ ? place(slot) : std::nullopt;
+    Value* const value = r ? splat_lane(r->vector, r->lane, wide_) : spread(load(cell(stage_, slot), 1));
+    Value*& sum = d % 2 == 0 ? even : odd;
+    sum = fma(value, inverse_rows_[d], sum);
+  }
+  Value* found = add(even, odd);
+  if (looks_ahead(stage_))
+    for (unsigned d = 0; d < n_; ++d)
+      found = fma(splat_lane(acceleration_, d, wide_), fma(ahead_b_[d], vector_of(1.0 / stage_, wide_), ahead_a_[d]), found);
+  previous_ = std::exchange(acceleration_, found);
+  Value* const nothing = b_.CreateFMul(found, vector_of(0.0, wide_));  // NaN where it is not finite
+  check_ = check_ ? b_.CreateFAdd(check_, nothing) : nothing;
+}
+
+void StraightEmitter::correct() {
+  coordinates_ = over(acceleration_, (stage_ + 1.0) * (stage_ + 2.0));
+  save(cell(stage_ + 2, 0), coordinates_);  // the other lanes of the row's first vector belong to nobody
+  for (const Pack& pack : p_.packs) {
+    if (!is_corrected(pack.out)) continue;
+    const SecondTangent* const second_order = looks_ahead(stage_) ? &second_order_[index_of(pack)] : nullptr;
+    correct(pack.out, tangents_[index_of(pack)], pack.lag, second_order);
+    if (pack.kind != Pack::Scalar) continue;
+    const Slot second = p_.program.instructions[pack.instruction].second;
+    if (second != no_slot) correct(second, second_tangents_[second], pack.lag, nullptr);
+  }
+}
+
+void StraightEmitter::correct(Slot slot, const Tangent& t, int lag, const SecondTangent* second_order) {
+  const auto found = open_.find(slot);
+  if (found == open_.end()) return;
+  Value* result = found->second;
+  const unsigned w = width(result);
+  const double k = stage_;
+  if (second_order) {
+    // (k+1)_ℓ A + (k+1)_{ℓ−1} B over (k+1) k, since q_{k+1} = q̈_{k−1} / ((k+1) k)
+    const double of_a = lag == 2 ? 1 : lag == 1 ? 1 / k : 1 / (k * (k + 1)), of_b = of_a / (k + 2 - lag);
+    for (const auto& [d, values] : joined(*second_order)) {
+      Value* slope = values.first ? mul(values.first, vector_of(of_a, w)) : nullptr;
+      if (values.second) slope = fma(values.second, vector_of(of_b, w), slope);
+      result = fma(direction_of(previous_, t, d, w), slope, result);
+    }
+  }
+  found->second = early_[slot] = result;
+  const double factor = lag == 2 ? 1 : lag == 1 ? 1.0 / (k + 1) : 1.0 / ((k + 1) * (k + 2));
+  const auto scaled = [&](Value* v) { return mul(v, splat(factor, v)); };
+  if (t.diagonal) result = fma(direction_of(acceleration_, t, along_lanes, w), scaled(t.diagonal), result);
+  for (const auto& [d, value] : t.dense) result = fma(splat_lane(acceleration_, static_cast<unsigned>(d), w), scaled(value), result);
+  found->second = result;
+  save(cell(stage_ + 2 - lag, slot), result);
+}
+
+/// Accelerations as the lanes of a diagonal tangent need them, or one for all lanes.
+Value* StraightEmitter::direction_of(Value* acceleration, const Tangent& t, int d, unsigned w) {
+  if (d != along_lanes) return splat_lane(acceleration, static_cast<unsigned>(d), w);
+  std::vector<std::optional<Place>> places;
+  for (const int x : t.direction) places.push_back(Place{acceleration, static_cast<unsigned>(std::max(0, x))});
+  return assemble(places, w, [&](std::size_t) { return vector_of(0.0, 1); });
+}
+
+std::map<int, std::pair<Value*, Value*>> StraightEmitter::joined(const SecondTangent& s) {
+  std::map<int, std::pair<Value*, Value*>> result;
+  for (const auto& [d, value] : s.a) result[d].first = value;
+  for (const auto& [d, value] : s.b) result[d].second = value;
+  return result;
+}
+
+}  // namespace maupertuis::llvm_backend
