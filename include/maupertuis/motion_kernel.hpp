@@ -2,9 +2,17 @@
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/kernel.hpp>
 
+#include <span>
 #include <vector>
 
 namespace maupertuis {
+
+/// What the kernel of a motion is lowered from: coordinates, parameters, R − Aᵀλ, multipliers and constraints in the order of the
+/// system, with lets and inputs put in; without observables, events and integrands.
+KernelSource motion_source(const EquationsOfMotion& equations);
+
+/// The values of all parameters in the order of system.parameters, SI.
+std::vector<double> parameter_values(const MechanicalSystem& system);
 
 /// A system as numbers, for TaylorStepper and advance_ensemble.
 struct MotionKernel {
@@ -13,7 +21,7 @@ struct MotionKernel {
   std::size_t energy_terms = 0;    // the first observables: the terms of h_E, J; it is conserved where no power is exchanged
 };
 
-/// Cost: that of build_kernel.
-MotionKernel motion_kernel(const EquationsOfMotion& equations);
+/// `events`: functions of q, q', t whose roots end steps. Cost: that of build_kernel.
+MotionKernel motion_kernel(const EquationsOfMotion& equations, std::span<const Expr> events = {});
 
 }  // namespace maupertuis

@@ -1,3 +1,4 @@
+#include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/simulation.hpp>
 #include <maupertuis/transform.hpp>
 

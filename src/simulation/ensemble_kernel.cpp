@@ -5,8 +5,9 @@
 
 namespace maupertuis {
 
-MotionKernel motion_kernel(const EquationsOfMotion& equations) {
+MotionKernel motion_kernel(const EquationsOfMotion& equations, std::span<const Expr> events) {
   WantedFunctions wanted;
+  wanted.events.assign(events.begin(), events.end());
   wanted.observables = energy_terms(equations);
   return {motion_kernel(equations, wanted), parameter_values(*equations.system), wanted.observables.size()};
 }

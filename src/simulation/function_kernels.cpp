@@ -2,6 +2,7 @@
 
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <algorithm>

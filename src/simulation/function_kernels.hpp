@@ -19,7 +19,4 @@ MotionFunctions motion_functions(const EquationsOfMotion& equations, const Wante
 /// M becomes regular.
 VariationalFunctions variational_functions(const EquationsOfMotion& equations, const WantedFunctions& wanted);
 
-/// The values of all parameters in the order of system.parameters.
-std::vector<double> parameter_values(const MechanicalSystem& system);
-
 }  // namespace maupertuis

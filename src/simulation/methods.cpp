@@ -1,6 +1,7 @@
 #include "simulation/methods.hpp"
 
 #include <fmt/format.h>
+#include <maupertuis/motion_kernel.hpp>
 
 #include <cmath>
 

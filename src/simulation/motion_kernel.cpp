@@ -1,10 +1,11 @@
 #include "simulation/motion_kernel.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/motion_kernel.hpp>
 
 namespace maupertuis {
 
-Kernel motion_kernel(const EquationsOfMotion& equations, const WantedFunctions& wanted) {
+KernelSource motion_source(const EquationsOfMotion& equations) {
   const MechanicalSystem& system = *equations.system;
   KernelSource source;
   for (const Coordinate& c : system.coordinates) source.coordinates.push_back(c.q);
@@ -16,6 +17,12 @@ Kernel motion_kernel(const EquationsOfMotion& equations, const WantedFunctions& 
     const Expr value = in_terms_of_motion(system, {&c.value, 1}).front();
     source.constraints.push_back({value, c.level == Constraint::Level::Position ? 0 : 1, system.constraint_label(i)});
   }
+  return source;
+}
+
+Kernel motion_kernel(const EquationsOfMotion& equations, const WantedFunctions& wanted) {
+  const MechanicalSystem& system = *equations.system;
+  KernelSource source = motion_source(equations);
   source.observables = in_terms_of_motion(system, wanted.observables);
   source.events = in_terms_of_motion(system, wanted.events);
   source.integrands = in_terms_of_motion(system, wanted.integrands);

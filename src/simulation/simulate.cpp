@@ -1,4 +1,5 @@
 #include <maupertuis/integrator.hpp>
+#include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/simulation.hpp>
 
 #include "simulation/energy_terms.hpp"

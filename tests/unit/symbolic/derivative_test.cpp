@@ -1,4 +1,5 @@
 #include <maupertuis/transform.hpp>
+#include <maupertuis/variation.hpp>
 
 #include <doctest/doctest.h>
 
@@ -65,4 +66,16 @@ TEST_CASE_FIXTURE(Pendulum, "the residual of a long chain has a number of nodes 
   };
   const auto small = nodes_of_chain(50), large = nodes_of_chain(100);
   CHECK(large < 2.2 * static_cast<double>(small));
+}
+
+TEST_CASE_FIXTURE(Pendulum, "a variation commutes with d/dt and carries the orders of a symbol") {
+  const Expr x = c.symbol("x", Role::Coordinate);
+  const ExprMap directions{{q, x}};
+  const auto D = [&](Expr e) { return c.time_derivative(e); };
+  const std::array roots{m * square(v), D(sin(q) * v), c.time() * cos(q), m * l};
+  const auto varied = variation(roots, directions);
+  CHECK(varied[0] == Rational(2) * m * v * D(x));
+  CHECK(varied[1] == D(cos(q) * x * v + sin(q) * D(x)));
+  CHECK(varied[2] == -(c.time() * sin(q) * x));
+  CHECK(varied[3].is_zero());
 }

@@ -1,0 +1,115 @@
+#pragma once
+#include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/step.hpp>
+
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+/// The neighbours of a motion to first order: dΦ of its flow Φ, by the tangent (first-variation) equations
+///
+///     R(q,q̇,q̈,λ,t) = 0,   δR = ∂R/∂q δq + ∂R/∂q̇ δq̇ + ∂R/∂q̈ δq̈ + ∂R/∂λ δλ = 0,   δφ = 0, δψ = 0 where there are
+///     constraints,
+///
+/// exact, integrated together with the motion itself at rounding tolerance (docs/theory/tangent.md).
+///
+///     TangentFlow flow(equations);
+///     TangentPoint point = flow.all_directions(start);       // columns: a basis of the directions that the
+///     constraints allow if (const auto stop = flow.advance(point, 10)) …       // stop->reason point.column(j) // δq,
+///     then δq̇: ∂(q,q̇)(10) along direction j of the start
+namespace maupertuis {
+
+/// A state of the motion and directions at it. A direction is δq [n], then δq̇ [n].
+struct TangentPoint {
+  MotionState state;
+  std::vector<double> directions;  // [columns × 2n], one after the other
+
+  std::size_t width() const { return 2 * state.q.size(); }
+  std::size_t columns() const { return width() == 0 ? 0 : directions.size() / width(); }
+  std::span<double> column(std::size_t j) { return std::span(directions).subspan(j * width(), width()); }
+  std::span<const double> column(std::size_t j) const { return std::span(directions).subspan(j * width(), width()); }
+};
+
+/// Why a flow did not reach its end.
+struct TangentStop {
+  StepEnding ending = StepEnding::None;  // None: an acceleration jumps at a switch, where the tangent equations end
+  double t = 0;                          // s
+  std::string reason;                    // one sentence
+};
+
+struct TangentOptions {
+  double tolerance = 0;                          // relative, per step; 0: rounding level of double
+  std::size_t maximum_steps = 100'000'000;       // of each advance
+  const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
+};
+
+/// The flow of a system together with its derivative. One thread at a time.
+class TangentFlow {
+ public:
+  /// Kernels are made at first use, for as many directions at once as 96 unknowns have room for.
+  explicit TangentFlow(const EquationsOfMotion& equations, const TangentOptions& options = {});
+  ~TangentFlow();
+  TangentFlow(TangentFlow&&) noexcept;
+
+  std::size_t freedoms() const;  // n, the number of coordinates
+
+  /// The state with a basis of the directions that the constraints allow: the 2n unit vectors without constraints, else
+  /// an orthonormal basis of the tangent space of {φ = 0, dφ/dt = 0, ψ = 0}. Precondition: the state is on the
+  /// constraints.
+  TangentPoint all_directions(const MotionState& state) const;
+
+  /// Carries state and directions to the time t, forwards or backwards. Directions are linear: any scale, any number of
+  /// columns. Where it stops on the way, `point` is what was reached before the step that was not possible. Switches of
+  /// abs, min, piecewise, … are crossed where the accelerations are continuous (then dΦ is); elsewhere it stops.
+  /// Precondition: with constraints, each column is a direction that they allow.
+  /// Cost per step: about that of (1 + 3 · columns) expansions of the motion.
+  std::optional<TangentStop> advance(TangentPoint& point, double t);
+
+  /// The same with the points at `times` on the way (in the order of the run, the last one ends it). Those reached are
+  /// in `points`.
+  std::optional<TangentStop> along(const TangentPoint& start, std::span<const double> times,
+                                   std::vector<TangentPoint>& points);
+
+  /// Accelerations at a state [n]; empty where they have no value.
+  std::vector<double> accelerations(const MotionState& state);
+  /// Columns are carried in groups, each with the motion itself: how far those copies of the motion came apart in the
+  /// last advance, relative to the size of each coordinate. An estimate of the error of the motion; 0 for one group.
+  double spread() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// What the geometry of mechanics says of directions at a state. The state space has the coordinates (q, q̇).
+class TangentGeometry {
+ public:
+  explicit TangentGeometry(const EquationsOfMotion& equations);
+  ~TangentGeometry();
+  TangentGeometry(TangentGeometry&&) noexcept;
+
+  /// An orthonormal basis of the directions that the constraints allow [d × 2n], row by row; d = 2n without
+  /// constraints.
+  std::vector<double> basis(const MotionState& state) const;
+  /// Whether the motion is that of a Lagrangian alone (no Q, no D, no constraint between velocities): then dΦ preserves
+  /// ω = Σ dq_i ∧ dp_i with p = ∂L/∂q̇.
+  bool symplectic() const;
+  /// ω of each pair of columns [columns × columns], row by row: ω(a, b) = δq_a·δp_b − δp_a·δq_b with δp = ∂p/∂q δq + M
+  /// δq̇.
+  std::vector<double> symplectic_products(const TangentPoint& point) const;
+  /// d/dt log of the volume that dΦ carries along in the phase space of q and p, over the directions that the
+  /// constraints allow: tr((ZᵀMZ)⁻¹ Zᵀ (∂F/∂q̇) Z), F = Q − ∂D/∂q̇, A Z = 0 (Liouville). 1/s Nothing for constraints
+  /// between velocities, and where Q depends on a reaction.
+  std::optional<double> divergence(const MotionState& state) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace maupertuis

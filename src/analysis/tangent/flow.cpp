@@ -1,0 +1,294 @@
+#include "analysis/tangent/extended_source.hpp"
+
+#include <maupertuis/integrator.hpp>
+#include <maupertuis/motion_kernel.hpp>
+#include <maupertuis/require.hpp>
+#include <maupertuis/tangent.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+
+namespace maupertuis {
+namespace {
+
+/// Unknowns of one kernel: with more, the matrix costs as much as a second copy of the motion.
+constexpr std::size_t most_unknowns = 96;
+/// Directions are made small, so that in the matrix of the extended system the derivative of M never outweighs M
+/// itself.
+constexpr int exponent_of_directions = -30;
+/// Of the largest acceleration of a coordinate: what differs by less across a switch is continuous.
+constexpr double least_jump = 1e-9;
+
+/// The power of two that brings the largest component near 2^exponent_of_directions; 0 for the zero direction.
+double scale_of(std::span<const double> direction) {
+  double largest = 0;
+  for (const double x : direction) largest = std::max(largest, std::abs(x));
+  return largest > 0 && std::isfinite(largest) ? std::ldexp(1.0, exponent_of_directions - std::ilogb(largest)) : 0.0;
+}
+
+/// Whether the accelerations of the motion jump where a step ended at a switch.
+class JumpWatch {
+ public:
+  explicit JumpWatch(std::size_t n) : n_(n), largest_(n, 0.0) {}
+
+  /// The beginning of a step that was made; the time of a jump that lies there.
+  std::optional<double> at_beginning(const Sample& begin) {
+    for (std::size_t i = 0; i < n_; ++i) largest_[i] = std::max(largest_[i], std::abs(begin.a[i]));
+    const bool jumps = !before_.empty() && differs(begin.a);
+    before_.clear();
+    return jumps ? std::optional(begin.t) : std::nullopt;
+  }
+  void switched(Sample end) { before_ = std::move(end.a); }
+
+ private:
+  bool differs(const std::vector<double>& after) const {
+    for (std::size_t i = 0; i < n_; ++i)
+      if (!(std::abs(after[i] - before_[i]) <= least_jump * largest_[i])) return true;
+    return false;
+  }
+  std::size_t n_;
+  std::vector<double> largest_, before_;
+};
+
+TangentStop jump_at(double t) {
+  return {StepEnding::None, t,
+          fmt::format(
+              "An acceleration jumps at a switch at t = {:.9g} s: neighbours cross it at other times, and the tangent "
+              "equations do not hold there.",
+              t)};
+}
+
+/// The motion with some columns beside it.
+class Group {
+ public:
+  Group(const Kernel& kernel, std::span<const double> parameters, const TangentOptions& options, std::size_t n,
+        std::size_t columns)
+      : n_(n),
+        columns_(columns),
+        smooth_(kernel.switches().empty()),
+        scales_(columns, 0.0),
+        q_(n * (1 + columns)),
+        v_(q_.size()),
+        stepper_(kernel, parameters,
+                 {options.tolerance, 0, options.maximum_steps, options.interrupt, Backend::Automatic, true}) {}
+
+  /// Columns first, first + 1, … of the point; where it has no more, the last one again.
+  void start(const TangentPoint& point, std::size_t first) {
+    std::copy_n(point.state.q.begin(), n_, q_.begin());
+    std::copy_n(point.state.v.begin(), n_, v_.begin());
+    for (std::size_t j = 0; j < columns_; ++j) {
+      const auto column = point.column(std::min(first + j, point.columns() - 1));
+      scales_[j] = scale_of(column);
+      for (std::size_t i = 0; i < n_; ++i) {
+        q_[(1 + j) * n_ + i] = scales_[j] * column[i];
+        v_[(1 + j) * n_ + i] = scales_[j] * column[n_ + i];
+      }
+    }
+    stepper_.start(point.state.t, q_, v_);
+    jumps_ = JumpWatch(n_);
+  }
+
+  std::optional<TangentStop> advance(double t) {
+    while (stepper_.time() != t)
+      if (auto stop = step(t)) return stop;
+    return std::nullopt;
+  }
+
+  void read(TangentPoint& point, std::size_t first) const {
+    for (std::size_t j = 0; j < columns_ && first + j < point.columns(); ++j) {
+      const auto column = point.column(first + j);
+      const double inverse = scales_[j] > 0 ? 1 / scales_[j] : 0;
+      for (std::size_t i = 0; i < n_; ++i) {
+        column[i] = inverse * stepper_.q()[(1 + j) * n_ + i];
+        column[n_ + i] = inverse * stepper_.v()[(1 + j) * n_ + i];
+      }
+    }
+  }
+  MotionState state() const {
+    return {stepper_.time(),
+            {stepper_.q().begin(), stepper_.q().begin() + static_cast<std::ptrdiff_t>(n_)},
+            {stepper_.v().begin(), stepper_.v().begin() + static_cast<std::ptrdiff_t>(n_)}};
+  }
+
+ private:
+  std::optional<TangentStop> step(double t) {
+    const Step step = stepper_.step(t);
+    if (step.ending != StepEnding::None) return TangentStop{step.ending, step.begin, step.reason};
+    if (smooth_) return std::nullopt;
+    if (const auto jump = jumps_.at_beginning(stepper_.step_start())) return jump_at(*jump);
+    if (step.switches > 0) jumps_.switched(stepper_.sample(stepper_.time()));
+    return std::nullopt;
+  }
+
+  std::size_t n_, columns_;
+  bool smooth_;
+  std::vector<double> scales_;  // [columns]
+  std::vector<double> q_, v_;   // [n (1 + columns)]
+  TaylorStepper stepper_;
+  JumpWatch jumps_{0};
+};
+
+}  // namespace
+
+struct TangentFlow::Impl {
+  Impl(const EquationsOfMotion& e, const TangentOptions& o)
+      : equations(e),
+        options(o),
+        n(e.system->coordinates.size()),
+        unknowns(n + e.system->constraints.size()),
+        parameters(parameter_values(*e.system)),
+        geometry(e) {}
+
+  Group& group(std::size_t columns);
+  KernelWorkspace& point_kernel();
+  std::optional<TangentStop> jump_at_start(const MotionState& start, double duration);
+  void compare(const MotionState& a, const MotionState& b, const MotionState& start);
+
+  EquationsOfMotion equations;
+  TangentOptions options;
+  std::size_t n, unknowns;
+  std::vector<double> parameters;
+  TangentGeometry geometry;
+  std::map<std::size_t, Group> groups;  // by their columns
+  std::optional<Kernel> motion;
+  std::optional<KernelWorkspace> at_point;
+  double spread = 0;
+};
+
+Group& TangentFlow::Impl::group(std::size_t columns) {
+  const auto found = groups.find(columns);
+  if (found != groups.end()) return found->second;
+  return groups
+      .emplace(columns,
+               Group(build_kernel(tangent::extended_source(equations, columns)), parameters, options, n, columns))
+      .first->second;
+}
+
+void TangentFlow::Impl::compare(const MotionState& a, const MotionState& b, const MotionState& start) {
+  const auto include = [this](double x, double y, double from) {
+    if (x != y) spread = std::max(spread, std::abs(x - y) / std::max({std::abs(x), std::abs(y), std::abs(from)}));
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    include(a.q[i], b.q[i], start.q[i]);
+    include(a.v[i], b.v[i], start.v[i]);
+  }
+}
+
+KernelWorkspace& TangentFlow::Impl::point_kernel() {
+  if (!at_point) {
+    motion = build_kernel(motion_source(equations));
+    at_point.emplace(*motion, 1);
+    at_point->set_parameters(parameters);
+  }
+  return *at_point;
+}
+
+/// A start within rounding of a switch belongs to both sides of it.
+std::optional<TangentStop> TangentFlow::Impl::jump_at_start(const MotionState& start, double duration) {
+  KernelWorkspace& work = point_kernel();
+  const std::size_t count = motion->switches().size();
+  if (count == 0 || work.evaluate(start.t, start.q, start.v) != KernelStatus::Ok) return std::nullopt;
+  std::vector<std::int8_t> sides;
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double s = work.switch_function(i, 0), rate = work.switch_function(i, 1);
+    sides.push_back(s < 0 ? -1 : 1);
+    if (rate != 0 && std::abs(s) <= 1e-12 * (work.switch_scale(i) + std::abs(rate * duration))) open.push_back(i);
+  }
+  const auto accelerations = [&](std::span<const std::int8_t> at) {
+    std::vector<double> a(n, std::numeric_limits<double>::quiet_NaN());
+    work.set_branches(at);
+    if (work.evaluate(start.t, start.q, start.v) == KernelStatus::Ok)
+      for (std::size_t i = 0; i < n; ++i) a[i] = work.acceleration(i);
+    return a;
+  };
+  const auto here = accelerations(sides);
+  std::optional<TangentStop> stop;
+  for (const std::size_t k : open) {
+    auto flipped = sides;
+    flipped[k] = static_cast<std::int8_t>(-flipped[k]);
+    const auto there = accelerations(flipped);
+    for (std::size_t i = 0; i < n; ++i)
+      if (!(std::abs(here[i] - there[i]) <= least_jump * std::max(std::abs(here[i]), std::abs(there[i]))))
+        stop = jump_at(start.t);
+  }
+  work.set_branches(std::vector<std::int8_t>(count, 1));
+  return stop;
+}
+
+TangentFlow::TangentFlow(const EquationsOfMotion& equations, const TangentOptions& options)
+    : impl_(std::make_unique<Impl>(equations, options)) {}
+TangentFlow::~TangentFlow() = default;
+TangentFlow::TangentFlow(TangentFlow&&) noexcept = default;
+
+std::size_t TangentFlow::freedoms() const { return impl_->n; }
+double TangentFlow::spread() const { return impl_->spread; }
+
+TangentPoint TangentFlow::all_directions(const MotionState& state) const {
+  return {state, impl_->geometry.basis(state)};
+}
+
+std::optional<TangentStop> TangentFlow::along(const TangentPoint& start, std::span<const double> times,
+                                              std::vector<TangentPoint>& points) {
+  Impl& s = *impl_;
+  MAUP_REQUIRE(start.state.q.size() == s.n && start.state.v.size() == s.n && start.directions.size() % (2 * s.n) == 0);
+  s.spread = 0;
+  points.assign(times.size(), start);
+  const std::size_t columns = start.columns(), most = std::max<std::size_t>(2, most_unknowns / s.unknowns) - 1;
+  const std::size_t count = std::max<std::size_t>(1, (columns + most - 1) / most),
+                    width = (columns + count - 1) / count;
+  std::optional<TangentStop> stop =
+      times.empty() ? std::nullopt : s.jump_at_start(start.state, times.back() - start.state.t);
+  if (stop) points.clear();
+  for (std::size_t k = 0; k < count && !points.empty(); ++k) {
+    Group& group = s.group(width);
+    group.start(start, k * width);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (auto failed = group.advance(times[i])) {
+        stop = std::move(failed);
+        points.resize(i);
+        break;
+      }
+      group.read(points[i], k * width);
+      const MotionState state = group.state();
+      if (k == 0)
+        points[i].state = state;
+      else
+        s.compare(points[i].state, state, start.state);
+    }
+  }
+  return stop;
+}
+
+std::optional<TangentStop> TangentFlow::advance(TangentPoint& point, double t) {
+  std::vector<TangentPoint> points;
+  if (auto stop = along(point, {&t, 1}, points)) return stop;
+  point = std::move(points.front());
+  return std::nullopt;
+}
+
+std::vector<double> TangentFlow::accelerations(const MotionState& state) {
+  Impl& s = *impl_;
+  KernelWorkspace& work = s.point_kernel();
+  const std::size_t count = s.motion->switches().size();
+  const auto evaluate = [&] { return work.evaluate(state.t, state.q, state.v) == KernelStatus::Ok; };
+  if (!evaluate()) return {};
+  if (count > 0) {
+    std::vector<std::int8_t> sides;
+    for (std::size_t i = 0; i < count; ++i) sides.push_back(work.switch_function(i, 0) < 0 ? -1 : 1);
+    work.set_branches(sides);
+    const bool ok = evaluate();
+    work.set_branches(std::vector<std::int8_t>(count, 1));
+    if (!ok) return {};
+  }
+  std::vector<double> out;
+  for (std::size_t i = 0; i < s.n; ++i) out.push_back(work.acceleration(i));
+  return out;
+}
+
+}  // namespace maupertuis
