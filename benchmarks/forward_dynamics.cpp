@@ -25,10 +25,12 @@ struct Case {
   ForwardDynamics dynamics;
   std::vector<double> q, v, a;
 
-  explicit Case(const std::string& text)
-      : equations(bench::derive(bench::read(text))), source(dynamics_source(equations)), kernel(build_kernel(source.kernel)), dynamics(kernel, source.inputs),
-        q(kernel.freedoms()), v(q), a(q) {
+  explicit Case(const std::string& text, Backend backend)
+      : equations(bench::derive(bench::read(text))), source(dynamics_source(equations)), kernel(build_kernel(source.kernel)),
+        dynamics(kernel, source.inputs, {.backend = backend, .cache = false}), q(kernel.freedoms()), v(q), a(q) {
     dynamics.set_parameters(source.parameters);
+    if (const CompileReport& report = dynamics.compile_report(); report.compiled != (backend == Backend::Compiled))
+      throw std::runtime_error("no compiled code: " + report.trouble);
     for (std::size_t i = 0; i < q.size(); ++i) q[i] = 0.3 + 0.11 * static_cast<double>(i % 7), v[i] = 0.5 - 0.2 * static_cast<double>(i % 3);
     check();
   }
@@ -55,20 +57,36 @@ struct Case {
       benchmark::DoNotOptimize(a.data());
       q[0] += 1e-9 * a[0];
     }
+    if (dynamics.compile_report().compiled) state.counters["compile_ms"] = 1e3 * dynamics.compile_report().seconds;
   }
 };
 
-void chain(benchmark::State& state) { Case(bench::chain_text(static_cast<int>(state.range(0)))).run(state); }
+void run(const std::string& text, Backend backend, benchmark::State& state) {
+  try {
+    Case(text, backend).run(state);
+  } catch (const std::runtime_error& error) {
+    state.SkipWithError(error.what());
+  }
+}
 
-void arm(benchmark::State& state) {
+void chain(benchmark::State& state, Backend backend) { run(bench::chain_text(static_cast<int>(state.range(0))), backend, state); }
+
+void arm(benchmark::State& state, Backend backend) {
   std::ifstream file(PROJECT_DIR "/tests/problems/arm_seven_joints.lag");
   std::stringstream text;
   text << file.rdbuf();
-  Case(text.str()).run(state);
+  run(text.str(), backend, state);
 }
 
-BENCHMARK(chain)->Arg(1)->Arg(2)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100)->Arg(200)->Arg(500)->Arg(1000)->Unit(benchmark::kNanosecond);
-BENCHMARK(arm)->Unit(benchmark::kNanosecond);
+void interpreted_chain(benchmark::State& state) { chain(state, Backend::Interpreter); }
+void compiled_chain(benchmark::State& state) { chain(state, Backend::Compiled); }
+void interpreted_arm(benchmark::State& state) { arm(state, Backend::Interpreter); }
+void compiled_arm(benchmark::State& state) { arm(state, Backend::Compiled); }
+
+BENCHMARK(interpreted_chain)->Name("chain")->Arg(1)->Arg(2)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100)->Arg(200)->Arg(500)->Arg(1000)->Unit(benchmark::kNanosecond);
+BENCHMARK(compiled_chain)->Arg(1)->Arg(2)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100)->Arg(200)->Arg(500)->Unit(benchmark::kNanosecond);
+BENCHMARK(interpreted_arm)->Name("arm")->Unit(benchmark::kNanosecond);
+BENCHMARK(compiled_arm)->Unit(benchmark::kNanosecond);
 
 #ifdef MAUPERTUIS_MUJOCO
 
@@ -96,7 +114,7 @@ void mujoco(benchmark::State& state) {
   mj_deleteVFS(&files);
   if (!model) throw std::runtime_error(error);
   mjData* data = mj_makeData(model);
-  Case ours(bench::chain_text(n));
+  Case ours(bench::chain_text(n), Backend::Interpreter);
   for (int i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     data->qpos[i] = ours.q[k] - (i > 0 ? ours.q[k - 1] : 0);

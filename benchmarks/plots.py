@@ -99,7 +99,7 @@ def main():
     sizes = [(n, str(n)) for n in (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)]
     draw(folder / "step_cost.svg", [("interpreter", steps(data, "interpreter", False)), ("compiled", steps(data, "compiled", True))],
          "links n of the chain", "time of a Taylor step of order 20 / µs", sizes)
-    draw(folder / "forward_dynamics.svg", [("Maupertuis", forward(data, "chain")), ("MuJoCo, mj_forward", forward(data, "mujoco"))],
+    draw(folder / "forward_dynamics.svg", [("Maupertuis, compiled", forward(data, "compiled_chain")), ("interpreted", forward(data, "chain")), ("MuJoCo, mj_forward", forward(data, "mujoco"))],
          "links n of the chain", "time of a call / µs", sizes)
     draw(folder / "work_precision.svg",
          [("Maupertuis", accuracy(data, "maupertuis")), ("odeint, Fehlberg 7(8)", accuracy(data, "odeint_fehlberg78")),

@@ -117,13 +117,15 @@ def print_first_steps(data):
 
 
 def print_forward(data):
+    rows = data["forward_dynamics"]
     for name, what, reach in (("chain/2", "chain n=2", 28e-9), ("chain/20", "chain n=20", 0.8e-6), ("chain/100", "chain n=100", 5e-6),
                               ("arm", "arm with 7 joints", 0.29e-6)):
-        row = data["forward_dynamics"].get(name, {})
-        if "cpu_time" not in row:
-            missing(f"forward dynamics, {what}", row.get("error", "not measured"))
+        compiled, interpreted = rows.get("compiled_" + name, {}), rows.get(name, {})
+        if "cpu_time" not in compiled or "cpu_time" not in interpreted:
+            missing(f"forward dynamics, {what}", compiled.get("error", "not measured"))
         else:
-            print_row(f"forward dynamics, {what}", row["cpu_time"] * 1e-9, reach)
+            remark = f"the interpreter {time(interpreted['cpu_time'] * 1e-9)}"
+            print_row(f"forward dynamics, {what}", compiled["cpu_time"] * 1e-9, reach, remark)
 
 
 def print_exponent(data):
@@ -147,14 +149,15 @@ def print_peers(data):
             print(f"| {who}, 1e-{digits} | {row['energy_error']:.1e} | {time(row['second_of_motion'])} |")
     if not any("cvode" in name for name in data["peers"]):
         print("| CVODE | skipped: SUNDIALS 6 is not installed | |")
-    print("\n| accelerations of the chain | ours | MuJoCo's mj_forward |\n|---|---|---|")
+    print("\n| accelerations of the chain | compiled | interpreted | MuJoCo's mj_forward |\n|---|---|---|---|")
     forward = data["forward_dynamics"]
     if not any(name.startswith("mujoco/") for name in forward):
-        print("| MuJoCo | skipped: libmujoco-dev is not installed | |")
+        print("| MuJoCo | skipped: libmujoco-dev is not installed | | |")
     for name, row in forward.items():
         if name.startswith("mujoco/") and "cpu_time" in row:
-            ours = forward[name.replace("mujoco", "chain")]
-            print(f"| n={name.split('/')[1]} | {time(ours['cpu_time'] * 1e-9)} | {time(row['cpu_time'] * 1e-9)} |")
+            ours = [forward.get(name.replace("mujoco", who), {}) for who in ("compiled_chain", "chain")]
+            cells = [time(mine["cpu_time"] * 1e-9) if "cpu_time" in mine else "not measured" for mine in ours]
+            print(f"| n={name.split('/')[1]} | {' | '.join(cells)} | {time(row['cpu_time'] * 1e-9)} |")
     print("\n| derivation of the chain | `maup derive`, whole process | SymPy's LagrangesMethod |\n|---|---|---|")
     if data["derivation"] is None:
         print("| SymPy | skipped: python3-sympy is not installed | |")

@@ -14,17 +14,26 @@
 /// docs/design/forward_dynamics.md tells how; `dynamics_source` (simulation.hpp) makes the kernel's source from a model.
 namespace maupertuis {
 
+/// What carries the calls out. Compiled code is straight-line machine code for one kernel and one order of elimination.
+struct ForwardDynamicsOptions {
+  /// Automatic: compiled where `expected_calls` pay for the compilation, so that equal programs give equal results to the bit.
+  Backend backend = Backend::Automatic;
+  double expected_calls = 0;       // of accelerations, forces and bias together
+  bool cache = true;               // of compiled code
+};
+
 /// R(q,q̇,q̈,u,t) = M(q,t) q̈ + h(q,q̇,u,t) of a kernel. One thread at a time; as many objects as wanted for one kernel.
 /// Units are those of the kernel: row i of R has the unit of energy per unit of q_i.
 class ForwardDynamics {
  public:
   /// `inputs`: parameters of the kernel whose values each call is given.
-  explicit ForwardDynamics(const Kernel& kernel, std::span<const std::size_t> inputs = {});
+  explicit ForwardDynamics(const Kernel& kernel, std::span<const std::size_t> inputs = {}, const ForwardDynamicsOptions& options = {});
   ~ForwardDynamics();
   ForwardDynamics(ForwardDynamics&&) noexcept;
 
   /// All parameters of the kernel, the inputs among them (typical values: they do not stay). Constant sub-expressions and the order of
-  /// elimination are found here. Precondition: values.size() == kernel.parameters().
+  /// elimination are found here, and what is to be compiled is (10 ms and 20 µs a term; from the cache 1 ms; not again where only numbers
+  /// change): never in a call. Precondition: values.size() == kernel.parameters().
   void set_parameters(std::span<const double> values);
   /// As KernelWorkspace::set_branches. [switches]; initially +1
   void set_branches(std::span<const std::int8_t> sides);
@@ -43,6 +52,9 @@ class ForwardDynamics {
   void mass(double t, std::span<const double> q, std::span<const double> v, std::span<double> out);
   /// After SingularMass.
   std::size_t singular_coordinate() const;
+  /// Whether machine code is in use, and why not where it was wanted: without LLVM, with constraints, or for programs too long to be
+  /// written out the interpreter goes on. Results of both agree to rounding; small pivots are left to the interpreter.
+  const CompileReport& compile_report() const;
 
  private:
   struct Impl;

@@ -19,6 +19,10 @@ struct Coefficient {
   double factor = 1, offset = 0;
 };
 
+inline double value_of(const Coefficient& c, const std::vector<double>& constants) {
+  return (c.constant == no_constant ? 0.0 : c.factor * constants[c.constant]) + c.offset;
+}
+
 /// Σ c x_a + Σ c x_a x_b, perhaps divided by a cell. Sums of one level and as many terms stand together.
 struct SumRun {
   std::uint32_t linear, products;                // terms of each sum

@@ -1,5 +1,6 @@
 #include <maupertuis/forward_dynamics.hpp>
 
+#include "kernel/dynamics/compiled_dynamics.hpp"
 #include "kernel/dynamics/point_program.hpp"
 #include "kernel/interpreter/elementary.hpp"
 #include "kernel/interpreter/sampled_states.hpp"
@@ -28,6 +29,16 @@ constexpr double sound = 64;
 /// Beyond, a full matrix allocates.
 constexpr std::size_t most_full = 8;
 
+/// About what compiled code saves in a call, and what making it costs; docs/design/forward_dynamics.md has the measurements.
+constexpr double seconds_saved_a_term = 1e-9, seconds_of_compiler = 0.015, seconds_of_compiler_a_term = 3e-5;
+
+bool same_plan(const std::vector<sparse::Pivot>* pivots, const std::optional<std::vector<sparse::Pivot>>& others) {
+  if (!pivots || !others) return !pivots && !others;
+  return std::equal(pivots->begin(), pivots->end(), others->begin(), others->end(), [](const sparse::Pivot& x, const sparse::Pivot& y) {
+    return x.row == y.row && x.column == y.column && x.rows == y.rows && x.columns == y.columns;
+  });
+}
+
 /// Slots whose values at order 0 the factors of the tangents are made of.
 std::vector<bool> slots_of_entries(const Program& program, const std::optional<sparse::LiftedSystem>& system) {
   std::vector<bool> kept(program.slots, false);
@@ -43,8 +54,8 @@ std::vector<bool> slots_of_entries(const Program& program, const std::optional<s
 }  // namespace
 
 struct ForwardDynamics::Impl {
-  Impl(const Kernel& k, std::span<const std::size_t> which)
-      : kernel(k), program(k.program()), inputs(which.begin(), which.end()), n(program.freedoms),
+  Impl(const Kernel& k, std::span<const std::size_t> which, const ForwardDynamicsOptions& o)
+      : kernel(k), options(o), program(k.program()), inputs(which.begin(), which.end()), n(program.freedoms),
         system(sparse::lift(program, std::vector<bool>(program.slots, false))),
         at_rest(program, false, slots_of_entries(program, system)), moving(program, true, std::vector<bool>(program.slots, false)),
         full(k, 1), parameters(program.parameters, 0.0), sides(program.switches.size(), 1), constants(program.constants.size()),
@@ -65,11 +76,15 @@ struct ForwardDynamics::Impl {
   void compute_constants();
   void set_inputs(std::span<const double> u);
   void choose_pivots();
+  void renew_interpreter();
+  bool pays() const;
+  void compile();
   KernelStatus by_full_matrix(double t, std::span<const double> q, std::span<const double> v, std::span<double> a);
   bool solve();
   bool solve_full();
 
   Kernel kernel;
+  ForwardDynamicsOptions options;
   const Program& program;
   std::vector<std::size_t> inputs;
   std::size_t n;
@@ -86,6 +101,10 @@ struct ForwardDynamics::Impl {
   std::optional<sparse::GraphProduct> product;
   std::optional<sparse::SparseSolver> solver;  // of either of the two the cheaper one
   std::optional<jet::LinearSolver> linear;
+  std::optional<std::vector<sparse::Pivot>> pivots, compiled_pivots;  // in use; of the code, none: a full matrix
+  std::optional<dynamics::CompiledDynamics> compiled;
+  CompileReport report;
+  bool interpreter_is_behind = false;          // coefficients do not yet follow from the inputs of the last call
   std::vector<std::uint32_t> cell_of_column;
   std::vector<double> entries, x;        // of the lifted system
   std::vector<double> unknown, rest, unit;  // [unknowns]
@@ -115,7 +134,7 @@ double ForwardDynamics::Impl::constant(std::size_t i) {
 
 void ForwardDynamics::Impl::compute_constants() {
   if (!stale) return;
-  stale = false;
+  stale = interpreter_is_behind = false;
   for (std::size_t i = 0; i < constants.size(); ++i) constants[i] = constant(i);
   at_rest.set_constants(constants);
   moving.set_constants(constants);
@@ -123,6 +142,7 @@ void ForwardDynamics::Impl::compute_constants() {
   full.set_parameters(parameters);
   full.set_branches(sides);
   if (system && program.unknowns == n) choose_pivots();
+  if (options.backend == Backend::Compiled || (options.backend == Backend::Automatic && pays())) compile();
 }
 
 void ForwardDynamics::Impl::choose_pivots() {
@@ -130,11 +150,39 @@ void ForwardDynamics::Impl::choose_pivots() {
   const auto samples = interpreter::sampled_entries(program, *system, constants, 0, origin, origin);
   solver.reset();
   linear.reset();
-  if (const auto pivots = sparse::eliminate(*system, samples, {})) solver.emplace(*system, *pivots, cell_of_column);
+  pivots = sparse::eliminate(*system, samples, {});
+  if (pivots) solver.emplace(*system, *pivots, cell_of_column);
   const std::size_t full_products = product->matrix_products() + n * n * n / 6 + 2 * n * n;
   if (n > most_full || (solver && solver->factor_products() + solver->solve_products() < full_products)) return;
   solver.reset();
   linear.emplace(n);
+}
+
+// ------------------------------------------------------------------------------------------------------------------ machine code
+
+bool ForwardDynamics::Impl::pays() const {
+  const auto& flat = at_rest.flat();
+  const std::size_t solution = solver ? solver->factor_products() + solver->solve_products() : linear ? product->matrix_products() : 0;
+  const double terms = static_cast<double>(flat.linear_cell.size() + flat.product_a.size() + solution);
+  return options.expected_calls * terms * seconds_saved_a_term > seconds_of_compiler + terms * seconds_of_compiler_a_term;
+}
+
+/// Code of another order of elimination does not belong to the pivots that were just chosen.
+void ForwardDynamics::Impl::compile() {
+  const auto decline = [this](const char* trouble) {
+    compiled.reset();
+    report = {.trouble = trouble};
+  };
+  if (program.unknowns != n) return decline("the accelerations of systems with constraints are not compiled");
+  if (!solver && !linear) return decline("no order of elimination holds at all of the sampled states");
+  const dynamics::WrittenPlan plan{*system, solver ? &*pivots : nullptr};
+  if (!compiled || !same_plan(plan.pivots, compiled_pivots)) {
+    compiled.emplace(program, dynamics::write_dynamics(program, moving.flat(), at_rest.flat(), plan), CompileOptions{.cache = options.cache});
+    compiled_pivots = solver ? pivots : std::nullopt;
+    report = compiled->report();
+  }
+  if (!report.compiled) return compiled.reset();
+  compiled->set_constants(constants, *system, plan.pivots);
 }
 
 void ForwardDynamics::Impl::set_inputs(std::span<const double> u) {
@@ -143,6 +191,14 @@ void ForwardDynamics::Impl::set_inputs(std::span<const double> u) {
   compute_constants();
   if (inputs.empty()) return;
   for (const std::uint32_t i : live_order) constants[i] = constant(i);
+  interpreter_is_behind = true;
+  if (compiled) compiled->renew(constants, live);
+  else renew_interpreter();
+}
+
+void ForwardDynamics::Impl::renew_interpreter() {
+  if (!interpreter_is_behind) return;
+  interpreter_is_behind = false;
   at_rest.renew(constants, live);
   moving.renew(constants, live);
   if (assembly) assembly->set_constants(constants.data());
@@ -179,8 +235,8 @@ KernelStatus ForwardDynamics::Impl::by_full_matrix(double t, std::span<const dou
   return status;
 }
 
-ForwardDynamics::ForwardDynamics(const Kernel& kernel, std::span<const std::size_t> inputs)
-    : impl_(std::make_unique<Impl>(kernel, inputs)) {
+ForwardDynamics::ForwardDynamics(const Kernel& kernel, std::span<const std::size_t> inputs, const ForwardDynamicsOptions& options)
+    : impl_(std::make_unique<Impl>(kernel, inputs, options)) {
   for (const std::size_t input : inputs) MAUP_REQUIRE(input < kernel.parameters());
 }
 ForwardDynamics::~ForwardDynamics() = default;
@@ -205,6 +261,8 @@ KernelStatus ForwardDynamics::accelerations(double t, std::span<const double> q,
   Impl& s = *impl_;
   MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && a.size() == s.n);
   s.set_inputs(u);
+  if (s.compiled && s.compiled->accelerations(t, q, v, a)) return KernelStatus::Ok;
+  s.renew_interpreter();
   if (!s.solver && !s.linear) return s.by_full_matrix(t, q, v, a);
   s.at_rest.evaluate(t, q, v, {});
   for (std::size_t i = 0; i < s.n; ++i) s.unknown[i] = -s.at_rest.residual(i);
@@ -218,6 +276,7 @@ void ForwardDynamics::forces(double t, std::span<const double> q, std::span<cons
   Impl& s = *impl_;
   MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && a.size() == s.n && out.size() == s.n);
   s.set_inputs(u);
+  if (s.compiled) return s.compiled->forces(t, q, v, a, out);
   s.moving.evaluate(t, q, v, a);
   for (std::size_t i = 0; i < s.n; ++i) out[i] = s.moving.residual(i);
 }
@@ -227,6 +286,7 @@ void ForwardDynamics::bias(double t, std::span<const double> q, std::span<const 
   Impl& s = *impl_;
   MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && out.size() == s.n);
   s.set_inputs(u);
+  if (s.compiled) return s.compiled->forces(t, q, v, {}, out);
   s.at_rest.evaluate(t, q, v, {});
   for (std::size_t i = 0; i < s.n; ++i) out[i] = s.at_rest.residual(i);
 }
@@ -235,6 +295,7 @@ void ForwardDynamics::mass(double t, std::span<const double> q, std::span<const 
   Impl& s = *impl_;
   MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && out.size() == s.n * s.n);
   s.compute_constants();
+  s.renew_interpreter();
   std::fill(out.begin(), out.end(), 0.0);
   if (!s.system) {
     s.full.evaluate(t, q, v);
@@ -252,6 +313,7 @@ void ForwardDynamics::mass(double t, std::span<const double> q, std::span<const 
   }
 }
 
+const CompileReport& ForwardDynamics::compile_report() const { return impl_->report; }
 std::size_t ForwardDynamics::singular_coordinate() const { return impl_->full.singular_coordinate(); }
 
 }  // namespace maupertuis

@@ -6,14 +6,6 @@
 #include <cmath>
 
 namespace maupertuis::dynamics {
-namespace {
-
-double value_of(const Coefficient& c, const std::vector<double>& constants) {
-  return (c.constant == no_constant ? 0.0 : c.factor * constants[c.constant]) + c.offset;
-}
-
-}  // namespace
-
 PointProgram::PointProgram(const Program& program, bool with_accelerations, const std::vector<bool>& kept)
     : freedoms_(program.freedoms), unknowns_(program.unknowns), flat_(flatten(program, with_accelerations, kept)),
       cells_(flat_.cells, 0.0), linear_(flat_.linear_cell.size()), products_(flat_.product_a.size()),

@@ -15,5 +15,6 @@ struct Declined : std::runtime_error {
 
 void emit_self_test(Emission& out, const compiled::Request& request);
 void emit_lanes(Emission& out, const compiled::Request& request);
+void emit_straight_lines(Emission& out, const compiled::Request& request);
 
 }  // namespace maupertuis::llvm_backend

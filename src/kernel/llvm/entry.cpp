@@ -30,6 +30,7 @@ void emit(Emission& out, const Request& request) {
   switch (request.emitter) {
     case Emitter::SelfTest: return emit_self_test(out, request);
     case Emitter::Lanes: return emit_lanes(out, request);
+    case Emitter::StraightLines: return emit_straight_lines(out, request);
     case Emitter::Packed: return emit_packed_program(out, request);
     default: break;
   }

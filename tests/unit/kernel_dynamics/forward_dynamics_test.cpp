@@ -1,54 +1,6 @@
-#include <maupertuis/forward_dynamics.hpp>
-
-#include "../model_text.hpp"
-
-#include <maupertuis/simulation.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <random>
-#include <sstream>
-
-using namespace maupertuis;
+#include "dynamics_case.hpp"
 
 namespace {
-
-struct Dynamics {
-  DynamicsSource source;
-  Kernel kernel;
-  ForwardDynamics dynamics;
-
-  explicit Dynamics(const EquationsOfMotion& equations)
-      : source(dynamics_source(equations)), kernel(build_kernel(source.kernel)), dynamics(kernel, source.inputs) {
-    dynamics.set_parameters(source.parameters);
-  }
-  explicit Dynamics(const std::string& text) : Dynamics(ModelText(text).equations) {}
-  std::size_t n() const { return kernel.freedoms(); }
-};
-
-using Numbers = std::vector<double>;
-
-Numbers random_numbers(std::size_t n, double size, std::mt19937& random) {
-  std::uniform_real_distribution<double> uniform(-size, size);
-  Numbers out(n);
-  for (double& x : out) x = uniform(random);
-  return out;
-}
-
-std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-double largest(const Numbers& x) {
-  double out = 0;
-  for (const double v : x) out = std::max(out, std::abs(v));
-  return out;
-}
 
 const char* double_pendulum = R"(system double_pendulum
 param m1 = 1 kg, m2 = 2 kg, l1 = 1.5 m, l2 = 0.5 m, g = 9.81 m/s^2

@@ -1,0 +1,297 @@
+#include "kernel/llvm/emission.hpp"
+#include "kernel/llvm/emitters.hpp"
+#include "kernel/straight_line/straight_line.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+/// The nodes of a straight line one after the other, values in registers as far as the compiler keeps them there. Long lines are cut
+/// into functions, since the time of a compiler grows faster than a function's length; what one hands to a later one goes through memory.
+namespace maupertuis::llvm_backend {
+namespace {
+
+using llvm::Value;
+using straight::Node;
+using straight::StraightLine;
+
+/// Nodes and terms of one function, and of all.
+constexpr std::size_t most_in_function = 1500, most_in_all = 60'000;
+
+class LineEmitter {
+ public:
+  LineEmitter(Emission& out, const StraightLine& line, std::string name)
+      : out_(out), b_(out.b), line_(line), name_(std::move(name)), real_(out.real(1)), values_(line.nodes.size(), nullptr) {}
+
+  void run() {
+    cut();
+    find_places();
+    std::vector<llvm::Function*> functions;
+    for (piece_ = 0; piece_ < pieces_; ++piece_) functions.push_back(piece());
+    if (pieces_ > 1) call_all(functions);
+  }
+
+ private:
+  // ------------------------------------------------------------------------------------------------------------------- pieces
+
+  bool remade(straight::Value v) const {
+    const Node::What what = line_.nodes[v].what;
+    return what == Node::Literal || what == Node::Given || what == Node::Unit;
+  }
+
+  void cut() {
+    piece_of_.resize(line_.nodes.size());
+    std::size_t length = 0;
+    for (std::size_t i = 0; i < line_.nodes.size(); ++i) {
+      const Node& node = line_.nodes[i];
+      const std::size_t size = 1 + (node.last - node.first);
+      if (length + size > most_in_function) ++pieces_, length = 0;
+      length += size;
+      const bool of_angles = node.what == Node::Sine || node.what == Node::Cosine;
+      piece_of_[i] = of_angles ? piece_of_[node.a] : pieces_;
+    }
+    ++pieces_;
+  }
+
+  template <class F>
+  void for_operands(const Node& node, F&& f) const {
+    for (const straight::Value v : {node.a, node.b, node.c})
+      if (v != straight::none) f(v);
+    for (std::uint32_t i = node.first; i < node.last; ++i) {
+      if (node.what == Node::Angles) { f(line_.operands[i]); continue; }
+      for (const straight::Value v : {line_.terms[i].a, line_.terms[i].b, line_.terms[i].c})
+        if (v != straight::none) f(v);
+    }
+  }
+
+  /// Of values that a later piece reads. Stores and checks are made where their value is.
+  void find_places() {
+    place_.assign(line_.nodes.size(), 0);
+    std::int64_t next = 8;
+    const auto use = [&](straight::Value v, std::size_t piece) {
+      if (remade(v) || place_[v] != 0 || piece_of_[v] == piece) return;
+      place_[v] = next;
+      next += is_wide(v) ? line_.wide : 1;
+    };
+    for (std::size_t i = 0; i < line_.nodes.size(); ++i) {
+      const Node& node = line_.nodes[i];
+      if (node.what == Node::Sine || node.what == Node::Cosine) continue;
+      for_operands(node, [&](straight::Value v) { use(v, piece_of_[i]); });
+    }
+    checks_in_.resize(pieces_), stores_in_.resize(pieces_), finite_in_.resize(pieces_);
+    const auto piece_of = [&](straight::Value v) { return remade(v) ? pieces_ - 1 : piece_of_[v]; };
+    for (const auto& check : line_.checks) {
+      const std::size_t piece = std::max(piece_of(check.pivot), piece_of(check.size));
+      use(check.pivot, piece), use(check.size, piece);
+      checks_in_[piece].push_back(&check);
+    }
+    for (const auto& store : line_.stores) stores_in_[piece_of(store.value)].push_back(&store);
+    for (const straight::Value v : line_.finite) finite_in_[piece_of(v)].push_back(v);
+  }
+
+  std::vector<llvm::Type*> parameters() { return std::vector<llvm::Type*>(line_.arrays + 1, out_.pointer()); }
+
+  llvm::Function* piece() {
+    llvm::Function* const f = pieces_ == 1 ? out_.function(name_, parameters()) : out_.function(name_ + "_" + std::to_string(piece_), parameters(), false);
+    arrays_.clear();
+    for (llvm::Argument& argument : f->args()) arrays_.push_back(&argument);
+    std::fill(values_.begin(), values_.end(), nullptr);
+    for (straight::Value v = 0; v < line_.nodes.size(); ++v)
+      if (piece_of_[v] == piece_ && !remade(v)) define(v);
+    for (const straight::Store* store : stores_in_[piece_]) put(get(store->value), store->array, store->index);
+    verdict();
+    out_.end_function();
+    return f;
+  }
+
+  void call_all(const std::vector<llvm::Function*>& functions) {
+    const llvm::Function* const whole = out_.function(name_, parameters());
+    std::vector<Value*> arguments;
+    for (unsigned i = 0; i <= line_.arrays; ++i) arguments.push_back(whole->getArg(i));
+    for (llvm::Function* const f : functions) b_.CreateCall(f, arguments);
+    out_.end_function();
+  }
+
+  /// See straight::sound.
+  void verdict() {
+    Value* margin = number(std::numeric_limits<double>::infinity());
+    if (piece_ > 0) margin = fetch(real_, line_.arrays, 0);
+    Value* sums[4] = {number(0), number(0), number(0), number(0)};
+    if (piece_ > 0) sums[0] = fetch(real_, line_.arrays, 1);
+    std::size_t turn = 0;
+    const auto require_finite = [&](Value* x) {
+      Value*& sum = sums[turn++ % 4];
+      sum = out_.fma(x, number(0), sum);
+    };
+    for (const straight::PivotCheck* check : checks_in_[piece_]) {
+      Value* const now = out_.fma(number(-check->share), get(check->size), get(check->pivot));
+      margin = b_.CreateSelect(b_.CreateFCmpOLT(now, margin), now, margin);
+      require_finite(now);
+    }
+    for (const straight::Value v : finite_in_[piece_]) require_finite(get(v));
+    if (piece_ > 0 && turn == 0) return;
+    put(margin, line_.arrays, 0);
+    put(out_.add(out_.add(sums[0], sums[1]), out_.add(sums[2], sums[3])), line_.arrays, 1);
+  }
+
+  // ------------------------------------------------------------------------------------------------------------------- values
+
+  bool is_wide(straight::Value v) const { return line_.nodes[v].what == Node::Wide || line_.nodes[v].what == Node::Unit; }
+  llvm::Type* type_of(straight::Value v) { return is_wide(v) ? out_.real(static_cast<int>(line_.wide)) : real_; }
+  Value* number(double x) { return out_.number(x, real_); }
+
+  Value* address(std::uint32_t array, std::int64_t index) { return out_.at(arrays_[array], 8 * index); }
+  Value* fetch(llvm::Type* type, std::uint32_t array, std::int64_t index) {
+    return b_.CreateAlignedLoad(type, address(array, index), llvm::Align(8));
+  }
+  void put(Value* x, std::uint32_t array, std::int64_t index) { b_.CreateAlignedStore(x, address(array, index), llvm::Align(8)); }
+
+  Value* get(straight::Value v) {
+    if (values_[v]) return values_[v];
+    const Node& node = line_.nodes[v];
+    switch (node.what) {
+      case Node::Literal: return values_[v] = number(node.literal);
+      case Node::Given: return values_[v] = fetch(real_, node.array, node.index);
+      case Node::Unit: return values_[v] = b_.CreateInsertElement(out_.number(0, type_of(v)), number(1), std::uint64_t{node.index});
+      default: break;
+    }
+    if (place_[v] == 0) throw std::logic_error("a number is read before it is there; please report");
+    return values_[v] = fetch(type_of(v), line_.arrays, place_[v]);
+  }
+
+  void keep(straight::Value v, Value* x) {
+    values_[v] = x;
+    if (place_[v] != 0) put(x, line_.arrays, place_[v]);
+  }
+
+  void define(straight::Value v) {
+    const Node& node = line_.nodes[v];
+    switch (node.what) {
+      case Node::Sum: return keep(v, scaled(node, sum(node)));
+      case Node::Magnitudes: return keep(v, magnitudes(node));
+      case Node::Larger: return keep(v, larger(out_.absolute(get(node.a)), out_.absolute(get(node.b))));
+      case Node::Chosen: return keep(v, b_.CreateSelect(b_.CreateFCmpUNE(get(node.a), number(0)), get(node.b), get(node.c)));
+      case Node::Angles: return angles(v);
+      case Node::Root: return keep(v, out_.square_root(get(node.a)));
+      case Node::Call: return keep(v, out_.elementary(node.function, get(node.a), node.b == straight::none ? nullptr : get(node.b)));
+      case Node::Wide: return keep(v, wide(node, type_of(v)));
+      case Node::Lane: return keep(v, b_.CreateExtractElement(get(node.a), std::uint64_t{node.index}));
+      default: return;  // sines and cosines come with their angles
+    }
+  }
+
+  Value* larger(Value* x, Value* y) { return b_.CreateSelect(b_.CreateFCmpOGT(x, y), x, y); }
+
+  // --------------------------------------------------------------------------------------------------------------------- sums
+
+  /// All but the last of the values of a term, and the last.
+  std::pair<Value*, Value*> halves(const straight::Term& t, bool positive) {
+    std::vector<Value*> factors;
+    const double factor = positive ? std::abs(t.factor) : t.factor;
+    for (const straight::Value v : {t.a, t.b, t.c})
+      if (v != straight::none) factors.push_back(get(v));
+    if (factors.empty()) return {nullptr, number(factor)};
+    Value* const last = factors.back();
+    factors.pop_back();
+    Value* head = nullptr;
+    for (Value* const x : factors) head = head ? out_.multiply(head, x) : x;
+    if (std::abs(factor) != 1) head = head ? out_.multiply(head, number(factor)) : number(factor);
+    else if (factor < 0) head = head ? out_.negate(head) : number(-1);
+    return {head, last};
+  }
+
+  Value* sum(const Node& node) {
+    Value* out = nullptr;
+    for (std::uint32_t i = node.first; i < node.last; ++i) {
+      const straight::Term& t = line_.terms[i];
+      const auto [head, last] = halves(t, false);
+      const bool sign = t.b == straight::none && t.factor == -1;
+      if (!out) out = !head ? last : sign ? out_.negate(last) : out_.multiply(head, last);
+      else if (!head) out = out_.add(out, last);
+      else out = sign ? out_.subtract(out, last) : out_.fma(head, last, out);
+    }
+    return out;
+  }
+
+  Value* scaled(const Node& node, Value* x) {
+    if (node.a != straight::none) x = out_.multiply(x, get(node.a));
+    return node.b == straight::none ? x : out_.divide(x, get(node.b));
+  }
+
+  Value* magnitudes(const Node& node) {
+    Value* out = number(0);
+    for (std::uint32_t i = node.first; i < node.last; ++i) {
+      const auto [head, last] = halves(line_.terms[i], true);
+      out = out_.add(out, out_.absolute(head ? out_.multiply(head, last) : last));
+    }
+    return out;
+  }
+
+  Value* wide(const Node& node, llvm::Type* type) {
+    Value* out = nullptr;
+    for (std::uint32_t i = node.first; i < node.last; ++i) {
+      const straight::Term& t = line_.terms[i];
+      Value* const last = get(t.c);
+      Value* head = t.a == straight::none ? number(t.factor) : get(t.a);
+      if (t.a != straight::none && t.factor != 1) head = t.factor == -1 ? out_.negate(head) : out_.multiply(head, number(t.factor));
+      Value* const many = out_.splat(head, type);
+      out = out ? out_.fma(many, last, out) : out_.multiply(many, last);
+    }
+    return out ? out : out_.number(0, type);
+  }
+
+  // ------------------------------------------------------------------------------------------------------------------- sines
+
+  /// All in one vector; neighbours in memory by one load.
+  void angles(straight::Value v) {
+    const Node& node = line_.nodes[v];
+    const std::uint32_t count = node.last - node.first;
+    int width = 1;
+    while (width < static_cast<int>(count)) width *= 2;
+    llvm::Type* const type = out_.real(width);
+    const Node& first = line_.nodes[line_.operands[node.first]];
+    bool together = static_cast<int>(count) == width && first.what == Node::Given;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Node& angle = line_.nodes[line_.operands[node.first + i]];
+      together = together && angle.what == Node::Given && angle.array == first.array && angle.index == first.index + i;
+    }
+    Value* x = together ? fetch(type, first.array, first.index) : out_.number(0, type);
+    for (std::uint32_t i = 0; !together && i < count; ++i) {
+      Value* const angle = get(line_.operands[node.first + i]);
+      x = width == 1 ? angle : b_.CreateInsertElement(x, angle, std::uint64_t{i});
+    }
+    const auto [sine, cosine] = out_.sincos(x);
+    for (straight::Value w = v + 1; w < line_.nodes.size(); ++w) {
+      const Node& lane = line_.nodes[w];
+      if (lane.a != v || (lane.what != Node::Sine && lane.what != Node::Cosine)) continue;
+      Value* const all = lane.what == Node::Sine ? sine : cosine;
+      keep(w, width == 1 ? all : b_.CreateExtractElement(all, std::uint64_t{lane.index}));
+    }
+  }
+
+  Emission& out_;
+  llvm::IRBuilder<>& b_;
+  const StraightLine& line_;
+  std::string name_;
+  llvm::Type* real_;
+  std::size_t pieces_ = 0, piece_ = 0;
+  std::vector<std::size_t> piece_of_;  // [nodes]
+  std::vector<std::int64_t> place_;    // [nodes] in scratch; 0: none
+  std::vector<std::vector<const straight::PivotCheck*>> checks_in_;  // [pieces]
+  std::vector<std::vector<const straight::Store*>> stores_in_;
+  std::vector<std::vector<straight::Value>> finite_in_;
+  std::vector<Value*> arrays_;
+  std::vector<Value*> values_;         // [nodes] of this piece
+};
+
+}  // namespace
+
+void emit_straight_lines(Emission& out, const compiled::Request& request) {
+  const auto& lines = *static_cast<const std::vector<StraightLine>*>(request.source);
+  std::size_t size = 0;
+  for (const StraightLine& line : lines) size += line.size();
+  if (size > most_in_all) throw Declined("the program is too long to be written out as machine code");
+  for (std::size_t i = 0; i < lines.size(); ++i) LineEmitter(out, lines[i], "line" + std::to_string(i)).run();
+}
+
+}  // namespace maupertuis::llvm_backend

@@ -1,0 +1,78 @@
+#pragma once
+#include <maupertuis/expression.hpp>
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+/// A calculation without loops and branches: *nodes* in an order in which each refers to earlier ones alone. What is given and what comes
+/// out stands in arrays of doubles.
+namespace maupertuis::straight {
+
+/// A node, by its place in the list.
+using Value = std::uint32_t;
+inline constexpr Value none = ~Value{0};
+
+/// factor · a · b · c; `none` counts as 1.
+struct Term {
+  double factor = 1;
+  Value a = none, b = none, c = none;
+};
+
+struct Node {
+  enum What : std::uint8_t {
+    Literal,     // `literal`
+    Given,       // arrays[array][index]
+    Sum,         // Σ terms, times a, over b
+    Magnitudes,  // Σ |terms|
+    Larger,      // max(|a|, |b|)
+    Chosen,      // a ≠ 0 ? b : c
+    Angles,      // sines and cosines of `operands` together (no number by itself)
+    Sine,        // of operand `index` of the node a
+    Cosine,
+    Root,        // √a
+    Call,        // function(a) or function(a, b): elementary functions, Power, Atan2
+    Unit,        // wide: 1 in lane `index`, else 0
+    Wide,        // wide: Σ terms; in each the last factor is wide, the others are not
+    Lane,        // number `index` of the wide node a
+  } what = Literal;
+  Kind function = Kind::Exp;
+  Value a = none, b = none, c = none;
+  std::uint32_t array = 0, index = 0;
+  std::uint32_t first = 0, last = 0;  // terms or operands
+  double literal = 0;
+};
+
+struct Store {
+  Value value;
+  std::uint32_t array, index;
+};
+
+/// `pivot` is to be above share · size.
+struct PivotCheck {
+  Value pivot, size;
+  double share;
+};
+
+struct StraightLine {
+  std::vector<Node> nodes;
+  std::vector<Term> terms;
+  std::vector<Value> operands;
+  std::vector<Store> stores;
+  std::vector<PivotCheck> checks;
+  std::vector<Value> finite;       // what must be neither infinite nor undefined
+  std::uint32_t arrays = 0;        // that `Given` and `stores` refer to
+  std::uint32_t wide = 1;          // numbers of a wide value
+
+  /// How long the code will be, about.
+  std::size_t size() const { return nodes.size() + terms.size(); }
+};
+
+/// Doubles of the array that code takes after those of its program: first whether all went well, see `sound`, then numbers on their way
+/// from one function to the next.
+inline std::size_t scratch_size(const StraightLine& line) { return 8 + line.nodes.size() * line.wide; }
+
+/// What code leaves in its scratch: min (pivot − share · size), and 0 · Σ finite.
+inline bool sound(const double* scratch) { return scratch[0] > 0 && scratch[1] == 0; }
+
+}  // namespace maupertuis::straight

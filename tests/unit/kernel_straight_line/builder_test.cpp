@@ -1,0 +1,47 @@
+#include "evaluate_line.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace maupertuis::straight;
+
+namespace {
+
+Value stored_alone(Builder& to, Value v, StraightLine& line) {
+  to.store(v, 1, 0);
+  line = to.finish(2, 1, 0);
+  return line.stores[0].value;
+}
+
+}  // namespace
+
+TEST_CASE("zeros, ones and signs are folded") {
+  Builder to;
+  const Value x = to.given(0, 0), y = to.given(0, 1), zero = to.literal(0), one = to.literal(1);
+  CHECK(to.given(0, 0) == x);
+  CHECK(to.sum({{1, x, one}, {3, y, zero}}) == x);
+  CHECK(to.is_zero(to.sum({{1, zero, y}})));
+  CHECK(to.literal_of(to.sum({{2, to.literal(3)}, {1}})) == 7);
+  CHECK(to.reciprocal(y) == to.reciprocal(y));
+  CHECK(to.reciprocal(to.literal(-1)) == to.literal(-1));
+  StraightLine line;
+  const Value minus = stored_alone(to, to.sum({{1, x}, {-1, y}}, to.literal(-1)), line);  // −(x − y)
+  REQUIRE(line.nodes[minus].what == Node::Sum);
+  CHECK(line.nodes[minus].a == none);
+  CHECK(evaluate(line, {{5, 3}, {0}}).arrays[1][0] == -2);
+}
+
+TEST_CASE("what nothing needs is not there; what is needed stands before its use, from the anchor on in the order of writing") {
+  Builder to;
+  const Value x = to.given(0, 0), a = to.product(2, x), unused = to.product(3, x, x);
+  CHECK(unused != a);
+  const Value anchor = to.next();
+  const Value first = to.sum({{1, x, x}, {1}}), second = to.sum({{1, first}, {1, a}});
+  to.store(second, 1, 0);
+  const StraightLine line = to.finish(2, 1, anchor);
+  REQUIRE(line.nodes.size() == 4);  // x, x² + 1, 2 x, their sum
+  CHECK(line.terms[line.nodes[1].last - 1].b != none);
+  CHECK(evaluate(line, {{3}, {0}}).arrays[1][0] == 16);
+  for (Value v = 0; v < line.nodes.size(); ++v)
+    for (std::uint32_t i = line.nodes[v].first; i < line.nodes[v].last; ++i)
+      for (const Value operand : {line.terms[i].a, line.terms[i].b}) CHECK((operand == none || operand < v));
+}

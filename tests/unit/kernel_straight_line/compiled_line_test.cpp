@@ -1,0 +1,101 @@
+#include "evaluate_line.hpp"
+
+#include "kernel/straight_line/compile.hpp"
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+// Machine code against the meaning of the nodes.
+
+using namespace maupertuis;
+using namespace maupertuis::straight;
+
+namespace {
+
+/// Sums of earlier nodes, of every kind, none of which leaves the numbers around 1.
+StraightLine random_line(unsigned seed, int length) {
+  std::mt19937 random(seed);
+  Builder to;
+  std::vector<Value> values;
+  for (std::uint32_t i = 0; i < 6; ++i) values.push_back(to.given(0, i));
+  const auto any = [&] { return values[values.size() - 1 - random() % std::min<std::size_t>(values.size(), 40)]; };
+  const auto bounded = [&](Value v) { return to.sines({v})[0].first; };
+  const auto factor = [&] { return std::vector<double>{1, -1, 0.5, -0.25}[random() % 4]; };
+  for (int i = 0; i < length; ++i) switch (random() % 9) {
+      case 0: values.push_back(bounded(to.sum({{factor(), any(), any()}, {factor(), any()}, {factor(), any(), any(), any()}}))); break;
+      case 1: values.push_back(bounded(to.sum({{factor(), any()}, {factor()}}, any(), to.sum({{1, any(), any()}, {2}})))); break;
+      case 2: values.push_back(bounded(to.magnitudes({{factor(), any(), any()}, {factor(), any()}}))); break;
+      case 3: values.push_back(to.larger(any(), any())); break;
+      case 4: values.push_back(to.choose(to.sum({{1, any()}, {-1, any()}}), any(), any())); break;
+      case 5: values.push_back(bounded(to.root(to.sum({{1, any(), any()}, {3}})))); break;
+      case 6: values.push_back(bounded(to.call(Kind::Exp, any()))); break;
+      case 7: {
+        std::vector<Value> angles;
+        for (unsigned k = 0; k <= random() % 8; ++k) angles.push_back(k < 6 && random() % 2 ? to.given(0, k) : any());
+        for (const auto& [sine, cosine] : to.sines(angles)) values.push_back(sine), values.push_back(cosine);
+        break;
+      }
+      default: {
+        const Value wide = to.wide({{factor(), any(), none, to.unit(random() % 8)}, {factor(), none, none, to.unit(3)}});
+        const Value next = to.wide({{0.5, any(), none, wide}, {factor(), any(), none, to.unit(5)}});
+        values.push_back(bounded(to.lane(next, 3))), values.push_back(to.lane(next, random() % 8));
+      }
+    }
+  for (std::uint32_t i = 0; i < 30; ++i) to.store(values[values.size() - 1 - 3 * i % values.size()], 1, i);
+  to.check({to.larger(values.back(), values[2]), to.literal(1), 1e-3});
+  to.require_finite(values.back());
+  return to.finish(2, 8, values[values.size() / 2]);
+}
+
+}  // namespace
+
+TEST_CASE("random lines, short ones and ones that are cut into functions, for this processor and lesser ones") {
+  const std::vector<double> x{0.3, -0.7, 1.1, 0.9, -0.2, 0.5};
+  for (const char* processor : {"", "x86-64", "x86-64-v3"})
+    for (const int length : {3, 40, 2000}) {
+      CAPTURE(processor);
+      CAPTURE(length);
+      const StraightLine line = random_line(static_cast<unsigned>(length), length);
+      const auto [code, report] = compile({line, line}, {.cache = false, .processor = processor});
+      REQUIRE_MESSAGE(code, report.trouble);
+      const Evaluated expected = evaluate(line, {x, std::vector<double>(30, 0.0)});
+      std::vector<double> y(30), scratch(scratch_size(line));
+      code(1, x.data(), y.data(), scratch.data());
+      for (std::size_t i = 0; i < y.size(); ++i) CHECK(y[i] == doctest::Approx(expected.arrays[1][i]).epsilon(1e-9).scale(1));
+      CHECK(scratch[0] == doctest::Approx(expected.margin).epsilon(1e-9));
+      CHECK(sound(scratch.data()) == (expected.margin > 0));
+    }
+}
+
+TEST_CASE("what is small, infinite or undefined is told, wherever it stands") {
+  Builder to;
+  for (std::uint32_t i = 0; i < 3; ++i) to.check({to.given(0, i), to.literal(1), 0.5});
+  to.require_finite(to.given(0, 3));
+  const auto [code, report] = compile({to.finish(1, 1, 0)}, {.cache = false});
+  REQUIRE_MESSAGE(code, report.trouble);
+  const auto is_sound = [&code = code](std::vector<double> x) {
+    std::vector<double> scratch(64);
+    code(0, x.data(), scratch.data());
+    return sound(scratch.data());
+  };
+  CHECK(is_sound({1, 1, 1, 1}));
+  for (std::size_t i = 0; i < 3; ++i)
+    for (const double bad : {0.4, -1.0, static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
+      std::vector<double> x{1, 1, 1, 1};
+      x[i] = bad;
+      CHECK_FALSE(is_sound(x));
+    }
+  CHECK_FALSE(is_sound({1, 1, 1, NAN}));
+  CHECK_FALSE(is_sound({1, 1, 1, -INFINITY}));
+}
+
+TEST_CASE("a line that is too long is declined in a sentence") {
+  Builder to;
+  Value x = to.given(0, 0);
+  for (int i = 0; i < 40'000; ++i) x = to.sum({{1, x}, {0.5}});
+  to.store(x, 1, 0);
+  const auto [code, report] = compile({to.finish(2, 1, 0)}, {.cache = false});
+  CHECK_FALSE(code);
+  CHECK(report.trouble == "the program is too long to be written out as machine code");
+}
