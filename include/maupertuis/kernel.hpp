@@ -165,7 +165,7 @@ class KernelWorkspace {
   std::size_t contradicting_constraint() const;
 
   /// From then on `expand` runs machine code; where it does not apply (constraints, many freedoms) or LLVM is not there, the
-  /// interpreter goes on, and the report says why. Results agree to rounding. Cost: of a small program about 0.1 s, from the cache 1 ms.
+  /// interpreter goes on, and the report says why; where M₀ is solved along its sparse graph those solutions are code then. Results agree to rounding. Cost: of a small program about 0.1 s, from the cache 1 ms.
   CompileReport compile(const CompileOptions& options = {});
 
   /// How the coefficients of q decay. With v_k = (k + 1) |q_{k+1}| and s_i the largest of v_k h^k for k ≤ 3 and ε |q_0| / h:

@@ -3,6 +3,7 @@
 #include "kernel/interpreter/sampled_states.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 namespace maupertuis::interpreter {
 namespace {
@@ -51,15 +52,48 @@ bool LiftedSolve::choose_pivots(const Memory& memory) {
   if (!pivots) return false;
   solver_.emplace(*system_, *pivots, cell_of_column_);
   // What the full matrix costs: its solution, and the tangents in the direction of that.
-  if (solver_->solve_products() < program_.unknowns * program_.unknowns + system_->edges.size()) return true;
-  solver_.reset();
+  if (solver_->solve_products() < program_.unknowns * program_.unknowns + system_->edges.size()) {
+    make_code();
+    return true;
+  }
+  drop_solver();
   system_.reset();
   return false;
 }
 
+// ------------------------------------------------------------------------------------------------------------------ machine code
+
+void LiftedSolve::compile(const CompileOptions& options) {
+  options_ = options;
+  if (solver_) make_code();
+}
+
+/// The code belongs to the pivots of this solver alone.
+void LiftedSolve::make_code() {
+  code_ = {};
+  if (!options_) return;
+  std::vector<std::uint32_t> wanted;
+  for (std::uint32_t column = 0; column < system_->size; ++column)
+    if (system_->wanted[column]) wanted.push_back(cell_of_column_[column]);
+  const straight::StraightLine line = solver_->written_solve(wanted);
+  scratch_.resize(straight::scratch_size(line));
+  std::tie(code_, report_) = straight::compile({line}, *options_);
+}
+
+void LiftedSolve::drop_solver() {
+  solver_.reset();
+  code_ = {};
+  report_.reset();
+}
+
+void LiftedSolve::run_solve(std::span<const double> b, double* x) {
+  if (code_) code_(0, solver_->factors(), solver_->inverse_pivots(), b.data(), x, scratch_.data());
+  else solver_->solve(b, x);
+}
+
 /// Other pivots may do better; they are chosen anew, less and less often.
 bool LiftedSolve::fail() {
-  if (is_power_of_two(++failures_)) solver_.reset();
+  if (is_power_of_two(++failures_)) drop_solver();
   return false;
 }
 
@@ -78,12 +112,12 @@ double LiftedSolve::remainder(std::span<const double> b) {
 
 /// The solution for what is left of b.
 void LiftedSolve::add_correction() {
-  solver_->solve(residual_, change_.data());
+  run_solve(residual_, change_.data());
   for (std::size_t i = 0; i < stored_; ++i) cells_[i] += change_[i];
 }
 
 bool LiftedSolve::solve_first(std::span<double> b) {
-  solver_->solve(b, cells_.data());
+  run_solve(b, cells_.data());
   const double left = remainder(b);
   if (!(left <= tolerable)) return fail();
   refines_ = left > sound;
@@ -96,7 +130,7 @@ bool LiftedSolve::solve_first(std::span<double> b) {
 }
 
 void LiftedSolve::solve(std::span<double> b) {
-  solver_->solve(b, cells_.data());
+  run_solve(b, cells_.data());
   if (refines_) {
     remainder(b);
     add_correction();

@@ -3,6 +3,7 @@
 #include "kernel/packed/layout.hpp"
 #include "kernel/sparse/graph_product.hpp"
 #include "kernel/sparse/sparse_solver.hpp"
+#include "kernel/straight_line/compile.hpp"
 
 #include <optional>
 
@@ -19,6 +20,10 @@ class LiftedSolve {
   LiftedSolve(const Program& program, const packed::PackedProgram& packed, std::size_t stride);
 
   void set_constants(const Memory& memory);
+  /// From then on solutions are machine code, made whenever pivots are chosen; where that cannot be the loops go on.
+  void compile(const CompileOptions& options);
+  /// Of the pivots in use; nothing where no code was asked for, or no pivots are chosen yet.
+  const std::optional<CompileReport>& compile_report() const { return report_; }
   /// The factors at the point that `memory` holds at order 0; false: the full matrix is to decide.
   bool factor(const Memory& memory);
   /// The first solution after factor(), as in solve(); false: it does not hold, and the full matrix is to decide; b is as it was.
@@ -38,6 +43,9 @@ class LiftedSolve {
   bool choose_pivots(const Memory& memory);
   double remainder(std::span<const double> b);
   void add_correction();
+  void make_code();
+  void drop_solver();
+  void run_solve(std::span<const double> b, double* x);
 
   const Program& program_;
   std::size_t stored_;                           // cells that tangents() gives
@@ -52,6 +60,10 @@ class LiftedSolve {
   double least_pivot_ = 1;
   bool refines_ = false;                         // each solution of this step
   int failures_ = 0;
+  std::optional<CompileOptions> options_;        // of the code that is wanted
+  std::optional<CompileReport> report_;
+  straight::Code code_;                          // of the solver's solve()
+  std::vector<double> scratch_;                  // of the code
 };
 
 }  // namespace maupertuis::interpreter

@@ -329,6 +329,7 @@ void KernelWorkspace::Impl::adopt(interpreter::CompiledCode code) {
 
 CompileReport KernelWorkspace::compile(const CompileOptions& options) {
   Impl& s = *impl_;
+  if (s.lifted) s.lifted->compile(options);
   if (!s.by_matrix) return {false, "it has too many unknowns", {}, false, 0};
   auto [code, report] = interpreter::compile(s.packed, s.order, s.memory.stride, options);
   if (code.expand) s.adopt(std::move(code));

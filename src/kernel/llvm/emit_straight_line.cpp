@@ -16,7 +16,7 @@ using straight::Node;
 using straight::StraightLine;
 
 /// Nodes and terms of one function, and of all.
-constexpr std::size_t most_in_function = 1500, most_in_all = 60'000;
+constexpr std::size_t most_in_function = 400, most_in_all = 60'000;
 
 class LineEmitter {
  public:
@@ -44,7 +44,7 @@ class LineEmitter {
     std::size_t length = 0;
     for (std::size_t i = 0; i < line_.nodes.size(); ++i) {
       const Node& node = line_.nodes[i];
-      const std::size_t size = 1 + (node.last - node.first);
+      const std::size_t size = remade(static_cast<straight::Value>(i)) ? 0 : 1 + (node.last - node.first);
       if (length + size > most_in_function) ++pieces_, length = 0;
       length += size;
       const bool of_angles = node.what == Node::Sine || node.what == Node::Cosine;

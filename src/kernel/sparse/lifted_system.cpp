@@ -1,6 +1,7 @@
 #include "kernel/sparse/lifted_system.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 namespace maupertuis::sparse {
@@ -95,6 +96,19 @@ class Lift {
     std::stable_sort(edges_.begin(), edges_.end(), [](const Edge& x, const Edge& y) { return x.rule < y.rule; });
     for (const Edge& edge : edges_) system_.entry_of_edge.push_back(entry(row_[edge.out], column_[edge.operand]));
     system_.edges = std::move(edges_);
+    find_literals();
+  }
+
+  void find_literals() {
+    system_.literal.assign(system_.entries.size(), 0.0);
+    for (const std::uint32_t e : system_.minus_one) system_.literal[e] -= 1;
+    for (const std::uint32_t e : system_.plus_one) system_.literal[e] += 1;
+    for (std::size_t i = 0; i < system_.edges.size(); ++i) {
+      const Edge& edge = system_.edges[i];
+      const bool is_number = edge.rule == Rule::Coefficient && program_.constants[edge.index].kind == Kind::Number;
+      const double other = std::numeric_limits<double>::quiet_NaN();
+      system_.literal[system_.entry_of_edge[i]] += edge.rule == Rule::One ? 1 : is_number ? program_.constants[edge.index].value : other;
+    }
   }
 
   const Program& program_;

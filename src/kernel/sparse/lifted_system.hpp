@@ -29,6 +29,7 @@ struct LiftedSystem {
   std::vector<std::uint32_t> plus_one;         // entries of the value 1
   std::vector<Edge> edges;                     // whose factors add up to the others, sorted by rule
   std::vector<std::uint32_t> entry_of_edge;    // [edges]
+  std::vector<double> literal;                 // [entries] of those that no parameter and no state changes; else NaN
   std::vector<std::uint32_t> rows_of_slots;    // in an order in which the tangents follow from q̈
 };
 

@@ -1,6 +1,7 @@
 #include "kernel/sparse/sparse_solver.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 #include <unordered_map>
 
@@ -160,8 +161,18 @@ class SparseBuilder {
         for (const std::uint32_t column : pivot.columns)
           products_[key(row, column)].push_back({factor_at(key(row, pivot.column)), factor_at(key(pivot.row, column))});
     }
+    find_literals(work);
     lay_out(work);
     s_.factors_.assign(next_factor_, 0.0);
+  }
+
+  void find_literals(const std::vector<Work>& work) {
+    s_.literal_factor_.assign(next_factor_, std::numeric_limits<double>::quiet_NaN());
+    for (const Work& w : work) {
+      const bool plain = w.products.empty() && w.sum.entry < system_.entries.size();
+      if (!plain || w.kind == FactorRun::Pivot || (w.kind == FactorRun::Upper && !is_minus_one_[w.sum.pivot])) continue;
+      s_.literal_factor_[w.sum.target] = w.kind == FactorRun::Upper ? -system_.literal[w.sum.entry] : system_.literal[w.sum.entry];
+    }
   }
 
   Work work_of(FactorRun::Kind kind, std::uint32_t row, std::uint32_t column, std::uint32_t pivot) {

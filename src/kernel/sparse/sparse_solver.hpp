@@ -1,10 +1,14 @@
 #pragma once
 #include "kernel/sparse/elimination.hpp"
 #include "kernel/sparse/loops.hpp"
+#include "kernel/straight_line/straight_line.hpp"
 
 /// Factors and solutions of a lifted system as flat loops over index arrays: what is computed from what was decided once, when
 /// the pivots were chosen. Nothing is allocated after construction.
 namespace maupertuis::sparse {
+
+/// What code of a solution works on, in this order; then its scratch.
+enum SolveArray : std::uint32_t { FactorArray, InverseArray, RightSideArray, UnknownArray, solve_arrays };
 
 class SparseSolver {
  public:
@@ -19,6 +23,11 @@ class SparseSolver {
   /// M₀ x = b: x and the wanted tangents in its direction, each in its cell; the cells of other unknowns are scratch.
   /// b: [unknowns]
   void solve(std::span<const double> b, double* x) const;
+
+  /// solve() as a straight line over the arrays of SolveArray; of x it fills `wanted` cells alone.
+  straight::StraightLine written_solve(std::span<const std::uint32_t> wanted) const;
+  const double* factors() const { return factors_.data(); }
+  const double* inverse_pivots() const { return inverse_.data(); }
 
   /// Products of a factorization and of a solution: their cost.
   std::size_t factor_products() const { return factor_products_; }
@@ -45,6 +54,7 @@ class SparseSolver {
   std::vector<FactorSum> sums_;
   std::vector<FactorProduct> products_;
   std::vector<double> factors_;                  // L, then U divided by the pivots, in the order of the solution
+  std::vector<double> literal_factor_;           // [factors] of those that are the same number at every point; else NaN
   std::vector<double> inverse_;                  // [pivots]
   std::vector<double> usual_size_;               // [pivots] the largest at the sampled states
   std::vector<double> entries_;                  // [entries + 1] the last one 0

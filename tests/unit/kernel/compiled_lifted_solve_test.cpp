@@ -1,0 +1,62 @@
+// Compiled solutions of large systems against the loops, and against M in closed form.
+#include "rods.hpp"
+
+TEST_CASE("chains, trees and combs: unknowns and tangents as by the loops, M x = b with M in closed form") {
+  for (const auto& [parent, count] : {std::pair<Parents, int>{chain, 20}, {chain, 100}, {binary_tree, 63}, {comb, 50}}) {
+    Rods rods(count, parent);
+    Lifted loops(build_kernel(rods.source)), code(build_kernel(rods.source));
+    code.solve.compile({.cache = false});
+    CHECK_FALSE(code.solve.compile_report());  // no pivots yet
+    const auto n = static_cast<std::size_t>(count);
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      const Point p = random_point(n, seed);
+      for (Lifted* const lifted : {&loops, &code}) {
+        lifted->move_to(p);
+        REQUIRE(lifted->solve.factor(lifted->memory));
+      }
+      REQUIRE(code.solve.compile_report());
+      REQUIRE_MESSAGE(code.solve.compile_report()->compiled, code.solve.compile_report()->trouble);
+      CHECK_FALSE(loops.solve.compile_report());
+      for (unsigned turn = 0; turn < 3; ++turn) {
+        const std::vector<double> b = random_point(n, seed + turn + 100).q;
+        std::vector<double> x = b, y = b;
+        if (turn == 0) {
+          REQUIRE(loops.solve.solve_first(x));
+          REQUIRE(code.solve.solve_first(y));
+        } else {
+          loops.solve.solve(x);
+          code.solve.solve(y);
+        }
+        for (std::size_t i = 0; i < n; ++i) {
+          double sum = 0, size = std::abs(b[i]);
+          for (std::size_t j = 0; j < n; ++j) {
+            const double term = mass_of_rods(count, parent, p.q, i, j) * y[j];
+            sum += term, size += std::abs(term);
+          }
+          CHECK(std::abs(sum - b[i]) <= 1e-13 * size);
+        }
+        const Slot stored = code.packed.program.stored_end[2];
+        double largest = 0;
+        for (Slot slot = 0; slot < stored; ++slot) largest = std::max(largest, std::abs(loops.solve.tangents()[slot]));
+        for (Slot slot = 0; slot < stored; ++slot)
+          CHECK(std::abs(code.solve.tangents()[slot] - loops.solve.tangents()[slot]) <= 1e-10 * largest);
+      }
+    }
+  }
+}
+
+TEST_CASE("a workspace whose expansions are not compiled has compiled solutions: the same coefficients to rounding") {
+  Rods rods(30, chain);
+  KernelWorkspace loops(build_kernel(rods.source), 8), code(build_kernel(rods.source), 8);
+  code.compile({.cache = false});
+  const Point p = random_point(30, 9);
+  for (KernelWorkspace* const work : {&loops, &code}) {
+    work->set_parameters(one);
+    REQUIRE(work->expand(0, p.q, p.v) == KernelStatus::Ok);
+  }
+  for (int k = 2; k <= 9; ++k) {
+    double largest = 0;
+    for (std::size_t i = 0; i < 30; ++i) largest = std::max(largest, std::abs(loops.coordinate(k)[i]));
+    for (std::size_t i = 0; i < 30; ++i) CHECK(std::abs(code.coordinate(k)[i] - loops.coordinate(k)[i]) <= 1e-10 * largest);
+  }
+}
