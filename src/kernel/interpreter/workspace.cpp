@@ -3,7 +3,6 @@
 #include "kernel/interpreter/interpreter.hpp"
 #include "kernel/interpreter/lifted_solve.hpp"
 #include "kernel/jet/bordered_solver.hpp"
-#include "kernel/jet/small_inverse.hpp"
 #include "kernel/packed/engine.hpp"
 
 #include <maupertuis/require.hpp>
@@ -31,11 +30,13 @@ struct KernelWorkspace::Impl {
   Impl(const Kernel& k, int p)
       : kernel(k), packed(packed::pack(k.program())), program(packed.program), order(p),
         orders(p + 2 + (-2 - program.first_stage)), memory(program, orders, packed.cells), parameters(program.parameters, 0.0),
-        sides(program.switches.size(), 1), unknowns(program.unknowns), unknown(unknowns), 
+        sides(program.switches.size(), 1), unknowns(program.unknowns),
         by_matrix(unknowns <= (unknowns == program.freedoms ? most_by_matrix : most_constrained_by_matrix)), producer(program.slots, nullptr) {
+    solution.assign(padded_unknowns(), 0.0);
+    unknown = {solution.data(), unknowns};
     tangent.assign(by_matrix ? unknowns * memory.stride : memory.stride, 0.0);
     if (!by_matrix && unknowns == program.freedoms) lifted.emplace(kernel.program(), packed, memory.stride);
-    if (by_matrix) inverse.assign(unknowns * padded_unknowns(), 0.0), solution.assign(padded_unknowns(), 0.0);
+    if (by_matrix) inverse.assign(unknowns * padded_unknowns(), 0.0);
     for (const Instruction& i : program.instructions) producer[i.out] = &i;
     interpreter::set_leaves(memory, 0.0, orders);
     bind();
@@ -48,7 +49,7 @@ struct KernelWorkspace::Impl {
   void run_along(int stage);
   bool run_compiled(int stages);
   void adopt(interpreter::CompiledCode code);
-  void sweep(std::size_t direction);
+  void sweep_all();
   void sweep_block(std::size_t first);
   KernelStatus factor();
   KernelStatus factor_full();
@@ -66,7 +67,10 @@ struct KernelWorkspace::Impl {
   int order, orders;
   interpreter::Memory memory;
   packed::Tables tables;
+  packed::TangentMatrix tangents;    // by_matrix: the engine's view of `tangent`
   const packed::Engine& engine = packed::engine();
+  std::vector<Slot> places;          // [packed.columns]
+  std::vector<packed::Reciprocal> reciprocals;  // [orders]
   std::vector<double> lane_coefficients;  // [packed.coefficients]
   std::vector<double> parameters;
   std::vector<std::int8_t> sides;
@@ -76,9 +80,10 @@ struct KernelWorkspace::Impl {
   std::vector<double> bordered;      // [(n + m) × (n + m)] ∂R/∂(q̈, λ) at order 0; empty until it is asked for
   bool has_full = false;             // bordered is that of this point
   std::optional<interpreter::LiftedSolve> lifted;
-  std::vector<double> unknown;       // [n + m] −R_k, then q̈_k and λ_k
+  interpreter::Doubles solution;     // q̈_k and λ_k, padded
+  std::span<double> unknown;         // [n + m] of it: −R_k, then q̈_k and λ_k
   bool by_matrix, by_inverse = false, by_lifting = false;
-  interpreter::Doubles inverse, solution;  // by_inverse: −M⁻¹ and what it gives, both padded
+  interpreter::Doubles inverse;      // by_inverse: −M⁻¹, rows padded
   interpreter::Doubles tangent;      // by_matrix: ∂slot/∂q^(lag) for each direction [n + m × stride], else for one
   std::vector<double> block_tangent; // [slots × 8]
   std::vector<std::uint32_t> of_mass;  // instructions that M₀ goes through
@@ -98,6 +103,14 @@ void KernelWorkspace::Impl::bind() {
   tables.columns = packed.columns.data();
   tables.products = packed.products.data();
   tables.functions = packed.functions.data();
+  tables.runs = packed.runs.data();
+  for (const packed::Column& column : packed.columns) places.push_back(column.source + column.shift * static_cast<Slot>(memory.stride));
+  tables.places = places.data();
+  reciprocals.resize(1);
+  for (double k = 1; k < orders; ++k) reciprocals.push_back({1 / k, std::fma(-k, 1 / k, 1.0) / k});
+  tables.reciprocals = reciprocals.data();
+  tangents = {tangent.data(), memory.stride, unknowns, static_cast<Slot>(padded_unknowns()), {}};
+  std::copy_n(program.stored_end.begin(), tangents.end.size(), tangents.end.begin());
   tables.rows = memory.rows.data();
   tables.stride = memory.stride;
   tables.scalar.context = this;
@@ -119,12 +132,14 @@ void KernelWorkspace::Impl::compute_constants() {
   stale = false;
 }
 
-/// The tangents of all slots in one direction.
-void KernelWorkspace::Impl::sweep(std::size_t direction) {
-  double* const row = tangent.data() + direction * memory.stride;
-  std::fill_n(row, padded_unknowns(), 0.0);
-  row[direction] = 1;
-  engine.tangents(tables, row);
+/// The tangents of all slots in the direction of each unknown.
+void KernelWorkspace::Impl::sweep_all() {
+  for (std::size_t d = 0; d < unknowns; ++d) {
+    double* const row = tangent.data() + d * memory.stride;
+    std::fill_n(row, padded_unknowns(), 0.0);
+    row[d] = 1;
+  }
+  engine.tangents(tables, tangent.data(), memory.stride, unknowns);
 }
 
 /// Those of the residual in 8 directions.
@@ -144,9 +159,9 @@ void KernelWorkspace::Impl::need_full() {
     block_tangent.assign(program.slots * 8, 0.0);
     of_mass = interpreter::instructions_of_mass(program);
   }
+  if (by_matrix) sweep_all();
   for (std::size_t d = 0; d < n; ++d) {
-    if (by_matrix) sweep(d);
-    else if (d % 8 == 0) sweep_block(d);
+    if (!by_matrix && d % 8 == 0) sweep_block(d);
     for (std::size_t i = 0; i < n; ++i) {
       const Slot slot = program.residual[i];
       bordered[i * n + d] = program.tangent_lags[slot] != 2 ? 0.0
@@ -162,7 +177,7 @@ KernelStatus KernelWorkspace::Impl::factor_full() {
   double check = 0;
   for (const double value : bordered) check += value * 0;
   if (check != 0) return KernelStatus::NonFinite;  // infinity and NaN times 0 are NaN
-  by_inverse = by_matrix && n == program.freedoms && jet::negative_inverse(bordered, n, inverse.data(), padded_unknowns());
+  by_inverse = by_matrix && n == program.freedoms && engine.negative_inverse(bordered.data(), n, inverse.data(), padded_unknowns());
   if (by_inverse) return KernelStatus::Ok;
   if (!solver) solver.emplace(program.freedoms, n - program.freedoms);
   std::copy(bordered.begin(), bordered.end(), solver->matrix().begin());
@@ -188,22 +203,19 @@ void KernelWorkspace::Impl::solve_factored() {
 /// unknown = q̈_k.
 KernelStatus KernelWorkspace::Impl::solve(int stage) {
   const double* const row = memory.row(stage);
-  double check = 0;
   if (by_inverse) {
-    for (std::size_t i = 0; i < unknowns; ++i) unknown[i] = row[program.residual[i]];
-    std::fill(solution.begin(), solution.end(), 0.0);
-    engine.combine(solution.data(), inverse.data(), padded_unknowns(), unknown.data(), unknowns, padded_unknowns());
-    std::copy_n(solution.begin(), unknowns, unknown.begin());
-  } else {
-    for (std::size_t i = 0; i < unknowns; ++i) unknown[i] = -row[program.residual[i]];
-    if (stage > 0 || !by_lifting) {
-      solve_factored();
-    } else if (!lifted->solve_first(unknown)) {
-      by_lifting = false;
-      if (const KernelStatus status = factor_full(); status != KernelStatus::Ok) return status;
-      solve_factored();
-    }
+    const bool finite = engine.solve_by_inverse(inverse.data(), padded_unknowns(), row, program.residual.data(), unknowns, solution.data());
+    return finite ? KernelStatus::Ok : KernelStatus::NonFinite;
   }
+  for (std::size_t i = 0; i < unknowns; ++i) unknown[i] = -row[program.residual[i]];
+  if (stage > 0 || !by_lifting) {
+    solve_factored();
+  } else if (!lifted->solve_first(unknown)) {
+    by_lifting = false;
+    if (const KernelStatus status = factor_full(); status != KernelStatus::Ok) return status;
+    solve_factored();
+  }
+  double check = 0;
   for (const double a : unknown) check += a * 0;
   return check == 0 ? KernelStatus::Ok : KernelStatus::NonFinite;
 }
@@ -229,29 +241,21 @@ bool KernelWorkspace::Impl::constraints_agree() {
 
 /// Coefficient k + 2 − ℓ of a slot of lag ℓ follows q̈_k with its order-0 tangent times 1, 1/(k+1), 1/((k+1)(k+2)).
 void KernelWorkspace::Impl::correct(int stage) {
-  const std::size_t n = unknowns;
+  if (by_matrix) return engine.correct_by_matrix(tables, stage, tangents, solution.data());
   const double lag1 = 1.0 / (stage + 1), lag0 = lag1 / (stage + 2);
   const double factors[3] = {lag0, lag1, 1};
   double* const next = memory.row(stage + 2);
   // A division: the error of a rounded reciprocal would be the same in every step and so add up.
-  for (std::size_t i = 0; i < n; ++i) next[i] = unknown[i] / ((stage + 1.0) * (stage + 2.0));
+  for (std::size_t i = 0; i < unknowns; ++i) next[i] = unknown[i] / ((stage + 1.0) * (stage + 2.0));
   const double* direction = by_lifting ? lifted->tangents() : tangent.data();
-  if (!by_matrix && !by_lifting) {
+  if (!by_lifting) {
     std::copy(unknown.begin(), unknown.end(), tangent.begin());
-    engine.tangents(tables, tangent.data());
+    engine.tangents(tables, tangent.data(), memory.stride, 1);
   }
-  auto first = static_cast<Slot>(padded_unknowns());
-  double scaled[most_by_matrix];
-  for (int lag = 0; lag <= 2; ++lag) {
-    const Slot last = program.stored_end[static_cast<std::size_t>(lag)];
-    double* const row = memory.row(stage + 2 - lag) + first;
-    if (by_matrix) {
-      for (std::size_t d = 0; d < n; ++d) scaled[d] = unknown[d] * factors[lag];
-      engine.combine(row, tangent.data() + first, memory.stride, scaled, n, last - first);
-    } else {
-      engine.combine(row, direction + first, memory.stride, factors + lag, 1, last - first);
-    }
-    first = last;
+  Slot first = tangents.first;
+  for (std::size_t lag = 0; lag <= 2; ++lag) {
+    engine.combine(next - lag * memory.stride + first, direction + first, memory.stride, factors + lag, 1, tangents.end[lag] - first);
+    first = tangents.end[lag];
   }
 }
 

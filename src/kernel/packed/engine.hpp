@@ -1,6 +1,7 @@
 #pragma once
 #include "kernel/packed/layout.hpp"
 
+#include <array>
 #include <cstddef>
 
 /// Runs packs on rows of Taylor coefficients. The same source is compiled for several instruction sets, and the best one that
@@ -15,18 +16,34 @@ struct ScalarRules {
   void (*tangent)(void* context, std::uint32_t instruction, double* tangents) = nullptr;  // [slots], one direction
 };
 
+/// 1/k to twice the digits of a double: a rounded reciprocal alone errs the same way in every step.
+struct Reciprocal {
+  double leading = 0, rest = 0;
+};
+
 struct Tables {
   const Pack* packs = nullptr;
   std::size_t pack_count = 0;
   const Block* blocks = nullptr;
   std::size_t block_count = 0;
   const Column* columns = nullptr;
+  const ColumnRun* runs = nullptr;
+  const Slot* places = nullptr;          // [columns] source + shift · stride, from the row of the result
   const ProductTerm* products = nullptr;
   const std::uint32_t* functions = nullptr;
   const double* coefficients = nullptr;  // values of PackedProgram::coefficients
   double* rows = nullptr;                // [orders][stride], aligned to 64 bytes
   std::size_t stride = 0;                // a multiple of 8
+  const Reciprocal* reciprocals = nullptr;  // [orders] of k; of 0: none
   ScalarRules scalar;
+};
+
+/// Tangents of order 0 in each direction q̈_d: ∂slot/∂q^(lag).
+struct TangentMatrix {
+  double* values = nullptr;              // [directions][stride], aligned to 64 bytes
+  std::size_t stride = 0, directions = 0;
+  Slot first = 0;                        // of the slots that are corrected: those of lag 0 …
+  std::array<Slot, 3> end{};             // … and where those of lag 0, 1, 2 end; all multiples of 8
 };
 
 struct Engine {
@@ -35,11 +52,22 @@ struct Engine {
   void (*run_stage)(const Tables&, int stage);
   /// Copies of blocks, when the coefficients of the stage are final.
   void (*renew_blocks)(const Tables&, int stage);
-  /// Tangents of order 0 in one direction: in, those of the coordinates; out, those of all slots of Dynamics. [slots]
-  void (*tangents)(const Tables&, double* tangent);
-  /// out += Σ_d factors[d] · columns[d · stride + …], [size]; all sizes multiples of 8.
+  /// Tangents of order 0: in, those of the coordinates; out, those of all slots of Dynamics. [directions][slots of a row]
+  void (*tangents)(const Tables&, double* tangents, std::size_t stride, std::size_t directions);
   /// sin x and cos x of `count` ≤ 8 numbers, in out[0 …) and out[8 …); the next power of two of them is read and written. Aligned to 64 bytes.
   void (*sine_cosine)(const double* x, double* out, int count);
+  /// −M⁻¹ of a symmetric, positive definite matrix, by Gauss and Jordan: a product with it takes part in few dependences, where a
+  /// substitution waits for each of its rows.
+  ///   matrix   row by row [n × n], n ≤ 16
+  ///   inverse  [n × stride] rows, stride n rounded up to a multiple of 8, aligned to 64 bytes
+  /// False if a pivot is below 1e-10 of its diagonal entry, or M not positive, not finite or not symmetric: then nothing is written, and a
+  /// solver that pivots has to decide.
+  bool (*negative_inverse)(const double* matrix, std::size_t n, double* inverse, std::size_t stride);
+  /// solution = Σ_i inverse[i] · row[residual[i]], [stride]. False where it is not finite.
+  bool (*solve_by_inverse)(const double* inverse, std::size_t stride, const double* row, const Slot* residual, std::size_t n, double* solution);
+  /// q_{k+2} = q̈_k / ((k+1)(k+2)), and what the coefficients of stage k that later orders read owe to q̈_k = `solution`.
+  void (*correct_by_matrix)(const Tables&, int stage, const TangentMatrix&, const double* solution);
+  /// out += Σ_d factors[d] · columns[d · stride + …], [size]; all sizes multiples of 8.
   void (*combine)(double* out, const double* columns, std::size_t stride, const double* factors, std::size_t count, std::size_t size);
   /// Σ_{k=2..degree} c_k τ^{k−1} and Σ k c_k τ^{k−1} of `count` columns, c_k = first + k · stride: read and written in eights.
   void (*increments)(const double* first, std::size_t stride, std::size_t count, int degree, double tau, double* dq, double* dv);

@@ -460,10 +460,30 @@ class Layout {
   void scan(Pack pack, Members members, const Group& group) {
     pack.kind = group.down ? Pack::ScanDown : Pack::Scan;
     pack.carry = number_[step(group.down ? members.back() : members.front()).linear.front().a];
-    pack.first_column = static_cast<std::uint32_t>(out_.columns.size());
-    columns(members, pack.lag);
-    pack.last_column = static_cast<std::uint32_t>(out_.columns.size());
+    columns(pack, members);
     out_.packs.push_back(pack);
+  }
+
+  /// What the engine reads, run by run.
+  void columns(Pack& pack, Members members) {
+    pack.first_column = static_cast<std::uint32_t>(out_.columns.size());
+    pack.first_run = static_cast<std::uint32_t>(out_.runs.size());
+    auto found = columns_of(members);
+    const auto key = [&](const auto& entry) {
+      const Column& column = entry.first;
+      return std::tuple(column.shift, column.kind, passes_tangent(column, pack.lag));
+    };
+    std::stable_sort(found.begin(), found.end(), [&](const auto& x, const auto& y) { return key(x) < key(y); });
+    for (auto& entry : found) {
+      const auto [shift, kind, passes] = key(entry);
+      const auto at = static_cast<std::uint32_t>(out_.columns.size());
+      const bool fresh = out_.runs.size() == pack.first_run || key(entry) != std::tuple(out_.runs.back().shift, out_.runs.back().kind, out_.runs.back().passes_tangent);
+      if (fresh) out_.runs.push_back({kind, shift, passes, at, at});
+      ++out_.runs.back().last;
+      add_column(entry.first, std::move(entry.second), pack.lag);
+    }
+    pack.last_column = static_cast<std::uint32_t>(out_.columns.size());
+    pack.last_run = static_cast<std::uint32_t>(out_.runs.size());
   }
 
   /// Of a running sum: what is added.
@@ -475,9 +495,8 @@ class Layout {
 
   void sum(Pack& pack, Members members) {
     pack.kind = Pack::Sum;
-    pack.first_column = static_cast<std::uint32_t>(out_.columns.size());
-    columns(members, pack.lag);
-    pack.first_aligned = pack.last_column = static_cast<std::uint32_t>(out_.columns.size());
+    columns(pack, members);
+    pack.first_aligned = static_cast<std::uint32_t>(out_.columns.size());
     aligned_columns(members, pack.lag);
     pack.last_aligned = static_cast<std::uint32_t>(out_.columns.size());
     pack.first_product = static_cast<std::uint32_t>(out_.products.size());
@@ -499,7 +518,7 @@ class Layout {
   }
 
   /// By operand (one load serves all lanes) or by place in the sums (one gather each): what takes fewer loads.
-  void columns(Members members, int lag) {
+  std::vector<std::pair<Column, std::vector<ConstantId>>> columns_of(Members members) const {
     using Key = std::pair<std::uint32_t, Slot>;
     std::map<Key, std::vector<ConstantId>> by_operand;
     std::vector<std::vector<Term>> sums;
@@ -526,10 +545,11 @@ class Layout {
     std::size_t loads = 0;
     for (std::size_t t = 0; aligned && t < longest; ++t) loads += is_range(sums, t) || is_reversed(sums, t) ? 1 : 5;
     const bool by_place = aligned && loads < by_operand.size();
+    std::vector<std::pair<Column, std::vector<ConstantId>>> found;
     if (!by_place) {
-      for (const auto& [key, column] : by_operand) add_column({.kind = Column::Broadcast, .shift = static_cast<std::uint8_t>(key.first),
-                                                               .source = key.second}, column, lag);
-      return;
+      for (const auto& [key, column] : by_operand)
+        found.push_back({{.kind = Column::Broadcast, .shift = static_cast<std::uint8_t>(key.first), .source = key.second}, column});
+      return found;
     }
     for (std::size_t t = 0; t < longest; ++t) {
       Column column{.kind = is_range(sums, t) ? Column::Contiguous : is_reversed(sums, t) ? Column::Reversed : Column::Gather, .shift = static_cast<std::uint8_t>(sums[0][t].shift),
@@ -537,8 +557,9 @@ class Layout {
       std::vector<ConstantId> c;
       column.sources.fill(sums[0][t].a);
       for (std::size_t lane = 0; lane < sums.size(); ++lane) column.sources[lane] = sums[lane][t].a, c.push_back(sums[lane][t].coefficient);
-      add_column(column, c, lag);
+      found.push_back({column, std::move(c)});
     }
+    return found;
   }
 
   /// One column a place, whatever the sums hold there: a lane whose sum is shorter reads its own operand times 0. Terms of the
@@ -603,8 +624,10 @@ class Layout {
     return sums.size() == lanes;
   }
 
+  bool passes_tangent(const Column& column, int lag) const { return out_.program.tangent_lags[column.source] + column.shift == lag; }
+
   void add_column(Column column, std::vector<ConstantId> c, int lag) {
-    column.passes_tangent = out_.program.tangent_lags[column.source] + column.shift == lag;
+    column.passes_tangent = passes_tangent(column, lag);
     column.coefficients = coefficients(std::move(c));
     out_.columns.push_back(column);
   }

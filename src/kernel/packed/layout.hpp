@@ -34,6 +34,14 @@ struct Column {
   std::uint32_t coefficients = 0;       // in PackedProgram::coefficients, `lanes` of them
 };
 
+/// Neighbouring columns of a pack that are read alike; their coefficients lie side by side.
+struct ColumnRun {
+  Column::Kind kind = Column::Broadcast;
+  std::uint8_t shift = 0;
+  bool passes_tangent = false;
+  std::uint32_t first = 0, last = 0;    // columns
+};
+
 /// Coefficient of the lane · a · b.
 struct ProductTerm {
   std::uint32_t a = 0, b = 0;           // blocks
@@ -55,6 +63,7 @@ struct Pack {
   std::uint32_t width = 0;              // lanes in use
   Slot out = 0;                         // first of `lanes` slots, beginning at a multiple of it (not for Scalar)
   std::uint32_t first_column = 0, last_column = 0, first_product = 0, last_product = 0;  // Sum
+  std::uint32_t first_run = 0, last_run = 0;  // Sum and Scan: the columns, run by run
   std::uint32_t first_aligned = 0, last_aligned = 0;  // Sum: the same columns by their place in the sums, for compiled code
   std::uint32_t a = no_block, b = no_block, y = no_block;  // Integral: u (weighted), w; Quotient: a, b, y; SquareRoot: u, –, y
   std::uint32_t coefficients = 0;       // Integral: c
@@ -71,6 +80,7 @@ struct PackedProgram {
   std::vector<Pack> packs;              // section Dynamics, in order of execution
   std::vector<Block> blocks;
   std::vector<Column> columns;
+  std::vector<ColumnRun> runs;
   std::vector<ProductTerm> products;
   std::vector<std::uint32_t> functions; // indices of instructions
   std::vector<ConstantId> coefficients; // of lanes that are not in use: the constant 0

@@ -1,0 +1,117 @@
+// Part of engine_code.hpp: the solution of a stage, and what follows from it.
+namespace maupertuis::packed::MAUP_ENGINE {
+namespace {
+
+constexpr std::size_t most_inverted = 16;
+
+bool is_symmetric(const double* m, std::size_t n) {
+  constexpr double tolerance = 1e-12;
+  bool symmetric = true;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const double difference = m[i * n + j] - m[j * n + i];
+      symmetric &= difference * difference <= tolerance * tolerance * m[i * n + i] * m[j * n + j];
+    }
+  return symmetric;
+}
+
+/// In place, W vectors a row: column p of the matrix gives its room to that of the inverse.
+template <std::size_t W>
+bool invert(const double* m, std::size_t n, double* inverse) {
+  constexpr double least_pivot = 1e-10;
+  Vector rows[most_inverted][W];
+  alignas(64) double row[W * lanes] = {};
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) row[j] = m[i * n + j];
+    for (std::size_t w = 0; w < W; ++w) rows[i][w] = load(row + w * lanes);
+  }
+  for (std::size_t p = 0; p < n; ++p) {
+    const std::size_t vector = p / lanes;
+    const double pivot = rows[p][vector][p % lanes];
+    if (!(pivot > least_pivot * m[p * n + p])) return false;
+    const Vector reciprocal = all(1 / pivot);
+    const auto here = lane_numbers == all(static_cast<double>(p % lanes));
+    Vector scaled[W];
+    for (std::size_t w = 0; w < W; ++w) scaled[w] = rows[p][w] * reciprocal;
+    scaled[vector] = here ? reciprocal : scaled[vector];
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vector factor = all(rows[i][vector][p % lanes]);
+      rows[i][vector] = here ? all(0) : rows[i][vector];
+      for (std::size_t w = 0; w < W; ++w) rows[i][w] -= factor * scaled[w];
+    }
+    for (std::size_t w = 0; w < W; ++w) rows[p][w] = scaled[w];
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t w = 0; w < W; ++w) save(inverse + (i * W + w) * lanes, -rows[i][w]);
+  return true;
+}
+
+bool negative_inverse(const double* matrix, std::size_t n, double* inverse, std::size_t stride) {
+  if (n > most_inverted || !is_symmetric(matrix, n)) return false;
+  return stride == lanes ? invert<1>(matrix, n, inverse) : invert<2>(matrix, n, inverse);
+}
+
+bool solve_by_inverse(const double* inverse, std::size_t stride, const double* row, const Slot* residual, std::size_t n, double* solution) {
+  bool finite = true;
+  for (std::size_t i = 0; i < stride; i += lanes) {
+    Vector even = all(0), odd = all(0);
+    std::size_t d = 0;
+    for (; d + 1 < n; d += 2) {
+      even += all(row[residual[d]]) * load(inverse + d * stride + i);
+      odd += all(row[residual[d + 1]]) * load(inverse + (d + 1) * stride + i);
+    }
+    if (d < n) even += all(row[residual[d]]) * load(inverse + d * stride + i);
+    const Vector a = even + odd;
+    save(solution + i, a);
+    finite &= are_finite(a);
+  }
+  return finite;
+}
+
+/// What W directions add.
+template <std::size_t W>
+void correct_from(double* out, const double* tangents, std::size_t stride, const double* factors, std::size_t size) {
+  for (std::size_t i = 0; i < size; i += lanes) {
+    Vector even = load(out + i), odd = all(0);
+    for (std::size_t d = 0; d + 1 < W; d += 2) {
+      even += all(factors[d]) * load(tangents + d * stride + i);
+      odd += all(factors[d + 1]) * load(tangents + (d + 1) * stride + i);
+    }
+    if constexpr (W % 2 == 1) even += all(factors[W - 1]) * load(tangents + (W - 1) * stride + i);
+    save(out + i, even + odd);
+  }
+}
+
+void combine(double* out, const double* columns, std::size_t stride, const double* factors, std::size_t count, std::size_t size) {
+  while (count > 0) {
+    const auto block = [&]<std::size_t W>() {
+      correct_from<W>(out, columns, stride, factors, size);
+      columns += W * stride, factors += W, count -= W;
+    };
+    if (count >= 8) block.template operator()<8>();
+    else if (count >= 4) block.template operator()<4>();
+    else if (count >= 2) block.template operator()<2>();
+    else block.template operator()<1>();
+  }
+}
+
+void correct_by_matrix(const Tables& tables, int stage, const TangentMatrix& tangents, const double* solution) {
+  const double by_velocity = stage + 1.0, by_position = (stage + 1.0) * (stage + 2.0);
+  double* const next = tables.rows + static_cast<std::size_t>(stage + 2) * tables.stride;
+  alignas(64) double factors[3][most_inverted];
+  for (std::size_t d = 0; d < tangents.directions; d += lanes) {
+    const Vector a = load(solution + d);
+    // A division: the error of a rounded reciprocal would be the same in every step and so add up.
+    save(next + d, a / all(by_position));
+    save(factors[0] + d, a * all(1 / by_position)), save(factors[1] + d, a * all(1 / by_velocity)), save(factors[2] + d, a);
+  }
+  Slot first = tangents.first;
+  for (std::size_t lag = 0; lag <= 2; ++lag) {
+    combine(next - lag * tables.stride + first, tangents.values + first, tangents.stride, factors[lag], tangents.directions,
+            tangents.end[lag] - first);
+    first = tangents.end[lag];
+  }
+}
+
+}  // namespace
+}  // namespace maupertuis::packed::MAUP_ENGINE

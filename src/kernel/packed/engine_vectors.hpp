@@ -1,0 +1,63 @@
+// Part of engine_code.hpp: vectors of 8 lanes.
+namespace maupertuis::packed::MAUP_ENGINE {
+namespace {
+
+typedef double Vector __attribute__((vector_size(64), aligned(64)));
+typedef double Unaligned __attribute__((vector_size(64), aligned(8)));
+
+inline Vector load(const double* p) { return *reinterpret_cast<const Unaligned*>(p); }
+inline void save(double* p, Vector v) { *reinterpret_cast<Unaligned*>(p) = v; }
+inline Vector all(double x) { return Vector{x, x, x, x, x, x, x, x}; }
+inline Vector gather(const double* p, const Slot* slots) {
+  return Vector{p[slots[0]], p[slots[1]], p[slots[2]], p[slots[3]], p[slots[4]], p[slots[5]], p[slots[6]], p[slots[7]]};
+}
+
+typedef long long Places __attribute__((vector_size(64)));
+
+/// Reads columns of one kind, each with its coefficients.
+template <Column::Kind kind>
+inline Vector column_values(const double* from, Slot place, const Column& column) {
+  if constexpr (kind == Column::Broadcast) return all(from[place]);
+  else if constexpr (kind == Column::Contiguous) return load(from + place);
+  else if constexpr (kind == Column::Reversed) return __builtin_shuffle(load(from + place - (lanes - 1)), Places{7, 6, 5, 4, 3, 2, 1, 0});
+  else return gather(from + (place - column.source), column.sources.data());
+}
+
+/// Σ of coefficients · columns, in four sums that do not wait for each other.
+template <Column::Kind kind>
+inline Vector columns_of_kind(const Column* column, const Slot* place, const double* c, std::size_t count, const double* from) {
+  Vector sums[4] = {all(0), all(0), all(0), all(0)};
+  const auto term = [&](std::size_t i) { return load(c + i * lanes) * column_values<kind>(from, place[i], column[i]); };
+  std::size_t i = 0;
+  for (; i + 4 <= count; i += 4)
+    for (std::size_t j = 0; j < 4; ++j) sums[j] += term(i + j);
+  for (std::size_t j = 0; i < count; ++i, ++j) sums[j] += term(i);
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
+/// Each lane with all lanes before it.
+inline Vector running_sum(Vector v) {
+  const Vector zero = all(0);
+  v += __builtin_shuffle(v, zero, Places{8, 0, 1, 2, 3, 4, 5, 6});
+  v += __builtin_shuffle(v, zero, Places{8, 8, 0, 1, 2, 3, 4, 5});
+  return v + __builtin_shuffle(v, zero, Places{8, 8, 8, 8, 0, 1, 2, 3});
+}
+inline Vector running_sum_down(Vector v) {
+  const Vector zero = all(0);
+  v += __builtin_shuffle(v, zero, Places{1, 2, 3, 4, 5, 6, 7, 8});
+  v += __builtin_shuffle(v, zero, Places{2, 3, 4, 5, 6, 7, 8, 8});
+  return v + __builtin_shuffle(v, zero, Places{4, 5, 6, 7, 8, 8, 8, 8});
+}
+
+const Vector lane_numbers = {0, 1, 2, 3, 4, 5, 6, 7};
+
+/// Infinity and NaN times 0 are NaN.
+inline bool are_finite(Vector v) {
+  Vector zero = v * all(0);
+  zero += __builtin_shuffle(zero, Places{4, 5, 6, 7, 0, 1, 2, 3});
+  zero += __builtin_shuffle(zero, Places{2, 3, 0, 1, 6, 7, 4, 5});
+  return zero[0] + zero[1] == 0;
+}
+
+}  // namespace
+}  // namespace maupertuis::packed::MAUP_ENGINE
