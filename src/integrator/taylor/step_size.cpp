@@ -138,16 +138,16 @@ double step_size(const KernelWorkspace& work, std::size_t freedoms, const StepCo
 
 double step_within_multipliers(const KernelWorkspace& work, std::size_t freedoms, std::size_t constraints,
                                const StepControl& control, double h) {
-  const auto size = [&](std::size_t j, int k, double length) {
-    return (k + 1.0) * (k + 2.0) * std::abs(work.coordinate(k + 2)[freedoms + j]) * std::pow(length, k);
+  const auto largest = [&](std::size_t j, int begin, int end, double length) {
+    double size = 0, power = std::pow(length, begin);
+    for (int k = begin; k < end; ++k, power *= length)
+      size = std::max(size, (k + 1.0) * (k + 2.0) * std::abs(work.coordinate(k + 2)[freedoms + j]) * power);
+    return size;
   };
   const auto converges = [&](double length) {
-    for (std::size_t j = 0; j < constraints; ++j) {
-      double first = 0, last = 0;
-      for (int k = 0; k < std::min(4, control.order); ++k) first = std::max(first, size(j, k, length));
-      for (int k = std::max(0, control.order - 4); k < control.order; ++k) last = std::max(last, size(j, k, length));
-      if (last > converged * first) return false;
-    }
+    for (std::size_t j = 0; j < constraints; ++j)
+      if (largest(j, std::max(0, control.order - 4), control.order, length) > converged * largest(j, 0, std::min(4, control.order), length))
+        return false;
     return true;
   };
   for (int turn = 0; turn < 200 && !converges(h); ++turn) h *= 0.8;

@@ -39,6 +39,7 @@ struct KernelWorkspace::Impl {
     if (by_matrix) inverse.assign(unknowns * padded_unknowns(), 0.0);
     for (const Instruction& i : program.instructions) producer[i.out] = &i;
     interpreter::set_leaves(memory, 0.0, orders);
+    corrects_points = outputs_follow_accelerations();
     bind();
   }
 
@@ -47,6 +48,7 @@ struct KernelWorkspace::Impl {
   void compute_constants();
   KernelStatus run(double t, std::span<const double> q, std::span<const double> v, int stages);
   void run_along(int stage);
+  bool outputs_follow_accelerations() const;
   bool run_compiled(int stages);
   void adopt(interpreter::CompiledCode code);
   void sweep_all();
@@ -56,6 +58,7 @@ struct KernelWorkspace::Impl {
   void need_full();
   KernelStatus solve(int stage);
   void solve_factored();
+  void set_accelerations(int stage);
   void correct(int stage);
   bool constraints_agree();
   bool keeps(std::size_t constraint) const { return by_lifting || !solver || solver->keeps(constraint); }
@@ -69,7 +72,7 @@ struct KernelWorkspace::Impl {
   packed::Tables tables;
   packed::TangentMatrix tangents;    // by_matrix: the engine's view of `tangent`
   const packed::Engine& engine = packed::engine();
-  std::vector<Slot> places;          // [packed.columns]
+  std::optional<packed::ReadyProgram> ready;
   std::vector<packed::Reciprocal> reciprocals;  // [orders]
   std::vector<double> lane_coefficients;  // [packed.coefficients]
   std::vector<double> parameters;
@@ -88,6 +91,7 @@ struct KernelWorkspace::Impl {
   std::vector<double> block_tangent; // [slots × 8]
   std::vector<std::uint32_t> of_mass;  // instructions that M₀ goes through
   std::vector<const Instruction*> producer;  // [slots]
+  bool corrects_points = true;       // something that is read at a point alone depends on q̈
   std::size_t singular = 0, contradicting = 0;
   int last_stage = 0;
   interpreter::CompiledCode compiled;
@@ -99,13 +103,10 @@ void KernelWorkspace::Impl::bind() {
   tables.packs = packed.packs.data();
   tables.pack_count = packed.packs.size();
   tables.blocks = packed.blocks.data();
-  tables.block_count = packed.blocks.size();
   tables.columns = packed.columns.data();
   tables.products = packed.products.data();
   tables.functions = packed.functions.data();
   tables.runs = packed.runs.data();
-  for (const packed::Column& column : packed.columns) places.push_back(column.source + column.shift * static_cast<Slot>(memory.stride));
-  tables.places = places.data();
   reciprocals.resize(1);
   for (double k = 1; k < orders; ++k) reciprocals.push_back({1 / k, std::fma(-k, 1 / k, 1.0) / k});
   tables.reciprocals = reciprocals.data();
@@ -122,6 +123,13 @@ void KernelWorkspace::Impl::bind() {
   };
   lane_coefficients.resize(packed.coefficients.size());
   tables.coefficients = lane_coefficients.data();
+  ready.emplace(packed, memory.rows.data(), memory.stride, lane_coefficients.data());
+  tables.ready = ready->packs.data();
+  tables.brought = ready->brought.data();
+  tables.copies = ready->copies.data();
+  tables.copy_count = ready->copies.size();
+  tables.ready_runs = ready->runs.data();
+  tables.ready_products = ready->products.data();
 }
 
 void KernelWorkspace::Impl::compute_constants() {
@@ -239,14 +247,29 @@ bool KernelWorkspace::Impl::constraints_agree() {
   return true;
 }
 
+/// q_{k+2} = q̈_k / ((k+1)(k+2)), by a division: the error of a rounded reciprocal would be the same in every step and so add up.
+void KernelWorkspace::Impl::set_accelerations(int stage) {
+  double* const next = memory.row(stage + 2);
+  for (std::size_t i = 0; i < unknowns; ++i) next[i] = unknown[i] / ((stage + 1.0) * (stage + 2.0));
+}
+
+/// Whether an output at a point, or what it is computed from after the solve, is corrected in row 0.
+bool KernelWorkspace::Impl::outputs_follow_accelerations() const {
+  const auto follows = [this](Slot slot) { return slot != no_slot && slot >= unknowns && program.tangent_lags[slot] == 2; };
+  for (const auto* slots : {&program.switch_slots, &program.events, &program.observables, &program.integrands,
+                            &program.constraint_values, &program.constraint_rates})
+    if (std::any_of(slots->begin(), slots->end(), follows)) return true;
+  return !program.runs[Along].empty() ||
+         std::any_of(program.runs[AtPoint].begin(), program.runs[AtPoint].end(), [](const Run& run) { return run.lag == 2; });
+}
+
 /// Coefficient k + 2 − ℓ of a slot of lag ℓ follows q̈_k with its order-0 tangent times 1, 1/(k+1), 1/((k+1)(k+2)).
 void KernelWorkspace::Impl::correct(int stage) {
   if (by_matrix) return engine.correct_by_matrix(tables, stage, tangents, solution.data());
+  set_accelerations(stage);
   const double lag1 = 1.0 / (stage + 1), lag0 = lag1 / (stage + 2);
   const double factors[3] = {lag0, lag1, 1};
   double* const next = memory.row(stage + 2);
-  // A division: the error of a rounded reciprocal would be the same in every step and so add up.
-  for (std::size_t i = 0; i < unknowns; ++i) next[i] = unknown[i] / ((stage + 1.0) * (stage + 2.0));
   const double* direction = by_lifting ? lifted->tangents() : tangent.data();
   if (!by_lifting) {
     std::copy(unknown.begin(), unknown.end(), tangent.begin());
@@ -275,9 +298,10 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
     if (stage >= 0) {
       if (const auto status = solve(stage); status != KernelStatus::Ok) return status;
       if (stage == 0 && !constraints_agree()) return KernelStatus::Contradiction;
-      correct(stage);
+      if (stages == 1 && !corrects_points) set_accelerations(0);
+      else correct(stage);
     }
-    engine.renew_blocks(tables, stage);
+    if (stage + 1 < stages) engine.renew_blocks(tables, stage);
     run_along(stage);
   }
   return KernelStatus::Ok;

@@ -1,5 +1,5 @@
 #pragma once
-#include "kernel/packed/layout.hpp"
+#include "kernel/packed/ready.hpp"
 
 #include <array>
 #include <cstddef>
@@ -22,13 +22,16 @@ struct Reciprocal {
 };
 
 struct Tables {
+  const ReadyPack* ready = nullptr;
+  const Copy *brought = nullptr, *copies = nullptr;
+  std::size_t copy_count = 0;
+  const ReadyRun* ready_runs = nullptr;
+  const ReadyProduct* ready_products = nullptr;
   const Pack* packs = nullptr;
   std::size_t pack_count = 0;
   const Block* blocks = nullptr;
-  std::size_t block_count = 0;
   const Column* columns = nullptr;
   const ColumnRun* runs = nullptr;
-  const Slot* places = nullptr;          // [columns] source + shift · stride, from the row of the result
   const ProductTerm* products = nullptr;
   const std::uint32_t* functions = nullptr;
   const double* coefficients = nullptr;  // values of PackedProgram::coefficients

@@ -2,19 +2,21 @@
 namespace maupertuis::packed::MAUP_ENGINE {
 namespace {
 
-/// Σ_{j=0..N} a_j b_{N−j}, from the middle outward in four chains. Written out for each N, so that no loop ends in a branch that the processor
-/// did not foresee.
+/// Σ_{j=0..N} a_j b_{N−j}, from the middle outward in four chains; the outermost terms, whose factors may just have been found, are added to the
+/// sum of all others. Written out for each N, so that no loop ends in a branch that the processor did not foresee.
 template <int N>
 Vector convolution_of(const double* a, const double* b, std::ptrdiff_t stride) {
+  if constexpr (N == 0) return load(a) * load(b);
   Vector sums[4] = {all(0), all(0), all(0), all(0)};
   constexpr int middle = N / 2;
 #pragma GCC unroll 64
   for (int i = 0; i <= N; ++i) {
     const int j = i % 2 == 0 ? middle - i / 2 : middle + (i + 1) / 2;
-    if (j < 0 || j > N) continue;
+    if (j <= 0 || j >= N) continue;
     sums[i % 4] += load(a + j * stride) * load(b + (N - j) * stride);
   }
-  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  const Vector inner = N <= 3 ? sums[0] + sums[1] : (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  return (inner + load(a + N * stride) * load(b)) + load(a) * load(b + N * stride);
 }
 
 inline Vector long_convolution(const double* a, const double* b, int n, std::ptrdiff_t stride) {

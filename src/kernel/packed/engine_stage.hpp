@@ -19,10 +19,11 @@ class Stage {
 
   void run() {
     for (std::size_t i = 0; i < t_.pack_count; ++i) {
-      const Pack& pack = t_.packs[i];
+      const ReadyPack& pack = t_.ready[i];
       k_ = stage_ + 2 - pack.lag;
       if (k_ < 0) continue;
       row_ = t_.rows + k_ * stride_;
+      for (std::uint32_t c = pack.first_copy; c < pack.last_copy; ++c) copy(t_.brought[c]);
       switch (pack.kind) {
         case Pack::Sum: save(row_ + pack.out, products(pack, columns(pack))); break;
         case Pack::Scan: save(row_ + pack.out, running_sum(columns(pack)) + all(row_[pack.carry])); break;
@@ -30,65 +31,57 @@ class Stage {
         case Pack::Integral: integral(pack); break;
         case Pack::Quotient: quotient(pack); break;
         case Pack::SquareRoot: square_root(pack); break;
-        case Pack::Scalar: t_.scalar.value(t_.scalar.context, pack.instruction, k_); break;
+        case Pack::Scalar: t_.scalar.value(t_.scalar.context, pack.pack->instruction, k_); break;
       }
     }
   }
 
   void renew() {
-    for (std::size_t i = 0; i < t_.block_count; ++i) {
-      const Block& block = t_.blocks[i];
-      const int order = stage_ + 2 - block.lag;
-      if (!block.direct && order >= 0) copy(block, order);
-    }
+    for (std::size_t i = 0; i < t_.copy_count; ++i) copy(t_.copies[i]);
   }
 
  private:
-  const double* coefficients(std::uint32_t first) const { return t_.coefficients + first; }
-  const double* cells(std::uint32_t block) const { return t_.rows + t_.blocks[block].first; }
-
-  void copy(const Block& block, int order) const {
-    double* const row = t_.rows + order * stride_;
-    const Vector values = block.is_range ? load(row + block.slots[0]) : gather(row, block.slots.data());
-    save(row + block.first, block.weighted ? values * all(order) : values);
-  }
-
-  /// An operand of the order that is being computed is not final, and its copy not there.
-  void bring(std::uint32_t index) const {
-    const Block& block = t_.blocks[index];
+  void copy(const Copy& block) const {
     const int order = stage_ + 2 - block.lag;
-    if (!block.direct && order >= 0 && order <= k_) copy(block, order);
+    if (order < 0) return;
+    double* const row = t_.rows + order * stride_;
+    const Vector values = block.kind == Copy::Range ? load(row + block.first)
+                          : block.kind == Copy::TwoVectors ? permuted(row, block) : gather(row, block.slots);
+    save(row + block.to, block.weighted ? values * all(order) : values);
   }
 
-  Vector run_of_columns(const ColumnRun& run) const {
-    const Column* const column = t_.columns + run.first;
-    const Slot* const place = t_.places + run.first;
-    const double* const c = coefficients(column->coefficients);
-    const std::size_t count = run.last - run.first;
+  static Vector permuted(const double* row, const Copy& block) {
+#ifdef __AVX512F__
+    return __builtin_shuffle(load(row + block.first), load(row + block.second), *reinterpret_cast<const UnalignedPlaces*>(block.places.data()));
+#else
+    return gather(row, block.slots);
+#endif
+  }
+
+  Vector run_of_columns(const ReadyRun& run) const {
     switch (run.kind) {
-      case Column::Broadcast: return columns_of_kind<Column::Broadcast>(column, place, c, count, row_);
-      case Column::Contiguous: return columns_of_kind<Column::Contiguous>(column, place, c, count, row_);
-      case Column::Reversed: return columns_of_kind<Column::Reversed>(column, place, c, count, row_);
-      default: return columns_of_kind<Column::Gather>(column, place, c, count, row_);
+      case Column::Broadcast: return columns_of_kind<Column::Broadcast>(run, row_);
+      case Column::Contiguous: return columns_of_kind<Column::Contiguous>(run, row_);
+      case Column::Reversed: return columns_of_kind<Column::Reversed>(run, row_);
+      default: return columns_of_kind<Column::Gather>(run, row_);
     }
   }
 
   /// d/dt multiplies by k + 1.
-  Vector columns(const Pack& pack) const {
-    const double factors[3] = {1, k_ + 1.0, (k_ + 1.0) * (k_ + 2.0)};
+  Vector columns(const ReadyPack& pack) const {
     Vector sum = all(0);
-    for (std::uint32_t r = pack.first_run; r < pack.last_run; ++r) sum += all(factors[t_.runs[r].shift]) * run_of_columns(t_.runs[r]);
+    for (std::uint32_t r = pack.first_run; r < pack.last_run; ++r) {
+      const ReadyRun& run = t_.ready_runs[r];
+      const Vector part = run_of_columns(run);
+      sum += run.shift == 0 ? part : all(run.shift == 1 ? k_ + 1.0 : (k_ + 1.0) * (k_ + 2.0)) * part;
+    }
     return sum;
   }
 
-  Vector products(const Pack& pack, Vector result) const {
+  Vector products(const ReadyPack& pack, Vector result) const {
     for (std::uint32_t p = pack.first_product; p < pack.last_product; ++p) {
-      const ProductTerm& term = t_.products[p];
-      bring(term.a);
-      if (term.b != term.a) bring(term.b);
-      const double *a = cells(term.a), *b = cells(term.b);
-      result += load(coefficients(term.coefficients)) *
-                (term.a == term.b ? self(a, 0) : convolution(a, b, k_, stride_));
+      const ReadyProduct& term = t_.ready_products[p];
+      result += load(term.coefficients) * (term.a == term.b ? self(term.a, 0) : convolution(term.a, term.b, k_, stride_));
     }
     return result;
   }
@@ -105,14 +98,12 @@ class Stage {
     return sum;
   }
 
-  void integral(const Pack& pack) const {
-    if (k_ == 0) return functions(pack);
-    bring(pack.a);
-    bring(pack.b);
-    const Vector sum = convolution(cells(pack.a) + stride_, cells(pack.b), k_ - 1, stride_);
+  void integral(const ReadyPack& pack) const {
+    if (k_ == 0) return functions(*pack.pack);
     const Reciprocal& inverse = t_.reciprocals[k_];
-    const Vector value = load(coefficients(pack.coefficients)) * sum;
-    save(row_ + pack.out, value * all(inverse.leading) + value * all(inverse.rest));
+    const Vector c = load(pack.coefficients), leading = c * all(inverse.leading), rest = c * all(inverse.rest);
+    const Vector sum = convolution(pack.a + stride_, pack.b, k_ - 1, stride_);
+    save(row_ + pack.out, sum * rest + sum * leading);
   }
 
   void functions(const Pack& pack) const {
@@ -129,18 +120,15 @@ class Stage {
     for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) row_[pack.out + i] = values[i], row_[pack.pairs + i] = values[lanes + i];
   }
 
-  void quotient(const Pack& pack) const {
-    bring(pack.a), bring(pack.b);
-    const Vector a = load(row_ + t_.blocks[pack.a].first);
-    const double *b = cells(pack.b), *y = cells(pack.y);
-    const Vector sum = k_ == 0 ? all(0) : convolution(b + stride_, y, k_ - 1, stride_);
-    save(row_ + pack.out, (a - sum) / load(b));
+  void quotient(const ReadyPack& pack) const {
+    const Vector a = load(pack.a + k_ * stride_);
+    const Vector sum = k_ == 0 ? all(0) : convolution(pack.b + stride_, pack.y, k_ - 1, stride_);
+    save(row_ + pack.out, (a - sum) / load(pack.b));
   }
 
-  void square_root(const Pack& pack) const {
-    bring(pack.a);
-    const Vector u = load(row_ + t_.blocks[pack.a].first);
-    const double* const y = cells(pack.y);
+  void square_root(const ReadyPack& pack) const {
+    const Vector u = load(pack.a + k_ * stride_);
+    const double* const y = pack.y;
     Vector result;
     if (k_ == 0)
       for (unsigned lane = 0; lane < lanes; ++lane) result[lane] = __builtin_sqrt(u[lane]);

@@ -13,6 +13,7 @@ inline Vector gather(const double* p, const Slot* slots) {
 }
 
 typedef long long Places __attribute__((vector_size(64)));
+typedef long long UnalignedPlaces __attribute__((vector_size(64), aligned(8)));
 
 /// Reads columns of one kind, each with its coefficients.
 template <Column::Kind kind>
@@ -23,16 +24,19 @@ inline Vector column_values(const double* from, Slot place, const Column& column
   else return gather(from + (place - column.source), column.sources.data());
 }
 
-/// Σ of coefficients · columns, in four sums that do not wait for each other.
+/// Σ of coefficients · columns, in sums that do not wait for each other.
 template <Column::Kind kind>
-inline Vector columns_of_kind(const Column* column, const Slot* place, const double* c, std::size_t count, const double* from) {
-  Vector sums[4] = {all(0), all(0), all(0), all(0)};
-  const auto term = [&](std::size_t i) { return load(c + i * lanes) * column_values<kind>(from, place[i], column[i]); };
-  std::size_t i = 0;
-  for (; i + 4 <= count; i += 4)
-    for (std::size_t j = 0; j < 4; ++j) sums[j] += term(i + j);
-  for (std::size_t j = 0; i < count; ++i, ++j) sums[j] += term(i);
-  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+inline Vector columns_of_kind(const ReadyRun& run, const double* from) {
+  const auto term = [&](std::size_t i) {
+    return load(run.coefficients + i * lanes) * column_values<kind>(from, run.places[i], run.columns[i]);
+  };
+  const std::size_t count = run.count;
+  if (count == 1) return term(0);
+  Vector even = term(0), odd = term(1);
+  std::size_t i = 2;
+  for (; i + 1 < count; i += 2) even += term(i), odd += term(i + 1);
+  if (i < count) even += term(i);
+  return even + odd;
 }
 
 /// Each lane with all lanes before it.
