@@ -21,8 +21,8 @@ namespace {
 
 /// Up to here the correction of a stage is a product with a small matrix, and so is the solution where M is positive definite.
 constexpr std::size_t most_by_matrix = 16;
-/// With constraints there is no inverse to gain, and a point alone (an output between steps) needs M₀ but no corrections.
-constexpr std::size_t most_constrained_by_matrix = 8;
+/// A point alone (an output between steps) needs M₀ but no corrections: beyond this the instructions that M₀ goes through are fewer.
+constexpr std::size_t most_swept_at_point = 8;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ struct KernelWorkspace::Impl {
       : kernel(k), packed(packed::pack(k.program())), program(packed.program), order(p),
         orders(p + 2 + (-2 - program.first_stage)), memory(program, orders, packed.cells), parameters(program.parameters, 0.0),
         sides(program.switches.size(), 1), unknowns(program.unknowns),
-        by_matrix(unknowns <= (unknowns == program.freedoms ? most_by_matrix : most_constrained_by_matrix)), producer(program.slots, nullptr) {
+        by_matrix(unknowns <= most_by_matrix), producer(program.slots, nullptr) {
     solution.assign(padded_unknowns(), 0.0);
     unknown = {solution.data(), unknowns};
     tangent.assign(by_matrix ? unknowns * memory.stride : memory.stride, 0.0);
@@ -58,7 +58,6 @@ struct KernelWorkspace::Impl {
   void need_full();
   KernelStatus solve(int stage);
   void solve_factored();
-  void set_accelerations(int stage);
   void correct(int stage);
   bool constraints_agree();
   bool keeps(std::size_t constraint) const { return by_lifting || !solver || solver->keeps(constraint); }
@@ -91,6 +90,7 @@ struct KernelWorkspace::Impl {
   std::vector<double> block_tangent; // [slots × 8]
   std::vector<std::uint32_t> of_mass;  // instructions that M₀ goes through
   std::vector<const Instruction*> producer;  // [slots]
+  bool alone = false;                // a point whose coefficients are not corrected
   bool corrects_points = true;       // something that is read at a point alone depends on q̈
   std::size_t singular = 0, contradicting = 0;
   int last_stage = 0;
@@ -163,17 +163,18 @@ void KernelWorkspace::Impl::need_full() {
   has_full = true;
   const std::size_t n = unknowns;
   bordered.resize(n * n);
-  if (!by_matrix && of_mass.empty()) {
+  const bool by_sweep = by_matrix && (!alone || n <= most_swept_at_point);
+  if (!by_sweep && of_mass.empty()) {
     block_tangent.assign(program.slots * 8, 0.0);
     of_mass = interpreter::instructions_of_mass(program);
   }
-  if (by_matrix) sweep_all();
+  if (by_sweep) sweep_all();
   for (std::size_t d = 0; d < n; ++d) {
-    if (!by_matrix && d % 8 == 0) sweep_block(d);
+    if (!by_sweep && d % 8 == 0) sweep_block(d);
     for (std::size_t i = 0; i < n; ++i) {
       const Slot slot = program.residual[i];
       bordered[i * n + d] = program.tangent_lags[slot] != 2 ? 0.0
-                            : by_matrix ? tangent[d * memory.stride + slot] : block_tangent[slot * 8 + d % 8];
+                            : by_sweep ? tangent[d * memory.stride + slot] : block_tangent[slot * 8 + d % 8];
     }
   }
 }
@@ -247,12 +248,6 @@ bool KernelWorkspace::Impl::constraints_agree() {
   return true;
 }
 
-/// q_{k+2} = q̈_k / ((k+1)(k+2)), by a division: the error of a rounded reciprocal would be the same in every step and so add up.
-void KernelWorkspace::Impl::set_accelerations(int stage) {
-  double* const next = memory.row(stage + 2);
-  for (std::size_t i = 0; i < unknowns; ++i) next[i] = unknown[i] / ((stage + 1.0) * (stage + 2.0));
-}
-
 /// Whether an output at a point, or what it is computed from after the solve, is corrected in row 0.
 bool KernelWorkspace::Impl::outputs_follow_accelerations() const {
   const auto follows = [this](Slot slot) { return slot != no_slot && slot >= unknowns && program.tangent_lags[slot] == 2; };
@@ -263,29 +258,25 @@ bool KernelWorkspace::Impl::outputs_follow_accelerations() const {
          std::any_of(program.runs[AtPoint].begin(), program.runs[AtPoint].end(), [](const Run& run) { return run.lag == 2; });
 }
 
-/// Coefficient k + 2 − ℓ of a slot of lag ℓ follows q̈_k with its order-0 tangent times 1, 1/(k+1), 1/((k+1)(k+2)).
+/// Coefficient k + 2 − ℓ of a slot of lag ℓ follows q̈_k with its order-0 tangents: one by one, or the tangent in the direction of q̈_k.
 void KernelWorkspace::Impl::correct(int stage) {
-  if (by_matrix) return engine.correct_by_matrix(tables, stage, tangents, solution.data());
-  set_accelerations(stage);
-  const double lag1 = 1.0 / (stage + 1), lag0 = lag1 / (stage + 2);
-  const double factors[3] = {lag0, lag1, 1};
-  double* const next = memory.row(stage + 2);
-  const double* direction = by_lifting ? lifted->tangents() : tangent.data();
+  if (by_matrix) return engine.correct(tables, stage, tangents, solution.data());
   if (!by_lifting) {
     std::copy(unknown.begin(), unknown.end(), tangent.begin());
     engine.tangents(tables, tangent.data(), memory.stride, 1);
   }
-  Slot first = tangents.first;
-  for (std::size_t lag = 0; lag <= 2; ++lag) {
-    engine.combine(next - lag * memory.stride + first, direction + first, memory.stride, factors + lag, 1, tangents.end[lag] - first);
-    first = tangents.end[lag];
-  }
+  packed::TangentMatrix direction = tangents;
+  direction.values = by_lifting ? lifted->tangents() : tangent.data();
+  direction.directions = 1;
+  const double weight = 1;
+  engine.correct(tables, stage, direction, &weight);
 }
 
 KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std::span<const double> v, int stages) {
   MAUP_REQUIRE(q.size() == program.freedoms && v.size() == program.freedoms);
   compute_constants();
   last_stage = stages - 1;
+  alone = stages == 1 && !corrects_points;
   if (program.time != no_slot) memory.row(0)[program.time] = t;
   double *const position = memory.row(0), *const velocity = memory.row(1);
   for (std::size_t i = 0; i < q.size(); ++i) position[i] = q[i], velocity[i] = v[i];
@@ -298,8 +289,8 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
     if (stage >= 0) {
       if (const auto status = solve(stage); status != KernelStatus::Ok) return status;
       if (stage == 0 && !constraints_agree()) return KernelStatus::Contradiction;
-      if (stages == 1 && !corrects_points) set_accelerations(0);
-      else correct(stage);
+      engine.set_accelerations(tables, stage, solution.data(), unknowns);
+      if (!alone) correct(stage);
     }
     if (stage + 1 < stages) engine.renew_blocks(tables, stage);
     run_along(stage);

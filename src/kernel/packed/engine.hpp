@@ -43,7 +43,7 @@ struct Tables {
 
 /// Tangents of order 0 in each direction q̈_d: ∂slot/∂q^(lag).
 struct TangentMatrix {
-  double* values = nullptr;              // [directions][stride], aligned to 64 bytes
+  const double* values = nullptr;        // [directions][stride], aligned to 64 bytes
   std::size_t stride = 0, directions = 0;
   Slot first = 0;                        // of the slots that are corrected: those of lag 0 …
   std::array<Slot, 3> end{};             // … and where those of lag 0, 1, 2 end; all multiples of 8
@@ -68,10 +68,11 @@ struct Engine {
   bool (*negative_inverse)(const double* matrix, std::size_t n, double* inverse, std::size_t stride);
   /// solution = Σ_i inverse[i] · row[residual[i]], [stride]. False where it is not finite.
   bool (*solve_by_inverse)(const double* inverse, std::size_t stride, const double* row, const Slot* residual, std::size_t n, double* solution);
-  /// q_{k+2} = q̈_k / ((k+1)(k+2)), and what the coefficients of stage k that later orders read owe to q̈_k = `solution`.
-  void (*correct_by_matrix)(const Tables&, int stage, const TangentMatrix&, const double* solution);
-  /// out += Σ_d factors[d] · columns[d · stride + …], [size]; all sizes multiples of 8.
-  void (*combine)(double* out, const double* columns, std::size_t stride, const double* factors, std::size_t count, std::size_t size);
+  /// q_{k+2} = q̈_k / ((k+1)(k+2)) for k = stage, q̈_k = `solution`; read and written in eights.
+  void (*set_accelerations)(const Tables&, int stage, const double* solution, std::size_t unknowns);
+  /// What the coefficients of the stage that later orders read owe to q̈_k: in a slot of lag ℓ, Σ_d weights[d] · tangents[d] times 1,
+  /// 1/(k+1), 1/((k+1)(k+2)) for ℓ = 2, 1, 0.
+  void (*correct)(const Tables&, int stage, const TangentMatrix&, const double* weights);
   /// Σ_{k=2..degree} c_k τ^{k−1} and Σ k c_k τ^{k−1} of `count` columns, c_k = first + k · stride: read and written in eights.
   void (*increments)(const double* first, std::size_t stride, std::size_t count, int degree, double tau, double* dq, double* dv);
   /// With v_k = (k + 1) |c_{k+1}| and s = max(v_k h^k, k ≤ 3; ε |c_0| / h): max over the columns of v_k / s, for k = order, order − 1, … lowest, in

@@ -17,7 +17,7 @@
 namespace maupertuis::packed::MAUP_ENGINE {
 
 extern const Engine engine;
-const Engine engine{MAUP_ENGINE_NAME, run_stage,        renew_blocks, tangents,   sine_cosine, negative_inverse,
-                    solve_by_inverse, correct_by_matrix, combine,     increments, decay};
+const Engine engine{MAUP_ENGINE_NAME, run_stage,         renew_blocks, tangents,   sine_cosine, negative_inverse,
+                    solve_by_inverse, set_accelerations, correct,      increments, decay};
 
 }  // namespace maupertuis::packed::MAUP_ENGINE

@@ -68,47 +68,45 @@ bool solve_by_inverse(const double* inverse, std::size_t stride, const double* r
   return finite;
 }
 
+void set_accelerations(const Tables& tables, int stage, const double* solution, std::size_t unknowns) {
+  double* const next = tables.rows + static_cast<std::size_t>(stage + 2) * tables.stride;
+  // A division: the error of a rounded reciprocal would be the same in every step and so add up.
+  for (std::size_t i = 0; i < unknowns; i += lanes) save(next + i, load(solution + i) / all((stage + 1.0) * (stage + 2.0)));
+}
+
 /// What W directions add.
 template <std::size_t W>
-void correct_from(double* out, const double* tangents, std::size_t stride, const double* factors, std::size_t size) {
+void add_directions(double* out, std::size_t size, const double* tangents, std::size_t stride, const double* weights, double factor) {
   for (std::size_t i = 0; i < size; i += lanes) {
-    Vector even = load(out + i), odd = all(0);
-    for (std::size_t d = 0; d + 1 < W; d += 2) {
-      even += all(factors[d]) * load(tangents + d * stride + i);
-      odd += all(factors[d + 1]) * load(tangents + (d + 1) * stride + i);
+    const auto term = [&](std::size_t d) { return all(weights[d]) * load(tangents + d * stride + i); };
+    Vector even = term(0);
+    for (std::size_t d = 2; d < W; d += 2) even += term(d);
+    if constexpr (W > 1) {
+      Vector odd = term(1);
+      for (std::size_t d = 3; d < W; d += 2) odd += term(d);
+      even += odd;
     }
-    if constexpr (W % 2 == 1) even += all(factors[W - 1]) * load(tangents + (W - 1) * stride + i);
-    save(out + i, even + odd);
+    save(out + i, load(out + i) + all(factor) * even);
   }
 }
 
-void combine(double* out, const double* columns, std::size_t stride, const double* factors, std::size_t count, std::size_t size) {
-  while (count > 0) {
-    const auto block = [&]<std::size_t W>() {
-      correct_from<W>(out, columns, stride, factors, size);
-      columns += W * stride, factors += W, count -= W;
-    };
-    if (count >= 8) block.template operator()<8>();
-    else if (count >= 4) block.template operator()<4>();
-    else if (count >= 2) block.template operator()<2>();
-    else block.template operator()<1>();
-  }
-}
-
-void correct_by_matrix(const Tables& tables, int stage, const TangentMatrix& tangents, const double* solution) {
-  const double by_velocity = stage + 1.0, by_position = (stage + 1.0) * (stage + 2.0);
+void correct(const Tables& tables, int stage, const TangentMatrix& tangents, const double* weights) {
+  const double factors[3] = {1 / ((stage + 1.0) * (stage + 2.0)), 1 / (stage + 1.0), 1};
   double* const next = tables.rows + static_cast<std::size_t>(stage + 2) * tables.stride;
-  alignas(64) double factors[3][most_inverted];
-  for (std::size_t d = 0; d < tangents.directions; d += lanes) {
-    const Vector a = load(solution + d);
-    // A division: the error of a rounded reciprocal would be the same in every step and so add up.
-    save(next + d, a / all(by_position));
-    save(factors[0] + d, a * all(1 / by_position)), save(factors[1] + d, a * all(1 / by_velocity)), save(factors[2] + d, a);
-  }
   Slot first = tangents.first;
   for (std::size_t lag = 0; lag <= 2; ++lag) {
-    combine(next - lag * tables.stride + first, tangents.values + first, tangents.stride, factors[lag], tangents.directions,
-            tangents.end[lag] - first);
+    double* const out = next - lag * tables.stride + first;
+    for (std::size_t d = 0; d < tangents.directions;) {
+      const auto block = [&]<std::size_t W>() {
+        add_directions<W>(out, tangents.end[lag] - first, tangents.values + d * tangents.stride + first, tangents.stride, weights + d, factors[lag]);
+        d += W;
+      };
+      const std::size_t left = tangents.directions - d;
+      if (left >= 8) block.template operator()<8>();
+      else if (left >= 4) block.template operator()<4>();
+      else if (left >= 2) block.template operator()<2>();
+      else block.template operator()<1>();
+    }
     first = tangents.end[lag];
   }
 }
