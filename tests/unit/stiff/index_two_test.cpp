@@ -3,6 +3,8 @@
 #include "integrator/stiff/index_two_system.hpp"
 #include "simulation/function_kernels.hpp"
 
+#include <maupertuis/motion_kernel.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>

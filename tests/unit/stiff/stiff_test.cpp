@@ -1,6 +1,7 @@
 #include "../model_text.hpp"
 #include "simulation/function_kernels.hpp"
 
+#include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/stiff.hpp>
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 #include "simulation/function_kernels.hpp"
 
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/variational.hpp>
 
 #include <cmath>
