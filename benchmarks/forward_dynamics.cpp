@@ -84,7 +84,8 @@ void interpreted_arm(benchmark::State& state) { arm(state, Backend::Interpreter)
 void compiled_arm(benchmark::State& state) { arm(state, Backend::Compiled); }
 
 BENCHMARK(interpreted_chain)->Name("chain")->Arg(1)->Arg(2)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100)->Arg(200)->Arg(500)->Arg(1000)->Unit(benchmark::kNanosecond);
-BENCHMARK(compiled_chain)->Arg(1)->Arg(2)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100)->Arg(200)->Arg(500)->Unit(benchmark::kNanosecond);
+// Longer ones are declined.
+BENCHMARK(compiled_chain)->Arg(1)->Arg(2)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100)->Arg(200)->Unit(benchmark::kNanosecond);
 BENCHMARK(interpreted_arm)->Name("arm")->Unit(benchmark::kNanosecond);
 BENCHMARK(compiled_arm)->Unit(benchmark::kNanosecond);
 

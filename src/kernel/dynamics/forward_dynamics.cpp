@@ -29,7 +29,7 @@ constexpr double sound = 64;
 /// Beyond, a full matrix allocates.
 constexpr std::size_t most_full = 8;
 
-/// About what compiled code saves in a call, and what making it costs; docs/design/forward_dynamics.md has the measurements.
+/// About what compiled code saves in a call, and what making it costs: estimates, of the right order only.
 constexpr double seconds_saved_a_term = 1e-9, seconds_of_compiler = 0.015, seconds_of_compiler_a_term = 3e-5;
 
 bool same_plan(const std::vector<sparse::Pivot>* pivots, const std::optional<std::vector<sparse::Pivot>>& others) {
