@@ -51,6 +51,20 @@ std::string plain(const std::string& scientific) {
   return (negative ? "-" : "") + digits;
 }
 
+/// One digit, "d e±xx": Boost takes 0 places as "all of them".
+std::string one_digit(const Widest& value) {
+  const std::string many = value.str(17, std::ios_base::scientific);
+  const std::size_t e = many.find('e');
+  int exponent = std::stoi(many.substr(e + 1));
+  long digit = std::lround(std::stod(many.substr(0, e)));
+  if (std::labs(digit) == 10) digit /= 10, ++exponent;
+  return fmt::format("{}e{}", digit, exponent);
+}
+
+std::string with_digits(const Widest& value, int digits) {
+  return digits == 1 ? one_digit(value) : value.str(digits - 1, std::ios_base::scientific);
+}
+
 }  // namespace
 
 AgreedNumber agreed_number(const std::string& rough, const std::string& fine, int most_digits) {
@@ -67,7 +81,7 @@ AgreedNumber agreed_number(const std::string& rough, const std::string& fine, in
   }
   if (digits < 1) return {"0", 0, out.difference};
   out.digits = digits;
-  out.text = plain(value.str(digits - 1, std::ios_base::scientific));
+  out.text = plain(with_digits(value, digits));
   return out;
 }
 

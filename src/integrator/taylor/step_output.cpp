@@ -27,6 +27,7 @@ void TaylorStepper::Impl::restore_polynomial() {
 /// Where a step may be expanded more than once, the rows of the workspace do not stay.
 void TaylorStepper::Impl::keep_polynomial() {
   begin = t;
+  dense_turns = turns;
   set_sides(probe);
   if (expands_once()) dense.refer_to(work.coordinate(0), work.row_stride());
   else dense.copy(work.coordinate(0), work.row_stride());
@@ -43,11 +44,12 @@ void TaylorStepper::Impl::record_start() const {
   start_sample.t = begin.hi;
   start_sample.q.resize(n), start_sample.v.resize(n), start_sample.a.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    start_sample.q[i] = dense.q[i].hi, start_sample.v[i] = dense.v[i].hi;
+    start_sample.q[i] = dense_turns.unwound(i, dense.q[i]), start_sample.v[i] = dense.v[i].hi;
     start_sample.a[i] = work.acceleration(i);
   }
   start_sample.observables.resize(kernel.observables());
   for (std::size_t i = 0; i < kernel.observables(); ++i) start_sample.observables[i] = work.observable(i);
+  dense_turns.add_to(start_sample.observables);
   start_sample.multipliers.resize(kernel.constraints());
   multipliers_of(work, start_sample.multipliers);
   start_sample.integrals.resize(integrals.size());
@@ -71,6 +73,8 @@ Sample TaylorStepper::Impl::sample(double time) const {
   if (ok) multipliers_of(probe, result.multipliers);
   for (std::size_t i = 0; i < kernel.observables(); ++i)
     result.observables.push_back(ok ? probe.observable(i) : nothing);
+  dense_turns.add_to(result.observables);
+  for (std::size_t i = 0; i < n; ++i) result.q[i] = dense_turns.unwound(i, position[i]);
   return result;
 }
 
@@ -79,7 +83,7 @@ void TaylorStepper::state(double t, std::span<double> q, std::span<double> v) co
   const Impl& s = *impl_;
   std::vector<Compensated> position(s.n), velocity(s.n), integral(s.integrals.size());
   s.dense.advance(s.tau_of(t), position, velocity, integral);
-  for (std::size_t i = 0; i < s.n; ++i) q[i] = position[i].hi, v[i] = velocity[i].hi;
+  for (std::size_t i = 0; i < s.n; ++i) q[i] = s.dense_turns.unwound(i, position[i]), v[i] = velocity[i].hi;
 }
 
 }  // namespace maupertuis

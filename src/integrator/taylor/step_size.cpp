@@ -115,8 +115,9 @@ StepControl step_control(double tolerance, int order) {
   const double epsilon = std::max(tolerance, rounding_tolerance());
   StepControl control;
   control.order = order > 0 ? std::max(order, 2) : taylor_order(epsilon);
-  // With h = ρ ε^{1/p} the last term kept is ε times the size, the first one left out a sixth of that at rounding level.
-  control.factor = std::exp(std::log(epsilon) / control.order);
+  // With h = ρ (ε/e⁴)^{1/p}, which is their ρ/e² where p follows from ε, the last term kept is ε/55 times the size. The terms left out have one
+  // sign along a motion: at h = ρ ε^{1/p} the energy of a double pendulum grew by 4e-18 a step.
+  control.factor = std::exp((std::log(epsilon) - 4) / control.order);
   return control;
 }
 

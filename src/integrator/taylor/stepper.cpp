@@ -89,6 +89,8 @@ Step TaylorStepper::Impl::step(double bound) {
     return result;
   }
   compile_if_it_pays(bound);
+  if (!expanded && turns.wind(q))
+    for (std::size_t i = 0; i < n; ++i) q_now[i] = q[i].hi;
   if (!std::exchange(expanded, false) && !expand(bound, result)) return result;
   double chosen = restraint * taylor::step_size(work, n, control, length);
   if (const std::size_t m = kernel.constraints(); m > 0)
@@ -132,6 +134,8 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   MAUP_REQUIRE(q.size() == s.n && v.size() == s.n);
   s.t = {t, 0};
   s.run_begin = t;
+  s.turns.forget();
+  s.dense_turns.forget();
   for (std::size_t i = 0; i < s.n; ++i) {
     s.q[i] = {q[i], 0};
     s.v[i] = {v[i], 0};
@@ -165,7 +169,12 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
 Step TaylorStepper::step(double bound) { return impl_->step(bound); }
 
 double TaylorStepper::time() const { return impl_->t.hi; }
-std::span<const double> TaylorStepper::q() const { return impl_->q_now; }
+std::span<const double> TaylorStepper::q() const {
+  const Impl& s = *impl_;
+  s.q_unwound.resize(s.n);
+  for (std::size_t i = 0; i < s.n; ++i) s.q_unwound[i] = s.turns.unwound(i, s.q[i]);
+  return s.q_unwound;
+}
 std::span<const double> TaylorStepper::v() const { return impl_->v_now; }
 std::size_t TaylorStepper::steps() const { return impl_->steps; }
 std::size_t TaylorStepper::switches() const { return impl_->switches; }

@@ -2,6 +2,7 @@
 #include "integrator/dense_output/dense_output.hpp"
 #include "integrator/taylor/step_size.hpp"
 #include "integrator/taylor/switches.hpp"
+#include "integrator/taylor/turns.hpp"
 
 #include <maupertuis/integrator.hpp>
 
@@ -12,7 +13,7 @@ namespace maupertuis {
 struct TaylorStepper::Impl {
   Impl(const Kernel& k, std::span<const double> parameters, const TaylorOptions& o)
       : kernel(k), options(o), control(taylor::step_control(o.tolerance, o.order)), work(k, control.order),
-        probe(k, 1), n(k.freedoms()), switch_state(k.switches().size()), event_state(k.events()) {
+        probe(k, 1), n(k.freedoms()), turns(k), dense_turns(k), switch_state(k.switches().size()), event_state(k.events()) {
     work.set_parameters(parameters);
     probe.set_parameters(parameters);
     dense.resize(n, k.integrands(), control.order + 1);
@@ -70,6 +71,8 @@ struct TaylorStepper::Impl {
   std::vector<double> dq, dv;            // [n] back to the constraints
   double constraint_residual = 0;
   DenseOutput dense;
+  taylor::Turns turns, dense_turns;      // of q, and of the last step
+  mutable std::vector<double> q_unwound; // [n]
   std::vector<taylor::Watched> switch_state, event_state;
   bool first = true;                     // no step made yet
   bool expanded = false;                 // the workspace holds the motion through the present state already

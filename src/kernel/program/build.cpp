@@ -1,5 +1,6 @@
 #include "kernel/program/lowering.hpp"
 #include "kernel/program/program.hpp"
+#include "kernel/program/winding.hpp"
 
 #include <maupertuis/require.hpp>
 
@@ -70,6 +71,7 @@ Kernel build_kernel(const KernelSource& source) {
   program->switches = std::move(lowering.switches);
   for (const Expr& q : source.coordinates) program->coordinate_names.push_back(q.name());
   for (const Expr& p : source.parameters) program->parameter_names.push_back(p.name());
+  program->winding = winding_of(*program);
   return Kernel(std::move(program));
 }
 
@@ -80,6 +82,7 @@ std::size_t Kernel::observables() const { return program_->observables.size(); }
 std::size_t Kernel::events() const { return program_->events.size(); }
 std::size_t Kernel::integrands() const { return program_->integrands.size(); }
 std::span<const SwitchFunction> Kernel::switches() const { return program_->switches; }
+const Winding& winding(const Kernel& kernel) { return kernel.program().winding; }
 const std::string& Kernel::coordinate_name(std::size_t index) const { return program_->coordinate_names.at(index); }
 const std::string& Kernel::constraint_name(std::size_t index) const { return program_->constraint_names.at(index); }
 std::string Kernel::print() const { return maupertuis::print(*program_); }

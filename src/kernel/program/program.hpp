@@ -1,6 +1,7 @@
 #pragma once
 #include <maupertuis/kernel.hpp>
 #include <maupertuis/rational.hpp>
+#include <maupertuis/winding.hpp>
 
 #include <array>
 #include <cstdint>
@@ -113,6 +114,7 @@ struct Program {
   std::vector<Slot> switch_slots;         // [switches]
   std::vector<Slot> events, observables, integrands;
 
+  Winding winding;
   std::vector<SwitchFunction> switches;
   std::vector<std::string> coordinate_names;  // [n]
   std::vector<std::string> constraint_names;  // [m]

@@ -141,6 +141,10 @@ TEST_CASE("no digit is made up") {
   CHECK(agreed_number("1.2345678e0", "1.2345679e0", 30).text == "1.234568");
   CHECK(agreed_number("1.2345678e0", "1.2345679e0", 30).digits == 7);
   CHECK(agreed_number("-3e-40", "2e-40", 30).digits == 0);
+  CHECK(agreed_number("1.2e0", "1.4e0", 30).digits == 1);
+  CHECK(agreed_number("1.2e0", "1.4e0", 30).text == "1");
+  CHECK(agreed_number("-9.61e3", "-9.64e3", 1).text == "-1e4");
+  CHECK(agreed_number("9.61e-3", "9.64e-3", 1).text == "0.01");
   CHECK(agreed_number("-3e-40", "2e-40", 30).text == "0");
   CHECK(agreed_number("0", "0", 30).text == "0");
   CHECK(agreed_number("2.5e0", "2.5e0", 4).text == "2.500");

@@ -1,0 +1,43 @@
+#include "integrator/taylor/turns.hpp"
+
+#include <cmath>
+
+namespace maupertuis::taylor {
+namespace {
+
+/// 2π = high + low, exact to 2⁻¹⁰⁷.
+constexpr double high = 6.283185307179586, low = 2.4492935982947064e-16;
+
+/// q + 2π count.
+Compensated turned(Compensated q, double count) {
+  const double product = count * high;
+  q.add(product);
+  q.add(std::fma(count, high, -product) + count * low);
+  return q;
+}
+
+}  // namespace
+
+bool Turns::wind(std::span<Compensated> q) {
+  bool any = false;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    if (!(std::abs(q[i].hi) > high) || !winding_->coordinates[i]) continue;
+    const double count = std::nearbyint(q[i].hi / high);
+    q[i] = turned(q[i], -count);
+    counts_[i] += count;
+    any = true;
+  }
+  return any;
+}
+
+double Turns::unwound(std::size_t i, const Compensated& q) const { return counts_[i] == 0 ? q.hi : turned(q, counts_[i]).hi; }
+
+void Turns::add_to(std::span<double> observables) const {
+  for (std::size_t k = 0; k < observables.size(); ++k) {
+    double turns = 0;
+    for (const TurnGain& gain : winding_->observables[k]) turns += gain.turns * counts_[gain.coordinate];
+    if (turns != 0) observables[k] = turned({observables[k], 0}, turns).hi;
+  }
+}
+
+}  // namespace maupertuis::taylor
