@@ -50,7 +50,7 @@ constexpr std::array entries{
               "", ""},
     CodeEntry{"W0703", "the run was carried out without compiled code",
               "--backend compiled asks for machine code, which the module with LLVM makes. It may be missing, belong to "
-              "another build, or not do this model: one with constraints, a very large one, or a method other than "
+              "another build, or not do this: a very large model, or a method other than "
               "Taylor's. The results of the interpreter are the same to rounding, they only take longer.",
               "", ""},
     CodeEntry{"N0704", "compiled code would have paid for this run, and is not here",

@@ -9,7 +9,8 @@ namespace maupertuis::compiled {
 /// What writes the code. Its number is part of the key of the cache.
 enum class Emitter : std::uint32_t {
   SelfTest = 0,  // source: none. `self_test`: void(const double* x, double* y), y_i = √(sin²x_i + x_i cos²x_i), [width] each
-  Packed = 1,    // source: packed::PackedProgram. `expand`: packed::CompiledExpand
+  Packed = 1,    // source: packed::PackedProgram. `expand`: packed::CompiledExpand; or `stage` and `ahead`:
+                 // packed::CompiledStage, `tangents`: packed::CompiledTangents
   Lanes = 2,     // source: Program. `expand`: lanes::Expand
   StraightLines = 3,  // source: std::vector<straight::StraightLine>. `line0`, `line1`, …: see straight::Code
 };

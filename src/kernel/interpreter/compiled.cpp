@@ -21,7 +21,10 @@ std::pair<CompiledCode, CompileReport> compile(const packed::PackedProgram& prog
   if (options.cache) cache.emplace(compiled::ObjectCache::usual_folder());
   compiled::Compiled made = compiled::compile(request, cache ? &*cache : nullptr);
   CompiledCode code;
-  if (made.code) code = {reinterpret_cast<packed::CompiledExpand>(made.code->find("expand")), made.code};
+  if (made.code)
+    code = {reinterpret_cast<packed::CompiledExpand>(made.code->find("expand")), reinterpret_cast<packed::CompiledStage>(made.code->find("stage")),
+            reinterpret_cast<packed::CompiledStage>(made.code->find("ahead")),
+            reinterpret_cast<packed::CompiledTangents>(made.code->find("tangents")), made.code};
   return {std::move(code), {.compiled = made.code != nullptr, .trouble = std::move(made.trouble),
                             .cache_trouble = std::move(made.cache_trouble), .from_cache = made.from_cache, .seconds = made.seconds}};
 }

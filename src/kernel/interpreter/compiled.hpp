@@ -9,9 +9,11 @@
 
 namespace maupertuis::interpreter {
 
-/// Machine code for one program, row stride and order; `memory` keeps it there.
+/// Machine code for one program, row stride and order; `memory` keeps it there. Either for the whole expansion, or rolled: for one stage.
 struct CompiledCode {
   packed::CompiledExpand expand = nullptr;
+  packed::CompiledStage stage = nullptr, ahead = nullptr;
+  packed::CompiledTangents tangents = nullptr;
   std::shared_ptr<const void> memory;
 };
 

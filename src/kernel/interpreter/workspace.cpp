@@ -3,6 +3,7 @@
 #include "kernel/interpreter/interpreter.hpp"
 #include "kernel/interpreter/lifted_solve.hpp"
 #include "kernel/jet/bordered_solver.hpp"
+#include "kernel/packed/convolutions.hpp"
 #include "kernel/packed/engine.hpp"
 
 #include <maupertuis/require.hpp>
@@ -47,10 +48,13 @@ struct KernelWorkspace::Impl {
   void bind();
   void compute_constants();
   KernelStatus run(double t, std::span<const double> q, std::span<const double> v, int stages);
+  void run_stage(int stage);
+  void renew_blocks(int stage, int stages);
   void run_along(int stage);
   bool outputs_follow_accelerations() const;
   bool run_compiled(int stages);
   void adopt(interpreter::CompiledCode code);
+  void find_tangents(std::size_t directions);
   void sweep_all();
   void sweep_block(std::size_t first);
   KernelStatus factor();
@@ -95,6 +99,7 @@ struct KernelWorkspace::Impl {
   std::size_t singular = 0, contradicting = 0;
   int last_stage = 0;
   interpreter::CompiledCode compiled;
+  interpreter::Doubles sums;         // of rolled code: [convolutions × rolled_group × 8]
   packed::CompiledArguments arguments;
 };
 
@@ -140,6 +145,11 @@ void KernelWorkspace::Impl::compute_constants() {
   stale = false;
 }
 
+void KernelWorkspace::Impl::find_tangents(std::size_t directions) {
+  if (!compiled.tangents) return engine.tangents(tables, tangent.data(), memory.stride, directions);
+  for (std::size_t d = 0; d < directions; ++d) compiled.tangents(&arguments, tangent.data() + d * memory.stride);
+}
+
 /// The tangents of all slots in the direction of each unknown.
 void KernelWorkspace::Impl::sweep_all() {
   for (std::size_t d = 0; d < unknowns; ++d) {
@@ -147,7 +157,7 @@ void KernelWorkspace::Impl::sweep_all() {
     std::fill_n(row, padded_unknowns(), 0.0);
     row[d] = 1;
   }
-  engine.tangents(tables, tangent.data(), memory.stride, unknowns);
+  find_tangents(unknowns);
 }
 
 /// Those of the residual in 8 directions.
@@ -263,7 +273,7 @@ void KernelWorkspace::Impl::correct(int stage) {
   if (by_matrix) return engine.correct(tables, stage, tangents, solution.data());
   if (!by_lifting) {
     std::copy(unknown.begin(), unknown.end(), tangent.begin());
-    engine.tangents(tables, tangent.data(), memory.stride, 1);
+    find_tangents(1);
   }
   packed::TangentMatrix direction = tangents;
   direction.values = by_lifting ? lifted->tangents() : tangent.data();
@@ -283,7 +293,7 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   if (run_compiled(stages)) return KernelStatus::Ok;
   for (int stage = program.first_stage; stage < stages; ++stage) {
     if (stage >= 0) std::fill_n(memory.row(stage + 2), unknowns, 0.0);
-    engine.run_stage(tables, stage);
+    run_stage(stage);
     if (stage == 0)
       if (const auto status = factor(); status != KernelStatus::Ok) return status;
     if (stage >= 0) {
@@ -292,10 +302,22 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
       engine.set_accelerations(tables, stage, solution.data(), unknowns);
       if (!alone) correct(stage);
     }
-    if (stage + 1 < stages) engine.renew_blocks(tables, stage);
+    renew_blocks(stage, stages);
     run_along(stage);
   }
   return KernelStatus::Ok;
+}
+
+/// Rolled code has no stages before 1.
+void KernelWorkspace::Impl::run_stage(int stage) {
+  if (compiled.stage && stage >= 1) compiled.stage(&arguments, stage);
+  else engine.run_stage(tables, stage);
+}
+/// What no stage follows needs no copies, and no sums.
+void KernelWorkspace::Impl::renew_blocks(int stage, int stages) {
+  if (stage + 1 >= stages) return;
+  if (compiled.stage && stage >= 0) compiled.ahead(&arguments, stage);
+  else engine.renew_blocks(tables, stage);
 }
 
 /// What follows the solution of a stage.
@@ -338,6 +360,12 @@ std::size_t KernelWorkspace::row_stride() const { return impl_->memory.stride; }
 /// What compiled code is given.
 void KernelWorkspace::Impl::adopt(interpreter::CompiledCode code) {
   compiled = std::move(code);
+  if (compiled.stage) {
+    sums.assign(packed::count_convolutions(packed) * packed::rolled_group * packed::lanes, 0.0);
+    arguments = {.rows = memory.rows.data(), .coefficients = lane_coefficients.data(), .sums = sums.data(), .value = tables.scalar.value,
+                 .tangent = tables.scalar.tangent, .context = tables.scalar.context};
+    return;
+  }
   bordered.resize(unknowns * unknowns);
   arguments = {.rows = memory.rows.data(), .coefficients = lane_coefficients.data(),
                .term_coefficients = memory.coefficients.data(), .constants = memory.constants.data(), .bordered = bordered.data(),
@@ -349,9 +377,8 @@ void KernelWorkspace::Impl::adopt(interpreter::CompiledCode code) {
 CompileReport KernelWorkspace::compile(const CompileOptions& options) {
   Impl& s = *impl_;
   if (s.lifted) s.lifted->compile(options);
-  if (!s.by_matrix) return {false, "it has too many unknowns", {}, false, 0};
   auto [code, report] = interpreter::compile(s.packed, s.order, s.memory.stride, options);
-  if (code.expand) s.adopt(std::move(code));
+  if (code.memory) s.adopt(std::move(code));
   return report;
 }
 

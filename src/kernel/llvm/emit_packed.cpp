@@ -1,5 +1,5 @@
-#include "kernel/llvm/emit_packed.hpp"
-
+#include "kernel/llvm/emitters.hpp"
+#include "kernel/llvm/rolled_emitter.hpp"
 #include "kernel/llvm/straight_emitter.hpp"
 
 namespace maupertuis::llvm_backend {
@@ -9,8 +9,10 @@ using packed::PackedProgram;
 
 namespace {
 
-constexpr std::size_t most_unknowns = 8;
-constexpr std::size_t most_operations = 40'000;
+/// Of straight-line code.
+constexpr std::size_t most_unknowns = 8, most_operations = 40'000;
+/// Of rolled code, whose compilation takes about 1 ms a pack.
+constexpr std::size_t most_packs = 3000;
 
 /// Vector operations that the sums over orders take.
 std::size_t operations(const PackedProgram& program, int order) {
@@ -23,16 +25,21 @@ std::size_t operations(const PackedProgram& program, int order) {
   return 3 * convolutions * p * p / 2 + others * p;
 }
 
-}  // namespace
-
-bool can_emit_packed(const PackedProgram& program, int order) {
+/// Whether all stages can be written out one after the other.
+bool can_be_straight(const PackedProgram& program, int order) {
   const Program& p = program.program;
   const bool has_select = std::any_of(p.instructions.begin(), p.instructions.end(), [](const Instruction& i) { return i.op == Op::Select; });
   return p.unknowns == p.freedoms && p.unknowns <= most_unknowns && !has_select && operations(program, order) <= most_operations;
 }
 
-void emit_packed(llvm::Module& module, const PackedProgram& program, std::size_t stride, int order) {
-  StraightEmitter(module, program, stride, order).run();
+}  // namespace
+
+void emit_packed(Emission& out, const compiled::Request& request) {
+  const auto& program = *static_cast<const PackedProgram*>(request.source);
+  if (request.effort > 0 && can_be_straight(program, request.order))
+    return StraightEmitter(*out.module, program, request.stride, request.order).run();
+  if (program.packs.size() > most_packs) throw Declined("the program is too large to be compiled");
+  RolledEmitter(out, program, request.stride).run();
 }
 
 }  // namespace maupertuis::llvm_backend

@@ -16,5 +16,7 @@ struct Declined : std::runtime_error {
 void emit_self_test(Emission& out, const compiled::Request& request);
 void emit_lanes(Emission& out, const compiled::Request& request);
 void emit_straight_lines(Emission& out, const compiled::Request& request);
+/// Straight-line code where the program is small and runs long, else rolled code.
+void emit_packed(Emission& out, const compiled::Request& request);
 
 }  // namespace maupertuis::llvm_backend

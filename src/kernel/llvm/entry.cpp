@@ -1,5 +1,4 @@
 #include "kernel/llvm/emission.hpp"
-#include "kernel/llvm/emit_packed.hpp"
 #include "kernel/llvm/emitters.hpp"
 
 #include <llvm/Config/llvm-config.h>
@@ -20,18 +19,12 @@ using compiled::Reply;
 using compiled::Request;
 using Clock = std::chrono::steady_clock;
 
-void emit_packed_program(Emission& out, const Request& request) {
-  const auto& program = *static_cast<const packed::PackedProgram*>(request.source);
-  if (!can_emit_packed(program, request.order)) throw Declined("a program with constraints or of too many operations");
-  emit_packed(*out.module, program, request.stride, request.order);
-}
-
 void emit(Emission& out, const Request& request) {
   switch (request.emitter) {
     case Emitter::SelfTest: return emit_self_test(out, request);
     case Emitter::Lanes: return emit_lanes(out, request);
     case Emitter::StraightLines: return emit_straight_lines(out, request);
-    case Emitter::Packed: return emit_packed_program(out, request);
+    case Emitter::Packed: return emit_packed(out, request);
     default: break;
   }
   throw Declined("a kind of code that this module does not emit");

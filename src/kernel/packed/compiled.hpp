@@ -5,6 +5,9 @@
 /// What compiled code of a packed program is given, and what it calls. Plain, since both sides of a module's border read it.
 namespace maupertuis::packed {
 
+/// Rolled code adds up the products of so many stages at once.
+inline constexpr int rolled_group = 4;
+
 struct CompiledArguments {
   double* rows = nullptr;                // [orders][stride]; q, q̇ and the leaves are set
   const double* coefficients = nullptr;  // of PackedProgram::coefficients
@@ -14,9 +17,21 @@ struct CompiledArguments {
   /// Engine::sine_cosine
   void (*sincos)(const double* x, double* out, int count) = nullptr;
   double (*elementary)(std::uint8_t function, double x, double y) = nullptr;
+  double* sums = nullptr;                // rolled: [convolutions][rolled_group][8], aligned to 64 bytes
+  /// Rolled: ScalarRules.
+  void (*value)(void* context, std::uint32_t instruction, int order) = nullptr;
+  void (*tangent)(void* context, std::uint32_t instruction, double* tangents) = nullptr;
+  void* context = nullptr;
 };
 
-/// All stages of section Dynamics. 0: done; else the reference has to repeat it.
+/// Straight-line code: all stages of section Dynamics. 0: done; else the reference has to repeat it.
 using CompiledExpand = int (*)(const CompiledArguments*);
+
+/// Rolled code, one stage ≥ 1 a call. `stage`: as Engine::run_stage. `ahead`: as Engine::renew_blocks, and sums for the stages that follow; after each
+/// stage ≥ 0 in turn.
+using CompiledStage = void (*)(const CompiledArguments*, std::int64_t stage);
+
+/// Rolled code: as Engine::tangents.
+using CompiledTangents = void (*)(const CompiledArguments*, double* tangent);
 
 }  // namespace maupertuis::packed

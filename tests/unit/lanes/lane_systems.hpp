@@ -131,7 +131,7 @@ void add_friction(Systems& list) {
   s.source.residual = {s.acceleration("x") + c * (s.dot(x) - s.dot(y)) + sin(x), 2 * s.acceleration("y") + c * (s.dot(y) - s.dot(x)) + sin(y)};
 }
 
-Systems systems() {
+[[maybe_unused]] Systems systems() {
   Systems list;
   add_friction(list);
   add_functions(list);
@@ -193,12 +193,12 @@ Expansion expand(const Kernel& kernel, const std::vector<Motion>& motions, std::
   return expand(kernel, motions, interpreted_lanes(kernel, width, set));
 }
 
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+[[maybe_unused]] bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
 /// Rounding errors, which the solve magnifies by as much as the mass matrix is ill-conditioned.
-void check_against_reference(const Kernel& kernel, const Motion& m, const std::vector<double>& found, double quality) {
+[[maybe_unused]] void check_against_reference(const Kernel& kernel, const Motion& m, const std::vector<double>& found, double quality) {
   KernelWorkspace work(kernel, order);
   work.set_parameters(m.parameters);
   REQUIRE(work.expand(m.t, m.q, m.v) == KernelStatus::Ok);

@@ -1,0 +1,187 @@
+#include "kernel/llvm/rolled_emitter.hpp"
+
+#include "kernel/packed/compiled.hpp"
+
+#include <algorithm>
+
+/// Sums of products that later stages will want. Within loops over the convolutions of a class every order is known but for the stage: with D_a = lag − lag of a
+/// (D_b likewise), at the beginning of stage s, m = s + 2 − lag, the operand a is final up to order m − 1 + D_a.
+namespace maupertuis::llvm_backend {
+
+using llvm::Value;
+using packed::lanes;
+using packed::rolled_group;
+
+static constexpr std::int64_t vector_bytes = 8 * std::int64_t{lanes};
+static constexpr std::int64_t sums_bytes = rolled_group * vector_bytes;
+
+/// After stage s: s + 1 begins a group, or is one that is added up alone, or is given what s has made final.
+void RolledEmitter::ahead() {
+  auto& b = out_.b;
+  open_stage("ahead");
+  renew_blocks();
+  llvm::Function* const function = b.GetInsertBlock()->getParent();
+  const auto block = [&] { return llvm::BasicBlock::Create(out_.context, "", function); };
+  llvm::BasicBlock *const alone = block(), *const grouped = block(), *const done = block();
+  b.CreateCondBr(b.CreateICmpSLT(stage_, b.getInt64(rolled_group)), alone, grouped);
+
+  b.SetInsertPoint(alone);
+  add_up_alone();
+  b.CreateBr(done);
+
+  b.SetInsertPoint(grouped);
+  llvm::BasicBlock* const begin = block();
+  llvm::SwitchInst* const position = b.CreateSwitch(b.CreateAnd(stage_, b.getInt64(rolled_group - 1)), begin);
+  b.SetInsertPoint(begin);
+  begin_group();
+  b.CreateBr(done);
+  for (int passed = 1; passed < rolled_group; ++passed) {
+    llvm::BasicBlock* const passing = block();
+    position->addCase(b.getInt64(static_cast<std::uint64_t>(passed)), passing);
+    b.SetInsertPoint(passing);
+    pass_on(passed);
+    b.CreateBr(done);
+  }
+  b.SetInsertPoint(done);
+  out_.end_function();
+}
+
+/// Copies of what is final now.
+void RolledEmitter::renew_blocks() {
+  for (const Block& block : p_.blocks) {
+    if (block.direct) continue;
+    const int ahead = 2 - block.lag;
+    Value* const values = values_of(block, row(ahead));
+    save(block.weighted ? out_.multiply(values, real(stage_plus(ahead))) : values, slot_at(row(ahead), block.first));
+  }
+}
+
+/// A loop over the convolutions of each class. `body` gets the addresses of their operands at order 0 and of their sums.
+void RolledEmitter::each_convolution(const std::function<void(const Class&, Value*, Value*, Value*)>& body) {
+  auto& b = out_.b;
+  for (const auto& [key, members] : classes_) {
+    Value* const table = offsets(members);
+    const std::size_t first = sums_of_[members.front()];
+    Value* const sums = at(sums_, static_cast<std::int64_t>(first) * sums_bytes);
+    out_.loop(b.getInt64(0), b.getInt64(members.size()), {}, [&](Value* i, const std::vector<Value*>&) {
+      Value* const entry = out_.at(table, b.CreateShl(i, 3));
+      const auto operand = [&](std::int64_t place) {
+        return out_.at(rows_, b.CreateZExt(b.CreateAlignedLoad(b.getInt32Ty(), at(entry, place), llvm::Align(4)), b.getInt64Ty()));
+      };
+      body(key, operand(0), operand(4), out_.at(sums, b.CreateMul(i, b.getInt64(sums_bytes))));
+      return std::vector<Value*>{};
+    });
+  }
+}
+
+/// Where the operands begin in a row, in bytes.
+llvm::GlobalVariable* RolledEmitter::offsets(const std::vector<std::size_t>& members) {
+  std::vector<std::uint32_t> bytes;
+  for (const std::size_t i : members)
+    for (const std::uint32_t block : {convolutions_[i].a, convolutions_[i].b}) bytes.push_back(8 * p_.blocks[block].first);
+  llvm::Constant* const values = llvm::ConstantDataArray::get(out_.context, bytes);
+  return new llvm::GlobalVariable(*out_.module, values->getType(), true, llvm::GlobalValue::PrivateLinkage, values);
+}
+
+/// Of the stage s + 1: Σ a_j b_{m−j} over all that is final.
+void RolledEmitter::add_up_alone() {
+  auto& b = out_.b;
+  Value* const position = b.CreateShl(b.CreateAnd(stage_, b.getInt64(rolled_group - 1)), 6);
+  each_convolution([&](const Class& c, Value* x, Value* y, Value* sums) {
+    const auto [lag, a_ahead, b_ahead] = c;
+    Value* const m = stage_plus(3 - lag);
+    Value* const begin = b.getInt64(static_cast<std::uint64_t>(std::max(0, 1 - b_ahead)));
+    Value* const end = b.CreateNSWSub(m, b.getInt64(static_cast<std::uint64_t>(std::max(0, 1 - a_ahead) - 1)), "");
+    const auto row = [&](Value* operand, Value* order) {
+      return load(out_.at(operand, b.CreateNSWMul(order, b.getInt64(static_cast<std::uint64_t>(row_bytes_)))));
+    };
+    const auto total = out_.loop(begin, end, {llvm::Constant::getNullValue(vector_)}, [&](Value* j, const std::vector<Value*>& sum) {
+      return std::vector<Value*>{out_.fma(row(x, j), row(y, b.CreateNSWSub(m, j)), sum[0])};
+    });
+    save(total[0], out_.at(sums, position));
+  });
+}
+
+// ------------------------------------------------------------------------------------------------------------- a group
+
+/// Of the stages s + 1 … s + 4, what is final now.
+void RolledEmitter::begin_group() {
+  each_convolution([&](const Class& c, Value* x, Value* y, Value* sums) { interior(c, x, y, sums); });
+}
+
+/// With m the order of the group's first stage: a_j for 4 ≤ j < m meets b_{m+r−j} of all four stages r, which slide by one from j to j + 1. The
+/// number of such j is 3 − lag beyond a multiple of four.
+void RolledEmitter::interior(const Class& c, Value* x, Value* y, Value* sums) {
+  auto& b = out_.b;
+  const auto [lag, a_ahead, b_ahead] = c;
+  Value* const stride = b.getInt64(static_cast<std::uint64_t>(row_bytes_));
+  Value* const top_a = out_.at(x, b.CreateNSWMul(stage_plus(3 - lag), stride));  // a_m
+  Value* const top_b = out_.at(y, b.CreateNSWMul(stage_plus(3 - lag), stride));
+  const auto from = [&](Value* address, int order) { return load(at(address, order * row_bytes_)); };
+  std::array<Value*, rolled_group> sum{};
+  std::map<int, Value*> low_a, high_b;
+  const auto known = [](std::map<int, Value*>& values, int order, auto&& read) {
+    Value*& value = values[order];
+    if (!value) value = read();
+    return value;
+  };
+  for (int r = 0; r < rolled_group; ++r) {
+    const auto r_ = static_cast<std::size_t>(r);
+    for (int j = std::max(0, 1 + r - b_ahead); j < rolled_group; ++j)
+      sum[r_] = plus(sum[r_], known(low_a, j, [&] { return from(x, j); }), known(high_b, r - j, [&] { return from(top_b, r - j); }));
+    for (int i = std::max(0, 1 + r - a_ahead); i <= r; ++i) sum[r_] = plus(sum[r_], from(top_a, r - i), from(y, i));
+    if (!sum[r_]) sum[r_] = llvm::Constant::getNullValue(vector_);
+  }
+
+  std::array<Value*, rolled_group> window{};
+  for (int r = 0; r < rolled_group; ++r)
+    window[static_cast<std::size_t>(r)] = known(high_b, r - rolled_group, [&] { return from(top_b, r - rolled_group); });
+  // One order j further: a_j from `a`, and the next of b from below `b_at`, which is where window[0] came from.
+  const auto turn = [&](Value* a, Value* b_at, int steps) {
+    for (int u = 0; u < steps; ++u) {
+      Value* const a_j = from(a, u);
+      for (std::size_t r = 0; r < rolled_group; ++r) sum[r] = out_.fma(a_j, window[r], sum[r]);
+      std::copy_backward(window.begin(), window.end() - 1, window.end());
+      window[0] = from(b_at, -(u + 1));
+    }
+  };
+  const int odd = 3 - lag;
+  Value* const a_first = at(x, rolled_group * row_bytes_);
+  Value* const b_first = at(top_b, -rolled_group * row_bytes_);
+  turn(a_first, b_first, odd);
+  std::vector<Value*> carried{at(a_first, odd * row_bytes_), at(b_first, -odd * row_bytes_)};
+  carried.insert(carried.end(), sum.begin(), sum.end());
+  carried.insert(carried.end(), window.begin(), window.end());
+  Value* const turns = b.CreateLShr(b.CreateSub(stage_, b.getInt64(rolled_group)), 2);
+  const auto last = out_.loop(b.getInt64(0), turns, carried, [&](Value*, const std::vector<Value*>& now) {
+    std::copy_n(now.begin() + 2, rolled_group, sum.begin());
+    std::copy_n(now.begin() + 2 + rolled_group, rolled_group, window.begin());
+    turn(now[0], now[1], rolled_group);
+    std::vector<Value*> next{at(now[0], rolled_group * row_bytes_), at(now[1], -rolled_group * row_bytes_)};
+    next.insert(next.end(), sum.begin(), sum.end());
+    next.insert(next.end(), window.begin(), window.end());
+    return next;
+  });
+  for (int r = 0; r < rolled_group; ++r) save(last[2 + static_cast<std::size_t>(r)], at(sums, r * vector_bytes));
+}
+
+/// What stage s, the `passed`-th of its group, has made final, for those that follow in the group: at a distance t the newest a meets b_{t−D_a}.
+void RolledEmitter::pass_on(int passed) {
+  each_convolution([&](const Class& c, Value* x, Value* y, Value* sums) {
+    const auto [lag, a_ahead, b_ahead] = c;
+    Value* const stride = out_.b.getInt64(static_cast<std::uint64_t>(row_bytes_));
+    const auto newest = [&](Value* operand, int its_lag) {
+      return load(out_.at(operand, out_.b.CreateNSWMul(stage_plus(2 - its_lag), stride)));
+    };
+    Value *const a = newest(x, lag - a_ahead), *const b = newest(y, lag - b_ahead);
+    for (int t = 1; passed + t <= rolled_group; ++t) {
+      Value* const place = at(sums, (passed + t - 1) * vector_bytes);
+      Value* sum = load(place);
+      if (t >= a_ahead) sum = out_.fma(a, load(at(y, (t - a_ahead) * row_bytes_)), sum);
+      if (t >= b_ahead) sum = out_.fma(b, load(at(x, (t - b_ahead) * row_bytes_)), sum);
+      save(sum, place);
+    }
+  });
+}
+
+}  // namespace maupertuis::llvm_backend

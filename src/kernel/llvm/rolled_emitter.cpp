@@ -1,0 +1,73 @@
+#include "kernel/llvm/rolled_emitter.hpp"
+
+#include "kernel/packed/compiled.hpp"
+
+namespace maupertuis::llvm_backend {
+
+using llvm::Value;
+using packed::lanes;
+using packed::rolled_group;
+
+RolledEmitter::RolledEmitter(Emission& out, const packed::PackedProgram& program, std::size_t stride)
+    : out_(out), p_(program), program_(program.program), row_bytes_(8 * static_cast<std::int64_t>(stride)),
+      vector_(out.real(static_cast<int>(lanes))) {
+  find_convolutions();
+}
+
+void RolledEmitter::run() {
+  stage();
+  ahead();
+  tangents();
+}
+
+// -------------------------------------------------------------------------------------------------------- convolutions
+
+void RolledEmitter::find_convolutions() {
+  for (const Pack& pack : p_.packs) {
+    first_convolution_.push_back(convolutions_.size());
+    for (const packed::Convolution& c : packed::convolutions_of(p_, pack)) {
+      classes_[{c.lag, c.lag - p_.blocks[c.a].lag, c.lag - p_.blocks[c.b].lag}].push_back(convolutions_.size());
+      convolutions_.push_back(c);
+    }
+  }
+  sums_of_.resize(convolutions_.size());
+  std::size_t place = 0;  // sums of one class lie side by side
+  for (const auto& [key, members] : classes_)
+    for (const std::size_t i : members) sums_of_[i] = place++;
+}
+
+// -------------------------------------------------------------------------------------------------------------- stages
+
+void RolledEmitter::open(const char* name, llvm::Type* second) {
+  auto& b = out_.b;
+  llvm::Function* const function = out_.function(name, {out_.pointer(), second});
+  arguments_ = function->getArg(0);
+  recent_.clear();
+  const auto field = [&](std::size_t offset) {
+    return b.CreateLoad(out_.pointer(), at(arguments_, static_cast<std::int64_t>(offset)));
+  };
+  rows_ = field(offsetof(packed::CompiledArguments, rows));
+  coefficients_ = field(offsetof(packed::CompiledArguments, coefficients));
+  sums_ = field(offsetof(packed::CompiledArguments, sums));
+}
+
+void RolledEmitter::open_stage(const char* name) {
+  open(name, out_.integer());
+  stage_ = out_.b.GetInsertBlock()->getParent()->getArg(1);
+  for (int k = 0; k <= 2; ++k) rows_of_stage_[static_cast<std::size_t>(k)] = row_of(stage_plus(k));
+}
+
+Value* RolledEmitter::row_of(Value* order) {
+  return out_.at(rows_, out_.b.CreateNSWMul(order, out_.b.getInt64(static_cast<std::uint64_t>(row_bytes_))));
+}
+
+void RolledEmitter::stage() {
+  auto& b = out_.b;
+  open_stage("stage");
+  Value* const position = b.CreateAnd(b.CreateSub(stage_, b.getInt64(1)), b.getInt64(rolled_group - 1));
+  sums_of_stage_ = out_.at(sums_, b.CreateShl(position, 6));
+  for (std::size_t i = 0; i < p_.packs.size(); ++i) pack(i);
+  out_.end_function();
+}
+
+}  // namespace maupertuis::llvm_backend

@@ -1,0 +1,126 @@
+#pragma once
+#include "kernel/llvm/emission.hpp"
+#include "kernel/packed/convolutions.hpp"
+
+#include <array>
+#include <functional>
+#include <map>
+#include <vector>
+
+/// A packed program of any size as code whose stages are turns of a loop: `stage` runs the packs of section Dynamics, with their addresses
+/// written out, and `tangents` their derivatives; `ahead` adds up the products that later stages share in coefficients that are final. The solution stays with the
+/// workspace, so that constraints and any number of unknowns are no matter; instructions that stand alone are called back.
+///
+/// Rows of a large program do not fit into the first cache, and a sum over orders reads all of them. So the stages from 1 on form groups of
+/// four, and what the sums of a group have in common is read once. Σ_j a_j b_{m−j} at stage s has three parts:
+///
+///   the *interior*: operands that were final before the group began, for its four stages at once, in a loop over j;
+///   what each stage of the group makes final, added to the sums of those that follow;
+///   the *ends*, a_m b_0 and a_0 b_m, where an operand is of stage s itself.
+///
+/// Stages up to 4 have sums so short that the three would overlap: each is added up by itself. The stages up to 0, with the values of elementary functions,
+/// are the engine's.
+namespace maupertuis::llvm_backend {
+
+class RolledEmitter {
+ public:
+  RolledEmitter(Emission& out, const packed::PackedProgram& program, std::size_t stride);
+  void run();
+
+ private:
+  using Value = llvm::Value;
+  using Block = packed::Block;
+  using Column = packed::Column;
+  using Pack = packed::Pack;
+
+  /// How far the operands of a convolution are ahead of it: lag − lag of a, lag − lag of b. Loops over convolutions are of one class.
+  using Class = std::array<int, 3>;    // lag, and the two differences
+  /// A value in a register, and when it was made.
+  struct Recent {
+    Value* value;
+    std::size_t time;
+  };
+
+  // -------------------------------------------------------------------------------------------- stages (rolled_emitter.cpp)
+  void find_convolutions();
+  void open(const char* name, llvm::Type* second);  // a function of CompiledArguments* and one more
+  void open_stage(const char* name);                // … the stage
+  void stage();
+  Value* row(int ahead) { return rows_of_stage_[static_cast<std::size_t>(ahead)]; }  // of order stage + ahead
+  int ahead_of(const Pack& pack) const { return 2 - pack.lag; }
+  /// Coordinates of the order that is to be found count as 0.
+  bool vanishes(Slot slot, int ahead) const { return slot < program_.unknowns && ahead == 2; }
+
+  // ----------------------------------------------------------------------------------------------- packs (rolled_packs.cpp)
+  void pack(std::size_t index);
+  void keep(const Pack& pack, Value* value);
+  void keep(const Pack& pack, Value* value, Value* row);
+  Value* columns(const Pack& pack);
+  Value* column_values(const Column& column, Value* row, bool is_here);
+  Value* in_register(Slot first) const;
+  Value* values_of(const Block& block, Value* row);
+  Value* coefficients(std::uint32_t first) { return load(at(coefficients_, 8 * std::int64_t{first})); }
+  Value* running_sum(Value* v, bool down);
+  Value* carried(const Pack& pack, Value* sum, Value* row);
+  Value* products(std::size_t index, Value* result);
+  Value* convolution(std::size_t number, bool a_ends, bool b_ends);
+  Value* end(std::uint32_t newest, std::uint32_t first, int lag, Value* sum);
+  Value* newest(std::uint32_t block, int ahead);
+  Value* first(std::uint32_t block) { return load(slot_at(rows_, p_.blocks[block].first)); }
+  void integral(std::size_t index);
+  void quotient(std::size_t index);
+  void square_root(std::size_t index);
+  void scalar(const Pack& pack);
+  bool vanishes(const Block& block, int ahead) const;
+
+  // ----------------------------------------------------------------------------------------- tangents (rolled_tangents.cpp)
+  void tangents();
+  void tangent(const Pack& pack, Value* row);
+  Value* tangent_columns(const Pack& pack, Value* row);
+  Value* tangent_products(const Pack& pack, Value* row, Value* result);
+  Value* change(const Pack& pack, std::uint32_t block, Value* row);
+  Value* at_point(std::uint32_t block) { return values_of(p_.blocks[block], rows_); }
+
+  // ----------------------------------------------------------------------------------------------- ahead (rolled_ahead.cpp)
+  void ahead();
+  void renew_blocks();
+  void each_convolution(const std::function<void(const Class&, Value* a, Value* b, Value* sums)>& body);
+  llvm::GlobalVariable* offsets(const std::vector<std::size_t>& members);
+  void add_up_alone();
+  void begin_group();
+  void interior(const Class& c, Value* a, Value* b, Value* sums);
+  void pass_on(int position);
+
+  // ----------------------------------------------------------------------------------------------------------------- values
+  Value* load(Value* address) { return out_.b.CreateAlignedLoad(vector_, address, llvm::Align(8)); }
+  void save(Value* value, Value* address) { out_.b.CreateAlignedStore(value, address, llvm::Align(8)); }
+  Value* load_one(Value* address) { return out_.b.CreateAlignedLoad(out_.b.getDoubleTy(), address, llvm::Align(8)); }
+  Value* at(Value* address, std::int64_t bytes) { return out_.at(address, bytes); }
+  Value* slot_at(Value* row, Slot slot) { return at(row, 8 * std::int64_t{slot}); }
+  Value* splat(Value* scalar) { return out_.splat(scalar, vector_); }
+  /// A whole number, from a 64-bit integer, in all lanes.
+  Value* real(Value* integer) { return splat(out_.b.CreateSIToFP(integer, out_.b.getDoubleTy())); }
+  Value* stage_plus(int n) { return n == 0 ? stage_ : out_.b.CreateNSWAdd(stage_, out_.b.getInt64(static_cast<std::uint64_t>(n))); }
+  /// x y + sum; a null sum is zero.
+  Value* plus(Value* sum, Value* x, Value* y) { return sum ? out_.fma(x, y, sum) : out_.multiply(x, y); }
+  Value* gather(Value* row, const std::array<Slot, packed::lanes>& slots);
+  Value* row_of(Value* order);
+
+  Emission& out_;
+  const packed::PackedProgram& p_;
+  const Program& program_;
+  std::int64_t row_bytes_;
+  llvm::Type* vector_;                 // of packed::lanes doubles
+  std::vector<packed::Convolution> convolutions_;
+  std::vector<std::size_t> sums_of_;   // [convolutions] places
+  std::vector<std::size_t> first_convolution_;  // [packs]
+  std::map<Class, std::vector<std::size_t>> classes_;
+
+  Value *arguments_ = nullptr, *rows_ = nullptr, *coefficients_ = nullptr, *sums_ = nullptr, *stage_ = nullptr;
+  std::array<Value*, 3> rows_of_stage_{};
+  Value* sums_of_stage_ = nullptr;
+  std::map<Slot, Recent> recent_;      // by first slot
+  std::size_t time_ = 0;
+};
+
+}  // namespace maupertuis::llvm_backend

@@ -1,0 +1,191 @@
+#include "kernel/llvm/rolled_emitter.hpp"
+
+#include "kernel/packed/compiled.hpp"
+
+#include <algorithm>
+
+namespace maupertuis::llvm_backend {
+
+using llvm::Value;
+using packed::lanes;
+
+/// Packs for which a value stays in a register; afterwards it is read from its row.
+static constexpr std::size_t longest_memory = 6;
+
+void RolledEmitter::pack(std::size_t index) {
+  const Pack& pack = p_.packs[index];
+  ++time_;
+  switch (pack.kind) {
+    case Pack::Sum: return keep(pack, products(index, columns(pack)));
+    case Pack::Scan: return keep(pack, carried(pack, running_sum(columns(pack), false), row(ahead_of(pack))));
+    case Pack::ScanDown: return keep(pack, carried(pack, running_sum(columns(pack), true), row(ahead_of(pack))));
+    case Pack::Integral: return integral(index);
+    case Pack::Quotient: return quotient(index);
+    case Pack::SquareRoot: return square_root(index);
+    case Pack::Scalar: return scalar(pack);
+  }
+}
+
+void RolledEmitter::keep(const Pack& pack, Value* value) { keep(pack, value, row(ahead_of(pack))); }
+
+void RolledEmitter::keep(const Pack& pack, Value* value, Value* row) {
+  save(value, slot_at(row, pack.out));
+  recent_[pack.out] = {value, time_};
+}
+
+// ---------------------------------------------------------------------------------------------------------------- sums
+
+/// Terms of one shift first, so that its factor is one product. The leaf 1 has no coefficients beyond order 0.
+Value* RolledEmitter::columns(const Pack& pack) {
+  std::array<Value*, 3> sums{};
+  for (std::uint32_t c = pack.first_column; c < pack.last_column; ++c) {
+    const Column& column = p_.columns[c];
+    const int ahead = ahead_of(pack) + column.shift;
+    const auto is_nothing = [&](Slot slot) { return slot == program_.one || vanishes(slot, ahead); };
+    const bool single = column.kind == Column::Broadcast;
+    if (single ? is_nothing(column.source) : std::all_of(column.sources.begin(), column.sources.end(), is_nothing)) continue;
+    Value*& sum = sums[column.shift];
+    sum = plus(sum, coefficients(column.coefficients), column_values(column, row(ahead), 2 - program_.lags[column.source] == ahead));
+  }
+  Value* const next = sums[1] || sums[2] ? real(stage_plus(ahead_of(pack) + 1)) : nullptr;
+  if (sums[2]) sums[1] = plus(sums[1], real(stage_plus(ahead_of(pack) + 2)), sums[2]);
+  if (sums[1]) return plus(sums[0], next, sums[1]);
+  return sums[0];
+}
+
+/// `is_here`: the row is the one that the packs of now write to.
+Value* RolledEmitter::column_values(const Column& column, Value* row, bool is_here) {
+  if (column.kind == Column::Broadcast) return splat(load_one(slot_at(row, column.source)));
+  if (column.kind == Column::Gather) return gather(row, column.sources);
+  const bool reversed = column.kind == Column::Reversed;
+  const Slot lowest = reversed ? column.source - (lanes - 1) : column.source;
+  Value* const here = is_here ? in_register(lowest) : nullptr;
+  Value* const values = here ? here : load(slot_at(row, lowest));
+  return reversed ? out_.b.CreateShuffleVector(values, {7, 6, 5, 4, 3, 2, 1, 0}) : values;
+}
+
+/// What the packs before have left, if it is still in a register.
+Value* RolledEmitter::in_register(Slot first) const {
+  const auto found = recent_.find(first);
+  return found != recent_.end() && time_ - found->second.time <= longest_memory ? found->second.value : nullptr;
+}
+
+Value* RolledEmitter::gather(Value* row, const std::array<Slot, lanes>& slots) {
+  auto& b = out_.b;
+  if (std::all_of(slots.begin(), slots.end(), [&](Slot s) { return s == slots[0]; })) return splat(load_one(slot_at(row, slots[0])));
+  Value* result = llvm::PoisonValue::get(vector_);
+  for (std::uint64_t lane = 0; lane < lanes; ++lane) result = b.CreateInsertElement(result, load_one(slot_at(row, slots[lane])), lane);
+  return result;
+}
+
+/// Each lane with all lanes before it, or after it.
+Value* RolledEmitter::running_sum(Value* v, bool down) {
+  Value* const zero = llvm::Constant::getNullValue(vector_);
+  if (!v) return zero;
+  for (int distance = 1; distance < static_cast<int>(lanes); distance *= 2) {
+    std::vector<int> places;
+    for (int lane = 0; lane < static_cast<int>(lanes); ++lane) {
+      const int from = down ? lane + distance : lane - distance;
+      places.push_back(from >= 0 && from < static_cast<int>(lanes) ? from : static_cast<int>(lanes));
+    }
+    v = out_.add(v, out_.b.CreateShuffleVector(v, zero, places));
+  }
+  return v;
+}
+
+/// What the pack before has come to; one addition waits for it.
+Value* RolledEmitter::carried(const Pack& pack, Value* sum, Value* row) {
+  const Slot base = pack.carry / lanes * lanes;
+  const auto recent = recent_.find(base);
+  if (recent != recent_.end() && recent->second.time + 1 == time_) {
+    const std::vector<int> lane(lanes, static_cast<int>(pack.carry - base));
+    return out_.add(sum, out_.b.CreateShuffleVector(recent->second.value, lane));
+  }
+  return out_.add(sum, splat(load_one(slot_at(row, pack.carry))));
+}
+
+// ------------------------------------------------------------------------------------------------------------ products
+
+Value* RolledEmitter::products(std::size_t index, Value* result) {
+  const Pack& pack = p_.packs[index];
+  for (std::uint32_t i = pack.first_product; i < pack.last_product; ++i) {
+    Value* const sum = convolution(first_convolution_[index] + i - pack.first_product, true, true);
+    result = plus(result, coefficients(p_.products[i].coefficients), sum);
+  }
+  return result ? result : llvm::Constant::getNullValue(vector_);
+}
+
+/// Σ_j a_j b_{m−j}: what is known, and those ends that take part.
+Value* RolledEmitter::convolution(std::size_t number, bool a_ends, bool b_ends) {
+  const packed::Convolution& c = convolutions_[number];
+  Value* sum = load(at(sums_of_stage_, static_cast<std::int64_t>(sums_of_[number] * packed::rolled_group * 8 * lanes)));
+  if (a_ends) sum = end(c.a, c.b, c.lag, sum);
+  if (b_ends) sum = end(c.b, c.a, c.lag, sum);
+  return sum;
+}
+
+/// + x_m y_0, where x_m is of this stage; else it is known already.
+Value* RolledEmitter::end(std::uint32_t x, std::uint32_t y, int lag, Value* sum) {
+  if (p_.blocks[x].lag != lag || vanishes(p_.blocks[x], 2 - lag)) return sum;
+  return out_.fma(newest(x, 2 - lag), first(y), sum);
+}
+
+bool RolledEmitter::vanishes(const Block& block, int ahead) const {
+  return std::all_of(block.slots.begin(), block.slots.end(), [&](Slot slot) { return vanishes(slot, ahead); });
+}
+
+/// Of the order of this stage, before it is solved: what the block copies is not there yet.
+Value* RolledEmitter::newest(std::uint32_t index, int ahead) {
+  const Block& block = p_.blocks[index];
+  Value* values = block.direct || block.is_range ? in_register(block.slots[0]) : nullptr;
+  if (!values) values = values_of(block, row(ahead));
+  return block.weighted ? out_.multiply(values, real(stage_plus(ahead))) : values;
+}
+
+/// The slots of a block in a row, weighted or not.
+Value* RolledEmitter::values_of(const Block& block, Value* row) {
+  if (block.direct) return load(slot_at(row, block.first));
+  return block.is_range ? load(slot_at(row, block.slots[0])) : gather(row, block.slots);
+}
+
+/// k y_k = c Σ_{j≥1} (j u_j) w_{k−j}; j u_j is 0 for j = 0. Divided by k without the rounding of 1/k, which would be the same in every step.
+void RolledEmitter::integral(std::size_t index) {
+  const Pack& pack = p_.packs[index];
+  Value* const sum = out_.multiply(coefficients(pack.coefficients), convolution(first_convolution_[index], true, false));
+  llvm::Type* const scalar = out_.b.getDoubleTy();
+  Value* const k = out_.b.CreateSIToFP(stage_plus(ahead_of(pack)), scalar);
+  if (!out_.features.fma) return keep(pack, out_.divide(sum, splat(k)));
+  Value* const reciprocal = out_.divide(out_.number(1, scalar), k);
+  Value* const lack = out_.multiply(out_.fma(out_.negate(reciprocal), k, out_.number(1, scalar)), reciprocal);
+  keep(pack, out_.fma(sum, splat(reciprocal), out_.multiply(sum, splat(lack))));
+}
+
+/// y_k = (a_k − Σ_{j≥1} b_j y_{k−j}) / b_0
+void RolledEmitter::quotient(std::size_t index) {
+  const Pack& pack = p_.packs[index];
+  Value* const sum = convolution(first_convolution_[index], true, false);
+  const int ahead = ahead_of(pack), before = p_.blocks[pack.a].lag;
+  Value* const a = before == pack.lag ? newest(pack.a, ahead) : load(slot_at(row(ahead), p_.blocks[pack.a].first));
+  keep(pack, out_.divide(out_.subtract(a, sum), first(pack.b)));
+}
+
+/// y_k = (u_k − Σ_{0<j<k} y_j y_{k−j}) / (2 y_0)
+void RolledEmitter::square_root(std::size_t index) {
+  const Pack& pack = p_.packs[index];
+  Value* const sum = convolution(first_convolution_[index], false, false);
+  const int ahead = ahead_of(pack), before = p_.blocks[pack.a].lag;
+  Value* const u = before == pack.lag ? newest(pack.a, ahead) : load(slot_at(row(ahead), p_.blocks[pack.a].first));
+  Value* const y = first(pack.y);
+  keep(pack, out_.divide(out_.subtract(u, sum), out_.add(y, y)));
+}
+
+/// By the reference rules.
+void RolledEmitter::scalar(const Pack& pack) {
+  auto& b = out_.b;
+  Value* const context = b.CreateLoad(out_.pointer(), at(arguments_, offsetof(packed::CompiledArguments, context)));
+  Value* const value = b.CreateLoad(out_.pointer(), at(arguments_, offsetof(packed::CompiledArguments, value)));
+  auto* const signature = llvm::FunctionType::get(b.getVoidTy(), {out_.pointer(), b.getInt32Ty(), b.getInt32Ty()}, false);
+  b.CreateCall(signature, value, {context, b.getInt32(pack.instruction), b.CreateTrunc(stage_plus(ahead_of(pack)), b.getInt32Ty())});
+}
+
+}  // namespace maupertuis::llvm_backend

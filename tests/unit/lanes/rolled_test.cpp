@@ -1,0 +1,138 @@
+#include "lane_systems.hpp"
+
+#include <maupertuis/kernel.hpp>
+
+// One motion in rolled code, stage by stage, against the engine of packs: coefficients, multipliers, integrands.
+
+namespace {
+
+/// More than four groups of stages, the last one begun and not ended.
+constexpr int rolled_order = 22;
+
+/// Damped at its joints, pushed at its end.
+void add_damped_chain(Systems& list, int links) {
+  add_chain(list, links);
+  System& s = *list.back();
+  s.name = "damped chain of " + std::to_string(links);
+  const Expr c = s.parameter("c", 0.3);
+  Expr before = s.context.number(0);
+  for (std::size_t i = 0; i < s.source.coordinates.size(); ++i) {
+    const Expr rate = s.dot(s.source.coordinates[i]);
+    s.source.residual[i] = s.source.residual[i] + c * (rate - before);
+    before = rate;
+    s.start.q[i] = 2 + 0.5 * static_cast<double>(i) / links, s.start.v[i] = 0.1 * static_cast<double>(i % 3);
+  }
+  s.source.residual.back() = s.source.residual.back() - sin(Rational(2) * s.context.time()) * cos(s.source.coordinates.back());
+  s.source.integrands = {pow(s.dot(s.source.coordinates.back()), 2) * c};
+}
+
+/// Points of mass m in the plane, each on a rod from the one before: constraints in place of angles.
+void add_rods(Systems& list, int rods) {
+  System& s = add(list, "rods: " + std::to_string(rods));
+  const Expr m = s.parameter("m", 1.3), l = s.parameter("l", 1), g = s.parameter("g", 9.81);
+  Expr before_x = s.context.number(0), before_y = before_x, lagrangian = before_x;
+  double x0 = 0, y0 = 0, u0 = 0, v0 = 0;
+  for (int i = 0; i < rods; ++i) {
+    const double angle = 0.4 + 0.3 * i, rate = 0.5 - 0.05 * i;
+    x0 += std::sin(angle), y0 -= std::cos(angle), u0 += rate * std::cos(angle), v0 += rate * std::sin(angle);
+    const std::string number = std::to_string(i);
+    const Expr x = s.coordinate("x" + number, x0, u0), y = s.coordinate("y" + number, y0, v0);
+    const Expr multiplier = s.context.symbol("lambda" + number, Role::Multiplier);
+    const Expr length = pow(x - before_x, 2) + pow(y - before_y, 2) - l * l;
+    s.source.multipliers.push_back(multiplier);
+    s.source.constraints.push_back({length, 0, "rod " + number});
+    lagrangian = lagrangian + Rational(1, 2) * m * (pow(s.dot(x), 2) + pow(s.dot(y), 2)) - m * g * y + multiplier * length;
+    before_x = x, before_y = y;
+  }
+  s.from_lagrangian(lagrangian);
+}
+
+/// Formulas that switch with the motion: dry friction, a one-sided spring, and a choice between two.
+void add_switches(Systems& list) {
+  System& s = add(list, "switches");
+  const Expr x = s.coordinate("x", 0.5, 0.8), y = s.coordinate("y", 0.7, 0.3), k = s.parameter("k", 2.5);
+  const std::vector<Expr> either{x * y, sin(x)};
+  s.source.residual = {s.acceleration("x") + apply(Kind::Sign, s.dot(x)) + k * apply(Kind::Abs, x) * x,
+                       (sin(x) + Rational(2)) * s.acceleration("y") + y + s.context.function(Kind::Max, either)};
+}
+
+/// The largest difference of coefficients of order k in units of (k + 1) ε and of the largest of them.
+double difference(const KernelWorkspace& found, const KernelWorkspace& expected, std::size_t count, int k) {
+  double size = 1e-300, worst = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    size = std::max(size, std::abs(expected.coordinate(k)[i]));
+    worst = std::max(worst, std::abs(found.coordinate(k)[i] - expected.coordinate(k)[i]));
+    if (std::isnan(found.coordinate(k)[i])) return std::numeric_limits<double>::infinity();
+  }
+  return worst / size / (0x1p-52 * (k + 1));
+}
+
+KernelWorkspace rolled_workspace(const Kernel& kernel, const std::string& processor = {}) {
+  KernelWorkspace work(kernel, rolled_order);
+  CompileOptions options;
+  options.cache = false;
+  options.processor = processor;
+  const CompileReport report = work.compile(options);
+  REQUIRE_MESSAGE(report.compiled, report.trouble);
+  return work;
+}
+
+/// `tolerance`: in units of rounding errors, which the solution magnifies.
+void check_rolled(const System& s, double tolerance, const std::string& processor = {}) {
+  CAPTURE(s.name);
+  const Kernel kernel = build_kernel(s.source);
+  KernelWorkspace rolled = rolled_workspace(kernel, processor), engine(kernel, rolled_order);
+  const std::size_t unknowns = kernel.freedoms() + kernel.constraints();
+  for (const Motion& m : s.source.constraints.empty() ? motions_near(s.start, 3) : std::vector<Motion>{s.start, s.start}) {
+    rolled.set_parameters(m.parameters), engine.set_parameters(m.parameters);
+    REQUIRE(engine.expand(m.t, m.q, m.v) == KernelStatus::Ok);
+    REQUIRE(rolled.expand(m.t, m.q, m.v) == KernelStatus::Ok);
+    for (int k = 0; k <= rolled_order + 1; ++k) {
+      CAPTURE(k);
+      CHECK(difference(rolled, engine, unknowns, k) <= tolerance);
+    }
+    for (std::size_t i = 0; i < s.source.integrands.size(); ++i)
+      for (int k = 0; k < rolled_order; ++k)
+        CHECK(rolled.integrand(i, k) == doctest::Approx(engine.integrand(i, k)).epsilon(1e-9).scale(1e-9));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("rolled code: chains of many links, damped and pushed") {
+  Systems list;
+  for (const int links : {4, 9, 17, 40}) add_damped_chain(list, links);
+  for (const auto& s : list) check_rolled(*s, 1000);
+}
+
+TEST_CASE("rolled code: constraints and switches") {
+  Systems list;
+  for (const int rods : {1, 3, 12}) add_rods(list, rods);
+  add_switches(list);
+  for (const auto& s : list) check_rolled(*s, 1000);
+}
+
+TEST_CASE("rolled code: expansions of a few stages between those of all") {
+  Systems list;
+  add_damped_chain(list, 17);
+  const System& s = *list.back();
+  const Kernel kernel = build_kernel(s.source);
+  KernelWorkspace rolled = rolled_workspace(kernel), engine(kernel, rolled_order);
+  for (const Motion& m : motions_near(s.start, 3)) {
+    rolled.set_parameters(m.parameters), engine.set_parameters(m.parameters);
+    REQUIRE(rolled.evaluate(m.t, m.q, m.v) == KernelStatus::Ok);
+    REQUIRE(engine.evaluate(m.t, m.q, m.v) == KernelStatus::Ok);
+    CHECK(difference(rolled, engine, kernel.freedoms(), 2) <= 1000);
+    REQUIRE(rolled.expand(m.t, m.q, m.v) == KernelStatus::Ok);
+    REQUIRE(engine.expand(m.t, m.q, m.v) == KernelStatus::Ok);
+    CHECK(difference(rolled, engine, kernel.freedoms(), rolled_order + 1) <= 1000);
+  }
+}
+
+TEST_CASE("rolled code for other processors") {
+  Systems list;
+  add_damped_chain(list, 9);
+  add_rods(list, 3);
+  for (const auto& s : list)
+    for (const char* processor : {"x86-64", "x86-64-v3"}) check_rolled(*s, 1000, processor);
+}
