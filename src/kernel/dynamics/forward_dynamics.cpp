@@ -14,6 +14,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <span>
 
 /// q̈ in three parts: the residual with q̈ = 0 by a flat program, the entries of the lifted M₀ from values that it has made on its way, and
 /// the sparse solution.
@@ -76,6 +77,7 @@ struct ForwardDynamics::Impl {
   void compute_constants();
   void set_inputs(std::span<const double> u);
   void choose_pivots();
+  bool has_symmetric_mass(std::span<const std::vector<double>> samples);
   void renew_interpreter();
   bool pays() const;
   void compile();
@@ -101,6 +103,7 @@ struct ForwardDynamics::Impl {
   std::optional<sparse::GraphProduct> product;
   std::optional<sparse::SparseSolver> solver;  // of either of the two the cheaper one
   std::optional<jet::LinearSolver> linear;
+  bool is_symmetric = false;             // M₀, as far as sampled states tell; for `linear`
   std::optional<std::vector<sparse::Pivot>> pivots, compiled_pivots;  // in use; of the code, none: a full matrix
   std::optional<dynamics::CompiledDynamics> compiled;
   CompileReport report;
@@ -156,6 +159,24 @@ void ForwardDynamics::Impl::choose_pivots() {
   if (n > most_full || (solver && solver->factor_products() + solver->solve_products() < full_products)) return;
   solver.reset();
   linear.emplace(n);
+  is_symmetric = has_symmetric_mass(samples);
+}
+
+/// The residual of a Lagrangian has a symmetric M; one that is written by hand need not.
+bool ForwardDynamics::Impl::has_symmetric_mass(std::span<const std::vector<double>> samples) {
+  constexpr double rounding = 1e-12;
+  for (const std::vector<double>& sample : samples) {
+    const auto m = linear->matrix();
+    product->matrix(sample, m);
+    double largest = 0, difference = 0;
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) {
+        largest = std::max(largest, std::abs(m[i * n + j]));
+        difference = std::max(difference, std::abs(m[i * n + j] - m[j * n + i]));
+      }
+    if (!(difference <= rounding * largest)) return false;
+  }
+  return true;
 }
 
 // ------------------------------------------------------------------------------------------------------------------ machine code
@@ -175,6 +196,7 @@ void ForwardDynamics::Impl::compile() {
   };
   if (program.unknowns != n) return decline("the accelerations of systems with constraints are not compiled");
   if (!solver && !linear) return decline("no order of elimination holds at all of the sampled states");
+  if (linear && !is_symmetric) return decline("the mass matrix is not symmetric");
   const dynamics::WrittenPlan plan{*system, solver ? &*pivots : nullptr};
   if (!compiled || !same_plan(plan.pivots, compiled_pivots)) {
     compiled.emplace(program, dynamics::write_dynamics(program, moving.flat(), at_rest.flat(), plan), CompileOptions{.cache = options.cache});

@@ -130,6 +130,37 @@ TEST_CASE("who declines says so in a sentence, and the interpreter goes on") {
   CHECK(d.dynamics.accelerations(0, Numbers{0.6, -0.8}, Numbers{0.8, 0.6}, {}, a) == KernelStatus::Ok);
 }
 
+TEST_CASE("a residual by hand, whose mass matrix is not symmetric") {
+  Context context;
+  KernelSource source;
+  ExprVector accelerations;
+  for (const char* name : {"a", "b", "c", "d", "e", "f", "g", "h"}) {
+    source.coordinates.push_back(context.symbol(name, Role::Coordinate));
+    accelerations.push_back(context.time_derivative(context.time_derivative(source.coordinates.back())));
+  }
+  // Row i is Σ_j (1 + 4 δ_ij + i/8) cos a q̈_j − 1.
+  const Expr factor = cos(source.coordinates[0]);
+  for (int i = 0; i < 8; ++i) {
+    ExprVector terms{context.number(Rational(-1))};
+    for (int j = 0; j < 8; ++j) terms.push_back(Rational(8 + (i == j ? 32 : 0) + i, 8) * factor * accelerations[static_cast<std::size_t>(j)]);
+    source.residual.push_back(context.sum(terms));
+  }
+  const Kernel kernel = build_kernel(source);
+  ForwardDynamics dynamics(kernel, {}, compiled), other(kernel, {}, interpreted);
+  dynamics.set_parameters({});
+  other.set_parameters({});
+  Numbers a(8), b(8);
+  const Numbers at{0.5, 0, 0, 0, 0, 0, 0, 0}, rest(8, 0.0);
+  REQUIRE(dynamics.accelerations(0, at, rest, {}, a) == KernelStatus::Ok);
+  REQUIRE(other.accelerations(0, at, rest, {}, b) == KernelStatus::Ok);
+  for (int i = 0; i < 8; ++i) {
+    double sum = 0;
+    for (std::size_t j = 0; j < 8; ++j) sum += (1 + (static_cast<int>(j) == i ? 4 : 0) + i / 8.0) * std::cos(0.5) * a[j];
+    CHECK(sum == doctest::Approx(1).epsilon(1e-14));
+  }
+  for (std::size_t i = 0; i < 8; ++i) CHECK(a[i] == doctest::Approx(b[i]).epsilon(1e-13));
+}
+
 TEST_CASE("left to itself: compiled where the expected calls pay for it") {
   CHECK_FALSE(Dynamics(chain(4)).dynamics.compile_report().compiled);
   CHECK_FALSE(Dynamics(chain(4), {.expected_calls = 100, .cache = false}).dynamics.compile_report().compiled);
