@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <maupertuis/kernel.hpp>
+#include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/simulation.hpp>
 
@@ -20,21 +21,6 @@ std::string emit_equations(const EquationsOfMotion& equations) {
   return heading + "\n" + to_dag_text(roots);
 }
 
-Kernel kernel_of(const EquationsOfMotion& equations) {
-  const MechanicalSystem& system = *equations.system;
-  KernelSource source;
-  for (const Coordinate& c : system.coordinates) source.coordinates.push_back(c.q);
-  for (const Parameter& p : system.parameters) source.parameters.push_back(p.symbol);
-  source.residual = in_terms_of_motion(system, equations.balance());
-  source.multipliers = equations.multipliers;
-  for (std::size_t k = 0; k < system.constraints.size(); ++k) {
-    const Constraint& c = system.constraints[k];
-    source.constraints.push_back({in_terms_of_motion(system, {&c.value, 1}).front(),
-                                  c.level == Constraint::Level::Position ? 0 : 1, system.constraint_label(k)});
-  }
-  return build_kernel(source);
-}
-
 /// The Taylor coefficients of the motion at its start, q(t0 + τ) = Σ q_k τ^k.
 std::string emit_jet(const Model& model, const EquationsOfMotion& equations, Diagnostics& diagnostics) {
   constexpr int order = 20;
@@ -46,7 +32,7 @@ std::string emit_jet(const Model& model, const EquationsOfMotion& equations, Dia
   if (!start) return {};
   const auto& [t, q, v] = start->state;
 
-  const Kernel kernel = kernel_of(equations);
+  const Kernel kernel = build_kernel(motion_source(equations));
   KernelWorkspace work(kernel, order);
   work.set_parameters(values);
   const KernelStatus status = work.expand(t, q, v);
@@ -67,7 +53,7 @@ std::string emit(const std::string& stage, Study& study) {
   if (stage == "system") return study.model() ? dump(study.model()->system) : std::string();
   if (!study.equations()) return {};
   if (stage == "equations") return emit_equations(*study.equations());
-  if (stage == "program") return kernel_of(*study.equations()).print();
+  if (stage == "program") return build_kernel(motion_source(*study.equations())).print();
   if (stage == "jet") return emit_jet(*study.model(), *study.equations(), study.diagnostics());
   return {};
 }

@@ -1,3 +1,4 @@
+#include "simulation/ending.hpp"
 #include "simulation/extended_problem.hpp"
 
 #include <fmt/format.h>
@@ -31,21 +32,6 @@ bool has_method(const ExtendedSimulationOptions& options, Diagnostics& diagnosti
                     "Its order is bounded, so that a hundred digits would cost more steps than anyone can wait for.",
                     "Leave --method out, or take --method taylor.");
   return false;
-}
-
-Ending ending_of(StepEnding ending) {
-  switch (ending) {
-    case StepEnding::SingularMass: return Ending::SingularMass;
-    case StepEnding::SingularConstraints: return Ending::SingularConstraints;
-    case StepEnding::NoConvergence: return Ending::NoConvergence;
-    case StepEnding::Overflow: return Ending::Overflow;
-    case StepEnding::StepUnderflow: return Ending::StepUnderflow;
-    case StepEnding::Sliding: return Ending::Sliding;
-    case StepEnding::TooManySteps: return Ending::TooManySteps;
-    case StepEnding::Interrupted: return Ending::Interrupted;
-    case StepEnding::None: break;
-  }
-  return Ending::Finished;
 }
 
 class ExtendedRun {

@@ -1,5 +1,7 @@
 #include "simulation/motion_kernel.hpp"
 
+#include "simulation/energy_terms.hpp"
+
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/motion_kernel.hpp>
 
@@ -27,6 +29,13 @@ Kernel motion_kernel(const EquationsOfMotion& equations, const WantedFunctions& 
   source.events = in_terms_of_motion(system, wanted.events);
   source.integrands = in_terms_of_motion(system, wanted.integrands);
   return build_kernel(source);
+}
+
+MotionKernel motion_kernel(const EquationsOfMotion& equations, std::span<const Expr> events) {
+  WantedFunctions wanted;
+  wanted.events.assign(events.begin(), events.end());
+  wanted.observables = energy_terms(equations);
+  return {motion_kernel(equations, wanted), parameter_values(*equations.system), wanted.observables.size()};
 }
 
 }  // namespace maupertuis

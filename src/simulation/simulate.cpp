@@ -2,6 +2,7 @@
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/simulation.hpp>
 
+#include "simulation/ending.hpp"
 #include "simulation/energy_terms.hpp"
 #include "simulation/methods.hpp"
 #include "simulation/motion_kernel.hpp"
@@ -61,21 +62,6 @@ std::unique_ptr<Method> first_method(const EquationsOfMotion& equations, const W
 
 std::string_view word_of(StepMethod method) {
   return method == StepMethod::Stiff ? "stiff" : method == StepMethod::Variational ? "variational" : "taylor";
-}
-
-Ending ending_of(StepEnding ending) {
-  switch (ending) {
-    case StepEnding::SingularMass: return Ending::SingularMass;
-    case StepEnding::SingularConstraints: return Ending::SingularConstraints;
-    case StepEnding::NoConvergence: return Ending::NoConvergence;
-    case StepEnding::Overflow: return Ending::Overflow;
-    case StepEnding::StepUnderflow: return Ending::StepUnderflow;
-    case StepEnding::Sliding: return Ending::Sliding;
-    case StepEnding::TooManySteps: return Ending::TooManySteps;
-    case StepEnding::Interrupted: return Ending::Interrupted;
-    case StepEnding::None: break;
-  }
-  return Ending::Finished;
 }
 
 /// energy_drift = max |h_E(t) − h_E(0) − work(t)| / max Σ |terms of h_E|.

@@ -1,6 +1,8 @@
 #include "kernel/llvm/emission.hpp"
 #include "kernel/llvm/emitters.hpp"
 
+#include <maupertuis/kind_names.hpp>
+
 #include <algorithm>
 #include <numeric>
 
@@ -9,26 +11,11 @@
 namespace maupertuis::llvm_backend {
 namespace {
 
-const char* sleef_name(Kind function) {
-  switch (function) {
-    case Kind::Sin: return "sin";
-    case Kind::Cos: return "cos";
-    case Kind::Tan: return "tan";
-    case Kind::Asin: return "asin";
-    case Kind::Acos: return "acos";
-    case Kind::Atan: return "atan";
-    case Kind::Sinh: return "sinh";
-    case Kind::Cosh: return "cosh";
-    case Kind::Tanh: return "tanh";
-    case Kind::Asinh: return "asinh";
-    case Kind::Acosh: return "acosh";
-    case Kind::Atanh: return "atanh";
-    case Kind::Exp: return "exp";
-    case Kind::Log: return "log";
-    case Kind::Power: return "pow";
-    case Kind::Atan2: return "atan2";
-    default: throw Declined("an elementary function that is not compiled");
-  }
+/// SLEEF's functions have the names of the table of kinds.
+std::string sleef_name(Kind function) {
+  const bool known = (function >= Kind::Sin && function <= Kind::Log) || function == Kind::Power || function == Kind::Atan2;
+  if (!known) throw Declined("an elementary function that is not compiled");
+  return std::string(name_of(function));
 }
 
 /// Of the processor whose registers hold `width` doubles: "avx512f".

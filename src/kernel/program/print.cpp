@@ -1,5 +1,7 @@
 #include "kernel/program/program.hpp"
 
+#include <maupertuis/kind_names.hpp>
+
 #include <fmt/format.h>
 
 namespace maupertuis {
@@ -32,33 +34,9 @@ std::string_view function_name(Kind kind) {
     case Kind::Sum: return "sum";
     case Kind::Product: return "product";
     case Kind::Power: return "power";
-    case Kind::Pi: return "pi";
-    case Kind::Sin: return "sin";
-    case Kind::Cos: return "cos";
-    case Kind::Tan: return "tan";
-    case Kind::Asin: return "asin";
-    case Kind::Acos: return "acos";
-    case Kind::Atan: return "atan";
-    case Kind::Sinh: return "sinh";
-    case Kind::Cosh: return "cosh";
-    case Kind::Tanh: return "tanh";
-    case Kind::Asinh: return "asinh";
-    case Kind::Acosh: return "acosh";
-    case Kind::Atanh: return "atanh";
-    case Kind::Exp: return "exp";
-    case Kind::Log: return "log";
-    case Kind::Abs: return "abs";
-    case Kind::Sign: return "sign";
-    case Kind::Step: return "step";
-    case Kind::Atan2: return "atan2";
-    case Kind::Min: return "min";
-    case Kind::Max: return "max";
-    case Kind::Piecewise: return "piecewise";
     case Kind::Less: return "less";
     case Kind::LessEqual: return "less_equal";
-    case Kind::And: return "and";
-    case Kind::Or: return "or";
-    default: return "?";
+    default: return name_of(kind);
   }
 }
 

@@ -1,5 +1,6 @@
 #include "symbolic/expression/kind_table.hpp"
 
+#include <maupertuis/kind_names.hpp>
 #include <maupertuis/require.hpp>
 
 #include <array>
@@ -56,5 +57,7 @@ const KindInfo& kind_info(Kind kind) {
   MAUP_REQUIRE(index < table.size());
   return table[index];
 }
+
+std::string_view name_of(Kind kind) { return kind_info(kind).name; }
 
 }  // namespace maupertuis

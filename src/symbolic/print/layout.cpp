@@ -1,6 +1,7 @@
 #include "symbolic/print/layout.hpp"
 #include "symbolic/print/reading_rank.hpp"
 
+#include <maupertuis/kind_names.hpp>
 #include <maupertuis/require.hpp>
 
 #include <algorithm>
@@ -249,29 +250,7 @@ bool is_circular(Kind kind) {
 }
 
 std::string function_name(Kind kind) {
-  switch (kind) {
-    case Kind::Sin: return "sin";
-    case Kind::Cos: return "cos";
-    case Kind::Tan: return "tan";
-    case Kind::Asin: return "asin";
-    case Kind::Acos: return "acos";
-    case Kind::Atan: return "atan";
-    case Kind::Sinh: return "sinh";
-    case Kind::Cosh: return "cosh";
-    case Kind::Tanh: return "tanh";
-    case Kind::Asinh: return "asinh";
-    case Kind::Acosh: return "acosh";
-    case Kind::Atanh: return "atanh";
-    case Kind::Exp: return "exp";
-    case Kind::Log: return "log";
-    case Kind::Abs: return "abs";
-    case Kind::Sign: return "sign";
-    case Kind::Step: return "step";
-    case Kind::Atan2: return "atan2";
-    case Kind::Min: return "min";
-    case Kind::Max: return "max";
-    default: return {};
-  }
+  return kind >= Kind::Sin && kind <= Kind::Max ? std::string(name_of(kind)) : std::string();
 }
 
 bool starts_with_number(const Layout& layout) {
