@@ -112,6 +112,7 @@ int run(int argc, char** argv) {
     add_derive(line);
     add_simulate(line);
     add_test(line);
+    add_invariants(line);
     add_compare(line);
     add_reduce(line);
     add_plot(line);

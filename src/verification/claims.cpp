@@ -1,6 +1,6 @@
 #include "verification/claims.hpp"
 
-#include "verification/along_motion.hpp"
+#include <maupertuis/along_motion.hpp>
 #include "verification/pitfalls.hpp"
 
 namespace maupertuis {

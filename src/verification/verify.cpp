@@ -1,7 +1,8 @@
+#include <maupertuis/invariants.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/verification.hpp>
 
-#include "verification/along_motion.hpp"
+#include <maupertuis/along_motion.hpp>
 #include "verification/claims.hpp"
 #include "verification/constraint_claims.hpp"
 
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace maupertuis {
 namespace {
@@ -92,7 +94,8 @@ class Verifier {
         result.actual = "no error";
         result.message = "The model has no mistake that gives this error.";
         return;
-      case Kind::Integral: case Kind::Frequencies: case Kind::EventAt:
+      case Kind::Integral: decide_integral(e, result); return;
+      case Kind::Frequencies: case Kind::EventAt:
         result.message = "Not supported yet: this kind of expectation waits for a later version.";
         return;
     }
@@ -127,6 +130,35 @@ class Verifier {
     result.passed = test.verdict == Verdict::Nonzero;
     result.actual = result.passed ? result.expected : test.verdict == Verdict::Zero ? "d/dt = 0: it is conserved" : "undecided";
     result.message = result.passed ? "a state was found at which it changes" : test.reason;
+  }
+
+  /// The search of `maup invariants`, of the degree that the expectation has in the velocities; one for each degree.
+  const std::optional<Invariants>& invariants(int degree) {
+    const auto [it, is_new] = invariants_.try_emplace(degree);
+    if (is_new) {
+      InvariantsOptions options;
+      options.velocity_degree = degree;
+      options.drift = options.relations = options.completeness = false;
+      it->second = find_invariants(model_, equations_, options, diagnostics_);
+    }
+    return it->second;
+  }
+
+  void decide_integral(const Expectation& e, ExpectationResult& result) {
+    result.expected = "found by maup invariants, up to functions of the others";
+    const Expr integral = along().put_in(e.subject);
+    const int degree = std::clamp(velocity_degree(integral, *equations_.system).value_or(2), 2, 4);
+    const auto& found = invariants(degree);
+    if (!found) {
+      result.message = "The search did not run.";
+      return;
+    }
+    result.passed = is_function_of(integral, *found, equations_);
+    result.actual = result.passed ? result.expected : "not found";
+    result.message = result.passed ? fmt::format("a function of the {} integrals of degree up to {} in the velocities, by the rank of gradients",
+                                                 found->integrals.size(), degree)
+                                   : fmt::format("It is no function of the {} integrals of degree up to {} in the velocities that were found.",
+                                                 found->integrals.size(), degree);
   }
 
   void decide_equation(const Expectation& e, ExpectationResult& result) {
@@ -283,6 +315,7 @@ class Verifier {
   std::vector<Request> requests_;
   std::vector<std::size_t> energy_lines_;
   bool energy_ = false;
+  std::map<int, std::optional<Invariants>> invariants_;   // by degree in the velocities
 };
 
 }  // namespace

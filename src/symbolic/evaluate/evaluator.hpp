@@ -11,10 +11,12 @@ namespace maupertuis::evaluation {
 ///
 /// `Numbers` supplies the ring (Value, number, pi, symbol, add, multiply) and `function(tape, at, values)` for every
 /// other node: powers, elementary functions, switches. RealNumbers, FieldNumbers and JetNumbers are such kinds.
-template <class Numbers>
-void run(const Tape& tape, Numbers& numbers, std::vector<typename Numbers::Value>& values) {
+/// Positions that are not `chosen` keep the values they have.
+template <class Numbers, class Chosen>
+void run(const Tape& tape, Numbers& numbers, std::vector<typename Numbers::Value>& values, Chosen chosen) {
   values.resize(tape.size());
   for (Position at = 0; at < tape.size(); ++at) {
+    if (!chosen(at)) continue;
     const auto arguments = tape.arguments(at);
     switch (tape.kind(at)) {
       case Kind::Number: values[at] = numbers.number(tape.expression(at).number()); break;
@@ -35,6 +37,11 @@ void run(const Tape& tape, Numbers& numbers, std::vector<typename Numbers::Value
       default: values[at] = numbers.function(tape, at, values);
     }
   }
+}
+
+template <class Numbers>
+void run(const Tape& tape, Numbers& numbers, std::vector<typename Numbers::Value>& values) {
+  run(tape, numbers, values, [](Position) { return true; });
 }
 
 /// Is condition i of a piecewise node the index of a condition (else of a value)?

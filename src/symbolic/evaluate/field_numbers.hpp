@@ -51,6 +51,8 @@ class FieldNumbers {
   /// Another value for one symbol, such that most signs that were met before stay as they are: many roots cost a few
   /// draws each and not 2^roots. False where no symbol stands below the root.
   bool mend(const Redraw& redraw);
+  /// To be told where a kind of numbers derived from this one gives a symbol another value within one point.
+  void symbols_changed() { angles_.clear(); units_.clear(); }
 
   Value number(const Rational& value) const { return field_.from(value); }
   Value pi() const { return random(0x7069); }

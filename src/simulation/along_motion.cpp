@@ -1,4 +1,4 @@
-#include "verification/along_motion.hpp"
+#include <maupertuis/along_motion.hpp>
 
 #include <maupertuis/simulation.hpp>
 

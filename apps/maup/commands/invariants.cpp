@@ -1,0 +1,48 @@
+#include "command.hpp"
+#include "invariants_text.hpp"
+#include "outcome.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace maupertuis::app {
+namespace {
+
+struct CommandOptions {
+  ModelOptions model;
+  InvariantsOptions search;
+  bool no_drift = false;
+};
+
+ExitCode invariants_of_model(const CommandOptions& options, Console& console) {
+  Study study(options.model.path, options.model.overrides);
+  Json document = json_document("invariants");
+  const EquationsOfMotion* equations = study.equations();
+  if (!equations || !study.certificate()) return finish(console, study, document);
+  InvariantsOptions search = options.search;
+  search.drift = !options.no_drift;
+  const auto found = find_invariants(*study.model(), *equations, search, study.diagnostics());
+  if (!found) return finish(console, study, document);
+  document["system"] = equations->system->name;
+  add_invariants_json(document, *found, *equations);
+  if (!console.json()) console.print(invariants_text(*found, *equations));
+  return finish(console, study, document);
+}
+
+}  // namespace
+
+void add_invariants(CommandLine& line) {
+  const auto options = std::make_shared<CommandOptions>();
+  CLI::App& command = line.add("invariants", "Symmetries and conserved quantities, proved",
+                               "  maup invariants kepler.lag\n"
+                               "  maup invariants kovalevskaya_top.lag --degree 4\n"
+                               "  maup invariants double_pendulum.lag --set g=0 --json\n",
+                               [options](Console& console) { return invariants_of_model(*options, console); });
+  add_model_options(command, options->model);
+  command.add_option("--degree", options->search.velocity_degree, "Search polynomials of the velocities up to this degree (2)")
+      ->check(CLI::Range(1, 4));
+  command.add_option("--largest-basis", options->search.largest_basis, "At most so many functions in one search (1400)")
+      ->check(CLI::Range(10, 20000));
+  command.add_flag("--no-drift", options->no_drift, "Leave out the run that measures the drift");
+}
+
+}  // namespace maupertuis::app

@@ -1,0 +1,147 @@
+#include "invariants_text.hpp"
+
+#include <maupertuis/print.hpp>
+
+#include <fmt/format.h>
+
+namespace maupertuis::app {
+namespace {
+
+std::string formula(const ReadableForm& form, const ReadingOrder& order) {
+  std::string text = to_plain(form, order);
+  for (const Intermediate& i : form.intermediates)
+    text += fmt::format("\n       with {} = {}", to_plain(i.symbol, order), to_plain(i.value, order));
+  return text;
+}
+
+const char* kind_name(IntegralKind kind) {
+  switch (kind) {
+    case IntegralKind::Noether: return "noether";
+    case IntegralKind::Hidden: return "hidden";
+    default: return "direct";
+  }
+}
+
+std::string ground(const ZeroTest& test) {
+  if (test.error_bound == 0) return "dI/dt = 0 term by term";
+  if (test.error_bound < 1) return fmt::format("dI/dt = 0 proved at {} points, error bound {:.0e}", test.points, test.error_bound);
+  return fmt::format("dI/dt vanishes at {} points", test.points);
+}
+
+std::string origin(const ConservedFunction& integral) {
+  if (!integral.symmetry.empty()) return integral.symmetry;
+  switch (integral.kind) {
+    case IntegralKind::Noether: return "a point symmetry up to gauge";
+    case IntegralKind::Hidden: return "no point symmetry: its symmetry depends on the velocities";
+    default: return "found directly";
+  }
+}
+
+std::string integral_text(const std::string& symbol, const ConservedFunction& integral, const ReadingOrder& order) {
+  std::string text = fmt::format("{:<4} {}\n", symbol, formula(integral.readable, order));
+  if (!integral.name.empty()) text += fmt::format("     {}\n", integral.name);
+  text += fmt::format("     from: {}\n     {}", origin(integral), ground(integral.certificate));
+  if (integral.drift) text += fmt::format("; drift in the run {:.1e}", *integral.drift);
+  if (!integral.independent) text += "; a function of those before it at fixed t";
+  return text + "\n";
+}
+
+std::string brackets_text(const Invariants& found, const ReadingOrder& order) {
+  std::string text;
+  for (const PoissonBracket& b : found.brackets)
+    text += fmt::format("  {{{}, {}}} = {}\n", found.symbols[b.first].name(), found.symbols[b.second].name(),
+                        b.value.value ? to_plain(b.value, order) : "a further function");
+  return text.empty() ? "" : "\nPoisson brackets that do not vanish\n" + text;
+}
+
+std::string integrability_text(const Invariants& found, std::size_t n) {
+  std::string text = fmt::format("\n{} independent integral{}", found.rank, found.rank == 1 ? "" : "s");
+  if (found.autonomous_rank != found.rank) text += fmt::format(", {} of them without explicit time", found.autonomous_rank);
+  text += fmt::format("; {} degree{} of freedom.\n", n, n == 1 ? "" : "s");
+  if (!found.completely_integrable) return text;
+  text += fmt::format("Completely integrable: {} {} independent and in involution", fmt::join(found.involution, ", "),
+                      found.involution.size() == 1 ? "is" : "are");
+  if (n > 1 && found.autonomous_rank == 2 * n - 1) text += fmt::format("; maximally superintegrable, with {} integrals", 2 * n - 1);
+  return text + ".\n";
+}
+
+std::string completeness_text(const Invariants& found) {
+  std::string text;
+  if (found.symmetry_bound) {
+    text += *found.symmetry_bound == found.noether_symmetries
+                ? fmt::format("Point symmetries: {} found, and there are no more (bound at a generic point).\n", found.noether_symmetries)
+                : fmt::format("Point symmetries: {} found, at most {} exist (bound at a generic point).\n", found.noether_symmetries,
+                              *found.symmetry_bound);
+  }
+  text += "None further in this basis:\n";
+  for (const std::string& line : found.basis) text += "  " + line + "\n";
+  if (found.too_long > 0)
+    text += fmt::format("  {} more in it, with coefficients too long to be written in the parameters\n", found.too_long);
+  return text;
+}
+
+}  // namespace
+
+std::string invariants_text(const Invariants& found, const EquationsOfMotion& equations) {
+  const ReadingOrder& order = equations.order;
+  std::string text;
+  for (std::size_t i = 0; i < found.integrals.size(); ++i) text += integral_text(found.symbols[i].name(), found.integrals[i], order);
+  if (found.integrals.empty()) text += "No integral was found.\n";
+  if (!found.relations.empty()) text += "\nRelations\n";
+  for (const IntegralRelation& r : found.relations) text += fmt::format("  {} = 0\n", to_plain(r.value, order));
+  text += brackets_text(found, order);
+  if (!found.balance_laws.empty()) text += "\nBalance laws\n";
+  for (const BalanceLaw& law : found.balance_laws)
+    text += fmt::format("  {}: d/dt ({}) = {}\n", law.name, to_plain(law.quantity, order), formula(law.rate, order));
+  if (!found.integrals.empty()) text += integrability_text(found, equations.system->coordinates.size());
+  return text + completeness_text(found);
+}
+
+namespace {
+
+Json integral_json(const ConservedFunction& integral, const ReadingOrder& order) {
+  Json intermediates = Json::array(), characteristic = Json::array();
+  for (const Intermediate& i : integral.readable.intermediates)
+    intermediates.push_back({{"name", to_plain(i.symbol, order)}, {"plain", to_plain(i.value, order)}});
+  for (const Expr& e : integral.characteristic) characteristic.push_back(to_plain(e, order));
+  return {{"name", integral.name},
+          {"plain", to_plain(integral.readable, order)},
+          {"latex", to_latex(integral.readable, order)},
+          {"intermediates", std::move(intermediates)},
+          {"kind", kind_name(integral.kind)},
+          {"symmetry", integral.symmetry},
+          {"characteristic", std::move(characteristic)},
+          {"velocity_degree", integral.velocity_degree},
+          {"explicit_time", integral.explicit_time},
+          {"independent", integral.independent},
+          {"certificate", {{"verdict", verdict_name(integral.certificate.verdict)}, {"points", integral.certificate.points},
+                           {"error_bound", integral.certificate.error_bound}}},
+          {"drift", integral.drift ? Json(*integral.drift) : Json(nullptr)}};
+}
+
+}  // namespace
+
+void add_invariants_json(Json& document, const Invariants& found, const EquationsOfMotion& equations) {
+  const ReadingOrder& order = equations.order;
+  document["integrals"] = Json::array();
+  for (const ConservedFunction& i : found.integrals) document["integrals"].push_back(integral_json(i, order));
+  document["independent"] = found.rank;
+  document["independent_without_time"] = found.autonomous_rank;
+  document["relations"] = Json::array();
+  for (const IntegralRelation& r : found.relations) document["relations"].push_back(to_plain(r.value, order));
+  document["brackets"] = Json::array();
+  for (const PoissonBracket& b : found.brackets)
+    document["brackets"].push_back({{"first", b.first + 1}, {"second", b.second + 1},
+                                    {"plain", b.value.value ? Json(to_plain(b.value, order)) : Json(nullptr)}});
+  document["balance_laws"] = Json::array();
+  for (const BalanceLaw& law : found.balance_laws)
+    document["balance_laws"].push_back({{"name", law.name}, {"quantity", to_plain(law.quantity, order)}, {"rate", to_plain(law.rate, order)}});
+  document["completely_integrable"] = found.completely_integrable;
+  document["involution"] = found.involution;
+  document["point_symmetries"] = found.noether_symmetries;
+  document["point_symmetries_bound"] = found.symmetry_bound ? Json(*found.symmetry_bound) : Json(nullptr);
+  document["basis"] = found.basis;
+  document["too_long"] = found.too_long;
+}
+
+}  // namespace maupertuis::app

@@ -1,0 +1,227 @@
+#include "analysis/invariants/ansatz.hpp"
+
+#include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/print.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace maupertuis::invariants {
+namespace {
+
+using Monomials = std::vector<Monomial>;
+
+Monomials products(const Monomials& a, const Monomials& b) {
+  Monomials out;
+  for (const Monomial& x : a)
+    for (const Monomial& y : b) {
+      Monomial xy = product(x, y);
+      if (std::find(out.begin(), out.end(), xy) == out.end()) out.push_back(std::move(xy));
+    }
+  return out;
+}
+
+Monomials joined(std::initializer_list<Monomials> lists) {
+  Monomials out;
+  for (const Monomials& list : lists)
+    for (const Monomial& m : list)
+      if (std::find(out.begin(), out.end(), m) == out.end()) out.push_back(m);
+  return out;
+}
+
+/// 1 and the functions of a list that are independent.
+Monomials with_one(const MotionRows& rows, const Generators& g, const Monomials& list, std::uint64_t seed) {
+  Monomials out = independent_functions(rows, g, list, seed);
+  out.insert(out.begin(), Monomial{});
+  return out;
+}
+
+void append(Monomials& out, const Monomials& more) {
+  for (const Monomial& m : more)
+    if (!m.empty()) out.push_back(m);
+}
+
+/// All products of `degree` of the given generators.
+Monomials powers(const Monomials& generators, int degree) {
+  Monomials out{Monomial{}};
+  for (int d = 0; d < degree; ++d) {
+    Monomials next;
+    for (const Monomial& m : out)
+      for (const Monomial& g : generators)
+        if (m.empty() || m.back().generator <= g[0].generator) next.push_back(product(m, g));
+    out = std::move(next);
+  }
+  return out;
+}
+
+std::string names_of(const Generators& g, const Monomials& list, const ReadingOrder& order) {
+  std::string out;
+  for (const Monomial& m : list) out += (out.empty() ? "" : ", ") + to_plain(g.expression(m), order);
+  return out;
+}
+
+/// 1, t, …, t^degree; with e^{gt}, sin Wt, … and their products in pairs, of few in threes.
+Monomials time_functions(Ansatz& a, int degree) {
+  Monomials out{Monomial{}};
+  const Monomial t = a.generators.add(a.generators.context().time());
+  for (int k = 1; k <= degree; ++k) out.push_back({{t[0].generator, k}});
+  out = joined({out, a.atoms.time});
+  const Monomials pairs = products(a.atoms.time, a.atoms.time);
+  out = joined({out, pairs});
+  if (a.momenta.size() == 1 && a.atoms.time.size() <= 4) out = joined({out, products(pairs, a.atoms.time)});
+  return out;
+}
+
+bool is_reversible(const MotionRows& rows) {
+  if (rows.constraint.rows > 0) return false;
+  ExprMap reversed;
+  for (const Coordinate& c : rows.system->coordinates) reversed.emplace(c.velocity, -c.velocity);
+  std::vector<Expr> all = rows.bias;
+  all.insert(all.end(), rows.mass.entries.begin(), rows.mass.entries.end());
+  const auto mirrored = substitute(all, reversed);
+  std::vector<Expr> differences;
+  for (std::size_t i = 0; i < all.size(); ++i) differences.push_back(all[i] - mirrored[i]);
+  return zero_test(differences).verdict == Verdict::Zero;
+}
+
+/// Body rates and the vertical in body axes: in them the integrals of tops are polynomials.
+void take_body(Ansatz& a, const MechanicalSystem& system) {
+  if (system.bodies.size() != 1 || system.space_dimension != 3 || system.coordinates.size() > 4) return;
+  const Body& body = system.bodies[0];
+  a.velocities = in_terms_of_motion(system, body.angular_velocity);
+  for (std::size_t axis = 0; axis < 3; ++axis) a.directions.push_back(body.rotation.at(2, axis));
+  a.directions = in_terms_of_motion(system, a.directions);
+}
+
+}  // namespace
+
+Ansatz make_ansatz(const EquationsOfMotion& equations, const MotionRows& rows) {
+  const MechanicalSystem& system = *equations.system;
+  Ansatz a{Generators(*system.context), {}, {}, {}, {}, {}, {}};
+  a.atoms = collect_atoms(equations, a.generators);
+  a.world = world_of(equations);
+  a.energy = in_terms_of_motion(system, {&equations.energy_function, 1}).front();
+  a.momenta = in_terms_of_motion(system, equations.momenta);
+  for (const Coordinate& c : system.coordinates) a.velocities.push_back(c.velocity);
+  take_body(a, system);
+  a.constant_mass = std::all_of(rows.mass.entries.begin(), rows.mass.entries.end(), is_parametric);
+  for (const auto* list : {&rows.bias, &rows.mass.entries, &rows.constraint.entries, &rows.velocity})
+    for (const Expr& e : *list) a.explicit_time |= depends_on_time_itself(e);
+  a.reversible = is_reversible(rows);
+  return a;
+}
+
+namespace {
+
+/// How rich a basis of charges is.
+struct Richness { int time_degree; bool pairs; };
+
+/// The physical candidates first: total momentum, angular momentum, moment of mass.
+void add_candidates(Ansatz& a, Monomials& out) {
+  const Monomial t = a.generators.add(a.generators.context().time());
+  for (const ExprVector* list : {&a.world.momentum, &a.world.angular_momentum, &a.world.mass_moment})
+    for (const Expr& e : *list)
+      if (!is_parametric(e)) out.push_back(a.generators.add(e));
+  for (const Expr& e : a.world.momentum)
+    if (!is_parametric(e)) out.push_back(product(t, a.generators.add(e)));
+}
+
+Basis charges(Ansatz& a, const MotionRows& rows, Richness r, std::uint64_t seed) {
+  const Atoms& atoms = a.atoms;
+  Generators& g = a.generators;
+  Monomials displacements = atoms.coordinates;
+  if (!a.constant_mass) {
+    displacements = joined({displacements, atoms.functions, atoms.products});
+    if (r.pairs) displacements = joined({displacements, products(atoms.functions, atoms.functions)});
+  }
+  displacements = with_one(rows, g, displacements, seed);
+  Monomials gauges = joined({atoms.coordinates, products(atoms.coordinates, atoms.coordinates), atoms.functions,
+                             products(atoms.functions, atoms.coordinates), atoms.products});
+  gauges = with_one(rows, g, gauges, seed + 1);
+  const Monomials few = with_one(rows, g, time_functions(a, r.time_degree), seed + 2),
+                  more = with_one(rows, g, time_functions(a, r.time_degree + 1), seed + 3);
+  Basis basis;
+  add_candidates(a, basis.monomials);
+  append(basis.monomials, products(gauges, more));
+  Monomials p;
+  for (const Expr& momentum : a.momenta) p.push_back(g.add(momentum));
+  append(basis.monomials, products(products(displacements, few), p));
+  Monomials energy = products({g.add(a.energy)}, with_one(rows, g, time_functions(a, std::min(2, r.time_degree)), seed + 4));
+  if (!atoms.natural) energy = joined({energy, products(energy, atoms.coordinates)});
+  append(basis.monomials, energy);
+  basis.description = fmt::format(
+      "point symmetries ξ(t{}), η(q, t) up to gauge f(q, t): ξ of degree {} in t; η from {} functions of position, f from {}, "
+      "with t up to degree {} and {}", atoms.natural ? "" : ", q", std::min(2, r.time_degree), displacements.size(), gauges.size(),
+      r.time_degree, r.time_degree + 1);
+  ReadingOrder order;
+  if (!atoms.functions.empty() || !atoms.time.empty())
+    basis.description += "; atoms " + names_of(g, joined({atoms.functions, atoms.time}), order);
+  return basis;
+}
+
+}  // namespace
+
+Basis noether_basis(Ansatz& a, const MotionRows& rows, std::size_t largest, std::uint64_t seed) {
+  const int richest = a.momenta.size() <= 3 ? 3 : 2;
+  for (const Richness r : {Richness{richest, true}, Richness{1, true}, Richness{1, false}, Richness{0, false}}) {
+    Basis basis = charges(a, rows, r, seed);
+    if (basis.monomials.size() <= largest) return basis;
+  }
+  return {};
+}
+
+namespace {
+
+/// Functions of position: `level` 2 multiplies in pairs.
+Monomials positions(Ansatz& a, const MotionRows& rows, int level, std::uint64_t seed) {
+  const Atoms& atoms = a.atoms;
+  if (!a.directions.empty()) {
+    Monomials g;
+    for (const Expr& e : a.directions) g.push_back(a.generators.add(e));
+    return with_one(rows, a.generators, level > 1 ? joined({g, powers(g, 2)}) : g, seed);
+  }
+  Monomials first = joined({atoms.coordinates, atoms.functions, atoms.products});
+  if (level > 1) {
+    const Monomials simple = joined({atoms.coordinates, atoms.functions});
+    first = joined({first, products(simple, simple)});
+  }
+  return with_one(rows, a.generators, first, seed);
+}
+
+Monomials polynomial(Ansatz& a, const Monomials& positions, const Monomials& times, int degree, int parity) {
+  Monomials velocities, out;
+  for (const Expr& v : a.velocities) velocities.push_back(a.generators.add(v));
+  for (int d = 0; d <= degree; ++d)
+    if (parity < 0 || d % 2 == parity) append(out, products(products(positions, times), powers(velocities, d)));
+  return out;
+}
+
+}  // namespace
+
+PolynomialBases polynomial_bases(Ansatz& a, const MotionRows& rows, int degree, std::size_t largest, std::uint64_t seed) {
+  PolynomialBases out;
+  Monomials times{Monomial{}};
+  if (a.explicit_time) times = joined({times, a.atoms.time});
+  const std::vector<int> parities = a.reversible ? std::vector<int>{degree % 2, 1 - degree % 2} : std::vector<int>{-1};
+  for (const int level : {2, 1}) {
+    const Monomials functions = positions(a, rows, level, seed);
+    out.bases.clear();
+    out.needed = 0;
+    for (const int parity : parities) {
+      Basis basis{polynomial(a, functions, times, degree, parity), {}};
+      out.needed = std::max(out.needed, basis.monomials.size());
+      basis.description = fmt::format("polynomials {}of degree {} in {}, {} functions of position as coefficients: {} functions",
+                                      parity < 0 ? "" : parity % 2 ? "odd " : "even ", degree,
+                                      a.directions.empty() ? "the velocities" : "the body rates", functions.size(),
+                                      basis.monomials.size());
+      if (!basis.monomials.empty()) out.bases.push_back(std::move(basis));
+    }
+    if (out.needed <= largest) return out;
+  }
+  out.bases.clear();
+  return out;
+}
+
+}  // namespace maupertuis::invariants

@@ -1,0 +1,221 @@
+#include "analysis/invariants/motion_sampler.hpp"
+
+#include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/transform.hpp>
+
+#include "symbolic/evaluate/normalize.hpp"
+
+#include <algorithm>
+
+namespace maupertuis::invariants {
+namespace {
+
+using evaluation::mix;
+
+ExprVector without_inputs(const MechanicalSystem& system, const ExprVector& v) {
+  return in_terms_of_motion(system, expand_time_derivatives(v));
+}
+
+}  // namespace
+
+MotionRows motion_rows(const EquationsOfMotion& equations) {
+  const MechanicalSystem& system = *equations.system;
+  MotionRows rows{equations.system, mass_matrix(equations), bias(equations), {}, {}, {}, false};
+  rows.mass.entries = without_inputs(system, rows.mass.entries);
+  rows.bias = without_inputs(system, rows.bias);
+  if (!system.constrained()) return rows;
+  rows.constraint = constraint_matrix(equations);
+  rows.constraint.entries = without_inputs(system, rows.constraint.entries);
+  rows.acceleration = without_inputs(system, constraint_bias(equations));
+  ExprMap at_rest;
+  for (const Coordinate& c : system.coordinates) at_rest.emplace(c.velocity, system.context->number(0));
+  for (const Expr& rate : substitute(without_inputs(system, equations.constraint_rates), at_rest))
+    rows.velocity.push_back(-rate);
+  return rows;
+}
+
+ExprVector conservative_residual(const EquationsOfMotion& equations) {
+  ExprVector q;
+  for (const Coordinate& c : equations.system->coordinates) q.push_back(c.q);
+  return without_inputs(*equations.system, variational_residual(equations.lagrangian, q));
+}
+
+MotionRows conservative_rows(const EquationsOfMotion& equations) {
+  const MechanicalSystem& system = *equations.system;
+  MotionRows rows{equations.system, mass_matrix(equations), {}, {}, {}, {}, true};
+  rows.mass.entries = without_inputs(system, rows.mass.entries);
+  ExprMap at_rest;
+  for (const Coordinate& c : system.coordinates) at_rest.emplace(c.acceleration, system.context->number(0));
+  rows.bias = substitute(conservative_residual(equations), at_rest);
+  return rows;
+}
+
+bool is_nonlinear_in_velocities(const EquationsOfMotion& equations) {
+  if (!equations.system->constrained()) return false;
+  const ExprMatrix a = constraint_matrix(equations);
+  for (const Expr& s : symbols_of(expand_time_derivatives(a.entries)))
+    if (s.role() == Role::Coordinate && s.order() > 0) return true;
+  return false;
+}
+
+MotionSampler::MotionSampler(const MotionRows& rows, std::vector<Expr> functions, bool with_rates, std::uint64_t seed)
+    : system_(rows.system), n_(rows.system->coordinates.size()), m_(rows.constraint.rows), functions_(functions.size()),
+      with_rates_(with_rates), seed_(seed) {
+  std::vector<Expr> roots = rows.mass.entries;
+  const auto append = [&](const std::vector<Expr>& more) { roots.insert(roots.end(), more.begin(), more.end()); };
+  append(rows.bias);
+  append(rows.constraint.entries);
+  append(rows.acceleration);
+  append(rows.velocity);
+  functions = in_terms_of_motion(*system_, expand_time_derivatives(functions));
+  append(functions);
+  if (with_rates)
+    for (const Expr& f : functions) roots.push_back(total_time_derivative(f));
+  tape_ = std::make_unique<evaluation::Tape>(evaluation::flatten_arguments(roots));
+  hints_ = evaluation::field_hints(*tape_);
+  find_orders();
+  for (const Parameter& p : system_->parameters) parameters_.push_back(p.symbol);
+  seed_ = mix(seed_);
+  numbers_ = std::make_unique<GivenNumbers>(evaluation::random_prime_triple(hints_.m, seed_), hints_, seed_);
+}
+
+void MotionSampler::find_orders() {
+  highest_order_.assign(tape_->size(), 0);
+  parametric_.assign(tape_->size(), 1);
+  for (evaluation::Position at = 0; at < tape_->size(); ++at) {
+    const Expr e = tape_->expression(at);
+    if (e.is_symbol() && e.role() == Role::Coordinate) highest_order_[at] = static_cast<std::uint8_t>(e.order());
+    if (e.is_symbol()) parametric_[at] = e.role() == Role::Parameter || e.role() == Role::Constant;
+    for (const evaluation::Position argument : tape_->arguments(at)) {
+      highest_order_[at] = std::max(highest_order_[at], highest_order_[argument]);
+      parametric_[at] &= parametric_[argument];
+    }
+  }
+}
+
+/// Evaluates what depends on coordinates of this order or a higher one; the rest stays.
+void MotionSampler::evaluate(std::vector<Value>& at, int from_order) {
+  if (from_order > 0) {
+    bool angles = false;
+    for (evaluation::Position p = 0; p < tape_->size(); ++p)
+      angles |= highest_order_[p] >= from_order && (tape_->kind(p) == Kind::Sin || tape_->kind(p) == Kind::Cos || tape_->kind(p) == Kind::Tan);
+    if (angles) numbers_->symbols_changed();
+  }
+  evaluation::run(*tape_, *numbers_, at, [&](evaluation::Position p) { return highest_order_[p] >= from_order; });
+}
+
+const PrimeField& MotionSampler::field() const { return numbers_->field(); }
+
+ParameterRoots MotionSampler::draw_parameters() {
+  ParameterRoots roots;
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    seed_ = mix(seed_);
+    const Value x = field().from_residue(seed_ % field().prime());
+    roots.push_back(field().multiply(x, x));
+  }
+  return roots;
+}
+
+std::optional<ParameterRoots> MotionSampler::usable_parameters() {
+  for (int attempt = 0; attempt < 40; ++attempt) {
+    ParameterRoots roots = draw_parameters();
+    if (draw(roots)) return roots;
+    if (singular_) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+void MotionSampler::bind_parameters(const ParameterRoots& roots) {
+  for (std::size_t i = 0; i < parameters_.size(); ++i) numbers_->give(parameters_[i], field().multiply(roots[i], roots[i]));
+}
+
+/// Random velocities, the dependent ones from A q̇ = a₀.
+bool MotionSampler::bind_velocities(const std::vector<Value>& at) {
+  const auto root = [&](std::size_t i) { return at[tape_->roots()[i]]; };
+  const std::size_t first = n_ * n_ + n_, first_velocity = first + m_ * n_ + m_;
+  // Columns in reverse: the solution leaves the first coordinates free, and these are drawn.
+  FieldMatrix rows(m_, n_ + 1);
+  for (std::size_t i = 0; i < m_; ++i) {
+    for (std::size_t j = 0; j < n_; ++j) rows.at(i, n_ - 1 - j) = root(first + i * n_ + j);
+    rows.at(i, n_) = root(first_velocity + i);
+  }
+  std::vector<Value> drawn(n_);
+  FieldMatrix shifted = rows;
+  for (std::size_t j = 0; j < n_; ++j) {
+    drawn[j] = numbers_->symbol(system_->coordinates[n_ - 1 - j].velocity);
+    for (std::size_t i = 0; i < m_; ++i)
+      shifted.at(i, n_) = field().subtract(shifted.at(i, n_), field().multiply(rows.at(i, j), drawn[j]));
+  }
+  const auto correction = solve(std::move(shifted), field());
+  if (!correction) return false;
+  for (std::size_t j = 0; j < n_; ++j)
+    numbers_->give(system_->coordinates[n_ - 1 - j].velocity, field().add(drawn[j], (*correction)[j]));
+  return true;
+}
+
+bool MotionSampler::bind_accelerations(const std::vector<Value>& at) {
+  const auto root = [&](std::size_t i) { return at[tape_->roots()[i]]; };
+  const std::size_t first = n_ * n_ + n_, size = n_ + m_;
+  FieldMatrix bordered(size, size + 1);
+  for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t j = 0; j < n_; ++j) bordered.at(i, j) = root(i * n_ + j);
+    for (std::size_t k = 0; k < m_; ++k) {
+      bordered.at(i, n_ + k) = field().negate(root(first + k * n_ + i));
+      bordered.at(n_ + k, i) = root(first + k * n_ + i);
+    }
+    bordered.at(i, size) = field().negate(root(n_ * n_ + i));
+  }
+  for (std::size_t k = 0; k < m_; ++k) bordered.at(n_ + k, size) = root(first + m_ * n_ + k);
+  FieldMatrix reduced = bordered;
+  const auto pivots = echelon(reduced, field());
+  // Redundant constraints leave multipliers open; accelerations must not be.
+  for (std::size_t i = 0; i < n_; ++i)
+    if (i >= pivots.size() || pivots[i] != i) return false;
+  const auto solution = solve(std::move(bordered), field());
+  if (!solution) return false;
+  for (std::size_t i = 0; i < n_; ++i) numbers_->give(system_->coordinates[i].acceleration, (*solution)[i]);
+  return true;
+}
+
+MotionSampler::Sample MotionSampler::collect(const std::vector<Value>& at) const {
+  Sample sample;
+  const std::size_t first = n_ * n_ + n_ + m_ * n_ + 2 * m_;
+  for (std::size_t i = 0; i < functions_; ++i) sample.values.push_back(at[tape_->roots()[first + i]]);
+  for (std::size_t i = 0; with_rates_ && i < functions_; ++i)
+    sample.rates.push_back(at[tape_->roots()[first + functions_ + i]]);
+  for (const Coordinate& c : system_->coordinates) sample.velocities.push_back(numbers_->symbol(c.velocity));
+  return sample;
+}
+
+std::optional<MotionSampler::Sample> MotionSampler::draw(const ParameterRoots& roots) {
+  constexpr int attempts = 400;
+  std::vector<Value> at;
+  int mends = evaluation::mends_allowed(*tape_), unsolved = 0;
+  bool mended = false;
+  bind_parameters(roots);
+  for (int attempt = 0; attempt < attempts && unsolved < 8; attempt += !mended) {
+    if (!mended) numbers_->set_seed(seed_ = mix(seed_));
+    mended = false;
+    for (const Coordinate& c : system_->coordinates)
+      for (const Expr& symbol : {c.velocity, c.acceleration}) numbers_->take_back(symbol);
+    try {
+      evaluate(at, 0);
+      if (m_ > 0) {
+        if (!bind_velocities(at)) { ++unsolved; continue; }
+        evaluate(at, 1);
+      }
+      if (with_rates_) {
+        if (!bind_accelerations(at)) { ++unsolved; singular_ = true; continue; }
+        evaluate(at, 2);
+      }
+      singular_ = false;
+      return collect(at);
+    } catch (const evaluation::Redraw& redraw) {
+      if (redraw.at < parametric_.size() && parametric_[redraw.at]) return std::nullopt;
+      mended = mends-- > 0 && numbers_->mend(redraw);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace maupertuis::invariants
