@@ -3,7 +3,7 @@ import re
 
 import case_math
 from case_math import D, greek, parse, show, show_long
-from case_tables import KINDS, MULTIPLIER_UNIT, UNITS, UNSAID, waits_for
+from case_tables import CHARGES, KINDS, MULTIPLIER_UNIT, SEARCHED, UNITS, UNSAID, waits_for
 from convert_urdf import wrapped
 from precise import ellipk
 
@@ -174,9 +174,18 @@ class Model:
     def expect_conserved(self, expectation):
         for name, text in expectation["values"].items():
             self.add(show_long(parse(text), "expect conserved ") + f"   # {name}")
+        for name, text in expectation["values"].items() if self.id in SEARCHED else ():
+            if name not in CHARGES.get(self.id, ()):
+                self.add(show_long(parse(text), "expect integral ") + f"   # {name}")
         for name, value in expectation.get("initial_values", {}).items():
             number = digits(case_math.evaluate(parse(value), {}))
             self.add(f"expect {show(parse(expectation['values'][name]))} at 0 = {number} ± 1e-15")
+
+    def expect_symmetry(self, expectation):
+        """By its charge: the search finds it."""
+        conserved = next(e["values"] for e in self.case["expected"] if e["kind"] == "conserved")
+        for name in CHARGES[self.id]:
+            self.add(show_long(parse(conserved[name]), "expect integral ") + f"   # {name}")
 
     def expect_not_conserved(self, expectation):
         for text in expectation["values"].values():

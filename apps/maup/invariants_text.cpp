@@ -28,8 +28,18 @@ std::string ground(const ZeroTest& test) {
   return fmt::format("dI/dt vanishes at {} points", test.points);
 }
 
-std::string origin(const ConservedFunction& integral) {
+std::string displacement(const ConservedFunction& integral, const EquationsOfMotion& equations) {
+  std::string text;
+  for (std::size_t i = 0; i < integral.characteristic.size(); ++i)
+    text += fmt::format("{}δ{} = {}", i == 0 ? "" : ", ", equations.system->coordinates[i].name,
+                        to_plain(integral.characteristic[i], equations.order));
+  return text;
+}
+
+std::string origin(const ConservedFunction& integral, const EquationsOfMotion& equations) {
   if (!integral.symmetry.empty()) return integral.symmetry;
+  constexpr std::size_t longest = 160;
+  if (const std::string text = displacement(integral, equations); !text.empty() && text.size() <= longest) return text;
   switch (integral.kind) {
     case IntegralKind::Noether: return "a point symmetry up to gauge";
     case IntegralKind::Hidden: return "no point symmetry: its symmetry depends on the velocities";
@@ -37,10 +47,11 @@ std::string origin(const ConservedFunction& integral) {
   }
 }
 
-std::string integral_text(const std::string& symbol, const ConservedFunction& integral, const ReadingOrder& order) {
+std::string integral_text(const std::string& symbol, const ConservedFunction& integral, const EquationsOfMotion& equations) {
+  const ReadingOrder& order = equations.order;
   std::string text = fmt::format("{:<4} {}\n", symbol, formula(integral.readable, order));
   if (!integral.name.empty()) text += fmt::format("     {}\n", integral.name);
-  text += fmt::format("     from: {}\n     {}", origin(integral), ground(integral.certificate));
+  text += fmt::format("     from: {}\n     {}", origin(integral, equations), ground(integral.certificate));
   if (integral.drift) text += fmt::format("; drift in the run {:.1e}", *integral.drift);
   if (!integral.independent) text += "; a function of those before it at fixed t";
   return text + "\n";
@@ -85,7 +96,7 @@ std::string completeness_text(const Invariants& found) {
 std::string invariants_text(const Invariants& found, const EquationsOfMotion& equations) {
   const ReadingOrder& order = equations.order;
   std::string text;
-  for (std::size_t i = 0; i < found.integrals.size(); ++i) text += integral_text(found.symbols[i].name(), found.integrals[i], order);
+  for (std::size_t i = 0; i < found.integrals.size(); ++i) text += integral_text(found.symbols[i].name(), found.integrals[i], equations);
   if (found.integrals.empty()) text += "No integral was found.\n";
   if (!found.relations.empty()) text += "\nRelations\n";
   for (const IntegralRelation& r : found.relations) text += fmt::format("  {} = 0\n", to_plain(r.value, order));

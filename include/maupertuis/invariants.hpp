@@ -87,8 +87,8 @@ struct Invariants {
 std::optional<Invariants> find_invariants(const Model& model, const EquationsOfMotion& equations,
                                           const InvariantsOptions& options, Diagnostics& diagnostics);
 
-/// Whether `e` is conserved and a function of the integrals (and of constants of the constraints), by the rank of
-/// gradients at generic points; with explicit time, at fixed t.
+/// Whether `e` is conserved and a function of the integrals (and of constants of the constraints): de/dt vanishes at random points
+/// over a prime field, and its gradient by (q, q') adds nothing to the rank of theirs; t held fixed.
 bool is_function_of(Expr e, const Invariants& invariants, const EquationsOfMotion& equations);
 
 /// The degree of `e` as a polynomial in the velocities, or nothing where it is none.

@@ -2,6 +2,7 @@
 
 #include "analysis/invariants/linear_fit.hpp"
 #include "analysis/invariants/search.hpp"
+#include "analysis/invariants/symmetry.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
 
@@ -47,10 +48,7 @@ std::vector<bool> independent_functions_of_state(const MotionRows& rows, const E
 
 PoissonAlgebra::PoissonAlgebra(const MotionRows& rows, const EquationsOfMotion& equations) : rows_(rows) {
   const MechanicalSystem& system = *rows.system;
-  for (const Coordinate& c : system.coordinates) {
-    q_.push_back(c.q);
-    v_.push_back(c.velocity);
-  }
+  for (const Coordinate& c : system.coordinates) q_.push_back(c.q);
   momentum_by_position_ = {q_.size(), q_.size(), {}};
   for (const Expr& p : in_terms_of_motion(system, equations.momenta))
     for (const Expr& slope : gradient(p, q_)) momentum_by_position_.entries.push_back(slope);
@@ -58,15 +56,7 @@ PoissonAlgebra::PoissonAlgebra(const MotionRows& rows, const EquationsOfMotion& 
 
 /// With p = p(q, q̇): ∂F/∂p = M⁻¹ ∂F/∂q̇, and ∂F/∂q at fixed p is ∂F/∂q − (∂p/∂q)ᵀ ∂F/∂p.
 PoissonAlgebra::Slopes PoissonAlgebra::slopes(Expr f) const {
-  const MechanicalSystem& system = *rows_.system;
-  const ExprVector by_velocity = gradient(f, v_);
-  ExprVector residual;
-  for (std::size_t i = 0; i < q_.size(); ++i) {
-    Expr row = -by_velocity[i];
-    for (std::size_t j = 0; j < q_.size(); ++j) row = row + rows_.mass.at(i, j) * system.coordinates[j].acceleration;
-    residual.push_back(row);
-  }
-  Slopes out{gradient(f, q_), accelerations(residual, system).value_or(ExprVector(q_.size(), system.context->number(0)))};
+  Slopes out{gradient(f, q_), symmetry_of(f, rows_).value_or(ExprVector(q_.size(), f.context().number(0)))};
   for (std::size_t i = 0; i < q_.size(); ++i)
     for (std::size_t j = 0; j < q_.size(); ++j)
       out.by_position[i] = out.by_position[i] - momentum_by_position_.at(j, i) * out.by_momentum[j];
@@ -136,14 +126,16 @@ class AlgebraWriter {
       basis.monomials.insert(basis.monomials.begin(), Monomial{});
       if (basis.monomials.size() > 400) return;
       const SearchResult found = vanishing_combinations(rows_, g, basis, seed_);
-      for (const Combination& c : found.found) take_relation(c);
-      if (result_.relations.size() + result_.rank >= values_.size() || found.too_long > 0) return;
+      for (const Combination& c : found.found) {
+        if (result_.relations.size() + result_.rank >= values_.size()) return;
+        take_relation(c);
+      }
+      if (found.too_long > 0) return;
     }
   }
 
   /// Keeps a relation that does not follow from those before it: by the rank of their gradients by the integrals.
   void take_relation(const Combination& c) {
-    if (zero_test(c.value).verdict != Verdict::Zero) return;
     const Expr relation = in_symbols(c.terms);
     ExprMap values;
     for (std::size_t i = 0; i < values_.size(); ++i) values.emplace(result_.symbols[i], values_[i]);
@@ -156,7 +148,7 @@ class AlgebraWriter {
       for (const auto& g : rows) row.push_back(g[i]);
       fit.rows.push_back(std::move(row));
     }
-    if (depends_at_a_point(rows_, fit, seed_)) return;
+    if (depends_at_a_point(rows_, fit, seed_) || zero_test(c.value).verdict != Verdict::Zero) return;
     relation_gradients_ = std::move(rows);
     result_.relations.push_back({{relation, {}, {}}});
   }

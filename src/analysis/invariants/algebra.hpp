@@ -22,7 +22,7 @@ class PoissonAlgebra {
   struct Slopes { ExprVector by_position, by_momentum; };   // ∂/∂q at fixed p, ∂/∂p
   Slopes slopes(Expr f) const;
   const MotionRows& rows_;
-  ExprVector q_, v_;
+  ExprVector q_;
   ExprMatrix momentum_by_position_;                          // ∂p/∂q at fixed q̇ [n × n]
 };
 

@@ -126,6 +126,10 @@ void add_candidates(Ansatz& a, Monomials& out) {
       if (!is_parametric(e)) out.push_back(a.generators.add(e));
   for (const Expr& e : a.world.momentum)
     if (!is_parametric(e)) out.push_back(product(t, a.generators.add(e)));
+  const Orbit orbit = orbit_of(a.world);
+  if (!orbit.relative || !a.constant_mass) return;
+  for (const Expr& x : orbit.position)
+    for (const Expr& v : orbit.velocity) out.push_back(product(a.generators.add(x), a.generators.add(v)));
 }
 
 Basis charges(Ansatz& a, const MotionRows& rows, Richness r, std::uint64_t seed) {
@@ -174,7 +178,7 @@ Basis noether_basis(Ansatz& a, const MotionRows& rows, std::size_t largest, std:
 
 namespace {
 
-/// Functions of position: `level` 2 multiplies in pairs.
+/// Functions of position: level 2 and 3 multiply in pairs.
 Monomials positions(Ansatz& a, const MotionRows& rows, int level, std::uint64_t seed) {
   const Atoms& atoms = a.atoms;
   if (!a.directions.empty()) {
@@ -190,12 +194,44 @@ Monomials positions(Ansatz& a, const MotionRows& rows, int level, std::uint64_t 
   return with_one(rows, a.generators, first, seed);
 }
 
-Monomials polynomial(Ansatz& a, const Monomials& positions, const Monomials& times, int degree, int parity) {
+/// Coefficients of velocity degree d are functions of position times as many terms of V as there are pairs of velocities less than
+/// at the top, as in the energy: `coefficients[j]` stands beside degree − 2j and degree − 2j − 1.
+std::vector<Monomials> coefficients_by_degree(Ansatz& a, const MotionRows& rows, const Monomials& top, int degree, bool with_potentials,
+                                              std::uint64_t seed) {
+  std::vector<Monomials> out{top};
+  for (int j = 1; 2 * j <= degree; ++j) {
+    if (!with_potentials) out.push_back(top);
+    else out.push_back(with_one(rows, a.generators, joined({out.back(), products(out.back(), a.atoms.potentials)}), seed));
+  }
+  return out;
+}
+
+Monomials polynomial(Ansatz& a, const std::vector<Monomials>& coefficients, const Monomials& times, int degree, int parity) {
   Monomials velocities, out;
   for (const Expr& v : a.velocities) velocities.push_back(a.generators.add(v));
   for (int d = 0; d <= degree; ++d)
-    if (parity < 0 || d % 2 == parity) append(out, products(products(positions, times), powers(velocities, d)));
+    if (parity < 0 || d % 2 == parity)
+      append(out, products(products(coefficients[static_cast<std::size_t>((degree - d) / 2)], times), powers(velocities, d)));
   return out;
+}
+
+}  // namespace
+
+namespace {
+
+/// Of two particles: polynomials in their relative velocity alone.
+Basis relative_basis(Ansatz& a, const MotionRows& rows, int degree, std::uint64_t seed) {
+  const Orbit orbit = orbit_of(a.world);
+  if (!orbit.relative || !a.constant_mass || !a.reversible) return {};
+  Monomials positions, velocities;
+  for (const Expr& x : orbit.position) positions.push_back(a.generators.add(x));
+  for (const Expr& v : orbit.velocity) velocities.push_back(a.generators.add(v));
+  positions = with_one(rows, a.generators, joined({positions, a.atoms.functions, products(positions, joined({positions, a.atoms.functions}))}), seed);
+  Basis basis;
+  for (int d = degree % 2; d <= degree; d += 2) append(basis.monomials, products(positions, powers(velocities, d)));
+  basis.description = fmt::format("polynomials of degree {} in the relative velocity, coefficients from {} functions of relative position: {} functions",
+                                  degree, positions.size(), basis.monomials.size());
+  return basis;
 }
 
 }  // namespace
@@ -205,20 +241,25 @@ PolynomialBases polynomial_bases(Ansatz& a, const MotionRows& rows, int degree, 
   Monomials times{Monomial{}};
   if (a.explicit_time) times = joined({times, a.atoms.time});
   const std::vector<int> parities = a.reversible ? std::vector<int>{degree % 2, 1 - degree % 2} : std::vector<int>{-1};
-  for (const int level : {2, 1}) {
+  for (const int level : {3, 2, 1}) {
     const Monomials functions = positions(a, rows, level, seed);
+    if (level == 3 && (a.atoms.potentials.size() * functions.size() > largest || !a.directions.empty())) continue;
+    const auto coefficients = coefficients_by_degree(a, rows, functions, degree, level == 3, seed + 1);
     out.bases.clear();
     out.needed = 0;
     for (const int parity : parities) {
-      Basis basis{polynomial(a, functions, times, degree, parity), {}};
+      Basis basis{polynomial(a, coefficients, times, degree, parity), {}};
       out.needed = std::max(out.needed, basis.monomials.size());
-      basis.description = fmt::format("polynomials {}of degree {} in {}, {} functions of position as coefficients: {} functions",
+      basis.description = fmt::format("polynomials {}of degree {} in {}, coefficients from {} functions of position{}: {} functions",
                                       parity < 0 ? "" : parity % 2 ? "odd " : "even ", degree,
                                       a.directions.empty() ? "the velocities" : "the body rates", functions.size(),
-                                      basis.monomials.size());
+                                      level == 3 ? ", in the lower terms times those of V" : "", basis.monomials.size());
       if (!basis.monomials.empty()) out.bases.push_back(std::move(basis));
     }
-    if (out.needed <= largest) return out;
+    if (out.needed > largest) continue;
+    if (Basis relative = relative_basis(a, rows, degree, seed + 2); !relative.monomials.empty())
+      out.bases.insert(out.bases.begin(), std::move(relative));
+    return out;
   }
   out.bases.clear();
   return out;

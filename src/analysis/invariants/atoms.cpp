@@ -62,6 +62,7 @@ class Collector {
     }
     if (of_lagrangian && velocities > 2) atoms_.natural = false;
     if (position.size() > 1 || degree(position) > 1) add_once(atoms_.products, position);
+    if (of_lagrangian && velocities == 0) add_once(atoms_.potentials, position);
   }
 
   void take_atom(Monomial m, Expr factor) {

@@ -11,6 +11,7 @@ struct Atoms {
   std::vector<Monomial> coordinates;       // q_i
   std::vector<Monomial> functions;         // sines and cosines, inverse powers, … of q (perhaps with t)
   std::vector<Monomial> products;          // what stands beside velocities and parameters in the terms of L
+  std::vector<Monomial> potentials;        // those of the terms of L without velocities
   std::vector<Monomial> time;              // e^{gt}, sin Wt, … of t alone
   bool natural = true;                     // L is a polynomial of the velocities of degree 2
 };

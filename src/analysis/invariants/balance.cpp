@@ -2,6 +2,7 @@
 
 #include "analysis/invariants/naming.hpp"
 #include "analysis/invariants/search.hpp"
+#include "analysis/invariants/symmetry.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
 
@@ -13,20 +14,6 @@ namespace {
 bool is_acted_upon(const EquationsOfMotion& equations) {
   const auto acts = [](const ExprVector& v) { return std::any_of(v.begin(), v.end(), [](const Expr& e) { return !e.is_zero(); }); };
   return equations.system->constrained() || acts(equations.generalized_forces) || acts(equations.dissipative_terms);
-}
-
-/// M δq = ∂I/∂q̇.
-std::optional<ExprVector> displacement_of(Expr charge, const MotionRows& rows) {
-  const MechanicalSystem& system = *rows.system;
-  ExprVector v, residual;
-  for (const Coordinate& c : system.coordinates) v.push_back(c.velocity);
-  const ExprVector slopes = gradient(charge, v);
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    Expr row = -slopes[i];
-    for (std::size_t j = 0; j < v.size(); ++j) row = row + rows.mass.at(i, j) * system.coordinates[j].acceleration;
-    residual.push_back(row);
-  }
-  return accelerations(residual, system);
 }
 
 }  // namespace
@@ -48,7 +35,7 @@ void add_balance_laws(Invariants& result, Ansatz& ansatz, const EquationsOfMotio
                                      readable(expand_time_derivatives(equations.shown().power), equations.order)});
       continue;
     }
-    const auto displacement = displacement_of(naming.scaled, rows);
+    const auto displacement = symmetry_of(naming.scaled, rows);
     if (!displacement) continue;
     Expr rate = system.context->number(0);
     for (std::size_t i = 0; i < displacement->size(); ++i) {

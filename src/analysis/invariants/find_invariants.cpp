@@ -10,6 +10,7 @@
 #include "analysis/invariants/drift.hpp"
 #include "analysis/invariants/naming.hpp"
 #include "analysis/invariants/search.hpp"
+#include "analysis/invariants/symmetry.hpp"
 
 #include <fmt/format.h>
 
@@ -134,8 +135,23 @@ class Finder {
     if (zero_test(with_intermediates(integral.readable) - integral.value).verdict != Verdict::Zero) integral.readable = {integral.value, {}, {}};
     integral.velocity_degree = velocity_degree(integral.value, system_).value_or(1);
     integral.explicit_time = depends_on_time_itself(integral.value);
+    if (kind == IntegralKind::Hidden) integral.characteristic = short_symmetry(integral.value);
     ranks_.emplace(integral.value, naming.rank);
     result_.integrals.push_back(std::move(integral));
+  }
+
+  /// δq of an integral without a point symmetry, where a reader can follow it.
+  ExprVector short_symmetry(Expr integral) const {
+    constexpr std::size_t most_coordinates = 3, most_nodes = 400;
+    const auto symmetry = system_.coordinates.size() <= most_coordinates ? symmetry_of(integral, rows_) : std::nullopt;
+    if (!symmetry || topological_order(*symmetry).size() > most_nodes) return {};
+    ExprVector out;
+    for (const Expr& e : *symmetry) {
+      const ReadableForm form = readable(e, equations_.order);
+      if (!form.intermediates.empty()) return {};
+      out.push_back(form.value);
+    }
+    return out;
   }
 
   static Expr with_intermediates(const ReadableForm& form) {
@@ -237,8 +253,25 @@ std::optional<Invariants> find_invariants(const Model& model, const EquationsOfM
   return Finder(model, equations, options, diagnostics).carry_out();
 }
 
+namespace {
+
+/// de/dt = 0 at random points of the motion over a prime field.
+bool is_constant_along_motion(Expr e, const MotionRows& rows) {
+  constexpr int points = 3;
+  MotionSampler sampler(rows, {e}, true, 0x72617465);
+  const auto roots = sampler.usable_parameters();
+  for (int k = 0; k < points; ++k) {
+    const auto sample = roots ? sampler.draw(*roots) : std::nullopt;
+    if (!sample || sample->rates[0] != 0) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 bool is_function_of(Expr e, const Invariants& found, const EquationsOfMotion& equations) {
   const MotionRows rows = motion_rows(equations);
+  if (!is_constant_along_motion(e, rows)) return false;
   std::vector<Expr> functions;
   for (const ConservedFunction& i : found.integrals) functions.push_back(i.value);
   functions.push_back(e);

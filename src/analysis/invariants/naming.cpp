@@ -1,6 +1,7 @@
 #include "analysis/invariants/naming.hpp"
 
 #include "analysis/invariants/linear_fit.hpp"
+#include "analysis/invariants/symmetry.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
 
@@ -58,28 +59,12 @@ struct Columns {
   }
 };
 
-/// δq as unknowns too: M δq = ∂I/∂q' has to be solved at each point, so the rows are multiplied out: instead of δq the
-/// rows say M (…)= ∂I/∂q' where that is possible, and else δq is taken as a symbolic solution.
-ExprVector characteristic_of(const MotionRows& rows, Expr integral) {
-  const MechanicalSystem& system = *rows.system;
-  ExprVector v;
-  for (const Coordinate& c : system.coordinates) v.push_back(c.velocity);
-  const ExprVector slopes = gradient(integral, v);
-  ExprVector residual;
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    Expr row = -slopes[i];
-    for (std::size_t j = 0; j < v.size(); ++j) row = row + rows.mass.at(i, j) * system.coordinates[j].acceleration;
-    residual.push_back(row);
-  }
-  return accelerations(residual, system).value_or(ExprVector{});
-}
-
 }  // namespace
 
 std::optional<Namer::Fit> Namer::fit_points(Expr integral) const {
   const World& world = ansatz_.world;
   if (world.points.empty()) return std::nullopt;
-  const ExprVector dq = characteristic_of(rows_, integral);
+  const ExprVector dq = symmetry_of(integral, rows_).value_or(ExprVector{});
   if (dq.empty()) return std::nullopt;
   const MechanicalSystem& system = *rows_.system;
   Context& context = *system.context;
@@ -130,7 +115,7 @@ std::optional<Namer::Fit> Namer::fit_points(Expr integral) const {
 }
 
 std::optional<Namer::Fit> Namer::fit_coordinates(Expr integral) const {
-  const ExprVector dq = characteristic_of(rows_, integral);
+  const ExprVector dq = symmetry_of(integral, rows_).value_or(ExprVector{});
   if (dq.empty()) return std::nullopt;
   const MechanicalSystem& system = *rows_.system;
   Context& context = *system.context;
@@ -154,12 +139,12 @@ std::optional<Namer::Fit> Namer::fit_coordinates(Expr integral) const {
 /// Quadratic integrals of one particle by their leading part: v × (r × v) of the Laplace-Runge-Lenz vector, v_i v_j of
 /// Fradkin's tensor.
 std::optional<Namer::Fit> Namer::fit_leading_part(Expr integral) const {
-  const World& world = ansatz_.world;
   const MechanicalSystem& system = *rows_.system;
-  const std::size_t d = world.axes.size();
-  if (world.points.size() != 1 || d != system.coordinates.size() || d < 2 || !ansatz_.constant_mass || !ansatz_.reversible)
-    return std::nullopt;
-  const ExprVector &r = world.points[0].position, &v = world.points[0].velocity;
+  const Orbit orbit = orbit_of(ansatz_.world);
+  const ExprVector &r = orbit.position, &v = orbit.velocity;
+  const std::size_t d = r.size();
+  const bool spans = orbit.relative || d == system.coordinates.size();
+  if (d < 2 || !spans || !ansatz_.constant_mass || !ansatz_.reversible) return std::nullopt;
   Context& context = *system.context;
   Columns columns;
   ExprVector functions;
@@ -204,6 +189,24 @@ bool Namer::is_square_of_angular_momentum(Expr integral) const {
   return fit_constants(rows_, rows, seed_).has_value();
 }
 
+bool Namer::name_relative_rotation(Expr integral, Naming& naming) const {
+  const Orbit orbit = orbit_of(ansatz_.world);
+  if (!orbit.relative) return false;
+  std::vector<Expr> row;
+  for (const Expr& component : cross(orbit.position, orbit.velocity)) row.push_back(orbit.mass * component);
+  const std::size_t count = row.size();
+  row.push_back(integral);
+  const auto constants = fit_constants(rows_, {{row}, count}, seed_);
+  if (!constants || std::count_if(constants->begin(), constants->end(), [](const Expr& c) { return bool(c); }) != 1) return false;
+  for (std::size_t k = 0; k < count; ++k)
+    if ((*constants)[k]) {
+      const char axis = count == 1 ? 'z' : "xyz"[k];
+      naming = {fmt::format("relative angular momentum about {}", axis),
+                fmt::format("rotation of the relative position about {}", axis), integral / (*constants)[k], 6};
+    }
+  return true;
+}
+
 Naming Namer::name(Expr integral) const {
   Naming naming{"", "", integral, 9};
   auto fit = fit_points(integral);
@@ -213,6 +216,7 @@ Naming Namer::name(Expr integral) const {
     if (fit && fit->terms.size() != 1) fit.reset();
   }
   if (fit && !fit->terms.empty()) describe(*fit, naming);
+  else if (name_relative_rotation(integral, naming)) return naming;
   else if (is_square_of_angular_momentum(integral)) naming.name = "square of the angular momentum";
   return naming;
 }
@@ -264,12 +268,13 @@ void Namer::describe(const Fit& fit, Naming& naming) const {
   // From x to z is the negative turn about y.
   const int turn = rotation && about(*rotation) == "y" ? -1 : 1;
   if (const auto* t = fit.find(Unknown::RungeLenz)) {
-    const Expr m = rows_.mass.at(0, 0);
-    naming = {"Laplace-Runge-Lenz vector, " + axis(t->axis), "", naming.scaled * (m * m), 6};
+    const Orbit orbit = orbit_of(world);
+    naming = {"Laplace-Runge-Lenz vector, " + axis(t->axis) + (orbit.relative ? " (relative motion)" : ""), "",
+              naming.scaled * (orbit.mass * orbit.mass), 6};
     return scale(t->value);
   }
   if (const auto* t = fit.find(Unknown::Fradkin)) {
-    naming = {"Fradkin tensor, " + axis(t->axis) + axis(t->second), "", naming.scaled * rows_.mass.at(0, 0) / Rational(2), 6};
+    naming = {"Fradkin tensor, " + axis(t->axis) + axis(t->second), "", naming.scaled * orbit_of(world).mass / Rational(2), 6};
     return scale(t->value);
   }
   if (shift) {

@@ -28,6 +28,7 @@ class Namer {
   std::optional<Fit> fit_points(Expr integral) const;
   std::optional<Fit> fit_coordinates(Expr integral) const;
   std::optional<Fit> fit_leading_part(Expr integral) const;
+  bool name_relative_rotation(Expr integral, Naming& naming) const;
   bool is_square_of_angular_momentum(Expr integral) const;
   void describe(const Fit& fit, Naming& naming) const;
 

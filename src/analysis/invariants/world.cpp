@@ -5,17 +5,19 @@
 #include <map>
 
 namespace maupertuis::invariants {
+
+ExprVector cross(const ExprVector& a, const ExprVector& b) {
+  if (a.size() < 2) return {};
+  if (a.size() == 2) return {a[0] * b[1] - a[1] * b[0]};
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
 namespace {
 
 ExprVector velocity_of(const ExprVector& position) {
   ExprVector out;
   for (const Expr& x : position) out.push_back(total_time_derivative(x));
   return out;
-}
-
-ExprVector cross(const ExprVector& a, const ExprVector& b) {
-  if (a.size() == 2) return {a[0] * b[1] - a[1] * b[0]};
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
 void add_to(ExprVector& sum, const ExprVector& more, Expr factor) {
@@ -37,7 +39,8 @@ ExprVector spin_of(const Body& body, Context& context) {
 
 class Builder {
  public:
-  explicit Builder(const MechanicalSystem& system) : system_(system), one_(system.context->number(1)) {}
+  explicit Builder(const EquationsOfMotion& equations)
+      : equations_(equations), system_(*equations.system), one_(system_.context->number(1)) {}
 
   World build() {
     for (const Point& p : system_.points)
@@ -51,7 +54,7 @@ class Builder {
  private:
   void add_particle(const ExprVector& position, Expr mass) {
     const ExprVector r = in_terms_of_motion(system_, position), v = velocity_of(r);
-    world_.points.push_back({r, v});
+    world_.points.push_back({r, v, mass});
     add_to(world_.momentum, v, mass);
     add_to(world_.mass_moment, r, mass);
     add_to(world_.angular_momentum, cross(r, v), mass);
@@ -68,7 +71,7 @@ class Builder {
       for (std::size_t i = 0; i < d; ++i)
         tip.push_back(body.position.empty() ? body.rotation.at(i, axis) : body.position[i] + body.rotation.at(i, axis));
       tip = in_terms_of_motion(system_, tip);
-      world_.points.push_back({tip, velocity_of(tip)});
+      world_.points.push_back({tip, velocity_of(tip), {}});
     }
   }
 
@@ -90,10 +93,18 @@ class Builder {
     for (const auto& [suffix, coordinates] : particles) {
       ExprVector r;
       for (const char axis : axes) r.push_back(coordinates.count(axis) ? coordinates.at(axis) : system_.context->number(0));
-      world_.points.push_back({r, velocity_of(r)});
+      world_.points.push_back({r, velocity_of(r), mass_of(coordinates.begin()->second)});
     }
   }
 
+  /// ∂²L/∂q̇∂q̇ of this coordinate.
+  Expr mass_of(Expr q) const {
+    for (std::size_t i = 0; i < system_.coordinates.size(); ++i)
+      if (system_.coordinates[i].q == q) return differentiate(equations_.momenta[i], system_.coordinates[i].velocity);
+    return {};
+  }
+
+  const EquationsOfMotion& equations_;
   const MechanicalSystem& system_;
   Expr one_;
   World world_;
@@ -101,6 +112,18 @@ class Builder {
 
 }  // namespace
 
-World world_of(const EquationsOfMotion& equations) { return Builder(*equations.system).build(); }
+World world_of(const EquationsOfMotion& equations) { return Builder(equations).build(); }
+
+Orbit orbit_of(const World& world) {
+  const auto& p = world.points;
+  if (p.empty() || p.size() > 2 || !p[0].mass || !p.back().mass) return {};
+  if (p.size() == 1) return {p[0].position, p[0].velocity, p[0].mass, false};
+  Orbit out{{}, {}, p[0].mass * p[1].mass / (p[0].mass + p[1].mass), true};
+  for (std::size_t i = 0; i < p[0].position.size(); ++i) {
+    out.position.push_back(p[0].position[i] - p[1].position[i]);
+    out.velocity.push_back(p[0].velocity[i] - p[1].velocity[i]);
+  }
+  return out;
+}
 
 }  // namespace maupertuis::invariants

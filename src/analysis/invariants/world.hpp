@@ -10,6 +10,15 @@ namespace maupertuis::invariants {
 struct WorldPoint {
   ExprVector position;   // [axes]
   ExprVector velocity;   // [axes]
+  Expr mass;             // empty: none of its own
+};
+
+/// One particle, or the relative motion r₁ − r₂ of two with the reduced mass: what has an angular momentum and a
+/// Runge-Lenz vector of its own.
+struct Orbit {
+  ExprVector position, velocity;  // [axes]; empty: neither one nor two particles
+  Expr mass;
+  bool relative = false;
 };
 
 /// The points of a model, for names: how a symmetry moves them says whether it is a translation, a rotation, a boost.
@@ -24,5 +33,8 @@ struct World {
   ExprVector mass_moment;           // [axes] Σ m r
 };
 World world_of(const EquationsOfMotion& equations);
+Orbit orbit_of(const World& world);
+/// a × b: one component in the plane, none on a line.
+ExprVector cross(const ExprVector& a, const ExprVector& b);
 
 }  // namespace maupertuis::invariants

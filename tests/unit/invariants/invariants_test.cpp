@@ -1,0 +1,250 @@
+#include "../model_text.hpp"
+
+#include <maupertuis/invariants.hpp>
+#include <maupertuis/print.hpp>
+
+#include <algorithm>
+
+using namespace maupertuis;
+
+namespace {
+
+struct Found {
+  ModelText m;
+  Invariants result;
+  Diagnostics diagnostics;
+
+  explicit Found(const std::string& text, int degree = 2) : m("dimensionless\n" + text) {
+    InvariantsOptions options;
+    options.velocity_degree = degree;
+    auto found = find_invariants(m.model, m.equations, options, diagnostics);
+    REQUIRE(found);
+    result = std::move(*found);
+    for (const ConservedFunction& i : result.integrals) CHECK(i.certificate.verdict == Verdict::Zero);
+  }
+
+  std::size_t count(const std::string& name) const {
+    return static_cast<std::size_t>(std::count_if(result.integrals.begin(), result.integrals.end(),
+                                                  [&](const ConservedFunction& i) { return i.name.find(name) != std::string::npos; }));
+  }
+  std::string text(const std::string& name) const {
+    for (const ConservedFunction& i : result.integrals)
+      if (i.name == name) return to_plain(i.readable, m.equations.order);
+    return "";
+  }
+  std::size_t of_kind(IntegralKind kind) const {
+    return static_cast<std::size_t>(std::count_if(result.integrals.begin(), result.integrals.end(),
+                                                  [&](const ConservedFunction& i) { return i.kind == kind; }));
+  }
+};
+
+const std::string kepler = R"(param m = 1, k = 1
+coord x, y, z : number
+T = 1/2 m (x'^2 + y'^2 + z'^2)
+V = -k/sqrt(x^2 + y^2 + z^2)
+)";
+
+}  // namespace
+
+TEST_CASE("a free particle in n dimensions has (n² + 3n + 6)/2 symmetries, and no more") {
+  const std::string texts[] = {"param m = 1\ncoord x : number\nT = 1/2 m x'^2\n",
+                               "param m = 1\ncoord x, y : number\nT = 1/2 m (x'^2 + y'^2)\n",
+                               "param m = 1\ncoord x, y, z : number\nT = 1/2 m (x'^2 + y'^2 + z'^2)\n"};
+  for (std::size_t n = 1; n <= 3; ++n) {
+    CAPTURE(n);
+    const Found f(texts[n - 1]);
+    CHECK(f.result.noether_symmetries == (n * n + 3 * n + 6) / 2);
+    CHECK(f.result.symmetry_bound == f.result.noether_symmetries);
+    CHECK(f.result.integrals.size() == f.result.noether_symmetries);
+    CHECK(f.result.rank == 2 * n);
+    CHECK(f.count("dilation") == 1);
+    CHECK(f.count("conformal") == 1);
+    CHECK(f.count("Galilei boost") == n);
+  }
+}
+
+TEST_CASE("the harmonic oscillator has as many, with sines of the time") {
+  const Found f("param m = 1, k = 1\ncoord x : number\nT = 1/2 m x'^2\nV = 1/2 k x^2\n");
+  CHECK(f.result.noether_symmetries == 5);
+  CHECK(f.result.symmetry_bound == 5);
+  CHECK(f.count("energy") == 1);
+}
+
+TEST_CASE("Kepler in space: seven integrals, five independent, two relations") {
+  const Found f(kepler);
+  CHECK(f.result.integrals.size() == 7);
+  CHECK(f.count("Laplace-Runge-Lenz") == 3);
+  CHECK(f.result.rank == 5);
+  REQUIRE(f.result.relations.size() == 2);
+  CHECK(to_plain(f.result.relations[0].value, f.m.equations.order) == "I2 I5 + I3 I6 + I4 I7");
+  CHECK(f.text("angular momentum about y") == "m z x' - m x z'");
+  CHECK(f.text("Laplace-Runge-Lenz vector, x") == "m^2 (x y'^2 + x z'^2 - y x' y' - z x' z') - m k x/sqrt(x^2 + y^2 + z^2)");
+  CHECK(f.result.symmetry_bound == 4);
+  CHECK(f.result.completely_integrable);
+}
+
+TEST_CASE("the brackets of angular momentum and of the Runge-Lenz vector") {
+  const Found f(kepler);
+  const auto bracket = [&](std::size_t i, std::size_t j) {
+    for (const PoissonBracket& b : f.result.brackets)
+      if (b.first == i && b.second == j) return to_plain(b.value, f.m.equations.order);
+    return std::string("0");
+  };
+  CHECK(bracket(1, 2) == "I4");
+  CHECK(bracket(0, 3) == "0");
+  CHECK(bracket(1, 5) == "I7");
+  CHECK(bracket(4, 5) == "-2 m I1 I4");
+}
+
+TEST_CASE("the symmetry of the Runge-Lenz vector depends on the velocities (Lévy-Leblond 1971)") {
+  const Found f(kepler);
+  const auto it = std::find_if(f.result.integrals.begin(), f.result.integrals.end(),
+                               [](const ConservedFunction& i) { return i.name == "Laplace-Runge-Lenz vector, x"; });
+  REQUIRE(it != f.result.integrals.end());
+  REQUIRE(it->characteristic.size() == 3);
+  // δr_i = m (2 v_i x − r_i v_x − (r·v) δ_ix), the published one times 2 m.
+  Expr radial = f.m.q(0) * f.m.v(0) + f.m.q(1) * f.m.v(1) + f.m.q(2) * f.m.v(2);
+  for (std::size_t i = 0; i < 3; ++i) {
+    Expr published = Rational(2) * f.m.v(i) * f.m.q(0) - f.m.q(i) * f.m.v(0);
+    if (i == 0) published = published - radial;
+    CHECK(zero_test(it->characteristic[i] - f.m.p("m") * published).verdict == Verdict::Zero);
+  }
+}
+
+TEST_CASE("the isotropic oscillator in space: Fradkin's tensor") {
+  const Found f("param m = 1, k = 1\ncoord x, y, z : number\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nV = 1/2 k (x^2 + y^2 + z^2)\n");
+  CHECK(f.count("Fradkin") == 5);   // the sixth is the energy less two of them
+  CHECK(f.text("Fradkin tensor, xy") == "1/2 m x' y' + 1/2 k x y");
+  CHECK(f.result.noether_symmetries == 12);
+  CHECK(f.result.autonomous_rank == 5);
+}
+
+TEST_CASE("the double pendulum: energy alone; without gravity its angular momentum too") {
+  const std::string pendulum = R"(param m1 = 1, m2 = 1, l1 = 1, l2 = 1, g = 9.81
+coord a, b : angle
+point A mass m1 at l1 (sin a, -cos a)
+point B mass m2 at A + l2 (sin b, -cos b)
+)";
+  const Found with(pendulum + "gravity (0, -g)\n");
+  CHECK(with.result.integrals.size() == 1);
+  CHECK(with.count("energy") == 1);
+  CHECK(with.result.symmetry_bound == 1);
+  CHECK_FALSE(with.result.completely_integrable);
+  const Found without(pendulum);
+  CHECK(without.result.integrals.size() == 2);
+  CHECK(without.count("total angular momentum about z") == 1);
+  CHECK(without.result.completely_integrable);
+}
+
+TEST_CASE("two bodies in space: the ten charges of the Galilei group") {
+  const Found f(R"(param m1 = 1, m2 = 2, k = 1
+coord x1, y1, z1, x2, y2, z2 : number
+point A mass m1 at (x1, y1, z1)
+point B mass m2 at (x2, y2, z2)
+V = -k/norm(A - B)
+)");
+  CHECK(f.count("energy") == 1);
+  CHECK(f.count("total momentum") == 3);
+  CHECK(f.count("total angular momentum") == 3);
+  CHECK(f.count("Galilei boost") == 3);
+}
+
+TEST_CASE("up to gauge: the momenta that a homogeneous magnetic field leaves over") {
+  const Found f("param m = 1, q = 1, B = 1\ncoord x, y, z : number\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nU = -1/2 q B (x y' - y x')\n");
+  CHECK(f.text("momentum along y") == "m y' + q B x");
+  CHECK(f.text("momentum along z") == "m z'");
+}
+
+TEST_CASE("symmetries that need the time: Caldirola-Kanai, a rotating potential, a wave that travels") {
+  const Found kanai("param m = 1, g = 0.3, w = 2\ncoord x : number\nL = exp(g t) (1/2 m x'^2 - 1/2 m w^2 x^2)\n");
+  CHECK(kanai.text("Jacobi integral") == "1/2 m exp(g t) x'^2 + 1/2 m g x exp(g t) x' + 1/2 m w^2 x^2 exp(g t)");
+  const Found rotating("param m = 1, a = 0.7, W = 0.9\ncoord r : number, φ : angle\nT = 1/2 m (r'^2 + r^2 φ'^2)\n"
+                       "V = 1/2 r^2 + a r^2 cos(2 (φ - W t))\n");
+  CHECK(rotating.count("Jacobi integral") == 1);
+  const Found wave("param m = 1, k = 1, c = 2\ncoord x : number\nT = 1/2 m x'^2\nV = cos(k (x - c t))\n");
+  CHECK(wave.text("Jacobi integral") == "1/2 m x'^2 - m c x' + cos(k x - k c t)");
+}
+
+TEST_CASE("helical symmetry") {
+  const Found f("param m = 1, b = 1, h = 2\ncoord x, y, z : number\nT = 1/2 m (x'^2 + y'^2 + z'^2)\n"
+                "V = b (x cos(z/h) + y sin(z/h))\n");
+  CHECK(f.text("helical momentum about z") == "m (x y' - y x' + h z')");
+}
+
+TEST_CASE("a free relativistic particle: ξ depends on the position") {
+  const Found f("param m = 1, c = 3\ncoord x, y : number\nL = -m c^2 sqrt(1 - (x'^2 + y'^2)/c^2)\n");
+  CHECK(f.result.noether_symmetries == 6);
+  CHECK(f.result.symmetry_bound == 6);
+  CHECK(f.count("boost along") == 2);
+}
+
+TEST_CASE("the integrable Hénon-Heiles potentials of Ramani, Dorizzi and Grammaticos (1982)") {
+  const auto potential = [](const std::string& quadratic, const std::string& c) {
+    return "param A = 1, B = 2\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = " + quadratic + " + x^2 y + " + c + " y^3\n";
+  };
+  CHECK(Found(potential("1/2 (x^2 + y^2)", "-1/3")).result.integrals.size() == 1);
+  CHECK(Found(potential("1/2 (x^2 + y^2)", "-1/3"), 4).result.integrals.size() == 1);
+  CHECK(Found(potential("1/2 (A x^2 + B y^2)", "2")).result.completely_integrable);         // 1 : 6, any A, B
+  CHECK(Found(potential("1/2 A (x^2 + y^2)", "1/3")).result.completely_integrable);         // 1 : 1
+  CHECK_FALSE(Found(potential("1/2 A (x^2 + 16 y^2)", "16/3")).result.completely_integrable);
+  CHECK(Found(potential("1/2 A (x^2 + 16 y^2)", "16/3"), 4).result.completely_integrable);  // 1 : 16, quartic
+}
+
+TEST_CASE("Toda's lattice of three: Hénon's cubic integral (1974)") {
+  const std::string toda = "param m = 1\ncoord x1, x2, x3 : number\nT = 1/2 (x1'^2 + x2'^2 + x3'^2)\n"
+                           "V = exp(x1 - x2) + exp(x2 - x3) + exp(x3 - x1)\n";
+  CHECK_FALSE(Found(toda).result.completely_integrable);
+  CHECK(Found(toda, 3).result.completely_integrable);
+}
+
+TEST_CASE("Kovalevskaya's top at degree 4, on request") {
+  const std::string top = R"(param J = 1, g = 1, a = 1, M = 1
+coord φ, θ, ψ : angle
+body top inertia diag(2 J, 2 J, J) rotation euler zxz (φ, θ, ψ)
+V = M g a sin θ sin ψ
+)";
+  CHECK_FALSE(Found(top).result.completely_integrable);
+  const Found f(top, 4);
+  CHECK(f.of_kind(IntegralKind::Hidden) == 1);
+  CHECK(f.result.completely_integrable);
+}
+
+TEST_CASE("with forces and velocity constraints, where Noether's theorem does not apply") {
+  // A drag proportional to the velocity: m x' + c x; a particle on dz = y dx (Rosenberg).
+  const Found drag("param m = 1, c = 1\ncoord x : number\nT = 1/2 m x'^2\nD = 1/2 c x'^2\n");
+  REQUIRE(drag.result.integrals.size() >= 1);
+  CHECK(drag.result.noether_symmetries == 0);
+  CHECK(is_function_of(drag.m.p("m") * drag.m.v(0) + drag.m.p("c") * drag.m.q(0), drag.result, drag.m.equations));
+  const Found rosenberg("param m = 1\ncoord x, y, z : number\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nconstraint z' = y x'\n");
+  CHECK(rosenberg.count("energy") == 1);
+  CHECK(is_function_of(rosenberg.m.v(1), rosenberg.result, rosenberg.m.equations));
+  CHECK(is_function_of(rosenberg.m.v(0) * sqrt(rosenberg.m.q(1) * rosenberg.m.q(1) + 1), rosenberg.result, rosenberg.m.equations));
+  CHECK_FALSE(is_function_of(rosenberg.m.v(0), rosenberg.result, rosenberg.m.equations));
+}
+
+TEST_CASE("balance laws: the rate of a charge whose symmetry a force breaks") {
+  const Found f("param m = 1, M = 2, l = 1, g = 1, b = 1\ncoord x, a : number\npoint cart mass M at (x, 0)\n"
+                "point bob mass m at cart + l (sin a, -cos a)\ngravity (0, -g)\nD = 1/2 b x'^2\n");
+  REQUIRE(f.result.balance_laws.size() == 2);
+  for (const BalanceLaw& law : f.result.balance_laws)
+    CHECK(to_plain(law.rate, f.m.equations.order) == (law.name == "energy" ? "-b x'^2" : "-b x'"));
+}
+
+TEST_CASE("a basis that would be too large is refused before it is computed") {
+  const ModelText m("dimensionless\nparam k = 1\ncoord x1, x2, x3, x4, x5, x6, x7, x8 : number\n"
+                    "T = 1/2 (x1'^2 + x2'^2 + x3'^2 + x4'^2 + x5'^2 + x6'^2 + x7'^2 + x8'^2)\n"
+                    "V = k (x1 x2 x3 x4 + x5 x6 x7 x8)\n");
+  InvariantsOptions options;
+  options.velocity_degree = 4;
+  Diagnostics diagnostics;
+  CHECK_FALSE(find_invariants(m.model, m.equations, options, diagnostics));
+  REQUIRE(diagnostics.items().size() == 1);
+  CHECK(diagnostics.items()[0].code == "E1001");
+}
+
+TEST_CASE("degrees in the velocities") {
+  const ModelText m("dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n");
+  CHECK(velocity_degree(m.q(0) * m.v(0) * m.v(1) + m.v(0), *m.system) == 2);
+  CHECK(velocity_degree(sin(m.q(0)), *m.system) == 0);
+  CHECK_FALSE(velocity_degree(sqrt(m.v(0) * m.v(0) + 1), *m.system));
+}
