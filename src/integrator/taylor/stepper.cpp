@@ -10,17 +10,26 @@
 
 namespace maupertuis {
 
-void TaylorStepper::Impl::compile() {
-  const CompileReport report = work.compile({options.cache, control.order, true, {}});
-  backend = {report.compiled, report.seconds, report.trouble, report.cache_trouble};
+/// What runs already goes on where other code cannot be had.
+void TaylorStepper::Impl::compile(bool long_run) {
+  const CompileReport report = work.compile({options.cache, control.order, long_run, {}});
+  runs_long = long_run;
+  const double before = backend.compile_seconds;
+  if (report.compiled || !backend.compiled) backend = {report.compiled, before + report.seconds, report.trouble, report.cache_trouble};
 }
 
-/// The expected number of steps decides, not the clock and not what the cache holds: so that equal runs give equal results.
+/// Code for a stage is there soon; code for the whole expansion of a small program is three to six times as fast and takes as long to compile as some 10⁵ steps. The
+/// expected number of steps decides, not the clock and not what the cache holds: so that equal runs give equal results.
 void TaylorStepper::Impl::compile_if_it_pays(double bound) {
-  constexpr std::size_t first_look = 512, enough = 40'000;  // docs/design/kernel_speed.md
-  if (options.backend != Backend::Automatic || steps < first_look || !std::has_single_bit(steps)) return;
+  constexpr std::size_t first_look = 512;
+  constexpr double enough = 20'000, enough_for_long_code = 200'000, usual_size = 8;  // docs/design/kernel_speed.md
+  if (options.backend == Backend::Interpreter || steps < first_look || !std::has_single_bit(steps)) return;
   const double done = std::abs(t.hi - run_begin), left = std::abs(remaining(bound));
-  if (static_cast<double>(steps) * (1 + left / done) >= static_cast<double>(enough) && !backend.compiled && backend.trouble.empty()) compile();
+  const double expected = static_cast<double>(steps) * (1 + left / done);
+  const double size = std::max(1.0, static_cast<double>(n) / usual_size);  // a step saves more where there are more unknowns
+  if (!backend.trouble.empty() || runs_long) return;
+  if (expected >= enough_for_long_code) compile(true);
+  else if (!backend.compiled && expected * size >= enough) compile(false);
 }
 
 void TaylorStepper::Impl::end(Step& result, StepEnding ending, std::string reason) const {

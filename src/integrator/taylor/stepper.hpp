@@ -21,7 +21,7 @@ struct TaylorStepper::Impl {
     for (auto* values : {&q_now, &v_now}) values->resize(n);
     for (auto* values : {&dq, &dv}) values->resize(n);
     integrals.resize(k.integrands());
-    if (options.backend == Backend::Compiled) compile();
+    if (options.backend == Backend::Compiled) compile(false);
   }
 
   struct Crossing {
@@ -33,7 +33,7 @@ struct TaylorStepper::Impl {
 
   Step step(double bound);
   bool forces_diverge();
-  void compile();
+  void compile(bool long_run);
   void compile_if_it_pays(double bound);
   bool expand(double bound, Step& result);
   bool project(Step& result, bool known = false);
@@ -83,6 +83,7 @@ struct TaylorStepper::Impl {
   double longest = 0;                    // length so far
   std::vector<double> largest_row;       // [constraints] of A so far
   std::size_t steps = 0, switches = 0;
+  bool runs_long = false;                // code was asked for that pays in long runs
   int stuck = 0;                         // crossings in a row that did not move time
   BackendUse backend;
   double run_begin = 0;
