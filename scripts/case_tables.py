@@ -51,7 +51,7 @@ SEARCHED = {
     "noether_caldirola_kanai", "noether_galilei_boost", "noether_helical", "noether_lrl_3d", "noether_relativistic_free",
     "noether_rotating_potential", "celest_henon_heiles", "celest_kepler_e06", "sicm_harmonic", "nonhol_knife_edge",
     "nonhol_particle", "nonhol_rolling_disc", "foucault_linear", "block_on_moving_wedge", "bead_rotating_hoop", "sicm_sliding_pendulum",
-    "lagrange_top", "velocity_potential_weber", "celest_arenstorf_3loop",
+    "geodesic_sphere", "lagrange_top", "velocity_potential_weber", "celest_arenstorf_3loop",
 }
 # What a published symmetry is the generator of: names of conserved quantities of the same case.
 CHARGES = {"noether_galilei_boost": ["K_x", "K_y"], "noether_lrl_3d": ["A_x", "A_y", "A_z"]}

@@ -27,6 +27,7 @@ class Collector {
     for (const Constraint& c : system_.constraints)
       if (c.level == Constraint::Level::Velocity) take(c.value, false);
     if (system_.constrained()) take_constraint_metric();
+    take_inverse_metric();
     take_angles();
     take_linear_part();
     return std::move(atoms_);
@@ -120,14 +121,39 @@ class Collector {
     return divided ? divided : sum;
   }
 
+  /// 1/r of m r² φ'^2, 1/sin θ and cot θ of sin²θ φ'^2: what M⁻¹ brings into displacements.
+  void take_inverse_metric() {
+    if (system_.coordinates.size() > 4) return;
+    const ExprMatrix m = mass_matrix(equations_);
+    for (std::size_t i = 0; i < m.rows; ++i) {
+      const Expr entry = in_terms_of_motion(system_, {&m.entries[i * m.columns + i], 1}).front();
+      const Expr expanded = expand(expand_time_derivatives(entry), term_budget);
+      if (!expanded || expanded.is(Kind::Sum) || depends_on_velocities(expanded)) continue;
+      for (const Factor& f : generators_.add_factors(expanded)) {
+        const Expr base = generators_.values()[f.generator];
+        if (!depends_on_coordinates(base)) continue;
+        add_once(atoms_.functions, generators_.add(pow(base, Rational(-1))));
+        if (base.is(Kind::Sin)) add_once(atoms_.functions, generators_.add(cos(base[0]) / base));
+      }
+    }
+  }
+
   /// Directions in polar coordinates: sin φ and cos φ though L has no φ.
   void take_angles() {
     if (system_.coordinates.size() > 4) return;
+    const auto& symbols = symbols_of({&equations_.lagrangian_expanded, 1});
     for (const Coordinate& c : system_.coordinates) {
-      if (c.kind != "angle") continue;
+      const bool cyclic = std::find(symbols.begin(), symbols.end(), c.q) == symbols.end();
+      const bool may_be_angle = c.kind == "angle" || (c.kind == "number" && cyclic && system_.dimensionless && !has_constant_mass());
+      if (!may_be_angle) continue;
       add_once(atoms_.functions, generators_.add(sin(c.q)));
       add_once(atoms_.functions, generators_.add(cos(c.q)));
     }
+  }
+
+  bool has_constant_mass() const {
+    const ExprMatrix m = mass_matrix(equations_);
+    return std::all_of(m.entries.begin(), m.entries.end(), [](const Expr& e) { return is_parametric(e); });
   }
 
   /// q̈ + 2δ q̇ + κ q = …, alone: e^{−δt} and sin ωt, cos ωt with ω² = κ − δ², or e^{±kt} with k² = δ² − κ.

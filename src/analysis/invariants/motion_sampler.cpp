@@ -212,7 +212,9 @@ std::optional<MotionSampler::Sample> MotionSampler::draw(const ParameterRoots& r
       return collect(at);
     } catch (const evaluation::Redraw& redraw) {
       if (redraw.at < parametric_.size() && parametric_[redraw.at]) return std::nullopt;
-      mended = mends-- > 0 && numbers_->mend(redraw);
+      // A symbol with a given value is no help: then all are drawn again.
+      const auto symbol = hints_.free.find(redraw.at);
+      mended = symbol != hints_.free.end() && !numbers_->is_given(symbol->second) && mends-- > 0 && numbers_->mend(redraw);
     }
   }
   return std::nullopt;

@@ -1,5 +1,5 @@
 #pragma once
-#include "analysis/invariants/ansatz.hpp"
+#include "analysis/invariants/symmetry_fit.hpp"
 
 #include <optional>
 #include <string>
@@ -13,24 +13,31 @@ struct Naming {
   int rank = 9;                 // place in a list: energy first, then momenta, angular momenta, boosts, others
 };
 
-/// Fits the symmetry δq = M⁻¹ ∂I/∂q' at random points: the points of the model are moved by
-///     δr = a + ω × r + b t + (s₀ + s₁ t) r − (ξ₀ + ξ₁ t + ξ₂ t²) ṙ
-/// or the coordinates by constants. Precondition: no constraints.
 class Namer {
  public:
   Namer(const EquationsOfMotion& equations, const MotionRows& rows, const Ansatz& ansatz, std::uint64_t seed);
+  /// By its symmetry. Precondition: no constraints.
   Naming name(Expr integral) const;
   /// By its value alone, for systems with constraints or forces: a multiple of h_E, of a momentum, of an angular momentum.
   Naming name_by_value(Expr integral) const;
 
  private:
-  struct Fit;
-  std::optional<Fit> fit_points(Expr integral) const;
-  std::optional<Fit> fit_coordinates(Expr integral) const;
-  std::optional<Fit> fit_leading_part(Expr integral) const;
-  bool name_relative_rotation(Expr integral, Naming& naming) const;
+  using Fit = SymmetryFit;
+  Naming of_fit(const Fit& fit, Expr integral) const;
+  std::optional<Naming> of_time(const Fit& fit, Expr integral) const;
+  std::optional<Naming> of_scaling(const Fit& fit, Expr integral) const;
+  std::optional<Naming> of_rotation(const Fit& fit, Expr integral) const;
+  std::optional<Naming> of_translation(const Fit& fit, Expr integral) const;
+  std::optional<Naming> of_boost(const Fit& fit, Expr integral) const;
+  std::optional<Naming> of_coordinates(const Fit& fit, Expr integral) const;
+  std::optional<Naming> of_leading_part(const Fit& fit, Expr integral) const;
+  std::optional<Naming> of_relative_rotation(Expr integral) const;
   bool is_square_of_angular_momentum(Expr integral) const;
-  void describe(const Fit& fit, Naming& naming) const;
+
+  std::string axis(std::size_t i) const { return std::string(1, ansatz_.world.axes[i]); }
+  std::string axis_of_rotation(const Fit::Term& rotation) const;
+  std::string total() const;
+  bool has_gauge(Expr integral) const;
 
   const EquationsOfMotion& equations_;
   const MotionRows& rows_;

@@ -151,7 +151,7 @@ V = -k/norm(A - B)
 
 TEST_CASE("up to gauge: the momenta that a homogeneous magnetic field leaves over") {
   const Found f("param m = 1, q = 1, B = 1\ncoord x, y, z : number\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nU = -1/2 q B (x y' - y x')\n");
-  CHECK(f.text("momentum along y") == "m y' + q B x");
+  CHECK(f.text("momentum along y, modified by the field") == "m y' + q B x");
   CHECK(f.text("momentum along z") == "m z'");
 }
 
