@@ -1,4 +1,5 @@
 #pragma once
+#include <maupertuis/invariants.hpp>
 #include <maupertuis/plot.hpp>
 #include <maupertuis/simulation.hpp>
 #include <maupertuis/trajectory.hpp>
@@ -116,6 +117,7 @@ SimulationOptions report_run(const Model& model, SimulationOptions options);
 struct ReportParts {
   const SimulationResult* simulation = nullptr;   // null: no run, no drawing, no plots
   const Verification* verification = nullptr;     // null: the `expect` lines were not carried out
+  const Invariants* invariants = nullptr;         // null: the energy function and cyclic coordinates alone
 };
 
 /// Fills a report from the artifacts of one study. `derivation` with its steps; messages are those of `diagnostics`

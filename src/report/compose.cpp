@@ -159,7 +159,7 @@ ReportContent compose_report(const Model& model, const SourceText& source, const
   add_derivation(content, derivation, equations.order);
   add_certificate(content, certificate);
   const ConservedQuantities conserved = conserved_quantities(equations);
-  add_conserved(content, equations, conserved, parts.simulation);
+  add_conserved(content, equations, conserved, parts.simulation, parts.invariants);
   if (parts.simulation) add_motion(content, model, equations, conserved.energy_conserved, *parts.simulation);
   if (parts.verification) content.expectations = parts.verification->results;
   return content;

@@ -57,12 +57,8 @@ void add_momentum(ReportContent& content, const EquationsOfMotion& equations, st
   quantity_row.sentence = fmt::format("{} is cyclic, and nothing acts on it: its momentum is conserved.", c.name);
   quantity_row.formula = formula("p_" + c.name, equations.shown().momenta[i], equations.order);
   if (run) {
-    const auto values = along_run(equations, equations.momenta[i], run->trajectory);
     const std::string unit = system.dimensionless ? "" : to_string(dimensions::action() / c.dimension);
-    if (!values.empty()) {
-      quantity_row.value = quantity(values[0], unit, 10);
-      quantity_row.drift = drift_of(values, unit);
-    }
+    add_values_along_run(quantity_row, equations, equations.momenta[i], unit, run->trajectory);
   }
   content.conserved.push_back(std::move(quantity_row));
 }
@@ -88,9 +84,18 @@ void add_energy(ReportContent& content, const EquationsOfMotion& equations, cons
 
 }  // namespace
 
+void add_values_along_run(ReportContent::Conserved& row, const EquationsOfMotion& equations, Expr function, const std::string& unit,
+                          const Trajectory& run) {
+  const auto values = along_run(equations, function, run);
+  if (values.empty()) return;
+  row.value = quantity(values[0], unit, 10);
+  row.drift = drift_of(values, unit);
+}
+
 void add_conserved(ReportContent& content, const EquationsOfMotion& equations, const ConservedQuantities& conserved,
-                   const SimulationResult* run) {
+                   const SimulationResult* run, const Invariants* invariants) {
   add_energy(content, equations, conserved, run);
+  if (invariants) return add_invariants(content, equations, *invariants, run);
   for (const std::size_t i : conserved.conserved_momenta) add_momentum(content, equations, i, run);
 }
 

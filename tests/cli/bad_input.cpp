@@ -132,3 +132,12 @@ TEST_CASE("a wrong model writes nothing") {
   CHECK(read(old) == "precious\n");
   CHECK(folder.names() == std::vector<std::string>{"old.html", "text.lag", "wrong.lag"});
 }
+
+TEST_CASE("a basis that would not fit is refused with its size, before anything is computed") {
+  const Outcome outcome = maup({"invariants", PROJECT_DIR "/models/robot_arm.lag", "--degree", "4", "--no-drift"});
+  CHECK(outcome.code == 1);
+  CHECK(outcome.out.empty());
+  CHECK(contains(outcome.err, "E1001"));
+  CHECK(contains(outcome.err, "MB"));
+  CHECK(contains(maup({"explain", "E1001"}).out, "--largest-basis"));
+}

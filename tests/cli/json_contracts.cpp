@@ -116,3 +116,24 @@ TEST_CASE("every command speaks JSON, and a failure is a document too") {
     CHECK(document({command, "/no/such/file.lag", "--json"}, "", 2).at("diagnostics").at(0).at("code") == "E0801");
   }
 }
+
+TEST_CASE("invariants --json: integrals with their proofs, what holds between them, the basis") {
+  const Outcome outcome = maup({"invariants", PROJECT_DIR "/models/kepler.lag", "--json"});
+  CHECK(outcome.code == 0);
+  const Json document = Json::parse(outcome.out);
+  CHECK(document["schema"] == 1);
+  CHECK(document["command"] == "invariants");
+  REQUIRE(document["integrals"].size() == 4);
+  for (const Json& integral : document["integrals"]) {
+    CHECK(integral["certificate"]["verdict"] == "zero");
+    CHECK(integral["certificate"]["error_bound"].get<double>() < 1e-15);
+    CHECK(integral["drift"].get<double>() < 1e-12);
+  }
+  CHECK(document["integrals"][0]["name"] == "energy");
+  CHECK(document["integrals"][2]["kind"] == "hidden");
+  CHECK(document["independent"] == 3);
+  CHECK(document["relations"].size() == 1);
+  CHECK(document["completely_integrable"] == true);
+  CHECK(document["point_symmetries_bound"] == document["point_symmetries"]);
+  CHECK(document["basis"].size() >= 2);
+}

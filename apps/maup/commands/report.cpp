@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <maupertuis/invariants.hpp>
 #include <maupertuis/report.hpp>
 #include <maupertuis/verification.hpp>
 
@@ -26,6 +27,13 @@ std::string page_of(Study& study, const std::optional<SimulationResult>& result,
     verification = verify(*study.model(), *study.equations(), study.source(), settings, study.diagnostics());
     parts.verification = &verification;
   }
+  // A page is not worth a long search; what it cannot say of a system is no mistake of the model.
+  InvariantsOptions search;
+  search.largest_basis = 600;
+  search.drift = false;
+  Diagnostics unheard;
+  const auto invariants = find_invariants(*study.model(), *study.equations(), search, unheard);
+  if (invariants) parts.invariants = &*invariants;
   return report_html(compose_report(*study.model(), study.source(), *study.equations(), *study.derivation(true),
                                     *study.certificate(), study.diagnostics(), parts));
 }

@@ -111,3 +111,14 @@ TEST_CASE("an expected error is compared with what was found") {
   CHECK(verify_errors(tree, source, found)->results.front().passed);
   CHECK_FALSE(verify_errors(tree, source, {})->results.front().passed);
 }
+
+TEST_CASE("expect integral: what the search finds, and functions of it") {
+  const std::string kepler = "dimensionless\nparam m = 1, k = 1\ncoord x, y : number\nT = 1/2 m (x'^2 + y'^2)\nV = -k/sqrt(x^2 + y^2)\n";
+  CHECK(only(kepler + "expect integral x y' - y x'\n").passed);
+  CHECK(only(kepler + "expect integral m y' (x y' - y x') - k x/sqrt(x^2 + y^2)\n").passed);
+  CHECK(only(kepler + "expect integral (x y' - y x')^2 exp(1/2 m (x'^2 + y'^2) - k/sqrt(x^2 + y^2))\n").passed);
+  const ExpectationResult momentum = only(kepler + "expect integral x'\n");
+  CHECK_FALSE(momentum.passed);
+  CHECK(momentum.actual == "not found");
+  CHECK_FALSE(only(kepler + "expect integral x^2 + y^2\n").passed);
+}
