@@ -117,9 +117,11 @@ def derivative(tree, values, t):
 
 
 def greek(name):
-    """theta → θ, q1 → q1, omega2 → ω2: whole Greek names only. lambda3 is the multiplier of the third constraint."""
+    """theta → θ, q1 → q1, omega2 → ω2: whole Greek names only; p_theta → p_θ. lambda3 is the multiplier of the third constraint."""
     if name.startswith("lambda"):
         return f"multiplier(c{name[6:]})"
+    if name.startswith("p_"):
+        return "p_" + greek(name[2:])
     stem = re.fullmatch(r"([A-Za-z]+?)(\d*)", name)
     return GREEK[stem[1]] + stem[2] if stem and stem[1] in GREEK else name
 

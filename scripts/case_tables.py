@@ -58,7 +58,7 @@ CHARGES = {"noether_galilei_boost": ["K_x", "K_y"], "noether_lrl_3d": ["A_x", "A
 
 WAITS = {  # kind of an expectation → the capability that it waits for
     "normal_modes_omega_squared": "modes", "eigenvalues": "modes", "linearisation": "modes", "equilibria": "modes",
-    "characteristic_polynomial": "modes", "floquet_trace": "modes", "hamiltonian": "hamiltonian",
+    "characteristic_polynomial": "modes", "floquet_trace": "modes",
     "action": "action", "extremal_path": "action", "identity": "analysis",
     "field_equations": "fields", "field_solution": "fields", "conservation_law": "fields",
     "boundary_conditions": "fields", "event": "contacts", "event_times": "contacts",
@@ -66,7 +66,7 @@ WAITS = {  # kind of an expectation → the capability that it waits for
 }
 SCALARS = {  # what a scalar or an expression of a case waits for, where the general word does not say it
     "bead_rotating_hoop": "modes", "lagrange_top": "modes", "electro_condenser_microphone": "modes",
-    "nonhol_rolling_disc": "modes", "sicm_routhian": "hamiltonian", "sicm_free_rigid_body": "mass matrix on the command line",
+    "nonhol_rolling_disc": "modes", "sicm_free_rigid_body": "mass matrix on the command line",
 }
 
 

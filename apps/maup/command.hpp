@@ -46,6 +46,7 @@ void add_derive(CommandLine& line);
 void add_simulate(CommandLine& line);
 void add_test(CommandLine& line);
 void add_invariants(CommandLine& line);
+void add_hamiltonian(CommandLine& line);
 void add_compare(CommandLine& line);
 void add_reduce(CommandLine& line);
 void add_plot(CommandLine& line);

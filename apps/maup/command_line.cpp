@@ -113,6 +113,7 @@ int run(int argc, char** argv) {
     add_simulate(line);
     add_test(line);
     add_invariants(line);
+    add_hamiltonian(line);
     add_compare(line);
     add_reduce(line);
     add_plot(line);

@@ -89,6 +89,8 @@ std::string reactions_text(const EquationsOfMotion& equations) {
   return out;
 }
 
+}  // namespace
+
 std::string certificate_text(const Certificate& certificate) {
   std::string out = fmt::format("\nCertificate: {}\n", certificate.passed() ? "passed" : "NOT PASSED");
   for (const CertificateCheck& check : certificate.checks) {
@@ -101,8 +103,6 @@ std::string certificate_text(const Certificate& certificate) {
   }
   return out;
 }
-
-}  // namespace
 
 std::string lecture(Study& study, const EquationForm& form, const Certificate& certificate, bool with_steps) {
   const EquationsOfMotion& equations = *study.equations();

@@ -8,6 +8,9 @@ namespace maupertuis::app {
 /// and the certificate.
 std::string lecture(Study& study, const EquationForm& form, const Certificate& certificate, bool with_steps);
 
+/// The checks of a certificate, a line each, under a head.
+std::string certificate_text(const Certificate& certificate);
+
 /// The textbook path in one notation, a line a step; LaTeX and MathML leave sentences to \text and <mtext>.
 std::vector<std::string> step_lines(const Derivation& derivation, Notation notation, const ReadingOrder& order);
 /// [{section, rule, left, right, latex, sentence}]

@@ -7,6 +7,9 @@
 
 namespace maupertuis {
 
+/// On what ground a difference vanishes; `constrained`: along the motion of a system with constraints.
+std::string ground_of(const ZeroTest& test, bool constrained);
+
 /// Proofs about functions along the motion. Without constraints q̈ is replaced by −M⁻¹ h as a shared DAG, and the rest is
 /// the zero test's. With constraints nothing is put in: the test looks at points that satisfy the constraints and the
 /// equations with their multipliers, near the start, to 60 digits.

@@ -89,6 +89,8 @@ struct ReportContent {
   std::vector<Formula> equations;        // left = right, with right 0 or Aᵀλ; then the constraints, `sentence` their names
   std::vector<Formula> intermediates;    // what the names in the equations stand for
   std::vector<Section> derivation;
+  std::vector<Section> phase_space;      // momenta, H, canonical equations, Routhian; `sentence` of a line without formula
+  bool phase_space_certified = false;
   bool certified = false;
   std::vector<Check> certificate;
   std::vector<Conserved> conserved;

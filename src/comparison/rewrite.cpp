@@ -225,6 +225,7 @@ class Rewriter {
   // ------------------------------------------------------------------------------ expectations, drawing
   void expectation(Span span, const ExpectStatement& s) {
     bool lost = s.kind == ExpectStatement::Kind::ConstraintClass && no_multiplier_.count(s.name.text);
+    lost = lost || (s.kind == ExpectStatement::Kind::Equation && !s.word.text.empty());  // other coordinates have other momenta
     for (const ExpressionPtr& e : {s.subject, s.value})
       lost = lost || asks_for(e, "reaction", no_reaction_) || asks_for(e, "multiplier", no_multiplier_);
     lost = lost || no_reaction_.count(s.name.text);

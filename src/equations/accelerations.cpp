@@ -1,5 +1,6 @@
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/linear_system.hpp>
 
 #include <utility>
 
@@ -16,26 +17,6 @@ bool choose_pivot(ExprMatrix& m, std::size_t column) {
     return true;
   }
   return false;
-}
-
-/// The solution x of N x = c for the augmented matrix [N | c].
-std::optional<ExprVector> solve(ExprMatrix m) {
-  const std::size_t n = m.rows;
-  for (std::size_t column = 0; column < n; ++column) {
-    if (!choose_pivot(m, column)) return std::nullopt;
-    for (std::size_t row = column + 1; row < n; ++row) {
-      if (m.at(row, column).is_zero()) continue;
-      const Expr factor = m.at(row, column) / m.at(column, column);
-      for (std::size_t k = column + 1; k <= n; ++k) m.at(row, k) = m.at(row, k) - factor * m.at(column, k);
-    }
-  }
-  ExprVector solution(n);
-  for (std::size_t i = n; i-- > 0;) {
-    Expr value = m.at(i, n);
-    for (std::size_t k = i + 1; k < n; ++k) value = value - m.at(i, k) * solution[k];
-    solution[i] = value / m.at(i, i);
-  }
-  return solution;
 }
 
 /// Rows that are linear in `unknowns` as an augmented matrix: [∂rows/∂unknowns | −rows(unknowns = 0)].
@@ -60,8 +41,27 @@ ExprVector acceleration_symbols(const MechanicalSystem& system) {
 
 }  // namespace
 
+std::optional<ExprVector> solve_linear(ExprMatrix m) {
+  const std::size_t n = m.rows;
+  for (std::size_t column = 0; column < n; ++column) {
+    if (!choose_pivot(m, column)) return std::nullopt;
+    for (std::size_t row = column + 1; row < n; ++row) {
+      if (m.at(row, column).is_zero()) continue;
+      const Expr factor = m.at(row, column) / m.at(column, column);
+      for (std::size_t k = column + 1; k <= n; ++k) m.at(row, k) = m.at(row, k) - factor * m.at(column, k);
+    }
+  }
+  ExprVector solution(n);
+  for (std::size_t i = n; i-- > 0;) {
+    Expr value = m.at(i, n);
+    for (std::size_t k = i + 1; k < n; ++k) value = value - m.at(i, k) * solution[k];
+    solution[i] = value / m.at(i, i);
+  }
+  return solution;
+}
+
 std::optional<ExprVector> accelerations(const ExprVector& residual, const MechanicalSystem& system) {
-  return solve(augmented_matrix(residual, acceleration_symbols(system), *system.context));
+  return solve_linear(augmented_matrix(residual, acceleration_symbols(system), *system.context));
 }
 
 std::optional<ExprVector> accelerations(const EquationsOfMotion& equations) {
@@ -76,7 +76,7 @@ std::optional<ConstrainedMotion> accelerations_and_multipliers(const ExprVector&
   ExprVector rows = balance, unknowns = acceleration_symbols(system);
   rows.insert(rows.end(), constraint_accelerations.begin(), constraint_accelerations.end());
   for (const Constraint& c : system.constraints) unknowns.push_back(c.multiplier);
-  const auto solution = solve(augmented_matrix(rows, unknowns, *system.context));
+  const auto solution = solve_linear(augmented_matrix(rows, unknowns, *system.context));
   if (!solution) return std::nullopt;
   const auto first_multiplier = solution->begin() + static_cast<std::ptrdiff_t>(system.coordinates.size());
   return ConstrainedMotion{{solution->begin(), first_multiplier}, {first_multiplier, solution->end()}};

@@ -1,5 +1,6 @@
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/linear_system.hpp>
 
 #include "equations/simplified.hpp"
 
@@ -8,22 +9,6 @@
 
 namespace maupertuis {
 namespace {
-
-/// Groups of coordinates that M couples, directly or through others; each group ascending.
-std::vector<std::vector<std::size_t>> blocks_of(const ExprMatrix& m) {
-  std::vector<std::size_t> leader(m.rows);
-  std::iota(leader.begin(), leader.end(), std::size_t{0});
-  const std::function<std::size_t(std::size_t)> find = [&](std::size_t i) {
-    return leader[i] == i ? i : leader[i] = find(leader[i]);
-  };
-  for (std::size_t i = 0; i < m.rows; ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (!m.at(i, j).is_zero() || !m.at(j, i).is_zero()) leader[find(i)] = find(j);
-  std::vector<std::vector<std::size_t>> blocks(m.rows);
-  for (std::size_t i = 0; i < m.rows; ++i) blocks[find(i)].push_back(i);
-  std::erase_if(blocks, [](const auto& block) { return block.empty(); });
-  return blocks;
-}
 
 /// numerator / denominator, both readable, so that common factors have a chance to cancel in the constructor.
 ReadableForm quotient(Expr numerator, Expr denominator, const ReadingOrder& order) {
@@ -43,7 +28,7 @@ std::vector<SolvedAcceleration> solved_for(const EquationsOfMotion& equations, c
     if (const Expr canonical = fourier_form(entry)) entry = canonical;  // zeros become visible to the grouping
 
   std::vector<SolvedAcceleration> solved(n);
-  for (const auto& block : blocks_of(m)) {
+  for (const auto& block : coupled_rows(m)) {
     for (const std::size_t i : block) {
       solved[i].coordinate = i;
       solved[i].coupled_with = block;
@@ -80,6 +65,21 @@ ExprVector apply_inverse_mass(const EquationsOfMotion& equations, const ExprVect
 }
 
 }  // namespace
+
+std::vector<std::vector<std::size_t>> coupled_rows(const ExprMatrix& m) {
+  std::vector<std::size_t> leader(m.rows);
+  std::iota(leader.begin(), leader.end(), std::size_t{0});
+  const std::function<std::size_t(std::size_t)> find = [&](std::size_t i) {
+    return leader[i] == i ? i : leader[i] = find(leader[i]);
+  };
+  for (std::size_t i = 0; i < m.rows; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (!m.at(i, j).is_zero() || !m.at(j, i).is_zero()) leader[find(i)] = find(j);
+  std::vector<std::vector<std::size_t>> blocks(m.rows);
+  for (std::size_t i = 0; i < m.rows; ++i) blocks[find(i)].push_back(i);
+  std::erase_if(blocks, [](const auto& block) { return block.empty(); });
+  return blocks;
+}
 
 std::vector<SolvedAcceleration> solved_accelerations(const EquationsOfMotion& equations) {
   ExprVector h = bias(equations);

@@ -2,6 +2,7 @@
 #include "report/notation.hpp"
 
 #include <maupertuis/constraint_analysis.hpp>
+#include <maupertuis/hamiltonian.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/report.hpp>
 
@@ -103,11 +104,11 @@ void add_equations(ReportContent& content, const Derivation& derivation, const R
         content.energies.push_back({left_side_mathml(step.left), to_mathml(step.right, order), "", ""});
 }
 
-void add_derivation(ReportContent& content, const Derivation& derivation, const ReadingOrder& order) {
-  for (const DerivationStep& step : derivation.steps) {
-    if (content.derivation.empty() || content.derivation.back().title != step.section)
-      content.derivation.push_back({step.section, {}});
-    auto& lines = content.derivation.back().lines;
+std::vector<ReportContent::Section> sections_of(const std::vector<DerivationStep>& steps, const ReadingOrder& order) {
+  std::vector<ReportContent::Section> sections;
+  for (const DerivationStep& step : steps) {
+    if (sections.empty() || sections.back().title != step.section) sections.push_back({step.section, {}});
+    auto& lines = sections.back().lines;
     Formula line{left_side_mathml(step.left), "", step.rule, step.sentence};
     if (step.right) line.right = to_mathml(step.right, order);
     else line.left.clear();
@@ -119,6 +120,14 @@ void add_derivation(ReportContent& content, const Derivation& derivation, const 
       lines.push_back(std::move(where));
     }
   }
+  return sections;
+}
+
+void add_phase_space(ReportContent& content, const EquationsOfMotion& equations) {
+  const Hamiltonian h = hamiltonian(equations);
+  const auto r = routhian(equations, h);
+  content.phase_space = sections_of(phase_space_lines(h, r ? &*r : nullptr, equations), h.order);
+  content.phase_space_certified = h.value && certify(h, equations).passed() && (!r || !r->value || certify(*r, h, equations).passed());
 }
 
 std::string_view verdict_word(Verdict verdict) {
@@ -156,7 +165,8 @@ ReportContent compose_report(const Model& model, const SourceText& source, const
   add_model(content, model, source, equations, parts.simulation);
   add_messages(content, diagnostics, source);
   add_equations(content, derivation, equations.order);
-  add_derivation(content, derivation, equations.order);
+  content.derivation = sections_of(derivation.steps, equations.order);
+  add_phase_space(content, equations);
   add_certificate(content, certificate);
   const ConservedQuantities conserved = conserved_quantities(equations);
   add_conserved(content, equations, conserved, parts.simulation, parts.invariants);

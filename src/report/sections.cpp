@@ -167,6 +167,20 @@ std::string derivation_section(const ReportContent& content) {
                                                          lines <= 24 ? "close all" : "open all") + html);
 }
 
+std::string phase_space_section(const ReportContent& content) {
+  std::string html;
+  for (const auto& part : content.phase_space) {
+    html += fmt::format("<h3>{}</h3>\n", sentence_html(part.title));
+    for (const auto& line : part.lines) {
+      if (line.right.empty()) html += fmt::format("<p>{}</p>\n", sentence_html(line.sentence));
+      else html += fmt::format("<div class=\"where\">{}</div>\n", formula_block(line));
+    }
+  }
+  if (html.empty()) return {};
+  if (content.phase_space_certified) html += "<p class=\"hint\">Each of these was proved against Lagrange's equations.</p>\n";
+  return section("phase-space", "Phase space", html);
+}
+
 std::string certificate_section(const ReportContent& content) {
   std::string rows;
   for (const auto& check : content.certificate)

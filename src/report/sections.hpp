@@ -11,6 +11,7 @@ std::string drawing_section(const ReportContent& content);
 std::string equations_section(const ReportContent& content);
 std::string model_section(const ReportContent& content);
 std::string derivation_section(const ReportContent& content);
+std::string phase_space_section(const ReportContent& content);
 std::string certificate_section(const ReportContent& content);
 std::string conserved_section(const ReportContent& content);
 std::string motion_section(const ReportContent& content);

@@ -2,7 +2,15 @@
 
 #include <maupertuis/simulation.hpp>
 
+#include <fmt/format.h>
+
 namespace maupertuis {
+
+std::string ground_of(const ZeroTest& test, bool constrained) {
+  if (constrained && test.error_bound == 1) return fmt::format("vanishes to 60 digits at {} points of the constraints", test.points);
+  if (test.error_bound < 1) return fmt::format("proved at {} random points, error bound {:.1e}", test.points, test.error_bound);
+  return test.reason.empty() ? fmt::format("vanishes at {} random points", test.points) : test.reason;
+}
 
 AlongMotion::AlongMotion(const EquationsOfMotion& equations) : AlongMotion(equations, equations.balance()) {}
 

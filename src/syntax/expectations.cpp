@@ -10,6 +10,15 @@ using Kind = ExpectStatement::Kind;
 StatementBody StatementParser::expect_statement() { return expectation(false); }
 StatementBody StatementParser::claim_statement() { return expectation(true); }
 
+namespace {
+
+/// What a model expects of its phase space is an equation whose left side is one of these words.
+bool opens_phase_space(const Token& word, const Token& after) {
+  return (word.is("hamiltonian") && after.is("=")) || (word.is("routhian") && after.is("of")) || (word.is("bracket") && after.is("("));
+}
+
+}  // namespace
+
 void StatementParser::tolerance(ExpectStatement& expect, bool required) {
   if (accept("±")) {
     expect.tolerance = quantity();
@@ -38,6 +47,8 @@ ExpectStatement StatementParser::expectation(bool claim) {
     expect.subject = formula();
     this->expect("=", "the left side of the equation");
     expect.value = formula();
+  } else if (opens_phase_space(peek(), peek(1))) {
+    expect_phase_space(expect);
   } else if (peek().is("freedoms") && peek(1).is("=")) {
     next(), next();
     expect.kind = Kind::Freedoms;
@@ -96,6 +107,23 @@ void StatementParser::expect_frequencies(ExpectStatement& expect) {
   do expect.values.push_back(quantity());
   while (accept(","));
   tolerance(expect, true);
+}
+
+// hamiltonian = H,   routhian of φ, ψ = R,   bracket (A, B) = C
+void StatementParser::expect_phase_space(ExpectStatement& expect) {
+  expect.kind = Kind::Equation;
+  expect.word = used_name("hamiltonian, routhian or bracket");
+  if (accept("of")) {
+    do expect.values.push_back(formula());
+    while (accept(","));
+  } else if (accept("(")) {
+    expect.subject = formula();
+    this->expect(",", "the first function of the bracket");
+    expect.values.push_back(formula());
+    this->expect(")", "the second function of the bracket");
+  }
+  this->expect("=", "what stands on the left");
+  expect.value = formula();
 }
 
 // hit 3 at 0.45 s ± 1e-11

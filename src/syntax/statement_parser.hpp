@@ -69,6 +69,7 @@ class StatementParser : private ExpressionParser {
   void expect_value(ExpectStatement& expect);
   void expect_frequencies(ExpectStatement& expect);
   void expect_event(ExpectStatement& expect);
+  void expect_phase_space(ExpectStatement& expect);
   ExpressionPtr clause_formula(std::string_view clause, const ExpressionPtr& already);
   [[noreturn]] void missing_clause(std::string_view clause, std::string_view statement, std::string_view example);
   Span statement_span() const;

@@ -117,6 +117,11 @@ constexpr CodeEntry kEntries[] = {
      "is elastic\n",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = y name rod\nexpect constraint rod "
      "is holonomic\n"},
+    {"E0228", "no coordinate for a Routhian",
+     "`expect routhian of φ, ψ = …` names coordinates of the model: those whose velocities are replaced by their "
+     "momenta.",
+     "param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\nexpect routhian of m = -p_x^2/(2 m)\n",
+     "param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\nexpect routhian of x = -p_x^2/(2 m)\n"},
     // ----------------------------------------------------------------------------------------------------------- units
     {"E0301", "a unit is not known",
      "Units are SI base and derived units with the SI prefixes, and common ones without: min, h, deg, rev, rpm, bar, "

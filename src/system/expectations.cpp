@@ -109,6 +109,49 @@ bool equation(Elaboration& e, Expectation& out, const ExpectStatement& s) {
   return true;
 }
 
+/// A coordinate as a name alone.
+Expr coordinate_named(Elaboration& e, const Expression& x) {
+  const Coordinate* c = x.kind == Expression::Kind::Name && x.primes == 0 ? e.system().find_coordinate(x.text) : nullptr;
+  if (c) return c->q;
+  e.diagnostics.error("E0228", x.span, fmt::format("`{}` is no coordinate", e.source.slice(x.span)),
+                      "A Routhian replaces velocities of coordinates by their momenta.",
+                      "Name them, separated by commas: expect routhian of φ, ψ = …");
+  return {};
+}
+
+/// hamiltonian = H, routhian of φ = R: energies in q, p and, for the latter, the other velocities.
+bool energy_of_phase_space(Elaboration& e, Expectation& out, const ExpectStatement& s) {
+  Place place;
+  place.reactions = true;
+  for (const syntax::ExpressionPtr& x : s.values) {
+    out.values.push_back(coordinate_named(e, *x));
+    if (!out.values.back()) return false;
+  }
+  const std::string what = out.values.empty() ? "the Hamiltonian" : "the Routhian";
+  const Value v = scalar_of(e, *s.value, dimensions::energy(), what, place);
+  if (v.poisoned) return false;
+  out.subject_right = v.scalar();
+  out.dimension = v.dimension;
+  return true;
+}
+
+/// {A, B} = C has the dimension of A B divided by that of q p, an action.
+bool bracket(Elaboration& e, Expectation& out, const ExpectStatement& s) {
+  Place place;
+  place.reactions = true;
+  const std::optional<Value> a = number(e, *s.subject, place), b = number(e, *s.values[0], place), c = number(e, *s.value, place);
+  if (!a || !b || !c) return false;
+  out.subject = a->scalar();
+  out.values = {b->scalar()};
+  out.subject_right = c->scalar();
+  out.dimension = a->dimension * b->dimension / e.dimension(dimensions::energy() * dimensions::time());
+  if (e.dimensionless || a->fits_any || b->fits_any || c->fits_any || c->dimension.same_as(out.dimension)) return true;
+  e.diagnostics.error("E0304", s.value->span,
+                      fmt::format("the bracket is {}, this is {}", describe(out.dimension), describe(c->dimension)),
+                      "{A, B} has the dimension of A B divided by that of q p, an action.", "");
+  return false;
+}
+
 bool about_subject(Elaboration& e, Expectation& out, const ExpectStatement& s) {
   const std::optional<Value> subject = number(e, *s.subject);
   if (!subject) return false;
@@ -164,7 +207,9 @@ bool fill(Elaboration& e, Expectation& out, const ExpectStatement& s) {
     case Kind::Integral:
       return about_subject(e, out, s);
     case Kind::Equation:
-      return equation(e, out, s);
+      return s.word.text.empty() ? equation(e, out, s)
+             : s.subject           ? bracket(e, out, s)
+                                   : energy_of_phase_space(e, out, s);
     case Kind::Freedoms:
       return freedoms(e, out, s);
     case Kind::Frequencies:

@@ -1,5 +1,7 @@
 #include "system/elaboration.hpp"
 
+#include <maupertuis/momentum.hpp>
+
 #include <fmt/format.h>
 
 /// Names in formulas.
@@ -105,6 +107,17 @@ std::optional<Value> angular_velocity(Elaboration& e, const Expression& x) {
   return v;
 }
 
+/// p_θ where momenta may stand; nothing where it names none.
+std::optional<Value> momentum(Elaboration& e, const Expression& x) {
+  const MechanicalSystem& system = e.system();
+  for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
+    if (x.text != momentum_name(system, i)) continue;
+    const Dimension action = e.dimension(dimensions::energy() * dimensions::time());
+    return Value::of(momentum_symbol(system, i), action / system.coordinates[i].dimension, 1);
+  }
+  return std::nullopt;
+}
+
 /// A poisoned or lost name is no second mistake.
 bool is_silent(Elaboration& e, const std::string& text) { return e.table.is_lost(text); }
 
@@ -159,6 +172,8 @@ Value value_of_name(Elaboration& e, const Expression& x, const Place& place) {
     return time_derivative(e, v, x.primes, x);
   }
   if (x.text == "O") return origin(e, place);
+  if (place.reactions && x.primes == 0)
+    if (const std::optional<Value> p = momentum(e, x)) return *p;
   unknown_name(e, x.text, x.name_span);
   return Value::poison();
 }

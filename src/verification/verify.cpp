@@ -5,6 +5,7 @@
 #include <maupertuis/along_motion.hpp>
 #include "verification/claims.hpp"
 #include "verification/constraint_claims.hpp"
+#include "verification/phase_space_claims.hpp"
 
 #include <fmt/format.h>
 
@@ -86,7 +87,10 @@ class Verifier {
         else decide_conserved(e, result);
         return;
       case Kind::NotConserved: decide_not_conserved(e, result); return;
-      case Kind::Equation: decide_equation(e, result); return;
+      case Kind::Equation:
+        if (e.word.empty()) decide_equation(e, result);
+        else decide_phase_space(e, equations_, result);
+        return;
       case Kind::Freedoms: decide_freedoms(number(e.value), constraints(), result); return;
       case Kind::ConstraintClass: decide_class(e, model_.system, constraints(), result); return;
       case Kind::Error:
@@ -101,12 +105,7 @@ class Verifier {
     }
   }
 
-  std::string ground(const ZeroTest& test) const {
-    if (equations_.system->constrained() && test.error_bound == 1)
-      return fmt::format("vanishes to 60 digits at {} points of the constraints", test.points);
-    if (test.error_bound < 1) return fmt::format("proved at {} random points, error bound {:.1e}", test.points, test.error_bound);
-    return test.reason.empty() ? fmt::format("vanishes at {} random points", test.points) : test.reason;
-  }
+  std::string ground(const ZeroTest& test) const { return ground_of(test, equations_.system->constrained()); }
 
   bool needs_solvable(ExpectationResult& result) {
     if (along().solvable()) return true;
@@ -163,7 +162,7 @@ class Verifier {
 
   void decide_equation(const Expectation& e, ExpectationResult& result) {
     if (!needs_solvable(result)) return;
-    const Expr difference = e.subject - e.subject_right;
+    const Expr difference = with_momenta(e.subject - e.subject_right, equations_);
     const ZeroTest test = along().vanishes(difference);
     result.expected = "follows from the derived equations";
     result.passed = test.verdict == Verdict::Zero;
@@ -207,7 +206,8 @@ class Verifier {
     SimulationOptions options = options_;
     if (!whole_run) options.duration = 0.0;      // as far as the times asked for
     Probe probe;
-    for (const Request& r : wanted) probe.expressions.push_back(model_.experiment.expectations[r.expectation].subject);
+    for (const Request& r : wanted)
+      probe.expressions.push_back(with_momenta(model_.experiment.expectations[r.expectation].subject, equations_));
     options.at = times_of(wanted, whole_run);
     const auto run = simulate(model_, equations_, options, diagnostics_, &probe);
     for (std::size_t i = 0; i < wanted.size(); ++i) judge(wanted[i], i, options.at, run, probe);

@@ -36,6 +36,15 @@ std::string dotted(const std::string& body, int order) {
   }
 }
 
+std::string write_name(const std::string& text, int dots) {
+  const SymbolName name = split_name(text);
+  const std::string body = dotted(letter_or_word(name.body, name.body_is_word), dots);
+  if (name.subscript.empty()) return body;
+  const std::string below = name.subscript == "max" || name.subscript == "min"
+                                ? "\\" + name.subscript : letter_or_word(name.subscript, name.subscript_is_word);
+  return body + "_" + (below.size() == 1 ? below : braces(below));
+}
+
 std::string write(const Layout& l);
 
 std::string bracketed(const std::string& text) { return "\\left(" + text + "\\right)"; }
@@ -151,12 +160,11 @@ std::string symbol_to_latex(Expr symbol) {
     const QuantityName quantity = split_quantity(symbol.name());
     return quantity.unit.empty() ? quantity.number : quantity.number + "\\,\\mathrm" + braces(escaped(quantity.unit));
   }
-  const SymbolName name = split_name(symbol.name());
-  std::string text = dotted(letter_or_word(name.body, name.body_is_word), symbol.order());
-  if (name.subscript.empty()) return text;
-  const std::string below = name.subscript == "max" || name.subscript == "min"
-                                ? "\\" + name.subscript : letter_or_word(name.subscript, name.subscript_is_word);
-  return text + "_" + (below.size() == 1 ? below : braces(below));
+  const ShownSymbol shown = shown_symbol(symbol);
+  const std::size_t cut = shown.name.find('_');
+  if (!is_integral(symbol.name()) || cut == std::string::npos) return write_name(shown.name, shown.dots);
+  // p_{\theta_1}: what stands below a momentum is the name of its coordinate.
+  return write_name(shown.name.substr(0, cut), shown.dots) + "_" + braces(write_name(shown.name.substr(cut + 1), 0));
 }
 
 }  // namespace maupertuis

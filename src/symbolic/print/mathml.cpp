@@ -51,13 +51,14 @@ std::string write_symbol(Expr symbol) {
     if (quantity.unit.empty()) return number;
     return row(number + "<mspace width=\"0.17em\"/>" + tag("mtext", escaped(quantity.unit)));
   }
-  const SymbolName name = split_name(symbol.name());
+  const ShownSymbol shown = shown_symbol(symbol);
+  const SymbolName name = split_name(shown.name);
   std::string body = identifier(name.body);
   constexpr const char* dots[] = {"", "&#x02D9;", "&#x00A8;", "&#x20DB;"};
-  if (symbol.order() >= 1 && symbol.order() <= 3)
-    body = "<mover accent=\"true\">" + body + tag("mo", dots[symbol.order()]) + "</mover>";
-  else if (symbol.order() > 3)
-    body = tag("msup", body + row("<mo>(</mo>" + tag("mn", std::to_string(symbol.order())) + "<mo>)</mo>"));
+  if (shown.dots >= 1 && shown.dots <= 3)
+    body = "<mover accent=\"true\">" + body + tag("mo", dots[shown.dots]) + "</mover>";
+  else if (shown.dots > 3)
+    body = tag("msup", body + row("<mo>(</mo>" + tag("mn", std::to_string(shown.dots)) + "<mo>)</mo>"));
   if (name.subscript.empty()) return body;
   const bool digits = name.subscript.find_first_not_of("0123456789") == std::string::npos;
   return tag("msub", body + (digits ? tag("mn", name.subscript) : identifier(name.subscript)));

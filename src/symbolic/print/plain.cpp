@@ -113,7 +113,8 @@ std::string symbol_to_plain(Expr symbol) {
     const print::QuantityName quantity = print::split_quantity(symbol.name());
     return quantity.unit.empty() ? quantity.number : quantity.number + " [" + quantity.unit + "]";
   }
-  return symbol.name() + std::string(static_cast<std::size_t>(symbol.order()), '\'');
+  const print::ShownSymbol shown = print::shown_symbol(symbol);
+  return shown.name + std::string(static_cast<std::size_t>(shown.dots), '\'');
 }
 
 }  // namespace maupertuis

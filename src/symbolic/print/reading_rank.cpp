@@ -1,5 +1,7 @@
 #include "symbolic/print/reading_rank.hpp"
 
+#include <maupertuis/integral_symbol.hpp>
+
 #include <algorithm>
 
 namespace maupertuis::print {
@@ -48,6 +50,28 @@ std::vector<Expr> factors_of(Expr e) {
   return factors;
 }
 
+/// A velocity, or a momentum in its place.
+bool is_rate(Expr e) {
+  return e.is_symbol() && e.role() == Role::Coordinate && e.order() == 1;
+}
+
+bool is_momentum(Expr e) { return e.is_symbol() && e.role() == Role::Coordinate && e.order() == 1 && is_integral(e.name()); }
+
+/// Of the highest term: 2 for (p_x + m Ω y)².
+std::uint32_t degree_in_momenta(Expr e) {
+  if (is_momentum(e)) return 1;
+  std::uint32_t degree = 0;
+  if (e.is(Kind::Power)) {
+    const auto times = e[1].is_number() ? e[1].number().as_integer() : std::nullopt;
+    return times && *times > 0 ? static_cast<std::uint32_t>(*times) * degree_in_momenta(e[0]) : 0;
+  }
+  if (e.is(Kind::Sum))
+    for (std::size_t i = 0; i < e.size(); ++i) degree = std::max(degree, degree_in_momenta(e[i]));
+  if (e.is(Kind::Product))
+    for (std::size_t i = 0; i < e.size(); ++i) degree += degree_in_momenta(e[i]);
+  return degree;
+}
+
 bool is_denominator(Expr factor) {
   return factor.is(Kind::Power) && factor[1].is_number() && factor[1].number().sign() < 0;
 }
@@ -64,7 +88,7 @@ std::uint32_t count_of_functions(Expr term) {
 }
 
 enum FactorClass : std::uint32_t { Constants, ParameterSums, Circle, Parameters, ParameterFunctions, Times, Inputs,
-                                   Positions, Functions, Velocities, Accelerations, Multipliers };
+                                   Positions, Momenta, Functions, Velocities, Accelerations, Multipliers };
 
 }  // namespace
 
@@ -101,6 +125,7 @@ Rank ReadingRanks::factor(Expr factor) const {
       case Role::Time: return {Times, rank};
       case Role::Input: return {Inputs, rank, static_cast<std::uint32_t>(base.order())};
       case Role::Coordinate:
+        if (base.order() == 1 && is_integral(base.name())) return {Momenta, rank};   // p_ψ cos θ
         return {base.order() == 0 ? Positions : base.order() == 1 ? Velocities : Accelerations, rank};
       case Role::Multiplier: return {Multipliers, rank};
       default: return {Parameters, rank};
@@ -157,6 +182,7 @@ Rank ReadingRanks::rank_of_rest(Expr term) const {
 Rank ReadingRanks::term(Expr term, bool own_first) const {
   const Contents contents = contents_of(term);
   Rank rank;
+  const std::uint32_t degree = degree_in_momenta(term);
   if (contents.multiplier) {
     rank = {3};   // forces of constraints after the others
     for (const Expr& s : symbols_of({&term, 1}))
@@ -167,11 +193,16 @@ Rank ReadingRanks::term(Expr term, bool own_first) const {
     for (const Expr& s : symbols_of({&term, 1}))
       if (s.role() == Role::Coordinate && s.order() >= 2) first = std::min(first, rate_rank(s, own_first));
     rank.push_back(first);
+  } else if (degree > 0 && contents.highest_order == 1) {   // a Hamiltonian: kinetic energy first, whatever it is grouped by
+    std::uint32_t first = ~0u;
+    for (const Expr& s : symbols_of({&term, 1}))
+      if (is_momentum(s)) first = std::min(first, declared_rank(s));
+    rank = {1, degree == 2 ? 0u : 4 - std::min(degree, 2u), first};
   } else if (contents.highest_order == 1) {
     std::vector<std::uint32_t> linear, repeated;
     for (const Expr& f : factors_of(term)) {
       const PowerOf power = split_power(f);
-      if (!power.base.is_symbol() || power.base.role() != Role::Coordinate || power.base.order() != 1) continue;
+      if (!is_rate(power.base)) continue;
       (power.exponent.is_one() ? linear : repeated).push_back(rate_rank(power.base, own_first));
     }
     std::sort(linear.begin(), linear.end());

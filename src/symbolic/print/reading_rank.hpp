@@ -14,7 +14,7 @@ class ReadingRanks {
  public:
   explicit ReadingRanks(const ReadingOrder& order);
 
-  /// number, parameter sums, parameters, time and inputs, coordinates, functions, velocities, accelerations.
+  /// number, parameter sums, parameters, time and inputs, coordinates, momenta, functions, velocities, accelerations.
   Rank factor(Expr factor) const;
   /// Accelerations (the own one first, if asked), velocities (squares, products, single ones), then what has none of them.
   Rank term(Expr term, bool own_first) const;

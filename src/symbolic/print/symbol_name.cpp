@@ -57,6 +57,12 @@ SymbolName split_name(std::string_view name) {
   return result;
 }
 
+ShownSymbol shown_symbol(Expr symbol) {
+  const std::string& name = symbol.name();
+  if (symbol.order() == 0 || !is_integral(name)) return {name, symbol.order()};
+  return {name.substr(integral_sign.size()), symbol.order() - 1};
+}
+
 QuantityName split_quantity(std::string_view name) {
   const std::size_t space = name.find(' ');
   if (space == std::string_view::npos || name.empty()) return {std::string(name), {}};

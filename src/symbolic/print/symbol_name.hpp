@@ -1,4 +1,6 @@
 #pragma once
+#include <maupertuis/integral_symbol.hpp>
+
 #include <string>
 #include <string_view>
 
@@ -22,5 +24,12 @@ struct QuantityName {
   std::string number, unit;
 };
 QuantityName split_quantity(std::string_view name);
+
+/// The name and the number of dots that a symbol is shown with: the rate of ∫p_θ is p_θ.
+struct ShownSymbol {
+  std::string name;
+  int dots = 0;
+};
+ShownSymbol shown_symbol(Expr symbol);
 
 }  // namespace maupertuis::print

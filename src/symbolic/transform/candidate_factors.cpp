@@ -1,5 +1,7 @@
 #include "symbolic/transform/candidates.hpp"
 
+#include <maupertuis/integral_symbol.hpp>
+
 #include <algorithm>
 
 /// Factored candidates, and the signs that their sums get.
@@ -19,7 +21,9 @@ int CandidateChooser::reading_sign(const Polynomial& sum) const {
       else is_function |= !e.is_symbol() || f.exponent.num < 0;
       if (!e.is_symbol() || f.exponent.num < 0) continue;
       std::size_t symbol_rank = late + late / 2 + e.id() % (late / 2);
-      if (e.role() == Role::Coordinate) {
+      if (e.role() == Role::Coordinate && is_integral(e.name())) {   // p - q B y, but x p_y - y p_x
+        symbol_rank = algebra_.monomial(t.monomial).size() == 1 && !t.harmonic ? 0 : late + late / 4;
+      } else if (e.role() == Role::Coordinate) {
         const Expr position = e.context().symbol(e.name(), Role::Coordinate);
         const auto place = ranks_.find(position.id());
         symbol_rank = place == ranks_.end() ? late : place->second + 1;

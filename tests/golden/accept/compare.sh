@@ -1,12 +1,13 @@
 #!/bin/sh
-# compare.sh MAUP NAME [promote]: the three outputs for NAME.lag against the expected files, or written to them.
+# compare.sh MAUP NAME [promote]: the four outputs for NAME.lag against the expected files, or written to them.
 maup=$1 name=$2 action=${3:-compare}
 failed=0
-for stage in check derive steps; do
+for stage in check derive steps hamiltonian; do
   case $stage in
     check) set -- check ;;
     derive) set -- derive --plain ;;
     steps) set -- derive --steps --plain ;;
+    hamiltonian) set -- hamiltonian ;;
   esac
   actual=$(mktemp)
   NO_COLOR=1 "$maup" "$@" "$name.lag" >"$actual" 2>&1 || { echo "maup $* $name.lag ended with $?"; failed=1; }

@@ -1,0 +1,196 @@
+#include "command.hpp"
+#include "hamiltonian_text.hpp"
+#include "outcome.hpp"
+#include "quantity.hpp"
+#include "run_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <maupertuis/print.hpp>
+
+namespace maupertuis::app {
+namespace {
+
+struct HamiltonianOptions {
+  ModelOptions model;
+  RunOptions run;
+  std::vector<std::string> routhian, bracket;
+  bool latex = false, mathml = false, plain = false, integrate = false;
+  std::string output;
+};
+
+/// The coordinates of --routhian; E1105 for a name that is none.
+std::vector<std::size_t> coordinates_named(const std::vector<std::string>& names, Study& study) {
+  const auto& coordinates = study.model()->system.coordinates;
+  std::vector<std::string> known;
+  for (const Coordinate& c : coordinates) known.push_back(c.name);
+  std::vector<std::size_t> found;
+  for (const std::string& name : names) {
+    const auto place = std::find(known.begin(), known.end(), name);
+    if (place == known.end()) {
+      const std::string near = did_you_mean(name, known);
+      study.diagnostics().error("E1105", {}, fmt::format("`{}` is no coordinate of {}", name, study.model()->system.name),
+                                "A Routhian replaces velocities of coordinates by their momenta.",
+                                near.empty() ? "" : fmt::format("Did you mean `{}`?", near));
+    } else if (const auto i = static_cast<std::size_t>(place - known.begin()); std::find(found.begin(), found.end(), i) == found.end()) {
+      found.push_back(i);
+    }
+  }
+  return found;
+}
+
+/// Brackets are read by the model language itself, as expectations after the model's `run` statement.
+std::vector<std::string> bracket_statements(const std::vector<std::string>& arguments) {
+  std::vector<std::string> statements;
+  for (std::size_t i = 0; i + 1 < arguments.size(); i += 2) {
+    statements.push_back(fmt::format("expect bracket ({}, {}) = 0", arguments[i], arguments[i + 1]));
+    for (char& c : statements.back())
+      if (c == '\n' || c == '\r' || c == '#') c = ' ';   // one statement, whatever was typed
+  }
+  return statements;
+}
+
+void add_statements(const std::vector<std::string>& statements, Study& study) {
+  const syntax::SyntaxTree* tree = study.tree();
+  if (!tree || study.wrong() || statements.empty()) return;
+  std::string text;
+  for (const syntax::Statement& s : tree->statements)
+    if (std::holds_alternative<syntax::RunStatement>(s.body)) text = std::string(study.source().slice(s.span)) + "\n";
+  study.replace_run(text + fmt::format("{}", fmt::join(statements, "\n")));
+}
+
+std::vector<Bracket> brackets_of(const std::vector<std::string>& statements, const Hamiltonian& h, Study& study) {
+  std::vector<Bracket> found;
+  for (const Expectation& e : study.model()->experiment.expectations) {
+    if (std::find(statements.begin(), statements.end(), e.text) == statements.end()) continue;
+    const auto value = poisson_bracket(e.subject, e.values.front(), h);
+    if (!value)
+      study.diagnostics().error("E1104", e.span, "this bracket cannot be formed",
+                                "A velocity stands in it that does not follow from the momenta, or an acceleration.",
+                                "Write it in coordinates, momenta and t.");
+    else
+      found.push_back({e.subject, e.values.front(), *value});
+  }
+  return found;
+}
+
+/// A result that fails its own proof is not shown (E0690); one that is undecided is shown with a warning (W0691).
+void judge(const Certificate& certificate, Diagnostics& diagnostics) {
+  for (const CertificateCheck& check : certificate.checks) {
+    if (check.verdict == Verdict::Nonzero)
+      diagnostics.error("E0690", {}, fmt::format("the transform failed its check {}: {}", check.name, check.reason),
+                        "What was derived is wrong, and is not shown.", "Please report this model.");
+    else if (check.verdict == Verdict::Undecided)
+      diagnostics.warning("W0691", {}, fmt::format("the check {} was undecided: {}", check.name, check.reason), "Nothing vouches for this part.", "");
+  }
+}
+
+PhaseSpace analyse(const HamiltonianOptions& options, Study& study) {
+  PhaseSpace found;
+  const EquationsOfMotion& equations = *study.equations();
+  found.hamiltonian = hamiltonian(equations);
+  report_legendre(found.hamiltonian, study.diagnostics());
+  const std::vector<std::size_t> replaced = coordinates_named(options.routhian, study);
+  found.routhian = routhian(equations, found.hamiltonian, replaced.empty() ? nullptr : &replaced);
+  found.brackets = brackets_of(bracket_statements(options.bracket), found.hamiltonian, study);
+  found.certificate = certify(found.hamiltonian, equations);
+  if (found.routhian)
+    for (CertificateCheck& check : certify(*found.routhian, found.hamiltonian, equations).checks)
+      found.certificate.checks.push_back(std::move(check));
+  judge(found.certificate, study.diagnostics());
+  found.lines = phase_space_lines(found.hamiltonian, found.routhian ? &*found.routhian : nullptr, equations);
+  return found;
+}
+
+std::string motion_text(const CanonicalMotion& motion, const SimulationResult& run) {
+  const Trajectory& rows = motion.trajectory;
+  std::string out = fmt::format("\nCanonical integration\n  t = {} s\n", exact(motion.final_time));
+  const std::size_t n = motion.final_q.size();
+  for (std::size_t i = 0; i < 2 * n; ++i) {
+    const double value = i < n ? motion.final_q[i] : motion.final_p[i - n];
+    out += fmt::format("  {:<8} {: .17g}{}{}\n", rows.columns[i].name, value, rows.columns[i].unit.empty() ? "" : " ", rows.columns[i].unit);
+  }
+  out += fmt::format("  {} steps of order {}; Lagrange's equations took {}\n", motion.steps, motion.order, run.statistics.steps);
+  return out + (motion.difference > 0 ? fmt::format("  the two motions differ by {} of its size in {}, at t = {} s\n", brief(motion.difference),
+                                                    motion.difference_name, brief(motion.difference_time))
+                                      : std::string("  the two motions agree to the last digit\n"));
+}
+
+Json motion_json(const CanonicalMotion& motion) {
+  Json state;
+  const std::size_t n = motion.final_q.size();
+  for (std::size_t i = 0; i < 2 * n; ++i) state[motion.trajectory.columns[i].name] = i < n ? motion.final_q[i] : motion.final_p[i - n];
+  return {{"final", {{"t", motion.final_time}, {"state", std::move(state)}}}, {"steps", motion.steps}, {"order", motion.order},
+          {"difference", motion.difference}, {"difference_in", motion.difference_name}, {"difference_at", motion.difference_time},
+          {"ended", motion.ending}};
+}
+
+/// Both motions; the exit code of what went wrong, if something did.
+ExitCode integrate(const HamiltonianOptions& options, const PhaseSpace& found, Study& study, Console& console, Json& document) {
+  const SimulationOptions settings = simulation_options(options.run, study.diagnostics());
+  if (study.wrong()) return ExitCode::Usage;
+  const auto run = run_model(study, settings, console);
+  if (!run) return ExitCode::ModelWrong;
+  const auto motion = canonical_motion(found.hamiltonian, *study.equations(), *run, settings, study.diagnostics());
+  if (!motion) return ExitCode::ModelWrong;
+  if (!options.output.empty())
+    if (const std::string failure = write_trajectory(motion->trajectory, options.output); !failure.empty())
+      cannot_write(failure, study.diagnostics());
+  document["integration"] = motion_json(*motion);
+  if (!console.json()) console.print(motion_text(*motion, *run));
+  if (!motion->ending.empty() && !console.json())
+    console.say(fmt::format("The canonical run ended at t = {} s: {}\n", exact(motion->final_time), motion->ending));
+  return motion->ending.empty() ? exit_code(run->ending) : ExitCode::RunFailed;
+}
+
+ExitCode hamiltonian_of(const HamiltonianOptions& options, Console& console) {
+  Study study(options.model.path, options.model.overrides);
+  Json document = json_document("hamiltonian");
+  if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);
+  add_statements(bracket_statements(options.bracket), study);
+  if (!study.model() || !study.certificate()) return finish(console, study, document);
+  const PhaseSpace found = analyse(options, study);
+  if (study.wrong()) return finish(console, study, document);
+  if (!console.json()) {
+    if (options.latex) console.print(phase_space_text(found, Notation::Latex));
+    else if (options.mathml) console.print(phase_space_text(found, Notation::Mathml));
+    else if (options.plain) console.print(phase_space_text(found, Notation::Plain));
+    else console.print(phase_space_text(found));
+  }
+  add_to(document, found);
+  const ExitCode ended = options.integrate ? integrate(options, found, study, console, document) : ExitCode::Fine;
+  const ExitCode told = finish(console, study, document);
+  return told != ExitCode::Fine ? (ended == ExitCode::Usage ? ended : told) : ended;
+}
+
+}  // namespace
+
+void add_hamiltonian(CommandLine& line) {
+  const auto options = std::make_shared<HamiltonianOptions>();
+  CLI::App& command = line.add("hamiltonian", "Momenta, H, canonical equations, Routhian, Poisson brackets",
+                               "  maup hamiltonian top.lag\n"
+                               "  maup hamiltonian kepler.lag --bracket \"x p_y - y p_x\" \"p_x^2 + p_y^2\"\n"
+                               "  maup hamiltonian double_pendulum.lag --integrate --duration 5s\n",
+                               [options](Console& console) { return hamiltonian_of(*options, console); });
+  add_model_options(command, options->model);
+  command.add_option("--routhian", options->routhian, "The Routhian without these coordinates (default: the cyclic ones)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAME,...");
+  command.add_option("--bracket", options->bracket, "{A, B} of two formulas in coordinates, momenta and t, e.g. x p_x; may be repeated")
+      ->type_size(2)
+      ->allow_extra_args(false)
+      ->type_name("A B");
+  const auto latex = command.add_flag("--latex", options->latex, "A LaTeX document of the formulas");
+  const auto mathml = command.add_flag("--mathml", options->mathml, "MathML")->excludes(latex);
+  command.add_flag("--plain", options->plain, "The formulas alone, one a line")->excludes(latex)->excludes(mathml);
+  const auto integrate =
+      command.add_flag("--integrate", options->integrate, "Integrate the canonical equations, and compare with Lagrange's");
+  add_span_options(command, options->run);
+  command.add_option("-o,--output", options->output, "q, p and H of --integrate: .csv, .npy or .json")->type_name("FILE")->needs(integrate);
+}
+
+}  // namespace maupertuis::app

@@ -1,0 +1,140 @@
+#include "hamiltonian_text.hpp"
+
+#include "derivation_text.hpp"
+
+#include <fmt/format.h>
+
+#include <maupertuis/print.hpp>
+
+namespace maupertuis::app {
+namespace {
+
+const char* word_of(LegendreKind kind) {
+  switch (kind) {
+    case LegendreKind::Quadratic: return "quadratic";
+    case LegendreKind::Implicit: return "implicit";
+    case LegendreKind::Root: return "root";
+    case LegendreKind::Singular: return "singular";
+    case LegendreKind::Unsolved: return "unsolved";
+  }
+  return "";
+}
+
+bool is_equation(const DerivationStep& line) { return line.left == "0"; }
+
+std::vector<DerivationStep> all_lines(const PhaseSpace& found) {
+  const ReadingOrder& order = found.hamiltonian.order;
+  std::vector<DerivationStep> lines = found.lines;
+  for (const Bracket& b : found.brackets)
+    lines.push_back({"Poisson brackets", {}, fmt::format("{{{}, {}}}", to_plain(b.a, order), to_plain(b.b, order)),
+                     fmt::format("\\{{{}, {}\\}}", to_latex(b.a, order), to_latex(b.b, order)), b.value.value, {}, b.value.intermediates});
+  return lines;
+}
+
+std::string plain_line(const DerivationStep& line, const ReadingOrder& order) {
+  if (!line.right) return line.sentence;
+  return is_equation(line) ? to_plain(line.right, order) + " = 0" : line.left + " = " + to_plain(line.right, order);
+}
+
+std::string line_in(const DerivationStep& line, Notation notation, const ReadingOrder& order) {
+  if (notation == Notation::Plain) return plain_line(line, order);
+  if (notation == Notation::Latex)
+    return is_equation(line) ? to_latex(line.right, order) + " &= 0" : line.left_latex + " &= " + to_latex(line.right, order);
+  return is_equation(line) ? to_mathml(line.right, order) + "<mo>=</mo><mn>0</mn>"
+                           : fmt::format("<mtext>{}</mtext><mo>=</mo>{}", xml_text(line.left), to_mathml(line.right, order));
+}
+
+Json form_json(const ReadableForm& form, const ReadingOrder& order) {
+  if (!form.value) return {};
+  return {{"plain", to_plain(form, order)}, {"latex", to_latex(form, order)}};
+}
+
+Json equations_json(const std::vector<CanonicalEquation>& equations, const ReadingOrder& order) {
+  Json list = Json::array();
+  for (const CanonicalEquation& e : equations) {
+    Json one{{"left", symbol_to_plain(e.left)}};
+    if (e.right.value) one.update(form_json(e.right, order));
+    one["has_velocities"] = e.has_velocities;
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+Json routhian_json(const Routhian& r, const Hamiltonian& h) {
+  const auto names = [&](const std::vector<std::size_t>& coordinates) {
+    Json list = Json::array();
+    for (const std::size_t i : coordinates) list.push_back(h.system->coordinates[i].name);
+    return list;
+  };
+  Json rows = Json::array();
+  for (const ReadableForm& row : r.equations) rows.push_back(form_json(row, r.order));
+  return {{"replaced", names(r.replaced)}, {"conserved", r.conserved}, {"value", form_json(r.readable, r.order)},
+          {"effective_potential", form_json(r.effective_potential, r.order)}, {"velocities", equations_json(r.velocities, r.order)},
+          {"equations", std::move(rows)}};
+}
+
+}  // namespace
+
+std::string phase_space_text(const PhaseSpace& found) {
+  const Hamiltonian& h = found.hamiltonian;
+  std::string out = fmt::format("Phase space of {}\n", h.system->name), section;
+  for (const DerivationStep& line : all_lines(found)) {
+    if (line.section != section) out += fmt::format("\n{}\n", section = line.section);
+    out += "  " + plain_line(line, h.order) + "\n";
+    for (const Intermediate& i : line.intermediates)
+      out += fmt::format("    with {} = {}\n", to_plain(i.symbol, h.order), to_plain(i.value, h.order));
+  }
+  if (!h.legend.empty()) out += "\nDefinitions\n";
+  for (const Intermediate& i : h.legend) out += fmt::format("  {} = {}\n", to_plain(i.symbol, h.order), to_plain(i.value, h.order));
+  return found.certificate.checks.empty() ? out : out + certificate_text(found.certificate);
+}
+
+std::string phase_space_text(const PhaseSpace& found, Notation notation) {
+  std::vector<std::string> lines;
+  for (const DerivationStep& line : all_lines(found)) {
+    if (line.right) lines.push_back(line_in(line, notation, found.hamiltonian.order));
+    for (const Intermediate& i : line.intermediates)
+      lines.push_back(line_in({{}, {}, symbol_to_plain(i.symbol), symbol_to_latex(i.symbol), i.value, {}, {}}, notation, found.hamiltonian.order));
+  }
+  if (notation == Notation::Latex) return latex_document(lines);
+  if (notation == Notation::Mathml) return mathml_document(lines);
+  return fmt::format("{}\n", fmt::join(lines, "\n"));
+}
+
+void add_to(Json& document, const PhaseSpace& found) {
+  const Hamiltonian& h = found.hamiltonian;
+  document["system"] = h.system->name;
+  document["coordinates"] = document["momenta"] = document["groups"] = Json::array();
+  for (std::size_t i = 0; i < h.momenta.size(); ++i) {
+    document["coordinates"].push_back(h.system->coordinates[i].name);
+    const ReadableForm value = readable(h.momentum_values[i], h.order);
+    Json intermediates = Json::array();
+    for (const Intermediate& k : value.intermediates)
+      intermediates.push_back({{"name", to_plain(k.symbol, h.order)}, {"plain", to_plain(k.value, h.order)}});
+    document["momenta"].push_back({{"name", symbol_to_plain(h.momenta[i])}, {"plain", to_plain(value, h.order)},
+                                   {"latex", to_latex(value, h.order)}, {"intermediates", std::move(intermediates)}});
+  }
+  for (const LegendreBlock& block : h.legendre.blocks) {
+    Json names = Json::array(), constraints = Json::array();
+    for (const std::size_t i : block.coordinates) names.push_back(h.system->coordinates[i].name);
+    for (const Expr& c : block.primary_constraints) constraints.push_back(to_plain(c, h.order));
+    document["groups"].push_back({{"coordinates", std::move(names)}, {"kind", word_of(block.kind)}, {"primary_constraints", std::move(constraints)}});
+  }
+  document["regular"] = h.regular();
+  document["hamiltonian"] = form_json(h.legendre.readable, h.order);
+  document["velocities"] = equations_json(h.velocities, h.order);
+  document["forces"] = equations_json(h.forces, h.order);
+  document["routhian"] = found.routhian ? routhian_json(*found.routhian, h) : Json();
+  document["brackets"] = Json::array();
+  for (const Bracket& b : found.brackets) {
+    Json one{{"a", to_plain(b.a, h.order)}, {"b", to_plain(b.b, h.order)}};
+    one.update(form_json(b.value, h.order));
+    document["brackets"].push_back(std::move(one));
+  }
+  document["definitions"] = Json::array();
+  for (const Intermediate& i : h.legend)
+    document["definitions"].push_back({{"name", to_plain(i.symbol, h.order)}, {"plain", to_plain(i.value, h.order)}});
+  document["certificate"] = to_json(found.certificate);
+}
+
+}  // namespace maupertuis::app
