@@ -36,11 +36,21 @@ class CanonicalWriter {
  private:
   CanonicalEquation velocity(std::size_t i) const {
     CanonicalEquation equation{shown_.system->coordinates[i].velocity, {}, false};
-    if (!out_.legendre.readable.value || !out_.legendre.velocity(i)) return equation;
-    const Expr h = out_.legendre.readable.value, plain = differentiate(h, out_.momenta[i]);
+    const Expr h = energy_for(i);
+    if (!h || !out_.legendre.velocity(i)) return equation;
+    const Expr plain = differentiate(h, out_.momenta[i]);
     const Expr candidates[] = {tidy(plain, out_.order), plain, slope(h, out_.momenta[i], out_.order), tidy(out_.legendre.velocity(i), out_.order)};
     equation.right.value = shortest(candidates, out_.order);
     return equation;
+  }
+
+  /// H where it is written out, else the energy of the coordinate's group; empty where that is not written out either.
+  Expr energy_for(std::size_t i) const {
+    if (out_.legendre.readable.value) return out_.legendre.readable.value;
+    for (const LegendreBlock& block : out_.legendre.blocks)
+      if (block.energy_is_readable && std::find(block.coordinates.begin(), block.coordinates.end(), i) != block.coordinates.end())
+        return block.energy;
+    return {};
   }
 
   CanonicalEquation force(std::size_t i) const {
