@@ -11,7 +11,8 @@ constexpr std::array entries{
               "the four components of a quaternion, a Lagrangian that is linear in a velocity. The momenta then obey primary "
               "constraints, and H is determined on them alone. Lagrange's equations are right as they are; leaving out the "
               "coordinate that carries no inertia, or using angles instead of a quaternion, gives a regular transform.",
-              "param m = 1 kg\ncoord x, y : length\nT = 1/2 m x'^2\nV = 1 [N/m] x y\n", "param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n"},
+              "param I = 1 kg m^2\nbody ball inertia diag(I, I, I) rotation quaternion\n",
+              "param I = 1 kg m^2\ncoord φ, θ, ψ : angle\nbody ball inertia diag(I, I, I) rotation euler zxz (φ, θ, ψ)\n"},
     CodeEntry{"E1102", "canonical equations that cannot be integrated",
               "Hamilton's equations need every velocity as a function of the momenta. Where the Legendre transform is singular or has "
               "no closed form there is no such function; `maup simulate` integrates Lagrange's equations instead.",

@@ -80,7 +80,10 @@ class Lines {
     } else {
       formula(section, "H = p·q' − L", "H", "H", ReadableForm{with_velocities(), {}, {}});
       for (const LegendreBlock& block : h_.legendre.blocks)
-        if (!block.energy_is_readable)
+        if (!block.energy_is_readable && block.kind == LegendreKind::Singular)
+          sentence(section, fmt::format("The velocities of {} stand for any solution of M q' = p − b, the lines of the momenta: H is the same for all of them where "
+                                        "the primary constraints hold.", names_of(block.coordinates, *h_.system)));
+        else if (!block.energy_is_readable)
           sentence(section, fmt::format("The velocities of {} stand for the solution of M q' = p − b, the lines of the momenta: H is ½ (p − b)ᵀ M⁻¹ (p − b) + V, "
                                         "and M⁻¹ is too long to be written out.", names_of(block.coordinates, *h_.system)));
     }

@@ -16,8 +16,11 @@ constexpr std::size_t longest_energy = 240;    // letters
 
 /// π²/2D, without fractions inside the square.
 Expr square_over(Expr pi, Expr d, const ReadingOrder& order) {
-  const Cleared fraction = cleared(pi, order);
-  return over(over(Rational(1, 2) * pow(fraction.numerator, 2), pow(fraction.denominator, 2)), d);
+  const Cleared fraction = cleared(pi, order), bar = cleared(d, order);
+  const Expr square = Rational(1, 2) * pow(fraction.numerator, 2);
+  const Expr candidates[] = {over(over(square, pow(fraction.denominator, 2)), d),
+                             over(over(square * bar.denominator, pow(fraction.denominator, 2)), bar.numerator)};
+  return shortest(candidates, order);
 }
 
 /// M = L D Lᵀ in the given order: Σ (L⁻¹π)²/2D. Empty where a pivot vanishes or an entry gets too long.
@@ -154,9 +157,19 @@ ExprMatrix submatrix(const ExprMatrix& m, const std::vector<std::size_t>& rows) 
   return out;
 }
 
-/// 2 (a x + b y) = 0, 2 a x + 2 b y = 0 and a x + b y = 0 say the same.
-Expr without_number(Expr e) {
-  const Expr rest = split_coefficient(e).rest;
+/// R p = 0 and p = 0, 2 (a x + b y) = 0, 2 a x + 2 b y = 0 and a x + b y = 0 say the same.
+Expr without_factor(Expr e) {
+  Expr rest = split_coefficient(e).rest;
+  const auto has_momentum = [](Expr x) {
+    const ExprVector symbols = symbols_of({&x, 1});
+    return std::any_of(symbols.begin(), symbols.end(), [](Expr s) { return is_integral(s.name()); });
+  };
+  if (rest.is(Kind::Product)) {
+    Expr product = e.context().number(1);
+    for (std::size_t i = 0; i < rest.size(); ++i)
+      if (has_momentum(rest[i])) product = product * rest[i];
+    rest = product;
+  }
   if (!rest.is(Kind::Sum)) return rest;
   Rational first = split_coefficient(rest[0]).coefficient;
   for (std::size_t i = 0; i < rest.size(); ++i)   // a momentum alone is positive: p_x − q B y
@@ -188,7 +201,7 @@ void transform_singular(LegendreBlock& block, const ExprVector& pi, const Legend
 
   for (const Constraint& c : problem.system.constraints)
     if (block.primary_constraints.size() + kept.size() < block.coordinates.size())
-      if (const Expr value = null_vector_constraint(block, pi, c, problem)) block.primary_constraints.push_back(without_number(value));
+      if (const Expr value = null_vector_constraint(block, pi, c, problem)) block.primary_constraints.push_back(without_factor(value));
   if (block.primary_constraints.size() + kept.size() == block.coordinates.size()) return;
   block.primary_constraints.clear();
   for (std::size_t k = 0; k < block.coordinates.size(); ++k) {
@@ -200,7 +213,7 @@ void transform_singular(LegendreBlock& block, const ExprVector& pi, const Legend
       const auto weights = solve_linear(augmented(core, column));
       for (std::size_t i = 0; i < kept.size(); ++i) value = value - (*weights)[i] * right[i];
     }
-    block.primary_constraints.push_back(without_number(cleared(value, problem.order).numerator));
+    block.primary_constraints.push_back(without_factor(cleared(value, problem.order).numerator));
   }
 }
 

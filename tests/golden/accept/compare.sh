@@ -7,7 +7,7 @@ for stage in check derive steps hamiltonian; do
     check) set -- check ;;
     derive) set -- derive --plain ;;
     steps) set -- derive --steps --plain ;;
-    hamiltonian) set -- hamiltonian ;;
+    hamiltonian) set -- hamiltonian --plain ;;
   esac
   actual=$(mktemp)
   NO_COLOR=1 "$maup" "$@" "$name.lag" >"$actual" 2>&1 || { echo "maup $* $name.lag ended with $?"; failed=1; }
