@@ -1,7 +1,6 @@
 #include "verification/phase_space_claims.hpp"
 
-#include "verification/along_motion.hpp"
-
+#include <maupertuis/along_motion.hpp>
 #include <maupertuis/print.hpp>
 
 #include <fmt/format.h>
