@@ -16,15 +16,19 @@ std::string formula(const ReadableForm& form, const ReadingOrder& order) {
 
 const char* kind_name(IntegralKind kind) {
   switch (kind) {
-    case IntegralKind::Noether: return "noether";
-    case IntegralKind::Hidden: return "hidden";
-    default: return "direct";
+    case IntegralKind::Noether:
+      return "noether";
+    case IntegralKind::Hidden:
+      return "hidden";
+    default:
+      return "direct";
   }
 }
 
 std::string ground(const ZeroTest& test) {
   if (test.error_bound == 0) return "dI/dt = 0 term by term";
-  if (test.error_bound < 1) return fmt::format("dI/dt = 0 proved at {} points, error bound {:.0e}", test.points, test.error_bound);
+  if (test.error_bound < 1)
+    return fmt::format("dI/dt = 0 proved at {} points, error bound {:.0e}", test.points, test.error_bound);
   return fmt::format("dI/dt vanishes at {} points", test.points);
 }
 
@@ -41,13 +45,17 @@ std::string origin(const ConservedFunction& integral, const EquationsOfMotion& e
   constexpr std::size_t longest = 160;
   if (const std::string text = displacement(integral, equations); !text.empty() && text.size() <= longest) return text;
   switch (integral.kind) {
-    case IntegralKind::Noether: return "a point symmetry up to gauge";
-    case IntegralKind::Hidden: return "no point symmetry: its symmetry depends on the velocities";
-    default: return "found directly";
+    case IntegralKind::Noether:
+      return "a point symmetry up to gauge";
+    case IntegralKind::Hidden:
+      return "no point symmetry: its symmetry depends on the velocities";
+    default:
+      return "found directly";
   }
 }
 
-std::string integral_text(const std::string& symbol, const ConservedFunction& integral, const EquationsOfMotion& equations) {
+std::string integral_text(const std::string& symbol, const ConservedFunction& integral,
+                          const EquationsOfMotion& equations) {
   const ReadingOrder& order = equations.order;
   std::string text = fmt::format("{:<4} {}\n", symbol, formula(integral.readable, order));
   if (!integral.name.empty()) text += fmt::format("     {}\n", integral.name);
@@ -67,12 +75,14 @@ std::string brackets_text(const Invariants& found, const ReadingOrder& order) {
 
 std::string integrability_text(const Invariants& found, std::size_t n) {
   std::string text = fmt::format("\n{} independent integral{}", found.rank, found.rank == 1 ? "" : "s");
-  if (found.autonomous_rank != found.rank) text += fmt::format(", {} of them without explicit time", found.autonomous_rank);
+  if (found.autonomous_rank != found.rank)
+    text += fmt::format(", {} of them without explicit time", found.autonomous_rank);
   text += fmt::format("; {} degree{} of freedom.\n", n, n == 1 ? "" : "s");
   if (!found.completely_integrable) return text;
   text += fmt::format("Completely integrable: {} {} independent and in involution", fmt::join(found.involution, ", "),
                       found.involution.size() == 1 ? "is" : "are");
-  if (n > 1 && found.autonomous_rank == 2 * n - 1) text += fmt::format("; maximally superintegrable, with {} integrals", 2 * n - 1);
+  if (n > 1 && found.autonomous_rank == 2 * n - 1)
+    text += fmt::format("; maximally superintegrable, with {} integrals", 2 * n - 1);
   return text + ".\n";
 }
 
@@ -80,14 +90,16 @@ std::string completeness_text(const Invariants& found) {
   std::string text;
   if (found.symmetry_bound) {
     text += *found.symmetry_bound == found.noether_symmetries
-                ? fmt::format("Point symmetries: {} found, and there are no more (bound at a generic point).\n", found.noether_symmetries)
-                : fmt::format("Point symmetries: {} found, at most {} exist (bound at a generic point).\n", found.noether_symmetries,
-                              *found.symmetry_bound);
+                ? fmt::format("Point symmetries: {} found, and there are no more (bound at a generic point).\n",
+                              found.noether_symmetries)
+                : fmt::format("Point symmetries: {} found, at most {} exist (bound at a generic point).\n",
+                              found.noether_symmetries, *found.symmetry_bound);
   }
   text += "None further in this basis:\n";
   for (const std::string& line : found.basis) text += "  " + line + "\n";
   if (found.too_long > 0)
-    text += fmt::format("  {} more in it, with coefficients too long to be written in the parameters\n", found.too_long);
+    text +=
+        fmt::format("  {} more in it, whose coefficients could not be written as fractions of the parameters, or not proved\n", found.too_long);
   return text;
 }
 
@@ -96,7 +108,8 @@ std::string completeness_text(const Invariants& found) {
 std::string invariants_text(const Invariants& found, const EquationsOfMotion& equations) {
   const ReadingOrder& order = equations.order;
   std::string text;
-  for (std::size_t i = 0; i < found.integrals.size(); ++i) text += integral_text(found.symbols[i].name(), found.integrals[i], equations);
+  for (std::size_t i = 0; i < found.integrals.size(); ++i)
+    text += integral_text(found.symbols[i].name(), found.integrals[i], equations);
   if (found.integrals.empty()) text += "No integral was found.\n";
   if (!found.relations.empty()) text += "\nRelations\n";
   for (const IntegralRelation& r : found.relations) text += fmt::format("  {} = 0\n", to_plain(r.value, order));
@@ -125,8 +138,10 @@ Json integral_json(const ConservedFunction& integral, const ReadingOrder& order)
           {"velocity_degree", integral.velocity_degree},
           {"explicit_time", integral.explicit_time},
           {"independent", integral.independent},
-          {"certificate", {{"verdict", verdict_name(integral.certificate.verdict)}, {"points", integral.certificate.points},
-                           {"error_bound", integral.certificate.error_bound}}},
+          {"certificate",
+           {{"verdict", verdict_name(integral.certificate.verdict)},
+            {"points", integral.certificate.points},
+            {"error_bound", integral.certificate.error_bound}}},
           {"drift", integral.drift ? Json(*integral.drift) : Json(nullptr)}};
 }
 
@@ -142,11 +157,13 @@ void add_invariants_json(Json& document, const Invariants& found, const Equation
   for (const IntegralRelation& r : found.relations) document["relations"].push_back(to_plain(r.value, order));
   document["brackets"] = Json::array();
   for (const PoissonBracket& b : found.brackets)
-    document["brackets"].push_back({{"first", b.first + 1}, {"second", b.second + 1},
+    document["brackets"].push_back({{"first", b.first + 1},
+                                    {"second", b.second + 1},
                                     {"plain", b.value.value ? Json(to_plain(b.value, order)) : Json(nullptr)}});
   document["balance_laws"] = Json::array();
   for (const BalanceLaw& law : found.balance_laws)
-    document["balance_laws"].push_back({{"name", law.name}, {"quantity", to_plain(law.quantity, order)}, {"rate", to_plain(law.rate, order)}});
+    document["balance_laws"].push_back(
+        {{"name", law.name}, {"quantity", to_plain(law.quantity, order)}, {"rate", to_plain(law.rate, order)}});
   document["completely_integrable"] = found.completely_integrable;
   document["involution"] = found.involution;
   document["point_symmetries"] = found.noether_symmetries;

@@ -11,7 +11,8 @@ namespace {
 /// The dimension of a formula that was found consistent: that of its first term.
 Dimension dimension_of(Expr e, const MechanicalSystem& system) {
   switch (e.kind()) {
-    case Kind::Sum: return dimension_of(e[0], system);
+    case Kind::Sum:
+      return dimension_of(e[0], system);
     case Kind::Product: {
       Dimension product = dimensions::one();
       for (std::size_t i = 0; i < e.size(); ++i) product = product * dimension_of(e[i], system);
@@ -22,8 +23,10 @@ Dimension dimension_of(Expr e, const MechanicalSystem& system) {
       const auto parts = exponent ? exponent->small() : std::nullopt;
       return parts ? pow(dimension_of(e[0], system), parts->numerator, parts->denominator) : dimensions::one();
     }
-    case Kind::Symbol: break;
-    default: return dimensions::one();
+    case Kind::Symbol:
+      break;
+    default:
+      return dimensions::one();
   }
   if (e.role() == Role::Time) return dimensions::time();
   for (const Parameter& p : system.parameters)
@@ -36,28 +39,33 @@ Dimension dimension_of(Expr e, const MechanicalSystem& system) {
 std::string sentence_of(const ConservedFunction& integral) {
   std::string text = integral.name.empty() ? "An integral without a name of its own" : integral.name;
   text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  if (!integral.symmetry.empty()) text += ", from the symmetry: " + integral.symmetry;
-  else if (integral.kind == IntegralKind::Hidden) text += ", from no point symmetry";
+  if (!integral.symmetry.empty())
+    text += ", from the symmetry: " + integral.symmetry;
+  else if (integral.kind == IntegralKind::Hidden)
+    text += ", from no point symmetry";
   text += ".";
   if (!integral.independent) text += " A function of those before it at fixed t.";
   return text;
 }
 
 std::string summary_of(const Invariants& found, std::size_t n) {
-  std::string text = fmt::format("{} independent integral{}, {} degree{} of freedom.", found.rank, found.rank == 1 ? "" : "s", n, n == 1 ? "" : "s");
+  std::string text = fmt::format("{} independent integral{}, {} degree{} of freedom.", found.rank,
+                                 found.rank == 1 ? "" : "s", n, n == 1 ? "" : "s");
   if (found.completely_integrable)
-    text += fmt::format(" Completely integrable: {} {} independent and in involution.", fmt::join(found.involution, ", "),
-                        found.involution.size() == 1 ? "is" : "are");
+    text += fmt::format(" Completely integrable: {} {} independent and in involution.",
+                        fmt::join(found.involution, ", "), found.involution.size() == 1 ? "is" : "are");
   if (found.symmetry_bound)
     text += *found.symmetry_bound == found.noether_symmetries
                 ? fmt::format(" There are no further point symmetries than these {}.", found.noether_symmetries)
-                : fmt::format(" At most {} point symmetries exist; {} were found.", *found.symmetry_bound, found.noether_symmetries);
+                : fmt::format(" At most {} point symmetries exist; {} were found.", *found.symmetry_bound,
+                              found.noether_symmetries);
   return text;
 }
 
 }  // namespace
 
-void add_invariants(ReportContent& content, const EquationsOfMotion& equations, const Invariants& found, const SimulationResult* run) {
+void add_invariants(ReportContent& content, const EquationsOfMotion& equations, const Invariants& found,
+                    const SimulationResult* run) {
   const ReadingOrder& order = equations.order;
   for (std::size_t i = 0; i < found.integrals.size(); ++i) {
     const ConservedFunction& integral = found.integrals[i];
@@ -70,9 +78,13 @@ void add_invariants(ReportContent& content, const EquationsOfMotion& equations, 
     content.conserved.push_back(std::move(row));
   }
   for (const IntegralRelation& relation : found.relations)
-    content.conserved.push_back({"Between them holds", {"<mn>0</mn>", to_mathml(relation.value, order), "", ""}, "", ""});
+    content.conserved.push_back(
+        {"Between them holds", {"<mn>0</mn>", to_mathml(relation.value, order), "", ""}, "", ""});
   for (const BalanceLaw& law : found.balance_laws)
-    content.conserved.push_back({law.name + " is changed by forces or constraints, at the rate", {"", to_mathml(law.rate, order), "", ""}, "", ""});
+    content.conserved.push_back({law.name + " is changed by forces or constraints, at the rate",
+                                 {"", to_mathml(law.rate, order), "", ""},
+                                 "",
+                                 ""});
   ReportContent::Conserved summary;
   summary.sentence = summary_of(found, equations.system->coordinates.size());
   content.conserved.push_back(std::move(summary));

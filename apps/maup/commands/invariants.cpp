@@ -38,9 +38,12 @@ void add_invariants(CommandLine& line) {
                                "  maup invariants double_pendulum.lag --set g=0 --json\n",
                                [options](Console& console) { return invariants_of_model(*options, console); });
   add_model_options(command, options->model);
-  command.add_option("--degree", options->search.velocity_degree, "Search polynomials of the velocities up to this degree (2)")
+  command
+      .add_option("--degree", options->search.velocity_degree,
+                  "Search polynomials of the velocities up to this degree (2)")
       ->check(CLI::Range(1, 4));
-  command.add_option("--largest-basis", options->search.largest_basis, "At most so many functions in one search (1400)")
+  command
+      .add_option("--largest-basis", options->search.largest_basis, "At most so many functions in one search (1400)")
       ->check(CLI::Range(10, 20000));
   command.add_flag("--no-drift", options->no_drift, "Leave out the run that measures the drift");
 }

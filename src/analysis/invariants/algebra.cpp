@@ -37,7 +37,7 @@ std::vector<bool> independent_functions_of_state(const MotionRows& rows, const E
   const auto sample = roots ? sampler.draw(*roots) : std::nullopt;
   std::vector<bool> out(functions.size(), true);
   if (!sample) return out;
-  FieldMatrix columns(state.size(), all.size());   // a function a column: its pivot says that it is new
+  FieldMatrix columns(state.size(), all.size());  // a function a column: its pivot says that it is new
   for (std::size_t f = 0; f < all.size(); ++f)
     for (std::size_t i = 0; i < state.size(); ++i) columns.at(i, f) = sample->values[f * state.size() + i];
   const auto pivots = echelon(columns, sampler.field());
@@ -73,7 +73,7 @@ Expr PoissonAlgebra::bracket(Expr f, Expr g) const {
 
 namespace {
 
-constexpr std::size_t most_integrals = 14;   // beyond it neither brackets nor relations are computed
+constexpr std::size_t most_integrals = 14;  // beyond it neither brackets nor relations are computed
 
 /// Products of the integrals up to a degree, as monomials of their values.
 std::vector<Monomial> products_up_to(Generators& g, const std::vector<Expr>& values, int degree) {
@@ -93,7 +93,12 @@ std::vector<Monomial> products_up_to(Generators& g, const std::vector<Expr>& val
 class AlgebraWriter {
  public:
   AlgebraWriter(Invariants& result, const MotionRows& rows, const EquationsOfMotion& equations, std::uint64_t seed)
-      : result_(result), rows_(rows), equations_(equations), seed_(seed), context_(*rows.system->context), poisson_(rows, equations) {
+      : result_(result),
+        rows_(rows),
+        equations_(equations),
+        seed_(seed),
+        context_(*rows.system->context),
+        poisson_(rows, equations) {
     for (const ConservedFunction& i : result_.integrals) values_.push_back(i.value);
   }
 
@@ -118,7 +123,9 @@ class AlgebraWriter {
   }
 
   void find_relations() {
-    if (std::all_of(result_.integrals.begin(), result_.integrals.end(), [](const ConservedFunction& i) { return i.independent; })) return;
+    if (std::all_of(result_.integrals.begin(), result_.integrals.end(),
+                    [](const ConservedFunction& i) { return i.independent; }))
+      return;
     Generators g(context_);
     for (const int degree : {2, 3}) {
       Basis basis;
@@ -141,7 +148,7 @@ class AlgebraWriter {
     for (std::size_t i = 0; i < values_.size(); ++i) values.emplace(result_.symbols[i], values_[i]);
     std::vector<std::vector<Expr>> rows = relation_gradients_;
     rows.push_back(substitute(gradient(relation, result_.symbols), values));
-    LinearFitRows fit;                      // the new gradient as a combination of the others
+    LinearFitRows fit;  // the new gradient as a combination of the others
     fit.unknowns = relation_gradients_.size();
     for (std::size_t i = 0; i < values_.size(); ++i) {
       std::vector<Expr> row;
@@ -189,8 +196,8 @@ class AlgebraWriter {
 
   // -------------------------------------------------------------------------------------------- complete integrability
 
-  /// n independent functions in involution without explicit time: of the integrals and the squares of triples that rotate
-  /// into each other (L² = Lx² + Ly² + Lz²).
+  /// n independent functions in involution without explicit time: of the integrals and the squares of triples that
+  /// rotate into each other (L² = Lx² + Ly² + Lz²).
   void find_involution() {
     const std::size_t n = rows_.system->coordinates.size();
     std::vector<Expr> functions;
@@ -205,7 +212,8 @@ class AlgebraWriter {
     std::vector<std::vector<bool>> commute(functions.size(), std::vector<bool>(functions.size(), true));
     for (std::size_t i = 0; i < functions.size(); ++i)
       for (std::size_t j = i + 1; j < functions.size(); ++j)
-        commute[i][j] = commute[j][i] = zero_test(poisson_.bracket(functions[i], functions[j])).verdict == Verdict::Zero;
+        commute[i][j] = commute[j][i] =
+            zero_test(poisson_.bracket(functions[i], functions[j])).verdict == Verdict::Zero;
     std::vector<std::size_t> chosen;
     if (!extend(functions, commute, chosen, 0, n)) return;
     result_.completely_integrable = true;
@@ -215,7 +223,8 @@ class AlgebraWriter {
   void add_casimirs(std::vector<Expr>& functions, std::vector<std::string>& words) const {
     std::vector<std::size_t> rotations;
     for (std::size_t i = 0; i < result_.integrals.size(); ++i)
-      if (result_.integrals[i].name.find("angular momentum about") != std::string::npos && !result_.integrals[i].explicit_time)
+      if (result_.integrals[i].name.find("angular momentum about") != std::string::npos &&
+          !result_.integrals[i].explicit_time)
         rotations.push_back(i);
     if (rotations.size() != 3) return;
     Expr square = context_.number(0);
@@ -228,15 +237,17 @@ class AlgebraWriter {
     words.push_back(word);
   }
 
-  bool extend(const std::vector<Expr>& functions, const std::vector<std::vector<bool>>& commute, std::vector<std::size_t>& chosen,
-              std::size_t from, std::size_t wanted) const {
+  bool extend(const std::vector<Expr>& functions, const std::vector<std::vector<bool>>& commute,
+              std::vector<std::size_t>& chosen, std::size_t from, std::size_t wanted) const {
     if (chosen.size() == wanted) return true;
     for (std::size_t i = from; i < functions.size(); ++i) {
       if (!std::all_of(chosen.begin(), chosen.end(), [&](std::size_t k) { return commute[i][k]; })) continue;
       chosen.push_back(i);
       std::vector<Expr> set;
       for (const std::size_t k : chosen) set.push_back(functions[k]);
-      if (independent_functions_of_state(rows_, equations_, set, seed_).back() && extend(functions, commute, chosen, i + 1, wanted)) return true;
+      if (independent_functions_of_state(rows_, equations_, set, seed_).back() &&
+          extend(functions, commute, chosen, i + 1, wanted))
+        return true;
       chosen.pop_back();
     }
     return false;
@@ -248,7 +259,7 @@ class AlgebraWriter {
   std::uint64_t seed_;
   Context& context_;
   PoissonAlgebra poisson_;
-  std::vector<std::vector<Expr>> relation_gradients_;   // [relations][integrals]
+  std::vector<std::vector<Expr>> relation_gradients_;  // [relations][integrals]
   std::vector<Expr> values_;
   std::vector<bool> commute_;
 };

@@ -116,7 +116,10 @@ Ansatz make_ansatz(const EquationsOfMotion& equations, const MotionRows& rows) {
 namespace {
 
 /// How rich a basis of charges is.
-struct Richness { int time_degree; bool pairs; };
+struct Richness {
+  int time_degree;
+  bool pairs;
+};
 
 /// The physical candidates first: total momentum, angular momentum, moment of mass.
 void add_candidates(Ansatz& a, Monomials& out) {
@@ -152,13 +155,16 @@ Basis charges(Ansatz& a, const MotionRows& rows, Richness r, std::uint64_t seed)
   Monomials p;
   for (const Expr& momentum : a.momenta) p.push_back(g.add(momentum));
   append(basis.monomials, products(products(displacements, few), p));
-  Monomials energy = products({g.add(a.energy)}, with_one(rows, g, time_functions(a, std::min(2, r.time_degree)), seed + 4));
+  Monomials energy =
+      products({g.add(a.energy)}, with_one(rows, g, time_functions(a, std::min(2, r.time_degree)), seed + 4));
   if (!atoms.natural) energy = joined({energy, products(energy, atoms.coordinates)});
   append(basis.monomials, energy);
   basis.description = fmt::format(
-      "point symmetries ξ(t{}), η(q, t) up to gauge f(q, t): ξ of degree {} in t; η from {} functions of position, f from {}, "
-      "with t up to degree {} and {}", atoms.natural ? "" : ", q", std::min(2, r.time_degree), displacements.size(), gauges.size(),
-      r.time_degree, r.time_degree + 1);
+      "point symmetries ξ(t{}), η(q, t) up to gauge f(q, t): ξ of degree {} in t; η from {} functions of position, f "
+      "from {}, "
+      "with t up to degree {} and {}",
+      atoms.natural ? "" : ", q", std::min(2, r.time_degree), displacements.size(), gauges.size(), r.time_degree,
+      r.time_degree + 1);
   ReadingOrder order;
   if (!atoms.functions.empty() || !atoms.time.empty())
     basis.description += "; atoms " + names_of(g, joined({atoms.functions, atoms.time}), order);
@@ -194,24 +200,28 @@ Monomials positions(Ansatz& a, const MotionRows& rows, int level, std::uint64_t 
   return with_one(rows, a.generators, first, seed);
 }
 
-/// Coefficients of velocity degree d are functions of position times as many terms of V as there are pairs of velocities less than
-/// at the top, as in the energy: `coefficients[j]` stands beside degree − 2j and degree − 2j − 1.
-std::vector<Monomials> coefficients_by_degree(Ansatz& a, const MotionRows& rows, const Monomials& top, int degree, bool with_potentials,
-                                              std::uint64_t seed) {
+/// Coefficients of velocity degree d are functions of position times as many terms of V as there are pairs of
+/// velocities less than at the top, as in the energy: `coefficients[j]` stands beside degree − 2j and degree − 2j − 1.
+std::vector<Monomials> coefficients_by_degree(Ansatz& a, const MotionRows& rows, const Monomials& top, int degree,
+                                              bool with_potentials, std::uint64_t seed) {
   std::vector<Monomials> out{top};
   for (int j = 1; 2 * j <= degree; ++j) {
-    if (!with_potentials) out.push_back(top);
-    else out.push_back(with_one(rows, a.generators, joined({out.back(), products(out.back(), a.atoms.potentials)}), seed));
+    if (!with_potentials)
+      out.push_back(top);
+    else
+      out.push_back(with_one(rows, a.generators, joined({out.back(), products(out.back(), a.atoms.potentials)}), seed));
   }
   return out;
 }
 
-Monomials polynomial(Ansatz& a, const std::vector<Monomials>& coefficients, const Monomials& times, int degree, int parity) {
+Monomials polynomial(Ansatz& a, const std::vector<Monomials>& coefficients, const Monomials& times, int degree,
+                     int parity) {
   Monomials velocities, out;
   for (const Expr& v : a.velocities) velocities.push_back(a.generators.add(v));
   for (int d = 0; d <= degree; ++d)
     if (parity < 0 || d % 2 == parity)
-      append(out, products(products(coefficients[static_cast<std::size_t>((degree - d) / 2)], times), powers(velocities, d)));
+      append(out, products(products(coefficients[static_cast<std::size_t>((degree - d) / 2)], times),
+                           powers(velocities, d)));
   return out;
 }
 
@@ -226,17 +236,22 @@ Basis relative_basis(Ansatz& a, const MotionRows& rows, int degree, std::uint64_
   Monomials positions, velocities;
   for (const Expr& x : orbit.position) positions.push_back(a.generators.add(x));
   for (const Expr& v : orbit.velocity) velocities.push_back(a.generators.add(v));
-  positions = with_one(rows, a.generators, joined({positions, a.atoms.functions, products(positions, joined({positions, a.atoms.functions}))}), seed);
+  positions = with_one(
+      rows, a.generators,
+      joined({positions, a.atoms.functions, products(positions, joined({positions, a.atoms.functions}))}), seed);
   Basis basis;
   for (int d = degree % 2; d <= degree; d += 2) append(basis.monomials, products(positions, powers(velocities, d)));
-  basis.description = fmt::format("polynomials of degree {} in the relative velocity, coefficients from {} functions of relative position: {} functions",
-                                  degree, positions.size(), basis.monomials.size());
+  basis.description = fmt::format(
+      "polynomials of degree {} in the relative velocity, coefficients from {} functions of relative position: {} "
+      "functions",
+      degree, positions.size(), basis.monomials.size());
   return basis;
 }
 
 }  // namespace
 
-PolynomialBases polynomial_bases(Ansatz& a, const MotionRows& rows, int degree, std::size_t largest, std::uint64_t seed) {
+PolynomialBases polynomial_bases(Ansatz& a, const MotionRows& rows, int degree, std::size_t largest,
+                                 std::uint64_t seed) {
   PolynomialBases out;
   Monomials times{Monomial{}};
   if (a.explicit_time) times = joined({times, a.atoms.time});
@@ -250,10 +265,13 @@ PolynomialBases polynomial_bases(Ansatz& a, const MotionRows& rows, int degree, 
     for (const int parity : parities) {
       Basis basis{polynomial(a, coefficients, times, degree, parity), {}};
       out.needed = std::max(out.needed, basis.monomials.size());
-      basis.description = fmt::format("polynomials {}of degree {} in {}, coefficients from {} functions of position{}: {} functions",
-                                      parity < 0 ? "" : parity % 2 ? "odd " : "even ", degree,
-                                      a.directions.empty() ? "the velocities" : "the body rates", functions.size(),
-                                      level == 3 ? ", in the lower terms times those of V" : "", basis.monomials.size());
+      basis.description =
+          fmt::format("polynomials {}of degree {} in {}, coefficients from {} functions of position{}: {} functions",
+                      parity < 0   ? ""
+                      : parity % 2 ? "odd "
+                                   : "even ",
+                      degree, a.directions.empty() ? "the velocities" : "the body rates", functions.size(),
+                      level == 3 ? ", in the lower terms times those of V" : "", basis.monomials.size());
       if (!basis.monomials.empty()) out.bases.push_back(std::move(basis));
     }
     if (out.needed > largest) continue;

@@ -40,21 +40,29 @@ class Collector {
     const Expr expanded = expand(e, term_budget);
     if (!expanded) return take_nodes(e);
     const bool sum = expanded.is(Kind::Sum);
-    for (std::size_t i = 0; i < (sum ? expanded.size() : 1); ++i) take_term(sum ? expanded[i] : expanded, of_lagrangian);
+    for (std::size_t i = 0; i < (sum ? expanded.size() : 1); ++i)
+      take_term(sum ? expanded[i] : expanded, of_lagrangian);
   }
 
   void take_term(Expr term, bool of_lagrangian) {
     Monomial position;
     int velocities = 0;
     const bool is_product = term.is(Kind::Product);
+    Expr irrational = irrational_factor(term);
     for (std::size_t i = 0; i < (is_product ? term.size() : 1); ++i) {
       const Expr factor = is_product ? term[i] : term;
       if (is_parametric(factor)) continue;
+      if (irrational && !factor.is_symbol() && depends_on_coordinates(factor) && !depends_on_velocities(factor)) {
+        take_atom(generators_.add(irrational * factor), irrational * factor);
+        irrational = Expr();
+      }
       if (depends_on_velocities(factor)) {
         const PowerOf power = split_power(factor);
         const auto exponent = power.exponent.as_integer();
-        if (power.base.is_symbol() && exponent && *exponent > 0) velocities += static_cast<int>(*exponent);
-        else velocities = 3;
+        if (power.base.is_symbol() && exponent && *exponent > 0)
+          velocities += static_cast<int>(*exponent);
+        else
+          velocities = 3;
         continue;
       }
       const Monomial m = generators_.add_factors(factor);
@@ -64,6 +72,14 @@ class Collector {
     if (of_lagrangian && velocities > 2) atoms_.natural = false;
     if (position.size() > 1 || degree(position) > 1) add_once(atoms_.products, position);
     if (of_lagrangian && velocities == 0) add_once(atoms_.potentials, position);
+  }
+
+  /// √2 of a term, which has to go with an atom: coefficients are fractions. Empty: none.
+  static Expr irrational_factor(Expr term) {
+    Expr out;
+    for (std::size_t i = 0; term.is(Kind::Product) && i < term.size(); ++i)
+      if (term[i].is(Kind::Power) && term[i][0].is_number()) out = out ? out * term[i] : term[i];
+    return out;
   }
 
   void take_atom(Monomial m, Expr factor) {
@@ -87,7 +103,8 @@ class Collector {
   void take_nodes(Expr e) {
     for (const Expr& node : topological_order({&e, 1})) {
       const bool root = node.is(Kind::Power) && !split_power(node).exponent.is_integer();
-      if (!(node.is(Kind::Sin) || node.is(Kind::Cos) || root) || is_parametric(node) || depends_on_velocities(node)) continue;
+      if (!(node.is(Kind::Sin) || node.is(Kind::Cos) || root) || is_parametric(node) || depends_on_velocities(node))
+        continue;
       take_atom(generators_.add_factors(node), node);
     }
   }
@@ -106,7 +123,8 @@ class Collector {
     square = expand(in_terms_of_motion(system_, {&square, 1}).front(), term_budget);
     if (!square || is_parametric(square) || depends_on_velocities(square)) return;
     add_once(atoms_.functions, generators_.add(without_content(square)));
-    for (const int sign : {1, -1}) add_once(atoms_.functions, generators_.add(pow(without_content(square), Rational(sign, 2))));
+    for (const int sign : {1, -1})
+      add_once(atoms_.functions, generators_.add(pow(without_content(square), Rational(sign, 2))));
   }
 
   /// A sum divided by the parametric factor of its first term: (1 + y²)/m → 1 + y².
@@ -144,7 +162,8 @@ class Collector {
     const auto& symbols = symbols_of({&equations_.lagrangian_expanded, 1});
     for (const Coordinate& c : system_.coordinates) {
       const bool cyclic = std::find(symbols.begin(), symbols.end(), c.q) == symbols.end();
-      const bool may_be_angle = c.kind == "angle" || (c.kind == "number" && cyclic && system_.dimensionless && !has_constant_mass());
+      const bool may_be_angle =
+          c.kind == "angle" || (c.kind == "number" && cyclic && system_.dimensionless && !has_constant_mass());
       if (!may_be_angle) continue;
       add_once(atoms_.functions, generators_.add(sin(c.q)));
       add_once(atoms_.functions, generators_.add(cos(c.q)));
@@ -165,10 +184,16 @@ class Collector {
       std::vector<Expr> others;
       for (const Coordinate& c : system_.coordinates)
         if (c.q != own.q) others.insert(others.end(), {c.q, c.velocity, c.acceleration});
-      const auto coefficient = [&](Expr symbol) { const Expr d = expand(differentiate(rows[i], symbol), term_budget); return d ? d : rows[i]; };
+      const auto coefficient = [&](Expr symbol) {
+        const Expr d = expand(differentiate(rows[i], symbol), term_budget);
+        return d ? d : rows[i];
+      };
       const Expr m = coefficient(own.acceleration);
       if (m.is_zero() || m.is(Kind::Sum)) continue;
-      const auto ratio = [&](Expr symbol) { const Expr r = coefficient(symbol) / m, e = expand(r, term_budget); return e ? e : r; };
+      const auto ratio = [&](Expr symbol) {
+        const Expr r = coefficient(symbol) / m, e = expand(r, term_budget);
+        return e ? e : r;
+      };
       const Expr damping = ratio(own.velocity), stiffness = ratio(own.q);
       bool alone = is_parametric(damping) && is_parametric(stiffness);
       for (const Expr& other : others) alone = alone && coefficient(other).is_zero();

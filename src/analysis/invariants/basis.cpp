@@ -41,8 +41,10 @@ Monomial product(const Monomial& a, const Monomial& b) {
   Monomial out;
   std::size_t i = 0, j = 0;
   while (i < a.size() || j < b.size()) {
-    if (j == b.size() || (i < a.size() && a[i].generator < b[j].generator)) out.push_back(a[i++]);
-    else if (i == a.size() || b[j].generator < a[i].generator) out.push_back(b[j++]);
+    if (j == b.size() || (i < a.size() && a[i].generator < b[j].generator))
+      out.push_back(a[i++]);
+    else if (i == a.size() || b[j].generator < a[i].generator)
+      out.push_back(b[j++]);
     else {
       out.push_back({a[i].generator, a[i].exponent + b[j].exponent});
       ++i, ++j;
@@ -72,7 +74,8 @@ Monomial Generators::add_factors(Expr e) {
     one[0].exponent = exponent;
     out = product(out, one);
   };
-  if (!e.is(Kind::Product)) take(e);
+  if (!e.is(Kind::Product))
+    take(e);
   else
     for (std::size_t i = 0; i < e.size(); ++i) take(e[i]);
   return out;

@@ -23,7 +23,7 @@ int degree(const Monomial& m);
 class Generators {
  public:
   explicit Generators(Context& context) : context_(context) {}
-  Monomial add(Expr value);                       // the generator alone, made at first use
+  Monomial add(Expr value);  // the generator alone, made at first use
   /// The factors of a product that are no numbers and no parameters; base^(−k/d) is a power of base^(−1/d).
   Monomial add_factors(Expr product_of_atoms);
   const std::vector<Expr>& values() const { return values_; }
@@ -42,9 +42,9 @@ struct Basis {
   std::string description;
 };
 
-bool is_parametric(Expr e);              // holds no coordinate and no time
-bool depends_on_coordinates(Expr e);     // of order 0
-bool depends_on_velocities(Expr e);      // of order 1
-bool depends_on_time_itself(Expr e);     // on the symbol t
+bool is_parametric(Expr e);           // holds no coordinate and no time
+bool depends_on_coordinates(Expr e);  // of order 0
+bool depends_on_velocities(Expr e);   // of order 1
+bool depends_on_time_itself(Expr e);  // on the symbol t
 
 }  // namespace maupertuis::invariants

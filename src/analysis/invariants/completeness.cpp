@@ -14,7 +14,7 @@ namespace maupertuis::invariants {
 namespace {
 
 using evaluation::mix;
-using Order = std::vector<int>;                 // exponents of (q − q₀, t − t₀)
+using Order = std::vector<int>;  // exponents of (q − q₀, t − t₀)
 
 constexpr std::size_t most_unknowns = 700, most_nodes = 30'000;
 
@@ -79,12 +79,19 @@ class TaylorCoefficients {
   std::map<std::pair<std::size_t, Order>, std::size_t> places_;
 };
 
-/// The determining equation ξ L_t + η·L_q + (Dη − q̇ Dξ)·L_q̇ + L Dξ − Df = 0 and its derivatives, at one point of (q, t).
+/// The determining equation ξ L_t + η·L_q + (Dη − q̇ Dξ)·L_q̇ + L Dξ − Df = 0 and its derivatives, at one point of (q,
+/// t).
 class DeterminingEquations {
  public:
   DeterminingEquations(const EquationsOfMotion& equations, bool natural, int order, std::uint64_t seed)
-      : system_(*equations.system), n_(system_.coordinates.size()), order_(order), natural_(natural), taylor_(equations, order),
-        tape_(evaluation::flatten_arguments(taylor_.roots())), hints_(evaluation::field_hints(tape_)), seed_(mix(seed)),
+      : system_(*equations.system),
+        n_(system_.coordinates.size()),
+        order_(order),
+        natural_(natural),
+        taylor_(equations, order),
+        tape_(evaluation::flatten_arguments(taylor_.roots())),
+        hints_(evaluation::field_hints(tape_)),
+        seed_(mix(seed)),
         numbers_(evaluation::random_prime_triple(hints_.m, seed_), hints_, seed_) {
     orders_ = orders_up_to(n_ + 1, order);
     for (std::size_t function = 0; function < n_ + 2; ++function)
@@ -103,7 +110,8 @@ class DeterminingEquations {
   std::size_t unknowns() const { return unknowns_.size(); }
   std::size_t nodes() const { return tape_.size(); }
 
-  /// dim π_j for j = 0 … order: how many independent jets of order j belong to solutions up to `order`. Empty: no point.
+  /// dim π_j for j = 0 … order: how many independent jets of order j belong to solutions up to `order`. Empty: no
+  /// point.
   std::vector<std::size_t> dimensions() {
     const auto rows = matrix();
     if (!rows) return {};
@@ -111,7 +119,8 @@ class DeterminingEquations {
     const std::vector<NullVector> kernel = null_vectors(*rows, field);
     std::vector<std::size_t> out;
     for (int j = 0; j <= order_; ++j) {
-      const auto width = static_cast<std::size_t>(std::count_if(order_of_.begin(), order_of_.end(), [j](int o) { return o <= j; }));
+      const auto width =
+          static_cast<std::size_t>(std::count_if(order_of_.begin(), order_of_.end(), [j](int o) { return o <= j; }));
       FieldMatrix low(kernel.size(), width);
       for (std::size_t i = 0; i < kernel.size(); ++i)
         for (std::size_t k = 0; k < kernel[i].columns.size(); ++k)
@@ -126,7 +135,7 @@ class DeterminingEquations {
   bool is_unknown(std::size_t function, const Order& a) const {
     if (function == n_ + 1) return total(a) > 0;
     if (function > 0 || !natural_) return true;
-    return total(a) == a.back();   // ξ(t)
+    return total(a) == a.back();  // ξ(t)
   }
 
   std::optional<FieldMatrix> matrix() {
@@ -170,7 +179,9 @@ class DeterminingEquations {
     }
   }
 
-  Value coefficient(std::size_t function, const Order& a) const { return at_[tape_.roots()[taylor_.place(function, a)]]; }
+  Value coefficient(std::size_t function, const Order& a) const {
+    return at_[tape_.roots()[taylor_.place(function, a)]];
+  }
 
   void add(FieldMatrix& m, std::size_t row, std::size_t function, const Order& a, Value value) const {
     const auto it = unknowns_.find({function, a});
@@ -194,16 +205,16 @@ class DeterminingEquations {
   void fill(FieldMatrix& m, std::size_t row, const Order& a) const {
     const PrimeField& field = numbers_.field();
     for (const Order& b : orders_) {
-      Order c = a;                              // b + c = a
+      Order c = a;  // b + c = a
       bool below = true;
       for (std::size_t k = 0; k <= n_; ++k) below &= (c[k] -= b[k]) >= 0;
       if (!below) continue;
-      for (std::size_t k = 0; k <= n_; ++k) {   // η_k L_{q_k}, ξ L_t
+      for (std::size_t k = 0; k <= n_; ++k) {  // η_k L_{q_k}, ξ L_t
         Order next = c;
         ++next[k];
         add(m, row, k < n_ ? 1 + k : 0, b, field.multiply(coefficient(0, next), field.from(Rational(next[k]))));
       }
-      Value energy = coefficient(0, c);         // L − q̇·L_q̇, the factor of Dξ
+      Value energy = coefficient(0, c);  // L − q̇·L_q̇, the factor of Dξ
       for (std::size_t i = 0; i < n_; ++i) {
         const Value p = coefficient(1 + i, c);
         energy = field.subtract(energy, field.multiply(velocities_[i], p));
@@ -231,13 +242,15 @@ class DeterminingEquations {
 
 std::size_t unknowns_of_order(std::size_t n, int order) {
   double count = 1;
-  for (std::size_t k = 1; k <= n + 1; ++k) count = count * static_cast<double>(static_cast<std::size_t>(order) + k) / static_cast<double>(k);
+  for (std::size_t k = 1; k <= n + 1; ++k)
+    count = count * static_cast<double>(static_cast<std::size_t>(order) + k) / static_cast<double>(k);
   return static_cast<std::size_t>(count) * (n + 2);
 }
 
 }  // namespace
 
-std::optional<std::size_t> symmetry_bound(const EquationsOfMotion& equations, bool natural, std::size_t found, std::uint64_t seed) {
+std::optional<std::size_t> symmetry_bound(const EquationsOfMotion& equations, bool natural, std::size_t found,
+                                          std::uint64_t seed) {
   const std::size_t n = equations.system->coordinates.size();
   std::optional<std::size_t> best;
   constexpr int highest = 7;

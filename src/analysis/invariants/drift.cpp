@@ -14,7 +14,8 @@ Expr sum_of_squares(Expr integral) {
   const Expr expanded = expand(integral);
   const Expr e = expanded ? expanded : integral;
   std::vector<Expr> squares;
-  for (std::size_t i = 0; i < (e.is(Kind::Sum) ? e.size() : 1); ++i) squares.push_back(pow(e.is(Kind::Sum) ? e[i] : e, Rational(2)));
+  for (std::size_t i = 0; i < (e.is(Kind::Sum) ? e.size() : 1); ++i)
+    squares.push_back(pow(e.is(Kind::Sum) ? e[i] : e, Rational(2)));
   return e.context().sum(squares);
 }
 
@@ -31,11 +32,14 @@ double drift_of_column(const Probe& probe, std::size_t integral, std::size_t squ
 
 }  // namespace
 
-void measure_drift(Invariants& result, const Model& model, const EquationsOfMotion& equations, Diagnostics& diagnostics) {
+void measure_drift(Invariants& result, const Model& model, const EquationsOfMotion& equations,
+                   Diagnostics& diagnostics) {
   const Experiment& experiment = model.experiment;
   const Expr length = experiment.duration ? experiment.duration : experiment.within;
   if (!length || result.integrals.empty()) return;
-  const auto number = [&](Expr e) { return evaluate(in_terms_of_motion(model.system, {&e, 1}).front(), parameter_bindings(model.system)); };
+  const auto number = [&](Expr e) {
+    return evaluate(in_terms_of_motion(model.system, {&e, 1}).front(), parameter_bindings(model.system));
+  };
   const double begin = experiment.start_time ? number(experiment.start_time) : 0, duration = number(length);
   SimulationOptions options;
   options.duration = duration;
@@ -43,7 +47,8 @@ void measure_drift(Invariants& result, const Model& model, const EquationsOfMoti
   Probe probe;
   const std::size_t count = result.integrals.size();
   for (const ConservedFunction& integral : result.integrals) probe.expressions.push_back(integral.value);
-  for (const ConservedFunction& integral : result.integrals) probe.expressions.push_back(sum_of_squares(integral.value));
+  for (const ConservedFunction& integral : result.integrals)
+    probe.expressions.push_back(sum_of_squares(integral.value));
   Diagnostics of_the_run;
   const auto run = simulate(model, equations, options, of_the_run, &probe);
   if (!run || !run->ok()) {

@@ -29,8 +29,7 @@ std::vector<std::size_t> echelon(FieldMatrix& m, const PrimeField& field) {
     std::size_t row = top;
     while (row < m.rows && m.at(row, column) == 0) ++row;
     if (row == m.rows) continue;
-    if (row != top)
-      std::swap_ranges(&m.at(row, 0), &m.at(row, 0) + m.columns, &m.at(top, 0));
+    if (row != top) std::swap_ranges(&m.at(row, 0), &m.at(row, 0) + m.columns, &m.at(top, 0));
     scale_row(m, top, column, field.inverse(m.at(top, column)), field);
     for (std::size_t below = top + 1; below < m.rows; ++below) subtract_row(m, below, top, column, field);
     pivots.push_back(column);
@@ -42,7 +41,10 @@ std::vector<NullVector> null_vectors(FieldMatrix m, const PrimeField& field) {
   const std::vector<std::size_t> pivots = echelon(m, field);
   std::vector<NullVector> out;
   for (std::size_t column = 0, next = 0; column < m.columns; ++column) {
-    if (next < pivots.size() && pivots[next] == column) { ++next; continue; }
+    if (next < pivots.size() && pivots[next] == column) {
+      ++next;
+      continue;
+    }
     // Back substitution over the pivots before this column.
     std::vector<Value> x(m.columns, 0);
     x[column] = field.one();
@@ -53,7 +55,10 @@ std::vector<NullVector> null_vectors(FieldMatrix m, const PrimeField& field) {
     }
     NullVector vector;
     for (std::size_t k = 0; k <= column; ++k)
-      if (x[k] != 0) { vector.columns.push_back(k); vector.entries.push_back(x[k]); }
+      if (x[k] != 0) {
+        vector.columns.push_back(k);
+        vector.entries.push_back(x[k]);
+      }
     out.push_back(std::move(vector));
   }
   return out;
@@ -73,18 +78,19 @@ std::optional<std::vector<Value>> solve(FieldMatrix m, const PrimeField& field) 
 }
 
 std::optional<Rational> rational_of(Value value, const PrimeField& field) {
+  constexpr std::int64_t likely = std::int64_t{1} << 44;  // a random residue has so small a fraction once in 2^16
   const auto p = static_cast<std::int64_t>(field.prime());
   const auto bound = static_cast<std::int64_t>(std::sqrt(static_cast<double>(p) / 2));
   std::int64_t r0 = p, r1 = static_cast<std::int64_t>(field.residue(value)), t0 = 0, t1 = 1;
-  while (r1 > bound) {
+  for (;;) {
+    if (r1 <= bound && std::abs(t1) <= bound && std::abs(t1) <= likely / std::max<std::int64_t>(1, r1)) return Rational(r1, t1);
+    if (r1 == 0 || std::abs(t1) > bound) return std::nullopt;
     const std::int64_t quotient = r0 / r1;
     r0 -= quotient * r1;
     t0 -= quotient * t1;
     std::swap(r0, r1);
     std::swap(t0, t1);
   }
-  if (t1 == 0 || std::abs(t1) > bound) return std::nullopt;
-  return Rational(r1, t1);
 }
 
 }  // namespace maupertuis::invariants

@@ -38,7 +38,7 @@ std::vector<NullVector> null_vectors(FieldMatrix m, const PrimeField& field);
 /// Some x with N x = c, for the augmented matrix [N | c]; nothing where there is none. Free unknowns are 0.
 std::optional<std::vector<Value>> solve(FieldMatrix augmented, const PrimeField& field);
 
-/// The fraction a/b with |a|, b ≤ √(p/2) of this residue (Wang 1981), or nothing.
+/// The fraction a/b with |a| b < 2^44 of this residue (Wang 1981), or nothing: most residues have none.
 std::optional<Rational> rational_of(Value value, const PrimeField& field);
 
 }  // namespace maupertuis::invariants

@@ -23,12 +23,21 @@ using namespace invariants;
 
 class Finder {
  public:
-  Finder(const Model& model, const EquationsOfMotion& equations, const InvariantsOptions& options, Diagnostics& diagnostics)
-      : model_(model), equations_(equations), system_(*equations.system), options_(options), diagnostics_(diagnostics),
-        rows_(motion_rows(equations)), ansatz_(make_ansatz(equations, rows_)), along_(equations) {
+  Finder(const Model& model, const EquationsOfMotion& equations, const InvariantsOptions& options,
+         Diagnostics& diagnostics)
+      : model_(model),
+        equations_(equations),
+        system_(*equations.system),
+        options_(options),
+        diagnostics_(diagnostics),
+        rows_(motion_rows(equations)),
+        ansatz_(make_ansatz(equations, rows_)),
+        along_(equations) {
     Diagnostics unheard;
     if (const auto start = consistent_start(model, equations, unheard)) along_.set_start(start->state);
-    const auto acts = [](const ExprVector& v) { return std::any_of(v.begin(), v.end(), [](const Expr& e) { return !e.is_zero(); }); };
+    const auto acts = [](const ExprVector& v) {
+      return std::any_of(v.begin(), v.end(), [](const Expr& e) { return !e.is_zero(); });
+    };
     hamiltonian_ = !system_.constrained() && !acts(equations.generalized_forces) && !acts(equations.dissipative_terms);
   }
 
@@ -44,8 +53,9 @@ class Finder {
     number_them();
     if (options_.relations) add_algebra(result_, rows_, equations_, options_.seed + 5);
     add_balance_laws(result_, ansatz_, equations_, options_);
-    if (options_.completeness && hamiltonian_) 
-      result_.symmetry_bound = symmetry_bound(equations_, ansatz_.atoms.natural, result_.noether_symmetries, options_.seed + 7);
+    if (options_.completeness && hamiltonian_)
+      result_.symmetry_bound =
+          symmetry_bound(equations_, ansatz_.atoms.natural, result_.noether_symmetries, options_.seed + 7);
     if (options_.drift) measure_drift(result_, model_, equations_, diagnostics_);
     return std::move(result_);
   }
@@ -53,23 +63,25 @@ class Finder {
  private:
   std::optional<Invariants> too_large(std::size_t needed) {
     const double bytes = 8.0 * static_cast<double>(needed) * static_cast<double>(needed);
-    diagnostics_.error("E1001", {}, fmt::format("the basis of degree {} has {} functions", options_.velocity_degree, needed),
-                       fmt::format("Its matrix would take {:.0f} MB and {:.1g} multiplications; at most {} functions are allowed.",
-                                   bytes / 1e6, std::pow(static_cast<double>(needed), 3) / 3, options_.largest_basis),
-                       "A lower --degree, or --largest-basis with more functions.");
+    diagnostics_.error(
+        "E1001", {}, fmt::format("the basis of degree {} has {} functions", options_.velocity_degree, needed),
+        fmt::format("Its matrix would take {:.0f} MB and {:.1g} multiplications; at most {} functions are allowed.",
+                    bytes / 1e6, std::pow(static_cast<double>(needed), 3) / 3, options_.largest_basis),
+        "A lower --degree, or --largest-basis with more functions.");
     return std::nullopt;
   }
 
   bool find_charges() {
     const Basis basis = noether_basis(ansatz_, rows_, options_.largest_basis, options_.seed + 2);
     if (basis.monomials.empty()) {
-      result_.basis.push_back(fmt::format("point symmetries: not searched, the poorest basis has more than {} functions",
-                                          options_.largest_basis));
+      result_.basis.push_back(fmt::format(
+          "point symmetries: not searched, the poorest basis has more than {} functions", options_.largest_basis));
       return true;
     }
     const SearchResult found = conserved_combinations(rows_, ansatz_.generators, basis, {}, work(), options_.seed + 3);
     if (found.singular) return singular();
-    result_.basis.push_back(basis.description + fmt::format(": {} functions", basis.monomials.size()) + reservation(found));
+    result_.basis.push_back(basis.description + fmt::format(": {} functions", basis.monomials.size()) +
+                            reservation(found));
     result_.noether_symmetries = hamiltonian_ ? found.dimension : 0;
     result_.too_long += found.too_long;
     for (const Combination& c : found.found) take(c.value, hamiltonian_ ? IntegralKind::Noether : IntegralKind::Direct);
@@ -80,12 +92,15 @@ class Finder {
   std::size_t work() const { return options_.largest_basis * 100'000; }
 
   static std::string reservation(const SearchResult& found) {
-    return found.sampled ? "" : " (not searched: its random points are too expensive, or none were found at which all roots exist)";
+    return found.sampled
+               ? ""
+               : " (not searched: its random points are too expensive, or none were found at which all roots exist)";
   }
 
   bool singular() {
     diagnostics_.error("E1002", {}, "the equations do not determine the accelerations",
-                       "At random points the mass matrix, bordered by the constraints, was singular: conservation along the motion has no "
+                       "At random points the mass matrix, bordered by the constraints, was singular: conservation "
+                       "along the motion has no "
                        "meaning there.",
                        "`maup check` names coordinates without inertia.");
     return false;
@@ -93,13 +108,16 @@ class Finder {
 
   void find_polynomials(const PolynomialBases& polynomials) {
     if (polynomials.bases.empty())
-      result_.basis.push_back(fmt::format("polynomials of degree {} in the velocities: not searched, the poorest basis has {} functions",
-                                          options_.velocity_degree, polynomials.needed));
+      result_.basis.push_back(
+          fmt::format("polynomials of degree {} in the velocities: not searched, the poorest basis has {} functions",
+                      options_.velocity_degree, polynomials.needed));
     for (const Basis& basis : polynomials.bases) {
-      const SearchResult found = conserved_combinations(rows_, ansatz_.generators, basis, products_of_found(), work(), options_.seed + 4);
+      const SearchResult found =
+          conserved_combinations(rows_, ansatz_.generators, basis, products_of_found(), work(), options_.seed + 4);
       result_.basis.push_back(basis.description + reservation(found));
       result_.too_long += found.too_long;
-      for (const Combination& c : found.found) take(c.value, hamiltonian_ ? IntegralKind::Hidden : IntegralKind::Direct);
+      for (const Combination& c : found.found)
+        take(c.value, hamiltonian_ ? IntegralKind::Hidden : IntegralKind::Direct);
     }
   }
 
@@ -110,7 +128,8 @@ class Finder {
       for (std::size_t i = from; i < result_.integrals.size(); ++i) {
         const ConservedFunction& integral = result_.integrals[i];
         const int sum = degree + std::max(1, integral.velocity_degree);
-        if (sum > options_.velocity_degree || (integral.explicit_time && !ansatz_.explicit_time) || out.size() > 400) continue;
+        if (sum > options_.velocity_degree || (integral.explicit_time && !ansatz_.explicit_time) || out.size() > 400)
+          continue;
         const Expr next = product ? product * integral.value : integral.value;
         out.push_back(next);
         self(self, i, next, sum);
@@ -124,7 +143,10 @@ class Finder {
   void take(Expr value, IntegralKind kind) {
     ConservedFunction integral;
     integral.certificate = along_.vanishes(along_.rate(value));
-    if (integral.certificate.verdict != Verdict::Zero) return;
+    if (integral.certificate.verdict != Verdict::Zero) {
+      ++result_.too_long;
+      return;
+    }
     integral.kind = kind;
     const Namer namer(equations_, rows_, ansatz_, options_.seed + 6);
     const Naming naming = hamiltonian_ ? namer.name(value) : namer.name_by_value(value);
@@ -132,7 +154,8 @@ class Finder {
     integral.name = naming.name;
     integral.symmetry = kind == IntegralKind::Noether ? naming.symmetry : "";
     integral.readable = readable(integral.value, equations_.order);
-    if (zero_test(with_intermediates(integral.readable) - integral.value).verdict != Verdict::Zero) integral.readable = {integral.value, {}, {}};
+    if (zero_test(with_intermediates(integral.readable) - integral.value).verdict != Verdict::Zero)
+      integral.readable = {integral.value, {}, {}};
     integral.velocity_degree = velocity_degree(integral.value, system_).value_or(1);
     integral.explicit_time = depends_on_time_itself(integral.value);
     if (kind == IntegralKind::Hidden) integral.characteristic = short_symmetry(integral.value);
@@ -174,13 +197,15 @@ class Finder {
                      });
   }
 
-  /// Those that depend on others stay where they are charges of their own symmetries, or have a name (the third component
-  /// of a vector), or are new among those without explicit time.
+  /// Those that depend on others stay where they are charges of their own symmetries, or have a name (the third
+  /// component of a vector), or are new among those without explicit time.
   void remove_functions_of_others() {
     std::vector<Expr> autonomous;
     for (const ConservedFunction& i : result_.integrals)
       if (!i.explicit_time) autonomous.push_back(i.value);
-    const auto marks = autonomous.empty() ? std::vector<bool>() : independent_functions_of_state(rows_, equations_, autonomous, options_.seed + 8);
+    const auto marks = autonomous.empty()
+                           ? std::vector<bool>()
+                           : independent_functions_of_state(rows_, equations_, autonomous, options_.seed + 8);
     std::size_t next = 0;
     std::vector<ConservedFunction> kept;
     for (ConservedFunction& i : result_.integrals) {
@@ -245,9 +270,10 @@ class Finder {
 std::optional<Invariants> find_invariants(const Model& model, const EquationsOfMotion& equations,
                                           const InvariantsOptions& options, Diagnostics& diagnostics) {
   if (is_nonlinear_in_velocities(equations)) {
-    diagnostics.error("E1003", {}, "a constraint is not linear in the velocities",
-                      "The search draws velocities that satisfy the constraints over a prime field, which needs linear equations.",
-                      "`expect conserved EXPR` proves a single integral of such a system.");
+    diagnostics.error(
+        "E1003", {}, "a constraint is not linear in the velocities",
+        "The search draws velocities that satisfy the constraints over a prime field, which needs linear equations.",
+        "`expect conserved EXPR` proves a single integral of such a system.");
     return std::nullopt;
   }
   return Finder(model, equations, options, diagnostics).carry_out();

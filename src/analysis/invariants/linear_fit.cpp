@@ -41,7 +41,8 @@ class Fitter {
     for (std::size_t p = 0; p < points; ++p) {
       const auto sample = sampler_.draw(roots);
       if (!sample) return std::nullopt;
-      std::copy(sample->values.begin(), sample->values.end(), m.entries.begin() + static_cast<std::ptrdiff_t>(p * sample->values.size()));
+      std::copy(sample->values.begin(), sample->values.end(),
+                m.entries.begin() + static_cast<std::ptrdiff_t>(p * sample->values.size()));
     }
     return solve(std::move(m), sampler_.field());
   }

@@ -59,8 +59,12 @@ bool is_nonlinear_in_velocities(const EquationsOfMotion& equations) {
 }
 
 MotionSampler::MotionSampler(const MotionRows& rows, std::vector<Expr> functions, bool with_rates, std::uint64_t seed)
-    : system_(rows.system), n_(rows.system->coordinates.size()), m_(rows.constraint.rows), functions_(functions.size()),
-      with_rates_(with_rates), seed_(seed) {
+    : system_(rows.system),
+      n_(rows.system->coordinates.size()),
+      m_(rows.constraint.rows),
+      functions_(functions.size()),
+      with_rates_(with_rates),
+      seed_(seed) {
   std::vector<Expr> roots = rows.mass.entries;
   const auto append = [&](const std::vector<Expr>& more) { roots.insert(roots.end(), more.begin(), more.end()); };
   append(rows.bias);
@@ -98,7 +102,8 @@ void MotionSampler::evaluate(std::vector<Value>& at, int from_order) {
   if (from_order > 0) {
     bool angles = false;
     for (evaluation::Position p = 0; p < tape_->size(); ++p)
-      angles |= highest_order_[p] >= from_order && (tape_->kind(p) == Kind::Sin || tape_->kind(p) == Kind::Cos || tape_->kind(p) == Kind::Tan);
+      angles |= highest_order_[p] >= from_order &&
+                (tape_->kind(p) == Kind::Sin || tape_->kind(p) == Kind::Cos || tape_->kind(p) == Kind::Tan);
     if (angles) numbers_->symbols_changed();
   }
   evaluation::run(*tape_, *numbers_, at, [&](evaluation::Position p) { return highest_order_[p] >= from_order; });
@@ -126,7 +131,8 @@ std::optional<ParameterRoots> MotionSampler::usable_parameters() {
 }
 
 void MotionSampler::bind_parameters(const ParameterRoots& roots) {
-  for (std::size_t i = 0; i < parameters_.size(); ++i) numbers_->give(parameters_[i], field().multiply(roots[i], roots[i]));
+  for (std::size_t i = 0; i < parameters_.size(); ++i)
+    numbers_->give(parameters_[i], field().multiply(roots[i], roots[i]));
 }
 
 /// Random velocities, the dependent ones from A q̇ = a₀.
@@ -201,11 +207,18 @@ std::optional<MotionSampler::Sample> MotionSampler::draw(const ParameterRoots& r
     try {
       evaluate(at, 0);
       if (m_ > 0) {
-        if (!bind_velocities(at)) { ++unsolved; continue; }
+        if (!bind_velocities(at)) {
+          ++unsolved;
+          continue;
+        }
         evaluate(at, 1);
       }
       if (with_rates_) {
-        if (!bind_accelerations(at)) { ++unsolved; singular_ = true; continue; }
+        if (!bind_accelerations(at)) {
+          ++unsolved;
+          singular_ = true;
+          continue;
+        }
         evaluate(at, 2);
       }
       singular_ = false;
@@ -214,7 +227,8 @@ std::optional<MotionSampler::Sample> MotionSampler::draw(const ParameterRoots& r
       if (redraw.at < parametric_.size() && parametric_[redraw.at]) return std::nullopt;
       // A symbol with a given value is no help: then all are drawn again.
       const auto symbol = hints_.free.find(redraw.at);
-      mended = symbol != hints_.free.end() && !numbers_->is_given(symbol->second) && mends-- > 0 && numbers_->mend(redraw);
+      mended =
+          symbol != hints_.free.end() && !numbers_->is_given(symbol->second) && mends-- > 0 && numbers_->mend(redraw);
     }
   }
   return std::nullopt;

@@ -15,12 +15,12 @@ namespace maupertuis::invariants {
 ///     M q̈ − Aᵀλ = −h,   A q̈ = b,   and for the velocities A q̇ = a₀.
 struct MotionRows {
   std::shared_ptr<const MechanicalSystem> system;
-  ExprMatrix mass;           // M [n × n]
-  ExprVector bias;           // h [n]
-  ExprMatrix constraint;     // A [m × n], in q, t alone
-  ExprVector acceleration;   // b [m]
-  ExprVector velocity;       // a₀ [m]
-  bool conservative = false; // without Q and ∂D/∂q̇, and without constraints
+  ExprMatrix mass;            // M [n × n]
+  ExprVector bias;            // h [n]
+  ExprMatrix constraint;      // A [m × n], in q, t alone
+  ExprVector acceleration;    // b [m]
+  ExprVector velocity;        // a₀ [m]
+  bool conservative = false;  // without Q and ∂D/∂q̇, and without constraints
 };
 MotionRows motion_rows(const EquationsOfMotion& equations);
 /// Of L alone: forces, dissipation and constraints left out.

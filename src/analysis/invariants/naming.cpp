@@ -13,7 +13,8 @@ enum Rank { EnergyRank, MomentumRank, CoordinateRank, RotationRank, BoostRank, S
 
 std::string joined_with_and(const std::vector<std::string>& words) {
   std::string out;
-  for (std::size_t i = 0; i < words.size(); ++i) out += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
+  for (std::size_t i = 0; i < words.size(); ++i)
+    out += (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + words[i];
   return out;
 }
 
@@ -24,7 +25,8 @@ int turn_about(const std::string& axis) { return axis == "y" ? -1 : 1; }
 
 Namer::Namer(const EquationsOfMotion& equations, const MotionRows& rows, const Ansatz& ansatz, std::uint64_t seed)
     : equations_(equations), rows_(rows), ansatz_(ansatz), seed_(seed) {
-  energy_is_t_plus_v_ = equations.system->lagrangian_given.has_value() || conserved_quantities(equations).energy_is_t_plus_v;
+  energy_is_t_plus_v_ =
+      equations.system->lagrangian_given.has_value() || conserved_quantities(equations).energy_is_t_plus_v;
 }
 
 std::string Namer::axis_of_rotation(const Fit::Term& rotation) const {
@@ -48,8 +50,8 @@ Naming Namer::name(Expr integral) const {
 }
 
 Naming Namer::of_fit(const Fit& fit, Expr integral) const {
-  for (const auto rule : {&Namer::of_leading_part, &Namer::of_time, &Namer::of_scaling, &Namer::of_rotation, &Namer::of_translation,
-                          &Namer::of_boost, &Namer::of_coordinates})
+  for (const auto rule : {&Namer::of_leading_part, &Namer::of_time, &Namer::of_scaling, &Namer::of_rotation,
+                          &Namer::of_translation, &Namer::of_boost, &Namer::of_coordinates})
     if (auto naming = (this->*rule)(fit, integral)) return *naming;
   return {"", "", integral, 9};
 }
@@ -66,7 +68,8 @@ std::optional<Naming> Namer::of_time(const Fit& fit, Expr integral) const {
   }
   const bool energy = energy_is_t_plus_v_ && fit.only({Constant::TimeShift});
   return Naming{energy ? "energy" : "Jacobi integral",
-                "translation in time" + (with.empty() ? "" : " with " + joined_with_and(with)), -integral / shift->value, EnergyRank};
+                "translation in time" + (with.empty() ? "" : " with " + joined_with_and(with)),
+                -integral / shift->value, EnergyRank};
 }
 
 std::optional<Naming> Namer::of_scaling(const Fit& fit, Expr integral) const {
@@ -82,10 +85,13 @@ std::optional<Naming> Namer::of_rotation(const Fit& fit, Expr integral) const {
   if (fit.count(Constant::Rotation) != 1 || !fit.only({Constant::Rotation, Constant::Translation})) return std::nullopt;
   const std::string about = axis_of_rotation(*rotation);
   const Expr scaled = Rational(turn_about(about)) * integral / rotation->value;
-  if (!translation) return Naming{total() + "angular momentum about " + about, "rotation about " + about, scaled, RotationRank};
+  if (!translation)
+    return Naming{total() + "angular momentum about " + about, "rotation about " + about, scaled, RotationRank};
   if (about == axis(translation->axis))
-    return Naming{"helical momentum about " + about, "screw: a rotation about " + about + " with a translation along it", scaled, RotationRank};
-  return Naming{"angular momentum about another axis along " + about, "rotation about another point", scaled, RotationRank};
+    return Naming{"helical momentum about " + about,
+                  "screw: a rotation about " + about + " with a translation along it", scaled, RotationRank};
+  return Naming{"angular momentum about another axis along " + about, "rotation about another point", scaled,
+                RotationRank};
 }
 
 std::optional<Naming> Namer::of_translation(const Fit& fit, Expr integral) const {
@@ -94,23 +100,27 @@ std::optional<Naming> Namer::of_translation(const Fit& fit, Expr integral) const
   const std::string along = axis(translation->axis);
   const bool gauge = has_gauge(integral);
   return Naming{total() + "momentum along " + along + (gauge ? ", modified by the field" : ""),
-                "translation along " + along + (gauge ? " up to gauge" : ""), integral / translation->value, MomentumRank};
+                "translation along " + along + (gauge ? " up to gauge" : ""), integral / translation->value,
+                MomentumRank};
 }
 
 std::optional<Naming> Namer::of_boost(const Fit& fit, Expr integral) const {
   if (const auto* t = fit.find(Constant::LorentzBoost))
-    return Naming{"boost along " + axis(t->axis), "Lorentz boost along " + axis(t->axis), -integral / t->value, BoostRank};
+    return Naming{"boost along " + axis(t->axis), "Lorentz boost along " + axis(t->axis), -integral / t->value,
+                  BoostRank};
   const Fit::Term* boost = fit.find(Constant::Boost);
   if (fit.count(Constant::Boost) != 1 || !fit.only({Constant::Boost, Constant::Translation})) return std::nullopt;
-  return Naming{"Galilei boost along " + axis(boost->axis) + (ansatz_.world.points.size() > 1 ? " (centre of mass)" : ""),
-                "Galilei boost along " + axis(boost->axis), -integral / boost->value, BoostRank};
+  return Naming{
+      "Galilei boost along " + axis(boost->axis) + (ansatz_.world.points.size() > 1 ? " (centre of mass)" : ""),
+      "Galilei boost along " + axis(boost->axis), -integral / boost->value, BoostRank};
 }
 
 std::optional<Naming> Namer::of_coordinates(const Fit& fit, Expr integral) const {
   if (!fit.only({Constant::Coordinate})) return std::nullopt;
   std::vector<std::string> names;
   for (const Fit::Term& t : fit.terms) names.push_back(equations_.system->coordinates[t.axis].name);
-  return Naming{"momentum of " + joined_with_and(names), "shift of " + joined_with_and(names), integral / fit.terms[0].value, CoordinateRank};
+  return Naming{"momentum of " + joined_with_and(names), "shift of " + joined_with_and(names),
+                integral / fit.terms[0].value, CoordinateRank};
 }
 
 std::optional<Naming> Namer::of_leading_part(const Fit& fit, Expr integral) const {
@@ -118,9 +128,11 @@ std::optional<Naming> Namer::of_leading_part(const Fit& fit, Expr integral) cons
   const Orbit orbit = orbit_of(ansatz_.world);
   const std::string where = orbit.relative ? " (relative motion)" : "";
   if (const auto* t = fit.find(Constant::RungeLenz))
-    return Naming{"Laplace-Runge-Lenz vector, " + axis(t->axis) + where, "", integral * (orbit.mass * orbit.mass) / t->value, LeadingRank};
+    return Naming{"Laplace-Runge-Lenz vector, " + axis(t->axis) + where, "",
+                  integral * (orbit.mass * orbit.mass) / t->value, LeadingRank};
   if (const auto* t = fit.find(Constant::Fradkin))
-    return Naming{"Fradkin tensor, " + axis(t->axis) + axis(t->second) + where, "", integral * orbit.mass / (Rational(2) * t->value), LeadingRank};
+    return Naming{"Fradkin tensor, " + axis(t->axis) + axis(t->second) + where, "",
+                  integral * orbit.mass / (Rational(2) * t->value), LeadingRank};
   return std::nullopt;
 }
 
@@ -138,8 +150,9 @@ std::optional<Naming> Namer::of_relative_rotation(Expr integral) const {
     if ((*constants)[k]) used.push_back(k);
   if (used.size() != 1) return std::nullopt;
   const char about = count == 1 ? 'z' : "xyz"[used[0]];
-  return Naming{fmt::format("relative angular momentum about {}", about), fmt::format("rotation of the relative position about {}", about),
-                integral / (*constants)[used[0]], LeadingRank};
+  return Naming{fmt::format("relative angular momentum about {}", about),
+                fmt::format("rotation of the relative position about {}", about), integral / (*constants)[used[0]],
+                LeadingRank};
 }
 
 bool Namer::is_square_of_angular_momentum(Expr integral) const {
@@ -171,7 +184,8 @@ Naming Namer::name_by_value(Expr integral) const {
   for (std::size_t i = 0; i < ansatz_.momenta.size(); ++i)
     add(ansatz_.momenta[i], "momentum of " + system.coordinates[i].name, CoordinateRank);
   for (std::size_t i = 0; i < world.angular_momentum.size(); ++i)
-    add(world.angular_momentum[i], fmt::format("{}angular momentum about {}", total(), world.angular_momentum.size() == 1 ? 'z' : "xyz"[i]),
+    add(world.angular_momentum[i],
+        fmt::format("{}angular momentum about {}", total(), world.angular_momentum.size() == 1 ? 'z' : "xyz"[i]),
         RotationRank);
   row.push_back(integral);
   const auto constants = fit_constants(rows_, {{row}, names.size()}, seed_);
@@ -180,7 +194,8 @@ Naming Namer::name_by_value(Expr integral) const {
     if ((*constants)[k]) used.push_back(k);
   const bool with_energy = !used.empty() && used[0] == 0;
   if (used.empty() || (used.size() > 1 && !with_energy)) return {"", "", integral, 9};
-  return {used.size() == 1 ? names[used[0]].first : "Jacobi integral", "", integral / (*constants)[used[0]], names[used[0]].second};
+  return {used.size() == 1 ? names[used[0]].first : "Jacobi integral", "", integral / (*constants)[used[0]],
+          names[used[0]].second};
 }
 
 }  // namespace maupertuis::invariants

@@ -8,9 +8,9 @@ namespace maupertuis::invariants {
 
 /// What an integral is called, by how its symmetry moves the points of the model.
 struct Naming {
-  std::string name, symmetry;   // empty: no name fits
-  Expr scaled;                  // the integral in its usual normalisation and sign
-  int rank = 9;                 // place in a list: energy first, then momenta, angular momenta, boosts, others
+  std::string name, symmetry;  // empty: no name fits
+  Expr scaled;                 // the integral in its usual normalisation and sign
+  int rank = 9;                // place in a list: energy first, then momenta, angular momenta, boosts, others
 };
 
 class Namer {
@@ -18,7 +18,8 @@ class Namer {
   Namer(const EquationsOfMotion& equations, const MotionRows& rows, const Ansatz& ansatz, std::uint64_t seed);
   /// By its symmetry. Precondition: no constraints.
   Naming name(Expr integral) const;
-  /// By its value alone, for systems with constraints or forces: a multiple of h_E, of a momentum, of an angular momentum.
+  /// By its value alone, for systems with constraints or forces: a multiple of h_E, of a momentum, of an angular
+  /// momentum.
   Naming name_by_value(Expr integral) const;
 
  private:

@@ -5,9 +5,9 @@
 namespace maupertuis::invariants {
 namespace {
 
-constexpr std::size_t most_unknowns = 140;   // of one fraction
+constexpr std::size_t most_unknowns = 140;  // of one fraction
 constexpr int most_degree = 5;
-constexpr std::size_t checks = 2;            // random points at which a fit has to agree
+constexpr std::size_t checks = 2;  // random points at which a fit has to agree
 
 /// All exponents of total degree ≤ `degree` of `count` variables, ascending by degree.
 std::vector<std::vector<int>> powers_up_to(std::size_t count, int degree) {
@@ -16,7 +16,7 @@ std::vector<std::vector<int>> powers_up_to(std::size_t count, int degree) {
   for (int d = 1; d <= degree; ++d) {
     const std::size_t end = out.size();
     for (std::size_t i = first; i < end; ++i) {
-      std::size_t last = count;   // multiply by variables from the last used one on, so that each comes once
+      std::size_t last = count;  // multiply by variables from the last used one on, so that each comes once
       while (last > 0 && out[i][last - 1] == 0) --last;
       for (std::size_t k = last > 0 ? last - 1 : 0; k < count; ++k) {
         out.push_back(out[i]);
@@ -114,8 +114,10 @@ std::optional<Coefficient> ParameterFit::find(std::size_t vector, std::size_t en
   std::vector<std::size_t> others;
   for (std::size_t i = 0; i < scaled_.size(); ++i) {
     const auto e = power_of(factors_[i], field.multiply(scaled_[i].values[vector][entry], field.inverse(at_base)));
-    if (e) exponents[i] = *e;
-    else others.push_back(i);
+    if (e)
+      exponents[i] = *e;
+    else
+      others.push_back(i);
   }
   if (others.empty()) return fit_monomial(exponents, vector, entry);
   for (int degree = 1; degree <= most_degree; ++degree)
@@ -123,12 +125,14 @@ std::optional<Coefficient> ParameterFit::find(std::size_t vector, std::size_t en
   return std::nullopt;
 }
 
-std::optional<Coefficient> ParameterFit::fit_monomial(const std::vector<int>& exponents, std::size_t vector, std::size_t entry) {
+std::optional<Coefficient> ParameterFit::fit_monomial(const std::vector<int>& exponents, std::size_t vector,
+                                                      std::size_t entry) {
   const PrimeField& field = sampler_.field();
   const Value number = field.multiply(base_->values[vector][entry], field.inverse(monomial(exponents, base_->roots)));
   for (std::size_t k = 0; k < checks; ++k) {
     const Point* point = random_point(k);
-    if (!point || field.multiply(number, monomial(exponents, point->roots)) != point->values[vector][entry]) return std::nullopt;
+    if (!point || field.multiply(number, monomial(exponents, point->roots)) != point->values[vector][entry])
+      return std::nullopt;
   }
   const auto rational = rational_of(number, field);
   if (!rational) return std::nullopt;
@@ -138,8 +142,9 @@ std::optional<Coefficient> ParameterFit::fit_monomial(const std::vector<int>& ex
 }
 
 /// c·D − N = 0 at random points, N and D with unknown coefficients.
-std::optional<Coefficient> ParameterFit::fit_fraction(const std::vector<int>& exponents, const std::vector<std::size_t>& others,
-                                                      int degree, std::size_t vector, std::size_t entry) {
+std::optional<Coefficient> ParameterFit::fit_fraction(const std::vector<int>& exponents,
+                                                      const std::vector<std::size_t>& others, int degree,
+                                                      std::size_t vector, std::size_t entry) {
   const PrimeField& field = sampler_.field();
   const auto powers = powers_up_to(others.size(), degree);
   const std::size_t count = powers.size();
@@ -172,7 +177,8 @@ std::optional<Coefficient> ParameterFit::fit_fraction(const std::vector<int>& ex
   return c;
 }
 
-std::optional<Expr> ParameterFit::polynomial(const std::vector<std::vector<int>>& powers, const std::vector<Value>& coefficients,
+std::optional<Expr> ParameterFit::polynomial(const std::vector<std::vector<int>>& powers,
+                                             const std::vector<Value>& coefficients,
                                              const std::vector<std::size_t>& others) const {
   Context& context = sampler_.parameters().front().context();
   std::vector<Expr> terms;

@@ -10,17 +10,17 @@ namespace maupertuis::invariants {
 /// number · Π parameters^exponents · numerator/denominator: a coefficient as a function of the parameters.
 struct Coefficient {
   Rational number = 1;
-  std::vector<Rational> exponents;   // [parameters], halves
-  Expr numerator, denominator;       // polynomials of parameters; empty: 1
+  std::vector<Rational> exponents;  // [parameters], halves
+  Expr numerator, denominator;      // polynomials of parameters; empty: 1
   bool is_monomial() const { return !numerator; }
 };
 Expr expression(const Coefficient& c, const std::vector<Expr>& parameters, Context& context);
 
 /// Finds functions of the parameters from their values over a prime field.
 ///
-/// A coefficient that is multiplied by a power of 2 when the root of a parameter is doubled (of 3 when tripled, …) is homogeneous in that
-/// parameter; one that is so in all of them is a number times a monomial. What is left is a fraction of two polynomials
-/// in the other parameters, found by linear algebra at random points, by rising degree.
+/// A coefficient that is multiplied by a power of 2 when the root of a parameter is doubled (of 3 when tripled, …) is
+/// homogeneous in that parameter; one that is so in all of them is a number times a monomial. What is left is a
+/// fraction of two polynomials in the other parameters, found by linear algebra at random points, by rising degree.
 class ParameterFit {
  public:
   /// The coefficients of all vectors at these parameters; nothing where no points were found.
@@ -33,7 +33,10 @@ class ParameterFit {
   bool prepare();
 
  private:
-  struct Point { ParameterRoots roots; std::vector<std::vector<Value>> values; };
+  struct Point {
+    ParameterRoots roots;
+    std::vector<std::vector<Value>> values;
+  };
   std::optional<Point> point_at(ParameterRoots roots);
   bool scale_parameter(std::size_t i);
   const Point* random_point(std::size_t index);
@@ -49,8 +52,8 @@ class ParameterFit {
   MotionSampler& sampler_;
   Solver solver_;
   std::optional<Point> base_;
-  std::vector<Point> scaled_;   // [parameters] the root of one multiplied by factors_
-  std::vector<int> factors_;    // [parameters] 2, or another square modulo p where roots have no value then
+  std::vector<Point> scaled_;  // [parameters] the root of one multiplied by factors_
+  std::vector<int> factors_;   // [parameters] 2, or another square modulo p where roots have no value then
   std::vector<Point> random_;
 };
 

@@ -9,9 +9,11 @@
 namespace maupertuis::invariants {
 namespace {
 
-constexpr std::size_t rows_to_spare = 12;    // a wrong null vector passes one with probability 2^-60 each
+constexpr std::size_t rows_to_spare = 12;  // a wrong null vector passes one with probability 2^-60 each
 
-struct ValueAndRate { Value value, rate; };
+struct ValueAndRate {
+  Value value, rate;
+};
 
 ValueAndRate evaluate_monomial(const Monomial& m, const MotionSampler::Sample& at, const PrimeField& field) {
   ValueAndRate out{field.one(), 0};
@@ -30,8 +32,12 @@ class Search {
  public:
   Search(const MotionRows& rows, const Generators& generators, const Basis& basis, const std::vector<Expr>& known,
          bool of_rates, std::uint64_t seed)
-      : generators_(generators), basis_(basis), known_(known), of_rates_(of_rates),
-        sampler_(rows, with_known(generators.values(), known), true, seed), field_(sampler_.field()) {}
+      : generators_(generators),
+        basis_(basis),
+        known_(known),
+        of_rates_(of_rates),
+        sampler_(rows, with_known(generators.values(), known), true, seed),
+        field_(sampler_.field()) {}
 
   SearchResult carry_out(std::size_t work) {
     SearchResult result;
@@ -80,16 +86,20 @@ class Search {
 
   /// Those that are no combinations of 1, of what is known and of shorter ones, as functions.
   std::vector<NullVector> new_functions(const std::vector<NullVector>& vectors) const {
-    const std::size_t first = 1 + known_.size(), rows = std::min(samples_.size(), first + vectors.size() + rows_to_spare);
+    const std::size_t first = 1 + known_.size(),
+                      rows = std::min(samples_.size(), first + vectors.size() + rows_to_spare);
     FieldMatrix values(rows, first + vectors.size());
     for (std::size_t i = 0; i < rows; ++i) {
       values.at(i, 0) = field_.one();
-      for (std::size_t k = 0; k < known_.size(); ++k) values.at(i, 1 + k) = samples_[i].values[generators_.values().size() + k];
+      for (std::size_t k = 0; k < known_.size(); ++k)
+        values.at(i, 1 + k) = samples_[i].values[generators_.values().size() + k];
       for (std::size_t v = 0; v < vectors.size(); ++v) {
         Value sum = 0;
         for (std::size_t k = 0; k < vectors[v].columns.size(); ++k)
-          sum = field_.add(sum, field_.multiply(vectors[v].entries[k],
-                                                evaluate_monomial(basis_.monomials[vectors[v].columns[k]], samples_[i], field_).value));
+          sum = field_.add(
+              sum,
+              field_.multiply(vectors[v].entries[k],
+                              evaluate_monomial(basis_.monomials[vectors[v].columns[k]], samples_[i], field_).value));
         values.at(i, first + v) = sum;
       }
     }
@@ -100,7 +110,8 @@ class Search {
   }
 
   /// The entries of each vector at other parameters: on its own columns the null space has dimension 1.
-  std::optional<std::vector<std::vector<Value>>> entries_at(const ParameterRoots& roots, const std::vector<NullVector>& vectors) {
+  std::optional<std::vector<std::vector<Value>>> entries_at(const ParameterRoots& roots,
+                                                            const std::vector<NullVector>& vectors) {
     std::size_t longest = 0;
     for (const NullVector& v : vectors) longest = std::max(longest, v.columns.size());
     if (!draw(roots, longest + 2)) return std::nullopt;
@@ -127,8 +138,10 @@ class Search {
         if (!c) break;
         coefficients.push_back(std::move(*c));
       }
-      if (coefficients.size() < vectors[v].columns.size()) ++result.too_long;
-      else result.found.push_back(assemble(vectors[v], std::move(coefficients)));
+      if (coefficients.size() < vectors[v].columns.size())
+        ++result.too_long;
+      else
+        result.found.push_back(assemble(vectors[v], std::move(coefficients)));
     }
   }
 
@@ -141,8 +154,10 @@ class Search {
         denominators.push_back(c.denominator);
     for (Coefficient& c : coefficients)
       for (const Expr& d : denominators) {
-        if (c.denominator && c.denominator == d) c.denominator = Expr();
-        else c.numerator = c.numerator ? c.numerator * d : d;
+        if (c.denominator && c.denominator == d)
+          c.denominator = Expr();
+        else
+          c.numerator = c.numerator ? c.numerator * d : d;
       }
     for (std::size_t i = 0; i < sampler_.parameters().size(); ++i) {
       Rational least = coefficients[0].exponents[i];
@@ -165,7 +180,8 @@ class Search {
       numerators = std::gcd(numerators, integer ? *integer : 1);
     }
     const int sign = coefficients.back().number.sign() < 0 ? -1 : 1;
-    for (Coefficient& c : coefficients) c.number = c.number * Rational(sign * denominators, std::max<std::int64_t>(1, numerators));
+    for (Coefficient& c : coefficients)
+      c.number = c.number * Rational(sign * denominators, std::max<std::int64_t>(1, numerators));
   }
 
   Combination assemble(const NullVector& vector, std::vector<Coefficient> coefficients) const {
@@ -197,7 +213,8 @@ SearchResult conserved_combinations(const MotionRows& rows, const Generators& ge
   return Search(rows, generators, basis, known, true, seed).carry_out(work);
 }
 
-SearchResult vanishing_combinations(const MotionRows& rows, const Generators& generators, const Basis& basis, std::uint64_t seed) {
+SearchResult vanishing_combinations(const MotionRows& rows, const Generators& generators, const Basis& basis,
+                                    std::uint64_t seed) {
   return Search(rows, generators, basis, {}, false, seed).carry_out(~std::size_t{0});
 }
 

@@ -14,7 +14,8 @@ std::vector<SymmetryFit::Term> unknowns_of_points(const Ansatz& ansatz) {
     for (std::size_t j = i + 1; j < d; ++j) out.push_back({Constant::Rotation, i, j, {}});
   for (const Constant c : {Constant::Translation, Constant::Boost})
     for (std::size_t i = 0; i < d; ++i) out.push_back({c, i, 0, {}});
-  for (const Constant c : {Constant::TimeScale, Constant::Scale, Constant::TimeSquare, Constant::TimeTimesScale}) out.push_back({c, 0, 0, {}});
+  for (const Constant c : {Constant::TimeScale, Constant::Scale, Constant::TimeSquare, Constant::TimeTimesScale})
+    out.push_back({c, 0, 0, {}});
   if (!ansatz.atoms.natural && ansatz.world.points.size() == 1)
     for (std::size_t i = 0; i < d; ++i) out.push_back({Constant::LorentzBoost, i, 0, {}});
   return out;
@@ -24,19 +25,29 @@ std::vector<SymmetryFit::Term> unknowns_of_points(const Ansatz& ansatz) {
 Expr displacement(const SymmetryFit::Term& u, const WorldPoint& p, std::size_t axis, Expr t) {
   const Expr along = t.context().number(u.axis == axis ? 1 : 0);
   switch (u.constant) {
-    case Constant::TimeShift: return -p.velocity[axis];
-    case Constant::Rotation: return axis == u.second ? p.position[u.axis] : along * -p.position[u.second];
-    case Constant::Translation: return along;
-    case Constant::Boost: return along * t;
-    case Constant::TimeScale: return -(t * p.velocity[axis]);
-    case Constant::Scale: return p.position[axis];
-    case Constant::TimeSquare: return -(t * t * p.velocity[axis]);
-    case Constant::TimeTimesScale: return t * p.position[axis];
-    default: return -(p.position[u.axis] * p.velocity[axis]);
+    case Constant::TimeShift:
+      return -p.velocity[axis];
+    case Constant::Rotation:
+      return axis == u.second ? p.position[u.axis] : along * -p.position[u.second];
+    case Constant::Translation:
+      return along;
+    case Constant::Boost:
+      return along * t;
+    case Constant::TimeScale:
+      return -(t * p.velocity[axis]);
+    case Constant::Scale:
+      return p.position[axis];
+    case Constant::TimeSquare:
+      return -(t * t * p.velocity[axis]);
+    case Constant::TimeTimesScale:
+      return t * p.position[axis];
+    default:
+      return -(p.position[u.axis] * p.velocity[axis]);
   }
 }
 
-SymmetryFit solved(const std::vector<SymmetryFit::Term>& unknowns, LinearFitRows fit, const MotionRows& rows, std::uint64_t seed) {
+SymmetryFit solved(const std::vector<SymmetryFit::Term>& unknowns, LinearFitRows fit, const MotionRows& rows,
+                   std::uint64_t seed) {
   fit.unknowns = unknowns.size();
   const auto constants = fit_constants(rows, fit, seed);
   SymmetryFit out;
@@ -110,7 +121,7 @@ SymmetryFit fit_leading_part(Expr integral, const MotionRows& rows, const Ansatz
       unknowns.push_back({Constant::Fradkin, i, j, {}});
       functions.push_back(v[i] * v[j]);
     }
-  LinearFitRows fit;                              // second derivatives by the velocities
+  LinearFitRows fit;  // second derivatives by the velocities
   for (const Coordinate& first : system.coordinates)
     for (const Coordinate& second : system.coordinates) {
       const auto twice = [&](Expr e) { return differentiate(differentiate(e, first.velocity), second.velocity); };

@@ -13,9 +13,18 @@ namespace maupertuis::invariants {
 /// of the points of a model (with ξ linear in r for one relativistic particle), constants added to coordinates, or the
 /// leading part of a quadratic integral.
 enum class Constant {
-  TimeShift, Rotation, Translation, Boost, TimeScale, Scale, TimeSquare, TimeTimesScale, LorentzBoost,
+  TimeShift,
+  Rotation,
+  Translation,
+  Boost,
+  TimeScale,
+  Scale,
+  TimeSquare,
+  TimeTimesScale,
+  LorentzBoost,
   Coordinate,
-  RungeLenz, Fradkin,
+  RungeLenz,
+  Fradkin,
 };
 
 /// The constants that are not 0.
@@ -33,10 +42,12 @@ struct SymmetryFit {
     return nullptr;
   }
   std::size_t count(Constant c) const {
-    return static_cast<std::size_t>(std::count_if(terms.begin(), terms.end(), [c](const Term& t) { return t.constant == c; }));
+    return static_cast<std::size_t>(
+        std::count_if(terms.begin(), terms.end(), [c](const Term& t) { return t.constant == c; }));
   }
   bool only(std::initializer_list<Constant> allowed) const {
-    return std::all_of(terms.begin(), terms.end(), [&](const Term& t) { return std::count(allowed.begin(), allowed.end(), t.constant) > 0; });
+    return std::all_of(terms.begin(), terms.end(),
+                       [&](const Term& t) { return std::count(allowed.begin(), allowed.end(), t.constant) > 0; });
   }
 };
 

@@ -46,8 +46,10 @@ class Builder {
     for (const Point& p : system_.points)
       if (p.mass) add_particle(p.position, p.mass);
     for (const Body& b : system_.bodies) add_body(b);
-    if (world_.points.empty()) guess_from_names();
-    else world_.axes = system_.space_dimension == 2 ? "xy" : "xyz";
+    if (world_.points.empty())
+      guess_from_names();
+    else
+      world_.axes = system_.space_dimension == 2 ? "xy" : "xyz";
     return std::move(world_);
   }
 
@@ -92,7 +94,8 @@ class Builder {
     world_.from_names = true;
     for (const auto& [suffix, coordinates] : particles) {
       ExprVector r;
-      for (const char axis : axes) r.push_back(coordinates.count(axis) ? coordinates.at(axis) : system_.context->number(0));
+      for (const char axis : axes)
+        r.push_back(coordinates.count(axis) ? coordinates.at(axis) : system_.context->number(0));
       world_.points.push_back({r, velocity_of(r), mass_of(coordinates.begin()->second)});
     }
   }

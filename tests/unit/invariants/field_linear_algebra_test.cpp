@@ -7,7 +7,7 @@ using namespace maupertuis::invariants;
 
 namespace {
 
-const PrimeField field(2305843009213693951ull);   // 2^61 − 1
+const PrimeField field(2305843009213693951ull);  // 2^61 − 1
 
 FieldMatrix matrix(std::size_t rows, std::size_t columns, std::initializer_list<int> entries) {
   FieldMatrix m(rows, columns);

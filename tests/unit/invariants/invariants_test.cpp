@@ -24,8 +24,9 @@ struct Found {
   }
 
   std::size_t count(const std::string& name) const {
-    return static_cast<std::size_t>(std::count_if(result.integrals.begin(), result.integrals.end(),
-                                                  [&](const ConservedFunction& i) { return i.name.find(name) != std::string::npos; }));
+    return static_cast<std::size_t>(
+        std::count_if(result.integrals.begin(), result.integrals.end(),
+                      [&](const ConservedFunction& i) { return i.name.find(name) != std::string::npos; }));
   }
   std::string text(const std::string& name) const {
     for (const ConservedFunction& i : result.integrals)
@@ -78,7 +79,8 @@ TEST_CASE("Kepler in space: seven integrals, five independent, two relations") {
   REQUIRE(f.result.relations.size() == 2);
   CHECK(to_plain(f.result.relations[0].value, f.m.equations.order) == "I2 I5 + I3 I6 + I4 I7");
   CHECK(f.text("angular momentum about y") == "m z x' - m x z'");
-  CHECK(f.text("Laplace-Runge-Lenz vector, x") == "m^2 (x y'^2 + x z'^2 - y x' y' - z x' z') - m k x/sqrt(x^2 + y^2 + z^2)");
+  CHECK(f.text("Laplace-Runge-Lenz vector, x") ==
+        "m^2 (x y'^2 + x z'^2 - y x' y' - z x' z') - m k x/sqrt(x^2 + y^2 + z^2)");
   CHECK(f.result.symmetry_bound == 4);
   CHECK(f.result.completely_integrable);
 }
@@ -112,8 +114,9 @@ TEST_CASE("the symmetry of the Runge-Lenz vector depends on the velocities (Lév
 }
 
 TEST_CASE("the isotropic oscillator in space: Fradkin's tensor") {
-  const Found f("param m = 1, k = 1\ncoord x, y, z : number\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nV = 1/2 k (x^2 + y^2 + z^2)\n");
-  CHECK(f.count("Fradkin") == 5);   // the sixth is the energy less two of them
+  const Found f(
+      "param m = 1, k = 1\ncoord x, y, z : number\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nV = 1/2 k (x^2 + y^2 + z^2)\n");
+  CHECK(f.count("Fradkin") == 5);  // the sixth is the energy less two of them
   CHECK(f.text("Fradkin tensor, xy") == "1/2 m x' y' + 1/2 k x y");
   CHECK(f.result.noether_symmetries == 12);
   CHECK(f.result.autonomous_rank == 5);
@@ -150,7 +153,9 @@ V = -k/norm(A - B)
 }
 
 TEST_CASE("up to gauge: the momenta that a homogeneous magnetic field leaves over") {
-  const Found f("param m = 1, q = 1, B = 1\ncoord x, y, z : number\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nU = -1/2 q B (x y' - y x')\n");
+  const Found f(
+      "param m = 1, q = 1, B = 1\ncoord x, y, z : number\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nU = -1/2 q B (x y' - y "
+      "x')\n");
   CHECK(f.text("momentum along y, modified by the field") == "m y' + q B x");
   CHECK(f.text("momentum along z") == "m z'");
 }
@@ -158,16 +163,18 @@ TEST_CASE("up to gauge: the momenta that a homogeneous magnetic field leaves ove
 TEST_CASE("symmetries that need the time: Caldirola-Kanai, a rotating potential, a wave that travels") {
   const Found kanai("param m = 1, g = 0.3, w = 2\ncoord x : number\nL = exp(g t) (1/2 m x'^2 - 1/2 m w^2 x^2)\n");
   CHECK(kanai.text("Jacobi integral") == "1/2 m exp(g t) x'^2 + 1/2 m g x exp(g t) x' + 1/2 m w^2 x^2 exp(g t)");
-  const Found rotating("param m = 1, a = 0.7, W = 0.9\ncoord r : number, φ : angle\nT = 1/2 m (r'^2 + r^2 φ'^2)\n"
-                       "V = 1/2 r^2 + a r^2 cos(2 (φ - W t))\n");
+  const Found rotating(
+      "param m = 1, a = 0.7, W = 0.9\ncoord r : number, φ : angle\nT = 1/2 m (r'^2 + r^2 φ'^2)\n"
+      "V = 1/2 r^2 + a r^2 cos(2 (φ - W t))\n");
   CHECK(rotating.count("Jacobi integral") == 1);
   const Found wave("param m = 1, k = 1, c = 2\ncoord x : number\nT = 1/2 m x'^2\nV = cos(k (x - c t))\n");
   CHECK(wave.text("Jacobi integral") == "1/2 m x'^2 - m c x' + cos(k x - k c t)");
 }
 
 TEST_CASE("helical symmetry") {
-  const Found f("param m = 1, b = 1, h = 2\ncoord x, y, z : number\nT = 1/2 m (x'^2 + y'^2 + z'^2)\n"
-                "V = b (x cos(z/h) + y sin(z/h))\n");
+  const Found f(
+      "param m = 1, b = 1, h = 2\ncoord x, y, z : number\nT = 1/2 m (x'^2 + y'^2 + z'^2)\n"
+      "V = b (x cos(z/h) + y sin(z/h))\n");
   CHECK(f.text("helical momentum about z") == "m (x y' - y x' + h z')");
 }
 
@@ -180,19 +187,21 @@ TEST_CASE("a free relativistic particle: ξ depends on the position") {
 
 TEST_CASE("the integrable Hénon-Heiles potentials of Ramani, Dorizzi and Grammaticos (1982)") {
   const auto potential = [](const std::string& quadratic, const std::string& c) {
-    return "param A = 1, B = 2\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = " + quadratic + " + x^2 y + " + c + " y^3\n";
+    return "param A = 1, B = 2\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = " + quadratic + " + x^2 y + " + c +
+           " y^3\n";
   };
   CHECK(Found(potential("1/2 (x^2 + y^2)", "-1/3")).result.integrals.size() == 1);
   CHECK(Found(potential("1/2 (x^2 + y^2)", "-1/3"), 4).result.integrals.size() == 1);
-  CHECK(Found(potential("1/2 (A x^2 + B y^2)", "2")).result.completely_integrable);         // 1 : 6, any A, B
-  CHECK(Found(potential("1/2 A (x^2 + y^2)", "1/3")).result.completely_integrable);         // 1 : 1
+  CHECK(Found(potential("1/2 (A x^2 + B y^2)", "2")).result.completely_integrable);  // 1 : 6, any A, B
+  CHECK(Found(potential("1/2 A (x^2 + y^2)", "1/3")).result.completely_integrable);  // 1 : 1
   CHECK_FALSE(Found(potential("1/2 A (x^2 + 16 y^2)", "16/3")).result.completely_integrable);
   CHECK(Found(potential("1/2 A (x^2 + 16 y^2)", "16/3"), 4).result.completely_integrable);  // 1 : 16, quartic
 }
 
 TEST_CASE("Toda's lattice of three: Hénon's cubic integral (1974)") {
-  const std::string toda = "param m = 1\ncoord x1, x2, x3 : number\nT = 1/2 (x1'^2 + x2'^2 + x3'^2)\n"
-                           "V = exp(x1 - x2) + exp(x2 - x3) + exp(x3 - x1)\n";
+  const std::string toda =
+      "param m = 1\ncoord x1, x2, x3 : number\nT = 1/2 (x1'^2 + x2'^2 + x3'^2)\n"
+      "V = exp(x1 - x2) + exp(x2 - x3) + exp(x3 - x1)\n";
   CHECK_FALSE(Found(toda).result.completely_integrable);
   CHECK(Found(toda, 3).result.completely_integrable);
 }
@@ -218,28 +227,54 @@ TEST_CASE("with forces and velocity constraints, where Noether's theorem does no
   const Found rosenberg("param m = 1\ncoord x, y, z : number\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nconstraint z' = y x'\n");
   CHECK(rosenberg.count("energy") == 1);
   CHECK(is_function_of(rosenberg.m.v(1), rosenberg.result, rosenberg.m.equations));
-  CHECK(is_function_of(rosenberg.m.v(0) * sqrt(rosenberg.m.q(1) * rosenberg.m.q(1) + 1), rosenberg.result, rosenberg.m.equations));
+  CHECK(is_function_of(rosenberg.m.v(0) * sqrt(rosenberg.m.q(1) * rosenberg.m.q(1) + 1), rosenberg.result,
+                       rosenberg.m.equations));
   CHECK_FALSE(is_function_of(rosenberg.m.v(0), rosenberg.result, rosenberg.m.equations));
 }
 
 TEST_CASE("balance laws: the rate of a charge whose symmetry a force breaks") {
-  const Found f("param m = 1, M = 2, l = 1, g = 1, b = 1\ncoord x, a : number\npoint cart mass M at (x, 0)\n"
-                "point bob mass m at cart + l (sin a, -cos a)\ngravity (0, -g)\nD = 1/2 b x'^2\n");
+  const Found f(
+      "param m = 1, M = 2, l = 1, g = 1, b = 1\ncoord x, a : number\npoint cart mass M at (x, 0)\n"
+      "point bob mass m at cart + l (sin a, -cos a)\ngravity (0, -g)\nD = 1/2 b x'^2\n");
   REQUIRE(f.result.balance_laws.size() == 2);
   for (const BalanceLaw& law : f.result.balance_laws)
     CHECK(to_plain(law.rate, f.m.equations.order) == (law.name == "energy" ? "-b x'^2" : "-b x'"));
 }
 
 TEST_CASE("a basis that would be too large is refused before it is computed") {
-  const ModelText m("dimensionless\nparam k = 1\ncoord x1, x2, x3, x4, x5, x6, x7, x8 : number\n"
-                    "T = 1/2 (x1'^2 + x2'^2 + x3'^2 + x4'^2 + x5'^2 + x6'^2 + x7'^2 + x8'^2)\n"
-                    "V = k (x1 x2 x3 x4 + x5 x6 x7 x8)\n");
+  const ModelText m(
+      "dimensionless\nparam k = 1\ncoord x1, x2, x3, x4, x5, x6, x7, x8 : number\n"
+      "T = 1/2 (x1'^2 + x2'^2 + x3'^2 + x4'^2 + x5'^2 + x6'^2 + x7'^2 + x8'^2)\n"
+      "V = k (x1 x2 x3 x4 + x5 x6 x7 x8)\n");
   InvariantsOptions options;
   options.velocity_degree = 4;
   Diagnostics diagnostics;
   CHECK_FALSE(find_invariants(m.model, m.equations, options, diagnostics));
   REQUIRE(diagnostics.items().size() == 1);
   CHECK(diagnostics.items()[0].code == "E1001");
+}
+
+TEST_CASE("what cannot be searched is said") {
+  const auto code_of = [](const std::string& text, bool drift) {
+    const ModelText m("dimensionless\n" + text);
+    InvariantsOptions options;
+    options.drift = drift;
+    Diagnostics diagnostics;
+    find_invariants(m.model, m.equations, options, diagnostics);
+    return diagnostics.items().size() == 1 ? diagnostics.items()[0].code : std::string("none or several");
+  };
+  CHECK(code_of("coord x, y : number\nT = 1/2 x'^2\nV = y^2 x\n", false) == "E1002");
+  CHECK(code_of("coord x, y : number\nT = 1/2 (x'^2 + y'^2)\nconstraint x'^2 + y'^2 = 1\n", false) == "E1003");
+  CHECK(code_of("coord x : number\nT = 1/2 x'^2\nV = -1/x\nstart x = 1\nrun 10\n", true) ==
+        "W1004");  // it falls into the centre
+}
+
+TEST_CASE("the drift of an integral along the model's run is at rounding level") {
+  const Found f(kepler + "start x = 1, y' = 1.1, z' = 0.2\nrun 10\n");
+  for (const ConservedFunction& i : f.result.integrals) {
+    REQUIRE(i.drift);
+    CHECK(*i.drift < 1e-13);
+  }
 }
 
 TEST_CASE("degrees in the velocities") {
