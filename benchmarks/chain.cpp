@@ -1,4 +1,5 @@
 #include "chain.hpp"
+#include "measure.hpp"
 
 #include <fmt/format.h>
 
@@ -46,6 +47,13 @@ ChainMotion chain_motion(int links) {
   ChainMotion motion{build_kernel(source.kernel), source.parameters, {}, std::vector<double>(static_cast<std::size_t>(links), 0.0)};
   for (int i = 0; i < links; ++i) motion.q.push_back(2.0 + 0.5 * i / std::max(1, links - 1));
   return motion;
+}
+
+void settle(maupertuis::TaylorStepper& stepper, const ChainMotion& chain) {
+  constexpr std::size_t first_look = 512;  // of the stepper
+  constexpr double far = 1e9;
+  stepper.start(0, chain.q, chain.v);
+  while (stepper.steps() <= first_look) require(stepper.step(far).ending == maupertuis::StepEnding::None, "a long run");
 }
 
 ChainEnergy chain_energy(std::span<const double> q, std::span<const double> v) {

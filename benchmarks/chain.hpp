@@ -1,5 +1,6 @@
 #pragma once
 #include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/integrator.hpp>
 #include <maupertuis/kernel.hpp>
 
 #include <memory>
@@ -22,6 +23,9 @@ struct ChainMotion {
   std::vector<double> parameters, q, v;
 };
 ChainMotion chain_motion(int links);
+
+/// Lets a stepper with compiled code come to the code of long runs, which it makes when the steps to come promise to pay for it.
+void settle(maupertuis::TaylorStepper& stepper, const ChainMotion& chain);
 
 /// The energy of that chain by the closed form, and the size of its terms, the same for all motions from one start.
 struct ChainEnergy {

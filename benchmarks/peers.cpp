@@ -65,6 +65,7 @@ State maupertuis_taylor(double tolerance, const Observer& observe) {
     options.tolerance = tolerance;
     options.backend = Backend::Compiled;
     stepper = std::make_unique<TaylorStepper>(chain.kernel, chain.parameters, options);
+    bench::settle(*stepper, chain);
     last = tolerance;
   }
   const auto state = [&] { return State{stepper->q()[0], stepper->q()[1], stepper->v()[0], stepper->v()[1]}; };

@@ -50,14 +50,6 @@ void compare_with_interpreter(TaylorStepper& stepper, const bench::ChainMotion& 
   for (std::size_t i = 0; i < chain.q.size(); ++i) require(std::abs(stepper.q()[i] - other.q()[i]) < 1e-11, "state");
 }
 
-/// Straight-line code of a small program is made when the steps promise to pay for it (src/integrator/taylor/stepper.cpp).
-void settle(TaylorStepper& stepper, const bench::ChainMotion& chain) {
-  constexpr std::size_t first_look = 512;
-  constexpr double far = 1e9;
-  stepper.start(0, chain.q, chain.v);
-  while (stepper.steps() <= first_look) require(stepper.step(far).ending == StepEnding::None, "a long run");
-}
-
 /// Arguments: links, milliseconds of motion.
 void steps(benchmark::State& state, Backend backend) {
   try {
@@ -65,7 +57,7 @@ void steps(benchmark::State& state, Backend backend) {
     const double time = 1e-3 * static_cast<double>(state.range(1));
     TaylorStepper stepper = stepper_of(chain, backend);
     if (backend == Backend::Compiled) compare_with_interpreter(stepper, chain, std::min(time, 0.5));
-    if (backend == Backend::Compiled && chain.q.size() <= 8) settle(stepper, chain);
+    if (backend == Backend::Compiled && chain.q.size() <= 8) bench::settle(stepper, chain);
     const double drift = energy_drift(stepper, chain, time);
     require(drift <= 2e-12, "energy");
     std::size_t steps = 0;
