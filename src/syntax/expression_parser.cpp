@@ -221,6 +221,15 @@ ExpressionParser::Node ExpressionParser::name() {
   return node;
 }
 
+// p_θ in an expectation, for a coordinate θ; elsewhere `system` says that the name is not declared.
+bool ExpressionParser::is_momentum(std::string_view name) const {
+  const std::size_t cut = name.find('_');
+  if (cut == std::string::npos) return false;
+  const Declarations::Kind kind = context_.declarations.kind(name.substr(cut + 1));
+  const std::string_view head = name.substr(0, cut);
+  return (head == "p" || head == "P" || head == "momentum") && (kind == Declarations::Kind::Coordinate || kind == Declarations::Kind::Angle);
+}
+
 // A name before a bracket is a factor, θ(t) is a habit, and anything else is a function that does not exist.
 void ExpressionParser::check_application(const Token& name) {
   if (!peek().is("(")) return;
@@ -231,7 +240,7 @@ void ExpressionParser::check_application(const Token& name) {
     fail("E0121", cover(name.span, peek(2).span), fmt::format("`{}(t)` would be {} times the time", name.text, name.text),
          fmt::format("{} depends on time by itself.", name.text), fmt::format("Write {}.", name.text));
   }
-  if (kind != Declared::None || is_predefined(name.text) || energy_of(name.text)) return;
+  if (kind != Declared::None || is_predefined(name.text) || energy_of(name.text) || is_momentum(name.text)) return;
   std::vector<std::string> candidates;
   for (const Function& function : functions()) candidates.emplace_back(function.name);
   const std::string near = did_you_mean(name.text, candidates);

@@ -98,6 +98,7 @@ class ExpressionParser {
 
   void check_number(const Token& token);
   void check_application(const Token& name);
+  bool is_momentum(std::string_view name) const;
   void lint_product(const Expression& left, Operator op, const Expression& right);
   void lint_sum(const Expression& left, const Expression& right);
 

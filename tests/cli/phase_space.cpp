@@ -108,3 +108,10 @@ TEST_CASE("expectations about phase space: proved, refuted, and told what it is 
   CHECK(bad.code == 4);
   CHECK(contains(bad.out, "The hamiltonian is (p_r^2 + p_φ^2/r^2)/(2 m) - k/r"));
 }
+
+TEST_CASE("a momentum before a bracket is a factor") {
+  const Folder folder;
+  const Outcome told = maup({"hamiltonian", folder.write("kepler.lag", kepler), "--bracket", "r", "p_r (r + r)", "--json"});
+  REQUIRE_MESSAGE(told.code == 0, told.err);
+  CHECK(Json::parse(told.out)["brackets"][0]["plain"] == "2 r");
+}

@@ -25,7 +25,7 @@ class Lines {
 
   std::vector<DerivationStep> write(const Routhian* routhian) {
     for (std::size_t i = 0; i < h_.momenta.size(); ++i)
-      formula("Momenta", "p = ∂L/∂q'", h_.momenta[i], readable(h_.momentum_values[i], h_.order));
+      formula("Momenta", "p = ∂L/∂q'", h_.momenta[i], momentum(i));
     primary_constraints();
     hamiltonian();
     canonical_equations();
@@ -42,6 +42,29 @@ class Lines {
     formula(section, rule, symbol_to_plain(left), symbol_to_latex(left), right);
   }
   void sentence(const std::string& section, std::string text) { lines_.push_back({section, {}, {}, {}, {}, std::move(text), {}}); }
+
+  /// The shortest of the readable form and Σ M_ij q_j' + b_i with each coefficient in brackets.
+  ReadableForm momentum(std::size_t i) const {
+    ReadableForm form = readable(h_.momentum_values[i], h_.order);
+    if (!form.intermediates.empty()) return form;
+    ExprVector velocities, terms;
+    ExprMap at_rest;
+    for (const Coordinate& c : h_.system->coordinates) velocities.push_back(c.velocity), at_rest.emplace(c.velocity, c.q.context().number(0));
+    const ExprVector coefficients = gradient(h_.momentum_values[i], velocities);
+    for (std::size_t j = 0; j < velocities.size(); ++j) {
+      if (has_velocity(coefficients[j])) return form;
+      terms.push_back(tidy(coefficients[j], h_.order) * velocities[j]);
+    }
+    terms.push_back(tidy(substitute(h_.momentum_values[i], at_rest), h_.order));
+    const Expr candidates[] = {form.value, flat_sum(terms, *h_.system->context)};
+    form.value = shortest(candidates, h_.order);
+    return form;
+  }
+
+  bool has_velocity(Expr e) const {
+    const ExprVector symbols = symbols_of({&e, 1});
+    return std::any_of(symbols.begin(), symbols.end(), [](Expr s) { return s.role() == Role::Coordinate && s.order() == 1; });
+  }
 
   void primary_constraints() {
     for (const LegendreBlock& block : h_.legendre.blocks) {

@@ -32,6 +32,27 @@ Expr only_root(Expr lagrangian, const ExprVector& velocities) {
   return found;
 }
 
+/// −2Π/c² = Σ κ_ij π_i π_j with the products that share a coefficient in one bracket: (π_x² + π_y²)/(m c)².
+Expr kinetic_part(const RootLagrangian& root, const ExprVector& pi, const ReadingOrder& order) {
+  Context& context = pi.front().context();
+  std::vector<std::pair<Expr, ExprVector>> groups;
+  for (std::size_t j = 0; j < pi.size(); ++j) {
+    ExprVector unit(pi.size(), context.number(0));
+    unit[j] = context.number(1);
+    const auto column = solve_linear(augmented(root.metric, unit));
+    for (std::size_t i = 0; i <= j; ++i) {
+      const Expr weight = tidy(Rational(i == j ? -2 : -4) * (*column)[i] / pow(root.coefficient, 2), order);
+      if (weight.is_zero()) continue;
+      auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == weight; });
+      if (group == groups.end()) group = groups.insert(groups.end(), {weight, {}});
+      group->second.push_back(pi[i] * pi[j]);
+    }
+  }
+  ExprVector terms;
+  for (const auto& [weight, products] : groups) terms.push_back(weight * context.sum(products));
+  return context.sum(terms);
+}
+
 }  // namespace
 
 std::optional<RootLagrangian> root_lagrangian(const LegendreProblem& problem, const std::vector<std::size_t>& coordinates) {
@@ -90,7 +111,8 @@ void transform_root(LegendreBlock& block, const RootLagrangian& root, const Lege
     return;
   }
   block.kind = LegendreKind::Root;
-  const Expr inside = tidy(context.number(1) - 2 * square / pow(c, 2), order);
+  const Expr candidates[] = {context.number(1) + kinetic_part(root, pi, order), tidy(context.number(1) - 2 * square / pow(c, 2), order)};
+  const Expr inside = shortest(candidates, order);
   block.energy = -c * sqrt(root.at_rest) * sqrt(inside);
   block.energy_is_readable = true;
   for (std::size_t i = 0; i < pi.size(); ++i)

@@ -61,7 +61,16 @@ void write(Routhian& r, const Hamiltonian& h, const EquationsOfMotion& shown) {
   ReadingOrder order = r.order;
   order.coordinates.clear();
   for (const std::size_t i : r.rest) order.coordinates.push_back(h.system->coordinates[i].q);
-  r.equations = readable_equations(ReducedEquations(r, h, shown).rows(), order);
+  const ExprVector rows = ReducedEquations(r, h, shown).rows();
+  r.equations = readable_equations(rows, order);
+  for (std::size_t k = 0; k < rows.size(); ++k) {   // the force of the effective potential, in which its squares stay factors
+    const Expr q = order.coordinates[k], rest = rows[k] - differentiate(r.effective_potential.value, q);
+    const ReadableForm inertia = readable_equations({&rest, 1}, order).front();
+    if (!inertia.intermediates.empty() || !r.equations[k].intermediates.empty()) continue;
+    const Expr parts[] = {inertia.value, slope(r.effective_potential.value, q, r.order)};
+    const Expr candidates[] = {r.equations[k].value, flat_sum(parts, q.context())};
+    r.equations[k].value = shortest(candidates, r.order);
+  }
   for (const ReadableForm& row : r.equations)
     if (!row.intermediates.empty() || length_of(row.value, r.order) > longest_row) {
       r.equations.clear();
