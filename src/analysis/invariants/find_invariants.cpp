@@ -157,7 +157,8 @@ class Finder {
     if (zero_test(with_intermediates(integral.readable) - integral.value).verdict != Verdict::Zero)
       integral.readable = {integral.value, {}, {}};
     integral.velocity_degree = velocity_degree(integral.value, system_).value_or(1);
-    integral.explicit_time = depends_on_time_itself(integral.value);
+    // cos²Ωt + sin²Ωt of a rotating frame is no explicit time.
+    integral.explicit_time = zero_test(differentiate(integral.value, system_.context->time())).verdict != Verdict::Zero;
     if (kind == IntegralKind::Hidden) integral.characteristic = short_symmetry(integral.value);
     ranks_.emplace(integral.value, naming.rank);
     result_.integrals.push_back(std::move(integral));

@@ -45,6 +45,8 @@ class MotionSampler {
   /// `functions` in q, q', t, parameters, inputs, definitions.
   MotionSampler(const MotionRows& rows, std::vector<Expr> functions, bool with_rates, std::uint64_t seed);
 
+  MotionSampler(const MotionSampler&) = delete;  // its numbers refer to its hints
+
   const PrimeField& field() const;
   const std::vector<Expr>& parameters() const { return parameters_; }
   ParameterRoots draw_parameters();

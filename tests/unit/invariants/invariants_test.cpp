@@ -171,6 +171,16 @@ TEST_CASE("symmetries that need the time: Caldirola-Kanai, a rotating potential,
   CHECK(wave.text("Jacobi integral") == "1/2 m x'^2 - m c x' + cos(k x - k c t)");
 }
 
+TEST_CASE("a time that cancels is no explicit time: the bead on a turning hoop") {
+  const Found f(
+      "param m = 1, R = 1, W = 2, g = 9.81\ncoord a : angle\n"
+      "point bead mass m at R (sin a cos(W t), sin a sin(W t), -cos a)\ngravity (0, 0, -g)\n");
+  REQUIRE(f.result.integrals.size() == 1);
+  CHECK(f.count("Jacobi integral") == 1);
+  CHECK_FALSE(f.result.integrals[0].explicit_time);
+  CHECK(f.result.completely_integrable);
+}
+
 TEST_CASE("helical symmetry") {
   const Found f(
       "param m = 1, b = 1, h = 2\ncoord x, y, z : number\nT = 1/2 m (x'^2 + y'^2 + z'^2)\n"
