@@ -39,7 +39,7 @@ class CanonicalWriter {
     const Expr h = energy_for(i);
     if (!h || !out_.legendre.velocity(i)) return equation;
     const Expr plain = differentiate(h, out_.momenta[i]);
-    const Expr candidates[] = {tidy(plain, out_.order), plain, slope(h, out_.momenta[i], out_.order), tidy(out_.legendre.velocity(i), out_.order)};
+    const Expr candidates[] = {tidy(plain, out_.order), plain, slope(h, out_.momenta[i], out_.order)};
     equation.right.value = shortest(candidates, out_.order);
     return equation;
   }

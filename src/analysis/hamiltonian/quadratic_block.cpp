@@ -87,9 +87,17 @@ Expr by_body_axes(const LegendreBlock& block, const ExprVector& pi, const Body& 
 
 Expr shortest_energy(const LegendreBlock& block, const ExprVector& pi, const LegendreProblem& problem) {
   const ReadingOrder& order = problem.order;
+  ExprVector candidates;
+  for (const Body& body : problem.system.bodies) {
+    const Expr squares = by_body_axes(block, pi, body, problem);
+    if (!squares) continue;
+    const ExprMatrix& inertia = body.inertia;
+    const bool asymmetric = inertia.at(0, 0) != inertia.at(1, 1) && inertia.at(1, 1) != inertia.at(2, 2) && inertia.at(2, 2) != inertia.at(0, 0);
+    if (asymmetric) return squares;   // eliminating in some order gives nothing shorter
+    candidates.push_back(squares);
+  }
   std::vector<std::size_t> sequence(pi.size());
   std::iota(sequence.begin(), sequence.end(), std::size_t{0});
-  ExprVector candidates;
   do {
     if (const Expr squares = completed_squares(block.mass, pi, sequence, order)) {
       candidates.push_back(squares);
@@ -100,8 +108,6 @@ Expr shortest_energy(const LegendreBlock& block, const ExprVector& pi, const Leg
     candidates.push_back(cramer(block.mass, pi, order));
     candidates.push_back(tidy(candidates.back(), order));
   }
-  for (const Body& body : problem.system.bodies)
-    if (const Expr squares = by_body_axes(block, pi, body, problem)) candidates.push_back(squares);
   return shortest(candidates, order);
 }
 

@@ -12,6 +12,7 @@ using namespace phase_space;
 namespace {
 
 constexpr std::size_t longest_routhian = 300, longest_row = 300;   // letters
+constexpr std::size_t longest_raw_row = 2500;   // of a row before it is made readable: beyond it that takes seconds, in vain
 
 bool contains(const std::vector<std::size_t>& list, std::size_t i) { return std::find(list.begin(), list.end(), i) != list.end(); }
 
@@ -62,6 +63,8 @@ void write(Routhian& r, const Hamiltonian& h, const EquationsOfMotion& shown) {
   order.coordinates.clear();
   for (const std::size_t i : r.rest) order.coordinates.push_back(h.system->coordinates[i].q);
   const ExprVector rows = ReducedEquations(r, h, shown).rows();
+  for (const Expr& row : rows)
+    if (length_of(row, r.order) > longest_raw_row) return;
   r.equations = readable_equations(rows, order);
   for (std::size_t k = 0; k < rows.size(); ++k) {   // the force of the effective potential, in which its squares stay factors
     const Expr q = order.coordinates[k], rest = rows[k] - differentiate(r.effective_potential.value, q);
