@@ -67,9 +67,10 @@ class Transform {
   }
 
  private:
-  Expr with_visible_zeros(Expr e) const {
+  /// An entry that vanishes becomes 0; others keep their form, of which readable ones are made.
+  static Expr with_visible_zeros(Expr e) {
     const Expr canonical = fourier_form(e);
-    return canonical ? canonical : e;
+    return canonical && (canonical.is_zero() || canonical.is_number()) ? canonical : e;
   }
 
   ExprMap at_rest(const ExprVector& velocities) const {
