@@ -3,7 +3,7 @@ import re
 
 import case_math
 from case_math import D, greek, parse, show, show_long
-from case_tables import CHARGES, KINDS, MULTIPLIER_UNIT, SEARCHED, UNITS, UNSAID, waits_for
+from case_tables import CHARGES, KINDS, LINEARIZED, MULTIPLIER_UNIT, SEARCHED, UNITS, UNSAID, waits_for
 from convert_urdf import wrapped
 from precise import ellipk
 
@@ -208,6 +208,16 @@ class Model:
         allowed = tolerance(expectation)
         for name, value in values.items():
             self.value(parse(name), expectation["time"], D(value), allowed)
+
+    def expect_normal_modes_omega_squared(self, expectation):
+        at = ", ".join(f"{greek(name)} = {show(parse(text))}" for name, text in expectation["equilibrium"].items())
+        squares = ", ".join(show(parse(text)) for text in expectation["values"])
+        line = f"expect frequencies squared at {at} :"
+        self.add(line + (" " if len(line + squares) < 110 else "\n    ") + squares + " " + tolerance(expectation))
+
+    def expect_linearisation(self, expectation):
+        for line in LINEARIZED[self.id]:
+            self.add("expect " + line)
 
     def expect_accelerations_at_time(self, expectation):
         for name, value in expectation["values_recomputed"].items():

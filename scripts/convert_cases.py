@@ -16,7 +16,7 @@ import sys
 import case_math
 from case_math import D, parse
 from case_model import Model, tolerance
-from case_tables import MORE, WAITS
+from case_tables import MORE, REWRITTEN, VARIANTS, WAITS
 from convert_urdf import urdf_model
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -91,6 +91,36 @@ def with_initial_check(case, expectation):
     return {f"{case['id']}_start.lag": model.text()}
 
 
+def variant(case, quantity):
+    """The same system with other values, for what it says of an equilibrium."""
+    suffix, formulas, start, lines = VARIANTS[case["id"]][quantity]
+    other = copy.deepcopy(case)
+    for name, formula in formulas.items():
+        other["statement"]["parameters"][name] = {"value": formula, "unit": "1"}
+    if start:
+        other["statement"].pop("initial", None)
+    model = Model(other)
+    model.write(suffix)
+    model.claims = []
+    if start:
+        model.add(f"start {start}")
+    model.add()
+    model.add(f"# {quantity}")
+    for line in lines:
+        model.add("expect " + line)
+    return {f"{case['id']}{suffix}.lag": model.text()}
+
+
+def rewritten(case, quantity):
+    """The same system in other coordinates."""
+    suffix, text = REWRITTEN[case["id"]][quantity]
+    model = Model(case)
+    model.add(f"# Generated from tests/problems/cases/{case['id']}.json by scripts/convert_cases.py: do not edit.")
+    model.add(f"system {case['id']}{suffix} \"{case['title']}\"")
+    model.add(f"source \"{case['source']['where']}\"")
+    return {f"{case['id']}{suffix}.lag": "\n".join(model.lines) + "\n\n" + text}
+
+
 WITH = {"integral": with_integral, "initial_check": with_initial_check}
 
 
@@ -102,7 +132,13 @@ def convert(case):
     for expectation in case["expected"]:
         if expectation in others or (case["id"] in MORE and expectation["kind"] in ("scalar", "scalars", "expression")):
             continue
-        if expectation["kind"] in WITH:
+        if expectation["quantity"] in VARIANTS.get(case["id"], {}):
+            more.update(variant(case, expectation["quantity"]))
+            main.passes.append(expectation["quantity"])
+        elif expectation["quantity"] in REWRITTEN.get(case["id"], {}):
+            more.update(rewritten(case, expectation["quantity"]))
+            main.passes.append(expectation["quantity"])
+        elif expectation["kind"] in WITH:
             more.update(WITH[expectation["kind"]](case, expectation))
             main.passes.append(expectation["quantity"])
         else:

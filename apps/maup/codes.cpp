@@ -59,6 +59,8 @@ constexpr CodeEntry own_codes[] = {
      "The format of a result follows the ending of its file: .csv, .npy, .json for a trajectory, .svg for a picture, "
      ".html for a report.",
      "maup simulate pendulum.lag -o motion.xls", "maup simulate pendulum.lag -o motion.csv"},
+    {"E1305", "the motion does not reach the time asked for",
+     "`maup modes --at 3s` linearizes about the state of the motion at that time; the run ended before. Its reason is quoted.", "", ""},
     {"E0811", "there is no such column to plot",
      "A plot shows the columns of the trajectory: coordinates (θ), velocities (θ'), coordinates of points (B.x), energies.",
      "maup plot pendulum.lag --y w", "maup plot pendulum.lag --y \"θ'\""},
@@ -71,7 +73,7 @@ std::span<const CodeEntry> all_codes() {
     std::vector<CodeEntry> codes(std::begin(own_codes), std::end(own_codes));
     for (const auto entries :
          {syntax_codes(), system_codes(), equations_codes(), simulation_codes(), verification_codes(), comparison_codes(),
-          invariants_codes(), hamiltonian_codes()})
+          invariants_codes(), hamiltonian_codes(), linearization_codes()})
       codes.insert(codes.end(), entries.begin(), entries.end());
     // By number, so that E0301 and W0302 stand together.
     std::sort(codes.begin(), codes.end(),

@@ -17,19 +17,35 @@ const syntax::SyntaxTree* Study::tree() {
   return tree_ ? &*tree_ : nullptr;
 }
 
+namespace {
+
+/// The text with a statement in the place of the first one of a kind, or at its end.
+template <class Kind>
+SourceText with_statement(const SourceText& source, const syntax::SyntaxTree& tree, const std::string& statement) {
+  std::string text(source.text());
+  const auto own = std::find_if(tree.statements.begin(), tree.statements.end(), [](const syntax::Statement& s) { return std::holds_alternative<Kind>(s.body); });
+  if (own != tree.statements.end())
+    text.replace(own->span.begin, own->span.end - own->span.begin, statement);
+  else
+    text += "\n" + statement + "\n";
+  return SourceText(source.name(), std::move(text));
+}
+
+}  // namespace
+
 void Study::replace_run(const std::string& statement) {
   MAUP_REQUIRE(!elaborated_);
   const syntax::SyntaxTree* parsed = tree();
   if (!parsed || wrong()) return;
-  std::string text(source_.text());
-  const auto run = std::find_if(parsed->statements.begin(), parsed->statements.end(), [](const syntax::Statement& s) {
-    return std::holds_alternative<syntax::RunStatement>(s.body);
-  });
-  if (run != parsed->statements.end())
-    text.replace(run->span.begin, run->span.end - run->span.begin, statement);
-  else
-    text += "\n" + statement + "\n";
-  source_ = SourceText(source_.name(), std::move(text));
+  source_ = with_statement<syntax::RunStatement>(source_, *parsed, statement);
+  tree_.reset();
+}
+
+void Study::replace_sweep(const std::string& statement) {
+  MAUP_REQUIRE(!elaborated_);
+  const syntax::SyntaxTree* parsed = tree();
+  if (!parsed || wrong()) return;
+  source_ = with_statement<syntax::SweepStatement>(source_, *parsed, statement);
   tree_.reset();
 }
 

@@ -23,6 +23,8 @@ class Study {
   const syntax::SyntaxTree* tree();
   /// Puts a `run …` statement in the place of the model's own. Precondition: no later stage was asked for.
   void replace_run(const std::string& statement);
+  /// The same for a `sweep …` statement.
+  void replace_sweep(const std::string& statement);
   /// Elaborated and past the physics lint.
   const Model* model();
   const EquationsOfMotion* equations();

@@ -208,8 +208,9 @@ struct Expectation {
   Expr time, value, tolerance;      // SI; empty where absent
   bool relative = false;
   int occurrence = 0;
-  std::vector<StartValue> at;       // Frequencies: the configuration, `at θ = 0`
-  std::vector<Expr> values;         // Frequencies: angular, rad/s
+  std::vector<StartValue> at;       // Frequencies, Equilibrium: `at θ = 0`
+  std::vector<Expr> values;         // Frequencies: angular, rad/s, or their squares
+  bool squared = false;             // Frequencies: `frequencies squared`
   Dimension dimension;              // of subject
   std::string display_unit;         // as written beside the value; empty: SI
   double display_factor = 1;        // SI value of one display unit
@@ -230,16 +231,26 @@ struct StartRate {
   Span span;
 };
 
+/// sweep Ω = 0 .. 12 rad/s steps 121: equally spaced values of one parameter.
+struct Sweep {
+  std::size_t parameter = 0;        // index in MechanicalSystem::parameters
+  Expr from, to;                    // SI
+  std::size_t steps = 0;            // values, both ends counted
+  Span span;
+};
+
 /// What to do with a system: where it starts, how long it runs, what is drawn and what is expected.
 struct Experiment {
   std::vector<StartValue> start;    // unwritten = 0
   std::vector<StartRate> start_rates;
+  std::vector<StartValue> at;       // the point that the command line asks about
   bool start_exactly = false;
   Expr start_time;                  // empty: 0
   Expr duration;                    // of `run 10 s`; empty if the model has none
   Expr until;                       // `run until A = B`: A − B; empty if none
   Expr within;                      // the longest time for `until`
   Expr output_every;                // empty: chosen by the program
+  std::optional<Sweep> sweep;
   std::vector<DrawElement> drawing;
   std::vector<Expectation> expectations;
 };
@@ -253,6 +264,7 @@ struct Model {
 struct Overrides {
   std::vector<std::string> parameters;
   std::vector<std::string> start;
+  std::vector<std::string> at;      // `--at θ=0` of `maup modes`: fills Experiment::at
 };
 
 /// Resolves names and units, infers dimensions, builds kinematics and energies. All mistakes go to `diagnostics`;

@@ -1,5 +1,8 @@
 #pragma once
+#include <maupertuis/diagram.hpp>
 #include <maupertuis/invariants.hpp>
+#include <maupertuis/locus.hpp>
+#include <maupertuis/modes.hpp>
 #include <maupertuis/plot.hpp>
 #include <maupertuis/simulation.hpp>
 #include <maupertuis/trajectory.hpp>
@@ -77,6 +80,26 @@ struct ReportContent {
     PlotOptions options;                 // of `trajectory`; the theme is the page's
   };
 
+  struct ModeRow {
+    std::string kind, frequency, hertz, period, damping;   // "oscillation", "5.2 rad/s", …; damping: ζ, or a rate
+  };
+  struct ModeShape {
+    std::string caption;
+    std::optional<Drawing> drawing;      // one period, swinging from its turning point
+    std::optional<Diagram> diagram;      // of systems that have no drawing
+  };
+  struct ModePoint {
+    std::string name, stability;         // "θ1 = 0, θ2 = π"; the verdict with its reason
+    bool stable = false;
+    std::vector<Formula> formulas;       // M ξ̈ + …, and the matrices
+    std::vector<ModeRow> rows;
+    std::vector<ModeShape> shapes;
+  };
+  struct Locus {
+    std::string caption;
+    Diagram diagram;
+  };
+
   std::string name, title, source;       // source: the citation
   std::string file, model_text;
   std::vector<std::pair<std::string, std::string>> summary;     // "freedoms" → "2"
@@ -99,6 +122,9 @@ struct ReportContent {
   std::vector<ExpectationResult> expectations;
   Trajectory trajectory;
   std::vector<Picture> pictures;
+  std::string mode_search;               // how equilibria were sought
+  std::vector<ModePoint> mode_points;
+  std::vector<Locus> loci;
 };
 
 /// One HTML page that needs nothing else: no network, no fonts, no other file. Its policy forbids every request.
@@ -120,6 +146,8 @@ struct ReportParts {
   const SimulationResult* simulation = nullptr;   // null: no run, no drawing, no plots
   const Verification* verification = nullptr;     // null: the `expect` lines were not carried out
   const Invariants* invariants = nullptr;         // null: the energy function and cyclic coordinates alone
+  const ModalStudy* modes = nullptr;              // null: no part on equilibria
+  const Locus* locus = nullptr;                   // of the model's sweep
 };
 
 /// Fills a report from the artifacts of one study. `derivation` with its steps; messages are those of `diagnostics`

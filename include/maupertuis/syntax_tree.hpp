@@ -170,6 +170,7 @@ struct ExpectStatement {
     Frequencies,      // expect frequencies at θ = 0 : list
     EventAt,          // expect event hit 3 at T ± tol
     Error,            // expect error E0412
+    Equilibrium,      // expect equilibrium at θ = 0 is stable
     Value,            // expect EXPR = VALUE ± tol (no time: parameters only, or the start)
   } kind = Kind::ValueAt;
   bool claim = false;
@@ -180,7 +181,8 @@ struct ExpectStatement {
   bool relative = false;
   int occurrence = 0;                    // EventAt
   std::vector<ExpressionPtr> values;     // Frequencies
-  std::vector<StartStatement::Item> at;  // Frequencies: the configuration, `at θ = 0`
+  bool squared = false;                  // Frequencies: expect frequencies squared …
+  std::vector<StartStatement::Item> at;  // Frequencies, Equilibrium: the configuration, `at θ = 0`
 };
 
 /// constraint LEFT = RIGHT name rod. (`constraint integral …` is a LaterStatement.)
@@ -189,7 +191,10 @@ struct ConstraintStatement {
   std::optional<Name> name;
 };
 
-/// A statement of the grammar that a later version carries out: contact, friction, event, impact, sweep,
+/// sweep Ω = 0 .. 12 rad/s steps 121
+struct SweepStatement { ExpressionPtr variable, from, to, steps; };
+
+/// A statement of the grammar that a later version carries out: contact, friction, event, impact,
 /// field, density, independent, path. It is parsed whole (formatting and messages work) and kept as its expressions.
 struct LaterStatement {
   std::string what;                      // its first word
@@ -201,7 +206,7 @@ using StatementBody =
     std::variant<SystemStatement, SourceStatement, DimensionlessStatement, ParamStatement, CoordStatement, LetStatement,
                  InputStatement, FrameStatement, PointStatement, BodyStatement, GravityStatement, SpringStatement,
                  DamperStatement, TorsionSpringStatement, EnergyStatement, ForceStatement, StartStatement, RunStatement,
-                 OutputStatement, DrawStatement, ReactionStatement, ExpectStatement, ConstraintStatement, LaterStatement>;
+                 OutputStatement, DrawStatement, ReactionStatement, ExpectStatement, ConstraintStatement, SweepStatement, LaterStatement>;
 
 struct Statement {
   StatementBody body;

@@ -1,4 +1,5 @@
 #include "report/motion_parts.hpp"
+#include "report/mode_parts.hpp"
 #include "report/notation.hpp"
 
 #include <maupertuis/constraint_analysis.hpp>
@@ -171,6 +172,8 @@ ReportContent compose_report(const Model& model, const SourceText& source, const
   const ConservedQuantities conserved = conserved_quantities(equations);
   add_conserved(content, equations, conserved, parts.simulation, parts.invariants);
   if (parts.simulation) add_motion(content, model, equations, conserved.energy_conserved, *parts.simulation);
+  if (parts.modes) add_modes(content, model, equations, *parts.modes);
+  if (parts.locus) add_loci(content, model.system, *parts.locus);
   if (parts.verification) content.expectations = parts.verification->results;
   return content;
 }

@@ -61,6 +61,7 @@ std::string report_html(const ReportContent& content) {
       {"equations", "Equations", equations_section(content)},
       {"model", "Model", model_section(content)},
       {"motion", "Motion", motion_section(content)},
+      {"modes", "Modes", modes_section(content)},
       {"conserved", "Conserved quantities", conserved_section(content)},
       {"phase-space", "Phase space", phase_space_section(content)},
       {"derivation", "Derivation", derivation_section(content)},
@@ -86,7 +87,7 @@ std::string report_html(const ReportContent& content) {
   page += fmt::format("<nav aria-label=\"Contents\">\n{}</nav>\n</header>\n<main>\n{}</main>\n", navigation, body);
   page += "<footer>Made by Maupertuis. Equations in MathML; everything on this page is contained in it.</footer>\n";
   page += fmt::format("<script>\n{}</script>\n", page_script);
-  if (body.find("id=\"drawing-data\"") != std::string::npos) page += fmt::format("<script>\n{}</script>\n", animation_script);
+  if (body.find("<figure id=\"animation\"") != std::string::npos || body.find("<figure class=\"mode\"") != std::string::npos) page += fmt::format("<script>\n{}</script>\n", animation_script);
   return page + "</body>\n</html>\n";
 }
 

@@ -72,7 +72,7 @@ std::string messages_section(const ReportContent& content) {
 std::string drawing_section(const ReportContent& content) {
   if (!content.drawing || content.drawing->empty()) return {};
   const bool spatial = content.drawing->dimension == 3;
-  return fmt::format(R"(<figure id="animation" tabindex="0" aria-label="Animation of {}">
+  return fmt::format(R"(<figure id="animation" data-drawing="drawing-data" tabindex="0" aria-label="Animation of {}">
 <canvas role="img" aria-label="Drawing of {}"></canvas>
 <div class="controls">
 <button data-control="play" type="button" aria-label="Play"><svg viewBox="0 0 16 16" aria-hidden="true"><path class="icon-play" d="M3 1.5v13l11-6.5z"/><path class="icon-pause" d="M3 2h4v12H3zM9 2h4v12H9z"/></svg></button>

@@ -13,7 +13,7 @@ constexpr std::string_view kOperators[] = {"+", "-", "*", "juxtaposed", "/", "·
 constexpr std::string_view kKinds[] = {"number", "quantity", "name",   "member",          "call",
                                        "vector", "binary",   "unary", "time derivative", "piecewise"};
 constexpr std::string_view kExpectations[] = {"value at", "energy conserved", "conserved", "not conserved", "equation", "freedoms",
-                                              "constraint class", "integral", "frequencies", "event at", "error", "value"};
+                                              "constraint class", "integral", "frequencies", "event at", "error", "equilibrium", "value"};
 constexpr std::string_view kRotations[] = {"angle", "axis and angle", "euler", "roll, pitch, yaw", "quaternion", "quaternion coordinates"};
 constexpr std::string_view kShapes[] = {"line", "trail", "box", "circle", "spring", "reaction"};
 constexpr std::string_view kInertias[] = {"none", "scalar", "diagonal", "full"};
@@ -94,12 +94,16 @@ class Dumper {
   void operator()(const ExpectStatement& s) {
     head(s.claim ? "claim" : "expect", kExpectations[static_cast<int>(s.kind)]);
     word("name", s.name.text), word("word", s.word.text), word("occurrence", s.occurrence ? std::to_string(s.occurrence) : "");
+    word("squared", s.squared ? "yes" : "");
     assignments(s.at);
     child("subject", s.subject), child("time", s.time), child("value", s.value), children("values", s.values);
     child(s.relative ? "relative tolerance" : "tolerance", s.tolerance);
   }
   void operator()(const ConstraintStatement& s) {
     head("constraint", s.name ? s.name->text : ""), child("left", s.left), child("right", s.right);
+  }
+  void operator()(const SweepStatement& s) {
+    head("sweep"), child("variable", s.variable), child("from", s.from), child("to", s.to), child("steps", s.steps);
   }
   void operator()(const LaterStatement& s) {
     head("later", s.what);

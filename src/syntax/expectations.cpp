@@ -63,6 +63,9 @@ ExpectStatement StatementParser::expectation(bool claim) {
     expect.subject = formula();
   } else if (accept("frequencies")) {
     expect_frequencies(expect);
+  } else if (peek().is("equilibrium") && peek(1).is("at")) {
+    next();
+    expect_equilibrium(expect);
   } else if (accept("event")) {
     expect_event(expect);
   } else if (accept("error")) {
@@ -96,9 +99,19 @@ void StatementParser::expect_value(ExpectStatement& expect) {
   tolerance(expect, timed);
 }
 
+// at θ = 0 is stable
+void StatementParser::expect_equilibrium(ExpectStatement& expect) {
+  expect.kind = Kind::Equilibrium;
+  this->expect("at", "`equilibrium`");
+  do expect.at.push_back(assignment());
+  while (accept(","));
+  if (accept("is")) expect.word = used_name("stable, unstable or undecided");
+}
+
 // at θ = 0 : 0.5 Hz, 1.2 Hz rel 1e-9
 void StatementParser::expect_frequencies(ExpectStatement& expect) {
   expect.kind = Kind::Frequencies;
+  expect.squared = accept("squared");
   if (accept("at")) {
     do expect.at.push_back(assignment());
     while (accept(","));

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-/// start, run, output, draw.
+/// start, run, output, sweep, draw.
 namespace maupertuis::syntax {
 
 StartStatement::Item StatementParser::assignment() {
@@ -48,6 +48,20 @@ StatementBody StatementParser::output_statement() {
   next();
   if (!accept("every")) fail_expected("`every` after `output`", "Write for example output every 10 ms.");
   return OutputStatement{quantity()};
+}
+
+// sweep Ω = 0 .. 12 rad/s steps 121
+StatementBody StatementParser::sweep_statement() {
+  next();
+  SweepStatement sweep;
+  sweep.variable = variable();
+  expect("=", "what is swept");
+  sweep.from = quantity();
+  expect("..", "the first value");
+  sweep.to = quantity();
+  if (!accept("steps")) missing_clause("steps", "sweep", "sweep Ω = 0 .. 12 rad/s steps 121");
+  sweep.steps = quantity();
+  return sweep;
 }
 
 DrawItem StatementParser::draw_item() {

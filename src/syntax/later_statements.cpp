@@ -94,19 +94,6 @@ StatementBody StatementParser::impact_statement() {
   return statement;
 }
 
-// sweep Ω = 0 .. 12 rad/s steps 121
-StatementBody StatementParser::sweep_statement() {
-  LaterStatement statement = later(next());
-  statement.expressions.push_back(variable());
-  expect("=", "what is swept");
-  statement.expressions.push_back(quantity());
-  expect("..", "the first value");
-  statement.expressions.push_back(quantity());
-  if (!accept("steps")) missing_clause("steps", "sweep", "sweep Ω = 0 .. 12 rad/s steps 121");
-  statement.expressions.push_back(quantity());
-  return statement;
-}
-
 StatementBody StatementParser::independent_statement() {
   LaterStatement statement = later(next());
   statement.names.push_back(new_name("the name of the independent variable"));

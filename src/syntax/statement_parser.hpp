@@ -68,6 +68,7 @@ class StatementParser : private ExpressionParser {
   ExpectStatement expectation(bool claim);
   void expect_value(ExpectStatement& expect);
   void expect_frequencies(ExpectStatement& expect);
+  void expect_equilibrium(ExpectStatement& expect);
   void expect_event(ExpectStatement& expect);
   void expect_phase_space(ExpectStatement& expect);
   ExpressionPtr clause_formula(std::string_view clause, const ExpressionPtr& already);

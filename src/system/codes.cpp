@@ -122,6 +122,13 @@ constexpr CodeEntry kEntries[] = {
      "momenta.",
      "param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\nexpect routhian of m = -p_x^2/(2 m)\n",
      "param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\nexpect routhian of x = -p_x^2/(2 m)\n"},
+    {"E0238", "no word for the stability of an equilibrium",
+     "`expect equilibrium at θ = 0 is stable` is checked by the energy (a strict minimum) and by the eigenvalues; `unstable` needs an eigenvalue with a "
+     "positive real part; `undecided` says that the linearization does not decide.",
+     "expect equilibrium at θ = 0 is good", "expect equilibrium at θ = 0 is stable"},
+    {"E0239", "a sweep of something that is no parameter, or of no values",
+     "`sweep NAME = FROM .. TO steps N` goes through N equally spaced values of one parameter, both ends counted.",
+     "sweep θ = 0 .. 1 rad steps 11", "sweep Ω = 0 .. 12 rad/s steps 121"},
     // ----------------------------------------------------------------------------------------------------------- units
     {"E0301", "a unit is not known",
      "Units are SI base and derived units with the SI prefixes, and common ones without: min, h, deg, rev, rpm, bar, "

@@ -177,6 +177,7 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
   elaborate_constraints(e);
   elaborate_experiment(e);
   apply_start_overrides(e, overrides.start);
+  apply_at_overrides(e, overrides.at);
   start_quaternions(e);
 
   require_coordinates(e, any_coordinate);

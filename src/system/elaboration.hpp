@@ -166,5 +166,6 @@ void expand_definitions(Model& model);
 /// `m=2kg`, `θ=1` of the command line; mistakes are told without a place in the model.
 void apply_parameter_overrides(Elaboration& e, const std::vector<std::string>& overrides);
 void apply_start_overrides(Elaboration& e, const std::vector<std::string>& overrides);
+void apply_at_overrides(Elaboration& e, const std::vector<std::string>& overrides);
 
 }  // namespace maupertuis::elaboration

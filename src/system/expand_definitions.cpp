@@ -54,6 +54,9 @@ void for_each_expression(Experiment& x, const std::function<void(Expr&)>& visit)
     for (StartValue& s : list) visit(s.value);
   };
   starts(x.start);
+  starts(x.at);
+  if (x.sweep)
+    for (Expr* e : {&x.sweep->from, &x.sweep->to}) visit(*e);
   for (StartRate& r : x.start_rates)
     for (Expr* e : {&r.rate, &r.value}) visit(*e);
   for (Expr* e : {&x.start_time, &x.duration, &x.until, &x.within, &x.output_every}) present(*e);

@@ -175,18 +175,35 @@ bool frequencies(Elaboration& e, Expectation& out, const ExpectStatement& s) {
     good = good && value;
     if (value) out.at.push_back(*value);
   }
-  out.dimension = e.dimension(Dimension{} / dimensions::time());
+  const Dimension rate = Dimension{} / dimensions::time();
+  out.squared = s.squared;
+  out.dimension = e.dimension(s.squared ? rate * rate : rate);
   for (const auto& x : s.values) {
     const Expression& q = unsigned_quantity(*x);
-    const Value v = constant_of(e, *x, out.dimension, "a frequency");
+    const Value v = constant_of(e, *x, out.dimension, s.squared ? "the square of a frequency" : "a frequency");
     good = good && !v.poisoned;
     if (q.kind == Expression::Kind::Quantity) set_display_unit(e, out, *x);
     if (v.poisoned) continue;
-    const Expr turn = v.hertz ? e.number(2) * e.context.pi() : e.number(1);  // kept in rad/s
+    const Expr turn = v.hertz && !s.squared ? e.number(2) * e.context.pi() : e.number(1);  // kept in rad/s
     out.values.push_back(v.scalar() * turn);
     out.display_factor *= maupertuis::evaluate(turn, Bindings{});
   }
   return tolerance(e, out, s, out.dimension) && good;
+}
+
+bool equilibrium(Elaboration& e, Expectation& out, const ExpectStatement& s) {
+  const bool known = s.word.text.empty() || s.word.text == "stable" || s.word.text == "unstable" || s.word.text == "undecided";
+  if (!known)
+    e.diagnostics.error("E0238", s.word.span, fmt::format("`{}` is no word for the stability of an equilibrium", s.word.text),
+                        "The energy or the eigenvalues prove it stable or unstable, or the linearization does not decide.",
+                        "Write stable, unstable or undecided.");
+  bool good = known;
+  for (const auto& item : s.at) {
+    const std::optional<StartValue> value = start_value(e, item);
+    good = good && value;
+    if (value) out.at.push_back(*value);
+  }
+  return good;
 }
 
 bool later(Elaboration& e, Span span) {
@@ -214,6 +231,8 @@ bool fill(Elaboration& e, Expectation& out, const ExpectStatement& s) {
       return freedoms(e, out, s);
     case Kind::Frequencies:
       return frequencies(e, out, s);
+    case Kind::Equilibrium:
+      return equilibrium(e, out, s);
     case Kind::ConstraintClass:
       return check_class_of_constraint(e, s);
     case Kind::EventAt:

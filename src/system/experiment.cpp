@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
-/// start, run, output.
+/// start, run, output, sweep.
 namespace maupertuis::elaboration {
 namespace {
 
@@ -185,6 +186,44 @@ void output(Elaboration& e, const syntax::OutputStatement& s) {
   e.experiment().output_every = v.scalar();
 }
 
+/// The parameter that a sweep names; null, and a message, if it is none.
+const Parameter* swept_parameter(Elaboration& e, const Expression& x) {
+  const std::string text(e.source.slice(x.span));
+  Declaration* d = x.kind == Expression::Kind::Name && x.primes == 0 ? e.table.find(x.text) : nullptr;
+  if (x.kind == Expression::Kind::Name && (!d || !d->statement)) {
+    unknown_name(e, x.text, x.name_span);
+    return nullptr;
+  }
+  if (!d || d->kind != Kind::Parameter) {
+    e.diagnostics.error("E0239", x.span, fmt::format("`{}` is no parameter", text),
+                        "A sweep goes through the values of a parameter and leaves the rest of the model as it is.",
+                        "Make it a `param` with a value of its own.");
+    return nullptr;
+  }
+  d->used = true;
+  for (const Parameter& p : e.system().parameters)
+    if (p.name == d->name) return &p;
+  return nullptr;
+}
+
+void sweep(Elaboration& e, const syntax::SweepStatement& s, Span span) {
+  const Parameter* parameter = swept_parameter(e, *s.variable);
+  if (!parameter) return;
+  const std::string what = fmt::format("`{}`", parameter->name);
+  const Value from = constant_of(e, *s.from, parameter->dimension, what), to = constant_of(e, *s.to, parameter->dimension, what);
+  const Value steps = constant_of(e, *s.steps, Dimension{}, "the number of values of a sweep");
+  if (from.poisoned || to.poisoned || steps.poisoned) return;
+  const double count = constant_value(e, steps.scalar()).value_or(0);
+  constexpr double most = 1e6;
+  if (!(count >= 2 && count <= most && count == std::floor(count))) {
+    e.diagnostics.error("E0239", s.steps->span, "a sweep has a whole number of values, at least 2 and at most a million",
+                        "Both ends are counted: `steps 121` from 0 to 12 is a tenth apart.", "");
+    return;
+  }
+  e.experiment().sweep = Sweep{static_cast<std::size_t>(parameter - e.system().parameters.data()), from.scalar(), to.scalar(),
+                               static_cast<std::size_t>(count), span};
+}
+
 }  // namespace
 
 void elaborate_experiment(Elaboration& e) {
@@ -194,6 +233,7 @@ void elaborate_experiment(Elaboration& e) {
     if (const auto* x = std::get_if<syntax::StartStatement>(&s.body)) start(e, *x);
     if (const auto* x = std::get_if<syntax::RunStatement>(&s.body)) run(e, *x);
     if (const auto* x = std::get_if<syntax::OutputStatement>(&s.body)) output(e, *x);
+    if (const auto* x = std::get_if<syntax::SweepStatement>(&s.body)) sweep(e, *x, s.span);
     if (const auto* x = std::get_if<syntax::DrawStatement>(&s.body)) elaborate_drawing(e, *x);
     if (const auto* x = std::get_if<syntax::ExpectStatement>(&s.body)) elaborate_expectation(e, *x, s.span);
   }

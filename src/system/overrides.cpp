@@ -119,35 +119,48 @@ void override_rates(Elaboration& e, const std::vector<StartRate>& rates) {
 
 }  // namespace
 
-void apply_start_overrides(Elaboration& e, const std::vector<std::string>& overrides) {
-  for (const std::string& text : overrides) {
-    Fragment f("--start", "start", text);
-    if (hand_over(e, f)) continue;
-    Elaboration inner(e, f.tree, f.source, f.diagnostics);
-    inner.table.adopt(e.table);
-    inner.system().coordinates = e.system().coordinates;
-    inner.poses = e.poses;
-    for (const syntax::Statement& s : f.tree.statements) {
-      const auto* start = std::get_if<syntax::StartStatement>(&s.body);
-      if (!start) continue;
-      for (const auto& item : start->items) {
-        if (is_body_rate(inner, *item.variable)) {
-          override_rates(e, start_rates(inner, item));
-          if (hand_over(e, f)) break;
-          continue;
-        }
-        const std::optional<StartValue> value = start_value(inner, item);
-        if (hand_over(e, f)) break;
-        if (!value) continue;
-        auto& list = e.experiment().start;
-        std::erase_if(list, [&](const StartValue& old) {
-          return old.coordinate == value->coordinate && old.order == value->order;
-        });
-        list.push_back(*value);
-        list.back().span = {};
-      }
+namespace {
+
+/// The items of `--start θ=1, φ'=2` or `--at …`, each handed to `take(inner, item)` until a mistake was told.
+template <class Take>
+void for_each_item(Elaboration& e, const char* option, const std::string& text, Take&& take) {
+  Fragment f(option, "start", text);
+  if (hand_over(e, f)) return;
+  Elaboration inner(e, f.tree, f.source, f.diagnostics);
+  inner.table.adopt(e.table);
+  inner.system().coordinates = e.system().coordinates;
+  inner.poses = e.poses;
+  for (const syntax::Statement& s : f.tree.statements) {
+    const auto* start = std::get_if<syntax::StartStatement>(&s.body);
+    if (!start) continue;
+    for (const auto& item : start->items) {
+      take(inner, item);
+      if (hand_over(e, f)) break;
     }
   }
+}
+
+void replace_start(std::vector<StartValue>& list, StartValue value) {
+  std::erase_if(list, [&](const StartValue& old) { return old.coordinate == value.coordinate && old.order == value.order; });
+  value.span = {};
+  list.push_back(value);
+}
+
+}  // namespace
+
+void apply_start_overrides(Elaboration& e, const std::vector<std::string>& overrides) {
+  for (const std::string& text : overrides)
+    for_each_item(e, "--start", text, [&](Elaboration& inner, const auto& item) {
+      if (is_body_rate(inner, *item.variable)) return override_rates(e, start_rates(inner, item));
+      if (const auto value = start_value(inner, item)) replace_start(e.experiment().start, *value);
+    });
+}
+
+void apply_at_overrides(Elaboration& e, const std::vector<std::string>& overrides) {
+  for (const std::string& text : overrides)
+    for_each_item(e, "--at", text, [&](Elaboration& inner, const auto& item) {
+      if (const auto value = start_value(inner, item)) replace_start(e.experiment().at, *value);
+    });
 }
 
 }  // namespace maupertuis::elaboration

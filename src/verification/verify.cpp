@@ -5,6 +5,7 @@
 #include <maupertuis/along_motion.hpp>
 #include "verification/claims.hpp"
 #include "verification/constraint_claims.hpp"
+#include "verification/mode_claims.hpp"
 #include "verification/phase_space_claims.hpp"
 
 #include <fmt/format.h>
@@ -99,7 +100,11 @@ class Verifier {
         result.message = "The model has no mistake that gives this error.";
         return;
       case Kind::Integral: decide_integral(e, result); return;
-      case Kind::Frequencies: case Kind::EventAt:
+      case Kind::Frequencies: case Kind::Equilibrium:
+        if (!mode_claims_) mode_claims_.emplace(model_, equations_);
+        mode_claims_->decide(e, result);
+        return;
+      case Kind::EventAt:
         result.message = "Not supported yet: this kind of expectation waits for a later version.";
         return;
     }
@@ -311,6 +316,7 @@ class Verifier {
   Bindings bindings_;
   std::optional<AlongMotion> along_;
   std::optional<ConstraintAnalysis> constraints_;
+  std::optional<ModeClaims> mode_claims_;
   std::vector<ExpectationResult> results_;
   std::vector<Request> requests_;
   std::vector<std::size_t> energy_lines_;

@@ -18,10 +18,33 @@ struct ReportOptions {
   bool without_run = false;
 };
 
+struct EquilibriumParts {
+  std::optional<ModalStudy> study;
+  std::optional<Locus> locus;
+};
+
+/// What can be said of equilibria; a model without any has no such part, and that is no mistake of a report.
+EquilibriumParts equilibrium_parts(const Model& model, const EquationsOfMotion& equations) {
+  EquilibriumParts out;
+  Diagnostics unheard;
+  const auto start = consistent_start(model, equations, unheard);
+  if (!start) return out;
+  PointEquations at_points(equations);
+  out.study = modal_study(at_points, start->state, unheard);
+  if (const auto& sweep = model.experiment.sweep) {
+    const auto value = [&](Expr e) { return evaluate(in_terms_of_motion(model.system, {&e, 1}).front(), parameter_bindings(model.system)); };
+    out.locus = parameter_locus(at_points, start->state, sweep->parameter, value(sweep->from), value(sweep->to), sweep->steps);
+  }
+  return out;
+}
+
 /// The page; a model that cannot run (no start, no `run`) still gets its equations.
 std::string page_of(Study& study, const std::optional<SimulationResult>& result, const SimulationOptions& settings) {
   ReportParts parts;
   Verification verification;
+  const EquilibriumParts equilibria = equilibrium_parts(*study.model(), *study.equations());
+  if (equilibria.study) parts.modes = &*equilibria.study;
+  if (equilibria.locus) parts.locus = &*equilibria.locus;
   if (result) parts.simulation = &*result;
   if (result && !study.model()->experiment.expectations.empty()) {
     verification = verify(*study.model(), *study.equations(), study.source(), settings, study.diagnostics());

@@ -125,7 +125,7 @@ void PointSolver::derivatives(MatrixXd& by_q, MatrixXd& by_v) {
   by_v = -solved.topRightCorner(n, n);
 }
 
-bool PointSolver::move_onto(Linearization& rows, std::span<double> changed, std::size_t first) {
+bool PointSolver::move_onto(LinearizedRows& rows, std::span<double> changed, std::size_t first) {
   double last = std::numeric_limits<double>::infinity(), first_move = 0;
   for (int turn = 0; turn < 20; ++turn) {
     const auto values = rows.values(point_);

@@ -9,9 +9,9 @@
 namespace maupertuis {
 
 /// Values of a DifferentiableKernel and its derivatives by blocks of columns.
-class Linearization {
+class LinearizedRows {
  public:
-  Linearization(const DifferentiableKernel& kernel, std::span<const double> parameters);
+  LinearizedRows(const DifferentiableKernel& kernel, std::span<const double> parameters);
   /// Values alone, or with derivatives. The result stays until the next call.
   std::span<const double> values(std::span<const double> point);
   void linearize(std::span<const double> point);
@@ -63,15 +63,15 @@ class PointSolver {
  private:
   PointStatus factor();
   void choose_rows();
-  bool move_onto(Linearization& rows, std::span<double> changed, std::size_t first);
+  bool move_onto(LinearizedRows& rows, std::span<double> changed, std::size_t first);
   void set_point(double t, std::span<const double> q, std::span<const double> v);
   /// The solution of the bordered system for a right side [n + rows].
   Eigen::VectorXd unscaled(const Eigen::VectorXd& right) const;
 
   MotionFunctions functions_;
-  Linearization balance_, accelerations_;        // with derivatives by a and λ
-  Linearization full_balance_, full_accelerations_;  // … by q and v too
-  Linearization rates_, positions_;
+  LinearizedRows balance_, accelerations_;        // with derivatives by a and λ
+  LinearizedRows full_balance_, full_accelerations_;  // … by q and v too
+  LinearizedRows rates_, positions_;
   FunctionWorkspace scales_work_;
   std::size_t n_, m_;
   std::vector<double> point_;

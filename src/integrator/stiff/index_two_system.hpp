@@ -26,7 +26,7 @@ class IndexTwoSystem {
 
   const MotionFunctions& functions_;
   std::size_t n_, m_;
-  Linearization balance_, rates_, positions_, accelerations_;  // the last for A alone
+  LinearizedRows balance_, rates_, positions_, accelerations_;  // the last for A alone
   std::vector<bool> velocity_row_, position_row_;              // [m] whether λ and μ of a row are unknowns
   std::vector<double> point_;
   Eigen::MatrixXd a_, block_, moved_;

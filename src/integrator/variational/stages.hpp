@@ -85,7 +85,7 @@ class StageSolver {
   void fill_point(std::size_t i);
 
   VariationalFunctions functions_;
-  Linearization momenta_, forces_, positions_, rates_;
+  LinearizedRows momenta_, forces_, positions_, rates_;
   Tableau tableau_;
   std::size_t n_, m_, s_;
   std::vector<std::size_t> rows_;

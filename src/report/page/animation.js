@@ -1,11 +1,11 @@
-// The drawing of a report: reads the frames from #drawing-data, draws them on the canvas of #animation, and lets the
-// reader play, pause, scrub, change the speed, and turn a drawing in space. Nothing is fetched.
+// The drawings of a report: each figure names the element with its frames, data-drawing. They are drawn on its canvas; the
+// reader plays, pauses, scrubs, changes the speed, and turns a drawing in space, as far as the figure has controls. A mode
+// (data-loop) swings without end over its equilibrium. Nothing is fetched.
 'use strict';
-(() => {
-  const figure = document.getElementById('animation');
-  if (!figure) return;
-  const scene = JSON.parse(document.getElementById('drawing-data').textContent);
-  const canvas = figure.querySelector('canvas'), context = canvas.getContext('2d');
+function animate(figure, scene) {
+  const loops = 'loop' in figure.dataset;
+  const canvas = figure.querySelector('canvas');
+  let context = canvas.getContext('2d');
   const control = name => figure.querySelector(`[data-control="${name}"]`);
   const {dimension, times, elements} = scene;
   for (const element of elements) element.positions = element.positions.map(value => value ?? NaN);
@@ -271,7 +271,7 @@
   }
 
   function trailSeconds() {
-    const choice = control('trail').value;
+    const choice = control('trail')?.value ?? 'none';
     return choice === 'all' ? duration : choice === 'none' ? 0 : Math.min(duration, 3 * rate());
   }
 
@@ -361,12 +361,32 @@
   const painters = {reaction: drawReaction, line: drawLine, spring: drawSpring, box: drawBox, circle: drawCircle};
   function draw() {
     context.clearRect(0, 0, width, height);
-    if (spatial) drawFloor();
+    if (spatial && !loops) drawFloor();
     elements.forEach((element, i) => element.kind === 'trail' && drawTrail(element, elapsed, i));
+    if (loops) drawEquilibrium();
     for (const last of [false, true])  // forces over everything else
       elements.forEach(element => element.kind !== 'trail' && (element.kind === 'reaction') === last && painters[element.kind](element, elapsed));
+    if (loops) return;
     drawGravity();
     if (!spatial) drawScaleBar();
+  }
+
+  // A mode passes its equilibrium a quarter of a period after its turning point.
+  function drawEquilibrium() {
+    const faded = document.createElement('canvas');
+    faded.width = canvas.width;
+    faded.height = canvas.height;
+    const screen = context;
+    context = faded.getContext('2d');
+    context.setTransform(screen.getTransform());
+    context.lineCap = context.lineJoin = 'round';
+    elements.forEach(element => element.kind !== 'trail' && element.kind !== 'reaction' && painters[element.kind](element, duration / 4));
+    context = screen;
+    context.save();
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    context.globalAlpha = 0.2;
+    context.drawImage(faded, 0, 0);
+    context.restore();
   }
 
   // ------------------------------------------------------------------------------------------------------- controls
@@ -374,15 +394,17 @@
   let elapsed = 0, playing = false, before = 0;
   const now = () => times[0] + direction * elapsed;
   const digits = Math.max(0, Math.min(9, 3 - Math.floor(Math.log10(duration || 1))));
-  const rate = () => Number(control('speed').value);
+  const rate = () => Number(control('speed')?.value ?? figure.dataset.rate);
 
   function show() {
     draw();
     const text = `${now().toFixed(digits)}${scene.dimensionless ? '' : ' s'}`;
-    control('time').textContent = text;
-    control('scrub').value = duration > 0 ? String(elapsed / duration) : '0';
-    control('scrub').setAttribute('aria-valuetext', `t = ${text}`);
-    control('play').setAttribute('aria-label', playing ? 'Pause' : 'Play');
+    if (!loops) {
+      control('time').textContent = text;
+      control('scrub').value = duration > 0 ? String(elapsed / duration) : '0';
+      control('scrub').setAttribute('aria-valuetext', `t = ${text}`);
+    }
+    control('play')?.setAttribute('aria-label', playing ? 'Pause' : 'Play');
     figure.dataset.time = String(now());
     figure.dataset.state = playing ? 'playing' : 'paused';
   }
@@ -391,7 +413,7 @@
     if (!playing) return;
     elapsed = Math.min(duration, elapsed + Math.min(0.1, (stamp - before) / 1000) * rate());
     before = stamp;
-    if (elapsed >= duration) playing = false;
+    if (elapsed >= duration) loops ? elapsed = 0 : playing = false;
     show();
     if (playing) requestAnimationFrame(step);
   }
@@ -416,6 +438,7 @@
   function offerSpeeds() {
     const pleasant = duration >= 2 && duration <= 120 ? 1 : 10 ** Math.round(Math.log10(duration / 15 || 1));
     const select = control('speed');
+    if (!select) return;
     for (const factor of [0.1, 0.25, 0.5, 1, 2, 5, 10]) {
       const option = document.createElement('option'), speed = pleasant * factor;
       option.value = String(speed);
@@ -471,11 +494,13 @@
 
   readColours();
   offerSpeeds();
-  control('play').addEventListener('click', () => play(!playing));
-  control('scrub').addEventListener('input', event => { play(false); seek(Number(event.target.value) * duration); });
-  control('trail').addEventListener('change', show);
-  control('trail').closest('label').hidden = !elements.some(element => element.kind === 'trail');
-  document.addEventListener('keydown', onKey);
+  control('play')?.addEventListener('click', () => play(!playing));
+  if (!loops) {
+    control('scrub').addEventListener('input', event => { play(false); seek(Number(event.target.value) * duration); });
+    control('trail').addEventListener('change', show);
+    control('trail').closest('label').hidden = !elements.some(element => element.kind === 'trail');
+    document.addEventListener('keydown', onKey);
+  }
   if (spatial) {
     figure.classList.add('spatial');
     turnByPointer();
@@ -485,4 +510,8 @@
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
   document.addEventListener('maup-theme', redraw);
   redraw();
-})();
+  if (loops && matchMedia('(prefers-reduced-motion: no-preference)').matches) play(true);
+}
+
+for (const figure of document.querySelectorAll('figure[data-drawing]'))
+  animate(figure, JSON.parse(document.getElementById(figure.dataset.drawing).textContent));

@@ -4,22 +4,22 @@
 
 namespace maupertuis {
 
-Linearization::Linearization(const DifferentiableKernel& kernel, std::span<const double> parameters)
+LinearizedRows::LinearizedRows(const DifferentiableKernel& kernel, std::span<const double> parameters)
     : kernel_(kernel), values_work_(kernel.values), all_work_(kernel.values_and_entries),
       out_(kernel.values_and_entries.outputs()) {
   values_work_.set_parameters(parameters);
   all_work_.set_parameters(parameters);
 }
 
-std::span<const double> Linearization::values(std::span<const double> point) {
+std::span<const double> LinearizedRows::values(std::span<const double> point) {
   const std::span<double> values(out_.data(), kernel_.size());
   values_work_.evaluate(point, values);
   return values;
 }
 
-void Linearization::linearize(std::span<const double> point) { all_work_.evaluate(point, out_); }
+void LinearizedRows::linearize(std::span<const double> point) { all_work_.evaluate(point, out_); }
 
-void Linearization::block(std::size_t first, Eigen::Ref<Eigen::MatrixXd> block) const {
+void LinearizedRows::block(std::size_t first, Eigen::Ref<Eigen::MatrixXd> block) const {
   block.setZero();
   const auto columns = static_cast<std::size_t>(block.cols());
   for (std::size_t k = 0; k < kernel_.entries.size(); ++k) {
@@ -29,7 +29,7 @@ void Linearization::block(std::size_t first, Eigen::Ref<Eigen::MatrixXd> block) 
   }
 }
 
-bool Linearization::finite() const {
+bool LinearizedRows::finite() const {
   for (const double x : out_)
     if (!std::isfinite(x)) return false;
   return true;

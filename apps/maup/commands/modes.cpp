@@ -1,0 +1,191 @@
+#include "modes_text.hpp"
+#include "outcome.hpp"
+#include "quantity.hpp"
+#include "run_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <maupertuis/mode_pictures.hpp>
+#include <maupertuis/modes.hpp>
+#include <maupertuis/regulator.hpp>
+#include <maupertuis/symbolic_linearization.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+namespace maupertuis::app {
+namespace {
+
+struct ModesOptions {
+  ModelOptions model;
+  std::string at;
+  bool all = false;
+  std::string q, r;                   // weights, as written
+  std::string sweep, plot, roots, csv;
+  bool locus() const { return !sweep.empty() || !plot.empty() || !roots.empty() || !csv.empty(); }
+};
+
+/// The state of the motion at a time, by a run that lands on it.
+std::optional<MotionState> state_at(Study& study, double time, const Console& console) {
+  SimulationOptions options;
+  options.duration = 0.0;
+  options.at = {time};
+  const auto run = run_model(study, options, console);
+  if (!run) return std::nullopt;
+  if (run->at.front().q.empty()) {
+    study.diagnostics().error("E1305", {}, fmt::format("the motion does not reach t = {} s", brief(time)), run->reason,
+                              "Take a time before the run ends.");
+    return std::nullopt;
+  }
+  return MotionState{time, run->at.front().q, run->at.front().v};
+}
+
+std::optional<ModalStudy> carry_out(const ModesOptions& options, Study& study, const PointEquations& equations, const MotionState& start,
+                                    const Console& console) {
+  Diagnostics& diagnostics = study.diagnostics();
+  if (const auto time = parse_time(options.at)) {
+    const auto state = state_at(study, *time, console);
+    return state ? modal_study_of(equations, *state, diagnostics) : std::nullopt;
+  }
+  return options.at.empty() ? modal_study(equations, start, diagnostics)
+                            : modal_study_at(equations, start, study.model()->experiment.at, diagnostics);
+}
+
+// -------------------------------------------------------------------------------------------------------------- regulator
+
+/// "1, 2, 3" a diagonal, "1, 0; 0, 2" rows, "0.1" a multiple of 1. Nothing where it is none of these.
+std::optional<RealMatrix> weights(const std::string& text, std::size_t size) {
+  std::vector<std::vector<double>> rows(1);
+  for (const char* at = text.c_str(); *at;) {
+    char* end = nullptr;
+    const double value = std::strtod(at, &end);
+    if (end != at && std::isfinite(value)) {
+      rows.back().push_back(value);
+      at = end;
+    } else if (*at == ';') {
+      rows.emplace_back();
+      ++at;
+    } else if (*at == ',' || *at == ' ') {
+      ++at;
+    } else {
+      return std::nullopt;
+    }
+  }
+  RealMatrix out{rows.size(), rows[0].size(), {}};
+  if (rows.size() == 1) {
+    if (rows[0].size() == 1) rows[0].assign(size, rows[0][0]);
+    out = {rows[0].size(), rows[0].size(), std::vector<double>(rows[0].size() * rows[0].size(), 0.0)};
+    for (std::size_t i = 0; i < out.rows; ++i) out.entries[i * out.rows + i] = rows[0][i];
+    return out;
+  }
+  for (const auto& row : rows) {
+    if (row.size() != out.columns) return std::nullopt;
+    out.entries.insert(out.entries.end(), row.begin(), row.end());
+  }
+  return out;
+}
+
+std::optional<Regulator> regulator_of(const ModesOptions& options, const ModalStudy& study, Diagnostics& diagnostics) {
+  const Linearization& l = study.entries.front().linearization;
+  const auto q = weights(options.q, l.a.rows), r = weights(options.r.empty() ? "1" : options.r, l.b.columns);
+  for (const auto& [matrix, name, text] : {std::tuple(&q, "--Q", &options.q), std::tuple(&r, "--R", &options.r)})
+    if (!*matrix) {
+      diagnostics.error("E0809", {}, fmt::format("{} {}: no list of numbers and no matrix", name, *text), "",
+                        "Write a diagonal \"1, 10\", rows \"1, 0; 0, 10\", or one number.");
+      return std::nullopt;
+    }
+  return linear_quadratic_regulator(l, *q, *r, diagnostics);
+}
+
+// ------------------------------------------------------------------------------------------------------------------ locus
+
+bool write_locus(const ModesOptions& options, const MechanicalSystem& system, const Locus& locus, Diagnostics& diagnostics) {
+  bool good = true;
+  if (!options.csv.empty()) good = write_result(options.csv, to_csv(system, locus), diagnostics) && good;
+  if (!options.roots.empty()) {
+    Diagram d = root_locus(system, locus);
+    d.title = system.title;
+    good = write_result(options.roots, diagram_svg(d), diagnostics) && good;
+  }
+  if (options.plot.empty()) return good;
+  std::vector<Diagram> diagrams = bifurcation_diagrams(system, locus, 1);
+  if (diagrams.empty()) return good;
+  diagrams.front().title = system.title;
+  return write_result(options.plot, diagram_svg(diagrams.front()), diagnostics) && good;
+}
+
+ExitCode locus(const ModesOptions& options, Study& study, PointEquations& equations, const MotionState& start, Console& console) {
+  const auto& sweep = study.model()->experiment.sweep;
+  if (!sweep) {
+    study.diagnostics().error("E1320", {}, "the model has no sweep", "A locus follows equilibria while one parameter changes.",
+                              "Write `sweep NAME = FROM .. TO steps N` into the model, or give --sweep \"NAME = FROM .. TO steps N\".");
+    return finish(console, study, json_document("modes"));
+  }
+  const MechanicalSystem& system = study.model()->system;
+  const auto value = [&](Expr e) { return evaluate(in_terms_of_motion(system, {&e, 1}).front(), parameter_bindings(system)); };
+  const Locus result = parameter_locus(equations, start, sweep->parameter, value(sweep->from), value(sweep->to), sweep->steps);
+  const bool written = write_locus(options, system, result, study.diagnostics());
+  if (!console.json()) console.print(locus_text(system, result));
+  const ExitCode code = finish(console, study, locus_document(system, result));
+  return written ? code : ExitCode::RunFailed;
+}
+
+// ---------------------------------------------------------------------------------------------------------------- command
+
+ExitCode points(const ModesOptions& options, Study& study, const PointEquations& equations, const MotionState& start, Console& console) {
+  const auto result = carry_out(options, study, equations, start, console);
+  if (!result) return finish(console, study, json_document("modes"));
+  const MechanicalSystem& system = study.model()->system;
+  constexpr std::size_t usually = 4;
+  const std::size_t detailed = options.all ? std::numeric_limits<std::size_t>::max() : usually;
+  Json document = modes_document(system, *result);
+  std::vector<std::optional<SymbolicLinearization>> formulas;
+  for (std::size_t i = 0; i < result->entries.size() && i < detailed; ++i) {
+    const bool settled = result->starts > 0 || !options.at.empty();
+    formulas.push_back(settled ? symbolic_linearization(*study.equations(), result->entries[i].linearization, result->translations) : std::nullopt);
+    document["points"][i]["formulas"] = formulas.back() ? symbolic_json(*formulas.back(), study.equations()->order) : Json(nullptr);
+  }
+  if (!console.json()) console.print(modes_text(system, *result, formulas, study.equations()->order));
+  if (options.q.empty()) return finish(console, study, document);
+  const auto regulator = regulator_of(options, *result, study.diagnostics());
+  if (regulator) document["regulator"] = regulator_json(*regulator);
+  if (regulator && !console.json()) console.print(regulator_text(system, result->entries.front().linearization, *regulator));
+  return finish(console, study, document);
+}
+
+ExitCode modes(ModesOptions options, Console& console) {
+  if (!options.at.empty() && !parse_time(options.at)) options.model.overrides.at = {options.at};
+  Study study(options.model.path, options.model.overrides);
+  if (!options.sweep.empty()) study.replace_sweep("sweep " + options.sweep);
+  const EquationsOfMotion* equations = study.equations();
+  if (!equations || !study.certificate()) return finish(console, study, json_document("modes"));
+  const auto start = consistent_start(*study.model(), *equations, study.diagnostics());
+  if (!start) return finish(console, study, json_document("modes"));
+  PointEquations at_points(*equations);
+  return options.locus() ? locus(options, study, at_points, start->state, console) : points(options, study, at_points, start->state, console);
+}
+
+}  // namespace
+
+void add_modes(CommandLine& line) {
+  const auto options = std::make_shared<ModesOptions>();
+  CLI::App& command = line.add("modes", "Equilibria, linearization, frequencies, mode shapes, stability",
+                               "  maup modes double_pendulum.lag\n"
+                               "  maup modes balanced_cart.lag --at \"θ=180deg\" --Q \"1, 1, 0, 0\" --R 0.1\n"
+                               "  maup modes bead_on_hoop.lag --plot bifurcation.svg --csv locus.csv\n",
+                               [options](Console& console) { return modes(*options, console); });
+  add_model_options(command, options->model);
+  command.add_option("--at", options->at, "One equilibrium or steady motion, e.g. \"θ=0, φ'=2 rad/s\", or a time of the motion, e.g. 3s")
+      ->type_name("POINT|TIME");
+  command.add_option("--Q", options->q, "Weights of the states: a linear-quadratic regulator about the point of --at")->type_name("WEIGHTS");
+  command.add_option("--R", options->r, "Prices of the inputs (default: 1)")->type_name("WEIGHTS");
+  command.add_option("--sweep", options->sweep, "A locus over values of one parameter, e.g. \"Ω = 0 .. 12 rad/s steps 121\"")->type_name("SWEEP");
+  command.add_option("--plot", options->plot, "The bifurcation diagram of the sweep: .svg")->type_name("FILE");
+  command.add_option("--roots", options->roots, "The eigenvalues of the sweep in the complex plane: .svg")->type_name("FILE");
+  command.add_option("--csv", options->csv, "The locus as numbers: .csv")->type_name("FILE");
+  command.add_flag("--all", options->all, "The modes of all points that were found, not of the first four alone");
+}
+
+}  // namespace maupertuis::app

@@ -1,0 +1,396 @@
+#include "modes_text.hpp"
+
+#include "quantity.hpp"
+
+#include <fmt/format.h>
+
+#include <maupertuis/print.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace maupertuis::app {
+namespace {
+
+using Complex = std::complex<double>;
+constexpr std::size_t widest_matrix = 8, most_shapes = 8;
+constexpr double turn = 6.283185307179586;
+
+/// Letters beyond ASCII count as one column.
+std::size_t columns(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+std::string padded_left(const std::string& text, std::size_t width) {
+  return std::string(width - std::min(width, columns(text)), ' ') + text;
+}
+std::string padded(const std::string& text, std::size_t width) { return text + std::string(width - std::min(width, columns(text)), ' '); }
+
+/// Lines of cells: the first line is the head, numbers at the right.
+std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t left_aligned) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (i >= widths.size()) widths.push_back(0);
+      widths[i] = std::max(widths[i], columns(row[i]));
+    }
+  std::string out;
+  for (const auto& row : rows) {
+    std::string line = " ";
+    for (std::size_t i = 0; i < row.size(); ++i)
+      line += " " + (i < left_aligned ? padded(row[i], widths[i]) : padded_left(row[i], widths[i])) + " ";
+    line.erase(line.find_last_not_of(' ') + 1);
+    out += line + "\n";
+  }
+  return out;
+}
+
+std::string number(double x) { return fmt::format("{:.6g}", x == 0 ? 0.0 : x); }
+
+std::string complex_number(Complex z) {
+  if (z.imag() == 0) return number(z.real());
+  if (z.real() == 0) return number(z.imag()) + "i";
+  return fmt::format("{}{}{}i", number(z.real()), z.imag() < 0 ? "-" : "+", number(std::abs(z.imag())));
+}
+
+using Cells = std::vector<std::vector<std::string>>;
+
+/// "NAME = ⎡ … ⎤" over its rows.
+std::string brackets(const std::string& name, const Cells& cells) {
+  std::vector<std::size_t> widths(cells.empty() ? 0 : cells[0].size(), 0);
+  for (const auto& row : cells)
+    for (std::size_t j = 0; j < row.size(); ++j) widths[j] = std::max(widths[j], columns(row[j]));
+  std::string out;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const bool one = cells.size() == 1, first = i == 0, last = i + 1 == cells.size();
+    std::string line = fmt::format("  {} ", padded(i == (cells.size() - 1) / 2 ? name + " =" : "", columns(name) + 2));
+    line += one ? "[" : first ? "⎡" : last ? "⎣" : "⎢";
+    for (std::size_t j = 0; j < cells[i].size(); ++j) line += " " + padded_left(cells[i][j], widths[j]) + " ";
+    out += line + (one ? "]" : first ? "⎤" : last ? "⎦" : "⎥") + "\n";
+  }
+  return out;
+}
+
+std::string matrix_text(const std::string& name, const RealMatrix& m) {
+  Cells cells(m.rows);
+  for (std::size_t i = 0; i < m.rows; ++i)
+    for (std::size_t j = 0; j < m.columns; ++j) cells[i].push_back(number(m.at(i, j)));
+  return brackets(name, cells);
+}
+
+std::string matrix_text(const std::string& name, const ExprMatrix& m, const ReadingOrder& order) {
+  Cells cells(m.rows);
+  for (std::size_t i = 0; i < m.rows; ++i)
+    for (std::size_t j = 0; j < m.columns; ++j) cells[i].push_back(to_plain(m.at(i, j), order));
+  return brackets(name, cells);
+}
+
+std::string kind_text(const Mode& m) {
+  switch (m.kind) {
+    case Mode::Kind::Zero: return m.cause.empty() ? "zero" : m.cause;
+    case Mode::Kind::Oscillation: return m.eigenvalue.real() > 0 ? "growing oscillation" : m.eigenvalue.real() < 0 ? "damped oscillation" : "oscillation";
+    case Mode::Kind::Decay: return "decay";
+    case Mode::Kind::Growth: return "growth";
+  }
+  return "";
+}
+
+const char* kind_name(Mode::Kind kind) {
+  switch (kind) {
+    case Mode::Kind::Zero: return "zero";
+    case Mode::Kind::Oscillation: return "oscillation";
+    case Mode::Kind::Decay: return "decay";
+    case Mode::Kind::Growth: return "growth";
+  }
+  return "";
+}
+
+std::string modes_table(const MechanicalSystem& system, const ModalAnalysis& analysis) {
+  const bool damped = std::any_of(analysis.modes.begin(), analysis.modes.end(), [](const Mode& m) { return m.eigenvalue.real() != 0; });
+  const bool shapes = system.coordinates.size() <= most_shapes;
+  std::vector<std::string> head{"", "", system.dimensionless ? "ω" : "ω (rad/s)", system.dimensionless ? "f" : "f (Hz)"};
+  if (damped) head.insert(head.end(), {system.dimensionless ? "Re λ" : "Re λ (1/s)", "ζ"});
+  if (shapes)
+    for (const Coordinate& c : system.coordinates) head.push_back(c.name);
+  std::vector<std::vector<std::string>> rows{head};
+  for (std::size_t i = 0; i < analysis.modes.size(); ++i) {
+    const Mode& m = analysis.modes[i];
+    const bool oscillates = m.kind == Mode::Kind::Oscillation;
+    std::vector<std::string> row{fmt::format("{}", i + 1), kind_text(m) + (m.multiplicity > 1 ? fmt::format(", {}-fold", m.multiplicity) : ""),
+                                 oscillates ? fmt::format("{:.9g}", m.frequency()) : m.kind == Mode::Kind::Zero ? "0" : "",
+                                 oscillates ? fmt::format("{:.9g}", m.frequency() / turn) : ""};
+    if (damped) row.insert(row.end(), {number(m.eigenvalue.real()), oscillates && m.eigenvalue.real() != 0 ? fmt::format("{:.4g}", m.damping_ratio()) : ""});
+    if (shapes)
+      for (const Complex& x : m.shape) row.push_back(complex_number(x));
+    rows.push_back(std::move(row));
+  }
+  return table(rows, 2);
+}
+
+std::string listed(const MechanicalSystem& system, const std::vector<std::size_t>& coordinates, const char* primes) {
+  std::string out;
+  for (const std::size_t i : coordinates) out += (out.empty() ? "" : ", ") + system.coordinates[i].name + primes;
+  return out;
+}
+
+bool vanishes(const RealMatrix& m) {
+  return std::all_of(m.entries.begin(), m.entries.end(), [](double x) { return x == 0; });
+}
+
+std::string matrices_text(const MechanicalSystem& system, const Linearization& l) {
+  std::string out;
+  if (l.independent.size() < system.coordinates.size())
+    out += fmt::format("  independent: {}\n", listed(system, l.independent, "") + (l.independent == l.independent_velocities ? "" : "; " + listed(system, l.independent_velocities, "'")));
+  if (l.second_order() && l.independent.size() <= widest_matrix) {
+    const std::pair<const char*, const RealMatrix*> all[] = {{"M", &l.mass}, {"C", &l.damping}, {"G", &l.gyroscopic},
+                                                             {"K", &l.stiffness}, {"N", &l.circulatory}, {"B", &l.input}};
+    std::string sum = "M ξ''";
+    const bool c = !vanishes(l.damping), g = !vanishes(l.gyroscopic), k = !vanishes(l.stiffness), n = !vanishes(l.circulatory);
+    if (c || g) sum += fmt::format(" + {} ξ'", c && g ? "(C + G)" : c ? "C" : "G");
+    if (k || n) sum += fmt::format(" + {} ξ", k && n ? "(K + N)" : k ? "K" : "N");
+    out += fmt::format("  {} = {}\n", sum, vanishes(l.input) ? "0" : "B u");
+    for (const auto& [name, matrix] : all)
+      if (!vanishes(*matrix)) out += matrix_text(name, *matrix);
+  } else if (l.a.rows <= widest_matrix) {
+    out += fmt::format("  x' = A x{},  x = ({}, {})\n", vanishes(l.b) ? "" : " + B u", listed(system, l.independent, ""), listed(system, l.independent_velocities, "'"));
+    out += matrix_text("A", l.a);
+    if (!vanishes(l.b)) out += matrix_text("B", l.b);
+  }
+  return out;
+}
+
+bool vanishes(const ExprMatrix& m) {
+  return std::all_of(m.entries.begin(), m.entries.end(), [](const Expr& e) { return e.is_zero(); });
+}
+
+/// Formulas instead of numbers where they fit a line.
+std::optional<std::string> formulas_text(const SymbolicLinearization& s, const ReadingOrder& order) {
+  std::string out;
+  for (const auto& [left, right] : s.equilibrium) out += fmt::format("  {} = {}\n", to_plain(left, order), to_plain(right.value, order));
+  const bool c = !vanishes(s.damping), k = !vanishes(s.stiffness), b = !vanishes(s.input);
+  out += fmt::format("  M ξ''{}{} = {}\n", c ? " + C ξ'" : "", k ? " + K ξ" : "", b ? "B u" : "0");
+  const std::tuple<const char*, const ExprMatrix*, bool> all[] = {{"M", &s.mass, true}, {"C", &s.damping, c}, {"K", &s.stiffness, k}, {"B", &s.input, b}};
+  for (const auto& [name, matrix, shown] : all)
+    if (shown) out += matrix_text(name, *matrix, order);
+  if (s.square) out += fmt::format("  ω² = {}\n", to_plain(s.square, order));
+  constexpr std::size_t widest = 110;
+  for (std::size_t begin = 0, end; begin < out.size(); begin = end + 1) {
+    end = out.find('\n', begin);
+    if (columns(out.substr(begin, end - begin)) > widest) return std::nullopt;
+  }
+  return out;
+}
+
+std::string verdict(const StabilityReport& s) { return fmt::format("{}: {}", stability_word(s.verdict), s.reason); }
+
+std::string multipliers_text(const MechanicalSystem& system, const OperatingPoint& point) {
+  std::string out;
+  for (std::size_t i = 0; i < point.multipliers.size(); ++i)
+    out += fmt::format("{}{} {}", out.empty() ? "" : ", ", system.constraint_label(i), number(point.multipliers[i]));
+  return out.empty() ? out : "  multipliers (SI): " + out + "\n";
+}
+
+std::string summary(const MechanicalSystem& system, const ModalStudy& study) {
+  if (study.starts == 0) return "";
+  std::size_t resting = 0;
+  for (const ModalEntry& e : study.entries) resting += e.equilibrium.at_rest;
+  const std::size_t moving = study.entries.size() - resting;
+  std::string out = fmt::format("{} {}", resting, resting == 1 ? "equilibrium" : "equilibria");
+  if (moving > 0) out += fmt::format(", {} steady {}", moving, moving == 1 ? "motion" : "motions");
+  out += fmt::format(" (Newton's method from {} points; there may be more)\n\n", study.starts);
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t i = 0; i < study.entries.size(); ++i) {
+    const ModalEntry& e = study.entries[i];
+    rows.push_back({fmt::format("{}", i + 1), point_text(system, e.equilibrium, study.translations), verdict(e.analysis.stability)});
+  }
+  return out + table(rows, 3);
+}
+
+}  // namespace
+
+std::string modes_text(const MechanicalSystem& system, const ModalStudy& study,
+                       const std::vector<std::optional<SymbolicLinearization>>& formulas, const ReadingOrder& order) {
+  const std::size_t detailed = formulas.size();
+  std::string out = summary(system, study);
+  for (std::size_t i = 0; i < study.entries.size() && i < detailed; ++i) {
+    const ModalEntry& e = study.entries[i];
+    const std::string head = point_text(system, e.equilibrium, study.translations);
+    if (!out.empty()) out += "\n";
+    out += study.starts > 0 ? fmt::format("{}  {}\n", i + 1, head) : fmt::format("{}\n  {}\n", head, verdict(e.analysis.stability));
+    out += multipliers_text(system, e.linearization.point);
+    const auto symbolic = formulas[i] ? formulas_text(*formulas[i], order) : std::nullopt;
+    out += symbolic ? *symbolic : matrices_text(system, e.linearization);
+    out += modes_table(system, e.analysis);
+    out += fmt::format("  residual of the eigenvalue problem {}\n", brief(e.analysis.residual));
+  }
+  if (study.entries.size() > detailed)
+    out += fmt::format("\nThe modes of the others: --at \"…\" with one of the points above, or --all.\n");
+  return out;
+}
+
+std::string regulator_text(const MechanicalSystem& system, const Linearization& l, const Regulator& r) {
+  std::string out = fmt::format("\nregulator  u = u0 - F x,  x = ({}, {})\n", listed(system, l.independent, ""), listed(system, l.independent_velocities, "'"));
+  out += matrix_text("F", r.gain);
+  std::string poles;
+  for (const Complex& z : r.poles)
+    if (z.imag() >= 0) poles += (poles.empty() ? "" : ", ") + (z.imag() == 0 ? number(z.real()) : fmt::format("{} ± {}i", number(z.real()), number(z.imag())));
+  return out + fmt::format("  poles of the closed loop {}\n  residual of the Riccati equation {}\n", poles, brief(r.residual));
+}
+
+std::string locus_text(const MechanicalSystem& system, const Locus& locus) {
+  const Parameter& p = system.parameters[locus.parameter];
+  const auto value = [&](double x) { return value_text(system, x, p.dimension); };
+  std::string out = fmt::format("{} = {} … {}, {} values: {} {}\n", p.name, value(locus.values.front()), value(locus.values.back()), locus.values.size(),
+                                locus.branches.size(), locus.branches.size() == 1 ? "branch" : "branches");
+  Cells rows;
+  for (std::size_t b = 0; b < locus.branches.size(); ++b) {
+    const LocusPoint &first = locus.branches[b].points.front(), &last = locus.branches[b].points.back();
+    rows.push_back({fmt::format("{}", b + 1), fmt::format("{} … {}", value(first.parameter), value(last.parameter)),
+                    fmt::format("from {}", point_text(system, first.equilibrium, locus.translations)),
+                    fmt::format("to {}", point_text(system, last.equilibrium, locus.translations)), std::string(stability_word(last.stability.verdict))});
+  }
+  out += table(rows, 5);
+  for (const StabilityChange& c : locus.changes)
+    out += fmt::format("  branch {} at {} = {}: {} → {}\n", c.branch + 1, p.name, value(c.parameter), stability_word(c.before), stability_word(c.after));
+  return out;
+}
+
+// -------------------------------------------------------------------------------------------------------------------- JSON
+
+namespace {
+
+Json matrix_json(const RealMatrix& m) {
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < m.rows; ++i) rows.push_back(std::vector<double>(m.entries.begin() + static_cast<std::ptrdiff_t>(i * m.columns), m.entries.begin() + static_cast<std::ptrdiff_t>((i + 1) * m.columns)));
+  return rows;
+}
+
+Json complex_json(Complex z) { return Json::array({z.real(), z.imag()}); }
+
+Json names_json(const MechanicalSystem& system, const std::vector<std::size_t>& chosen, const char* primes) {
+  Json out = Json::array();
+  for (const std::size_t i : chosen) out.push_back(system.coordinates[i].name + primes);
+  return out;
+}
+
+Json mode_json(const MechanicalSystem& system, const Mode& m) {
+  Json shape = Json::object();
+  for (std::size_t i = 0; i < m.shape.size(); ++i) shape[system.coordinates[i].name] = complex_json(m.shape[i]);
+  Json out = {{"kind", kind_name(m.kind)}, {"eigenvalue", complex_json(m.eigenvalue)}, {"error", m.error},
+              {"frequency", m.frequency()}, {"frequency_hz", m.frequency() / turn}, {"natural_frequency", m.natural_frequency()},
+              {"damping_ratio", m.damping_ratio()}, {"multiplicity", m.multiplicity}, {"shape", std::move(shape)}};
+  if (m.kind == Mode::Kind::Zero) {
+    out["zeros"] = m.zeros;
+    out["cause"] = m.cause.empty() ? Json(nullptr) : Json(m.cause);
+  }
+  return out;
+}
+
+Json point_json(const MechanicalSystem& system, const OperatingPoint& point) {
+  Json state = Json::object(), multipliers = Json::object(), inputs = Json::object();
+  for (std::size_t i = 0; i < point.q.size(); ++i) {
+    state[system.coordinates[i].name] = point.q[i];
+    state[system.coordinates[i].name + "'"] = point.v[i];
+  }
+  for (std::size_t i = 0; i < point.multipliers.size(); ++i) multipliers[system.constraints[i].multiplier.name()] = point.multipliers[i];
+  for (std::size_t i = 0; i < point.inputs.size(); ++i) inputs[system.inputs[i].name] = point.inputs[i];
+  return {{"t", point.t}, {"state", state}, {"multipliers", multipliers}, {"inputs", inputs}};
+}
+
+Json linearization_json(const MechanicalSystem& system, const Linearization& l) {
+  Json out = {{"independent", names_json(system, l.independent, "")},
+              {"independent_velocities", names_json(system, l.independent_velocities, "'")}};
+  const std::pair<const char*, const RealMatrix*> second[] = {{"M", &l.mass}, {"C", &l.damping}, {"G", &l.gyroscopic},
+                                                              {"K", &l.stiffness}, {"N", &l.circulatory}, {"input", &l.input}};
+  if (l.second_order())
+    for (const auto& [name, matrix] : second) out["second_order"][name] = matrix_json(*matrix);
+  else
+    out["second_order"] = nullptr;
+  const std::pair<const char*, const RealMatrix*> first[] = {{"A", &l.a}, {"B", &l.b}, {"C", &l.c}, {"D", &l.d}};
+  for (const auto& [name, matrix] : first) out["state_space"][name] = matrix_json(*matrix);
+  return out;
+}
+
+const char* verdict_word(Stability s) {
+  switch (s) {
+    case Stability::Energetic: return "stable";
+    case Stability::Asymptotic: return "asymptotically stable";
+    case Stability::Unstable: return "unstable";
+    case Stability::Undecided: return "undecided";
+  }
+  return "";
+}
+
+}  // namespace
+
+Json modes_document(const MechanicalSystem& system, const ModalStudy& study) {
+  Json document = json_document("modes");
+  document["system"] = system.name;
+  document["starts"] = study.starts;
+  document["translations"] = Json::array();
+  for (const Translation& t : study.translations)
+    document["translations"].push_back({{"direction", t.direction}, {"conserved", t.conserved}});
+  document["points"] = Json::array();
+  for (const ModalEntry& e : study.entries) {
+    Json entry = point_json(system, e.linearization.point);
+    entry["at_rest"] = e.equilibrium.at_rest;
+    entry["residual"] = e.equilibrium.residual;
+    entry["family"] = e.equilibrium.family;
+    const StabilityReport& s = e.analysis.stability;
+    entry["stability"] = {{"verdict", verdict_word(s.verdict)}, {"reason", s.reason}, {"growth_rate", s.growth_rate}, {"hessian", s.hessian}};
+    entry["linearization"] = linearization_json(system, e.linearization);
+    entry["eigenvalues"] = Json::array();
+    for (const Complex& z : e.analysis.eigenvalues) entry["eigenvalues"].push_back(complex_json(z));
+    entry["modes"] = Json::array();
+    for (const Mode& m : e.analysis.modes) entry["modes"].push_back(mode_json(system, m));
+    entry["eigenvalue_residual"] = e.analysis.residual;
+    document["points"].push_back(std::move(entry));
+  }
+  return document;
+}
+
+Json symbolic_json(const SymbolicLinearization& s, const ReadingOrder& order) {
+  const auto matrix = [&](const ExprMatrix& m) {
+    Json rows = Json::array();
+    for (std::size_t i = 0; i < m.rows; ++i) {
+      Json row = Json::array();
+      for (std::size_t j = 0; j < m.columns; ++j) row.push_back(to_plain(m.at(i, j), order));
+      rows.push_back(std::move(row));
+    }
+    return rows;
+  };
+  Json equilibrium = Json::object();
+  for (const auto& [left, right] : s.equilibrium) equilibrium[to_plain(left, order)] = to_plain(right.value, order);
+  return {{"equilibrium", equilibrium}, {"M", matrix(s.mass)}, {"C", matrix(s.damping)}, {"K", matrix(s.stiffness)}, {"B", matrix(s.input)},
+          {"omega_squared", s.square ? Json(to_plain(s.square, order)) : Json(nullptr)}};
+}
+
+Json regulator_json(const Regulator& r) {
+  Json poles = Json::array();
+  for (const Complex& z : r.poles) poles.push_back(complex_json(z));
+  return {{"gain", matrix_json(r.gain)}, {"cost", matrix_json(r.cost)}, {"poles", poles}, {"residual", r.residual}};
+}
+
+Json locus_document(const MechanicalSystem& system, const Locus& locus) {
+  Json document = json_document("modes");
+  document["system"] = system.name;
+  document["parameter"] = system.parameters[locus.parameter].name;
+  document["branches"] = Json::array();
+  for (const LocusBranch& b : locus.branches) {
+    Json branch = Json::array();
+    for (const LocusPoint& x : b.points) {
+      Json point = point_json(system, x.equilibrium.point);
+      point["value"] = x.parameter;
+      point["verdict"] = verdict_word(x.stability.verdict);
+      point["eigenvalues"] = Json::array();
+      for (const Complex& z : x.eigenvalues) point["eigenvalues"].push_back(complex_json(z));
+      branch.push_back(std::move(point));
+    }
+    document["branches"].push_back(std::move(branch));
+  }
+  document["changes"] = Json::array();
+  for (const StabilityChange& c : locus.changes)
+    document["changes"].push_back({{"value", c.parameter}, {"branch", c.branch}, {"before", verdict_word(c.before)}, {"after", verdict_word(c.after)}});
+  return document;
+}
+
+}  // namespace maupertuis::app

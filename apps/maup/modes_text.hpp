@@ -1,0 +1,23 @@
+#pragma once
+#include "json.hpp"
+
+#include <maupertuis/locus.hpp>
+#include <maupertuis/modes.hpp>
+#include <maupertuis/regulator.hpp>
+#include <maupertuis/symbolic_linearization.hpp>
+
+#include <string>
+
+namespace maupertuis::app {
+
+/// What was found, and of the first entries (one for each of `formulas`) the matrices, as far as they fit a line, and the modes.
+std::string modes_text(const MechanicalSystem& system, const ModalStudy& study,
+                       const std::vector<std::optional<SymbolicLinearization>>& formulas, const ReadingOrder& order);
+Json modes_document(const MechanicalSystem& system, const ModalStudy& study);
+Json symbolic_json(const SymbolicLinearization& formulas, const ReadingOrder& order);
+std::string regulator_text(const MechanicalSystem& system, const Linearization& linearization, const Regulator& regulator);
+Json regulator_json(const Regulator& regulator);
+std::string locus_text(const MechanicalSystem& system, const Locus& locus);
+Json locus_document(const MechanicalSystem& system, const Locus& locus);
+
+}  // namespace maupertuis::app

@@ -1,0 +1,139 @@
+#pragma once
+#include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/equations_of_motion.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+/// Equilibria, steady motions, and the equations linearized about a point: docs/theory/linearization.md.
+namespace maupertuis {
+
+/// A matrix of numbers, by rows.
+struct RealMatrix {
+  std::size_t rows = 0, columns = 0;
+  std::vector<double> entries;  // [rows × columns]
+  double at(std::size_t i, std::size_t j) const { return entries[i * columns + j]; }
+};
+
+/// Where the equations are linearized. At an equilibrium v = a = 0; in a steady motion a = 0.
+struct OperatingPoint {
+  double t = 0;
+  std::vector<double> q, v, a;      // [n] each, SI
+  std::vector<double> multipliers;  // [m]
+  std::vector<double> inputs;       // [k] the values that the inputs are held at
+};
+
+/// A translation q → q + ε d of the coordinates that changes neither the equations nor the constraints: one cyclic
+/// coordinate, or several that move together (all carriages of a train).
+struct Translation {
+  std::vector<double> direction;  // [n], 1 at `pivot`
+  std::size_t pivot = 0;          // the coordinate that tells how far
+  bool conserved = false;         // its momentum d·p is conserved: no force works along it
+};
+
+/// The equations of a system as functions of a point, with exact derivatives. Made once, used for many points.
+class PointEquations {
+ public:
+  /// Cost: n + m reverse sweeps over the residual and the constraints.
+  explicit PointEquations(const EquationsOfMotion& equations);
+  ~PointEquations();
+  PointEquations(PointEquations&&) noexcept;
+
+  const MechanicalSystem& system() const;
+  /// Whether no t stands in R or the constraints, beside that of the inputs; proved.
+  bool autonomous() const;
+  /// Whether an energy exists that never grows while inputs are held: no explicit time, forces that have a potential (both
+  /// proved), friction that takes at random states. With holonomic constraints alone.
+  bool energy_never_grows() const;
+  /// Coordinates after which the equations repeat at 2π [n]; by values at random points.
+  const std::vector<bool>& periodic() const;
+  /// All translations that are symmetries; by the rank of ∂(R, φ, ψ)/∂q at random points. Pivots are chosen among
+  /// `preferred` first.
+  std::vector<Translation> translations(const std::vector<bool>& preferred = {}) const;
+
+  double parameter(std::size_t index) const;
+  /// For loci: the value of one parameter (SI) from now on.
+  void set_parameter(std::size_t index, double value);
+  /// The inputs' formulas at t.
+  std::vector<double> inputs_at(double t) const;
+
+  struct Impl;
+  Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+// ------------------------------------------------------------------------------------------ equilibria, steady motions
+
+/// Coordinates and velocities that a search keeps.
+struct FixedValues {
+  std::vector<bool> q, v;           // [n] or empty: none
+  bool any() const;
+};
+
+struct EquilibriumSearch {
+  MotionState start;                // of the model: the first start, and the momenta that steady motions keep
+  FixedValues fixed;                // values of `start` that are kept
+  bool steady = true;               // steady motions as well
+  std::size_t starts = 0;           // 0: chosen from n
+  std::vector<OperatingPoint> guesses;  // further starts, tried first
+};
+
+/// A configuration of rest, or a motion in which only translations that are symmetries go on, at constant rates.
+struct Equilibrium {
+  OperatingPoint point;
+  bool at_rest = true;              // an equilibrium; else a steady motion
+  double residual = 0;              // largest |R_i| divided by the size of its derivatives: rounding level
+  std::size_t family = 0;           // how many further ways it can be moved and stay one, beside translations
+  bool coordinates_fail = false;    // M is singular there on what the constraints leave free: r = 0 of polar coordinates
+};
+
+struct EquilibriumSearchResult {
+  std::vector<Equilibrium> found;   // those at rest first, then by energy of position, then by coordinates
+  std::vector<Translation> translations;
+  std::size_t starts = 0;           // Newton's method began from so many points
+};
+
+/// Newton's method (Gauss-Newton with damping, minimum norm steps) from many starts, the same in every run: the model's own,
+/// all coordinates zero, angles at 0 and π, then scattered points. Nothing says that no further ones exist.
+/// Points are distinct modulo 2π in coordinates in which the equations are periodic, and modulo translations.
+/// Steady motions keep the momenta of the start along conserved translations, unless `fixed` holds their velocities.
+EquilibriumSearchResult find_equilibria(const PointEquations& equations, const EquilibriumSearch& search);
+
+/// The one nearest to a start: Newton's method from there alone. Nothing where it does not converge.
+std::vector<Equilibrium> equilibrium_near(const PointEquations& equations, const EquilibriumSearch& search);
+
+// ------------------------------------------------------------------------------------------------------ linearization
+
+/// The equations to first order about a point, ξ = q − q₀ and w = u − u₀.
+///
+///     M ξ̈ + (C + G) ξ̇ + (K + N) ξ = B u         C, K symmetric, G, N skew; in the independent coordinates
+///     ẋ = A x + B u,  y = C x + D u              x = (independent positions, independent velocities), y = (q, q̇)
+struct Linearization {
+  OperatingPoint point;
+  std::vector<std::size_t> independent;             // [f] coordinates
+  std::vector<std::size_t> independent_velocities;  // [g] coordinates; g < f with non-holonomic constraints
+  RealMatrix positions;                             // [n × f] ξ of all coordinates from the independent ones
+  /// The second-order form; absent (0 × 0) where non-holonomic constraints couple velocities with positions, and along a
+  /// trajectory on which the independent directions turn.
+  RealMatrix mass, damping, gyroscopic, stiffness, circulatory;  // [f × f]
+  RealMatrix input;                                 // [f × k]
+  RealMatrix a, b, c, d;                            // [(f+g) × (f+g)], [(f+g) × k], [2n × (f+g)], [2n × k]
+  bool second_order() const { return mass.rows > 0 || independent.empty(); }
+};
+
+/// Exact derivatives at the point. Nothing, and `singular` true, where M and the constraints do not determine the accelerations.
+/// Cost O((n + m)³).
+struct LinearizationResult {
+  Linearization linearization;
+  bool singular = false;
+  std::size_t singular_coordinate = 0;              // has the largest part in the motion without inertia
+};
+LinearizationResult linearize(const PointEquations& equations, const OperatingPoint& point);
+
+/// Accelerations, multipliers and inputs at a state: the operating point of a trajectory. Nothing where they are not determined.
+std::optional<OperatingPoint> operating_point(const PointEquations& equations, const MotionState& state);
+
+}  // namespace maupertuis

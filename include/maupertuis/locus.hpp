@@ -1,0 +1,47 @@
+#pragma once
+#include <maupertuis/modes.hpp>
+
+#include <cstddef>
+#include <vector>
+
+/// Equilibria and their eigenvalues as functions of one parameter: bifurcation diagrams and root loci.
+namespace maupertuis {
+
+struct LocusPoint {
+  double parameter = 0;                            // SI
+  Equilibrium equilibrium;
+  StabilityReport stability;
+  std::vector<std::complex<double>> eigenvalues;   // ascending by real, then imaginary part
+};
+
+/// Equilibria that belong together, in the order of the parameter.
+struct LocusBranch {
+  std::vector<LocusPoint> points;
+};
+
+/// Where the verdict on a branch changes: between two values of the sweep, then by bisection to rounding.
+struct StabilityChange {
+  double parameter = 0;
+  std::size_t branch = 0;
+  Stability before = Stability::Undecided, after = Stability::Undecided;
+};
+
+struct Locus {
+  std::size_t parameter = 0;                       // index in MechanicalSystem::parameters
+  std::vector<double> values;                      // SI
+  std::vector<LocusBranch> branches;               // in order of appearance
+  std::vector<StabilityChange> changes;            // ascending by parameter
+  std::vector<Translation> translations;           // of the model's own value
+};
+
+/// Equilibria and steady motions at equally spaced values of a parameter, joined to branches: at each value Newton's method begins at
+/// the points of the value before and at the starts of `find_equilibria`. What one step of the sweep carries further than a third of
+/// a typical size begins a branch of its own. The parameter has its own value again afterwards.
+/// Cost: that of a search, times `steps`. Precondition: steps ≥ 2.
+Locus parameter_locus(PointEquations& equations, const MotionState& start, std::size_t parameter, double from, double to, std::size_t steps);
+
+/// A row for each point: the parameter, the branch, the verdict, coordinates and rates, then real and imaginary parts of the
+/// eigenvalues.
+std::string to_csv(const MechanicalSystem& system, const Locus& locus);
+
+}  // namespace maupertuis

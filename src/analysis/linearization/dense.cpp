@@ -1,0 +1,94 @@
+#include "analysis/linearization/dense.hpp"
+
+#include <eigen3/Eigen/Cholesky>
+#include <eigen3/Eigen/Eigenvalues>
+#include <eigen3/Eigen/LU>
+#include <eigen3/Eigen/QR>
+
+#include <cmath>
+
+namespace maupertuis {
+
+LeastSquares least_squares(const Matrix& a, const Matrix& b, double threshold) {
+  if (a.size() == 0) return {Matrix::Zero(a.cols(), b.cols()), 0};
+  Eigen::CompleteOrthogonalDecomposition<Matrix> solver;
+  solver.setThreshold(threshold);
+  solver.compute(a);
+  return {solver.solve(b), solver.rank()};
+}
+
+std::vector<std::size_t> pivot_columns(const Matrix& a, double threshold) {
+  std::vector<std::size_t> out;
+  if (a.rows() == 0 || a.cols() == 0) return out;
+  Eigen::ColPivHouseholderQR<Matrix> qr;
+  qr.setThreshold(threshold);
+  qr.compute(a);
+  for (Index k = 0; k < qr.rank(); ++k) out.push_back(static_cast<std::size_t>(qr.colsPermutation().indices()[k]));
+  return out;
+}
+
+KernelFirst kernel_first(const Matrix& a, double tolerance) {
+  const Index n = a.cols();
+  if (a.rows() == 0) return {n, Matrix::Identity(n, n)};
+  const Eigen::ColPivHouseholderQR<Matrix> qr(a.transpose());
+  const Index diagonal = std::min(a.rows(), n);
+  Index rank = 0;
+  while (rank < diagonal && std::abs(qr.matrixQR()(rank, rank)) > tolerance) ++rank;
+  const Matrix q = qr.householderQ();
+  KernelFirst out{n - rank, Matrix(n, n)};
+  out.basis.leftCols(n - rank) = q.rightCols(n - rank);
+  out.basis.rightCols(rank) = q.leftCols(rank);
+  return out;
+}
+
+Matrix triangular_factor(const Matrix& a) {
+  const Eigen::HouseholderQR<Matrix> qr(a);
+  return qr.matrixQR().topRows(a.cols()).triangularView<Eigen::Upper>();
+}
+
+Matrix orthogonal_factor(const Matrix& a) { return Eigen::HouseholderQR<Matrix>(a).householderQ(); }
+
+SymmetricEigen symmetric_eigen(const Matrix& a) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(a);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+std::optional<Cholesky> cholesky(const Matrix& a) {
+  if (!a.allFinite()) return std::nullopt;
+  const Eigen::LLT<Matrix> llt(a);
+  if (llt.info() != Eigen::Success) return std::nullopt;
+  const Matrix lower = llt.matrixL();
+  const Matrix identity = Matrix::Identity(a.rows(), a.cols());
+  return Cholesky{lower, lower.triangularView<Eigen::Lower>().solve(identity)};
+}
+
+GeneralEigen general_eigen(const Matrix& a) {
+  const Eigen::EigenSolver<Matrix> solver(a);
+  GeneralEigen out{solver.eigenvalues(), solver.eigenvectors(), {}};
+  out.left = out.vectors.partialPivLu().inverse();
+  return out;
+}
+
+namespace {
+
+template <class Line>
+void scale_line(Line&& line, double& factor) {
+  const double size = line.size() == 0 ? 0 : line.template lpNorm<Eigen::Infinity>();
+  if (!(size > 0) || !std::isfinite(size)) return;
+  const double f = std::ldexp(1, -std::ilogb(std::sqrt(size)));
+  line *= f;
+  factor *= f;
+}
+
+}  // namespace
+
+Equilibration::Equilibration(const Matrix& a) : rows(Vector::Ones(a.rows())), columns(Vector::Ones(a.cols())) {
+  Matrix work = a;
+  constexpr int sweeps = 6;
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    for (Index i = 0; i < work.rows(); ++i) scale_line(work.row(i), rows[i]);
+    for (Index i = 0; i < work.cols(); ++i) scale_line(work.col(i), columns[i]);
+  }
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,261 @@
+#include "analysis/linearization/steady_state.hpp"
+
+#include <maupertuis/require.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+/// Where to begin, what to keep, and which of the points found are the same.
+namespace maupertuis {
+namespace {
+
+constexpr double turn = 6.283185307179586, pi = 3.141592653589793;
+constexpr double same = 1e-6;             // of typical sizes: closer points are one
+constexpr double straight_snap = 1e-7;    // a coordinate so near to a plain value is tried there
+
+double wrapped(double angle) {
+  const double x = std::remainder(angle, turn);
+  return x <= -pi + 1e-12 ? x + turn : x;
+}
+
+class Search {
+ public:
+  Search(const PointEquations& equations, const EquilibriumSearch& search)
+      : equations_(equations), e_(equations.impl()), search_(search), sizes_(typical_sizes(equations.system(), search.start)),
+        translations_(equations.translations(preferred())) {}
+
+  EquilibriumSearchResult all() {
+    EquilibriumSearchResult result;
+    const std::vector<OperatingPoint> starts = starting_points();
+    result.starts = starts.size();
+    if (may_rest()) from_each(starts, true);
+    if (search_.steady && may_move()) from_each(starts, false);
+    result.found = std::move(found_);
+    std::stable_sort(result.found.begin(), result.found.end(), [&](const auto& x, const auto& y) { return before(x, y); });
+    result.translations = translations_;
+    return result;
+  }
+
+  std::vector<Equilibrium> nearest() {
+    const std::vector<OperatingPoint> starts{model_start()};
+    if (may_rest()) from_each(starts, true);
+    if (found_.empty() && search_.steady && may_move()) from_each(starts, false);
+    return std::move(found_);
+  }
+
+ private:
+  // Rates that are given decide which coordinate stands for a translation; then those that move at the start.
+  std::vector<bool> preferred() const {
+    std::vector<bool> out(e_.n, false);
+    for (std::size_t i = 0; i < e_.n; ++i) out[i] = !search_.fixed.v.empty() ? search_.fixed.v[i] : search_.start.v[i] != 0;
+    return out;
+  }
+
+  bool moves(std::size_t i) const { return !search_.fixed.v.empty() && search_.fixed.v[i] && search_.start.v[i] != 0; }
+  bool may_rest() const {
+    for (std::size_t i = 0; i < e_.n; ++i)
+      if (moves(i)) return false;
+    return true;
+  }
+  /// A translation can go on: with given rates, with the momentum of the start, or driven.
+  bool may_move() const {
+    if (search_.fixed.any() && !translations_.empty()) return true;
+    for (std::size_t k = 0; k < translations_.size(); ++k)
+      if (!translations_[k].conserved || rate_is_held(k) || std::abs(search_.start.v[translations_[k].pivot]) > 0 || moves_along(k)) return true;
+    return false;
+  }
+  bool moves_along(std::size_t k) const {
+    for (std::size_t i = 0; i < e_.n; ++i)
+      if (translations_[k].direction[i] != 0 && search_.start.v[i] != 0) return true;
+    return false;
+  }
+  bool rate_is_held(std::size_t k) const { return !search_.fixed.v.empty() && search_.fixed.v[translations_[k].pivot]; }
+
+  OperatingPoint model_start() const {
+    OperatingPoint point{search_.start.t, search_.start.q, search_.start.v, std::vector<double>(e_.n), std::vector<double>(e_.m),
+                         equations_.inputs_at(search_.start.t)};
+    return point;
+  }
+
+  // --------------------------------------------------------------------------------------------------- starting points
+
+  std::size_t count_of_starts() const {
+    if (search_.starts > 0) return search_.starts;
+    const std::size_t size = e_.n + e_.m;
+    return std::clamp<std::size_t>(40'000 / (size * size + 1), 2, 64);
+  }
+
+  bool held(std::size_t i) const {
+    if (!search_.fixed.q.empty() && search_.fixed.q[i]) return true;
+    for (const Translation& t : translations_)
+      if (t.pivot == i) return true;
+    return false;
+  }
+
+  std::vector<OperatingPoint> starting_points() const {
+    const OperatingPoint first = model_start();
+    std::vector<OperatingPoint> out = search_.guesses;
+    out.push_back(first);
+    OperatingPoint zero = first;
+    for (std::size_t i = 0; i < e_.n; ++i)
+      if (!held(i)) zero.q[i] = 0;
+    out.push_back(zero);
+    add_corners(out, zero);
+    add_scattered(out, first);
+    return out;
+  }
+
+  /// All angles at 0 or π.
+  void add_corners(std::vector<OperatingPoint>& out, const OperatingPoint& zero) const {
+    std::vector<std::size_t> angles;
+    for (std::size_t i = 0; i < e_.n; ++i)
+      if (e_.is_periodic[i] && !held(i)) angles.push_back(i);
+    constexpr std::size_t most = 5;
+    if (angles.empty() || angles.size() > most) return;
+    for (const bool lengths_of_start : {false, true})
+      for (std::size_t corner = lengths_of_start ? 0 : 1; corner < (std::size_t{1} << angles.size()); ++corner) {
+        OperatingPoint point = lengths_of_start ? model_start() : zero;
+        for (std::size_t k = 0; k < angles.size(); ++k) point.q[angles[k]] = corner >> k & 1 ? pi : 0;
+        out.push_back(point);
+      }
+  }
+
+  /// The same points in every run: angles anywhere, lengths about their typical size, most of them positive.
+  void add_scattered(std::vector<OperatingPoint>& out, const OperatingPoint& first) const {
+    std::mt19937_64 random(1744);
+    const auto uniform = [&](double low, double high) { return low + (high - low) * std::generate_canonical<double, 53>(random); };
+    const std::size_t count = count_of_starts();
+    for (std::size_t s = 0; s < count; ++s) {
+      OperatingPoint point = first;
+      for (std::size_t i = 0; i < e_.n; ++i) {
+        const bool angle = e_.system->coordinates[i].kind == "angle";
+        const double x = angle ? uniform(-pi, pi) : sizes_[i] * uniform(-1.5, 2.5);
+        if (!held(i)) point.q[i] = x;
+      }
+      out.push_back(point);
+    }
+  }
+
+  // -------------------------------------------------------------------------------------------------------- solving
+
+  SteadyState equations_of(bool at_rest) const {
+    SteadyState::Held held_unknowns{std::vector<bool>(e_.n), std::vector<bool>(translations_.size(), at_rest)};
+    for (std::size_t i = 0; i < e_.n; ++i) held_unknowns.q[i] = held(i);
+    std::vector<double> momenta(translations_.size(), std::numeric_limits<double>::quiet_NaN());
+    if (!at_rest) {
+      const Vector p = e_.value(e_.momenta, model_start());
+      for (std::size_t k = 0; k < translations_.size(); ++k) {
+        held_unknowns.rates[k] = rate_is_held(k);
+        if (translations_[k].conserved && !search_.fixed.any()) momenta[k] = to_eigen(translations_[k].direction).dot(p);
+      }
+    }
+    return SteadyState(e_, translations_, held_unknowns, momenta, sizes_);
+  }
+
+  void from_each(const std::vector<OperatingPoint>& starts, bool at_rest) {
+    const SteadyState system = equations_of(at_rest);
+    for (OperatingPoint from : starts) {
+      if (at_rest) std::fill(from.v.begin(), from.v.end(), 0);
+      auto solution = system.solve(from);
+      if (!solution) continue;
+      settle(*solution, system);
+      if (!at_rest && is_at_rest(solution->point)) continue;
+      if (!holds_for_all_times(solution->point)) continue;
+      keep({solution->point, at_rest, solution->residual, solution->family, false});
+    }
+  }
+
+  bool is_at_rest(const OperatingPoint& point) const {
+    for (std::size_t i = 0; i < e_.n; ++i)
+      if (std::abs(point.v[i]) > same * std::max(sizes_[i], std::abs(search_.start.v[i]))) return false;
+    return true;
+  }
+
+  /// Angles into (−π, π]; and plain values, 0 and multiples of π/12, where the equations hold there as well.
+  void settle(SteadyState::Solution& solution, const SteadyState& system) const {
+    for (std::size_t i = 0; i < e_.n; ++i)
+      if (e_.is_periodic[i] && !held(i)) solution.point.q[i] = wrapped(solution.point.q[i]);
+    OperatingPoint plain = solution.point;
+    for (std::size_t i = 0; i < e_.n; ++i) {
+      if (held(i)) continue;
+      const double step = e_.system->coordinates[i].kind == "angle" ? pi / 12 : HUGE_VAL;
+      const double nearest = std::isfinite(step) ? step * std::round(plain.q[i] / step) : 0;
+      if (std::abs(plain.q[i] - nearest) < straight_snap * sizes_[i]) plain.q[i] = nearest;
+    }
+    const double residual = system.residual_at(plain);
+    if (!(residual <= std::max(solution.residual, 1e-14))) return;
+    solution.point = plain;
+    solution.residual = residual;
+  }
+
+  /// Where t stands in the equations, they must hold whatever t is.
+  bool holds_for_all_times(const OperatingPoint& point) const {
+    if (e_.is_autonomous) return true;
+    const SteadyState system = equations_of(true);
+    for (const double t : {0.1234, 0.777, 1.9, 3.4, 7.7, 23.1}) {
+      OperatingPoint later = point;
+      later.t = t;
+      if (!(system.residual_at(later) <= 1e-9)) return false;
+    }
+    return true;
+  }
+
+  void keep(const Equilibrium& candidate) {
+    for (const Equilibrium& other : found_)
+      if (distance(candidate, other) < same) return;
+    found_.push_back(candidate);
+  }
+
+  double distance(const Equilibrium& x, const Equilibrium& y) const {
+    double largest = 0;
+    for (std::size_t i = 0; i < e_.n; ++i) {
+      double dq = x.point.q[i] - y.point.q[i];
+      if (e_.is_periodic[i]) dq = std::remainder(dq, turn);
+      const double dv = x.point.v[i] - y.point.v[i], speed = std::max({sizes_[i], std::abs(x.point.v[i]), std::abs(y.point.v[i])});
+      largest = std::max({largest, std::abs(dq) / sizes_[i], std::abs(dv) / speed});
+    }
+    return largest;
+  }
+
+  bool before(const Equilibrium& x, const Equilibrium& y) const {
+    if (x.at_rest != y.at_rest) return x.at_rest;
+    const double ex = e_.energy_at(x.point), ey = e_.energy_at(y.point);
+    if (std::abs(ex - ey) > 1e-9 * (std::abs(ex) + std::abs(ey))) return ex < ey;
+    for (std::size_t i = 0; i < e_.n; ++i)
+      if (std::abs(x.point.q[i] - y.point.q[i]) > same * sizes_[i]) return x.point.q[i] < y.point.q[i];
+    return false;
+  }
+
+  const PointEquations& equations_;
+  PointEquations::Impl& e_;
+  const EquilibriumSearch& search_;
+  std::vector<double> sizes_;
+  std::vector<Translation> translations_;
+  std::vector<Equilibrium> found_;
+};
+
+void mark_failing_coordinates(const PointEquations& equations, std::vector<Equilibrium>& found) {
+  for (Equilibrium& x : found) x.coordinates_fail = linearize(equations, x.point).singular;
+}
+
+}  // namespace
+
+bool FixedValues::any() const {
+  return std::find(q.begin(), q.end(), true) != q.end() || std::find(v.begin(), v.end(), true) != v.end();
+}
+
+EquilibriumSearchResult find_equilibria(const PointEquations& equations, const EquilibriumSearch& search) {
+  EquilibriumSearchResult result = Search(equations, search).all();
+  mark_failing_coordinates(equations, result.found);
+  return result;
+}
+
+std::vector<Equilibrium> equilibrium_near(const PointEquations& equations, const EquilibriumSearch& search) {
+  std::vector<Equilibrium> found = Search(equations, search).nearest();
+  mark_failing_coordinates(equations, found);
+  return found;
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,186 @@
+#include "analysis/linearization/dense.hpp"
+#include "analysis/linearization/point_equations.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+/// The equations to first order, in three steps: which coordinates and which velocities are independent; ξ and ξ̇ of all from
+/// theirs; ξ̈ and δλ from the bordered system. Everything is linear and holds at any point of a motion:
+///
+///     φ_q ξ = 0,   r_v ξ̇ + r_q ξ = 0,   [M  −Aᵀ] [ξ̈ ]   [−R_v ξ̇ − R_q ξ + B w]
+///                                       [A   0 ] [δλ] = [−α_v ξ̇ − α_q ξ      ]
+///
+/// with r = (dφ/dt, ψ), α = A q̈ − b, and B = −∂R/∂u.
+namespace maupertuis {
+namespace {
+
+constexpr double rank_threshold = 1e-10;
+
+/// Dependent ones first found by the largest pivots, columns scaled; the rest is independent.
+struct Split {
+  std::vector<std::size_t> dependent, independent;
+};
+
+Split split_columns(const Matrix& rows, const Vector& sizes) {
+  Matrix scaled = rows * sizes.asDiagonal();
+  for (Index i = 0; i < scaled.rows(); ++i)
+    if (const double norm = scaled.row(i).norm(); norm > 0) scaled.row(i) /= norm;
+  Split out;
+  std::vector<bool> taken(static_cast<std::size_t>(rows.cols()), false);
+  for (const std::size_t i : pivot_columns(scaled, rank_threshold)) taken[i] = true;
+  for (std::size_t i = 0; i < taken.size(); ++i) (taken[i] ? out.dependent : out.independent).push_back(i);
+  return out;
+}
+
+Matrix columns_of(const Matrix& m, const std::vector<std::size_t>& chosen) {
+  Matrix out(m.rows(), static_cast<Index>(chosen.size()));
+  for (std::size_t j = 0; j < chosen.size(); ++j) out.col(static_cast<Index>(j)) = m.col(static_cast<Index>(chosen[j]));
+  return out;
+}
+
+Matrix rows_of(const Matrix& m, const std::vector<std::size_t>& chosen) {
+  return columns_of(m.transpose(), chosen).transpose();
+}
+
+/// x with rows x = right, where the independent x are the unit vectors (for right's own columns: zero).
+Matrix spread(const Matrix& rows, const Split& split, const Matrix& right) {
+  Matrix out = Matrix::Zero(rows.cols(), right.cols());
+  if (split.dependent.empty()) return out;
+  const Matrix part = least_squares(columns_of(rows, split.dependent), right, rank_threshold).x;
+  for (std::size_t k = 0; k < split.dependent.size(); ++k) out.row(static_cast<Index>(split.dependent[k])) = part.row(static_cast<Index>(k));
+  return out;
+}
+
+Matrix null_basis(const Matrix& rows, const Split& split) {
+  Matrix out = spread(rows, split, -columns_of(rows, split.independent));
+  for (std::size_t k = 0; k < split.independent.size(); ++k)
+    out(static_cast<Index>(split.independent[k]), static_cast<Index>(k)) = 1;
+  return out;
+}
+
+/// The bordered system of [ξ̈; δλ] for several right sides; redundant constraints leave δλ at its least.
+struct BorderedSolution {
+  Matrix x;                        // [(n + m) × …]
+  bool singular = false;
+  std::size_t culprit = 0;
+};
+
+BorderedSolution solve_bordered(const Matrix& mass, const Matrix& by_multipliers, const Matrix& a, const Matrix& right) {
+  const Index n = mass.rows(), m = a.rows();
+  Matrix all = Matrix::Zero(n + m, n + m);
+  all.topLeftCorner(n, n) = mass;
+  all.topRightCorner(n, m) = by_multipliers;
+  all.bottomLeftCorner(m, n) = a;
+  BorderedSolution out;
+  mass.cwiseAbs().rowwise().sum().minCoeff(&out.culprit);
+  out.singular = !all.allFinite() || !right.allFinite();
+  if (out.singular) return out;
+  const Equilibration by(all);
+  const LeastSquares solved = least_squares(by.of(all), by.rows.asDiagonal() * right, 1e-13);
+  // The kernel may hold multipliers of redundant constraints, and nothing else.
+  const Equilibration rows(a);
+  const auto independent = static_cast<Index>(pivot_columns(rows.of(a), rank_threshold).size());
+  out.singular = solved.rank < n + independent;
+  out.x = by.columns.asDiagonal() * solved.x;
+  return out;
+}
+
+/// A part that rounding alone has left is none.
+Matrix cleaned(Matrix part, const Matrix& whole) {
+  constexpr double rounding = 1e-14;
+  if (part.size() > 0 && part.lpNorm<Eigen::Infinity>() <= rounding * whole.lpNorm<Eigen::Infinity>()) part.setZero();
+  return part;
+}
+Matrix symmetric_part(const Matrix& m) { return cleaned((m + m.transpose()) / 2, m); }
+Matrix skew_part(const Matrix& m) { return cleaned((m - m.transpose()) / 2, m); }
+
+/// All pieces at one point.
+struct Pieces {
+  RowsAtPoint balance, positions, rates, accelerations;
+  Matrix velocity_rows() const { return rates.by_v; }
+};
+
+/// Nᵀ M N and so on. Only where the independent directions do not turn along the motion: at rest and in steady motions.
+void second_order_form(Linearization& out, const Pieces& p, const Matrix& directions) {
+  const auto project = [&](const Matrix& m) { return Matrix(directions.transpose() * m * directions); };
+  const Matrix mass = project(p.balance.by_a), velocity = project(p.balance.by_v), position = project(p.balance.by_q);
+  out.mass = to_real(symmetric_part(mass));
+  out.damping = to_real(symmetric_part(velocity));
+  out.gyroscopic = to_real(skew_part(velocity));
+  out.stiffness = to_real(symmetric_part(position));
+  out.circulatory = to_real(skew_part(position));
+  out.input = to_real(-directions.transpose() * p.balance.by_inputs);
+}
+
+bool vanishes(const Matrix& part, const Matrix& beside) {
+  return part.size() == 0 || part.lpNorm<Eigen::Infinity>() <= 1e-12 * (beside.size() == 0 ? 0 : beside.lpNorm<Eigen::Infinity>());
+}
+
+}  // namespace
+
+LinearizationResult linearize(const PointEquations& equations, const OperatingPoint& point) {
+  PointEquations::Impl& e = equations.impl();
+  const Pieces p{e.at(e.balance, point), e.at(e.positions, point), e.at(e.rates, point), e.at(e.accelerations, point)};
+  LinearizationResult result;
+  Linearization& out = result.linearization;
+  out.point = point;
+  const Vector sizes = to_eigen(typical_sizes(*e.system, {}));
+  const Split at_positions = split_columns(p.positions.by_q, sizes);
+  const Split at_velocities = split_columns(p.rates.by_v, sizes);
+  out.independent = at_positions.independent;
+  out.independent_velocities = at_velocities.independent;
+
+  const Matrix xi = null_basis(p.positions.by_q, at_positions);        // ξ by positions [n × f]
+  const Matrix rate_w = null_basis(p.rates.by_v, at_velocities);       // ξ̇ by velocities [n × g]
+  const Matrix rate_q = spread(p.rates.by_v, at_velocities, -p.rates.by_q * xi);  // ξ̇ by positions [n × f]
+  const auto n = static_cast<Index>(e.n), m = static_cast<Index>(e.m), k = static_cast<Index>(e.k);
+  const Index f = xi.cols(), g = rate_w.cols();
+
+  Matrix right = Matrix::Zero(n + m, f + g + k);
+  right.topLeftCorner(n, f) = -p.balance.by_q * xi - p.balance.by_v * rate_q;
+  right.block(0, f, n, g) = -p.balance.by_v * rate_w;
+  right.topRightCorner(n, k) = -p.balance.by_inputs;
+  right.bottomLeftCorner(m, f) = -p.accelerations.by_q * xi - p.accelerations.by_v * rate_q;
+  right.block(n, f, m, g) = -p.accelerations.by_v * rate_w;
+  const BorderedSolution bordered = solve_bordered(p.balance.by_a, p.balance.by_multipliers, p.accelerations.by_a, right);
+  if (bordered.singular) {
+    result.singular = true;
+    result.singular_coordinate = bordered.culprit;
+    return result;
+  }
+  const Matrix acceleration = bordered.x.topRows(n);
+
+  Matrix a = Matrix::Zero(f + g, f + g), b = Matrix::Zero(f + g, k), c = Matrix::Zero(2 * n, f + g);
+  a.topLeftCorner(f, f) = rows_of(rate_q, out.independent);
+  a.topRightCorner(f, g) = rows_of(rate_w, out.independent);
+  a.bottomRows(g) = rows_of(acceleration.leftCols(f + g), out.independent_velocities);
+  b.bottomRows(g) = rows_of(acceleration.rightCols(k), out.independent_velocities);
+  c.topLeftCorner(n, f) = xi;
+  c.bottomLeftCorner(n, f) = rate_q;
+  c.bottomRightCorner(n, g) = rate_w;
+  out.positions = to_real(xi);
+  out.a = to_real(a);
+  out.b = to_real(b);
+  out.c = to_real(c);
+  out.d = to_real(Matrix::Zero(2 * n, k));
+
+  const bool uniform = std::all_of(point.a.begin(), point.a.end(), [](double x) { return x == 0; });
+  if (e.m == 0 || (e.holonomic == e.m && uniform && vanishes(rate_q, rate_w))) second_order_form(out, p, xi);
+  return result;
+}
+
+std::optional<OperatingPoint> operating_point(const PointEquations& equations, const MotionState& state) {
+  PointEquations::Impl& e = equations.impl();
+  OperatingPoint point{state.t, state.q, state.v, std::vector<double>(e.n), std::vector<double>(e.m), equations.inputs_at(state.t)};
+  const RowsAtPoint balance = e.at(e.balance, point), rows = e.at(e.accelerations, point);
+  Matrix right(static_cast<Index>(e.n + e.m), 1);
+  right.topRows(static_cast<Index>(e.n)) = -balance.value;
+  right.bottomRows(static_cast<Index>(e.m)) = -rows.value;
+  const BorderedSolution bordered = solve_bordered(balance.by_a, balance.by_multipliers, rows.by_a, right);
+  if (bordered.singular || !bordered.x.allFinite()) return std::nullopt;
+  for (std::size_t i = 0; i < e.n; ++i) point.a[i] = bordered.x(static_cast<Index>(i), 0);
+  for (std::size_t i = 0; i < e.m; ++i) point.multipliers[i] = bordered.x(static_cast<Index>(e.n + i), 0);
+  return point;
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,225 @@
+#include "analysis/linearization/point_equations.hpp"
+
+#include <maupertuis/modes.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+/// From a question to its answer, with what can be wrong with either.
+namespace maupertuis {
+namespace {
+
+constexpr double meant = 1e-4;     // of typical sizes: a given value is rounded by no more
+constexpr double pi = 3.141592653589793;
+
+void refuse_singular(const MechanicalSystem& system, std::size_t coordinate, const std::string& where, Diagnostics& diagnostics) {
+  diagnostics.error("E1304", system.coordinates[coordinate].span, fmt::format("the mass matrix is singular {}", where),
+                    fmt::format("Some motion of {} has no inertia there, so that the equations do not determine its acceleration.",
+                                system.coordinates[coordinate].name),
+                    "Coordinates fail at such places, as polar ones do at r = 0: describe the system by others near there.");
+}
+
+/// Linearizes what was found; the points at which coordinates fail stand apart.
+ModalStudy analysed(const PointEquations& equations, std::vector<Equilibrium> found, std::vector<Translation> translations) {
+  ModalStudy study;
+  study.translations = std::move(translations);
+  for (Equilibrium& x : found) {
+    if (x.coordinates_fail) {
+      study.failing.push_back(std::move(x));
+      continue;
+    }
+    ModalEntry entry{std::move(x), {}, {}};
+    entry.linearization = linearize(equations, entry.equilibrium.point).linearization;
+    entry.analysis = modal_analysis(equations, entry.linearization, study.translations, &entry.equilibrium);
+    study.entries.push_back(std::move(entry));
+  }
+  return study;
+}
+
+void warn_of_failing(const PointEquations& equations, const ModalStudy& study, Diagnostics& diagnostics) {
+  for (const Equilibrium& x : study.failing)
+    diagnostics.warning("W1301", std::nullopt,
+                        fmt::format("no linearization at {}", point_text(equations.system(), x, study.translations)),
+                        "The forces vanish there, but the mass matrix is singular: the coordinates fail.",
+                        "Describe the system by other coordinates near there.");
+}
+
+void refuse_none(const PointEquations& equations, std::size_t starts, Diagnostics& diagnostics) {
+  if (!equations.autonomous())
+    diagnostics.error("E1303", std::nullopt, "the equations depend on the time, and no configuration is at rest at all times",
+                      "An equilibrium is a state in which all forces stay balanced; a drive that changes with time moves it.",
+                      "Declare the drive as `input u : [N] = …`: it is held at its value at the start; or take a point of the "
+                      "motion: --at 3s.");
+  else
+    diagnostics.error("E1301", std::nullopt, "no equilibrium and no steady motion was found",
+                      fmt::format("Newton's method began from {} points, and nowhere do the forces vanish together.", starts),
+                      "Look at the model for a force that nothing balances; --at \"θ=1\" begins at a point of your own, "
+                      "--at 3s takes a point of the motion.");
+}
+
+/// Coordinates and rates that were given, over those of the start.
+EquilibriumSearch question(const PointEquations& equations, const MotionState& start, const std::vector<StartValue>& at) {
+  const MechanicalSystem& system = equations.system();
+  Bindings bindings = parameter_bindings(system);
+  for (std::size_t i = 0; i < system.parameters.size(); ++i) bindings[system.parameters[i].symbol] = equations.parameter(i);
+  EquilibriumSearch search;
+  search.start = start;
+  search.fixed.q.assign(start.q.size(), false);
+  bool rates = false;
+  std::vector<bool> fixed_rates(start.q.size(), false);
+  for (const StartValue& s : at) {
+    const double value = evaluate(in_terms_of_motion(system, {&s.value, 1}).front(), bindings);
+    (s.order == 0 ? search.start.q : search.start.v)[s.coordinate] = value;
+    (s.order == 0 ? search.fixed.q : fixed_rates)[s.coordinate] = true;
+    rates |= s.order == 1;
+  }
+  if (rates) search.fixed.v = fixed_rates;
+  return search;
+}
+
+/// How far a point is from what was given, by typical sizes.
+double distance(const EquilibriumSearch& asked, const OperatingPoint& point, const MechanicalSystem& system) {
+  const std::vector<double> sizes = typical_sizes(system, asked.start);
+  double out = 0;
+  for (std::size_t i = 0; i < point.q.size(); ++i) {
+    if (asked.fixed.q[i]) out = std::max(out, std::abs(point.q[i] - asked.start.q[i]) / sizes[i]);
+    if (!asked.fixed.v.empty() && asked.fixed.v[i])
+      out = std::max(out, std::abs(point.v[i] - asked.start.v[i]) / std::max(sizes[i], std::abs(asked.start.v[i])));
+  }
+  return out;
+}
+
+/// With what was given kept; then, where that balances only nearly, with the coordinates free to move a little.
+std::vector<Equilibrium> answer(const PointEquations& equations, const EquilibriumSearch& asked, std::optional<Equilibrium>& nearest) {
+  std::vector<Equilibrium> found = equilibrium_near(equations, asked);
+  if (found.empty()) {
+    EquilibriumSearch loose = asked;
+    loose.fixed.q.assign(asked.start.q.size(), false);
+    found = equilibrium_near(equations, loose);
+  }
+  if (found.empty() || distance(asked, found.front().point, equations.system()) <= meant) return found;
+  nearest = found.front();
+  return {};
+}
+
+}  // namespace
+
+std::optional<ModalStudy> modal_study(const PointEquations& equations, const MotionState& start, Diagnostics& diagnostics) {
+  EquilibriumSearch search;
+  search.start = start;
+  EquilibriumSearchResult result = find_equilibria(equations, search);
+  if (result.found.empty()) {
+    refuse_none(equations, result.starts, diagnostics);
+    return std::nullopt;
+  }
+  ModalStudy study = analysed(equations, std::move(result.found), std::move(result.translations));
+  study.starts = result.starts;
+  warn_of_failing(equations, study, diagnostics);
+  return study;
+}
+
+std::optional<ModalStudy> modal_study_at(const PointEquations& equations, const MotionState& start,
+                                         const std::vector<StartValue>& at, Diagnostics& diagnostics) {
+  const EquilibriumSearch asked = question(equations, start, at);
+  std::optional<Equilibrium> nearest;
+  std::vector<Equilibrium> found = answer(equations, asked, nearest);
+  const std::optional<Span> place = at.empty() || at.front().span == Span{} ? std::nullopt : std::optional(at.front().span);
+  std::vector<bool> preferred = asked.fixed.v;
+  const std::vector<Translation> translations = equations.translations(preferred);
+  if (found.empty()) {
+    diagnostics.error("E1302", place, "the system neither rests nor moves steadily there",
+                      nearest ? fmt::format("The forces do not balance; Newton's method from there ends at {}.",
+                                            point_text(equations.system(), *nearest, translations))
+                              : "The forces do not balance, and Newton's method from there finds no place where they do.",
+                      "`maup modes` without --at searches for all equilibria.");
+    return std::nullopt;
+  }
+  if (found.front().coordinates_fail) {
+    const std::size_t culprit = linearize(equations, found.front().point).singular_coordinate;
+    refuse_singular(equations.system(), culprit, "at " + point_text(equations.system(), found.front(), translations), diagnostics);
+    return std::nullopt;
+  }
+  return analysed(equations, {found.front()}, translations);
+}
+
+std::optional<ModalStudy> modal_study_of(const PointEquations& equations, const MotionState& state, Diagnostics& diagnostics) {
+  const std::optional<OperatingPoint> point = operating_point(equations, state);
+  if (!point) {
+    refuse_singular(equations.system(), 0, fmt::format("at t = {:g} s", state.t), diagnostics);
+    return std::nullopt;
+  }
+  ModalStudy study;
+  study.translations = equations.translations();
+  ModalEntry entry{{*point, false, 0, 0, false}, linearize(equations, *point).linearization, {}};
+  entry.analysis = modal_analysis(equations, entry.linearization, {}, nullptr);
+  study.entries.push_back(std::move(entry));
+  return study;
+}
+
+// ------------------------------------------------------------------------------------------------------------------ words
+
+std::string_view stability_word(Stability verdict) {
+  switch (verdict) {
+    case Stability::Energetic: return "stable";
+    case Stability::Asymptotic: return "asymptotically stable";
+    case Stability::Unstable: return "unstable";
+    case Stability::Undecided: return "not decided by the linearization";
+  }
+  return "";
+}
+
+std::string value_text(const MechanicalSystem& system, double value, const Dimension& dimension, bool angle) {
+  if (angle)
+    for (const int part : {1, 2, 3, 4, 6, 12}) {
+      const double count = value * part / pi;
+      if (std::abs(count - std::round(count)) > 1e-12 * std::max(1.0, std::abs(count)) || std::abs(count) > 24) continue;
+      const int k = static_cast<int>(std::round(count));
+      if (k == 0) return "0";
+      const std::string sign = k < 0 ? "-" : "", times = std::abs(k) == 1 ? "" : std::to_string(std::abs(k));
+      return sign + times + "π" + (part == 1 ? "" : "/" + std::to_string(part));
+    }
+  const std::string unit = system.dimensionless ? "" : to_string(dimension);
+  return fmt::format("{:.9g}{}{}", value, unit.empty() || unit == "1" || value == 0 ? "" : " ", value == 0 || unit == "1" ? "" : unit);
+}
+
+namespace {
+
+/// Of many coordinates: one value for all, or the first ones.
+std::string short_point_text(const MechanicalSystem& system, const Equilibrium& equilibrium) {
+  const auto text = [&](std::size_t i) {
+    const Coordinate& c = system.coordinates[i];
+    return value_text(system, equilibrium.point.q[i], c.dimension, c.kind == "angle");
+  };
+  const std::size_t n = system.coordinates.size();
+  std::size_t equal = 1;
+  while (equal < n && text(equal) == text(0)) ++equal;
+  if (equal == n) return fmt::format("{} … {} = {}", system.coordinates[0].name, system.coordinates[n - 1].name, text(0));
+  std::string out;
+  constexpr std::size_t first = 6;
+  for (std::size_t i = 0; i < first; ++i) out += fmt::format("{} = {}, ", system.coordinates[i].name, text(i));
+  return out + fmt::format("… ({} coordinates)", n);
+}
+
+}  // namespace
+
+std::string point_text(const MechanicalSystem& system, const Equilibrium& equilibrium, const std::vector<Translation>& translations) {
+  const auto is_pivot = [&](std::size_t i) {
+    return std::any_of(translations.begin(), translations.end(), [&](const Translation& t) { return t.pivot == i; });
+  };
+  constexpr std::size_t most = 8;
+  if (system.coordinates.size() > most) return short_point_text(system, equilibrium);
+  std::string positions, rates;
+  for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
+    const Coordinate& c = system.coordinates[i];
+    if (!is_pivot(i))
+      positions += fmt::format("{}{} = {}", positions.empty() ? "" : ", ", c.name, value_text(system, equilibrium.point.q[i], c.dimension, c.kind == "angle"));
+    if (equilibrium.point.v[i] != 0)
+      rates += fmt::format("{}{}' = {}", rates.empty() ? "" : ", ", c.name, value_text(system, equilibrium.point.v[i], c.dimension / dimensions::time()));
+  }
+  if (positions.empty() && rates.empty()) return "rest anywhere";
+  return positions + (positions.empty() || rates.empty() ? "" : "; ") + rates;
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,279 @@
+#include "analysis/linearization/dense.hpp"
+#include "analysis/linearization/eigenproblem.hpp"
+#include "analysis/linearization/point_equations.hpp"
+#include "analysis/linearization/stability.hpp"
+
+#include <maupertuis/modes.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace maupertuis {
+namespace {
+
+using Complex = std::complex<double>;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+double largest(const Matrix& m) { return m.size() == 0 ? 0 : m.lpNorm<Eigen::Infinity>(); }
+bool negligible(const Matrix& part, const Matrix& whole) { return largest(part) <= 1e-13 * largest(whole); }
+
+Mode mode(Mode::Kind kind, Complex eigenvalue, double error) {
+  Mode out;
+  out.kind = kind;
+  out.eigenvalue = eigenvalue;
+  out.error = error;
+  return out;
+}
+
+class Analysis {
+ public:
+  Analysis(const PointEquations& equations, const Linearization& linearization, const std::vector<Translation>& translations,
+           const Equilibrium* equilibrium)
+      : equations_(equations), l_(linearization), translations_(translations), equilibrium_(equilibrium),
+        form_(mass_normal_form(linearization, translations)), mass_(equations.impl().at(equations.impl().balance, l_.point).by_a) {}
+
+  ModalAnalysis carry_out() {
+    if (form_.valid && form_.symmetric) symmetric_modes();
+    else if (form_.valid) quadratic_modes();
+    else state_modes();
+    finish();
+    return std::move(out_);
+  }
+
+ private:
+  // K̂ y = ω² y in coordinates with unit mass.
+  void symmetric_modes() {
+    out_.symmetric = true;
+    const auto [squares, vectors] = symmetric_eigen((form_.k + form_.k.transpose()) / 2);
+    const double error = 8 * static_cast<double>(squares.size()) * epsilon * form_.k.norm();
+    std::vector<Index> zeros;
+    for (Index i = 0; i < squares.size(); ++i) {
+      const ComplexVector shape = to_coordinates(vectors.col(i).cast<Complex>());
+      if (std::abs(squares[i]) <= error) {
+        zeros.push_back(i);
+        continue;
+      }
+      const double root = std::sqrt(std::abs(squares[i]));
+      out_.residual = std::max(out_.residual, (form_.k * vectors.col(i) - squares[i] * vectors.col(i)).norm() / form_.k.norm());
+      if (squares[i] > 0) add(mode(Mode::Kind::Oscillation, {0, root}, error / (2 * root)), shape);
+      else {
+        add(mode(Mode::Kind::Growth, {root, 0}, error / (2 * root)), shape);
+        add(mode(Mode::Kind::Decay, {-root, 0}, error / (2 * root)), shape);
+      }
+    }
+    Matrix kernel(squares.size(), static_cast<Index>(zeros.size()));
+    for (std::size_t k = 0; k < zeros.size(); ++k) kernel.col(static_cast<Index>(k)) = vectors.col(zeros[k]);
+    add_zeros(kernel, 2 * zeros.size(), zeros.size());
+  }
+
+  // (λ² + λ Ĉ + K̂) y = 0 as ẋ = A x with x = (y, ẏ/s), time in units of 1/s.
+  void quadratic_modes() {
+    const Index f = form_.k.rows();
+    const double s = std::max({std::sqrt(form_.k.norm()), form_.c.norm(), std::numeric_limits<double>::min()});
+    Matrix a = Matrix::Zero(2 * f, 2 * f);
+    a.topRightCorner(f, f).setIdentity();
+    a.bottomLeftCorner(f, f) = -form_.k / (s * s);
+    a.bottomRightCorner(f, f) = -form_.c / s;
+    const EigenSystem system = eigen_system(a);
+    for (Index i = 0; i < system.values.size(); ++i) {
+      const ComplexVector y = system.vectors.col(i).head(f);
+      const Complex z = system.values[i];
+      const ComplexVector left = z * z * y + z * (form_.c / s).cast<Complex>() * y + (form_.k / (s * s)).cast<Complex>() * y;
+      out_.residual = std::max(out_.residual, left.norm() / y.norm() / (std::norm(z) + std::abs(z) * form_.c.norm() / s + form_.k.norm() / (s * s)));
+      add_pair(s * z, s * system.errors[i], to_coordinates(y));
+    }
+    add_zeros(system.kernel.topRows(f), system.zeros, system.chained);
+  }
+
+  // ẋ = A x as it stands, columns scaled by inertia: non-holonomic constraints, or an M that is not positive definite.
+  void state_modes() {
+    const Matrix a = to_eigen(l_.a), c = to_eigen(l_.c);
+    const Index size = a.rows(), n = static_cast<Index>(l_.point.q.size());
+    if (size == 0) return;
+    Vector scale = balance(a);
+    const Matrix balanced = scale.cwiseInverse().asDiagonal() * a * scale.asDiagonal();
+    const double s = std::max(balanced.norm(), std::numeric_limits<double>::min());
+    const EigenSystem system = eigen_system(balanced / s);
+    const Matrix positions = c.topRows(n) * scale.asDiagonal();
+    for (Index i = 0; i < system.values.size(); ++i) {
+      const ComplexVector x = system.vectors.col(i);
+      out_.residual = std::max(out_.residual, ((balanced / s).cast<Complex>() * x - system.values[i] * x).norm());
+      add_pair(s * system.values[i], s * system.errors[i], positions.cast<Complex>() * x);
+    }
+    add_zero_shapes(positions * system.kernel, system.zeros, system.chained);
+  }
+
+  /// Powers of two that bring rows and columns of A to like sizes (Parlett and Reinsch 1969).
+  static Vector balance(Matrix a) {
+    Vector scale = Vector::Ones(a.rows());
+    for (bool again = true; again;) {
+      again = false;
+      for (Index i = 0; i < a.rows(); ++i) {
+        const double column = a.col(i).lpNorm<1>() - std::abs(a(i, i)), row = a.row(i).lpNorm<1>() - std::abs(a(i, i));
+        if (!(column > 0) || !(row > 0)) continue;
+        const double f = std::ldexp(1, std::ilogb(std::sqrt(row / column)));
+        if (!(column * f + row / f < 0.95 * (column + row))) continue;
+        a.col(i) *= f;
+        a.row(i) /= f;
+        scale[i] *= f;
+        again = true;
+      }
+    }
+    return scale;
+  }
+
+  ComplexVector to_coordinates(const ComplexVector& y) const {
+    return to_eigen(l_.positions).cast<Complex>() * (form_.to_independent.cast<Complex>() * y);
+  }
+
+  /// Of a complex pair the one with Im λ > 0; real ones each.
+  void add_pair(Complex value, double error, const ComplexVector& shape) {
+    if (value.imag() < 0) return;
+    if (equations_.energy_never_grows() && negligible_damping() && std::abs(value.real()) <= error) value.real(0);
+    const auto kind = value.imag() > 0 ? Mode::Kind::Oscillation : value.real() > 0 ? Mode::Kind::Growth : Mode::Kind::Decay;
+    add(mode(kind, value, error), shape);
+  }
+  bool negligible_damping() const { return l_.second_order() && negligible(to_eigen(l_.damping), to_eigen(l_.gyroscopic)); }
+
+  void add(Mode mode, ComplexVector shape) {
+    mode.shape = normalised(std::move(shape));
+    out_.modes.push_back(std::move(mode));
+  }
+
+  /// Unit modal mass where that is positive, else the largest part 1; the largest part real and positive.
+  std::vector<Complex> normalised(ComplexVector shape) const {
+    Vector weight = mass_.diagonal().cwiseAbs().cwiseSqrt();
+    if (weight.isZero(0)) weight.setOnes();
+    Index at = 0;
+    shape.cwiseAbs().cwiseProduct(weight).maxCoeff(&at);
+    if (std::abs(shape[at]) == 0) return {shape.data(), shape.data() + shape.size()};
+    shape *= std::conj(shape[at]) / std::abs(shape[at]);
+    const double modal_mass = (shape.adjoint() * mass_.cast<Complex>() * shape)(0).real();
+    shape /= modal_mass > 0 ? std::sqrt(modal_mass) : std::abs(shape[at]);
+    const double size = shape.cwiseAbs().cwiseProduct(weight).maxCoeff();
+    for (Index i = 0; i < shape.size(); ++i) {   // no minus signs from rounding
+      if (std::abs(shape[i].imag()) * weight[i] < 1e-13 * size) shape[i].imag(0);
+      if (std::abs(shape[i].real()) * weight[i] < 1e-13 * size) shape[i].real(0);
+    }
+    return {shape.data(), shape.data() + shape.size()};
+  }
+
+  // ------------------------------------------------------------------------------------------------------- zero modes
+
+  void add_zeros(const Matrix& kernel_y, std::size_t zeros, std::size_t chained) {
+    add_zero_shapes(to_eigen(l_.positions) * form_.to_independent * kernel_y, zeros, chained);
+  }
+
+  /// Where symmetries span the kernel, each of them is a mode of its own.
+  void add_zero_shapes(const Matrix& kernel, std::size_t zeros, std::size_t chained) {
+    const Index d = kernel.cols();
+    Matrix shapes = kernel;
+    std::vector<std::string> causes(static_cast<std::size_t>(d));
+    std::size_t explained = 0;
+    for (const Translation& t : translations_) {
+      const Vector direction = to_eigen(t.direction);
+      if (static_cast<Index>(explained) >= d || !in_span(direction, kernel)) continue;
+      shapes.col(static_cast<Index>(explained)) = direction;
+      causes[explained++] = "translation along " + name_of(t);
+    }
+    if (explained > 0 && explained < static_cast<std::size_t>(d)) complete(shapes, kernel, static_cast<Index>(explained));
+    std::size_t left = zeros;
+    for (Index k = 0; k < d; ++k) {
+      Mode zero = mode(Mode::Kind::Zero, 0, 0);
+      zero.zeros = k + 1 == d ? left : std::min<std::size_t>(left, static_cast<std::size_t>(k) < chained ? 2 : 1);
+      left -= std::min(left, zero.zeros);
+      zero.cause = causes[static_cast<std::size_t>(k)];
+      add(std::move(zero), shapes.col(k).cast<Complex>());
+    }
+  }
+
+  static bool in_span(const Vector& x, const Matrix& basis) {
+    const Vector rest = x - basis * least_squares(basis, x, 1e-12).x;
+    return rest.norm() <= 1e-7 * x.norm();
+  }
+
+  /// The further columns span what the first ones leave of the kernel, orthogonal to them in the metric M.
+  void complete(Matrix& shapes, const Matrix& kernel, Index explained) const {
+    const Matrix known = shapes.leftCols(explained);
+    Matrix rest = kernel;
+    const Matrix metric = known.transpose() * mass_;
+    const Matrix gram = metric * known;
+    rest -= known * least_squares(gram, metric * kernel, 1e-12).x;
+    const std::vector<std::size_t> columns = pivot_columns(rest, 1e-9);
+    for (std::size_t k = 0; k < columns.size() && explained + static_cast<Index>(k) < shapes.cols(); ++k)
+      shapes.col(explained + static_cast<Index>(k)) = rest.col(static_cast<Index>(columns[k]));
+  }
+
+  std::string name_of(const Translation& t) const {
+    std::string out;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < t.direction.size(); ++i)
+      if (t.direction[i] != 0) out += (count++ ? ", " : "") + equations_.system().coordinates[i].name;
+    return count > 1 ? "(" + out + ")" : out;
+  }
+
+  // ----------------------------------------------------------------------------------------------------------- the end
+
+  void finish() {
+    for (const Mode& m : out_.modes) {
+      if (m.kind == Mode::Kind::Zero) out_.eigenvalues.insert(out_.eigenvalues.end(), m.zeros, 0.0);
+      else out_.eigenvalues.push_back(m.eigenvalue);
+      if (m.kind == Mode::Kind::Oscillation) out_.eigenvalues.push_back(std::conj(m.eigenvalue));
+    }
+    std::sort(out_.eigenvalues.begin(), out_.eigenvalues.end(), [](const Complex& x, const Complex& y) {
+      return x.real() != y.real() ? x.real() < y.real() : x.imag() < y.imag();
+    });
+    std::stable_sort(out_.modes.begin(), out_.modes.end(), [](const Mode& x, const Mode& y) {
+      const bool zx = x.kind == Mode::Kind::Zero, zy = y.kind == Mode::Kind::Zero;
+      if (zx != zy) return zx;
+      if (x.frequency() != y.frequency()) return x.frequency() < y.frequency();
+      return x.eigenvalue.real() > y.eigenvalue.real();
+    });
+    for (Mode& m : out_.modes)
+      m.multiplicity = static_cast<std::size_t>(std::count_if(out_.modes.begin(), out_.modes.end(), [&](const Mode& other) {
+        return std::abs(m.eigenvalue - other.eigenvalue) <= m.error + other.error;
+      }));
+    out_.stability = judge_stability(equations_, l_, form_, translations_, out_, equilibrium_);
+  }
+
+  const PointEquations& equations_;
+  const Linearization& l_;
+  const std::vector<Translation>& translations_;
+  const Equilibrium* equilibrium_;
+  MassNormalForm form_;
+  Matrix mass_;
+  ModalAnalysis out_;
+};
+
+}  // namespace
+
+MassNormalForm mass_normal_form(const Linearization& l, const std::vector<Translation>& translations) {
+  MassNormalForm out;
+  if (!l.second_order() || l.independent.empty()) return out;
+  const Matrix mass = to_eigen(l.mass);
+  const std::optional<Cholesky> factor = cholesky(mass);
+  if (!factor) return out;
+  const auto both_sides = [&](const Matrix& m) { return Matrix(factor->inverse * m * factor->inverse.transpose()); };
+  const Matrix damping = to_eigen(l.damping), gyroscopic = to_eigen(l.gyroscopic), circulatory = to_eigen(l.circulatory);
+  out.k = both_sides(to_eigen(l.stiffness) + circulatory);
+  out.c = both_sides(damping + gyroscopic);
+  const double rate = std::sqrt(out.k.norm());
+  out.symmetric = out.c.norm() <= 1e-14 * rate && both_sides(circulatory).norm() <= 1e-14 * out.k.norm();
+  out.potential = both_sides(circulatory).norm() <= 1e-12 * out.k.norm();
+  out.to_independent = factor->inverse.transpose();
+  Matrix directions(mass.rows(), static_cast<Index>(translations.size()));
+  for (std::size_t t = 0; t < translations.size(); ++t)
+    for (std::size_t i = 0; i < l.independent.size(); ++i)
+      directions(static_cast<Index>(i), static_cast<Index>(t)) = translations[t].direction[l.independent[i]];
+  out.translations = factor->lower.transpose() * directions;
+  out.valid = true;
+  return out;
+}
+
+ModalAnalysis modal_analysis(const PointEquations& equations, const Linearization& linearization,
+                             const std::vector<Translation>& translations, const Equilibrium* equilibrium) {
+  return Analysis(equations, linearization, translations, equilibrium).carry_out();
+}
+
+}  // namespace maupertuis

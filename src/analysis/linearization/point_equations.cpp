@@ -1,0 +1,251 @@
+#include "analysis/linearization/point_equations.hpp"
+
+#include <maupertuis/evaluate.hpp>
+#include <maupertuis/transform.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+/// Inputs of every program here, in this order: q, v, a, λ, t, u, and u', u'' of inputs, which are held at 0.
+namespace maupertuis {
+namespace {
+
+class Lowering {
+ public:
+  explicit Lowering(const EquationsOfMotion& equations) {
+    const MechanicalSystem& system = *equations.system;
+    for (const Coordinate& c : system.coordinates) inputs_.push_back(c.q);
+    for (const Coordinate& c : system.coordinates) inputs_.push_back(c.velocity);
+    for (const Coordinate& c : system.coordinates) inputs_.push_back(c.acceleration);
+    inputs_.insert(inputs_.end(), equations.multipliers.begin(), equations.multipliers.end());
+    inputs_.push_back(system.context->time());
+    const std::size_t first_input = inputs_.size();
+    for (const Input& u : system.inputs) inputs_.push_back(u.symbol);
+    differentiated_ = inputs_.size();
+    const Expr zero = system.context->number(0);
+    for (std::size_t i = first_input; i < differentiated_; ++i) {  // an input is held: its rates vanish
+      const Expr rate = system.context->time_derivative(inputs_[i]);
+      held_.emplace(rate, zero);
+      held_.emplace(system.context->time_derivative(rate), zero);
+    }
+    for (const Parameter& p : system.parameters) parameters_.push_back(p.symbol);
+  }
+
+  ExprVector plain(std::span<const Expr> expressions) const { return substitute(expand_time_derivatives(expressions), held_); }
+  DifferentiableKernel rows(std::span<const Expr> expressions) const {
+    return build_differentiable({inputs_, parameters_, plain(expressions)}, 0, differentiated_);
+  }
+  FunctionKernel function(std::span<const Expr> expressions) const {
+    return build_function({inputs_, parameters_, plain(expressions)});
+  }
+
+ private:
+  ExprVector inputs_, parameters_;
+  ExprMap held_;
+  std::size_t differentiated_ = 0;
+};
+
+ExprVector chosen(const EquationsOfMotion& equations, Constraint::Level level, bool rates) {
+  ExprVector out;
+  for (std::size_t i = 0; i < equations.system->constraints.size(); ++i)
+    if (equations.system->constraints[i].level == level)
+      out.push_back(rates ? equations.constraint_rates[i] : equations.system->constraints[i].value);
+  return out;
+}
+
+ExprVector formulas(const MechanicalSystem& system) {
+  ExprVector out;
+  for (const Input& u : system.inputs) out.push_back(in_terms_of_motion(system, {&u.formula, 1}).front());
+  return out;
+}
+
+/// Whether ∂/∂t of all of them vanishes identically.
+bool free_of_time(std::span<const Expr> expressions, Expr time) {
+  ExprVector rates;
+  for (const Expr& e : expressions) {
+    const Expr rate = differentiate(e, time);
+    if (!rate.is_zero()) rates.push_back(rate);
+  }
+  return rates.empty() || zero_test(rates).verdict == Verdict::Zero;
+}
+
+/// Q(q, u) = −∂W/∂q for some W while u is held: no velocity, no time, ∂Q_i/∂q_j symmetric.
+bool has_potential(const ExprVector& forces, const MechanicalSystem& system) {
+  ExprVector must_vanish;
+  const auto add = [&](Expr e) { if (!e.is_zero()) must_vanish.push_back(e); };
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    if (forces[i].is_zero()) continue;
+    add(differentiate(forces[i], system.context->time()));
+    for (const Coordinate& c : system.coordinates) add(differentiate(forces[i], c.velocity));
+  }
+  if (std::all_of(forces.begin(), forces.end(), [](Expr e) { return e.is_zero(); })) return true;
+  for (std::size_t i = 0; i < forces.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      add(differentiate(forces[i], system.coordinates[j].q) - differentiate(forces[j], system.coordinates[i].q));
+  return must_vanish.empty() || zero_test(must_vanish).verdict == Verdict::Zero;
+}
+
+}  // namespace
+
+PointEquations::Impl::Impl(const EquationsOfMotion& equations)
+    : system(equations.system), n(system->coordinates.size()), m(system->constraints.size()), k(system->inputs.size()),
+      holonomic(0), balance(Lowering(equations).rows(equations.balance())),
+      positions(Lowering(equations).rows(chosen(equations, Constraint::Level::Position, false))),
+      velocities(Lowering(equations).rows(chosen(equations, Constraint::Level::Velocity, true))),
+      accelerations(Lowering(equations).rows(equations.constraint_accelerations)),
+      momenta(Lowering(equations).rows(equations.momenta)), rates(Lowering(equations).rows(equations.constraint_rates)),
+      input_formulas(Lowering(equations).function(formulas(*system))), inputs(input_formulas),
+      energy(Lowering(equations).function({&equations.energy_function, 1})), energy_workspace(energy) {
+  for (std::size_t i = 0; i < m; ++i)
+    if (system->constraints[i].level == Constraint::Level::Position) position_rows.push_back(i);
+  holonomic = position_rows.size();
+  for (const Parameter& p : system->parameters) parameters.push_back(p.si_value);
+  set_parameters();
+  const Lowering lowering(equations);
+  ExprVector all = lowering.plain(equations.balance());
+  for (const Constraint& c : system->constraints) all.push_back(lowering.plain({&c.value, 1}).front());
+  is_autonomous = free_of_time(all, system->context->time());
+  is_passive = is_autonomous && holonomic == m && has_potential(lowering.plain(equations.generalized_forces), *system) &&
+               friction_takes(lowering.function(equations.dissipative_terms));
+  is_periodic.assign(n, false);
+}
+
+/// v·∂D/∂v ≥ 0 at random states.
+bool PointEquations::Impl::friction_takes(const FunctionKernel& friction) const {
+  FunctionWorkspace work(friction);
+  work.set_parameters(parameters);
+  std::vector<double> force(n);
+  constexpr std::uint64_t states = 32;
+  for (std::uint64_t s = 0; s < states; ++s) {
+    const OperatingPoint point = random_point(*this, 31 + s);
+    work.evaluate(gather(point), force);
+    double power = 0, size = 0;
+    for (std::size_t i = 0; i < n; ++i) power += force[i] * point.v[i], size += std::abs(force[i] * point.v[i]);
+    if (power < -1e-12 * size) return false;
+  }
+  return true;
+}
+
+void PointEquations::Impl::set_parameters() {
+  for (Rows* rows : {&balance, &positions, &velocities, &accelerations, &momenta, &rates}) {
+    rows->values.set_parameters(parameters);
+    rows->entries.set_parameters(parameters);
+  }
+  inputs.set_parameters(parameters);
+  energy_workspace.set_parameters(parameters);
+}
+
+std::vector<double> PointEquations::Impl::gather(const OperatingPoint& point) const {
+  std::vector<double> out;
+  for (const auto* part : {&point.q, &point.v, &point.a, &point.multipliers}) out.insert(out.end(), part->begin(), part->end());
+  out.push_back(point.t);
+  out.insert(out.end(), point.inputs.begin(), point.inputs.end());
+  return out;
+}
+
+Vector PointEquations::Impl::value(Rows& rows, const OperatingPoint& point) const {
+  Vector out(static_cast<Index>(rows.kernel.size()));
+  rows.values.evaluate(gather(point), {out.data(), rows.kernel.size()});
+  return out;
+}
+
+RowsAtPoint PointEquations::Impl::at(Rows& rows, const OperatingPoint& point) const {
+  const std::size_t count = rows.kernel.size();
+  std::vector<double> numbers(count + rows.kernel.entries.size());
+  rows.entries.evaluate(gather(point), numbers);
+  const auto size = static_cast<Index>(count);
+  Matrix all = Matrix::Zero(size, static_cast<Index>(3 * n + m + 1 + k));
+  for (std::size_t e = 0; e < rows.kernel.entries.size(); ++e)
+    all(static_cast<Index>(rows.kernel.entries[e].row), static_cast<Index>(rows.kernel.entries[e].column)) = numbers[count + e];
+  const auto N = static_cast<Index>(n), m_ = static_cast<Index>(m), k_ = static_cast<Index>(k);
+  return {to_eigen(std::vector<double>(numbers.begin(), numbers.begin() + size)), all.leftCols(N), all.middleCols(N, N),
+          all.middleCols(2 * N, N), all.middleCols(3 * N, m_), all.rightCols(k_)};
+}
+
+double PointEquations::Impl::energy_at(const OperatingPoint& point) {
+  double out = 0;
+  energy_workspace.evaluate(gather(point), {&out, 1});
+  return out;
+}
+
+OperatingPoint random_point(const PointEquations::Impl& e, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  const auto numbers = [&](std::size_t count, double size) {
+    std::vector<double> out(count);
+    for (double& x : out) x = size * (2 * std::generate_canonical<double, 53>(random) - 1);
+    return out;
+  };
+  OperatingPoint point{0, numbers(e.n, 1), numbers(e.n, 1), numbers(e.n, 1), numbers(e.m, 1), numbers(e.k, 1)};
+  const std::vector<double> sizes = typical_sizes(*e.system, {});
+  for (std::size_t i = 0; i < e.n; ++i)
+    for (auto* part : {&point.q, &point.v, &point.a}) (*part)[i] *= sizes[i];
+  for (std::size_t i = 0; i < e.n; ++i) point.q[i] += 0.37 * sizes[i];  // away from symmetric places
+  return point;
+}
+
+std::vector<double> typical_sizes(const MechanicalSystem& system, const MotionState& start) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
+    const Coordinate& c = system.coordinates[i];
+    double size = 0;
+    if (c.kind != "angle" && !c.dimension.same_as(Dimension{}))
+      for (const Parameter& p : system.parameters)
+        if (p.dimension == c.dimension) size = std::max(size, std::abs(p.si_value));
+    if (size == 0 && i < start.q.size() && c.kind != "angle") size = std::abs(start.q[i]);
+    out.push_back(size > 0 ? size : 1);
+  }
+  return out;
+}
+
+// ------------------------------------------------------------------------------------------------------------ the class
+
+namespace {
+
+constexpr double turn = 6.283185307179586;
+constexpr int samples = 3;
+
+/// Whether R and the constraints are the same 2π further.
+bool repeats(PointEquations::Impl& e, std::size_t i) {
+  for (int s = 0; s < samples; ++s) {
+    OperatingPoint here = random_point(e, 1744 + static_cast<std::uint64_t>(s)), there = here;
+    there.q[i] += turn;
+    for (auto* rows : {&e.balance, &e.positions, &e.velocities}) {
+      const Vector a = e.value(*rows, here), b = e.value(*rows, there);
+      if (!a.allFinite() || (a - b).size() == 0) continue;
+      if (!((a - b).lpNorm<Eigen::Infinity>() <= 1e-10 * (1e-300 + a.lpNorm<Eigen::Infinity>()))) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+PointEquations::PointEquations(const EquationsOfMotion& equations) : impl_(std::make_unique<Impl>(equations)) {
+  for (std::size_t i = 0; i < impl_->n; ++i)
+    impl_->is_periodic[i] = impl_->system->coordinates[i].kind == "angle" || impl_->system->dimensionless ? repeats(*impl_, i) : false;
+}
+PointEquations::~PointEquations() = default;
+PointEquations::PointEquations(PointEquations&&) noexcept = default;
+
+const MechanicalSystem& PointEquations::system() const { return *impl_->system; }
+bool PointEquations::autonomous() const { return impl_->is_autonomous; }
+bool PointEquations::energy_never_grows() const { return impl_->is_passive; }
+const std::vector<bool>& PointEquations::periodic() const { return impl_->is_periodic; }
+double PointEquations::parameter(std::size_t index) const { return impl_->parameters[index]; }
+
+void PointEquations::set_parameter(std::size_t index, double value) {
+  impl_->parameters[index] = value;
+  impl_->set_parameters();
+}
+
+std::vector<double> PointEquations::inputs_at(double t) const {
+  OperatingPoint point{t, std::vector<double>(impl_->n), std::vector<double>(impl_->n), std::vector<double>(impl_->n),
+                       std::vector<double>(impl_->m), std::vector<double>(impl_->k)};
+  std::vector<double> at(3 * impl_->n + impl_->m + 1 + impl_->k), out(impl_->k);
+  at[3 * impl_->n + impl_->m] = t;
+  impl_->inputs.evaluate(at, out);
+  return out;
+}
+
+}  // namespace maupertuis

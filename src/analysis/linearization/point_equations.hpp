@@ -1,0 +1,54 @@
+#pragma once
+#include "analysis/linearization/matrices.hpp"
+
+#include <maupertuis/function_kernel.hpp>
+
+namespace maupertuis {
+
+/// Functions at a point and their derivatives by its parts.
+struct RowsAtPoint {
+  Vector value;                                   // [rows]
+  Matrix by_q, by_v, by_a, by_multipliers, by_inputs;
+};
+
+struct PointEquations::Impl {
+  explicit Impl(const EquationsOfMotion& equations);
+
+  /// One family of rows: a program and its workspaces.
+  struct Rows {
+    DifferentiableKernel kernel;
+    FunctionWorkspace values, entries;
+    explicit Rows(DifferentiableKernel k) : kernel(std::move(k)), values(kernel.values), entries(kernel.values_and_entries) {}
+  };
+
+  Vector value(Rows& rows, const OperatingPoint& point) const;
+  RowsAtPoint at(Rows& rows, const OperatingPoint& point) const;
+  double energy_at(const OperatingPoint& point);   // h_E
+  void set_parameters();
+
+  std::shared_ptr<const MechanicalSystem> system;
+  std::size_t n, m, k, holonomic;                 // holonomic: how many of the m are of positions
+  std::vector<double> parameters;
+  std::vector<std::size_t> position_rows;         // which constraints those are
+  Rows balance, positions, velocities, accelerations, momenta;  // [n], [holonomic], [m - holonomic], [m], [n]
+  Rows rates;                                     // [m] dφ/dt and ψ
+  FunctionKernel input_formulas;
+  FunctionWorkspace inputs;
+  FunctionKernel energy;                          // h_E: orders equilibria
+  FunctionWorkspace energy_workspace;
+  bool is_autonomous = true;
+  bool is_passive = false;                        // energy_never_grows
+  std::vector<bool> is_periodic;                  // [n]
+
+ private:
+  bool friction_takes(const FunctionKernel& friction) const;
+  std::vector<double> gather(const OperatingPoint& point) const;
+};
+
+/// A random point of moderate size: for ranks and periods.
+OperatingPoint random_point(const PointEquations::Impl& e, std::uint64_t seed);
+
+/// The size of a coordinate that counts as far: 1 for angles and numbers, else the largest parameter of its dimension.
+std::vector<double> typical_sizes(const MechanicalSystem& system, const MotionState& start);
+
+}  // namespace maupertuis

@@ -1,0 +1,50 @@
+#pragma once
+#include "analysis/linearization/point_equations.hpp"
+
+#include <optional>
+
+namespace maupertuis {
+
+/// The equations of rest and of steady motion, R(q, D c, 0, λ) = 0 with the constraints, in the unknowns (q, c, λ): q as far
+/// as it is not held, c the rates of the translations D as far as they are not held. Momenta of conserved translations
+/// whose rate is free keep given values.
+class SteadyState {
+ public:
+  struct Held {
+    std::vector<bool> q;            // [n] coordinates that stay
+    std::vector<bool> rates;        // [translations] rates that stay
+  };
+  /// `momenta`: [translations] d·p to keep; NaN: none.
+  SteadyState(PointEquations::Impl& equations, const std::vector<Translation>& translations, Held held,
+              std::vector<double> momenta, std::vector<double> sizes);
+
+  struct Solution {
+    OperatingPoint point;
+    double residual = 0;            // largest row, divided by its derivatives times typical sizes
+    std::size_t family = 0;         // ways to move on and stay a solution
+  };
+  /// From the positions and velocities of `from`; nothing where the iteration does not arrive.
+  std::optional<Solution> solve(const OperatingPoint& from, bool with_family = true) const;
+  /// The residual there, all unknowns as they are, with the multipliers that fit best.
+  double residual_at(OperatingPoint& point) const;
+
+ private:
+  struct System {
+    Vector f;                       // rows
+    Matrix j;                       // by the unknowns
+  };
+  System system_at(const OperatingPoint& point) const;
+  Vector unknowns(const OperatingPoint& point) const;
+  void place(const Vector& z, OperatingPoint& point) const;
+  void fit_multipliers(OperatingPoint& point) const;
+  double scaled(const System& s, const Vector& z) const;
+  std::size_t family_at(const OperatingPoint& point, const System& s, const Vector& z) const;
+
+  PointEquations::Impl& e_;
+  const std::vector<Translation>& translations_;
+  std::vector<std::size_t> free_q_, free_rates_, kept_momenta_;
+  std::vector<double> momenta_, sizes_;
+  Matrix by_rates_;                 // [n × free rates]
+};
+
+}  // namespace maupertuis

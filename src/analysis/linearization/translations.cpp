@@ -1,0 +1,120 @@
+#include "analysis/linearization/dense.hpp"
+#include "analysis/linearization/point_equations.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+/// Translations that are symmetries: the null space of ∂(R, φ, ψ)/∂q, common to random points.
+namespace maupertuis {
+namespace {
+
+constexpr int samples = 3, attempts = 40;
+constexpr double small = 1e-9;
+
+/// Rows at one random point, each divided by its length, columns by typical sizes; no rows where one has no value there.
+Matrix sampled_rows(PointEquations::Impl& e, const Vector& sizes, std::uint64_t seed) {
+  const OperatingPoint point = random_point(e, seed);
+  std::vector<Vector> rows;
+  for (auto* family : {&e.balance, &e.positions, &e.velocities}) {
+    const RowsAtPoint at = e.at(*family, point);
+    for (Index i = 0; i < at.by_q.rows(); ++i) {
+      const Vector by_q = at.by_q.row(i).transpose().cwiseProduct(sizes);
+      const double length = by_q.norm() + at.by_v.row(i).norm() + at.by_a.row(i).norm();
+      if (!std::isfinite(length)) return Matrix(0, sizes.size());
+      if (length > 0) rows.push_back(by_q / length);
+    }
+  }
+  Matrix out(static_cast<Index>(rows.size()), sizes.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) out.row(static_cast<Index>(i)) = rows[i].transpose();
+  return out;
+}
+
+/// Of the rows at some points where all have values; nothing is claimed where there are no such points.
+Matrix common_null_space(PointEquations::Impl& e, const Vector& sizes) {
+  const Index n = sizes.size();
+  Matrix all(0, n);
+  int good = 0;
+  for (int attempt = 0; attempt < attempts && good < samples; ++attempt) {
+    const Matrix more = sampled_rows(e, sizes, 271 + static_cast<std::uint64_t>(attempt));
+    if (more.rows() == 0) continue;
+    ++good;
+    Matrix both(all.rows() + more.rows(), n);
+    both.topRows(all.rows()) = all;
+    both.bottomRows(more.rows()) = more;
+    // The triangular factor has the same null space.
+    all = both.rows() <= n ? both : triangular_factor(both);
+  }
+  if (good < samples) return Matrix(n, 0);
+  const KernelFirst split = kernel_first(all, small);
+  return split.basis.leftCols(split.kernel);
+}
+
+/// The basis in reduced echelon form by rows of coordinates: column k is 1 at its pivot, 0 at the others. Pivots are the
+/// largest entries among preferred coordinates, then among all.
+std::vector<std::size_t> reduce_to_pivots(Matrix& basis, const std::vector<bool>& preferred) {
+  std::vector<std::size_t> pivots;
+  for (Index k = 0; k < basis.cols(); ++k) {
+    Index row = -1, column = k;
+    for (const bool only_preferred : {true, false}) {
+      double best = 1e-6;
+      for (Index i = 0; i < basis.rows(); ++i) {
+        if (only_preferred && (preferred.empty() || !preferred[static_cast<std::size_t>(i)])) continue;
+        if (std::find(pivots.begin(), pivots.end(), static_cast<std::size_t>(i)) != pivots.end()) continue;
+        for (Index j = k; j < basis.cols(); ++j)
+          if (std::abs(basis(i, j)) > best * (1 + 1e-9)) best = std::abs(basis(i, j)), row = i, column = j;
+      }
+      if (row >= 0) break;
+    }
+    basis.col(k).swap(basis.col(column));
+    basis.col(k) /= basis(row, k);
+    for (Index j = 0; j < basis.cols(); ++j)
+      if (j != k) basis.col(j) -= basis(row, j) * basis.col(k);
+    pivots.push_back(static_cast<std::size_t>(row));
+  }
+  return pivots;
+}
+
+/// Small whole numbers and their quotients, where an entry is one up to rounding.
+void clean(Matrix& basis) {
+  for (Index i = 0; i < basis.size(); ++i) {
+    double& x = basis.data()[i];
+    for (int q = 1; q <= 12; ++q)
+      if (std::abs(x * q - std::round(x * q)) < 1e-9) {
+        x = std::round(x * q) / q;
+        break;
+      }
+  }
+}
+
+/// d·R vanishes in every uniform motion along the translations: no force acts along d. What constraints of velocities do
+/// there counts as a force.
+bool is_conserved(PointEquations::Impl& e, const Vector& direction) {
+  for (int s = 0; s < samples; ++s) {
+    OperatingPoint point = random_point(e, 577 + static_cast<std::uint64_t>(s));
+    std::fill(point.a.begin(), point.a.end(), 0);
+    const Vector r = e.value(e.balance, point);
+    const Vector p = e.at(e.momenta, point).by_q * to_eigen(point.v);  // d/dt p at a = 0, without explicit time
+    const double rate = direction.dot(r - p), size = direction.cwiseAbs().dot(r.cwiseAbs() + p.cwiseAbs());
+    if (!std::isfinite(rate) || std::abs(rate) > small * size) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<Translation> PointEquations::translations(const std::vector<bool>& preferred) const {
+  const Vector sizes = to_eigen(typical_sizes(system(), {}));
+  Matrix basis = common_null_space(*impl_, sizes);
+  basis = sizes.asDiagonal() * basis;
+  const std::vector<std::size_t> pivots = reduce_to_pivots(basis, preferred);
+  clean(basis);
+  std::vector<Translation> out;
+  for (Index k = 0; k < basis.cols(); ++k) {
+    const Vector d = basis.col(k);
+    out.push_back({to_list(d), pivots[static_cast<std::size_t>(k)], is_conserved(*impl_, d)});
+  }
+  std::sort(out.begin(), out.end(), [](const Translation& x, const Translation& y) { return x.pivot < y.pivot; });
+  return out;
+}
+
+}  // namespace maupertuis

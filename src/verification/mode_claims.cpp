@@ -1,0 +1,100 @@
+#include "verification/mode_claims.hpp"
+
+#include <maupertuis/simulation.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace maupertuis {
+namespace {
+
+double number(const Model& model, Expr e) {
+  return evaluate(in_terms_of_motion(model.system, {&e, 1}).front(), parameter_bindings(model.system));
+}
+
+/// One for each mode of oscillation, and 0 for each pair of vanishing eigenvalues; ascending. Squared: ω², negative for modes that
+/// grow and decay instead.
+std::vector<double> frequencies(const ModalAnalysis& analysis, bool squared) {
+  std::vector<double> out;
+  std::size_t zeros = 0;
+  for (const Mode& m : analysis.modes) {
+    const double w = m.kind == Mode::Kind::Growth ? m.eigenvalue.real() : m.frequency();
+    if (m.kind == Mode::Kind::Zero) zeros += m.zeros;
+    if (m.kind == Mode::Kind::Oscillation) out.push_back(squared ? w * w : w);
+    if (m.kind == Mode::Kind::Growth && squared) out.push_back(-w * w);
+  }
+  out.insert(out.end(), (zeros + 1) / 2, 0.0);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::string list_text(const std::vector<double>& values, const Expectation& e) {
+  std::string out;
+  for (const double v : values) out += fmt::format("{}{:.17g}", out.empty() ? "" : ", ", v / e.display_factor);
+  const std::string unit = !e.display_unit.empty() ? e.display_unit : e.squared ? "rad^2/s^2" : "rad/s";
+  return out.empty() ? "none" : out + " " + unit;
+}
+
+}  // namespace
+
+ModeClaims::ModeClaims(const Model& model, const EquationsOfMotion& equations) : model_(model), equations_(equations) {
+  Diagnostics unheard;  // why there is no start is for a run to say
+  if (const auto start = consistent_start(model, equations, unheard)) start_ = start->state;
+  else start_ = {0, std::vector<double>(model.system.coordinates.size()), std::vector<double>(model.system.coordinates.size())};
+}
+
+void ModeClaims::decide(const Expectation& e, ExpectationResult& result) const {
+  Diagnostics told;
+  const auto study = modal_study_at(equations_, start_, e.at, told);
+  if (!study) {
+    result.expected = e.kind == syntax::ExpectStatement::Kind::Equilibrium ? "an equilibrium" : "an equilibrium or a steady motion";
+    result.actual = "none";
+    for (const Diagnostic& d : told.items()) result.message = d.message + ". " + d.reason;
+    return;
+  }
+  if (e.kind == syntax::ExpectStatement::Kind::Equilibrium) return decide_stability(e, study->entries.front(), result);
+  decide_frequencies(e, study->entries.front().analysis, result);
+}
+
+void ModeClaims::decide_frequencies(const Expectation& e, const ModalAnalysis& analysis, ExpectationResult& result) const {
+  std::vector<double> expected;
+  for (const Expr& v : e.values) expected.push_back(number(model_, v));
+  std::sort(expected.begin(), expected.end());
+  const std::vector<double> actual = frequencies(analysis, e.squared);
+  const double tolerance = number(model_, e.tolerance);
+  result.actual = list_text(actual, e);
+  result.expected = list_text(expected, e);
+  result.tolerance = e.relative ? fmt::format("rel {:g}", tolerance) : fmt::format("± {:g}", tolerance / e.display_factor);
+  if (e.squared && !analysis.symmetric) {
+    result.message = "Squares are the eigenvalues of M ξ'' + K ξ = 0; here forces depend on velocities.";
+    return;
+  }
+  if (actual.size() != expected.size()) {
+    result.message = fmt::format("{} frequencies are expected, there are {}.", expected.size(), actual.size());
+    return;
+  }
+  double worst = 0;
+  for (std::size_t i = 0; i < actual.size(); ++i) {
+    const double allowed = e.relative ? tolerance * std::abs(expected[i]) : tolerance, error = std::abs(actual[i] - expected[i]);
+    worst = std::max(worst, error <= allowed ? error / std::max(allowed, 1e-300) : HUGE_VAL);
+  }
+  result.passed = worst <= 1;
+  result.message = result.passed ? fmt::format("residual of the eigenvalue problem {:.1e}", analysis.residual) : "A frequency is off by more than the tolerance.";
+}
+
+void ModeClaims::decide_stability(const Expectation& e, const ModalEntry& entry, ExpectationResult& result) const {
+  const Stability verdict = entry.analysis.stability.verdict;
+  const std::string_view word = verdict == Stability::Unstable ? "unstable" : verdict == Stability::Undecided ? "undecided" : "stable";
+  result.actual = entry.equilibrium.at_rest ? "an equilibrium" : "a steady motion";
+  result.expected = "an equilibrium";
+  if (!e.word.empty()) {
+    result.expected = e.word;
+    result.actual = word;
+  }
+  result.passed = e.word.empty() || e.word == word;
+  result.message = fmt::format("residual {:.1e}; {}", entry.equilibrium.residual, entry.analysis.stability.reason);
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,119 @@
+// maup modes, from outside.
+#include "program.hpp"
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+using namespace cli_test;
+using Json = nlohmann::json;
+
+namespace {
+
+const std::string gallery = std::string(PROJECT_DIR) + "/models/";
+
+Json document(const std::vector<std::string>& arguments) {
+  std::vector<std::string> all{"modes"};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  all.push_back("--json");
+  const Json out = Json::parse(maup(all).out, nullptr, false);
+  REQUIRE(out.is_object());
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("modes of a pendulum: formulas, frequency, verdict") {
+  const Outcome all = maup({"modes", "-"}, pendulum);
+  CHECK_MESSAGE(all.code == 0, all.err);
+  CHECK(contains(all.out, "2 equilibria"));
+  CHECK(contains(all.out, "θ = π"));
+  CHECK(contains(all.out, "unstable: an eigenvalue has a positive real part"));
+  CHECK(contains(all.out, "M = [ m l^2 ]"));
+  CHECK(contains(all.out, "ω² = g/l"));
+  const Outcome one = maup({"modes", "-", "--at", "θ=0", "--set", "l=2m"}, pendulum);
+  CHECK_MESSAGE(one.code == 0, one.err);
+  CHECK(contains(one.out, "stable: the Hessian of the potential is positive definite"));
+}
+
+TEST_CASE("modes --json: schema, points, matrices, modes") {
+  const Json json = document({gallery + "coupled_pendulums.lag", "--at", "θ1=0, θ2=0"});
+  CHECK(json.at("schema") == 1);
+  CHECK(json.at("ok") == true);
+  REQUIRE(json.at("points").size() == 1);
+  const Json& point = json.at("points")[0];
+  CHECK(point.at("at_rest") == true);
+  CHECK(point.at("stability").at("verdict") == "stable");
+  REQUIRE(point.at("modes").size() == 2);
+  CHECK(std::abs(point.at("modes")[0].at("frequency").get<double>() - std::sqrt(9.81)) < 1e-13);
+  CHECK(point.at("linearization").at("second_order").at("M")[0][0] == 1.0);
+  CHECK(point.at("linearization").at("state_space").at("A").size() == 4);
+}
+
+TEST_CASE("modes --at a time of the motion") {
+  const Outcome along = maup({"modes", "-", "--at", "1s"}, pendulum);
+  CHECK_MESSAGE(along.code == 0, along.err);
+  CHECK(contains(along.out, "not decided by the linearization: a point of a motion is no state of rest"));
+}
+
+TEST_CASE("modes --Q: a regulator, and what it needs") {
+  const std::string cart = gallery + "balanced_cart.lag";
+  const Json json = document({cart, "--at", "θ=180deg", "--Q", "1, 1, 0, 0", "--R", "0.1"});
+  REQUIRE(json.contains("regulator"));
+  const Json& r = json.at("regulator");
+  CHECK(r.at("residual").get<double>() < 1e-12);
+  for (const Json& pole : r.at("poles")) CHECK(pole[0].get<double>() < 0);
+  CHECK(r.at("gain")[0].size() == 4);
+  const auto code = [&](const std::vector<std::string>& arguments) {
+    const Outcome outcome = maup(arguments);
+    CHECK(outcome.code == 1);
+    return outcome.err.substr(outcome.err.find("error ") + 6, 5);
+  };
+  CHECK(code({"modes", cart, "--at", "θ=180deg", "--Q", "1, 1"}) == "E1311");
+  CHECK(code({"modes", cart, "--at", "θ=180deg", "--Q", "1", "--R", "0"}) == "E1311");
+  CHECK(code({"modes", cart, "--at", "θ=180deg", "--Q", "0"}) == "E1313");  // the cart drifts and costs nothing
+  CHECK(code({"modes", cart, "--at", "θ=180deg", "--Q", "one"}) == "E0809");
+  CHECK(code({"modes", gallery + "coupled_pendulums.lag", "--at", "θ1=0, θ2=0", "--Q", "1"}) == "E1310");
+}
+
+TEST_CASE("modes of a sweep: the bead leaves the lowest point at √(g/R)") {
+  const Folder folder;
+  const std::string csv = folder.path("locus.csv"), svg = folder.path("bifurcation.svg"), roots = folder.path("roots.svg");
+  const Outcome outcome = maup({"modes", gallery + "bead_on_hoop.lag", "--csv", csv, "--plot", svg, "--roots", roots});
+  CHECK_MESSAGE(outcome.code == 0, outcome.err);
+  CHECK(contains(outcome.out, "Ω = 5.71839"));  // √(9.81/0.3)
+  CHECK(contains(read(csv), "Ω [rad/s],branch,verdict,θ [rad],θ' [rad/s],re1,im1"));
+  for (const std::string& picture : {svg, roots}) CHECK(contains(read(picture), "<svg"));
+  const Outcome without = maup({"modes", "-", "--csv", csv}, pendulum);
+  CHECK(without.code == 1);
+  CHECK(contains(without.err, "E1320"));
+}
+
+TEST_CASE("modes: what cannot be answered says why") {
+  const Outcome nowhere = maup({"modes", "-", "--at", "θ=1"}, pendulum);
+  CHECK(nowhere.code == 1);
+  CHECK(contains(nowhere.err, "E1302"));
+  CHECK(contains(nowhere.err, "θ = 0"));  // where Newton's method ends
+  CHECK(contains(maup({"modes", "-", "--at", "ψ=1"}, pendulum).err, "E0224"));
+  const Outcome fall = maup({"modes", "-"}, "param m = 1 kg, g = 9.81 m/s^2\ncoord z : length\nT = 1/2 m z'^2\nV = m g z\nstart z = 1 m\n");
+  CHECK(fall.code == 1);
+  CHECK(contains(fall.err, "E1301"));
+}
+
+TEST_CASE("expect frequencies and equilibria: passed and failed") {
+  const std::string model = std::string(pendulum) + "expect frequencies at θ = 0 : 0.49847 Hz rel 1e-5\nexpect equilibrium at θ = 0 is stable\n";
+  CHECK(maup({"test", "-"}, model).code == 0);
+  const Outcome wrong = maup({"test", "-"}, std::string(pendulum) + "expect frequencies at θ = 0 : 0.5 Hz rel 1e-5\nexpect equilibrium at θ = 180 deg is stable\n");
+  CHECK(wrong.code == 4);
+  CHECK(contains(wrong.out, "0.4984"));
+  CHECK(contains(wrong.out, "unstable"));
+}
+
+TEST_CASE("modes of a chain of a hundred links") {
+  const Folder folder;
+  const std::string path = folder.write("chain.lag", maup({"new", "chain", "--links", "100", "-o", "-"}).out);
+  const Json json = document({path, "--at", "θ1=0"});
+  CHECK(json.at("ok") == true);
+}

@@ -1,0 +1,192 @@
+#include "support.hpp"
+
+using namespace maupertuis;
+
+namespace {
+
+const char* const double_pendulum = R"(system double_pendulum
+param m = 1 kg, l = 1 m, g = 9.81 m/s^2
+coord θ1, θ2 : angle
+point A mass m at l (sin θ1, -cos θ1)
+point B mass m at A + l (sin θ2, -cos θ2)
+gravity (0, -g)
+)";
+
+std::string hoop(const char* rate) {
+  return std::string("system hoop\nparam m = 100 g, R = 30 cm, g = 9.81 m/s^2, Ω = ") + rate + R"(
+coord θ : angle
+let φ = Ω t
+point bead mass m at R (sin θ cos φ, sin θ sin φ, -cos θ)
+gravity (0, 0, -g)
+)";
+}
+
+const char* const kepler = R"(system kepler
+param m = 2 kg, k = 3 N m^2
+coord r : length, φ : angle
+T = 1/2 m (r'^2 + r^2 φ'^2)
+V = -k/r
+start r = 1.3 m, φ' = 0.7 rad/s
+)";
+
+double energy(const Linearized& m, const ModalEntry& e) {
+  Bindings at = parameter_bindings(*m.system);
+  for (std::size_t i = 0; i < m.start.q.size(); ++i) at[m.q(i)] = e.equilibrium.point.q[i], at[m.v(i)] = 0;
+  return evaluate(expand_time_derivatives(m.equations.energy_function), at);
+}
+
+}  // namespace
+
+TEST_CASE("A double pendulum has four equilibria; the lowest is stable, the others are not") {
+  Linearized m(double_pendulum);
+  const ModalStudy study = m.study();
+  REQUIRE(study.entries.size() == 4);
+  CHECK(study.translations.empty());
+  CHECK(study.entries[0].equilibrium.point.q == std::vector<double>{0, 0});
+  CHECK(study.entries[0].analysis.stability.verdict == Stability::Energetic);
+  for (std::size_t i = 1; i < 4; ++i) {
+    CHECK(energy(m, study.entries[i]) > energy(m, study.entries[i - 1]));
+    CHECK(study.entries[i].analysis.stability.verdict == Stability::Unstable);
+  }
+  CHECK(point_text(*m.system, study.entries[3].equilibrium, {}) == "θ1 = π, θ2 = π");
+}
+
+TEST_CASE("The bead on the hoop leaves the lowest point above the critical rate") {
+  const double critical = std::sqrt(9.81 / 0.3);
+  Linearized slow(hoop("5 rad/s"));
+  CHECK(slow.at.autonomous());  // t stands in the formulas and drops out of the equations
+  const ModalStudy below = slow.study();
+  REQUIRE(below.entries.size() == 2);
+  CHECK(below.entries[0].equilibrium.point.q[0] == 0);
+  CHECK(below.entries[0].analysis.stability.verdict == Stability::Energetic);
+  Linearized fast(hoop("8 rad/s"));
+  const ModalStudy above = fast.study();
+  REQUIRE(above.entries.size() == 4);
+  for (const ModalEntry& e : above.entries) {
+    const double θ = e.equilibrium.point.q[0];
+    const bool tilted = std::abs(std::sin(θ)) > 1e-9 && std::abs(θ) < 3;
+    if (tilted) CHECK(near(std::cos(θ), critical * critical / 64, 1e-14));
+    CHECK((e.analysis.stability.verdict == Stability::Energetic) == tilted);
+  }
+}
+
+TEST_CASE("The circular orbit with the angular momentum of the start is a steady motion") {
+  Linearized m(kepler);
+  const ModalStudy study = m.study();
+  REQUIRE(study.entries.size() == 1);
+  const ModalEntry& e = study.entries[0];
+  CHECK_FALSE(e.equilibrium.at_rest);
+  REQUIRE(study.translations.size() == 1);
+  CHECK(study.translations[0].conserved);
+  const double momentum = 2 * 1.3 * 1.3 * 0.7, radius = momentum * momentum / (2 * 3);
+  CHECK(near(e.equilibrium.point.q[0], radius, 1e-13));
+  const double rate = momentum / (2 * radius * radius);
+  CHECK(near(e.equilibrium.point.v[1], rate, 1e-13));
+  // Perturbed Kepler orbits close: the radius swings as often as the planet goes round.
+  const auto w = frequencies(e.analysis);
+  REQUIRE(w.size() == 1);
+  CHECK(near(w[0], rate, 1e-12));
+  CHECK(e.analysis.stability.verdict == Stability::Energetic);
+  CHECK(near(e.analysis.stability.hessian.front(), rate * rate, 1e-12));  // of the effective potential
+}
+
+TEST_CASE("Several coordinates that move together are one translation") {
+  Linearized m(R"(system train
+param m = 1 kg, k = 3 N/m
+coord x1, x2, x3 : length
+T = 1/2 m (x1'^2 + x2'^2 + x3'^2)
+V = 1/2 k (x2 - x1)^2 + 1/2 k (x3 - x2)^2
+)");
+  const auto translations = m.at.translations();
+  REQUIRE(translations.size() == 1);
+  CHECK(translations[0].direction == std::vector<double>{1, 1, 1});
+  CHECK(translations[0].conserved);
+}
+
+TEST_CASE("A motor runs steadily where friction takes what the supply gives") {
+  Linearized m(R"(system motor
+param Lm = 1 mH, R = 2 ohm, K = 0.05 N m/A, U = 12 V, J = 2e-5 kg m^2, b = 1e-4 N m s
+coord q : charge, θ : angle
+L = 1/2 Lm q'^2 + 1/2 J θ'^2 + K θ q'
+D = 1/2 R q'^2 + 1/2 b θ'^2
+force q = U
+)");
+  const ModalStudy study = m.study();
+  REQUIRE(study.entries.size() == 1);
+  const OperatingPoint& p = study.entries[0].equilibrium.point;
+  CHECK(near(p.v[1], 0.05 * 12 / (2 * 1e-4 + 0.05 * 0.05), 1e-13));
+  CHECK(near(p.v[0], 1e-4 * 12 / (2 * 1e-4 + 0.05 * 0.05), 1e-13));
+  CHECK(study.entries[0].analysis.stability.verdict == Stability::Asymptotic);
+}
+
+TEST_CASE("Constrained equilibria with their multipliers") {
+  Linearized m(R"(system cartesian
+param m = 2 kg, l = 70 cm, g = 9.81 m/s^2
+coord x, y : length
+point P mass m at (x, y)
+gravity (0, -g)
+constraint x^2 + y^2 = l^2 name rod
+start x = 0.3 m, y = -0.6 m
+)");
+  const ModalStudy study = m.study();
+  REQUIRE(study.entries.size() == 2);
+  const ModalEntry& low = study.entries[0];
+  CHECK(near(low.equilibrium.point.q[1], -0.7, 1e-14));
+  CHECK(low.equilibrium.point.q[0] == 0);
+  CHECK(near(low.equilibrium.point.multipliers[0], -2 * 9.81 / (2 * 0.7), 1e-13));  // m ÿ + m g = λ 2 y
+  CHECK(low.linearization.independent == std::vector<std::size_t>{0});
+  const auto w = frequencies(low.analysis);
+  REQUIRE(w.size() == 1);
+  CHECK(near(w[0], std::sqrt(9.81 / 0.7), 1e-13));
+  CHECK(study.entries[1].analysis.stability.verdict == Stability::Unstable);
+  CHECK(near(study.entries[1].analysis.stability.growth_rate, std::sqrt(9.81 / 0.7), 1e-13));
+}
+
+TEST_CASE("Angles that the equations tell apart are not one") {
+  // A torsion spring winds up: θ and θ + 2π are different places.
+  Linearized m(R"(system wound
+param k = 1 N m, c = 8 N m, J = 1 kg m^2
+coord θ : angle
+T = 1/2 J θ'^2
+V = 1/2 k θ^2 - c cos θ
+)");
+  CHECK_FALSE(m.at.periodic()[0]);
+  const ModalStudy study = m.study();
+  // θ = -8 sin θ has 0, ±π-ish and ±2π-ish roots: 5 of them.
+  CHECK(study.entries.size() == 5);
+  for (const ModalEntry& e : study.entries) {
+    const double θ = e.equilibrium.point.q[0];
+    CHECK(std::abs(θ + 8 * std::sin(θ)) < 1e-12);
+  }
+}
+
+TEST_CASE("What has no equilibrium says so") {
+  const auto first_code = [](Linearized& m, bool at) {
+    Diagnostics told;
+    const std::vector<StartValue> one{{0, 0, m.number(0.3), {}}};
+    const bool found = at ? modal_study_at(m.at, m.start, one, told).has_value() : modal_study(m.at, m.start, told).has_value();
+    CHECK_FALSE(found);
+    return told.items().empty() ? std::string() : told.items()[0].code;
+  };
+  Linearized fall("system fall\nparam m = 1 kg, g = 9.81 m/s^2\ncoord z : length\nT = 1/2 m z'^2\nV = m g z\n");
+  CHECK(first_code(fall, false) == "E1301");
+  Linearized driven("system driven\nparam m = 1 kg, k = 1 N/m, F = 1 N, w = 2 rad/s\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\nforce x = F cos(w t)\n");
+  CHECK(first_code(driven, false) == "E1303");
+  Linearized pendulum(double_pendulum);
+  CHECK(first_code(pendulum, true) == "E1302");
+}
+
+TEST_CASE("Places where coordinates fail are told, not linearized") {
+  Linearized m(R"(system polar
+param m = 1 kg, k = 1 N/m
+coord r : length, φ : angle
+T = 1/2 m (r'^2 + r^2 φ'^2)
+V = 1/2 k r^2
+)");
+  Diagnostics told;
+  const auto study = modal_study(m.at, m.start, told);
+  REQUIRE(study);
+  CHECK(study->entries.empty());
+  REQUIRE_FALSE(told.items().empty());
+  CHECK(told.items()[0].code == "W1301");
+}
