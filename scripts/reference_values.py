@@ -237,9 +237,23 @@ def arm_seven_joints():
         yield f"q{i + 1}", "500 ms", q[i]
 
 
+def henon_heiles():
+    acceleration = lambda _, q, v: [-q[0] - 2 * q[0] * q[1], -q[1] - q[0] ** 2 + q[1] ** 2]
+    at_10, at_100 = motion(acceleration, [D(0), D("0.1")], [D("0.5"), D(0)], (10, 100))
+    yield "x", "10", at_10[0][0]
+    yield "y", "100", at_100[0][1]
+
+
+def van_der_pol():
+    acceleration = lambda _, q, v: [(1 - q[0] ** 2) * v[0] - q[0]]
+    at_10, at_40 = motion(acceleration, [D(2)], [D(0)], (10, 40))
+    yield "x", "10", at_10[0][0]
+    yield "x'", "40", at_40[1][0]
+
+
 MODELS = [pendulum, double_pendulum, elastic_pendulum, spherical_pendulum, cart_pendulum, bead_on_hoop, kepler,
           lagrange_top, satellite, ion_in_fields, rotating_frame, robot_arm, motor_link, absolute_value, arm_seven_joints,
-          *reference_constraints.MODELS, *reference_rolling.MODELS]
+          henon_heiles, van_der_pol, *reference_constraints.MODELS, *reference_rolling.MODELS]
 UNITS = {"deg": DEG, "ms": D("1e-3"), "µs": D("1e-6"), "h": D(3600)}
 
 

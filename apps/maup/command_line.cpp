@@ -117,6 +117,7 @@ int run(int argc, char** argv) {
     add_compare(line);
     add_reduce(line);
     add_modes(line);
+    add_orbits(line);
     add_plot(line);
     add_report(line);
     add_fmt(line);

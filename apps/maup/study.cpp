@@ -12,6 +12,8 @@ namespace maupertuis::app {
 Study::Study(const std::string& path, Overrides overrides)
     : source_(display_name(path), read_file(path, diagnostics_)), overrides_(std::move(overrides)) {}
 
+Study::Study(SourceText source, Overrides overrides) : source_(std::move(source)), overrides_(std::move(overrides)) {}
+
 const syntax::SyntaxTree* Study::tree() {
   if (!tree_ && !wrong()) tree_ = syntax::parse(source_, diagnostics_);
   return tree_ ? &*tree_ : nullptr;

@@ -15,6 +15,8 @@ class Study {
  public:
   /// Reads the file, "-" for standard input.
   explicit Study(const std::string& path, Overrides overrides = {});
+  /// A text that was read already.
+  explicit Study(SourceText source, Overrides overrides = {});
 
   const SourceText& source() const { return source_; }
   Diagnostics& diagnostics() { return diagnostics_; }

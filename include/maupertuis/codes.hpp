@@ -8,6 +8,7 @@
 ///   05xx not supported yet · 06xx equations · 07xx runs · 08xx files and command line · 09xx expectations · 10xx invariants
 ///   11xx phase space
 ///   13xx equilibria, linearization, modes
+///   14xx orbits
 namespace maupertuis {
 
 std::span<const CodeEntry> syntax_codes();
@@ -19,5 +20,6 @@ std::span<const CodeEntry> comparison_codes();
 std::span<const CodeEntry> invariants_codes();
 std::span<const CodeEntry> hamiltonian_codes();
 std::span<const CodeEntry> linearization_codes();
+std::span<const CodeEntry> orbits_codes();
 
 }  // namespace maupertuis

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace maupertuis {
@@ -23,6 +24,8 @@ struct PlotOptions {
   PlotTheme theme = PlotTheme::Light;
   double width = 720;                // px, at least 240
   double panel_height = 0;           // px of one panel's frame; 0: chosen from the width and the number of panels
+  std::string dots_by;               // dots instead of lines: one colour for each value of this column; empty: lines
+  std::vector<std::pair<double, double>> outline;  // a closed line around what is drawn, in the units of a single panel's axes
 };
 
 /// The sentence for the user where `options` do not fit `trajectory` (a column that is not there, with a suggestion);

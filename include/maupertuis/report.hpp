@@ -3,6 +3,7 @@
 #include <maupertuis/invariants.hpp>
 #include <maupertuis/locus.hpp>
 #include <maupertuis/modes.hpp>
+#include <maupertuis/orbits.hpp>
 #include <maupertuis/plot.hpp>
 #include <maupertuis/simulation.hpp>
 #include <maupertuis/trajectory.hpp>
@@ -125,6 +126,16 @@ struct ReportContent {
   std::string mode_search;               // how equilibria were sought
   std::vector<ModePoint> mode_points;
   std::vector<Locus> loci;
+
+  /// One finding about the long run: a periodic motion, a section, exponents.
+  struct Finding {
+    std::string title;
+    std::vector<std::pair<std::string, std::string>> facts;
+    std::string caption;                 // of the picture; empty: none
+    Trajectory rows;
+    PlotOptions picture;
+  };
+  std::vector<Finding> orbits;
 };
 
 /// One HTML page that needs nothing else: no network, no fonts, no other file. Its policy forbids every request.
@@ -148,7 +159,15 @@ struct ReportParts {
   const Invariants* invariants = nullptr;         // null: the energy function and cyclic coordinates alone
   const ModalStudy* modes = nullptr;              // null: no part on equilibria
   const Locus* locus = nullptr;                   // of the model's sweep
+  const FloquetResult* floquet = nullptr;
+  const SectionResult* section = nullptr;
+  std::string section_what;                       // "section x = 0 rising"
+  const LyapunovResult* lyapunov = nullptr;
 };
+
+/// How a section is drawn: q' against q of the coordinate that it leaves free, a colour a motion, with the border of what
+/// the energy allows.
+PlotOptions section_picture(const SectionResult& section, const std::string& what, const MechanicalSystem& system);
 
 /// Fills a report from the artifacts of one study. `derivation` with its steps; messages are those of `diagnostics`
 /// that are no errors.

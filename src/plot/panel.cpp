@@ -5,6 +5,11 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
 namespace maupertuis {
 
 // "θ₁, θ₂ (10⁻³ rad from 2 rad)"
@@ -132,6 +137,41 @@ std::string draw_curve(const Figure& figure, const Panel& panel, std::size_t ind
   return svg;
 }
 
+/// The rows of each value of the column that colours are by, in ascending order of the values.
+std::map<double, std::vector<std::size_t>> rows_by(const Trajectory& trajectory, const std::string& column) {
+  std::map<double, std::vector<std::size_t>> out;
+  const std::size_t index = *trajectory.column(column);
+  for (std::size_t row = 0; row < trajectory.rows(); ++row) out[trajectory.at(row, index)].push_back(row);
+  return out;
+}
+
+/// Lines of no length with round ends: the shortest way to write many dots. Dots on one pixel in one colour are one dot.
+std::string draw_dots(const Figure& figure, const Panel& panel, const Series& series, const Axis& across, const Axis& up) {
+  const Polyline pixels = pixels_of(figure, panel, series, across, up);
+  const auto groups = rows_by(figure.trajectory, figure.options.dots_by);
+  std::string svg;
+  std::size_t index = 0;
+  for (const auto& [value, rows] : groups) {
+    std::string path;
+    std::set<std::pair<long, long>> drawn;
+    for (const std::size_t row : rows) {
+      const Pixel p = pixels[row];
+      if (!std::isfinite(p.x) || !std::isfinite(p.y)) continue;
+      if (drawn.emplace(std::lround(2 * p.x), std::lround(2 * p.y)).second) path += fmt::format("M{:.1f} {:.1f}h0", p.x, p.y);
+    }
+    svg += fmt::format("<path class=\"dots {} d=\"{}\"/>\n", series_attributes(index++, groups.size()), path);
+  }
+  return svg;
+}
+
+std::string draw_outline(const Figure& figure, const Panel& panel, const Axis& across, const Axis& up) {
+  Polyline line;
+  for (const auto& [x, y] : figure.options.outline)
+    line.push_back({figure.left + figure.frame_width() * across.position(figure.horizontal.factor * x),
+                    panel.top + panel.height * (1 - up.position(panel.series[0].factor * y))});
+  return line.empty() ? std::string() : fmt::format("<path class=\"outline\" d=\"{}\"/>\n", path_data({line}));
+}
+
 // ----------------------------------------------------------------------------------------------------------- frame
 
 std::string draw_frame(const Figure& figure, const Panel& panel, const Axis& across, const Axis& up, bool lowest) {
@@ -167,7 +207,9 @@ double legend_height(const Panel& panel, double width) {
 
 std::string draw_panel(const Figure& figure, const Panel& panel, const Axis& across, const Axis& up, bool lowest) {
   std::string svg = draw_frame(figure, panel, across, up, lowest);
-  for (std::size_t k = 0; k < panel.series.size(); ++k) svg += draw_curve(figure, panel, k, across, up);
+  svg += draw_outline(figure, panel, across, up);
+  for (std::size_t k = 0; k < panel.series.size(); ++k)
+    svg += figure.options.dots_by.empty() ? draw_curve(figure, panel, k, across, up) : draw_dots(figure, panel, panel.series[k], across, up);
   return svg + draw_vertical_label(panel, up) + draw_legend(panel, figure);
 }
 

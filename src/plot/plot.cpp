@@ -30,7 +30,7 @@ std::vector<Panel> group_by_unit(const Trajectory& trajectory, const PlotOptions
   std::vector<std::string> names = options.columns;
   if (names.empty())
     for (const auto& column : trajectory.columns)
-      if (column.name != options.against) names.push_back(column.name);
+      if (column.name != options.against && column.name != options.dots_by) names.push_back(column.name);
   std::vector<Panel> panels;
   for (const auto& name : names) {
     const Series series = series_of(trajectory, name, options.degrees);
@@ -133,6 +133,7 @@ std::string plot_problem(const Trajectory& trajectory, const PlotOptions& option
   for (const auto& column : trajectory.columns) known.push_back(column.name);
   auto wanted = options.columns;
   if (!options.against.empty()) wanted.push_back(options.against);
+  if (!options.dots_by.empty()) wanted.push_back(options.dots_by);
   for (const auto& name : wanted) {
     if (trajectory.column(name)) continue;
     if (name == "t") return "the time is the horizontal axis: name what to draw against it";
@@ -146,13 +147,15 @@ std::string plot_problem(const Trajectory& trajectory, const PlotOptions& option
 std::string plot_svg(const Trajectory& trajectory, const PlotOptions& options) {
   MAUP_REQUIRE(plot_problem(trajectory, options).empty());
   MAUP_REQUIRE(trajectory.values.size() == trajectory.rows() * trajectory.columns.size());
+  MAUP_REQUIRE(options.outline.empty() || (options.columns.size() == 1 && !options.against.empty()));
   Figure figure{trajectory, options, Series{"t", "s", 1, 0, true}, group_by_unit(trajectory, options), 0, 0, 0, 0};
   if (!options.against.empty()) figure.horizontal = series_of(trajectory, options.against, options.degrees);
 
   // Ranges come first, then axes; their labels give the margin; with the margin the axes are final.
-  const Range across = range_of(trajectory, {figure.horizontal});
+  Range across = range_of(trajectory, {figure.horizontal});
   std::vector<Range> up;
   for (const Panel& panel : figure.panels) up.push_back(range_of(trajectory, panel.series));
+  for (const auto& [x, y] : options.outline) across.include(figure.horizontal.factor * x), up[0].include(figure.panels[0].series[0].factor * y);
   const double panel_height = chosen_panel_height(figure, up, across);
   Axes axes = choose_axes(figure, across, up, options.width - 90, panel_height);
   arrange(figure, panel_height, widest_label(axes.up));

@@ -36,6 +36,7 @@ std::string rules(PlotTheme theme, std::string_view scope) {
       "{0} text{{font-family:{1};fill:{2}}}{0} .paper{{fill:{3}}}{0} .tick{{fill:{4}}}"
       "{0} .grid{{stroke:{5};stroke-width:1;fill:none}}{0} .axis{{stroke:{4};stroke-width:1;fill:none}}"
       "{0} .curve{{fill:none;stroke-width:1.4;stroke-linejoin:round;stroke-linecap:round}}"
+      "{0} .dots{{fill:none;stroke-width:1.7;stroke-linecap:round}}{0} .outline{{fill:none;stroke:{4};stroke-width:1;stroke-dasharray:4 3}}"
       "{0} .dense{{stroke-width:.8}}{0} .dot{{stroke:none}}{0} .dot.many{{fill:currentColor}}",
       scope, serif_faces, c.ink, c.paper, c.muted, c.grid);
   for (std::size_t i = 0; i < c.series.size(); ++i)

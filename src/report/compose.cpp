@@ -1,6 +1,7 @@
 #include "report/motion_parts.hpp"
 #include "report/mode_parts.hpp"
 #include "report/notation.hpp"
+#include "report/orbits.hpp"
 
 #include <maupertuis/constraint_analysis.hpp>
 #include <maupertuis/hamiltonian.hpp>
@@ -174,6 +175,7 @@ ReportContent compose_report(const Model& model, const SourceText& source, const
   if (parts.simulation) add_motion(content, model, equations, conserved.energy_conserved, *parts.simulation);
   if (parts.modes) add_modes(content, model, equations, *parts.modes);
   if (parts.locus) add_loci(content, model.system, *parts.locus);
+  add_orbits(content, model.system, parts);
   if (parts.verification) content.expectations = parts.verification->results;
   return content;
 }

@@ -62,6 +62,7 @@ std::string report_html(const ReportContent& content) {
       {"model", "Model", model_section(content)},
       {"motion", "Motion", motion_section(content)},
       {"modes", "Modes", modes_section(content)},
+      {"orbits", "Long run", orbits_section(content)},
       {"conserved", "Conserved quantities", conserved_section(content)},
       {"phase-space", "Phase space", phase_space_section(content)},
       {"derivation", "Derivation", derivation_section(content)},

@@ -224,6 +224,19 @@ std::string motion_section(const ReportContent& content) {
   return section("motion", "Motion", html);
 }
 
+std::string orbits_section(const ReportContent& content) {
+  std::string html;
+  for (const ReportContent::Finding& finding : content.orbits) {
+    html += fmt::format("<h3>{}</h3>\n{}", escape_html(finding.title), facts_list(finding.facts));
+    if (finding.caption.empty()) continue;
+    PlotOptions options = finding.picture;
+    options.theme = PlotTheme::Page;
+    html += fmt::format("<figure>\n{}<figcaption>{}</figcaption></figure>\n", plot_svg(finding.rows, options),
+                        sentence_html(finding.caption));
+  }
+  return section("orbits", "Long run", html);
+}
+
 std::string expectations_section(const ReportContent& content) {
   std::string rows;
   for (const auto& result : content.expectations)

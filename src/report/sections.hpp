@@ -16,6 +16,7 @@ std::string certificate_section(const ReportContent& content);
 std::string conserved_section(const ReportContent& content);
 std::string motion_section(const ReportContent& content);
 std::string modes_section(const ReportContent& content);
+std::string orbits_section(const ReportContent& content);
 std::string expectations_section(const ReportContent& content);
 
 /// The frames of a drawing for the script.

@@ -1,3 +1,4 @@
+#include "orbits_options.hpp"
 #include "outcome.hpp"
 #include "run_options.hpp"
 
@@ -16,6 +17,7 @@ struct ReportOptions {
   RunOptions run;
   std::string output;  // empty: NAME.html of the system
   bool without_run = false;
+  OrbitsOptions orbits;
 };
 
 struct EquilibriumParts {
@@ -38,14 +40,48 @@ EquilibriumParts equilibrium_parts(const Model& model, const EquationsOfMotion& 
   return out;
 }
 
+/// What was asked about the long run.
+struct LongRun {
+  std::optional<FloquetResult> floquet;
+  std::optional<SectionResult> section;
+  std::string section_what;
+  std::optional<LyapunovResult> lyapunov;
+};
+
+void find_section(const ReportOptions& options, Study& study, LongRun& out) {
+  const SectionStudy section = section_study(options.orbits, options.model, study);
+  Study& own = *section.study;
+  out.section_what = section.what;
+  if (own.equations()) out.section = poincare_section(*own.model(), *own.equations(), section.options, own.diagnostics());
+  for (const Diagnostic& d : own.diagnostics().items())  // without their places, which are in a text of their own
+    if (d.severity == Severity::Error) study.diagnostics().error(d.code, {}, d.message, d.reason, d.help);
+}
+
+/// What cannot be had is an error of the study, and no page is written.
+LongRun long_run(const ReportOptions& options, Study& study) {
+  LongRun out;
+  const Model& model = *study.model();
+  const EquationsOfMotion& equations = *study.equations();
+  const OrbitsOptions& asked = options.orbits;
+  if (asked.has_section()) find_section(options, study, out);
+  if (asked.floquet) out.floquet = floquet(model, equations, floquet_options(asked), study.diagnostics());
+  if (asked.lyapunov) out.lyapunov = lyapunov_exponents(model, equations, lyapunov_options(asked), study.diagnostics());
+  return out;
+}
+
 /// The page; a model that cannot run (no start, no `run`) still gets its equations.
-std::string page_of(Study& study, const std::optional<SimulationResult>& result, const SimulationOptions& settings) {
+std::string page_of(Study& study, const std::optional<SimulationResult>& result, const SimulationOptions& settings,
+                    const LongRun& orbits) {
   ReportParts parts;
   Verification verification;
   const EquilibriumParts equilibria = equilibrium_parts(*study.model(), *study.equations());
   if (equilibria.study) parts.modes = &*equilibria.study;
   if (equilibria.locus) parts.locus = &*equilibria.locus;
   if (result) parts.simulation = &*result;
+  if (orbits.floquet) parts.floquet = &*orbits.floquet;
+  if (orbits.section) parts.section = &*orbits.section;
+  if (orbits.lyapunov) parts.lyapunov = &*orbits.lyapunov;
+  parts.section_what = orbits.section_what;
   if (result && !study.model()->experiment.expectations.empty()) {
     verification = verify(*study.model(), *study.equations(), study.source(), settings, study.diagnostics());
     parts.verification = &verification;
@@ -66,6 +102,7 @@ ExitCode report(const ReportOptions& options, Console& console) {
   Json document = json_document("report");
   const bool readable_model = !study.wrong();
   const SimulationOptions settings = simulation_options(options.run, study.diagnostics());
+  check_orbits_options(options.orbits, study.diagnostics());
   if (readable_model && study.wrong()) {
     finish(console, study, document);
     return ExitCode::Usage;
@@ -77,7 +114,12 @@ ExitCode report(const ReportOptions& options, Console& console) {
   std::optional<SimulationResult> result;
   if (!options.without_run) result = run_model(study, report_run(*study.model(), settings), console);
   if (study.wrong()) return finish(console, study, document);
-  const std::string page = page_of(study, result, settings);
+  const LongRun orbits = long_run(options, study);
+  if (study.wrong()) {
+    finish(console, study, document);
+    return ExitCode::RunFailed;
+  }
+  const std::string page = page_of(study, result, settings, orbits);
   const std::string path = options.output.empty() ? study.model()->system.name + ".html" : options.output;
   if (path == "-") console.print(page);
   else write_result(path, page, study.diagnostics());
@@ -106,6 +148,7 @@ void add_report(CommandLine& line) {
   add_method_options(command, options->run);
   command.add_option("-o,--output", options->output, "The page (default: SYSTEM.html), or - for standard output")
       ->type_name("FILE.html");
+  add_orbits_options(command, options->orbits);
   command.add_flag("--no-run", options->without_run, "Equations alone: no motion, no pictures");
 }
 

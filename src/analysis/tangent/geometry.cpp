@@ -95,12 +95,14 @@ std::vector<double> TangentGeometry::symplectic_products(const TangentPoint& poi
   const Impl& s = *impl_;
   const Matrix slopes = s.momenta->slopes(point.state);
   const auto columns = static_cast<Index>(point.columns());
-  const Matrix y = Eigen::Map<const Matrix>(point.directions.data(), 2 * s.n, columns);
-  const Matrix q = y.topRows(s.n), p = slopes * y;
-  const Matrix products = q.transpose() * p - p.transpose() * q;
+  // Of directions that have grown, products are large and nearly cancel: their own rounding must not hide what is left.
+  using Wide = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+  const Wide y = Eigen::Map<const Matrix>(point.directions.data(), 2 * s.n, columns).cast<long double>();
+  const Wide q = y.topRows(s.n), p = slopes.cast<long double>() * y;
+  const Wide products = q.transpose() * p - p.transpose() * q;
   std::vector<double> out;
   for (Index i = 0; i < columns; ++i)
-    for (Index j = 0; j < columns; ++j) out.push_back(products(i, j));
+    for (Index j = 0; j < columns; ++j) out.push_back(static_cast<double>(products(i, j)));
   return out;
 }
 

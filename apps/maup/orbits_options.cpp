@@ -1,0 +1,118 @@
+#include "orbits_options.hpp"
+
+#include "interrupt.hpp"
+#include "quantity.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <maupertuis/constraint_manifold.hpp>
+
+namespace maupertuis::app {
+namespace {
+
+/// Of an option that check_orbits_options has found to be a time.
+std::optional<double> time_of(const std::optional<std::string>& text) {
+  return text ? parse_time(*text) : std::nullopt;
+}
+
+struct WrittenSection {
+  std::string equation;
+  SectionDirection direction = SectionDirection::Both;
+};
+
+WrittenSection split_section(std::string text) {
+  for (char& c : text)
+    if (c == '\n' || c == '\r' || c == '#') c = ' ';  // one statement, whatever was typed
+  for (const auto& [word, direction] : {std::pair(std::string(" rising"), SectionDirection::Rising),
+                                        std::pair(std::string(" falling"), SectionDirection::Falling)})
+    if (text.size() >= word.size() && text.compare(text.size() - word.size(), word.size(), word) == 0)
+      return {text.substr(0, text.size() - word.size()), direction};
+  return {text, SectionDirection::Both};
+}
+
+/// The length of the model's own run stays, as the limit of the new one.
+std::string run_until(const std::string& equation, const Model* model) {
+  double within = 1e6;
+  if (model) {
+    const Experiment& e = model->experiment;
+    const Expr length = e.duration ? e.duration : e.within;
+    if (length)
+      within = evaluate(in_terms_of_motion(model->system, {&length, 1}).front(), parameter_bindings(model->system));
+  }
+  const char* const unit = model && model->system.dimensionless ? "" : " s";
+  return fmt::format("run until {} within {}{}", equation, exact(within), unit);
+}
+
+}  // namespace
+
+void add_orbits_options(CLI::App& command, OrbitsOptions& options) {
+  const auto count = [&command](const char* name, std::size_t& value, const char* what) {
+    command.add_option(name, value, what)->check(CLI::PositiveNumber)->type_name("NUMBER");
+  };
+  const auto time = [&command](const char* name, std::optional<std::string>& value, const char* what) {
+    command.add_option(name, value, what)->type_name("TIME");
+  };
+  command.add_flag("--floquet", options.floquet,
+                   "The periodic motion next to the start, and the multipliers of its neighbours");
+  time("--period", options.period, "Its period, or near it (default: looked for; of a drive: read off)");
+  command
+      .add_option("--section", options.section,
+                  "Where the motion passes this, e.g. \"x = 0 rising\", \"θ1 = 0 falling\", \"P.y = 0\"")
+      ->type_name("EQUATION");
+  time("--strobe", options.strobe, "The motion at multiples of a time, for driven systems");
+  count("--crossings", options.crossings, "How many points of each motion (default 500)");
+  count("--starts", options.starts,
+        "How many motions, spread over the section at one energy (default: that of the model)");
+  command.add_option("--energy", options.energy, "Their energy in J (default: that of the model's start)")
+      ->type_name("NUMBER");
+  time("--longest", options.longest, "How long to follow one motion at most");
+  command.add_flag("--lyapunov", options.lyapunov, "How fast neighbours part");
+  count("--exponents", options.exponents, "How many exponents, the largest first (default: all)");
+  time("--interval", options.interval, "Time between two orthogonalizations (default: chosen)");
+  time("--transient", options.transient, "Time before the average begins (default: a tenth of the duration)");
+}
+
+void check_orbits_options(const OrbitsOptions& o, Diagnostics& diagnostics) {
+  for (const auto& [option, text] :
+       {std::pair("--period", &o.period), std::pair("--strobe", &o.strobe), std::pair("--longest", &o.longest),
+        std::pair("--interval", &o.interval), std::pair("--transient", &o.transient)})
+    if (*text && !parse_time(**text))
+      diagnostics.error("E0809", {}, fmt::format("{} \"{}\" is no time.", option, **text), {},
+                        "Write a number with a unit of time, such as 3s or 250ms.");
+  if (!o.section.empty() && o.strobe)
+    diagnostics.error("E0809", {}, "--section and --strobe exclude each other.",
+                      "One looks at the motion where it is, the other when it is time.", "Give one of them.");
+}
+
+FloquetOptions floquet_options(const OrbitsOptions& options) { return {time_of(options.period), &interrupt_flag()}; }
+
+LyapunovOptions lyapunov_options(const OrbitsOptions& options) {
+  LyapunovOptions out;
+  out.exponents = options.exponents;
+  out.interval = time_of(options.interval).value_or(0);
+  out.transient = time_of(options.transient);
+  out.interrupt = &interrupt_flag();
+  return out;
+}
+
+SectionStudy section_study(const OrbitsOptions& options, const ModelOptions& model, Study& as_written) {
+  SectionStudy out;
+  out.study = std::make_unique<Study>(as_written.source(), model.overrides);
+  const WrittenSection written = split_section(options.section);
+  out.options.direction = written.direction;
+  out.options.strobe = time_of(options.strobe);
+  out.options.longest = time_of(options.longest).value_or(0);
+  out.options.crossings = options.crossings;
+  out.options.starts = options.starts;
+  out.options.energy = options.energy;
+  out.options.interrupt = &interrupt_flag();
+  out.what = options.strobe ? fmt::format("strobe every {} s", brief(*out.options.strobe))
+                            : fmt::format("section {}", options.section);
+  if (options.strobe) return out;
+  out.study->replace_run(run_until(written.equation, as_written.model()));
+  if (const Model* m = out.study->model()) out.options.section = m->experiment.until;
+  return out;
+}
+
+}  // namespace maupertuis::app

@@ -1,0 +1,226 @@
+#include "orbits_text.hpp"
+
+#include "quantity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace maupertuis::app {
+namespace {
+
+constexpr std::size_t most_rows = 12;  // of a table on the terminal
+
+/// The unit of coordinate i (order 0) or its velocity (order 1), "" for numbers.
+std::string unit_of(const MechanicalSystem& system, std::size_t i, int order) {
+  if (system.dimensionless) return {};
+  const Dimension d = system.coordinates[i].dimension;
+  const std::string unit = to_string(order == 0 ? d : d / dimensions::time());
+  return unit == "1" ? "" : unit;
+}
+
+std::string with_unit(double value, const std::string& unit) {
+  return unit.empty() ? brief(value) : fmt::format("{} {}", brief(value), unit);
+}
+
+std::string seconds(double value, const MechanicalSystem& system) {
+  return system.dimensionless ? fmt::format("{:.12g}", value) : fmt::format("{:.12g} s", value);
+}
+
+std::string state_line(const MotionState& state, const MechanicalSystem& system) {
+  std::string out;
+  for (int order = 0; order <= 1; ++order)
+    for (std::size_t i = 0; i < system.coordinates.size(); ++i)
+      out += fmt::format("{}{}{} = {}", out.empty() ? "" : ", ", system.coordinates[i].name, order ? "'" : "",
+                         with_unit((order ? state.v : state.q)[i], unit_of(system, i, order)));
+  return out;
+}
+
+Json state_json(const MotionState& state, const MechanicalSystem& system) {
+  Json out = Json::object();
+  for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
+    out[system.coordinates[i].name] = state.q[i];
+    out[system.coordinates[i].name + "'"] = state.v[i];
+  }
+  return out;
+}
+
+std::string line(const char* head, const std::string& text) { return fmt::format("  {:<20}{}\n", head, text); }
+
+const char* stability_word(OrbitalStability stability) {
+  switch (stability) {
+    case OrbitalStability::Attracting:
+      return "attracting";
+    case OrbitalStability::Neutral:
+      return "neutral";
+    case OrbitalStability::Unstable:
+      return "unstable";
+  }
+  return "";
+}
+
+std::string stability_sentence(const FloquetResult& r) {
+  switch (r.stability) {
+    case OrbitalStability::Attracting:
+      return fmt::format("attracting: in each period neighbours come nearer by a factor {}", brief(r.largest));
+    case OrbitalStability::Neutral:
+      return r.multipliers.size() == r.trivial
+                 ? "neutral: there are no other multipliers"
+                 : "neutral: stable to first order, all multipliers lie on the unit circle";
+    case OrbitalStability::Unstable:
+      return fmt::format("unstable: in each period some neighbours move away by a factor {}", brief(r.largest));
+  }
+  return "";
+}
+
+std::string turns_text(const PeriodicMotion& m, const MechanicalSystem& system) {
+  std::string out;
+  for (std::size_t i = 0; i < m.turns.size(); ++i)
+    if (m.turns[i] != 0)
+      out += fmt::format("{}{} by {} turn{}", out.empty() ? "" : ", ", system.coordinates[i].name, m.turns[i],
+                         std::abs(m.turns[i]) == 1 ? "" : "s");
+  return out;
+}
+
+std::string multiplier_line(std::complex<double> mu, double period) {
+  const double modulus = std::abs(mu), argument = std::arg(mu);
+  const std::string value =
+      mu.imag() == 0 ? fmt::format("{:.9g}", mu.real())
+                     : fmt::format("{:.9g} {} {:.9g} i", mu.real(), mu.imag() < 0 ? "-" : "+", std::abs(mu.imag()));
+  return fmt::format("{:<32}|μ| = {:<16.9g}arg μ = {:<14.6g}log|μ|/T = {:.6g}", value, modulus, argument,
+                     std::log(modulus) / period);
+}
+
+}  // namespace
+
+std::string floquet_text(const FloquetResult& r, const MechanicalSystem& system) {
+  const PeriodicMotion& m = r.motion;
+  std::string out = fmt::format("{}: a periodic motion\n", system.name);
+  out += line("period", seconds(m.period, system) + (m.driven ? ", of the drive" : ""));
+  out += line("start", state_line(m.start, system));
+  if (const std::string turns = turns_text(m, system); !turns.empty()) out += line("advances", turns);
+  out += line("closed to", fmt::format("{:.2g} of its size, after {} correction{} that moved the start by {:.2g}",
+                                       m.closure, m.iterations, m.iterations == 1 ? "" : "s", m.moved));
+  for (std::size_t i = 0; i + r.trivial < r.multipliers.size(); ++i)
+    out += line(i == 0 ? "multipliers" : "", multiplier_line(r.multipliers[i], m.period));
+  if (r.trivial == 1) out += line("trivial", "1, along the motion");
+  if (r.trivial == 2) out += line("trivial", "1 and 1, along the motion and from orbit to orbit as the energy changes");
+  out += line("stability", stability_sentence(r));
+  if (r.symplectic_residual)
+    out += line("check", fmt::format("the symplectic form is preserved to {:.2g}", *r.symplectic_residual));
+  if (r.log_determinant && !r.symplectic_residual)
+    out += line("check", fmt::format("log |det dΦ| = {:.12g}, and ∫ divergence dt = {:.12g}", *r.log_determinant,
+                                     *r.integrated_divergence));
+  return out;
+}
+
+Json floquet_json(const FloquetResult& r, const MechanicalSystem& system) {
+  const PeriodicMotion& m = r.motion;
+  Json out = {{"period", m.period}, {"start", state_json(m.start, system)}, {"t", m.start.t}, {"driven", m.driven}};
+  out["turns"] = Json::object();
+  for (std::size_t i = 0; i < m.turns.size(); ++i) out["turns"][system.coordinates[i].name] = m.turns[i];
+  out["closure"] = m.closure;
+  out["moved"] = m.moved;
+  out["iterations"] = m.iterations;
+  out["multipliers"] = Json::array();
+  for (const std::complex<double>& mu : r.multipliers)
+    out["multipliers"].push_back({{"real", mu.real()}, {"imaginary", mu.imag()}});
+  out["trivial"] = r.trivial;
+  out["trace"] = r.trace;
+  out["largest"] = r.largest;
+  out["stability"] = stability_word(r.stability);
+  const auto or_null = [](const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); };
+  out["checks"] = {{"symplectic_residual", or_null(r.symplectic_residual)},
+                   {"log_determinant", or_null(r.log_determinant)},
+                   {"integrated_divergence", or_null(r.integrated_divergence)}};
+  return out;
+}
+
+// ------------------------------------------------------------------------------------------------------------ sections
+
+std::string section_text(const SectionResult& r, const std::string& what, const MechanicalSystem& system) {
+  std::string out = fmt::format("{}: {}, {} crossing{} of {} motion{}\n", system.name, what, r.crossings.size(),
+                                r.crossings.size() == 1 ? "" : "s", r.orbits.size(), r.orbits.size() == 1 ? "" : "s");
+  double low = r.orbits.front().energy, high = low, drift = 0;
+  std::size_t early = 0;
+  for (const SectionOrbit& o : r.orbits) {
+    low = std::min(low, o.energy), high = std::max(high, o.energy);
+    drift = std::max(drift, o.energy_drift);
+    early += !o.ended.empty();
+  }
+  if (r.energy_conserved)
+    out +=
+        line("energy", fmt::format("{}, drift at most {:.2g}", with_unit(low, system.dimensionless ? "" : "J"), drift));
+  if (r.largest_miss > 0)
+    out += line("on the section to", fmt::format("{:.2g} of its largest value between crossings", r.largest_miss));
+  if (early > 0)
+    out += line("ended early", fmt::format("{} of them, the first because: {}", early,
+                                           std::find_if(r.orbits.begin(), r.orbits.end(), [](const SectionOrbit& o) {
+                                             return !o.ended.empty();
+                                           })->ended));
+  if (r.orbits.size() > 1) return out;
+  for (std::size_t k = 0; k < std::min(most_rows, r.crossings.size()); ++k)
+    out += line(fmt::format("t = {}", seconds(r.crossings[k].state.t, system)).c_str(),
+                "  " + state_line(r.crossings[k].state, system));
+  if (r.crossings.size() > most_rows)
+    out += fmt::format("  … and {} more; -o FILE.csv has them all\n", r.crossings.size() - most_rows);
+  return out;
+}
+
+Json section_json(const SectionResult& r, const std::string& what, const MechanicalSystem& system) {
+  Json out = {{"section", what}, {"energy_conserved", r.energy_conserved}, {"largest_miss", r.largest_miss}};
+  out["orbits"] = Json::array();
+  for (const SectionOrbit& o : r.orbits)
+    out["orbits"].push_back({{"start", state_json(o.start, system)},
+                             {"energy", o.energy},
+                             {"energy_drift", o.energy_drift},
+                             {"crossings", o.crossings},
+                             {"reached", o.reached},
+                             {"ended", o.ended}});
+  out["crossings"] = Json::array();
+  for (const Crossing& c : r.crossings)
+    out["crossings"].push_back(
+        {{"orbit", c.orbit}, {"number", c.number}, {"t", c.state.t}, {"state", state_json(c.state, system)}});
+  return out;
+}
+
+// --------------------------------------------------------------------------------------------------------- Lyapunov
+
+std::string lyapunov_text(const LyapunovResult& r) {
+  std::string out = fmt::format("Lyapunov exponents, the mean over {} s ({} intervals)\n", brief(r.duration),
+                                static_cast<std::size_t>(std::round(r.duration / r.interval)));
+  for (std::size_t j = 0; j < r.exponents.size(); ++j)
+    out += line(fmt::format("λ{}", j + 1).c_str(), fmt::format("{: .6g} ± {:.2g} 1/s", r.exponents[j], r.errors[j]));
+  if (r.exponents.size() == r.dimension)
+    out +=
+        line("sum", fmt::format("{: .3g} 1/s{}", r.sum,
+                                r.expected_sum ? fmt::format(", the mean divergence {:.3g} 1/s (Liouville, to {:.2g})",
+                                                             *r.expected_sum, *r.sum_rule_residual)
+                                               : ""));
+  const double first = r.exponents.front();
+  if (first > 3 * r.errors.front())
+    out += line("chaotic", fmt::format("neighbours part by a factor e in {} s", brief(1 / first)));
+  else
+    out += line("not shown chaotic", "the largest exponent is not clearly above zero");
+  if (r.kaplan_yorke) out += line("dimension", fmt::format("{:.4g}, by Kaplan and Yorke", *r.kaplan_yorke));
+  if (!r.ended.empty()) out += line("ended early", r.ended);
+  return out;
+}
+
+Json lyapunov_json(const LyapunovResult& r) {
+  const auto or_null = [](const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); };
+  return {{"exponents", r.exponents},
+          {"errors", r.errors},
+          {"dimension", r.dimension},
+          {"sum", r.sum},
+          {"expected_sum", or_null(r.expected_sum)},
+          {"sum_rule_residual", or_null(r.sum_rule_residual)},
+          {"kaplan_yorke", or_null(r.kaplan_yorke)},
+          {"duration", r.duration},
+          {"interval", r.interval},
+          {"blocks", r.blocks},
+          {"ended", r.ended}};
+}
+
+}  // namespace maupertuis::app

@@ -1,0 +1,158 @@
+#pragma once
+#include <maupertuis/diagnostic.hpp>
+#include <maupertuis/simulation.hpp>
+#include <maupertuis/tangent.hpp>
+#include <maupertuis/trajectory.hpp>
+#include <maupertuis/trajectory.hpp>
+
+#include <atomic>
+#include <complex>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Periodic motions, sections through the motion, and how fast neighbours part (docs/theory/orbits.md).
+namespace maupertuis {
+
+// ------------------------------------------------------------------------------------------------- periodic motions
+
+struct FloquetOptions {
+  std::optional<double> period;  // s: of the motion, or near it; nothing: looked for within the model's run
+  const std::atomic<bool>* interrupt = nullptr;
+};
+
+/// What decides whether neighbours of a periodic motion stay near it.
+enum class OrbitalStability {
+  Attracting,  // every multiplier but the trivial ones lies inside the unit circle
+  Neutral,     // all of them on it, to what rounding lets see: stable to first order
+  Unstable,    // one lies outside
+};
+
+/// A motion that repeats: Φ_T(x) = x, angles up to whole turns.
+struct PeriodicMotion {
+  MotionState start;       // on the orbit
+  double period = 0;       // s
+  std::vector<int> turns;  // [n] by how many turns each coordinate advances; 0 for those that are no angles
+  bool driven = false;     // t stands in the equations: the period is that of the drive, or a multiple
+  double moved = 0;        // how far Newton's method moved the start, relative to the size of the orbit
+  double closure = 0;      // |Φ_T(x) − x| relative to that size
+  int iterations = 0;
+};
+
+/// The eigenvalues of dΦ_T at a periodic motion, on the directions that the constraints allow.
+struct FloquetResult {
+  PeriodicMotion motion;
+  /// [d] largest first; the trivial ones, exactly 1, last: one along the motion (no drive), a second where the energy
+  /// is conserved. The others are those of dΦ_T on the quotient, so that the defective pair at 1 does not spoil them.
+  std::vector<std::complex<double>> multipliers;
+  std::size_t trivial = 0;
+  double trace = 0;    // of dΦ_T
+  double largest = 0;  // |μ| of the largest that is not trivial; 0 if there is none
+  OrbitalStability stability = OrbitalStability::Neutral;
+  /// Checks. ω(T) against ω(0) on a basis, relative; nothing where the motion is not that of a Lagrangian alone.
+  std::optional<double> symplectic_residual;
+  /// log |det dΦ_T| and ∫ divergence dt over the period, which must agree (Liouville); nothing for constraints between
+  /// velocities.
+  std::optional<double> log_determinant, integrated_divergence;
+};
+
+/// Finds the periodic motion next to the start of the model by Newton's method on Φ_T(x) − x with the derivative of the
+/// tangent equations, T free unless the system is driven, and its multipliers. Where periodic motions come in families,
+/// the nearest. Nothing, with a diagnostic: no return is found or Newton's method does not converge (E1401), the motion
+/// rests (E1402), an acceleration jumps (E1403), the drive does not repeat with the period, or there is a drive of
+/// unknown period (E1404), a run ends early (E1408).
+std::optional<FloquetResult> floquet(const Model& model, const EquationsOfMotion& equations,
+                                     const FloquetOptions& options, Diagnostics& diagnostics);
+
+// --------------------------------------------------------------------------------------------------- Poincaré sections
+
+enum class SectionDirection { Rising, Falling, Both };
+
+struct SectionOptions {
+  Expr section;  // of q, q', t; its zeros are the section. Empty: a strobe
+  SectionDirection direction = SectionDirection::Both;
+  std::optional<double> strobe;  // s: the state after each of these times, for driven systems
+  std::size_t crossings = 500;   // of each motion
+  std::size_t starts = 1;        // 1: that of the model alone; more: spread over the section at its energy
+  std::optional<double> energy;  // J, instead of that of the model's start
+  double longest = 0;            // s: no motion is followed for longer; 0: 10⁴ times the model's run, or 10⁶ s
+  double tolerance = 0;          // of the steps; 0: rounding level
+  const std::atomic<bool>* interrupt = nullptr;
+  std::function<void(double)> progress;
+};
+
+struct Crossing {
+  std::size_t orbit = 0;   // index in SectionResult::starts
+  std::size_t number = 0;  // 1, 2, … along its motion
+  MotionState state;
+};
+
+struct SectionOrbit {
+  MotionState start;
+  double energy = 0;        // J
+  double energy_drift = 0;  // largest |h_E − energy| at the crossings, relative to the sizes of the terms of h_E
+  std::size_t crossings = 0;
+  double reached = 0;  // s
+  std::string ended;   // why before all crossings; empty: it did not
+};
+
+struct SectionResult {
+  std::vector<SectionOrbit> orbits;
+  std::vector<Crossing> crossings;  // orbit by orbit
+  bool energy_conserved = false;
+  double largest_miss = 0;  // the largest |section| at a crossing, relative to the largest between crossings
+  std::size_t across = 0;   // the coordinate whose q and q' show the section best
+  std::vector<std::pair<double, double>>
+      outline;  // several starts: the border of what the energy allows, in q and q' of `across`; closed
+};
+
+/// Where motions cross a section, located to rounding by the events of the Taylor steps. Several starts are spread
+/// evenly over the part of the section that their common energy allows: two coordinates, no constraints, energy
+/// conserved. Nothing, with a diagnostic: never crossed (E1405), no time (E1406), several starts where they cannot be
+/// had (E1407), the section is constant (E1409).
+std::optional<SectionResult> poincare_section(const Model& model, const EquationsOfMotion& equations,
+                                              const SectionOptions& options, Diagnostics& diagnostics);
+
+/// Columns orbit, number, then q and q': a row a crossing, its time that of the crossing.
+Trajectory section_rows(const SectionResult& result, const MechanicalSystem& system);
+
+// ------------------------------------------------------------------------------------------------ Lyapunov exponents
+
+struct LyapunovOptions {
+  std::size_t exponents = 0;        // how many, the largest first; 0: all
+  std::optional<double> duration;   // s; nothing: the model's run
+  double interval = 0;              // s between orthogonalizations; 0: chosen
+  std::optional<double> transient;  // s of the motion before the average begins; nothing: a tenth of the duration
+  const std::atomic<bool>* interrupt = nullptr;
+  std::function<void(double)> progress;
+};
+
+struct LyapunovResult {
+  std::size_t dimension = 0;      // d: directions that the constraints allow
+  std::vector<double> exponents;  // [k] 1/s, in the order of the orthogonalization
+  std::vector<double> errors;   // [k] the standard error from the scatter of blocks, or the change over the second half
+                                // of the run where that is larger (exponents that are zero converge as log t / t)
+  std::vector<double> times;    // s since the average began
+  std::vector<double> running;  // [times × k] the averages so far
+  double duration = 0, interval = 0;  // s
+  std::size_t blocks = 0;
+  double sum = 0;                      // of the exponents
+  std::optional<double> expected_sum;  // the mean divergence of the flow; all exponents asked for
+  // |sum − mean divergence| with the volumes of the directions at both ends taken into account, 1/s: rounding alone.
+  std::optional<double> sum_rule_residual;
+  std::optional<double> kaplan_yorke;  // dimension of the attractor; where the sum is negative and all are there
+  std::string ended;                   // why before the end; empty: it did not
+};
+
+/// Mean growth rates of neighbours by the tangent equations, orthogonalized at intervals (Benettin; Shimada and
+/// Nagashima): exact equations, so that no distance has to be chosen. Nothing, with a diagnostic: no time (E1406), an
+/// acceleration jumps (E1403), the run ends before anything was measured (E1408).
+std::optional<LyapunovResult> lyapunov_exponents(const Model& model, const EquationsOfMotion& equations,
+                                                 const LyapunovOptions& options, Diagnostics& diagnostics);
+
+/// The averages so far, a column λ1, λ2, … an exponent.
+Trajectory lyapunov_rows(const LyapunovResult& result, const MechanicalSystem& system);
+
+}  // namespace maupertuis

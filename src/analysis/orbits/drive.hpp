@@ -1,0 +1,23 @@
+#pragma once
+#include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/motion_kernel.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace maupertuis::orbits {
+
+/// Whether t stands in the equations of motion or the constraints.
+bool depends_on_time(const EquationsOfMotion& equations);
+
+/// The common period of the sines and cosines of t in the equations, if t stands in their arguments linearly and they
+/// have one. s
+std::optional<double> period_of_drive(const EquationsOfMotion& equations);
+
+/// Whether the accelerations at these states are the same when t is later by `period`, and when coordinate i is larger
+/// by 2π: to rounding.
+bool repeats_in_time(const MotionKernel& motion, const std::vector<MotionState>& states, double period);
+bool repeats_in_angle(const MotionKernel& motion, const std::vector<MotionState>& states, std::size_t coordinate);
+
+}  // namespace maupertuis::orbits

@@ -1,0 +1,130 @@
+#include "analysis/orbits/closing.hpp"
+#include "analysis/orbits/divergence.hpp"
+#include "analysis/tangent/point_functions.hpp"
+
+#include <eigen3/Eigen/Eigenvalues>
+#include <eigen3/Eigen/LU>
+#include <eigen3/Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+
+namespace maupertuis {
+namespace {
+
+using orbits::Closed;
+using orbits::ReturnMap;
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+using Index = Eigen::Index;
+
+/// How far from the unit circle a multiplier may lie by rounding. Those of a Lagrangian motion come in pairs μ, 1/μ,
+/// which may be defective where further integrals exist: then rounding ε shows as √ε.
+double width_of_circle(const FloquetResult& result) {
+  const double closure = std::max(result.motion.closure, 1e-14);
+  return result.symplectic_residual ? std::max(1e-6, 10 * std::sqrt(closure)) : std::max(1e-9, 1e3 * closure);
+}
+
+/// The part of the return map that is not trivial. f is an eigenvector with the multiplier 1, and ∂E an eigenvector of
+/// the transpose: on the directions that are normal to both, dΦ_T is that of the quotient, in orthonormal directions.
+Matrix quotient(const ReturnMap& map, std::vector<Vector> trivial) {
+  if (trivial.empty()) return map.monodromy;
+  Matrix rows(map.monodromy.rows(), static_cast<Index>(trivial.size()));
+  for (std::size_t i = 0; i < trivial.size(); ++i) rows.col(static_cast<Index>(i)) = trivial[i].normalized();
+  const Index d = rows.rows();
+  const Matrix q = Eigen::HouseholderQR<Matrix>(rows).householderQ() * Matrix::Identity(d, d);
+  const Matrix rest = q.rightCols(d - rows.cols());
+  return rest.transpose() * map.monodromy * rest;
+}
+
+class Multipliers {
+ public:
+  Multipliers(const EquationsOfMotion& equations, const Closed& closed)
+      : equations_(equations), closed_(closed), map_(orbits::return_map(closed.begin, closed.end, closed.sizes)) {}
+
+  void fill(FloquetResult& out) const {
+    const std::vector<Vector> trivial = trivial_directions(out.motion.driven);
+    out.trivial = trivial.size();
+    out.trace = map_.monodromy.trace();
+    const Matrix rest = quotient(map_, trivial);
+    if (rest.rows() > 0) {
+      const auto values = Eigen::EigenSolver<Matrix>(rest, false).eigenvalues();
+      out.multipliers.assign(values.begin(), values.end());
+    }
+    const auto larger = [](const std::complex<double>& a, const std::complex<double>& b) {
+      if (std::abs(std::abs(a) - std::abs(b)) > 1e-12 * std::abs(a)) return std::abs(a) > std::abs(b);
+      return a.real() != b.real() ? a.real() > b.real() : a.imag() > b.imag();
+    };
+    std::sort(out.multipliers.begin(), out.multipliers.end(), larger);
+    out.largest = out.multipliers.empty() ? 0 : std::abs(out.multipliers.front());
+    out.multipliers.insert(out.multipliers.end(), out.trivial, 1.0);
+  }
+
+  double log_determinant() const {
+    const Eigen::PartialPivLU<Matrix> lu(map_.monodromy);
+    return lu.matrixLU().diagonal().cwiseAbs().array().log().sum();
+  }
+
+ private:
+  /// In the coordinates of the return map.
+  std::vector<Vector> trivial_directions(bool driven) const {
+    std::vector<Vector> out;
+    if (driven) return out;
+    const Vector size = Eigen::Map<const Vector>(closed_.sizes.data(), static_cast<Index>(closed_.sizes.size()));
+    out.push_back(map_.directions.transpose() * closed_.flow.cwiseQuotient(size));
+    if (!conserved_quantities(equations_).energy_conserved) return out;
+    const tangent::PointFunctions energy(*equations_.system, {&equations_.energy_function, 1});
+    const Vector slope = energy.slopes(closed_.motion.start).row(0).transpose();
+    out.push_back(map_.directions.transpose() * slope.cwiseProduct(size));
+    return out;
+  }
+
+  const EquationsOfMotion& equations_;
+  const Closed& closed_;
+  ReturnMap map_;
+};
+
+double symplectic_residual(const TangentGeometry& geometry, const Closed& closed) {
+  const auto before = geometry.symplectic_products(closed.begin), after = geometry.symplectic_products(closed.end);
+  double difference = 0, size = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (const double here = std::abs(after[i] - before[i]); !(here <= difference))
+      difference = here;  // also not a number
+    size = std::max(size, std::abs(before[i]));
+  }
+  return size > 0 ? difference / size : difference;
+}
+
+void check(const EquationsOfMotion& equations, const Closed& closed, const Multipliers& multipliers,
+           FloquetResult& out) {
+  const TangentGeometry geometry(equations);
+  if (geometry.symplectic()) out.symplectic_residual = symplectic_residual(geometry, closed);
+  out.integrated_divergence =
+      orbits::integrated_divergence(equations, geometry, closed.motion.start, closed.motion.period);
+  if (out.integrated_divergence) out.log_determinant = multipliers.log_determinant();
+}
+
+OrbitalStability stability_of(const FloquetResult& out) {
+  if (out.multipliers.size() == out.trivial) return OrbitalStability::Neutral;
+  const double width = width_of_circle(out);
+  return out.largest > 1 + width   ? OrbitalStability::Unstable
+         : out.largest < 1 - width ? OrbitalStability::Attracting
+                                   : OrbitalStability::Neutral;
+}
+
+}  // namespace
+
+std::optional<FloquetResult> floquet(const Model& model, const EquationsOfMotion& equations,
+                                     const FloquetOptions& options, Diagnostics& diagnostics) {
+  const auto closed = orbits::close_motion(model, equations, options, diagnostics);
+  if (!closed) return std::nullopt;
+  FloquetResult out;
+  out.motion = closed->motion;
+  const Multipliers multipliers(equations, *closed);
+  multipliers.fill(out);
+  check(equations, *closed, multipliers, out);
+  out.stability = stability_of(out);
+  return out;
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,257 @@
+#include "analysis/orbits/divergence.hpp"
+#include "analysis/orbits/messages.hpp"
+#include "analysis/orbits/survey.hpp"
+
+#include <maupertuis/orbits.hpp>
+
+#include <fmt/format.h>
+#include <eigen3/Eigen/LU>
+#include <eigen3/Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+/// Directions are carried by the tangent equations and orthogonalized at intervals: the logarithms of what the
+/// orthogonalization takes away add up to the exponents, the largest first (Benettin, Galgani, Giorgilli and Strelcyn,
+/// Meccanica 15, 1980; Shimada and Nagashima, Prog. Theor. Phys. 61, 1979). The exponents do not depend on the measure
+/// of directions; numbers do, so that every component is measured by the size it gets along the motion.
+namespace maupertuis {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+using Index = Eigen::Index;
+
+constexpr std::size_t most_blocks = 20;
+constexpr std::size_t rows_of_convergence = 400;
+constexpr double steps_of_interval =
+    8;  // Taylor steps between orthogonalizations: directions grow by some e in a step at most
+constexpr double least_intervals = 40;
+
+class LyapunovRun {
+ public:
+  LyapunovRun(const Model& model, const EquationsOfMotion& equations, const LyapunovOptions& options,
+              Diagnostics& diagnostics)
+      : model_(model),
+        equations_(equations),
+        options_(options),
+        diagnostics_(diagnostics),
+        geometry_(equations),
+        flow_(equations, {0, 100'000'000, options.interrupt}) {}
+
+  std::optional<LyapunovResult> carry_out() {
+    if (!plan() || !choose_directions() || !warm_up()) return std::nullopt;
+    for (std::size_t k = 0; k < intervals_ && interval(); ++k) {
+      if (options_.progress) options_.progress((k + 1.0) / static_cast<double>(intervals_));
+    }
+    if (logs_.empty()) return std::nullopt;  // told
+    average();
+    return std::move(out_);
+  }
+
+ private:
+  bool plan() {
+    const auto start = consistent_start(model_, equations_, diagnostics_);
+    const auto duration = length_of_run();
+    if (!start || !duration) return false;
+    transient_ = options_.transient.value_or(0.1 * *duration);
+    if (!(transient_ >= 0 && std::isfinite(transient_))) return orbits::refuse_no_time("the transient", diagnostics_);
+    const MotionKernel motion = motion_kernel(equations_);
+    const double look = std::min(*duration, std::max(0.02 * *duration, transient_));
+    const orbits::Survey seen = orbits::survey(*equations_.system, motion, start->state, look, options_.interrupt);
+    if (seen.steps == 0) return orbits::refuse_end(start->state.t, seen.ended, diagnostics_);
+    sizes_ = Eigen::Map<const Vector>(seen.sizes.data(), static_cast<Index>(seen.sizes.size()));
+    const double step = (seen.states.back().t - start->state.t) / static_cast<double>(seen.steps);
+    const double wanted =
+        options_.interval > 0 ? options_.interval : std::min(steps_of_interval * step, *duration / least_intervals);
+    intervals_ = static_cast<std::size_t>(std::max(1.0, std::round(*duration / wanted)));
+    out_.interval = *duration / static_cast<double>(intervals_);
+    point_.state = start->state;
+    return true;
+  }
+
+  std::optional<double> length_of_run() const { return orbits::length_of_run(model_, options_.duration, diagnostics_); }
+
+  /// The first of an orthonormal basis, turned so that no direction is special.
+  bool choose_directions() {
+    const TangentPoint all = flow_.all_directions(point_.state);
+    const Matrix basis = Eigen::Map<const Matrix>(all.directions.data(), static_cast<Index>(all.width()),
+                                                  static_cast<Index>(all.columns()));
+    const Index d = basis.cols(), k = options_.exponents == 0 ? d : std::min(d, static_cast<Index>(options_.exponents));
+    out_.dimension = static_cast<std::size_t>(d);
+    if (k == 0) {
+      diagnostics_.error("E1410", {}, "the constraints leave nothing that could move",
+                         "Without a freedom there are no neighbours.", "Leave a constraint out.");
+      return false;
+    }
+    Matrix turn(d, k);
+    for (Index i = 0; i < d; ++i)
+      for (Index j = 0; j < k; ++j)
+        turn(i, j) = std::cos(1.0 + 2.0 * static_cast<double>(i) + 3.0 * static_cast<double>(i * j) +
+                              static_cast<double>(j * j));
+    directions_ = sizes_.cwiseInverse().asDiagonal() * (basis * turn);
+    orthogonalize();
+    return true;
+  }
+
+  /// R of the QR factors, its diagonal's logarithms; directions_ becomes Q.
+  Vector orthogonalize() {
+    Eigen::HouseholderQR<Matrix> qr(directions_);
+    const Vector diagonal = qr.matrixQR().diagonal();
+    directions_ = qr.householderQ() * Matrix::Identity(directions_.rows(), directions_.cols());
+    return diagonal.cwiseAbs().array().log();
+  }
+
+  /// Directions over one interval, with what was found there; false where the motion does not go on.
+  std::optional<Vector> carry(double t) {
+    const Matrix in_state = sizes_.asDiagonal() * directions_;
+    point_.directions.assign(in_state.data(), in_state.data() + in_state.size());
+    if (const auto stop = flow_.advance(point_, t)) {
+      stop_ = *stop;
+      return std::nullopt;
+    }
+    directions_ = sizes_.cwiseInverse().asDiagonal() *
+                  Eigen::Map<const Matrix>(point_.directions.data(), in_state.rows(), in_state.cols());
+    const Vector logs = orthogonalize();
+    if (logs.allFinite()) return logs;
+    stop_ = {StepEnding::Overflow, point_.state.t, "A direction shrank to nothing, or grew beyond all numbers."};
+    return std::nullopt;
+  }
+
+  bool tell_stop() {
+    if (stop_.ending == StepEnding::None) return orbits::refuse_jump(stop_.t, stop_.reason, diagnostics_);
+    return orbits::refuse_end(stop_.t, stop_.reason, diagnostics_);
+  }
+
+  bool warm_up() {
+    const double begin = point_.state.t;
+    const auto count = static_cast<std::size_t>(std::ceil(transient_ / out_.interval));
+    for (std::size_t k = 1; k <= count; ++k)
+      if (!carry(begin + transient_ * static_cast<double>(k) / static_cast<double>(count))) return tell_stop();
+    begin_ = point_.state.t;
+    before_ = point_.state;
+    frame_before_ = directions_;
+    return true;
+  }
+
+  bool interval() {
+    const auto logs = carry(begin_ + out_.interval * static_cast<double>(logs_.size() + 1));
+    if (logs) {
+      logs_.push_back(*logs);
+      frame_after_ = directions_;
+      return true;
+    }
+    if (stop_.ending == StepEnding::None) logs_.clear();
+    if (logs_.empty()) return tell_stop();
+    out_.ended = stop_.reason;
+    return false;
+  }
+
+  void average() {
+    const auto k = static_cast<std::size_t>(directions_.cols());
+    out_.duration = out_.interval * static_cast<double>(logs_.size());
+    const std::size_t stride = std::max<std::size_t>(1, logs_.size() / rows_of_convergence);
+    std::vector<double> sum(k, 0.0), half(k, 0.0);
+    for (std::size_t i = 0; i < logs_.size(); ++i) {
+      for (std::size_t j = 0; j < k; ++j) sum[j] += logs_[i][static_cast<Index>(j)];
+      if (i + 1 == (logs_.size() + 1) / 2) half = sum;
+      if ((i + 1) % stride != 0 && i + 1 != logs_.size()) continue;
+      out_.times.push_back(out_.interval * static_cast<double>(i + 1));
+      for (const double s : sum) out_.running.push_back(s / out_.times.back());
+    }
+    const double first_half = out_.interval * static_cast<double>((logs_.size() + 1) / 2);
+    for (std::size_t j = 0; j < k; ++j) {
+      out_.exponents.push_back(sum[j] / out_.duration);
+      out_.errors.push_back(std::max(scatter(j), std::abs(out_.exponents[j] - half[j] / first_half)));
+    }
+    out_.sum = std::accumulate(out_.exponents.begin(), out_.exponents.end(), 0.0);
+    if (k == out_.dimension) compare_sum();
+  }
+
+  /// The standard error of the mean of the blocks.
+  double scatter(std::size_t j) {
+    out_.blocks = std::min(most_blocks, logs_.size());
+    std::vector<double> means;
+    for (std::size_t b = 0; b < out_.blocks; ++b) {
+      const std::size_t first = b * logs_.size() / out_.blocks, last = (b + 1) * logs_.size() / out_.blocks;
+      double sum = 0;
+      for (std::size_t i = first; i < last; ++i) sum += logs_[i][static_cast<Index>(j)];
+      means.push_back(sum / (out_.interval * static_cast<double>(last - first)));
+    }
+    const auto count = static_cast<double>(means.size());
+    const double mean = std::accumulate(means.begin(), means.end(), 0.0) / count;
+    double square = 0;
+    for (const double x : means) square += (x - mean) * (x - mean);
+    return count > 1 ? std::sqrt(square / (count - 1) / count) : 0;
+  }
+
+  void compare_sum() {
+    if (const auto volume = orbits::integrated_divergence(equations_, geometry_, before_, out_.duration)) {
+      out_.expected_sum = *volume / out_.duration;
+      check_sum();
+    }
+    const double largest = std::abs(*std::max_element(out_.exponents.begin(), out_.exponents.end()));
+    if (!(out_.expected_sum.value_or(out_.sum) < -1e-9 * largest)) return;  // no attractor where volumes stay
+    std::vector<double> sorted = out_.exponents;
+    std::sort(sorted.rbegin(), sorted.rend());
+    double partial = 0;
+    for (std::size_t j = 0; j < sorted.size(); ++j) {
+      if (partial + sorted[j] < 0) {
+        out_.kaplan_yorke = static_cast<double>(j) + partial / std::abs(sorted[j]);
+        break;
+      }
+      partial += sorted[j];
+    }
+  }
+
+  /// Liouville's theorem speaks of the volume in q and p. That of the directions, orthonormal in (q, q̇), is √|det ω| of
+  /// them: with its change from the first end to the last the rule holds for the run as it is, not only in the mean.
+  void check_sum() {
+    const double ends = (log_volume(frame_after_, point_.state) - log_volume(frame_before_, before_)) / out_.duration;
+    double largest = std::abs(*out_.expected_sum);
+    for (const double x : out_.exponents) largest = std::max(largest, std::abs(x));
+    out_.sum_rule_residual = std::abs(out_.sum + ends - *out_.expected_sum);
+    if (*out_.sum_rule_residual <= 1e-6 * largest + 1e-9 / out_.interval) return;
+    diagnostics_.warning(
+        "W1401", {},
+        fmt::format("the exponents add up to {:.6g} 1/s instead of {:.6g} 1/s", out_.sum + ends, *out_.expected_sum),
+        "Their sum is the mean divergence of the flow (Liouville): directions were lost to rounding between two "
+        "orthogonalizations.",
+        "Give a shorter --interval.");
+  }
+
+  double log_volume(const Matrix& frame, const MotionState& state) const {
+    const Matrix in_state = sizes_.asDiagonal() * frame;
+    const TangentPoint point{state, {in_state.data(), in_state.data() + in_state.size()}};
+    const auto products = geometry_.symplectic_products(point);
+    const Matrix form = Eigen::Map<const Matrix>(products.data(), frame.cols(), frame.cols());
+    return 0.5 * Eigen::PartialPivLU<Matrix>(form).matrixLU().diagonal().cwiseAbs().array().log().sum();
+  }
+
+  const Model& model_;
+  const EquationsOfMotion& equations_;
+  const LyapunovOptions& options_;
+  Diagnostics& diagnostics_;
+  TangentGeometry geometry_;
+  TangentFlow flow_;
+  TangentPoint point_;
+  Matrix directions_;  // [2n × k], orthonormal in units of the sizes
+  Vector sizes_;
+  double transient_ = 0, begin_ = 0;
+  std::size_t intervals_ = 0;
+  MotionState before_;                 // where the average begins
+  Matrix frame_before_, frame_after_;  // the directions there, and at the end
+  std::vector<Vector> logs_;           // of each interval
+  TangentStop stop_;
+  LyapunovResult out_;
+};
+
+}  // namespace
+
+std::optional<LyapunovResult> lyapunov_exponents(const Model& model, const EquationsOfMotion& equations,
+                                                 const LyapunovOptions& options, Diagnostics& diagnostics) {
+  return LyapunovRun(model, equations, options, diagnostics).carry_out();
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,40 @@
+#include "analysis/orbits/messages.hpp"
+
+#include <maupertuis/constraint_manifold.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace maupertuis::orbits {
+
+bool refuse_no_time(const std::string& what, Diagnostics& diagnostics) {
+  diagnostics.error("E1406", {}, fmt::format("{} is a positive, finite time", what), "Nothing happens in no time.",
+                    "Give one such as 10 s.");
+  return false;
+}
+
+bool refuse_end(double t, const std::string& reason, Diagnostics& diagnostics) {
+  diagnostics.error("E1408", {}, fmt::format("the motion ends at t = {:.9g} s", t), reason,
+                    "Choose another start, or a shorter time.");
+  return false;
+}
+
+bool refuse_jump(double t, const std::string& reason, Diagnostics& diagnostics) {
+  diagnostics.error("E1403", {}, fmt::format("the motion has no derivative by its start beyond t = {:.9g} s", t),
+                    reason, "Replace the jump by a smooth function, such as tanh(x/w) for sign(x).");
+  return false;
+}
+
+std::optional<double> length_of_run(const Model& model, std::optional<double> asked, Diagnostics& diagnostics) {
+  const Experiment& experiment = model.experiment;
+  const Expr written = experiment.duration ? experiment.duration : experiment.within;
+  std::optional<double> length = asked;
+  if (!length && written)
+    length = evaluate(in_terms_of_motion(model.system, {&written, 1}).front(), parameter_bindings(model.system));
+  if (length && *length > 0 && std::isfinite(*length)) return length;
+  refuse_no_time(length ? "the duration" : "a duration is needed, and it", diagnostics);
+  return std::nullopt;
+}
+
+}  // namespace maupertuis::orbits

@@ -1,0 +1,23 @@
+#pragma once
+#include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/motion_kernel.hpp>
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+namespace maupertuis::orbits {
+
+/// A stretch of a motion in enough states to see its shape.
+struct Survey {
+  std::vector<MotionState> states;
+  std::vector<double> sizes;  // [2n] how large each coordinate and each velocity gets, > 0: half its range, an angle at
+                              // most π; its largest value
+  std::size_t steps = 0;
+  std::string ended;  // why before the end; empty: it did not
+};
+
+Survey survey(const MechanicalSystem& system, const MotionKernel& motion, const MotionState& start, double duration,
+              const std::atomic<bool>* interrupt);
+
+}  // namespace maupertuis::orbits

@@ -1,0 +1,113 @@
+// maup orbits, from outside.
+#include "program.hpp"
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+using namespace cli_test;
+using Json = nlohmann::json;
+
+namespace {
+
+const std::string henon_heiles =
+    "system hh \"Hénon and Heiles\"\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n"
+    "V = 1/2 (x^2 + y^2) + x^2 y - 1/3 y^3\nstart x' = 0.5, y = 0.1\nrun 200\n";
+
+std::string code_of(const Outcome& outcome) {
+  const Json document = Json::parse(outcome.out);
+  REQUIRE(document.at("diagnostics").size() == 1);
+  return document.at("diagnostics")[0].at("code");
+}
+
+}  // namespace
+
+TEST_CASE("orbits --floquet: the pendulum's period, text and document") {
+  const Folder folder;
+  const std::string model = folder.write("p.lag", pendulum);
+  const Outcome text = maup({"orbits", model, "--floquet"});
+  CHECK_MESSAGE(text.code == 0, text.err);
+  CHECK(contains(text.out, "period              2.15"));
+  CHECK(contains(text.out, "trivial             1 and 1"));
+  CHECK(contains(text.out, "the symplectic form is preserved"));
+  const Json document = Json::parse(maup({"orbits", model, "--floquet", "--json", "--set", "l=2m"}).out);
+  CHECK(document.at("schema") == 1);
+  CHECK(document.at("ok") == true);
+  const Json& f = document.at("floquet");
+  CHECK(std::abs(f.at("period").get<double>() - 4 * std::sqrt(2 / 9.81) * std::comp_ellint_1(0.5)) < 1e-12);
+  CHECK(f.at("trivial") == 2);
+  CHECK(f.at("multipliers").size() == 2);
+  CHECK(f.at("stability") == "neutral");
+}
+
+TEST_CASE("orbits --section: table, CSV, picture of many motions at one energy") {
+  const Folder folder;
+  const std::string model = folder.write("hh.lag", henon_heiles), csv = folder.path("s.csv"),
+                    svg = folder.path("s.svg");
+  const Outcome one = maup({"orbits", model, "--section", "x = 0 rising", "--crossings", "20"});
+  CHECK_MESSAGE(one.code == 0, one.err);
+  CHECK(contains(one.out, "section x = 0 rising, 20 crossings of 1 motion"));
+  CHECK(contains(one.out, "and 8 more"));
+  const Outcome many = maup({"orbits", model, "--section", "x = 0 rising", "--starts", "9", "--crossings", "30",
+                             "--energy", "0.125", "-o", csv, "--plot", svg, "--json"});
+  CHECK_MESSAGE(many.code == 0, many.err);
+  const Json section = Json::parse(many.out).at("section");
+  CHECK(section.at("orbits").size() == 9);
+  CHECK(section.at("crossings").size() == 270);
+  for (const Json& o : section.at("orbits")) {
+    CHECK(std::abs(o.at("energy").get<double>() - 0.125) < 1e-15);
+    CHECK(o.at("energy_drift").get<double>() < 1e-13);
+  }
+  CHECK(contains(read(csv), "t [s],orbit,number,x,y,x',y'\r\n"));
+  CHECK(contains(read(svg), "class=\"dots"));
+  CHECK(contains(read(svg), "class=\"outline\""));
+  CHECK(contains(read(svg), "E = 0.125"));
+}
+
+TEST_CASE("orbits --lyapunov: the sum rule in text and document, the averages as CSV") {
+  const Folder folder;
+  const std::string model = folder.write("hh.lag", henon_heiles), csv = folder.path("l.csv");
+  const Outcome text = maup({"orbits", model, "--lyapunov", "-o", csv});
+  CHECK_MESSAGE(text.code == 0, text.err);
+  CHECK(contains(text.out, "(Liouville, to "));
+  CHECK(contains(read(csv), "t [s],λ1,λ2,λ3,λ4\r\n"));
+  const Json l = Json::parse(maup({"orbits", model, "--lyapunov", "--duration", "100s", "--json"}).out).at("lyapunov");
+  CHECK(l.at("exponents").size() == 4);
+  CHECK(std::abs(l.at("sum").get<double>()) < 1e-9);
+  CHECK(l.at("expected_sum") == 0.0);
+  CHECK(l.at("sum_rule_residual").get<double>() < 1e-9);
+  CHECK(Json::parse(maup({"orbits", model, "--lyapunov", "--exponents", "1", "--json"}).out)
+            .at("lyapunov")
+            .at("exponents")
+            .size() == 1);
+}
+
+TEST_CASE("orbits: what cannot be had, and wrong usage") {
+  const Folder folder;
+  const std::string model = folder.write("hh.lag", henon_heiles);
+  const auto refused = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"orbits", model});
+    options.push_back("--json");
+    return maup(options);
+  };
+  CHECK(maup({"orbits", model}).code == 2);
+  CHECK(maup({"orbits", model, "--floquet", "--lyapunov"}).code == 2);
+  CHECK(maup({"orbits", model, "--floquet", "--period", "3kg"}).code == 2);
+  CHECK(maup({"orbits", model, "--section", "x = 0", "--plot", "a.png"}).code == 2);
+  const Outcome never = refused({"--section", "x = 7", "--longest", "100s"});
+  CHECK(never.code == 3);
+  CHECK(code_of(never) == "E1405");
+  CHECK(code_of(refused({"--section", "x' = 0", "--starts", "4"})) == "E1407");
+  CHECK(code_of(refused({"--strobe", "0s"})) == "E1406");
+  CHECK(code_of(refused({"--floquet", "--start", "x'=0", "--start", "y=0"})) == "E1402");
+  const Outcome unknown = refused({"--section", "z = 0"});
+  CHECK(unknown.code == 1);
+  CHECK(code_of(unknown) == "E0201");
+  const Outcome jump =
+      maup({"orbits", "-", "--lyapunov", "--json"},
+           "system s\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = abs(x)\nstart x = 1\nrun 10\n");
+  CHECK(jump.code == 3);
+  CHECK(code_of(jump) == "E1403");
+}

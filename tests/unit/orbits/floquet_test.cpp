@@ -1,0 +1,133 @@
+#include "support.hpp"
+
+// Periods and multipliers that are known: elliptic integrals, Hill's determinant, Liouville, published digits.
+
+using namespace maupertuis;
+
+namespace {
+
+const std::string pendulum =
+    "system pendulum\nparam m = 1 kg, l = 2 m, g = 9.81 m/s^2\ncoord θ : angle\npoint P mass m at l (sin θ, -cos θ)\n"
+    "gravity (0, -g)\nrun 10 s\n";
+
+double period_of_pendulum(double amplitude) {
+  return 4 * std::sqrt(2 / 9.81) * std::comp_ellint_1(std::sin(amplitude / 2));
+}
+
+/// x'' + (a − 2 q cos 2t) x = 0: the trace over π is 2 − 4 Δ(0) sin²(π√a/2) with Hill's determinant (Whittaker and
+/// Watson, §19.42).
+double trace_by_hill(double a, double q) {
+  constexpr int rows = 20000;
+  // A tridiagonal determinant with unit diagonal, from the top: D_k = D_{k−1} − ξ_k ξ_{k−1} D_{k−2}.
+  const auto xi = [&](int r) { return q / (4.0 * r * r - a); };
+  double before = 1, now = 1;
+  for (int r = -rows + 1; r <= rows; ++r) {
+    const double next = now - xi(r) * xi(r - 1) * before;
+    before = now;
+    now = next;
+  }
+  const double s = std::sin(std::numbers::pi * std::sqrt(a) / 2);
+  return 2 - 4 * now * s * s;
+}
+
+}  // namespace
+
+TEST_CASE("the pendulum's period is found from its run, by the elliptic integral") {
+  for (const double amplitude : {0.3, 1.0, 2.5}) {
+    const FloquetResult r = floquet_of(ModelText(pendulum + "start θ = " + std::to_string(amplitude) + " rad\n"));
+    CHECK(r.motion.period == doctest::Approx(period_of_pendulum(amplitude)).epsilon(1e-12));
+    CHECK(r.motion.closure < 1e-13);
+    CHECK(r.motion.moved < 1e-11);
+    CHECK(r.trivial == 2);
+    CHECK(r.multipliers.size() == 2);
+    CHECK(*r.symplectic_residual < 1e-12);
+    CHECK(r.stability == OrbitalStability::Neutral);
+  }
+}
+
+TEST_CASE("a pendulum that runs over the top closes after a turn") {
+  const FloquetResult r = floquet_of(ModelText(pendulum + "start θ' = 6 rad/s\n"));
+  CHECK(r.motion.turns[0] == 1);
+  const double k = 2 * std::sqrt(9.81 / 2) / 6;  // T = 2 k √(l/g) K(k) with k² = 4 g / (l θ'²)
+  CHECK(r.motion.period == doctest::Approx(2 * k * std::sqrt(2 / 9.81) * std::comp_ellint_1(k)).epsilon(1e-12));
+}
+
+TEST_CASE("the Cartesian pendulum has the same period and no other multipliers") {
+  const FloquetResult r = floquet_of(
+      ModelText("system p\nparam m = 1 kg, l = 2 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\n"
+                "gravity (0, -g)\nconstraint x^2 + y^2 = l^2\nstart x = 2 [m] sin(1), y = -2 [m] cos(1)\nrun 10 s\n"));
+  CHECK(r.multipliers.size() == 2);
+  CHECK(r.motion.period == doctest::Approx(period_of_pendulum(1)).epsilon(1e-11));
+  CHECK(*r.symplectic_residual < 1e-11);
+}
+
+TEST_CASE("Mathieu's equation: the trace by Hill's determinant, stable and unstable") {
+  for (const auto& [a, q, stable] :
+       {std::tuple{2.0, 0.5, true}, std::tuple{1.0, 0.3, false}, std::tuple{6.5, 2.0, true}}) {
+    const FloquetResult r = floquet_of(ModelText("system mathieu\ndimensionless\nparam a = " + std::to_string(a) +
+                                                 ", q = " + std::to_string(q) +
+                                                 "\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 (a - 2 q cos(2 t)) x^2\n"));
+    CHECK(r.motion.driven);
+    CHECK(r.motion.period == doctest::Approx(std::numbers::pi).epsilon(1e-15));
+    CHECK(r.trivial == 0);
+    CHECK(r.trace == doctest::Approx(trace_by_hill(a, q)).epsilon(1e-9));
+    CHECK((r.stability == OrbitalStability::Neutral) == stable);
+    CHECK(std::abs(r.multipliers[0] * r.multipliers[1] - 1.0) < 1e-12);
+  }
+}
+
+TEST_CASE("van der Pol's limit cycle: the published period, the multiplier by Liouville") {
+  const FloquetResult r =
+      floquet_of(ModelText("system vdp\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\n"
+                           "force x = (1 - x^2) x'\nstart x = 1.5\nrun 30\n"));
+  CHECK(r.motion.period == doctest::Approx(6.663286859323130).epsilon(1e-12));
+  CHECK(r.trivial == 1);
+  CHECK(r.stability == OrbitalStability::Attracting);
+  CHECK(std::log(r.largest) == doctest::Approx(*r.integrated_divergence).epsilon(1e-9));
+  CHECK(*r.log_determinant == doctest::Approx(*r.integrated_divergence).epsilon(1e-9));
+  CHECK_FALSE(r.symplectic_residual);
+}
+
+TEST_CASE("Arenstorf's orbit: the published period, unstable, multipliers in a reciprocal pair") {
+  const FloquetResult r =
+      floquet_of(ModelText("system arenstorf\ndimensionless\nparam μ = 0.012277471\ncoord x, y : number\n"
+                           "let r1 = sqrt((x + μ)^2 + y^2), r2 = sqrt((x - 1 + μ)^2 + y^2)\n"
+                           "L = 1/2 (x'^2 + y'^2) + x y' - y x' + 1/2 (x^2 + y^2) + (1 - μ)/r1 + μ/r2\n"
+                           "start x = 0.994, y' = -2.00158510637908252240537862224\n"),
+                 {.period = 17.0652165601579625588917206249});
+  CHECK(r.motion.period == doctest::Approx(17.0652165601579626).epsilon(1e-9));
+  CHECK(r.trivial == 2);
+  CHECK(r.stability == OrbitalStability::Unstable);
+  CHECK(std::abs(r.multipliers[0] * r.multipliers[1] - 1.0) < 1e-6);
+  CHECK(r.trace - 2 == doctest::Approx((r.multipliers[0] + r.multipliers[1]).real()).epsilon(1e-6));
+}
+
+TEST_CASE(
+    "a resonantly driven damped oscillator: Newton finds the one periodic motion, its multipliers are those of the "
+    "damping") {
+  const FloquetResult r = floquet_of(
+      ModelText("system driven\ndimensionless\nparam c = 0.2, w = 1.3\ncoord x : number\ninput u = cos(w t)\n"
+                "T = 1/2 x'^2\nV = 1/2 x^2\nD = 1/2 c x'^2\nforce x = u\n"));
+  // x = Re A e^{iwt}, A = 1/(1 − w² + i c w)
+  const std::complex<double> amplitude = 1.0 / std::complex<double>(1 - 1.69, 0.26);
+  CHECK(r.motion.start.q[0] == doctest::Approx(amplitude.real()).epsilon(1e-13));
+  CHECK(r.motion.start.v[0] == doctest::Approx(-1.3 * amplitude.imag()).epsilon(1e-13));
+  CHECK(r.largest == doctest::Approx(std::exp(-0.1 * r.motion.period)).epsilon(1e-13));
+  CHECK(r.stability == OrbitalStability::Attracting);
+}
+
+TEST_CASE("what has no Floquet multipliers is told") {
+  const auto code = [](const std::string& text, FloquetOptions options = {}) {
+    const ModelText m(text);
+    return code_of([&](Diagnostics& d) { return floquet(m.model, m.equations, options, d); });
+  };
+  const std::string free = "system s\ndimensionless\ncoord x : number\nT = 1/2 x'^2\n";
+  CHECK(code(free + "start x' = 1\nrun 10\n") == "E1401");
+  CHECK(code(free + "V = 1/2 x^2\nrun 10\n") == "E1402");
+  CHECK(code(free + "V = abs(x)\nstart x = 1\nrun 10\n") == "E1403");
+  CHECK(code(free + "V = 1/2 x^2 exp(-t)\nstart x = 1\n") == "E1404");
+  CHECK(code(free + "V = 1/2 (2 + cos t) x^2\nstart x = 1\n", {.period = 3.0}) == "E1404");
+  CHECK(code(free + "V = 1/2 x^2\nstart x = 1\n") == "E1406");
+  CHECK(code(free + "V = 1/2 x^2\nstart x = 1\n", {.period = 0.0}) == "E1406");
+  CHECK(code(free + "V = -1/x\nstart x = 1\n", {.period = 3.0}) == "E1408");
+}

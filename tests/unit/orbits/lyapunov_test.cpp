@@ -1,0 +1,82 @@
+#include "support.hpp"
+
+using namespace maupertuis;
+
+namespace {
+const std::string one = "system s\ndimensionless\ncoord x : number\nT = 1/2 x'^2\n";
+}
+
+TEST_CASE("a saddle: exponents ±1, exactly") {
+  LyapunovOptions options;
+  options.transient = 16;  // until the directions have turned into those of the exponents, as e^(−2t)
+  const LyapunovResult r = lyapunov_of(ModelText(one + "V = -1/2 x^2\nstart x = 1e-9\nrun 20\n"), options);
+  REQUIRE(r.exponents.size() == 2);
+  CHECK(r.exponents[0] == doctest::Approx(1).epsilon(1e-10));
+  CHECK(r.exponents[1] == doctest::Approx(-1).epsilon(1e-10));
+  CHECK(std::abs(r.sum) < 1e-12);
+  CHECK(*r.expected_sum == 0);
+}
+
+TEST_CASE("damping: both exponents are −c/2, their sum is the divergence") {
+  const LyapunovResult r = lyapunov_of(ModelText(one + "V = 1/2 x^2\nD = 0.15 x'^2\nstart x = 1\nrun 400\n"));
+  CHECK(r.sum == doctest::Approx(-0.3).epsilon(1e-3));
+  CHECK(*r.sum_rule_residual < 1e-12);
+  CHECK(*r.expected_sum == doctest::Approx(-0.3).epsilon(1e-13));
+  CHECK(r.exponents[0] == doctest::Approx(-0.15).epsilon(0.02));
+  CHECK(std::abs(r.exponents[0] + 0.15) < 4 * r.errors[0] + 1e-3);
+  CHECK_FALSE(r.kaplan_yorke.value_or(0) > 1);
+}
+
+TEST_CASE("Hénon-Heiles at E = 1/6: pairs ±λ, two zeros, sum zero") {
+  const LyapunovResult r =
+      lyapunov_of(ModelText("system hh\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n"
+                            "V = 1/2 (x^2 + y^2) + x^2 y - 1/3 y^3\nstart y = -0.1, x' = 0.5, y' = 0.05\nrun 2000\n"));
+  REQUIRE(r.exponents.size() == 4);
+  CHECK(r.dimension == 4);
+  CHECK(std::abs(r.exponents[0] + r.exponents[3]) < 0.01);
+  CHECK(std::abs(r.exponents[1] + r.exponents[2]) < 0.01);
+  CHECK(std::abs(r.exponents[1]) < 0.02);
+  CHECK(std::abs(r.sum) < 1e-10);
+  CHECK(r.exponents[0] > 0.03);
+}
+
+TEST_CASE("a driven damped pendulum: the sum is −c, the largest alone agrees with the whole spectrum") {
+  const ModelText m(
+      "system driven\ndimensionless\ncoord θ : angle\ninput u = 1.5 cos(2/3 t)\nT = 1/2 θ'^2\nV = -cos θ\nD = 1/4 "
+      "θ'^2\n"
+      "force θ = u\nstart θ = 0.2\nrun 1000\n");
+  const LyapunovResult all = lyapunov_of(m);
+  CHECK(all.sum == doctest::Approx(-0.5).epsilon(1e-9));
+  CHECK(all.exponents[0] > 0.05);
+  CHECK(all.exponents[0] < 0.25);
+  CHECK(*all.kaplan_yorke == doctest::Approx(1 + all.exponents[0] / -all.exponents[1]).epsilon(1e-12));
+  LyapunovOptions first;
+  first.exponents = 1;
+  const LyapunovResult one_alone = lyapunov_of(m, first);
+  CHECK(one_alone.exponents.size() == 1);
+  CHECK_FALSE(one_alone.expected_sum);
+  CHECK(std::abs(one_alone.exponents[0] - all.exponents[0]) < 4 * (all.errors[0] + one_alone.errors[0]));
+}
+
+TEST_CASE("constraints: the spherical pendulum by its constraint has four exponents, all zero") {
+  const LyapunovResult r = lyapunov_of(ModelText(
+      "system sphere\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y, z : length\npoint P mass m at (x, y, z)\n"
+      "gravity (0, 0, -g)\nconstraint x^2 + y^2 + z^2 = l^2\nstart x = 0.6 m, z = -0.8 m, y' = 2 m/s\nrun 200 s\n"));
+  REQUIRE(r.exponents.size() == 4);
+  for (const double x : r.exponents) CHECK(std::abs(x) < 0.05);  // log t / t
+  CHECK(std::abs(r.sum) < 1e-2);  // the volume of the directions at the two ends, over 180 s
+  CHECK(*r.sum_rule_residual < 1e-9);
+}
+
+TEST_CASE("exponents that cannot be had are told") {
+  LyapunovOptions backwards;
+  backwards.duration = -2;
+  const auto code = [](const std::string& text, const LyapunovOptions& options = {}) {
+    const ModelText m(text);
+    return code_of([&](Diagnostics& d) { return lyapunov_exponents(m.model, m.equations, options, d); });
+  };
+  CHECK(code(one + "V = 1/2 x^2\nstart x = 1\n") == "E1406");
+  CHECK(code(one + "V = 1/2 x^2\nstart x = 1\n", backwards) == "E1406");
+  CHECK(code(one + "V = abs(x)\nstart x = 1\nrun 10\n") == "E1403");
+  CHECK(code(one + "V = -1/x\nstart x = 1\nrun 100\n") == "E1408");
+}
