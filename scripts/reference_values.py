@@ -270,9 +270,12 @@ def check(model):
     lines = [line.split() for line in text_of(model.__name__).splitlines() if line.startswith("expect")]
     wrong = 0
     for subject, time, value in model():
-        found = [w for w in lines if w[1] == subject and " ".join(w[3:5]) == time and w[2] == "at"]
-        good = len(found) == 1 and "±" in found[0] and abs(
-            D(found[0][6]) * UNITS.get(found[0][7], 1) - value) <= D(found[0][found[0].index("±") + 1]) / 4
+        found = [w for w in lines if w[1:3] == [subject, "at"] and " ".join(w[3:w.index("=")]) == time]
+        good = len(found) == 1 and "±" in found[0]
+        if good:
+            number, *unit = found[0][found[0].index("=") + 1:found[0].index("±")]
+            tolerance = D(found[0][found[0].index("±") + 1])
+            good = abs(D(number) * UNITS.get(" ".join(unit), 1) - value) <= tolerance / 4
         if not good:
             print(f"{model.__name__}: expect {subject} at {time} = {value:.18g}   is missing or differs: {found}")
             wrong += 1

@@ -125,10 +125,11 @@ constexpr CodeEntry kEntries[] = {
     {"E0238", "no word for the stability of an equilibrium",
      "`expect equilibrium at θ = 0 is stable` is checked by the energy (a strict minimum) and by the eigenvalues; `unstable` needs an eigenvalue with a "
      "positive real part; `undecided` says that the linearization does not decide.",
-     "expect equilibrium at θ = 0 is good", "expect equilibrium at θ = 0 is stable"},
+     "dimensionless\ncoord θ : angle\nL = 1/2 θ'^2\nexpect equilibrium at θ = 0 is good", "dimensionless\ncoord θ : angle\nL = 1/2 θ'^2\nexpect equilibrium at θ = 0 is stable"},
     {"E0239", "a sweep of something that is no parameter, or of no values",
      "`sweep NAME = FROM .. TO steps N` goes through N equally spaced values of one parameter, both ends counted.",
-     "sweep θ = 0 .. 1 rad steps 11", "sweep Ω = 0 .. 12 rad/s steps 121"},
+     "dimensionless\nparam k = 1\ncoord x : number\nL = 1/2 x'^2 - 1/2 k x^2\nsweep x = 0 .. 1 steps 11",
+     "dimensionless\nparam k = 1\ncoord x : number\nL = 1/2 x'^2 - 1/2 k x^2\nsweep k = 0 .. 1 steps 11"},
     // ----------------------------------------------------------------------------------------------------------- units
     {"E0301", "a unit is not known",
      "Units are SI base and derived units with the SI prefixes, and common ones without: min, h, deg, rev, rpm, bar, "

@@ -117,6 +117,12 @@ class Differences {
     }
   }
 
+  /// Terms of this size add up to the momentum, which may vanish.
+  void has_terms(std::size_t momentum, double size) {
+    double& known = size_[h_.momenta.size() + momentum];
+    known = std::max(known, size);
+  }
+
   void report(CanonicalMotion& out) const {
     for (std::size_t i = 0; i < largest_.size(); ++i) {
       double size = 0;
@@ -183,6 +189,15 @@ std::optional<CanonicalMotion> canonical_motion(const Hamiltonian& h, const Equa
       out.trajectory.values.push_back(sample.observables.front());
     }
   };
+  const std::vector<double> mass = ConstraintManifold(equations).mass({run.start.t, run.start.q, run.start.v});
+  const auto note_terms = [&](const double* v) {
+    for (std::size_t i = 0; i < n; ++i) {
+      double size = 0;
+      for (std::size_t j = 0; j < n; ++j) size += std::abs(mass[i * n + j] * v[j]);
+      differences.has_terms(i, size);
+    }
+  };
+  for (std::size_t k = 0; k < times.size(); ++k) note_terms(run.trajectory.values.data() + k * run.trajectory.columns.size() + n);
   record();
   while (stepper.time() != run.final.t) {
     const Step step = stepper.step(run.final.t);

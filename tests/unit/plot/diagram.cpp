@@ -28,7 +28,7 @@ TEST_CASE("a diagram draws lines, dashes, dots, marks and names") {
   d.legend.push_back({"stable", 0, false, false});
   const std::string svg = diagram_svg(d);
   CHECK(count(svg, "<path class=\"curve") == 3);  // two curves and the legend
-  CHECK(count(svg, "stroke-dasharray") == 1);
+  CHECK(count(svg, "stroke-dasharray=") == 1);
   CHECK(count(svg, "<circle class=\"dot") == 4);
   CHECK(count(svg, "<circle class=\"axis\"") == 1);
   CHECK(count(svg, "Ω = 2 rad/s") == 1);

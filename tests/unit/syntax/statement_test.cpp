@@ -198,7 +198,6 @@ TEST_CASE("statements for later are read whole") {
       "event hit when x = 0 rising : record",
       "event hit when x - 2 = 3 m falling : stop",
       "event hit when x = 0 : set x' = -e x', y' = y'",
-      "sweep Ω = 0 .. 12 rad/s steps 121",
       "independent x",
       "path from (0, 1) at 0 to (2, 3) at 1",
       "field u(x) : angle on x = -20 m .. 20 m cells 800 boundary u_x = 0",
