@@ -130,6 +130,16 @@ struct Release {
   Span span;
 };
 
+/// constraint integral G = value: ∫ G dt over the path from end to end has this value (isoperimetric problems). It
+/// restricts the paths of `maup action` and enters the equations as those of L + λ G with one λ for the whole path.
+struct IntegralConstraint {
+  std::string name;                 // as written; empty if it has none
+  Expr integrand;                   // G in q, q', t
+  Expr value;                       // parameters and numbers only, SI
+  Dimension dimension;              // of the value
+  Span span;
+};
+
 /// A claimed energy beside the one that points and bodies give: `T = …` in a model with massive points.
 struct EnergyClaim {
   syntax::EnergyStatement::Which which;
@@ -143,6 +153,10 @@ struct MechanicalSystem {
   std::string name, title, source;
   bool dimensionless = false;
   int space_dimension = 2;          // 2 or 3
+
+  /// What stands in the place of t, `independent x : length`: its symbol is context->time(), and q' is dq/dx.
+  std::string independent = "t";
+  Dimension independent_dimension = dimensions::time();
 
   std::vector<Coordinate> coordinates;
   std::vector<Parameter> parameters;     // in the order of the text; anonymous constants at the end
@@ -163,6 +177,7 @@ struct MechanicalSystem {
   std::vector<AppliedForce> forces;
   std::vector<Constraint> constraints;   // as written; those of quaternions at the end
   std::vector<Release> releases;
+  std::vector<IntegralConstraint> integral_constraints;
 
   /// The same system with the symbols of definitions of parameters kept (`I φ''` instead of `1/2 m R^2 φ''`): what
   /// readable forms are derived from. Null if there are no such symbols. Substituting definition_values() turns its
@@ -209,7 +224,7 @@ struct Expectation {
   bool relative = false;
   int occurrence = 0;
   std::vector<StartValue> at;       // Frequencies, Equilibrium: `at θ = 0`
-  std::vector<Expr> values;         // Frequencies: angular, rad/s, or their squares
+  std::vector<Expr> values;         // Frequencies: angular, rad/s, or their squares; Action: a given path [n] in t, or none
   bool squared = false;             // Frequencies: `frequencies squared`
   Dimension dimension;              // of subject
   std::string display_unit;         // as written beside the value; empty: SI
@@ -239,6 +254,13 @@ struct Sweep {
   Span span;
 };
 
+/// path from (0, 1) at 0 to (2, free) at 1: between what ends `maup action` looks for stationary paths.
+struct PathEnds {
+  std::vector<Expr> from, to;       // [n] parameters and numbers only, SI; empty handle: that coordinate is free there
+  Expr start, end;                  // of the independent variable, SI; start < end
+  Span span;
+};
+
 /// What to do with a system: where it starts, how long it runs, what is drawn and what is expected.
 struct Experiment {
   std::vector<StartValue> start;    // unwritten = 0
@@ -251,6 +273,7 @@ struct Experiment {
   Expr within;                      // the longest time for `until`
   Expr output_every;                // empty: chosen by the program
   std::optional<Sweep> sweep;
+  std::optional<PathEnds> path;
   std::vector<DrawElement> drawing;
   std::vector<Expectation> expectations;
 };

@@ -171,6 +171,9 @@ struct ExpectStatement {
     EventAt,          // expect event hit 3 at T ± tol
     Error,            // expect error E0412
     Equilibrium,      // expect equilibrium at θ = 0 is stable
+    Action,           // expect action = VALUE ± tol;  expect action of (x(t), y(t)) = VALUE ± tol
+    MorseIndex,       // expect index = 1
+    PathAt,           // expect path x at 0.5 s = VALUE ± tol
     Value,            // expect EXPR = VALUE ± tol (no time: parameters only, or the start)
   } kind = Kind::ValueAt;
   bool claim = false;
@@ -180,22 +183,39 @@ struct ExpectStatement {
   ExpressionPtr tolerance;               // ± (absolute) or rel
   bool relative = false;
   int occurrence = 0;                    // EventAt
-  std::vector<ExpressionPtr> values;     // Frequencies
+  std::vector<ExpressionPtr> values;     // Frequencies; Action: a given path, one a coordinate; none: the stationary path
   bool squared = false;                  // Frequencies: expect frequencies squared …
   std::vector<StartStatement::Item> at;  // Frequencies, Equilibrium: the configuration, `at θ = 0`
 };
 
-/// constraint LEFT = RIGHT name rod. (`constraint integral …` is a LaterStatement.)
+/// constraint LEFT = RIGHT name rod,   constraint integral LEFT = RIGHT name length
 struct ConstraintStatement {
   ExpressionPtr left, right;
   std::optional<Name> name;
+  bool integral = false;                 // ∫ left over the path = right
 };
 
 /// sweep Ω = 0 .. 12 rad/s steps 121
 struct SweepStatement { ExpressionPtr variable, from, to, steps; };
 
+/// independent x : length. Stands in the place of t.
+struct IndependentStatement {
+  Name name;
+  Name kind;                             // as of a coordinate; empty with `unit` set, or where nothing is written
+  std::optional<UnitExpression> unit;
+};
+
+/// path from (0, 1) at 0 to (2, free) at 1
+struct PathStatement {
+  struct End {
+    std::vector<ExpressionPtr> configuration;  // in the order of the coordinates; null where `free` stands
+    ExpressionPtr at;
+    Span span;                                 // of the configuration
+  } from, to;
+};
+
 /// A statement of the grammar that a later version carries out: contact, friction, event, impact,
-/// field, density, independent, path. It is parsed whole (formatting and messages work) and kept as its expressions.
+/// field, density. It is parsed whole (formatting and messages work) and kept as its expressions.
 struct LaterStatement {
   std::string what;                      // its first word
   std::vector<Name> names;               // that it declares: the field and its variable, an event, a constraint
@@ -206,7 +226,8 @@ using StatementBody =
     std::variant<SystemStatement, SourceStatement, DimensionlessStatement, ParamStatement, CoordStatement, LetStatement,
                  InputStatement, FrameStatement, PointStatement, BodyStatement, GravityStatement, SpringStatement,
                  DamperStatement, TorsionSpringStatement, EnergyStatement, ForceStatement, StartStatement, RunStatement,
-                 OutputStatement, DrawStatement, ReactionStatement, ExpectStatement, ConstraintStatement, SweepStatement, LaterStatement>;
+                 OutputStatement, DrawStatement, ReactionStatement, ExpectStatement, ConstraintStatement, SweepStatement, IndependentStatement,
+                 PathStatement, LaterStatement>;
 
 struct Statement {
   StatementBody body;

@@ -13,7 +13,8 @@ constexpr std::string_view kOperators[] = {"+", "-", "*", "juxtaposed", "/", "·
 constexpr std::string_view kKinds[] = {"number", "quantity", "name",   "member",          "call",
                                        "vector", "binary",   "unary", "time derivative", "piecewise"};
 constexpr std::string_view kExpectations[] = {"value at", "energy conserved", "conserved", "not conserved", "equation", "freedoms",
-                                              "constraint class", "integral", "frequencies", "event at", "error", "equilibrium", "value"};
+                                              "constraint class", "integral", "frequencies", "event at", "error", "equilibrium",
+                                              "action", "morse index", "path at", "value"};
 constexpr std::string_view kRotations[] = {"angle", "axis and angle", "euler", "roll, pitch, yaw", "quaternion", "quaternion coordinates"};
 constexpr std::string_view kShapes[] = {"line", "trail", "box", "circle", "spring", "reaction"};
 constexpr std::string_view kInertias[] = {"none", "scalar", "diagonal", "full"};
@@ -100,10 +101,18 @@ class Dumper {
     child(s.relative ? "relative tolerance" : "tolerance", s.tolerance);
   }
   void operator()(const ConstraintStatement& s) {
-    head("constraint", s.name ? s.name->text : ""), child("left", s.left), child("right", s.right);
+    head(s.integral ? "integral constraint" : "constraint", s.name ? s.name->text : ""), child("left", s.left), child("right", s.right);
   }
   void operator()(const SweepStatement& s) {
     head("sweep"), child("variable", s.variable), child("from", s.from), child("to", s.to), child("steps", s.steps);
+  }
+  void operator()(const IndependentStatement& s) {
+    head("independent", s.name.text), word("kind", s.kind.text);
+  }
+  void operator()(const PathStatement& s) {
+    head("path");
+    for (const auto& [label, end] : {std::pair{"from", &s.from}, std::pair{"to", &s.to}})
+      children(label, end->configuration), child("at", end->at);
   }
   void operator()(const LaterStatement& s) {
     head("later", s.what);
