@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <maupertuis/backend.hpp>
 #include <maupertuis/lanes.hpp>
+#include <maupertuis/regulator.hpp>
 #include <maupertuis/stiff.hpp>
 
 #include <cfloat>
@@ -39,6 +40,7 @@ std::vector<Finding> examine() {
       {"vector instructions", vector_instructions()},
       {"cache", cache},
       {"integrators", has_stiff_method() ? "taylor, variational, stiff (SUNDIALS)" : "taylor, variational; stiff needs SUNDIALS"},
+      {"regulator", has_lapack() ? "LAPACK" : "needs LAPACK"},
       {"trajectory formats", "csv, npy, json"},
       {"not in this version", "contacts, friction, events, fields, sweeps, HDF5"},
   };

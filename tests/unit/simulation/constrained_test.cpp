@@ -1,5 +1,6 @@
 // Constrained runs against closed forms, against the same motion in independent coordinates, and at their limits.
 #include <maupertuis/simulation.hpp>
+#include <maupertuis/stiff.hpp>
 
 #include "../model_text.hpp"
 
@@ -54,7 +55,7 @@ TEST_CASE("the same motion by every method, and by the angle") {
   CHECK(std::abs(run(m, 3, variational).final.q[0] - x) < 1e-10);
   SimulationOptions stiff;
   stiff.method = StepMethod::Stiff;
-  CHECK(std::abs(run(m, 3, stiff).final.q[0] - x) < 1e-6);
+  if (has_stiff_method()) CHECK(std::abs(run(m, 3, stiff).final.q[0] - x) < 1e-6);
 }
 
 TEST_CASE("a free body turned by a unit quaternion, whose M has rank 3 of 4") {
@@ -76,6 +77,7 @@ TEST_CASE("a free body turned by a unit quaternion, whose M has rank 3 of 4") {
 TEST_CASE("a coordinate without kinetic energy that a constraint ties: every method") {
   ModelText m("system massless\nparam Is = 1e-5 kg m^2, τ = 0.1 N m\ncoord a, b : angle\nT = 1/2 Is a'^2\nforce a = τ\nconstraint a + b = 0\n");
   for (const StepMethod method : {StepMethod::Taylor, StepMethod::Variational, StepMethod::Stiff}) {
+    if (method == StepMethod::Stiff && !has_stiff_method()) continue;
     SimulationOptions options;
     options.method = method;
     options.step = 0.001;
@@ -205,11 +207,11 @@ TEST_CASE("the stiff method takes over where stability limits the steps, and say
   ModelText m("system s\ndimensionless\nparam k = 1e7, c = 1e7\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 k x^2\nD = 1/2 c x'^2\n"
               "start x = 1\n");
   const auto r = run(m, 1);  // x' ≈ −(k/c) x once the fast part is gone
-  CHECK(r.statistics.method == "stiff");
+  CHECK(r.statistics.method == (has_stiff_method() ? "stiff" : "taylor"));
   CHECK(r.final.q[0] == doctest::Approx(std::exp(-1.0)).epsilon(1e-6));
   bool told = false;
   for (const Diagnostic& d : m.diagnostics.items()) told |= d.code == "N0702";
-  CHECK(told);
+  CHECK(told == has_stiff_method());
   SimulationOptions taylor;
   taylor.method = StepMethod::Taylor;
   taylor.maximum_steps = 3000;
