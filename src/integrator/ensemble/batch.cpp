@@ -1,5 +1,6 @@
 #include "integrator/ensemble/batch.hpp"
 #include "integrator/ensemble/lane_steps.hpp"
+#include "integrator/taylor/turns.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -53,8 +54,9 @@ class Batch {
   double velocity(std::size_t lane, std::size_t i, int k) const;
   void look_at(std::size_t lane);
   void sample(std::size_t lane, double reached);
-  void state_after(std::size_t lane, double tau, std::span<double> q, std::span<double> v) const;
-  void note_energy(std::size_t lane, double t, std::span<const double> q, std::span<const double> v);
+  void wind();
+  void state_after(std::size_t lane, double tau, std::span<Compensated> q, std::span<double> v) const;
+  void note_energy(std::size_t lane, double t, std::span<const Compensated> q, std::span<const double> v);
   void finish(std::size_t lane, StepEnding ending, std::string reason);
   void go_alone(std::size_t lane);
 
@@ -71,7 +73,9 @@ class Batch {
   LaneWorkspace work_;
   std::unique_ptr<KernelWorkspace> point_;  // energies
   std::vector<Lane> lanes_;
-  std::vector<double> energy_;
+  std::vector<taylor::Turns> turns_;            // [lanes]
+  std::vector<double> energy_, leading_;
+  std::vector<Compensated> position_;           // [n] of one lane
   std::vector<double> whole_, inverse_;  // see LaneArrays
   AlignedArray memory_;
   std::size_t used_ = 0;
@@ -85,7 +89,8 @@ class Batch {
 
 Batch::Batch(Job& job)
     : job_(job), arithmetic_(best_steps()), n_(job.freedoms), width_(static_cast<std::size_t>(job.expansion->width())),
-      work_(job.kernel, job.control.order, job.expansion), lanes_(width_), energy_(job.options.energy_terms),
+      work_(job.kernel, job.control.order, job.expansion), lanes_(width_), turns_(width_, taylor::Turns(job.kernel)),
+      energy_(job.options.energy_terms), leading_(n_), position_(n_),
       memory_(aligned((4 * n_ + 8) * width_)) {
   if (job.options.energy_terms > 0) point_ = std::make_unique<KernelWorkspace>(job.kernel, 1);
   arrays_.width = width_;
@@ -143,7 +148,9 @@ void Batch::begin(std::size_t lane, std::size_t trajectory) {
   arrays_.t_low[lane] = 0;
   end_[lane] = job_.end(trajectory);
   arrays_.length[lane] = 0;
-  note_energy(lane, arrays_.t_high[lane], job_.q(trajectory), job_.v(trajectory));
+  turns_[lane].forget();
+  for (std::size_t i = 0; i < n_; ++i) position_[i] = {job_.q(trajectory)[i], 0};
+  note_energy(lane, arrays_.t_high[lane], position_, job_.v(trajectory));
   if (end_[lane] != arrays_.t_high[lane]) return;
   sample(lane, end_[lane]);
   finish(lane, StepEnding::None, {});
@@ -153,6 +160,7 @@ void Batch::begin(std::size_t lane, std::size_t trajectory) {
 
 void Batch::step() {
   if (job_.interrupted()) return interrupt();
+  wind();
   expand();
   choose_lengths();
   arithmetic_.cut_to_end(arrays_);
@@ -170,6 +178,16 @@ void Batch::interrupt() {
     if (lanes_[lane].active) finish(lane, StepEnding::Interrupted, "The run was interrupted.");
   // Those that are left end where they begin.
   for (std::size_t trajectory = job_.take(); trajectory != job_.trajectories; trajectory = job_.take()) run_alone(job_, trajectory);
+}
+
+/// As TaylorStepper: angles stay within a turn, so that what is rounded does not grow with the number of turns.
+void Batch::wind() {
+  for (std::size_t i = 0; i < n_; ++i)
+    for (std::size_t lane = 0; lane < width_; ++lane) {
+      double &high = arrays_.q_high[at(i, lane)], &low = arrays_.q_low[at(i, lane)];
+      Compensated angle{high, low};
+      if (lanes_[lane].active && turns_[lane].wind(i, angle)) high = angle.hi, low = angle.lo;
+    }
 }
 
 void Batch::expand() {
@@ -235,13 +253,14 @@ void Batch::sample(std::size_t lane, double reached) {
   l.times.up_to(reached, [&](std::size_t index, double t) {
     const std::size_t to = (l.trajectory * job_.result.times + index) * n_;
     const std::span<double> q = std::span(job_.result.sampled_q).subspan(to, n_), v = std::span(job_.result.sampled_v).subspan(to, n_);
-    state_after(lane, (t - arrays_.t_high[lane]) - arrays_.t_low[lane], q, v);
-    note_energy(lane, t, q, v);
+    state_after(lane, (t - arrays_.t_high[lane]) - arrays_.t_low[lane], position_, v);
+    for (std::size_t i = 0; i < n_; ++i) q[i] = turns_[lane].unwound(i, position_[i]);
+    note_energy(lane, t, position_, v);
   });
 }
 
 /// As DenseOutput::advance.
-void Batch::state_after(std::size_t lane, double tau, std::span<double> q, std::span<double> v) const {
+void Batch::state_after(std::size_t lane, double tau, std::span<Compensated> q, std::span<double> v) const {
   for (std::size_t i = 0; i < n_; ++i) {
     double dq = 0, dv = 0;
     // At the beginning the coefficients may not be there yet.
@@ -251,24 +270,31 @@ void Batch::state_after(std::size_t lane, double tau, std::span<double> q, std::
       dv = dv * tau + k * c;
     }
     const std::size_t here = at(i, lane);
-    q[i] = arrays_.q_high[here] + (arrays_.q_low[here] + (dq + (arrays_.v_high[here] + arrays_.v_low[here])) * tau);
+    q[i] = {arrays_.q_high[here], arrays_.q_low[here]};
+    q[i].add((dq + (arrays_.v_high[here] + arrays_.v_low[here])) * tau);
     v[i] = arrays_.v_high[here] + (arrays_.v_low[here] + dv * tau);
   }
 }
 
-void Batch::note_energy(std::size_t lane, double t, std::span<const double> q, std::span<const double> v) {
+/// `q` is wound.
+void Batch::note_energy(std::size_t lane, double t, std::span<const Compensated> q, std::span<const double> v) {
   if (!point_) return;
   if (!shared_parameters_) point_->set_parameters(job_.parameters(lanes_[lane].trajectory));
-  if (point_->evaluate(t, q, v) != KernelStatus::Ok) return;
+  for (std::size_t i = 0; i < n_; ++i) leading_[i] = q[i].hi;
+  if (point_->evaluate(t, leading_, v) != KernelStatus::Ok) return;
   for (std::size_t i = 0; i < energy_.size(); ++i) energy_[i] = point_->observable(i);
+  turns_[lane].add_to(energy_);
   lanes_[lane].drift.add(energy_);
 }
 
 void Batch::finish(std::size_t lane, StepEnding reason, std::string sentence) {
   Lane& l = lanes_[lane];
   const std::span<double> q = std::span(job_.result.q).subspan(l.trajectory * n_, n_), v = std::span(job_.result.v).subspan(l.trajectory * n_, n_);
-  for (std::size_t i = 0; i < n_; ++i) q[i] = arrays_.q_high[at(i, lane)], v[i] = arrays_.v_high[at(i, lane)];
-  note_energy(lane, arrays_.t_high[lane], q, v);
+  for (std::size_t i = 0; i < n_; ++i) {
+    position_[i] = {arrays_.q_high[at(i, lane)], arrays_.q_low[at(i, lane)]};
+    q[i] = turns_[lane].unwound(i, position_[i]), v[i] = arrays_.v_high[at(i, lane)];
+  }
+  note_energy(lane, arrays_.t_high[lane], position_, v);
   TrajectoryEnding& ending = job_.result.endings[l.trajectory];
   ending.ending = reason;
   ending.reason = std::move(sentence);

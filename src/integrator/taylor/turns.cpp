@@ -20,14 +20,16 @@ Compensated turned(Compensated q, double count) {
 
 bool Turns::wind(std::span<Compensated> q) {
   bool any = false;
-  for (std::size_t i = 0; i < q.size(); ++i) {
-    if (!(std::abs(q[i].hi) > high) || !winding_->coordinates[i]) continue;
-    const double count = std::nearbyint(q[i].hi / high);
-    q[i] = turned(q[i], -count);
-    counts_[i] += count;
-    any = true;
-  }
+  for (std::size_t i = 0; i < q.size(); ++i) any |= wind(i, q[i]);
   return any;
+}
+
+bool Turns::wind(std::size_t i, Compensated& q) {
+  if (!(std::abs(q.hi) > high) || !winding_->coordinates[i]) return false;
+  const double count = std::nearbyint(q.hi / high);
+  q = turned(q, -count);
+  counts_[i] += count;
+  return true;
 }
 
 double Turns::unwound(std::size_t i, const Compensated& q) const { return counts_[i] == 0 ? q.hi : turned(q, counts_[i]).hi; }

@@ -17,6 +17,8 @@ class Turns {
   void forget() { counts_.assign(counts_.size(), 0.0); }
   /// Brings angles beyond ±2π back to ±π, exact to 100 bits. True if any was.
   bool wind(std::span<Compensated> q);
+  /// The same for coordinate i alone.
+  bool wind(std::size_t i, Compensated& q);
   /// The angle as it is counted outside.
   double unwound(std::size_t i, const Compensated& q) const;
   /// What observables gain by the turns.

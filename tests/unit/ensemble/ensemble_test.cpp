@@ -174,6 +174,59 @@ TEST_CASE("a trajectory without duration ends where it begins, and one without f
   CHECK(result.endings[1].steps == 1);
 }
 
+TEST_CASE("angles that turn thousands of times keep their accuracy, and their turns are counted") {
+  System s;
+  const auto angle = s.coordinate("a"), w = s.parameter("w");
+  const Kernel kernel = s.natural(Rational(1, 2) * s.rate_squared(angle), -w * cos(angle));
+  Trajectories input;
+  constexpr double turns = 3000, pi = 3.141592653589793;
+  for (int i = 0; i < 11; ++i) {
+    // Over the top: θ/2 = am(v t/2), of modulus 2 √w/v, which gains π in v t/2 = 2 K.
+    const double v = (i % 2 == 0 ? 1 : -1) * (6.5 + 0.2 * i);
+    input.add({0}, {v}, turns * 4 * std::comp_ellint_1(2 * std::sqrt(9.81) / std::abs(v)) / std::abs(v));
+  }
+  input.parameters = {9.81};
+  input.times = {0.5, 100, 1000};
+  const EnsembleResult result = advance_ensemble(kernel, input.start(), with(8, 1, 2));
+  for (std::size_t i = 0; i < input.count(); ++i) {
+    CAPTURE(i);
+    CHECK(result.endings[i].ok());
+    CHECK_FALSE(result.endings[i].alone);
+    CHECK(result.endings[i].energy_drift < 3e-14);
+    CHECK(std::abs(result.q[i] - std::copysign(2 * pi * turns, input.v[i])) < 1e-8);
+    TaylorStepper stepper(kernel, input.parameters, {});
+    stepper.start(0, input.q_of(i), input.v_of(i));
+    for (std::size_t next = 0; stepper.time() != input.end[i];) {
+      REQUIRE(stepper.step(input.end[i]).ending == StepEnding::None);
+      for (; next < input.times.size() && stepper.covers(input.times[next]); ++next)
+        CHECK(std::abs(result.q_of(i, next)[0] - stepper.sample(input.times[next]).q[0]) < 1e-8);
+    }
+    CHECK(std::abs(result.q[i] - stepper.q()[0]) < 1e-8);
+    CHECK(std::abs(result.v[i] - stepper.v()[0]) < 1e-8);
+  }
+  for (const auto& [width, threads] : std::vector<std::pair<int, int>>{{1, 1}, {2, 2}, {4, 1}, {16, 1}})
+    CHECK(same(advance_ensemble(kernel, input.start(), with(width, threads, 2)), result));
+}
+
+TEST_CASE("an energy with an angle in it counts the turns") {
+  System s;  // a torque of 1: the energy has a term −θ
+  const auto angle = s.coordinate("a");
+  const Kernel kernel = s.natural(Rational(1, 2) * s.rate_squared(angle), -cos(angle) - angle);
+  Trajectories input;
+  for (int i = 0; i < 5; ++i) input.add({0.1 * i}, {0.5 * i}, 100 + i);
+  input.times = {3, 50};
+  const EnsembleResult result = advance_ensemble(kernel, input.start(), with(4, 1, 2));
+  for (std::size_t i = 0; i < input.count(); ++i) {
+    CAPTURE(i);
+    CHECK_FALSE(result.endings[i].alone);
+    CHECK(result.q[i] > 4000);
+    CHECK(result.endings[i].energy_drift < 1e-14);
+    // θ'² − 2 cos θ − 2 θ stays.
+    const double q = input.q[i], v = input.v[i], at_end = result.v[i] * result.v[i] - 2 * std::cos(result.q[i]) - 2 * result.q[i];
+    CHECK(std::abs(at_end - (v * v - 2 * std::cos(q) - 2 * q)) < 1e-10);
+  }
+}
+
 TEST_CASE("a lane that fails ends as its own stepper says, and disturbs no other") {
   const Kernel kernel = kepler();
   Trajectories input = ellipses(12);
