@@ -35,7 +35,7 @@ class LaneExpansion {
 /// The instructions that a processor may be asked for. `Best`: what this one has.
 enum class InstructionSet { Best, Baseline, Avx2, Avx512 };
 
-/// Whether this processor, and this build, have it.
+/// Whether this processor and this build have it, and the environment variable MAUPERTUIS_INSTRUCTIONS allows it.
 bool has_instruction_set(InstructionSet set);
 
 /// The width at which a processor carries most motions a second: the doubles of a vector register, 8 with AVX-512.

@@ -83,6 +83,56 @@ TEST_CASE("a cache that cannot be written: the run is as it would be, with one w
   CHECK(run.codes == std::vector<std::string>{"W0705"});
 }
 
+TEST_CASE("a device that is full: the run is as it would be, with one warning, and nothing is left behind") {
+  if (!has_compiled_code()) return;
+  const Folder folder;
+  const std::string command = "XDG_CACHE_HOME=" + folder.path("cache") + " $MAUP simulate " + folder.write("p.lag", pendulum) +
+                              " --json --backend compiled";
+  // No file may grow, as where no space is left; the pipe may.
+  const Outcome outcome = shell("(trap '' XFSZ; ulimit -f 0; " + command + ") | cat");
+  const Json document = Json::parse(outcome.out);
+  CHECK(document.at("statistics").at("backend") == "compiled");
+  REQUIRE(document.at("diagnostics").size() == 1);
+  CHECK(document.at("diagnostics").at(0).at("code") == "W0705");
+  CHECK(document.at("final") == simulate(folder, "--backend compiled --no-cache").document.at("final"));
+  CHECK(shell("ls -A " + folder.path("cache") + "/maupertuis").out.empty());
+}
+
+TEST_CASE("a program too large to compile: the interpreter carries the run, and one warning says so") {
+  if (!has_compiled_code()) return;  // the test of a missing module is the one
+  std::string model = "system large\ndimensionless\ncoord x : number\nlet a0 = sin(x)\n";
+  constexpr int steps = 3100;  // each waits for the one before, so that none shares a pack with another
+  for (int i = 1; i < steps; ++i) model += "let a" + std::to_string(i) + " = sin(a" + std::to_string(i - 1) + " + x)\n";
+  model += "force x = -x - a" + std::to_string(steps - 1) + "/10\nT = 1/2 x'^2\nstart x = 1\nrun 0.01\n";
+  const Folder folder;
+  const std::string command = " $MAUP simulate " + folder.write("large.lag", model) + " --json --no-cache --backend ";
+  const Json compiled = Json::parse(shell(command + "compiled").out), interpreted = Json::parse(shell(command + "interpreter").out);
+  CHECK(compiled.at("statistics").at("backend") == "interpreter");
+  REQUIRE(compiled.at("diagnostics").size() == 1);
+  CHECK(compiled.at("diagnostics").at(0).at("code") == "W0703");
+  CHECK(contains(compiled.at("diagnostics").at(0).at("reason"), "too large to be compiled"));
+  CHECK(compiled.at("final") == interpreted.at("final"));
+  CHECK(interpreted.at("diagnostics").empty());
+}
+
+TEST_CASE("processors without AVX-512, and without AVX2: both backends agree with those of this one to rounding") {
+  const Folder folder;
+  const Run best = simulate(folder, "--backend interpreter");
+  for (const char* const set : {"avx2", "none"})
+    for (const char* const backend : {"interpreter", "compiled"}) {
+      CAPTURE(set);
+      CAPTURE(backend);
+      const Run run = simulate(folder, std::string("--backend ") + backend, std::string("MAUPERTUIS_INSTRUCTIONS=") + set);
+      CHECK(run.code == 0);
+      if (has_compiled_code()) CHECK(backend_of(run) == backend);
+      CHECK(std::abs(angle_of(run) - angle_of(best)) < 1e-12);
+      const Json doctor = Json::parse(shell(std::string("MAUPERTUIS_INSTRUCTIONS=") + set + " $MAUP doctor --json").out);
+      CHECK(doctor.at("vector instructions") != "AVX-512");
+      if (std::string(set) == "none") CHECK(doctor.at("vector instructions") == "none that are used");
+      if (has_compiled_code()) CHECK(contains(doctor.at("backends"), std::string(set) == "none" ? "for x86-64" : "x86-64-v3"));
+    }
+}
+
 TEST_CASE("methods that are not compiled say so when compiled code is asked for") {
   const Folder folder;
   const Run run = simulate(folder, "--backend compiled --method variational --step 10ms");

@@ -1,5 +1,7 @@
 #include "kernel/compiled/backend.hpp"
 
+#include "kernel/program/processor.hpp"
+
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -44,6 +46,8 @@ void* resolve(const std::string& name) {
 fs::path program_folder() { return {}; }
 void* resolve(const std::string&) { return nullptr; }
 #endif
+
+const char* processor_of(const Request& request) { return *request.processor ? request.processor : code_processor(); }
 
 struct ReplyHolder {
   const ModuleInterface* interface;
@@ -137,7 +141,7 @@ Digest key_of(const Request& request) {
   Digester d;
   d.add_text(MAUPERTUIS_BUILD_TAG);
   d.add_text(processor_identity());
-  d.add_text(request.processor);
+  d.add_text(processor_of(request));
   for (const std::uint64_t part : {std::uint64_t(request.emitter), request.source_digest[0], request.source_digest[1],
                                    std::uint64_t(request.width), std::uint64_t(request.order), request.stride, std::uint64_t(request.effort)})
     d.add(part);
@@ -152,8 +156,10 @@ Digest key_of(const Request& request) {
   return d.digest();
 }
 
-Compiled compile(const Request& request, const ObjectCache* cache) {
+Compiled compile(const Request& wanted, const ObjectCache* cache) {
   const auto begin = std::chrono::steady_clock::now();
+  Request request = wanted;
+  request.processor = processor_of(wanted);
   Compiled out;
   const Digest key = key_of(request);
   const auto load = [&](std::span<const char> object) {

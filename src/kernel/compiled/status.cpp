@@ -1,4 +1,5 @@
 #include "kernel/compiled/backend.hpp"
+#include "kernel/program/processor.hpp"
 
 #include <maupertuis/backend.hpp>
 
@@ -33,7 +34,7 @@ BackendStatus backend_status() {
   out.module = module.path;
   if (module.interface) {
     out.compiler = std::string("LLVM ") + module.interface->version;
-    out.processor = module.interface->processor();
+    out.processor = *code_processor() ? code_processor() : module.interface->processor();
   }
   const compiled::ObjectCache cache(compiled::ObjectCache::usual_folder());
   const auto usage = cache.usage();

@@ -1,15 +1,12 @@
 #include "kernel/dynamics/evaluate.hpp"
 
+#include "kernel/program/processor.hpp"
+
 namespace maupertuis::dynamics {
 
 Evaluate best_evaluate() {
-#if defined(__x86_64__)
-  __builtin_cpu_init();
-  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
-  if (avx512 && avx512_evaluate()) return avx512_evaluate();
-  if (avx2 && avx2_evaluate()) return avx2_evaluate();
-#endif
+  if (vector_instructions() >= VectorInstructions::Avx512 && avx512_evaluate()) return avx512_evaluate();
+  if (vector_instructions() >= VectorInstructions::Avx2 && avx2_evaluate()) return avx2_evaluate();
   return baseline_evaluate();
 }
 

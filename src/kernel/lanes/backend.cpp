@@ -1,6 +1,7 @@
 #include "kernel/interpreter/elementary.hpp"
 #include "kernel/lanes/lanes.hpp"
 #include "kernel/lanes/plan.hpp"
+#include "kernel/program/processor.hpp"
 
 #include <maupertuis/lanes.hpp>
 #include <maupertuis/require.hpp>
@@ -18,14 +19,7 @@ double power_function(double x, double y) { return std::pow(x, y); }
 namespace {
 
 bool processor_has(InstructionSet set) {
-#if defined(__x86_64__)
-  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  if (set == InstructionSet::Avx2) return avx2;
-  return avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
-#else
-  (void)set;
-  return false;
-#endif
+  return vector_instructions() >= (set == InstructionSet::Avx2 ? VectorInstructions::Avx2 : VectorInstructions::Avx512);
 }
 
 lanes::Expanders expanders(InstructionSet set) {

@@ -37,7 +37,7 @@ bool can_be_straight(const PackedProgram& program, int order) {
 void emit_packed(Emission& out, const compiled::Request& request) {
   const auto& program = *static_cast<const PackedProgram*>(request.source);
   if (request.effort > 0 && can_be_straight(program, request.order))
-    return StraightEmitter(*out.module, program, request.stride, request.order).run();
+    return StraightEmitter(out, program, request.stride, request.order).run();
   if (program.packs.size() > most_packs) throw Declined("the program is too large to be compiled");
   RolledEmitter(out, program, request.stride).run();
 }

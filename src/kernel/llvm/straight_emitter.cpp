@@ -9,8 +9,8 @@ using llvm::Value;
 using packed::Pack;
 using packed::PackedProgram;
 
-StraightEmitter::StraightEmitter(llvm::Module& module, const PackedProgram& program, std::size_t stride, int order)
-    : module_(module), context_(module.getContext()), b_(context_), p_(program), stride_(stride), order_(order),
+StraightEmitter::StraightEmitter(Emission& out, const PackedProgram& program, std::size_t stride, int order)
+    : module_(*out.module), context_(out.context), b_(context_), p_(program), fuses_(out.features.fma), stride_(stride), order_(order),
       n_(program.program.unknowns), pack_of_(program.program.slots, nullptr), tangents_(program.packs.size()),
       second_order_(program.packs.size()) {
   for (const Pack& pack : p_.packs)

@@ -1,4 +1,5 @@
 #pragma once
+#include "kernel/llvm/emission.hpp"
 #include "kernel/packed/layout.hpp"
 
 #include <llvm/IR/IRBuilder.h>
@@ -20,7 +21,7 @@ inline unsigned width_of(std::size_t count) { return static_cast<unsigned>(std::
 
 class StraightEmitter {
  public:
-  StraightEmitter(llvm::Module& module, const packed::PackedProgram& program, std::size_t stride, int order);
+  StraightEmitter(Emission& out, const packed::PackedProgram& program, std::size_t stride, int order);
   void run();
 
  private:
@@ -216,6 +217,7 @@ class StraightEmitter {
   llvm::LLVMContext& context_;
   llvm::IRBuilder<> b_;
   const packed::PackedProgram& p_;
+  bool fuses_;                          // the processor multiplies and adds in one instruction
   std::size_t stride_;
   int order_;
   std::size_t n_;

@@ -63,6 +63,7 @@ Value* StraightEmitter::fma(Value* x, Value* y, Value* sum) {
   if (is_zero(x) || is_zero(y)) return sum ? sum : is_zero(x) ? x : y;
   if (!sum || is_zero(sum)) return mul(x, y);
   if (is_one(x) || is_one(y)) return b_.CreateFAdd(is_one(x) ? y : x, sum);
+  if (!fuses_) return b_.CreateFAdd(mul(x, y), sum);
   return b_.CreateIntrinsic(llvm::Intrinsic::fma, {x->getType()}, {x, y, sum});
 }
 

@@ -1,5 +1,7 @@
 #include "kernel/packed/engine.hpp"
 
+#include "kernel/program/processor.hpp"
+
 namespace maupertuis::packed {
 
 namespace baseline { extern const Engine engine; }
@@ -10,9 +12,8 @@ namespace avx512 { extern const Engine engine; }
 
 const Engine& engine() {
 #ifdef MAUPERTUIS_X86_64
-  __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) return avx512::engine;
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return avx2::engine;
+  if (vector_instructions() == VectorInstructions::Avx512) return avx512::engine;
+  if (vector_instructions() == VectorInstructions::Avx2) return avx2::engine;
 #endif
   return baseline::engine;
 }

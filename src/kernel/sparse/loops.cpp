@@ -1,16 +1,13 @@
 #include "kernel/sparse/loops.hpp"
 
+#include "kernel/program/processor.hpp"
+
 namespace maupertuis::sparse {
 namespace {
 
 Loops best_loops() {
-#if defined(__x86_64__)
-  __builtin_cpu_init();
-  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
-  if (avx512 && avx512_loops().factor) return avx512_loops();
-  if (avx2 && avx2_loops().factor) return avx2_loops();
-#endif
+  if (vector_instructions() >= VectorInstructions::Avx512 && avx512_loops().factor) return avx512_loops();
+  if (vector_instructions() >= VectorInstructions::Avx2 && avx2_loops().factor) return avx2_loops();
   return baseline_loops();
 }
 

@@ -1,0 +1,40 @@
+#include "kernel/program/processor.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <string_view>
+
+namespace maupertuis {
+namespace {
+
+VectorInstructions of_processor() {
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return VectorInstructions::None;
+  const bool widest = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+  return widest ? VectorInstructions::Avx512 : VectorInstructions::Avx2;
+#else
+  return VectorInstructions::None;
+#endif
+}
+
+VectorInstructions allowed() {
+  const char* const text = std::getenv("MAUPERTUIS_INSTRUCTIONS");
+  const std::string_view most = text ? text : "";
+  return most == "none" ? VectorInstructions::None : most == "avx2" ? VectorInstructions::Avx2 : VectorInstructions::Avx512;
+}
+
+}  // namespace
+
+VectorInstructions vector_instructions() {
+  static const VectorInstructions used = std::min(of_processor(), allowed());
+  return used;
+}
+
+const char* code_processor() {
+  static const bool held_back = vector_instructions() < of_processor();
+  if (!held_back) return "";
+  return vector_instructions() == VectorInstructions::Avx2 ? "x86-64-v3" : "x86-64";
+}
+
+}  // namespace maupertuis
