@@ -61,6 +61,10 @@ void set_leaves(MemoryOf<T>& memory, const std::type_identity_t<T>& t, int order
 template <class T>
 void run_instruction(MemoryOf<T>& memory, std::uint32_t index, int order);
 
+/// A run of them.
+template <class T>
+void run_instructions(MemoryOf<T>& memory, const Run& run, int order);
+
 /// Every instruction of a section at the order that belongs to the stage.
 template <class T>
 void run_section(MemoryOf<T>& memory, Section section, int stage);

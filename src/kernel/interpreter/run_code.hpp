@@ -130,6 +130,11 @@ void run_instruction(MemoryOf<T>& memory, std::uint32_t index, int order) {
 }
 
 template <class T>
+void run_instructions(MemoryOf<T>& memory, const Run& run, int order) {
+  RunAtOrder<T>(memory, order)(run);
+}
+
+template <class T>
 void run_section(MemoryOf<T>& memory, Section section, int stage) {
   for (const Run& run : memory.program.runs[section]) {
     const int order = stage + 2 - run.lag;

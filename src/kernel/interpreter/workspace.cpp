@@ -2,6 +2,7 @@
 #include "kernel/interpreter/elementary.hpp"
 #include "kernel/interpreter/interpreter.hpp"
 #include "kernel/interpreter/lifted_solve.hpp"
+#include "kernel/interpreter/point_section.hpp"
 #include "kernel/jet/bordered_solver.hpp"
 #include "kernel/packed/convolutions.hpp"
 #include "kernel/packed/engine.hpp"
@@ -32,7 +33,7 @@ struct KernelWorkspace::Impl {
       : kernel(k), packed(packed::pack(k.program())), program(packed.program), order(p),
         orders(p + 2 + (-2 - program.first_stage)), memory(program, orders, packed.cells), parameters(program.parameters, 0.0),
         sides(program.switches.size(), 1), unknowns(program.unknowns),
-        by_matrix(unknowns <= most_by_matrix), producer(program.slots, nullptr) {
+        by_matrix(unknowns <= most_by_matrix), producer(program.slots, nullptr), at_point(program) {
     solution.assign(padded_unknowns(), 0.0);
     unknown = {solution.data(), unknowns};
     tangent.assign(by_matrix ? unknowns * memory.stride : memory.stride, 0.0);
@@ -94,6 +95,7 @@ struct KernelWorkspace::Impl {
   std::vector<double> block_tangent; // [slots × 8]
   std::vector<std::uint32_t> of_mass;  // instructions that M₀ goes through
   std::vector<const Instruction*> producer;  // [slots]
+  interpreter::PointSection at_point;
   bool alone = false;                // a point whose coefficients are not corrected
   bool corrects_points = true;       // something that is read at a point alone depends on q̈
   std::size_t singular = 0, contradicting = 0;
@@ -264,8 +266,7 @@ bool KernelWorkspace::Impl::outputs_follow_accelerations() const {
   for (const auto* slots : {&program.switch_slots, &program.events, &program.observables, &program.integrands,
                             &program.constraint_values, &program.constraint_rates})
     if (std::any_of(slots->begin(), slots->end(), follows)) return true;
-  return !program.runs[Along].empty() ||
-         std::any_of(program.runs[AtPoint].begin(), program.runs[AtPoint].end(), [](const Run& run) { return run.lag == 2; });
+  return !program.runs[Along].empty() || at_point.follows_acceleration();
 }
 
 /// Coefficient k + 2 − ℓ of a slot of lag ℓ follows q̈_k with its order-0 tangents: one by one, or the tangent in the direction of q̈_k.
@@ -323,14 +324,14 @@ void KernelWorkspace::Impl::renew_blocks(int stage, int stages) {
 /// What follows the solution of a stage.
 void KernelWorkspace::Impl::run_along(int stage) {
   if (!program.runs[Along].empty()) interpreter::run_section(memory, Along, stage);
-  if (stage <= 0 && !program.runs[AtPoint].empty()) interpreter::run_section(memory, AtPoint, stage);
+  if (stage <= 0) at_point.run(memory, stage);
 }
 
 /// False: there is no code for this, or its results are not to be trusted.
 bool KernelWorkspace::Impl::run_compiled(int stages) {
   if (!compiled.expand || stages != order || compiled.expand(&arguments) != 0) return false;
   has_full = true;
-  if (program.runs[Along].empty() && program.runs[AtPoint].empty()) return true;
+  if (program.runs[Along].empty() && at_point.empty()) return true;
   const int last = program.runs[Along].empty() ? 1 : stages;
   for (int stage = program.first_stage; stage < last; ++stage) run_along(stage);
   return true;
