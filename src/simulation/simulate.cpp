@@ -64,13 +64,13 @@ std::string_view word_of(StepMethod method) {
   return method == StepMethod::Stiff ? "stiff" : method == StepMethod::Variational ? "variational" : "taylor";
 }
 
-/// energy_drift = max |h_E(t) − h_E(0) − work(t)| / max Σ |terms of h_E|.
+/// energy_drift = max |h_E(t) − h_E(0) − work(t)| / max Σ |terms of h_E|. Without power there is no integral.
 class EnergyBalance {
  public:
   explicit EnergyBalance(std::size_t terms) : terms_(terms) {}
 
   /// Another method takes over: its integrals start at zero again.
-  void carry_over(const Sample& last) { work_before_ += last.integrals[0]; }
+  void carry_over(const Sample& last) { work_before_ += work_of(last); }
 
   void add(const Sample& sample) {
     double energy = 0, scale = 0;
@@ -82,7 +82,7 @@ class EnergyBalance {
     if (!begun_) first_ = energy;
     begun_ = true;
     largest_scale_ = std::max(largest_scale_, scale);
-    largest_error_ = std::max(largest_error_, std::abs(energy - first_ - work_before_ - sample.integrals[0]));
+    largest_error_ = std::max(largest_error_, std::abs(energy - first_ - work_before_ - work_of(sample)));
   }
 
   double energy_of(const Sample& sample) const {
@@ -91,6 +91,8 @@ class EnergyBalance {
   double drift() const { return largest_scale_ > 0 ? largest_error_ / largest_scale_ : 0; }
 
  private:
+  static double work_of(const Sample& sample) { return sample.integrals.empty() ? 0 : sample.integrals[0]; }
+
   std::size_t terms_;
   bool begun_ = false;
   double first_ = 0, largest_scale_ = 0, largest_error_ = 0, work_before_ = 0;
@@ -292,7 +294,8 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
 
   const auto begin = Clock::now();
   const Observables observables = collect_observables(equations, probe);
-  WantedFunctions wanted{observables.expressions, {}, {equations.power}};
+  WantedFunctions wanted{observables.expressions, {}, {}};
+  if (!equations.power.is_zero()) wanted.integrands.push_back(equations.power);
   if (plan->until) wanted.events.push_back(model.experiment.until);
   auto method = first_method(equations, wanted, options, diagnostics);
   if (!method) return std::nullopt;
