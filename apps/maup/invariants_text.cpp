@@ -73,7 +73,8 @@ std::string brackets_text(const Invariants& found, const ReadingOrder& order) {
   return text.empty() ? "" : "\nPoisson brackets that do not vanish\n" + text;
 }
 
-std::string integrability_text(const Invariants& found, std::size_t n) {
+std::string integrability_text(const Invariants& found) {
+  const std::size_t n = found.freedoms;
   std::string text = fmt::format("\n{} independent integral{}", found.rank, found.rank == 1 ? "" : "s");
   if (found.autonomous_rank != found.rank)
     text += fmt::format(", {} of them without explicit time", found.autonomous_rank);
@@ -98,8 +99,9 @@ std::string completeness_text(const Invariants& found) {
   text += "None further in this basis:\n";
   for (const std::string& line : found.basis) text += "  " + line + "\n";
   if (found.too_long > 0)
-    text +=
-        fmt::format("  {} more in it, whose coefficients could not be written as fractions of the parameters, or not proved\n", found.too_long);
+    text += fmt::format(
+        "  {} more in it, whose coefficients could not be written as fractions of the parameters, or not proved\n",
+        found.too_long);
   return text;
 }
 
@@ -117,7 +119,7 @@ std::string invariants_text(const Invariants& found, const EquationsOfMotion& eq
   if (!found.balance_laws.empty()) text += "\nBalance laws\n";
   for (const BalanceLaw& law : found.balance_laws)
     text += fmt::format("  {}: d/dt ({}) = {}\n", law.name, to_plain(law.quantity, order), formula(law.rate, order));
-  if (!found.integrals.empty()) text += integrability_text(found, equations.system->coordinates.size());
+  if (!found.integrals.empty()) text += integrability_text(found);
   return text + completeness_text(found);
 }
 
@@ -164,6 +166,7 @@ void add_invariants_json(Json& document, const Invariants& found, const Equation
   for (const BalanceLaw& law : found.balance_laws)
     document["balance_laws"].push_back(
         {{"name", law.name}, {"quantity", to_plain(law.quantity, order)}, {"rate", to_plain(law.rate, order)}});
+  document["freedoms"] = found.freedoms;
   document["completely_integrable"] = found.completely_integrable;
   document["involution"] = found.involution;
   document["point_symmetries"] = found.noether_symmetries;

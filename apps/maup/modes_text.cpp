@@ -23,7 +23,9 @@ std::size_t columns(const std::string& text) {
 std::string padded_left(const std::string& text, std::size_t width) {
   return std::string(width - std::min(width, columns(text)), ' ') + text;
 }
-std::string padded(const std::string& text, std::size_t width) { return text + std::string(width - std::min(width, columns(text)), ' '); }
+std::string padded(const std::string& text, std::size_t width) {
+  return text + std::string(width - std::min(width, columns(text)), ' ');
+}
 
 /// Lines of cells: the first line is the head, numbers at the right.
 std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t left_aligned) {
@@ -86,28 +88,40 @@ std::string matrix_text(const std::string& name, const ExprMatrix& m, const Read
 
 std::string kind_text(const Mode& m) {
   switch (m.kind) {
-    case Mode::Kind::Zero: return m.cause.empty() ? "zero" : m.cause;
-    case Mode::Kind::Oscillation: return m.eigenvalue.real() > 0 ? "growing oscillation" : m.eigenvalue.real() < 0 ? "damped oscillation" : "oscillation";
-    case Mode::Kind::Decay: return "decay";
-    case Mode::Kind::Growth: return "growth";
+    case Mode::Kind::Zero:
+      return m.cause.empty() ? "zero" : m.cause;
+    case Mode::Kind::Oscillation:
+      return m.eigenvalue.real() > 0   ? "growing oscillation"
+             : m.eigenvalue.real() < 0 ? "damped oscillation"
+                                       : "oscillation";
+    case Mode::Kind::Decay:
+      return "decay";
+    case Mode::Kind::Growth:
+      return "growth";
   }
   return "";
 }
 
 const char* kind_name(Mode::Kind kind) {
   switch (kind) {
-    case Mode::Kind::Zero: return "zero";
-    case Mode::Kind::Oscillation: return "oscillation";
-    case Mode::Kind::Decay: return "decay";
-    case Mode::Kind::Growth: return "growth";
+    case Mode::Kind::Zero:
+      return "zero";
+    case Mode::Kind::Oscillation:
+      return "oscillation";
+    case Mode::Kind::Decay:
+      return "decay";
+    case Mode::Kind::Growth:
+      return "growth";
   }
   return "";
 }
 
 std::string modes_table(const MechanicalSystem& system, const ModalAnalysis& analysis) {
-  const bool damped = std::any_of(analysis.modes.begin(), analysis.modes.end(), [](const Mode& m) { return m.eigenvalue.real() != 0; });
+  const bool damped =
+      std::any_of(analysis.modes.begin(), analysis.modes.end(), [](const Mode& m) { return m.eigenvalue.real() != 0; });
   const bool shapes = system.coordinates.size() <= most_shapes;
-  std::vector<std::string> head{"", "", system.dimensionless ? "ω" : "ω (rad/s)", system.dimensionless ? "f" : "f (Hz)"};
+  std::vector<std::string> head{"", "", system.dimensionless ? "ω" : "ω (rad/s)",
+                                system.dimensionless ? "f" : "f (Hz)"};
   if (damped) head.insert(head.end(), {system.dimensionless ? "Re λ" : "Re λ (1/s)", "ζ"});
   if (shapes)
     for (const Coordinate& c : system.coordinates) head.push_back(c.name);
@@ -115,10 +129,15 @@ std::string modes_table(const MechanicalSystem& system, const ModalAnalysis& ana
   for (std::size_t i = 0; i < analysis.modes.size(); ++i) {
     const Mode& m = analysis.modes[i];
     const bool oscillates = m.kind == Mode::Kind::Oscillation;
-    std::vector<std::string> row{fmt::format("{}", i + 1), kind_text(m) + (m.multiplicity > 1 ? fmt::format(", {}-fold", m.multiplicity) : ""),
-                                 oscillates ? fmt::format("{:.9g}", m.frequency()) : m.kind == Mode::Kind::Zero ? "0" : "",
+    std::vector<std::string> row{fmt::format("{}", i + 1),
+                                 kind_text(m) + (m.multiplicity > 1 ? fmt::format(", {}-fold", m.multiplicity) : ""),
+                                 oscillates                   ? fmt::format("{:.9g}", m.frequency())
+                                 : m.kind == Mode::Kind::Zero ? "0"
+                                                              : "",
                                  oscillates ? fmt::format("{:.9g}", m.frequency() / turn) : ""};
-    if (damped) row.insert(row.end(), {number(m.eigenvalue.real()), oscillates && m.eigenvalue.real() != 0 ? fmt::format("{:.4g}", m.damping_ratio()) : ""});
+    if (damped)
+      row.insert(row.end(), {number(m.eigenvalue.real()),
+                             oscillates && m.eigenvalue.real() != 0 ? fmt::format("{:.4g}", m.damping_ratio()) : ""});
     if (shapes)
       for (const Complex& x : m.shape) row.push_back(complex_number(x));
     rows.push_back(std::move(row));
@@ -139,23 +158,43 @@ bool vanishes(const RealMatrix& m) {
 std::string matrices_text(const MechanicalSystem& system, const Linearization& l) {
   std::string out;
   if (l.independent.size() < system.coordinates.size())
-    out += fmt::format("  independent: {}\n", listed(system, l.independent, "") + (l.independent == l.independent_velocities ? "" : "; " + listed(system, l.independent_velocities, "'")));
+    out += fmt::format(
+        "  independent: {}\n",
+        listed(system, l.independent, "") +
+            (l.independent == l.independent_velocities ? "" : "; " + listed(system, l.independent_velocities, "'")));
   if (l.second_order() && l.independent.size() <= widest_matrix) {
-    const std::pair<const char*, const RealMatrix*> all[] = {{"M", &l.mass}, {"C", &l.damping}, {"G", &l.gyroscopic},
-                                                             {"K", &l.stiffness}, {"N", &l.circulatory}, {"B", &l.input}};
+    const std::pair<const char*, const RealMatrix*> all[] = {{"M", &l.mass},        {"C", &l.damping},
+                                                             {"G", &l.gyroscopic},  {"K", &l.stiffness},
+                                                             {"N", &l.circulatory}, {"B", &l.input}};
     std::string sum = "M ξ''";
-    const bool c = !vanishes(l.damping), g = !vanishes(l.gyroscopic), k = !vanishes(l.stiffness), n = !vanishes(l.circulatory);
+    const bool c = !vanishes(l.damping), g = !vanishes(l.gyroscopic), k = !vanishes(l.stiffness),
+               n = !vanishes(l.circulatory);
     if (c || g) sum += fmt::format(" + {} ξ'", c && g ? "(C + G)" : c ? "C" : "G");
     if (k || n) sum += fmt::format(" + {} ξ", k && n ? "(K + N)" : k ? "K" : "N");
     out += fmt::format("  {} = {}\n", sum, vanishes(l.input) ? "0" : "B u");
     for (const auto& [name, matrix] : all)
       if (!vanishes(*matrix)) out += matrix_text(name, *matrix);
   } else if (l.a.rows <= widest_matrix) {
-    out += fmt::format("  x' = A x{},  x = ({}, {})\n", vanishes(l.b) ? "" : " + B u", listed(system, l.independent, ""), listed(system, l.independent_velocities, "'"));
+    out += fmt::format("  x' = A x{},  x = ({}, {})\n", vanishes(l.b) ? "" : " + B u",
+                       listed(system, l.independent, ""), listed(system, l.independent_velocities, "'"));
     out += matrix_text("A", l.a);
     if (!vanishes(l.b)) out += matrix_text("B", l.b);
   }
   return out;
+}
+
+/// y = y0 + C x + D u over the outputs that were asked for.
+std::string measured_text(const MechanicalSystem& system, const Linearization& l,
+                          const std::vector<std::string>& outputs) {
+  if (outputs.empty()) return "";
+  const MeasuredOutputs& y = l.measured;
+  std::string out = fmt::format("  y = y0 + C x{} (SI),  x = ({}, {})\n", vanishes(y.d) ? "" : " + D u",
+                                listed(system, l.independent, ""), listed(system, l.independent_velocities, "'"));
+  for (std::size_t i = 0; i < outputs.size(); ++i)
+    out += fmt::format("  y{} = {},  y0 = {}\n", outputs.size() == 1 ? "" : fmt::format("{}", i + 1), outputs[i],
+                       number(y.values[i]));
+  out += matrix_text("C", y.c);
+  return vanishes(y.d) ? out : out + matrix_text("D", y.d);
 }
 
 bool vanishes(const ExprMatrix& m) {
@@ -165,10 +204,12 @@ bool vanishes(const ExprMatrix& m) {
 /// Formulas instead of numbers where they fit a line.
 std::optional<std::string> formulas_text(const SymbolicLinearization& s, const ReadingOrder& order) {
   std::string out;
-  for (const auto& [left, right] : s.equilibrium) out += fmt::format("  {} = {}\n", to_plain(left, order), to_plain(right.value, order));
+  for (const auto& [left, right] : s.equilibrium)
+    out += fmt::format("  {} = {}\n", to_plain(left, order), to_plain(right.value, order));
   const bool c = !vanishes(s.damping), k = !vanishes(s.stiffness), b = !vanishes(s.input);
   out += fmt::format("  M ξ''{}{} = {}\n", c ? " + C ξ'" : "", k ? " + K ξ" : "", b ? "B u" : "0");
-  const std::tuple<const char*, const ExprMatrix*, bool> all[] = {{"M", &s.mass, true}, {"C", &s.damping, c}, {"K", &s.stiffness, k}, {"B", &s.input, b}};
+  const std::tuple<const char*, const ExprMatrix*, bool> all[] = {
+      {"M", &s.mass, true}, {"C", &s.damping, c}, {"K", &s.stiffness, k}, {"B", &s.input, b}};
   for (const auto& [name, matrix, shown] : all)
     if (shown) out += matrix_text(name, *matrix, order);
   if (s.square) out += fmt::format("  ω² = {}\n", to_plain(s.square, order));
@@ -200,7 +241,8 @@ std::string summary(const MechanicalSystem& system, const ModalStudy& study) {
   std::vector<std::vector<std::string>> rows;
   for (std::size_t i = 0; i < study.entries.size(); ++i) {
     const ModalEntry& e = study.entries[i];
-    rows.push_back({fmt::format("{}", i + 1), point_text(system, e.equilibrium, study.translations), verdict(e.analysis.stability)});
+    rows.push_back({fmt::format("{}", i + 1), point_text(system, e.equilibrium, study.translations),
+                    verdict(e.analysis.stability)});
   }
   return out + table(rows, 3);
 }
@@ -208,17 +250,20 @@ std::string summary(const MechanicalSystem& system, const ModalStudy& study) {
 }  // namespace
 
 std::string modes_text(const MechanicalSystem& system, const ModalStudy& study,
-                       const std::vector<std::optional<SymbolicLinearization>>& formulas, const ReadingOrder& order) {
+                       const std::vector<std::optional<SymbolicLinearization>>& formulas, const ReadingOrder& order,
+                       const std::vector<std::string>& outputs) {
   const std::size_t detailed = formulas.size();
   std::string out = summary(system, study);
   for (std::size_t i = 0; i < study.entries.size() && i < detailed; ++i) {
     const ModalEntry& e = study.entries[i];
     const std::string head = point_text(system, e.equilibrium, study.translations);
     if (!out.empty()) out += "\n";
-    out += study.starts > 0 ? fmt::format("{}  {}\n", i + 1, head) : fmt::format("{}\n  {}\n", head, verdict(e.analysis.stability));
+    out += study.starts > 0 ? fmt::format("{}  {}\n", i + 1, head)
+                            : fmt::format("{}\n  {}\n", head, verdict(e.analysis.stability));
     out += multipliers_text(system, e.linearization.point);
     const auto symbolic = formulas[i] ? formulas_text(*formulas[i], order) : std::nullopt;
     out += symbolic ? *symbolic : matrices_text(system, e.linearization);
+    out += measured_text(system, e.linearization, outputs);
     out += modes_table(system, e.analysis);
     out += fmt::format("  residual of the eigenvalue problem {}\n", brief(e.analysis.residual));
   }
@@ -228,39 +273,49 @@ std::string modes_text(const MechanicalSystem& system, const ModalStudy& study,
 }
 
 std::string regulator_text(const MechanicalSystem& system, const Linearization& l, const Regulator& r) {
-  std::string out = fmt::format("\nregulator  u = u0 - F x,  x = ({}, {})\n", listed(system, l.independent, ""), listed(system, l.independent_velocities, "'"));
+  std::string out = fmt::format("\nregulator  u = u0 - F x,  x = ({}, {})\n", listed(system, l.independent, ""),
+                                listed(system, l.independent_velocities, "'"));
   out += matrix_text("F", r.gain);
   std::string poles;
   for (const Complex& z : r.poles)
-    if (z.imag() >= 0) poles += (poles.empty() ? "" : ", ") + (z.imag() == 0 ? number(z.real()) : fmt::format("{} ± {}i", number(z.real()), number(z.imag())));
-  return out + fmt::format("  poles of the closed loop {}\n  residual of the Riccati equation {}\n", poles, brief(r.residual));
+    if (z.imag() >= 0)
+      poles += (poles.empty() ? "" : ", ") +
+               (z.imag() == 0 ? number(z.real()) : fmt::format("{} ± {}i", number(z.real()), number(z.imag())));
+  return out + fmt::format("  poles of the closed loop {}\n  residual of the Riccati equation {}\n", poles,
+                           brief(r.residual));
 }
 
 std::string locus_text(const MechanicalSystem& system, const Locus& locus) {
   const Parameter& p = system.parameters[locus.parameter];
   const auto value = [&](double x) { return value_text(system, x, p.dimension); };
-  std::string out = fmt::format("{} = {} … {}, {} values: {} {}\n", p.name, value(locus.values.front()), value(locus.values.back()), locus.values.size(),
-                                locus.branches.size(), locus.branches.size() == 1 ? "branch" : "branches");
+  std::string out =
+      fmt::format("{} = {} … {}, {} values: {} {}\n", p.name, value(locus.values.front()), value(locus.values.back()),
+                  locus.values.size(), locus.branches.size(), locus.branches.size() == 1 ? "branch" : "branches");
   Cells rows;
   for (std::size_t b = 0; b < locus.branches.size(); ++b) {
     const LocusPoint &first = locus.branches[b].points.front(), &last = locus.branches[b].points.back();
     rows.push_back({fmt::format("{}", b + 1), fmt::format("{} … {}", value(first.parameter), value(last.parameter)),
                     fmt::format("from {}", point_text(system, first.equilibrium, locus.translations)),
-                    fmt::format("to {}", point_text(system, last.equilibrium, locus.translations)), std::string(stability_word(last.stability.verdict))});
+                    fmt::format("to {}", point_text(system, last.equilibrium, locus.translations)),
+                    std::string(stability_word(last.stability.verdict))});
   }
   out += table(rows, 5);
   for (const StabilityChange& c : locus.changes)
-    out += fmt::format("  branch {} at {} = {}: {} → {}\n", c.branch + 1, p.name, value(c.parameter), stability_word(c.before), stability_word(c.after));
+    out += fmt::format("  branch {} at {} = {}: {} → {}\n", c.branch + 1, p.name, value(c.parameter),
+                       stability_word(c.before), stability_word(c.after));
   return out;
 }
 
-// -------------------------------------------------------------------------------------------------------------------- JSON
+// --------------------------------------------------------------------------------------------------------------------
+// JSON
 
 namespace {
 
 Json matrix_json(const RealMatrix& m) {
   Json rows = Json::array();
-  for (std::size_t i = 0; i < m.rows; ++i) rows.push_back(std::vector<double>(m.entries.begin() + static_cast<std::ptrdiff_t>(i * m.columns), m.entries.begin() + static_cast<std::ptrdiff_t>((i + 1) * m.columns)));
+  for (std::size_t i = 0; i < m.rows; ++i)
+    rows.push_back(std::vector<double>(m.entries.begin() + static_cast<std::ptrdiff_t>(i * m.columns),
+                                       m.entries.begin() + static_cast<std::ptrdiff_t>((i + 1) * m.columns)));
   return rows;
 }
 
@@ -275,9 +330,15 @@ Json names_json(const MechanicalSystem& system, const std::vector<std::size_t>& 
 Json mode_json(const MechanicalSystem& system, const Mode& m) {
   Json shape = Json::object();
   for (std::size_t i = 0; i < m.shape.size(); ++i) shape[system.coordinates[i].name] = complex_json(m.shape[i]);
-  Json out = {{"kind", kind_name(m.kind)}, {"eigenvalue", complex_json(m.eigenvalue)}, {"error", m.error},
-              {"frequency", m.frequency()}, {"frequency_hz", m.frequency() / turn}, {"natural_frequency", m.natural_frequency()},
-              {"damping_ratio", m.damping_ratio()}, {"multiplicity", m.multiplicity}, {"shape", std::move(shape)}};
+  Json out = {{"kind", kind_name(m.kind)},
+              {"eigenvalue", complex_json(m.eigenvalue)},
+              {"error", m.error},
+              {"frequency", m.frequency()},
+              {"frequency_hz", m.frequency() / turn},
+              {"natural_frequency", m.natural_frequency()},
+              {"damping_ratio", m.damping_ratio()},
+              {"multiplicity", m.multiplicity},
+              {"shape", std::move(shape)}};
   if (m.kind == Mode::Kind::Zero) {
     out["zeros"] = m.zeros;
     out["cause"] = m.cause.empty() ? Json(nullptr) : Json(m.cause);
@@ -291,7 +352,8 @@ Json point_json(const MechanicalSystem& system, const OperatingPoint& point) {
     state[system.coordinates[i].name] = point.q[i];
     state[system.coordinates[i].name + "'"] = point.v[i];
   }
-  for (std::size_t i = 0; i < point.multipliers.size(); ++i) multipliers[system.constraints[i].multiplier.name()] = point.multipliers[i];
+  for (std::size_t i = 0; i < point.multipliers.size(); ++i)
+    multipliers[system.constraints[i].multiplier.name()] = point.multipliers[i];
   for (std::size_t i = 0; i < point.inputs.size(); ++i) inputs[system.inputs[i].name] = point.inputs[i];
   return {{"t", point.t}, {"state", state}, {"multipliers", multipliers}, {"inputs", inputs}};
 }
@@ -299,23 +361,32 @@ Json point_json(const MechanicalSystem& system, const OperatingPoint& point) {
 Json linearization_json(const MechanicalSystem& system, const Linearization& l) {
   Json out = {{"independent", names_json(system, l.independent, "")},
               {"independent_velocities", names_json(system, l.independent_velocities, "'")}};
-  const std::pair<const char*, const RealMatrix*> second[] = {{"M", &l.mass}, {"C", &l.damping}, {"G", &l.gyroscopic},
-                                                              {"K", &l.stiffness}, {"N", &l.circulatory}, {"input", &l.input}};
+  const std::pair<const char*, const RealMatrix*> second[] = {{"M", &l.mass},        {"C", &l.damping},
+                                                              {"G", &l.gyroscopic},  {"K", &l.stiffness},
+                                                              {"N", &l.circulatory}, {"input", &l.input}};
   if (l.second_order())
     for (const auto& [name, matrix] : second) out["second_order"][name] = matrix_json(*matrix);
   else
     out["second_order"] = nullptr;
   const std::pair<const char*, const RealMatrix*> first[] = {{"A", &l.a}, {"B", &l.b}, {"C", &l.c}, {"D", &l.d}};
   for (const auto& [name, matrix] : first) out["state_space"][name] = matrix_json(*matrix);
+  out["measured"] =
+      l.measured.values.empty()
+          ? Json(nullptr)
+          : Json{{"values", l.measured.values}, {"C", matrix_json(l.measured.c)}, {"D", matrix_json(l.measured.d)}};
   return out;
 }
 
 const char* verdict_word(Stability s) {
   switch (s) {
-    case Stability::Energetic: return "stable";
-    case Stability::Asymptotic: return "asymptotically stable";
-    case Stability::Unstable: return "unstable";
-    case Stability::Undecided: return "undecided";
+    case Stability::Energetic:
+      return "stable";
+    case Stability::Asymptotic:
+      return "asymptotically stable";
+    case Stability::Unstable:
+      return "unstable";
+    case Stability::Undecided:
+      return "undecided";
   }
   return "";
 }
@@ -336,7 +407,10 @@ Json modes_document(const MechanicalSystem& system, const ModalStudy& study) {
     entry["residual"] = e.equilibrium.residual;
     entry["family"] = e.equilibrium.family;
     const StabilityReport& s = e.analysis.stability;
-    entry["stability"] = {{"verdict", verdict_word(s.verdict)}, {"reason", s.reason}, {"growth_rate", s.growth_rate}, {"hessian", s.hessian}};
+    entry["stability"] = {{"verdict", verdict_word(s.verdict)},
+                          {"reason", s.reason},
+                          {"growth_rate", s.growth_rate},
+                          {"hessian", s.hessian}};
     entry["linearization"] = linearization_json(system, e.linearization);
     entry["eigenvalues"] = Json::array();
     for (const Complex& z : e.analysis.eigenvalues) entry["eigenvalues"].push_back(complex_json(z));
@@ -360,8 +434,9 @@ Json symbolic_json(const SymbolicLinearization& s, const ReadingOrder& order) {
   };
   Json equilibrium = Json::object();
   for (const auto& [left, right] : s.equilibrium) equilibrium[to_plain(left, order)] = to_plain(right.value, order);
-  return {{"equilibrium", equilibrium}, {"M", matrix(s.mass)}, {"C", matrix(s.damping)}, {"K", matrix(s.stiffness)}, {"B", matrix(s.input)},
-          {"omega_squared", s.square ? Json(to_plain(s.square, order)) : Json(nullptr)}};
+  return {{"equilibrium", equilibrium}, {"M", matrix(s.mass)},
+          {"C", matrix(s.damping)},     {"K", matrix(s.stiffness)},
+          {"B", matrix(s.input)},       {"omega_squared", s.square ? Json(to_plain(s.square, order)) : Json(nullptr)}};
 }
 
 Json regulator_json(const Regulator& r) {
@@ -389,7 +464,10 @@ Json locus_document(const MechanicalSystem& system, const Locus& locus) {
   }
   document["changes"] = Json::array();
   for (const StabilityChange& c : locus.changes)
-    document["changes"].push_back({{"value", c.parameter}, {"branch", c.branch}, {"before", verdict_word(c.before)}, {"after", verdict_word(c.after)}});
+    document["changes"].push_back({{"value", c.parameter},
+                                   {"branch", c.branch},
+                                   {"before", verdict_word(c.before)},
+                                   {"after", verdict_word(c.after)}});
   return document;
 }
 

@@ -10,12 +10,15 @@
 
 namespace maupertuis::app {
 
-/// What was found, and of the first entries (one for each of `formulas`) the matrices, as far as they fit a line, and the modes.
+/// What was found, and of the first entries (one for each of `formulas`) the matrices, as far as they fit a line, and
+/// the modes. `outputs`: what is measured, as written.
 std::string modes_text(const MechanicalSystem& system, const ModalStudy& study,
-                       const std::vector<std::optional<SymbolicLinearization>>& formulas, const ReadingOrder& order);
+                       const std::vector<std::optional<SymbolicLinearization>>& formulas, const ReadingOrder& order,
+                       const std::vector<std::string>& outputs);
 Json modes_document(const MechanicalSystem& system, const ModalStudy& study);
 Json symbolic_json(const SymbolicLinearization& formulas, const ReadingOrder& order);
-std::string regulator_text(const MechanicalSystem& system, const Linearization& linearization, const Regulator& regulator);
+std::string regulator_text(const MechanicalSystem& system, const Linearization& linearization,
+                           const Regulator& regulator);
 Json regulator_json(const Regulator& regulator);
 std::string locus_text(const MechanicalSystem& system, const Locus& locus);
 Json locus_document(const MechanicalSystem& system, const Locus& locus);

@@ -3,8 +3,8 @@
 #include "interrupt.hpp"
 #include "quantity.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <maupertuis/constraint_manifold.hpp>
 
@@ -22,8 +22,7 @@ struct WrittenSection {
 };
 
 WrittenSection split_section(std::string text) {
-  for (char& c : text)
-    if (c == '\n' || c == '\r' || c == '#') c = ' ';  // one statement, whatever was typed
+  text = as_one_line(std::move(text));
   for (const auto& [word, direction] : {std::pair(std::string(" rising"), SectionDirection::Rising),
                                         std::pair(std::string(" falling"), SectionDirection::Falling)})
     if (text.size() >= word.size() && text.compare(text.size() - word.size(), word.size(), word) == 0)

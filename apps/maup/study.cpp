@@ -25,7 +25,8 @@ namespace {
 template <class Kind>
 SourceText with_statement(const SourceText& source, const syntax::SyntaxTree& tree, const std::string& statement) {
   std::string text(source.text());
-  const auto own = std::find_if(tree.statements.begin(), tree.statements.end(), [](const syntax::Statement& s) { return std::holds_alternative<Kind>(s.body); });
+  const auto own = std::find_if(tree.statements.begin(), tree.statements.end(),
+                                [](const syntax::Statement& s) { return std::holds_alternative<Kind>(s.body); });
   if (own != tree.statements.end())
     text.replace(own->span.begin, own->span.end - own->span.begin, statement);
   else
@@ -51,6 +52,43 @@ void Study::replace_sweep(const std::string& statement) {
   tree_.reset();
 }
 
+void Study::add_statements(const std::vector<std::string>& statements) {
+  MAUP_REQUIRE(!elaborated_);
+  if (!tree() || wrong() || statements.empty()) return;
+  std::string text(source_.text());
+  for (const std::string& statement : statements) text += "\n" + as_one_line(statement);
+  source_ = SourceText(source_.name(), text + "\n");
+  tree_.reset();
+}
+
+void Study::admit_singular_mass_matrix() {
+  MAUP_REQUIRE(!elaborated_);
+  admits_singular_ = true;
+}
+
+namespace {
+
+void add_lint(const Diagnostics& lint, bool admits_singular, Diagnostics& diagnostics) {
+  for (const Diagnostic& d : lint.items()) {
+    if (admits_singular && (d.code == "E0407" || d.code == "E0408")) continue;
+    Diagnostics one;
+    switch (d.severity) {
+      case Severity::Error: one.error(d.code, d.span, d.message, d.reason, d.help); break;
+      case Severity::Warning: one.warning(d.code, d.span, d.message, d.reason, d.help); break;
+      case Severity::Note: one.note(d.code, d.span, d.message, d.reason, d.help); break;
+    }
+    diagnostics.append(one);
+  }
+}
+
+}  // namespace
+
+std::string as_one_line(std::string statement) {
+  for (char& c : statement)
+    if (c == '\n' || c == '\r' || c == '#') c = ' ';
+  return statement;
+}
+
 const Model* Study::model() {
   if (elaborated_) return model_.get();
   elaborated_ = true;
@@ -59,7 +97,9 @@ const Model* Study::model() {
   // that were lost with it, so that their absence is not reported again.
   if (!parsed || parsed->statements.empty()) return nullptr;
   if (auto model = elaborate(*parsed, source_, diagnostics_, overrides_); model && !wrong()) {
-    lint(*model, source_, diagnostics_);
+    Diagnostics found;
+    lint(*model, source_, found);
+    add_lint(found, admits_singular_, diagnostics_);
     if (!wrong()) model_ = std::make_shared<const Model>(std::move(*model));
   }
   diagnostics_.sort_by_place();

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace maupertuis::app {
 
@@ -27,6 +28,12 @@ class Study {
   void replace_run(const std::string& statement);
   /// The same for a `sweep …` statement.
   void replace_sweep(const std::string& statement);
+  /// Adds statements of the command line after the model's own, one a line: `#` and line ends in them become spaces.
+  /// Precondition as above.
+  void add_statements(const std::vector<std::string>& statements);
+  /// For questions that do not need accelerations: a mass matrix that is singular (E0407, E0408) is no mistake then.
+  /// Precondition as above.
+  void admit_singular_mass_matrix();
   /// Elaborated and past the physics lint.
   const Model* model();
   const EquationsOfMotion* equations();
@@ -43,11 +50,15 @@ class Study {
   std::optional<syntax::SyntaxTree> tree_;
   std::shared_ptr<const Model> model_;
   bool elaborated_ = false;
+  bool admits_singular_ = false;
   std::optional<EquationsOfMotion> equations_;
   bool derived_ = false;
   std::optional<Derivation> derivation_;
   bool has_steps_ = false;
   std::optional<Certificate> certificate_;
 };
+
+/// What was typed as one statement: no line ends and no comment in it.
+std::string as_one_line(std::string statement);
 
 }  // namespace maupertuis::app

@@ -68,11 +68,13 @@ struct Invariants {
   std::size_t noether_symmetries = 0;  // linearly independent point symmetries that were found
   std::size_t rank = 0;                // functionally independent integrals at fixed t
   std::size_t autonomous_rank = 0;     // of those without explicit t
+  std::size_t freedoms = 0;            // degrees of freedom: coordinates less what the constraints take
   bool completely_integrable = false;
   std::vector<std::string> involution;        // n independent functions in involution, in words of I1, I2, …
   std::optional<std::size_t> symmetry_bound;  // at most so many point symmetries, at a generic point
   std::vector<std::string> basis;             // what was searched, one line a search: "none further in this basis"
-  std::size_t too_long = 0;                   // integrals whose coefficients could not be written as fractions of the parameters, or not proved
+  std::size_t too_long =
+      0;  // integrals whose coefficients could not be written as fractions of the parameters, or not proved
 };
 
 /// Searches conserved quantities of the motion, relative to a finite basis that the result names.

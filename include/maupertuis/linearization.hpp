@@ -3,6 +3,7 @@
 #include <maupertuis/equations_of_motion.hpp>
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,16 +36,17 @@ struct Translation {
 /// The equations of a system as functions of a point, with exact derivatives. Made once, used for many points.
 class PointEquations {
  public:
-  /// Cost: n + m reverse sweeps over the residual and the constraints.
-  explicit PointEquations(const EquationsOfMotion& equations);
+  /// `outputs`: what is measured, functions y of q, q̇, q̈, λ, reactions, u and t, which `linearize` takes along.
+  /// Cost: n + m reverse sweeps over the residual and the constraints, and one an output.
+  explicit PointEquations(const EquationsOfMotion& equations, std::span<const Expr> outputs = {});
   ~PointEquations();
   PointEquations(PointEquations&&) noexcept;
 
   const MechanicalSystem& system() const;
   /// Whether no t stands in R or the constraints, beside that of the inputs; proved.
   bool autonomous() const;
-  /// Whether an energy exists that never grows while inputs are held: no explicit time, forces that have a potential (both
-  /// proved), friction that takes at random states. With holonomic constraints alone.
+  /// Whether an energy exists that never grows while inputs are held: no explicit time, forces that have a potential
+  /// (both proved), friction that takes at random states. With holonomic constraints alone.
   bool energy_never_grows() const;
   /// Coordinates after which the equations repeat at 2π [n]; by values at random points.
   const std::vector<bool>& periodic() const;
@@ -69,43 +71,49 @@ class PointEquations {
 
 /// Coordinates and velocities that a search keeps.
 struct FixedValues {
-  std::vector<bool> q, v;           // [n] or empty: none
+  std::vector<bool> q, v;  // [n] or empty: none
   bool any() const;
 };
 
 struct EquilibriumSearch {
-  MotionState start;                // of the model: the first start, and the momenta that steady motions keep
-  FixedValues fixed;                // values of `start` that are kept
-  bool steady = true;               // steady motions as well
-  std::size_t starts = 0;           // 0: chosen from n
+  MotionState start;                    // of the model: the first start, and the momenta that steady motions keep
+  FixedValues fixed;                    // values of `start` that are kept
+  bool steady = true;                   // steady motions as well
+  std::size_t starts = 0;               // 0: chosen from n
   std::vector<OperatingPoint> guesses;  // further starts, tried first
 };
 
 /// A configuration of rest, or a motion in which only translations that are symmetries go on, at constant rates.
 struct Equilibrium {
   OperatingPoint point;
-  bool at_rest = true;              // an equilibrium; else a steady motion
-  double residual = 0;              // largest |R_i| divided by the size of its derivatives: rounding level
-  std::size_t family = 0;           // how many further ways it can be moved and stay one, beside translations
-  bool coordinates_fail = false;    // M is singular there on what the constraints leave free: r = 0 of polar coordinates
+  bool at_rest = true;            // an equilibrium; else a steady motion
+  double residual = 0;            // largest |R_i| divided by the size of its derivatives: rounding level
+  std::size_t family = 0;         // how many further ways it can be moved and stay one, beside translations
+  bool coordinates_fail = false;  // M is singular there on what the constraints leave free: r = 0 of polar coordinates
 };
 
 struct EquilibriumSearchResult {
-  std::vector<Equilibrium> found;   // those at rest first, then by energy of position, then by coordinates
+  std::vector<Equilibrium> found;  // those at rest first, then by energy of position, then by coordinates
   std::vector<Translation> translations;
-  std::size_t starts = 0;           // Newton's method began from so many points
+  std::size_t starts = 0;  // Newton's method began from so many points
 };
 
-/// Newton's method (Gauss-Newton with damping, minimum norm steps) from many starts, the same in every run: the model's own,
-/// all coordinates zero, angles at 0 and π, then scattered points. Nothing says that no further ones exist.
-/// Points are distinct modulo 2π in coordinates in which the equations are periodic, and modulo translations.
-/// Steady motions keep the momenta of the start along conserved translations, unless `fixed` holds their velocities.
+/// Newton's method (Gauss-Newton with damping, minimum norm steps) from many starts, the same in every run: the model's
+/// own, all coordinates zero, angles at 0 and π, then scattered points. Nothing says that no further ones exist. Points
+/// are distinct modulo 2π in coordinates in which the equations are periodic, and modulo translations. Steady motions
+/// keep the momenta of the start along conserved translations, unless `fixed` holds their velocities.
 EquilibriumSearchResult find_equilibria(const PointEquations& equations, const EquilibriumSearch& search);
 
 /// The one nearest to a start: Newton's method from there alone. Nothing where it does not converge.
 std::vector<Equilibrium> equilibrium_near(const PointEquations& equations, const EquilibriumSearch& search);
 
 // ------------------------------------------------------------------------------------------------------ linearization
+
+/// What is measured, to first order: y = y₀ + C x + D w. An output that holds q̈ or λ passes inputs on directly, D ≠ 0.
+struct MeasuredOutputs {
+  std::vector<double> values;  // [p] y₀ at the point, SI
+  RealMatrix c, d;             // [p × (f+g)], [p × k]
+};
 
 /// The equations to first order about a point, ξ = q − q₀ and w = u − u₀.
 ///
@@ -116,24 +124,26 @@ struct Linearization {
   std::vector<std::size_t> independent;             // [f] coordinates
   std::vector<std::size_t> independent_velocities;  // [g] coordinates; g < f with non-holonomic constraints
   RealMatrix positions;                             // [n × f] ξ of all coordinates from the independent ones
-  /// The second-order form; absent (0 × 0) where non-holonomic constraints couple velocities with positions, and along a
-  /// trajectory on which the independent directions turn.
+  /// The second-order form; absent (0 × 0) where non-holonomic constraints couple velocities with positions, and along
+  /// a trajectory on which the independent directions turn.
   RealMatrix mass, damping, gyroscopic, stiffness, circulatory;  // [f × f]
-  RealMatrix input;                                 // [f × k]
-  RealMatrix a, b, c, d;                            // [(f+g) × (f+g)], [(f+g) × k], [2n × (f+g)], [2n × k]
+  RealMatrix input;                                              // [f × k]
+  RealMatrix a, b, c, d;     // [(f+g) × (f+g)], [(f+g) × k], [2n × (f+g)], [2n × k]
+  MeasuredOutputs measured;  // of the outputs of PointEquations; empty without
   bool second_order() const { return mass.rows > 0 || independent.empty(); }
 };
 
-/// Exact derivatives at the point. Nothing, and `singular` true, where M and the constraints do not determine the accelerations.
-/// Cost O((n + m)³).
+/// Exact derivatives at the point. Nothing, and `singular` true, where M and the constraints do not determine the
+/// accelerations. Cost O((n + m)³).
 struct LinearizationResult {
   Linearization linearization;
   bool singular = false;
-  std::size_t singular_coordinate = 0;              // has the largest part in the motion without inertia
+  std::size_t singular_coordinate = 0;  // has the largest part in the motion without inertia
 };
 LinearizationResult linearize(const PointEquations& equations, const OperatingPoint& point);
 
-/// Accelerations, multipliers and inputs at a state: the operating point of a trajectory. Nothing where they are not determined.
+/// Accelerations, multipliers and inputs at a state: the operating point of a trajectory. Nothing where they are not
+/// determined.
 std::optional<OperatingPoint> operating_point(const PointEquations& equations, const MotionState& state);
 
 }  // namespace maupertuis

@@ -48,7 +48,8 @@ std::string sentence_of(const ConservedFunction& integral) {
   return text;
 }
 
-std::string summary_of(const Invariants& found, std::size_t n) {
+std::string summary_of(const Invariants& found) {
+  const std::size_t n = found.freedoms;
   std::string text = fmt::format("{} independent integral{}, {} degree{} of freedom.", found.rank,
                                  found.rank == 1 ? "" : "s", n, n == 1 ? "" : "s");
   if (found.completely_integrable)
@@ -86,7 +87,7 @@ void add_invariants(ReportContent& content, const EquationsOfMotion& equations, 
                                  "",
                                  ""});
   ReportContent::Conserved summary;
-  summary.sentence = summary_of(found, equations.system->coordinates.size());
+  summary.sentence = summary_of(found);
   content.conserved.push_back(std::move(summary));
 }
 

@@ -190,7 +190,7 @@ void add_shapes(ReportContent::ModePoint& out, const Model& model, const ModalEn
   for (std::size_t k = 0; k < entry.analysis.modes.size() && out.shapes.size() < most_shapes; ++k) {
     const Mode& m = entry.analysis.modes[k];
     if (m.kind != Mode::Kind::Oscillation) continue;
-    ReportContent::ModeShape shape{fmt::format("Mode {}: {}", k + 1, out.rows[k].frequency), std::nullopt, std::nullopt};
+    ReportContent::ModeShape shape{fmt::format("Mode {}: ω = {}", k + 1, out.rows[k].frequency), std::nullopt, std::nullopt};
     if (entry.equilibrium.at_rest) shape.drawing = drawing_of(model, entry.equilibrium.point, m);
     if (!shape.drawing) shape.diagram = shape_diagram(model.system, m);
     out.shapes.push_back(std::move(shape));

@@ -84,7 +84,8 @@ TEST_CASE("modes --Q: a regulator, and what it needs") {
 
 TEST_CASE("modes of a sweep: the bead leaves the lowest point at √(g/R)") {
   const Folder folder;
-  const std::string csv = folder.path("locus.csv"), svg = folder.path("bifurcation.svg"), roots = folder.path("roots.svg");
+  const std::string csv = folder.path("locus.csv"), svg = folder.path("bifurcation.svg"),
+                    roots = folder.path("roots.svg");
   const Outcome outcome = maup({"modes", gallery + "bead_on_hoop.lag", "--csv", csv, "--plot", svg, "--roots", roots});
   CHECK_MESSAGE(outcome.code == 0, outcome.err);
   CHECK(contains(outcome.out, "Ω = 5.71839"));  // √(9.81/0.3)
@@ -101,15 +102,21 @@ TEST_CASE("modes: what cannot be answered says why") {
   CHECK(contains(nowhere.err, "E1302"));
   CHECK(contains(nowhere.err, "θ = 0"));  // where Newton's method ends
   CHECK(contains(maup({"modes", "-", "--at", "ψ=1"}, pendulum).err, "E0224"));
-  const Outcome fall = maup({"modes", "-"}, "param m = 1 kg, g = 9.81 m/s^2\ncoord z : length\nT = 1/2 m z'^2\nV = m g z\nstart z = 1 m\n");
+  const Outcome fall = maup(
+      {"modes", "-"}, "param m = 1 kg, g = 9.81 m/s^2\ncoord z : length\nT = 1/2 m z'^2\nV = m g z\nstart z = 1 m\n");
   CHECK(fall.code == 1);
   CHECK(contains(fall.err, "E1301"));
 }
 
 TEST_CASE("expect frequencies and equilibria: passed and failed") {
-  const std::string model = std::string(pendulum) + "expect frequencies at θ = 0 : 0.498488 Hz rel 1e-6\nexpect equilibrium at θ = 0 is stable\n";
+  const std::string model =
+      std::string(pendulum) +
+      "expect frequencies at θ = 0 : 0.498488 Hz rel 1e-6\nexpect equilibrium at θ = 0 is stable\n";
   CHECK(maup({"test", "-"}, model).code == 0);
-  const Outcome wrong = maup({"test", "-"}, std::string(pendulum) + "expect frequencies at θ = 0 : 0.5 Hz rel 1e-5\nexpect equilibrium at θ = 180 deg is stable\n");
+  const Outcome wrong =
+      maup({"test", "-"},
+           std::string(pendulum) +
+               "expect frequencies at θ = 0 : 0.5 Hz rel 1e-5\nexpect equilibrium at θ = 180 deg is stable\n");
   CHECK(wrong.code == 4);
   CHECK(contains(wrong.out, "0.4984"));
   CHECK(contains(wrong.out, "unstable"));
@@ -120,4 +127,25 @@ TEST_CASE("modes of a chain of a hundred links") {
   const std::string path = folder.write("chain.lag", maup({"new", "chain", "--links", "100", "-o", "-"}).out);
   const Json json = document({path, "--at", "θ1=0"});
   CHECK(json.at("ok") == true);
+}
+
+TEST_CASE("modes with what is measured: acceleration of a cart, force in a rod") {
+  const Json cart = document({gallery + "balanced_cart.lag", "--at", "θ=180deg", "--y", "x''", "x + l sin θ"});
+  const Json& y = cart["points"][0]["linearization"]["measured"];
+  CHECK(y["D"] == Json::parse("[[0.5], [0.0]]"));  // (M + m - m) x'' = u at the top: M = 2 kg
+  CHECK(y["C"][1][0] == 1.0);
+  const Outcome rod = maup({"modes", gallery + "cartesian_pendulum.lag", "--at", "0.3s", "--y", "reaction(rod)"});
+  CHECK_MESSAGE(rod.code == 0, rod.err);
+  CHECK(contains(rod.out, "y = reaction(rod)"));
+  const Outcome unknown = maup({"modes", "-", "--y", "zz"}, pendulum);
+  CHECK(unknown.code != 0);
+  CHECK(contains(unknown.err, "`zz` is not declared"));
+}
+
+TEST_CASE("modes of a periodic motion are its Floquet multipliers") {
+  const Json orbit = document({gallery + "pendulum.lag", "--orbit"});
+  REQUIRE(orbit["floquet"]["multipliers"].size() == 2);
+  CHECK(std::abs(orbit["floquet"]["period"].get<double>() - 2.1528746668805) < 1e-10);  // 4 K(1/2) sqrt(l/g) of 60°
+  CHECK(maup({"modes", gallery + "pendulum.lag", "--orbit", "3kg"}).code == 2);
+  CHECK(maup({"modes", gallery + "pendulum.lag", "--orbit", "--at", "θ=0"}).code == 2);
 }

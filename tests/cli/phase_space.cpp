@@ -115,3 +115,21 @@ TEST_CASE("a momentum before a bracket is a factor") {
   REQUIRE_MESSAGE(told.code == 0, told.err);
   CHECK(Json::parse(told.out)["brackets"][0]["plain"] == "2 r");
 }
+
+TEST_CASE("a Lagrangian whose mass matrix is singular has primary constraints, and no motion to integrate") {
+  const std::string linear = "dimensionless\ncoord x, y : number\nL = x' y - 1/2 x^2 - 1/2 y^2\nstart x = 1\nrun 1\n";
+  const Outcome both = maup({"hamiltonian", "-"}, linear);
+  CHECK_MESSAGE(both.code == 0, both.err);
+  CHECK(contains(both.err, "W1101"));
+  CHECK(contains(both.out, "p_x - y = 0"));
+  CHECK(contains(both.out, "p_y = 0"));
+  CHECK(contains(both.out, "H = 1/2 x^2 + 1/2 y^2"));
+  const std::string mixed = "dimensionless\nparam m = 1\ncoord x, y : number\nL = 1/2 m (x' - y)^2 - 1/2 x^2\nstart x = 1\nrun 1\n";
+  const Outcome one = maup({"hamiltonian", "-"}, mixed);
+  CHECK_MESSAGE(one.code == 0, one.err);
+  CHECK(contains(one.out, "p_y = 0"));
+  CHECK(contains(one.out, "p_x^2/(2 m)"));
+  const Outcome run = maup({"hamiltonian", "-", "--integrate"}, linear);
+  CHECK(run.code != 0);
+  CHECK(contains(run.err, "E0407"));
+}

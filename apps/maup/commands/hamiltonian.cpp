@@ -4,8 +4,8 @@
 #include "quantity.hpp"
 #include "run_options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 
@@ -32,34 +32,24 @@ std::vector<std::size_t> coordinates_named(const std::vector<std::string>& names
     const auto place = std::find(known.begin(), known.end(), name);
     if (place == known.end()) {
       const std::string near = did_you_mean(name, known);
-      study.diagnostics().error("E1105", {}, fmt::format("`{}` is no coordinate of {}", name, study.model()->system.name),
+      study.diagnostics().error("E1105", {},
+                                fmt::format("`{}` is no coordinate of {}", name, study.model()->system.name),
                                 "A Routhian replaces velocities of coordinates by their momenta.",
                                 near.empty() ? "" : fmt::format("Did you mean `{}`?", near));
-    } else if (const auto i = static_cast<std::size_t>(place - known.begin()); std::find(found.begin(), found.end(), i) == found.end()) {
+    } else if (const auto i = static_cast<std::size_t>(place - known.begin());
+               std::find(found.begin(), found.end(), i) == found.end()) {
       found.push_back(i);
     }
   }
   return found;
 }
 
-/// Brackets are read by the model language itself, as expectations after the model's `run` statement.
+/// Brackets are read by the model language itself, as expectations after the model's own statements.
 std::vector<std::string> bracket_statements(const std::vector<std::string>& arguments) {
   std::vector<std::string> statements;
-  for (std::size_t i = 0; i + 1 < arguments.size(); i += 2) {
-    statements.push_back(fmt::format("expect bracket ({}, {}) = 0", arguments[i], arguments[i + 1]));
-    for (char& c : statements.back())
-      if (c == '\n' || c == '\r' || c == '#') c = ' ';   // one statement, whatever was typed
-  }
+  for (std::size_t i = 0; i + 1 < arguments.size(); i += 2)
+    statements.push_back(as_one_line(fmt::format("expect bracket ({}, {}) = 0", arguments[i], arguments[i + 1])));
   return statements;
-}
-
-void add_statements(const std::vector<std::string>& statements, Study& study) {
-  const syntax::SyntaxTree* tree = study.tree();
-  if (!tree || study.wrong() || statements.empty()) return;
-  std::string text;
-  for (const syntax::Statement& s : tree->statements)
-    if (std::holds_alternative<syntax::RunStatement>(s.body)) text = std::string(study.source().slice(s.span)) + "\n";
-  study.replace_run(text + fmt::format("{}", fmt::join(statements, "\n")));
 }
 
 std::vector<Bracket> brackets_of(const std::vector<std::string>& statements, const Hamiltonian& h, Study& study) {
@@ -84,7 +74,8 @@ void judge(const Certificate& certificate, Diagnostics& diagnostics) {
       diagnostics.error("E0690", {}, fmt::format("the transform failed its check {}: {}", check.name, check.reason),
                         "What was derived is wrong, and is not shown.", "Please report this model.");
     else if (check.verdict == Verdict::Undecided)
-      diagnostics.warning("W0691", {}, fmt::format("the check {} was undecided: {}", check.name, check.reason), "Nothing vouches for this part.", "");
+      diagnostics.warning("W0691", {}, fmt::format("the check {} was undecided: {}", check.name, check.reason),
+                          "Nothing vouches for this part.", "");
   }
 }
 
@@ -111,25 +102,34 @@ std::string motion_text(const CanonicalMotion& motion, const SimulationResult& r
   const std::size_t n = motion.final_q.size();
   for (std::size_t i = 0; i < 2 * n; ++i) {
     const double value = i < n ? motion.final_q[i] : motion.final_p[i - n];
-    out += fmt::format("  {:<8} {: .17g}{}{}\n", rows.columns[i].name, value, rows.columns[i].unit.empty() ? "" : " ", rows.columns[i].unit);
+    out += fmt::format("  {:<8} {: .17g}{}{}\n", rows.columns[i].name, value, rows.columns[i].unit.empty() ? "" : " ",
+                       rows.columns[i].unit);
   }
-  out += fmt::format("  {} steps of order {}; Lagrange's equations took {}\n", motion.steps, motion.order, run.statistics.steps);
-  return out + (motion.difference > 0 ? fmt::format("  the two motions differ by {} of its size in {}, at t = {} s\n", brief(motion.difference),
-                                                    motion.difference_name, brief(motion.difference_time))
-                                      : std::string("  the two motions agree to the last digit\n"));
+  out += fmt::format("  {} steps of order {}; Lagrange's equations took {}\n", motion.steps, motion.order,
+                     run.statistics.steps);
+  return out + (motion.difference > 0
+                    ? fmt::format("  the two motions differ by {} of its size in {}, at t = {} s\n",
+                                  brief(motion.difference), motion.difference_name, brief(motion.difference_time))
+                    : std::string("  the two motions agree to the last digit\n"));
 }
 
 Json motion_json(const CanonicalMotion& motion) {
   Json state;
   const std::size_t n = motion.final_q.size();
-  for (std::size_t i = 0; i < 2 * n; ++i) state[motion.trajectory.columns[i].name] = i < n ? motion.final_q[i] : motion.final_p[i - n];
-  return {{"final", {{"t", motion.final_time}, {"state", std::move(state)}}}, {"steps", motion.steps}, {"order", motion.order},
-          {"difference", motion.difference}, {"difference_in", motion.difference_name}, {"difference_at", motion.difference_time},
+  for (std::size_t i = 0; i < 2 * n; ++i)
+    state[motion.trajectory.columns[i].name] = i < n ? motion.final_q[i] : motion.final_p[i - n];
+  return {{"final", {{"t", motion.final_time}, {"state", std::move(state)}}},
+          {"steps", motion.steps},
+          {"order", motion.order},
+          {"difference", motion.difference},
+          {"difference_in", motion.difference_name},
+          {"difference_at", motion.difference_time},
           {"ended", motion.ending}};
 }
 
 /// Both motions; the exit code of what went wrong, if something did.
-ExitCode integrate(const HamiltonianOptions& options, const PhaseSpace& found, Study& study, Console& console, Json& document) {
+ExitCode integrate(const HamiltonianOptions& options, const PhaseSpace& found, Study& study, Console& console,
+                   Json& document) {
   const SimulationOptions settings = simulation_options(options.run, study.diagnostics());
   if (study.wrong()) return ExitCode::Usage;
   const auto run = run_model(study, settings, console);
@@ -150,15 +150,20 @@ ExitCode hamiltonian_of(const HamiltonianOptions& options, Console& console) {
   Study study(options.model.path, options.model.overrides);
   Json document = json_document("hamiltonian");
   if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);
-  add_statements(bracket_statements(options.bracket), study);
+  study.add_statements(bracket_statements(options.bracket));
+  if (!options.integrate) study.admit_singular_mass_matrix();  // then there are primary constraints
   if (!study.model() || !study.certificate()) return finish(console, study, document);
   const PhaseSpace found = analyse(options, study);
   if (study.wrong()) return finish(console, study, document);
   if (!console.json()) {
-    if (options.latex) console.print(phase_space_text(found, Notation::Latex));
-    else if (options.mathml) console.print(phase_space_text(found, Notation::Mathml));
-    else if (options.plain) console.print(phase_space_text(found, Notation::Plain));
-    else console.print(phase_space_text(found));
+    if (options.latex)
+      console.print(phase_space_text(found, Notation::Latex));
+    else if (options.mathml)
+      console.print(phase_space_text(found, Notation::Mathml));
+    else if (options.plain)
+      console.print(phase_space_text(found, Notation::Plain));
+    else
+      console.print(phase_space_text(found));
   }
   add_to(document, found);
   const ExitCode ended = options.integrate ? integrate(options, found, study, console, document) : ExitCode::Fine;
@@ -176,21 +181,26 @@ void add_hamiltonian(CommandLine& line) {
                                "  maup hamiltonian double_pendulum.lag --integrate --duration 5s\n",
                                [options](Console& console) { return hamiltonian_of(*options, console); });
   add_model_options(command, options->model);
-  command.add_option("--routhian", options->routhian, "The Routhian without these coordinates (default: the cyclic ones)")
+  command
+      .add_option("--routhian", options->routhian, "The Routhian without these coordinates (default: the cyclic ones)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAME,...");
-  command.add_option("--bracket", options->bracket, "{A, B} of two formulas in coordinates, momenta and t, e.g. x p_x; may be repeated")
+  command
+      .add_option("--bracket", options->bracket,
+                  "{A, B} of two formulas in coordinates, momenta and t, e.g. x p_x; may be repeated")
       ->type_size(2)
       ->allow_extra_args(false)
       ->type_name("A B");
   const auto latex = command.add_flag("--latex", options->latex, "A LaTeX document of the formulas");
   const auto mathml = command.add_flag("--mathml", options->mathml, "MathML")->excludes(latex);
   command.add_flag("--plain", options->plain, "The formulas alone, one a line")->excludes(latex)->excludes(mathml);
-  const auto integrate =
-      command.add_flag("--integrate", options->integrate, "Integrate the canonical equations, and compare with Lagrange's");
+  const auto integrate = command.add_flag("--integrate", options->integrate,
+                                          "Integrate the canonical equations, and compare with Lagrange's");
   add_span_options(command, options->run);
-  command.add_option("-o,--output", options->output, "q, p and H of --integrate: .csv, .npy or .json")->type_name("FILE")->needs(integrate);
+  command.add_option("-o,--output", options->output, "q, p and H of --integrate: .csv, .npy or .json")
+      ->type_name("FILE")
+      ->needs(integrate);
 }
 
 }  // namespace maupertuis::app

@@ -1,13 +1,16 @@
+#include "interrupt.hpp"
 #include "modes_text.hpp"
+#include "orbits_text.hpp"
 #include "outcome.hpp"
 #include "quantity.hpp"
 #include "run_options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <maupertuis/mode_pictures.hpp>
 #include <maupertuis/modes.hpp>
+#include <maupertuis/orbits.hpp>
 #include <maupertuis/regulator.hpp>
 #include <maupertuis/symbolic_linearization.hpp>
 
@@ -22,8 +25,10 @@ struct ModesOptions {
   ModelOptions model;
   std::string at;
   bool all = false;
-  std::string q, r;                   // weights, as written
+  std::string q, r;  // weights, as written
   std::string sweep, plot, roots, csv;
+  std::vector<std::string> outputs;  // what is measured, as written
+  std::optional<std::string> orbit;  // about the periodic motion near the start: its period, or empty
   bool locus() const { return !sweep.empty() || !plot.empty() || !roots.empty() || !csv.empty(); }
 };
 
@@ -42,8 +47,8 @@ std::optional<MotionState> state_at(Study& study, double time, const Console& co
   return MotionState{time, run->at.front().q, run->at.front().v};
 }
 
-std::optional<ModalStudy> carry_out(const ModesOptions& options, Study& study, const PointEquations& equations, const MotionState& start,
-                                    const Console& console) {
+std::optional<ModalStudy> carry_out(const ModesOptions& options, Study& study, const PointEquations& equations,
+                                    const MotionState& start, const Console& console) {
   Diagnostics& diagnostics = study.diagnostics();
   if (const auto time = parse_time(options.at)) {
     const auto state = state_at(study, *time, console);
@@ -53,7 +58,27 @@ std::optional<ModalStudy> carry_out(const ModesOptions& options, Study& study, c
                             : modal_study_at(equations, start, study.model()->experiment.at, diagnostics);
 }
 
-// -------------------------------------------------------------------------------------------------------------- regulator
+// ----------------------------------------------------------------------------------------------------------------
+// outputs
+
+/// Outputs are read by the model language itself, as left sides of equations.
+std::vector<std::string> output_statements(const std::vector<std::string>& outputs) {
+  std::vector<std::string> statements;
+  for (const std::string& y : outputs) statements.push_back(as_one_line(fmt::format("expect equation {} = 0", y)));
+  return statements;
+}
+
+/// What the statements above say, in their order, which is that of the model's last expectations.
+ExprVector measured(const std::vector<std::string>& outputs, const Model& model) {
+  ExprVector found;
+  const auto& expectations = model.experiment.expectations;
+  for (std::size_t i = expectations.size() - outputs.size(); i < expectations.size(); ++i)
+    found.push_back(expectations[i].subject);
+  return found;
+}
+
+// --------------------------------------------------------------------------------------------------------------
+// regulator
 
 /// "1, 2, 3" a diagonal, "1, 0; 0, 2" rows, "0.1" a multiple of 1. Nothing where it is none of these.
 std::optional<RealMatrix> weights(const std::string& text, std::size_t size) {
@@ -99,9 +124,11 @@ std::optional<Regulator> regulator_of(const ModesOptions& options, const ModalSt
   return linear_quadratic_regulator(l, *q, *r, diagnostics);
 }
 
-// ------------------------------------------------------------------------------------------------------------------ locus
+// ------------------------------------------------------------------------------------------------------------------
+// locus
 
-bool write_locus(const ModesOptions& options, const MechanicalSystem& system, const Locus& locus, Diagnostics& diagnostics) {
+bool write_locus(const ModesOptions& options, const MechanicalSystem& system, const Locus& locus,
+                 Diagnostics& diagnostics) {
   bool good = true;
   if (!options.csv.empty()) good = write_result(options.csv, to_csv(system, locus), diagnostics) && good;
   if (!options.roots.empty()) {
@@ -116,25 +143,32 @@ bool write_locus(const ModesOptions& options, const MechanicalSystem& system, co
   return write_result(options.plot, diagram_svg(diagrams.front()), diagnostics) && good;
 }
 
-ExitCode locus(const ModesOptions& options, Study& study, PointEquations& equations, const MotionState& start, Console& console) {
+ExitCode locus(const ModesOptions& options, Study& study, PointEquations& equations, const MotionState& start,
+               Console& console) {
   const auto& sweep = study.model()->experiment.sweep;
   if (!sweep) {
-    study.diagnostics().error("E1320", {}, "the model has no sweep", "A locus follows equilibria while one parameter changes.",
-                              "Write `sweep NAME = FROM .. TO steps N` into the model, or give --sweep \"NAME = FROM .. TO steps N\".");
+    study.diagnostics().error(
+        "E1320", {}, "the model has no sweep", "A locus follows equilibria while one parameter changes.",
+        "Write `sweep NAME = FROM .. TO steps N` into the model, or give --sweep \"NAME = FROM .. TO steps N\".");
     return finish(console, study, json_document("modes"));
   }
   const MechanicalSystem& system = study.model()->system;
-  const auto value = [&](Expr e) { return evaluate(in_terms_of_motion(system, {&e, 1}).front(), parameter_bindings(system)); };
-  const Locus result = parameter_locus(equations, start, sweep->parameter, value(sweep->from), value(sweep->to), sweep->steps);
+  const auto value = [&](Expr e) {
+    return evaluate(in_terms_of_motion(system, {&e, 1}).front(), parameter_bindings(system));
+  };
+  const Locus result =
+      parameter_locus(equations, start, sweep->parameter, value(sweep->from), value(sweep->to), sweep->steps);
   const bool written = write_locus(options, system, result, study.diagnostics());
   if (!console.json()) console.print(locus_text(system, result));
   const ExitCode code = finish(console, study, locus_document(system, result));
   return written ? code : ExitCode::RunFailed;
 }
 
-// ---------------------------------------------------------------------------------------------------------------- command
+// ----------------------------------------------------------------------------------------------------------------
+// command
 
-ExitCode points(const ModesOptions& options, Study& study, const PointEquations& equations, const MotionState& start, Console& console) {
+ExitCode points(const ModesOptions& options, Study& study, const PointEquations& equations, const MotionState& start,
+                Console& console) {
   const auto result = carry_out(options, study, equations, start, console);
   if (!result) return finish(console, study, json_document("modes"));
   const MechanicalSystem& system = study.model()->system;
@@ -144,27 +178,67 @@ ExitCode points(const ModesOptions& options, Study& study, const PointEquations&
   std::vector<std::optional<SymbolicLinearization>> formulas;
   for (std::size_t i = 0; i < result->entries.size() && i < detailed; ++i) {
     const bool settled = result->starts > 0 || !options.at.empty();
-    formulas.push_back(settled ? symbolic_linearization(*study.equations(), result->entries[i].linearization, result->translations) : std::nullopt);
-    document["points"][i]["formulas"] = formulas.back() ? symbolic_json(*formulas.back(), study.equations()->order) : Json(nullptr);
+    formulas.push_back(
+        settled ? symbolic_linearization(*study.equations(), result->entries[i].linearization, result->translations)
+                : std::nullopt);
+    document["points"][i]["formulas"] =
+        formulas.back() ? symbolic_json(*formulas.back(), study.equations()->order) : Json(nullptr);
   }
-  if (!console.json()) console.print(modes_text(system, *result, formulas, study.equations()->order));
+  if (!console.json()) console.print(modes_text(system, *result, formulas, study.equations()->order, options.outputs));
   if (options.q.empty()) return finish(console, study, document);
   const auto regulator = regulator_of(options, *result, study.diagnostics());
   if (regulator) document["regulator"] = regulator_json(*regulator);
-  if (regulator && !console.json()) console.print(regulator_text(system, result->entries.front().linearization, *regulator));
+  if (regulator && !console.json())
+    console.print(regulator_text(system, result->entries.front().linearization, *regulator));
   return finish(console, study, document);
+}
+
+/// The modes of a periodic motion are those of its monodromy: Floquet multipliers.
+ExitCode orbit(const ModesOptions& options, Study& study, Console& console) {
+  FloquetOptions wanted{std::nullopt, &interrupt_flag()};
+  if (!options.orbit->empty()) wanted.period = parse_time(*options.orbit);
+  if (!options.orbit->empty() && !wanted.period) {
+    study.diagnostics().error("E0809", {}, fmt::format("--orbit \"{}\" is no time.", *options.orbit), {},
+                              "Write its period with a unit of time, such as 3s, or --orbit alone.");
+    finish(console, study, json_document("modes"));
+    return ExitCode::Usage;
+  }
+  Json document = json_document("modes");
+  const MechanicalSystem& system = study.model()->system;
+  document["system"] = system.name;
+  const auto result = floquet(*study.model(), *study.equations(), wanted, study.diagnostics());
+  if (result) document["floquet"] = floquet_json(*result, system);
+  if (result && !console.json()) console.print(floquet_text(*result, system));
+  const ExitCode code = finish(console, study, document);
+  return result ? code : interrupt_flag().load() ? ExitCode::Interrupted : ExitCode::RunFailed;
+}
+
+/// Options that ask for different points exclude each other.
+bool check_usage(const ModesOptions& o, Diagnostics& diagnostics) {
+  if (!o.orbit || (o.at.empty() && !o.locus() && o.q.empty() && o.outputs.empty())) return true;
+  diagnostics.error("E0809", {}, "--orbit has neither --at, --sweep, --y nor a regulator beside it.",
+                    "The multipliers of a periodic motion belong to the whole orbit, and not to a point.",
+                    "Leave one of them out.");
+  return false;
 }
 
 ExitCode modes(ModesOptions options, Console& console) {
   if (!options.at.empty() && !parse_time(options.at)) options.model.overrides.at = {options.at};
   Study study(options.model.path, options.model.overrides);
+  if (!study.wrong() && !check_usage(options, study.diagnostics())) {
+    finish(console, study, json_document("modes"));
+    return ExitCode::Usage;
+  }
   if (!options.sweep.empty()) study.replace_sweep("sweep " + options.sweep);
+  study.add_statements(output_statements(options.outputs));
   const EquationsOfMotion* equations = study.equations();
   if (!equations || !study.certificate()) return finish(console, study, json_document("modes"));
+  if (options.orbit) return orbit(options, study, console);
   const auto start = consistent_start(*study.model(), *equations, study.diagnostics());
   if (!start) return finish(console, study, json_document("modes"));
-  PointEquations at_points(*equations);
-  return options.locus() ? locus(options, study, at_points, start->state, console) : points(options, study, at_points, start->state, console);
+  PointEquations at_points(*equations, measured(options.outputs, *study.model()));
+  return options.locus() ? locus(options, study, at_points, start->state, console)
+                         : points(options, study, at_points, start->state, console);
 }
 
 }  // namespace
@@ -177,13 +251,32 @@ void add_modes(CommandLine& line) {
                                "  maup modes bead_on_hoop.lag --plot bifurcation.svg --csv locus.csv\n",
                                [options](Console& console) { return modes(*options, console); });
   add_model_options(command, options->model);
-  command.add_option("--at", options->at, "One equilibrium or steady motion, e.g. \"θ=0, φ'=2 rad/s\", or a time of the motion, e.g. 3s")
+  command
+      .add_option("--at", options->at,
+                  "One equilibrium or steady motion, e.g. \"θ=0, φ'=2 rad/s\", or a time of the motion, e.g. 3s")
       ->type_name("POINT|TIME");
-  command.add_option("--Q", options->q, "Weights of the states: a linear-quadratic regulator about the point of --at")->type_name("WEIGHTS");
+  command
+      .add_option("--y", options->outputs,
+                  "What is measured, y = y0 + C x + D u: formulas in q, q', q'', reactions and inputs, e.g. \"x + l "
+                  "sin θ\" \"θ'\"")
+      ->type_name("FORMULA ...");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--orbit",
+          [options](const std::vector<std::string>& given) { options->orbit = given.empty() ? "" : given.front(); },
+          "Floquet multipliers of the periodic motion near the start instead; its period where it is known")
+      ->expected(0, 1)
+      ->type_name("[PERIOD]");
+  command.add_option("--Q", options->q, "Weights of the states: a linear-quadratic regulator about the point of --at")
+      ->type_name("WEIGHTS");
   command.add_option("--R", options->r, "Prices of the inputs (default: 1)")->type_name("WEIGHTS");
-  command.add_option("--sweep", options->sweep, "A locus over values of one parameter, e.g. \"Ω = 0 .. 12 rad/s steps 121\"")->type_name("SWEEP");
+  command
+      .add_option("--sweep", options->sweep,
+                  "A locus over values of one parameter, e.g. \"Ω = 0 .. 12 rad/s steps 121\"")
+      ->type_name("SWEEP");
   command.add_option("--plot", options->plot, "The bifurcation diagram of the sweep: .svg")->type_name("FILE");
-  command.add_option("--roots", options->roots, "The eigenvalues of the sweep in the complex plane: .svg")->type_name("FILE");
+  command.add_option("--roots", options->roots, "The eigenvalues of the sweep in the complex plane: .svg")
+      ->type_name("FILE");
   command.add_option("--csv", options->csv, "The locus as numbers: .csv")->type_name("FILE");
   command.add_flag("--all", options->all, "The modes of all points that were found, not of the first four alone");
 }

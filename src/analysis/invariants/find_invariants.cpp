@@ -1,5 +1,5 @@
 #include <maupertuis/along_motion.hpp>
-#include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/constraint_analysis.hpp>
 #include <maupertuis/invariants.hpp>
 #include <maupertuis/print.hpp>
 
@@ -34,7 +34,11 @@ class Finder {
         ansatz_(make_ansatz(equations, rows_)),
         along_(equations) {
     Diagnostics unheard;
-    if (const auto start = consistent_start(model, equations, unheard)) along_.set_start(start->state);
+    const auto start = consistent_start(model, equations, unheard);
+    if (start) along_.set_start(start->state);
+    result_.freedoms = system_.constrained()
+                           ? analyse_constraints(equations, start ? &start->state : nullptr).configuration_freedoms
+                           : system_.coordinates.size();
     const auto acts = [](const ExprVector& v) {
       return std::any_of(v.begin(), v.end(), [](const Expr& e) { return !e.is_zero(); });
     };

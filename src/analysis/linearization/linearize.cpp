@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-/// The equations to first order, in three steps: which coordinates and which velocities are independent; ξ and ξ̇ of all from
-/// theirs; ξ̈ and δλ from the bordered system. Everything is linear and holds at any point of a motion:
+/// The equations to first order, in three steps: which coordinates and which velocities are independent; ξ and ξ̇ of all
+/// from theirs; ξ̈ and δλ from the bordered system. Everything is linear and holds at any point of a motion:
 ///
 ///     φ_q ξ = 0,   r_v ξ̇ + r_q ξ = 0,   [M  −Aᵀ] [ξ̈ ]   [−R_v ξ̇ − R_q ξ + B w]
 ///                                       [A   0 ] [δλ] = [−α_v ξ̇ − α_q ξ      ]
@@ -47,7 +47,8 @@ Matrix spread(const Matrix& rows, const Split& split, const Matrix& right) {
   Matrix out = Matrix::Zero(rows.cols(), right.cols());
   if (split.dependent.empty()) return out;
   const Matrix part = least_squares(columns_of(rows, split.dependent), right, rank_threshold).x;
-  for (std::size_t k = 0; k < split.dependent.size(); ++k) out.row(static_cast<Index>(split.dependent[k])) = part.row(static_cast<Index>(k));
+  for (std::size_t k = 0; k < split.dependent.size(); ++k)
+    out.row(static_cast<Index>(split.dependent[k])) = part.row(static_cast<Index>(k));
   return out;
 }
 
@@ -60,12 +61,13 @@ Matrix null_basis(const Matrix& rows, const Split& split) {
 
 /// The bordered system of [ξ̈; δλ] for several right sides; redundant constraints leave δλ at its least.
 struct BorderedSolution {
-  Matrix x;                        // [(n + m) × …]
+  Matrix x;  // [(n + m) × …]
   bool singular = false;
   std::size_t culprit = 0;
 };
 
-BorderedSolution solve_bordered(const Matrix& mass, const Matrix& by_multipliers, const Matrix& a, const Matrix& right) {
+BorderedSolution solve_bordered(const Matrix& mass, const Matrix& by_multipliers, const Matrix& a,
+                                const Matrix& right) {
   const Index n = mass.rows(), m = a.rows();
   Matrix all = Matrix::Zero(n + m, n + m);
   all.topLeftCorner(n, n) = mass;
@@ -112,8 +114,18 @@ void second_order_form(Linearization& out, const Pieces& p, const Matrix& direct
   out.input = to_real(-directions.transpose() * p.balance.by_inputs);
 }
 
+/// The chain rule from (q, q̇), (q̈, λ) and u to what is measured. `motion`, `answer`: their columns by x and u.
+MeasuredOutputs measured_outputs(const RowsAtPoint& y, const Matrix& motion, const Matrix& answer, Index states) {
+  const Index n = y.by_q.cols(), k = y.by_inputs.cols();
+  Matrix by = y.by_q * motion.topRows(n) + y.by_v * motion.bottomRows(n) + y.by_a * answer.topRows(n) +
+              y.by_multipliers * answer.bottomRows(y.by_multipliers.cols());
+  by.rightCols(k) += y.by_inputs;
+  return {to_list(y.value), to_real(by.leftCols(states)), to_real(by.rightCols(k))};
+}
+
 bool vanishes(const Matrix& part, const Matrix& beside) {
-  return part.size() == 0 || part.lpNorm<Eigen::Infinity>() <= 1e-12 * (beside.size() == 0 ? 0 : beside.lpNorm<Eigen::Infinity>());
+  return part.size() == 0 ||
+         part.lpNorm<Eigen::Infinity>() <= 1e-12 * (beside.size() == 0 ? 0 : beside.lpNorm<Eigen::Infinity>());
 }
 
 }  // namespace
@@ -130,8 +142,8 @@ LinearizationResult linearize(const PointEquations& equations, const OperatingPo
   out.independent = at_positions.independent;
   out.independent_velocities = at_velocities.independent;
 
-  const Matrix xi = null_basis(p.positions.by_q, at_positions);        // ξ by positions [n × f]
-  const Matrix rate_w = null_basis(p.rates.by_v, at_velocities);       // ξ̇ by velocities [n × g]
+  const Matrix xi = null_basis(p.positions.by_q, at_positions);                   // ξ by positions [n × f]
+  const Matrix rate_w = null_basis(p.rates.by_v, at_velocities);                  // ξ̇ by velocities [n × g]
   const Matrix rate_q = spread(p.rates.by_v, at_velocities, -p.rates.by_q * xi);  // ξ̇ by positions [n × f]
   const auto n = static_cast<Index>(e.n), m = static_cast<Index>(e.m), k = static_cast<Index>(e.k);
   const Index f = xi.cols(), g = rate_w.cols();
@@ -142,7 +154,8 @@ LinearizationResult linearize(const PointEquations& equations, const OperatingPo
   right.topRightCorner(n, k) = -p.balance.by_inputs;
   right.bottomLeftCorner(m, f) = -p.accelerations.by_q * xi - p.accelerations.by_v * rate_q;
   right.block(n, f, m, g) = -p.accelerations.by_v * rate_w;
-  const BorderedSolution bordered = solve_bordered(p.balance.by_a, p.balance.by_multipliers, p.accelerations.by_a, right);
+  const BorderedSolution bordered =
+      solve_bordered(p.balance.by_a, p.balance.by_multipliers, p.accelerations.by_a, right);
   if (bordered.singular) {
     result.singular = true;
     result.singular_coordinate = bordered.culprit;
@@ -163,6 +176,9 @@ LinearizationResult linearize(const PointEquations& equations, const OperatingPo
   out.b = to_real(b);
   out.c = to_real(c);
   out.d = to_real(Matrix::Zero(2 * n, k));
+  Matrix motion = Matrix::Zero(2 * n, f + g + k);
+  motion.leftCols(f + g) = c;
+  out.measured = measured_outputs(e.at(e.outputs, point), motion, bordered.x, f + g);
 
   const bool uniform = std::all_of(point.a.begin(), point.a.end(), [](double x) { return x == 0; });
   if (e.m == 0 || (e.holonomic == e.m && uniform && vanishes(rate_q, rate_w))) second_order_form(out, p, xi);
@@ -171,7 +187,8 @@ LinearizationResult linearize(const PointEquations& equations, const OperatingPo
 
 std::optional<OperatingPoint> operating_point(const PointEquations& equations, const MotionState& state) {
   PointEquations::Impl& e = equations.impl();
-  OperatingPoint point{state.t, state.q, state.v, std::vector<double>(e.n), std::vector<double>(e.m), equations.inputs_at(state.t)};
+  OperatingPoint point{
+      state.t, state.q, state.v, std::vector<double>(e.n), std::vector<double>(e.m), equations.inputs_at(state.t)};
   const RowsAtPoint balance = e.at(e.balance, point), rows = e.at(e.accelerations, point);
   Matrix right(static_cast<Index>(e.n + e.m), 1);
   right.topRows(static_cast<Index>(e.n)) = -balance.value;

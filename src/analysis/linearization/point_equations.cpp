@@ -1,6 +1,7 @@
 #include "analysis/linearization/point_equations.hpp"
 
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/reactions.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <algorithm>
@@ -32,7 +33,9 @@ class Lowering {
     for (const Parameter& p : system.parameters) parameters_.push_back(p.symbol);
   }
 
-  ExprVector plain(std::span<const Expr> expressions) const { return substitute(expand_time_derivatives(expressions), held_); }
+  ExprVector plain(std::span<const Expr> expressions) const {
+    return substitute(expand_time_derivatives(expressions), held_);
+  }
   DifferentiableKernel rows(std::span<const Expr> expressions) const {
     return build_differentiable({inputs_, parameters_, plain(expressions)}, 0, differentiated_);
   }
@@ -60,6 +63,21 @@ ExprVector formulas(const MechanicalSystem& system) {
   return out;
 }
 
+/// Reactions stand for forces in q, q̇, q̈ and λ; those that the model does not determine stay symbols.
+ExprVector with_reactions(const EquationsOfMotion& equations, std::span<const Expr> outputs) {
+  ExprVector out(outputs.begin(), outputs.end());
+  const auto is_reaction = [&](const Expr& s) {
+    return s.role() == Role::Multiplier &&
+           std::find(equations.multipliers.begin(), equations.multipliers.end(), s) == equations.multipliers.end();
+  };
+  const std::vector<Expr> symbols = symbols_of(out);
+  if (std::none_of(symbols.begin(), symbols.end(), is_reaction)) return out;
+  ExprMap forces;
+  for (const Reaction& r : reactions(equations))
+    if (r.value) forces.emplace(r.symbol, r.value);
+  return substitute(out, forces);
+}
+
 /// Whether ∂/∂t of all of them vanishes identically.
 bool free_of_time(std::span<const Expr> expressions, Expr time) {
   ExprVector rates;
@@ -73,7 +91,9 @@ bool free_of_time(std::span<const Expr> expressions, Expr time) {
 /// Q(q, u) = −∂W/∂q for some W while u is held: no velocity, no time, ∂Q_i/∂q_j symmetric.
 bool has_potential(const ExprVector& forces, const MechanicalSystem& system) {
   ExprVector must_vanish;
-  const auto add = [&](Expr e) { if (!e.is_zero()) must_vanish.push_back(e); };
+  const auto add = [&](Expr e) {
+    if (!e.is_zero()) must_vanish.push_back(e);
+  };
   for (std::size_t i = 0; i < forces.size(); ++i) {
     if (forces[i].is_zero()) continue;
     add(differentiate(forces[i], system.context->time()));
@@ -88,15 +108,23 @@ bool has_potential(const ExprVector& forces, const MechanicalSystem& system) {
 
 }  // namespace
 
-PointEquations::Impl::Impl(const EquationsOfMotion& equations)
-    : system(equations.system), n(system->coordinates.size()), m(system->constraints.size()), k(system->inputs.size()),
-      holonomic(0), balance(Lowering(equations).rows(equations.balance())),
+PointEquations::Impl::Impl(const EquationsOfMotion& equations, std::span<const Expr> measured)
+    : system(equations.system),
+      n(system->coordinates.size()),
+      m(system->constraints.size()),
+      k(system->inputs.size()),
+      holonomic(0),
+      balance(Lowering(equations).rows(equations.balance())),
       positions(Lowering(equations).rows(chosen(equations, Constraint::Level::Position, false))),
       velocities(Lowering(equations).rows(chosen(equations, Constraint::Level::Velocity, true))),
       accelerations(Lowering(equations).rows(equations.constraint_accelerations)),
-      momenta(Lowering(equations).rows(equations.momenta)), rates(Lowering(equations).rows(equations.constraint_rates)),
-      input_formulas(Lowering(equations).function(formulas(*system))), inputs(input_formulas),
-      energy(Lowering(equations).function({&equations.energy_function, 1})), energy_workspace(energy) {
+      momenta(Lowering(equations).rows(equations.momenta)),
+      rates(Lowering(equations).rows(equations.constraint_rates)),
+      outputs(Lowering(equations).rows(with_reactions(equations, measured))),
+      input_formulas(Lowering(equations).function(formulas(*system))),
+      inputs(input_formulas),
+      energy(Lowering(equations).function({&equations.energy_function, 1})),
+      energy_workspace(energy) {
   for (std::size_t i = 0; i < m; ++i)
     if (system->constraints[i].level == Constraint::Level::Position) position_rows.push_back(i);
   holonomic = position_rows.size();
@@ -106,7 +134,8 @@ PointEquations::Impl::Impl(const EquationsOfMotion& equations)
   ExprVector all = lowering.plain(equations.balance());
   for (const Constraint& c : system->constraints) all.push_back(lowering.plain({&c.value, 1}).front());
   is_autonomous = free_of_time(all, system->context->time());
-  is_passive = is_autonomous && holonomic == m && has_potential(lowering.plain(equations.generalized_forces), *system) &&
+  is_passive = is_autonomous && holonomic == m &&
+               has_potential(lowering.plain(equations.generalized_forces), *system) &&
                friction_takes(lowering.function(equations.dissipative_terms));
   is_periodic.assign(n, false);
 }
@@ -128,7 +157,7 @@ bool PointEquations::Impl::friction_takes(const FunctionKernel& friction) const 
 }
 
 void PointEquations::Impl::set_parameters() {
-  for (Rows* rows : {&balance, &positions, &velocities, &accelerations, &momenta, &rates}) {
+  for (Rows* rows : {&balance, &positions, &velocities, &accelerations, &momenta, &rates, &outputs}) {
     rows->values.set_parameters(parameters);
     rows->entries.set_parameters(parameters);
   }
@@ -138,7 +167,8 @@ void PointEquations::Impl::set_parameters() {
 
 std::vector<double> PointEquations::Impl::gather(const OperatingPoint& point) const {
   std::vector<double> out;
-  for (const auto* part : {&point.q, &point.v, &point.a, &point.multipliers}) out.insert(out.end(), part->begin(), part->end());
+  for (const auto* part : {&point.q, &point.v, &point.a, &point.multipliers})
+    out.insert(out.end(), part->begin(), part->end());
   out.push_back(point.t);
   out.insert(out.end(), point.inputs.begin(), point.inputs.end());
   return out;
@@ -157,10 +187,15 @@ RowsAtPoint PointEquations::Impl::at(Rows& rows, const OperatingPoint& point) co
   const auto size = static_cast<Index>(count);
   Matrix all = Matrix::Zero(size, static_cast<Index>(3 * n + m + 1 + k));
   for (std::size_t e = 0; e < rows.kernel.entries.size(); ++e)
-    all(static_cast<Index>(rows.kernel.entries[e].row), static_cast<Index>(rows.kernel.entries[e].column)) = numbers[count + e];
+    all(static_cast<Index>(rows.kernel.entries[e].row), static_cast<Index>(rows.kernel.entries[e].column)) =
+        numbers[count + e];
   const auto N = static_cast<Index>(n), m_ = static_cast<Index>(m), k_ = static_cast<Index>(k);
-  return {to_eigen(std::vector<double>(numbers.begin(), numbers.begin() + size)), all.leftCols(N), all.middleCols(N, N),
-          all.middleCols(2 * N, N), all.middleCols(3 * N, m_), all.rightCols(k_)};
+  return {to_eigen(std::vector<double>(numbers.begin(), numbers.begin() + size)),
+          all.leftCols(N),
+          all.middleCols(N, N),
+          all.middleCols(2 * N, N),
+          all.middleCols(3 * N, m_),
+          all.rightCols(k_)};
 }
 
 double PointEquations::Impl::energy_at(const OperatingPoint& point) {
@@ -198,7 +233,8 @@ std::vector<double> typical_sizes(const MechanicalSystem& system, const MotionSt
   return out;
 }
 
-// ------------------------------------------------------------------------------------------------------------ the class
+// ------------------------------------------------------------------------------------------------------------ the
+// class
 
 namespace {
 
@@ -221,9 +257,11 @@ bool repeats(PointEquations::Impl& e, std::size_t i) {
 
 }  // namespace
 
-PointEquations::PointEquations(const EquationsOfMotion& equations) : impl_(std::make_unique<Impl>(equations)) {
+PointEquations::PointEquations(const EquationsOfMotion& equations, std::span<const Expr> outputs)
+    : impl_(std::make_unique<Impl>(equations, outputs)) {
   for (std::size_t i = 0; i < impl_->n; ++i)
-    impl_->is_periodic[i] = impl_->system->coordinates[i].kind == "angle" || impl_->system->dimensionless ? repeats(*impl_, i) : false;
+    impl_->is_periodic[i] =
+        impl_->system->coordinates[i].kind == "angle" || impl_->system->dimensionless ? repeats(*impl_, i) : false;
 }
 PointEquations::~PointEquations() = default;
 PointEquations::PointEquations(PointEquations&&) noexcept = default;
@@ -240,8 +278,12 @@ void PointEquations::set_parameter(std::size_t index, double value) {
 }
 
 std::vector<double> PointEquations::inputs_at(double t) const {
-  OperatingPoint point{t, std::vector<double>(impl_->n), std::vector<double>(impl_->n), std::vector<double>(impl_->n),
-                       std::vector<double>(impl_->m), std::vector<double>(impl_->k)};
+  OperatingPoint point{t,
+                       std::vector<double>(impl_->n),
+                       std::vector<double>(impl_->n),
+                       std::vector<double>(impl_->n),
+                       std::vector<double>(impl_->m),
+                       std::vector<double>(impl_->k)};
   std::vector<double> at(3 * impl_->n + impl_->m + 1 + impl_->k), out(impl_->k);
   at[3 * impl_->n + impl_->m] = t;
   impl_->inputs.evaluate(at, out);

@@ -7,38 +7,40 @@ namespace maupertuis {
 
 /// Functions at a point and their derivatives by its parts.
 struct RowsAtPoint {
-  Vector value;                                   // [rows]
+  Vector value;  // [rows]
   Matrix by_q, by_v, by_a, by_multipliers, by_inputs;
 };
 
 struct PointEquations::Impl {
-  explicit Impl(const EquationsOfMotion& equations);
+  Impl(const EquationsOfMotion& equations, std::span<const Expr> measured);
 
   /// One family of rows: a program and its workspaces.
   struct Rows {
     DifferentiableKernel kernel;
     FunctionWorkspace values, entries;
-    explicit Rows(DifferentiableKernel k) : kernel(std::move(k)), values(kernel.values), entries(kernel.values_and_entries) {}
+    explicit Rows(DifferentiableKernel k)
+        : kernel(std::move(k)), values(kernel.values), entries(kernel.values_and_entries) {}
   };
 
   Vector value(Rows& rows, const OperatingPoint& point) const;
   RowsAtPoint at(Rows& rows, const OperatingPoint& point) const;
-  double energy_at(const OperatingPoint& point);   // h_E
+  double energy_at(const OperatingPoint& point);  // h_E
   void set_parameters();
 
   std::shared_ptr<const MechanicalSystem> system;
-  std::size_t n, m, k, holonomic;                 // holonomic: how many of the m are of positions
+  std::size_t n, m, k, holonomic;  // holonomic: how many of the m are of positions
   std::vector<double> parameters;
-  std::vector<std::size_t> position_rows;         // which constraints those are
+  std::vector<std::size_t> position_rows;                       // which constraints those are
   Rows balance, positions, velocities, accelerations, momenta;  // [n], [holonomic], [m - holonomic], [m], [n]
-  Rows rates;                                     // [m] dφ/dt and ψ
+  Rows rates;                                                   // [m] dφ/dt and ψ
+  Rows outputs;                                                 // what is measured
   FunctionKernel input_formulas;
   FunctionWorkspace inputs;
-  FunctionKernel energy;                          // h_E: orders equilibria
+  FunctionKernel energy;  // h_E: orders equilibria
   FunctionWorkspace energy_workspace;
   bool is_autonomous = true;
-  bool is_passive = false;                        // energy_never_grows
-  std::vector<bool> is_periodic;                  // [n]
+  bool is_passive = false;        // energy_never_grows
+  std::vector<bool> is_periodic;  // [n]
 
  private:
   bool friction_takes(const FunctionKernel& friction) const;

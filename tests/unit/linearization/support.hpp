@@ -48,10 +48,13 @@ inline std::vector<double> frequencies(const maupertuis::ModalAnalysis& analysis
   return out;
 }
 
-inline bool near(double a, double b, double relative) { return std::abs(a - b) <= relative * std::max(std::abs(a), std::abs(b)); }
+inline bool near(double a, double b, double relative) {
+  return std::abs(a - b) <= relative * std::max(std::abs(a), std::abs(b));
+}
 
-/// How far the characteristic polynomial of a matrix is from vanishing at values, relative to the sum of the sizes of its terms. By
-/// Faddeev and Leverrier, which shares nothing with the eigenvalue routines.
+/// How far the characteristic polynomial of a matrix is from vanishing at values, relative to the sum of the sizes of
+/// its terms and of a thousandth of ‖A‖^(n−k) |z|^k, below which coefficients may be rounding alone (those that vanish
+/// are). By Faddeev and Leverrier, which shares nothing with the eigenvalue routines.
 inline double largest_root_error(const maupertuis::RealMatrix& a, const std::vector<std::complex<double>>& values) {
   const std::size_t n = a.rows;
   std::vector<double> coefficients(n + 1, 0), power(n * n, 0), next(n * n);
@@ -69,11 +72,15 @@ inline double largest_root_error(const maupertuis::RealMatrix& a, const std::vec
     power = next;
     coefficients[n - k] = -trace / static_cast<double>(k);
   }
-  double worst = 0;
+  double norm = 0, worst = 0;
+  for (const double x : a.entries) norm = std::hypot(norm, x);
   for (const auto& z : values) {
     std::complex<double> value = 0;
-    double size = 0;
-    for (std::size_t k = n + 1; k-- > 0;) value = value * z + coefficients[k], size = size * std::abs(z) + std::abs(coefficients[k]);
+    double size = 0, power_of_norm = 1e-3;
+    for (std::size_t k = n + 1; k-- > 0; power_of_norm *= norm) {
+      value = value * z + coefficients[k];
+      size = size * std::abs(z) + std::abs(coefficients[k]) + power_of_norm;
+    }
     worst = std::max(worst, std::abs(value) / size);
   }
   return worst;

@@ -1,0 +1,56 @@
+#include "support.hpp"
+
+using namespace maupertuis;
+
+// What is measured: y = y₀ + C x + D u, against closed forms and against differences along the motion.
+
+TEST_CASE("an accelerometer on a driven oscillator passes the force on") {
+  const ModelText m(R"(system driven
+param m = 2 kg, k = 8 N/m
+input u : [N] = 0
+coord x : length
+T = 1/2 m x'^2
+V = 1/2 k x^2
+force x = u
+)");
+  const Expr outputs[] = {m.q(0), m.a(0), m.p("m") * m.a(0) + m.p("k") * m.q(0), m.system->inputs[0].symbol * m.v(0)};
+  const PointEquations at(m.equations, outputs);
+  OperatingPoint point{0, {0.5}, {3.0}, {-2.0}, {}, {0.0}};
+  const MeasuredOutputs y = linearize(at, point).linearization.measured;
+  CHECK(y.values == std::vector<double>{0.5, -2, 0, 0});
+  CHECK(y.c.entries == std::vector<double>{1, 0, -4, 0, 0, 0, 0, 0});  // x'' = (u - k x)/m
+  CHECK(y.d.entries == std::vector<double>{0, 0.5, 1, 3});
+}
+
+TEST_CASE("the tension of a rod, against its closed form and differences on the circle") {
+  const ModelText m(R"(system cartesian
+param m = 2 kg, l = 70 cm, g = 9.81 m/s^2
+coord x, y : length
+point P mass m at (x, y)
+gravity (0, -g)
+constraint x^2 + y^2 = l^2 name rod
+)");
+  const Expr outputs[] = {m.system->constraints[0].reaction};
+  const PointEquations at(m.equations, outputs);
+  const auto state = [](double x, double rate) {
+    const double y = -std::sqrt(0.49 - x * x);
+    return MotionState{0, {x, y}, {rate, -x * rate / y}};
+  };
+  const auto measured = [&](double x, double rate) {
+    const auto point = operating_point(at, state(x, rate));
+    REQUIRE(point);
+    return linearize(at, *point).linearization;
+  };
+  const auto tension = [&](double x, double rate) {
+    const MotionState s = state(x, rate);
+    return 2 * (s.v[0] * s.v[0] + s.v[1] * s.v[1]) / 0.7 - 2 * 9.81 * s.q[1] / 0.7;
+  };
+  const Linearization l = measured(0.3, 1.7);
+  REQUIRE(l.independent.size() == 1);
+  const bool by_x = l.independent[0] == 0;
+  REQUIRE(by_x);
+  CHECK(near(l.measured.values[0], tension(0.3, 1.7), 1e-14));
+  constexpr double h = 1e-5;
+  CHECK(near(l.measured.c.at(0, 0), (tension(0.3 + h, 1.7) - tension(0.3 - h, 1.7)) / (2 * h), 1e-8));
+  CHECK(near(l.measured.c.at(0, 1), (tension(0.3, 1.7 + h) - tension(0.3, 1.7 - h)) / (2 * h), 1e-8));
+}
