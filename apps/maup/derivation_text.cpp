@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <maupertuis/print.hpp>
 #include <maupertuis/reactions.hpp>
 
@@ -93,13 +95,16 @@ std::string reactions_text(const EquationsOfMotion& equations) {
 
 std::string certificate_text(const Certificate& certificate) {
   std::string out = fmt::format("\nCertificate: {}\n", certificate.passed() ? "passed" : "NOT PASSED");
+  std::size_t name_width = 17;
+  for (const CertificateCheck& check : certificate.checks) name_width = std::max(name_width, check.name.size());
   for (const CertificateCheck& check : certificate.checks) {
     std::string ground;
     if (!check.applies) ground = "does not apply";
     else if (check.verdict != Verdict::Zero) ground = fmt::format("{}: {}", verdict_name(check.verdict), check.reason);
+    else if (check.points == 0) ground = "term by term";
     else if (check.error_bound < 1) ground = fmt::format("{} points, error below {}", check.points, brief(check.error_bound));
     else ground = fmt::format("{} points, no bound claimed", check.points);
-    out += fmt::format("  {:<18}{} ({})\n", check.name, check.statement, ground);
+    out += fmt::format("  {:<{}} {} ({})\n", check.name, name_width, check.statement, ground);
   }
   return out;
 }

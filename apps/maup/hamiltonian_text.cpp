@@ -77,7 +77,7 @@ Json routhian_json(const Routhian& r, const Hamiltonian& h) {
 
 std::string phase_space_text(const PhaseSpace& found) {
   const Hamiltonian& h = found.hamiltonian;
-  std::string out = fmt::format("Phase space of {}\n", h.system->name), section;
+  std::string out = h.system->name.empty() ? "Phase space\n" : fmt::format("Phase space of {}\n", h.system->name), section;
   for (const DerivationStep& line : all_lines(found)) {
     if (line.section != section) out += fmt::format("\n{}\n", section = line.section);
     out += "  " + plain_line(line, h.order) + "\n";

@@ -174,7 +174,8 @@ void report_legendre(const Hamiltonian& h, Diagnostics& diagnostics) {
     if (block.kind == LegendreKind::Singular)
       diagnostics.warning("W1101", std::nullopt, fmt::format("the Legendre transform of {} is singular", names),
                           "M = ∂²L/∂q'∂q' has no inverse here, so that p = ∂L/∂q' cannot be solved for every velocity: the momenta obey primary constraints.",
-                          "Lagrange's equations need no inverse: `maup derive` and `maup simulate` are unaffected.");
+                          h.system->constrained() ? "Lagrange's equations with their multipliers need no inverse: `maup derive` and `maup simulate` are unaffected."
+                                                  : "Lagrange's equations hold as well, but do not determine every acceleration: `maup simulate` has no motion to follow.");
     if (block.kind == LegendreKind::Unsolved)
       diagnostics.warning("W1103", std::nullopt, fmt::format("the velocities of {} are not written in terms of the momenta", names),
                           block.coordinates.size() > largest_eliminated
