@@ -57,7 +57,7 @@ void steps(benchmark::State& state, Backend backend) {
     const double time = 1e-3 * static_cast<double>(state.range(1));
     TaylorStepper stepper = stepper_of(chain, backend);
     if (backend == Backend::Compiled) compare_with_interpreter(stepper, chain, std::min(time, 0.5));
-    if (backend == Backend::Compiled && chain.q.size() <= 8) bench::settle(stepper, chain);
+    if (backend == Backend::Compiled) bench::settle(stepper, chain);
     const double drift = energy_drift(stepper, chain, time);
     require(drift <= 2e-12, "energy");
     std::size_t steps = 0;

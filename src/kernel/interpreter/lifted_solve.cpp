@@ -79,9 +79,10 @@ void LiftedSolve::make_code() {
   std::vector<std::uint32_t> wanted;
   for (std::uint32_t column = 0; column < system_->size; ++column)
     if (system_->wanted[column]) wanted.push_back(cell_of_column_[column]);
-  const straight::StraightLine line = solver_->written_solve(wanted);
-  scratch_.resize(straight::scratch_size(line));
-  std::tie(code_, report_) = straight::compile({line}, *options_);
+  std::vector<straight::StraightLine> lines{solver_->written_solve(wanted)};
+  if (options_->long_run) lines.push_back(solver_->written_factor(least_sound_pivot));
+  for (const straight::StraightLine& line : lines) scratch_.resize(std::max(scratch_.size(), straight::scratch_size(line)));
+  std::tie(code_, report_) = straight::compile(lines, *options_);
 }
 
 void LiftedSolve::drop_solver() {
@@ -95,6 +96,16 @@ void LiftedSolve::run_solve(std::span<const double> b, double* x) {
   else solver_->solve(b, x);
 }
 
+/// Code tells no more of pivots than whether they are sound.
+void LiftedSolve::run_factor() {
+  if (!code_ || !options_->long_run) {
+    least_pivot_ = solver_->factor(entries_);
+    return;
+  }
+  code_(1, entries_.data(), solver_->usual_sizes(), solver_->factors(), solver_->inverse_pivots(), scratch_.data());
+  least_pivot_ = straight::sound(scratch_.data()) ? 1 : 0;
+}
+
 /// Other pivots may do better; they are chosen anew, less and less often.
 bool LiftedSolve::fail() {
   if (is_power_of_two(++failures_)) drop_solver();
@@ -105,7 +116,7 @@ bool LiftedSolve::factor(const Memory& memory) {
   if (!system_ || (!solver_ && !is_power_of_two(failures_))) return fail();
   (*assembly_)(memory.row(0), entries_);
   if (!solver_ && !choose_pivots(memory)) return fail();
-  least_pivot_ = solver_->factor(entries_);
+  run_factor();
   refines_ = false;
   return least_pivot_ > least_sound_pivot || fail();
 }

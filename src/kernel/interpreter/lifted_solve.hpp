@@ -33,7 +33,7 @@ class LiftedSolve {
   /// In the direction of the last solution, those of the stored slots of the packed program.
   const double* tangents() const { return cells_.data(); }
 
-  /// The smallest pivot in units of its terms and of its size where the pivots were chosen.
+  /// The smallest pivot in units of its terms and of its size where the pivots were chosen; by code 1 where all are sound, else 0.
   double least_pivot() const { return least_pivot_; }
   /// Nothing before the first factor(), and where there are no pivots.
   const sparse::SparseSolver* solver() const { return solver_ ? &*solver_ : nullptr; }
@@ -45,6 +45,7 @@ class LiftedSolve {
   void add_correction();
   void make_code();
   void drop_solver();
+  void run_factor();
   void run_solve(std::span<const double> b, double* x);
 
   const Program& program_;

@@ -10,6 +10,9 @@ namespace maupertuis::sparse {
 /// What code of a solution works on, in this order; then its scratch.
 enum SolveArray : std::uint32_t { FactorArray, InverseArray, RightSideArray, UnknownArray, solve_arrays };
 
+/// The same of code of a factorization.
+enum FactorArrays : std::uint32_t { EntryArray, UsualSizeArray, FactorOutArray, FactorInverseArray, factor_arrays };
+
 class SparseSolver {
  public:
   /// `cells`: [columns] where the unknowns stand in the array that solve() fills.
@@ -28,6 +31,12 @@ class SparseSolver {
   straight::StraightLine written_solve(std::span<const std::uint32_t> wanted) const;
   const double* factors() const { return factors_.data(); }
   const double* inverse_pivots() const { return inverse_.data(); }
+  /// factor() as a straight line over the arrays of FactorArrays, which the three below are; sound() where every pivot is above `least_share` of
+  /// what factor() measures it by.
+  straight::StraightLine written_factor(double least_share) const;
+  double* factors() { return factors_.data(); }
+  double* inverse_pivots() { return inverse_.data(); }
+  const double* usual_sizes() const { return usual_size_.data(); }
 
   /// Products of a factorization and of a solution: their cost.
   std::size_t factor_products() const { return factor_products_; }

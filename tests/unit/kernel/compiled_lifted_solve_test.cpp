@@ -1,11 +1,13 @@
 // Compiled solutions of large systems against the loops, and against M in closed form.
 #include "rods.hpp"
 
+#include <limits>
+
 TEST_CASE("chains, trees and combs: unknowns and tangents as by the loops, M x = b with M in closed form") {
   for (const auto& [parent, count] : {std::pair<Parents, int>{chain, 20}, {chain, 100}, {binary_tree, 63}, {comb, 50}}) {
     Rods rods(count, parent);
     Lifted loops(build_kernel(rods.source)), code(build_kernel(rods.source));
-    code.solve.compile({.cache = false});
+    code.solve.compile({.cache = false, .long_run = count != 100});  // factors by code too, and not
     CHECK_FALSE(code.solve.compile_report());  // no pivots yet
     const auto n = static_cast<std::size_t>(count);
     for (unsigned seed = 1; seed <= 3; ++seed) {
@@ -42,6 +44,29 @@ TEST_CASE("chains, trees and combs: unknowns and tangents as by the loops, M x =
           CHECK(std::abs(code.solve.tangents()[slot] - loops.solve.tangents()[slot]) <= 1e-10 * largest);
       }
     }
+  }
+}
+
+TEST_CASE("factors by code: a singular M is told so, with its coordinate, and what follows is solved again") {
+  Rods rods(30, chain);
+  const Expr idle = rods.context.symbol("idle", Role::Coordinate);
+  rods.source.coordinates.push_back(idle);
+  rods.source.residual.push_back(idle * rods.context.symbol("idle", Role::Coordinate, 2) + rods.context.number(1));  // no inertia at idle = 0
+  KernelWorkspace work(build_kernel(rods.source), 3);
+  work.set_parameters(one);
+  work.compile({.cache = false, .long_run = true});
+  Point p = random_point(31, 2);
+  CHECK(work.evaluate(0, p.q, p.v) == KernelStatus::Ok);
+  CHECK(work.acceleration(30) == doctest::Approx(-1 / p.q[30]).epsilon(1e-13));
+  p.q[30] = 0;
+  REQUIRE(work.evaluate(0, p.q, p.v) == KernelStatus::SingularMass);
+  CHECK(work.singular_coordinate() == 30);
+  p.q[30] = std::numeric_limits<double>::quiet_NaN();
+  CHECK(work.evaluate(0, p.q, p.v) != KernelStatus::Ok);
+  for (const double value : {1e-3, 0.5, 0.7, 0.9}) {
+    p.q[30] = value;
+    CHECK(work.evaluate(0, p.q, p.v) == KernelStatus::Ok);
+    CHECK(work.acceleration(30) == doctest::Approx(-1 / value).epsilon(1e-13));
   }
 }
 
