@@ -8,6 +8,10 @@ namespace maupertuis::app {
 namespace {
 
 constexpr CodeEntry own_codes[] = {
+    {"E0245", "a study of motions in time for a model without it",
+     "Equilibria, frequencies, periods and exponents belong to motions in time. Where another variable stands in its place there are "
+     "equations (`maup derive`), their solutions from a start (`maup simulate`) and between two ends (`maup action`).",
+     "", ""},
     {"E0690", "a derivation failed its certificate",
      "Every derivation is checked by routes that share nothing with it: jets of L along random paths, d'Alembert's "
      "principle over the particles, the power balance. One of them found a different value, so the derived equations "

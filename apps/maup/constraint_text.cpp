@@ -56,7 +56,7 @@ std::string moved_start(const MechanicalSystem& system, const ConsistentStart& s
   for (const StartAdjustment& a : start.adjustments) {
     if (std::abs(a.to - a.from) < 1e-14 * largest) continue;  // rounding
     const Coordinate& c = system.coordinates[a.coordinate];
-    const std::string unit = to_string(a.order == 0 ? c.dimension : c.dimension / dimensions::time());
+    const std::string unit = to_string(a.order == 0 ? c.dimension : c.dimension / system.independent_dimension);
     out += fmt::format("{}{}{} = {}{}", out.empty() ? "" : ", ", c.name, a.order == 0 ? "" : "'", brief(a.to),
                        system.dimensionless || unit == "1" || unit.empty() ? "" : " " + unit);
   }

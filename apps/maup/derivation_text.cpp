@@ -69,7 +69,7 @@ std::string momenta_and_energy(const EquationsOfMotion& equations) {
     out += readable_line("p_" + coordinates[i].name, equations.shown().momenta[i], equations.order);
   out += "\nEnergy function\n" + readable_line("h_E", equations.shown().energy_function, equations.order);
   if (!conserved.energy_case.empty()) out += fmt::format("  {}\n", conserved.energy_case);
-  if (!conserved.energy_conserved) out += readable_line("dh_E/dt", equations.shown().power, equations.order);
+  if (!conserved.energy_conserved) out += readable_line("dh_E/d" + equations.system->independent, equations.shown().power, equations.order);
 
   std::vector<std::string> names;
   for (const std::size_t i : conserved.conserved_momenta)

@@ -24,7 +24,8 @@ std::string time_text(const AgreedNumber& t) {
 }
 
 std::string state_text(const ExtendedState& state, const ExtendedResult& result) {
-  std::string out = fmt::format("t = {} s\n", time_text(state.t));
+  const std::string& second = result.independent.unit;
+  std::string out = fmt::format("{} = {}{}{}\n", result.independent.name, time_text(state.t), second.empty() ? "" : " ", second);
   const auto line = [&out](const std::string& name, const AgreedNumber& x, const std::string& unit) {
     out += fmt::format("  {:<8} {}{}{}\n", name, number_text(x), unit == "1" || unit.empty() ? "" : " ", unit == "1" ? "" : unit);
   };

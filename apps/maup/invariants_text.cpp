@@ -25,11 +25,12 @@ const char* kind_name(IntegralKind kind) {
   }
 }
 
-std::string ground(const ZeroTest& test) {
-  if (test.error_bound == 0) return "dI/dt = 0 term by term";
+std::string ground(const ZeroTest& test, const MechanicalSystem& system) {
+  const std::string rate = "dI/d" + system.independent;
+  if (test.error_bound == 0) return rate + " = 0 term by term";
   if (test.error_bound < 1)
-    return fmt::format("dI/dt = 0 proved at {} points, error bound {:.0e}", test.points, test.error_bound);
-  return fmt::format("dI/dt vanishes at {} points", test.points);
+    return fmt::format("{} = 0 proved at {} points, error bound {:.0e}", rate, test.points, test.error_bound);
+  return fmt::format("{} vanishes at {} points", rate, test.points);
 }
 
 std::string displacement(const ConservedFunction& integral, const EquationsOfMotion& equations) {
@@ -59,7 +60,7 @@ std::string integral_text(const std::string& symbol, const ConservedFunction& in
   const ReadingOrder& order = equations.order;
   std::string text = fmt::format("{:<4} {}\n", symbol, formula(integral.readable, order));
   if (!integral.name.empty()) text += fmt::format("     {}\n", integral.name);
-  text += fmt::format("     from: {}\n     {}", origin(integral, equations), ground(integral.certificate));
+  text += fmt::format("     from: {}\n     {}", origin(integral, equations), ground(integral.certificate, *equations.system));
   if (integral.drift) text += fmt::format("; drift in the run {:.1e}", *integral.drift);
   if (!integral.independent) text += "; a function of those before it at fixed t";
   return text + "\n";
@@ -118,7 +119,7 @@ std::string invariants_text(const Invariants& found, const EquationsOfMotion& eq
   text += brackets_text(found, order);
   if (!found.balance_laws.empty()) text += "\nBalance laws\n";
   for (const BalanceLaw& law : found.balance_laws)
-    text += fmt::format("  {}: d/dt ({}) = {}\n", law.name, to_plain(law.quantity, order), formula(law.rate, order));
+    text += fmt::format("  {}: d/d{} ({}) = {}\n", law.name, equations.system->independent, to_plain(law.quantity, order), formula(law.rate, order));
   if (!found.integrals.empty()) text += integrability_text(found);
   return text + completeness_text(found);
 }

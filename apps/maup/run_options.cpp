@@ -165,7 +165,7 @@ std::string run_statement(const RunOptions& options) {
 }
 
 std::optional<SimulationResult> run_model(Study& study, const SimulationOptions& options, const Console& console) {
-  if (study.wrong() || !study.certificate()) return {};
+  if (study.wrong() || refuse_held_integrals(study) || !study.certificate()) return {};
   Progress progress(console);
   SimulationOptions with_progress = options;
   if (console.interactive()) with_progress.progress = [&progress](double fraction) { progress(fraction); };
@@ -173,7 +173,7 @@ std::optional<SimulationResult> run_model(Study& study, const SimulationOptions&
 }
 
 std::optional<ExtendedResult> run_model(Study& study, const ExtendedSimulationOptions& options, const Console& console) {
-  if (study.wrong() || !study.certificate()) return {};
+  if (study.wrong() || refuse_held_integrals(study) || !study.certificate()) return {};
   Progress progress(console);
   ExtendedSimulationOptions with_progress = options;
   if (console.interactive()) with_progress.progress = [&progress](double fraction) { progress(fraction); };

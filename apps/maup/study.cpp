@@ -142,4 +142,27 @@ const Certificate* Study::certificate(const CertifyOptions& options) {
   return wrong() ? nullptr : &*certificate_;
 }
 
+bool refuse_held_integrals(Study& study) {
+  const Model* model = study.model();
+  if (!model || model->system.integral_constraints.empty()) return false;
+  study.diagnostics().error("E0244", model->system.integral_constraints.front().span, "the model holds an integral of its paths",
+                            "Its equations are those of L + λ G with one λ for a whole path, which only the two ends of the path determine: "
+                            "there is no motion from a start.",
+                            "`maup action` finds the paths between two ends, and λ.");
+  return true;
+}
+
+bool moves_in_time(const MechanicalSystem& system) {
+  return system.dimensionless || system.independent_dimension.same_as(dimensions::time());
+}
+
+bool refuse_without_time(Study& study) {
+  const Model* model = study.model();
+  if (!model || moves_in_time(model->system)) return false;
+  study.diagnostics().error("E0245", std::nullopt, fmt::format("the independent variable of this model is {}, no time", model->system.independent),
+                            "Equilibria, frequencies, periods and exponents belong to motions in time.",
+                            "`maup derive`, `maup simulate` and `maup action` work for such models.");
+  return true;
+}
+
 }  // namespace maupertuis::app

@@ -60,5 +60,11 @@ class Study {
 
 /// What was typed as one statement: no line ends and no comment in it.
 std::string as_one_line(std::string statement);
+/// E0244 where the model holds an integral of its paths: there is no motion then. For commands about motions.
+bool refuse_held_integrals(Study& study);
+/// Whether the independent variable is a time; without units nothing says that it is none.
+bool moves_in_time(const MechanicalSystem& system);
+/// E0245 where another variable stands in the place of the time. For commands about motions in time.
+bool refuse_without_time(Study& study);
 
 }  // namespace maupertuis::app

@@ -116,7 +116,7 @@ class Context {
 
   Expr number(const Rational& value);
   Expr pi();
-  Expr time();
+  Expr time();  // the symbol of Role::Time, of whatever name it was made with; t if there is none
   /// The symbol of this name and order; made at first use. A name has one role for ever.
   /// Precondition: the role agrees with earlier uses of the name; order > 0 only for Coordinate and Input.
   Expr symbol(std::string_view name, Role role, int order = 0);

@@ -38,7 +38,8 @@ struct ExtendedStatistics {
 };
 
 struct ExtendedResult {
-  std::vector<Trajectory::Column> columns;  // t apart: q, q', points, reactions, energy
+  Trajectory::Column independent{"t", "s"};
+  std::vector<Trajectory::Column> columns;  // q, q', points, reactions, energy
   std::vector<Trajectory::Column> reactions;
   std::vector<ExtendedState> rows;          // empty if none were wanted
   std::vector<ExtendedState> at;            // in the order asked

@@ -156,7 +156,8 @@ struct MechanicalSystem {
 
   /// What stands in the place of t, `independent x : length`: its symbol is context->time(), and q' is dq/dx.
   std::string independent = "t";
-  Dimension independent_dimension = dimensions::time();
+  Dimension independent_dimension = dimensions::time();   // a bare number in a model without units
+  Dimension lagrangian_dimension = dimensions::energy();  // of any kind where the independent variable is no time
 
   std::vector<Coordinate> coordinates;
   std::vector<Parameter> parameters;     // in the order of the text; anonymous constants at the end
@@ -185,6 +186,10 @@ struct MechanicalSystem {
   std::shared_ptr<const MechanicalSystem> written;
 
   bool constrained() const { return !constraints.empty(); }
+  /// The unit of the independent variable: "s", "m"; empty for a bare number.
+  std::string independent_unit() const;
+  /// "t = 3 s", "x = 3 m".
+  std::string moment(const std::string& number) const;
 
   Expr kinetic_energy() const;           // Σ kinetic, 0 if none
   Expr potential_energy() const;
@@ -221,6 +226,7 @@ struct Expectation {
   std::string name, word;
   Expr subject, subject_right;      // Equation: subject = subject_right; ValueAt and others: subject
   Expr time, value, tolerance;      // SI; empty where absent
+  Expr from, to;                    // Action of a given path: its ends, SI; those of the model's path where none are written
   bool relative = false;
   int occurrence = 0;
   std::vector<StartValue> at;       // Frequencies, Equilibrium: `at θ = 0`

@@ -186,6 +186,7 @@ struct ExpectStatement {
   std::vector<ExpressionPtr> values;     // Frequencies; Action: a given path, one a coordinate; none: the stationary path
   bool squared = false;                  // Frequencies: expect frequencies squared …
   std::vector<StartStatement::Item> at;  // Frequencies, Equilibrium: the configuration, `at θ = 0`
+  ExpressionPtr from, to;                // Action of a given path: its ends; null: those of the model's `path`
 };
 
 /// constraint LEFT = RIGHT name rod,   constraint integral LEFT = RIGHT name length

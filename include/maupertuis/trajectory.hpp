@@ -8,14 +8,15 @@
 namespace maupertuis {
 
 /// A time series with names and units: what a run leaves behind.
-/// Column names differ from each other and from "t", the name of the time in every format.
+/// Column names differ from each other and from that of the independent variable, the first column in every format.
 struct Trajectory {
   struct Column {
     std::string name;   // "θ1", "θ1'", "B.x", "energy"
     std::string unit;   // SI, "rad", "m/s"; empty for a bare number
   };
+  Column independent{"t", "s"};              // what `times` are
   std::vector<Column> columns;
-  std::vector<double> times;                 // [rows] s, in the order of the run (descending when backwards)
+  std::vector<double> times;                 // [rows] in the order of the run (descending when backwards)
   std::vector<double> values;                // [rows × columns]
   std::map<std::string, std::string> metadata;  // system, version, method, tolerance, …
 
@@ -37,7 +38,7 @@ std::string write_trajectory(const Trajectory& trajectory, const std::string& pa
 std::string to_csv(const Trajectory& trajectory);
 
 /// {"schema": "maupertuis-trajectory-1", "metadata": {…}, "columns": [{"name", "unit"}, …], "rows": [[…], …]}; the
-/// first column is t in s, numbers have 17 digits, null where a value is not finite.
+/// first column is the time, numbers have 17 digits, null where a value is not finite.
 std::string to_json(const Trajectory& trajectory);
 
 /// A NumPy array of records [rows], format 3.0 (UTF-8): `numpy.load(f)["θ1"]`, `["t"]`. Little-endian doubles, as they

@@ -131,7 +131,7 @@ class Reducer {
                          bool write_v) {
       if (write_q) out.push_back({name, q, dimension});
       if (write_v && std::abs(v) > rounding)
-        out.push_back({name + "'", v, system_.dimensionless ? dimension : dimension / dimensions::time()});
+        out.push_back({name + "'", v, dimension / system_.independent_dimension});
     };
     for (Eigen::Index k = 0; k < m; ++k) {
       const Expr q = independent[static_cast<std::size_t>(k)];

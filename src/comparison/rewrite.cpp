@@ -58,6 +58,12 @@ class Rewriter {
     if (const auto* start = std::get_if<StartStatement>(&s.body)) starts(s.span, *start);
     if (const auto* expect = std::get_if<ExpectStatement>(&s.body)) expectation(s.span, *expect);
     if (const auto* draw = std::get_if<DrawStatement>(&s.body)) drawing(s.span, *draw);
+    if (std::holds_alternative<PathStatement>(s.body) && !gone_.empty()) leave_out(s.span);  // its ends are given in other coordinates
+  }
+
+  void leave_out(Span span) {
+    left_out_.push_back(slice(span));
+    text_.remove_line(span);
   }
 
   /// `coord x, y : length` → `coord θ : angle` and `let x = …, y = …` below it.
@@ -229,9 +235,9 @@ class Rewriter {
     for (const ExpressionPtr& e : {s.subject, s.value})
       lost = lost || asks_for(e, "reaction", no_reaction_) || asks_for(e, "multiplier", no_multiplier_);
     lost = lost || no_reaction_.count(s.name.text);
-    if (!lost) return;
-    left_out_.push_back(slice(span));
-    text_.remove_line(span);
+    const bool about_path = s.kind == ExpectStatement::Kind::Action || s.kind == ExpectStatement::Kind::MorseIndex ||
+                            s.kind == ExpectStatement::Kind::PathAt;
+    if (lost || (about_path && !gone_.empty())) leave_out(span);
   }
 
   void drawing(Span span, const DrawStatement& s) {

@@ -56,7 +56,9 @@ ConservedQuantities conserved_quantities(const EquationsOfMotion& equations) {
       result.conserved_momenta.push_back(i);
   }
   result.energy_conserved = vanishes(equations.power) || vanishes(power_on_constraints(equations));
-  if (system.lagrangian_given) {
+  if (system.lagrangian_given && system.independent != "t") {
+    result.energy_case = "h_E = q'·∂L/∂q' − L, which is constant where L does not depend on " + system.independent + " (Beltrami).";
+  } else if (system.lagrangian_given) {
     result.energy_case = "L was given whole: h_E = q'·∂L/∂q' − L, which is T + V where L = T − V with T quadratic in the velocities.";
   } else {
     result.energy_case = compare_with_energy(equations, result.energy_is_t_plus_v);

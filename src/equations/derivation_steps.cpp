@@ -164,15 +164,17 @@ void write_row(StepWriter& out, std::size_t i, const Derivation& derivation) {
   const std::string latex = symbol_to_latex(c.q), latex_dot = symbol_to_latex(c.velocity);
   out.open("Equation of " + c.name);
   out.formula("∂L/∂" + c.name + "'", fmt::format("\\frac{{\\partial L}}{{\\partial {}}}", latex_dot), eq.momenta[i],
-              "partial derivative, q and t held fixed: the momentum p_" + c.name);
-  out.as_is("d/dt ∂L/∂" + c.name + "'", fmt::format("\\frac{{d}}{{dt}} \\frac{{\\partial L}}{{\\partial {}}}", latex_dot),
-            total_derivative_terms(out, eq.momenta[i]), "total time derivative: chain rule through q', q and t");
+              fmt::format("partial derivative, q and {} held fixed: the momentum p_{}", out.system().independent, c.name));
+  const std::string t = out.system().independent, total = t == "t" ? "total time derivative" : "total derivative";
+  out.as_is(fmt::format("d/d{} ∂L/∂{}'", t, c.name),
+            fmt::format("\\frac{{d}}{{d{}}} \\frac{{\\partial L}}{{\\partial {}}}", symbol_to_latex(out.context().time()), latex_dot),
+            total_derivative_terms(out, eq.momenta[i]), fmt::format("{}: chain rule through q', q and {}", total, t));
   out.formula("∂L/∂" + c.name, fmt::format("\\frac{{\\partial L}}{{\\partial {}}}", latex),
-              differentiate(eq.lagrangian_expanded, c.q), "partial derivative, q' and t held fixed");
+              differentiate(eq.lagrangian_expanded, c.q), fmt::format("partial derivative, q' and {} held fixed", t));
   if (!eq.dissipative_terms[i].is_zero())
     out.formula("∂D/∂" + c.name + "'", fmt::format("\\frac{{\\partial D}}{{\\partial {}}}", latex_dot),
                 eq.dissipative_terms[i], "partial derivative of the dissipation function");
-  std::string rule = "d/dt ∂L/∂q' − ∂L/∂q";
+  std::string rule = fmt::format("d/d{} ∂L/∂q' − ∂L/∂q", t);
   if (!eq.dissipative_terms[i].is_zero()) rule += " + ∂D/∂q'";
   rule += eq.generalized_forces[i].is_zero() ? " = " : " = Q";
   if (derivation.constraint_forces.empty()) {

@@ -32,8 +32,9 @@ struct Tie {
   }
 };
 
-Dimension dimension_of_multiplier(const Constraint& c) {
-  return (c.level == Constraint::Level::Position ? dimensions::energy() : dimensions::power()) / c.dimension;
+Dimension dimension_of_multiplier(const MechanicalSystem& s, const Constraint& c) {
+  const Dimension& energy = s.lagrangian_dimension;
+  return (c.level == Constraint::Level::Position ? energy : energy / s.independent_dimension) / c.dimension;
 }
 
 bool is_power_of_length(Dimension d) {
@@ -45,7 +46,7 @@ bool is_power_of_length(Dimension d) {
 /// A force or a torque: as the unit of λ, the coordinates that are tied, and the unit of φ say.
 Dimension dimension_of_reaction(const Tie& tie) {
   if (tie.system.dimensionless) return {};
-  const Dimension multiplier = dimension_of_multiplier(tie.constraint);
+  const Dimension multiplier = dimension_of_multiplier(tie.system, tie.constraint);
   if (tie.all_of(dimensions::length()) || multiplier.same_as(dimensions::force())) return dimensions::force();
   if (tie.all_of(dimensions::angle()) && multiplier.same_as(dimensions::torque())) return dimensions::torque();
   return is_power_of_length(tie.constraint.dimension) ? dimensions::force() : dimensions::torque();
@@ -181,7 +182,7 @@ Reaction reaction_of(const Tie& tie, std::string label) {
   if (as_tension(tie, r)) return r;
   if (dimensions::force().same_as(r.dimension) || tie.system.dimensionless)
     if (as_contact(tie, r)) return r;
-  const bool own_unit = tie.system.dimensionless || dimension_of_multiplier(tie.constraint).same_as(r.dimension);
+  const bool own_unit = tie.system.dimensionless || dimension_of_multiplier(tie.system, tie.constraint).same_as(r.dimension);
   if (own_unit) as_multiplier(tie, r);
   else as_generalized(tie, r);
   return r;

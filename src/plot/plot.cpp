@@ -129,14 +129,15 @@ std::string opening(const Figure& figure) {
 }  // namespace
 
 std::string plot_problem(const Trajectory& trajectory, const PlotOptions& options) {
-  std::vector<std::string> known{"t"};
+  std::vector<std::string> known{trajectory.independent.name};
   for (const auto& column : trajectory.columns) known.push_back(column.name);
   auto wanted = options.columns;
   if (!options.against.empty()) wanted.push_back(options.against);
   if (!options.dots_by.empty()) wanted.push_back(options.dots_by);
   for (const auto& name : wanted) {
     if (trajectory.column(name)) continue;
-    if (name == "t") return "the time is the horizontal axis: name what to draw against it";
+    if (name == trajectory.independent.name)
+      return fmt::format("{} is the horizontal axis: name what to draw against it", name == "t" ? "the time" : name);
     const std::string near = did_you_mean(name, known);
     return fmt::format("the run has no {}{}", name, near.empty() ? "" : fmt::format("; did you mean {}?", near));
   }
@@ -148,7 +149,7 @@ std::string plot_svg(const Trajectory& trajectory, const PlotOptions& options) {
   MAUP_REQUIRE(plot_problem(trajectory, options).empty());
   MAUP_REQUIRE(trajectory.values.size() == trajectory.rows() * trajectory.columns.size());
   MAUP_REQUIRE(options.outline.empty() || (options.columns.size() == 1 && !options.against.empty()));
-  Figure figure{trajectory, options, Series{"t", "s", 1, 0, true}, group_by_unit(trajectory, options), 0, 0, 0, 0};
+  Figure figure{trajectory, options, Series{trajectory.independent.name, trajectory.independent.unit, 1, 0, true}, group_by_unit(trajectory, options), 0, 0, 0, 0};
   if (!options.against.empty()) figure.horizontal = series_of(trajectory, options.against, options.degrees);
 
   // Ranges come first, then axes; their labels give the margin; with the margin the axes are final.

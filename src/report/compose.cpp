@@ -30,7 +30,7 @@ ReportContent::Coordinate coordinate_row(const EquationsOfMotion& equations, std
   if (row.kind.empty() || row.kind == "number") row.kind = unit.empty() || unit == "1" ? "number" : "in " + unit;
   if (!run || run->start.q.size() <= i) return row;
   row.start = quantity(run->start.q[i], unit);
-  row.start_velocity = quantity(run->start.v[i], unit_of(system, c.dimension / dimensions::time()));
+  row.start_velocity = quantity(run->start.v[i], unit_of(system, c.dimension / system.independent_dimension));
   return row;
 }
 

@@ -57,7 +57,7 @@ void add_momentum(ReportContent& content, const EquationsOfMotion& equations, st
   quantity_row.sentence = fmt::format("{} is cyclic, and nothing acts on it: its momentum is conserved.", c.name);
   quantity_row.formula = formula("p_" + c.name, equations.shown().momenta[i], equations.order);
   if (run) {
-    const std::string unit = system.dimensionless ? "" : to_string(dimensions::action() / c.dimension);
+    const std::string unit = system.dimensionless ? "" : to_string(system.lagrangian_dimension * system.independent_dimension / c.dimension);
     add_values_along_run(quantity_row, equations, equations.momenta[i], unit, run->trajectory);
   }
   content.conserved.push_back(std::move(quantity_row));
@@ -69,7 +69,7 @@ void add_energy(ReportContent& content, const EquationsOfMotion& equations, cons
   row.sentence = conserved.energy_case;
   if (!conserved.energy_conserved) {
     row.sentence += " It is not conserved; along the motion it changes at the rate";
-    row.formula = formula("d/dt h_E", equations.shown().power, equations.order);
+    row.formula = formula("d/d" + equations.system->independent + " h_E", equations.shown().power, equations.order);
     content.conserved.push_back(std::move(row));
     return;
   }

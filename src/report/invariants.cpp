@@ -28,11 +28,11 @@ Dimension dimension_of(Expr e, const MechanicalSystem& system) {
     default:
       return dimensions::one();
   }
-  if (e.role() == Role::Time) return dimensions::time();
+  if (e.role() == Role::Time) return system.independent_dimension;
   for (const Parameter& p : system.parameters)
     if (p.symbol == e) return p.dimension;
   for (const Coordinate& c : system.coordinates)
-    if (c.name == e.name()) return c.dimension / pow(dimensions::time(), e.order());
+    if (c.name == e.name()) return c.dimension / pow(system.independent_dimension, e.order());
   return dimensions::one();
 }
 

@@ -13,9 +13,9 @@ constexpr std::size_t most_phase_portraits = 4;
 constexpr std::size_t most_numbers = 150'000;   // of a drawing: about a megabyte of page
 constexpr double plot_width = 440;
 
-void add_statistics(ReportContent& content, const SimulationResult& run, bool dimensionless) {
+void add_statistics(ReportContent& content, const SimulationResult& run, const MechanicalSystem& system) {
   const SimulationStatistics& s = run.statistics;
-  const std::string second = dimensionless ? "" : "s";
+  const std::string second = system.dimensionless ? "" : system.independent_unit();
   const auto add = [&](const char* name, std::string value) { content.statistics.emplace_back(name, std::move(value)); };
   add("from", quantity(run.start.t, second) + " to " + quantity(run.final.t, second, 10));
   const std::string method = s.method == "variational" ? "variational steps" : "Taylor series";
@@ -87,7 +87,7 @@ std::size_t frames_within_budget(const Model& model) {
 
 void add_motion(ReportContent& content, const Model& model, const EquationsOfMotion& equations, bool energy_conserved,
                 const SimulationResult& run) {
-  add_statistics(content, run, model.system.dimensionless);
+  add_statistics(content, run, model.system);
   content.trajectory = run.trajectory;
   content.drawing = evaluate_drawing(model, run.trajectory, frames_within_budget(model), &equations);
   if (energy_conserved) add_drift_column(content.trajectory);

@@ -33,10 +33,11 @@ bool starts_with(std::string_view text, std::string_view prefix) { return text.s
 }  // namespace
 
 std::string left_side_mathml(std::string_view plain) {
-  constexpr std::string_view rate = "d/dt ", del = "∂";
+  constexpr std::string_view rate = "d/d", del = "∂";
   if (plain.empty()) return {};
-  if (starts_with(plain, rate))
-    return "<mfrac><mi>d</mi><mrow><mi>d</mi><mi>t</mi></mrow></mfrac>" + left_side_mathml(plain.substr(rate.size()));
+  if (const auto blank = plain.find(' '); starts_with(plain, rate) && blank != std::string_view::npos)
+    return fmt::format("<mfrac><mi>d</mi><mrow><mi>d</mi>{}</mrow></mfrac>", name_mathml(plain.substr(rate.size(), blank - rate.size()))) +
+           left_side_mathml(plain.substr(blank + 1));
   if (const auto slash = plain.find("/∂"); starts_with(plain, del) && slash != std::string_view::npos)
     return element("mfrac", partial(plain.substr(del.size(), slash - del.size())) + partial(plain.substr(slash + 1 + del.size())));
   if (const auto bracket = plain.find('('); bracket != std::string_view::npos && plain.back() == ')' && bracket > 0)

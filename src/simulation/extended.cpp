@@ -132,6 +132,7 @@ class ExtendedRun {
   void name_columns() {
     Trajectory names;
     name_trajectory_columns(model_.system, observables_, names.columns, out_.reactions);
+    out_.independent = {model_.system.independent, model_.system.independent_unit()};
     out_.columns = names.columns;
   }
 
@@ -160,7 +161,7 @@ std::optional<ExtendedResult> simulate_extended(const Model& model, const Equati
   if (!has_method(options, diagnostics)) return std::nullopt;
   const SimulationOptions rough = in_double(options);
   const auto plan = plan_run(model, equations, rough, diagnostics);
-  if (!plan || !requests_lie_ahead(*plan, rough, diagnostics)) return std::nullopt;
+  if (!plan || !requests_lie_ahead(model.system, *plan, rough, diagnostics)) return std::nullopt;
   const Observables observables = collect_observables(equations, nullptr);
   return ExtendedRun(model, equations, options, plan_extended(model, equations, options, *plan, observables), observables).carry_out();
 }
@@ -177,8 +178,9 @@ std::string quoted(const std::string& name) {
 }  // namespace
 
 std::string to_csv(const ExtendedResult& result) {
-  std::string out = "t [s]";
-  for (const Trajectory::Column& c : result.columns) out += "," + quoted(c.unit.empty() ? c.name : c.name + " [" + c.unit + "]");
+  const auto heading = [](const Trajectory::Column& c) { return quoted(c.unit.empty() ? c.name : c.name + " [" + c.unit + "]"); };
+  std::string out = heading(result.independent);
+  for (const Trajectory::Column& c : result.columns) out += "," + heading(c);
   out += "\r\n";
   for (const ExtendedState& row : result.rows) {
     out += row.t.text;

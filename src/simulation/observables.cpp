@@ -11,13 +11,14 @@ namespace {
 
 void add_reactions(Observables& out, const EquationsOfMotion& equations) {
   const MechanicalSystem& system = *equations.system;
+  const Dimension& energy = system.lagrangian_dimension;
   const auto add = [&](std::string name, const Dimension& dimension, Expr value) {
     out.expressions.push_back(value);
     out.reactions.push_back({std::move(name), dimension});
   };
   for (const Constraint& c : system.constraints)
     if (c.name.empty() && c.body.empty())
-      add(c.multiplier.name(), (c.level == Constraint::Level::Position ? dimensions::energy() : dimensions::energy() / dimensions::time()) / c.dimension,
+      add(c.multiplier.name(), (c.level == Constraint::Level::Position ? energy : energy / system.independent_dimension) / c.dimension,
           c.multiplier);
   const bool named = !system.releases.empty() || std::any_of(system.constraints.begin(), system.constraints.end(),
                                                              [](const Constraint& c) { return !c.name.empty(); });
@@ -62,7 +63,7 @@ void name_trajectory_columns(const MechanicalSystem& system, const Observables& 
                              std::vector<Trajectory::Column>& reactions) {
   const auto unit = [&](const Dimension& d) { return system.dimensionless ? std::string() : to_string(d); };
   for (const Coordinate& c : system.coordinates) columns.push_back({c.name, unit(c.dimension)});
-  for (const Coordinate& c : system.coordinates) columns.push_back({c.name + "'", unit(c.dimension / dimensions::time())});
+  for (const Coordinate& c : system.coordinates) columns.push_back({c.name + "'", unit(c.dimension / system.independent_dimension)});
   for (const Point& p : system.points)
     for (std::size_t axis = 0; axis < p.position.size(); ++axis)
       columns.push_back({p.name + "." + "xyz"[axis], unit(dimensions::length())});
@@ -72,7 +73,7 @@ void name_trajectory_columns(const MechanicalSystem& system, const Observables& 
     reactions.push_back({r.name, torque ? "N m" : unit(r.dimension)});
     columns.push_back(reactions.back());
   }
-  columns.push_back({"energy", unit(dimensions::energy())});
+  columns.push_back({"energy", unit(system.lagrangian_dimension)});
 }
 
 }  // namespace maupertuis

@@ -104,12 +104,13 @@ std::optional<RunPlan> plan_run(const Model& model, const EquationsOfMotion& equ
   return Planner(model, equations, options, diagnostics).plan();
 }
 
-bool requests_lie_ahead(const RunPlan& plan, const SimulationOptions& options, Diagnostics& diagnostics) {
+bool requests_lie_ahead(const MechanicalSystem& system, const RunPlan& plan, const SimulationOptions& options, Diagnostics& diagnostics) {
   for (const double t : options.at) {
     const bool ahead = plan.end >= plan.begin ? t >= plan.begin : t <= plan.begin;
     if (ahead && std::isfinite(t)) continue;
-    diagnostics.error("E0706", std::nullopt, fmt::format("the state at t = {:g} s is not on the way of this run", t),
-                      fmt::format("The run goes from {:g} s to {:g} s.", plan.begin, plan.end),
+    const std::string unit = system.independent_unit().empty() ? "" : " " + system.independent_unit();
+    diagnostics.error("E0706", std::nullopt, fmt::format("the state at {} is not on the way of this run", system.moment(fmt::format("{:g}", t))),
+                      fmt::format("The run goes from {:g}{} to {:g}{}.", plan.begin, unit, plan.end, unit),
                       "Ask for times after the start, or run backwards with a negative duration.");
     return false;
   }

@@ -19,6 +19,6 @@ std::optional<RunPlan> plan_run(const Model& model, const EquationsOfMotion& equ
                                 Diagnostics& diagnostics);
 
 /// Whether the times asked for lie on the way of the run; E0706 if not.
-bool requests_lie_ahead(const RunPlan& plan, const SimulationOptions& options, Diagnostics& diagnostics);
+bool requests_lie_ahead(const MechanicalSystem& system, const RunPlan& plan, const SimulationOptions& options, Diagnostics& diagnostics);
 
 }  // namespace maupertuis

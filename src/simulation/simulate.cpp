@@ -98,6 +98,8 @@ class EnergyBalance {
   double first_ = 0, largest_scale_ = 0, largest_error_ = 0, work_before_ = 0;
 };
 
+std::string with_blank(const std::string& unit) { return unit.empty() ? unit : " " + unit; }
+
 class Run {
  public:
   /// `stiff` makes the method that takes over where stability limits the steps; it may be empty.
@@ -106,6 +108,7 @@ class Run {
       : model_(model), options_(options), plan_(plan), observables_(observables), probe_(probe),
         method_(std::move(method)), stiff_(std::move(stiff)), balance_(observables.energy_terms) {
     result_.statistics.method = word_of(options.method);
+    result_.trajectory.independent = {model.system.independent, model.system.independent_unit()};
     name_trajectory_columns(model.system, observables, result_.trajectory.columns, result_.reactions);
     sort_requests();
   }
@@ -160,7 +163,7 @@ class Run {
     }
     if (step.event && plan_.until) {
       result_.ending = Ending::UntilReached;
-      result_.reason = fmt::format("the condition of `run until` was met at t = {:.17g} s", method_->time());
+      result_.reason = "the condition of `run until` was met at " + model_.system.moment(fmt::format("{:.17g}", method_->time()));
       record_covered();
       return false;
     }
@@ -234,7 +237,8 @@ class Run {
     result_.at.assign(answers_.begin(), answers_.end());
     if (result_.ending == Ending::Finished && plan_.until) {
       result_.ending = Ending::UntilNotReached;
-      result_.reason = fmt::format("the condition of `run until` was not met within {:g} s", std::abs(plan_.end - plan_.begin));
+      result_.reason = fmt::format("the condition of `run until` was not met within {:g}{}", std::abs(plan_.end - plan_.begin),
+                                   with_blank(model_.system.independent_unit()));
     }
     result_.statistics.steps = steps_before_ + method_->steps();
     result_.statistics.switches = method_->switches();
@@ -265,11 +269,11 @@ std::string title_of(const std::string& method) {
   return method == "taylor" ? "Taylor" : method == "stiff" ? "stiff (backward differentiation)" : "variational";
 }
 
-void note_stiffness(const SimulationResult& result, Diagnostics& diagnostics) {
+void note_stiffness(const SimulationResult& result, const MechanicalSystem& system, Diagnostics& diagnostics) {
   diagnostics.note("N0702", std::nullopt, "the stiff method took over",
                    fmt::format("Fast, strongly damped parts of the motion had died out, and yet limited Taylor's steps; "
-                               "the backward differentiation formulas went on with a tolerance of {:g} to t = {:g} s.",
-                               1e-10, result.final.t),
+                               "the backward differentiation formulas went on with a tolerance of {:g} to {}.",
+                               1e-10, system.moment(fmt::format("{:g}", result.final.t))),
                    "Use --method taylor to keep Taylor's steps, or --tol for another tolerance.");
 }
 
@@ -290,7 +294,7 @@ void warn_of_backend(const BackendUse& use, Backend wanted, Diagnostics& diagnos
 std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMotion& equations,
                                          const SimulationOptions& options, Diagnostics& diagnostics, Probe* probe) {
   const auto plan = plan_run(model, equations, options, diagnostics);
-  if (!plan || !requests_lie_ahead(*plan, options, diagnostics)) return std::nullopt;
+  if (!plan || !requests_lie_ahead(model.system, *plan, options, diagnostics)) return std::nullopt;
 
   const auto begin = Clock::now();
   const Observables observables = collect_observables(equations, probe);
@@ -306,7 +310,7 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   const double compile_seconds = seconds_since(begin);
 
   SimulationResult result = run.carry_out();
-  if (run.turned_stiff()) note_stiffness(result, diagnostics);
+  if (run.turned_stiff()) note_stiffness(result, model.system, diagnostics);
   if (options.method == StepMethod::Automatic || options.method == StepMethod::Taylor || options.backend == Backend::Compiled)
     warn_of_backend(run.backend(), options.backend, diagnostics);
   result.statistics.compile_seconds += compile_seconds;

@@ -76,10 +76,11 @@ Name ExpressionParser::new_name(std::string_view what) {
   const Token& token = peek();
   if (token.kind != Token::Kind::Name) fail_expected(what);
   const bool function = find_function(token.text) != nullptr;
-  if (function || is_clause_word(token.text) || token.is("t") || token.is("pi")) {
+  const bool time = token.is("t") && context_.declarations.independent() == "t";
+  if (function || is_clause_word(token.text) || time || token.is("pi")) {
     fail("E0112", token.span, fmt::format("`{}` cannot be a name", token.text),
          function          ? "It is a function of the language."
-         : token.is("t")   ? "It is the time."
+         : time            ? "It is the time."
          : token.is("pi")  ? "It is the number π."
                            : "It is a word of the language that separates the parts of a statement.",
          fmt::format("Choose another name, for example {}1 or {}_0.", token.text, token.text));

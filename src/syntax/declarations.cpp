@@ -54,7 +54,10 @@ Declarations::Declarations(const TokenList& list, const std::vector<StatementTok
   std::vector<Declared> found;
   for (const StatementTokens& statement : statements) {
     scan(list, statement, found);
-    dimensionless_ = dimensionless_ || list.tokens[statement.begin].is("dimensionless");
+    const Token& first = list.tokens[statement.begin];
+    dimensionless_ = dimensionless_ || first.is("dimensionless");
+    const Token* second = statement.begin + 1 < statement.end ? &list.tokens[statement.begin + 1] : nullptr;
+    if (first.is("independent") && second && second->kind == Token::Kind::Name) independent_ = second->text;
   }
   for (Declared& declared : found) names_.emplace(std::move(declared.name.text), declared.kind);
 }

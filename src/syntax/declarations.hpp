@@ -18,12 +18,15 @@ class Declarations {
   Kind kind(std::string_view name) const;
   bool contains(std::string_view name) const { return kind(name) != Kind::None; }
   bool dimensionless() const { return dimensionless_; }
+  /// What stands in the place of t: `independent x`.
+  const std::string& independent() const { return independent_; }
   /// The names that one statement declares, for messages and recovery.
   static std::vector<Name> of(const TokenList& list, const StatementTokens& statement);
 
  private:
   std::unordered_map<std::string, Kind> names_;
   bool dimensionless_ = false;
+  std::string independent_ = "t";
 };
 
 }  // namespace maupertuis::syntax

@@ -97,7 +97,8 @@ class Dumper {
     word("name", s.name.text), word("word", s.word.text), word("occurrence", s.occurrence ? std::to_string(s.occurrence) : "");
     word("squared", s.squared ? "yes" : "");
     assignments(s.at);
-    child("subject", s.subject), child("time", s.time), child("value", s.value), children("values", s.values);
+    child("subject", s.subject), child("time", s.time), child("from", s.from), child("to", s.to);
+    child("value", s.value), children("values", s.values);
     child(s.relative ? "relative tolerance" : "tolerance", s.tolerance);
   }
   void operator()(const ConstraintStatement& s) {
@@ -107,12 +108,15 @@ class Dumper {
     head("sweep"), child("variable", s.variable), child("from", s.from), child("to", s.to), child("steps", s.steps);
   }
   void operator()(const IndependentStatement& s) {
-    head("independent", s.name.text), word("kind", s.kind.text);
+    head("independent", s.name.text), word("kind", s.unit ? "unit" + unit_text(*s.unit) : s.kind.text);
   }
   void operator()(const PathStatement& s) {
     head("path");
-    for (const auto& [label, end] : {std::pair{"from", &s.from}, std::pair{"to", &s.to}})
-      children(label, end->configuration), child("at", end->at);
+    for (const auto& [label, end] : {std::pair{"from", &s.from}, std::pair{"to", &s.to}}) {
+      for (const ExpressionPtr& component : end->configuration)
+        component ? child(label, component) : word(label, "free");
+      child("at", end->at);
+    }
   }
   void operator()(const LaterStatement& s) {
     head("later", s.what);

@@ -17,6 +17,14 @@ bool opens_phase_space(const Token& word, const Token& after) {
   return (word.is("hamiltonian") && after.is("=")) || (word.is("routhian") && after.is("of")) || (word.is("bracket") && after.is("("));
 }
 
+/// Words of variational problems are ordinary names where the model declares them.
+bool opens_action(const Token& word, const Token& after) { return word.is("action") && (after.is("=") || after.is("of")); }
+
+/// `path x at …`; but `path = 3`, `path' at …` and `path at …` are about a quantity of that name.
+bool opens_path(const Token& word, const Token& after) {
+  return word.is("path") && ((after.kind == Token::Kind::Name && !is_clause_word(after.text)) || after.is("("));
+}
+
 }  // namespace
 
 void StatementParser::tolerance(ExpectStatement& expect, bool required) {
@@ -34,6 +42,7 @@ ExpectStatement StatementParser::expectation(bool claim) {
   next();
   ExpectStatement expect;
   expect.claim = claim;
+  const bool declared = context_.declarations.contains(peek().text);
   if (peek().is("energy") && peek(1).is("conserved")) {
     next(), next();
     expect.kind = Kind::EnergyConserved;
@@ -53,6 +62,14 @@ ExpectStatement StatementParser::expectation(bool claim) {
     next(), next();
     expect.kind = Kind::Freedoms;
     expect.value = quantity();
+  } else if (!declared && opens_action(peek(), peek(1))) {
+    expect_action(expect);
+  } else if (!declared && peek().is("index") && peek(1).is("=")) {
+    next(), next();
+    expect.kind = Kind::MorseIndex;
+    expect.value = quantity();
+  } else if (!declared && opens_path(peek(), peek(1))) {
+    expect_path(expect);
   } else if (accept("constraint")) {
     expect.kind = Kind::ConstraintClass;
     expect.name = used_name("the name of a constraint");

@@ -235,10 +235,13 @@ void ExpressionParser::check_application(const Token& name) {
   if (!peek().is("(")) return;
   using Declared = Declarations::Kind;
   const Declared kind = context_.declarations.kind(name.text);
-  const bool of_time = peek(1).is("t") && peek(2).is(")");
+  const std::string& independent = context_.declarations.independent();
+  const bool of_time = peek(1).is(independent) && peek(2).is(")");
   if (of_time && (kind == Declared::Coordinate || kind == Declared::Angle || kind == Declared::Field || kind == Declared::Input)) {
-    fail("E0121", cover(name.span, peek(2).span), fmt::format("`{}(t)` would be {} times the time", name.text, name.text),
-         fmt::format("{} depends on time by itself.", name.text), fmt::format("Write {}.", name.text));
+    const bool time = independent == "t";
+    fail("E0121", cover(name.span, peek(2).span),
+         fmt::format("`{0}({1})` would be {0} times {2}", name.text, independent, time ? "the time" : independent),
+         fmt::format("{} depends on {} by itself.", name.text, time ? "time" : independent), fmt::format("Write {}.", name.text));
   }
   if (kind != Declared::None || is_predefined(name.text) || energy_of(name.text) || is_momentum(name.text)) return;
   std::vector<std::string> candidates;

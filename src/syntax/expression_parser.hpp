@@ -68,6 +68,7 @@ class ExpressionParser {
   /// A quantity place: `-10 deg`, `(1, 2) m`, or a formula.
   Node quantity();
   UnitExpression bracketed_unit();
+  std::optional<UnitExpression> units();
 
   std::string text_of(Span span) const { return std::string(context_.source.slice(span)); }
   std::string text_of(const Expression& expression) const { return text_of(expression.span); }
@@ -104,7 +105,6 @@ class ExpressionParser {
 
   Node quantity_or_null();
   bool ends_quantity(const Token& token) const;
-  std::optional<UnitExpression> units();
   bool unit_factors(UnitExpression& unit, int sign);
   bool unit_factor(UnitExpression& unit, int sign);
   bool unit_exponent(UnitExpression::Factor& factor);

@@ -14,22 +14,6 @@ LaterStatement later(const Token& word) {
 
 }  // namespace
 
-// constraint EXPR = EXPR name rod,   constraint integral EXPR = VALUE
-StatementBody StatementParser::constraint_statement() {
-  const Token word = next();
-  const bool integral = peek().is("integral") && !peek(1).is("=") && !context_.declarations.contains("integral") && accept("integral");
-  ConstraintStatement constraint;
-  constraint.left = formula();
-  expect("=", "the left side of the constraint");
-  constraint.right = integral ? quantity() : formula();
-  if (accept("name")) constraint.name = new_name("the name of the constraint");
-  if (!integral) return constraint;
-  LaterStatement statement = later(word);
-  statement.expressions = {constraint.left, constraint.right};
-  if (constraint.name) statement.names.push_back(*constraint.name);
-  return statement;
-}
-
 // contact EXPR >= EXPR restitution e friction μ static μs slip EXPR name floor
 StatementBody StatementParser::contact_statement() {
   LaterStatement statement = later(next());
@@ -91,26 +75,6 @@ StatementBody StatementParser::impact_statement() {
   LaterStatement statement = later(next());
   if (!peek().is("sequential") && !peek().is("simultaneous")) fail_expected("`sequential` or `simultaneous`");
   next();
-  return statement;
-}
-
-StatementBody StatementParser::independent_statement() {
-  LaterStatement statement = later(next());
-  statement.names.push_back(new_name("the name of the independent variable"));
-  return statement;
-}
-
-// path from (0, 1) at 0 to (2, 3) at 1
-StatementBody StatementParser::path_statement() {
-  LaterStatement statement = later(next());
-  const auto end = [&](std::string_view word) {
-    if (!accept(word)) missing_clause(word, "path", "path from (0, 1) at 0 to (2, 3) at 1");
-    statement.expressions.push_back(quantity());
-    expect("at", "the configuration");
-    statement.expressions.push_back(quantity());
-  };
-  end("from");
-  end("to");
   return statement;
 }
 

@@ -53,11 +53,12 @@ void ExpressionParser::lint_product(const Expression& left, Operator op, const E
          fmt::format("Without brackets {} takes {} alone.", function->text, argument),
          fmt::format("Write {0}({1}/{2}) for the {0} of {1}/{2}, or 1/{2} {3}.", function->text, argument, text_of(right), text_of(before)));
   }
-  if (op == Operator::Juxtapose && function && context_.declarations.dimensionless() && right.kind == Kind::Name && right.text == "t") {
+  if (op == Operator::Juxtapose && function && context_.declarations.dimensionless() && right.kind == Kind::Name &&
+      right.text == context_.declarations.independent()) {
     const Span span = cover(before.span, right.span);
-    warn("W0104", span, fmt::format("`{}` multiplies by the time", text_of(span)),
+    warn("W0104", span, fmt::format("`{}` multiplies by {}", text_of(span), right.text == "t" ? "the time" : right.text),
          fmt::format("Without brackets {} takes {} alone.", function->text, text_of(*function->arguments[0])),
-         fmt::format("Write {}({} t).", function->text, text_of(*function->arguments[0])));
+         fmt::format("Write {}({} {}).", function->text, text_of(*function->arguments[0]), right.text));
   }
   if (op == Operator::Juxtapose && right.kind == Kind::Number && left.kind != Kind::Number) {
     const Span span = cover(before.span, right.span);

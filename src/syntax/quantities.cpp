@@ -76,7 +76,7 @@ ExpressionParser::Node ExpressionParser::quantity_or_null() {
 
 bool ExpressionParser::ends_quantity(const Token& token) const {
   if (token.kind == Token::Kind::End || (token.kind == Token::Kind::Name && is_clause_word(token.text))) return true;
-  return token.is(",") || token.is("=") || token.is("±") || token.is("..") || token.is(":") || token.is("<=") || token.is(">=");
+  return token.is(",") || token.is(")") || token.is("=") || token.is("±") || token.is("..") || token.is(":") || token.is("<=") || token.is(">=");
 }
 
 UnitExpression ExpressionParser::bracketed_unit() {

@@ -154,6 +154,23 @@ void StatementParser::coordinate_without_kind(const Name& name) {
        fmt::format("Write {0} : angle, {0} : length, {0} : charge, {0} : number or {0} : [unit].", name.text));
 }
 
+// After the colon: angle, length, charge, number or a unit in brackets.
+void StatementParser::kind_of(const Name& name, const char* what, Name& kind, std::optional<UnitExpression>& unit) {
+  if (peek().is("[")) {
+    unit = bracketed_unit();
+    return;
+  }
+  const Token& word = peek();
+  if (!word.is("angle") && !word.is("length") && !word.is("charge") && !word.is("number")) {
+    const std::vector<std::string> kinds = {"angle", "length", "charge", "number"};
+    const std::string near = word.kind == Token::Kind::Name ? did_you_mean(word.text, kinds) : "";
+    fail("E0129", word.span, fmt::format("expected the kind of {} {}, found {}", *what == 'i' ? "an" : "a", what, describe(word)),
+         fmt::format("{} {} is an angle, a length, a charge, a number, or has a unit in brackets.", *what == 'i' ? "An" : "A", what),
+         !near.empty() ? fmt::format("Did you mean `{}`?", near) : fmt::format("Write for example {0} : length, or {0} : [m].", name.text));
+  }
+  kind = {std::string(next().text), word.span};
+}
+
 // coord x, y : length, θ : angle — names before a colon share its kind.
 StatementBody StatementParser::coord_statement() {
   next();
@@ -168,20 +185,7 @@ StatementBody StatementParser::coord_statement() {
     if (!peek().is(":")) fail_expected("`:` and the kind of the coordinate", "Write for example θ : angle.");
     next();
     CoordStatement::Item& last = coord.items.back();
-    if (peek().is("[")) {
-      last.unit = bracketed_unit();
-    } else {
-      const Token& kind = peek();
-      if (!kind.is("angle") && !kind.is("length") && !kind.is("charge") && !kind.is("number")) {
-        const std::vector<std::string> kinds = {"angle", "length", "charge", "number"};
-        const std::string near = kind.kind == Token::Kind::Name ? did_you_mean(kind.text, kinds) : "";
-        fail("E0129", kind.span, fmt::format("expected the kind of a coordinate, found {}", describe(kind)),
-             "A coordinate is an angle, a length, a charge, a number, or has a unit in brackets.",
-             !near.empty() ? fmt::format("Did you mean `{}`?", near)
-                           : fmt::format("Write for example {0} : length, or {0} : [m].", last.name.text));
-      }
-      last.kind = {std::string(next().text), kind.span};
-    }
+    kind_of(last.name, "coordinate", last.kind, last.unit);
     for (; unnamed + 1 < coord.items.size(); ++unnamed) {
       coord.items[unnamed].kind = coord.items.back().kind;
       coord.items[unnamed].unit = coord.items.back().unit;

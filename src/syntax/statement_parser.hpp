@@ -20,6 +20,7 @@ class StatementParser : private ExpressionParser {
   static std::span<const Entry> table();
   [[noreturn]] void unknown_statement();
   [[noreturn]] void coordinate_without_kind(const Name& name);
+  void kind_of(const Name& name, const char* what, Name& kind, std::optional<UnitExpression>& unit);
   Statement complete(StatementBody body, std::size_t first) const;
 
   StatementBody system_statement();
@@ -46,15 +47,16 @@ class StatementParser : private ExpressionParser {
   StatementBody draw_statement();
   StatementBody expect_statement();
   StatementBody claim_statement();
-  // later_statements.cpp
+  StatementBody sweep_statement();
+  // variational_statements.cpp
   StatementBody constraint_statement();
+  StatementBody independent_statement();
+  StatementBody path_statement();
+  // later_statements.cpp
   StatementBody contact_statement();
   StatementBody friction_statement();
   StatementBody event_statement();
   StatementBody impact_statement();
-  StatementBody sweep_statement();
-  StatementBody independent_statement();
-  StatementBody path_statement();
   StatementBody field_statement();
   StatementBody density_statement();
 
@@ -63,6 +65,9 @@ class StatementParser : private ExpressionParser {
   std::vector<ExpressionPtr> bracketed_values(std::size_t count, std::string_view form);
   void inertia(BodyStatement& body);
   StartStatement::Item assignment();
+  PathStatement::End path_end();
+  std::vector<ExpressionPtr> components();
+  bool opens_components() const;
   DrawItem draw_item();
   void tolerance(ExpectStatement& expect, bool required);
   ExpectStatement expectation(bool claim);
@@ -71,6 +76,8 @@ class StatementParser : private ExpressionParser {
   void expect_equilibrium(ExpectStatement& expect);
   void expect_event(ExpectStatement& expect);
   void expect_phase_space(ExpectStatement& expect);
+  void expect_action(ExpectStatement& expect);
+  void expect_path(ExpectStatement& expect);
   ExpressionPtr clause_formula(std::string_view clause, const ExpressionPtr& already);
   [[noreturn]] void missing_clause(std::string_view clause, std::string_view statement, std::string_view example);
   Span statement_span() const;

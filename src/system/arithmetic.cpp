@@ -255,14 +255,14 @@ Value time_derivative(Elaboration& e, Value v, int times, const Expression& x) {
   for (const Expr& part : v.parts) moves = moves || e.context.depends_on_time(part.id());
   if (!moves) {
     const std::string text(e.source.slice(x.span));
-    e.diagnostics.error("E0217", x.span, fmt::format("`{}` does not change in time", text.substr(0, text.find('\''))),
-                        "The time derivative of a constant is zero.",
+    e.diagnostics.error("E0217", x.span, fmt::format("`{}` does not change {}", text.substr(0, text.find('\'')), in_words(e, "in time")),
+                        "The derivative of a constant is zero.",
                         "Leave the term out, or take the derivative of a coordinate.");
     return Value::poison();
   }
   for (int i = 0; i < times; ++i) {
     for (Expr& part : v.parts) part = e.context.time_derivative(part);
-    v.dimension = v.dimension / e.dimension(dimensions::time());
+    v.dimension = v.dimension / e.time();
     if (v.order >= 0) ++v.order;
     if (v.weight) v.weight = e.context.time_derivative(v.weight);
   }

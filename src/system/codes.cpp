@@ -29,7 +29,7 @@ constexpr CodeEntry kEntries[] = {
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m x'^2\nT = 1/2 m y'^2\n",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m x'^2\nT += 1/2 m y'^2\n"},
     {"E0208", "something is given twice",
-     "Gravity, run, output, the source and the start of each variable are given once.",
+     "Gravity, run, output, sweep, path, the independent variable, the source and the start of each variable are given once.",
      "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nrun 1 s\nrun 2 s\n",
      "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nrun 2 s\n"},
     {"E0209", "a formula where a quantity is needed",
@@ -130,6 +130,30 @@ constexpr CodeEntry kEntries[] = {
      "`sweep NAME = FROM .. TO steps N` goes through N equally spaced values of one parameter, both ends counted.",
      "dimensionless\nparam k = 1\ncoord x : number\nL = 1/2 x'^2 - 1/2 k x^2\nsweep x = 0 .. 1 steps 11",
      "dimensionless\nparam k = 1\ncoord x : number\nL = 1/2 x'^2 - 1/2 k x^2\nsweep k = 0 .. 1 steps 11"},
+    {"E0240", "mechanics without the time",
+     "`independent x : length` puts a length in the place of the time: q' is dq/dx, and the action is the integral of L dx, whatever "
+     "the dimension of L. Masses, gravity, springs, forces and energies belong to motions in time, so that such a model gives its L alone.",
+     "independent x : length\ncoord y : length\nparam m = 1 kg\nT = 1/2 m y'^2\n",
+     "independent x : length\ncoord y : length\nL = sqrt(1 + y'^2)\n"},
+    {"E0241", "a path with too few or too many values",
+     "`path from (0, 1) at 0 to (2, free) at 1` and `expect action of (…)` give every coordinate its value, in the order of their declaration. "
+     "`free` stands at an end where a coordinate may have any value.",
+     "dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2)\npath from (0, 0) at 0 to 1 at 1\n",
+     "dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2)\npath from (0, 0) at 0 to (1, free) at 1\n"},
+    {"E0242", "a path that ends before it begins",
+     "An action is an integral from an earlier time to a later one.",
+     "dimensionless\ncoord x : number\nL = 1/2 x'^2\npath from 0 at 1 to 1 at 0\n",
+     "dimensionless\ncoord x : number\nL = 1/2 x'^2\npath from 1 at 0 to 0 at 1\n"},
+    {"E0243", "a path without ends",
+     "`expect action`, `expect index` and `expect path` are about the stationary path between the ends that `path from … to …` gives; the "
+     "action of a path that is given as a formula needs them as well, or its own: `expect action of (2 t) from 0 to 1 = 2`.",
+     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nexpect action = 1/2 ± 1e-9\n",
+     "dimensionless\ncoord x : number\nL = 1/2 x'^2\npath from 0 at 0 to 1 at 1\nexpect action = 1/2 ± 1e-9\n"},
+    {"E0244", "a motion where an integral of the path is held",
+     "`constraint integral G = value` restricts whole paths: their equations are those of L + λ G with one λ for the whole path, which only the "
+     "two ends and the value of the integral determine. `maup action` finds the path and λ; there is no motion from a start.",
+     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nconstraint integral x = 1\npath from 0 at 0 to 0 at 1\nexpect x at 1 = 0 ± 1e-9\n",
+     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nconstraint integral x = 1\npath from 0 at 0 to 0 at 1\nexpect path x at 1/2 = 3/2 ± 1e-9\n"},
     // ----------------------------------------------------------------------------------------------------------- units
     {"E0301", "a unit is not known",
      "Units are SI base and derived units with the SI prefixes, and common ones without: min, h, deg, rev, rpm, bar, "
@@ -323,7 +347,7 @@ constexpr CodeEntry kEntries[] = {
     // ------------------------------------------------------------------------------------------------ not supported
     // yet
     {"E0501", "a statement that is not supported yet",
-     "The language describes contacts, Coulomb friction, events, sweeps, variational problems and fields. "
+     "The language describes contacts, Coulomb friction, events and fields. "
      "They are read and checked for their grammar, and carried out by a later version.",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\ncontact x >= y\n",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\n"},

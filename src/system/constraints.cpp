@@ -104,7 +104,8 @@ void name_multipliers(Elaboration& e, std::size_t written) {
 void elaborate_constraints(Elaboration& e) {
   for (const syntax::Statement& statement : e.tree.statements) {
     const auto* s = std::get_if<ConstraintStatement>(&statement.body);
-    if (!s) continue;
+    if (s && s->integral) elaborate_integral_constraint(e, *s, statement.span);
+    if (!s || s->integral) continue;
     const std::optional<Value> v = difference(e, *s);
     if (!v) continue;
     Constraint c;

@@ -27,6 +27,8 @@ const char* word_of(Kind kind) {
       return "constraint";
     case Kind::Reaction:
       return "reaction";
+    case Kind::Independent:
+      return "variable";
     case Kind::Energy:
       return "energy";
   }
@@ -78,6 +80,7 @@ SymbolTable::SymbolTable(const syntax::SyntaxTree& tree, const SourceText& sourc
     if (const auto* c = std::get_if<syntax::ConstraintStatement>(&s.body))
       if (c->name) add(Kind::Constraint, *c->name, s, 0);
     if (const auto* r = std::get_if<syntax::ReactionStatement>(&s.body)) add(Kind::Reaction, r->name, s, 0);
+    if (const auto* v = std::get_if<syntax::IndependentStatement>(&s.body)) add(Kind::Independent, v->name, s, 0);
     if (const auto* later = std::get_if<syntax::LaterStatement>(&s.body))
       for (const syntax::Name& n : later->names) lost_.emplace(n.text, true);
   }

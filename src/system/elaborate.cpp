@@ -93,6 +93,7 @@ void elaborate_declaration(Elaboration& e, DeclarationId id) {
   switch (d.kind) {
     case Kind::Parameter:
     case Kind::Coordinate:
+    case Kind::Independent:
       return;  // they depend on nothing and came first
     case Kind::Definition:
       return elaborate_definition(e, d);
@@ -159,6 +160,7 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
   using namespace elaboration;
   Elaboration e(tree, source, diagnostics);
   headings(e);
+  name_independent(e);
   fix_space_dimension(e);
   refuse_later_statements(e);
   check_statement_counts(e);
@@ -169,6 +171,10 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
     if (d.kind == Declaration::Kind::Coordinate) elaborate_coordinate(e, d);
     if (has_own_quaternion(d)) add_quaternion_coordinates(e, d);
     any_coordinate = any_coordinate || d.kind == Declaration::Kind::Coordinate || has_own_quaternion(d);
+  }
+  if (!elaborate_independent(e)) {
+    diagnostics.sort_by_place();
+    return std::nullopt;
   }
   apply_parameter_overrides(e, overrides.parameters);
 

@@ -35,6 +35,8 @@ struct Elaboration {
   std::unordered_set<std::string> unknown_names;  // told already
   bool dimension_clash = false;                   // told already
   bool dimensionless = false;
+  bool independent_is_time = true;                // else L has any dimension, and there are no masses and forces
+  bool lagrangian_settled = false;                // its first part has said what dimension that is
   std::optional<Span> dimension_from;  // the first vector: its length is the dimension of space
 
   Elaboration(const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics);
@@ -46,6 +48,8 @@ struct Elaboration {
   Experiment& experiment() { return model.experiment; }
   Expr number(const Rational& r) { return context.number(r); }
   Dimension dimension(const Dimension& d) const { return dimensionless ? Dimension{} : d; }
+  /// Of the independent variable: q' has the dimension of q over it.
+  Dimension time() const { return model.system.independent_dimension; }
 };
 
 // ---------------------------------------------------------------------------------------------------- expressions
@@ -145,6 +149,21 @@ std::vector<StartRate> start_rates(Elaboration& e, const syntax::StartStatement:
 void elaborate_experiment(Elaboration& e);
 void elaborate_expectation(Elaboration& e, const syntax::ExpectStatement& s, Span span);
 void elaborate_drawing(Elaboration& e, const syntax::DrawStatement& s);
+
+/// The name of what stands in the place of t; before any expression is made.
+void name_independent(Elaboration& e);
+/// Its dimension; after the coordinates. False, and E0240, where a model without the time has masses, forces or energies.
+bool elaborate_independent(Elaboration& e);
+/// A text with the name of the independent variable in the place of `time` or `the time`: "the start x".
+std::string in_words(const Elaboration& e, std::string text);
+void elaborate_path(Elaboration& e, const syntax::PathStatement& s, Span span);
+void elaborate_integral_constraint(Elaboration& e, const syntax::ConstraintStatement& s, Span span);
+/// expect action, expect index, expect path: all but the tolerance. False after a mistake.
+bool expect_action(Elaboration& e, Expectation& out, const syntax::ExpectStatement& s);
+bool expect_index(Elaboration& e, Expectation& out, const syntax::ExpectStatement& s);
+bool expect_on_path(Elaboration& e, Expectation& out, const syntax::ExpectStatement& s);
+/// E0244 where an expectation about a motion stands in a model with integral constraints.
+bool refuse_motion_of_path(Elaboration& e, const syntax::ExpectStatement& s, Span span);
 
 /// The pose of a frame or body by its name; null, and a message, if it is none.
 const Pose* find_pose(Elaboration& e, const std::optional<syntax::Name>& name);

@@ -131,10 +131,22 @@ void from_parts(Elaboration& e, Which which) {
 
 // ---------------------------------------------------------------------------------------------- what the text gives
 
+/// Without the time L is the integrand of some action: its first part says of what dimension.
+Value lagrangian_of_any_dimension(Elaboration& e, const syntax::Expression& x, const std::string& name) {
+  if (e.lagrangian_settled) return scalar_of(e, x, e.system().lagrangian_dimension, name);
+  const Value v = evaluate_formula(e, x);
+  if (v.poisoned || v.fits_any) return v;
+  if (v.is_vector) return scalar_of(e, x, v.dimension, name);  // says that it is a number
+  e.system().lagrangian_dimension = v.dimension;
+  e.lagrangian_settled = true;
+  return v;
+}
+
 /// The value of a given energy, with what each of them may depend on; nothing after a mistake.
 std::optional<Expr> given_value(Elaboration& e, const EnergyStatement& s) {
   const std::string name = fmt::format("the {}", name_of_energy(s.which));
-  const Value v = scalar_of(e, *s.value, dimension_of(s.which), name);
+  const bool any = s.which == Which::L && !e.independent_is_time;
+  const Value v = any ? lagrangian_of_any_dimension(e, *s.value, name) : scalar_of(e, *s.value, dimension_of(s.which), name);
   if (v.poisoned || refuse_acceleration(e, v, *s.value, name)) return std::nullopt;
   if (s.which != Which::V || v.order < 1) return v.scalar();
   e.diagnostics.error("E0405", culprit_of_order(e, *s.value, 1), "a velocity stands in the potential energy V",
@@ -227,7 +239,8 @@ void elaborate_energy(Elaboration& e, Which which, Declaration& d) {
   }
   d.done = true;
   d.value = poisoned ? Value::poison()
-                     : Value::of(total(e.system(), which), e.dimension(dimension_of(which)), order_of(which));
+                     : Value::of(total(e.system(), which), which == Which::L ? e.system().lagrangian_dimension : e.dimension(dimension_of(which)),
+                               order_of(which));
 }
 
 }  // namespace maupertuis::elaboration

@@ -44,6 +44,8 @@ void for_each_expression(MechanicalSystem& s, const std::function<void(Expr&)>& 
     vector(f.lever);
   }
   for (Constraint& c : s.constraints) visit(c.value);
+  for (IntegralConstraint& c : s.integral_constraints)
+    for (Expr* x : {&c.integrand, &c.value}) visit(*x);
 }
 
 void for_each_expression(Experiment& x, const std::function<void(Expr&)>& visit) {
@@ -55,6 +57,11 @@ void for_each_expression(Experiment& x, const std::function<void(Expr&)>& visit)
   };
   starts(x.start);
   starts(x.at);
+  if (x.path) {
+    for (ExprVector* end : {&x.path->from, &x.path->to})
+      for (Expr& component : *end) present(component);
+    for (Expr* e : {&x.path->start, &x.path->end}) visit(*e);
+  }
   if (x.sweep)
     for (Expr* e : {&x.sweep->from, &x.sweep->to}) visit(*e);
   for (StartRate& r : x.start_rates)
@@ -66,7 +73,7 @@ void for_each_expression(Experiment& x, const std::function<void(Expr&)>& visit)
     for (Expr& e : d.sizes) visit(e);
   }
   for (Expectation& p : x.expectations) {
-    for (Expr* e : {&p.subject, &p.subject_right, &p.time, &p.value, &p.tolerance}) present(*e);
+    for (Expr* e : {&p.subject, &p.subject_right, &p.time, &p.value, &p.tolerance, &p.from, &p.to}) present(*e);
     for (Expr& e : p.values) visit(e);
     starts(p.at);
   }

@@ -45,6 +45,11 @@ bool tolerance(Elaboration& e, Expectation& out, const ExpectStatement& s, const
   return true;
 }
 
+bool unit_and_tolerance(Elaboration& e, Expectation& out, const ExpectStatement& s) {
+  set_display_unit(e, out, *s.value);
+  return tolerance(e, out, s, out.dimension);
+}
+
 std::optional<Value> number(Elaboration& e, const Expression& x, const Place& place = {}) {
   const Value v = evaluate_formula(e, x, place);
   if (v.poisoned) return std::nullopt;
@@ -59,7 +64,7 @@ bool value_at(Elaboration& e, Expectation& out, const ExpectStatement& s) {
   place.reactions = true;
   const std::optional<Value> subject = number(e, *s.subject, place);
   if (s.time) {
-    const Value time = constant_of(e, *s.time, dimensions::time(), "the time of an expectation");
+    const Value time = constant_of(e, *s.time, e.time(), in_words(e, "the time of an expectation"));
     if (time.poisoned) return false;
     out.time = time.scalar();
   }
@@ -70,8 +75,7 @@ bool value_at(Elaboration& e, Expectation& out, const ExpectStatement& s) {
   const Value value = constant_of(e, *s.value, expected, fmt::format("`{}`", e.source.slice(s.subject->span)));
   if (value.poisoned) return false;
   out.value = value.scalar();
-  set_display_unit(e, out, *s.value);
-  return tolerance(e, out, s, out.dimension);
+  return unit_and_tolerance(e, out, s);
 }
 
 void warn_identity(Elaboration& e, const Expectation& out) {
@@ -128,7 +132,7 @@ bool energy_of_phase_space(Elaboration& e, Expectation& out, const ExpectStateme
     if (!out.values.back()) return false;
   }
   const std::string what = out.values.empty() ? "the Hamiltonian" : "the Routhian";
-  const Value v = scalar_of(e, *s.value, dimensions::energy(), what, place);
+  const Value v = scalar_of(e, *s.value, e.system().lagrangian_dimension, what, place);
   if (v.poisoned) return false;
   out.subject_right = v.scalar();
   out.dimension = v.dimension;
@@ -144,7 +148,7 @@ bool bracket(Elaboration& e, Expectation& out, const ExpectStatement& s) {
   out.subject = a->scalar();
   out.values = {b->scalar()};
   out.subject_right = c->scalar();
-  out.dimension = a->dimension * b->dimension / e.dimension(dimensions::energy() * dimensions::time());
+  out.dimension = a->dimension * b->dimension / (e.system().lagrangian_dimension * e.time());
   if (e.dimensionless || a->fits_any || b->fits_any || c->fits_any || c->dimension.same_as(out.dimension)) return true;
   e.diagnostics.error("E0304", s.value->span,
                       fmt::format("the bracket is {}, this is {}", describe(out.dimension), describe(c->dimension)),
@@ -175,7 +179,7 @@ bool frequencies(Elaboration& e, Expectation& out, const ExpectStatement& s) {
     good = good && value;
     if (value) out.at.push_back(*value);
   }
-  const Dimension rate = Dimension{} / dimensions::time();
+  const Dimension rate = Dimension{} / e.time();
   out.squared = s.squared;
   out.dimension = e.dimension(s.squared ? rate * rate : rate);
   for (const auto& x : s.values) {
@@ -218,7 +222,7 @@ bool fill(Elaboration& e, Expectation& out, const ExpectStatement& s) {
     case Kind::Value:
       return value_at(e, out, s);
     case Kind::EnergyConserved:
-      return tolerance(e, out, s, dimensions::energy());
+      return tolerance(e, out, s, e.system().lagrangian_dimension);
     case Kind::Conserved:
     case Kind::NotConserved:
     case Kind::Integral:
@@ -237,6 +241,12 @@ bool fill(Elaboration& e, Expectation& out, const ExpectStatement& s) {
       return check_class_of_constraint(e, s);
     case Kind::EventAt:
       return later(e, out.span);
+    case Kind::Action:
+      return expect_action(e, out, s) && unit_and_tolerance(e, out, s);
+    case Kind::MorseIndex:
+      return expect_index(e, out, s);
+    case Kind::PathAt:
+      return expect_on_path(e, out, s) && unit_and_tolerance(e, out, s);
     case Kind::Error:
       return true;
   }
@@ -254,6 +264,7 @@ void elaborate_expectation(Elaboration& e, const ExpectStatement& s, Span span) 
   out.word = s.word.text;
   out.occurrence = s.occurrence;
   out.span = span;
+  if (refuse_motion_of_path(e, s, span)) return;
   if (fill(e, out, s)) e.experiment().expectations.push_back(std::move(out));
 }
 

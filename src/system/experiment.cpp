@@ -80,7 +80,7 @@ Value known_before_the_run(Elaboration& e, const Value& v, const Expression& x, 
     }
     const Span at = culprit_of_order(e, x, 0);
     e.diagnostics.error("E0222", at.end > at.begin ? at : x.span, fmt::format("{} must be known before the run", what),
-                        "Numbers and parameters are; coordinates and the time change during it.", "");
+                        in_words(e, "Numbers and parameters are; coordinates and the time change during it."), "");
     return Value::poison();
   }
   return v;
@@ -107,7 +107,7 @@ std::optional<StartValue> start_value(Elaboration& e, const syntax::StartStateme
     return std::nullopt;
   }
   const Coordinate& c = e.system().coordinates[s->coordinate];
-  const Dimension expected = s->order == 0 ? c.dimension : c.dimension / e.dimension(dimensions::time());
+  const Dimension expected = s->order == 0 ? c.dimension : c.dimension / e.time();
   const Value v = constant_of(e, *item.value, expected, fmt::format("`{}`", e.source.slice(item.variable->span)));
   if (v.poisoned) return std::nullopt;
   warn_of_degrees(e, v, expected, *item.value);
@@ -131,7 +131,7 @@ void start(Elaboration& e, const syntax::StartStatement& s) {
   Experiment& x = e.experiment();
   x.start_exactly = x.start_exactly || s.exactly;
   if (s.at) {
-    const Value t = constant_of(e, *s.at, dimensions::time(), "the start time");
+    const Value t = constant_of(e, *s.at, e.time(), in_words(e, "the start time"));
     if (!t.poisoned) x.start_time = t.scalar();
   }
   for (const auto& item : s.items) {
@@ -154,12 +154,12 @@ void start(Elaboration& e, const syntax::StartStatement& s) {
 void run(Elaboration& e, const syntax::RunStatement& s) {
   Experiment& x = e.experiment();
   if (s.duration) {
-    const Value v = constant_of(e, *s.duration, dimensions::time(), "the duration of a run");
+    const Value v = constant_of(e, *s.duration, e.time(), "the duration of a run");
     if (!v.poisoned) x.duration = v.scalar();
     return;
   }
   const Value left = evaluate_formula(e, *s.until_left);
-  const Value within = constant_of(e, *s.within, dimensions::time(), "the longest time of a run");
+  const Value within = constant_of(e, *s.within, e.time(), in_words(e, "the longest time of a run"));
   if (!within.poisoned) x.within = within.scalar();
   if (left.poisoned) return;
   Place place;
@@ -175,12 +175,12 @@ void run(Elaboration& e, const syntax::RunStatement& s) {
 }
 
 void output(Elaboration& e, const syntax::OutputStatement& s) {
-  const Value v = constant_of(e, *s.every, dimensions::time(), "the interval of output");
+  const Value v = constant_of(e, *s.every, e.time(), "the interval of output");
   if (v.poisoned) return;
   const std::optional<double> size = constant_value(e, v.scalar());
   if (size && !(*size > 0)) {
     e.diagnostics.error("E0222", s.every->span, "the interval of output is not positive",
-                        "Rows of output follow each other in time.", "");
+                        in_words(e, "Rows of output follow each other in time."), "");
     return;
   }
   e.experiment().output_every = v.scalar();
@@ -234,6 +234,7 @@ void elaborate_experiment(Elaboration& e) {
     if (const auto* x = std::get_if<syntax::RunStatement>(&s.body)) run(e, *x);
     if (const auto* x = std::get_if<syntax::OutputStatement>(&s.body)) output(e, *x);
     if (const auto* x = std::get_if<syntax::SweepStatement>(&s.body)) sweep(e, *x, s.span);
+    if (const auto* x = std::get_if<syntax::PathStatement>(&s.body)) elaborate_path(e, *x, s.span);
     if (const auto* x = std::get_if<syntax::DrawStatement>(&s.body)) elaborate_drawing(e, *x);
     if (const auto* x = std::get_if<syntax::ExpectStatement>(&s.body)) elaborate_expectation(e, *x, s.span);
   }

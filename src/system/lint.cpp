@@ -15,6 +15,18 @@ double scattered(std::size_t index, int attempt) {
   return x - std::floor(x);
 }
 
+/// An integral constraint makes L + λ G of L; any λ shows what it does to the mass matrix.
+Expr multiplier_of_integral(const MechanicalSystem& s, std::size_t k) {
+  return s.context->symbol("λ of integral " + std::to_string(k + 1), Role::Auxiliary);
+}
+
+Expr with_held_integrals(const MechanicalSystem& s) {
+  ExprVector terms = {s.lagrangian()};
+  for (std::size_t k = 0; k < s.integral_constraints.size(); ++k)
+    terms.push_back(multiplier_of_integral(s, k) * s.integral_constraints[k].integrand);
+  return s.context->sum(terms);
+}
+
 }  // namespace
 
 Subject::Subject(const Model& m, const SourceText& text, Diagnostics& d)
@@ -22,7 +34,7 @@ Subject::Subject(const Model& m, const SourceText& text, Diagnostics& d)
       system(m.system),
       source(text),
       diagnostics(d),
-      lagrangian(expand_time_derivatives(m.system.lagrangian())) {
+      lagrangian(expand_time_derivatives(with_held_integrals(m.system))) {
   for (const Parameter& p : system.parameters) order.parameters.push_back(p.symbol);
   for (const Coordinate& c : system.coordinates) {
     order.coordinates.push_back(c.q);
@@ -52,6 +64,8 @@ Bindings sample(const Subject& s, int attempt) {
   }
   Context& context = *s.system.context;
   b[context.time()] = 0.3 + 0.4 * scattered(7, attempt);
+  for (std::size_t k = 0; k < s.system.integral_constraints.size(); ++k)
+    b[multiplier_of_integral(s.system, k)] = 0.5 + scattered(k, attempt);
   for (const Input& u : s.system.inputs) {
     b[u.symbol] = 0.5;
     b[context.symbol(u.name, Role::Input, 1)] = 0.25;

@@ -13,7 +13,7 @@ struct Subject {
   const SourceText& source;
   Diagnostics& diagnostics;
   ReadingOrder order;
-  Expr lagrangian;        // in q, q', t
+  Expr lagrangian;        // in q, q', t; L + λ G where integrals are held
   ExprVector velocities;  // [n]
   ExprVector momenta;     // ∂L/∂q̇ [n]
 

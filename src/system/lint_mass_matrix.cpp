@@ -150,8 +150,17 @@ std::string nor_constraint(const Subject& s, const char* does) {
   return s.system.constrained() ? fmt::format(", and no constraint {}", does) : "";
 }
 
+/// Where no time stands in L there is no kinetic energy either, and the condition is Legendre's.
+bool is_mechanics(const Subject& s) { return s.system.independent == "t"; }
+
 void report_massless(Subject& s, std::size_t coordinate) {
   const Coordinate& c = s.system.coordinates[coordinate];
+  if (!is_mechanics(s)) {
+    s.diagnostics.error("E0407", c.span, fmt::format("the integrand is not curved in `{}'`", c.name),
+                        fmt::format("∂²L/∂{0}'² vanishes, so that the Euler-Lagrange equation does not give {0}''.", c.name),
+                        "Check the derivatives in L, or remove the coordinate.");
+    return;
+  }
   const bool from_masses = kinetic_energy_of_masses_alone(s.system);
   const std::string tied = nor_constraint(s, "determines it");
   s.diagnostics.error(
@@ -191,6 +200,13 @@ void report_combination(Subject& s, const Row& v) {
         fmt::format("Changing {} moves no mass{}: there are more coordinates than the points have ways to move.{}",
                     change, nor_constraint(s, "forbids it"), only),
         fmt::format("Remove `{}`, or give a mass to a point that it moves by itself.", c.name));
+    return;
+  }
+  if (!is_mechanics(s)) {
+    s.diagnostics.error("E0408", c.span, fmt::format("the integrand is not curved where {} change together", names(s, v)),
+                        fmt::format("Changing {} leaves ∂L/∂q' as it is: the Euler-Lagrange equations do not determine the second derivatives.", change),
+                        "An integrand of degree 1 in all velocities does not say how fast its path is run through: make one of "
+                        "the coordinates the independent variable.");
     return;
   }
   s.diagnostics.error(
@@ -241,7 +257,7 @@ bool mass_matrix_rules(Subject& s, const std::vector<bool>& unused) {
   const Findings found = examine(s, matrix, manifold, {});
   if (!found.defined) return false;
   if (!found.singular) {
-    if (!found.positive)
+    if (!found.positive && is_mechanics(s) && s.system.integral_constraints.empty())
       s.diagnostics.warning("W0410",
                             s.system.lagrangian_given  ? s.system.lagrangian_given->span
                             : s.system.kinetic.empty() ? s.system.coordinates.front().span

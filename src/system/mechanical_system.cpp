@@ -19,6 +19,17 @@ auto find_by_name(const Items& items, std::string_view name) -> const typename I
 
 }  // namespace
 
+std::string MechanicalSystem::independent_unit() const {
+  if (independent == "t") return "s";  // of models without units as well: seconds are what t is called everywhere
+  const std::string unit = to_string(independent_dimension);
+  return unit == "1" ? std::string() : unit;
+}
+
+std::string MechanicalSystem::moment(const std::string& number) const {
+  const std::string unit = independent_unit();
+  return independent + " = " + number + (unit.empty() ? "" : " " + unit);
+}
+
 Expr MechanicalSystem::kinetic_energy() const { return total(kinetic, *context); }
 Expr MechanicalSystem::potential_energy() const { return total(potential, *context); }
 Expr MechanicalSystem::total_generalized_potential() const { return total(generalized_potential, *context); }

@@ -39,7 +39,7 @@ Value origin(Elaboration& e, const Place& place) {
 Value derivative_of_coordinate(Elaboration& e, Value v, int primes) {
   for (int i = 0; i < primes; ++i) {
     v.parts = {e.context.time_derivative(v.scalar())};
-    v.dimension = v.dimension / e.dimension(dimensions::time());
+    v.dimension = v.dimension / e.time();
   }
   v.order = primes;
   return v;
@@ -102,7 +102,7 @@ std::optional<Value> angular_velocity(Elaboration& e, const Expression& x) {
   v.parts = world ? pose.omega_world : pose.omega;
   v.is_vector = v.parts.size() > 1;
   v.anchored = v.is_vector;
-  v.dimension = e.dimension(dimensions::angle() / dimensions::time());
+  v.dimension = e.dimension(dimensions::angle()) / e.time();
   v.order = pose.order >= 0 ? 1 : -1;
   return v;
 }
@@ -112,7 +112,7 @@ std::optional<Value> momentum(Elaboration& e, const Expression& x) {
   const MechanicalSystem& system = e.system();
   for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
     if (x.text != momentum_name(system, i)) continue;
-    const Dimension action = e.dimension(dimensions::energy() * dimensions::time());
+    const Dimension action = system.lagrangian_dimension * e.time();
     return Value::of(momentum_symbol(system, i), action / system.coordinates[i].dimension, 1);
   }
   return std::nullopt;
@@ -121,11 +121,20 @@ std::optional<Value> momentum(Elaboration& e, const Expression& x) {
 /// A poisoned or lost name is no second mistake.
 bool is_silent(Elaboration& e, const std::string& text) { return e.table.is_lost(text); }
 
+/// Where another variable stands in its place, t is a name like any other.
+void unknown_time(Elaboration& e, Span span) {
+  const std::string& x = e.system().independent;
+  e.diagnostics.error("E0201", span, "`t` is not declared",
+                      fmt::format("The independent variable of this model is {}: it stands in the place of the time.", x),
+                      fmt::format("Write {}, or declare t.", x));
+}
+
 }  // namespace
 
 void unknown_name(Elaboration& e, const std::string& text, Span span) {
   if (is_silent(e, text)) return;
   if (!e.unknown_names.insert(text).second) return;  // told at its first use
+  if (text == "t") return unknown_time(e, span);
   std::vector<std::string> names = e.table.names();
   if (names.size() > 2000) names.resize(2000);
   const std::string near = did_you_mean(text, names);
@@ -164,8 +173,8 @@ Value value_of_name(Elaboration& e, const Expression& x, const Place& place) {
     return time_derivative(e, meaning(*d, place), x.primes, x);
   }
   if (e.table.is_lost(x.text)) return Value::poison();
-  if (x.text == "t")
-    return time_derivative(e, Value::of(e.context.time(), e.dimension(dimensions::time())), x.primes, x);
+  if (x.text == "t" && e.system().independent == "t")
+    return time_derivative(e, Value::of(e.context.time(), e.time()), x.primes, x);
   if (x.text == "pi") {
     Value v = Value::of(e.context.pi(), Dimension{});
     v.has_pi = true;

@@ -95,6 +95,8 @@ Elaboration::Elaboration(const Elaboration& outer, const syntax::SyntaxTree& tre
       dimensionless(outer.dimensionless) {
   model.system.context = outer.model.system.context;
   model.system.space_dimension = outer.model.system.space_dimension;
+  model.system.independent = outer.model.system.independent;
+  model.system.independent_dimension = outer.model.system.independent_dimension;
 }
 
 void apply_parameter_overrides(Elaboration& e, const std::vector<std::string>& overrides) {

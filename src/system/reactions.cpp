@@ -19,7 +19,8 @@ const char* const kReasonOfPlace =
 /// λ is conjugate to the constraint: λ δφ is an energy, λ ψ a power.
 Dimension dimension_of_multiplier(Elaboration& e, const Constraint& c) {
   const bool position = c.level == Constraint::Level::Position;
-  return e.dimension(position ? dimensions::energy() : dimensions::power()) / c.dimension;
+  const Dimension& energy = e.system().lagrangian_dimension;
+  return (position ? energy : energy / e.time()) / c.dimension;
 }
 
 bool is_power_of_length(Dimension d) {
@@ -49,6 +50,12 @@ Dimension dimension_of_reaction(Elaboration& e, const Constraint& c) {
 Declaration* find_named(Elaboration& e, const syntax::Name& name) {
   Declaration* d = e.table.find(name.text);
   if (!d && e.table.is_lost(name.text)) return nullptr;
+  const auto* held = d && d->kind == Kind::Constraint ? std::get_if<syntax::ConstraintStatement>(&d->statement->body) : nullptr;
+  if (held && held->integral) {
+    e.diagnostics.error("E0226", name.span, fmt::format("`{}` holds an integral and exerts no force", name.text),
+                        "Its multiplier is one number of a whole path, which `maup action` finds.", "");
+    return nullptr;
+  }
   if (d && (d->kind == Kind::Constraint || d->kind == Kind::Reaction)) return d;
   std::vector<std::string> names;
   for (const Declaration& other : e.table.declarations())

@@ -40,7 +40,7 @@ std::vector<StartRate> start_rates(Elaboration& e, const syntax::StartStatement:
   const Expression& x = *item.variable;
   const std::string name(e.source.slice(x.span));
   const Value rate = evaluate_formula(e, x);
-  const Dimension expected = e.dimension(dimensions::angle() / dimensions::time());
+  const Dimension expected = e.dimension(dimensions::angle()) / e.time();
   if (rate.poisoned) return {};
   if (rate.order > 1) {
     e.diagnostics.error("E0223", x.span, fmt::format("the acceleration `{}` cannot be chosen", name),

@@ -10,7 +10,6 @@ namespace {
 
 const char* reason_for(const std::string& what) {
   if (what == "field" || what == "density") return "Fields are carried out by a later version.";
-  if (what == "independent" || what == "path") return "Variational problems are carried out by a later version.";
   return "Contacts, Coulomb friction and events are carried out by a later version.";
 }
 
@@ -38,12 +37,14 @@ void refuse_later_statements(Elaboration& e) {
 }
 
 void check_statement_counts(Elaboration& e) {
-  std::optional<Span> gravity, run, output, source, sweep;
+  std::optional<Span> gravity, run, output, source, sweep, path, independent;
   for (const syntax::Statement& s : e.tree.statements) {
     if (std::get_if<syntax::GravityStatement>(&s.body)) once(e, gravity, s.span, "gravity");
     if (std::get_if<syntax::RunStatement>(&s.body)) once(e, run, s.span, "the run");
     if (std::get_if<syntax::OutputStatement>(&s.body)) once(e, output, s.span, "the interval of output");
     if (std::get_if<syntax::SweepStatement>(&s.body)) once(e, sweep, s.span, "the sweep");
+    if (std::get_if<syntax::PathStatement>(&s.body)) once(e, path, s.span, "the path");
+    if (std::get_if<syntax::IndependentStatement>(&s.body)) once(e, independent, s.span, "the independent variable");
     if (std::get_if<syntax::SourceStatement>(&s.body)) once(e, source, s.span, "the source");
   }
 }

@@ -18,6 +18,10 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
+std::string heading(const Trajectory::Column& column) {
+  return column.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.unit);
+}
+
 void append_number(std::string& out, double value) {
   if (std::isfinite(value)) fmt::format_to(std::back_inserter(out), "{:.17g}", value);
   else out += std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
@@ -26,11 +30,8 @@ void append_number(std::string& out, double value) {
 }  // namespace
 
 std::string to_csv(const Trajectory& trajectory) {
-  std::string out = "t [s]";
-  for (const auto& column : trajectory.columns) {
-    out += ',';
-    out += quoted(column.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.unit));
-  }
+  std::string out = quoted(heading(trajectory.independent));
+  for (const auto& column : trajectory.columns) out += ',' + quoted(heading(column));
   out += "\r\n";
   out.reserve(out.size() + trajectory.rows() * (trajectory.columns.size() + 1) * 22);
   for (std::size_t row = 0; row < trajectory.rows(); ++row) {

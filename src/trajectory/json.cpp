@@ -35,9 +35,9 @@ std::string to_json(const Trajectory& trajectory) {
     out += fmt::format("{}{}: {}", separator, quoted(key), quoted(value));
     separator = ", ";
   }
-  out += "},\n\"columns\": [{\"name\": \"t\", \"unit\": \"s\"}";
-  for (const auto& column : trajectory.columns)
-    out += fmt::format(", {{\"name\": {}, \"unit\": {}}}", quoted(column.name), quoted(column.unit));
+  const auto column_text = [](const Trajectory::Column& c) { return fmt::format("{{\"name\": {}, \"unit\": {}}}", quoted(c.name), quoted(c.unit)); };
+  out += "},\n\"columns\": [" + column_text(trajectory.independent);
+  for (const auto& column : trajectory.columns) out += ", " + column_text(column);
   out += "],\n\"rows\": [";
   for (std::size_t row = 0; row < trajectory.rows(); ++row) {
     out += row == 0 ? "\n[" : ",\n[";

@@ -27,7 +27,7 @@ std::string field(const std::string& name, const std::string& unit, bool with_un
 }
 
 std::string description(const Trajectory& trajectory, bool with_units) {
-  std::string fields = field("t", "s", with_units);
+  std::string fields = field(trajectory.independent.name, trajectory.independent.unit, with_units);
   for (const auto& column : trajectory.columns) fields += field(column.name, column.unit, with_units);
   return fmt::format("{{'descr': [{}], 'fortran_order': False, 'shape': ({},), }}", fields, trajectory.rows());
 }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <maupertuis/print.hpp>
 #include <maupertuis/simulation.hpp>
 
 namespace maupertuis::app {
@@ -27,7 +28,33 @@ std::string start_text(const StartValue& start, const MechanicalSystem& system) 
   const std::string name = c.name + std::string(static_cast<std::size_t>(start.order), '\'');
   if (system.dimensionless) return fmt::format("{} = {}", name, brief(value));
   if (c.kind == "angle" && start.order == 0) return fmt::format("{} = {} deg", name, brief(value * 180 / std::acos(-1.0)));
-  return fmt::format("{} = {}", name, with_unit(brief(value), start.order ? c.dimension / dimensions::time() : c.dimension));
+  return fmt::format("{} = {}", name, with_unit(brief(value), start.order ? c.dimension / system.independent_dimension : c.dimension));
+}
+
+double value_of(Expr e, const MechanicalSystem& system) {
+  return evaluate(in_terms_of_motion(system, {&e, 1})[0], parameter_bindings(system));
+}
+
+/// (0, free) at t = 2 s
+std::string end_text(const std::vector<Expr>& configuration, Expr at, const MechanicalSystem& system) {
+  std::vector<std::string> values;
+  for (std::size_t i = 0; i < configuration.size(); ++i)
+    values.push_back(!configuration[i]      ? "free"
+                     : system.dimensionless ? brief(value_of(configuration[i], system))
+                                            : with_unit(brief(value_of(configuration[i], system)), system.coordinates[i].dimension));
+  return fmt::format("({}) at {}", joined(values), system.moment(brief(value_of(at, system))));
+}
+
+std::string path_text(const PathEnds& path, const MechanicalSystem& system) {
+  return fmt::format("from {} to {}", end_text(path.from, path.start, system), end_text(path.to, path.end, system));
+}
+
+/// length: ∫ sqrt(y'^2 + 1) dx = 3 m
+std::string held_text(const IntegralConstraint& held, const EquationsOfMotion& equations) {
+  const MechanicalSystem& system = *equations.system;
+  const std::string value = brief(value_of(held.value, system));
+  return fmt::format("{}∫ {} d{} = {}", held.name.empty() ? "" : held.name + ": ", to_plain(held.integrand, equations.order), system.independent,
+                     system.dimensionless ? value : with_unit(value, held.dimension));
 }
 
 /// What the check finds out beyond the text: the start on the constraints, and what these are.
@@ -65,6 +92,8 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
   if (words.size() > 8)
     words = {fmt::format("{} … {} ({} of them)", words.front(), words.back(), system.coordinates.size())};
   line("coordinates", joined(words));
+  if (const std::string unit = system.independent_unit(); system.independent != "t")
+    line("independent variable", unit.empty() ? system.independent : fmt::format("{} in {}", system.independent, unit));
   summarise_constraints(equations, findings.analysis, line);
   words.clear();
   for (const Parameter& p : system.parameters)
@@ -91,6 +120,11 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
   for (const StartValue& start : model.experiment.start) words.push_back(start_text(start, system));
   if (words.size() > 8) words.resize(8), words.push_back("…");
   line("start", joined(words));
+  if (model.experiment.path) line("path", path_text(*model.experiment.path, system));
+  words.clear();
+  for (const IntegralConstraint& held : system.integral_constraints)
+    words.push_back(held_text(held, equations));
+  line("integrals held", joined(words));
   if (findings.start) line("consistent start", moved_start(system, *findings.start));
   if (!model.experiment.expectations.empty())
     line("expectations", fmt::format("{} (run them with `maup test`)", model.experiment.expectations.size()));

@@ -187,7 +187,7 @@ ExitCode compare_models(const CompareOptions& options, Console& console) {
   if (of_map.has_errors()) return end(json_document("compare"), ExitCode::Usage);
   const bool readable = !a.source().text().empty() && !b.source().text().empty();
   const EquationsOfMotion* a_equations = a.equations();
-  if (!b.equations() || !a_equations || !a.certificate() || !b.certificate())
+  if (!b.equations() || !a_equations || refuse_held_integrals(a) || refuse_held_integrals(b) || !a.certificate() || !b.certificate())
     return end(json_document("compare"), readable ? ExitCode::ModelWrong : ExitCode::Usage);
 
   const auto map = read_map(*a.model(), b.source(), map_text, of_map);

@@ -149,6 +149,7 @@ ExitCode derive(const DeriveOptions& options, Console& console) {
   Study study(options.model.path, options.model.overrides);
   if (!options.emit.empty()) return emit_stage(options, study, console);
 
+  if (refuse_held_integrals(study)) return finish(console, study, document_of(options, study, {}, nullptr));
   study.derivation(options.steps);
   const Certificate* certificate = study.certificate({.full = options.certify == "full"});
   EquationForm form;

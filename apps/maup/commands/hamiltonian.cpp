@@ -96,9 +96,9 @@ PhaseSpace analyse(const HamiltonianOptions& options, Study& study) {
   return found;
 }
 
-std::string motion_text(const CanonicalMotion& motion, const SimulationResult& run) {
+std::string motion_text(const CanonicalMotion& motion, const SimulationResult& run, const MechanicalSystem& system) {
   const Trajectory& rows = motion.trajectory;
-  std::string out = fmt::format("\nCanonical integration\n  t = {} s\n", exact(motion.final_time));
+  std::string out = fmt::format("\nCanonical integration\n  {}\n", system.moment(exact(motion.final_time)));
   const std::size_t n = motion.final_q.size();
   for (std::size_t i = 0; i < 2 * n; ++i) {
     const double value = i < n ? motion.final_q[i] : motion.final_p[i - n];
@@ -108,8 +108,8 @@ std::string motion_text(const CanonicalMotion& motion, const SimulationResult& r
   out += fmt::format("  {} steps of order {}; Lagrange's equations took {}\n", motion.steps, motion.order,
                      run.statistics.steps);
   return out + (motion.difference > 0
-                    ? fmt::format("  the two motions differ by {} of its size in {}, at t = {} s\n",
-                                  brief(motion.difference), motion.difference_name, brief(motion.difference_time))
+                    ? fmt::format("  the two motions differ by {} of its size in {}, at {}\n",
+                                  brief(motion.difference), motion.difference_name, system.moment(brief(motion.difference_time)))
                     : std::string("  the two motions agree to the last digit\n"));
 }
 
@@ -140,9 +140,9 @@ ExitCode integrate(const HamiltonianOptions& options, const PhaseSpace& found, S
     if (const std::string failure = write_trajectory(motion->trajectory, options.output); !failure.empty())
       cannot_write(failure, study.diagnostics());
   document["integration"] = motion_json(*motion);
-  if (!console.json()) console.print(motion_text(*motion, *run));
+  if (!console.json()) console.print(motion_text(*motion, *run, study.model()->system));
   if (!motion->ending.empty() && !console.json())
-    console.say(fmt::format("The canonical run ended at t = {} s: {}\n", exact(motion->final_time), motion->ending));
+    console.say(fmt::format("The canonical run ended at {}: {}\n", study.model()->system.moment(exact(motion->final_time)), motion->ending));
   return motion->ending.empty() ? exit_code(run->ending) : ExitCode::RunFailed;
 }
 
@@ -152,7 +152,7 @@ ExitCode hamiltonian_of(const HamiltonianOptions& options, Console& console) {
   if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);
   study.add_statements(bracket_statements(options.bracket));
   if (!options.integrate) study.admit_singular_mass_matrix();  // then there are primary constraints
-  if (!study.model() || !study.certificate()) return finish(console, study, document);
+  if (!study.model() || refuse_held_integrals(study) || !study.certificate()) return finish(console, study, document);
   const PhaseSpace found = analyse(options, study);
   if (study.wrong()) return finish(console, study, document);
   if (!console.json()) {

@@ -17,7 +17,7 @@ ExitCode invariants_of_model(const CommandOptions& options, Console& console) {
   Study study(options.model.path, options.model.overrides);
   Json document = json_document("invariants");
   const EquationsOfMotion* equations = study.equations();
-  if (!equations || !study.certificate()) return finish(console, study, document);
+  if (!equations || refuse_held_integrals(study) || !study.certificate()) return finish(console, study, document);
   InvariantsOptions search = options.search;
   search.drift = !options.no_drift;
   const auto found = find_invariants(*study.model(), *equations, search, study.diagnostics());

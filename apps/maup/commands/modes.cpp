@@ -232,7 +232,8 @@ ExitCode modes(ModesOptions options, Console& console) {
   if (!options.sweep.empty()) study.replace_sweep("sweep " + options.sweep);
   study.add_statements(output_statements(options.outputs));
   const EquationsOfMotion* equations = study.equations();
-  if (!equations || !study.certificate()) return finish(console, study, json_document("modes"));
+  if (!equations || refuse_held_integrals(study) || refuse_without_time(study) || !study.certificate())
+    return finish(console, study, json_document("modes"));
   if (options.orbit) return orbit(options, study, console);
   const auto start = consistent_start(*study.model(), *equations, study.diagnostics());
   if (!start) return finish(console, study, json_document("modes"));

@@ -101,7 +101,7 @@ ExitCode study_orbits(const Options& o, Console& console) {
     finish(console, as_written, json_document("orbits"));
     return ExitCode::Usage;
   }
-  if (!as_written.certificate()) return finish(console, as_written, json_document("orbits"));
+  if (refuse_held_integrals(as_written) || refuse_without_time(as_written) || !as_written.certificate()) return finish(console, as_written, json_document("orbits"));
   SectionStudy section;
   if (o.orbits.has_section()) section = section_study(o.orbits, o.model, as_written);
   Study& study = section.study ? *section.study : as_written;

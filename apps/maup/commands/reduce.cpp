@@ -33,7 +33,7 @@ ExitCode reduce_model(const ReduceOptions& options, Console& console) {
   Study study(options.path);
   Json document = json_document("reduce");
   const EquationsOfMotion* equations = study.equations();
-  if (!equations || !study.certificate()) return finish(console, study, document);
+  if (!equations || refuse_held_integrals(study) || !study.certificate()) return finish(console, study, document);
   const Reduction r = reduce(*study.model(), *equations, *study.tree(), study.source(), study.diagnostics());
   document["dependent"] = r.dependent;
   document["independent"] = r.independent;

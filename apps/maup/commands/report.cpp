@@ -63,6 +63,8 @@ LongRun long_run(const ReportOptions& options, Study& study) {
   const Model& model = *study.model();
   const EquationsOfMotion& equations = *study.equations();
   const OrbitsOptions& asked = options.orbits;
+  const bool any = asked.has_section() || asked.floquet || asked.lyapunov;
+  if (any && refuse_without_time(study)) return out;
   if (asked.has_section()) find_section(options, study, out);
   if (asked.floquet) out.floquet = floquet(model, equations, floquet_options(asked), study.diagnostics());
   if (asked.lyapunov) out.lyapunov = lyapunov_exponents(model, equations, lyapunov_options(asked), study.diagnostics());
@@ -74,7 +76,8 @@ std::string page_of(Study& study, const std::optional<SimulationResult>& result,
                     const LongRun& orbits) {
   ReportParts parts;
   Verification verification;
-  const EquilibriumParts equilibria = equilibrium_parts(*study.model(), *study.equations());
+  EquilibriumParts equilibria;
+  if (moves_in_time(study.model()->system)) equilibria = equilibrium_parts(*study.model(), *study.equations());
   if (equilibria.study) parts.modes = &*equilibria.study;
   if (equilibria.locus) parts.locus = &*equilibria.locus;
   if (result) parts.simulation = &*result;
@@ -108,6 +111,7 @@ ExitCode report(const ReportOptions& options, Console& console) {
     return ExitCode::Usage;
   }
   if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);
+  if (refuse_held_integrals(study)) return finish(console, study, document);
   study.derivation(true);  // before the certificate, so that it vouches for the readable form too
   if (!study.certificate()) return finish(console, study, document);
 

@@ -69,12 +69,12 @@ Json document_of(const SimulationResult& result, const MechanicalSystem& system)
 }
 
 std::string state_text(const State& state, const SimulationResult& result, const MechanicalSystem& system) {
-  if (state.q.empty()) return fmt::format("t = {} s\n  not reached\n", exact(state.t));
-  std::string out = fmt::format("t = {} s\n", exact(state.t));
+  if (state.q.empty()) return system.moment(exact(state.t)) + "\n  not reached\n";
+  std::string out = system.moment(exact(state.t)) + "\n";
   for (std::size_t i = 0; i < state.q.size(); ++i) {
     const Coordinate& c = system.coordinates[i];
     const std::string unit = system.dimensionless ? "1" : to_string(c.dimension);
-    const std::string rate = system.dimensionless ? "1" : to_string(c.dimension / dimensions::time());
+    const std::string rate = system.dimensionless ? "1" : to_string(c.dimension / system.independent_dimension);
     const auto line = [&out](const std::string& name, double value, const std::string& unit_word) {
       out += fmt::format("  {:<8} {: .17g}{}{}\n", name, value, unit_word == "1" ? "" : " ", unit_word == "1" ? "" : unit_word);
     };
@@ -133,7 +133,7 @@ ExitCode simulate_model(const SimulateOptions& options, Console& console) {
   if (!console.json()) {
     console.print(text_of(*result, system));
     if (result->ending != Ending::Finished)
-      console.say(fmt::format("The run ended at t = {} s: {}\n", exact(result->final.t), result->reason));
+      console.say(fmt::format("The run ended at {}: {}\n", system.moment(exact(result->final.t)), result->reason));
   }
   const bool files_written = !study.wrong();
   finish(console, study, document_of(*result, system));
@@ -168,7 +168,7 @@ ExitCode simulate_extended_model(const SimulateOptions& options, Console& consol
   if (!console.json()) {
     console.print(extended_text(*result));
     if (result->ending != Ending::Finished)
-      console.say(fmt::format("The run ended at t = {} s: {}\n", exact(result->reached), result->reason));
+      console.say(fmt::format("The run ended at {}: {}\n", system.moment(exact(result->reached)), result->reason));
   }
   const bool files_written = !study.wrong();
   finish(console, study, extended_document(*result, options.precision, system));

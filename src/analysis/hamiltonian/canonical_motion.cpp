@@ -92,16 +92,19 @@ TaylorOptions taylor_options(const SimulationOptions& options) {
   return out;
 }
 
-Dimension dimension_of_momentum(const Coordinate& c) { return dimensions::energy() * dimensions::time() / c.dimension; }
+Dimension dimension_of_momentum(const MechanicalSystem& s, const Coordinate& c) {
+  return s.lagrangian_dimension * s.independent_dimension / c.dimension;
+}
 
 void name_columns(const Hamiltonian& h, Trajectory& trajectory) {
+  trajectory.independent = {h.system->independent, h.system->independent_unit()};
   const auto column = [&](const std::string& name, const Dimension& d) {
     const std::string unit = h.system->dimensionless ? "" : to_string(d);
     trajectory.columns.push_back({name, unit == "1" ? "" : unit});
   };
   for (const Coordinate& c : h.system->coordinates) column(c.name, c.dimension);
-  for (std::size_t i = 0; i < h.momenta.size(); ++i) column(momentum_name(*h.system, i), dimension_of_momentum(h.system->coordinates[i]));
-  column("H", dimensions::energy());
+  for (std::size_t i = 0; i < h.momenta.size(); ++i) column(momentum_name(*h.system, i), dimension_of_momentum(*h.system, h.system->coordinates[i]));
+  column("H", h.system->lagrangian_dimension);
 }
 
 /// The largest difference from the run, each column against the largest value among those of its dimension.
@@ -140,7 +143,7 @@ class Differences {
  private:
   Dimension unit(std::size_t i) const {
     const std::size_t n = h_.momenta.size();
-    return i < n ? h_.system->coordinates[i].dimension : dimension_of_momentum(h_.system->coordinates[i - n]);
+    return i < n ? h_.system->coordinates[i].dimension : dimension_of_momentum(*h_.system, h_.system->coordinates[i - n]);
   }
 
   const Hamiltonian& h_;

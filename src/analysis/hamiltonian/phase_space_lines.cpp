@@ -122,7 +122,7 @@ class Lines {
     if (conserved.energy_conserved) names += ", H";
     if (!text.empty()) sentence(section, text);
     if (!conserved.energy_conserved)
-      formula(section, "along the motion", "dH/dt", "\\frac{dH}{dt}", ReadableForm{tidy(shown_.power, h_.order), {}, {}});
+      formula(section, "along the motion", "dH/d" + h_.system->independent, fmt::format("\\frac{{dH}}{{d{}}}", symbol_to_latex(h_.system->context->time())), ReadableForm{tidy(shown_.power, h_.order), {}, {}});
     sentence(section, names.empty() ? "Neither H nor a momentum is conserved." : "Conserved: " + names.substr(2) + ".");
   }
 

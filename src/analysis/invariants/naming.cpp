@@ -67,8 +67,9 @@ std::optional<Naming> Namer::of_time(const Fit& fit, Expr integral) const {
     if (t.constant == Constant::Coordinate) with.push_back("a shift of " + equations_.system->coordinates[t.axis].name);
   }
   const bool energy = energy_is_t_plus_v_ && fit.only({Constant::TimeShift});
-  return Naming{energy ? "energy" : "Jacobi integral",
-                "translation in time" + (with.empty() ? "" : " with " + joined_with_and(with)),
+  const std::string& t = equations_.system->independent;
+  return Naming{t != "t" ? "Beltrami's integral" : energy ? "energy" : "Jacobi integral",
+                "translation in " + (t == "t" ? "time" : t) + (with.empty() ? "" : " with " + joined_with_and(with)),
                 -integral / shift->value, EnergyRank};
 }
 

@@ -181,7 +181,7 @@ std::string to_csv(const MechanicalSystem& system, const Locus& locus) {
   const Parameter& p = system.parameters[locus.parameter];
   std::string out = p.name + unit(p.dimension) + ",branch,verdict";
   for (const Coordinate& c : system.coordinates) out += fmt::format(",{}{}", c.name, unit(c.dimension));
-  for (const Coordinate& c : system.coordinates) out += fmt::format(",{}'{}", c.name, unit(c.dimension / dimensions::time()));
+  for (const Coordinate& c : system.coordinates) out += fmt::format(",{}'{}", c.name, unit(c.dimension / system.independent_dimension));
   std::size_t eigenvalues = 0;
   for (const LocusBranch& b : locus.branches)
     for (const LocusPoint& x : b.points) eigenvalues = std::max(eigenvalues, x.eigenvalues.size());

@@ -216,7 +216,7 @@ std::string point_text(const MechanicalSystem& system, const Equilibrium& equili
     if (!is_pivot(i))
       positions += fmt::format("{}{} = {}", positions.empty() ? "" : ", ", c.name, value_text(system, equilibrium.point.q[i], c.dimension, c.kind == "angle"));
     if (equilibrium.point.v[i] != 0)
-      rates += fmt::format("{}{}' = {}", rates.empty() ? "" : ", ", c.name, value_text(system, equilibrium.point.v[i], c.dimension / dimensions::time()));
+      rates += fmt::format("{}{}' = {}", rates.empty() ? "" : ", ", c.name, value_text(system, equilibrium.point.v[i], c.dimension / system.independent_dimension));
   }
   if (positions.empty() && rates.empty()) return "rest anywhere";
   return positions + (positions.empty() || rates.empty() ? "" : "; ") + rates;

@@ -9,7 +9,7 @@ namespace {
 std::string unit_of(const MechanicalSystem& system, std::size_t i, int order) {
   if (system.dimensionless) return {};
   const Dimension d = system.coordinates[i].dimension;
-  const std::string unit = to_string(order == 0 ? d : d / dimensions::time());
+  const std::string unit = to_string(order == 0 ? d : d / system.independent_dimension);
   return unit == "1" ? "" : unit;
 }
 

@@ -56,7 +56,7 @@ bool Context::has_time_derivative(NodeId id) const { return storage_->nodes[id].
 
 Expr Context::number(const Rational& value) { return Expr(this, storage_->intern_number(value)); }
 Expr Context::pi() { return Expr(this, storage_->intern(Kind::Pi, {})); }
-Expr Context::time() { return symbol("t", Role::Time); }
+Expr Context::time() { return storage_->time ? Expr(this, storage_->time) : symbol("t", Role::Time); }
 
 Expr Context::symbol(std::string_view name, Role role, int order) {
   MAUP_REQUIRE(order == 0 || role == Role::Coordinate || role == Role::Input);
@@ -70,6 +70,10 @@ Expr Context::symbol(std::string_view name, Role role, int order) {
     node.time_dependent = role == Role::Coordinate || role == Role::Input || role == Role::Time || role == Role::Multiplier;
     storage_->symbols.push_back({std::string(name), role, order});
     id = storage_->append(node);
+    if (role == Role::Time) {
+      MAUP_REQUIRE(storage_->time == 0);
+      storage_->time = id;
+    }
   }
   const Expr symbol(this, id);
   MAUP_REQUIRE(symbol.role() == role);

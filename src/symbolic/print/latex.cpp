@@ -36,13 +36,14 @@ std::string dotted(const std::string& body, int order) {
   }
 }
 
-std::string write_name(const std::string& text, int dots) {
+std::string write_name(const std::string& text, int dots, bool primes = false) {
   const SymbolName name = split_name(text);
-  const std::string body = dotted(letter_or_word(name.body, name.body_is_word), dots);
-  if (name.subscript.empty()) return body;
+  const std::string body = dotted(letter_or_word(name.body, name.body_is_word), primes ? 0 : dots);
+  const std::string marks = primes ? std::string(static_cast<std::size_t>(dots), '\'') : std::string();  // after what stands below
+  if (name.subscript.empty()) return body + marks;
   const std::string below = name.subscript == "max" || name.subscript == "min"
                                 ? "\\" + name.subscript : letter_or_word(name.subscript, name.subscript_is_word);
-  return body + "_" + (below.size() == 1 ? below : braces(below));
+  return body + "_" + (below.size() == 1 ? below : braces(below)) + marks;
 }
 
 std::string write(const Layout& l);
@@ -135,7 +136,7 @@ std::string write_unsigned(const Layout& l) {
     case Shape::Power: return write_base(l.parts[0]) + "^" + braces(write_exponent(l.parts[1]));
     case Shape::Root: return "\\sqrt" + braces(write(l.parts[0]));
     case Shape::Apply: return write_apply(l);
-    case Shape::Derivative: return "\\frac{\\mathrm{d}}{\\mathrm{d}t}" + bracketed(write(l.parts[0]));
+    case Shape::Derivative: return "\\frac{\\mathrm{d}}{\\mathrm{d}" + write_name(l.text, 0) + "}" + bracketed(write(l.parts[0]));
     case Shape::Comparison: return joined(l.parts, l.function == Kind::Less ? " < " : " \\le ");
     case Shape::Logic: return joined(l.parts, l.function == Kind::And ? " \\wedge " : " \\vee ");
     case Shape::Cases: return write_cases(l);
@@ -162,9 +163,11 @@ std::string symbol_to_latex(Expr symbol) {
   }
   const ShownSymbol shown = shown_symbol(symbol);
   const std::size_t cut = shown.name.find('_');
-  if (!is_integral(symbol.name()) || cut == std::string::npos) return write_name(shown.name, shown.dots);
+  if (!is_integral(symbol.name()) || cut == std::string::npos) return write_name(shown.name, shown.dots, shown.primes);
   // p_{\theta_1}: what stands below a momentum is the name of its coordinate.
-  return write_name(shown.name.substr(0, cut), shown.dots) + "_" + braces(write_name(shown.name.substr(cut + 1), 0));
+  const std::string below = "_" + braces(write_name(shown.name.substr(cut + 1), 0)), head = shown.name.substr(0, cut);
+  if (shown.primes) return write_name(head, 0) + below + std::string(static_cast<std::size_t>(shown.dots), '\'');
+  return write_name(head, shown.dots) + below;
 }
 
 }  // namespace maupertuis

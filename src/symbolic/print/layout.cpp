@@ -1,5 +1,6 @@
 #include "symbolic/print/layout.hpp"
 #include "symbolic/print/reading_rank.hpp"
+#include "symbolic/print/symbol_name.hpp"
 
 #include <maupertuis/kind_names.hpp>
 #include <maupertuis/require.hpp>
@@ -49,7 +50,11 @@ class Builder {
       }
       case Kind::Sum: return sum(e, SumPlace::Inside);
       case Kind::Product: case Kind::Power: return product(e);
-      case Kind::TimeDerivative: return combined(Shape::Derivative, {build(e[0])});
+      case Kind::TimeDerivative: {
+        Layout layout = combined(Shape::Derivative, {build(e[0])});
+        layout.text = independent_name(e.context());
+        return layout;
+      }
       case Kind::Less: case Kind::LessEqual: return with_function(Shape::Comparison, e);
       case Kind::And: case Kind::Or: return with_function(Shape::Logic, e);
       case Kind::Piecewise: return with_function(Shape::Cases, e);

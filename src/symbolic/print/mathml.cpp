@@ -55,7 +55,11 @@ std::string write_symbol(Expr symbol) {
   const SymbolName name = split_name(shown.name);
   std::string body = identifier(name.body);
   constexpr const char* dots[] = {"", "&#x02D9;", "&#x00A8;", "&#x20DB;"};
-  if (shown.dots >= 1 && shown.dots <= 3)
+  if (shown.primes && shown.dots > 0) {
+    std::string primes;
+    for (int i = 0; i < shown.dots; ++i) primes += "&#x2032;";
+    body = tag(name.subscript.empty() ? "msup" : "mrow", body + tag("mo", primes));
+  } else if (shown.dots >= 1 && shown.dots <= 3)
     body = "<mover accent=\"true\">" + body + tag("mo", dots[shown.dots]) + "</mover>";
   else if (shown.dots > 3)
     body = tag("msup", body + row("<mo>(</mo>" + tag("mn", std::to_string(shown.dots)) + "<mo>)</mo>"));
@@ -143,7 +147,7 @@ std::string write_unsigned(const Layout& l) {
     case Shape::Root: return tag("msqrt", write(l.parts[0]));
     case Shape::Apply: return write_apply(l);
     case Shape::Derivative:
-      return row("<mfrac><mi>d</mi>" + row("<mi>d</mi><mi>t</mi>") + "</mfrac>" + bracketed(write(l.parts[0])));
+      return row("<mfrac><mi>d</mi>" + row("<mi>d</mi>" + identifier(l.text)) + "</mfrac>" + bracketed(write(l.parts[0])));
     case Shape::Comparison: return row(joined(l.parts, l.function == Kind::Less ? "<mo>&lt;</mo>" : "<mo>&#x2264;</mo>"));
     case Shape::Logic: return row(joined(l.parts, l.function == Kind::And ? "<mo>&#x2227;</mo>" : "<mo>&#x2228;</mo>"));
     case Shape::Cases: return write_cases(l);

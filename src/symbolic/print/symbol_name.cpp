@@ -1,3 +1,4 @@
+#include "symbolic/expression/storage.hpp"
 #include "symbolic/print/symbol_name.hpp"
 
 #include <algorithm>
@@ -59,8 +60,14 @@ SymbolName split_name(std::string_view name) {
 
 ShownSymbol shown_symbol(Expr symbol) {
   const std::string& name = symbol.name();
-  if (symbol.order() == 0 || !is_integral(name)) return {name, symbol.order()};
-  return {name.substr(integral_sign.size()), symbol.order() - 1};
+  const bool primes = symbol.order() > 0 && independent_name(symbol.context()) != "t";
+  if (symbol.order() == 0 || !is_integral(name)) return {name, symbol.order(), primes};
+  return {name.substr(integral_sign.size()), symbol.order() - 1, primes};
+}
+
+std::string independent_name(Context& context) {
+  const NodeId time = context.storage().time;  // printing makes no symbol
+  return time ? Expr(&context, time).name() : "t";
 }
 
 QuantityName split_quantity(std::string_view name) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <maupertuis/expression.hpp>
 #include <maupertuis/integral_symbol.hpp>
 
 #include <string>
@@ -29,7 +30,10 @@ QuantityName split_quantity(std::string_view name);
 struct ShownSymbol {
   std::string name;
   int dots = 0;
+  bool primes = false;         // y' in the place of ẏ: the independent variable is not t
 };
 ShownSymbol shown_symbol(Expr symbol);
+/// The name of the independent variable.
+std::string independent_name(Context& context);
 
 }  // namespace maupertuis::print

@@ -163,3 +163,16 @@ TEST_CASE("column finds by name") {
   CHECK(sample().column("θ1'") == 1u);
   CHECK_FALSE(sample().column("θ2").has_value());
 }
+
+TEST_CASE("another independent variable heads the first column of every format") {
+  Trajectory curve;
+  curve.independent = {"x", "m"};
+  curve.columns = {{"t", "s"}};  // a name like any other then
+  curve.times = {0, 1};
+  curve.values = {2, 3};
+  CHECK(to_csv(curve).rfind("x [m],t [s]\r\n0,2\r\n", 0) == 0);
+  CHECK(to_json(curve).find("\"columns\": [{\"name\": \"x\", \"unit\": \"m\"}, {\"name\": \"t\", \"unit\": \"s\"}]") != std::string::npos);
+  CHECK(to_npy(curve).find("(('x [m]','x'),'<f8'),(('t [s]','t'),'<f8'),") != std::string::npos);
+  curve.independent.unit.clear();
+  CHECK(to_csv(curve).rfind("x,t [s]\r\n", 0) == 0);
+}

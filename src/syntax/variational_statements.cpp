@@ -1,0 +1,148 @@
+#include "syntax/statement_parser.hpp"
+
+#include <fmt/format.h>
+
+/// constraint, and what a variational problem is made of: independent, path, and what is expected of its paths.
+namespace maupertuis::syntax {
+
+// constraint EXPR = EXPR name rod,   constraint integral EXPR = VALUE name length
+StatementBody StatementParser::constraint_statement() {
+  next();
+  ConstraintStatement constraint;
+  constraint.integral = peek().is("integral") && !peek(1).is("=") && !context_.declarations.contains("integral") && accept("integral");
+  constraint.left = formula();
+  expect("=", "the left side of the constraint");
+  constraint.right = constraint.integral ? quantity() : formula();
+  if (accept("name")) constraint.name = new_name("the name of the constraint");
+  return constraint;
+}
+
+// independent x,   independent x : length
+StatementBody StatementParser::independent_statement() {
+  next();
+  IndependentStatement independent;
+  if (peek().is("t") && peek().kind == Token::Kind::Name) {
+    independent.name = {"t", next().span};
+  } else {
+    independent.name = new_name("the name of the independent variable");
+  }
+  if (!accept(":")) return independent;
+  try {
+    kind_of(independent.name, "independent variable", independent.kind, independent.unit);
+  } catch (const Abandoned&) {
+    index_ = end_;  // told; without the statement every derivative of the model would be one by the time
+  }
+  return independent;
+}
+
+namespace {
+
+constexpr std::string_view kPathExample = "path from (0, 1) at 0 to (2, free) at 1";
+
+}  // namespace
+
+// path from (0, 1) at 0 to (2, free) at 1
+StatementBody StatementParser::path_statement() {
+  next();
+  PathStatement path;
+  if (!accept("from")) missing_clause("from", "path", kPathExample);
+  path.from = path_end();
+  if (!accept("to")) missing_clause("to", "path", kPathExample);
+  path.to = path_end();
+  return path;
+}
+
+// (0, free) at 1 s,   0 at 1 s
+PathStatement::End StatementParser::path_end() {
+  PathStatement::End end;
+  const Span first = peek().span;
+  end.configuration = components();
+  end.span = cover(first, previous().span);
+  if (!accept("at")) missing_clause("at", "path", kPathExample);
+  end.at = quantity();
+  return end;
+}
+
+// Whether the bracket that opens here holds a list, and does not merely begin a formula such as (a + b)/2.
+bool StatementParser::opens_components() const {
+  if (!peek().is("(")) return false;
+  int depth = 0;
+  for (std::size_t i = 0; index_ + i < end_; ++i) {
+    depth += peek(i).is("(") ? 1 : peek(i).is(")") ? -1 : 0;
+    if (depth == 1 && peek(i).is(",")) return true;
+    if (depth == 0) return peek(i + 1).is("at") || peek(i + 1).is("from") || peek(i + 1).is("=");
+  }
+  return false;
+}
+
+// One value a coordinate, `free` where none is asked for; a unit after the bracket is that of all: (1, 2) m.
+std::vector<ExpressionPtr> StatementParser::components() {
+  std::vector<ExpressionPtr> out;
+  const auto component = [&] {
+    const bool free = peek().is("free") && !context_.declarations.contains("free") && accept("free");
+    out.push_back(free ? nullptr : quantity());
+  };
+  if (!opens_components()) {
+    component();
+    return out;
+  }
+  next();
+  do component();
+  while (accept(","));
+  if (!peek().is(")")) fail_expected("`,` or `)`");
+  next();
+  if (peek().kind != Token::Kind::Name || peek().is("at") || peek().is("from")) return out;
+  const auto unit = units();
+  if (!unit) fail_expected("`at` after the configuration");
+  for (ExpressionPtr& value : out) {
+    if (!value) continue;
+    const Expression& number = value->kind == Expression::Kind::Unary ? *value->arguments[0] : *value;
+    if (number.kind != Expression::Kind::Number)
+      fail("E0111", value->span, fmt::format("expected a number, since a unit follows the bracket, found `{}`", text_of(*value)),
+           "A unit after a bracket is that of all its numbers.", "Write the unit, or none, at each of them.");
+    auto quantity = std::make_shared<Expression>();
+    quantity->kind = Expression::Kind::Quantity;
+    quantity->span = value->span;
+    quantity->depth = value->depth + 1;
+    quantity->unit = unit;
+    quantity->arguments = {value};
+    value = quantity;
+  }
+  return out;
+}
+
+// action = 3 J s ± 1e-9,   action of (4 t + 7, 3 t) from 0 s to 10 s = 435 J s ± 1e-9
+void StatementParser::expect_action(ExpectStatement& expect) {
+  next();
+  expect.kind = ExpectStatement::Kind::Action;
+  if (accept("of")) {
+    if (!peek().is("(")) fail_expected("`(` and the path", "Write for example expect action of (4 t, 3 t) = 435 ± 1e-9.");
+    next();
+    do expect.values.push_back(formula());
+    while (accept(","));
+    if (!peek().is(")")) fail_expected("`,` or `)`");
+    next();
+    if (accept("from")) {
+      expect.from = quantity();
+      this->expect("to", "the begin of the path");
+      expect.to = quantity();
+    }
+  }
+  this->expect("=", "`action`");
+  expect.value = quantity();
+  tolerance(expect, true);
+}
+
+// path x at 0.5 s = 0.2 m ± 1e-9
+void StatementParser::expect_path(ExpectStatement& expect) {
+  next();
+  expect.kind = ExpectStatement::Kind::PathAt;
+  expect.subject = formula();
+  this->expect("at", "what is expected of the path");
+  expect.time = quantity();
+  this->expect("=", "the place on the path");
+  expect.value = quantity();
+  tolerance(expect, true);
+}
+
+}  // namespace maupertuis::syntax

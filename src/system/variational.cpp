@@ -1,0 +1,288 @@
+#include "system/elaboration.hpp"
+#include "system/unit_expression.hpp"
+
+#include <fmt/format.h>
+
+/// Variational problems: what stands in the place of t, the ends of the paths, and integrals that paths are held to.
+namespace maupertuis::elaboration {
+namespace {
+
+using syntax::ExpectStatement;
+
+// -------------------------------------------------------------------------------------------- independent variable
+
+const syntax::IndependentStatement* find_independent(const Elaboration& e) {
+  for (const syntax::Statement& s : e.tree.statements)
+    if (const auto* x = std::get_if<syntax::IndependentStatement>(&s.body)) return x;
+  return nullptr;
+}
+
+/// What a statement of mechanics is called; empty for the others.
+std::string word_of_mechanics(const syntax::Statement& s) {
+  if (std::get_if<syntax::FrameStatement>(&s.body)) return "frame";
+  if (std::get_if<syntax::PointStatement>(&s.body)) return "point";
+  if (std::get_if<syntax::BodyStatement>(&s.body)) return "body";
+  if (std::get_if<syntax::GravityStatement>(&s.body)) return "gravity";
+  if (std::get_if<syntax::SpringStatement>(&s.body)) return "spring";
+  if (std::get_if<syntax::TorsionSpringStatement>(&s.body)) return "torsion spring";
+  if (std::get_if<syntax::DamperStatement>(&s.body)) return "damper";
+  if (std::get_if<syntax::ForceStatement>(&s.body)) return "force";
+  if (std::get_if<syntax::ReactionStatement>(&s.body)) return "reaction";
+  if (const auto* energy = std::get_if<syntax::EnergyStatement>(&s.body))
+    if (energy->which != syntax::EnergyStatement::Which::L) return std::string(1, "TVULD"[static_cast<int>(energy->which)]);
+  return {};
+}
+
+/// One message: the others follow from the same mistake. False after it.
+bool allows_mechanics(Elaboration& e) {
+  if (e.independent_is_time) return true;
+  for (const syntax::Statement& s : e.tree.statements) {
+    const std::string word = word_of_mechanics(s);
+    if (word.empty()) continue;
+    const std::string& x = e.system().independent;
+    e.diagnostics.error("E0240", s.span, fmt::format("`{}` stands in a model whose independent variable is {}", word, x),
+                        fmt::format("Masses, forces and energies belong to motions in time; here {} stands in its place, "
+                                    "which is no time.",
+                                    x),
+                        fmt::format("Give the integrand of the action as `L = …`, or write `independent {} : [s]` if it is a time.", x));
+    return false;
+  }
+  return true;
+}
+
+Dimension dimension_of_kind(const Elaboration& e, const syntax::IndependentStatement& s) {
+  if (s.kind.text == "angle") return dimensions::angle();
+  if (s.kind.text == "length") return dimensions::length();
+  if (s.kind.text == "charge") return dimensions::charge();
+  if (s.kind.text == "number") return {};
+  if (s.name.text == "t") return dimensions::time();
+  const std::vector<Coordinate>& coordinates = e.model.system.coordinates;
+  return coordinates.empty() ? Dimension{} : coordinates.front().dimension;
+}
+
+}  // namespace
+
+void name_independent(Elaboration& e) {
+  e.system().independent_dimension = e.dimension(dimensions::time());
+  e.system().lagrangian_dimension = e.dimension(dimensions::energy());
+  for (const Declaration& d : e.table.declarations()) {
+    if (d.kind != Declaration::Kind::Independent) continue;
+    e.system().independent = d.name;
+    e.context.symbol(d.name, Role::Time);  // before anything asks for time()
+    return;
+  }
+}
+
+bool elaborate_independent(Elaboration& e) {
+  const syntax::IndependentStatement* s = find_independent(e);
+  if (!s) return true;
+  std::optional<Unit> unit = s->unit ? unit_of(e, *s->unit) : std::optional(Unit{});
+  const bool bare = s->kind.text.empty() || s->kind.text == "number";
+  const Dimension dimension = s->unit && unit ? unit->dimension : dimension_of_kind(e, *s);
+  e.system().independent_dimension = e.dimension(dimension);
+  // Without units nothing says that a bare number is no time.
+  e.independent_is_time = e.dimensionless ? s->unit || bare : dimension.same_as(dimensions::time());
+  for (Declaration& d : e.table.declarations()) {
+    if (d.kind != Declaration::Kind::Independent) continue;
+    const bool first = d.name == e.system().independent;
+    d.done = true;
+    d.value = first && unit ? Value::of(e.context.time(), e.system().independent_dimension) : Value::poison();
+  }
+  return allows_mechanics(e);
+}
+
+std::string in_words(const Elaboration& e, std::string text) {
+  const std::string& x = e.model.system.independent;
+  if (x == "t") return text;
+  for (const std::string word : {"the time", "time"})
+    if (const std::size_t at = text.find(word); at != std::string::npos) return text.replace(at, word.size(), x);
+  return text;
+}
+
+// ------------------------------------------------------------------------------------------------------- the ends
+
+namespace {
+
+std::string names_of_coordinates(const MechanicalSystem& s) {
+  std::string out;
+  for (const Coordinate& c : s.coordinates) out += (out.empty() ? "" : ", ") + c.name;
+  return out;
+}
+
+/// E0241 where there is not one value a coordinate.
+bool check_count(Elaboration& e, std::size_t count, Span span, const char* what) {
+  const std::size_t n = e.system().coordinates.size();
+  if (count == n) return true;
+  e.diagnostics.error("E0241", span,
+                      fmt::format("{} has {} value{}, and the model {} coordinate{}", what, count, count == 1 ? "" : "s", n, n == 1 ? "" : "s"),
+                      fmt::format("A path gives every coordinate its value, in the order of their declaration: {}.",
+                                  names_of_coordinates(e.system())),
+                      "Write `free` at the end of a path where a coordinate may have any value.");
+  return false;
+}
+
+bool configuration(Elaboration& e, const syntax::PathStatement::End& end, const char* which, std::vector<Expr>& out) {
+  if (!check_count(e, end.configuration.size(), end.span, which)) return false;
+  bool good = true;
+  for (std::size_t i = 0; i < end.configuration.size(); ++i) {
+    const Coordinate& c = e.system().coordinates[i];
+    out.emplace_back();
+    if (!end.configuration[i]) continue;
+    const syntax::Expression& x = *end.configuration[i];
+    const Value v = constant_of(e, x, c.dimension, fmt::format("`{}` at the end of a path", c.name));
+    good = good && !v.poisoned;
+    if (v.poisoned) continue;
+    warn_of_degrees(e, v, c.dimension, x);
+    out.back() = v.scalar();
+  }
+  return good;
+}
+
+/// E0242 unless one comes before the other; nothing is said where a value is not known.
+bool in_order(Elaboration& e, const Value& begin, const Value& end, Span span) {
+  if (begin.poisoned || end.poisoned) return false;
+  const auto from = constant_value(e, begin.scalar()), to = constant_value(e, end.scalar());
+  if (!from || !to || *from < *to) return true;
+  e.diagnostics.error("E0242", span, "the path ends before it begins",
+                      fmt::format("A path goes from an earlier {} to a later one.", in_words(e, "time")),
+                      "Exchange the two ends.");
+  return false;
+}
+
+}  // namespace
+
+void elaborate_path(Elaboration& e, const syntax::PathStatement& s, Span span) {
+  if (e.experiment().path) return;  // given twice, which was told
+  PathEnds out;
+  out.span = span;
+  const bool from = configuration(e, s.from, "the begin of the path", out.from);
+  const bool to = configuration(e, s.to, "the end of the path", out.to);
+  const Value begin = constant_of(e, *s.from.at, e.time(), in_words(e, "the time of an end of a path"));
+  const Value end = constant_of(e, *s.to.at, e.time(), in_words(e, "the time of an end of a path"));
+  if (!in_order(e, begin, end, s.to.at->span) || !from || !to) return;
+  out.start = begin.scalar();
+  out.end = end.scalar();
+  e.experiment().path = std::move(out);
+}
+
+// --------------------------------------------------------------------------------------------------- held integrals
+
+void elaborate_integral_constraint(Elaboration& e, const syntax::ConstraintStatement& s, Span span) {
+  const Value integrand = evaluate_formula(e, *s.left);
+  if (integrand.is_vector && !integrand.poisoned) {
+    e.diagnostics.error("E0210", s.left->span, "an integral constraint holds one number, not a vector", "",
+                        "Write one for each component, with .x and .y.");
+    return;
+  }
+  const Dimension expected = integrand.poisoned ? Dimension{} : integrand.dimension * e.time();
+  const Value value = integrand.poisoned || integrand.fits_any
+                          ? Value::poison()
+                          : constant_of(e, *s.right, expected, "the integral of the left side");
+  if (!integrand.poisoned && integrand.order < 0) {
+    e.diagnostics.error("E0423", span, "this constraint contains no coordinate",
+                        "Its integral is the same for every path.", "Write an integrand of coordinates or their derivatives.");
+    return;
+  }
+  if (integrand.poisoned || value.poisoned || refuse_acceleration(e, integrand, *s.left, "an integral constraint")) return;
+  IntegralConstraint c;
+  c.name = s.name ? s.name->text : "";
+  c.integrand = integrand.scalar();
+  c.value = value.scalar();
+  c.dimension = expected;
+  c.span = span;
+  e.system().integral_constraints.push_back(std::move(c));
+}
+
+// ----------------------------------------------------------------------------------------------------- expectations
+
+namespace {
+
+bool states_path(const Elaboration& e) {
+  for (const syntax::Statement& s : e.tree.statements)
+    if (std::get_if<syntax::PathStatement>(&s.body)) return true;
+  return false;
+}
+
+bool refuse_without_path(Elaboration& e, Span span) {
+  if (states_path(e)) return false;
+  e.diagnostics.error("E0243", span, "the model does not say where its path begins and ends",
+                      "An action is an integral between two ends, and a stationary path runs from one to the other.",
+                      "Add them, for example `path from (0, 1) at 0 to (2, 3) at 1`.");
+  return true;
+}
+
+/// action of (x(t), y(t)) from a to b
+bool given_path(Elaboration& e, Expectation& out, const ExpectStatement& s) {
+  const Span whole = cover(s.values.front()->span, s.values.back()->span);
+  bool good = check_count(e, s.values.size(), whole, "this path");
+  for (std::size_t i = 0; i < s.values.size() && good; ++i) {
+    const Coordinate& c = e.system().coordinates[i];
+    const Value v = scalar_of(e, *s.values[i], c.dimension, fmt::format("`{}` along the path", c.name));
+    if (!v.poisoned && v.order >= 0) {
+      const Span at = culprit_of_order(e, *s.values[i], 0);
+      e.diagnostics.error("E0222", at.end > at.begin ? at : s.values[i]->span,
+                          fmt::format("a path is a function of {}, not of coordinates", e.system().independent),
+                          "It says what the coordinates are, each at its place of the list.", "");
+      good = false;
+    }
+    good = good && !v.poisoned;
+    if (good) out.values.push_back(v.scalar());
+  }
+  if (!s.from) return !refuse_without_path(e, out.span) && good;
+  const Value from = constant_of(e, *s.from, e.time(), in_words(e, "the time of an end of a path"));
+  const Value to = constant_of(e, *s.to, e.time(), in_words(e, "the time of an end of a path"));
+  if (!in_order(e, from, to, s.to->span)) return false;
+  out.from = from.scalar();
+  out.to = to.scalar();
+  return good;
+}
+
+}  // namespace
+
+bool expect_action(Elaboration& e, Expectation& out, const ExpectStatement& s) {
+  if (s.values.empty() ? refuse_without_path(e, out.span) : !given_path(e, out, s)) return false;
+  out.dimension = e.system().lagrangian_dimension * e.time();
+  const Value v = constant_of(e, *s.value, out.dimension, "the action");
+  if (v.poisoned) return false;
+  out.value = v.scalar();
+  return true;
+}
+
+bool expect_index(Elaboration& e, Expectation& out, const ExpectStatement& s) {
+  const Value v = constant_of(e, *s.value, Dimension{}, "a Morse index");
+  if (v.poisoned || refuse_without_path(e, out.span)) return false;
+  out.value = v.scalar();
+  return true;
+}
+
+bool expect_on_path(Elaboration& e, Expectation& out, const ExpectStatement& s) {
+  const Value subject = evaluate_formula(e, *s.subject);
+  const Value at = constant_of(e, *s.time, e.time(), in_words(e, "the time of an expectation"));
+  if (subject.poisoned || at.poisoned || refuse_without_path(e, out.span)) return false;
+  if (subject.is_vector) {
+    e.diagnostics.error("E0210", s.subject->span, "an expectation is about a number, not a vector", "",
+                        "Take a component with .x or .y, or its length with norm(…).");
+    return false;
+  }
+  if (refuse_acceleration(e, subject, *s.subject, "what is expected of a path")) return false;
+  out.subject = subject.scalar();
+  out.time = at.scalar();
+  out.dimension = subject.dimension;
+  const Value v = constant_of(e, *s.value, subject.fits_any ? Dimension{} : subject.dimension,
+                              fmt::format("`{}`", e.source.slice(s.subject->span)));
+  if (v.poisoned) return false;
+  out.value = v.scalar();
+  return true;
+}
+
+bool refuse_motion_of_path(Elaboration& e, const ExpectStatement& s, Span span) {
+  using Kind = ExpectStatement::Kind;
+  const bool about_path = s.kind == Kind::Action || s.kind == Kind::MorseIndex || s.kind == Kind::PathAt;
+  if (about_path || s.kind == Kind::Error || e.system().integral_constraints.empty()) return false;
+  e.diagnostics.error("E0244", span, "this expectation is about a motion, and the model holds an integral of its paths",
+                      "The multiplier of an integral belongs to a whole path: without its two ends there is no motion.",
+                      "Expect `action`, `index` or `path q at …` instead.");
+  return true;
+}
+
+}  // namespace maupertuis::elaboration
