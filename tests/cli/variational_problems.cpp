@@ -31,7 +31,7 @@ TEST_CASE("derive with x in the place of t: primes, d/dx, and the cycloid's equa
   const Outcome latex = maup({"derive", "-", "--steps", "--latex"}, brachistochrone);
   CHECK(contains(latex.out, "\\frac{d}{dx}"));
   CHECK(contains(latex.out, "y_1''"));
-  CHECK(!contains(latex.out, "dot{y}"));
+  CHECK(!contains(latex.out.substr(latex.out.find("\\begin{document}")), "dot"));
   const Outcome mathml = maup({"derive", "-", "--mathml"}, brachistochrone);
   CHECK(contains(mathml.out, "&#x2032;&#x2032;"));
   CHECK(!contains(mathml.out, "&#x00A8;"));
