@@ -17,6 +17,7 @@ std::string unit_of(const MechanicalSystem& system, std::size_t i, int order) {
 
 Trajectory section_rows(const SectionResult& r, const MechanicalSystem& system) {
   Trajectory out;
+  out.independent = {system.independent, system.independent_unit()};
   out.columns = {{"orbit", ""}, {"number", ""}};
   for (int order = 0; order <= 1; ++order)
     for (std::size_t i = 0; i < system.coordinates.size(); ++i)
@@ -34,6 +35,7 @@ Trajectory section_rows(const SectionResult& r, const MechanicalSystem& system) 
 
 Trajectory lyapunov_rows(const LyapunovResult& r, const MechanicalSystem& system) {
   Trajectory out;
+  out.independent = {system.independent, system.independent_unit()};
   for (std::size_t j = 0; j < r.exponents.size(); ++j)
     out.columns.push_back({fmt::format("λ{}", j + 1), system.dimensionless ? "" : "1/s"});
   out.times = r.times;

@@ -120,14 +120,7 @@ force q = U
 }
 
 TEST_CASE("Constrained equilibria with their multipliers") {
-  Linearized m(R"(system cartesian
-param m = 2 kg, l = 70 cm, g = 9.81 m/s^2
-coord x, y : length
-point P mass m at (x, y)
-gravity (0, -g)
-constraint x^2 + y^2 = l^2 name rod
-start x = 0.3 m, y = -0.6 m
-)");
+  Linearized m(cartesian_pendulum + "start x = 0.3 m, y = -0.6 m\n");
   const ModalStudy study = m.study();
   REQUIRE(study.entries.size() == 2);
   const ModalEntry& low = study.entries[0];

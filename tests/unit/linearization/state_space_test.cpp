@@ -56,13 +56,7 @@ D = 1/2 b θ1'^2
 }
 
 TEST_CASE("A of a constrained motion, against differences on the constraint") {
-  Linearized m(R"(system cartesian
-param m = 2 kg, l = 70 cm, g = 9.81 m/s^2
-coord x, y : length
-point P mass m at (x, y)
-gravity (0, -g)
-constraint x^2 + y^2 = l^2 name rod
-)");
+  Linearized m(cartesian_pendulum);
   const double x = 0.3, y = -std::sqrt(0.49 - 0.09), v = 1.7;
   const auto follow_y = [](MotionState& s) {  // whichever coordinate is independent, the other follows
     s.q[1] = -std::sqrt(0.49 - s.q[0] * s.q[0]);

@@ -6,6 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
+/// A pendulum of 70 cm in Cartesian coordinates, held by its rod; the start is left to the test.
+inline const std::string cartesian_pendulum = R"(system cartesian
+param m = 2 kg, l = 70 cm, g = 9.81 m/s^2
+coord x, y : length
+point P mass m at (x, y)
+gravity (0, -g)
+constraint x^2 + y^2 = l^2 name rod
+)";
+
 /// A model with its equations at points, starting where it says (numbers alone, no constraints are solved for).
 struct Linearized : ModelText {
   maupertuis::PointEquations at;
