@@ -51,6 +51,7 @@ void add_compare(CommandLine& line);
 void add_reduce(CommandLine& line);
 void add_modes(CommandLine& line);
 void add_orbits(CommandLine& line);
+void add_action(CommandLine& line);
 void add_plot(CommandLine& line);
 void add_report(CommandLine& line);
 void add_fmt(CommandLine& line);

@@ -118,6 +118,7 @@ int run(int argc, char** argv) {
     add_reduce(line);
     add_modes(line);
     add_orbits(line);
+    add_action(line);
     add_plot(line);
     add_report(line);
     add_fmt(line);

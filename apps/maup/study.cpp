@@ -44,6 +44,14 @@ void Study::replace_run(const std::string& statement) {
   tree_.reset();
 }
 
+void Study::replace_path(const std::string& statement) {
+  MAUP_REQUIRE(!elaborated_);
+  const syntax::SyntaxTree* parsed = tree();
+  if (!parsed || wrong()) return;
+  source_ = with_statement<syntax::PathStatement>(source_, *parsed, statement);
+  tree_.reset();
+}
+
 void Study::replace_sweep(const std::string& statement) {
   MAUP_REQUIRE(!elaborated_);
   const syntax::SyntaxTree* parsed = tree();

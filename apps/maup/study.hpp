@@ -26,6 +26,8 @@ class Study {
   const syntax::SyntaxTree* tree();
   /// Puts a `run …` statement in the place of the model's own. Precondition: no later stage was asked for.
   void replace_run(const std::string& statement);
+  /// The same for a `path …` statement.
+  void replace_path(const std::string& statement);
   /// The same for a `sweep …` statement.
   void replace_sweep(const std::string& statement);
   /// Adds statements of the command line after the model's own, one a line: `#` and line ends in them become spaces.

@@ -7,6 +7,7 @@
 ///   01xx text and grammar · 02xx names and statements · 03xx units · 04xx kinematics and physics lint
 ///   05xx not supported yet · 06xx equations · 07xx runs · 08xx files and command line · 09xx expectations · 10xx invariants
 ///   11xx phase space
+///   12xx action
 ///   13xx equilibria, linearization, modes
 ///   14xx orbits
 namespace maupertuis {
@@ -19,6 +20,7 @@ std::span<const CodeEntry> verification_codes();
 std::span<const CodeEntry> comparison_codes();
 std::span<const CodeEntry> invariants_codes();
 std::span<const CodeEntry> hamiltonian_codes();
+std::span<const CodeEntry> action_codes();
 std::span<const CodeEntry> linearization_codes();
 std::span<const CodeEntry> orbits_codes();
 

@@ -3,6 +3,7 @@
 #include <maupertuis/verification.hpp>
 
 #include <maupertuis/along_motion.hpp>
+#include "verification/action_claims.hpp"
 #include "verification/claims.hpp"
 #include "verification/constraint_claims.hpp"
 #include "verification/mode_claims.hpp"
@@ -103,6 +104,10 @@ class Verifier {
       case Kind::Frequencies: case Kind::Equilibrium:
         if (!mode_claims_) mode_claims_.emplace(model_, equations_);
         mode_claims_->decide(e, result);
+        return;
+      case Kind::Action: case Kind::MorseIndex: case Kind::PathAt:
+        if (!action_claims_) action_claims_.emplace(model_, equations_);
+        action_claims_->decide(e, result);
         return;
       case Kind::EventAt:
         result.message = "Not supported yet: this kind of expectation waits for a later version.";
@@ -317,6 +322,7 @@ class Verifier {
   std::optional<AlongMotion> along_;
   std::optional<ConstraintAnalysis> constraints_;
   std::optional<ModeClaims> mode_claims_;
+  std::optional<ActionClaims> action_claims_;
   std::vector<ExpectationResult> results_;
   std::vector<Request> requests_;
   std::vector<std::size_t> energy_lines_;

@@ -110,7 +110,7 @@ TEST_CASE("every command speaks JSON, and a failure is a document too") {
   CHECK(document({"plot", "-", "--json"}, pendulum).at("svg").is_string());
   CHECK(document({"new", "pendulum", "-o", folder.path("p.lag"), "--json"}, "").at("ok") == true);
   CHECK(document({"report", "-", "-o", folder.path("p.html"), "--json"}, pendulum).at("file") == folder.path("p.html"));
-  CHECK(document({"action", "-", "--json"}, pendulum, 1).at("diagnostics").at(0).at("code") == "E0806");
+  CHECK(document({"export", "-", "--json"}, pendulum, 1).at("diagnostics").at(0).at("code") == "E0806");
   for (const char* command : {"check", "derive", "simulate", "plot", "report"}) {
     CAPTURE(command);
     CHECK(document({command, "/no/such/file.lag", "--json"}, "", 2).at("diagnostics").at(0).at("code") == "E0801");

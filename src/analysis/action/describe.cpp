@@ -1,0 +1,98 @@
+#include "analysis/action/fields.hpp"
+#include "analysis/action/inertia.hpp"
+#include "analysis/action/problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace maupertuis::action {
+namespace {
+
+/// p and h_E at an end of the path, of L + Σ λ G.
+void momentum_at(Functional& functional, const Trial& trial, const MotionState& s, std::vector<double>& p,
+                 std::optional<double>& energy) {
+  Density density;
+  functional.evaluate(s.t, s.q.data(), s.v.data(), trial.multipliers, 1, density);
+  const Index n = functional.freedoms();
+  if (!density.finite) {
+    p.assign(static_cast<std::size_t>(n), std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  p.assign(density.gradient.data() + n, density.gradient.data() + 2 * n);
+  energy = density.gradient.tail(n).dot(Eigen::Map<const Vector>(s.v.data(), n)) - density.lagrangian -
+           trial.multipliers.dot(density.integrals);
+}
+
+/// The count of Jacobi fields against that of the discretized second variation. Where the end itself is conjugate, what one of
+/// them sees inside the other may see at the end.
+void combine(const Inertia& inertia, const FieldStudy& fields, bool only_fixed, SecondVariation& out) {
+  out.by_inertia = inertia.negative;
+  out.nullity = inertia.nullity;
+  out.nearest = inertia.nearest;
+  if (!fields.reason.empty()) {
+    out.reason = "The count by Jacobi fields could not be done: " + fields.reason;
+    return;
+  }
+  out.conjugate = fields.inside;
+  out.concavity = fields.concavity;
+  if (!only_fixed && !fields.concavity) {
+    out.reason = "The end is conjugate to the start, so that Jacobi fields do not tell what its freedom adds.";
+    return;
+  }
+  out.by_fields = fields.count() + fields.concavity.value_or(0);
+  if (*out.by_fields == *out.by_inertia) out.index = out.by_inertia;
+  else out.reason = fmt::format("The two counts of the index disagree: {} by inertia, {} by Jacobi fields.", *out.by_inertia, *out.by_fields);
+}
+
+void fill_second(Problem& problem, const Refined& refined, const FixedEnds& fixed, const Vector& least,
+                 const SingularEnds& singular, const ActionOptions& options, StationaryPath& out) {
+  const Trial& trial = refined.coarse;
+  if (!convex_along(problem.functional, trial)) {
+    out.second.reason = "M = ∂²L/∂q'∂q' is not positive definite along the path: neighbours that oscillate fast lower the action "
+                        "without end, and there is no Morse index.";
+    return;
+  }
+  const Inertia inertia = inertia_of(problem.functional, trial, fixed, least);
+  const auto weighted = weighted_equations(problem.equations, trial.multipliers);
+  FieldStudy fields;
+  if (weighted)
+    fields = jacobi_fields(problem.functional, *weighted, problem.equations.lagrangian_expanded, trial, fixed, singular.start,
+                           singular.end, least, options.interrupt);
+  else
+    fields.reason = fields.check.reason = "The equations of L + λ G could not be made.";
+  const auto all = [](const std::vector<bool>& b) { return std::find(b.begin(), b.end(), false) == b.end(); };
+  combine(inertia, fields, !trial.mesh.closed && all(fixed.from) && all(fixed.to), out.second);
+  out.check = fields.check;
+}
+
+}  // namespace
+
+StationaryPath describe(Problem& problem, const Refined& refined, const ActionEnds& ends, const SingularEnds& singular,
+                        const ActionOptions& options, Diagnostics& diagnostics) {
+  StationaryPath out;
+  const Trial& fine = refined.fine;
+  out.path = to_path(fine);
+  out.action = refined.action;
+  out.action_error = refined.action_error;
+  out.path_error = refined.path_error;
+  out.residual = refined.correction;
+  out.multipliers.assign(fine.multipliers.data(), fine.multipliers.data() + fine.multipliers.size());
+  out.turns.assign(static_cast<std::size_t>(problem.n()), 0);
+  const MotionState first = out.path.at(out.path.start), last = out.path.at(out.path.end);
+  out.start_velocity = first.v;
+  momentum_at(problem.functional, fine, first, out.start_momentum, out.start_energy);
+  momentum_at(problem.functional, fine, last, out.end_momentum, out.end_energy);
+  const FixedEnds fixed = fixed_of(ends);
+  const Vector least = problem.least(&ends);
+  fill_second(problem, refined, fixed, least, singular, options, out);
+  if (out.second.by_inertia && out.second.by_fields && !out.second.index)
+    diagnostics.warning("W1201", {}, "the two counts of a Morse index disagree", out.second.reason,
+                        "No index is given for this path. Please report the model.");
+  if (options.variations) out.second.variations = test_variations(problem, refined.coarse, fixed, least);
+  return out;
+}
+
+}  // namespace maupertuis::action

@@ -1,0 +1,227 @@
+#include "analysis/action/discrete.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace maupertuis::action {
+
+double Mesh::time(Index k) const {
+  const Index e = std::min(k / rule->degree, elements() - 1), j = k - e * rule->degree;
+  return k + 1 == elements() * rule->degree + 1 ? t(1) : t(parameter(e, rule->nodes[j]));
+}
+
+Mesh even_mesh(std::shared_ptr<const Rule> rule, double start, double end, Index elements, bool closed, Pace pace) {
+  Mesh out{std::move(rule), start, end - start, pace, closed, {}, {}};
+  for (Index e = 0; e < elements; ++e) {
+    const double from = static_cast<double>(e) / static_cast<double>(elements);
+    out.begins.push_back(from);
+    out.lengths.push_back(static_cast<double>(e + 1) / static_cast<double>(elements) - from);
+  }
+  return out;
+}
+
+Place place_of(const Mesh& mesh, Index e, Index g) {
+  const Rule& rule = *mesh.rule;
+  const double s = mesh.parameter(e, rule.points[g]), rate = mesh.rate(s), h = mesh.lengths[static_cast<std::size_t>(e)];
+  return {mesh.t(s), h / 2 * rule.weights[g] * rate, rule.value.row(g).transpose(), rule.slope.row(g).transpose() * (2 / (h * rate))};
+}
+
+Matrix Trial::element(Index e) const {
+  const Index p = mesh.rule->degree;
+  Matrix out(q.rows(), p + 1);
+  for (Index j = 0; j <= p; ++j) {
+    out.col(j) = q.col(mesh.node(e, j));
+    if (mesh.wraps(e, j)) out.col(j) += advance;
+  }
+  return out;
+}
+
+Trial halved(const Trial& from, const std::vector<bool>& which) {
+  const Rule& rule = *from.mesh.rule;
+  const Index p = rule.degree;
+  Trial out{from.mesh, {}, from.multipliers, from.advance};
+  out.mesh.begins.clear();
+  out.mesh.lengths.clear();
+  std::vector<Matrix> pieces;
+  for (Index e = 0; e < from.mesh.elements(); ++e) {
+    const auto at = static_cast<std::size_t>(e);
+    const double begin = from.mesh.begins[at], length = from.mesh.lengths[at];
+    const Matrix values = from.element(e);
+    const int parts = which[at] ? 2 : 1;
+    for (int part = 0; part < parts; ++part) {
+      out.mesh.begins.push_back(begin + part * length / parts);
+      out.mesh.lengths.push_back(length / parts);
+      if (parts == 1) {
+        pieces.push_back(values);
+        continue;
+      }
+      Matrix piece(values.rows(), p + 1);
+      for (Index j = 0; j <= p; ++j) piece.col(j) = values * rule.value_at(rule.nodes[j] / 2 + (part == 0 ? -0.5 : 0.5));
+      if (part == 0) piece.col(0) = values.col(0);
+      else piece.col(p) = values.col(p);
+      pieces.push_back(std::move(piece));
+    }
+  }
+  out.q.resize(from.q.rows(), out.mesh.nodes());
+  for (Index e = 0; e < out.mesh.elements(); ++e)
+    for (Index j = 0; j <= p; ++j)
+      if (!out.mesh.wraps(e, j)) out.q.col(out.mesh.node(e, j)) = pieces[static_cast<std::size_t>(e)].col(j);
+  return out;
+}
+
+ActionPath to_path(const Trial& trial) {
+  ActionPath out;
+  out.degree = static_cast<std::size_t>(trial.mesh.rule->degree);
+  out.coordinates = static_cast<std::size_t>(trial.q.rows());
+  out.start = trial.mesh.start;
+  out.end = trial.mesh.t(1);
+  out.pace = trial.mesh.pace;
+  out.breaks = trial.mesh.begins;
+  out.breaks.push_back(1);
+  for (Index e = 0; e < trial.mesh.elements(); ++e) {
+    const Matrix values = trial.element(e);
+    out.nodes.insert(out.nodes.end(), values.data(), values.data() + values.size());
+  }
+  return out;
+}
+
+namespace {
+
+/// Adds weight · (a(j) b(l)) · block to the blocks (j, l) of an element.
+void add_blocks(Matrix& to, const Matrix& block, const Vector& a, const Vector& b, double weight) {
+  const Index n = block.rows();
+  for (Index j = 0; j < a.size(); ++j)
+    for (Index l = 0; l < b.size(); ++l) to.block(j * n, l * n, n, n) += (weight * a[j] * b[l]) * block;
+}
+
+/// |M_ii| on the diagonal, where M itself is no norm.
+Matrix norm_of(const Matrix& mass) {
+  Matrix out = Matrix::Zero(mass.rows(), mass.cols());
+  const double largest = mass.diagonal().cwiseAbs().maxCoeff();
+  for (Index i = 0; i < mass.rows(); ++i) out(i, i) = std::max(std::abs(mass(i, i)), 1e-12 * largest);
+  return out;
+}
+
+struct Assembler {
+  Functional& functional;
+  const Trial& trial;
+  int order;
+  Assembly out;
+  Density density;
+
+  void element(Index e) {
+    const Rule& rule = *trial.mesh.rule;
+    const Matrix nodes = trial.element(e);
+    const Index n = nodes.rows(), size = n * (rule.degree + 1);
+    Matrix hessian, kinetic;
+    if (order == 2) hessian = kinetic = Matrix::Zero(size, size);
+    for (Index g = 0; g < rule.points.size(); ++g) {
+      const auto [t, w, phi, dphi] = place_of(trial.mesh, e, g);
+      const Vector q = nodes * phi, v = nodes * dphi;
+      functional.evaluate(t, q.data(), v.data(), trial.multipliers, order, density);
+      out.finite = out.finite && density.finite;
+      if (!out.finite) return;
+      out.action += w * density.lagrangian;
+      out.action_size += std::abs(w * density.lagrangian);
+      out.integrals += w * density.integrals;
+      if (order > 0) add_gradient(e, phi, dphi, w);
+      if (order == 2) add_hessian(hessian, kinetic, phi, dphi, w);
+    }
+    if (order < 2) return;
+    out.hessians.push_back(std::move(hessian));
+    out.kinetic.push_back(std::move(kinetic));
+  }
+
+  void add_gradient(Index e, const Vector& phi, const Vector& dphi, double w) {
+    const Index n = functional.freedoms();
+    for (Index j = 0; j < phi.size(); ++j) {
+      const Index first = trial.mesh.node(e, j) * n;
+      out.gradient.segment(first, n) += w * (phi[j] * density.gradient.head(n) + dphi[j] * density.gradient.tail(n));
+      if (functional.integrals() > 0)
+        out.integral_gradients.middleRows(first, n) +=
+            w * (phi[j] * density.integral_gradients.topRows(n) + dphi[j] * density.integral_gradients.bottomRows(n));
+    }
+  }
+
+  void add_hessian(Matrix& hessian, Matrix& kinetic, const Vector& phi, const Vector& dphi, double w) {
+    const Index n = functional.freedoms();
+    const Matrix qq = density.hessian.topLeftCorner(n, n), qv = density.hessian.topRightCorner(n, n),
+                 vv = density.hessian.bottomRightCorner(n, n);
+    add_blocks(hessian, qq, phi, phi, w);
+    add_blocks(hessian, qv, phi, dphi, w);
+    add_blocks(hessian, qv.transpose(), dphi, phi, w);
+    add_blocks(hessian, vv, dphi, dphi, w);
+    add_blocks(kinetic, norm_of(vv), dphi, dphi, w);
+  }
+};
+
+}  // namespace
+
+Assembly assemble(Functional& functional, const Trial& trial, int order) {
+  Assembler a{functional, trial, order, {}, {}};
+  const Index unknowns = trial.q.size(), k = functional.integrals();
+  a.out.integrals = Vector::Zero(k);
+  a.out.gradient = Vector::Zero(order > 0 ? unknowns : 0);
+  a.out.integral_gradients = Matrix::Zero(order > 0 ? unknowns : 0, k);
+  for (Index e = 0; e < trial.mesh.elements() && a.out.finite; ++e) a.element(e);
+  return std::move(a.out);
+}
+
+}  // namespace maupertuis::action
+
+namespace maupertuis {
+
+double pace(Pace which, double s) {
+  const double left = 1 - s;
+  switch (which) {
+    case Pace::Even: return s;
+    case Pace::SlowStart: return s * s * s;
+    case Pace::SlowEnd: return 1 - left * left * left;
+    case Pace::SlowEnds: return s * s * s * (10 - 15 * s + 6 * s * s);
+  }
+  return s;
+}
+
+double pace_rate(Pace which, double s) {
+  const double left = 1 - s;
+  switch (which) {
+    case Pace::Even: return 1;
+    case Pace::SlowStart: return 3 * s * s;
+    case Pace::SlowEnd: return 3 * left * left;
+    case Pace::SlowEnds: return 30 * s * s * left * left;
+  }
+  return 1;
+}
+
+namespace {
+
+/// s of a part of the way.
+double parameter_of(Pace which, double part) {
+  if (which == Pace::Even || part <= 0 || part >= 1) return std::clamp(part, 0.0, 1.0);
+  if (which == Pace::SlowStart) return std::cbrt(part);
+  if (which == Pace::SlowEnd) return 1 - std::cbrt(1 - part);
+  double low = 0, high = 1;
+  for (int turn = 0; turn < 64; ++turn) {
+    const double middle = (low + high) / 2;
+    (pace(which, middle) < part ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+}  // namespace
+
+MotionState ActionPath::at(double t) const {
+  using action::Index;
+  const double s = parameter_of(pace, (t - start) / (end - start));
+  const auto above = std::upper_bound(breaks.begin() + 1, breaks.end() - 1, s);
+  const auto e = static_cast<std::size_t>(above - breaks.begin() - 1);
+  const double h = breaks[e + 1] - breaks[e], rate = (end - start) * pace_rate(pace, s);
+  const action::Rule rule(static_cast<Index>(degree));
+  const double xi = std::clamp(2 * (s - breaks[e]) / h - 1, -1.0, 1.0);
+  const auto n = static_cast<Index>(coordinates);
+  const Eigen::Map<const action::Matrix> values(nodes.data() + e * (degree + 1) * coordinates, n, rule.degree + 1);
+  const action::Vector q = values * rule.value_at(xi), v = values * rule.slope_at(xi) * (2 / (h * rate));
+  return {t, {q.data(), q.data() + n}, {v.data(), v.data() + n}};
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,74 @@
+#pragma once
+#include "analysis/action/rule.hpp"
+
+#include <maupertuis/action.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace maupertuis::action {
+
+/// Elements in the parameter s of a path.
+struct Mesh {
+  std::shared_ptr<const Rule> rule;
+  double start = 0, whole = 0;          // t = start + whole · g(s)
+  Pace pace = Pace::Even;
+  bool closed = false;                  // the last node is the first one
+  std::vector<double> begins, lengths;  // [elements] of s
+
+  Index elements() const { return static_cast<Index>(lengths.size()); }
+  Index nodes() const { return elements() * rule->degree + (closed ? 0 : 1); }
+  Index node(Index element, Index j) const {
+    const Index k = element * rule->degree + j;
+    return closed && k == nodes() ? 0 : k;
+  }
+  bool wraps(Index element, Index j) const { return closed && element * rule->degree + j == nodes(); }
+  double t(double s) const { return start + whole * maupertuis::pace(pace, s); }
+  double rate(double s) const { return whole * pace_rate(pace, s); }
+  double time(Index node) const;
+  /// s of a point ξ of an element.
+  double parameter(Index element, double xi) const {
+    return begins[static_cast<std::size_t>(element)] + lengths[static_cast<std::size_t>(element)] * (1 + xi) / 2;
+  }
+};
+
+/// Elements of equal length in s.
+Mesh even_mesh(std::shared_ptr<const Rule> rule, double start, double end, Index elements, bool closed = false,
+               Pace pace = Pace::Even);
+
+/// A path by its values at the nodes, with the multipliers of the integral constraints.
+struct Trial {
+  Mesh mesh;
+  Matrix q;            // [n × nodes]
+  Vector multipliers;  // [k]
+  Vector advance;      // [n] of a closed path: by how much q grows in one turn; else zero
+
+  Matrix element(Index e) const;  // [n × degree + 1]
+};
+
+/// The same path with some elements halved.
+Trial halved(const Trial& from, const std::vector<bool>& which);
+ActionPath to_path(const Trial& trial);
+
+/// Where a point of Gauss's rule lies, and what it counts: values at t from the nodes, derivatives by t, weight.
+struct Place {
+  double t = 0, weight = 0;
+  Vector value, slope;  // [p + 1]
+};
+Place place_of(const Mesh& mesh, Index element, Index point);
+
+/// S and its derivatives by the nodes.
+struct Assembly {
+  bool finite = true;
+  double action = 0, action_size = 0;    // Σ L, Σ |L|
+  Vector integrals;                      // [k]
+  Vector gradient;                       // [n nodes] of S + Σ λ ∫ G
+  Matrix integral_gradients;             // [n nodes × k]
+  std::vector<Matrix> hessians;          // [elements] each [n (degree + 1)]², node by node
+  std::vector<Matrix> kinetic;           // order 2: the same for ∫ ξ' |M| ξ' dt: by what eigenvalues are measured
+};
+
+/// order as of Functional::evaluate.
+Assembly assemble(Functional& functional, const Trial& trial, int order);
+
+}  // namespace maupertuis::action

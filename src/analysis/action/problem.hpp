@@ -1,0 +1,50 @@
+#pragma once
+#include "analysis/action/refine.hpp"
+
+#include <maupertuis/action.hpp>
+
+#include <atomic>
+#include <string>
+
+/// What every question about the action begins with.
+namespace maupertuis::action {
+
+/// False with E1201: forces that no Lagrangian gives, constraints between velocities.
+bool has_action(const EquationsOfMotion& equations, Diagnostics& diagnostics);
+
+/// One action with its ends, in numbers.
+struct Problem {
+  Problem(const Model& model, const EquationsOfMotion& equations);
+
+  const Model& model;
+  const EquationsOfMotion& equations;
+  Functional functional;
+  std::shared_ptr<const Rule> rule;
+  Vector typical;  // [n] how large coordinates are, before a path is known
+
+  Index n() const { return functional.freedoms(); }
+  double number(Expr e) const;
+  /// Below these sizes nothing is resolved: a thousandth of the typical ones, or the way between the ends.
+  Vector least(const ActionEnds* ends) const;
+  /// How many elements a path of this duration needs at first, by the largest frequency along it.
+  Index first_elements(const Trial& trial) const;
+  SingularEnds singular_ends(const ActionEnds& ends);
+};
+
+FixedEnds fixed_of(const ActionEnds& ends);
+std::string with_unit(double value, const std::string& unit);
+/// "s", or the unit of another independent variable; empty for bare numbers.
+std::string unit_of_independent(const MechanicalSystem& system);
+/// "t = 2 s"
+std::string place(double t, const MechanicalSystem& system);
+
+/// Moves every node onto φ = 0; false where that does not work.
+bool move_onto_constraints(Functional& functional, Trial& trial, const FixedEnds& fixed, const Matrix& scale);
+
+/// All that is said of one stationary path. `refined.coarse` is what the second variation is taken on.
+StationaryPath describe(Problem& problem, const Refined& refined, const ActionEnds& ends, const SingularEnds& singular,
+                        const ActionOptions& options, Diagnostics& diagnostics);
+/// S on neighbours of a path; ends that are fixed stay.
+std::vector<TestVariation> test_variations(Problem& problem, const Trial& trial, const FixedEnds& fixed, const Vector& least);
+
+}  // namespace maupertuis::action

@@ -1,0 +1,250 @@
+#include "analysis/action/problem.hpp"
+#include "analysis/action/shots.hpp"
+#include "analysis/action/starts.hpp"
+
+#include <fmt/format.h>
+
+#include <eigen3/Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace maupertuis {
+namespace {
+
+using namespace action;
+
+constexpr double same_path = 1e-6;  // of the size of the coordinates
+constexpr int looks = 33;           // places at which paths are compared
+/// What a search may cost: iterations of Newton's method times their work, about the number of operations.
+constexpr double budget = 2e9;
+constexpr std::size_t starts_at_infinity = 3;  // where L is infinite at an end: what the first do not reach the others do not
+
+bool same(const Trial& a, const Trial& b, const Vector& least) {
+  const ActionPath p = to_path(a), q = to_path(b);
+  const double begin = p.start, whole = p.end - p.start;
+  for (int k = 0; k < looks; ++k) {
+    const double t = begin + whole * (k + 0.5) / looks;
+    const MotionState s = p.at(t), r = q.at(t);
+    for (Index i = 0; i < least.size(); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (std::abs(s.q[at] - r.q[at]) > same_path * std::max(least[i], std::abs(s.q[at]))) return false;
+    }
+  }
+  return true;
+}
+
+bool check_ends(Problem& problem, const ActionEnds& ends, Diagnostics& diagnostics) {
+  const MechanicalSystem& system = problem.model.system;
+  const auto span = problem.model.experiment.path ? std::optional(problem.model.experiment.path->span) : std::nullopt;
+  if (!(ends.start < ends.end) || !std::isfinite(ends.end - ends.start)) {
+    diagnostics.error("E1203", span, fmt::format("the path ends at {}, not after its start at {}", place(ends.end, system), place(ends.start, system)),
+                      "The action is an integral from the earlier end to the later one.", "Write the earlier end first.");
+    return false;
+  }
+  if (!system.constrained()) return true;
+  const ConstraintManifold manifold(problem.equations);
+  for (const bool first : {true, false}) {
+    MotionState s{first ? ends.start : ends.end, {}, std::vector<double>(system.coordinates.size())};
+    const auto& at = first ? ends.from : ends.to;
+    for (const auto& value : at) s.q.push_back(value.value_or(0));
+    if (std::any_of(at.begin(), at.end(), [](const auto& x) { return !x; })) continue;
+    const std::vector<double> off = manifold.relative_values(s);
+    for (std::size_t i = 0; i < off.size(); ++i) {
+      if (off[i] < 1e-9) continue;
+      diagnostics.error("E1202", span,
+                        fmt::format("the {} of the path is off {}, by {:.3g} of the size of its terms", first ? "beginning" : "end",
+                                    system.constraint_label(i), off[i]),
+                        "Every point of a path has to satisfy the constraints, its ends included.",
+                        "Move the end onto the constraint, or leave a component `free` that the constraint then fixes.");
+      return false;
+    }
+  }
+  return true;
+}
+
+class Search {
+ public:
+  Search(Problem& problem, const ActionEnds& ends, const ActionOptions& options)
+      : problem_(problem), ends_(ends), options_(options), fixed_(fixed_of(ends)), least_(problem.least(&ends)),
+        singular_(problem.singular_ends(ends)) {}
+
+  void run() {
+    const bool one = problem_.n() == 1 && ends_.from[0] && ends_.to[0] && problem_.functional.constraints() == 0 &&
+                     problem_.functional.integrals() == 0 && !singular_.any();
+    if (one) from_shots();
+    else from_bent_lines();
+    if (found_.empty()) by_continuation();
+  }
+
+  std::vector<std::pair<Refined, std::string>> found_;
+  std::size_t starts_ = 0, failed_ = 0;
+  std::string bound_;
+  const SingularEnds& singular() const { return singular_; }
+  const Vector& least() const { return least_; }
+
+ private:
+  bool stopped() const { return options_.interrupt && options_.interrupt->load(); }
+
+  /// One start; false where it leads nowhere.
+  void attempt(Trial trial, const std::string& name) {
+    ++starts_;
+    const auto count_failure = [this] { ++failed_; };
+    if (!move_onto_constraints(problem_.functional, trial, fixed_, even_scale(trial, least_))) return count_failure();
+    guess_multipliers(trial);
+    const NewtonOptions newton{40, options_.interrupt};
+    const NewtonResult first = solve_stationarity(problem_.functional, trial, fixed_, path_scale(trial, least_), newton);
+    const auto d = static_cast<double>(problem_.n());
+    work_ += first.iterations * static_cast<double>(trial.q.cols()) * (400 + 40 * d * d * d + 60 * d * d);
+    if (!first.converged) return count_failure();
+    if (known(trial)) return;
+    auto refined = refine(problem_.functional, std::move(trial), fixed_, least_, {40, options_.interrupt});
+    if (!refined) return count_failure();
+    if (!known(refined->coarse)) found_.emplace_back(std::move(*refined), name);
+  }
+
+  /// λ of the integral constraints that balances the gradient best where the nodes are free to move.
+  void guess_multipliers(Trial& trial) const {
+    const Index k = problem_.functional.integrals(), n = trial.q.rows();
+    if (k == 0) return;
+    const Assembly a = assemble(problem_.functional, trial, 1);
+    if (!a.finite) return;
+    const Index inner = a.gradient.size() - 2 * n;
+    const Matrix c = a.integral_gradients.middleRows(n, inner);
+    const Vector lambda = trial.multipliers - c.colPivHouseholderQr().solve(a.gradient.segment(n, inner));
+    if (lambda.allFinite()) trial.multipliers = lambda;
+  }
+
+  bool known(const Trial& trial) const {
+    return std::any_of(found_.begin(), found_.end(), [&](const auto& f) { return same(f.first.coarse, trial, least_); });
+  }
+
+  void from_bent_lines() {
+    std::size_t tried = 0;
+    const auto all = starts_between(problem_, ends_);
+    for (const Start& s : all) {
+      if (stopped() || found_.size() >= options_.paths || work_ > budget || (singular_.any() && tried == starts_at_infinity)) break;
+      attempt(s.trial, s.name);
+      ++tried;
+    }
+    bound_ = fmt::format("Newton's method began from {} of {} lines, straight and bent; others may exist.", tried, all.size());
+  }
+
+  void from_shots() {
+    const Shots shots = shoot_all(problem_, ends_, options_.interrupt);
+    attempt(starts_between(problem_, ends_).front().trial, "the straight line");
+    for (const Trial& t : shots.arrivals)
+      if (!stopped()) attempt(t, "a shot");
+    const MechanicalSystem& system = problem_.model.system;
+    bound_ = fmt::format("{} shots with |{}'({:g})| up to {:.4g} tell apart no more than these; faster paths may exist.", shots.count,
+                         system.coordinates[0].name, ends_.start, shots.fastest);
+  }
+
+  /// From a short duration, where the line is nearly stationary, to the whole one.
+  void by_continuation() {
+    auto all = starts_between(problem_, ends_);
+    Trial trial = all.front().trial;
+    const double whole = trial.mesh.whole;
+    double part = 1.0 / 64, step = part;
+    bool any = false;
+    for (int turn = 0; turn < 60 && !stopped(); ++turn) {
+      Trial next = trial;
+      next.mesh.whole = part * whole;
+      if (move_onto_constraints(problem_.functional, next, fixed_, even_scale(next, least_)) &&
+          solve_stationarity(problem_.functional, next, fixed_, path_scale(next, least_), {25, options_.interrupt}).converged) {
+        trial = next;
+        any = true;
+        if (part == 1) break;
+        step *= 1.7;
+      } else {
+        if (!any || step < 1e-3) break;
+        part -= step;
+        step /= 2;
+      }
+      part = std::min(1.0, part + step);
+    }
+    if (trial.mesh.whole == whole) attempt(trial, "continuation from a short duration");
+    else reached_ = any ? part : 0;
+  }
+
+  Problem& problem_;
+  const ActionEnds& ends_;
+  const ActionOptions& options_;
+  FixedEnds fixed_;
+  Vector least_;
+  SingularEnds singular_;
+  double work_ = 0;
+
+ public:
+  double reached_ = 1;  // of the duration, by continuation
+};
+
+void refuse_no_path(const Search& search, const Problem& problem, const ActionEnds& ends, Diagnostics& diagnostics) {
+  const auto span = problem.model.experiment.path ? std::optional(problem.model.experiment.path->span) : std::nullopt;
+  std::string reason = fmt::format("Newton's method on the stationarity of S began from {} lines between the ends and found no path.", search.starts_);
+  if (search.reached_ > 0 && search.reached_ < 1)
+    reason += fmt::format(" From the path of a short duration it could be followed to {:.3g} of this one.", search.reached_);
+  if (search.singular().any())
+    reason += " L is infinite at an end, and next to it Newton's method has little room: an end just beside it may be reached.";
+  diagnostics.error("E1204", span, fmt::format("no stationary path from {} to {} was found", place(ends.start, problem.model.system), place(ends.end, problem.model.system)),
+                    reason,
+                    "The end may not be reachable: beyond what the energy or the constraints allow, where L has no value, or conjugate to "
+                    "the start, as after half a period of a harmonic oscillator. Try other ends, or another duration.");
+}
+
+/// The same ends with each angle that is fixed at both some whole turns further.
+std::vector<std::pair<ActionEnds, std::vector<int>>> with_turns(const ActionEnds& ends, const MechanicalSystem& system, std::size_t turns) {
+  std::vector<std::pair<ActionEnds, std::vector<int>>> out{{ends, std::vector<int>(ends.to.size(), 0)}};
+  for (std::size_t i = 0; i < ends.to.size(); ++i) {
+    if (system.coordinates[i].kind != "angle" || !ends.to[i]) continue;
+    for (int k = 1; k <= static_cast<int>(turns); ++k)
+      for (const int s : {k, -k}) {
+        auto next = out.front();
+        *next.first.to[i] += 2 * std::numbers::pi * s;
+        next.second[i] = s;
+        out.push_back(std::move(next));
+      }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOfMotion& equations, const ActionEnds& ends,
+                                           const ActionOptions& options, Diagnostics& diagnostics) {
+  if (!has_action(equations, diagnostics)) return std::nullopt;
+  Problem problem(model, equations);
+  if (!check_ends(problem, ends, diagnostics)) return std::nullopt;
+  PathSearch out;
+  out.ends = ends;
+  for (const auto& [aim, turns] : with_turns(ends, model.system, options.turns)) {
+    Search search(problem, aim, options);
+    search.run();
+    out.starts += search.starts_;
+    out.failed += search.failed_;
+    out.bound = search.bound_;
+    if (search.found_.empty() && options.turns == 0) {
+      refuse_no_path(search, problem, ends, diagnostics);
+      return std::nullopt;
+    }
+    std::sort(search.found_.begin(), search.found_.end(), [](const auto& a, const auto& b) { return a.first.action < b.first.action; });
+    if (search.found_.size() > options.paths) {
+      out.bound = fmt::format("{} paths were found, of which the {} with the smallest action are shown.", search.found_.size(), options.paths);
+      search.found_.resize(options.paths);
+    }
+    for (const auto& [refined, name] : search.found_) {
+      out.paths.push_back(describe(problem, refined, aim, search.singular(), options, diagnostics));
+      out.paths.back().found_from = name;
+      out.paths.back().turns = turns;
+    }
+  }
+  if (out.paths.empty()) {
+    refuse_no_path(Search(problem, ends, options), problem, ends, diagnostics);
+    return std::nullopt;
+  }
+  std::stable_sort(out.paths.begin(), out.paths.end(), [](const auto& a, const auto& b) { return a.action < b.action; });
+  return out;
+}
+
+}  // namespace maupertuis

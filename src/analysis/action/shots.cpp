@@ -1,0 +1,115 @@
+#include "analysis/action/shots.hpp"
+
+#include <maupertuis/integrator.hpp>
+#include <maupertuis/motion_kernel.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace maupertuis::action {
+namespace {
+
+constexpr int even_shots = 401;
+constexpr std::size_t most_shots = 3000;
+constexpr double coarse = 0.25;  // of the typical size: neighbouring shots that arrive further apart have one between them
+constexpr int most_halvings = 12;
+constexpr double near_zero_of_root = 1e-10;
+
+struct Shot {
+  double speed = 0;
+  std::optional<double> arrival;  // q(end) − wanted; nothing: the motion ends before
+};
+
+class Shooter {
+ public:
+  Shooter(Problem& problem, const ActionEnds& ends, const std::atomic<bool>* interrupt)
+      : problem_(problem), ends_(ends), from_(*ends.from[0]), to_(*ends.to[0]), kernel_(build_kernel(motion_source(problem.equations))),
+        stepper_(kernel_, parameter_values(*problem.equations.system), {.maximum_steps = 20'000, .interrupt = interrupt}) {}
+
+  Shots run() {
+    out_.fastest = fastest();
+    Shot before = shoot(-out_.fastest);
+    for (int k = 1; k < even_shots; ++k) {
+      const Shot here = shoot(out_.fastest * (2.0 * k / (even_shots - 1) - 1));
+      between(before, here, most_halvings);
+      before = here;
+    }
+    return std::move(out_);
+  }
+
+ private:
+  /// Twice what the way asks for, and four times that of a swing of the typical size at the fastest frequency.
+  double fastest() const {
+    Trial line{even_mesh(problem_.rule, ends_.start, ends_.end, 1, false), {}, Vector::Zero(0), Vector::Zero(1)};
+    line.q.resize(1, line.mesh.nodes());
+    for (Index k = 0; k < line.q.cols(); ++k)
+      line.q(0, k) = from_ + (to_ - from_) * (line.mesh.time(k) - ends_.start) / (ends_.end - ends_.start);
+    const double frequency = static_cast<double>(problem_.first_elements(line)) * 3.14159 / (ends_.end - ends_.start);
+    return 2 * std::abs(to_ - from_) / (ends_.end - ends_.start) + std::max(1.0, frequency) * problem_.typical[0];
+  }
+
+  Shot shoot(double speed) {
+    ++out_.count;
+    stepper_.start(ends_.start, {&from_, 1}, {&speed, 1});
+    while (stepper_.time() != ends_.end)
+      if (stepper_.step(ends_.end).ending != StepEnding::None) return {speed, std::nullopt};
+    const double arrival = stepper_.q()[0] - to_;
+    return {speed, std::isfinite(arrival) ? std::optional(arrival) : std::nullopt};
+  }
+
+  void between(const Shot& a, const Shot& b, int halvings) {
+    if (!a.arrival || !b.arrival) return;
+    const bool crosses = (*a.arrival < 0) != (*b.arrival < 0);
+    if (halvings > 0 && out_.count < most_shots && std::abs(*a.arrival - *b.arrival) > coarse * problem_.typical[0]) {
+      const Shot middle = shoot((a.speed + b.speed) / 2);
+      between(a, middle, halvings - 1);
+      return between(middle, b, halvings - 1);
+    }
+    if (crosses) keep(a, b);
+  }
+
+  void keep(Shot a, Shot b) {
+    for (int turn = 0; turn < 60 && std::abs(b.speed - a.speed) > near_zero_of_root * out_.fastest; ++turn) {
+      const Shot middle = shoot((a.speed + b.speed) / 2);
+      if (!middle.arrival) return;
+      ((*middle.arrival < 0) == (*a.arrival < 0) ? a : b) = middle;
+    }
+    out_.arrivals.push_back(path_of((a.speed + b.speed) / 2));
+  }
+
+  /// The motion itself at the nodes of a mesh with an element for every two steps.
+  Trial path_of(double speed) {
+    stepper_.start(ends_.start, {&from_, 1}, {&speed, 1});
+    std::size_t steps = 0;
+    while (stepper_.time() != ends_.end && stepper_.step(ends_.end).ending == StepEnding::None) ++steps;
+    Trial out{even_mesh(problem_.rule, ends_.start, ends_.end, std::clamp<Index>(static_cast<Index>(steps), 4, 80), false), {},
+              Vector::Zero(0), Vector::Zero(1)};
+    out.q = Matrix::Constant(1, out.mesh.nodes(), from_);
+    stepper_.start(ends_.start, {&from_, 1}, {&speed, 1});
+    Index k = 1;
+    while (stepper_.time() != ends_.end && stepper_.step(ends_.end).ending == StepEnding::None)
+      for (double q = 0, v = 0; k < out.q.cols() && stepper_.covers(out.mesh.time(k)); ++k) {
+        stepper_.state(out.mesh.time(k), {&q, 1}, {&v, 1});
+        out.q(0, k) = q;
+      }
+    for (; k < out.q.cols(); ++k) out.q(0, k) = to_;
+    out.q(0, out.q.cols() - 1) = to_;
+    return out;
+  }
+
+  Problem& problem_;
+  const ActionEnds& ends_;
+  double from_, to_;
+  Kernel kernel_;
+  TaylorStepper stepper_;
+  Shots out_;
+};
+
+}  // namespace
+
+Shots shoot_all(Problem& problem, const ActionEnds& ends, const std::atomic<bool>* interrupt) {
+  return Shooter(problem, ends, interrupt).run();
+}
+
+}  // namespace maupertuis::action

@@ -1,0 +1,76 @@
+#include "analysis/action/starts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace maupertuis::action {
+namespace {
+
+constexpr int bend_waves = 3, random_waves = 4, random_starts = 24;
+
+/// Where a free component begins: as the other end, or as the model starts.
+Vector end_value(const Problem& problem, const std::vector<std::optional<double>>& at, const std::vector<std::optional<double>>& other) {
+  Vector out = Vector::Zero(problem.n());
+  for (const StartValue& s : problem.model.experiment.start)
+    if (s.order == 0) out[static_cast<Index>(s.coordinate)] = problem.number(s.value);
+  for (Index i = 0; i < out.size(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (at[k]) out[i] = *at[k];
+    else if (other[k]) out[i] = *other[k];
+  }
+  return out;
+}
+
+/// How far a bend reaches: the way itself, or a typical size.
+Vector reach(const Problem& problem, const Vector& from, const Vector& to) {
+  return (to - from).cwiseAbs().cwiseMax(problem.typical);
+}
+
+}  // namespace
+
+std::vector<Start> starts_between(Problem& problem, const ActionEnds& ends) {
+  const Vector from = end_value(problem, ends.from, ends.to), to = end_value(problem, ends.to, ends.from);
+  const Vector size = reach(problem, from, to);
+  const SingularEnds singular = problem.singular_ends(ends);
+  const auto line_on = [&](const Mesh& mesh) {
+    Trial out{mesh, Matrix(problem.n(), mesh.nodes()), Vector::Zero(problem.functional.integrals()), Vector::Zero(problem.n())};
+    for (Index k = 0; k < mesh.nodes(); ++k) {
+      // Next to an end where L is infinite paths are steep: as t^(2/3), which is as good a guess as any.
+      const double part = (mesh.time(k) - ends.start) / (ends.end - ends.start);
+      out.q.col(k) = from + (to - from) * (singular.start ? std::cbrt(part * part) : singular.end ? 1 - std::cbrt((1 - part) * (1 - part)) : part);
+    }
+    out.q.col(mesh.nodes() - 1) = to;
+    return out;
+  };
+  const Trial rough = line_on(even_mesh(problem.rule, ends.start, ends.end, 2, false, singular.pace()));
+  const Trial line = line_on(even_mesh(problem.rule, ends.start, ends.end, problem.first_elements(rough), false, singular.pace()));
+  std::vector<Start> out{{"the straight line", line}};
+  const auto bend = [&](Trial& trial, Index i, int k, double by) {
+    for (Index node = 1; node + 1 < trial.q.cols(); ++node)
+      trial.q(i, node) += by * size[i] * std::sin(k * std::numbers::pi * (trial.mesh.time(node) - ends.start) / (ends.end - ends.start));
+  };
+  for (int k = 1; k <= bend_waves; ++k)
+    for (const double by : {0.5, -0.5, 1.5, -1.5})
+      for (Index i = 0; i < problem.n(); ++i) {
+        Start s{fmt::format("the line bent by {:g} sin({}π τ) in {}", by * size[i], k == 1 ? "" : std::to_string(k),
+                            problem.equations.system->coordinates[static_cast<std::size_t>(i)].name),
+                line};
+        bend(s.trial, i, k, by);
+        out.push_back(std::move(s));
+      }
+  std::mt19937_64 random(20240607);
+  for (int r = 0; r < random_starts; ++r) {
+    Start s{fmt::format("the line bent at random (number {})", r + 1), line};
+    for (Index i = 0; i < problem.n(); ++i)
+      for (int k = 1; k <= random_waves; ++k)
+        bend(s.trial, i, k, 3 * (2 * std::generate_canonical<double, 53>(random) - 1) / k);
+    out.push_back(std::move(s));
+  }
+  return out;
+}
+
+}  // namespace maupertuis::action

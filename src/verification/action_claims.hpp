@@ -1,0 +1,27 @@
+#pragma once
+#include <maupertuis/action.hpp>
+#include <maupertuis/verification.hpp>
+
+namespace maupertuis {
+
+/// `expect action`, `expect action of (…)`, `expect index` and `expect path … at`: about the stationary path with the smallest action
+/// between the ends of the model, or about a path that is given. The search is done at first use, for all lines of a model.
+class ActionClaims {
+ public:
+  ActionClaims(const Model& model, const EquationsOfMotion& equations) : model_(model), equations_(equations) {}
+  void decide(const Expectation& expectation, ExpectationResult& result);
+
+ private:
+  const StationaryPath* path(ExpectationResult& result);
+  void decide_given(const Expectation& expectation, ExpectationResult& result);
+  void decide_index(const Expectation& expectation, const StationaryPath& path, ExpectationResult& result) const;
+  void judge(const Expectation& expectation, double actual, const std::string& ground, ExpectationResult& result) const;
+
+  const Model& model_;
+  const EquationsOfMotion& equations_;
+  bool searched_ = false;
+  std::optional<PathSearch> found_;
+  std::string trouble_;
+};
+
+}  // namespace maupertuis

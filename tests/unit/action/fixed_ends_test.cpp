@@ -1,0 +1,78 @@
+#include "support.hpp"
+
+using namespace maupertuis;
+
+namespace {
+
+const char* oscillator = R"(
+system oscillator
+dimensionless
+param m = 1, w = 1.3
+coord x : number
+T = 1/2 m x'^2
+V = 1/2 m w^2 x^2
+)";
+
+double oscillator_action(double w, double T, double a, double b) {
+  return w / (2 * std::sin(w * T)) * ((a * a + b * b) * std::cos(w * T) - 2 * a * b);
+}
+
+}  // namespace
+
+TEST_CASE("the action of the harmonic oscillator in closed form, and its index by both counts") {
+  const ModelText m(oscillator);
+  for (const double halves : {0.5, 1.5, 2.5, 7.3}) {
+    CAPTURE(halves);
+    const double T = halves * pi / 1.3;
+    const PathSearch found = paths_of(m, fixed_ends({0.4}, 0, {-1.1}, T));
+    REQUIRE(found.paths.size() == 1);
+    const StationaryPath& p = found.paths.front();
+    const double S = oscillator_action(1.3, T, 0.4, -1.1);
+    CHECK(p.action == doctest::Approx(S).epsilon(1e-12));
+    CHECK(std::abs(p.action - S) <= 10 * p.action_error + 1e-13);
+    CHECK(p.check.done);
+    CHECK(p.check.missed < 1e-9);
+    CHECK(p.check.action == doctest::Approx(S).epsilon(1e-9));
+    const auto index = static_cast<std::size_t>(std::ceil(halves) - 1);
+    REQUIRE(p.second.index);
+    CHECK(*p.second.by_inertia == index);
+    CHECK(*p.second.by_fields == index);
+    CHECK(p.second.nullity == 0);
+    REQUIRE(p.second.conjugate.size() == index);
+    for (std::size_t k = 0; k < index; ++k) {
+      CHECK(p.second.conjugate[k].t == doctest::Approx((static_cast<double>(k) + 1) * pi / 1.3).epsilon(1e-11));
+      CHECK(p.second.conjugate[k].multiplicity == 1);
+    }
+    CHECK(kind_of(p.second) == (index == 0 ? "minimum" : "saddle"));
+  }
+}
+
+TEST_CASE("the reference value of action_harmonic, and dS/dx2 = p, -dS/dT = E by differences") {
+  const ModelText m(oscillator);
+  const auto S = [&](double x, double T) { return paths_of(m, fixed_ends({0.4}, 0, {x}, T)).paths.at(0); };
+  const StationaryPath p = S(-1.1, 2);
+  CHECK(p.action == doctest::Approx(-0.3706283733057027281).epsilon(1e-13));
+  const double h = 1e-4;
+  CHECK((S(-1.1 + h, 2).action - S(-1.1 - h, 2).action) / (2 * h) == doctest::Approx(p.end_momentum[0]).epsilon(1e-7));
+  CHECK(-(S(-1.1, 2 + h).action - S(-1.1, 2 - h).action) / (2 * h) == doctest::Approx(*p.end_energy).epsilon(1e-7));
+  CHECK(*p.start_energy == doctest::Approx(*p.end_energy).epsilon(1e-10));
+}
+
+TEST_CASE("the pendulum from 0 to 0 in 7 s has five paths") {
+  const ModelText m(R"(
+system pendulum
+dimensionless
+coord θ : angle
+T = 1/2 θ'^2
+V = -cos θ
+)");
+  const PathSearch found = paths_of(m, fixed_ends({0}, 0, {0}, 7));
+  REQUIRE(found.paths.size() == 5);
+  std::vector<std::size_t> indices;
+  for (const StationaryPath& p : found.paths) {
+    REQUIRE(p.second.index);
+    indices.push_back(*p.second.index);
+  }
+  std::sort(indices.begin(), indices.end());
+  CHECK(indices == std::vector<std::size_t>{0, 0, 1, 1, 2});
+}
