@@ -12,8 +12,6 @@ namespace {
 constexpr double least_sound_pivot = 1e-7;
 /// What a solution may leave of b, in units of the error bound of that remainder: without a correction, with one, and after it.
 constexpr double sound = 16, tolerable = 1e6, corrected = 16;
-/// A solution by code waits for its sums, and has time for more products; one by loops has not.
-constexpr std::size_t cuts_of_code = 1;
 bool is_power_of_two(int x) { return (x & (x - 1)) == 0; }
 
 std::vector<bool> stored_slots(const Program& program, const packed::PackedProgram& packed) {
@@ -50,9 +48,7 @@ bool LiftedSolve::choose_pivots(const Memory& memory) {
   for (auto& sample : sampled_entries(program_, *system_, memory.constants, t, {memory.row(0), program_.freedoms},
                                       {memory.row(1), program_.freedoms}))
     samples.push_back(std::move(sample));
-  sparse::EliminationOptions elimination;
-  if (options_) elimination.cuts = cuts_of_code;
-  const auto pivots = sparse::eliminate(*system_, samples, elimination);
+  const auto pivots = sparse::eliminate(*system_, samples, {});
   if (!pivots) return false;
   solver_.emplace(*system_, *pivots, cell_of_column_);
   // What the full matrix costs: its solution, and the tangents in the direction of that.
@@ -69,7 +65,7 @@ bool LiftedSolve::choose_pivots(const Memory& memory) {
 
 void LiftedSolve::compile(const CompileOptions& options) {
   options_ = options;
-  drop_solver();  // pivots for code are other ones
+  if (solver_) make_code();
 }
 
 /// The code belongs to the pivots of this solver alone.

@@ -60,12 +60,7 @@ class Elimination {
     while (!open_.empty()) {
       const std::size_t before = pivots_.size();
       bool merged = false;
-      for (const std::uint32_t group : choose_round()) {
-        Turn turn = turn_of(group);
-        merged |= eliminate_group(group);
-        if (members_[group].empty()) sequence_.push_back(std::move(turn));
-        else if (pivots_.size() > before) in_order_ = false;
-      }
+      for (const std::uint32_t group : choose_round()) merged |= eliminate_group(group);
       std::erase_if(open_, [&](std::uint32_t group) { return members_[group].empty(); });
       round_ = next_round_;
       if (pivots_.size() == before && !merged && !drop_worst_state()) return std::nullopt;
@@ -74,57 +69,7 @@ class Elimination {
     return std::move(pivots_);
   }
 
-  /// In this order, judged by the states that were left to `before`.
-  std::optional<std::vector<Pivot>> run(std::span<const std::uint32_t> order, const Elimination& before) {
-    in_use_ = before.in_use_;
-    for (const std::uint32_t group : order) {
-      eliminate_group(group);
-      round_ = next_round_;
-    }
-    if (pivots_.size() < rows_.size()) return std::nullopt;
-    return std::move(pivots_);
-  }
-
-  /// After run(): its order with the groups that cut the longest way from a tip to the root at its end; empty where there is none so long.
-  std::vector<std::uint32_t> order_with_cuts(std::size_t cuts) const {
-    constexpr std::size_t least_part = 8;  // groups
-    if (!in_order_) return {};
-    std::vector<std::size_t> place(members_.size()), height(members_.size(), 1);
-    for (std::size_t i = 0; i < sequence_.size(); ++i) place[sequence_[i].group] = i;
-    std::vector<std::uint32_t> parent(members_.size(), none), below(members_.size(), none);
-    for (const Turn& turn : sequence_) {
-      for (const std::uint32_t other : turn.neighbours)
-        if (parent[turn.group] == none || place[other] < place[parent[turn.group]]) parent[turn.group] = other;
-      if (const std::uint32_t up = parent[turn.group]; up != none && height[up] <= height[turn.group])
-        height[up] = height[turn.group] + 1, below[up] = turn.group;
-    }
-    const auto root = static_cast<std::uint32_t>(std::max_element(height.begin(), height.end()) - height.begin());
-    const std::size_t length = height[root] / (cuts + 1);
-    if (length < least_part) return {};
-    std::vector<std::uint32_t> last;
-    for (std::uint32_t group = root; group != none; group = below[group])
-      if (height[group] % length == 0 && height[group] != height[root] && height[group] / length <= cuts) last.push_back(group);
-    std::vector<std::uint32_t> order;
-    for (const Turn& turn : sequence_)
-      if (std::find(last.begin(), last.end(), turn.group) == last.end()) order.push_back(turn.group);
-    order.insert(order.end(), last.rbegin(), last.rend());
-    return order;
-  }
-
  private:
-  /// A group eliminated whole, and the groups that it touched then.
-  struct Turn {
-    std::uint32_t group;
-    std::set<std::uint32_t> neighbours;
-  };
-
-  Turn turn_of(std::uint32_t group) const {
-    Turn turn{group, {}};
-    for (const std::uint32_t column : border_[group].columns) turn.neighbours.insert(group_of_column_[column]);
-    for (const std::uint32_t row : border_[group].rows) turn.neighbours.insert(group_of_row_[row]);
-    return turn;
-  }
-
   // --------------------------------------------------------------------------------------------------------- values
 
   static double size(const Values& values) {
@@ -332,8 +277,6 @@ class Elimination {
   std::vector<std::uint32_t> open_;                  // groups
   std::uint32_t round_ = 0, next_round_ = 0;
   std::vector<Pivot> pivots_;
-  std::vector<Turn> sequence_;
-  bool in_order_ = true;                             // no group was left half done when its turn came
 };
 
 }  // namespace
@@ -341,13 +284,7 @@ class Elimination {
 std::optional<std::vector<Pivot>> eliminate(const LiftedSystem& system, const std::vector<std::vector<double>>& samples,
                                             const EliminationOptions& options) {
   if (samples.empty() || samples.size() > most_states) return std::nullopt;
-  Elimination whole(system, samples, options);
-  auto pivots = whole.run();
-  if (!pivots || options.cuts == 0) return pivots;
-  const std::vector<std::uint32_t> order = whole.order_with_cuts(options.cuts);
-  if (order.empty()) return pivots;
-  auto in_parts = Elimination(system, samples, options).run(order, whole);
-  return in_parts ? in_parts : pivots;
+  return Elimination(system, samples, options).run();
 }
 
 }  // namespace maupertuis::sparse

@@ -8,9 +8,6 @@
 /// they touch times columns that they touch), and those of equal cost that do not touch each other in one round. A chain is eliminated from
 /// its tip, which is the recursion of articulated bodies; a tree from all its tips at once; a loop leaves a small full part.
 ///
-/// A chain's groups wait for each other. Where it is cut, at groups that are eliminated last, its parts do not, and a solution waits for that many
-/// times fewer sums; but a part between cuts has them for neighbours at every group, and takes more products.
-///
 /// Within a group the unknown of a row is its pivot wherever that is large enough: where M₀ is definite this is a block elimination of a
 /// definite matrix, which needs no exchange of rows. No pivot is exchanged later, so each must be large in its column at every
 /// one of several sampled states.
@@ -26,7 +23,6 @@ struct Pivot {
 struct EliminationOptions {
   double least_own_share = 1e-3;  // of the pivot in the largest entry of its column, where it is the row's own unknown
   double least_share = 0.05;      // of any other
-  std::size_t cuts = 0;           // groups that the longest way from a tip to the root is cut at, where it is long
 };
 
 /// `samples`: [states][entries] values, at most 16 states; the first one counts most. In order of rounds; nothing where no

@@ -70,23 +70,6 @@ TEST_CASE("factors by code: a singular M is told so, with its coordinate, and wh
   }
 }
 
-TEST_CASE("pivots for code: a chain in two parts waits for half as many sums, for a quarter more products") {
-  for (const int links : {20, 100}) {
-    CAPTURE(links);
-    Rods rods(links, chain);
-    Lifted loops(build_kernel(rods.source)), code(build_kernel(rods.source));
-    code.solve.compile({.cache = false});
-    for (Lifted* const lifted : {&loops, &code}) {
-      lifted->move_to(random_point(static_cast<std::size_t>(links), 4));
-      REQUIRE(lifted->solve.factor(lifted->memory));
-    }
-    const sparse::SparseSolver &whole = *loops.solve.solver(), &parts = *code.solve.solver();
-    CHECK(static_cast<double>(parts.solve_depth()) < 0.6 * static_cast<double>(whole.solve_depth()));
-    CHECK(static_cast<double>(parts.solve_products()) < 1.25 * static_cast<double>(whole.solve_products()));
-    CHECK(static_cast<double>(parts.factor_products()) < 1.6 * static_cast<double>(whole.factor_products()));
-  }
-}
-
 TEST_CASE("a workspace whose expansions are not compiled has compiled solutions: the same coefficients to rounding") {
   Rods rods(30, chain);
   KernelWorkspace loops(build_kernel(rods.source), 8), code(build_kernel(rods.source), 8);
