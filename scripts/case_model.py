@@ -3,7 +3,7 @@ import re
 
 import case_math
 from case_math import D, greek, parse, show, show_long
-from case_tables import CHARGES, KINDS, LINEARIZED, MULTIPLIER_UNIT, SEARCHED, UNITS, UNSAID, waits_for
+from case_tables import CHARGES, KINDS, LINEARIZED, MULTIPLIER_UNIT, PATHS, SEARCHED, UNITS, UNSAID, waits_for
 from convert_urdf import wrapped
 from precise import ellipk
 
@@ -78,6 +78,8 @@ class Model:
                 groups[-1][0].append(greek(name))
             else:
                 groups.append(([greek(name)], kind))
+        if self.statement.get("independent", "t") != "t":
+            self.add(f"independent {greek(self.statement['independent'])} : length")
         self.add("coord " + ", ".join(f"{', '.join(g)} : {kind}" for g, kind in groups))
 
     def formulas(self):
@@ -151,7 +153,9 @@ class Model:
 
     def expect(self, expectation):
         handler = getattr(self, "expect_" + expectation["kind"], None)
-        if expectation["kind"] == "identity" and "EllipticK" not in expectation["value"]:
+        if expectation["kind"] == "identity" and "dS/dx2" in expectation["value"]:
+            handler = self.expect_hamilton_jacobi
+        elif expectation["kind"] == "identity" and "EllipticK" not in expectation["value"]:
             handler = None
         if expectation["kind"] == "expression" and not expectation["quantity"].startswith("Routhian"):
             handler = None
@@ -237,6 +241,71 @@ class Model:
         right = D(factor) * ellipk(case_math.evaluate(parse(modulus), {})) ** 2
         if abs(right - D(self.statement["parameters"]["g"]["value"])) > D("1e-38"):
             raise SystemExit(f"{self.id}: {expectation['quantity']} does not hold")
+
+    # ------------------------------------------------------------------------------------------------------- action
+
+    def path_statement(self):
+        """Once, before the first expectation that needs it."""
+        line = "path " + PATHS[self.id]
+        if line not in self.lines:
+            self.lines.insert(self.run_line, line)
+            self.run_line += 1
+
+    def ends(self):
+        """The numbers of the oscillator's formula: x1, x2, T, and the parameters."""
+        start, end = re.fullmatch(r"from (\S+) at 0 to (\S+) at (\S+)", PATHS[self.id]).group(1, 2), PATHS[self.id].split()[-1]
+        return {**self.constants({}), "x1": D(start[0]), "x2": D(start[1]), "T": D(end)}
+
+    def expect_action(self, expectation):
+        self.path_statement()
+        value = expectation.get("value_recomputed") or expectation.get("numeric") or expectation["value"]
+        second = "" if self.dimensionless else " s"
+        if "t0" in expectation:  # of a path that is given; the straight one is the stationary one
+            path = ", ".join(show(parse(expectation["path"][name])) for name in self.statement["coordinates"])
+            ends = f"from {expectation['t0']} to {expectation['t1']}"
+            self.add(f"expect action of ({path}) {ends} = {value} rel 1e-13")
+            if "value_recomputed" in expectation:  # a varied one
+                return
+        if "straight_line" in expectation:
+            return self.expect_cycloid(expectation)
+        self.add(f"expect action = {value}{second} rel 1e-12")
+        self.add("expect index = 0")
+        if "t0" not in expectation:
+            for time in ("0.5", "1", "1.5"):
+                x = case_math.evaluate(parse(expectation["path"]["x"]), {**self.ends(), "t": D(time)})
+                self.add(f"expect path x at {time} = {digits(x)} ± 1e-12")
+
+    def expect_cycloid(self, expectation):
+        """Equal angles take equal times: the part of the whole time π sqrt(R/g) that is left after the first radian."""
+        values = self.constants({})
+        whole, part = D(expectation["numeric"]), (case_math.evaluate(parse("pi"), {}) - 1) / case_math.evaluate(parse("pi"), {})
+        self.add(f"expect action = {digits(whole * part)} s rel 1e-11")
+        self.add("expect index = 0")
+        for angle in ("1.5", "2.5"):
+            at = {**values, "a": D(angle)}
+            x, y = (digits(case_math.evaluate(parse(expectation["path"][name]), at)) for name in "xy")
+            self.add(f"expect path y at {x} m = {y} m ± 1e-9")
+        self.add(f"expect action of (2 x/pi) from 0 to pi R = {expectation['straight_line']} s rel 1e-12   # the straight line")
+        self.waits.append(("the path from (0, 0) itself, where L is infinite", "action"))
+
+    def expect_extremal_path(self, expectation):
+        self.path_statement()
+        self.add(f"expect action = {expectation['action']} ± 1e-13")
+        self.add("expect index = 0")
+        for time in ("0.3", "0.8", "1.3"):
+            self.add(f"expect path x at {time} = {digits(case_math.evaluate(parse(expectation['values']['x']), {'t': D(time)}))} ± 1e-12")
+
+    def expect_hamilton_jacobi(self, expectation):
+        """The slopes of the formula of S by the end, against momentum and energy there."""
+        formula = parse(next(e["formula"] for e in self.case["expected"] if e["kind"] == "action"))
+        values, step = self.ends(), D("1e-11")
+
+        def slope(name):
+            low, high = (case_math.evaluate(formula, {**values, name: values[name] + s * step}) for s in (-1, 1))
+            return (high - low) / (2 * step)
+
+        self.add(f"expect path m x' at {values['T']} = {digits(slope('x2'))} rel 1e-12")
+        self.add(f"expect path T + V at {values['T']} = {digits(-slope('T'))} rel 1e-12")
 
     def expect_analytic(self, expectation):
         values = self.constants(expectation)

@@ -18,6 +18,7 @@ KINDS = {
     "noether_caldirola_kanai": {"x": "length"},
     "nonhol_knife_edge": {"x": "length", "y": "length", "phi": "angle"},
     "nonhol_rolling_disc": {"x": "length", "y": "length", "q1": "angle", "q2": "angle", "q3": "angle"},
+    "variational_brachistochrone": {"y": "length"},
     "sympy_four_bar_linkage": {"q1": "angle", "q2": "angle", "q3": "angle"},
 }
 UNITS = {"angle": ("rad", "rad/s", "rad/s^2"), "length": ("m", "m/s", "m/s^2"), "charge": ("C", "A", "A/s")}
@@ -90,10 +91,19 @@ expect frequencies at α = 0, β = 0, ψ' = 1.25 threshold : 0 rad/s, C threshol
 # What a case says of a linearization in words.
 LINEARIZED = {"sympy_nonminimal_pendulum": ["frequencies squared at q1 = L, q2 = 0 : g/L rel 1e-12"]}
 
+# Between what ends the stationary path of a case runs, and its Morse index: of the oscillator ⌈ω T/π⌉ − 1, of the others 0.
+PATHS = {
+    "action_harmonic": "from 0.4 at 0 to -1.1 at 2",
+    "action_minimum_cosine": "from 1 at 0 to 0 at pi/2",
+    "sicm_free_action": "from (7, 5, 1) at 0 to (47, 35, 21) at 10",
+    # From where the wheel has turned by 1 rad: at (0, 0) L is infinite.
+    "variational_brachistochrone": "from R (1 - cos(1)) at R (1 - sin(1)) to 2 R at pi R",
+}
+
 WAITS = {  # kind of an expectation → the capability that it waits for
     "eigenvalues": "modes", "equilibria": "modes",
     "characteristic_polynomial": "modes", "floquet_trace": "modes",
-    "action": "action", "extremal_path": "action", "identity": "analysis",
+    "identity": "analysis",
     "field_equations": "fields", "field_solution": "fields", "conservation_law": "fields",
     "boundary_conditions": "fields", "event": "contacts", "event_times": "contacts",
     "matrix": "mass matrix on the command line", "expression": "analysis", "scalar": "analysis", "scalars": "analysis",

@@ -32,8 +32,6 @@ def needed(case):
         return "URDF import"
     if "fields" in statement:
         return "fields"
-    if statement.get("independent", "t") != "t":
-        return "action"
     if "inequality" in statement.get("constraints", {}):
         return "contacts"
     kinds = {e["kind"] for e in case["expected"]}

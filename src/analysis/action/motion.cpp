@@ -85,12 +85,14 @@ Refined as_refined(Problem& problem, const Trial& trial) {
 Trajectory rows_of(Problem& problem, const Trial& trial) {
   const MechanicalSystem& system = problem.model.system;
   Trajectory out;
+  out.independent = {system.independent, system.independent_unit()};
   const auto unit = [&](const Dimension& d) {
     const std::string text = system.dimensionless ? "" : to_string(d);
     return text == "1" ? std::string() : text;
   };
   for (const Coordinate& c : system.coordinates) out.columns.push_back({c.name, unit(c.dimension)});
-  out.columns.push_back({"S", system.dimensionless ? "" : "J s"});
+  const std::string action = system.independent == "t" ? "J s" : unit(system.lagrangian_dimension * system.independent_dimension);
+  out.columns.push_back({"S", system.dimensionless ? "" : action});
   double so_far = 0;
   const Index p = trial.mesh.rule->degree;
   for (Index e = 0; e < trial.mesh.elements(); ++e) {
@@ -163,6 +165,7 @@ std::optional<PeriodicAction> action_of_orbit(const Model& model, const Equation
 
 Trajectory path_rows(const std::vector<const ActionPath*>& paths, const MechanicalSystem& system) {
   Trajectory out;
+  out.independent = {system.independent, system.independent_unit()};
   const auto unit = [&](const Dimension& d) {
     const std::string text = system.dimensionless ? "" : to_string(d);
     return text == "1" ? std::string() : text;

@@ -1,0 +1,152 @@
+// maup action, from outside: values, several paths, the contract of its JSON, bad input.
+#include "program.hpp"
+
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+using namespace cli_test;
+using Json = nlohmann::json;
+
+namespace {
+
+const double pi = std::acos(-1.0);
+
+std::string gallery(const std::string& name) { return std::string(PROJECT_DIR) + "/models/" + name + ".lag"; }
+
+/// L = ½ x'² − ½ x², from 0.4 at 0 to −1.1 at T.
+std::string oscillator(const std::string& duration) {
+  return "system oscillator\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\npath from 0.4 at 0 to -1.1 at " + duration + "\n";
+}
+
+double classical_action(double duration) {
+  return ((0.16 + 1.21) * std::cos(duration) + 2 * 0.4 * 1.1) / (2 * std::sin(duration));
+}
+
+Json json_of(const Outcome& told) {
+  REQUIRE_MESSAGE(!told.out.empty(), told.err);
+  return Json::parse(told.out);
+}
+
+}  // namespace
+
+TEST_CASE("action of the oscillator: its value, its index beyond each half period, and its conjugate points") {
+  for (const int half_periods : {0, 1, 2, 3}) {
+    const double duration = 2 + 3 * half_periods;  // 2, 5, 8, 11: between the multiples of π
+    const int index = static_cast<int>(std::ceil(duration / pi)) - 1;
+    CAPTURE(duration);
+    const Outcome told = maup({"action", "-", "--json"}, oscillator(std::to_string(2 + 3 * half_periods)));
+    CHECK_MESSAGE(told.code == 0, told.err);
+    const Json paths = json_of(told)["stationary"]["paths"];
+    REQUIRE(paths.size() == 1);
+    CHECK(std::abs(paths[0]["action"].get<double>() - classical_action(duration)) < 1e-11);
+    CHECK(paths[0]["index"] == index);
+    CHECK(paths[0]["by_inertia"] == index);
+    CHECK(paths[0]["by_fields"] == index);
+    REQUIRE(paths[0]["conjugate_points"].size() == static_cast<std::size_t>(index));
+    for (int k = 0; k < index; ++k) CHECK(std::abs(paths[0]["conjugate_points"][k]["t"].get<double>() - (k + 1) * pi) < 1e-9);
+    CHECK(paths[0]["check"]["done"] == true);
+    CHECK(paths[0]["check"]["missed"].get<double>() < 1e-10);
+  }
+}
+
+TEST_CASE("the JSON of action: ends by name, momenta and energies at them") {
+  const Json document = json_of(maup({"action", "-", "--json"}, oscillator("2")));
+  CHECK(document["command"] == "action");
+  CHECK(document["ok"] == true);
+  const Json& found = document["stationary"];
+  CHECK(found["start"] == 0.0);
+  CHECK(found["end"] == 2.0);
+  CHECK(found["from"]["x"] == 0.4);
+  CHECK(found["to"]["x"] == -1.1);
+  CHECK(found["bound"].is_string());
+  const Json& path = found["paths"][0];
+  // ∂S/∂x2 and −∂S/∂T of the closed form.
+  const double s = std::sin(2.0), c = std::cos(2.0);
+  CHECK(std::abs(path["end_momentum"]["x"].get<double>() - (-1.1 * c - 0.4) / s) < 1e-11);
+  CHECK(std::abs(path["start_momentum"]["x"].get<double>() - (-1.1 - 0.4 * c) / s) < 1e-11);
+  const double velocity = (-1.1 * c - 0.4) / s;
+  CHECK(std::abs(path["end_energy"].get<double>() - (velocity * velocity + 1.21) / 2) < 1e-11);
+  for (const char* key : {"action_error", "path_error", "residual", "kind", "nullity", "found_from", "multipliers", "variations"}) CHECK(path.contains(key));
+}
+
+TEST_CASE("two films between two rings, the smaller area first; places are told in x") {
+  const Outcome told = maup({"action", gallery("soap_film")});
+  CHECK_MESSAGE(told.code == 0, told.err);
+  CHECK(contains(told.out, "soap_film: 2 stationary paths"));
+  CHECK(contains(told.out, "x = -0.01 m"));
+  CHECK(!contains(told.out, "t ="));
+  const Json paths = json_of(maup({"action", gallery("soap_film"), "--json"}))["stationary"]["paths"];
+  REQUIRE(paths.size() == 2);
+  CHECK(paths[0]["action"].get<double>() < paths[1]["action"].get<double>());
+  CHECK(paths[0]["index"] == 0);
+  CHECK(paths[1]["index"] == 1);
+  const double a = 0.02, b = 0.01;
+  CHECK(std::abs(paths[0]["action"].get<double>() - 2 * pi * a * (b + a / 2 * std::sinh(2 * b / a))) < 1e-14);
+}
+
+TEST_CASE("the chain of a given length: the multiplier is the height of the catenary's axis, times the weight") {
+  const Json path = json_of(maup({"action", gallery("hanging_chain"), "--json"}))["stationary"]["paths"][0];
+  REQUIRE(path["multipliers"].size() == 1);
+  CHECK(path["index"] == 0);
+  // y = a cosh(x/a) + c solves the equations of (w y + λ) sqrt(1 + y'²) where λ = −w c.
+  const Outcome told = maup({"action", gallery("hanging_chain")});
+  CHECK(contains(told.out, "λ_length_of_chain = " ));
+  const double expected = 20 * 0.6 * std::cosh(1 / 0.6);
+  CHECK(std::abs(path["multipliers"][0].get<double>() - expected) < 1e-9);
+}
+
+TEST_CASE("a path that is given: its action, whether it is stationary, and where it misses the ends") {
+  const std::string free = "system free\ndimensionless\nparam m = 3\ncoord x, y : number\nT = 1/2 m (x'^2 + y'^2)\n";
+  const Outcome straight = maup({"action", "-", "--path", "x = 4 t + 7, y = 3 t + 5", "--from", "0", "--to", "10"}, free);
+  CHECK_MESSAGE(straight.code == 0, straight.err);
+  CHECK(contains(straight.out, "stationary          yes"));
+  CHECK(std::abs(std::stod(straight.out.substr(straight.out.find(" S ") + 3)) - 375) < 1e-10);
+  const Outcome bent = maup({"action", "-", "--path", "x = 4 t + 7 + t (t - 10), y = 3 t + 5", "--from", "0", "--to", "10"}, free);
+  CHECK(bent.code == 0);
+  CHECK(contains(bent.out, "stationary          no"));
+  const Outcome off = maup({"action", "-", "--path", "x = 4 t + 8, y = 3 t + 5"}, free + "path from (7, 5) at 0 to (47, 35) at 10\n");
+  CHECK(off.code == 3);
+  CHECK(contains(off.err, "E1205"));
+  CHECK(off.out.empty());
+  const Outcome unknown = maup({"action", "-", "--path", "x = 4 t, z = 3 t", "--from", "0", "--to", "10"}, free);
+  CHECK(unknown.code != 0);
+  CHECK(contains(unknown.err, "z"));
+}
+
+TEST_CASE("ends that no path reaches, ends of the wrong kind, no ends") {
+  const Outcome conjugate = maup({"action", "-"}, "system o\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\npath from 0.4 at 0 to 0.7 at pi\n");
+  CHECK(conjugate.code == 3);
+  CHECK(contains(conjugate.err, "E1204"));
+  CHECK(conjugate.out.empty());
+  for (const std::string ends : {"(0.4, 1) at 0 to 1 at 2", "0.4 at 3 to 1 at 2", "0.4 at 0 to y at 2", "0.4 at 0"}) {
+    CAPTURE(ends);
+    const Outcome wrong = maup({"action", "-", "--ends", ends}, oscillator("2"));
+    CHECK(wrong.code != 0);
+    CHECK(!wrong.err.empty());
+    CHECK(wrong.out.empty());
+  }
+  const Outcome none = maup({"action", "-"}, "system o\ndimensionless\ncoord x : number\nT = 1/2 x'^2\n");
+  CHECK(none.code != 0);
+  CHECK(!none.err.empty());
+}
+
+TEST_CASE("models without a principle of stationary action are refused with the reason") {
+  const Outcome damped = maup({"action", gallery("cart_pendulum")});
+  CHECK(damped.code != 0);
+  CHECK(contains(damped.err, "E1201"));
+  CHECK(contains(damped.err, "no Lagrangian gives"));
+  const Outcome rolling = maup({"action", gallery("rolling_disk"), "--ends", "(0, 0, 0, 0) at 0 s to (1 m, 0, 0, 0) at 1 s"});
+  CHECK(rolling.code != 0);
+  CHECK(contains(rolling.err, "E1201"));
+  CHECK(contains(rolling.err, "between velocities"));
+}
+
+TEST_CASE("the paths as a file, in x") {
+  const Folder folder;
+  const Outcome told = maup({"action", gallery("great_circle"), "-o", folder.path("way.csv")});
+  CHECK_MESSAGE(told.code == 0, told.err);
+  CHECK(read(folder.path("way.csv")).rfind("φ [rad],θ [rad],θ'\r\n", 0) == 0);
+}
