@@ -5,6 +5,12 @@
 
 namespace maupertuis::action {
 
+const Rule& element_rule(const Rule& rule, Pace pace, std::size_t element, std::size_t elements) {
+  if (element == 0 && (pace == Pace::SlowStart || pace == Pace::SlowEnds)) return *rule.flat_begin;
+  if (element + 1 == elements && (pace == Pace::SlowEnd || pace == Pace::SlowEnds)) return *rule.flat_end;
+  return rule;
+}
+
 double Mesh::time(Index k) const {
   const Index e = std::min(k / rule->degree, elements() - 1), j = k - e * rule->degree;
   return k + 1 == elements() * rule->degree + 1 ? t(1) : t(parameter(e, rule->nodes[j]));
@@ -21,7 +27,7 @@ Mesh even_mesh(std::shared_ptr<const Rule> rule, double start, double end, Index
 }
 
 Place place_of(const Mesh& mesh, Index e, Index g) {
-  const Rule& rule = *mesh.rule;
+  const Rule& rule = mesh.rule_of(e);
   const double s = mesh.parameter(e, rule.points[g]), rate = mesh.rate(s), h = mesh.lengths[static_cast<std::size_t>(e)];
   return {mesh.t(s), h / 2 * rule.weights[g] * rate, rule.value.row(g).transpose(), rule.slope.row(g).transpose() * (2 / (h * rate))};
 }
@@ -56,7 +62,7 @@ Trial halved(const Trial& from, const std::vector<bool>& which) {
         continue;
       }
       Matrix piece(values.rows(), p + 1);
-      for (Index j = 0; j <= p; ++j) piece.col(j) = values * rule.value_at(rule.nodes[j] / 2 + (part == 0 ? -0.5 : 0.5));
+      for (Index j = 0; j <= p; ++j) piece.col(j) = values * from.mesh.rule_of(e).value_at(rule.nodes[j] / 2 + (part == 0 ? -0.5 : 0.5));
       if (part == 0) piece.col(0) = values.col(0);
       else piece.col(p) = values.col(p);
       pieces.push_back(std::move(piece));
@@ -216,7 +222,8 @@ MotionState ActionPath::at(double t) const {
   const auto above = std::upper_bound(breaks.begin() + 1, breaks.end() - 1, s);
   const auto e = static_cast<std::size_t>(above - breaks.begin() - 1);
   const double h = breaks[e + 1] - breaks[e], rate = (end - start) * pace_rate(pace, s);
-  const action::Rule rule(static_cast<Index>(degree));
+  const action::Rule all(static_cast<Index>(degree));
+  const action::Rule& rule = action::element_rule(all, pace, e, elements());
   const double xi = std::clamp(2 * (s - breaks[e]) / h - 1, -1.0, 1.0);
   const auto n = static_cast<Index>(coordinates);
   const Eigen::Map<const action::Matrix> values(nodes.data() + e * (degree + 1) * coordinates, n, rule.degree + 1);

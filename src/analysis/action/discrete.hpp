@@ -8,6 +8,8 @@
 
 namespace maupertuis::action {
 
+const Rule& element_rule(const Rule& rule, Pace pace, std::size_t element, std::size_t elements);
+
 /// Elements in the parameter s of a path.
 struct Mesh {
   std::shared_ptr<const Rule> rule;
@@ -26,6 +28,8 @@ struct Mesh {
   double t(double s) const { return start + whole * maupertuis::pace(pace, s); }
   double rate(double s) const { return whole * pace_rate(pace, s); }
   double time(Index node) const;
+  /// The polynomials of an element: flat next to an end at which the path runs slowly.
+  const Rule& rule_of(Index element) const { return element_rule(*rule, pace, static_cast<std::size_t>(element), lengths.size()); }
   /// s of a point ξ of an element.
   double parameter(Index element, double xi) const {
     return begins[static_cast<std::size_t>(element)] + lengths[static_cast<std::size_t>(element)] * (1 + xi) / 2;

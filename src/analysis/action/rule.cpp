@@ -53,7 +53,11 @@ Vector lobatto_nodes(Index p) {
 
 }  // namespace
 
-Rule::Rule(Index p) : degree(p), nodes(lobatto_nodes(p)) {
+Rule::Rule(Index p, Flat flat) : degree(p), nodes(lobatto_nodes(p)), flat_(flat) {
+  if (flat == Flat::Nowhere) {
+    flat_begin = std::make_shared<const Rule>(p, Flat::AtBegin);
+    flat_end = std::make_shared<const Rule>(p, Flat::AtEnd);
+  }
   gauss_points(p + 2, points, weights);
   barycentric_ = Vector::Ones(p + 1);
   for (Index i = 0; i <= p; ++i)
@@ -74,7 +78,37 @@ Rule::Rule(Index p) : degree(p), nodes(lobatto_nodes(p)) {
   legendre = basis.partialPivLu().inverse();
 }
 
+/// q(ξ) = q₀ + Σ (q_j − q₀) ((1 + ξ)/(1 + ξ_j))² ℓ_j(ξ) over the nodes j ≥ 1 and their Lagrange polynomials ℓ_j; at the
+/// other end the mirror image.
+Rule::Basis Rule::flat_basis(double xi) const {
+  if (flat_ == Flat::AtEnd) {
+    const Basis mirror = flat_begin_of(-xi);
+    return {mirror.value.reverse(), -mirror.slope.reverse()};
+  }
+  return flat_begin_of(xi);
+}
+
+Rule::Basis Rule::flat_begin_of(double xi) const {
+  Basis out{Vector::Zero(degree + 1), Vector::Zero(degree + 1)};
+  for (Index j = 1; j <= degree; ++j) {
+    const double from = 1 + nodes[j], root = (1 + xi) / from;
+    double lagrange = 1, lagrange_slope = 0;
+    for (Index k = 1; k <= degree; ++k) {
+      if (k == j) continue;
+      const double factor = 1 / (nodes[j] - nodes[k]);
+      lagrange_slope = (lagrange_slope * (xi - nodes[k]) + lagrange) * factor;
+      lagrange *= (xi - nodes[k]) * factor;
+    }
+    out.value[j] = root * root * lagrange;
+    out.slope[j] = 2 * root / from * lagrange + root * root * lagrange_slope;
+  }
+  out.value[0] = 1 - out.value.sum();
+  out.slope[0] = -out.slope.sum();
+  return out;
+}
+
 Vector Rule::value_at(double xi) const {
+  if (flat_ != Flat::Nowhere) return flat_basis(xi).value;
   Vector out = Vector::Zero(degree + 1);
   for (Index i = 0; i <= degree; ++i)
     if (xi == nodes[i]) return Vector::Unit(degree + 1, i);
@@ -83,6 +117,7 @@ Vector Rule::value_at(double xi) const {
 }
 
 Vector Rule::slope_at(double xi) const {
+  if (flat_ != Flat::Nowhere) return flat_basis(xi).slope;
   // At a node by the differentiation matrix; elsewhere d/dξ of each basis polynomial ℓ_i = Π (ξ − ξ_j) b_i.
   Vector out = Vector::Zero(degree + 1);
   for (Index i = 0; i <= degree; ++i)

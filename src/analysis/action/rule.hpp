@@ -1,12 +1,18 @@
 #pragma once
 #include "analysis/action/functional.hpp"
 
+#include <memory>
+
 namespace maupertuis::action {
+
+/// Whether the polynomials of an element have the derivative 0 at an end, as a path in s has where it runs slowly: there
+/// L is infinite at the end, and a slope would carry Newton's method across it.
+enum class Flat { Nowhere, AtBegin, AtEnd };
 
 /// Polynomials of one degree on [−1, 1] by their values at the Gauss-Lobatto nodes, and Gauss's points at which the
 /// action is summed: these never lie at an end, where L may be infinite.
 struct Rule {
-  explicit Rule(Index degree);
+  explicit Rule(Index degree, Flat flat = Flat::Nowhere);
 
   Index degree;
   Vector nodes;           // [p + 1]
@@ -19,7 +25,16 @@ struct Rule {
   Vector value_at(double xi) const;
   Vector slope_at(double xi) const;
 
+  /// The same for the first and for the last element of a path that runs slowly there. Null in a flat rule itself.
+  std::shared_ptr<const Rule> flat_begin, flat_end;
+
  private:
+  struct Basis {
+    Vector value, slope;
+  };
+  Basis flat_basis(double xi) const;
+  Basis flat_begin_of(double xi) const;
+  Flat flat_;
   Vector barycentric_;
 };
 

@@ -13,6 +13,7 @@ namespace {
 constexpr int even_shots = 401;
 constexpr std::size_t most_shots = 3000;
 constexpr double coarse = 0.25;  // of the typical size: neighbouring shots that arrive further apart have one between them
+constexpr double far = 4;        // of their distance: neighbours that arrive on one side and further off have none between them
 constexpr int most_halvings = 12;
 constexpr double near_zero_of_root = 1e-10;
 
@@ -46,7 +47,7 @@ class Shooter {
     for (Index k = 0; k < line.q.cols(); ++k)
       line.q(0, k) = from_ + (to_ - from_) * (line.mesh.time(k) - ends_.start) / (ends_.end - ends_.start);
     const double frequency = static_cast<double>(problem_.first_elements(line)) * 3.14159 / (ends_.end - ends_.start);
-    return 2 * std::abs(to_ - from_) / (ends_.end - ends_.start) + std::max(1.0, frequency) * problem_.typical[0];
+    return 2 * std::abs(to_ - from_) / (ends_.end - ends_.start) + 4 * frequency * problem_.typical[0];
   }
 
   Shot shoot(double speed) {
@@ -61,7 +62,9 @@ class Shooter {
   void between(const Shot& a, const Shot& b, int halvings) {
     if (!a.arrival || !b.arrival) return;
     const bool crosses = (*a.arrival < 0) != (*b.arrival < 0);
-    if (halvings > 0 && out_.count < most_shots && std::abs(*a.arrival - *b.arrival) > coarse * problem_.typical[0]) {
+    const double apart = std::abs(*a.arrival - *b.arrival);
+    const bool passed_by = !crosses && std::min(std::abs(*a.arrival), std::abs(*b.arrival)) > far * apart;
+    if (halvings > 0 && out_.count < most_shots && !passed_by && apart > coarse * problem_.typical[0]) {
       const Shot middle = shoot((a.speed + b.speed) / 2);
       between(a, middle, halvings - 1);
       return between(middle, b, halvings - 1);

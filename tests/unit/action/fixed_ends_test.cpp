@@ -58,6 +58,22 @@ TEST_CASE("the reference value of action_harmonic, and dS/dx2 = p, -dS/dT = E by
   CHECK(*p.start_energy == doctest::Approx(*p.end_energy).epsilon(1e-10));
 }
 
+TEST_CASE("swings of a pendulum that are back after 7 s: six amplitudes, both ways, and rest") {
+  const ModelText m(R"(
+system pendulum
+param m = 1 kg, l = 1 m, g = 9.81 m/s^2
+coord θ : angle
+T = 1/2 m l^2 θ'^2
+V = -m g l cos θ
+)");
+  ActionOptions options;
+  options.paths = 20;
+  Diagnostics unheard;
+  const auto found = stationary_paths(m.model, m.equations, fixed_ends({0}, 0, {0}, 7), options, unheard);
+  REQUIRE(found);
+  CHECK(found->paths.size() == 13);  // 7 s are k half periods, k = 1 … 6, of no less than 1.003 s each
+}
+
 TEST_CASE("the pendulum from 0 to 0 in 7 s has five paths") {
   const ModelText m(R"(
 system pendulum

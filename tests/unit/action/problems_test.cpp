@@ -121,6 +121,28 @@ L = sqrt((1 + y'^2) / (2 g y))
   for (const double a : {0.5, 1.5, 2.5}) CHECK(p.path.at(a - std::sin(a)).q[0] == doctest::Approx(1 - std::cos(a)).epsilon(1e-9));
 }
 
+TEST_CASE("the brachistochrone from rest, where L is infinite") {
+  const ModelText m(R"(
+system brachistochrone
+dimensionless
+param g = 9.81
+coord y : number
+L = sqrt((1 + y'^2) / (2 g y))
+)");
+  const PathSearch found = paths_of(m, fixed_ends({0}, 0, {2}, pi));
+  REQUIRE(found.paths.size() == 1);
+  const StationaryPath& p = found.paths[0];
+  CHECK(p.action == doctest::Approx(pi / std::sqrt(9.81)).epsilon(1e-12));
+  CHECK(p.action_error < 1e-11);
+  CHECK(p.second.by_inertia == std::optional<std::size_t>(0));
+  for (const double a : {0.01, 0.5, 1.5, 2.5})
+    CHECK(p.path.at(a - std::sin(a)).q[0] == doctest::Approx(1 - std::cos(a)).epsilon(1e-9));
+  // The other way round, and up to rest: the same cycloid.
+  const PathSearch back = paths_of(m, fixed_ends({2}, -pi, {0}, 0));
+  REQUIRE(back.paths.size() == 1);
+  CHECK(back.paths[0].action == doctest::Approx(pi / std::sqrt(9.81)).epsilon(1e-12));
+}
+
 TEST_CASE("the catenary: one multiplier for the whole path, both counts with the length held") {
   const ModelText m(R"(
 system chain
