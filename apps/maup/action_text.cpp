@@ -69,7 +69,8 @@ std::string check_text(const StationaryPath& p, const MechanicalSystem& system) 
 std::string list(const std::vector<double>& values, const MechanicalSystem& system, const char* prefix, const char* suffix) {
   std::string out;
   for (std::size_t i = 0; i < values.size(); ++i)
-    out += fmt::format("{}{}{}{} = {:.9g}", out.empty() ? "" : ", ", prefix, system.coordinates[i].name, suffix, values[i]);
+    out += fmt::format("{}{}{}{} {}", out.empty() ? "" : ", ", prefix, system.coordinates[i].name, suffix,
+                       std::isfinite(values[i]) ? fmt::format("= {:.9g}", values[i]) : "without a value, since L is infinite there");
   return out;
 }
 

@@ -23,12 +23,17 @@ enum class Pace { Even, SlowStart, SlowEnd, SlowEnds };
 double pace(Pace which, double s);       // g(s)
 double pace_rate(Pace which, double s);  // dg/ds
 
+namespace action {
+struct Rule;  // the polynomials of an element by their values at its nodes
+}
+
 /// A continuous path of polynomials in s, an element each.
 struct ActionPath {
   double start = 0, end = 0;   // of the independent variable
   Pace pace = Pace::Even;
   std::vector<double> breaks;  // [elements + 1] of s, from 0 to 1
   std::size_t degree = 0, coordinates = 0;
+  std::shared_ptr<const action::Rule> rule;
   std::vector<double> nodes;   // [elements × (degree + 1) × n] q at the Gauss-Lobatto points of each element
 
   std::size_t elements() const { return breaks.empty() ? 0 : breaks.size() - 1; }

@@ -77,6 +77,7 @@ Trial halved(const Trial& from, const std::vector<bool>& which) {
 
 ActionPath to_path(const Trial& trial) {
   ActionPath out;
+  out.rule = trial.mesh.rule;
   out.degree = static_cast<std::size_t>(trial.mesh.rule->degree);
   out.coordinates = static_cast<std::size_t>(trial.q.rows());
   out.start = trial.mesh.start;
@@ -93,20 +94,34 @@ ActionPath to_path(const Trial& trial) {
 
 namespace {
 
-/// Adds weight · (a(j) b(l)) · block to the blocks (j, l) of an element.
-void add_blocks(Matrix& to, const Matrix& block, const Vector& a, const Vector& b, double weight) {
-  const Index n = block.rows();
-  for (Index j = 0; j < a.size(); ++j)
-    for (Index l = 0; l < b.size(); ++l) to.block(j * n, l * n, n, n) += (weight * a[j] * b[l]) * block;
+/// |M_ii| on the diagonal, where M itself is no norm.
+Vector norm_of(const Matrix& mass) {
+  const Vector sizes = mass.diagonal().cwiseAbs();
+  return sizes.cwiseMax(1e-12 * sizes.maxCoeff());
 }
 
-/// |M_ii| on the diagonal, where M itself is no norm.
-Matrix norm_of(const Matrix& mass) {
-  Matrix out = Matrix::Zero(mass.rows(), mass.cols());
-  const double largest = mass.diagonal().cwiseAbs().maxCoeff();
-  for (Index i = 0; i < mass.rows(); ++i) out(i, i) = std::max(std::abs(mass(i, i)), 1e-12 * largest);
-  return out;
-}
+/// Σ over points of the products of weights of two nodes times blocks [n × n]: all points of an element at once, as one
+/// product of matrices.
+class BlockSum {
+ public:
+  BlockSum(Index n, Index nodes, Index terms) : n_(n), nodes_(nodes), blocks_(n * n, terms), pairs_(terms, nodes * nodes) {}
+
+  void add(const Matrix& block, const Vector& a, const Vector& b, double weight) {
+    blocks_.col(next_) = block.reshaped();
+    pairs_.row(next_++) = (weight * a * b.transpose()).reshaped().transpose();
+  }
+  Matrix total() const {
+    const Matrix all = blocks_ * pairs_;
+    Matrix out(n_ * nodes_, n_ * nodes_);
+    for (Index l = 0; l < nodes_; ++l)
+      for (Index j = 0; j < nodes_; ++j) out.block(j * n_, l * n_, n_, n_) = all.col(j + nodes_ * l).reshaped(n_, n_);
+    return out;
+  }
+
+ private:
+  Index n_, nodes_, next_ = 0;
+  Matrix blocks_, pairs_;
+};
 
 struct Assembler {
   Functional& functional;
@@ -118,9 +133,8 @@ struct Assembler {
   void element(Index e) {
     const Rule& rule = *trial.mesh.rule;
     const Matrix nodes = trial.element(e);
-    const Index n = nodes.rows(), size = n * (rule.degree + 1);
-    Matrix hessian, kinetic;
-    if (order == 2) hessian = kinetic = Matrix::Zero(size, size);
+    const Index n = nodes.rows(), count = order == 2 ? rule.points.size() : 0;
+    BlockSum hessian(n, rule.degree + 1, 4 * count), kinetic(n, rule.degree + 1, count);
     for (Index g = 0; g < rule.points.size(); ++g) {
       const auto [t, w, phi, dphi] = place_of(trial.mesh, e, g);
       const Vector q = nodes * phi, v = nodes * dphi;
@@ -134,8 +148,8 @@ struct Assembler {
       if (order == 2) add_hessian(hessian, kinetic, phi, dphi, w);
     }
     if (order < 2) return;
-    out.hessians.push_back(std::move(hessian));
-    out.kinetic.push_back(std::move(kinetic));
+    out.hessians.push_back(hessian.total());
+    out.kinetic.push_back(kinetic.total());
   }
 
   void add_gradient(Index e, const Vector& phi, const Vector& dphi, double w) {
@@ -149,15 +163,14 @@ struct Assembler {
     }
   }
 
-  void add_hessian(Matrix& hessian, Matrix& kinetic, const Vector& phi, const Vector& dphi, double w) {
+  void add_hessian(BlockSum& hessian, BlockSum& kinetic, const Vector& phi, const Vector& dphi, double w) {
     const Index n = functional.freedoms();
-    const Matrix qq = density.hessian.topLeftCorner(n, n), qv = density.hessian.topRightCorner(n, n),
-                 vv = density.hessian.bottomRightCorner(n, n);
-    add_blocks(hessian, qq, phi, phi, w);
-    add_blocks(hessian, qv, phi, dphi, w);
-    add_blocks(hessian, qv.transpose(), dphi, phi, w);
-    add_blocks(hessian, vv, dphi, dphi, w);
-    add_blocks(kinetic, norm_of(vv), dphi, dphi, w);
+    const Matrix qv = density.hessian.topRightCorner(n, n), vv = density.hessian.bottomRightCorner(n, n);
+    hessian.add(density.hessian.topLeftCorner(n, n), phi, phi, w);
+    hessian.add(qv, phi, dphi, w);
+    hessian.add(qv.transpose(), dphi, phi, w);
+    hessian.add(vv, dphi, dphi, w);
+    kinetic.add(norm_of(vv).asDiagonal(), dphi, dphi, w);
   }
 };
 
@@ -222,12 +235,11 @@ MotionState ActionPath::at(double t) const {
   const auto above = std::upper_bound(breaks.begin() + 1, breaks.end() - 1, s);
   const auto e = static_cast<std::size_t>(above - breaks.begin() - 1);
   const double h = breaks[e + 1] - breaks[e], rate = (end - start) * pace_rate(pace, s);
-  const action::Rule all(static_cast<Index>(degree));
-  const action::Rule& rule = action::element_rule(all, pace, e, elements());
+  const action::Rule& polynomials = action::element_rule(*rule, pace, e, elements());
   const double xi = std::clamp(2 * (s - breaks[e]) / h - 1, -1.0, 1.0);
   const auto n = static_cast<Index>(coordinates);
-  const Eigen::Map<const action::Matrix> values(nodes.data() + e * (degree + 1) * coordinates, n, rule.degree + 1);
-  const action::Vector q = values * rule.value_at(xi), v = values * rule.slope_at(xi) * (2 / (h * rate));
+  const Eigen::Map<const action::Matrix> values(nodes.data() + e * (degree + 1) * coordinates, n, polynomials.degree + 1);
+  const action::Vector q = values * polynomials.value_at(xi), v = values * polynomials.slope_at(xi) * (2 / (h * rate));
   return {t, {q.data(), q.data() + n}, {v.data(), v.data() + n}};
 }
 

@@ -186,7 +186,7 @@ void refuse_no_path(const Search& search, const Problem& problem, const ActionEn
   if (search.reached_ > 0 && search.reached_ < 1)
     reason += fmt::format(" From the path of a short duration it could be followed to {:.3g} of this one.", search.reached_);
   if (search.singular().any())
-    reason += " L is infinite at an end, and next to it Newton's method has little room: an end just beside it may be reached.";
+    reason += " L is infinite at an end: an end just beside it may be reached.";
   diagnostics.error("E1204", span, fmt::format("no stationary path from {} to {} was found", place(ends.start, problem.model.system), place(ends.end, problem.model.system)),
                     reason,
                     "The end may not be reachable: beyond what the energy or the constraints allow, where L has no value, or conjugate to "
