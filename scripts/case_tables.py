@@ -96,8 +96,7 @@ PATHS = {
     "action_harmonic": "from 0.4 at 0 to -1.1 at 2",
     "action_minimum_cosine": "from 1 at 0 to 0 at pi/2",
     "sicm_free_action": "from (7, 5, 1) at 0 to (47, 35, 21) at 10",
-    # From where the wheel has turned by 1 rad: at (0, 0) L is infinite.
-    "variational_brachistochrone": "from R (1 - cos(1)) at R (1 - sin(1)) to 2 R at pi R",
+    "variational_brachistochrone": "from 0 at 0 to 2 R at pi R",
 }
 
 WAITS = {  # kind of an expectation → the capability that it waits for

@@ -1,4 +1,5 @@
 #pragma once
+#include <maupertuis/action.hpp>
 #include <maupertuis/diagram.hpp>
 #include <maupertuis/invariants.hpp>
 #include <maupertuis/locus.hpp>
@@ -136,6 +137,10 @@ struct ReportContent {
     PlotOptions picture;
   };
   std::vector<Finding> orbits;
+
+  std::vector<Finding> paths;            // between the ends of the model on which S is stationary
+  std::string path_search;               // within what they were sought
+  std::vector<Locus> path_pictures;
 };
 
 /// One HTML page that needs nothing else: no network, no fonts, no other file. Its policy forbids every request.
@@ -163,6 +168,7 @@ struct ReportParts {
   const SectionResult* section = nullptr;
   std::string section_what;                       // "section x = 0 rising"
   const LyapunovResult* lyapunov = nullptr;
+  const PathSearch* paths = nullptr;              // between the ends of the model's `path`
 };
 
 /// How a section is drawn: q' against q of the coordinate that it leaves free, a colour a motion, with the border of what

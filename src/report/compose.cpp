@@ -1,6 +1,7 @@
 #include "report/motion_parts.hpp"
 #include "report/mode_parts.hpp"
 #include "report/notation.hpp"
+#include "report/action.hpp"
 #include "report/orbits.hpp"
 
 #include <maupertuis/constraint_analysis.hpp>
@@ -176,6 +177,7 @@ ReportContent compose_report(const Model& model, const SourceText& source, const
   if (parts.modes) add_modes(content, model, equations, *parts.modes);
   if (parts.locus) add_loci(content, model.system, *parts.locus);
   add_orbits(content, model.system, parts);
+  if (parts.paths) add_action(content, model.system, *parts.paths);
   if (parts.verification) content.expectations = parts.verification->results;
   return content;
 }

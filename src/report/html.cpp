@@ -63,6 +63,7 @@ std::string report_html(const ReportContent& content) {
       {"motion", "Motion", motion_section(content)},
       {"modes", "Modes", modes_section(content)},
       {"orbits", "Long run", orbits_section(content)},
+      {"paths", "Action", paths_section(content)},
       {"conserved", "Conserved quantities", conserved_section(content)},
       {"phase-space", "Phase space", phase_space_section(content)},
       {"derivation", "Derivation", derivation_section(content)},

@@ -52,13 +52,7 @@ std::string point_part(const ReportContent::ModePoint& point, std::size_t index)
 std::string modes_section(const ReportContent& content) {
   std::string html;
   for (std::size_t i = 0; i < content.mode_points.size(); ++i) html += point_part(content.mode_points[i], i);
-  std::string loci;
-  for (const auto& locus : content.loci) {
-    Diagram d = locus.diagram;
-    d.theme = PlotTheme::Page;
-    loci += fmt::format("<figure>\n{}<figcaption>{}</figcaption></figure>\n", diagram_svg(d), sentence_html(locus.caption));
-  }
-  if (!loci.empty()) html += "<div class=\"plots\">\n" + loci + "</div>\n";
+  html += diagrams_html(content.loci);
   if (html.empty()) return {};
   const std::string search = content.mode_search.empty() ? "" : fmt::format("<p class=\"muted\">{}</p>\n", sentence_html(content.mode_search));
   return fmt::format("<section id=\"modes\">\n<h2>Equilibria and modes</h2>\n{}{}</section>\n", search, html);

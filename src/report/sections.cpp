@@ -237,6 +237,25 @@ std::string orbits_section(const ReportContent& content) {
   return section("orbits", "Long run", html);
 }
 
+std::string diagrams_html(const std::vector<ReportContent::Locus>& diagrams) {
+  std::string figures;
+  for (const auto& [caption, diagram] : diagrams) {
+    Diagram d = diagram;
+    d.theme = PlotTheme::Page;
+    figures += fmt::format("<figure>\n{}<figcaption>{}</figcaption></figure>\n", diagram_svg(d), sentence_html(caption));
+  }
+  return figures.empty() ? figures : "<div class=\"plots\">\n" + figures + "</div>\n";
+}
+
+std::string paths_section(const ReportContent& content) {
+  std::string html;
+  for (const ReportContent::Finding& path : content.paths)
+    html += fmt::format("<h3>{}</h3>\n{}", escape_html(path.title), facts_list(path.facts));
+  html += diagrams_html(content.path_pictures);
+  if (!html.empty()) html = fmt::format("<p class=\"muted\">{}</p>\n", sentence_html(content.path_search)) + html;
+  return section("paths", "Stationary paths of the action", html);
+}
+
 std::string expectations_section(const ReportContent& content) {
   std::string rows;
   for (const auto& result : content.expectations)

@@ -17,6 +17,9 @@ std::string conserved_section(const ReportContent& content);
 std::string motion_section(const ReportContent& content);
 std::string modes_section(const ReportContent& content);
 std::string orbits_section(const ReportContent& content);
+std::string paths_section(const ReportContent& content);
+/// Figures beside each other.
+std::string diagrams_html(const std::vector<ReportContent::Locus>& diagrams);
 std::string expectations_section(const ReportContent& content);
 
 /// The frames of a drawing for the script.

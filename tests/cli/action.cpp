@@ -150,3 +150,13 @@ TEST_CASE("the paths as a file, in x") {
   CHECK_MESSAGE(told.code == 0, told.err);
   CHECK(read(folder.path("way.csv")).rfind("φ [rad],θ [rad],θ'\r\n", 0) == 0);
 }
+
+TEST_CASE("the paths of a model in its report, which needs no run") {
+  const Outcome told = maup({"report", gallery("oscillator_path"), "-o", "-"});
+  CHECK_MESSAGE(told.code == 0, told.err);
+  CHECK(contains(told.out, "Stationary paths of the action"));
+  CHECK(contains(told.out, "by the inertia of the second variation"));
+  const Outcome unreachable = maup({"report", "-", "-o", "-"}, oscillator("3.14159265358979"));
+  CHECK(unreachable.code != 0);
+  CHECK(contains(unreachable.err, "E1204"));
+}

@@ -73,8 +73,9 @@ LongRun long_run(const ReportOptions& options, Study& study) {
 
 /// The page; a model that cannot run (no start, no `run`) still gets its equations.
 std::string page_of(Study& study, const std::optional<SimulationResult>& result, const SimulationOptions& settings,
-                    const LongRun& orbits) {
+                    const LongRun& orbits, const std::optional<PathSearch>& paths) {
   ReportParts parts;
+  if (paths) parts.paths = &*paths;
   Verification verification;
   EquilibriumParts equilibria;
   if (moves_in_time(study.model()->system)) equilibria = equilibrium_parts(*study.model(), *study.equations());
@@ -100,6 +101,12 @@ std::string page_of(Study& study, const std::optional<SimulationResult>& result,
                                     *study.certificate(), study.diagnostics(), parts));
 }
 
+/// It says between what ends its paths run, and nothing of a run.
+bool is_about_paths_alone(const Model& model) {
+  const Experiment& e = model.experiment;
+  return e.path && !e.duration && !e.until;
+}
+
 ExitCode report(const ReportOptions& options, Console& console) {
   Study study(options.model.path, options.model.overrides);
   Json document = json_document("report");
@@ -116,14 +123,17 @@ ExitCode report(const ReportOptions& options, Console& console) {
   if (!study.certificate()) return finish(console, study, document);
 
   std::optional<SimulationResult> result;
-  if (!options.without_run) result = run_model(study, report_run(*study.model(), settings), console);
+  if (!options.without_run && !is_about_paths_alone(*study.model())) result = run_model(study, report_run(*study.model(), settings), console);
   if (study.wrong()) return finish(console, study, document);
   const LongRun orbits = long_run(options, study);
+  std::optional<PathSearch> paths;
+  if (const Model& model = *study.model(); model.experiment.path)
+    paths = stationary_paths(model, *study.equations(), ends_of(model), ActionOptions(), study.diagnostics());
   if (study.wrong()) {
     finish(console, study, document);
     return ExitCode::RunFailed;
   }
-  const std::string page = page_of(study, result, settings, orbits);
+  const std::string page = page_of(study, result, settings, orbits, paths);
   const std::string path = options.output.empty() ? study.model()->system.name + ".html" : options.output;
   if (path == "-") console.print(page);
   else write_result(path, page, study.diagnostics());
