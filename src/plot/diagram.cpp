@@ -26,7 +26,8 @@ class Picture {
     left_ = 30 + label + 10;
     right_ = d_.width - 18;
     across_ = make_across(right_ - left_);
-    top_ = (d_.title.empty() ? 10 : 38) + (d_.legend.empty() ? 0 : line_height + 4);
+    const std::vector<KeyPlace> keys = key_places();
+    top_ = (d_.title.empty() ? 10 : 38) + (keys.empty() ? 0 : line_height * static_cast<double>(keys.back().row + 1) + 4);
   }
 
   std::string svg() const {
@@ -81,15 +82,36 @@ class Picture {
     return fmt::format("class=\"curve {}{}", series_attributes(series % colours(), colours()), dashed ? " stroke-dasharray=\"5 4\"" : "");
   }
 
+  struct KeyPlace {
+    std::size_t row;
+    double x;
+  };
+  /// As many keys in a row as the frame is wide.
+  std::vector<KeyPlace> key_places() const {
+    std::vector<KeyPlace> out;
+    double x = left_;
+    std::size_t row = 0;
+    for (const Diagram::Key& key : d_.legend) {
+      const double width = 26 + text_width({{key.text}}, label_size);
+      if (x > left_ && x + width > right_) {
+        ++row;
+        x = left_;
+      }
+      out.push_back({row, x});
+      x += width + 18;
+    }
+    return out;
+  }
+
   std::string legend() const {
     std::string out;
-    double x = left_;
-    for (const Diagram::Key& key : d_.legend) {
-      const double y = top_ - 10;
+    const std::vector<KeyPlace> places = key_places();
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const Diagram::Key& key = d_.legend[i];
+      const double x = places[i].x, y = top_ - 10 - line_height * static_cast<double>(places.back().row - places[i].row);
       if (key.dots) out += fmt::format("<circle class=\"dot {} cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\"/>\n", series_attributes(key.series % colours(), colours()), x + 10, y - 4);
       else out += fmt::format("<path {} d=\"M{:.1f} {:.1f}h20\"/>", line_attributes(key.series, key.dashed), x, y - 4);
       out += text_element(x + 26, y, "start", label_size, {{key.text}});
-      x += 26 + text_width({{key.text}}, label_size) + 18;
     }
     return out;
   }

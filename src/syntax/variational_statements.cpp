@@ -124,7 +124,7 @@ void StatementParser::expect_action(ExpectStatement& expect) {
     next();
     if (accept("from")) {
       expect.from = quantity();
-      this->expect("to", "the begin of the path");
+      this->expect("to", "the beginning of the path");
       expect.to = quantity();
     }
   }

@@ -155,7 +155,7 @@ void elaborate_path(Elaboration& e, const syntax::PathStatement& s, Span span) {
   if (e.experiment().path) return;  // given twice, which was told
   PathEnds out;
   out.span = span;
-  const bool from = configuration(e, s.from, "the begin of the path", out.from);
+  const bool from = configuration(e, s.from, "the beginning of the path", out.from);
   const bool to = configuration(e, s.to, "the end of the path", out.to);
   const Value begin = constant_of(e, *s.from.at, e.time(), in_words(e, "the time of an end of a path"));
   const Value end = constant_of(e, *s.to.at, e.time(), in_words(e, "the time of an end of a path"));

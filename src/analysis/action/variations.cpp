@@ -15,7 +15,7 @@ namespace {
 
 constexpr int waves = 6;            // of each coordinate, among which the lowest shape is sought
 constexpr std::size_t most_shown = 5;
-constexpr int half_count = 10;      // values of ε on each side
+constexpr int half_count = 20;      // values of ε on each side
 constexpr double largest_epsilon = 0.2;
 
 struct Shape {
