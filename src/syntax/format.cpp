@@ -30,15 +30,26 @@ bool may_break_before(std::span<const Token> tokens, std::size_t i) {
   return tokens[i - 1].is(",") || binary;
 }
 
-// Where a line that is too long ends: at the last good place that fits, or at the first one.
+int depth_change(const Token& token) {
+  if (token.is("(") || token.is("[")) return 1;
+  return token.is(")") || token.is("]") ? -1 : 0;
+}
+
+// Where a line that is too long ends: at a good place that fits, in as few brackets as possible and then as late as
+// possible, but not before half of the line; where none fits, at the first one.
 std::size_t fitting_end(std::span<const Token> statement, std::size_t begin, std::size_t end) {
-  std::size_t fitting = end;
-  std::size_t width = begin == 0 ? 0 : kIndent.size();
+  std::size_t fitting = end, width = begin == 0 ? 0 : kIndent.size(), width_there = 0;
+  int depth = 0, depth_there = 0;
   for (std::size_t i = begin; i < end; ++i) {
     if (i > begin && may_break_before(statement, i)) {
       if (width > kWidth && fitting != end) return fitting;
-      fitting = i;
+      if (fitting == end || depth <= depth_there || width_there < kWidth / 2) {
+        fitting = i;
+        width_there = width;
+        depth_there = depth;
+      }
     }
+    depth += depth_change(statement[i]);
     width += (i > begin && blank_before(statement, i) ? 1 : 0) + length_in_characters(statement[i].text) +
              (statement[i].kind == Token::Kind::String ? 2 : 0);
   }
