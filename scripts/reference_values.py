@@ -160,9 +160,9 @@ def ion_in_fields():
     """Cycloid of the crossed fields (Jackson §12.3), free along B."""
     q, m, b, e = D("1.602176634e-19"), D("1.67262192369e-27"), D("1e-3"), D(10)
     w, t = q * b / m, D("200e-6")
-    yield "x", "200 µs", e / (b * w) * (1 - cos(w * t))
-    yield "y", "200 µs", -e / b * (t - sin(w * t) / w)
-    yield "z", "200 µs", 5000 * t
+    yield "x", "200 μs", e / (b * w) * (1 - cos(w * t))
+    yield "y", "200 μs", -e / b * (t - sin(w * t) / w)
+    yield "z", "200 μs", 5000 * t
 
 
 def rotating_frame():
@@ -254,7 +254,7 @@ def van_der_pol():
 MODELS = [pendulum, double_pendulum, elastic_pendulum, spherical_pendulum, cart_pendulum, bead_on_hoop, kepler,
           lagrange_top, satellite, ion_in_fields, rotating_frame, robot_arm, motor_link, absolute_value, arm_seven_joints,
           henon_heiles, van_der_pol, *reference_constraints.MODELS, *reference_rolling.MODELS]
-UNITS = {"deg": DEG, "ms": D("1e-3"), "µs": D("1e-6"), "h": D(3600)}
+UNITS = {"deg": DEG, "ms": D("1e-3"), "μs": D("1e-6"), "h": D(3600)}
 
 
 def text_of(name):
