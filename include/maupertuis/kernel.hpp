@@ -97,7 +97,8 @@ enum class KernelStatus {
 
 /// Of Taylor polynomials c_0 + c_1 τ + … beside each other, coefficient k of column i at first[k · stride + i]: what is to be added to
 /// c_1 and c_1 after τ, Σ_{k≥2} c_k τ^{k−1} and Σ_{k≥2} k c_k τ^{k−1}. Rows and results are read and written in eights.
-void polynomial_increments(const double* first, std::size_t stride, std::size_t columns, int degree, double tau, double* dq, double* dv);
+using PolynomialIncrements = void(const double* first, std::size_t stride, std::size_t columns, int degree, double tau, double* dq, double* dv);
+PolynomialIncrements polynomial_increments;
 
 /// Everything that a run of a kernel changes. One thread at a time; as many as wanted for one kernel.
 ///
@@ -169,9 +170,12 @@ class KernelWorkspace {
   /// and the report says why. Results agree to rounding. Cost: straight-line code about 0.2 s, else some 15 ms and half a millisecond an unknown; from the cache 1 ms.
   CompileReport compile(const CompileOptions& options = {});
 
-  /// How the coefficients of q decay. With v_k = (k + 1) |q_{k+1}| and s_i the largest of v_k h^k for k ≤ 3 and ε |q_0| / h:
-  /// largest[order − k] = max_i v_k / s_i for k = order … lowest (at most 8). False if some s_i is 0.
-  bool decay(double h, int lowest, double* largest) const;
+  /// log₂ of the radius of convergence that the last coefficients of q tell: with v_k = (k + 1) |q_{k+1}| and s_i the largest of v_k h^k for k ≤ 3 and ε |q_0| / h,
+  /// the least of (s_i / v_k)^{1/k} over all coordinates and the last six k, where the last two are taken as they are and the others times 1.25. To 10⁻⁵; infinite where
+  /// all these v_k vanish. Below −900/order where some s_i is 0 (or nearly so): no estimate.
+  double log2_radius(double h) const;
+  /// polynomial_increments for the coefficients coordinate(k), k ≤ order + 1, until the next `compile`.
+  PolynomialIncrements* increments() const;
   /// Doubles from one order of coordinate() to the next.
   std::size_t row_stride() const;
 

@@ -1,7 +1,5 @@
 #include "integrator/dense_output/dense_output.hpp"
 
-#include <maupertuis/kernel.hpp>
-
 #include <algorithm>
 
 namespace maupertuis {
@@ -36,7 +34,7 @@ void DenseOutput::advance(double tau, std::span<Compensated> q_out, std::span<Co
                           std::span<Compensated> integrals_out) const {
   double* const dq = increments_.data();
   double* const dv = dq + padded(freedoms_);
-  polynomial_increments(first_, stride_, freedoms_, degree_, tau, dq, dv);
+  add_up_(first_, stride_, freedoms_, degree_, tau, dq, dv);
   for (std::size_t i = 0; i < freedoms_; ++i) {
     q_out[i] = q[i];
     q_out[i].add((dq[i] + (v[i].hi + v[i].lo)) * tau);

@@ -1,4 +1,6 @@
 #pragma once
+#include <maupertuis/kernel.hpp>
+
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -24,7 +26,9 @@ class DenseOutput {
   void resize(std::size_t freedoms, std::size_t integrals, int degree);
 
   /// Takes the coefficients c_k = first[k · stride …] of q from where they are, as long as they stay there …
-  void refer_to(const double* first, std::size_t stride) { first_ = first, stride_ = stride; }
+  void refer_to(const double* first, std::size_t stride, PolynomialIncrements* increments = polynomial_increments) {
+    first_ = first, stride_ = stride, add_up_ = increments;
+  }
   /// … or copies them.
   void copy(const double* first, std::size_t stride);
   /// Of the integrands; their integrals start from `integrals`.
@@ -42,6 +46,7 @@ class DenseOutput {
   int degree_ = 0;
   const double* first_ = nullptr;
   std::size_t stride_ = 0;
+  PolynomialIncrements* add_up_ = polynomial_increments;
   std::vector<double> coefficients_;    // [degree + 1][n] of q, where they are copied
   std::vector<double> integrands_;      // [degree + 1][m]
   mutable std::vector<double> increments_;  // of q and q̇

@@ -1,5 +1,5 @@
 #pragma once
-#include "integrator/dense_output/rough_powers.hpp"
+#include "kernel/jet/rough_powers.hpp"
 #include "integrator/ensemble/lane_steps.hpp"
 
 #include <cstdint>

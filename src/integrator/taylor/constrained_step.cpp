@@ -13,9 +13,9 @@ namespace maupertuis {
 bool TaylorStepper::Impl::forces_diverge() {
   constexpr double vanishing = 1e-6;
   longest = std::max(longest, length);
-  largest_row.resize(kernel.constraints(), 0.0);
+  largest_row.resize(m, 0.0);
   bool vanishes = false;
-  for (std::size_t j = 0; j < kernel.constraints(); ++j) {
+  for (std::size_t j = 0; j < m; ++j) {
     double size = 0;
     for (std::size_t i = 0; i < n; ++i) size = std::max(size, std::abs(work.constraint_matrix(j, i)));
     largest_row[j] = std::max(largest_row[j], size);
@@ -28,7 +28,7 @@ bool TaylorStepper::Impl::forces_diverge() {
 /// solves; only where the corrections are above rounding is the motion expanded anew.
 /// `known`: the corrections are there.
 bool TaylorStepper::Impl::project(Step& result, bool known) {
-  double error = taylor::constraint_error(work, n, kernel.constraints(), length);
+  double error = taylor::constraint_error(work, n, m, length);
   if (!first) constraint_residual = std::max(constraint_residual, error);
   // In a rotation the radius of convergence is no bound: steps get so long that each order of λ multiplies the rounding
   // errors of those before it. What a step leaves in the constraints shows it.
@@ -47,7 +47,7 @@ bool TaylorStepper::Impl::project(Step& result, bool known) {
     }
     if (error <= taylor::rounding_of_constraints) return true;
     if (const KernelStatus status = work.expand(t.hi, q_now, v_now); status != KernelStatus::Ok) return fail(result, status);
-    const double now = taylor::constraint_error(work, n, kernel.constraints(), length);
+    const double now = taylor::constraint_error(work, n, m, length);
     if (turn > 2 && now > 0.5 * error) break;
     error = now;
   }
@@ -68,7 +68,7 @@ void TaylorStepper::Impl::land(Step& result, double tau) {
     if (work.expand(t.hi, q_now, v_now) == KernelStatus::Ok) {
       defined = true;
       work.corrections(dq, dv);
-      const double error = taylor::constraint_error(work, n, kernel.constraints(), length);
+      const double error = taylor::constraint_error(work, n, m, length);
       const std::size_t in_force = work.constraints_in_force();
       const bool regular = in_force >= most_in_force && work.pivot_ratio() > 1e-6 * best_pivot_ratio;
       if (regular && error <= allowed && taylor::correction_size(work, dq, dv, length) <= sound) {

@@ -14,8 +14,7 @@ std::int8_t sign(double x) { return static_cast<std::int8_t>((x > 0) - (x < 0));
 
 using taylor::SideChooser;
 
-void TaylorStepper::Impl::set_sides(KernelWorkspace& w) const {
-  if (switch_state.empty()) return;
+void TaylorStepper::Impl::copy_sides(KernelWorkspace& w) const {
   std::vector<std::int8_t> sides;
   for (const taylor::Watched& s : switch_state) sides.push_back(s.side);
   w.set_branches(sides);

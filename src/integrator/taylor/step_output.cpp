@@ -27,9 +27,9 @@ void TaylorStepper::Impl::restore_polynomial() {
 /// Where a step may be expanded more than once, the rows of the workspace do not stay.
 void TaylorStepper::Impl::keep_polynomial() {
   begin = t;
-  dense_turns = turns;
+  if (dense_turns.changes() != turns.changes()) dense_turns = turns;
   set_sides(probe);
-  if (expands_once()) dense.refer_to(work.coordinate(0), work.row_stride());
+  if (expands_once()) dense.refer_to(work.coordinate(0), work.row_stride(), work.increments());
   else dense.copy(work.coordinate(0), work.row_stride());
   for (std::size_t i = 0; i < integrals.size(); ++i)
     for (int k = 0; k <= control.order + 1; ++k) dense.integrand(k)[i] = work.integrand(i, k);
@@ -50,7 +50,7 @@ void TaylorStepper::Impl::record_start() const {
   start_sample.observables.resize(kernel.observables());
   for (std::size_t i = 0; i < kernel.observables(); ++i) start_sample.observables[i] = work.observable(i);
   dense_turns.add_to(start_sample.observables);
-  start_sample.multipliers.resize(kernel.constraints());
+  start_sample.multipliers.resize(m);
   multipliers_of(work, start_sample.multipliers);
   start_sample.integrals.resize(integrals.size());
   for (std::size_t i = 0; i < integrals.size(); ++i) start_sample.integrals[i] = dense.integrals[i].hi;
@@ -69,7 +69,7 @@ Sample TaylorStepper::Impl::sample(double time) const {
   const bool ok = probe.evaluate(time, result.q, result.v) == KernelStatus::Ok;
   constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 0; i < n; ++i) result.a.push_back(ok ? probe.acceleration(i) : nothing);
-  result.multipliers.assign(kernel.constraints(), nothing);
+  result.multipliers.assign(m, nothing);
   if (ok) multipliers_of(probe, result.multipliers);
   for (std::size_t i = 0; i < kernel.observables(); ++i)
     result.observables.push_back(ok ? probe.observable(i) : nothing);

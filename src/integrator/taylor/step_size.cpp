@@ -1,12 +1,12 @@
 #include "integrator/taylor/step_size.hpp"
 
-#include "integrator/dense_output/rough_powers.hpp"
+#include "kernel/jet/rough_powers.hpp"
 
 #include <maupertuis/integrator.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 /// À. Jorba, M. Zou, A software package for the numerical integration of ODEs by means of high-order Taylor methods,
@@ -38,64 +38,34 @@ double velocity(const KernelWorkspace& work, std::size_t i, int k) {
   return (k + 1) * std::abs(work.coordinate(k + 1)[i]);
 }
 
-/// Velocities over a step of length h, coordinate by coordinate: how large the last ones are against the size that the first ones have.
-class Decay {
- public:
-  Decay(const KernelWorkspace& work, std::size_t freedoms, int order, double h)
-      : c_(work.coordinate(0)), stride_(work.row_stride()), order_(order), lowest_(std::max(std::min(2, order - 1), order - 5)), h_(h) {
-    if (work.decay(h, lowest_, largest_.data())) return;
-    largest_.fill(0);
-    for (std::size_t i = 0; i < freedoms; ++i) compare(i);
-  }
+/// The size of a coordinate's velocity over a step of length h.
+double size_of(const KernelWorkspace& work, std::size_t i, int order, double h) {
+  double size = 0, power = 1;
+  for (int k = 0; k <= std::min(3, order - 2); ++k, power *= h) size = std::max(size, velocity(work, i, k) * power);
+  // A coordinate that others set in motion late begins with a higher power of time.
+  for (int k = 4; size == 0 && k <= order; ++k) size = velocity(work, i, k) * std::pow(h, k);
+  // A velocity that moves q by less than its rounding within the step does not count.
+  return std::max(size, rounding_tolerance() * std::abs(work.coordinate(0)[i]) / h);
+}
 
-  /// min of (size / |v_k|)^(1/k) over the coordinates and the last two k; earlier k speak up only where these are silent, since a
-  /// motion with a symmetry (a pendulum let go at 90°) has coefficients 4 or more orders apart, so that the last two may vanish.
-  double radius() const {
-    double exponent = infinity;
-    for (int k = order_; k >= std::max(lowest_, order_ - 1); --k) exponent = std::min(exponent, log2_radius(k));
-    double best = exponent < infinity ? rough_exp2<double, std::int64_t>(exponent) : infinity;
-    for (int k = order_ - 2; k >= lowest_; --k)
-      if (best == infinity || largest(k) > power(widened / best, k)) best = std::min(best, widened * std::exp2(log2_radius(k)));
-    return best;
+/// KernelWorkspace::log2_radius where a coordinate begins to move late: min of (size / |v_k|)^(1/k) over the coordinates and the last two k; earlier k
+/// speak up only where these are silent, since a motion with a symmetry (a pendulum let go at 90°) has coefficients 4 or more orders apart, so that the last two may vanish.
+double log2_radius_of_late(const KernelWorkspace& work, std::size_t freedoms, int order, double h) {
+  double least = infinity;
+  for (std::size_t i = 0; i < freedoms; ++i) {
+    const double size = std::log2(size_of(work, i, order, h));
+    for (int k = order; k >= std::max(std::min(2, order - 1), order - 5); --k)
+      if (const double last = velocity(work, i, k); last > 0)
+        least = std::min(least, (size - std::log2(last)) / k + (k < order - 1 ? std::log2(widened) : 0));
   }
+  return least;
+}
 
- private:
-  double velocity(std::size_t i, int k) const { return (k + 1) * std::abs(c_[static_cast<std::size_t>(k + 1) * stride_ + i]); }
-  double largest(int k) const { return largest_[static_cast<std::size_t>(order_ - k)]; }
-  double log2_radius(int k) const {
-    return largest(k) > 0 ? rough_log2<double, std::int64_t>(largest(k)) * (-1.0 / k) : infinity;
-  }
-  static double power(double x, int k) {
-    double result = 1;
-    for (; k > 0; k /= 2, x *= x)
-      if (k % 2 == 1) result *= x;
-    return result;
-  }
-
-  double size_of(std::size_t i) const {
-    double size = 0, power = 1;
-    for (int k = 0; k <= std::min(3, order_ - 2); ++k, power *= h_) size = std::max(size, velocity(i, k) * power);
-    // A coordinate that others set in motion late begins with a higher power of time.
-    for (int k = 4; size == 0 && k <= order_; ++k) size = velocity(i, k) * std::pow(h_, k);
-    // A velocity that moves q by less than its rounding within the step does not count.
-    return std::max(size, rounding_tolerance() * std::abs(c_[i]) / h_);
-  }
-
-  void compare(std::size_t i) {
-    const double inverse = 1 / size_of(i);
-    for (int k = order_; k >= lowest_; --k)
-      if (const double last = velocity(i, k); last > 0) {
-        double& to = largest_[static_cast<std::size_t>(order_ - k)];
-        to = std::max(to, last * inverse);
-      }
-  }
-
-  const double* c_;
-  std::size_t stride_;
-  int order_, lowest_;
-  double h_;
-  std::array<double, 8> largest_{};
-};
+double radius(const KernelWorkspace& work, std::size_t freedoms, int order, double h) {
+  double exponent = work.log2_radius(h);
+  if (!(exponent > -900.0 / order)) exponent = log2_radius_of_late(work, freedoms, order, h);
+  return exponent < infinity ? rough_exp2<double, std::int64_t>(exponent) : infinity;
+}
 
 /// A length to start from, where no step was made before: the decay from the first coefficients to the last.
 double first_guess(const KernelWorkspace& work, std::size_t freedoms, int order) {
@@ -130,7 +100,7 @@ double step_size(const KernelWorkspace& work, std::size_t freedoms, const StepCo
     turns = 4;
   }
   for (int turn = 0; turn < turns; ++turn) {
-    const double reached = control.factor * Decay(work, freedoms, p, h).radius();
+    const double reached = control.factor * radius(work, freedoms, p, h);
     if (!(reached < infinity)) return infinity;
     h = reached;
   }

@@ -3,7 +3,6 @@
 #include <maupertuis/require.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -23,7 +22,7 @@ void TaylorStepper::Impl::compile(bool long_run) {
 void TaylorStepper::Impl::compile_if_it_pays(double bound) {
   constexpr std::size_t first_look = 512;
   constexpr double enough = 20'000, enough_for_long_code = 200'000, usual_size = 8;  // docs/design/kernel_speed.md
-  if (options.backend == Backend::Interpreter || steps < first_look || !std::has_single_bit(steps)) return;
+  if (options.backend == Backend::Interpreter || steps < first_look || (steps & (steps - 1)) != 0) return;  // looks at powers of two
   const double done = std::abs(t.hi - run_begin), left = std::abs(remaining(bound));
   const double expected = static_cast<double>(steps) * (1 + left / done);
   const double size = std::max(1.0, static_cast<double>(n) / usual_size);  // a step saves more where there are more unknowns
@@ -60,7 +59,7 @@ bool TaylorStepper::Impl::expand(double bound, Step& result) {
     restore_polynomial();
     return false;
   }
-  if (kernel.constraints() > 0 && !project(result)) return false;
+  if (m > 0 && !project(result)) return false;
   return switch_state.empty() || decide_sides(bound, result);
 }
 
@@ -102,10 +101,10 @@ Step TaylorStepper::Impl::step(double bound) {
     for (std::size_t i = 0; i < n; ++i) q_now[i] = q[i].hi;
   if (!std::exchange(expanded, false) && !expand(bound, result)) return result;
   double chosen = restraint * taylor::step_size(work, n, control, length);
-  if (const std::size_t m = kernel.constraints(); m > 0)
+  if (m > 0)
     chosen = taylor::step_within_multipliers(work, n, m, control, std::min(chosen, std::abs(remaining(bound))));
   length = std::isfinite(chosen) ? chosen : 0;
-  if (kernel.constraints() > 0 && forces_diverge()) {
+  if (m > 0 && forces_diverge()) {
     end(result, StepEnding::SingularConstraints, "The constraints are singular near here: the forces that they ask for grow without bound.");
     return result;
   }
@@ -119,13 +118,13 @@ Step TaylorStepper::Impl::step(double bound) {
   keep_polynomial();
   start_is_recorded = false;
   if (!expands_once()) record_start();
-  const Crossing crossing = first_crossing(h);
+  const Crossing crossing = watches() ? first_crossing(h) : Crossing();
   if (crossing.found && stuck >= 100) {
     end(result, StepEnding::Sliding, "Switches follow each other in no time: the motion has come to slide along a switch.");
     return result;
   }
   advance(bound, h, crossing, result);
-  if (kernel.constraints() > 0 && switch_state.empty() && event_state.empty()) land(result, h);
+  if (m > 0 && switch_state.empty() && event_state.empty()) land(result, h);
   return result;
 }
 

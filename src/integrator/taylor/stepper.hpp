@@ -13,7 +13,7 @@ namespace maupertuis {
 struct TaylorStepper::Impl {
   Impl(const Kernel& k, std::span<const double> parameters, const TaylorOptions& o)
       : kernel(k), options(o), control(taylor::step_control(o.tolerance, o.order)), work(k, control.order),
-        probe(k, 1), n(k.freedoms()), turns(k), dense_turns(k), switch_state(k.switches().size()), event_state(k.events()) {
+        probe(k, 1), n(k.freedoms()), m(k.constraints()), turns(k), dense_turns(k), switch_state(k.switches().size()), event_state(k.events()) {
     work.set_parameters(parameters);
     probe.set_parameters(parameters);
     dense.resize(n, k.integrands(), control.order + 1);
@@ -41,7 +41,8 @@ struct TaylorStepper::Impl {
   void move_to(double tau, Step& result);
   bool decide_sides(double bound, Step& result);
   std::optional<double> trial(double bound);
-  bool expands_once() const { return kernel.constraints() == 0 && switch_state.empty(); }
+  bool expands_once() const { return m == 0 && switch_state.empty(); }
+  bool watches() const { return !switch_state.empty() || !event_state.empty(); }
   void keep_polynomial();
   void restore_polynomial();
   void record_start() const;
@@ -54,7 +55,10 @@ struct TaylorStepper::Impl {
   bool fail(Step& result, KernelStatus status) const;
   double remaining(double bound) const { return (bound - t.hi) - t.lo; }
   double tau_of(double time) const { return (time - begin.hi) - begin.lo; }
-  void set_sides(KernelWorkspace& w) const;
+  void set_sides(KernelWorkspace& w) const {
+    if (!switch_state.empty()) copy_sides(w);
+  }
+  void copy_sides(KernelWorkspace& w) const;
   void choose_first_sides();
   Sample sample(double time) const;
 
@@ -63,7 +67,7 @@ struct TaylorStepper::Impl {
   taylor::StepControl control;
   KernelWorkspace work;
   mutable KernelWorkspace probe;         // for the kernel at points within the step
-  std::size_t n;
+  const std::size_t n, m;                // freedoms, constraints
 
   Compensated t, begin;                  // now; the beginning of the last step
   std::vector<Compensated> q, v, integrals;

@@ -29,6 +29,7 @@ bool Turns::wind(std::size_t i, Compensated& q) {
   const double count = std::nearbyint(q.hi / high);
   q = turned(q, -count);
   counts_[i] += count;
+  ++changes_;
   return true;
 }
 

@@ -14,7 +14,9 @@ class Turns {
  public:
   explicit Turns(const Kernel& kernel) : winding_(&winding(kernel)), counts_(kernel.freedoms(), 0.0) {}
 
-  void forget() { counts_.assign(counts_.size(), 0.0); }
+  void forget() { counts_.assign(counts_.size(), 0.0), changes_ = 0; }
+  /// How often an angle was brought back.
+  std::size_t changes() const { return changes_; }
   /// Brings angles beyond ±2π back to ±π, exact to 100 bits. True if any was.
   bool wind(std::span<Compensated> q);
   /// The same for coordinate i alone.
@@ -27,6 +29,7 @@ class Turns {
  private:
   const Winding* winding_;       // of a kernel that lives as long
   std::vector<double> counts_;   // [n]
+  std::size_t changes_ = 0;
 };
 
 }  // namespace maupertuis::taylor

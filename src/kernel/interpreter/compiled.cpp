@@ -3,6 +3,7 @@
 #include "kernel/compiled/backend.hpp"
 
 #include <optional>
+#include <type_traits>
 
 namespace maupertuis::interpreter {
 
@@ -21,10 +22,12 @@ std::pair<CompiledCode, CompileReport> compile(const packed::PackedProgram& prog
   if (options.cache) cache.emplace(compiled::ObjectCache::usual_folder());
   compiled::Compiled made = compiled::compile(request, cache ? &*cache : nullptr);
   CompiledCode code;
-  if (made.code)
-    code = {reinterpret_cast<packed::CompiledExpand>(made.code->find("expand")), reinterpret_cast<packed::CompiledStage>(made.code->find("stage")),
-            reinterpret_cast<packed::CompiledStage>(made.code->find("ahead")),
-            reinterpret_cast<packed::CompiledTangents>(made.code->find("tangents")), made.code};
+  if (made.code) {
+    const auto find = [&](auto& function, const char* name) { function = reinterpret_cast<std::decay_t<decltype(function)>>(made.code->find(name)); };
+    find(code.expand, "expand"), find(code.log2_radius, "log2_radius"), find(code.increments, "increments");
+    find(code.stage, "stage"), find(code.ahead, "ahead"), find(code.tangents, "tangents");
+    code.memory = made.code;
+  }
   return {std::move(code), {.compiled = made.code != nullptr, .trouble = std::move(made.trouble),
                             .cache_trouble = std::move(made.cache_trouble), .from_cache = made.from_cache, .seconds = made.seconds}};
 }

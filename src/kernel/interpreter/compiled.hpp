@@ -12,6 +12,8 @@ namespace maupertuis::interpreter {
 /// Machine code for one program, row stride and order; `memory` keeps it there. Either for the whole expansion, or rolled: for one stage.
 struct CompiledCode {
   packed::CompiledExpand expand = nullptr;
+  packed::CompiledRadius log2_radius = nullptr;
+  packed::CompiledIncrements increments = nullptr;
   packed::CompiledStage stage = nullptr, ahead = nullptr;
   packed::CompiledTangents tangents = nullptr;
   std::shared_ptr<const void> memory;

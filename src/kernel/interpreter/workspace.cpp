@@ -349,12 +349,16 @@ KernelWorkspace::KernelWorkspace(KernelWorkspace&&) noexcept = default;
 
 int KernelWorkspace::order() const { return impl_->order; }
 
-bool KernelWorkspace::decay(double h, int lowest, double* largest) const {
+double KernelWorkspace::log2_radius(double h) const {
   const Impl& s = *impl_;
-  return s.engine.decay(s.memory.row(0), s.memory.stride, s.program.freedoms, s.order, lowest, h, largest);
+  if (s.compiled.log2_radius) return s.compiled.log2_radius(s.memory.rows.data(), h);
+  return s.engine.log2_radius(s.memory.row(0), s.memory.stride, s.program.freedoms, s.order, h);
 }
 void polynomial_increments(const double* first, std::size_t stride, std::size_t columns, int degree, double tau, double* dq, double* dv) {
   packed::engine().increments(first, stride, columns, degree, tau, dq, dv);
+}
+PolynomialIncrements* KernelWorkspace::increments() const {
+  return impl_->compiled.increments ? impl_->compiled.increments : polynomial_increments;
 }
 std::size_t KernelWorkspace::row_stride() const { return impl_->memory.stride; }
 

@@ -36,8 +36,10 @@ bool can_be_straight(const PackedProgram& program, int order) {
 
 void emit_packed(Emission& out, const compiled::Request& request) {
   const auto& program = *static_cast<const PackedProgram*>(request.source);
-  if (request.effort > 0 && can_be_straight(program, request.order))
-    return StraightEmitter(out, program, request.stride, request.order).run();
+  if (request.effort > 0 && can_be_straight(program, request.order)) {
+    StraightEmitter(out, program, request.stride, request.order).run();
+    return emit_step(out, program.program.unknowns, request.stride, request.order);
+  }
   if (program.packs.size() > most_packs) throw Declined("the program is too large to be compiled");
   RolledEmitter(out, program, request.stride).run();
 }

@@ -228,7 +228,7 @@ class StraightEmitter {
   int stage_ = 0, k_ = 0;
   std::vector<const Pack*> pack_of_;    // [slots]
   Value* coordinates_ = nullptr;        // their coefficients of this stage
-  Value *acceleration_ = nullptr, *previous_ = nullptr, *check_ = nullptr;
+  Value *acceleration_ = nullptr, *previous_ = nullptr, *final_coordinates_ = nullptr, *previous_coordinates_ = nullptr, *check_ = nullptr;
   bool look_ahead_ = false;
   std::map<Slot, Value*> open_;         // results of this stage by first slot
   std::map<Slot, Value*> early_;        // the same without q̈ of this stage

@@ -98,6 +98,7 @@ void StraightEmitter::solve() {
 
 void StraightEmitter::correct() {
   coordinates_ = over(acceleration_, (stage_ + 1.0) * (stage_ + 2.0));
+  previous_coordinates_ = std::exchange(final_coordinates_, coordinates_);
   save(cell(stage_ + 2, 0), coordinates_);  // the other lanes of the row's first vector belong to nobody
   for (const Pack& pack : p_.packs) {
     if (!is_corrected(pack.out)) continue;
@@ -117,18 +118,20 @@ void StraightEmitter::correct(Slot slot, const Tangent& t, int lag, const Second
   const double k = stage_;
   if (second_order) {
     // (k+1)_ℓ A + (k+1)_{ℓ−1} B over (k+1) k, since q_{k+1} = q̈_{k−1} / ((k+1) k)
-    const double of_a = lag == 2 ? 1 : lag == 1 ? 1 / k : 1 / (k * (k + 1)), of_b = of_a / (k + 2 - lag);
     for (const auto& [d, values] : joined(*second_order)) {
-      Value* slope = values.first ? mul(values.first, vector_of(of_a, w)) : nullptr;
-      if (values.second) slope = fma(values.second, vector_of(of_b, w), slope);
-      result = fma(direction_of(previous_, t, d, w), slope, result);
+      Value* slope = values.second ? fma(values.second, vector_of(1 / (k + 2 - lag), w), values.first) : values.first;
+      if (lag == 1) slope = mul(slope, vector_of(1 / k, w));
+      result = fma(direction_of(lag == 0 ? previous_coordinates_ : previous_, t, d, w), slope, result);
     }
   }
   found->second = early_[slot] = result;
   const double factor = lag == 2 ? 1 : lag == 1 ? 1.0 / (k + 1) : 1.0 / ((k + 1) * (k + 2));
-  const auto scaled = [&](Value* v) { return mul(v, splat(factor, v)); };
-  if (t.diagonal) result = fma(direction_of(acceleration_, t, along_lanes, w), scaled(t.diagonal), result);
-  for (const auto& [d, value] : t.dense) result = fma(splat_lane(acceleration_, static_cast<unsigned>(d), w), scaled(value), result);
+  // The next stage waits for this where nothing looks ahead: then the tangents are scaled, which are there before.
+  const bool by_coordinates = lag == 0 && second_order;
+  Value* const change = by_coordinates ? coordinates_ : acceleration_;
+  const auto scaled = [&](Value* v) { return by_coordinates ? v : mul(v, splat(factor, v)); };
+  if (t.diagonal) result = fma(direction_of(change, t, along_lanes, w), scaled(t.diagonal), result);
+  for (const auto& [d, value] : t.dense) result = fma(splat_lane(change, static_cast<unsigned>(d), w), scaled(value), result);
   found->second = result;
   save(cell(stage_ + 2 - lag, slot), result);
 }

@@ -27,6 +27,10 @@ struct CompiledArguments {
 /// Straight-line code: all stages of section Dynamics. 0: done; else the reference has to repeat it.
 using CompiledExpand = int (*)(const CompiledArguments*);
 
+/// With straight-line code: as Engine::log2_radius and Engine::increments, for its rows.
+using CompiledRadius = double (*)(const double* first, double h);
+using CompiledIncrements = void (*)(const double* first, std::size_t stride, std::size_t count, int degree, double tau, double* dq, double* dv);
+
 /// Rolled code, one stage ≥ 1 a call. `stage`: as Engine::run_stage. `ahead`: as Engine::renew_blocks, and sums for the stages that follow; after each
 /// stage ≥ 0 in turn.
 using CompiledStage = void (*)(const CompiledArguments*, std::int64_t stage);

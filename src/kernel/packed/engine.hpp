@@ -75,9 +75,8 @@ struct Engine {
   void (*correct)(const Tables&, int stage, const TangentMatrix&, const double* weights);
   /// Σ_{k=2..degree} c_k τ^{k−1} and Σ k c_k τ^{k−1} of `count` columns, c_k = first + k · stride: read and written in eights.
   void (*increments)(const double* first, std::size_t stride, std::size_t count, int degree, double tau, double* dq, double* dv);
-  /// With v_k = (k + 1) |c_{k+1}| and s = max(v_k h^k, k ≤ 3; ε |c_0| / h): max over the columns of v_k / s, for k = order, order − 1, … lowest, in
-  /// `largest`. False if a column has s = 0.
-  bool (*decay)(const double* first, std::size_t stride, std::size_t count, int order, int lowest, double h, double* largest);
+  /// log₂ of the radius of convergence: see KernelWorkspace::log2_radius.
+  double (*log2_radius)(const double* first, std::size_t stride, std::size_t count, int order, double h);
 };
 
 /// The best one for this processor.

@@ -2,7 +2,7 @@
 #include <cstdint>
 
 /// Logarithms and powers for step lengths, which need no more than a few digits. V: double or a vector of doubles, I: 64-bit integers of
-/// the same number. Compiled for one instruction set, hence the unnamed namespace.
+/// the same number. By Estrin's scheme, since much waits for a step length. Compiled for one instruction set, hence the unnamed namespace.
 namespace maupertuis {
 namespace {
 
@@ -18,13 +18,10 @@ V rough_log2(V x) {
   __builtin_memcpy(&f, &fraction, sizeof f);
   e = e - (0x1p52 + 1023);
   f = f - 1;
-  V sum = V{} - 0.02456853474529919;
-  sum = sum * f + 0.11761308406665116;
-  sum = sum * f - 0.2726975648528732;
-  sum = sum * f + 0.4545084921997887;
-  sum = sum * f - 0.7173127802648969;
-  sum = sum * f + 1.4424535262106073;
-  return e + (sum * f + 2.4434387202040227e-06);
+  const V square = f * f;
+  const V low = (f * 1.4424535262106073 + 2.4434387202040227e-06) + square * (f * 0.4545084921997887 - 0.7173127802648969);
+  const V high = (f * 0.11761308406665116 - 0.2726975648528732) - square * 0.02456853474529919;
+  return (e + low) + (square * square) * high;
 }
 
 /// 2^x to 10⁻⁷ between 2⁻¹⁰²⁰ and 2¹⁰²⁰, beyond which it stays.
@@ -33,12 +30,9 @@ V rough_exp2(V x) {
   x = x < V{} + 1020 ? x : V{} + 1020;
   x = x > V{} - 1020 ? x : V{} - 1020;
   const V shifted = x + 0x1.8p52, f = x - (shifted - 0x1.8p52);
-  V sum = V{} + 0.0013390863364671234;
-  sum = sum * f + 0.009676031918322054;
-  sum = sum * f + 0.05550357114219078;
-  sum = sum * f + 0.2402210748530834;
-  sum = sum * f + 0.6931471880262288;
-  sum = sum * f + 1.0000000754548972;
+  const V square = f * f;
+  const V low = (f * 0.6931471880262288 + 1.0000000754548972) + square * (f * 0.05550357114219078 + 0.2402210748530834);
+  V sum = low + (square * square) * (f * 0.0013390863364671234 + 0.009676031918322054);
   I n, bits;
   __builtin_memcpy(&n, &shifted, sizeof n);
   __builtin_memcpy(&bits, &sum, sizeof bits);

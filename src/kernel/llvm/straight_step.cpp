@@ -1,0 +1,150 @@
+#include "kernel/llvm/emission.hpp"
+#include "kernel/llvm/emitters.hpp"
+
+#include <bit>
+#include <limits>
+
+/// The engine's log2_radius and increments for the rows of one small program: all orders and weights written out, in vectors no wider than the unknowns.
+namespace maupertuis::llvm_backend {
+namespace {
+
+using llvm::Value;
+
+class StepEmitter {
+ public:
+  StepEmitter(Emission& out, std::size_t unknowns, std::size_t stride, int order)
+      : out_(out), b_(out.b), n_(static_cast<int>(unknowns)), width_(std::bit_ceil(static_cast<unsigned>(n_))), stride_(stride), order_(order),
+        type_(out.real(static_cast<int>(width_))), scalar_(out.real(1)) {}
+
+  void log2_radius();
+  void increments();
+
+ private:
+  void open(const char* name, llvm::Type* result, const std::vector<llvm::Type*>& parameters);
+  Value* argument(unsigned i) { return function_->getArg(i); }
+  Value* number(double x) { return out_.number(x, type_); }
+  Value* spread(Value* scalar) { return out_.splat(scalar, type_); }
+  Value* row(int k) { return out_.load(type_, out_.at(argument(0), static_cast<std::int64_t>(8 * stride_) * k)); }
+  Value* speed(int k) { return out_.multiply(out_.absolute(row(k + 1)), number(k + 1)); }
+  Value* larger(Value* x, Value* y) { return b_.CreateSelect(b_.CreateFCmpOGT(x, y), x, y); }
+  Value* smaller(Value* x, Value* y) { return b_.CreateSelect(b_.CreateFCmpOLT(x, y), x, y); }
+  Value* polynomial(Value* x, const std::vector<double>& c);
+  Value* rough_log2(Value* x);
+  Value* size();
+  Value* least_lane(Value* x);
+  void increment(unsigned out, bool derivative, Value* const (&powers)[3]);
+
+  Emission& out_;
+  llvm::IRBuilder<>& b_;
+  int n_;
+  unsigned width_;
+  std::size_t stride_;
+  int order_;
+  llvm::Type *type_, *scalar_;
+  llvm::Function* function_ = nullptr;
+};
+
+void StepEmitter::open(const char* name, llvm::Type* result, const std::vector<llvm::Type*>& parameters) {
+  function_ = llvm::Function::Create(llvm::FunctionType::get(result, parameters, false), llvm::Function::ExternalLinkage, name, *out_.module);
+  function_->addFnAttr(llvm::Attribute::NoUnwind);
+  b_.SetInsertPoint(llvm::BasicBlock::Create(out_.context, "", function_));
+}
+
+/// Σ c_i x^i of degree 5 or 6 by Estrin's scheme.
+Value* StepEmitter::polynomial(Value* x, const std::vector<double>& c) {
+  const auto pair = [&](std::size_t i) { return out_.fma(x, number(c[i + 1]), number(c[i])); };
+  Value* const square = out_.multiply(x, x);
+  Value* const low = out_.fma(square, pair(2), pair(0));
+  Value* high = pair(4);
+  if (c.size() > 6) high = out_.fma(square, number(c[6]), high);
+  return out_.fma(out_.multiply(square, square), high, low);
+}
+
+/// kernel/jet/rough_powers.hpp
+Value* StepEmitter::rough_log2(Value* x) {
+  llvm::Type* const integers = width_ == 1 ? out_.integer() : llvm::FixedVectorType::get(out_.integer(), width_);
+  const auto constant = [&](std::uint64_t bits) { return llvm::ConstantInt::get(integers, bits); };
+  Value* const bits = b_.CreateBitCast(x, integers);
+  Value* const exponent = b_.CreateOr(b_.CreateAnd(b_.CreateLShr(bits, constant(52)), constant(0x7ff)), constant(0x4330000000000000));
+  Value* const fraction = b_.CreateOr(b_.CreateAnd(bits, constant(0x000fffffffffffff)), constant(0x3ff0000000000000));
+  Value* const e = out_.subtract(b_.CreateBitCast(exponent, type_), number(0x1p52 + 1023));
+  Value* const f = out_.subtract(b_.CreateBitCast(fraction, type_), number(1));
+  return out_.add(e, polynomial(f, {2.4434387202040227e-06, 1.4424535262106073, -0.7173127802648969, 0.4545084921997887, -0.2726975648528732,
+                                    0.11761308406665116, -0.02456853474529919}));
+}
+
+/// Of each coordinate's velocity over a step.
+Value* StepEmitter::size() {
+  Value* const h = argument(1);
+  Value* size = out_.multiply(spread(out_.divide(out_.number(0x1p-52, scalar_), h)), out_.absolute(row(0)));
+  Value* power = nullptr;
+  for (int k = 0; k <= 3 && k <= order_ - 2; ++k) {
+    size = larger(size, power ? out_.multiply(speed(k), spread(power)) : speed(k));
+    power = power ? out_.multiply(power, h) : h;
+  }
+  return size;
+}
+
+/// Of those that belong to unknowns.
+Value* StepEmitter::least_lane(Value* x) {
+  std::vector<int> used;
+  for (unsigned i = 0; i < width_; ++i) used.push_back(static_cast<int>(i) < n_ ? static_cast<int>(i) : 0);
+  if (width_ != static_cast<unsigned>(n_)) x = b_.CreateShuffleVector(x, used);
+  for (unsigned half = width_ / 2; half > 0; half /= 2) {
+    std::vector<int> other;
+    for (unsigned i = 0; i < width_; ++i) other.push_back(static_cast<int>(i ^ half));
+    x = smaller(b_.CreateShuffleVector(x, other), x);
+  }
+  return width_ == 1 ? x : b_.CreateExtractElement(x, std::uint64_t{0});
+}
+
+/// Early orders first: they are there while the last coefficients are still waited for.
+void StepEmitter::log2_radius() {
+  constexpr double widened = 0.32192809488736235, infinity = std::numeric_limits<double>::infinity();  // log₂ 1.25
+  open("log2_radius", scalar_, {out_.pointer(), scalar_});
+  Value* const inverse = out_.divide(number(1), size());
+  Value* least = number(infinity);
+  for (int k = std::max(std::min(2, order_ - 1), order_ - 5); k <= order_; ++k) {
+    Value* const ratio = out_.multiply(speed(k), inverse);
+    Value* const radius = out_.fma(rough_log2(ratio), number(-1.0 / k), number(k < order_ - 1 ? widened : 0));
+    Value* const counts = b_.CreateFCmpOGT(ratio, number(0));
+    least = smaller(b_.CreateSelect(counts, radius, number(infinity)), least);
+  }
+  b_.CreateRet(least_lane(least));
+}
+
+/// Powers of τ apart by their remainders mod 4, each by Horner's rule.
+void StepEmitter::increment(unsigned out, bool derivative, Value* const (&powers)[3]) {
+  Value* sums[4] = {};
+  for (int k = order_ + 1; k >= 2; --k) {
+    Value*& sum = sums[(k - 2) % 4];
+    Value* term = row(k);
+    if (derivative && sum) term = out_.multiply(term, number(k));
+    sum = sum ? out_.fma(sum, powers[2], term) : derivative ? out_.multiply(term, number(k)) : term;
+  }
+  const auto pair = [&](Value* x, Value* y) { return y ? out_.fma(y, powers[0], x) : x; };
+  Value* result = pair(sums[0], sums[1]);
+  if (sums[2]) result = out_.fma(pair(sums[2], sums[3]), powers[1], result);
+  b_.CreateAlignedStore(out_.multiply(result, powers[0]), argument(out), llvm::Align(8));
+}
+
+/// The parameters are the engine's; stride, columns and degree are known.
+void StepEmitter::increments() {
+  open("increments", b_.getVoidTy(), {out_.pointer(), out_.integer(), out_.integer(), b_.getInt32Ty(), scalar_, out_.pointer(), out_.pointer()});
+  Value* const t = spread(argument(4));
+  Value* const square = out_.multiply(t, t);
+  Value* const powers[3] = {t, square, out_.multiply(square, square)};
+  increment(5, false, powers);
+  increment(6, true, powers);
+  b_.CreateRetVoid();
+}
+
+}  // namespace
+
+void emit_step(Emission& out, std::size_t unknowns, std::size_t stride, int order) {
+  StepEmitter emitter(out, unknowns, stride, order);
+  emitter.log2_radius();
+  emitter.increments();
+}
+
+}  // namespace maupertuis::llvm_backend
