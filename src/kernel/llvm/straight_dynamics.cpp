@@ -196,20 +196,27 @@ void StraightEmitter::functions(const Pack& pack, unsigned w) {
   keep(pack, result);
 }
 
-/// Through memory: the function takes and gives arrays.
 void StraightEmitter::sines_cosines(const Pack& pack, unsigned w) {
   const unsigned count = pack.last_function - pack.first_function, size = width_of(count);
   const Block& block = p_.blocks[pack.a];
-  llvm::AllocaInst *const x = b_.CreateAlloca(type(lanes)), *const out = b_.CreateAlloca(type(lanes), b_.getInt32(2));
-  x->setAlignment(llvm::Align(64)), out->setAlignment(llvm::Align(64));
   const ArrayRef<Slot> slots(block.slots.data(), count);
-  save(x, gather(slots, current_order(slots[0]), size));
-  auto* const signature = llvm::FunctionType::get(b_.getVoidTy(), {b_.getPtrTy(), b_.getPtrTy(), b_.getInt32Ty()}, false);
-  b_.CreateCall(signature, sincos_, {x, out, b_.getInt32(count)});
-  Value *const sines = load_from(out, 0, size), *const cosines = load_from(out, lanes, size);
+  Value* const x = gather(slots, current_order(slots[0]), size);
+  const auto call = [&] { return called_sines(x, count, size); };
+  const auto [sines, cosines] = fuses_ ? sines_in_place(b_, x, call) : call();
   if (pack.width == 2 * count) return keep(pack, joined(sines, cosines, count, w));
   for (unsigned lane = 0; lane < count; ++lane) seconds_[pack.pairs + lane] = splat_lane(cosines, lane, 1);
   keep(pack, sines);
+}
+
+/// Through memory: the function takes and gives arrays.
+SineAndCosine StraightEmitter::called_sines(Value* x, unsigned count, unsigned size) {
+  llvm::IRBuilder<> entry(&function_->getEntryBlock(), function_->getEntryBlock().begin());
+  llvm::AllocaInst *const in = entry.CreateAlloca(type(lanes)), *const out = entry.CreateAlloca(type(lanes), b_.getInt32(2));
+  in->setAlignment(llvm::Align(64)), out->setAlignment(llvm::Align(64));
+  save(in, x);
+  auto* const signature = llvm::FunctionType::get(b_.getVoidTy(), {b_.getPtrTy(), b_.getPtrTy(), b_.getInt32Ty()}, false);
+  b_.CreateCall(signature, sincos_, {in, out, b_.getInt32(count)});
+  return {load_from(out, 0, size), load_from(out, lanes, size)};
 }
 
 /// The first `count` lanes of two vectors.

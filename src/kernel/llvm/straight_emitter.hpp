@@ -1,5 +1,6 @@
 #pragma once
 #include "kernel/llvm/emission.hpp"
+#include "kernel/llvm/sines.hpp"
 #include "kernel/packed/layout.hpp"
 
 #include <llvm/IR/IRBuilder.h>
@@ -135,6 +136,7 @@ class StraightEmitter {
   Value* one_slot(Slot slot, int order) { return gather({slot}, order, 1); }
   void functions(const Pack& pack, unsigned w);
   void sines_cosines(const Pack& pack, unsigned w);
+  SineAndCosine called_sines(Value* x, unsigned count, unsigned size);
   Value* joined(Value* first, Value* second, unsigned count, unsigned w);
   std::pair<Value*, Value*> pair(Op op, Value* u);
 
@@ -184,7 +186,9 @@ class StraightEmitter {
 
   // ---------------------------------------------------------------------------------- solution (straight_solution.cpp)
   void factor();
-  void invert();
+  void invert(std::vector<Value*> rows);
+  void eliminate_one(std::vector<Value*>& rows, unsigned pivot, ArrayRef<Value*> diagonal, std::vector<Value*>& sound);
+  void eliminate_pair(std::vector<Value*>& rows, unsigned pivot, ArrayRef<Value*> diagonal, std::vector<Value*>& sound);
   Value* spread(Value* scalar) { return wide_ == 1 ? scalar : b_.CreateVectorSplat(wide_, scalar); }
   Value* with_lane(Value* v, unsigned lane, Value* scalar) { return width(v) == 1 ? scalar : b_.CreateInsertElement(v, scalar, lane); }
   Value* in_memory(Value* v);

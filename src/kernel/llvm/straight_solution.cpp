@@ -2,53 +2,73 @@
 
 namespace maupertuis::llvm_backend {
 
+using llvm::ArrayRef;
 using llvm::Value;
 using packed::Pack;
 using packed::lanes;
 
 static constexpr unsigned most_shuffled = 4;  // lanes
-static constexpr double least_pivot = 1e-10;
+static constexpr double least_pivot = 1e-10, least_determinant = 1e-280;
 
 void StraightEmitter::factor() {
   for (const Pack& pack : p_.packs)
     if (p_.program.tangent_lags[pack.out] != Program::unmoved) tangent(pack);
-  for (std::size_t i = 0; i < n_; ++i)
-    for (std::size_t d = 0; d < n_; ++d) {
-      const Slot slot = p_.program.residual[i];
-      const auto found = passes(slot, 0, 2) ? tangent_place(slot, static_cast<int>(d)) : std::nullopt;
-      save(b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), bordered_, i * n_ + d), found ? element(*found) : vector_of(0.0, 1));
+  // M is symmetric: the tangent of all residuals in direction d is its row d.
+  std::vector<Value*> rows;
+  for (std::size_t d = 0; d < n_; ++d) {
+    std::vector<std::optional<Place>> places;
+    for (const Slot slot : p_.program.residual) {
+      auto place = passes(slot, 0, 2) ? tangent_place(slot, static_cast<int>(d)) : std::nullopt;
+      places.push_back(place ? *place : Place{vector_of(0.0, wide_), 0});
     }
-  invert();
+    rows.push_back(assemble(places, wide_, [&](std::size_t) { return vector_of(0.0, 1); }));
+    for (unsigned i = 0; i < n_; ++i)
+      save(b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), bordered_, d * n_ + i), splat_lane(rows[d], i, 1));
+  }
+  invert(std::move(rows));
 }
 
-/// −M₀⁻¹ by Gauss and Jordan without pivoting, a row a vector: stable for a symmetric, positive definite matrix. The smallest
-/// pivot against its diagonal entry tells whether it is one.
-void StraightEmitter::invert() {
-  std::vector<Value*> rows;
-  Value* least = nullptr;
-  for (std::size_t i = 0; i < n_; ++i) {
-    std::vector<Value*> entries;
-    for (std::size_t d = 0; d < n_; ++d) entries.push_back(load_from(bordered_, i * n_ + d, 1));
-    Value* row = wide_ == 1 ? entries[0] : llvm::PoisonValue::get(type(wide_));
-    for (unsigned lane = 0; wide_ > 1 && lane < wide_; ++lane)
-      row = b_.CreateInsertElement(row, lane < n_ ? entries[lane] : vector_of(0.0, 1), lane);
-    rows.push_back(row);
-  }
-  for (unsigned pivot = 0; pivot < n_; ++pivot) {
-    Value* const p = splat_lane(rows[pivot], pivot, 1);
-    Value* const share = b_.CreateFDiv(p, load_from(bordered_, pivot * n_ + pivot, 1));
-    least = least ? b_.CreateSelect(b_.CreateFCmpULT(share, least), share, least) : share;
-    Value* const inverse = b_.CreateFDiv(vector_of(1.0, 1), p);
-    Value* const row = mul(with_lane(rows[pivot], pivot, vector_of(1.0, 1)), spread(inverse));
-    for (unsigned i = 0; i < n_; ++i) {
-      if (i == pivot) continue;
-      Value* const factor = splat_lane(rows[i], pivot, wide_);
-      rows[i] = fma(b_.CreateFNeg(factor), row, with_lane(rows[i], pivot, vector_of(0.0, 1)));
-    }
-    rows[pivot] = row;
-  }
+/// −M₀⁻¹ by Gauss and Jordan without pivoting, a row a vector: stable for a symmetric, positive definite matrix. The pivots against
+/// their diagonal entries tell whether it is one.
+void StraightEmitter::invert(std::vector<Value*> rows) {
+  std::vector<Value*> diagonal, sound;
+  for (unsigned i = 0; i < n_; ++i) diagonal.push_back(splat_lane(rows[i], i, 1));
+  unsigned pivot = 0;
+  for (; pivot + 1 < n_; pivot += 2) eliminate_pair(rows, pivot, diagonal, sound);
+  if (pivot < n_) eliminate_one(rows, pivot, diagonal, sound);
   for (Value* const row : rows) inverse_rows_.push_back(b_.CreateFNeg(row));  // symmetric: rows are columns
-  trust(b_.CreateFCmpOGT(least, vector_of(least_pivot, 1)));
+  trust(b_.CreateAnd(sound));
+}
+
+void StraightEmitter::eliminate_one(std::vector<Value*>& rows, unsigned pivot, ArrayRef<Value*> diagonal, std::vector<Value*>& sound) {
+  Value* const p = splat_lane(rows[pivot], pivot, 1);
+  sound.push_back(b_.CreateFCmpOGT(b_.CreateFDiv(p, diagonal[pivot]), vector_of(least_pivot, 1)));
+  Value* const row = mul(with_lane(rows[pivot], pivot, vector_of(1.0, 1)), spread(b_.CreateFDiv(vector_of(1.0, 1), p)));
+  for (unsigned i = 0; i < n_; ++i)
+    if (i != pivot) rows[i] = fma(b_.CreateFNeg(splat_lane(rows[i], pivot, wide_)), row, with_lane(rows[i], pivot, vector_of(0.0, 1)));
+  rows[pivot] = row;
+}
+
+/// Two pivots at once: their rows are combined while their determinant is divided by. One that is too small to have all its digits is not sound.
+void StraightEmitter::eliminate_pair(std::vector<Value*>& rows, unsigned pivot, ArrayRef<Value*> diagonal, std::vector<Value*>& sound) {
+  const unsigned other = pivot + 1;
+  const auto with_pair = [&](Value* row, double x, double y) { return with_lane(with_lane(row, pivot, vector_of(x, 1)), other, vector_of(y, 1)); };
+  Value *const a = splat_lane(rows[pivot], pivot, 1), *const b = splat_lane(rows[pivot], other, 1);
+  Value *const c = splat_lane(rows[other], pivot, 1), *const d = splat_lane(rows[other], other, 1);
+  Value* const determinant = fma(b_.CreateFNeg(b), c, b_.CreateFMul(a, d));
+  sound.push_back(b_.CreateFCmpOGT(b_.CreateFDiv(a, diagonal[pivot]), vector_of(least_pivot, 1)));
+  sound.push_back(b_.CreateFCmpOGT(b_.CreateFDiv(determinant, b_.CreateFMul(a, diagonal[other])), vector_of(least_pivot, 1)));
+  sound.push_back(b_.CreateFCmpOGT(b_.CreateUnaryIntrinsic(llvm::Intrinsic::fabs, determinant), vector_of(least_determinant, 1)));
+  Value* const inverse = spread(b_.CreateFDiv(vector_of(1.0, 1), determinant));
+  Value *const x = with_pair(rows[pivot], 1, 0), *const y = with_pair(rows[other], 0, 1);
+  Value* const above = fma(b_.CreateFNeg(spread(b)), y, b_.CreateFMul(spread(d), x));
+  Value* const below = fma(b_.CreateFNeg(spread(c)), x, b_.CreateFMul(spread(a), y));
+  for (unsigned i = 0; i < n_; ++i) {
+    if (i == pivot || i == other) continue;
+    Value *const f = b_.CreateFMul(splat_lane(rows[i], pivot, wide_), inverse), *const g = b_.CreateFMul(splat_lane(rows[i], other, wide_), inverse);
+    rows[i] = fma(b_.CreateFNeg(g), below, fma(b_.CreateFNeg(f), above, with_pair(rows[i], 0, 0)));
+  }
+  rows[pivot] = b_.CreateFMul(above, inverse), rows[other] = b_.CreateFMul(below, inverse);
 }
 
 /// A copy on the stack: a load that fills all lanes costs nothing where a shuffle takes the place of a multiplication.
