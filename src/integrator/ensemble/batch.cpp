@@ -39,7 +39,7 @@ class Batch {
   struct Lane {
     std::size_t trajectory = 0;
     bool active = false;
-    std::size_t steps = 0;
+    std::size_t first_round = 0;
     OutputTimes times;
     EnergyDrift drift;
   };
@@ -52,7 +52,9 @@ class Batch {
   void choose_lengths();
   double first_length(std::size_t lane) const;
   double velocity(std::size_t lane, std::size_t i, int k) const;
+  void look();
   void look_at(std::size_t lane);
+  std::size_t steps(std::size_t lane) const { return rounds_ - lanes_[lane].first_round; }
   void sample(std::size_t lane, double reached);
   void wind();
   void state_after(std::size_t lane, double tau, std::span<Compensated> q, std::span<double> v) const;
@@ -80,10 +82,11 @@ class Batch {
   AlignedArray memory_;
   std::size_t used_ = 0;
   LaneArrays arrays_{};
-  double *end_, *fresh_;
-  const double* quality_;
-  double least_quality_;
+  double *end_, *fresh_, *next_;
   std::size_t active_ = 0;
+  std::size_t rounds_ = 0;                      // steps of all lanes so far
+  std::size_t last_round_ = 0;                  // in which no lane has used up its steps
+  bool any_fresh_ = false;                      // a lane has no length yet
   bool shared_parameters_, exhausted_ = false;
 };
 
@@ -91,7 +94,7 @@ Batch::Batch(Job& job)
     : job_(job), arithmetic_(best_steps()), n_(job.freedoms), width_(static_cast<std::size_t>(job.expansion->width())),
       work_(job.kernel, job.control.order, job.expansion), lanes_(width_), turns_(width_, taylor::Turns(job.kernel)),
       energy_(job.options.energy_terms), leading_(n_), position_(n_),
-      memory_(aligned((4 * n_ + 8) * width_)) {
+      memory_(aligned((4 * n_ + 9) * width_)) {
   if (job.options.energy_terms > 0) point_ = std::make_unique<KernelWorkspace>(job.kernel, 1);
   arrays_.width = width_;
   arrays_.freedoms = n_;
@@ -109,9 +112,10 @@ Batch::Batch(Job& job)
   arrays_.t_high = take(1), arrays_.t_low = take(1), arrays_.length = take(1), arrays_.step = take(1);
   arrays_.reaches = take(1), arrays_.shrinks = take(1);
   arrays_.end = end_ = take(1), fresh_ = take(1);
-  quality_ = work_.quality();
+  arrays_.next = next_ = take(1);
+  arrays_.quality = work_.quality();
   // LinearSolver takes M₀ for singular at a sixteenth of this.
-  least_quality_ = 64 * std::numeric_limits<double>::epsilon() * static_cast<double>(n_);
+  arrays_.least_quality = 64 * std::numeric_limits<double>::epsilon() * static_cast<double>(n_);
   shared_parameters_ = job.start.parameters.size() == job.kernel.parameters();
   if (!shared_parameters_) return;
   for (std::size_t lane = 0; lane < width_; ++lane) work_.set_parameters(static_cast<int>(lane), job.start.parameters);
@@ -136,7 +140,9 @@ void Batch::refill(std::size_t lane) {
 
 void Batch::begin(std::size_t lane, std::size_t trajectory) {
   Lane& l = lanes_[lane];
-  l = {trajectory, true, 0, OutputTimes(job_.start.times, job_.begin(trajectory), job_.end(trajectory)), {}};
+  l = {trajectory, true, rounds_, OutputTimes(job_.start.times, job_.begin(trajectory), job_.end(trajectory)), {}};
+  next_[lane] = l.times.next();
+  last_round_ = 0;
   ++active_;
   if (!shared_parameters_) work_.set_parameters(static_cast<int>(lane), job_.parameters(trajectory));
   for (std::size_t i = 0; i < n_; ++i) {
@@ -148,6 +154,7 @@ void Batch::begin(std::size_t lane, std::size_t trajectory) {
   arrays_.t_low[lane] = 0;
   end_[lane] = job_.end(trajectory);
   arrays_.length[lane] = 0;
+  any_fresh_ = true;
   turns_[lane].forget();
   for (std::size_t i = 0; i < n_; ++i) position_[i] = {job_.q(trajectory)[i], 0};
   note_energy(lane, arrays_.t_high[lane], position_, job_.v(trajectory));
@@ -163,11 +170,11 @@ void Batch::step() {
   wind();
   expand();
   choose_lengths();
-  arithmetic_.cut_to_end(arrays_);
-  for (std::size_t lane = 0; lane < width_; ++lane)
-    if (lanes_[lane].active) look_at(lane);
+  const bool wanted = arithmetic_.cut_to_end(arrays_) || rounds_ >= last_round_;
+  if (wanted) look();
   arithmetic_.advance(arrays_);
-  for (std::size_t lane = 0; lane < width_; ++lane) {
+  ++rounds_;
+  for (std::size_t lane = 0; wanted && lane < width_; ++lane) {
     if (lanes_[lane].active && arrays_.reaches[lane] != 0) finish(lane, StepEnding::None, {});
     refill(lane);
   }
@@ -182,6 +189,7 @@ void Batch::interrupt() {
 
 /// As TaylorStepper: angles stay within a turn, so that what is rounded does not grow with the number of turns.
 void Batch::wind() {
+  if (!arithmetic_.exceed(arrays_, taylor::Turns::limit)) return;
   for (std::size_t i = 0; i < n_; ++i)
     for (std::size_t lane = 0; lane < width_; ++lane) {
       double &high = arrays_.q_high[at(i, lane)], &low = arrays_.q_low[at(i, lane)];
@@ -200,14 +208,13 @@ void Batch::expand() {
 
 /// Where no step was made before, the control begins with a guess and takes a few turns.
 void Batch::choose_lengths() {
-  bool any = false;
-  for (std::size_t lane = 0; lane < width_; ++lane) {
+  for (std::size_t lane = 0; any_fresh_ && lane < width_; ++lane) {
     const bool fresh = lanes_[lane].active && arrays_.length[lane] == 0;
     fresh_[lane] = fresh;
-    any = any || fresh;
     if (fresh) arrays_.length[lane] = first_length(lane);
   }
-  for (int turn = 0; any && turn < 3; ++turn) arithmetic_.choose_length(arrays_, fresh_);
+  for (int turn = 0; any_fresh_ && turn < 3; ++turn) arithmetic_.choose_length(arrays_, fresh_);
+  any_fresh_ = false;
   arithmetic_.choose_length(arrays_, nullptr);
 }
 
@@ -227,16 +234,25 @@ double Batch::first_length(std::size_t lane) const {
   return growth > 0 ? 1 / growth : 1;
 }
 
+void Batch::look() {
+  constexpr std::size_t never = std::numeric_limits<std::size_t>::max();
+  last_round_ = never;
+  for (std::size_t lane = 0; lane < width_; ++lane) {
+    if (!lanes_[lane].active) continue;
+    const std::size_t first = lanes_[lane].first_round, most = job_.options.maximum_steps;
+    last_round_ = std::min(last_round_, most < never - first ? first + most : never);
+    look_at(lane);
+  }
+}
+
 /// Decides whether the lane may make its step, and takes from it what is wanted on the way.
 void Batch::look_at(std::size_t lane) {
-  Lane& l = lanes_[lane];
-  if (l.steps >= job_.options.maximum_steps) return finish(lane, StepEnding::TooManySteps, "The run used up its steps.");
+  if (steps(lane) >= job_.options.maximum_steps) return finish(lane, StepEnding::TooManySteps, "The run used up its steps.");
   // Comparisons with NaN are false.
-  if (!(quality_[lane] > least_quality_) || arrays_.shrinks[lane] != 0) return go_alone(lane);
-  if (!std::isfinite(arrays_.length[lane])) arrays_.length[lane] = 0;
+  if (!(arrays_.quality[lane] > arrays_.least_quality) || arrays_.shrinks[lane] != 0) return go_alone(lane);
+  if (!std::isfinite(arrays_.length[lane])) arrays_.length[lane] = 0, any_fresh_ = true;
   const double reached = arrays_.reaches[lane] != 0 ? end_[lane] : arrays_.t_high[lane] + (arrays_.t_low[lane] + arrays_.step[lane]);
   sample(lane, reached);
-  ++l.steps;
 }
 
 void Batch::go_alone(std::size_t lane) {
@@ -257,6 +273,7 @@ void Batch::sample(std::size_t lane, double reached) {
     for (std::size_t i = 0; i < n_; ++i) q[i] = turns_[lane].unwound(i, position_[i]);
     note_energy(lane, t, position_, v);
   });
+  next_[lane] = l.times.next();
 }
 
 /// As DenseOutput::advance.
@@ -299,7 +316,7 @@ void Batch::finish(std::size_t lane, StepEnding reason, std::string sentence) {
   ending.ending = reason;
   ending.reason = std::move(sentence);
   ending.t = arrays_.t_high[lane];
-  ending.steps = l.steps;
+  ending.steps = steps(lane);
   ending.energy_drift = l.drift.value();
   l.active = false;
   --active_;

@@ -4,6 +4,7 @@
 #include <maupertuis/ensemble.hpp>
 
 #include <atomic>
+#include <limits>
 #include <memory>
 
 namespace maupertuis::ensemble {
@@ -41,6 +42,8 @@ class OutputTimes {
     for (; left_ > 0 && (reached - times_[next_]) * direction_ >= 0; next_ += static_cast<std::size_t>(direction_), --left_)
       f(next_, times_[next_]);
   }
+  /// The next one, or infinity.
+  double next() const { return left_ > 0 ? times_[next_] : std::numeric_limits<double>::infinity(); }
 
  private:
   std::span<const double> times_;

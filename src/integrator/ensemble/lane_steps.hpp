@@ -20,14 +20,20 @@ struct LaneArrays {
   double* length;            // [width] that the control chose last; in: 0 is not allowed; infinity: the motion is a polynomial
   double* step;              // [width] signed, cut to the end
   double *reaches, *shrinks; // [width] 1 or 0: the step reaches the end; the length is below the resolution of time
+  const double* quality;     // [width] of the solution; at most `least_quality`: not to be trusted
+  double least_quality;
+  const double* next;        // [width] requested time; infinity: none is left
 };
 
 struct LaneSteps {
   /// length → the next length, after Jorba and Zou as in integrator/taylor/step_size.cpp. Where `fresh` is given, only in
   /// lanes where it is not 0.
   void (*choose_length)(const LaneArrays& lanes, const double* fresh);
-  /// step, reaches and shrinks from length, t and end.
-  void (*cut_to_end)(const LaneArrays& lanes);
+  /// step, reaches and shrinks from length, t and end. Whether a lane has to be looked at: the step reaches the end or may reach a requested time, its length
+  /// is too short or infinite, or its solution is not to be trusted.
+  bool (*cut_to_end)(const LaneArrays& lanes);
+  /// Whether some |q| is above the limit.
+  bool (*exceed)(const LaneArrays& lanes, double limit);
   /// The state and the time after `step`.
   void (*advance)(const LaneArrays& lanes);
 };

@@ -65,13 +65,22 @@ class Steps {
     put(a_.length, fresh ? (get(fresh) != 0 ? after : before) : after);
   }
 
-  void cut_to_end() const {
+  bool cut_to_end() const {
     const V left = (get(a_.end) - get(a_.t_high)) - get(a_.t_low), length = get(a_.length);
     const auto within = length < absolute(left);
     put(a_.step, within ? (left < 0 ? -length : length) : left);
     put(a_.reaches, within ? V{} : V{} + 1);
     const auto long_enough = (length > 2 * epsilon * absolute(get(a_.t_high))) & (length >= V{} + 1e-290);
     put(a_.shrinks, long_enough ? V{} : V{} + 1);
+    // A requested time is looked for within two steps: what rounding decides is decided where it is sampled.
+    const auto passes_by = within & long_enough & (get(a_.quality) > a_.least_quality) & (absolute(get(a_.next) - get(a_.t_high)) > 2 * length);
+    return vanishes_somewhere(passes_by ? V{} + 1 : V{});
+  }
+
+  bool exceed(double limit) const {
+    V all_within = V{} + 1;
+    for (std::size_t i = 0; i < a_.freedoms; ++i) all_within = absolute(get(a_.q_high + i * a_.width)) > limit ? V{} : all_within;
+    return vanishes_somewhere(all_within);
   }
 
   /// q − q_0 and q̇ − q̇_0 by Horner's rule, added with what earlier additions left behind, as DenseOutput::advance does.
@@ -202,14 +211,21 @@ inline void for_lanes(const LaneArrays& lanes, F&& f) {
 void choose_length(const LaneArrays& lanes, const double* fresh) {
   for_lanes(lanes, [fresh](auto steps) { steps.choose_length(fresh); });
 }
-void cut_to_end(const LaneArrays& lanes) {
-  for_lanes(lanes, [](auto steps) { steps.cut_to_end(); });
+bool cut_to_end(const LaneArrays& lanes) {
+  bool any = false;
+  for_lanes(lanes, [&any](auto steps) { any = steps.cut_to_end() || any; });
+  return any;
+}
+bool exceed(const LaneArrays& lanes, double limit) {
+  bool any = false;
+  for_lanes(lanes, [&any, limit](auto steps) { any = steps.exceed(limit) || any; });
+  return any;
 }
 void advance(const LaneArrays& lanes) {
   for_lanes(lanes, [](auto steps) { steps.advance(); });
 }
 
-inline LaneSteps steps_of_this_file() { return {choose_length, cut_to_end, advance}; }
+inline LaneSteps steps_of_this_file() { return {choose_length, cut_to_end, exceed, advance}; }
 
 }  // namespace
 }  // namespace maupertuis::ensemble

@@ -6,7 +6,7 @@ namespace maupertuis::taylor {
 namespace {
 
 /// 2π = high + low, exact to 2⁻¹⁰⁷.
-constexpr double high = 6.283185307179586, low = 2.4492935982947064e-16;
+constexpr double high = Turns::limit, low = 2.4492935982947064e-16;
 
 /// q + 2π count.
 Compensated turned(Compensated q, double count) {

@@ -12,6 +12,9 @@ namespace maupertuis::taylor {
 /// gives: after 10⁶ steps of a double pendulum that has turned over a hundred times, the energy error is 50 times that of angles kept within a turn.
 class Turns {
  public:
+  /// 2π; angles beyond it are brought back.
+  static constexpr double limit = 6.283185307179586;
+
   explicit Turns(const Kernel& kernel) : winding_(&winding(kernel)), counts_(kernel.freedoms(), 0.0) {}
 
   void forget() { counts_.assign(counts_.size(), 0.0), changes_ = 0; }
