@@ -170,10 +170,10 @@ class KernelWorkspace {
   /// and the report says why. Results agree to rounding. Cost: straight-line code about 0.2 s, else some 15 ms and half a millisecond an unknown; from the cache 1 ms.
   CompileReport compile(const CompileOptions& options = {});
 
-  /// log₂ of the radius of convergence that the last coefficients of q tell: with v_k = (k + 1) |q_{k+1}| and s_i the largest of v_k h^k for k ≤ 3 and ε |q_0| / h,
+  /// The radius of convergence that the last coefficients of q tell: with v_k = (k + 1) |q_{k+1}| and s_i the largest of v_k h^k for k ≤ 3 and ε |q_0| / h,
   /// the least of (s_i / v_k)^{1/k} over all coordinates and the last six k, where the last two are taken as they are and the others times 1.25. To 10⁻⁵; infinite where
-  /// all these v_k vanish. Below −900/order where some s_i is 0 (or nearly so): no estimate.
-  double log2_radius(double h) const;
+  /// all these v_k vanish; not a number where some s_i is 0 (or nearly so): no estimate.
+  double radius(double h) const;
   /// polynomial_increments for the coefficients coordinate(k), k ≤ order + 1, until the next `compile`.
   PolynomialIncrements* increments() const;
   /// Doubles from one order of coordinate() to the next.

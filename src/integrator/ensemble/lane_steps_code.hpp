@@ -1,5 +1,5 @@
 #pragma once
-#include "kernel/jet/rough_powers.hpp"
+#include <maupertuis/rough_powers.hpp>
 #include "integrator/ensemble/lane_steps.hpp"
 
 #include <cstdint>

@@ -1,12 +1,9 @@
 #include "integrator/taylor/step_size.hpp"
 
-#include "kernel/jet/rough_powers.hpp"
-
 #include <maupertuis/integrator.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 
 /// À. Jorba, M. Zou, A software package for the numerical integration of ODEs by means of high-order Taylor methods,
@@ -48,9 +45,9 @@ double size_of(const KernelWorkspace& work, std::size_t i, int order, double h) 
   return std::max(size, rounding_tolerance() * std::abs(work.coordinate(0)[i]) / h);
 }
 
-/// KernelWorkspace::log2_radius where a coordinate begins to move late: min of (size / |v_k|)^(1/k) over the coordinates and the last two k; earlier k
+/// KernelWorkspace::radius where a coordinate begins to move late: min of (size / |v_k|)^(1/k) over the coordinates and the last two k; earlier k
 /// speak up only where these are silent, since a motion with a symmetry (a pendulum let go at 90°) has coefficients 4 or more orders apart, so that the last two may vanish.
-double log2_radius_of_late(const KernelWorkspace& work, std::size_t freedoms, int order, double h) {
+double radius_of_late(const KernelWorkspace& work, std::size_t freedoms, int order, double h) {
   double least = infinity;
   for (std::size_t i = 0; i < freedoms; ++i) {
     const double size = std::log2(size_of(work, i, order, h));
@@ -58,13 +55,12 @@ double log2_radius_of_late(const KernelWorkspace& work, std::size_t freedoms, in
       if (const double last = velocity(work, i, k); last > 0)
         least = std::min(least, (size - std::log2(last)) / k + (k < order - 1 ? std::log2(widened) : 0));
   }
-  return least;
+  return std::exp2(least);
 }
 
 double radius(const KernelWorkspace& work, std::size_t freedoms, int order, double h) {
-  double exponent = work.log2_radius(h);
-  if (!(exponent > -900.0 / order)) exponent = log2_radius_of_late(work, freedoms, order, h);
-  return exponent < infinity ? rough_exp2<double, std::int64_t>(exponent) : infinity;
+  const double estimate = work.radius(h);
+  return estimate == estimate ? estimate : radius_of_late(work, freedoms, order, h);
 }
 
 /// A length to start from, where no step was made before: the decay from the first coefficients to the last.

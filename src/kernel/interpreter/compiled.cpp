@@ -24,7 +24,7 @@ std::pair<CompiledCode, CompileReport> compile(const packed::PackedProgram& prog
   CompiledCode code;
   if (made.code) {
     const auto find = [&](auto& function, const char* name) { function = reinterpret_cast<std::decay_t<decltype(function)>>(made.code->find(name)); };
-    find(code.expand, "expand"), find(code.log2_radius, "log2_radius"), find(code.increments, "increments");
+    find(code.expand, "expand"), find(code.radius, "radius"), find(code.increments, "increments");
     find(code.stage, "stage"), find(code.ahead, "ahead"), find(code.tangents, "tangents");
     code.memory = made.code;
   }

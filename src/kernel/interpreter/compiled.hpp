@@ -12,7 +12,7 @@ namespace maupertuis::interpreter {
 /// Machine code for one program, row stride and order; `memory` keeps it there. Either for the whole expansion, or rolled: for one stage.
 struct CompiledCode {
   packed::CompiledExpand expand = nullptr;
-  packed::CompiledRadius log2_radius = nullptr;
+  packed::CompiledRadius radius = nullptr;
   packed::CompiledIncrements increments = nullptr;
   packed::CompiledStage stage = nullptr, ahead = nullptr;
   packed::CompiledTangents tangents = nullptr;

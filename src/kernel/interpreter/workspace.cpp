@@ -349,10 +349,10 @@ KernelWorkspace::KernelWorkspace(KernelWorkspace&&) noexcept = default;
 
 int KernelWorkspace::order() const { return impl_->order; }
 
-double KernelWorkspace::log2_radius(double h) const {
+double KernelWorkspace::radius(double h) const {
   const Impl& s = *impl_;
-  if (s.compiled.log2_radius) return s.compiled.log2_radius(s.memory.rows.data(), h);
-  return s.engine.log2_radius(s.memory.row(0), s.memory.stride, s.program.freedoms, s.order, h);
+  if (s.compiled.radius) return s.compiled.radius(s.memory.rows.data(), h);
+  return s.engine.radius(s.memory.row(0), s.memory.stride, s.program.freedoms, s.order, h);
 }
 void polynomial_increments(const double* first, std::size_t stride, std::size_t columns, int degree, double tau, double* dq, double* dv) {
   packed::engine().increments(first, stride, columns, degree, tau, dq, dv);

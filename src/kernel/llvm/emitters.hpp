@@ -17,7 +17,7 @@ struct Declined : std::runtime_error {
 void emit_self_test(Emission& out, const compiled::Request& request);
 void emit_lanes(Emission& out, const compiled::Request& request);
 void emit_straight_lines(Emission& out, const compiled::Request& request);
-/// What a step does with the rows besides: log2_radius and increments, as the engine's.
+/// What a step does with the rows besides: radius and increments, as the engine's.
 void emit_step(Emission& out, std::size_t unknowns, std::size_t stride, int order);
 /// Straight-line code where the program is small and runs long, else rolled code.
 void emit_packed(Emission& out, const compiled::Request& request);

@@ -4,7 +4,7 @@
 #include <bit>
 #include <limits>
 
-/// The engine's log2_radius and increments for the rows of one small program: all orders and weights written out, in vectors no wider than the unknowns.
+/// The engine's radius and increments for the rows of one small program: all orders and weights written out, in vectors no wider than the unknowns.
 namespace maupertuis::llvm_backend {
 namespace {
 
@@ -16,7 +16,7 @@ class StepEmitter {
       : out_(out), b_(out.b), n_(static_cast<int>(unknowns)), width_(std::bit_ceil(static_cast<unsigned>(n_))), stride_(stride), order_(order),
         type_(out.real(static_cast<int>(width_))), scalar_(out.real(1)) {}
 
-  void log2_radius();
+  void radius();
   void increments();
 
  private:
@@ -30,6 +30,7 @@ class StepEmitter {
   Value* smaller(Value* x, Value* y) { return b_.CreateSelect(b_.CreateFCmpOLT(x, y), x, y); }
   Value* polynomial(Value* x, const std::vector<double>& c);
   Value* rough_log2(Value* x);
+  Value* rough_exp2(Value* x);
   Value* size();
   Value* least_lane(Value* x);
   void increment(unsigned out, bool derivative, Value* const (&powers)[3]);
@@ -52,25 +53,36 @@ void StepEmitter::open(const char* name, llvm::Type* result, const std::vector<l
 
 /// Σ c_i x^i of degree 5 or 6 by Estrin's scheme.
 Value* StepEmitter::polynomial(Value* x, const std::vector<double>& c) {
-  const auto pair = [&](std::size_t i) { return out_.fma(x, number(c[i + 1]), number(c[i])); };
+  llvm::Type* const type = x->getType();
+  const auto pair = [&](std::size_t i) { return out_.fma(x, out_.number(c[i + 1], type), out_.number(c[i], type)); };
   Value* const square = out_.multiply(x, x);
   Value* const low = out_.fma(square, pair(2), pair(0));
   Value* high = pair(4);
-  if (c.size() > 6) high = out_.fma(square, number(c[6]), high);
+  if (c.size() > 6) high = out_.fma(square, out_.number(c[6], type), high);
   return out_.fma(out_.multiply(square, square), high, low);
 }
 
-/// kernel/jet/rough_powers.hpp
+/// maupertuis/rough_powers.hpp
 Value* StepEmitter::rough_log2(Value* x) {
-  llvm::Type* const integers = width_ == 1 ? out_.integer() : llvm::FixedVectorType::get(out_.integer(), width_);
-  const auto constant = [&](std::uint64_t bits) { return llvm::ConstantInt::get(integers, bits); };
-  Value* const bits = b_.CreateBitCast(x, integers);
+  llvm::Type* const whole = type_->getWithNewType(out_.integer());
+  const auto constant = [&](std::uint64_t bits) { return llvm::ConstantInt::get(whole, bits); };
+  Value* const bits = b_.CreateBitCast(x, whole);
   Value* const exponent = b_.CreateOr(b_.CreateAnd(b_.CreateLShr(bits, constant(52)), constant(0x7ff)), constant(0x4330000000000000));
   Value* const fraction = b_.CreateOr(b_.CreateAnd(bits, constant(0x000fffffffffffff)), constant(0x3ff0000000000000));
   Value* const e = out_.subtract(b_.CreateBitCast(exponent, type_), number(0x1p52 + 1023));
   Value* const f = out_.subtract(b_.CreateBitCast(fraction, type_), number(1));
   return out_.add(e, polynomial(f, {2.4434387202040227e-06, 1.4424535262106073, -0.7173127802648969, 0.4545084921997887, -0.2726975648528732,
                                     0.11761308406665116, -0.02456853474529919}));
+}
+
+/// The same, of one number between −1020 and 1020.
+Value* StepEmitter::rough_exp2(Value* x) {
+  Value* const shifter = out_.number(0x1.8p52, scalar_);
+  Value* const shifted = out_.add(x, shifter);
+  Value* const f = out_.subtract(x, out_.subtract(shifted, shifter));
+  Value* const power = polynomial(f, {1.0000000754548972, 0.6931471880262288, 0.2402210748530834, 0.05550357114219078, 0.009676031918322054, 0.0013390863364671234});
+  Value* const bits = b_.CreateAdd(b_.CreateBitCast(power, out_.integer()), b_.CreateShl(b_.CreateBitCast(shifted, out_.integer()), 52));
+  return b_.CreateBitCast(bits, scalar_);
 }
 
 /// Of each coordinate's velocity over a step.
@@ -99,18 +111,22 @@ Value* StepEmitter::least_lane(Value* x) {
 }
 
 /// Early orders first: they are there while the last coefficients are still waited for.
-void StepEmitter::log2_radius() {
+void StepEmitter::radius() {
   constexpr double widened = 0.32192809488736235, infinity = std::numeric_limits<double>::infinity();  // log₂ 1.25
-  open("log2_radius", scalar_, {out_.pointer(), scalar_});
+  open("radius", scalar_, {out_.pointer(), scalar_});
   Value* const inverse = out_.divide(number(1), size());
   Value* least = number(infinity);
   for (int k = std::max(std::min(2, order_ - 1), order_ - 5); k <= order_; ++k) {
     Value* const ratio = out_.multiply(speed(k), inverse);
-    Value* const radius = out_.fma(rough_log2(ratio), number(-1.0 / k), number(k < order_ - 1 ? widened : 0));
+    Value* const exponent = out_.fma(rough_log2(ratio), number(-1.0 / k), number(k < order_ - 1 ? widened : 0));
     Value* const counts = b_.CreateFCmpOGT(ratio, number(0));
-    least = smaller(b_.CreateSelect(counts, radius, number(infinity)), least);
+    least = smaller(b_.CreateSelect(counts, exponent, number(infinity)), least);
   }
-  b_.CreateRet(least_lane(least));
+  Value* const exponent = least_lane(least);
+  Value* const ends = b_.CreateFCmpOLT(exponent, out_.number(1020, scalar_));
+  Value* const estimate = b_.CreateSelect(ends, rough_exp2(exponent), out_.number(infinity, scalar_));
+  Value* const known = b_.CreateFCmpOGT(exponent, out_.number(-900.0 / order_, scalar_));
+  b_.CreateRet(b_.CreateSelect(known, estimate, out_.number(std::numeric_limits<double>::quiet_NaN(), scalar_)));
 }
 
 /// Powers of τ apart by their remainders mod 4, each by Horner's rule.
@@ -143,7 +159,7 @@ void StepEmitter::increments() {
 
 void emit_step(Emission& out, std::size_t unknowns, std::size_t stride, int order) {
   StepEmitter emitter(out, unknowns, stride, order);
-  emitter.log2_radius();
+  emitter.radius();
   emitter.increments();
 }
 

@@ -27,7 +27,7 @@ struct CompiledArguments {
 /// Straight-line code: all stages of section Dynamics. 0: done; else the reference has to repeat it.
 using CompiledExpand = int (*)(const CompiledArguments*);
 
-/// With straight-line code: as Engine::log2_radius and Engine::increments, for its rows.
+/// With straight-line code: as Engine::radius and Engine::increments, for its rows.
 using CompiledRadius = double (*)(const double* first, double h);
 using CompiledIncrements = void (*)(const double* first, std::size_t stride, std::size_t count, int degree, double tau, double* dq, double* dv);
 

@@ -75,8 +75,8 @@ struct Engine {
   void (*correct)(const Tables&, int stage, const TangentMatrix&, const double* weights);
   /// Σ_{k=2..degree} c_k τ^{k−1} and Σ k c_k τ^{k−1} of `count` columns, c_k = first + k · stride: read and written in eights.
   void (*increments)(const double* first, std::size_t stride, std::size_t count, int degree, double tau, double* dq, double* dv);
-  /// log₂ of the radius of convergence: see KernelWorkspace::log2_radius.
-  double (*log2_radius)(const double* first, std::size_t stride, std::size_t count, int order, double h);
+  /// See KernelWorkspace::radius.
+  double (*radius)(const double* first, std::size_t stride, std::size_t count, int order, double h);
 };
 
 /// The best one for this processor.

@@ -1,5 +1,5 @@
 // No include guard: each engine_*.cpp compiles this once, for its own instruction set, in a namespace of its own.
-#include "kernel/jet/rough_powers.hpp"
+#include <maupertuis/rough_powers.hpp>
 #include "kernel/jet/sine_cosine.hpp"
 #include "kernel/packed/engine.hpp"
 
@@ -19,6 +19,6 @@ namespace maupertuis::packed::MAUP_ENGINE {
 
 extern const Engine engine;
 const Engine engine{MAUP_ENGINE_NAME, run_stage,         renew_blocks, tangents,   sine_cosine, negative_inverse,
-                    solve_by_inverse, set_accelerations, correct,      increments, log2_radius};
+                    solve_by_inverse, set_accelerations, correct,      increments, radius};
 
 }  // namespace maupertuis::packed::MAUP_ENGINE

@@ -38,7 +38,7 @@ inline double least_lane(Vector v, std::size_t count) {
 }
 
 /// Early orders first: they are there while the last coefficients are still waited for.
-double log2_radius(const double* first, std::size_t stride, std::size_t count, int order, double h) {
+double radius(const double* first, std::size_t stride, std::size_t count, int order, double h) {
   constexpr double widened = 0.32192809488736235;  // log₂ 1.25
   const auto step = static_cast<std::ptrdiff_t>(stride);
   const Vector infinity = all(__builtin_huge_val());
@@ -54,11 +54,13 @@ double log2_radius(const double* first, std::size_t stride, std::size_t count, i
     const Vector inverse = all(1) / (used ? size : all(1));
     for (int k = lowest; k <= order; ++k) {
       const Vector ratio = velocity(k) * inverse;
-      const Vector radius = rough_log2<Vector, Places>(ratio) * all(-1.0 / k) + all(k < order - 1 ? widened : 0);
-      least = (used & (ratio > 0) & (radius < least)) ? radius : least;
+      const Vector exponent = rough_log2<Vector, Places>(ratio) * all(-1.0 / k) + all(k < order - 1 ? widened : 0);
+      least = (used & (ratio > 0) & (exponent < least)) ? exponent : least;
     }
   }
-  return least_lane(least, count);
+  const double exponent = least_lane(least, count);
+  if (!(exponent > -900.0 / order)) return __builtin_nan("");  // a ratio to nothing
+  return exponent < __builtin_huge_val() ? rough_exp2<double, long long>(exponent) : exponent;
 }
 
 }  // namespace
