@@ -110,6 +110,7 @@ std::vector<Equilibrium> equilibrium_near(const PointEquations& equations, const
 // ------------------------------------------------------------------------------------------------------ linearization
 
 /// What is measured, to first order: y = y₀ + C x + D w. An output that holds q̈ or λ passes inputs on directly, D ≠ 0.
+/// Values that are not finite: y has none at the point; a row of C and D that is not: y has no derivative there.
 struct MeasuredOutputs {
   std::vector<double> values;  // [p] y₀ at the point, SI
   RealMatrix c, d;             // [p × (f+g)], [p × k]

@@ -82,6 +82,16 @@ std::optional<ModalStudy> modal_study_at(const PointEquations& equations, const 
 /// The equations about one state of a motion. Nothing, and E1304, where M is singular there.
 std::optional<ModalStudy> modal_study_of(const PointEquations& equations, const MotionState& state, Diagnostics& diagnostics);
 
+/// What is measured, as a user wrote it.
+struct OutputName {
+  std::string text;
+  std::optional<Span> span;
+};
+/// Whether every output has a value and a derivative at every point of the study; else E1306 for each that has not. `outputs`
+/// in the order of PointEquations.
+bool check_measured(const MechanicalSystem& system, const ModalStudy& study, std::span<const OutputName> outputs,
+                    Diagnostics& diagnostics);
+
 /// "θ1 = 0, θ2 = π", "r = 1 m; φ' = 1 rad/s": coordinates along translations are left out; rates are those that go on.
 std::string point_text(const MechanicalSystem& system, const Equilibrium& equilibrium, const std::vector<Translation>& translations);
 /// "π/2", "0.523 rad", "1.2 m".

@@ -142,6 +142,39 @@ TEST_CASE("modes with what is measured: acceleration of a cart, force in a rod")
   CHECK(contains(unknown.err, "`zz` is not declared"));
 }
 
+TEST_CASE("an output without a value or a derivative at the point is refused, and no number is shown") {
+  const auto refused = [](const std::vector<std::string>& arguments, const char* what) {
+    CAPTURE(what);
+    std::vector<std::string> all{"modes", gallery + "pendulum.lag"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const Outcome told = maup(all);
+    CHECK(told.code == 1);
+    CHECK(told.out.empty());
+    CHECK(contains(told.err, "E1306"));
+    CHECK_MESSAGE(contains(told.err, what), told.err);
+    all.push_back("--json");
+    const Json json = Json::parse(maup(all).out);
+    CHECK(json["ok"] == false);
+    CHECK(!json.contains("points"));
+  };
+  refused({"--at", "θ=0", "--y", "1/θ"}, "y = 1/θ has no value at θ = 0");
+  refused({"--at", "θ=0", "--y", "sin(θ)/θ"}, "has no value at θ = 0");
+  refused({"--at", "θ=0", "--y", "√θ"}, "y = √θ has no derivative at θ = 0");
+  refused({"--at", "θ=0", "--y", "abs(θ)"}, "y = abs(θ) has no derivative at θ = 0");  // C was [0 0]
+  refused({"--at", "θ=0", "--y", "sign(θ)"}, "y = sign(θ) has no derivative");
+  refused({"--y", "θ", "1/(θ - pi)"}, "y = 1/(θ - pi) has no value at θ = π");  // one of two equilibria
+  CHECK(maup({"modes", gallery + "pendulum.lag", "--at", "0.3s", "--y", "1/θ", "abs(θ)"}).code == 0);
+  CHECK(maup({"modes", gallery + "pendulum.lag", "--at", "θ=0", "--y", "θ abs(θ)"}).code == 0);  // smooth enough
+}
+
+TEST_CASE("modes: options without what they belong to") {
+  CHECK(maup({"modes", "-", "--R", "2"}, pendulum).code == 2);
+  const Outcome locus =
+      maup({"modes", gallery + "bead_on_hoop.lag", "--sweep", "Ω = 0 .. 12 rad/s steps 3", "--y", "θ"});
+  CHECK(locus.code == 2);
+  CHECK(contains(locus.err, "A locus"));
+}
+
 TEST_CASE("modes of a periodic motion are its Floquet multipliers") {
   const Json orbit = document({gallery + "pendulum.lag", "--orbit"});
   REQUIRE(orbit["floquet"]["multipliers"].size() == 2);

@@ -62,9 +62,11 @@ std::optional<ModalStudy> carry_out(const ModesOptions& options, Study& study, c
 // outputs
 
 /// Outputs are read by the model language itself, as left sides of equations.
+constexpr std::string_view before_output = "expect equation ";
+
 std::vector<std::string> output_statements(const std::vector<std::string>& outputs) {
   std::vector<std::string> statements;
-  for (const std::string& y : outputs) statements.push_back(as_one_line(fmt::format("expect equation {} = 0", y)));
+  for (const std::string& y : outputs) statements.push_back(as_one_line(fmt::format("{}{} = 0", before_output, y)));
   return statements;
 }
 
@@ -75,6 +77,20 @@ ExprVector measured(const std::vector<std::string>& outputs, const Model& model)
   for (std::size_t i = expectations.size() - outputs.size(); i < expectations.size(); ++i)
     found.push_back(expectations[i].subject);
   return found;
+}
+
+/// Numbers that are none are not shown.
+bool check_outputs(const ModesOptions& options, const ModalStudy& found, Study& study) {
+  const Model& model = *study.model();
+  const auto& expectations = model.experiment.expectations;
+  std::vector<OutputName> names;
+  for (std::size_t i = 0; i < options.outputs.size(); ++i) {
+    const std::string& text = options.outputs[i];
+    const Span statement = expectations[expectations.size() - options.outputs.size() + i].span;
+    const auto begin = statement.begin + static_cast<std::uint32_t>(before_output.size());
+    names.push_back({text, Span{begin, begin + static_cast<std::uint32_t>(text.size())}});
+  }
+  return check_measured(model.system, found, names, study.diagnostics());
 }
 
 // --------------------------------------------------------------------------------------------------------------
@@ -170,7 +186,7 @@ ExitCode locus(const ModesOptions& options, Study& study, PointEquations& equati
 ExitCode points(const ModesOptions& options, Study& study, const PointEquations& equations, const MotionState& start,
                 Console& console) {
   const auto result = carry_out(options, study, equations, start, console);
-  if (!result) return finish(console, study, json_document("modes"));
+  if (!result || !check_outputs(options, *result, study)) return finish(console, study, json_document("modes"));
   const MechanicalSystem& system = study.model()->system;
   constexpr std::size_t usually = 4;
   const std::size_t detailed = options.all ? std::numeric_limits<std::size_t>::max() : usually;
@@ -215,6 +231,18 @@ ExitCode orbit(const ModesOptions& options, Study& study, Console& console) {
 
 /// Options that ask for different points exclude each other.
 bool check_usage(const ModesOptions& o, Diagnostics& diagnostics) {
+  if (o.q.empty() && !o.r.empty()) {
+    diagnostics.error("E0809", {}, "--R belongs to --Q.",
+                      "The prices of the inputs count beside the weights of the states.",
+                      "Give --Q as well, or leave --R out.");
+    return false;
+  }
+  if (!o.orbit && o.locus() && !(o.at.empty() && o.q.empty() && o.outputs.empty())) {
+    diagnostics.error(
+        "E0809", {}, "A locus (--sweep, --plot, --roots, --csv) has neither --at, --y nor a regulator beside it.",
+        "It follows all equilibria along a parameter; these options look at single points.", "Leave one of them out.");
+    return false;
+  }
   if (!o.orbit || (o.at.empty() && !o.locus() && o.q.empty() && o.outputs.empty())) return true;
   diagnostics.error("E0809", {}, "--orbit has neither --at, --sweep, --y nor a regulator beside it.",
                     "The multipliers of a periodic motion belong to the whole orbit, and not to a point.",

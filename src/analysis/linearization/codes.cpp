@@ -21,6 +21,11 @@ constexpr CodeEntry entries[] = {
      "The equations to first order need the accelerations as functions of forces. Where a coordinate loses its inertia (an angle about an axis at "
      "distance 0) that function does not exist: it is the coordinates that fail, not the system.",
      "", ""},
+    {"E1306", "an output without a value or a derivative at the point",
+     "What is measured is written to first order, y = y0 + C x + D u: y0 is its value at the point, C and D its derivatives there. 1/θ has no "
+     "value at θ = 0, √θ and abs(θ) have no derivative: no row of C stands for them. Where a formula has a limit that it does not reach "
+     "(sin(θ)/θ), write the limit.",
+     "maup modes pendulum.lag --at \"θ=0\" --y \"1/θ\"", "maup modes pendulum.lag --at \"θ=0\" --y \"θ\""},
     {"E1310", "a regulator for a model without inputs",
      "The linear-quadratic regulator chooses the inputs as functions of the state, u = u0 - F x. A force that is a formula of t cannot be chosen.",
      "force x = 2 N", "input u : [N] = 0\nforce x = u"},

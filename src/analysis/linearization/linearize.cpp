@@ -1,5 +1,5 @@
 #include "analysis/linearization/dense.hpp"
-#include "analysis/linearization/point_equations.hpp"
+#include "analysis/linearization/measured.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -114,15 +114,6 @@ void second_order_form(Linearization& out, const Pieces& p, const Matrix& direct
   out.input = to_real(-directions.transpose() * p.balance.by_inputs);
 }
 
-/// The chain rule from (q, q̇), (q̈, λ) and u to what is measured. `motion`, `answer`: their columns by x and u.
-MeasuredOutputs measured_outputs(const RowsAtPoint& y, const Matrix& motion, const Matrix& answer, Index states) {
-  const Index n = y.by_q.cols(), k = y.by_inputs.cols();
-  Matrix by = y.by_q * motion.topRows(n) + y.by_v * motion.bottomRows(n) + y.by_a * answer.topRows(n) +
-              y.by_multipliers * answer.bottomRows(y.by_multipliers.cols());
-  by.rightCols(k) += y.by_inputs;
-  return {to_list(y.value), to_real(by.leftCols(states)), to_real(by.rightCols(k))};
-}
-
 bool vanishes(const Matrix& part, const Matrix& beside) {
   return part.size() == 0 ||
          part.lpNorm<Eigen::Infinity>() <= 1e-12 * (beside.size() == 0 ? 0 : beside.lpNorm<Eigen::Infinity>());
@@ -178,7 +169,7 @@ LinearizationResult linearize(const PointEquations& equations, const OperatingPo
   out.d = to_real(Matrix::Zero(2 * n, k));
   Matrix motion = Matrix::Zero(2 * n, f + g + k);
   motion.leftCols(f + g) = c;
-  out.measured = measured_outputs(e.at(e.outputs, point), motion, bordered.x, f + g);
+  out.measured = measured_outputs(e, point, {motion, bordered.x, f + g});
 
   const bool uniform = std::all_of(point.a.begin(), point.a.end(), [](double x) { return x == 0; });
   if (e.m == 0 || (e.holonomic == e.m && uniform && vanishes(rate_q, rate_w))) second_order_form(out, p, xi);

@@ -78,6 +78,14 @@ ExprVector with_reactions(const EquationsOfMotion& equations, std::span<const Ex
   return substitute(out, forces);
 }
 
+bool has_switch(Expr e) {
+  const ExprVector nodes = topological_order({&e, 1});
+  return std::any_of(nodes.begin(), nodes.end(), [](const Expr& node) {
+    return node.is(Kind::Abs) || node.is(Kind::Sign) || node.is(Kind::Step) || node.is(Kind::Min) ||
+           node.is(Kind::Max) || node.is(Kind::Piecewise);
+  });
+}
+
 /// Whether ∂/∂t of all of them vanishes identically.
 bool free_of_time(std::span<const Expr> expressions, Expr time) {
   ExprVector rates;
@@ -128,6 +136,7 @@ PointEquations::Impl::Impl(const EquationsOfMotion& equations, std::span<const E
   for (std::size_t i = 0; i < m; ++i)
     if (system->constraints[i].level == Constraint::Level::Position) position_rows.push_back(i);
   holonomic = position_rows.size();
+  for (const Expr& y : with_reactions(equations, measured)) output_switches.push_back(has_switch(y));
   for (const Parameter& p : system->parameters) parameters.push_back(p.si_value);
   set_parameters();
   const Lowering lowering(equations);

@@ -34,6 +34,7 @@ struct PointEquations::Impl {
   Rows balance, positions, velocities, accelerations, momenta;  // [n], [holonomic], [m - holonomic], [m], [n]
   Rows rates;                                                   // [m] dφ/dt and ψ
   Rows outputs;                                                 // what is measured
+  std::vector<bool> output_switches;                            // whether abs, min, piecewise … stand in it
   FunctionKernel input_formulas;
   FunctionWorkspace inputs;
   FunctionKernel energy;  // h_E: orders equilibria

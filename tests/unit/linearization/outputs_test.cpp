@@ -54,3 +54,30 @@ constraint x^2 + y^2 = l^2 name rod
   CHECK(near(l.measured.c.at(0, 0), (tension(0.3 + h, 1.7) - tension(0.3 - h, 1.7)) / (2 * h), 1e-8));
   CHECK(near(l.measured.c.at(0, 1), (tension(0.3, 1.7 + h) - tension(0.3, 1.7 - h)) / (2 * h), 1e-8));
 }
+
+TEST_CASE("an output has a row of numbers only where it has a derivative") {
+  const ModelText m(R"(system free
+param m = 2 kg, l = 3 m
+coord x, y : length
+T = 1/2 m (x'^2 + y'^2)
+V = 0
+)");
+  Context& c = *m.system->context;
+  const auto f = [&](Kind kind, const std::vector<Expr>& arguments) { return c.function(kind, arguments); };
+  const Expr x = m.q(0), y = m.q(1), v = m.v(0), l = m.p("l");
+  const Expr outputs[] = {f(Kind::Abs, {x}),  x * f(Kind::Abs, {x}), f(Kind::Max, {y - l, x}),
+                          f(Kind::Sign, {v}), f(Kind::Abs, {y}) + v, c.number(1) / x};
+  const PointEquations at(m.equations, outputs);
+  const MeasuredOutputs found = linearize(at, {0, {0, 3}, {0, 0}, {0, 0}, {}, {}}).linearization.measured;
+  const auto row = [&](std::size_t i) {
+    return std::vector<double>(found.c.entries.begin() + 4 * static_cast<long>(i),
+                               found.c.entries.begin() + 4 * static_cast<long>(i + 1));
+  };
+  for (const std::size_t i : {0, 2, 3, 5}) {
+    CAPTURE(i);
+    CHECK(std::isnan(row(i)[0]));
+  }
+  CHECK(std::isinf(found.values[5]));
+  CHECK(row(1) == std::vector<double>{0, 0, 0, 0});  // x |x| is flat at 0
+  CHECK(row(4) == std::vector<double>{0, 1, 1, 0});
+}
