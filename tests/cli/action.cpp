@@ -1,14 +1,11 @@
 // maup action, from outside: values, several paths, the contract of its JSON, bad input.
-#include "program.hpp"
+#include "json.hpp"
 
 #include <doctest/doctest.h>
-
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 
 using namespace cli_test;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -23,11 +20,6 @@ std::string oscillator(const std::string& duration) {
 
 double classical_action(double duration) {
   return ((0.16 + 1.21) * std::cos(duration) + 2 * 0.4 * 1.1) / (2 * std::sin(duration));
-}
-
-Json json_of(const Outcome& told) {
-  REQUIRE_MESSAGE(!told.out.empty(), told.err);
-  return Json::parse(told.out);
 }
 
 }  // namespace

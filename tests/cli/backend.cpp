@@ -1,20 +1,15 @@
 // --backend, --no-cache and what doctor says of them, from outside.
-#include "program.hpp"
+#include "json.hpp"
 
 #include <doctest/doctest.h>
-
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 
 using namespace cli_test;
-using Json = nlohmann::json;
 
 namespace {
 
-bool has_compiled_code() {
-  return Json::parse(maup({"doctor", "--json"}).out).at("compiled code") == "works";
-}
+bool has_compiled_code() { return json_of(maup({"doctor", "--json"})).at("compiled code") == "works"; }
 
 struct Run {
   int code;
@@ -26,7 +21,7 @@ struct Run {
 Run simulate(const Folder& folder, const std::string& options, const std::string& environment = {}) {
   const std::string model = folder.write("p.lag", pendulum);
   const Outcome outcome = shell("XDG_CACHE_HOME=" + folder.path("cache") + " " + environment + " $MAUP simulate " + model + " --json " + options);
-  Run run{outcome.code, Json::parse(outcome.out), {}};
+  Run run{outcome.code, json_of(outcome), {}};
   for (const Json& d : run.document.at("diagnostics")) run.codes.push_back(d.at("code"));
   return run;
 }
@@ -90,7 +85,7 @@ TEST_CASE("a device that is full: the run is as it would be, with one warning, a
                               " --json --backend compiled";
   // No file may grow, as where no space is left; the pipe may.
   const Outcome outcome = shell("(trap '' XFSZ; ulimit -f 0; " + command + ") | cat");
-  const Json document = Json::parse(outcome.out);
+  const Json document = json_of(outcome);
   CHECK(document.at("statistics").at("backend") == "compiled");
   REQUIRE(document.at("diagnostics").size() == 1);
   CHECK(document.at("diagnostics").at(0).at("code") == "W0705");
@@ -106,7 +101,7 @@ TEST_CASE("a program too large to compile: the interpreter carries the run, and 
   model += "force x = -x - a" + std::to_string(steps - 1) + "/10\nT = 1/2 x'^2\nstart x = 1\nrun 0.01\n";
   const Folder folder;
   const std::string command = " $MAUP simulate " + folder.write("large.lag", model) + " --json --no-cache --backend ";
-  const Json compiled = Json::parse(shell(command + "compiled").out), interpreted = Json::parse(shell(command + "interpreter").out);
+  const Json compiled = json_of(shell(command + "compiled")), interpreted = json_of(shell(command + "interpreter"));
   CHECK(compiled.at("statistics").at("backend") == "interpreter");
   REQUIRE(compiled.at("diagnostics").size() == 1);
   CHECK(compiled.at("diagnostics").at(0).at("code") == "W0703");
@@ -126,7 +121,7 @@ TEST_CASE("processors without AVX-512, and without AVX2: both backends agree wit
       CHECK(run.code == 0);
       if (has_compiled_code()) CHECK(backend_of(run) == backend);
       CHECK(std::abs(angle_of(run) - angle_of(best)) < 1e-12);
-      const Json doctor = Json::parse(shell(std::string("MAUPERTUIS_INSTRUCTIONS=") + set + " $MAUP doctor --json").out);
+      const Json doctor = json_of(shell(std::string("MAUPERTUIS_INSTRUCTIONS=") + set + " $MAUP doctor --json"));
       CHECK(doctor.at("vector instructions") != "AVX-512");
       if (std::string(set) == "none") CHECK(doctor.at("vector instructions") == "none that are used");
       if (has_compiled_code()) CHECK(contains(doctor.at("backends"), std::string(set) == "none" ? "for x86-64" : "x86-64-v3"));
@@ -145,11 +140,11 @@ TEST_CASE("a backend that nobody knows is a mistake of usage") {
 }
 
 TEST_CASE("doctor tells of backends, vector instructions and the cache") {
-  const Json document = Json::parse(shell("XDG_CACHE_HOME=/tmp/nowhere-at-all $MAUP doctor --json").out);
+  const Json document = json_of(shell("XDG_CACHE_HOME=/tmp/nowhere-at-all $MAUP doctor --json"));
   CHECK(contains(document.at("backends"), "interpreter"));
   CHECK(document.at("vector instructions").is_string());
   CHECK(contains(document.at("cache"), "/tmp/nowhere-at-all/maupertuis, 0 objects"));
-  const Json without = Json::parse(shell("MAUPERTUIS_LLVM_MODULE=/nowhere/module.so $MAUP doctor --json").out);
+  const Json without = json_of(shell("MAUPERTUIS_LLVM_MODULE=/nowhere/module.so $MAUP doctor --json"));
   CHECK(without.at("backends") == "interpreter");
   CHECK(without.at("compiled code") == "the module /nowhere/module.so is not here");
 }

@@ -1,8 +1,7 @@
 // Equations with multipliers, in every form and notation.
-#include "program.hpp"
+#include "json.hpp"
 
 #include <doctest/doctest.h>
-#include <nlohmann/json.hpp>
 
 using namespace cli_test;
 
@@ -88,8 +87,7 @@ TEST_CASE("LaTeX compiles and MathML is well-formed, with multipliers") {
 }
 
 TEST_CASE("derive --json with constraints") {
-  using Json = nlohmann::json;
-  const Json json = Json::parse(maup({"derive", "-", "--json"}, rod_pendulum).out);
+  const Json json = json_of(maup({"derive", "-", "--json"}, rod_pendulum));
   CHECK(json["multipliers"] == Json::array({"λ_rod"}));
   CHECK(json["constraints"][0]["name"] == "rod");
   CHECK(json["constraints"][0]["plain"] == "x^2 + y^2 = l^2");

@@ -1,14 +1,11 @@
 // maup simulate and check of constrained models, from outside.
-#include "program.hpp"
+#include "json.hpp"
 
 #include <doctest/doctest.h>
-
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 
 using namespace cli_test;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -26,7 +23,7 @@ TEST_CASE("simulate: reactions and multipliers in text and JSON") {
   CHECK(contains(text.out, "reaction(rod)"));
   CHECK(contains(text.out, "constraint residual"));
   const Outcome json = maup({"simulate", model, "--json", "--at", "1s"});
-  const Json at = Json::parse(json.out).at("at").at(0);
+  const Json at = json_of(json).at("at").at(0);
   const double y = at.at("state").at("y"), lambda = at.at("multipliers").at("λ_rod"), tension = at.at("reactions").at("reaction(rod)");
   CHECK(tension == doctest::Approx(-3 * 9.81 * y).epsilon(1e-11));
   CHECK(lambda == doctest::Approx(-tension / 2).epsilon(1e-12));
@@ -37,8 +34,10 @@ TEST_CASE("simulate: each method, and what each refuses") {
   const std::string model = folder.write("rod.lag", rod);
   CHECK(contains(maup({"simulate", model, "--method", "variational", "--step", "10ms"}).out, "variational method, order 4"));
   const Outcome stiff = maup({"simulate", model, "--method", "stiff", "--json"});
-  if (contains(Json::parse(maup({"doctor", "--json"}).out).at("integrators"), "stiff needs SUNDIALS")) CHECK(contains(stiff.out, "E0723"));
-  else CHECK(Json::parse(stiff.out).at("statistics").at("method") == "stiff");
+  if (contains(json_of(maup({"doctor", "--json"})).at("integrators"), "stiff needs SUNDIALS"))
+    CHECK(contains(stiff.out, "E0723"));
+  else
+    CHECK(json_of(stiff).at("statistics").at("method") == "stiff");
   const Outcome no_step = maup({"simulate", model, "--method", "variational"});
   CHECK(no_step.code != 0);
   CHECK(contains(no_step.err, "E0721"));
@@ -63,7 +62,7 @@ TEST_CASE("simulate: a singular configuration ends the run with the reason, and 
       "start a = 60 deg, b = 60 deg, a' = -1 rad/s\nrun 5 s\n");
   const Outcome run = maup({"simulate", model, "--json"});
   CHECK(run.code == 3);
-  const Json document = Json::parse(run.out);
+  const Json document = json_of(run);
   CHECK(document.at("ended").at("kind") == "singular constraints");
   CHECK(document.at("final").at("t").get<double>() > 0.5);
   CHECK(document.at("statistics").at("energy_drift").get<double>() < 1e-12);
@@ -74,14 +73,14 @@ TEST_CASE("simulate: multipliers that are not determined are null") {
   std::string twice = rod;
   twice.insert(twice.find("start"), "constraint 2 x^2 + 2 y^2 = 2 l^2 name wire\n");
   const std::string model = folder.write("twice.lag", twice);
-  const Json document = Json::parse(maup({"simulate", model, "--json"}).out);
+  const Json document = json_of(maup({"simulate", model, "--json"}));
   CHECK(document.at("final").at("multipliers").at("λ_rod").is_null());
   CHECK(contains(maup({"simulate", model}).out, "not determined"));
 }
 
 TEST_CASE("check: freedoms, classes, and a start that cannot be") {
   const Folder folder;
-  const Json document = Json::parse(maup({"check", folder.write("rod.lag", rod), "--json"}).out);
+  const Json document = json_of(maup({"check", folder.write("rod.lag", rod), "--json"}));
   CHECK(document.at("freedoms") == 1);
   CHECK(document.at("instantaneous_freedoms") == 1);
   CHECK(document.at("constraints").at(0).at("class") == "holonomic");

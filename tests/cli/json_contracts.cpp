@@ -1,13 +1,11 @@
 // What other programs rely on.
-#include "program.hpp"
+#include "json.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 using namespace cli_test;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -15,7 +13,7 @@ Json document(const std::vector<std::string>& arguments, const std::string& inpu
   const Outcome outcome = maup(arguments, input);
   CHECK_MESSAGE(outcome.code == code, outcome.err, outcome.out);
   CHECK(outcome.err.empty());
-  const Json json = Json::parse(outcome.out, nullptr, false);
+  const Json json = json_of(outcome);
   REQUIRE(json.is_object());
   CHECK(json.at("schema") == 1);
   CHECK(json.at("command") == arguments.at(0));
@@ -120,7 +118,7 @@ TEST_CASE("every command speaks JSON, and a failure is a document too") {
 TEST_CASE("invariants --json: integrals with their proofs, what holds between them, the basis") {
   const Outcome outcome = maup({"invariants", PROJECT_DIR "/models/kepler.lag", "--json"});
   CHECK(outcome.code == 0);
-  const Json document = Json::parse(outcome.out);
+  const Json document = json_of(outcome);
   CHECK(document["schema"] == 1);
   CHECK(document["command"] == "invariants");
   REQUIRE(document["integrals"].size() == 4);

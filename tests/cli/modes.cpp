@@ -1,14 +1,11 @@
 // maup modes, from outside.
-#include "program.hpp"
+#include "json.hpp"
 
 #include <doctest/doctest.h>
-
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 
 using namespace cli_test;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -18,9 +15,7 @@ Json document(const std::vector<std::string>& arguments) {
   std::vector<std::string> all{"modes"};
   all.insert(all.end(), arguments.begin(), arguments.end());
   all.push_back("--json");
-  const Json out = Json::parse(maup(all).out, nullptr, false);
-  REQUIRE(out.is_object());
-  return out;
+  return json_of(maup(all));
 }
 
 }  // namespace
@@ -60,7 +55,7 @@ TEST_CASE("modes --at a time of the motion") {
 
 TEST_CASE("modes --Q: a regulator, and what it needs") {
   const std::string cart = gallery + "balanced_cart.lag";
-  if (Json::parse(maup({"doctor", "--json"}).out).at("regulator") == "needs LAPACK") {
+  if (json_of(maup({"doctor", "--json"})).at("regulator") == "needs LAPACK") {
     CHECK(contains(maup({"modes", cart, "--at", "θ=180deg", "--Q", "1"}).err, "E1315"));
     return;
   }
@@ -153,7 +148,7 @@ TEST_CASE("an output without a value or a derivative at the point is refused, an
     CHECK(contains(told.err, "E1306"));
     CHECK_MESSAGE(contains(told.err, what), told.err);
     all.push_back("--json");
-    const Json json = Json::parse(maup(all).out);
+    const Json json = json_of(maup(all));
     CHECK(json["ok"] == false);
     CHECK(!json.contains("points"));
   };

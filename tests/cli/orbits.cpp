@@ -1,14 +1,11 @@
 // maup orbits, from outside.
-#include "program.hpp"
+#include "json.hpp"
 
 #include <doctest/doctest.h>
-
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 
 using namespace cli_test;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -17,7 +14,7 @@ const std::string henon_heiles =
     "V = 1/2 (x^2 + y^2) + x^2 y - 1/3 y^3\nstart x' = 0.5, y = 0.1\nrun 200\n";
 
 std::string code_of(const Outcome& outcome) {
-  const Json document = Json::parse(outcome.out);
+  const Json document = json_of(outcome);
   REQUIRE(document.at("diagnostics").size() == 1);
   return document.at("diagnostics")[0].at("code");
 }
@@ -32,7 +29,7 @@ TEST_CASE("orbits --floquet: the pendulum's period, text and document") {
   CHECK(contains(text.out, "period              2.15"));
   CHECK(contains(text.out, "trivial             1 and 1"));
   CHECK(contains(text.out, "the symplectic form is preserved"));
-  const Json document = Json::parse(maup({"orbits", model, "--floquet", "--json", "--set", "l=2m"}).out);
+  const Json document = json_of(maup({"orbits", model, "--floquet", "--json", "--set", "l=2m"}));
   CHECK(document.at("schema") == 1);
   CHECK(document.at("ok") == true);
   const Json& f = document.at("floquet");
@@ -53,7 +50,7 @@ TEST_CASE("orbits --section: table, CSV, picture of many motions at one energy")
   const Outcome many = maup({"orbits", model, "--section", "x = 0 rising", "--starts", "9", "--crossings", "30",
                              "--energy", "0.125", "-o", csv, "--plot", svg, "--json"});
   CHECK_MESSAGE(many.code == 0, many.err);
-  const Json section = Json::parse(many.out).at("section");
+  const Json section = json_of(many).at("section");
   CHECK(section.at("orbits").size() == 9);
   CHECK(section.at("crossings").size() == 270);
   for (const Json& o : section.at("orbits")) {
@@ -73,12 +70,12 @@ TEST_CASE("orbits --lyapunov: the sum rule in text and document, the averages as
   CHECK_MESSAGE(text.code == 0, text.err);
   CHECK(contains(text.out, "(Liouville, to "));
   CHECK(contains(read(csv), "t [s],λ1,λ2,λ3,λ4\r\n"));
-  const Json l = Json::parse(maup({"orbits", model, "--lyapunov", "--duration", "100s", "--json"}).out).at("lyapunov");
+  const Json l = json_of(maup({"orbits", model, "--lyapunov", "--duration", "100s", "--json"})).at("lyapunov");
   CHECK(l.at("exponents").size() == 4);
   CHECK(std::abs(l.at("sum").get<double>()) < 1e-9);
   CHECK(l.at("expected_sum") == 0.0);
   CHECK(l.at("sum_rule_residual").get<double>() < 1e-9);
-  CHECK(Json::parse(maup({"orbits", model, "--lyapunov", "--exponents", "1", "--json"}).out)
+  CHECK(json_of(maup({"orbits", model, "--lyapunov", "--exponents", "1", "--json"}))
             .at("lyapunov")
             .at("exponents")
             .size() == 1);

@@ -1,12 +1,9 @@
 // maup hamiltonian, from outside.
-#include "program.hpp"
+#include "json.hpp"
 
 #include <doctest/doctest.h>
 
-#include <nlohmann/json.hpp>
-
 using namespace cli_test;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -38,7 +35,7 @@ TEST_CASE("hamiltonian --bracket reads the language of the model, and its mistak
   const std::string model = folder.write("kepler.lag", kepler);
   const Outcome told = maup({"hamiltonian", model, "--bracket", "r", "p_r", "--bracket", "φ", "r φ'", "--json"});
   REQUIRE_MESSAGE(told.code == 0, told.err);
-  const Json document = Json::parse(told.out);
+  const Json document = json_of(told);
   REQUIRE(document["brackets"].size() == 2);
   CHECK(document["brackets"][0]["plain"] == "1");
   CHECK(document["brackets"][1]["plain"] == "1/(m r)");
@@ -56,9 +53,9 @@ TEST_CASE("hamiltonian --integrate gives the motion of simulate") {
   const std::string model = folder.write("kepler.lag", kepler), rows = folder.path("phase.csv");
   const Outcome told = maup({"hamiltonian", model, "--integrate", "-o", rows, "--json"});
   REQUIRE_MESSAGE(told.code == 0, told.err);
-  const Json canonical = Json::parse(told.out)["integration"];
+  const Json canonical = json_of(told)["integration"];
   CHECK(canonical["difference"].get<double>() < 1e-13);
-  const Json run = Json::parse(maup({"simulate", model, "--json"}).out)["final"];
+  const Json run = json_of(maup({"simulate", model, "--json"}))["final"];
   CHECK(canonical["final"]["state"]["r"].get<double>() == doctest::Approx(run["state"]["r"].get<double>()).epsilon(1e-13));
   CHECK(canonical["final"]["state"]["p_φ"].get<double>() == doctest::Approx(2.0).epsilon(1e-14));
   CHECK(contains(read(rows), "t [s],r [m],φ [rad],p_r [kg m/s]"));
@@ -113,7 +110,7 @@ TEST_CASE("a momentum before a bracket is a factor") {
   const Folder folder;
   const Outcome told = maup({"hamiltonian", folder.write("kepler.lag", kepler), "--bracket", "r", "p_r (r + r)", "--json"});
   REQUIRE_MESSAGE(told.code == 0, told.err);
-  CHECK(Json::parse(told.out)["brackets"][0]["plain"] == "2 r");
+  CHECK(json_of(told)["brackets"][0]["plain"] == "2 r");
 }
 
 TEST_CASE("a Lagrangian whose mass matrix is singular has primary constraints, and no motion to integrate") {

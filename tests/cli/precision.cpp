@@ -1,12 +1,9 @@
 // maup simulate --precision, from outside.
-#include "program.hpp"
+#include "json.hpp"
 
 #include <doctest/doctest.h>
 
-#include <nlohmann/json.hpp>
-
 using namespace cli_test;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -31,7 +28,7 @@ TEST_CASE("simulate --precision: all digits and no more, in text and JSON") {
   CHECK(contains(text.out, "t = 0.1 s"));
   CHECK(contains(text.out, cos01));
   CHECK(contains(text.out, cos2.substr(0, 98)));
-  const Json json = Json::parse(maup({"simulate", model, "--precision", "100", "--at", "100 ms", "--json"}).out);
+  const Json json = json_of(maup({"simulate", model, "--precision", "100", "--at", "100 ms", "--json"}));
   CHECK(json.at("precision") == "100");
   CHECK(json.at("final").at("state").at("x").get<std::string>().substr(0, 98) == cos2.substr(0, 98));
   CHECK(json.at("final").at("digits").at("x") == 100);

@@ -1,12 +1,9 @@
 // maup compare and maup reduce, from outside.
-#include "program.hpp"
+#include "json.hpp"
 
 #include <doctest/doctest.h>
 
-#include <nlohmann/json.hpp>
-
 using namespace cli_test;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -49,7 +46,7 @@ TEST_CASE("compare --json") {
   const std::string a = folder.write("cartesian.lag", cartesian), b = folder.write("pendulum.lag", pendulum);
   const Outcome outcome = maup({"compare", a, b, "--map", map, "--json"});
   CHECK(outcome.code == 0);
-  const Json json = Json::parse(outcome.out, nullptr, false);
+  const Json json = json_of(outcome);
   REQUIRE(json.is_object());
   CHECK(json.at("schema") == 1);
   CHECK(json.at("verdict") == "same");
@@ -63,8 +60,7 @@ TEST_CASE("compare --json") {
   CHECK(json.at("run").at("difference").get<double>() < 1e-12);
   CHECK(json.at("diagnostics").empty());
 
-  const Json wrong =
-      Json::parse(maup({"compare", a, b, "--map", "x = l sin θ, y = -cos θ", "--json"}).out, nullptr, false);
+  const Json wrong = json_of(maup({"compare", a, b, "--map", "x = l sin θ, y = -cos θ", "--json"}));
   REQUIRE(wrong.is_object());
   CHECK(wrong.at("ok") == false);
   REQUIRE(wrong.at("diagnostics").size() == 1);
@@ -129,7 +125,7 @@ TEST_CASE("reduce: what is not elementary is refused with the proposal") {
   CHECK(contains(outcome.err, "E0831"));
   CHECK(contains(outcome.err, "as independent"));
   CHECK(folder.names().empty());
-  const Json json = Json::parse(maup({"reduce", "-", "--json"}, loop).out, nullptr, false);
+  const Json json = json_of(maup({"reduce", "-", "--json"}, loop));
   REQUIRE(json.is_object());
   CHECK(json.at("ok") == false);
   CHECK(json.at("text").is_null());

@@ -1,14 +1,11 @@
 // Models whose independent variable is not the time, and models that hold an integral of their paths.
-#include "program.hpp"
+#include "json.hpp"
 
 #include <doctest/doctest.h>
-
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 
 using namespace cli_test;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -46,7 +43,7 @@ TEST_CASE("simulate with x in the place of t: the values, their units, and the f
   CHECK(!contains(told.out, "t ="));
   CHECK(read(folder.path("b.csv")).rfind("x [m],y1 [m],y1' [1],energy [s/m]\r\n", 0) == 0);
   // Beltrami: y (1 + y'^2) is constant along the cycloid.
-  const Json state = Json::parse(maup({"simulate", model, "--json"}).out)["final"]["state"];
+  const Json state = json_of(maup({"simulate", model, "--json"}))["final"]["state"];
   const double y = state["y1"], slope = state["y1'"];
   CHECK(std::abs(y * (1 + slope * slope) - 1.25) < 1e-14);
   const Outcome precise = maup({"simulate", model, "--precision", "quad"});
@@ -76,7 +73,8 @@ TEST_CASE("an integral that is held belongs to a path: commands about motions sa
 }
 
 TEST_CASE("frequencies and periods are those of motions in time") {
-  for (const std::vector<std::string> arguments : {std::vector<std::string>{"modes", "-"}, {"orbits", "-", "--floquet"}}) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"modes", "-"}, {"orbits", "-", "--floquet"}}) {
     const Outcome told = maup(arguments, brachistochrone);
     CHECK(told.code == 1);
     CHECK(contains(told.err, "E0245"));

@@ -4,6 +4,18 @@
 
 using namespace maupertuis;
 
+namespace {
+
+const char* const brachistochrone = R"(
+system brachistochrone
+dimensionless
+param g = 9.81
+coord y : number
+L = sqrt((1 + y'^2) / (2 g y))
+)";
+
+}  // namespace
+
 TEST_CASE("the long way round the sphere is a saddle of index 1") {
   const ModelText m(R"(
 system sphere
@@ -103,13 +115,7 @@ L = 1/2 x'^2 - 1/2 x^2
 }
 
 TEST_CASE("the brachistochrone, from a point of the cycloid") {
-  const ModelText m(R"(
-system brachistochrone
-dimensionless
-param g = 9.81
-coord y : number
-L = sqrt((1 + y'^2) / (2 g y))
-)");
+  const ModelText m(brachistochrone);
   // The cycloid x = a − sin a, y = 1 − cos a is run through in a time proportional to a.
   const double first = 0.3;
   const PathSearch found = paths_of(m, fixed_ends({1 - std::cos(first)}, first - std::sin(first), {2}, pi));
@@ -122,13 +128,7 @@ L = sqrt((1 + y'^2) / (2 g y))
 }
 
 TEST_CASE("the brachistochrone from rest, where L is infinite") {
-  const ModelText m(R"(
-system brachistochrone
-dimensionless
-param g = 9.81
-coord y : number
-L = sqrt((1 + y'^2) / (2 g y))
-)");
+  const ModelText m(brachistochrone);
   const PathSearch found = paths_of(m, fixed_ends({0}, 0, {2}, pi));
   REQUIRE(found.paths.size() == 1);
   const StationaryPath& p = found.paths[0];

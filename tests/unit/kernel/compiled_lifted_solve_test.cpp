@@ -49,18 +49,11 @@ TEST_CASE("chains, trees and combs: unknowns and tangents as by the loops, M x =
 
 TEST_CASE("factors by code: a singular M is told so, with its coordinate, and what follows is solved again") {
   Rods rods(30, chain);
-  const Expr idle = rods.context.symbol("idle", Role::Coordinate);
-  rods.source.coordinates.push_back(idle);
-  rods.source.residual.push_back(idle * rods.context.symbol("idle", Role::Coordinate, 2) + rods.context.number(1));  // no inertia at idle = 0
+  add_idle_coordinate(rods);
   KernelWorkspace work(build_kernel(rods.source), 3);
   work.set_parameters(one);
   work.compile({.cache = false, .long_run = true});
-  Point p = random_point(31, 2);
-  CHECK(work.evaluate(0, p.q, p.v) == KernelStatus::Ok);
-  CHECK(work.acceleration(30) == doctest::Approx(-1 / p.q[30]).epsilon(1e-13));
-  p.q[30] = 0;
-  REQUIRE(work.evaluate(0, p.q, p.v) == KernelStatus::SingularMass);
-  CHECK(work.singular_coordinate() == 30);
+  Point p = check_idle_coordinate(work);
   p.q[30] = std::numeric_limits<double>::quiet_NaN();
   CHECK(work.evaluate(0, p.q, p.v) != KernelStatus::Ok);
   for (const double value : {1e-3, 0.5, 0.7, 0.9}) {

@@ -80,19 +80,10 @@ TEST_CASE("accelerations of large systems satisfy Lagrange's equations, whatever
 
 TEST_CASE("a large system whose M is singular is told so, with its coordinate") {
   Rods rods(30, chain);
-  const Expr idle = rods.context.symbol("idle", Role::Coordinate);
-  rods.source.coordinates.push_back(idle);
-  // No inertia at idle = 0.
-  const Expr acceleration = rods.context.symbol("idle", Role::Coordinate, 2);
-  rods.source.residual.push_back(idle * acceleration + rods.context.number(1));
+  add_idle_coordinate(rods);
   KernelWorkspace work(build_kernel(rods.source), 3);
   work.set_parameters(one);
-  Point p = random_point(31, 2);
-  CHECK(work.evaluate(0, p.q, p.v) == KernelStatus::Ok);
-  CHECK(work.acceleration(30) == doctest::Approx(-1 / p.q[30]).epsilon(1e-13));
-  p.q[30] = 0;
-  REQUIRE(work.evaluate(0, p.q, p.v) == KernelStatus::SingularMass);
-  CHECK(work.singular_coordinate() == 30);
+  Point p = check_idle_coordinate(work);
   p.q[30] = 1e-3;
   CHECK(work.evaluate(0, p.q, p.v) == KernelStatus::Ok);
   CHECK(work.acceleration(30) == doctest::Approx(-1e3).epsilon(1e-13));

@@ -88,3 +88,22 @@ struct Lifted {
   interpreter::Memory memory;
   interpreter::LiftedSolve solve;
 };
+
+/// One more coordinate, without inertia at 0: idle idle'' + 1 = 0.
+inline void add_idle_coordinate(Rods& rods) {
+  const Expr idle = rods.context.symbol("idle", Role::Coordinate);
+  rods.source.coordinates.push_back(idle);
+  const Expr acceleration = rods.context.symbol("idle", Role::Coordinate, 2);
+  rods.source.residual.push_back(idle * acceleration + rods.context.number(1));
+}
+
+/// 30 rods and the idle coordinate: solved, then singular at idle = 0 and told so. The point at which it is.
+inline Point check_idle_coordinate(KernelWorkspace& work) {
+  Point p = random_point(31, 2);
+  CHECK(work.evaluate(0, p.q, p.v) == KernelStatus::Ok);
+  CHECK(work.acceleration(30) == doctest::Approx(-1 / p.q[30]).epsilon(1e-13));
+  p.q[30] = 0;
+  REQUIRE(work.evaluate(0, p.q, p.v) == KernelStatus::SingularMass);
+  CHECK(work.singular_coordinate() == 30);
+  return p;
+}
