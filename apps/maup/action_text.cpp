@@ -26,8 +26,16 @@ std::string with_unit(const std::string& number, const std::string& unit) { retu
 
 std::string moment(double t, const MechanicalSystem& system) { return system.moment(fmt::format("{:.12g}", t)); }
 
+/// One digit, rounded up: an error is not made smaller by printing it.
+std::string error_text(double error) {
+  const std::string nearest = fmt::format("{:.0e}", error);
+  if (!(std::stod(nearest) < error)) return fmt::format("{:.1g}", error);
+  const double digit = std::stod(nearest.substr(0, 1)), power = std::stod("1" + nearest.substr(1));
+  return fmt::format("{:.1g}", (digit + 1) * power);
+}
+
 std::string value_of_action(double value, double error, const MechanicalSystem& system) {
-  return with_unit(fmt::format("{:.16g} ± {:.1g}", value, error), action_unit(system));
+  return with_unit(fmt::format("{:.16g} ± {}", value, error_text(error)), action_unit(system));
 }
 
 std::string kind_text(const SecondVariation& s) {

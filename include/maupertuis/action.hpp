@@ -83,7 +83,7 @@ struct MotionCheck {
 struct StationaryPath {
   ActionPath path;
   double action = 0;
-  double action_error = 0;            // the change of S when every element is halved
+  double action_error = 0;            // the change of S when every element is halved, and a bound on rounding
   double path_error = 0;              // the change of q then, relative to its size
   double residual = 0;                // the last correction of Newton's method, relative to the size
   std::vector<double> multipliers;    // λ of each integral constraint: the equations are those of L + λ G

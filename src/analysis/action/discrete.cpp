@@ -129,19 +129,22 @@ struct Assembler {
   int order;
   Assembly out;
   Density density;
+  ExactSum action{};
 
   void element(Index e) {
     const Rule& rule = *trial.mesh.rule;
     const Matrix nodes = trial.element(e);
+    const Vector anchor = nodes.col(trial.mesh.rule_of(e).anchor);
+    const Matrix apart = nodes.colwise() - anchor;  // so that a path far from 0 has slopes as exact as one near it
     const Index n = nodes.rows(), count = order == 2 ? rule.points.size() : 0;
     BlockSum hessian(n, rule.degree + 1, 4 * count), kinetic(n, rule.degree + 1, count);
     for (Index g = 0; g < rule.points.size(); ++g) {
       const auto [t, w, phi, dphi] = place_of(trial.mesh, e, g);
-      const Vector q = nodes * phi, v = nodes * dphi;
+      const Vector q = anchor + apart * phi, v = apart * dphi;
       functional.evaluate(t, q.data(), v.data(), trial.multipliers, order, density);
       out.finite = out.finite && density.finite;
       if (!out.finite) return;
-      out.action += w * density.lagrangian;
+      action.add(w * density.lagrangian);
       out.action_size += std::abs(w * density.lagrangian);
       out.integrals += w * density.integrals;
       if (order > 0) add_gradient(e, phi, dphi, w);
@@ -183,7 +186,27 @@ Assembly assemble(Functional& functional, const Trial& trial, int order) {
   a.out.gradient = Vector::Zero(order > 0 ? unknowns : 0);
   a.out.integral_gradients = Matrix::Zero(order > 0 ? unknowns : 0, k);
   for (Index e = 0; e < trial.mesh.elements() && a.out.finite; ++e) a.element(e);
+  a.out.action = a.action.value();
   return std::move(a.out);
+}
+
+double rounding_of_action(Functional& functional, const Trial& trial) {
+  const double latest = std::abs(trial.mesh.start) + std::abs(trial.mesh.whole);
+  double sum = 0;
+  for (Index e = 0; e < trial.mesh.elements(); ++e) {
+    const Matrix nodes = trial.element(e);
+    const Vector anchor = nodes.col(trial.mesh.rule_of(e).anchor);
+    const Matrix apart = nodes.colwise() - anchor;
+    for (Index g = 0; g < trial.mesh.rule->points.size(); ++g) {
+      const auto [t, w, phi, dphi] = place_of(trial.mesh, e, g);
+      const Vector q = anchor + apart * phi, v = apart * dphi;
+      const Vector q_terms = anchor.cwiseAbs() + apart.cwiseAbs() * phi.cwiseAbs(),
+                   v_terms = apart.cwiseAbs() * dphi.cwiseAbs();
+      const Sensitivity by = functional.sensitivity(t, q.data(), v.data(), trial.multipliers);
+      sum += std::abs(w) * (by.terms + by.by_q.dot(q_terms) + by.by_v.dot(v_terms) + by.by_time * latest);
+    }
+  }
+  return rounding_unit * sum;
 }
 
 }  // namespace maupertuis::action

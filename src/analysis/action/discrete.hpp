@@ -75,4 +75,9 @@ struct Assembly {
 /// order as of Functional::evaluate.
 Assembly assemble(Functional& functional, const Trial& trial, int order);
 
+/// A bound on the rounding in `action` of a stationary trial. The nodes' own rounding counts to second order, as S is
+/// stationary in them; what is left enters at each Gauss point anew: the values q and slopes q' formed there from the
+/// nodes, each to one rounding of the sum of its terms' sizes, the terms of L, the time, the weight.
+double rounding_of_action(Functional& functional, const Trial& trial);
+
 }  // namespace maupertuis::action

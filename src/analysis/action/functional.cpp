@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 namespace maupertuis::action {
 namespace {
@@ -32,6 +33,20 @@ Expr auxiliary(Context& context, const char* name, Index i) {
 }
 
 }  // namespace
+
+Expr size_of_terms(Expr e) {
+  std::unordered_map<NodeId, Expr> sizes;
+  for (const Expr& node : topological_order({&e, 1})) {
+    ExprVector parts;
+    for (std::size_t i = 0; i < node.size(); ++i) parts.push_back(sizes.at(node[i].id()));
+    const bool power = node.is(Kind::Power) && node[1].is_number() && node[1].number().sign() > 0;
+    sizes.emplace(node.id(), node.is(Kind::Sum)       ? e.context().sum(parts)
+                             : node.is(Kind::Product) ? e.context().product(parts)
+                             : power                  ? pow(parts[0], node[1].number())
+                                                      : apply(Kind::Abs, node));
+  }
+  return sizes.at(e.id());
+}
 
 Functional::Functional(const EquationsOfMotion& equations)
     : n_(static_cast<Index>(equations.system->coordinates.size())),
@@ -76,6 +91,7 @@ void Functional::build_density(const EquationsOfMotion& equations) {
   for (const Parameter& p : system.parameters) source.parameters.push_back(p.symbol);
   source.outputs = functions;
   prepare(density_[0], source);
+  build_sizes(source, functions, context.time());
   for (const Expr& slope : gradient(weighted, x)) source.outputs.push_back(slope);
   for (Index i = 0; i < k_; ++i)
     for (const Expr& slope : gradient(functions[static_cast<std::size_t>(i + 1)], x)) source.outputs.push_back(slope);
@@ -84,6 +100,14 @@ void Functional::build_density(const EquationsOfMotion& equations) {
   prepare(density_[2], source);
   in_.assign(source.inputs.size(), 0.0);
   explicit_time_ = density_[1].kernel.uses(static_cast<std::size_t>(2 * n_));
+}
+
+void Functional::build_sizes(const FunctionSource& density, const ExprVector& functions, Expr time) {
+  FunctionSource source = density;
+  source.outputs.clear();
+  for (const Expr& f : functions) source.outputs.push_back(size_of_terms(f));
+  for (const Expr& f : functions) source.outputs.push_back(differentiate(f, time));
+  prepare(sizes_, source);
 }
 
 void Functional::build_constraints(const EquationsOfMotion& equations) {
@@ -139,6 +163,20 @@ void Functional::evaluate(double t, const double* q, const double* v, const Vect
   if (order == 1) return;
   out.hessian = Matrix::Zero(2 * n_, 2 * n_);
   for (const auto& [a, b] : entries_) out.hessian(a, b) = out.hessian(b, a) = *next++;
+}
+
+Sensitivity Functional::sensitivity(double t, const double* q, const double* v, const Vector& multipliers) {
+  evaluate(t, q, v, Vector::Zero(k_), 1, density_here_);
+  sizes_.work->evaluate(in_, sizes_.out);
+  const Vector by =
+      density_here_.gradient.cwiseAbs() + density_here_.integral_gradients.cwiseAbs() * multipliers.cwiseAbs();
+  Sensitivity out{0, by.head(n_), by.tail(n_), 0};
+  for (Index i = 0; i <= k_; ++i) {
+    const double weight = i == 0 ? 1 : std::abs(multipliers[i - 1]);
+    out.terms += weight * sizes_.out[static_cast<std::size_t>(i)];
+    out.by_time += weight * std::abs(sizes_.out[static_cast<std::size_t>(k_ + 1 + i)]);
+  }
+  return out;
 }
 
 void Functional::constraints_at(double t, const Vector& q, Vector& values, Matrix& rows) {

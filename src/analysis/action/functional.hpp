@@ -2,6 +2,7 @@
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/function_kernel.hpp>
 
+#include <cmath>
 #include <eigen3/Eigen/Core>
 #include <optional>
 #include <vector>
@@ -22,6 +23,32 @@ struct Density {
   bool finite = true;
 };
 
+/// By how much rounding in its parts can change L + Σ |λ_k| |G_k|, in units of the rounding of one operation.
+struct Sensitivity {
+  double terms = 0;   // Σ |terms|
+  Vector by_q, by_v;  // [n] derivatives, absolute values
+  double by_time = 0;
+};
+
+/// The sum of the absolute values of the terms, where products of sums are multiplied out: what a sum is rounded by.
+Expr size_of_terms(Expr e);
+
+constexpr double rounding_unit = 1.1102230246251565e-16;  // of one operation
+
+/// A sum with the rounding of one addition (Neumaier).
+class ExactSum {
+ public:
+  void add(double x) {
+    const double next = sum_ + x;
+    rest_ += std::abs(sum_) >= std::abs(x) ? (sum_ - next) + x : (x - next) + sum_;
+    sum_ = next;
+  }
+  double value() const { return sum_ + rest_; }
+
+ private:
+  double sum_ = 0, rest_ = 0;
+};
+
 /// The functions of an action problem in numbers, with exact derivatives.
 class Functional {
  public:
@@ -36,6 +63,9 @@ class Functional {
   /// order 0: values; 1: and gradients; 2: and the Hessian.
   void evaluate(double t, const double* q, const double* v, const Vector& multipliers, int order, Density& out);
 
+  /// What rounding at a point does to the density.
+  Sensitivity sensitivity(double t, const double* q, const double* v, const Vector& multipliers);
+
   /// φ [r], ∂φ/∂q [r × n].
   void constraints_at(double t, const Vector& q, Vector& values, Matrix& rows);
   /// Σ μ_i ∂²φ_i/∂q∂q [n × n].
@@ -48,6 +78,7 @@ class Functional {
     std::vector<double> out;
   };
   void build_density(const EquationsOfMotion& equations);
+  void build_sizes(const FunctionSource& density, const ExprVector& functions, Expr time);
   void build_constraints(const EquationsOfMotion& equations);
   void prepare(Order& order, const FunctionSource& source);
 
@@ -55,8 +86,9 @@ class Functional {
   bool explicit_time_ = false;
   Vector wanted_;
   std::vector<double> parameters_, in_, constraint_in_;
-  Order density_[3], positions_, curvature_;
+  Order density_[3], sizes_, positions_, curvature_;
   std::vector<std::pair<Index, Index>> entries_;                 // of the Hessian, upper triangle
+  Density density_here_;
   std::vector<std::pair<Index, Index>> position_entries_, curvature_entries_;
 };
 

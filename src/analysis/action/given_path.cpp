@@ -22,7 +22,7 @@ constexpr double piece_error = 1e-15;  // of Σ |L| over the whole path
 constexpr int looks = 401;             // places at which the equations are looked at
 constexpr double stationary_residual = 1e-9;
 
-/// q, q', q'' of the path as functions of t.
+/// q, q', q'' of the path as functions of t, and the sizes of the terms of q and q'.
 class Formulas {
  public:
   Formulas(const MechanicalSystem& system, std::span<const Expr> path) : n_(static_cast<Index>(path.size())) {
@@ -34,6 +34,7 @@ class Formulas {
       source.outputs.insert(source.outputs.end(), values.begin(), values.end());
       for (Expr& e : values) e = total_time_derivative(e);
     }
+    for (std::size_t i = 0; i < 2 * path.size(); ++i) source.outputs.push_back(size_of_terms(source.outputs[i]));
     kernel_ = build_function(source);
     work_.emplace(kernel_);
     work_->set_parameters(parameter_values(system));
@@ -45,6 +46,8 @@ class Formulas {
   const double* q() const { return out_.data(); }
   const double* v() const { return out_.data() + n_; }
   const double* a() const { return out_.data() + 2 * n_; }
+  const double* q_terms() const { return out_.data() + 3 * n_; }
+  const double* v_terms() const { return out_.data() + 4 * n_; }
 
  private:
   Index n_;
@@ -66,16 +69,36 @@ class Integrator {
   Sums over(double from, double to) {
     const Rule& rule = *problem_.rule;
     Sums out{true, Vector::Zero(1 + none_.size()), 0};
+    ExactSum action;
     for (Index g = 0; g < rule.points.size() && out.finite; ++g) {
       const double t = from + (to - from) * (1 + rule.points[g]) / 2, w = (to - from) / 2 * rule.weights[g];
       formulas_.at(t);
       problem_.functional.evaluate(t, formulas_.q(), formulas_.v(), none_, 0, density_);
       out.finite = density_.finite;
-      out.values[0] += w * density_.lagrangian;
+      action.add(w * density_.lagrangian);
       out.values.tail(none_.size()) += w * density_.integrals;
       out.size += std::abs(w * density_.lagrangian);
     }
+    out.values[0] = action.value();
     return out;
+  }
+
+  /// A bound on the rounding in ∫ L over a piece: that of t, of q and q' from their formulas, of the terms of L, of the
+  /// weights.
+  double rounding(double from, double to) {
+    const Rule& rule = *problem_.rule;
+    double sum = 0;
+    for (Index g = 0; g < rule.points.size(); ++g) {
+      const double t = from + (to - from) * (1 + rule.points[g]) / 2, latest = std::abs(from) + std::abs(to);
+      formulas_.at(t);
+      const Sensitivity by = problem_.functional.sensitivity(t, formulas_.q(), formulas_.v(), none_);
+      double here = by.terms + by.by_time * latest;
+      for (Index i = 0; i < problem_.n(); ++i)
+        here += by.by_q[i] * (formulas_.q_terms()[i] + std::abs(formulas_.v()[i]) * latest) +
+                by.by_v[i] * (formulas_.v_terms()[i] + std::abs(formulas_.a()[i]) * latest);
+      sum += (to - from) / 2 * rule.weights[g] * here;
+    }
+    return rounding_unit * sum;
   }
 
   /// Adds to `total`; what the halves of the last pieces disagree by adds to `error`.
@@ -85,8 +108,11 @@ class Integrator {
     if (!left.finite || !right.finite) return false;
     const double difference = std::abs(left.values[0] + right.values[0] - whole.values[0]);
     if (depth == 0 || difference <= piece_error * size || middle == from || middle == to) {
+      action_.add(left.values[0]);
+      action_.add(right.values[0]);
       total += left.values + right.values;
-      error += difference;
+      total[0] = action_.value();
+      error += difference + rounding(from, middle) + rounding(middle, to);
       return true;
     }
     return add(from, middle, left, size, depth - 1, total, error) && add(middle, to, right, size, depth - 1, total, error);
@@ -97,6 +123,7 @@ class Integrator {
   Formulas& formulas_;
   Vector none_;
   Density density_;
+  ExactSum action_;
 };
 
 /// d/dt ∂L/∂q' − ∂L/∂q in numbers, of L and of each G, with the sizes of the terms.
@@ -281,7 +308,6 @@ std::optional<GivenPath> action_of_path(const Model& model, const EquationsOfMot
     return std::nullopt;
   }
   out.action = total[0];
-  out.action_error += 4e-16 * whole.size;
   out.integrals.assign(total.data() + 1, total.data() + total.size());
   look_at_equations(problem, formulas, out);
   const Trial trial = trial_of(problem, formulas, start, end);

@@ -37,7 +37,7 @@ class Refiner {
     if (!solve()) return std::nullopt;
     const Assembly fine = assemble(functional_, trial_, 0);
     out.action = fine.action;
-    out.action_error = std::abs(fine.action - coarse) + 4e-16 * fine.action_size;
+    out.action_error = std::abs(fine.action - coarse) + rounding_of_action(functional_, trial_);
     out.path_error = ((trial_.q - guess.q).cwiseQuotient(even_scale(trial_, least_))).lpNorm<Eigen::Infinity>();
     out.correction = correction_;
     if (!(out.action_error <= worst_error * fine.action_size)) return std::nullopt;

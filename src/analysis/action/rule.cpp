@@ -5,35 +5,40 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 namespace maupertuis::action {
 namespace {
 
+/// What every action is summed with is computed with digits to spare, where the machine has them: then one rounding is
+/// left.
+using Wide = long double;
+
 /// P_k(x) and P_k'(x).
-std::pair<double, double> legendre_polynomial(Index k, double x) {
-  double before = 1, here = x, slope_before = 0, slope = 1;
+std::pair<Wide, Wide> legendre_polynomial(Index k, Wide x) {
+  Wide before = 1, here = x, slope_before = 0, slope = 1;
   if (k == 0) return {1, 0};
   for (Index j = 2; j <= k; ++j) {
-    const double next = ((2.0 * j - 1) * x * here - (j - 1.0) * before) / j;
-    const double next_slope = slope_before + (2.0 * j - 1) * here;
+    const Wide next = ((2 * j - 1) * x * here - (j - 1) * before) / j;
+    const Wide next_slope = slope_before + (2 * j - 1) * here;
     before = std::exchange(here, next);
     slope_before = std::exchange(slope, next_slope);
   }
   return {here, slope};
 }
 
-void gauss_points(Index count, Vector& points, Vector& weights) {
-  points.resize(count);
+void gauss_points(Index count, std::vector<Wide>& points, Vector& weights) {
+  points.resize(static_cast<std::size_t>(count));
   weights.resize(count);
   for (Index i = 0; i < count; ++i) {
-    double x = -std::cos(std::numbers::pi * (i + 0.75) / (count + 0.5));
+    Wide x = -std::cos(std::numbers::pi * (i + 0.75) / (count + 0.5));
     for (int turn = 0; turn < 20; ++turn) {
       const auto [p, slope] = legendre_polynomial(count, x);
       x -= p / slope;
     }
-    const double slope = legendre_polynomial(count, x).second;
-    points[i] = x;
-    weights[i] = 2 / ((1 - x * x) * slope * slope);
+    const Wide slope = legendre_polynomial(count, x).second;
+    points[static_cast<std::size_t>(i)] = x;
+    weights[i] = static_cast<double>(2 / ((1 - x * x) * slope * slope));
   }
 }
 
@@ -41,24 +46,26 @@ void gauss_points(Index count, Vector& points, Vector& weights) {
 Vector lobatto_nodes(Index p) {
   Vector nodes(p + 1);
   for (Index i = 0; i <= p; ++i) {
-    double x = -std::cos(std::numbers::pi * i / p);
+    Wide x = -std::cos(std::numbers::pi * i / p);
     for (int turn = 0; turn < 20 && i > 0 && i < p; ++turn) {
       const auto [value, slope] = legendre_polynomial(p, x);
-      x -= slope * (1 - x * x) / (2 * x * slope - static_cast<double>(p * (p + 1)) * value);
+      x -= slope * (1 - x * x) / (2 * x * slope - static_cast<Wide>(p * (p + 1)) * value);
     }
-    nodes[i] = x;
+    nodes[i] = static_cast<double>(x);
   }
   return nodes;
 }
 
 }  // namespace
 
-Rule::Rule(Index p, Flat flat) : degree(p), nodes(lobatto_nodes(p)), flat_(flat) {
+Rule::Rule(Index p, Flat flat) : degree(p), anchor(flat == Flat::AtEnd ? p : 0), nodes(lobatto_nodes(p)), flat_(flat) {
   if (flat == Flat::Nowhere) {
     flat_begin = std::make_shared<const Rule>(p, Flat::AtBegin);
     flat_end = std::make_shared<const Rule>(p, Flat::AtEnd);
   }
-  gauss_points(p + 2, points, weights);
+  std::vector<Wide> places;
+  gauss_points(p + 2, places, weights);
+  points.resize(p + 2);
   barycentric_ = Vector::Ones(p + 1);
   for (Index i = 0; i <= p; ++i)
     for (Index j = 0; j <= p; ++j)
@@ -67,15 +74,44 @@ Rule::Rule(Index p, Flat flat) : degree(p), nodes(lobatto_nodes(p)), flat_(flat)
   slope.resize(points.size(), p + 1);
   node_slope.resize(p + 1, p + 1);
   for (Index g = 0; g < points.size(); ++g) {
-    value.row(g) = value_at(points[g]).transpose();
-    slope.row(g) = slope_at(points[g]).transpose();
+    const Wide x = places[static_cast<std::size_t>(g)];
+    points[g] = static_cast<double>(x);
+    value.row(g) = (flat == Flat::Nowhere ? wide_value(x) : value_at(points[g])).transpose();
+    slope.row(g) = (flat == Flat::Nowhere ? wide_slope(x) : slope_at(points[g])).transpose();
   }
   Matrix basis(p + 1, p + 1);
   for (Index i = 0; i <= p; ++i) {
     node_slope.row(i) = slope_at(nodes[i]).transpose();
-    for (Index k = 0; k <= p; ++k) basis(i, k) = legendre_polynomial(k, nodes[i]).first;
+    for (Index k = 0; k <= p; ++k) basis(i, k) = static_cast<double>(legendre_polynomial(k, nodes[i]).first);
   }
   legendre = basis.partialPivLu().inverse();
+}
+
+/// Π over j ≠ i (ξ − ξ_j)/(ξ_i − ξ_j) at a point that is no node.
+Vector Rule::wide_value(long double xi) const {
+  Vector out(degree + 1);
+  for (Index i = 0; i <= degree; ++i) {
+    Wide product = 1;
+    for (Index j = 0; j <= degree; ++j)
+      if (j != i) product *= (xi - nodes[j]) / (static_cast<Wide>(nodes[i]) - nodes[j]);
+    out[i] = static_cast<double>(product);
+  }
+  return out;
+}
+
+Vector Rule::wide_slope(long double xi) const {
+  Vector out(degree + 1);
+  for (Index i = 0; i <= degree; ++i) {
+    Wide product = 1, sum = 0;
+    for (Index j = 0; j <= degree; ++j) {
+      if (j == i) continue;
+      const Wide factor = 1 / (static_cast<Wide>(nodes[i]) - nodes[j]);
+      sum = (sum * (xi - nodes[j]) + product) * factor;
+      product *= (xi - nodes[j]) * factor;
+    }
+    out[i] = static_cast<double>(sum);
+  }
+  return out;
 }
 
 /// q(ξ) = q₀ + Σ (q_j − q₀) ((1 + ξ)/(1 + ξ_j))² ℓ_j(ξ) over the nodes j ≥ 1 and their Lagrange polynomials ℓ_j; at the

@@ -15,6 +15,7 @@ struct Rule {
   explicit Rule(Index degree, Flat flat = Flat::Nowhere);
 
   Index degree;
+  Index anchor = 0;  // the node at the end where L may be infinite: values near there are told as differences from it
   Vector nodes;           // [p + 1]
   Vector points, weights; // [p + 2] Gauss-Legendre
   Matrix value, slope;    // [p + 2 × p + 1] nodes → values, derivatives at the points
@@ -34,6 +35,8 @@ struct Rule {
   };
   Basis flat_basis(double xi) const;
   Basis flat_begin_of(double xi) const;
+  Vector wide_value(long double xi) const;
+  Vector wide_slope(long double xi) const;
   Flat flat_;
   Vector barycentric_;
 };
