@@ -125,6 +125,21 @@ TEST_CASE("ends that no path reaches, ends of the wrong kind, no ends") {
   CHECK(!none.err.empty());
 }
 
+TEST_CASE("rates beyond the range of numbers are named as what they are") {
+  for (const std::string duration : {"1e-300 s", "1e-160 s", "1e-153 s"}) {
+    CAPTURE(duration);
+    const Outcome told = maup({"action", gallery("oscillator_path"), "--ends", "(0 m) at 0 s to (1 m) at " + duration});
+    CHECK(told.code == 3);
+    CHECK(contains(told.err, "E1209"));
+    CHECK(contains(told.err, "beyond the range of numbers"));
+    CHECK(!contains(told.err, "L is infinite"));
+    CHECK(told.out.empty());
+  }
+  const Outcome fast = maup({"action", gallery("oscillator_path"), "--ends", "(0 m) at 0 s to (1 m) at 1e-100 s"});
+  CHECK_MESSAGE(fast.code == 0, fast.err);
+  CHECK(contains(fast.out, "x' = 1e+100"));
+}
+
 TEST_CASE("models without a principle of stationary action are refused with the reason") {
   const Outcome damped = maup({"action", gallery("cart_pendulum")});
   CHECK(damped.code != 0);

@@ -180,7 +180,48 @@ class Search {
   double reached_ = 1;  // of the duration, by continuation
 };
 
-void refuse_no_path(const Search& search, const Problem& problem, const ActionEnds& ends, Diagnostics& diagnostics) {
+constexpr double headroom = 1e4;  // slopes of polynomials at the ends of short elements, over that of a line
+
+/// The ends ask for a speed at which L is no double any more; not where L itself is infinite or has no value.
+std::optional<double> speed_beyond_numbers(Problem& problem, const ActionEnds& ends) {
+  Vector q(problem.n()), v(problem.n());
+  for (Index i = 0; i < problem.n(); ++i) {
+    const auto &a = ends.from[static_cast<std::size_t>(i)], &b = ends.to[static_cast<std::size_t>(i)];
+    q[i] = a && b ? *a + (*b - *a) / 2 : a.value_or(b.value_or(0));
+    v[i] = a && b ? (*b - *a) / (ends.end - ends.start) : 0;
+  }
+  const Vector none = Vector::Zero(problem.functional.integrals()), fast = headroom * v,
+               rest = Vector::Zero(problem.n());
+  const double middle = ends.start + (ends.end - ends.start) / 2;
+  Density density;
+  problem.functional.evaluate(middle, q.data(), rest.data(), none, 0, density);
+  if (!density.finite) return std::nullopt;
+  problem.functional.evaluate(middle, q.data(), fast.data(), none, 0, density);
+  const bool beyond = std::isinf(density.lagrangian) || !std::isfinite(fast.squaredNorm());
+  return beyond ? std::optional(v.lpNorm<Eigen::Infinity>()) : std::nullopt;
+}
+
+void refuse_beyond_numbers(double speed, const Problem& problem, const ActionEnds& ends, Diagnostics& diagnostics) {
+  const MechanicalSystem& system = problem.model.system;
+  const auto span = problem.model.experiment.path ? std::optional(problem.model.experiment.path->span) : std::nullopt;
+  const Coordinate& first = system.coordinates.front();
+  const std::string unit = system.dimensionless ? "" : to_string(first.dimension / system.independent_dimension);
+  const std::string needed =
+      std::isfinite(speed) ? "about " + with_unit(speed, system.coordinates.size() == 1 && unit != "1" ? unit : "")
+                           : "more than 1e308";
+  diagnostics.error("E1209", span,
+                    fmt::format("from {} to {} the ends ask for rates beyond the range of numbers",
+                                place(ends.start, system), place(ends.end, system)),
+                    fmt::format("A straight line between them has rates of {}; products of such rates, of which L is "
+                                "made, exceed the largest number, 1.8e308.",
+                                needed),
+                    "Give ends that are further apart in " + system.independent +
+                        ", or nearer in the coordinates, or choose units in which the numbers are moderate.");
+}
+
+void refuse_no_path(const Search& search, Problem& problem, const ActionEnds& ends, Diagnostics& diagnostics) {
+  if (const auto speed = speed_beyond_numbers(problem, ends))
+    return refuse_beyond_numbers(*speed, problem, ends, diagnostics);
   const auto span = problem.model.experiment.path ? std::optional(problem.model.experiment.path->span) : std::nullopt;
   std::string reason = fmt::format("Newton's method on the stationarity of S began from {} lines between the ends and found no path.", search.starts_);
   if (search.reached_ > 0 && search.reached_ < 1)
@@ -235,7 +276,7 @@ std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOf
     }
     for (const auto& [refined, name] : search.found_) {
       out.paths.push_back(describe(problem, refined, aim, search.singular(), options, diagnostics));
-      out.paths.back().found_from = name;
+        out.paths.back().found_from = name;
       out.paths.back().turns = turns;
     }
   }
