@@ -1,7 +1,10 @@
 #include "outcome.hpp"
 
+#include "interrupt.hpp"
+
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <maupertuis/trajectory.hpp>
 
 namespace maupertuis::app {
 
@@ -27,6 +30,53 @@ ExitCode finish(Console& console, Study& study, Json document) {
   }
   if (unreadable(study.diagnostics())) return ExitCode::Usage;
   return study.wrong() ? ExitCode::ModelWrong : ExitCode::Fine;
+}
+
+ExitCode finish_with(Console& console, Study& study, const char* command, const Answer& answer) {
+  if (!console.json()) console.print(answer.text);
+  Json document = json_document(command);
+  document["system"] = study.model()->system.name;
+  document[answer.kind] = answer.json;
+  const bool written = !study.wrong();
+  finish(console, study, document);
+  return written ? ExitCode::Fine : ExitCode::RunFailed;
+}
+
+ExitCode finish_without(Console& console, Study& study, const char* command) {
+  const ExitCode code = finish(console, study, json_document(command));
+  if (interrupt_flag().load()) return ExitCode::Interrupted;
+  return code == ExitCode::ModelWrong ? ExitCode::RunFailed : code;
+}
+
+ExitCode finish_usage(Console& console, Study& study, const char* command) {
+  finish(console, study, json_document(command));
+  return ExitCode::Usage;
+}
+
+namespace {
+
+bool ends_with(const std::string& text, std::string_view end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+}  // namespace
+
+void check_picture_name(const std::string& path, Diagnostics& diagnostics) {
+  if (!path.empty() && !ends_with(path, ".svg"))
+    diagnostics.error("E0810", {}, fmt::format("{} names no format of a picture.", path), {}, "Take .svg.");
+}
+
+void check_table_name(const std::string& path, Diagnostics& diagnostics) {
+  const bool known = ends_with(path, ".csv") || ends_with(path, ".npy") || ends_with(path, ".json");
+  if (!path.empty() && !known)
+    diagnostics.error("E0810", {}, fmt::format("{} names no format of a table.", path), {},
+                      "Take an ending .csv, .npy or .json.");
+}
+
+bool write_rows(const std::string& path, const Trajectory& rows, Diagnostics& diagnostics) {
+  const std::string failure = path.empty() ? std::string() : write_trajectory(rows, path);
+  if (!failure.empty()) cannot_write(failure, diagnostics);
+  return failure.empty();
 }
 
 void cannot_write(const std::string& failure, Diagnostics& diagnostics) {

@@ -4,14 +4,36 @@
 #include "json.hpp"
 #include "study.hpp"
 
+#include <maupertuis/trajectory.hpp>
+
 namespace maupertuis::app {
 
 /// Ends a command that prints one document: the diagnostics go to standard error, or into the document under --json.
 /// Returns Usage if the file could not be read, ModelWrong if there are other errors, else Fine.
 ExitCode finish(Console& console, Study& study, Json document);
 
+/// What a study found, to be printed or to stand in the document under its kind.
+struct Answer {
+  const char* kind = "";
+  std::string text;
+  Json json;
+};
+/// Ends a command that found something and has written its files: RunFailed where one could not be written.
+ExitCode finish_with(Console& console, Study& study, const char* command, const Answer& answer);
+/// Ends a command that found nothing, and the diagnostics say why: Interrupted after Ctrl-C, RunFailed where the model
+/// is read.
+ExitCode finish_without(Console& console, Study& study, const char* command);
+/// Ends a command whose options have no sense.
+ExitCode finish_usage(Console& console, Study& study, const char* command);
+
+/// E0810 where the name of a file that was asked for has no ending of a picture (.svg), of a table (.csv, .npy, .json).
+void check_picture_name(const std::string& path, Diagnostics& diagnostics);
+void check_table_name(const std::string& path, Diagnostics& diagnostics);
+
 /// Writes a file the user asked for; false and E0804 when that fails.
 bool write_result(const std::string& path, const std::string& content, Diagnostics& diagnostics);
+/// The same for rows, in the format of the ending; an empty path asks for nothing.
+bool write_rows(const std::string& path, const Trajectory& rows, Diagnostics& diagnostics);
 /// The diagnostic of it; `failure` is the sentence of the writer.
 void cannot_write(const std::string& failure, Diagnostics& diagnostics);
 

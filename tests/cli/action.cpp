@@ -151,6 +151,66 @@ TEST_CASE("models without a principle of stationary action are refused with the 
   CHECK(contains(rolling.err, "between velocities"));
 }
 
+TEST_CASE("numbers that make no sense, and options beside what they do not belong to") {
+  const auto refused = [](std::vector<std::string> options, const std::string& what) {
+    CAPTURE(what);
+    options.insert(options.begin(), {"action", "-"});
+    const Outcome told = maup(options, oscillator("2") + "start x = 1\nrun 1\n");
+    CHECK(told.code == 2);
+    CHECK(told.out.empty());
+    CHECK(contains(told.err, "E0809"));
+    CHECK_MESSAGE(contains(told.err, what), told.err);
+  };
+  refused({"--turns", "-1"}, "--turns -1 is no number of turns.");
+  refused({"--turns", "99999999999"}, "--turns 99999999999 is no number of turns.");
+  refused({"--paths", "0"}, "--paths 0 is no number of paths");
+  refused({"--paths", "-3"}, "--paths -3 is no number of paths");
+  refused({"--paths", "1000000"}, "Write a whole number from 1 to 1000.");
+  refused({"--motion", "--turns", "1"}, "--turns belongs to the search for paths between two ends.");
+  refused({"--periodic", "--paths", "2"}, "--paths belongs to the search for paths between two ends.");
+  refused({"--motion", "--ends", "0 at 0 to 1 at 1"}, "--ends belongs to paths between two ends");
+  refused({"--motion", "--period", "2"}, "--period belongs to --periodic.");
+  refused({"--from", "0"}, "--from belongs to --path.");
+  refused({"--motion", "--to", "1"}, "--to belongs to --path.");
+  refused({"--path", "x = t", "--from", "0"}, "--from needs --to beside it.");
+  refused({"--path", "x = t", "--to", "1"}, "--to needs --from beside it.");
+  refused({"--motion", "--periodic"}, "one thing at a time");
+  refused({"--plot", "a.svg", "--plot-paths", "a.svg"}, "both ask for a.svg");
+  const Outcome implied = maup({"action", "-", "--turns", "1"}, pendulum);  // no ends: the motion is looked at
+  CHECK(implied.code == 2);
+  CHECK(contains(implied.err, "--turns belongs to the search for paths between two ends, and there are none."));
+  CHECK(maup({"action", "-", "--turns", "0", "--paths", "1"}, oscillator("2")).code == 0);
+}
+
+TEST_CASE("W1201: an end so close to a conjugate point that the two counts part, and no index is given") {
+  const Outcome told = maup({"action", "-", "--ends", "0.4 at 0 to -0.4 at pi (1 + 1e-9)"}, oscillator("2"));
+  CHECK_MESSAGE(told.code == 0, told.err);
+  CHECK(contains(told.err, "W1201"));
+  CHECK(contains(told.err, "1 by inertia, 0 by Jacobi fields"));
+  CHECK(contains(told.out, "stationary, of unknown index"));
+  CHECK(json_of(maup({"action", "-", "--json", "--ends", "0.4 at 0 to -0.4 at pi (1 + 1e-9)"},
+                     oscillator("2")))["stationary"]["paths"][0]["index"]
+            .is_null());
+}
+
+TEST_CASE("E1206 to E1208: no value on the path, nothing to look at, a motion that ends") {
+  const std::string free = "system free\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - sqrt(x)\n";
+  const Outcome without_value = maup({"action", "-", "--path", "x = t - 2", "--from", "0", "--to", "1"}, free);
+  CHECK(without_value.code == 3);
+  CHECK(contains(without_value.err, "E1206"));
+  CHECK(without_value.out.empty());
+  const Outcome nothing = maup({"action", "-"}, free);
+  CHECK(nothing.code == 3);
+  CHECK(contains(nothing.err, "E1207"));
+  CHECK(nothing.out.empty());
+  const Outcome ends = maup(
+      {"action", "-"}, "system fall\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = -1/x\nstart x = 1\nrun 5\n");
+  CHECK(ends.code == 3);
+  CHECK(contains(ends.err, "E1208"));
+  CHECK(contains(ends.err, "t = 1.1107"));  // π/(2√2)
+  CHECK(ends.out.empty());
+}
+
 TEST_CASE("the paths as a file, in x") {
   const Folder folder;
   const Outcome told = maup({"action", gallery("great_circle"), "-o", folder.path("way.csv")});

@@ -10,6 +10,7 @@
 #include <maupertuis/action_pictures.hpp>
 
 #include <algorithm>
+#include <cstdint>
 
 namespace maupertuis::app {
 namespace {
@@ -19,22 +20,51 @@ struct ActionCommand {
   std::string ends, path;
   std::optional<std::string> from, to, period;  // as written
   bool periodic = false, motion = false;
-  std::size_t paths = 8, turns = 0;
+  std::optional<std::int64_t> paths, turns;
   std::string output, plot, plot_paths;
 };
 
 /// What was found, to be written and printed.
 struct ActionFindings {
-  const char* kind = "";
-  std::string text;
-  Json json;
+  Answer answer;
   Trajectory rows;
   std::vector<TestVariation> variations;
   std::vector<StationaryPath> paths;
 };
 
-bool ends_with(const std::string& text, std::string_view end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+void check_counts(const ActionCommand& o, Diagnostics& diagnostics) {
+  constexpr std::int64_t most_paths = 1000, most_turns = 100;
+  if (o.paths && (*o.paths < 1 || *o.paths > most_paths))
+    diagnostics.error("E0809", {}, fmt::format("--paths {} is no number of paths to look for.", *o.paths), {},
+                      fmt::format("Write a whole number from 1 to {}.", most_paths));
+  if (o.turns && (*o.turns < 0 || *o.turns > most_turns))
+    diagnostics.error("E0809", {}, fmt::format("--turns {} is no number of turns.", *o.turns),
+                      "Each angle is tried with up to so many whole turns more and less, each a search of its own.",
+                      fmt::format("Write a whole number from 0 to {}.", most_turns));
+}
+
+/// What an option belongs to, where that was not asked for.
+void check_belonging(const ActionCommand& o, Diagnostics& diagnostics) {
+  const auto belongs = [&](bool given, bool fits, const char* option, const char* to, const char* help) {
+    if (given && !fits) diagnostics.error("E0809", {}, fmt::format("{} belongs to {}.", option, to), {}, help);
+  };
+  const bool between_ends = o.path.empty() && !o.motion && !o.periodic;
+  const char* const search = "the search for paths between two ends";
+  belongs(o.paths.has_value(), between_ends, "--paths", search, "Leave it out: here there is one path.");
+  belongs(o.turns.has_value(), between_ends, "--turns", search, "Leave it out: here the path says where angles end.");
+  belongs(!o.ends.empty(), !o.motion && !o.periodic, "--ends", "paths between two ends, or along --path",
+          "Leave it out: a motion ends where it gets.");
+  belongs(o.period.has_value(), o.periodic, "--period", "--periodic", "Add --periodic, or leave --period out.");
+  for (const auto& [name, given] : {std::pair("--from", o.from.has_value()), std::pair("--to", o.to.has_value())})
+    belongs(given, !o.path.empty(), name, "--path",
+            "Give the ends of stationary paths with --ends \"(0) at 0 to (1) at 2\".");
+  if (!o.path.empty() && o.from.has_value() != o.to.has_value())
+    diagnostics.error("E0809", {},
+                      fmt::format("{} needs {} beside it.", o.from ? "--from" : "--to", o.from ? "--to" : "--from"), {},
+                      "Give both ends of --path, or neither: then they are those of the model's path.");
+  if (!o.plot.empty() && o.plot == o.plot_paths)
+    diagnostics.error("E0809", {}, fmt::format("--plot and --plot-paths both ask for {}.", o.plot), {},
+                      "Give two files.");
 }
 
 void check_usage(const ActionCommand& o, Diagnostics& diagnostics) {
@@ -44,18 +74,32 @@ void check_usage(const ActionCommand& o, Diagnostics& diagnostics) {
                         "Write a number with a unit of time, such as 3s; a bare number is in SI units of the independent variable.");
   if (o.periodic + o.motion + !o.path.empty() > 1)
     diagnostics.error("E0809", {}, "maup action looks at one thing at a time.", {}, "Give one of --path, --motion and --periodic.");
-  if ((o.from || o.to) && o.path.empty())
-    diagnostics.error("E0809", {}, "--from and --to belong to --path.", {}, "Give the ends of stationary paths with --ends \"(0) at 0 to (1) at 2\".");
-  if (o.paths == 0) diagnostics.error("E0809", {}, "--paths 0 looks for nothing.", {}, "Give a number of paths.");
-  for (const std::string* file : {&o.plot, &o.plot_paths})
-    if (!file->empty() && !ends_with(*file, ".svg"))
-      diagnostics.error("E0810", {}, fmt::format("{} names no format of a picture.", *file), {}, "Take .svg.");
-  const bool known = ends_with(o.output, ".csv") || ends_with(o.output, ".npy") || ends_with(o.output, ".json");
-  if (!o.output.empty() && !known)
-    diagnostics.error("E0810", {}, fmt::format("{} names no format of a table.", o.output), {}, "Take an ending .csv, .npy or .json.");
+  else
+    check_belonging(o, diagnostics);
+  check_counts(o, diagnostics);
+  check_picture_name(o.plot, diagnostics);
+  check_picture_name(o.plot_paths, diagnostics);
+  check_table_name(o.output, diagnostics);
 }
 
-ActionOptions options_of(const ActionCommand& o) { return {o.paths, o.turns, true, &interrupt_flag()}; }
+/// Without ends in the model or on the command line it is the motion that is looked at.
+void check_search(const ActionCommand& o, Study& study) {
+  if (study.model()->experiment.path) return;
+  for (const auto& [name, given] :
+       {std::pair("--paths", o.paths.has_value()), std::pair("--turns", o.turns.has_value())})
+    if (given)
+      study.diagnostics().error(
+          "E0809", {}, fmt::format("{} belongs to the search for paths between two ends, and there are none.", name),
+          {}, "Write `path from (…) at 0 to (…) at 1` into the model, or give --ends.");
+}
+
+ActionOptions options_of(const ActionCommand& o) {
+  ActionOptions out;
+  if (o.paths) out.paths = static_cast<std::size_t>(*o.paths);
+  if (o.turns) out.turns = static_cast<std::size_t>(*o.turns);
+  out.interrupt = &interrupt_flag();
+  return out;
+}
 
 // --------------------------------------------------------------------------------------------------------- a given path
 
@@ -124,7 +168,10 @@ std::optional<ActionFindings> find_given(const ActionCommand& o, Study& study) {
   const double start = e.from ? number(e.from) : ends->start, end = e.to ? number(e.to) : ends->end;
   auto found = action_of_path(model, *study.equations(), e.values, start, end, ends, options_of(o), study.diagnostics());
   if (!found) return std::nullopt;
-  ActionFindings out{"given", action_text(*found, model.system), action_json(*found, model.system), path_rows({&found->path}, model.system), found->variations, {}};
+  ActionFindings out{{"given", action_text(*found, model.system), action_json(*found, model.system)},
+                     path_rows({&found->path}, model.system),
+                     found->variations,
+                     {}};
   out.paths.emplace_back();
   out.paths.back().path = found->path;
   return out;
@@ -136,7 +183,10 @@ std::optional<ActionFindings> find_motion(const ActionCommand& o, Study& study) 
   const auto found = action_of_motion(*study.model(), *study.equations(), options_of(o), study.diagnostics());
   if (!found) return std::nullopt;
   const MechanicalSystem& system = study.model()->system;
-  return ActionFindings{"motion", action_text(*found, system), action_json(*found, system), found->rows, found->path.second.variations, {found->path}};
+  return ActionFindings{{"motion", action_text(*found, system), action_json(*found, system)},
+                        found->rows,
+                        found->path.second.variations,
+                        {found->path}};
 }
 
 std::optional<ActionFindings> find_orbit(const ActionCommand& o, Study& study) {
@@ -144,7 +194,10 @@ std::optional<ActionFindings> find_orbit(const ActionCommand& o, Study& study) {
   const auto found = action_of_orbit(*study.model(), *study.equations(), period, options_of(o), study.diagnostics());
   if (!found) return std::nullopt;
   const MechanicalSystem& system = study.model()->system;
-  return ActionFindings{"periodic", action_text(*found, system), action_json(*found, system), path_rows({&found->path.path}, system), found->path.second.variations, {found->path}};
+  return ActionFindings{{"periodic", action_text(*found, system), action_json(*found, system)},
+                        path_rows({&found->path.path}, system),
+                        found->path.second.variations,
+                        {found->path}};
 }
 
 std::optional<ActionFindings> find_paths(const ActionCommand& o, Study& study) {
@@ -153,14 +206,15 @@ std::optional<ActionFindings> find_paths(const ActionCommand& o, Study& study) {
   if (!found) return std::nullopt;
   std::vector<const ActionPath*> paths;
   for (const StationaryPath& p : found->paths) paths.push_back(&p.path);
-  return ActionFindings{"stationary", action_text(*found, model.system), action_json(*found, model.system), path_rows(paths, model.system),
-                        found->paths.front().second.variations, found->paths};
+  return ActionFindings{{"stationary", action_text(*found, model.system), action_json(*found, model.system)},
+                        path_rows(paths, model.system),
+                        found->paths.front().second.variations,
+                        found->paths};
 }
 
 void write_files(const ActionCommand& o, const ActionFindings& found, Study& study) {
   const MechanicalSystem& system = study.model()->system;
-  if (!o.output.empty())
-    if (const std::string failure = write_trajectory(found.rows, o.output); !failure.empty()) cannot_write(failure, study.diagnostics());
+  write_rows(o.output, found.rows, study.diagnostics());
   const std::string title = system.title.empty() ? system.name : system.title;
   if (!o.plot.empty()) {
     Diagram d = neighbours_diagram(system, found.variations);
@@ -179,31 +233,22 @@ ExitCode study_action(const ActionCommand& o, Console& console) {
   Study as_written(o.model.path, o.model.overrides);
   const bool readable_model = !as_written.wrong();
   check_usage(o, as_written.diagnostics());
-  if (readable_model && as_written.wrong()) return finish(console, as_written, json_document("action")), ExitCode::Usage;
+  if (readable_model && as_written.wrong()) return finish_usage(console, as_written, "action");
   if (!o.ends.empty()) as_written.replace_path("path from " + o.ends);
   if (!as_written.certificate()) return finish(console, as_written, json_document("action"));
+  check_search(o, as_written);
   const auto own = o.path.empty() ? nullptr : study_of_path(o, as_written);
-  if (as_written.wrong()) return finish(console, as_written, json_document("action")), ExitCode::Usage;
+  if (as_written.wrong()) return finish_usage(console, as_written, "action");
   Study& study = own ? *own : as_written;
   if (!study.equations()) return finish(console, study, json_document("action"));
 
-  const auto found = own                                ? find_given(o, study)
-                     : o.periodic                       ? find_orbit(o, study)
+  const auto found = own                                           ? find_given(o, study)
+                     : o.periodic                                  ? find_orbit(o, study)
                      : !o.motion && study.model()->experiment.path ? find_paths(o, study)
-                                                        : find_motion(o, study);
-  if (!found) {
-    const ExitCode code = finish(console, study, json_document("action"));
-    if (interrupt_flag().load()) return ExitCode::Interrupted;
-    return code == ExitCode::ModelWrong ? ExitCode::RunFailed : code;
-  }
+                                                                   : find_motion(o, study);
+  if (!found) return finish_without(console, study, "action");
   write_files(o, *found, study);
-  if (!console.json()) console.print(found->text);
-  Json document = json_document("action");
-  document["system"] = study.model()->system.name;
-  document[found->kind] = found->json;
-  const bool written = !study.wrong();
-  finish(console, study, document);
-  return written ? ExitCode::Fine : ExitCode::RunFailed;
+  return finish_with(console, study, "action", found->answer);
 }
 
 }  // namespace

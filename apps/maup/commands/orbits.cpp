@@ -1,11 +1,10 @@
-#include "interrupt.hpp"
 #include "orbits_options.hpp"
 #include "orbits_text.hpp"
 #include "outcome.hpp"
 #include "quantity.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <maupertuis/report.hpp>
 
@@ -21,16 +20,10 @@ struct Options {
 
 /// What is left to write and to print once an analysis is done.
 struct Findings {
-  const char* kind = "";
-  std::string text;
-  Json json;
+  Answer answer;
   Trajectory rows;
   PlotOptions picture;
 };
-
-bool ends_with(const std::string& text, std::string_view end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
 
 void check_usage(const Options& o, Diagnostics& diagnostics) {
   check_orbits_options(o.orbits, diagnostics);
@@ -40,12 +33,8 @@ void check_usage(const Options& o, Diagnostics& diagnostics) {
   if (o.orbits.floquet + o.orbits.lyapunov + o.orbits.has_section() != 1)
     diagnostics.error("E0809", {}, "maup orbits does one thing at a time.", {},
                       "Give --floquet, --section \"x = 0 rising\", --strobe 2s or --lyapunov.");
-  if (!o.plot.empty() && !ends_with(o.plot, ".svg"))
-    diagnostics.error("E0810", {}, fmt::format("{} names no format of a picture.", o.plot), {}, "Take .svg.");
-  const bool known = ends_with(o.output, ".csv") || ends_with(o.output, ".npy") || ends_with(o.output, ".json");
-  if (!o.output.empty() && !known)
-    diagnostics.error("E0810", {}, fmt::format("{} names no format of a table.", o.output), {},
-                      "Take an ending .csv, .npy or .json.");
+  check_picture_name(o.plot, diagnostics);
+  check_table_name(o.output, diagnostics);
   if (o.orbits.floquet && (!o.plot.empty() || !o.output.empty()))
     diagnostics.error("E0809", {}, "--floquet has no table and no picture.", {},
                       "Leave --plot and -o out, or take --json.");
@@ -55,7 +44,7 @@ std::optional<Findings> find_floquet(const Options& o, Study& study) {
   const auto result = floquet(*study.model(), *study.equations(), floquet_options(o.orbits), study.diagnostics());
   if (!result) return {};
   const MechanicalSystem& system = study.model()->system;
-  return Findings{"floquet", floquet_text(*result, system), floquet_json(*result, system), {}, {}};
+  return Findings{{"floquet", floquet_text(*result, system), floquet_json(*result, system)}, {}, {}};
 }
 
 std::optional<Findings> find_section(const SectionStudy& section) {
@@ -63,8 +52,9 @@ std::optional<Findings> find_section(const SectionStudy& section) {
   const auto result = poincare_section(*study.model(), *study.equations(), section.options, study.diagnostics());
   if (!result) return {};
   const MechanicalSystem& system = study.model()->system;
-  return Findings{"section", section_text(*result, section.what, system), section_json(*result, section.what, system),
-                  section_rows(*result, system), section_picture(*result, section.what, system)};
+  return Findings{{"section", section_text(*result, section.what, system), section_json(*result, section.what, system)},
+                  section_rows(*result, system),
+                  section_picture(*result, section.what, system)};
 }
 
 std::optional<Findings> find_lyapunov(const Options& o, Study& study) {
@@ -73,34 +63,17 @@ std::optional<Findings> find_lyapunov(const Options& o, Study& study) {
   const auto result = lyapunov_exponents(*study.model(), *study.equations(), options, study.diagnostics());
   if (!result) return {};
   const MechanicalSystem& system = study.model()->system;
-  Findings out{"lyapunov", lyapunov_text(*result), lyapunov_json(*result), lyapunov_rows(*result, system), {}};
+  Findings out{{"lyapunov", lyapunov_text(*result), lyapunov_json(*result)}, lyapunov_rows(*result, system), {}};
   out.picture.title =
       fmt::format("{}: Lyapunov exponents, averages up to t", system.title.empty() ? system.name : system.title);
   return out;
-}
-
-void write_files(const Options& o, const Findings& found, Diagnostics& diagnostics) {
-  if (!o.output.empty())
-    if (const std::string failure = write_trajectory(found.rows, o.output); !failure.empty())
-      cannot_write(failure, diagnostics);
-  if (!o.plot.empty()) write_result(o.plot, plot_svg(found.rows, found.picture), diagnostics);
-}
-
-/// Nothing was found, and the diagnostics say why.
-ExitCode finish_without(Console& console, Study& study) {
-  const ExitCode code = finish(console, study, json_document("orbits"));
-  if (interrupt_flag().load()) return ExitCode::Interrupted;
-  return code == ExitCode::ModelWrong ? ExitCode::RunFailed : code;
 }
 
 ExitCode study_orbits(const Options& o, Console& console) {
   Study as_written(o.model.path, o.model.overrides);
   const bool readable_model = !as_written.wrong();
   check_usage(o, as_written.diagnostics());
-  if (readable_model && as_written.wrong()) {
-    finish(console, as_written, json_document("orbits"));
-    return ExitCode::Usage;
-  }
+  if (readable_model && as_written.wrong()) return finish_usage(console, as_written, "orbits");
   if (refuse_held_integrals(as_written) || refuse_without_time(as_written) || !as_written.certificate()) return finish(console, as_written, json_document("orbits"));
   SectionStudy section;
   if (o.orbits.has_section()) section = section_study(o.orbits, o.model, as_written);
@@ -110,15 +83,10 @@ ExitCode study_orbits(const Options& o, Console& console) {
   const auto found = section.study      ? find_section(section)
                      : o.orbits.floquet ? find_floquet(o, study)
                                         : find_lyapunov(o, study);
-  if (!found) return finish_without(console, study);
-  write_files(o, *found, study.diagnostics());
-  if (!console.json()) console.print(found->text);
-  Json document = json_document("orbits");
-  document["system"] = study.model()->system.name;
-  document[found->kind] = found->json;
-  const bool written = !study.wrong();
-  finish(console, study, document);
-  return written ? ExitCode::Fine : ExitCode::RunFailed;
+  if (!found) return finish_without(console, study, "orbits");
+  write_rows(o.output, found->rows, study.diagnostics());
+  if (!o.plot.empty()) write_result(o.plot, plot_svg(found->rows, found->picture), study.diagnostics());
+  return finish_with(console, study, "orbits", found->answer);
 }
 
 }  // namespace
