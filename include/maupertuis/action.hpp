@@ -123,7 +123,7 @@ ActionEnds ends_of(const Model& model);
 /// The paths between the ends on which S is stationary, by Newton's method on its stationarity from many starts, with
 /// the second variation of each. Nothing, with a diagnostic: forces that no Lagrangian gives or constraints between
 /// velocities (E1201), ends that are off the constraints (E1202), times in the wrong order (E1203), no path found
-/// (E1204), or rates beyond the range of doubles (E1209). W1201: the two
+/// (E1204), or rates beyond the range of doubles (E1209), an interruption (E1210, as everywhere below). W1201: the two
 /// counts of the index disagree.
 std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOfMotion& equations, const ActionEnds& ends,
                                            const ActionOptions& options, Diagnostics& diagnostics);

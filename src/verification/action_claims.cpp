@@ -37,9 +37,7 @@ const StationaryPath* ActionClaims::path(ExpectationResult& result) {
   if (!searched_) {
     searched_ = true;
     Diagnostics told;
-    ActionOptions options;
-    options.variations = false;
-    found_ = stationary_paths(model_, equations_, ends_of(model_), options, told);
+    found_ = stationary_paths(model_, equations_, ends_of(model_), options_, told);
     if (!found_) trouble_ = first_trouble(told);
   }
   if (found_) return &found_->paths.front();
@@ -68,10 +66,8 @@ void ActionClaims::decide_given(const Expectation& e, ExpectationResult& result)
   std::optional<ActionEnds> ends;
   if (model_.experiment.path && !e.from) ends = ends_of(model_);
   Diagnostics told;
-  ActionOptions options;
-  options.variations = false;
   const double start = e.from ? number(model_, e.from) : ends->start, end = e.to ? number(model_, e.to) : ends->end;
-  const auto found = action_of_path(model_, equations_, e.values, start, end, ends, options, told);
+  const auto found = action_of_path(model_, equations_, e.values, start, end, ends, options_, told);
   if (!found) {
     result.actual = "no action";
     result.message = first_trouble(told);

@@ -8,7 +8,11 @@ namespace maupertuis {
 /// between the ends of the model, or about a path that is given. The search is done at first use, for all lines of a model.
 class ActionClaims {
  public:
-  ActionClaims(const Model& model, const EquationsOfMotion& equations) : model_(model), equations_(equations) {}
+  ActionClaims(const Model& model, const EquationsOfMotion& equations, const std::atomic<bool>* interrupt)
+      : model_(model), equations_(equations) {
+    options_.variations = false;
+    options_.interrupt = interrupt;
+  }
   void decide(const Expectation& expectation, ExpectationResult& result);
 
  private:
@@ -19,6 +23,7 @@ class ActionClaims {
 
   const Model& model_;
   const EquationsOfMotion& equations_;
+  ActionOptions options_;
   bool searched_ = false;
   std::optional<PathSearch> found_;
   std::string trouble_;

@@ -106,7 +106,7 @@ class Verifier {
         mode_claims_->decide(e, result);
         return;
       case Kind::Action: case Kind::MorseIndex: case Kind::PathAt:
-        if (!action_claims_) action_claims_.emplace(model_, equations_);
+        if (!action_claims_) action_claims_.emplace(model_, equations_, options_.interrupt);
         action_claims_->decide(e, result);
         return;
       case Kind::EventAt:

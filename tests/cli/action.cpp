@@ -211,6 +211,25 @@ TEST_CASE("E1206 to E1208: no value on the path, nothing to look at, a motion th
   CHECK(ends.out.empty());
 }
 
+TEST_CASE("Ctrl-C ends a long search soon, and nothing of it is shown as the answer") {
+  const Folder folder;
+  constexpr int links = 16;
+  std::string text = maup({"new", "chain", "--links", std::to_string(links), "-o", "-"}).out, from, to;
+  for (int i = 0; i < links; ++i) from += i ? ", 0.1" : "0.1", to += i ? ", 0.3" : "0.3";
+  text.replace(text.find("run 10 s"), 8,
+               "run 1 ms\npath from (" + from + ") at 0 s to (" + to + ") at 3 s\nexpect index = 0");
+  const std::string model = folder.write("chain.lag", text);
+  for (const std::string& command : {"action " + model + " -o " + folder.path("paths.csv"),
+                                     "report " + model + " -o " + folder.path("page.html"), "test " + model}) {
+    CAPTURE(command);
+    const Outcome outcome = shell("timeout -s INT --preserve-status 5 \"$MAUP\" " + command);
+    CHECK(outcome.code == 130);
+    CHECK(contains(outcome.err + outcome.out, "interrupted"));
+    CHECK(folder.names() == std::vector<std::string>{"chain.lag"});
+    CHECK(outcome.seconds < 30);
+  }
+}
+
 TEST_CASE("the paths as a file, in x") {
   const Folder folder;
   const Outcome told = maup({"action", gallery("great_circle"), "-o", folder.path("way.csv")});

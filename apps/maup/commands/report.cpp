@@ -1,3 +1,4 @@
+#include "interrupt.hpp"
 #include "orbits_options.hpp"
 #include "outcome.hpp"
 #include "run_options.hpp"
@@ -113,10 +114,7 @@ ExitCode report(const ReportOptions& options, Console& console) {
   const bool readable_model = !study.wrong();
   const SimulationOptions settings = simulation_options(options.run, study.diagnostics());
   check_orbits_options(options.orbits, study.diagnostics());
-  if (readable_model && study.wrong()) {
-    finish(console, study, document);
-    return ExitCode::Usage;
-  }
+  if (readable_model && study.wrong()) return finish_usage(console, study, "report");
   if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);
   if (refuse_held_integrals(study)) return finish(console, study, document);
   study.derivation(true);  // before the certificate, so that it vouches for the readable form too
@@ -127,12 +125,12 @@ ExitCode report(const ReportOptions& options, Console& console) {
   if (study.wrong()) return finish(console, study, document);
   const LongRun orbits = long_run(options, study);
   std::optional<PathSearch> paths;
-  if (const Model& model = *study.model(); model.experiment.path)
-    paths = stationary_paths(model, *study.equations(), ends_of(model), ActionOptions(), study.diagnostics());
-  if (study.wrong()) {
-    finish(console, study, document);
-    return ExitCode::RunFailed;
+  if (const Model& model = *study.model(); model.experiment.path) {
+    ActionOptions search;
+    search.interrupt = &interrupt_flag();
+    paths = stationary_paths(model, *study.equations(), ends_of(model), search, study.diagnostics());
   }
+  if (study.wrong()) return finish_without(console, study, "report");
   const std::string page = page_of(study, result, settings, orbits, paths);
   const std::string path = options.output.empty() ? study.model()->system.name + ".html" : options.output;
   if (path == "-") console.print(page);

@@ -100,7 +100,7 @@ ExitCode test_models(const TestOptions& options, Console& console) {
       break;
     }
     const FileOutcome outcome = test_file(path, settings, console, document);
-    code = worse(code, outcome.code);
+    code = worse(code, settings.interrupt->load() ? ExitCode::Interrupted : outcome.code);
     wrong += outcome.code == ExitCode::ModelWrong;
     for (const ExpectationResult& r : outcome.results) ++(r.passed ? passed : failed);
   }

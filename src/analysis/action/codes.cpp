@@ -42,6 +42,10 @@ constexpr CodeEntry entries[] = {
      "them L, are larger: "
      "nothing is wrong with the principle, but no sum of such numbers exists.",
      "path from (0 m) at 0 s to (1 m) at 1e-300 s", "path from (0 m) at 0 s to (1 m) at 1 s"},
+    {"E1210", "the study was interrupted",
+     "Ctrl-C, or another signal, ended the search. What was found until then is not shown: it would be taken for all "
+     "there is.",
+     "", ""},
     {"W1201", "two counts of a Morse index disagree",
      "The index is counted by the negative inertia of the discretized second variation and by the zeros of Jacobi "
      "fields. Where they "

@@ -310,6 +310,7 @@ std::optional<GivenPath> action_of_path(const Model& model, const EquationsOfMot
   out.action = total[0];
   out.integrals.assign(total.data() + 1, total.data() + total.size());
   look_at_equations(problem, formulas, out);
+  if (interrupted(options, diagnostics)) return std::nullopt;
   const Trial trial = trial_of(problem, formulas, start, end);
   out.path = to_path(trial);
   const auto n = static_cast<std::size_t>(problem.n());

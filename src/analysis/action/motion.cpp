@@ -38,6 +38,7 @@ std::optional<Trial> follow(Problem& problem, const MotionState& start, double d
   std::size_t steps = 0;
   for (stepper.start(start.t, start.q, start.v); stepper.time() != end; ++steps)
     if (const Step step = stepper.step(end); step.ending != StepEnding::None) {
+      if (interrupted(options, diagnostics)) return std::nullopt;
       diagnostics.error("E1208", {}, fmt::format("the motion ends at {}", place(step.begin, problem.model.system)), step.reason,
                         "Choose another start, or a shorter run.");
       return std::nullopt;
@@ -49,7 +50,7 @@ std::optional<Trial> follow(Problem& problem, const MotionState& start, double d
   out.q.col(0) = Eigen::Map<const Vector>(q.data(), problem.n());
   stepper.start(start.t, start.q, start.v);
   for (Index k = 1; stepper.time() != end;) {
-    stepper.step(end);
+    if (stepper.step(end).ending != StepEnding::None && interrupted(options, diagnostics)) return std::nullopt;
     for (; k < out.q.cols() && stepper.covers(out.mesh.time(k)); ++k) {
       stepper.state(out.mesh.time(k), q, v);
       out.q.col(k) = Eigen::Map<const Vector>(q.data(), problem.n());
@@ -126,6 +127,7 @@ std::optional<MotionAction> action_of_motion(const Model& model, const Equations
   if (!trial) return std::nullopt;
   MotionAction out;
   out.path = describe(problem, as_refined(problem, *trial), ends_of_trial(*trial), {}, options, diagnostics);
+  if (interrupted(options, diagnostics)) return std::nullopt;
   out.path.found_from = "the model's start";
   out.rows = rows_of(problem, *trial);
   return out;
@@ -156,6 +158,7 @@ std::optional<PeriodicAction> action_of_orbit(const Model& model, const Equation
   ends.closed = true;
   PeriodicAction out;
   out.path = describe(problem, as_refined(problem, *trial), ends, {}, options, diagnostics);
+  if (interrupted(options, diagnostics)) return std::nullopt;
   out.path.found_from = "the periodic motion next to the model's start";
   out.period = found->motion.period;
   const double energy = out.path.start_energy.value_or(0);

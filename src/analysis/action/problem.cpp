@@ -50,6 +50,13 @@ bool has_action(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
   return false;
 }
 
+bool interrupted(const ActionOptions& options, Diagnostics& diagnostics) {
+  if (!options.interrupt || !options.interrupt->load()) return false;
+  diagnostics.error("E1210", {}, "interrupted",
+                    "The study was ended before it was done; what was found until then is not shown.", {});
+  return true;
+}
+
 Problem::Problem(const Model& m, const EquationsOfMotion& e)
     : model(m), equations(e), functional(e), rule(std::make_shared<const Rule>(degree)), typical(Vector::Ones(functional.freedoms())) {
   const MechanicalSystem& system = *e.system;

@@ -9,6 +9,9 @@
 /// What every question about the action begins with.
 namespace maupertuis::action {
 
+/// Whether the study is to end at once: then E1210.
+bool interrupted(const ActionOptions& options, Diagnostics& diagnostics);
+
 /// False with E1201: forces that no Lagrangian gives, constraints between velocities.
 bool has_action(const EquationsOfMotion& equations, Diagnostics& diagnostics);
 

@@ -262,6 +262,7 @@ std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOf
   for (const auto& [aim, turns] : with_turns(ends, model.system, options.turns)) {
     Search search(problem, aim, options);
     search.run();
+    if (interrupted(options, diagnostics)) return std::nullopt;
     out.starts += search.starts_;
     out.failed += search.failed_;
     out.bound = search.bound_;
@@ -276,7 +277,8 @@ std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOf
     }
     for (const auto& [refined, name] : search.found_) {
       out.paths.push_back(describe(problem, refined, aim, search.singular(), options, diagnostics));
-        out.paths.back().found_from = name;
+      if (interrupted(options, diagnostics)) return std::nullopt;
+      out.paths.back().found_from = name;
       out.paths.back().turns = turns;
     }
   }
