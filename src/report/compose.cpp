@@ -104,7 +104,8 @@ void add_equations(ReportContent& content, const Derivation& derivation, const R
   for (const auto name : energies)
     for (const DerivationStep& step : derivation.steps)
       if (step.left == name && step.right)
-        content.energies.push_back({left_side_mathml(step.left), to_mathml(step.right, order), "", ""});
+        content.energies.push_back(
+            {left_side_mathml(step.left, derivatives_are_primes(order)), to_mathml(step.right, order), "", ""});
 }
 
 std::vector<ReportContent::Section> sections_of(const std::vector<DerivationStep>& steps, const ReadingOrder& order) {
@@ -112,7 +113,7 @@ std::vector<ReportContent::Section> sections_of(const std::vector<DerivationStep
   for (const DerivationStep& step : steps) {
     if (sections.empty() || sections.back().title != step.section) sections.push_back({step.section, {}});
     auto& lines = sections.back().lines;
-    Formula line{left_side_mathml(step.left), "", step.rule, step.sentence};
+    Formula line{left_side_mathml(step.left, derivatives_are_primes(order)), "", step.rule, step.sentence};
     if (step.right) line.right = to_mathml(step.right, order);
     else line.left.clear();
     // An equation reads `… = 0`, not `0 = …`.

@@ -47,7 +47,7 @@ std::string drift_of(const std::vector<double>& values, const std::string& unit)
 
 ReportContent::Formula formula(std::string left, Expr right, const ReadingOrder& order) {
   const ReadableForm form = readable(expand_time_derivatives(right), order);
-  return {left_side_mathml(left), to_mathml(form.value, order), "", ""};
+  return {left_side_mathml(left, derivatives_are_primes(order)), to_mathml(form.value, order), "", ""};
 }
 
 void add_momentum(ReportContent& content, const EquationsOfMotion& equations, std::size_t i, const SimulationResult* run) {

@@ -16,36 +16,50 @@ std::string element(std::string_view tag, const std::string& content) { return f
 bool is_number(std::string_view text) { return !text.empty() && text.find_first_not_of("0123456789.,") == std::string_view::npos; }
 
 // A name with its dots and its index; an index may have one of its own, as θ1 in Q_θ1.
-std::string name_mathml(std::string_view name) {
+std::string name_mathml(std::string_view name, bool primes) {
   if (is_number(name)) return element("mn", std::string(name));
   const NameParts parts = name_parts(name);
   std::string base = element("mi", escape_html(parts.base));
   static constexpr std::string_view dots[] = {"", "&#x02D9;", "&#x00A8;", "&#x20DB;"};
-  if (parts.dots >= 1 && parts.dots <= 3) base = fmt::format("<mover accent=\"true\">{}<mo>{}</mo></mover>", base, dots[parts.dots]);
+  if (primes && parts.dots > 0) {
+    std::string marks;
+    for (int i = 0; i < parts.dots; ++i) marks += "&#x2032;";
+    base = element(parts.index.empty() ? "msup" : "mrow", base + element("mo", marks));
+  } else if (parts.dots >= 1 && parts.dots <= 3)
+    base = fmt::format("<mover accent=\"true\">{}<mo>{}</mo></mover>", base, dots[parts.dots]);
   if (parts.index.empty()) return base;
-  return element("msub", base + (is_number(parts.index) ? element("mn", parts.index) : name_mathml(parts.index)));
+  return element("msub",
+                 base + (is_number(parts.index) ? element("mn", parts.index) : name_mathml(parts.index, primes)));
 }
 
-std::string partial(std::string_view name) { return element("mrow", "<mo>∂</mo>" + name_mathml(name)); }
+std::string partial(std::string_view name, bool primes) {
+  return element("mrow", "<mo>∂</mo>" + name_mathml(name, primes));
+}
 
 bool starts_with(std::string_view text, std::string_view prefix) { return text.substr(0, prefix.size()) == prefix; }
 
 }  // namespace
 
-std::string left_side_mathml(std::string_view plain) {
+std::string left_side_mathml(std::string_view plain, bool primes) {
   constexpr std::string_view rate = "d/d", del = "∂";
   if (plain.empty()) return {};
   if (const auto blank = plain.find(' '); starts_with(plain, rate) && blank != std::string_view::npos)
-    return fmt::format("<mfrac><mi>d</mi><mrow><mi>d</mi>{}</mrow></mfrac>", name_mathml(plain.substr(rate.size(), blank - rate.size()))) +
-           left_side_mathml(plain.substr(blank + 1));
+    return fmt::format("<mfrac><mi>d</mi><mrow><mi>d</mi>{}</mrow></mfrac>",
+                       name_mathml(plain.substr(rate.size(), blank - rate.size()), primes)) +
+           left_side_mathml(plain.substr(blank + 1), primes);
   if (const auto slash = plain.find("/∂"); starts_with(plain, del) && slash != std::string_view::npos)
-    return element("mfrac", partial(plain.substr(del.size(), slash - del.size())) + partial(plain.substr(slash + 1 + del.size())));
+    return element("mfrac", partial(plain.substr(del.size(), slash - del.size()), primes) +
+                                partial(plain.substr(slash + 1 + del.size()), primes));
   if (const auto bracket = plain.find('('); bracket != std::string_view::npos && plain.back() == ')' && bracket > 0)
-    return "<mrow>" + left_side_mathml(plain.substr(0, bracket)) + "<mspace width=\"0.3em\"/>" +
+    return "<mrow>" + left_side_mathml(plain.substr(0, bracket), primes) + "<mspace width=\"0.3em\"/>" +
            element("mtext", escape_html(plain.substr(bracket))) + "</mrow>";
   if (plain.size() > 2 && plain.substr(plain.size() - 2) == "^2")
-    return element("msup", name_mathml(plain.substr(0, plain.size() - 2)) + "<mn>2</mn>");
-  return name_mathml(plain);
+    return element("msup", name_mathml(plain.substr(0, plain.size() - 2), primes) + "<mn>2</mn>");
+  return name_mathml(plain, primes);
+}
+
+bool derivatives_are_primes(const ReadingOrder& order) {
+  return !order.coordinates.empty() && order.coordinates.front().context().time().name() != "t";
 }
 
 // ------------------------------------------------------------------------------------------------------------ units

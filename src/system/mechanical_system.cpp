@@ -20,7 +20,8 @@ auto find_by_name(const Items& items, std::string_view name) -> const typename I
 }  // namespace
 
 std::string MechanicalSystem::independent_unit() const {
-  if (independent == "t") return "s";  // of models without units as well: seconds are what t is called everywhere
+  // Of models without units as well: seconds are what t is called everywhere.
+  if (independent == "t" && (dimensionless || independent_dimension.same_as(dimensions::time()))) return "s";
   const std::string unit = to_string(independent_dimension);
   return unit == "1" ? std::string() : unit;
 }

@@ -237,6 +237,27 @@ TEST_CASE("the paths as a file, in x") {
   CHECK(read(folder.path("way.csv")).rfind("φ [rad],θ [rad],θ'\r\n", 0) == 0);
 }
 
+TEST_CASE("with x in the place of t a report has primes alone, also on left sides") {
+  const Outcome told = maup({"report", gallery("brachistochrone"), "-o", "-"});
+  CHECK_MESSAGE(told.code == 0, told.err);
+  CHECK(contains(told.out, "&#x2032;"));
+  for (const char* const dot : {"&#x02D9;", "&#x00A8;"}) CHECK(!contains(told.out, dot));
+}
+
+TEST_CASE("S along a motion has the unit of L times that of what stands in the place of t") {
+  const Folder folder;
+  const auto column = [&](const std::string& model) {
+    const Outcome told = maup({"action", "-", "--motion", "-o", folder.path("s.csv")}, model);
+    CHECK_MESSAGE(told.code == 0, told.err);
+    const std::string rows = read(folder.path("s.csv"));
+    return rows.substr(0, rows.find('\r'));
+  };
+  CHECK(
+      column("system b\nparam g = 9.81 m/s^2\nindependent t : length\ncoord y : length\nL = sqrt((1 + y'^2)/(2 g y))\n"
+             "start y = 1 m, y' = 1/2\nrun 20 cm\n") == "t [m],y [m],S [s]");
+  CHECK(column(pendulum) == "t [s],θ [rad],S [J s]");
+}
+
 TEST_CASE("the paths of a model in its report, which needs no run") {
   const Outcome told = maup({"report", gallery("oscillator_path"), "-o", "-"});
   CHECK_MESSAGE(told.code == 0, told.err);

@@ -92,8 +92,9 @@ Trajectory rows_of(Problem& problem, const Trial& trial) {
     return text == "1" ? std::string() : text;
   };
   for (const Coordinate& c : system.coordinates) out.columns.push_back({c.name, unit(c.dimension)});
-  const std::string action = system.independent == "t" ? "J s" : unit(system.lagrangian_dimension * system.independent_dimension);
-  out.columns.push_back({"S", system.dimensionless ? "" : action});
+  const Dimension action = system.lagrangian_dimension * system.independent_dimension;
+  const bool of_mechanics = !system.dimensionless && action.same_as(dimensions::energy() * dimensions::time());
+  out.columns.push_back({"S", of_mechanics ? "J s" : unit(action)});
   double so_far = 0;
   const Index p = trial.mesh.rule->degree;
   for (Index e = 0; e < trial.mesh.elements(); ++e) {

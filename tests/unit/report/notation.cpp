@@ -14,6 +14,11 @@ TEST_CASE("left sides of derivation steps") {
   CHECK(left_side_mathml("v_A^2") == "<msup><msub><mi>v</mi><mi>A</mi></msub><mn>2</mn></msup>");
   CHECK(left_side_mathml("Q_θ1") == "<msub><mi>Q</mi><msub><mi>θ</mi><mn>1</mn></msub></msub>");
   CHECK(left_side_mathml("T(particle A)") == "<mrow><mi>T</mi><mspace width=\"0.3em\"/><mtext>(particle A)</mtext></mrow>");
+  CHECK(left_side_mathml("∂L/∂y'", true) ==
+        "<mfrac><mrow><mo>∂</mo><mi>L</mi></mrow><mrow><mo>∂</mo><msup><mi>y</mi><mo>&#x2032;</mo></msup></mrow></"
+        "mfrac>");
+  CHECK(left_side_mathml("p_y'", true).find("&#x2032;") != std::string::npos);
+  CHECK(left_side_mathml("p_y'", true).find("&#x02D9;") == std::string::npos);
   CHECK(left_side_mathml("x<y") == "<mi>x&lt;y</mi>");
   CHECK(left_side_mathml("") == "");
   CHECK(left_side_mathml("0") == "<mn>0</mn>");
