@@ -34,8 +34,10 @@ struct Batch {
       }
   }
 
-  EnsembleResult run(double duration, int width, Backend backend) const {
+  /// order 0: the one that follows from the tolerance.
+  EnsembleResult run(double duration, int width, Backend backend, int order) const {
     EnsembleOptions options;
+    options.order = order;
     options.backend = backend;
     options.width = width;
     options.threads = 1;
@@ -48,9 +50,9 @@ void require(bool condition, const char* what) {
   if (!condition) throw std::runtime_error(std::string("wrong result: ") + what);
 }
 
-void check(const Batch& batch, int width, Backend backend) {
+void check(const Batch& batch, int width, Backend backend, int order) {
   const double duration = 1;
-  const EnsembleResult result = batch.run(duration, width, backend);
+  const EnsembleResult result = batch.run(duration, width, backend, order);
   for (const TrajectoryEnding& ending : result.endings)
     require(ending.ok() && !ending.alone && ending.energy_drift < 1e-13, "energy");
   for (std::size_t i = 0; i < trajectories; i += 37) {
@@ -64,11 +66,12 @@ void check(const Batch& batch, int width, Backend backend) {
 void ensemble(benchmark::State& state, Backend backend) {
   const Batch batch(static_cast<int>(state.range(0)));
   const int width = static_cast<int>(state.range(1));
-  check(batch, width, backend);
+  const int order = static_cast<int>(state.range(2));
+  check(batch, width, backend, order);
   const double duration = 10;
   std::size_t steps = 0;
   for (auto _ : state) {
-    const EnsembleResult result = batch.run(duration, width, backend);
+    const EnsembleResult result = batch.run(duration, width, backend, order);
     for (const TrajectoryEnding& ending : result.endings) steps += ending.steps;
     state.SetLabel(result.backend);
   }
@@ -79,9 +82,9 @@ void ensemble(benchmark::State& state, Backend backend) {
 }
 
 BENCHMARK_CAPTURE(ensemble, interpreter, Backend::Interpreter)
-    ->ArgNames({"links", "width"})->ArgsProduct({{1, 2, 4, 8}, {1, 8, 16}})->Unit(benchmark::kMillisecond);
+    ->ArgNames({"links", "width", "order"})->ArgsProduct({{1, 2, 4, 8}, {1, 8, 16}, {0}})->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(ensemble, compiled, Backend::Compiled)
-    ->ArgNames({"links", "width"})->ArgsProduct({{1, 2, 4, 8}, {8, 16}})->Unit(benchmark::kMillisecond);
+    ->ArgNames({"links", "width", "order"})->ArgsProduct({{1, 2, 4, 8}, {8, 16}, {0, 26}})->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

@@ -78,7 +78,7 @@ def draw(path, series, x_label, y_label, x_ticks=None):
 def steps(data, backend, compiled):
     points = []
     for name, row in data["stepping"].items():
-        if name.startswith(f"steps/{backend}/") and "step" in row and (row["label"] == "compiled") == compiled:
+        if name.startswith(f"steps/{backend}/") and name.endswith("/order:0") and "step" in row and (row["label"] == "compiled") == compiled:
             points.append((int(name.split("links:")[1].split("/")[0]), 1e6 * row["step"]))
     return points
 

@@ -17,9 +17,11 @@ namespace {
 using namespace maupertuis;
 using bench::require;
 
-TaylorStepper stepper_of(const bench::ChainMotion& chain, Backend backend) {
+/// order 0: the one that follows from the tolerance.
+TaylorStepper stepper_of(const bench::ChainMotion& chain, Backend backend, int order = 0) {
   TaylorOptions options;
   options.backend = backend;
+  options.order = order;
   return TaylorStepper(chain.kernel, chain.parameters, options);
 }
 
@@ -50,12 +52,12 @@ void compare_with_interpreter(TaylorStepper& stepper, const bench::ChainMotion& 
   for (std::size_t i = 0; i < chain.q.size(); ++i) require(std::abs(stepper.q()[i] - other.q()[i]) < 1e-11, "state");
 }
 
-/// Arguments: links, milliseconds of motion.
+/// Arguments: links, milliseconds of motion, order.
 void steps(benchmark::State& state, Backend backend) {
   try {
     const bench::ChainMotion chain = bench::chain_motion(static_cast<int>(state.range(0)));
     const double time = 1e-3 * static_cast<double>(state.range(1));
-    TaylorStepper stepper = stepper_of(chain, backend);
+    TaylorStepper stepper = stepper_of(chain, backend, static_cast<int>(state.range(2)));
     if (backend == Backend::Compiled) compare_with_interpreter(stepper, chain, std::min(time, 0.5));
     if (backend == Backend::Compiled) bench::settle(stepper, chain);
     const double drift = energy_drift(stepper, chain, time);
@@ -76,13 +78,13 @@ void steps(benchmark::State& state, Backend backend) {
 }
 
 void sizes(benchmark::internal::Benchmark* rows) {
-  rows->ArgNames({"links", "ms"})->Unit(benchmark::kMillisecond);
+  rows->ArgNames({"links", "ms", "order"})->Unit(benchmark::kMillisecond);
   for (const auto& [links, milliseconds] :
        {std::pair{1, 100'000}, {2, 1'000'000}, {4, 100'000}, {8, 20'000}, {16, 10'000}, {32, 5000}, {50, 2000}, {100, 1000}, {200, 500}, {500, 200}, {1000, 100}})
-    rows->Args({links, milliseconds});
+    rows->Args({links, milliseconds, 0});
 }
 
-BENCHMARK_CAPTURE(steps, compiled, Backend::Compiled)->Apply(sizes);
+BENCHMARK_CAPTURE(steps, compiled, Backend::Compiled)->Apply(sizes)->Args({2, 1'000'000, 26});
 BENCHMARK_CAPTURE(steps, interpreter, Backend::Interpreter)->Apply(sizes);
 
 }  // namespace
