@@ -245,7 +245,7 @@ class StraightEmitter {
   std::map<Slot, Tangent> second_tangents_;
   static constexpr int along_lanes = -1;  // the direction of each lane of a diagonal tangent
   std::vector<SecondTangent> second_order_;  // [packs]
-  std::vector<Value*> inverse_rows_, ahead_a_, ahead_b_;  // −M⁻¹, and q̈_k by q̈_{k−1}: A + B/k
+  std::vector<Value*> inverse_columns_, ahead_a_, ahead_b_;  // −M⁻¹, and q̈_k by q̈_{k−1}: A + B/k
 };
 
 }  // namespace maupertuis::llvm_backend

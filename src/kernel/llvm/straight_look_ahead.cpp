@@ -29,8 +29,8 @@ void StraightEmitter::find_second_tangents() {
     Value *a = vector_of(0.0, wide_), *b = a;
     for (unsigned i = 0; i < n_; ++i) {
       const Slot slot = p_.program.residual[i];
-      if (const auto found = second_place(slot, static_cast<int>(d), true)) a = fma(spread(element(*found)), inverse_rows_[i], a);
-      if (const auto found = second_place(slot, static_cast<int>(d), false)) b = fma(spread(element(*found)), inverse_rows_[i], b);
+      if (const auto found = second_place(slot, static_cast<int>(d), true)) a = fma(spread(element(*found)), inverse_columns_[i], a);
+      if (const auto found = second_place(slot, static_cast<int>(d), false)) b = fma(spread(element(*found)), inverse_columns_[i], b);
     }
     ahead_a_.push_back(a), ahead_b_.push_back(b);
   }

@@ -13,30 +13,30 @@ static constexpr double least_pivot = 1e-10, least_determinant = 1e-280;
 void StraightEmitter::factor() {
   for (const Pack& pack : p_.packs)
     if (p_.program.tangent_lags[pack.out] != Program::unmoved) tangent(pack);
-  // M is symmetric: the tangent of all residuals in direction d is its row d.
-  std::vector<Value*> rows;
+  // The tangents of all residuals in direction d are column d of M.
+  std::vector<Value*> columns;
   for (std::size_t d = 0; d < n_; ++d) {
     std::vector<std::optional<Place>> places;
     for (const Slot slot : p_.program.residual) {
       auto place = passes(slot, 0, 2) ? tangent_place(slot, static_cast<int>(d)) : std::nullopt;
       places.push_back(place ? *place : Place{vector_of(0.0, wide_), 0});
     }
-    rows.push_back(assemble(places, wide_, [&](std::size_t) { return vector_of(0.0, 1); }));
+    columns.push_back(assemble(places, wide_, [&](std::size_t) { return vector_of(0.0, 1); }));
     for (unsigned i = 0; i < n_; ++i)
-      save(b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), bordered_, d * n_ + i), splat_lane(rows[d], i, 1));
+      save(b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), bordered_, i * n_ + d), splat_lane(columns[d], i, 1));
   }
-  invert(std::move(rows));
+  invert(std::move(columns));
 }
 
-/// −M₀⁻¹ by Gauss and Jordan without pivoting, a row a vector: stable for a symmetric, positive definite matrix. The pivots against
-/// their diagonal entries tell whether it is one.
+/// The columns of −M₀⁻¹ from those of M₀ by Gauss and Jordan on the transposed matrix without pivoting: stable for a symmetric, positive definite
+/// matrix. The pivots against their diagonal entries tell whether it is one.
 void StraightEmitter::invert(std::vector<Value*> rows) {
   std::vector<Value*> diagonal, sound;
   for (unsigned i = 0; i < n_; ++i) diagonal.push_back(splat_lane(rows[i], i, 1));
   unsigned pivot = 0;
   for (; pivot + 1 < n_; pivot += 2) eliminate_pair(rows, pivot, diagonal, sound);
   if (pivot < n_) eliminate_one(rows, pivot, diagonal, sound);
-  for (Value* const row : rows) inverse_rows_.push_back(b_.CreateFNeg(row));  // symmetric: rows are columns
+  for (Value* const row : rows) inverse_columns_.push_back(b_.CreateFNeg(row));
   trust(b_.CreateAnd(sound));
 }
 
@@ -105,7 +105,7 @@ void StraightEmitter::solve() {
     const auto r = current_order(slot) == stage_ ? place(slot) : std::nullopt;
     Value* const value = r ? splat_lane(r->vector, r->lane, wide_) : spread(load(cell(stage_, slot), 1));
     Value*& sum = d % 2 == 0 ? even : odd;
-    sum = fma(value, inverse_rows_[d], sum);
+    sum = fma(value, inverse_columns_[d], sum);
   }
   Value* found = add(even, odd);
   if (looks_ahead(stage_))
