@@ -1,6 +1,8 @@
 #include "kernel/interpreter/lifted_solve.hpp"
 
 #include "kernel/interpreter/sampled_states.hpp"
+#include "kernel/sparse/parts.hpp"
+#include "kernel/straight_line/widen.hpp"
 
 #include <algorithm>
 #include <tuple>
@@ -50,6 +52,7 @@ bool LiftedSolve::choose_pivots(const Memory& memory) {
     samples.push_back(std::move(sample));
   const auto pivots = sparse::eliminate(*system_, samples, {});
   if (!pivots) return false;
+  if (options_ && !parts_failed_ && choose_parts(samples, *pivots)) return true;
   solver_.emplace(*system_, *pivots, cell_of_column_);
   // What the full matrix costs: its solution, and the tangents in the direction of that.
   if (solver_->solve_products() < program_.unknowns * program_.unknowns + system_->edges.size()) {
@@ -63,28 +66,57 @@ bool LiftedSolve::choose_pivots(const Memory& memory) {
 
 // ------------------------------------------------------------------------------------------------------------------ machine code
 
+/// With pivots for code, from the next factorization on.
 void LiftedSolve::compile(const CompileOptions& options) {
   options_ = options;
-  if (solver_) make_code();
+  drop_solver();
 }
 
-/// The code belongs to the pivots of this solver alone.
-void LiftedSolve::make_code() {
-  code_ = {};
-  if (!options_) return;
+std::vector<std::uint32_t> LiftedSolve::wanted_cells() const {
   std::vector<std::uint32_t> wanted;
   for (std::uint32_t column = 0; column < system_->size; ++column)
     if (system_->wanted[column]) wanted.push_back(cell_of_column_[column]);
-  std::vector<straight::StraightLine> lines{solver_->written_solve(wanted)};
-  if (options_->long_run) lines.push_back(solver_->written_factor(least_sound_pivot));
+  return wanted;
+}
+
+bool LiftedSolve::compile_lines(const std::vector<straight::StraightLine>& lines) {
   for (const straight::StraightLine& line : lines) scratch_.resize(std::max(scratch_.size(), straight::scratch_size(line)));
   std::tie(code_, report_) = straight::compile(lines, *options_);
+  factors_by_code_ = code_ && lines.size() > 1;
+  return bool{code_};
+}
+
+/// The code belongs to the pivots of this solver alone.
+bool LiftedSolve::make_code() {
+  if (!options_) return false;
+  std::vector<straight::StraightLine> lines{solver_->written_solve(wanted_cells())};
+  if (options_->long_run) lines.push_back(solver_->written_factor(least_sound_pivot));
+  return compile_lines(lines);
+}
+
+/// Parts that are alike, a lane of a vector each. Their factors are code too, in an order of its own.
+bool LiftedSolve::choose_parts(const std::vector<std::vector<double>>& samples, const std::vector<sparse::Pivot>& pivots) {
+  using straight::Places;
+  const std::uint32_t first = sparse::nearest_coordinates(*system_)[pivots.front().column];
+  const auto parts = sparse::cut_into_parts(*system_, first);
+  if (parts.empty()) return false;
+  const auto chosen = sparse::eliminate(*system_, samples, {}, parts);
+  if (!chosen) return false;
+  solver_.emplace(*system_, *chosen, cell_of_column_);
+  Places factors(solver_->factor_count()), inverse(chosen->size());
+  auto solve = straight::widen(solver_->written_solve(wanted_cells()), {{sparse::FactorArray, &factors}, {sparse::InverseArray, &inverse}}, {});
+  auto factor = straight::widen(solver_->written_factor(least_sound_pivot), {},
+                                {{sparse::FactorOutArray, &factors}, {sparse::FactorInverseArray, &inverse}});
+  in_parts_ = solve && factor && compile_lines({std::move(*solve), std::move(*factor)});
+  if (!in_parts_) drop_solver();
+  return in_parts_;
 }
 
 void LiftedSolve::drop_solver() {
   solver_.reset();
   code_ = {};
   report_.reset();
+  factors_by_code_ = in_parts_ = false;
 }
 
 void LiftedSolve::run_solve(std::span<const double> b, double* x) {
@@ -94,7 +126,7 @@ void LiftedSolve::run_solve(std::span<const double> b, double* x) {
 
 /// Code tells no more of pivots than whether they are sound.
 void LiftedSolve::run_factor() {
-  if (!code_ || !options_->long_run) {
+  if (!factors_by_code_) {
     least_pivot_ = solver_->factor(entries_);
     return;
   }
@@ -104,6 +136,7 @@ void LiftedSolve::run_factor() {
 
 /// Other pivots may do better; they are chosen anew, less and less often.
 bool LiftedSolve::fail() {
+  parts_failed_ = parts_failed_ || in_parts_;
   if (is_power_of_two(++failures_)) drop_solver();
   return false;
 }
@@ -118,7 +151,7 @@ bool LiftedSolve::factor(const Memory& memory) {
 }
 
 double LiftedSolve::remainder(std::span<const double> b) {
-  return product_->remainder(entries_, {cells_.data(), b.size()}, b, residual_, cells_.data(), cell_of_column_, stored_);
+  return product_->remainder(entries_, {cells_.data(), b.size()}, b, residual_, cells_.data(), cell_of_column_, in_parts_ ? 0 : stored_);
 }
 
 /// The solution for what is left of b.
@@ -131,11 +164,9 @@ bool LiftedSolve::solve_first(std::span<double> b) {
   run_solve(b, cells_.data());
   const double left = remainder(b);
   if (!(left <= tolerable)) return fail();
-  refines_ = left > sound;
-  if (refines_) {
-    add_correction();
-    if (!(remainder(b) <= corrected)) return fail();
-  }
+  refines_ = left > sound && !in_parts_;
+  if (left > sound || in_parts_) add_correction();
+  if (left > sound && !(remainder(b) <= corrected)) return fail();
   std::copy_n(cells_.begin(), b.size(), b.begin());
   return true;
 }

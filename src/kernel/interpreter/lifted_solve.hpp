@@ -26,12 +26,15 @@ class LiftedSolve {
   const std::optional<CompileReport>& compile_report() const { return report_; }
   /// The factors at the point that `memory` holds at order 0; false: the full matrix is to decide.
   bool factor(const Memory& memory);
-  /// The first solution after factor(), as in solve(); false: it does not hold, and the full matrix is to decide; b is as it was.
+  /// The first solution after factor(), as in solve(), and corrected if it is rough; false: it does not hold, and the full matrix is to decide; b is as it was.
   bool solve_first(std::span<double> b);
   /// b → q̈_k and λ_k in place.
   void solve(std::span<double> b);
-  /// In the direction of the last solution, those of the stored slots of the packed program.
-  const double* tangents() const { return cells_.data(); }
+  /// In the direction of the last solution, of a stage, those of the stored slots of the packed program; null where they are not good enough.
+  const double* tangents(int stage) const { return is_rough(stage) ? nullptr : cells_.data(); }
+  /// A solution in parts leaves up to 40 times as much of b as one from link to link, since it closes the gaps between parts by forces, which are large where a chain is heavy. A
+  /// motion depends on its orders the less the higher they are: those of the first are corrected, whatever they leave, and their tangents found from q̈.
+  bool is_rough(int stage) const { return in_parts_ && stage < rough_stages; }
 
   /// The smallest pivot in units of its terms and of its size where the pivots were chosen; by code 1 where all are sound, else 0.
   double least_pivot() const { return least_pivot_; }
@@ -39,11 +42,15 @@ class LiftedSolve {
   const sparse::SparseSolver* solver() const { return solver_ ? &*solver_ : nullptr; }
 
  private:
+  static constexpr int rough_stages = 3;
   bool fail();
   bool choose_pivots(const Memory& memory);
   double remainder(std::span<const double> b);
   void add_correction();
-  void make_code();
+  bool make_code();
+  bool choose_parts(const std::vector<std::vector<double>>& samples, const std::vector<sparse::Pivot>& pivots);
+  std::vector<std::uint32_t> wanted_cells() const;
+  bool compile_lines(const std::vector<straight::StraightLine>& lines);
   void drop_solver();
   void run_factor();
   void run_solve(std::span<const double> b, double* x);
@@ -63,7 +70,9 @@ class LiftedSolve {
   int failures_ = 0;
   std::optional<CompileOptions> options_;        // of the code that is wanted
   std::optional<CompileReport> report_;
-  straight::Code code_;                          // of the solver's solve()
+  straight::Code code_;                          // of the solver's solve(), and of its factor() if factors_by_code_
+  bool factors_by_code_ = false;
+  bool in_parts_ = false, parts_failed_ = false;
   std::vector<double> scratch_;                  // of the code
 };
 

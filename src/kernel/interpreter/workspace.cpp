@@ -26,6 +26,18 @@ constexpr std::size_t most_by_matrix = 16;
 /// A point alone (an output between steps) needs M₀ but no corrections: beyond this the instructions that M₀ goes through are fewer.
 constexpr std::size_t most_swept_at_point = 8;
 
+/// Infinity and NaN times 0 are NaN. Eight sums, since additions of one wait for each other for longer than the rest of a stage takes.
+bool are_finite(std::span<const double> values) {
+  constexpr std::size_t width = 8;
+  double sums[width] = {};
+  std::size_t i = 0;
+  for (; i + width <= values.size(); i += width)
+    for (std::size_t j = 0; j < width; ++j) sums[j] += values[i + j] * 0;
+  for (; i < values.size(); ++i) sums[0] += values[i] * 0;
+  for (std::size_t j = 1; j < width; ++j) sums[0] += sums[j];
+  return sums[0] == 0;
+}
+
 }  // namespace
 
 struct KernelWorkspace::Impl {
@@ -56,6 +68,7 @@ struct KernelWorkspace::Impl {
   bool run_compiled(int stages);
   void adopt(interpreter::CompiledCode code);
   void find_tangents(std::size_t directions);
+  void find_direction();
   void sweep_all();
   void sweep_block(std::size_t first);
   KernelStatus factor();
@@ -63,6 +76,7 @@ struct KernelWorkspace::Impl {
   void need_full();
   KernelStatus solve(int stage);
   void solve_factored();
+  void add_correction(int stage);
   void correct(int stage);
   bool constraints_agree();
   bool keeps(std::size_t constraint) const { return by_lifting || !solver || solver->keeps(constraint); }
@@ -89,6 +103,7 @@ struct KernelWorkspace::Impl {
   std::optional<interpreter::LiftedSolve> lifted;
   interpreter::Doubles solution;     // q̈_k and λ_k, padded
   std::span<double> unknown;         // [n + m] of it: −R_k, then q̈_k and λ_k
+  std::vector<double> rough;         // [n + m] a solution that is being corrected
   bool by_matrix, by_inverse = false, by_lifting = false;
   interpreter::Doubles inverse;      // by_inverse: −M⁻¹, rows padded
   interpreter::Doubles tangent;      // by_matrix: ∂slot/∂q^(lag) for each direction [n + m × stride], else for one
@@ -195,9 +210,7 @@ void KernelWorkspace::Impl::need_full() {
 KernelStatus KernelWorkspace::Impl::factor_full() {
   const std::size_t n = unknowns;
   need_full();
-  double check = 0;
-  for (const double value : bordered) check += value * 0;
-  if (check != 0) return KernelStatus::NonFinite;  // infinity and NaN times 0 are NaN
+  if (!are_finite(bordered)) return KernelStatus::NonFinite;
   by_inverse = by_matrix && n == program.freedoms && engine.negative_inverse(bordered.data(), n, inverse.data(), padded_unknowns());
   if (by_inverse) return KernelStatus::Ok;
   if (!solver) solver.emplace(program.freedoms, n - program.freedoms);
@@ -236,9 +249,23 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
     if (const KernelStatus status = factor_full(); status != KernelStatus::Ok) return status;
     solve_factored();
   }
-  double check = 0;
-  for (const double a : unknown) check += a * 0;
-  return check == 0 ? KernelStatus::Ok : KernelStatus::NonFinite;
+  if (by_lifting && stage > 0 && lifted->is_rough(stage)) add_correction(stage);
+  return are_finite(unknown) ? KernelStatus::Ok : KernelStatus::NonFinite;
+}
+
+/// The solution for what is left of −R_k, which the tangents tell.
+void KernelWorkspace::Impl::add_correction(int stage) {
+  find_direction();
+  rough.assign(unknown.begin(), unknown.end());
+  for (std::size_t i = 0; i < unknowns; ++i) unknown[i] = -memory.row(stage)[program.residual[i]] - tangent[program.residual[i]];
+  solve_factored();
+  for (std::size_t i = 0; i < unknowns; ++i) unknown[i] += rough[i];
+}
+
+/// All tangents in the direction of `unknown`.
+void KernelWorkspace::Impl::find_direction() {
+  std::copy(unknown.begin(), unknown.end(), tangent.begin());
+  find_tangents(1);
 }
 
 /// Whether the rows of A that were dropped as dependent hold for the accelerations of the others.
@@ -272,12 +299,10 @@ bool KernelWorkspace::Impl::outputs_follow_accelerations() const {
 /// Coefficient k + 2 − ℓ of a slot of lag ℓ follows q̈_k with its order-0 tangents: one by one, or the tangent in the direction of q̈_k.
 void KernelWorkspace::Impl::correct(int stage) {
   if (by_matrix) return engine.correct(tables, stage, tangents, solution.data());
-  if (!by_lifting) {
-    std::copy(unknown.begin(), unknown.end(), tangent.begin());
-    find_tangents(1);
-  }
+  const double* const known = by_lifting ? lifted->tangents(stage) : nullptr;
+  if (!known) find_direction();
   packed::TangentMatrix direction = tangents;
-  direction.values = by_lifting ? lifted->tangents() : tangent.data();
+  direction.values = known ? known : tangent.data();
   direction.directions = 1;
   const double weight = 1;
   engine.correct(tables, stage, direction, &weight);

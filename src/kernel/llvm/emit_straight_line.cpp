@@ -36,8 +36,10 @@ class LineEmitter {
 
   bool remade(straight::Value v) const {
     const Node::What what = line_.nodes[v].what;
-    return what == Node::Literal || what == Node::Given || what == Node::Unit;
+    return what == Node::Literal || what == Node::Given || what == Node::Unit || what == Node::Lane;
   }
+  /// What holds the number: a lane is read from its wide value.
+  straight::Value holder(straight::Value v) const { return line_.nodes[v].what == Node::Lane ? line_.nodes[v].a : v; }
 
   void cut() {
     piece_of_.resize(line_.nodes.size());
@@ -58,7 +60,7 @@ class LineEmitter {
     for (const straight::Value v : {node.a, node.b, node.c})
       if (v != straight::none) f(v);
     for (std::uint32_t i = node.first; i < node.last; ++i) {
-      if (node.what == Node::Angles) { f(line_.operands[i]); continue; }
+      if (straight::lists_operands(node)) { f(line_.operands[i]); continue; }
       for (const straight::Value v : {line_.terms[i].a, line_.terms[i].b, line_.terms[i].c})
         if (v != straight::none) f(v);
     }
@@ -69,23 +71,24 @@ class LineEmitter {
     place_.assign(line_.nodes.size(), 0);
     std::int64_t next = 8;
     const auto use = [&](straight::Value v, std::size_t piece) {
+      v = holder(v);
       if (remade(v) || place_[v] != 0 || piece_of_[v] == piece) return;
       place_[v] = next;
       next += is_wide(v) ? line_.wide : 1;
     };
     for (std::size_t i = 0; i < line_.nodes.size(); ++i) {
       const Node& node = line_.nodes[i];
-      if (node.what == Node::Sine || node.what == Node::Cosine) continue;
+      if (node.what == Node::Sine || node.what == Node::Cosine || node.what == Node::Lane) continue;
       for_operands(node, [&](straight::Value v) { use(v, piece_of_[i]); });
     }
-    checks_in_.resize(pieces_), stores_in_.resize(pieces_), finite_in_.resize(pieces_);
-    const auto piece_of = [&](straight::Value v) { return remade(v) ? pieces_ - 1 : piece_of_[v]; };
+    checks_in_.resize(pieces_), finite_in_.resize(pieces_), stores_of_.resize(line_.nodes.size());
+    const auto piece_of = [&](straight::Value v) { return remade(holder(v)) ? pieces_ - 1 : piece_of_[holder(v)]; };
     for (const auto& check : line_.checks) {
       const std::size_t piece = std::max(piece_of(check.pivot), piece_of(check.size));
       use(check.pivot, piece), use(check.size, piece);
       checks_in_[piece].push_back(&check);
     }
-    for (const auto& store : line_.stores) stores_in_[piece_of(store.value)].push_back(&store);
+    for (const auto& store : line_.stores) stores_of_[holder(store.value)].push_back(&store);
     for (const straight::Value v : line_.finite) finite_in_[piece_of(v)].push_back(v);
   }
 
@@ -97,11 +100,15 @@ class LineEmitter {
     for (llvm::Argument& argument : f->args()) arrays_.push_back(&argument);
     std::fill(values_.begin(), values_.end(), nullptr);
     for (straight::Value v = 0; v < line_.nodes.size(); ++v)
-      if (piece_of_[v] == piece_ && !remade(v)) define(v);
-    for (const straight::Store* store : stores_in_[piece_]) put(get(store->value), store->array, store->index);
+      if (remade(v) ? piece_ + 1 == pieces_ : piece_of_[v] == piece_) define(v), store(v);
     verdict();
     out_.end_function();
     return f;
+  }
+
+  /// As soon as it is there, so that it need not be kept.
+  void store(straight::Value v) {
+    for (const straight::Store* store : stores_of_[v]) put(get(store->value), store->array, store->index);
   }
 
   void call_all(const std::vector<llvm::Function*>& functions) {
@@ -118,27 +125,46 @@ class LineEmitter {
     if (piece_ > 0) margin = fetch(real_, line_.arrays, 0);
     Value* sums[4] = {number(0), number(0), number(0), number(0)};
     if (piece_ > 0) sums[0] = fetch(real_, line_.arrays, 1);
+    Value *wide_margin = nullptr, *wide_sum = nullptr;
     std::size_t turn = 0;
     const auto require_finite = [&](Value* x) {
       Value*& sum = sums[turn++ % 4];
       sum = out_.fma(x, number(0), sum);
     };
     for (const straight::PivotCheck* check : checks_in_[piece_]) {
-      Value* const now = out_.fma(number(-check->share), get(check->size), get(check->pivot));
-      margin = b_.CreateSelect(b_.CreateFCmpOLT(now, margin), now, margin);
-      require_finite(now);
+      llvm::Type* const type = type_of(check->pivot);
+      Value* const now = out_.fma(out_.number(-check->share, type), as(type, check->size), get(check->pivot));
+      if (type == real_) {
+        margin = lesser(now, margin);
+        require_finite(now);
+        continue;
+      }
+      wide_margin = wide_margin ? lesser(now, wide_margin) : now;
+      Value* const none = out_.number(0, type);
+      wide_sum = out_.fma(now, none, wide_sum ? wide_sum : none);
     }
     for (const straight::Value v : finite_in_[piece_]) require_finite(get(v));
+    for (std::uint64_t lane = 0; wide_sum && lane < line_.wide; ++lane) {
+      margin = lesser(b_.CreateExtractElement(wide_margin, lane), margin);
+      require_finite(b_.CreateExtractElement(wide_sum, lane));
+    }
     if (piece_ > 0 && turn == 0) return;
     put(margin, line_.arrays, 0);
     put(out_.add(out_.add(sums[0], sums[1]), out_.add(sums[2], sums[3])), line_.arrays, 1);
   }
 
+  Value* lesser(Value* x, Value* y) { return b_.CreateSelect(b_.CreateFCmpOLT(x, y), x, y); }
+
   // ------------------------------------------------------------------------------------------------------------------- values
 
-  bool is_wide(straight::Value v) const { return line_.nodes[v].what == Node::Wide || line_.nodes[v].what == Node::Unit; }
+  bool is_wide(straight::Value v) const { return straight::is_wide(line_.nodes[v]); }
   llvm::Type* type_of(straight::Value v) { return is_wide(v) ? out_.real(static_cast<int>(line_.wide)) : real_; }
   Value* number(double x) { return out_.number(x, real_); }
+  /// The same in all lanes, where `type` is wide and the value is not.
+  Value* as(llvm::Type* type, straight::Value v) {
+    Value* const x = get(v);
+    return x->getType() == type ? x : out_.splat(x, type);
+  }
 
   Value* address(std::uint32_t array, std::int64_t index) { return out_.at(arrays_[array], 8 * index); }
   Value* fetch(llvm::Type* type, std::uint32_t array, std::int64_t index) {
@@ -151,12 +177,19 @@ class LineEmitter {
     const Node& node = line_.nodes[v];
     switch (node.what) {
       case Node::Literal: return values_[v] = number(node.literal);
-      case Node::Given: return values_[v] = fetch(real_, node.array, node.index);
+      case Node::Given: return values_[v] = fetch(type_of(v), node.array, node.index);
+      case Node::Lane: return values_[v] = lane(node);
       case Node::Unit: return values_[v] = b_.CreateInsertElement(out_.number(0, type_of(v)), number(1), std::uint64_t{node.index});
       default: break;
     }
     if (place_[v] == 0) throw std::logic_error("a number is read before it is there; please report");
     return values_[v] = fetch(type_of(v), line_.arrays, place_[v]);
+  }
+
+  /// Of a wide value in memory that number alone.
+  Value* lane(const Node& node) {
+    if (!values_[node.a] && place_[node.a] != 0) return fetch(real_, line_.arrays, place_[node.a] + node.index);
+    return b_.CreateExtractElement(get(node.a), std::uint64_t{node.index});
   }
 
   void keep(straight::Value v, Value* x) {
@@ -167,17 +200,23 @@ class LineEmitter {
   void define(straight::Value v) {
     const Node& node = line_.nodes[v];
     switch (node.what) {
-      case Node::Sum: return keep(v, scaled(node, sum(node)));
-      case Node::Magnitudes: return keep(v, magnitudes(node));
-      case Node::Larger: return keep(v, larger(out_.absolute(get(node.a)), out_.absolute(get(node.b))));
+      case Node::Sum: return keep(v, scaled(node, sum(node, type_of(v)), type_of(v)));
+      case Node::Magnitudes: return keep(v, magnitudes(node, type_of(v)));
+      case Node::Larger: return keep(v, larger(out_.absolute(as(type_of(v), node.a)), out_.absolute(as(type_of(v), node.b))));
       case Node::Chosen: return keep(v, b_.CreateSelect(b_.CreateFCmpUNE(get(node.a), number(0)), get(node.b), get(node.c)));
       case Node::Angles: return angles(v);
       case Node::Root: return keep(v, out_.square_root(get(node.a)));
       case Node::Call: return keep(v, out_.elementary(node.function, get(node.a), node.b == straight::none ? nullptr : get(node.b)));
       case Node::Wide: return keep(v, wide(node, type_of(v)));
-      case Node::Lane: return keep(v, b_.CreateExtractElement(get(node.a), std::uint64_t{node.index}));
+      case Node::Gather: return keep(v, gathered(node, type_of(v)));
       default: return;  // sines and cosines come with their angles
     }
+  }
+
+  Value* gathered(const Node& node, llvm::Type* type) {
+    Value* out = llvm::PoisonValue::get(type);
+    for (std::uint32_t i = node.first; i < node.last; ++i) out = b_.CreateInsertElement(out, get(line_.operands[i]), std::uint64_t{i - node.first});
+    return out;
   }
 
   Value* larger(Value* x, Value* y) { return b_.CreateSelect(b_.CreateFCmpOGT(x, y), x, y); }
@@ -185,26 +224,26 @@ class LineEmitter {
   // --------------------------------------------------------------------------------------------------------------------- sums
 
   /// All but the last of the values of a term, and the last.
-  std::pair<Value*, Value*> halves(const straight::Term& t, bool positive) {
+  std::pair<Value*, Value*> halves(const straight::Term& t, llvm::Type* type, bool positive) {
     std::vector<Value*> factors;
     const double factor = positive ? std::abs(t.factor) : t.factor;
     for (const straight::Value v : {t.a, t.b, t.c})
-      if (v != straight::none) factors.push_back(get(v));
-    if (factors.empty()) return {nullptr, number(factor)};
+      if (v != straight::none) factors.push_back(as(type, v));
+    if (factors.empty()) return {nullptr, out_.number(factor, type)};
     Value* const last = factors.back();
     factors.pop_back();
     Value* head = nullptr;
     for (Value* const x : factors) head = head ? out_.multiply(head, x) : x;
-    if (std::abs(factor) != 1) head = head ? out_.multiply(head, number(factor)) : number(factor);
-    else if (factor < 0) head = head ? out_.negate(head) : number(-1);
+    if (std::abs(factor) != 1) head = head ? out_.multiply(head, out_.number(factor, type)) : out_.number(factor, type);
+    else if (factor < 0) head = head ? out_.negate(head) : out_.number(-1, type);
     return {head, last};
   }
 
-  Value* sum(const Node& node) {
+  Value* sum(const Node& node, llvm::Type* type) {
     Value* out = nullptr;
     for (std::uint32_t i = node.first; i < node.last; ++i) {
       const straight::Term& t = line_.terms[i];
-      const auto [head, last] = halves(t, false);
+      const auto [head, last] = halves(t, type, false);
       const bool sign = t.b == straight::none && t.factor == -1;
       if (!out) out = !head ? last : sign ? out_.negate(last) : out_.multiply(head, last);
       else if (!head) out = out_.add(out, last);
@@ -213,15 +252,15 @@ class LineEmitter {
     return out;
   }
 
-  Value* scaled(const Node& node, Value* x) {
-    if (node.a != straight::none) x = out_.multiply(x, get(node.a));
-    return node.b == straight::none ? x : out_.divide(x, get(node.b));
+  Value* scaled(const Node& node, Value* x, llvm::Type* type) {
+    if (node.a != straight::none) x = out_.multiply(x, as(type, node.a));
+    return node.b == straight::none ? x : out_.divide(x, as(type, node.b));
   }
 
-  Value* magnitudes(const Node& node) {
-    Value* out = number(0);
+  Value* magnitudes(const Node& node, llvm::Type* type) {
+    Value* out = out_.number(0, type);
     for (std::uint32_t i = node.first; i < node.last; ++i) {
-      const auto [head, last] = halves(line_.terms[i], true);
+      const auto [head, last] = halves(line_.terms[i], type, true);
       out = out_.add(out, out_.absolute(head ? out_.multiply(head, last) : last));
     }
     return out;
@@ -278,7 +317,7 @@ class LineEmitter {
   std::vector<std::size_t> piece_of_;  // [nodes]
   std::vector<std::int64_t> place_;    // [nodes] in scratch; 0: none
   std::vector<std::vector<const straight::PivotCheck*>> checks_in_;  // [pieces]
-  std::vector<std::vector<const straight::Store*>> stores_in_;
+  std::vector<std::vector<const straight::Store*>> stores_of_;       // [nodes] of it or of its lanes
   std::vector<std::vector<straight::Value>> finite_in_;
   std::vector<Value*> arrays_;
   std::vector<Value*> values_;         // [nodes] of this piece

@@ -1,9 +1,9 @@
 #include "kernel/sparse/elimination.hpp"
+#include "kernel/sparse/parts.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <set>
 
@@ -11,29 +11,12 @@ namespace maupertuis::sparse {
 namespace {
 
 constexpr std::size_t most_states = 16;
-constexpr std::uint32_t none = ~std::uint32_t{0};
 using Values = std::array<double, most_states>;
 
 struct Cell {
   std::uint32_t column;
   Values values;
 };
-
-/// The nearest coordinate of each column, in the graph whose edges are the entries between the columns that rows belong to.
-std::vector<std::uint32_t> nearest_coordinates(const LiftedSystem& system) {
-  std::vector<std::vector<std::uint32_t>> neighbours(system.size);
-  for (const auto& [row, column] : system.entries) {
-    neighbours[system.own_column[row]].push_back(column);
-    neighbours[column].push_back(system.own_column[row]);
-  }
-  std::vector<std::uint32_t> nearest(system.size, none);
-  std::deque<std::uint32_t> open;
-  for (std::uint32_t i = 0; i < system.row_of_residual.size(); ++i) nearest[i] = i, open.push_back(i);
-  for (; !open.empty(); open.pop_front())
-    for (const std::uint32_t next : neighbours[open.front()])
-      if (nearest[next] == none) nearest[next] = nearest[open.front()], open.push_back(next);
-  return nearest;
-}
 
 class Elimination {
  public:
@@ -55,8 +38,10 @@ class Elimination {
     }
   }
 
-  std::optional<std::vector<Pivot>> run() {
-    for (std::uint32_t group = 0; group < members_.size(); ++group) open_.push_back(group);
+  std::optional<std::vector<Pivot>> run(const std::vector<std::vector<std::uint32_t>>& parts) {
+    eliminate_parts(parts);
+    for (std::uint32_t group = 0; group < members_.size(); ++group)
+      if (!members_[group].empty()) open_.push_back(group);
     while (!open_.empty()) {
       const std::size_t before = pivots_.size();
       bool merged = false;
@@ -177,6 +162,17 @@ class Elimination {
     return out;
   }
 
+  void eliminate_parts(const std::vector<std::vector<std::uint32_t>>& parts) {
+    for (std::size_t turn = 0; !parts.empty() && turn < parts[0].size(); ++turn, round_ = next_round_)
+      for (part_ = 0; part_ < parts.size();) {
+        const std::uint32_t group = parts[part_][turn];
+        ++part_;
+        eliminate_group(group);
+      }
+    between_parts_ = !parts.empty();
+    part_ = 0;
+  }
+
   /// Whether what has no acceptable pivot here went to a neighbour: a multiplier has none before its coordinates are gone.
   bool eliminate_group(std::uint32_t group) {
     std::uint32_t round = round_;
@@ -201,6 +197,7 @@ class Elimination {
 
   /// The cheapest acceptable one among the rows and columns of the group, the rows' own before others.
   std::optional<Place> best_pivot(std::uint32_t group) {
+    if (between_parts_) return most_certain_pivot(group);
     for (const bool own : {true, false}) {
       std::optional<Place> best;
       std::size_t least = std::numeric_limits<std::size_t>::max();
@@ -217,6 +214,23 @@ class Elimination {
     return std::nullopt;
   }
 
+  bool keeps_sign(const Cell& cell) const {
+    for (std::size_t s = 0; s < most_states; ++s)
+      if (in_use_[s] && !(cell.values[s] * cell.values[0] > 0)) return false;
+    return true;
+  }
+
+  std::optional<Place> most_certain_pivot(std::uint32_t group) {
+    std::optional<Place> best;
+    double most = options_.least_own_share;
+    for (const std::uint32_t row : members_[group])
+      for (const Cell& cell : rows_[row]) {
+        if (group_of_column_[cell.column] != group || !keeps_sign(cell)) continue;
+        if (const double here = share(cell); here > most) most = here, best = {row, cell.column};
+      }
+    return best;
+  }
+
   // ---------------------------------------------------------------------------------------------------- elimination
 
   Cell& cell(std::uint32_t row, std::uint32_t column) {
@@ -227,7 +241,7 @@ class Elimination {
   }
 
   void eliminate(std::uint32_t row, std::uint32_t column, std::uint32_t round) {
-    Pivot pivot{row, column, round, 0, {}, {}};
+    Pivot pivot{row, column, round, part_, 0, {}, {}};
     take_from_group(row, column);
     const std::vector<Cell> cells = std::move(rows_[row]);
     rows_[row].clear();
@@ -276,15 +290,17 @@ class Elimination {
   std::array<bool, most_states> in_use_;             // states by which pivots are judged
   std::vector<std::uint32_t> open_;                  // groups
   std::uint32_t round_ = 0, next_round_ = 0;
+  std::uint32_t part_ = 0;                           // that is being eliminated; see Pivot
+  bool between_parts_ = false;
   std::vector<Pivot> pivots_;
 };
 
 }  // namespace
 
 std::optional<std::vector<Pivot>> eliminate(const LiftedSystem& system, const std::vector<std::vector<double>>& samples,
-                                            const EliminationOptions& options) {
+                                            const EliminationOptions& options, const std::vector<std::vector<std::uint32_t>>& parts) {
   if (samples.empty() || samples.size() > most_states) return std::nullopt;
-  return Elimination(system, samples, options).run();
+  return Elimination(system, samples, options).run(parts);
 }
 
 }  // namespace maupertuis::sparse

@@ -28,6 +28,7 @@ class SparseBuilder {
     build_factorization();
     for (const Pivot& pivot : pivots_) s_.usual_size_.push_back(pivot.size);
     s_.entries_.assign(system_.entries.size() + 1, 0.0);
+    note_parts();
   }
 
  private:
@@ -85,8 +86,10 @@ class SparseBuilder {
     lay_out(s_.forward_, sums, [&](const Sum& sum, std::uint32_t other) { return key(pivots_[sum.pivot].row, pivots_[other].column); });
   }
 
+  /// What belongs to no part comes first, and the order within a part is that of the part alone: so parts that are alike stay so.
   void build_backward() {
     const std::size_t n = pivots_.size();
+    std::uint32_t between_parts = 0;
     std::vector<bool> needed(n, false);
     for (std::uint32_t p = 0; p < n; ++p) {  // U refers to later pivots
       needed[p] = needed[p] || system_.wanted[pivots_[p].column];
@@ -101,11 +104,16 @@ class SparseBuilder {
       for (const std::uint32_t column : pivots_[p].columns) {
         const std::uint32_t j = pivot_of_column_[column];
         sum.others.push_back(j);
-        level[p] = std::max(level[p], level[j] + 1);
+        const bool is_known = pivots_[p].part != 0 && pivots_[j].part == 0;
+        level[p] = std::max(level[p], is_known ? between_parts : level[j] + 1);
       }
+      if (pivots_[p].part == 0) between_parts = std::max(between_parts, level[p] + 1);
       if (sum.others.empty() && has_y_[p]) continue;  // x = y
       sum.level = level[p];
-      std::stable_sort(sum.others.begin(), sum.others.end(), [&](std::uint32_t a, std::uint32_t b) { return level[a] < level[b]; });
+      const auto order = [&](std::uint32_t a) {
+        return pivots_[p].part != 0 && pivots_[a].part == 0 ? std::pair(0U, pivots_[a].column) : std::pair(level[a], 0U);
+      };
+      std::stable_sort(sum.others.begin(), sum.others.end(), [&](std::uint32_t a, std::uint32_t b) { return order(a) < order(b); });
       s_.backward_depth_ = std::max<std::size_t>(s_.backward_depth_, sum.level + 1);
       sums.push_back(std::move(sum));
     }
@@ -142,6 +150,7 @@ class SparseBuilder {
     std::uint32_t level;
     FactorSum sum;
     std::vector<FactorProduct> products;
+    std::uint64_t place;
   };
 
   /// An entry of L or U is its entry of the matrix minus the products of all earlier pivots. What is known early is computed early, with
@@ -177,7 +186,7 @@ class SparseBuilder {
 
   Work work_of(FactorRun::Kind kind, std::uint32_t row, std::uint32_t column, std::uint32_t pivot) {
     const auto entry = entry_at_.find(key(row, column));
-    Work out{kind, 0, {none, entry == entry_at_.end() ? static_cast<std::uint32_t>(system_.entries.size()) : entry->second, pivot}, {}};
+    Work out{kind, 0, {none, entry == entry_at_.end() ? static_cast<std::uint32_t>(system_.entries.size()) : entry->second, pivot}, {}, key(row, column)};
     if (const auto found = products_.find(key(row, column)); found != products_.end()) out.products = std::move(found->second);
     const auto level = [&](const FactorProduct& p) { return std::max(factor_level_[p.lower], factor_level_[p.upper]); };
     for (const FactorProduct& product : out.products) out.level = std::max(out.level, level(product) + 1);
@@ -205,9 +214,24 @@ class SparseBuilder {
                                    static_cast<std::uint32_t>(s_.products_.size())});
       s_.factor_runs_.back().last = i + 1;
       s_.sums_.push_back(work[i].sum);
+      s_.place_of_sum_.push_back(work[i].place);
       s_.products_.insert(s_.products_.end(), work[i].products.begin(), work[i].products.end());
     }
     s_.factor_products_ = s_.products_.size();
+  }
+
+  void note_parts() {
+    s_.part_of_cell_.assign(*std::max_element(cells_.begin(), cells_.end()) + 1, 0);
+    s_.part_of_factor_.assign(next_factor_, 0);
+    for (std::uint32_t p = 0; p < pivots_.size(); ++p) {
+      const std::uint32_t part = pivots_[p].part;
+      s_.parts_ = std::max(s_.parts_, part);
+      s_.part_of_pivot_.push_back(part);
+      s_.column_of_pivot_.push_back(pivots_[p].column);
+      s_.part_of_cell_[cell(p)] = part;
+      for (const std::uint32_t row : pivots_[p].rows) s_.part_of_factor_[factor_at(key(row, pivots_[p].column))] = part;
+      for (const std::uint32_t column : pivots_[p].columns) s_.part_of_factor_[factor_at(key(pivots_[p].row, column))] = part;
+    }
   }
 
   const LiftedSystem& system_;

@@ -39,6 +39,7 @@ class SparseSolver {
   const double* usual_sizes() const { return usual_size_.data(); }
 
   /// Products of a factorization and of a solution: their cost.
+  std::size_t factor_count() const { return factors_.size(); }
   std::size_t factor_products() const { return factor_products_; }
   std::size_t solve_products() const { return forward_.operand.size() + backward_.operand.size(); }
   /// How many sums wait for each other in a solution.
@@ -46,6 +47,8 @@ class SparseSolver {
 
  private:
   friend class SparseBuilder;
+  friend class SolveWriter;
+  friend class FactorWriter;
 
   /// Sums over factors and unknowns of a solution, in the order in which they are made.
   struct Sweep {
@@ -66,6 +69,10 @@ class SparseSolver {
   std::vector<double> literal_factor_;           // [factors] of those that are the same number at every point; else NaN
   std::vector<double> inverse_;                  // [pivots]
   std::vector<double> usual_size_;               // [pivots] the largest at the sampled states
+  // Parts, see Pivot; and orders in which they are alike.
+  std::uint32_t parts_ = 0;
+  std::vector<std::uint32_t> part_of_pivot_, column_of_pivot_, part_of_cell_, part_of_factor_;
+  std::vector<std::uint64_t> place_of_sum_;      // [sums] row and column
   std::vector<double> entries_;                  // [entries + 1] the last one 0
   std::size_t factor_products_ = 0, forward_depth_ = 0, backward_depth_ = 0;
 };

@@ -34,8 +34,9 @@ Value Builder::add(Node::What what, std::vector<Term> terms, Node node) {
       if (v != none) most = std::max(most, depth_[v]);
     return most;
   };
-  std::stable_sort(terms.begin(), terms.end(), [&](const Term& x, const Term& y) { return depth(x) < depth(y); });
+  if (part_ == 0) std::stable_sort(terms.begin(), terms.end(), [&](const Term& x, const Term& y) { return depth(x) < depth(y); });
   node.what = what;
+  node.part = part_;
   node.first = static_cast<std::uint32_t>(line_.terms.size());
   line_.terms.insert(line_.terms.end(), terms.begin(), terms.end());
   node.last = static_cast<std::uint32_t>(line_.terms.size());
@@ -93,7 +94,7 @@ Value Builder::sum(std::vector<Term> terms, Value times, Value over) {
 }
 
 Value Builder::magnitudes(const std::vector<Term>& terms) { return add(Node::Magnitudes, folded(terms)); }
-Value Builder::larger(Value a, Value b) { return add({.what = Node::Larger, .a = a, .b = b}); }
+Value Builder::larger(Value a, Value b) { return add({.what = Node::Larger, .part = part_, .a = a, .b = b}); }
 
 Value Builder::choose(Value condition, Value then, Value otherwise) {
   if (is_literal(condition)) return literal_of(condition) != 0 ? then : otherwise;
@@ -130,11 +131,26 @@ Value Builder::wide(const std::vector<Term>& terms) {
 
 Value Builder::lane(Value wide, std::uint32_t index) { return add({.what = Node::Lane, .a = wide, .index = index}); }
 
+Value Builder::gather(const std::vector<Value>& lanes) { return copy({.what = Node::Gather}, {}, lanes); }
+
+Value Builder::wide_given(std::uint32_t array, std::uint32_t first) {
+  return add({.what = Node::Given, .wide = true, .array = array, .index = first});
+}
+
+Value Builder::copy(Node node, std::vector<Term> terms, const std::vector<Value>& operands) {
+  if (!terms.empty()) return add(node.what, std::move(terms), node);
+  node.first = static_cast<std::uint32_t>(line_.operands.size());
+  line_.operands.insert(line_.operands.end(), operands.begin(), operands.end());
+  node.last = static_cast<std::uint32_t>(line_.operands.size());
+  if (!lists_operands(node)) node.first = node.last = 0;
+  return add(node);
+}
+
 std::vector<Value> Builder::operands_of(const Node& node) const {
   std::vector<Value> out;
   const auto add = [&](Value v) { if (v != none) out.push_back(v); };
   add(node.a), add(node.b), add(node.c);
-  if (node.what == Node::Angles) {
+  if (lists_operands(node)) {
     for (std::uint32_t i = node.first; i < node.last; ++i) add(line_.operands[i]);
   } else {
     for (std::uint32_t i = node.first; i < node.last; ++i) add(line_.terms[i].a), add(line_.terms[i].b), add(line_.terms[i].c);
@@ -180,14 +196,14 @@ StraightLine Builder::finish(std::uint32_t arrays, std::uint32_t wide, Value anc
     Node node = line_.nodes[v];
     node.a = renumber(node.a), node.b = renumber(node.b), node.c = renumber(node.c);
     const std::uint32_t first = node.first, last = node.last;
-    const bool angles = node.what == Node::Angles;
-    node.first = static_cast<std::uint32_t>(angles ? out.operands.size() : out.terms.size());
+    const bool listed = lists_operands(node);
+    node.first = static_cast<std::uint32_t>(listed ? out.operands.size() : out.terms.size());
     for (std::uint32_t i = first; i < last; ++i) {
-      if (angles) { out.operands.push_back(renumber(line_.operands[i])); continue; }
+      if (listed) { out.operands.push_back(renumber(line_.operands[i])); continue; }
       const Term& t = line_.terms[i];
       out.terms.push_back({t.factor, renumber(t.a), renumber(t.b), renumber(t.c)});
     }
-    node.last = static_cast<std::uint32_t>(angles ? out.operands.size() : out.terms.size());
+    node.last = static_cast<std::uint32_t>(listed ? out.operands.size() : out.terms.size());
     out.nodes.push_back(node);
   }
   for (PivotCheck& check : out.checks) check.pivot = number[check.pivot], check.size = number[check.size];

@@ -27,6 +27,13 @@ class Builder {
   Value unit(std::uint32_t lane);
   Value wide(const std::vector<Term>& terms);
   Value lane(Value wide, std::uint32_t index);
+  Value gather(const std::vector<Value>& lanes);
+  Value wide_given(std::uint32_t array, std::uint32_t first);
+  /// A node of another line, with operands and terms of this one.
+  Value copy(Node node, std::vector<Term> terms, const std::vector<Value>& operands);
+
+  /// Of the sums and sizes that follow. Terms keep their order in a part, so that equal parts stay equal.
+  void set_part(std::uint32_t part) { part_ = static_cast<std::uint8_t>(part); }
 
   void check(PivotCheck check) { line_.checks.push_back(check); }
   void require_finite(Value value) { line_.finite.push_back(value); }
@@ -49,6 +56,7 @@ class Builder {
   std::vector<bool> needed() const;
 
   StraightLine line_;
+  std::uint8_t part_ = 0;
   std::vector<std::uint32_t> depth_;  // [nodes] of operations that it waits for
   std::map<std::tuple<std::uint8_t, std::uint64_t, std::uint64_t>, Value> once_;
 };

@@ -35,7 +35,10 @@ struct Node {
     Unit,        // wide: 1 in lane `index`, else 0
     Wide,        // wide: Σ terms; in each the last factor is wide, the others are not
     Lane,        // number `index` of the wide node a
+    Gather,      // wide: `operands`, a lane each
   } what = Literal;
+  bool wide = false;         // Given: numbers that follow each other; Sum, Magnitudes, Larger: lane by lane
+  std::uint8_t part = 0;     // 0: of none, see widen()
   Kind function = Kind::Exp;
   Value a = none, b = none, c = none;
   std::uint32_t array = 0, index = 0;
@@ -44,15 +47,19 @@ struct Node {
 };
 
 struct Store {
-  Value value;
+  Value value;                     // wide: to places that follow each other
   std::uint32_t array, index;
 };
 
-/// `pivot` is to be above share · size.
+/// `pivot` is to be above share · size, in all lanes if they are wide.
 struct PivotCheck {
   Value pivot, size;
   double share;
 };
+
+/// Whether it refers to `operands` instead of terms.
+inline bool lists_operands(const Node& node) { return node.what == Node::Angles || node.what == Node::Gather; }
+inline bool is_wide(const Node& node) { return node.wide || node.what == Node::Wide || node.what == Node::Unit || node.what == Node::Gather; }
 
 struct StraightLine {
   std::vector<Node> nodes;

@@ -36,7 +36,7 @@ TEST_CASE("the tangents of the stored slots come with the solution") {
   std::copy(x.begin(), x.end(), tangents.begin());
   interpreter::tangents<1>(lifted.memory, tangents.data(), interpreter::moved_instructions(lifted.packed.program));
   for (Slot slot = 0; slot < lifted.packed.program.stored_end[2]; ++slot)
-    CHECK(lifted.solve.tangents()[slot] == doctest::Approx(tangents[slot]).epsilon(1e-11));
+    CHECK(lifted.solve.tangents(later)[slot] == doctest::Approx(tangents[slot]).epsilon(1e-11));
 }
 
 TEST_CASE("the cost of chains grows as their length") {

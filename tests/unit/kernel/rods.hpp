@@ -66,6 +66,9 @@ inline Point random_point(std::size_t n, unsigned seed) {
 
 inline const std::vector<double> one{1.0};
 
+/// A stage whose tangents come with the solution.
+inline constexpr int later = 5;
+
 /// The lifted system of a program at a point, as a workspace uses it.
 struct Lifted {
   explicit Lifted(const Kernel& k)

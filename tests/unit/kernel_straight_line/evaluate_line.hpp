@@ -17,13 +17,14 @@ inline Evaluated evaluate(const maupertuis::straight::StraightLine& line, std::v
   using namespace maupertuis;
   using straight::Node, straight::Value, straight::none;
   Evaluated out{{}, std::move(arrays)};
-  const auto at = [&](Value v) { return v == none ? 1.0 : out.values[v][0]; };
+  const auto in_lane = [&](Value v, std::size_t lane) { return v == none ? 1.0 : out.values[v][out.values[v].size() == 1 ? 0 : lane]; };
   for (const Node& node : line.nodes) {
-    const auto scalar = [&]() -> double {
+    const auto number = [&](std::size_t lane) -> double {
+      const auto at = [&](Value v) { return in_lane(v, lane); };
       double sum = 0;
       switch (node.what) {
         case Node::Literal: return node.literal;
-        case Node::Given: return out.arrays[node.array][node.index];
+        case Node::Given: return out.arrays[node.array][node.index + lane];
         case Node::Sum:
           for (std::uint32_t i = node.first; i < node.last; ++i)
             sum += line.terms[i].factor * at(line.terms[i].a) * at(line.terms[i].b) * at(line.terms[i].c);
@@ -43,18 +44,23 @@ inline Evaluated evaluate(const maupertuis::straight::StraightLine& line, std::v
           if (node.function == Kind::Atan2) return std::atan2(at(node.a), at(node.b));
           throw std::logic_error("a function that these tests do not use");
         case Node::Lane: return out.values[node.a][node.index];
+        case Node::Unit: return node.index == lane ? 1 : 0;
+        case Node::Gather: return at(line.operands[node.first + lane]);
+        case Node::Wide:
+          for (std::uint32_t i = node.first; i < node.last; ++i)
+            sum += line.terms[i].factor * at(line.terms[i].a) * at(line.terms[i].b) * at(line.terms[i].c);
+          return sum;
         default: return NAN;
       }
     };
-    if (node.what != Node::Unit && node.what != Node::Wide) { out.values.push_back({scalar()}); continue; }
-    std::vector<double> wide(line.wide, 0.0);
-    if (node.what == Node::Unit) wide[node.index] = 1;
-    for (std::uint32_t i = node.first; node.what == Node::Wide && i < node.last; ++i)
-      for (std::uint32_t lane = 0; lane < line.wide; ++lane)
-        wide[lane] += line.terms[i].factor * at(line.terms[i].a) * at(line.terms[i].b) * out.values[line.terms[i].c][lane];
-    out.values.push_back(std::move(wide));
+    std::vector<double> numbers;
+    for (std::size_t lane = 0; lane < (straight::is_wide(node) ? line.wide : 1); ++lane) numbers.push_back(number(lane));
+    out.values.push_back(std::move(numbers));
   }
-  for (const straight::Store& store : line.stores) out.arrays[store.array][store.index] = at(store.value);
-  for (const straight::PivotCheck& check : line.checks) out.margin = std::min(out.margin, at(check.pivot) - check.share * at(check.size));
+  for (const straight::Store& store : line.stores)
+    for (std::size_t lane = 0; lane < out.values[store.value].size(); ++lane) out.arrays[store.array][store.index + lane] = out.values[store.value][lane];
+  for (const straight::PivotCheck& check : line.checks)
+    for (std::size_t lane = 0; lane < out.values[check.pivot].size(); ++lane)
+      out.margin = std::min(out.margin, in_lane(check.pivot, lane) - check.share * in_lane(check.size, lane));
   return out;
 }

@@ -1,0 +1,33 @@
+#pragma once
+#include "kernel/straight_line/straight_line.hpp"
+
+#include <map>
+#include <optional>
+
+namespace maupertuis::straight {
+
+/// Where numbers of an array go whose order is known to two straight lines alone: what a lane each reads or writes goes side by side.
+class Places {
+ public:
+  explicit Places(std::size_t size) : place_(size, none), top_(static_cast<std::uint32_t>(size)) {}
+
+  /// Of one number; lanes fill the array from below, single numbers from above.
+  std::uint32_t place(std::uint32_t index) { return place_[index] == none ? place_[index] = --top_ : place_[index]; }
+  /// Side by side, if none of them has a place yet.
+  void place_together(const std::vector<std::uint32_t>& indices);
+  bool is_placed(std::uint32_t index) const { return place_[index] != none; }
+
+ private:
+  std::vector<std::uint32_t> place_;
+  std::uint32_t bottom_ = 0, top_;
+};
+
+/// By array.
+using Rearranged = std::map<std::uint32_t, Places*>;
+
+/// The parts of `line` as one whose numbers are wide, a part a lane; nothing where they are not alike, or wait for each other. Alike are parts whose sums follow each
+/// other with the same terms, as far as these are of the part; all else that they read is gathered. Stores to numbers of `written` that have no place are left
+/// out: nobody reads them.
+std::optional<StraightLine> widen(const StraightLine& line, const Rearranged& read, const Rearranged& written);
+
+}  // namespace maupertuis::straight
