@@ -33,7 +33,7 @@ class LiftedSolve {
   /// In the direction of the last solution, of a stage, those of the stored slots of the packed program; null where they are not good enough.
   const double* tangents(int stage) const { return is_rough(stage) ? nullptr : cells_.data(); }
   /// A solution in parts leaves up to 40 times as much of b as one from link to link, since it closes the gaps between parts by forces, which are large where a chain is heavy. A
-  /// motion depends on its orders the less the higher they are: those of the first are corrected, whatever they leave, and their tangents found from q̈.
+  /// motion depends on its orders the less the higher they are: those of the first are to be solved twice, and their tangents found from q̈.
   bool is_rough(int stage) const { return in_parts_ && stage < rough_stages; }
 
   /// The smallest pivot in units of its terms and of its size where the pivots were chosen; by code 1 where all are sound, else 0.
@@ -42,7 +42,7 @@ class LiftedSolve {
   const sparse::SparseSolver* solver() const { return solver_ ? &*solver_ : nullptr; }
 
  private:
-  static constexpr int rough_stages = 3;
+  static constexpr int rough_stages = 2;
   bool fail();
   bool choose_pivots(const Memory& memory);
   double remainder(std::span<const double> b);

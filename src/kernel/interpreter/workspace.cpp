@@ -26,6 +26,9 @@ constexpr std::size_t most_by_matrix = 16;
 /// A point alone (an output between steps) needs M₀ but no corrections: beyond this the instructions that M₀ goes through are fewer.
 constexpr std::size_t most_swept_at_point = 8;
 
+/// What a rough solution may be wrong by. Beyond, the error bounds of LiftedSolve decide, since M₀ may be badly conditioned.
+constexpr double largest_correction = 1e-9;
+
 /// Infinity and NaN times 0 are NaN. Eight sums, since additions of one wait for each other for longer than the rest of a stage takes.
 bool are_finite(std::span<const double> values) {
   constexpr std::size_t width = 8;
@@ -76,7 +79,7 @@ struct KernelWorkspace::Impl {
   void need_full();
   KernelStatus solve(int stage);
   void solve_factored();
-  void add_correction(int stage);
+  bool solve_twice(int stage);
   void correct(int stage);
   bool constraints_agree();
   bool keeps(std::size_t constraint) const { return by_lifting || !solver || solver->keeps(constraint); }
@@ -241,6 +244,7 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
     const bool finite = engine.solve_by_inverse(inverse.data(), padded_unknowns(), row, program.residual.data(), unknowns, solution.data());
     return finite ? KernelStatus::Ok : KernelStatus::NonFinite;
   }
+  if (by_lifting && lifted->is_rough(stage) && (solve_twice(stage) || stage > 0)) return are_finite(unknown) ? KernelStatus::Ok : KernelStatus::NonFinite;
   for (std::size_t i = 0; i < unknowns; ++i) unknown[i] = -row[program.residual[i]];
   if (stage > 0 || !by_lifting) {
     solve_factored();
@@ -249,17 +253,24 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
     if (const KernelStatus status = factor_full(); status != KernelStatus::Ok) return status;
     solve_factored();
   }
-  if (by_lifting && stage > 0 && lifted->is_rough(stage)) add_correction(stage);
   return are_finite(unknown) ? KernelStatus::Ok : KernelStatus::NonFinite;
 }
 
-/// The solution for what is left of −R_k, which the tangents tell.
-void KernelWorkspace::Impl::add_correction(int stage) {
+/// A rough solution, and one for what it leaves of −R_k, which the tangents tell. False: the second is not small beside the first, as it is where the first holds.
+bool KernelWorkspace::Impl::solve_twice(int stage) {
+  const double* const row = memory.row(stage);
+  for (std::size_t i = 0; i < unknowns; ++i) unknown[i] = -row[program.residual[i]];
+  lifted->solve(unknown);
   find_direction();
   rough.assign(unknown.begin(), unknown.end());
-  for (std::size_t i = 0; i < unknowns; ++i) unknown[i] = -memory.row(stage)[program.residual[i]] - tangent[program.residual[i]];
-  solve_factored();
-  for (std::size_t i = 0; i < unknowns; ++i) unknown[i] += rough[i];
+  for (std::size_t i = 0; i < unknowns; ++i) unknown[i] = -row[program.residual[i]] - tangent[program.residual[i]];
+  lifted->solve(unknown);
+  double largest = 0, correction = 0;
+  for (std::size_t i = 0; i < unknowns; ++i) {
+    largest = std::max(largest, std::abs(rough[i])), correction = std::max(correction, std::abs(unknown[i]));
+    unknown[i] += rough[i];
+  }
+  return correction <= largest_correction * largest;
 }
 
 /// All tangents in the direction of `unknown`.
