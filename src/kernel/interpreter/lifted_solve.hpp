@@ -26,14 +26,16 @@ class LiftedSolve {
   const std::optional<CompileReport>& compile_report() const { return report_; }
   /// The factors at the point that `memory` holds at order 0; false: the full matrix is to decide.
   bool factor(const Memory& memory);
-  /// The first solution after factor(), as in solve(), and corrected if it is rough; false: it does not hold, and the full matrix is to decide; b is as it was.
+  /// The first solution after factor(), as in solve(), and corrected if it is rough; false: it does not hold, and the full matrix is to
+  /// decide; b is as it was.
   bool solve_first(std::span<double> b);
   /// b → q̈_k and λ_k in place.
   void solve(std::span<double> b);
-  /// In the direction of the last solution, of a stage, those of the stored slots of the packed program; null where they are not good enough.
+  /// In the direction of the last solution, of a stage, those of the stored slots of the packed program; null where they are too rough.
   const double* tangents(int stage) const { return is_rough(stage) ? nullptr : cells_.data(); }
-  /// A solution in parts leaves up to 40 times as much of b as one from link to link, since it closes the gaps between parts by forces, which are large where a chain is heavy. A
-  /// motion depends on its orders the less the higher they are: those of the first are to be solved twice, and their tangents found from q̈.
+  /// A solution in parts leaves up to 40 times as much of b as one from link to link, since it closes the gaps between parts by forces,
+  /// which are large where a chain is heavy. A motion depends on its orders the less the higher they are: the first ones are to be
+  /// solved twice, and their tangents found from q̈.
   bool is_rough(int stage) const { return in_parts_ && stage < rough_stages; }
 
   /// The smallest pivot in units of its terms and of its size where the pivots were chosen; by code 1 where all are sound, else 0.

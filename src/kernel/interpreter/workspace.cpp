@@ -79,6 +79,7 @@ struct KernelWorkspace::Impl {
   void need_full();
   KernelStatus solve(int stage);
   void solve_factored();
+  void fetch_residual(int stage);
   bool solve_twice(int stage);
   void correct(int stage);
   bool constraints_agree();
@@ -244,8 +245,9 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
     const bool finite = engine.solve_by_inverse(inverse.data(), padded_unknowns(), row, program.residual.data(), unknowns, solution.data());
     return finite ? KernelStatus::Ok : KernelStatus::NonFinite;
   }
-  if (by_lifting && lifted->is_rough(stage) && (solve_twice(stage) || stage > 0)) return are_finite(unknown) ? KernelStatus::Ok : KernelStatus::NonFinite;
-  for (std::size_t i = 0; i < unknowns; ++i) unknown[i] = -row[program.residual[i]];
+  const auto finite = [this] { return are_finite(unknown) ? KernelStatus::Ok : KernelStatus::NonFinite; };
+  if (by_lifting && lifted->is_rough(stage) && (solve_twice(stage) || stage > 0)) return finite();
+  fetch_residual(stage);
   if (stage > 0 || !by_lifting) {
     solve_factored();
   } else if (!lifted->solve_first(unknown)) {
@@ -253,17 +255,24 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
     if (const KernelStatus status = factor_full(); status != KernelStatus::Ok) return status;
     solve_factored();
   }
-  return are_finite(unknown) ? KernelStatus::Ok : KernelStatus::NonFinite;
+  return finite();
 }
 
-/// A rough solution, and one for what it leaves of −R_k, which the tangents tell. False: the second is not small beside the first, as it is where the first holds.
-bool KernelWorkspace::Impl::solve_twice(int stage) {
+/// unknown = −R_k
+void KernelWorkspace::Impl::fetch_residual(int stage) {
   const double* const row = memory.row(stage);
   for (std::size_t i = 0; i < unknowns; ++i) unknown[i] = -row[program.residual[i]];
+}
+
+/// A rough solution, and one for what it leaves of −R_k, which the tangents tell. False: the second is not small beside the first, as it
+/// is where the first holds.
+bool KernelWorkspace::Impl::solve_twice(int stage) {
+  fetch_residual(stage);
   lifted->solve(unknown);
   find_direction();
   rough.assign(unknown.begin(), unknown.end());
-  for (std::size_t i = 0; i < unknowns; ++i) unknown[i] = -row[program.residual[i]] - tangent[program.residual[i]];
+  fetch_residual(stage);
+  for (std::size_t i = 0; i < unknowns; ++i) unknown[i] -= tangent[program.residual[i]];
   lifted->solve(unknown);
   double largest = 0, correction = 0;
   for (std::size_t i = 0; i < unknowns; ++i) {

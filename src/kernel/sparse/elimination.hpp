@@ -12,8 +12,9 @@
 /// definite matrix, which needs no exchange of rows. No pivot is exchanged later, so each must be large in its column at every
 /// one of several sampled states.
 ///
-/// Parts (parts.hpp) are eliminated before all else, group by group and all parts in turn. What two parts leave of the group between them is not definite in the order of the rows' own
-/// unknowns, (1 + Λ I) with definite Λ and I, but it is in another one: there the pivot is what keeps its sign at all states and is largest where it is least.
+/// Parts (parts.hpp) are eliminated before all else, group by group and all parts in turn. What two parts leave of the group between them is
+/// not definite in the order of the rows' own unknowns, (1 + Λ I) with definite Λ and I, but it is in another one: there the pivot is
+/// what keeps its sign at all states and is largest where it is least.
 namespace maupertuis::sparse {
 
 struct Pivot {

@@ -1,9 +1,9 @@
 #pragma once
 #include "kernel/sparse/lifted_system.hpp"
 
-/// Parts of a system that are eliminated side by side, a lane of a vector each. The coordinates of a chain, or of any strip, stand in levels by their distance from an
-/// end; some levels apart from each other separate parts of as many levels, and what lies at the ends belongs to no part. Whether parts are alike shows in
-/// the elimination itself (straight::widen).
+/// Parts of a system that are eliminated side by side, a lane of a vector each. The coordinates of a chain, or of any strip, stand in
+/// levels by their distance from an end; single levels separate parts of equal length, and what lies at the ends belongs to no part.
+/// Whether parts are alike shows in what is written down of their elimination (straight::widen).
 namespace maupertuis::sparse {
 
 /// The nearest coordinate of each column, in the graph whose edges are the entries between the columns that rows belong to.

@@ -10,8 +10,8 @@ using straight::Builder;
 using straight::Term;
 using straight::Value;
 
-/// Sums of FactorTables, those of parts first; what a part leaves for the others is a sum of its own. Factors that are the same number at every point are not stored, since
-/// written_solve knows them.
+/// Sums of FactorTables, those of parts first; what a part leaves for the others is a sum of its own. Factors that are the same number
+/// at every point are not stored, since written_solve knows them.
 class FactorWriter {
  public:
   FactorWriter(const SparseSolver& solver, Builder& to, double least_share)

@@ -11,8 +11,8 @@ using straight::Term;
 using straight::Value;
 
 /// Factors and pivots are there from the beginning, the unknowns of a sum are not: what is known is multiplied first, so that a sum waits for
-/// one operation after its newest unknown. Forward, what a part leaves for a sum between parts is a sum of its own; and parts are written down in one order each, so that they
-/// can be seen to be alike.
+/// one operation after its newest unknown. Forward, what a part leaves for a sum between parts is a sum of its own; and all parts are
+/// written down in the same order, so that they can be seen to be alike.
 class SolveWriter {
  public:
   SolveWriter(const SparseSolver& solver, Builder& to) : s_(solver), to_(to), x_(s_.part_of_cell_.size(), to.literal(0)) {}

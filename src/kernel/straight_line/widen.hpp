@@ -25,9 +25,9 @@ class Places {
 /// By array.
 using Rearranged = std::map<std::uint32_t, Places*>;
 
-/// The parts of `line` as one whose numbers are wide, a part a lane; nothing where they are not alike, or wait for each other. Alike are parts whose sums follow each
-/// other with the same terms, as far as these are of the part; all else that they read is gathered. Stores to numbers of `written` that have no place are left
-/// out: nobody reads them.
+/// The parts of `line` as one whose numbers are wide, a part a lane; nothing where they are not alike, or wait for each other. Alike are
+/// parts whose sums follow each other with the same terms, as far as these are of the part; all else that they read is gathered. Stores
+/// to numbers of `written` that have no place are left out: nobody reads them.
 std::optional<StraightLine> widen(const StraightLine& line, const Rearranged& read, const Rearranged& written);
 
 }  // namespace maupertuis::straight

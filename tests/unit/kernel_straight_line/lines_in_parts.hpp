@@ -6,8 +6,8 @@
 #include <numeric>
 #include <random>
 
-/// A line of random sums in parts that are alike: each part has numbers of its own in arrays 0 and 2, reads some that all parts know, and is added up by what belongs to
-/// none; then parts go on with that. Results go to array 1, and some to array 3.
+/// A line of random sums in parts that are alike: each part has numbers of its own in arrays 0 and 2, reads some that all parts know, and
+/// is added up by what belongs to none; then parts go on with that. Results go to array 1, and some to array 3.
 struct LineInParts {
   static constexpr std::uint32_t given = 64, stored = 40, factors = 128;
   maupertuis::straight::StraightLine line;
