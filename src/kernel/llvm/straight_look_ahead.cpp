@@ -8,7 +8,7 @@ using packed::Block;
 using packed::Column;
 using packed::Pack;
 
-static constexpr std::size_t most_looking_ahead = 2;  // unknowns
+static constexpr std::size_t most_looking_ahead = 4;  // unknowns
 
 /// Whether the second tangents of all packs are found by the rules below, and no sum reads what the stage before has just found: that would
 /// hold the q̈ that is to come last.
