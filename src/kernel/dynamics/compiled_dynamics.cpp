@@ -8,7 +8,7 @@ namespace maupertuis::dynamics {
 CompiledDynamics::CompiledDynamics(const Program& program, WrittenDynamics written, const CompileOptions& options)
     : program_(program), sources_(std::move(written.numbers)), numbers_(sources_.size()),
       scratch_(std::max(straight::scratch_size(written.accelerations), straight::scratch_size(written.forces))),
-      result_(program.unknowns), rest_(program.unknowns, 0.0) {
+      rest_(program.unknowns, 0.0) {
   std::tie(code_, report_) = straight::compile({std::move(written.accelerations), std::move(written.forces)}, options);
 }
 
@@ -29,19 +29,6 @@ void CompiledDynamics::renew(const std::vector<double>& constants, const std::ve
       if (sources_[i].what == NumberSource::OfCoefficient && live[sources_[i].coefficient.constant]) live_.push_back(i);
   }
   for (const std::uint32_t i : live_) numbers_[i] = value_of(sources_[i].coefficient, constants);
-}
-
-bool CompiledDynamics::accelerations(double t, std::span<const double> q, std::span<const double> v, std::span<double> a) {
-  code_(0, &t, q.data(), v.data(), rest_.data(), numbers_.data(), result_.data(), scratch_.data());
-  if (!straight::sound(scratch_.data())) return false;
-  std::copy_n(result_.begin(), a.size(), a.begin());
-  return true;
-}
-
-void CompiledDynamics::forces(double t, std::span<const double> q, std::span<const double> v, std::span<const double> a,
-                              std::span<double> out) {
-  code_(1, &t, q.data(), v.data(), a.empty() ? rest_.data() : a.data(), numbers_.data(), result_.data(), scratch_.data());
-  std::copy_n(result_.begin(), out.size(), out.begin());
 }
 
 }  // namespace maupertuis::dynamics

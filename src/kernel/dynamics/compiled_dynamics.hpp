@@ -2,8 +2,6 @@
 #include "kernel/dynamics/written_dynamics.hpp"
 #include "kernel/straight_line/compile.hpp"
 
-#include <span>
-
 namespace maupertuis::dynamics {
 
 /// Machine code for one plan of one program, with its numbers.
@@ -19,8 +17,13 @@ class CompiledDynamics {
   void renew(const std::vector<double>& constants, const std::vector<bool>& live);
 
   /// False: a pivot is small, or a number infinite or undefined. The interpreter decides then; a is as it was.
-  bool accelerations(double t, std::span<const double> q, std::span<const double> v, std::span<double> a);
-  void forces(double t, std::span<const double> q, std::span<const double> v, std::span<const double> a, std::span<double> out);
+  bool accelerations(double t, const double* q, const double* v, double* a) {
+    return code_.guarded(0, &t, q, v, rest_.data(), numbers_.data(), a, scratch_.data());
+  }
+  /// a: null for 0
+  void forces(double t, const double* q, const double* v, const double* a, double* out) {
+    code_.guarded(1, &t, q, v, a ? a : rest_.data(), numbers_.data(), out, scratch_.data());
+  }
 
  private:
   const Program& program_;
@@ -29,7 +32,7 @@ class CompiledDynamics {
   std::vector<std::uint32_t> live_;    // numbers that renew() computes
   std::vector<bool> live_constants_;   // for which they were found
   std::vector<double> scratch_;
-  std::vector<double> result_, rest_;  // [unknowns]
+  std::vector<double> rest_;           // [unknowns] zeros
   straight::Code code_;
   CompileReport report_;
 };

@@ -75,12 +75,18 @@ struct ForwardDynamics::Impl {
   void find_live();
   double constant(std::size_t i);
   void compute_constants();
-  void set_inputs(std::span<const double> u);
+  /// In most calls there is nothing to do.
+  void set_inputs(std::span<const double> u) {
+    MAUP_REQUIRE(u.size() == inputs.size());
+    if (stale || !u.empty()) renew_inputs(u);
+  }
+  void renew_inputs(std::span<const double> u);
   void choose_pivots();
   bool has_symmetric_mass(std::span<const std::vector<double>> samples);
   void renew_interpreter();
   bool pays() const;
   void compile();
+  KernelStatus interpreted(double t, std::span<const double> q, std::span<const double> v, std::span<double> a);
   KernelStatus by_full_matrix(double t, std::span<const double> q, std::span<const double> v, std::span<double> a);
   bool solve();
   bool solve_full();
@@ -207,8 +213,7 @@ void ForwardDynamics::Impl::compile() {
   compiled->set_constants(constants, *system, plan.pivots);
 }
 
-void ForwardDynamics::Impl::set_inputs(std::span<const double> u) {
-  MAUP_REQUIRE(u.size() == inputs.size());
+void ForwardDynamics::Impl::renew_inputs(std::span<const double> u) {
   for (std::size_t i = 0; i < inputs.size(); ++i) parameters[inputs[i]] = u[i];
   compute_constants();
   if (inputs.empty()) return;
@@ -257,6 +262,16 @@ KernelStatus ForwardDynamics::Impl::by_full_matrix(double t, std::span<const dou
   return status;
 }
 
+KernelStatus ForwardDynamics::Impl::interpreted(double t, std::span<const double> q, std::span<const double> v, std::span<double> a) {
+  renew_interpreter();
+  if (!solver && !linear) return by_full_matrix(t, q, v, a);
+  at_rest.evaluate(t, q, v, {});
+  for (std::size_t i = 0; i < n; ++i) unknown[i] = -at_rest.residual(i);
+  if (!(linear ? solve_full() : solve())) return by_full_matrix(t, q, v, a);
+  std::copy_n(x.begin(), n, a.begin());
+  return KernelStatus::Ok;
+}
+
 ForwardDynamics::ForwardDynamics(const Kernel& kernel, std::span<const std::size_t> inputs, const ForwardDynamicsOptions& options)
     : impl_(std::make_unique<Impl>(kernel, inputs, options)) {
   for (const std::size_t input : inputs) MAUP_REQUIRE(input < kernel.parameters());
@@ -283,14 +298,8 @@ KernelStatus ForwardDynamics::accelerations(double t, std::span<const double> q,
   Impl& s = *impl_;
   MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && a.size() == s.n);
   s.set_inputs(u);
-  if (s.compiled && s.compiled->accelerations(t, q, v, a)) return KernelStatus::Ok;
-  s.renew_interpreter();
-  if (!s.solver && !s.linear) return s.by_full_matrix(t, q, v, a);
-  s.at_rest.evaluate(t, q, v, {});
-  for (std::size_t i = 0; i < s.n; ++i) s.unknown[i] = -s.at_rest.residual(i);
-  if (!(s.linear ? s.solve_full() : s.solve())) return s.by_full_matrix(t, q, v, a);
-  std::copy_n(s.x.begin(), s.n, a.begin());
-  return KernelStatus::Ok;
+  if (s.compiled && s.compiled->accelerations(t, q.data(), v.data(), a.data())) return KernelStatus::Ok;
+  return s.interpreted(t, q, v, a);
 }
 
 void ForwardDynamics::forces(double t, std::span<const double> q, std::span<const double> v, std::span<const double> a,
@@ -298,7 +307,7 @@ void ForwardDynamics::forces(double t, std::span<const double> q, std::span<cons
   Impl& s = *impl_;
   MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && a.size() == s.n && out.size() == s.n);
   s.set_inputs(u);
-  if (s.compiled) return s.compiled->forces(t, q, v, a, out);
+  if (s.compiled) return s.compiled->forces(t, q.data(), v.data(), a.data(), out.data());
   s.moving.evaluate(t, q, v, a);
   for (std::size_t i = 0; i < s.n; ++i) out[i] = s.moving.residual(i);
 }
@@ -308,7 +317,7 @@ void ForwardDynamics::bias(double t, std::span<const double> q, std::span<const 
   Impl& s = *impl_;
   MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && out.size() == s.n);
   s.set_inputs(u);
-  if (s.compiled) return s.compiled->forces(t, q, v, {}, out);
+  if (s.compiled) return s.compiled->forces(t, q.data(), v.data(), nullptr, out.data());
   s.at_rest.evaluate(t, q, v, {});
   for (std::size_t i = 0; i < s.n; ++i) out[i] = s.at_rest.residual(i);
 }

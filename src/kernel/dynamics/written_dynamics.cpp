@@ -18,7 +18,9 @@ using straight::Value;
 /// A pivot below this leaves the solution to the interpreter, which knows other ways.
 constexpr double least_share = 1e-3, least_full_share = 1e-6;
 /// From this many coordinates on, columns of M₀ stand side by side in wide values.
-constexpr std::size_t least_wide = 4;
+constexpr std::size_t least_wide = 5;
+/// Nodes. Of a full matrix more numbers are alive at a time.
+constexpr std::size_t most_sorted = 2500, most_sorted_full = 400;
 
 /// Numbers that both lines share.
 class Numbers {
@@ -238,9 +240,19 @@ class MatrixWriter {
   std::vector<std::vector<Value>> columns_;         // [columns][n]
 };
 
+/// x of two equations by their determinant, so that one division is all that waits for it.
+std::vector<Value> write_pair_solution(Builder& to, Value a, Value b, Value c, std::span<const Value> right) {
+  const Value determinant = to.sum({{1, a, c}, {-1, b, b}});
+  to.check({a, a, least_full_share});
+  to.check({determinant, to.product(1, a, c), least_full_share});
+  const Value inverse = to.reciprocal(determinant);
+  return {to.sum({{1, c, right[0]}, {-1, b, right[1]}}, inverse), to.sum({{1, a, right[1]}, {-1, b, right[0]}}, inverse)};
+}
+
 /// x with L D Lᵀ x = b; m: [n × n], its lower triangle.
 std::vector<Value> write_full_solution(Builder& to, std::vector<Value> m, std::span<const Value> b) {
   const std::size_t n = b.size();
+  if (n == 2) return write_pair_solution(to, m[0], m[2], m[3], b);
   const auto at = [&](std::size_t i, std::size_t j) -> Value& { return m[i * n + j]; };  // above the diagonal: D Lᵀ
   std::vector<Value> y(b.begin(), b.end()), x(n), inverse(n);
   for (std::size_t j = 0; j < n; ++j) {
@@ -271,6 +283,7 @@ straight::StraightLine write_forces(const Program& program, const FlatProgram& m
   flat.run();
   const Value anchor = to.next();
   for (std::uint32_t i = 0; i < moving.residual.size(); ++i) to.store(flat.at(moving.residual[i]), ResultArray, i);
+  to.guard();
   return to.finish(arrays, 1, anchor);
 }
 
@@ -280,18 +293,21 @@ straight::StraightLine write_accelerations(const Program& program, const FlatPro
   flat.run();
   const std::vector<Value> entries = write_entries(to, numbers, plan.system, flat, at_rest);
   const Value anchor = to.next();
+  // M₀ comes first, since more waits for it.
+  const std::vector<Value> m = plan.pivots ? std::vector<Value>() : MatrixWriter(to, plan.system, entries).run();
   std::vector<Value> b, x, usual;
   for (const Cell cell : at_rest.residual) b.push_back(to.product(-1, flat.at(cell)));
   if (plan.pivots) {
     for (std::uint32_t p = 0; p < plan.pivots->size(); ++p) usual.push_back(numbers.usual_size(to, p));
     x = sparse::write_solution(to, {plan.system, *plan.pivots, entries, usual, least_share}, b);
   } else {
-    x = write_full_solution(to, MatrixWriter(to, plan.system, entries).run(), b);
+    x = write_full_solution(to, m, b);
   }
   for (std::uint32_t i = 0; i < b.size(); ++i) to.store(x[i], ResultArray, i), to.require_finite(x[i]);
+  to.guard();
   std::uint32_t wide = 1;
   while (wide < b.size() && wide < 8) wide *= 2;
-  return to.finish(arrays, wide, anchor);
+  return to.finish(arrays, wide, anchor, plan.pivots ? most_sorted : most_sorted_full);
 }
 
 }  // namespace

@@ -21,9 +21,10 @@ llvm::Type* Emission::real(int width) {
   return llvm::FixedVectorType::get(b.getDoubleTy(), static_cast<unsigned>(width));
 }
 
-llvm::Function* Emission::function(const std::string& name, const std::vector<llvm::Type*>& parameters, bool exported) {
+llvm::Function* Emission::function(const std::string& name, const std::vector<llvm::Type*>& parameters, bool exported,
+                                   llvm::Type* result) {
   const auto linkage = exported ? llvm::Function::ExternalLinkage : llvm::Function::InternalLinkage;
-  auto* const type = llvm::FunctionType::get(b.getVoidTy(), parameters, false);
+  auto* const type = llvm::FunctionType::get(result ? result : b.getVoidTy(), parameters, false);
   llvm::Function* const f = llvm::Function::Create(type, linkage, name, *module);
   f->addFnAttr(llvm::Attribute::NoUnwind);  // so no tables for unwinding either
   if (!exported) f->addFnAttr(llvm::Attribute::NoInline);

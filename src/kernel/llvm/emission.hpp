@@ -27,8 +27,9 @@ class Emission {
   llvm::Type* pointer() { return b.getPtrTy(); }
   llvm::Type* integer() { return b.getInt64Ty(); }
   /// Opens a function: exported under its name, or private to the module (never inlined) where `exported` is false. Its pointers
-  /// do not alias.
-  llvm::Function* function(const std::string& name, const std::vector<llvm::Type*>& parameters, bool exported = true);
+  /// do not alias. `result`: void where it is null.
+  llvm::Function* function(const std::string& name, const std::vector<llvm::Type*>& parameters, bool exported = true,
+                           llvm::Type* result = nullptr);
   /// Closes it: `ret void`.
   void end_function() { b.CreateRetVoid(); }
 

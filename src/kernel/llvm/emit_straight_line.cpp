@@ -1,5 +1,6 @@
 #include "kernel/llvm/emission.hpp"
 #include "kernel/llvm/emitters.hpp"
+#include "kernel/llvm/sines.hpp"
 #include "kernel/straight_line/straight_line.hpp"
 
 #include <algorithm>
@@ -66,7 +67,7 @@ class LineEmitter {
     }
   }
 
-  /// Of values that a later piece reads. Stores and checks are made where their value is.
+  /// Of values that a later piece reads. Stores and checks are made where their value is, guarded stores in the last piece.
   void find_places() {
     place_.assign(line_.nodes.size(), 0);
     std::int64_t next = 8;
@@ -88,21 +89,37 @@ class LineEmitter {
       use(check.pivot, piece), use(check.size, piece);
       checks_in_[piece].push_back(&check);
     }
-    for (const auto& store : line_.stores) stores_of_[holder(store.value)].push_back(&store);
+    for (const auto& store : line_.stores) {
+      if (line_.guarded) use(store.value, pieces_ - 1);
+      else stores_of_[holder(store.value)].push_back(&store);
+    }
     for (const straight::Value v : line_.finite) finite_in_[piece_of(v)].push_back(v);
   }
 
   std::vector<llvm::Type*> parameters() { return std::vector<llvm::Type*>(line_.arrays + 1, out_.pointer()); }
 
   llvm::Function* piece() {
-    llvm::Function* const f = pieces_ == 1 ? out_.function(name_, parameters()) : out_.function(name_ + "_" + std::to_string(piece_), parameters(), false);
+    llvm::Function* const f = pieces_ == 1 ? function(name_, true) : function(name_ + "_" + std::to_string(piece_), false);
     arrays_.clear();
     for (llvm::Argument& argument : f->args()) arrays_.push_back(&argument);
     std::fill(values_.begin(), values_.end(), nullptr);
     for (straight::Value v = 0; v < line_.nodes.size(); ++v)
       if (remade(v) ? piece_ + 1 == pieces_ : piece_of_[v] == piece_) define(v), store(v);
-    verdict();
-    out_.end_function();
+    if (line_.guarded && piece_ + 1 == pieces_) {
+      close_guarded();
+    } else {
+      leave_verdict();
+      if (line_.guarded) b_.CreateRet(b_.getInt8(0));
+      else out_.end_function();
+    }
+    return f;
+  }
+
+  /// All pieces of a line are of one type.
+  llvm::Function* function(const std::string& name, bool exported) {
+    llvm::Function* const f = out_.function(name, parameters(), exported, line_.guarded ? b_.getInt8Ty() : nullptr);
+    for (llvm::Argument& argument : f->args())
+      if (line_.guarded) argument.removeAttr(llvm::Attribute::NoAlias);
     return f;
   }
 
@@ -111,16 +128,30 @@ class LineEmitter {
     for (const straight::Store* store : stores_of_[v]) put(get(store->value), store->array, store->index);
   }
 
-  void call_all(const std::vector<llvm::Function*>& functions) {
-    const llvm::Function* const whole = out_.function(name_, parameters());
-    std::vector<Value*> arguments;
-    for (unsigned i = 0; i <= line_.arrays; ++i) arguments.push_back(whole->getArg(i));
-    for (llvm::Function* const f : functions) b_.CreateCall(f, arguments);
-    out_.end_function();
+  /// What is given is read before the first result is stored.
+  void close_guarded() {
+    for (const straight::Store& store : line_.stores)
+      if (remade(store.value)) get(store.value);
+    const auto [margin, sum] = verdict();
+    Value* const sound = b_.CreateAnd(b_.CreateFCmpOGT(margin, number(0)), b_.CreateFCmpOEQ(sum, number(0)));
+    out_.when(sound, [this] {
+      for (const straight::Store& store : line_.stores) put(get(store.value), store.array, store.index);
+    });
+    b_.CreateRet(b_.CreateZExt(sound, b_.getInt8Ty()));
   }
 
-  /// See straight::sound.
-  void verdict() {
+  void call_all(const std::vector<llvm::Function*>& functions) {
+    const llvm::Function* const whole = function(name_, true);
+    std::vector<Value*> arguments;
+    for (unsigned i = 0; i <= line_.arrays; ++i) arguments.push_back(whole->getArg(i));
+    Value* result = nullptr;
+    for (llvm::Function* const f : functions) result = b_.CreateCall(f, arguments);
+    if (line_.guarded) b_.CreateRet(result);
+    else out_.end_function();
+  }
+
+  /// See straight::sound. So far, if later pieces have more to say.
+  std::pair<Value*, Value*> verdict() {
     Value* margin = number(std::numeric_limits<double>::infinity());
     if (piece_ > 0) margin = fetch(real_, line_.arrays, 0);
     Value* sums[4] = {number(0), number(0), number(0), number(0)};
@@ -148,9 +179,14 @@ class LineEmitter {
       margin = lesser(b_.CreateExtractElement(wide_margin, lane), margin);
       require_finite(b_.CreateExtractElement(wide_sum, lane));
     }
-    if (piece_ > 0 && turn == 0) return;
+    return {margin, turn == 0 ? sums[0] : out_.add(out_.add(sums[0], sums[1]), out_.add(sums[2], sums[3]))};
+  }
+
+  void leave_verdict() {
+    if (piece_ > 0 && checks_in_[piece_].empty() && finite_in_[piece_].empty()) return;
+    const auto [margin, sum] = verdict();
     put(margin, line_.arrays, 0);
-    put(out_.add(out_.add(sums[0], sums[1]), out_.add(sums[2], sums[3])), line_.arrays, 1);
+    put(sum, line_.arrays, 1);
   }
 
   Value* lesser(Value* x, Value* y) { return b_.CreateSelect(b_.CreateFCmpOLT(x, y), x, y); }
@@ -281,25 +317,30 @@ class LineEmitter {
 
   // ------------------------------------------------------------------------------------------------------------------- sines
 
-  /// All in one vector; neighbours in memory by one load.
+  /// What the caller has perhaps just written is read number by number: a wider load would wait until all of it is in the cache.
+  /// `volatile` keeps LLVM from joining them.
+  Value* fresh(straight::Value v) {
+    const Node& node = line_.nodes[v];
+    if (node.what != Node::Given) return get(v);
+    llvm::LoadInst* const load = b_.CreateAlignedLoad(real_, address(node.array, node.index), llvm::Align(8));
+    load->setVolatile(true);
+    return load;
+  }
+
+  /// All in one vector.
   void angles(straight::Value v) {
     const Node& node = line_.nodes[v];
     const std::uint32_t count = node.last - node.first;
     int width = 1;
     while (width < static_cast<int>(count)) width *= 2;
     llvm::Type* const type = out_.real(width);
-    const Node& first = line_.nodes[line_.operands[node.first]];
-    bool together = static_cast<int>(count) == width && first.what == Node::Given;
+    Value* x = out_.number(0, type);
     for (std::uint32_t i = 0; i < count; ++i) {
-      const Node& angle = line_.nodes[line_.operands[node.first + i]];
-      together = together && angle.what == Node::Given && angle.array == first.array && angle.index == first.index + i;
+      const straight::Value angle = line_.operands[node.first + i];
+      x = width == 1 ? get(angle) : b_.CreateInsertElement(x, fresh(angle), std::uint64_t{i});
     }
-    Value* x = together ? fetch(type, first.array, first.index) : out_.number(0, type);
-    for (std::uint32_t i = 0; !together && i < count; ++i) {
-      Value* const angle = get(line_.operands[node.first + i]);
-      x = width == 1 ? angle : b_.CreateInsertElement(x, angle, std::uint64_t{i});
-    }
-    const auto [sine, cosine] = out_.sincos(x);
+    const auto called = [&] { return out_.sincos(x); };
+    const auto [sine, cosine] = out_.features.fma ? sines_in_place(b_, x, called) : called();
     for (straight::Value w = v + 1; w < line_.nodes.size(); ++w) {
       const Node& lane = line_.nodes[w];
       if (lane.a != v || (lane.what != Node::Sine && lane.what != Node::Cosine)) continue;

@@ -9,6 +9,8 @@ namespace {
 
 /// The latency of a division is that of several additions.
 constexpr std::uint32_t depth_of_operation = 1, depth_of_division = 4, depth_of_function = 15;
+/// About the cycles that a result waits for its operands.
+constexpr std::uint32_t cycles_of_operation = 3, cycles_of_fused = 4, cycles_of_division = 13, cycles_of_function = 45;
 
 std::uint64_t bits_of(double x) {
   std::uint64_t bits;
@@ -169,7 +171,24 @@ std::vector<bool> Builder::needed() const {
   return out;
 }
 
-StraightLine Builder::finish(std::uint32_t arrays, std::uint32_t wide, Value anchor) {
+/// What has to be there first for the end of the line to be reached in time comes first. `order`: each preceded by what it needs.
+void Builder::sort_by_urgency(std::vector<Value>& order) const {
+  std::vector<std::uint32_t> wanted(line_.nodes.size(), 0), begins(line_.nodes.size(), 0);  // in cycles before the end, at the latest
+  for (std::size_t i = order.size(); i-- > 0;) {
+    const Node& node = line_.nodes[order[i]];
+    const bool divides = node.what == Node::Sum && node.b != none, is_function = node.what == Node::Angles || node.what == Node::Call;
+    std::uint32_t last = wanted[order[i]] + (is_function ? cycles_of_function : divides ? cycles_of_division : cycles_of_operation);
+    begins[order[i]] = last;  // its last operation
+    for (const Value v : operands_of(node)) wanted[v] = std::max(wanted[v], last);
+    if (lists_operands(node)) continue;
+    for (std::uint32_t t = node.last; t-- > node.first; last += cycles_of_fused)
+      for (const Value v : {line_.terms[t].a, line_.terms[t].b, line_.terms[t].c})
+        if (v != none) wanted[v] = std::max(wanted[v], last);
+  }
+  std::stable_sort(order.begin(), order.end(), [&](Value x, Value y) { return begins[x] > begins[y]; });
+}
+
+StraightLine Builder::finish(std::uint32_t arrays, std::uint32_t wide, Value anchor, std::size_t most_sorted) {
   const std::vector<bool> keep = needed();
   std::vector<Value> number(line_.nodes.size(), none), order, open;
   const auto visit = [&](Value root) {
@@ -189,8 +208,12 @@ StraightLine Builder::finish(std::uint32_t arrays, std::uint32_t wide, Value anc
     if (keep[v]) visit(v);
   for (Value v = 0; v < line_.nodes.size(); ++v)
     if (keep[v]) visit(v);
+  if (order.size() <= most_sorted) {
+    sort_by_urgency(order);
+    for (std::size_t i = 0; i < order.size(); ++i) number[order[i]] = static_cast<Value>(i);
+  }
 
-  StraightLine out{.checks = line_.checks, .arrays = arrays, .wide = wide};
+  StraightLine out{.checks = line_.checks, .arrays = arrays, .wide = wide, .guarded = line_.guarded};
   const auto renumber = [&](Value v) { return v == none ? none : number[v]; };
   for (const Value v : order) {
     Node node = line_.nodes[v];

@@ -37,6 +37,7 @@ class Builder {
 
   void check(PivotCheck check) { line_.checks.push_back(check); }
   void require_finite(Value value) { line_.finite.push_back(value); }
+  void guard() { line_.guarded = true; }
   void store(Value value, std::uint32_t array, std::uint32_t index) { line_.stores.push_back({value, array, index}); }
 
   bool is_literal(Value v) const { return v != none && line_.nodes[v].what == Node::Literal; }
@@ -44,8 +45,9 @@ class Builder {
   double literal_of(Value v) const { return line_.nodes[v].literal; }
 
   /// In the order in which nodes after `anchor` were added, each preceded by what it needs and is not there yet; nodes before it are
-  /// made when first needed, and those that no store, check or finiteness needs are not there.
-  StraightLine finish(std::uint32_t arrays, std::uint32_t wide, Value anchor);
+  /// made when first needed, and those that no store, check or finiteness needs are not there. Lines of at most `most_sorted` nodes are
+  /// in the order of their urgency instead: in longer ones too many numbers would wait in memory.
+  StraightLine finish(std::uint32_t arrays, std::uint32_t wide, Value anchor, std::size_t most_sorted = 0);
   Value next() const { return static_cast<Value>(line_.nodes.size()); }
 
  private:
@@ -54,6 +56,7 @@ class Builder {
   std::vector<Term> folded(const std::vector<Term>& terms) const;
   std::vector<Value> operands_of(const Node& node) const;
   std::vector<bool> needed() const;
+  void sort_by_urgency(std::vector<Value>& order) const;
 
   StraightLine line_;
   std::uint8_t part_ = 0;

@@ -19,7 +19,7 @@ void add(compiled::Digester& d, const Node& node) {
 
 void add(compiled::Digester& d, const StraightLine& line) {
   for (const std::size_t part : {line.nodes.size(), line.terms.size(), line.operands.size(), line.stores.size(), line.checks.size(),
-                                 line.finite.size(), std::size_t{line.arrays}, std::size_t{line.wide}})
+                                 line.finite.size(), std::size_t{line.arrays}, std::size_t{line.wide}, std::size_t{line.guarded}})
     d.add(part);
   for (const Node& node : line.nodes) add(d, node);
   for (const Term& term : line.terms) d.add_double(term.factor), d.add(term.a), d.add(term.b), d.add(term.c);

@@ -10,7 +10,7 @@
 namespace maupertuis::straight {
 
 /// Machine code of some straight lines: one function each, whose arguments are the line's arrays and last its scratch, see
-/// scratch_size(). Arrays do not overlap.
+/// scratch_size(). Arrays do not overlap, except those of guarded lines.
 class Code {
  public:
   Code() = default;
@@ -19,6 +19,11 @@ class Code {
   template <class... Arrays>
   void operator()(std::size_t index, Arrays... arrays) const {
     reinterpret_cast<void (*)(Arrays...)>(functions_[index])(arrays...);
+  }
+  /// The same of a guarded line: whether all went well. If not, nothing was stored.
+  template <class... Arrays>
+  bool guarded(std::size_t index, Arrays... arrays) const {
+    return reinterpret_cast<bool (*)(Arrays...)>(functions_[index])(arrays...);
   }
 
  private:

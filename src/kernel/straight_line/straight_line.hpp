@@ -70,6 +70,7 @@ struct StraightLine {
   std::vector<Value> finite;       // what must be neither infinite nor undefined
   std::uint32_t arrays = 0;        // that `Given` and `stores` refer to
   std::uint32_t wide = 1;          // numbers of a wide value
+  bool guarded = false;            // stores come last, and only where all went well: results may go where arguments stood
 
   /// How long the code will be, about.
   std::size_t size() const { return nodes.size() + terms.size(); }
@@ -79,7 +80,7 @@ struct StraightLine {
 /// from one function to the next.
 inline std::size_t scratch_size(const StraightLine& line) { return 8 + line.nodes.size() * line.wide; }
 
-/// What code leaves in its scratch: min (pivot − share · size), and 0 · Σ finite.
+/// What code leaves in its scratch, unless it is guarded: min (pivot − share · size), and 0 · Σ finite.
 inline bool sound(const double* scratch) { return scratch[0] > 0 && scratch[1] == 0; }
 
 }  // namespace maupertuis::straight

@@ -45,3 +45,19 @@ TEST_CASE("what nothing needs is not there; what is needed stands before its use
     for (std::uint32_t i = line.nodes[v].first; i < line.nodes[v].last; ++i)
       for (const Value operand : {line.terms[i].a, line.terms[i].b}) CHECK((operand == none || operand < v));
 }
+
+TEST_CASE("in the order of urgency: what the end waits for longest is first") {
+  Builder to;
+  const Value x = to.given(0, 0), y = to.given(0, 1);
+  const Value late = to.sum({{1, y, y}}), early = to.reciprocal(to.sum({{1, x, x}, {1}}));
+  to.store(to.sum({{1, early, x}, {1, late}}), 1, 0);
+  for (const std::size_t most_sorted : {std::size_t{0}, std::size_t{100}}) {
+    Builder copy = to;
+    const StraightLine line = copy.finish(2, 1, 0, most_sorted);
+    CHECK(evaluate(line, {{2, 3}, {0}}).arrays[1][0] == doctest::Approx(9.4));
+    const auto place_of = [&](auto&& is) { return std::find_if(line.nodes.begin(), line.nodes.end(), is) - line.nodes.begin(); };
+    const auto quotient = place_of([](const Node& node) { return node.what == Node::Sum && node.b != none; });
+    const auto square = place_of([&](const Node& node) { return node.what == Node::Sum && node.b == none && node.last - node.first == 1; });
+    CHECK((quotient < square) == (most_sorted > 0));
+  }
+}
