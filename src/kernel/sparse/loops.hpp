@@ -6,22 +6,22 @@
 /// that no inline function of a container is compiled for a processor that may not be there.
 namespace maupertuis::sparse {
 
-/// Sums of products whose operands are known before: v = start − Σ a b. Sums of one level do not wait for each other; those of
-/// as many products stand together, so that a loop over them has no branches of its own.
-struct SumRun {
+/// Sums of products whose operands are known before: x_target = scale · x_target + Σ factor · x_operand. Sums of one level do not wait for each
+/// other; those of as many products stand together, so that a loop over them has no branches of its own.
+struct SweepRun {
   std::uint32_t products;        // of each sum
   std::uint32_t first, last;     // sums
   std::uint32_t first_product;   // of the first sum; they follow each other
-  bool starts;                   // at a value that is there; else at 0
-  bool negates;                  // forward: the pivots are −1
+  /// Not 0: a spine, see LoopSweep. Periods of so many sums of two products, and one of as many products as it has branches.
+  std::uint32_t branches;
+  bool starts;                   // at a value that is there; else at 0. Of a spine the branches; the hub always starts
 };
+inline constexpr std::size_t most_branches = 4;
 
-/// Sums that follow each other; x in cells.
 struct SweepTables {
-  const SumRun *runs, *last_run;
+  const SweepRun *runs, *last_run;
   const std::uint32_t *target, *operand;
-  const std::uint32_t* pivot;    // forward: the sum is divided by it; else null
-  const double* factors;         // of the first product
+  const double *scale, *factors;
 };
 
 /// An entry of L or U, or a pivot.
@@ -57,8 +57,7 @@ struct BlockTerm {
 
 struct Loops {
   double (*factor)(const FactorTables& tables);
-  void (*forward)(const SweepTables& tables, const double* inverse, double* x);
-  void (*backward)(const SweepTables& tables, double* x);
+  void (*sweep)(const SweepTables& tables, double* x);
   /// z[target · 8 + lane] = Σ entries[entry] · z[operand · 8 + lane]
   void (*block)(const BlockRow* rows, const BlockRow* last, const BlockTerm* terms, const double* entries, double* z);
 };

@@ -13,59 +13,66 @@ inline double minus(double sum, double a, double b) {
 #endif
 }
 
-/// Products below 0: as many as the run has. Division by −1 turns the signs, so that nothing is multiplied last.
-template <int Products, bool Negates>
-void forward_run(const SweepTables& t, const SumRun& run, const double* inverse, double* x) {
+inline double plus(double sum, double a, double b) { return minus(sum, -a, b); }
+
+/// Products below 0: as many as the run has.
+template <int Products, bool Starts>
+void sums(const SweepTables& t, const SweepRun& run, double* x) {
   const int count = Products >= 0 ? Products : static_cast<int>(run.products);
   const double* factor = t.factors + run.first_product;
   const std::uint32_t* operand = t.operand + run.first_product;
   for (std::uint32_t i = run.first; i < run.last; ++i, factor += count, operand += count) {
-    double sum = Negates ? -x[t.target[i]] : x[t.target[i]];
-    for (int k = 0; k < count; ++k) sum = minus(sum, Negates ? -factor[k] : factor[k], x[operand[k]]);
-    x[t.target[i]] = Negates ? sum : sum * inverse[t.pivot[i]];
-  }
-}
-
-template <bool Negates>
-void forward_run(const SweepTables& t, const SumRun& run, const double* inverse, double* x) {
-  switch (run.products) {
-    case 0: return forward_run<0, Negates>(t, run, inverse, x);
-    case 1: return forward_run<1, Negates>(t, run, inverse, x);
-    case 2: return forward_run<2, Negates>(t, run, inverse, x);
-    case 3: return forward_run<3, Negates>(t, run, inverse, x);
-    case 4: return forward_run<4, Negates>(t, run, inverse, x);
-    default: return forward_run<-1, Negates>(t, run, inverse, x);
-  }
-}
-
-template <int Products>
-void backward_run(const SweepTables& t, const SumRun& run, double* x) {
-  const int count = Products >= 0 ? Products : static_cast<int>(run.products);
-  const double* factor = t.factors + run.first_product;
-  const std::uint32_t* operand = t.operand + run.first_product;
-  for (std::uint32_t i = run.first; i < run.last; ++i, factor += count, operand += count) {
-    double sum = run.starts ? x[t.target[i]] : 0;
-    for (int k = 0; k < count; ++k) sum = minus(sum, factor[k], x[operand[k]]);
+    double sum = Starts ? t.scale[i] * x[t.target[i]] : 0;
+    for (int k = 0; k < count; ++k) sum = plus(sum, factor[k], x[operand[k]]);
     x[t.target[i]] = sum;
   }
 }
 
-void forward(const SweepTables& t, const double* inverse, double* x) {
-  for (const SumRun* run = t.runs; run != t.last_run; ++run) {
-    if (run->negates) forward_run<true>(t, *run, inverse, x);
-    else forward_run<false>(t, *run, inverse, x);
+template <bool Starts>
+void sums(const SweepTables& t, const SweepRun& run, double* x) {
+  switch (run.products) {
+    case 0: return sums<0, Starts>(t, run, x);
+    case 1: return sums<1, Starts>(t, run, x);
+    case 2: return sums<2, Starts>(t, run, x);
+    case 3: return sums<3, Starts>(t, run, x);
+    case 4: return sums<4, Starts>(t, run, x);
+    default: return sums<-1, Starts>(t, run, x);
   }
 }
 
-void backward(const SweepTables& t, double* x) {
-  for (const SumRun* run = t.runs; run != t.last_run; ++run) switch (run->products) {
-      case 0: backward_run<0>(t, *run, x); break;
-      case 1: backward_run<1>(t, *run, x); break;
-      case 2: backward_run<2>(t, *run, x); break;
-      case 3: backward_run<3>(t, *run, x); break;
-      case 4: backward_run<4>(t, *run, x); break;
-      default: backward_run<-1>(t, *run, x);
+template <int Branches, bool Starts>
+void spine(const SweepTables& t, const SweepRun& run, double* x) {
+  const double *factor = t.factors + run.first_product, *scale = t.scale + run.first;
+  const std::uint32_t *target = t.target + run.first, *const last = t.target + run.last, *operand = t.operand + run.first_product;
+  double branch[Branches], hub = x[operand[1]];
+  for (int j = 0; j < Branches; ++j) branch[j] = x[operand[2 * j]];
+  for (; target != last; target += Branches + 1, scale += Branches + 1, factor += 3 * Branches) {
+    double next = scale[Branches] * x[target[Branches]];
+    for (int j = 0; j < Branches; ++j) {
+      const double start = Starts ? scale[j] * x[target[j]] : 0;
+      branch[j] = plus(plus(start, factor[2 * j], branch[j]), factor[2 * j + 1], hub);
+      x[target[j]] = branch[j];
+      next = plus(next, factor[2 * Branches + j], branch[j]);
     }
+    x[target[Branches]] = hub = next;
+  }
+}
+
+template <bool Starts>
+void spine(const SweepTables& t, const SweepRun& run, double* x) {
+  switch (run.branches) {
+    case 1: return spine<1, Starts>(t, run, x);
+    case 2: return spine<2, Starts>(t, run, x);
+    case 3: return spine<3, Starts>(t, run, x);
+    default: return spine<4, Starts>(t, run, x);
+  }
+}
+
+void sweep(const SweepTables& t, double* x) {
+  for (const SweepRun* run = t.runs; run != t.last_run; ++run) {
+    if (run->branches > 0) run->starts ? spine<true>(t, *run, x) : spine<false>(t, *run, x);
+    else run->starts ? sums<true>(t, *run, x) : sums<false>(t, *run, x);
+  }
 }
 
 double size(double x) { return __builtin_fabs(x); }
@@ -131,7 +138,7 @@ void block(const BlockRow* row, const BlockRow* last, const BlockTerm* terms, co
   }
 }
 
-Loops loops_of_this_file() { return {factor, forward, backward, block}; }
+Loops loops_of_this_file() { return {factor, sweep, block}; }
 
 }  // namespace
 }  // namespace maupertuis::sparse

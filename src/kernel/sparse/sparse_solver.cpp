@@ -249,24 +249,35 @@ class SparseBuilder {
 
 SparseSolver::SparseSolver(const LiftedSystem& system, const std::vector<Pivot>& pivots, std::span<const std::uint32_t> cells) {
   SparseBuilder(system, pivots, cells, *this).run();
+  forward_loop_ = LoopSweep(sums_of(forward_), true);
+  backward_loop_ = LoopSweep(sums_of(backward_), false);
+}
+
+std::vector<SweepSum> SparseSolver::sums_of(const Sweep& sweep) {
+  std::vector<SweepSum> out;
+  for (const SumRun& run : sweep.runs)
+    for (std::uint32_t i = run.first, k = run.first_product; i < run.last; ++i) {
+      out.push_back({sweep.target[i], sweep.pivot[i], run.starts, {}});
+      for (std::uint32_t j = 0; j < run.products; ++j, ++k) out.back().products.push_back({sweep.operand[k], sweep.first_factor + k});
+    }
+  return out;
 }
 
 double SparseSolver::factor(std::span<const double> entries) {
   std::copy(entries.begin(), entries.end(), entries_.begin());
   const FactorRun* const runs = factor_runs_.data();
-  return loops().factor({runs, runs + factor_runs_.size(), sums_.data(), products_.data(), entries_.data(), usual_size_.data(),
-                         factors_.data(), inverse_.data()});
+  const double least = loops().factor({runs, runs + factor_runs_.size(), sums_.data(), products_.data(), entries_.data(), usual_size_.data(),
+                                       factors_.data(), inverse_.data()});
+  forward_loop_.set(factors_.data(), inverse_.data());
+  backward_loop_.set(factors_.data(), inverse_.data());
+  return least;
 }
 
 void SparseSolver::solve(std::span<const double> b, double* x) const {
   for (const std::uint32_t cell : cleared_) x[cell] = 0;
   for (std::size_t i = 0; i < b.size(); ++i) x[cell_of_residual_[i]] = b[i];
-  const auto tables = [&](const Sweep& sweep) {
-    return SweepTables{sweep.runs.data(), sweep.runs.data() + sweep.runs.size(), sweep.target.data(), sweep.operand.data(),
-                       sweep.pivot.data(), factors_.data() + sweep.first_factor};
-  };
-  loops().forward(tables(forward_), inverse_.data(), x);
-  loops().backward(tables(backward_), x);
+  loops().sweep(forward_loop_.tables(), x);
+  loops().sweep(backward_loop_.tables(), x);
 }
 
 }  // namespace maupertuis::sparse

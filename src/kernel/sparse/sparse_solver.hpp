@@ -1,6 +1,6 @@
 #pragma once
 #include "kernel/sparse/elimination.hpp"
-#include "kernel/sparse/loops.hpp"
+#include "kernel/sparse/sweep.hpp"
 #include "kernel/straight_line/straight_line.hpp"
 
 /// Factors and solutions of a lifted system as flat loops over index arrays: what is computed from what was decided once, when
@@ -12,6 +12,15 @@ enum SolveArray : std::uint32_t { FactorArray, InverseArray, RightSideArray, Unk
 
 /// The same of code of a factorization.
 enum FactorArrays : std::uint32_t { EntryArray, UsualSizeArray, FactorOutArray, FactorInverseArray, factor_arrays };
+
+/// Sums of one level and one shape: v = start − Σ a b.
+struct SumRun {
+  std::uint32_t products;        // of each sum
+  std::uint32_t first, last;     // sums
+  std::uint32_t first_product;   // of the first sum; they follow each other
+  bool starts;                   // at a value that is there; else at 0
+  bool negates;                  // forward: the pivots are −1
+};
 
 class SparseSolver {
  public:
@@ -61,7 +70,10 @@ class SparseSolver {
 
   std::vector<std::uint32_t> cell_of_residual_;  // [unknowns] where b_i goes
   std::vector<std::uint32_t> cleared_;           // cells that a forward sum starts at 0
+  static std::vector<SweepSum> sums_of(const Sweep& sweep);
+
   Sweep forward_, backward_;
+  LoopSweep forward_loop_, backward_loop_;
   std::vector<FactorRun> factor_runs_;
   std::vector<FactorSum> sums_;
   std::vector<FactorProduct> products_;
