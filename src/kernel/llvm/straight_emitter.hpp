@@ -187,6 +187,7 @@ class StraightEmitter {
   // ---------------------------------------------------------------------------------- solution (straight_solution.cpp)
   void factor();
   void invert(std::vector<Value*> rows);
+  std::vector<Value*> refined(ArrayRef<Value*> inverse, ArrayRef<Value*> matrix);
   void eliminate_one(std::vector<Value*>& rows, unsigned pivot, ArrayRef<Value*> diagonal, std::vector<Value*>& sound);
   void eliminate_pair(std::vector<Value*>& rows, unsigned pivot, ArrayRef<Value*> diagonal, std::vector<Value*>& sound);
   Value* spread(Value* scalar) { return wide_ == 1 ? scalar : b_.CreateVectorSplat(wide_, scalar); }

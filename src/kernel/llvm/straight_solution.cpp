@@ -31,13 +31,29 @@ void StraightEmitter::factor() {
 /// The columns of −M₀⁻¹ from those of M₀ by Gauss and Jordan on the transposed matrix without pivoting: stable for a symmetric, positive definite
 /// matrix. The pivots against their diagonal entries tell whether it is one.
 void StraightEmitter::invert(std::vector<Value*> rows) {
+  const std::vector<Value*> matrix = rows;
   std::vector<Value*> diagonal, sound;
   for (unsigned i = 0; i < n_; ++i) diagonal.push_back(splat_lane(rows[i], i, 1));
   unsigned pivot = 0;
   for (; pivot + 1 < n_; pivot += 2) eliminate_pair(rows, pivot, diagonal, sound);
   if (pivot < n_) eliminate_one(rows, pivot, diagonal, sound);
-  for (Value* const row : rows) inverse_columns_.push_back(b_.CreateFNeg(row));
+  for (Value* const row : refined(rows, matrix)) inverse_columns_.push_back(b_.CreateFNeg(row));
   trust(b_.CreateAnd(sound));
+}
+
+/// Newton's step X + X (1 − N X) for the inverse X of N: what rounding left in X would act on all orders of a step, and the energy of a double pendulum drift.
+std::vector<Value*> StraightEmitter::refined(ArrayRef<Value*> inverse, ArrayRef<Value*> matrix) {
+  std::vector<Value*> rest, result;
+  for (unsigned i = 0; i < n_; ++i) {
+    rest.push_back(with_lane(vector_of(0.0, wide_), i, vector_of(1.0, 1)));
+    for (unsigned j = 0; j < n_; ++j) rest[i] = fma(b_.CreateFNeg(splat_lane(matrix[i], j, wide_)), inverse[j], rest[i]);
+  }
+  for (unsigned i = 0; i < n_; ++i) {
+    Value* change = nullptr;
+    for (unsigned j = 0; j < n_; ++j) change = fma(splat_lane(inverse[i], j, wide_), rest[j], change);
+    result.push_back(b_.CreateFAdd(inverse[i], change));
+  }
+  return result;
 }
 
 void StraightEmitter::eliminate_one(std::vector<Value*>& rows, unsigned pivot, ArrayRef<Value*> diagonal, std::vector<Value*>& sound) {
