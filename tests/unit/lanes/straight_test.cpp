@@ -1,0 +1,148 @@
+#include "lane_systems.hpp"
+
+#include <maupertuis/kernel.hpp>
+
+#include <array>
+
+// One motion in straight-line code, the whole expansion at once, against the engine of packs: coefficients, M, and what a step asks of the rows besides.
+
+namespace {
+
+constexpr int straight_order = 20;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+KernelWorkspace straight_workspace(const Kernel& kernel, const std::string& processor = {}) {
+  KernelWorkspace work(kernel, straight_order);
+  CompileOptions options;
+  options.cache = false;
+  options.long_run = true;
+  options.processor = processor;
+  const CompileReport report = work.compile(options);
+  REQUIRE_MESSAGE(report.compiled, report.trouble);
+  return work;
+}
+
+void expand_both(KernelWorkspace& code, KernelWorkspace& engine, const Motion& m) {
+  code.set_parameters(m.parameters), engine.set_parameters(m.parameters);
+  REQUIRE(code.expand(m.t, m.q, m.v) == KernelStatus::Ok);
+  REQUIRE(engine.expand(m.t, m.q, m.v) == KernelStatus::Ok);
+}
+
+/// Rounding errors are magnified by functions near their singularities and by the solution.
+void check_coefficients(const KernelWorkspace& code, const KernelWorkspace& engine, std::size_t n, double tolerance) {
+  for (int k = 0; k <= straight_order + 1; ++k) {
+    CAPTURE(k);
+    double size = 1e-300;
+    for (std::size_t i = 0; i < n; ++i) size = std::max(size, std::abs(engine.coordinate(k)[i]));
+    for (std::size_t i = 0; i < n; ++i) CHECK(std::abs(code.coordinate(k)[i] - engine.coordinate(k)[i]) <= tolerance * (k + 1) * epsilon * size);
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) CHECK(code.mass(i, j) == doctest::Approx(engine.mass(i, j)).epsilon(1e-12).scale(1e-12));
+}
+
+/// The definition of KernelWorkspace::radius, term by term.
+double radius_by_definition(const KernelWorkspace& work, std::size_t n, double h) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto speed = [&](int k) { return (k + 1) * std::abs(work.coordinate(k + 1)[i]); };
+    double size = epsilon * std::abs(work.coordinate(0)[i]) / h;
+    for (int k = 0; k <= 3; ++k) size = std::max(size, speed(k) * std::pow(h, k));
+    for (int k = straight_order - 5; k <= straight_order; ++k)
+      if (speed(k) > 0) least = std::min(least, std::pow(size / speed(k), 1.0 / k) * (k < straight_order - 1 ? 1.25 : 1));
+  }
+  return least;
+}
+
+std::array<std::vector<double>, 2> increments_of(const KernelWorkspace& work, std::size_t n, double tau) {
+  std::array<std::vector<double>, 2> out{std::vector<double>((n + 7) / 8 * 8), std::vector<double>((n + 7) / 8 * 8)};
+  work.increments()(work.coordinate(0), work.row_stride(), n, straight_order + 1, tau, out[0].data(), out[1].data());
+  return out;
+}
+
+/// Both ways to the radius, and increments against Horner's rule.
+void check_step(const KernelWorkspace& code, const KernelWorkspace& engine, std::size_t n) {
+  const double h = 0.1 * radius_by_definition(engine, n, 0.1);
+  for (const KernelWorkspace* work : {&code, &engine}) CHECK(work->radius(h) == doctest::Approx(radius_by_definition(*work, n, h)).epsilon(2e-5));
+  for (const double tau : {h, -0.3 * h})
+    for (const KernelWorkspace* work : {&code, &engine}) {
+      const auto [dq, dv] = increments_of(*work, n, tau);
+      for (std::size_t i = 0; i < n; ++i) {
+        double q = 0, v = 0, terms = 0;
+        for (int k = straight_order + 1; k >= 2; --k) {
+          const double c = work->coordinate(k)[i];
+          q = (q + c) * tau, v = (v + k * c) * tau, terms = (terms + k * std::abs(c)) * std::abs(tau);
+        }
+        CHECK(std::abs(dq[i] - q) <= 8 * epsilon * terms);
+        CHECK(std::abs(dv[i] - v) <= 8 * epsilon * terms);
+      }
+    }
+}
+
+void check_straight(const System& s, double tolerance, const std::string& processor = {}) {
+  CAPTURE(s.name);
+  const Kernel kernel = build_kernel(s.source);
+  KernelWorkspace code = straight_workspace(kernel, processor), engine(kernel, straight_order);
+  for (const Motion& m : motions_near(s.start, 3)) {
+    expand_both(code, engine, m);
+    check_coefficients(code, engine, kernel.freedoms(), tolerance);
+    check_step(code, engine, kernel.freedoms());
+  }
+}
+
+}  // namespace
+
+TEST_CASE("straight-line code: chains of every size that it takes, which look ahead and which do not") {
+  Systems list;
+  for (const int links : {1, 2, 3, 4, 5, 6, 7, 8}) add_chain(list, links);
+  for (const auto& s : list) check_straight(*s, 4000);
+}
+
+TEST_CASE("straight-line code: functions, friction, explicit time") {
+  Systems list;
+  add_friction(list), add_functions(list), add_driven(list);
+  for (const auto& s : list) check_straight(*s, 4e4);
+}
+
+TEST_CASE("straight-line code for other processors") {
+  Systems list;
+  for (const int links : {2, 4, 5}) add_chain(list, links);
+  for (const auto& s : list)
+    for (const char* processor : {"x86-64", "x86-64-v3"}) check_straight(*s, 4000, processor);
+}
+
+TEST_CASE("straight-line code: angles beyond those whose sines are written out") {
+  Systems list;
+  for (const int links : {1, 2, 4}) add_chain(list, links);
+  for (const auto& s : list) {
+    for (double& q : s->start.q) q += 0x1p21;
+    check_straight(*s, 4000);
+  }
+}
+
+TEST_CASE("straight-line code: a matrix that has to be pivoted goes another way") {
+  Systems list;
+  System& s = add(list, "indefinite");
+  const Expr x = s.coordinate("x", 0.4, 0.3), y = s.coordinate("y", -0.2, 0.5), k = s.parameter("k", 2.0);
+  // The Lagrangian ẋ ẏ − k x y − x⁴ − y⁴: M has zeros on its diagonal.
+  s.from_lagrangian(s.dot(x) * s.dot(y) - k * x * y - pow(x, 4) - pow(y, 4));
+  check_straight(s, 4000);
+}
+
+TEST_CASE("the radius where a coordinate begins to move late is left to those who look at all its coefficients") {
+  Systems list;
+  System& s = add(list, "late");
+  const Expr x = s.coordinate("x", 0.5, 0.3);
+  s.coordinate("y", 0.0, 0.0);
+  s.source.residual = {s.acceleration("x") + x, s.acceleration("y") - pow(s.context.time(), 8)};
+  const Kernel kernel = build_kernel(s.source);
+  KernelWorkspace code = straight_workspace(kernel), engine(kernel, straight_order);
+  s.start.t = 0;
+  expand_both(code, engine, s.start);
+  // y_10 = 1/90 alone is not zero, and is not among the last six: x alone counts.
+  for (const KernelWorkspace* work : {&code, &engine}) CHECK(work->radius(0.5) > 0);
+  s.source.residual[1] = s.acceleration("y") - pow(s.context.time(), 16);  // y_18 is
+  const Kernel later = build_kernel(s.source);
+  KernelWorkspace late_code = straight_workspace(later), late_engine(later, straight_order);
+  expand_both(late_code, late_engine, s.start);
+  for (const KernelWorkspace* work : {&late_code, &late_engine}) CHECK(std::isnan(work->radius(0.5)));
+}
