@@ -375,7 +375,7 @@ void KernelWorkspace::Impl::run_along(int stage) {
 /// False: there is no code for this, or its results are not to be trusted.
 bool KernelWorkspace::Impl::run_compiled(int stages) {
   if (!compiled.expand || stages != order || compiled.expand(&arguments) != 0) return false;
-  has_full = true;
+  has_full = false;
   if (program.runs[Along].empty() && at_point.empty()) return true;
   const int last = program.runs[Along].empty() ? 1 : stages;
   for (int stage = program.first_stage; stage < last; ++stage) run_along(stage);
@@ -416,9 +416,8 @@ void KernelWorkspace::Impl::adopt(interpreter::CompiledCode code) {
                  .tangent = tables.scalar.tangent, .context = tables.scalar.context};
     return;
   }
-  bordered.resize(unknowns * unknowns);
   arguments = {.rows = memory.rows.data(), .coefficients = lane_coefficients.data(),
-               .term_coefficients = memory.coefficients.data(), .constants = memory.constants.data(), .bordered = bordered.data(),
+               .term_coefficients = memory.coefficients.data(), .constants = memory.constants.data(),
                .sincos = engine.sine_cosine, .elementary = [](std::uint8_t kind, double x, double y) {
                  return static_cast<Kind>(kind) == Kind::Power ? std::pow(x, y) : interpreter::elementary(static_cast<Kind>(kind), x, y);
                }};

@@ -51,7 +51,6 @@ void StraightEmitter::declare() {
   coefficients_ = field(offsetof(packed::CompiledArguments, coefficients));
   term_coefficients_ = field(offsetof(packed::CompiledArguments, term_coefficients));
   constants_ = field(offsetof(packed::CompiledArguments, constants));
-  bordered_ = field(offsetof(packed::CompiledArguments, bordered));
   sincos_ = field(offsetof(packed::CompiledArguments, sincos));
   elementary_ = field(offsetof(packed::CompiledArguments, elementary));
   wide_ = width_of(n_);

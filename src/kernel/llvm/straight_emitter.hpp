@@ -228,7 +228,7 @@ class StraightEmitter {
   std::size_t n_;
   unsigned wide_ = 1;                   // lanes of q̈
   llvm::Function* function_ = nullptr;
-  Value *rows_ = nullptr, *coefficients_ = nullptr, *term_coefficients_ = nullptr, *constants_ = nullptr, *bordered_ = nullptr,
+  Value *rows_ = nullptr, *coefficients_ = nullptr, *term_coefficients_ = nullptr, *constants_ = nullptr,
         *sincos_ = nullptr, *elementary_ = nullptr;
   int stage_ = 0, k_ = 0;
   std::vector<const Pack*> pack_of_;    // [slots]

@@ -22,8 +22,6 @@ void StraightEmitter::factor() {
       places.push_back(place ? *place : Place{vector_of(0.0, wide_), 0});
     }
     columns.push_back(assemble(places, wide_, [&](std::size_t) { return vector_of(0.0, 1); }));
-    for (unsigned i = 0; i < n_; ++i)
-      save(b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), bordered_, i * n_ + d), splat_lane(columns[d], i, 1));
   }
   invert(std::move(columns));
 }

@@ -13,7 +13,6 @@ struct CompiledArguments {
   const double* coefficients = nullptr;  // of PackedProgram::coefficients
   const double* term_coefficients = nullptr;  // of Program::terms
   const double* constants = nullptr;     // of Program::constants
-  double* bordered = nullptr;            // out: M₀, row by row [n × n]
   /// Engine::sine_cosine
   void (*sincos)(const double* x, double* out, int count) = nullptr;
   double (*elementary)(std::uint8_t function, double x, double y) = nullptr;
