@@ -20,7 +20,6 @@ class StepEmitter {
   void increments();
 
  private:
-  void open(const char* name, llvm::Type* result, const std::vector<llvm::Type*>& parameters);
   Value* argument(unsigned i) { return function_->getArg(i); }
   Value* number(double x) { return out_.number(x, type_); }
   Value* spread(Value* scalar) { return out_.splat(scalar, type_); }
@@ -44,12 +43,6 @@ class StepEmitter {
   llvm::Type *type_, *scalar_;
   llvm::Function* function_ = nullptr;
 };
-
-void StepEmitter::open(const char* name, llvm::Type* result, const std::vector<llvm::Type*>& parameters) {
-  function_ = llvm::Function::Create(llvm::FunctionType::get(result, parameters, false), llvm::Function::ExternalLinkage, name, *out_.module);
-  function_->addFnAttr(llvm::Attribute::NoUnwind);
-  b_.SetInsertPoint(llvm::BasicBlock::Create(out_.context, "", function_));
-}
 
 /// Σ c_i x^i of degree 5 or 6 by Estrin's scheme.
 Value* StepEmitter::polynomial(Value* x, const std::vector<double>& c) {
@@ -113,7 +106,7 @@ Value* StepEmitter::least_lane(Value* x) {
 /// Early orders first: they are there while the last coefficients are still waited for.
 void StepEmitter::radius() {
   constexpr double widened = 0.32192809488736235, infinity = std::numeric_limits<double>::infinity();  // log₂ 1.25
-  open("radius", scalar_, {out_.pointer(), scalar_});
+  function_ = out_.function("radius", {out_.pointer(), scalar_}, true, scalar_);
   Value* const inverse = out_.divide(number(1), size());
   Value* least = number(infinity);
   for (int k = std::max(std::min(2, order_ - 1), order_ - 5); k <= order_; ++k) {
@@ -146,13 +139,13 @@ void StepEmitter::increment(unsigned out, bool derivative, Value* const (&powers
 
 /// The parameters are the engine's; stride, columns and degree are known.
 void StepEmitter::increments() {
-  open("increments", b_.getVoidTy(), {out_.pointer(), out_.integer(), out_.integer(), b_.getInt32Ty(), scalar_, out_.pointer(), out_.pointer()});
+  function_ = out_.function("increments", {out_.pointer(), out_.integer(), out_.integer(), b_.getInt32Ty(), scalar_, out_.pointer(), out_.pointer()});
   Value* const t = spread(argument(4));
   Value* const square = out_.multiply(t, t);
   Value* const powers[3] = {t, square, out_.multiply(square, square)};
   increment(5, false, powers);
   increment(6, true, powers);
-  b_.CreateRetVoid();
+  out_.end_function();
 }
 
 }  // namespace

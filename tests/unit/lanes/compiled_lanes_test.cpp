@@ -147,13 +147,7 @@ TEST_CASE("compiled lanes give the same bits at every width") {
 
 /// One motion: the expansion as a whole in code, or in rolled code, against the interpreter of packs.
 void check_compiled_workspace(const System& s, const Kernel& kernel, bool as_a_whole, const char* processor = "") {
-  KernelWorkspace work(kernel, order);
-  CompileOptions options;
-  options.long_run = as_a_whole;
-  options.cache = false;
-  options.processor = processor;
-  const CompileReport report = work.compile(options);
-  REQUIRE_MESSAGE(report.compiled, report.trouble);
+  KernelWorkspace work = compiled_workspace(kernel, order, as_a_whole, processor);
   const auto interpreted = expand(kernel, motions_near(s.start, 5), 1, InstructionSet::Best);
   std::size_t index = 0;
   for (const Motion& m : motions_near(s.start, 5)) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <doctest/doctest.h>
+#include <maupertuis/kernel.hpp>
 #include <maupertuis/lanes.hpp>
 #include <maupertuis/transform.hpp>
 
@@ -155,6 +156,18 @@ std::vector<Motion> motions_near(const Motion& start, int count) {
     out.push_back(m);
   }
   return out;
+}
+
+/// One motion by machine code: rolled, or straight-line code where the program is small and `long_run` asks for it.
+[[maybe_unused]] KernelWorkspace compiled_workspace(const Kernel& kernel, int orders, bool long_run, const std::string& processor) {
+  KernelWorkspace work(kernel, orders);
+  CompileOptions options;
+  options.cache = false;
+  options.long_run = long_run;
+  options.processor = processor;
+  const CompileReport report = work.compile(options);
+  REQUIRE_MESSAGE(report.compiled, report.trouble);
+  return work;
 }
 
 struct Expansion {

@@ -1,7 +1,5 @@
 #include "lane_systems.hpp"
 
-#include <maupertuis/kernel.hpp>
-
 // One motion in rolled code, stage by stage, against the engine of packs: coefficients, multipliers, integrands.
 
 namespace {
@@ -68,13 +66,7 @@ double difference(const KernelWorkspace& found, const KernelWorkspace& expected,
 }
 
 KernelWorkspace rolled_workspace(const Kernel& kernel, const std::string& processor = {}) {
-  KernelWorkspace work(kernel, rolled_order);
-  CompileOptions options;
-  options.cache = false;
-  options.processor = processor;
-  const CompileReport report = work.compile(options);
-  REQUIRE_MESSAGE(report.compiled, report.trouble);
-  return work;
+  return compiled_workspace(kernel, rolled_order, false, processor);
 }
 
 /// `tolerance`: in units of rounding errors, which the solution magnifies.
