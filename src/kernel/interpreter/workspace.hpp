@@ -1,0 +1,99 @@
+#pragma once
+#include "kernel/interpreter/compiled.hpp"
+#include "kernel/interpreter/elementary.hpp"
+#include "kernel/interpreter/interpreter.hpp"
+#include "kernel/interpreter/lifted_solve.hpp"
+#include "kernel/interpreter/point_section.hpp"
+#include "kernel/jet/bordered_solver.hpp"
+#include "kernel/packed/engine.hpp"
+
+namespace maupertuis {
+
+using interpreter::Memory;
+
+/// Its stages are in workspace.cpp, the solution of a stage in workspace_solution.cpp, what is read of it in workspace_values.cpp.
+struct KernelWorkspace::Impl {
+  /// Up to here the correction of a stage is a product with a small matrix, and so is the solution where M is positive definite.
+  static constexpr std::size_t most_by_matrix = 16;
+
+  Impl(const Kernel& k, int p)
+      : kernel(k), packed(packed::pack(k.program())), program(packed.program), order(p),
+        orders(p + 2 + (-2 - program.first_stage)), memory(program, orders, packed.cells), parameters(program.parameters, 0.0),
+        sides(program.switches.size(), 1), unknowns(program.unknowns),
+        by_matrix(unknowns <= most_by_matrix), producer(program.slots, nullptr), at_point(program) {
+    solution.assign(padded_unknowns(), 0.0);
+    unknown = {solution.data(), unknowns};
+    tangent.assign(by_matrix ? unknowns * memory.stride : memory.stride, 0.0);
+    if (!by_matrix && unknowns == program.freedoms) lifted.emplace(kernel.program(), packed, memory.stride);
+    if (by_matrix) inverse.assign(unknowns * padded_unknowns(), 0.0);
+    for (const Instruction& i : program.instructions) producer[i.out] = &i;
+    interpreter::set_leaves(memory, 0.0, orders);
+    corrects_points = outputs_follow_accelerations();
+    bind();
+  }
+
+  std::size_t padded_unknowns() const { return (unknowns + packed::lanes - 1) / packed::lanes * packed::lanes; }
+  void bind();
+  void compute_constants();
+  KernelStatus run(double t, std::span<const double> q, std::span<const double> v, int stages);
+  void run_stage(int stage);
+  void renew_blocks(int stage, int stages);
+  void run_along(int stage);
+  bool outputs_follow_accelerations() const;
+  bool run_compiled(int stages);
+  void adopt(interpreter::CompiledCode code);
+  void find_tangents(std::size_t directions);
+  void find_direction();
+  void sweep_all();
+  void sweep_block(std::size_t first);
+  KernelStatus factor();
+  KernelStatus factor_full();
+  void need_full();
+  KernelStatus solve(int stage);
+  void solve_factored();
+  void fetch_residual(int stage);
+  bool solve_twice(int stage);
+  void correct(int stage);
+  bool constraints_agree();
+  bool keeps(std::size_t constraint) const { return by_lifting || !solver || solver->keeps(constraint); }
+  double coefficient(Slot slot, int k) const;
+
+  Kernel kernel;
+  packed::PackedProgram packed;
+  const Program& program;            // of `packed`
+  int order, orders;
+  interpreter::Memory memory;
+  packed::Tables tables;
+  packed::TangentMatrix tangents;    // by_matrix: the engine's view of `tangent`
+  const packed::Engine& engine = packed::engine();
+  std::optional<packed::ReadyProgram> ready;
+  std::vector<packed::Reciprocal> reciprocals;  // [orders]
+  std::vector<double> lane_coefficients;  // [packed.coefficients]
+  std::vector<double> parameters;
+  std::vector<std::int8_t> sides;
+  bool stale = true;                 // constants to be computed
+  std::size_t unknowns;              // n + m
+  std::optional<jet::BorderedSolver> solver;
+  std::vector<double> bordered;      // [(n + m) × (n + m)] ∂R/∂(q̈, λ) at order 0; empty until it is asked for
+  bool has_full = false;             // bordered is that of this point
+  std::optional<interpreter::LiftedSolve> lifted;
+  interpreter::Doubles solution;     // q̈_k and λ_k, padded
+  std::span<double> unknown;         // [n + m] of it: −R_k, then q̈_k and λ_k
+  std::vector<double> rough;         // [n + m] a solution that is being corrected
+  bool by_matrix, by_inverse = false, by_lifting = false;
+  interpreter::Doubles inverse;      // by_inverse: −M⁻¹, rows padded
+  interpreter::Doubles tangent;      // by_matrix: ∂slot/∂q^(lag) for each direction [n + m × stride], else for one
+  std::vector<double> block_tangent; // [slots × 8]
+  std::vector<std::uint32_t> of_mass;  // instructions that M₀ goes through
+  std::vector<const Instruction*> producer;  // [slots]
+  interpreter::PointSection at_point;
+  bool alone = false;                // a point whose coefficients are not corrected
+  bool corrects_points = true;       // something that is read at a point alone depends on q̈
+  std::size_t singular = 0, contradicting = 0;
+  int last_stage = 0;
+  interpreter::CompiledCode compiled;
+  interpreter::Doubles sums;         // of rolled code: [convolutions × rolled_group × 8]
+  packed::CompiledArguments arguments;
+};
+
+}  // namespace maupertuis

@@ -1,0 +1,178 @@
+#include "kernel/interpreter/workspace.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+/// The solution of a stage: M₀, its factors, q̈_k, and what the coefficients of the stage owe to it.
+namespace maupertuis {
+namespace {
+
+/// A point alone (an output between steps) needs M₀ but no corrections: beyond this the instructions that M₀ goes through are fewer.
+constexpr std::size_t most_swept_at_point = 8;
+
+/// What a rough solution may be wrong by. Beyond, the error bounds of LiftedSolve decide, since M₀ may be badly conditioned.
+constexpr double largest_correction = 1e-9;
+
+/// Infinity and NaN times 0 are NaN. Eight sums, since additions of one wait for each other for longer than the rest of a stage takes.
+bool are_finite(std::span<const double> values) {
+  constexpr std::size_t width = 8;
+  double sums[width] = {};
+  std::size_t i = 0;
+  for (; i + width <= values.size(); i += width)
+    for (std::size_t j = 0; j < width; ++j) sums[j] += values[i + j] * 0;
+  for (; i < values.size(); ++i) sums[0] += values[i] * 0;
+  for (std::size_t j = 1; j < width; ++j) sums[0] += sums[j];
+  return sums[0] == 0;
+}
+
+}  // namespace
+
+/// The tangents of all slots in the direction of each unknown.
+void KernelWorkspace::Impl::sweep_all() {
+  for (std::size_t d = 0; d < unknowns; ++d) {
+    double* const row = tangent.data() + d * memory.stride;
+    std::fill_n(row, padded_unknowns(), 0.0);
+    row[d] = 1;
+  }
+  find_tangents(unknowns);
+}
+
+/// Those of the residual in 8 directions.
+void KernelWorkspace::Impl::sweep_block(std::size_t first) {
+  std::fill_n(block_tangent.begin(), unknowns * 8, 0.0);
+  for (std::size_t d = 0; d < 8 && first + d < unknowns; ++d) block_tangent[(first + d) * 8 + d] = 1;
+  interpreter::tangents<8>(memory, block_tangent.data(), of_mass);
+}
+
+/// M₀ = ∂R/∂q̈ at order 0, bordered by the constraints, column by column.
+void KernelWorkspace::Impl::need_full() {
+  if (has_full) return;
+  has_full = true;
+  const std::size_t n = unknowns;
+  bordered.resize(n * n);
+  const bool by_sweep = by_matrix && (!alone || n <= most_swept_at_point);
+  if (!by_sweep && of_mass.empty()) {
+    block_tangent.assign(program.slots * 8, 0.0);
+    of_mass = interpreter::instructions_of_mass(program);
+  }
+  if (by_sweep) sweep_all();
+  for (std::size_t d = 0; d < n; ++d) {
+    if (!by_sweep && d % 8 == 0) sweep_block(d);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Slot slot = program.residual[i];
+      bordered[i * n + d] = program.tangent_lags[slot] != 2 ? 0.0
+                            : by_sweep ? tangent[d * memory.stride + slot] : block_tangent[slot * 8 + d % 8];
+    }
+  }
+}
+
+/// Its factors.
+KernelStatus KernelWorkspace::Impl::factor_full() {
+  const std::size_t n = unknowns;
+  need_full();
+  if (!are_finite(bordered)) return KernelStatus::NonFinite;
+  by_inverse = by_matrix && n == program.freedoms && engine.negative_inverse(bordered.data(), n, inverse.data(), padded_unknowns());
+  if (by_inverse) return KernelStatus::Ok;
+  if (!solver) solver.emplace(program.freedoms, n - program.freedoms);
+  std::copy(bordered.begin(), bordered.end(), solver->matrix().begin());
+  if (const auto undetermined = solver->factor()) {
+    singular = *undetermined;
+    return KernelStatus::SingularMass;
+  }
+  return KernelStatus::Ok;
+}
+
+KernelStatus KernelWorkspace::Impl::factor() {
+  has_full = by_inverse = false;
+  by_lifting = lifted && lifted->factor(memory);
+  return by_lifting ? KernelStatus::Ok : factor_full();
+}
+
+/// unknown → its solution.
+void KernelWorkspace::Impl::solve_factored() {
+  if (by_lifting) lifted->solve(unknown);
+  else solver->solve(unknown);
+}
+
+/// unknown = q̈_k.
+KernelStatus KernelWorkspace::Impl::solve(int stage) {
+  const double* const row = memory.row(stage);
+  if (by_inverse) {
+    const bool finite = engine.solve_by_inverse(inverse.data(), padded_unknowns(), row, program.residual.data(), unknowns, solution.data());
+    return finite ? KernelStatus::Ok : KernelStatus::NonFinite;
+  }
+  const auto finite = [this] { return are_finite(unknown) ? KernelStatus::Ok : KernelStatus::NonFinite; };
+  if (by_lifting && lifted->is_rough(stage) && (solve_twice(stage) || stage > 0)) return finite();
+  fetch_residual(stage);
+  if (stage > 0 || !by_lifting) {
+    solve_factored();
+  } else if (!lifted->solve_first(unknown)) {
+    by_lifting = false;
+    if (const KernelStatus status = factor_full(); status != KernelStatus::Ok) return status;
+    solve_factored();
+  }
+  return finite();
+}
+
+/// unknown = −R_k
+void KernelWorkspace::Impl::fetch_residual(int stage) {
+  const double* const row = memory.row(stage);
+  for (std::size_t i = 0; i < unknowns; ++i) unknown[i] = -row[program.residual[i]];
+}
+
+/// A rough solution, and one for what it leaves of −R_k, which the tangents tell. False: the second is not small beside the first, as it
+/// is where the first holds.
+bool KernelWorkspace::Impl::solve_twice(int stage) {
+  fetch_residual(stage);
+  lifted->solve(unknown);
+  find_direction();
+  rough.assign(unknown.begin(), unknown.end());
+  fetch_residual(stage);
+  for (std::size_t i = 0; i < unknowns; ++i) unknown[i] -= tangent[program.residual[i]];
+  lifted->solve(unknown);
+  double largest = 0, correction = 0;
+  for (std::size_t i = 0; i < unknowns; ++i) {
+    largest = std::max(largest, std::abs(rough[i])), correction = std::max(correction, std::abs(unknown[i]));
+    unknown[i] += rough[i];
+  }
+  return correction <= largest_correction * largest;
+}
+
+/// All tangents in the direction of `unknown`.
+void KernelWorkspace::Impl::find_direction() {
+  std::copy(unknown.begin(), unknown.end(), tangent.begin());
+  find_tangents(1);
+}
+
+/// Whether the rows of A that were dropped as dependent hold for the accelerations of the others.
+bool KernelWorkspace::Impl::constraints_agree() {
+  const std::size_t n = program.freedoms;
+  for (std::size_t j = 0; n + j < unknowns; ++j) {
+    if (keeps(j)) continue;
+    const Slot slot = program.residual[n + j];
+    double rest = memory.row(0)[slot], size = interpreter::term_size(memory, producer[slot], slot);
+    for (std::size_t i = 0; i < n; ++i) {
+      const double term = bordered[(n + j) * unknowns + i] * unknown[i];
+      rest += term;
+      size += std::abs(term);
+    }
+    if (std::abs(rest) <= 1e-6 * size) continue;
+    contradicting = j;
+    return false;
+  }
+  return true;
+}
+
+/// Coefficient k + 2 − ℓ of a slot of lag ℓ follows q̈_k with its order-0 tangents: one by one, or the tangent in the direction of q̈_k.
+void KernelWorkspace::Impl::correct(int stage) {
+  if (by_matrix) return engine.correct(tables, stage, tangents, solution.data());
+  const double* const known = by_lifting ? lifted->tangents(stage) : nullptr;
+  if (!known) find_direction();
+  packed::TangentMatrix direction = tangents;
+  direction.values = known ? known : tangent.data();
+  direction.directions = 1;
+  const double weight = 1;
+  engine.correct(tables, stage, direction, &weight);
+}
+
+}  // namespace maupertuis
