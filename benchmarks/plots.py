@@ -51,8 +51,23 @@ def spread(places, distance=16):
     return result
 
 
+def crosses(curve, left, right, top, bottom):
+    """Whether a polyline passes through a box."""
+    for (a, b), (c, d) in zip(curve, curve[1:]):
+        if any(left <= a + s * (c - a) <= right and top <= b + s * (d - b) <= bottom for s in (i / 20 for i in range(21))):
+            return True
+    return False
+
+
+def label_of_early_end(curves, place, label):
+    """Above the end, else below it to the right, where no curve passes: x, y, anchor."""
+    wide, (a, b) = 7.2 * len(label), place
+    covered = any(crosses(curve, a + 8 - wide, a + 8, b - 26, b - 10) for curve in curves)
+    return (a + 10, b + 14, "start") if covered else (a + 8, b - 12, "end")
+
+
 def draw(path, series, x_label, y_label, x_ticks=None):
-    """series: [(label, [(x, y)])]; each is labelled beside its last point, above it where the curve ends early."""
+    """series: [(label, [(x, y)])]; each is labelled beside the frame at the height of its last point, at the end itself where the curve ends early."""
     series = [(label, sorted(points)) for label, points in series if points]
     if not series:
         return
@@ -61,14 +76,15 @@ def draw(path, series, x_label, y_label, x_ticks=None):
     parts = frame(x, y, x_label, y_label)
     ends_early = [x.at(points[-1][0]) < WIDTH - RIGHT - 40 for _, points in series]
     beside = iter(spread([y.at(points[-1][1]) + 4 for (_, points), early in zip(series, ends_early) if not early]))
-    for (label, points), color, early in zip(series, COLORS, ends_early):
-        places = [(x.at(a), y.at(b)) for a, b in points]
+    curves = [[(x.at(a), y.at(b)) for a, b in points] for _, points in series]
+    for (label, _), places, color, early in zip(series, curves, COLORS, ends_early):
         parts.append(f'<polyline points="{" ".join(f"{a:.1f},{b:.1f}" for a, b in places)}" fill="none" stroke="{color}" stroke-width="1.6"/>')
         parts += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="3" fill="{color}"/>' for a, b in places]
         if early:
-            parts.append(text(places[-1][0] + 8, places[-1][1] - 12, label, f'fill="{color}" text-anchor="end"'))
+            a, b, anchor = label_of_early_end(curves, places[-1], label)
+            parts.append(text(a, b, label, f'fill="{color}" text-anchor="{anchor}"'))
         else:
-            parts.append(text(places[-1][0] + 10, next(beside), label, f'fill="{color}"'))
+            parts.append(text(WIDTH - RIGHT + 4, next(beside), label, f'fill="{color}"'))
     body = "\n".join(parts)
     path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" '
                     f'font-family="Latin Modern Roman, STIX Two Text, Georgia, serif" font-size="14" fill="#222">\n'
