@@ -68,6 +68,30 @@ ConstantId ConstantPool::add(ConstantId a, ConstantId b) {
   return apply(Kind::Sum, std::array{a, b});
 }
 
+std::pair<Rational, std::vector<ConstantId>> ConstantPool::factors(ConstantId id) const {
+  Rational number(1);
+  std::vector<ConstantId> others, open{id};
+  while (!open.empty()) {
+    const ConstantId next = open.back();
+    open.pop_back();
+    const Constant& c = constants[next];
+    const std::span operands = std::span(arguments).subspan(c.first_argument, c.arguments);
+    const Rational* const exponent = c.kind == Kind::Power ? literal_or_null(operands[1]) : nullptr;
+    if (rationals_[next]) number = number * *rationals_[next];
+    else if (c.kind == Kind::Product) open.insert(open.end(), operands.begin(), operands.end());
+    else if (exponent && *exponent == Rational(2)) open.insert(open.end(), 2, operands[0]);
+    else others.push_back(next);
+  }
+  std::sort(others.begin(), others.end());
+  return {number, others};
+}
+
+bool ConstantPool::are_opposite(ConstantId a, ConstantId b) const {
+  const auto [of_a, factors_of_a] = factors(a);
+  const auto [of_b, factors_of_b] = factors(b);
+  return of_a == -of_b && factors_of_a == factors_of_b;
+}
+
 // -------------------------------------------------------------------------------------------------------- nodes
 
 NodeIndex Graph::intern(Node node) {

@@ -48,6 +48,8 @@ class ConstantPool {
   const Rational* literal_or_null(ConstantId id) const { return rationals_[id] ? &*rationals_[id] : nullptr; }
   bool is_one(ConstantId id) const { return rationals_[id] && rationals_[id]->is_one(); }
   bool is_zero(ConstantId id) const { return rationals_[id] && rationals_[id]->is_zero(); }
+  /// Whether a = −b as products of the same factors; false may be wrong.
+  bool are_opposite(ConstantId a, ConstantId b) const;
 
   std::vector<Constant> constants;
   std::vector<ConstantId> arguments;
@@ -55,6 +57,8 @@ class ConstantPool {
 
  private:
   ConstantId append(Constant constant, std::optional<Rational> rational);
+  /// A product as a number and its other factors in order.
+  std::pair<Rational, std::vector<ConstantId>> factors(ConstantId id) const;
   std::vector<std::optional<Rational>> rationals_;
   std::unordered_map<std::string, ConstantId> literals_;
   ByKey<ConstantId> by_key_;

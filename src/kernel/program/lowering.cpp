@@ -1,5 +1,7 @@
 #include "kernel/program/lowering.hpp"
 
+#include "kernel/program/rotations.hpp"
+
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -83,7 +85,7 @@ Scaled Lowering::sum(Expr e) {
     const Scaled term = of(e[i]);
     terms.push_back({term.coefficient, term.is_constant() ? graph.leaf(Op::One) : term.node});
   }
-  return graph.linear(std::move(terms));
+  return graph.linear(collect_rotations(graph, std::move(terms)));
 }
 
 /// Factors of low lag first: what repeats between products (coefficients of velocities) is shared.
