@@ -43,8 +43,12 @@ Value* StraightEmitter::sum(const Pack& pack, unsigned w) {
 Value* StraightEmitter::shifted_sum(const Pack& pack, std::uint8_t shift, unsigned w, Value* result) {
   const double factor = shift == 0 ? 1 : shift == 1 ? k_ + 1.0 : (k_ + 1.0) * (k_ + 2.0);
   std::vector<const Column*> columns;
-  for (std::uint32_t c = pack.first_aligned; c < pack.last_aligned; ++c)
-    if (p_.columns[c].shift == shift && (p_.columns[c].source != p_.program.one || k_ + shift == 0)) columns.push_back(&p_.columns[c]);
+  for (std::uint32_t c = pack.first_aligned; c < pack.last_aligned; ++c) {
+    const Column& column = p_.columns[c];
+    if (column.shift != shift || (column.source == p_.program.one && k_ + shift != 0)) continue;
+    if (Value* const rate = rates(sources_of(column, pack.width), shift, w)) result = fma(rate, coefficients(column.coefficients, w), result);
+    else columns.push_back(&column);
+  }
   const bool few = columns.size() <= 2;
   Value* sums[2] = {few ? result : nullptr, nullptr};
   std::size_t next = 0;
@@ -55,8 +59,21 @@ Value* StraightEmitter::shifted_sum(const Pack& pack, std::uint8_t shift, unsign
     sum = fma(values, few ? mul(c, splat(factor, c)) : c, sum);
   }
   if (few) return sums[0];
+  if (columns.empty()) return result;
   Value* const whole = add(sums[0], sums[1]);
   return fma(whole, splat(factor, whole), result);
+}
+
+/// Derivatives of integrals of this stage: k y_k is there before y_k is. Null: not all of the slots are such.
+Value* StraightEmitter::rates(const std::vector<Slot>& slots, std::uint8_t shift, unsigned w) {
+  if (shift == 0 || stage_ < 1) return nullptr;
+  std::vector<std::optional<Place>> places;
+  for (const Slot slot : slots) {
+    const auto integral = slot < n_ || !pack_of_[slot] || current_order(slot) != k_ + shift ? rates_.end() : rates_.find({pack_of_[slot]->out, shift});
+    if (integral == rates_.end()) return nullptr;
+    places.push_back(Place{integral->second, slot - pack_of_[slot]->out});
+  }
+  return assemble(places, w, [&](std::size_t) { return vector_of(0.0, 1); });
 }
 
 std::vector<Slot> StraightEmitter::sources_of(const Column& column, std::uint32_t width) {
@@ -148,7 +165,10 @@ Value* StraightEmitter::self(std::uint32_t a, int first, unsigned w) {
 void StraightEmitter::integral(const Pack& pack, unsigned w) {
   if (k_ == 0) return functions(pack, w);
   Value* const sum = convolution([&](int j) { return operand(pack.a, j, w); }, [&](int j) { return operand(pack.b, j, w); }, 1, k_, k_);
-  keep(pack, over(sum, k_, coefficients(pack.coefficients, w)));
+  Value* const c = coefficients(pack.coefficients, w);
+  rates_[{pack.out, 1}] = mul(sum, c);
+  rates_[{pack.out, 2}] = mul(sum, constant_product(c, k_ - 1.0));
+  keep(pack, over(sum, k_, c));
 }
 
 Value* StraightEmitter::quotient(const Pack& pack, unsigned w) {

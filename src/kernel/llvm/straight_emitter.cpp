@@ -59,7 +59,7 @@ void StraightEmitter::declare() {
 /// The sum of all q̈_k times 0 tells whether all were finite.
 void StraightEmitter::finish() {
   Value* const zero = vector_of(0.0, wide_);
-  Value* bad = b_.CreateFCmpUNE(check_, zero);
+  Value* bad = b_.CreateFCmpUNE(b_.CreateFMul(check_, zero), zero);
   if (wide_ > 1) bad = b_.CreateOrReduce(bad);
   b_.CreateRet(b_.CreateZExt(bad, b_.getInt32Ty()));
 }

@@ -121,6 +121,7 @@ class StraightEmitter {
   bool is_corrected(Slot slot) const;
   Value* sum(const Pack& pack, unsigned w);
   Value* shifted_sum(const Pack& pack, std::uint8_t shift, unsigned w, Value* result);
+  Value* rates(const std::vector<Slot>& slots, std::uint8_t shift, unsigned w);
   static std::vector<Slot> sources_of(const Column& column, std::uint32_t width);
   Value* products(const Pack& pack, unsigned w, Value* result);
   Value* product(std::uint32_t a, std::uint32_t b, unsigned w);
@@ -236,6 +237,7 @@ class StraightEmitter {
   Value *acceleration_ = nullptr, *previous_ = nullptr, *final_coordinates_ = nullptr, *previous_coordinates_ = nullptr, *check_ = nullptr;
   bool look_ahead_ = false;
   std::map<Slot, Value*> open_;         // results of this stage by first slot
+  std::map<std::pair<Slot, std::uint8_t>, Value*> rates_;  // first and second derivatives of its integrals
   std::map<Slot, Value*> early_;        // the same without q̈ of this stage
   std::map<std::pair<std::uint32_t, int>, Newest> newest_;  // (block, order): in registers
   std::map<std::tuple<Slot, int, unsigned>, Newest> newest_ranges_;

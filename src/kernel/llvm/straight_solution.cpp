@@ -126,8 +126,7 @@ void StraightEmitter::solve() {
     for (unsigned d = 0; d < n_; ++d)
       found = fma(splat_lane(acceleration_, d, wide_), fma(ahead_b_[d], vector_of(1.0 / stage_, wide_), ahead_a_[d]), found);
   previous_ = std::exchange(acceleration_, found);
-  Value* const nothing = b_.CreateFMul(found, vector_of(0.0, wide_));  // NaN where it is not finite
-  check_ = check_ ? b_.CreateFAdd(check_, nothing) : nothing;
+  check_ = check_ ? b_.CreateFAdd(check_, found) : found;
 }
 
 void StraightEmitter::correct() {

@@ -78,6 +78,7 @@ Value* StraightEmitter::over(Value* x, double d, Value* c) {
 void StraightEmitter::begin_stage(int stage) {
   stage_ = stage;
   open_.clear();
+  rates_.clear();
   early_.clear();
   if (stage < 0) {
     const int k = stage + 2;

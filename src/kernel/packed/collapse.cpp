@@ -8,6 +8,11 @@ namespace {
 
 bool is_sum(const Step& step) { return step.head.op == Op::Linear || step.head.op == Op::Products; }
 
+ConstantId one_of(Program& program) {
+  program.constants.push_back({.kind = Kind::Number, .value = 1});
+  return static_cast<ConstantId>(program.constants.size() - 1);
+}
+
 class Collapse {
  public:
   Collapse(Program& program, std::vector<Step>& steps, std::size_t longest)
@@ -20,6 +25,7 @@ class Collapse {
       if (step.products.empty()) sum_of_[step.head.out] = &step;
     }
     drop_unread();
+    scale_factors();
   }
 
  private:
@@ -58,10 +64,9 @@ class Collapse {
     if (!fresh) place->second = apply(Kind::Sum, place->second, term.coefficient);
   }
 
+  bool is_one(ConstantId id) const { return program_.constants[id].kind == Kind::Number && program_.constants[id].value == 1; }
+
   ConstantId multiply(ConstantId x, ConstantId y) {
-    const auto is_one = [&](ConstantId id) {
-      return program_.constants[id].kind == Kind::Number && program_.constants[id].value == 1;
-    };
     return is_one(x) ? y : is_one(y) ? x : apply(Kind::Product, x, y);
   }
 
@@ -74,7 +79,8 @@ class Collapse {
     return place->second = static_cast<ConstantId>(program_.constants.size() - 1);
   }
 
-  void drop_unread() {
+  /// What is read besides by the operands of steps.
+  std::vector<bool> read_elsewhere() const {
     std::vector<bool> read(program_.slots, false);
     const auto reads = [&](Slot slot) { if (slot != no_slot) read[slot] = true; };
     for (const auto* slots : {&program_.residual, &program_.constraint_values, &program_.constraint_rates, &program_.switch_slots,
@@ -92,6 +98,11 @@ class Collapse {
     for (const Step& step : steps_)
       if (step.head.op == Op::Function)
         for (const Term& term : step.products) reads(term.a);
+    return read;
+  }
+
+  void drop_unread() {
+    std::vector<bool> read = read_elsewhere();
     std::vector<Step> kept;
     for (auto step = steps_.rbegin(); step != steps_.rend(); ++step) {
       const bool needed = !is_sum(*step) || read[step->head.out];
@@ -103,17 +114,32 @@ class Collapse {
     steps_ = std::move(kept);
   }
 
+  /// The coefficient of a product goes to those of a factor that is a sum and read nowhere else.
+  void scale_factors() {
+    const std::vector<bool> elsewhere = read_elsewhere();
+    std::vector<std::uint32_t> readers(program_.slots, 0);
+    for (const Step& step : steps_) for_operands(step, [&](Slot slot, int) { ++readers[slot]; });
+    std::vector<Step*> sum_at(program_.slots, nullptr);
+    for (Step& step : steps_)
+      if (step.head.op == Op::Linear && step.chain < 0 && readers[step.head.out] == 1 && !elsewhere[step.head.out]) sum_at[step.head.out] = &step;
+    const ConstantId one = one_of(program_);
+    for (Step& step : steps_) {
+      if (!is_sum(step)) continue;
+      for (Term& product : step.products) {
+        Step* const factor = sum_at[product.a] ? sum_at[product.a] : sum_at[product.b];
+        if (!factor || is_one(product.coefficient)) continue;
+        for (Term& term : factor->linear) term.coefficient = multiply(product.coefficient, term.coefficient);
+        product.coefficient = one;
+      }
+    }
+  }
+
   Program& program_;
   std::vector<Step>& steps_;
   std::size_t longest_;
   std::vector<const Step*> sum_of_;     // [slots]
   std::map<std::tuple<Kind, ConstantId, ConstantId>, ConstantId> made_;
 };
-
-ConstantId one_of(Program& program) {
-  program.constants.push_back({.kind = Kind::Number, .value = 1});
-  return static_cast<ConstantId>(program.constants.size() - 1);
-}
 
 }  // namespace
 
