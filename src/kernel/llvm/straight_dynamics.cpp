@@ -43,12 +43,15 @@ Value* StraightEmitter::sum(const Pack& pack, unsigned w) {
 Value* StraightEmitter::shifted_sum(const Pack& pack, std::uint8_t shift, unsigned w, Value* result) {
   const double factor = shift == 0 ? 1 : shift == 1 ? k_ + 1.0 : (k_ + 1.0) * (k_ + 2.0);
   std::vector<const Column*> columns;
+  std::vector<Value*> derivatives, factors;
   for (std::uint32_t c = pack.first_aligned; c < pack.last_aligned; ++c) {
     const Column& column = p_.columns[c];
     if (column.shift != shift || (column.source == p_.program.one && k_ + shift != 0)) continue;
-    if (Value* const rate = rates(sources_of(column, pack.width), shift, w)) result = fma(rate, coefficients(column.coefficients, w), result);
-    else columns.push_back(&column);
+    Value* const rate = rates(sources_of(column, pack.width), shift, w);
+    if (!rate) columns.push_back(&column);
+    else derivatives.push_back(rate), factors.push_back(coefficients(column.coefficients, w));
   }
+  result = add(dot(derivatives, factors), result);
   const bool few = columns.size() <= 2;
   Value* sums[2] = {few ? result : nullptr, nullptr};
   std::size_t next = 0;

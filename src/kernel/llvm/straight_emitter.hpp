@@ -197,6 +197,7 @@ class StraightEmitter {
   void trust(Value* condition);
   Value* splat_lane(Value* v, unsigned lane, unsigned w);
   void solve();
+  Value* dot(ArrayRef<Value*> x, ArrayRef<Value*> y);
   void correct();
   void correct(Slot slot, const Tangent& t, int lag, const SecondTangent* second_order);
   Value* direction_of(Value* acceleration, const Tangent& t, int d, unsigned w);

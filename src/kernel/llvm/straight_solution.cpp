@@ -111,22 +111,30 @@ Value* StraightEmitter::splat_lane(Value* v, unsigned lane, unsigned w) {
   return b_.CreateShuffleVector(v, std::vector<int>(w, static_cast<int>(lane)));
 }
 
-/// q̈_k = −M₀⁻¹ R_k; looking ahead, R_k lacks its part by q̈_{k−1}, which comes last.
+/// q̈_k = −M₀⁻¹ R_k; looking ahead, R_k lacks its part by q̈_{k−1}.
 void StraightEmitter::solve() {
-  Value *even = nullptr, *odd = nullptr;
+  std::vector<Value*> residual, before, slopes;
   for (unsigned d = 0; d < n_; ++d) {
     const Slot slot = p_.program.residual[d];
     const auto r = current_order(slot) == stage_ ? place(slot) : std::nullopt;
-    Value* const value = r ? splat_lane(r->vector, r->lane, wide_) : spread(load(cell(stage_, slot), 1));
-    Value*& sum = d % 2 == 0 ? even : odd;
-    sum = fma(value, inverse_columns_[d], sum);
+    residual.push_back(r ? splat_lane(r->vector, r->lane, wide_) : spread(load(cell(stage_, slot), 1)));
+    if (!looks_ahead(stage_)) continue;
+    before.push_back(splat_lane(acceleration_, d, wide_));
+    slopes.push_back(fma(ahead_b_[d], vector_of(1.0 / stage_, wide_), ahead_a_[d]));
   }
-  Value* found = add(even, odd);
-  if (looks_ahead(stage_))
-    for (unsigned d = 0; d < n_; ++d)
-      found = fma(splat_lane(acceleration_, d, wide_), fma(ahead_b_[d], vector_of(1.0 / stage_, wide_), ahead_a_[d]), found);
+  Value* const found = add(dot(before, slopes), dot(residual, inverse_columns_));
   previous_ = std::exchange(acceleration_, found);
   check_ = check_ ? b_.CreateFAdd(check_, found) : found;
+}
+
+/// Σ x_i y_i in two chains; null without terms. Two products are added: an addition is shorter than a fused product.
+Value* StraightEmitter::dot(ArrayRef<Value*> x, ArrayRef<Value*> y) {
+  Value *even = nullptr, *odd = nullptr;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    Value*& sum = i % 2 == 0 ? even : odd;
+    sum = fma(x[i], y[i], sum);
+  }
+  return add(even, odd);
 }
 
 void StraightEmitter::correct() {
