@@ -193,7 +193,6 @@ class StraightEmitter {
   void eliminate_pair(std::vector<Value*>& rows, unsigned pivot, ArrayRef<Value*> diagonal, std::vector<Value*>& sound);
   Value* spread(Value* scalar) { return wide_ == 1 ? scalar : b_.CreateVectorSplat(wide_, scalar); }
   Value* with_lane(Value* v, unsigned lane, Value* scalar) { return width(v) == 1 ? scalar : b_.CreateInsertElement(v, scalar, lane); }
-  Value* in_memory(Value* v);
   void trust(Value* condition);
   Value* splat_lane(Value* v, unsigned lane, unsigned w);
   void solve();
@@ -243,7 +242,6 @@ class StraightEmitter {
   std::map<std::pair<std::uint32_t, int>, Newest> newest_;  // (block, order): in registers
   std::map<std::tuple<Slot, int, unsigned>, Newest> newest_ranges_;
   std::set<std::pair<Slot, unsigned>> ranges_;
-  std::map<Value*, Value*> copies_;
   std::map<Slot, Value*> seconds_;      // at order 0
   std::vector<Tangent> tangents_;       // [packs]
   std::map<Slot, Tangent> second_tangents_;

@@ -5,9 +5,7 @@ namespace maupertuis::llvm_backend {
 using llvm::ArrayRef;
 using llvm::Value;
 using packed::Pack;
-using packed::lanes;
 
-static constexpr unsigned most_shuffled = 4;  // lanes
 static constexpr double least_pivot = 1e-10, least_determinant = 1e-280;
 
 void StraightEmitter::factor() {
@@ -85,15 +83,6 @@ void StraightEmitter::eliminate_pair(std::vector<Value*>& rows, unsigned pivot, 
   rows[pivot] = b_.CreateFMul(above, inverse), rows[other] = b_.CreateFMul(below, inverse);
 }
 
-/// A copy on the stack: a load that fills all lanes costs nothing where a shuffle takes the place of a multiplication.
-Value* StraightEmitter::in_memory(Value* v) {
-  Value*& copy = copies_[v];
-  if (copy) return copy;
-  copy = llvm::IRBuilder<>(&function_->getEntryBlock(), function_->getEntryBlock().begin()).CreateAlloca(v->getType());
-  save(copy, v);
-  return copy;
-}
-
 /// Beyond this point only if the condition holds; else the slow path has to decide.
 void StraightEmitter::trust(Value* condition) {
   auto* const good = llvm::BasicBlock::Create(context_, "", function_);
@@ -107,7 +96,6 @@ void StraightEmitter::trust(Value* condition) {
 Value* StraightEmitter::splat_lane(Value* v, unsigned lane, unsigned w) {
   if (width(v) == 1) return w == 1 ? v : b_.CreateVectorSplat(w, v);
   if (w == 1) return b_.CreateExtractElement(v, lane);
-  if (w > most_shuffled && !llvm::isa<llvm::Constant>(v)) return b_.CreateVectorSplat(w, load_from(in_memory(v), lane, 1));
   return b_.CreateShuffleVector(v, std::vector<int>(w, static_cast<int>(lane)));
 }
 
