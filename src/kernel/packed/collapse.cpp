@@ -25,7 +25,26 @@ class Collapse {
       if (step.products.empty()) sum_of_[step.head.out] = &step;
     }
     drop_unread();
-    scale_factors();
+  }
+
+  /// The coefficient of a product goes to those of a factor that is a sum and read nowhere else.
+  void scale_factors() {
+    const std::vector<bool> elsewhere = read_elsewhere();
+    std::vector<std::uint32_t> readers(program_.slots, 0);
+    for (const Step& step : steps_) for_operands(step, [&](Slot slot, int) { ++readers[slot]; });
+    std::vector<Step*> sum_at(program_.slots, nullptr);
+    for (Step& step : steps_)
+      if (step.head.op == Op::Linear && step.chain < 0 && readers[step.head.out] == 1 && !elsewhere[step.head.out]) sum_at[step.head.out] = &step;
+    const ConstantId one = one_of(program_);
+    for (Step& step : steps_) {
+      if (!is_sum(step)) continue;
+      for (Term& product : step.products) {
+        Step* const factor = sum_at[product.a] ? sum_at[product.a] : sum_at[product.b];
+        if (!factor || is_one(product.coefficient)) continue;
+        for (Term& term : factor->linear) term.coefficient = multiply(product.coefficient, term.coefficient);
+        product.coefficient = one;
+      }
+    }
   }
 
  private:
@@ -114,26 +133,6 @@ class Collapse {
     steps_ = std::move(kept);
   }
 
-  /// The coefficient of a product goes to those of a factor that is a sum and read nowhere else.
-  void scale_factors() {
-    const std::vector<bool> elsewhere = read_elsewhere();
-    std::vector<std::uint32_t> readers(program_.slots, 0);
-    for (const Step& step : steps_) for_operands(step, [&](Slot slot, int) { ++readers[slot]; });
-    std::vector<Step*> sum_at(program_.slots, nullptr);
-    for (Step& step : steps_)
-      if (step.head.op == Op::Linear && step.chain < 0 && readers[step.head.out] == 1 && !elsewhere[step.head.out]) sum_at[step.head.out] = &step;
-    const ConstantId one = one_of(program_);
-    for (Step& step : steps_) {
-      if (!is_sum(step)) continue;
-      for (Term& product : step.products) {
-        Step* const factor = sum_at[product.a] ? sum_at[product.a] : sum_at[product.b];
-        if (!factor || is_one(product.coefficient)) continue;
-        for (Term& term : factor->linear) term.coefficient = multiply(product.coefficient, term.coefficient);
-        product.coefficient = one;
-      }
-    }
-  }
-
   Program& program_;
   std::vector<Step>& steps_;
   std::size_t longest_;
@@ -170,6 +169,8 @@ void write_derivatives(Program& program, std::vector<Step>& steps) {
 void collapse_sums(Program& program, std::vector<Step>& steps, std::size_t longest) {
   Collapse(program, steps, longest).run();
 }
+
+void scale_factors(Program& program, std::vector<Step>& steps) { Collapse(program, steps, 0).scale_factors(); }
 
 namespace {
 

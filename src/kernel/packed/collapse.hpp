@@ -22,9 +22,13 @@ void find_chains(const Program& program, std::vector<Step>& steps, std::size_t l
 /// d/dt becomes a linear term with a shift.
 void write_derivatives(Program& program, std::vector<Step>& steps);
 
-/// Writes sums that sums read out in them, so that fewer wait for each other, and drops those that nothing reads any more; coefficients of products
-/// go to factors that are sums and read nowhere else. A sum gets at most `longest` terms that way. New coefficients are appended to the program's constants.
+/// Writes sums that sums read out in them, so that fewer wait for each other, and drops those that nothing reads any more.
+/// A sum gets at most `longest` terms that way. New coefficients are appended to the program's constants.
 void collapse_sums(Program& program, std::vector<Step>& steps, std::size_t longest);
+
+/// The coefficients of products go to factors that are sums and read nowhere else, whose slots then hold other values than those of the program
+/// as it was.
+void scale_factors(Program& program, std::vector<Step>& steps);
 
 /// Calls f(slot, shift) for each operand whose value of the same time is needed.
 template <class F>

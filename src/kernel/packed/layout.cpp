@@ -15,7 +15,7 @@ namespace maupertuis::packed {
 namespace {
 
 constexpr std::size_t longest_sum_of_small = 64, longest_sum_of_large = 10;
-constexpr std::size_t most_without_chains = 16, shortest_chain = 8;
+constexpr std::size_t most_of_small = 16, shortest_chain = 8;
 
 class Packs {
  public:
@@ -252,12 +252,13 @@ class Packs {
 }  // namespace
 
 PackedProgram pack(const Program& program) {
-  const bool large = program.unknowns > most_without_chains;
+  const bool large = program.unknowns > most_of_small;
   Program extended = program;  // with the constants of the steps
   std::vector<Step> steps = dynamics_of(program);
   write_derivatives(extended, steps);
   if (large) find_chains(extended, steps, shortest_chain);
   collapse_sums(extended, steps, large ? longest_sum_of_large : longest_sum_of_small);
+  if (!large) scale_factors(extended, steps);  // of large ones, lifted solutions know the slots of the program as it was
   const std::vector<Group> groups = group_steps(program, steps);
   Numbering numbering = number_slots(program, steps, groups);
   Renumbered renumbered = renumber(program, std::move(extended), steps, groups, numbering);
