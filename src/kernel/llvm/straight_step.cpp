@@ -1,6 +1,7 @@
 #include "kernel/llvm/emission.hpp"
 #include "kernel/llvm/emitters.hpp"
 
+#include <array>
 #include <bit>
 #include <limits>
 
@@ -27,7 +28,7 @@ class StepEmitter {
   Value* speed(int k) { return out_.multiply(out_.absolute(row(k + 1)), number(k + 1)); }
   Value* larger(Value* x, Value* y) { return b_.CreateSelect(b_.CreateFCmpOGT(x, y), x, y); }
   Value* smaller(Value* x, Value* y) { return b_.CreateSelect(b_.CreateFCmpOLT(x, y), x, y); }
-  Value* polynomial(Value* x, const std::vector<double>& c);
+  Value* cubic(Value* x, const std::array<double, 4>& c, Value* sum = nullptr);
   Value* rough_log2(Value* x);
   Value* rough_exp2(Value* x);
   Value* size();
@@ -44,15 +45,12 @@ class StepEmitter {
   llvm::Function* function_ = nullptr;
 };
 
-/// Σ c_i x^i of degree 5 or 6 by Estrin's scheme.
-Value* StepEmitter::polynomial(Value* x, const std::vector<double>& c) {
+/// Σ c_i x^i of degree 3, and a sum that is there early.
+Value* StepEmitter::cubic(Value* x, const std::array<double, 4>& c, Value* sum) {
   llvm::Type* const type = x->getType();
   const auto pair = [&](std::size_t i) { return out_.fma(x, out_.number(c[i + 1], type), out_.number(c[i], type)); };
-  Value* const square = out_.multiply(x, x);
-  Value* const low = out_.fma(square, pair(2), pair(0));
-  Value* high = pair(4);
-  if (c.size() > 6) high = out_.fma(square, out_.number(c[6], type), high);
-  return out_.fma(out_.multiply(square, square), high, low);
+  Value* const low = sum ? out_.add(sum, pair(0)) : pair(0);
+  return out_.fma(out_.multiply(x, x), pair(2), low);
 }
 
 /// maupertuis/rough_powers.hpp
@@ -64,8 +62,7 @@ Value* StepEmitter::rough_log2(Value* x) {
   Value* const fraction = b_.CreateOr(b_.CreateAnd(bits, constant(0x000fffffffffffff)), constant(0x3ff0000000000000));
   Value* const e = out_.subtract(b_.CreateBitCast(exponent, type_), number(0x1p52 + 1023));
   Value* const f = out_.subtract(b_.CreateBitCast(fraction, type_), number(1));
-  return out_.add(e, polynomial(f, {2.4434387202040227e-06, 1.4424535262106073, -0.7173127802648969, 0.4545084921997887, -0.2726975648528732,
-                                    0.11761308406665116, -0.02456853474529919}));
+  return cubic(f, {0.0006371172847411266, 1.4188802113925905, -0.5771289141576275, 0.15824870276503722}, e);
 }
 
 /// The same, of one number between −1020 and 1020.
@@ -73,7 +70,7 @@ Value* StepEmitter::rough_exp2(Value* x) {
   Value* const shifter = out_.number(0x1.8p52, scalar_);
   Value* const shifted = out_.add(x, shifter);
   Value* const f = out_.subtract(x, out_.subtract(shifted, shifter));
-  Value* const power = polynomial(f, {1.0000000754548972, 0.6931471880262288, 0.2402210748530834, 0.05550357114219078, 0.009676031918322054, 0.0013390863364671234});
+  Value* const power = cubic(f, {0.9999280735404955, 0.6932609854573358, 0.242611122194331, 0.05517166907486526});
   Value* const bits = b_.CreateAdd(b_.CreateBitCast(power, out_.integer()), b_.CreateShl(b_.CreateBitCast(shifted, out_.integer()), 52));
   return b_.CreateBitCast(bits, scalar_);
 }
