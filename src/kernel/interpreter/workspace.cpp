@@ -76,6 +76,7 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   if (program.time != no_slot) memory.row(0)[program.time] = t;
   double *const position = memory.row(0), *const velocity = memory.row(1);
   for (std::size_t i = 0; i < q.size(); ++i) position[i] = q[i], velocity[i] = v[i];
+  arguments.q = q.data(), arguments.v = v.data();
   if (run_compiled(stages)) return KernelStatus::Ok;
   for (int stage = program.first_stage; stage < stages; ++stage) {
     if (stage >= 0) std::fill_n(memory.row(stage + 2), unknowns, 0.0);

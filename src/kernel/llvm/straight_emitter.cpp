@@ -48,6 +48,8 @@ void StraightEmitter::declare() {
     return b_.CreateLoad(pointer, b_.CreateConstInBoundsGEP1_64(b_.getInt8Ty(), function_->getArg(0), offset));
   };
   rows_ = field(offsetof(packed::CompiledArguments, rows));
+  given_q_ = field(offsetof(packed::CompiledArguments, q));
+  given_v_ = field(offsetof(packed::CompiledArguments, v));
   coefficients_ = field(offsetof(packed::CompiledArguments, coefficients));
   term_coefficients_ = field(offsetof(packed::CompiledArguments, term_coefficients));
   constants_ = field(offsetof(packed::CompiledArguments, constants));

@@ -82,6 +82,7 @@ class StraightEmitter {
   Value* over(Value* x, double d, Value* c);
   Value* constant_product(Value* c, double factor) { return mul(c, splat(factor, c)); }
   void begin_stage(int stage);
+  Value* given_coordinates(int order);
   std::optional<Place> place(Slot slot) const;
   /// The second results of a scalar pair have a vector of their own.
   Slot slot_base(const Pack& pack, Slot slot) const { return pack.kind == Pack::Scalar ? slot : pack.out; }
@@ -229,7 +230,7 @@ class StraightEmitter {
   std::size_t n_;
   unsigned wide_ = 1;                   // lanes of q̈
   llvm::Function* function_ = nullptr;
-  Value *rows_ = nullptr, *coefficients_ = nullptr, *term_coefficients_ = nullptr, *constants_ = nullptr,
+  Value *rows_ = nullptr, *given_q_ = nullptr, *given_v_ = nullptr, *coefficients_ = nullptr, *term_coefficients_ = nullptr, *constants_ = nullptr,
         *sincos_ = nullptr, *elementary_ = nullptr;
   int stage_ = 0, k_ = 0;
   std::vector<const Pack*> pack_of_;    // [slots]

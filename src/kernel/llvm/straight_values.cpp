@@ -82,10 +82,24 @@ void StraightEmitter::begin_stage(int stage) {
   early_.clear();
   if (stage < 0) {
     const int k = stage + 2;
-    coordinates_ = k < 2 && k >= 0 ? load(cell(k, 0), wide_) : nullptr;
+    coordinates_ = k < 2 && k >= 0 ? given_coordinates(k) : nullptr;
   } else {
     coordinates_ = vector_of(0.0, wide_);
   }
+}
+
+/// q or q̇, number by number: a wider load would wait until all of it is in the cache. `volatile` keeps LLVM from joining them.
+Value* StraightEmitter::given_coordinates(int order) {
+  constexpr std::size_t most_singly = 4;  // beyond, putting them together takes longer
+  if (n_ > most_singly) return load(cell(order, 0), wide_);
+  Value* const from = order == 0 ? given_q_ : given_v_;
+  Value* result = vector_of(0.0, wide_);
+  for (unsigned i = 0; i < n_; ++i) {
+    auto* const number = llvm::cast<llvm::LoadInst>(load_from(from, i, 1));
+    number->setVolatile(true);
+    result = with_lane(result, i, number);
+  }
+  return result;
 }
 
 /// Where the coefficient of this stage stands; nothing: it was not computed in this stage's registers.

@@ -10,6 +10,7 @@ inline constexpr int rolled_group = 4;
 
 struct CompiledArguments {
   double* rows = nullptr;                // [orders][stride]; q, q̇ and the leaves are set
+  const double *q = nullptr, *v = nullptr;  // straight-line: the same numbers where they were written first, which are there sooner
   const double* coefficients = nullptr;  // of PackedProgram::coefficients
   const double* term_coefficients = nullptr;  // of Program::terms
   const double* constants = nullptr;     // of Program::constants
