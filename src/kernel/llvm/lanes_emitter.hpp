@@ -2,6 +2,7 @@
 #include "kernel/lanes/plan.hpp"
 #include "kernel/llvm/emission.hpp"
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -11,8 +12,8 @@
 /// so what hangs on that chain is kept short. Of a convolution Σ a_j b_{m−j}
 ///
 ///   the *interior*, 2 ≤ j ≤ m − 2, holds coefficients that are final a stage earlier; it is added up there, before that stage is
-///     solved, while the processor would wait. Interiors share a loop, and those of one lag in it the loads of
-///     common operands;
+///     solved, while the processor would wait. Interiors of one lag share a loop and the loads of common operands, and those of two
+///     stages are added up at once, which takes half of the loads;
 ///   the *newest* products, of orders 1 and m − 1, need the stage before;
 ///   those at the *ends*, of orders 0 and m, need the instructions of this stage.
 ///
@@ -84,10 +85,15 @@ class LanesEmitter {
     bool negative = false;
     ConstantId exponent = 0;
   };
+  struct Sum {
+    Value *first = nullptr, *second = nullptr;  // chains of additions; null: zero
+  };
   struct Accumulator {
     int ahead;                     // its order counts from the stage
     std::vector<Piece> pieces;
-    Value *sum = nullptr, *next = nullptr;  // interiors of this stage and of the next; null: zero
+    Value* sum = nullptr;          // the interior of this stage; null: zero
+    Sum next, after;               // of the next, and of the one after that but for the pair of order 2
+    bool begun = false;            // … was found with those of the stage that ends
   };
   /// Terms of an instruction that share a coefficient share an accumulator.
   struct Group {
@@ -99,21 +105,18 @@ class LanesEmitter {
   std::uint32_t add_accumulator(int ahead, std::vector<Piece> pieces);
   void group_terms(const Instruction& i, std::uint32_t first, std::uint32_t last, Shape shape, std::vector<Group>& groups);
   void prepare_next();
-  void interiors_of(const std::vector<std::uint32_t>& group);
-  struct Turn;                     // one pair (j, m − j)
-  /// Accumulators of one order within a group.
-  struct Shift {
-    int ahead;
-    std::size_t count;
-    bool weighted;
-  };
-  /// Adds a pair to the sums; [sums] which of the turns, or none.
-  using AddTurn = std::function<void(std::vector<Turn>&, const std::vector<std::size_t>&)>;
-  void rolled_pairs(int least, const std::vector<Shift>& shifts, const std::vector<std::size_t>& shift_of, std::vector<Value*>& sums,
-                    std::vector<Value*>& seconds, const AddTurn& add_turn);
-  Value* innermost(int ahead);
-  bool is_weighted(const Accumulator& accumulator) const;
-  Value* add_pair(const Accumulator& accumulator, Turn& turn, Value* sum, bool second_half);
+  bool prepares_two() const;
+  void interiors_of(const std::vector<std::uint32_t>& group, bool two);
+  void finish(const std::vector<std::uint32_t>& group);
+  struct Row;                      // an order
+  Row row_at(Value* order);
+  /// Adds the pairs of two rows to the sums of a group, of the next stage or of the one after it.
+  using AddRows = std::function<void(Row& low, Row& high, bool after)>;
+  void rolled_pairs(const std::vector<std::uint32_t>& group, bool two, const AddRows& add);
+  void load_lows(const std::vector<std::uint32_t>& group, Row& row);
+  Value* loaded(Row& row, Slot slot);
+  Value* weighted(const Piece& piece, Row& row, const Row& other);
+  void add_pair(const Accumulator& accumulator, Row& low, Row& high, Sum& sum);
   Value* middle_of(const Accumulator& accumulator, int ahead);
   Value* newest(const Piece& piece, int ahead, Value* sum);
 

@@ -6,11 +6,10 @@
 namespace maupertuis::llvm_backend {
 namespace {
 
-/// Sums that a loop carries in registers.
-constexpr std::size_t most_sums = 12;
-/// With fewer a second chain of additions keeps the processor from waiting.
-constexpr std::size_t few_sums = 4;
-constexpr std::size_t none = ~std::size_t{0};
+/// Accumulators of a loop, of two stages each.
+constexpr std::ptrdiff_t most_side_by_side = 4;
+/// Below, a stage has no pairs that are final two stages before.
+constexpr int least_order_of_two = 6;
 
 }  // namespace
 
@@ -19,7 +18,7 @@ using llvm::Value;
 // -------------------------------------------------------------------------------------------------------------------- plan
 
 std::uint32_t LanesEmitter::add_accumulator(int ahead, std::vector<Piece> pieces) {
-  accumulators_.push_back({ahead, std::move(pieces)});
+  accumulators_.push_back({ahead, std::move(pieces), nullptr, {}, {}, false});
   return static_cast<std::uint32_t>(accumulators_.size() - 1);
 }
 
@@ -63,46 +62,32 @@ void LanesEmitter::plan_accumulators() {
 
 // ------------------------------------------------------------------------------------------------------------------- pairs
 
-/// A pair of orders j < m − j, and what was loaded there.
-struct LanesEmitter::Turn {
-  Value *low_row, *high_row;
-  Value *low, *high;               // as numbers in every lane; null where no sum is weighted
-  std::map<std::pair<Slot, bool>, Value*> loaded, weighted;
-  std::map<ConstantId, std::pair<Value*, Value*>> weights;  // of powers
+/// The coefficients of an order, and what of them was loaded.
+struct LanesEmitter::Row {
+  Value *address, *number;         // the order in every lane
+  std::map<Slot, Value*> loaded, weighted;
 };
 
-/// The products of order (j, m − j), or of (m − j, j), of all pieces.
-Value* LanesEmitter::add_pair(const Accumulator& accumulator, Turn& turn, Value* sum, bool second_half) {
-  const auto load_at = [&](Slot slot, bool high) {
-    Value*& value = turn.loaded[{slot, high}];
-    if (!value) value = load(high ? turn.high_row : turn.low_row, slot);
-    return value;
-  };
-  for (const Piece& piece : accumulator.pieces) {
-    if (piece.shape == Shape::Square && second_half) continue;
-    Value* a = load_at(piece.a, second_half);
-    Value* const b = load_at(piece.b, !second_half);
-    if (piece.shape == Shape::Weighted) {
-      Value*& weighted = turn.weighted[{piece.a, second_half}];
-      if (!weighted) weighted = out_.multiply(a, second_half ? turn.high : turn.low);
-      a = weighted;
-    } else if (piece.shape == Shape::Power) {
-      auto& [low, high] = turn.weights[piece.exponent];
-      if (!low) {
-        Value* const p = constant(piece.exponent);
-        low = out_.fma(p, turn.low, out_.negate(turn.high));
-        high = out_.fma(p, turn.high, out_.negate(turn.low));
-      }
-      a = out_.multiply(a, second_half ? high : low);
-    }
-    sum = plus(sum, a, b, piece.negative);
-  }
-  return sum;
+Value* LanesEmitter::loaded(Row& row, Slot slot) {
+  Value*& value = row.loaded[slot];
+  return value ? value : value = load(row.address, slot);
 }
 
-bool LanesEmitter::is_weighted(const Accumulator& accumulator) const {
-  return std::any_of(accumulator.pieces.begin(), accumulator.pieces.end(),
-                     [](const Piece& piece) { return piece.shape == Shape::Weighted || piece.shape == Shape::Power; });
+/// The factor a_j of a piece with its weight, in the pair with the other row.
+Value* LanesEmitter::weighted(const Piece& piece, Row& row, const Row& other) {
+  Value* const a = loaded(row, piece.a);
+  if (piece.shape == Shape::Power) return out_.multiply(a, out_.fma(constant(piece.exponent), row.number, out_.negate(other.number)));
+  if (piece.shape != Shape::Weighted) return a;
+  Value*& value = row.weighted[piece.a];
+  return value ? value : value = out_.multiply(a, row.number);
+}
+
+/// The products of orders (j, m − j) and (m − j, j) of all pieces, these in a chain of their own where there are several.
+void LanesEmitter::add_pair(const Accumulator& accumulator, Row& low, Row& high, Sum& sum) {
+  for (const Piece& piece : accumulator.pieces) sum.first = plus(sum.first, weighted(piece, low, high), loaded(high, piece.b), piece.negative);
+  Value*& second = accumulator.pieces.size() > 1 ? sum.second : sum.first;
+  for (const Piece& piece : accumulator.pieces)
+    if (piece.shape != Shape::Square) second = plus(second, weighted(piece, high, low), loaded(low, piece.b), piece.negative);
 }
 
 /// The product at j = m/2 > 1: of a square half of it, since the whole is doubled.
@@ -147,132 +132,138 @@ Value* LanesEmitter::newest(const Piece& piece, int m, Value* sum) {
 
 // ------------------------------------------------------------------------------------------------------------------- loops
 
-/// Those of the next stage, which wait for nothing of this one.
+/// Those of the next stage, which wait for nothing of this one: every other time together with those of the stage after it, of which the pair of
+/// order 2 is left for that stage.
 void LanesEmitter::prepare_next() {
   std::vector<std::uint32_t> list;
   for (std::uint32_t k = 0; k < accumulators_.size(); ++k) {
-    accumulators_[k].next = nullptr;
+    accumulators_[k].next = {};
     if (!is_known() || known(accumulators_[k].ahead + 1) >= 4) list.push_back(k);
   }
   std::stable_sort(list.begin(), list.end(), [&](std::uint32_t x, std::uint32_t y) { return accumulators_[x].ahead < accumulators_[y].ahead; });
-  for (std::size_t first = 0; first < list.size(); first += most_sums) {
-    const std::size_t last = std::min(first + most_sums, list.size());
-    interiors_of({list.begin() + static_cast<std::ptrdiff_t>(first), list.begin() + static_cast<std::ptrdiff_t>(last)});
+  for (auto first = list.begin(); first != list.end();) {
+    const int ahead = accumulators_[*first].ahead;
+    auto last = first;
+    while (last != list.end() && last - first < most_side_by_side && accumulators_[*last].ahead == ahead) ++last;
+    const std::vector<std::uint32_t> group(first, last);
+    if (accumulators_[*first].begun) finish(group);
+    else interiors_of(group, prepares_two() && (!is_known() || known(ahead + 2) >= least_order_of_two));
+    first = last;
   }
 }
 
-/// The middle, then all pairs from the middle outward, as long as j ≥ 2. Of several orders the higher ones have more pairs:
-/// those come first and alone, and the rest goes through a loop together.
-void LanesEmitter::interiors_of(const std::vector<std::uint32_t>& group) {
-  const int least = accumulators_[group[0]].ahead + 1;
-  const bool few = group.size() <= few_sums;
-  std::vector<Value*> sums, seconds(group.size(), nullptr);
-  std::vector<Shift> shifts;
-  for (const std::uint32_t k : group) {
-    const int ahead = accumulators_[k].ahead + 1;
-    sums.push_back(is_odd(ahead) ? nullptr : middle_of(accumulators_[k], ahead));
-    if (shifts.empty() || shifts.back().ahead != ahead) shifts.push_back({ahead, 0, false});
-    shifts.back().weighted = shifts.back().weighted || is_weighted(accumulators_[k]);
-    ++shifts.back().count;
-  }
-  const auto add_turn = [&](std::vector<Turn>& turns, const std::vector<std::size_t>& turn_of) {
-    for (std::size_t k = 0; k < group.size(); ++k) {
-      if (turn_of[k] == none) continue;
-      Turn& turn = turns[turn_of[k]];
-      sums[k] = add_pair(accumulators_[group[k]], turn, sums[k], false);
-      Value*& second = few ? seconds[k] : sums[k];
-      second = add_pair(accumulators_[group[k]], turn, second, true);
-    }
-  };
-  std::vector<std::size_t> shift_of;
-  for (std::size_t s = 0; s < shifts.size(); ++s) shift_of.insert(shift_of.end(), shifts[s].count, s);
+bool LanesEmitter::prepares_two() const { return ((is_known() ? known(0) : parity_) & 1) == (unrolled_ & 1); }
 
+LanesEmitter::Row LanesEmitter::row_at(Value* j) { return {row_of(j), out_.splat(out_.b.CreateSIToFP(j, out_.b.getDoubleTy()), real_), {}, {}}; }
+
+void LanesEmitter::finish(const std::vector<std::uint32_t>& group) {
+  const int ahead = accumulators_[group[0]].ahead + 1;
+  Value* const two = out_.b.getInt64(2);
+  Value* const order = is_known() ? out_.b.getInt64(static_cast<std::uint64_t>(known(ahead)))
+                                  : out_.b.CreateNUWAdd(stage_, out_.b.getInt64(static_cast<std::uint64_t>(ahead)));
+  Row low = row_at(two), high = row_at(out_.b.CreateSub(order, two));
+  for (const std::uint32_t k : group) {
+    Accumulator& accumulator = accumulators_[k];
+    accumulator.next = accumulator.after;
+    add_pair(accumulator, low, high, accumulator.next);
+    accumulator.begun = false;
+  }
+}
+
+/// The middle, then all pairs from the middle outward: (j, m − j) with j ≥ 2, and of the stage after it (j + 1, m − j), so that what was
+/// loaded serves twice.
+void LanesEmitter::interiors_of(const std::vector<std::uint32_t>& group, bool two) {
+  const int ahead = accumulators_[group[0]].ahead + 1;
+  for (const std::uint32_t k : group) {
+    Accumulator& accumulator = accumulators_[k];
+    accumulator.begun = two;
+    accumulator.next = {is_odd(ahead) ? nullptr : middle_of(accumulator, ahead)};
+    accumulator.after = {two && is_odd(ahead) ? middle_of(accumulator, ahead + 1) : nullptr};
+  }
+  const auto add = [&](Row& low, Row& high, bool after) {
+    for (const std::uint32_t k : group) add_pair(accumulators_[k], low, high, after ? accumulators_[k].after : accumulators_[k].next);
+  };
   if (is_known()) {
-    for (std::size_t s = 0; s < shifts.size(); ++s) {
-      const int m = known(shifts[s].ahead);
-      std::vector<std::size_t> turn_of(group.size(), none);
-      for (std::size_t k = 0; k < group.size(); ++k)
-        if (shift_of[k] == s) turn_of[k] = 0;
-      for (int j = (m - 1) / 2; j >= 2; --j) {
-        std::vector<Turn> turns{{out_.at(rows_, j * row_bytes_), out_.at(rows_, (m - j) * row_bytes_), number(j), number(m - j), {}, {}, {}}};
-        add_turn(turns, turn_of);
-      }
+    const int m = known(ahead);
+    const auto at = [&](int j) { return row_at(out_.b.getInt64(static_cast<std::uint64_t>(j))); };
+    Row above = at(m / 2);
+    if (m % 2 != 0) {
+      Row high = at(m - m / 2);
+      add(above, high, false);
+    }
+    for (int j = m / 2 - 1; j >= 2; --j) {
+      Row low = at(j), high = at(m - j);
+      if (two) add(above, high, true);
+      add(low, high, false);
+      above = std::move(low);
     }
   } else {
-    rolled_pairs(least, shifts, shift_of, sums, seconds, add_turn);
+    rolled_pairs(group, two, add);
   }
-  for (std::size_t k = 0; k < group.size(); ++k) accumulators_[group[k]].next = plus(sums[k], seconds[k]);
 }
 
-/// ⌊(m − 1)/2⌋, the j of the innermost pair.
-Value* LanesEmitter::innermost(int ahead) {
-  return is_odd(ahead) ? half(ahead) : out_.b.CreateSub(half(ahead), out_.b.getInt64(1));
-}
-
-void LanesEmitter::rolled_pairs(int least, const std::vector<Shift>& shifts, const std::vector<std::size_t>& shift_of,
-                                std::vector<Value*>& sums, std::vector<Value*>& seconds, const AddTurn& add_turn) {
+/// The same as a loop.
+void LanesEmitter::rolled_pairs(const std::vector<std::uint32_t>& group, bool two, const AddRows& add) {
   auto& b = out_.b;
-  Value* const common = innermost(least);  // j runs from here down to 2 in the loop
-  struct Walk {
-    Value *low_row, *high_row, *low = nullptr, *high = nullptr;
+  const int ahead = accumulators_[group[0]].ahead + 1;
+  Value* const center = half(ahead);
+  Value* const order = b.CreateNUWAdd(stage_, b.getInt64(static_cast<std::uint64_t>(ahead)));
+  Row above = row_at(center), high = row_at(b.CreateSub(order, center));
+  if (is_odd(ahead)) add(above, high, false);
+  const auto move = [&](Row& row, int by) {
+    row = {out_.at(row.address, by * row_bytes_), out_.add(row.number, number(by)), {}, {}};
   };
-  std::vector<Walk> walks;
-  const auto turn_at = [&](const Walk& w) { return Turn{w.low_row, w.high_row, w.low, w.high, {}, {}, {}}; };
-  const auto step = [&](Walk& w) {
-    w.low_row = out_.at(w.low_row, -row_bytes_), w.high_row = out_.at(w.high_row, row_bytes_);
-    if (w.low) w.low = out_.subtract(w.low, number(1)), w.high = out_.add(w.high, number(1));
+  if (two) load_lows(group, above);
+  Row low{above.address, above.number, {}, {}};
+  move(low, -1);
+  high = row_at(b.CreateSub(order, b.CreateSub(center, b.getInt64(1))));
+  // What the loop hands on: rows, sums, and the row that was low a turn before.
+  const auto values = [&](const std::function<void(Value*&)>& visit) {
+    for (Value** v : {&low.address, &low.number, &high.address, &high.number}) visit(*v);
+    if (two) visit(above.number);
+    for (const std::uint32_t k : group)
+      for (Sum* sum : {&accumulators_[k].next, &accumulators_[k].after}) {
+        if (!two && sum == &accumulators_[k].after) continue;
+        visit(sum->first);
+        if (accumulators_[k].pieces.size() > 1) visit(sum->second);
+      }
+    if (!two) return;
+    for (auto* values : {&above.loaded, &above.weighted})
+      for (auto& [slot, value] : *values) visit(value);
   };
-  for (std::size_t s = 0; s < shifts.size(); ++s) {
-    Value* const j = innermost(shifts[s].ahead);
-    Value* const m = b.CreateNUWAdd(stage_, b.getInt64(static_cast<std::uint64_t>(shifts[s].ahead)));
-    Walk walk{row_of(j), row_of(b.CreateSub(m, j))};
-    if (shifts[s].weighted) {
-      walk.low = out_.splat(b.CreateSIToFP(j, b.getDoubleTy()), real_);
-      walk.high = out_.subtract(order(shifts[s].ahead), walk.low);
-    }
-    // Pairs that the lowest order does not have.
-    const int more = (shifts[s].ahead - least + (is_odd(least) ? 0 : 1)) / 2;
-    std::vector<std::size_t> turn_of(shift_of.size(), none);
-    for (std::size_t k = 0; k < shift_of.size(); ++k)
-      if (shift_of[k] == s) turn_of[k] = 0;
-    for (int extra = 0; extra < more; ++extra) {
-      std::vector<Turn> turns{turn_at(walk)};
-      add_turn(turns, turn_of);
-      step(walk);
-    }
-    walks.push_back(walk);
-  }
-  std::vector<Value*> carried;
   const auto pack = [&] {
-    carried.clear();
-    for (const Walk& w : walks) {
-      carried.insert(carried.end(), {w.low_row, w.high_row});
-      if (w.low) carried.insert(carried.end(), {w.low, w.high});
-    }
-    for (std::size_t k = 0; k < sums.size(); ++k) carried.push_back(or_zero(sums[k]));
-    if (sums.size() <= few_sums)
-      for (std::size_t k = 0; k < sums.size(); ++k) carried.push_back(or_zero(seconds[k]));
+    std::vector<Value*> carried;
+    values([&](Value*& v) { carried.push_back(or_zero(v)); });
     return carried;
   };
   const auto unpack = [&](const std::vector<Value*>& from) {
     auto next = from.begin();
-    for (Walk& w : walks) {
-      w.low_row = *next++, w.high_row = *next++;
-      if (w.low) w.low = *next++, w.high = *next++;
-    }
-    for (Value*& sum : sums) sum = *next++;
-    if (sums.size() <= few_sums)
-      for (Value*& second : seconds) second = *next++;
+    values([&](Value*& v) { v = *next++; });
   };
-  const std::vector<Value*> last = out_.loop(b.getInt64(1), common, pack(), [&](Value*, const std::vector<Value*>& now) {
+  unpack(out_.loop(b.getInt64(2), center, pack(), [&](Value*, const std::vector<Value*>& now) {
     unpack(now);
-    std::vector<Turn> turns;
-    for (const Walk& w : walks) turns.push_back(turn_at(w));
-    add_turn(turns, shift_of);
-    for (Walk& w : walks) step(w);
+    low.loaded.clear(), low.weighted.clear(), high.loaded.clear(), high.weighted.clear();
+    if (two) add(above, high, true);
+    add(low, high, false);
+    if (two) {
+      load_lows(group, low);
+      above.number = low.number, above.loaded = low.loaded, above.weighted = low.weighted;
+    }
+    move(low, -1), move(high, 1);
     return pack();
-  });
-  unpack(last);
+  }));
+}
+
+/// What pairs read of their lower row.
+void LanesEmitter::load_lows(const std::vector<std::uint32_t>& group, Row& row) {
+  Row kept{row.address, row.number, {}, {}};
+  for (const std::uint32_t k : group)
+    for (const Piece& piece : accumulators_[k].pieces) {
+      if (piece.shape == Shape::Weighted) kept.weighted[piece.a] = weighted(piece, row, row);
+      else kept.loaded[piece.a] = loaded(row, piece.a);
+      if (piece.shape != Shape::Square) kept.loaded[piece.b] = loaded(row, piece.b);
+    }
+  row = std::move(kept);
 }
 
 }  // namespace maupertuis::llvm_backend
