@@ -2,29 +2,20 @@
 #include "kernel/llvm/emitters.hpp"
 #include "kernel/llvm/lanes_emitter.hpp"
 
+#include <array>
+#include <cmath>
+#include <limits>
+
 namespace maupertuis::llvm_backend {
 
 using llvm::Value;
 
 namespace {
 
-/// Stages below this are written out: there sums have fewer than the newest products.
-constexpr int first_rolled = 4;
 constexpr std::size_t most_unknowns = 40;
 constexpr std::size_t most_terms = 6000;
-/// Bytes of code that stay in the processor's cache of instructions, and what a product takes of them.
-constexpr std::size_t code_budget = 2000, bytes_of_product = 15;
-
-/// Products of coefficients that an expansion up to this order adds up.
-std::size_t products_of(const Program& program, int order) {
-  std::size_t convolutions = 0;
-  for (const Instruction& i : program.instructions) {
-    const std::size_t terms = i.op == Op::Function ? i.last_term - i.first_term : i.last_term - i.first_product;
-    convolutions += i.op == Op::SinCos || i.op == Op::SinhCosh ? 2 : i.op == Op::Products || i.op == Op::Function ? terms : i.op == Op::Linear ? 0 : 1;
-  }
-  const auto p = static_cast<std::size_t>(order);
-  return convolutions * p * (p + 3) / 2;
-}
+/// Whose reciprocals are tabled.
+constexpr int most_orders = 128, most_ahead = 4;
 
 }  // namespace
 
@@ -32,12 +23,11 @@ void emit_lanes(Emission& out, const compiled::Request& request) {
   const auto& program = *static_cast<const Program*>(request.source);
   if (program.unknowns != program.freedoms) throw Declined("constraints are not compiled for several motions side by side");
   if (program.unknowns > most_unknowns || program.terms.size() > most_terms) throw Declined("the program is too large to be compiled");
-  const bool fits = products_of(program, request.order) * bytes_of_product <= code_budget;
-  LanesEmitter(out, program, request.width, request.effort > 0 && fits ? request.order : first_rolled).run();
+  LanesEmitter(out, program, request.width).run();
 }
 
-LanesEmitter::LanesEmitter(Emission& out, const Program& program, int width, int unrolled)
-    : out_(out), program_(program), plan_(program), view_(plan_.view()), width_(width), unrolled_(std::max(unrolled, first_rolled)),
+LanesEmitter::LanesEmitter(Emission& out, const Program& program, int width)
+    : out_(out), program_(program), plan_(program), view_(plan_.view()), width_(width),
       bytes_(8 * width), row_bytes_(static_cast<std::int64_t>(view_.stride) * bytes_), n_(program.unknowns), real_(out.real(width)),
       matrix_at_(view_.tangent_count), pivots_at_(matrix_at_ + n_ * n_), reciprocals_at_(pivots_at_ + n_) {
   find_stored();
@@ -49,7 +39,8 @@ void LanesEmitter::run() {
   rows_ = function_->getArg(0), constants_ = function_->getArg(1), quality_ = function_->getArg(2), scratch_ = function_->getArg(3);
   stages_ = out_.b.CreateSExt(function_->getArg(4), out_.integer());
   done_ = llvm::BasicBlock::Create(out_.context, "", function_);
-  for (int s = program_.first_stage; s < unrolled_; ++s) {
+  refuse_more_orders();
+  for (int s = program_.first_stage; s < first_rolled; ++s) {
     if (s > 0) exit_unless_more(s);
     known_stage_ = s;
     stage();
@@ -57,6 +48,19 @@ void LanesEmitter::run() {
   rolled_stages();
   out_.b.SetInsertPoint(done_);
   out_.end_function();
+}
+
+/// The quality tells that the reference has to do it.
+void LanesEmitter::refuse_more_orders() {
+  auto& b = out_.b;
+  table_orders();
+  llvm::BasicBlock* const refused = llvm::BasicBlock::Create(out_.context, "", function_, done_);
+  llvm::BasicBlock* const tabled = llvm::BasicBlock::Create(out_.context, "", function_, refused);
+  b.CreateCondBr(b.CreateICmpSGT(stages_, b.getInt64(most_orders - most_ahead)), refused, tabled);
+  b.SetInsertPoint(refused);
+  out_.store(number(std::numeric_limits<double>::quiet_NaN()), quality_);
+  b.CreateBr(done_);
+  b.SetInsertPoint(tabled);
 }
 
 void LanesEmitter::exit_unless_more(int s) {
@@ -69,13 +73,13 @@ void LanesEmitter::exit_unless_more(int s) {
 void LanesEmitter::rolled_stages() {
   auto& b = out_.b;
   known_stage_.reset();
-  exit_unless_more(unrolled_);
+  exit_unless_more(first_rolled);
   llvm::BasicBlock* const before = b.GetInsertBlock();
   llvm::BasicBlock* const turn = llvm::BasicBlock::Create(out_.context, "", function_, done_);
   b.CreateBr(turn);
   b.SetInsertPoint(turn);
   llvm::PHINode* const s = b.CreatePHI(out_.integer(), 2);
-  s->addIncoming(b.getInt64(static_cast<std::uint64_t>(unrolled_)), before);
+  s->addIncoming(b.getInt64(static_cast<std::uint64_t>(first_rolled)), before);
   std::vector<llvm::PHINode*> sums;
   for (Accumulator& accumulator : accumulators_) {
     sums.push_back(b.CreatePHI(real_, 2));
@@ -84,9 +88,9 @@ void LanesEmitter::rolled_stages() {
   }
   for (int half = 0; half < 2; ++half) {
     stage_ = half == 0 ? s : b.CreateNUWAdd(s, b.getInt64(1));
-    parity_ = (unrolled_ + half) & 1;
+    parity_ = (first_rolled + half) & 1;
     stage_row_ = row_of(stage_);
-    stage_number_ = b.CreateSIToFP(stage_, b.getDoubleTy());
+    stage_orders_ = out_.at(orders_, b.CreateMul(stage_, b.getInt64(bytes_of_order)));
     stage();
     Value* const next = b.CreateNUWAdd(stage_, b.getInt64(1));
     Value* const more = b.CreateICmpSLT(next, stages_);
@@ -116,13 +120,17 @@ void LanesEmitter::stage() {
     solve();
     correct();
   }
-  for (Accumulator& accumulator : accumulators_) accumulator.sum = plus(accumulator.next.first, accumulator.next.second);
+  for (Accumulator& accumulator : accumulators_) {
+    accumulator.sum = plus(accumulator.next.first, accumulator.next.second);
+    for (const Piece& piece : accumulator.pieces) accumulator.sum = newest(piece, accumulator.ahead, accumulator.sum);
+  }
 }
 
 /// Coordinates: given up to q̇; from then on 0 until the stage is solved.
 void LanesEmitter::begin_values() {
   state_.assign(program_.slots, State::Unknown);
   now_.assign(program_.slots, nullptr);
+  rates_.assign(program_.slots, nullptr);
   for (Slot slot = 0; slot < n_; ++slot) {
     const bool given = is_known() && known(2) < 2;
     if (given && known(2) < 0) continue;
@@ -141,21 +149,32 @@ Value* LanesEmitter::row(int ahead) {
   return is_known() ? out_.at(rows_, known(ahead) * row_bytes_) : out_.at(stage_row_, ahead * row_bytes_);
 }
 
-Value* LanesEmitter::order_number(int ahead) {
+/// m, 1/m and what rounding took from it, and of m (m + 1) the same: a line of the cache each order.
+void LanesEmitter::table_orders() {
+  std::vector<double> table;
+  for (int m = 0; m < most_orders; ++m) {
+    const double x = m, y = x * (x + 1), over_x = 1 / x, over_y = 1 / y;
+    const std::array<double, 8> line{x, over_x, std::fma(-over_x, x, 1.0) * over_x, y, over_y, std::fma(-over_y, y, 1.0) * over_y, 0, 0};
+    table.insert(table.end(), line.begin(), line.end());
+  }
+  llvm::Constant* const values = llvm::ConstantDataArray::get(out_.context, table);
+  auto* const global = new llvm::GlobalVariable(*out_.module, values->getType(), true, llvm::GlobalValue::InternalLinkage, values, "orders");
+  global->setAlignment(llvm::Align(bytes_of_order));
+  orders_ = global;
+}
+
+Value* LanesEmitter::order(int ahead, OrderColumn column) {
   llvm::Type* const scalar = out_.b.getDoubleTy();
-  if (is_known()) return out_.number(known(ahead), scalar);
-  return ahead == 0 ? stage_number_ : out_.b.CreateFAdd(stage_number_, out_.number(ahead, scalar));
+  const int at = 8 * static_cast<int>(column);
+  Value* const address = is_known() ? out_.at(orders_, known(ahead) * bytes_of_order + at) : out_.at(stage_orders_, ahead * bytes_of_order + at);
+  return out_.splat(out_.b.CreateAlignedLoad(scalar, address, llvm::Align(8)), real_);
 }
 
 /// x/d = x (r + ρ) with r the rounded reciprocal and ρ what it lacks: right to 0.51 ulp, without a division of vectors, and without the
 /// error that a product with r alone would repeat in every step.
-Value* LanesEmitter::over(Value* x, Value* divisor) {
-  auto& b = out_.b;
-  llvm::Type* const scalar = b.getDoubleTy();
-  Value* const reciprocal = b.CreateFDiv(out_.number(1, scalar), divisor);
-  if (!out_.features.fma) return out_.divide(x, out_.splat(divisor, real_));
-  Value* const lack = b.CreateFMul(out_.fma(b.CreateFNeg(reciprocal), divisor, out_.number(1, scalar)), reciprocal);
-  return out_.fma(x, out_.splat(reciprocal, real_), out_.multiply(x, out_.splat(lack, real_)));
+Value* LanesEmitter::over(Value* x, int ahead, OrderColumn number, OrderColumn reciprocal, OrderColumn lack) {
+  if (!out_.features.fma) return out_.divide(x, order(ahead, number));
+  return out_.fma(x, order(ahead, reciprocal), out_.multiply(x, order(ahead, lack)));
 }
 
 Value* LanesEmitter::half(int ahead) {

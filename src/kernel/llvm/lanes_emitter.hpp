@@ -14,7 +14,7 @@
 ///   the *interior*, 2 ≤ j ≤ m − 2, holds coefficients that are final a stage earlier; it is added up there, before that stage is
 ///     solved, while the processor would wait. Interiors of one lag share a loop and the loads of common operands, and those of two
 ///     stages are added up at once, which takes half of the loads;
-///   the *newest* products, of orders 1 and m − 1, need the stage before;
+///   the *newest* products, of orders 1 and m − 1, are added at the end of the stage before, as soon as it is solved;
 ///   those at the *ends*, of orders 0 and m, need the instructions of this stage.
 ///
 /// What instructions hand to each other stays in registers; coefficients that later orders read are stored. Coordinates count as 0 at
@@ -23,14 +23,15 @@ namespace maupertuis::llvm_backend {
 
 class LanesEmitter {
  public:
-  /// `unrolled`: stages below it are written out one by one; the others are turns of a loop.
-  LanesEmitter(Emission& out, const Program& program, int width, int unrolled);
+  LanesEmitter(Emission& out, const Program& program, int width);
   void run();
 
  private:
   using Value = llvm::Value;
 
   // ------------------------------------------------------------------------------------------------ stages (emit_lanes.cpp)
+  /// Stages below this are written out: there sums have fewer than the newest products.
+  static constexpr int first_rolled = 4;
   void stage();
   void begin_values();
   void exit_unless_more(int stage);
@@ -42,14 +43,17 @@ class LanesEmitter {
   bool is_order_zero(int ahead) const { return is_known() && known(ahead) == 0; }
   bool is_odd(int ahead) const { return ((is_known() ? known(ahead) : parity_ + ahead) & 1) != 0; }
   Value* row(int ahead);           // address of the row of that order
-  Value* order_number(int ahead);  // as a double
-  Value* reciprocal(int ahead) { return out_.b.CreateFDiv(out_.number(1, out_.b.getDoubleTy()), order_number(ahead)); }
-  Value* order(int ahead) { return out_.splat(order_number(ahead), real_); }
+  /// Of the table of orders: m, 1/m and what rounding took from it, and of m (m + 1) the same.
+  enum class OrderColumn : std::uint8_t { Order, Reciprocal, Lack, Pair, PairReciprocal, PairLack };
+  static constexpr int bytes_of_order = 64;
+  void table_orders();
+  void refuse_more_orders();
+  Value* order(int ahead, OrderColumn column = OrderColumn::Order);  // in all lanes
   Value* half(int ahead);          // ⌊m / 2⌋, 64-bit integer
-  Value* over_order(Value* x, int ahead) { return over(x, order_number(ahead)); }
-  /// x / (m (m + 1)) in one division: the error of two roundings would be larger, and the same in every step.
-  Value* over_orders(Value* x, int ahead) { return over(x, out_.b.CreateFMul(order_number(ahead), order_number(ahead + 1))); }
-  Value* over(Value* x, Value* divisor);
+  Value* over_order(Value* x, int ahead) { return over(x, ahead, OrderColumn::Order, OrderColumn::Reciprocal, OrderColumn::Lack); }
+  /// x / (m (m + 1)) at once: the error of two roundings would be larger, and the same in every step.
+  Value* over_orders(Value* x, int ahead) { return over(x, ahead, OrderColumn::Pair, OrderColumn::PairReciprocal, OrderColumn::PairLack); }
+  Value* over(Value* x, int ahead, OrderColumn number, OrderColumn reciprocal, OrderColumn lack);
   Value* row_of(Value* order);
 
   // ----------------------------------------------------------------------------------------------------------------- values
@@ -119,13 +123,15 @@ class LanesEmitter {
   void add_pair(const Accumulator& accumulator, Row& low, Row& high, Sum& sum);
   Value* middle_of(const Accumulator& accumulator, int ahead);
   Value* newest(const Piece& piece, int ahead, Value* sum);
+  Value* latest(Slot slot, int ahead);
 
   // -------------------------------------------------------------------------------------- instructions (lanes_instructions.cpp)
   void instruction(std::uint32_t index);
   Value* linear_part(const Instruction& i);
   Value* products(std::uint32_t index, Value* sum);
   Value* ends(const Piece& piece, int ahead, Value* sum, bool late);
-  Value* sum_of(std::uint32_t accumulator);
+  Value* sum_of(std::uint32_t accumulator, Slot integral = no_slot);
+  Value* derivative_of(Slot slot, int ahead, std::uint32_t times);
   Value* self_sum(std::uint32_t index);
   Value* square(std::uint32_t index);
   Value* quotient(std::uint32_t index);
@@ -158,7 +164,7 @@ class LanesEmitter {
   const Program& program_;
   lanes::Plan plan_;
   lanes::PlanView view_;
-  int width_, unrolled_;
+  int width_;
   std::int64_t bytes_;             // of one number of all lanes
   std::int64_t row_bytes_;
   std::size_t n_;
@@ -170,12 +176,13 @@ class LanesEmitter {
   std::optional<int> known_stage_; // else `stage_`, of known parity
   Value* stage_ = nullptr;         // 64-bit integer
   Value* stage_row_ = nullptr;
-  Value* stage_number_ = nullptr;  // double
+  Value *orders_ = nullptr, *stage_orders_ = nullptr;  // the table, and its line of the stage
   int parity_ = 0;
 
   enum class State : std::uint8_t { Unknown, Zero, Known };
   std::vector<State> state_;       // [slots] at the order of this stage
   std::vector<Value*> now_;        // [slots]
+  std::vector<Value*> rates_;      // [slots] m y_m of integrals, which is there before y_m; null: not known
   std::vector<bool> stored_, corrected_;  // [slots]
 
   std::vector<Accumulator> accumulators_;

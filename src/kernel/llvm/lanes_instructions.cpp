@@ -36,11 +36,19 @@ Value* LanesEmitter::linear_part(const Instruction& i) {
       sum = plus_scaled(sum, c, x);
       continue;
     }
-    Value* const factor = term.shift == 1 ? order(m + 1) : out_.multiply(order(m + 1), order(m + 2));
-    if (c.value) sum = plus_scaled(sum, c, out_.multiply(factor, x));
-    else sum = plus(sum, factor, x, c.unit < 0);
+    sum = plus_scaled(sum, c, derivative_of(term.a, m, term.shift));
   }
   return sum;
+}
+
+/// (m + 1) a_{m+1} or (m + 1)(m + 2) a_{m+2}; null: zero.
+Value* LanesEmitter::derivative_of(Slot slot, int m, std::uint32_t times) {
+  const int ahead = m + static_cast<int>(times);
+  Value* const x = read(slot, ahead);
+  if (!x) return nullptr;
+  Value* const rate = ahead == ahead_of(slot) ? rates_[slot] : nullptr;
+  if (times == 1) return rate ? rate : out_.multiply(x, order(m + 1));
+  return rate ? out_.multiply(rate, order(m + 1)) : out_.multiply(x, order(m + 1, OrderColumn::Pair));
 }
 
 /// The products with coefficients of order 0 and m, all there is at order 0: those whose factor of order m was there before this
@@ -55,8 +63,9 @@ Value* LanesEmitter::ends(const Piece& piece, int m, Value* sum, bool late) {
   return sum;
 }
 
-/// All of an accumulator's products, what is known first added first; a weighted sum is divided by m.
-Value* LanesEmitter::sum_of(std::uint32_t index) {
+/// All of an accumulator's products, what is known first added first; a weighted sum is divided by m, and what it was before is the derivative of
+/// the integral.
+Value* LanesEmitter::sum_of(std::uint32_t index, Slot integral) {
   const Accumulator& accumulator = accumulators_[index];
   const int m = accumulator.ahead;
   Value* sum = accumulator.sum;
@@ -65,10 +74,12 @@ Value* LanesEmitter::sum_of(std::uint32_t index) {
   };
   const bool weighted = accumulator.pieces[0].shape == Shape::Weighted;
   if (!weighted) add_ends(false);
-  for (const Piece& piece : accumulator.pieces) sum = newest(piece, m, sum);
+  Value* const rate = sum;
   if (weighted && sum) sum = over_order(sum, m);
+  Value* const divided = sum;
   if (weighted) add_ends(false);
   add_ends(true);
+  if (weighted && integral != no_slot && sum == divided) rates_[integral] = rate;
   return sum;
 }
 
@@ -92,7 +103,7 @@ Value* LanesEmitter::square(std::uint32_t index) {
 /// Half of Σ_{0<j<m} a_j a_{m−j}.
 Value* LanesEmitter::self_sum(std::uint32_t index) {
   const Accumulator& accumulator = accumulators_[groups_[index][0].accumulator];
-  return newest(accumulator.pieces[0], accumulator.ahead, accumulator.sum);
+  return accumulator.sum;
 }
 
 // ------------------------------------------------------------------------------------- divisions by coefficients of order 0
@@ -116,7 +127,7 @@ Value* LanesEmitter::quotient(std::uint32_t index) {
     return out_.divide(or_zero(a), divisor);
   }
   const Accumulator& accumulator = accumulators_[groups_[index][0].accumulator];
-  Value* sum = newest(accumulator.pieces[0], m, accumulator.sum);
+  Value* sum = accumulator.sum;
   if (Value* const b = read(i.b, m)) sum = plus(sum, b, first(i.out));
   Value* const rest = !sum ? a : a ? out_.subtract(a, sum) : out_.negate(sum);
   return divide_by_first(rest, index, first(i.b));
@@ -149,8 +160,7 @@ Value* LanesEmitter::power(std::uint32_t index) {
     return out_.elementary(Kind::Power, u, constant(i.constant));
   }
   const Accumulator& accumulator = accumulators_[groups_[index][0].accumulator];
-  const Piece& piece = accumulator.pieces[0];
-  Value* sum = newest(piece, m, accumulator.sum);
+  Value* sum = accumulator.sum;
   if (Value* const u = read(i.a, m)) sum = plus(sum, out_.multiply(u, out_.multiply(constant(i.constant), order(m))), first(i.out));
   return divide_by_first(sum ? over_order(sum, m) : nullptr, index, first(i.a));
 }
@@ -168,7 +178,7 @@ void LanesEmitter::pair(std::uint32_t index) {
     define(i.second, z);
     return;
   }
-  Value *const y = sum_of(groups_[index][0].accumulator), *const z = sum_of(groups_[index][1].accumulator);
+  Value *const y = sum_of(groups_[index][0].accumulator, i.out), *const z = sum_of(groups_[index][1].accumulator, i.second);
   define(i.out, y);
   define(i.second, z);
 }
@@ -184,9 +194,7 @@ Value* LanesEmitter::function(std::uint32_t index) {
 }
 
 Value* LanesEmitter::derivative(const Instruction& i) {
-  const int m = ahead_of(i.out);
-  Value* const x = read(i.a, m + 1);
-  return x ? out_.multiply(x, order(m + 1)) : nullptr;
+  return derivative_of(i.a, ahead_of(i.out), 1);
 }
 
 Value* LanesEmitter::select(const Instruction& i) {

@@ -106,23 +106,29 @@ Value* LanesEmitter::middle_of(const Accumulator& accumulator, int ahead) {
   return sum;
 }
 
-/// The products of orders 1 and m − 1, the last of which is of the stage before.
-Value* LanesEmitter::newest(const Piece& piece, int m, Value* sum) {
-  if (is_known() && known(m) < 2) return sum;
-  const bool middle = is_known() && known(m) == 2;
-  Value *const first_row = out_.at(rows_, row_bytes_), *const last_row = row(m - 1);
+/// A coefficient after its stage is solved: of this one from a register.
+Value* LanesEmitter::latest(Slot slot, int ahead) {
+  const bool is_found = ahead == ahead_of(slot) && slot != program_.one && slot != program_.time;
+  return is_found ? now_[slot] : load(row(ahead), slot);
+}
+
+/// Of the order after `last`, m = last + 1: the products of orders 1 and m − 1.
+Value* LanesEmitter::newest(const Piece& piece, int last, Value* sum) {
+  if (is_known() && known(last) < 1) return sum;
+  const bool middle = is_known() && known(last) == 1;
+  Value* const first_row = out_.at(rows_, row_bytes_);
   Value *a = load(first_row, piece.a), *b = load(first_row, piece.b);
-  Value *last_a = middle ? nullptr : load(last_row, piece.a), *const last_b = middle ? b : load(last_row, piece.b);
+  Value *last_a = middle ? nullptr : latest(piece.a, last), *const last_b = middle ? b : latest(piece.b, last);
   switch (piece.shape) {
     case Shape::Square: return plus(sum, middle ? out_.multiply(a, number(0.5)) : a, last_b);
     case Shape::Product: break;
     case Shape::Weighted:
-      if (last_a) last_a = out_.multiply(last_a, order(m - 1));
+      if (last_a) last_a = out_.multiply(last_a, order(last));
       break;
     case Shape::Power: {
       Value* const p = constant(piece.exponent);
-      a = out_.multiply(a, out_.fma(p, number(1), out_.negate(order(m - 1))));
-      b = out_.multiply(b, out_.fma(p, order(m - 1), number(-1)));
+      a = out_.multiply(a, out_.fma(p, number(1), out_.negate(order(last))));
+      b = out_.multiply(b, out_.fma(p, order(last), number(-1)));
       break;
     }
   }
@@ -152,7 +158,7 @@ void LanesEmitter::prepare_next() {
   }
 }
 
-bool LanesEmitter::prepares_two() const { return ((is_known() ? known(0) : parity_) & 1) == (unrolled_ & 1); }
+bool LanesEmitter::prepares_two() const { return ((is_known() ? known(0) : parity_) & 1) == (first_rolled & 1); }
 
 LanesEmitter::Row LanesEmitter::row_at(Value* j) { return {row_of(j), out_.splat(out_.b.CreateSIToFP(j, out_.b.getDoubleTy()), real_), {}, {}}; }
 

@@ -216,6 +216,7 @@ void LanesEmitter::correct() {
   for (std::size_t i = 0; i < n_; ++i) {
     position.push_back(over_orders(acceleration_[i], 1));
     velocity.push_back(over_order(acceleration_[i], 1));
+    now_[i] = position[i];
     out_.store(position[i], slot_at(row(2), static_cast<Slot>(i)));
   }
   correct_lag(0, view_.corrections_end[0], position);
