@@ -36,7 +36,6 @@ CompiledLanes compiled_lanes(const Kernel& kernel, int width, const CompileOptio
   request.source = &kernel.program();
   request.source_digest[0] = digest.high, request.source_digest[1] = digest.low;
   request.width = width;
-  request.order = options.order;
   request.effort = options.long_run ? 1 : 0;
   request.processor = options.processor.c_str();
   std::optional<compiled::ObjectCache> cache;

@@ -41,6 +41,29 @@ TEST_CASE("a chain of pendulums costs one sincos and two products a link") {
   CHECK(lines_with(text, "square") == 0);
 }
 
+TEST_CASE("what turns about one point is accelerated across its radius by the angle's acceleration: no products") {
+  struct Turning {
+    int across, along;                  // sizes of x − X and y
+    bool moves;                         // X is a coordinate
+    std::size_t products;
+  };
+  for (const Turning& t : {Turning{1, -1, false, 0}, Turning{-3, 3, false, 0}, Turning{1, -1, true, 1}, Turning{1, -2, false, 1}}) {
+    CAPTURE(t.across);
+    Context context;
+    const Expr angle = context.symbol("θ", Role::Coordinate), m = context.symbol("m", Role::Parameter), l = context.symbol("l", Role::Parameter);
+    KernelSource source;
+    source.coordinates = {angle};
+    source.parameters = {m, l};
+    Expr x = context.number(t.across) * l * sin(angle);
+    const Expr y = context.number(t.along) * l * cos(angle);
+    if (t.moves) source.coordinates.push_back(context.symbol("X", Role::Coordinate)), x = x + source.coordinates[1];
+    const Expr lagrangian = m * (pow(context.time_derivative(x), 2) + pow(context.time_derivative(y), 2)) - y;
+    source.residual = variational_residual(lagrangian, source.coordinates);
+    const std::string text = build_kernel(source).print();
+    CHECK(lines_with(text, "= products") == t.products);
+  }
+}
+
 TEST_CASE("the residual of a chain is about linear in the number of links") {
   Context context;
   const auto size = [](const std::string& text) { return text.size(); };

@@ -70,6 +70,20 @@ TEST_CASE("chains of pendulums from points satisfy their equations at every orde
   }
 }
 
+TEST_CASE("pendulums on a cart, on an ellipse, and on a turning arm satisfy their equations at every order") {
+  for (const int which : {0, 1, 2, 3}) {
+    CAPTURE(which);
+    System s;
+    const Expr l = s.parameter("l", 0.7), m = s.parameter("m", 1.3), g = s.parameter("g", 9.81);
+    const Expr a = s.coordinate("a", 0.4, 0.9), b = s.coordinate("b", -0.2, 0.5);
+    const Expr turned = which == 2 ? a + b : which == 3 ? a * b : a;
+    const Expr x = l * sin(turned) + (which == 2 ? s.context.number(0) : which == 3 ? sin(b) : b);
+    const Expr y = (which == 1 ? -Rational(2) * l : -l) * cos(turned);
+    s.from_lagrangian(Rational(1, 2) * m * (pow(s.dot(x), 2) + pow(s.dot(y), 2)) + pow(s.dot(b), 2) - m * g * y);
+    check_motion(s, 12, 1e-12);
+  }
+}
+
 TEST_CASE("a moving support, a magnetic term and a mass that depends on the velocity") {
   System s;
   const Expr m = s.parameter("m", 1.5), w = s.parameter("w", 2.5), c = s.parameter("c", 3.0), b = s.parameter("B", 0.4);
