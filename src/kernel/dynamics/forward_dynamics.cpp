@@ -29,6 +29,8 @@ constexpr double sound_pivot = 1e-3, least_sound_pivot = 1e-7;
 constexpr double sound = 64;
 /// Beyond, a full matrix allocates.
 constexpr std::size_t most_full = 8;
+/// Less waits for the determinant of two equations than for eliminations, even where these take fewer products.
+constexpr std::size_t by_determinant = 2;
 
 /// About what compiled code saves in a call, and what making it costs: estimates, of the right order only.
 constexpr double seconds_saved_a_term = 1e-9, seconds_of_compiler = 0.015, seconds_of_compiler_a_term = 3e-5;
@@ -162,10 +164,12 @@ void ForwardDynamics::Impl::choose_pivots() {
   pivots = sparse::eliminate(*system, samples, {});
   if (pivots) solver.emplace(*system, *pivots, cell_of_column);
   const std::size_t full_products = product->matrix_products() + n * n * n / 6 + 2 * n * n;
-  if (n > most_full || (solver && solver->factor_products() + solver->solve_products() < full_products)) return;
-  solver.reset();
+  const bool is_cheaper = solver && solver->factor_products() + solver->solve_products() < full_products;
+  if (n > most_full || (is_cheaper && n != by_determinant)) return;
   linear.emplace(n);
   is_symmetric = has_symmetric_mass(samples);
+  if (is_cheaper && !is_symmetric) linear.reset();
+  else solver.reset();
 }
 
 /// The residual of a Lagrangian has a symmetric M; one that is written by hand need not.

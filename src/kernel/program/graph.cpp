@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 namespace maupertuis::lowering {
 
@@ -68,28 +69,50 @@ ConstantId ConstantPool::add(ConstantId a, ConstantId b) {
   return apply(Kind::Sum, std::array{a, b});
 }
 
-std::pair<Rational, std::vector<ConstantId>> ConstantPool::factors(ConstantId id) const {
-  Rational number(1);
-  std::vector<ConstantId> others, open{id};
-  while (!open.empty()) {
-    const ConstantId next = open.back();
-    open.pop_back();
-    const Constant& c = constants[next];
-    const std::span operands = std::span(arguments).subspan(c.first_argument, c.arguments);
-    const Rational* const exponent = c.kind == Kind::Power ? literal_or_null(operands[1]) : nullptr;
-    if (rationals_[next]) number = number * *rationals_[next];
-    else if (c.kind == Kind::Product) open.insert(open.end(), operands.begin(), operands.end());
-    else if (exponent && *exponent == Rational(2)) open.insert(open.end(), 2, operands[0]);
-    else others.push_back(next);
+ConstantPool::Polynomial ConstantPool::product(const Polynomial& x, const Polynomial& y) {
+  Polynomial result;
+  for (const auto& [of_x, a] : x)
+    for (const auto& [of_y, b] : y) {
+      std::vector<ConstantId> factors;
+      std::merge(of_x.begin(), of_x.end(), of_y.begin(), of_y.end(), std::back_inserter(factors));
+      Rational& coefficient = result.try_emplace(std::move(factors), Rational(0)).first->second;
+      coefficient = coefficient + a * b;
+    }
+  return result;
+}
+
+ConstantPool::Polynomial ConstantPool::polynomial(ConstantId id) const {
+  constexpr std::size_t most_terms = 8;
+  if (rationals_[id]) return {{{}, *rationals_[id]}};
+  const Constant& c = constants[id];
+  const std::span operands = std::span(arguments).subspan(c.first_argument, c.arguments);
+  const Polynomial alone{{{id}, Rational(1)}};
+  Polynomial result;
+  if (c.kind == Kind::Sum) {
+    for (const ConstantId operand : operands)
+      for (const auto& [factors, a] : polynomial(operand)) {
+        Rational& coefficient = result.try_emplace(factors, Rational(0)).first->second;
+        coefficient = coefficient + a;
+      }
+  } else if (c.kind == Kind::Product) {
+    result = {{{}, Rational(1)}};
+    for (const ConstantId operand : operands) {
+      result = product(result, polynomial(operand));
+      if (result.size() > most_terms) return alone;
+    }
+  } else if (c.kind == Kind::Power && literal_or_null(operands[1]) && *literal_or_null(operands[1]) == Rational(2)) {
+    const Polynomial base = polynomial(operands[0]);
+    result = product(base, base);
+  } else {
+    return alone;
   }
-  std::sort(others.begin(), others.end());
-  return {number, others};
+  std::erase_if(result, [](const auto& term) { return term.second.is_zero(); });
+  return result.size() > most_terms ? alone : result;
 }
 
 bool ConstantPool::are_opposite(ConstantId a, ConstantId b) const {
-  const auto [of_a, factors_of_a] = factors(a);
-  const auto [of_b, factors_of_b] = factors(b);
-  return of_a == -of_b && factors_of_a == factors_of_b;
+  const Polynomial x = polynomial(a), y = polynomial(b);
+  return std::equal(x.begin(), x.end(), y.begin(), y.end(), [](const auto& of_x, const auto& of_y) { return of_x.first == of_y.first && of_x.second == -of_y.second; });
 }
 
 // -------------------------------------------------------------------------------------------------------- nodes

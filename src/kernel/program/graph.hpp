@@ -3,6 +3,7 @@
 
 #include <maupertuis/rational.hpp>
 
+#include <map>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -48,7 +49,7 @@ class ConstantPool {
   const Rational* literal_or_null(ConstantId id) const { return rationals_[id] ? &*rationals_[id] : nullptr; }
   bool is_one(ConstantId id) const { return rationals_[id] && rationals_[id]->is_one(); }
   bool is_zero(ConstantId id) const { return rationals_[id] && rationals_[id]->is_zero(); }
-  /// Whether a = −b as products of the same factors; false may be wrong.
+  /// Whether a = −b as polynomials; false may be wrong.
   bool are_opposite(ConstantId a, ConstantId b) const;
 
   std::vector<Constant> constants;
@@ -57,8 +58,10 @@ class ConstantPool {
 
  private:
   ConstantId append(Constant constant, std::optional<Rational> rational);
-  /// A product as a number and its other factors in order.
-  std::pair<Rational, std::vector<ConstantId>> factors(ConstantId id) const;
+  /// Numbers by the factors that they multiply, which are in order.
+  using Polynomial = std::map<std::vector<ConstantId>, Rational>;
+  static Polynomial product(const Polynomial& x, const Polynomial& y);
+  Polynomial polynomial(ConstantId id) const;
   std::vector<std::optional<Rational>> rationals_;
   std::unordered_map<std::string, ConstantId> literals_;
   ByKey<ConstantId> by_key_;

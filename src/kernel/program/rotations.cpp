@@ -55,7 +55,9 @@ class Collection {
     const Node& node = graph_.nodes[value.node];
     if (node.op == Op::Derivative && shift < Term::most_shift) return expand({value.coefficient, node.a}, shift + 1, parts);
     if (node.op != Op::Linear) {
-      if (node.op != Op::One || shift == 0) parts.push_back({value.coefficient, value.node, no_node, shift});
+      const auto same = part(parts, value.node, shift);
+      if (same != parts.end()) same->coefficient = graph_.constants.add(same->coefficient, value.coefficient);
+      else if (node.op != Op::One || shift == 0) parts.push_back({value.coefficient, value.node, no_node, shift});
       return parts.size() <= most_parts;
     }
     const std::vector<Term> terms = node.terms;
@@ -73,7 +75,7 @@ class Collection {
       if (!graph_.constants.are_opposite(of_sine->coefficient, of_cosine->coefficient)) continue;
       const ConstantId coefficient = of_sine->coefficient;
       by_cosine.erase(of_sine), by_sine.erase(of_cosine);
-      if (products(by_cosine) + products(by_sine) > 1) return false;
+      if (products(by_cosine) + products(by_sine) > 2) return false;
       NodeIndex turned = graph_.nodes[sine.sine].a;
       for (std::uint32_t i = 0; i < shift; ++i) turned = graph_.unary(Op::Derivative, turned);
       added.push_back({coefficient, turned});
