@@ -147,11 +147,14 @@ void long_run() {
 }
 
 /// Median stepping time of `maup simulate MODEL`, after `maup test` has found its reference values right.
-nlohmann::json constrained_run(const std::string& model, const char* duration, double& seconds) {
+/// every: the time between rows.
+nlohmann::json constrained_run(const std::string& model, const char* duration, double& seconds, const char* every = nullptr) {
   std::vector<double> times;
   nlohmann::json statistics;
   for (int i = 0; i < 5; ++i) {
-    const auto run = bench::run_process({MAUP_PROGRAM, "simulate", model, "--duration", duration, "--json"});
+    std::vector<std::string> arguments{MAUP_PROGRAM, "simulate", model, "--duration", duration, "--json"};
+    if (every) arguments.insert(arguments.end(), {"--every", every});
+    const auto run = bench::run_process(arguments);
     require(run.exit_code == 0, "a constrained run");
     statistics = nlohmann::json::parse(run.output).at("statistics");
     times.push_back(statistics.at("seconds").get<double>());
@@ -167,6 +170,8 @@ void constrained_runs() {
   require(bench::run_process({MAUP_PROGRAM, "test", problems + "ivp_andrews.lag"}).exit_code == 0, "Andrews' squeezer");
   constrained_run(problems + "ivp_andrews.lag", "0.03s", seconds);
   row("Andrews' squeezer to t = 0.03, values to 1e-10 relative", milliseconds(seconds), "50 ms", seconds <= 0.05);
+  constrained_run(problems + "ivp_andrews.lag", "0.03s", seconds, "0.03s");
+  row("the same without rows on the way", milliseconds(seconds), "5 ms", seconds <= 0.005);
 
   require(bench::run_process({MAUP_PROGRAM, "test", problems + "ivp_fekete.lag"}).exit_code == 0, "Fekete's points");
   constrained_run(problems + "ivp_fekete.lag", "1000s", seconds);
