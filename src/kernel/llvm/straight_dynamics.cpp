@@ -30,7 +30,7 @@ void StraightEmitter::keep(Slot slot, Value* v) {
 }
 
 bool StraightEmitter::is_corrected(Slot slot) const {
-  return slot < p_.program.stored_end[2] && p_.program.tangent_lags[slot] != Program::unmoved;
+  return !follows_ && slot < p_.program.stored_end[2] && p_.program.tangent_lags[slot] != Program::unmoved;
 }
 
 Value* StraightEmitter::sum(const Pack& pack, unsigned w) {

@@ -59,6 +59,8 @@ class StraightEmitter {
     unsigned lane;
   };
 
+  void find_awaited();
+  std::vector<Slot> read_at_once(const Pack& pack) const;
   void declare();
   void finish();
 
@@ -91,12 +93,16 @@ class StraightEmitter {
   Value* assemble(const std::vector<std::optional<Place>>& places, unsigned w, const std::function<Value*(std::size_t)>& other);
   Value* shuffle(const std::vector<std::optional<Place>>& places, const std::vector<Value*>& sources, unsigned w);
   Value* gather(ArrayRef<Slot> slots, int order, unsigned w);
+  Value* recent(Slot slot, int order);
+  void keep_recent();
   Value* operand(std::uint32_t index, int order, unsigned w);
   bool looks_ahead(int stage) const { return stage >= 2 && look_ahead_; }
   Value* seen(const Newest& newest) const { return looks_ahead(stage_) && newest.stage == stage_ - 1 ? newest.early : newest.final; }
   void renew_blocks();
   Newest newest_of(ArrayRef<Slot> slots, int order, unsigned w);
   void weigh(const Block& block, Newest& entry, int order);
+  bool is_of_coordinates(const Block& block) const;
+  Value* weighted_coordinates(const Block& block);
   /// Σ_{j=first..last} a_j b_{k−j}, from the middle outward in two chains; the ends, which may be of this stage or the last, come last.
   template <class A, class B>
   Value* convolution(A&& a, B&& b, int first, int last, int k) {
@@ -237,7 +243,10 @@ class StraightEmitter {
   Value* coordinates_ = nullptr;        // their coefficients of this stage
   Value *acceleration_ = nullptr, *previous_ = nullptr, *final_coordinates_ = nullptr, *previous_coordinates_ = nullptr, *check_ = nullptr;
   bool look_ahead_ = false;
+  std::vector<bool> awaited_;           // [packs] by the residual
+  bool follows_ = false;                // all packs that follow q̈ are found after it
   std::map<Slot, Value*> open_;         // results of this stage by first slot
+  std::map<std::pair<Slot, int>, Value*> recent_;  // final results by first slot and order
   std::map<std::pair<Slot, std::uint8_t>, Value*> rates_;  // first and second derivatives of its integrals
   std::map<Slot, Value*> early_;        // the same without q̈ of this stage
   std::map<std::pair<std::uint32_t, int>, Newest> newest_;  // (block, order): in registers

@@ -10,7 +10,7 @@ static constexpr double least_pivot = 1e-10, least_determinant = 1e-280;
 
 void StraightEmitter::factor() {
   for (const Pack& pack : p_.packs)
-    if (p_.program.tangent_lags[pack.out] != Program::unmoved) tangent(pack);
+    if (p_.program.tangent_lags[pack.out] != Program::unmoved && (!follows_ || awaited_[index_of(pack)])) tangent(pack);
   // The tangents of all residuals in direction d are column d of M.
   std::vector<Value*> columns;
   for (std::size_t d = 0; d < n_; ++d) {

@@ -160,10 +160,25 @@ Value* StraightEmitter::gather(ArrayRef<Slot> slots, int order, unsigned w) {
     all_zero = all_zero && places.back() && is_zero(places.back()->vector);
   }
   if (all_zero) return vector_of(0.0, w);
+  if (!any_open && w == 1)
+    if (Value* const known = recent(slots[0], order)) return known;
   if (!any_open && range) return load(cell(order, slots[0]), w);
   const bool same = std::all_of(slots.begin(), slots.end(), [&](Slot s) { return s == slots[0]; });
   if (!any_open && same && w > 1) return b_.CreateVectorSplat(w, load(cell(order, slots[0]), 1));
   return assemble(places, w, [&](std::size_t lane) { return load(cell(order, slots[lane]), 1); });
+}
+
+/// What the last two stages found, one number of it: a shuffle is shorter than the way through memory. Null: not known.
+Value* StraightEmitter::recent(Slot slot, int order) {
+  if (slot < n_ || !pack_of_[slot]) return nullptr;
+  const Slot base = slot_base(*pack_of_[slot], slot);
+  const auto found = recent_.find({base, order});
+  return found == recent_.end() ? nullptr : element({found->second, slot - base});
+}
+
+void StraightEmitter::keep_recent() {
+  std::erase_if(recent_, [&](const auto& entry) { return entry.first.second < stage_ + 1 - p_.program.lags[entry.first.first]; });
+  for (const auto& [base, value] : open_) recent_[{base, current_order(base)}] = value;
 }
 
 /// A block's coefficients of some order, final or of this stage.
@@ -173,6 +188,7 @@ Value* StraightEmitter::operand(std::uint32_t index, int order, unsigned w) {
   if (newest != newest_.end() && width(newest->second.final) == w) return seen(newest->second);
   const ArrayRef<Slot> slots(block.slots.data(), block.width);
   if (current_order(block.slots[0]) == order) {
+    if (follows_ && stage_ >= 0 && block.weighted && is_of_coordinates(block)) return weighted_coordinates(block);
     Value* const values = gather(slots, order, w);
     return block.weighted ? mul(values, splat(order, values)) : values;
   }
@@ -216,19 +232,22 @@ StraightEmitter::Newest StraightEmitter::newest_of(ArrayRef<Slot> slots, int ord
   return entry;
 }
 
-/// k q_k of a coordinate is q̈/(k−1): one operation fewer to wait for.
+bool StraightEmitter::is_of_coordinates(const Block& block) const {
+  return std::all_of(block.slots.begin(), block.slots.begin() + block.width, [&](Slot s) { return s < n_; });
+}
+
+/// k q_k is q̈/(k−1): one operation fewer to wait for.
+Value* StraightEmitter::weighted_coordinates(const Block& block) {
+  std::vector<std::optional<Place>> places;
+  for (std::uint32_t lane = 0; lane < block.width; ++lane) places.push_back(Place{acceleration_, block.slots[lane]});
+  return over(assemble(places, width_of(block.width), [&](std::size_t) { return vector_of(0.0, 1); }), stage_ + 1.0);
+}
+
 void StraightEmitter::weigh(const Block& block, Newest& entry, int order) {
   const unsigned w = width_of(block.width);
-  const bool coordinates = std::all_of(block.slots.begin(), block.slots.begin() + block.width, [&](Slot s) { return s < n_; });
   const bool same = entry.early == entry.final;
   entry.early = mul(entry.early, vector_of(order, w));
-  if (coordinates && stage_ >= 0) {
-    std::vector<std::optional<Place>> places;
-    for (std::uint32_t lane = 0; lane < block.width; ++lane) places.push_back(Place{acceleration_, block.slots[lane]});
-    entry.final = over(assemble(places, w, [&](std::size_t) { return vector_of(0.0, 1); }), stage_ + 1.0);
-  } else {
-    entry.final = mul(entry.final, vector_of(order, w));
-  }
+  entry.final = is_of_coordinates(block) && stage_ >= 0 ? weighted_coordinates(block) : mul(entry.final, vector_of(order, w));
   if (same) entry.early = entry.final;
 }
 
