@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <utility>
 
 /// The nodes of a straight line one after the other, values in registers as far as the compiler keeps them there. Long lines are cut
 /// into functions, since the time of a compiler grows faster than a function's length; what one hands to a later one goes through memory.
@@ -19,10 +20,69 @@ using straight::StraightLine;
 /// Nodes and terms of one function, and of all.
 constexpr std::size_t most_in_function = 400, most_in_all = 60'000;
 
+/// When numbers are there, in cycles, were there no lack of units: what of a sum is known last decides how it is added up.
+class Timing {
+ public:
+  explicit Timing(const StraightLine& line) : line_(line), ready_(line.nodes.size(), 0) {
+    for (straight::Value v = 0; v < line.nodes.size(); ++v) ready_[v] = ready(line.nodes[v]);
+  }
+
+  /// The last product of a sum is not to wait for the one before it.
+  bool adds_last_apart(const Node& node) const {
+    if (node.last - node.first < 3) return false;
+    const int rest = chain(node, node.last - 1), product = term(line_.terms[node.last - 1]);
+    return std::max(rest, product + multiplication) + addition < std::max(rest, product) + fused;
+  }
+
+ private:
+  static constexpr int addition = 2, multiplication = 3, fused = 4, division = 13, angles = 40, root = 20;
+
+  int at(straight::Value v) const { return v == straight::none ? 0 : ready_[v]; }
+  /// Of the factors of a term, products of all but the last one included.
+  int term(const straight::Term& t) const {
+    int out = 0, factors = 0;
+    for (const straight::Value v : {t.a, t.b, t.c})
+      if (v != straight::none) out = std::max(out, at(v) - (factors++ > 1 ? multiplication : 0));
+    return out + (factors > 2 ? multiplication : 0);
+  }
+  int chain(const Node& node, std::uint32_t last) const {
+    int out = 0;
+    for (std::uint32_t i = node.first; i < last; ++i)
+      out = std::max(out, term(line_.terms[i])) + (i == node.first ? multiplication : fused);
+    return out;
+  }
+  int sum(const Node& node) const {
+    if (!adds_last_apart(node)) return chain(node, node.last);
+    return std::max(chain(node, node.last - 1), term(line_.terms[node.last - 1]) + multiplication) + addition;
+  }
+
+  int ready(const Node& node) const {
+    const int operands = std::max({at(node.a), at(node.b), at(node.c)});
+    switch (node.what) {
+      case Node::Literal: case Node::Given: case Node::Unit: return 0;
+      case Node::Sum:
+        if (node.b != straight::none) return std::max(sum(node), operands) + division;
+        return node.a == straight::none ? sum(node) : std::max(sum(node), at(node.a)) + multiplication;
+      case Node::Wide: case Node::Magnitudes: return chain(node, node.last);
+      case Node::Angles: case Node::Gather: {
+        int out = node.what == Node::Angles ? angles : addition;
+        for (std::uint32_t i = node.first; i < node.last; ++i) out = std::max(out, at(line_.operands[i]) + (node.what == Node::Angles ? angles : addition));
+        return out;
+      }
+      case Node::Root: return operands + root;
+      case Node::Call: return operands + angles;
+      default: return operands + addition;
+    }
+  }
+
+  const StraightLine& line_;
+  std::vector<int> ready_;
+};
+
 class LineEmitter {
  public:
   LineEmitter(Emission& out, const StraightLine& line, std::string name)
-      : out_(out), b_(out.b), line_(line), name_(std::move(name)), real_(out.real(1)), values_(line.nodes.size(), nullptr) {}
+      : out_(out), b_(out.b), line_(line), timing_(line), name_(std::move(name)), real_(out.real(1)), values_(line.nodes.size(), nullptr) {}
 
   void run() {
     cut();
@@ -276,16 +336,18 @@ class LineEmitter {
   }
 
   Value* sum(const Node& node, llvm::Type* type) {
-    Value* out = nullptr;
+    Value *out = nullptr, *apart = nullptr;
+    const bool in_two = timing_.adds_last_apart(node);
     for (std::uint32_t i = node.first; i < node.last; ++i) {
       const straight::Term& t = line_.terms[i];
+      if (in_two && i + 1 == node.last) apart = std::exchange(out, nullptr);
       const auto [head, last] = halves(t, type, false);
       const bool sign = t.b == straight::none && t.factor == -1;
       if (!out) out = !head ? last : sign ? out_.negate(last) : out_.multiply(head, last);
       else if (!head) out = out_.add(out, last);
       else out = sign ? out_.subtract(out, last) : out_.fma(head, last, out);
     }
-    return out;
+    return apart ? out_.add(apart, out) : out;
   }
 
   Value* scaled(const Node& node, Value* x, llvm::Type* type) {
@@ -352,6 +414,7 @@ class LineEmitter {
   Emission& out_;
   llvm::IRBuilder<>& b_;
   const StraightLine& line_;
+  Timing timing_;
   std::string name_;
   llvm::Type* real_;
   std::size_t pieces_ = 0, piece_ = 0;
