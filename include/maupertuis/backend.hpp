@@ -11,7 +11,6 @@ enum class Backend { Automatic, Interpreter, Compiled };
 
 struct CompileOptions {
   bool cache = true;               // objects of earlier runs are read, new ones kept: ~/.cache/maupertuis
-  int order = 20;                  // that will be asked for most
   bool long_run = false;           // the code will run long: longer code and more passes pay
   std::string processor;           // empty: this one; else by LLVM's name, such as x86-64-v3
 };

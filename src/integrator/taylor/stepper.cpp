@@ -11,7 +11,7 @@ namespace maupertuis {
 
 /// What runs already goes on where other code cannot be had.
 void TaylorStepper::Impl::compile(bool long_run) {
-  const CompileReport report = work.compile({options.cache, control.order, long_run, {}});
+  const CompileReport report = work.compile({.cache = options.cache, .long_run = long_run, .processor = {}});
   runs_long = long_run;
   const double before = backend.compile_seconds;
   if (report.compiled || !backend.compiled) backend = {report.compiled, before + report.seconds, report.trouble, report.cache_trouble};

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t most_unknowns = 40;
 constexpr std::size_t most_terms = 6000;
 /// Whose reciprocals are tabled.
-constexpr int most_orders = 128, most_ahead = 4;
+constexpr int most_orders = 128;
 
 }  // namespace
 
@@ -50,13 +50,16 @@ void LanesEmitter::run() {
   out_.end_function();
 }
 
+/// Orders beyond the stage's own: those of functions of t alone, and one more of the derivatives of what follows q.
+int LanesEmitter::most_ahead() const { return std::max(4, 1 - program_.first_stage); }
+
 /// The quality tells that the reference has to do it.
 void LanesEmitter::refuse_more_orders() {
   auto& b = out_.b;
   table_orders();
   llvm::BasicBlock* const refused = llvm::BasicBlock::Create(out_.context, "", function_, done_);
   llvm::BasicBlock* const tabled = llvm::BasicBlock::Create(out_.context, "", function_, refused);
-  b.CreateCondBr(b.CreateICmpSGT(stages_, b.getInt64(most_orders - most_ahead)), refused, tabled);
+  b.CreateCondBr(b.CreateICmpSGT(stages_, b.getInt64(static_cast<std::uint64_t>(most_orders - most_ahead()))), refused, tabled);
   b.SetInsertPoint(refused);
   out_.store(number(std::numeric_limits<double>::quiet_NaN()), quality_);
   b.CreateBr(done_);

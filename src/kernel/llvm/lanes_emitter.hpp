@@ -48,6 +48,7 @@ class LanesEmitter {
   static constexpr int bytes_of_order = 64;
   void table_orders();
   void refuse_more_orders();
+  int most_ahead() const;
   Value* order(int ahead, OrderColumn column = OrderColumn::Order);  // in all lanes
   Value* half(int ahead);          // ⌊m / 2⌋, 64-bit integer
   Value* over_order(Value* x, int ahead) { return over(x, ahead, OrderColumn::Order, OrderColumn::Reciprocal, OrderColumn::Lack); }

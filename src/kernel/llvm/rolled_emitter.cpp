@@ -54,7 +54,8 @@ void RolledEmitter::open(const char* name, llvm::Type* second) {
 void RolledEmitter::open_stage(const char* name) {
   open(name, out_.integer());
   stage_ = out_.b.GetInsertBlock()->getParent()->getArg(1);
-  for (int k = 0; k <= 2; ++k) rows_of_stage_[static_cast<std::size_t>(k)] = row_of(stage_plus(k));
+  rows_of_stage_.clear();
+  for (int k = 0; k <= -program_.first_stage; ++k) rows_of_stage_.push_back(row_of(stage_plus(k)));
 }
 
 Value* RolledEmitter::row_of(Value* order) {

@@ -117,7 +117,7 @@ class RolledEmitter {
   std::map<Class, std::vector<std::size_t>> classes_;
 
   Value *arguments_ = nullptr, *rows_ = nullptr, *coefficients_ = nullptr, *sums_ = nullptr, *stage_ = nullptr;
-  std::array<Value*, 3> rows_of_stage_{};
+  std::vector<Value*> rows_of_stage_;   // from its own on, as many as functions of t alone are ahead
   Value* sums_of_stage_ = nullptr;
   std::map<Slot, Recent> recent_;      // by first slot
   std::size_t time_ = 0;

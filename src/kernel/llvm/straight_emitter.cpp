@@ -27,16 +27,16 @@ void StraightEmitter::run() {
   look_ahead_ = !follows_ && has_second_tangents();
   for (int stage = p_.program.first_stage; stage < order_; ++stage) {
     begin_stage(stage);
-    const bool follows = follows_ && stage >= 0;
+    const auto waits_for_solution = [&](const Pack& pack) { return follows_ && stage >= 0 && !awaited_[index_of(pack)]; };
     for (const Pack& pack : p_.packs)
-      if (!follows || awaited_[index_of(pack)]) dynamics(pack);
+      if (!waits_for_solution(pack)) dynamics(pack);
     if (stage == 0) factor();
     if (stage >= 0) {
       solve();
       correct();
     }
     for (const Pack& pack : p_.packs)
-      if (follows && !awaited_[index_of(pack)]) dynamics(pack);
+      if (waits_for_solution(pack)) dynamics(pack);
     if (stage == 1 && look_ahead_) find_second_tangents();
     renew_blocks();
     keep_recent();

@@ -16,7 +16,8 @@ bool StraightEmitter::has_second_tangents() const {
   return n_ <= most_looking_ahead && std::all_of(p_.packs.begin(), p_.packs.end(), [&](const Pack& pack) {
     if (p_.program.tangent_lags[pack.out] == Program::unmoved) return true;
     for (std::uint32_t c = pack.first_aligned; pack.kind == Pack::Sum && c < pack.last_aligned; ++c)
-      if (passes(p_.columns[c].source, p_.columns[c].shift, pack.lag - 1)) return false;
+      for (const Slot slot : sources_of(p_.columns[c], pack.width))
+        if (passes(slot, p_.columns[c].shift, pack.lag - 1)) return false;
     return pack.kind == Pack::Sum || pack.kind == Pack::Integral;
   });
 }
@@ -83,7 +84,7 @@ void StraightEmitter::add_column(const Pack& pack, const Column& column, ArrayRe
   const unsigned w = width_of(pack.width);
   const std::vector<Slot> slots = sources_of(column, pack.width);
   Value* const factor = coefficients(column.coefficients, w);
-  if (passes(column.source, column.shift, pack.lag)) {
+  if (p_.program.lags[column.source] + column.shift == pack.lag) {
     Value* const of_a = gather_part(Part::A, slots, direction, w);
     s.a = fma(of_a, factor, s.a);
     s.b = fma(gather_part(Part::B, slots, direction, w), factor, s.b);

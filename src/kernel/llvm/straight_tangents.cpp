@@ -90,7 +90,7 @@ std::vector<StraightEmitter::Source> StraightEmitter::sources(const Pack& pack) 
     case Pack::Sum:
       for (std::uint32_t c = pack.first_aligned; c < pack.last_aligned; ++c) {
         const Column& column = p_.columns[c];
-        if (!passes(column.source, column.shift, pack.lag)) continue;
+        if (p_.program.lags[column.source] + column.shift != pack.lag) continue;  // lanes that q does not move have no directions
         result.push_back({sources_of(column, pack.width), [this, &column](unsigned w) { return coefficients(column.coefficients, w); }});
       }
       for (std::uint32_t i = pack.first_product; i < pack.last_product; ++i) {

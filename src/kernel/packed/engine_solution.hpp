@@ -107,7 +107,7 @@ void correct(const Tables& tables, int stage, const TangentMatrix& tangents, con
       else if (left >= 2) block.template operator()<2>();
       else block.template operator()<1>();
     }
-    first = tangents.end[lag];
+    first = (tangents.end[lag] + lanes - 1) / lanes * lanes;  // where the slots of the next lag begin
   }
 }
 

@@ -81,19 +81,27 @@ ConstantPool::Polynomial ConstantPool::product(const Polynomial& x, const Polyno
   return result;
 }
 
-ConstantPool::Polynomial ConstantPool::polynomial(ConstantId id) const {
+/// Of constants that are written once: each is looked at once.
+const ConstantPool::Polynomial& ConstantPool::polynomial(ConstantId id) {
+  const auto found = polynomials_.find(id);
+  return found != polynomials_.end() ? found->second : polynomials_.emplace(id, make_polynomial(id)).first->second;
+}
+
+ConstantPool::Polynomial ConstantPool::make_polynomial(ConstantId id) {
   constexpr std::size_t most_terms = 8;
   if (rationals_[id]) return {{{}, *rationals_[id]}};
   const Constant& c = constants[id];
-  const std::span operands = std::span(arguments).subspan(c.first_argument, c.arguments);
+  const std::span<const ConstantId> operands = std::span(arguments).subspan(c.first_argument, c.arguments);
   const Polynomial alone{{{id}, Rational(1)}};
   Polynomial result;
   if (c.kind == Kind::Sum) {
-    for (const ConstantId operand : operands)
+    for (const ConstantId operand : operands) {
       for (const auto& [factors, a] : polynomial(operand)) {
         Rational& coefficient = result.try_emplace(factors, Rational(0)).first->second;
         coefficient = coefficient + a;
       }
+      if (result.size() > most_terms) return alone;
+    }
   } else if (c.kind == Kind::Product) {
     result = {{{}, Rational(1)}};
     for (const ConstantId operand : operands) {
@@ -101,7 +109,7 @@ ConstantPool::Polynomial ConstantPool::polynomial(ConstantId id) const {
       if (result.size() > most_terms) return alone;
     }
   } else if (c.kind == Kind::Power && literal_or_null(operands[1]) && *literal_or_null(operands[1]) == Rational(2)) {
-    const Polynomial base = polynomial(operands[0]);
+    const Polynomial& base = polynomial(operands[0]);
     result = product(base, base);
   } else {
     return alone;
@@ -110,9 +118,10 @@ ConstantPool::Polynomial ConstantPool::polynomial(ConstantId id) const {
   return result.size() > most_terms ? alone : result;
 }
 
-bool ConstantPool::are_opposite(ConstantId a, ConstantId b) const {
-  const Polynomial x = polynomial(a), y = polynomial(b);
-  return std::equal(x.begin(), x.end(), y.begin(), y.end(), [](const auto& of_x, const auto& of_y) { return of_x.first == of_y.first && of_x.second == -of_y.second; });
+bool ConstantPool::are_opposite(ConstantId a, ConstantId b) {
+  const Polynomial &x = polynomial(a), &y = polynomial(b);
+  return std::equal(x.begin(), x.end(), y.begin(), y.end(),
+                    [](const auto& of_x, const auto& of_y) { return of_x.first == of_y.first && of_x.second == -of_y.second; });
 }
 
 // -------------------------------------------------------------------------------------------------------- nodes

@@ -50,7 +50,7 @@ class ConstantPool {
   bool is_one(ConstantId id) const { return rationals_[id] && rationals_[id]->is_one(); }
   bool is_zero(ConstantId id) const { return rationals_[id] && rationals_[id]->is_zero(); }
   /// Whether a = −b as polynomials; false may be wrong.
-  bool are_opposite(ConstantId a, ConstantId b) const;
+  bool are_opposite(ConstantId a, ConstantId b);
 
   std::vector<Constant> constants;
   std::vector<ConstantId> arguments;
@@ -61,9 +61,11 @@ class ConstantPool {
   /// Numbers by the factors that they multiply, which are in order.
   using Polynomial = std::map<std::vector<ConstantId>, Rational>;
   static Polynomial product(const Polynomial& x, const Polynomial& y);
-  Polynomial polynomial(ConstantId id) const;
+  const Polynomial& polynomial(ConstantId id);
+  Polynomial make_polynomial(ConstantId id);
   std::vector<std::optional<Rational>> rationals_;
   std::unordered_map<std::string, ConstantId> literals_;
+  std::map<ConstantId, Polynomial> polynomials_;  // of those that were compared; references stay
   ByKey<ConstantId> by_key_;
 };
 

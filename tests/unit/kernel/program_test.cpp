@@ -64,6 +64,24 @@ TEST_CASE("what turns about one point is accelerated across its radius by the an
   }
 }
 
+TEST_CASE("sinh and cosh do not turn, and unlike sizes are not collected") {
+  Context context;
+  const Expr u = context.symbol("u", Role::Coordinate), m = context.symbol("m", Role::Parameter);
+  const auto second = [&](Expr e) { return context.time_derivative(context.time_derivative(e)); };
+  const auto products = [&](Expr residual) {
+    KernelSource source;
+    source.coordinates = {u};
+    source.parameters = {m};
+    source.residual = {residual};
+    return lines_with(build_kernel(source).print(), "= products");
+  };
+  const Expr sinh = apply(Kind::Sinh, u), cosh = apply(Kind::Cosh, u);
+  CHECK(products(m * cos(u) * second(sin(u)) - m * sin(u) * second(cos(u))) == 0);
+  CHECK(products(m * cos(u) * context.time_derivative(sin(u)) - m * sin(u) * context.time_derivative(cos(u)) + second(u)) == 0);
+  CHECK(products(cosh * second(sinh) - sinh * second(cosh)) == 1);
+  CHECK(products(m * cos(u) * second(sin(u)) - sin(u) * second(cos(u))) == 1);
+}
+
 TEST_CASE("the residual of a chain is about linear in the number of links") {
   Context context;
   const auto size = [](const std::string& text) { return text.size(); };

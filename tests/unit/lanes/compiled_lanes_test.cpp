@@ -1,7 +1,5 @@
 #include "lane_systems.hpp"
 
-#include <random>
-
 // Compiled lanes against the reference interpreter, coefficient by coefficient; and against themselves at every width, to the bit.
 
 namespace {
@@ -23,45 +21,6 @@ CompileOptions long_run() {
 void check_same(const Expansion& found, const Expansion& expected) {
   CHECK(same_bits(found.quality, expected.quality));
   for (std::size_t i = 0; i < expected.coefficients.size(); ++i) CHECK(same_bits(found.coefficients[i], expected.coefficients[i]));
-}
-
-/// Expressions of every instruction that have a value wherever their operands have one.
-class RandomExpressions {
- public:
-  RandomExpressions(std::vector<Expr> leaves, unsigned seed) : leaves_(std::move(leaves)), random_(seed) {}
-
-  Expr make(int depth) {
-    if (depth == 0) return leaves_[random_() % leaves_.size()];
-    const Expr x = make(depth - 1), y = make(depth - 1 - static_cast<int>(random_() % static_cast<unsigned>(depth)));
-    const Expr two = x.context().number(2);
-    switch (random_() % 11) {
-      case 0: return x + Rational(1, 3) * y;
-      case 1: return x * y;
-      case 2: return x * x - y;
-      case 3: return sin(x) - cos(y);
-      case 4: return x / (two + y * y);
-      case 5: return sqrt(two + x * x);
-      case 6: return pow(two + x * x, Rational(-3, 2)) * y;
-      case 7: return apply(Kind::Tanh, x) + apply(Kind::Atan, y);
-      case 8: return apply(Kind::Exp, sin(x));
-      case 9: return apply(Kind::Log, two + x * x) - y;
-      default: return apply(Kind::Cosh, sin(x)) * y;
-    }
-  }
-
- private:
-  std::vector<Expr> leaves_;
-  std::mt19937 random_;
-};
-
-/// Two coordinates with a mass matrix that is definite whatever the expressions are.
-void make_random(System& s, unsigned seed) {
-  const Expr x = s.coordinate("x", 0.4, 0.3), y = s.coordinate("y", -0.6, 0.5), c = s.parameter("c", 0.8);
-  RandomExpressions random({x, y, c, s.context.time(), x, y}, seed);
-  const Expr a = random.make(3), b = random.make(3), potential = random.make(4);
-  s.from_lagrangian(Rational(1, 2) * (pow(s.dot(x), 2) + pow(s.dot(y), 2)) +
-                    Rational(1, 8) * (pow(s.dot(sin(a)), 2) + pow(s.dot(cos(b)), 2)) - sin(potential));
-  s.start.t = 0.2;
 }
 
 }  // namespace
@@ -113,7 +72,7 @@ TEST_CASE("other processors: without AVX-512 the same bits, without fused produc
   }
 }
 
-TEST_CASE("every instruction, compiled, agrees with the reference interpreter; short and long code with each other to the bit") {
+TEST_CASE("every instruction, compiled, agrees with the reference interpreter") {
   for (const auto& system : systems()) {
     CAPTURE(system->name);
     const Kernel kernel = build_kernel(system->source);
@@ -124,6 +83,7 @@ TEST_CASE("every instruction, compiled, agrees with the reference interpreter; s
       CHECK(found.quality[i] <= 1);
       check_against_reference(kernel, motions[i], found.coefficients[i], found.quality[i]);
     }
+    // What LLVM does more where code runs long changes no bit.
     check_same(expand(kernel, motions, compiled(kernel, 4, long_run())), found);
   }
 }

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -132,12 +133,72 @@ void add_friction(Systems& list) {
   s.source.residual = {s.acceleration("x") + c * (s.dot(x) - s.dot(y)) + sin(x), 2 * s.acceleration("y") + c * (s.dot(y) - s.dot(x)) + sin(y)};
 }
 
+/// Its equation holds derivatives of a function of t alone, which are found stages ahead.
+void add_shaken_pendulum(Systems& list) {
+  System& s = add(list, "pendulum on a shaken support");
+  const Expr l = s.parameter("l", 0.8), w = s.parameter("w", 3.0), a = s.coordinate("a", 0.9, 0.3);
+  const Expr x = Rational(1, 5) * sin(w * s.context.time()) + l * sin(a), y = -l * cos(a);
+  s.from_lagrangian(Rational(1, 2) * (pow(s.dot(x), 2) + pow(s.dot(y), 2)) - Rational(981, 100) * y);
+  s.start.t = 0.3;
+}
+
+/// Sums of coordinates beside sums with t, one shape: of the latter a lane has no tangent.
+void add_mixed_angles(Systems& list) {
+  System& s = add(list, "mixed angles");
+  const Expr x = s.coordinate("x", 0.4, 0.3), y = s.coordinate("y", -0.6, 0.5), c = s.parameter("c", 0.8);
+  const Expr first = x - y, second = y + s.context.time();
+  s.from_lagrangian(Rational(1, 2) * (pow(s.dot(x), 2) + pow(s.dot(y), 2)) + pow(s.dot(sin(first) * c), 2) + pow(s.dot(sin(second)), 2) -
+                    cos(first) * sin(second));
+  s.start.t = 0.2;
+}
+
+/// Expressions of every instruction that have a value wherever their operands have one.
+class RandomExpressions {
+ public:
+  RandomExpressions(std::vector<Expr> leaves, unsigned seed) : leaves_(std::move(leaves)), random_(seed) {}
+
+  Expr make(int depth) {
+    if (depth == 0) return leaves_[random_() % leaves_.size()];
+    const Expr x = make(depth - 1), y = make(depth - 1 - static_cast<int>(random_() % static_cast<unsigned>(depth)));
+    const Expr two = x.context().number(2);
+    switch (random_() % 11) {
+      case 0: return x + Rational(1, 3) * y;
+      case 1: return x * y;
+      case 2: return x * x - y;
+      case 3: return sin(x) - cos(y);
+      case 4: return x / (two + y * y);
+      case 5: return sqrt(two + x * x);
+      case 6: return pow(two + x * x, Rational(-3, 2)) * y;
+      case 7: return apply(Kind::Tanh, x) + apply(Kind::Atan, y);
+      case 8: return apply(Kind::Exp, sin(x));
+      case 9: return apply(Kind::Log, two + x * x) - y;
+      default: return apply(Kind::Cosh, sin(x)) * y;
+    }
+  }
+
+ private:
+  std::vector<Expr> leaves_;
+  std::mt19937 random_;
+};
+
+/// Two coordinates with a mass matrix that is definite whatever the expressions are.
+[[maybe_unused]] void make_random(System& s, unsigned seed) {
+  const Expr x = s.coordinate("x", 0.4, 0.3), y = s.coordinate("y", -0.6, 0.5), c = s.parameter("c", 0.8);
+  RandomExpressions random({x, y, c, s.context.time(), x, y}, seed);
+  const Expr a = random.make(3), b = random.make(3), potential = random.make(4);
+  s.from_lagrangian(Rational(1, 2) * (pow(s.dot(x), 2) + pow(s.dot(y), 2)) +
+                    Rational(1, 8) * (pow(s.dot(sin(a)), 2) + pow(s.dot(cos(b)), 2)) - sin(potential));
+  s.start.t = 0.2;
+}
+
 [[maybe_unused]] Systems systems() {
   Systems list;
   add_friction(list);
   add_functions(list);
   for (const int links : {1, 2, 3, 5, 9}) add_chain(list, links);
   add_driven(list);
+  add_shaken_pendulum(list);
+  add_mixed_angles(list);
   add_selection(list, 1);
   add_selection(list, -1);
   add_undefined_operand(list);
