@@ -180,10 +180,12 @@ Value* LanesEmitter::over(Value* x, int ahead, OrderColumn number, OrderColumn r
   return out_.fma(x, order(ahead, reciprocal), out_.multiply(x, order(ahead, lack)));
 }
 
-Value* LanesEmitter::half(int ahead) {
-  if (is_known()) return out_.b.getInt64(static_cast<std::uint64_t>(known(ahead) / 2));
-  return out_.b.CreateLShr(out_.b.CreateNUWAdd(stage_, out_.b.getInt64(static_cast<std::uint64_t>(ahead))), 1);
+Value* LanesEmitter::index(int ahead) {
+  if (is_known()) return out_.b.getInt64(static_cast<std::uint64_t>(known(ahead)));
+  return out_.b.CreateNUWAdd(stage_, out_.b.getInt64(static_cast<std::uint64_t>(ahead)));
 }
+
+Value* LanesEmitter::half(int ahead) { return out_.b.CreateLShr(index(ahead), 1); }
 
 // ----------------------------------------------------------------------------------------------------------------- values
 

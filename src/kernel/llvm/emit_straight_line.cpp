@@ -20,7 +20,7 @@ using straight::StraightLine;
 /// Nodes and terms of one function, and of all.
 constexpr std::size_t most_in_function = 400, most_in_all = 60'000;
 
-/// When numbers are there, in cycles, were there no lack of units: what of a sum is known last decides how it is added up.
+/// When numbers are there, in cycles of a Zen 5, were there no lack of units: what of a sum is known last decides how it is added up.
 class Timing {
  public:
   explicit Timing(const StraightLine& line) : line_(line), ready_(line.nodes.size(), 0) {

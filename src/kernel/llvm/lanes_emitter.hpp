@@ -30,7 +30,7 @@ class LanesEmitter {
   using Value = llvm::Value;
 
   // ------------------------------------------------------------------------------------------------ stages (emit_lanes.cpp)
-  /// Stages below this are written out: there sums have fewer than the newest products.
+  /// Stages below this are written out: there sums have fewer products than those of two stages at once take for granted.
   static constexpr int first_rolled = 4;
   void stage();
   void begin_values();
@@ -50,7 +50,8 @@ class LanesEmitter {
   void refuse_more_orders();
   int most_ahead() const;
   Value* order(int ahead, OrderColumn column = OrderColumn::Order);  // in all lanes
-  Value* half(int ahead);          // ⌊m / 2⌋, 64-bit integer
+  Value* index(int ahead);         // m, 64-bit integer
+  Value* half(int ahead);          // ⌊m / 2⌋
   Value* over_order(Value* x, int ahead) { return over(x, ahead, OrderColumn::Order, OrderColumn::Reciprocal, OrderColumn::Lack); }
   /// x / (m (m + 1)) at once: the error of two roundings would be larger, and the same in every step.
   Value* over_orders(Value* x, int ahead) { return over(x, ahead, OrderColumn::Pair, OrderColumn::PairReciprocal, OrderColumn::PairLack); }

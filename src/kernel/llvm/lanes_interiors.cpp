@@ -138,7 +138,7 @@ Value* LanesEmitter::newest(const Piece& piece, int last, Value* sum) {
 
 // ------------------------------------------------------------------------------------------------------------------- loops
 
-/// Those of the next stage, which wait for nothing of this one: every other time together with those of the stage after it, of which the pair of
+/// The interiors of the next stage, which wait for nothing of this one: every other time together with those of the stage after it, of which the pair of
 /// order 2 is left for that stage.
 void LanesEmitter::prepare_next() {
   std::vector<std::uint32_t> list;
@@ -162,12 +162,11 @@ bool LanesEmitter::prepares_two() const { return ((is_known() ? known(0) : parit
 
 LanesEmitter::Row LanesEmitter::row_at(Value* j) { return {row_of(j), out_.splat(out_.b.CreateSIToFP(j, out_.b.getDoubleTy()), real_), {}, {}}; }
 
+/// The pair of order 2, which the stage before left.
 void LanesEmitter::finish(const std::vector<std::uint32_t>& group) {
   const int ahead = accumulators_[group[0]].ahead + 1;
   Value* const two = out_.b.getInt64(2);
-  Value* const order = is_known() ? out_.b.getInt64(static_cast<std::uint64_t>(known(ahead)))
-                                  : out_.b.CreateNUWAdd(stage_, out_.b.getInt64(static_cast<std::uint64_t>(ahead)));
-  Row low = row_at(two), high = row_at(out_.b.CreateSub(order, two));
+  Row low = row_at(two), high = row_at(out_.b.CreateSub(index(ahead), two));
   for (const std::uint32_t k : group) {
     Accumulator& accumulator = accumulators_[k];
     accumulator.next = accumulator.after;
@@ -213,8 +212,7 @@ void LanesEmitter::rolled_pairs(const std::vector<std::uint32_t>& group, bool tw
   auto& b = out_.b;
   const int ahead = accumulators_[group[0]].ahead + 1;
   Value* const center = half(ahead);
-  Value* const order = b.CreateNUWAdd(stage_, b.getInt64(static_cast<std::uint64_t>(ahead)));
-  Row above = row_at(center), high = row_at(b.CreateSub(order, center));
+  Row above = row_at(center), high = row_at(b.CreateSub(index(ahead), center));
   if (is_odd(ahead)) add(above, high, false);
   const auto move = [&](Row& row, int by) {
     row = {out_.at(row.address, by * row_bytes_), out_.add(row.number, number(by)), {}, {}};
@@ -222,7 +220,7 @@ void LanesEmitter::rolled_pairs(const std::vector<std::uint32_t>& group, bool tw
   if (two) load_lows(group, above);
   Row low{above.address, above.number, {}, {}};
   move(low, -1);
-  high = row_at(b.CreateSub(order, b.CreateSub(center, b.getInt64(1))));
+  high = row_at(b.CreateSub(index(ahead), b.CreateSub(center, b.getInt64(1))));
   // What the loop hands on: rows, sums, and the row that was low a turn before.
   const auto values = [&](const std::function<void(Value*&)>& visit) {
     for (Value** v : {&low.address, &low.number, &high.address, &high.number}) visit(*v);

@@ -62,7 +62,6 @@ Value* StraightEmitter::shifted_sum(const Pack& pack, std::uint8_t shift, unsign
     sum = fma(values, few ? mul(c, splat(factor, c)) : c, sum);
   }
   if (few) return sums[0];
-  if (columns.empty()) return result;
   Value* const whole = add(sums[0], sums[1]);
   return fma(whole, splat(factor, whole), result);
 }

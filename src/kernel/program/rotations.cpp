@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t most_parts = 3;  // of a factor: longer sums stay shared
 
-/// α · sine or cosine of `angle` · `factor`
+/// function · factor, where the function is `sine` or its cosine.
 struct Product {
   std::size_t term;
   NodeIndex sine, function;
