@@ -1,10 +1,13 @@
 #include "kernel/interpreter/lifted_solve.hpp"
 
 #include "kernel/interpreter/sampled_states.hpp"
+#include "kernel/packed/compiled.hpp"
+#include "kernel/packed/engine.hpp"
 #include "kernel/sparse/parts.hpp"
 #include "kernel/straight_line/widen.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <tuple>
 
 namespace maupertuis::interpreter {
@@ -14,6 +17,7 @@ namespace {
 constexpr double least_sound_pivot = 1e-7;
 /// What a solution may leave of b, in units of the error bound of that remainder: without a correction, with one, and after it.
 constexpr double sound = 16, tolerable = 1e6, corrected = 16;
+std::size_t padded_to_lanes(std::size_t n) { return (n + packed::lanes - 1) / packed::lanes * packed::lanes; }
 bool is_power_of_two(int x) { return (x & (x - 1)) == 0; }
 
 std::vector<bool> stored_slots(const Program& program, const packed::PackedProgram& packed) {
@@ -52,7 +56,7 @@ bool LiftedSolve::choose_pivots(const Memory& memory) {
     samples.push_back(std::move(sample));
   const auto pivots = sparse::eliminate(*system_, samples, {});
   if (!pivots) return false;
-  if (options_ && !parts_failed_ && choose_parts(samples, *pivots)) return true;
+  if (options_ && !parts_failed_ && program_.unknowns > packed::most_by_inverse && choose_parts(samples, *pivots)) return true;
   solver_.emplace(*system_, *pivots, cell_of_column_);
   // What the full matrix costs: its solution, and the tangents in the direction of that.
   if (solver_->solve_products() < program_.unknowns * program_.unknowns + system_->edges.size()) {
@@ -82,7 +86,7 @@ std::vector<std::uint32_t> LiftedSolve::wanted_cells() const {
 bool LiftedSolve::compile_lines(const std::vector<straight::StraightLine>& lines) {
   for (const straight::StraightLine& line : lines) scratch_.resize(std::max(scratch_.size(), straight::scratch_size(line)));
   std::tie(code_, report_) = straight::compile(lines, *options_);
-  factors_by_code_ = code_ && lines.size() > 1;
+  if (!code_) factor_line_ = columns_line_ = 0;
   return bool{code_};
 }
 
@@ -90,8 +94,35 @@ bool LiftedSolve::compile_lines(const std::vector<straight::StraightLine>& lines
 bool LiftedSolve::make_code() {
   if (!options_) return false;
   std::vector<straight::StraightLine> lines{solver_->written_solve(wanted_cells())};
-  if (options_->long_run) lines.push_back(solver_->written_factor(least_sound_pivot));
+  if (options_->long_run) {
+    factor_line_ = lines.size();
+    lines.push_back(solver_->written_factor(least_sound_pivot));
+  }
+  if (program_.unknowns <= packed::most_by_inverse) write_columns(lines);
   return compile_lines(lines);
+}
+
+/// The solution of eight right sides at once, the unknowns alone.
+void LiftedSolve::write_columns(std::vector<straight::StraightLine>& lines) {
+  std::vector<std::uint32_t> unknowns(program_.unknowns);
+  std::iota(unknowns.begin(), unknowns.end(), 0u);
+  const auto padded = static_cast<std::uint32_t>(padded_to_lanes(program_.unknowns));
+  auto line = straight::in_columns(solver_->written_solve(unknowns), sparse::RightSideArray, sparse::UnknownArray, packed::lanes, padded);
+  if (!line) return;
+  units_.assign((2 * padded + packed::lanes) * packed::lanes, 0.0);
+  for (std::size_t i = 0; i < packed::lanes; ++i) units_[(padded + i) * packed::lanes + i] = -1;
+  columns_line_ = lines.size();
+  lines.push_back(std::move(*line));
+}
+
+bool LiftedSolve::negative_inverse(double* inverse) {
+  if (columns_line_ == 0) return false;
+  const std::size_t padded = padded_to_lanes(program_.unknowns);
+  for (std::size_t column = 0; column < padded; column += packed::lanes)
+    code_(columns_line_, solver_->factors(), solver_->inverse_pivots(), units_.data() + (padded - column) * packed::lanes, inverse + column,
+          scratch_.data());
+  packed::engine().transpose(inverse, padded);
+  return true;
 }
 
 /// Parts that are alike, a lane of a vector each. Their factors are code too, in an order of its own.
@@ -107,6 +138,7 @@ bool LiftedSolve::choose_parts(const std::vector<std::vector<double>>& samples, 
   auto solve = straight::widen(solver_->written_solve(wanted_cells()), {{sparse::FactorArray, &factors}, {sparse::InverseArray, &inverse}}, {});
   auto factor = straight::widen(solver_->written_factor(least_sound_pivot), {},
                                 {{sparse::FactorOutArray, &factors}, {sparse::FactorInverseArray, &inverse}});
+  factor_line_ = 1;
   in_parts_ = solve && factor && compile_lines({std::move(*solve), std::move(*factor)});
   if (!in_parts_) drop_solver();
   return in_parts_;
@@ -116,7 +148,8 @@ void LiftedSolve::drop_solver() {
   solver_.reset();
   code_ = {};
   report_.reset();
-  factors_by_code_ = in_parts_ = false;
+  factor_line_ = columns_line_ = 0;
+  in_parts_ = false;
 }
 
 void LiftedSolve::run_solve(std::span<const double> b, double* x) {
@@ -126,11 +159,11 @@ void LiftedSolve::run_solve(std::span<const double> b, double* x) {
 
 /// Code tells no more of pivots than whether they are sound.
 void LiftedSolve::run_factor() {
-  if (!factors_by_code_) {
+  if (factor_line_ == 0) {
     least_pivot_ = solver_->factor(entries_);
     return;
   }
-  code_(1, entries_.data(), solver_->usual_sizes(), solver_->factors(), solver_->inverse_pivots(), scratch_.data());
+  code_(factor_line_, entries_.data(), solver_->usual_sizes(), solver_->factors(), solver_->inverse_pivots(), scratch_.data());
   least_pivot_ = straight::sound(scratch_.data()) ? 1 : 0;
 }
 

@@ -29,6 +29,10 @@ class LiftedSolve {
   /// The first solution after factor(), as in solve(), and corrected if it is rough; false: it does not hold, and the full matrix is to
   /// decide; b is as it was.
   bool solve_first(std::span<double> b);
+  /// After factor(): −M₀⁻¹, [padded × padded] with padded = unknowns rounded up to a multiple of 8, aligned to 64 bytes; what is
+  /// beyond the unknowns has to be 0, and stays so. Up to 48 unknowns a product with it takes less than a solution. Nothing is checked.
+  /// False: there is no code for that.
+  bool negative_inverse(double* inverse);
   /// b → q̈_k and λ_k in place.
   void solve(std::span<double> b);
   /// In the direction of the last solution, of a stage, those of the stored slots of the packed program; null where they are too rough.
@@ -52,6 +56,7 @@ class LiftedSolve {
   bool make_code();
   bool choose_parts(const std::vector<std::vector<double>>& samples, const std::vector<sparse::Pivot>& pivots);
   std::vector<std::uint32_t> wanted_cells() const;
+  void write_columns(std::vector<straight::StraightLine>& lines);
   bool compile_lines(const std::vector<straight::StraightLine>& lines);
   void drop_solver();
   void run_factor();
@@ -72,8 +77,9 @@ class LiftedSolve {
   int failures_ = 0;
   std::optional<CompileOptions> options_;        // of the code that is wanted
   std::optional<CompileReport> report_;
-  straight::Code code_;                          // of the solver's solve(), and of its factor() if factors_by_code_
-  bool factors_by_code_ = false;
+  straight::Code code_;                          // of the solver's solve(), then of what is named here, where it is not 0
+  std::size_t factor_line_ = 0, columns_line_ = 0;
+  Doubles units_;                                // of negative_inverse(): rows of −1, zeros before and behind
   bool in_parts_ = false, parts_failed_ = false;
   std::vector<double> scratch_;                  // of the code
 };

@@ -78,11 +78,22 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   for (std::size_t i = 0; i < q.size(); ++i) position[i] = q[i], velocity[i] = v[i];
   arguments.q = q.data(), arguments.v = v.data();
   if (run_compiled(stages)) return KernelStatus::Ok;
+  by_code = false;
   for (int stage = program.first_stage; stage < stages; ++stage) {
+    if (by_code && stage > 0) {
+      if (calls_back) std::fill_n(memory.row(stage + 2), unknowns, 0.0);
+      compiled.stage(&arguments, stage);
+      compiled.solve(&arguments, stage);
+      renew_blocks(stage, stages);
+      run_along(stage);
+      continue;
+    }
     if (stage >= 0) std::fill_n(memory.row(stage + 2), unknowns, 0.0);
     run_stage(stage);
-    if (stage == 0)
+    if (stage == 0) {
       if (const auto status = factor(); status != KernelStatus::Ok) return status;
+      by_code = stages > 1 && can_go_on_by_code();
+    }
     if (stage >= 0) {
       if (const auto status = solve(stage); status != KernelStatus::Ok) return status;
       if (stage == 0 && !constraints_agree()) return KernelStatus::Contradiction;
@@ -92,7 +103,7 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
     renew_blocks(stage, stages);
     run_along(stage);
   }
-  return KernelStatus::Ok;
+  return by_code && !are_coefficients_finite(stages) ? KernelStatus::NonFinite : KernelStatus::Ok;
 }
 
 /// Rolled code has no stages before 1.
@@ -156,7 +167,10 @@ void KernelWorkspace::Impl::adopt(interpreter::CompiledCode code) {
   compiled = std::move(code);
   if (compiled.stage) {
     sums.assign(packed::count_convolutions(packed) * packed::rolled_group * packed::lanes, 0.0);
-    arguments = {.rows = memory.rows.data(), .coefficients = lane_coefficients.data(), .sums = sums.data(), .value = tables.scalar.value,
+    tangent_row.assign(memory.stride, 0.0);
+    calls_back = std::any_of(packed.packs.begin(), packed.packs.end(), [](const packed::Pack& pack) { return pack.kind == packed::Pack::Scalar; });
+    arguments = {.rows = memory.rows.data(), .coefficients = lane_coefficients.data(), .sums = sums.data(), .inverse = inverse.data(),
+                 .tangent_row = tangent_row.data(), .value = tables.scalar.value,
                  .tangent = tables.scalar.tangent, .context = tables.scalar.context};
     return;
   }

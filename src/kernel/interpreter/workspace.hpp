@@ -25,7 +25,7 @@ struct KernelWorkspace::Impl {
     unknown = {solution.data(), unknowns};
     tangent.assign(by_matrix ? unknowns * memory.stride : memory.stride, 0.0);
     if (!by_matrix && unknowns == program.freedoms) lifted.emplace(kernel.program(), packed, memory.stride);
-    if (by_matrix) inverse.assign(unknowns * padded_unknowns(), 0.0);
+    if (unknowns <= packed::most_by_inverse) inverse.assign(padded_unknowns() * padded_unknowns(), 0.0);
     for (const Instruction& i : program.instructions) producer[i.out] = &i;
     interpreter::set_leaves(memory, 0.0, orders);
     corrects_points = outputs_follow_accelerations();
@@ -41,6 +41,8 @@ struct KernelWorkspace::Impl {
   void run_along(int stage);
   bool outputs_follow_accelerations() const;
   bool run_compiled(int stages);
+  bool can_go_on_by_code();
+  bool are_coefficients_finite(int stages) const;
   void adopt(interpreter::CompiledCode code);
   void find_tangents(std::size_t directions);
   void find_direction();
@@ -53,6 +55,8 @@ struct KernelWorkspace::Impl {
   void solve_factored();
   void fetch_residual(int stage);
   bool solve_twice(int stage);
+  bool solve_twice_by_inverse(int stage);
+  bool add_rough_solution();
   void correct(int stage);
   bool constraints_agree();
   bool keeps(std::size_t constraint) const { return by_lifting || !solver || solver->keeps(constraint); }
@@ -81,7 +85,10 @@ struct KernelWorkspace::Impl {
   std::span<double> unknown;         // [n + m] of it: −R_k, then q̈_k and λ_k
   std::vector<double> rough;         // [n + m] a solution that is being corrected
   bool by_matrix, by_inverse = false, by_lifting = false;
-  interpreter::Doubles inverse;      // by_inverse: −M⁻¹, rows padded
+  bool by_code = false;              // stages from 1 on, solutions included
+  bool calls_back = false;           // code does, for instructions that read q_{k+2} = 0 from its row
+  interpreter::Doubles inverse;      // by_inverse or by_code: −M⁻¹, padded rows and columns
+  interpreter::Doubles tangent_row;  // scratch of code
   interpreter::Doubles tangent;      // by_matrix: ∂slot/∂q^(lag) for each direction [n + m × stride], else for one
   std::vector<double> block_tangent; // [slots × 8]
   std::vector<std::uint32_t> of_mass;  // instructions that M₀ goes through

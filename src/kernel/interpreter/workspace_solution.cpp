@@ -102,6 +102,10 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
     return finite ? KernelStatus::Ok : KernelStatus::NonFinite;
   }
   const auto finite = [this] { return are_finite(unknown) ? KernelStatus::Ok : KernelStatus::NonFinite; };
+  if (by_code && !by_inverse && stage == 0) {
+    if (solve_twice_by_inverse(stage)) return finite();
+    by_code = false;
+  }
   if (by_lifting && lifted->is_rough(stage) && (solve_twice(stage) || stage > 0)) return finite();
   fetch_residual(stage);
   if (stage > 0 || !by_lifting) {
@@ -112,6 +116,18 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
     solve_factored();
   }
   return finite();
+}
+
+/// Whether the solutions that follow are products with −M₀⁻¹, which is there then.
+bool KernelWorkspace::Impl::can_go_on_by_code() {
+  return compiled.solve && (by_inverse || (by_lifting && lifted->negative_inverse(inverse.data())));
+}
+
+/// Code does not look at each stage: what is not finite goes on to the stages that follow, or stays where it is.
+bool KernelWorkspace::Impl::are_coefficients_finite(int stages) const {
+  bool finite = true;
+  for (int stage = 1; stage < stages; ++stage) finite &= are_finite({memory.row(stage + 2), unknowns});
+  return finite;
 }
 
 /// unknown = −R_k
@@ -130,6 +146,24 @@ bool KernelWorkspace::Impl::solve_twice(int stage) {
   fetch_residual(stage);
   for (std::size_t i = 0; i < unknowns; ++i) unknown[i] -= tangent[program.residual[i]];
   lifted->solve(unknown);
+  return add_rough_solution();
+}
+
+/// The same by −M₀⁻¹.
+bool KernelWorkspace::Impl::solve_twice_by_inverse(int stage) {
+  const auto multiply = [this](const double* row) {
+    engine.solve_by_inverse(inverse.data(), padded_unknowns(), row, program.residual.data(), unknowns, solution.data());
+  };
+  multiply(memory.row(stage));
+  find_direction();
+  rough.assign(unknown.begin(), unknown.end());
+  for (const Slot slot : program.residual) tangent[slot] += memory.row(stage)[slot];
+  multiply(tangent.data());
+  return add_rough_solution();
+}
+
+/// To its correction.
+bool KernelWorkspace::Impl::add_rough_solution() {
   double largest = 0, correction = 0;
   for (std::size_t i = 0; i < unknowns; ++i) {
     largest = std::max(largest, std::abs(rough[i])), correction = std::max(correction, std::abs(unknown[i]));
@@ -166,7 +200,7 @@ bool KernelWorkspace::Impl::constraints_agree() {
 /// Coefficient k + 2 − ℓ of a slot of lag ℓ follows q̈_k with its order-0 tangents: one by one, or the tangent in the direction of q̈_k.
 void KernelWorkspace::Impl::correct(int stage) {
   if (by_matrix) return engine.correct(tables, stage, tangents, solution.data());
-  const double* const known = by_lifting ? lifted->tangents(stage) : nullptr;
+  const double* const known = by_lifting && !by_code ? lifted->tangents(stage) : nullptr;
   if (!known) find_direction();
   packed::TangentMatrix direction = tangents;
   direction.values = known ? known : tangent.data();

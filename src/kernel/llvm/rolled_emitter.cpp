@@ -18,6 +18,7 @@ void RolledEmitter::run() {
   stage();
   ahead();
   tangents();
+  solution();
 }
 
 // -------------------------------------------------------------------------------------------------------- convolutions
@@ -38,14 +39,14 @@ void RolledEmitter::find_convolutions() {
 
 // -------------------------------------------------------------------------------------------------------------- stages
 
+Value* RolledEmitter::field(std::size_t offset) {
+  return out_.b.CreateLoad(out_.pointer(), at(arguments_, static_cast<std::int64_t>(offset)));
+}
+
 void RolledEmitter::open(const char* name, llvm::Type* second) {
-  auto& b = out_.b;
   llvm::Function* const function = out_.function(name, {out_.pointer(), second});
   arguments_ = function->getArg(0);
   recent_.clear();
-  const auto field = [&](std::size_t offset) {
-    return b.CreateLoad(out_.pointer(), at(arguments_, static_cast<std::int64_t>(offset)));
-  };
   rows_ = field(offsetof(packed::CompiledArguments, rows));
   coefficients_ = field(offsetof(packed::CompiledArguments, coefficients));
   sums_ = field(offsetof(packed::CompiledArguments, sums));

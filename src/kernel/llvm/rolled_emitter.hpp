@@ -43,6 +43,7 @@ class RolledEmitter {
 
   // -------------------------------------------------------------------------------------------- stages (rolled_emitter.cpp)
   void find_convolutions();
+  Value* field(std::size_t offset);                 // of the arguments, an address
   void open(const char* name, llvm::Type* second);  // a function of CompiledArguments* and one more
   void open_stage(const char* name);                // … the stage
   void stage();
@@ -81,6 +82,15 @@ class RolledEmitter {
   Value* change(const Pack& pack, std::uint32_t block, Value* row);
   Value* at_point(std::uint32_t block) { return values_of(p_.blocks[block], rows_); }
 
+  // ----------------------------------------------------------------------------------------- solution (rolled_solution.cpp)
+  void solution();
+  std::vector<Value*> product_with_inverse();
+  void set_correction_factors();
+  void correct(Value* tangent_row);
+  void correct(Slot slot, int lag, Value* tangent);
+  std::vector<int> corrected_lags() const;
+  std::vector<bool> needed_for_corrections(const std::vector<int>& lag) const;
+
   // ----------------------------------------------------------------------------------------------- ahead (rolled_ahead.cpp)
   void ahead();
   void renew_blocks();
@@ -118,8 +128,17 @@ class RolledEmitter {
 
   Value *arguments_ = nullptr, *rows_ = nullptr, *coefficients_ = nullptr, *sums_ = nullptr, *stage_ = nullptr;
   std::vector<Value*> rows_of_stage_;   // from its own on, as many as functions of t alone are ahead
-  Value* sums_of_stage_ = nullptr;
+  Value *sums_of_stage_ = nullptr, *divisor_ = nullptr;
+  std::array<Value*, 3> correction_factors_{};  // by lag
+  /// The last running sum: that of its own lanes, and what these add to (null: nothing).
+  struct Scan {
+    Slot out;
+    std::size_t time;
+    Value *sum, *carry;
+  };
+
   std::map<Slot, Recent> recent_;      // by first slot
+  Scan scan_{no_slot, 0, nullptr, nullptr};
   std::size_t time_ = 0;
 };
 

@@ -93,15 +93,20 @@ Value* RolledEmitter::running_sum(Value* v, bool down) {
   return v;
 }
 
-/// What the pack before has come to; one addition waits for it.
+/// What the pack before has come to is known as its carry and its own sum, so that one addition a pack waits for the other.
 Value* RolledEmitter::carried(const Pack& pack, Value* sum, Value* row) {
-  const Slot base = pack.carry / lanes * lanes;
-  const auto recent = recent_.find(base);
-  if (recent != recent_.end() && recent->second.time + 1 == time_) {
-    const std::vector<int> lane(lanes, static_cast<int>(pack.carry - base));
-    return out_.add(sum, out_.b.CreateShuffleVector(recent->second.value, lane));
+  Value* carry = nullptr;
+  if (pack.carry != no_slot) {
+    const Slot base = pack.carry / lanes * lanes;
+    if (scan_.out == base && scan_.time + 1 == time_) {
+      carry = out_.b.CreateShuffleVector(scan_.sum, std::vector<int>(lanes, static_cast<int>(pack.carry - base)));
+      if (scan_.carry) carry = out_.add(scan_.carry, carry);
+    } else {
+      carry = splat(load_one(slot_at(row, pack.carry)));
+    }
   }
-  return out_.add(sum, splat(load_one(slot_at(row, pack.carry))));
+  scan_ = {pack.out, time_, sum, carry};
+  return carry ? out_.add(sum, carry) : sum;
 }
 
 // ------------------------------------------------------------------------------------------------------------ products

@@ -8,8 +8,8 @@ namespace {
 
 bool is_sum(const Step& step) { return step.head.op == Op::Linear || step.head.op == Op::Products; }
 
-ConstantId one_of(Program& program) {
-  program.constants.push_back({.kind = Kind::Number, .value = 1});
+ConstantId literal(Program& program, double value) {
+  program.constants.push_back({.kind = Kind::Number, .value = value});
   return static_cast<ConstantId>(program.constants.size() - 1);
 }
 
@@ -35,7 +35,7 @@ class Collapse {
     std::vector<Step*> sum_at(program_.slots, nullptr);
     for (Step& step : steps_)
       if (step.head.op == Op::Linear && step.chain < 0 && readers[step.head.out] == 1 && !elsewhere[step.head.out]) sum_at[step.head.out] = &step;
-    const ConstantId one = one_of(program_);
+    const ConstantId one = literal(program_, 1);
     for (Step& step : steps_) {
       if (!is_sum(step)) continue;
       for (Term& product : step.products) {
@@ -157,7 +157,7 @@ std::vector<Step> dynamics_of(const Program& program) {
 }
 
 void write_derivatives(Program& program, std::vector<Step>& steps) {
-  const ConstantId one = one_of(program);
+  const ConstantId one = literal(program, 1);
   for (Step& step : steps) {
     if (step.head.op != Op::Derivative) continue;
     step.linear = {{one, step.head.a, no_slot, 1}};
@@ -179,14 +179,14 @@ class Chains {
   Chains(const Program& program, std::vector<Step>& steps)
       : program_(program), steps_(steps), sum_of_(program.slots, none), next_(steps.size(), none), before_(steps.size(), none) {}
 
-  void find(std::size_t least) {
+  void find(std::size_t least, ConstantId zero) {
     for (std::size_t i = 0; i < steps_.size(); ++i)
       if (is_linear(steps_[i])) sum_of_[steps_[i].head.out] = i;
     for (std::size_t i = 0; i < steps_.size(); ++i)
       if (is_linear(steps_[i])) link(i);
     int number = 0;
     for (std::size_t i = 0; i < steps_.size(); ++i)
-      if (next_[i] != none && before_[i] == none) number += mark(i, number, least);
+      if (next_[i] != none && before_[i] == none) number += mark(i, number, least, zero);
   }
 
  private:
@@ -207,12 +207,11 @@ class Chains {
     }
   }
 
-  /// Members from the first on, as long as what is added does not depend on the members before.
-  bool mark(std::size_t first, int number, std::size_t least) {
-    std::vector<std::size_t> members;
+  /// Members from the first on, as long as what is added does not depend on the members before. The first one adds to nothing.
+  bool mark(std::size_t first, int number, std::size_t least, ConstantId zero) {
+    std::vector<std::size_t> members{first};
     std::vector<bool> depends(program_.slots, false);
     std::size_t at = first;
-    // The first member has nothing before it: what it is, is what the second adds to.
     for (std::size_t i = next_[first]; i != none; i = next_[i]) {
       for (; at < i; ++at) spread(at, depends);
       if (adds_dependent(steps_[i], depends)) break;
@@ -220,7 +219,8 @@ class Chains {
       depends[steps_[i].head.out] = true;
       ++at;
     }
-    if (members.size() < least) return false;
+    if (members.size() <= least) return false;
+    steps_[first].linear.insert(steps_[first].linear.begin(), {zero, program_.one});
     for (const std::size_t i : members) steps_[i].chain = number;
     return true;
   }
@@ -245,6 +245,10 @@ class Chains {
 
 }  // namespace
 
-void find_chains(const Program& program, std::vector<Step>& steps, std::size_t least) { Chains(program, steps).find(least); }
+void find_chains(Program& program, std::vector<Step>& steps, std::size_t least) { Chains(program, steps).find(least, literal(program, 0)); }
+
+bool has_no_choices(const Program& program) {
+  return std::none_of(program.instructions.begin(), program.instructions.end(), [](const Instruction& i) { return i.op == Op::Select; });
+}
 
 }  // namespace maupertuis::packed

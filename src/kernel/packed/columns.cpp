@@ -50,11 +50,48 @@ std::vector<ReadColumn> columns_by_operand(const Sums& sums, ConstantId zero) {
   return found;
 }
 
+bool is_single(const Sums& sums, std::size_t t) {
+  return std::all_of(sums.begin(), sums.end(), [&](const auto& terms) { return terms[t].a == sums[0][t].a; });
+}
+
+/// Whole vectors that most lanes take their operand from, one after the other; what is left, by operand.
+std::vector<ReadColumn> columns_with_holes(const Program& program, Sums sums, ConstantId zero) {
+  constexpr std::size_t least_lanes = 3;
+  using Key = std::tuple<std::uint32_t, Slot>;  // shift, first slot
+  std::vector<ReadColumn> found;
+  for (;;) {
+    std::map<Key, std::size_t> lanes_of;
+    for (std::size_t lane = 0; lane < sums.size(); ++lane)
+      for (const Term& term : sums[lane]) {
+        const Slot first = term.a / lanes * lanes;
+        if (term.a == first + lane && program.lags[first] == program.lags[term.a] && program.tangent_lags[first] == program.tangent_lags[term.a])
+          ++lanes_of[{term.shift, first}];
+      }
+    const auto best = std::max_element(lanes_of.begin(), lanes_of.end(), [](const auto& x, const auto& y) { return x.second < y.second; });
+    if (best == lanes_of.end() || best->second < least_lanes) break;
+    const auto [shift, first] = best->first;
+    ReadColumn read{{.kind = Column::Contiguous, .shift = static_cast<std::uint8_t>(shift), .source = first}, std::vector<ConstantId>(lanes, zero)};
+    for (Slot lane = 0; lane < lanes; ++lane) read.column.sources[lane] = first + lane;
+    for (std::size_t lane = 0; lane < sums.size(); ++lane) {
+      const auto term = std::find_if(sums[lane].begin(), sums[lane].end(), [&](const Term& x) { return x.shift == shift && x.a == first + lane; });
+      if (term == sums[lane].end()) continue;
+      read.coefficients[lane] = term->coefficient;
+      sums[lane].erase(term);
+    }
+    found.push_back(std::move(read));
+  }
+  for (ReadColumn& read : columns_by_operand(sums, zero)) found.push_back(std::move(read));
+  return found;
+}
+
 /// Of sums that are alike.
 std::vector<ReadColumn> columns_by_place(const Sums& sums) {
   std::vector<ReadColumn> found;
   for (std::size_t t = 0; t < sums[0].size(); ++t) {
-    ReadColumn read{{.kind = is_range(sums, t) ? Column::Contiguous : is_reversed(sums, t) ? Column::Reversed : Column::Gather,
+    ReadColumn read{{.kind = is_single(sums, t)     ? Column::Broadcast
+                             : is_range(sums, t)    ? Column::Contiguous
+                             : is_reversed(sums, t) ? Column::Reversed
+                                                    : Column::Gather,
                      .shift = static_cast<std::uint8_t>(sums[0][t].shift), .source = sums[0][t].a}, {}};
     read.column.sources.fill(sums[0][t].a);
     for (std::size_t lane = 0; lane < sums.size(); ++lane) {
@@ -90,13 +127,20 @@ ReadColumn aligned_column(const Program& program, const Sums& sums, TermKind kin
 
 }  // namespace
 
-std::vector<ReadColumn> columns_of(const Program& program, const Sums& unordered, ConstantId zero) {
+std::vector<ReadColumn> columns_of(const Program& program, const Sums& unordered, ConstantId zero, bool holes) {
   const Sums sums = by_shift_and_slot(unordered);
-  std::vector<ReadColumn> by_operand = columns_by_operand(sums, zero);
-  if (!are_alike(program, sums)) return by_operand;
-  std::size_t loads = 0;
-  for (std::size_t t = 0; t < sums[0].size(); ++t) loads += is_range(sums, t) || is_reversed(sums, t) ? 1 : 5;
-  return loads < by_operand.size() ? columns_by_place(sums) : by_operand;
+  const auto loads = [](const std::vector<ReadColumn>& columns) {
+    std::size_t count = 0;
+    for (const ReadColumn& read : columns) count += read.column.kind == Column::Gather ? 5 : 1;
+    return count;
+  };
+  std::vector<ReadColumn> best = columns_by_operand(sums, zero);
+  const auto try_one = [&](std::vector<ReadColumn> other) {
+    if (loads(other) < loads(best)) best = std::move(other);
+  };
+  if (are_alike(program, sums)) try_one(columns_by_place(sums));
+  if (holes) try_one(columns_with_holes(program, sums, zero));
+  return best;
 }
 
 std::vector<ReadColumn> aligned_columns_of(const Program& program, const Sums& unordered, ConstantId zero) {

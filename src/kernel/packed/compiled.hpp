@@ -8,6 +8,9 @@ namespace maupertuis::packed {
 /// Rolled code adds up the products of so many stages at once.
 inline constexpr int rolled_group = 4;
 
+/// Unknowns up to which rolled code solves by −M₀⁻¹.
+inline constexpr std::size_t most_by_inverse = 48;
+
 struct CompiledArguments {
   double* rows = nullptr;                // [orders][stride]; q, q̇ and the leaves are set
   const double *q = nullptr, *v = nullptr;  // straight-line: the same numbers where they were written first, which are there sooner
@@ -18,6 +21,8 @@ struct CompiledArguments {
   void (*sincos)(const double* x, double* out, int count) = nullptr;
   double (*elementary)(std::uint8_t function, double x, double y) = nullptr;
   double* sums = nullptr;                // rolled: [convolutions][rolled_group][8], aligned to 64 bytes
+  const double* inverse = nullptr;       // rolled: −M₀⁻¹, [unknowns] rows, each padded to a multiple of 8
+  double* tangent_row = nullptr;         // rolled: [stride] scratch; what no pack writes is 0
   /// Rolled: ScalarRules.
   void (*value)(void* context, std::uint32_t instruction, int order) = nullptr;
   void (*tangent)(void* context, std::uint32_t instruction, double* tangents) = nullptr;
@@ -34,6 +39,8 @@ using CompiledIncrements = void (*)(const double* first, std::size_t stride, std
 /// Rolled code, one stage ≥ 1 a call. `stage`: as Engine::run_stage. `ahead`: as Engine::renew_blocks, and sums for the stages that follow; after each
 /// stage ≥ 0 in turn.
 using CompiledStage = void (*)(const CompiledArguments*, std::int64_t stage);
+
+/// Rolled code `solve`, between the two: as Engine::solve_by_inverse, set_accelerations and correct.
 
 /// Rolled code: as Engine::tangents.
 using CompiledTangents = void (*)(const CompiledArguments*, double* tangent);

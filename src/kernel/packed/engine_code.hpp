@@ -18,7 +18,7 @@
 namespace maupertuis::packed::MAUP_ENGINE {
 
 extern const Engine engine;
-const Engine engine{MAUP_ENGINE_NAME, run_stage,         renew_blocks, tangents,   sine_cosine, negative_inverse,
-                    solve_by_inverse, set_accelerations, correct,      increments, radius};
+const Engine engine{MAUP_ENGINE_NAME, run_stage,        renew_blocks,      tangents, sine_cosine, negative_inverse,
+                    transpose,        solve_by_inverse, set_accelerations, correct,  increments,  radius};
 
 }  // namespace maupertuis::packed::MAUP_ENGINE

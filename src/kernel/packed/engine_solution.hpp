@@ -15,32 +15,41 @@ bool is_symmetric(const double* m, std::size_t n) {
   return symmetric;
 }
 
-/// In place, W vectors a row: column p of the matrix gives its room to that of the inverse.
+/// The columns p of vector V: each gives its room to that of the inverse. V is known when this is compiled, since an address that is not
+/// lets every load wait for the stores before it. False: a pivot is too small.
+template <std::size_t W, std::size_t V>
+bool eliminate(const double* m, std::size_t n, Vector (*rows)[W]) {
+  constexpr double least_pivot = 1e-10;
+  for (std::size_t p = V * lanes; p < n && p < (V + 1) * lanes; ++p) {
+    const std::size_t lane = p % lanes;
+    const double pivot = rows[p][V][lane];
+    if (!(pivot > least_pivot * m[p * n + p])) return false;
+    const Vector reciprocal = all(1 / pivot);
+    const auto here = lane_numbers == all(static_cast<double>(lane));
+    Vector scaled[W];
+    for (std::size_t w = 0; w < W; ++w) scaled[w] = rows[p][w] * reciprocal;
+    scaled[V] = here ? reciprocal : scaled[V];
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vector factor = all(rows[i][V][lane]);
+      rows[i][V] = here ? all(0) : rows[i][V];
+      for (std::size_t w = 0; w < W; ++w) rows[i][w] -= factor * scaled[w];
+    }
+    for (std::size_t w = 0; w < W; ++w) rows[p][w] = scaled[w];
+  }
+  return true;
+}
+
+/// In place, W vectors a row.
 template <std::size_t W>
 bool invert(const double* m, std::size_t n, double* inverse) {
-  constexpr double least_pivot = 1e-10;
   Vector rows[most_inverted][W];
   alignas(64) double row[W * lanes] = {};
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) row[j] = m[i * n + j];
     for (std::size_t w = 0; w < W; ++w) rows[i][w] = load(row + w * lanes);
   }
-  for (std::size_t p = 0; p < n; ++p) {
-    const std::size_t vector = p / lanes;
-    const double pivot = rows[p][vector][p % lanes];
-    if (!(pivot > least_pivot * m[p * n + p])) return false;
-    const Vector reciprocal = all(1 / pivot);
-    const auto here = lane_numbers == all(static_cast<double>(p % lanes));
-    Vector scaled[W];
-    for (std::size_t w = 0; w < W; ++w) scaled[w] = rows[p][w] * reciprocal;
-    scaled[vector] = here ? reciprocal : scaled[vector];
-    for (std::size_t i = 0; i < n; ++i) {
-      const Vector factor = all(rows[i][vector][p % lanes]);
-      rows[i][vector] = here ? all(0) : rows[i][vector];
-      for (std::size_t w = 0; w < W; ++w) rows[i][w] -= factor * scaled[w];
-    }
-    for (std::size_t w = 0; w < W; ++w) rows[p][w] = scaled[w];
-  }
+  const bool sound = [&]<std::size_t... V>(std::index_sequence<V...>) { return (eliminate<W, V>(m, n, rows) && ...); }(std::make_index_sequence<W>());
+  if (!sound) return false;
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t w = 0; w < W; ++w) save(inverse + (i * W + w) * lanes, -rows[i][w]);
   return true;
@@ -49,6 +58,36 @@ bool invert(const double* m, std::size_t n, double* inverse) {
 bool negative_inverse(const double* matrix, std::size_t n, double* inverse, std::size_t stride) {
   if (n > most_inverted || !is_symmetric(matrix, n)) return false;
   return stride == lanes ? invert<1>(matrix, n, inverse) : invert<2>(matrix, n, inverse);
+}
+
+/// Eight vectors of eight lanes, in three exchanges: of neighbours, pairs and halves.
+void transpose_block(Vector (&r)[lanes]) {
+  const auto exchange = [&](std::size_t distance, Places low, Places high) {
+    for (std::size_t i = 0; i < lanes; ++i) {
+      if (i & distance) continue;
+      const Vector a = r[i], b = r[i + distance];
+      r[i] = __builtin_shuffle(a, b, low), r[i + distance] = __builtin_shuffle(a, b, high);
+    }
+  };
+  exchange(1, Places{0, 8, 2, 10, 4, 12, 6, 14}, Places{1, 9, 3, 11, 5, 13, 7, 15});
+  exchange(2, Places{0, 1, 8, 9, 4, 5, 12, 13}, Places{2, 3, 10, 11, 6, 7, 14, 15});
+  exchange(4, Places{0, 1, 2, 3, 8, 9, 10, 11}, Places{4, 5, 6, 7, 12, 13, 14, 15});
+}
+
+void transpose(double* matrix, std::size_t n) {
+  const auto get = [&](Vector (&block)[lanes], std::size_t row, std::size_t column) {
+    for (std::size_t i = 0; i < lanes; ++i) block[i] = load(matrix + (row + i) * n + column);
+    transpose_block(block);
+  };
+  const auto put = [&](const Vector (&block)[lanes], std::size_t row, std::size_t column) {
+    for (std::size_t i = 0; i < lanes; ++i) save(matrix + (row + i) * n + column, block[i]);
+  };
+  Vector a[lanes], b[lanes];
+  for (std::size_t row = 0; row < n; row += lanes)
+    for (std::size_t column = 0; column <= row; column += lanes) {
+      get(a, row, column), get(b, column, row);
+      put(a, column, row), put(b, row, column);
+    }
 }
 
 bool solve_by_inverse(const double* inverse, std::size_t stride, const double* row, const Slot* residual, std::size_t n, double* solution) {

@@ -26,8 +26,8 @@ class Stage {
       for (std::uint32_t c = pack.first_copy; c < pack.last_copy; ++c) copy(t_.brought[c]);
       switch (pack.kind) {
         case Pack::Sum: save(row_ + pack.out, products(pack, columns(pack))); break;
-        case Pack::Scan: save(row_ + pack.out, running_sum(columns(pack)) + all(row_[pack.carry])); break;
-        case Pack::ScanDown: save(row_ + pack.out, running_sum_down(columns(pack)) + all(row_[pack.carry])); break;
+        case Pack::Scan: save(row_ + pack.out, running_sum(columns(pack)) + carry_of(pack.carry, row_)); break;
+        case Pack::ScanDown: save(row_ + pack.out, running_sum_down(columns(pack)) + carry_of(pack.carry, row_)); break;
         case Pack::Integral: integral(pack); break;
         case Pack::Quotient: quotient(pack); break;
         case Pack::SquareRoot: square_root(pack); break;

@@ -81,7 +81,7 @@ class Tangents {
   void scan(const Pack& pack, Vector (*sum_of)(Vector)) const {
     Vector sums[W] = {};
     columns(pack, sums);
-    for (int d = 0; d < W; ++d) save(row(d) + pack.out, sum_of(sums[d]) + all(row(d)[pack.carry]));
+    for (int d = 0; d < W; ++d) save(row(d) + pack.out, sum_of(sums[d]) + carry_of(pack.carry, row(d)));
   }
 
   /// by_a · ∂a + by_b · ∂b

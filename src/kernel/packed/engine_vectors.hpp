@@ -53,6 +53,9 @@ inline Vector running_sum_down(Vector v) {
   return v + __builtin_shuffle(v, zero, Places{4, 5, 6, 7, 8, 8, 8, 8});
 }
 
+/// What a running sum adds to.
+inline Vector carry_of(Slot carry, const double* row) { return carry == no_slot ? all(0) : all(row[carry]); }
+
 const Vector lane_numbers = {0, 1, 2, 3, 4, 5, 6, 7};
 
 /// Infinity and NaN times 0 are NaN.

@@ -1,6 +1,9 @@
 #include "kernel/packed/grouping.hpp"
 
+#include "kernel/packed/layout.hpp"
+
 #include <algorithm>
+#include <array>
 #include <map>
 #include <tuple>
 
@@ -18,6 +21,7 @@ class Grouping {
     align_products();
     find_groups();
     order_groups();
+    if (has_no_choices(in_)) set_fronts();
     return std::move(groups_);
   }
 
@@ -155,7 +159,8 @@ class Grouping {
     for (Group& group : groups_) {
       const bool pair = step(group.steps[0]).head.second != no_slot;
       const std::size_t terms = std::max<std::size_t>(pair ? 2 : 1, step(group.steps[0]).products.size());
-      group.packs = can_pack(step(group.steps[0])) && group.steps.size() * terms >= 2;
+      // Rolled code calls back for what stands alone; straight-line code writes it out.
+      group.packs = can_pack(step(group.steps[0])) && (group.steps.size() * terms >= 2 || in_.unknowns > 2 * lanes);
     }
   }
 
@@ -181,6 +186,29 @@ class Grouping {
         std::stable_sort(group.steps.begin(), group.steps.end(), [&](std::size_t x, std::size_t y) {
           return rank_[steps_[x].head.out] < rank_[steps_[y].head.out];
         });
+      }
+    }
+  }
+
+  /// A running sum begins in the lane in which what its first step adds stands, as far as its steps agree. Vectors are then read as they were
+  /// written: one that lies across two would have to wait until both are in the cache.
+  void set_fronts() {
+    std::vector<std::size_t> lane_of(in_.slots, none);
+    for (Slot slot = 0; slot < in_.unknowns; ++slot) lane_of[slot] = slot % lanes;
+    for (Group& group : groups_) {
+      if (step(group.steps[0]).chain >= 0) {
+        std::array<std::size_t, lanes> votes{};
+        for (std::size_t place = 0; place < group.steps.size(); ++place) {
+          const std::vector<Term>& terms = step(group.steps[place]).linear;
+          for (std::size_t t = 1; t < terms.size(); ++t)
+            if (const std::size_t lane = lane_of[terms[t].a]; lane != none) ++votes[(lane + lanes - place % lanes) % lanes];
+        }
+        group.front = static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
+      }
+      for (std::size_t place = 0; place < group.steps.size() && group.packs; ++place) {
+        const Instruction& head = step(group.steps[place]).head;
+        lane_of[head.out] = (group.front + place) % lanes;
+        if (head.second != no_slot && 2 * group.steps.size() > lanes) lane_of[head.second] = lane_of[head.out];
       }
     }
   }

@@ -12,6 +12,7 @@ struct Group {
   bool stored = false;
   bool packs = false;                   // worth vectors
   bool down = false;                    // a running sum from the last lane to the first
+  std::size_t front = 0;                // lanes before the first step that stay empty, so that operands stand in the same lanes
 };
 
 /// Groups in order of execution, each ordered so that operands of one group come from neighbouring results of another. Like terms of the

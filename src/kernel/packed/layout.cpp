@@ -19,8 +19,9 @@ constexpr std::size_t most_of_small = 16, shortest_chain = 8;
 
 class Packs {
  public:
-  Packs(Renumbered renumbered, std::vector<Slot> number, const std::vector<Step>& steps, const std::vector<Group>& groups)
-      : steps_(steps), groups_(groups), index_(std::move(renumbered.index)) {
+  /// `holes`: see columns_of().
+  Packs(Renumbered renumbered, std::vector<Slot> number, const std::vector<Step>& steps, const std::vector<Group>& groups, bool holes)
+      : steps_(steps), groups_(groups), index_(std::move(renumbered.index)), holes_(holes) {
     out_.program = std::move(renumbered.program);
     out_.number = std::move(number);
     zero_ = literal(0);
@@ -33,12 +34,11 @@ class Packs {
         for (const std::size_t i : group.steps) scalar(i, group.level);
         continue;
       }
-      const std::size_t chunks = padded(group.steps.size()) / lanes;
+      const std::size_t end = group.front + group.steps.size(), chunks = padded(end) / lanes;
       for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
-        const std::size_t first = lanes * (group.down ? chunks - 1 - chunk : chunk);
-        const std::size_t last = std::min<std::size_t>(first + lanes, group.steps.size());
-        write_pack({group.steps.begin() + static_cast<std::ptrdiff_t>(first), group.steps.begin() + static_cast<std::ptrdiff_t>(last)},
-                   group);
+        const std::size_t first = lanes * (group.down ? chunks - 1 - chunk : chunk), front = first == 0 ? group.front : 0;
+        const Members all = group.steps;
+        write_pack(all.subspan(first + front - group.front, std::min<std::size_t>(first + lanes, end) - first - front), group, front);
       }
     }
     out_.cells = next_cell_;
@@ -54,12 +54,13 @@ class Packs {
 
   using Members = std::span<const std::size_t>;
 
-  void write_pack(Members members, const Group& group) {
+  /// `front`: lanes before the first member.
+  void write_pack(Members members, const Group& group, std::size_t front) {
     const Step& shape = step(members[0]);
     Pack pack{.lag = shape.head.lag, .level = static_cast<std::int8_t>(std::min(group.level, 127)),
-              .width = static_cast<std::uint32_t>(members.size()), .out = out_.number[shape.head.out],
+              .width = static_cast<std::uint32_t>(front + members.size()), .out = static_cast<Slot>(out_.number[shape.head.out] - front),
               .instruction = index_[members[0]]};
-    if (shape.chain >= 0) return scan(pack, members, group);
+    if (shape.chain >= 0) return scan(pack, members, group, front);
     switch (shape.head.op) {
       case Op::SinCos: return pairs(pack, members, group, -1);
       case Op::SinhCosh: return pairs(pack, members, group, 1);
@@ -132,18 +133,21 @@ class Packs {
     out_.packs.push_back(pack);
   }
 
-  void scan(Pack pack, Members members, const Group& group) {
+  void scan(Pack pack, Members members, const Group& group, std::size_t front) {
     pack.kind = group.down ? Pack::ScanDown : Pack::Scan;
-    pack.carry = out_.number[step(group.down ? members.back() : members.front()).linear.front().a];
-    columns(pack, members);
+    const Slot before = step(group.down ? members.back() : members.front()).linear.front().a;
+    if (out_.number[before] != out_.program.one) pack.carry = out_.number[before];
+    columns(pack, members, front);
     out_.packs.push_back(pack);
   }
 
   /// What the engine reads, run by run.
-  void columns(Pack& pack, Members members) {
+  void columns(Pack& pack, Members members, std::size_t front = 0) {
     pack.first_column = static_cast<std::uint32_t>(out_.columns.size());
     pack.first_run = static_cast<std::uint32_t>(out_.runs.size());
-    auto found = columns_of(out_.program, sums_of(members), zero_);
+    Sums sums = sums_of(members);
+    sums.insert(sums.begin(), front, {});
+    auto found = columns_of(out_.program, sums, zero_, holes_);
     const auto key = [&](const Column& column) { return std::tuple(column.shift, column.kind, passes_tangent(column, pack.lag)); };
     std::stable_sort(found.begin(), found.end(), [&](const ReadColumn& x, const ReadColumn& y) { return key(x.column) < key(y.column); });
     for (ReadColumn& read : found) {
@@ -247,6 +251,7 @@ class Packs {
   std::map<int, ConstantId> literals_;
   ConstantId zero_ = 0;
   std::size_t next_cell_ = 0;
+  bool holes_;
 };
 
 }  // namespace
@@ -262,7 +267,7 @@ PackedProgram pack(const Program& program) {
   const std::vector<Group> groups = group_steps(program, steps);
   Numbering numbering = number_slots(program, steps, groups);
   Renumbered renumbered = renumber(program, std::move(extended), steps, groups, numbering);
-  return Packs(std::move(renumbered), std::move(numbering.number), steps, groups).run();
+  return Packs(std::move(renumbered), std::move(numbering.number), steps, groups, large && has_no_choices(program)).run();
 }
 
 }  // namespace maupertuis::packed

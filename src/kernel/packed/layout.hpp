@@ -51,7 +51,7 @@ struct ProductTerm {
 struct Pack {
   enum Kind : std::uint8_t {
     Sum,         // columns + products
-    Scan,        // running sums of columns: each lane adds to the lane before, the first to `carry`
+    Scan,        // running sums of columns: each lane adds to the lane before, the first to `carry` where there is one
     ScanDown,    // the same from the last lane to the first
     Integral,    // y with dy = c w du: sines, cosines, exponentials, inverse functions
     Quotient,    // block a / block b
@@ -67,7 +67,7 @@ struct Pack {
   std::uint32_t first_aligned = 0, last_aligned = 0;  // Sum: the same columns by their place in the sums, for compiled code
   std::uint32_t a = no_block, b = no_block, y = no_block;  // Integral: u (weighted), w; Quotient: a, b, y; SquareRoot: u, –, y
   std::uint32_t coefficients = 0;       // Integral: c
-  Slot carry = no_slot;                 // Scan: what the first lane adds to
+  Slot carry = no_slot;                 // Scan: what the first lane adds to; no_slot: nothing
   Slot pairs = no_block;                // Integral of sines: the first of their cosines
   std::uint32_t instruction = 0;        // of the first lane; those of the others follow
   std::uint32_t first_function = 0, last_function = 0;  // Integral: what gives order 0, in PackedProgram::functions

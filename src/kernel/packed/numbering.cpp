@@ -52,7 +52,7 @@ class SlotNumbers {
 
   void number(const Group& group, std::size_t& next) {
     if (out_.number[step(group.steps[0]).head.out] != no_slot) return;
-    if (group.packs) next = padded(next);
+    if (group.packs) next = padded(next) + group.front;
     const auto outs = [&](Slot Instruction::* result) {
       for (const std::size_t i : group.steps)
         if (const Slot slot = steps_[i].head.*result; slot != no_slot) out_.number[slot] = static_cast<Slot>(next++);
@@ -129,6 +129,11 @@ class Renumbering {
       if (number_[slot] == no_slot) continue;
       lags[number_[slot]] = in_.lags[slot];
       tangent_lags[number_[slot]] = in_.tangent_lags[slot];
+    }
+    for (const Group& group : groups_) {  // empty lanes are read with the others
+      const Slot first = number_[steps_[group.steps[0]].head.out];
+      std::fill_n(lags.begin() + static_cast<std::ptrdiff_t>(first - group.front), group.front, lags[first]);
+      std::fill_n(tangent_lags.begin() + static_cast<std::ptrdiff_t>(first - group.front), group.front, tangent_lags[first]);
     }
     program_.lags = std::move(lags);
     program_.tangent_lags = std::move(tangent_lags);

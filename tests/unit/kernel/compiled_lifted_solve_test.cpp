@@ -48,7 +48,7 @@ TEST_CASE("chains, trees and combs: unknowns and tangents as by the loops, M x =
 }
 
 TEST_CASE("chains are cut into parts side by side, whose sums wait for each other far less; trees are not") {
-  for (const auto& [parent, count] : {std::pair<Parents, int>{chain, 32}, {chain, 100}, {binary_tree, 63}}) {
+  for (const auto& [parent, count] : {std::pair<Parents, int>{chain, 56}, {chain, 100}, {binary_tree, 63}}) {
     Rods rods(count, parent);
     Lifted loops(build_kernel(rods.source)), code(build_kernel(rods.source));
     code.solve.compile({.cache = false});
@@ -60,6 +60,40 @@ TEST_CASE("chains are cut into parts side by side, whose sums wait for each othe
     CHECK(code.solve.is_rough(0) == !is_tree);
     CHECK_FALSE(code.solve.is_rough(later));
     if (!is_tree) CHECK(10 * code.solve.solver()->solve_depth() < 6 * loops.solve.solver()->solve_depth());
+  }
+}
+
+TEST_CASE("up to 48 unknowns: −M₀⁻¹ by eight columns at once, times M in closed form") {
+  for (const auto& [parent, count] : {std::pair<Parents, int>{chain, 17}, {chain, 48}, {binary_tree, 31}, {comb, 30}}) {
+    CAPTURE(count);
+    Rods rods(count, parent);
+    Lifted code(build_kernel(rods.source));
+    code.solve.compile({.cache = false});
+    const auto n = static_cast<std::size_t>(count), padded = (n + 7) / 8 * 8;
+    interpreter::Doubles inverse(padded * padded, 0.0);
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      const Point p = random_point(n, seed);
+      code.move_to(p);
+      REQUIRE(code.solve.factor(code.memory));
+      REQUIRE(code.solve.negative_inverse(inverse.data()));
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < padded; ++j) {
+          double sum = i == j ? 1 : 0, size = 1;
+          for (std::size_t k = 0; k < n; ++k) {
+            const double term = mass_of_rods(count, parent, p.q, i, k) * inverse[k * padded + j];
+            sum += term, size += std::abs(term);
+          }
+          CHECK(std::abs(sum) <= 1e-13 * size);
+        }
+    }
+  }
+  Rods rods(56, chain);
+  Lifted larger(build_kernel(rods.source)), loops(build_kernel(rods.source));
+  larger.solve.compile({.cache = false});
+  for (Lifted* const lifted : {&larger, &loops}) {
+    lifted->move_to(random_point(56, 1));
+    REQUIRE(lifted->solve.factor(lifted->memory));
+    CHECK_FALSE(lifted->solve.negative_inverse(nullptr));
   }
 }
 

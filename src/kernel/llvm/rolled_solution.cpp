@@ -1,0 +1,123 @@
+#include "kernel/llvm/rolled_emitter.hpp"
+
+#include "kernel/packed/compiled.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+/// q̈_k of a stage as a product with −M₀⁻¹, and what the coefficients of the stage owe to it: nothing in between leaves the registers and is
+/// read again in another width.
+namespace maupertuis::llvm_backend {
+
+using llvm::Value;
+using packed::lanes;
+
+void RolledEmitter::solution() {
+  if (program_.unknowns != program_.freedoms || program_.unknowns > packed::most_by_inverse) return;
+  open_stage("solve");
+  Value* const tangent_row = field(offsetof(packed::CompiledArguments, tangent_row));
+  set_correction_factors();
+  const std::vector<Value*> accelerations = product_with_inverse();
+  ++time_;
+  for (std::size_t v = 0; v < accelerations.size(); ++v) {
+    const auto slot = static_cast<Slot>(v * lanes);
+    save(out_.divide(accelerations[v], splat(divisor_)), slot_at(row(2), slot));
+    save(accelerations[v], slot_at(tangent_row, slot));
+    recent_[slot] = {accelerations[v], time_};
+  }
+  correct(tangent_row);
+  out_.end_function();
+}
+
+/// −M₀⁻¹ R_k, two sums a vector, since products of one wait for each other.
+std::vector<Value*> RolledEmitter::product_with_inverse() {
+  Value* const inverse = field(offsetof(packed::CompiledArguments, inverse));
+  const std::size_t vectors = (program_.unknowns + lanes - 1) / lanes;
+  std::vector<std::array<Value*, 2>> sums(vectors);
+  for (std::size_t d = 0; d < program_.unknowns; ++d) {
+    Value* const residual = splat(load_one(slot_at(row(0), program_.residual[d])));
+    for (std::size_t v = 0; v < vectors; ++v) {
+      Value*& sum = sums[v][d % 2];
+      sum = plus(sum, residual, load(slot_at(inverse, static_cast<Slot>((d * vectors + v) * lanes))));
+    }
+  }
+  std::vector<Value*> out;
+  for (const auto& [even, odd] : sums) out.push_back(odd ? out_.add(even, odd) : even);
+  return out;
+}
+
+/// A change of q̈_k changes a coefficient of a slot of lag 2, 1, 0 by its tangent times 1, 1/(k + 1), 1/((k + 1)(k + 2)).
+void RolledEmitter::set_correction_factors() {
+  auto& b = out_.b;
+  llvm::Type* const scalar = b.getDoubleTy();
+  const auto number = [&](int n) { return b.CreateSIToFP(stage_plus(n), scalar); };
+  divisor_ = out_.multiply(number(1), number(2));
+  const auto inverse = [&](Value* x) { return splat(out_.divide(out_.number(1, scalar), x)); };
+  correction_factors_ = {inverse(divisor_), inverse(number(1)), nullptr};
+}
+
+/// Tangents of what is corrected, pack by pack, each added to its coefficients as soon as it is there.
+void RolledEmitter::correct(Value* tangent_row) {
+  std::vector<int> lag = corrected_lags();
+  const std::vector<bool> needed = needed_for_corrections(lag);
+  for (std::size_t i = 0; i < p_.packs.size(); ++i) {
+    if (!needed[i]) continue;
+    const Pack& pack = p_.packs[i];
+    ++time_;
+    tangent(pack, tangent_row);
+    if (pack.kind == Pack::Scalar) continue;
+    if (int& own = lag[pack.out / lanes]; own >= 0) correct(pack.out, std::exchange(own, -1), in_register(pack.out));
+  }
+  for (std::size_t i = 0; i < lag.size(); ++i)  // what stands alone
+    if (const auto slot = static_cast<Slot>(i * lanes); lag[i] >= 0) correct(slot, lag[i], load(slot_at(tangent_row, slot)));
+}
+
+void RolledEmitter::correct(Slot slot, int lag, Value* tangent) {
+  Value* const place = slot_at(row(2 - lag), slot);
+  Value *const before = load(place), *const factor = correction_factors_[static_cast<std::size_t>(lag)];
+  save(factor ? out_.fma(factor, tangent, before) : out_.add(before, tangent), place);
+}
+
+/// By eights of slots: the lag of those whose coefficients are corrected, else −1.
+std::vector<int> RolledEmitter::corrected_lags() const {
+  std::vector<int> lag(p_.cells / lanes + 1, -1);
+  std::size_t first = (program_.unknowns + lanes - 1) / lanes;
+  for (int l = 0; l <= 2; ++l) {
+    const std::size_t end = (program_.stored_end[static_cast<std::size_t>(l)] + lanes - 1) / lanes;
+    for (; first < end; ++first) lag[first] = l;
+  }
+  return lag;
+}
+
+/// Packs that a corrected slot's tangent comes from. What instructions that stand alone read is not looked up.
+std::vector<bool> RolledEmitter::needed_for_corrections(const std::vector<int>& lag) const {
+  std::vector<bool> needed(p_.packs.size(), false), slot_needed(p_.cells + lanes, false);
+  const auto need = [&](Slot slot) { slot_needed[slot] = true; };
+  const auto need_block = [&](const Pack& pack, std::uint32_t index) {
+    if (index == packed::no_block || p_.blocks[index].lag != pack.lag) return;
+    const Block& block = p_.blocks[index];
+    for (Slot lane = 0; lane < lanes; ++lane) need(block.direct ? block.first + lane : block.slots[lane]);
+  };
+  bool all_before = false;
+  for (std::size_t i = p_.packs.size(); i-- > 0;) {
+    const Pack& pack = p_.packs[i];
+    needed[i] = all_before || pack.kind == Pack::Scalar || lag[pack.out / lanes] >= 0;
+    for (Slot lane = 0; lane < lanes && pack.kind != Pack::Scalar; ++lane) needed[i] = needed[i] || slot_needed[pack.out + lane];
+    if (!needed[i]) continue;
+    all_before = all_before || pack.kind == Pack::Scalar;
+    if (pack.carry != no_slot) need(pack.carry);
+    for (std::uint32_t c = pack.first_column; c < pack.last_column; ++c) {
+      const Column& column = p_.columns[c];
+      if (!column.passes_tangent) continue;
+      for (Slot k = 0; k < lanes; ++k)
+        need(column.kind == Column::Broadcast ? column.source : column.kind == Column::Contiguous ? column.source + k
+             : column.kind == Column::Reversed ? column.source - k : column.sources[k]);
+    }
+    for (std::uint32_t k = pack.first_product; k < pack.last_product; ++k) need_block(pack, p_.products[k].a), need_block(pack, p_.products[k].b);
+    need_block(pack, pack.a);
+    if (pack.kind == Pack::Quotient) need_block(pack, pack.b);
+  }
+  return needed;
+}
+
+}  // namespace maupertuis::llvm_backend
