@@ -36,10 +36,12 @@ LiftedSolve::LiftedSolve(const Program& program, const packed::PackedProgram& pa
     const Slot number = packed.number[system_->slot_of_column[column]];
     cell_of_column_.push_back(number != no_slot ? number : static_cast<std::uint32_t>(stride + column));
   }
+  for (const Slot slot : packed.program.residual) places_.push_back(slot);
   product_.emplace(*system_);
   entries_.resize(system_->entries.size());
   residual_.resize(program.unknowns);
   cells_.assign(stride + system_->size, 0.0);
+  row_.assign(stride, 0.0);
   change_ = cells_;
 }
 
@@ -93,7 +95,7 @@ bool LiftedSolve::compile_lines(const std::vector<straight::StraightLine>& lines
 /// The code belongs to the pivots of this solver alone.
 bool LiftedSolve::make_code() {
   if (!options_) return false;
-  std::vector<straight::StraightLine> lines{solver_->written_solve(wanted_cells())};
+  std::vector<straight::StraightLine> lines{solver_->written_solve(wanted_cells(), places_)};
   if (options_->long_run) {
     factor_line_ = lines.size();
     lines.push_back(solver_->written_factor(least_sound_pivot));
@@ -135,7 +137,7 @@ bool LiftedSolve::choose_parts(const std::vector<std::vector<double>>& samples, 
   if (!chosen) return false;
   solver_.emplace(*system_, *chosen, cell_of_column_);
   Places factors(solver_->factor_count()), inverse(chosen->size());
-  auto solve = straight::widen(solver_->written_solve(wanted_cells()), {{sparse::FactorArray, &factors}, {sparse::InverseArray, &inverse}}, {});
+  auto solve = straight::widen(solver_->written_solve(wanted_cells(), places_), {{sparse::FactorArray, &factors}, {sparse::InverseArray, &inverse}}, {});
   auto factor = straight::widen(solver_->written_factor(least_sound_pivot), {},
                                 {{sparse::FactorOutArray, &factors}, {sparse::FactorInverseArray, &inverse}});
   factor_line_ = 1;
@@ -153,8 +155,14 @@ void LiftedSolve::drop_solver() {
 }
 
 void LiftedSolve::run_solve(std::span<const double> b, double* x) {
-  if (code_) code_(0, solver_->factors(), solver_->inverse_pivots(), b.data(), x, scratch_.data());
-  else solver_->solve(b, x);
+  if (!code_) return solver_->solve(b, x);
+  for (std::size_t i = 0; i < b.size(); ++i) row_[places_[i]] = b[i];
+  code_(0, solver_->factors(), solver_->inverse_pivots(), row_.data(), x, scratch_.data());
+}
+
+const double* LiftedSolve::solve_row(const double* row) {
+  code_(0, solver_->factors(), solver_->inverse_pivots(), row, cells_.data(), scratch_.data());
+  return cells_.data();
 }
 
 /// Code tells no more of pivots than whether they are sound.

@@ -35,6 +35,10 @@ class LiftedSolve {
   bool negative_inverse(double* inverse);
   /// b → q̈_k and λ_k in place.
   void solve(std::span<double> b);
+  /// Whether solutions of a stage are those of code, as they come.
+  bool is_by_code(int stage) const { return code_ && !refines_ && !is_rough(stage); }
+  /// By code, M₀ x = R as it stands in a row of the packed program: x and the tangents in its direction, slot by slot.
+  const double* solve_row(const double* row);
   /// In the direction of the last solution, of a stage, those of the stored slots of the packed program; null where they are too rough.
   const double* tangents(int stage) const { return is_rough(stage) ? nullptr : cells_.data(); }
   /// A solution in parts leaves up to 40 times as much of b as one from link to link, since it closes the gaps between parts by forces,
@@ -68,10 +72,12 @@ class LiftedSolve {
   std::optional<sparse::Assembly> assembly_;
   std::optional<sparse::GraphProduct> product_;
   std::optional<sparse::SparseSolver> solver_;
+  std::vector<std::uint32_t> places_;            // [unknowns] of the residual in a row
   std::vector<std::uint32_t> cell_of_column_;    // [columns] slots of the packed program, then cells of their own
   std::vector<double> entries_;                  // [entries]
   std::vector<double> residual_;                 // [unknowns] b − M₀ x
   Doubles cells_, change_;                       // [stride + columns]
+  Doubles row_;                                  // [stride] b, where code reads it
   double least_pivot_ = 1;
   bool refines_ = false;                         // each solution of this step
   int failures_ = 0;

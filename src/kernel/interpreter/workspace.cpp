@@ -78,12 +78,9 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   for (std::size_t i = 0; i < q.size(); ++i) position[i] = q[i], velocity[i] = v[i];
   arguments.q = q.data(), arguments.v = v.data();
   if (run_compiled(stages)) return KernelStatus::Ok;
-  by_code = false;
+  rest = Rest::ByRules;
   for (int stage = program.first_stage; stage < stages; ++stage) {
-    if (by_code && stage > 0) {
-      if (calls_back) std::fill_n(memory.row(stage + 2), unknowns, 0.0);
-      compiled.stage(&arguments, stage);
-      compiled.solve(&arguments, stage);
+    if (stage > 0 && run_stage_by_code(stage)) {
       renew_blocks(stage, stages);
       run_along(stage);
       continue;
@@ -92,7 +89,7 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
     run_stage(stage);
     if (stage == 0) {
       if (const auto status = factor(); status != KernelStatus::Ok) return status;
-      by_code = stages > 1 && can_go_on_by_code();
+      if (stages > 1) rest = way_of_the_rest();
     }
     if (stage >= 0) {
       if (const auto status = solve(stage); status != KernelStatus::Ok) return status;
@@ -103,7 +100,21 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
     renew_blocks(stage, stages);
     run_along(stage);
   }
-  return by_code && !are_coefficients_finite(stages) ? KernelStatus::NonFinite : KernelStatus::Ok;
+  return rest != Rest::ByRules && !are_coefficients_finite(stages) ? KernelStatus::NonFinite : KernelStatus::Ok;
+}
+
+/// False: nothing is done, the stage is not one for code.
+bool KernelWorkspace::Impl::run_stage_by_code(int stage) {
+  if (rest == Rest::ByRules || (rest == Rest::ByLifting && !(by_lifting && lifted->is_by_code(stage)))) return false;
+  if (calls_back) std::fill_n(memory.row(stage + 2), unknowns, 0.0);
+  compiled.stage(&arguments, stage);
+  if (rest == Rest::ByInverse) {
+    compiled.solve(&arguments, stage);
+  } else {
+    arguments.tangents = lifted->solve_row(memory.row(stage));
+    compiled.correct(&arguments, stage);
+  }
+  return true;
 }
 
 /// Rolled code has no stages before 1.

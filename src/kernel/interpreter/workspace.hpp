@@ -16,6 +16,9 @@ struct KernelWorkspace::Impl {
   /// Up to here the correction of a stage is a product with a small matrix, and so is the solution where M is positive definite.
   static constexpr std::size_t most_by_matrix = 16;
 
+  /// How stages after the first ones run: step by step, or with their solutions as code.
+  enum class Rest { ByRules, ByInverse, ByLifting };
+
   Impl(const Kernel& k, int p)
       : kernel(k), packed(packed::pack(k.program())), program(packed.program), order(p),
         orders(p + 2 + (-2 - program.first_stage)), memory(program, orders, packed.cells), parameters(program.parameters, 0.0),
@@ -41,7 +44,8 @@ struct KernelWorkspace::Impl {
   void run_along(int stage);
   bool outputs_follow_accelerations() const;
   bool run_compiled(int stages);
-  bool can_go_on_by_code();
+  Rest way_of_the_rest();
+  bool run_stage_by_code(int stage);
   bool are_coefficients_finite(int stages) const;
   void adopt(interpreter::CompiledCode code);
   void find_tangents(std::size_t directions);
@@ -85,9 +89,9 @@ struct KernelWorkspace::Impl {
   std::span<double> unknown;         // [n + m] of it: −R_k, then q̈_k and λ_k
   std::vector<double> rough;         // [n + m] a solution that is being corrected
   bool by_matrix, by_inverse = false, by_lifting = false;
-  bool by_code = false;              // stages from 1 on, solutions included
+  Rest rest = Rest::ByRules;
   bool calls_back = false;           // code does, for instructions that read q_{k+2} = 0 from its row
-  interpreter::Doubles inverse;      // by_inverse or by_code: −M⁻¹, padded rows and columns
+  interpreter::Doubles inverse;      // by_inverse or Rest::ByInverse: −M⁻¹, padded rows and columns
   interpreter::Doubles tangent_row;  // scratch of code
   interpreter::Doubles tangent;      // by_matrix: ∂slot/∂q^(lag) for each direction [n + m × stride], else for one
   std::vector<double> block_tangent; // [slots × 8]

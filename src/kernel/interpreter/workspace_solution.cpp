@@ -13,18 +13,6 @@ constexpr std::size_t most_swept_at_point = 8;
 /// What a rough solution may be wrong by. Beyond, the error bounds of LiftedSolve decide, since M₀ may be badly conditioned.
 constexpr double largest_correction = 1e-9;
 
-/// Infinity and NaN times 0 are NaN. Eight sums, since additions of one wait for each other for longer than the rest of a stage takes.
-bool are_finite(std::span<const double> values) {
-  constexpr std::size_t width = 8;
-  double sums[width] = {};
-  std::size_t i = 0;
-  for (; i + width <= values.size(); i += width)
-    for (std::size_t j = 0; j < width; ++j) sums[j] += values[i + j] * 0;
-  for (; i < values.size(); ++i) sums[0] += values[i] * 0;
-  for (std::size_t j = 1; j < width; ++j) sums[0] += sums[j];
-  return sums[0] == 0;
-}
-
 }  // namespace
 
 /// The tangents of all slots in the direction of each unknown.
@@ -70,7 +58,7 @@ void KernelWorkspace::Impl::need_full() {
 KernelStatus KernelWorkspace::Impl::factor_full() {
   const std::size_t n = unknowns;
   need_full();
-  if (!are_finite(bordered)) return KernelStatus::NonFinite;
+  if (!engine.are_finite(bordered.data(), n, n, n)) return KernelStatus::NonFinite;
   by_inverse = by_matrix && n == program.freedoms && engine.negative_inverse(bordered.data(), n, inverse.data(), padded_unknowns());
   if (by_inverse) return KernelStatus::Ok;
   if (!solver) solver.emplace(program.freedoms, n - program.freedoms);
@@ -101,10 +89,10 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
     const bool finite = engine.solve_by_inverse(inverse.data(), padded_unknowns(), row, program.residual.data(), unknowns, solution.data());
     return finite ? KernelStatus::Ok : KernelStatus::NonFinite;
   }
-  const auto finite = [this] { return are_finite(unknown) ? KernelStatus::Ok : KernelStatus::NonFinite; };
-  if (by_code && !by_inverse && stage == 0) {
+  const auto finite = [this] { return engine.are_finite(unknown.data(), unknowns, 1, unknowns) ? KernelStatus::Ok : KernelStatus::NonFinite; };
+  if (rest == Rest::ByInverse && stage == 0) {
     if (solve_twice_by_inverse(stage)) return finite();
-    by_code = false;
+    rest = Rest::ByRules;
   }
   if (by_lifting && lifted->is_rough(stage) && (solve_twice(stage) || stage > 0)) return finite();
   fetch_residual(stage);
@@ -118,16 +106,15 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
   return finite();
 }
 
-/// Whether the solutions that follow are products with −M₀⁻¹, which is there then.
-bool KernelWorkspace::Impl::can_go_on_by_code() {
-  return compiled.solve && (by_inverse || (by_lifting && lifted->negative_inverse(inverse.data())));
+/// By an inverse that is there then, or by code of lifted solutions.
+KernelWorkspace::Impl::Rest KernelWorkspace::Impl::way_of_the_rest() {
+  if (compiled.solve && (by_inverse || (by_lifting && lifted->negative_inverse(inverse.data())))) return Rest::ByInverse;
+  return compiled.correct && by_lifting ? Rest::ByLifting : Rest::ByRules;
 }
 
 /// Code does not look at each stage: what is not finite goes on to the stages that follow, or stays where it is.
 bool KernelWorkspace::Impl::are_coefficients_finite(int stages) const {
-  bool finite = true;
-  for (int stage = 1; stage < stages; ++stage) finite &= are_finite({memory.row(stage + 2), unknowns});
-  return finite;
+  return engine.are_finite(memory.row(3), memory.stride, static_cast<std::size_t>(stages - 1), unknowns);
 }
 
 /// unknown = −R_k
@@ -200,7 +187,7 @@ bool KernelWorkspace::Impl::constraints_agree() {
 /// Coefficient k + 2 − ℓ of a slot of lag ℓ follows q̈_k with its order-0 tangents: one by one, or the tangent in the direction of q̈_k.
 void KernelWorkspace::Impl::correct(int stage) {
   if (by_matrix) return engine.correct(tables, stage, tangents, solution.data());
-  const double* const known = by_lifting && !by_code ? lifted->tangents(stage) : nullptr;
+  const double* const known = by_lifting && rest != Rest::ByInverse ? lifted->tangents(stage) : nullptr;
   if (!known) find_direction();
   packed::TangentMatrix direction = tangents;
   direction.values = known ? known : tangent.data();

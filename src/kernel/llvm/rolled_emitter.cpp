@@ -19,6 +19,7 @@ void RolledEmitter::run() {
   ahead();
   tangents();
   solution();
+  correction();
 }
 
 // -------------------------------------------------------------------------------------------------------- convolutions

@@ -84,8 +84,10 @@ class RolledEmitter {
 
   // ----------------------------------------------------------------------------------------- solution (rolled_solution.cpp)
   void solution();
+  void correction();
   std::vector<Value*> product_with_inverse();
-  void set_correction_factors();
+  Value* over_divisor(Value* x);
+  void set_correction_factors(int sign);
   void correct(Value* tangent_row);
   void correct(Slot slot, int lag, Value* tangent);
   std::vector<int> corrected_lags() const;
@@ -113,7 +115,7 @@ class RolledEmitter {
   Value* stage_plus(int n) { return n == 0 ? stage_ : out_.b.CreateNSWAdd(stage_, out_.b.getInt64(static_cast<std::uint64_t>(n))); }
   /// x y + sum; a null sum is zero.
   Value* plus(Value* sum, Value* x, Value* y) { return sum ? out_.fma(x, y, sum) : out_.multiply(x, y); }
-  Value* gather(Value* row, const std::array<Slot, packed::lanes>& slots);
+  Value* gather(Value* row, const std::array<Slot, packed::lanes>& slots, bool is_here = false);
   Value* row_of(Value* order);
 
   Emission& out_;
@@ -128,7 +130,7 @@ class RolledEmitter {
 
   Value *arguments_ = nullptr, *rows_ = nullptr, *coefficients_ = nullptr, *sums_ = nullptr, *stage_ = nullptr;
   std::vector<Value*> rows_of_stage_;   // from its own on, as many as functions of t alone are ahead
-  Value *sums_of_stage_ = nullptr, *divisor_ = nullptr;
+  Value *sums_of_stage_ = nullptr, *divisor_ = nullptr, *reciprocal_ = nullptr, *lack_ = nullptr;  // (k + 1)(k + 2), 1 over it, and what rounding took from that
   std::array<Value*, 3> correction_factors_{};  // by lag
   /// The last running sum: that of its own lanes, and what these add to (null: nothing).
   struct Scan {

@@ -56,7 +56,7 @@ Value* RolledEmitter::columns(const Pack& pack) {
 /// `is_here`: the row is the one that the packs of now write to.
 Value* RolledEmitter::column_values(const Column& column, Value* row, bool is_here) {
   if (column.kind == Column::Broadcast) return splat(load_one(slot_at(row, column.source)));
-  if (column.kind == Column::Gather) return gather(row, column.sources);
+  if (column.kind == Column::Gather) return gather(row, column.sources, is_here);
   const bool reversed = column.kind == Column::Reversed;
   const Slot lowest = reversed ? column.source - (lanes - 1) : column.source;
   Value* const here = is_here ? in_register(lowest) : nullptr;
@@ -70,25 +70,41 @@ Value* RolledEmitter::in_register(Slot first) const {
   return found != recent_.end() && time_ - found->second.time <= longest_memory ? found->second.value : nullptr;
 }
 
-Value* RolledEmitter::gather(Value* row, const std::array<Slot, lanes>& slots) {
+/// Of one or two vectors a row one shuffle, if they are not still being written in pieces.
+Value* RolledEmitter::gather(Value* row, const std::array<Slot, lanes>& slots, bool is_here) {
   auto& b = out_.b;
   if (std::all_of(slots.begin(), slots.end(), [&](Slot s) { return s == slots[0]; })) return splat(load_one(slot_at(row, slots[0])));
+  const auto base = [](Slot slot) { return slot / lanes * lanes; };
+  const Slot first = base(slots[0]);
+  const auto other = std::find_if(slots.begin(), slots.end(), [&](Slot slot) { return base(slot) != first; });
+  const Slot second = other == slots.end() ? first : base(*other);
+  if (std::all_of(slots.begin(), slots.end(), [&](Slot slot) { return base(slot) == first || base(slot) == second; })) {
+    const auto vector = [&](Slot slot) {
+      Value* const here = is_here ? in_register(slot) : nullptr;
+      return here ? here : load(slot_at(row, slot));
+    };
+    std::vector<int> places;
+    for (const Slot slot : slots) places.push_back(static_cast<int>(slot % lanes + (base(slot) == first ? 0 : lanes)));
+    return b.CreateShuffleVector(vector(first), vector(second), places);
+  }
   Value* result = llvm::PoisonValue::get(vector_);
   for (std::uint64_t lane = 0; lane < lanes; ++lane) result = b.CreateInsertElement(result, load_one(slot_at(row, slots[lane])), lane);
   return result;
 }
 
-/// Each lane with all lanes before it, or after it.
+/// Each lane with all lanes before it, or after it: in pairs, fours and eights the second half adds the last sum of the first.
 Value* RolledEmitter::running_sum(Value* v, bool down) {
-  Value* const zero = llvm::Constant::getNullValue(vector_);
-  if (!v) return zero;
-  for (int distance = 1; distance < static_cast<int>(lanes); distance *= 2) {
+  if (!v) return llvm::Constant::getNullValue(vector_);
+  for (int half = 1; half < static_cast<int>(lanes); half *= 2) {
     std::vector<int> places;
+    std::vector<llvm::Constant*> adds;
     for (int lane = 0; lane < static_cast<int>(lanes); ++lane) {
-      const int from = down ? lane + distance : lane - distance;
-      places.push_back(from >= 0 && from < static_cast<int>(lanes) ? from : static_cast<int>(lanes));
+      const int begin = lane / (2 * half) * 2 * half;
+      places.push_back(begin + (down ? half : half - 1));
+      adds.push_back(out_.b.getInt1((lane - begin < half) == down));
     }
-    v = out_.add(v, out_.b.CreateShuffleVector(v, zero, places));
+    Value* const sum = out_.add(v, out_.b.CreateShuffleVector(v, places));
+    v = out_.b.CreateSelect(llvm::ConstantVector::get(adds), sum, v);
   }
   return v;
 }

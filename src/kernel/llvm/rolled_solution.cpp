@@ -16,12 +16,12 @@ void RolledEmitter::solution() {
   if (program_.unknowns != program_.freedoms || program_.unknowns > packed::most_by_inverse) return;
   open_stage("solve");
   Value* const tangent_row = field(offsetof(packed::CompiledArguments, tangent_row));
-  set_correction_factors();
+  set_correction_factors(1);
   const std::vector<Value*> accelerations = product_with_inverse();
   ++time_;
   for (std::size_t v = 0; v < accelerations.size(); ++v) {
     const auto slot = static_cast<Slot>(v * lanes);
-    save(out_.divide(accelerations[v], splat(divisor_)), slot_at(row(2), slot));
+    save(over_divisor(accelerations[v]), slot_at(row(2), slot));
     save(accelerations[v], slot_at(tangent_row, slot));
     recent_[slot] = {accelerations[v], time_};
   }
@@ -29,31 +29,57 @@ void RolledEmitter::solution() {
   out_.end_function();
 }
 
-/// −M₀⁻¹ R_k, two sums a vector, since products of one wait for each other.
+/// −M₀⁻¹ R_k, a vector in several sums, since products of one wait for each other.
 std::vector<Value*> RolledEmitter::product_with_inverse() {
+  constexpr std::size_t most_sums = 16;  // in registers
   Value* const inverse = field(offsetof(packed::CompiledArguments, inverse));
   const std::size_t vectors = (program_.unknowns + lanes - 1) / lanes;
-  std::vector<std::array<Value*, 2>> sums(vectors);
+  const std::size_t chains = std::clamp<std::size_t>(most_sums / vectors, 2, 4);
+  std::vector<std::vector<Value*>> sums(vectors, std::vector<Value*>(chains, nullptr));
   for (std::size_t d = 0; d < program_.unknowns; ++d) {
     Value* const residual = splat(load_one(slot_at(row(0), program_.residual[d])));
     for (std::size_t v = 0; v < vectors; ++v) {
-      Value*& sum = sums[v][d % 2];
+      Value*& sum = sums[v][d % chains];
       sum = plus(sum, residual, load(slot_at(inverse, static_cast<Slot>((d * vectors + v) * lanes))));
     }
   }
   std::vector<Value*> out;
-  for (const auto& [even, odd] : sums) out.push_back(odd ? out_.add(even, odd) : even);
+  for (auto& parts : sums) {
+    parts.erase(std::remove(parts.begin(), parts.end(), nullptr), parts.end());
+    for (; parts.size() > 1; parts.resize((parts.size() + 1) / 2))
+      for (std::size_t i = 0; i < parts.size() / 2; ++i) parts[i] = out_.add(parts[i], parts[parts.size() - 1 - i]);
+    out.push_back(parts[0]);
+  }
   return out;
 }
 
-/// A change of q̈_k changes a coefficient of a slot of lag 2, 1, 0 by its tangent times 1, 1/(k + 1), 1/((k + 1)(k + 2)).
-void RolledEmitter::set_correction_factors() {
+/// x / ((k + 1)(k + 2)) without the rounding of the reciprocal, which would be the same in every step.
+Value* RolledEmitter::over_divisor(Value* x) {
+  return out_.features.fma ? out_.fma(x, splat(reciprocal_), out_.multiply(x, splat(lack_))) : out_.divide(x, splat(divisor_));
+}
+
+/// q̈_k = −x and all that follows from it, where x and the tangents in its direction are there.
+void RolledEmitter::correction() {
+  if (program_.unknowns != program_.freedoms) return;
+  open_stage("correct");
+  Value* const tangents = field(offsetof(packed::CompiledArguments, tangents));
+  set_correction_factors(-1);
+  for (Slot slot = 0; slot < program_.unknowns; slot += lanes) save(over_divisor(load(slot_at(tangents, slot))), slot_at(row(2), slot));
+  const std::vector<int> lag = corrected_lags();
+  for (std::size_t i = 0; i < lag.size(); ++i)
+    if (const auto slot = static_cast<Slot>(i * lanes); lag[i] >= 0) correct(slot, lag[i], load(slot_at(tangents, slot)));
+  out_.end_function();
+}
+
+/// A change of q̈_k changes a coefficient of a slot of lag 2, 1, 0 by its tangent times 1, 1/(k + 1), 1/((k + 1)(k + 2)). `sign`: that of the tangents.
+void RolledEmitter::set_correction_factors(int sign) {
   auto& b = out_.b;
   llvm::Type* const scalar = b.getDoubleTy();
   const auto number = [&](int n) { return b.CreateSIToFP(stage_plus(n), scalar); };
-  divisor_ = out_.multiply(number(1), number(2));
-  const auto inverse = [&](Value* x) { return splat(out_.divide(out_.number(1, scalar), x)); };
-  correction_factors_ = {inverse(divisor_), inverse(number(1)), nullptr};
+  divisor_ = out_.multiply(out_.multiply(out_.number(sign, scalar), number(1)), number(2));
+  reciprocal_ = out_.divide(out_.number(1, scalar), divisor_);
+  lack_ = out_.multiply(out_.fma(out_.negate(reciprocal_), divisor_, out_.number(1, scalar)), reciprocal_);
+  correction_factors_ = {splat(reciprocal_), splat(out_.divide(out_.number(sign, scalar), number(1))), out_.number(sign, vector_)};
 }
 
 /// Tangents of what is corrected, pack by pack, each added to its coefficients as soon as it is there.
@@ -74,8 +100,7 @@ void RolledEmitter::correct(Value* tangent_row) {
 
 void RolledEmitter::correct(Slot slot, int lag, Value* tangent) {
   Value* const place = slot_at(row(2 - lag), slot);
-  Value *const before = load(place), *const factor = correction_factors_[static_cast<std::size_t>(lag)];
-  save(factor ? out_.fma(factor, tangent, before) : out_.add(before, tangent), place);
+  save(out_.fma(correction_factors_[static_cast<std::size_t>(lag)], tangent, load(place)), place);
 }
 
 /// By eights of slots: the lag of those whose coefficients are corrected, else −1.

@@ -22,7 +22,8 @@ struct CompiledArguments {
   double (*elementary)(std::uint8_t function, double x, double y) = nullptr;
   double* sums = nullptr;                // rolled: [convolutions][rolled_group][8], aligned to 64 bytes
   const double* inverse = nullptr;       // rolled: −M₀⁻¹, [unknowns] rows, each padded to a multiple of 8
-  double* tangent_row = nullptr;         // rolled: [stride] scratch; what no pack writes is 0
+  double* tangent_row = nullptr;         // rolled `solve`: [stride] scratch; what no pack writes is 0
+  const double* tangents = nullptr;      // rolled `correct`: [stride] x and the slots' tangents in its direction, where M₀ x = R_k
   /// Rolled: ScalarRules.
   void (*value)(void* context, std::uint32_t instruction, int order) = nullptr;
   void (*tangent)(void* context, std::uint32_t instruction, double* tangents) = nullptr;
@@ -40,7 +41,7 @@ using CompiledIncrements = void (*)(const double* first, std::size_t stride, std
 /// stage ≥ 0 in turn.
 using CompiledStage = void (*)(const CompiledArguments*, std::int64_t stage);
 
-/// Rolled code `solve`, between the two: as Engine::solve_by_inverse, set_accelerations and correct.
+/// Rolled code between the two: `solve` as Engine::solve_by_inverse, set_accelerations and correct; `correct` as the last two.
 
 /// Rolled code: as Engine::tangents.
 using CompiledTangents = void (*)(const CompiledArguments*, double* tangent);

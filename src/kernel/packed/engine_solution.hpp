@@ -107,6 +107,17 @@ bool solve_by_inverse(const double* inverse, std::size_t stride, const double* r
   return finite;
 }
 
+bool rows_are_finite(const double* first, std::size_t stride, std::size_t rows, std::size_t count) {
+  Vector sum = all(0);
+  double rest = 0;
+  for (const double* row = first; row != first + rows * stride; row += stride) {
+    std::size_t i = 0;
+    for (; i + lanes <= count; i += lanes) sum += load(row + i) * all(0);
+    for (; i < count; ++i) rest += row[i] * 0;
+  }
+  return are_finite(sum) && rest == 0;
+}
+
 void set_accelerations(const Tables& tables, int stage, const double* solution, std::size_t unknowns) {
   double* const next = tables.rows + static_cast<std::size_t>(stage + 2) * tables.stride;
   // A division: the error of a rounded reciprocal would be the same in every step and so add up.

@@ -36,8 +36,9 @@ class SparseSolver {
   /// b: [unknowns]
   void solve(std::span<const double> b, double* x) const;
 
-  /// solve() as a straight line over the arrays of SolveArray; of x it fills `wanted` cells alone.
-  straight::StraightLine written_solve(std::span<const std::uint32_t> wanted) const;
+  /// solve() as a straight line over the arrays of SolveArray; of x it fills `wanted` cells alone. b_i is read at places[i], or at i where
+  /// there are none.
+  straight::StraightLine written_solve(std::span<const std::uint32_t> wanted, std::span<const std::uint32_t> places = {}) const;
   const double* factors() const { return factors_.data(); }
   const double* inverse_pivots() const { return inverse_.data(); }
   /// factor() as a straight line over the arrays of FactorArrays, which the three below are; sound() where every pivot is above `least_share` of

@@ -17,8 +17,9 @@ class SolveWriter {
  public:
   SolveWriter(const SparseSolver& solver, Builder& to) : s_(solver), to_(to), x_(s_.part_of_cell_.size(), to.literal(0)) {}
 
-  void run(std::span<const std::uint32_t> wanted) {
-    for (std::uint32_t i = 0; i < s_.cell_of_residual_.size(); ++i) x_[s_.cell_of_residual_[i]] = to_.given(RightSideArray, i);
+  void run(std::span<const std::uint32_t> wanted, std::span<const std::uint32_t> places) {
+    for (std::uint32_t i = 0; i < s_.cell_of_residual_.size(); ++i)
+      x_[s_.cell_of_residual_[i]] = to_.given(RightSideArray, places.empty() ? i : places[i]);
     sweep(s_.forward_, true, true);
     add_up_parts();
     sweep(s_.forward_, true, false);
@@ -83,9 +84,9 @@ class SolveWriter {
   std::vector<std::vector<Value>> partial_;   // [cells] sums of parts
 };
 
-straight::StraightLine SparseSolver::written_solve(std::span<const std::uint32_t> wanted) const {
+straight::StraightLine SparseSolver::written_solve(std::span<const std::uint32_t> wanted, std::span<const std::uint32_t> places) const {
   Builder to;
-  SolveWriter(*this, to).run(wanted);
+  SolveWriter(*this, to).run(wanted, places);
   return to.finish(solve_arrays, 1, 0);
 }
 
