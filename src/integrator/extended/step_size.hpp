@@ -78,18 +78,22 @@ class StepSize {
 template <class T>
 double within_multipliers(const Workspace<T>& work, std::size_t freedoms, std::size_t constraints, int order, double h) {
   const double converged = 0.4 * log2_size(epsilon<T>());
-  const auto converges = [&](double length) {
-    for (std::size_t j = 0; j < constraints; ++j) {
-      const auto size = [&](int k) { return std::log2((k + 1.0) * (k + 2.0)) + log2_size(work.coordinate(k + 2)[freedoms + j]) + k * length; };
-      double first = -std::numeric_limits<double>::infinity(), last = first;
-      for (int k = 0; k < std::min(4, order); ++k) first = std::max(first, size(k));
-      for (int k = std::max(0, order - 4); k < order; ++k) last = std::max(last, size(k));
-      if (last > converged + first) return false;
-    }
-    return true;
+  constexpr int most_cuts = 20;  // as there: beyond, the first terms vanish, and that multiplier says nothing
+  const auto converges = [&](std::size_t j, double length) {
+    const auto size = [&](int k) { return std::log2((k + 1.0) * (k + 2.0)) + log2_size(work.coordinate(k + 2)[freedoms + j]) + k * length; };
+    double first = -std::numeric_limits<double>::infinity(), last = first;
+    for (int k = 0; k < std::min(4, order); ++k) first = std::max(first, size(k));
+    for (int k = std::max(0, order - 4); k < order; ++k) last = std::max(last, size(k));
+    return !(last > converged + first);
   };
-  for (int turn = 0; turn < 200 && !converges(h); ++turn) h += std::log2(0.8);
-  return h;
+  double least = h;
+  for (std::size_t j = 0; j < constraints; ++j) {
+    double own = h;
+    int turns = 0;
+    while (turns < most_cuts && !converges(j, own)) own += std::log2(0.8), ++turns;
+    if (turns < most_cuts) least = std::min(least, own);
+  }
+  return least;
 }
 
 }  // namespace maupertuis::extended

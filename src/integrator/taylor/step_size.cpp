@@ -29,6 +29,10 @@ namespace {
 constexpr double widened = 1.25;
 /// The last terms of λ against the first, at the end of a step; some 1e-15 where its radius is that of q.
 constexpr double converged = 1e-6;
+/// So many cuts of a step are a hundredth of it, which takes 25 digits from the last terms of λ against the first. Where that is not enough the first terms
+/// vanish, as those of a force that is zero but for rounding do at times: such a λ says nothing.
+constexpr double cut = 0.8;
+constexpr int most_cuts = 20;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double velocity(const KernelWorkspace& work, std::size_t i, int k) {
@@ -111,14 +115,17 @@ double step_within_multipliers(const KernelWorkspace& work, std::size_t freedoms
       size = std::max(size, (k + 1.0) * (k + 2.0) * std::abs(work.coordinate(k + 2)[freedoms + j]) * power);
     return size;
   };
-  const auto converges = [&](double length) {
-    for (std::size_t j = 0; j < constraints; ++j)
-      if (largest(j, std::max(0, control.order - 4), control.order, length) > converged * largest(j, 0, std::min(4, control.order), length))
-        return false;
-    return true;
+  const auto converges = [&](std::size_t j, double length) {
+    return largest(j, std::max(0, control.order - 4), control.order, length) <= converged * largest(j, 0, std::min(4, control.order), length);
   };
-  for (int turn = 0; turn < 200 && !converges(h); ++turn) h *= 0.8;
-  return h;
+  double least = h;
+  for (std::size_t j = 0; j < constraints; ++j) {
+    double own = h;
+    int turns = 0;
+    while (turns < most_cuts && !converges(j, own)) own *= cut, ++turns;
+    if (turns < most_cuts) least = std::min(least, own);
+  }
+  return least;
 }
 
 }  // namespace taylor

@@ -161,7 +161,8 @@ void LiftedSolve::run_solve(std::span<const double> b, double* x) {
 }
 
 const double* LiftedSolve::solve_row(const double* row) {
-  code_(0, solver_->factors(), solver_->inverse_pivots(), row, cells_.data(), scratch_.data());
+  if (code_) code_(0, solver_->factors(), solver_->inverse_pivots(), row, cells_.data(), scratch_.data());
+  else solver_->solve(row, places_, cells_.data());
   return cells_.data();
 }
 

@@ -35,9 +35,9 @@ class LiftedSolve {
   bool negative_inverse(double* inverse);
   /// b → q̈_k and λ_k in place.
   void solve(std::span<double> b);
-  /// Whether solutions of a stage are those of code, as they come.
-  bool is_by_code(int stage) const { return code_ && !refines_ && !is_rough(stage); }
-  /// By code, M₀ x = R as it stands in a row of the packed program: x and the tangents in its direction, slot by slot.
+  /// Whether the solutions of a stage are good as they come.
+  bool is_direct(int stage) const { return !refines_ && !is_rough(stage); }
+  /// M₀ x = R as it stands in a row of the packed program: x and the tangents in its direction, slot by slot.
   const double* solve_row(const double* row);
   /// In the direction of the last solution, of a stage, those of the stored slots of the packed program; null where they are too rough.
   const double* tangents(int stage) const { return is_rough(stage) ? nullptr : cells_.data(); }

@@ -78,9 +78,9 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   for (std::size_t i = 0; i < q.size(); ++i) position[i] = q[i], velocity[i] = v[i];
   arguments.q = q.data(), arguments.v = v.data();
   if (run_compiled(stages)) return KernelStatus::Ok;
-  rest = Rest::ByRules;
+  rest = Rest::StepByStep;
   for (int stage = program.first_stage; stage < stages; ++stage) {
-    if (stage > 0 && run_stage_by_code(stage)) {
+    if (stage > 0 && run_directly(stage)) {
       renew_blocks(stage, stages);
       run_along(stage);
       continue;
@@ -94,25 +94,30 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
     if (stage >= 0) {
       if (const auto status = solve(stage); status != KernelStatus::Ok) return status;
       if (stage == 0 && !constraints_agree()) return KernelStatus::Contradiction;
-      engine.set_accelerations(tables, stage, solution.data(), unknowns);
+      set_accelerations(stage, solution.data(), 1);
       if (!alone) correct(stage);
     }
     renew_blocks(stage, stages);
     run_along(stage);
   }
-  return rest != Rest::ByRules && !are_coefficients_finite(stages) ? KernelStatus::NonFinite : KernelStatus::Ok;
+  return rest != Rest::StepByStep && !are_coefficients_finite(stages) ? KernelStatus::NonFinite : KernelStatus::Ok;
 }
 
-/// False: nothing is done, the stage is not one for code.
-bool KernelWorkspace::Impl::run_stage_by_code(int stage) {
-  if (rest == Rest::ByRules || (rest == Rest::ByLifting && !(by_lifting && lifted->is_by_code(stage)))) return false;
-  if (calls_back) std::fill_n(memory.row(stage + 2), unknowns, 0.0);
-  compiled.stage(&arguments, stage);
+/// False: nothing is done, the stage has to be run step by step.
+bool KernelWorkspace::Impl::run_directly(int stage) {
+  if (rest == Rest::StepByStep || (rest == Rest::ByLifting && !(by_lifting && lifted->is_direct(stage)))) return false;
+  if (!compiled.stage || calls_back) std::fill_n(memory.row(stage + 2), unknowns, 0.0);
+  run_stage(stage);
   if (rest == Rest::ByInverse) {
     compiled.solve(&arguments, stage);
-  } else {
-    arguments.tangents = lifted->solve_row(memory.row(stage));
+    return true;
+  }
+  arguments.tangents = lifted->solve_row(memory.row(stage));
+  if (compiled.correct) {
     compiled.correct(&arguments, stage);
+  } else {
+    set_accelerations(stage, arguments.tangents, -1);
+    correct(stage, arguments.tangents, -1);
   }
   return true;
 }

@@ -16,8 +16,8 @@ struct KernelWorkspace::Impl {
   /// Up to here the correction of a stage is a product with a small matrix, and so is the solution where M is positive definite.
   static constexpr std::size_t most_by_matrix = 16;
 
-  /// How stages after the first ones run: step by step, or with their solutions as code.
-  enum class Rest { ByRules, ByInverse, ByLifting };
+  /// How the stages after the first ones are solved. Directly: nothing is looked at before the end, and of the latter two −M⁻¹ is only used by code.
+  enum class Rest { StepByStep, ByInverse, ByLifting };
 
   Impl(const Kernel& k, int p)
       : kernel(k), packed(packed::pack(k.program())), program(packed.program), order(p),
@@ -45,7 +45,8 @@ struct KernelWorkspace::Impl {
   bool outputs_follow_accelerations() const;
   bool run_compiled(int stages);
   Rest way_of_the_rest();
-  bool run_stage_by_code(int stage);
+  bool run_directly(int stage);
+  void set_accelerations(int stage, const double* solution, int sign) { engine.set_accelerations(tables, stage, solution, unknowns, sign); }
   bool are_coefficients_finite(int stages) const;
   void adopt(interpreter::CompiledCode code);
   void find_tangents(std::size_t directions);
@@ -62,6 +63,7 @@ struct KernelWorkspace::Impl {
   bool solve_twice_by_inverse(int stage);
   bool add_rough_solution();
   void correct(int stage);
+  void correct(int stage, const double* direction, double weight);
   bool constraints_agree();
   bool keeps(std::size_t constraint) const { return by_lifting || !solver || solver->keeps(constraint); }
   double coefficient(Slot slot, int k) const;
@@ -89,7 +91,7 @@ struct KernelWorkspace::Impl {
   std::span<double> unknown;         // [n + m] of it: −R_k, then q̈_k and λ_k
   std::vector<double> rough;         // [n + m] a solution that is being corrected
   bool by_matrix, by_inverse = false, by_lifting = false;
-  Rest rest = Rest::ByRules;
+  Rest rest = Rest::StepByStep;
   bool calls_back = false;           // code does, for instructions that read q_{k+2} = 0 from its row
   interpreter::Doubles inverse;      // by_inverse or Rest::ByInverse: −M⁻¹, padded rows and columns
   interpreter::Doubles tangent_row;  // scratch of code

@@ -92,7 +92,7 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
   const auto finite = [this] { return engine.are_finite(unknown.data(), unknowns, 1, unknowns) ? KernelStatus::Ok : KernelStatus::NonFinite; };
   if (rest == Rest::ByInverse && stage == 0) {
     if (solve_twice_by_inverse(stage)) return finite();
-    rest = Rest::ByRules;
+    rest = Rest::StepByStep;
   }
   if (by_lifting && lifted->is_rough(stage) && (solve_twice(stage) || stage > 0)) return finite();
   fetch_residual(stage);
@@ -106,10 +106,10 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
   return finite();
 }
 
-/// By an inverse that is there then, or by code of lifted solutions.
+/// By an inverse that is there then, if there is code for it.
 KernelWorkspace::Impl::Rest KernelWorkspace::Impl::way_of_the_rest() {
   if (compiled.solve && (by_inverse || (by_lifting && lifted->negative_inverse(inverse.data())))) return Rest::ByInverse;
-  return compiled.correct && by_lifting ? Rest::ByLifting : Rest::ByRules;
+  return by_lifting ? Rest::ByLifting : Rest::StepByStep;
 }
 
 /// Code does not look at each stage: what is not finite goes on to the stages that follow, or stays where it is.
@@ -189,11 +189,15 @@ void KernelWorkspace::Impl::correct(int stage) {
   if (by_matrix) return engine.correct(tables, stage, tangents, solution.data());
   const double* const known = by_lifting && rest != Rest::ByInverse ? lifted->tangents(stage) : nullptr;
   if (!known) find_direction();
-  packed::TangentMatrix direction = tangents;
-  direction.values = known ? known : tangent.data();
-  direction.directions = 1;
-  const double weight = 1;
-  engine.correct(tables, stage, direction, &weight);
+  correct(stage, known ? known : tangent.data(), 1);
+}
+
+/// By the tangents in one direction.
+void KernelWorkspace::Impl::correct(int stage, const double* direction, double weight) {
+  packed::TangentMatrix matrix = tangents;
+  matrix.values = direction;
+  matrix.directions = 1;
+  engine.correct(tables, stage, matrix, &weight);
 }
 
 }  // namespace maupertuis

@@ -56,22 +56,31 @@ void RolledEmitter::renew_blocks() {
   }
 }
 
-/// A loop over the convolutions of each class. `body` gets the addresses of their operands at order 0 and of their sums.
+/// Loops over the convolutions of each class, a few of each in turn, since neighbours have operands in common, which are then still in the first cache. `body`
+/// gets the addresses of their operands at order 0 and of their sums.
 void RolledEmitter::each_convolution(const std::function<void(const Class&, Value*, Value*, Value*)>& body) {
+  constexpr std::size_t at_once = 4;
   auto& b = out_.b;
-  for (const auto& [key, members] : classes_) {
-    Value* const table = offsets(members);
-    const std::size_t first = sums_of_[members.front()];
-    Value* const sums = at(sums_, static_cast<std::int64_t>(first) * sums_bytes);
-    out_.loop(b.getInt64(0), b.getInt64(members.size()), {}, [&](Value* i, const std::vector<Value*>&) {
-      Value* const entry = out_.at(table, b.CreateShl(i, 3));
-      const auto operand = [&](std::int64_t place) {
-        return out_.at(rows_, b.CreateZExt(b.CreateAlignedLoad(b.getInt32Ty(), at(entry, place), llvm::Align(4)), b.getInt64Ty()));
-      };
-      body(key, operand(0), operand(4), out_.at(sums, b.CreateMul(i, b.getInt64(sums_bytes))));
-      return std::vector<Value*>{};
-    });
-  }
+  std::size_t most = 0;
+  for (const auto& [key, members] : classes_) most = std::max(most, members.size());
+  const std::size_t turns = classes_.size() < 2 ? 1 : std::max<std::size_t>(1, most / at_once);
+  out_.loop(b.getInt64(0), b.getInt64(turns), {}, [&](Value* turn, const std::vector<Value*>&) {
+    for (const auto& [key, members] : classes_) {
+      Value* const table = offsets(members);
+      const std::size_t first = sums_of_[members.front()];
+      Value* const sums = at(sums_, static_cast<std::int64_t>(first) * sums_bytes);
+      const auto bound = [&](Value* at_turn) { return b.CreateUDiv(b.CreateMul(at_turn, b.getInt64(members.size())), b.getInt64(turns)); };
+      out_.loop(bound(turn), bound(b.CreateAdd(turn, b.getInt64(1))), {}, [&](Value* i, const std::vector<Value*>&) {
+        Value* const entry = out_.at(table, b.CreateShl(i, 3));
+        const auto operand = [&](std::int64_t place) {
+          return out_.at(rows_, b.CreateZExt(b.CreateAlignedLoad(b.getInt32Ty(), at(entry, place), llvm::Align(4)), b.getInt64Ty()));
+        };
+        body(key, operand(0), operand(4), out_.at(sums, b.CreateMul(i, b.getInt64(sums_bytes))));
+        return std::vector<Value*>{};
+      });
+    }
+    return std::vector<Value*>{};
+  });
 }
 
 /// Where the operands begin in a row, in bytes.

@@ -72,8 +72,8 @@ struct Engine {
   bool (*solve_by_inverse)(const double* inverse, std::size_t stride, const double* row, const Slot* residual, std::size_t n, double* solution);
   /// Whether all of `rows` rows of `count` numbers are finite.
   bool (*are_finite)(const double* first, std::size_t stride, std::size_t rows, std::size_t count);
-  /// q_{k+2} = q̈_k / ((k+1)(k+2)) for k = stage, q̈_k = `solution`; read and written in eights.
-  void (*set_accelerations)(const Tables&, int stage, const double* solution, std::size_t unknowns);
+  /// q_{k+2} = q̈_k / ((k+1)(k+2)) for k = stage, q̈_k = sign · `solution`; read and written in eights.
+  void (*set_accelerations)(const Tables&, int stage, const double* solution, std::size_t unknowns, int sign);
   /// What the coefficients of the stage that later orders read owe to q̈_k: in a slot of lag ℓ, Σ_d weights[d] · tangents[d] times 1,
   /// 1/(k+1), 1/((k+1)(k+2)) for ℓ = 2, 1, 0.
   void (*correct)(const Tables&, int stage, const TangentMatrix&, const double* weights);

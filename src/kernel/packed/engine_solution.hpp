@@ -118,10 +118,10 @@ bool rows_are_finite(const double* first, std::size_t stride, std::size_t rows, 
   return are_finite(sum) && rest == 0;
 }
 
-void set_accelerations(const Tables& tables, int stage, const double* solution, std::size_t unknowns) {
+void set_accelerations(const Tables& tables, int stage, const double* solution, std::size_t unknowns, int sign) {
   double* const next = tables.rows + static_cast<std::size_t>(stage + 2) * tables.stride;
   // A division: the error of a rounded reciprocal would be the same in every step and so add up.
-  for (std::size_t i = 0; i < unknowns; i += lanes) save(next + i, load(solution + i) / all((stage + 1.0) * (stage + 2.0)));
+  for (std::size_t i = 0; i < unknowns; i += lanes) save(next + i, load(solution + i) / all(sign * (stage + 1.0) * (stage + 2.0)));
 }
 
 /// What W directions add.

@@ -160,7 +160,7 @@ class Grouping {
       const bool pair = step(group.steps[0]).head.second != no_slot;
       const std::size_t terms = std::max<std::size_t>(pair ? 2 : 1, step(group.steps[0]).products.size());
       // Rolled code calls back for what stands alone; straight-line code writes it out.
-      group.packs = can_pack(step(group.steps[0])) && (group.steps.size() * terms >= 2 || in_.unknowns > 2 * lanes);
+      group.packs = can_pack(step(group.steps[0])) && (group.steps.size() * terms >= 2 || in_.unknowns > lanes);
     }
   }
 

@@ -12,7 +12,8 @@ struct SweepRun {
   std::uint32_t products;        // of each sum
   std::uint32_t first, last;     // sums
   std::uint32_t first_product;   // of the first sum; they follow each other
-  /// Not 0: a spine, see LoopSweep. Periods of so many sums of two products, and one of as many products as it has branches.
+  /// Not 0: a spine, see LoopSweep. Periods of so many sums of two products, and one of as many products as it has branches and of one more
+  /// factor, with which the hub before comes to it through the branches.
   std::uint32_t branches;
   bool starts;                   // at a value that is there; else at 0. Of a spine the branches; the hub always starts
 };

@@ -40,21 +40,21 @@ void sums(const SweepTables& t, const SweepRun& run, double* x) {
   }
 }
 
+/// A hub takes from the hub before what all branches together bring of it, so that it waits for one product and not for those of the branches.
 template <int Branches, bool Starts>
 void spine(const SweepTables& t, const SweepRun& run, double* x) {
   const double *factor = t.factors + run.first_product, *scale = t.scale + run.first;
   const std::uint32_t *target = t.target + run.first, *const last = t.target + run.last, *operand = t.operand + run.first_product;
   double branch[Branches], hub = x[operand[1]];
   for (int j = 0; j < Branches; ++j) branch[j] = x[operand[2 * j]];
-  for (; target != last; target += Branches + 1, scale += Branches + 1, factor += 3 * Branches) {
+  for (; target != last; target += Branches + 1, scale += Branches + 1, factor += 3 * Branches + 1) {
     double next = scale[Branches] * x[target[Branches]];
     for (int j = 0; j < Branches; ++j) {
-      const double start = Starts ? scale[j] * x[target[j]] : 0;
-      branch[j] = plus(plus(start, factor[2 * j], branch[j]), factor[2 * j + 1], hub);
-      x[target[j]] = branch[j];
-      next = plus(next, factor[2 * Branches + j], branch[j]);
+      const double without = plus(Starts ? scale[j] * x[target[j]] : 0, factor[2 * j], branch[j]);
+      next = plus(next, factor[2 * Branches + j], without);
+      x[target[j]] = branch[j] = plus(without, factor[2 * j + 1], hub);
     }
-    x[target[Branches]] = hub = next;
+    x[target[Branches]] = hub = plus(next, factor[3 * Branches], hub);
   }
 }
 

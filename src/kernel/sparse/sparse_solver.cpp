@@ -273,9 +273,9 @@ double SparseSolver::factor(std::span<const double> entries) {
   return least;
 }
 
-void SparseSolver::solve(std::span<const double> b, double* x) const {
+void SparseSolver::solve(const double* right, std::span<const std::uint32_t> places, double* x) const {
   for (const std::uint32_t cell : cleared_) x[cell] = 0;
-  for (std::size_t i = 0; i < b.size(); ++i) x[cell_of_residual_[i]] = b[i];
+  for (std::size_t i = 0; i < cell_of_residual_.size(); ++i) x[cell_of_residual_[i]] = right[places.empty() ? i : places[i]];
   loops().sweep(forward_loop_.tables(), x);
   loops().sweep(backward_loop_.tables(), x);
 }

@@ -33,8 +33,9 @@ class SparseSolver {
   double factor(std::span<const double> entries);
 
   /// M₀ x = b: x and the wanted tangents in its direction, each in its cell; the cells of other unknowns are scratch.
-  /// b: [unknowns]
-  void solve(std::span<const double> b, double* x) const;
+  /// b_i: at places[i] of `right`, or at i where there are none.
+  void solve(const double* right, std::span<const std::uint32_t> places, double* x) const;
+  void solve(std::span<const double> b, double* x) const { solve(b.data(), {}, x); }
 
   /// solve() as a straight line over the arrays of SolveArray; of x it fills `wanted` cells alone. b_i is read at places[i], or at i where
   /// there are none.

@@ -96,7 +96,11 @@ class SweepOrder {
 
   void write_spine(const Spine& spine) {
     open(spine.sums[0], spine.branches);
-    for (const SweepSum& sum : spine.sums) write(sum);
+    const std::size_t period = spine.branches + 1;
+    for (std::size_t i = 0; i < spine.sums.size(); ++i) {
+      write(spine.sums[i]);
+      if ((i + 1) % period == 0) write_product(spine.sums[i].products[0], spine.sums[i].pivot);  // room for what set() makes
+    }
   }
 
   void write_level(std::vector<SweepSum>& level) {
@@ -111,12 +115,14 @@ class SweepOrder {
   void write(const SweepSum& sum) {
     out_.target_.push_back(sum.target);
     out_.pivot_.push_back(sum.pivot);
-    for (const SweepSum::Product& product : sum.products) {
-      out_.operand_.push_back(product.operand);
-      out_.source_.push_back(product.factor);
-      out_.pivot_of_product_.push_back(sum.pivot);
-    }
+    for (const SweepSum::Product& product : sum.products) write_product(product, sum.pivot);
     ++out_.runs_.back().last;
+  }
+
+  void write_product(const SweepSum::Product& product, std::uint32_t pivot) {
+    out_.operand_.push_back(product.operand);
+    out_.source_.push_back(product.factor);
+    out_.pivot_of_product_.push_back(pivot);
   }
 
   std::vector<SweepSum> sums_;
@@ -127,12 +133,24 @@ class SweepOrder {
 LoopSweep::LoopSweep(std::vector<SweepSum> sums, bool divides) : divides_(divides) { SweepOrder(std::move(sums), *this).run(); }
 
 void LoopSweep::set(const double* factors, const double* inverse_pivots) {
-  if (!divides_) {
+  if (divides_) {
+    for (std::size_t i = 0; i < scale_.size(); ++i) scale_[i] = inverse_pivots[pivot_[i]];
+    for (std::size_t k = 0; k < factors_.size(); ++k) factors_[k] = -inverse_pivots[pivot_of_product_[k]] * factors[source_[k]];
+  } else {
     for (std::size_t k = 0; k < factors_.size(); ++k) factors_[k] = -factors[source_[k]];
-    return;
   }
-  for (std::size_t i = 0; i < scale_.size(); ++i) scale_[i] = inverse_pivots[pivot_[i]];
-  for (std::size_t k = 0; k < factors_.size(); ++k) factors_[k] = -inverse_pivots[pivot_of_product_[k]] * factors[source_[k]];
+  for (const SweepRun& run : runs_)
+    if (run.branches > 0) join_spine(run);
+}
+
+/// From hub to hub, through the branches.
+void LoopSweep::join_spine(const SweepRun& run) {
+  const std::uint32_t m = run.branches, periods = (run.last - run.first) / (m + 1);
+  double* factor = factors_.data() + run.first_product;
+  for (std::uint32_t i = 0; i < periods; ++i, factor += 3 * m + 1) {
+    factor[3 * m] = 0;
+    for (std::uint32_t j = 0; j < m; ++j) factor[3 * m] += factor[2 * m + j] * factor[2 * j + 1];
+  }
 }
 
 SweepTables LoopSweep::tables() const {

@@ -30,6 +30,8 @@ class LoopSweep {
   SweepTables tables() const;
 
  private:
+  void join_spine(const SweepRun& run);
+
   std::vector<std::uint32_t> target_, pivot_;                     // [sums]
   std::vector<std::uint32_t> operand_, source_, pivot_of_product_;  // [products]
   std::vector<SweepRun> runs_;
