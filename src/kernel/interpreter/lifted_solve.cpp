@@ -7,6 +7,8 @@
 #include "kernel/straight_line/widen.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
 #include <tuple>
 
@@ -62,7 +64,7 @@ bool LiftedSolve::choose_pivots(const Memory& memory) {
   solver_.emplace(*system_, *pivots, cell_of_column_);
   // What the full matrix costs: its solution, and the tangents in the direction of that.
   if (solver_->solve_products() < program_.unknowns * program_.unknowns + system_->edges.size()) {
-    make_code();
+    make_code(samples[1]);
     return true;
   }
   drop_solver();
@@ -93,37 +95,74 @@ bool LiftedSolve::compile_lines(const std::vector<straight::StraightLine>& lines
 }
 
 /// The code belongs to the pivots of this solver alone.
-bool LiftedSolve::make_code() {
+bool LiftedSolve::make_code(std::span<const double> sample) {
   if (!options_) return false;
   std::vector<straight::StraightLine> lines{solver_->written_solve(wanted_cells(), places_)};
   if (options_->long_run) {
     factor_line_ = lines.size();
     lines.push_back(solver_->written_factor(least_sound_pivot));
   }
-  if (program_.unknowns <= packed::most_by_inverse) write_columns(lines);
+  if (program_.unknowns <= packed::most_by_inverse && is_symmetric(sample)) write_columns(lines);
   return compile_lines(lines);
 }
 
-/// The solution of eight right sides at once, the unknowns alone.
+/// Of M₀⁻¹ at a sampled state.
+bool LiftedSolve::is_symmetric(std::span<const double> sample) {
+  constexpr double tolerance = 1e-6;
+  const std::size_t n = program_.unknowns;
+  solver_->factor(sample);
+  std::vector<double> inverse, unit(n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    unit[i] = 1;
+    solver_->solve(unit, change_.data());
+    unit[i] = 0;
+    inverse.insert(inverse.end(), change_.begin(), change_.begin() + static_cast<std::ptrdiff_t>(n));
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (!(std::abs(inverse[i * n + j] - inverse[j * n + i]) <= tolerance * std::sqrt(std::abs(inverse[i * n + i] * inverse[j * n + j])))) return false;
+  return true;
+}
+
+/// Eight columns of −M₀⁻¹ each. A coordinate's column has the rows of those that are eliminated after it, by eights, since these do not wait for the
+/// others; the rest is its mirror image.
 void LiftedSolve::write_columns(std::vector<straight::StraightLine>& lines) {
-  std::vector<std::uint32_t> unknowns(program_.unknowns);
-  std::iota(unknowns.begin(), unknowns.end(), 0u);
-  const auto padded = static_cast<std::uint32_t>(padded_to_lanes(program_.unknowns));
-  auto line = straight::in_columns(solver_->written_solve(unknowns), sparse::RightSideArray, sparse::UnknownArray, packed::lanes, padded);
-  if (!line) return;
-  units_.assign((2 * padded + packed::lanes) * packed::lanes, 0.0);
-  for (std::size_t i = 0; i < packed::lanes; ++i) units_[(padded + i) * packed::lanes + i] = -1;
+  using packed::lanes;
+  const std::uint32_t n = static_cast<std::uint32_t>(program_.unknowns), padded = static_cast<std::uint32_t>(padded_to_lanes(n));
+  const std::vector<std::uint32_t> order = solver_->order_of_columns();
+  const auto turn = [&](std::size_t eight) {  // the middle of their turns, no two alike
+    double sum = 0, count = 0;
+    for (std::size_t i = eight * lanes; i < std::min<std::size_t>(n, (eight + 1) * lanes); ++i) sum += order[i], ++count;
+    return std::pair(sum / count, eight);
+  };
   columns_line_ = lines.size();
-  lines.push_back(std::move(*line));
+  mirrored_.assign(padded / lanes, {});
+  for (std::uint32_t eight = 0; eight < padded / lanes; ++eight) {
+    std::vector<std::uint32_t> wanted, places(n, sparse::no_place);
+    for (std::uint32_t i = eight * lanes; i < std::min(n, (eight + 1) * lanes); ++i) places[i] = i - eight * lanes;
+    for (std::uint32_t i = 0; i < n; ++i)
+      if (turn(i / lanes) >= turn(eight)) wanted.push_back(i);
+    for (std::size_t other = 0; other < padded / lanes; ++other)
+      if (turn(other) > turn(eight)) mirrored_[eight].push_back(other);
+    lines.push_back(straight::in_columns(solver_->written_solve(wanted, places), sparse::RightSideArray, sparse::UnknownArray, lanes, padded));
+  }
 }
 
 bool LiftedSolve::negative_inverse(double* inverse) {
+  using packed::lanes;
   if (columns_line_ == 0) return false;
+  alignas(64) static constexpr auto units = [] {
+    std::array<double, lanes * lanes> out{};
+    for (std::size_t i = 0; i < lanes; ++i) out[i * lanes + i] = -1;
+    return out;
+  }();
   const std::size_t padded = padded_to_lanes(program_.unknowns);
-  for (std::size_t column = 0; column < padded; column += packed::lanes)
-    code_(columns_line_, solver_->factors(), solver_->inverse_pivots(), units_.data() + (padded - column) * packed::lanes, inverse + column,
-          scratch_.data());
-  packed::engine().transpose(inverse, padded);
+  for (std::size_t eight = 0; eight < mirrored_.size(); ++eight) {
+    const double* const right = units.data();
+    code_(columns_line_ + eight, solver_->factors(), solver_->inverse_pivots(), right, inverse + eight * lanes, scratch_.data());
+    for (const std::size_t other : mirrored_[eight])
+      packed::engine().transpose(inverse + other * lanes * padded + eight * lanes, inverse + eight * lanes * padded + other * lanes, padded);
+  }
   return true;
 }
 

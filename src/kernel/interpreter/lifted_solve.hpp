@@ -30,7 +30,7 @@ class LiftedSolve {
   /// decide; b is as it was.
   bool solve_first(std::span<double> b);
   /// After factor(): −M₀⁻¹, [padded × padded] with padded = unknowns rounded up to a multiple of 8, aligned to 64 bytes; what is
-  /// beyond the unknowns has to be 0, and stays so. Up to 48 unknowns a product with it takes less than a solution. Nothing is checked.
+  /// beyond the unknowns has to be 0, and stays so. Up to 56 unknowns a product with it takes less than a solution. Nothing is checked.
   /// False: there is no code for that.
   bool negative_inverse(double* inverse);
   /// b → q̈_k and λ_k in place.
@@ -57,9 +57,10 @@ class LiftedSolve {
   bool choose_pivots(const Memory& memory);
   double remainder(std::span<const double> b);
   void add_correction();
-  bool make_code();
+  bool make_code(std::span<const double> sample);
   bool choose_parts(const std::vector<std::vector<double>>& samples, const std::vector<sparse::Pivot>& pivots);
   std::vector<std::uint32_t> wanted_cells() const;
+  bool is_symmetric(std::span<const double> sample);
   void write_columns(std::vector<straight::StraightLine>& lines);
   bool compile_lines(const std::vector<straight::StraightLine>& lines);
   void drop_solver();
@@ -85,7 +86,7 @@ class LiftedSolve {
   std::optional<CompileReport> report_;
   straight::Code code_;                          // of the solver's solve(), then of what is named here, where it is not 0
   std::size_t factor_line_ = 0, columns_line_ = 0;
-  Doubles units_;                                // of negative_inverse(): rows of −1, zeros before and behind
+  std::vector<std::vector<std::size_t>> mirrored_;  // of negative_inverse(), eight columns each: eights of rows that are found there, but not the other way round
   bool in_parts_ = false, parts_failed_ = false;
   std::vector<double> scratch_;                  // of the code
 };

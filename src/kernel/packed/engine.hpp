@@ -66,8 +66,8 @@ struct Engine {
   /// False if a pivot is below 1e-10 of its diagonal entry, or M not positive, not finite or not symmetric: then nothing is written, and a
   /// solver that pivots has to decide.
   bool (*negative_inverse)(const double* matrix, std::size_t n, double* inverse, std::size_t stride);
-  /// [n × n] in place, n a multiple of 8, aligned to 64 bytes.
-  void (*transpose)(double* matrix, std::size_t n);
+  /// 8 × 8 numbers of rows `stride` apart, columns as rows.
+  void (*transpose)(const double* from, double* to, std::size_t stride);
   /// solution = Σ_i inverse[i] · row[residual[i]], [stride]. False where it is not finite.
   bool (*solve_by_inverse)(const double* inverse, std::size_t stride, const double* row, const Slot* residual, std::size_t n, double* solution);
   /// Whether all of `rows` rows of `count` numbers are finite.

@@ -60,8 +60,10 @@ bool negative_inverse(const double* matrix, std::size_t n, double* inverse, std:
   return stride == lanes ? invert<1>(matrix, n, inverse) : invert<2>(matrix, n, inverse);
 }
 
-/// Eight vectors of eight lanes, in three exchanges: of neighbours, pairs and halves.
-void transpose_block(Vector (&r)[lanes]) {
+/// In three exchanges: of neighbours, pairs and halves.
+void transpose(const double* from, double* to, std::size_t stride) {
+  Vector r[lanes];
+  for (std::size_t i = 0; i < lanes; ++i) r[i] = load(from + i * stride);
   const auto exchange = [&](std::size_t distance, Places low, Places high) {
     for (std::size_t i = 0; i < lanes; ++i) {
       if (i & distance) continue;
@@ -72,22 +74,7 @@ void transpose_block(Vector (&r)[lanes]) {
   exchange(1, Places{0, 8, 2, 10, 4, 12, 6, 14}, Places{1, 9, 3, 11, 5, 13, 7, 15});
   exchange(2, Places{0, 1, 8, 9, 4, 5, 12, 13}, Places{2, 3, 10, 11, 6, 7, 14, 15});
   exchange(4, Places{0, 1, 2, 3, 8, 9, 10, 11}, Places{4, 5, 6, 7, 12, 13, 14, 15});
-}
-
-void transpose(double* matrix, std::size_t n) {
-  const auto get = [&](Vector (&block)[lanes], std::size_t row, std::size_t column) {
-    for (std::size_t i = 0; i < lanes; ++i) block[i] = load(matrix + (row + i) * n + column);
-    transpose_block(block);
-  };
-  const auto put = [&](const Vector (&block)[lanes], std::size_t row, std::size_t column) {
-    for (std::size_t i = 0; i < lanes; ++i) save(matrix + (row + i) * n + column, block[i]);
-  };
-  Vector a[lanes], b[lanes];
-  for (std::size_t row = 0; row < n; row += lanes)
-    for (std::size_t column = 0; column <= row; column += lanes) {
-      get(a, row, column), get(b, column, row);
-      put(a, column, row), put(b, row, column);
-    }
+  for (std::size_t i = 0; i < lanes; ++i) save(to + i * stride, r[i]);
 }
 
 bool solve_by_inverse(const double* inverse, std::size_t stride, const double* row, const Slot* residual, std::size_t n, double* solution) {

@@ -263,6 +263,12 @@ std::vector<SweepSum> SparseSolver::sums_of(const Sweep& sweep) {
   return out;
 }
 
+std::vector<std::uint32_t> SparseSolver::order_of_columns() const {
+  std::vector<std::uint32_t> out(column_of_pivot_.size());
+  for (std::uint32_t pivot = 0; pivot < out.size(); ++pivot) out[column_of_pivot_[pivot]] = pivot;
+  return out;
+}
+
 double SparseSolver::factor(std::span<const double> entries) {
   std::copy(entries.begin(), entries.end(), entries_.begin());
   const FactorRun* const runs = factor_runs_.data();

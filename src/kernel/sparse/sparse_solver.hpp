@@ -22,6 +22,8 @@ struct SumRun {
   bool negates;                  // forward: the pivots are −1
 };
 
+inline constexpr std::uint32_t no_place = ~std::uint32_t{0};
+
 class SparseSolver {
  public:
   /// `cells`: [columns] where the unknowns stand in the array that solve() fills.
@@ -37,8 +39,8 @@ class SparseSolver {
   void solve(const double* right, std::span<const std::uint32_t> places, double* x) const;
   void solve(std::span<const double> b, double* x) const { solve(b.data(), {}, x); }
 
-  /// solve() as a straight line over the arrays of SolveArray; of x it fills `wanted` cells alone. b_i is read at places[i], or at i where
-  /// there are none.
+  /// solve() as a straight line over the arrays of SolveArray; of x it fills `wanted` cells alone. b_i is read at places[i], and is 0 where that
+  /// is `no_place`; without places at i.
   straight::StraightLine written_solve(std::span<const std::uint32_t> wanted, std::span<const std::uint32_t> places = {}) const;
   const double* factors() const { return factors_.data(); }
   const double* inverse_pivots() const { return inverse_.data(); }
@@ -48,6 +50,8 @@ class SparseSolver {
   double* factors() { return factors_.data(); }
   double* inverse_pivots() { return inverse_.data(); }
   const double* usual_sizes() const { return usual_size_.data(); }
+  /// [columns] at which of the pivots each is eliminated.
+  std::vector<std::uint32_t> order_of_columns() const;
 
   /// Products of a factorization and of a solution: their cost.
   std::size_t factor_count() const { return factors_.size(); }

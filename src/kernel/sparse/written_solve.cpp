@@ -18,8 +18,10 @@ class SolveWriter {
   SolveWriter(const SparseSolver& solver, Builder& to) : s_(solver), to_(to), x_(s_.part_of_cell_.size(), to.literal(0)) {}
 
   void run(std::span<const std::uint32_t> wanted, std::span<const std::uint32_t> places) {
-    for (std::uint32_t i = 0; i < s_.cell_of_residual_.size(); ++i)
-      x_[s_.cell_of_residual_[i]] = to_.given(RightSideArray, places.empty() ? i : places[i]);
+    for (std::uint32_t i = 0; i < s_.cell_of_residual_.size(); ++i) {
+      const std::uint32_t place = places.empty() ? i : places[i];
+      x_[s_.cell_of_residual_[i]] = place == no_place ? to_.literal(0) : to_.given(RightSideArray, place);
+    }
     sweep(s_.forward_, true, true);
     add_up_parts();
     sweep(s_.forward_, true, false);

@@ -276,7 +276,7 @@ std::optional<StraightLine> widen(const StraightLine& line, const Rearranged& re
   return Widening(line, read, written).run();
 }
 
-std::optional<StraightLine> in_columns(StraightLine line, std::uint32_t read, std::uint32_t written, std::uint32_t lanes, std::uint32_t stride) {
+StraightLine in_columns(StraightLine line, std::uint32_t read, std::uint32_t written, std::uint32_t lanes, std::uint32_t stride) {
   const auto is_wide = [&](Value v) { return v != none && line.nodes[v].wide; };
   for (Node& node : line.nodes) {
     if (node.what == Node::Given) {
@@ -288,10 +288,9 @@ std::optional<StraightLine> in_columns(StraightLine line, std::uint32_t read, st
     for (std::uint32_t i = node.first; i < node.last; ++i)
       node.wide = node.wide || is_wide(line.terms[i].a) || is_wide(line.terms[i].b) || is_wide(line.terms[i].c);
   }
-  for (Store& store : line.stores) {
-    if (!is_wide(store.value)) return std::nullopt;
+  std::erase_if(line.stores, [&](const Store& store) { return !is_wide(store.value); });
+  for (Store& store : line.stores)
     if (store.array == written) store.index *= stride;
-  }
   line.wide = lanes;
   return line;
 }

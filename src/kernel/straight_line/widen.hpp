@@ -31,8 +31,8 @@ using Rearranged = std::map<std::uint32_t, Places*>;
 std::optional<StraightLine> widen(const StraightLine& line, const Rearranged& read, const Rearranged& written);
 
 /// `line` for `lanes` right sides at once: its numbers of array `read` stand for `lanes` numbers that follow each other, as do those it stores,
-/// number i of array `written` from i · stride on. Nothing where something stored depends on none of `read`.
+/// number i of array `written` from i · stride on. What depends on none of `read` is not stored.
 /// Precondition: nothing in it is wide.
-std::optional<StraightLine> in_columns(StraightLine line, std::uint32_t read, std::uint32_t written, std::uint32_t lanes, std::uint32_t stride);
+StraightLine in_columns(StraightLine line, std::uint32_t read, std::uint32_t written, std::uint32_t lanes, std::uint32_t stride);
 
 }  // namespace maupertuis::straight
