@@ -78,29 +78,42 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   for (std::size_t i = 0; i < q.size(); ++i) position[i] = q[i], velocity[i] = v[i];
   arguments.q = q.data(), arguments.v = v.data();
   if (run_compiled(stages)) return KernelStatus::Ok;
-  rest = Rest::StepByStep;
-  for (int stage = program.first_stage; stage < stages; ++stage) {
-    if (stage > 0 && run_directly(stage)) {
-      renew_blocks(stage, stages);
-      run_along(stage);
-      continue;
-    }
-    if (stage >= 0) std::fill_n(memory.row(stage + 2), unknowns, 0.0);
-    run_stage(stage);
-    if (stage == 0) {
-      if (const auto status = factor(); status != KernelStatus::Ok) return status;
-      if (stages > 1) rest = way_of_the_rest();
-    }
-    if (stage >= 0) {
-      if (const auto status = solve(stage); status != KernelStatus::Ok) return status;
-      if (stage == 0 && !constraints_agree()) return KernelStatus::Contradiction;
-      set_accelerations(stage, solution.data(), 1);
-      if (!alone) correct(stage);
-    }
+  run_first_stages();
+  if (const auto status = factor(); status != KernelStatus::Ok) return status;
+  rest = stages > 1 ? way_of_the_rest() : Rest::StepByStep;
+  for (int stage = 0; stage < stages; ++stage) {
+    if (stage == 0 || !run_directly(stage))
+      if (const auto status = run_step_by_step(stage); status != KernelStatus::Ok) return status;
     renew_blocks(stage, stages);
     run_along(stage);
   }
   return rest != Rest::StepByStep && !are_coefficients_finite(stages) ? KernelStatus::NonFinite : KernelStatus::Ok;
+}
+
+/// Up to 0, but for its solution.
+void KernelWorkspace::Impl::run_first_stages() {
+  std::fill_n(memory.row(2), unknowns, 0.0);
+  if (compiled.first) compiled.first(&arguments, 0);
+  for (int stage = program.first_stage; stage <= 0; ++stage) {
+    if (!compiled.first) {
+      engine.run_stage(tables, stage);
+      if (stage < 0) engine.renew_blocks(tables, stage);
+    }
+    if (stage < 0) run_along(stage);
+  }
+}
+
+/// With a look at the solution before it is used.
+KernelStatus KernelWorkspace::Impl::run_step_by_step(int stage) {
+  if (stage > 0) {
+    std::fill_n(memory.row(stage + 2), unknowns, 0.0);
+    run_stage(stage);
+  }
+  if (const auto status = solve(stage); status != KernelStatus::Ok) return status;
+  if (stage == 0 && !constraints_agree()) return KernelStatus::Contradiction;
+  set_accelerations(stage, solution.data(), 1);
+  if (!alone) correct(stage);
+  return KernelStatus::Ok;
 }
 
 /// False: nothing is done, the stage has to be run step by step.
@@ -122,16 +135,16 @@ bool KernelWorkspace::Impl::run_directly(int stage) {
   return true;
 }
 
-/// Rolled code has no stages before 1.
+/// From 1 on.
 void KernelWorkspace::Impl::run_stage(int stage) {
-  if (compiled.stage && stage >= 1) compiled.stage(&arguments, stage);
+  if (compiled.stage) compiled.stage(&arguments, stage);
   else engine.run_stage(tables, stage);
 }
 
 /// What no stage follows needs no copies, and no sums.
 void KernelWorkspace::Impl::renew_blocks(int stage, int stages) {
   if (stage + 1 >= stages) return;
-  if (compiled.stage && stage >= 0) compiled.ahead(&arguments, stage);
+  if (compiled.stage) compiled.ahead(&arguments, stage);
   else engine.renew_blocks(tables, stage);
 }
 

@@ -39,6 +39,8 @@ struct KernelWorkspace::Impl {
   void bind();
   void compute_constants();
   KernelStatus run(double t, std::span<const double> q, std::span<const double> v, int stages);
+  void run_first_stages();
+  KernelStatus run_step_by_step(int stage);
   void run_stage(int stage);
   void renew_blocks(int stage, int stages);
   void run_along(int stage);

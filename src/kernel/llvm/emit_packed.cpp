@@ -41,7 +41,7 @@ void emit_packed(Emission& out, const compiled::Request& request) {
     return emit_step(out, program.program.unknowns, request.stride, request.order);
   }
   if (program.packs.size() > most_packs) throw Declined("the program is too large to be compiled");
-  RolledEmitter(out, program, request.stride).run();
+  RolledEmitter(out, program, request.stride).run(request.effort > 0);
 }
 
 }  // namespace maupertuis::llvm_backend

@@ -49,8 +49,8 @@ void RolledEmitter::ahead() {
 /// Copies of what is final now.
 void RolledEmitter::renew_blocks() {
   for (const Block& block : p_.blocks) {
-    if (block.direct) continue;
     const int ahead = 2 - block.lag;
+    if (block.direct || (written_ && *written_ + ahead < 0)) continue;
     Value* const values = values_of(block, row(ahead));
     save(block.weighted ? out_.multiply(values, real(stage_plus(ahead))) : values, slot_at(row(ahead), block.first));
   }

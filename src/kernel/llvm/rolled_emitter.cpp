@@ -14,7 +14,8 @@ RolledEmitter::RolledEmitter(Emission& out, const packed::PackedProgram& program
   find_convolutions();
 }
 
-void RolledEmitter::run() {
+void RolledEmitter::run(bool long_run) {
+  if (long_run) first_stages();
   stage();
   ahead();
   tangents();

@@ -5,6 +5,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <optional>
 #include <vector>
 
 /// A packed program of any size as code whose stages are turns of a loop: `stage` runs the packs of section Dynamics, with their addresses
@@ -19,13 +20,14 @@
 ///   the *ends*, a_m b_0 and a_0 b_m, where an operand is of stage s itself.
 ///
 /// Stages up to 4 have sums so short that the three would overlap: each is added up by itself. The stages up to 0, with the values of elementary functions,
-/// are the engine's.
+/// are written out for long runs (`first`), else the engine's.
 namespace maupertuis::llvm_backend {
 
 class RolledEmitter {
  public:
   RolledEmitter(Emission& out, const packed::PackedProgram& program, std::size_t stride);
-  void run();
+  /// `long_run`: the first stages too, which cost more to compile than they save in a short one.
+  void run(bool long_run);
 
  private:
   using Value = llvm::Value;
@@ -50,9 +52,16 @@ class RolledEmitter {
   Value* row(int ahead) { return rows_of_stage_[static_cast<std::size_t>(ahead)]; }  // of order stage + ahead
   int ahead_of(const Pack& pack) const { return 2 - pack.lag; }
   /// Coordinates of the order that is to be found count as 0.
-  bool vanishes(Slot slot, int ahead) const { return slot < program_.unknowns && ahead == 2; }
+  bool vanishes(Slot slot, int ahead) const { return slot < program_.unknowns && ahead == 2 && written_.value_or(0) >= 0; }
+
+  // --------------------------------------------------------------------------------------- stages up to 0 (rolled_first.cpp)
+  void first_stages();
+  Value* short_convolution(const packed::Convolution& c, bool a_ends, bool b_ends);
+  void functions(const Pack& pack);
+  void sines(const Pack& pack);
 
   // ----------------------------------------------------------------------------------------------- packs (rolled_packs.cpp)
+  static constexpr std::size_t longest_memory = 6;  // packs for which a value stays in a register; then it is read from its row
   void pack(std::size_t index);
   void keep(const Pack& pack, Value* value);
   void keep(const Pack& pack, Value* value, Value* row);
@@ -71,7 +80,7 @@ class RolledEmitter {
   void integral(std::size_t index);
   void quotient(std::size_t index);
   void square_root(std::size_t index);
-  void scalar(const Pack& pack);
+  void call_rule(std::uint32_t instruction, int ahead);
   bool vanishes(const Block& block, int ahead) const;
 
   // ----------------------------------------------------------------------------------------- tangents (rolled_tangents.cpp)
@@ -129,6 +138,7 @@ class RolledEmitter {
   std::map<Class, std::vector<std::size_t>> classes_;
 
   Value *arguments_ = nullptr, *rows_ = nullptr, *coefficients_ = nullptr, *sums_ = nullptr, *stage_ = nullptr;
+  std::optional<int> written_;          // the stage, if it is known when the code is made
   std::vector<Value*> rows_of_stage_;   // from its own on, as many as functions of t alone are ahead
   Value *sums_of_stage_ = nullptr, *divisor_ = nullptr, *reciprocal_ = nullptr, *lack_ = nullptr;  // (k + 1)(k + 2), 1 over it, and what rounding took from that
   std::array<Value*, 3> correction_factors_{};  // by lag

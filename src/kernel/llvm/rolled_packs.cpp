@@ -9,9 +9,6 @@ namespace maupertuis::llvm_backend {
 using llvm::Value;
 using packed::lanes;
 
-/// Packs for which a value stays in a register; afterwards it is read from its row.
-static constexpr std::size_t longest_memory = 6;
-
 void RolledEmitter::pack(std::size_t index) {
   const Pack& pack = p_.packs[index];
   ++time_;
@@ -22,7 +19,7 @@ void RolledEmitter::pack(std::size_t index) {
     case Pack::Integral: return integral(index);
     case Pack::Quotient: return quotient(index);
     case Pack::SquareRoot: return square_root(index);
-    case Pack::Scalar: return scalar(pack);
+    case Pack::Scalar: return call_rule(pack.instruction, ahead_of(pack));
   }
 }
 
@@ -41,7 +38,8 @@ Value* RolledEmitter::columns(const Pack& pack) {
   for (std::uint32_t c = pack.first_column; c < pack.last_column; ++c) {
     const Column& column = p_.columns[c];
     const int ahead = ahead_of(pack) + column.shift;
-    const auto is_nothing = [&](Slot slot) { return slot == program_.one || vanishes(slot, ahead); };
+    const bool is_first_order = written_ && *written_ + ahead == 0;
+    const auto is_nothing = [&](Slot slot) { return (slot == program_.one && !is_first_order) || vanishes(slot, ahead); };
     const bool single = column.kind == Column::Broadcast;
     if (single ? is_nothing(column.source) : std::all_of(column.sources.begin(), column.sources.end(), is_nothing)) continue;
     Value*& sum = sums[column.shift];
@@ -139,6 +137,10 @@ Value* RolledEmitter::products(std::size_t index, Value* result) {
 /// Σ_j a_j b_{m−j}: what is known, and those ends that take part.
 Value* RolledEmitter::convolution(std::size_t number, bool a_ends, bool b_ends) {
   const packed::Convolution& c = convolutions_[number];
+  if (written_) {
+    Value* const sum = short_convolution(c, a_ends, b_ends);
+    return sum ? sum : llvm::Constant::getNullValue(vector_);
+  }
   Value* sum = load(at(sums_of_stage_, static_cast<std::int64_t>(sums_of_[number] * packed::rolled_group * 8 * lanes)));
   if (a_ends) sum = end(c.a, c.b, c.lag, sum);
   if (b_ends) sum = end(c.b, c.a, c.lag, sum);
@@ -172,6 +174,7 @@ Value* RolledEmitter::values_of(const Block& block, Value* row) {
 /// k y_k = c Σ_{j≥1} (j u_j) w_{k−j}; j u_j is 0 for j = 0. Divided by k without the rounding of 1/k, which would be the same in every step.
 void RolledEmitter::integral(std::size_t index) {
   const Pack& pack = p_.packs[index];
+  if (written_ && *written_ + ahead_of(pack) == 0) return functions(pack);
   Value* const sum = out_.multiply(coefficients(pack.coefficients), convolution(first_convolution_[index], true, false));
   llvm::Type* const scalar = out_.b.getDoubleTy();
   Value* const k = out_.b.CreateSIToFP(stage_plus(ahead_of(pack)), scalar);
@@ -196,17 +199,18 @@ void RolledEmitter::square_root(std::size_t index) {
   Value* const sum = convolution(first_convolution_[index], false, false);
   const int ahead = ahead_of(pack), before = p_.blocks[pack.a].lag;
   Value* const u = before == pack.lag ? newest(pack.a, ahead) : load(slot_at(row(ahead), p_.blocks[pack.a].first));
+  if (written_ && *written_ + ahead == 0) return keep(pack, out_.square_root(u));
   Value* const y = first(pack.y);
   keep(pack, out_.divide(out_.subtract(u, sum), out_.add(y, y)));
 }
 
-/// By the reference rules.
-void RolledEmitter::scalar(const Pack& pack) {
+/// One instruction by the reference rules.
+void RolledEmitter::call_rule(std::uint32_t instruction, int ahead) {
   auto& b = out_.b;
-  Value* const context = b.CreateLoad(out_.pointer(), at(arguments_, offsetof(packed::CompiledArguments, context)));
-  Value* const value = b.CreateLoad(out_.pointer(), at(arguments_, offsetof(packed::CompiledArguments, value)));
+  Value* const context = field(offsetof(packed::CompiledArguments, context));
+  Value* const value = field(offsetof(packed::CompiledArguments, value));
   auto* const signature = llvm::FunctionType::get(b.getVoidTy(), {out_.pointer(), b.getInt32Ty(), b.getInt32Ty()}, false);
-  b.CreateCall(signature, value, {context, b.getInt32(pack.instruction), b.CreateTrunc(stage_plus(ahead_of(pack)), b.getInt32Ty())});
+  b.CreateCall(signature, value, {context, b.getInt32(instruction), b.CreateTrunc(stage_plus(ahead), b.getInt32Ty())});
 }
 
 }  // namespace maupertuis::llvm_backend

@@ -41,6 +41,8 @@ using CompiledIncrements = void (*)(const double* first, std::size_t stride, std
 /// stage ≥ 0 in turn.
 using CompiledStage = void (*)(const CompiledArguments*, std::int64_t stage);
 
+/// Rolled code for long runs, `first`: the stages up to 0, as Engine::run_stage, and Engine::renew_blocks but for the last; its second argument says nothing.
+
 /// Rolled code between the two: `solve` as Engine::solve_by_inverse, set_accelerations and correct; `correct` as the last two.
 
 /// Rolled code: as Engine::tangents.
