@@ -105,10 +105,7 @@ void KernelWorkspace::Impl::run_first_stages() {
 
 /// With a look at the solution before it is used.
 KernelStatus KernelWorkspace::Impl::run_step_by_step(int stage) {
-  if (stage > 0) {
-    std::fill_n(memory.row(stage + 2), unknowns, 0.0);
-    run_stage(stage);
-  }
+  if (stage > 0) run_stage(stage);
   if (const auto status = solve(stage); status != KernelStatus::Ok) return status;
   if (stage == 0 && !constraints_agree()) return KernelStatus::Contradiction;
   set_accelerations(stage, solution.data(), 1);
@@ -119,7 +116,6 @@ KernelStatus KernelWorkspace::Impl::run_step_by_step(int stage) {
 /// False: nothing is done, the stage has to be run step by step.
 bool KernelWorkspace::Impl::run_directly(int stage) {
   if (rest == Rest::StepByStep || (rest == Rest::ByLifting && !(by_lifting && lifted->is_direct(stage)))) return false;
-  if (!compiled.stage || calls_back) std::fill_n(memory.row(stage + 2), unknowns, 0.0);
   run_stage(stage);
   if (rest == Rest::ByInverse) {
     compiled.solve(&arguments, stage);
@@ -135,10 +131,11 @@ bool KernelWorkspace::Impl::run_directly(int stage) {
   return true;
 }
 
-/// From 1 on.
+/// From 1 on, with q_{k+2} = 0.
 void KernelWorkspace::Impl::run_stage(int stage) {
-  if (compiled.stage) compiled.stage(&arguments, stage);
-  else engine.run_stage(tables, stage);
+  if (compiled.stage) return compiled.stage(&arguments, stage);
+  std::fill_n(memory.row(stage + 2), unknowns, 0.0);
+  engine.run_stage(tables, stage);
 }
 
 /// What no stage follows needs no copies, and no sums.
@@ -197,7 +194,6 @@ void KernelWorkspace::Impl::adopt(interpreter::CompiledCode code) {
   if (compiled.stage) {
     sums.assign(packed::count_convolutions(packed) * packed::rolled_group * packed::lanes, 0.0);
     tangent_row.assign(memory.stride, 0.0);
-    calls_back = std::any_of(packed.packs.begin(), packed.packs.end(), [](const packed::Pack& pack) { return pack.kind == packed::Pack::Scalar; });
     arguments = {.rows = memory.rows.data(), .coefficients = lane_coefficients.data(), .sums = sums.data(), .inverse = inverse.data(),
                  .tangent_row = tangent_row.data(), .value = tables.scalar.value,
                  .tangent = tables.scalar.tangent, .context = tables.scalar.context};

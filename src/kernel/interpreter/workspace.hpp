@@ -94,7 +94,6 @@ struct KernelWorkspace::Impl {
   std::vector<double> rough;         // [n + m] a solution that is being corrected
   bool by_matrix, by_inverse = false, by_lifting = false;
   Rest rest = Rest::StepByStep;
-  bool calls_back = false;           // code does, for instructions that read q_{k+2} = 0 from its row
   interpreter::Doubles inverse;      // by_inverse or Rest::ByInverse: −M⁻¹, padded rows and columns
   interpreter::Doubles tangent_row;  // scratch of code
   interpreter::Doubles tangent;      // by_matrix: ∂slot/∂q^(lag) for each direction [n + m × stride], else for one

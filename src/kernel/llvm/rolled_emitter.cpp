@@ -70,6 +70,8 @@ void RolledEmitter::stage() {
   open_stage("stage");
   Value* const position = b.CreateAnd(b.CreateSub(stage_, b.getInt64(1)), b.getInt64(rolled_group - 1));
   sums_of_stage_ = out_.at(sums_, b.CreateShl(position, 6));
+  // q_{k+2} counts as 0 also where it is read with other numbers, or by what is called back.
+  for (Slot slot = 0; slot < program_.unknowns; slot += lanes) save(llvm::Constant::getNullValue(vector_), slot_at(row(2), slot));
   for (std::size_t i = 0; i < p_.packs.size(); ++i) pack(i);
   out_.end_function();
 }

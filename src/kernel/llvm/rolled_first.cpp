@@ -49,7 +49,7 @@ Value* RolledEmitter::short_convolution(const packed::Convolution& c, bool a_end
 /// Of order 0.
 void RolledEmitter::functions(const Pack& pack) {
   if (pack.pairs != packed::no_block) return sines(pack);
-  for (std::uint32_t f = pack.first_function; f < pack.last_function; ++f) call_rule(p_.functions[f], 0);
+  for (std::uint32_t f = pack.first_function; f < pack.last_function; ++f) call_rule(p_.functions[f], ahead_of(pack));
 }
 
 void RolledEmitter::sines(const Pack& pack) {

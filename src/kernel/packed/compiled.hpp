@@ -37,7 +37,7 @@ using CompiledExpand = int (*)(const CompiledArguments*);
 using CompiledRadius = double (*)(const double* first, double h);
 using CompiledIncrements = void (*)(const double* first, std::size_t stride, std::size_t count, int degree, double tau, double* dq, double* dv);
 
-/// Rolled code, one stage ≥ 1 a call. `stage`: as Engine::run_stage. `ahead`: as Engine::renew_blocks, and sums for the stages that follow; after each
+/// Rolled code, one stage ≥ 1 a call. `stage`: as Engine::run_stage, with q_{k+2} = 0. `ahead`: as Engine::renew_blocks, and sums for the stages that follow; after each
 /// stage ≥ 0 in turn.
 using CompiledStage = void (*)(const CompiledArguments*, std::int64_t stage);
 
