@@ -17,17 +17,20 @@ void TaylorStepper::Impl::compile(bool long_run) {
   if (report.compiled || !backend.compiled) backend = {report.compiled, before + report.seconds, report.trouble, report.cache_trouble};
 }
 
-/// Code for a stage is there soon; code for the whole expansion of a small program is three to six times as fast and takes as long to compile as some 10⁵ steps. The
-/// expected number of steps decides, not the clock and not what the cache holds: so that equal runs give equal results.
+/// Code for a stage is there soon; code for the whole expansion of a small program is one and a half to six times as fast and takes as long to compile as some
+/// 10⁵ steps, from 9 unknowns on as 10⁶. The expected number of steps decides, not the clock and not what the cache holds: so that equal runs give equal results.
 void TaylorStepper::Impl::compile_if_it_pays(double bound) {
   constexpr std::size_t first_look = 512;
   constexpr double enough = 20'000, enough_for_long_code = 200'000, usual_size = 8;  // docs/design/kernel_speed.md
+  constexpr double enough_beyond = 1'000'000;  // for the usual size, up to the largest one whose expansion is written out
+  constexpr std::size_t largest_written_out = 16;
   if (options.backend == Backend::Interpreter || steps < first_look || (steps & (steps - 1)) != 0) return;  // looks at powers of two
   const double done = std::abs(t.hi - run_begin), left = std::abs(remaining(bound));
   const double expected = static_cast<double>(steps) * (1 + left / done);
   const double size = std::max(1.0, static_cast<double>(n) / usual_size);  // a step saves more where there are more unknowns
   if (!backend.trouble.empty() || runs_long) return;
-  if (expected >= enough_for_long_code) compile(true);
+  const bool is_slow_to_compile = n > usual_size && n <= largest_written_out;
+  if (expected >= (is_slow_to_compile ? enough_beyond : enough_for_long_code)) compile(true);
   else if (!backend.compiled && expected * size >= enough) compile(false);
 }
 

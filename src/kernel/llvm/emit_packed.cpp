@@ -10,7 +10,7 @@ using packed::PackedProgram;
 namespace {
 
 /// Of straight-line code.
-constexpr std::size_t most_unknowns = 8, most_operations = 40'000;
+constexpr std::size_t most_unknowns = 16, most_operations = 40'000;
 /// Of rolled code, whose compilation takes about 1 ms a pack.
 constexpr std::size_t most_packs = 3000;
 

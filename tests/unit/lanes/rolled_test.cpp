@@ -107,14 +107,16 @@ TEST_CASE("rolled code: chains of many links, damped and pushed") {
 }
 
 TEST_CASE("rolled code: every instruction, in systems too large to be written out, solved by a matrix and by its sparse factors") {
-  for (const int oscillators : {9, 20}) {
+  for (const int oscillators : {9, 16}) {  // 11 unknowns are written out in long runs
     Systems list = systems();
     for (unsigned seed = 1; seed <= 6; ++seed) make_random(add(list, "random " + std::to_string(seed)), seed);
     for (const auto& s : list) {
       make_larger(*s, oscillators);
       const bool is_ill_conditioned = s->name == "power 5/1";  // M has 15² beside 1
       s->name += " beside " + std::to_string(oscillators);
-      for (const bool long_run : {false, true}) check_rolled(*s, is_ill_conditioned ? 50'000 : 1000, long_run);
+      const double tolerance = is_ill_conditioned ? 50'000 : 1000;
+      check_rolled(*s, tolerance);
+      if (oscillators > 9) check_rolled(*s, tolerance, true);
     }
   }
 }

@@ -85,7 +85,7 @@ void check_straight(const System& s, double tolerance, const std::string& proces
 
 TEST_CASE("straight-line code: chains of every size that it takes, which look ahead and which do not") {
   Systems list;
-  for (const int links : {1, 2, 3, 4, 5, 6, 7, 8}) add_chain(list, links);
+  for (const int links : {1, 2, 3, 4, 5, 6, 7, 8, 9, 13, 16}) add_chain(list, links);
   for (const auto& s : list) check_straight(*s, 4000);
 }
 
