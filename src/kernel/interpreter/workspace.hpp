@@ -91,6 +91,7 @@ struct KernelWorkspace::Impl {
   std::optional<interpreter::LiftedSolve> lifted;
   interpreter::Doubles solution;     // q̈_k and λ_k, padded
   std::span<double> unknown;         // [n + m] of it: −R_k, then q̈_k and λ_k
+  bool has_direction = false;        // `tangent` is that of q̈_k
   std::vector<double> rough;         // [n + m] a solution that is being corrected
   bool by_matrix, by_inverse = false, by_lifting = false;
   Rest rest = Rest::StepByStep;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 /// The solution of a stage: M₀, its factors, q̈_k, and what the coefficients of the stage owe to it.
 namespace maupertuis {
@@ -95,6 +96,7 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
     rest = Rest::StepByStep;
   }
   if (by_lifting && lifted->is_rough(stage) && (solve_twice(stage) || stage > 0)) return finite();
+  has_direction = false;
   fetch_residual(stage);
   if (stage > 0 || !by_lifting) {
     solve_factored();
@@ -126,13 +128,18 @@ void KernelWorkspace::Impl::fetch_residual(int stage) {
 /// A rough solution, and one for what it leaves of −R_k, which the tangents tell. False: the second is not small beside the first, as it
 /// is where the first holds.
 bool KernelWorkspace::Impl::solve_twice(int stage) {
-  fetch_residual(stage);
-  lifted->solve(unknown);
+  const auto solve_for = [&](const double* row) {
+    const double* const x = lifted->solve_row(row);
+    for (std::size_t i = 0; i < unknowns; ++i) unknown[i] = -x[i];
+    return x;
+  };
+  solve_for(memory.row(stage));
   find_direction();
   rough.assign(unknown.begin(), unknown.end());
-  fetch_residual(stage);
-  for (std::size_t i = 0; i < unknowns; ++i) unknown[i] -= tangent[program.residual[i]];
-  lifted->solve(unknown);
+  for (const Slot slot : program.residual) tangent[slot] += memory.row(stage)[slot];
+  const double* const change = solve_for(tangent.data());
+  for (Slot slot = 0; slot < program.stored_end[2]; ++slot) tangent[slot] -= change[slot];
+  has_direction = true;
   return add_rough_solution();
 }
 
@@ -188,7 +195,7 @@ bool KernelWorkspace::Impl::constraints_agree() {
 void KernelWorkspace::Impl::correct(int stage) {
   if (by_matrix) return engine.correct(tables, stage, tangents, solution.data());
   const double* const known = by_lifting && rest != Rest::ByInverse ? lifted->tangents(stage) : nullptr;
-  if (!known) find_direction();
+  if (!known && !std::exchange(has_direction, false)) find_direction();
   correct(stage, known ? known : tangent.data(), 1);
 }
 
