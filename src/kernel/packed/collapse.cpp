@@ -182,8 +182,11 @@ class Chains {
   void find(std::size_t least, ConstantId zero) {
     for (std::size_t i = 0; i < steps_.size(); ++i)
       if (is_linear(steps_[i])) sum_of_[steps_[i].head.out] = i;
-    for (std::size_t i = 0; i < steps_.size(); ++i)
-      if (is_linear(steps_[i])) link(i);
+    // What is carried on itself comes first: the next joint of a chain, and not the centre of a rod, which is a sum of the joint before as well.
+    const std::vector<bool> is_carried_on = carried_on();
+    for (const bool is_first : {true, false})
+      for (std::size_t i = 0; i < steps_.size(); ++i)
+        if (is_linear(steps_[i]) && is_carried_on[i] == is_first) link(i);
     int number = 0;
     for (std::size_t i = 0; i < steps_.size(); ++i)
       if (next_[i] != none && before_[i] == none) number += mark(i, number, least, zero);
@@ -193,14 +196,28 @@ class Chains {
   static bool is_linear(const Step& step) { return step.head.op == Op::Linear && step.products.empty() && !step.linear.empty(); }
   bool is_one(ConstantId id) const { return program_.constants[id].kind == Kind::Number && program_.constants[id].value == 1; }
 
+  /// Whether sum i may carry on what stands in one of its terms.
+  bool may_carry_on(std::size_t i, const Term& term) const {
+    const std::size_t before = sum_of_[term.a];
+    return before != none && before < i && term.shift == 0 && is_one(term.coefficient) && steps_[before].head.lag == steps_[i].head.lag &&
+           steps_[i].linear.size() <= most_terms;
+  }
+
+  std::vector<bool> carried_on() const {
+    std::vector<bool> out(steps_.size(), false);
+    for (std::size_t i = 0; i < steps_.size(); ++i)
+      if (is_linear(steps_[i]))
+        for (const Term& term : steps_[i].linear)
+          if (may_carry_on(i, term)) out[sum_of_[term.a]] = true;
+    return out;
+  }
+
   /// The one sum that this one carries on.
   void link(std::size_t i) {
     Step& step = steps_[i];
     for (Term& term : step.linear) {
       const std::size_t before = sum_of_[term.a];
-      if (before == none || before >= i || next_[before] != none || term.shift != 0 || !is_one(term.coefficient) ||
-          steps_[before].head.lag != step.head.lag || step.linear.size() > most_terms)
-        continue;
+      if (!may_carry_on(i, term) || next_[before] != none) continue;
       std::swap(term, step.linear.front());
       before_[i] = before, next_[before] = i;
       return;
