@@ -72,12 +72,11 @@ class SparseBuilder {
     std::vector<std::uint32_t> level(n, 0);
     std::vector<Sum> sums;
     for (std::uint32_t p = 0; p < n; ++p) {
-      Sum sum{p, 0, true, is_minus_one_[p], {}};
+      Sum sum{p, 0, has_b[p], is_minus_one_[p], {}};
       for (const std::uint32_t k : lower[p])
         if (has_y_[k]) sum.others.push_back(k), level[p] = std::max(level[p], level[k] + 1);
       has_y_[p] = has_b[p] || !sum.others.empty();
       if (!has_y_[p]) continue;
-      if (!has_b[p]) s_.cleared_.push_back(cell(p));
       sum.level = level[p];
       std::stable_sort(sum.others.begin(), sum.others.end(), [&](std::uint32_t a, std::uint32_t b) { return level[a] < level[b]; });
       s_.forward_depth_ = std::max<std::size_t>(s_.forward_depth_, sum.level + 1);
@@ -280,8 +279,12 @@ double SparseSolver::factor(std::span<const double> entries) {
 }
 
 void SparseSolver::solve(const double* right, std::span<const std::uint32_t> places, double* x) const {
-  for (const std::uint32_t cell : cleared_) x[cell] = 0;
-  for (std::size_t i = 0; i < cell_of_residual_.size(); ++i) x[cell_of_residual_[i]] = right[places.empty() ? i : places[i]];
+  const std::uint32_t* const cells = cell_of_residual_.data();
+  const std::size_t n = cell_of_residual_.size();
+  if (places.empty())
+    for (std::size_t i = 0; i < n; ++i) x[cells[i]] = right[i];
+  else
+    for (std::size_t i = 0; i < n; ++i) x[cells[i]] = right[places[i]];
   loops().sweep(forward_loop_.tables(), x);
   loops().sweep(backward_loop_.tables(), x);
 }

@@ -75,7 +75,6 @@ class SparseSolver {
   };
 
   std::vector<std::uint32_t> cell_of_residual_;  // [unknowns] where b_i goes
-  std::vector<std::uint32_t> cleared_;           // cells that a forward sum starts at 0
   static std::vector<SweepSum> sums_of(const Sweep& sweep);
 
   Sweep forward_, backward_;
