@@ -78,20 +78,24 @@ class StepSize {
 template <class T>
 double within_multipliers(const Workspace<T>& work, std::size_t freedoms, std::size_t constraints, int order, double h) {
   const double converged = 0.4 * log2_size(epsilon<T>());
-  constexpr int most_cuts = 20;  // as there: beyond, the first terms vanish, and that multiplier says nothing
-  const auto converges = [&](std::size_t j, double length) {
-    const auto size = [&](int k) { return std::log2((k + 1.0) * (k + 2.0)) + log2_size(work.coordinate(k + 2)[freedoms + j]) + k * length; };
-    double first = -std::numeric_limits<double>::infinity(), last = first;
-    for (int k = 0; k < std::min(4, order); ++k) first = std::max(first, size(k));
-    for (int k = std::max(0, order - 4); k < order; ++k) last = std::max(last, size(k));
-    return !(last > converged + first);
+  const double silent = 0.9 * log2_size(epsilon<T>());
+  constexpr int most_cuts = 200;
+  const auto largest = [&](std::size_t j, int begin, int end, double length) {
+    double size = -std::numeric_limits<double>::infinity();
+    for (int k = begin; k < end; ++k)
+      size = std::max(size, std::log2((k + 1.0) * (k + 2.0)) + log2_size(work.coordinate(k + 2)[freedoms + j]) + k * length);
+    return size;
   };
-  double least = h;
+  const auto first = [&](std::size_t j, double length) { return largest(j, 0, std::min(4, order), length); };
+  const auto last = [&](std::size_t j, double length) { return largest(j, std::max(0, order - 4), order, length); };
+  double scale = -std::numeric_limits<double>::infinity(), least = h;
+  for (std::size_t j = 0; j < constraints; ++j) scale = std::max(scale, first(j, h));
   for (std::size_t j = 0; j < constraints; ++j) {
+    if (std::max(first(j, h), last(j, h)) <= silent + scale) continue;
     double own = h;
-    int turns = 0;
-    while (turns < most_cuts && !converges(j, own)) own += std::log2(0.8), ++turns;
-    if (turns < most_cuts) least = std::min(least, own);
+    int cuts = 0;
+    while (cuts < most_cuts && last(j, own) > converged + first(j, own)) own += std::log2(0.8), ++cuts;
+    if (cuts < most_cuts) least = std::min(least, own);
   }
   return least;
 }

@@ -29,10 +29,11 @@ namespace {
 constexpr double widened = 1.25;
 /// The last terms of λ against the first, at the end of a step; some 1e-15 where its radius is that of q.
 constexpr double converged = 1e-6;
-/// So many cuts of a step are a hundredth of it, which takes 25 digits from the last terms of λ against the first. Where that is not enough the first terms
-/// vanish, as those of a force that is zero but for rounding do at times: such a λ says nothing.
+/// So many cuts leave nothing of a step. Where they are not enough the first terms of λ vanish: such a λ says nothing.
 constexpr double cut = 0.8;
-constexpr int most_cuts = 20;
+constexpr int most_cuts = 200;
+/// Of the largest λ: one that stays below it over the whole step is zero but for rounding, whose terms do not converge.
+constexpr double silent = 1e-13;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double velocity(const KernelWorkspace& work, std::size_t i, int k) {
@@ -115,15 +116,16 @@ double step_within_multipliers(const KernelWorkspace& work, std::size_t freedoms
       size = std::max(size, (k + 1.0) * (k + 2.0) * std::abs(work.coordinate(k + 2)[freedoms + j]) * power);
     return size;
   };
-  const auto converges = [&](std::size_t j, double length) {
-    return largest(j, std::max(0, control.order - 4), control.order, length) <= converged * largest(j, 0, std::min(4, control.order), length);
-  };
-  double least = h;
+  const auto first = [&](std::size_t j, double length) { return largest(j, 0, std::min(4, control.order), length); };
+  const auto last = [&](std::size_t j, double length) { return largest(j, std::max(0, control.order - 4), control.order, length); };
+  double scale = 0, least = h;
+  for (std::size_t j = 0; j < constraints; ++j) scale = std::max(scale, first(j, h));
   for (std::size_t j = 0; j < constraints; ++j) {
+    if (std::max(first(j, h), last(j, h)) <= silent * scale) continue;
     double own = h;
-    int turns = 0;
-    while (turns < most_cuts && !converges(j, own)) own *= cut, ++turns;
-    if (turns < most_cuts) least = std::min(least, own);
+    int cuts = 0;
+    while (cuts < most_cuts && last(j, own) > converged * first(j, own)) own *= cut, ++cuts;
+    if (cuts < most_cuts) least = std::min(least, own);
   }
   return least;
 }

@@ -51,6 +51,7 @@ void KernelWorkspace::Impl::compute_constants() {
   interpreter::compute_constants(memory, parameters, sides);
   for (std::size_t i = 0; i < lane_coefficients.size(); ++i) lane_coefficients[i] = memory.constants[packed.coefficients[i]];
   if (lifted) lifted->set_constants(memory);
+  has_probe = false;
   stale = false;
 }
 
@@ -92,7 +93,7 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
 
 /// Up to 0, but for its solution.
 void KernelWorkspace::Impl::run_first_stages() {
-  std::fill_n(memory.row(2), unknowns, 0.0);
+  std::fill_n(memory.row(2), padded_unknowns(), 0.0);
   if (compiled.first) compiled.first(&arguments, 0);
   for (int stage = program.first_stage; stage <= 0; ++stage) {
     if (!compiled.first) {
@@ -134,7 +135,7 @@ bool KernelWorkspace::Impl::run_directly(int stage) {
 /// From 1 on, with q_{k+2} = 0.
 void KernelWorkspace::Impl::run_stage(int stage) {
   if (compiled.stage) return compiled.stage(&arguments, stage);
-  std::fill_n(memory.row(stage + 2), unknowns, 0.0);
+  std::fill_n(memory.row(stage + 2), padded_unknowns(), 0.0);
   engine.run_stage(tables, stage);
 }
 
@@ -194,6 +195,7 @@ void KernelWorkspace::Impl::adopt(interpreter::CompiledCode code) {
   if (compiled.stage) {
     sums.assign(packed::count_convolutions(packed) * packed::rolled_group * packed::lanes, 0.0);
     tangent_row.assign(memory.stride, 0.0);
+    probe.assign(memory.stride, 0.0);
     arguments = {.rows = memory.rows.data(), .coefficients = lane_coefficients.data(), .sums = sums.data(), .inverse = inverse.data(),
                  .tangent_row = tangent_row.data(), .value = tables.scalar.value,
                  .tangent = tables.scalar.tangent, .context = tables.scalar.context};

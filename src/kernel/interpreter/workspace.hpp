@@ -48,6 +48,8 @@ struct KernelWorkspace::Impl {
   bool outputs_follow_accelerations() const;
   bool run_compiled(int stages);
   Rest way_of_the_rest();
+  bool inverts();
+  void set_probe();
   bool run_directly(int stage);
   void set_accelerations(int stage, const double* solution, int sign) { engine.set_accelerations(tables, stage, solution, unknowns, sign); }
   bool are_coefficients_finite(int stages) const;
@@ -98,6 +100,8 @@ struct KernelWorkspace::Impl {
   Rest rest = Rest::StepByStep;
   interpreter::Doubles inverse;      // by_inverse or Rest::ByInverse: −M⁻¹, padded rows and columns
   interpreter::Doubles tangent_row;  // scratch of code
+  std::vector<double> probe;         // [stride] the right side of inverts()
+  bool has_probe = false;            // for these parameters
   interpreter::Doubles tangent;      // by_matrix: ∂slot/∂q^(lag) for each direction [n + m × stride], else for one
   std::vector<double> block_tangent; // [slots × 8]
   std::vector<std::uint32_t> of_mass;  // instructions that M₀ goes through

@@ -14,6 +14,9 @@ constexpr std::size_t most_swept_at_point = 8;
 /// What a rough solution may be wrong by. Beyond, the error bounds of LiftedSolve decide, since M₀ may be badly conditioned.
 constexpr double largest_correction = 1e-9;
 
+/// What the inverse may leave of a right side: beyond, the sparse factors solve better.
+constexpr double largest_rest_of_inverse = 1e-11;
+
 }  // namespace
 
 /// The tangents of all slots in the direction of each unknown.
@@ -93,7 +96,7 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
   const auto finite = [this] { return engine.are_finite(unknown.data(), unknowns, 1, unknowns) ? KernelStatus::Ok : KernelStatus::NonFinite; };
   if (rest == Rest::ByInverse && stage == 0) {
     if (solve_twice_by_inverse(stage)) return finite();
-    rest = Rest::StepByStep;
+    rest = Rest::ByLifting;
   }
   if (by_lifting && lifted->is_rough(stage) && (solve_twice(stage) || stage > 0)) return finite();
   has_direction = false;
@@ -110,8 +113,32 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
 
 /// By an inverse that is there then, if there is code for it.
 KernelWorkspace::Impl::Rest KernelWorkspace::Impl::way_of_the_rest() {
-  if (compiled.solve && (by_inverse || (by_lifting && lifted->negative_inverse(inverse.data())))) return Rest::ByInverse;
+  if (compiled.solve && (by_inverse || (by_lifting && lifted->negative_inverse(inverse.data()) && inverts()))) return Rest::ByInverse;
   return by_lifting ? Rest::ByLifting : Rest::StepByStep;
+}
+
+/// Whether −M₀⁻¹ solves for a right side in which all coordinates take part, each in its own measure: it was mirrored, which only a symmetric M₀
+/// allows, and solutions by it are not corrected.
+bool KernelWorkspace::Impl::inverts() {
+  if (!has_probe) set_probe();
+  engine.solve_by_inverse(inverse.data(), padded_unknowns(), probe.data(), program.residual.data(), unknowns, solution.data());
+  find_direction();
+  bool solves = true;
+  for (const Slot slot : program.residual)
+    solves &= std::abs(tangent[slot] + probe[slot]) <= largest_rest_of_inverse * std::abs(probe[slot]);
+  return solves;
+}
+
+/// Numbers of any sign, in the measure that the inverse gives a coordinate where it is asked first.
+void KernelWorkspace::Impl::set_probe() {
+  std::uint32_t random = 1;
+  for (std::size_t i = 0; i < unknowns; ++i) {
+    random = random * 1664525u + 1013904223u;
+    const double part = (random & 0x10000) != 0 ? -1 - random * 0x1p-32 : 1 + random * 0x1p-32;
+    const double size = std::sqrt(std::abs(inverse[i * padded_unknowns() + i]));
+    probe[program.residual[i]] = part / size;
+  }
+  has_probe = true;
 }
 
 /// Code does not look at each stage: what is not finite goes on to the stages that follow, or stays where it is.

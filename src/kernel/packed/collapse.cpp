@@ -20,7 +20,11 @@ class Collapse {
 
   void run() {
     for (Step& step : steps_) {
-      if (!is_sum(step) || step.chain >= 0) continue;
+      if (!is_sum(step)) continue;
+      if (step.chain >= 0) {
+        join_terms(step);
+        continue;
+      }
       write_out(step);
       if (step.products.empty()) sum_of_[step.head.out] = &step;
     }
@@ -48,6 +52,14 @@ class Collapse {
   }
 
  private:
+  /// Of a running sum what is added: one term an operand.
+  void join_terms(Step& step) {
+    Terms terms;
+    for (std::size_t t = 1; t < step.linear.size(); ++t) add(terms, step.linear[t]);
+    step.linear.resize(1);
+    for (const auto& [place, coefficient] : terms) step.linear.push_back({coefficient, place.first, no_slot, place.second});
+  }
+
   /// The smallest sums first, as long as there is room.
   void write_out(Step& step) {
     std::vector<const Term*> by_size;
@@ -224,11 +236,13 @@ class Chains {
     }
   }
 
-  /// Members from the first on, as long as what is added does not depend on the members before. The first one adds to nothing.
+  /// Members from the first on, as long as what is added does not depend on the members before. The first one adds to nothing: to the leaf 1 times 0, if
+  /// there is one.
   bool mark(std::size_t first, int number, std::size_t least, ConstantId zero) {
     std::vector<std::size_t> members{first};
     std::vector<bool> depends(program_.slots, false);
-    std::size_t at = first;
+    depends[steps_[first].head.out] = true;
+    std::size_t at = first + 1;
     for (std::size_t i = next_[first]; i != none; i = next_[i]) {
       for (; at < i; ++at) spread(at, depends);
       if (adds_dependent(steps_[i], depends)) break;
@@ -236,7 +250,7 @@ class Chains {
       depends[steps_[i].head.out] = true;
       ++at;
     }
-    if (members.size() <= least) return false;
+    if (members.size() <= least || program_.one == no_slot) return false;
     steps_[first].linear.insert(steps_[first].linear.begin(), {zero, program_.one});
     for (const std::size_t i : members) steps_[i].chain = number;
     return true;

@@ -67,21 +67,22 @@ class Packs {
       case Op::Function: function(pack, members); break;
       case Op::Quotient:
         pack.kind = Pack::Quotient;
-        pack.a = heads(members, &Instruction::a), pack.b = heads(members, &Instruction::b), pack.y = heads(members, &Instruction::out);
+        pack.a = heads(members, &Instruction::a), pack.b = heads(members, &Instruction::b, true), pack.y = heads(members, &Instruction::out);
         break;
       case Op::SquareRoot:
         pack.kind = Pack::SquareRoot;
-        pack.a = heads(members, &Instruction::a), pack.y = heads(members, &Instruction::out);
+        pack.a = heads(members, &Instruction::a, true), pack.y = heads(members, &Instruction::out);
         break;
       default: sum(pack, members); break;
     }
     out_.packs.push_back(pack);
   }
 
-  std::uint32_t heads(Members members, Slot Instruction::* operand) {
+  /// `filled`: lanes that are not in use repeat the first, since 0/0 would not be a number, and what reads vectors with holes reads them too.
+  std::uint32_t heads(Members members, Slot Instruction::* operand, bool filled = false) {
     std::vector<Slot> slots;
     for (const std::size_t i : members) slots.push_back(out_.number[step(i).head.*operand]);
-    return block(slots, false);
+    return block(slots, false, holes_ && filled && slots.size() < lanes);
   }
 
   void function(Pack& pack, Members members) {
@@ -213,16 +214,16 @@ class Packs {
     return first;
   }
 
-  std::uint32_t block(const std::vector<Slot>& slots, bool weighted) {
-    bool range = !weighted && (slots.size() == lanes || slots[0] % lanes == 0);
+  std::uint32_t block(const std::vector<Slot>& slots, bool weighted, bool filled = false) {
+    bool range = !weighted && !filled && (slots.size() == lanes || slots[0] % lanes == 0);
     for (std::size_t lane = 0; lane < slots.size(); ++lane) range = range && slots[lane] == slots[0] + lane;
-    const auto [place, fresh] = blocks_.try_emplace({slots, weighted}, static_cast<std::uint32_t>(out_.blocks.size()));
+    const auto [place, fresh] = blocks_.try_emplace({slots, weighted ? 1 : filled ? 2 : 0}, static_cast<std::uint32_t>(out_.blocks.size()));
     if (!fresh) return place->second;
     Block result{.first = slots[0], .direct = range, .weighted = weighted, .lag = out_.program.lags[slots[0]],
                  .width = static_cast<std::uint32_t>(slots.size())};
     result.slots.fill(slots[0]);
     std::copy(slots.begin(), slots.end(), result.slots.begin());
-    result.is_range = slots.size() == lanes || slots[0] % lanes == 0;
+    result.is_range = !filled && (slots.size() == lanes || slots[0] % lanes == 0);
     for (std::size_t lane = 0; lane < slots.size(); ++lane) result.is_range = result.is_range && slots[lane] == slots[0] + lane;
     if (!range) {
       result.first = static_cast<Slot>(next_cell_);
@@ -247,7 +248,7 @@ class Packs {
   const std::vector<Step>& steps_;
   const std::vector<Group>& groups_;
   std::vector<std::uint32_t> index_;    // [steps] of their instructions
-  std::map<std::pair<std::vector<Slot>, bool>, std::uint32_t> blocks_;
+  std::map<std::pair<std::vector<Slot>, int>, std::uint32_t> blocks_;
   std::map<int, ConstantId> literals_;
   ConstantId zero_ = 0;
   std::size_t next_cell_ = 0;

@@ -78,3 +78,15 @@ TEST_CASE("a multiplier that is zero but for rounding does not hold up a motion:
     CHECK(motion->difference < 1e-11);
   }
 }
+
+TEST_CASE("a multiplier decides how long a step of a motion may be that is a polynomial") {
+  const PhaseSpaceOf p("system lift\nparam m = 1 kg, a = 1 N, w = 1 rad/s, u = 1 m/s\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = 0 [J]\n"
+                       "force y = a sin(w t)\nconstraint y = u t name lift\nstart x = 0 m, y = 0 m, x' = 1 m/s, y' = u\nrun 390 s\n");
+  SimulationOptions options;
+  options.backend = Backend::Interpreter;
+  Diagnostics diagnostics;
+  const auto run = simulate(p.model, p.equations, options, diagnostics);
+  REQUIRE(run);
+  CHECK(run->statistics.energy_drift < 1e-12);
+  CHECK(run->statistics.steps > 60);
+}

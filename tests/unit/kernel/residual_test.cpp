@@ -91,6 +91,37 @@ TEST_CASE("chains of rods with their centres, damped, on a shaken support: runni
   }
 }
 
+TEST_CASE("running sums of coordinates: without a leaf 1, with an operand twice, and with constants") {
+  for (const int which : {0, 1, 2}) {
+    CAPTURE(which);
+    System s;
+    const Expr c = s.parameter("c", 0.6);
+    for (int i = 0; i < 17; ++i) s.coordinate("q" + std::to_string(i), 0.1 * (i + 1), 0.2 - 0.03 * i);
+    const auto& q = s.source.coordinates;
+    Expr sum = s.context.number(0);
+    for (std::size_t i = 0; i < 17; ++i) {
+      if (which == 1 && i == 6) sum = sum + c * q[0], sum = sum + q[0];
+      if (which == 2 && i == 6) sum = sum + Rational(1, 7) + q[6], sum = sum - (q[7] + Rational(2, 7));
+      sum = sum + q[i];
+      s.source.residual.push_back(s.context.symbol("q" + std::to_string(i), Role::Coordinate, 2) + sum + (which > 0 && i == 0 ? Rational(1) : Rational(0)));
+    }
+    check_motion(s, 8, 1e-13);
+  }
+}
+
+TEST_CASE("quotients and roots of some lanes of a vector, beside coordinates in the others") {
+  for (const int members : {3, 5, 7}) {
+    System s;
+    for (int i = 0; i < 17; ++i) {
+      const std::string name = "q" + std::to_string(i);
+      const Expr q = s.coordinate(name, 0.5, 0.25), two = s.context.number(2);
+      const Expr force = i >= members ? q : members == 3 ? q / (two + q) : members == 5 ? sqrt(two + q) : apply(Kind::Log, two + q);
+      s.source.residual.push_back(s.context.symbol(name, Role::Coordinate, 2) + force);
+    }
+    check_motion(s, 8, 1e-13);
+  }
+}
+
 TEST_CASE("pendulums on a cart, on an ellipse, and on a turning arm satisfy their equations at every order") {
   for (const int which : {0, 1, 2, 3}) {
     CAPTURE(which);

@@ -121,6 +121,46 @@ TEST_CASE("rolled code: every instruction, in systems too large to be written ou
   }
 }
 
+TEST_CASE("rolled code: M that becomes unsymmetric with a parameter, at a state of no forces") {
+  for (const int count : {18, 30}) {
+    Systems list;
+    System& s = add(list, "unsymmetric " + std::to_string(count));
+    const Expr c = s.parameter("c", 0);
+    for (int i = 0; i < count; ++i) {
+      const std::string word = "q" + std::to_string(i);
+      const Expr q = s.coordinate(word, 0, i == 4 ? 1 : 0);
+      s.source.residual.push_back(Rational(2) * s.acceleration(word) + q + (i > 0 ? c * s.acceleration("q" + std::to_string(i - 1)) : c * Rational(0)));
+    }
+    const Kernel kernel = build_kernel(s.source);
+    KernelWorkspace rolled = rolled_workspace(kernel, true), engine(kernel, rolled_order);
+    for (const double value : {0.0, 0.7, 1e-7}) {
+      CAPTURE(value);
+      rolled.set_parameters({{value}}), engine.set_parameters({{value}});
+      REQUIRE(engine.expand(0, s.start.q, s.start.v) == KernelStatus::Ok);
+      REQUIRE(rolled.expand(0, s.start.q, s.start.v) == KernelStatus::Ok);
+      for (int k = 2; k <= rolled_order + 1; ++k) CHECK(difference(rolled, engine, static_cast<std::size_t>(count), k) <= 1000);
+    }
+  }
+}
+
+TEST_CASE("rolled code: an expansion that is not finite leaves nothing behind") {
+  Systems list;
+  add_damped_chain(list, 23);
+  const System& s = *list.back();
+  const Kernel kernel = build_kernel(s.source);
+  for (const bool long_run : {false, true}) {
+    KernelWorkspace rolled = rolled_workspace(kernel, long_run), engine(kernel, rolled_order);
+    for (KernelWorkspace* const work : {&rolled, &engine}) {
+      work->set_parameters(s.start.parameters);
+      std::vector<double> v = s.start.v;
+      v[7] = std::numeric_limits<double>::quiet_NaN();
+      CHECK(work->expand(s.start.t, s.start.q, v) == KernelStatus::NonFinite);
+      CHECK(work->expand(s.start.t, s.start.q, s.start.v) == KernelStatus::Ok);
+    }
+    for (int k = 2; k <= rolled_order + 1; ++k) CHECK(difference(rolled, engine, 23, k) <= 1000);
+  }
+}
+
 TEST_CASE("rolled code: constraints and switches") {
   Systems list;
   for (const int rods : {1, 3, 12}) add_rods(list, rods);
