@@ -74,12 +74,14 @@ class StepSize {
   double factor_;
 };
 
-/// log₂ of a length up to log₂ h, so short that the series of the multipliers converge (step_within_multipliers of integrator/taylor).
+/// log₂ of a length up to log₂ h, so short that the series of the multipliers converge: step_within_multipliers of integrator/taylor, its constants in
+/// units of the digits of T.
 template <class T>
 double within_multipliers(const Workspace<T>& work, std::size_t freedoms, std::size_t constraints, int order, double h) {
   const double converged = 0.4 * log2_size(epsilon<T>());
   const double silent = 0.9 * log2_size(epsilon<T>());
   constexpr int most_cuts = 200;
+  const double cut = std::log2(0.8);
   const auto largest = [&](std::size_t j, int begin, int end, double length) {
     double size = -std::numeric_limits<double>::infinity();
     for (int k = begin; k < end; ++k)
@@ -94,7 +96,7 @@ double within_multipliers(const Workspace<T>& work, std::size_t freedoms, std::s
     if (std::max(first(j, h), last(j, h)) <= silent + scale) continue;
     double own = h;
     int cuts = 0;
-    while (cuts < most_cuts && last(j, own) > converged + first(j, own)) own += std::log2(0.8), ++cuts;
+    while (cuts < most_cuts && last(j, own) > converged + first(j, own)) own += cut, ++cuts;
     if (cuts < most_cuts) least = std::min(least, own);
   }
   return least;

@@ -22,7 +22,7 @@ void TaylorStepper::Impl::compile(bool long_run) {
 void TaylorStepper::Impl::compile_if_it_pays(double bound) {
   constexpr std::size_t first_look = 512;
   constexpr double enough = 20'000, enough_for_long_code = 200'000, usual_size = 8;  // docs/design/kernel_speed.md
-  constexpr double enough_beyond = 1'000'000;  // for the usual size, up to the largest one whose expansion is written out
+  constexpr double enough_for_slow_code = 1'000'000;  // beyond the usual size, as far as whole expansions are written out
   constexpr std::size_t largest_written_out = 16;
   if (options.backend == Backend::Interpreter || steps < first_look || (steps & (steps - 1)) != 0) return;  // looks at powers of two
   const double done = std::abs(t.hi - run_begin), left = std::abs(remaining(bound));
@@ -30,7 +30,7 @@ void TaylorStepper::Impl::compile_if_it_pays(double bound) {
   const double size = std::max(1.0, static_cast<double>(n) / usual_size);  // a step saves more where there are more unknowns
   if (!backend.trouble.empty() || runs_long) return;
   const bool is_slow_to_compile = n > usual_size && n <= largest_written_out;
-  if (expected >= (is_slow_to_compile ? enough_beyond : enough_for_long_code)) compile(true);
+  if (expected >= (is_slow_to_compile ? enough_for_slow_code : enough_for_long_code)) compile(true);
   else if (!backend.compiled && expected * size >= enough) compile(false);
 }
 

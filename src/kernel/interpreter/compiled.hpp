@@ -14,7 +14,8 @@ struct CompiledCode {
   packed::CompiledExpand expand = nullptr;
   packed::CompiledRadius radius = nullptr;
   packed::CompiledIncrements increments = nullptr;
-  packed::CompiledStage first = nullptr, stage = nullptr, solve = nullptr, correct = nullptr, ahead = nullptr;
+  packed::CompiledFirst first = nullptr;
+  packed::CompiledStage stage = nullptr, solve = nullptr, correct = nullptr, ahead = nullptr;
   packed::CompiledTangents tangents = nullptr;
   std::shared_ptr<const void> memory;
 };

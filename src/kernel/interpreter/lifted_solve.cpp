@@ -19,7 +19,6 @@ namespace {
 constexpr double least_sound_pivot = 1e-7;
 /// What a solution may leave of b, in units of the error bound of that remainder: without a correction, with one, and after it.
 constexpr double sound = 16, tolerable = 1e6, corrected = 16;
-std::size_t padded_to_lanes(std::size_t n) { return (n + packed::lanes - 1) / packed::lanes * packed::lanes; }
 bool is_power_of_two(int x) { return (x & (x - 1)) == 0; }
 
 std::vector<bool> stored_slots(const Program& program, const packed::PackedProgram& packed) {
@@ -128,7 +127,7 @@ bool LiftedSolve::is_symmetric(std::span<const double> sample) {
 /// others; the rest is its mirror image.
 void LiftedSolve::write_columns(std::vector<straight::StraightLine>& lines) {
   using packed::lanes;
-  const std::uint32_t n = static_cast<std::uint32_t>(program_.unknowns), padded = static_cast<std::uint32_t>(padded_to_lanes(n));
+  const std::uint32_t n = static_cast<std::uint32_t>(program_.unknowns), padded = static_cast<std::uint32_t>(packed::padded(n));
   const std::vector<std::uint32_t> order = solver_->order_of_columns();
   const auto turn = [&](std::size_t eight) {  // the middle of their turns, no two alike
     double sum = 0, count = 0;
@@ -156,7 +155,7 @@ bool LiftedSolve::negative_inverse(double* inverse) {
     for (std::size_t i = 0; i < lanes; ++i) out[i * lanes + i] = -1;
     return out;
   }();
-  const std::size_t padded = padded_to_lanes(program_.unknowns);
+  const std::size_t padded = packed::padded(program_.unknowns);
   for (std::size_t eight = 0; eight < mirrored_.size(); ++eight) {
     const double* const right = units.data();
     code_(columns_line_ + eight, solver_->factors(), solver_->inverse_pivots(), right, inverse + eight * lanes, scratch_.data());

@@ -81,20 +81,20 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   if (run_compiled(stages)) return KernelStatus::Ok;
   run_first_stages();
   if (const auto status = factor(); status != KernelStatus::Ok) return status;
-  rest = stages > 1 ? way_of_the_rest() : Rest::StepByStep;
+  later = stages > 1 ? choose_later_stages() : LaterStages::StepByStep;
   for (int stage = 0; stage < stages; ++stage) {
     if (stage == 0 || !run_directly(stage))
       if (const auto status = run_step_by_step(stage); status != KernelStatus::Ok) return status;
     renew_blocks(stage, stages);
     run_along(stage);
   }
-  return rest != Rest::StepByStep && !are_coefficients_finite(stages) ? KernelStatus::NonFinite : KernelStatus::Ok;
+  return later != LaterStages::StepByStep && !are_coefficients_finite(stages) ? KernelStatus::NonFinite : KernelStatus::Ok;
 }
 
 /// Up to 0, but for its solution.
 void KernelWorkspace::Impl::run_first_stages() {
   std::fill_n(memory.row(2), padded_unknowns(), 0.0);
-  if (compiled.first) compiled.first(&arguments, 0);
+  if (compiled.first) compiled.first(&arguments);
   for (int stage = program.first_stage; stage <= 0; ++stage) {
     if (!compiled.first) {
       engine.run_stage(tables, stage);
@@ -116,9 +116,9 @@ KernelStatus KernelWorkspace::Impl::run_step_by_step(int stage) {
 
 /// False: nothing is done, the stage has to be run step by step.
 bool KernelWorkspace::Impl::run_directly(int stage) {
-  if (rest == Rest::StepByStep || (rest == Rest::ByLifting && !(by_lifting && lifted->is_direct(stage)))) return false;
+  if (later == LaterStages::StepByStep || (later == LaterStages::ByLifting && !(by_lifting && lifted->is_direct(stage)))) return false;
   run_stage(stage);
-  if (rest == Rest::ByInverse) {
+  if (later == LaterStages::ByInverse) {
     compiled.solve(&arguments, stage);
     return true;
   }

@@ -18,7 +18,7 @@ struct KernelWorkspace::Impl {
 
   /// How the stages after the first are solved: with a look at each solution; or directly, by −M⁻¹ (code alone) or by sparse factors, with one look at the
   /// end.
-  enum class Rest { StepByStep, ByInverse, ByLifting };
+  enum class LaterStages { StepByStep, ByInverse, ByLifting };
 
   Impl(const Kernel& k, int p)
       : kernel(k), packed(packed::pack(k.program())), program(packed.program), order(p),
@@ -36,7 +36,7 @@ struct KernelWorkspace::Impl {
     bind();
   }
 
-  std::size_t padded_unknowns() const { return (unknowns + packed::lanes - 1) / packed::lanes * packed::lanes; }
+  std::size_t padded_unknowns() const { return packed::padded(unknowns); }
   void bind();
   void compute_constants();
   KernelStatus run(double t, std::span<const double> q, std::span<const double> v, int stages);
@@ -47,7 +47,7 @@ struct KernelWorkspace::Impl {
   void run_along(int stage);
   bool outputs_follow_accelerations() const;
   bool run_compiled(int stages);
-  Rest way_of_the_rest();
+  LaterStages choose_later_stages();
   bool inverts();
   void set_probe();
   bool run_directly(int stage);
@@ -97,8 +97,8 @@ struct KernelWorkspace::Impl {
   bool has_direction = false;        // `tangent` is that of q̈_k
   std::vector<double> rough;         // [n + m] a solution that is being corrected
   bool by_matrix, by_inverse = false, by_lifting = false;
-  Rest rest = Rest::StepByStep;
-  interpreter::Doubles inverse;      // by_inverse or Rest::ByInverse: −M⁻¹, padded rows and columns
+  LaterStages later = LaterStages::StepByStep;
+  interpreter::Doubles inverse;      // by_inverse or LaterStages::ByInverse: −M⁻¹, padded rows and columns
   interpreter::Doubles tangent_row;  // scratch of code
   std::vector<double> probe;         // [stride] the right side of inverts()
   bool has_probe = false;            // for these parameters

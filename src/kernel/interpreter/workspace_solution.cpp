@@ -94,9 +94,9 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
     return finite ? KernelStatus::Ok : KernelStatus::NonFinite;
   }
   const auto finite = [this] { return engine.are_finite(unknown.data(), unknowns, 1, unknowns) ? KernelStatus::Ok : KernelStatus::NonFinite; };
-  if (rest == Rest::ByInverse && stage == 0) {
+  if (later == LaterStages::ByInverse && stage == 0) {
     if (solve_twice_by_inverse(stage)) return finite();
-    rest = Rest::ByLifting;
+    later = LaterStages::ByLifting;
   }
   if (by_lifting && lifted->is_rough(stage) && (solve_twice(stage) || stage > 0)) return finite();
   has_direction = false;
@@ -112,9 +112,9 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
 }
 
 /// By an inverse that is there then, if there is code for it.
-KernelWorkspace::Impl::Rest KernelWorkspace::Impl::way_of_the_rest() {
-  if (compiled.solve && (by_inverse || (by_lifting && lifted->negative_inverse(inverse.data()) && inverts()))) return Rest::ByInverse;
-  return by_lifting ? Rest::ByLifting : Rest::StepByStep;
+KernelWorkspace::Impl::LaterStages KernelWorkspace::Impl::choose_later_stages() {
+  if (compiled.solve && (by_inverse || (by_lifting && lifted->negative_inverse(inverse.data()) && inverts()))) return LaterStages::ByInverse;
+  return by_lifting ? LaterStages::ByLifting : LaterStages::StepByStep;
 }
 
 /// Whether −M₀⁻¹ solves for a right side in which all coordinates take part, each in its own measure: it was mirrored, which only a symmetric M₀
@@ -221,7 +221,7 @@ bool KernelWorkspace::Impl::constraints_agree() {
 /// Coefficient k + 2 − ℓ of a slot of lag ℓ follows q̈_k with its order-0 tangents: one by one, or the tangent in the direction of q̈_k.
 void KernelWorkspace::Impl::correct(int stage) {
   if (by_matrix) return engine.correct(tables, stage, tangents, solution.data());
-  const double* const known = by_lifting && rest != Rest::ByInverse ? lifted->tangents(stage) : nullptr;
+  const double* const known = by_lifting && later != LaterStages::ByInverse ? lifted->tangents(stage) : nullptr;
   if (!known && !std::exchange(has_direction, false)) find_direction();
   correct(stage, known ? known : tangent.data(), 1);
 }

@@ -46,7 +46,9 @@ Value* RolledEmitter::field(std::size_t offset) {
 }
 
 void RolledEmitter::open(const char* name, llvm::Type* second) {
-  llvm::Function* const function = out_.function(name, {out_.pointer(), second});
+  std::vector<llvm::Type*> parameters{out_.pointer()};
+  if (second) parameters.push_back(second);
+  llvm::Function* const function = out_.function(name, parameters);
   arguments_ = function->getArg(0);
   recent_.clear();
   rows_ = field(offsetof(packed::CompiledArguments, rows));

@@ -46,7 +46,7 @@ class RolledEmitter {
   // -------------------------------------------------------------------------------------------- stages (rolled_emitter.cpp)
   void find_convolutions();
   Value* field(std::size_t offset);                 // of the arguments, an address
-  void open(const char* name, llvm::Type* second);  // a function of CompiledArguments* and one more
+  void open(const char* name, llvm::Type* second);  // a function of CompiledArguments* and, unless it is null, one more
   void open_stage(const char* name);                // … the stage
   void stage();
   Value* row(int ahead) { return rows_of_stage_[static_cast<std::size_t>(ahead)]; }  // of order stage + ahead

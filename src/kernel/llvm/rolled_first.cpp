@@ -14,7 +14,7 @@ using llvm::Value;
 using packed::lanes;
 
 void RolledEmitter::first_stages() {
-  open("first", out_.integer());
+  open("first", nullptr);
   for (int stage = program_.first_stage; stage <= 0; ++stage) {
     written_ = stage;
     stage_ = out_.b.getInt64(static_cast<std::uint64_t>(stage));

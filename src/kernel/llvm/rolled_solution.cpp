@@ -33,7 +33,7 @@ void RolledEmitter::solution() {
 std::vector<Value*> RolledEmitter::product_with_inverse() {
   constexpr std::size_t most_sums = 16;  // in registers
   Value* const inverse = field(offsetof(packed::CompiledArguments, inverse));
-  const std::size_t vectors = (program_.unknowns + lanes - 1) / lanes;
+  const std::size_t vectors = packed::padded(program_.unknowns) / lanes;
   const std::size_t chains = std::clamp<std::size_t>(most_sums / vectors, 2, 4);
   std::vector<std::vector<Value*>> sums(vectors, std::vector<Value*>(chains, nullptr));
   for (std::size_t d = 0; d < program_.unknowns; ++d) {
@@ -106,9 +106,9 @@ void RolledEmitter::correct(Slot slot, int lag, Value* tangent) {
 /// By eights of slots: the lag of those whose coefficients are corrected, else −1.
 std::vector<int> RolledEmitter::corrected_lags() const {
   std::vector<int> lag(p_.cells / lanes + 1, -1);
-  std::size_t first = (program_.unknowns + lanes - 1) / lanes;
+  std::size_t first = packed::padded(program_.unknowns) / lanes;
   for (int l = 0; l <= 2; ++l) {
-    const std::size_t end = (program_.stored_end[static_cast<std::size_t>(l)] + lanes - 1) / lanes;
+    const std::size_t end = packed::padded(program_.stored_end[static_cast<std::size_t>(l)]) / lanes;
     for (; first < end; ++first) lag[first] = l;
   }
   return lag;

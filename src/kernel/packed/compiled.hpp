@@ -37,13 +37,15 @@ using CompiledExpand = int (*)(const CompiledArguments*);
 using CompiledRadius = double (*)(const double* first, double h);
 using CompiledIncrements = void (*)(const double* first, std::size_t stride, std::size_t count, int degree, double tau, double* dq, double* dv);
 
-/// Rolled code, one stage ≥ 1 a call. `stage`: as Engine::run_stage, with q_{k+2} = 0. `ahead`: as Engine::renew_blocks, and sums for the stages that follow; after each
-/// stage ≥ 0 in turn.
+/// Rolled code of long runs, `first`: the stages up to 0, as Engine::run_stage, and Engine::renew_blocks after all but the last.
+using CompiledFirst = void (*)(const CompiledArguments*);
+
+/// Rolled code, one stage a call.
+///   stage    ≥ 1; as Engine::run_stage, with q_{k+2} = 0
+///   solve    ≥ 1; as Engine::solve_by_inverse, set_accelerations and correct
+///   correct  ≥ 1; as the last two, by `tangents`
+///   ahead    ≥ 0, after the others, in turn; as Engine::renew_blocks, and sums for the stages that follow
 using CompiledStage = void (*)(const CompiledArguments*, std::int64_t stage);
-
-/// Rolled code for long runs, `first`: the stages up to 0, as Engine::run_stage, and Engine::renew_blocks but for the last; its second argument says nothing.
-
-/// Rolled code between the two: `solve` as Engine::solve_by_inverse, set_accelerations and correct; `correct` as the last two.
 
 /// Rolled code: as Engine::tangents.
 using CompiledTangents = void (*)(const CompiledArguments*, double* tangent);

@@ -11,6 +11,8 @@ namespace maupertuis::packed {
 
 inline constexpr std::uint32_t lanes = 8;
 inline constexpr std::uint32_t no_block = ~std::uint32_t{0};
+/// Up to whole vectors.
+inline std::size_t padded(std::size_t count) { return (count + lanes - 1) / lanes * lanes; }
 
 /// The coefficients of up to 8 operands at all orders, side by side in a row. A *direct* block is a range of slots; any
 /// other keeps copies in cells of its own behind the slots, renewed when the coefficients of an order are final.

@@ -26,6 +26,7 @@ class SlotNumbers {
       out_.stored_end[static_cast<std::size_t>(l)] = static_cast<Slot>(next);
     }
     for (const Group& group : groups_) number(group, next);
+    next = padded(next);  // vectors of Dynamics are read whole, and what follows need not be finite
     for (Slot slot = 0; slot < in_.slots; ++slot)
       if (out_.number[slot] == no_slot && is_read(slot)) out_.number[slot] = static_cast<Slot>(next++);
     out_.slots = padded(next);

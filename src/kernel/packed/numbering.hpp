@@ -6,8 +6,6 @@
 
 namespace maupertuis::packed {
 
-inline std::size_t padded(std::size_t count) { return (count + lanes - 1) / lanes * lanes; }
-
 /// Where slots go: coordinates; corrected slots by lag; the other slots of Dynamics; everything else. Packs begin at multiples of 8.
 struct Numbering {
   std::vector<Slot> number;             // [slots as they were]; no_slot: sums were written over it

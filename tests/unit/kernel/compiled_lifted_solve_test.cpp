@@ -7,7 +7,7 @@ TEST_CASE("chains, trees and combs: unknowns and tangents as by the loops, M x =
   for (const auto& [parent, count] : {std::pair<Parents, int>{chain, 20}, {chain, 100}, {binary_tree, 63}, {comb, 50}}) {
     Rods rods(count, parent);
     Lifted loops(build_kernel(rods.source)), code(build_kernel(rods.source));
-    code.solve.compile({.cache = false, .long_run = count != 100});  // factors by code too, and not
+    code.solve.compile({.cache = false, .long_run = count != 100, .processor = {}});  // factors by code too, and not
     CHECK_FALSE(code.solve.compile_report());  // no pivots yet
     const auto n = static_cast<std::size_t>(count);
     for (unsigned seed = 1; seed <= 3; ++seed) {
@@ -51,7 +51,7 @@ TEST_CASE("chains are cut into parts side by side, whose sums wait for each othe
   for (const auto& [parent, count] : {std::pair<Parents, int>{chain, 64}, {chain, 100}, {binary_tree, 63}}) {
     Rods rods(count, parent);
     Lifted loops(build_kernel(rods.source)), code(build_kernel(rods.source));
-    code.solve.compile({.cache = false});
+    code.solve.compile({.cache = false, .processor = {}});
     for (Lifted* const lifted : {&loops, &code}) {
       lifted->move_to(random_point(static_cast<std::size_t>(count), 1));
       REQUIRE(lifted->solve.factor(lifted->memory));
@@ -68,7 +68,7 @@ TEST_CASE("up to 56 unknowns: −M₀⁻¹ by eight columns at once, times M in 
     CAPTURE(count);
     Rods rods(count, parent);
     Lifted code(build_kernel(rods.source));
-    code.solve.compile({.cache = false});
+    code.solve.compile({.cache = false, .processor = {}});
     const auto n = static_cast<std::size_t>(count), padded = (n + 7) / 8 * 8;
     interpreter::Doubles inverse(padded * padded, 0.0);
     for (unsigned seed = 1; seed <= 3; ++seed) {
@@ -89,7 +89,7 @@ TEST_CASE("up to 56 unknowns: −M₀⁻¹ by eight columns at once, times M in 
   }
   Rods rods(64, chain);
   Lifted larger(build_kernel(rods.source)), loops(build_kernel(rods.source));
-  larger.solve.compile({.cache = false});
+  larger.solve.compile({.cache = false, .processor = {}});
   for (Lifted* const lifted : {&larger, &loops}) {
     lifted->move_to(random_point(64, 1));
     REQUIRE(lifted->solve.factor(lifted->memory));
@@ -102,7 +102,7 @@ TEST_CASE("factors by code: a singular M is told so, with its coordinate, and wh
   add_idle_coordinate(rods);
   KernelWorkspace work(build_kernel(rods.source), 3);
   work.set_parameters(one);
-  work.compile({.cache = false, .long_run = true});
+  work.compile({.cache = false, .long_run = true, .processor = {}});
   Point p = check_idle_coordinate(work);
   p.q[30] = std::numeric_limits<double>::quiet_NaN();
   CHECK(work.evaluate(0, p.q, p.v) != KernelStatus::Ok);
@@ -116,7 +116,7 @@ TEST_CASE("factors by code: a singular M is told so, with its coordinate, and wh
 TEST_CASE("a workspace whose expansions are not compiled has compiled solutions: the same coefficients to rounding") {
   Rods rods(30, chain);
   KernelWorkspace loops(build_kernel(rods.source), 8), code(build_kernel(rods.source), 8);
-  code.compile({.cache = false});
+  code.compile({.cache = false, .processor = {}});
   const Point p = random_point(30, 9);
   for (KernelWorkspace* const work : {&loops, &code}) {
     work->set_parameters(one);
