@@ -3,7 +3,6 @@
 #include "kernel/interpreter/sampled_states.hpp"
 #include "kernel/packed/compiled.hpp"
 #include "kernel/packed/engine.hpp"
-#include "kernel/sparse/parts.hpp"
 #include "kernel/straight_line/widen.hpp"
 
 #include <algorithm>
@@ -29,8 +28,8 @@ std::vector<bool> stored_slots(const Program& program, const packed::PackedProgr
 
 }  // namespace
 
-LiftedSolve::LiftedSolve(const Program& program, const packed::PackedProgram& packed, std::size_t stride)
-    : program_(program), stored_(packed.program.stored_end[2]), system_(sparse::lift(program, stored_slots(program, packed))) {
+LiftedSolve::LiftedSolve(const Program& program, const sparse::Strip& strip, const packed::PackedProgram& packed, std::size_t stride)
+    : program_(program), strip_(strip), stored_(packed.program.stored_end[2]), system_(sparse::lift(program, stored_slots(program, packed))) {
   if (!system_) return;
   assembly_.emplace(*system_, program, packed.number);
   for (std::uint32_t column = 0; column < system_->size; ++column) {
@@ -38,6 +37,9 @@ LiftedSolve::LiftedSolve(const Program& program, const packed::PackedProgram& pa
     cell_of_column_.push_back(number != no_slot ? number : static_cast<std::uint32_t>(stride + column));
   }
   for (const Slot slot : packed.program.residual) places_.push_back(slot);
+  for (const packed::Block& block : packed.blocks)
+    if (packed.copies_coordinates(block))
+      for (std::uint32_t lane = 0; lane < packed::lanes; ++lane) copies_.push_back({block.slots[lane], block.first + lane});
   product_.emplace(*system_);
   entries_.resize(system_->entries.size());
   residual_.resize(program.unknowns);
@@ -79,11 +81,12 @@ void LiftedSolve::compile(const CompileOptions& options) {
   drop_solver();
 }
 
-std::vector<std::uint32_t> LiftedSolve::wanted_cells() const {
-  std::vector<std::uint32_t> wanted;
+LiftedSolve::AllWanted LiftedSolve::wanted() const {
+  AllWanted out;
   for (std::uint32_t column = 0; column < system_->size; ++column)
-    if (system_->wanted[column]) wanted.push_back(cell_of_column_[column]);
-  return wanted;
+    if (system_->wanted[column]) out.push_back({cell_of_column_[column], cell_of_column_[column]});
+  out.insert(out.end(), copies_.begin(), copies_.end());
+  return out;
 }
 
 bool LiftedSolve::compile_lines(const std::vector<straight::StraightLine>& lines) {
@@ -96,7 +99,7 @@ bool LiftedSolve::compile_lines(const std::vector<straight::StraightLine>& lines
 /// The code belongs to the pivots of this solver alone.
 bool LiftedSolve::make_code(std::span<const double> sample) {
   if (!options_) return false;
-  std::vector<straight::StraightLine> lines{solver_->written_solve(wanted_cells(), places_)};
+  std::vector<straight::StraightLine> lines{solver_->written_solve(wanted(), places_)};
   if (options_->long_run) {
     factor_line_ = lines.size();
     lines.push_back(solver_->written_factor(least_sound_pivot));
@@ -137,10 +140,11 @@ void LiftedSolve::write_columns(std::vector<straight::StraightLine>& lines) {
   columns_line_ = lines.size();
   mirrored_.assign(padded / lanes, {});
   for (std::uint32_t eight = 0; eight < padded / lanes; ++eight) {
-    std::vector<std::uint32_t> wanted, places(n, sparse::no_place);
+    AllWanted wanted;
+    std::vector<std::uint32_t> places(n, sparse::no_place);
     for (std::uint32_t i = eight * lanes; i < std::min(n, (eight + 1) * lanes); ++i) places[i] = i - eight * lanes;
     for (std::uint32_t i = 0; i < n; ++i)
-      if (turn(i / lanes) >= turn(eight)) wanted.push_back(i);
+      if (turn(i / lanes) >= turn(eight)) wanted.push_back({i, i});
     for (std::size_t other = 0; other < padded / lanes; ++other)
       if (turn(other) > turn(eight)) mirrored_[eight].push_back(other);
     lines.push_back(straight::in_columns(solver_->written_solve(wanted, places), sparse::RightSideArray, sparse::UnknownArray, lanes, padded));
@@ -167,15 +171,21 @@ bool LiftedSolve::negative_inverse(double* inverse) {
 
 /// Parts that are alike, a lane of a vector each. Their factors are code too, in an order of its own.
 bool LiftedSolve::choose_parts(const std::vector<std::vector<double>>& samples, const std::vector<sparse::Pivot>& pivots) {
-  using straight::Places;
   const std::uint32_t first = sparse::nearest_coordinates(*system_)[pivots.front().column];
-  const auto parts = sparse::cut_into_parts(*system_, first);
+  Parts parts = strip_.parts;
+  if (!parts.empty() && strip_.ends_at(first))
+    for (auto& part : parts) std::reverse(part.begin(), part.end());
+  return try_parts(samples, parts) || try_parts(samples, sparse::cut_into_parts(*system_, first));
+}
+
+bool LiftedSolve::try_parts(const std::vector<std::vector<double>>& samples, const Parts& parts) {
+  using straight::Places;
   if (parts.empty()) return false;
   const auto chosen = sparse::eliminate(*system_, samples, {}, parts);
   if (!chosen) return false;
   solver_.emplace(*system_, *chosen, cell_of_column_);
   Places factors(solver_->factor_count()), inverse(chosen->size());
-  auto solve = straight::widen(solver_->written_solve(wanted_cells(), places_), {{sparse::FactorArray, &factors}, {sparse::InverseArray, &inverse}}, {});
+  auto solve = straight::widen(solver_->written_solve(wanted(), places_), {{sparse::FactorArray, &factors}, {sparse::InverseArray, &inverse}}, {});
   auto factor = straight::widen(solver_->written_factor(least_sound_pivot), {},
                                 {{sparse::FactorOutArray, &factors}, {sparse::FactorInverseArray, &inverse}});
   factor_line_ = 1;

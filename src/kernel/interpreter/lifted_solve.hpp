@@ -2,6 +2,7 @@
 #include "kernel/interpreter/interpreter.hpp"
 #include "kernel/packed/layout.hpp"
 #include "kernel/sparse/graph_product.hpp"
+#include "kernel/sparse/parts.hpp"
 #include "kernel/sparse/sparse_solver.hpp"
 #include "kernel/straight_line/compile.hpp"
 
@@ -16,8 +17,8 @@ namespace maupertuis::interpreter {
 /// solution, or by the full matrix, which alone tells what is singular.
 class LiftedSolve {
  public:
-  /// `program`: as it was before it was packed.
-  LiftedSolve(const Program& program, const packed::PackedProgram& packed, std::size_t stride);
+  /// `program`: as it was before it was packed; `strip`: by which it was.
+  LiftedSolve(const Program& program, const sparse::Strip& strip, const packed::PackedProgram& packed, std::size_t stride);
 
   void set_constants(const Memory& memory);
   /// From then on solutions are machine code, made whenever pivots are chosen; where that cannot be the loops go on.
@@ -39,6 +40,8 @@ class LiftedSolve {
   bool is_direct(int stage) const { return !refines_ && !is_rough(stage); }
   /// M₀ x = R as it stands in a row of the packed program: x and the tangents in its direction, slot by slot.
   const double* solve_row(const double* row);
+  /// Whether that gives x also in the cells of blocks that copy coordinates.
+  bool solves_for_copies() const { return bool{code_}; }
   /// In the direction of the last solution, of a stage, those of the stored slots of the packed program; null where they are too rough.
   const double* tangents(int stage) const { return is_rough(stage) ? nullptr : cells_.data(); }
   /// A solution in parts leaves up to 40 times as much of b as one from link to link, since it closes the gaps between parts by forces,
@@ -58,8 +61,11 @@ class LiftedSolve {
   double remainder(std::span<const double> b);
   void add_correction();
   bool make_code(std::span<const double> sample);
+  using Parts = std::vector<std::vector<std::uint32_t>>;
   bool choose_parts(const std::vector<std::vector<double>>& samples, const std::vector<sparse::Pivot>& pivots);
-  std::vector<std::uint32_t> wanted_cells() const;
+  bool try_parts(const std::vector<std::vector<double>>& samples, const Parts& parts);
+  using AllWanted = std::vector<sparse::SparseSolver::Wanted>;
+  AllWanted wanted() const;
   bool is_symmetric(std::span<const double> sample);
   void write_columns(std::vector<straight::StraightLine>& lines);
   bool compile_lines(const std::vector<straight::StraightLine>& lines);
@@ -68,6 +74,7 @@ class LiftedSolve {
   void run_solve(std::span<const double> b, double* x);
 
   const Program& program_;
+  const sparse::Strip& strip_;
   std::size_t stored_;                           // cells that tangents() gives
   std::optional<sparse::LiftedSystem> system_;
   std::optional<sparse::Assembly> assembly_;
@@ -75,6 +82,7 @@ class LiftedSolve {
   std::optional<sparse::SparseSolver> solver_;
   std::vector<std::uint32_t> places_;            // [unknowns] of the residual in a row
   std::vector<std::uint32_t> cell_of_column_;    // [columns] slots of the packed program, then cells of their own
+  AllWanted copies_;                             // of q̈ in the cells of blocks
   std::vector<double> entries_;                  // [entries]
   std::vector<double> residual_;                 // [unknowns] b − M₀ x
   Doubles cells_, change_;                       // [stride + columns]

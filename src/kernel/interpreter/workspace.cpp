@@ -106,6 +106,7 @@ void KernelWorkspace::Impl::run_first_stages() {
 
 /// With a look at the solution before it is used.
 KernelStatus KernelWorkspace::Impl::run_step_by_step(int stage) {
+  arguments.has_copies = 0;
   if (stage > 0) run_stage(stage);
   if (const auto status = solve(stage); status != KernelStatus::Ok) return status;
   if (stage == 0 && !constraints_agree()) return KernelStatus::Contradiction;
@@ -119,11 +120,13 @@ bool KernelWorkspace::Impl::run_directly(int stage) {
   if (later == LaterStages::StepByStep || (later == LaterStages::ByLifting && !(by_lifting && lifted->is_direct(stage)))) return false;
   run_stage(stage);
   if (later == LaterStages::ByInverse) {
+    arguments.has_copies = 0;
     compiled.solve(&arguments, stage);
     return true;
   }
   arguments.tangents = lifted->solve_row(memory.row(stage));
   if (compiled.correct) {
+    arguments.has_copies = lifted->solves_for_copies();
     compiled.correct(&arguments, stage);
   } else {
     set_accelerations(stage, arguments.tangents, -1);

@@ -21,19 +21,25 @@ struct KernelWorkspace::Impl {
   enum class LaterStages { StepByStep, ByInverse, ByLifting };
 
   Impl(const Kernel& k, int p)
-      : kernel(k), packed(packed::pack(k.program())), program(packed.program), order(p),
+      : kernel(k), strip(strip_for(k.program())), packed(packed::pack(k.program(), {strip.order, strip.whole})), program(packed.program), order(p),
         orders(p + 2 + (-2 - program.first_stage)), memory(program, orders, packed.cells), parameters(program.parameters, 0.0),
         sides(program.switches.size(), 1), unknowns(program.unknowns),
         by_matrix(unknowns <= most_by_matrix), producer(program.slots, nullptr), at_point(program) {
     solution.assign(padded_unknowns(), 0.0);
+    rough = solution;
     unknown = {solution.data(), unknowns};
     tangent.assign(by_matrix ? unknowns * memory.stride : memory.stride, 0.0);
-    if (!by_matrix && unknowns == program.freedoms) lifted.emplace(kernel.program(), packed, memory.stride);
+    if (!by_matrix && unknowns == program.freedoms) lifted.emplace(kernel.program(), strip, packed, memory.stride);
     if (unknowns <= packed::most_by_inverse) inverse.assign(padded_unknowns() * padded_unknowns(), 0.0);
     for (const Instruction& i : program.instructions) producer[i.out] = &i;
     interpreter::set_leaves(memory, 0.0, orders);
     corrects_points = outputs_follow_accelerations();
     bind();
+  }
+
+  /// For solutions in parts, whose lanes are those of the packs then.
+  static sparse::Strip strip_for(const Program& p) {
+    return p.unknowns == p.freedoms && p.unknowns > packed::most_by_inverse ? sparse::strip_of(p) : sparse::Strip{};
   }
 
   std::size_t padded_unknowns() const { return packed::padded(unknowns); }
@@ -74,6 +80,7 @@ struct KernelWorkspace::Impl {
   double coefficient(Slot slot, int k) const;
 
   Kernel kernel;
+  sparse::Strip strip;
   packed::PackedProgram packed;
   const Program& program;            // of `packed`
   int order, orders;
@@ -95,7 +102,7 @@ struct KernelWorkspace::Impl {
   interpreter::Doubles solution;     // q̈_k and λ_k, padded
   std::span<double> unknown;         // [n + m] of it: −R_k, then q̈_k and λ_k
   bool has_direction = false;        // `tangent` is that of q̈_k
-  std::vector<double> rough;         // [n + m] a solution that is being corrected
+  interpreter::Doubles rough;        // a solution that is being corrected, padded
   bool by_matrix, by_inverse = false, by_lifting = false;
   LaterStages later = LaterStages::StepByStep;
   interpreter::Doubles inverse;      // by_inverse or LaterStages::ByInverse: −M⁻¹, padded rows and columns

@@ -162,10 +162,9 @@ bool KernelWorkspace::Impl::solve_twice(int stage) {
   };
   solve_for(memory.row(stage));
   find_direction();
-  rough.assign(unknown.begin(), unknown.end());
+  std::copy(unknown.begin(), unknown.end(), rough.begin());
   for (const Slot slot : program.residual) tangent[slot] += memory.row(stage)[slot];
-  const double* const change = solve_for(tangent.data());
-  for (Slot slot = 0; slot < program.stored_end[2]; ++slot) tangent[slot] -= change[slot];
+  engine.add(tangent.data(), solve_for(tangent.data()), -1, program.stored_end[2]);
   has_direction = true;
   return add_rough_solution();
 }
@@ -177,7 +176,7 @@ bool KernelWorkspace::Impl::solve_twice_by_inverse(int stage) {
   };
   multiply(memory.row(stage));
   find_direction();
-  rough.assign(unknown.begin(), unknown.end());
+  std::copy(unknown.begin(), unknown.end(), rough.begin());
   for (const Slot slot : program.residual) tangent[slot] += memory.row(stage)[slot];
   multiply(tangent.data());
   return add_rough_solution();
@@ -185,12 +184,9 @@ bool KernelWorkspace::Impl::solve_twice_by_inverse(int stage) {
 
 /// To its correction.
 bool KernelWorkspace::Impl::add_rough_solution() {
-  double largest = 0, correction = 0;
-  for (std::size_t i = 0; i < unknowns; ++i) {
-    largest = std::max(largest, std::abs(rough[i])), correction = std::max(correction, std::abs(unknown[i]));
-    unknown[i] += rough[i];
-  }
-  return correction <= largest_correction * largest;
+  const packed::Sizes size = engine.add(rough.data(), unknown.data(), 1, unknowns);
+  std::copy(rough.begin(), rough.begin() + static_cast<std::ptrdiff_t>(unknowns), unknown.begin());
+  return size.change <= largest_correction * size.values;
 }
 
 /// All tangents in the direction of `unknown`.

@@ -3,6 +3,7 @@
 #include "kernel/packed/compiled.hpp"
 
 #include <algorithm>
+#include <cstddef>
 
 /// Sums of products that later stages will want. Within loops over the convolutions of a class every order is known but for the stage: with D_a = lag − lag of a
 /// (D_b likewise), at the beginning of stage s, m = s + 2 − lag, the operand a is final up to order m − 1 + D_a.
@@ -20,6 +21,7 @@ void RolledEmitter::ahead() {
   auto& b = out_.b;
   open_stage("ahead");
   renew_blocks();
+  renew_copies();
   llvm::Function* const function = b.GetInsertBlock()->getParent();
   const auto block = [&] { return llvm::BasicBlock::Create(out_.context, "", function); };
   llvm::BasicBlock *const alone = block(), *const grouped = block(), *const done = block();
@@ -46,14 +48,32 @@ void RolledEmitter::ahead() {
   out_.end_function();
 }
 
-/// Copies of what is final now.
+/// Copies of what is final now, but for those of coordinates.
 void RolledEmitter::renew_blocks() {
-  for (const Block& block : p_.blocks) {
-    const int ahead = 2 - block.lag;
-    if (block.direct || (written_ && *written_ + ahead < 0)) continue;
-    Value* const values = values_of(block, row(ahead));
-    save(block.weighted ? out_.multiply(values, real(stage_plus(ahead))) : values, slot_at(row(ahead), block.first));
-  }
+  for (const Block& block : p_.blocks)
+    if (!block.direct && !p_.copies_coordinates(block)) renew(block);
+}
+
+/// Where the solution did not.
+void RolledEmitter::renew_copies() {
+  if (std::none_of(p_.blocks.begin(), p_.blocks.end(), [this](const Block& block) { return p_.copies_coordinates(block); })) return;
+  auto& b = out_.b;
+  llvm::Function* const function = b.GetInsertBlock()->getParent();
+  llvm::BasicBlock *const missing = llvm::BasicBlock::Create(out_.context, "", function), *const there = llvm::BasicBlock::Create(out_.context, "", function);
+  Value* const has = b.CreateAlignedLoad(b.getInt64Ty(), at(arguments_, offsetof(packed::CompiledArguments, has_copies)), llvm::Align(8));
+  b.CreateCondBr(b.CreateICmpEQ(has, b.getInt64(0)), missing, there);
+  b.SetInsertPoint(missing);
+  for (const Block& block : p_.blocks)
+    if (p_.copies_coordinates(block)) renew(block);
+  b.CreateBr(there);
+  b.SetInsertPoint(there);
+}
+
+void RolledEmitter::renew(const Block& block) {
+  const int ahead = 2 - block.lag;
+  if (written_ && *written_ + ahead < 0) return;
+  Value* const values = values_of(block, row(ahead));
+  save(block.weighted ? out_.multiply(values, real(stage_plus(ahead))) : values, slot_at(row(ahead), block.first));
 }
 
 /// Loops over the convolutions of each class, a few of each in turn, since neighbours have operands in common, which are then still in the first cache. `body`

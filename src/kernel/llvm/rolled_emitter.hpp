@@ -72,6 +72,8 @@ class RolledEmitter {
   Value* coefficients(std::uint32_t first) { return load(at(coefficients_, 8 * std::int64_t{first})); }
   Value* running_sum(Value* v, bool down);
   Value* carried(const Pack& pack, Value* sum, Value* row);
+  void strand(const Pack& pack, Value* sum);
+  void join(const Pack& pack, bool down, Value* row);
   Value* products(std::size_t index, Value* result);
   Value* convolution(std::size_t number, bool a_ends, bool b_ends);
   Value* end(std::uint32_t newest, std::uint32_t first, int lag, Value* sum);
@@ -96,6 +98,7 @@ class RolledEmitter {
   void correction();
   std::vector<Value*> product_with_inverse();
   Value* over_divisor(Value* x);
+  void correct_copies(Value* tangents);
   void set_correction_factors(int sign);
   void correct(Value* tangent_row);
   void correct(Slot slot, int lag, Value* tangent);
@@ -105,6 +108,8 @@ class RolledEmitter {
   // ----------------------------------------------------------------------------------------------- ahead (rolled_ahead.cpp)
   void ahead();
   void renew_blocks();
+  void renew_copies();
+  void renew(const Block& block);
   void each_convolution(const std::function<void(const Class&, Value* a, Value* b, Value* sums)>& body);
   llvm::GlobalVariable* offsets(const std::vector<std::size_t>& members);
   void add_up_alone();
@@ -151,6 +156,7 @@ class RolledEmitter {
 
   std::map<Slot, Recent> recent_;      // by first slot
   Scan scan_{no_slot, 0, nullptr, nullptr};
+  std::map<Slot, Value*> strands_;     // of a running sum in eight parts, before it is ended
   std::size_t time_ = 0;
 };
 

@@ -22,7 +22,8 @@ void RolledEmitter::first_stages() {
     for (int k = 0; k <= -program_.first_stage; ++k) rows_of_stage_.push_back(stage + k < 0 ? nullptr : row_of(stage_plus(k)));
     for (std::size_t i = 0; i < p_.packs.size(); ++i)
       if (stage + ahead_of(p_.packs[i]) >= 0) pack(i);
-    if (stage < 0) renew_blocks();
+    for (const Block& block : p_.blocks)
+      if (stage < 0 && !block.direct) renew(block);
     time_ += longest_memory + 1;  // what is in registers belongs to this stage
   }
   written_.reset();

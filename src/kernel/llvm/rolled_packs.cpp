@@ -16,6 +16,9 @@ void RolledEmitter::pack(std::size_t index) {
     case Pack::Sum: return keep(pack, products(index, columns(pack)));
     case Pack::Scan: return keep(pack, carried(pack, running_sum(columns(pack), false), row(ahead_of(pack))));
     case Pack::ScanDown: return keep(pack, carried(pack, running_sum(columns(pack), true), row(ahead_of(pack))));
+    case Pack::Strand: return strand(pack, columns(pack));
+    case Pack::Join: return join(pack, false, row(ahead_of(pack)));
+    case Pack::JoinDown: return join(pack, true, row(ahead_of(pack)));
     case Pack::Integral: return integral(index);
     case Pack::Quotient: return quotient(index);
     case Pack::SquareRoot: return square_root(index);
@@ -121,6 +124,27 @@ Value* RolledEmitter::carried(const Pack& pack, Value* sum, Value* row) {
   }
   scan_ = {pack.out, time_, sum, carry};
   return carry ? out_.add(sum, carry) : sum;
+}
+
+/// Of a running sum in eight parts, a vector that join() will end; until then in a register alone.
+void RolledEmitter::strand(const Pack& pack, Value* sum) {
+  if (!sum) sum = llvm::Constant::getNullValue(vector_);
+  strands_[pack.out] = pack.carry == no_slot ? sum : out_.add(sum, strands_.at(pack.carry));
+}
+
+void RolledEmitter::join(const Pack& pack, bool down, Value* row) {
+  constexpr int first = 0, last = static_cast<int>(lanes) - 1;
+  std::vector<int> places;
+  for (int lane = first; lane <= last; ++lane) places.push_back(down ? lane + 1 : lane == first ? 2 * last + 1 : lane - 1);
+  Value* const shifted = out_.b.CreateShuffleVector(strands_.at(pack.last_strand), llvm::Constant::getNullValue(vector_), places);
+  Value* owed = running_sum(shifted, down);
+  if (pack.carry != no_slot) owed = out_.add(owed, splat(load_one(slot_at(row, pack.carry))));
+  for (std::uint32_t i = 0; i < pack.strands; ++i) {
+    const Slot out = pack.out + i * lanes;
+    Value* const sum = out_.add(strands_.at(out), owed);
+    save(sum, slot_at(row, out));
+    recent_[out] = {sum, time_};
+  }
 }
 
 // ------------------------------------------------------------------------------------------------------------ products

@@ -68,7 +68,15 @@ void RolledEmitter::correction() {
   const std::vector<int> lag = corrected_lags();
   for (std::size_t i = 0; i < lag.size(); ++i)
     if (const auto slot = static_cast<Slot>(i * lanes); lag[i] >= 0) correct(slot, lag[i], load(slot_at(tangents, slot)));
+  correct_copies(tangents);
   out_.end_function();
+}
+
+/// (k + 2) q_{k+2}, as renewing them would make it; where there are no copies of x, it is made later.
+void RolledEmitter::correct_copies(Value* tangents) {
+  for (const Block& block : p_.blocks)
+    if (p_.copies_coordinates(block))
+      save(out_.multiply(over_divisor(load(slot_at(tangents, block.first))), real(stage_plus(2))), slot_at(row(2), block.first));
 }
 
 /// A change of q̈_k changes a coefficient of a slot of lag 2, 1, 0 by its tangent times 1, 1/(k + 1), 1/((k + 1)(k + 2)). `sign`: that of the tangents.
@@ -91,8 +99,9 @@ void RolledEmitter::correct(Value* tangent_row) {
     const Pack& pack = p_.packs[i];
     ++time_;
     tangent(pack, tangent_row);
-    if (pack.kind == Pack::Scalar) continue;
-    if (int& own = lag[pack.out / lanes]; own >= 0) correct(pack.out, std::exchange(own, -1), in_register(pack.out));
+    if (pack.kind == Pack::Scalar || pack.kind == Pack::Strand) continue;
+    for (Slot out = pack.out; out < pack.out + std::max(pack.strands, 1u) * lanes; out += lanes)
+      if (int& own = lag[out / lanes]; own >= 0) correct(out, std::exchange(own, -1), in_register(out));
   }
   for (std::size_t i = 0; i < lag.size(); ++i)  // what stands alone
     if (const auto slot = static_cast<Slot>(i * lanes); lag[i] >= 0) correct(slot, lag[i], load(slot_at(tangent_row, slot)));
@@ -126,10 +135,12 @@ std::vector<bool> RolledEmitter::needed_for_corrections(const std::vector<int>& 
   bool all_before = false;
   for (std::size_t i = p_.packs.size(); i-- > 0;) {
     const Pack& pack = p_.packs[i];
+    const Slot end = pack.out + std::max(pack.strands, 1u) * lanes;
     needed[i] = all_before || pack.kind == Pack::Scalar || lag[pack.out / lanes] >= 0;
-    for (Slot lane = 0; lane < lanes && pack.kind != Pack::Scalar; ++lane) needed[i] = needed[i] || slot_needed[pack.out + lane];
+    for (Slot slot = pack.out; slot < end && pack.kind != Pack::Scalar; ++slot) needed[i] = needed[i] || slot_needed[slot];
     if (!needed[i]) continue;
     all_before = all_before || pack.kind == Pack::Scalar;
+    for (Slot slot = pack.out; slot < end && pack.strands > 0; ++slot) need(slot);
     if (pack.carry != no_slot) need(pack.carry);
     for (std::uint32_t c = pack.first_column; c < pack.last_column; ++c) {
       const Column& column = p_.columns[c];

@@ -25,6 +25,9 @@ void RolledEmitter::tangent(const Pack& pack, Value* row) {
     case Pack::Sum: return keep(pack, tangent_products(pack, row, tangent_columns(pack, row)), row);
     case Pack::Scan: return keep(pack, carried(pack, running_sum(tangent_columns(pack, row), false), row), row);
     case Pack::ScanDown: return keep(pack, carried(pack, running_sum(tangent_columns(pack, row), true), row), row);
+    case Pack::Strand: return strand(pack, tangent_columns(pack, row));
+    case Pack::Join: return join(pack, false, row);
+    case Pack::JoinDown: return join(pack, true, row);
     case Pack::Integral: {
       Value* const factor = out_.multiply(coefficients(pack.coefficients), at_point(pack.b));
       Value* const u = change(pack, pack.a, row);

@@ -19,7 +19,7 @@ void StraightEmitter::dynamics(const Pack& pack) {
     case Pack::Quotient: keep(pack, quotient(pack, w)); break;
     case Pack::SquareRoot: keep(pack, square_root(pack, w)); break;
     case Pack::Scalar: scalar(pack); break;
-    case Pack::Scan: case Pack::ScanDown: break;  // of large systems alone, which are declined
+    case Pack::Scan: case Pack::ScanDown: case Pack::Strand: case Pack::Join: case Pack::JoinDown: break;  // of large systems alone, which are declined
   }
 }
 

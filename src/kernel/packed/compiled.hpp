@@ -24,6 +24,7 @@ struct CompiledArguments {
   const double* inverse = nullptr;       // rolled: −M₀⁻¹, [unknowns] rows, each padded to a multiple of 8
   double* tangent_row = nullptr;         // rolled `solve`: [stride] scratch; what no pack writes is 0
   const double* tangents = nullptr;      // rolled `correct`: [stride] x and the slots' tangents in its direction, where M₀ x = R_k
+  std::int64_t has_copies = 0;           // rolled: `tangents` holds x also in the cells of blocks that copy coordinates, so that `correct` renews these
   /// Rolled: ScalarRules.
   void (*value)(void* context, std::uint32_t instruction, int order) = nullptr;
   void (*tangent)(void* context, std::uint32_t instruction, double* tangents) = nullptr;
@@ -44,7 +45,7 @@ using CompiledFirst = void (*)(const CompiledArguments*);
 ///   stage    ≥ 1; as Engine::run_stage, with q_{k+2} = 0
 ///   solve    ≥ 1; as Engine::solve_by_inverse, set_accelerations and correct
 ///   correct  ≥ 1; as the last two, by `tangents`
-///   ahead    ≥ 0, after the others, in turn; as Engine::renew_blocks, and sums for the stages that follow
+///   ahead    ≥ 0, after the others, in turn; as Engine::renew_blocks, but for what `correct` has renewed, and sums for the stages that follow
 using CompiledStage = void (*)(const CompiledArguments*, std::int64_t stage);
 
 /// Rolled code: as Engine::tangents.

@@ -49,6 +49,11 @@ struct TangentMatrix {
   std::array<Slot, 3> end{};             // … and where those of lag 0, 1, 2 end; all multiples of 8
 };
 
+/// The largest absolute value of each.
+struct Sizes {
+  double values = 0, change = 0;
+};
+
 struct Engine {
   const char* name;
   /// Every pack at the order that belongs to the stage.
@@ -72,6 +77,8 @@ struct Engine {
   bool (*solve_by_inverse)(const double* inverse, std::size_t stride, const double* row, const Slot* residual, std::size_t n, double* solution);
   /// Whether all of `rows` rows of `count` numbers are finite.
   bool (*are_finite)(const double* first, std::size_t stride, std::size_t rows, std::size_t count);
+  /// values += factor · change, of `count` numbers in eights; the sizes are those before, and of what was added.
+  Sizes (*add)(double* values, const double* change, double factor, std::size_t count);
   /// q_{k+2} = q̈_k / ((k+1)(k+2)) for k = stage, q̈_k = sign · `solution`; read and written in eights.
   void (*set_accelerations)(const Tables&, int stage, const double* solution, std::size_t unknowns, int sign);
   /// What the coefficients of the stage that later orders read owe to q̈_k: in a slot of lag ℓ, Σ_d weights[d] · tangents[d] times 1,

@@ -23,9 +23,6 @@ void increments(const double* first, std::size_t stride, std::size_t count, int 
   }
 }
 
-inline Vector larger(Vector x, Vector y) { return x > y ? x : y; }
-inline Vector absolute(Vector x) { return reinterpret_cast<Vector>(reinterpret_cast<Places>(x) & 0x7fffffffffffffff); }
-
 inline double least_lane(Vector v, std::size_t count) {
   const auto fold = [&v](Places places) {
     const Vector other = __builtin_shuffle(v, places);

@@ -94,15 +94,30 @@ bool solve_by_inverse(const double* inverse, std::size_t stride, const double* r
   return finite;
 }
 
+/// In sums that do not wait for each other.
 bool rows_are_finite(const double* first, std::size_t stride, std::size_t rows, std::size_t count) {
-  Vector sum = all(0);
+  Vector sums[4] = {all(0), all(0), all(0), all(0)};
   double rest = 0;
   for (const double* row = first; row != first + rows * stride; row += stride) {
     std::size_t i = 0;
-    for (; i + lanes <= count; i += lanes) sum += load(row + i) * all(0);
+    for (; i + 4 * lanes <= count; i += 4 * lanes)
+      for (std::size_t s = 0; s < 4; ++s) sums[s] += load(row + i + s * lanes) * all(0);
+    for (; i + lanes <= count; i += lanes) sums[i / lanes % 4] += load(row + i) * all(0);
     for (; i < count; ++i) rest += row[i] * 0;
   }
-  return are_finite(sum) && rest == 0;
+  return are_finite((sums[0] + sums[1]) + (sums[2] + sums[3])) && rest == 0;
+}
+
+/// Numbers beyond `count` take no part in the sizes.
+Sizes add(double* values, const double* change, double factor, std::size_t count) {
+  Vector of_values = all(0), of_change = all(0);
+  for (std::size_t i = 0; i < count; i += lanes) {
+    const Vector before = load(values + i), added = all(factor) * load(change + i);
+    const auto used = lane_numbers < all(static_cast<double>(count - i));
+    of_values = larger(of_values, absolute(used ? before : all(0))), of_change = larger(of_change, absolute(used ? added : all(0)));
+    save(values + i, before + added);
+  }
+  return {largest_lane(of_values), largest_lane(of_change)};
 }
 
 void set_accelerations(const Tables& tables, int stage, const double* solution, std::size_t unknowns, int sign) {

@@ -28,6 +28,9 @@ class Stage {
         case Pack::Sum: save(row_ + pack.out, products(pack, columns(pack))); break;
         case Pack::Scan: save(row_ + pack.out, running_sum(columns(pack)) + carry_of(pack.carry, row_)); break;
         case Pack::ScanDown: save(row_ + pack.out, running_sum_down(columns(pack)) + carry_of(pack.carry, row_)); break;
+        case Pack::Strand: strand(pack); break;
+        case Pack::Join: join(pack, before_lanes); break;
+        case Pack::JoinDown: join(pack, before_lanes_down); break;
         case Pack::Integral: integral(pack); break;
         case Pack::Quotient: quotient(pack); break;
         case Pack::SquareRoot: square_root(pack); break;
@@ -76,6 +79,15 @@ class Stage {
       sum += run.shift == 0 ? part : all(run.shift == 1 ? k_ + 1.0 : (k_ + 1.0) * (k_ + 2.0)) * part;
     }
     return sum;
+  }
+
+  void strand(const ReadyPack& pack) const {
+    const Vector own = columns(pack);
+    save(row_ + pack.out, pack.carry == no_slot ? own : own + load(row_ + pack.carry));
+  }
+
+  void join(const ReadyPack& pack, Vector (*before)(Vector)) const {
+    join_strands(*pack.pack, row_, before);
   }
 
   Vector products(const ReadyPack& pack, Vector result) const {

@@ -16,6 +16,9 @@ class Tangents {
         case Pack::Sum: sum(pack); break;
         case Pack::Scan: scan(pack, running_sum); break;
         case Pack::ScanDown: scan(pack, running_sum_down); break;
+        case Pack::Strand: strand(pack); break;
+        case Pack::Join: join(pack, before_lanes); break;
+        case Pack::JoinDown: join(pack, before_lanes_down); break;
         case Pack::Integral: linear(pack, load(t_.coefficients + pack.coefficients) * value_of(pack.b), all(0)); break;
         case Pack::Quotient: quotient(pack); break;
         case Pack::SquareRoot: linear(pack, all(0.5) / value_of(pack.y), all(0)); break;
@@ -82,6 +85,16 @@ class Tangents {
     Vector sums[W] = {};
     columns(pack, sums);
     for (int d = 0; d < W; ++d) save(row(d) + pack.out, sum_of(sums[d]) + carry_of(pack.carry, row(d)));
+  }
+
+  void strand(const Pack& pack) const {
+    Vector sums[W] = {};
+    columns(pack, sums);
+    for (int d = 0; d < W; ++d) save(row(d) + pack.out, pack.carry == no_slot ? sums[d] : sums[d] + load(row(d) + pack.carry));
+  }
+
+  void join(const Pack& pack, Vector (*before)(Vector)) const {
+    for (int d = 0; d < W; ++d) join_strands(pack, row(d), before);
   }
 
   /// by_a · ∂a + by_b · ∂b

@@ -53,10 +53,29 @@ inline Vector running_sum_down(Vector v) {
   return v + __builtin_shuffle(v, zero, Places{4, 5, 6, 7, 8, 8, 8, 8});
 }
 
+/// All lanes before each.
+inline Vector before_lanes(Vector v) { return running_sum(__builtin_shuffle(v, all(0), Places{8, 0, 1, 2, 3, 4, 5, 6})); }
+inline Vector before_lanes_down(Vector v) { return running_sum_down(__builtin_shuffle(v, all(0), Places{1, 2, 3, 4, 5, 6, 7, 8})); }
+
 /// What a running sum adds to.
 inline Vector carry_of(Slot carry, const double* row) { return carry == no_slot ? all(0) : all(row[carry]); }
 
+/// A running sum whose lanes are each right but for the lanes before.
+inline void join_strands(const Pack& pack, double* row, Vector (*before)(Vector)) {
+  const Vector owed = before(load(row + pack.last_strand)) + carry_of(pack.carry, row);
+  for (double* strand = row + pack.out; strand != row + pack.out + pack.strands * lanes; strand += lanes) save(strand, load(strand) + owed);
+}
+
 const Vector lane_numbers = {0, 1, 2, 3, 4, 5, 6, 7};
+
+inline Vector larger(Vector x, Vector y) { return x > y ? x : y; }
+inline Vector absolute(Vector x) { return reinterpret_cast<Vector>(reinterpret_cast<Places>(x) & 0x7fffffffffffffff); }
+
+inline double largest_lane(Vector v) {
+  v = larger(v, __builtin_shuffle(v, Places{4, 5, 6, 7, 0, 1, 2, 3}));
+  v = larger(v, __builtin_shuffle(v, Places{2, 3, 0, 1, 6, 7, 4, 5}));
+  return v[0] > v[1] ? v[0] : v[1];
+}
 
 /// Infinity and NaN times 0 are NaN.
 inline bool are_finite(Vector v) {

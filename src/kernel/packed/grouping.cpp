@@ -1,10 +1,9 @@
 #include "kernel/packed/grouping.hpp"
 
-#include "kernel/packed/layout.hpp"
-
 #include <algorithm>
 #include <array>
 #include <map>
+#include <span>
 #include <tuple>
 
 namespace maupertuis::packed {
@@ -12,13 +11,15 @@ namespace {
 
 class Grouping {
  public:
-  Grouping(const Program& program, std::vector<Step>& steps) : in_(program), steps_(steps) {}
+  Grouping(const Program& program, std::vector<Step>& steps, const LaneOrder& order)
+      : in_(program), steps_(steps), piece_(steps.size(), Before), order_(order) {}
 
   std::vector<Group> run() {
     find_producers();
     find_levels();
     find_stored();
     align_products();
+    cut_chains();
     find_groups();
     order_groups();
     if (has_no_choices(in_)) set_fronts();
@@ -126,10 +127,59 @@ class Grouping {
     }
   }
 
+  // -------------------------------------------------------------------------------------------------------- strands
+
+  /// Running sums whose members stand in the eights of order_, but for some at the ends.
+  void cut_chains() {
+    find_homes();
+    std::map<int, std::vector<std::size_t>> chains;
+    for (std::size_t i = 0; i < steps_.size(); ++i)
+      if (steps_[i].chain >= 0) chains[steps_[i].chain].push_back(i);
+    for (const auto& [chain, members] : chains) cut_chain(members);
+  }
+
+  /// [slots] the place in order_ of the coordinate that a slot belongs to: that of what it adds to a running sum, or else of its first operand.
+  void find_homes() {
+    home_.assign(in_.slots, none);
+    for (std::size_t place = 0; place < order_.coordinates.size(); ++place) home_[order_.coordinates[place]] = place;
+    for (const Step& s : steps_) {
+      std::size_t home = none;
+      if (s.chain >= 0) {
+        for (std::size_t t = 1; t < s.linear.size(); ++t)
+          if (home == none) home = home_[s.linear[t].a];
+      } else {
+        for_operands(s, [&](Slot slot, int) { if (home == none) home = home_[slot]; });
+      }
+      home_[s.head.out] = home;
+      if (s.head.second != no_slot) home_[s.head.second] = home;
+    }
+  }
+  std::size_t home(std::size_t index) const { return home_[step(index).head.out]; }
+
+  void cut_chain(const std::vector<std::size_t>& members) {
+    const auto is_whole = [&](std::size_t i) { return home(i) < order_.whole; };
+    const auto begin = std::find_if(members.begin(), members.end(), is_whole), end = std::find_if_not(begin, members.end(), is_whole);
+    if (!are_strands({begin, end})) return;
+    for (auto i = begin; i != end; ++i) piece_[*i] = Strands;
+    for (auto i = end; i != members.end(); ++i) piece_[*i] = After;
+  }
+
+  /// Lane by lane, up or down, with the same eights in each.
+  bool are_strands(std::span<const std::size_t> members) const {
+    if (members.size() < 2 * lanes || members.size() % lanes != 0) return false;
+    const std::size_t length = members.size() / lanes;
+    const bool up = home(members[0]) % lanes == 0;
+    for (std::size_t m = 0; m < members.size(); ++m)
+      if (home(members[m]) % lanes != (up ? m / length : lanes - 1 - m / length) || home(members[m]) / lanes != home(members[m % length]) / lanes ||
+          (m > 0 && m < length && home(members[m]) == home(members[m - 1])))
+        return false;
+    return true;
+  }
+
   /// Instructions of one key may share a pack.
   std::vector<int> shape(std::size_t index) const {
     const Step& s = step(index);
-    if (s.chain >= 0) return {level_[index], -1, s.chain};
+    if (s.chain >= 0) return {level_[index], -1, s.chain, piece_[index]};
     std::vector<int> key{level_[index], static_cast<int>(s.head.op), s.head.lag, stored_[s.head.out],
                          in_.tangent_lags[s.head.out] == Program::unmoved};
     if (s.head.a != no_slot) key.push_back(lag(s.head.a));
@@ -167,7 +217,7 @@ class Grouping {
   /// Non-linear groups follow their first operands; sums follow their consumers.
   void order_groups() {
     place_.assign(in_.slots, 0);
-    for (Slot slot = 0; slot < in_.unknowns; ++slot) place_[slot] = slot;
+    for (Slot slot = 0; slot < in_.unknowns; ++slot) place_[slot] = home_[slot] != none ? home_[slot] : slot;
     std::size_t next = in_.unknowns;
     for (Group& group : groups_) {
       if (step(group.steps[0]).chain < 0)
@@ -179,7 +229,11 @@ class Grouping {
     }
     rank_consumers();
     for (Group& group : groups_) {
-      if (step(group.steps[0]).chain >= 0) {
+      if (piece_[group.steps[0]] == Strands) {
+        group.in_strands = true;
+        group.down = home(group.steps.front()) % lanes != 0;
+        std::sort(group.steps.begin(), group.steps.end(), [&](std::size_t x, std::size_t y) { return home(x) < home(y); });
+      } else if (step(group.steps[0]).chain >= 0) {
         group.down = rank_[step(group.steps.front()).head.out] > rank_[step(group.steps.back()).head.out];
         if (group.down) std::reverse(group.steps.begin(), group.steps.end());
       } else if (is_linear(step(group.steps[0]))) {
@@ -196,7 +250,7 @@ class Grouping {
     std::vector<std::size_t> lane_of(in_.slots, none);
     for (Slot slot = 0; slot < in_.unknowns; ++slot) lane_of[slot] = slot % lanes;
     for (Group& group : groups_) {
-      if (step(group.steps[0]).chain >= 0) {
+      if (step(group.steps[0]).chain >= 0 && !group.in_strands) {
         std::array<std::size_t, lanes> votes{};
         for (std::size_t place = 0; place < group.steps.size(); ++place) {
           const std::vector<Term>& terms = step(group.steps[place]).linear;
@@ -240,6 +294,7 @@ class Grouping {
   }
 
   static constexpr std::size_t none = ~std::size_t{0};
+  enum Piece : int { Before, Strands, After };
 
   const Program& in_;
   std::vector<Step>& steps_;
@@ -247,11 +302,16 @@ class Grouping {
   std::vector<int> level_;              // [steps]
   std::vector<bool> stored_;            // [slots]
   std::vector<Group> groups_;
+  std::vector<Piece> piece_;            // [steps] of running sums
+  const LaneOrder& order_;
+  std::vector<std::size_t> home_;       // [slots]
   std::vector<std::size_t> place_, rank_;  // [slots]
 };
 
 }  // namespace
 
-std::vector<Group> group_steps(const Program& program, std::vector<Step>& steps) { return Grouping(program, steps).run(); }
+std::vector<Group> group_steps(const Program& program, std::vector<Step>& steps, const LaneOrder& order) {
+  return Grouping(program, steps, order).run();
+}
 
 }  // namespace maupertuis::packed

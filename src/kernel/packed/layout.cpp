@@ -34,6 +34,10 @@ class Packs {
         for (const std::size_t i : group.steps) scalar(i, group.level);
         continue;
       }
+      if (group.in_strands) {
+        write_strands(group);
+        continue;
+      }
       const std::size_t end = group.front + group.steps.size(), chunks = padded(end) / lanes;
       for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
         const std::size_t first = lanes * (group.down ? chunks - 1 - chunk : chunk), front = first == 0 ? group.front : 0;
@@ -54,12 +58,45 @@ class Packs {
 
   using Members = std::span<const std::size_t>;
 
+  /// Vector by vector in the order of the sum, then what the lanes before come to.
+  void write_strands(const Group& group) {
+    const std::size_t strands = group.steps.size() / lanes;
+    const auto place = [&](std::size_t vector) { return out_.number[step(group.steps[lanes * vector]).head.out]; };
+    const std::size_t begin = std::min_element(group.steps.begin(), group.steps.end()) - group.steps.begin();
+    const bool upwards = begin / lanes == 0;
+    Slot before = no_slot;
+    for (std::size_t i = 0; i < strands; ++i) {
+      const std::size_t vector = upwards ? i : strands - 1 - i;
+      const Members members = Members(group.steps).subspan(lanes * vector, lanes);
+      Pack pack = pack_of(members, group);
+      pack.kind = Pack::Strand, pack.carry = before;
+      columns(pack, members);
+      out_.packs.push_back(pack);
+      before = place(vector);
+    }
+    Pack join = pack_of(Members(group.steps).first(lanes), group);
+    join.kind = group.down ? Pack::JoinDown : Pack::Join;
+    join.carry = sum_before(group.steps[begin]);
+    join.strands = static_cast<std::uint32_t>(strands), join.last_strand = before;
+    out_.packs.push_back(join);
+  }
+
+  /// What a running sum goes on with there; no_slot: nothing.
+  Slot sum_before(std::size_t index) const {
+    const Slot before = out_.number[step(index).linear.front().a];
+    return before == out_.program.one ? no_slot : before;
+  }
+
+  Pack pack_of(Members members, const Group& group, std::size_t front = 0) const {
+    const Instruction& head = step(members[0]).head;
+    return {.lag = head.lag, .level = static_cast<std::int8_t>(std::min(group.level, 127)), .width = static_cast<std::uint32_t>(front + members.size()),
+            .out = static_cast<Slot>(out_.number[head.out] - front), .instruction = index_[members[0]]};
+  }
+
   /// `front`: lanes before the first member.
   void write_pack(Members members, const Group& group, std::size_t front) {
     const Step& shape = step(members[0]);
-    Pack pack{.lag = shape.head.lag, .level = static_cast<std::int8_t>(std::min(group.level, 127)),
-              .width = static_cast<std::uint32_t>(front + members.size()), .out = static_cast<Slot>(out_.number[shape.head.out] - front),
-              .instruction = index_[members[0]]};
+    Pack pack = pack_of(members, group, front);
     if (shape.chain >= 0) return scan(pack, members, group, front);
     switch (shape.head.op) {
       case Op::SinCos: return pairs(pack, members, group, -1);
@@ -136,8 +173,7 @@ class Packs {
 
   void scan(Pack pack, Members members, const Group& group, std::size_t front) {
     pack.kind = group.down ? Pack::ScanDown : Pack::Scan;
-    const Slot before = step(group.down ? members.back() : members.front()).linear.front().a;
-    if (out_.number[before] != out_.program.one) pack.carry = out_.number[before];
+    pack.carry = sum_before(group.down ? members.back() : members.front());
     columns(pack, members, front);
     out_.packs.push_back(pack);
   }
@@ -257,7 +293,7 @@ class Packs {
 
 }  // namespace
 
-PackedProgram pack(const Program& program) {
+PackedProgram pack(const Program& program, const LaneOrder& order) {
   const bool large = program.unknowns > most_of_small;
   Program extended = program;  // with the constants of the steps
   std::vector<Step> steps = dynamics_of(program);
@@ -265,7 +301,7 @@ PackedProgram pack(const Program& program) {
   if (large) find_chains(extended, steps, shortest_chain);
   collapse_sums(extended, steps, large ? longest_sum_of_large : longest_sum_of_small);
   if (!large) scale_factors(extended, steps);  // of large ones, lifted solutions know the slots of the program as it was
-  const std::vector<Group> groups = group_steps(program, steps);
+  const std::vector<Group> groups = group_steps(program, steps, order);
   Numbering numbering = number_slots(program, steps, groups);
   Renumbered renumbered = renumber(program, std::move(extended), steps, groups, numbering);
   return Packs(std::move(renumbered), std::move(numbering.number), steps, groups, large && has_no_choices(program)).run();

@@ -1,6 +1,7 @@
 #pragma once
 #include "kernel/program/program.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -55,6 +56,9 @@ struct Pack {
     Sum,         // columns + products
     Scan,        // running sums of columns: each lane adds to the lane before, the first to `carry` where there is one
     ScanDown,    // the same from the last lane to the first
+    Strand,      // a running sum in eight parts, a lane each: its columns and the vector `carry`, where there is one
+    Join,        // at the end of such strands: each lane of all of them and all lanes before it of the last one, and `carry` where there is one
+    JoinDown,    // the same from the last lane to the first
     Integral,    // y with dy = c w du: sines, cosines, exponentials, inverse functions
     Quotient,    // block a / block b
     SquareRoot,  // of block a
@@ -69,7 +73,9 @@ struct Pack {
   std::uint32_t first_aligned = 0, last_aligned = 0;  // Sum: the same columns by their place in the sums, for compiled code
   std::uint32_t a = no_block, b = no_block, y = no_block;  // Integral: u (weighted), w; Quotient: a, b, y; SquareRoot: u, –, y
   std::uint32_t coefficients = 0;       // Integral: c
-  Slot carry = no_slot;                 // Scan: what the first lane adds to; no_slot: nothing
+  Slot carry = no_slot;                 // Scan: what the first lane adds to; Strand, Join: see there; no_slot: nothing
+  std::uint32_t strands = 0;            // Join: their number; `out` is the lowest of their vectors
+  Slot last_strand = no_slot;           // Join: vector of the last one
   Slot pairs = no_block;                // Integral of sines: the first of their cosines
   std::uint32_t instruction = 0;        // of the first lane; those of the others follow
   std::uint32_t first_function = 0, last_function = 0;  // Integral: what gives order 0, in PackedProgram::functions
@@ -86,9 +92,21 @@ struct PackedProgram {
   std::vector<ProductTerm> products;
   std::vector<std::uint32_t> functions; // indices of instructions
   std::vector<ConstantId> coefficients; // of lanes that are not in use: the constant 0
+
+  /// Weighted, and not side by side where they stand: what a solution gives for them may be put into the block's cells at once.
+  bool copies_coordinates(const Block& block) const {
+    return block.weighted && !block.is_range && std::all_of(block.slots.begin(), block.slots.end(), [this](Slot s) { return s < program.freedoms; });
+  }
 };
 
-/// Cost about linear in the size of the program.
-PackedProgram pack(const Program& program);
+/// Coordinates in the order in which vectors are to hold what belongs to them: the first `whole` by eights, whose lanes are eight parts of a chain,
+/// one after the other or the other way round.
+struct LaneOrder {
+  std::vector<Slot> coordinates;
+  std::size_t whole = 0;
+};
+
+/// `order`: as the coordinates are numbered, unless told. Cost about linear in the size of the program.
+PackedProgram pack(const Program& program, const LaneOrder& order = {});
 
 }  // namespace maupertuis::packed

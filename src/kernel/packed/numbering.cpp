@@ -99,7 +99,8 @@ class Renumbering {
     };
     for (const Group& group : groups_) {
       std::vector<std::size_t> in_order = group.steps;
-      if (group.down) std::reverse(in_order.begin(), in_order.end());
+      if (group.in_strands) std::sort(in_order.begin(), in_order.end());
+      else if (group.down) std::reverse(in_order.begin(), in_order.end());
       for (const std::size_t i : in_order) {
         const auto index = static_cast<std::uint32_t>(program_.instructions.size());
         index_[i] = index;

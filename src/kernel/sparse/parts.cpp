@@ -39,6 +39,25 @@ std::size_t length_of(std::size_t levels, std::size_t parts) {
   return levels > others ? (levels - others) / parts : 0;
 }
 
+/// end | part 0 | · | part 1 | · … part | end
+struct Cut {
+  std::size_t parts = 0, length = 0, left = 0;  // left: levels at the ends besides the outermost of these
+
+  /// `turn` = length: the level after the part.
+  std::size_t level(std::size_t part, std::size_t turn) const { return left / 2 + 1 + part * (length + 1) + turn; }
+};
+
+/// That with the fewest levels that wait for each other; no parts where these are not much fewer than all.
+Cut best_cut(std::size_t levels) {
+  Cut best;
+  std::size_t least = levels * 3 / 4;
+  for (const std::size_t parts : {4, 8}) {
+    const std::size_t length = length_of(levels, parts), depth = levels - (parts - 1) * length;
+    if (length >= 2 && depth < least) best = {parts, length, levels - parts * (length + 1) - 1}, least = depth;
+  }
+  return best;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> nearest_coordinates(const LiftedSystem& system) {
@@ -58,21 +77,46 @@ std::vector<std::uint32_t> nearest_coordinates(const LiftedSystem& system) {
 
 std::vector<std::vector<std::uint32_t>> cut_into_parts(const LiftedSystem& system, std::uint32_t first) {
   const Levels levels = levels_from(system, first);
-  std::size_t parts = 0, least = levels.size() * 3 / 4;  // levels that wait for each other
-  for (const std::size_t count : {4, 8}) {
-    const std::size_t length = length_of(levels.size(), count), depth = levels.size() - (count - 1) * length;
-    if (length >= 2 && depth < least) parts = count, least = depth;
-  }
-  std::vector<std::vector<std::uint32_t>> out(parts);
-  if (parts == 0) return out;
-  const std::size_t length = length_of(levels.size(), parts), left = levels.size() - parts * (length + 1) - 1;
-  for (std::size_t part = 0; part < parts; ++part)
-    for (std::size_t turn = 0; turn < length; ++turn) {
-      const auto& level = levels[left / 2 + 1 + part * (length + 1) + turn];
+  const Cut cut = best_cut(levels.size());
+  std::vector<std::vector<std::uint32_t>> out(cut.parts);
+  for (std::size_t part = 0; part < cut.parts; ++part)
+    for (std::size_t turn = 0; turn < cut.length; ++turn) {
+      const auto& level = levels[cut.level(part, turn)];
       out[part].insert(out[part].end(), level.begin(), level.end());
     }
   for (const auto& part : out)
     if (part.size() != out[0].size()) return {};
+  return out;
+}
+
+Strip strip_of(const Program& program) {
+  constexpr std::size_t eight = 8;
+  const auto system = lift(program, std::vector<bool>(program.slots, false));
+  if (!system) return {};
+  const Levels levels = levels_from(*system, levels_from(*system, 0).back().front());
+  const Cut cut = best_cut(levels.size());
+  if (cut.parts != eight) return {};
+  Strip out{std::vector<std::vector<std::uint32_t>>(eight), std::vector<std::uint32_t>(program.unknowns, none), levels.size(), {}, 0};
+  for (std::uint32_t l = 0; l < levels.size(); ++l)
+    for (const std::uint32_t coordinate : levels[l]) out.level[coordinate] = l;
+  std::vector<bool> placed(program.unknowns, false);
+  for (std::size_t turn = 0; turn <= cut.length; ++turn) {
+    const std::size_t size = levels[cut.level(0, turn)].size();
+    bool alike = true;
+    for (std::size_t part = 0; part < eight; ++part) alike = alike && levels[cut.level(part, turn)].size() == size;
+    if (!alike && turn < cut.length) return {};
+    for (std::size_t i = 0; i < size && alike; ++i)
+      for (std::size_t part = 0; part < eight; ++part) {
+        const std::uint32_t coordinate = levels[cut.level(part, turn)][i];
+        out.order.push_back(coordinate), placed[coordinate] = true;
+        if (turn < cut.length) out.parts[part].push_back(coordinate);
+      }
+  }
+  out.whole = out.order.size();
+  for (std::uint32_t i = 0; i < program.unknowns; ++i) {
+    if (out.level[i] == none) return {};
+    if (!placed[i]) out.order.push_back(i);
+  }
   return out;
 }
 

@@ -13,4 +13,19 @@ std::vector<std::uint32_t> nearest_coordinates(const LiftedSystem& system);
 /// `first`: the coordinate at the end where the elimination begins.
 std::vector<std::vector<std::uint32_t>> cut_into_parts(const LiftedSystem& system, std::uint32_t first);
 
+/// A program whose coordinates stand in a strip with eight parts to cut it into.
+struct Strip {
+  std::vector<std::vector<std::uint32_t>> parts;  // [8][turns] as cut_into_parts(), from the first level on
+  std::vector<std::uint32_t> level;               // [coordinates]
+  std::size_t levels = 0;
+  std::vector<std::uint32_t> order;               // of coordinates: turn by turn, a lane for each part, then the separators, then what lies at the ends
+  std::size_t whole = 0;                          // of `order`: those that stand in eights
+
+  /// Whether an elimination that begins there meets the last level first.
+  bool ends_at(std::uint32_t coordinate) const { return 2 * level[coordinate] > levels; }
+};
+
+/// No parts where that takes longer than it saves, or levels differ.
+Strip strip_of(const Program& program);
+
 }  // namespace maupertuis::sparse

@@ -39,9 +39,14 @@ class SparseSolver {
   void solve(const double* right, std::span<const std::uint32_t> places, double* x) const;
   void solve(std::span<const double> b, double* x) const { solve(b.data(), {}, x); }
 
-  /// solve() as a straight line over the arrays of SolveArray; of x it fills `wanted` cells alone. b_i is read at places[i], and is 0 where that
+  /// A cell of x, and where its number goes.
+  struct Wanted {
+    std::uint32_t cell, place;
+  };
+
+  /// solve() as a straight line over the arrays of SolveArray; of x it stores what is `wanted` alone. b_i is read at places[i], and is 0 where that
   /// is `no_place`; without places at i.
-  straight::StraightLine written_solve(std::span<const std::uint32_t> wanted, std::span<const std::uint32_t> places = {}) const;
+  straight::StraightLine written_solve(std::span<const Wanted> wanted, std::span<const std::uint32_t> places = {}) const;
   const double* factors() const { return factors_.data(); }
   const double* inverse_pivots() const { return inverse_.data(); }
   /// factor() as a straight line over the arrays of FactorArrays, which the three below are; sound() where every pivot is above `least_share` of

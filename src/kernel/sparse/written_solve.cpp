@@ -17,7 +17,7 @@ class SolveWriter {
  public:
   SolveWriter(const SparseSolver& solver, Builder& to) : s_(solver), to_(to), x_(s_.part_of_cell_.size(), to.literal(0)) {}
 
-  void run(std::span<const std::uint32_t> wanted, std::span<const std::uint32_t> places) {
+  void run(std::span<const SparseSolver::Wanted> wanted, std::span<const std::uint32_t> places) {
     for (std::uint32_t i = 0; i < s_.cell_of_residual_.size(); ++i) {
       const std::uint32_t place = places.empty() ? i : places[i];
       x_[s_.cell_of_residual_[i]] = place == no_place ? to_.literal(0) : to_.given(RightSideArray, place);
@@ -28,7 +28,7 @@ class SolveWriter {
     partial_.clear();
     sweep(s_.backward_, false, false);
     sweep(s_.backward_, false, true);
-    for (const std::uint32_t cell : wanted) to_.store(x_[cell], UnknownArray, cell);
+    for (const auto& [cell, place] : wanted) to_.store(x_[cell], UnknownArray, place);
   }
 
  private:
@@ -86,7 +86,7 @@ class SolveWriter {
   std::vector<std::vector<Value>> partial_;   // [cells] sums of parts
 };
 
-straight::StraightLine SparseSolver::written_solve(std::span<const std::uint32_t> wanted, std::span<const std::uint32_t> places) const {
+straight::StraightLine SparseSolver::written_solve(std::span<const Wanted> wanted, std::span<const std::uint32_t> places) const {
   Builder to;
   SolveWriter(*this, to).run(wanted, places);
   return to.finish(solve_arrays, 1, 0);

@@ -1,5 +1,6 @@
 #pragma once
 #include "kernel/interpreter/lifted_solve.hpp"
+#include "kernel/packed/compiled.hpp"
 
 #include <doctest/doctest.h>
 #include <maupertuis/transform.hpp>
@@ -72,8 +73,9 @@ inline constexpr int later = 5;
 /// The lifted system of a program at a point, as a workspace uses it.
 struct Lifted {
   explicit Lifted(const Kernel& k)
-      : kernel(k), program(kernel.program()), packed(packed::pack(program)), memory(packed.program, 1 - program.first_stage, packed.cells),
-        solve(program, packed, memory.stride) {
+      : kernel(k), program(kernel.program()),
+        strip(program.unknowns > packed::most_by_inverse ? sparse::strip_of(program) : sparse::Strip{}), packed(packed::pack(program, {strip.order, strip.whole})),
+        memory(packed.program, 1 - program.first_stage, packed.cells), solve(program, strip, packed, memory.stride) {
     interpreter::compute_constants(memory, one, {});
     solve.set_constants(memory);
   }
@@ -87,6 +89,7 @@ struct Lifted {
 
   Kernel kernel;
   const Program& program;
+  sparse::Strip strip;
   packed::PackedProgram packed;
   interpreter::Memory memory;
   interpreter::LiftedSolve solve;
