@@ -149,7 +149,7 @@ void ForwardDynamics::Impl::compute_constants() {
   for (std::size_t i = 0; i < constants.size(); ++i) constants[i] = constant(i);
   at_rest.set_constants(constants);
   moving.set_constants(constants);
-  if (assembly) assembly->set_constants(constants.data());
+  if (assembly) assembly->set_constants(constants.data(), entries);
   full.set_parameters(parameters);
   full.set_branches(sides);
   if (system && program.unknowns == n) choose_pivots();
@@ -232,7 +232,7 @@ void ForwardDynamics::Impl::renew_interpreter() {
   interpreter_is_behind = false;
   at_rest.renew(constants, live);
   moving.renew(constants, live);
-  if (assembly) assembly->set_constants(constants.data());
+  if (assembly) assembly->set_constants(constants.data(), entries);
 }
 
 /// unknown → x. False: the full matrix is to decide.

@@ -49,7 +49,7 @@ LiftedSolve::LiftedSolve(const Program& program, const sparse::Strip& strip, con
 }
 
 void LiftedSolve::set_constants(const Memory& memory) {
-  if (assembly_) assembly_->set_constants(memory.constants.data());
+  if (assembly_) assembly_->set_constants(memory.constants.data(), entries_);
 }
 
 bool LiftedSolve::choose_pivots(const Memory& memory) {

@@ -48,12 +48,12 @@ std::vector<std::vector<double>> sampled_entries(const Program& program, const s
   std::vector<Slot> same(program.slots);
   std::iota(same.begin(), same.end(), Slot{0});
   sparse::Assembly assembly(system, program, same);
-  assembly.set_constants(memory.constants.data());
+  std::vector<double> entries(system.entries.size());
+  assembly.set_constants(memory.constants.data(), entries);
   for (int state = 0; state < generic_states + special_states; ++state) {
     set_state(memory, t, q, v, state);
-    std::vector<double> entries(system.entries.size());
     assembly(memory.row(0), entries);
-    if (is_finite(entries)) samples.push_back(std::move(entries));
+    if (is_finite(entries)) samples.push_back(entries);
   }
   return samples;
 }

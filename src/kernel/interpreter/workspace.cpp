@@ -198,9 +198,10 @@ void KernelWorkspace::Impl::adopt(interpreter::CompiledCode code) {
   if (compiled.stage) {
     sums.assign(packed::count_convolutions(packed) * packed::rolled_group * packed::lanes, 0.0);
     tangent_row.assign(memory.stride, 0.0);
+    passing_row.assign(memory.stride, 0.0);
     probe.assign(memory.stride, 0.0);
     arguments = {.rows = memory.rows.data(), .coefficients = lane_coefficients.data(), .sums = sums.data(), .inverse = inverse.data(),
-                 .tangent_row = tangent_row.data(), .value = tables.scalar.value,
+                 .tangent_row = tangent_row.data(), .passing_row = passing_row.data(), .value = tables.scalar.value,
                  .tangent = tables.scalar.tangent, .context = tables.scalar.context};
     return;
   }

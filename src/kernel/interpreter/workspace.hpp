@@ -101,12 +101,13 @@ struct KernelWorkspace::Impl {
   std::optional<interpreter::LiftedSolve> lifted;
   interpreter::Doubles solution;     // q̈_k and λ_k, padded
   std::span<double> unknown;         // [n + m] of it: −R_k, then q̈_k and λ_k
-  bool has_direction = false;        // `tangent` is that of q̈_k
+  bool has_direction = false;        // `tangent` is that of q̈_k, if `owed` is taken from it
+  const double* owed = nullptr;      // tangents in the direction of what the first solution was wrong by; null: nothing
   interpreter::Doubles rough;        // a solution that is being corrected, padded
   bool by_matrix, by_inverse = false, by_lifting = false;
   LaterStages later = LaterStages::StepByStep;
   interpreter::Doubles inverse;      // by_inverse or LaterStages::ByInverse: −M⁻¹, padded rows and columns
-  interpreter::Doubles tangent_row;  // scratch of code
+  interpreter::Doubles tangent_row, passing_row;  // scratch of code
   std::vector<double> probe;         // [stride] the right side of inverts()
   bool has_probe = false;            // for these parameters
   interpreter::Doubles tangent;      // by_matrix: ∂slot/∂q^(lag) for each direction [n + m × stride], else for one

@@ -89,6 +89,7 @@ void KernelWorkspace::Impl::solve_factored() {
 /// unknown = q̈_k.
 KernelStatus KernelWorkspace::Impl::solve(int stage) {
   const double* const row = memory.row(stage);
+  owed = nullptr;
   if (by_inverse) {
     const bool finite = engine.solve_by_inverse(inverse.data(), padded_unknowns(), row, program.residual.data(), unknowns, solution.data());
     return finite ? KernelStatus::Ok : KernelStatus::NonFinite;
@@ -99,7 +100,7 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
     later = LaterStages::ByLifting;
   }
   if (by_lifting && lifted->is_rough(stage) && (solve_twice(stage) || stage > 0)) return finite();
-  has_direction = false;
+  has_direction = false, owed = nullptr;
   fetch_residual(stage);
   if (stage > 0 || !by_lifting) {
     solve_factored();
@@ -164,7 +165,7 @@ bool KernelWorkspace::Impl::solve_twice(int stage) {
   find_direction();
   std::copy(unknown.begin(), unknown.end(), rough.begin());
   for (const Slot slot : program.residual) tangent[slot] += memory.row(stage)[slot];
-  engine.add(tangent.data(), solve_for(tangent.data()), -1, program.stored_end[2]);
+  owed = solve_for(tangent.data());
   has_direction = true;
   return add_rough_solution();
 }
@@ -220,6 +221,7 @@ void KernelWorkspace::Impl::correct(int stage) {
   const double* const known = by_lifting && later != LaterStages::ByInverse ? lifted->tangents(stage) : nullptr;
   if (!known && !std::exchange(has_direction, false)) find_direction();
   correct(stage, known ? known : tangent.data(), 1);
+  if (owed) correct(stage, std::exchange(owed, nullptr), -1);
 }
 
 /// By the tangents in one direction.

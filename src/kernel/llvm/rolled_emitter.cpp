@@ -2,6 +2,8 @@
 
 #include "kernel/packed/compiled.hpp"
 
+#include <cstddef>
+
 namespace maupertuis::llvm_backend {
 
 using llvm::Value;
@@ -12,6 +14,7 @@ RolledEmitter::RolledEmitter(Emission& out, const packed::PackedProgram& program
     : out_(out), p_(program), program_(program.program), row_bytes_(8 * static_cast<std::int64_t>(stride)),
       vector_(out.real(static_cast<int>(lanes))) {
   find_convolutions();
+  find_passing();
 }
 
 void RolledEmitter::run(bool long_run) {
@@ -51,6 +54,7 @@ void RolledEmitter::open(const char* name, llvm::Type* second) {
   llvm::Function* const function = out_.function(name, parameters);
   arguments_ = function->getArg(0);
   recent_.clear();
+  passing_row_ = nullptr;
   rows_ = field(offsetof(packed::CompiledArguments, rows));
   coefficients_ = field(offsetof(packed::CompiledArguments, coefficients));
   sums_ = field(offsetof(packed::CompiledArguments, sums));
@@ -74,6 +78,7 @@ void RolledEmitter::stage() {
   sums_of_stage_ = out_.at(sums_, b.CreateShl(position, 6));
   // q_{k+2} counts as 0 also where it is read with other numbers, or by what is called back.
   for (Slot slot = 0; slot < program_.unknowns; slot += lanes) save(llvm::Constant::getNullValue(vector_), slot_at(row(2), slot));
+  passing_row_ = field(offsetof(packed::CompiledArguments, passing_row));
   for (std::size_t i = 0; i < p_.packs.size(); ++i) pack(i);
   out_.end_function();
 }

@@ -63,6 +63,7 @@ class RolledEmitter {
   // ----------------------------------------------------------------------------------------------- packs (rolled_packs.cpp)
   static constexpr std::size_t longest_memory = 6;  // packs for which a value stays in a register; then it is read from its row
   void pack(std::size_t index);
+  void find_passing();
   void keep(const Pack& pack, Value* value);
   void keep(const Pack& pack, Value* value, Value* row);
   Value* columns(const Pack& pack);
@@ -123,6 +124,8 @@ class RolledEmitter {
   Value* load_one(Value* address) { return out_.b.CreateAlignedLoad(out_.b.getDoubleTy(), address, llvm::Align(8)); }
   Value* at(Value* address, std::int64_t bytes) { return out_.at(address, bytes); }
   Value* slot_at(Value* row, Slot slot) { return at(row, 8 * std::int64_t{slot}); }
+  /// Of a slot that may be passing.
+  Value* place(Value* row, Slot slot) { return slot_at(passing_row_ && passing_[slot / packed::lanes] ? passing_row_ : row, slot); }
   Value* splat(Value* scalar) { return out_.splat(scalar, vector_); }
   /// A whole number, from a 64-bit integer, in all lanes.
   Value* real(Value* integer) { return splat(out_.b.CreateSIToFP(integer, out_.b.getDoubleTy())); }
@@ -156,6 +159,8 @@ class RolledEmitter {
 
   std::map<Slot, Recent> recent_;      // by first slot
   Scan scan_{no_slot, 0, nullptr, nullptr};
+  std::vector<bool> passing_;          // [slots / 8] vectors that are read in the stage that makes them alone
+  Value* passing_row_ = nullptr;       // where these stand; null where the rows are not those of orders
   std::map<Slot, Value*> strands_;     // of a running sum in eight parts, before it is ended
   std::size_t time_ = 0;
 };

@@ -15,6 +15,7 @@ using packed::lanes;
 
 void RolledEmitter::first_stages() {
   open("first", nullptr);
+  passing_row_ = field(offsetof(packed::CompiledArguments, passing_row));
   for (int stage = program_.first_stage; stage <= 0; ++stage) {
     written_ = stage;
     stage_ = out_.b.getInt64(static_cast<std::uint64_t>(stage));

@@ -3,6 +3,7 @@
 #include "kernel/packed/compiled.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace maupertuis::llvm_backend {
 
@@ -29,8 +30,35 @@ void RolledEmitter::pack(std::size_t index) {
 void RolledEmitter::keep(const Pack& pack, Value* value) { keep(pack, value, row(ahead_of(pack))); }
 
 void RolledEmitter::keep(const Pack& pack, Value* value, Value* row) {
-  save(value, slot_at(row, pack.out));
+  save(value, place(row, pack.out));
   recent_[pack.out] = {value, time_};
+}
+
+// ------------------------------------------------------------------------------------------------------------- passing
+
+/// Vectors that are read in the stage that made them and never again: they need not stand in a row of their order, each of which would have to be brought
+/// from the second cache to be written to.
+void RolledEmitter::find_passing() {
+  passing_.assign(p_.cells / lanes + 1, false);
+  const auto is_scalar = [](const Pack& pack) { return pack.kind == Pack::Scalar; };
+  if (program_.unknowns != program_.freedoms || std::any_of(p_.packs.begin(), p_.packs.end(), is_scalar)) return;
+  const auto set = [this](const Pack& pack, bool value) {
+    for (Slot out = pack.out; out < pack.out + std::max(pack.strands, 1u) * lanes; out += lanes) passing_[out / lanes] = value;
+  };
+  for (const Pack& pack : p_.packs) {
+    const bool is_sum = pack.kind == Pack::Sum || pack.kind == Pack::Scan || pack.kind == Pack::ScanDown || pack.kind == Pack::Strand;
+    if (is_sum && pack.out >= program_.stored_end[2] && program_.tangent_lags[pack.out + pack.width - 1] != Program::unmoved) set(pack, true);
+  }
+  for (const Slot slot : program_.residual) passing_[slot / lanes] = false;
+  // What is read across two vectors stands beside each other.
+  for (bool changed = true; std::exchange(changed, false);)
+    for (const Column& column : p_.columns) {
+      if (column.kind != Column::Contiguous && column.kind != Column::Reversed) continue;
+      const Slot lowest = column.kind == Column::Reversed ? column.source - (lanes - 1) : column.source, last = lowest + lanes - 1;
+      if (passing_[lowest / lanes] == passing_[last / lanes]) continue;
+      passing_[lowest / lanes] = passing_[last / lanes] = false;
+      changed = true;
+    }
 }
 
 // ---------------------------------------------------------------------------------------------------------------- sums
@@ -56,12 +84,12 @@ Value* RolledEmitter::columns(const Pack& pack) {
 
 /// `is_here`: the row is the one that the packs of now write to.
 Value* RolledEmitter::column_values(const Column& column, Value* row, bool is_here) {
-  if (column.kind == Column::Broadcast) return splat(load_one(slot_at(row, column.source)));
+  if (column.kind == Column::Broadcast) return splat(load_one(place(row, column.source)));
   if (column.kind == Column::Gather) return gather(row, column.sources, is_here);
   const bool reversed = column.kind == Column::Reversed;
   const Slot lowest = reversed ? column.source - (lanes - 1) : column.source;
   Value* const here = is_here ? in_register(lowest) : nullptr;
-  Value* const values = here ? here : load(slot_at(row, lowest));
+  Value* const values = here ? here : load(place(row, lowest));
   return reversed ? out_.b.CreateShuffleVector(values, {7, 6, 5, 4, 3, 2, 1, 0}) : values;
 }
 
@@ -74,7 +102,7 @@ Value* RolledEmitter::in_register(Slot first) const {
 /// Of one or two vectors a row one shuffle, if they are not still being written in pieces.
 Value* RolledEmitter::gather(Value* row, const std::array<Slot, lanes>& slots, bool is_here) {
   auto& b = out_.b;
-  if (std::all_of(slots.begin(), slots.end(), [&](Slot s) { return s == slots[0]; })) return splat(load_one(slot_at(row, slots[0])));
+  if (std::all_of(slots.begin(), slots.end(), [&](Slot s) { return s == slots[0]; })) return splat(load_one(place(row, slots[0])));
   const auto base = [](Slot slot) { return slot / lanes * lanes; };
   const Slot first = base(slots[0]);
   const auto other = std::find_if(slots.begin(), slots.end(), [&](Slot slot) { return base(slot) != first; });
@@ -82,14 +110,14 @@ Value* RolledEmitter::gather(Value* row, const std::array<Slot, lanes>& slots, b
   if (std::all_of(slots.begin(), slots.end(), [&](Slot slot) { return base(slot) == first || base(slot) == second; })) {
     const auto vector = [&](Slot slot) {
       Value* const here = is_here ? in_register(slot) : nullptr;
-      return here ? here : load(slot_at(row, slot));
+      return here ? here : load(place(row, slot));
     };
     std::vector<int> places;
     for (const Slot slot : slots) places.push_back(static_cast<int>(slot % lanes + (base(slot) == first ? 0 : lanes)));
     return b.CreateShuffleVector(vector(first), vector(second), places);
   }
   Value* result = llvm::PoisonValue::get(vector_);
-  for (std::uint64_t lane = 0; lane < lanes; ++lane) result = b.CreateInsertElement(result, load_one(slot_at(row, slots[lane])), lane);
+  for (std::uint64_t lane = 0; lane < lanes; ++lane) result = b.CreateInsertElement(result, load_one(place(row, slots[lane])), lane);
   return result;
 }
 
@@ -119,7 +147,7 @@ Value* RolledEmitter::carried(const Pack& pack, Value* sum, Value* row) {
       carry = out_.b.CreateShuffleVector(scan_.sum, std::vector<int>(lanes, static_cast<int>(pack.carry - base)));
       if (scan_.carry) carry = out_.add(scan_.carry, carry);
     } else {
-      carry = splat(load_one(slot_at(row, pack.carry)));
+      carry = splat(load_one(place(row, pack.carry)));
     }
   }
   scan_ = {pack.out, time_, sum, carry};
@@ -138,11 +166,11 @@ void RolledEmitter::join(const Pack& pack, bool down, Value* row) {
   for (int lane = first; lane <= last; ++lane) places.push_back(down ? lane + 1 : lane == first ? 2 * last + 1 : lane - 1);
   Value* const shifted = out_.b.CreateShuffleVector(strands_.at(pack.last_strand), llvm::Constant::getNullValue(vector_), places);
   Value* owed = running_sum(shifted, down);
-  if (pack.carry != no_slot) owed = out_.add(owed, splat(load_one(slot_at(row, pack.carry))));
+  if (pack.carry != no_slot) owed = out_.add(owed, splat(load_one(place(row, pack.carry))));
   for (std::uint32_t i = 0; i < pack.strands; ++i) {
     const Slot out = pack.out + i * lanes;
     Value* const sum = out_.add(strands_.at(out), owed);
-    save(sum, slot_at(row, out));
+    save(sum, place(row, out));
     recent_[out] = {sum, time_};
   }
 }

@@ -23,6 +23,7 @@ struct CompiledArguments {
   double* sums = nullptr;                // rolled: [convolutions][rolled_group][8], aligned to 64 bytes
   const double* inverse = nullptr;       // rolled: −M₀⁻¹, [unknowns] rows, each padded to a multiple of 8
   double* tangent_row = nullptr;         // rolled `solve`: [stride] scratch; what no pack writes is 0
+  double* passing_row = nullptr;         // rolled `first` and `stage`: [stride] scratch
   const double* tangents = nullptr;      // rolled `correct`: [stride] x and the slots' tangents in its direction, where M₀ x = R_k
   std::int64_t has_copies = 0;           // rolled: `tangents` holds x also in the cells of blocks that copy coordinates, so that `correct` renews these
   /// Rolled: ScalarRules.

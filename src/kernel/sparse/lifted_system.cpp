@@ -129,6 +129,7 @@ Assembly::Assembly(const LiftedSystem& system, const Program& program, std::span
     : program_(program), minus_and_plus_(system.entries.size(), 0.0), base_(system.entries.size()) {
   for (const std::uint32_t entry : system.minus_one) minus_and_plus_[entry] = -1;
   for (const std::uint32_t entry : system.plus_one) minus_and_plus_[entry] = 1;
+  std::vector<bool> has_multiple(system.entries.size(), false), has_other(system.entries.size(), false);
   for (std::size_t e = 0; e < system.edges.size(); ++e) {
     Edge edge = system.edges[e];
     const std::uint32_t entry = system.entry_of_edge[e];
@@ -141,28 +142,36 @@ Assembly::Assembly(const LiftedSystem& system, const Program& program, std::span
     if (edge.y != no_slot) edge.y = number[edge.y];
     const bool is_multiple = edge.rule == Rule::Scaled || edge.rule == Rule::Value || edge.rule == Rule::Negative || edge.rule == Rule::Double;
     if (is_multiple) {
-      multiples_.push_back(edge);
-      multiple_.push_back({edge.x, entry, 0});
+      (has_multiple[entry] ? more_ : first_).push_back({edge.x, entry, 0, 0});
+      (has_multiple[entry] ? edges_of_more_ : edges_of_first_).push_back(edge);
+      has_multiple[entry] = true;
     } else {
       others_.push_back(edge);
       entry_of_other_.push_back(entry);
+      has_other[entry] = true;
     }
   }
+  for (std::uint32_t entry = 0; entry < system.entries.size(); ++entry)
+    if (has_other[entry] && !has_multiple[entry]) of_others_alone_.push_back(entry);
 }
 
-void Assembly::set_constants(const double* constants) {
+void Assembly::set_constants(const double* constants, std::span<double> values) {
   constants_ = constants;
   base_ = minus_and_plus_;
   for (std::size_t i = 0; i < constant_.size(); ++i) base_[entry_of_constant_[i]] += constant_factor(constant_[i], program_, constants);
+  std::copy(base_.begin(), base_.end(), values.begin());
   const auto factor = [&](const Edge& edge) {
     return edge.rule == Rule::Scaled ? constants[edge.index] : edge.rule == Rule::Double ? 2.0 : edge.rule == Rule::Negative ? -1.0 : 1.0;
   };
-  for (std::size_t i = 0; i < multiples_.size(); ++i) multiple_[i].factor = factor(multiples_[i]);
+  for (std::size_t i = 0; i < first_.size(); ++i) first_[i].factor = factor(edges_of_first_[i]), first_[i].base = base_[first_[i].entry];
+  for (std::size_t i = 0; i < more_.size(); ++i) more_[i].factor = factor(edges_of_more_[i]);
 }
 
+/// What changes along a motion alone.
 void Assembly::operator()(const double* now, std::span<double> values) const {
-  std::copy(base_.begin(), base_.end(), values.begin());
-  for (const Multiple& m : multiple_) values[m.entry] += m.factor * now[m.slot];
+  for (const Multiple& m : first_) values[m.entry] = m.base + m.factor * now[m.slot];
+  for (const Multiple& m : more_) values[m.entry] += m.factor * now[m.slot];
+  for (const std::uint32_t entry : of_others_alone_) values[entry] = base_[entry];
   for (std::size_t i = 0; i < others_.size(); ++i) values[entry_of_other_[i]] += factor_at(others_[i], constants_, now);
 }
 

@@ -43,23 +43,26 @@ class Assembly {
   /// `number`: [slots] where the values of slots are found.
   Assembly(const LiftedSystem& system, const Program& program, std::span<const Slot> number);
 
-  void set_constants(const double* constants);
-  /// now: values at order 0; values: [entries].
+  /// values: [entries], of which those that do not change along a motion are set.
+  void set_constants(const double* constants, std::span<double> values);
+  /// now: values at order 0; values: the same as before.
   void operator()(const double* now, std::span<double> values) const;
 
  private:
   struct Multiple {
     Slot slot;
     std::uint32_t entry;
-    double factor;
+    double factor, base;                   // base: of the first for its entry: what it is added to
   };
 
   const Program& program_;
-  std::vector<Edge> constant_, multiples_, others_;
+  std::vector<Edge> constant_, others_;
   std::vector<std::uint32_t> entry_of_constant_, entry_of_other_;
-  std::vector<Multiple> multiple_;         // factor · value of a slot
+  std::vector<Multiple> first_, more_;     // factor · value of a slot: of each entry the first, and others
+  std::vector<Edge> edges_of_first_, edges_of_more_;
   std::vector<double> minus_and_plus_;     // [entries]
   std::vector<double> base_;               // [entries] what does not change along a motion
+  std::vector<std::uint32_t> of_others_alone_;  // entries without multiples
   const double* constants_ = nullptr;
 };
 
