@@ -44,6 +44,14 @@ void KernelWorkspace::Impl::bind() {
   tables.copy_count = ready->copies.size();
   tables.ready_runs = ready->runs.data();
   tables.ready_products = ready->products.data();
+  tables.sums_ahead = ready->sums.data();
+  tables.convolutions = ready->convolutions.data();
+  tables.convolution_runs = ready->convolution_runs.data();
+  tables.convolution_run_count = ready->convolution_runs.size();
+  if (adds_up_ahead()) {
+    sums.assign(packed::count_convolutions(packed) * packed::rolled_group * packed::lanes, 0.0);
+    tables.sums = sums.data();
+  }
 }
 
 void KernelWorkspace::Impl::compute_constants() {
@@ -147,6 +155,7 @@ void KernelWorkspace::Impl::renew_blocks(int stage, int stages) {
   if (stage + 1 >= stages) return;
   if (compiled.stage) compiled.ahead(&arguments, stage);
   else engine.renew_blocks(tables, stage);
+  if (!compiled.stage && tables.sums) engine.add_up_ahead(tables, stage);
 }
 
 /// What follows the solution of a stage.

@@ -1,4 +1,5 @@
 #pragma once
+#include "kernel/packed/compiled.hpp"
 #include "kernel/packed/ready.hpp"
 
 #include <array>
@@ -25,6 +26,11 @@ struct Tables {
   const ReadyPack* ready = nullptr;
   const Copy *brought = nullptr, *copies = nullptr;
   std::size_t copy_count = 0;
+  const SumAhead* sums_ahead = nullptr;
+  const ReadyConvolution* convolutions = nullptr;
+  const ConvolutionRun* convolution_runs = nullptr;
+  std::size_t convolution_run_count = 0;
+  double* sums = nullptr;                // [convolutions][rolled_group][8] of add_up_ahead(), aligned to 64 bytes; null: stages add up for themselves
   const ReadyRun* ready_runs = nullptr;
   const ReadyProduct* ready_products = nullptr;
   const Pack* packs = nullptr;
@@ -60,6 +66,8 @@ struct Engine {
   void (*run_stage)(const Tables&, int stage);
   /// Copies of blocks, when the coefficients of the stage are final.
   void (*renew_blocks)(const Tables&, int stage);
+  /// After renew_blocks(), from stage 0 on in turn: sums of products for the stages that follow, to which run_stage() adds what is missing.
+  void (*add_up_ahead)(const Tables&, int stage);
   /// Tangents of order 0: in, those of the coordinates; out, those of all slots of Dynamics. [directions][slots of a row]
   void (*tangents)(const Tables&, double* tangents, std::size_t stride, std::size_t directions);
   /// sin x and cos x of `count` ≤ 8 numbers, in out[0 …) and out[8 …); the next power of two of them is read and written. Aligned to 64 bytes.

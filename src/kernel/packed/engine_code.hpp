@@ -7,6 +7,8 @@
 
 #include "kernel/packed/engine_convolution.hpp"
 
+#include "kernel/packed/engine_ahead.hpp"
+
 #include "kernel/packed/engine_stage.hpp"
 
 #include "kernel/packed/engine_tangents.hpp"
@@ -18,7 +20,7 @@
 namespace maupertuis::packed::MAUP_ENGINE {
 
 extern const Engine engine;
-const Engine engine{MAUP_ENGINE_NAME, run_stage,        renew_blocks,      tangents, sine_cosine, negative_inverse,
+const Engine engine{MAUP_ENGINE_NAME, run_stage,        renew_blocks,      add_up_ahead, tangents, sine_cosine, negative_inverse,
                     transpose,        solve_by_inverse, rows_are_finite, add, set_accelerations, correct,  increments,  radius};
 
 }  // namespace maupertuis::packed::MAUP_ENGINE

@@ -13,9 +13,13 @@ void sine_cosine(const double* x, double* out, int count) {
          : count <= 4 ? sine_cosine_of<4>(x, out) : sine_cosine_of<8>(x, out);
 }
 
+/// `ByAhead`: by sums that are there, as far as they are.
+template <bool ByAhead>
 class Stage {
  public:
-  Stage(const Tables& tables, int stage) : t_(tables), stride_(static_cast<std::ptrdiff_t>(tables.stride)), stage_(stage) {}
+  Stage(const Tables& tables, int stage)
+      : t_(tables), stride_(static_cast<std::ptrdiff_t>(tables.stride)), stage_(stage),
+        sums_(ByAhead ? tables.sums + (stage - 1) % rolled_group * static_cast<int>(lanes) : nullptr) {}
 
   void run() {
     for (std::size_t i = 0; i < t_.pack_count; ++i) {
@@ -23,14 +27,14 @@ class Stage {
       k_ = stage_ + 2 - pack.lag;
       if (k_ < 0) continue;
       row_ = t_.rows + k_ * stride_;
-      for (std::uint32_t c = pack.first_copy; c < pack.last_copy; ++c) copy(t_.brought[c]);
+      for (std::uint32_t c = pack.first_copy; c < pack.last_copy; ++c)
+        if (const Copy& block = t_.brought[c]; !(ByAhead && block.of_coordinates)) copy(block);
       switch (pack.kind) {
         case Pack::Sum: save(row_ + pack.out, products(pack, columns(pack))); break;
         case Pack::Scan: save(row_ + pack.out, running_sum(columns(pack)) + carry_of(pack.carry, row_)); break;
         case Pack::ScanDown: save(row_ + pack.out, running_sum_down(columns(pack)) + carry_of(pack.carry, row_)); break;
-        case Pack::Strand: strand(pack); break;
-        case Pack::Join: join(pack, before_lanes); break;
-        case Pack::JoinDown: join(pack, before_lanes_down); break;
+        case Pack::Strand: i = strands(i); break;
+        case Pack::Join: case Pack::JoinDown: break;  // with its strands
         case Pack::Integral: integral(pack); break;
         case Pack::Quotient: quotient(pack); break;
         case Pack::SquareRoot: square_root(pack); break;
@@ -71,31 +75,51 @@ class Stage {
   }
 
   /// d/dt multiplies by k + 1.
-  Vector columns(const ReadyPack& pack) const {
-    Vector sum = all(0);
-    for (std::uint32_t r = pack.first_run; r < pack.last_run; ++r) {
-      const ReadyRun& run = t_.ready_runs[r];
-      const Vector part = run_of_columns(run);
-      sum += run.shift == 0 ? part : all(run.shift == 1 ? k_ + 1.0 : (k_ + 1.0) * (k_ + 2.0)) * part;
-    }
+  Vector shifted(const ReadyRun& run) const {
+    const Vector part = run_of_columns(run);
+    return run.shift == 0 ? part : all(run.shift == 1 ? k_ + 1.0 : (k_ + 1.0) * (k_ + 2.0)) * part;
+  }
+
+  /// Not inline: at each of its places it would leave too few registers (10 % of a step of 8 links).
+  [[gnu::noinline]] Vector columns(const ReadyPack& pack) const {
+    if (pack.first_run == pack.last_run) return all(0);
+    Vector sum = shifted(t_.ready_runs[pack.first_run]);
+    for (std::uint32_t r = pack.first_run + 1; r < pack.last_run; ++r) sum += shifted(t_.ready_runs[r]);
     return sum;
   }
 
-  void strand(const ReadyPack& pack) const {
-    const Vector own = columns(pack);
-    save(row_ + pack.out, pack.carry == no_slot ? own : own + load(row_ + pack.carry));
-  }
-
-  void join(const ReadyPack& pack, Vector (*before)(Vector)) const {
-    join_strands(*pack.pack, row_, before);
+  /// All of a running sum from pack `i` on, and the place of its end.
+  std::size_t strands(std::size_t i) const {
+    Vector sum = all(0);
+    for (; t_.ready[i].kind == Pack::Strand; ++i) {
+      sum += columns(t_.ready[i]);
+      save(row_ + t_.ready[i].out, sum);
+    }
+    const Pack& join = *t_.ready[i].pack;
+    join_strands(join, sum, row_, join.kind == Pack::Join ? before_lanes : before_lanes_down);
+    return i;
   }
 
   Vector products(const ReadyPack& pack, Vector result) const {
     for (std::uint32_t p = pack.first_product; p < pack.last_product; ++p) {
       const ReadyProduct& term = t_.ready_products[p];
-      result += load(term.coefficients) * (term.a == term.b ? self(term.a, 0) : convolution(term.a, term.b, k_, stride_));
+      const SumAhead& sum = t_.sums_ahead[pack.first_sum + p - pack.first_product];
+      result += load(term.coefficients) * (has_sum(sum)       ? completed(sum, term.a, term.b, true, true)
+                                           : term.a == term.b ? self(term.a, 0)
+                                                              : convolution(term.a, term.b, k_, stride_));
     }
     return result;
+  }
+
+  /// Always, but for operands of t alone that are ahead of q̈.
+  static bool has_sum(const SumAhead& sum) { return ByAhead && sum.number != SumAhead::no_sum; }
+
+  /// The convolution of a sum with those ends that take part and were not there yet.
+  Vector completed(const SumAhead& ahead, const double* a, const double* b, bool a_ends, bool b_ends) const {
+    Vector sum = load(sums_ + ahead.number * (rolled_group * lanes));
+    if (a_ends && ahead.a_is_new) sum += load(a + k_ * stride_) * load(b);
+    if (b_ends && ahead.b_is_new) sum += load(b + k_ * stride_) * load(a);
+    return sum;
   }
 
   /// Σ_{j=first..k−first} a_j a_{k−j}, each pair once.
@@ -114,7 +138,8 @@ class Stage {
     if (k_ == 0) return functions(*pack.pack);
     const Reciprocal& inverse = t_.reciprocals[k_];
     const Vector c = load(pack.coefficients), leading = c * all(inverse.leading), rest = c * all(inverse.rest);
-    const Vector sum = convolution(pack.a + stride_, pack.b, k_ - 1, stride_);
+    const SumAhead& ahead = t_.sums_ahead[pack.first_sum];
+    const Vector sum = has_sum(ahead) ? completed(ahead, pack.a, pack.b, true, false) : convolution(pack.a + stride_, pack.b, k_ - 1, stride_);
     save(row_ + pack.out, sum * rest + sum * leading);
   }
 
@@ -134,29 +159,37 @@ class Stage {
 
   void quotient(const ReadyPack& pack) const {
     const Vector a = load(pack.a + k_ * stride_);
-    const Vector sum = k_ == 0 ? all(0) : convolution(pack.b + stride_, pack.y, k_ - 1, stride_);
+    const SumAhead& ahead = t_.sums_ahead[pack.first_sum];
+    const Vector sum = has_sum(ahead) ? completed(ahead, pack.b, pack.y, true, false)
+                       : k_ == 0      ? all(0)
+                                      : convolution(pack.b + stride_, pack.y, k_ - 1, stride_);
     save(row_ + pack.out, (a - sum) / load(pack.b));
   }
 
   void square_root(const ReadyPack& pack) const {
     const Vector u = load(pack.a + k_ * stride_);
     const double* const y = pack.y;
+    const SumAhead& ahead = t_.sums_ahead[pack.first_sum];
     Vector result;
     if (k_ == 0)
       for (unsigned lane = 0; lane < lanes; ++lane) result[lane] = __builtin_sqrt(u[lane]);
     else
-      result = (u - self(y, 1)) / (load(y) + load(y));
+      result = (u - (has_sum(ahead) ? completed(ahead, y, y, false, false) : self(y, 1))) / (load(y) + load(y));
     save(row_ + pack.out, result);
   }
 
   const Tables& t_;
   std::ptrdiff_t stride_;
   int stage_, k_ = 0;
+  const double* sums_;                   // for this stage; null: none
   double* row_ = nullptr;
 };
 
-void run_stage(const Tables& tables, int stage) { Stage(tables, stage).run(); }
-void renew_blocks(const Tables& tables, int stage) { Stage(tables, stage).renew(); }
+void run_stage(const Tables& tables, int stage) {
+  if (tables.sums && stage > 0) Stage<true>(tables, stage).run();
+  else Stage<false>(tables, stage).run();
+}
+void renew_blocks(const Tables& tables, int stage) { Stage<false>(tables, stage).renew(); }
 
 }  // namespace
 }  // namespace maupertuis::packed::MAUP_ENGINE

@@ -94,7 +94,7 @@ class Tangents {
   }
 
   void join(const Pack& pack, Vector (*before)(Vector)) const {
-    for (int d = 0; d < W; ++d) join_strands(pack, row(d), before);
+    for (int d = 0; d < W; ++d) join_strands(pack, load(row(d) + pack.last_strand), row(d), before);
   }
 
   /// by_a · ∂a + by_b · ∂b

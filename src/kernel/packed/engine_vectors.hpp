@@ -61,8 +61,8 @@ inline Vector before_lanes_down(Vector v) { return running_sum_down(__builtin_sh
 inline Vector carry_of(Slot carry, const double* row) { return carry == no_slot ? all(0) : all(row[carry]); }
 
 /// A running sum whose lanes are each right but for the lanes before.
-inline void join_strands(const Pack& pack, double* row, Vector (*before)(Vector)) {
-  const Vector owed = before(load(row + pack.last_strand)) + carry_of(pack.carry, row);
+inline void join_strands(const Pack& pack, Vector last, double* row, Vector (*before)(Vector)) {
+  const Vector owed = before(last) + carry_of(pack.carry, row);
   for (double* strand = row + pack.out; strand != row + pack.out + pack.strands * lanes; strand += lanes) save(strand, load(strand) + owed);
 }
 

@@ -1,6 +1,9 @@
 #include "kernel/packed/ready.hpp"
 
+#include "kernel/packed/convolutions.hpp"
+
 #include <algorithm>
+#include <map>
 
 namespace maupertuis::packed {
 namespace {
@@ -38,6 +41,7 @@ class Preparation {
     for (const Block& block : in_.blocks)
       if (!block.direct) out_.copies.push_back(copy_of(block));
     for (const Pack& pack : in_.packs) add(pack);
+    order_convolutions();
   }
 
  private:
@@ -54,7 +58,50 @@ class Preparation {
     if (pack.kind != Pack::Integral) bring(pack, pack.b);
     for (std::uint32_t p = pack.first_product; p < pack.last_product; ++p) bring(pack, in_.products[p].a), bring(pack, in_.products[p].b);
     ready.last_copy = static_cast<std::uint32_t>(out_.brought.size());
+    ready.first_sum = static_cast<std::uint32_t>(out_.sums.size());
+    for (const Convolution& c : convolutions_of(in_, pack)) add(c);
+    mark_coordinates(ready);
     out_.packs.push_back(ready);
+  }
+
+  /// Of packs that read them in sums which are made ahead alone.
+  void mark_coordinates(const ReadyPack& pack) {
+    if (pack.kind != Pack::Integral && pack.kind != Pack::Sum) return;
+    const auto has_sum = [](const SumAhead& sum) { return sum.number != SumAhead::no_sum; };
+    if (!std::all_of(out_.sums.begin() + pack.first_sum, out_.sums.end(), has_sum)) return;
+    for (std::uint32_t c = pack.first_copy; c < pack.last_copy; ++c) {
+      Copy& copy = out_.brought[c];
+      copy.of_coordinates = are_coordinates(copy.slots);
+    }
+  }
+  bool are_coordinates(const Slot* slots) const { return std::all_of(slots, slots + lanes, [this](Slot slot) { return slot < in_.program.unknowns; }); }
+  bool is_of_coordinates(std::uint32_t block) const { return !in_.blocks[block].direct && are_coordinates(in_.blocks[block].slots.data()); }
+
+  /// Operands that are ahead of q̈, as functions of t alone may be, are left to the stages.
+  void add(const Convolution& c) {
+    const int a_ahead = c.lag - in_.blocks[c.a].lag, b_ahead = c.lag - in_.blocks[c.b].lag;
+    SumAhead sum{.a_is_new = a_ahead == 0 && !is_of_coordinates(c.a), .b_is_new = b_ahead == 0 && !is_of_coordinates(c.b)};
+    if (c.lag >= 0 && a_ahead <= c.lag && b_ahead <= c.lag) {
+      sum.number = static_cast<std::uint32_t>(convolutions_++);
+      classes_[{c.lag, a_ahead, b_ahead}].push_back({cells(c.a), cells(c.b), sum.number});
+    }
+    out_.sums.push_back(sum);
+  }
+
+  /// A few of each class in turn: neighbours have operands in common, which are then still in the first cache.
+  void order_convolutions() {
+    constexpr std::size_t at_once = 4;
+    std::size_t most = 0;
+    for (const auto& [key, members] : classes_) most = std::max(most, members.size());
+    const std::size_t turns = std::max<std::size_t>(1, most / at_once);
+    for (std::size_t turn = 0; turn < turns; ++turn)
+      for (const auto& [key, members] : classes_) {
+        const auto [lag, a_ahead, b_ahead] = key;
+        const auto first = static_cast<std::uint32_t>(out_.convolutions.size());
+        for (std::size_t i = members.size() * turn / turns; i < members.size() * (turn + 1) / turns; ++i) out_.convolutions.push_back(members[i]);
+        const auto last = static_cast<std::uint32_t>(out_.convolutions.size());
+        if (first != last) out_.convolution_runs.push_back({static_cast<std::int8_t>(lag), static_cast<std::int8_t>(a_ahead), static_cast<std::int8_t>(b_ahead), first, last});
+      }
   }
 
   /// An operand at an order that is not final yet, or not there: its copy is not either.
@@ -72,6 +119,8 @@ class Preparation {
   const double* rows_;
   std::size_t stride_;
   const double* coefficients_;
+  std::map<std::array<int, 3>, std::vector<ReadyConvolution>> classes_;  // by lag and how far the operands are ahead
+  std::size_t convolutions_ = 0;
 };
 
 }  // namespace
