@@ -73,7 +73,7 @@ class RolledEmitter {
   Value* coefficients(std::uint32_t first) { return load(at(coefficients_, 8 * std::int64_t{first})); }
   Value* running_sum(Value* v, bool down);
   Value* carried(const Pack& pack, Value* sum, Value* row);
-  void strand(const Pack& pack, Value* sum);
+  void strand(const Pack& pack, Value* columns);
   void join(const Pack& pack, bool down, Value* row);
   Value* products(std::size_t index, Value* result);
   Value* convolution(std::size_t number, bool a_ends, bool b_ends);
@@ -161,7 +161,11 @@ class RolledEmitter {
   Scan scan_{no_slot, 0, nullptr, nullptr};
   std::vector<bool> passing_;          // [slots / 8] vectors that are read in the stage that makes them alone
   Value* passing_row_ = nullptr;       // where these stand; null where the rows are not those of orders
-  std::map<Slot, Value*> strands_;     // of a running sum in eight parts, before it is ended
+  struct Strand {
+    Slot out;
+    Value* sum;
+  };
+  std::vector<Strand> strands_;        // of a running sum in eight parts, in its order, before it is ended
   std::size_t time_ = 0;
 };
 

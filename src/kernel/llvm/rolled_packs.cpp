@@ -154,24 +154,32 @@ Value* RolledEmitter::carried(const Pack& pack, Value* sum, Value* row) {
   return carry ? out_.add(sum, carry) : sum;
 }
 
-/// Of a running sum in eight parts, a vector that join() will end; until then in a register alone.
-void RolledEmitter::strand(const Pack& pack, Value* sum) {
-  if (!sum) sum = llvm::Constant::getNullValue(vector_);
-  strands_[pack.out] = pack.carry == no_slot ? sum : out_.add(sum, strands_.at(pack.carry));
+/// What a vector of a running sum in eight parts adds; join() adds it up.
+void RolledEmitter::strand(const Pack& pack, Value* columns) {
+  if (pack.carry == no_slot) strands_.clear();
+  strands_.push_back({pack.out, columns ? columns : llvm::Constant::getNullValue(vector_)});
 }
 
+/// In segments that do not wait for each other, then what each owes to those before it and to the lanes before.
 void RolledEmitter::join(const Pack& pack, bool down, Value* row) {
-  constexpr int first = 0, last = static_cast<int>(lanes) - 1;
+  constexpr std::size_t segment = 4;
+  std::vector<Value*> before;  // [segments] all segments before it; null: nothing
+  Value* total = nullptr;
+  for (std::size_t i = 0; i < strands_.size(); ++i) {
+    if (i % segment != 0) strands_[i].sum = out_.add(strands_[i - 1].sum, strands_[i].sum);
+    if (i % segment == 0) before.push_back(total);
+    if (i % segment == segment - 1 || i + 1 == strands_.size()) total = total ? out_.add(total, strands_[i].sum) : strands_[i].sum;
+  }
+  constexpr int last = static_cast<int>(lanes) - 1;
   std::vector<int> places;
-  for (int lane = first; lane <= last; ++lane) places.push_back(down ? lane + 1 : lane == first ? 2 * last + 1 : lane - 1);
-  Value* const shifted = out_.b.CreateShuffleVector(strands_.at(pack.last_strand), llvm::Constant::getNullValue(vector_), places);
-  Value* owed = running_sum(shifted, down);
+  for (int lane = 0; lane <= last; ++lane) places.push_back(down ? lane + 1 : lane == 0 ? 2 * last + 1 : lane - 1);
+  Value* owed = running_sum(out_.b.CreateShuffleVector(total, llvm::Constant::getNullValue(vector_), places), down);
   if (pack.carry != no_slot) owed = out_.add(owed, splat(load_one(place(row, pack.carry))));
-  for (std::uint32_t i = 0; i < pack.strands; ++i) {
-    const Slot out = pack.out + i * lanes;
-    Value* const sum = out_.add(strands_.at(out), owed);
-    save(sum, place(row, out));
-    recent_[out] = {sum, time_};
+  for (Value*& sum : before) sum = sum ? out_.add(sum, owed) : owed;
+  for (std::size_t i = 0; i < strands_.size(); ++i) {
+    Value* const sum = out_.add(strands_[i].sum, before[i / segment]);
+    save(sum, place(row, strands_[i].out));
+    recent_[strands_[i].out] = {sum, time_};
   }
 }
 
