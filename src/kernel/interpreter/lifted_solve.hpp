@@ -31,7 +31,7 @@ class LiftedSolve {
   /// decide; b is as it was.
   bool solve_first(std::span<double> b);
   /// After factor(): −M₀⁻¹, [padded × padded] with padded = unknowns rounded up to a multiple of 8, aligned to 64 bytes; what is
-  /// beyond the unknowns has to be 0, and stays so. Up to 56 unknowns a product with it takes less than a solution. Nothing is checked.
+  /// beyond the unknowns has to be 0, and stays so. Up to 48 unknowns a product with it takes less than a solution. Nothing is checked.
   /// False: there is no code for that.
   bool negative_inverse(double* inverse);
   /// b → q̈_k and λ_k in place.

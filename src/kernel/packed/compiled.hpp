@@ -9,7 +9,7 @@ namespace maupertuis::packed {
 inline constexpr int rolled_group = 4;
 
 /// Unknowns up to which rolled code solves by −M₀⁻¹.
-inline constexpr std::size_t most_by_inverse = 56;
+inline constexpr std::size_t most_by_inverse = 48;
 
 struct CompiledArguments {
   double* rows = nullptr;                // [orders][stride]; q, q̇ and the leaves are set

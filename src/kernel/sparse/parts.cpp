@@ -53,7 +53,7 @@ Cut best_cut(std::size_t levels) {
   std::size_t least = levels * 3 / 4;
   for (const std::size_t parts : {4, 8}) {
     const std::size_t length = length_of(levels, parts), depth = levels - (parts - 1) * length;
-    if (length >= 2 && depth < least) best = {parts, length, levels - parts * (length + 1) - 1}, least = depth;
+    if (length >= 2 && depth <= least) best = {parts, length, levels - parts * (length + 1) - 1}, least = depth;
   }
   return best;
 }

@@ -53,3 +53,38 @@ TEST_CASE("chains of rods: the joints are running sums, whatever else begins at 
   source.residual = variational_residual(lagrangian, source.coordinates);
   CHECK(count_beginnings(packed::pack(build_kernel(source).program())) >= 4);
 }
+
+TEST_CASE("chains that are solved in parts: what belongs to them stands in the lanes of the parts") {
+  for (const int links : {64, 100, 131}) {
+    CAPTURE(links);
+    const Rods rods(links, chain);
+    const Program program = build_kernel(rods.source).program();
+    const sparse::Strip strip = sparse::strip_of(program);
+    REQUIRE(strip.parts.size() == packed::lanes);
+    CHECK(strip.whole + 2 * packed::lanes > static_cast<std::size_t>(links));
+    std::vector<std::uint32_t> sorted = strip.order;
+    std::sort(sorted.begin(), sorted.end());
+    for (std::uint32_t i = 0; i < sorted.size(); ++i) REQUIRE(sorted[i] == i);
+    for (std::size_t lane = 0; lane < packed::lanes; ++lane)
+      for (std::size_t turn = 0; turn < strip.parts[lane].size(); ++turn)
+        CHECK(strip.parts[lane][turn] == strip.order[packed::lanes * turn + lane]);
+
+    const packed::PackedProgram p = packed::pack(program, {strip.order, strip.whole});
+    std::size_t joins = 0;
+    for (const packed::Pack& pack : p.packs) {
+      joins += pack.kind == packed::Pack::Join || pack.kind == packed::Pack::JoinDown;
+      if (pack.kind == packed::Pack::Join || pack.kind == packed::Pack::JoinDown) CHECK(pack.strands * packed::lanes == strip.whole);
+      if (pack.kind != packed::Pack::Strand) continue;
+      for (std::uint32_t c = pack.first_column; c < pack.last_column; ++c) {
+        const packed::Column& column = p.columns[c];
+        const bool is_vector = column.kind == packed::Column::Contiguous && column.source % packed::lanes == 0;
+        CHECK((is_vector || column.source == p.program.one));
+      }
+    }
+    CHECK(joins == 4);  // x, y, and what they carry
+    // Forces are read where they stand but for those at the ends, coordinates are copied.
+    CHECK(std::count_if(p.blocks.begin(), p.blocks.end(), [](const packed::Block& b) { return !b.direct && !b.weighted; }) <= 4);
+    CHECK(std::count_if(p.blocks.begin(), p.blocks.end(), [&](const packed::Block& b) { return p.copies_coordinates(b); }) >=
+          static_cast<std::ptrdiff_t>(strip.whole / packed::lanes));
+  }
+}

@@ -206,7 +206,7 @@ class RandomExpressions {
 }
 
 /// Motions near the start, each of its own parameters.
-std::vector<Motion> motions_near(const Motion& start, int count) {
+[[maybe_unused]] std::vector<Motion> motions_near(const Motion& start, int count) {
   std::vector<Motion> out;
   for (int i = 0; i < count; ++i) {
     Motion m = start;
