@@ -129,12 +129,13 @@ class Grouping {
 
   // -------------------------------------------------------------------------------------------------------- strands
 
-  /// Running sums whose members stand in the eights of order_, but for some at the ends.
+  /// Running sums whose members stand in the eights of order_, but for some at the ends. Where members wait for something that those before do not, they are
+  /// of a higher level, and a group of their own.
   void cut_chains() {
     find_homes();
-    std::map<int, std::vector<std::size_t>> chains;
+    std::map<std::pair<int, int>, std::vector<std::size_t>> chains;
     for (std::size_t i = 0; i < steps_.size(); ++i)
-      if (steps_[i].chain >= 0) chains[steps_[i].chain].push_back(i);
+      if (steps_[i].chain >= 0) chains[{steps_[i].chain, level_[i]}].push_back(i);
     for (const auto& [chain, members] : chains) cut_chain(members);
   }
 
@@ -164,15 +165,17 @@ class Grouping {
     for (auto i = end; i != members.end(); ++i) piece_[*i] = After;
   }
 
-  /// Lane by lane, up or down, with the same eights in each.
+  /// Lane by lane, up or down, with the same eights in each, one after the other.
   bool are_strands(std::span<const std::size_t> members) const {
     if (members.size() < 2 * lanes || members.size() % lanes != 0) return false;
     const std::size_t length = members.size() / lanes;
-    const bool up = home(members[0]) % lanes == 0;
+    const auto lane = [&](std::size_t m) { return home(members[m]) % lanes; };
+    const auto eight = [&](std::size_t m) { return home(members[m]) / lanes; };
+    const bool up = lane(0) == 0, onwards = eight(0) < eight(1);
     for (std::size_t m = 0; m < members.size(); ++m)
-      if (home(members[m]) % lanes != (up ? m / length : lanes - 1 - m / length) || home(members[m]) / lanes != home(members[m % length]) / lanes ||
-          (m > 0 && m < length && home(members[m]) == home(members[m - 1])))
-        return false;
+      if (lane(m) != (up ? m / length : lanes - 1 - m / length) || eight(m) != eight(m % length)) return false;
+    for (std::size_t m = 1; m < length; ++m)
+      if (onwards ? eight(m) <= eight(m - 1) : eight(m) >= eight(m - 1)) return false;
     return true;
   }
 

@@ -88,6 +88,18 @@ void add_springs(Systems& list, int masses) {
   s.from_lagrangian(lagrangian);
 }
 
+/// A sum of functions of the coordinates of which one, in the middle, is another, so that half of the sum waits for something that the other does not.
+void add_uneven_sum(Systems& list, int members) {
+  System& s = add(list, "uneven sum: " + std::to_string(members));
+  Expr x = s.context.number(0), lagrangian = x;
+  for (int i = 0; i < members; ++i) {
+    const Expr q = s.coordinate("q" + std::to_string(i), 0.3 * std::sin(i), 0.2);
+    x = x + (i == members / 2 ? sqrt(s.context.number(2) + q * q) : sin(q));
+    lagrangian = lagrangian + kinetic(s, s.context.number(1), {x, q});
+  }
+  s.from_lagrangian(lagrangian);
+}
+
 struct Expected {
   std::vector<std::vector<double>> coefficients;  // [orders][coordinates]
 };
@@ -150,9 +162,10 @@ TEST_CASE("large chains of points, and of rods on a shaken support: as in 113 bi
   for (const auto& s : list) check_large(*s, 1000);
 }
 
-TEST_CASE("large chains of two coordinates a level, and without running sums: as in 113 bits") {
+TEST_CASE("large chains of two coordinates a level, without running sums, and with sums in two pieces: as in 113 bits") {
   Systems list;
   for (const int links : {30, 52}) add_stretching(list, links);
   for (const int masses : {60, 120}) add_springs(list, masses);
+  for (const int members : {60, 75}) add_uneven_sum(list, members);
   for (const auto& s : list) check_large(*s, 5000);
 }
