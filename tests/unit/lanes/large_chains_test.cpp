@@ -100,6 +100,20 @@ void add_uneven_sum(Systems& list, int members) {
   s.from_lagrangian(lagrangian);
 }
 
+/// Two coordinates a level, of which a sum takes the second first.
+void add_crossed_sums(Systems& list, int links) {
+  System& s = add(list, "crossed sums: " + std::to_string(links));
+  Expr x = s.context.number(0), y = x, lagrangian = x;
+  for (int i = 0; i < links; ++i) {
+    const std::string number = std::to_string(i);
+    const Expr a = s.coordinate("a" + number, 0.3 * std::sin(i), 0.2), b = s.coordinate("b" + number, 0.3 * std::cos(i), 0.2);
+    x = x + sin(a) * sin(b);
+    for (const Expr step : {b, -a}) y = y + step, lagrangian = lagrangian + kinetic(s, s.context.number(1), {y}) - sin(y);
+    lagrangian = lagrangian + kinetic(s, s.context.number(1), {x, a, b});
+  }
+  s.from_lagrangian(lagrangian);
+}
+
 struct Expected {
   std::vector<std::vector<double>> coefficients;  // [orders][coordinates]
 };
@@ -167,5 +181,6 @@ TEST_CASE("large chains of two coordinates a level, without running sums, and wi
   for (const int links : {30, 52}) add_stretching(list, links);
   for (const int masses : {60, 120}) add_springs(list, masses);
   for (const int members : {60, 75}) add_uneven_sum(list, members);
+  for (const int links : {43, 50}) add_crossed_sums(list, links);
   for (const auto& s : list) check_large(*s, 5000);
 }
