@@ -71,11 +71,12 @@ double radius(const KernelWorkspace& work, std::size_t freedoms, int order, doub
 /// A length to start from, where no step was made before: the decay from the first coefficients to the last.
 double first_guess(const KernelWorkspace& work, std::size_t freedoms, int order) {
   double growth = 0;
-  for (std::size_t i = 0; i < freedoms; ++i)
-    for (int k = order - 1; k <= order; ++k) {
-      for (int j = std::min(3, order - 2); j >= 0; --j)
-        if (velocity(work, i, j) > 0 && k > j)
-          growth = std::max(growth, std::pow(velocity(work, i, k) / velocity(work, i, j), 1.0 / (k - j)));
+  for (int k = order - 1; k <= order; ++k)
+    for (int j = std::min({3, order - 2, k - 1}); j >= 0; --j) {
+      double largest = 0;
+      for (std::size_t i = 0; i < freedoms; ++i)
+        if (const double early = velocity(work, i, j); early > 0) largest = std::max(largest, velocity(work, i, k) / early);
+      growth = std::max(growth, std::pow(largest, 1.0 / (k - j)));
     }
   return growth > 0 ? 1 / growth : 1;
 }
