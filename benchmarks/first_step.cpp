@@ -24,7 +24,7 @@ int main(int, char** arguments) {
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
 
   const bench::ChainEnergy begin = bench::chain_energy(chain.q, chain.v), end = bench::chain_energy(stepper.q(), stepper.v());
-  bench::require(step.ending == StepEnding::None, "no step: " + step.reason);
+  bench::require(step.ending == StepEnding::None, ("no step: " + step.reason).c_str());
   bench::require(std::abs(end.value - begin.value) <= 1e-13 * begin.terms, "energy");
   fmt::print("{{\"links\": {}, \"cpu_seconds\": {:.6f}, \"compiled\": {}}}\n", chain.q.size(),
              static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec), stepper.backend().compiled);

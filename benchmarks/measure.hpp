@@ -5,9 +5,9 @@
 
 namespace bench {
 
-/// Every benchmark asserts its result first.
-inline void require(bool condition, const std::string& what) {
-  if (!condition) throw std::runtime_error("wrong result: " + what);
+/// Every benchmark asserts its result first; without an allocation, since some of it is timed.
+inline void require(bool condition, const char* what) {
+  if (!condition) throw std::runtime_error(std::string("wrong result: ") + what);
 }
 
 /// Seconds that this thread ran: others may share the machine.

@@ -55,5 +55,5 @@ int main(int arguments, char** argument) {
   if (what == "steps") steps(links, count);
   else if (what == "forward") forward(links, count);
   else if (what == "derive") derive(links, count);
-  else require(false, "no work named " + what);
+  else require(false, ("no work named " + what).c_str());
 }
