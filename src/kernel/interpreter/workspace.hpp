@@ -50,7 +50,7 @@ struct KernelWorkspace::Impl {
   KernelStatus run_step_by_step(int stage);
   void run_stage(int stage);
   void renew_blocks(int stage, int stages);
-  bool adds_up_ahead() const { return order > packed::rolled_group; }
+  bool adds_up_ahead() const { return engine.add_up_ahead && order > packed::rolled_group; }
   void run_along(int stage);
   bool outputs_follow_accelerations() const;
   bool run_compiled(int stages);

@@ -66,7 +66,8 @@ struct Engine {
   void (*run_stage)(const Tables&, int stage);
   /// Copies of blocks, when the coefficients of the stage are final.
   void (*renew_blocks)(const Tables&, int stage);
-  /// After renew_blocks(), from stage 0 on in turn: sums of products for the stages that follow, to which run_stage() adds what is missing.
+  /// After renew_blocks(), from stage 0 on in turn: sums of products for the stages that follow, to which run_stage() adds what is missing. Null where that
+  /// takes longer than it saves.
   void (*add_up_ahead)(const Tables&, int stage);
   /// Tangents of order 0: in, those of the coordinates; out, those of all slots of Dynamics. [directions][slots of a row]
   void (*tangents)(const Tables&, double* tangents, std::size_t stride, std::size_t directions);
