@@ -58,6 +58,30 @@ Cut best_cut(std::size_t levels) {
   return best;
 }
 
+constexpr std::size_t eight = 8;
+
+std::size_t count_coordinates(const Levels& levels) {
+  std::size_t count = 0;
+  for (const auto& level : levels) count += level.size();
+  return count;
+}
+
+/// Whether as many coordinates stand there in all parts.
+bool are_alike(const Levels& levels, const Cut& cut, std::size_t turn) {
+  for (std::size_t part = 1; part < eight; ++part)
+    if (levels[cut.level(part, turn)].size() != levels[cut.level(0, turn)].size()) return false;
+  return true;
+}
+
+/// By eights, one of each part; `turn` = length: between parts.
+void add_turn(const Levels& levels, const Cut& cut, std::size_t turn, Strip& out) {
+  for (std::size_t i = 0; i < levels[cut.level(0, turn)].size(); ++i)
+    for (std::size_t part = 0; part < eight; ++part) {
+      out.order.push_back(levels[cut.level(part, turn)][i]);
+      if (turn < cut.length) out.parts[part].push_back(out.order.back());
+    }
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> nearest_coordinates(const LiftedSystem& system) {
@@ -90,33 +114,23 @@ std::vector<std::vector<std::uint32_t>> cut_into_parts(const LiftedSystem& syste
 }
 
 Strip strip_of(const Program& program) {
-  constexpr std::size_t eight = 8;
   const auto system = lift(program, std::vector<bool>(program.slots, false));
   if (!system) return {};
   const Levels levels = levels_from(*system, levels_from(*system, 0).back().front());
   const Cut cut = best_cut(levels.size());
-  if (cut.parts != eight) return {};
-  Strip out{std::vector<std::vector<std::uint32_t>>(eight), std::vector<std::uint32_t>(program.unknowns, none), levels.size(), {}, 0};
+  if (cut.parts != eight || count_coordinates(levels) != program.unknowns) return {};
+  Strip out{Levels(eight), std::vector<std::uint32_t>(program.unknowns), levels.size(), {}, 0};
   for (std::uint32_t l = 0; l < levels.size(); ++l)
     for (const std::uint32_t coordinate : levels[l]) out.level[coordinate] = l;
-  std::vector<bool> placed(program.unknowns, false);
   for (std::size_t turn = 0; turn <= cut.length; ++turn) {
-    const std::size_t size = levels[cut.level(0, turn)].size();
-    bool alike = true;
-    for (std::size_t part = 0; part < eight; ++part) alike = alike && levels[cut.level(part, turn)].size() == size;
-    if (!alike && turn < cut.length) return {};
-    for (std::size_t i = 0; i < size && alike; ++i)
-      for (std::size_t part = 0; part < eight; ++part) {
-        const std::uint32_t coordinate = levels[cut.level(part, turn)][i];
-        out.order.push_back(coordinate), placed[coordinate] = true;
-        if (turn < cut.length) out.parts[part].push_back(coordinate);
-      }
+    if (are_alike(levels, cut, turn)) add_turn(levels, cut, turn, out);
+    else if (turn < cut.length) return {};
   }
   out.whole = out.order.size();
-  for (std::uint32_t i = 0; i < program.unknowns; ++i) {
-    if (out.level[i] == none) return {};
+  std::vector<bool> placed(program.unknowns, false);
+  for (const std::uint32_t coordinate : out.order) placed[coordinate] = true;
+  for (std::uint32_t i = 0; i < program.unknowns; ++i)
     if (!placed[i]) out.order.push_back(i);
-  }
   return out;
 }
 
