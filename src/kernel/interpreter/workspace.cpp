@@ -28,6 +28,8 @@ void KernelWorkspace::Impl::bind() {
   std::copy_n(program.stored_end.begin(), tangents.end.size(), tangents.end.begin());
   tables.rows = memory.rows.data();
   tables.stride = memory.stride;
+  tables.unknowns = unknowns;
+  tables.shift_factors = memory.shift_factors.data();
   tables.scalar.context = this;
   tables.scalar.value = [](void* self, std::uint32_t instruction, int at) {
     interpreter::run_instruction(static_cast<Impl*>(self)->memory, instruction, at);
@@ -37,21 +39,14 @@ void KernelWorkspace::Impl::bind() {
   };
   lane_coefficients.resize(packed.coefficients.size());
   tables.coefficients = lane_coefficients.data();
-  ready.emplace(packed, memory.rows.data(), memory.stride, lane_coefficients.data());
+  if (adds_up_ahead()) sums.assign(packed::count_convolutions(packed) * packed::rolled_group * packed::lanes, 0.0);
+  tables.has_sums = !sums.empty();
+  ready.emplace(packed, packed::Numbers{memory.rows.data(), memory.stride, lane_coefficients.data(), tables.has_sums ? sums.data() : nullptr});
   tables.ready = ready->packs.data();
-  tables.brought = ready->brought.data();
   tables.copies = ready->copies.data();
   tables.copy_count = ready->copies.size();
-  tables.ready_runs = ready->runs.data();
-  tables.ready_products = ready->products.data();
-  tables.sums_ahead = ready->sums.data();
-  tables.convolutions = ready->convolutions.data();
   tables.convolution_runs = ready->convolution_runs.data();
   tables.convolution_run_count = ready->convolution_runs.size();
-  if (adds_up_ahead()) {
-    sums.assign(packed::count_convolutions(packed) * packed::rolled_group * packed::lanes, 0.0);
-    tables.sums = sums.data();
-  }
 }
 
 void KernelWorkspace::Impl::compute_constants() {
@@ -91,6 +86,10 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   if (const auto status = factor(); status != KernelStatus::Ok) return status;
   later = stages > 1 ? choose_later_stages() : LaterStages::StepByStep;
   for (int stage = 0; stage < stages; ++stage) {
+    if (stage > 0 && later == LaterStages::ByInverse && !compiled.stage) {
+      run_later_stages(stages);
+      break;
+    }
     if (stage == 0 || !run_directly(stage))
       if (const auto status = run_step_by_step(stage); status != KernelStatus::Ok) return status;
     renew_blocks(stage, stages);
@@ -143,10 +142,19 @@ bool KernelWorkspace::Impl::run_directly(int stage) {
   return true;
 }
 
+/// All from 1 on, where nothing but the coefficients is asked for at once.
+void KernelWorkspace::Impl::run_later_stages(int stages) {
+  const packed::InverseSolution solution{inverse.data(), program.residual.data(), tangents, answers.data()};
+  if (program.runs[Along].empty()) return engine.run_stages_by_inverse(tables, solution, 1, stages, false);
+  for (int stage = 1; stage < stages; ++stage) {
+    engine.run_stages_by_inverse(tables, solution, stage, stage + 1, stage + 1 < stages);
+    run_along(stage);
+  }
+}
+
 /// From 1 on, with q_{k+2} = 0.
 void KernelWorkspace::Impl::run_stage(int stage) {
   if (compiled.stage) return compiled.stage(&arguments, stage);
-  std::fill_n(memory.row(stage + 2), padded_unknowns(), 0.0);
   engine.run_stage(tables, stage);
 }
 
@@ -155,7 +163,7 @@ void KernelWorkspace::Impl::renew_blocks(int stage, int stages) {
   if (stage + 1 >= stages) return;
   if (compiled.stage) compiled.ahead(&arguments, stage);
   else engine.renew_blocks(tables, stage);
-  if (!compiled.stage && tables.sums) engine.add_up_ahead(tables, stage);
+  if (!compiled.stage && tables.has_sums) engine.add_up_ahead(tables, stage);
 }
 
 /// What follows the solution of a stage.

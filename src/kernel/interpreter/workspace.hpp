@@ -29,6 +29,7 @@ struct KernelWorkspace::Impl {
     rough = solution;
     unknown = {solution.data(), unknowns};
     tangent.assign(by_matrix ? unknowns * memory.stride : memory.stride, 0.0);
+    if (by_matrix) answers.assign(tangent.size(), 0.0);
     if (!by_matrix && unknowns == program.freedoms) lifted.emplace(kernel.program(), strip, packed, memory.stride);
     if (unknowns <= packed::most_by_inverse) inverse.assign(padded_unknowns() * padded_unknowns(), 0.0);
     for (const Instruction& i : program.instructions) producer[i.out] = &i;
@@ -49,6 +50,7 @@ struct KernelWorkspace::Impl {
   void run_first_stages();
   KernelStatus run_step_by_step(int stage);
   void run_stage(int stage);
+  void run_later_stages(int stages);
   void renew_blocks(int stage, int stages);
   bool adds_up_ahead() const { return engine.add_up_ahead && order > packed::rolled_group; }
   void run_along(int stage);
@@ -68,6 +70,7 @@ struct KernelWorkspace::Impl {
   KernelStatus factor();
   KernelStatus factor_full();
   void need_full();
+  void fetch_mass(std::size_t i, const double* tangents, std::size_t step, std::size_t first, std::size_t last);
   KernelStatus solve(int stage);
   void solve_factored();
   void fetch_residual(int stage);
@@ -108,6 +111,7 @@ struct KernelWorkspace::Impl {
   bool by_matrix, by_inverse = false, by_lifting = false;
   LaterStages later = LaterStages::StepByStep;
   interpreter::Doubles inverse;      // by_inverse or LaterStages::ByInverse: −M⁻¹, padded rows and columns
+  interpreter::Doubles answers;      // scratch of Engine::run_stages_by_inverse
   interpreter::Doubles tangent_row, passing_row;  // scratch of code
   std::vector<double> probe;         // [stride] the right side of inverts()
   bool has_probe = false;            // for these parameters

@@ -48,14 +48,21 @@ void KernelWorkspace::Impl::need_full() {
     of_mass = interpreter::instructions_of_mass(program);
   }
   if (by_sweep) sweep_all();
-  for (std::size_t d = 0; d < n; ++d) {
-    if (!by_sweep && d % 8 == 0) sweep_block(d);
-    for (std::size_t i = 0; i < n; ++i) {
-      const Slot slot = program.residual[i];
-      bordered[i * n + d] = program.tangent_lags[slot] != 2 ? 0.0
-                            : by_sweep ? tangent[d * memory.stride + slot] : block_tangent[slot * 8 + d % 8];
-    }
+  if (by_sweep) {
+    for (std::size_t i = 0; i < n; ++i) fetch_mass(i, tangent.data() + program.residual[i], memory.stride, 0, n);
+    return;
   }
+  for (std::size_t d = 0; d < n; d += 8) {
+    sweep_block(d);
+    for (std::size_t i = 0; i < n; ++i) fetch_mass(i, block_tangent.data() + program.residual[i] * 8, 1, d, std::min(n, d + 8));
+  }
+}
+
+/// Row i of M₀ from its tangents in the directions `first` to `last` − 1.
+void KernelWorkspace::Impl::fetch_mass(std::size_t i, const double* tangents, std::size_t step, std::size_t first, std::size_t last) {
+  double *const row = bordered.data() + i * unknowns, *const end = row + last;
+  if (program.tangent_lags[program.residual[i]] != 2) return std::fill(row + first, end, 0.0);
+  for (double* entry = row + first; entry != end; ++entry, tangents += step) *entry = *tangents;
 }
 
 /// Its factors.
@@ -63,7 +70,7 @@ KernelStatus KernelWorkspace::Impl::factor_full() {
   const std::size_t n = unknowns;
   need_full();
   if (!engine.are_finite(bordered.data(), n, n, n)) return KernelStatus::NonFinite;
-  by_inverse = by_matrix && n == program.freedoms && engine.negative_inverse(bordered.data(), n, inverse.data(), padded_unknowns());
+  by_inverse = by_matrix && n == program.freedoms && engine.negative_inverse(bordered.data(), n, inverse.data());
   if (by_inverse) return KernelStatus::Ok;
   if (!solver) solver.emplace(program.freedoms, n - program.freedoms);
   std::copy(bordered.begin(), bordered.end(), solver->matrix().begin());
@@ -112,9 +119,10 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
   return finite();
 }
 
-/// By an inverse that is there then, if there is code for it.
+/// By an inverse that is there then, if there is one of few unknowns or code for it. (Rolled code may be without a solution.)
 KernelWorkspace::Impl::LaterStages KernelWorkspace::Impl::choose_later_stages() {
-  if (compiled.solve && (by_inverse || (by_lifting && lifted->negative_inverse(inverse.data()) && inverts()))) return LaterStages::ByInverse;
+  if (by_inverse && unknowns > 0 && (compiled.solve || !compiled.stage)) return LaterStages::ByInverse;
+  if (compiled.solve && by_lifting && lifted->negative_inverse(inverse.data()) && inverts()) return LaterStages::ByInverse;
   return by_lifting ? LaterStages::ByLifting : LaterStages::StepByStep;
 }
 

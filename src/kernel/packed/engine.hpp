@@ -23,16 +23,12 @@ struct Reciprocal {
 };
 
 struct Tables {
-  const ReadyPack* ready = nullptr;
-  const Copy *brought = nullptr, *copies = nullptr;
+  const ReadyPack* ready = nullptr;      // [pack_count]
+  const Copy* copies = nullptr;
   std::size_t copy_count = 0;
-  const SumAhead* sums_ahead = nullptr;
-  const ReadyConvolution* convolutions = nullptr;
+  bool has_sums = false;                 // of add_up_ahead()
   const ConvolutionRun* convolution_runs = nullptr;
   std::size_t convolution_run_count = 0;
-  double* sums = nullptr;                // [convolutions][rolled_group][8] of add_up_ahead(), aligned to 64 bytes; null: stages add up for themselves
-  const ReadyRun* ready_runs = nullptr;
-  const ReadyProduct* ready_products = nullptr;
   const Pack* packs = nullptr;
   std::size_t pack_count = 0;
   const Block* blocks = nullptr;
@@ -43,6 +39,8 @@ struct Tables {
   const double* coefficients = nullptr;  // values of PackedProgram::coefficients
   double* rows = nullptr;                // [orders][stride], aligned to 64 bytes
   std::size_t stride = 0;                // a multiple of 8
+  std::size_t unknowns = 0;
+  const double* shift_factors = nullptr;  // [orders][3] 1, k + 1, (k + 1)(k + 2)
   const Reciprocal* reciprocals = nullptr;  // [orders] of k; of 0: none
   ScalarRules scalar;
 };
@@ -55,6 +53,14 @@ struct TangentMatrix {
   std::array<Slot, 3> end{};             // … and where those of lag 0, 1, 2 end; all multiples of 8
 };
 
+/// For 1 to 16 unknowns by −M₀⁻¹, as Engine::negative_inverse() wrote it.
+struct InverseSolution {
+  const double* inverse = nullptr;
+  const Slot* residual = nullptr;        // [directions]
+  TangentMatrix tangents;                // in the direction of each unknown
+  double* answers = nullptr;             // [tangents.stride × directions] scratch, aligned to 64 bytes, kept from stage 1 on
+};
+
 /// The largest absolute value of each.
 struct Sizes {
   double values = 0, change = 0;
@@ -62,7 +68,7 @@ struct Sizes {
 
 struct Engine {
   const char* name;
-  /// Every pack at the order that belongs to the stage.
+  /// Every pack at the order that belongs to the stage, from stage 1 on with q_{k+2} = 0, which it sets.
   void (*run_stage)(const Tables&, int stage);
   /// Copies of blocks, when the coefficients of the stage are final.
   void (*renew_blocks)(const Tables&, int stage);
@@ -76,10 +82,10 @@ struct Engine {
   /// −M⁻¹ of a symmetric, positive definite matrix, by Gauss and Jordan: a product with it takes part in few dependences, where a
   /// substitution waits for each of its rows.
   ///   matrix   row by row [n × n], n ≤ 16
-  ///   inverse  [n × stride] rows, stride n rounded up to a multiple of 8, aligned to 64 bytes
+  ///   inverse  [n × stride] rows, stride n rounded up to a multiple of 8 and 0 beyond n, aligned to 64 bytes
   /// False if a pivot is below 1e-10 of its diagonal entry, or M not positive, not finite or not symmetric: then nothing is written, and a
   /// solver that pivots has to decide.
-  bool (*negative_inverse)(const double* matrix, std::size_t n, double* inverse, std::size_t stride);
+  bool (*negative_inverse)(const double* matrix, std::size_t n, double* inverse);
   /// 8 × 8 numbers of rows `stride` apart, columns as rows.
   void (*transpose)(const double* from, double* to, std::size_t stride);
   /// solution = Σ_i inverse[i] · row[residual[i]], [stride]. False where it is not finite.
@@ -93,6 +99,9 @@ struct Engine {
   /// What the coefficients of the stage that later orders read owe to q̈_k: in a slot of lag ℓ, Σ_d weights[d] · tangents[d] times 1,
   /// 1/(k+1), 1/((k+1)(k+2)) for ℓ = 2, 1, 0.
   void (*correct)(const Tables&, int stage, const TangentMatrix&, const double* weights);
+  /// Stages `first` ≥ 1 to `last` − 1, each with all that belongs to it: run_stage(), solve_by_inverse(), set_accelerations(), correct(), and where another
+  /// follows (after the last one: if it `goes_on`) renew_blocks() and add_up_ahead(). What is not finite stays in the coefficients.
+  void (*run_stages_by_inverse)(const Tables&, const InverseSolution&, int first, int last, bool goes_on);
   /// Σ_{k=2..degree} c_k τ^{k−1} and Σ k c_k τ^{k−1} of `count` columns, c_k = first + k · stride: read and written in eights.
   void (*increments)(const double* first, std::size_t stride, std::size_t count, int degree, double tau, double* dq, double* dv);
   /// See KernelWorkspace::radius.

@@ -15,49 +15,69 @@ bool is_symmetric(const double* m, std::size_t n) {
   return symmetric;
 }
 
-/// The columns p of vector V: each gives its room to that of the inverse. V is known when this is compiled, since an address that is not
-/// lets every load wait for the stores before it. False: a pivot is too small.
-template <std::size_t W, std::size_t V>
-bool eliminate(const double* m, std::size_t n, Vector (*rows)[W]) {
+/// Column p, of vector V, gives its room to that of the inverse. V is known when this is compiled, since an address that is not lets every load wait
+/// for the stores before it. False: the pivot is too small.
+template <std::size_t V, std::size_t N, std::size_t W>
+[[gnu::always_inline]] inline bool eliminate(const double* m, Vector (&rows)[N][W], std::size_t p) {
   constexpr double least_pivot = 1e-10;
-  for (std::size_t p = V * lanes; p < n && p < (V + 1) * lanes; ++p) {
-    const std::size_t lane = p % lanes;
-    const double pivot = rows[p][V][lane];
-    if (!(pivot > least_pivot * m[p * n + p])) return false;
-    const Vector reciprocal = all(1 / pivot);
-    const auto here = lane_numbers == all(static_cast<double>(lane));
-    Vector scaled[W];
-    for (std::size_t w = 0; w < W; ++w) scaled[w] = rows[p][w] * reciprocal;
-    scaled[V] = here ? reciprocal : scaled[V];
-    for (std::size_t i = 0; i < n; ++i) {
-      const Vector factor = all(rows[i][V][lane]);
-      rows[i][V] = here ? all(0) : rows[i][V];
-      for (std::size_t w = 0; w < W; ++w) rows[i][w] -= factor * scaled[w];
-    }
-    for (std::size_t w = 0; w < W; ++w) rows[p][w] = scaled[w];
+  const std::size_t lane = p % lanes;
+  const double pivot = rows[p][V][lane];
+  if (!(pivot > least_pivot * m[p * N + p])) return false;
+  const Vector reciprocal = all(1 / pivot);
+  const auto here = lane_numbers == all(static_cast<double>(lane));
+  Vector scaled[W];
+  for (std::size_t w = 0; w < W; ++w) scaled[w] = rows[p][w] * reciprocal;
+  scaled[V] = here ? reciprocal : scaled[V];
+#pragma GCC unroll 8
+  for (std::size_t i = 0; i < N; ++i) {
+    const Vector factor = all(rows[i][V][lane]);
+    rows[i][V] = here ? all(0) : rows[i][V];
+    for (std::size_t w = 0; w < W; ++w) rows[i][w] -= factor * scaled[w];
   }
+  for (std::size_t w = 0; w < W; ++w) rows[p][w] = scaled[w];
   return true;
 }
 
-/// In place, W vectors a row.
-template <std::size_t W>
-bool invert(const double* m, std::size_t n, double* inverse) {
-  Vector rows[most_inverted][W];
+/// All columns: up to 8 written out, with the rows in registers.
+template <std::size_t N>
+bool eliminate_all(const double* m, Vector (&rows)[N][1]) {
+  return [&]<std::size_t... P>(std::index_sequence<P...>) { return (eliminate<0>(m, rows, P) && ...); }(std::make_index_sequence<N>());
+}
+template <std::size_t N>
+bool eliminate_all(const double* m, Vector (&rows)[N][2]) {
+  for (std::size_t p = 0; p < lanes; ++p)
+    if (!eliminate<0>(m, rows, p)) return false;
+  for (std::size_t p = lanes; p < N; ++p)
+    if (!eliminate<1>(m, rows, p)) return false;
+  return true;
+}
+
+/// In place, N rows of W vectors.
+template <std::size_t N>
+bool invert(const double* m, double* inverse) {
+  constexpr std::size_t W = (N + lanes - 1) / lanes;
+  Vector rows[N][W];
   alignas(64) double row[W * lanes] = {};
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < n; ++j) row[j] = m[i * n + j];
-    for (std::size_t w = 0; w < W; ++w) rows[i][w] = load(row + w * lanes);
+  for (std::size_t i = 0; i < N; ++i) {
+    for (std::size_t j = 0; j < N; ++j) row[j] = m[i * N + j];
+    for (std::size_t w = 0; w < W; ++w) rows[i][w] = N % lanes == 0 ? load(m + i * N + w * lanes) : load(row + w * lanes);
   }
-  const bool sound = [&]<std::size_t... V>(std::index_sequence<V...>) { return (eliminate<W, V>(m, n, rows) && ...); }(std::make_index_sequence<W>());
-  if (!sound) return false;
-  for (std::size_t i = 0; i < n; ++i)
+  if (!eliminate_all(m, rows)) return false;
+  for (std::size_t i = 0; i < N; ++i)
     for (std::size_t w = 0; w < W; ++w) save(inverse + (i * W + w) * lanes, -rows[i][w]);
   return true;
 }
 
-bool negative_inverse(const double* matrix, std::size_t n, double* inverse, std::size_t stride) {
-  if (n > most_inverted || !is_symmetric(matrix, n)) return false;
-  return stride == lanes ? invert<1>(matrix, n, inverse) : invert<2>(matrix, n, inverse);
+using Invert = bool (*)(const double* m, double* inverse);
+
+/// By the number of unknowns less 1.
+template <std::size_t... N>
+constexpr std::array<Invert, most_inverted> inversions(std::index_sequence<N...>) { return {invert<N + 1>...}; }
+
+bool negative_inverse(const double* matrix, std::size_t n, double* inverse) {
+  static constexpr auto invert_of = inversions(std::make_index_sequence<most_inverted>());
+  if (n == 0) return true;
+  return n <= most_inverted && is_symmetric(matrix, n) && invert_of[n - 1](matrix, inverse);
 }
 
 /// In three exchanges: of neighbours, pairs and halves.
@@ -98,13 +118,17 @@ bool solve_by_inverse(const double* inverse, std::size_t stride, const double* r
 bool rows_are_finite(const double* first, std::size_t stride, std::size_t rows, std::size_t count) {
   Vector sums[4] = {all(0), all(0), all(0), all(0)};
   double rest = 0;
-  for (const double* row = first; row != first + rows * stride; row += stride) {
-    std::size_t i = 0;
-    for (; i + 4 * lanes <= count; i += 4 * lanes)
-      for (std::size_t s = 0; s < 4; ++s) sums[s] += load(row + i + s * lanes) * all(0);
-    for (; i + lanes <= count; i += lanes) sums[i / lanes % 4] += load(row + i) * all(0);
-    for (; i < count; ++i) rest += row[i] * 0;
+  const double* const last = first + rows * stride;
+  std::size_t i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    const double* row = first + i;
+    for (; row + 3 * stride < last; row += 4 * stride)
+#pragma GCC unroll 4
+      for (std::size_t s = 0; s < 4; ++s) sums[s] += load(row + s * stride) * all(0);
+    for (; row < last; row += stride) sums[0] += load(row) * all(0);
   }
+  for (; i < count; ++i)
+    for (const double* row = first + i; row < last; row += stride) rest += *row * 0;
   return are_finite((sums[0] + sums[1]) + (sums[2] + sums[3])) && rest == 0;
 }
 
@@ -126,41 +150,135 @@ void set_accelerations(const Tables& tables, int stage, const double* solution, 
   for (std::size_t i = 0; i < unknowns; i += lanes) save(next + i, load(solution + i) / all(sign * (stage + 1.0) * (stage + 2.0)));
 }
 
-/// What W directions add.
-template <std::size_t W>
-void add_directions(double* out, std::size_t size, const double* tangents, std::size_t stride, const double* weights, double factor) {
-  for (std::size_t i = 0; i < size; i += lanes) {
-    const auto term = [&](std::size_t d) { return all(weights[d]) * load(tangents + d * stride + i); };
-    Vector even = term(0);
-    for (std::size_t d = 2; d < W; d += 2) even += term(d);
-    if constexpr (W > 1) {
-      Vector odd = term(1);
-      for (std::size_t d = 3; d < W; d += 2) odd += term(d);
-      even += odd;
-    }
-    save(out + i, load(out + i) + all(factor) * even);
+/// Σ_d weights[d] · rows[d · stride], in sums that do not wait for each other.
+template <std::size_t N>
+Vector weighted(const Vector (&weights)[N], const double* rows, std::size_t stride) {
+  constexpr std::size_t chains = N < 4 ? 1 : N < 12 ? 2 : 4;
+  Vector sums[chains];
+#pragma GCC unroll 16
+  for (std::size_t d = 0; d < N; ++d) {
+    const Vector term = weights[d] * load(rows + d * stride);
+    sums[d % chains] = d < chains ? term : sums[d % chains] + term;
+  }
+#pragma GCC unroll 4
+  for (std::size_t c = 1; c < chains; ++c) sums[0] += sums[c];
+  return sums[0];
+}
+
+/// What N directions add to the coefficients of a stage.
+template <std::size_t N>
+inline void add_directions(const Stage& s, const TangentMatrix& tangents, const double* values, const Vector (&weights)[N]) {
+  const double first = s.t.reciprocals[s.stage + 1].leading, second = s.t.reciprocals[s.stage + 2].leading;
+  const double factors[3] = {first * second, first, 1};
+  std::size_t i = tangents.first;
+  for (int lag = 0; lag <= 2; ++lag) {
+    double* const row = s.row_of(lag);
+    for (const Vector factor = all(factors[lag]); i < tangents.end[static_cast<std::size_t>(lag)]; i += lanes)  // the slots of the next lag begin with a vector
+      save(row + i, load(row + i) + factor * weighted(weights, values + i, tangents.stride));
   }
 }
 
+template <std::size_t N>
+inline void load_weights(const double* numbers, Vector (&weights)[N]) {
+#pragma GCC unroll 16
+  for (std::size_t d = 0; d < N; ++d) weights[d] = all(numbers[d]);
+}
+
+template <std::size_t N>
+void correct_by(const Stage& s, const TangentMatrix& tangents, std::size_t first, const double* numbers) {
+  Vector weights[N];
+  load_weights(numbers + first, weights);
+  add_directions(s, tangents, tangents.values + first * tangents.stride, weights);
+}
+
+using CorrectBy = void (*)(const Stage&, const TangentMatrix&, std::size_t, const double*);
+
 void correct(const Tables& tables, int stage, const TangentMatrix& tangents, const double* weights) {
-  const double factors[3] = {1 / ((stage + 1.0) * (stage + 2.0)), 1 / (stage + 1.0), 1};
-  double* const next = tables.rows + static_cast<std::size_t>(stage + 2) * tables.stride;
-  Slot first = tangents.first;
-  for (std::size_t lag = 0; lag <= 2; ++lag) {
-    double* const out = next - lag * tables.stride + first;
-    for (std::size_t d = 0; d < tangents.directions;) {
-      const auto block = [&]<std::size_t W>() {
-        add_directions<W>(out, tangents.end[lag] - first, tangents.values + d * tangents.stride + first, tangents.stride, weights + d, factors[lag]);
-        d += W;
-      };
-      const std::size_t left = tangents.directions - d;
-      if (left >= 8) block.template operator()<8>();
-      else if (left >= 4) block.template operator()<4>();
-      else if (left >= 2) block.template operator()<2>();
-      else block.template operator()<1>();
+  constexpr std::size_t most = 8;
+  static constexpr CorrectBy by[] = {nullptr, correct_by<1>, correct_by<2>, correct_by<3>, correct_by<4>, correct_by<5>, correct_by<6>, correct_by<7>, correct_by<8>};
+  const Stage s(tables, stage);
+  for (std::size_t d = 0; d < tangents.directions; d += most)
+    by[tangents.directions - d < most ? tangents.directions - d : most](s, tangents, d, weights);
+}
+
+/// Up to here what a stage adds is found from its residual at once.
+constexpr std::size_t most_answered = 8;
+
+/// Calls for each vector of corrected slots, with its lag and place in a row.
+template <class Visit>
+inline void for_corrected(const TangentMatrix& tangents, const Visit& visit) {
+  std::size_t i = tangents.first;
+  for (int lag = 0; lag <= 2; ++lag)
+    for (; i < tangents.end[static_cast<std::size_t>(lag)]; i += lanes) visit(lag, i);  // the slots of the next lag begin with a vector
+}
+
+/// Of N unknowns: what −M₀⁻¹, and the tangents after it, make of each entry of a residual, [corrected vectors][N][lanes].
+template <std::size_t N>
+void find_answers(const InverseSolution& in) {
+  double* out = in.answers;
+  for_corrected(in.tangents, [&](int, std::size_t i) {
+    Vector rows[N];
+#pragma GCC unroll 16
+    for (std::size_t d = 0; d < N; ++d) rows[d] = load(in.tangents.values + d * in.tangents.stride + i);
+    for (std::size_t e = 0; e < N; ++e, out += lanes) {
+      const double* const column = in.inverse + e * lanes;  // of a symmetric matrix
+      Vector even = rows[0] * all(column[0]), odd = all(0);
+#pragma GCC unroll 16
+      for (std::size_t d = 1; d < N; ++d) (d % 2 == 0 ? even : odd) += rows[d] * all(column[d]);
+      save(out, even + odd);
     }
-    first = (tangents.end[lag] + lanes - 1) / lanes * lanes;  // where the slots of the next lag begin
+  });
+}
+
+/// Of N unknowns.
+template <std::size_t N>
+[[gnu::always_inline]] inline void complete(const Stage& s, const InverseSolution& in) {
+  constexpr std::size_t vectors = (N + lanes - 1) / lanes;
+  const double* const residual = s.row_of(2);
+  Vector weights[N];
+#pragma GCC unroll 16
+  for (std::size_t d = 0; d < N; ++d) weights[d] = all(residual[in.residual[d]]);
+  const double first = s.t.reciprocals[s.stage + 1].leading, second = s.t.reciprocals[s.stage + 2].leading;
+  const double factors[3] = {first * second, first, 1};
+  if constexpr (N <= most_answered) {
+    const double* answer = in.answers;
+    save(s.row_of(0), weighted(weights, in.inverse, lanes) / all(s.t.shift_factors[3 * s.stage + 2]));
+    for_corrected(in.tangents, [&](int lag, std::size_t i) {
+      double* const place = s.row_of(lag) + i;
+      save(place, load(place) + all(factors[lag]) * weighted(weights, answer, lanes));
+      answer += N * lanes;
+    });
+  } else {
+    alignas(64) double solution[vectors * lanes];
+    for (std::size_t v = 0; v < vectors; ++v) save(solution + v * lanes, weighted(weights, in.inverse + v * lanes, vectors * lanes));
+    set_accelerations(s.t, s.stage, solution, N, 1);
+    load_weights(solution, weights);
+    add_directions(s, in.tangents, in.tangents.values, weights);
   }
+}
+
+template <std::size_t N>
+void run_stages_of(const Tables& tables, const InverseSolution& in, int first, int last, bool goes_on) {
+  if constexpr (N <= most_answered)
+    if (first == 1) find_answers<N>(in);
+  for (int stage = first; stage < last; ++stage) {
+    const Stage s(tables, stage);
+    run(s);
+    complete<N>(s, in);
+    if (stage + 1 == last && !goes_on) return;
+    renew(s);
+    if (tables.has_sums) add_up_ahead(tables, stage);
+  }
+}
+
+using RunStages = void (*)(const Tables&, const InverseSolution&, int first, int last, bool goes_on);
+
+template <std::size_t... N>
+constexpr std::array<RunStages, most_inverted> by_unknowns(std::index_sequence<N...>) { return {run_stages_of<N + 1>...}; }
+
+void run_stages_by_inverse(const Tables& tables, const InverseSolution& in, int first, int last, bool goes_on) {
+  static constexpr auto run_stages = by_unknowns(std::make_index_sequence<most_inverted>());
+  run_stages[in.tangents.directions - 1](tables, in, first, last, goes_on);
 }
 
 }  // namespace

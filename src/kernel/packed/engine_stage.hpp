@@ -13,183 +13,247 @@ void sine_cosine(const double* x, double* out, int count) {
          : count <= 4 ? sine_cosine_of<4>(x, out) : sine_cosine_of<8>(x, out);
 }
 
-/// `ByAhead`: by sums that are there, as far as they are.
-template <bool ByAhead>
-class Stage {
- public:
-  Stage(const Tables& tables, int stage)
-      : t_(tables), stride_(static_cast<std::ptrdiff_t>(tables.stride)), stage_(stage),
-        sums_(ByAhead ? tables.sums + (stage - 1) % rolled_group * static_cast<int>(lanes) : nullptr) {}
+/// What packs of a stage have in common.
+struct Stage {
+  Stage(const Tables& tables, int number)
+      : t(tables), stride(static_cast<std::ptrdiff_t>(tables.stride)), stage(number), late(number > first_late_stage),
+        position((number - 1) % rolled_group * static_cast<int>(lanes)) {}
 
-  void run() {
-    for (std::size_t i = 0; i < t_.pack_count; ++i) {
-      const ReadyPack& pack = t_.ready[i];
-      k_ = stage_ + 2 - pack.lag;
-      if (k_ < 0) continue;
-      row_ = t_.rows + k_ * stride_;
-      for (std::uint32_t c = pack.first_copy; c < pack.last_copy; ++c)
-        if (const Copy& block = t_.brought[c]; !(ByAhead && block.of_coordinates)) copy(block);
-      switch (pack.kind) {
-        case Pack::Sum: save(row_ + pack.out, products(pack, columns(pack))); break;
-        case Pack::Scan: save(row_ + pack.out, running_sum(columns(pack)) + carry_of(pack.carry, row_)); break;
-        case Pack::ScanDown: save(row_ + pack.out, running_sum_down(columns(pack)) + carry_of(pack.carry, row_)); break;
-        case Pack::Strand: i = strands(i); break;
-        case Pack::Join: case Pack::JoinDown: break;  // with its strands
-        case Pack::Integral: integral(pack); break;
-        case Pack::Quotient: quotient(pack); break;
-        case Pack::SquareRoot: square_root(pack); break;
-        case Pack::Scalar: t_.scalar.value(t_.scalar.context, pack.pack->instruction, k_); break;
-      }
-    }
-  }
+  int order_of(int lag) const { return stage + 2 - lag; }
+  std::ptrdiff_t offset_of(int lag) const { return order_of(lag) * stride; }
+  double* row_of(int lag) const { return t.rows + offset_of(lag); }
 
-  void renew() {
-    for (std::size_t i = 0; i < t_.copy_count; ++i) copy(t_.copies[i]);
-  }
-
- private:
-  void copy(const Copy& block) const {
-    const int order = stage_ + 2 - block.lag;
-    if (order < 0) return;
-    double* const row = t_.rows + order * stride_;
-    const Vector values = block.kind == Copy::Range ? load(row + block.first)
-                          : block.kind == Copy::TwoVectors ? permuted(row, block) : gather(row, block.slots);
-    save(row + block.to, block.weighted ? values * all(order) : values);
-  }
-
-  static Vector permuted(const double* row, const Copy& block) {
-#ifdef __AVX512F__
-    return __builtin_shuffle(load(row + block.first), load(row + block.second), *reinterpret_cast<const UnalignedPlaces*>(block.places.data()));
-#else
-    return gather(row, block.slots);
-#endif
-  }
-
-  Vector run_of_columns(const ReadyRun& run) const {
-    switch (run.kind) {
-      case Column::Broadcast: return columns_of_kind<Column::Broadcast>(run, row_);
-      case Column::Contiguous: return columns_of_kind<Column::Contiguous>(run, row_);
-      case Column::Reversed: return columns_of_kind<Column::Reversed>(run, row_);
-      default: return columns_of_kind<Column::Gather>(run, row_);
-    }
-  }
-
-  /// d/dt multiplies by k + 1.
-  Vector shifted(const ReadyRun& run) const {
-    const Vector part = run_of_columns(run);
-    return run.shift == 0 ? part : all(run.shift == 1 ? k_ + 1.0 : (k_ + 1.0) * (k_ + 2.0)) * part;
-  }
-
-  /// Not inline: at each of its places it would leave too few registers (10 % of a step of 8 links).
-  [[gnu::noinline]] Vector columns(const ReadyPack& pack) const {
-    if (pack.first_run == pack.last_run) return all(0);
-    Vector sum = shifted(t_.ready_runs[pack.first_run]);
-    for (std::uint32_t r = pack.first_run + 1; r < pack.last_run; ++r) sum += shifted(t_.ready_runs[r]);
-    return sum;
-  }
-
-  /// All of a running sum from pack `i` on, and the place of its end.
-  std::size_t strands(std::size_t i) const {
-    Vector sum = all(0);
-    for (; t_.ready[i].kind == Pack::Strand; ++i) {
-      sum += columns(t_.ready[i]);
-      save(row_ + t_.ready[i].out, sum);
-    }
-    const Pack& join = *t_.ready[i].pack;
-    join_strands(join, sum, row_, join.kind == Pack::Join ? before_lanes : before_lanes_down);
-    return i;
-  }
-
-  Vector products(const ReadyPack& pack, Vector result) const {
-    for (std::uint32_t p = pack.first_product; p < pack.last_product; ++p) {
-      const ReadyProduct& term = t_.ready_products[p];
-      const SumAhead& sum = t_.sums_ahead[pack.first_sum + p - pack.first_product];
-      result += load(term.coefficients) * (has_sum(sum)       ? completed(sum, term.a, term.b, true, true)
-                                           : term.a == term.b ? self(term.a, 0)
-                                                              : convolution(term.a, term.b, k_, stride_));
-    }
-    return result;
-  }
-
-  /// Always, but for operands of t alone that are ahead of q̈.
-  static bool has_sum(const SumAhead& sum) { return ByAhead && sum.number != SumAhead::no_sum; }
-
-  /// The convolution of a sum with those ends that take part and were not there yet.
-  Vector completed(const SumAhead& ahead, const double* a, const double* b, bool a_ends, bool b_ends) const {
-    Vector sum = load(sums_ + ahead.number * (rolled_group * lanes));
-    if (a_ends && ahead.a_is_new) sum += load(a + k_ * stride_) * load(b);
-    if (b_ends && ahead.b_is_new) sum += load(b + k_ * stride_) * load(a);
-    return sum;
-  }
-
-  /// Σ_{j=first..k−first} a_j a_{k−j}, each pair once.
-  Vector self(const double* a, int first) const {
-    Vector sum = all(0);
-    for (int j = (k_ + 1) / 2 - 1; j >= first; --j) sum += load(a + j * stride_) * load(a + (k_ - j) * stride_);
-    sum += sum;
-    if (k_ % 2 == 0 && k_ / 2 >= first) {
-      const Vector middle = load(a + k_ / 2 * stride_);
-      sum += middle * middle;
-    }
-    return sum;
-  }
-
-  void integral(const ReadyPack& pack) const {
-    if (k_ == 0) return functions(*pack.pack);
-    const Reciprocal& inverse = t_.reciprocals[k_];
-    const Vector c = load(pack.coefficients), leading = c * all(inverse.leading), rest = c * all(inverse.rest);
-    const SumAhead& ahead = t_.sums_ahead[pack.first_sum];
-    const Vector sum = has_sum(ahead) ? completed(ahead, pack.a, pack.b, true, false) : convolution(pack.a + stride_, pack.b, k_ - 1, stride_);
-    save(row_ + pack.out, sum * rest + sum * leading);
-  }
-
-  void functions(const Pack& pack) const {
-    if (pack.pairs == no_block) {
-      for (std::uint32_t f = pack.first_function; f < pack.last_function; ++f) t_.scalar.value(t_.scalar.context, t_.functions[f], 0);
-      return;
-    }
-    const int count = static_cast<int>(pack.last_function - pack.first_function);
-    if (count == 0) return;  // the cosines of the pack before
-    alignas(64) double u[lanes], values[2 * lanes];
-    const Block& block = t_.blocks[pack.a];
-    for (unsigned i = 0; i < lanes; ++i) u[i] = row_[block.slots[i]];
-    sine_cosine(u, values, count);
-    for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) row_[pack.out + i] = values[i], row_[pack.pairs + i] = values[lanes + i];
-  }
-
-  void quotient(const ReadyPack& pack) const {
-    const Vector a = load(pack.a + k_ * stride_);
-    const SumAhead& ahead = t_.sums_ahead[pack.first_sum];
-    const Vector sum = has_sum(ahead) ? completed(ahead, pack.b, pack.y, true, false)
-                       : k_ == 0      ? all(0)
-                                      : convolution(pack.b + stride_, pack.y, k_ - 1, stride_);
-    save(row_ + pack.out, (a - sum) / load(pack.b));
-  }
-
-  void square_root(const ReadyPack& pack) const {
-    const Vector u = load(pack.a + k_ * stride_);
-    const double* const y = pack.y;
-    const SumAhead& ahead = t_.sums_ahead[pack.first_sum];
-    Vector result;
-    if (k_ == 0)
-      for (unsigned lane = 0; lane < lanes; ++lane) result[lane] = __builtin_sqrt(u[lane]);
-    else
-      result = (u - (has_sum(ahead) ? completed(ahead, y, y, false, false) : self(y, 1))) / (load(y) + load(y));
-    save(row_ + pack.out, result);
-  }
-
-  const Tables& t_;
-  std::ptrdiff_t stride_;
-  int stage_, k_ = 0;
-  const double* sums_;                   // for this stage; null: none
-  double* row_ = nullptr;
+  const Tables& t;
+  std::ptrdiff_t stride;
+  int stage;
+  bool late;                             // sums made ahead are without what the stage before has found
+  std::ptrdiff_t position;               // of sums made ahead for this stage
 };
 
-void run_stage(const Tables& tables, int stage) {
-  if (tables.sums && stage > 0) Stage<true>(tables, stage).run();
-  else Stage<false>(tables, stage).run();
+// ------------------------------------------------------------------------------------------------------------- copies
+
+inline Vector permuted(const double* row, const Copy& copy) {
+#ifdef __AVX512F__
+  return __builtin_shuffle(load(row + copy.first), load(row + copy.second), *reinterpret_cast<const UnalignedPlaces*>(copy.places.data()));
+#else
+  return gather(row, copy.slots);
+#endif
 }
-void renew_blocks(const Tables& tables, int stage) { Stage<false>(tables, stage).renew(); }
+[[gnu::noinline]] Vector gathered(const double* row, const Copy& copy) { return gather(row, copy.slots); }
+
+inline void make(const Stage& s, const Copy& copy) {
+  double* const row = s.row_of(copy.lag);
+  const Vector values = copy.kind == Copy::Range ? load(row + copy.first) : copy.kind == Copy::TwoVectors ? permuted(row, copy) : gathered(row, copy);
+  save(row + copy.to, copy.weighted ? values * all(s.order_of(copy.lag)) : values);
+}
+
+// ------------------------------------------------------------------------------------------------------------ columns
+
+[[gnu::noinline]] Vector run_of_columns(const ReadyRun& run, const double* row) {
+  switch (run.kind) {
+    case Column::Broadcast: return columns_of_kind<Column::Broadcast>(run, row);
+    case Column::Contiguous: return columns_of_kind<Column::Contiguous>(run, row);
+    case Column::Reversed: return columns_of_kind<Column::Reversed>(run, row);
+    default: return columns_of_kind<Column::Gather>(run, row);
+  }
+}
+
+/// d/dt multiplies by k + 1.
+inline Vector columns(const Stage& s, const ReadyPack& pack) {
+  Vector sum = all(0);
+  for (const ReadyRun* run = s.stage > 0 ? pack.later_runs : pack.runs; run != pack.last_run; ++run) {
+    const double* const row = s.row_of(pack.lag);
+    const Vector part = run->neighbours ? columns_of_neighbours(*run, row) : run_of_columns(*run, row);
+    sum += part * all(s.t.shift_factors[3 * s.order_of(pack.lag) + run->shift]);
+  }
+  return sum;
+}
+
+// ----------------------------------------------------------------------------------------------------------- products
+
+/// Σ_{j=first..k−first} a_j a_{k−j}, each pair once.
+Vector square(const Stage& s, const double* a, int k, int first) {
+  Vector sum = all(0);
+  for (int j = (k + 1) / 2 - 1; j >= first; --j) sum += load(a + j * s.stride) * load(a + (k - j) * s.stride);
+  sum += sum;
+  if (k % 2 == 0 && k / 2 >= first) {
+    const Vector middle = load(a + k / 2 * s.stride);
+    sum += middle * middle;
+  }
+  return sum;
+}
+
+[[gnu::noinline]] Vector product(const Stage& s, const ReadyProduct& term, int k) {
+  return term.a == term.b ? square(s, term.a, k, 0) : convolution(term.a, term.b, k, s.stride);
+}
+
+/// Σ_{j=1..k} a_j b_{k−j}
+[[gnu::noinline]] Vector without_first(const Stage& s, const double* a, const double* b, int k) {
+  return k == 0 ? all(0) : convolution(a + s.stride, b, k - 1, s.stride);
+}
+
+/// The convolution of a sum made ahead with those ends that were not there yet.
+inline Vector completed(const Stage& s, const ReadyProduct& term, std::ptrdiff_t offset) {
+  Vector sum = load(term.sum + s.position);
+  for (const EndTerm* end = s.late ? term.ends : term.new_ends; end != term.last_end; ++end) sum += load(end->operand + offset) * load(end->factor);
+  return sum;
+}
+
+// -------------------------------------------------------------------------------------------------------------- packs
+
+/// Runs a pack; returns the last one that is done with it.
+using RunPack = const ReadyPack* (*)(const Stage&, const ReadyPack*);
+
+/// `ByAhead`: by sums made ahead, as far as they are: always, but for operands of t alone that are ahead of q̈.
+template <bool ByAhead>
+bool has_sum(const ReadyProduct& term) { return ByAhead && term.sum; }
+
+template <bool ByAhead>
+const ReadyPack* run_sum(const Stage& s, const ReadyPack* pack) {
+  const std::ptrdiff_t offset = s.offset_of(pack->lag);
+  Vector result = columns(s, *pack);
+  for (const ReadyProduct* term = pack->products; term != pack->last_product; ++term)
+    result += load(term->coefficients) * (has_sum<ByAhead>(*term) ? completed(s, *term, offset) : product(s, *term, s.order_of(pack->lag)));
+  save(s.t.rows + offset + pack->out, result);
+  return pack;
+}
+
+const ReadyPack* run_neighbours(const Stage& s, const ReadyPack* pack) {
+  const ReadyRun& run = *pack->later_runs;
+  double* const row = s.row_of(pack->lag);
+  save(row + pack->out, columns_of_neighbours(run, row) * all(s.t.shift_factors[3 * s.order_of(pack->lag) + run.shift]));
+  return pack;
+}
+
+const ReadyPack* run_products(const Stage& s, const ReadyPack* pack) {
+  const std::ptrdiff_t offset = s.offset_of(pack->lag);
+  Vector result = all(0);
+  for (const ReadyProduct* term = pack->products; term != pack->last_product; ++term) result += load(term->coefficients) * completed(s, *term, offset);
+  save(s.t.rows + offset + pack->out, result);
+  return pack;
+}
+
+const ReadyPack* run_scan(const Stage& s, const ReadyPack* pack) {
+  double* const row = s.row_of(pack->lag);
+  const Vector terms = columns(s, *pack);
+  save(row + pack->out, (pack->kind == Pack::Scan ? running_sum(terms) : running_sum_down(terms)) + carry_of(pack->carry, row));
+  return pack;
+}
+
+/// All of a running sum.
+const ReadyPack* run_strands(const Stage& s, const ReadyPack* pack) {
+  double* const row = s.row_of(pack->lag);
+  Vector sum = all(0);
+  for (; pack->kind == Pack::Strand; ++pack) {
+    sum += columns(s, *pack);
+    save(row + pack->out, sum);
+  }
+  const Pack& join = *pack->pack;
+  join_strands(join, sum, row, join.kind == Pack::Join ? before_lanes : before_lanes_down);
+  return pack;
+}
+
+[[gnu::noinline]] void functions(const Tables& t, const Pack& pack) {
+  if (pack.pairs == no_block) {
+    for (std::uint32_t f = pack.first_function; f < pack.last_function; ++f) t.scalar.value(t.scalar.context, t.functions[f], 0);
+    return;
+  }
+  const int count = static_cast<int>(pack.last_function - pack.first_function);
+  if (count == 0) return;  // the cosines of the pack before
+  alignas(64) double u[lanes], values[2 * lanes];
+  const Block& block = t.blocks[pack.a];
+  for (unsigned i = 0; i < lanes; ++i) u[i] = t.rows[block.slots[i]];
+  sine_cosine(u, values, count);
+  for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) t.rows[pack.out + i] = values[i], t.rows[pack.pairs + i] = values[lanes + i];
+}
+
+/// 1/k comes with its residue: a rounded reciprocal would err the same way in every step.
+inline void save_integral(const Stage& s, const ReadyPack& pack, Vector sum) {
+  const Reciprocal& inverse = s.t.reciprocals[s.order_of(pack.lag)];
+  sum *= load(pack.coefficients);
+  save(s.row_of(pack.lag) + pack.out, sum * all(inverse.rest) + sum * all(inverse.leading));
+}
+
+const ReadyPack* run_integral(const Stage& s, const ReadyPack* pack) {
+  const int k = s.order_of(pack->lag);
+  if (k == 0) functions(s.t, *pack->pack);
+  else save_integral(s, *pack, without_first(s, pack->a, pack->b, k));
+  return pack;
+}
+
+const ReadyPack* run_integral_by_sum(const Stage& s, const ReadyPack* pack) {
+  save_integral(s, *pack, completed(s, *pack->products, s.offset_of(pack->lag)));
+  return pack;
+}
+
+template <bool ByAhead>
+const ReadyPack* run_quotient(const Stage& s, const ReadyPack* pack) {
+  const int k = s.order_of(pack->lag);
+  const std::ptrdiff_t offset = s.offset_of(pack->lag);
+  const Vector sum = has_sum<ByAhead>(*pack->products) ? completed(s, *pack->products, offset) : without_first(s, pack->b, pack->y, k);
+  save(s.t.rows + offset + pack->out, (load(pack->a + offset) - sum) / load(pack->b));
+  return pack;
+}
+
+template <bool ByAhead>
+const ReadyPack* run_square_root(const Stage& s, const ReadyPack* pack) {
+  const int k = s.order_of(pack->lag);
+  const std::ptrdiff_t offset = s.offset_of(pack->lag);
+  const Vector u = load(pack->a + offset);
+  const double* const y = pack->y;
+  Vector result;
+  if (k == 0)
+    for (unsigned lane = 0; lane < lanes; ++lane) result[lane] = __builtin_sqrt(u[lane]);
+  else
+    result = (u - (has_sum<ByAhead>(*pack->products) ? completed(s, *pack->products, offset) : square(s, y, k, 1))) / (load(y) + load(y));
+  save(s.t.rows + offset + pack->out, result);
+  return pack;
+}
+
+const ReadyPack* run_scalar(const Stage& s, const ReadyPack* pack) {
+  s.t.scalar.value(s.t.scalar.context, pack->pack->instruction, s.order_of(pack->lag));
+  return pack;
+}
+
+/// By Pack::Kind, joins being done with their strands; with sums made ahead by Way.
+constexpr RunPack by_itself[] = {run_sum<false>, run_scan, run_scan, run_strands, nullptr, nullptr, run_integral, run_quotient<false>, run_square_root<false>, run_scalar};
+constexpr RunPack by_way[] = {run_sum<true>,      run_scan,   run_scan,       run_strands,  nullptr,           nullptr, run_integral, run_quotient<true>,
+                              run_square_root<true>, run_scalar, run_neighbours, run_products, run_integral_by_sum};
+
+/// Stages up to 0, and all where no sums are made ahead.
+void run_by_itself(const Stage& s) {
+  const ReadyPack* const last = s.t.ready + s.t.pack_count;
+  for (const ReadyPack* pack = s.t.ready; pack != last; ++pack) {
+    if (s.order_of(pack->lag) < 0) continue;
+    for (const Copy* copy = pack->copies; copy != pack->last_copy; ++copy)
+      if (s.order_of(copy->lag) >= 0) make(s, *copy);
+    pack = by_itself[pack->kind](s, pack);
+  }
+}
+
+/// Later stages.
+inline void run_by_sums(const Stage& s) {
+  const ReadyPack* const last = s.t.ready + s.t.pack_count;
+  for (const ReadyPack* pack = s.t.ready; pack != last; ++pack) {
+    for (const Copy* copy = pack->copies; copy != pack->last_copy_ahead; ++copy) make(s, *copy);
+    pack = by_way[pack->way](s, pack);
+  }
+}
+
+inline void run(const Stage& s) {
+  if (s.stage > 0)
+    for (std::size_t i = 0; i < s.t.unknowns; i += lanes) save(s.row_of(0) + i, all(0));
+  if (s.t.has_sums && s.stage > 0) run_by_sums(s);
+  else run_by_itself(s);
+}
+void run_stage(const Tables& tables, int stage) { run(Stage(tables, stage)); }
+
+inline void renew(const Stage& s) {
+  const Copy* const last = s.t.copies + s.t.copy_count;
+  for (const Copy* copy = s.t.copies; copy != last; ++copy)
+    if (s.order_of(copy->lag) >= 0) make(s, *copy);
+}
+void renew_blocks(const Tables& tables, int stage) { renew(Stage(tables, stage)); }
 
 }  // namespace
 }  // namespace maupertuis::packed::MAUP_ENGINE

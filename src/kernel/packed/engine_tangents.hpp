@@ -33,7 +33,7 @@ class Tangents {
   double* row(int direction) const { return tangents_ + static_cast<std::size_t>(direction) * stride_; }
   Vector value_of(std::uint32_t index) const { return read(t_.blocks[index], t_.rows); }
   static Vector read(const Block& block, const double* from) {
-    return block.direct ? load(from + block.first) : gather(from, block.slots.data());
+    return block.direct ? load(from + block.first) : block.is_range ? load(from + block.slots[0]) : gather(from, block.slots.data());
   }
 
   void store(const Pack& pack, const Vector* sums) const {

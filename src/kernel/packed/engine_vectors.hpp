@@ -24,19 +24,34 @@ inline Vector column_values(const double* from, Slot place, const Column& column
   else return gather(from + (place - column.source), column.sources.data());
 }
 
-/// Σ of coefficients · columns, in sums that do not wait for each other.
+/// Σ_i term(i), in sums that do not wait for each other.
+template <class Term>
+[[gnu::always_inline]] inline Vector sum_of(std::size_t count, const Term& term) {
+  if (count == 1) return term(0);
+  Vector sums[4] = {all(0), all(0), all(0), all(0)};
+  std::size_t i = 0;
+  for (; i + 4 <= count; i += 4)
+#pragma GCC unroll 4
+    for (std::size_t j = 0; j < 4; ++j) sums[j] += term(i + j);
+  if (count & 2) sums[0] += term(i), sums[1] += term(i + 1), i += 2;
+  if (count & 1) sums[2] += term(i);
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
+/// Σ of coefficients · columns.
 template <Column::Kind kind>
 inline Vector columns_of_kind(const ReadyRun& run, const double* from) {
-  const auto term = [&](std::size_t i) {
-    return load(run.coefficients + i * lanes) * column_values<kind>(from, run.places[i], run.columns[i]);
-  };
-  const std::size_t count = run.count;
-  if (count == 1) return term(0);
-  Vector even = term(0), odd = term(1);
-  std::size_t i = 2;
-  for (; i + 1 < count; i += 2) even += term(i), odd += term(i + 1);
-  if (i < count) even += term(i);
-  return even + odd;
+  return sum_of(run.count, [&](std::size_t i) { return load(run.coefficients + i * lanes) * column_values<kind>(from, run.places[i], run.columns[i]); });
+}
+/// Often as many as a vector has lanes.
+[[gnu::always_inline]] inline Vector columns_of_neighbours(const ReadyRun& run, const double* from) {
+  const double *const first = from + run.places[0], *const coefficients = run.coefficients;
+  const auto term = [&](std::size_t i) { return all(first[i]) * load(coefficients + i * lanes); };
+  if (run.count != lanes) return sum_of(run.count, term);
+  Vector sums[4];
+#pragma GCC unroll 4
+  for (std::size_t j = 0; j < 4; ++j) sums[j] = term(j) + term(j + 4);
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
 /// Each lane with all lanes before it.

@@ -5,8 +5,8 @@ set(engines ${CMAKE_CURRENT_LIST_DIR})
 set_source_files_properties(${engines}/engine_baseline.cpp PROPERTIES COMPILE_OPTIONS "-ffp-contract=fast;-Wno-psabi")
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
   set_source_files_properties(${engines}/engine_avx2.cpp PROPERTIES COMPILE_OPTIONS
-    "-O3;-march=x86-64-v3;-ffp-contract=fast;-Wno-psabi")
+    "-O3;-fno-tree-loop-distribute-patterns;-march=x86-64-v3;-ffp-contract=fast;-Wno-psabi")
   set_source_files_properties(${engines}/engine_avx512.cpp PROPERTIES COMPILE_OPTIONS
-    "-O3;-march=x86-64-v4;-mprefer-vector-width=512;-ffp-contract=fast;-Wno-psabi")
+    "-O3;-fno-tree-loop-distribute-patterns;-march=x86-64-v4;-mprefer-vector-width=512;-ffp-contract=fast;-Wno-psabi")
   set_source_files_properties(${engines}/engine.cpp PROPERTIES COMPILE_DEFINITIONS MAUPERTUIS_X86_64)
 endif()

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 /// Packs with the addresses of one workspace in them, so that a stage looks nothing up: what a pack reads at order 0, what it has to copy
-/// first, where its coefficients stand.
+/// first, where its coefficients stand. Lists are pairs of pointers, first and last.
 namespace maupertuis::packed {
 
 /// The copy of a block that is not direct, from slots of a row to its cells of the same row.
@@ -12,7 +12,6 @@ struct Copy {
   enum Kind : std::uint8_t { Range, TwoVectors, Anywhere } kind = Anywhere;
   std::int8_t lag = 0;
   bool weighted = false;
-  bool of_coordinates = false;          // brought for sums alone: 0 where q_{k+2} is, as from stage 1 on
   Slot to = 0;
   Slot first = 0, second = 0;           // Range: from; TwoVectors: the first slots of two vectors that hold all of it
   const Slot* slots = nullptr;          // [lanes]
@@ -22,58 +21,80 @@ struct Copy {
 struct ReadyRun {
   Column::Kind kind = Column::Broadcast;
   std::uint8_t shift = 0;
+  bool neighbours = false;              // Broadcast: of slots side by side
   std::uint32_t count = 0;
   const Column* columns = nullptr;      // [count]
   const Slot* places = nullptr;         // [count] source + shift · stride, from the row of the result
   const double* coefficients = nullptr; // [count][lanes]
 };
 
+/// A product that a sum made ahead is without: at order k, operand[k · stride] · factor.
+struct EndTerm {
+  const double *operand = nullptr, *factor = nullptr;
+};
+
+/// Σ_j a_j b_{m−j} of a pack.
 struct ReadyProduct {
   const double *a = nullptr, *b = nullptr;  // at order 0; equal: a square
   const double* coefficients = nullptr;
+  const double* sum = nullptr;          // [rolled_group][lanes] made ahead; null: by itself, as operands of t alone may be ahead of q̈
+  const EndTerm *ends = nullptr, *new_ends = nullptr, *last_end = nullptr;  // of what the stage before has found, in late stages; of what this one has
 };
 
 /// A convolution that is added up ahead.
 struct ReadyConvolution {
   const double *a = nullptr, *b = nullptr;  // at order 0
-  std::uint32_t number = 0;             // of its sums
+  double* sums = nullptr;
 };
 
 /// Neighbours of one class.
 struct ConvolutionRun {
-  std::int8_t lag = 0, a_ahead = 0, b_ahead = 0;  // lag − those of the operands
-  std::uint32_t first = 0, last = 0;    // ReadyConvolutions
+  std::uint8_t kind = 0;                // see kind_of()
+  const ReadyConvolution *first = nullptr, *last = nullptr;
 };
 
-/// How the convolution of a pack is found from its sum.
-struct SumAhead {
-  std::uint32_t number = no_sum;
-  bool a_is_new = false, b_is_new = false;  // of the stage that reads it, so that the sum is without its highest order
-  static constexpr std::uint32_t no_sum = ~std::uint32_t{0};
+/// Number of the class of convolutions of lag ℓ whose operands are D_a and D_b ≤ ℓ ahead: ℓ minus their lags.
+constexpr int kind_of(int lag, int a_ahead, int b_ahead) { return (lag == 0 ? 0 : lag == 1 ? 1 : 5) + a_ahead * (lag + 1) + b_ahead; }
+
+/// How a pack runs in stages that have sums made ahead: by its kind, but what needs little has code of its own.
+enum Way : std::uint8_t {
+  Neighbours = Pack::Scalar + 1,        // one run of neighbours
+  Products,                             // products by their sums
+  IntegralBySum,
 };
 
 struct ReadyPack {
   Pack::Kind kind = Pack::Scalar;
+  std::uint8_t way = Pack::Scalar;      // Pack::Kind or Way
   std::int8_t lag = 0;
   Slot out = 0, carry = 0;
-  std::uint32_t first_copy = 0, last_copy = 0;  // brought before it runs, since they are not final
-  std::uint32_t first_run = 0, last_run = 0, first_product = 0, last_product = 0;
-  std::uint32_t first_sum = 0;          // SumAheads, as many as convolutions_of()
+  const Copy *copies = nullptr, *last_copy = nullptr;  // brought before it runs, since they are not final
+  const Copy* last_copy_ahead = nullptr;               // of those the ones that are not 0, where sums are made ahead
+  const ReadyRun *runs = nullptr, *last_run = nullptr;
+  const ReadyRun* later_runs = nullptr;                // without what is 0 from stage 1 on
+  const ReadyProduct *products = nullptr, *last_product = nullptr;  // of a sum; of others the one they have, without coefficients
   const double *a = nullptr, *b = nullptr, *y = nullptr, *coefficients = nullptr;  // as in Pack; operands at order 0
   const Pack* pack = nullptr;
 };
 
+/// Where a workspace has its numbers; they stay there.
+struct Numbers {
+  const double* rows = nullptr;         // [orders][stride]
+  std::size_t stride = 0;
+  const double* coefficients = nullptr; // values of PackedProgram::coefficients
+  double* sums = nullptr;               // [convolutions][rolled_group][lanes] of Engine::add_up_ahead; null: stages add up for themselves
+};
+
 struct ReadyProgram {
-  /// `rows` [orders][stride] and `coefficients` stay where they are.
-  ReadyProgram(const PackedProgram& program, const double* rows, std::size_t stride, const double* coefficients);
+  ReadyProgram(const PackedProgram& program, const Numbers& numbers);
   ReadyProgram(const ReadyProgram&) = delete;
 
   std::vector<ReadyPack> packs;
   std::vector<Copy> brought;            // pack by pack
   std::vector<Copy> copies;             // of all blocks that are not direct
   std::vector<ReadyRun> runs;
-  std::vector<ReadyProduct> products;
-  std::vector<SumAhead> sums;           // pack by pack
+  std::vector<ReadyProduct> products;   // pack by pack
+  std::vector<EndTerm> ends;
   std::vector<ReadyConvolution> convolutions;  // that are added up ahead
   std::vector<ConvolutionRun> convolution_runs;
   std::vector<Slot> places;             // [columns]

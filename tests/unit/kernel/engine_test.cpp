@@ -35,9 +35,23 @@ std::vector<double> positive_matrix(std::size_t n) {
   return m;
 }
 
+/// What a stage reads of the tables of orders.
+struct Orders {
+  explicit Orders(int count) {
+    for (double k = 0; k < count; ++k) {
+      reciprocals.push_back(k == 0 ? packed::Reciprocal{} : packed::Reciprocal{1 / k, std::fma(-k, 1 / k, 1.0) / k});
+      shift_factors.insert(shift_factors.end(), {1, k + 1, (k + 1) * (k + 2)});
+    }
+  }
+  void enter(packed::Tables& tables) const { tables.reciprocals = reciprocals.data(), tables.shift_factors = shift_factors.data(); }
+
+  std::vector<packed::Reciprocal> reciprocals;
+  std::vector<double> shift_factors;
+};
+
 bool is_inverted(const std::vector<double>& m, std::size_t n) {
   Doubles inverse(n * padded(n));
-  return packed::engine().negative_inverse(m.data(), n, inverse.data(), padded(n));
+  return packed::engine().negative_inverse(m.data(), n, inverse.data());
 }
 
 }  // namespace
@@ -47,7 +61,7 @@ TEST_CASE("engine: −M⁻¹ solves for the accelerations") {
     CAPTURE(n);
     const std::vector<double> m = positive_matrix(n);
     Doubles inverse(n * padded(n)), solution(padded(n)), row = random_numbers(40, 7);
-    REQUIRE(packed::engine().negative_inverse(m.data(), n, inverse.data(), padded(n)));
+    REQUIRE(packed::engine().negative_inverse(m.data(), n, inverse.data()));
     std::vector<Slot> residual;
     for (std::size_t i = 0; i < n; ++i) residual.push_back(static_cast<Slot>(39 - 2 * i));
     CHECK(packed::engine().solve_by_inverse(inverse.data(), padded(n), row.data(), residual.data(), n, solution.data()));
@@ -87,9 +101,11 @@ TEST_CASE("engine: corrections are sums over the directions, scaled by lag") {
   const int stage = 3;
   Doubles rows = random_numbers(6 * stride, 1);
   const Doubles before = rows, values = random_numbers(directions * stride, 2), weights = random_numbers(16, 3);
+  const Orders orders(6);
   packed::Tables tables;
   tables.rows = rows.data();
   tables.stride = stride;
+  orders.enter(tables);
   packed::engine().correct(tables, stage, {values.data(), stride, directions, 8, {16, 16, 32}}, weights.data());
   for (std::size_t order = 0; order < 6; ++order)
     for (std::size_t slot = 0; slot < stride; ++slot) {
@@ -99,4 +115,43 @@ TEST_CASE("engine: corrections are sums over the directions, scaled by lag") {
         expected += (position ? 1 / 20.0 : acceleration ? 1.0 : 0.0) * weights[d] * values[d * stride + slot];
       CHECK(rows[order * stride + slot] == doctest::Approx(expected).epsilon(1e-14));
     }
+}
+
+TEST_CASE("engine: stages by −M⁻¹ give accelerations and what the coefficients owe to them") {
+  const std::size_t stride = 72;
+  const Orders orders(8);
+  for (std::size_t n = 1; n <= 16; ++n) {
+    CAPTURE(n);
+    const std::vector<double> m = positive_matrix(n);
+    Doubles inverse(padded(n) * padded(n)), answers(n * stride), values = random_numbers(n * stride, 2), rows = random_numbers(8 * stride, 1);
+    REQUIRE(packed::engine().negative_inverse(m.data(), n, inverse.data()));
+    std::vector<Slot> residual;
+    for (std::size_t i = 0; i < n; ++i) residual.push_back(static_cast<Slot>(71 - 2 * i));
+    packed::Tables tables;  // without packs
+    tables.rows = rows.data();
+    tables.stride = stride;
+    tables.unknowns = n;
+    orders.enter(tables);
+    const packed::TangentMatrix tangents{values.data(), stride, n, 16, {24, 28, 40}};
+    const packed::InverseSolution solution{inverse.data(), residual.data(), tangents, answers.data()};
+    for (int stage = 1; stage <= 5; ++stage) {
+      CAPTURE(stage);
+      const Doubles before = rows;
+      Doubles expected(padded(n));
+      packed::engine().solve_by_inverse(inverse.data(), padded(n), rows.data() + static_cast<std::size_t>(stage) * stride, residual.data(), n, expected.data());
+      packed::engine().run_stages_by_inverse(tables, solution, stage, stage + 1, true);
+      const auto change = [&](int order, std::size_t slot) {
+        const std::size_t place = static_cast<std::size_t>(order) * stride + slot;
+        return rows[place] - (slot < padded(n) ? 0 : before[place]);
+      };
+      for (std::size_t i = 0; i < n; ++i) CHECK(change(stage + 2, i) == doctest::Approx(expected[i] / ((stage + 1) * (stage + 2))).epsilon(1e-13));
+      for (std::size_t slot = 16; slot < 40; ++slot) {
+        const int lag = slot < 24 ? 0 : slot < 32 ? 1 : 2;
+        double owed = 0;
+        for (std::size_t d = 0; d < n; ++d) owed += expected[d] * values[d * stride + slot];
+        const double factor = lag == 0 ? 1.0 / ((stage + 1) * (stage + 2)) : lag == 1 ? 1.0 / (stage + 1) : 1.0;
+        CHECK(std::abs(change(stage + 2 - lag, slot) - factor * owed) < 1e-13);
+      }
+    }
+  }
 }
