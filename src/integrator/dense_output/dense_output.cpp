@@ -35,12 +35,8 @@ void DenseOutput::advance(double tau, std::span<Compensated> q_out, std::span<Co
   double* const dq = increments_.data();
   double* const dv = dq + padded(freedoms_);
   add_up_(first_, stride_, freedoms_, degree_, tau, dq, dv);
-  for (std::size_t i = 0; i < freedoms_; ++i) {
-    q_out[i] = q[i];
-    q_out[i].add((dq[i] + (v[i].hi + v[i].lo)) * tau);
-    v_out[i] = v[i];
-    v_out[i].add(dv[i]);
-  }
+  static_assert(sizeof(Compensated) == 2 * sizeof(double));
+  add_increments(freedoms_, tau, dq, dv, &q.data()->hi, &v.data()->hi, &q_out.data()->hi, &v_out.data()->hi);
   const std::size_t m = integrals.size();
   for (std::size_t i = 0; i < m; ++i) {
     double sum = 0;

@@ -19,6 +19,9 @@ Compensated turned(Compensated q, double count) {
 }  // namespace
 
 bool Turns::wind(std::span<Compensated> q) {
+  bool far = false;  // hardly ever
+  for (const Compensated& angle : q) far |= std::abs(angle.hi) > high;
+  if (!far) return false;
   bool any = false;
   for (std::size_t i = 0; i < q.size(); ++i) any |= wind(i, q[i]);
   return any;

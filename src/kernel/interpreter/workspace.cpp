@@ -204,6 +204,9 @@ double KernelWorkspace::radius(double h) const {
 void polynomial_increments(const double* first, std::size_t stride, std::size_t columns, int degree, double tau, double* dq, double* dv) {
   packed::engine().increments(first, stride, columns, degree, tau, dq, dv);
 }
+void add_increments(std::size_t count, double tau, const double* dq, const double* dv, const double* q, const double* v, double* q_out, double* v_out) {
+  packed::engine().add_increments(count, tau, dq, dv, q, v, q_out, v_out);
+}
 PolynomialIncrements* KernelWorkspace::increments() const {
   return impl_->compiled.increments ? impl_->compiled.increments : polynomial_increments;
 }

@@ -34,6 +34,7 @@ struct KernelWorkspace::Impl {
     if (unknowns <= packed::most_by_inverse) inverse.assign(padded_unknowns() * padded_unknowns(), 0.0);
     for (const Instruction& i : program.instructions) producer[i.out] = &i;
     interpreter::set_leaves(memory, 0.0, orders);
+    residual_vectors = find_residual_vectors();
     corrects_points = outputs_follow_accelerations();
     bind();
   }
@@ -77,6 +78,8 @@ struct KernelWorkspace::Impl {
   bool solve_twice(int stage);
   bool solve_twice_by_inverse(int stage);
   bool add_rough_solution();
+  void add_residual(int stage);
+  std::pair<Slot, Slot> find_residual_vectors() const;
   void correct(int stage);
   void correct(int stage, const double* direction, double weight);
   bool constraints_agree();
@@ -105,6 +108,7 @@ struct KernelWorkspace::Impl {
   std::optional<interpreter::LiftedSolve> lifted;
   interpreter::Doubles solution;     // q̈_k and λ_k, padded
   std::span<double> unknown;         // [n + m] of it: −R_k, then q̈_k and λ_k
+  std::pair<Slot, Slot> residual_vectors;  // see find_residual_vectors()
   bool has_direction = false;        // `tangent` is that of q̈_k, if `owed` is taken from it
   const double* owed = nullptr;      // tangents in the direction of what the first solution was wrong by; null: nothing
   interpreter::Doubles rough;        // a solution that is being corrected, padded

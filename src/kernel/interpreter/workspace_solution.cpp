@@ -166,13 +166,13 @@ void KernelWorkspace::Impl::fetch_residual(int stage) {
 bool KernelWorkspace::Impl::solve_twice(int stage) {
   const auto solve_for = [&](const double* row) {
     const double* const x = lifted->solve_row(row);
-    for (std::size_t i = 0; i < unknowns; ++i) unknown[i] = -x[i];
+    engine.negate(x, solution.data(), unknowns);
     return x;
   };
   solve_for(memory.row(stage));
   find_direction();
   std::copy(unknown.begin(), unknown.end(), rough.begin());
-  for (const Slot slot : program.residual) tangent[slot] += memory.row(stage)[slot];
+  add_residual(stage);
   owed = solve_for(tangent.data());
   has_direction = true;
   return add_rough_solution();
@@ -186,9 +186,28 @@ bool KernelWorkspace::Impl::solve_twice_by_inverse(int stage) {
   multiply(memory.row(stage));
   find_direction();
   std::copy(unknown.begin(), unknown.end(), rough.begin());
-  for (const Slot slot : program.residual) tangent[slot] += memory.row(stage)[slot];
+  add_residual(stage);
   multiply(tangent.data());
   return add_rough_solution();
+}
+
+/// To the tangents of the residual; where it stands alone, in vectors.
+void KernelWorkspace::Impl::add_residual(int stage) {
+  const double* const row = memory.row(stage);
+  const auto [first, last] = residual_vectors;
+  if (first != last) engine.add(tangent.data() + first, row + first, 1, last - first);
+  else
+    for (const Slot slot : program.residual) tangent[slot] += row[slot];
+}
+
+/// Slots from the residual's first vector to its last, if no coefficients that later orders read are among them, and no more besides than the residual has.
+/// Else none.
+std::pair<Slot, Slot> KernelWorkspace::Impl::find_residual_vectors() const {
+  if (program.residual.empty()) return {0, 0};
+  const auto [lowest, highest] = std::minmax_element(program.residual.begin(), program.residual.end());
+  const Slot first = *lowest / packed::lanes * packed::lanes, last = static_cast<Slot>(packed::padded(*highest + 1));
+  const bool stands_alone = first >= packed::padded(*std::max_element(program.stored_end.begin(), program.stored_end.end()));
+  return stands_alone && last - first <= 2 * padded_unknowns() ? std::pair{first, last} : std::pair{Slot{0}, Slot{0}};
 }
 
 /// To its correction.

@@ -6,7 +6,8 @@
 #include <cstddef>
 
 /// Sums of products that later stages will want. Within loops over the convolutions of a class every order is known but for the stage: with D_a = lag − lag of a
-/// (D_b likewise), at the beginning of stage s, m = s + 2 − lag, the operand a is final up to order m − 1 + D_a.
+/// (D_b likewise), at the beginning of stage s, m = s + 2 − lag, the operand a is final up to order m − 1 + D_a. That highest order stage s multiplies itself
+/// (late_terms()), so that sums need not wait for it.
 namespace maupertuis::llvm_backend {
 
 using llvm::Value;
@@ -28,8 +29,15 @@ void RolledEmitter::ahead() {
   b.CreateCondBr(b.CreateICmpSLT(stage_, b.getInt64(rolled_group)), alone, grouped);
 
   b.SetInsertPoint(alone);
-  add_up_alone();
-  b.CreateBr(done);
+  llvm::BasicBlock* const last = block();
+  llvm::SwitchInst* const early = b.CreateSwitch(stage_, last);
+  for (int stage = 0; stage < rolled_group; ++stage) {
+    llvm::BasicBlock* const adding = stage + 1 < rolled_group ? block() : last;
+    if (adding != last) early->addCase(b.getInt64(static_cast<std::uint64_t>(stage)), adding);
+    b.SetInsertPoint(adding);
+    add_up_alone(stage);
+    b.CreateBr(done);
+  }
 
   b.SetInsertPoint(grouped);
   llvm::BasicBlock* const begin = block();
@@ -78,14 +86,17 @@ void RolledEmitter::renew(const Block& block) {
 
 /// Loops over the convolutions of each class, a few of each in turn, since neighbours have operands in common, which are then still in the first cache. `body`
 /// gets the addresses of their operands at order 0 and of their sums.
-void RolledEmitter::each_convolution(const std::function<void(const Class&, Value*, Value*, Value*)>& body) {
+void RolledEmitter::each_convolution(const std::function<void(const Class&, Value*, Value*, Value*)>& body, const std::function<bool(const Class&)>& takes_part) {
   constexpr std::size_t at_once = 4;
   auto& b = out_.b;
   std::size_t most = 0;
-  for (const auto& [key, members] : classes_) most = std::max(most, members.size());
+  for (const auto& [key, members] : classes_)
+    if (takes_part(key)) most = std::max(most, members.size());
+  if (most == 0) return;
   const std::size_t turns = classes_.size() < 2 ? 1 : std::max<std::size_t>(1, most / at_once);
   out_.loop(b.getInt64(0), b.getInt64(turns), {}, [&](Value* turn, const std::vector<Value*>&) {
     for (const auto& [key, members] : classes_) {
+      if (!takes_part(key)) continue;
       Value* const table = offsets(members);
       const std::size_t first = sums_of_[members.front()];
       Value* const sums = at(sums_, static_cast<std::int64_t>(first) * sums_bytes);
@@ -112,23 +123,44 @@ llvm::GlobalVariable* RolledEmitter::offsets(const std::vector<std::size_t>& mem
   return new llvm::GlobalVariable(*out_.module, values->getType(), true, llvm::GlobalValue::PrivateLinkage, values);
 }
 
-/// Of the stage s + 1: Σ a_j b_{m−j} over all that is final.
-void RolledEmitter::add_up_alone() {
-  auto& b = out_.b;
-  Value* const position = b.CreateShl(b.CreateAnd(stage_, b.getInt64(rolled_group - 1)), 6);
+/// Of the stage s + 1: Σ a_j b_{m−j} over all that is final, but for what that stage adds, which may be one product twice.
+void RolledEmitter::add_up_alone(int stage) {
   each_convolution([&](const Class& c, Value* x, Value* y, Value* sums) {
     const auto [lag, a_ahead, b_ahead] = c;
-    Value* const m = stage_plus(3 - lag);
-    Value* const begin = b.getInt64(static_cast<std::uint64_t>(std::max(0, 1 - b_ahead)));
-    Value* const end = b.CreateNSWSub(m, b.getInt64(static_cast<std::uint64_t>(std::max(0, 1 - a_ahead) - 1)), "");
-    const auto row = [&](Value* operand, Value* order) {
-      return load(out_.at(operand, b.CreateNSWMul(order, b.getInt64(static_cast<std::uint64_t>(row_bytes_)))));
-    };
-    const auto total = out_.loop(begin, end, {llvm::Constant::getNullValue(vector_)}, [&](Value* j, const std::vector<Value*>& sum) {
-      return std::vector<Value*>{out_.fma(row(x, j), row(y, b.CreateNSWSub(m, j)), sum[0])};
-    });
-    save(total[0], out_.at(sums, position));
+    const int m = stage + 3 - lag;
+    std::vector<int> times(static_cast<std::size_t>(m) + 1, 0);
+    for (int j = std::max(0, 1 - b_ahead); j <= m - std::max(0, 1 - a_ahead); ++j) ++times[static_cast<std::size_t>(j)];
+    if (adds_late(c) && a_ahead <= 1) --times[static_cast<std::size_t>(m - 1 + a_ahead)];
+    if (adds_late(c) && b_ahead <= 1) --times[static_cast<std::size_t>(1 - b_ahead)];
+    Value* sum = llvm::Constant::getNullValue(vector_);
+    for (int j = 0; j <= m; ++j) {
+      const int count = times[static_cast<std::size_t>(j)];
+      if (count == 0) continue;
+      Value *const a = load(at(x, j * row_bytes_)), *const b = load(at(y, (m - j) * row_bytes_));
+      sum = out_.fma(count > 0 ? a : out_.negate(a), b, sum);
+    }
+    save(sum, at(sums, stage % rolled_group * vector_bytes));
   });
+}
+
+/// Not where at the first stage b_1, with which the highest order of a is multiplied, would not be final.
+bool RolledEmitter::adds_late(const Class& c) {
+  const auto [lag, a_ahead, b_ahead] = c;
+  return lag < 2 || a_ahead > 0 || b_ahead > 0;
+}
+
+/// Of stage s itself: a_{m−1+D_a} b_{1−D_a} and the other way round, where D_a ≤ 1.
+Value* RolledEmitter::late_terms(const packed::Convolution& c, Value* sum) {
+  const int a_ahead = c.lag - p_.blocks[c.a].lag, b_ahead = c.lag - p_.blocks[c.b].lag;
+  if (!adds_late({c.lag, a_ahead, b_ahead})) return sum;
+  const auto term = [&](std::uint32_t x, std::uint32_t y, int ahead) {
+    if (ahead > 1) return;
+    Value* const newest = load(at(slot_at(row(0), p_.blocks[x].first), (1 - p_.blocks[x].lag) * row_bytes_));
+    sum = out_.fma(newest, load(at(slot_at(rows_, p_.blocks[y].first), (1 - ahead) * row_bytes_)), sum);
+  };
+  term(c.a, c.b, a_ahead);
+  term(c.b, c.a, b_ahead);
+  return sum;
 }
 
 // ------------------------------------------------------------------------------------------------------------- a group
@@ -139,7 +171,7 @@ void RolledEmitter::begin_group() {
 }
 
 /// With m the order of the group's first stage: a_j for 4 ≤ j < m meets b_{m+r−j} of all four stages r, which slide by one from j to j + 1. The
-/// number of such j is 3 − lag beyond a multiple of four.
+/// number of such j is 3 − lag beyond a multiple of four. The first stage adds late terms itself.
 void RolledEmitter::interior(const Class& c, Value* x, Value* y, Value* sums) {
   auto& b = out_.b;
   const auto [lag, a_ahead, b_ahead] = c;
@@ -154,11 +186,13 @@ void RolledEmitter::interior(const Class& c, Value* x, Value* y, Value* sums) {
     if (!value) value = read();
     return value;
   };
+  const int late = adds_late(c) ? 1 : 0;
   for (int r = 0; r < rolled_group; ++r) {
     const auto r_ = static_cast<std::size_t>(r);
-    for (int j = std::max(0, 1 + r - b_ahead); j < rolled_group; ++j)
+    const int beyond = 1 + (r == 0 ? late : r);
+    for (int j = std::max(0, beyond - b_ahead); j < rolled_group; ++j)
       sum[r_] = plus(sum[r_], known(low_a, j, [&] { return from(x, j); }), known(high_b, r - j, [&] { return from(top_b, r - j); }));
-    for (int i = std::max(0, 1 + r - a_ahead); i <= r; ++i) sum[r_] = plus(sum[r_], from(top_a, r - i), from(y, i));
+    for (int i = std::max(0, beyond - a_ahead); i <= r; ++i) sum[r_] = plus(sum[r_], from(top_a, r - i), from(y, i));
     if (!sum[r_]) sum[r_] = llvm::Constant::getNullValue(vector_);
   }
 
@@ -166,51 +200,54 @@ void RolledEmitter::interior(const Class& c, Value* x, Value* y, Value* sums) {
   for (int r = 0; r < rolled_group; ++r)
     window[static_cast<std::size_t>(r)] = known(high_b, r - rolled_group, [&] { return from(top_b, r - rolled_group); });
   // One order j further: a_j from `a`, and the next of b from below `b_at`, which is where window[0] came from.
-  const auto turn = [&](Value* a, Value* b_at, int steps) {
+  const auto turn = [&](Value* a, Value* b_at, int steps, std::size_t first_of_last) {
     for (int u = 0; u < steps; ++u) {
       Value* const a_j = from(a, u);
-      for (std::size_t r = 0; r < rolled_group; ++r) sum[r] = out_.fma(a_j, window[r], sum[r]);
+      for (std::size_t r = u + 1 < steps ? 0 : first_of_last; r < rolled_group; ++r) sum[r] = out_.fma(a_j, window[r], sum[r]);
       std::copy_backward(window.begin(), window.end() - 1, window.end());
       window[0] = from(b_at, -(u + 1));
     }
   };
-  const int odd = 3 - lag;
-  Value* const a_first = at(x, rolled_group * row_bytes_);
-  Value* const b_first = at(top_b, -rolled_group * row_bytes_);
-  turn(a_first, b_first, odd);
-  std::vector<Value*> carried{at(a_first, odd * row_bytes_), at(b_first, -odd * row_bytes_)};
+  std::vector<Value*> carried{at(x, rolled_group * row_bytes_), at(top_b, -rolled_group * row_bytes_)};
   carried.insert(carried.end(), sum.begin(), sum.end());
   carried.insert(carried.end(), window.begin(), window.end());
-  Value* const turns = b.CreateLShr(b.CreateSub(stage_, b.getInt64(rolled_group)), 2);
-  const auto last = out_.loop(b.getInt64(0), turns, carried, [&](Value*, const std::vector<Value*>& now) {
+  const auto take = [&](const std::vector<Value*>& now) {
     std::copy_n(now.begin() + 2, rolled_group, sum.begin());
     std::copy_n(now.begin() + 2 + rolled_group, rolled_group, window.begin());
-    turn(now[0], now[1], rolled_group);
+  };
+  Value* const turns = b.CreateLShr(b.CreateSub(stage_, b.getInt64(rolled_group)), 2);
+  const auto last = out_.loop(b.getInt64(0), turns, carried, [&](Value*, const std::vector<Value*>& now) {
+    take(now);
+    turn(now[0], now[1], rolled_group, 0);
     std::vector<Value*> next{at(now[0], rolled_group * row_bytes_), at(now[1], -rolled_group * row_bytes_)};
     next.insert(next.end(), sum.begin(), sum.end());
     next.insert(next.end(), window.begin(), window.end());
     return next;
   });
-  for (int r = 0; r < rolled_group; ++r) save(last[2 + static_cast<std::size_t>(r)], at(sums, r * vector_bytes));
+  take(last);
+  turn(last[0], last[1], 3 - lag, late == 1 && a_ahead == 0 ? 1 : 0);  // the last one is a_{m−1} b_1
+  for (std::size_t r = 0; r < rolled_group; ++r) save(sum[r], at(sums, static_cast<std::int64_t>(r) * vector_bytes));
 }
 
-/// What stage s, the `passed`-th of its group, has made final, for those that follow in the group: at a distance t the newest a meets b_{t−D_a}.
+/// What stage s, the `passed`-th of its group, has made final, for those that follow the next one in the group: at a distance t the newest a meets b_{t−D_a}.
 void RolledEmitter::pass_on(int passed) {
-  each_convolution([&](const Class& c, Value* x, Value* y, Value* sums) {
+  const auto nearest = [](const Class& c) { return adds_late(c) ? 2 : 1; };
+  const auto pass = [&](const Class& c, Value* x, Value* y, Value* sums) {
     const auto [lag, a_ahead, b_ahead] = c;
     Value* const stride = out_.b.getInt64(static_cast<std::uint64_t>(row_bytes_));
     const auto newest = [&](Value* operand, int its_lag) {
       return load(out_.at(operand, out_.b.CreateNSWMul(stage_plus(2 - its_lag), stride)));
     };
     Value *const a = newest(x, lag - a_ahead), *const b = newest(y, lag - b_ahead);
-    for (int t = 1; passed + t <= rolled_group; ++t) {
+    for (int t = nearest(c); passed + t <= rolled_group; ++t) {
       Value* const place = at(sums, (passed + t - 1) * vector_bytes);
       Value* sum = load(place);
       if (t >= a_ahead) sum = out_.fma(a, load(at(y, (t - a_ahead) * row_bytes_)), sum);
       if (t >= b_ahead) sum = out_.fma(b, load(at(x, (t - b_ahead) * row_bytes_)), sum);
       save(sum, place);
     }
-  });
+  };
+  each_convolution(pass, [&](const Class& c) { return passed + nearest(c) <= rolled_group; });
 }
 
 }  // namespace maupertuis::llvm_backend

@@ -16,7 +16,7 @@
 /// four, and what the sums of a group have in common is read once. Σ_j a_j b_{m−j} at stage s has three parts:
 ///
 ///   the *interior*: operands that were final before the group began, for its four stages at once, in a loop over j;
-///   what each stage of the group makes final, added to the sums of those that follow;
+///   what each stage of the group makes final, added to the sums of those that follow the next one, which does it itself;
 ///   the *ends*, a_m b_0 and a_0 b_m, where an operand is of stage s itself.
 ///
 /// Stages up to 4 have sums so short that the three would overlap: each is added up by itself. The stages up to 0, with the values of elementary functions,
@@ -111,9 +111,12 @@ class RolledEmitter {
   void renew_blocks();
   void renew_copies();
   void renew(const Block& block);
-  void each_convolution(const std::function<void(const Class&, Value* a, Value* b, Value* sums)>& body);
+  void each_convolution(const std::function<void(const Class&, Value* a, Value* b, Value* sums)>& body,
+                        const std::function<bool(const Class&)>& takes_part = [](const Class&) { return true; });
   llvm::GlobalVariable* offsets(const std::vector<std::size_t>& members);
-  void add_up_alone();
+  void add_up_alone(int stage);
+  static bool adds_late(const Class& c);
+  Value* late_terms(const packed::Convolution& c, Value* sum);
   void begin_group();
   void interior(const Class& c, Value* a, Value* b, Value* sums);
   void pass_on(int position);

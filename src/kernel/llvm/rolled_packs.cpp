@@ -202,6 +202,7 @@ Value* RolledEmitter::convolution(std::size_t number, bool a_ends, bool b_ends) 
     return sum ? sum : llvm::Constant::getNullValue(vector_);
   }
   Value* sum = load(at(sums_of_stage_, static_cast<std::int64_t>(sums_of_[number] * packed::rolled_group * 8 * lanes)));
+  sum = late_terms(c, sum);
   if (a_ends) sum = end(c.a, c.b, c.lag, sum);
   if (b_ends) sum = end(c.b, c.a, c.lag, sum);
   return sum;

@@ -94,6 +94,8 @@ struct Engine {
   bool (*are_finite)(const double* first, std::size_t stride, std::size_t rows, std::size_t count);
   /// values += factor · change, of `count` numbers in eights; the sizes are those before, and of what was added.
   Sizes (*add)(double* values, const double* change, double factor, std::size_t count);
+  /// to = −from; read in eights, and 0 written beyond `count` up to a multiple of 8.
+  void (*negate)(const double* from, double* to, std::size_t count);
   /// q_{k+2} = q̈_k / ((k+1)(k+2)) for k = stage, q̈_k = sign · `solution`; read and written in eights.
   void (*set_accelerations)(const Tables&, int stage, const double* solution, std::size_t unknowns, int sign);
   /// What the coefficients of the stage that later orders read owe to q̈_k: in a slot of lag ℓ, Σ_d weights[d] · tangents[d] times 1,
@@ -104,6 +106,8 @@ struct Engine {
   void (*run_stages_by_inverse)(const Tables&, const InverseSolution&, int first, int last, bool goes_on);
   /// Σ_{k=2..degree} c_k τ^{k−1} and Σ k c_k τ^{k−1} of `count` columns, c_k = first + k · stride: read and written in eights.
   void (*increments)(const double* first, std::size_t stride, std::size_t count, int degree, double tau, double* dq, double* dv);
+  /// See maupertuis::add_increments.
+  void (*add_increments)(std::size_t count, double tau, const double* dq, const double* dv, const double* q, const double* v, double* q_out, double* v_out);
   /// See KernelWorkspace::radius.
   double (*radius)(const double* first, std::size_t stride, std::size_t count, int order, double h);
 };

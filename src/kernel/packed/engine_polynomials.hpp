@@ -23,24 +23,59 @@ void increments(const double* first, std::size_t stride, std::size_t count, int 
   }
 }
 
-inline double least_lane(Vector v, std::size_t count) {
+/// hi + lo += b − lo by Knuth's TwoSum.
+template <class V>
+void add_compensated(V& hi, V& lo, V b) {
+  const V sum = hi + b, part = sum - hi;
+  lo = (hi - (sum - part)) + (b - part), hi = sum;
+}
+
+/// Eight numbers hi and lo that stand pair by pair.
+inline void load_pairs(const double* p, Vector& hi, Vector& lo) {
+  const Vector a = load(p), b = load(p + lanes);
+  hi = __builtin_shuffle(a, b, Places{0, 2, 4, 6, 8, 10, 12, 14}), lo = __builtin_shuffle(a, b, Places{1, 3, 5, 7, 9, 11, 13, 15});
+}
+inline void save_pairs(double* p, Vector hi, Vector lo) {
+  save(p, __builtin_shuffle(hi, lo, Places{0, 8, 1, 9, 2, 10, 3, 11})), save(p + lanes, __builtin_shuffle(hi, lo, Places{4, 12, 5, 13, 6, 14, 7, 15}));
+}
+
+/// What is added to lo may be fused with its product: TwoSum takes it as one number.
+void add_increments(std::size_t count, double tau, const double* dq, const double* dv, const double* q, const double* v, double* q_out, double* v_out) {
+  std::size_t i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    Vector q_hi, q_lo, v_hi, v_lo;
+    load_pairs(q + 2 * i, q_hi, q_lo), load_pairs(v + 2 * i, v_hi, v_lo);
+    add_compensated(q_hi, q_lo, q_lo + (load(dq + i) + (v_hi + v_lo)) * all(tau));
+    add_compensated(v_hi, v_lo, v_lo + load(dv + i));
+    save_pairs(q_out + 2 * i, q_hi, q_lo), save_pairs(v_out + 2 * i, v_hi, v_lo);
+  }
+  for (; i < count; ++i) {
+    double q_hi = q[2 * i], q_lo = q[2 * i + 1], v_hi = v[2 * i], v_lo = v[2 * i + 1];
+    add_compensated(q_hi, q_lo, q_lo + (dq[i] + (v_hi + v_lo)) * tau);
+    add_compensated(v_hi, v_lo, v_lo + dv[i]);
+    q_out[2 * i] = q_hi, q_out[2 * i + 1] = q_lo, v_out[2 * i] = v_hi, v_out[2 * i + 1] = v_lo;
+  }
+}
+
+inline double least_lane(Vector v) {
   const auto fold = [&v](Places places) {
     const Vector other = __builtin_shuffle(v, places);
     v = other < v ? other : v;
   };
-  if (count > 4) fold(Places{4, 5, 6, 7, 0, 1, 2, 3});
-  if (count > 2) fold(Places{2, 3, 0, 1, 6, 7, 4, 5});
-  if (count > 1) fold(Places{1, 0, 3, 2, 5, 4, 7, 6});
+  fold(Places{4, 5, 6, 7, 0, 1, 2, 3});
+  fold(Places{2, 3, 0, 1, 6, 7, 4, 5});
+  fold(Places{1, 0, 3, 2, 5, 4, 7, 6});
   return v[0];
 }
 
-/// Early orders first: they are there while the last coefficients are still waited for.
+/// Of each order the largest coefficient of all coordinates, in their own measure; logarithms of these alone. Early orders first: they are there while the
+/// last coefficients are still waited for.
 double radius(const double* first, std::size_t stride, std::size_t count, int order, double h) {
   constexpr double widened = 0.32192809488736235;  // log₂ 1.25
+  constexpr int most = 6;
   const auto step = static_cast<std::ptrdiff_t>(stride);
-  const Vector infinity = all(__builtin_huge_val());
-  const int lowest = order > 6 ? order - 5 : order > 2 ? 2 : order - 1;
-  Vector least = infinity;
+  const int lowest = order > most ? order - (most - 1) : order > 2 ? 2 : order - 1, orders = order - lowest + 1;
+  Vector largest[most] = {all(0), all(0), all(0), all(0), all(0), all(0)};
   for (std::size_t i = 0; i < count; i += lanes) {
     const double* const c = first + i;
     const auto velocity = [&](int k) { return absolute(load(c + (k + 1) * step)) * all(k + 1); };
@@ -48,14 +83,18 @@ double radius(const double* first, std::size_t stride, std::size_t count, int or
     double power = 1;
     for (int k = 0; k <= 3 && k <= order - 2; ++k, power *= h) size = larger(size, velocity(k) * all(power));
     const auto used = lane_numbers < all(static_cast<double>(count - i));
-    const Vector inverse = all(1) / (used ? size : all(1));
-    for (int k = lowest; k <= order; ++k) {
-      const Vector ratio = velocity(k) * inverse;
-      const Vector exponent = rough_log2<Vector, Places>(ratio) * all(-1.0 / k) + all(k < order - 1 ? widened : 0);
-      least = (used & (ratio > 0) & (exponent < least)) ? exponent : least;
-    }
+    const Vector inverse = used ? all(1) / (used ? size : all(1)) : all(0);
+#pragma GCC unroll 6
+    for (int r = 0; r < most; ++r)
+      if (r < orders) largest[r] = larger(velocity(lowest + r) * inverse, largest[r]);
   }
-  const double exponent = least_lane(least, count);
+  Vector least = all(__builtin_huge_val());
+  for (int r = 0; r < orders; ++r) {
+    const int k = lowest + r;
+    const Vector exponent = rough_log2<Vector, Places>(largest[r]) * all(-1.0 / k) + all(k < order - 1 ? widened : 0);
+    least = (largest[r] > 0) & (exponent < least) ? exponent : least;
+  }
+  const double exponent = least_lane(least);
   if (!(exponent > -900.0 / order)) return __builtin_nan("");  // a ratio to nothing
   return exponent < __builtin_huge_val() ? rough_exp2<double, long long>(exponent) : exponent;
 }

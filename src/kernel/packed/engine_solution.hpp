@@ -97,19 +97,38 @@ void transpose(const double* from, double* to, std::size_t stride) {
   for (std::size_t i = 0; i < lanes; ++i) save(to + i * stride, r[i]);
 }
 
+/// V vectors of the solution.
+template <std::size_t V>
+bool solve_vectors(const double* inverse, std::size_t stride, const double* row, const Slot* residual, std::size_t n, double* solution) {
+  Vector even[V], odd[V];
+  for (std::size_t v = 0; v < V; ++v) even[v] = odd[v] = all(0);
+  const auto add = [&](std::size_t d, Vector* sums) {
+    const Vector part = all(row[residual[d]]);
+    for (std::size_t v = 0; v < V; ++v) sums[v] += part * load(inverse + d * stride + v * lanes);
+  };
+  std::size_t d = 0;
+  for (; d + 1 < n; d += 2) add(d, even), add(d + 1, odd);
+  if (d < n) add(d, even);
+  Vector zero = all(0);
+  for (std::size_t v = 0; v < V; ++v) {
+    const Vector a = even[v] + odd[v];
+    save(solution + v * lanes, a);
+    zero += a * all(0);
+  }
+  return are_finite(zero);
+}
+
 bool solve_by_inverse(const double* inverse, std::size_t stride, const double* row, const Slot* residual, std::size_t n, double* solution) {
   bool finite = true;
-  for (std::size_t i = 0; i < stride; i += lanes) {
-    Vector even = all(0), odd = all(0);
-    std::size_t d = 0;
-    for (; d + 1 < n; d += 2) {
-      even += all(row[residual[d]]) * load(inverse + d * stride + i);
-      odd += all(row[residual[d + 1]]) * load(inverse + (d + 1) * stride + i);
-    }
-    if (d < n) even += all(row[residual[d]]) * load(inverse + d * stride + i);
-    const Vector a = even + odd;
-    save(solution + i, a);
-    finite &= are_finite(a);
+  for (std::size_t i = 0; i < stride;) {
+    const auto block = [&]<std::size_t V>() {
+      finite &= solve_vectors<V>(inverse + i, stride, row, residual, n, solution + i);
+      i += V * lanes;
+    };
+    const std::size_t left = (stride - i) / lanes;
+    if (left >= 4) block.template operator()<4>();
+    else if (left >= 2) block.template operator()<2>();
+    else block.template operator()<1>();
   }
   return finite;
 }
@@ -142,6 +161,10 @@ Sizes add(double* values, const double* change, double factor, std::size_t count
     save(values + i, before + added);
   }
   return {largest_lane(of_values), largest_lane(of_change)};
+}
+
+void negate(const double* from, double* to, std::size_t count) {
+  for (std::size_t i = 0; i < count; i += lanes) save(to + i, lane_numbers < all(static_cast<double>(count - i)) ? -load(from + i) : all(0));
 }
 
 void set_accelerations(const Tables& tables, int stage, const double* solution, std::size_t unknowns, int sign) {
