@@ -12,7 +12,7 @@ enum class Backend { Automatic, Interpreter, Compiled };
 struct CompileOptions {
   bool cache = true;               // objects of earlier runs are read, new ones kept: ~/.cache/maupertuis
   bool long_run = false;           // the code will run long: longer code and more passes pay
-  std::string processor;           // empty: this one; else by LLVM's name, such as x86-64-v3
+  std::string processor{};         // empty: this one; else by LLVM's name, such as x86-64-v3
 };
 
 /// What this installation has. Opens the module.

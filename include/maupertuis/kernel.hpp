@@ -82,8 +82,8 @@ Kernel build_kernel(const KernelSource& source);
 /// How a compilation went.
 struct CompileReport {
   bool compiled = false;
-  std::string trouble;        // one sentence where it is not
-  std::string cache_trouble;  // the code is there, but could not be kept for the next run
+  std::string trouble;          // one sentence where it is not
+  std::string cache_trouble{};  // the code is there, but could not be kept for the next run
   bool from_cache = false;
   double seconds = 0;
 };

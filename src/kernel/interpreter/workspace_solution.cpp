@@ -62,6 +62,7 @@ void KernelWorkspace::Impl::need_full() {
 void KernelWorkspace::Impl::fetch_mass(std::size_t i, const double* tangents, std::size_t step, std::size_t first, std::size_t last) {
   double *const row = bordered.data() + i * unknowns, *const end = row + last;
   if (program.tangent_lags[program.residual[i]] != 2) return std::fill(row + first, end, 0.0);
+#pragma GCC unroll 4
   for (double* entry = row + first; entry != end; ++entry, tangents += step) *entry = *tangents;
 }
 

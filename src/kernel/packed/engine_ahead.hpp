@@ -13,11 +13,13 @@ class SumsAhead {
  public:
   SumsAhead(const Tables& tables, int stage) : stride_(static_cast<std::ptrdiff_t>(tables.stride)), stage_(stage), m_(stage + 3 - Lag) {}
 
-  /// Of the stage s + 1: all that is final.
+  /// Of the stage after S: all that is final.
+  template <int S>
   void add_up_alone(const ReadyConvolution& c) const {
+    constexpr int m = S + 3 - Lag;
     Vector sum = all(0);
-    for (int j = larger_of(0, 1 - B); j <= m_ - larger_of(0, 1 - A); ++j) sum += at(c.a, j) * at(c.b, m_ - j);
-    save(sum_at(c, stage_ % rolled_group), sum);
+    for (int j = larger_of(0, 1 - B); j <= m - larger_of(0, 1 - A); ++j) sum += at(c.a, j) * at(c.b, m - j);
+    save(sum_at(c, S), sum);
   }
 
   static constexpr int larger_of(int x, int y) { return x > y ? x : y; }
@@ -74,15 +76,15 @@ class SumsAhead {
   int stage_, m_;                        // m: the order that stage s + 1 finds
 };
 
-/// Stages before the late ones: alone; of the late ones the first, second and third of each group of four. The fourth makes nothing final that any but the
-/// next stage reads.
-enum Position { Alone, First, Second, Third };
+/// Of late stages the first, second and third of each group of four; the fourth makes nothing final that any but the next stage reads. The stages before
+/// them, by their numbers.
+enum Position { First = first_late_stage, Second, Third };
 
-template <int Lag, int A, int B, Position position>
+template <int Lag, int A, int B, int position>
 void add_up_run(const Tables& tables, const ConvolutionRun& run, int stage) {
   const SumsAhead<Lag, A, B> sums(tables, stage);
   for (const ReadyConvolution* c = run.first; c != run.last; ++c) {
-    if constexpr (position == Alone) sums.add_up_alone(*c);
+    if constexpr (position < First) sums.template add_up_alone<position>(*c);
     else if constexpr (position == First) sums.begin_group(*c);
     else sums.template pass_on<position - First>(*c);
   }
@@ -90,15 +92,18 @@ void add_up_run(const Tables& tables, const ConvolutionRun& run, int stage) {
 
 using AddUpRun = void (*)(const Tables&, const ConvolutionRun&, int stage);
 /// By ConvolutionRun::kind().
-template <Position p>
+template <int p>
 constexpr AddUpRun add_up[] = {add_up_run<0, 0, 0, p>, add_up_run<1, 0, 0, p>, add_up_run<1, 0, 1, p>, add_up_run<1, 1, 0, p>, add_up_run<1, 1, 1, p>,
                                add_up_run<2, 0, 0, p>, add_up_run<2, 0, 1, p>, add_up_run<2, 0, 2, p>, add_up_run<2, 1, 0, p>, add_up_run<2, 1, 1, p>,
                                add_up_run<2, 1, 2, p>, add_up_run<2, 2, 0, p>, add_up_run<2, 2, 1, p>, add_up_run<2, 2, 2, p>};
 
+/// By stages before the late ones, and by Position.
+constexpr const AddUpRun* add_up_at[] = {add_up<0>, add_up<1>, add_up<2>, add_up<3>, add_up<First>, add_up<Second>, add_up<Third>};
+
 [[maybe_unused]] void add_up_ahead(const Tables& tables, int stage) {
-  const int position = stage % rolled_group;
-  if (stage >= first_late_stage && position == rolled_group - 1) return;
-  const AddUpRun* const kinds = stage < first_late_stage ? add_up<Alone> : position == 0 ? add_up<First> : position == 1 ? add_up<Second> : add_up<Third>;
+  const int position = stage < first_late_stage ? stage : First + stage % rolled_group;
+  if (position > Third) return;
+  const AddUpRun* const kinds = add_up_at[position];
   const ConvolutionRun* const last = tables.convolution_runs + tables.convolution_run_count;
   for (const ConvolutionRun* run = tables.convolution_runs; run != last; ++run) kinds[run->kind](tables, *run, stage);
 }

@@ -4,13 +4,42 @@ namespace {
 
 constexpr std::size_t most_inverted = 16;
 
-bool is_symmetric(const double* m, std::size_t n) {
-  constexpr double tolerance = 1e-12;
+/// 8 × 8 numbers, in three exchanges: of neighbours, pairs and halves.
+inline void transpose_rows(Vector (&r)[lanes]) {
+  const auto exchange = [&](std::size_t distance, Places low, Places high) {
+    for (std::size_t i = 0; i < lanes; ++i) {
+      if (i & distance) continue;
+      const Vector a = r[i], b = r[i + distance];
+      r[i] = __builtin_shuffle(a, b, low), r[i + distance] = __builtin_shuffle(a, b, high);
+    }
+  };
+  exchange(1, Places{0, 8, 2, 10, 4, 12, 6, 14}, Places{1, 9, 3, 11, 5, 13, 7, 15});
+  exchange(2, Places{0, 1, 8, 9, 4, 5, 12, 13}, Places{2, 3, 10, 11, 6, 7, 14, 15});
+  exchange(4, Places{0, 1, 2, 3, 8, 9, 10, 11}, Places{4, 5, 6, 7, 12, 13, 14, 15});
+}
+
+/// To 1e-12 of the diagonal; not if a number is not finite.
+constexpr double symmetry_squared = 1e-24;
+
+template <std::size_t N>
+bool is_symmetric(const double*, const Vector (&rows)[N][1]) {
+  Vector columns[lanes] = {}, diagonal = all(0), fails = all(0);
+  for (std::size_t i = 0; i < N; ++i) columns[i] = rows[i][0], diagonal = lane_numbers == all(static_cast<double>(i)) ? rows[i][0] : diagonal;
+  transpose_rows(columns);
+  for (std::size_t i = 0; i < N; ++i) {
+    const Vector difference = rows[i][0] - columns[i], limit = all(symmetry_squared * diagonal[i]) * diagonal;
+    fails = difference * difference <= limit ? fails : all(1);
+  }
+  return largest_lane(fails) == 0;
+}
+
+template <std::size_t N>
+bool is_symmetric(const double* m, const Vector (&)[N][2]) {
   bool symmetric = true;
-  for (std::size_t i = 0; i < n; ++i)
+  for (std::size_t i = 0; i < N; ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      const double difference = m[i * n + j] - m[j * n + i];
-      symmetric &= difference * difference <= tolerance * tolerance * m[i * n + i] * m[j * n + j];
+      const double difference = m[i * N + j] - m[j * N + i];
+      symmetric &= difference * difference <= symmetry_squared * m[i * N + i] * m[j * N + j];
     }
   return symmetric;
 }
@@ -62,7 +91,7 @@ bool invert(const double* m, double* inverse) {
     for (std::size_t j = 0; j < N; ++j) row[j] = m[i * N + j];
     for (std::size_t w = 0; w < W; ++w) rows[i][w] = N % lanes == 0 ? load(m + i * N + w * lanes) : load(row + w * lanes);
   }
-  if (!eliminate_all(m, rows)) return false;
+  if (!is_symmetric(m, rows) || !eliminate_all(m, rows)) return false;
   for (std::size_t i = 0; i < N; ++i)
     for (std::size_t w = 0; w < W; ++w) save(inverse + (i * W + w) * lanes, -rows[i][w]);
   return true;
@@ -77,24 +106,14 @@ constexpr std::array<Invert, most_inverted> inversions(std::index_sequence<N...>
 bool negative_inverse(const double* matrix, std::size_t n, double* inverse) {
   static constexpr auto invert_of = inversions(std::make_index_sequence<most_inverted>());
   if (n == 0) return true;
-  return n <= most_inverted && is_symmetric(matrix, n) && invert_of[n - 1](matrix, inverse);
+  return n <= most_inverted && invert_of[n - 1](matrix, inverse);
 }
 
-/// In three exchanges: of neighbours, pairs and halves.
 void transpose(const double* from, double* to, std::size_t stride) {
-  Vector r[lanes];
-  for (std::size_t i = 0; i < lanes; ++i) r[i] = load(from + i * stride);
-  const auto exchange = [&](std::size_t distance, Places low, Places high) {
-    for (std::size_t i = 0; i < lanes; ++i) {
-      if (i & distance) continue;
-      const Vector a = r[i], b = r[i + distance];
-      r[i] = __builtin_shuffle(a, b, low), r[i + distance] = __builtin_shuffle(a, b, high);
-    }
-  };
-  exchange(1, Places{0, 8, 2, 10, 4, 12, 6, 14}, Places{1, 9, 3, 11, 5, 13, 7, 15});
-  exchange(2, Places{0, 1, 8, 9, 4, 5, 12, 13}, Places{2, 3, 10, 11, 6, 7, 14, 15});
-  exchange(4, Places{0, 1, 2, 3, 8, 9, 10, 11}, Places{4, 5, 6, 7, 12, 13, 14, 15});
-  for (std::size_t i = 0; i < lanes; ++i) save(to + i * stride, r[i]);
+  Vector rows[lanes];
+  for (std::size_t i = 0; i < lanes; ++i) rows[i] = load(from + i * stride);
+  transpose_rows(rows);
+  for (std::size_t i = 0; i < lanes; ++i) save(to + i * stride, rows[i]);
 }
 
 /// V vectors of the solution.

@@ -20,9 +20,9 @@ struct Pendulum {
     Context& c = *system.context;
     const Expr theta = c.symbol("θ", Role::Coordinate), length = c.symbol("l", Role::Parameter);
     system.coordinates.push_back({"θ", theta, c.symbol("θ", Role::Coordinate, 1), c.symbol("θ", Role::Coordinate, 2), dimensions::angle(), "angle", {}});
-    system.parameters.push_back({"l", length, c.number(2), 2, dimensions::length(), "m", {}});
+    system.parameters.push_back({"l", length, c.number(2), 2, dimensions::length(), "m", false, {}});
     const Expr mass = c.symbol("m", Role::Parameter);
-    system.parameters.push_back({"m", mass, c.number(3), 3, dimensions::mass(), "kg", {}});
+    system.parameters.push_back({"m", mass, c.number(3), 3, dimensions::mass(), "kg", false, {}});
     const ExprVector bob{length * sin(theta), -(length * cos(theta))};
     system.points.push_back({"bob", mass, bob, {}});
     system.gravity = {c.number(0), c.number(-9)};
