@@ -234,6 +234,7 @@ void KernelWorkspace::Impl::adopt(interpreter::CompiledCode code) {
 
 CompileReport KernelWorkspace::compile(const CompileOptions& options) {
   Impl& s = *impl_;
+  if (s.unknowns == 0) return {.trouble = "there are no coordinates, and so no equations to compile"};
   if (s.lifted) s.lifted->compile(options);
   auto [code, report] = interpreter::compile(s.packed, s.order, s.memory.stride, options);
   if (code.memory) s.adopt(std::move(code));

@@ -251,8 +251,9 @@ void RolledEmitter::quotient(std::size_t index) {
   Value* const sum = convolution(first_convolution_[index], true, false);
   const int ahead = ahead_of(pack), before = p_.blocks[pack.a].lag;
   Value* const a = before == pack.lag ? newest(pack.a, ahead) : load(slot_at(row(ahead), p_.blocks[pack.a].first));
-  const bool is_first_order = written_ && *written_ + ahead == 0;  // what a block copies is not there yet
-  keep(pack, out_.divide(out_.subtract(a, sum), is_first_order ? newest(pack.b, ahead) : first(pack.b)));
+  // At order 0 what a block copies is not there yet; of a lower lag it is, and what is in a register may be of a higher order.
+  const bool is_of_stage = written_ && *written_ + ahead == 0 && p_.blocks[pack.b].lag == pack.lag;
+  keep(pack, out_.divide(out_.subtract(a, sum), is_of_stage ? newest(pack.b, ahead) : first(pack.b)));
 }
 
 /// y_k = (u_k − Σ_{0<j<k} y_j y_{k−j}) / (2 y_0)

@@ -54,6 +54,16 @@ void add_switches(Systems& list) {
                        (sin(x) + Rational(2)) * s.acceleration("y") + y + s.context.function(Kind::Max, either)};
 }
 
+/// Accelerations divided by functions of velocities, which are known an order further when the first stage divides.
+void add_velocity_quotients(Systems& list, int count) {
+  System& s = add(list, "quotients by velocities: " + std::to_string(count));
+  for (int i = 0; i < count; ++i) {
+    const std::string word = "q" + std::to_string(i);
+    const Expr q = s.coordinate(word, 0.3 + 0.1 * i, 0.4 - 0.05 * i), a = s.acceleration(word);
+    s.source.residual.push_back(Rational(3) * a + sin(q) + (a + q) / (pow(s.dot(q), 2) + Rational(2)));
+  }
+}
+
 /// The largest difference of coefficients of order k in units of (k + 1) ε and of the largest of them.
 double difference(const KernelWorkspace& found, const KernelWorkspace& expected, std::size_t count, int k) {
   double size = 1e-300, worst = 0;
@@ -174,6 +184,26 @@ TEST_CASE("rolled code: constraints and switches") {
   for (const int rods : {1, 3, 12}) add_rods(list, rods);
   add_switches(list);
   for (const auto& s : list) check_rolled(*s, 1000), check_rolled(*s, 1000, true);
+}
+
+TEST_CASE("rolled code: quotients whose denominators are known an order further") {
+  Systems list;
+  for (const int count : {9, 17, 24}) add_velocity_quotients(list, count);
+  for (const auto& s : list) check_rolled(*s, 1000), check_rolled(*s, 1000, true);
+}
+
+TEST_CASE("without coordinates there is nothing to compile, and the interpreter goes on") {
+  Systems list;
+  System& s = add(list, "no coordinates");
+  s.source.integrands = {sin(s.parameter("p", 1.5) * s.context.time())};
+  const Kernel kernel = build_kernel(s.source);
+  KernelWorkspace work(kernel, rolled_order);
+  const CompileReport report = work.compile();
+  CHECK_FALSE(report.compiled);
+  CHECK(report.trouble == "there are no coordinates, and so no equations to compile");
+  work.set_parameters(s.start.parameters);
+  REQUIRE(work.expand(0.5, {}, {}) == KernelStatus::Ok);
+  CHECK(work.integrand(0, 2) == doctest::Approx(-1.125 * std::sin(0.75)));
 }
 
 TEST_CASE("rolled code: expansions of a few stages between those of all") {
