@@ -35,8 +35,7 @@ void DenseOutput::advance(double tau, std::span<Compensated> q_out, std::span<Co
   double* const dq = increments_.data();
   double* const dv = dq + padded(freedoms_);
   add_up_(first_, stride_, freedoms_, degree_, tau, dq, dv);
-  static_assert(sizeof(Compensated) == 2 * sizeof(double));
-  add_increments(freedoms_, tau, dq, dv, &q.data()->hi, &v.data()->hi, &q_out.data()->hi, &v_out.data()->hi);
+  if (freedoms_ > 0) add_increments(freedoms_, tau, dq, dv, &q[0].hi, &v[0].hi, &q_out[0].hi, &v_out[0].hi);
   const std::size_t m = integrals.size();
   for (std::size_t i = 0; i < m; ++i) {
     double sum = 0;

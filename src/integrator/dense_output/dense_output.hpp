@@ -19,6 +19,7 @@ struct Compensated {
     hi = sum;
   }
 };
+static_assert(sizeof(Compensated) == 2 * sizeof(double));  // add_increments() reads them pair by pair
 
 /// The motion within one step: q(begin + τ) = Σ c_k τ^k with its derivative, and time integrals beside it.
 class DenseOutput {

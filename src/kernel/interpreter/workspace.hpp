@@ -16,8 +16,8 @@ struct KernelWorkspace::Impl {
   /// Up to here the correction of a stage is a product with a small matrix, and so is the solution where M is positive definite.
   static constexpr std::size_t most_by_matrix = 16;
 
-  /// How the stages after the first are solved: with a look at each solution; or directly, by −M⁻¹ (code alone) or by sparse factors, with one look at the
-  /// end.
+  /// How the stages after the first are solved: with a look at each solution; or directly, by −M⁻¹ (of few unknowns, or by code) or by sparse factors, with one
+  /// look at the end.
   enum class LaterStages { StepByStep, ByInverse, ByLifting };
 
   Impl(const Kernel& k, int p)

@@ -207,15 +207,20 @@ Vector weighted(const Vector (&weights)[N], const double* rows, std::size_t stri
   return sums[0];
 }
 
+/// Of what coefficients owe to q̈_k, by lag.
+struct Factors {
+  explicit Factors(const Stage& s) : of_lag{1 / s.t.shift_factors[3 * s.stage + 2], s.t.reciprocals[s.stage + 1].leading, 1} {}
+  double of_lag[3];
+};
+
 /// What N directions add to the coefficients of a stage.
 template <std::size_t N>
 inline void add_directions(const Stage& s, const TangentMatrix& tangents, const double* values, const Vector (&weights)[N]) {
-  const double first = s.t.reciprocals[s.stage + 1].leading, second = s.t.reciprocals[s.stage + 2].leading;
-  const double factors[3] = {first * second, first, 1};
+  const Factors factors(s);
   std::size_t i = tangents.first;
   for (int lag = 0; lag <= 2; ++lag) {
     double* const row = s.row_of(lag);
-    for (const Vector factor = all(factors[lag]); i < tangents.end[static_cast<std::size_t>(lag)]; i += lanes)  // the slots of the next lag begin with a vector
+    for (const Vector factor = all(factors.of_lag[lag]); i < tangents.end[static_cast<std::size_t>(lag)]; i += lanes)  // the slots of the next lag begin with a vector
       save(row + i, load(row + i) + factor * weighted(weights, values + i, tangents.stride));
   }
 }
@@ -280,14 +285,13 @@ template <std::size_t N>
   Vector weights[N];
 #pragma GCC unroll 16
   for (std::size_t d = 0; d < N; ++d) weights[d] = all(residual[in.residual[d]]);
-  const double first = s.t.reciprocals[s.stage + 1].leading, second = s.t.reciprocals[s.stage + 2].leading;
-  const double factors[3] = {first * second, first, 1};
+  const Factors factors(s);
   if constexpr (N <= most_answered) {
     const double* answer = in.answers;
     save(s.row_of(0), weighted(weights, in.inverse, lanes) / all(s.t.shift_factors[3 * s.stage + 2]));
     for_corrected(in.tangents, [&](int lag, std::size_t i) {
       double* const place = s.row_of(lag) + i;
-      save(place, load(place) + all(factors[lag]) * weighted(weights, answer, lanes));
+      save(place, load(place) + all(factors.of_lag[lag]) * weighted(weights, answer, lanes));
       answer += N * lanes;
     });
   } else {
