@@ -173,8 +173,8 @@ class KernelWorkspace {
   CompileReport compile(const CompileOptions& options = {});
 
   /// The radius of convergence that the last coefficients of q tell: with v_k = (k + 1) |q_{k+1}| and s_i the largest of v_k h^k for k ≤ 3 and ε |q_0| / h,
-  /// the least of (s_i / v_k)^{1/k} over all coordinates and the last six k, where the last two are taken as they are and the others times 1.25. To 5·10⁻⁴/k + 10⁻⁴, k being the one that decides; infinite where
-  /// all these v_k vanish; not a number where some s_i is 0 (or nearly so): no estimate.
+  /// the least of (s_i / v_k)^{1/k} over all coordinates and the last six k, where the last two are taken as they are and the others times 1.25. To
+  /// 5·10⁻⁴/k + 10⁻⁴, k being the one that decides; infinite where all these v_k vanish; not a number where some s_i is 0 (or nearly so): no estimate.
   double radius(double h) const;
   /// polynomial_increments for the coefficients coordinate(k), k ≤ order + 1, until the next `compile`.
   PolynomialIncrements* increments() const;

@@ -47,8 +47,8 @@ void KernelWorkspace::Impl::need_full() {
     block_tangent.assign(program.slots * 8, 0.0);
     of_mass = interpreter::instructions_of_mass(program);
   }
-  if (by_sweep) sweep_all();
   if (by_sweep) {
+    sweep_all();
     for (std::size_t i = 0; i < n; ++i) fetch_mass(i, tangent.data() + program.residual[i], memory.stride, 0, n);
     return;
   }

@@ -91,7 +91,7 @@ void add_up_run(const Tables& tables, const ConvolutionRun& run, int stage) {
 }
 
 using AddUpRun = void (*)(const Tables&, const ConvolutionRun&, int stage);
-/// By ConvolutionRun::kind().
+/// By ConvolutionRun::kind.
 template <int p>
 constexpr AddUpRun add_up[] = {add_up_run<0, 0, 0, p>, add_up_run<1, 0, 0, p>, add_up_run<1, 0, 1, p>, add_up_run<1, 1, 0, p>, add_up_run<1, 1, 1, p>,
                                add_up_run<2, 0, 0, p>, add_up_run<2, 0, 1, p>, add_up_run<2, 0, 2, p>, add_up_run<2, 1, 0, p>, add_up_run<2, 1, 1, p>,
