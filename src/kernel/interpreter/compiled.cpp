@@ -26,7 +26,7 @@ std::pair<CompiledCode, CompileReport> compile(const packed::PackedProgram& prog
     const auto find = [&](auto& function, const char* name) { function = reinterpret_cast<std::decay_t<decltype(function)>>(made.code->find(name)); };
     find(code.expand, "expand"), find(code.radius, "radius"), find(code.increments, "increments");
     find(code.first, "first"), find(code.stage, "stage"), find(code.solve, "solve"), find(code.correct, "correct");
-    find(code.ahead, "ahead"), find(code.tangents, "tangents");
+    find(code.ahead, "ahead"), find(code.later, "later"), find(code.tangents, "tangents");
     code.memory = made.code;
   }
   return {std::move(code), {.compiled = made.code != nullptr, .trouble = std::move(made.trouble),

@@ -16,6 +16,7 @@ struct CompiledCode {
   packed::CompiledIncrements increments = nullptr;
   packed::CompiledFirst first = nullptr;
   packed::CompiledStage stage = nullptr, solve = nullptr, correct = nullptr, ahead = nullptr;
+  packed::CompiledLater later = nullptr;
   packed::CompiledTangents tangents = nullptr;
   std::shared_ptr<const void> memory;
 };

@@ -86,13 +86,14 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   if (const auto status = factor(); status != KernelStatus::Ok) return status;
   later = stages > 1 ? choose_later_stages() : LaterStages::StepByStep;
   for (int stage = 0; stage < stages; ++stage) {
-    if (stage > 0 && later == LaterStages::ByInverse && !compiled.stage) {
+    if (stage > 0 && runs_on()) {
+      if (compiled.later) return compiled.later(&arguments, stages) == 1 ? KernelStatus::Ok : KernelStatus::NonFinite;
       run_later_stages(stages);
       break;
     }
     if (stage == 0 || !run_directly(stage))
       if (const auto status = run_step_by_step(stage); status != KernelStatus::Ok) return status;
-    renew_blocks(stage, stages);
+    if (!compiled.later || !runs_on()) renew_blocks(stage, stages);
     run_along(stage);
   }
   return later != LaterStages::StepByStep && !are_coefficients_finite(stages) ? KernelStatus::NonFinite : KernelStatus::Ok;
@@ -142,7 +143,11 @@ bool KernelWorkspace::Impl::run_directly(int stage) {
   return true;
 }
 
-/// All from 1 on, where nothing but the coefficients is asked for at once.
+/// Whether all stages from 1 on run in one go.
+bool KernelWorkspace::Impl::runs_on() const {
+  return later == LaterStages::ByInverse && (!compiled.stage || (compiled.later && program.runs[Along].empty()));
+}
+
 void KernelWorkspace::Impl::run_later_stages(int stages) {
   const packed::InverseSolution solution{inverse.data(), program.residual.data(), tangents, answers.data()};
   if (program.runs[Along].empty()) return engine.run_stages_by_inverse(tables, solution, 1, stages, false);

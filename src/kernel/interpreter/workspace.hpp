@@ -51,6 +51,7 @@ struct KernelWorkspace::Impl {
   void run_first_stages();
   KernelStatus run_step_by_step(int stage);
   void run_stage(int stage);
+  bool runs_on() const;
   void run_later_stages(int stages);
   void renew_blocks(int stage, int stages);
   bool adds_up_ahead() const { return engine.add_up_ahead && order > packed::rolled_group; }
@@ -97,7 +98,7 @@ struct KernelWorkspace::Impl {
   const packed::Engine& engine = packed::engine();
   std::optional<packed::ReadyProgram> ready;
   std::vector<packed::Reciprocal> reciprocals;  // [orders]
-  std::vector<double> lane_coefficients;  // [packed.coefficients]
+  interpreter::Doubles lane_coefficients;  // [packed.coefficients]
   std::vector<double> parameters;
   std::vector<std::int8_t> sides;
   bool stale = true;                 // constants to be computed

@@ -80,8 +80,11 @@ void RolledEmitter::renew_copies() {
 void RolledEmitter::renew(const Block& block) {
   const int ahead = 2 - block.lag;
   if (written_ && *written_ + ahead < 0) return;
-  Value* const values = values_of(block, row(ahead));
-  save(block.weighted ? out_.multiply(values, real(stage_plus(ahead))) : values, slot_at(row(ahead), block.first));
+  const auto found = final_.find(block.slots[0]);
+  Value* const values = block.is_range && found != final_.end() ? found->second : values_of(block, row(ahead));
+  Value* const renewed = block.weighted ? out_.multiply(values, real(stage_plus(ahead))) : values;
+  save(renewed, slot_at(row(ahead), block.first));
+  final_[block.first] = renewed;
 }
 
 /// Loops over the convolutions of each class, a few of each in turn, since neighbours have operands in common, which are then still in the first cache. `body`
@@ -97,19 +100,25 @@ void RolledEmitter::each_convolution(const std::function<void(const Class&, Valu
   out_.loop(b.getInt64(0), b.getInt64(turns), {}, [&](Value* turn, const std::vector<Value*>&) {
     for (const auto& [key, members] : classes_) {
       if (!takes_part(key)) continue;
-      Value* const table = offsets(members);
-      const std::size_t first = sums_of_[members.front()];
-      Value* const sums = at(sums_, static_cast<std::int64_t>(first) * sums_bytes);
       const auto bound = [&](Value* at_turn) { return b.CreateUDiv(b.CreateMul(at_turn, b.getInt64(members.size())), b.getInt64(turns)); };
-      out_.loop(bound(turn), bound(b.CreateAdd(turn, b.getInt64(1))), {}, [&](Value* i, const std::vector<Value*>&) {
-        Value* const entry = out_.at(table, b.CreateShl(i, 3));
-        const auto operand = [&](std::int64_t place) {
-          return out_.at(rows_, b.CreateZExt(b.CreateAlignedLoad(b.getInt32Ty(), at(entry, place), llvm::Align(4)), b.getInt64Ty()));
-        };
-        body(key, operand(0), operand(4), out_.at(sums, b.CreateMul(i, b.getInt64(sums_bytes))));
-        return std::vector<Value*>{};
-      });
+      loop_over(key, members, bound(turn), bound(b.CreateAdd(turn, b.getInt64(1))), body);
     }
+    return std::vector<Value*>{};
+  });
+}
+
+/// Over neighbouring members of a class, whose sums lie side by side.
+void RolledEmitter::loop_over(const Class& key, const std::vector<std::size_t>& members, Value* first, Value* end,
+                              const std::function<void(const Class&, Value*, Value*, Value*)>& body) {
+  auto& b = out_.b;
+  Value* const places = offsets(members);
+  Value* const sums = at(sums_, static_cast<std::int64_t>(sums_of_[members.front()]) * sums_bytes);
+  out_.loop(first, end, {}, [&](Value* i, const std::vector<Value*>&) {
+    Value* const entry = out_.at(places, b.CreateShl(i, 3));
+    const auto operand = [&](std::int64_t place) {
+      return out_.at(rows_, b.CreateZExt(b.CreateAlignedLoad(b.getInt32Ty(), at(entry, place), llvm::Align(4)), b.getInt64Ty()));
+    };
+    body(key, operand(0), operand(4), out_.at(sums, b.CreateMul(i, b.getInt64(sums_bytes))));
     return std::vector<Value*>{};
   });
 }
@@ -119,7 +128,11 @@ llvm::GlobalVariable* RolledEmitter::offsets(const std::vector<std::size_t>& mem
   std::vector<std::uint32_t> bytes;
   for (const std::size_t i : members)
     for (const std::uint32_t block : {convolutions_[i].a, convolutions_[i].b}) bytes.push_back(8 * p_.blocks[block].first);
-  llvm::Constant* const values = llvm::ConstantDataArray::get(out_.context, bytes);
+  return table(bytes);
+}
+
+llvm::GlobalVariable* RolledEmitter::table(const std::vector<std::uint32_t>& numbers) {
+  llvm::Constant* const values = llvm::ConstantDataArray::get(out_.context, numbers);
   return new llvm::GlobalVariable(*out_.module, values->getType(), true, llvm::GlobalValue::PrivateLinkage, values);
 }
 
@@ -155,7 +168,8 @@ Value* RolledEmitter::late_terms(const packed::Convolution& c, Value* sum) {
   if (!adds_late({c.lag, a_ahead, b_ahead})) return sum;
   const auto term = [&](std::uint32_t x, std::uint32_t y, int ahead) {
     if (ahead > 1) return;
-    Value* const newest = load(at(slot_at(row(0), p_.blocks[x].first), (1 - p_.blocks[x].lag) * row_bytes_));
+    const auto kept = kept_.find(p_.blocks[x].first);
+    Value* const newest = kept != kept_.end() ? kept->second : load(at(slot_at(row(0), p_.blocks[x].first), (1 - p_.blocks[x].lag) * row_bytes_));
     sum = out_.fma(newest, load(at(slot_at(rows_, p_.blocks[y].first), (1 - ahead) * row_bytes_)), sum);
   };
   term(c.a, c.b, a_ahead);
@@ -167,87 +181,78 @@ Value* RolledEmitter::late_terms(const packed::Convolution& c, Value* sum) {
 
 /// Of the stages s + 1 … s + 4, what is final now.
 void RolledEmitter::begin_group() {
-  each_convolution([&](const Class& c, Value* x, Value* y, Value* sums) { interior(c, x, y, sums); });
+  each_convolution([&](const Class& c, Value* x, Value* y, Value* sums) { add_up_group(c, {0, 0}, x, y, sums); });
 }
 
-/// With m the order of the group's first stage: a_j for 4 ≤ j < m meets b_{m+r−j} of all four stages r, which slide by one from j to j + 1. The
-/// number of such j is 3 − lag beyond a multiple of four. The first stage adds late terms itself.
-void RolledEmitter::interior(const Class& c, Value* x, Value* y, Value* sums) {
+/// With m the order of the group's first stage, operands are final up to m − 1 + D, or `left_out` orders less: a_j for first ≤ j < m meets b_{m+r−j} of all four
+/// stages r, which slide by one from j to j + 1. The first stage adds late terms itself.
+void RolledEmitter::add_up_group(const Class& c, const Group& group, Value* x, Value* y, Value* sums) {
   auto& b = out_.b;
   const auto [lag, a_ahead, b_ahead] = c;
   Value* const stride = b.getInt64(static_cast<std::uint64_t>(row_bytes_));
   Value* const top_a = out_.at(x, b.CreateNSWMul(stage_plus(3 - lag), stride));  // a_m
   Value* const top_b = out_.at(y, b.CreateNSWMul(stage_plus(3 - lag), stride));
   const auto from = [&](Value* address, int order) { return load(at(address, order * row_bytes_)); };
-  std::array<Value*, rolled_group> sum{};
-  std::map<int, Value*> low_a, high_b;
-  const auto known = [](std::map<int, Value*>& values, int order, auto&& read) {
+  const auto known = [&](std::map<int, Value*>& values, Value* address, int order) {
     Value*& value = values[order];
-    if (!value) value = read();
+    if (!value) value = from(address, order);
     return value;
   };
-  const int late = adds_late(c) ? 1 : 0;
+  const bool late = adds_late(c);
+  const int first = rolled_group + (b_ahead == 0 ? group.left_out : 0);
+  std::map<int, Value*> low_a, high_b;
+  std::vector<Value*> now{at(x, first * row_bytes_), at(top_b, -first * row_bytes_)};
   for (int r = 0; r < rolled_group; ++r) {
-    const auto r_ = static_cast<std::size_t>(r);
-    const int beyond = 1 + (r == 0 ? late : r);
-    for (int j = std::max(0, beyond - b_ahead); j < rolled_group; ++j)
-      sum[r_] = plus(sum[r_], known(low_a, j, [&] { return from(x, j); }), known(high_b, r - j, [&] { return from(top_b, r - j); }));
-    for (int i = std::max(0, beyond - a_ahead); i <= r; ++i) sum[r_] = plus(sum[r_], from(top_a, r - i), from(y, i));
-    if (!sum[r_]) sum[r_] = llvm::Constant::getNullValue(vector_);
+    const int beyond = 1 + std::max(r + group.left_out, r == 0 && late ? 1 : 0);
+    Value* sum = nullptr;
+    for (int j = std::max(0, beyond - b_ahead); j < first; ++j) sum = plus(sum, known(low_a, x, j), known(high_b, top_b, r - j));
+    for (int i = std::max(0, beyond - a_ahead); i <= r; ++i) sum = plus(sum, from(top_a, r - i), from(y, i));
+    now.push_back(sum ? sum : llvm::Constant::getNullValue(vector_));
   }
-
-  std::array<Value*, rolled_group> window{};
-  for (int r = 0; r < rolled_group; ++r)
-    window[static_cast<std::size_t>(r)] = known(high_b, r - rolled_group, [&] { return from(top_b, r - rolled_group); });
-  // One order j further: a_j from `a`, and the next of b from below `b_at`, which is where window[0] came from.
-  const auto turn = [&](Value* a, Value* b_at, int steps, std::size_t first_of_last) {
+  for (int r = 0; r < rolled_group; ++r) now.push_back(known(high_b, top_b, r - first));
+  // One order j further: a_j from the first address, and the next of b from below the second, which is where the first of the window came from.
+  const auto turn = [&](const std::vector<Value*>& values, int steps, int first_of_last) {
+    std::vector<Value*> totals(values.begin() + 2, values.begin() + 2 + rolled_group), window(values.begin() + 2 + rolled_group, values.end());
     for (int u = 0; u < steps; ++u) {
-      Value* const a_j = from(a, u);
-      for (std::size_t r = u + 1 < steps ? 0 : first_of_last; r < rolled_group; ++r) sum[r] = out_.fma(a_j, window[r], sum[r]);
+      Value* const a_j = from(values[0], u);
+      for (std::size_t r = u + 1 < steps ? 0 : static_cast<std::size_t>(first_of_last); r < rolled_group; ++r) totals[r] = out_.fma(a_j, window[r], totals[r]);
       std::copy_backward(window.begin(), window.end() - 1, window.end());
-      window[0] = from(b_at, -(u + 1));
+      window[0] = from(values[1], -(u + 1));
     }
-  };
-  std::vector<Value*> carried{at(x, rolled_group * row_bytes_), at(top_b, -rolled_group * row_bytes_)};
-  carried.insert(carried.end(), sum.begin(), sum.end());
-  carried.insert(carried.end(), window.begin(), window.end());
-  const auto take = [&](const std::vector<Value*>& now) {
-    std::copy_n(now.begin() + 2, rolled_group, sum.begin());
-    std::copy_n(now.begin() + 2 + rolled_group, rolled_group, window.begin());
-  };
-  Value* const turns = b.CreateLShr(b.CreateSub(stage_, b.getInt64(rolled_group)), 2);
-  const auto last = out_.loop(b.getInt64(0), turns, carried, [&](Value*, const std::vector<Value*>& now) {
-    take(now);
-    turn(now[0], now[1], rolled_group, 0);
-    std::vector<Value*> next{at(now[0], rolled_group * row_bytes_), at(now[1], -rolled_group * row_bytes_)};
-    next.insert(next.end(), sum.begin(), sum.end());
+    std::vector<Value*> next{at(values[0], steps * row_bytes_), at(values[1], -steps * row_bytes_)};
+    next.insert(next.end(), totals.begin(), totals.end());
     next.insert(next.end(), window.begin(), window.end());
     return next;
-  });
-  take(last);
-  turn(last[0], last[1], 3 - lag, late == 1 && a_ahead == 0 ? 1 : 0);  // the last one is a_{m−1} b_1
-  for (std::size_t r = 0; r < rolled_group; ++r) save(sum[r], at(sums, static_cast<std::int64_t>(r) * vector_bytes));
+  };
+  // m − first orders, less what is left out of a; s = 4 ⌊s/4⌋ + phase. The last one is a_{m−1} b_1 for the first stage, and late.
+  const int beyond = group.phase + 3 - lag - first - (a_ahead == 0 ? group.left_out : 0), rest = (beyond + 2 * rolled_group) % rolled_group;
+  Value* const turns = b.CreateNSWAdd(b.CreateLShr(stage_, 2), b.getInt64(static_cast<std::uint64_t>((beyond - rest) / rolled_group)));
+  now = out_.loop(b.getInt64(0), turns, now, [&](Value*, const std::vector<Value*>& values) { return turn(values, rolled_group, 0); });
+  now = turn(now, rest, late && a_ahead == 0 && group.left_out == 0 ? 1 : 0);
+  for (std::size_t r = 0; r < rolled_group; ++r) save(now[2 + r], at(sums, static_cast<std::int64_t>(r) * vector_bytes));
 }
 
-/// What stage s, the `passed`-th of its group, has made final, for those that follow the next one in the group: at a distance t the newest a meets b_{t−D_a}.
+/// What stage s, the `passed`-th of its group, has made final, for those that follow the next one in the group.
 void RolledEmitter::pass_on(int passed) {
-  const auto nearest = [](const Class& c) { return adds_late(c) ? 2 : 1; };
-  const auto pass = [&](const Class& c, Value* x, Value* y, Value* sums) {
-    const auto [lag, a_ahead, b_ahead] = c;
-    Value* const stride = out_.b.getInt64(static_cast<std::uint64_t>(row_bytes_));
-    const auto newest = [&](Value* operand, int its_lag) {
-      return load(out_.at(operand, out_.b.CreateNSWMul(stage_plus(2 - its_lag), stride)));
-    };
-    Value *const a = newest(x, lag - a_ahead), *const b = newest(y, lag - b_ahead);
-    for (int t = nearest(c); passed + t <= rolled_group; ++t) {
-      Value* const place = at(sums, (passed + t - 1) * vector_bytes);
-      Value* sum = load(place);
-      if (t >= a_ahead) sum = out_.fma(a, load(at(y, (t - a_ahead) * row_bytes_)), sum);
-      if (t >= b_ahead) sum = out_.fma(b, load(at(x, (t - b_ahead) * row_bytes_)), sum);
-      save(sum, place);
-    }
+  each_convolution([&](const Class& c, Value* x, Value* y, Value* sums) { pass_on(c, passed, 0, x, y, sums); },
+                   [&](const Class& c) { return passed + nearest(c) <= rolled_group; });
+}
+
+/// The same of stage s − `behind`: at a distance t the newest a meets b_{t−D_a}.
+void RolledEmitter::pass_on(const Class& c, int passed, int behind, Value* x, Value* y, Value* sums) {
+  const auto [lag, a_ahead, b_ahead] = c;
+  Value* const stride = out_.b.getInt64(static_cast<std::uint64_t>(row_bytes_));
+  const auto newest = [&](Value* operand, int its_lag) {
+    return load(out_.at(operand, out_.b.CreateNSWMul(stage_plus(2 - its_lag - behind), stride)));
   };
-  each_convolution(pass, [&](const Class& c) { return passed + nearest(c) <= rolled_group; });
+  Value *const a = newest(x, lag - a_ahead), *const b = newest(y, lag - b_ahead);
+  for (int t = nearest(c); passed + t <= rolled_group; ++t) {
+    Value* const place = at(sums, (passed + t - 1) * vector_bytes);
+    Value* sum = load(place);
+    if (t >= a_ahead) sum = out_.fma(a, load(at(y, (t - a_ahead) * row_bytes_)), sum);
+    if (t >= b_ahead) sum = out_.fma(b, load(at(x, (t - b_ahead) * row_bytes_)), sum);
+    save(sum, place);
+  }
 }
 
 }  // namespace maupertuis::llvm_backend

@@ -24,6 +24,7 @@ void RolledEmitter::run(bool long_run) {
   tangents();
   solution();
   correction();
+  if (long_run) later();
 }
 
 // -------------------------------------------------------------------------------------------------------- convolutions
@@ -37,6 +38,7 @@ void RolledEmitter::find_convolutions() {
     }
   }
   sums_of_.resize(convolutions_.size());
+  phase_.resize(convolutions_.size(), 0);
   std::size_t place = 0;  // sums of one class lie side by side
   for (const auto& [key, members] : classes_)
     for (const std::size_t i : members) sums_of_[i] = place++;
@@ -48,12 +50,12 @@ Value* RolledEmitter::field(std::size_t offset) {
   return out_.b.CreateLoad(out_.pointer(), at(arguments_, static_cast<std::int64_t>(offset)));
 }
 
-void RolledEmitter::open(const char* name, llvm::Type* second) {
+void RolledEmitter::open(const char* name, const std::vector<llvm::Type*>& others, llvm::Type* result) {
   std::vector<llvm::Type*> parameters{out_.pointer()};
-  if (second) parameters.push_back(second);
-  llvm::Function* const function = out_.function(name, parameters);
+  parameters.insert(parameters.end(), others.begin(), others.end());
+  llvm::Function* const function = out_.function(name, parameters, true, result);
   arguments_ = function->getArg(0);
-  recent_.clear();
+  recent_.clear(), final_.clear(), kept_.clear();
   passing_row_ = nullptr;
   rows_ = field(offsetof(packed::CompiledArguments, rows));
   coefficients_ = field(offsetof(packed::CompiledArguments, coefficients));
@@ -61,8 +63,12 @@ void RolledEmitter::open(const char* name, llvm::Type* second) {
 }
 
 void RolledEmitter::open_stage(const char* name) {
-  open(name, out_.integer());
-  stage_ = out_.b.GetInsertBlock()->getParent()->getArg(1);
+  open(name, {out_.integer()});
+  set_stage(out_.b.GetInsertBlock()->getParent()->getArg(1));
+}
+
+void RolledEmitter::set_stage(Value* stage) {
+  stage_ = stage;
   rows_of_stage_.clear();
   for (int k = 0; k <= -program_.first_stage; ++k) rows_of_stage_.push_back(row_of(stage_plus(k)));
 }
@@ -75,12 +81,24 @@ void RolledEmitter::stage() {
   auto& b = out_.b;
   open_stage("stage");
   Value* const position = b.CreateAnd(b.CreateSub(stage_, b.getInt64(1)), b.getInt64(rolled_group - 1));
-  sums_of_stage_ = out_.at(sums_, b.CreateShl(position, 6));
+  sums_of_stage_.fill(out_.at(sums_, b.CreateShl(position, 6)));
+  run_packs();
+  out_.end_function();
+}
+
+void RolledEmitter::run_packs() {
   // q_{k+2} counts as 0 also where it is read with other numbers, or by what is called back.
   for (Slot slot = 0; slot < program_.unknowns; slot += lanes) save(llvm::Constant::getNullValue(vector_), slot_at(row(2), slot));
+  recent_.clear();
   passing_row_ = field(offsetof(packed::CompiledArguments, passing_row));
-  for (std::size_t i = 0; i < p_.packs.size(); ++i) pack(i);
-  out_.end_function();
+  for (std::size_t i = 0; i < p_.packs.size(); ++i) {
+    if (deferred_) correct_up_to(read_of_stage_before(i));
+    pack(i);
+    if (filling_) filling_->read = i + 1 < p_.packs.size() ? first_convolution_[i + 1] : convolutions_.size();
+    if (deferred_) correct_before(deferred_->packs.size() * (i + 1) / p_.packs.size());
+    gap();
+  }
+  passing_row_ = nullptr;
 }
 
 }  // namespace maupertuis::llvm_backend

@@ -1,5 +1,6 @@
 #pragma once
 #include "kernel/llvm/emission.hpp"
+#include "kernel/packed/compiled.hpp"
 #include "kernel/packed/convolutions.hpp"
 
 #include <array>
@@ -46,9 +47,11 @@ class RolledEmitter {
   // -------------------------------------------------------------------------------------------- stages (rolled_emitter.cpp)
   void find_convolutions();
   Value* field(std::size_t offset);                 // of the arguments, an address
-  void open(const char* name, llvm::Type* second);  // a function of CompiledArguments* and, unless it is null, one more
+  void open(const char* name, const std::vector<llvm::Type*>& others, llvm::Type* result = nullptr);  // a function of CompiledArguments* and these
   void open_stage(const char* name);                // … the stage
+  void set_stage(Value* stage);
   void stage();
+  void run_packs();
   Value* row(int ahead) { return rows_of_stage_[static_cast<std::size_t>(ahead)]; }  // of order stage + ahead
   int ahead_of(const Pack& pack) const { return 2 - pack.lag; }
   /// Coordinates of the order that is to be found count as 0.
@@ -68,9 +71,11 @@ class RolledEmitter {
   void keep(const Pack& pack, Value* value, Value* row);
   Value* columns(const Pack& pack);
   Value* column_values(const Column& column, Value* row, bool is_here);
+  Value* splat_of(Slot slot, Value* row, bool is_here);
   Value* in_register(Slot first) const;
   Value* values_of(const Block& block, Value* row);
   Value* coefficients(std::uint32_t first) { return load(at(coefficients_, 8 * std::int64_t{first})); }
+  Value* plus_scaled(Value* sum, std::uint32_t coefficients, Value* x);
   Value* running_sum(Value* v, bool down);
   Value* carried(const Pack& pack, Value* sum, Value* row);
   void strand(const Pack& pack, Value* columns);
@@ -96,8 +101,9 @@ class RolledEmitter {
 
   // ----------------------------------------------------------------------------------------- solution (rolled_solution.cpp)
   void solution();
+  void solve_by(Value* inverse, Value* tangent_row);
   void correction();
-  std::vector<Value*> product_with_inverse();
+  std::vector<Value*> product_with_inverse(Value* inverse);
   Value* over_divisor(Value* x);
   void correct_copies(Value* tangents);
   void set_correction_factors(int sign);
@@ -113,13 +119,50 @@ class RolledEmitter {
   void renew(const Block& block);
   void each_convolution(const std::function<void(const Class&, Value* a, Value* b, Value* sums)>& body,
                         const std::function<bool(const Class&)>& takes_part = [](const Class&) { return true; });
+  void loop_over(const Class& key, const std::vector<std::size_t>& members, Value* first, Value* end,
+                 const std::function<void(const Class&, Value* a, Value* b, Value* sums)>& body);
   llvm::GlobalVariable* offsets(const std::vector<std::size_t>& members);
+  llvm::GlobalVariable* table(const std::vector<std::uint32_t>& values);
   void add_up_alone(int stage);
   static bool adds_late(const Class& c);
   Value* late_terms(const packed::Convolution& c, Value* sum);
   void begin_group();
-  void interior(const Class& c, Value* a, Value* b, Value* sums);
-  void pass_on(int position);
+  /// Of the stages s + 1 … s + 4, where s has that phase; `left_out`: 1 where stage s itself is not final yet.
+  struct Group {
+    int left_out, phase;
+  };
+  void add_up_group(const Class& c, const Group& group, Value* a, Value* b, Value* sums);
+  void pass_on(int passed);
+  void pass_on(const Class& c, int passed, int behind, Value* a, Value* b, Value* sums);
+  /// The distance from which on a stage does not add what it reads itself.
+  static int nearest(const Class& c) { return adds_late(c) ? 2 : 1; }
+
+  // ----------------------------------------------------------------------------------------------- later (rolled_later.cpp)
+  bool has_later() const;
+  void later();
+  void later_stage(Value* stage, Value* end, Value* inverse);
+  void begin_without_corrections();
+  void set_stage_before(Value* stage);
+  void choose_deferred();
+  std::vector<std::size_t> vectors_of(const Block& block) const;
+  std::size_t turn_of(const Block& block) const;
+  std::vector<std::size_t> read_of_stage_before(std::size_t pack) const;
+  void correct_now(Value* tangent_row);
+  void correct_pack(std::size_t pack, Value* tangent_row);
+  void correct_before(std::size_t count);
+  void correct_up_to(const std::vector<std::size_t>& vectors);
+  void switch_to_stage_before();
+  std::vector<Slot> kept_slots() const;
+  bool is_found_now(Slot first) const;
+
+  // ------------------------------------------------------------------------------------------- filling (rolled_filling.cpp)
+  void choose_slots();
+  void gap();
+  void fill_next();
+  void each_of(const Class& key, const std::vector<std::size_t>& members, const std::function<void(const Class&, Value* a, Value* b, Value* sums)>& body);
+  void add_up_first();
+  Value* sum_of_next(const Class& c, Value* a, Value* b);
+  Class class_of(const packed::Convolution& c) const;
 
   // ----------------------------------------------------------------------------------------------------------------- values
   Value* load(Value* address) { return out_.b.CreateAlignedLoad(vector_, address, llvm::Align(8)); }
@@ -147,11 +190,13 @@ class RolledEmitter {
   std::vector<std::size_t> sums_of_;   // [convolutions] places
   std::vector<std::size_t> first_convolution_;  // [packs]
   std::map<Class, std::vector<std::size_t>> classes_;
+  std::vector<std::size_t> phase_;     // [convolutions] of `later`; else 0
 
   Value *arguments_ = nullptr, *rows_ = nullptr, *coefficients_ = nullptr, *sums_ = nullptr, *stage_ = nullptr;
   std::optional<int> written_;          // the stage, if it is known when the code is made
   std::vector<Value*> rows_of_stage_;   // from its own on, as many as functions of t alone are ahead
-  Value *sums_of_stage_ = nullptr, *divisor_ = nullptr, *reciprocal_ = nullptr, *lack_ = nullptr;  // (k + 1)(k + 2), 1 over it, and what rounding took from that
+  std::array<Value*, packed::rolled_group> sums_of_stage_{};  // by phase
+  Value *divisor_ = nullptr, *reciprocal_ = nullptr, *lack_ = nullptr;  // (k + 1)(k + 2), 1 over it, and what rounding took from that
   std::array<Value*, 3> correction_factors_{};  // by lag
   /// The last running sum: that of its own lanes, and what these add to (null: nothing).
   struct Scan {
@@ -161,6 +206,8 @@ class RolledEmitter {
   };
 
   std::map<Slot, Recent> recent_;      // by first slot
+  std::map<Slot, Value*> final_;       // what a solution has corrected, by first slot or cell
+  std::map<Slot, Value*> kept_;        // the same of the stage before, if it is still in registers
   Scan scan_{no_slot, 0, nullptr, nullptr};
   std::vector<bool> passing_;          // [slots / 8] vectors that are read in the stage that makes them alone
   Value* passing_row_ = nullptr;       // where these stand; null where the rows are not those of orders
@@ -170,6 +217,34 @@ class RolledEmitter {
   };
   std::vector<Strand> strands_;        // of a running sum in eight parts, in its order, before it is ended
   std::size_t time_ = 0;
+  /// Of `later`: where sums for later stages stand.
+  struct Filling {
+    std::vector<std::map<Class, std::vector<std::size_t>>> slots;  // convolutions
+    std::vector<std::size_t> last, turn;  // [slots] the last convolution; deferred corrections that come before
+    std::size_t gaps = 0, passed = 0, next = 0;  // places between packs, those behind us; the next slot
+    std::size_t read = 0;                 // convolutions whose sums the stage has read
+  };
+  std::optional<Filling> filling_;
+  Value* has_next_ = nullptr;             // whether another stage follows
+  /// Of `later`: corrections of the stage before that stand between the packs of a stage, and with what they are written.
+  struct Deferred {
+    std::vector<bool> now;                // [packs] whose tangents a stage finds at its end
+    std::vector<std::size_t> packs;       // the others, in order
+    std::vector<std::size_t> turn_of;     // [vectors] how many of them have to be there before it is final
+    std::vector<int> lag;                 // [vectors] as corrected_lags()
+    std::size_t done = 0;
+    Value* tangent_row = nullptr;
+
+    Value* stage = nullptr;
+    std::vector<Value*> rows_of_stage;
+    std::array<Value*, 3> correction_factors{};
+    std::map<Slot, Recent> recent;
+    Scan scan{no_slot, 0, nullptr, nullptr};
+    std::vector<Strand> strands;
+    Value* passing_row = nullptr;
+    std::size_t time = 0;
+  };
+  std::optional<Deferred> deferred_;
 };
 
 }  // namespace maupertuis::llvm_backend

@@ -14,7 +14,7 @@ using llvm::Value;
 using packed::lanes;
 
 void RolledEmitter::first_stages() {
-  open("first", nullptr);
+  open("first", {});
   passing_row_ = field(offsetof(packed::CompiledArguments, passing_row));
   for (int stage = program_.first_stage; stage <= 0; ++stage) {
     written_ = stage;

@@ -74,7 +74,7 @@ Value* RolledEmitter::columns(const Pack& pack) {
     const bool single = column.kind == Column::Broadcast;
     if (single ? is_nothing(column.source) : std::all_of(column.sources.begin(), column.sources.end(), is_nothing)) continue;
     Value*& sum = sums[column.shift];
-    sum = plus(sum, coefficients(column.coefficients), column_values(column, row(ahead), 2 - program_.lags[column.source] == ahead));
+    sum = plus_scaled(sum, column.coefficients, column_values(column, row(ahead), 2 - program_.lags[column.source] == ahead));
   }
   Value* const next = sums[1] || sums[2] ? real(stage_plus(ahead_of(pack) + 1)) : nullptr;
   if (sums[2]) sums[1] = plus(sums[1], real(stage_plus(ahead_of(pack) + 2)), sums[2]);
@@ -82,15 +82,35 @@ Value* RolledEmitter::columns(const Pack& pack) {
   return sums[0];
 }
 
+/// sum + x times coefficients, which are multiplied by only where they are not all 1, or all −1, whatever the parameters are. A null sum is zero.
+Value* RolledEmitter::plus_scaled(Value* sum, std::uint32_t first, Value* x) {
+  const auto are_all = [&](double value) {
+    const auto begin = p_.coefficients.begin() + first;
+    return std::all_of(begin, begin + lanes, [&](ConstantId id) {
+      return program_.constants[id].kind == Kind::Number && program_.constants[id].value == value;
+    });
+  };
+  if (are_all(1)) return sum ? out_.add(sum, x) : x;
+  if (are_all(-1)) return sum ? out_.subtract(sum, x) : out_.negate(x);
+  return plus(sum, coefficients(first), x);
+}
+
 /// `is_here`: the row is the one that the packs of now write to.
 Value* RolledEmitter::column_values(const Column& column, Value* row, bool is_here) {
-  if (column.kind == Column::Broadcast) return splat(load_one(place(row, column.source)));
+  if (column.kind == Column::Broadcast) return splat_of(column.source, row, is_here);
   if (column.kind == Column::Gather) return gather(row, column.sources, is_here);
   const bool reversed = column.kind == Column::Reversed;
   const Slot lowest = reversed ? column.source - (lanes - 1) : column.source;
   Value* const here = is_here ? in_register(lowest) : nullptr;
   Value* const values = here ? here : load(place(row, lowest));
   return reversed ? out_.b.CreateShuffleVector(values, {7, 6, 5, 4, 3, 2, 1, 0}) : values;
+}
+
+/// One number in all lanes. A shuffle is shorter than the way through memory.
+Value* RolledEmitter::splat_of(Slot slot, Value* row, bool is_here) {
+  const Slot lane = slot % lanes;
+  Value* const here = is_here ? in_register(slot - lane) : nullptr;
+  return here ? out_.b.CreateShuffleVector(here, std::vector<int>(lanes, static_cast<int>(lane))) : splat(load_one(place(row, slot)));
 }
 
 /// What the packs before have left, if it is still in a register.
@@ -124,16 +144,15 @@ Value* RolledEmitter::gather(Value* row, const std::array<Slot, lanes>& slots, b
 /// Each lane with all lanes before it, or after it: in pairs, fours and eights the second half adds the last sum of the first.
 Value* RolledEmitter::running_sum(Value* v, bool down) {
   if (!v) return llvm::Constant::getNullValue(vector_);
+  constexpr int nothing = static_cast<int>(lanes);  // a lane of zeros
   for (int half = 1; half < static_cast<int>(lanes); half *= 2) {
     std::vector<int> places;
-    std::vector<llvm::Constant*> adds;
     for (int lane = 0; lane < static_cast<int>(lanes); ++lane) {
       const int begin = lane / (2 * half) * 2 * half;
-      places.push_back(begin + (down ? half : half - 1));
-      adds.push_back(out_.b.getInt1((lane - begin < half) == down));
+      const bool adds = (lane - begin < half) == down;
+      places.push_back(!adds ? nothing + lane : begin + (down ? half : half - 1));
     }
-    Value* const sum = out_.add(v, out_.b.CreateShuffleVector(v, places));
-    v = out_.b.CreateSelect(llvm::ConstantVector::get(adds), sum, v);
+    v = out_.add(v, out_.b.CreateShuffleVector(v, llvm::Constant::getNullValue(vector_), places));
   }
   return v;
 }
@@ -189,7 +208,7 @@ Value* RolledEmitter::products(std::size_t index, Value* result) {
   const Pack& pack = p_.packs[index];
   for (std::uint32_t i = pack.first_product; i < pack.last_product; ++i) {
     Value* const sum = convolution(first_convolution_[index] + i - pack.first_product, true, true);
-    result = plus(result, coefficients(p_.products[i].coefficients), sum);
+    result = plus_scaled(result, p_.products[i].coefficients, sum);
   }
   return result ? result : llvm::Constant::getNullValue(vector_);
 }
@@ -201,7 +220,7 @@ Value* RolledEmitter::convolution(std::size_t number, bool a_ends, bool b_ends) 
     Value* const sum = short_convolution(c, a_ends, b_ends);
     return sum ? sum : llvm::Constant::getNullValue(vector_);
   }
-  Value* sum = load(at(sums_of_stage_, static_cast<std::int64_t>(sums_of_[number] * packed::rolled_group * 8 * lanes)));
+  Value* sum = load(at(sums_of_stage_[phase_[number]], static_cast<std::int64_t>(sums_of_[number] * packed::rolled_group * 8 * lanes)));
   sum = late_terms(c, sum);
   if (a_ends) sum = end(c.a, c.b, c.lag, sum);
   if (b_ends) sum = end(c.b, c.a, c.lag, sum);
@@ -222,7 +241,7 @@ bool RolledEmitter::vanishes(const Block& block, int ahead) const {
 Value* RolledEmitter::newest(std::uint32_t index, int ahead) {
   const Block& block = p_.blocks[index];
   Value* values = block.direct || block.is_range ? in_register(block.slots[0]) : nullptr;
-  if (!values) values = values_of(block, row(ahead));
+  if (!values) values = block.direct || block.is_range ? values_of(block, row(ahead)) : gather(row(ahead), block.slots, true);
   return block.weighted ? out_.multiply(values, real(stage_plus(ahead))) : values;
 }
 
@@ -236,7 +255,7 @@ Value* RolledEmitter::values_of(const Block& block, Value* row) {
 void RolledEmitter::integral(std::size_t index) {
   const Pack& pack = p_.packs[index];
   if (written_ && *written_ + ahead_of(pack) == 0) return functions(pack);
-  Value* const sum = out_.multiply(coefficients(pack.coefficients), convolution(first_convolution_[index], true, false));
+  Value* const sum = plus_scaled(nullptr, pack.coefficients, convolution(first_convolution_[index], true, false));
   llvm::Type* const scalar = out_.b.getDoubleTy();
   Value* const k = out_.b.CreateSIToFP(stage_plus(ahead_of(pack)), scalar);
   if (!out_.features.fma) return keep(pack, out_.divide(sum, splat(k)));

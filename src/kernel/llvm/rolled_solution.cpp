@@ -15,29 +15,35 @@ using packed::lanes;
 void RolledEmitter::solution() {
   if (program_.unknowns != program_.freedoms || program_.unknowns > packed::most_by_inverse) return;
   open_stage("solve");
-  Value* const tangent_row = field(offsetof(packed::CompiledArguments, tangent_row));
-  set_correction_factors(1);
-  const std::vector<Value*> accelerations = product_with_inverse();
-  ++time_;
-  for (std::size_t v = 0; v < accelerations.size(); ++v) {
-    const auto slot = static_cast<Slot>(v * lanes);
-    save(over_divisor(accelerations[v]), slot_at(row(2), slot));
-    save(accelerations[v], slot_at(tangent_row, slot));
-    recent_[slot] = {accelerations[v], time_};
-  }
-  correct(tangent_row);
+  solve_by(field(offsetof(packed::CompiledArguments, inverse)), field(offsetof(packed::CompiledArguments, tangent_row)));
   out_.end_function();
 }
 
+void RolledEmitter::solve_by(Value* inverse, Value* tangent_row) {
+  set_correction_factors(1);
+  const std::vector<Value*> accelerations = product_with_inverse(inverse);
+  recent_.clear(), final_.clear();
+  ++time_;
+  for (std::size_t v = 0; v < accelerations.size(); ++v) {
+    const auto slot = static_cast<Slot>(v * lanes);
+    final_[slot] = over_divisor(accelerations[v]);
+    save(final_[slot], slot_at(row(2), slot));
+    save(accelerations[v], slot_at(tangent_row, slot));
+    recent_[slot] = {accelerations[v], time_};
+  }
+  gap();
+  if (deferred_) correct_now(tangent_row);
+  else correct(tangent_row);
+}
+
 /// −M₀⁻¹ R_k, a vector in several sums, since products of one wait for each other.
-std::vector<Value*> RolledEmitter::product_with_inverse() {
+std::vector<Value*> RolledEmitter::product_with_inverse(Value* inverse) {
   constexpr std::size_t most_sums = 16;  // in registers
-  Value* const inverse = field(offsetof(packed::CompiledArguments, inverse));
   const std::size_t vectors = packed::padded(program_.unknowns) / lanes;
   const std::size_t chains = std::clamp<std::size_t>(most_sums / vectors, 2, 4);
   std::vector<std::vector<Value*>> sums(vectors, std::vector<Value*>(chains, nullptr));
   for (std::size_t d = 0; d < program_.unknowns; ++d) {
-    Value* const residual = splat(load_one(slot_at(row(0), program_.residual[d])));
+    Value* const residual = splat_of(program_.residual[d], row(0), true);
     for (std::size_t v = 0; v < vectors; ++v) {
       Value*& sum = sums[v][d % chains];
       sum = plus(sum, residual, load(slot_at(inverse, static_cast<Slot>((d * vectors + v) * lanes))));
@@ -109,7 +115,8 @@ void RolledEmitter::correct(Value* tangent_row) {
 
 void RolledEmitter::correct(Slot slot, int lag, Value* tangent) {
   Value* const place = slot_at(row(2 - lag), slot);
-  save(out_.fma(correction_factors_[static_cast<std::size_t>(lag)], tangent, load(place)), place);
+  final_[slot] = out_.fma(correction_factors_[static_cast<std::size_t>(lag)], tangent, load(place));
+  save(final_[slot], place);
 }
 
 /// By eights of slots: the lag of those whose coefficients are corrected, else −1.

@@ -10,7 +10,7 @@ namespace maupertuis::llvm_backend {
 using llvm::Value;
 
 void RolledEmitter::tangents() {
-  open("tangents", out_.pointer());
+  open("tangents", {out_.pointer()});
   Value* const row = out_.b.GetInsertBlock()->getParent()->getArg(1);
   for (const Pack& pack : p_.packs) {
     ++time_;
@@ -29,7 +29,7 @@ void RolledEmitter::tangent(const Pack& pack, Value* row) {
     case Pack::Join: return join(pack, false, row);
     case Pack::JoinDown: return join(pack, true, row);
     case Pack::Integral: {
-      Value* const factor = out_.multiply(coefficients(pack.coefficients), at_point(pack.b));
+      Value* const factor = plus_scaled(nullptr, pack.coefficients, at_point(pack.b));
       Value* const u = change(pack, pack.a, row);
       return keep(pack, u ? out_.multiply(factor, u) : llvm::Constant::getNullValue(vector_), row);
     }
@@ -56,7 +56,7 @@ Value* RolledEmitter::tangent_columns(const Pack& pack, Value* row) {
   Value* result = nullptr;
   for (std::uint32_t c = pack.first_column; c < pack.last_column; ++c)
     if (const Column& column = p_.columns[c]; column.passes_tangent)
-      result = plus(result, coefficients(column.coefficients), column_values(column, row, true));
+      result = plus_scaled(result, column.coefficients, column_values(column, row, true));
   return result;
 }
 
@@ -66,7 +66,7 @@ Value* RolledEmitter::tangent_products(const Pack& pack, Value* row, Value* resu
     Value *const a = change(pack, term.a, row), *const d = change(pack, term.b, row);
     Value* sum = a ? out_.multiply(a, at_point(term.b)) : nullptr;
     if (d) sum = plus(sum, at_point(term.a), d);
-    if (sum) result = plus(result, coefficients(term.coefficients), sum);
+    if (sum) result = plus_scaled(result, term.coefficients, sum);
   }
   return result ? result : llvm::Constant::getNullValue(vector_);
 }

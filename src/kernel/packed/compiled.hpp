@@ -49,6 +49,10 @@ using CompiledFirst = void (*)(const CompiledArguments*);
 ///   ahead    ≥ 0, after the others, in turn; as Engine::renew_blocks, but for what `correct` has renewed, and sums for the stages that follow
 using CompiledStage = void (*)(const CompiledArguments*, std::int64_t stage);
 
+/// Rolled code of long runs, `later`: `stage`, `solve` and `ahead` for all stages from 1 on, `end` of them with stage 0. 1: q̈ is finite
+/// in all of them; else 0.
+using CompiledLater = std::int64_t (*)(const CompiledArguments*, std::int64_t end);
+
 /// Rolled code: as Engine::tangents.
 using CompiledTangents = void (*)(const CompiledArguments*, double* tangent);
 

@@ -75,8 +75,8 @@ double difference(const KernelWorkspace& found, const KernelWorkspace& expected,
   return worst / size / (0x1p-52 * (k + 1));
 }
 
-KernelWorkspace rolled_workspace(const Kernel& kernel, bool long_run = false, const std::string& processor = {}) {
-  return compiled_workspace(kernel, rolled_order, long_run, processor);
+KernelWorkspace rolled_workspace(const Kernel& kernel, bool long_run = false, const std::string& processor = {}, int orders = rolled_order) {
+  return compiled_workspace(kernel, orders, long_run, processor);
 }
 
 /// Oscillators beside it, so that it is too large to be written out stage by stage.
@@ -89,21 +89,22 @@ void make_larger(System& s, int oscillators) {
 }
 
 /// `tolerance`: in units of rounding errors, which the solution magnifies.
-void check_rolled(const System& s, double tolerance, bool long_run = false, const std::string& processor = {}) {
+void check_rolled(const System& s, double tolerance, bool long_run = false, const std::string& processor = {}, int orders = rolled_order) {
   CAPTURE(s.name);
+  CAPTURE(orders);
   const Kernel kernel = build_kernel(s.source);
-  KernelWorkspace rolled = rolled_workspace(kernel, long_run, processor), engine(kernel, rolled_order);
+  KernelWorkspace rolled = rolled_workspace(kernel, long_run, processor, orders), engine(kernel, orders);
   const std::size_t unknowns = kernel.freedoms() + kernel.constraints();
   for (const Motion& m : s.source.constraints.empty() ? motions_near(s.start, 3) : std::vector<Motion>{s.start, s.start}) {
     rolled.set_parameters(m.parameters), engine.set_parameters(m.parameters);
     REQUIRE(engine.expand(m.t, m.q, m.v) == KernelStatus::Ok);
     CHECK(rolled.expand(m.t, m.q, m.v) == KernelStatus::Ok);
-    for (int k = 0; k <= rolled_order + 1; ++k) {
+    for (int k = 0; k <= orders + 1; ++k) {
       CAPTURE(k);
       CHECK(difference(rolled, engine, unknowns, k) <= tolerance);
     }
     for (std::size_t i = 0; i < s.source.integrands.size(); ++i)
-      for (int k = 0; k < rolled_order; ++k)
+      for (int k = 0; k < orders; ++k)
         CHECK(rolled.integrand(i, k) == doctest::Approx(engine.integrand(i, k)).epsilon(1e-9).scale(1e-9));
   }
 }
@@ -129,6 +130,23 @@ TEST_CASE("rolled code: every instruction, in systems too large to be written ou
       if (oscillators > 9) check_rolled(*s, tolerance, true);
     }
   }
+}
+
+TEST_CASE("rolled code: all stages in one loop, where nothing is asked for besides coordinates") {
+  Systems list;
+  for (const int links : {17, 24, 33, 48}) add_chain(list, links);
+  for (const int links : {18, 31}) add_damped_chain(list, links);
+  for (const int count : {17, 40}) add_velocity_quotients(list, count);
+  for (unsigned seed = 11; seed <= 16; ++seed) {
+    make_random(add(list, "random " + std::to_string(seed)), seed);
+    make_larger(*list.back(), 17);
+  }
+  for (const auto& s : list) {
+    s->source.integrands.clear(), s->source.events.clear(), s->source.observables.clear();
+    check_rolled(*s, 1000, true);
+  }
+  for (const int orders : {1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 13}) check_rolled(*list[1], 1000, true, {}, orders), check_rolled(*list[4], 1000, true, {}, orders);
+  for (const char* processor : {"x86-64", "x86-64-v3"}) check_rolled(*list[1], 1000, true, processor), check_rolled(*list[6], 1000, true, processor);
 }
 
 TEST_CASE("rolled code: M that becomes unsymmetric with a parameter, at a state of no forces") {
