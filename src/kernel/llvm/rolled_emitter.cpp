@@ -14,7 +14,7 @@ RolledEmitter::RolledEmitter(Emission& out, const packed::PackedProgram& program
     : out_(out), p_(program), program_(program.program), row_bytes_(8 * static_cast<std::int64_t>(stride)),
       vector_(out.real(static_cast<int>(lanes))) {
   find_convolutions();
-  find_passing();
+  find_passing(false);
 }
 
 void RolledEmitter::run(bool long_run) {
@@ -98,7 +98,6 @@ void RolledEmitter::run_packs() {
     if (deferred_) correct_before(deferred_->packs.size() * (i + 1) / p_.packs.size());
     gap();
   }
-  passing_row_ = nullptr;
 }
 
 }  // namespace maupertuis::llvm_backend

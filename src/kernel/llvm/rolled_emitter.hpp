@@ -66,7 +66,7 @@ class RolledEmitter {
   // ----------------------------------------------------------------------------------------------- packs (rolled_packs.cpp)
   static constexpr std::size_t longest_memory = 6;  // packs for which a value stays in a register; then it is read from its row
   void pack(std::size_t index);
-  void find_passing();
+  void find_passing(bool residual_too);
   void keep(const Pack& pack, Value* value);
   void keep(const Pack& pack, Value* value, Value* row);
   Value* columns(const Pack& pack);

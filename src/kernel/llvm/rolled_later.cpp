@@ -25,6 +25,7 @@ void RolledEmitter::later() {
   if (!has_later()) return;
   auto& b = out_.b;
   choose_slots();
+  find_passing(true);
   open("later", {out_.integer()}, out_.integer());
   Value* const end = b.GetInsertBlock()->getParent()->getArg(1);
   choose_deferred();
@@ -56,6 +57,7 @@ void RolledEmitter::later() {
   correct_before(d.packs.size());
   deferred_.reset(), filling_.reset();
   std::fill(phase_.begin(), phase_.end(), 0);
+  find_passing(false);
   Value* const is_finite = b.CreateAndReduce(b.CreateFCmpOEQ(last.back(), last.back()));
   b.CreateRet(b.CreateZExt(is_finite, out_.integer()));
 }

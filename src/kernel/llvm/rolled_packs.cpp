@@ -38,7 +38,8 @@ void RolledEmitter::keep(const Pack& pack, Value* value, Value* row) {
 
 /// Vectors that are read in the stage that made them and never again: they need not stand in a row of their order, each of which would have to be brought
 /// from the second cache to be written to.
-void RolledEmitter::find_passing() {
+/// `residual_too`: the solution that follows reads it there.
+void RolledEmitter::find_passing(bool residual_too) {
   passing_.assign(p_.cells / lanes + 1, false);
   const auto is_scalar = [](const Pack& pack) { return pack.kind == Pack::Scalar; };
   if (program_.unknowns != program_.freedoms || std::any_of(p_.packs.begin(), p_.packs.end(), is_scalar)) return;
@@ -49,7 +50,7 @@ void RolledEmitter::find_passing() {
     const bool is_sum = pack.kind == Pack::Sum || pack.kind == Pack::Scan || pack.kind == Pack::ScanDown || pack.kind == Pack::Strand;
     if (is_sum && pack.out >= program_.stored_end[2] && program_.tangent_lags[pack.out + pack.width - 1] != Program::unmoved) set(pack, true);
   }
-  for (const Slot slot : program_.residual) passing_[slot / lanes] = false;
+  for (const Slot slot : program_.residual) passing_[slot / lanes] = passing_[slot / lanes] && residual_too;
   // What is read across two vectors stands beside each other.
   for (bool changed = true; std::exchange(changed, false);)
     for (const Column& column : p_.columns) {

@@ -23,6 +23,7 @@ void RolledEmitter::solve_by(Value* inverse, Value* tangent_row) {
   set_correction_factors(1);
   const std::vector<Value*> accelerations = product_with_inverse(inverse);
   recent_.clear(), final_.clear();
+  passing_row_ = nullptr;
   ++time_;
   for (std::size_t v = 0; v < accelerations.size(); ++v) {
     const auto slot = static_cast<Slot>(v * lanes);
