@@ -240,7 +240,6 @@ class RolledEmitter {
     std::array<Value*, 3> correction_factors{};
     std::map<Slot, Recent> recent;
     Scan scan{no_slot, 0, nullptr, nullptr};
-    std::vector<Strand> strands;
     Value* passing_row = nullptr;
     std::size_t time = 0;
   };

@@ -14,10 +14,11 @@ using llvm::Value;
 using packed::lanes;
 using packed::rolled_group;
 
-/// Not where a stage cannot add late terms itself, and not where instructions are called back, of which it is not known what they read.
+/// Not where a stage cannot add late terms itself, and not where instructions are called back, of which it is not known what they read. (Strands belong to
+/// solutions in parts.)
 bool RolledEmitter::has_later() const {
-  return program_.unknowns == program_.freedoms && program_.unknowns <= packed::most_by_inverse &&
-         std::none_of(p_.packs.begin(), p_.packs.end(), [](const Pack& pack) { return pack.kind == Pack::Scalar; }) &&
+  const auto stands_apart = [](const Pack& pack) { return pack.kind == Pack::Scalar || pack.kind == Pack::Strand; };
+  return program_.unknowns == program_.freedoms && program_.unknowns <= packed::most_by_inverse && std::none_of(p_.packs.begin(), p_.packs.end(), stands_apart) &&
          std::all_of(classes_.begin(), classes_.end(), [](const auto& c) { return adds_late(c.first); });
 }
 
@@ -87,7 +88,7 @@ void RolledEmitter::begin_without_corrections() {
   const auto clear = [&](Slot slot) { save(llvm::Constant::getNullValue(vector_), slot_at(deferred_->tangent_row, slot)); };
   for (Slot slot = 0; slot < program_.unknowns; slot += lanes) clear(slot);
   for (std::size_t i = 0; i < p_.packs.size(); ++i)
-    for (std::uint32_t k = 0; deferred_->now[i] && k < std::max(p_.packs[i].strands, 1u); ++k) clear(p_.packs[i].out + k * lanes);
+    if (deferred_->now[i]) clear(p_.packs[i].out);
 }
 
 void RolledEmitter::set_stage_before(Value* stage) {
@@ -112,11 +113,8 @@ void RolledEmitter::choose_deferred() {
   d.turn_of.assign(d.lag.size(), 0);
   for (std::size_t i = 0; i < p_.packs.size(); ++i) {
     if (!needed[i] || d.now[i]) continue;
-    const Pack& pack = p_.packs[i];
     d.packs.push_back(i);
-    if (pack.kind == Pack::Strand) continue;  // they are there after the join
-    for (std::size_t v = pack.out / lanes; v < pack.out / lanes + std::max(pack.strands, 1u); ++v)
-      if (d.lag[v] >= 0) d.turn_of[v] = d.packs.size();
+    if (const std::size_t v = p_.packs[i].out / lanes; d.lag[v] >= 0) d.turn_of[v] = d.packs.size();
   }
   deferred_ = std::move(d);
   filling_->gaps = p_.packs.size() + 2 + static_cast<std::size_t>(std::count(deferred_->now.begin(), deferred_->now.end(), true));
@@ -149,8 +147,7 @@ std::vector<Slot> RolledEmitter::kept_slots() const {
 /// Whether a vector is corrected at the end of a stage.
 bool RolledEmitter::is_found_now(Slot first) const {
   for (std::size_t i = 0; i < p_.packs.size(); ++i)
-    if (const Pack& pack = p_.packs[i]; deferred_->now[i] && pack.out <= first && first < pack.out + std::max(pack.strands, 1u) * lanes)
-      return deferred_->lag[first / lanes] >= 0;
+    if (deferred_->now[i] && p_.packs[i].out == first) return deferred_->lag[first / lanes] >= 0;
   return false;
 }
 
@@ -201,9 +198,7 @@ void RolledEmitter::correct_pack(std::size_t index, Value* tangent_row) {
   const Pack& pack = p_.packs[index];
   ++time_;
   tangent(pack, tangent_row);
-  if (pack.kind == Pack::Strand) return;
-  for (Slot out = pack.out; out < pack.out + std::max(pack.strands, 1u) * lanes; out += lanes)
-    if (const int lag = deferred_->lag[out / lanes]; lag >= 0) correct(out, lag, in_register(out));
+  if (const int lag = deferred_->lag[pack.out / lanes]; lag >= 0) correct(pack.out, lag, in_register(pack.out));
 }
 
 /// Until `count` of them are there.
@@ -229,7 +224,7 @@ void RolledEmitter::correct_up_to(const std::vector<std::size_t>& vectors) {
 void RolledEmitter::switch_to_stage_before() {
   Deferred& d = *deferred_;
   std::swap(stage_, d.stage), std::swap(rows_of_stage_, d.rows_of_stage), std::swap(correction_factors_, d.correction_factors);
-  std::swap(recent_, d.recent), std::swap(scan_, d.scan), std::swap(strands_, d.strands);
+  std::swap(recent_, d.recent), std::swap(scan_, d.scan);
   std::swap(passing_row_, d.passing_row), std::swap(time_, d.time);
 }
 
