@@ -164,7 +164,7 @@ bool LiftedSolve::negative_inverse(double* inverse) {
     const double* const right = units.data();
     code_(columns_line_ + eight, solver_->factors(), solver_->inverse_pivots(), right, inverse + eight * lanes, scratch_.data());
     for (const std::size_t other : mirrored_[eight])
-      packed::engine().transpose(inverse + other * lanes * padded + eight * lanes, inverse + eight * lanes * padded + other * lanes, padded);
+      packed::engine().transpose(inverse + other * lanes * padded + eight * lanes, padded, inverse + eight * lanes * padded + other * lanes, padded);
   }
   return true;
 }

@@ -86,11 +86,7 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   if (const auto status = factor(); status != KernelStatus::Ok) return status;
   later = stages > 1 ? choose_later_stages() : LaterStages::StepByStep;
   for (int stage = 0; stage < stages; ++stage) {
-    if (stage > 0 && runs_on()) {
-      if (compiled.later) return compiled.later(&arguments, stages) == 1 ? KernelStatus::Ok : KernelStatus::NonFinite;
-      run_later_stages(stages);
-      break;
-    }
+    if (stage > 0 && runs_on()) return run_later_stages(stages) ? KernelStatus::Ok : KernelStatus::NonFinite;
     if (stage == 0 || !run_directly(stage))
       if (const auto status = run_step_by_step(stage); status != KernelStatus::Ok) return status;
     if (!compiled.later || !runs_on()) renew_blocks(stage, stages);
@@ -148,13 +144,17 @@ bool KernelWorkspace::Impl::runs_on() const {
   return later == LaterStages::ByInverse && (!compiled.stage || (compiled.later && program.runs[Along].empty()));
 }
 
-void KernelWorkspace::Impl::run_later_stages(int stages) {
+/// False: a q̈ is not finite.
+bool KernelWorkspace::Impl::run_later_stages(int stages) {
+  if (compiled.later) return compiled.later(&arguments, stages) == 1;
   const packed::InverseSolution solution{inverse.data(), program.residual.data(), tangents, answers.data()};
   if (program.runs[Along].empty()) return engine.run_stages_by_inverse(tables, solution, 1, stages, false);
+  bool finite = true;
   for (int stage = 1; stage < stages; ++stage) {
-    engine.run_stages_by_inverse(tables, solution, stage, stage + 1, stage + 1 < stages);
+    finite &= engine.run_stages_by_inverse(tables, solution, stage, stage + 1, stage + 1 < stages);
     run_along(stage);
   }
+  return finite;
 }
 
 /// From 1 on, with q_{k+2} = 0.

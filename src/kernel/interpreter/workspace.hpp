@@ -35,6 +35,7 @@ struct KernelWorkspace::Impl {
     for (const Instruction& i : program.instructions) producer[i.out] = &i;
     interpreter::set_leaves(memory, 0.0, orders);
     residual_vectors = find_residual_vectors();
+    mass_in_eights = has_mass_in_eights();
     corrects_points = outputs_follow_accelerations();
     bind();
   }
@@ -52,7 +53,7 @@ struct KernelWorkspace::Impl {
   KernelStatus run_step_by_step(int stage);
   void run_stage(int stage);
   bool runs_on() const;
-  void run_later_stages(int stages);
+  bool run_later_stages(int stages);
   void renew_blocks(int stage, int stages);
   bool adds_up_ahead() const { return engine.add_up_ahead && order > packed::rolled_group; }
   void run_along(int stage);
@@ -72,6 +73,8 @@ struct KernelWorkspace::Impl {
   KernelStatus factor();
   KernelStatus factor_full();
   void need_full();
+  bool has_mass_in_eights() const;
+  void fetch_eights();
   void fetch_mass(std::size_t i, const double* tangents, std::size_t step, std::size_t first, std::size_t last);
   KernelStatus solve(int stage);
   void solve_factored();
@@ -110,6 +113,7 @@ struct KernelWorkspace::Impl {
   interpreter::Doubles solution;     // q̈_k and λ_k, padded
   std::span<double> unknown;         // [n + m] of it: −R_k, then q̈_k and λ_k
   std::pair<Slot, Slot> residual_vectors;  // see find_residual_vectors()
+  bool mass_in_eights = false;       // see has_mass_in_eights()
   bool has_direction = false;        // `tangent` is that of q̈_k, if `owed` is taken from it
   const double* owed = nullptr;      // tangents in the direction of what the first solution was wrong by; null: nothing
   interpreter::Doubles rough;        // a solution that is being corrected, padded

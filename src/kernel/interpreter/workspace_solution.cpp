@@ -49,6 +49,7 @@ void KernelWorkspace::Impl::need_full() {
   }
   if (by_sweep) {
     sweep_all();
+    if (mass_in_eights) return fetch_eights();
     for (std::size_t i = 0; i < n; ++i) fetch_mass(i, tangent.data() + program.residual[i], memory.stride, 0, n);
     return;
   }
@@ -56,6 +57,21 @@ void KernelWorkspace::Impl::need_full() {
     sweep_block(d);
     for (std::size_t i = 0; i < n; ++i) fetch_mass(i, block_tangent.data() + program.residual[i] * 8, 1, d, std::min(n, d + 8));
   }
+}
+
+/// Whether the residuals are side by side, in whole vectors, and all depend on q̈.
+bool KernelWorkspace::Impl::has_mass_in_eights() const {
+  if (!by_matrix || unknowns == 0 || unknowns % packed::lanes != 0) return false;
+  for (std::size_t i = 0; i < unknowns; ++i)
+    if (program.residual[i] != program.residual[0] + i || program.tangent_lags[program.residual[i]] != 2) return false;
+  return true;
+}
+
+/// M₀ from its tangents in all directions, which are its columns.
+void KernelWorkspace::Impl::fetch_eights() {
+  for (std::size_t d = 0; d < unknowns; d += packed::lanes)
+    for (std::size_t i = 0; i < unknowns; i += packed::lanes)
+      engine.transpose(tangent.data() + d * memory.stride + program.residual[i], memory.stride, bordered.data() + i * unknowns + d, unknowns);
 }
 
 /// Row i of M₀ from its tangents in the directions `first` to `last` − 1.

@@ -86,8 +86,8 @@ struct Engine {
   /// False if a pivot is below 1e-10 of its diagonal entry, or M not positive, not finite or not symmetric: then nothing is written, and a
   /// solver that pivots has to decide.
   bool (*negative_inverse)(const double* matrix, std::size_t n, double* inverse);
-  /// 8 × 8 numbers of rows `stride` apart, columns as rows.
-  void (*transpose)(const double* from, double* to, std::size_t stride);
+  /// 8 × 8 numbers, columns as rows.
+  void (*transpose)(const double* from, std::size_t from_stride, double* to, std::size_t to_stride);
   /// solution = Σ_i inverse[i] · row[residual[i]], [stride]. False where it is not finite.
   bool (*solve_by_inverse)(const double* inverse, std::size_t stride, const double* row, const Slot* residual, std::size_t n, double* solution);
   /// Whether all of `rows` rows of `count` numbers are finite.
@@ -102,8 +102,8 @@ struct Engine {
   /// 1/(k+1), 1/((k+1)(k+2)) for ℓ = 2, 1, 0.
   void (*correct)(const Tables&, int stage, const TangentMatrix&, const double* weights);
   /// Stages `first` ≥ 1 to `last` − 1, each with all that belongs to it: run_stage(), solve_by_inverse(), set_accelerations(), correct(), and where another
-  /// follows (after the last one: if it `goes_on`) renew_blocks() and add_up_ahead(). What is not finite stays in the coefficients.
-  void (*run_stages_by_inverse)(const Tables&, const InverseSolution&, int first, int last, bool goes_on);
+  /// follows (after the last one: if it `goes_on`) renew_blocks() and add_up_ahead(). False where a q̈ is not finite, which stays in the coefficients.
+  bool (*run_stages_by_inverse)(const Tables&, const InverseSolution&, int first, int last, bool goes_on);
   /// Σ_{k=2..degree} c_k τ^{k−1} and Σ k c_k τ^{k−1} of `count` columns, c_k = first + k · stride: read and written in eights.
   void (*increments)(const double* first, std::size_t stride, std::size_t count, int degree, double tau, double* dq, double* dv);
   /// See maupertuis::add_increments.

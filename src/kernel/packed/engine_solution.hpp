@@ -109,11 +109,11 @@ bool negative_inverse(const double* matrix, std::size_t n, double* inverse) {
   return n <= most_inverted && invert_of[n - 1](matrix, inverse);
 }
 
-void transpose(const double* from, double* to, std::size_t stride) {
+void transpose(const double* from, std::size_t from_stride, double* to, std::size_t to_stride) {
   Vector rows[lanes];
-  for (std::size_t i = 0; i < lanes; ++i) rows[i] = load(from + i * stride);
+  for (std::size_t i = 0; i < lanes; ++i) rows[i] = load(from + i * from_stride);
   transpose_rows(rows);
-  for (std::size_t i = 0; i < lanes; ++i) save(to + i * stride, rows[i]);
+  for (std::size_t i = 0; i < lanes; ++i) save(to + i * to_stride, rows[i]);
 }
 
 /// V vectors of the solution.
@@ -277,9 +277,9 @@ void find_answers(const InverseSolution& in) {
   });
 }
 
-/// Of N unknowns.
+/// Of N unknowns. What is not finite makes `zero` something else.
 template <std::size_t N>
-[[gnu::always_inline]] inline void complete(const Stage& s, const InverseSolution& in) {
+[[gnu::always_inline]] inline void complete(const Stage& s, const InverseSolution& in, Vector& zero) {
   constexpr std::size_t vectors = (N + lanes - 1) / lanes;
   const double* const residual = s.row_of(2);
   Vector weights[N];
@@ -288,7 +288,9 @@ template <std::size_t N>
   const Factors factors(s);
   if constexpr (N <= most_answered) {
     const double* answer = in.answers;
-    save(s.row_of(0), weighted(weights, in.inverse, lanes) / all(s.t.shift_factors[3 * s.stage + 2]));
+    const Vector accelerations = weighted(weights, in.inverse, lanes);
+    zero += accelerations * all(0);
+    save(s.row_of(0), accelerations / all(s.t.shift_factors[3 * s.stage + 2]));
     for_corrected(in.tangents, [&](int lag, std::size_t i) {
       double* const place = s.row_of(lag) + i;
       save(place, load(place) + all(factors.of_lag[lag]) * weighted(weights, answer, lanes));
@@ -296,7 +298,11 @@ template <std::size_t N>
     });
   } else {
     alignas(64) double solution[vectors * lanes];
-    for (std::size_t v = 0; v < vectors; ++v) save(solution + v * lanes, weighted(weights, in.inverse + v * lanes, vectors * lanes));
+    for (std::size_t v = 0; v < vectors; ++v) {
+      const Vector accelerations = weighted(weights, in.inverse + v * lanes, vectors * lanes);
+      zero += accelerations * all(0);
+      save(solution + v * lanes, accelerations);
+    }
     set_accelerations(s.t, s.stage, solution, N, 1);
     load_weights(solution, weights);
     add_directions(s, in.tangents, in.tangents.values, weights);
@@ -304,27 +310,29 @@ template <std::size_t N>
 }
 
 template <std::size_t N>
-void run_stages_of(const Tables& tables, const InverseSolution& in, int first, int last, bool goes_on) {
+bool run_stages_of(const Tables& tables, const InverseSolution& in, int first, int last, bool goes_on) {
   if constexpr (N <= most_answered)
     if (first == 1) find_answers<N>(in);
+  Vector zero = all(0);
   for (int stage = first; stage < last; ++stage) {
     const Stage s(tables, stage);
     run(s);
-    complete<N>(s, in);
-    if (stage + 1 == last && !goes_on) return;
+    complete<N>(s, in, zero);
+    if (stage + 1 == last && !goes_on) break;
     renew(s);
     if (tables.has_sums) add_up_ahead(tables, stage);
   }
+  return are_finite(zero);
 }
 
-using RunStages = void (*)(const Tables&, const InverseSolution&, int first, int last, bool goes_on);
+using RunStages = bool (*)(const Tables&, const InverseSolution&, int first, int last, bool goes_on);
 
 template <std::size_t... N>
 constexpr std::array<RunStages, most_inverted> by_unknowns(std::index_sequence<N...>) { return {run_stages_of<N + 1>...}; }
 
-void run_stages_by_inverse(const Tables& tables, const InverseSolution& in, int first, int last, bool goes_on) {
+bool run_stages_by_inverse(const Tables& tables, const InverseSolution& in, int first, int last, bool goes_on) {
   static constexpr auto run_stages = by_unknowns(std::make_index_sequence<most_inverted>());
-  run_stages[in.tangents.directions - 1](tables, in, first, last, goes_on);
+  return run_stages[in.tangents.directions - 1](tables, in, first, last, goes_on);
 }
 
 }  // namespace

@@ -36,7 +36,14 @@ class Tangents {
     return block.direct ? load(from + block.first) : block.is_range ? load(from + block.slots[0]) : gather(from, block.slots.data());
   }
 
+  /// One by one: as an array it would be cleared in memory.
+  static void clear(Vector* sums) {
+#pragma GCC unroll 8
+    for (int d = 0; d < W; ++d) sums[d] = all(0);
+  }
+
   void store(const Pack& pack, const Vector* sums) const {
+#pragma GCC unroll 8
     for (int d = 0; d < W; ++d) save(row(d) + pack.out, sums[d]);
   }
 
@@ -44,14 +51,25 @@ class Tangents {
   void add(const Pack& pack, std::uint32_t index, Vector factor, Vector* sums) const {
     const Block& block = t_.blocks[index];
     if (block.lag != pack.lag) return;
-    for (int d = 0; d < W; ++d) sums[d] += factor * read(block, row(d));
+    if (block.direct || block.is_range) {
+      const double* const first = tangents_ + block.slots[0];
+#pragma GCC unroll 8
+      for (int d = 0; d < W; ++d) sums[d] += factor * load(first + static_cast<std::size_t>(d) * stride_);
+      return;
+    }
+    for (int d = 0; d < W; ++d) sums[d] += factor * gather(row(d), block.slots.data());
   }
+
+  /// Calls for those that are rare, which would take registers.
+  template <Column::Kind kind>
+  [[gnu::noinline]] void add_rare_columns(const ColumnRun& run, Vector* sums) const { add_columns<kind>(run, sums); }
 
   template <Column::Kind kind>
   void add_columns(const ColumnRun& run, Vector* sums) const {
     const double* c = t_.coefficients + t_.columns[run.first].coefficients;
     for (std::uint32_t i = run.first; i < run.last; ++i, c += lanes) {
       const Column& column = t_.columns[i];
+#pragma GCC unroll 8
       for (int d = 0; d < W; ++d) sums[d] += load(c) * column_values<kind>(row(d), column.source, column);
     }
   }
@@ -63,14 +81,15 @@ class Tangents {
       switch (run.kind) {
         case Column::Broadcast: add_columns<Column::Broadcast>(run, sums); break;
         case Column::Contiguous: add_columns<Column::Contiguous>(run, sums); break;
-        case Column::Reversed: add_columns<Column::Reversed>(run, sums); break;
-        default: add_columns<Column::Gather>(run, sums); break;
+        case Column::Reversed: add_rare_columns<Column::Reversed>(run, sums); break;
+        default: add_rare_columns<Column::Gather>(run, sums); break;
       }
     }
   }
 
   void sum(const Pack& pack) const {
-    Vector sums[W] = {};
+    Vector sums[W];
+    clear(sums);
     columns(pack, sums);
     for (std::uint32_t p = pack.first_product; p < pack.last_product; ++p) {
       const ProductTerm& term = t_.products[p];
@@ -82,13 +101,15 @@ class Tangents {
   }
 
   void scan(const Pack& pack, Vector (*sum_of)(Vector)) const {
-    Vector sums[W] = {};
+    Vector sums[W];
+    clear(sums);
     columns(pack, sums);
     for (int d = 0; d < W; ++d) save(row(d) + pack.out, sum_of(sums[d]) + carry_of(pack.carry, row(d)));
   }
 
   void strand(const Pack& pack) const {
-    Vector sums[W] = {};
+    Vector sums[W];
+    clear(sums);
     columns(pack, sums);
     for (int d = 0; d < W; ++d) save(row(d) + pack.out, pack.carry == no_slot ? sums[d] : sums[d] + load(row(d) + pack.carry));
   }
@@ -99,7 +120,8 @@ class Tangents {
 
   /// by_a · ∂a + by_b · ∂b
   void linear(const Pack& pack, Vector by_a, Vector by_b) const {
-    Vector sums[W] = {};
+    Vector sums[W];
+    clear(sums);
     add(pack, pack.a, by_a, sums);
     if (pack.kind == Pack::Quotient) add(pack, pack.b, by_b, sums);
     store(pack, sums);
