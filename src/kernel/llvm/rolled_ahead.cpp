@@ -77,6 +77,7 @@ void RolledEmitter::renew_copies() {
   b.SetInsertPoint(there);
 }
 
+/// From registers, if what it copies has just been corrected.
 void RolledEmitter::renew(const Block& block) {
   const int ahead = 2 - block.lag;
   if (written_ && *written_ + ahead < 0) return;

@@ -21,13 +21,13 @@
 ///   the *ends*, a_m b_0 and a_0 b_m, where an operand is of stage s itself.
 ///
 /// Stages up to 4 have sums so short that the three would overlap: each is added up by itself. The stages up to 0, with the values of elementary functions,
-/// are written out for long runs (`first`), else the engine's.
+/// are written out for long runs (`first`), else the engine's. In long runs that are solved by −M₀⁻¹ all stages from 1 on are one loop (`later`).
 namespace maupertuis::llvm_backend {
 
 class RolledEmitter {
  public:
   RolledEmitter(Emission& out, const packed::PackedProgram& program, std::size_t stride);
-  /// `long_run`: the first stages too, which cost more to compile than they save in a short one.
+  /// `long_run`: `first` and `later` too, which cost more to compile than they save in a short one.
   void run(bool long_run);
 
  private:

@@ -72,7 +72,7 @@ void RolledEmitter::fill_next() {
   b.SetInsertPoint(done);
 }
 
-/// One after the other if they are few, else in a loop.
+/// Of one class and one slot, so that they are neighbours: one after the other if they are few, else in a loop.
 void RolledEmitter::each_of(const Class& key, const std::vector<std::size_t>& members, const std::function<void(const Class&, Value*, Value*, Value*)>& body) {
   constexpr std::size_t few = 2;
   if (members.size() > few) return loop_over(key, members, out_.b.getInt64(0), out_.b.getInt64(members.size()), body);

@@ -151,7 +151,7 @@ Value* RolledEmitter::running_sum(Value* v, bool down) {
     for (int lane = 0; lane < static_cast<int>(lanes); ++lane) {
       const int begin = lane / (2 * half) * 2 * half;
       const bool adds = (lane - begin < half) == down;
-      places.push_back(!adds ? nothing + lane : begin + (down ? half : half - 1));
+      places.push_back(adds ? begin + (down ? half : half - 1) : nothing + lane);
     }
     v = out_.add(v, out_.b.CreateShuffleVector(v, llvm::Constant::getNullValue(vector_), places));
   }

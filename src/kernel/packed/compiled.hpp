@@ -22,8 +22,8 @@ struct CompiledArguments {
   double (*elementary)(std::uint8_t function, double x, double y) = nullptr;
   double* sums = nullptr;                // rolled: [convolutions][rolled_group][8], aligned to 64 bytes
   const double* inverse = nullptr;       // rolled: −M₀⁻¹, [unknowns] rows, each padded to a multiple of 8
-  double* tangent_row = nullptr;         // rolled `solve`: [stride] scratch; what no pack writes is 0
-  double* passing_row = nullptr;         // rolled `first` and `stage`: [stride] scratch
+  double* tangent_row = nullptr;         // rolled `solve` and `later`: [stride] scratch; what no pack writes is 0
+  double* passing_row = nullptr;         // rolled `first`, `stage` and `later`: [stride] scratch
   const double* tangents = nullptr;      // rolled `correct`: [stride] x and the slots' tangents in its direction, where M₀ x = R_k
   std::int64_t has_copies = 0;           // rolled: `tangents` holds x also in the cells of blocks that copy coordinates, so that `correct` renews these
   /// Rolled: ScalarRules.
@@ -49,8 +49,7 @@ using CompiledFirst = void (*)(const CompiledArguments*);
 ///   ahead    ≥ 0, after the others, in turn; as Engine::renew_blocks, but for what `correct` has renewed, and sums for the stages that follow
 using CompiledStage = void (*)(const CompiledArguments*, std::int64_t stage);
 
-/// Rolled code of long runs, `later`: `stage`, `solve` and `ahead` for all stages from 1 on, `end` of them with stage 0. 1: q̈ is finite
-/// in all of them; else 0.
+/// Rolled code of long runs, `later`: `stage`, `solve` and `ahead` for all stages from 1 to `end` − 1. 1: q̈ is finite in all of them; else 0.
 using CompiledLater = std::int64_t (*)(const CompiledArguments*, std::int64_t end);
 
 /// Rolled code: as Engine::tangents.
