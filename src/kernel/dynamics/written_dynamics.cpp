@@ -1,6 +1,7 @@
 #include "kernel/dynamics/written_dynamics.hpp"
 
 #include "kernel/sparse/written_elimination.hpp"
+#include "kernel/sparse/written_entries.hpp"
 
 #include <map>
 #include <stdexcept>
@@ -9,8 +10,6 @@
 namespace maupertuis::dynamics {
 namespace {
 
-using sparse::Edge;
-using sparse::Rule;
 using straight::Builder;
 using straight::Term;
 using straight::Value;
@@ -145,30 +144,11 @@ class FlatWriter {
 /// The entries of a lifted system from the values at order 0.
 std::vector<Value> write_entries(Builder& to, Numbers& numbers, const sparse::LiftedSystem& system, const FlatWriter& flat,
                                  const FlatProgram& program) {
-  std::vector<std::vector<Term>> terms(system.entries.size());
-  for (const std::uint32_t e : system.minus_one) terms[e].push_back({-1});
-  for (const std::uint32_t e : system.plus_one) terms[e].push_back({1});
-  for (std::uint32_t i = 0; i < system.edges.size(); ++i) {
-    const Edge& edge = system.edges[i];
-    const auto value = [&](Slot slot) { return flat.at(program.value_of_slot[slot]); };
-    const auto constant = [&] { return numbers.constant(to, edge.index); };
-    std::vector<Term>& entry = terms[system.entry_of_edge[i]];
-    switch (edge.rule) {
-      case Rule::One: entry.push_back({1}); break;
-      case Rule::Coefficient: entry.push_back({1, constant()}); break;
-      case Rule::Scaled: entry.push_back({1, constant(), value(edge.x)}); break;
-      case Rule::Value: entry.push_back({1, value(edge.x)}); break;
-      case Rule::Negative: entry.push_back({-1, value(edge.x)}); break;
-      case Rule::Double: entry.push_back({2, value(edge.x)}); break;
-      case Rule::Reciprocal: entry.push_back({1, to.reciprocal(value(edge.x))}); break;
-      case Rule::HalfReciprocal: entry.push_back({0.5, to.reciprocal(value(edge.x))}); break;
-      case Rule::Ratio: entry.push_back({-1, value(edge.y), to.reciprocal(value(edge.x))}); break;
-      case Rule::PowerSlope: entry.push_back({1, constant(), value(edge.y), to.reciprocal(value(edge.x))}); break;
-      case Rule::Choice: entry.push_back({1, numbers.choice(to, i)}); break;
-    }
-  }
+  const sparse::EntryWriter write(system, {.value = [&](Builder&, Slot slot) { return flat.at(program.value_of_slot[slot]); },
+                                           .constant = [&](Builder& b, ConstantId id) { return numbers.constant(b, id); },
+                                           .choice = [&](Builder& b, std::uint32_t edge) { return numbers.choice(b, edge); }});
   std::vector<Value> out;
-  for (std::vector<Term>& entry : terms) out.push_back(to.sum(std::move(entry)));
+  for (std::uint32_t e = 0; e < system.entries.size(); ++e) out.push_back(write(to, e));
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 namespace maupertuis::interpreter {
 namespace {
@@ -37,6 +38,7 @@ LiftedSolve::LiftedSolve(const Program& program, const sparse::Strip& strip, con
     cell_of_column_.push_back(number != no_slot ? number : static_cast<std::uint32_t>(stride + column));
   }
   for (const Slot slot : packed.program.residual) places_.push_back(slot);
+  number_ = packed.number;
   for (const packed::Block& block : packed.blocks)
     if (packed.copies_coordinates(block))
       for (std::uint32_t lane = 0; lane < packed::lanes; ++lane) copies_.push_back({block.slots[lane], block.first + lane});
@@ -53,6 +55,7 @@ void LiftedSolve::set_constants(const Memory& memory) {
 }
 
 bool LiftedSolve::choose_pivots(const Memory& memory) {
+  assemble(memory);
   if (!is_finite(entries_)) return false;
   std::vector<std::vector<double>> samples{entries_};
   const double t = program_.time == no_slot ? 0 : memory.row(0)[memory.program.time];
@@ -99,13 +102,33 @@ bool LiftedSolve::compile_lines(const std::vector<straight::StraightLine>& lines
 /// The code belongs to the pivots of this solver alone.
 bool LiftedSolve::make_code(std::span<const double> sample) {
   if (!options_) return false;
-  std::vector<straight::StraightLine> lines{solver_->written_solve(wanted(), places_)};
+  std::vector<straight::StraightLine> lines{solver_->written_solve({wanted(), places_})};
   if (options_->long_run) {
     factor_line_ = lines.size();
-    lines.push_back(solver_->written_factor(least_sound_pivot));
+    lines.push_back(solver_->written_factor(entries_in_line(), least_sound_pivot));
   }
-  if (program_.unknowns <= packed::most_by_inverse && is_symmetric(sample)) write_columns(lines);
+  if (program_.unknowns <= packed::most_by_inverse && is_symmetric(sample)) {
+    columns_line_ = lines.size();
+    lines.push_back(columns());
+  }
   return compile_lines(lines);
+}
+
+/// From the first two arrays of a line: values at order 0 and constants.
+sparse::EntryWriter LiftedSolve::entries_in_line() const {
+  using straight::Builder;
+  const auto constant = [this](Builder& to, ConstantId id) {
+    const Constant& c = program_.constants[id];
+    return c.kind == Kind::Number ? to.literal(c.value) : to.given(sparse::ConstantArray, id);
+  };
+  const auto choice = [this](Builder& to, std::uint32_t index) {  // the first term whose condition holds is taken, the last one if none does
+    const sparse::Edge& edge = system_->edges[index];
+    straight::Value out = to.literal(edge.index + 1 == edge.y);
+    for (std::uint32_t t = edge.y - 1; t-- > edge.x;)
+      out = to.choose(to.given(sparse::ConstantArray, program_.terms[t].coefficient), to.literal(t == edge.index), out);
+    return out;
+  };
+  return {*system_, {.value = [this](Builder& to, Slot slot) { return to.given(sparse::NowArray, number_[slot]); }, .constant = constant, .choice = choice}};
 }
 
 /// Of M₀⁻¹ at a sampled state.
@@ -126,32 +149,31 @@ bool LiftedSolve::is_symmetric(std::span<const double> sample) {
   return true;
 }
 
-/// Eight columns of −M₀⁻¹ each. A coordinate's column has the rows of those that are eliminated after it, by eights, since these do not wait for the
-/// others; the rest is its mirror image.
-void LiftedSolve::write_columns(std::vector<straight::StraightLine>& lines) {
+/// All columns of −M₀⁻¹, eight side by side. A coordinate's column has the rows of those that are eliminated after it, by eights, since these do not wait
+/// for the others; the rest is its mirror image.
+straight::StraightLine LiftedSolve::columns() {
   using packed::lanes;
-  const std::uint32_t n = static_cast<std::uint32_t>(program_.unknowns), padded = static_cast<std::uint32_t>(packed::padded(n));
+  const std::uint32_t n = static_cast<std::uint32_t>(program_.unknowns), eights = static_cast<std::uint32_t>(packed::padded(n) / lanes);
   const std::vector<std::uint32_t> order = solver_->order_of_columns();
   const auto turn = [&](std::size_t eight) {  // the middle of their turns, no two alike
     double sum = 0, count = 0;
     for (std::size_t i = eight * lanes; i < std::min<std::size_t>(n, (eight + 1) * lanes); ++i) sum += order[i], ++count;
     return std::pair(sum / count, eight);
   };
-  columns_line_ = lines.size();
-  mirrored_.assign(padded / lanes, {});
-  for (std::uint32_t eight = 0; eight < padded / lanes; ++eight) {
-    AllWanted wanted;
-    std::vector<std::uint32_t> places(n, sparse::no_place);
-    for (std::uint32_t i = eight * lanes; i < std::min(n, (eight + 1) * lanes); ++i) places[i] = i - eight * lanes;
+  mirrored_.assign(eights, {});
+  std::vector<sparse::SparseSolver::RightSide> sides(eights);
+  for (std::uint32_t eight = 0; eight < eights; ++eight) {
+    sides[eight].places.assign(n, sparse::no_place);
+    for (std::uint32_t i = eight * lanes; i < std::min(n, (eight + 1) * lanes); ++i) sides[eight].places[i] = i - eight * lanes;
     for (std::uint32_t i = 0; i < n; ++i)
-      if (turn(i / lanes) >= turn(eight)) wanted.push_back({i, i});
-    for (std::size_t other = 0; other < padded / lanes; ++other)
+      if (turn(i / lanes) >= turn(eight)) sides[eight].wanted.push_back({i, i * eights + eight});
+    for (std::size_t other = 0; other < eights; ++other)
       if (turn(other) > turn(eight)) mirrored_[eight].push_back(other);
-    lines.push_back(straight::in_columns(solver_->written_solve(wanted, places), sparse::RightSideArray, sparse::UnknownArray, lanes, padded));
   }
+  return straight::in_columns(solver_->written_columns(entries_in_line(), sides), sparse::UnitArray, sparse::ColumnArray, lanes);
 }
 
-bool LiftedSolve::negative_inverse(double* inverse) {
+bool LiftedSolve::negative_inverse(const Memory& memory, double* inverse) {
   using packed::lanes;
   if (columns_line_ == 0) return false;
   alignas(64) static constexpr auto units = [] {
@@ -159,13 +181,11 @@ bool LiftedSolve::negative_inverse(double* inverse) {
     for (std::size_t i = 0; i < lanes; ++i) out[i * lanes + i] = -1;
     return out;
   }();
+  code_(columns_line_, memory.row(0), memory.constants.data(), units.data(), inverse, scratch_.data());
   const std::size_t padded = packed::padded(program_.unknowns);
-  for (std::size_t eight = 0; eight < mirrored_.size(); ++eight) {
-    const double* const right = units.data();
-    code_(columns_line_ + eight, solver_->factors(), solver_->inverse_pivots(), right, inverse + eight * lanes, scratch_.data());
+  for (std::size_t eight = 0; eight < mirrored_.size(); ++eight)
     for (const std::size_t other : mirrored_[eight])
       packed::engine().transpose(inverse + other * lanes * padded + eight * lanes, padded, inverse + eight * lanes * padded + other * lanes, padded);
-  }
   return true;
 }
 
@@ -185,8 +205,8 @@ bool LiftedSolve::try_parts(const std::vector<std::vector<double>>& samples, con
   if (!chosen) return false;
   solver_.emplace(*system_, *chosen, cell_of_column_);
   Places factors(solver_->factor_count()), inverse(chosen->size());
-  auto solve = straight::widen(solver_->written_solve(wanted(), places_), {{sparse::FactorArray, &factors}, {sparse::InverseArray, &inverse}}, {});
-  auto factor = straight::widen(solver_->written_factor(least_sound_pivot), {},
+  auto solve = straight::widen(solver_->written_solve({wanted(), places_}), {{sparse::FactorArray, &factors}, {sparse::InverseArray, &inverse}}, {});
+  auto factor = straight::widen(solver_->written_factor(entries_in_line(), least_sound_pivot), {},
                                 {{sparse::FactorOutArray, &factors}, {sparse::FactorInverseArray, &inverse}});
   factor_line_ = 1;
   in_parts_ = solve && factor && compile_lines({std::move(*solve), std::move(*factor)});
@@ -215,13 +235,18 @@ const double* LiftedSolve::solve_row(const double* row) {
 }
 
 /// Code tells no more of pivots than whether they are sound.
-void LiftedSolve::run_factor() {
+void LiftedSolve::run_factor(const Memory& memory) {
   if (factor_line_ == 0) {
+    assemble(memory);
     least_pivot_ = solver_->factor(entries_);
     return;
   }
-  code_(factor_line_, entries_.data(), solver_->usual_sizes(), solver_->factors(), solver_->inverse_pivots(), scratch_.data());
+  code_(factor_line_, memory.row(0), memory.constants.data(), solver_->usual_sizes(), solver_->factors(), solver_->inverse_pivots(), scratch_.data());
   least_pivot_ = straight::sound(scratch_.data()) ? 1 : 0;
+}
+
+void LiftedSolve::assemble(const Memory& memory) {
+  if (!std::exchange(has_entries_, true)) (*assembly_)(memory.row(0), entries_);
 }
 
 /// Other pivots may do better; they are chosen anew, less and less often.
@@ -231,11 +256,14 @@ bool LiftedSolve::fail() {
   return false;
 }
 
+bool LiftedSolve::has_pivots(const Memory& memory) {
+  has_entries_ = false;
+  if (!system_) return fail();
+  return solver_ || (is_power_of_two(failures_) && choose_pivots(memory)) || fail();
+}
+
 bool LiftedSolve::factor(const Memory& memory) {
-  if (!system_ || (!solver_ && !is_power_of_two(failures_))) return fail();
-  (*assembly_)(memory.row(0), entries_);
-  if (!solver_ && !choose_pivots(memory)) return fail();
-  run_factor();
+  run_factor(memory);
   refines_ = false;
   return least_pivot_ > least_sound_pivot || fail();
 }
@@ -250,7 +278,8 @@ void LiftedSolve::add_correction() {
   for (std::size_t i = 0; i < stored_; ++i) cells_[i] += change_[i];
 }
 
-bool LiftedSolve::solve_first(std::span<double> b) {
+bool LiftedSolve::solve_first(const Memory& memory, std::span<double> b) {
+  assemble(memory);
   run_solve(b, cells_.data());
   const double left = remainder(b);
   if (!(left <= tolerable)) return fail();

@@ -25,15 +25,17 @@ class LiftedSolve {
   void compile(const CompileOptions& options);
   /// Of the pivots in use; nothing where no code was asked for, or no pivots are chosen yet.
   const std::optional<CompileReport>& compile_report() const { return report_; }
-  /// The factors at the point that `memory` holds at order 0; false: the full matrix is to decide.
+  /// For each point that `memory` holds at order 0, first of all; false: there are no acceptable pivots, and the full matrix is to decide.
+  bool has_pivots(const Memory& memory);
+  /// The factors at the point; false: the full matrix is to decide.
   bool factor(const Memory& memory);
   /// The first solution after factor(), as in solve(), and corrected if it is rough; false: it does not hold, and the full matrix is to
   /// decide; b is as it was.
-  bool solve_first(std::span<double> b);
-  /// After factor(): −M₀⁻¹, [padded × padded] with padded = unknowns rounded up to a multiple of 8, aligned to 64 bytes; what is
+  bool solve_first(const Memory& memory, std::span<double> b);
+  /// Without factor(): −M₀⁻¹, [padded × padded] with padded = unknowns rounded up to a multiple of 8, aligned to 64 bytes; what is
   /// beyond the unknowns has to be 0, and stays so. Up to 48 unknowns a product with it takes less than a solution. Nothing is checked.
   /// False: there is no code for that.
-  bool negative_inverse(double* inverse);
+  bool negative_inverse(const Memory& memory, double* inverse);
   /// b → q̈_k and λ_k in place.
   void solve(std::span<double> b);
   /// Whether the solutions of a stage are good as they come.
@@ -57,6 +59,7 @@ class LiftedSolve {
  private:
   static constexpr int rough_stages = 2;
   bool fail();
+  void assemble(const Memory& memory);
   bool choose_pivots(const Memory& memory);
   double remainder(std::span<const double> b);
   void add_correction();
@@ -67,10 +70,11 @@ class LiftedSolve {
   using AllWanted = std::vector<sparse::SparseSolver::Wanted>;
   AllWanted wanted() const;
   bool is_symmetric(std::span<const double> sample);
-  void write_columns(std::vector<straight::StraightLine>& lines);
+  sparse::EntryWriter entries_in_line() const;
+  straight::StraightLine columns();
   bool compile_lines(const std::vector<straight::StraightLine>& lines);
   void drop_solver();
-  void run_factor();
+  void run_factor(const Memory& memory);
   void run_solve(std::span<const double> b, double* x);
 
   const Program& program_;
@@ -83,7 +87,9 @@ class LiftedSolve {
   std::vector<std::uint32_t> places_;            // [unknowns] of the residual in a row
   std::vector<std::uint32_t> cell_of_column_;    // [columns] slots of the packed program, then cells of their own
   AllWanted copies_;                             // of q̈ in the cells of blocks
+  std::vector<Slot> number_;                     // [slots] in a row of the packed program
   std::vector<double> entries_;                  // [entries]
+  bool has_entries_ = false;                     // of this point
   std::vector<double> residual_;                 // [unknowns] b − M₀ x
   Doubles cells_, change_;                       // [stride + columns]
   Doubles row_;                                  // [stride] b, where code reads it
@@ -94,7 +100,7 @@ class LiftedSolve {
   std::optional<CompileReport> report_;
   straight::Code code_;                          // of the solver's solve(), then of what is named here, where it is not 0
   std::size_t factor_line_ = 0, columns_line_ = 0;
-  std::vector<std::vector<std::size_t>> mirrored_;  // of negative_inverse(), eight columns each: eights of rows that are found there, but not the other way round
+  std::vector<std::vector<std::size_t>> mirrored_;  // of negative_inverse(), [eights of columns]: eights of rows that are found there, but not the other way round
   bool in_parts_ = false, parts_failed_ = false;
   std::vector<double> scratch_;                  // of the code
 };

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 /// The structured Taylor step (docs/design/kernel_program.md). Stage k finds q_{k+2}: with it set to 0 the residual is
 /// evaluated at order k, M₀ q̈_k = −R_k gives the acceleration, and every coefficient that later orders read is
@@ -83,8 +84,7 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   arguments.q = q.data(), arguments.v = v.data();
   if (run_compiled(stages)) return KernelStatus::Ok;
   run_first_stages();
-  if (const auto status = factor(); status != KernelStatus::Ok) return status;
-  later = stages > 1 ? choose_later_stages() : LaterStages::StepByStep;
+  if (const auto status = factor(stages); status != KernelStatus::Ok) return status;
   for (int stage = 0; stage < stages; ++stage) {
     if (stage > 0 && runs_on()) return run_later_stages(stages) ? KernelStatus::Ok : KernelStatus::NonFinite;
     if (stage == 0 || !run_directly(stage))
@@ -147,7 +147,7 @@ bool KernelWorkspace::Impl::runs_on() const {
 /// False: a q̈ is not finite.
 bool KernelWorkspace::Impl::run_later_stages(int stages) {
   if (compiled.later) return compiled.later(&arguments, stages) == 1;
-  const packed::InverseSolution solution{inverse.data(), program.residual.data(), tangents, answers.data()};
+  const packed::InverseSolution solution{inverse.data(), program.residual.data(), residual_side_by_side, tangents, answers.data()};
   if (program.runs[Along].empty()) return engine.run_stages_by_inverse(tables, solution, 1, stages, false);
   bool finite = true;
   for (int stage = 1; stage < stages; ++stage) {
@@ -225,6 +225,7 @@ void KernelWorkspace::Impl::adopt(interpreter::CompiledCode code) {
     tangent_row.assign(memory.stride, 0.0);
     passing_row.assign(memory.stride, 0.0);
     probe.assign(memory.stride, 0.0);
+    largest_rest.assign(memory.stride, std::numeric_limits<double>::infinity());
     arguments = {.rows = memory.rows.data(), .coefficients = lane_coefficients.data(), .sums = sums.data(), .inverse = inverse.data(),
                  .tangent_row = tangent_row.data(), .passing_row = passing_row.data(), .value = tables.scalar.value,
                  .tangent = tables.scalar.tangent, .context = tables.scalar.context};

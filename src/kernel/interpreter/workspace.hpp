@@ -30,11 +30,13 @@ struct KernelWorkspace::Impl {
     unknown = {solution.data(), unknowns};
     tangent.assign(by_matrix ? unknowns * memory.stride : memory.stride, 0.0);
     if (by_matrix) answers.assign(tangent.size(), 0.0);
+    for (std::size_t d = 0; by_matrix && d < unknowns; ++d) tangent[d * memory.stride + d] = 1;
     if (!by_matrix && unknowns == program.freedoms) lifted.emplace(kernel.program(), strip, packed, memory.stride);
     if (unknowns <= packed::most_by_inverse) inverse.assign(padded_unknowns() * padded_unknowns(), 0.0);
     for (const Instruction& i : program.instructions) producer[i.out] = &i;
     interpreter::set_leaves(memory, 0.0, orders);
     residual_vectors = find_residual_vectors();
+    residual_side_by_side = is_residual_side_by_side();
     mass_in_eights = has_mass_in_eights();
     corrects_points = outputs_follow_accelerations();
     bind();
@@ -59,7 +61,6 @@ struct KernelWorkspace::Impl {
   void run_along(int stage);
   bool outputs_follow_accelerations() const;
   bool run_compiled(int stages);
-  LaterStages choose_later_stages();
   bool inverts();
   void set_probe();
   bool run_directly(int stage);
@@ -68,11 +69,12 @@ struct KernelWorkspace::Impl {
   void adopt(interpreter::CompiledCode code);
   void find_tangents(std::size_t directions);
   void find_direction();
-  void sweep_all();
   void sweep_block(std::size_t first);
-  KernelStatus factor();
+  KernelStatus factor(int stages);
+  KernelStatus factor_anew();
   KernelStatus factor_full();
   void need_full();
+  bool is_residual_side_by_side() const;
   bool has_mass_in_eights() const;
   void fetch_eights();
   void fetch_mass(std::size_t i, const double* tangents, std::size_t step, std::size_t first, std::size_t last);
@@ -113,6 +115,7 @@ struct KernelWorkspace::Impl {
   interpreter::Doubles solution;     // q̈_k and λ_k, padded
   std::span<double> unknown;         // [n + m] of it: −R_k, then q̈_k and λ_k
   std::pair<Slot, Slot> residual_vectors;  // see find_residual_vectors()
+  bool residual_side_by_side = false;
   bool mass_in_eights = false;       // see has_mass_in_eights()
   bool has_direction = false;        // `tangent` is that of q̈_k, if `owed` is taken from it
   const double* owed = nullptr;      // tangents in the direction of what the first solution was wrong by; null: nothing
@@ -122,9 +125,10 @@ struct KernelWorkspace::Impl {
   interpreter::Doubles inverse;      // by_inverse or LaterStages::ByInverse: −M⁻¹, padded rows and columns
   interpreter::Doubles answers;      // scratch of Engine::run_stages_by_inverse
   interpreter::Doubles tangent_row, passing_row;  // scratch of code
-  std::vector<double> probe;         // [stride] the right side of inverts()
+  interpreter::Doubles probe;        // [stride] the right side of inverts()
+  interpreter::Doubles largest_rest;  // [stride] that a solution for it may leave; what is no residual may be anything
   bool has_probe = false;            // for these parameters
-  interpreter::Doubles tangent;      // by_matrix: ∂slot/∂q^(lag) for each direction [n + m × stride], else for one
+  interpreter::Doubles tangent;      // by_matrix: ∂slot/∂q^(lag) for each unknown [n + m × stride], else for one direction
   std::vector<double> block_tangent; // [slots × 8]
   std::vector<std::uint32_t> of_mass;  // instructions that M₀ goes through
   std::vector<const Instruction*> producer;  // [slots]

@@ -19,16 +19,6 @@ constexpr double largest_rest_of_inverse = 1e-11;
 
 }  // namespace
 
-/// The tangents of all slots in the direction of each unknown.
-void KernelWorkspace::Impl::sweep_all() {
-  for (std::size_t d = 0; d < unknowns; ++d) {
-    double* const row = tangent.data() + d * memory.stride;
-    std::fill_n(row, padded_unknowns(), 0.0);
-    row[d] = 1;
-  }
-  find_tangents(unknowns);
-}
-
 /// Those of the residual in 8 directions.
 void KernelWorkspace::Impl::sweep_block(std::size_t first) {
   std::fill_n(block_tangent.begin(), unknowns * 8, 0.0);
@@ -48,7 +38,7 @@ void KernelWorkspace::Impl::need_full() {
     of_mass = interpreter::instructions_of_mass(program);
   }
   if (by_sweep) {
-    sweep_all();
+    find_tangents(n);
     if (mass_in_eights) return fetch_eights();
     for (std::size_t i = 0; i < n; ++i) fetch_mass(i, tangent.data() + program.residual[i], memory.stride, 0, n);
     return;
@@ -59,12 +49,17 @@ void KernelWorkspace::Impl::need_full() {
   }
 }
 
+bool KernelWorkspace::Impl::is_residual_side_by_side() const {
+  for (std::size_t i = 0; i < unknowns; ++i)
+    if (program.residual[i] != program.residual[0] + i) return false;
+  return true;
+}
+
 /// Whether the residuals are side by side, in whole vectors, and all depend on q̈.
 bool KernelWorkspace::Impl::has_mass_in_eights() const {
-  if (!by_matrix || unknowns == 0 || unknowns % packed::lanes != 0) return false;
-  for (std::size_t i = 0; i < unknowns; ++i)
-    if (program.residual[i] != program.residual[0] + i || program.tangent_lags[program.residual[i]] != 2) return false;
-  return true;
+  const auto follows = [this](Slot slot) { return program.tangent_lags[slot] == 2; };
+  return by_matrix && unknowns > 0 && unknowns % packed::lanes == 0 && residual_side_by_side &&
+         std::all_of(program.residual.begin(), program.residual.end(), follows);
 }
 
 /// M₀ from its tangents in all directions, which are its columns.
@@ -98,9 +93,31 @@ KernelStatus KernelWorkspace::Impl::factor_full() {
   return KernelStatus::Ok;
 }
 
-KernelStatus KernelWorkspace::Impl::factor() {
-  has_full = by_inverse = false;
-  by_lifting = lifted && lifted->factor(memory);
+/// What the solutions of so many stages need, and how the later ones are to be found: by an inverse, if there is one of few unknowns or code for it.
+/// (Rolled code may be without a solution.)
+KernelStatus KernelWorkspace::Impl::factor(int stages) {
+  has_full = by_inverse = by_lifting = false;
+  later = LaterStages::StepByStep;
+  if (lifted && lifted->has_pivots(memory)) {
+    if (stages > 1 && compiled.solve && lifted->negative_inverse(memory, inverse.data()) && inverts()) {
+      later = LaterStages::ByInverse;
+      return KernelStatus::Ok;
+    }
+    by_lifting = lifted->factor(memory);
+  }
+  if (by_lifting) {
+    if (stages > 1) later = LaterStages::ByLifting;
+    return KernelStatus::Ok;
+  }
+  const KernelStatus status = factor_full();
+  if (stages > 1 && by_inverse && unknowns > 0 && (compiled.solve || !compiled.stage)) later = LaterStages::ByInverse;
+  return status;
+}
+
+/// Where the inverse does not solve.
+KernelStatus KernelWorkspace::Impl::factor_anew() {
+  by_lifting = lifted->factor(memory);
+  later = by_lifting ? LaterStages::ByLifting : LaterStages::StepByStep;
   return by_lifting ? KernelStatus::Ok : factor_full();
 }
 
@@ -121,26 +138,19 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
   const auto finite = [this] { return engine.are_finite(unknown.data(), unknowns, 1, unknowns) ? KernelStatus::Ok : KernelStatus::NonFinite; };
   if (later == LaterStages::ByInverse && stage == 0) {
     if (solve_twice_by_inverse(stage)) return finite();
-    later = LaterStages::ByLifting;
+    if (const KernelStatus status = factor_anew(); status != KernelStatus::Ok) return status;
   }
   if (by_lifting && lifted->is_rough(stage) && (solve_twice(stage) || stage > 0)) return finite();
   has_direction = false, owed = nullptr;
   fetch_residual(stage);
   if (stage > 0 || !by_lifting) {
     solve_factored();
-  } else if (!lifted->solve_first(unknown)) {
+  } else if (!lifted->solve_first(memory, unknown)) {
     by_lifting = false;
     if (const KernelStatus status = factor_full(); status != KernelStatus::Ok) return status;
     solve_factored();
   }
   return finite();
-}
-
-/// By an inverse that is there then, if there is one of few unknowns or code for it. (Rolled code may be without a solution.)
-KernelWorkspace::Impl::LaterStages KernelWorkspace::Impl::choose_later_stages() {
-  if (by_inverse && unknowns > 0 && (compiled.solve || !compiled.stage)) return LaterStages::ByInverse;
-  if (compiled.solve && by_lifting && lifted->negative_inverse(inverse.data()) && inverts()) return LaterStages::ByInverse;
-  return by_lifting ? LaterStages::ByLifting : LaterStages::StepByStep;
 }
 
 /// Whether −M₀⁻¹ solves for a right side in which all coordinates take part, each in its own measure: it was mirrored, which only a symmetric M₀
@@ -149,9 +159,10 @@ bool KernelWorkspace::Impl::inverts() {
   if (!has_probe) set_probe();
   engine.solve_by_inverse(inverse.data(), padded_unknowns(), probe.data(), program.residual.data(), unknowns, solution.data());
   find_direction();
+  const auto [first, last] = residual_vectors;
+  if (first != last) return engine.cancel(tangent.data() + first, probe.data() + first, largest_rest.data() + first, last - first);
   bool solves = true;
-  for (const Slot slot : program.residual)
-    solves &= std::abs(tangent[slot] + probe[slot]) <= largest_rest_of_inverse * std::abs(probe[slot]);
+  for (const Slot slot : program.residual) solves &= std::abs(tangent[slot] + probe[slot]) <= largest_rest[slot];
   return solves;
 }
 
@@ -162,7 +173,9 @@ void KernelWorkspace::Impl::set_probe() {
     random = random * 1664525u + 1013904223u;
     const double part = (random & 0x10000) != 0 ? -1 - random * 0x1p-32 : 1 + random * 0x1p-32;
     const double size = std::sqrt(std::abs(inverse[i * padded_unknowns() + i]));
-    probe[program.residual[i]] = part / size;
+    const Slot slot = program.residual[i];
+    probe[slot] = part / size;
+    largest_rest[slot] = largest_rest_of_inverse * std::abs(probe[slot]);
   }
   has_probe = true;
 }

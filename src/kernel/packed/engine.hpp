@@ -57,6 +57,7 @@ struct TangentMatrix {
 struct InverseSolution {
   const double* inverse = nullptr;
   const Slot* residual = nullptr;        // [directions]
+  bool side_by_side = false;             // residual[i] = residual[0] + i
   TangentMatrix tangents;                // in the direction of each unknown
   double* answers = nullptr;             // [tangents.stride × directions] scratch, aligned to 64 bytes, kept from stage 1 on
 };
@@ -94,6 +95,8 @@ struct Engine {
   bool (*are_finite)(const double* first, std::size_t stride, std::size_t rows, std::size_t count);
   /// values += factor · change, of `count` numbers in eights; the sizes are those before, and of what was added.
   Sizes (*add)(double* values, const double* change, double factor, std::size_t count);
+  /// Whether |x + y| ≤ most for each of `count` numbers, which are read in eights.
+  bool (*cancel)(const double* x, const double* y, const double* most, std::size_t count);
   /// to = −from; read in eights, and 0 written beyond `count` up to a multiple of 8.
   void (*negate)(const double* from, double* to, std::size_t count);
   /// q_{k+2} = q̈_k / ((k+1)(k+2)) for k = stage, q̈_k = sign · `solution`; read and written in eights.

@@ -182,6 +182,12 @@ Sizes add(double* values, const double* change, double factor, std::size_t count
   return {largest_lane(of_values), largest_lane(of_change)};
 }
 
+bool cancel(const double* x, const double* y, const double* most, std::size_t count) {
+  Vector fails = all(0);
+  for (std::size_t i = 0; i < count; i += lanes) fails = absolute(load(x + i) + load(y + i)) <= load(most + i) ? fails : all(1);
+  return largest_lane(fails) == 0;
+}
+
 void negate(const double* from, double* to, std::size_t count) {
   for (std::size_t i = 0; i < count; i += lanes) save(to + i, lane_numbers < all(static_cast<double>(count - i)) ? -load(from + i) : all(0));
 }
@@ -283,8 +289,10 @@ template <std::size_t N>
   constexpr std::size_t vectors = (N + lanes - 1) / lanes;
   const double* const residual = s.row_of(2);
   Vector weights[N];
+  if (in.side_by_side) load_weights(residual + in.residual[0], weights);
+  else
 #pragma GCC unroll 16
-  for (std::size_t d = 0; d < N; ++d) weights[d] = all(residual[in.residual[d]]);
+    for (std::size_t d = 0; d < N; ++d) weights[d] = all(residual[in.residual[d]]);
   const Factors factors(s);
   if constexpr (N <= most_answered) {
     const double* answer = in.answers;
@@ -316,7 +324,8 @@ bool run_stages_of(const Tables& tables, const InverseSolution& in, int first, i
   Vector zero = all(0);
   for (int stage = first; stage < last; ++stage) {
     const Stage s(tables, stage);
-    run(s);
+    for (std::size_t i = 0; i < N; i += lanes) save(s.row_of(0) + i, all(0));
+    run_packs(s);
     complete<N>(s, in, zero);
     if (stage + 1 == last && !goes_on) break;
     renew(s);

@@ -240,13 +240,17 @@ inline void run_by_sums(const Stage& s) {
   }
 }
 
-inline void run(const Stage& s) {
-  if (s.stage > 0)
-    for (std::size_t i = 0; i < s.t.unknowns; i += lanes) save(s.row_of(0) + i, all(0));
+inline void run_packs(const Stage& s) {
   if (s.t.has_sums && s.stage > 0) run_by_sums(s);
   else run_by_itself(s);
 }
-void run_stage(const Tables& tables, int stage) { run(Stage(tables, stage)); }
+
+void run_stage(const Tables& tables, int stage) {
+  const Stage s(tables, stage);
+  if (stage > 0)
+    for (std::size_t i = 0; i < tables.unknowns; i += lanes) save(s.row_of(0) + i, all(0));
+  run_packs(s);
+}
 
 inline void renew(const Stage& s) {
   const Copy* const last = s.t.copies + s.t.copy_count;

@@ -1,7 +1,9 @@
 #pragma once
 #include "kernel/sparse/elimination.hpp"
 #include "kernel/sparse/sweep.hpp"
-#include "kernel/straight_line/straight_line.hpp"
+#include "kernel/sparse/written_entries.hpp"
+
+#include <optional>
 
 /// Factors and solutions of a lifted system as flat loops over index arrays: what is computed from what was decided once, when
 /// the pivots were chosen. Nothing is allocated after construction.
@@ -10,8 +12,10 @@ namespace maupertuis::sparse {
 /// What code of a solution works on, in this order; then its scratch.
 enum SolveArray : std::uint32_t { FactorArray, InverseArray, RightSideArray, UnknownArray, solve_arrays };
 
-/// The same of code of a factorization.
-enum FactorArrays : std::uint32_t { EntryArray, UsualSizeArray, FactorOutArray, FactorInverseArray, factor_arrays };
+/// The same of code of a factorization, whose entries are made of values at order 0 and of constants; and of code of several solutions at once with the
+/// factors that they need.
+enum FactorArrays : std::uint32_t { NowArray, ConstantArray, UsualSizeArray, FactorOutArray, FactorInverseArray, factor_arrays };
+enum ColumnArrays : std::uint32_t { UnitArray = ConstantArray + 1, ColumnArray, column_arrays };
 
 /// Sums of one level and one shape: v = start − Σ a b.
 struct SumRun {
@@ -23,6 +27,11 @@ struct SumRun {
 };
 
 inline constexpr std::uint32_t no_place = ~std::uint32_t{0};
+
+/// As values of a straight line.
+struct WrittenFactors {
+  std::vector<straight::Value> factor, inverse;  // [factors], [pivots]
+};
 
 class SparseSolver {
  public:
@@ -44,14 +53,21 @@ class SparseSolver {
     std::uint32_t cell, place;
   };
 
-  /// solve() as a straight line over the arrays of SolveArray; of x it stores what is `wanted` alone. b_i is read at places[i], and is 0 where that
-  /// is `no_place`; without places at i.
-  straight::StraightLine written_solve(std::span<const Wanted> wanted, std::span<const std::uint32_t> places = {}) const;
+  /// b_i is read at places[i], and is 0 where that is `no_place`; without places at i.
+  struct RightSide {
+    std::vector<Wanted> wanted;
+    std::vector<std::uint32_t> places;
+  };
+
+  /// solve() as a straight line over the arrays of SolveArray; of x it stores what is wanted alone.
+  straight::StraightLine written_solve(const RightSide& side) const;
   const double* factors() const { return factors_.data(); }
   const double* inverse_pivots() const { return inverse_.data(); }
-  /// factor() as a straight line over the arrays of FactorArrays, which the three below are; sound() where every pivot is above `least_share` of
-  /// what factor() measures it by.
-  straight::StraightLine written_factor(double least_share) const;
+  /// factor() as a straight line over the arrays of FactorArrays, of which three are below; sound() where every pivot is above `least_share` of
+  /// what factor() measures it by. `entry` reads the first two.
+  straight::StraightLine written_factor(const EntryWriter& entry, double least_share) const;
+  /// factor() and a solution for each right side as a straight line over the arrays of ColumnArrays. No pivot is looked at.
+  straight::StraightLine written_columns(const EntryWriter& entry, std::span<const RightSide> sides) const;
   double* factors() { return factors_.data(); }
   double* inverse_pivots() { return inverse_.data(); }
   const double* usual_sizes() const { return usual_size_.data(); }
@@ -78,6 +94,10 @@ class SparseSolver {
     std::vector<std::uint32_t> operand;  // [products] cells
     std::uint32_t first_factor = 0;      // of the first product in factors_; they follow each other
   };
+
+  WrittenFactors write_factors(straight::Builder& to, const EntryWriter& entry, std::optional<double> least_share) const;
+  void write_solutions(straight::Builder& to, const WrittenFactors& factors, std::uint32_t right, std::uint32_t unknown,
+                       std::span<const RightSide> sides) const;
 
   std::vector<std::uint32_t> cell_of_residual_;  // [unknowns] where b_i goes
   static std::vector<SweepSum> sums_of(const Sweep& sweep);

@@ -14,18 +14,20 @@ using straight::Value;
 /// at every point are not stored, since written_solve knows them.
 class FactorWriter {
  public:
-  FactorWriter(const SparseSolver& solver, Builder& to, double least_share)
-      : s_(solver), to_(to), least_share_(least_share), factor_(s_.factors_.size(), straight::none), inverse_(s_.inverse_.size(), to.literal(-1)),
-        partial_(s_.sums_.size()) {
+  /// Without `least_share` nothing is stored and no pivot checked.
+  FactorWriter(const SparseSolver& solver, Builder& to, const EntryWriter& entry, std::optional<double> least_share)
+      : s_(solver), to_(to), entry_(entry), least_share_(least_share), factor_(s_.factors_.size(), straight::none),
+        inverse_(s_.inverse_.size(), to.literal(-1)), partial_(s_.sums_.size()) {
     for (std::size_t i = 0; i < factor_.size(); ++i)
       if (!std::isnan(s_.literal_factor_[i])) factor_[i] = to.literal(s_.literal_factor_[i]);
   }
 
-  void run() {
+  WrittenFactors run() {
     sums(true);
     add_up_parts();
     sums(false);
     to_.set_part(0);
+    return {std::move(factor_), std::move(inverse_)};
   }
 
  private:
@@ -54,20 +56,22 @@ class FactorWriter {
     std::vector<Term> terms = products(run, i, part_of(i));
     for (const Value partial : partial_[i]) terms.push_back({1, partial});
     const bool starts = sum.entry + 1 < s_.entries_.size();  // the last one is 0
-    const Value entry = starts ? to_.given(EntryArray, sum.entry) : to_.literal(0);
+    const Value entry = starts ? entry_(to_, sum.entry) : to_.literal(0);
     if (run.kind == FactorRun::Pivot) return pivot(sum.pivot, entry, std::move(terms));
     terms.push_back({1, entry});
     factor_[sum.target] = to_.sum(std::move(terms), run.kind == FactorRun::Upper ? inverse_[sum.pivot] : straight::none);
-    to_.store(factor_[sum.target], FactorOutArray, sum.target);
+    if (least_share_) to_.store(factor_[sum.target], FactorOutArray, sum.target);
   }
 
-  void pivot(std::uint32_t p, Value entry, std::vector<Term> terms) {
-    const Value own = to_.larger(entry, to_.given(UsualSizeArray, p));
-    const Value size = terms.empty() ? own : to_.sum({{1, own}, {1, to_.magnitudes(terms)}});
+  void pivot(std::uint32_t p, Value entry, std::vector<Term> products) {
+    std::vector<Term> terms = products;
     terms.push_back({1, entry});
     const Value pivot = to_.sum(std::move(terms));
-    to_.check({to_.magnitudes({{1, pivot}}), size, least_share_});
     inverse_[p] = to_.reciprocal(pivot);
+    if (!least_share_) return;
+    const Value own = to_.larger(entry, to_.given(UsualSizeArray, p));
+    const Value size = products.empty() ? own : to_.sum({{1, own}, {1, to_.magnitudes(products)}});
+    to_.check({to_.magnitudes({{1, pivot}}), size, *least_share_});
     to_.store(inverse_[p], FactorInverseArray, p);
   }
 
@@ -88,14 +92,19 @@ class FactorWriter {
 
   const SparseSolver& s_;
   Builder& to_;
-  double least_share_;
+  const EntryWriter& entry_;
+  std::optional<double> least_share_;
   std::vector<Value> factor_, inverse_;       // [factors], [pivots]
   std::vector<std::vector<Value>> partial_;   // [sums] of parts
 };
 
-straight::StraightLine SparseSolver::written_factor(double least_share) const {
+WrittenFactors SparseSolver::write_factors(Builder& to, const EntryWriter& entry, std::optional<double> least_share) const {
+  return FactorWriter(*this, to, entry, least_share).run();
+}
+
+straight::StraightLine SparseSolver::written_factor(const EntryWriter& entry, double least_share) const {
   Builder to;
-  FactorWriter(*this, to, least_share).run();
+  write_factors(to, entry, least_share);
   return to.finish(factor_arrays, 1, 0);
 }
 

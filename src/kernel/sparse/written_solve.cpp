@@ -12,30 +12,33 @@ using straight::Value;
 
 /// Factors and pivots are there from the beginning, the unknowns of a sum are not: what is known is multiplied first, so that a sum waits for
 /// one operation after its newest unknown. Forward, what a part leaves for a sum between parts is a sum of its own; and all parts are
-/// written down in the same order, so that they can be seen to be alike.
+/// written down in the same order, so that they can be seen to be alike. Of several right sides each has the sums of one after the other, since these
+/// do not wait for each other.
 class SolveWriter {
  public:
-  SolveWriter(const SparseSolver& solver, Builder& to) : s_(solver), to_(to), x_(s_.part_of_cell_.size(), to.literal(0)) {}
+  SolveWriter(const SparseSolver& solver, Builder& to, const WrittenFactors& factors) : s_(solver), to_(to), factors_(factors) {}
 
-  void run(std::span<const SparseSolver::Wanted> wanted, std::span<const std::uint32_t> places) {
-    for (std::uint32_t i = 0; i < s_.cell_of_residual_.size(); ++i) {
-      const std::uint32_t place = places.empty() ? i : places[i];
-      x_[s_.cell_of_residual_[i]] = place == no_place ? to_.literal(0) : to_.given(RightSideArray, place);
-    }
+  void run(std::uint32_t right, std::uint32_t unknown, std::span<const SparseSolver::RightSide> sides) {
+    for (const auto& side : sides) start(right, side.places);
     sweep(s_.forward_, true, true);
     add_up_parts();
     sweep(s_.forward_, true, false);
     partial_.clear();
     sweep(s_.backward_, false, false);
     sweep(s_.backward_, false, true);
-    for (const auto& [cell, place] : wanted) to_.store(x_[cell], UnknownArray, place);
+    for (std::size_t i = 0; i < sides.size(); ++i)
+      for (const auto& [cell, place] : sides[i].wanted) to_.store(x_[i][cell], unknown, place);
   }
 
  private:
   using Sweep = SparseSolver::Sweep;
 
-  Value factor(std::uint32_t i) {
-    return std::isnan(s_.literal_factor_[i]) ? to_.given(FactorArray, i) : to_.literal(s_.literal_factor_[i]);
+  void start(std::uint32_t right, std::span<const std::uint32_t> places) {
+    std::vector<Value>& x = x_.emplace_back(s_.part_of_cell_.size(), to_.literal(0));
+    for (std::uint32_t i = 0; i < s_.cell_of_residual_.size(); ++i) {
+      const std::uint32_t place = places.empty() ? i : places[i];
+      if (place != no_place) x[s_.cell_of_residual_[i]] = to_.given(right, place);
+    }
   }
 
   void sweep(const Sweep& sweep, bool forward, bool of_parts) {
@@ -45,23 +48,40 @@ class SolveWriter {
     to_.set_part(0);
   }
 
+  /// scale · factor · x
+  struct Product {
+    Value scale, factor;
+    std::uint32_t cell;
+  };
+
   void write(const Sweep& sweep, const SumRun& run, std::uint32_t i, bool forward) {
-    const std::uint32_t part = s_.part_of_pivot_[sweep.pivot[i]], cell = sweep.target[i];
-    const Value scale = forward && !run.negates ? to_.given(InverseArray, sweep.pivot[i]) : to_.literal(run.negates ? -1 : 1);
+    const Value scale = forward && !run.negates ? factors_.inverse[sweep.pivot[i]] : to_.literal(run.negates ? -1 : 1);
+    const std::uint32_t part = s_.part_of_pivot_[sweep.pivot[i]], first = run.first_product + (i - run.first) * run.products;
+    const bool shares = x_.size() > 1 && !to_.is_literal(scale);  // the product of both
+    std::vector<Product> products;
+    to_.set_part(part);
+    for (std::uint32_t k = first; k < first + run.products; ++k) {
+      const Value factor = factors_.factor[sweep.first_factor + k];
+      if (forward && s_.part_of_cell_[sweep.operand[k]] != part) continue;
+      products.push_back({shares ? straight::none : scale, shares ? to_.product(1, scale, factor) : factor, sweep.operand[k]});
+    }
+    for (std::size_t side = 0; side < x_.size(); ++side) write(side, sweep.target[i], run.starts, scale, products);
+  }
+
+  void write(std::size_t side, std::uint32_t cell, bool starts, Value scale, const std::vector<Product>& products) {
+    std::vector<Value>& x = x_[side];
     std::vector<Term> terms;
-    if (run.starts) terms.push_back({1, scale, x_[cell]});
+    if (starts) terms.push_back({1, scale, x[cell]});
     if (!partial_.empty())
       for (const Value sum : partial_[cell]) terms.push_back({-1, scale, sum});
-    const std::uint32_t first = run.first_product + (i - run.first) * run.products;
-    for (std::uint32_t k = first; k < first + run.products; ++k)
-      if (!forward || s_.part_of_cell_[sweep.operand[k]] == part) terms.push_back({-1, scale, factor(sweep.first_factor + k), x_[sweep.operand[k]]});
-    to_.set_part(part);
-    x_[cell] = to_.sum(std::move(terms));
+    for (const Product& p : products) terms.push_back({-1, p.scale, p.factor, x[p.cell]});
+    x[cell] = to_.sum(std::move(terms));
   }
 
   /// Of what belongs to no part, in the order of its columns.
   void add_up_parts() {
-    partial_.resize(x_.size());
+    if (s_.parts_ == 0) return;
+    partial_.resize(s_.part_of_cell_.size());
     std::vector<std::pair<std::uint32_t, std::pair<const SumRun*, std::uint32_t>>> sums;
     for (const SumRun& run : s_.forward_.runs)
       for (std::uint32_t i = run.first; i < run.last; ++i)
@@ -74,7 +94,7 @@ class SolveWriter {
         const std::uint32_t first = run->first_product + (i - run->first) * run->products;
         for (std::uint32_t k = first; k < first + run->products; ++k)
           if (const std::uint32_t cell = s_.forward_.operand[k]; s_.part_of_cell_[cell] == part)
-            terms.push_back({1, factor(s_.forward_.first_factor + k), x_[cell]});
+            terms.push_back({1, factors_.factor[s_.forward_.first_factor + k], x_[0][cell]});
         to_.set_part(part);
         if (!terms.empty()) partial_[s_.forward_.target[i]].push_back(to_.sum(std::move(terms)));
       }
@@ -82,14 +102,30 @@ class SolveWriter {
 
   const SparseSolver& s_;
   Builder& to_;
-  std::vector<Value> x_;                      // [cells]
-  std::vector<std::vector<Value>> partial_;   // [cells] sums of parts
+  const WrittenFactors& factors_;
+  std::vector<std::vector<Value>> x_;         // [right sides][cells]
+  std::vector<std::vector<Value>> partial_;   // [cells] sums of parts, of one right side
 };
 
-straight::StraightLine SparseSolver::written_solve(std::span<const Wanted> wanted, std::span<const std::uint32_t> places) const {
+void SparseSolver::write_solutions(Builder& to, const WrittenFactors& factors, std::uint32_t right, std::uint32_t unknown,
+                                   std::span<const RightSide> sides) const {
+  SolveWriter(*this, to, factors).run(right, unknown, sides);
+}
+
+straight::StraightLine SparseSolver::written_solve(const RightSide& side) const {
   Builder to;
-  SolveWriter(*this, to).run(wanted, places);
+  WrittenFactors given;
+  for (std::uint32_t i = 0; i < factors_.size(); ++i)
+    given.factor.push_back(std::isnan(literal_factor_[i]) ? to.given(FactorArray, i) : to.literal(literal_factor_[i]));
+  for (std::uint32_t p = 0; p < inverse_.size(); ++p) given.inverse.push_back(to.given(InverseArray, p));
+  write_solutions(to, given, RightSideArray, UnknownArray, {&side, 1});
   return to.finish(solve_arrays, 1, 0);
+}
+
+straight::StraightLine SparseSolver::written_columns(const EntryWriter& entry, std::span<const RightSide> sides) const {
+  Builder to;
+  write_solutions(to, write_factors(to, entry, {}), UnitArray, ColumnArray, sides);
+  return to.finish(column_arrays, 1, 0, straight::everything);
 }
 
 }  // namespace maupertuis::sparse

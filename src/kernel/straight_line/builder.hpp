@@ -7,6 +7,9 @@
 
 namespace maupertuis::straight {
 
+/// Builder::finish: lines of any length are sorted.
+inline constexpr std::size_t everything = ~std::size_t{0};
+
 /// Writes a StraightLine. Literals are folded, equal nodes given once where that is cheap to see.
 class Builder {
  public:

@@ -276,7 +276,7 @@ std::optional<StraightLine> widen(const StraightLine& line, const Rearranged& re
   return Widening(line, read, written).run();
 }
 
-StraightLine in_columns(StraightLine line, std::uint32_t read, std::uint32_t written, std::uint32_t lanes, std::uint32_t stride) {
+StraightLine in_columns(StraightLine line, std::uint32_t read, std::uint32_t written, std::uint32_t lanes) {
   const auto is_wide = [&](Value v) { return v != none && line.nodes[v].wide; };
   for (Node& node : line.nodes) {
     if (node.what == Node::Given) {
@@ -290,7 +290,7 @@ StraightLine in_columns(StraightLine line, std::uint32_t read, std::uint32_t wri
   }
   std::erase_if(line.stores, [&](const Store& store) { return !is_wide(store.value); });
   for (Store& store : line.stores)
-    if (store.array == written) store.index *= stride;
+    if (store.array == written) store.index *= lanes;
   line.wide = lanes;
   return line;
 }

@@ -30,9 +30,9 @@ using Rearranged = std::map<std::uint32_t, Places*>;
 /// to numbers of `written` that have no place are left out: nobody reads them.
 std::optional<StraightLine> widen(const StraightLine& line, const Rearranged& read, const Rearranged& written);
 
-/// `line` for `lanes` right sides at once: its numbers of array `read` stand for `lanes` numbers that follow each other, as do those it stores,
-/// number i of array `written` from i · stride on. What depends on none of `read` is not stored.
+/// `line` for `lanes` right sides at once: its numbers of the arrays `read` and `written` stand for `lanes` numbers that follow each other. What depends on
+/// none of `read` is not stored.
 /// Precondition: nothing in it is wide.
-StraightLine in_columns(StraightLine line, std::uint32_t read, std::uint32_t written, std::uint32_t lanes, std::uint32_t stride);
+StraightLine in_columns(StraightLine line, std::uint32_t read, std::uint32_t written, std::uint32_t lanes);
 
 }  // namespace maupertuis::straight

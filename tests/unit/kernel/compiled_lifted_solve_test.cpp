@@ -14,7 +14,7 @@ TEST_CASE("chains, trees and combs: unknowns and tangents as by the loops, M x =
       const Point p = random_point(n, seed);
       for (Lifted* const lifted : {&loops, &code}) {
         lifted->move_to(p);
-        REQUIRE(lifted->solve.factor(lifted->memory));
+        REQUIRE(lifted->factor());
       }
       REQUIRE(code.solve.compile_report());
       REQUIRE_MESSAGE(code.solve.compile_report()->compiled, code.solve.compile_report()->trouble);
@@ -23,8 +23,8 @@ TEST_CASE("chains, trees and combs: unknowns and tangents as by the loops, M x =
         const std::vector<double> b = random_point(n, seed + turn + 100).q;
         std::vector<double> x = b, y = b;
         if (turn == 0) {
-          REQUIRE(loops.solve.solve_first(x));
-          REQUIRE(code.solve.solve_first(y));
+          REQUIRE(loops.solve.solve_first(loops.memory, x));
+          REQUIRE(code.solve.solve_first(code.memory, y));
         } else {
           loops.solve.solve(x);
           code.solve.solve(y);
@@ -54,7 +54,7 @@ TEST_CASE("chains are cut into parts side by side, whose sums wait for each othe
     code.solve.compile({.cache = false, .processor = {}});
     for (Lifted* const lifted : {&loops, &code}) {
       lifted->move_to(random_point(static_cast<std::size_t>(count), 1));
-      REQUIRE(lifted->solve.factor(lifted->memory));
+      REQUIRE(lifted->factor());
     }
     const bool is_tree = count == 63;
     CHECK(code.solve.is_rough(0) == !is_tree);
@@ -74,8 +74,8 @@ TEST_CASE("up to 48 unknowns: −M₀⁻¹ by eight columns at once, times M in 
     for (unsigned seed = 1; seed <= 3; ++seed) {
       const Point p = random_point(n, seed);
       code.move_to(p);
-      REQUIRE(code.solve.factor(code.memory));
-      REQUIRE(code.solve.negative_inverse(inverse.data()));
+      REQUIRE(code.factor());
+      REQUIRE(code.solve.negative_inverse(code.memory, inverse.data()));
       for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = 0; j < padded; ++j) {
           double sum = i == j ? 1 : 0, size = 1;
@@ -92,8 +92,8 @@ TEST_CASE("up to 48 unknowns: −M₀⁻¹ by eight columns at once, times M in 
   larger.solve.compile({.cache = false, .processor = {}});
   for (Lifted* const lifted : {&larger, &loops}) {
     lifted->move_to(random_point(64, 1));
-    REQUIRE(lifted->solve.factor(lifted->memory));
-    CHECK_FALSE(lifted->solve.negative_inverse(nullptr));
+    REQUIRE(lifted->factor());
+    CHECK_FALSE(lifted->solve.negative_inverse(lifted->memory, nullptr));
   }
 }
 

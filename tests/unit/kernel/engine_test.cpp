@@ -120,20 +120,23 @@ TEST_CASE("engine: corrections are sums over the directions, scaled by lag") {
 TEST_CASE("engine: stages by −M⁻¹ give accelerations and what the coefficients owe to them") {
   const std::size_t stride = 72;
   const Orders orders(8);
-  for (std::size_t n = 1; n <= 16; ++n) {
+  for (std::size_t turn = 0; turn < 32; ++turn) {
+    const std::size_t n = 1 + turn / 2;
+    const bool side_by_side = turn % 2 == 1;
     CAPTURE(n);
+    CAPTURE(side_by_side);
     const std::vector<double> m = positive_matrix(n);
     Doubles inverse(padded(n) * padded(n)), answers(n * stride), values = random_numbers(n * stride, 2), rows = random_numbers(8 * stride, 1);
     REQUIRE(packed::engine().negative_inverse(m.data(), n, inverse.data()));
     std::vector<Slot> residual;
-    for (std::size_t i = 0; i < n; ++i) residual.push_back(static_cast<Slot>(71 - 2 * i));
+    for (std::size_t i = 0; i < n; ++i) residual.push_back(static_cast<Slot>(side_by_side ? 50 + i : 71 - 2 * i));
     packed::Tables tables;  // without packs
     tables.rows = rows.data();
     tables.stride = stride;
     tables.unknowns = n;
     orders.enter(tables);
     const packed::TangentMatrix tangents{values.data(), stride, n, 16, {24, 28, 40}};
-    const packed::InverseSolution solution{inverse.data(), residual.data(), tangents, answers.data()};
+    const packed::InverseSolution solution{inverse.data(), residual.data(), side_by_side, tangents, answers.data()};
     for (int stage = 1; stage <= 5; ++stage) {
       CAPTURE(stage);
       const Doubles before = rows;

@@ -9,10 +9,10 @@ TEST_CASE("chains, trees and combs: M x = b with M in closed form") {
     for (unsigned seed = 1; seed <= 5; ++seed) {
       const Point p = random_point(n, seed);
       lifted.move_to(p);
-      REQUIRE(lifted.solve.factor(lifted.memory));
+      REQUIRE(lifted.factor());
       const std::vector<double> b = random_point(n, seed + 100).q;
       std::vector<double> x = b;
-      REQUIRE(lifted.solve.solve_first(x));
+      REQUIRE(lifted.solve.solve_first(lifted.memory, x));
       for (std::size_t i = 0; i < n; ++i) {
         double sum = 0, size = std::abs(b[i]);
         for (std::size_t j = 0; j < n; ++j) {
@@ -29,9 +29,9 @@ TEST_CASE("the tangents of the stored slots come with the solution") {
   Rods rods(30, chain);
   Lifted lifted(build_kernel(rods.source));
   lifted.move_to(random_point(30, 3));
-  REQUIRE(lifted.solve.factor(lifted.memory));
+  REQUIRE(lifted.factor());
   std::vector<double> x = random_point(30, 4).q;
-  REQUIRE(lifted.solve.solve_first(x));
+  REQUIRE(lifted.solve.solve_first(lifted.memory, x));
   std::vector<double> tangents(lifted.memory.stride, 0.0);
   std::copy(x.begin(), x.end(), tangents.begin());
   interpreter::tangents<1>(lifted.memory, tangents.data(), interpreter::moved_instructions(lifted.packed.program));
@@ -44,7 +44,7 @@ TEST_CASE("the cost of chains grows as their length") {
     Rods rods(links, chain);
     Lifted lifted(build_kernel(rods.source));
     lifted.move_to(random_point(static_cast<std::size_t>(links), 1));
-    REQUIRE(lifted.solve.factor(lifted.memory));
+    REQUIRE(lifted.factor());
     return std::pair(lifted.solve.solver()->factor_products(), lifted.solve.solver()->solve_products());
   };
   const auto hundred = products(100), thousand = products(1000);

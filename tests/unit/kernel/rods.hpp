@@ -87,6 +87,8 @@ struct Lifted {
     for (int stage = program.first_stage; stage <= 0; ++stage) interpreter::run_section(memory, Dynamics, stage);
   }
 
+  bool factor() { return solve.has_pivots(memory) && solve.factor(memory); }
+
   Kernel kernel;
   const Program& program;
   sparse::Strip strip;
