@@ -22,15 +22,13 @@ void KernelWorkspace::Impl::bind() {
   tables.products = packed.products.data();
   tables.functions = packed.functions.data();
   tables.runs = packed.runs.data();
-  reciprocals.resize(1);
-  for (double k = 1; k < orders; ++k) reciprocals.push_back({1 / k, std::fma(-k, 1 / k, 1.0) / k});
-  tables.reciprocals = reciprocals.data();
   tangents = {tangent.data(), memory.stride, unknowns, static_cast<Slot>(padded_unknowns()), {}};
   std::copy_n(program.stored_end.begin(), tangents.end.size(), tangents.end.begin());
   tables.rows = memory.rows.data();
   tables.stride = memory.stride;
   tables.unknowns = unknowns;
-  tables.shift_factors = memory.shift_factors.data();
+  of_orders = packed::orders_of(memory.rows.data(), memory.stride, orders);
+  tables.orders = of_orders.data();
   tables.scalar.context = this;
   tables.scalar.value = [](void* self, std::uint32_t instruction, int at) {
     interpreter::run_instruction(static_cast<Impl*>(self)->memory, instruction, at);
@@ -147,7 +145,7 @@ bool KernelWorkspace::Impl::runs_on() const {
 /// False: a q̈ is not finite.
 bool KernelWorkspace::Impl::run_later_stages(int stages) {
   if (compiled.later) return compiled.later(&arguments, stages) == 1;
-  const packed::InverseSolution solution{inverse.data(), program.residual.data(), residual_side_by_side, tangents, answers.data()};
+  const packed::InverseSolution solution{inverse.data(), program.residual.data(), residual_side_by_side, tangents, own.data(), answers.data()};
   if (program.runs[Along].empty()) return engine.run_stages_by_inverse(tables, solution, 1, stages, false);
   bool finite = true;
   for (int stage = 1; stage < stages; ++stage) {

@@ -38,6 +38,7 @@ struct KernelWorkspace::Impl {
     residual_vectors = find_residual_vectors();
     residual_side_by_side = is_residual_side_by_side();
     mass_in_eights = has_mass_in_eights();
+    find_own_vectors();
     corrects_points = outputs_follow_accelerations();
     bind();
   }
@@ -75,6 +76,7 @@ struct KernelWorkspace::Impl {
   KernelStatus factor_full();
   void need_full();
   bool is_residual_side_by_side() const;
+  void find_own_vectors();
   bool has_mass_in_eights() const;
   void fetch_eights();
   void fetch_mass(std::size_t i, const double* tangents, std::size_t step, std::size_t first, std::size_t last);
@@ -102,7 +104,7 @@ struct KernelWorkspace::Impl {
   packed::TangentMatrix tangents;    // by_matrix: the engine's view of `tangent`
   const packed::Engine& engine = packed::engine();
   std::optional<packed::ReadyProgram> ready;
-  std::vector<packed::Reciprocal> reciprocals;  // [orders]
+  std::vector<packed::Order> of_orders;  // [orders]
   interpreter::Doubles lane_coefficients;  // [packed.coefficients]
   std::vector<double> parameters;
   std::vector<std::int8_t> sides;
@@ -116,6 +118,7 @@ struct KernelWorkspace::Impl {
   std::span<double> unknown;         // [n + m] of it: −R_k, then q̈_k and λ_k
   std::pair<Slot, Slot> residual_vectors;  // see find_residual_vectors()
   bool residual_side_by_side = false;
+  std::vector<std::int8_t> own;      // see packed::InverseSolution
   bool mass_in_eights = false;       // see has_mass_in_eights()
   bool has_direction = false;        // `tangent` is that of q̈_k, if `owed` is taken from it
   const double* owed = nullptr;      // tangents in the direction of what the first solution was wrong by; null: nothing

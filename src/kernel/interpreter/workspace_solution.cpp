@@ -55,6 +55,22 @@ bool KernelWorkspace::Impl::is_residual_side_by_side() const {
   return true;
 }
 
+/// Which unknowns a corrected slot follows, by the graph of the tangents.
+void KernelWorkspace::Impl::find_own_vectors() {
+  if (!by_matrix) return;
+  std::vector<std::uint32_t> followed(packed.cells, 0);  // a bit for each unknown
+  for (std::size_t d = 0; d < unknowns; ++d) followed[d] = 1u << d;
+  for (const sparse::Edge& edge : sparse::tangent_edges(program)) followed[edge.out] |= followed[edge.operand];
+  for (std::size_t slot = padded_unknowns(); slot < program.stored_end[2]; slot += packed::lanes) {
+    const auto follows_own = [&](std::size_t vector) {
+      for (std::size_t lane = 0; lane < packed::lanes; ++lane)
+        if ((followed[slot + lane] & ~(std::uint64_t{1} << (vector * packed::lanes + lane))) != 0) return false;
+      return true;
+    };
+    own.push_back(follows_own(0) ? 0 : padded_unknowns() > packed::lanes && follows_own(1) ? 1 : -1);
+  }
+}
+
 /// Whether the residuals are side by side, in whole vectors, and all depend on q̈.
 bool KernelWorkspace::Impl::has_mass_in_eights() const {
   const auto follows = [this](Slot slot) { return program.tangent_lags[slot] == 2; };

@@ -17,11 +17,6 @@ struct ScalarRules {
   void (*tangent)(void* context, std::uint32_t instruction, double* tangents) = nullptr;  // [slots], one direction
 };
 
-/// 1/k to twice the digits of a double: a rounded reciprocal alone errs the same way in every step.
-struct Reciprocal {
-  double leading = 0, rest = 0;
-};
-
 struct Tables {
   const ReadyPack* ready = nullptr;      // [pack_count]
   const Copy* copies = nullptr;
@@ -40,8 +35,7 @@ struct Tables {
   double* rows = nullptr;                // [orders][stride], aligned to 64 bytes
   std::size_t stride = 0;                // a multiple of 8
   std::size_t unknowns = 0;
-  const double* shift_factors = nullptr;  // [orders][3] 1, k + 1, (k + 1)(k + 2)
-  const Reciprocal* reciprocals = nullptr;  // [orders] of k; of 0: none
+  const Order* orders = nullptr;         // [orders] of these rows
   ScalarRules scalar;
 };
 
@@ -59,6 +53,7 @@ struct InverseSolution {
   const Slot* residual = nullptr;        // [directions]
   bool side_by_side = false;             // residual[i] = residual[0] + i
   TangentMatrix tangents;                // in the direction of each unknown
+  const std::int8_t* own = nullptr;      // [vectors of corrected slots] the vector of unknowns whose lanes its lanes follow, each its own alone; −1: none
   double* answers = nullptr;             // [tangents.stride × directions] scratch, aligned to 64 bytes, kept from stage 1 on
 };
 

@@ -215,7 +215,7 @@ Vector weighted(const Vector (&weights)[N], const double* rows, std::size_t stri
 
 /// Of what coefficients owe to q̈_k, by lag.
 struct Factors {
-  explicit Factors(const Stage& s) : of_lag{1 / s.t.shift_factors[3 * s.stage + 2], s.t.reciprocals[s.stage + 1].leading, 1} {}
+  explicit Factors(const Stage& s) : of_lag{1 / s.order_of(2).shift_factors[2], s.order_of(1).reciprocal.leading, 1} {}
   double of_lag[3];
 };
 
@@ -225,7 +225,7 @@ inline void add_directions(const Stage& s, const TangentMatrix& tangents, const 
   const Factors factors(s);
   std::size_t i = tangents.first;
   for (int lag = 0; lag <= 2; ++lag) {
-    double* const row = s.row_of(lag);
+    double* const row = s.order_of(lag).row;
     for (const Vector factor = all(factors.of_lag[lag]); i < tangents.end[static_cast<std::size_t>(lag)]; i += lanes)  // the slots of the next lag begin with a vector
       save(row + i, load(row + i) + factor * weighted(weights, values + i, tangents.stride));
   }
@@ -265,66 +265,87 @@ inline void for_corrected(const TangentMatrix& tangents, const Visit& visit) {
     for (; i < tangents.end[static_cast<std::size_t>(lag)]; i += lanes) visit(lag, i);  // the slots of the next lag begin with a vector
 }
 
-/// Of N unknowns: what −M₀⁻¹, and the tangents after it, make of each entry of a residual, [corrected vectors][N][lanes].
+/// A vector of tangents each of whose lanes follows one unknown, lane by lane those of vector `own` of all: these numbers.
+inline Vector own_tangents(const TangentMatrix& tangents, std::size_t place, std::size_t own) {
+  Vector out = all(0);
+  for (std::size_t d = own * lanes, lane = 0; lane < lanes && d < tangents.directions; ++d, ++lane)
+    out[lane] = tangents.values[d * tangents.stride + place + lane];
+  return out;
+}
+
+/// Of N unknowns: what a stage adds to the corrected slots. Those whose lanes follow one unknown each: by its acceleration. Others, up to most_answered unknowns:
+/// by each entry of the residual, what −M₀⁻¹ and the tangents after it make of it, [N][lanes].
 template <std::size_t N>
 void find_answers(const InverseSolution& in) {
   double* out = in.answers;
+  const std::int8_t* own = in.own;
   for_corrected(in.tangents, [&](int, std::size_t i) {
-    Vector rows[N];
+    if (const int vector = *own++; vector >= 0) {
+      save(out, own_tangents(in.tangents, i, static_cast<std::size_t>(vector)));
+      out += lanes;
+      return;
+    }
+    if constexpr (N <= most_answered) {
+      Vector rows[N];
 #pragma GCC unroll 16
-    for (std::size_t d = 0; d < N; ++d) rows[d] = load(in.tangents.values + d * in.tangents.stride + i);
-    for (std::size_t e = 0; e < N; ++e, out += lanes) {
-      const double* const column = in.inverse + e * lanes;  // of a symmetric matrix
-      Vector even = rows[0] * all(column[0]), odd = all(0);
+      for (std::size_t d = 0; d < N; ++d) rows[d] = load(in.tangents.values + d * in.tangents.stride + i);
+      for (std::size_t e = 0; e < N; ++e, out += lanes) {
+        const double* const column = in.inverse + e * lanes;  // of a symmetric matrix
+        Vector even = rows[0] * all(column[0]), odd = all(0);
 #pragma GCC unroll 16
-      for (std::size_t d = 1; d < N; ++d) (d % 2 == 0 ? even : odd) += rows[d] * all(column[d]);
-      save(out, even + odd);
+        for (std::size_t d = 1; d < N; ++d) (d % 2 == 0 ? even : odd) += rows[d] * all(column[d]);
+        save(out, even + odd);
+      }
     }
   });
 }
 
-/// Of N unknowns. What is not finite makes `zero` something else.
+/// q̈_k and what follows from it, of N unknowns. What is not finite makes `zero` something else.
 template <std::size_t N>
 [[gnu::always_inline]] inline void complete(const Stage& s, const InverseSolution& in, Vector& zero) {
   constexpr std::size_t vectors = (N + lanes - 1) / lanes;
-  const double* const residual = s.row_of(2);
-  Vector weights[N];
+  const double* const residual = s.order_of(2).row;
+  Vector weights[N], accelerations[vectors];
   if (in.side_by_side) load_weights(residual + in.residual[0], weights);
   else
 #pragma GCC unroll 16
     for (std::size_t d = 0; d < N; ++d) weights[d] = all(residual[in.residual[d]]);
-  const Factors factors(s);
-  if constexpr (N <= most_answered) {
-    const double* answer = in.answers;
-    const Vector accelerations = weighted(weights, in.inverse, lanes);
-    zero += accelerations * all(0);
-    save(s.row_of(0), accelerations / all(s.t.shift_factors[3 * s.stage + 2]));
-    for_corrected(in.tangents, [&](int lag, std::size_t i) {
-      double* const place = s.row_of(lag) + i;
-      save(place, load(place) + all(factors.of_lag[lag]) * weighted(weights, answer, lanes));
-      answer += N * lanes;
-    });
-  } else {
-    alignas(64) double solution[vectors * lanes];
-    for (std::size_t v = 0; v < vectors; ++v) {
-      const Vector accelerations = weighted(weights, in.inverse + v * lanes, vectors * lanes);
-      zero += accelerations * all(0);
-      save(solution + v * lanes, accelerations);
-    }
-    set_accelerations(s.t, s.stage, solution, N, 1);
-    load_weights(solution, weights);
-    add_directions(s, in.tangents, in.tangents.values, weights);
+  for (std::size_t v = 0; v < vectors; ++v) {
+    accelerations[v] = weighted(weights, in.inverse + v * lanes, vectors * lanes);
+    zero += accelerations[v] * all(0);
+    save(s.order_of(0).row + v * lanes, accelerations[v] / all(s.order_of(2).shift_factors[2]));
   }
+  if constexpr (N > most_answered) {
+    alignas(64) double solution[vectors * lanes];
+    for (std::size_t v = 0; v < vectors; ++v) save(solution + v * lanes, accelerations[v]);
+    load_weights(solution, weights);
+  }
+  const Factors factors(s);
+  const double* answer = in.answers;
+  const std::int8_t* own = in.own;
+  for_corrected(in.tangents, [&](int lag, std::size_t i) {
+    Vector change;
+    if (const int vector = *own++; vector >= 0) {
+      change = load(answer) * (vector == 0 ? accelerations[0] : accelerations[vectors - 1]);
+      answer += lanes;
+    } else if constexpr (N <= most_answered) {
+      change = weighted(weights, answer, lanes);
+      answer += N * lanes;
+    } else {
+      change = weighted(weights, in.tangents.values + i, in.tangents.stride);
+    }
+    double* const place = s.order_of(lag).row + i;
+    save(place, load(place) + all(factors.of_lag[lag]) * change);
+  });
 }
 
 template <std::size_t N>
 bool run_stages_of(const Tables& tables, const InverseSolution& in, int first, int last, bool goes_on) {
-  if constexpr (N <= most_answered)
-    if (first == 1) find_answers<N>(in);
+  if (first == 1) find_answers<N>(in);
   Vector zero = all(0);
   for (int stage = first; stage < last; ++stage) {
     const Stage s(tables, stage);
-    for (std::size_t i = 0; i < N; i += lanes) save(s.row_of(0) + i, all(0));
+    for (std::size_t i = 0; i < N; i += lanes) save(s.order_of(0).row + i, all(0));
     run_packs(s);
     complete<N>(s, in, zero);
     if (stage + 1 == last && !goes_on) break;

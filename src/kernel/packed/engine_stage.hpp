@@ -16,18 +16,18 @@ void sine_cosine(const double* x, double* out, int count) {
 /// What packs of a stage have in common.
 struct Stage {
   Stage(const Tables& tables, int number)
-      : t(tables), stride(static_cast<std::ptrdiff_t>(tables.stride)), stage(number), late(number > first_late_stage),
-        position((number - 1) % rolled_group * static_cast<int>(lanes)) {}
+      : t(tables), stage(number), late(number > first_late_stage), position((number - 1) % rolled_group * static_cast<int>(lanes)),
+        newest(tables.orders + (number + 2)) {}
 
-  int order_of(int lag) const { return stage + 2 - lag; }
-  std::ptrdiff_t offset_of(int lag) const { return order_of(lag) * stride; }
-  double* row_of(int lag) const { return t.rows + offset_of(lag); }
+  /// Of slots of that lag; not below 0.
+  const Order& order_of(int lag) const { return *(newest - lag); }
+  bool has_order_of(int lag) const { return stage + 2 >= lag; }
 
   const Tables& t;
-  std::ptrdiff_t stride;
   int stage;
   bool late;                             // sums made ahead are without what the stage before has found
   std::ptrdiff_t position;               // of sums made ahead for this stage
+  const Order* newest;                   // of lag 0
 };
 
 // ------------------------------------------------------------------------------------------------------------- copies
@@ -42,9 +42,9 @@ inline Vector permuted(const double* row, const Copy& copy) {
 [[gnu::noinline]] Vector gathered(const double* row, const Copy& copy) { return gather(row, copy.slots); }
 
 inline void make(const Stage& s, const Copy& copy) {
-  double* const row = s.row_of(copy.lag);
+  double* const row = s.order_of(copy.lag).row;
   const Vector values = copy.kind == Copy::Range ? load(row + copy.first) : copy.kind == Copy::TwoVectors ? permuted(row, copy) : gathered(row, copy);
-  save(row + copy.to, copy.weighted ? values * all(s.order_of(copy.lag)) : values);
+  save(row + copy.to, copy.weighted ? values * all(s.order_of(copy.lag).number) : values);
 }
 
 // ------------------------------------------------------------------------------------------------------------ columns
@@ -61,10 +61,10 @@ inline void make(const Stage& s, const Copy& copy) {
 /// d/dt multiplies by k + 1.
 inline Vector columns(const Stage& s, const ReadyPack& pack) {
   Vector sum = all(0);
+  const Order& order = s.order_of(pack.lag);
   for (const ReadyRun* run = s.stage > 0 ? pack.later_runs : pack.runs; run != pack.last_run; ++run) {
-    const double* const row = s.row_of(pack.lag);
-    const Vector part = run->neighbours ? columns_of_neighbours(*run, row) : run_of_columns(*run, row);
-    sum += part * all(s.t.shift_factors[3 * s.order_of(pack.lag) + run->shift]);
+    const Vector part = run->neighbours ? columns_of_neighbours(*run, order.row) : run_of_columns(*run, order.row);
+    sum += part * all(order.shift_factors[run->shift]);
   }
   return sum;
 }
@@ -73,23 +73,25 @@ inline Vector columns(const Stage& s, const ReadyPack& pack) {
 
 /// Σ_{j=first..k−first} a_j a_{k−j}, each pair once.
 Vector square(const Stage& s, const double* a, int k, int first) {
+  const auto stride = static_cast<std::ptrdiff_t>(s.t.stride);
   Vector sum = all(0);
-  for (int j = (k + 1) / 2 - 1; j >= first; --j) sum += load(a + j * s.stride) * load(a + (k - j) * s.stride);
+  for (int j = (k + 1) / 2 - 1; j >= first; --j) sum += load(a + j * stride) * load(a + (k - j) * stride);
   sum += sum;
   if (k % 2 == 0 && k / 2 >= first) {
-    const Vector middle = load(a + k / 2 * s.stride);
+    const Vector middle = load(a + k / 2 * stride);
     sum += middle * middle;
   }
   return sum;
 }
 
 [[gnu::noinline]] Vector product(const Stage& s, const ReadyProduct& term, int k) {
-  return term.a == term.b ? square(s, term.a, k, 0) : convolution(term.a, term.b, k, s.stride);
+  return term.a == term.b ? square(s, term.a, k, 0) : convolution(term.a, term.b, k, static_cast<std::ptrdiff_t>(s.t.stride));
 }
 
 /// Σ_{j=1..k} a_j b_{k−j}
 [[gnu::noinline]] Vector without_first(const Stage& s, const double* a, const double* b, int k) {
-  return k == 0 ? all(0) : convolution(a + s.stride, b, k - 1, s.stride);
+  const auto stride = static_cast<std::ptrdiff_t>(s.t.stride);
+  return k == 0 ? all(0) : convolution(a + stride, b, k - 1, stride);
 }
 
 /// The convolution of a sum made ahead with those ends that were not there yet.
@@ -110,31 +112,32 @@ bool has_sum(const ReadyProduct& term) { return ByAhead && term.sum; }
 
 template <bool ByAhead>
 const ReadyPack* run_sum(const Stage& s, const ReadyPack* pack) {
-  const std::ptrdiff_t offset = s.offset_of(pack->lag);
+  const Order& order = s.order_of(pack->lag);
   Vector result = columns(s, *pack);
   for (const ReadyProduct* term = pack->products; term != pack->last_product; ++term)
-    result += load(term->coefficients) * (has_sum<ByAhead>(*term) ? completed(s, *term, offset) : product(s, *term, s.order_of(pack->lag)));
-  save(s.t.rows + offset + pack->out, result);
+    result += load(term->coefficients) * (has_sum<ByAhead>(*term) ? completed(s, *term, order.offset) : product(s, *term, order.number));
+  save(order.row + pack->out, result);
   return pack;
 }
 
 const ReadyPack* run_neighbours(const Stage& s, const ReadyPack* pack) {
   const ReadyRun& run = *pack->later_runs;
-  double* const row = s.row_of(pack->lag);
-  save(row + pack->out, columns_of_neighbours(run, row) * all(s.t.shift_factors[3 * s.order_of(pack->lag) + run.shift]));
+  const Order& order = s.order_of(pack->lag);
+  save(order.row + pack->out, columns_of_neighbours(run, order.row) * all(order.shift_factors[run.shift]));
   return pack;
 }
 
 const ReadyPack* run_products(const Stage& s, const ReadyPack* pack) {
-  const std::ptrdiff_t offset = s.offset_of(pack->lag);
+  const Order& order = s.order_of(pack->lag);
   Vector result = all(0);
-  for (const ReadyProduct* term = pack->products; term != pack->last_product; ++term) result += load(term->coefficients) * completed(s, *term, offset);
-  save(s.t.rows + offset + pack->out, result);
+  for (const ReadyProduct* term = pack->products; term != pack->last_product; ++term)
+    result += load(term->coefficients) * completed(s, *term, order.offset);
+  save(order.row + pack->out, result);
   return pack;
 }
 
 const ReadyPack* run_scan(const Stage& s, const ReadyPack* pack) {
-  double* const row = s.row_of(pack->lag);
+  double* const row = s.order_of(pack->lag).row;
   const Vector terms = columns(s, *pack);
   save(row + pack->out, (pack->kind == Pack::Scan ? running_sum(terms) : running_sum_down(terms)) + carry_of(pack->carry, row));
   return pack;
@@ -142,7 +145,7 @@ const ReadyPack* run_scan(const Stage& s, const ReadyPack* pack) {
 
 /// All of a running sum.
 const ReadyPack* run_strands(const Stage& s, const ReadyPack* pack) {
-  double* const row = s.row_of(pack->lag);
+  double* const row = s.order_of(pack->lag).row;
   Vector sum = all(0);
   for (; pack->kind == Pack::Strand; ++pack) {
     sum += columns(s, *pack);
@@ -168,50 +171,48 @@ const ReadyPack* run_strands(const Stage& s, const ReadyPack* pack) {
 }
 
 /// 1/k comes with its residue: a rounded reciprocal would err the same way in every step.
-inline void save_integral(const Stage& s, const ReadyPack& pack, Vector sum) {
-  const Reciprocal& inverse = s.t.reciprocals[s.order_of(pack.lag)];
+inline void save_integral(const Order& order, const ReadyPack& pack, Vector sum) {
   sum *= load(pack.coefficients);
-  save(s.row_of(pack.lag) + pack.out, sum * all(inverse.rest) + sum * all(inverse.leading));
+  save(order.row + pack.out, sum * all(order.reciprocal.rest) + sum * all(order.reciprocal.leading));
 }
 
 const ReadyPack* run_integral(const Stage& s, const ReadyPack* pack) {
-  const int k = s.order_of(pack->lag);
-  if (k == 0) functions(s.t, *pack->pack);
-  else save_integral(s, *pack, without_first(s, pack->a, pack->b, k));
+  const Order& order = s.order_of(pack->lag);
+  if (order.number == 0) functions(s.t, *pack->pack);
+  else save_integral(order, *pack, without_first(s, pack->a, pack->b, order.number));
   return pack;
 }
 
 const ReadyPack* run_integral_by_sum(const Stage& s, const ReadyPack* pack) {
-  save_integral(s, *pack, completed(s, *pack->products, s.offset_of(pack->lag)));
+  const Order& order = s.order_of(pack->lag);
+  save_integral(order, *pack, completed(s, *pack->products, order.offset));
   return pack;
 }
 
 template <bool ByAhead>
 const ReadyPack* run_quotient(const Stage& s, const ReadyPack* pack) {
-  const int k = s.order_of(pack->lag);
-  const std::ptrdiff_t offset = s.offset_of(pack->lag);
-  const Vector sum = has_sum<ByAhead>(*pack->products) ? completed(s, *pack->products, offset) : without_first(s, pack->b, pack->y, k);
-  save(s.t.rows + offset + pack->out, (load(pack->a + offset) - sum) / load(pack->b));
+  const Order& order = s.order_of(pack->lag);
+  const Vector sum = has_sum<ByAhead>(*pack->products) ? completed(s, *pack->products, order.offset) : without_first(s, pack->b, pack->y, order.number);
+  save(order.row + pack->out, (load(pack->a + order.offset) - sum) / load(pack->b));
   return pack;
 }
 
 template <bool ByAhead>
 const ReadyPack* run_square_root(const Stage& s, const ReadyPack* pack) {
-  const int k = s.order_of(pack->lag);
-  const std::ptrdiff_t offset = s.offset_of(pack->lag);
-  const Vector u = load(pack->a + offset);
+  const Order& order = s.order_of(pack->lag);
+  const Vector u = load(pack->a + order.offset);
   const double* const y = pack->y;
   Vector result;
-  if (k == 0)
+  if (order.number == 0)
     for (unsigned lane = 0; lane < lanes; ++lane) result[lane] = __builtin_sqrt(u[lane]);
   else
-    result = (u - (has_sum<ByAhead>(*pack->products) ? completed(s, *pack->products, offset) : square(s, y, k, 1))) / (load(y) + load(y));
-  save(s.t.rows + offset + pack->out, result);
+    result = (u - (has_sum<ByAhead>(*pack->products) ? completed(s, *pack->products, order.offset) : square(s, y, order.number, 1))) / (load(y) + load(y));
+  save(order.row + pack->out, result);
   return pack;
 }
 
 const ReadyPack* run_scalar(const Stage& s, const ReadyPack* pack) {
-  s.t.scalar.value(s.t.scalar.context, pack->pack->instruction, s.order_of(pack->lag));
+  s.t.scalar.value(s.t.scalar.context, pack->pack->instruction, s.order_of(pack->lag).number);
   return pack;
 }
 
@@ -224,9 +225,9 @@ constexpr RunPack by_way[] = {run_sum<true>,      run_scan,   run_scan,       ru
 void run_by_itself(const Stage& s) {
   const ReadyPack* const last = s.t.ready + s.t.pack_count;
   for (const ReadyPack* pack = s.t.ready; pack != last; ++pack) {
-    if (s.order_of(pack->lag) < 0) continue;
+    if (!s.has_order_of(pack->lag)) continue;
     for (const Copy* copy = pack->copies; copy != pack->last_copy; ++copy)
-      if (s.order_of(copy->lag) >= 0) make(s, *copy);
+      if (s.has_order_of(copy->lag)) make(s, *copy);
     pack = by_itself[pack->kind](s, pack);
   }
 }
@@ -248,14 +249,14 @@ inline void run_packs(const Stage& s) {
 void run_stage(const Tables& tables, int stage) {
   const Stage s(tables, stage);
   if (stage > 0)
-    for (std::size_t i = 0; i < tables.unknowns; i += lanes) save(s.row_of(0) + i, all(0));
+    for (std::size_t i = 0; i < tables.unknowns; i += lanes) save(s.order_of(0).row + i, all(0));
   run_packs(s);
 }
 
 inline void renew(const Stage& s) {
   const Copy* const last = s.t.copies + s.t.copy_count;
   for (const Copy* copy = s.t.copies; copy != last; ++copy)
-    if (s.order_of(copy->lag) >= 0) make(s, *copy);
+    if (s.has_order_of(copy->lag)) make(s, *copy);
 }
 void renew_blocks(const Tables& tables, int stage) { renew(Stage(tables, stage)); }
 

@@ -4,6 +4,7 @@
 #include "kernel/packed/convolutions.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace maupertuis::packed {
@@ -187,6 +188,17 @@ class Preparation {
 };
 
 }  // namespace
+
+std::vector<Order> orders_of(double* rows, std::size_t stride, int count) {
+  std::vector<Order> out;
+  for (int number = 0; number < count; ++number) {
+    const std::ptrdiff_t offset = number * static_cast<std::ptrdiff_t>(stride);
+    const double k = number;
+    const Reciprocal reciprocal = number == 0 ? Reciprocal{} : Reciprocal{1 / k, std::fma(-k, 1 / k, 1.0) / k};
+    out.push_back({rows + offset, offset, {1, k + 1, (k + 1) * (k + 2)}, reciprocal, number});
+  }
+  return out;
+}
 
 ReadyProgram::ReadyProgram(const PackedProgram& program, const Numbers& numbers) { Preparation(*this, program, numbers).run(); }
 

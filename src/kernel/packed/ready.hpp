@@ -1,7 +1,9 @@
 #pragma once
 #include "kernel/packed/layout.hpp"
 
+#include <array>
 #include <cstddef>
+#include <vector>
 
 /// Packs with the addresses of one workspace in them, so that a stage looks nothing up: what a pack reads at order 0, what it has to copy
 /// first, where its coefficients stand. Lists are pairs of pointers, first and last.
@@ -76,6 +78,21 @@ struct ReadyPack {
   const double *a = nullptr, *b = nullptr, *y = nullptr, *coefficients = nullptr;  // as in Pack; operands at order 0
   const Pack* pack = nullptr;
 };
+
+/// 1/k to twice the digits of a double: a rounded reciprocal alone errs the same way in every step.
+struct Reciprocal {
+  double leading = 0, rest = 0;
+};
+
+/// What a pack needs to know of order k.
+struct Order {
+  double* row = nullptr;
+  std::ptrdiff_t offset = 0;            // of the row from that of order 0
+  std::array<double, 3> shift_factors{};  // 1, k + 1, (k + 1)(k + 2)
+  Reciprocal reciprocal;                // of k; of 0: none
+  int number = 0;                       // k
+};
+std::vector<Order> orders_of(double* rows, std::size_t stride, int count);
 
 /// Where a workspace has its numbers; they stay there.
 struct Numbers {

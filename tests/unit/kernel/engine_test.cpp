@@ -35,20 +35,6 @@ std::vector<double> positive_matrix(std::size_t n) {
   return m;
 }
 
-/// What a stage reads of the tables of orders.
-struct Orders {
-  explicit Orders(int count) {
-    for (double k = 0; k < count; ++k) {
-      reciprocals.push_back(k == 0 ? packed::Reciprocal{} : packed::Reciprocal{1 / k, std::fma(-k, 1 / k, 1.0) / k});
-      shift_factors.insert(shift_factors.end(), {1, k + 1, (k + 1) * (k + 2)});
-    }
-  }
-  void enter(packed::Tables& tables) const { tables.reciprocals = reciprocals.data(), tables.shift_factors = shift_factors.data(); }
-
-  std::vector<packed::Reciprocal> reciprocals;
-  std::vector<double> shift_factors;
-};
-
 bool is_inverted(const std::vector<double>& m, std::size_t n) {
   Doubles inverse(n * padded(n));
   return packed::engine().negative_inverse(m.data(), n, inverse.data());
@@ -101,11 +87,11 @@ TEST_CASE("engine: corrections are sums over the directions, scaled by lag") {
   const int stage = 3;
   Doubles rows = random_numbers(6 * stride, 1);
   const Doubles before = rows, values = random_numbers(directions * stride, 2), weights = random_numbers(16, 3);
-  const Orders orders(6);
   packed::Tables tables;
   tables.rows = rows.data();
   tables.stride = stride;
-  orders.enter(tables);
+  const std::vector<packed::Order> orders = packed::orders_of(rows.data(), stride, 6);
+  tables.orders = orders.data();
   packed::engine().correct(tables, stage, {values.data(), stride, directions, 8, {16, 16, 32}}, weights.data());
   for (std::size_t order = 0; order < 6; ++order)
     for (std::size_t slot = 0; slot < stride; ++slot) {
@@ -119,7 +105,6 @@ TEST_CASE("engine: corrections are sums over the directions, scaled by lag") {
 
 TEST_CASE("engine: stages by −M⁻¹ give accelerations and what the coefficients owe to them") {
   const std::size_t stride = 72;
-  const Orders orders(8);
   for (std::size_t turn = 0; turn < 32; ++turn) {
     const std::size_t n = 1 + turn / 2;
     const bool side_by_side = turn % 2 == 1;
@@ -134,9 +119,15 @@ TEST_CASE("engine: stages by −M⁻¹ give accelerations and what the coefficie
     tables.rows = rows.data();
     tables.stride = stride;
     tables.unknowns = n;
-    orders.enter(tables);
+    const std::vector<packed::Order> orders = packed::orders_of(rows.data(), stride, 8);
+    tables.orders = orders.data();
     const packed::TangentMatrix tangents{values.data(), stride, n, 16, {24, 28, 40}};
-    const packed::InverseSolution solution{inverse.data(), residual.data(), side_by_side, tangents, answers.data()};
+    const std::vector<std::int8_t> own{-1, static_cast<std::int8_t>(turn % 4 < 2 ? 0 : -1), static_cast<std::int8_t>(n > 8 ? 1 : turn % 3 == 0 ? 0 : -1)};
+    for (std::size_t vector = 0; vector < own.size(); ++vector)
+      for (std::size_t d = 0; own[vector] >= 0 && d < n; ++d)
+        for (std::size_t lane = 0; lane < 8; ++lane)
+          if (d != static_cast<std::size_t>(own[vector]) * 8 + lane) values[d * stride + 16 + 8 * vector + lane] = 0;
+    const packed::InverseSolution solution{inverse.data(), residual.data(), side_by_side, tangents, own.data(), answers.data()};
     for (int stage = 1; stage <= 5; ++stage) {
       CAPTURE(stage);
       const Doubles before = rows;
