@@ -47,9 +47,9 @@ class LiftedSolve {
   /// In the direction of the last solution, of a stage, those of the stored slots of the packed program; null where they are too rough.
   const double* tangents(int stage) const { return is_rough(stage) ? nullptr : cells_.data(); }
   /// A solution in parts leaves up to 40 times as much of b as one from link to link, since it closes the gaps between parts by forces,
-  /// which are large where a chain is heavy. A motion depends on its orders the less the higher they are: the first ones are to be
-  /// solved twice, and their tangents found from q̈.
-  bool is_rough(int stage) const { return in_parts_ && stage < rough_stages; }
+  /// which are large where a chain is heavy. A motion depends on its orders the less the higher they are: q̈₀ is to be solved for twice, and
+  /// its tangents found from it. (With q̈₁ solved for twice as well, energies err by as much.)
+  bool is_rough(int stage) const { return in_parts_ && stage == 0; }
 
   /// The smallest pivot in units of its terms and of its size where the pivots were chosen; by code 1 where all are sound, else 0.
   double least_pivot() const { return least_pivot_; }
@@ -57,7 +57,6 @@ class LiftedSolve {
   const sparse::SparseSolver* solver() const { return solver_ ? &*solver_ : nullptr; }
 
  private:
-  static constexpr int rough_stages = 2;
   bool fail();
   void assemble(const Memory& memory);
   bool choose_pivots(const Memory& memory);

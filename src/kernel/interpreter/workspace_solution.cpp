@@ -156,7 +156,7 @@ KernelStatus KernelWorkspace::Impl::solve(int stage) {
     if (solve_twice_by_inverse(stage)) return finite();
     if (const KernelStatus status = factor_anew(); status != KernelStatus::Ok) return status;
   }
-  if (by_lifting && lifted->is_rough(stage) && (solve_twice(stage) || stage > 0)) return finite();
+  if (by_lifting && lifted->is_rough(stage) && solve_twice(stage)) return finite();
   has_direction = false, owed = nullptr;
   fetch_residual(stage);
   if (stage > 0 || !by_lifting) {
