@@ -182,18 +182,19 @@ bool KernelWorkspace::Impl::inverts() {
   return solves;
 }
 
-/// Numbers of any sign, in the measure that the inverse gives a coordinate where it is asked first.
+/// Numbers of any sign, in the measure that the inverse gives a coordinate where it is asked first and has one for each.
 void KernelWorkspace::Impl::set_probe() {
   std::uint32_t random = 1;
+  has_probe = true;
   for (std::size_t i = 0; i < unknowns; ++i) {
     random = random * 1664525u + 1013904223u;
     const double part = (random & 0x10000) != 0 ? -1 - random * 0x1p-32 : 1 + random * 0x1p-32;
     const double size = std::sqrt(std::abs(inverse[i * padded_unknowns() + i]));
     const Slot slot = program.residual[i];
     probe[slot] = part / size;
+    has_probe &= std::isfinite(probe[slot]);
     largest_rest[slot] = largest_rest_of_inverse * std::abs(probe[slot]);
   }
-  has_probe = true;
 }
 
 /// Code does not look at each stage: what is not finite goes on to the stages that follow, or stays where it is.
@@ -201,10 +202,11 @@ bool KernelWorkspace::Impl::are_coefficients_finite(int stages) const {
   return engine.are_finite(memory.row(3), memory.stride, static_cast<std::size_t>(stages - 1), unknowns);
 }
 
-/// unknown = −R_k
+/// unknown = −R_k, and 0 beyond, where a solution for what is not finite leaves the like.
 void KernelWorkspace::Impl::fetch_residual(int stage) {
   const double* const row = memory.row(stage);
   for (std::size_t i = 0; i < unknowns; ++i) unknown[i] = -row[program.residual[i]];
+  std::fill(solution.begin() + static_cast<std::ptrdiff_t>(unknowns), solution.end(), 0.0);
 }
 
 /// A rough solution, and one for what it leaves of −R_k, which the tangents tell. False: the second is not small beside the first, as it

@@ -128,3 +128,27 @@ TEST_CASE("a workspace whose expansions are not compiled has compiled solutions:
     for (std::size_t i = 0; i < 30; ++i) CHECK(std::abs(code.coordinate(k)[i] - loops.coordinate(k)[i]) <= 1e-10 * largest);
   }
 }
+
+TEST_CASE("a bad start leaves nothing behind: the same coefficients as by a workspace that never saw it") {
+  Rods rods(20, chain);
+  const Kernel kernel = build_kernel(rods.source);
+  const Point p = random_point(20, 3);
+  for (const bool is_position : {true, false}) {
+    KernelWorkspace work(kernel, 8), fresh(kernel, 8);
+    for (KernelWorkspace* const w : {&work, &fresh}) {
+      w->compile({.cache = false, .long_run = true, .processor = {}});
+      w->set_parameters(one);
+      REQUIRE(w->expand(0, p.q, p.v) == KernelStatus::Ok);  // pivots are chosen
+      w->set_parameters(one);                               // what the inverse is asked is made anew
+    }
+    Point bad = p;
+    (is_position ? bad.q : bad.v)[0] = std::numeric_limits<double>::quiet_NaN();
+    CHECK(work.expand(0, bad.q, bad.v) != KernelStatus::Ok);
+    for (KernelWorkspace* const w : {&work, &fresh}) {
+      REQUIRE(w->evaluate(0, p.q, p.v) == KernelStatus::Ok);
+      REQUIRE(w->expand(0, p.q, p.v) == KernelStatus::Ok);
+    }
+    for (int k = 2; k <= 9; ++k)
+      for (std::size_t i = 0; i < 20; ++i) CHECK(work.coordinate(k)[i] == fresh.coordinate(k)[i]);
+  }
+}
