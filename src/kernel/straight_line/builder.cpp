@@ -213,7 +213,8 @@ StraightLine Builder::finish(std::uint32_t arrays, std::uint32_t wide, Value anc
     for (std::size_t i = 0; i < order.size(); ++i) number[order[i]] = static_cast<Value>(i);
   }
 
-  StraightLine out{.checks = line_.checks, .arrays = arrays, .wide = wide, .guarded = line_.guarded};
+  StraightLine out;
+  out.checks = line_.checks, out.arrays = arrays, out.wide = wide, out.guarded = line_.guarded;
   const auto renumber = [&](Value v) { return v == none ? none : number[v]; };
   for (const Value v : order) {
     Node node = line_.nodes[v];
