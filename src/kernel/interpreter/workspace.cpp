@@ -28,7 +28,9 @@ void KernelWorkspace::Impl::bind() {
   tables.stride = memory.stride;
   tables.unknowns = unknowns;
   of_orders = packed::orders_of(memory.rows.data(), memory.stride, orders);
-  tables.orders = of_orders.data();
+  const int before_all = -2 - program.first_stage;  // so that stages without an order of lag 0 find their place
+  of_orders.insert(of_orders.begin(), static_cast<std::size_t>(before_all), {});
+  tables.orders = of_orders.data() + before_all;
   tables.scalar.context = this;
   tables.scalar.value = [](void* self, std::uint32_t instruction, int at) {
     interpreter::run_instruction(static_cast<Impl*>(self)->memory, instruction, at);

@@ -104,7 +104,7 @@ struct KernelWorkspace::Impl {
   packed::TangentMatrix tangents;    // by_matrix: the engine's view of `tangent`
   const packed::Engine& engine = packed::engine();
   std::optional<packed::ReadyProgram> ready;
-  std::vector<packed::Order> of_orders;  // [orders]
+  std::vector<packed::Order> of_orders;  // those below 0, which nothing reads, then [orders]
   interpreter::Doubles lane_coefficients;  // [packed.coefficients]
   std::vector<double> parameters;
   std::vector<std::int8_t> sides;
