@@ -180,6 +180,10 @@ class KernelWorkspace {
   PolynomialIncrements* increments() const;
   /// Doubles from one order of coordinate() to the next.
   std::size_t row_stride() const;
+  /// The program that is run: that of the kernel, with slots numbered anew. Coefficient k of slot s is coordinate(k)[s].
+  const Program& program() const;
+  /// [program().constants] under the parameters and sides of the last expansion.
+  const double* constants() const;
 
  private:
   struct Impl;

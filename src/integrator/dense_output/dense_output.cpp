@@ -45,4 +45,14 @@ void DenseOutput::advance(double tau, std::span<Compensated> q_out, std::span<Co
   }
 }
 
+void DenseOutput::accelerations(double tau, std::span<double> a) const {
+  std::fill(a.begin(), a.end(), 0.0);
+  double power = 1;
+  for (int k = 2; k <= degree_; ++k, power *= tau) {
+    const double* const row = first_ + static_cast<std::size_t>(k) * stride_;
+    const double weight = k * (k - 1) * power;
+    for (std::size_t i = 0; i < a.size(); ++i) a[i] += row[i] * weight;
+  }
+}
+
 }  // namespace maupertuis

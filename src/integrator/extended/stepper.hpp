@@ -1,6 +1,7 @@
 #pragma once
 #include "integrator/extended/step_size.hpp"
-#include "integrator/taylor/switches.hpp"
+#include "integrator/taylor/roots.hpp"
+#include "integrator/taylor/safe_length.hpp"
 
 #include <maupertuis/extended.hpp>
 
@@ -10,7 +11,7 @@
 namespace maupertuis::extended {
 
 /// TaylorStepper over T (docs/design/taylor_step.md): expand, project onto the constraints, decide the sides of switch
-/// functions that begin at a zero, choose a length, shorten it to the first crossing, advance.
+/// functions that begin at a zero, choose a length, shorten it to the first crossing, advance, and look whether the equations hold at the end.
 template <class T>
 class Stepper {
  public:
@@ -29,6 +30,7 @@ class Stepper {
   const T& time() const { return t_; }
   std::size_t steps() const { return steps_; }
   std::size_t switches() const { return switches_; }
+  std::size_t rejected() const { return rejected_; }
   bool covers(const T& t) const { return std::min(begin_, t_) <= t && t <= std::max(begin_, t_); }
   /// Precondition: covers(t).
   ExtendedSample sample(const T& t);
@@ -38,8 +40,8 @@ class Stepper {
   struct Crossing {
     T x = T(1);                          // fraction of the step
     bool found = false;
-    std::vector<std::size_t> switches;
-    std::optional<std::size_t> event;
+    std::vector<std::size_t> roots;      // switches, then the event
+    std::vector<taylor::Watched> after;  // the same, as the step leaves them
   };
 
   std::optional<Outcome> expand(const T& bound);
@@ -51,12 +53,16 @@ class Stepper {
   void choose_first_sides();
   T judged_length(const T& bound) const;
   std::optional<Outcome> decide_sides(const T& bound);
-  std::int8_t event_side(std::size_t index, const Polynomial& polynomial) const;
-  static bool is_later(const T& x, const Crossing& than) { return x > than.x * (1 + 4 * epsilon<T>()); }
-  static void note(Crossing& crossing, const T& x);
-  Crossing first_crossing(const T& h) const;
-  void leave(const Crossing& crossing, const T& h);
-  Outcome advance(const T& bound, const T& h, bool reaches);
+  bool watches() const { return !switch_state_.empty() || !event_state_.empty(); }
+  bool begins_past_root(std::size_t index, taylor::Watched& watched) const;
+  void note(Crossing& crossing, const T& x, std::size_t index, const T& together) const;
+  Crossing first_crossing(const T& h);
+  void leave(const Crossing& crossing);
+  double safe_length(double log2_wanted, double log2_left);
+  void renew_momenta();
+  void take_rough_constants();
+  std::optional<Outcome> advance(const T& bound, const T& h, bool reaches);
+  bool equations_hold(const T& tau);
   void keep_polynomial();
   void state_after(const T& tau, std::vector<T>& q, std::vector<T>& v) const;
 
@@ -73,7 +79,13 @@ class Stepper {
   double restraint_ = 0;                 // log₂ of what the lengths are multiplied by
   bool first_ = true;
   std::size_t steps_ = 0, switches_ = 0;
+  std::size_t rejected_ = 0;             // steps that were taken back
   std::vector<taylor::Watched> switch_state_, event_state_;
+  taylor::SafeLength safe_;
+  ScaledRows<T> rows_;
+  std::vector<double> rough_constants_;
+  std::vector<double> rates_, momentum_rates_, momenta_;  // [n] largest |q̇| and h |q̈| so far; those that Σ|M| q̇ was found for
+  std::optional<taylor::RootSearchOf<T>> roots_;
   int stuck_ = 0;                        // crossings in a row that did not move time
 };
 

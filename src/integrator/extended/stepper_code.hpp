@@ -1,6 +1,6 @@
 #pragma once
 #include "integrator/extended/stepper.hpp"
-#include "integrator/taylor/switches_code.hpp"
+#include "integrator/taylor/roots_code.hpp"
 #include "kernel/extended/workspace_code.hpp"
 
 namespace maupertuis::extended {
@@ -9,7 +9,12 @@ template <class T>
 Stepper<T>::Stepper(const Kernel& kernel, std::span<const T> parameters, const ExtendedOptions& options, double log2_tolerance)
     : kernel_(kernel), options_(options), log2_tolerance_(log2_tolerance), control_(step_control(log2_tolerance, options.order)),
       work_(kernel, control_.order), probe_(kernel, 1), n_(kernel.freedoms()), switch_state_(kernel.switches().size()),
-      event_state_(kernel.events()) {
+      event_state_(kernel.events()), safe_(work_.program(), 1e4 * std::exp2(log2_tolerance)) {
+  if (watches()) {
+    std::vector<Slot> slots = work_.program().switch_slots;
+    slots.insert(slots.end(), work_.program().events.begin(), work_.program().events.end());
+    roots_.emplace(work_.program(), control_.order, slots);
+  }
   work_.set_parameters(parameters);
   probe_.set_parameters(parameters);
   polynomial_.resize(static_cast<std::size_t>(control_.order + 2) * n_);
@@ -25,7 +30,11 @@ void Stepper<T>::start(const T& t, std::vector<T> q, std::vector<T> v) {
   length_ = std::numeric_limits<double>::quiet_NaN();
   restraint_ = 0;
   first_ = true;
-  steps_ = switches_ = 0;
+  steps_ = switches_ = rejected_ = 0;
+  safe_.forget();
+  rates_.assign(n_, 0.0);
+  momentum_rates_.assign(n_, 0.0);
+  momenta_.assign(n_, 0.0);
   stuck_ = 0;
   std::fill(switch_state_.begin(), switch_state_.end(), taylor::Watched{});
   std::fill(event_state_.begin(), event_state_.end(), taylor::Watched{});
@@ -150,76 +159,140 @@ std::optional<typename Stepper<T>::Outcome> Stepper<T>::decide_sides(const T& bo
   return Outcome{StepEnding::Sliding, "Both sides of a switch push the motion back to it, so that it would slide along the switch."};
 }
 
-/// The sign of an event function, or at a zero the sign that it takes from there.
+/// See TaylorStepper::Impl::begins_past_root.
 template <class T>
-std::int8_t Stepper<T>::event_side(std::size_t index, const Polynomial& polynomial) const {
-  const bool at_zero = event_state_[index].at_zero || polynomial.begins_at_zero();
-  return at_zero ? polynomial.direction() : taylor::watching::sign(polynomial.p[0]);
+bool Stepper<T>::begins_past_root(std::size_t index, taylor::Watched& watched) const {
+  const T judged_over = std::isfinite(length_) ? exp2_of<T>(length_) : T(1);
+  const Polynomial polynomial = taylor::judged(taylor::event_polynomial(work_, index, judged_over));
+  const std::int8_t before = watched.side;
+  watched.at_zero = watched.at_zero || polynomial.begins_at_zero();
+  watched.side = watched.at_zero ? polynomial.direction() : taylor::watching::sign(polynomial.p[0]);
+  return before != 0 && watched.side == -before && abs(polynomial.p[0]) <= T(1e-6) * polynomial.reach;
 }
 
 /// Roots that rounding does not tell apart are one crossing.
 template <class T>
-void Stepper<T>::note(Crossing& crossing, const T& x) {
-  if (x < crossing.x * (1 - 4 * epsilon<T>())) {
-    crossing.switches.clear();
-    crossing.event.reset();
-  }
+void Stepper<T>::note(Crossing& crossing, const T& x, std::size_t index, const T& together) const {
+  if (crossing.found && x > crossing.x * (1 + together) + together) return;
+  if (x < crossing.x * (1 - together) - together) crossing.roots.clear();
   crossing.x = std::min(crossing.x, x);
   crossing.found = true;
+  crossing.roots.push_back(index);
 }
 
 template <class T>
-typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) const {
+typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) {
   Crossing first;
-  for (std::size_t i = 0; i < switch_state_.size(); ++i) {
-    const auto x = taylor::crossing(taylor::switch_polynomial(work_, i, h), switch_state_[i]);
-    if (!x || is_later(*x, first)) continue;
-    note(first, *x);
-    first.switches.push_back(i);
+  if (!watches()) return first;
+  first.after = switch_state_;
+  first.after.insert(first.after.end(), event_state_.begin(), event_state_.end());
+  take_rough_constants();
+  roots_->set_constants(work_.constants(), rough_constants_.data());
+  roots_->begin(t_, h, [this](int k) { return work_.coordinate(k); });
+  const T together = std::max(T(4 * epsilon<T>()), T(4 * epsilon<T>() * abs(t_ / h)));
+  const std::size_t count = switch_state_.size();
+  for (std::size_t i = 0; i < first.after.size(); ++i) {
+    const bool is_switch = i < count;
+    taylor::Watched& watched = first.after[i];
+    if (is_switch && watched.side == 0) continue;  // it vanishes along the motion
+    if (!is_switch && begins_past_root(i - count, watched)) note(first, T(0), i, together);
+    const T until = std::min(T(1), T(first.x * (1 + together) + together));
+    const auto root = roots_->first(is_switch ? work_.program().switch_slots[i] : work_.program().events[i - count], watched, until, !is_switch, is_switch);
+    if (root) note(first, root->x, i, together);
   }
-  for (std::size_t i = 0; i < event_state_.size(); ++i) {
-    const Polynomial polynomial = taylor::event_polynomial(work_, i, h);
-    const std::int8_t before = event_state_[i].side, now = event_side(i, polynomial);
-    // A step may have ended just past a root, within rounding: then the root is here.
-    const bool passed = before != 0 && now == -before;
-    const auto x = passed ? std::optional<T>(T(0)) : taylor::crossing(polynomial, {now, event_state_[i].at_zero});
-    if (!x || is_later(*x, first)) continue;
-    note(first, *x);
-    if (!first.event) first.event = i;
+  for (const std::size_t i : first.roots) {
+    taylor::Watched& watched = first.after[i];
+    watched = {i < count ? static_cast<std::int8_t>(-watched.side) : std::int8_t{0}, true};
   }
   return first;
 }
 
 /// What the step leaves behind in the watched functions: those that it ends at are at a zero.
 template <class T>
-void Stepper<T>::leave(const Crossing& crossing, const T& h) {
-  for (std::size_t i = 0; i < event_state_.size(); ++i) {
-    const Polynomial polynomial = taylor::event_polynomial(work_, i, h);
-    const std::int8_t side = event_side(i, polynomial);
-    event_state_[i].at_zero = crossing.event == i;
-    event_state_[i].side = event_state_[i].at_zero ? std::int8_t{0} : side;
-  }
-  for (taylor::Watched& s : switch_state_) s.at_zero = false;
-  for (const std::size_t i : crossing.switches) {
-    switch_state_[i].at_zero = true;
-    switch_state_[i].side = static_cast<std::int8_t>(-switch_state_[i].side);
-  }
-  switches_ += crossing.switches.size();
+void Stepper<T>::leave(const Crossing& crossing) {
+  const std::size_t count = switch_state_.size();
+  for (std::size_t i = 0; i < crossing.after.size(); ++i) (i < count ? switch_state_[i] : event_state_[i - count]) = crossing.after[i];
+  for (const std::size_t i : crossing.roots) switches_ += i < count;
 }
 
+/// Nothing: the equations do not hold at the end.
 template <class T>
-typename Stepper<T>::Outcome Stepper<T>::advance(const T& bound, const T& h, bool reaches) {
+std::optional<typename Stepper<T>::Outcome> Stepper<T>::advance(const T& bound, const T& h, bool reaches) {
   const Crossing crossing = first_crossing(h);
   if (crossing.found && stuck_ >= 100)
-    return {StepEnding::Sliding, "Switches follow each other in no time: the motion has come to slide along a switch."};
+    return Outcome{StepEnding::Sliding, "Switches follow each other in no time: the motion has come to slide along a switch."};
   const T tau = h * crossing.x;
   state_after(tau, q_, v_);
   t_ = reaches && !crossing.found ? bound : T(begin_ + tau);
+  if (!equations_hold(tau)) return std::nullopt;
   stuck_ = crossing.found && t_ == begin_ ? stuck_ + 1 : 0;
-  leave(crossing, h);
+  leave(crossing);
   first_ = false;
   ++steps_;
-  return {StepEnding::None, {}, crossing.event.has_value()};
+  return Outcome{StepEnding::None, {}, std::any_of(crossing.roots.begin(), crossing.roots.end(), [&](std::size_t i) { return i >= switch_state_.size(); })};
+}
+
+/// The end of a step as a check: see integrator/taylor/end_check.hpp. The mode is that of the step.
+template <class T>
+bool Stepper<T>::equations_hold(const T& tau) {
+  if (tau == 0) return true;
+  if (probe_.evaluate(t_, q_, v_) != KernelStatus::Ok) return false;
+  std::vector<T> off(n_), here(n_);
+  const T allowed = std::max(T(4096 * epsilon<T>()), T(10 * exp2_of<T>(log2_tolerance_)));
+  bool good = true;
+  for (std::size_t i = 0; i < n_; ++i) {
+    T by_polynomial = T(0);
+    for (int k = control_.order + 1; k >= 2; --k) by_polynomial = by_polynomial * tau + T(k * (k - 1)) * polynomial_[static_cast<std::size_t>(k) * n_ + i];
+    here[i] = probe_.acceleration(i);
+    off[i] = abs(by_polynomial - here[i]);
+    good = good && off[i] <= allowed * std::max({T(T(rates_[i]) / abs(tau)), T(abs(here[i])), T(1e-40)});
+  }
+  if (good) return true;
+  // What rounding of the state makes of q̈ is no failure.
+  std::vector<T> q = q_, v = v_;
+  for (std::size_t i = 0; i < n_; ++i) q[i] *= 1 + (i % 2 == 0 ? 1 : -1) * epsilon<T>(), v[i] *= 1 + epsilon<T>();
+  if (probe_.evaluate(T(t_ * (1 + epsilon<T>())), q, v) != KernelStatus::Ok) return false;
+  for (std::size_t i = 0; i < n_; ++i) {
+    const T rounding = 64 * (abs(probe_.acceleration(i) - here[i]) + epsilon<T>() * abs(here[i]));
+    if (!(off[i] <= allowed * std::max({T(T(rates_[i]) / abs(tau)), T(abs(here[i])), T(1e-40)}) + rounding)) return false;
+  }
+  return true;
+}
+
+/// Σ_k |M_jk| q̇_k of the largest velocities so far.
+template <class T>
+void Stepper<T>::renew_momenta() {
+  bool grown = false;
+  for (std::size_t i = 0; i < n_; ++i) grown = grown || rates_[i] > 1.5 * momentum_rates_[i];
+  if (!grown) return;
+  momentum_rates_ = rates_;
+  for (std::size_t j = 0; j < n_; ++j) {
+    double sum = 0;
+    for (std::size_t k = 0; k < n_; ++k) sum += std::abs(static_cast<double>(work_.mass(j, k))) * rates_[k];
+    momenta_[j] = std::max(momenta_[j], sum);
+  }
+  safe_.set_momenta(momenta_);
+}
+
+template <class T>
+void Stepper<T>::take_rough_constants() {
+  rough_constants_.clear();
+  for (std::size_t i = 0; i < work_.program().constants.size(); ++i) rough_constants_.push_back(static_cast<double>(work_.constants()[i]));
+}
+
+/// log₂ of a length that every value of the program allows.
+template <class T>
+double Stepper<T>::safe_length(double log2_wanted, double log2_left) {
+  const double log2_most = std::min(log2_wanted, log2_left), most = std::exp2(log2_most);
+  for (std::size_t i = 0; i < n_; ++i)
+    rates_[i] = std::max({rates_[i], std::abs(static_cast<double>(v_[i])), most * std::abs(static_cast<double>(work_.acceleration(i)))});
+  if (!safe_.is_needed() || !std::isfinite(log2_most) || most == 0) return log2_wanted;
+  renew_momenta();
+  take_rough_constants();
+  safe_.set_constants(rough_constants_.data());
+  const double safe = safe_.within(rows_.of(work_.coordinate(0), work_.row_stride(), control_.order, static_cast<int>(std::floor(log2_most))),
+                                   std::exp2(log2_wanted), std::exp2(log2_left));
+  return safe >= std::exp2(log2_wanted) ? log2_wanted : std::log2(safe);
 }
 
 template <class T>
@@ -259,12 +332,17 @@ typename Stepper<T>::Outcome Stepper<T>::step(const T& bound) {
   if (kernel_.constraints() > 0)
     chosen = within_multipliers(work_, n_, kernel_.constraints(), control_.order, std::min(chosen, log2_size(left)));
   length_ = chosen;
-  if (!(chosen > 1 + log2_size(epsilon<T>()) + log2_size(t_)) || chosen < -100'000)
-    return {StepEnding::StepUnderflow, "The steps shrink below the resolution of time: a force grows without bound, as in a collision."};
-  const bool reaches = chosen >= log2_size(left);
-  const T h = reaches ? left : left > 0 ? exp2_of<T>(chosen) : T(-exp2_of<T>(chosen));
+  chosen = safe_length(chosen, log2_size(left));
   keep_polynomial();
-  return advance(bound, h, reaches);
+  for (;; chosen = std::min(chosen, log2_size(left)) - 1) {
+    if (!(chosen > 1 + log2_size(epsilon<T>()) + log2_size(t_)) || chosen < -100'000)
+      return {StepEnding::StepUnderflow, "The steps shrink below the resolution of time: a force grows without bound, as in a collision."};
+    const bool reaches = chosen >= log2_size(left);
+    const T h = reaches ? left : left > 0 ? exp2_of<T>(chosen) : T(-exp2_of<T>(chosen));
+    if (const auto outcome = advance(bound, h, reaches)) return *outcome;
+    ++rejected_;
+    t_ = begin_, q_ = q_begin_, v_ = v_begin_;
+  }
 }
 
 /// All digits, and the few that tell it from its neighbours.

@@ -49,53 +49,59 @@ bool TaylorStepper::Impl::decide_sides(double bound, Step& result) {
   return false;
 }
 
-void TaylorStepper::Impl::note(Crossing& crossing, double x) const {
-  // Roots that rounding does not tell apart are one crossing.
-  if (x < crossing.x * (1 - 4 * std::numeric_limits<double>::epsilon())) {
-    crossing.switches.clear();
-    crossing.event.reset();
-  }
+/// Roots that rounding does not tell apart are one crossing.
+void TaylorStepper::Impl::note(Crossing& crossing, double x, std::size_t index, double together) const {
+  if (crossing.found && x > crossing.x * (1 + together) + together) return;
+  if (x < crossing.x * (1 - together) - together) crossing.roots.clear();
   crossing.x = std::min(crossing.x, x);
   crossing.found = true;
+  crossing.roots.push_back(index);
 }
 
-/// The sign of an event function, or at a zero the sign that it takes from there.
-std::int8_t TaylorStepper::Impl::event_side(std::size_t index, const taylor::ScaledPolynomial& polynomial) const {
-  const bool at_zero = event_state[index].at_zero || polynomial.begins_at_zero();
-  return at_zero ? polynomial.direction() : sign(polynomial.p[0]);
-}
-
-TaylorStepper::Impl::Crossing TaylorStepper::Impl::first_crossing(double h) const {
+/// The first roots of the step, and with which sides the functions leave it. Switches may change at jumps too, events not.
+TaylorStepper::Impl::Crossing TaylorStepper::Impl::first_crossing(double h) {
   Crossing first_of_all;
-  const auto is_later = [&](double x) { return x > first_of_all.x * (1 + 4 * std::numeric_limits<double>::epsilon()); };
-  for (std::size_t i = 0; i < switch_state.size(); ++i) {
-    const auto x = taylor::crossing(taylor::switch_polynomial(work, i, h), switch_state[i]);
-    if (!x || is_later(*x)) continue;
-    note(first_of_all, *x);
-    first_of_all.switches.push_back(i);
+  first_of_all.after = switch_state;
+  first_of_all.after.insert(first_of_all.after.end(), event_state.begin(), event_state.end());
+  roots->set_constants(work.constants(), work.constants());
+  roots->begin(t.hi, h, [this](int k) { return work.coordinate(k); });
+  const double together = std::max(4 * std::numeric_limits<double>::epsilon(), 4 * std::numeric_limits<double>::epsilon() * std::abs(t.hi / h));
+  const std::size_t switches_here = switch_state.size();
+  for (std::size_t i = 0; i < first_of_all.after.size(); ++i) {
+    const bool is_switch = i < switches_here;
+    taylor::Watched& watched = first_of_all.after[i];
+    if (is_switch && watched.side == 0) continue;  // it vanishes along the motion
+    if (!is_switch && begins_past_root(i - switches_here, watched)) note(first_of_all, 0, i, together);
+    const double until = std::min(1.0, first_of_all.x * (1 + together) + together);
+    const auto root = roots->first(is_switch ? work.program().switch_slots[i] : work.program().events[i - switches_here], watched, until, !is_switch, is_switch);
+    if (root) note(first_of_all, root->x, i, together);
   }
-  for (std::size_t i = 0; i < event_state.size(); ++i) {
-    const auto polynomial = taylor::event_polynomial(work, i, h);
-    const std::int8_t before = event_state[i].side, now = event_side(i, polynomial);
-    // A step may have ended just past a root, within rounding: then the root is here.
-    const bool passed = before != 0 && now == -before;
-    const auto x = passed ? std::optional(0.0) : taylor::crossing(polynomial, {now, event_state[i].at_zero});
-    if (!x || is_later(*x)) continue;
-    note(first_of_all, *x);
-    if (!first_of_all.event) first_of_all.event = i;
+  for (const std::size_t i : first_of_all.roots) {
+    taylor::Watched& watched = first_of_all.after[i];
+    watched = {i < switches_here ? static_cast<std::int8_t>(-watched.side) : std::int8_t{0}, true};
   }
   return first_of_all;
 }
 
+/// The side that an event function has as the step begins. True if it is not the one that it had as the last step ended: then a root lies
+/// between them, within rounding.
+bool TaylorStepper::Impl::begins_past_root(std::size_t index, taylor::Watched& watched) const {
+  const auto polynomial = taylor::judged(taylor::event_polynomial(work, index, length > 0 ? length : 1.0));
+  const std::int8_t before = watched.side;
+  watched.at_zero = watched.at_zero || polynomial.begins_at_zero();
+  watched.side = watched.at_zero ? polynomial.direction() : sign(polynomial.p[0]);
+  constexpr double close = 1e-6;  // beyond, the sign has changed by a jump
+  return before != 0 && watched.side == -before && std::abs(polynomial.p[0]) <= close * polynomial.reach;
+}
+
 void TaylorStepper::Impl::mark_crossings(const Crossing& crossing, Step& result) {
-  for (taylor::Watched& s : switch_state) s.at_zero = false;
-  for (const std::size_t i : crossing.switches) {
-    switch_state[i].at_zero = true;
-    switch_state[i].side = static_cast<std::int8_t>(-switch_state[i].side);
+  const std::size_t count = switch_state.size();
+  for (std::size_t i = 0; i < crossing.after.size(); ++i) (i < count ? switch_state[i] : event_state[i - count]) = crossing.after[i];
+  for (const std::size_t i : crossing.roots) {
+    if (i < count) ++result.switches;
+    else if (!result.event) result.event = i - count;
   }
-  switches += crossing.switches.size();
-  result.switches = static_cast<int>(crossing.switches.size());
-  result.event = crossing.event;
+  switches += static_cast<std::size_t>(result.switches);
 }
 
 }  // namespace maupertuis

@@ -16,21 +16,12 @@ void multipliers_of(const KernelWorkspace& work, std::vector<double>& values) {
 
 }  // namespace
 
-/// The expansion that failed has overwritten that of the last step, which is still asked for.
-void TaylorStepper::Impl::restore_polynomial() {
-  if (first || !expands_once()) return;
-  std::vector<double> position(n), velocity(n);
-  for (std::size_t i = 0; i < n; ++i) position[i] = dense.q[i].hi, velocity[i] = dense.v[i].hi;
-  work.expand(begin.hi, position, velocity);
-}
-
-/// Where a step may be expanded more than once, the rows of the workspace do not stay.
+/// The next expansion takes the place of this one while the step is still asked for.
 void TaylorStepper::Impl::keep_polynomial() {
   begin = t;
   if (dense_turns.changes() != turns.changes()) dense_turns = turns;
   set_sides(probe);
-  if (expands_once()) dense.refer_to(work.coordinate(0), work.row_stride(), work.increments());
-  else dense.copy(work.coordinate(0), work.row_stride());
+  dense.copy(work.coordinate(0), work.row_stride());
   for (std::size_t i = 0; i < integrals.size(); ++i)
     for (int k = 0; k <= control.order + 1; ++k) dense.integrand(k)[i] = work.integrand(i, k);
   std::copy(q.begin(), q.end(), dense.q.begin());
@@ -38,9 +29,7 @@ void TaylorStepper::Impl::keep_polynomial() {
   std::copy(integrals.begin(), integrals.end(), dense.integrals.begin());
 }
 
-/// From what `dense` and the workspace hold; done when it is asked for, where the workspace stays as it is.
-void TaylorStepper::Impl::record_start() const {
-  start_is_recorded = true;
+void TaylorStepper::Impl::record_start() {
   start_sample.t = begin.hi;
   start_sample.q.resize(n), start_sample.v.resize(n), start_sample.a.resize(n);
   for (std::size_t i = 0; i < n; ++i) {

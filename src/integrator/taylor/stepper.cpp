@@ -57,34 +57,43 @@ bool TaylorStepper::Impl::fail(Step& result, KernelStatus status) const {
 bool TaylorStepper::Impl::expand(double bound, Step& result) {
   set_sides(work);
   const KernelStatus status = work.expand(t.hi, q_now, v_now);
-  if (status != KernelStatus::Ok) {
-    fail(result, status);
-    restore_polynomial();
-    return false;
-  }
+  if (status != KernelStatus::Ok) return fail(result, status);
   if (m > 0 && !project(result)) return false;
   return switch_state.empty() || decide_sides(bound, result);
 }
 
+/// Up to the first crossing, or to the end of the step.
 void TaylorStepper::Impl::advance(double bound, double h, const Crossing& crossing, Step& result) {
   const bool reaches_bound = !crossing.found && h == remaining(bound);
-  // The signs that the events have at the beginning; a root in the step leaves them at zero.
-  for (std::size_t i = 0; i < event_state.size(); ++i) {
-    const auto polynomial = taylor::event_polynomial(work, i, h);
-    event_state[i].side = event_side(i, polynomial);
-    event_state[i].at_zero = crossing.event == i;
-    if (event_state[i].at_zero) event_state[i].side = 0;
-  }
   const double tau = h * crossing.x;
   dense.advance(tau, q, v, integrals);
   if (reaches_bound) t = {bound, 0};
   else t.add(tau);
   for (std::size_t i = 0; i < n; ++i) q_now[i] = q[i].hi, v_now[i] = v[i].hi;
-  stuck = crossing.found && t.hi == begin.hi ? stuck + 1 : 0;
-  mark_crossings(crossing, result);
   result.end = t.hi;
-  first = false;
-  ++steps;
+}
+
+bool TaylorStepper::Impl::is_at_rest() const {
+  constexpr double rest = 1e-200;
+  const double *const v = work.coordinate(1), *const half_a = work.coordinate(2);
+  for (std::size_t i = 0; i < n; ++i)
+    if (!(std::abs(v[i]) < rest && std::abs(half_a[i]) < rest)) return false;
+  return true;
+}
+
+/// What the last coefficients, the multipliers and the disks about every value allow; infinite for a motion that is a polynomial.
+double TaylorStepper::Impl::choose_length(double bound) {
+  double chosen = restraint * taylor::step_size(work, n, control, length);
+  const double left = std::abs(remaining(bound));
+  if (m > 0) chosen = taylor::step_within_multipliers(work, n, m, control, std::min(chosen, left));
+  length = std::isfinite(chosen) ? chosen : 0;
+  if (!safe.is_needed()) return chosen;
+  // What is left of velocities below the range of double tells nothing of the motion.
+  if (is_at_rest()) chosen = std::numeric_limits<double>::infinity();
+  if (!switch_state.empty() || first) safe.set_constants(work.constants());
+  end_check.note_rates(work, std::min(chosen, left));
+  renew_momenta();
+  return safe.within({work.coordinate(0), work.row_stride(), control.order, 1}, chosen, left);
 }
 
 Step TaylorStepper::Impl::step(double bound) {
@@ -103,32 +112,42 @@ Step TaylorStepper::Impl::step(double bound) {
   if (!expanded && turns.wind(q))
     for (std::size_t i = 0; i < n; ++i) q_now[i] = q[i].hi;
   if (!std::exchange(expanded, false) && !expand(bound, result)) return result;
-  double chosen = restraint * taylor::step_size(work, n, control, length);
-  if (m > 0)
-    chosen = taylor::step_within_multipliers(work, n, m, control, std::min(chosen, std::abs(remaining(bound))));
-  length = std::isfinite(chosen) ? chosen : 0;
+  double chosen = choose_length(bound);
   if (m > 0 && forces_diverge()) {
     end(result, StepEnding::SingularConstraints, "The constraints are singular near here: the forces that they ask for grow without bound.");
     return result;
   }
-  const double left = remaining(bound);
-  const double h = chosen < std::abs(left) ? std::copysign(chosen, left) : left;
-  if (!(chosen > 2 * std::numeric_limits<double>::epsilon() * std::abs(t.hi)) || chosen < 1e-290) {
-    end(result, StepEnding::StepUnderflow,
-        "The steps shrink below the resolution of time: a force grows without bound, as in a collision.");
-    return result;
+  for (;; chosen = 0.5 * std::min(chosen, std::abs(remaining(bound)))) {
+    if (!(chosen > 2 * std::numeric_limits<double>::epsilon() * std::abs(t.hi)) || chosen < 1e-290) {
+      if (end_status != KernelStatus::Ok) return fail(result, end_status), result;
+      end(result, StepEnding::StepUnderflow,
+          "The steps shrink below the resolution of time: a force grows without bound, as in a collision.");
+      return result;
+    }
+    const double left = remaining(bound);
+    if (make_step(bound, chosen < std::abs(left) ? std::copysign(chosen, left) : left, result)) return result;
+    ++rejected;
+    if (!take_back(result)) return result;
   }
+}
+
+/// False: the equations do not hold at its end.
+bool TaylorStepper::Impl::make_step(double bound, double h, Step& result) {
   keep_polynomial();
-  start_is_recorded = false;
-  if (!expands_once()) record_start();
+  record_start();
   const Crossing crossing = watches() ? first_crossing(h) : Crossing();
   if (crossing.found && stuck >= 100) {
     end(result, StepEnding::Sliding, "Switches follow each other in no time: the motion has come to slide along a switch.");
-    return result;
+    return true;
   }
   advance(bound, h, crossing, result);
-  if (m > 0 && switch_state.empty() && event_state.empty()) land(result, h);
-  return result;
+  if (!settles(bound, crossing, result)) return false;
+  if (result.ending != StepEnding::None) return true;
+  stuck = crossing.found && t.hi == begin.hi ? stuck + 1 : 0;
+  mark_crossings(crossing, result);
+  first = false;
+  ++steps;
+  return true;
 }
 
 // ----------------------------------------------------------------------------------------------------- interface
@@ -164,7 +183,12 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.longest = 0;
   s.largest_row.clear();
   s.most_in_force = 0;
-  s.steps = s.switches = 0;
+  s.steps = s.switches = s.rejected = 0;
+  s.safe.forget();
+  s.end_check.forget();
+  s.momenta.clear();
+  s.momentum_rates.clear();
+  s.end_status = KernelStatus::Ok;
   s.constraint_residual = 0;
   s.stuck = 0;
   // Before any step the dense output is the starting point.
@@ -174,7 +198,6 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.dense.v = s.v;
   s.choose_first_sides();
   s.start_sample = s.sample(t);
-  s.start_is_recorded = true;
 }
 
 Step TaylorStepper::step(double bound) { return impl_->step(bound); }
@@ -188,6 +211,7 @@ std::span<const double> TaylorStepper::q() const {
 }
 std::span<const double> TaylorStepper::v() const { return impl_->v_now; }
 std::size_t TaylorStepper::steps() const { return impl_->steps; }
+std::size_t TaylorStepper::rejected() const { return impl_->rejected; }
 std::size_t TaylorStepper::switches() const { return impl_->switches; }
 const BackendUse& TaylorStepper::backend() const { return impl_->backend; }
 
@@ -202,9 +226,6 @@ Sample TaylorStepper::sample(double t) const {
 }
 
 double TaylorStepper::constraint_residual() const { return impl_->constraint_residual; }
-const Sample& TaylorStepper::step_start() const {
-  if (!impl_->start_is_recorded) impl_->record_start();
-  return impl_->start_sample;
-}
+const Sample& TaylorStepper::step_start() const { return impl_->start_sample; }
 
 }  // namespace maupertuis

@@ -41,6 +41,11 @@ struct ScaledPolynomialOf {
 
 using ScaledPolynomial = ScaledPolynomialOf<double>;
 
+/// The same over a part of the step so short that its first terms outweigh the others: else those that come first in time are lost among the
+/// sizes of those that grow fastest.
+template <class T>
+ScaledPolynomialOf<T> judged(ScaledPolynomialOf<T> polynomial);
+
 template <class Work, class T = typename ScalarOf<Work>::Type>
 ScaledPolynomialOf<T> switch_polynomial(const Work& work, std::size_t index, const std::type_identity_t<T>& h);
 template <class Work, class T = typename ScalarOf<Work>::Type>

@@ -51,6 +51,22 @@ std::int8_t ScaledPolynomialOf<T>::direction() const {
   return k == 0 ? std::int8_t{0} : watching::sign(p[k]);
 }
 
+template <class T>
+ScaledPolynomialOf<T> judged(ScaledPolynomialOf<T> polynomial) {
+  using std::abs;
+  constexpr std::size_t early = 4;
+  constexpr int most_halvings = 200;
+  for (int turn = 0; turn < most_halvings; ++turn) {
+    T first = T(0), later = T(0), power = T(1);
+    for (std::size_t k = 1; k < polynomial.p.size(); ++k) (k <= early ? first : later) += abs(polynomial.p[k]);
+    if (later <= first / 16) break;
+    for (T& c : polynomial.p) c *= power, power *= T(0.5);
+    polynomial.reach = polynomial.scale;
+    for (std::size_t k = 1; k < polynomial.p.size(); ++k) polynomial.reach += abs(polynomial.p[k]);
+  }
+  return polynomial;
+}
+
 template <class Work, class T>
 ScaledPolynomialOf<T> switch_polynomial(const Work& work, std::size_t index, const std::type_identity_t<T>& h) {
   return watching::scaled<T>(work.order() + 1, h, work.switch_scale(index), [&](int k) { return work.switch_function(index, k); });
@@ -113,7 +129,7 @@ bool SideChooserOf<Work>::collect(const T& h) {
   bool changed = false;
   at_zero_.clear();
   for (std::size_t i = 0; i < watched_.size(); ++i) {
-    const ScaledPolynomialOf<T> polynomial = switch_polynomial(work_, i, h);
+    const ScaledPolynomialOf<T> polynomial = judged(switch_polynomial(work_, i, h));
     if (watched_[i].at_zero || polynomial.begins_at_zero()) {
       at_zero_.push_back(i);
       watched_[i].at_zero = true;
@@ -129,7 +145,7 @@ bool SideChooserOf<Work>::collect(const T& h) {
 template <class Work>
 bool SideChooserOf<Work>::confirms(const T& h) const {
   for (const std::size_t i : at_zero_)
-    if (switch_polynomial(work_, i, h).direction() != watched_[i].side) return false;
+    if (judged(switch_polynomial(work_, i, h)).direction() != watched_[i].side) return false;
   return true;
 }
 
@@ -170,7 +186,7 @@ typename SideChooserOf<Work>::Outcome SideChooserOf<Work>::alone(std::size_t ind
     const auto h = expand_(trial);
     if (!h) return Outcome::Failed;
     confirmed[turn] = confirms(*h);
-    vanishes = vanishes && switch_polynomial(work_, index, *h).direction() == 0;
+    vanishes = vanishes && judged(switch_polynomial(work_, index, *h)).direction() == 0;
     if (*confirmed[turn] && !was_zero) return Outcome::Decided;
   }
   const bool both = *confirmed[0] && *confirmed[1];

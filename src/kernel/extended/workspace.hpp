@@ -29,6 +29,10 @@ class Workspace {
   KernelStatus expand(const T& t, std::span<const T> q, std::span<const T> v) { return run(t, q, v, order_); }
   KernelStatus evaluate(const T& t, std::span<const T> q, std::span<const T> v) { return run(t, q, v, 1); }
 
+  const Program& program() const { return program_; }
+  const T* constants() const { return memory_.constants.data(); }
+  std::size_t row_stride() const { return memory_.stride; }
+  /// Coefficient k of slot s at [s].
   const T* coordinate(int k) const { return memory_.row(k); }
   T acceleration(std::size_t i) const { return 2 * memory_.row(2)[i]; }
   T multiplier(std::size_t i) const { return 2 * memory_.row(2)[program_.freedoms + i]; }

@@ -216,6 +216,8 @@ PolynomialIncrements* KernelWorkspace::increments() const {
   return impl_->compiled.increments ? impl_->compiled.increments : polynomial_increments;
 }
 std::size_t KernelWorkspace::row_stride() const { return impl_->memory.stride; }
+const Program& KernelWorkspace::program() const { return impl_->program; }
+const double* KernelWorkspace::constants() const { return impl_->memory.constants.data(); }
 
 /// What compiled code is given.
 void KernelWorkspace::Impl::adopt(interpreter::CompiledCode code) {

@@ -1,0 +1,170 @@
+#include "integrator/taylor/end_check.hpp"
+
+#include "integrator/taylor/stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace maupertuis {
+namespace taylor {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// Below it a velocity is that of rest, whatever its unit.
+constexpr double rest = 1e-40;
+
+}  // namespace
+
+double safe_tolerance(double tolerance) { return 1e4 * epsilon + 10 * (tolerance > epsilon ? tolerance : 0); }
+
+EndCheck::EndCheck(std::size_t freedoms, double tolerance) : allowed_(std::max(1e-12, 10 * tolerance)), rates_(freedoms, 0.0) {}
+
+void EndCheck::forget() { std::fill(rates_.begin(), rates_.end(), 0.0); }
+
+void EndCheck::note_rates(const KernelWorkspace& work, double h) {
+  const double *const v = work.coordinate(1), *const half_a = work.coordinate(2);
+  for (std::size_t i = 0; i < rates_.size(); ++i) rates_[i] = std::max({rates_[i], std::abs(v[i]), h * std::abs(2 * half_a[i])});
+}
+
+bool EndCheck::agrees(std::span<const double> by_polynomial, const KernelWorkspace& by_equations, double h) const {
+  bool good = true;
+  for (std::size_t i = 0; i < rates_.size(); ++i)
+    good = good && std::abs(h) * std::abs(by_polynomial[i] - by_equations.acceleration(i)) <= allowed_ * std::max({rates_[i], std::abs(h * by_equations.acceleration(i)), rest});
+  return good;
+}
+
+bool EndCheck::agrees_but_for_rounding(std::span<const double> by_polynomial, std::span<const double> by_equations, std::span<const double> rounding_of,
+                                       double h) const {
+  constexpr double roundings = 64;
+  for (std::size_t i = 0; i < rates_.size(); ++i) {
+    const double rounding = roundings * (rounding_of[i] + epsilon * std::abs(by_equations[i]));
+    if (!(std::abs(by_polynomial[i] - by_equations[i]) <= allowed_ * std::max({rates_[i] / std::abs(h), std::abs(by_equations[i]), rest}) + rounding)) return false;
+  }
+  return true;
+}
+
+namespace {
+
+/// Gauss and Jordan with partial pivoting: B becomes its inverse, [n × n]. False: a pivot is nothing but rounding.
+bool invert(std::vector<double>& b, std::size_t n) {
+  std::vector<std::size_t> order(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    std::size_t pivot = k;
+    for (std::size_t i = k + 1; i < n; ++i)
+      if (std::abs(b[i * n + k]) > std::abs(b[pivot * n + k])) pivot = i;
+    order[k] = pivot;
+    for (std::size_t j = 0; j < n && pivot != k; ++j) std::swap(b[k * n + j], b[pivot * n + j]);
+    const double inverse = 1 / b[k * n + k];
+    if (!std::isfinite(inverse)) return false;
+    b[k * n + k] = 1;
+    for (std::size_t j = 0; j < n; ++j) b[k * n + j] *= inverse;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (i == k) continue;
+      const double factor = std::exchange(b[i * n + k], 0.0);
+      for (std::size_t j = 0; j < n; ++j) b[i * n + j] -= factor * b[k * n + j];
+    }
+  }
+  for (std::size_t k = n; k-- > 0;)
+    for (std::size_t i = 0; i < n && order[k] != k; ++i) std::swap(b[i * n + k], b[i * n + order[k]]);
+  return true;
+}
+
+}  // namespace
+
+/// Σ_j |B⁻¹_ij| e_j with the roundings e_j of the residual and B = ∂R/∂(q̈, λ).
+std::vector<double> acceleration_roundings(const KernelWorkspace& work, std::size_t n, std::size_t m, Disks& disks, double length) {
+  constexpr std::size_t most = 64;  // unknowns: the inverse costs their third power
+  const std::size_t unknowns = n + m;
+  std::vector<double> result(n, 0.0), b(unknowns * unknowns, 0.0);
+  if (unknowns > most) return result;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) b[i * unknowns + j] = work.mass(i, j);
+  for (std::size_t j = 0; j < m; ++j)
+    for (std::size_t i = 0; i < n; ++i) b[(n + j) * unknowns + i] = b[i * unknowns + n + j] = work.constraint_matrix(j, i);
+  if (!invert(b, unknowns)) return result;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < unknowns; ++j) result[i] += epsilon * std::abs(b[i * unknowns + j]) * disks.residual_rounding(j, length);
+  return result;
+}
+
+}  // namespace taylor
+
+/// Σ_k |M_jk| q̇_k, found anew when velocities have grown. M changes along the motion, but its size is all that counts.
+void TaylorStepper::Impl::renew_momenta() {
+  constexpr std::size_t most = 64;        // unknowns: M costs n²
+  constexpr std::size_t period = 256;
+  if (n > most) return;
+  const auto rates = end_check.rates();
+  bool grown = steps % period == 0;
+  momentum_rates.resize(n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) grown = grown || rates[i] > 1.5 * momentum_rates[i];
+  if (!grown) return;
+  momentum_rates.assign(rates.begin(), rates.end());
+  momenta.resize(n, 0.0);
+  for (std::size_t j = 0; j < n; ++j) {
+    double sum = 0;
+    for (std::size_t k = 0; k < n; ++k) sum += std::abs(work.mass(j, k)) * rates[k];
+    momenta[j] = std::max(momenta[j], sum);
+  }
+  safe.set_momenta(momenta);
+}
+
+/// The end of a step, in the mode in which the step was made, before anything acts there. Where nothing else is in the way, the expansion
+/// there is that of the next step.
+bool TaylorStepper::Impl::settles(double bound, const Crossing& crossing, Step& result) {
+  if (m > 0 && !watches()) {
+    land(result, tau_of(t.hi));
+    if (result.ending != StepEnding::None || !expanded) return true;
+    return equations_hold(work);
+  }
+  const bool goes_on = m == 0 && switch_state.empty() && !crossing.found && t.hi != bound;
+  if (goes_on) {
+    if (turns.wind(q))
+      for (std::size_t i = 0; i < n; ++i) q_now[i] = q[i].hi;
+    end_status = work.expand(t.hi, q_now, v_now);
+    expanded = end_status == KernelStatus::Ok;
+    return expanded && equations_hold(work);
+  }
+  end_status = probe.evaluate(t.hi, q_now, v_now);
+  return end_status == KernelStatus::Ok && equations_hold(probe);
+}
+
+bool TaylorStepper::Impl::equations_hold(const KernelWorkspace& at_end) {
+  const double tau = tau_of(t.hi);
+  by_polynomial.resize(n);
+  dense.accelerations(tau, by_polynomial);
+  if (tau == 0 || end_check.agrees(by_polynomial, at_end, tau)) return true;
+  // What rounding makes of q̈, of the state's and of the formula's values, is asked only here.
+  safe.set_constants(at_end.constants());
+  safe.disks().begin({at_end.coordinate(0), at_end.row_stride(), 1, 1});
+  std::vector<double> roundings = taylor::acceleration_roundings(at_end, n, m, safe.disks(), std::abs(tau));
+  std::vector<double> here(n), position(n), velocity(n);
+  constexpr double rounding = std::numeric_limits<double>::epsilon();
+  for (std::size_t i = 0; i < n; ++i) {
+    here[i] = at_end.acceleration(i);
+    const double sign = i % 2 == 0 ? 1 : -1;
+    position[i] = q_now[i] * (1 + sign * rounding);
+    velocity[i] = v_now[i] * (1 + rounding);
+  }
+  if (probe.evaluate(t.hi * (1 + rounding), position, velocity) != KernelStatus::Ok) return false;
+  for (std::size_t i = 0; i < n; ++i) roundings[i] += std::abs(probe.acceleration(i) - here[i]);
+  return end_check.agrees_but_for_rounding(by_polynomial, here, roundings, tau);
+}
+
+/// The state at the beginning of the step that failed, and its expansion.
+bool TaylorStepper::Impl::take_back(Step& result) {
+  expanded = false;
+  t = begin;
+  turns = dense_turns;
+  std::copy(dense.q.begin(), dense.q.end(), q.begin());
+  std::copy(dense.v.begin(), dense.v.end(), v.begin());
+  std::copy(dense.integrals.begin(), dense.integrals.end(), integrals.begin());
+  for (std::size_t i = 0; i < n; ++i) q_now[i] = q[i].hi, v_now[i] = v[i].hi;
+  result.end = t.hi;
+  const KernelStatus status = work.expand(t.hi, q_now, v_now);
+  return status == KernelStatus::Ok || fail(result, status);
+}
+
+}  // namespace maupertuis

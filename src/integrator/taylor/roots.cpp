@@ -1,0 +1,8 @@
+#include "integrator/taylor/roots_code.hpp"
+
+namespace maupertuis::taylor {
+
+template std::optional<double> touching(const ScaledPolynomial&, std::int8_t);
+template class RootSearchOf<double>;
+
+}  // namespace maupertuis::taylor

@@ -1,0 +1,94 @@
+#include "integrator/taylor/safe_length.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace maupertuis::taylor {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Of a radius: beyond, Cauchy's estimate says little, and tails of derivatives are bounded up to here.
+constexpr double most_of_radius = 0.5;
+constexpr double from_disk_to_disk = 1.4142135623730951;
+/// Below it a momentum is that of rest, whatever its unit.
+constexpr double rest = 1e-40;
+constexpr int most_disks = 400;
+
+/// Down to 8 bits, so that rounding of bounds does not decide on the last digits of a motion.
+double rounded_down(double h) {
+  int exponent = 0;
+  const double mantissa = std::frexp(h, &exponent);
+  return std::ldexp(std::floor(mantissa * 256) / 256, exponent);
+}
+
+}  // namespace
+
+SafeLength::SafeLength(const Program& program, double tolerance) : disks_(program), tolerance_(tolerance) {}
+
+void SafeLength::forget() {
+  momenta_.clear();
+  ratio_ = 4;
+  best_radius_ = radius_ = 0;
+}
+
+double SafeLength::momentum(std::size_t j) const { return j < momenta_.size() ? std::max(momenta_[j], rest) : rest; }
+
+/// Whether the tails at this radius allow a step of length h.
+bool SafeLength::passes(double h) {
+  const double x = h / radius_;
+  if (!(x <= most_of_radius)) return false;
+  const double left_out = std::pow(x, order_) / (1 - x);
+  for (std::size_t j = 0; j < disks_.residuals(); ++j) {
+    const double tail = left_out * disks_.residual_tail(j);
+    if (!(h * tail <= tolerance_ * momentum(j)) && !(tail <= tolerance_ * disks_.residual_rounding(j, radius_))) return false;
+  }
+  return true;
+}
+
+/// The largest h that the tails at this radius allow.
+double SafeLength::allowed() {
+  double x = most_of_radius;
+  for (std::size_t j = 0; j < disks_.residuals(); ++j) {
+    const double tail = disks_.residual_tail(j) / (tolerance_ * (1 - most_of_radius));
+    if (!(tail < infinity)) return 0;
+    if (tail == 0) continue;
+    const double by_momentum = std::pow(momentum(j) / (tail * radius_), 1.0 / (order_ + 1));
+    const double by_rounding = std::pow(disks_.residual_rounding(j, radius_) / tail, 1.0 / order_);
+    x = std::min(x, std::max(by_momentum, by_rounding));
+  }
+  return x * radius_;
+}
+
+/// From large disks to small ones, until no smaller one can allow more.
+double SafeLength::search(double most) {
+  double radius = best_radius_ > 0 ? std::min(8 * most, 4 * best_radius_) : 8 * most, best = 0;
+  for (int i = 0; i < most_disks && most_of_radius * radius > best; ++i, radius /= from_disk_to_disk) {
+    radius_ = radius;
+    disks_.evaluate(radius);
+    if (const double h = allowed(); h > best) best = h, best_radius_ = radius;
+    if (best >= most) break;
+  }
+  return best;
+}
+
+double SafeLength::within(const SlotCoefficients& coefficients, double wanted, double most) {
+  if (!is_needed()) return wanted;
+  order_ = coefficients.order;
+  disks_.begin(coefficients);
+  const double h = std::min(wanted, most);
+  if (!(h > 0)) return wanted;
+  // What was right in the last step is asked first: the whole length, on two disks.
+  for (const double radius : {from_disk_to_disk * ratio_ * h, ratio_ * h}) {
+    radius_ = radius;
+    disks_.evaluate(radius);
+    if (passes(h)) return wanted;
+  }
+  disks_.begin(coefficients);
+  const double found = search(h);
+  if (found > 0) ratio_ = std::clamp(best_radius_ / std::min(found, h), 1 / most_of_radius, 64.0);
+  if (found >= h) return wanted;
+  return rounded_down(found);
+}
+
+}  // namespace maupertuis::taylor

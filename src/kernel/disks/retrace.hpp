@@ -1,0 +1,102 @@
+#pragma once
+#include "kernel/interpreter/interpreter.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace maupertuis {
+
+/// Values of a program along a motion that is known: the coordinates (and the multipliers) are polynomials in s, and some slots are expanded
+/// about any s, by the interpreter's rules and without solving for anything. So a function that varies faster than the motion is followed
+/// in pieces, while the step stays as long as it is.
+template <class T>
+class Retrace {
+ public:
+  /// `slots`: those that are wanted; what they do not need is not carried out. The program must outlive this.
+  Retrace(const Program& program, int order, std::span<const Slot> slots)
+      : program_(program), order_(order), memory_(program, order + 2 + (-2 - program.first_stage), program.slots), polynomials_((order + 2) * program.unknowns) {
+    find_needed(slots);
+    producer_.assign(program.slots, nullptr);
+    for (const Instruction& i : program.instructions) producer_[i.out] = &i;
+  }
+
+  /// [program.constants]
+  void set_constants(const T* constants) {
+    std::copy_n(constants, memory_.constants.size(), memory_.constants.begin());
+    interpreter::prepare_terms(memory_);
+  }
+  /// q_p(s) = Σ_k row(k)[i] s^k for k ≤ order + 1, beginning at t.
+  template <class Row>
+  void set_motion(const T& t, Row&& row) {
+    t_ = t;
+    for (int k = 0; k <= order_ + 1; ++k) std::copy_n(row(k), program_.unknowns, polynomials_.data() + static_cast<std::size_t>(k) * program_.unknowns);
+  }
+  /// All orders about s.
+  void expand_about(const T& s) { run(s, order_); }
+  /// Values at s alone.
+  void evaluate(const T& s) { run(s, 1); }
+
+  int order() const { return order_; }
+  const T* row(int k) const { return memory_.row(k); }
+  const T* constants() const { return memory_.constants.data(); }
+  std::size_t stride() const { return memory_.stride; }
+  T scale(Slot slot) const { return interpreter::term_size(memory_, producer_[slot], slot); }
+
+ private:
+  /// Backwards from what is wanted. What a function's differential needs may stand behind it, hence the turns.
+  void find_needed(std::span<const Slot> slots) {
+    std::vector<bool> wanted(program_.slots, false), taken(program_.instructions.size(), false);
+    for (const Slot slot : slots) wanted[slot] = true;
+    std::vector<std::uint32_t> all;
+    for (const Section section : {Dynamics, Along})
+      for (const Run& run : program_.runs[section])
+        for (std::uint32_t i = run.first; i < run.last; ++i) all.push_back(i);
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (auto at = all.rbegin(); at != all.rend(); ++at) {
+        const Instruction& i = program_.instructions[*at];
+        if (taken[*at] || !(wanted[i.out] || (i.second != no_slot && wanted[i.second]))) continue;
+        taken[*at] = changed = true;
+        for (const Slot slot : {i.a, i.b}) if (slot != no_slot) wanted[slot] = true;
+        for (std::uint32_t t = i.first_term; t < i.last_term; ++t)
+          for (const Slot slot : {program_.terms[t].a, program_.terms[t].b}) if (slot != no_slot) wanted[slot] = true;
+      }
+    }
+    for (const std::uint32_t index : all) if (taken[index]) needed_.push_back(index);
+  }
+
+  void run(const T& s, int stages) {
+    interpreter::set_leaves(memory_, T(t_ + s), order_ + 2 + (-2 - program_.first_stage));
+    shift(s, stages + 1);
+    for (int stage = program_.first_stage; stage < stages; ++stage)
+      for (const std::uint32_t index : needed_) {
+        const int order = stage + 2 - program_.instructions[index].lag;
+        if (order >= 0) interpreter::run_instruction(memory_, index, order);
+      }
+  }
+
+  /// The polynomials about s, by repeated synthetic division, up to order `last`.
+  void shift(const T& s, int last) {
+    const std::size_t n = program_.unknowns;
+    const int degree = order_ + 1;
+    std::vector<T> c(static_cast<std::size_t>(degree) + 1);
+    for (std::size_t i = 0; i < n; ++i) {
+      for (int k = 0; k <= degree; ++k) c[static_cast<std::size_t>(k)] = polynomials_[static_cast<std::size_t>(k) * n + i];
+      for (int done = 0; done <= std::min(last, degree); ++done)
+        for (int k = degree; k-- > done;) c[static_cast<std::size_t>(k)] += s * c[static_cast<std::size_t>(k) + 1];
+      for (int k = 0; k <= std::min(last, degree); ++k) memory_.row(k)[i] = c[static_cast<std::size_t>(k)];
+    }
+  }
+
+  const Program& program_;
+  int order_;
+  interpreter::MemoryOf<T> memory_;
+  std::vector<T> polynomials_;               // [order + 2][unknowns]
+  T t_ = T(0);
+  std::vector<std::uint32_t> needed_;        // instructions, in order
+  std::vector<const Instruction*> producer_; // [slots]
+};
+
+}  // namespace maupertuis
