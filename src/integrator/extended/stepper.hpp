@@ -54,7 +54,7 @@ class Stepper {
   T judged_length(const T& bound) const;
   std::optional<Outcome> decide_sides(const T& bound);
   bool watches() const { return !switch_state_.empty() || !event_state_.empty(); }
-  bool begins_past_root(std::size_t index, taylor::Watched& watched) const;
+  bool begins_past_root(std::size_t index, const T& h, taylor::Watched& watched) const;
   void note(Crossing& crossing, const T& x, std::size_t index, const T& together) const;
   Crossing first_crossing(const T& h);
   void leave(const Crossing& crossing);

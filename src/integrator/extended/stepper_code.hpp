@@ -161,9 +161,8 @@ std::optional<typename Stepper<T>::Outcome> Stepper<T>::decide_sides(const T& bo
 
 /// See TaylorStepper::Impl::begins_past_root.
 template <class T>
-bool Stepper<T>::begins_past_root(std::size_t index, taylor::Watched& watched) const {
-  const T judged_over = std::isfinite(length_) ? exp2_of<T>(length_) : T(1);
-  const Polynomial polynomial = taylor::judged(taylor::event_polynomial(work_, index, judged_over));
+bool Stepper<T>::begins_past_root(std::size_t index, const T& h, taylor::Watched& watched) const {
+  const Polynomial polynomial = taylor::judged(taylor::event_polynomial(work_, index, h));
   const std::int8_t before = watched.side;
   watched.at_zero = watched.at_zero || polynomial.begins_at_zero();
   watched.side = watched.at_zero ? polynomial.direction() : taylor::watching::sign(polynomial.p[0]);
@@ -195,7 +194,7 @@ typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) {
     const bool is_switch = i < count;
     taylor::Watched& watched = first.after[i];
     if (is_switch && watched.side == 0) continue;  // it vanishes along the motion
-    if (!is_switch && begins_past_root(i - count, watched)) note(first, T(0), i, together);
+    if (!is_switch && begins_past_root(i - count, h, watched)) note(first, T(0), i, together);
     const T until = std::min(T(1), T(first.x * (1 + together) + together));
     const auto root = roots_->first(is_switch ? work_.program().switch_slots[i] : work_.program().events[i - count], watched, until, !is_switch, is_switch);
     if (root) note(first, root->x, i, together);

@@ -115,7 +115,7 @@ void TaylorStepper::Impl::renew_momenta() {
 /// there is that of the next step.
 bool TaylorStepper::Impl::settles(double bound, const Crossing& crossing, Step& result) {
   if (m > 0 && !watches()) {
-    land(result, tau_of(t.hi));
+    land(result, (t.hi - begin.hi) + (t.lo - begin.lo));
     if (result.ending != StepEnding::None || !expanded) return true;
     return equations_hold(work);
   }
@@ -132,7 +132,7 @@ bool TaylorStepper::Impl::settles(double bound, const Crossing& crossing, Step& 
 }
 
 bool TaylorStepper::Impl::equations_hold(const KernelWorkspace& at_end) {
-  const double tau = tau_of(t.hi);
+  const double tau = (t.hi - begin.hi) + (t.lo - begin.lo);  // as the state was advanced: the rounding of t counts in short steps
   by_polynomial.resize(n);
   dense.accelerations(tau, by_polynomial);
   if (tau == 0 || end_check.agrees(by_polynomial, at_end, tau)) return true;

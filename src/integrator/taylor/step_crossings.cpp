@@ -71,7 +71,7 @@ TaylorStepper::Impl::Crossing TaylorStepper::Impl::first_crossing(double h) {
     const bool is_switch = i < switches_here;
     taylor::Watched& watched = first_of_all.after[i];
     if (is_switch && watched.side == 0) continue;  // it vanishes along the motion
-    if (!is_switch && begins_past_root(i - switches_here, watched)) note(first_of_all, 0, i, together);
+    if (!is_switch && begins_past_root(i - switches_here, h, watched)) note(first_of_all, 0, i, together);
     const double until = std::min(1.0, first_of_all.x * (1 + together) + together);
     const auto root = roots->first(is_switch ? work.program().switch_slots[i] : work.program().events[i - switches_here], watched, until, !is_switch, is_switch);
     if (root) note(first_of_all, root->x, i, together);
@@ -85,8 +85,8 @@ TaylorStepper::Impl::Crossing TaylorStepper::Impl::first_crossing(double h) {
 
 /// The side that an event function has as the step begins. True if it is not the one that it had as the last step ended: then a root lies
 /// between them, within rounding.
-bool TaylorStepper::Impl::begins_past_root(std::size_t index, taylor::Watched& watched) const {
-  const auto polynomial = taylor::judged(taylor::event_polynomial(work, index, length > 0 ? length : 1.0));
+bool TaylorStepper::Impl::begins_past_root(std::size_t index, double h, taylor::Watched& watched) const {
+  const auto polynomial = taylor::judged(taylor::event_polynomial(work, index, h));
   const std::int8_t before = watched.side;
   watched.at_zero = watched.at_zero || polynomial.begins_at_zero();
   watched.side = watched.at_zero ? polynomial.direction() : sign(polynomial.p[0]);

@@ -87,11 +87,11 @@ double TaylorStepper::Impl::choose_length(double bound) {
   const double left = std::abs(remaining(bound));
   if (m > 0) chosen = taylor::step_within_multipliers(work, n, m, control, std::min(chosen, left));
   length = std::isfinite(chosen) ? chosen : 0;
+  end_check.note_rates(work, std::min(chosen, left));
   if (!safe.is_needed()) return chosen;
   // What is left of velocities below the range of double tells nothing of the motion.
   if (is_at_rest()) chosen = std::numeric_limits<double>::infinity();
   if (!switch_state.empty() || first) safe.set_constants(work.constants());
-  end_check.note_rates(work, std::min(chosen, left));
   renew_momenta();
   return safe.within({work.coordinate(0), work.row_stride(), control.order, 1}, chosen, left);
 }

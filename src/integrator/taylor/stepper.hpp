@@ -61,7 +61,7 @@ struct TaylorStepper::Impl {
   void keep_polynomial();
   void record_start();
   Crossing first_crossing(double h);
-  bool begins_past_root(std::size_t index, taylor::Watched& watched) const;
+  bool begins_past_root(std::size_t index, double h, taylor::Watched& watched) const;
   void note(Crossing& crossing, double x, std::size_t index, double together) const;
   void advance(double bound, double h, const Crossing& crossing, Step& result);
   void mark_crossings(const Crossing& crossing, Step& result);
