@@ -18,12 +18,13 @@ namespace maupertuis {
 
 struct Instruction;
 
-/// Coefficients of all slots: the k-th of slot s, times unit^k, at rows[k · stride + s].
+/// Coefficients of all slots: the k-th of slot s, times unit^k, at rows[k · stride + s · step].
 struct SlotCoefficients {
   const double* rows = nullptr;
   std::size_t stride = 0;
-  int order = 0;       // of the polynomial of q̇: slots of lag ℓ are known up to order + 1 − ℓ
-  double unit = 1;     // s is counted in these; 1 but where coefficients would leave the range of double
+  int order = 0;         // of the polynomial of q̇: slots of lag ℓ are known up to order + 1 − ℓ
+  double unit = 1;       // s is counted in these; 1 but where coefficients would leave the range of double
+  std::size_t step = 1;  // more than 1 where several motions stand side by side
 };
 
 class Disks {
@@ -80,6 +81,7 @@ class Disks {
   Bounds chosen(const Instruction& instruction) const;
   void pair(const Node& node);
   void set(std::uint32_t slot, Bounds bounds);
+  double coefficient(int k, std::uint32_t slot) const { return now_.rows[static_cast<std::size_t>(k) * now_.stride + slot * now_.step]; }
   double centre(std::uint32_t slot, std::uint32_t shift = 0) const;
   double shifted_reach(const Term& term) const;
   double shifted_tail(const Term& term) const;

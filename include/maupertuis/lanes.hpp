@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
+#include <vector>
 
 /// Several motions of one kernel side by side: a *lane* is one of them, and every number becomes `width` numbers.
 ///
@@ -80,6 +81,8 @@ class LaneWorkspace {
   int order() const;
   /// Precondition: values.size() == kernel.parameters().
   void set_parameters(int lane, std::span<const double> values);
+  /// [kernel.program().constants] of a lane under its parameters.
+  std::vector<double> constants(int lane) const;
   /// [width] t of each lane: an input of expand().
   double* time();
   /// [n][width] k-th coefficients of q, 0 ≤ k ≤ order + 1. Those of orders 0 and 1, q and q̇, are the input of expand().

@@ -1,4 +1,5 @@
 #include "integrator/ensemble/batch.hpp"
+#include "integrator/ensemble/lane_safety.hpp"
 #include "integrator/ensemble/lane_steps.hpp"
 #include "integrator/taylor/turns.hpp"
 
@@ -49,7 +50,9 @@ class Batch {
   void step();
   void interrupt();
   void expand();
+  void check_ends();
   void choose_lengths();
+  void keep_lengths_safe();
   double first_length(std::size_t lane) const;
   double velocity(std::size_t lane, std::size_t i, int k) const;
   void look();
@@ -60,6 +63,7 @@ class Batch {
   void state_after(std::size_t lane, double tau, std::span<Compensated> q, std::span<double> v) const;
   void note_energy(std::size_t lane, double t, std::span<const Compensated> q, std::span<const double> v);
   void finish(std::size_t lane, StepEnding ending, std::string reason);
+  void finish_if_it_holds(std::size_t lane);
   void go_alone(std::size_t lane);
 
   std::size_t at(std::size_t i, std::size_t lane) const { return i * width_ + lane; }
@@ -73,10 +77,12 @@ class Batch {
   LaneSteps arithmetic_;
   std::size_t n_, width_;
   LaneWorkspace work_;
+  LaneSafety safety_;
   std::unique_ptr<KernelWorkspace> point_;  // energies
   std::vector<Lane> lanes_;
   std::vector<taylor::Turns> turns_;            // [lanes]
   std::vector<double> energy_, leading_;
+  std::vector<double> chosen_;                  // [lanes] lengths that the control chose
   std::vector<Compensated> position_;           // [n] of one lane
   std::vector<double> whole_, inverse_;  // see LaneArrays
   AlignedArray memory_;
@@ -92,8 +98,8 @@ class Batch {
 
 Batch::Batch(Job& job)
     : job_(job), arithmetic_(best_steps()), n_(job.freedoms), width_(static_cast<std::size_t>(job.expansion->width())),
-      work_(job.kernel, job.control.order, job.expansion), lanes_(width_), turns_(width_, taylor::Turns(job.kernel)),
-      energy_(job.options.energy_terms), leading_(n_), position_(n_),
+      work_(job.kernel, job.control.order, job.expansion), safety_(job, work_), lanes_(width_), turns_(width_, taylor::Turns(job.kernel)),
+      energy_(job.options.energy_terms), leading_(n_), chosen_(width_), position_(n_),
       memory_(aligned((4 * n_ + 9) * width_)) {
   if (job.options.energy_terms > 0) point_ = std::make_unique<KernelWorkspace>(job.kernel, 1);
   arrays_.width = width_;
@@ -155,6 +161,7 @@ void Batch::begin(std::size_t lane, std::size_t trajectory) {
   end_[lane] = job_.end(trajectory);
   arrays_.length[lane] = 0;
   any_fresh_ = true;
+  safety_.begin(lane, job_.parameters(trajectory));
   turns_[lane].forget();
   for (std::size_t i = 0; i < n_; ++i) position_[i] = {job_.q(trajectory)[i], 0};
   note_energy(lane, arrays_.t_high[lane], position_, job_.v(trajectory));
@@ -169,13 +176,18 @@ void Batch::step() {
   if (job_.interrupted()) return interrupt();
   wind();
   expand();
+  check_ends();
   choose_lengths();
+  keep_lengths_safe();
   const bool wanted = arithmetic_.cut_to_end(arrays_) || rounds_ >= last_round_;
+  std::copy_n(chosen_.begin(), width_, arrays_.length);
   if (wanted) look();
+  for (std::size_t lane = 0; lane < width_; ++lane)
+    if (lanes_[lane].active) safety_.expect(lane, arrays_.step[lane]);
   arithmetic_.advance(arrays_);
   ++rounds_;
   for (std::size_t lane = 0; wanted && lane < width_; ++lane) {
-    if (lanes_[lane].active && arrays_.reaches[lane] != 0) finish(lane, StepEnding::None, {});
+    if (lanes_[lane].active && arrays_.reaches[lane] != 0) finish_if_it_holds(lane);
     refill(lane);
   }
 }
@@ -216,6 +228,29 @@ void Batch::choose_lengths() {
   for (int turn = 0; any_fresh_ && turn < 3; ++turn) arithmetic_.choose_length(arrays_, fresh_);
   any_fresh_ = false;
   arithmetic_.choose_length(arrays_, nullptr);
+}
+
+/// A lane whose last step did not end as the equations say is run anew alone, where steps can be taken back.
+void Batch::check_ends() {
+  bool refilled = false;
+  for (std::size_t lane = 0; lane < width_; ++lane)
+    if (lanes_[lane].active && !safety_.holds(lane, arrays_.t_high[lane])) {
+      go_alone(lane);
+      refill(lane);
+      refilled = true;
+    }
+  if (refilled) expand();
+}
+
+/// Lengths that no value of the program forbids, as TaylorStepper has them. The control goes on from what it chose itself.
+void Batch::keep_lengths_safe() {
+  std::copy_n(arrays_.length, width_, chosen_.begin());
+  for (std::size_t lane = 0; lane < width_; ++lane) {
+    const double left = std::abs((end_[lane] - arrays_.t_high[lane]) - arrays_.t_low[lane]);
+    if (!lanes_[lane].active || !(left > 0)) continue;
+    const double wanted = arrays_.length[lane];
+    if (wanted > 0) arrays_.length[lane] = safety_.within(lane, arrays_.t_high[lane], wanted, left);
+  }
 }
 
 double Batch::velocity(std::size_t lane, std::size_t i, int k) const {
@@ -302,6 +337,14 @@ void Batch::note_energy(std::size_t lane, double t, std::span<const Compensated>
   for (std::size_t i = 0; i < energy_.size(); ++i) energy_[i] = point_->observable(i);
   turns_[lane].add_to(energy_);
   lanes_[lane].drift.add(energy_);
+}
+
+/// The end of the last step is not expanded.
+void Batch::finish_if_it_holds(std::size_t lane) {
+  std::vector<double> v(n_);
+  for (std::size_t i = 0; i < n_; ++i) leading_[i] = arrays_.q_high[at(i, lane)], v[i] = arrays_.v_high[at(i, lane)];
+  if (safety_.holds_at(lane, arrays_.t_high[lane], leading_, v)) finish(lane, StepEnding::None, {});
+  else go_alone(lane);
 }
 
 void Batch::finish(std::size_t lane, StepEnding reason, std::string sentence) {

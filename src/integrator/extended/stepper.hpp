@@ -59,7 +59,6 @@ class Stepper {
   Crossing first_crossing(const T& h);
   void leave(const Crossing& crossing);
   double safe_length(double log2_wanted, double log2_left);
-  void renew_momenta();
   void take_rough_constants();
   std::optional<Outcome> advance(const T& bound, const T& h, bool reaches);
   bool equations_hold(const T& tau);
@@ -84,7 +83,7 @@ class Stepper {
   taylor::SafeLength safe_;
   ScaledRows<T> rows_;
   std::vector<double> rough_constants_;
-  std::vector<double> rates_, momentum_rates_, momenta_;  // [n] largest |q̇| and h |q̈| so far; those that Σ|M| q̇ was found for
+  std::vector<double> rates_;            // [n] largest |q̇| and h |q̈| so far
   std::optional<taylor::RootSearchOf<T>> roots_;
   int stuck_ = 0;                        // crossings in a row that did not move time
 };

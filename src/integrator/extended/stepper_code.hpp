@@ -33,8 +33,6 @@ void Stepper<T>::start(const T& t, std::vector<T> q, std::vector<T> v) {
   steps_ = switches_ = rejected_ = 0;
   safe_.forget();
   rates_.assign(n_, 0.0);
-  momentum_rates_.assign(n_, 0.0);
-  momenta_.assign(n_, 0.0);
   stuck_ = 0;
   std::fill(switch_state_.begin(), switch_state_.end(), taylor::Watched{});
   std::fill(event_state_.begin(), event_state_.end(), taylor::Watched{});
@@ -258,21 +256,6 @@ bool Stepper<T>::equations_hold(const T& tau) {
   return true;
 }
 
-/// Σ_k |M_jk| q̇_k of the largest velocities so far.
-template <class T>
-void Stepper<T>::renew_momenta() {
-  bool grown = false;
-  for (std::size_t i = 0; i < n_; ++i) grown = grown || rates_[i] > 1.5 * momentum_rates_[i];
-  if (!grown) return;
-  momentum_rates_ = rates_;
-  for (std::size_t j = 0; j < n_; ++j) {
-    double sum = 0;
-    for (std::size_t k = 0; k < n_; ++k) sum += std::abs(static_cast<double>(work_.mass(j, k))) * rates_[k];
-    momenta_[j] = std::max(momenta_[j], sum);
-  }
-  safe_.set_momenta(momenta_);
-}
-
 template <class T>
 void Stepper<T>::take_rough_constants() {
   rough_constants_.clear();
@@ -286,7 +269,7 @@ double Stepper<T>::safe_length(double log2_wanted, double log2_left) {
   for (std::size_t i = 0; i < n_; ++i)
     rates_[i] = std::max({rates_[i], std::abs(static_cast<double>(v_[i])), most * std::abs(static_cast<double>(work_.acceleration(i)))});
   if (!safe_.is_needed() || !std::isfinite(log2_most) || most == 0) return log2_wanted;
-  renew_momenta();
+  if (safe_.wants_momenta(rates_)) safe_.set_momenta(rates_, work_);
   take_rough_constants();
   safe_.set_constants(rough_constants_.data());
   const double safe = safe_.within(rows_.of(work_.coordinate(0), work_.row_stride(), control_.order, static_cast<int>(std::floor(log2_most))),

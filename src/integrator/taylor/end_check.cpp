@@ -23,15 +23,16 @@ EndCheck::EndCheck(std::size_t freedoms, double tolerance) : allowed_(std::max(1
 
 void EndCheck::forget() { std::fill(rates_.begin(), rates_.end(), 0.0); }
 
-void EndCheck::note_rates(const KernelWorkspace& work, double h) {
-  const double *const v = work.coordinate(1), *const half_a = work.coordinate(2);
-  for (std::size_t i = 0; i < rates_.size(); ++i) rates_[i] = std::max({rates_[i], std::abs(v[i]), h * std::abs(2 * half_a[i])});
+void EndCheck::note_rates(const double* v, const double* half_a, std::size_t step, double h) {
+  for (std::size_t i = 0; i < rates_.size(); ++i) rates_[i] = std::max({rates_[i], std::abs(v[i * step]), h * std::abs(2 * half_a[i * step])});
 }
 
-bool EndCheck::agrees(std::span<const double> by_polynomial, const KernelWorkspace& by_equations, double h) const {
+bool EndCheck::agrees(std::span<const double> by_polynomial, const double* half_by_equations, std::size_t step, double h) const {
   bool good = true;
-  for (std::size_t i = 0; i < rates_.size(); ++i)
-    good = good && std::abs(h) * std::abs(by_polynomial[i] - by_equations.acceleration(i)) <= allowed_ * std::max({rates_[i], std::abs(h * by_equations.acceleration(i)), rest});
+  for (std::size_t i = 0; i < rates_.size(); ++i) {
+    const double a = 2 * half_by_equations[i * step];
+    good = good && std::abs(h) * std::abs(by_polynomial[i] - a) <= allowed_ * std::max({rates_[i], std::abs(h * a), rest});
+  }
   return good;
 }
 
@@ -89,26 +90,30 @@ std::vector<double> acceleration_roundings(const KernelWorkspace& work, std::siz
   return result;
 }
 
+/// q̈ at the state, what rounding of the formula's values makes of it, and what a change of the state by rounding does.
+bool agrees_but_for_rounding(const EndCheck& check, std::span<const double> by_polynomial, KernelWorkspace& point, double t, std::span<const double> q,
+                             std::span<const double> v, double h) {
+  const std::size_t n = q.size(), m = point.program().unknowns - n;
+  std::vector<double> here(n), position(n), velocity(n);
+  if (point.evaluate(t, q, v) != KernelStatus::Ok) return false;
+  Disks disks(point.program());
+  disks.set_constants(point.constants());
+  disks.begin({point.coordinate(0), point.row_stride(), 1});
+  std::vector<double> roundings = acceleration_roundings(point, n, m, disks, std::abs(h));
+  for (std::size_t i = 0; i < n; ++i) {
+    here[i] = point.acceleration(i);
+    position[i] = q[i] * (1 + (i % 2 == 0 ? epsilon : -epsilon));
+    velocity[i] = v[i] * (1 + epsilon);
+  }
+  if (point.evaluate(t * (1 + epsilon), position, velocity) != KernelStatus::Ok) return false;
+  for (std::size_t i = 0; i < n; ++i) roundings[i] += std::abs(point.acceleration(i) - here[i]);
+  return check.agrees_but_for_rounding(by_polynomial, here, roundings, h);
+}
+
 }  // namespace taylor
 
-/// Σ_k |M_jk| q̇_k, found anew when velocities have grown. M changes along the motion, but its size is all that counts.
 void TaylorStepper::Impl::renew_momenta() {
-  constexpr std::size_t most = 64;        // unknowns: M costs n²
-  constexpr std::size_t period = 256;
-  if (n > most) return;
-  const auto rates = end_check.rates();
-  bool grown = steps % period == 0;
-  momentum_rates.resize(n, 0.0);
-  for (std::size_t i = 0; i < n; ++i) grown = grown || rates[i] > 1.5 * momentum_rates[i];
-  if (!grown) return;
-  momentum_rates.assign(rates.begin(), rates.end());
-  momenta.resize(n, 0.0);
-  for (std::size_t j = 0; j < n; ++j) {
-    double sum = 0;
-    for (std::size_t k = 0; k < n; ++k) sum += std::abs(work.mass(j, k)) * rates[k];
-    momenta[j] = std::max(momenta[j], sum);
-  }
-  safe.set_momenta(momenta);
+  if (safe.wants_momenta(end_check.rates())) safe.set_momenta(end_check.rates(), work);
 }
 
 /// The end of a step, in the mode in which the step was made, before anything acts there. Where nothing else is in the way, the expansion
@@ -135,22 +140,8 @@ bool TaylorStepper::Impl::equations_hold(const KernelWorkspace& at_end) {
   const double tau = (t.hi - begin.hi) + (t.lo - begin.lo);  // as the state was advanced: the rounding of t counts in short steps
   by_polynomial.resize(n);
   dense.accelerations(tau, by_polynomial);
-  if (tau == 0 || end_check.agrees(by_polynomial, at_end, tau)) return true;
-  // What rounding makes of q̈, of the state's and of the formula's values, is asked only here.
-  safe.set_constants(at_end.constants());
-  safe.disks().begin({at_end.coordinate(0), at_end.row_stride(), 1, 1});
-  std::vector<double> roundings = taylor::acceleration_roundings(at_end, n, m, safe.disks(), std::abs(tau));
-  std::vector<double> here(n), position(n), velocity(n);
-  constexpr double rounding = std::numeric_limits<double>::epsilon();
-  for (std::size_t i = 0; i < n; ++i) {
-    here[i] = at_end.acceleration(i);
-    const double sign = i % 2 == 0 ? 1 : -1;
-    position[i] = q_now[i] * (1 + sign * rounding);
-    velocity[i] = v_now[i] * (1 + rounding);
-  }
-  if (probe.evaluate(t.hi * (1 + rounding), position, velocity) != KernelStatus::Ok) return false;
-  for (std::size_t i = 0; i < n; ++i) roundings[i] += std::abs(probe.acceleration(i) - here[i]);
-  return end_check.agrees_but_for_rounding(by_polynomial, here, roundings, tau);
+  if (tau == 0 || end_check.agrees(by_polynomial, at_end.coordinate(2), 1, tau)) return true;
+  return taylor::agrees_but_for_rounding(end_check, by_polynomial, probe, t.hi, q_now, v_now, tau);
 }
 
 /// The state at the beginning of the step that failed, and its expansion.

@@ -28,8 +28,21 @@ SafeLength::SafeLength(const Program& program, double tolerance) : disks_(progra
 
 void SafeLength::forget() {
   momenta_.clear();
+  momentum_rates_.clear();
+  asked_ = 0;
   ratio_ = 4;
   best_radius_ = radius_ = 0;
+}
+
+bool SafeLength::wants_momenta(std::span<const double> rates) {
+  constexpr std::size_t most = 64;      // unknowns: M costs n²
+  constexpr std::size_t period = 256;
+  constexpr double grown = 1.5;
+  if (rates.size() > most) return false;
+  if (momentum_rates_.empty() || ++asked_ % period == 0) return true;
+  for (std::size_t i = 0; i < rates.size(); ++i)
+    if (rates[i] > grown * momentum_rates_[i]) return true;
+  return false;
 }
 
 double SafeLength::momentum(std::size_t j) const { return j < momenta_.size() ? std::max(momenta_[j], rest) : rest; }

@@ -1,7 +1,9 @@
 #pragma once
 #include <maupertuis/disks.hpp>
 
+#include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace maupertuis::taylor {
@@ -19,8 +21,20 @@ class SafeLength {
   /// False: R is linear in q, and any length is safe.
   bool is_needed() const { return disks_.residual_has_tails(); }
   void set_constants(const double* constants) { disks_.set_constants(constants); }
-  /// [unknowns] largest momenta Σ_k |M_jk q̇_k| so far; none are needed.
-  void set_momenta(std::vector<double> momenta) { momenta_ = std::move(momenta); }
+  /// Whether velocities have grown so much since the last set_momenta, or that lies so far back, that momenta are to be found anew. M changes along the
+  /// motion, but its size is all that counts. rates: [n] the largest velocities so far.
+  bool wants_momenta(std::span<const double> rates);
+  /// Σ_k |M_jk| rate_k with M of the point that the workspace holds.
+  template <class Work>
+  void set_momenta(std::span<const double> rates, const Work& work) {
+    momentum_rates_.assign(rates.begin(), rates.end());
+    momenta_.resize(rates.size(), 0.0);
+    for (std::size_t j = 0; j < rates.size(); ++j) {
+      double sum = 0;
+      for (std::size_t k = 0; k < rates.size(); ++k) sum += std::abs(static_cast<double>(work.mass(j, k))) * rates[k];
+      momenta_[j] = std::max(momenta_[j], sum);
+    }
+  }
   /// The largest safe length up to `wanted` (> 0, may be infinite) for steps up to `most` (finite). 0: none was found.
   double within(const SlotCoefficients& coefficients, double wanted, double most);
   /// Bounds that `within` left, at the radius it chose.
@@ -36,7 +50,8 @@ class SafeLength {
   Disks disks_;
   double tolerance_;
   int order_ = 0;
-  std::vector<double> momenta_;       // [residuals] or empty
+  std::vector<double> momenta_, momentum_rates_;  // [n] or empty; the rates that they belong to
+  std::size_t asked_ = 0;             // for momenta, so far
   double ratio_ = 4;                  // radius over length that was right last
   double best_radius_ = 0;            // of the last search; 0: none yet
   double radius_ = 0;

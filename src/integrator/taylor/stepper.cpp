@@ -87,7 +87,7 @@ double TaylorStepper::Impl::choose_length(double bound) {
   const double left = std::abs(remaining(bound));
   if (m > 0) chosen = taylor::step_within_multipliers(work, n, m, control, std::min(chosen, left));
   length = std::isfinite(chosen) ? chosen : 0;
-  end_check.note_rates(work, std::min(chosen, left));
+  end_check.note_rates(work.coordinate(1), work.coordinate(2), 1, std::min(chosen, left));
   if (!safe.is_needed()) return chosen;
   // What is left of velocities below the range of double tells nothing of the motion.
   if (is_at_rest()) chosen = std::numeric_limits<double>::infinity();
@@ -186,8 +186,6 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.steps = s.switches = s.rejected = 0;
   s.safe.forget();
   s.end_check.forget();
-  s.momenta.clear();
-  s.momentum_rates.clear();
   s.end_status = KernelStatus::Ok;
   s.constraint_residual = 0;
   s.stuck = 0;

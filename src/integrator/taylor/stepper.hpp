@@ -90,7 +90,6 @@ struct TaylorStepper::Impl {
   std::vector<double> q_now, v_now;      // [n] their leading parts
   std::vector<double> dq, dv;            // [n] back to the constraints
   std::vector<double> by_polynomial;     // [n] q̈ at the end of a step
-  std::vector<double> momenta, momentum_rates;  // [n] Σ_k |M_jk| of these rates
   double constraint_residual = 0;
   DenseOutput dense;
   taylor::Turns turns, dense_turns;      // of q, and of the last step

@@ -91,8 +91,8 @@ void Disks::set_constants(const double* constants) {
 int Disks::last_order(std::uint32_t slot) const { return now_.order + 1 - program_.lags[slot]; }
 
 double Disks::centre(std::uint32_t slot, std::uint32_t shift) const {
-  if (shift == 0) return now_.rows[slot];
-  const double c = now_.rows[shift * now_.stride + slot] / now_.unit;
+  if (shift == 0) return coefficient(0, slot);
+  const double c = coefficient(static_cast<int>(shift), slot) / now_.unit;
   return shift == 1 ? c : 2 * c / now_.unit;
 }
 
@@ -137,14 +137,14 @@ void Disks::evaluate_coordinates() {
     const double rate = k > 1 ? k * powers_[static_cast<std::size_t>(k - 1)] / now_.unit : 0;
     const double second = k > 2 ? k * (k - 1) * powers_[static_cast<std::size_t>(k - 2)] / (now_.unit * now_.unit) : 0;
     for (std::size_t i = 0; i < n; ++i) {
-      const double c = std::abs(row[i]);
+      const double c = std::abs(row[i * now_.step]);
       reach_[i] += c * power;
       rate_reach_[0][i] += c * rate;
       rate_reach_[1][i] += c * second;
     }
   }
   for (std::size_t i = 0; i < n; ++i) {
-    const double c = std::abs(now_.rows[i]);
+    const double c = std::abs(coefficient(0, static_cast<Slot>(i)));
     set(static_cast<Slot>(i), {reach_[i], 0, std::max(0.0, c - reach_[i]), c + reach_[i]});
   }
 }
@@ -159,14 +159,17 @@ void Disks::evaluate_series() {
     for (int k = 1; k <= now_.order + 1 - lag; ++k) {
       const double* const row = now_.rows + static_cast<std::size_t>(k) * now_.stride;
       const double power = powers_[static_cast<std::size_t>(k)];
-      for (Slot s = first; s < last; ++s) series_[s] += std::abs(row[s]) * power;
+      if (now_.step == 1)
+        for (Slot s = first; s < last; ++s) series_[s] += std::abs(row[s]) * power;
+      else
+        for (Slot s = first; s < last; ++s) series_[s] += std::abs(row[s * now_.step]) * power;
     }
     first = last;
   }
   for (const Slot slot : alone_) {
     double sum = 0;
     for (int k = 1; k <= now_.order + 1 - std::max<int>(0, program_.lags[slot]); ++k)
-      sum += std::abs(now_.rows[static_cast<std::size_t>(k) * now_.stride + slot]) * powers_[static_cast<std::size_t>(k)];
+      sum += std::abs(coefficient(k, slot)) * powers_[static_cast<std::size_t>(k)];
     series_[slot] = sum;
   }
 }

@@ -68,7 +68,7 @@ double Disks::series_of_derivative(std::uint32_t slot, std::uint32_t shift) cons
   double sum = 0;
   for (int k = static_cast<int>(shift) + 1; k <= last; ++k) {
     const double weight = shift == 1 ? k : static_cast<double>(k) * (k - 1);
-    sum += weight * std::abs(now_.rows[static_cast<std::size_t>(k) * now_.stride + slot]) * powers_[static_cast<std::size_t>(k) - shift];
+    sum += weight * std::abs(coefficient(k, slot)) * powers_[static_cast<std::size_t>(k) - shift];
   }
   const double unit = shift == 1 ? now_.unit : now_.unit * now_.unit;
   const double widened = (last + 2) / (radius_ * (1 - radius_ / previous_));

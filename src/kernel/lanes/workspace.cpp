@@ -85,6 +85,12 @@ void LaneWorkspace::set_parameters(int lane, std::span<const double> values) {
   lanes::evaluate_constants(impl_->program, values, impl_->constants.data() + lane, impl_->width);
 }
 
+std::vector<double> LaneWorkspace::constants(int lane) const {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < impl_->program.constants.size(); ++i) values.push_back(impl_->constants.data()[i * impl_->width + static_cast<std::size_t>(lane)]);
+  return values;
+}
+
 double* LaneWorkspace::time() {
   const Slot slot = impl_->program.time;
   return slot == no_slot ? impl_->unused_time.data() : impl_->rows.data() + slot * impl_->width;
