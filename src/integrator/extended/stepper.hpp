@@ -1,5 +1,6 @@
 #pragma once
 #include "integrator/extended/step_size.hpp"
+#include "integrator/taylor/end_check.hpp"
 #include "integrator/taylor/roots.hpp"
 #include "integrator/taylor/safe_length.hpp"
 

@@ -245,12 +245,17 @@ bool Stepper<T>::equations_hold(const T& tau) {
     good = good && off[i] <= allowed * std::max({T(T(rates_[i]) / abs(tau)), T(abs(here[i])), T(1e-40)});
   }
   if (good) return true;
-  // What rounding of the state makes of q̈ is no failure.
+  // What rounding of the formula's values and of the state makes of q̈ is no failure.
+  take_rough_constants();
+  safe_.disks().begin(rows_.of(probe_.coordinate(0), probe_.row_stride(), 1, 0));
+  safe_.set_constants(rough_constants_.data());
+  const std::vector<double> of_values = taylor::acceleration_roundings(taylor::bordered_matrix(probe_, n_, kernel_.constraints()), n_, kernel_.constraints(),
+                                                                       safe_.disks(), static_cast<double>(abs(tau)), 1.0);
   std::vector<T> q = q_, v = v_;
   for (std::size_t i = 0; i < n_; ++i) q[i] *= 1 + (i % 2 == 0 ? 1 : -1) * epsilon<T>(), v[i] *= 1 + epsilon<T>();
   if (probe_.evaluate(T(t_ * (1 + epsilon<T>())), q, v) != KernelStatus::Ok) return false;
   for (std::size_t i = 0; i < n_; ++i) {
-    const T rounding = 64 * (abs(probe_.acceleration(i) - here[i]) + epsilon<T>() * abs(here[i]));
+    const T rounding = 64 * (abs(probe_.acceleration(i) - here[i]) + epsilon<T>() * (abs(here[i]) + T(of_values[i])));
     if (!(off[i] <= allowed * std::max({T(T(rates_[i]) / abs(tau)), T(abs(here[i])), T(1e-40)}) + rounding)) return false;
   }
   return true;

@@ -74,19 +74,12 @@ bool invert(std::vector<double>& b, std::size_t n) {
 
 }  // namespace
 
-/// Σ_j |B⁻¹_ij| e_j with the roundings e_j of the residual and B = ∂R/∂(q̈, λ).
-std::vector<double> acceleration_roundings(const KernelWorkspace& work, std::size_t n, std::size_t m, Disks& disks, double length) {
-  constexpr std::size_t most = 64;  // unknowns: the inverse costs their third power
+std::vector<double> acceleration_roundings(std::vector<double> b, std::size_t n, std::size_t m, Disks& disks, double length, double unit) {
   const std::size_t unknowns = n + m;
-  std::vector<double> result(n, 0.0), b(unknowns * unknowns, 0.0);
-  if (unknowns > most) return result;
+  std::vector<double> result(n, 0.0);
+  if (b.empty() || !invert(b, unknowns)) return result;
   for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j) b[i * unknowns + j] = work.mass(i, j);
-  for (std::size_t j = 0; j < m; ++j)
-    for (std::size_t i = 0; i < n; ++i) b[(n + j) * unknowns + i] = b[i * unknowns + n + j] = work.constraint_matrix(j, i);
-  if (!invert(b, unknowns)) return result;
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < unknowns; ++j) result[i] += epsilon * std::abs(b[i * unknowns + j]) * disks.residual_rounding(j, length);
+    for (std::size_t j = 0; j < unknowns; ++j) result[i] += unit * std::abs(b[i * unknowns + j]) * disks.residual_rounding(j, length);
   return result;
 }
 
@@ -99,7 +92,7 @@ bool agrees_but_for_rounding(const EndCheck& check, std::span<const double> by_p
   Disks disks(point.program());
   disks.set_constants(point.constants());
   disks.begin({point.coordinate(0), point.row_stride(), 1});
-  std::vector<double> roundings = acceleration_roundings(point, n, m, disks, std::abs(h));
+  std::vector<double> roundings = acceleration_roundings(bordered_matrix(point, n, m), n, m, disks, std::abs(h), epsilon);
   for (std::size_t i = 0; i < n; ++i) {
     here[i] = point.acceleration(i);
     position[i] = q[i] * (1 + (i % 2 == 0 ? epsilon : -epsilon));

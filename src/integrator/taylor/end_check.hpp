@@ -31,9 +31,23 @@ class EndCheck {
   std::vector<double> rates_;
 };
 
-/// [n] What rounding of the values of the residual makes of q̈ at the point that the workspace and the disks hold; 0 where there are too many
-/// unknowns to tell, or their matrix is singular. `length`: of the step. Cost: (n + m)³.
-std::vector<double> acceleration_roundings(const KernelWorkspace& work, std::size_t freedoms, std::size_t constraints, Disks& disks, double length);
+/// B = ∂R/∂(q̈, λ) at the point that a workspace holds, [(n + m)²]; empty where there are too many unknowns for its inverse, which costs their third power.
+template <class Work>
+std::vector<double> bordered_matrix(const Work& work, std::size_t freedoms, std::size_t constraints) {
+  constexpr std::size_t most = 64;
+  const std::size_t n = freedoms, unknowns = freedoms + constraints;
+  if (unknowns > most) return {};
+  std::vector<double> b(unknowns * unknowns, 0.0);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) b[i * unknowns + j] = static_cast<double>(work.mass(i, j));
+  for (std::size_t j = 0; j < constraints; ++j)
+    for (std::size_t i = 0; i < n; ++i) b[(n + j) * unknowns + i] = b[i * unknowns + n + j] = static_cast<double>(work.constraint_matrix(j, i));
+  return b;
+}
+
+/// [n] Σ_j |B⁻¹_ij| e_j: what rounding of the values of the residual makes of q̈ at the centre of the disks; 0 where B is empty or singular.
+/// `length`: of the step; `unit`: the rounding of 1.
+std::vector<double> acceleration_roundings(std::vector<double> bordered, std::size_t freedoms, std::size_t constraints, Disks& disks, double length, double unit);
 
 /// The slow look at the end of a step of length h, where the quick one failed. `point` has the parameters and sides of the step.
 bool agrees_but_for_rounding(const EndCheck& check, std::span<const double> by_polynomial, KernelWorkspace& point, double t, std::span<const double> q,
