@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 /// How far the polynomials of a step can be trusted: every value of the program answers for its own expansion.
@@ -29,8 +30,8 @@ struct SlotCoefficients {
 
 class Disks {
  public:
-  /// The program must outlive this.
-  explicit Disks(const Program& program);
+  /// Bounds the residual, and the slots named besides. The program must outlive this.
+  explicit Disks(const Program& program, std::span<const std::uint32_t> slots = {});
   ~Disks();
   Disks(Disks&&) noexcept;
 
@@ -67,13 +68,18 @@ class Disks {
 
   void find_degrees();
   void find_series(const std::vector<bool>& made);
+  void find_needs(std::span<const std::uint32_t> slots);
+  void need_operands(const Node& node);
+  void find_powers();
   void evaluate_coordinates();
+  double reach_of_rate(std::uint32_t slot, int shift) const;
   void evaluate_series();
   void evaluate(const Node& node);
   void find_roundings(double length);
   double rounding_of_derivative(std::uint32_t slot, std::uint32_t shift) const;
   double rounding_of(const Node& node) const;
   Bounds sum(const Node& node) const;
+  double tail_of_sum(const Instruction& instruction) const;
   Bounds product(std::uint32_t a, std::uint32_t b) const;
   Bounds quotient(const Node& node) const;
   Bounds power(std::uint32_t a, double exponent, double centre) const;
@@ -89,6 +95,9 @@ class Disks {
 
   const Program& program_;
   std::vector<Node> nodes_;
+  std::vector<std::uint32_t> needed_;         // nodes that evaluate() carries out, in order
+  std::vector<std::int8_t> needs_reach_, needs_tail_;  // [slots]
+  int most_rates_ = 0;                        // up to this shift the reach of coordinates is needed
   std::vector<Term> terms_;
   std::vector<int> residual_;                 // node that makes R_j; −1: none
   std::vector<std::int8_t> has_series_;       // [slots] all known orders are in the rows

@@ -1,6 +1,7 @@
 #include "integrator/dense_output/dense_output.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace maupertuis {
 namespace {
@@ -24,8 +25,10 @@ void DenseOutput::resize(std::size_t freedoms, std::size_t integral_count, int d
 }
 
 void DenseOutput::copy(const double* first, std::size_t stride) {
+  const std::size_t row = padded(freedoms_);
   for (int k = 0; k <= degree_; ++k)
-    std::copy_n(first + static_cast<std::size_t>(k) * stride, freedoms_, coefficients_.data() + static_cast<std::size_t>(k) * padded(freedoms_));
+    for (std::size_t i = 0; i < row; i += 8)  // rows end with whole vectors
+      std::memcpy(coefficients_.data() + static_cast<std::size_t>(k) * row + i, first + static_cast<std::size_t>(k) * stride + i, 8 * sizeof(double));
   refer_to(coefficients_.data(), padded(freedoms_));
 }
 

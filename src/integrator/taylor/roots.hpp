@@ -35,7 +35,7 @@ template <class T>
 class RootSearchOf {
  public:
   /// The program must outlive this.
-  RootSearchOf(const Program& program, int order, std::span<const Slot> slots) : retrace_(program, order, slots), disks_(program) {}
+  RootSearchOf(const Program& program, int order, std::span<const Slot> slots) : retrace_(program, order, slots), disks_(program, slots) {}
 
   /// [program.constants], under the sides in force.
   void set_constants(const T* constants, const double* rough) {

@@ -14,6 +14,15 @@ constexpr double from_disk_to_disk = 1.4142135623730951;
 /// Below it a momentum is that of rest, whatever its unit.
 constexpr double rest = 1e-40;
 constexpr int most_disks = 400;
+/// One disk is tried again after so many steps that needed two.
+constexpr unsigned period_of_two = 32;
+
+double whole_power(double x, int n) {
+  double result = 1;
+  for (; n > 0; n /= 2, x *= x)
+    if (n % 2 != 0) result *= x;
+  return result;
+}
 
 /// Down to 8 bits, so that rounding of bounds does not decide on the last digits of a motion.
 double rounded_down(double h) {
@@ -51,12 +60,18 @@ double SafeLength::momentum(std::size_t j) const { return j < momenta_.size() ? 
 bool SafeLength::passes(double h) {
   const double x = h / radius_;
   if (!(x <= most_of_radius)) return false;
-  const double left_out = std::pow(x, order_) / (1 - x);
+  const double left_out = whole_power(x, order_) / (1 - x);
   for (std::size_t j = 0; j < disks_.residuals(); ++j) {
     const double tail = left_out * disks_.residual_tail(j);
     if (!(h * tail <= tolerance_ * momentum(j)) && !(tail <= tolerance_ * disks_.residual_rounding(j, radius_))) return false;
   }
   return true;
+}
+
+bool SafeLength::passes_on(double radius, double h) {
+  radius_ = radius;
+  disks_.evaluate(radius);
+  return passes(h);
 }
 
 /// The largest h that the tails at this radius allow.
@@ -91,12 +106,11 @@ double SafeLength::within(const SlotCoefficients& coefficients, double wanted, d
   disks_.begin(coefficients);
   const double h = std::min(wanted, most);
   if (!(h > 0)) return wanted;
-  // What was right in the last step is asked first: the whole length, on two disks.
-  for (const double radius : {from_disk_to_disk * ratio_ * h, ratio_ * h}) {
-    radius_ = radius;
-    disks_.evaluate(radius);
-    if (passes(h)) return wanted;
-  }
+  // What was right in the last step is asked first: the whole length on one disk, or on two where coefficients have to help.
+  const bool asks_one = !needs_two_ || ++asked_two_ % period_of_two == 0;
+  if (asks_one && passes_on(ratio_ * h, h)) return needs_two_ = false, wanted;
+  if (asks_one) disks_.begin(coefficients);
+  if (passes_on(from_disk_to_disk * ratio_ * h, h) || passes_on(ratio_ * h, h)) return needs_two_ = true, wanted;
   disks_.begin(coefficients);
   const double found = search(h);
   if (found > 0) ratio_ = std::clamp(best_radius_ / std::min(found, h), 1 / most_of_radius, 64.0);

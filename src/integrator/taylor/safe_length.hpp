@@ -43,6 +43,7 @@ class SafeLength {
 
  private:
   bool passes(double h);
+  bool passes_on(double radius, double h);
   double allowed();
   double search(double most);
   double momentum(std::size_t j) const;
@@ -55,6 +56,8 @@ class SafeLength {
   double ratio_ = 4;                  // radius over length that was right last
   double best_radius_ = 0;            // of the last search; 0: none yet
   double radius_ = 0;
+  bool needs_two_ = false;            // disks, so that coefficients bound what the rules do not
+  unsigned asked_two_ = 0;
 };
 
 }  // namespace maupertuis::taylor

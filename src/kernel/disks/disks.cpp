@@ -17,7 +17,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 Disks::~Disks() = default;
 Disks::Disks(Disks&&) noexcept = default;
 
-Disks::Disks(const Program& program) : program_(program) {
+Disks::Disks(const Program& program, std::span<const std::uint32_t> slots) : program_(program) {
   std::vector<bool> made(program.slots, false);
   std::vector<int> maker(program.slots, -1);
   for (const maupertuis::Term& t : program.terms) terms_.push_back({0, t.coefficient, t.a, t.b, t.shift});
@@ -35,6 +35,46 @@ Disks::Disks(const Program& program) : program_(program) {
   for (auto& values : rate_reach_) values.assign(program.unknowns, 0.0);
   find_degrees();
   find_series(made);
+  find_needs(slots);
+}
+
+/// Backwards from the tails that are asked for. The tail of a sum needs the tails of its terms and the reaches of what it multiplies; that of a
+/// function needs the reach of its operand.
+void Disks::find_needs(std::span<const std::uint32_t> slots) {
+  needs_reach_.assign(program_.slots, 0);
+  needs_tail_.assign(program_.slots, 0);
+  for (const Slot slot : program_.residual)
+    if (slot != no_slot) needs_tail_[slot] = 1;
+  for (const Slot slot : slots) needs_tail_[slot] = needs_reach_[slot] = 1;
+  for (std::size_t at = nodes_.size(); at-- > 0;) {
+    const Instruction& i = nodes_[at].instruction;
+    const auto needs = [&](Slot slot) { return slot != no_slot && (needs_tail_[slot] || needs_reach_[slot]); };
+    if (!needs(i.out) && !needs(i.second)) continue;
+    needed_.push_back(static_cast<std::uint32_t>(at));
+    need_operands(nodes_[at]);
+  }
+  std::reverse(needed_.begin(), needed_.end());
+}
+
+void Disks::need_operands(const Node& node) {
+  const Instruction& i = node.instruction;
+  const auto need = [this](Slot slot, std::uint32_t shift, bool reach) {
+    needs_tail_[slot] = 1;
+    if (!reach) return;
+    needs_reach_[slot] = 1;
+    if (slot < program_.unknowns) most_rates_ = std::max(most_rates_, static_cast<int>(shift));
+  };
+  const bool hands_on = i.op == Op::Linear || i.op == Op::Products || i.op == Op::Derivative || i.op == Op::Select;
+  const bool reach = needs_reach_[i.out] != 0;
+  for (const Slot slot : {i.a, i.b})
+    if (slot != no_slot) need(slot, i.op == Op::Derivative ? 1 : 0, !hands_on || reach);
+  if (!hands_on) return;
+  for (std::uint32_t t = i.first_term; t < i.last_term; ++t) {
+    const Term& term = terms_[t];
+    const bool is_product = i.op == Op::Products && t >= i.first_product;
+    need(term.a, term.shift, is_product || reach);
+    if (is_product) need(term.b, 0, true);
+  }
 }
 
 /// Polynomials in t alone have no tail. A power with a constant exponent is not looked into.
@@ -110,9 +150,7 @@ void Disks::evaluate(double radius) {
     reach_before_.swap(reach_);
     tail_before_.swap(tail_);
   }
-  const double x = radius / now_.unit;
-  powers_[0] = 1;
-  for (std::size_t k = 1; k < powers_.size(); ++k) powers_[k] = powers_[k - 1] * x;
+  find_powers();
   const double ratio = previous_ > radius ? radius / previous_ : 0;
   for (std::size_t lag = 0; lag < passed_on_.size(); ++lag)
     passed_on_[lag] = ratio > 0 ? std::pow(ratio, now_.order + 2 - static_cast<int>(lag)) / (1 - ratio) : infinity;
@@ -123,30 +161,44 @@ void Disks::evaluate(double radius) {
     const double t = std::abs(centre(program_.time));
     set(program_.time, {radius, 0, std::max(0.0, t - radius), t + radius});
   }
-  for (const Node& node : nodes_) evaluate(node);
+  for (const std::uint32_t at : needed_) evaluate(nodes_[at]);
+}
+
+/// In four strands, since each product waits for the one before.
+void Disks::find_powers() {
+  const double x = radius_ / now_.unit, second = x * x, fourth = second * second;
+  double* const power = powers_.data();
+  power[0] = 1, power[1] = x, power[2] = second, power[3] = second * x;
+  for (std::size_t k = 4; k < powers_.size(); ++k) power[k] = power[k - 4] * fourth;
 }
 
 /// q, q̇ and q̈ of the coordinates, and of what multipliers are the second derivatives of: polynomials that are known whole.
 void Disks::evaluate_coordinates() {
-  const std::size_t n = program_.unknowns;
-  std::fill_n(reach_.begin(), n, 0.0);
-  for (auto& values : rate_reach_) std::fill(values.begin(), values.end(), 0.0);
-  for (int k = 1; k <= now_.order + 1; ++k) {
-    const double* const row = now_.rows + static_cast<std::size_t>(k) * now_.stride;
-    const double power = powers_[static_cast<std::size_t>(k)];
-    const double rate = k > 1 ? k * powers_[static_cast<std::size_t>(k - 1)] / now_.unit : 0;
-    const double second = k > 2 ? k * (k - 1) * powers_[static_cast<std::size_t>(k - 2)] / (now_.unit * now_.unit) : 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double c = std::abs(row[i * now_.step]);
-      reach_[i] += c * power;
-      rate_reach_[0][i] += c * rate;
-      rate_reach_[1][i] += c * second;
+  const int degree = now_.order + 1;
+  for (std::size_t i = 0; i < program_.unknowns; ++i) {
+    const Slot slot = static_cast<Slot>(i);
+    if (!needs_reach_[slot]) continue;
+    double even = 0, odd = 0;
+    for (int k = 1; k < degree; k += 2) {
+      even += std::abs(coefficient(k, slot)) * powers_[static_cast<std::size_t>(k)];
+      odd += std::abs(coefficient(k + 1, slot)) * powers_[static_cast<std::size_t>(k) + 1];
     }
+    if (degree % 2 != 0) even += std::abs(coefficient(degree, slot)) * powers_[static_cast<std::size_t>(degree)];
+    const double reach = even + odd;
+    for (int shift = 1; shift <= most_rates_; ++shift) rate_reach_[static_cast<std::size_t>(shift) - 1][i] = reach_of_rate(slot, shift);
+    const double c = std::abs(coefficient(0, slot));
+    reach_[slot] = reach, tail_[slot] = 0;
+    low_[slot] = std::max(0.0, c - reach), high_[slot] = c + reach;
   }
-  for (std::size_t i = 0; i < n; ++i) {
-    const double c = std::abs(coefficient(0, static_cast<Slot>(i)));
-    set(static_cast<Slot>(i), {reach_[i], 0, std::max(0.0, c - reach_[i]), c + reach_[i]});
+}
+
+double Disks::reach_of_rate(std::uint32_t slot, int shift) const {
+  double sum = 0;
+  for (int k = shift + 1; k <= now_.order + 1; ++k) {
+    const double weight = shift == 1 ? k : static_cast<double>(k) * (k - 1);
+    sum += std::abs(coefficient(k, slot)) * (weight * powers_[static_cast<std::size_t>(k - shift)]);
   }
+  return sum / (shift == 1 ? now_.unit : now_.unit * now_.unit);
 }
 
 /// Σ_{k≥1} |f_k| r^k of slots whose coefficients are in the rows.

@@ -91,6 +91,7 @@ Disks::Bounds Disks::product(std::uint32_t a, std::uint32_t b) const {
 /// The modulus of a sum is at least the largest lower bound of a term less the upper bounds of the others.
 Disks::Bounds Disks::sum(const Node& node) const {
   const Instruction& i = node.instruction;
+  if (!needs_reach_[i.out]) return {0, tail_of_sum(i), 0, infinity};
   Bounds total{0, 0, 0, 0};
   double largest = 0;  // of low + high
   for (std::uint32_t t = i.first_term; t < i.last_term; ++t) {
@@ -113,6 +114,18 @@ Disks::Bounds Disks::sum(const Node& node) const {
   }
   total.low = total.high < infinity ? std::max(0.0, largest - total.high) : 0.0;
   return total;
+}
+
+double Disks::tail_of_sum(const Instruction& i) const {
+  double tail = 0;
+  for (std::uint32_t t = i.first_term; t < i.last_term; ++t) {
+    const Term& term = terms_[t];
+    if (term.size == 0) continue;
+    const bool is_product = i.op == Op::Products && t >= i.first_product;
+    if (!is_product) tail += term.size * shifted_tail(term);
+    else if (degree_[term.a] + degree_[term.b] >= now_.order) tail += term.size * product(term.a, term.b).tail;
+  }
+  return tail;
 }
 
 /// a/b − a₀/b₀ = ((a − a₀) − (a₀/b₀)(b − b₀))/b
@@ -142,7 +155,8 @@ void Disks::pair(const Node& node) {
   const Instruction& i = node.instruction;
   const double d = reach_[i.a], s = std::abs(centre(i.out)), c = std::abs(centre(i.second));
   if (i.op == Op::SinCos) {
-    const double cosh = std::cosh(d), sinh = smaller(std::sinh(d), d * cosh), rest = 0.5 * d * sinh;  // cosh − 1 ≤ ½ d sinh
+    const double cosh = d <= 1 ? 1 + 0.5431 * d * d : std::cosh(d), sinh = d <= 1 ? d * cosh : std::sinh(d);  // cosh 1 = 1.54308
+    const double rest = 0.5 * d * sinh;  // cosh − 1 ≤ ½ d sinh
     const double of_sine = s * rest + c * sinh, of_cosine = c * rest + s * sinh;
     set(i.out, {of_sine, of_sine, 0, cosh});
     set(i.second, {of_cosine, of_cosine, 0, cosh});
