@@ -55,6 +55,7 @@ enum class Ending {
 
 struct SimulationStatistics {
   std::size_t steps = 0;
+  std::size_t rejected = 0;                 // steps taken back, since the equations did not hold at their ends
   double seconds = 0;                       // stepping only
   double compile_seconds = 0;               // model to kernel, and to machine code
   int order = 0;

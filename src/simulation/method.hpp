@@ -21,6 +21,7 @@ class Method {
   virtual Sample sample(double t) const = 0;
   virtual const Sample& step_start() const = 0;
   virtual std::size_t steps() const = 0;
+  virtual std::size_t rejected() const = 0;
   virtual std::size_t switches() const = 0;
   virtual double constraint_residual() const = 0;
   virtual BackendUse backend() const = 0;
@@ -38,6 +39,10 @@ class MethodOf final : public Method {
   Sample sample(double t) const override { return stepper_.sample(t); }
   const Sample& step_start() const override { return stepper_.step_start(); }
   std::size_t steps() const override { return stepper_.steps(); }
+  std::size_t rejected() const override {
+    if constexpr (requires { stepper_.rejected(); }) return stepper_.rejected();
+    else return 0;
+  }
   std::size_t switches() const override { return stepper_.switches(); }
   double constraint_residual() const override { return stepper_.constraint_residual(); }
   /// Other methods than Taylor's are interpreted.

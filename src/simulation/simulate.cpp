@@ -182,6 +182,7 @@ class Run {
     balance_.carry_over(last);
     backend_ = method_->backend();
     steps_before_ += method_->steps();
+    rejected_before_ += method_->rejected();
     residual_before_ = method_->constraint_residual();
     method_ = std::move(stiff);
     method_->start(last.t, last.q, last.v);
@@ -241,6 +242,7 @@ class Run {
                                    with_blank(model_.system.independent_unit()));
     }
     result_.statistics.steps = steps_before_ + method_->steps();
+    result_.statistics.rejected = rejected_before_ + method_->rejected();
     result_.statistics.switches = method_->switches();
     result_.statistics.constraint_residual = std::max(residual_before_, method_->constraint_residual());
     result_.statistics.energy_drift = balance_.drift();
@@ -256,7 +258,7 @@ class Run {
   StiffnessWatch watch_;
   BackendUse backend_;
   bool turned_stiff_ = false;
-  std::size_t steps_before_ = 0;
+  std::size_t steps_before_ = 0, rejected_before_ = 0;
   double residual_before_ = 0;
   EnergyBalance balance_;
   SimulationResult result_;

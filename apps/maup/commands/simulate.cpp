@@ -58,7 +58,7 @@ Json document_of(const SimulationResult& result, const MechanicalSystem& system)
   document["at"] = Json::array();
   for (const State& state : result.at) document["at"].push_back(state_json(state, result, system));
   const SimulationStatistics& s = result.statistics;
-  document["statistics"] = {{"steps", s.steps}, {"seconds", s.seconds}, {"compile_seconds", s.compile_seconds},
+  document["statistics"] = {{"steps", s.steps}, {"rejected", s.rejected}, {"seconds", s.seconds}, {"compile_seconds", s.compile_seconds},
                             {"order", s.order}, {"method", s.method}, {"backend", s.backend}, {"energy_drift", s.energy_drift},
                             {"constraint_residual", s.constraint_residual}, {"switches", s.switches},
                             {"rows", result.trajectory.rows()}};
