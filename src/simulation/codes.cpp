@@ -93,6 +93,8 @@ constexpr std::array entries{
               "--precision quad and --precision 100 run Taylor's method, whose order grows with the number of digits. The stiff and the "
               "variational method have bounded orders.",
               "", ""},
+    CodeEntry{"E0726", "a run cannot end with a force that the model does not determine",
+              "Where constraints depend on each other, or coordinates have removed one, its force is not unique.", "", ""},
 };
 
 }  // namespace

@@ -54,7 +54,7 @@ class ExactPlanner {
       for (const Expr& slope : gradient(rate, velocities)) wanted.observables.push_back(slope);
       ++out_.problem.rates;
     }
-    if (plan_.until) wanted.events.push_back(model_.experiment.until);
+    if (plan_.until) wanted.events.push_back(plan_.condition);
     out_.problem.until = plan_.until;
     out_.problem.kernel = motion_kernel(equations_, wanted);
   }

@@ -1,5 +1,8 @@
 #include "simulation/run_plan.hpp"
 
+#include <maupertuis/reactions.hpp>
+#include <maupertuis/transform.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,6 +43,7 @@ class Planner {
     const Experiment& experiment = model_.experiment;
     std::optional<double> duration = options_.duration;
     plan_.until = static_cast<bool>(experiment.until) && !duration;
+    if (plan_.until && !plan_condition()) return false;
     if (!duration && experiment.until) duration = value_of(experiment.within, 0);
     if (!duration && experiment.duration) duration = value_of(experiment.duration, 0);
     if (!duration && options_.at.empty()) {
@@ -53,6 +57,19 @@ class Planner {
     if (!std::isfinite(plan_.end) || !std::isfinite(plan_.begin)) {
       diagnostics_.error("E0703", std::nullopt, "the length of the run is not a finite number",
                          "A run begins and ends at definite times.", "Give a duration such as 10 s.");
+      return false;
+    }
+    return true;
+  }
+
+  /// Forces of constraints follow from the equations; one that they do not determine ends no run.
+  bool plan_condition() {
+    plan_.condition = with_reactions(equations_, {&model_.experiment.until, 1}).front();
+    const std::vector<Expr> symbols = symbols_of({&plan_.condition, 1});
+    for (const Reaction& r : reactions(equations_)) {
+      if (r.value || std::find(symbols.begin(), symbols.end(), r.symbol) == symbols.end()) continue;
+      diagnostics_.error("E0726", std::nullopt, fmt::format("the model does not determine the force of `{}`, with which the run is to end", r.name), r.sentence,
+                         "End the run with a condition on coordinates, velocities or determined forces.");
       return false;
     }
     return true;

@@ -10,6 +10,7 @@ namespace maupertuis {
 struct RunPlan {
   double begin = 0, end = 0;        // s; end < begin: backwards
   bool until = false;               // stop at the event; not meeting it by `end` is a failure
+  Expr condition;                   // the event: a function along the motion, forces of constraints written out
   std::vector<double> q, v;         // [n]
   std::vector<double> output_times; // in the order of the run, begin and end included
 };

@@ -302,7 +302,7 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   const Observables observables = collect_observables(equations, probe);
   WantedFunctions wanted{observables.expressions, {}, {}};
   if (!equations.power.is_zero()) wanted.integrands.push_back(equations.power);
-  if (plan->until) wanted.events.push_back(model.experiment.until);
+  if (plan->until) wanted.events.push_back(plan->condition);
   auto method = first_method(equations, wanted, options, diagnostics);
   if (!method) return std::nullopt;
   std::function<std::unique_ptr<Method>()> stiff;

@@ -158,7 +158,9 @@ void run(Elaboration& e, const syntax::RunStatement& s) {
     if (!v.poisoned) x.duration = v.scalar();
     return;
   }
-  const Value left = evaluate_formula(e, *s.until_left);
+  Place along_motion;
+  along_motion.reactions = true;
+  const Value left = evaluate_formula(e, *s.until_left, along_motion);
   const Value within = constant_of(e, *s.within, e.time(), in_words(e, "the longest time of a run"));
   if (!within.poisoned) x.within = within.scalar();
   if (left.poisoned) return;
@@ -170,7 +172,7 @@ void run(Elaboration& e, const syntax::RunStatement& s) {
   if (left.is_vector)
     e.diagnostics.error("E0210", s.until_left->span, "a run ends when a number reaches its value, not a vector", "",
                         "Take a component with .x or .y.");
-  if (right.poisoned || refuse_acceleration(e, left, *s.until_left, "the end of a run")) return;
+  if (right.poisoned) return;
   x.until = left.scalar() - right.scalar();
 }
 
