@@ -41,9 +41,14 @@ class Disks {
   void set_constants(const double* constants);
   /// A step begins; the rows have to stay until the last evaluate().
   void begin(const SlotCoefficients& coefficients);
-  /// Bounds on |s| ≤ radius. Within a step from large radii to small ones: a larger disk bounds what a smaller one leaves out.
-  /// Cost: 2 operations an order and stored slot, some 20 an instruction.
-  void evaluate(double radius);
+  /// How much is asked of a disk: what a smaller one needs to know of derivatives; what the rules say; and what the coefficients say besides, where
+  /// a larger disk has bounded what they leave out.
+  enum class Depth { Derivatives, Rules, Coefficients };
+  /// Bounds on |s| ≤ radius. Within a step from large radii to small ones.
+  /// Cost: some 20 operations an instruction; 2 an order and stored slot for the coefficients.
+  void evaluate(double radius, Depth depth = Depth::Coefficients);
+  /// Whether derivatives of other values than coordinates are bounded, for which a larger disk has to be asked first.
+  bool needs_larger_disk() const { return !derived_.empty(); }
 
   /// Of R_j at the radius evaluated last; rows of constraints follow those of the coordinates.
   double residual_tail(std::size_t j) const;
@@ -70,6 +75,7 @@ class Disks {
   void find_series(const std::vector<bool>& made);
   void find_needs(std::span<const std::uint32_t> slots);
   void need_operands(const Node& node);
+  void find_derived();
   void find_powers();
   void evaluate_coordinates();
   double reach_of_rate(std::uint32_t slot, int shift) const;
@@ -96,6 +102,8 @@ class Disks {
   const Program& program_;
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> needed_;         // nodes that evaluate() carries out, in order
+  std::vector<std::uint32_t> derived_;        // those of them that Depth::Derivatives does
+  bool by_coefficients_ = false;              // the depth of the disk at hand
   std::vector<std::int8_t> needs_reach_, needs_tail_;  // [slots]
   int most_rates_ = 0;                        // up to this shift the reach of coordinates is needed
   std::vector<Term> terms_;

@@ -14,8 +14,8 @@ constexpr double from_disk_to_disk = 1.4142135623730951;
 /// Below it a momentum is that of rest, whatever its unit.
 constexpr double rest = 1e-40;
 constexpr int most_disks = 400;
-/// One disk is tried again after so many steps that needed two.
-constexpr unsigned period_of_two = 32;
+/// The rules alone are tried again after so many steps that needed coefficients; momenta are found anew after so many.
+constexpr unsigned period = 32, period_of_momenta = 256;
 
 double whole_power(double x, int n) {
   double result = 1;
@@ -38,17 +38,17 @@ SafeLength::SafeLength(const Program& program, double tolerance) : disks_(progra
 void SafeLength::forget() {
   momenta_.clear();
   momentum_rates_.clear();
-  asked_ = 0;
+  asked_ = asked_momenta_ = 0;
+  needs_coefficients_ = false;
   ratio_ = 4;
   best_radius_ = radius_ = 0;
 }
 
 bool SafeLength::wants_momenta(std::span<const double> rates) {
   constexpr std::size_t most = 64;      // unknowns: M costs n²
-  constexpr std::size_t period = 256;
   constexpr double grown = 1.5;
   if (rates.size() > most) return false;
-  if (momentum_rates_.empty() || ++asked_ % period == 0) return true;
+  if (momentum_rates_.empty() || ++asked_momenta_ % period_of_momenta == 0) return true;
   for (std::size_t i = 0; i < rates.size(); ++i)
     if (rates[i] > grown * momentum_rates_[i]) return true;
   return false;
@@ -68,9 +68,9 @@ bool SafeLength::passes(double h) {
   return true;
 }
 
-bool SafeLength::passes_on(double radius, double h) {
+bool SafeLength::passes_on(double radius, double h, Disks::Depth depth) {
   radius_ = radius;
-  disks_.evaluate(radius);
+  disks_.evaluate(radius, depth);
   return passes(h);
 }
 
@@ -106,11 +106,16 @@ double SafeLength::within(const SlotCoefficients& coefficients, double wanted, d
   disks_.begin(coefficients);
   const double h = std::min(wanted, most);
   if (!(h > 0)) return wanted;
-  // What was right in the last step is asked first: the whole length on one disk, or on two where coefficients have to help.
-  const bool asks_one = !needs_two_ || ++asked_two_ % period_of_two == 0;
-  if (asks_one && passes_on(ratio_ * h, h)) return needs_two_ = false, wanted;
-  if (asks_one) disks_.begin(coefficients);
-  if (passes_on(from_disk_to_disk * ratio_ * h, h) || passes_on(ratio_ * h, h)) return needs_two_ = true, wanted;
+  // What was right in the last step is asked first: the whole length by the rules, or with the coefficients where those have to help.
+  using enum Disks::Depth;
+  const double radius = ratio_ * h;
+  const bool by_rules = !needs_coefficients_ || ++asked_ % period == 0;
+  if (by_rules) {
+    if (disks_.needs_larger_disk()) disks_.evaluate(from_disk_to_disk * radius, Derivatives);
+    if (passes_on(radius, h, Rules)) return needs_coefficients_ = false, wanted;
+    disks_.begin(coefficients);
+  }
+  if (passes_on(from_disk_to_disk * radius, h, Coefficients) || passes_on(radius, h, Coefficients)) return needs_coefficients_ = true, wanted;
   disks_.begin(coefficients);
   const double found = search(h);
   if (found > 0) ratio_ = std::clamp(best_radius_ / std::min(found, h), 1 / most_of_radius, 64.0);

@@ -43,7 +43,7 @@ class SafeLength {
 
  private:
   bool passes(double h);
-  bool passes_on(double radius, double h);
+  bool passes_on(double radius, double h, Disks::Depth depth);
   double allowed();
   double search(double most);
   double momentum(std::size_t j) const;
@@ -52,12 +52,12 @@ class SafeLength {
   double tolerance_;
   int order_ = 0;
   std::vector<double> momenta_, momentum_rates_;  // [n] or empty; the rates that they belong to
-  std::size_t asked_ = 0;             // for momenta, so far
+  unsigned asked_momenta_ = 0;
   double ratio_ = 4;                  // radius over length that was right last
   double best_radius_ = 0;            // of the last search; 0: none yet
   double radius_ = 0;
-  bool needs_two_ = false;            // disks, so that coefficients bound what the rules do not
-  unsigned asked_two_ = 0;
+  bool needs_coefficients_ = false;   // since the rules alone did not do in the last steps
+  unsigned asked_ = 0;                // by coefficients so far
 };
 
 }  // namespace maupertuis::taylor

@@ -54,6 +54,28 @@ void Disks::find_needs(std::span<const std::uint32_t> slots) {
     need_operands(nodes_[at]);
   }
   std::reverse(needed_.begin(), needed_.end());
+  find_derived();
+}
+
+/// What is differentiated other than coordinates, and what that is made of.
+void Disks::find_derived() {
+  std::vector<bool> wanted(program_.slots, false);
+  const auto want = [&](Slot slot) { if (slot != no_slot && slot >= program_.unknowns && slot != program_.time) wanted[slot] = true; };
+  for (const std::uint32_t at : needed_) {
+    const Instruction& i = nodes_[at].instruction;
+    if (i.op == Op::Derivative && needs_reach_[i.out]) want(i.a);
+    const std::uint32_t last = i.op == Op::Linear ? i.last_term : i.op == Op::Products ? i.first_product : i.first_term;
+    for (std::uint32_t t = i.first_term; t < last && needs_reach_[i.out]; ++t)
+      if (terms_[t].shift > 0) want(terms_[t].a);
+  }
+  for (auto at = needed_.rbegin(); at != needed_.rend(); ++at) {
+    const Instruction& i = nodes_[*at].instruction;
+    if (!wanted[i.out] && !(i.second != no_slot && wanted[i.second])) continue;
+    derived_.push_back(*at);
+    want(i.a), want(i.b);
+    for (std::uint32_t t = i.first_term; t < i.last_term; ++t) want(terms_[t].a), want(terms_[t].b);
+  }
+  std::reverse(derived_.begin(), derived_.end());
 }
 
 void Disks::need_operands(const Node& node) {
@@ -143,7 +165,7 @@ void Disks::begin(const SlotCoefficients& coefficients) {
   powers_.resize(static_cast<std::size_t>(now_.order) + 8);
 }
 
-void Disks::evaluate(double radius) {
+void Disks::evaluate(double radius, Depth depth) {
   previous_ = radius_;
   radius_ = radius;
   if (previous_ > 0) {
@@ -155,13 +177,14 @@ void Disks::evaluate(double radius) {
   for (std::size_t lag = 0; lag < passed_on_.size(); ++lag)
     passed_on_[lag] = ratio > 0 ? std::pow(ratio, now_.order + 2 - static_cast<int>(lag)) / (1 - ratio) : infinity;
   evaluate_coordinates();
-  evaluate_series();
+  by_coefficients_ = depth == Depth::Coefficients && previous_ > radius_;
+  if (by_coefficients_) evaluate_series();
   if (program_.one != no_slot) set(program_.one, {0, 0, 1, 1});
   if (program_.time != no_slot) {
     const double t = std::abs(centre(program_.time));
     set(program_.time, {radius, 0, std::max(0.0, t - radius), t + radius});
   }
-  for (const std::uint32_t at : needed_) evaluate(nodes_[at]);
+  for (const std::uint32_t at : depth == Depth::Derivatives ? derived_ : needed_) evaluate(nodes_[at]);
 }
 
 /// In four strands, since each product waits for the one before.
@@ -203,7 +226,6 @@ double Disks::reach_of_rate(std::uint32_t slot, int shift) const {
 
 /// Σ_{k≥1} |f_k| r^k of slots whose coefficients are in the rows.
 void Disks::evaluate_series() {
-  if (!(previous_ > radius_)) return;
   Slot first = static_cast<Slot>(program_.unknowns);
   for (int lag = 0; lag <= 2; ++lag) {
     const Slot last = std::max(first, program_.stored_end[static_cast<std::size_t>(lag)]);
@@ -231,7 +253,7 @@ void Disks::set(std::uint32_t slot, Bounds b) {
   const double c = std::abs(centre(slot));
   if (!(b.reach < infinity)) b.reach = infinity;
   if (!(b.tail < infinity)) b.tail = infinity;
-  if (has_series_[slot] && previous_ > radius_) {
+  if (by_coefficients_ && has_series_[slot]) {
     const int lag = std::max<int>(0, program_.lags[slot]);
     const double by_series = series_[slot] + tail_before_[slot] * passed_on_[static_cast<std::size_t>(lag)];
     if (by_series < b.reach) b.reach = by_series;
