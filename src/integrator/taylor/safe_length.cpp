@@ -40,7 +40,7 @@ void SafeLength::forget() {
   momentum_rates_.clear();
   asked_ = asked_momenta_ = 0;
   needs_coefficients_ = false;
-  ratio_ = 4;
+  ratio_ = 4.5;
   best_radius_ = radius_ = 0;
 }
 

@@ -53,7 +53,7 @@ class SafeLength {
   int order_ = 0;
   std::vector<double> momenta_, momentum_rates_;  // [n] or empty; the rates that they belong to
   unsigned asked_momenta_ = 0;
-  double ratio_ = 4;                  // radius over length that was right last
+  double ratio_ = 4.5;                 // radius over length that was right last
   double best_radius_ = 0;            // of the last search; 0: none yet
   double radius_ = 0;
   bool needs_coefficients_ = false;   // since the rules alone did not do in the last steps
