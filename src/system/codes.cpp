@@ -78,8 +78,8 @@ constexpr CodeEntry kEntries[] = {
      "x'^2\n"},
     {"E0221", "a condition and a formula are mixed up",
      "Comparisons stand in piecewise(condition : value, …, else : value), and only there.",
-     "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nV = piecewise((x > 0) + 1 > 0 : 1 [J], else : 0)\n",
-     "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nV = piecewise(x > 0 : 1 [J], else : 0)\n"},
+     "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nV = piecewise((x > 0) + 1 > 0 : 1 [N] x, else : 0)\n",
+     "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nV = piecewise(x > 0 : 1 [N] x, else : 0)\n"},
     {"E0222", "a number that must be known before the run",
      "Starts, durations, tolerances and sizes are made of quantities and parameters; coordinates and time are known "
      "only during the run. An input is a formula of t and parameters.",
@@ -344,6 +344,25 @@ constexpr CodeEntry kEntries[] = {
      "That is as it should be for a gear without inertia or an auxiliary coordinate; else a mass was forgotten.",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m x'^2\nconstraint y = 2 x\n",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint y = 2 x\n"},
+    {"E0430", "an energy that jumps at a switch",
+     "Where V jumps by ΔV a motion gains or loses ΔV of kinetic energy at once: an impulse. Where T jumps the momentum, not "
+     "the velocity, goes on. Lagrange's equations on the two sides know nothing of either, so that the run would be wrong "
+     "without a word. T, V, U and L have to be continuous at each switch of abs, sign, step, min, max and piecewise; kinks "
+     "are fine, and so are forces that jump, also as a V that jumps in time alone. D has to be continuous in the "
+     "velocities. That it is continuous is looked for at points of each switch, found by root finding.",
+     "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nV = 2 [J] step(x - 1 [m])\n",
+     "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nV = 1 [J] (1 + tanh((x - 1 [m])/0.01 [m]))\n"},
+    {"E0431", "a position that jumps at a switch",
+     "A mass goes from one place to another through those between. A prescribed position may have kinks only where the "
+     "velocity that they give does not change L at once.",
+     "coord x : length\nparam m = 1 kg, d = 1 m\npoint P mass m at (x + d step(t - 1 [s]), 0)\n",
+     "coord x : length\nparam m = 1 kg, d = 1 m\npoint P mass m at (x + d/2 (1 + tanh((t - 1 [s])/0.1 [s])), 0)\n"},
+    {"E0432", "a momentum that jumps at a switch",
+     "∂L/∂q' goes on where the motion passes a switch, since forces are finite. Where it jumps as a function of the "
+     "velocity, as of a term |q'|, the velocity would have to stay or jump instead; the equations of motion on the two "
+     "sides do not say so.",
+     "coord x : length\nparam m = 1 kg, p = 1 N s\nT = 1/2 m x'^2\nU = p abs(x')\n",
+     "coord x : length\nparam m = 1 kg, p = 1 N s\nT = 1/2 m x'^2\nU = p sqrt(x'^2 + 1e-6 [m^2/s^2])\n"},
     // ------------------------------------------------------------------------------------------------ not supported
     // yet
     {"E0501", "a statement that is not supported yet",

@@ -45,6 +45,9 @@ void gravity_twice(Subject& s);
 /// W0421: T without a velocity; W0422: D without a velocity.
 void energies_without_velocity(Subject& s);
 
+/// E0430, E0431, E0432: an energy, a position or a momentum that jumps at a switch.
+void jumps(Subject& s);
+
 /// A deterministic sample of the state near the start, with the values of the parameters. `attempt` varies it.
 Bindings sample(const Subject& s, int attempt);
 

@@ -32,7 +32,7 @@ TEST_CASE("formulas of one dimension pass") {
                            "k l^2 exp(-x/l)",
                            "k abs(x) l",
                            "k max(x, l)^2",
-                           "piecewise(x < l : k x l, else : 0)",
+                           "piecewise(x < l : k x l, else : k l^2)",
                            "m g l atan2(x, l)",
                            "k l^2 (x/l)^n",
                            "m l^n g/l^2",

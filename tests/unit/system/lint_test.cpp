@@ -89,3 +89,37 @@ TEST_CASE("a quaternion of given components needs its norm, whatever holds it") 
   CHECK(codes("constraint w^2 + x^2 + y^2 + z^2 = 2\n") == "W0427");
   CHECK(codes("constraint w + x = 1\n") == "W0427");
 }
+
+TEST_CASE("energies that jump at a switch are refused; kinks, pieces that meet and forces that jump are not") {
+  const auto codes = [](const std::string& text) { return Elaborated("dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n" + text).codes(); };
+  for (const char* fine :
+       {"V = abs(x) + max(y, 0)^1.5", "V = piecewise(x^2 + y^2 < 4 : 0, else : (sqrt(x^2 + y^2) - 2)^2)",
+        "V = min(x^2, y^2)", "force x = step(x - 1)", "D = 1/2 step(x) x'^2", "D = abs(x')", "V = x^2/(1 + abs(x)/x)",
+        // switched on in time: a force, no impulse; Meissner's equation
+        "V = -x step(t - 1)", "V = 1/2 (2 + sign(cos(t))) x^2", "V = 5 step(t - 1) + x^2",
+        // a total time derivative, and a jump that other parts take back
+        "V = x^2 + y^2\nU = step(x) x'", "V = x^2 + step(x - 1)\nV += piecewise(x < 1 : 1, else : 0)",
+        // a switch between parameters
+        "param a = 1, b = 2\nV = piecewise(a < b : x^2, else : 1)",
+        // met in the decimals as written, in no double
+        "param a = 0.1, b = 0.3\nV = piecewise(x < a + 0.2 : x, else : b)", "V = step(x)/x"})
+    CHECK_MESSAGE(codes(fine).find("E04") == std::string::npos, fine);
+  for (const char* wrong :
+       {"V = step(x)", "V = piecewise(x < 2 : x^2, else : 1)", "V = y step(x)", "V = x^2\nU = sign(y) x'", "V = x^2\nU = step(t - 1) x'",
+        "T += 1/2 step(t - 1) x'^2", "T += 1/2 step(x) x'^2", "T += 1/2 step(x' - 1) x'^2", "L = 1/2 (x'^2 + y'^2) - 1e-9 step(x)",
+        "D = step(x' - 1)", "V = max(x - 50, 0)^2 step(y - 70)", "V = step(x - t)"})
+    CHECK_MESSAGE(codes(wrong).find("E0430") != std::string::npos, wrong);
+  CHECK(codes("V = x^2\nU = abs(x' - 1)") == "E0432");
+  CHECK(codes("T += 1/2 max(x', 0)^2").empty());  // the momentum has a kink, no jump
+}
+
+TEST_CASE("the jump is named with its size and its place") {
+  const auto message = [](const std::string& text) { return Elaborated(text).first_message(); };
+  const std::string head = "param m = 1 kg, a = 3 m, W = 0.4 J\ncoord x : length\nT = 1/2 m x'^2\n";
+  CHECK(message(head + "V = W step(x - a)\n") == "V jumps by 0.4 J where x = a");
+  CHECK(message(head + "V = W piecewise(x < 2 [m] : x/a, else : 1)\n") == "V jumps by 0.133333 J where x = 2 [m]");
+  CHECK(message("param m = 1 kg\ncoord x : length\nT = 1/2 m step(x) x'^2 + 1/2 m x'^2\n") ==
+        "T jumps where x = 0: by 0.5 J at x = 0 m, x' = 1 m/s");
+  CHECK(message("param m = 1 kg, d = 1 m\ncoord x : length\npoint P mass m at (x + d step(x), 0)\n") ==
+        "the position of P jumps where x = 0");
+}
