@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include <maupertuis/across_switches.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/reactions.hpp>
 
@@ -70,6 +71,8 @@ std::string momenta_and_energy(const EquationsOfMotion& equations) {
   out += "\nEnergy function\n" + readable_line("h_E", equations.shown().energy_function, equations.order);
   if (!conserved.energy_case.empty()) out += fmt::format("  {}\n", conserved.energy_case);
   if (!conserved.energy_conserved) out += readable_line("dh_E/d" + equations.system->independent, equations.shown().power, equations.order);
+  if (const auto jump = across_switches(*equations.system, equations.energy_function, equations.order).jump)
+    out += fmt::format("  h_E jumps where {}: what is switched there does work at once.\n", jump->place);
 
   std::vector<std::string> names;
   for (const std::size_t i : conserved.conserved_momenta)

@@ -88,6 +88,18 @@ std::string integrability_text(const Invariants& found) {
   return text + ".\n";
 }
 
+/// What looks like an integral and is none.
+std::string one_side_text(const Invariants& found, const ReadingOrder& order) {
+  constexpr std::size_t most = 4;
+  std::string text = found.on_one_side.empty() ? "" : "\nConstant on each side of a switch, not across it\n";
+  for (std::size_t i = 0; i < std::min(most, found.on_one_side.size()); ++i) {
+    const auto& [value, place] = found.on_one_side[i];
+    text += fmt::format("  {}{}\n", formula(readable(value, order), order), place.empty() ? "" : ", which jumps where " + place);
+  }
+  if (found.on_one_side.size() > most) text += fmt::format("  and {} more\n", found.on_one_side.size() - most);
+  return text;
+}
+
 std::string completeness_text(const Invariants& found) {
   std::string text;
   if (found.symmetry_bound) {
@@ -120,6 +132,7 @@ std::string invariants_text(const Invariants& found, const EquationsOfMotion& eq
   if (!found.balance_laws.empty()) text += "\nBalance laws\n";
   for (const BalanceLaw& law : found.balance_laws)
     text += fmt::format("  {}: d/d{} ({}) = {}\n", law.name, equations.system->independent, to_plain(law.quantity, order), formula(law.rate, order));
+  text += one_side_text(found, order);
   if (!found.integrals.empty()) text += integrability_text(found);
   return text + completeness_text(found);
 }
@@ -174,6 +187,9 @@ void add_invariants_json(Json& document, const Invariants& found, const Equation
   document["point_symmetries_bound"] = found.symmetry_bound ? Json(*found.symmetry_bound) : Json(nullptr);
   document["basis"] = found.basis;
   document["too_long"] = found.too_long;
+  document["on_one_side"] = Json::array();
+  for (const auto& [value, place] : found.on_one_side)
+    document["on_one_side"].push_back({{"plain", to_plain(readable(value, order), order)}, {"jumps_at", place}});
 }
 
 }  // namespace maupertuis::app

@@ -1,4 +1,5 @@
 #pragma once
+#include <maupertuis/across_switches.hpp>
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/evaluate.hpp>
 
@@ -26,6 +27,8 @@ class AlongMotion {
   ZeroTest vanishes(Expr e) const;
   /// dI/dt along the motion, q̈ put in.
   Expr rate(Expr integral) const;
+  /// Whether an integral of each side goes on where a motion passes a switch.
+  AcrossSwitches across(Expr integral) const;
   /// Where the motion starts: points near it are looked at.
   void set_start(const MotionState& start) { start_ = start; }
 

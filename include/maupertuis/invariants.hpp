@@ -73,6 +73,12 @@ struct Invariants {
   std::vector<std::string> involution;        // n independent functions in involution, in words of I1, I2, …
   std::optional<std::size_t> symmetry_bound;  // at most so many point symmetries, at a generic point
   std::vector<std::string> basis;             // what was searched, one line a search: "none further in this basis"
+  /// Functions that are constant on each side of a switch and jump there: no integrals.
+  struct OnOneSide {
+    Expr value;
+    std::string place;  // "x = 1"
+  };
+  std::vector<OnOneSide> on_one_side;
   std::size_t too_long =
       0;  // integrals whose coefficients could not be written as fractions of the parameters, or not proved
 };

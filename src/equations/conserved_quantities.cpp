@@ -1,3 +1,4 @@
+#include <maupertuis/across_switches.hpp>
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/evaluate.hpp>
 
@@ -52,10 +53,12 @@ ConservedQuantities conserved_quantities(const EquationsOfMotion& equations) {
   for (std::size_t i = 0; i < q.size(); ++i) {
     if (!vanishes(forces[i])) continue;
     result.cyclic.push_back(i);
-    if (vanishes(equations.generalized_forces[i] - equations.dissipative_terms[i]) && free_of_constraints(equations, i))
+    if (vanishes(equations.generalized_forces[i] - equations.dissipative_terms[i]) && free_of_constraints(equations, i) &&
+        !across_switches(system, equations.momenta[i], equations.order).jump)
       result.conserved_momenta.push_back(i);
   }
-  result.energy_conserved = vanishes(equations.power) || vanishes(power_on_constraints(equations));
+  const AcrossSwitches energy = across_switches(system, equations.energy_function, equations.order);
+  result.energy_conserved = !energy.jump && (vanishes(equations.power) || vanishes(power_on_constraints(equations)));
   if (system.lagrangian_given && system.independent != "t") {
     result.energy_case = "h_E = q'·∂L/∂q' − L, which is constant where L does not depend on " + system.independent + " (Beltrami).";
   } else if (system.lagrangian_given) {

@@ -43,6 +43,11 @@ Expr AlongMotion::rate(Expr integral) const {
   return put_in(total_time_derivative(in_terms_of_motion(*equations_.system, {&integral, 1}).front()));
 }
 
+AcrossSwitches AlongMotion::across(Expr integral) const {
+  const Expr plain = put_in(integral);
+  return across_switches(*equations_.system, plain, equations_.order, [&](Expr g) { return rate(g); });
+}
+
 /// φ, dφ/dt or ψ, A q̈ − b, and R − Aᵀλ: what the motion satisfies at each point.
 std::vector<Expr> AlongMotion::relations() const {
   const MechanicalSystem& system = *equations_.system;

@@ -1,3 +1,4 @@
+#include <maupertuis/across_switches.hpp>
 #include <maupertuis/integrator.hpp>
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/simulation.hpp>
@@ -85,6 +86,11 @@ class EnergyBalance {
     largest_error_ = std::max(largest_error_, std::abs(energy - first_ - work_before_ - work_of(sample)));
   }
 
+  /// What is switched in time does work at once: the same state before and after.
+  void pass_switch(const Sample& before, const Sample& after) {
+    if (const double work = energy_of(after) - energy_of(before); std::isfinite(work)) work_before_ += work;
+  }
+
   double energy_of(const Sample& sample) const {
     return std::accumulate(sample.observables.begin(), sample.observables.begin() + static_cast<std::ptrdiff_t>(terms_), 0.0);
   }
@@ -104,9 +110,9 @@ class Run {
  public:
   /// `stiff` makes the method that takes over where stability limits the steps; it may be empty.
   Run(const Model& model, const SimulationOptions& options, const RunPlan& plan, const Observables& observables,
-      std::unique_ptr<Method> method, std::function<std::unique_ptr<Method>()> stiff, Probe* probe)
+      std::unique_ptr<Method> method, std::function<std::unique_ptr<Method>()> stiff, Probe* probe, bool energy_jumps)
       : model_(model), options_(options), plan_(plan), observables_(observables), probe_(probe),
-        method_(std::move(method)), stiff_(std::move(stiff)), balance_(observables.energy_terms) {
+        method_(std::move(method)), stiff_(std::move(stiff)), energy_jumps_(energy_jumps), balance_(observables.energy_terms) {
     result_.statistics.method = word_of(options.method);
     result_.trajectory.independent = {model.system.independent, model.system.independent_unit()};
     name_trajectory_columns(model.system, observables, result_.trajectory.columns, result_.reactions);
@@ -153,7 +159,10 @@ class Run {
 
   /// One step. False when the run ends here.
   bool advance() {
+    const std::optional<Sample> on_switch = at_switch_ ? std::optional(method_->sample(method_->time())) : std::nullopt;
     const Step step = method_->step(plan_.end);
+    if (on_switch && step.begin != step.end) balance_.pass_switch(*on_switch, method_->step_start());
+    at_switch_ = energy_jumps_ && step.switches > 0;
     if (step.begin != step.end) balance_.add(method_->step_start());
     if (step.ending != StepEnding::None) {
       result_.ending = ending_of(step.ending);
@@ -258,6 +267,7 @@ class Run {
   StiffnessWatch watch_;
   BackendUse backend_;
   bool turned_stiff_ = false;
+  bool energy_jumps_ = false, at_switch_ = false;  // the last step ended there
   std::size_t steps_before_ = 0, rejected_before_ = 0;
   double residual_before_ = 0;
   EnergyBalance balance_;
@@ -308,7 +318,8 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   std::function<std::unique_ptr<Method>()> stiff;
   if (options.method == StepMethod::Automatic && has_stiff_method())
     stiff = [&] { return stiff_method(equations, wanted, options, diagnostics); };
-  Run run(model, options, *plan, observables, std::move(method), std::move(stiff), probe);
+  const bool energy_jumps = across_switches(*equations.system, equations.energy_function, equations.order).jump.has_value();
+  Run run(model, options, *plan, observables, std::move(method), std::move(stiff), probe, energy_jumps);
   const double compile_seconds = seconds_since(begin);
 
   SimulationResult result = run.carry_out();

@@ -127,9 +127,26 @@ class Verifier {
     if (!needs_solvable(result)) return;
     const ZeroTest test = along().vanishes(along().rate(e.subject));
     result.expected = "d/dt = 0 along the motion";
+    if (test.verdict == Verdict::Zero)
+      if (const AcrossSwitches sides = along().across(e.subject); sides.switches > 0 || sides.jump)
+        return judge_sides(test, sides, result);
     result.passed = test.verdict == Verdict::Zero;
     result.actual = result.passed ? result.expected : "d/dt is not 0";
     result.message = result.passed ? ground(test) : failed_identity(test, "Its time derivative along the motion", e.subject);
+  }
+
+  /// A constant on each side of a switch is one constant only if it goes on there.
+  void judge_sides(const ZeroTest& test, const AcrossSwitches& sides, ExpectationResult& result) const {
+    result.passed = !sides.jump;
+    result.actual = result.passed ? result.expected : "d/dt = 0 on each side of a switch alone";
+    result.message = result.passed ? fmt::format("{} on each side of its switches; at {} points of them it does not jump",
+                                                 ground(test), sides.points)
+                                   : jump_text(*sides.jump);
+  }
+
+  static std::string jump_text(const JumpAcross& jump) {
+    return fmt::format("It is constant on each side of a switch and jumps by {:.6g} (SI units){}: it is not conserved across.",
+                       std::abs(jump.jump), jump.place.empty() ? "" : " where " + jump.place);
   }
 
   void decide_not_conserved(const Expectation& e, ExpectationResult& result) {
@@ -137,6 +154,13 @@ class Verifier {
     const ZeroTest test = along().vanishes(along().rate(e.subject));
     result.expected = "d/dt is not 0 along the motion";
     result.passed = test.verdict == Verdict::Nonzero;
+    if (test.verdict == Verdict::Zero)
+      if (const AcrossSwitches sides = along().across(e.subject); sides.jump) {
+        result.passed = true;
+        result.actual = "it jumps at a switch";
+        result.message = jump_text(*sides.jump);
+        return;
+      }
     result.actual = result.passed ? result.expected : test.verdict == Verdict::Zero ? "d/dt = 0: it is conserved" : "undecided";
     result.message = result.passed ? "a state was found at which it changes" : test.reason;
   }
@@ -164,6 +188,12 @@ class Verifier {
     }
     result.passed = is_function_of(integral, *found, equations_);
     result.actual = result.passed ? result.expected : "not found";
+    if (const AcrossSwitches sides = along().across(integral); sides.jump) {
+      result.passed = false;
+      result.actual = "constant on each side of a switch alone";
+      result.message = jump_text(*sides.jump);
+      return;
+    }
     result.message = result.passed ? fmt::format("a function of the {} integrals of degree up to {} in the velocities, by the rank of gradients",
                                                  found->integrals.size(), degree)
                                    : fmt::format("It is no function of the {} integrals of degree up to {} in the velocities that were found.",
@@ -304,7 +334,9 @@ class Verifier {
       } else if (!conserved_quantities(equations_).energy_conserved) {
         result.expected = "constant along the run";
         result.actual = "not conserved";
-        result.message = "Forces, friction or an explicit time in L change the energy of this system.";
+        const auto jump = across_switches(model_.system, equations_.energy_function, equations_.order).jump;
+        result.message = !jump ? "Forces, friction or an explicit time in L change the energy of this system."
+                               : fmt::format("The energy jumps where {}: what is switched there does work at once.", jump->place);
       } else if (!run->ok()) {
         result.message = "The run ended before: " + run->reason + ".";
       } else {

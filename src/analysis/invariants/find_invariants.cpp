@@ -151,6 +151,7 @@ class Finder {
       ++result_.too_long;
       return;
     }
+    if (const AcrossSwitches sides = along_.across(value); sides.jump) return note_side(value, sides.jump->place);
     integral.kind = kind;
     const Namer namer(equations_, rows_, ansatz_, options_.seed + 6);
     const Naming naming = hamiltonian_ ? namer.name(value) : namer.name_by_value(value);
@@ -166,6 +167,13 @@ class Finder {
     if (kind == IntegralKind::Hidden) integral.characteristic = short_symmetry(integral.value);
     ranks_.emplace(integral.value, naming.rank);
     result_.integrals.push_back(std::move(integral));
+  }
+
+  /// Functions of the branch alone, as step(x) itself, are nothing to tell.
+  void note_side(Expr value, const std::string& place) {
+    ExprVector symbols;
+    for (const Coordinate& c : system_.coordinates) symbols.insert(symbols.end(), {c.q, c.velocity});
+    if (zero_test(gradient(value, symbols)).verdict != Verdict::Zero) result_.on_one_side.push_back({value, place});
   }
 
   /// δq of an integral without a point symmetry, where a reader can follow it.

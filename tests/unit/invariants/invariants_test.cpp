@@ -4,6 +4,7 @@
 #include <maupertuis/print.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 using namespace maupertuis;
 
@@ -292,4 +293,24 @@ TEST_CASE("degrees in the velocities") {
   CHECK(velocity_degree(m.q(0) * m.v(0) * m.v(1) + m.v(0), *m.system) == 2);
   CHECK(velocity_degree(sin(m.q(0)), *m.system) == 0);
   CHECK_FALSE(velocity_degree(sqrt(m.v(0) * m.v(0) + 1), *m.system));
+}
+
+TEST_CASE("no integral across a jump: what one side has is told apart") {
+  const Found pushed("coord x : number\nT = 1/2 x'^2\nforce x = -step(x)\n");
+  for (const ConservedFunction& i : pushed.result.integrals)
+    for (const double x : {1e-12, -1e-12}) {
+      const auto at = [&](double q) { return evaluate(i.value, {{pushed.m.q(0), q}, {pushed.m.v(0), 0.7}, {pushed.m.system->context->time(), 2}}); };
+      CHECK(std::abs(at(x) - at(-x)) < 1e-11);
+    }
+  CHECK(pushed.result.integrals.size() == 1);  // 1/2 x'^2 + x step(x)
+  REQUIRE_FALSE(pushed.result.on_one_side.empty());  // x' + t step(x)
+  CHECK(pushed.result.on_one_side[0].place == "x = 0");
+
+  const Found meissner("coord x : number\nT = 1/2 x'^2\nV = 1/2 (2 + sign(cos(t))) x^2\n");
+  CHECK(meissner.count("energy") == 0);
+  CHECK_FALSE(meissner.result.on_one_side.empty());
+  CHECK_FALSE(conserved_quantities(meissner.m.equations).energy_conserved);
+  const Found kink("coord x : number\nT = 1/2 x'^2\nV = abs(x)\n");
+  CHECK(kink.count("energy") == 1);
+  CHECK(conserved_quantities(kink.m.equations).energy_conserved);
 }

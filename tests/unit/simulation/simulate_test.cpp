@@ -178,3 +178,15 @@ start θ1 = 2.0 rad, θ2 = 2.5 rad
   for (int k = 0; k < 4; ++k)
     for (std::size_t i = 0; i < 2; ++i) CHECK(std::abs(r.at[static_cast<std::size_t>(k)].q[i] - expected[k][i]) <= tolerance[k]);
 }
+
+TEST_CASE("what is switched in time does work at once: the books close") {
+  // x'' + (2 + sign(cos t)) x = 0, Meissner: two frequencies in turns, √3 until π/2, then 1 until 3π/2.
+  const ModelText m("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 (2 + sign(cos(t))) x^2\nstart x = 1\nrun 4\n");
+  const SimulationResult r = run(m);
+  CHECK(r.statistics.energy_drift < 1e-14);
+  const double w = std::sqrt(3.0), quarter = std::acos(0.0), later = 4 - quarter;
+  const double x = std::cos(w * quarter), v = -w * std::sin(w * quarter);
+  CHECK(r.final.q[0] == doctest::Approx(x * std::cos(later) + v * std::sin(later)).epsilon(1e-13));
+  // A kink of V does no work.
+  CHECK(run(ModelText("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = abs(x)\nstart x = 1\nrun 20\n")).statistics.energy_drift < 1e-14);
+}

@@ -122,3 +122,37 @@ TEST_CASE("expect integral: what the search finds, and functions of it") {
   CHECK(momentum.actual == "not found");
   CHECK_FALSE(only(kepler + "expect integral x^2 + y^2\n").passed);
 }
+
+TEST_CASE("what is constant on each side of a switch and jumps there is not conserved") {
+  const std::string pushed = "dimensionless\ncoord x : number\nT = 1/2 x'^2\nforce x = -step(x)\nstart x = 1\nrun 3\n";
+  const ExpectationResult step = only(pushed + "expect conserved step(x)\n");
+  CHECK_FALSE(step.passed);
+  CHECK(step.message.find("jumps by 1 (SI units) where x = 0") != std::string::npos);
+  CHECK(only(pushed + "expect step(x) not conserved\n").passed);
+  CHECK_FALSE(only(pushed + "expect conserved x' + t step(x)\n").passed);  // jumps by t
+  for (const char* energy : {"1/2 x'^2 + max(x, 0)", "1/2 x'^2 + x step(x)", "1/2 x'^2 + piecewise(x < 0 : 0, else : x)"}) {
+    const ExpectationResult r = only(pushed + "expect conserved " + energy + "\n");
+    CHECK_MESSAGE(r.passed, energy);
+    CHECK(r.message.find("it does not jump") != std::string::npos);
+    CHECK_FALSE(only(pushed + "expect " + energy + " not conserved\n").passed);
+  }
+  CHECK_FALSE(only(pushed + "expect conserved 1/2 x'^2 + x step(x) + 0.001 sign(x)\n").passed);
+  CHECK_FALSE(only(pushed + "expect integral step(x) (1/2 x'^2 + x step(x))\n").passed);
+  CHECK(only(pushed + "expect integral 1/2 x'^2 + x step(x)\n").passed);
+}
+
+TEST_CASE("a switch that no motion passes does not count") {
+  const std::string decaying = "dimensionless\ncoord x : number\nT = 1/2 x'^2\nD = 1/2 x'^2\nstart x' = 1\nrun 3\n";
+  CHECK(only(decaying + "expect conserved sign(x')\n").passed);        // x' = 0 is never reached
+  CHECK(only(decaying + "expect conserved sign(x + x' - 2)\n").passed);  // x + x' is conserved
+  CHECK_FALSE(only(decaying + "expect conserved sign(x - 2)\n").passed);
+}
+
+TEST_CASE("energy that a switch in time changes") {
+  const std::string meissner = "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 (2 + sign(cos(t))) x^2\nstart x = 1\nrun 10\n";
+  const ExpectationResult energy = only(meissner + "expect energy conserved\n");
+  CHECK_FALSE(energy.passed);
+  CHECK(energy.message.find("jumps where cos t = 0") != std::string::npos);
+  CHECK_FALSE(only(meissner + "expect conserved 1/2 x'^2 + 1/2 (2 + sign(cos(t))) x^2\n").passed);
+  CHECK(only("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = abs(x)\nstart x = 1\nrun 5\nexpect energy conserved\n").passed);
+}
