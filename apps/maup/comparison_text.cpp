@@ -10,6 +10,8 @@ std::string ground_text(const Comparison& comparison) {
   std::string text;
   if (test.points == 0)
     text = "proved (the equations are one expression)";
+  else if (test.error_bound < 1 && test.error_bound >= 1e-6)
+    text = fmt::format("holds at {} random points, error bound {:.1e}", test.points, test.error_bound);
   else if (test.error_bound < 1)
     text = fmt::format("proved (at {} random points, error bound {:.1e})", test.points, test.error_bound);
   else

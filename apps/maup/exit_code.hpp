@@ -9,6 +9,7 @@ enum class ExitCode : int {
   Usage = 2,
   RunFailed = 3,
   ExpectationFailed = 4,
+  NotProved = 5,  // nothing speaks against it, but it is evidence from points
   Interrupted = 130,
 };
 

@@ -25,7 +25,7 @@ std::optional<CoordinateMap> read_map(const Model& a, const SourceText& b, const
 
 enum class Sameness {
   Same,  // each motion of one is one of the other
-  Part,  // each motion of B is one of A, but they have not the same freedoms
+  Part,  // each motion of B is one of A, but not the other way round: fewer freedoms, or states where only one is defined
   Different,
   Undecided,  // never passes
 };
@@ -65,6 +65,9 @@ struct Comparison {
   EnergyRelation energies = EnergyRelation::Undecided;
   std::optional<Disagreement> disagreement;
   CrossCheck run;
+
+  /// Same, and not by evidence from points alone.
+  bool proved() const { return verdict == Sameness::Same && ground.error_bound < 1e-6; }
 };
 
 struct ComparisonOptions {

@@ -1,5 +1,6 @@
 #include "comparison/cross_check.hpp"
 #include "comparison/differences.hpp"
+#include "comparison/domains.hpp"
 #include "comparison/freedoms.hpp"
 
 #include <fmt/format.h>
@@ -38,12 +39,13 @@ class Comparer {
     }
     comparison::count_freedoms(a_equations_, b_equations_, pull_back_, motions_, out_);
     if (constraints_hold() && equations_hold()) compare_freedoms();
+    if (out_.verdict == Sameness::Same) compare_domains();
     out_.energies = compare_energies();
     if (off_constraints_) {
       out_.run.reason = "the mapped start does not obey the constraints of " + out_.name_a;
       return out_;
     }
-    if (out_.verdict == Sameness::Different) out_.disagreement = runs_.disagreement();
+    if (out_.verdict == Sameness::Different) out_.disagreement = runs_.disagreement(motions_.states_in_branches(differing_));
     if (options_.run) out_.run = runs_.run();
     doubt_what_runs_contradict();
     return out_;
@@ -74,6 +76,7 @@ class Comparer {
     merge(test);
     if (test.verdict == Verdict::Zero) return true;
     out_.verdict = test.verdict == Verdict::Nonzero ? Sameness::Different : Sameness::Undecided;
+    differing_ = functions;
     if (test.verdict == Verdict::Undecided) {
       out_.reason = test.reason.empty() ? "the zero test came to no answer" : test.reason;
       return false;
@@ -151,6 +154,14 @@ class Comparer {
       out_.verdict = Sameness::Same;
   }
 
+  void compare_domains() {
+    const auto gap = comparison::domain_gap(a_.system, pull_back_, b_, b_equations_, motions_);
+    if (!gap) return;
+    out_.verdict = Sameness::Part;
+    out_.reason = fmt::format("{} is defined at {} and {} is not: they agree where both are", gap->of_a ? out_.name_a : out_.name_b,
+                              comparison::describe(gap->state, b_.system), gap->of_a ? out_.name_b : out_.name_a);
+  }
+
   EnergyRelation compare_energies() const {
     const MechanicalSystem& b = b_.system;
     const Expr own = comparison::with_constants_as_numbers(
@@ -176,6 +187,7 @@ class Comparer {
   const Motions motions_;
   const comparison::CrossCheck runs_;
   Comparison out_;
+  ExprVector differing_;  // what does not vanish along the motions of B
   bool off_constraints_ = false, merged_ = false;
 };
 

@@ -134,13 +134,15 @@ bool CrossCheck::run_from(const MotionState& start, maupertuis::CrossCheck& out)
   return true;
 }
 
-std::optional<Disagreement> CrossCheck::disagreement() const {
+std::optional<Disagreement> CrossCheck::disagreement(const std::vector<MotionState>& further) const {
   std::optional<Disagreement> best;
   double largest = rounding;
   SimulationOptions options = options_;
   options.duration = 0;
   options.at.clear();
-  for (const MotionState& state : motions_.states()) {
+  std::vector<MotionState> states = motions_.states();
+  states.insert(states.end(), further.begin(), further.end());
+  for (const MotionState& state : states) {
     const auto of_b = run_b(state, options);
     const auto of_a = of_b ? run_a(state, options) : std::nullopt;
     if (!of_a || !of_b || !finite(of_a->start.a) || !finite(of_b->start.a) || of_a->start.a.empty()) continue;

@@ -21,7 +21,7 @@ class CrossCheck {
   maupertuis::CrossCheck run() const;
   /// The first state at which the accelerations differ clearly, else the one at which they differ most; nothing where
   /// they agree to rounding.
-  std::optional<Disagreement> disagreement() const;
+  std::optional<Disagreement> disagreement(const std::vector<MotionState>& further) const;
 
  private:
   double apart(std::size_t coordinate, double x, double y) const;

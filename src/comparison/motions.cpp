@@ -2,6 +2,9 @@
 
 #include "comparison/pull_back.hpp"
 
+#include <maupertuis/switches.hpp>
+
+#include <algorithm>
 #include <random>
 
 namespace maupertuis::comparison {
@@ -109,7 +112,45 @@ ZeroTest Motions::at_points(std::span<const Expr> functions) const {
     center[c.acceleration] = 0;
   }
   for (const Expr& multiplier : equations_.multipliers) center[multiplier] = 0;
-  return zero_test_where(functions, relations_, unknowns, center);
+  ZeroTest all = zero_test_where(functions, relations_, unknowns, center);
+  for (const Bindings& branch : centers(functions, center)) {
+    if (all.verdict != Verdict::Zero) break;
+    // No point in a branch: the constraints do not reach it.
+    const ZeroTest there = zero_test_where(functions, relations_, unknowns, branch);
+    if (there.verdict == Verdict::Nonzero) return there;
+    if (there.verdict == Verdict::Zero) all.points += there.points;
+  }
+  return all;
+}
+
+std::vector<MotionState> Motions::states_in_branches(std::span<const Expr> functions) const {
+  std::vector<MotionState> out;
+  if (model_.system.constrained() || states_.empty()) return out;
+  const ExprVector moved = accelerations_ ? substitute(functions, *accelerations_) : ExprVector(functions.begin(), functions.end());
+  for (const Bindings& point : centers(moved, at(states_.front()))) {
+    MotionState state{point.at(model_.system.context->time()), {}, {}};
+    for (const Coordinate& c : model_.system.coordinates) state.q.push_back(point.at(c.q)), state.v.push_back(point.at(c.velocity));
+    out.push_back(std::move(state));
+  }
+  return out;
+}
+
+/// Points in the branches of the switches between positions, velocities and time.
+std::vector<Bindings> Motions::centers(std::span<const Expr> functions, const Bindings& start) const {
+  ExprVector all(functions.begin(), functions.end());
+  all.insert(all.end(), relations_.begin(), relations_.end());
+  SwitchSearch search;
+  search.center = start;
+  for (const Coordinate& c : model_.system.coordinates) search.moving.insert(search.moving.end(), {c.q, c.velocity});
+  search.moving.push_back(model_.system.context->time());
+  ExprVector switches;
+  for (const Expr& g : switches_of(all)) {
+    const std::vector<Expr> symbols = symbols_of({&g, 1});
+    const auto moves = [&](Expr s) { return std::find(search.moving.begin(), search.moving.end(), s) != search.moving.end(); };
+    const auto knows = [&](Expr s) { return moves(s) || (start.count(s) != 0 && s.role() != Role::Coordinate); };
+    if (std::any_of(symbols.begin(), symbols.end(), moves) && std::all_of(symbols.begin(), symbols.end(), knows)) switches.push_back(g);
+  }
+  return points_in_branches(switches, search).points;
 }
 
 }  // namespace maupertuis::comparison

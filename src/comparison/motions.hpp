@@ -19,13 +19,17 @@ class Motions {
   ZeroTest vanish(std::span<const Expr> functions) const;
   /// The same where the parameters have the values of the model, and only these.
   ZeroTest vanish_at_these_values(std::span<const Expr> functions) const;
-  /// At states near the start, with parameters within a hundredth of their values.
+  /// At states near the start, with parameters within a hundredth of their values; and, where switches stand in the
+  /// functions or the equations, near points in each of the branches that are found.
   ZeroTest at_points(std::span<const Expr> functions) const;
+  /// States in the branches of these functions and of the equations, as far as no constraints have to be met.
+  std::vector<MotionState> states_in_branches(std::span<const Expr> functions) const;
   /// Exactly, where each function is one of the constraints or vanishes everywhere; else `vanish`.
   ZeroTest constraints_vanish(std::span<const Expr> functions) const;
 
  private:
   void find_states();
+  std::vector<Bindings> centers(std::span<const Expr> functions, const Bindings& start) const;
 
   const Model& model_;
   const EquationsOfMotion& equations_;

@@ -134,3 +134,28 @@ TEST_CASE("reduce: what is not elementary is refused with the proposal") {
   CHECK(maup({"reduce", "-"}, pendulum).code == 1);
   CHECK(maup({"reduce", folder.path("none.lag")}).code == 2);
 }
+
+TEST_CASE("compare: 5 for evidence without a proof, 4 where only one is defined") {
+  const Folder folder;
+  const std::string a = folder.write("cartesian.lag", cartesian), b = folder.write("pendulum.lag", pendulum);
+  const Outcome evidence = maup({"compare", b, a, "--map", "θ = atan2(x, -y)"});
+  CHECK_MESSAGE(evidence.code == 5, evidence.err);
+  CHECK(contains(evidence.out, "by evidence and not proved: holds to 60 digits"));
+  const Json json = json_of(maup({"compare", b, a, "--map", "θ = atan2(x, -y)", "--json"}));
+  CHECK(json.at("verdict") == "evidence");
+  CHECK(json.at("ok") == false);
+  const std::string head = "system s\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nstart x = 1\nrun 0.5\n";
+  const Outcome domain = maup({"compare", folder.write("both.lag", head + "V = log(x^2)\n"), folder.write("right.lag", head + "V = 2 log(x)\n")});
+  CHECK(domain.code == 4);
+  CHECK(contains(domain.out, "they agree where both are"));
+}
+
+TEST_CASE("energies that jump are refused by every command on a model") {
+  const Folder folder;
+  const std::string model = folder.write("step.lag", "system s\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 0.4 step(x - 1)\nstart x' = 1\nrun 3\n");
+  for (const char* command : {"check", "derive", "simulate", "invariants", "modes", "hamiltonian"}) {
+    const Outcome outcome = maup({command, model});
+    CHECK(outcome.code == 1);
+    CHECK(contains(outcome.err, "V jumps by 0.4 where x = 1"));
+  }
+}

@@ -50,7 +50,7 @@ const char* energy_word(EnergyRelation relation) {
 std::string verdict_text(const Comparison& c) {
   switch (c.verdict) {
     case Sameness::Same:
-      return "the same motion: " + ground_text(c);
+      return (c.proved() ? "the same motion: " : "the same motion, by evidence and not proved: ") + ground_text(c);
     case Sameness::Part:
       return fmt::format("not the same: {}\n  equations           {}", c.reason, ground_text(c));
     case Sameness::Different:
@@ -116,7 +116,7 @@ Json to_json(const Comparison& c, const Model& a, const CoordinateMap& map) {
   Json document = json_document("compare");
   document["systems"] = {a.system.name, b.name};
   for (std::size_t i = 0; i < map.written.size(); ++i) document["map"][a.system.coordinates[i].name] = map.written[i];
-  document["verdict"] = verdict_word(c.verdict);
+  document["verdict"] = c.verdict == Sameness::Same && !c.proved() ? "evidence" : verdict_word(c.verdict);
   document["reason"] = c.reason;
   document["points"] = c.ground.points;
   document["error_bound"] = c.ground.error_bound;
@@ -201,7 +201,9 @@ ExitCode compare_models(const CompareOptions& options, Console& console) {
   if (of_map.has_errors()) return end(json_document("compare"), ExitCode::ModelWrong);
   if (!console.json()) console.print(text_of(result, *a.model(), *map));
   return end(to_json(result, *a.model(), *map),
-             result.verdict == Sameness::Same ? ExitCode::Fine : ExitCode::ExpectationFailed);
+             result.proved()                    ? ExitCode::Fine
+             : result.verdict == Sameness::Same ? ExitCode::NotProved
+                                                : ExitCode::ExpectationFailed);
 }
 
 }  // namespace
@@ -209,7 +211,7 @@ ExitCode compare_models(const CompareOptions& options, Console& console) {
 void add_compare(CommandLine& line) {
   const auto options = std::make_shared<CompareOptions>();
   CLI::App& command = line.add(
-      "compare", "Whether two models give the same motion; exit 4 if not",
+      "compare", "Whether two models give the same motion; exit 4 if not, 5 if it is not proved",
       "  maup compare cartesian.lag angle.lag --map \"x = l sin θ, y = -l cos θ\"\n"
       "  maup compare inertial.lag rotating.lag --map \"x = u cos(Ω t) - v sin(Ω t), y = u sin(Ω t) + v cos(Ω t)\"\n"
       "  maup compare lagrangian.lag with_gauge.lag --json\n",

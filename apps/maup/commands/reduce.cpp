@@ -22,7 +22,7 @@ std::string account(const Reduction& r) {
   std::string out;
   for (const std::string& step : r.steps) out += fmt::format("  {}\n", step);
   if (!r.proof) return out;
-  out += fmt::format("  the same motion: {}\n", ground_text(*r.proof));
+  out += fmt::format("  the same motion{}: {}\n", r.proof->proved() ? "" : ", by evidence and not proved", ground_text(*r.proof));
   if (r.proof->run.ran)
     out += fmt::format("  run of both for {} s: they differ by {:.2g}\n", brief(r.proof->run.duration),
                        r.proof->run.difference);

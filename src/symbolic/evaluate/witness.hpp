@@ -18,6 +18,9 @@ std::optional<Witness> find_witness(const Tape& tape, int points, std::uint64_t 
 /// The same with 100 digits, for values that cancel in double.
 std::optional<Witness> find_precise_witness(const Tape& tape, int points, std::uint64_t seed);
 
+/// The same at points in all branches of the switches that are found, first in double, then with 100 digits.
+std::optional<Witness> find_witness_in_branches(std::span<const Expr> roots, std::uint64_t seed);
+
 /// A random real point for the symbols of a tape: mostly of order one, now and then large or small.
 Bindings random_real_point(const Tape& tape, int trial, std::uint64_t seed);
 

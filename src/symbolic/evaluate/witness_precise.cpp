@@ -2,21 +2,44 @@
 #include "symbolic/evaluate/real_numbers.hpp"
 #include "symbolic/evaluate/witness.hpp"
 
+#include <maupertuis/switches.hpp>
+
 namespace maupertuis::evaluation {
+namespace {
+
+/// The value of a root that interval arithmetic shows to be another than 0 at the point.
+template <class Real>
+std::optional<Witness> witness_at(const Tape& tape, const Bindings& point) {
+  using std::isfinite;
+  std::vector<Interval<Real>> values;
+  RealNumbers<Interval<Real>> numbers([&](Expr symbol) { const Real x = point.at(symbol); return Interval<Real>{x, x}; });
+  run(tape, numbers, values);
+  for (std::size_t i = 0; i < tape.roots().size(); ++i) {
+    const Interval<Real>& v = values[tape.roots()[i]];
+    if (!v.is_nan() && !v.contains_zero() && isfinite(v.low) && isfinite(v.high))
+      return Witness{point, static_cast<double>(Real((v.low + v.high) / 2)), i};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
 
 std::optional<Witness> find_precise_witness(const Tape& tape, int points, std::uint64_t seed) {
-  using Range = Interval<Real100>;
-  std::vector<Range> values;
-  for (int trial = 0; trial < points; ++trial) {
-    const Bindings point = random_real_point(tape, trial, seed);
-    RealNumbers<Range> numbers([&](Expr symbol) { const Real100 x = point.at(symbol); return Range{x, x}; });
-    run(tape, numbers, values);
-    for (std::size_t i = 0; i < tape.roots().size(); ++i) {
-      const Range& v = values[tape.roots()[i]];
-      if (!v.is_nan() && !v.contains_zero() && isfinite(v.low) && isfinite(v.high))
-        return Witness{point, static_cast<double>(Real100((v.low + v.high) / 2)), i};
-    }
-  }
+  for (int trial = 0; trial < points; ++trial)
+    if (const auto found = witness_at<Real100>(tape, random_real_point(tape, trial, seed))) return found;
+  return std::nullopt;
+}
+
+std::optional<Witness> find_witness_in_branches(std::span<const Expr> roots, std::uint64_t seed) {
+  const std::vector<Expr> switches = switches_of(roots);
+  if (switches.empty()) return std::nullopt;
+  const Tape tape(roots);
+  SwitchSearch search{symbols_of(roots), random_real_point(tape, 2, seed), 0, seed};
+  const std::vector<Bindings> points = points_in_branches(switches, search).points;
+  for (const Bindings& point : points)
+    if (const auto found = witness_at<double>(tape, point)) return found;
+  for (const Bindings& point : points)
+    if (const auto found = witness_at<Real100>(tape, point)) return found;
   return std::nullopt;
 }
 

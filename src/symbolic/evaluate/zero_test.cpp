@@ -90,6 +90,7 @@ ZeroTest zero_test(std::span<const Expr> differences, const ZeroTestOptions& opt
     return test;
   }
   if (const auto witness = find_witness(tape, 24, options.seed + 1)) return nonzero(*witness);
+  if (const auto witness = find_witness_in_branches(roots, options.seed + 3)) return nonzero(*witness);
   if (const auto witness = find_precise_witness(tape, 8, options.seed + 2)) return nonzero(*witness);
   test.reason = field.outcome == FieldResult::Outcome::NoPoint
                     ? "no point was found at which every root and logarithm is defined"

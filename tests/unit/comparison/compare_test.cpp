@@ -285,3 +285,51 @@ TEST_CASE("maps that cannot be read") {
   code("x = (l, l), y = 0", "E0824", "(l, l)");
   code("x = l sin(abs(θ)), y = -l cos θ", "E0824", "l sin(abs(θ))");
 }
+
+namespace {
+
+std::string particle(const std::string& rest) {
+  return "system particle\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n" + rest + "\nstart x = 1\nrun 1\n";
+}
+
+}  // namespace
+
+TEST_CASE("motions that part in a branch far from the start are told apart") {
+  const std::string plain = particle("V = x");
+  for (const char* other :
+       {"V = x\nforce x = max(x - 5, 0)^2 step(y - 7)", "V = x + max(x - 5, 0)^2 max(y - 7, 0)^2",
+        "V = x + piecewise(x > 40 and y < -70 : (x - 40)^2 (y + 70)^2, else : 0)", "V = x\nforce y = step(exp(-100 (x - 3)^2) - 0.5)",
+        "V = x\nforce y = max(x - 5, 0) max(y - 7, 0) max(t - 90, 0)"}) {
+    for (const bool turned : {false, true}) {
+      const Compared c = turned ? compare_texts(particle(other), plain) : compare_texts(plain, particle(other));
+      INFO(other, c.result.reason);
+      CHECK(c.result.verdict == Sameness::Different);
+      CHECK(c.result.disagreement);
+    }
+  }
+}
+
+TEST_CASE("the same branches written otherwise are the same, proved") {
+  const Compared c = compare_texts(particle("V = max(x, 0)^2 + abs(y)"), particle("V = piecewise(x > 0 : x^2, else : 0) + max(y, -y)"));
+  CHECK(c.result.verdict == Sameness::Same);
+  CHECK(c.result.proved());
+}
+
+TEST_CASE("compare knows where energies are defined") {
+  const std::string both = particle("V = log(x^2)"), right = particle("V = 2 log(x)");
+  for (const bool turned : {false, true}) {
+    const Compared c = turned ? compare_texts(right, both) : compare_texts(both, right);
+    CHECK(c.result.verdict == Sameness::Part);
+    CHECK_FALSE(c.result.proved());
+    CHECK(c.result.reason.find("is defined at x = -") != std::string::npos);
+  }
+  CHECK(compare_texts(both, particle("V = 2 log(abs(x))")).result.proved());
+  CHECK(compare_texts(particle("V = sqrt(x)^2 + sqrt(y + 3)"), particle("V = x + sqrt(3 + y)")).result.verdict == Sameness::Part);
+}
+
+TEST_CASE("evidence is no proof") {
+  const Compared back = compare_texts(angle_pendulum, cartesian_pendulum, "θ = atan2(x, -y)");
+  CHECK(back.result.verdict == Sameness::Same);
+  CHECK_FALSE(back.result.proved());
+  CHECK(compare_texts(cartesian_pendulum, angle_pendulum, "x = l sin θ, y = -l cos θ").result.proved());
+}
