@@ -230,6 +230,11 @@ std::string multipliers_text(const MechanicalSystem& system, const OperatingPoin
   return out.empty() ? out : "  multipliers (SI): " + out + "\n";
 }
 
+/// "x = 0, on the side x > 0"
+std::string place_text(const MechanicalSystem& system, const ModalEntry& e, const ModalStudy& study) {
+  return point_text(system, e.equilibrium, study.translations) + (e.side.empty() ? "" : ", on the side " + e.side);
+}
+
 std::string summary(const MechanicalSystem& system, const ModalStudy& study) {
   if (study.starts == 0) return "";
   std::size_t resting = 0;
@@ -241,7 +246,7 @@ std::string summary(const MechanicalSystem& system, const ModalStudy& study) {
   std::vector<std::vector<std::string>> rows;
   for (std::size_t i = 0; i < study.entries.size(); ++i) {
     const ModalEntry& e = study.entries[i];
-    rows.push_back({fmt::format("{}", i + 1), point_text(system, e.equilibrium, study.translations),
+    rows.push_back({fmt::format("{}", i + 1), place_text(system, e, study),
                     verdict(e.analysis.stability)});
   }
   return out + table(rows, 3);
@@ -256,7 +261,7 @@ std::string modes_text(const MechanicalSystem& system, const ModalStudy& study,
   std::string out = summary(system, study);
   for (std::size_t i = 0; i < study.entries.size() && i < detailed; ++i) {
     const ModalEntry& e = study.entries[i];
-    const std::string head = point_text(system, e.equilibrium, study.translations);
+    const std::string head = place_text(system, e, study);
     if (!out.empty()) out += "\n";
     out += study.starts > 0 ? fmt::format("{}  {}\n", i + 1, head)
                             : fmt::format("{}\n  {}\n", head, verdict(e.analysis.stability));
@@ -404,6 +409,7 @@ Json modes_document(const MechanicalSystem& system, const ModalStudy& study) {
   for (const ModalEntry& e : study.entries) {
     Json entry = point_json(system, e.linearization.point);
     entry["at_rest"] = e.equilibrium.at_rest;
+    entry["side"] = e.side.empty() ? Json(nullptr) : Json(e.side);
     entry["residual"] = e.equilibrium.residual;
     entry["family"] = e.equilibrium.family;
     const StabilityReport& s = e.analysis.stability;

@@ -62,11 +62,19 @@ struct ModalEntry {
   Equilibrium equilibrium;
   Linearization linearization;
   ModalAnalysis analysis;
+  std::string side;                   // "x > 0": the point is on a kink, and these are the equations of that side; empty: none
+};
+
+/// An equilibrium on a kink beyond which the forces do not balance: no linearization.
+struct Kink {
+  Equilibrium equilibrium;
+  std::string side;                   // where they do not
 };
 
 struct ModalStudy {
   std::vector<ModalEntry> entries;         // those where the coordinates fail are left out
   std::vector<Equilibrium> failing;        // … and listed here
+  std::vector<Kink> kinks;                 // sides of points that have no entry
   std::vector<Translation> translations;
   std::size_t starts = 0;                  // of the search; 0: a point was given
 };

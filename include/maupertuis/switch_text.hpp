@@ -9,4 +9,7 @@ namespace maupertuis {
 /// parameters and numbers on the right. Empty where that is longer than a line.
 std::string switch_text(Expr difference, const ReadingOrder& order);
 
+/// Which side is meant by g > 0: "x > a" of x - a, "x < a" of a - x. Empty as above.
+std::string side_text(Expr difference, bool above, const ReadingOrder& order);
+
 }  // namespace maupertuis

@@ -54,8 +54,16 @@ void ModeClaims::decide(const Expectation& e, ExpectationResult& result) const {
     for (const Diagnostic& d : told.items()) result.message = d.message + ". " + d.reason;
     return;
   }
-  if (e.kind == syntax::ExpectStatement::Kind::Equilibrium) return decide_stability(e, study->entries.front(), result);
-  decide_frequencies(e, study->entries.front().analysis, result);
+  // On a kink each side is judged for itself, and all have to agree.
+  for (const ModalEntry& entry : study->entries) {
+    if (e.kind == syntax::ExpectStatement::Kind::Equilibrium) decide_stability(e, entry, result);
+    else decide_frequencies(e, entry.analysis, result);
+    if (!entry.side.empty()) result.message = fmt::format("On the side {} of a kink: {}", entry.side, result.message);
+    if (!result.passed) return;
+  }
+  if (study->kinks.empty()) return;
+  result.passed = false;
+  result.message = fmt::format("On the side {} of a kink forces are left over: there is no linearization.", study->kinks.front().side);
 }
 
 void ModeClaims::decide_frequencies(const Expectation& e, const ModalAnalysis& analysis, ExpectationResult& result) const {

@@ -195,7 +195,7 @@ ExitCode points(const ModesOptions& options, Study& study, const PointEquations&
   for (std::size_t i = 0; i < result->entries.size() && i < detailed; ++i) {
     const bool settled = result->starts > 0 || !options.at.empty();
     formulas.push_back(
-        settled ? symbolic_linearization(*study.equations(), result->entries[i].linearization, result->translations)
+        settled && result->entries[i].side.empty() ? symbolic_linearization(*study.equations(), result->entries[i].linearization, result->translations)
                 : std::nullopt);
     document["points"][i]["formulas"] =
         formulas.back() ? symbolic_json(*formulas.back(), study.equations()->order) : Json(nullptr);

@@ -26,6 +26,13 @@ constexpr CodeEntry entries[] = {
      "value at θ = 0, √θ and abs(θ) have no derivative: no row of C stands for them. Where a formula has a limit that it does not reach "
      "(sin(θ)/θ), write the limit.",
      "maup modes pendulum.lag --at \"θ=0\" --y \"1/θ\"", "maup modes pendulum.lag --at \"θ=0\" --y \"θ\""},
+    {"E1307", "an equilibrium on a kink",
+     "Where a force jumps, at abs(x) or dry friction, the system may rest although forces are left over on every side, which push it back. There is no "
+     "stiffness, and no frequency: it does not answer in proportion to a small displacement.",
+     "V = F abs(x)", "V = F sqrt(x^2 + d^2)"},
+    {"W1302", "a side of an equilibrium without a linearization",
+     "The equilibrium is on a kink, and on this side the forces do not balance beside it. What the other sides have is shown for each of them.",
+     "", ""},
     {"E1310", "a regulator for a model without inputs",
      "The linear-quadratic regulator chooses the inputs as functions of the state, u = u0 - F x. A force that is a formula of t cannot be chosen.",
      "force x = 2 N", "input u : [N] = 0\nforce x = u"},

@@ -1,4 +1,4 @@
-#include "analysis/linearization/point_equations.hpp"
+#include "analysis/linearization/kinks.hpp"
 
 #include <maupertuis/modes.hpp>
 
@@ -22,6 +22,15 @@ void refuse_singular(const MechanicalSystem& system, std::size_t coordinate, con
 }
 
 /// Linearizes what was found; the points at which coordinates fail stand apart.
+constexpr double balanced = 1e-9;  // residual of rest
+
+void add_entry(ModalStudy& study, const PointEquations& equations, const Equilibrium& x, const std::string& side) {
+  ModalEntry entry{x, {}, {}, side};
+  entry.linearization = linearize(equations, x.point).linearization;
+  entry.analysis = modal_analysis(equations, entry.linearization, study.translations, &entry.equilibrium);
+  study.entries.push_back(std::move(entry));
+}
+
 ModalStudy analysed(const PointEquations& equations, std::vector<Equilibrium> found, std::vector<Translation> translations) {
   ModalStudy study;
   study.translations = std::move(translations);
@@ -30,12 +39,34 @@ ModalStudy analysed(const PointEquations& equations, std::vector<Equilibrium> fo
       study.failing.push_back(std::move(x));
       continue;
     }
-    ModalEntry entry{std::move(x), {}, {}};
-    entry.linearization = linearize(equations, entry.equilibrium.point).linearization;
-    entry.analysis = modal_analysis(equations, entry.linearization, study.translations, &entry.equilibrium);
-    study.entries.push_back(std::move(entry));
+    const std::vector<OneSide> sides = sides_at(equations, x, study.translations);
+    if (sides.empty()) add_entry(study, equations, x, {});
+    for (const OneSide& side : sides) {
+      if (side.residual <= balanced) add_entry(study, side.equations, x, side.where);
+      else study.kinks.push_back({x, side.where});
+    }
   }
   return study;
+}
+
+/// E1307: all that was found is on kinks, and balances on no side of them.
+bool refuse_kinks_alone(const PointEquations& equations, const ModalStudy& study, std::optional<Span> place, Diagnostics& diagnostics) {
+  if (!study.entries.empty() || study.kinks.empty()) return false;
+  diagnostics.error("E1307", place,
+                    fmt::format("{} is on a kink", point_text(equations.system(), study.kinks.front().equilibrium, study.translations)),
+                    "Beside it forces are left over on every side, however small the distance: there is no linearization and no frequency.",
+                    "A smooth function, as sqrt(x^2 + d^2) for abs(x), has one; `maup simulate` runs the model as it is.");
+  return true;
+}
+
+void tell_of_kinks(const PointEquations& equations, const ModalStudy& study, Diagnostics& diagnostics) {
+  for (const Kink& k : study.kinks)
+    diagnostics.warning("W1302", std::nullopt,
+                        fmt::format("no linearization at {}{}", point_text(equations.system(), k.equilibrium, study.translations),
+                                    k.side.empty() ? "" : " on the side " + k.side),
+                        "The point is on a kink, and beside it forces are left over: they push back or away, however small the "
+                        "distance, so that there is no frequency.",
+                        "A smooth function, as sqrt(x^2 + d^2) for abs(x), has one; `maup simulate` runs the model as it is.");
 }
 
 void warn_of_failing(const PointEquations& equations, const ModalStudy& study, Diagnostics& diagnostics) {
@@ -116,7 +147,9 @@ std::optional<ModalStudy> modal_study(const PointEquations& equations, const Mot
   }
   ModalStudy study = analysed(equations, std::move(result.found), std::move(result.translations));
   study.starts = result.starts;
+  if (refuse_kinks_alone(equations, study, std::nullopt, diagnostics)) return std::nullopt;
   warn_of_failing(equations, study, diagnostics);
+  tell_of_kinks(equations, study, diagnostics);
   return study;
 }
 
@@ -141,7 +174,10 @@ std::optional<ModalStudy> modal_study_at(const PointEquations& equations, const 
     refuse_singular(equations.system(), culprit, "at " + point_text(equations.system(), found.front(), translations), diagnostics);
     return std::nullopt;
   }
-  return analysed(equations, {found.front()}, translations);
+  ModalStudy study = analysed(equations, {found.front()}, translations);
+  if (refuse_kinks_alone(equations, study, place, diagnostics)) return std::nullopt;
+  tell_of_kinks(equations, study, diagnostics);
+  return study;
 }
 
 std::optional<ModalStudy> modal_study_of(const PointEquations& equations, const MotionState& state, Diagnostics& diagnostics) {
@@ -152,7 +188,7 @@ std::optional<ModalStudy> modal_study_of(const PointEquations& equations, const 
   }
   ModalStudy study;
   study.translations = equations.translations();
-  ModalEntry entry{{*point, false, 0, 0, false}, linearize(equations, *point).linearization, {}};
+  ModalEntry entry{{*point, false, 0, 0, false}, linearize(equations, *point).linearization, {}, {}};
   entry.analysis = modal_analysis(equations, entry.linearization, {}, nullptr);
   study.entries.push_back(std::move(entry));
   return study;

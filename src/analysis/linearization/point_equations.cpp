@@ -118,6 +118,8 @@ bool has_potential(const ExprVector& forces, const MechanicalSystem& system) {
 
 PointEquations::Impl::Impl(const EquationsOfMotion& equations, std::span<const Expr> measured)
     : system(equations.system),
+      balance_rows(Lowering(equations).plain(equations.balance())),
+      measured(measured.begin(), measured.end()),
       n(system->coordinates.size()),
       m(system->constraints.size()),
       k(system->inputs.size()),

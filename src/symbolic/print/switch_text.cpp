@@ -18,9 +18,12 @@ std::string text_of(Expr e, const ReadingOrder& order) {
   return form.intermediates.empty() ? to_plain(form.value, order) : std::string();
 }
 
-}  // namespace
+struct Relation {
+  std::string left, right;  // empty: too long
+  bool turned = false;      // left − right is −g
+};
 
-std::string switch_text(Expr difference, const ReadingOrder& order) {
+Relation relation_of(Expr difference, const ReadingOrder& order) {
   Context& context = difference.context();
   const Expr expanded = expand(difference, terms_at_most);
   const Expr e = expanded ? expanded : difference;
@@ -30,9 +33,23 @@ std::string switch_text(Expr difference, const ReadingOrder& order) {
     (changes(term) ? left : right) = changes(term) ? left + term : right - term;
   }
   const Expr first = left.is(Kind::Sum) ? left[0] : left;
-  if (split_coefficient(first).coefficient.sign() < 0) left = expand(-left), right = expand(-right);
+  const bool turned = split_coefficient(first).coefficient.sign() < 0;
+  if (turned) left = expand(-left), right = expand(-right);
   const std::string a = text_of(left, order), b = text_of(right, order);
-  return a.empty() || b.empty() || a.size() + b.size() > longest ? std::string() : a + " = " + b;
+  return a.empty() || b.empty() || a.size() + b.size() > longest ? Relation{} : Relation{a, b, turned};
+}
+
+std::string text_with(const Relation& relation, const char* sign) {
+  return relation.left.empty() ? std::string() : relation.left + sign + relation.right;
+}
+
+}  // namespace
+
+std::string switch_text(Expr difference, const ReadingOrder& order) { return text_with(relation_of(difference, order), " = "); }
+
+std::string side_text(Expr difference, bool above, const ReadingOrder& order) {
+  const Relation relation = relation_of(difference, order);
+  return text_with(relation, above != relation.turned ? " > " : " < ");
 }
 
 }  // namespace maupertuis

@@ -183,3 +183,38 @@ V = 1/2 k r^2
   REQUIRE_FALSE(told.items().empty());
   CHECK(told.items()[0].code == "W1301");
 }
+
+TEST_CASE("An equilibrium on a kink has the stiffness of each side, never one that is made up") {
+  Linearized m("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2 + 3/2 max(x, 0)^2\n");
+  const ModalStudy study = m.study();
+  REQUIRE(study.entries.size() == 2);
+  CHECK(study.entries[0].side == "x > 0");
+  CHECK(frequencies(study.entries[0].analysis) == std::vector<double>{2});
+  CHECK(study.entries[1].side == "x < 0");
+  CHECK(frequencies(study.entries[1].analysis) == std::vector<double>{1});
+  // Pieces that agree to second order are one side; so does a kink elsewhere.
+  for (const char* smooth : {"V = 1/2 x^2 + max(x, 0)^3", "V = 1/2 x^2 + max(x - 1, 0)", "V = 1/2 x^2\nD = abs(x')^3"}) {
+    Linearized same(std::string("dimensionless\ncoord x : number\nT = 1/2 x'^2\n") + smooth + "\n");
+    const ModalStudy one = same.study();
+    REQUIRE(one.entries.size() == 1);
+    CHECK(one.entries[0].side.empty());
+    CHECK(frequencies(one.entries[0].analysis) == std::vector<double>{1});
+  }
+}
+
+TEST_CASE("Rest where a force jumps has no linearization") {
+  for (const char* text : {"V = abs(x)", "V = 1/2 x^2 + abs(x)", "V = 1/2 x^2\nD = abs(x')", "V = 1/2 x^2\nforce x = -sign(x')"}) {
+    Linearized m(std::string("dimensionless\ncoord x : number\nT = 1/2 x'^2\n") + text + "\n");
+    Diagnostics diagnostics;
+    CHECK_FALSE(modal_study(m.at, m.start, diagnostics));
+    REQUIRE(diagnostics.items().size() == 1);
+    CHECK(diagnostics.items()[0].code == "E1307");
+  }
+  // On one side alone: a ledge.
+  Linearized ledge("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2 + max(x, 0)\n");
+  const ModalStudy study = ledge.study();
+  REQUIRE(study.entries.size() == 1);
+  CHECK(study.entries[0].side == "x < 0");
+  REQUIRE(study.kinks.size() == 1);
+  CHECK(study.kinks[0].side == "x > 0");
+}
