@@ -1,5 +1,7 @@
 #include "kernel/compiled/backend.hpp"
 
+#include "../processors.hpp"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -14,10 +16,10 @@ struct alignas(64) Lanes {
   double x[16], y[16];
 };
 
-Lanes run(int width, const char* processor = "") {
+Lanes run(int width, const std::string& processor = {}) {
   Request request;
   request.width = width;
-  request.processor = processor;
+  request.processor = processor.c_str();
   const Compiled compiled = compile(request, nullptr);
   REQUIRE_MESSAGE(compiled.code, compiled.trouble);
   const auto f = reinterpret_cast<void (*)(const double*, double*)>(compiled.code->find("self_test"));
@@ -51,7 +53,7 @@ TEST_CASE("code that is compiled at run time computes, the same bits at every wi
 }
 
 TEST_CASE("processors with less: the same to rounding, and the same at every width") {
-  for (const char* const processor : {"x86-64", "x86-64-v2", "x86-64-v3"}) {
+  for (const std::string& processor : levels_here({"x86-64", "x86-64-v2", "x86-64-v3"})) {
     CAPTURE(processor);
     const Lanes one = run(1, processor);
     for (int i = 0; i < 16; ++i) CHECK(std::abs(one.y[i] - expected(one.x[i])) <= 4e-16 * expected(one.x[i]));

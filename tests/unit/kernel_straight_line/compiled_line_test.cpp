@@ -1,3 +1,4 @@
+#include "../processors.hpp"
 #include "evaluate_line.hpp"
 
 #include "kernel/straight_line/compile.hpp"
@@ -53,7 +54,7 @@ StraightLine random_line(unsigned seed, int length) {
 
 TEST_CASE("random lines, short ones and ones that are cut into functions, for this processor and lesser ones") {
   const std::vector<double> x{0.3, -0.7, 1.1, 0.9, -0.2, 0.5};
-  for (const char* processor : {"", "x86-64", "x86-64-v3"})
+  for (const std::string& processor : levels_here({"", "x86-64", "x86-64-v3"}))
     for (const int length : {3, 40, 2000}) {
       CAPTURE(processor);
       CAPTURE(length);

@@ -1,3 +1,4 @@
+#include "../processors.hpp"
 #include "lines_in_parts.hpp"
 
 #include "kernel/straight_line/compile.hpp"
@@ -9,7 +10,7 @@
 using namespace maupertuis::straight;
 
 TEST_CASE("wide lines, short ones and ones that are cut into functions, for this processor and lesser ones") {
-  for (const char* processor : {"", "x86-64", "x86-64-v3"})
+  for (const std::string& processor : levels_here({"", "x86-64", "x86-64-v3"}))
     for (const std::uint32_t parts : {2, 4, 8})
       for (const int length : {3, 200}) {
         CAPTURE(processor);

@@ -1,3 +1,4 @@
+#include "../processors.hpp"
 #include "lane_systems.hpp"
 
 // One motion in rolled code, stage by stage, against the engine of packs: coefficients, multipliers, integrands.
@@ -146,7 +147,7 @@ TEST_CASE("rolled code: all stages in one loop, where nothing is asked for besid
     check_rolled(*s, 1000, true);
   }
   for (const int orders : {1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 13}) check_rolled(*list[1], 1000, true, {}, orders), check_rolled(*list[4], 1000, true, {}, orders);
-  for (const char* processor : {"x86-64", "x86-64-v3"}) check_rolled(*list[1], 1000, true, processor), check_rolled(*list[6], 1000, true, processor);
+  for (const std::string& processor : levels_here({"x86-64", "x86-64-v3"})) check_rolled(*list[1], 1000, true, processor), check_rolled(*list[6], 1000, true, processor);
 }
 
 TEST_CASE("rolled code: M that becomes unsymmetric with a parameter, at a state of no forces") {
@@ -251,5 +252,5 @@ TEST_CASE("rolled code for other processors") {
   add_damped_chain(list, 9);
   add_rods(list, 3);
   for (const auto& s : list)
-    for (const char* processor : {"x86-64", "x86-64-v3"}) check_rolled(*s, 1000, false, processor), check_rolled(*s, 1000, true, processor);
+    for (const std::string& processor : levels_here({"x86-64", "x86-64-v3"})) check_rolled(*s, 1000, false, processor), check_rolled(*s, 1000, true, processor);
 }

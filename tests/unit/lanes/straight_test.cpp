@@ -1,3 +1,4 @@
+#include "../processors.hpp"
 #include "lane_systems.hpp"
 
 #include <array>
@@ -115,7 +116,7 @@ TEST_CASE("straight-line code for other processors") {
   Systems list;
   for (const int links : {4, 5}) add_chain(list, links);
   for (const auto& s : list)
-    for (const char* processor : {"x86-64", "x86-64-v3"}) check_straight(*s, 4000, processor);
+    for (const std::string& processor : levels_here({"x86-64", "x86-64-v3"})) check_straight(*s, 4000, processor);
 }
 
 TEST_CASE("straight-line code: angles beyond those whose sines are written out") {
