@@ -1,5 +1,5 @@
 # Thin: each rule calls a script of scripts/, which installs what is missing, configures by a CMake preset and builds.
-.PHONY: demo build test bench instructions fuzz format install clean
+.PHONY: demo build test bench instructions fuzz mutants format install clean
 
 demo:     # check, derive, simulate and report models/double_pendulum.lag
 	@scripts/demo
@@ -13,6 +13,8 @@ instructions:  # counts of fixed work under valgrind, against benchmarks/instruc
 	@scripts/instructions
 fuzz:     # two minutes of libFuzzer on parse → check → derive
 	@scripts/fuzz
+mutants:  # one-line changes of the sources: nine of ten must be seen by the tests
+	@scripts/mutants
 format:   # clang-format over the sources
 	@scripts/format
 install:  # PREFIX=/usr/local by default

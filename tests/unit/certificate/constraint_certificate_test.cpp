@@ -198,3 +198,16 @@ TEST_CASE("d'Alembert's principle says nothing of a quaternion that may stretch"
     else CHECK(check.error_bound < 1e-6);
   }
 }
+
+TEST_CASE("four coordinates of a constraint that is no sphere are tried off the unit sphere too") {
+  // A mistake that vanishes where x² + y² + u² + v² = 1, where a quaternion of norm 1 would be.
+  const char* const dumbbell = "system dumbbell\ndimensionless\nparam m = 1, l = 1\ncoord x, y, u, v : number\n"
+                               "point A mass m at (x, y)\npoint B mass m at (u, v)\nconstraint (x - u)^2 + (y - v)^2 = l^2\n";
+  ModelText model(dumbbell);
+  CHECK(certify(model.equations, nullptr).passed());
+  const auto& q = model.system->coordinates;
+  Expr beyond = -model.system->context->number(1);
+  for (const Coordinate& c : q) beyond = beyond + pow(c.q, Rational(2));
+  model.equations.residual[0] = model.equations.residual[0] + beyond;
+  CHECK(failed(certify(model.equations, nullptr)).count("jet_residual"));
+}

@@ -1,5 +1,6 @@
 #include "../model_text.hpp"
 
+#include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/print.hpp>
 
@@ -191,4 +192,12 @@ TEST_CASE("the textbook path with multipliers") {
   CHECK(find("(m R^2 + I) φ''") == "0");
   CHECK(find("λ1") == "-m R sin ψ φ' ψ'");
   CHECK(find("constraint 1") == "λ1");
+}
+
+TEST_CASE("parameters are bound to their values in SI units, t to 0") {
+  const ModelText model(planetary_gear);
+  const Bindings bound = parameter_bindings(*model.system);
+  CHECK(bound.size() == model.system->parameters.size() + 1);
+  CHECK(bound.at(model.p("Rs")) == 0.02);
+  CHECK(bound.at(model.system->context->time()) == 0);
 }

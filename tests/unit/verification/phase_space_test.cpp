@@ -1,0 +1,48 @@
+#include "../model_text.hpp"
+
+#include <maupertuis/verification.hpp>
+
+// What is expected of momenta, H, the Routhian and brackets, against the closed forms of the spherical pendulum.
+
+using namespace maupertuis;
+
+namespace {
+
+const std::string spherical = "system spherical\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ, φ : angle\n"
+                              "point P mass m at l (sin θ cos φ, sin θ sin φ, -cos θ)\ngravity (0, 0, -g)\n"
+                              "start θ = 1 rad, φ' = 2 rad/s\nrun 1 s\n";
+
+ExpectationResult only(const std::string& line) {
+  const ModelText m(spherical + line + "\n");
+  Diagnostics diagnostics;
+  const Verification v = verify(m.model, m.equations, m.source, {}, diagnostics);
+  REQUIRE(v.results.size() == 1);
+  return v.results.front();
+}
+
+}  // namespace
+
+TEST_CASE("momenta in expectations have their values in q and q'") {
+  // m l² sin² 1 · 2 rad/s
+  CHECK(only("expect p_φ at 0 s = 1.4161468365471424 kg m^2/s ± 1e-15").passed);
+  CHECK_FALSE(only("expect p_φ at 0 s = 1.41614683654715 kg m^2/s ± 1e-15").passed);
+}
+
+TEST_CASE("H, the Routhian and brackets: the closed forms hold, and no others") {
+  struct Line {
+    const char *text, *message;  // "": it holds
+  };
+  for (const Line& line : {Line{"expect hamiltonian = p_θ^2/(2 m l^2) + p_φ^2/(2 m l^2 sin^2 θ) - m g l cos θ", ""},
+                           {"expect hamiltonian = p_θ^2/(2 m l^2) + p_φ^2/(2 m l^2 sin^2 θ) + m g l cos θ", "The hamiltonian is"},
+                           {"expect routhian of φ = 1/2 m l^2 θ'^2 - p_φ^2/(2 m l^2 sin^2 θ) + m g l cos θ", ""},
+                           {"expect routhian of φ = 1/2 m l^2 θ'^2 + p_φ^2/(2 m l^2 sin^2 θ) + m g l cos θ", "The routhian is"},
+                           {"expect bracket (θ, p_θ) = 1", ""},
+                           {"expect bracket (p_θ, θ) = 1", "The bracket is"},
+                           {"expect bracket (θ, p_φ) = 0", ""}}) {
+    const ExpectationResult r = only(line.text);
+    INFO(line.text, " | ", r.message);
+    CHECK(r.passed == (*line.message == '\0'));
+    if (!r.passed) CHECK(r.message.find(line.message) == 0);
+    CHECK(r.actual == (r.passed ? r.expected : "another function"));
+  }
+}
