@@ -3,6 +3,7 @@
 add_library(maup_flags INTERFACE)
 target_compile_options(maup_flags INTERFACE
   -Wall -Wextra -Wpedantic
+  -Werror=switch-enum      # a new kind of node breaks the build of every switch that does not name it
   -ffp-contract=off        # results must not depend on where the compiler fuses
   -fno-math-errno)
 if(MAUPERTUIS_SANITIZE)

@@ -20,9 +20,10 @@ const char* kind_name(IntegralKind kind) {
       return "noether";
     case IntegralKind::Hidden:
       return "hidden";
-    default:
-      return "direct";
+    case IntegralKind::Direct:
+      break;
   }
+  return "direct";
 }
 
 std::string ground(const ZeroTest& test, const MechanicalSystem& system) {
@@ -50,9 +51,10 @@ std::string origin(const ConservedFunction& integral, const EquationsOfMotion& e
       return "a point symmetry up to gauge";
     case IntegralKind::Hidden:
       return "no point symmetry: its symmetry depends on the velocities";
-    default:
-      return "found directly";
+    case IntegralKind::Direct:
+      break;
   }
+  return "found directly";
 }
 
 std::string integral_text(const std::string& symbol, const ConservedFunction& integral,

@@ -12,7 +12,8 @@
 
 namespace maupertuis {
 
-/// The kinds of node. One table (symbolic/expression/kind_table.hpp) holds the arity, derivative and names of each.
+/// The kinds of node. kinds.hpp tells their families; one table (symbolic/expression/kind_table.hpp) holds arity and names of
+/// each, and functions.hpp all that passes ask of a function of one argument.
 enum class Kind : std::uint8_t {
   // leaves
   Number,    // exact rational
@@ -26,6 +27,8 @@ enum class Kind : std::uint8_t {
   TimeDerivative,
   // elementary functions of one argument
   Sin, Cos, Tan, Asin, Acos, Atan, Sinh, Cosh, Tanh, Asinh, Acosh, Atanh, Exp, Log,
+  Erf,       // 2/√π ∫₀ˣ exp(−s²) ds
+  LambertW,  // the root w ≥ −1 of w eʷ = x
   // functions with a switch
   Abs, Sign, Step,             // sign(0) = 0, step(0) = 1
   Atan2, Min, Max,             // two arguments
@@ -126,6 +129,8 @@ class Context {
   Expr power(Expr base, Expr exponent);
   /// A function, condition or piecewise node. Precondition: arity as in the kind table.
   Expr function(Kind kind, std::span<const Expr> arguments);
+  /// The node of this kind over these arguments, by whichever of the constructors makes it. Precondition: no leaf.
+  Expr make(Kind kind, std::span<const Expr> arguments);
   /// d/dt e. Numbers, parameters: 0; t: 1; symbols of coordinates and inputs: the symbol of the next order; a
   /// time-independent factor is moved out; anything else stays an operator node.
   Expr time_derivative(Expr e);

@@ -86,7 +86,7 @@ bool compare_at_points(const Questions& questions, const evaluation::Tape& tape,
 
 RoutesResult compare_over_primes(const Questions& questions, std::uint64_t seed) {
   RoutesResult result;
-  const evaluation::Tape tape(evaluation::flatten_arguments(questions.roots));
+  const auto tape = evaluation::Tape::with_gaussians(evaluation::flatten_arguments(questions.roots));
   if (orders_needed(tape) > Jet<FieldNumbers::Value>::max_orders) {
     result.complete = false;
     return result;

@@ -64,7 +64,7 @@ Real100 largest(const std::vector<Jet<Real100>>& values) {
 RoutesResult compare_over_reals(const Questions& questions, std::uint64_t seed, int points) {
   RoutesResult result;
   const std::size_t n = questions.system.coordinates.size();
-  const Tape tape(questions.roots);
+  const Tape tape = Tape::with_gaussians(questions.roots);
   result.complete = orders_needed(tape) <= Jet<Real100>::max_orders;
   std::vector<Jet<Real100>> values;
   int found = 0;

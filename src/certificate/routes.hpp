@@ -294,7 +294,7 @@ class RandomPath {
         if (orders_ > 1) out(Base, 1) = numbers_.number(1);
         out(Clock, 0) = numbers_.number(1);
         break;
-      default: out(Base, 0) = numbers_.symbol(symbol);
+      case Role::Parameter: case Role::Constant: case Role::Multiplier: case Role::Auxiliary: out(Base, 0) = numbers_.symbol(symbol);
     }
     return out;
   }

@@ -9,28 +9,16 @@ namespace maupertuis::comparison {
 namespace {
 
 Expr rebuilt(Expr node, const std::vector<Expr>& arguments, const ExprMap& replacements, Context& to) {
-  switch (node.kind()) {
-    case Kind::Number:
-      return to.number(node.number());
-    case Kind::Pi:
-      return to.pi();
-    case Kind::Symbol: {
-      const auto found = replacements.find(node);
-      if (found == replacements.end())
-        throw std::logic_error("no counterpart for the symbol " + node.name() + "; please report");
-      return found->second;
-    }
-    case Kind::Sum:
-      return to.sum(arguments);
-    case Kind::Product:
-      return to.product(arguments);
-    case Kind::Power:
-      return to.power(arguments[0], arguments[1]);
-    case Kind::TimeDerivative:
-      throw std::logic_error("d/dt is to be carried out first; please report");
-    default:
-      return to.function(node.kind(), arguments);
+  if (node.is_number()) return to.number(node.number());
+  if (node.is(Kind::Pi)) return to.pi();
+  if (node.is_symbol()) {
+    const auto found = replacements.find(node);
+    if (found == replacements.end())
+      throw std::logic_error("no counterpart for the symbol " + node.name() + "; please report");
+    return found->second;
   }
+  if (node.is(Kind::TimeDerivative)) throw std::logic_error("d/dt is to be carried out first; please report");
+  return to.make(node.kind(), arguments);
 }
 
 bool same_value(double a, double b) { return std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b)); }

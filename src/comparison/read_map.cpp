@@ -1,4 +1,5 @@
 #include <maupertuis/comparison.hpp>
+#include <maupertuis/kinds.hpp>
 
 #include <fmt/format.h>
 
@@ -39,22 +40,11 @@ void take_over(const Diagnostics& found, const std::vector<Copied>& parts, Diagn
 }
 
 /// A function with a jump or a kink in coordinates or time.
-bool has_switch(Expr e) {
-  for (const Expr& node : topological_order({&e, 1})) {
-    if (!e.context().depends_on_time(node.id())) continue;
-    switch (node.kind()) {
-      case Kind::Abs:
-      case Kind::Sign:
-      case Kind::Step:
-      case Kind::Min:
-      case Kind::Max:
-      case Kind::Piecewise:
-        return true;
-      default:
-        break;
-    }
-  }
-  return false;
+bool switches_with_motion(Expr e) {
+  const std::vector<Expr> nodes = topological_order({&e, 1});
+  return std::any_of(nodes.begin(), nodes.end(), [](const Expr& node) {
+    return has_switch(node.kind()) && node.context().depends_on_time(node.id());
+  });
 }
 
 /// The blanks before the first statement: a line that is indented more would continue it.
@@ -227,7 +217,7 @@ class MapReader {
                          "Write the coordinate by coordinates, parameters and t.");
       return {};
     }
-    if (has_switch(d.value)) {
+    if (switches_with_motion(d.value)) {
       diagnostics_.error(
           "E0824", one.value_span, fmt::format("the map of `{}` has a jump or a kink", c.name),
           "Velocities and accelerations follow from a map by differentiation, so that it has to be smooth.",

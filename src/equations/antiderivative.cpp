@@ -28,15 +28,13 @@ Expr of_function(Expr f, Expr z) {
   if (f.size() != 1) return {};
   const Expr u = f[0], a = slope(u, z);
   if (!a || a.is_zero()) return {};
-  switch (f.kind()) {
-    case Kind::Sin: return -cos(u) / a;
-    case Kind::Cos: return sin(u) / a;
-    case Kind::Exp: return f / a;
-    case Kind::Sinh: return apply(Kind::Cosh, u) / a;
-    case Kind::Cosh: return apply(Kind::Sinh, u) / a;
-    case Kind::Tan: return -apply(Kind::Log, cos(u)) / a;
-    default: return {};
-  }
+  if (f.is(Kind::Sin)) return -cos(u) / a;
+  if (f.is(Kind::Cos)) return sin(u) / a;
+  if (f.is(Kind::Exp)) return f / a;
+  if (f.is(Kind::Sinh)) return apply(Kind::Cosh, u) / a;
+  if (f.is(Kind::Cosh)) return apply(Kind::Sinh, u) / a;
+  if (f.is(Kind::Tan)) return -apply(Kind::Log, cos(u)) / a;
+  return {};
 }
 
 /// ∫ p f with p = z^n and f of the table: by parts, n times.

@@ -10,24 +10,18 @@ namespace {
 
 /// The dimension of a formula that was found consistent: that of its first term.
 Dimension dimension_of(Expr e, const MechanicalSystem& system) {
-  switch (e.kind()) {
-    case Kind::Sum:
-      return dimension_of(e[0], system);
-    case Kind::Product: {
-      Dimension product = dimensions::one();
-      for (std::size_t i = 0; i < e.size(); ++i) product = product * dimension_of(e[i], system);
-      return product;
-    }
-    case Kind::Power: {
-      const Rational* exponent = e[1].number_or_null();
-      const auto parts = exponent ? exponent->small() : std::nullopt;
-      return parts ? pow(dimension_of(e[0], system), parts->numerator, parts->denominator) : dimensions::one();
-    }
-    case Kind::Symbol:
-      break;
-    default:
-      return dimensions::one();
+  if (e.is(Kind::Sum)) return dimension_of(e[0], system);
+  if (e.is(Kind::Product)) {
+    Dimension product = dimensions::one();
+    for (std::size_t i = 0; i < e.size(); ++i) product = product * dimension_of(e[i], system);
+    return product;
   }
+  if (e.is(Kind::Power)) {
+    const Rational* exponent = e[1].number_or_null();
+    const auto parts = exponent ? exponent->small() : std::nullopt;
+    return parts ? pow(dimension_of(e[0], system), parts->numerator, parts->denominator) : dimensions::one();
+  }
+  if (!e.is_symbol()) return dimensions::one();
   if (e.role() == Role::Time) return system.independent_dimension;
   for (const Parameter& p : system.parameters)
     if (p.symbol == e) return p.dimension;

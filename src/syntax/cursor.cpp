@@ -48,7 +48,7 @@ std::string ExpressionParser::describe(const Token& token) {
     case Token::Kind::End: return "the end of the statement";
     case Token::Kind::Number: return fmt::format("the number {}", token.text);
     case Token::Kind::String: return "a text in quotes";
-    default: break;
+    case Token::Kind::Name: case Token::Kind::Sign: break;
   }
   if (token.kind == Token::Kind::Name && is_clause_word(token.text)) return fmt::format("the word `{}`", token.text);
   return fmt::format("`{}`", token.text);

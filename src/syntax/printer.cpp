@@ -26,8 +26,10 @@ Level level_of(const Expression& e) {
     case Operator::LessEqual:
     case Operator::Greater:
     case Operator::GreaterEqual: return Level::Comparison;
-    default: return Level::Product;
+    case Operator::Multiply: case Operator::Juxtapose: case Operator::Divide: case Operator::Dot: case Operator::Cross:
+    case Operator::Negate: break;
   }
+  return Level::Product;
 }
 
 std::string_view sign_of(Operator op) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 
 namespace maupertuis::syntax {
@@ -27,15 +28,16 @@ constexpr std::array kClauseWords = {
     "exactly"sv,  "is"sv,     "not"sv,      "and"sv,      "or"sv,     "else"sv,
 };
 
-constexpr std::array<Function, 31> kFunctions = {{
+constexpr Function kFunctions[] = {
     {"sin", 1, 1, true},   {"cos", 1, 1, true},   {"tan", 1, 1, true},   {"sec", 1, 1, true},  {"csc", 1, 1, true},
     {"cot", 1, 1, true},   {"sinh", 1, 1, true},  {"cosh", 1, 1, true},  {"tanh", 1, 1, true}, {"sech", 1, 1, true},
     {"asin"},              {"acos"},              {"atan"},              {"atan2", 2, 2},      {"asinh"},
-    {"acosh"},             {"atanh"},             {"exp"},               {"log"},              {"sqrt"},
+    {"acosh"},             {"atanh"},             {"exp"},               {"log"},               {"erf"},
+    {"lambert_w"},         {"sqrt"},
     {"abs"},               {"sign"},              {"min", 2, 0},         {"max", 2, 0},        {"step"},
     {"piecewise", 1, 0},   {"dot", 1, 2},         {"cross", 2, 2},       {"norm"},             {"multiplier"},
     {"reaction"},
-}};
+};
 
 constexpr std::array<std::pair<std::string_view, std::string_view>, 35> kGreek = {{
     {"alpha", "α"}, {"beta", "β"},   {"gamma", "γ"}, {"delta", "δ"},   {"epsilon", "ε"}, {"zeta", "ζ"},
@@ -86,8 +88,8 @@ bool is_clause_word(std::string_view word) {
 }
 
 const Function* find_function(std::string_view word) {
-  const auto found = std::find_if(kFunctions.begin(), kFunctions.end(), [&](const Function& f) { return f.name == word; });
-  return found == kFunctions.end() ? nullptr : &*found;
+  const auto found = std::find_if(std::begin(kFunctions), std::end(kFunctions), [&](const Function& f) { return f.name == word; });
+  return found == std::end(kFunctions) ? nullptr : &*found;
 }
 
 std::optional<EnergyStatement::Which> energy_of(std::string_view word) {

@@ -2,6 +2,8 @@
 
 #include "system/elaboration.hpp"
 
+#include <maupertuis/kinds.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,31 +14,12 @@ namespace {
 
 using syntax::Expression;
 
-/// How the language calls a function that is not smooth; null for the others.
-const char* switch_word(Kind kind) {
-  switch (kind) {
-    case Kind::Abs:
-      return "abs";
-    case Kind::Sign:
-      return "sign";
-    case Kind::Step:
-      return "step";
-    case Kind::Min:
-      return "min";
-    case Kind::Max:
-      return "max";
-    case Kind::Piecewise:
-      return "piecewise";
-    default:
-      return nullptr;
-  }
-}
-
-const char* first_switch(Expr value) {
+/// How the language calls the first function that is not smooth; empty if there is none.
+std::string_view first_switch(Expr value) {
   const Expr roots[] = {value};
   for (const Expr& x : topological_order(roots))
-    if (const char* word = switch_word(x.kind())) return word;
-  return nullptr;
+    if (has_switch(x.kind())) return name_of(x.kind());
+  return {};
 }
 
 /// Where the text calls the function, or names an input or definition that does; the whole side if nothing is found.
@@ -46,10 +29,10 @@ Span culprit_of_switch(Elaboration& e, const Expression& x, const std::string& w
     return x.span;
   if (x.kind == Expression::Kind::Name) {
     for (const Input& u : e.system().inputs)
-      if (u.name == x.text && first_switch(u.formula)) return x.span;
+      if (u.name == x.text && !first_switch(u.formula).empty()) return x.span;
     const Declaration* d = e.table.find(x.text);
     for (const Expr& part : d ? d->value.parts : ExprVector{})
-      if (first_switch(substitute(part, e.exact_definitions))) return x.span;
+      if (!first_switch(substitute(part, e.exact_definitions)).empty()) return x.span;
   }
   for (const syntax::ExpressionPtr& a : x.arguments) {
     const Span s = culprit_of_switch(e, *a, word);
@@ -101,8 +84,8 @@ int seems_equal(const Fingerprint& a, const Fingerprint& b) {
 }  // namespace
 
 bool refuse_switch(Elaboration& e, const syntax::ConstraintStatement& s, Expr value) {
-  const char* word = first_switch(value);
-  if (!word) return false;
+  const std::string word(first_switch(value));
+  if (word.empty()) return false;
   Span at = culprit_of_switch(e, *s.left, word);
   if (at.end <= at.begin) at = culprit_of_switch(e, *s.right, word);
   if (at.end <= at.begin) at = s.left->span;

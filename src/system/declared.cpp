@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 /// Parameters, coordinates, definitions and inputs.
@@ -13,19 +14,10 @@ using syntax::Expression;
 
 /// A number or a vector of numbers, perhaps negative, perhaps with a unit.
 bool is_quantity(const Expression& x) {
-  switch (x.kind) {
-    case Expression::Kind::Number:
-    case Expression::Kind::Quantity:
-      return true;
-    case Expression::Kind::Unary:
-      return is_quantity(*x.arguments[0]);
-    case Expression::Kind::Vector:
-      for (const auto& a : x.arguments)
-        if (!is_quantity(*a)) return false;
-      return true;
-    default:
-      return false;
-  }
+  using Kind = Expression::Kind;
+  if (x.kind == Kind::Number || x.kind == Kind::Quantity) return true;
+  if (x.kind != Kind::Unary && x.kind != Kind::Vector) return false;
+  return std::all_of(x.arguments.begin(), x.arguments.end(), [](const auto& a) { return is_quantity(*a); });
 }
 
 std::string unit_text(Elaboration& e, const Expression& x) {

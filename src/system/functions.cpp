@@ -1,8 +1,15 @@
 #include "system/elaboration.hpp"
 
+#include <maupertuis/functions.hpp>
 #include <maupertuis/require.hpp>
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <utility>
 
 /// The functions of the language and what they ask of their arguments.
 namespace maupertuis::elaboration {
@@ -12,26 +19,23 @@ using syntax::Expression;
 using K = maupertuis::Kind;
 
 struct Function {
-  const char* name;
   K kind;
-  enum class Rule { Circular, Inverse, Pure } rule;
-  bool reciprocal = false;  // sec, csc, cot, sech
-};
-using Rule = Function::Rule;
-
-constexpr Function kFunctions[] = {
-    {"sin", K::Sin, Rule::Circular},       {"cos", K::Cos, Rule::Circular},       {"tan", K::Tan, Rule::Circular},
-    {"sec", K::Cos, Rule::Circular, true}, {"csc", K::Sin, Rule::Circular, true}, {"cot", K::Tan, Rule::Circular, true},
-    {"asin", K::Asin, Rule::Inverse},      {"acos", K::Acos, Rule::Inverse},      {"atan", K::Atan, Rule::Inverse},
-    {"sinh", K::Sinh, Rule::Pure},         {"cosh", K::Cosh, Rule::Pure},         {"tanh", K::Tanh, Rule::Pure},
-    {"sech", K::Cosh, Rule::Pure, true},   {"asinh", K::Asinh, Rule::Pure},       {"acosh", K::Acosh, Rule::Pure},
-    {"atanh", K::Atanh, Rule::Pure},       {"exp", K::Exp, Rule::Pure},           {"log", K::Log, Rule::Pure},
+  Angles angles;
+  bool reciprocal;
 };
 
-const Function* find_function(const std::string& name) {
-  for (const Function& f : kFunctions)
-    if (name == f.name) return &f;
-  return nullptr;
+/// Words for the reciprocal of a function.
+constexpr std::pair<std::string_view, K> kReciprocals[] = {{"sec", K::Cos}, {"csc", K::Sin}, {"cot", K::Tan}, {"sech", K::Cosh}};
+
+std::optional<Function> find_function(std::string_view name) {
+  std::optional<Function> found;
+  const auto reciprocal = std::find_if(std::begin(kReciprocals), std::end(kReciprocals), [&](const auto& r) { return r.first == name; });
+  const bool inverted = reciprocal != std::end(kReciprocals);
+  const auto look = [&](const auto& row) {
+    if (inverted ? row.kind == reciprocal->second : row.name == name) found = Function{row.kind, row.angles, inverted};
+  };
+  std::apply([&](const auto&... row) { (look(row), ...); }, functions::rows);
+  return found;
 }
 
 bool refuse_vector(Elaboration& e, const Value& v, const Expression& x, const Expression& argument) {
@@ -54,18 +58,18 @@ Value elementary(Elaboration& e, const Function& f, const Expression& x, const V
   if (!a.fits_any && !a.dimension.is_one()) {
     e.diagnostics.error(
         "E0303", x.arguments[0]->span, fmt::format("the argument of {} is {}", x.text, describe(a.dimension)),
-        f.rule == Rule::Circular ? "Its argument is an angle or a bare number." : "Its argument is a bare number.",
+        f.angles == Angles::Argument ? "Its argument is an angle or a bare number." : "Its argument is a bare number.",
         help_for_bare(e, x));
     return Value::poison();
   }
-  if (f.rule == Rule::Circular && a.hertz)
+  if (f.angles == Angles::Argument && a.hertz)
     e.diagnostics.warning(
         "W0309", x.arguments[0]->span, fmt::format("a frequency in Hz stands in the argument of {} without 2π", x.text),
         "A frequency of 1 Hz turns the phase by 2π in a second.", fmt::format("Write {}(2 pi …).", x.text));
-  if (f.rule == Rule::Circular) warn_of_degrees(e, a, dimensions::angle(), *x.arguments[0]);
+  if (f.angles == Angles::Argument) warn_of_degrees(e, a, dimensions::angle(), *x.arguments[0]);
   Expr value = apply(f.kind, a.scalar());
   if (f.reciprocal) value = pow(value, Rational(-1));
-  Value v = Value::of(value, f.rule == Rule::Inverse ? e.dimension(dimensions::angle()) : Dimension{}, a.order);
+  Value v = Value::of(value, f.angles == Angles::Value ? e.dimension(dimensions::angle()) : Dimension{}, a.order);
   return v;
 }
 
@@ -98,7 +102,7 @@ Value of_several(Elaboration& e, const Expression& x, std::vector<Value> argumen
 }
 
 Value of_one(Elaboration& e, const Expression& x, Value a) {
-  if (const Function* f = find_function(x.text)) return elementary(e, *f, x, a);
+  if (const auto f = find_function(x.text)) return elementary(e, *f, x, a);
   if (x.text == "sqrt") return square_root(e, x, a);
   const K kind = x.text == "abs" ? K::Abs : x.text == "sign" ? K::Sign : K::Step;
   a.parts = {apply(kind, a.scalar())};

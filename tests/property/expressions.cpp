@@ -35,7 +35,7 @@ struct World {
 template <class Lookup>
 std::optional<std::vector<FieldJet>> field_jets(std::vector<Expr> roots, Lookup lookup) {
   roots = evaluation::flatten_arguments(roots);
-  const evaluation::Tape tape(roots);
+  const auto tape = evaluation::Tape::with_gaussians(roots);
   const auto hints = evaluation::field_hints(tape);
   for (std::uint64_t attempt = 1; attempt < 400; ++attempt) {
     try {

@@ -23,7 +23,7 @@ inline Expr made_by(std::uint32_t step, const std::vector<Expr>& made, Functions
   Context& c = a.context();
   const auto of_two = [&](Kind kind) { return c.function(kind, std::array{a, b}); };
   const Expr positive = pow(b, Rational(2)) + Rational(2);
-  const std::uint32_t choices = functions == Functions::Polynomial ? 6 : functions == Functions::Smooth ? 18 : 23;
+  const std::uint32_t choices = functions == Functions::Polynomial ? 6 : functions == Functions::Smooth ? 20 : 25;
   switch (step % 32 % choices) {
     case 0: return a + b;
     case 1: return a - b;
@@ -42,10 +42,12 @@ inline Expr made_by(std::uint32_t step, const std::vector<Expr>& made, Functions
     case 15: return apply(Kind::Tanh, a);
     case 16: return apply(Kind::Exp, sin(a));
     case 17: return c.function(Kind::Atan2, std::array{a, positive});
-    case 18: return apply(Kind::Abs, a);
-    case 19: return of_two(Kind::Max);
-    case 20: return of_two(Kind::Min);
-    case 21: return a * apply(Kind::Sign, b);
+    case 18: return apply(Kind::Erf, a);
+    case 19: return apply(Kind::LambertW, positive);
+    case 20: return apply(Kind::Abs, a);
+    case 21: return of_two(Kind::Max);
+    case 22: return of_two(Kind::Min);
+    case 23: return a * apply(Kind::Sign, b);
     default: return c.function(Kind::Piecewise, std::array{c.function(Kind::Less, std::array{a, b}), a, b * b});
   }
 }

@@ -3,6 +3,8 @@
 #include "analysis/invariants/linear_fit.hpp"
 #include "analysis/invariants/symmetry.hpp"
 
+#include <stdexcept>
+
 namespace maupertuis::invariants {
 namespace {
 
@@ -41,9 +43,14 @@ Expr displacement(const SymmetryFit::Term& u, const WorldPoint& p, std::size_t a
       return -(t * t * p.velocity[axis]);
     case Constant::TimeTimesScale:
       return t * p.position[axis];
-    default:
+    case Constant::LorentzBoost:
       return -(p.position[u.axis] * p.velocity[axis]);
+    case Constant::Coordinate:
+    case Constant::RungeLenz:
+    case Constant::Fradkin:
+      break;
   }
+  throw std::logic_error("a symmetry of points met a constant that moves no point; please report");
 }
 
 SymmetryFit solved(const std::vector<SymmetryFit::Term>& unknowns, LinearFitRows fit, const MotionRows& rows,

@@ -1,6 +1,7 @@
 #include "analysis/linearization/point_equations.hpp"
 
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/kinds.hpp>
 #include <maupertuis/reactions.hpp>
 #include <maupertuis/transform.hpp>
 
@@ -78,12 +79,9 @@ ExprVector with_reactions(const EquationsOfMotion& equations, std::span<const Ex
   return substitute(out, forces);
 }
 
-bool has_switch(Expr e) {
+bool switches_within(Expr e) {
   const ExprVector nodes = topological_order({&e, 1});
-  return std::any_of(nodes.begin(), nodes.end(), [](const Expr& node) {
-    return node.is(Kind::Abs) || node.is(Kind::Sign) || node.is(Kind::Step) || node.is(Kind::Min) ||
-           node.is(Kind::Max) || node.is(Kind::Piecewise);
-  });
+  return std::any_of(nodes.begin(), nodes.end(), [](const Expr& node) { return has_switch(node.kind()); });
 }
 
 /// Whether ∂/∂t of all of them vanishes identically.
@@ -138,7 +136,7 @@ PointEquations::Impl::Impl(const EquationsOfMotion& equations, std::span<const E
   for (std::size_t i = 0; i < m; ++i)
     if (system->constraints[i].level == Constraint::Level::Position) position_rows.push_back(i);
   holonomic = position_rows.size();
-  for (const Expr& y : with_reactions(equations, measured)) output_switches.push_back(has_switch(y));
+  for (const Expr& y : with_reactions(equations, measured)) output_switches.push_back(switches_within(y));
   for (const Parameter& p : system->parameters) parameters.push_back(p.si_value);
   set_parameters();
   const Lowering lowering(equations);

@@ -2,6 +2,8 @@
 
 #include "kernel/program/processor.hpp"
 
+#include <maupertuis/functions.hpp>
+
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -37,8 +39,21 @@ void* sleef_function(const std::string& name) {
   return library ? dlsym(library, name.c_str()) : nullptr;
 }
 
+template <std::size_t I>
+double row_value(double x) { return std::get<I>(functions::rows).value_of(x); }
+
+/// Of the table of functions, by name.
+template <std::size_t... I>
+void* program_function(std::string_view name, std::index_sequence<I...>) {
+  void* found = nullptr;
+  ((std::get<I>(functions::rows).name == name ? static_cast<void>(found = reinterpret_cast<void*>(&row_value<I>)) : void()), ...);
+  return found;
+}
+
 /// What the code of an emitter may call besides.
 void* resolve(const std::string& name) {
+  const std::string_view prefix = program_function_prefix;
+  if (name.rfind(prefix, 0) == 0) return program_function(name.substr(prefix.size()), std::make_index_sequence<functions::count>());
   if (name.rfind("Sleef_", 0) == 0) return sleef_function(name);
   return name == "memset" || name == "memcpy" || name == "memmove" ? dlsym(RTLD_DEFAULT, name.c_str()) : nullptr;
 }

@@ -7,6 +7,9 @@
 namespace maupertuis::compiled {
 
 /// What writes the code. Its number is part of the key of the cache.
+/// Code calls a function of the table that SLEEF lacks by this and its name: double(double).
+inline constexpr const char* program_function_prefix = "maup_";
+
 enum class Emitter : std::uint32_t {
   SelfTest = 0,  // source: none. `self_test`: void(const double* x, double* y), y_i = √(sin²x_i + x_i cos²x_i), [width] each
   Packed = 1,    // source: packed::PackedProgram. `expand`: packed::CompiledExpand; or `stage` and `ahead`:

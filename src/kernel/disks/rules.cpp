@@ -1,5 +1,8 @@
 #include "kernel/disks/node.hpp"
 
+#include <maupertuis/kinds.hpp>
+#include <maupertuis/lambert_w.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -215,8 +218,19 @@ Disks::Bounds Disks::function(const Node& node) const {
       const double reach = far > 0 ? both / far : infinity;
       return {reach, reach, 0, infinity};
     }
-    default: throw std::logic_error("disks met a function that they do not know; please report");
+    case Kind::Erf: {  // |exp(−w²)| = exp(−Re w²), largest on the rim: in front of the centre, or beside it
+      const double real = size <= 2 * d ? 0.5 * size * size - d * d : (size - d) * (size - d);
+      return by_slope(1.1283791670955126 * std::exp(-real));
+    }
+    case Kind::LambertW: {  // W = ∫ z/(z + t) dσ(t) over t ≥ 1/e with dσ ≥ 0, so that |W′(z)| ≤ W′(Re z)
+      const double next = w - d;   // towards the branch point −1/e
+      return by_slope(next > -0.367879441171 ? inverse(next + std::exp(lambert_w(next))) : infinity);
+    }
+    case Kind::Number: case Kind::Pi: case Kind::Symbol: case Kind::Sum: case Kind::Product: case Kind::Power: case Kind::TimeDerivative:
+    case Kind::Sin: case Kind::Cos: case Kind::Sinh: case Kind::Cosh: case Kind::Abs: case Kind::Sign: case Kind::Step: case Kind::Min:
+    case Kind::Max: case Kind::Piecewise: case Kind::Less: case Kind::LessEqual: case Kind::And: case Kind::Or: break;
   }
+  throw unknown_kind(i.function, "the bounds on disks");
 }
 
 }  // namespace maupertuis

@@ -56,7 +56,7 @@ void evaluate(const FlatTables& t) {
   for (std::size_t i = 0; i < t.step_count; ++i) switch (const FlatStep& step = t.steps[i]; step.kind) {
       case FlatStep::Sum: sums(t, t.sums[step.index]); break;
       case FlatStep::Sine: sines(t, t.sines[step.index]); break;
-      default: t.other(t.context, step);
+      case FlatStep::Function: case FlatStep::Choose: t.other(t.context, step);
     }
 }
 

@@ -92,8 +92,9 @@ class Flattener {
       case Op::Function: return k == 0 ? call(i) : integral(i, k);
       case Op::Derivative: return derivative(i, k);
       case Op::Select: return select(i, k);
-      default: return;
+      case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: return;
     }
+    throw unknown_op(i.op, "the flat program");
   }
 
   Coefficient number(double factor) const { return {no_constant, 0, factor}; }
@@ -269,8 +270,10 @@ class Flattener {
       case Node::Sum: return write_sums(run);
       case Node::Sine: return write_sines(run);
       case Node::Function: return write_calls(run);
-      default: return write_choices(run);
+      case Node::Choose: return write_choices(run);
+      case Node::Given: case Node::Cosine: case Node::Second: break;   // made by others
     }
+    throw std::logic_error("the flat program met a number that no step makes; please report");
   }
 
   template <class Items>

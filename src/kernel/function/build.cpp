@@ -1,4 +1,5 @@
 #include <maupertuis/function_kernel.hpp>
+#include <maupertuis/kinds.hpp>
 #include <maupertuis/transform.hpp>
 
 #include "kernel/function/program.hpp"
@@ -10,6 +11,7 @@
 #include <stdexcept>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 
 namespace maupertuis {
 namespace {
@@ -17,34 +19,14 @@ namespace {
 using Id = std::uint32_t;
 using Op = FunctionOp;
 
+/// What is computed from one or two operands and nothing else.
 FunctionOp op_of(Kind kind) {
-  switch (kind) {
-    case Kind::Sin: return Op::Sin;
-    case Kind::Cos: return Op::Cos;
-    case Kind::Tan: return Op::Tan;
-    case Kind::Asin: return Op::Asin;
-    case Kind::Acos: return Op::Acos;
-    case Kind::Atan: return Op::Atan;
-    case Kind::Sinh: return Op::Sinh;
-    case Kind::Cosh: return Op::Cosh;
-    case Kind::Tanh: return Op::Tanh;
-    case Kind::Asinh: return Op::Asinh;
-    case Kind::Acosh: return Op::Acosh;
-    case Kind::Atanh: return Op::Atanh;
-    case Kind::Exp: return Op::Exp;
-    case Kind::Log: return Op::Log;
-    case Kind::Abs: return Op::Abs;
-    case Kind::Sign: return Op::Sign;
-    case Kind::Step: return Op::Step;
-    case Kind::Atan2: return Op::Atan2;
-    case Kind::Min: return Op::Min;
-    case Kind::Max: return Op::Max;
-    case Kind::Less: return Op::Less;
-    case Kind::LessEqual: return Op::LessEqual;
-    case Kind::And: return Op::And;
-    case Kind::Or: return Op::Or;
-    default: throw std::logic_error("a function kernel met a node that has no value; please report");
-  }
+  static constexpr std::pair<Kind, Op> ops[] = {
+      {Kind::Abs, Op::Abs}, {Kind::Sign, Op::Sign}, {Kind::Step, Op::Step}, {Kind::Atan2, Op::Atan2}, {Kind::Min, Op::Min},
+      {Kind::Max, Op::Max}, {Kind::Less, Op::Less}, {Kind::LessEqual, Op::LessEqual}, {Kind::And, Op::And}, {Kind::Or, Op::Or}};
+  for (const auto& [from, op] : ops)
+    if (from == kind) return op;
+  throw unknown_kind(kind, "a function kernel");
 }
 
 /// Value-numbered instructions in the order of their making; `finish` lays them out in slots.
@@ -84,12 +66,12 @@ class Builder {
     return found->second;
   }
 
-  Id make(Op op, Id a, Id b = 0, Id c = 0, std::int32_t exponent = 0) {
+  Id make(Op op, Id a, Id b = 0, Id c = 0, std::int32_t exponent = 0, Kind function = Kind::Exp) {
     const bool commutes = op == Op::Add || op == Op::Multiply;
     if (commutes && b < a) std::swap(a, b);
-    const auto [found, made] = instructions_.try_emplace(std::tuple(op, exponent, a, b, c), 0);
+    const auto [found, made] = instructions_.try_emplace(std::tuple(op, function, exponent, a, b, c), 0);
     if (!made) return found->second;
-    Value value{{}, {op, exponent, 0, a, b, c}, false, false};
+    Value value{{}, {op, function, exponent, 0, a, b, c}, false, false};
     for_operands(value.instruction, [&](Id operand) { value.changes |= values_[operand].changes; });
     values_.push_back(value);
     return found->second = static_cast<Id>(values_.size() - 1);
@@ -105,18 +87,24 @@ class Builder {
   Id at(Expr e) const { return of_.at(e); }
 
   Id lower(Expr e) {
-    switch (e.kind()) {
-      case Kind::Number: return number(e.number().to_double());
-      case Kind::Pi: return number(std::numbers::pi);
-      case Kind::Symbol: throw std::logic_error("a function kernel met the unlisted symbol `" + e.name() + "`; please report");
-      case Kind::Sum: return lower_sum(e);
-      case Kind::Product: return lower_product(e);
-      case Kind::Power: return lower_power(e[0], e[1]);
-      case Kind::Piecewise: return lower_piecewise(e);
-      case Kind::And:
-      case Kind::Or: return lower_chain(e);
-      default: return make(op_of(e.kind()), at(e[0]), e.size() > 1 ? at(e[1]) : 0);
+    switch (family_of(e.kind())) {
+      case Family::Leaf: return leaf(e);
+      case Family::Algebra:
+        return e.is(Kind::Sum) ? lower_sum(e) : e.is(Kind::Product) ? lower_product(e) : lower_power(e[0], e[1]);
+      case Family::Function: return make(Op::Function, at(e[0]), 0, 0, 0, e.kind());
+      case Family::Switch: return make(op_of(e.kind()), at(e[0]));
+      case Family::Angle: case Family::Extremum: case Family::Comparison: return make(op_of(e.kind()), at(e[0]), at(e[1]));
+      case Family::Logic: return lower_chain(e);
+      case Family::Piecewise: return lower_piecewise(e);
+      case Family::TimeDerivative: break;
     }
+    throw unknown_kind(e.kind(), "a function kernel");
+  }
+
+  Id leaf(Expr e) {
+    if (e.is_number()) return number(e.number().to_double());
+    if (e.is(Kind::Pi)) return number(std::numbers::pi);
+    throw std::logic_error("a function kernel met the unlisted symbol `" + e.name() + "`; please report");
   }
 
   /// Terms with a negative coefficient are subtracted; the first positive one begins.
@@ -227,7 +215,7 @@ class Builder {
   std::vector<Value> values_;
   std::unordered_map<Expr, Id, ExprHash> of_;
   std::map<double, Id> numbers_;
-  std::map<std::tuple<Op, std::int32_t, Id, Id, Id>, Id> instructions_;
+  std::map<std::tuple<Op, Kind, std::int32_t, Id, Id, Id>, Id> instructions_;
 };
 
 }  // namespace

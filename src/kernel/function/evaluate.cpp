@@ -1,4 +1,5 @@
 #include <maupertuis/function_kernel.hpp>
+#include <maupertuis/functions.hpp>
 #include <maupertuis/require.hpp>
 
 #include "kernel/function/program.hpp"
@@ -38,20 +39,7 @@ void run(const std::vector<FunctionInstruction>& instructions, double* s) {
       case FunctionOp::Sqrt: out = std::sqrt(x); break;
       case FunctionOp::PowerInteger: out = integer_power(x, i.exponent); break;
       case FunctionOp::Power: out = std::pow(x, s[i.b]); break;
-      case FunctionOp::Sin: out = std::sin(x); break;
-      case FunctionOp::Cos: out = std::cos(x); break;
-      case FunctionOp::Tan: out = std::tan(x); break;
-      case FunctionOp::Asin: out = std::asin(x); break;
-      case FunctionOp::Acos: out = std::acos(x); break;
-      case FunctionOp::Atan: out = std::atan(x); break;
-      case FunctionOp::Sinh: out = std::sinh(x); break;
-      case FunctionOp::Cosh: out = std::cosh(x); break;
-      case FunctionOp::Tanh: out = std::tanh(x); break;
-      case FunctionOp::Asinh: out = std::asinh(x); break;
-      case FunctionOp::Acosh: out = std::acosh(x); break;
-      case FunctionOp::Atanh: out = std::atanh(x); break;
-      case FunctionOp::Exp: out = std::exp(x); break;
-      case FunctionOp::Log: out = std::log(x); break;
+      case FunctionOp::Function: out = functions::value(i.function, x); break;
       case FunctionOp::Abs: out = std::abs(x); break;
       case FunctionOp::Sign: out = sign(x); break;
       case FunctionOp::Step: out = step(x); break;

@@ -1,21 +1,23 @@
 #pragma once
-#include <cstdint>
-#include <vector>
+#include <maupertuis/expression.hpp>
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace maupertuis {
 
 /// What an instruction does to its operands x (slot a) and y (slot b).
 enum class FunctionOp : std::uint8_t {
   Add, Subtract, Multiply, Divide, Negate, Square, Sqrt, PowerInteger, Power,
-  Sin, Cos, Tan, Asin, Acos, Atan, Sinh, Cosh, Tanh, Asinh, Acosh, Atanh, Exp, Log,
+  Function,  // of one argument, by the table of functions
   Abs, Sign, Step, Atan2, Min, Max, Less, LessEqual, And, Or,
   Choose,  // x where the condition in slot c holds, else y
 };
 
 struct FunctionInstruction {
   FunctionOp op = FunctionOp::Add;
+  Kind function = Kind::Exp;  // Function: which
   std::int32_t exponent = 0;  // PowerInteger
   std::uint32_t out = 0, a = 0, b = 0, c = 0;
 };

@@ -1,8 +1,9 @@
 #pragma once
 #include "kernel/interpreter/elementary.hpp"
 
+#include <maupertuis/functions.hpp>
+
 #include <cmath>
-#include <stdexcept>
 
 namespace maupertuis::interpreter {
 namespace on_constants {
@@ -55,48 +56,30 @@ bool any(std::span<const T> operands) {
 
 template <class T>
 T elementary(Kind function, const T& x, const T& y) {
-  using std::sin, std::cos, std::tan, std::asin, std::acos, std::atan, std::sinh, std::cosh, std::tanh, std::asinh,
-      std::acosh, std::atanh, std::exp, std::log, std::abs, std::atan2;
-  switch (function) {
-    case Kind::Sin: return sin(x);
-    case Kind::Cos: return cos(x);
-    case Kind::Tan: return tan(x);
-    case Kind::Asin: return asin(x);
-    case Kind::Acos: return acos(x);
-    case Kind::Atan: return atan(x);
-    case Kind::Sinh: return sinh(x);
-    case Kind::Cosh: return cosh(x);
-    case Kind::Tanh: return tanh(x);
-    case Kind::Asinh: return asinh(x);
-    case Kind::Acosh: return acosh(x);
-    case Kind::Atanh: return atanh(x);
-    case Kind::Exp: return exp(x);
-    case Kind::Log: return log(x);
-    case Kind::Abs: return abs(x);
-    case Kind::Sign: return on_constants::sign(x);
-    case Kind::Step: return T(x >= 0 ? 1 : 0);
-    case Kind::Atan2: return atan2(x, y);
-    default: throw std::logic_error("the interpreter met a function that it does not know; please report");
-  }
+  using std::abs, std::atan2;
+  if (is_function(function)) return functions::value(function, x);
+  if (function == Kind::Abs) return abs(x);
+  if (function == Kind::Sign) return on_constants::sign(x);
+  if (function == Kind::Step) return T(x >= 0 ? 1 : 0);
+  if (function == Kind::Atan2) return atan2(x, y);
+  throw unknown_kind(function, "the interpreter");
 }
 
 template <class T>
 T constant_operation(Kind kind, std::span<const T> operands) {
   using namespace on_constants;
-  switch (kind) {
-    case Kind::Pi: return Exactly<T>::pi();
-    case Kind::Sum: return sum(operands);
-    case Kind::Product: return product(operands);
-    case Kind::Power: return power(operands[0], operands[1]);
-    case Kind::Min: return operands[0] <= operands[1] ? operands[0] : operands[1];
-    case Kind::Max: return operands[0] >= operands[1] ? operands[0] : operands[1];
-    case Kind::Less: return T(operands[0] < operands[1]);
-    case Kind::LessEqual: return T(operands[0] <= operands[1]);
-    case Kind::And: return T(all(operands));
-    case Kind::Or: return T(any(operands));
-    case Kind::Piecewise: return piecewise(operands);
-    default: return elementary(kind, operands[0], operands.size() > 1 ? operands[1] : T(0));
-  }
+  if (kind == Kind::Pi) return Exactly<T>::pi();
+  if (kind == Kind::Sum) return sum(operands);
+  if (kind == Kind::Product) return product(operands);
+  if (kind == Kind::Power) return power(operands[0], operands[1]);
+  if (kind == Kind::Min) return operands[0] <= operands[1] ? operands[0] : operands[1];
+  if (kind == Kind::Max) return operands[0] >= operands[1] ? operands[0] : operands[1];
+  if (kind == Kind::Less) return T(operands[0] < operands[1]);
+  if (kind == Kind::LessEqual) return T(operands[0] <= operands[1]);
+  if (kind == Kind::And) return T(all(operands));
+  if (kind == Kind::Or) return T(any(operands));
+  if (kind == Kind::Piecewise) return piecewise(operands);
+  return elementary(kind, operands[0], operands.size() > 1 ? operands[1] : T(0));   // throws on others
 }
 
 }  // namespace maupertuis::interpreter

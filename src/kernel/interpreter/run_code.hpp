@@ -28,8 +28,9 @@ class RunAtOrder {
       case Op::Function: return each(run, [this](const Instruction& i) { function(i); });
       case Op::Derivative: return each(run, [this](const Instruction& i) { derivative(i); });
       case Op::Select: return each(run, [this](const Instruction& i) { select(i); });
-      default: return;  // leaves
+      case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: return;
     }
+    throw unknown_op(run.op, "the interpreter");
   }
 
  private:

@@ -30,7 +30,7 @@ class Tangents {
       case Op::Function: differential(i, out); break;
       case Op::Derivative: add(out, T(1), i.a, 1); break;
       case Op::Select: select(i, out); break;
-      default: return;
+      case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: return;
     }
     store(i.out, out);
   }

@@ -26,8 +26,9 @@ lanes::Expanders expanders(InstructionSet set) {
   switch (set) {
     case InstructionSet::Avx2: return lanes::avx2_expanders();
     case InstructionSet::Avx512: return lanes::avx512_expanders();
-    default: return lanes::baseline_expanders();
+    case InstructionSet::Best: case InstructionSet::Baseline: break;
   }
+  return lanes::baseline_expanders();
 }
 
 InstructionSet best_instruction_set() {
@@ -72,8 +73,9 @@ int best_lane_width() {
   switch (best_instruction_set()) {
     case InstructionSet::Avx512: return 8;
     case InstructionSet::Avx2: return 4;
-    default: return 2;
+    case InstructionSet::Best: case InstructionSet::Baseline: break;
   }
+  return 2;
 }
 
 bool lanes_pay() {

@@ -83,7 +83,7 @@ class Machine {
       case Op::Function: return each(run, [this](const Instruction& i) { function(i).store(at(i.out)); });
       case Op::Derivative: return each(run, [this](const Instruction& i) { derivative(i).store(at(i.out)); });
       case Op::Select: return each(run, [this](const Instruction& i) { chosen(i).store(at(i.out)); });
-      default: return;  // leaves
+      case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: return;
     }
   }
 
@@ -196,8 +196,9 @@ class Machine {
       case K::Plus: return initial(f.x);
       case K::Minus: return -initial(f.x);
       case K::Chosen: return in_force(f);
-      default: return V::all(1);
+      case K::One: break;
     }
+    return V::all(1);
   }
 
   V in_force(const Factor& f) const {

@@ -43,8 +43,9 @@ void for_partials(const Program& program, const Instruction& i, Slot out, F&& f)
       for (std::uint32_t t = i.first_term; t < i.last_term; ++t)
         pass(program.terms[t].a, {K::Chosen, i.first_term, t, i.last_term});
       return;
-    default: return;
+    case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: return;
   }
+  throw unknown_op(i.op, "the plan of lanes");
 }
 
 template <class F>

@@ -1,21 +1,23 @@
+#include "kernel/compiled/request.hpp"
 #include "kernel/llvm/emission.hpp"
 #include "kernel/llvm/emitters.hpp"
 
-#include <maupertuis/kind_names.hpp>
+#include <maupertuis/functions.hpp>
 
 #include <algorithm>
 #include <numeric>
 
-/// Elementary functions by SLEEF's deterministic variants: `finz` with fused multiply-adds, `cinz` without. Both give the same bits at
+/// Elementary functions, where SLEEF has them, by its deterministic variants: `finz` with fused multiply-adds, `cinz` without. Both give the same bits at
 /// every width of vector, so that a wide number is cut into what the processor's registers hold.
 namespace maupertuis::llvm_backend {
 namespace {
 
-/// SLEEF's functions have the names of the table of kinds.
+/// The stem of SLEEF's name; empty: it has none.
 std::string sleef_name(Kind function) {
-  const bool known = (function >= Kind::Sin && function <= Kind::Log) || function == Kind::Power || function == Kind::Atan2;
-  if (!known) throw Declined("an elementary function that is not compiled");
-  return std::string(name_of(function));
+  if (function == Kind::Power) return "pow";
+  if (function == Kind::Atan2) return "atan2";
+  if (is_function(function)) return functions::of_row(function, [](const auto& row) { return std::string(row.sleef); });
+  throw Declined("an elementary function that is not compiled");
 }
 
 /// Of the processor whose registers hold `width` doubles: "avx512f".
@@ -108,8 +110,21 @@ std::vector<Value*> Emission::call_wide(const std::string& stem, const std::vect
   return joined_results;
 }
 
+/// Lane by lane, by the program's own function: a name that kernel/compiled resolves.
+Value* Emission::call_program(Kind function, Value* x) {
+  const std::string name = compiled::program_function_prefix + std::string(name_of(function));
+  std::vector<Value*> values;
+  for (Value* const lane : parts(x, 1)) values.push_back(call(name, 1, {lane}, 1)[0]);
+  if (values.size() == 1) return values[0];
+  Value* out = llvm::PoisonValue::get(x->getType());
+  for (std::size_t i = 0; i < values.size(); ++i) out = b.CreateInsertElement(out, values[i], std::uint64_t{i});
+  return out;
+}
+
 Value* Emission::elementary(Kind function, Value* x, Value* y) {
-  return call_wide(sleef_name(function), y ? std::vector<Value*>{x, y} : std::vector<Value*>{x}, 1)[0];
+  const std::string name = sleef_name(function);
+  if (name.empty()) return call_program(function, x);
+  return call_wide(name, y ? std::vector<Value*>{x, y} : std::vector<Value*>{x}, 1)[0];
 }
 
 std::pair<Value*, Value*> Emission::sincos(Value* x) {

@@ -57,7 +57,8 @@ class Emission {
   /// x / y given r = 1/y, rounded: within 0.51 ulp, and without a division
   Value* quotient(Value* x, Value* y, Value* reciprocal);
 
-  /// f(x), or f(x, y) of Atan2 and Power: SLEEF's functions of 1 ulp that give the same results at every width.
+  /// f(x), or f(x, y) of Atan2 and Power: SLEEF's functions of 1 ulp that give the same results at every width; what SLEEF lacks is
+  /// asked of the program lane by lane.
   Value* elementary(Kind function, Value* x, Value* y = nullptr);
   std::pair<Value*, Value*> sincos(Value* x);
 
@@ -78,6 +79,7 @@ class Emission {
   std::vector<Value*> parts(Value* x, int width);
   Value* joined(const std::vector<Value*>& parts);
   std::vector<Value*> call(const std::string& name, int width, const std::vector<Value*>& arguments, int results);
+  Value* call_program(Kind function, Value* x);
   std::vector<Value*> call_wide(const std::string& stem, const std::vector<Value*>& arguments, int results);
 };
 

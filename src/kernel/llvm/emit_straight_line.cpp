@@ -71,8 +71,9 @@ class Timing {
       }
       case Node::Root: return operands + root;
       case Node::Call: return operands + angles;
-      default: return operands + addition;
+      case Node::Larger: case Node::Chosen: case Node::Sine: case Node::Cosine: case Node::Lane: break;
     }
+    return operands + addition;
   }
 
   const StraightLine& line_;
@@ -276,7 +277,8 @@ class LineEmitter {
       case Node::Given: return values_[v] = fetch(type_of(v), node.array, node.index);
       case Node::Lane: return values_[v] = lane(node);
       case Node::Unit: return values_[v] = b_.CreateInsertElement(out_.number(0, type_of(v)), number(1), std::uint64_t{node.index});
-      default: break;
+      case Node::Sum: case Node::Magnitudes: case Node::Larger: case Node::Chosen: case Node::Angles: case Node::Sine:
+      case Node::Cosine: case Node::Root: case Node::Call: case Node::Wide: case Node::Gather: break;
     }
     if (place_[v] == 0) throw std::logic_error("a number is read before it is there; please report");
     return values_[v] = fetch(type_of(v), line_.arrays, place_[v]);
@@ -305,7 +307,8 @@ class LineEmitter {
       case Node::Call: return keep(v, out_.elementary(node.function, get(node.a), node.b == straight::none ? nullptr : get(node.b)));
       case Node::Wide: return keep(v, wide(node, type_of(v)));
       case Node::Gather: return keep(v, gathered(node, type_of(v)));
-      default: return;  // sines and cosines come with their angles
+      case Node::Sine: case Node::Cosine: return;   // they come with their angles
+      case Node::Literal: case Node::Given: case Node::Lane: case Node::Unit: return;
     }
   }
 

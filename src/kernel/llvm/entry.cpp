@@ -25,7 +25,6 @@ void emit(Emission& out, const Request& request) {
     case Emitter::Lanes: return emit_lanes(out, request);
     case Emitter::StraightLines: return emit_straight_lines(out, request);
     case Emitter::Packed: return emit_packed(out, request);
-    default: break;
   }
   throw Declined("a kind of code that this module does not emit");
 }

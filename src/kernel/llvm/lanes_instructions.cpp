@@ -19,8 +19,9 @@ void LanesEmitter::instruction(std::uint32_t index) {
     case Op::Function: return define(i.out, function(index));
     case Op::Derivative: return define(i.out, derivative(i));
     case Op::Select: return define(i.out, select(i));
-    default: return;  // leaves
+    case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: return;
   }
+  throw unknown_op(i.op, "the code of lanes");
 }
 
 /// (dʳa/dtʳ)_m = (m + 1) … (m + r) a_{m+r}

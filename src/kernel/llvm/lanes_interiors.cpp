@@ -55,7 +55,8 @@ void LanesEmitter::plan_accumulators() {
           one({Shape::Weighted, i.a, i.second});
           one({Shape::Weighted, i.a, i.out, i.op == Op::SinCos});
           break;
-        default: break;
+        case Op::Linear: case Op::Derivative: case Op::Select: break;   // without sums over orders
+        case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: break;
       }
     }
 }

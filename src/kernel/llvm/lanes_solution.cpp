@@ -47,8 +47,9 @@ Value* LanesEmitter::factor_value(const lanes::Factor& f) {
     case K::Plus: return first(f.x);
     case K::Minus: return out_.negate(first(f.x));
     case K::Chosen: return in_force(f);
-    default: return number(1);
+    case K::One: break;
   }
+  return number(1);
 }
 
 /// Terms [constant, y) of a Select: 1 where the condition of term x is the first that holds.

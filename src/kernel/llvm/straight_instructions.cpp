@@ -17,7 +17,7 @@ void StraightEmitter::scalar(const Pack& pack) {
     case Op::Function: keep(i.out, scalar_function(i)); break;
     case Op::Select: keep(i.out, scalar_select(i)); break;
     case Op::Derivative: keep(i.out, mul(history(i.a, k_ + 1), vector_of(k_ + 1.0, 1))); break;
-    default: break;
+    case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: break;
   }
 }
 
@@ -135,7 +135,8 @@ void StraightEmitter::scalar_tangent(const Pack& pack) {
         source(p_.program.terms[t].b, 0, mul(term_coefficient(t), now(p_.program.terms[t].a)));
       break;
     case Op::Derivative: source(i.a, 1, one); break;
-    default: break;  // Select is declined
+    case Op::Select: break;  // declined
+    case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: break;
   }
   tangents_[index_of(pack)] = combine(sources, 1);
 }

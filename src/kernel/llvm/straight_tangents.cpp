@@ -114,7 +114,7 @@ std::vector<StraightEmitter::Source> StraightEmitter::sources(const Pack& pack) 
     case Pack::SquareRoot:
       block_source(pack.a, [this, &pack](unsigned w) { return b_.CreateFDiv(vector_of(0.5, w), value_at_zero(pack.y, w)); });
       break;
-    default: break;
+    case Pack::Scan: case Pack::ScanDown: case Pack::Strand: case Pack::Join: case Pack::JoinDown: case Pack::Scalar: break;
   }
   return result;
 }

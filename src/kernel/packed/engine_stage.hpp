@@ -54,8 +54,9 @@ inline void make(const Stage& s, const Copy& copy) {
     case Column::Broadcast: return columns_of_kind<Column::Broadcast>(run, row);
     case Column::Contiguous: return columns_of_kind<Column::Contiguous>(run, row);
     case Column::Reversed: return columns_of_kind<Column::Reversed>(run, row);
-    default: return columns_of_kind<Column::Gather>(run, row);
+    case Column::Gather: break;
   }
+  return columns_of_kind<Column::Gather>(run, row);
 }
 
 /// d/dt multiplies by k + 1.

@@ -82,7 +82,7 @@ class Tangents {
         case Column::Broadcast: add_columns<Column::Broadcast>(run, sums); break;
         case Column::Contiguous: add_columns<Column::Contiguous>(run, sums); break;
         case Column::Reversed: add_rare_columns<Column::Reversed>(run, sums); break;
-        default: add_rare_columns<Column::Gather>(run, sums); break;
+        case Column::Gather: add_rare_columns<Column::Gather>(run, sums); break;
       }
     }
   }

@@ -197,8 +197,10 @@ class Grouping {
       case Op::Linear: case Op::Products: case Op::Square: case Op::SinCos: case Op::SinhCosh:
       case Op::Quotient: case Op::SquareRoot: return true;
       case Op::Function: return s.products.size() == 1 && s.head.b == no_slot;
-      default: return false;
+      case Op::Power: case Op::Derivative: case Op::Select: return false;
+      case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: return false;
     }
+    throw unknown_op(s.head.op, "the grouping of packs");
   }
 
   void find_groups() {

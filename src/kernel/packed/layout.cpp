@@ -110,7 +110,9 @@ class Packs {
         pack.kind = Pack::SquareRoot;
         pack.a = heads(members, &Instruction::a, true), pack.y = heads(members, &Instruction::out);
         break;
-      default: sum(pack, members); break;
+      case Op::Linear: case Op::Products: case Op::Square: sum(pack, members); break;
+      case Op::Power: case Op::Derivative: case Op::Select:
+      case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: throw unknown_op(shape.head.op, "a pack");
     }
     out_.packs.push_back(pack);
   }

@@ -2,9 +2,12 @@
 
 #include "kernel/program/rotations.hpp"
 
+#include <maupertuis/functions.hpp>
+
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <utility>
 
 namespace maupertuis::lowering {
 
@@ -17,12 +20,16 @@ Lowering::Lowering(const KernelSource& source) {
   for (std::uint32_t i = 0; i < coordinates_.size() + multipliers_.size(); ++i) graph.leaf(Op::Coordinate, i);
 }
 
-std::vector<NodeIndex> Lowering::lower(std::span<const Expr> roots) {
+void Lowering::lower_into_scope(std::span<const Expr> roots) {
   const auto order = topological_order(roots);
   for (const Expr& e : order)
-    for (const NodeId argument : e.argument_ids()) ++uses_[argument];
+    for (const NodeId argument : e.argument_ids()) ++scope_.uses[argument];
   for (const Expr& e : order)
-    if (!done_.count(e.id())) done_.emplace(e.id(), lower_node(e));
+    if (!scope_.done.count(e.id())) scope_.done.emplace(e.id(), lower_node(e));
+}
+
+std::vector<NodeIndex> Lowering::lower(std::span<const Expr> roots) {
+  lower_into_scope(roots);
   std::vector<NodeIndex> nodes;
   for (const Expr& root : roots) nodes.push_back(graph.node_of(of(root)));
   return nodes;
@@ -34,18 +41,18 @@ Scaled Lowering::lower_node(Expr e) {
   bool all_constant = true;
   for (std::size_t i = 0; i < e.size(); ++i) all_constant &= of(e[i]).is_constant();
   if (all_constant) return constant_function(e);
-  switch (e.kind()) {
-    case Kind::Sum: return sum(e);
-    case Kind::Product: return product(e);
-    case Kind::Power: return power(e);
-    case Kind::TimeDerivative: return time_derivative(of(e[0]));
-    case Kind::Atan2: return atan2(of(e[0]), of(e[1]));
-    case Kind::Abs: case Kind::Sign: case Kind::Step: return with_switch(e);
-    case Kind::Min: case Kind::Max: return extremum(e);
-    case Kind::Less: case Kind::LessEqual: return condition(e);
-    case Kind::Piecewise: return piecewise(e);
-    default: return function(e.kind(), of(e[0]));
+  switch (family_of(e.kind())) {
+    case Family::Algebra: return e.is(Kind::Sum) ? sum(e) : e.is(Kind::Product) ? product(e) : power(e);
+    case Family::TimeDerivative: return time_derivative(of(e[0]));
+    case Family::Function: return function(e.kind(), of(e[0]));
+    case Family::Angle: return atan2(of(e[0]), of(e[1]));
+    case Family::Switch: return with_switch(e);
+    case Family::Extremum: return extremum(e);
+    case Family::Comparison: return condition(e);
+    case Family::Piecewise: return piecewise(e);
+    case Family::Leaf: case Family::Logic: break;   // Pi and conditions of conditions are constants
   }
+  throw unknown_kind(e.kind(), "the kernel");
 }
 
 Scaled Lowering::constant_function(Expr e) {
@@ -120,7 +127,7 @@ Scaled Lowering::product(Expr e) {
   for (std::size_t i = 0; i < e.size(); ++i) {
     const PowerOf factor = split_power(e[i]);
     // A reciprocal that stands here alone becomes part of one division.
-    const bool divides = factor.exponent == Rational(-1) && uses_[e[i].id()] == 1 && !of(factor.base).is_constant();
+    const bool divides = factor.exponent == Rational(-1) && scope_.uses[e[i].id()] == 1 && !of(factor.base).is_constant();
     (divides ? below : above).push_back(divides ? of(factor.base) : of(e[i]));
   }
   const Scaled numerator = multiply(std::move(above));
@@ -139,7 +146,7 @@ Scaled Lowering::integer_power(Scaled base, std::int64_t exponent) {
 Scaled Lowering::power(Expr e) {
   const Scaled base = of(e[0]), exponent = of(e[1]);
   if (!exponent.is_constant())  // x^y = exp(y log x)
-    return exponential(multiply({exponent, function(Kind::Log, base)}));
+    return function(Kind::Exp, multiply({exponent, function(Kind::Log, base)}));
   const Rational* number = graph.constants.literal_or_null(exponent.coefficient);
   const auto integer = number ? number->as_integer() : std::nullopt;
   if (integer && *integer >= 0) return integer_power(base, *integer);
@@ -161,60 +168,37 @@ Scaled Lowering::time_derivative(Scaled argument) {
 
 Scaled Lowering::function(Kind kind, Scaled argument) {
   if (argument.is_constant()) return constant(graph.constants.apply(kind, std::array{argument.coefficient}));
-  if (kind == Kind::Exp) return exponential(argument);
   const NodeIndex u = graph.node_of(argument);
-  switch (kind) {
-    case Kind::Sin: return graph.scaled(graph.pair(Op::SinCos, u).first);
-    case Kind::Cos: return graph.scaled(graph.pair(Op::SinCos, u).second);
-    case Kind::Sinh: return graph.scaled(graph.pair(Op::SinhCosh, u).first);
-    case Kind::Cosh: return graph.scaled(graph.pair(Op::SinhCosh, u).second);
-    case Kind::Tan: return hyperbola(kind, u, 1);
-    case Kind::Tanh: return hyperbola(kind, u, -1);
-    default: return function_of_integral(kind, u);
+  if (kind == Kind::Sin) return graph.scaled(graph.pair(Op::SinCos, u).first);
+  if (kind == Kind::Cos) return graph.scaled(graph.pair(Op::SinCos, u).second);
+  if (kind == Kind::Sinh) return graph.scaled(graph.pair(Op::SinhCosh, u).first);
+  if (kind == Kind::Cosh) return graph.scaled(graph.pair(Op::SinhCosh, u).second);
+  return by_differential(kind, u);
+}
+
+/// The rule of the table is read for a u and a y of its own, so that it costs the same whatever u is made of.
+Scaled Lowering::by_differential(Kind kind, NodeIndex u) {
+  Context context;
+  const Expr x = context.symbol("x", Role::Auxiliary), f = context.symbol("f", Role::Auxiliary);
+  const Expr rule = functions::derivative(kind, x, f);
+  const std::vector<Expr> symbols = symbols_of({&rule, 1});
+  const bool by_itself = std::find(symbols.begin(), symbols.end(), f) != symbols.end();
+  if (!by_itself) {
+    const Scaled slope = lower_rule(rule, x, u, f, no_node);
+    return graph.scaled(graph.function(kind, u, no_node, {{slope.coefficient, slope.node, u}}));
   }
-}
-
-Scaled Lowering::exponential(Scaled argument) {
-  if (argument.is_constant()) return constant(graph.constants.apply(Kind::Exp, std::array{argument.coefficient}));
-  const NodeIndex u = graph.node_of(argument);
-  const NodeIndex y = graph.function(Kind::Exp, u, no_node, {{graph.constants.literal(1), no_node, u}});
-  graph.nodes[y].terms[0].a = y;  // dy = y du
-  return graph.scaled(y);
-}
-
-/// tan and tanh: dy = (1 ± y²) du.
-Scaled Lowering::hyperbola(Kind kind, NodeIndex u, int sign) {
-  const NodeIndex y = graph.function(kind, u, no_node, {{graph.constants.literal(1), no_node, u}});
-  const NodeIndex square = graph.unary(Op::Square, y);
-  const Scaled slope = graph.linear({{graph.constants.literal(1), graph.leaf(Op::One)},
-                                     {graph.constants.literal(sign), square}});
-  graph.nodes[y].terms[0].a = slope.node;
-  return graph.scaled(y);
-}
-
-/// log and the inverse functions: dy = w du with w an algebraic function of u.
-Scaled Lowering::function_of_integral(Kind kind, NodeIndex u) {
   const ConstantId one = graph.constants.literal(1);
-  const auto one_plus = [&](int of_one, int of_square) {
-    return graph.node_of(graph.linear({{graph.constants.literal(of_one), graph.leaf(Op::One)},
-                                       {graph.constants.literal(of_square), graph.unary(Op::Square, u)}}));
-  };
-  const auto inverse = [&](NodeIndex x) { return graph.quotient(graph.leaf(Op::One), x); };
-  const auto inverse_root = [&](NodeIndex x) {
-    return graph.unary(Op::Power, x, graph.constants.literal(Rational(-1, 2)));
-  };
-  Term slope{one, no_node, u};
-  switch (kind) {
-    case Kind::Log: slope.a = inverse(u); break;
-    case Kind::Atan: slope.a = inverse(one_plus(1, 1)); break;
-    case Kind::Atanh: slope.a = inverse(one_plus(1, -1)); break;
-    case Kind::Asin: slope.a = inverse_root(one_plus(1, -1)); break;
-    case Kind::Acos: slope = {graph.constants.literal(-1), inverse_root(one_plus(1, -1)), u}; break;
-    case Kind::Asinh: slope.a = inverse_root(one_plus(1, 1)); break;
-    case Kind::Acosh: slope.a = inverse_root(one_plus(-1, 1)); break;
-    default: throw std::logic_error("the kernel met a function that it does not know; please report");
-  }
-  return graph.scaled(graph.function(kind, u, no_node, {slope}));
+  const NodeIndex y = graph.function(kind, u, no_node, {{one, no_node, u}});
+  graph.nodes[y].terms[0].a = graph.node_of(lower_rule(rule, x, u, f, y));
+  return graph.scaled(y);
+}
+
+Scaled Lowering::lower_rule(Expr rule, Expr x, NodeIndex u, Expr f, NodeIndex y) {
+  Scope outer = std::exchange(scope_, Scope{{{x.id(), graph.scaled(u)}, {f.id(), graph.scaled(y)}}, {}});
+  lower_into_scope({&rule, 1});
+  const Scaled lowered = of(rule);
+  scope_ = std::move(outer);
+  return lowered;
 }
 
 /// d atan2(y, x) = (x dy − y dx)/(x² + y²).

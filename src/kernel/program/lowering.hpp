@@ -20,7 +20,7 @@ class Lowering {
 
  private:
   Scaled lower_node(Expr e);
-  Scaled of(Expr e) const { return done_.at(e.id()); }
+  Scaled of(Expr e) const { return scope_.done.at(e.id()); }
   Scaled constant(ConstantId id) const { return {id, no_node}; }
   Scaled constant_function(Expr e);
   Scaled symbol(Expr e);
@@ -31,9 +31,10 @@ class Lowering {
   Scaled power(Expr e);
   Scaled integer_power(Scaled base, std::int64_t exponent);
   Scaled function(Kind kind, Scaled argument);
-  Scaled function_of_integral(Kind kind, NodeIndex u);
-  Scaled hyperbola(Kind kind, NodeIndex u, int sign);
-  Scaled exponential(Scaled argument);
+  /// y = f(u) with dy = f'(u) du, where f' may be written with y.
+  Scaled by_differential(Kind kind, NodeIndex u);
+  /// An expression of another context, whose `x` and `f` are u and y.
+  Scaled lower_rule(Expr rule, Expr x, NodeIndex u, Expr f, NodeIndex y);
   Scaled atan2(Scaled y, Scaled x);
   Scaled time_derivative(Scaled argument);
 
@@ -47,8 +48,14 @@ class Lowering {
   Scaled piecewise(Expr e);
   Scaled select(std::span<const std::pair<ConstantId, Scaled>> choices);
 
-  std::unordered_map<NodeId, Scaled> done_;
-  std::unordered_map<NodeId, std::uint32_t> uses_;
+  /// What is known of the expressions of one context.
+  struct Scope {
+    std::unordered_map<NodeId, Scaled> done;
+    std::unordered_map<NodeId, std::uint32_t> uses;
+  };
+  void lower_into_scope(std::span<const Expr> roots);
+
+  Scope scope_;
   std::unordered_map<NodeId, std::uint32_t> coordinates_, multipliers_, parameters_;
   std::unordered_map<NodeIndex, std::uint32_t> switch_of_node_;
 };

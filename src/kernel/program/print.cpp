@@ -1,6 +1,6 @@
 #include "kernel/program/program.hpp"
 
-#include <maupertuis/kind_names.hpp>
+#include <maupertuis/kinds.hpp>
 
 #include <fmt/format.h>
 
@@ -24,20 +24,20 @@ std::string_view op_name(Op op) {
     case Op::Derivative: return "d/dt";
     case Op::Select: return "select";
   }
-  return "?";
+  return "unknown";
+}
+
+std::logic_error unknown_op(Op op, std::string_view who) {
+  return std::logic_error(fmt::format("{} met the instruction `{}`, for which it has no rule; please report", who, op_name(op)));
 }
 
 namespace {
 
 std::string_view function_name(Kind kind) {
-  switch (kind) {
-    case Kind::Sum: return "sum";
-    case Kind::Product: return "product";
-    case Kind::Power: return "power";
-    case Kind::Less: return "less";
-    case Kind::LessEqual: return "less_equal";
-    default: return name_of(kind);
-  }
+  if (kind == Kind::Sum) return "sum";
+  if (kind == Kind::Product) return "product";
+  if (kind == Kind::Power) return "power";
+  return name_of(kind);
 }
 
 class Printer {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -123,6 +124,8 @@ struct Program {
 
 /// Name of an op in prints.
 std::string_view op_name(Op op);
+/// Thrown where a pass meets an instruction that it has no rule for.
+std::logic_error unknown_op(Op op, std::string_view who);
 
 /// One line an instruction.
 std::string print(const Program& program);

@@ -34,11 +34,10 @@ class Windings {
  private:
   void pass(const Instruction& i) {
     switch (i.op) {
-      case Op::SinCos:
-      case Op::Derivative: return;
-      case Op::Linear:
-      case Op::Products: return sum(i);
-      default: break;
+      case Op::SinCos: case Op::Derivative: return;
+      case Op::Linear: case Op::Products: return sum(i);
+      case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: case Op::Square: case Op::Quotient: case Op::SquareRoot:
+      case Op::Power: case Op::SinhCosh: case Op::Function: case Op::Select: break;
     }
     for (const Slot operand : {i.a, i.b})
       if (operand != no_slot) refuse(operand);

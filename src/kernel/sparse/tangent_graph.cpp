@@ -24,8 +24,9 @@ class Collector {
       case Op::Function: return differential(i);
       case Op::Derivative: return add({Rule::One, i.out, i.a}, 1);
       case Op::Select: return select(i);
-      default: return;
+      case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: return;
     }
+    throw unknown_op(i.op, "the graph of tangents");
   }
 
   std::vector<Edge> edges;
@@ -95,8 +96,9 @@ double factor_at(const Edge& edge, const double* constants, const double* now) {
     case Rule::HalfReciprocal: return 0.5 / now[edge.x];
     case Rule::Ratio: return -now[edge.y] / now[edge.x];
     case Rule::PowerSlope: return constants[edge.index] * now[edge.y] / now[edge.x];
-    default: return 0;
+    case Rule::One: case Rule::Coefficient: case Rule::Choice: break;   // see constant_factor
   }
+  return 0;
 }
 
 }  // namespace maupertuis::sparse

@@ -130,11 +130,15 @@ Complexity complexity(const Tape& tape) {
         ++result.radicals;
         f[at] = {1, 0, 0};
         break;
+      // A random number of its own.
+      case Kind::Pi: case Kind::Symbol: case Kind::Log: case Kind::Asinh: case Kind::Atanh: case Kind::Erf: case Kind::LambertW:
+        f[at] = {1, 0, 0};
+        break;
       case Kind::TimeDerivative: f[at] = derivative(f[arguments[0]]); break;
       case Kind::Abs: ++result.switches; f[at] = f[arguments[0]]; break;
       case Kind::Sign: case Kind::Step: ++result.switches; break;
       case Kind::Less: case Kind::LessEqual: ++result.switches; break;
-      default: f[at] = {1, 0, 0};
+      case Kind::And: case Kind::Or: break;   // their comparisons count
     }
   }
   for (const Position root : tape.roots()) {

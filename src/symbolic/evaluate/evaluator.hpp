@@ -7,10 +7,17 @@
 
 namespace maupertuis::evaluation {
 
+template <class Value, class Operation>
+Value folded(std::span<const Position> operands, const std::vector<Value>& values, Operation operation) {
+  Value result = values[operands[0]];
+  for (std::size_t i = 1; i < operands.size(); ++i) result = operation(result, values[operands[i]]);
+  return result;
+}
+
 /// Walks a tape once over any kind of numbers.
 ///
 /// `Numbers` supplies the ring (Value, number, pi, symbol, add, multiply) and `function(tape, at, values)` for every
-/// other node: powers, elementary functions, switches. RealNumbers, FieldNumbers and JetNumbers are such kinds.
+/// other node: powers, elementary functions, switches; it throws on a kind that it has no rule for. RealNumbers, FieldNumbers and JetNumbers are such kinds.
 /// Positions that are not `chosen` keep the values they have.
 template <class Numbers, class Chosen>
 void run(const Tape& tape, Numbers& numbers, std::vector<typename Numbers::Value>& values, Chosen chosen) {
@@ -18,24 +25,13 @@ void run(const Tape& tape, Numbers& numbers, std::vector<typename Numbers::Value
   for (Position at = 0; at < tape.size(); ++at) {
     if (!chosen(at)) continue;
     const auto arguments = tape.arguments(at);
-    switch (tape.kind(at)) {
-      case Kind::Number: values[at] = numbers.number(tape.expression(at).number()); break;
-      case Kind::Pi: values[at] = numbers.pi(); break;
-      case Kind::Symbol: values[at] = numbers.symbol(tape.expression(at)); break;
-      case Kind::Sum: {
-        auto sum = values[arguments[0]];
-        for (std::size_t i = 1; i < arguments.size(); ++i) sum = numbers.add(sum, values[arguments[i]]);
-        values[at] = sum;
-        break;
-      }
-      case Kind::Product: {
-        auto product = values[arguments[0]];
-        for (std::size_t i = 1; i < arguments.size(); ++i) product = numbers.multiply(product, values[arguments[i]]);
-        values[at] = product;
-        break;
-      }
-      default: values[at] = numbers.function(tape, at, values);
-    }
+    const Kind kind = tape.kind(at);
+    if (kind == Kind::Number) values[at] = numbers.number(tape.expression(at).number());
+    else if (kind == Kind::Pi) values[at] = numbers.pi();
+    else if (kind == Kind::Symbol) values[at] = numbers.symbol(tape.expression(at));
+    else if (kind == Kind::Sum) values[at] = folded(arguments, values, [&](const auto& a, const auto& b) { return numbers.add(a, b); });
+    else if (kind == Kind::Product) values[at] = folded(arguments, values, [&](const auto& a, const auto& b) { return numbers.multiply(a, b); });
+    else values[at] = numbers.function(tape, at, values);
   }
 }
 

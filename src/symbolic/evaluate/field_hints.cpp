@@ -26,14 +26,11 @@ void note_multiple_of_pi(const Tape& tape, Position at, FieldHints& hints) {
 
 /// Whether the sign of this node is asked of its first argument.
 bool asks_sign(const Tape& tape, Position at) {
-  switch (tape.kind(at)) {
-    case Kind::Abs: case Kind::Sign: case Kind::Step: case Kind::Log: return true;
-    case Kind::Power: {
-      const Expr exponent = tape.expression(tape.argument(at, 1));
-      return !exponent.is_number() || !exponent.number().is_integer();
-    }
-    default: return false;
-  }
+  const Kind kind = tape.kind(at);
+  if (kind == Kind::Log || family_of(kind) == Family::Switch) return true;
+  if (kind != Kind::Power) return false;
+  const Expr exponent = tape.expression(tape.argument(at, 1));
+  return !exponent.is_number() || !exponent.number().is_integer();
 }
 
 /// Ranges over the whole line; a rate d/dt may be anything.

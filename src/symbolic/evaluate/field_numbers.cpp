@@ -1,13 +1,15 @@
 #include "symbolic/evaluate/field_numbers.hpp"
 
-#include <stdexcept>
+#include <maupertuis/functions.hpp>
+
+#include <optional>
 
 namespace maupertuis::evaluation {
 namespace {
 
 // Keys of the random choices, one a purpose.
 enum : std::uint64_t {
-  key_symbol = 0x73796d, key_exponent = 0x657870, key_log = 0x6c6f67,
+  key_symbol = 0x73796d, key_exponent = 0x657870, key_log = 0x6c6f67, key_pi = 0x7069,
 };
 
 }  // namespace
@@ -42,6 +44,12 @@ FieldNumbers::Value FieldNumbers::symbol(Expr e) const {
   const auto again = drawn_again_.find(e.id());
   const Value x = random(again == drawn_again_.end() ? key_symbol : mix(key_symbol + again->second), e.id());
   return hints_.positive.count(e.id()) && field_.character(x) < 0 ? field_.negate(x) : x;
+}
+
+/// π is positive: it has a root.
+FieldNumbers::Value FieldNumbers::pi() const {
+  const Value x = random(key_pi);
+  return field_.character(x) < 0 ? field_.negate(x) : x;
 }
 
 FieldNumbers::Value FieldNumbers::inverse(Value a) const {
@@ -120,6 +128,19 @@ FieldNumbers::Value FieldNumbers::power(const Tape& tape, Position at, const std
 
 // ------------------------------------------------------------------------------------------------- exp and log
 
+/// A positive u with exp(rest) = u, where rest is a function that inverts exp; nothing for all others.
+std::optional<FieldNumbers::Value> FieldNumbers::exponential_of_inverse(const Tape& tape, Position rest, const std::vector<Value>& values) const {
+  const Kind kind = tape.kind(rest);
+  if (!is_function(kind)) return std::nullopt;
+  const Value x = values[tape.argument(rest, 0)], one = field_.one();
+  if (kind == Kind::Log) return x;
+  if (kind == Kind::Asinh) return field_.add(x, square_root(field_.add(field_.multiply(x, x), one)));
+  if (kind == Kind::Acosh) return field_.add(x, square_root(field_.subtract(field_.multiply(x, x), one)));
+  if (kind == Kind::Atanh) return square_root(field_.multiply(field_.add(one, x), inverse(field_.subtract(one, x))));
+  if (kind == Kind::LambertW) return field_.multiply(x, inverse(values[rest]));
+  return std::nullopt;
+}
+
 /// Multiplies by exp of one term c·rest. Where rest holds a logarithm, exp(c·s·log u) = u^(c·s).
 void FieldNumbers::multiply_exponential(const Tape& tape, Position at, const std::vector<Value>& values, Value& product) {
   if (tape.kind(at) == Kind::Sum) {
@@ -132,26 +153,15 @@ void FieldNumbers::multiply_exponential(const Tape& tape, Position at, const std
   const auto times = [&](Value base, std::uint64_t exponent) {
     product = field_.multiply(product, positive_power(base, exponent));
   };
-  const auto x = [&] { return values[tape.argument(rest, 0)]; };
-  const auto plus = [&](Value a, Value b) { return field_.add(a, b); };
-  const Value one = field_.one();
-  switch (tape.kind(rest)) {
-    case Kind::Log: return times(x(), c);
-    case Kind::Asinh: return times(plus(x(), square_root(plus(field_.multiply(x(), x()), one))), c);
-    case Kind::Acosh: return times(plus(x(), square_root(field_.subtract(field_.multiply(x(), x()), one))), c);
-    case Kind::Atanh:
-      return times(field_.multiply(plus(one, x()), inverse(field_.subtract(one, x()))), exponent_of(term.coefficient / Rational(2)));
-    case Kind::Product:
-      for (const Position factor : tape.arguments(rest))
-        if (tape.kind(factor) == Kind::Log) {
-          const Value key = field_.multiply(term_key(tape, term, values), inverse(values[factor]));
-          const std::uint64_t s = mix(mix(seed_ ^ key_exponent) ^ key) % primes_.q;
-          return times(values[tape.argument(factor, 0)],
-                       static_cast<std::uint64_t>(static_cast<Wide>(c) * s % primes_.q));
-        }
-      break;
-    default: break;
-  }
+  if (const auto base = exponential_of_inverse(tape, rest, values)) return times(*base, c);
+  if (tape.kind(rest) == Kind::Product)
+    for (const Position factor : tape.arguments(rest))
+      if (tape.kind(factor) == Kind::Log) {
+        const Value key = field_.multiply(term_key(tape, term, values), inverse(values[factor]));
+        const std::uint64_t s = mix(mix(seed_ ^ key_exponent) ^ key) % primes_.q;
+        return times(values[tape.argument(factor, 0)],
+                     static_cast<std::uint64_t>(static_cast<Wide>(c) * s % primes_.q));
+      }
   product = field_.multiply(product, field_.power(generator_, exponent_of(tape, at, values)));
 }
 
@@ -181,20 +191,17 @@ FieldNumbers::Value FieldNumbers::logarithm_of_number(const Rational& value) con
 
 /// log |x| by the structure of x: products, powers and exponentials are taken apart, a sum gives up its content.
 FieldNumbers::Value FieldNumbers::absolute_logarithm(const Tape& tape, Position at, const std::vector<Value>& values) {
-  switch (tape.kind(at)) {
-    case Kind::Number: return logarithm_of_number(tape.expression(at).number());
-    case Kind::Exp: case Kind::Abs: {
-      const Position inner = tape.argument(at, 0);
-      return tape.kind(at) == Kind::Exp ? values[inner] : absolute_logarithm(tape, inner, values);
-    }
-    case Kind::Product: {
-      Value sum = 0;
-      for (const Position factor : tape.arguments(at)) sum = field_.add(sum, absolute_logarithm(tape, factor, values));
-      return sum;
-    }
-    case Kind::Power:
-      return field_.multiply(values[tape.argument(at, 1)], absolute_logarithm(tape, tape.argument(at, 0), values));
-    default: break;
+  const Kind kind = tape.kind(at);
+  const auto argument = [&](std::size_t i) { return tape.argument(at, i); };
+  if (kind == Kind::Number) return logarithm_of_number(tape.expression(at).number());
+  if (kind == Kind::Exp) return values[argument(0)];
+  if (kind == Kind::Abs) return absolute_logarithm(tape, argument(0), values);
+  if (kind == Kind::LambertW) return field_.subtract(absolute_logarithm(tape, argument(0), values), values[at]);  // w = x e^(−w)
+  if (kind == Kind::Power) return field_.multiply(values[argument(1)], absolute_logarithm(tape, argument(0), values));
+  if (kind == Kind::Product) {
+    Value sum = 0;
+    for (const Position factor : tape.arguments(at)) sum = field_.add(sum, absolute_logarithm(tape, factor, values));
+    return sum;
   }
   Value value = values[at], content = 0;
   if (tape.kind(at) == Kind::Sum) {
@@ -218,15 +225,28 @@ FieldNumbers::Value FieldNumbers::logarithm(const Tape& tape, Position argument,
 
 bool FieldNumbers::holds(const Tape& tape, Position condition, const std::vector<Value>& values) {
   const Position a = tape.argument(condition, 0), b = tape.argument(condition, 1);
-  switch (tape.kind(condition)) {
-    case Kind::And: return holds(tape, a, values) && holds(tape, b, values);
-    case Kind::Or: return holds(tape, a, values) || holds(tape, b, values);
-    default: {
-      const int sign = field_.character(field_.subtract(values[b], values[a]));
-      if (sign == 0) throw Redraw{};
-      return sign > 0;
-    }
-  }
+  const Kind kind = tape.kind(condition);
+  if (kind == Kind::And) return holds(tape, a, values) && holds(tape, b, values);
+  if (kind == Kind::Or) return holds(tape, a, values) || holds(tape, b, values);
+  if (family_of(kind) != Family::Comparison) throw unknown_kind(kind, "a condition over a prime field");
+  const int sign = field_.character(field_.subtract(values[b], values[a]));
+  if (sign == 0) throw Redraw{};
+  return sign > 0;
+}
+
+/// A random number that depends on the value of the argument alone, with the parity of the function: the image of a function
+/// of which no more is known.
+FieldNumbers::Value FieldNumbers::opaque(Kind kind, Value x) const {
+  const Parity parity = functions::of_row(kind, [](const auto& row) { return row.parity; });
+  const bool flip = parity != Parity::None && field_.character(x) < 0;
+  const Value value = random(mix(key_log) + static_cast<std::uint64_t>(kind), flip ? field_.negate(x) : x);
+  return flip && parity == Parity::Odd ? field_.negate(value) : value;
+}
+
+/// W(x) has the sign of x: then exp W(x) = x/W(x) is positive.
+FieldNumbers::Value FieldNumbers::lambert_w(Value x) const {
+  const Value w = opaque(Kind::LambertW, x);
+  return field_.character(w) == field_.character(x) ? w : field_.negate(w);
 }
 
 FieldNumbers::Value FieldNumbers::function(const Tape& tape, Position at, const std::vector<Value>& values) {
@@ -253,14 +273,9 @@ FieldNumbers::Value FieldNumbers::function(const Tape& tape, Position at, const 
       return tape.kind(at) == Kind::Sinh ? sinh : cosh;
     }
     case Kind::Log: return logarithm(tape, argument, values);
-    case Kind::Asinh: case Kind::Acosh: case Kind::Atanh: {
-      // The logarithm of exp of this node, as an odd function where the function is odd.
-      const Value x = values[argument];
-      const bool odd = tape.kind(at) != Kind::Acosh;
-      const bool flip = odd && field_.character(x) < 0;
-      const Value log = random(mix(key_log) + static_cast<std::uint64_t>(tape.kind(at)), flip ? field_.negate(x) : x);
-      return flip ? field_.negate(log) : log;
-    }
+    // The logarithms of exp of these nodes; and a function that no algebra ties to others.
+    case Kind::Asinh: case Kind::Acosh: case Kind::Atanh: case Kind::Erf: return opaque(tape.kind(at), values[argument]);
+    case Kind::LambertW: return lambert_w(values[argument]);
     case Kind::Abs: return sign(argument, values[argument]) < 0 ? field_.negate(values[argument]) : values[argument];
     case Kind::Sign: return number(sign(argument, values[argument]));
     case Kind::Step: return number(sign(argument, values[argument]) > 0 ? 1 : 0);
@@ -273,8 +288,9 @@ FieldNumbers::Value FieldNumbers::function(const Tape& tape, Position at, const 
       return values[arguments.back()];
     }
     case Kind::Less: case Kind::LessEqual: case Kind::And: case Kind::Or: return 0;   // asked by `holds`
-    default: throw std::logic_error("a value of d/dt was asked for over a prime field; please report");
+    case Kind::Number: case Kind::Pi: case Kind::Symbol: case Kind::Sum: case Kind::Product: case Kind::TimeDerivative: break;
   }
+  throw unknown_kind(tape.kind(at), "an evaluation over a prime field");
 }
 
 }  // namespace maupertuis::evaluation

@@ -2,6 +2,7 @@
 #include "symbolic/evaluate/evaluator.hpp"
 #include "symbolic/evaluate/prime_field.hpp"
 
+#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -55,7 +56,7 @@ class FieldNumbers {
   void symbols_changed() { angles_.clear(); units_.clear(); }
 
   Value number(const Rational& value) const { return field_.from(value); }
-  Value pi() const { return random(0x7069); }
+  Value pi() const;
   Value symbol(Expr e) const;
   Value add(Value a, Value b) const { return field_.add(a, b); }
   Value subtract(Value a, Value b) const { return field_.subtract(a, b); }
@@ -81,6 +82,9 @@ class FieldNumbers {
   Value positive(Value a) const;
   std::uint64_t exponent_of(const Rational& c) const;
   std::uint64_t exponent_of(const Tape& tape, Position at, const std::vector<Value>& values);
+  std::optional<Value> exponential_of_inverse(const Tape& tape, Position rest, const std::vector<Value>& values) const;
+  Value opaque(Kind kind, Value x) const;
+  Value lambert_w(Value x) const;
   void multiply_exponential(const Tape& tape, Position at, const std::vector<Value>& values, Value& product);
   void rotate(const Tape& tape, Position at, const std::vector<Value>& values, Angle& angle);
   Angle direction(const Tape& tape, Position at, const std::vector<Value>& values);

@@ -1,4 +1,5 @@
 #pragma once
+#include <maupertuis/lambert_w.hpp>
 #include <maupertuis/rational.hpp>
 
 #include <algorithm>
@@ -186,6 +187,17 @@ template <class R> Interval<R> acosh(const Interval<R>& x) {
 template <class R> Interval<R> atanh(const Interval<R>& x) {
   using std::atanh;
   return within(x, -1, 1) ? rising(x, [](const R& v) { return R(atanh(v)); }) : Interval<R>::nothing();
+}
+template <class R> Interval<R> erf(const Interval<R>& x) {
+  using std::erf;
+  return rising(x, [](const R& v) { return R(erf(v)); });
+}
+/// Within 1e-12 of its end −1/e the root of w eʷ = x is known by its sign alone, as where the interval begins below.
+template <class R> Interval<R> lambert_w(const Interval<R>& x) {
+  constexpr double inside = -0.367879441171;
+  if (x.is_nan() || !(x.high > inside)) return Interval<R>::nothing();
+  const Interval<R> y = rising(Interval<R>{std::max(x.low, R(inside)), x.high}, [](const R& v) { return R(maupertuis::lambert_w(v)); });
+  return {x.low < inside ? R(-1) : y.low, y.high};
 }
 /// Away from the cut and the origin, else the whole range.
 template <class R> Interval<R> atan2(const Interval<R>& y, const Interval<R>& x) {

@@ -1,9 +1,10 @@
 #pragma once
 #include "symbolic/evaluate/evaluator.hpp"
 
+#include <maupertuis/kinds.hpp>
+
 #include <array>
 #include <functional>
-#include <stdexcept>
 
 namespace maupertuis::evaluation {
 
@@ -114,6 +115,11 @@ class JetNumbers {
       case Kind::Acos: return integral(leading(), negate(inverse_root(subtract(one(), square()))), x);
       case Kind::Asinh: return integral(leading(), inverse_root(add(square(), one())), x);
       case Kind::Acosh: return integral(leading(), inverse_root(subtract(square(), one())), x);
+      case Kind::Erf: {   // f' = 2/√π exp(−x²) x'
+        const Scalar factor = base_.multiply(base_.number(2), base_.inverse(base_.square_root(base_.pi())));
+        return integral(leading(), scale(values[tape.gaussian(at)], factor), x);
+      }
+      case Kind::LambertW: return lambert_w(leading(), x);
       case Kind::Atan2: return atan2(leading(), x, values[tape.argument(at, 1)]);
       case Kind::Abs: return base_.sign(argument, x(0, 0)) < 0 ? negate(x) : x;
       case Kind::Sign: case Kind::Step: return constant(leading());
@@ -122,8 +128,10 @@ class JetNumbers {
         return chosen_first(leading(), x(0, 0)) ? x : y;
       }
       case Kind::Piecewise: return piecewise(tape, at, values);
-      default: return constant(zero_);   // conditions: asked by `holds` of the base
+      case Kind::Less: case Kind::LessEqual: case Kind::And: case Kind::Or: return constant(zero_);   // asked by `holds` of the base
+      case Kind::Number: case Kind::Pi: case Kind::Symbol: case Kind::Sum: case Kind::Product: break;
     }
+    throw unknown_kind(tape.kind(at), "a series");
   }
 
   Base& base() { return base_; }
@@ -251,6 +259,16 @@ class JetNumbers {
     if (is_constant(y)) return constant_power(first, x, y(0, 0));
     const Value log = integral(base_.logarithm(tape, base, leading_), inverse(x), x);
     return exponential(first, multiply(y, log));
+  }
+
+  /// From w eʷ = x: x (1 + w) w' = w x'. Each pass makes one more order right.
+  Value lambert_w(const Scalar& first, const Value& x) const {
+    Value w = constant(first), slope = w;
+    for (std::size_t k = 0; k < orders_; ++k) {
+      slope = series(multiply(w, inverse(multiply(x, add(number(1), w)))));
+      w = integral(first, slope, x);
+    }
+    return w;
   }
 
   /// The angle φ of (x, y): φ' = (x y' − y x')/(x² + y²).

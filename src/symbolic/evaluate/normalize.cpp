@@ -11,30 +11,21 @@ namespace {
 // Beyond this many terms an argument stays as it is: one basis element of its own.
 constexpr std::size_t argument_budget = 64;
 
+/// The image of such a function over a prime field depends on the terms of its argument, not on their sum alone.
 bool takes_flat_argument(Kind kind) {
-  switch (kind) {
-    case Kind::Sin: case Kind::Cos: case Kind::Tan: case Kind::Sinh: case Kind::Cosh: case Kind::Tanh: case Kind::Exp:
-      return true;
-    default: return false;
-  }
+  return kind == Kind::Exp || kind == Kind::Sin || kind == Kind::Cos || kind == Kind::Tan || kind == Kind::Sinh || kind == Kind::Cosh ||
+         kind == Kind::Tanh;
 }
 
 /// A sum of numbers times monomials already, without a sum inside that could be multiplied out?
 bool is_flat(Expr e, bool inside_sum = false) {
-  switch (e.kind()) {
-    case Kind::Sum:
-      if (inside_sum) return false;
-      for (std::size_t i = 0; i < e.size(); ++i)
-        if (!is_flat(e[i], true)) return false;
-      return true;
-    case Kind::Product:
-      for (std::size_t i = 0; i < e.size(); ++i)
-        if (!is_flat(e[i], true)) return false;
-      return true;
-    // A sum below is multiplied out, or gives up its content where the exponent is not a positive integer.
-    case Kind::Power: return !(e[0].is(Kind::Sum) && e[1].is_number());
-    default: return true;
-  }
+  // A sum below is multiplied out, or gives up its content where the exponent is not a positive integer.
+  if (e.is(Kind::Power)) return !(e[0].is(Kind::Sum) && e[1].is_number());
+  if (!e.is(Kind::Sum) && !e.is(Kind::Product)) return true;
+  if (e.is(Kind::Sum) && inside_sum) return false;
+  for (std::size_t i = 0; i < e.size(); ++i)
+    if (!is_flat(e[i], true)) return false;
+  return true;
 }
 
 Expr flat(Expr e) {
@@ -46,27 +37,12 @@ Expr flat(Expr e) {
 /// The factors of the argument of a logarithm stay apart, since log takes products apart; but each sum among them is
 /// flat, so that its content does not depend on how it is nested: log(2 + (2 + x)) is log(4 + x).
 Expr flat_factors(Expr e) {
-  switch (e.kind()) {
-    case Kind::Sum: return flat(e);
-    case Kind::Power: return e.context().power(flat_factors(e[0]), e[1]);
-    case Kind::Product: {
-      std::vector<Expr> factors;
-      for (std::size_t i = 0; i < e.size(); ++i) factors.push_back(flat_factors(e[i]));
-      return e.context().product(factors);
-    }
-    default: return e;
-  }
-}
-
-Expr with_arguments(Expr node, std::span<const Expr> arguments) {
-  Context& context = node.context();
-  switch (node.kind()) {
-    case Kind::Sum: return context.sum(arguments);
-    case Kind::Product: return context.product(arguments);
-    case Kind::Power: return context.power(arguments[0], arguments[1]);
-    case Kind::TimeDerivative: return context.time_derivative(arguments[0]);
-    default: return context.function(node.kind(), arguments);
-  }
+  if (e.is(Kind::Sum)) return flat(e);
+  if (e.is(Kind::Power)) return e.context().power(flat_factors(e[0]), e[1]);
+  if (!e.is(Kind::Product)) return e;
+  std::vector<Expr> factors;
+  for (std::size_t i = 0; i < e.size(); ++i) factors.push_back(flat_factors(e[i]));
+  return e.context().product(factors);
 }
 
 }  // namespace
@@ -91,7 +67,7 @@ std::vector<Expr> flatten_arguments(std::span<const Expr> roots) {
       differs |= argument != node[i];
       arguments.push_back(argument);
     }
-    if (differs) changed.emplace(node.id(), with_arguments(node, arguments));
+    if (differs) changed.emplace(node.id(), node.context().make(node.kind(), arguments));
   }
   std::vector<Expr> out;
   out.reserve(roots.size());

@@ -1,10 +1,11 @@
 #pragma once
 #include "symbolic/evaluate/evaluator.hpp"
 
+#include <maupertuis/functions.hpp>
+
 #include <cmath>
-#include <optional>
 #include <functional>
-#include <stdexcept>
+#include <optional>
 
 namespace maupertuis::evaluation {
 
@@ -40,16 +41,20 @@ class RealNumbers {
 
   Real function(const Tape& tape, Position at, const std::vector<Real>& v) const {
     const auto arg = [&](std::size_t i) -> const Real& { return v[tape.argument(at, i)]; };
-    switch (tape.kind(at)) {
-      case Kind::Power: return power(tape, at, v);
-      case Kind::Min: return choose(less(arg(1), arg(0)), arg(1), arg(0));
-      case Kind::Max: return choose(less(arg(0), arg(1)), arg(1), arg(0));
-      case Kind::Atan2: { using std::atan2; return atan2(arg(0), arg(1)); }
-      case Kind::Piecewise: return piecewise(tape, at, v);
-      case Kind::Less: case Kind::LessEqual: case Kind::And: case Kind::Or: return number(0);  // asked by `holds`
-      case Kind::TimeDerivative: throw std::logic_error("a value of d/dt was asked for; please report");
-      default: return elementary(tape.kind(at), arg(0));
+    const Kind kind = tape.kind(at);
+    switch (family_of(kind)) {
+      case Family::Function: return functions::value(kind, arg(0));
+      case Family::Switch: return with_switch(kind, arg(0));
+      case Family::Angle: { using std::atan2; return atan2(arg(0), arg(1)); }
+      case Family::Extremum: return choose(kind == Kind::Min ? less(arg(1), arg(0)) : less(arg(0), arg(1)), arg(1), arg(0));
+      case Family::Piecewise: return piecewise(tape, at, v);
+      case Family::Comparison: case Family::Logic: return number(0);  // asked by `holds`
+      case Family::Algebra:
+        if (kind == Kind::Power) return power(tape, at, v);
+        break;
+      case Family::Leaf: case Family::TimeDerivative: break;
     }
+    throw unknown_kind(kind, "an evaluation over real numbers");
   }
 
   std::optional<bool> holds(const Tape& tape, Position at, const std::vector<Real>& v) const {
@@ -102,30 +107,12 @@ class RealNumbers {
     return number(*positive ? 1 : *negative ? -1 : 0);
   }
 
-  Real elementary(Kind kind, const Real& x) const {
-    // The library's for double; overloads beside the type for others.
-    using std::sin, std::cos, std::tan, std::asin, std::acos, std::atan, std::sinh, std::cosh, std::tanh, std::asinh,
-        std::acosh, std::atanh, std::exp, std::log, std::abs;
-    switch (kind) {
-      case Kind::Sin: return sin(x);
-      case Kind::Cos: return cos(x);
-      case Kind::Tan: return tan(x);
-      case Kind::Asin: return asin(x);
-      case Kind::Acos: return acos(x);
-      case Kind::Atan: return atan(x);
-      case Kind::Sinh: return sinh(x);
-      case Kind::Cosh: return cosh(x);
-      case Kind::Tanh: return tanh(x);
-      case Kind::Asinh: return asinh(x);
-      case Kind::Acosh: return acosh(x);
-      case Kind::Atanh: return atanh(x);
-      case Kind::Exp: return exp(x);
-      case Kind::Log: return log(x);
-      case Kind::Abs: return abs(x);
-      case Kind::Sign: return sign(x);
-      case Kind::Step: return choose(less(x, number(0)), number(0), number(1));
-      default: throw std::logic_error("an unknown function was evaluated; please report");
-    }
+  Real with_switch(Kind kind, const Real& x) const {
+    using std::abs;
+    if (kind == Kind::Abs) return abs(x);
+    if (kind == Kind::Sign) return sign(x);
+    if (kind == Kind::Step) return choose(less(x, number(0)), number(0), number(1));
+    throw unknown_kind(kind, "an evaluation over real numbers");
   }
 
   Lookup symbols_;

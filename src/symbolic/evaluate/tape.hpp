@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 namespace maupertuis::evaluation {
@@ -13,6 +14,8 @@ using Position = std::uint32_t;
 class Tape {
  public:
   explicit Tape(std::span<const Expr> roots);
+  /// For series: exp(−x²) stands beside and before every erf(x), whose derivative it is but for a factor.
+  static Tape with_gaussians(std::span<const Expr> roots);
 
   std::size_t size() const { return nodes_.size(); }
   Kind kind(Position at) const { return nodes_[at].kind; }
@@ -22,8 +25,13 @@ class Tape {
   }
   Position argument(Position at, std::size_t index) const { return arguments_[nodes_[at].first + index]; }
   std::span<const Position> roots() const { return roots_; }
+  /// Of an erf of a tape with Gaussians. Throws std::logic_error on others.
+  Position gaussian(Position erf) const;
 
  private:
+  Tape() = default;
+  void lay_out(const std::vector<Expr>& order, std::span<const Expr> roots);
+
   struct Node {
     Expr expression;
     std::uint32_t first = 0, count = 0;
@@ -32,6 +40,7 @@ class Tape {
   std::vector<Node> nodes_;
   std::vector<Position> arguments_;
   std::vector<Position> roots_;
+  std::unordered_map<Position, Position> gaussians_;
 };
 
 /// The deepest nesting of d/dt: how many orders of a series an evaluation of the roots uses up.

@@ -1,4 +1,4 @@
-#include <maupertuis/expression.hpp>
+#include <maupertuis/functions.hpp>
 #include <maupertuis/require.hpp>
 
 #include "symbolic/expression/kind_table.hpp"
@@ -178,28 +178,23 @@ Expr negated(const Expr& e) {
   return context.sum(terms);
 }
 
-/// The exact value of a function at a number, where it has one.
+/// The exact value at a number, where it has one.
 std::optional<Rational> folded_function(Kind kind, const Rational& x) {
-  switch (kind) {
-    case Kind::Sin: case Kind::Tan: case Kind::Asin: case Kind::Atan: case Kind::Sinh: case Kind::Tanh:
-    case Kind::Asinh: case Kind::Atanh:
-      return x.is_zero() ? std::optional<Rational>(0) : std::nullopt;
-    case Kind::Cos: case Kind::Cosh: case Kind::Exp:
-      return x.is_zero() ? std::optional<Rational>(1) : std::nullopt;
-    case Kind::Log: case Kind::Acosh: case Kind::Acos:
-      return x.is_one() ? std::optional<Rational>(0) : std::nullopt;
-    case Kind::Abs: return abs(x);
-    case Kind::Sign: return Rational(x.sign());
-    case Kind::Step: return Rational(x.sign() >= 0 ? 1 : 0);
-    default: return std::nullopt;
-  }
+  if (is_function(kind))
+    return functions::of_row(kind, [&](const auto& row) {
+      return x == Rational(row.at) ? std::optional<Rational>(row.exactly) : std::nullopt;
+    });
+  if (kind == Kind::Abs) return abs(x);
+  if (kind == Kind::Sign) return Rational(x.sign());
+  if (kind == Kind::Step) return Rational(x.sign() >= 0 ? 1 : 0);
+  throw unknown_kind(kind, "the folding of numbers");
 }
 
 }  // namespace
 
 Expr Context::function(Kind kind, std::span<const Expr> arguments) {
   const KindInfo& info = kind_info(kind);
-  MAUP_REQUIRE(info.arity < 0 || arguments.size() == static_cast<std::size_t>(info.arity));
+  MAUP_REQUIRE(family_of(kind) != Family::Leaf && (info.arity < 0 || arguments.size() == static_cast<std::size_t>(info.arity)));
   if (arguments.size() == 1) {
     const Expr x = arguments.front();
     if (x.is_number())
@@ -215,6 +210,14 @@ Expr Context::function(Kind kind, std::span<const Expr> arguments) {
   return Expr(this, storage_->intern(kind, ids_of(arguments)));
 }
 
+Expr Context::make(Kind kind, std::span<const Expr> arguments) {
+  if (kind == Kind::Sum) return sum(arguments);
+  if (kind == Kind::Product) return product(arguments);
+  if (kind == Kind::Power) return power(arguments[0], arguments[1]);
+  if (kind == Kind::TimeDerivative) return time_derivative(arguments[0]);
+  return function(kind, arguments);
+}
+
 namespace {
 
 Expr symbol_derivative(const Expr& symbol) {
@@ -222,8 +225,9 @@ Expr symbol_derivative(const Expr& symbol) {
   switch (symbol.role()) {
     case Role::Coordinate: case Role::Input: return context.symbol(symbol.name(), symbol.role(), symbol.order() + 1);
     case Role::Time: return context.number(1);
-    default: return context.number(0);
+    case Role::Parameter: case Role::Constant: case Role::Multiplier: case Role::Auxiliary: break;
   }
+  return context.number(0);
 }
 
 }  // namespace

@@ -1,19 +1,18 @@
 #pragma once
-#include <maupertuis/expression.hpp>
+#include <maupertuis/functions.hpp>
 
 #include <string_view>
 
 namespace maupertuis {
 
-enum class Parity : std::uint8_t { None, Odd, Even };
-
-/// What every pass may ask of a node kind. Derivatives stand in transform/derivative_rules, jets in kernel/jet.
+/// What every pass may ask of a node kind.
 struct KindInfo {
   Kind kind;
-  std::string_view name;   // in the model language and in dumps
-  int arity;               // −1: any number
-  Parity parity;           // of functions of one argument
-  bool has_switch;         // not smooth where its switch function vanishes
+  std::string_view name;           // in dumps, and of functions in the model language
+  int arity;                       // −1: any number
+  Parity parity;                   // of what has one argument
+  std::string_view latex, mathml;  // before the arguments of what is written as a function
+  bool bare;                       // sin θ, sin² θ
 };
 
 const KindInfo& kind_info(Kind kind);

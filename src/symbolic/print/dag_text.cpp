@@ -1,27 +1,11 @@
+#include <maupertuis/kinds.hpp>
 #include <maupertuis/print.hpp>
-
-#include "symbolic/print/layout.hpp"
 
 #include <unordered_map>
 
 /// The DAG as text, one node a line, numbered from the leaves: what `--emit` shows of a stage.
 namespace maupertuis {
 namespace {
-
-std::string operation(Kind kind) {
-  switch (kind) {
-    case Kind::Sum: return "add";
-    case Kind::Product: return "mul";
-    case Kind::Power: return "pow";
-    case Kind::TimeDerivative: return "ddt";
-    case Kind::Piecewise: return "piecewise";
-    case Kind::Less: return "less";
-    case Kind::LessEqual: return "less_equal";
-    case Kind::And: return "and";
-    case Kind::Or: return "or";
-    default: return print::function_name(kind);
-  }
-}
 
 std::string leaf(Expr e) {
   if (e.is_number()) return e.number().to_string();
@@ -40,7 +24,7 @@ std::string to_dag_text(std::span<const Expr> roots) {
       continue;
     }
     const std::string label = "%" + std::to_string(next++);
-    text += label + " = " + operation(e.kind());
+    text += label + " = " + std::string(name_of(e.kind()));
     for (const NodeId argument : e.argument_ids()) text += " " + labels.at(argument);
     text += "\n";
     labels.emplace(e.id(), label);

@@ -1,5 +1,6 @@
 #include <maupertuis/print.hpp>
 
+#include "symbolic/expression/kind_table.hpp"
 #include "symbolic/print/layout.hpp"
 #include "symbolic/print/symbol_name.hpp"
 
@@ -94,24 +95,9 @@ std::string write_product(const Layout& l) {
   return text;
 }
 
-std::string function_head(Kind kind) {
-  switch (kind) {
-    case Kind::Sin: case Kind::Cos: case Kind::Tan: case Kind::Sinh: case Kind::Cosh: case Kind::Tanh:
-    case Kind::Exp: case Kind::Min: case Kind::Max: return "\\" + function_name(kind);
-    case Kind::Asin: return "\\arcsin";
-    case Kind::Acos: return "\\arccos";
-    case Kind::Atan: return "\\arctan";
-    case Kind::Log: return "\\ln";
-    case Kind::Sign: return "\\operatorname{sgn}";
-    case Kind::Step: return "\\Theta";
-    case Kind::Asinh: case Kind::Acosh: case Kind::Atanh: return "\\operatorname{ar" + function_name(kind).substr(1) + "}";
-    default: return "\\operatorname{" + function_name(kind) + "}";
-  }
-}
-
 std::string write_apply(const Layout& l) {
   if (l.function == Kind::Abs) return "\\left|" + write(l.parts[0]) + "\\right|";
-  std::string text = function_head(l.function);
+  std::string text(kind_info(l.function).latex);
   if (!l.text.empty()) text += "^" + braces(l.text);
   const Layout& first = l.parts.front();
   const bool bare = is_circular(l.function) && !first.negative && (first.shape == Shape::Symbol || first.shape == Shape::Pi);

@@ -1,8 +1,10 @@
 #include "symbolic/print/layout.hpp"
+
+#include "symbolic/expression/kind_table.hpp"
 #include "symbolic/print/reading_rank.hpp"
 #include "symbolic/print/symbol_name.hpp"
 
-#include <maupertuis/kind_names.hpp>
+#include <maupertuis/kinds.hpp>
 #include <maupertuis/require.hpp>
 
 #include <algorithm>
@@ -23,11 +25,8 @@ Layout number_text(std::string text) {
   return layout;
 }
 
-bool is_odd(Kind kind) {
-  return kind == Kind::Sin || kind == Kind::Tan || kind == Kind::Sinh || kind == Kind::Tanh || kind == Kind::Atan ||
-         kind == Kind::Asin || kind == Kind::Asinh || kind == Kind::Atanh;
-}
-bool is_even(Kind kind) { return kind == Kind::Cos || kind == Kind::Cosh || kind == Kind::Abs; }
+/// Turning the argument around turns the value around, or leaves it. sign keeps its argument as it was written.
+Parity parity_of(Kind kind) { return kind == Kind::Sign ? Parity::None : kind_info(kind).parity; }
 
 class Builder {
  public:
@@ -40,26 +39,28 @@ class Builder {
   enum class SumPlace { Top, Inside, Angle };
 
   Layout build(Expr e) const {
-    switch (e.kind()) {
-      case Kind::Number: return number(e.number());
-      case Kind::Pi: return combined(Shape::Pi, {});
-      case Kind::Symbol: {
-        Layout layout = combined(Shape::Symbol, {});
-        layout.symbol = e;
-        return layout;
-      }
-      case Kind::Sum: return sum(e, SumPlace::Inside);
-      case Kind::Product: case Kind::Power: return product(e);
-      case Kind::TimeDerivative: {
+    switch (family_of(e.kind())) {
+      case Family::Leaf: return leaf(e);
+      case Family::Algebra: return e.is(Kind::Sum) ? sum(e, SumPlace::Inside) : product(e);
+      case Family::TimeDerivative: {
         Layout layout = combined(Shape::Derivative, {build(e[0])});
         layout.text = independent_name(e.context());
         return layout;
       }
-      case Kind::Less: case Kind::LessEqual: return with_function(Shape::Comparison, e);
-      case Kind::And: case Kind::Or: return with_function(Shape::Logic, e);
-      case Kind::Piecewise: return with_function(Shape::Cases, e);
-      default: return function(e, {});
+      case Family::Comparison: return with_function(Shape::Comparison, e);
+      case Family::Logic: return with_function(Shape::Logic, e);
+      case Family::Piecewise: return with_function(Shape::Cases, e);
+      case Family::Function: case Family::Switch: case Family::Angle: case Family::Extremum: return function(e, {});
     }
+    throw unknown_kind(e.kind(), "the printer");
+  }
+
+  static Layout leaf(Expr e) {
+    if (e.is_number()) return number(e.number());
+    if (e.is(Kind::Pi)) return combined(Shape::Pi, {});
+    Layout layout = combined(Shape::Symbol, {});
+    layout.symbol = e;
+    return layout;
   }
 
   static Layout number(const Rational& value) {
@@ -121,14 +122,15 @@ class Builder {
     Layout layout = combined(Shape::Apply, {});
     layout.function = e.kind();
     layout.text = std::move(exponent);
-    if (!is_odd(e.kind()) && !is_even(e.kind())) {
+    const Parity parity = parity_of(e.kind());
+    if (parity == Parity::None) {
       for (std::size_t i = 0; i < e.size(); ++i) layout.parts.push_back(build(e[i]));
       return layout;
     }
     bool turned = false;
     layout.parts.push_back(oriented_argument(e[0], turned));
     const bool odd_power = layout.text.empty() || (layout.text.back() - '0') % 2 == 1;
-    layout.negative = turned && is_odd(e.kind()) && odd_power;
+    layout.negative = turned && parity == Parity::Odd && odd_power;
     return layout;
   }
 
@@ -247,16 +249,7 @@ Layout lay_out_number(const Rational& value) {
   return combined(Shape::Quotient, {number_text(value.numerator_string()), number_text(denominator)});
 }
 
-bool is_circular(Kind kind) {
-  switch (kind) {
-    case Kind::Sin: case Kind::Cos: case Kind::Tan: case Kind::Sinh: case Kind::Cosh: case Kind::Tanh: return true;
-    default: return false;
-  }
-}
-
-std::string function_name(Kind kind) {
-  return kind >= Kind::Sin && kind <= Kind::Max ? std::string(name_of(kind)) : std::string();
-}
+bool is_circular(Kind kind) { return kind_info(kind).bare; }
 
 bool starts_with_number(const Layout& layout) {
   if (layout.shape == Shape::Symbol) return layout.symbol.role() == Role::Constant;

@@ -49,7 +49,5 @@ ReadingOrder row_order(const ReadingOrder& order, const ReadableForm& form);
 
 /// True for functions that take a bare argument and a square on the name: sin² θ.
 bool is_circular(Kind kind);
-/// Name of a function in the model language.
-std::string function_name(Kind kind);
 
 }  // namespace maupertuis::print

@@ -1,5 +1,6 @@
 #include <maupertuis/print.hpp>
 
+#include "symbolic/expression/kind_table.hpp"
 #include "symbolic/print/layout.hpp"
 #include "symbolic/print/symbol_name.hpp"
 
@@ -105,22 +106,9 @@ std::string write_power(const Layout& l) {
   return tag("msup", (simple ? write(base) : bracketed(write(base))) + write_exponent(l.parts[1]));
 }
 
-std::string function_head(Kind kind) {
-  switch (kind) {
-    case Kind::Asin: return "arcsin";
-    case Kind::Acos: return "arccos";
-    case Kind::Atan: return "arctan";
-    case Kind::Log: return "ln";
-    case Kind::Sign: return "sgn";
-    case Kind::Step: return "Θ";
-    case Kind::Asinh: case Kind::Acosh: case Kind::Atanh: return "ar" + function_name(kind).substr(1);
-    default: return function_name(kind);
-  }
-}
-
 std::string write_apply(const Layout& l) {
   if (l.function == Kind::Abs) return row("<mo>|</mo>" + write(l.parts[0]) + "<mo>|</mo>");
-  std::string head = tag("mi", function_head(l.function));
+  std::string head = tag("mi", std::string(kind_info(l.function).mathml));
   if (!l.text.empty()) head = tag("msup", head + tag("mn", l.text));
   const Layout& first = l.parts.front();
   const bool bare = is_circular(l.function) && !first.negative && (first.shape == Shape::Symbol || first.shape == Shape::Pi);

@@ -1,3 +1,4 @@
+#include <maupertuis/kinds.hpp>
 #include <maupertuis/print.hpp>
 
 #include "symbolic/print/layout.hpp"
@@ -16,8 +17,9 @@ Level level(const Layout& l) {
     case Shape::Product: case Shape::Quotient: return ProductLevel;
     case Shape::Power: return PowerLevel;
     case Shape::Apply: return l.text.empty() ? AtomLevel : PowerLevel;
-    default: return AtomLevel;
+    case Shape::Number: case Shape::Symbol: case Shape::Pi: case Shape::Root: case Shape::Derivative: case Shape::Cases: break;
   }
+  return AtomLevel;
 }
 
 std::string write(const Layout& l);
@@ -62,7 +64,7 @@ std::string write_quotient(const Layout& l) {
 }
 
 std::string write_apply(const Layout& l) {
-  std::string text = function_name(l.function);
+  std::string text(name_of(l.function));
   if (!l.text.empty()) text += "^" + l.text;
   const Layout& first = l.parts.front();
   const bool bare = is_circular(l.function) && !first.negative &&

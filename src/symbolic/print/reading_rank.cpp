@@ -1,6 +1,7 @@
 #include "symbolic/print/reading_rank.hpp"
 
 #include <maupertuis/integral_symbol.hpp>
+#include <maupertuis/kinds.hpp>
 
 #include <algorithm>
 
@@ -17,7 +18,10 @@ struct Contents {
   Expr first_parameter;
 };
 
-bool is_function(Kind kind) { return kind >= Kind::Sin; }
+bool acts_as_function(Kind kind) {
+  const Family family = family_of(kind);
+  return family != Family::Leaf && family != Family::Algebra && family != Family::TimeDerivative;
+}
 
 void look_into(Expr e, bool inside_function, Contents& contents) {
   if (e.is_symbol()) {
@@ -29,12 +33,12 @@ void look_into(Expr e, bool inside_function, Contents& contents) {
       case Role::Time: contents.time = true; break;
       case Role::Input: contents.input = true; break;
       case Role::Multiplier: contents.multiplier = true; break;
-      default: break;
+      case Role::Parameter: case Role::Constant: case Role::Auxiliary: break;
     }
     return;
   }
   const bool root = e.is(Kind::Power) && !(e[1].is_number() && e[1].number().is_integer());
-  for (std::size_t i = 0; i < e.size(); ++i) look_into(e[i], inside_function || root || is_function(e.kind()), contents);
+  for (std::size_t i = 0; i < e.size(); ++i) look_into(e[i], inside_function || root || acts_as_function(e.kind()), contents);
 }
 
 Contents contents_of(Expr e) {
@@ -82,7 +86,7 @@ std::uint32_t count_of_functions(Expr term) {
   for (const Expr& f : factors_of(term)) {
     const PowerOf power = split_power(f);
     const auto times = power.exponent.as_integer();
-    if (is_function(power.base.kind())) count += times && *times == 2 ? 2 : 1;
+    if (acts_as_function(power.base.kind())) count += times && *times == 2 ? 2 : 1;
   }
   return count;
 }
@@ -128,8 +132,9 @@ Rank ReadingRanks::factor(Expr factor) const {
         if (base.order() == 1 && is_integral(base.name())) return {Momenta, rank};   // p_ψ cos θ
         return {base.order() == 0 ? Positions : base.order() == 1 ? Velocities : Accelerations, rank};
       case Role::Multiplier: return {Multipliers, rank};
-      default: return {Parameters, rank};
+      case Role::Parameter: case Role::Auxiliary: break;
     }
+    return {Parameters, rank};
   }
   const Contents contents = contents_of(base);
   const bool sum = base.is(Kind::Sum) && split_power(factor).exponent.is_integer();

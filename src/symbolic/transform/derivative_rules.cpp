@@ -1,9 +1,8 @@
 #include "symbolic/transform/derivative_rules.hpp"
 
-#include <maupertuis/require.hpp>
+#include <maupertuis/functions.hpp>
 
 #include <array>
-#include <stdexcept>
 
 namespace maupertuis {
 namespace {
@@ -34,28 +33,11 @@ Expr power_derivative(Expr node, std::size_t index) {
   return node * apply(Kind::Log, base);
 }
 
-Expr function_derivative(Expr node) {
-  const Expr x = node[0];
-  Context& context = node.context();
-  const Rational one = 1;
-  switch (node.kind()) {
-    case Kind::Sin: return cos(x);
-    case Kind::Cos: return -sin(x);
-    case Kind::Tan: return square(node) + one;
-    case Kind::Asin: return pow(context.number(1) - square(x), Rational(-1, 2));
-    case Kind::Acos: return -pow(context.number(1) - square(x), Rational(-1, 2));
-    case Kind::Atan: return pow(square(x) + one, -one);
-    case Kind::Sinh: return apply(Kind::Cosh, x);
-    case Kind::Cosh: return apply(Kind::Sinh, x);
-    case Kind::Tanh: return context.number(1) - square(node);
-    case Kind::Asinh: return pow(square(x) + one, Rational(-1, 2));
-    case Kind::Acosh: return pow(square(x) - one, Rational(-1, 2));
-    case Kind::Atanh: return pow(context.number(1) - square(x), -one);
-    case Kind::Exp: return node;
-    case Kind::Log: return pow(x, -one);
-    case Kind::Abs: return apply(Kind::Sign, x);
-    default: return context.number(0);  // Sign, Step
-  }
+/// Jumps are switches of a run and not forces.
+Expr switch_derivative(Expr node) {
+  if (node.is(Kind::Abs)) return apply(Kind::Sign, node[0]);
+  if (node.is(Kind::Sign) || node.is(Kind::Step)) return node.context().number(0);
+  throw unknown_kind(node.kind(), "the derivative of a switch");
 }
 
 Expr atan2_derivative(Expr node, std::size_t index) {
@@ -91,17 +73,19 @@ Expr branch_derivative(Expr node, std::size_t index) {
 
 Expr partial_derivative(Expr node, std::size_t index) {
   Context& context = node.context();
-  switch (node.kind()) {
-    case Kind::Sum: return context.number(1);
-    case Kind::Product: return product_without(node, index);
-    case Kind::Power: return power_derivative(node, index);
-    case Kind::Atan2: return atan2_derivative(node, index);
-    case Kind::Min: case Kind::Max: return extremum_derivative(node, index);
-    case Kind::Piecewise: return branch_derivative(node, index);
-    case Kind::Less: case Kind::LessEqual: case Kind::And: case Kind::Or: return context.number(0);
-    case Kind::TimeDerivative: throw std::logic_error("a partial derivative met d/dt; please report");
-    default: return function_derivative(node);
+  switch (family_of(node.kind())) {
+    case Family::Algebra:
+      if (node.is(Kind::Sum)) return context.number(1);
+      return node.is(Kind::Product) ? product_without(node, index) : power_derivative(node, index);
+    case Family::Function: return functions::derivative(node.kind(), node[0], node);
+    case Family::Switch: return switch_derivative(node);
+    case Family::Angle: return atan2_derivative(node, index);
+    case Family::Extremum: return extremum_derivative(node, index);
+    case Family::Piecewise: return branch_derivative(node, index);
+    case Family::Comparison: case Family::Logic: return context.number(0);
+    case Family::Leaf: case Family::TimeDerivative: break;
   }
+  throw unknown_kind(node.kind(), "a partial derivative");
 }
 
 }  // namespace maupertuis

@@ -17,16 +17,15 @@ const Polynomial& PolynomialReader::read(Expr e) {
 }
 
 Polynomial PolynomialReader::read_node(Expr e) {
-  switch (e.kind()) {
-    case Kind::Number: return algebra_->constant(e.number());
-    case Kind::Pi: case Kind::Symbol: return algebra_->of_atom(algebra_->atom(e, AtomKind::Symbol));
-    case Kind::Sum: return read_sum(e);
-    case Kind::Product: return read_product(e);
-    case Kind::Power: return read_power(e);
-    case Kind::Sin: case Kind::Cos: return read_circular(e);
-    case Kind::Exp: return read_exponential(e);
-    default: MAUP_REQUIRE(!e.is(Kind::TimeDerivative)); return read_function(e);
-  }
+  MAUP_REQUIRE(!e.is(Kind::TimeDerivative));
+  if (e.is_number()) return algebra_->constant(e.number());
+  if (e.is(Kind::Pi) || e.is_symbol()) return algebra_->of_atom(algebra_->atom(e, AtomKind::Symbol));
+  if (e.is(Kind::Sum)) return read_sum(e);
+  if (e.is(Kind::Product)) return read_product(e);
+  if (e.is(Kind::Power)) return read_power(e);
+  if (e.is(Kind::Sin) || e.is(Kind::Cos)) return read_circular(e);
+  if (e.is(Kind::Exp)) return read_exponential(e);
+  return read_function(e);  // an atom, whatever it is
 }
 
 Polynomial PolynomialReader::read_sum(Expr e) {

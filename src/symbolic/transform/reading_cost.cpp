@@ -32,23 +32,14 @@ double ReadingCost::operator()(Expr e) {
 }
 
 double ReadingCost::compute(Expr e) {
-  switch (e.kind()) {
-    case Kind::Number: return lone_number;
-    case Kind::Pi: case Kind::Symbol: return name;
-    case Kind::Power: return of_power(e);
-    case Kind::Product: return of_product(e);
-    case Kind::Sin: case Kind::Cos: case Kind::Tan: return of_circular(e);
-    case Kind::Sum: {
-      double total = plus * static_cast<double>(e.size() - 1);
-      for (std::size_t i = 0; i < e.size(); ++i) total += (*this)(e[i]);
-      return total;
-    }
-    default: {
-      double total = name;
-      for (std::size_t i = 0; i < e.size(); ++i) total += (*this)(e[i]);
-      return total;
-    }
-  }
+  if (e.is_number()) return lone_number;
+  if (e.is(Kind::Power)) return of_power(e);
+  if (e.is(Kind::Product)) return of_product(e);
+  if (e.is(Kind::Sin) || e.is(Kind::Cos) || e.is(Kind::Tan)) return of_circular(e);
+  // Names, the signs of a sum, the name of a function: and what stands below.
+  double total = e.is(Kind::Sum) ? plus * static_cast<double>(e.size() - 1) : name;
+  for (std::size_t i = 0; i < e.size(); ++i) total += (*this)(e[i]);
+  return total;
 }
 
 double ReadingCost::of_power(Expr e) {

@@ -17,14 +17,7 @@ Expr rebuild(Expr node, Replace replaced) {
     changed |= arguments.back() != node[i];
   }
   if (!changed) return node;
-  Context& context = node.context();
-  switch (node.kind()) {
-    case Kind::Sum: return context.sum(arguments);
-    case Kind::Product: return context.product(arguments);
-    case Kind::Power: return context.power(arguments[0], arguments[1]);
-    case Kind::TimeDerivative: return context.time_derivative(arguments[0]);
-    default: return context.function(node.kind(), arguments);
-  }
+  return node.context().make(node.kind(), arguments);
 }
 
 }  // namespace maupertuis

@@ -70,16 +70,24 @@ TEST_CASE("every function of the language, along a motion that is t itself") {
   const ModelText m("system f\ndimensionless\nparam c = 0.3\ncoord x : number\nT = 1/2 x'^2\nstart x = 0.2, x' = 1\n"
                     "point P at (sin(x) + cos(x)*tan(x) + exp(c x), log(1 + x) + sqrt(x) + x^c)\n"
                     "point Q at (asin(x) + acos(x/2) + atan(x), atan2(x, 1 + x) + sinh(x) - cosh(x) tanh(x/3))\n"
-                    "point R at (asinh(x) + acosh(1 + x), atanh(x/2) + x^(-3) + 1/(1 + x^2))\nrun 0.5\n");
+                    "point R at (asinh(x) + acosh(1 + x), atanh(x/2) + x^(-3) + 1/(1 + x^2))\n"
+                    "point S at (erf(x), lambert_w(x exp(x)))\nrun 0.5\n");
   const ExtendedResult r = run(m, digits100());
   const Decimal x("0.7"), c("0.3");
-  REQUIRE(r.final.points.size() == 6);
+  REQUIRE(r.final.points.size() == 8);
   check_digits(r.final.points[0], 2 * sin(x) + exp(c * x), 99);
   check_digits(r.final.points[1], log(1 + x) + sqrt(x) + pow(x, c), 99);
   check_digits(r.final.points[2], asin(x) + acos(x / 2) + atan(x), 99);
   check_digits(r.final.points[3], atan2(x, Decimal(1 + x)) + sinh(x) - cosh(x) * tanh(x / 3), 99);
   check_digits(r.final.points[4], log(x + sqrt(x * x + 1)) + log(1 + x + sqrt(x * (2 + x))), 99);
   check_digits(r.final.points[5], log((1 + x / 2) / (1 - x / 2)) / 2 + 1 / (x * x * x) + 1 / (1 + x * x), 99);
+  Decimal erf = 0, power = x;   // its power series
+  for (int n = 0; n < 120; ++n) {
+    erf += power / (2 * n + 1);
+    power *= -x * x / (n + 1);
+  }
+  check_digits(r.final.points[6], 2 * erf / sqrt(boost::math::constants::pi<Decimal>()), 99);
+  check_digits(r.final.points[7], x, 99);
 }
 
 TEST_CASE("functions as forces: their series, not their values alone") {

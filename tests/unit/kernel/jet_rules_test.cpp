@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <maupertuis/functions.hpp>
 #include <maupertuis/kernel.hpp>
 
 #include <algorithm>
@@ -19,6 +20,23 @@ using ComplexFunction = std::function<Complex(Complex)>;
 constexpr int order = 12;
 
 Complex inner(Complex t) { return t + t * t / 3.0L; }
+
+/// 2/√π Σ (−1)ⁿ z²ⁿ⁺¹/(n! (2n + 1)), for |z| of a few.
+Complex complex_erf(Complex z) {
+  Complex power = z, sum = 0;
+  for (int n = 0; n < 120; ++n) {
+    sum += power / static_cast<long double>(2 * n + 1);
+    power *= -z * z / static_cast<long double>(n + 1);
+  }
+  return sum * 2.0L / std::sqrt(std::acos(-1.0L));
+}
+
+/// The root of w eʷ = z by Newton's method.
+Complex complex_lambert_w(Complex z) {
+  Complex w = std::log(1.0L + z);
+  for (int i = 0; i < 40; ++i) w -= (w - z * std::exp(-w)) / (1.0L + w);
+  return w;
+}
 
 struct Coefficient {
   long double value;
@@ -68,6 +86,8 @@ std::vector<Case> cases() {
   add("atanh", Kind::Atanh, [](Complex u) { return std::atanh(u); }, 0.3);
   add("exp", Kind::Exp, [](Complex u) { return std::exp(u); }, 0.9, 3);
   add("log", Kind::Log, [](Complex u) { return std::log(u); }, 1.1);
+  add("erf", Kind::Erf, complex_erf, 0.5, 1);
+  add("lambert_w", Kind::LambertW, complex_lambert_w, 0.6);
   list.push_back({"square", [](Expr u) { return power_of(u, 2, 1); }, [](Complex u) { return u * u; }, 0.9, 1});
   list.push_back({"fifth power", [](Expr u) { return power_of(u, 5, 1); }, [](Complex u) { return u * u * u * u * u; }, 0.9, 1});
   list.push_back({"reciprocal", [](Expr u) { return power_of(u, -1, 1); }, [](Complex u) { return 1.0L / u; }, 0.9});
@@ -99,6 +119,16 @@ void check_series(const Case& c, const KernelWorkspace& work) {
 }
 
 }  // namespace
+
+TEST_CASE("the cases are all functions of the table") {
+  const auto list = cases();
+  std::apply([&](const auto&... row) {
+    const auto is_there = [&](std::string_view name) {
+      return std::any_of(list.begin(), list.end(), [&](const Case& c) { return c.name == name; });
+    };
+    (CHECK_MESSAGE(is_there(row.name), std::string(row.name)), ...);
+  }, functions::rows);
+}
 
 TEST_CASE("jets of every function agree with Cauchy's integral, as functions of time") {
   for (const Case& c : cases()) {

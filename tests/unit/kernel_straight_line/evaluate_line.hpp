@@ -50,8 +50,8 @@ inline Evaluated evaluate(const maupertuis::straight::StraightLine& line, std::v
           for (std::uint32_t i = node.first; i < node.last; ++i)
             sum += line.terms[i].factor * at(line.terms[i].a) * at(line.terms[i].b) * at(line.terms[i].c);
           return sum;
-        default: return NAN;
       }
+      throw std::logic_error("a node that these tests do not know");
     };
     std::vector<double> numbers;
     for (std::size_t lane = 0; lane < (straight::is_wide(node) ? line.wide : 1); ++lane) numbers.push_back(number(lane));

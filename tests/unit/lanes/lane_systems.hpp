@@ -71,7 +71,8 @@ void add_functions(Systems& list) {
   kind(Kind::Sin, "sin", 0.7), kind(Kind::Cos, "cos", 0.7), kind(Kind::Tan, "tan", 0.4), kind(Kind::Asin, "asin", 0.3);
   kind(Kind::Acos, "acos", 0.3), kind(Kind::Atan, "atan", 0.6), kind(Kind::Sinh, "sinh", 0.7), kind(Kind::Cosh, "cosh", 0.7);
   kind(Kind::Tanh, "tanh", 0.5), kind(Kind::Asinh, "asinh", 0.5), kind(Kind::Acosh, "acosh", 1.5);
-  kind(Kind::Atanh, "atanh", 0.3), kind(Kind::Exp, "exp", 0.9), kind(Kind::Log, "log", 1.1);
+  kind(Kind::Atanh, "atanh", 0.3), kind(Kind::Exp, "exp", 0.9), kind(Kind::Log, "log", 1.1), kind(Kind::Erf, "erf", 0.5);
+  kind(Kind::LambertW, "lambert_w", 0.6);
   for (const auto& [p, d] : std::vector<std::pair<int, int>>{{2, 1}, {5, 1}, {-1, 1}, {-3, 1}, {1, 2}, {-3, 2}})
     add_function(list, "power " + std::to_string(p) + "/" + std::to_string(d), 0.9,
                  [p = p, d = d](Expr u) { return pow(u, Rational(p, d)); });

@@ -124,6 +124,13 @@ TEST_CASE("plain text: functions") {
   CHECK(n.plain(pow(sin(n.b - n.a), Rational(2))) == "sin^2(θ1 - θ2)");
   CHECK(n.plain(apply(Kind::Exp, -n.k * n.x)) == "exp(-k x)");
   CHECK(n.plain(apply(Kind::Log, n.x)) == "log(x)");
+  CHECK(n.plain(apply(Kind::Erf, n.a - n.b)) == "erf(θ1 - θ2)");
+  CHECK(n.plain(n.m * apply(Kind::Erf, n.b - n.a)) == "-m erf(θ1 - θ2)");
+  CHECK(n.plain(pow(apply(Kind::LambertW, n.x), Rational(2))) == "lambert_w(x)^2");
+  CHECK(n.latex(apply(Kind::Erf, n.x)) == "\\operatorname{erf}\\left(x\\right)");
+  CHECK(n.latex(apply(Kind::LambertW, n.x)) == "W_0\\left(x\\right)");
+  CHECK(n.latex(apply(Kind::Asinh, n.x)) == "\\operatorname{arsinh}\\left(x\\right)");
+  CHECK(n.mathml(apply(Kind::LambertW, n.x)).find("<mi>W₀</mi>") != std::string::npos);
   const std::array branches{n.c.function(Kind::Less, std::array{n.x, n.c.number(0)}), -n.k * n.x, n.k * n.x};
   CHECK(n.plain(n.c.function(Kind::Piecewise, branches)) == "piecewise(x < 0 : -k x, else : k x)");
   CHECK(n.plain(n.c.function(Kind::Atan2, std::array{n.x, n.l})) == "atan2(x, l)");

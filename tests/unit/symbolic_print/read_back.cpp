@@ -1,3 +1,6 @@
+#include "../forgotten_kind.hpp"
+
+#include <maupertuis/functions.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/syntax_tree.hpp>
 
@@ -7,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -28,50 +32,43 @@ double evaluate(const syntax::Expression& e) {
   using K = syntax::Expression::Kind;
   using O = syntax::Operator;
   const auto arg = [&](std::size_t i) { return evaluate(*e.arguments[i]); };
-  switch (e.kind) {
-    case K::Number: return std::stod(e.text);
-    case K::Name: return e.text == "pi" ? std::acos(-1.0) : value_of_name(e.text, e.primes);
-    case K::Unary: return -arg(0);
-    case K::Binary:
-      switch (e.op) {
-        case O::Add: return arg(0) + arg(1);
-        case O::Subtract: return arg(0) - arg(1);
-        case O::Multiply: case O::Juxtapose: return arg(0) * arg(1);
-        case O::Divide: return arg(0) / arg(1);
-        case O::Power: return std::pow(arg(0), arg(1));
-        case O::Less: return arg(0) < arg(1);
-        case O::LessEqual: return arg(0) <= arg(1);
-        default: return std::nan("");
-      }
-    case K::Call: {
-      const std::map<std::string, double (*)(double)> functions{
-          {"sin", std::sin}, {"cos", std::cos}, {"tan", std::tan}, {"exp", std::exp}, {"sqrt", std::sqrt}, {"abs", std::fabs}};
-      const auto f = functions.find(e.text);
-      return f == functions.end() ? std::nan("") : f->second(arg(0));
-    }
-    case K::Piecewise: return arg(0) != 0 ? arg(1) : arg(2);
-    default: return std::nan("");
+  if (e.kind == K::Number) return std::stod(e.text);
+  if (e.kind == K::Name) return e.text == "pi" ? std::acos(-1.0) : value_of_name(e.text, e.primes);
+  if (e.kind == K::Unary) return -arg(0);
+  if (e.kind == K::Piecewise) return arg(0) != 0 ? arg(1) : arg(2);
+  if (e.kind == K::Binary) {
+    if (e.op == O::Add) return arg(0) + arg(1);
+    if (e.op == O::Subtract) return arg(0) - arg(1);
+    if (e.op == O::Multiply || e.op == O::Juxtapose) return arg(0) * arg(1);
+    if (e.op == O::Divide) return arg(0) / arg(1);
+    if (e.op == O::Power) return std::pow(arg(0), arg(1));
+    if (e.op == O::Less) return arg(0) < arg(1);
+    if (e.op == O::LessEqual) return arg(0) <= arg(1);
   }
+  if (e.kind == K::Call) {
+    const std::map<std::string, double (*)(double)> functions{
+        {"sin", std::sin}, {"cos", std::cos}, {"tan", std::tan}, {"exp", std::exp}, {"sqrt", std::sqrt}, {"abs", std::fabs}};
+    if (const auto f = functions.find(e.text); f != functions.end()) return f->second(arg(0));
+  }
+  throw std::logic_error("a formula that these tests do not print");
 }
 
 double evaluate(Expr e) {
   const auto arg = [&](std::size_t i) { return evaluate(e[i]); };
-  switch (e.kind()) {
-    case Kind::Number: return e.number().to_double();
-    case Kind::Pi: return std::acos(-1.0);
-    case Kind::Symbol: return value_of_name(e.name(), e.order());
-    case Kind::Sum: { double s = 0; for (std::size_t i = 0; i < e.size(); ++i) s += arg(i); return s; }
-    case Kind::Product: { double p = 1; for (std::size_t i = 0; i < e.size(); ++i) p *= arg(i); return p; }
-    case Kind::Power: return std::pow(arg(0), arg(1));
-    case Kind::Sin: return std::sin(arg(0));
-    case Kind::Cos: return std::cos(arg(0));
-    case Kind::Tan: return std::tan(arg(0));
-    case Kind::Exp: return std::exp(arg(0));
-    case Kind::Abs: return std::fabs(arg(0));
-    case Kind::Less: return arg(0) < arg(1);
-    case Kind::Piecewise: return arg(0) != 0 ? arg(1) : arg(2);
-    default: return std::nan("");
-  }
+  if (e.is_number()) return e.number().to_double();
+  if (e.is(Kind::Pi)) return std::acos(-1.0);
+  if (e.is_symbol()) return value_of_name(e.name(), e.order());
+  if (e.is(Kind::Sum)) { double s = 0; for (std::size_t i = 0; i < e.size(); ++i) s += arg(i); return s; }
+  if (e.is(Kind::Product)) { double p = 1; for (std::size_t i = 0; i < e.size(); ++i) p *= arg(i); return p; }
+  if (e.is(Kind::Power)) return std::pow(arg(0), arg(1));
+  if (e.is(Kind::Sin)) return std::sin(arg(0));
+  if (e.is(Kind::Cos)) return std::cos(arg(0));
+  if (e.is(Kind::Tan)) return std::tan(arg(0));
+  if (e.is(Kind::Exp)) return std::exp(arg(0));
+  if (e.is(Kind::Abs)) return std::fabs(arg(0));
+  if (e.is(Kind::Less)) return arg(0) < arg(1);
+  if (e.is(Kind::Piecewise)) return arg(0) != 0 ? arg(1) : arg(2);
+  throw std::logic_error("an expression that these tests do not make");
 }
 
 Expr random_expression(Context& c, const std::vector<int>& choices, std::size_t& next, int depth) {
@@ -125,4 +122,34 @@ TEST_CASE("what is printed can be read back") {
     if (!std::isfinite(meant)) return;
     if (!(std::abs(printed - meant) <= 1e-9 * std::max(1.0, std::abs(meant)))) RC_FAIL(text);
   }));
+}
+
+TEST_CASE("every function of the table is a word of the language, and is printed as such") {
+  Context c;
+  ReadingOrder order;
+  const Expr x = c.symbol("x", Role::Coordinate);
+  std::apply([&](const auto&... row) {
+    const auto read_back = [&](Kind kind, std::string_view name) {
+      const std::string text = to_plain(apply(kind, Rational(2) * x), order);
+      CHECK(text == std::string(name).append("(2 x)"));
+      const SourceText source("test.lag", "system s\ncoord x : number\nlet z = " + text + "\n");
+      Diagnostics diagnostics;
+      const syntax::SyntaxTree tree = syntax::parse(source, diagnostics);
+      INFO(render(diagnostics, source));
+      REQUIRE_FALSE(diagnostics.has_errors());
+      const syntax::Expression& call = *std::get<syntax::LetStatement>(tree.statements.back().body).items.front().value;
+      CHECK(call.kind == syntax::Expression::Kind::Call);
+      CHECK(call.text == name);
+    };
+    (read_back(row.kind, row.name), ...);
+  }, functions::rows);
+}
+
+TEST_CASE("no notation writes a kind that it does not know") {
+  Context c;
+  const Expr strange = node_of_forgotten_kind(c.symbol("x", Role::Coordinate));
+  CHECK_THROWS_AS(to_plain(strange, {}), std::logic_error);
+  CHECK_THROWS_AS(to_latex(strange, {}), std::logic_error);
+  CHECK_THROWS_AS(to_mathml(strange, {}), std::logic_error);
+  CHECK_THROWS_AS(to_dag_text(std::array{strange}), std::logic_error);
 }

@@ -1,5 +1,5 @@
 #pragma once
-#include <maupertuis/expression.hpp>
+#include <maupertuis/functions.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -23,35 +23,24 @@ class Point {
  private:
   double compute(Expr e) {
     const auto arg = [&](std::size_t i) { return (*this)(e[i]); };
-    switch (e.kind()) {
-      case Kind::Number: return e.number().to_double();
-      case Kind::Pi: return std::acos(-1.0);
-      case Kind::Symbol: return std::uniform_real_distribution<double>(0.3, 1.7)(random_);
-      case Kind::Sum: { double s = 0; for (std::size_t i = 0; i < e.size(); ++i) s += arg(i); return s; }
-      case Kind::Product: { double p = 1; for (std::size_t i = 0; i < e.size(); ++i) p *= arg(i); return p; }
-      case Kind::Power: return std::pow(arg(0), arg(1));
-      case Kind::Sin: return std::sin(arg(0));
-      case Kind::Cos: return std::cos(arg(0));
-      case Kind::Tan: return std::tan(arg(0));
-      case Kind::Atan: return std::atan(arg(0));
-      case Kind::Sinh: return std::sinh(arg(0));
-      case Kind::Cosh: return std::cosh(arg(0));
-      case Kind::Exp: return std::exp(arg(0));
-      case Kind::Log: return std::log(arg(0));
-      case Kind::Abs: return std::abs(arg(0));
-      case Kind::Sign: return arg(0) > 0 ? 1 : arg(0) < 0 ? -1 : 0;
-      case Kind::Step: return arg(0) >= 0 ? 1 : 0;
-      case Kind::Min: return std::min(arg(0), arg(1));
-      case Kind::Max: return std::max(arg(0), arg(1));
-      case Kind::Less: return arg(0) < arg(1);
-      case Kind::LessEqual: return arg(0) <= arg(1);
-      case Kind::Piecewise: {
-        for (std::size_t i = 0; i + 1 < e.size(); i += 2)
-          if (arg(i) != 0) return arg(i + 1);
-        return arg(e.size() - 1);
-      }
-      default: return std::nan("");
-    }
+    if (e.is_number()) return e.number().to_double();
+    if (e.is(Kind::Pi)) return std::acos(-1.0);
+    if (e.is_symbol()) return std::uniform_real_distribution<double>(0.3, 1.7)(random_);
+    if (e.is(Kind::Sum)) { double s = 0; for (std::size_t i = 0; i < e.size(); ++i) s += arg(i); return s; }
+    if (e.is(Kind::Product)) { double p = 1; for (std::size_t i = 0; i < e.size(); ++i) p *= arg(i); return p; }
+    if (e.is(Kind::Power)) return std::pow(arg(0), arg(1));
+    if (is_function(e.kind())) return functions::value(e.kind(), arg(0));
+    if (e.is(Kind::Abs)) return std::abs(arg(0));
+    if (e.is(Kind::Sign)) return arg(0) > 0 ? 1 : arg(0) < 0 ? -1 : 0;
+    if (e.is(Kind::Step)) return arg(0) >= 0 ? 1 : 0;
+    if (e.is(Kind::Min)) return std::min(arg(0), arg(1));
+    if (e.is(Kind::Max)) return std::max(arg(0), arg(1));
+    if (e.is(Kind::Less)) return arg(0) < arg(1);
+    if (e.is(Kind::LessEqual)) return arg(0) <= arg(1);
+    if (!e.is(Kind::Piecewise)) return std::nan("");
+    for (std::size_t i = 0; i + 1 < e.size(); i += 2)
+      if (arg(i) != 0) return arg(i + 1);
+    return arg(e.size() - 1);
   }
 
   std::mt19937 random_;
