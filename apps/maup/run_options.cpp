@@ -57,7 +57,7 @@ class Progress {
 void add_method_options(CLI::App& command, RunOptions& options) {
   command.add_option("--method", options.method,
                      "How to step: auto (Taylor's, and the stiff one from where stability limits them), taylor, variational "
-                     "(needs --step), stiff")
+                     "(needs --step), stiff; default: the model's `method`, or auto")
       ->check(CLI::IsMember({"auto", "taylor", "variational", "stiff"}))
       ->type_name("METHOD");
   command.add_option("--step", options.step, "The length of the steps of --method variational")->type_name("TIME");
@@ -98,16 +98,29 @@ double tolerance_option(const RunOptions& options, Diagnostics& diagnostics) {
   return 0;
 }
 
-StepMethod method_option(const RunOptions& options) {
+StepMethod method_named(const std::string& word) {
   static const std::map<std::string, StepMethod> methods{{"auto", StepMethod::Automatic}, {"taylor", StepMethod::Taylor},
                                                          {"variational", StepMethod::Variational}, {"stiff", StepMethod::Stiff}};
-  const auto method = methods.find(options.method);
+  const auto method = methods.find(word);
   return method != methods.end() ? method->second : StepMethod::Automatic;
+}
+
+std::optional<StepMethod> method_option(const RunOptions& options) {
+  return options.method ? std::optional(method_named(*options.method)) : std::nullopt;
+}
+
+/// The first statement of its kind; null without one.
+template <class Statement>
+const Statement* statement_of(const syntax::SyntaxTree* tree) {
+  if (tree)
+    for (const syntax::Statement& s : tree->statements)
+      if (const auto* found = std::get_if<Statement>(&s.body)) return found;
+  return nullptr;
 }
 
 }  // namespace
 
-SimulationOptions simulation_options(const RunOptions& options, Diagnostics& diagnostics) {
+SimulationOptions simulation_options(const RunOptions& options, Diagnostics& diagnostics, const syntax::SyntaxTree* tree) {
   SimulationOptions out;
   out.tolerance = tolerance_option(options, diagnostics);
   out.method = method_option(options);
@@ -116,13 +129,15 @@ SimulationOptions simulation_options(const RunOptions& options, Diagnostics& dia
   if (options.order) out.order = *options.order;
   out.backend = options.backend == "compiled" ? Backend::Compiled : options.backend == "interpreter" ? Backend::Interpreter : Backend::Automatic;
   out.cache = !options.no_cache;
-  const bool fixed_steps = out.method == StepMethod::Variational;
+  const auto* written = statement_of<syntax::MethodStatement>(tree);
+  const StepMethod method = out.method ? *out.method : method_named(written ? written->word.text : "auto");
+  const bool fixed_steps = method == StepMethod::Variational;
   if (options.step && !fixed_steps)
     diagnostics.error("E0809", {}, "--step belongs to --method variational.", "The other methods choose their steps by the tolerance.",
                       "Add --method variational, or use --tol.");
-  if (options.order && !fixed_steps && (*options.order < 2 || *options.order > 60 || out.method == StepMethod::Stiff))
+  if (options.order && !fixed_steps && (*options.order < 2 || *options.order > 60 || method == StepMethod::Stiff))
     diagnostics.error("E0809", {}, fmt::format("--order {} is no order of this method.", *options.order),
-                      out.method == StepMethod::Stiff ? "The stiff method chooses its order from 1 to 5 itself." : "Taylor's steps take orders from 2 to 60.",
+                      method == StepMethod::Stiff ? "The stiff method chooses its order from 1 to 5 itself." : "Taylor's steps take orders from 2 to 60.",
                       "Leave --order out, or use --tol.");
   if (options.duration) out.duration = time_option("--duration", *options.duration, diagnostics);
   if (options.every) out.output_every = time_option("--every", *options.every, diagnostics);
@@ -132,6 +147,11 @@ SimulationOptions simulation_options(const RunOptions& options, Diagnostics& dia
     if (const auto t = time_option("--at", text, diagnostics)) out.at.push_back(*t);
   out.interrupt = &interrupt_flag();
   return out;
+}
+
+std::string precision_of(const syntax::SyntaxTree* tree) {
+  const auto* written = statement_of<syntax::PrecisionStatement>(tree);
+  return written ? written->word.text : "double";
 }
 
 ExtendedSimulationOptions extended_options(const RunOptions& options, Precision precision, Diagnostics& diagnostics) {

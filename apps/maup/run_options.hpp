@@ -13,7 +13,7 @@ namespace maupertuis::app {
 
 /// How a run is to differ from what the model says; shared by simulate, plot, report and test.
 struct RunOptions {
-  std::string method = "auto";
+  std::optional<std::string> method;           // none: that of the model
   std::optional<std::string> step;             // as written
   std::optional<int> order;
   std::optional<double> tolerance;
@@ -29,8 +29,12 @@ void add_method_options(CLI::App& command, RunOptions& options);
 /// --duration, --backward, --until, --within, --every, --at.
 void add_span_options(CLI::App& command, RunOptions& options);
 
-/// The options in numbers, with the flag of Ctrl-C. A wrong value is a diagnostic (E0809).
-SimulationOptions simulation_options(const RunOptions& options, Diagnostics& diagnostics);
+/// The options in numbers, with the flag of Ctrl-C. A wrong value is a diagnostic (E0809). `tree`: of the model whose
+/// `method` a step or an order without --method belongs to; may be null.
+SimulationOptions simulation_options(const RunOptions& options, Diagnostics& diagnostics, const syntax::SyntaxTree* tree = nullptr);
+
+/// What the statement `precision` says: "double", "quad", "100"; "double" without one.
+std::string precision_of(const syntax::SyntaxTree* tree);
 
 /// The same for a run in many digits: times exactly as written.
 ExtendedSimulationOptions extended_options(const RunOptions& options, Precision precision, Diagnostics& diagnostics);

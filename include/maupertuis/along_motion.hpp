@@ -4,6 +4,7 @@
 #include <maupertuis/evaluate.hpp>
 
 #include <optional>
+#include <span>
 #include <string>
 
 namespace maupertuis {
@@ -25,6 +26,8 @@ class AlongMotion {
   /// e with q̈ put in; lets, inputs and reactions as well.
   Expr put_in(Expr e) const;
   ZeroTest vanishes(Expr e) const;
+  /// At states on which all of `level`, functions of q, q', t, vanish: to 60 digits at random ones near the start, as with constraints.
+  ZeroTest vanishes_on(Expr e, std::span<const Expr> level) const;
   /// dI/dt along the motion, q̈ put in.
   Expr rate(Expr integral) const;
   /// Whether an integral of each side goes on where a motion passes a switch.

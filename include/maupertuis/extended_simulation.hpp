@@ -10,7 +10,7 @@ enum class Precision { Quad, Digits100 };
 
 struct ExtendedSimulationOptions {
   Precision precision = Precision::Quad;
-  StepMethod method = StepMethod::Automatic;  // Taylor's is the only one
+  std::optional<StepMethod> method;         // nothing: as for SimulationOptions; Taylor's is the only one
   std::optional<Rational> duration;         // s, instead of the model's run; negative: backwards in time
   std::vector<Rational> at;                 // s: times at which the state is wanted
   std::optional<Rational> output_every;     // s

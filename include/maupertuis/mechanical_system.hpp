@@ -219,6 +219,20 @@ struct StartValue {
   Span span;
 };
 
+/// ± 1e-7 beside one value of a point.
+struct PointTolerance {
+  Expr size;                        // SI, or a bare number where relative; empty: the value is kept as it is
+  bool relative = false;
+  std::string display_unit;
+  double display_factor = 1;
+};
+
+/// What a row or a column of a matrix belongs to.
+struct MatrixVariable {
+  std::size_t index = 0;            // of the coordinate or of the input
+  int order = 0;                    // 0: q, 1: q', -1: an input
+};
+
 struct Expectation {
   syntax::ExpectStatement::Kind kind{};
   bool claim = false;
@@ -228,9 +242,18 @@ struct Expectation {
   Expr time, value, tolerance;      // SI; empty where absent
   Expr from, to;                    // Action of a given path: its ends, SI; those of the model's path where none are written
   bool relative = false;
-  int occurrence = 0;
-  std::vector<StartValue> at;       // Frequencies, Equilibrium: `at θ = 0`
-  std::vector<Expr> values;         // Frequencies: angular, rad/s, or their squares; Action: a given path [n] in t, or none
+  int occurrence = 0;               // of an event; of a path, 0: the one with the smallest action
+  std::vector<StartValue> at;       // of a point: `at θ = 0`
+  std::vector<PointTolerance> at_tolerances;  // [at] Equilibrium
+  std::vector<Expr> where;          // Conserved: functions that vanish on the level
+  bool at_until = false;            // ValueAt: when `run until` ends
+  std::vector<Expr> values;         // Frequencies: angular, rad/s, or their squares; Action: a given path [n] in t, or none;
+                                    // Eigenvalues, Multipliers: real parts; Matrix: entries by rows, SI
+  std::vector<Expr> imaginary;      // [values] Eigenvalues, Multipliers
+  std::size_t width = 0;            // Matrix: entries in a row
+  std::vector<MatrixVariable> rows, columns;  // Matrix; none: all, in the order of the model
+  std::size_t parameter = 0;        // Stable: index in MechanicalSystem::parameters
+  bool above = false;               // Stable: for values above the critical one
   bool squared = false;             // Frequencies: `frequencies squared`
   Dimension dimension;              // of subject
   std::string display_unit;         // as written beside the value; empty: SI
@@ -260,6 +283,19 @@ struct Sweep {
   Span span;
 };
 
+/// How steps are made. Automatic: Taylor's, and the stiff method from where stability limits them.
+enum class StepMethod { Automatic, Taylor, Variational, Stiff };
+
+/// Of numbers. Double: 53 bits. Quad: 113 bits, up to 33 digits. Digits100: 384 bits, up to 100 digits.
+enum class NumberFormat { Double, Quad, Digits100 };
+
+/// method variational order 4 step 10 ms: what a run takes where it is not told otherwise.
+struct MethodChoice {
+  StepMethod method = StepMethod::Automatic;
+  int order = 0;                    // 0: not written
+  Expr step;                        // SI; empty: not written
+};
+
 /// path from (0, 1) at 0 to (2, free) at 1: between what ends `maup action` looks for stationary paths.
 struct PathEnds {
   std::vector<Expr> from, to;       // [n] parameters and numbers only, SI; empty handle: that coordinate is free there
@@ -278,6 +314,8 @@ struct Experiment {
   Expr until;                       // `run until A = B`: A − B; empty if none
   Expr within;                      // the longest time for `until`
   Expr output_every;                // empty: chosen by the program
+  std::optional<MethodChoice> method;
+  std::optional<NumberFormat> precision;
   std::optional<Sweep> sweep;
   std::optional<PathEnds> path;
   std::vector<DrawElement> drawing;

@@ -14,13 +14,10 @@
 
 namespace maupertuis {
 
-/// How steps are made. Automatic: Taylor's, and the stiff method from where stability limits them.
-enum class StepMethod { Automatic, Taylor, Variational, Stiff };
-
 struct SimulationOptions {
-  StepMethod method = StepMethod::Automatic;
-  double step = 0;                          // s, Variational: the length of its steps
-  int order = 0;                            // 0: from the tolerance (Taylor), 4 (Variational)
+  std::optional<StepMethod> method;         // nothing: that of the model's `method`, or Automatic
+  double step = 0;                          // s, Variational: the length of its steps; 0: that of the model's `method`
+  int order = 0;                            // 0: that of the model's `method`; else from the tolerance (Taylor), 4 (Variational)
   double tolerance = 0;                     // relative, per step; 0: rounding level of double (Stiff: 1e-10)
   std::optional<double> duration;           // s, instead of the model's run; negative: backwards in time
   std::vector<double> at;                   // s: times at which the state is wanted exactly; beyond the run: it goes on to them

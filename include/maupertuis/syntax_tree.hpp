@@ -145,6 +145,10 @@ struct RunStatement {
   ExpressionPtr within;
 };
 struct OutputStatement { ExpressionPtr every; };
+/// method variational order 4 step 10 ms;  method stiff
+struct MethodStatement { Name word; int order = 0; ExpressionPtr step; };   // order 0, step null: not written
+/// precision quad, precision 100
+struct PrecisionStatement { Name word; };
 
 struct DrawItem {
   enum class Kind { Line, Trail, Box, Circle, Spring, Reaction } kind = Kind::Line;
@@ -175,17 +179,34 @@ struct ExpectStatement {
     MorseIndex,       // expect index = 1
     PathAt,           // expect path x at 0.5 s = VALUE ± tol
     Value,            // expect EXPR = VALUE ± tol (no time: parameters only, or the start)
+    Eigenvalues,      // expect eigenvalues at θ = 0 : -0.1 1/s, (-0.2, 1.3) 1/s rel 1e-9
+    Matrix,           // expect M at q1 = 0 : ((2, 1), (1, 1)) kg m^2 ± tol; A, B, C, G, K, N of the linearization
+    Stable,           // expect stable for Ω < 5.7 rad/s ± tol at θ = 0
+    Multipliers,      // expect multipliers over 2 s : (0.98, 0.19) rel 1e-9
+    Trace,            // expect trace over 2 s = 2.3 ± tol
+    Period,           // expect period over 2 s = 2.1 s ± tol
+    UntilAt,          // expect until at 1.2 s ± tol: when `run until` ends
   } kind = Kind::ValueAt;
   bool claim = false;
-  Name name;                             // constraint, event, reaction; or the code of Error
+  Name name;                             // constraint, event, reaction; the code of Error; the letter of Matrix
   Name word;                             // nonholonomic, …
   ExpressionPtr subject, time, value;    // Equation: subject = value
   ExpressionPtr tolerance;               // ± (absolute) or rel
   bool relative = false;
-  int occurrence = 0;                    // EventAt
-  std::vector<ExpressionPtr> values;     // Frequencies; Action: a given path, one a coordinate; none: the stationary path
+  int occurrence = 0;                    // EventAt; Action, MorseIndex, PathAt: `path 2`; 0: the path with the smallest action
+  std::vector<ExpressionPtr> values;     // Frequencies; Action: a given path, one a coordinate; none: the stationary path;
+                                         // Eigenvalues, Multipliers: real parts; Matrix: its entries by rows
+  std::vector<ExpressionPtr> imaginary;  // [values] Eigenvalues, Multipliers: imaginary parts, null where none is written
+  std::size_t width = 0;                 // Matrix: entries in a row
+  std::vector<ExpressionPtr> rows, columns;  // Matrix: `in (x, x') by u`, the variables of its rows and columns
   bool squared = false;                  // Frequencies: expect frequencies squared …
-  std::vector<StartStatement::Item> at;  // Frequencies, Equilibrium: the configuration, `at θ = 0`
+  std::vector<StartStatement::Item> at;  // Frequencies, Equilibrium and others about a point: `at θ = 0`
+  struct Tolerance { ExpressionPtr size; bool relative = false; };
+  std::vector<Tolerance> at_tolerances;  // [at] Equilibrium: `at θ = 0.84 ± 1e-7`; size null where none is written
+  struct Level { ExpressionPtr left, right; };
+  std::vector<Level> where;              // Conserved: `where p_φ = 0`
+  bool at_until = false;                 // ValueAt: `at until` in the place of a time
+  bool above = false;                    // Stable: `for Ω > …`
   ExpressionPtr from, to;                // Action of a given path: its ends; null: those of the model's `path`
 };
 
@@ -227,7 +248,7 @@ using StatementBody =
     std::variant<SystemStatement, SourceStatement, DimensionlessStatement, ParamStatement, CoordStatement, LetStatement,
                  InputStatement, FrameStatement, PointStatement, BodyStatement, GravityStatement, SpringStatement,
                  DamperStatement, TorsionSpringStatement, EnergyStatement, ForceStatement, StartStatement, RunStatement,
-                 OutputStatement, DrawStatement, ReactionStatement, ExpectStatement, ConstraintStatement, SweepStatement, IndependentStatement,
+                 OutputStatement, MethodStatement, PrecisionStatement, DrawStatement, ReactionStatement, ExpectStatement, ConstraintStatement, SweepStatement, IndependentStatement,
                  PathStatement, LaterStatement>;
 
 struct Statement {

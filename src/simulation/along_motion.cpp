@@ -39,6 +39,19 @@ ZeroTest AlongMotion::vanishes(Expr e) const {
   return zero_test_where({&plain, 1}, relations(), unknowns, center());
 }
 
+ZeroTest AlongMotion::vanishes_on(Expr e, std::span<const Expr> level) const {
+  const Expr plain = put_in(e);
+  if (plain.is_zero()) return zero_test(plain);
+  std::vector<Expr> all = constrained() ? relations() : std::vector<Expr>();
+  for (const Expr& x : level) all.push_back(put_in(x));
+  ExprVector unknowns = constrained() ? equations_.multipliers : ExprVector();
+  for (const Coordinate& c : equations_.system->coordinates) {
+    unknowns.insert(unknowns.end(), {c.q, c.velocity});
+    if (constrained()) unknowns.push_back(c.acceleration);
+  }
+  return zero_test_where({&plain, 1}, all, unknowns, center());
+}
+
 Expr AlongMotion::rate(Expr integral) const {
   return put_in(total_time_derivative(in_terms_of_motion(*equations_.system, {&integral, 1}).front()));
 }

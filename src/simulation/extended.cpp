@@ -25,12 +25,13 @@ Level level_of(Precision precision) {
   return {Mantissa::Bits384, Mantissa::Bits448, 384, 448, 100, -105 * std::log2(10.0)};
 }
 
-bool has_method(const ExtendedSimulationOptions& options, Diagnostics& diagnostics) {
-  if (options.method == StepMethod::Automatic || options.method == StepMethod::Taylor) return true;
+bool has_method(const Model& model, const ExtendedSimulationOptions& options, Diagnostics& diagnostics) {
+  const StepMethod method = options.method.value_or(model.experiment.method.value_or(MethodChoice{}).method);
+  if (method == StepMethod::Automatic || method == StepMethod::Taylor) return true;
   diagnostics.error("E0725", std::nullopt,
-                    fmt::format("the {} method calculates in double alone", options.method == StepMethod::Stiff ? "stiff" : "variational"),
+                    fmt::format("the {} method calculates in double alone", method == StepMethod::Stiff ? "stiff" : "variational"),
                     "Its order is bounded, so that a hundred digits would cost more steps than anyone can wait for.",
-                    "Leave --method out, or take --method taylor.");
+                    "Take --method taylor, or leave it out.");
   return false;
 }
 
@@ -42,7 +43,8 @@ class ExtendedRun {
         level_(level_of(options.precision)) {
     settings_.log2_tolerance = options.tolerance > 0 ? std::log2(options.tolerance) : level_.log2_tolerance;
     settings_.log2_tolerance = std::max(settings_.log2_tolerance, log2_rounding(level_.mantissa));
-    settings_.order = options.order;
+    const MethodChoice choice = model.experiment.method.value_or(MethodChoice{});
+    settings_.order = options.order == 0 && choice.method == StepMethod::Taylor ? choice.order : options.order;
     settings_.maximum_steps = options.maximum_steps;
     settings_.interrupt = options.interrupt;
   }
@@ -158,7 +160,7 @@ SimulationOptions in_double(const ExtendedSimulationOptions& options) {
 
 std::optional<ExtendedResult> simulate_extended(const Model& model, const EquationsOfMotion& equations,
                                                 const ExtendedSimulationOptions& options, Diagnostics& diagnostics) {
-  if (!has_method(options, diagnostics)) return std::nullopt;
+  if (!has_method(model, options, diagnostics)) return std::nullopt;
   const SimulationOptions rough = in_double(options);
   const auto plan = plan_run(model, equations, rough, diagnostics);
   if (!plan || !requests_lie_ahead(model.system, *plan, rough, diagnostics)) return std::nullopt;

@@ -16,6 +16,17 @@ const Constraint* between_velocities(const MechanicalSystem& system) {
 
 }  // namespace
 
+SimulationOptions with_method_of(const Model& model, SimulationOptions options) {
+  const MethodChoice choice = model.experiment.method.value_or(MethodChoice{});
+  if (options.method.value_or(choice.method) == choice.method) {
+    if (options.order == 0) options.order = choice.order;
+    if (options.step == 0 && choice.step)
+      options.step = evaluate(in_terms_of_motion(model.system, {&choice.step, 1}).front(), parameter_bindings(model.system));
+  }
+  options.method = options.method.value_or(choice.method);
+  return options;
+}
+
 std::unique_ptr<Method> variational_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
                                            const VariationalOptions& options, Diagnostics& diagnostics) {
   const bool has_step = options.step > 0 && std::isfinite(options.step);

@@ -3,6 +3,7 @@
 #include "simulation/method.hpp"
 
 #include <maupertuis/diagnostic.hpp>
+#include <maupertuis/simulation.hpp>
 #include <maupertuis/stiff.hpp>
 #include <maupertuis/variational.hpp>
 
@@ -10,6 +11,10 @@
 
 /// The methods beside Taylor's, from the equations of a system.
 namespace maupertuis {
+
+/// The options with a method: where none is asked for that of the model's `method`, or Automatic. Its step and order go with it
+/// wherever they are not asked for either and the method is the same.
+SimulationOptions with_method_of(const Model& model, SimulationOptions options);
 
 /// Nothing, with a diagnostic, for constraints between velocities (E0720), without a positive step (E0721), and for an
 /// order that there is none of (E0722).

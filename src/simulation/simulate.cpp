@@ -113,7 +113,7 @@ class Run {
       std::unique_ptr<Method> method, std::function<std::unique_ptr<Method>()> stiff, Probe* probe, bool energy_jumps)
       : model_(model), options_(options), plan_(plan), observables_(observables), probe_(probe),
         method_(std::move(method)), stiff_(std::move(stiff)), energy_jumps_(energy_jumps), balance_(observables.energy_terms) {
-    result_.statistics.method = word_of(options.method);
+    result_.statistics.method = word_of(*options.method);
     result_.trajectory.independent = {model.system.independent, model.system.independent_unit()};
     name_trajectory_columns(model.system, observables, result_.trajectory.columns, result_.reactions);
     sort_requests();
@@ -304,7 +304,8 @@ void warn_of_backend(const BackendUse& use, Backend wanted, Diagnostics& diagnos
 }  // namespace
 
 std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMotion& equations,
-                                         const SimulationOptions& options, Diagnostics& diagnostics, Probe* probe) {
+                                         const SimulationOptions& asked, Diagnostics& diagnostics, Probe* probe) {
+  const SimulationOptions options = with_method_of(model, asked);
   const auto plan = plan_run(model, equations, options, diagnostics);
   if (!plan || !requests_lie_ahead(model.system, *plan, options, diagnostics)) return std::nullopt;
 

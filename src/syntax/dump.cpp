@@ -14,7 +14,8 @@ constexpr std::string_view kKinds[] = {"number", "quantity", "name",   "member",
                                        "vector", "binary",   "unary", "time derivative", "piecewise"};
 constexpr std::string_view kExpectations[] = {"value at", "energy conserved", "conserved", "not conserved", "equation", "freedoms",
                                               "constraint class", "integral", "frequencies", "event at", "error", "equilibrium",
-                                              "action", "morse index", "path at", "value"};
+                                              "action", "morse index", "path at", "value", "eigenvalues", "matrix", "stable", "multipliers",
+                                              "trace", "period", "until at"};
 constexpr std::string_view kRotations[] = {"angle", "axis and angle", "euler", "roll, pitch, yaw", "quaternion", "quaternion coordinates"};
 constexpr std::string_view kShapes[] = {"line", "trail", "box", "circle", "spring", "reaction"};
 constexpr std::string_view kInertias[] = {"none", "scalar", "diagonal", "full"};
@@ -82,6 +83,10 @@ class Dumper {
     head("run"), child("duration", s.duration), child("until", s.until_left), child("equals", s.until_right), child("within", s.within);
   }
   void operator()(const OutputStatement& s) { head("output"), child("every", s.every); }
+  void operator()(const MethodStatement& s) {
+    head("method", s.word.text), word("order", s.order ? std::to_string(s.order) : ""), child("step", s.step);
+  }
+  void operator()(const PrecisionStatement& s) { head("precision", s.word.text); }
   void operator()(const DrawStatement& s) {
     head("draw");
     for (const DrawItem& item : s.items) {
@@ -95,10 +100,19 @@ class Dumper {
   void operator()(const ExpectStatement& s) {
     head(s.claim ? "claim" : "expect", kExpectations[static_cast<int>(s.kind)]);
     word("name", s.name.text), word("word", s.word.text), word("occurrence", s.occurrence ? std::to_string(s.occurrence) : "");
-    word("squared", s.squared ? "yes" : "");
-    assignments(s.at);
+    word("squared", s.squared ? "yes" : ""), word("above", s.above ? "yes" : ""), word("at until", s.at_until ? "yes" : "");
+    children("row", s.rows), children("column", s.columns);
+    for (std::size_t i = 0; i < s.at.size(); ++i) {
+      assignments({s.at[i]});
+      if (i < s.at_tolerances.size()) child(s.at_tolerances[i].relative ? "relative tolerance" : "tolerance", s.at_tolerances[i].size);
+    }
     child("subject", s.subject), child("time", s.time), child("from", s.from), child("to", s.to);
-    child("value", s.value), children("values", s.values);
+    for (const auto& level : s.where) child("where", level.left), child("equals", level.right);
+    child("value", s.value), word("width", s.width ? std::to_string(s.width) : "");
+    for (std::size_t i = 0; i < s.values.size(); ++i) {
+      child("values", s.values[i]);
+      if (i < s.imaginary.size()) child("imaginary", s.imaginary[i]);
+    }
     child(s.relative ? "relative tolerance" : "tolerance", s.tolerance);
   }
   void operator()(const ConstraintStatement& s) {

@@ -19,10 +19,11 @@ bool opens_phase_space(const Token& word, const Token& after) {
 
 /// Words of variational problems are ordinary names where the model declares them.
 bool opens_action(const Token& word, const Token& after) { return word.is("action") && (after.is("=") || after.is("of")); }
+bool opens_index(const Token& word, const Token& after) { return word.is("index") && (after.is("=") || after.is("of")); }
 
-/// `path x at …`; but `path = 3`, `path' at …` and `path at …` are about a quantity of that name.
+/// `path x at …`, `path 2 x at …`; but `path = 3`, `path' at …` and `path at …` are about a quantity of that name.
 bool opens_path(const Token& word, const Token& after) {
-  return word.is("path") && ((after.kind == Token::Kind::Name && !is_clause_word(after.text)) || after.is("("));
+  return word.is("path") && ((after.kind == Token::Kind::Name && !is_clause_word(after.text)) || after.is("(") || after.kind == Token::Kind::Number);
 }
 
 }  // namespace
@@ -38,6 +39,14 @@ void StatementParser::tolerance(ExpectStatement& expect, bool required) {
   }
 }
 
+/// Nothing where the next word is no number, or one that is not whole, which is read all the same.
+std::optional<int> StatementParser::whole_number() {
+  if (peek().kind != Token::Kind::Number) return std::nullopt;
+  const std::string_view text = next().text;
+  const bool whole = text.size() <= 9 && text.find_first_not_of("0123456789") == std::string_view::npos;
+  return whole ? std::optional(std::stoi(std::string(text))) : std::nullopt;
+}
+
 ExpectStatement StatementParser::expectation(bool claim) {
   next();
   ExpectStatement expect;
@@ -48,9 +57,7 @@ ExpectStatement StatementParser::expectation(bool claim) {
     expect.kind = Kind::EnergyConserved;
     tolerance(expect, false);
   } else if (accept("conserved")) {
-    expect.kind = Kind::Conserved;
-    expect.subject = formula();
-    tolerance(expect, false);
+    expect_conserved(expect);
   } else if (accept("equation")) {
     expect.kind = Kind::Equation;
     expect.subject = formula();
@@ -64,10 +71,8 @@ ExpectStatement StatementParser::expectation(bool claim) {
     expect.value = quantity();
   } else if (!declared && opens_action(peek(), peek(1))) {
     expect_action(expect);
-  } else if (!declared && peek().is("index") && peek(1).is("=")) {
-    next(), next();
-    expect.kind = Kind::MorseIndex;
-    expect.value = quantity();
+  } else if (!declared && opens_index(peek(), peek(1))) {
+    expect_index(expect);
   } else if (!declared && opens_path(peek(), peek(1))) {
     expect_path(expect);
   } else if (accept("constraint")) {
@@ -85,6 +90,19 @@ ExpectStatement StatementParser::expectation(bool claim) {
     expect_equilibrium(expect);
   } else if (accept("event")) {
     expect_event(expect);
+  } else if (accept("until")) {
+    expect.kind = Kind::UntilAt;
+    this->expect("at", "`until`");
+    expect.value = quantity();
+    tolerance(expect, true);
+  } else if (opens_matrix()) {
+    expect_matrix(expect);
+  } else if (!declared && peek().is("eigenvalues") && (peek(1).is("at") || peek(1).is(":"))) {
+    expect_eigenvalues(expect);
+  } else if (!declared && opens_return_map()) {
+    expect_return_map(expect);
+  } else if (!declared && (peek().is("stable") || peek().is("unstable")) && peek(1).is("for")) {
+    expect_stable(expect);
   } else if (accept("error")) {
     expect.kind = Kind::Error;
     expect.name = used_name("the code of an error, such as E0412");
@@ -104,7 +122,8 @@ void StatementParser::expect_value(ExpectStatement& expect) {
     return;
   }
   const bool timed = accept("at");
-  if (timed) expect.time = quantity();
+  expect.at_until = timed && accept("until");
+  if (timed && !expect.at_until) expect.time = quantity();
   this->expect("=", timed ? "the time" : "what is expected");
   if (expect.claim && !timed) {
     expect.kind = Kind::Equation;
@@ -116,12 +135,33 @@ void StatementParser::expect_value(ExpectStatement& expect) {
   tolerance(expect, timed);
 }
 
-// at θ = 0 is stable
+// m r^2 φ',   F where p_φ = 0,   m r^2 φ' rel 1e-12
+void StatementParser::expect_conserved(ExpectStatement& expect) {
+  expect.kind = Kind::Conserved;
+  expect.subject = formula();
+  if (!accept("where")) return tolerance(expect, false);
+  do {
+    ExpectStatement::Level level;
+    level.left = formula();
+    this->expect("=", "the left side of the level");
+    level.right = formula();
+    expect.where.push_back(std::move(level));
+  } while (accept(","));
+  if (peek().is("±") || peek().is("rel"))
+    fail("E0111", peek().span, "a drift is measured along the model's own run, and no level is asked for there",
+         "On a level conservation is proved, or at least tested at many states.", "Leave out the tolerance, or the level.");
+}
+
+// at θ = 0 is stable,   at x = 0.8369151 ± 1e-7, y = 0
 void StatementParser::expect_equilibrium(ExpectStatement& expect) {
   expect.kind = Kind::Equilibrium;
   this->expect("at", "`equilibrium`");
-  do expect.at.push_back(assignment());
-  while (accept(","));
+  do {
+    expect.at.push_back(assignment());
+    ExpectStatement one;
+    tolerance(one, false);
+    expect.at_tolerances.push_back({one.tolerance, one.relative});
+  } while (accept(","));
   if (accept("is")) expect.word = used_name("stable, unstable or undecided");
 }
 
@@ -129,10 +169,7 @@ void StatementParser::expect_equilibrium(ExpectStatement& expect) {
 void StatementParser::expect_frequencies(ExpectStatement& expect) {
   expect.kind = Kind::Frequencies;
   expect.squared = accept("squared");
-  if (accept("at")) {
-    do expect.at.push_back(assignment());
-    while (accept(","));
-  }
+  expect_point(expect);
   this->expect(":", "the configuration");
   do expect.values.push_back(quantity());
   while (accept(","));
@@ -162,9 +199,8 @@ void StatementParser::expect_event(ExpectStatement& expect) {
   expect.name = used_name("the name of an event");
   expect.occurrence = 1;
   if (peek().kind == Token::Kind::Number) {
-    const Token& count = next();
-    const bool whole = count.text.size() <= 9 && count.text.find_first_not_of("0123456789") == std::string_view::npos;
-    expect.occurrence = whole ? std::stoi(std::string(count.text)) : 0;
+    const Token& count = peek();
+    expect.occurrence = whole_number().value_or(0);
     if (expect.occurrence < 1) fail("E0111", count.span, "expected which occurrence of the event is meant: 1, 2, …");
   }
   this->expect("at", "the event");

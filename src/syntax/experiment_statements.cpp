@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-/// start, run, output, sweep, draw.
+/// start, run, output, method, precision, sweep, draw.
 namespace maupertuis::syntax {
 
 StartStatement::Item StatementParser::assignment() {
@@ -48,6 +48,28 @@ StatementBody StatementParser::output_statement() {
   next();
   if (!accept("every")) fail_expected("`every` after `output`", "Write for example output every 10 ms.");
   return OutputStatement{quantity()};
+}
+
+// method stiff,   method variational order 4 step 10 ms
+StatementBody StatementParser::method_statement() {
+  next();
+  MethodStatement method;
+  method.word = used_name("auto, taylor, variational or stiff");
+  if (accept("order")) {
+    const auto order = whole_number();
+    if (!order || *order < 1) fail_expected("the order of the steps, a whole number", "Write for example method variational order 4 step 10 ms.");
+    method.order = *order;
+  }
+  if (accept("step")) method.step = quantity();
+  return method;
+}
+
+// precision quad,   precision 100
+StatementBody StatementParser::precision_statement() {
+  next();
+  const Token& word = peek();
+  if (word.kind != Token::Kind::Number) return PrecisionStatement{used_name("double, quad or 100")};
+  return PrecisionStatement{{std::string(next().text), word.span}};
 }
 
 // sweep Ω = 0 .. 12 rad/s steps 121

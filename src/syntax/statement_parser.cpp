@@ -22,6 +22,7 @@ std::span<const StatementParser::Entry> StatementParser::table() {
       {"reaction", &P::reaction_statement},   {"start", &P::start_statement},
       {"run", &P::run_statement},             {"output", &P::output_statement},
       {"draw", &P::draw_statement},           {"expect", &P::expect_statement},
+      {"method", &P::method_statement},       {"precision", &P::precision_statement},
       {"claim", &P::claim_statement},         {"constraint", &P::constraint_statement},
       {"contact", &P::contact_statement},     {"friction", &P::friction_statement},
       {"event", &P::event_statement},         {"impact", &P::impact_statement},

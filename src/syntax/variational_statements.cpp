@@ -91,9 +91,15 @@ std::vector<ExpressionPtr> StatementParser::components() {
   while (accept(","));
   if (!peek().is(")")) fail_expected("`,` or `)`");
   next();
-  if (peek().kind != Token::Kind::Name || peek().is("at") || peek().is("from")) return out;
+  return with_unit_after(std::move(out));
+}
+
+// The unit that follows their bracket is that of all: (1, 2) m.
+std::vector<ExpressionPtr> StatementParser::with_unit_after(std::vector<ExpressionPtr> out) {
+  const bool reciprocal = peek().is("/") || (peek().is("1") && peek(1).is("/"));
+  if (!reciprocal && (peek().kind != Token::Kind::Name || is_clause_word(peek().text))) return out;
   const auto unit = units();
-  if (!unit) fail_expected("`at` after the configuration");
+  if (!unit) fail_expected("a unit after the bracket");
   for (ExpressionPtr& value : out) {
     if (!value) continue;
     const Expression& number = value->kind == Expression::Kind::Unary ? *value->arguments[0] : *value;
@@ -111,11 +117,14 @@ std::vector<ExpressionPtr> StatementParser::components() {
   return out;
 }
 
-// action = 3 J s ± 1e-9,   action of (4 t + 7, 3 t) from 0 s to 10 s = 435 J s ± 1e-9
+// action = 3 J s ± 1e-9,   action of path 2 = 3 J s ± 1e-9,   action of (4 t + 7, 3 t) from 0 s to 10 s = 435 J s ± 1e-9
 void StatementParser::expect_action(ExpectStatement& expect) {
   next();
   expect.kind = ExpectStatement::Kind::Action;
-  if (accept("of")) {
+  if (peek().is("of") && peek(1).is("path")) {
+    next(), next();
+    expect.occurrence = path_number();
+  } else if (accept("of")) {
     if (!peek().is("(")) fail_expected("`(` and the path", "Write for example expect action of (4 t, 3 t) = 435 ± 1e-9.");
     next();
     do expect.values.push_back(formula());
@@ -133,10 +142,31 @@ void StatementParser::expect_action(ExpectStatement& expect) {
   tolerance(expect, true);
 }
 
-// path x at 0.5 s = 0.2 m ± 1e-9
+// index = 1,   index of path 2 = 1
+void StatementParser::expect_index(ExpectStatement& expect) {
+  next();
+  expect.kind = ExpectStatement::Kind::MorseIndex;
+  if (accept("of")) {
+    this->expect("path", "`of`");
+    expect.occurrence = path_number();
+  }
+  this->expect("=", "`index`");
+  expect.value = quantity();
+}
+
+// Which of the paths, the one with the smallest action first: 1, 2, …
+int StatementParser::path_number() {
+  const Token& count = peek();
+  const auto number = whole_number();
+  if (!number || *number < 1) fail("E0111", count.span, "expected which of the paths is meant: 1, 2, …", "The one with the smallest action is the first.");
+  return *number;
+}
+
+// path x at 0.5 s = 0.2 m ± 1e-9,   path 2 x at 0.5 s = 0.2 m ± 1e-9
 void StatementParser::expect_path(ExpectStatement& expect) {
   next();
   expect.kind = ExpectStatement::Kind::PathAt;
+  if (peek().kind == Token::Kind::Number) expect.occurrence = path_number();
   expect.subject = formula();
   this->expect("at", "what is expected of the path");
   expect.time = quantity();

@@ -16,7 +16,7 @@ constexpr std::array kStatementWords = {
     "T"sv,       "V"sv,          "U"sv,             "L"sv,           "D"sv,       "kinetic"sv,  "potential"sv,
     "generalized_potential"sv,   "lagrangian"sv,    "dissipation"sv, "force"sv,   "torque"sv,   "friction"sv,
     "constraint"sv, "reaction"sv, "contact"sv,      "impact"sv,      "event"sv,   "start"sv,    "run"sv,
-    "output"sv,  "sweep"sv,      "draw"sv,          "independent"sv, "path"sv,    "field"sv,    "density"sv,
+    "output"sv,  "method"sv,     "precision"sv,     "sweep"sv,       "draw"sv,          "independent"sv, "path"sv,    "field"sv,    "density"sv,
     "expect"sv,  "claim"sv,
 };
 
@@ -26,6 +26,7 @@ constexpr std::array kClauseWords = {
     "rising"sv,   "falling"sv, "within"sv,  "rel"sv,      "on"sv,     "from"sv,      "to"sv,          "by"sv,
     "steps"sv,    "cells"sv,  "boundary"sv, "rest"sv,     "angle"sv,  "axis"sv,      "until"sv,       "every"sv,
     "exactly"sv,  "is"sv,     "not"sv,      "and"sv,      "or"sv,     "else"sv,
+    "where"sv,
 };
 
 constexpr Function kFunctions[] = {

@@ -154,6 +154,32 @@ constexpr CodeEntry kEntries[] = {
      "two ends and the value of the integral determine. `maup action` finds the path and λ; there is no motion from a start.",
      "dimensionless\ncoord x : number\nL = 1/2 x'^2\nconstraint integral x = 1\npath from 0 at 0 to 0 at 1\nexpect x at 1 = 0 ± 1e-9\n",
      "dimensionless\ncoord x : number\nL = 1/2 x'^2\nconstraint integral x = 1\npath from 0 at 0 to 0 at 1\nexpect path x at 1/2 = 3/2 ± 1e-9\n"},
+    {"E0246", "an end of the run that the model does not have",
+     "`expect until at T` and `expect EXPR at until` are about the moment at which the condition of `run until A = B within T` is met.",
+     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nrun 1\nexpect until at 1 ± 1e-9\n",
+     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nstart x' = 1\nrun until x = 1 within 2\nexpect until at 1 ± 1e-9\n"},
+    {"E0247", "a matrix that does not fit the model",
+     "Rows and columns of M, C, G, K and N belong to coordinates, those of A to coordinates and velocities, the columns of B to inputs; `in (…)` names "
+     "the rows that are meant and `by (…)` the columns. A row is a bracket: ((1, 2), (3, 4)).",
+     "dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2)\nexpect M at x = 0 : ((1)) ± 1e-9\n",
+     "dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2)\nexpect M at x = 0 : ((1, 0), (0, 1)) ± 1e-9\n"},
+    {"E0248", "a critical value of something that is no parameter",
+     "`expect stable for Ω < 5.72 rad/s ± 1e-2 at θ = 0` says at which value of a parameter the stability of an equilibrium changes.",
+     "dimensionless\nparam k = 1\ncoord x : number\nL = 1/2 x'^2 - 1/2 k x^2\nexpect stable for x > 0 ± 1e-9\n",
+     "dimensionless\nparam k = 1\ncoord x : number\nL = 1/2 x'^2 - 1/2 k x^2\nexpect stable for k > 0 ± 1e-9\n"},
+    {"E0249", "a step or an order that a method chooses itself",
+     "Taylor's and the stiff method choose the lengths of their steps by the tolerance, the stiff one also its order. The variational method has steps "
+     "that are all alike: `method variational order 4 step 10 ms`.",
+     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nmethod stiff step 1\n", "dimensionless\ncoord x : number\nL = 1/2 x'^2\nmethod variational step 1\n"},
+    {"E0250", "a tolerance beside the rate of a steady motion",
+     "What has a tolerance is solved for, beginning at the value that is given; the rate of a steady motion, or its momentum, is what chooses among a "
+     "family of them. So the rate is given, and the coordinates that belong to it are found.",
+     "dimensionless\ncoord r, φ : number\nL = 1/2 (r'^2 + r^2 φ'^2) + 1/r\nstart r = 1\nexpect equilibrium at r = 1, φ' = 1 ± 1e-9\n",
+     "dimensionless\ncoord r, φ : number\nL = 1/2 (r'^2 + r^2 φ'^2) + 1/r\nstart r = 1\nexpect equilibrium at r = 1 ± 1e-9, φ' = 1\n"},
+    {"E0251", "no method, or no precision, of this name",
+     "`method` says how the runs of a model step: auto, taylor, variational or stiff. `precision` says with how many digits `maup simulate` and "
+     "`maup test` calculate: double (16), quad (33) or 100.",
+     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nmethod euler\n", "dimensionless\ncoord x : number\nL = 1/2 x'^2\nmethod stiff\n"},
     // ----------------------------------------------------------------------------------------------------------- units
     {"E0301", "a unit is not known",
      "Units are SI base and derived units with the SI prefixes, and common ones without: min, h, deg, rev, rpm, bar, "

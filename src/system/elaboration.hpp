@@ -148,6 +148,17 @@ bool is_body_rate(Elaboration& e, const syntax::Expression& x);
 std::vector<StartRate> start_rates(Elaboration& e, const syntax::StartStatement::Item& item);
 void elaborate_experiment(Elaboration& e);
 void elaborate_expectation(Elaboration& e, const syntax::ExpectStatement& s, Span span);
+/// The unit in which `value` is written is that in which what comes out is shown.
+void set_display_unit(Elaboration& e, Expectation& out, const syntax::Expression& value);
+/// ± 1e-9 is in that unit, unless it has one of its own; rel 1e-9 is a bare number. False after a mistake.
+bool tolerance_of(Elaboration& e, Expectation& out, const syntax::ExpectStatement& s, const Dimension& dimension);
+/// Eigenvalues, Matrix, Stable, Multipliers, Trace, Period: linear_expectations.cpp. False after a mistake.
+bool expect_of_neighbours(Elaboration& e, Expectation& out, const syntax::ExpectStatement& s);
+/// The configuration of `at θ = 0, φ' = 2 rad/s`. False after a mistake.
+bool point_of_expectation(Elaboration& e, Expectation& out, const syntax::ExpectStatement& s);
+/// `method` and `precision`.
+void elaborate_method(Elaboration& e, const syntax::MethodStatement& s);
+void elaborate_precision(Elaboration& e, const syntax::PrecisionStatement& s);
 void elaborate_drawing(Elaboration& e, const syntax::DrawStatement& s);
 
 /// The name of what stands in the place of t; before any expression is made.

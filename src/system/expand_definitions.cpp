@@ -67,6 +67,7 @@ void for_each_expression(Experiment& x, const std::function<void(Expr&)>& visit)
   for (StartRate& r : x.start_rates)
     for (Expr* e : {&r.rate, &r.value}) visit(*e);
   for (Expr* e : {&x.start_time, &x.duration, &x.until, &x.within, &x.output_every}) present(*e);
+  if (x.method) present(x.method->step);
   for (DrawElement& d : x.drawing) {
     for (ExprVector& p : d.path)
       for (Expr& e : p) visit(e);
@@ -74,7 +75,9 @@ void for_each_expression(Experiment& x, const std::function<void(Expr&)>& visit)
   }
   for (Expectation& p : x.expectations) {
     for (Expr* e : {&p.subject, &p.subject_right, &p.time, &p.value, &p.tolerance, &p.from, &p.to}) present(*e);
-    for (Expr& e : p.values) visit(e);
+    for (ExprVector* list : {&p.values, &p.imaginary, &p.where})
+      for (Expr& e : *list) visit(e);
+    for (PointTolerance& t : p.at_tolerances) present(t.size);
     starts(p.at);
   }
 }

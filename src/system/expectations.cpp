@@ -16,6 +16,8 @@ const Expression& unsigned_quantity(const Expression& x) {
   return x.kind == Expression::Kind::Unary ? unsigned_quantity(*x.arguments[0]) : x;
 }
 
+}  // namespace
+
 void set_display_unit(Elaboration& e, Expectation& out, const Expression& value) {
   const Expression& q = unsigned_quantity(value);
   if (q.kind != Expression::Kind::Quantity || !q.unit || !all_units(*q.unit)) return;
@@ -25,8 +27,7 @@ void set_display_unit(Elaboration& e, Expectation& out, const Expression& value)
   out.display_factor = maupertuis::evaluate(factor_of(e.context, *unit), Bindings{});
 }
 
-/// ± 1e-9 is in the unit of the value, unless it has a unit of its own; rel 1e-9 is a bare number.
-bool tolerance(Elaboration& e, Expectation& out, const ExpectStatement& s, const Dimension& dimension) {
+bool tolerance_of(Elaboration& e, Expectation& out, const ExpectStatement& s, const Dimension& dimension) {
   if (!s.tolerance) return true;
   out.relative = s.relative;
   const bool own_unit = unsigned_quantity(*s.tolerance).kind == Expression::Kind::Quantity;
@@ -45,9 +46,11 @@ bool tolerance(Elaboration& e, Expectation& out, const ExpectStatement& s, const
   return true;
 }
 
+namespace {
+
 bool unit_and_tolerance(Elaboration& e, Expectation& out, const ExpectStatement& s) {
   set_display_unit(e, out, *s.value);
-  return tolerance(e, out, s, out.dimension);
+  return tolerance_of(e, out, s, out.dimension);
 }
 
 std::optional<Value> number(Elaboration& e, const Expression& x, const Place& place = {}) {
@@ -59,10 +62,31 @@ std::optional<Value> number(Elaboration& e, const Expression& x, const Place& pl
   return std::nullopt;
 }
 
+/// E0246 where the run of the model does not end at a condition.
+bool refuse_without_until(Elaboration& e, Span span) {
+  for (const syntax::Statement& s : e.tree.statements)
+    if (const auto* run = std::get_if<syntax::RunStatement>(&s.body); run && run->until_left) return false;
+  e.diagnostics.error("E0246", span, "the run of this model does not end at a condition",
+                      "`until` is the moment at which the condition of `run until` is met.",
+                      "Add it, for example `run until P.y = 0 within 60 s`, or expect the value at a time.");
+  return true;
+}
+
+/// until at 1.2 s ± 1e-9
+bool until_at(Elaboration& e, Expectation& out, const ExpectStatement& s) {
+  const Value value = constant_of(e, *s.value, e.time(), in_words(e, "the time of an expectation"));
+  if (value.poisoned || refuse_without_until(e, out.span)) return false;
+  out.value = value.scalar();
+  out.dimension = e.time();
+  return unit_and_tolerance(e, out, s);
+}
+
 bool value_at(Elaboration& e, Expectation& out, const ExpectStatement& s) {
   Place place;
   place.reactions = true;
   const std::optional<Value> subject = number(e, *s.subject, place);
+  out.at_until = s.at_until;
+  if (s.at_until && refuse_without_until(e, out.span)) return false;
   if (s.time) {
     const Value time = constant_of(e, *s.time, e.time(), in_words(e, "the time of an expectation"));
     if (time.poisoned) return false;
@@ -156,13 +180,30 @@ bool bracket(Elaboration& e, Expectation& out, const ExpectStatement& s) {
   return false;
 }
 
+/// where p_φ = 0: left − right, which vanishes on the level.
+bool levels(Elaboration& e, Expectation& out, const ExpectStatement& s) {
+  Place place;
+  place.reactions = true;
+  for (const ExpectStatement::Level& level : s.where) {
+    const std::optional<Value> left = number(e, *level.left, place);
+    if (!left) return false;
+    const Value right = scalar_of(e, *level.right, left->dimension, fmt::format("`{}`", e.source.slice(level.left->span)), place);
+    if (right.poisoned || refuse_acceleration(e, *left, *level.left, "a level") || refuse_acceleration(e, right, *level.right, "a level"))
+      return false;
+    out.where.push_back(left->scalar() - right.scalar());
+  }
+  return true;
+}
+
 bool about_subject(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  const std::optional<Value> subject = number(e, *s.subject);
-  if (!subject) return false;
+  Place place;
+  place.reactions = s.kind != Kind::Integral;  // momenta
+  const std::optional<Value> subject = number(e, *s.subject, place);
+  if (!subject || !levels(e, out, s)) return false;
   out.subject = subject->scalar();
   out.dimension = subject->dimension;
   if (out.kind != Kind::NotConserved && !e.context.depends_on_time(out.subject.id())) warn_identity(e, out);
-  return tolerance(e, out, s, out.dimension);
+  return tolerance_of(e, out, s, out.dimension);
 }
 
 bool freedoms(Elaboration& e, Expectation& out, const ExpectStatement& s) {
@@ -173,12 +214,7 @@ bool freedoms(Elaboration& e, Expectation& out, const ExpectStatement& s) {
 }
 
 bool frequencies(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  bool good = true;
-  for (const auto& item : s.at) {
-    const std::optional<StartValue> value = start_value(e, item);
-    good = good && value;
-    if (value) out.at.push_back(*value);
-  }
+  bool good = point_of_expectation(e, out, s);
   const Dimension rate = Dimension{} / e.time();
   out.squared = s.squared;
   out.dimension = e.dimension(s.squared ? rate * rate : rate);
@@ -192,7 +228,28 @@ bool frequencies(Elaboration& e, Expectation& out, const ExpectStatement& s) {
     out.values.push_back(v.scalar() * turn);
     out.display_factor *= maupertuis::evaluate(turn, Bindings{});
   }
-  return tolerance(e, out, s, out.dimension) && good;
+  return tolerance_of(e, out, s, out.dimension) && good;
+}
+
+/// ± 1e-7 beside one value of the point.
+bool point_tolerance(Elaboration& e, Expectation& out, const ExpectStatement& s, std::size_t i) {
+  Expectation one;
+  ExpectStatement written;
+  const StartValue& place = out.at[i];
+  const Dimension& q = e.system().coordinates[place.coordinate].dimension;
+  if (place.order > 0 && s.at_tolerances[i].size) {
+    e.diagnostics.error("E0250", s.at_tolerances[i].size->span, "a rate is given, not found",
+                        "A steady motion belongs to its rates: the coordinates are solved for, beginning at their values.",
+                        "Give the tolerance beside a coordinate, and the rate without one.");
+    return false;
+  }
+  one.dimension = place.order == 0 ? q : q / e.time();
+  written.tolerance = s.at_tolerances[i].size;
+  written.relative = s.at_tolerances[i].relative;
+  set_display_unit(e, one, *s.at[i].value);
+  const bool good = tolerance_of(e, one, written, one.dimension);
+  out.at_tolerances.push_back({one.tolerance, one.relative, one.display_unit, one.display_factor});
+  return good;
 }
 
 bool equilibrium(Elaboration& e, Expectation& out, const ExpectStatement& s) {
@@ -201,12 +258,9 @@ bool equilibrium(Elaboration& e, Expectation& out, const ExpectStatement& s) {
     e.diagnostics.error("E0238", s.word.span, fmt::format("`{}` is no word for the stability of an equilibrium", s.word.text),
                         "The energy or the eigenvalues prove it stable or unstable, or the linearization does not decide.",
                         "Write stable, unstable or undecided.");
-  bool good = known;
-  for (const auto& item : s.at) {
-    const std::optional<StartValue> value = start_value(e, item);
-    good = good && value;
-    if (value) out.at.push_back(*value);
-  }
+  if (!point_of_expectation(e, out, s) || !known) return false;
+  bool good = true;
+  for (std::size_t i = 0; i < s.at.size(); ++i) good = point_tolerance(e, out, s, i) && good;
   return good;
 }
 
@@ -222,7 +276,7 @@ bool fill(Elaboration& e, Expectation& out, const ExpectStatement& s) {
     case Kind::Value:
       return value_at(e, out, s);
     case Kind::EnergyConserved:
-      return tolerance(e, out, s, e.system().lagrangian_dimension);
+      return tolerance_of(e, out, s, e.system().lagrangian_dimension);
     case Kind::Conserved:
     case Kind::NotConserved:
     case Kind::Integral:
@@ -247,6 +301,15 @@ bool fill(Elaboration& e, Expectation& out, const ExpectStatement& s) {
       return expect_index(e, out, s);
     case Kind::PathAt:
       return expect_on_path(e, out, s) && unit_and_tolerance(e, out, s);
+    case Kind::Eigenvalues:
+    case Kind::Matrix:
+    case Kind::Stable:
+    case Kind::Multipliers:
+    case Kind::Trace:
+    case Kind::Period:
+      return expect_of_neighbours(e, out, s);
+    case Kind::UntilAt:
+      return until_at(e, out, s);
     case Kind::Error:
       return true;
   }
@@ -254,6 +317,16 @@ bool fill(Elaboration& e, Expectation& out, const ExpectStatement& s) {
 }
 
 }  // namespace
+
+bool point_of_expectation(Elaboration& e, Expectation& out, const ExpectStatement& s) {
+  bool good = true;
+  for (const auto& item : s.at) {
+    const std::optional<StartValue> value = start_value(e, item);
+    good = good && value;
+    if (value) out.at.push_back(*value);
+  }
+  return good;
+}
 
 void elaborate_expectation(Elaboration& e, const ExpectStatement& s, Span span) {
   Expectation out;

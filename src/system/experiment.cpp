@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-/// start, run, output, sweep.
+/// start, run, output, method, precision, sweep.
 namespace maupertuis::elaboration {
 namespace {
 
@@ -188,6 +188,10 @@ void output(Elaboration& e, const syntax::OutputStatement& s) {
   e.experiment().output_every = v.scalar();
 }
 
+/// How the runs of this model step, where the command line says nothing.
+const std::pair<const char*, StepMethod> kMethods[] = {{"auto", StepMethod::Automatic}, {"taylor", StepMethod::Taylor},
+                                                       {"variational", StepMethod::Variational}, {"stiff", StepMethod::Stiff}};
+
 /// The parameter that a sweep names; null, and a message, if it is none.
 const Parameter* swept_parameter(Elaboration& e, const Expression& x) {
   const std::string text(e.source.slice(x.span));
@@ -228,6 +232,43 @@ void sweep(Elaboration& e, const syntax::SweepStatement& s, Span span) {
 
 }  // namespace
 
+void elaborate_method(Elaboration& e, const syntax::MethodStatement& s) {
+  const auto* known = std::find_if(std::begin(kMethods), std::end(kMethods), [&](const auto& m) { return s.word.text == m.first; });
+  if (known == std::end(kMethods)) {
+    e.diagnostics.error("E0251", s.word.span, fmt::format("`{}` is no method", s.word.text), "", "Write auto, taylor, variational or stiff.");
+    return;
+  }
+  MethodChoice out{known->second, s.order, {}};
+  const bool variational = out.method == StepMethod::Variational;
+  if (s.step && !variational) {
+    e.diagnostics.error("E0249", s.step->span, fmt::format("the method `{}` chooses its steps itself", s.word.text),
+                        "Its steps are as long as the tolerance allows; those of the variational method are all alike.",
+                        "Leave the step out, or write for example `method variational step 10 ms`.");
+    return;
+  }
+  if (s.order && out.method != StepMethod::Taylor && !variational) {
+    e.diagnostics.error("E0249", s.word.span, fmt::format("the method `{}` chooses its order itself", s.word.text),
+                        "The stiff method goes through the orders 1 to 5.", "Leave the order out.");
+    return;
+  }
+  if (s.step) {
+    const Value step = constant_of(e, *s.step, e.time(), in_words(e, "the time of a step"));
+    if (step.poisoned) return;
+    out.step = step.scalar();
+  }
+  e.experiment().method = out;
+}
+
+void elaborate_precision(Elaboration& e, const syntax::PrecisionStatement& s) {
+  const std::string& word = s.word.text;
+  if (word == "double") e.experiment().precision = NumberFormat::Double;
+  else if (word == "quad") e.experiment().precision = NumberFormat::Quad;
+  else if (word == "100") e.experiment().precision = NumberFormat::Digits100;
+  else
+    e.diagnostics.error("E0251", s.word.span, fmt::format("`{}` is no precision", word), "",
+                        "Write double (16 digits), quad (33 digits) or 100 (digits).");
+}
+
 void elaborate_experiment(Elaboration& e) {
   for (const syntax::Statement& s : e.tree.statements)
     if (const auto* x = std::get_if<syntax::ReactionStatement>(&s.body)) elaborate_release(e, *x);
@@ -235,6 +276,8 @@ void elaborate_experiment(Elaboration& e) {
     if (const auto* x = std::get_if<syntax::StartStatement>(&s.body)) start(e, *x);
     if (const auto* x = std::get_if<syntax::RunStatement>(&s.body)) run(e, *x);
     if (const auto* x = std::get_if<syntax::OutputStatement>(&s.body)) output(e, *x);
+    if (const auto* x = std::get_if<syntax::MethodStatement>(&s.body)) elaborate_method(e, *x);
+    if (const auto* x = std::get_if<syntax::PrecisionStatement>(&s.body)) elaborate_precision(e, *x);
     if (const auto* x = std::get_if<syntax::SweepStatement>(&s.body)) sweep(e, *x, s.span);
     if (const auto* x = std::get_if<syntax::PathStatement>(&s.body)) elaborate_path(e, *x, s.span);
     if (const auto* x = std::get_if<syntax::DrawStatement>(&s.body)) elaborate_drawing(e, *x);

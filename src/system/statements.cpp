@@ -37,11 +37,13 @@ void refuse_later_statements(Elaboration& e) {
 }
 
 void check_statement_counts(Elaboration& e) {
-  std::optional<Span> gravity, run, output, source, sweep, path, independent;
+  std::optional<Span> gravity, run, output, method, precision, source, sweep, path, independent;
   for (const syntax::Statement& s : e.tree.statements) {
     if (std::get_if<syntax::GravityStatement>(&s.body)) once(e, gravity, s.span, "gravity");
     if (std::get_if<syntax::RunStatement>(&s.body)) once(e, run, s.span, "the run");
     if (std::get_if<syntax::OutputStatement>(&s.body)) once(e, output, s.span, "the interval of output");
+    if (std::get_if<syntax::MethodStatement>(&s.body)) once(e, method, s.span, "the method");
+    if (std::get_if<syntax::PrecisionStatement>(&s.body)) once(e, precision, s.span, "the precision");
     if (std::get_if<syntax::SweepStatement>(&s.body)) once(e, sweep, s.span, "the sweep");
     if (std::get_if<syntax::PathStatement>(&s.body)) once(e, path, s.span, "the path");
     if (std::get_if<syntax::IndependentStatement>(&s.body)) once(e, independent, s.span, "the independent variable");

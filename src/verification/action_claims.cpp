@@ -1,5 +1,7 @@
 #include "verification/action_claims.hpp"
 
+#include "verification/judge.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,9 +11,7 @@ namespace {
 
 using Asked = syntax::ExpectStatement::Kind;
 
-double number(const Model& model, Expr e) {
-  return evaluate(in_terms_of_motion(model.system, {&e, 1}).front(), parameter_bindings(model.system));
-}
+double number(const Model& model, Expr e) { return number_of(model.system, e); }
 
 std::string first_trouble(const Diagnostics& told) {
   for (const Diagnostic& d : told.items())
@@ -33,25 +33,28 @@ double value_on(const ActionPath& path, double t, Expr subject, const Mechanical
 
 }  // namespace
 
-const StationaryPath* ActionClaims::path(ExpectationResult& result) {
+const StationaryPath* ActionClaims::path(const Expectation& e, ExpectationResult& result) {
   if (!searched_) {
     searched_ = true;
     Diagnostics told;
     found_ = stationary_paths(model_, equations_, ends_of(model_), options_, told);
     if (!found_) trouble_ = first_trouble(told);
   }
-  if (found_) return &found_->paths.front();
-  result.actual = "no stationary path";
-  result.message = trouble_;
+  const std::size_t wanted = e.occurrence > 0 ? static_cast<std::size_t>(e.occurrence) : 1;
+  if (found_ && wanted <= found_->paths.size()) return &found_->paths[wanted - 1];
+  result.actual = found_ ? fmt::format("{} stationary path{}", found_->paths.size(), found_->paths.size() == 1 ? "" : "s") : "no stationary path";
+  result.message = found_ ? "There is no such path; " + found_->bound : trouble_;
   return nullptr;
 }
 
 void ActionClaims::decide(const Expectation& e, ExpectationResult& result) {
   if (e.kind == Asked::Action && !e.values.empty()) return decide_given(e, result);
-  const StationaryPath* stationary = path(result);
+  const StationaryPath* stationary = path(e, result);
   if (!stationary) return;
   if (e.kind == Asked::MorseIndex) return decide_index(e, *stationary, result);
-  const std::string among = found_->paths.size() == 1 ? "" : fmt::format("; of {} paths, the one with the smallest action", found_->paths.size());
+  const std::string among = found_->paths.size() == 1 ? ""
+                            : e.occurrence > 1       ? fmt::format("; of {} paths, number {} by the action", found_->paths.size(), e.occurrence)
+                                                     : fmt::format("; of {} paths, the one with the smallest action", found_->paths.size());
   if (e.kind == Asked::Action)
     return judge(e, stationary->action, fmt::format("error about {:.1g}{}", stationary->action_error, among), result);
   const double t = number(model_, e.time);
@@ -85,15 +88,8 @@ void ActionClaims::decide_index(const Expectation& e, const StationaryPath& p, E
 }
 
 void ActionClaims::judge(const Expectation& e, double actual, const std::string& ground, ExpectationResult& result) const {
-  const double expected = number(model_, e.value);
-  const double tolerance = !e.tolerance ? 1e-9 * std::abs(expected) : number(model_, e.tolerance) * (e.relative ? std::abs(expected) : 1.0);
-  const std::string unit = e.display_unit.empty() ? "" : " " + e.display_unit;
-  result.actual = fmt::format("{:.17g}{}", actual / e.display_factor, unit);
-  result.expected = fmt::format("{:.17g}{}", expected / e.display_factor, unit);
-  result.tolerance = e.relative ? fmt::format("rel {:g}", number(model_, e.tolerance)) : fmt::format("± {:g}{}", tolerance / e.display_factor, unit);
-  const double error = std::abs(actual - expected);
-  result.passed = error <= tolerance;
-  result.message = fmt::format("off by {:.2g}{}; {}", error / e.display_factor, unit, ground);
+  judge_number(e, model_.system, actual, result);
+  result.message += "; " + ground;
 }
 
 }  // namespace maupertuis

@@ -1,5 +1,9 @@
 #include "verification/mode_claims.hpp"
 
+#include "verification/critical_claims.hpp"
+#include "verification/judge.hpp"
+#include "verification/matrix_claims.hpp"
+
 #include <maupertuis/simulation.hpp>
 
 #include <fmt/format.h>
@@ -10,9 +14,7 @@
 namespace maupertuis {
 namespace {
 
-double number(const Model& model, Expr e) {
-  return evaluate(in_terms_of_motion(model.system, {&e, 1}).front(), parameter_bindings(model.system));
-}
+double number(const Model& model, Expr e) { return number_of(model.system, e); }
 
 /// One for each mode of oscillation, and 0 for each pair of vanishing eigenvalues; ascending. Squared: ω², negative for modes that
 /// grow and decay instead.
@@ -39,31 +41,72 @@ std::string list_text(const std::vector<double>& values, const Expectation& e) {
 
 }  // namespace
 
-ModeClaims::ModeClaims(const Model& model, const EquationsOfMotion& equations) : model_(model), equations_(equations) {
+ModeClaims::ModeClaims(const Model& model, const EquationsOfMotion& equations) : model_(model), derived_(equations), equations_(equations) {
   Diagnostics unheard;  // why there is no start is for a run to say
   if (const auto start = consistent_start(model, equations, unheard)) start_ = start->state;
   else start_ = {0, std::vector<double>(model.system.coordinates.size()), std::vector<double>(model.system.coordinates.size())};
 }
 
-void ModeClaims::decide(const Expectation& e, ExpectationResult& result) const {
+/// Values with a tolerance are where the search begins; the others are kept.
+std::optional<ModalStudy> ModeClaims::study_at(const Expectation& e, Diagnostics& told) const {
+  MotionState begin = start_;
+  std::vector<StartValue> kept;
+  for (std::size_t i = 0; i < e.at.size(); ++i) {
+    if (i >= e.at_tolerances.size() || !e.at_tolerances[i].size) kept.push_back(e.at[i]);
+    else begin.q[e.at[i].coordinate] = number(model_, e.at[i].value);
+  }
+  return modal_study_at(equations_, begin, kept, told);
+}
+
+void ModeClaims::decide(const Expectation& e, ExpectationResult& result) {
+  using Asked = syntax::ExpectStatement::Kind;
+  if (e.kind == Asked::Stable) return decide_critical(e, equations_, start_, result, model_.experiment);
+  if (e.kind == Asked::Matrix && e.name == "M") return decide_mass_matrix(e, derived_, start_, result);
   Diagnostics told;
-  const auto study = modal_study_at(equations_, start_, e.at, told);
+  const auto study = study_at(e, told);
   if (!study) {
-    result.expected = e.kind == syntax::ExpectStatement::Kind::Equilibrium ? "an equilibrium" : "an equilibrium or a steady motion";
+    result.expected = e.kind == Asked::Equilibrium ? "an equilibrium" : "an equilibrium or a steady motion";
     result.actual = "none";
     for (const Diagnostic& d : told.items()) result.message = d.message + ". " + d.reason;
     return;
   }
   // On a kink each side is judged for itself, and all have to agree.
   for (const ModalEntry& entry : study->entries) {
-    if (e.kind == syntax::ExpectStatement::Kind::Equilibrium) decide_stability(e, entry, result);
-    else decide_frequencies(e, entry.analysis, result);
+    decide_of(e, entry, result);
     if (!entry.side.empty()) result.message = fmt::format("On the side {} of a kink: {}", entry.side, result.message);
     if (!result.passed) return;
   }
   if (study->kinks.empty()) return;
   result.passed = false;
   result.message = fmt::format("On the side {} of a kink forces are left over: there is no linearization.", study->kinks.front().side);
+}
+
+void ModeClaims::decide_of(const Expectation& e, const ModalEntry& entry, ExpectationResult& result) const {
+  using Asked = syntax::ExpectStatement::Kind;
+  if (e.kind == Asked::Equilibrium) return decide_stability(e, entry, result);
+  if (e.kind == Asked::Matrix) return decide_linearization(e, model_.system, entry.linearization, result);
+  if (e.kind == Asked::Eigenvalues) return judge_spectrum(e, model_.system, entry.analysis.eigenvalues, result);
+  decide_frequencies(e, entry.analysis, result);
+}
+
+/// Whether it lies where it should; what has no tolerance was found to within its rounding.
+bool ModeClaims::decide_place(const Expectation& e, const ModalEntry& entry, ExpectationResult& result) const {
+  for (std::size_t i = 0; i < e.at_tolerances.size(); ++i) {
+    const PointTolerance& tolerance = e.at_tolerances[i];
+    if (!tolerance.size) continue;
+    Expectation one;
+    one.value = e.at[i].value;
+    one.tolerance = tolerance.size;
+    one.relative = tolerance.relative;
+    one.display_unit = tolerance.display_unit;
+    one.display_factor = tolerance.display_factor;
+    judge_number(one, model_.system, entry.equilibrium.point.q[e.at[i].coordinate], result);
+    const std::string& name = model_.system.coordinates[e.at[i].coordinate].name;
+    result.actual = name + " = " + result.actual;
+    result.expected = name + " = " + result.expected;
+    if (!result.passed) return false;
+  }
+  return true;
 }
 
 void ModeClaims::decide_frequencies(const Expectation& e, const ModalAnalysis& analysis, ExpectationResult& result) const {
@@ -93,13 +136,17 @@ void ModeClaims::decide_frequencies(const Expectation& e, const ModalAnalysis& a
 }
 
 void ModeClaims::decide_stability(const Expectation& e, const ModalEntry& entry, ExpectationResult& result) const {
+  if (!decide_place(e, entry, result)) return;
   const Stability verdict = entry.analysis.stability.verdict;
   const std::string_view word = verdict == Stability::Unstable ? "unstable" : verdict == Stability::Undecided ? "undecided" : "stable";
-  result.actual = entry.equilibrium.at_rest ? "an equilibrium" : "a steady motion";
-  result.expected = "an equilibrium";
+  if (result.actual.empty()) {
+    result.actual = entry.equilibrium.at_rest ? "an equilibrium" : "a steady motion";
+    result.expected = "an equilibrium";
+  }
   if (!e.word.empty()) {
     result.expected = e.word;
     result.actual = word;
+    result.tolerance.clear();
   }
   result.passed = e.word.empty() || e.word == word;
   result.message = fmt::format("residual {:.1e}; {}", entry.equilibrium.residual, entry.analysis.stability.reason);

@@ -6,7 +6,9 @@
 #include "verification/action_claims.hpp"
 #include "verification/claims.hpp"
 #include "verification/constraint_claims.hpp"
+#include "verification/extended_claims.hpp"
 #include "verification/mode_claims.hpp"
+#include "verification/orbit_claims.hpp"
 #include "verification/phase_space_claims.hpp"
 
 #include <fmt/format.h>
@@ -40,6 +42,7 @@ class Verifier {
       results_.push_back(blank(e));
       decide(e, results_.back());
     }
+    find_end();
     run_requests();
     Verification verification;
     verification.results = std::move(results_);
@@ -81,7 +84,11 @@ class Verifier {
   void decide(const Expectation& e, ExpectationResult& result) {
     const std::size_t index = results_.size() - 1;
     switch (e.kind) {
-      case Kind::ValueAt: requests_.push_back({index, number(e.time), false}); return;
+      case Kind::ValueAt:
+        if (e.at_until) end_lines_.push_back(index);
+        else requests_.push_back({index, number(e.time), false});
+        return;
+      case Kind::UntilAt: end_lines_.push_back(index); return;
       case Kind::Value: requests_.push_back({index, number(model_.experiment.start_time), false}); return;
       case Kind::EnergyConserved: energy_ = true; energy_lines_.push_back(index); return;
       case Kind::Conserved:
@@ -101,9 +108,13 @@ class Verifier {
         result.message = "The model has no mistake that gives this error.";
         return;
       case Kind::Integral: decide_integral(e, result); return;
-      case Kind::Frequencies: case Kind::Equilibrium:
+      case Kind::Frequencies: case Kind::Equilibrium: case Kind::Eigenvalues: case Kind::Matrix: case Kind::Stable:
         if (!mode_claims_) mode_claims_.emplace(model_, equations_);
         mode_claims_->decide(e, result);
+        return;
+      case Kind::Multipliers: case Kind::Trace: case Kind::Period:
+        if (!orbit_claims_) orbit_claims_.emplace(model_, equations_, options_.interrupt);
+        orbit_claims_->decide(e, result);
         return;
       case Kind::Action: case Kind::MorseIndex: case Kind::PathAt:
         if (!action_claims_) action_claims_.emplace(model_, equations_, options_.interrupt);
@@ -125,10 +136,11 @@ class Verifier {
 
   void decide_conserved(const Expectation& e, ExpectationResult& result) {
     if (!needs_solvable(result)) return;
-    const ZeroTest test = along().vanishes(along().rate(e.subject));
+    if (!e.where.empty()) return decide_conserved_on_level(e, result);
+    const ZeroTest test = along().vanishes(along().rate(with_momenta(e.subject, equations_)));
     result.expected = "d/dt = 0 along the motion";
     if (test.verdict == Verdict::Zero)
-      if (const AcrossSwitches sides = along().across(e.subject); sides.switches > 0 || sides.jump)
+      if (const AcrossSwitches sides = along().across(with_momenta(e.subject, equations_)); sides.switches > 0 || sides.jump)
         return judge_sides(test, sides, result);
     result.passed = test.verdict == Verdict::Zero;
     result.actual = result.passed ? result.expected : "d/dt is not 0";
@@ -149,13 +161,40 @@ class Verifier {
                        std::abs(jump.jump), jump.place.empty() ? "" : " where " + jump.place);
   }
 
+  /// dF/dt = 0 at all states on the level; and the motion stays there, else nothing would follow for it.
+  void decide_conserved_on_level(const Expectation& e, ExpectationResult& result) {
+    result.expected = "d/dt = 0 along the motions on the level";
+    std::vector<Expr> level;
+    for (const Expr& x : e.where) level.push_back(with_momenta(x, equations_));
+    for (const Expr& x : level) {
+      const ZeroTest stays = along().vanishes_on(along().rate(x), level);
+      if (stays.verdict == Verdict::Zero) continue;
+      result.actual = stays.verdict == Verdict::Nonzero ? "the motion leaves the level" : "undecided";
+      result.message = stays.verdict == Verdict::Nonzero ? "A quantity that is given for the level changes along the motion." : stays.reason;
+      return;
+    }
+    const ZeroTest test = along().vanishes_on(along().rate(with_momenta(e.subject, equations_)), level);
+    result.passed = test.verdict == Verdict::Zero;
+    result.actual = result.passed ? result.expected : test.verdict == Verdict::Nonzero ? "d/dt is not 0 on the level" : "undecided";
+    result.message = result.passed ? fmt::format("vanishes to 60 digits at {} points of the level", test.points)
+                     : test.verdict == Verdict::Nonzero
+                         ? fmt::format("At a state on the level its time derivative is {:.6g}.", test.witness_value)
+                         : test.reason;
+    if (!result.passed) return;
+    const AcrossSwitches sides = along().across(with_momenta(e.subject, equations_));
+    if (!sides.jump) return;
+    result.passed = false;
+    result.actual = "d/dt = 0 on each side of a switch alone";
+    result.message = jump_text(*sides.jump);
+  }
+
   void decide_not_conserved(const Expectation& e, ExpectationResult& result) {
     if (!needs_solvable(result)) return;
-    const ZeroTest test = along().vanishes(along().rate(e.subject));
+    const ZeroTest test = along().vanishes(along().rate(with_momenta(e.subject, equations_)));
     result.expected = "d/dt is not 0 along the motion";
     result.passed = test.verdict == Verdict::Nonzero;
     if (test.verdict == Verdict::Zero)
-      if (const AcrossSwitches sides = along().across(e.subject); sides.jump) {
+      if (const AcrossSwitches sides = along().across(with_momenta(e.subject, equations_)); sides.jump) {
         result.passed = true;
         result.actual = "it jumps at a switch";
         result.message = jump_text(*sides.jump);
@@ -229,9 +268,38 @@ class Verifier {
 
   // ------------------------------------------------------------------------------------------------ runs
 
+  /// When the condition of `run until` is met: by the model's own run.
+  void find_end() {
+    if (end_lines_.empty()) return;
+    Diagnostics unheard;   // a run that cannot start says so once
+    const auto run = simulate(model_, equations_, options_, requests_.empty() && !energy_ ? diagnostics_ : unheard);
+    for (const std::size_t index : end_lines_) {
+      const Expectation& e = model_.experiment.expectations[index];
+      if (!run) results_[index].message = "The run could not start.";
+      else if (run->ending != Ending::UntilReached) results_[index].message = "The run ended before: " + run->reason + ".";
+      else if (e.kind == Kind::UntilAt) judge_value({index, 0, false}, run->final.t, results_[index]);
+      else requests_.push_back({index, run->final.t, false});
+    }
+  }
+
+  /// Those that the model wants in more digits than double has; the others are left.
+  void run_extended_requests(double begin) {
+    const ExtendedClaims claims(model_, equations_, options_.interrupt);
+    std::vector<std::size_t> ahead, behind;
+    const auto taken = [&](const Request& r) {
+      if (r.scan || !claims.takes(model_.experiment.expectations[r.expectation])) return false;
+      (r.time >= begin ? ahead : behind).push_back(r.expectation);
+      return true;
+    };
+    requests_.erase(std::remove_if(requests_.begin(), requests_.end(), taken), requests_.end());
+    for (const auto* which : {&ahead, &behind})
+      if (!which->empty()) claims.decide(*which, results_, diagnostics_);
+  }
+
   void run_requests() {
-    if (requests_.empty() && !energy_) return;
     const double begin = number(model_.experiment.start_time);
+    run_extended_requests(begin);
+    if (requests_.empty() && !energy_) return;
     run_direction([&](const Request& r) { return r.scan || r.time >= begin; }, true);
     run_direction([&](const Request& r) { return !r.scan && r.time < begin; }, false);
   }
@@ -355,9 +423,11 @@ class Verifier {
   std::optional<ConstraintAnalysis> constraints_;
   std::optional<ModeClaims> mode_claims_;
   std::optional<ActionClaims> action_claims_;
+  std::optional<OrbitClaims> orbit_claims_;
   std::vector<ExpectationResult> results_;
   std::vector<Request> requests_;
   std::vector<std::size_t> energy_lines_;
+  std::vector<std::size_t> end_lines_;   // about the end of `run until`
   bool energy_ = false;
   std::map<int, std::optional<Invariants>> invariants_;   // by degree in the velocities
 };

@@ -37,6 +37,25 @@ TEST_CASE("simulate --precision: all digits and no more, in text and JSON") {
   CHECK(json.at("ok") == true);
 }
 
+TEST_CASE("precision and method as statements of the model, and overruled") {
+  const Folder folder;
+  const std::string quad = folder.write("quad.lag", oscillator + "precision quad\n");
+  CHECK(contains(maup({"simulate", quad}).out, cos2.substr(0, 33)));
+  CHECK(json_of(maup({"simulate", quad, "--json"})).at("precision") == "quad");
+  CHECK_FALSE(contains(maup({"simulate", quad, "--precision", "double"}).out, cos2.substr(0, 20)));
+  CHECK(json_of(maup({"simulate", quad, "--precision", "100", "--json"})).at("precision") == "100");
+  const auto method_of = [](const Outcome& o) { return json_of(o).at("statistics").at("method").get<std::string>(); };
+  const std::string steps = folder.write("steps.lag", oscillator + "method variational order 2 step 100 ms\n");
+  CHECK(method_of(maup({"simulate", steps, "--json"})) == "variational");
+  CHECK(json_of(maup({"simulate", steps, "--json"})).at("statistics").at("steps") == 20);
+  CHECK(json_of(maup({"simulate", steps, "--step", "50ms", "--json"})).at("statistics").at("steps") == 40);
+  CHECK(method_of(maup({"simulate", steps, "--method", "taylor", "--json"})) == "taylor");
+  CHECK(method_of(maup({"simulate", steps, "--method", "auto", "--json"})) == "taylor");
+  const Outcome both = maup({"simulate", folder.write("both.lag", oscillator + "precision quad\nmethod stiff\n")});
+  CHECK(both.code == 1);
+  CHECK(contains(both.err, "E0725"));
+}
+
 TEST_CASE("simulate --precision: a trajectory with all digits") {
   const Folder folder;
   const std::string model = folder.write("o.lag", oscillator);

@@ -21,7 +21,7 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
   Json document = json_document("plot");
   document["file"] = options.output;
   const bool readable_model = !study.wrong();
-  const SimulationOptions settings = simulation_options(options.run, study.diagnostics());
+  const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
   if (readable_model && study.wrong()) {
     finish(console, study, document);
     return ExitCode::Usage;

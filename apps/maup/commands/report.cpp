@@ -112,7 +112,7 @@ ExitCode report(const ReportOptions& options, Console& console) {
   Study study(options.model.path, options.model.overrides);
   Json document = json_document("report");
   const bool readable_model = !study.wrong();
-  const SimulationOptions settings = simulation_options(options.run, study.diagnostics());
+  const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
   check_orbits_options(options.orbits, study.diagnostics());
   if (readable_model && study.wrong()) return finish_usage(console, study, "report");
   if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);

@@ -17,7 +17,7 @@ struct SimulateOptions {
   ModelOptions model;
   RunOptions run;
   std::string output, plot;
-  std::string precision = "double";
+  std::optional<std::string> precision;   // none: that of the model
 };
 
 bool ends_with(const std::string& text, const std::string& end) {
@@ -115,11 +115,10 @@ void write_files(const SimulateOptions& options, const SimulationResult& result,
   }
 }
 
-ExitCode simulate_model(const SimulateOptions& options, Console& console) {
-  Study study(options.model.path, options.model.overrides);
+ExitCode simulate_model(const SimulateOptions& options, Study& study, Console& console) {
   const bool readable_model = !study.wrong();
   check_endings(options, study.diagnostics());
-  const SimulationOptions settings = simulation_options(options.run, study.diagnostics());
+  const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
   if (readable_model && study.wrong()) {
     finish(console, study, json_document("simulate"));
     return ExitCode::Usage;
@@ -143,16 +142,15 @@ ExitCode simulate_model(const SimulateOptions& options, Console& console) {
 /// Pictures and binary trajectories hold doubles.
 void check_extended_files(const SimulateOptions& options, Diagnostics& diagnostics) {
   if (!options.plot.empty())
-    diagnostics.error("E0809", {}, "--plot draws what double computes.", "A picture shows no more digits.", "Leave --precision out for it.");
+    diagnostics.error("E0809", {}, "--plot draws what double computes.", "A picture shows no more digits.", "Give --precision double for it.");
   if (!options.output.empty() && !ends_with(options.output, ".csv"))
     diagnostics.error("E0810", {}, fmt::format("{} is no format for numbers in many digits.", options.output), {}, "Take an ending .csv.");
 }
 
-ExitCode simulate_extended_model(const SimulateOptions& options, Console& console) {
-  Study study(options.model.path, options.model.overrides);
+ExitCode simulate_extended_model(const SimulateOptions& options, const std::string& digits, Study& study, Console& console) {
   const bool readable_model = !study.wrong();
   check_extended_files(options, study.diagnostics());
-  const Precision precision = options.precision == "quad" ? Precision::Quad : Precision::Digits100;
+  const Precision precision = digits == "quad" ? Precision::Quad : Precision::Digits100;
   ExtendedSimulationOptions settings = extended_options(options.run, precision, study.diagnostics());
   settings.rows = !options.output.empty();
   if (readable_model && study.wrong()) {
@@ -171,8 +169,15 @@ ExitCode simulate_extended_model(const SimulateOptions& options, Console& consol
       console.say(fmt::format("The run ended at {}: {}\n", system.moment(exact(result->reached)), result->reason));
   }
   const bool files_written = !study.wrong();
-  finish(console, study, extended_document(*result, options.precision, system));
+  finish(console, study, extended_document(*result, digits, system));
   return files_written ? exit_code(result->ending) : ExitCode::RunFailed;
+}
+
+/// The precision of the command line, else that of the model. A word that is none is for the model to refuse.
+ExitCode simulate_in_any_precision(const SimulateOptions& options, Console& console) {
+  Study study(options.model.path, options.model.overrides);
+  const std::string digits = options.precision ? *options.precision : precision_of(study.tree());
+  return digits == "quad" || digits == "100" ? simulate_extended_model(options, digits, study, console) : simulate_model(options, study, console);
 }
 
 }  // namespace
@@ -183,14 +188,11 @@ void add_simulate(CommandLine& line) {
                                "  maup simulate pendulum.lag\n"
                                "  maup simulate pendulum.lag --at 3s -o motion.csv --plot motion.svg\n"
                                "  maup simulate pendulum.lag --set l=2m --start θ=170deg --duration -5s --json\n",
-                               [options](Console& console) {
-                                 return options->precision == "double" ? simulate_model(*options, console)
-                                                                       : simulate_extended_model(*options, console);
-                               });
+                               [options](Console& console) { return simulate_in_any_precision(*options, console); });
   add_model_options(command, options->model);
   add_span_options(command, options->run);
   add_method_options(command, options->run);
-  command.add_option("--precision", options->precision, "double, quad (113 bits) or 100 (decimal digits): as many digits as two runs agree on")
+  command.add_option("--precision", options->precision, "double, quad (113 bits) or 100 (decimal digits): as many digits as two runs agree on; default: the model's `precision`, or double")
       ->check(CLI::IsMember({"double", "quad", "100"}))
       ->type_name("DIGITS");
   command.add_option("-o,--output", options->output, "The trajectory: .csv, .npy or .json")->type_name("FILE");

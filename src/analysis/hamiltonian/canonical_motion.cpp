@@ -84,7 +84,7 @@ std::vector<std::size_t> independent_constraints(const EquationsOfMotion& equati
 
 TaylorOptions taylor_options(const SimulationOptions& options) {
   TaylorOptions out;
-  out.tolerance = options.method == StepMethod::Taylor || options.method == StepMethod::Automatic ? options.tolerance : 0;
+  out.tolerance = !options.method || *options.method == StepMethod::Taylor || *options.method == StepMethod::Automatic ? options.tolerance : 0;
   out.maximum_steps = options.maximum_steps;
   out.interrupt = options.interrupt;
   out.backend = options.backend;

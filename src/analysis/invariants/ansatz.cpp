@@ -146,6 +146,8 @@ Basis charges(Ansatz& a, const MotionRows& rows, Richness r, std::uint64_t seed)
   displacements = with_one(rows, g, displacements, seed);
   Monomials gauges = joined({atoms.coordinates, products(atoms.coordinates, atoms.coordinates), atoms.functions,
                              products(atoms.functions, atoms.coordinates), atoms.products});
+  // cos φ/sin θ: what the field of a monopole takes in spherical coordinates
+  if (r.pairs && !a.constant_mass) gauges = joined({gauges, products(atoms.functions, atoms.functions)});
   gauges = with_one(rows, g, gauges, seed + 1);
   const Monomials few = with_one(rows, g, time_functions(a, r.time_degree), seed + 2),
                   more = with_one(rows, g, time_functions(a, r.time_degree + 1), seed + 3);
@@ -248,6 +250,46 @@ Basis relative_basis(Ansatz& a, const MotionRows& rows, int degree, std::uint64_
   return basis;
 }
 
+/// Whether the coordinate itself is the argument of a sine or a cosine.
+bool is_angle(const Ansatz& a, const Monomial& q) {
+  const std::vector<Expr>& values = a.generators.values();
+  return std::any_of(a.atoms.functions.begin(), a.atoms.functions.end(), [&](const Monomial& f) {
+    const Expr e = values[f[0].generator];
+    return f.size() == 1 && (e.is(Kind::Sin) || e.is(Kind::Cos)) && e[0] == values[q[0].generator];
+  });
+}
+
+/// Of two coordinates of which one or both are angles: products of powers of the one and of sines and cosines of half the
+/// other, up to the third. In them the integral of the swinging Atwood machine is a polynomial.
+Basis half_angle_basis(Ansatz& a, const MotionRows& rows, int degree, int parity, std::uint64_t seed) {
+  constexpr int highest = 3;
+  if (a.atoms.coordinates.size() != 2 || a.explicit_time || rows.constraint.rows > 0 || !a.directions.empty()) return {};
+  Monomials functions{Monomial{}};
+  bool any = false;
+  const Monomials coordinates = a.atoms.coordinates;
+  for (const Monomial& q : coordinates) {
+    const bool angle = is_angle(a, q);
+    any |= angle;
+    const Expr half = a.generators.values()[q[0].generator] * Rational(1, 2);
+    const Monomials of_one = angle ? Monomials{a.generators.add(sin(half)), a.generators.add(cos(half))} : Monomials{q};
+    Monomials list{Monomial{}};
+    for (int k = 1; k <= highest; ++k) list = joined({list, powers(of_one, k)});
+    functions = products(functions, list);
+  }
+  if (!any) return {};
+  Basis basis{polynomial(a, std::vector<Monomials>(static_cast<std::size_t>(degree) / 2 + 1, with_one(rows, a.generators, functions, seed)),
+                         {Monomial{}}, degree, parity),
+              {}};
+  basis.description = fmt::format(
+      "polynomials {}of degree {} in the velocities, coefficients from sines and cosines of half the angles and powers of coordinates up to "
+      "degree {}: {} functions",
+      parity < 0   ? ""
+      : parity % 2 ? "odd "
+                   : "even ",
+      degree, highest, basis.monomials.size());
+  return basis;
+}
+
 }  // namespace
 
 PolynomialBases polynomial_bases(Ansatz& a, const MotionRows& rows, int degree, std::size_t largest,
@@ -277,6 +319,9 @@ PolynomialBases polynomial_bases(Ansatz& a, const MotionRows& rows, int degree, 
     if (out.needed > largest) continue;
     if (Basis relative = relative_basis(a, rows, degree, seed + 2); !relative.monomials.empty())
       out.bases.insert(out.bases.begin(), std::move(relative));
+    for (const int parity : parities)
+      if (Basis half = half_angle_basis(a, rows, degree, parity, seed + 3); !half.monomials.empty() && half.monomials.size() <= largest)
+        out.bases.push_back(std::move(half));
     return out;
   }
   out.bases.clear();

@@ -134,6 +134,72 @@ TEST_CASE("experiments") {
   CHECK(only<DrawStatement>("draw box - trail").items[0].path.size() == 2);
 }
 
+TEST_CASE("expectations about neighbours of a point or a periodic motion") {
+  using Kind = ExpectStatement::Kind;
+  const auto place = only<ExpectStatement>("expect equilibrium at x = 0.8369151 m ± 1e-7, y = 0 rel 1e-3, z = 1 is stable");
+  CHECK(place.kind == Kind::Equilibrium);
+  REQUIRE(place.at_tolerances.size() == 3);
+  CHECK(text_of(place.at_tolerances[0].size) == "1e-7");
+  CHECK_FALSE(place.at_tolerances[0].relative);
+  CHECK(place.at_tolerances[1].relative);
+  CHECK_FALSE(place.at_tolerances[2].size);
+  CHECK(place.word.text == "stable");
+  const auto values = only<ExpectStatement>("expect eigenvalues at θ = 0 : -5.6 1/s, (-0.2, 1.3) 1/s, 0 rel 1e-9");
+  CHECK(values.kind == Kind::Eigenvalues);
+  REQUIRE(values.values.size() == 3);
+  CHECK_FALSE(values.imaginary[0]);
+  CHECK(shape(*values.imaginary[1]) == "[1.3 s^-1:1]");
+  const auto matrix = only<ExpectStatement>("expect M at q1 = 0, q2 = 1 : ((2, 1), (1, 3)) kg m^2 ± 1e-9");
+  CHECK(matrix.kind == Kind::Matrix);
+  CHECK(matrix.name.text == "M");
+  CHECK(matrix.width == 2);
+  CHECK(matrix.values.size() == 4);
+  CHECK(text_of(matrix.values[3]) == "3 kg m^2");
+  const auto entry = only<ExpectStatement>("expect A in θ' by θ at θ = 0 : 31.18 1/s^2 ± 1e-2");
+  CHECK(entry.width == 1);
+  CHECK(text_of(entry.rows[0]) == "θ'");
+  CHECK(text_of(entry.columns[0]) == "θ");
+  CHECK(only<ExpectStatement>("expect M at 3 s = 2 kg ± 1e-9").kind == Kind::ValueAt);
+  CHECK(codes("expect M at x = 0 : ((1, 2), (3)) ± 1e-9") == "E0111");
+  CHECK(codes("expect eigenvalues at x = 0 : (1, 2, 3) ± 1e-9") == "E0111");
+  const auto stable = only<ExpectStatement>("expect stable for Ω < 5.72 rad/s ± 1e-2 at θ = 0");
+  CHECK(stable.kind == Kind::Stable);
+  CHECK_FALSE(stable.above);
+  CHECK(stable.at.size() == 1);
+  CHECK(only<ExpectStatement>("expect unstable for Ω > 5.72 rad/s ± 1e-2").above);
+  CHECK(only<ExpectStatement>("expect multipliers over 2 s : (0.9, 0.1), 1 rel 1e-9").kind == Kind::Multipliers);
+  CHECK(text_of(only<ExpectStatement>("expect trace over 2 s = 2 ± 1e-9").time) == "2 s");
+  CHECK_FALSE(only<ExpectStatement>("expect period = 2 s ± 1e-9").time);
+  CHECK(only<ExpectStatement>("expect until at 2 s ± 1e-9").kind == Kind::UntilAt);
+  CHECK(only<ExpectStatement>("expect x at until = 2 m ± 1e-9").at_until);
+  CHECK(only<ExpectStatement>("expect action of path 2 = 2 ± 1e-9").occurrence == 2);
+  CHECK(only<ExpectStatement>("expect index of path 2 = 1").occurrence == 2);
+  CHECK(only<ExpectStatement>("expect path 2 x at 1 = 1 ± 1e-9").occurrence == 2);
+  CHECK(codes("expect action of path 1.5 = 2 ± 1e-9") == "E0111");
+  const auto level = only<ExpectStatement>("expect conserved x' y where p_φ = 0, y' = 1");
+  REQUIRE(level.where.size() == 2);
+  CHECK(text_of(level.where[1].left) == "y'");
+  CHECK(codes("expect conserved x where y = 0 rel 1e-9") == "E0111");
+}
+
+TEST_CASE("words of expectations are ordinary names where the model declares them") {
+  for (const char* word : {"period", "trace"}) {
+    Parsed parsed("param " + std::string(word) + " = 1\nexpect " + word + " = 1 ± 1e-9\n");
+    REQUIRE_MESSAGE(parsed.fine(), parsed.messages());
+    CHECK(std::get<ExpectStatement>(parsed.tree.statements[1].body).kind == ExpectStatement::Kind::Value);
+  }
+}
+
+TEST_CASE("method and precision") {
+  CHECK(only<MethodStatement>("method stiff").word.text == "stiff");
+  const auto method = only<MethodStatement>("method variational order 4 step 10 ms");
+  CHECK(method.order == 4);
+  CHECK(text_of(method.step) == "10 ms");
+  CHECK(only<PrecisionStatement>("precision quad").word.text == "quad");
+  CHECK(only<PrecisionStatement>("precision 100").word.text == "100");
+  CHECK(codes("method taylor order 2.5") != "");
+}
+
 TEST_CASE("expectations") {
   using Kind = ExpectStatement::Kind;
   const auto at = only<ExpectStatement>("expect θ at 10 s = 0.123456789012 rad ± 1e-11");

@@ -1,18 +1,10 @@
-#include "../model_text.hpp"
+#include "boundary.hpp"
 
 #include <maupertuis/verification.hpp>
 
 using namespace maupertuis;
 
 namespace {
-
-ExpectationResult only(const std::string& text) {
-  const ModelText m(text);
-  Diagnostics diagnostics;
-  const Verification v = verify(m.model, m.equations, m.source, {}, diagnostics);
-  REQUIRE(v.results.size() == 1);
-  return v.results.front();
-}
 
 const std::string disk = R"(param m = 1 kg, R = 20 cm
 coord x, y : length

@@ -1,16 +1,10 @@
-#include "../model_text.hpp"
+#include "boundary.hpp"
 
 #include <maupertuis/verification.hpp>
 
 using namespace maupertuis;
 
 namespace {
-
-Verification verify_text(const std::string& text) {
-  const ModelText m(text);
-  Diagnostics diagnostics;
-  return verify(m.model, m.equations, m.source, {}, diagnostics);
-}
 
 const std::string pendulum = R"(system pendulum
 param m = 1 kg, l = 2 m, g = 9.81 m/s^2
@@ -29,12 +23,6 @@ gravity (0, 0, -g)
 start θ = 1 rad, φ' = 2 rad/s
 run 5 s
 )";
-
-ExpectationResult only(const std::string& text) {
-  const Verification v = verify_text(text);
-  REQUIRE(v.results.size() == 1);
-  return v.results.front();
-}
 
 void check_pitfall(const std::string& claim_text, const std::string& word) {
   const ExpectationResult r = only(claim_text);

@@ -1,0 +1,32 @@
+#pragma once
+#include <maupertuis/verification.hpp>
+
+#include <complex>
+#include <vector>
+
+/// Numbers that came out against numbers that are expected. NaN agrees with nothing.
+namespace maupertuis {
+
+/// What an expression of parameters is, in SI; `otherwise` for an empty handle.
+double number_of(const MechanicalSystem& system, Expr e, double otherwise = 0);
+
+/// The largest difference that passes where `size` is expected: the tolerance, or that part of |size|. Without a tolerance
+/// the digits as written count: 1e-9 of the size.
+double allowed_difference(const Expectation& e, const MechanicalSystem& system, double size);
+
+/// "rel 1e-09", "± 1e-09 rad": what is shown beside the expected value.
+std::string tolerance_text(const Expectation& e, const MechanicalSystem& system);
+
+/// Fills everything but the message, which says by how much it is off.
+void judge_number(const Expectation& e, const MechanicalSystem& system, double actual, ExpectationResult& result);
+
+/// As sets: e.values + i e.imaginary, of which one with an imaginary part stands for itself and its conjugate, against `actual`.
+void judge_spectrum(const Expectation& e, const MechanicalSystem& system, const std::vector<std::complex<double>>& actual,
+                    ExpectationResult& result);
+/// How many values e stands for.
+std::size_t spectrum_size(const Expectation& e, const MechanicalSystem& system);
+
+/// The same numbers by rows, `width` in each.
+void judge_entries(const Expectation& e, const MechanicalSystem& system, const std::vector<double>& actual, ExpectationResult& result);
+
+}  // namespace maupertuis

@@ -1,0 +1,30 @@
+#pragma once
+#include <maupertuis/orbits.hpp>
+#include <maupertuis/verification.hpp>
+
+#include <map>
+
+namespace maupertuis {
+
+/// expect multipliers, expect trace, expect period: of the periodic motion next to the model's start, as `maup orbits --floquet`
+/// finds it; `over` gives a period, or nearly one, which is looked for otherwise. One search for each such time.
+class OrbitClaims {
+ public:
+  OrbitClaims(const Model& model, const EquationsOfMotion& equations, const std::atomic<bool>* interrupt)
+      : model_(model), equations_(equations), interrupt_(interrupt) {}
+  void decide(const Expectation& expectation, ExpectationResult& result);
+
+ private:
+  struct Answer {
+    std::optional<FloquetResult> found;
+    std::string trouble;
+  };
+  const Answer& answer(const Expectation& expectation);
+
+  const Model& model_;
+  const EquationsOfMotion& equations_;
+  const std::atomic<bool>* interrupt_;
+  std::map<double, Answer> answers_;   // by the period that was given; 0: none
+};
+
+}  // namespace maupertuis
