@@ -49,7 +49,12 @@ ZeroTest AlongMotion::vanishes_on(Expr e, std::span<const Expr> level) const {
     unknowns.insert(unknowns.end(), {c.q, c.velocity});
     if (constrained()) unknowns.push_back(c.acceleration);
   }
-  return zero_test_where({&plain, 1}, all, unknowns, center());
+  Bindings near = center();
+  const ZeroTest test = zero_test_where({&plain, 1}, all, unknowns, near);
+  if (test.verdict != Verdict::Undecided) return test;
+  // r² φ' = 0: from the start Newton's method may run towards r = 0; from rest it need not.
+  for (const Coordinate& c : equations_.system->coordinates) near[c.velocity] = 0.0;
+  return zero_test_where({&plain, 1}, all, unknowns, near);
 }
 
 Expr AlongMotion::rate(Expr integral) const {

@@ -42,6 +42,8 @@ bool tolerance_of(Elaboration& e, Expectation& out, const ExpectStatement& s, co
     return false;
   }
   out.tolerance = v.scalar();
+  const bool turns = out.kind == Kind::Frequencies && !out.squared && v.hertz;  // values are kept in rad/s
+  if (turns) out.tolerance = v.scalar() * e.number(2) * e.context.pi();
   if (in_display_unit) out.tolerance = v.scalar() * Rational::from_double(out.display_factor);
   return true;
 }

@@ -201,7 +201,7 @@ class Verifier {
         return;
       }
     result.actual = result.passed ? result.expected : test.verdict == Verdict::Zero ? "d/dt = 0: it is conserved" : "undecided";
-    result.message = result.passed ? "a state was found at which it changes" : test.reason;
+    result.message = result.passed ? "a state was found at which it changes" : test.verdict == Verdict::Zero ? ground(test) : test.reason;
   }
 
   /// The search of `maup invariants`, of the degree that the expectation has in the velocities; one for each degree.
