@@ -96,7 +96,7 @@ std::vector<ExpressionPtr> StatementParser::components() {
 
 // The unit that follows their bracket is that of all: (1, 2) m.
 std::vector<ExpressionPtr> StatementParser::with_unit_after(std::vector<ExpressionPtr> out) {
-  const bool reciprocal = peek().is("/") || (peek().is("1") && peek(1).is("/"));
+  const bool reciprocal = peek().is("/") || (peek().kind == Token::Kind::Number && peek().text == "1" && peek(1).is("/"));
   if (!reciprocal && (peek().kind != Token::Kind::Name || is_clause_word(peek().text))) return out;
   const auto unit = units();
   if (!unit) fail_expected("a unit after the bracket");

@@ -148,7 +148,7 @@ TEST_CASE("expectations about neighbours of a point or a periodic motion") {
   CHECK(values.kind == Kind::Eigenvalues);
   REQUIRE(values.values.size() == 3);
   CHECK_FALSE(values.imaginary[0]);
-  CHECK(shape(*values.imaginary[1]) == "[1.3 s^-1:1]");
+  CHECK(shape(*values.imaginary[1]) == "[1.3 s:-1]");
   const auto matrix = only<ExpectStatement>("expect M at q1 = 0, q2 = 1 : ((2, 1), (1, 3)) kg m^2 ± 1e-9");
   CHECK(matrix.kind == Kind::Matrix);
   CHECK(matrix.name.text == "M");
