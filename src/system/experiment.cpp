@@ -235,7 +235,8 @@ void sweep(Elaboration& e, const syntax::SweepStatement& s, Span span) {
 void elaborate_method(Elaboration& e, const syntax::MethodStatement& s) {
   const auto* known = std::find_if(std::begin(kMethods), std::end(kMethods), [&](const auto& m) { return s.word.text == m.first; });
   if (known == std::end(kMethods)) {
-    e.diagnostics.error("E0251", s.word.span, fmt::format("`{}` is no method", s.word.text), "", "Write auto, taylor, variational or stiff.");
+    e.diagnostics.error("E0251", s.word.span, fmt::format("`{}` is no method", s.word.text),
+                        "A method makes the steps of a run.", "Write auto, taylor, variational or stiff.");
     return;
   }
   MethodChoice out{known->second, s.order, {}};
@@ -265,7 +266,8 @@ void elaborate_precision(Elaboration& e, const syntax::PrecisionStatement& s) {
   else if (word == "quad") e.experiment().precision = NumberFormat::Quad;
   else if (word == "100") e.experiment().precision = NumberFormat::Digits100;
   else
-    e.diagnostics.error("E0251", s.word.span, fmt::format("`{}` is no precision", word), "",
+    e.diagnostics.error("E0251", s.word.span, fmt::format("`{}` is no precision", word),
+                        "It says how many digits a run calculates with.",
                         "Write double (16 digits), quad (33 digits) or 100 (digits).");
 }
 

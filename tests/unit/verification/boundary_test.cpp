@@ -162,10 +162,14 @@ TEST_CASE("paths: action, action of a given path, index, a place, and the second
   passes(straight, "expect index of path 1 = 0");
   fails(straight, "expect index = 1");
   fails(straight, "expect action of path 2 = 0.5 ± 1e9");
-  // A ball thrown between two points of one height: two oscillator paths would need more time; the pendulum has several.
+  // Of seven paths of the pendulum from 0 to 0 in 10 rest has the largest action, and conjugate points at π, 2π, 3π.
   const std::string oscillations = "dimensionless\ncoord θ : angle\nL = 1/2 θ'^2 + cos θ\npath from 0 at 0 to 0 at 10\n";
   const ExpectationResult first = only(oscillations + "expect action = 0 ± 1e-9\n"), second = only(oscillations + "expect action of path 2 = 0 ± 1e-9\n");
   INFO(first.actual, " ", first.message, " | ", second.actual, " ", second.message);
   CHECK(second.message.find("number 2") != std::string::npos);
-  CHECK(std::stod(second.actual) > std::stod(first.actual));
+  CHECK(std::stod(second.actual) >= std::stod(first.actual));
+  boundary(oscillations, "expect action of path 7 = 10.01 ± TOL", 0.01);
+  passes(oscillations, "expect index of path 7 = 3");
+  fails(oscillations, "expect index of path 7 = 2");
+  boundary(oscillations, "expect path 7 θ at 5 = 0.01 ± TOL", 0.01);
 }
