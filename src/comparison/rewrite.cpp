@@ -235,6 +235,9 @@ class Rewriter {
     for (const ExpressionPtr& e : {s.subject, s.value})
       lost = lost || asks_for(e, "reaction", no_reaction_) || asks_for(e, "multiplier", no_multiplier_);
     lost = lost || no_reaction_.count(s.name.text);
+    // Points, matrices and levels are given in the coordinates that there were, and in their momenta.
+    for (const StartStatement::Item& item : s.at) lost = lost || gone_.count(to_string_without_primes(*item.variable));
+    lost = lost || ((s.kind == ExpectStatement::Kind::Matrix || !s.where.empty()) && !gone_.empty());
     const bool about_path = s.kind == ExpectStatement::Kind::Action || s.kind == ExpectStatement::Kind::MorseIndex ||
                             s.kind == ExpectStatement::Kind::PathAt;
     if (lost || (about_path && !gone_.empty())) leave_out(span);
