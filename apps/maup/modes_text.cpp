@@ -1,5 +1,6 @@
 #include "modes_text.hpp"
 
+#include "orbits_text.hpp"
 #include "quantity.hpp"
 
 #include <fmt/format.h>
@@ -256,7 +257,7 @@ std::string summary(const MechanicalSystem& system, const ModalStudy& study) {
 
 std::string modes_text(const MechanicalSystem& system, const ModalStudy& study,
                        const std::vector<std::optional<SymbolicLinearization>>& formulas, const ReadingOrder& order,
-                       const std::vector<std::string>& outputs) {
+                       const std::vector<std::string>& outputs, const std::vector<std::optional<FloquetResult>>& neighbours) {
   const std::size_t detailed = formulas.size();
   std::string out = summary(system, study);
   for (std::size_t i = 0; i < study.entries.size() && i < detailed; ++i) {
@@ -266,6 +267,11 @@ std::string modes_text(const MechanicalSystem& system, const ModalStudy& study,
     out += study.starts > 0 ? fmt::format("{}  {}\n", i + 1, head)
                             : fmt::format("{}\n  {}\n", head, verdict(e.analysis.stability));
     out += multipliers_text(system, e.linearization.point);
+    if (i < neighbours.size() && neighbours[i]) {
+      out += period_text(*neighbours[i], system) + neighbours_text(*neighbours[i]);
+      continue;
+    }
+    if (e.analysis.modes.empty() && e.linearization.a.rows > 0) continue;  // frozen coefficients: the verdict says so
     const auto symbolic = formulas[i] ? formulas_text(*formulas[i], order) : std::nullopt;
     out += symbolic ? *symbolic : matrices_text(system, e.linearization);
     out += measured_text(system, e.linearization, outputs);

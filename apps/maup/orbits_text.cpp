@@ -60,20 +60,6 @@ const char* stability_word(OrbitalStability stability) {
   return "";
 }
 
-std::string stability_sentence(const FloquetResult& r) {
-  switch (r.stability) {
-    case OrbitalStability::Attracting:
-      return fmt::format("attracting: in each period neighbours come nearer by a factor {}", brief(r.largest));
-    case OrbitalStability::Neutral:
-      return r.multipliers.size() == r.trivial
-                 ? "neutral: there are no other multipliers"
-                 : "neutral: stable to first order, all multipliers lie on the unit circle";
-    case OrbitalStability::Unstable:
-      return fmt::format("unstable: in each period some neighbours move away by a factor {}", brief(r.largest));
-  }
-  return "";
-}
-
 std::string turns_text(const PeriodicMotion& m, const MechanicalSystem& system) {
   std::string out;
   for (std::size_t i = 0; i < m.turns.size(); ++i)
@@ -94,16 +80,24 @@ std::string multiplier_line(std::complex<double> mu, double period) {
 
 }  // namespace
 
-std::string floquet_text(const FloquetResult& r, const MechanicalSystem& system) {
-  const PeriodicMotion& m = r.motion;
-  std::string out = fmt::format("{}: a periodic motion\n", system.name);
-  out += line("period", seconds(m.period, system) + (m.driven ? ", of the drive" : ""));
-  out += line("start", state_line(m.start, system));
-  if (const std::string turns = turns_text(m, system); !turns.empty()) out += line("advances", turns);
-  out += line("closed to", fmt::format("{:.2g} of its size, after {} correction{} that moved the start by {:.2g}",
-                                       m.closure, m.iterations, m.iterations == 1 ? "" : "s", m.moved));
+std::string stability_sentence(const FloquetResult& r) {
+  switch (r.stability) {
+    case OrbitalStability::Attracting:
+      return fmt::format("attracting: in each period neighbours come nearer by a factor {}", brief(r.largest));
+    case OrbitalStability::Neutral:
+      return r.multipliers.size() == r.trivial
+                 ? "neutral: there are no other multipliers"
+                 : "neutral: stable to first order, all multipliers lie on the unit circle";
+    case OrbitalStability::Unstable:
+      return fmt::format("unstable: in each period some neighbours move away by a factor {}", brief(r.largest));
+  }
+  return "";
+}
+
+std::string neighbours_text(const FloquetResult& r) {
+  std::string out;
   for (std::size_t i = 0; i + r.trivial < r.multipliers.size(); ++i)
-    out += line(i == 0 ? "multipliers" : "", multiplier_line(r.multipliers[i], m.period));
+    out += line(i == 0 ? "multipliers" : "", multiplier_line(r.multipliers[i], r.motion.period));
   if (r.trivial == 1) out += line("trivial", "1, along the motion");
   if (r.trivial == 2) out += line("trivial", "1 and 1, along the motion and from orbit to orbit as the energy changes");
   out += line("stability", stability_sentence(r));
@@ -115,9 +109,24 @@ std::string floquet_text(const FloquetResult& r, const MechanicalSystem& system)
   return out;
 }
 
+std::string period_text(const FloquetResult& r, const MechanicalSystem& system) {
+  return line("period", seconds(r.motion.period, system) + (r.motion.driven ? ", of the drive" : ""));
+}
+
+std::string floquet_text(const FloquetResult& r, const MechanicalSystem& system) {
+  const PeriodicMotion& m = r.motion;
+  std::string out = fmt::format("{}: {}\n", system.name, m.rests ? "an equilibrium, whose neighbours are driven" : "a periodic motion");
+  out += period_text(r, system);
+  out += line("start", state_line(m.start, system));
+  if (const std::string turns = turns_text(m, system); !turns.empty()) out += line("advances", turns);
+  out += line("closed to", fmt::format("{:.2g} of its size, after {} correction{} that moved the start by {:.2g}",
+                                       m.closure, m.iterations, m.iterations == 1 ? "" : "s", m.moved));
+  return out + neighbours_text(r);
+}
+
 Json floquet_json(const FloquetResult& r, const MechanicalSystem& system) {
   const PeriodicMotion& m = r.motion;
-  Json out = {{"period", m.period}, {"start", state_json(m.start, system)}, {"t", m.start.t}, {"driven", m.driven}};
+  Json out = {{"period", m.period}, {"start", state_json(m.start, system)}, {"t", m.start.t}, {"driven", m.driven}, {"rests", m.rests}};
   out["turns"] = Json::object();
   for (std::size_t i = 0; i < m.turns.size(); ++i) out["turns"][system.coordinates[i].name] = m.turns[i];
   out["closure"] = m.closure;

@@ -8,6 +8,10 @@
 /// What `maup orbits` says: text as a reader wants it, documents for programs.
 namespace maupertuis::app {
 
+/// The period; then what becomes of neighbours: multipliers, stability, checks.
+std::string period_text(const FloquetResult& result, const MechanicalSystem& system);
+std::string neighbours_text(const FloquetResult& result);
+std::string stability_sentence(const FloquetResult& result);
 std::string floquet_text(const FloquetResult& result, const MechanicalSystem& system);
 Json floquet_json(const FloquetResult& result, const MechanicalSystem& system);
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <maupertuis/diagnostic.hpp>
+#include <maupertuis/modes.hpp>
 #include <maupertuis/simulation.hpp>
 #include <maupertuis/tangent.hpp>
 #include <maupertuis/trajectory.hpp>
@@ -21,6 +22,7 @@ namespace maupertuis {
 struct FloquetOptions {
   std::optional<double> period;  // s: of the motion, or near it; nothing: looked for within the model's run
   const std::atomic<bool>* interrupt = nullptr;
+  std::optional<MotionState> start = std::nullopt;  // instead of that of the model
 };
 
 /// What decides whether neighbours of a periodic motion stay near it.
@@ -36,6 +38,7 @@ struct PeriodicMotion {
   double period = 0;       // s
   std::vector<int> turns;  // [n] by how many turns each coordinate advances; 0 for those that are no angles
   bool driven = false;     // t stands in the equations: the period is that of the drive, or a multiple
+  bool rests = false;      // an equilibrium of a driven system: it stays where it is at all times
   double moved = 0;        // how far Newton's method moved the start, relative to the size of the orbit
   double closure = 0;      // |Φ_T(x) − x| relative to that size
   int iterations = 0;
@@ -58,13 +61,19 @@ struct FloquetResult {
   std::optional<double> log_determinant, integrated_divergence;
 };
 
-/// Finds the periodic motion next to the start of the model by Newton's method on Φ_T(x) − x with the derivative of the
+/// Finds the periodic motion next to the start by Newton's method on Φ_T(x) − x with the derivative of the
 /// tangent equations, T free unless the system is driven, and its multipliers. Where periodic motions come in families,
-/// the nearest. Nothing, with a diagnostic: no return is found or Newton's method does not converge (E1401), the motion
+/// the nearest. An equilibrium of a driven system is one, with the period of the drive. Nothing, with a diagnostic: no return is found or Newton's method does not converge (E1401), the motion
 /// rests (E1402), an acceleration jumps (E1403), the drive does not repeat with the period, or there is a drive of
 /// unknown period (E1404), a run ends early (E1408).
 std::optional<FloquetResult> floquet(const Model& model, const EquationsOfMotion& equations,
                                      const FloquetOptions& options, Diagnostics& diagnostics);
+
+/// Equilibria of a driven system. The frequencies of coefficients that are frozen at an instant say nothing of their neighbours: in the place of
+/// modes each entry gets its multipliers over the period of the drive, and the verdict that these give. [entries]; nothing where the drive
+/// does not repeat; empty where the equations do not depend on the time.
+std::vector<std::optional<FloquetResult>> settle_driven(ModalStudy& study, const PointEquations& points, const Model& model,
+                                                        const EquationsOfMotion& equations, const std::atomic<bool>* interrupt);
 
 // --------------------------------------------------------------------------------------------------- Poincaré sections
 

@@ -210,8 +210,10 @@ void add_modes(ReportContent& content, const Model& model, const EquationsOfMoti
                  (entry.side.empty() ? "" : ", on the side " + with_minus_signs(entry.side));
     point.stability = fmt::format("{}: {}", stability_word(s.verdict), s.reason);
     point.stable = s.verdict == Stability::Energetic || s.verdict == Stability::Asymptotic;
-    const auto symbolic = entry.side.empty() ? symbolic_linearization(equations, entry.linearization, study.translations) : std::nullopt;
-    point.formulas = symbolic ? formulas_of(*symbolic, equations.order) : formulas_of(entry.linearization);
+    if (!entry.analysis.modes.empty()) {  // frozen coefficients of a driven system are not shown
+      const auto symbolic = entry.side.empty() ? symbolic_linearization(equations, entry.linearization, study.translations) : std::nullopt;
+      point.formulas = symbolic ? formulas_of(*symbolic, equations.order) : formulas_of(entry.linearization);
+    }
     for (const Mode& m : entry.analysis.modes) point.rows.push_back(row_of(system, m));
     if (p == 0) add_shapes(point, model, entry);
     content.mode_points.push_back(std::move(point));

@@ -9,6 +9,7 @@ namespace maupertuis {
 namespace {
 
 std::string rows_table(const std::vector<ReportContent::ModeRow>& rows) {
+  if (rows.empty()) return {};
   const bool damped = std::any_of(rows.begin(), rows.end(), [](const auto& r) { return !r.damping.empty(); });
   std::string body;
   for (std::size_t i = 0; i < rows.size(); ++i) {

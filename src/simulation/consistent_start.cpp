@@ -14,6 +14,16 @@ constexpr int searches = 40;
 /// A written value that moves by less was meant: its digits end there.
 constexpr double rounding_of_digits = 1e-9;
 
+/// "from 2 to 2.00000003": with digits enough to see two places of the change.
+std::string change_text(double from, double to) {
+  for (int digits = 6; digits < 17; ++digits) {
+    const std::string before = fmt::format("{:.{}g}", from, digits), after = fmt::format("{:.{}g}", to, digits);
+    const double shown = std::stod(after) - std::stod(before);
+    if (std::abs(shown - (to - from)) <= 0.05 * std::abs(to - from)) return fmt::format("from {} to {}", before, after);
+  }
+  return fmt::format("from {:.17g} to {:.17g}", from, to);
+}
+
 class Start {
  public:
   Start(const Model& model, const EquationsOfMotion& equations, Diagnostics& diagnostics)
@@ -193,8 +203,8 @@ class Start {
     std::string moved;
     for (const StartAdjustment& a : out.adjustments)
       if (a.written)
-        moved += fmt::format("{}{}{} from {:g} to {:g}", moved.empty() ? "" : ", ", system_.coordinates[a.coordinate].name,
-                             a.order == 0 ? "" : "'", a.from, a.to);
+        moved += fmt::format("{}{}{} {}", moved.empty() ? "" : ", ", system_.coordinates[a.coordinate].name,
+                             a.order == 0 ? "" : "'", change_text(a.from, a.to));
     if (!moved.empty())
       diagnostics_.warning("W0701", span(), fmt::format("the start was moved onto the constraints: {} (SI units)", moved),
                            "The written values contradict the constraints, so that the least kinetic change was made.",

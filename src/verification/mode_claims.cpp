@@ -4,6 +4,7 @@
 #include "verification/judge.hpp"
 #include "verification/matrix_claims.hpp"
 
+#include <maupertuis/orbits.hpp>
 #include <maupertuis/simulation.hpp>
 
 #include <fmt/format.h>
@@ -63,13 +64,14 @@ void ModeClaims::decide(const Expectation& e, ExpectationResult& result) {
   if (e.kind == Asked::Stable) return decide_critical(e, equations_, start_, result, model_.experiment);
   if (e.kind == Asked::Matrix && e.name == "M") return decide_mass_matrix(e, derived_, start_, result);
   Diagnostics told;
-  const auto study = study_at(e, told);
+  auto study = study_at(e, told);
   if (!study) {
     result.expected = e.kind == Asked::Equilibrium ? "an equilibrium" : "an equilibrium or a steady motion";
     result.actual = "none";
     for (const Diagnostic& d : told.items()) result.message = d.message + ". " + d.reason;
     return;
   }
+  settle_driven(*study, equations_, model_, derived_, nullptr);
   // On a kink each side is judged for itself, and all have to agree.
   for (const ModalEntry& entry : study->entries) {
     decide_of(e, entry, result);
@@ -84,6 +86,12 @@ void ModeClaims::decide(const Expectation& e, ExpectationResult& result) {
 void ModeClaims::decide_of(const Expectation& e, const ModalEntry& entry, ExpectationResult& result) const {
   using Asked = syntax::ExpectStatement::Kind;
   if (e.kind == Asked::Equilibrium) return decide_stability(e, entry, result);
+  if (!equations_.autonomous()) {
+    result.expected = e.kind == Asked::Frequencies ? "frequencies" : "a linearization";
+    result.actual = "none";
+    result.message = fmt::format("The coefficients change with the time, and those frozen at an instant mean nothing; {}.", entry.analysis.stability.reason);
+    return;
+  }
   if (e.kind == Asked::Matrix) return decide_linearization(e, model_.system, entry.linearization, result);
   if (e.kind == Asked::Eigenvalues) return judge_spectrum(e, model_.system, entry.analysis.eigenvalues, result);
   decide_frequencies(e, entry.analysis, result);

@@ -185,12 +185,17 @@ ExitCode locus(const ModesOptions& options, Study& study, PointEquations& equati
 
 ExitCode points(const ModesOptions& options, Study& study, const PointEquations& equations, const MotionState& start,
                 Console& console) {
-  const auto result = carry_out(options, study, equations, start, console);
+  auto result = carry_out(options, study, equations, start, console);
+  std::vector<std::optional<FloquetResult>> neighbours;
+  if (result && !parse_time(options.at))
+    neighbours = settle_driven(*result, equations, *study.model(), *study.equations(), &interrupt_flag());
   if (!result || !check_outputs(options, *result, study)) return finish(console, study, json_document("modes"));
   const MechanicalSystem& system = study.model()->system;
   constexpr std::size_t usually = 4;
   const std::size_t detailed = options.all ? std::numeric_limits<std::size_t>::max() : usually;
   Json document = modes_document(system, *result);
+  for (std::size_t i = 0; i < neighbours.size(); ++i)
+    document["points"][i]["floquet"] = neighbours[i] ? floquet_json(*neighbours[i], system) : Json(nullptr);
   std::vector<std::optional<SymbolicLinearization>> formulas;
   for (std::size_t i = 0; i < result->entries.size() && i < detailed; ++i) {
     const bool settled = result->starts > 0 || !options.at.empty();
@@ -200,7 +205,7 @@ ExitCode points(const ModesOptions& options, Study& study, const PointEquations&
     document["points"][i]["formulas"] =
         formulas.back() ? symbolic_json(*formulas.back(), study.equations()->order) : Json(nullptr);
   }
-  if (!console.json()) console.print(modes_text(system, *result, formulas, study.equations()->order, options.outputs));
+  if (!console.json()) console.print(modes_text(system, *result, formulas, study.equations()->order, options.outputs, neighbours));
   if (options.q.empty()) return finish(console, study, document);
   const auto regulator = regulator_of(options, *result, study.diagnostics());
   if (regulator) document["regulator"] = regulator_json(*regulator);

@@ -34,6 +34,7 @@ EquilibriumParts equilibrium_parts(const Model& model, const EquationsOfMotion& 
   if (!start) return out;
   PointEquations at_points(equations);
   out.study = modal_study(at_points, start->state, unheard);
+  if (out.study) settle_driven(*out.study, at_points, model, equations, &interrupt_flag());
   if (const auto& sweep = model.experiment.sweep) {
     const auto value = [&](Expr e) { return evaluate(in_terms_of_motion(model.system, {&e, 1}).front(), parameter_bindings(model.system)); };
     out.locus = parameter_locus(at_points, start->state, sweep->parameter, value(sweep->from), value(sweep->to), sweep->steps);

@@ -11,6 +11,7 @@ namespace {
 constexpr int most_turns = 80;
 constexpr double arrived = 1e-9;         // of what is left, by the sizes of coordinates
 constexpr double rank_threshold = 1e-11;
+constexpr double rounding_of_work = 1e-14;
 
 }  // namespace
 
@@ -84,17 +85,28 @@ void SteadyState::fit_multipliers(OperatingPoint& point) const {
   if (fit.allFinite()) point.multipliers = to_list(fit);
 }
 
-/// The largest row, divided by what its unknowns of typical size do to it: a relative error of positions.
+/// What the unknowns of typical size do to a row.
+double SteadyState::scale_of(const System& s, const Vector& z, Index row) const {
+  double scale = 0;
+  for (Index j = 0; j < s.j.cols(); ++j) {
+    const double typical = static_cast<std::size_t>(j) < free_q_.size() ? sizes_[free_q_[static_cast<std::size_t>(j)]] : 0.0;
+    scale = std::max(scale, std::abs(s.j(row, j)) * std::max(std::abs(z[j]), typical));
+  }
+  return scale;
+}
+
+/// The largest row, divided by its scale: a relative error of positions. The first n rows are forces, and forces times typical sizes are
+/// works, which compare: a force that no unknown changes (one sideways on a bicycle that runs upright) is rounding of the others.
 double SteadyState::scaled(const System& s, const Vector& z) const {
   if (!s.f.allFinite() || !s.j.allFinite()) return HUGE_VAL;
+  const auto forces = static_cast<Index>(e_.n);
+  double work = 0;
+  for (Index i = 0; i < forces; ++i) work = std::max(work, scale_of(s, z, i) * sizes_[static_cast<std::size_t>(i)]);
   double largest = 0;
   for (Index i = 0; i < s.f.size(); ++i) {
-    double scale = 0;
-    for (Index j = 0; j < s.j.cols(); ++j) {
-      const double typical = static_cast<std::size_t>(j) < free_q_.size() ? sizes_[free_q_[static_cast<std::size_t>(j)]] : 0.0;
-      scale = std::max(scale, std::abs(s.j(i, j)) * std::max(std::abs(z[j]), typical));
-    }
-    if (s.f[i] != 0) largest = std::max(largest, scale > 0 ? std::abs(s.f[i]) / scale : HUGE_VAL);
+    if (s.f[i] == 0 || (i < forces && std::abs(s.f[i]) * sizes_[static_cast<std::size_t>(i)] <= rounding_of_work * work)) continue;
+    const double scale = scale_of(s, z, i);
+    largest = std::max(largest, scale > 0 ? std::abs(s.f[i]) / scale : HUGE_VAL);
   }
   return largest;
 }

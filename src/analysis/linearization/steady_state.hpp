@@ -37,6 +37,7 @@ class SteadyState {
   Vector unknowns(const OperatingPoint& point) const;
   void place(const Vector& z, OperatingPoint& point) const;
   void fit_multipliers(OperatingPoint& point) const;
+  double scale_of(const System& s, const Vector& z, Index row) const;
   double scaled(const System& s, const Vector& z) const;
   std::size_t family_at(const OperatingPoint& point, const System& s, const Vector& z) const;
 

@@ -54,9 +54,9 @@ class Closer {
         flow_(equations, {0, 100'000'000, options.interrupt}) {}
 
   std::optional<Closed> close() {
-    const auto start = consistent_start(model_, equations_, diagnostics_);
+    const auto start = options_.start ? options_.start : start_of_model();
     if (!start || n_ == 0) return std::nullopt;
-    at_ = start->state;
+    at_ = *start;
     out_.motion.driven = depends_on_time(equations_);
     if (!first_period() || !follow() || !find_angles() || !guess()) return std::nullopt;
     first_ = at_;
@@ -74,6 +74,10 @@ class Closer {
                        "At an equilibrium every time is a period, and there is no orbit.",
                        "Start away from the equilibrium, or use `maup modes` for the motion near it.");
     return false;
+  }
+  std::optional<MotionState> start_of_model() {
+    const auto start = consistent_start(model_, equations_, diagnostics_);
+    return start ? std::optional(start->state) : std::nullopt;
   }
   std::optional<Span> place_of_start() const {
     return model_.experiment.start.empty() ? std::nullopt : std::optional(model_.experiment.start.front().span);
@@ -109,7 +113,7 @@ class Closer {
     const Vector f = flow_at(at_);
     if (f.size() == 0) return refuse_end(at_.t, "An acceleration has no value here.", diagnostics_);
     if (!out_.motion.driven && f.cwiseAbs().maxCoeff() == 0) return refuse_rest();
-    if (out_.motion.driven && !repeats_in_time(motion_, seen_.states, *period_)) {
+    if (out_.motion.driven && !repeats_in_time(motion_, seen_, *period_)) {
       diagnostics_.error("E1404", {}, fmt::format("the equations do not repeat after {:.9g} s", *period_),
                          "A driven motion can only repeat with the period of its drive, or a multiple of it.",
                          "Give a period of the drive with --period.");
@@ -120,7 +124,7 @@ class Closer {
 
   bool find_angles() {
     for (std::size_t i = 0; i < n_; ++i)
-      is_angle_.push_back(system_.coordinates[i].kind == "angle" && repeats_in_angle(motion_, seen_.states, i));
+      is_angle_.push_back(system_.coordinates[i].kind == "angle" && repeats_in_angle(motion_, seen_, i));
     return true;
   }
 
@@ -285,6 +289,7 @@ class Closer {
     out_.motion.closure = closure;
     out_.motion.moved = gap(first_, out_.motion.start).norm();
     out_.flow = flow_at(out_.motion.start);
+    if (out_.motion.driven) out_.motion.rests = survey(system_, motion_, out_.motion.start, *period_, options_.interrupt).rests;
     return out_.motion.driven || turning(out_.motion.start).cwiseAbs().maxCoeff() > 1e-6 || refuse_rest();
   }
 

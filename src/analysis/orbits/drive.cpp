@@ -3,6 +3,7 @@
 #include <maupertuis/transform.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -35,8 +36,14 @@ std::optional<std::vector<double>> frequencies(const EquationsOfMotion& equation
   return out;
 }
 
-bool repeats(const MotionKernel& motion, const std::vector<MotionState>& states,
-             const std::function<void(MotionState&)>& move) {
+/// The state, and one beside it: on the motion itself the force may vanish at all times, as it does at an equilibrium.
+std::array<MotionState, 2> places_at(const MotionState& state, const std::vector<double>& sizes) {
+  MotionState beside = state;
+  for (std::size_t i = 0; i < state.q.size(); ++i) beside.q[i] += 0.1 * sizes[i], beside.v[i] += 0.1 * sizes[state.q.size() + i];
+  return {state, beside};
+}
+
+bool repeats(const MotionKernel& motion, const Survey& seen, const std::function<void(MotionState&)>& move) {
   KernelWorkspace work(motion.kernel, 1);
   work.set_parameters(motion.parameters);
   const auto accelerations = [&](const MotionState& s) {
@@ -45,18 +52,20 @@ bool repeats(const MotionKernel& motion, const std::vector<MotionState>& states,
     for (std::size_t i = 0; i < s.q.size(); ++i) a.push_back(work.acceleration(i));
     return a;
   };
-  const std::size_t n = motion.kernel.freedoms(), stride = std::max<std::size_t>(1, states.size() / 32);
+  const std::size_t n = motion.kernel.freedoms(), stride = std::max<std::size_t>(1, seen.states.size() / 32);
   std::vector<double> largest(n, 0.0), difference(n, 0.0);
-  for (std::size_t k = 0; k < states.size(); k += stride) {
-    MotionState moved = states[k];
-    move(moved);
-    const auto a = accelerations(states[k]), b = accelerations(moved);
-    if (a.empty() || b.empty()) return false;
-    for (std::size_t i = 0; i < n; ++i) {
-      largest[i] = std::max(largest[i], std::abs(a[i]));
-      difference[i] = std::max(difference[i], std::abs(a[i] - b[i]));
+  for (std::size_t k = 0; k < seen.states.size(); k += stride)
+    for (const MotionState& here : places_at(seen.states[k], seen.sizes)) {
+      MotionState moved = here;
+      move(moved);
+      const auto a = accelerations(here), b = accelerations(moved);
+      if (a.empty() != b.empty()) return false;
+      if (a.empty()) continue;
+      for (std::size_t i = 0; i < n; ++i) {
+        largest[i] = std::max(largest[i], std::abs(a[i]));
+        difference[i] = std::max(difference[i], std::abs(a[i] - b[i]));
+      }
     }
-  }
   for (std::size_t i = 0; i < n; ++i)
     if (!(difference[i] <= same_acceleration * largest[i])) return false;
   return true;
@@ -84,12 +93,12 @@ std::optional<double> period_of_drive(const EquationsOfMotion& equations) {
   return std::nullopt;
 }
 
-bool repeats_in_time(const MotionKernel& motion, const std::vector<MotionState>& states, double period) {
-  return repeats(motion, states, [period](MotionState& s) { s.t += period; });
+bool repeats_in_time(const MotionKernel& motion, const Survey& seen, double period) {
+  return repeats(motion, seen, [period](MotionState& s) { s.t += period; });
 }
 
-bool repeats_in_angle(const MotionKernel& motion, const std::vector<MotionState>& states, std::size_t coordinate) {
-  return repeats(motion, states, [coordinate](MotionState& s) { s.q[coordinate] += 2 * std::numbers::pi; });
+bool repeats_in_angle(const MotionKernel& motion, const Survey& seen, std::size_t coordinate) {
+  return repeats(motion, seen, [coordinate](MotionState& s) { s.q[coordinate] += 2 * std::numbers::pi; });
 }
 
 }  // namespace maupertuis::orbits

@@ -10,22 +10,41 @@ namespace maupertuis::orbits {
 namespace {
 
 constexpr int states_of_a_step = 16;
+constexpr double rounding_of_rest = 1e-12;
 
 /// What a coordinate that never moves is measured against.
 double size_at_rest(double value) { return value != 0 ? std::abs(value) : 1.0; }
 
-std::vector<double> sizes_of(const MechanicalSystem& system, const std::vector<MotionState>& states) {
+struct Range {
+  double low, high, speed;
+};
+
+Range range_of(const std::vector<MotionState>& states, std::size_t i) {
+  Range out{states.front().q[i], states.front().q[i], 0};
+  for (const MotionState& s : states) {
+    out.low = std::min(out.low, s.q[i]), out.high = std::max(out.high, s.q[i]);
+    out.speed = std::max(out.speed, std::abs(s.v[i]));
+  }
+  return out;
+}
+
+/// Neighbours of an equilibrium are as large as one likes: what stirs there is rounding of the place, and sizes made of it would measure nothing.
+bool is_rest(const Range& r, double duration) {
+  const double place = size_at_rest(r.low);
+  return r.high - r.low <= rounding_of_rest * place && r.speed * duration <= rounding_of_rest * place;
+}
+
+std::vector<double> sizes_of(const MechanicalSystem& system, const std::vector<MotionState>& states, bool& all_rest) {
   const std::size_t n = system.coordinates.size();
+  const double duration = std::abs(states.back().t - states.front().t);
   std::vector<double> sizes(2 * n, 0.0);
   for (std::size_t i = 0; i < n; ++i) {
-    double low = states.front().q[i], high = low, speed = 0;
-    for (const MotionState& s : states) {
-      low = std::min(low, s.q[i]), high = std::max(high, s.q[i]);
-      speed = std::max(speed, std::abs(s.v[i]));
-    }
-    sizes[i] = high > low ? (high - low) / 2 : size_at_rest(low);
+    const Range r = range_of(states, i);
+    const bool rests = is_rest(r, duration);
+    all_rest = all_rest && rests;
+    sizes[i] = r.high > r.low && !rests ? (r.high - r.low) / 2 : size_at_rest(r.low);
     if (system.coordinates[i].kind == "angle") sizes[i] = std::min(sizes[i], std::numbers::pi);
-    sizes[n + i] = size_at_rest(speed);
+    sizes[n + i] = !rests ? size_at_rest(r.speed) : duration > 0 ? sizes[i] / duration : size_at_rest(r.speed);
   }
   return sizes;
 }
@@ -53,7 +72,8 @@ Survey survey(const MechanicalSystem& system, const MotionKernel& motion, const 
     }
   }
   out.steps = stepper.steps();
-  out.sizes = sizes_of(system, out.states);
+  out.rests = true;
+  out.sizes = sizes_of(system, out.states, out.rests);
   return out;
 }
 

@@ -12,7 +12,9 @@ namespace maupertuis::orbits {
 struct Survey {
   std::vector<MotionState> states;
   std::vector<double> sizes;  // [2n] how large each coordinate and each velocity gets, > 0: half its range, an angle at
-                              // most π; its largest value
+                              // most π; its largest value.
+                              // Of what rests its own value, or 1, and that in the time seen
+  bool rests = false;         // nothing moves but by rounding
   std::size_t steps = 0;
   std::string ended;  // why before the end; empty: it did not
 };

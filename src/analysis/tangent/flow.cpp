@@ -146,6 +146,7 @@ struct TangentFlow::Impl {
 
   Group& group(std::size_t columns);
   KernelWorkspace& point_kernel();
+  std::vector<std::int8_t> sides_at(const MotionState& state);
   std::optional<TangentStop> jump_at_start(const MotionState& start, double duration);
   void compare(const MotionState& a, const MotionState& b, const MotionState& start);
 
@@ -188,16 +189,29 @@ KernelWorkspace& TangentFlow::Impl::point_kernel() {
   return *at_point;
 }
 
+/// Of the switch functions at a state; those of functions within others settle first.
+std::vector<std::int8_t> TangentFlow::Impl::sides_at(const MotionState& state) {
+  KernelWorkspace& work = point_kernel();
+  std::vector<std::int8_t> sides(motion->switches().size(), 1), before;
+  for (std::size_t pass = 0; sides != before && pass <= sides.size(); ++pass) {
+    before = sides;
+    work.set_branches(sides);
+    static_cast<void>(work.evaluate(state.t, state.q, state.v));
+    for (std::size_t i = 0; i < sides.size(); ++i) sides[i] = work.switch_function(i, 0) < 0 ? -1 : 1;
+  }
+  return sides;
+}
+
 /// A start within rounding of a switch belongs to both sides of it.
 std::optional<TangentStop> TangentFlow::Impl::jump_at_start(const MotionState& start, double duration) {
   KernelWorkspace& work = point_kernel();
   const std::size_t count = motion->switches().size();
+  const std::vector<std::int8_t> sides = sides_at(start);
+  work.set_branches(sides);
   if (count == 0 || work.evaluate(start.t, start.q, start.v) != KernelStatus::Ok) return std::nullopt;
-  std::vector<std::int8_t> sides;
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < count; ++i) {
     const double s = work.switch_function(i, 0), rate = work.switch_function(i, 1);
-    sides.push_back(s < 0 ? -1 : 1);
     if (rate != 0 && std::abs(s) <= 1e-12 * (work.switch_scale(i) + std::abs(rate * duration))) open.push_back(i);
   }
   const auto accelerations = [&](std::span<const std::int8_t> at) {
@@ -277,15 +291,10 @@ std::vector<double> TangentFlow::accelerations(const MotionState& state) {
   KernelWorkspace& work = s.point_kernel();
   const std::size_t count = s.motion->switches().size();
   const auto evaluate = [&] { return work.evaluate(state.t, state.q, state.v) == KernelStatus::Ok; };
-  if (!evaluate()) return {};
-  if (count > 0) {
-    std::vector<std::int8_t> sides;
-    for (std::size_t i = 0; i < count; ++i) sides.push_back(work.switch_function(i, 0) < 0 ? -1 : 1);
-    work.set_branches(sides);
-    const bool ok = evaluate();
-    work.set_branches(std::vector<std::int8_t>(count, 1));
-    if (!ok) return {};
-  }
+  work.set_branches(s.sides_at(state));
+  const bool ok = evaluate();
+  work.set_branches(std::vector<std::int8_t>(count, 1));
+  if (!ok) return {};
   std::vector<double> out;
   for (std::size_t i = 0; i < s.n; ++i) out.push_back(work.acceleration(i));
   return out;

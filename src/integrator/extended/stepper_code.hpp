@@ -123,12 +123,21 @@ void Stepper<T>::set_sides(Workspace<T>& work) const {
   work.set_branches(sides);
 }
 
-/// Signs of the switch functions at the start, zeros left open: enough for the values there.
+/// Signs of the switch functions at the start, zeros left open: enough for the values there. A function within another comes before it; forces
+/// may have no value until all sides are right.
 template <class T>
 void Stepper<T>::choose_first_sides() {
-  set_sides(work_);
-  if (!switch_state_.empty() && work_.evaluate(t_, q_, v_) == KernelStatus::Ok)
-    for (std::size_t i = 0; i < switch_state_.size(); ++i) switch_state_[i].side = taylor::watching::sign(work_.switch_function(i, 0));
+  bool changed = !switch_state_.empty();
+  for (std::size_t pass = 0; changed && pass <= switch_state_.size(); ++pass) {
+    set_sides(work_);
+    static_cast<void>(work_.evaluate(t_, q_, v_));
+    changed = false;
+    for (std::size_t i = 0; i < switch_state_.size(); ++i) {
+      const std::int8_t side = taylor::watching::sign(work_.switch_function(i, 0));
+      changed = changed || side != switch_state_[i].side;
+      switch_state_[i].side = side;
+    }
+  }
   set_sides(probe_);
 }
 

@@ -20,11 +20,20 @@ void TaylorStepper::Impl::copy_sides(KernelWorkspace& w) const {
   w.set_branches(sides);
 }
 
-/// Signs of the switch functions at the start, zeros left open: enough for the values there.
+/// Signs of the switch functions at the start, zeros left open: enough for the values there. A function within another comes before it. Under
+/// sides that are not those of the state forces may have no value (log|x|), but switch functions do.
 void TaylorStepper::Impl::choose_first_sides() {
-  set_sides(work);
-  if (!switch_state.empty() && work.evaluate(t.hi, q_now, v_now) == KernelStatus::Ok)
-    for (std::size_t i = 0; i < switch_state.size(); ++i) switch_state[i].side = sign(work.switch_function(i, 0));
+  bool changed = !switch_state.empty();
+  for (std::size_t pass = 0; changed && pass <= switch_state.size(); ++pass) {
+    set_sides(work);
+    static_cast<void>(work.evaluate(t.hi, q_now, v_now));
+    changed = false;
+    for (std::size_t i = 0; i < switch_state.size(); ++i) {
+      const std::int8_t side = sign(work.switch_function(i, 0));
+      changed = changed || side != switch_state[i].side;
+      switch_state[i].side = side;
+    }
+  }
   set_sides(probe);
 }
 

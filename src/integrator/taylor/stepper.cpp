@@ -111,8 +111,12 @@ Step TaylorStepper::Impl::step(double bound) {
   compile_if_it_pays(bound);
   if (!expanded && turns.wind(q))
     for (std::size_t i = 0; i < n; ++i) q_now[i] = q[i].hi;
-  if (!std::exchange(expanded, false) && !expand(bound, result)) return result;
+  if (!std::exchange(expanded, false) && !expand(bound, result)) {
+    if (result.ending == StepEnding::Overflow) passes_from_here(bound, result);
+    return result;
+  }
   double chosen = choose_length(bound);
+  if (passes_shrinking(chosen, bound, result)) return result;
   if (m > 0 && forces_diverge()) {
     end(result, StepEnding::SingularConstraints, "The constraints are singular near here: the forces that they ask for grow without bound.");
     return result;

@@ -40,6 +40,8 @@ struct TaylorStepper::Impl {
     std::vector<taylor::Watched> after;  // the same, as the step leaves them
   };
 
+  struct Collocation;  // passing.cpp
+
   Step step(double bound);
   double choose_length(double bound);
   bool is_at_rest() const;
@@ -48,6 +50,15 @@ struct TaylorStepper::Impl {
   bool equations_hold(const KernelWorkspace& at_end);
   bool take_back(Step& result);
   void renew_momenta();
+  bool ask_beside(Collocation& c, double x);
+  bool keeps_events() const;
+  bool collocate(Collocation& c);
+  bool is_smooth(Collocation& c);
+  void pass(const Collocation& c, double bound, Step& result);
+  bool passes(double h, double bound, Step& result);
+  bool passes_from_here(double bound, Step& result);
+  bool seems_smooth(double h) const;
+  bool passes_shrinking(double chosen, double bound, Step& result);
   bool forces_diverge();
   void compile(bool long_run);
   void compile_if_it_pays(double bound);

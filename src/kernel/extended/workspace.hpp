@@ -59,6 +59,7 @@ class Workspace {
  private:
   KernelStatus run(const T& t, std::span<const T> q, std::span<const T> v, int stages);
   KernelStatus stages(int count);
+  KernelStatus without_solution(KernelStatus status);
   bool border();
   KernelStatus factor();
   bool solve(int stage);

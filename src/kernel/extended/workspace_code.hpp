@@ -152,12 +152,22 @@ KernelStatus Workspace<T>::run(const T& t, std::span<const T> q, std::span<const
     for (int k = 0; k < 2; ++k) std::fill_n(memory_.row(k), unknowns_, T(0));
     std::copy(q.begin(), q.end(), memory_.row(0));
     std::copy(v.begin(), v.end(), memory_.row(1));
-    return stages(count);
+    const KernelStatus status = stages(count);
+    return status == KernelStatus::Ok ? status : without_solution(status);
   } catch (const std::domain_error&) {
-    return KernelStatus::NonFinite;
+    return without_solution(KernelStatus::NonFinite);
   } catch (const std::runtime_error&) {
-    return KernelStatus::NonFinite;
+    return without_solution(KernelStatus::NonFinite);
   }
+}
+
+/// Switch functions have values where forces have none: as of KernelWorkspace.
+template <class T>
+KernelStatus Workspace<T>::without_solution(KernelStatus status) try {
+  interpreter::run_section(memory_, Along, 0);
+  return status;
+} catch (const std::exception&) {
+  return status;
 }
 
 template <class T>

@@ -84,11 +84,11 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   arguments.q = q.data(), arguments.v = v.data();
   if (run_compiled(stages)) return KernelStatus::Ok;
   run_first_stages();
-  if (const auto status = factor(stages); status != KernelStatus::Ok) return status;
+  if (const auto status = factor(stages); status != KernelStatus::Ok) return without_solution(status);
   for (int stage = 0; stage < stages; ++stage) {
     if (stage > 0 && runs_on()) return run_later_stages(stages) ? KernelStatus::Ok : KernelStatus::NonFinite;
     if (stage == 0 || !run_directly(stage))
-      if (const auto status = run_step_by_step(stage); status != KernelStatus::Ok) return status;
+      if (const auto status = run_step_by_step(stage); status != KernelStatus::Ok) return stage > 0 ? status : without_solution(status);
     if (!compiled.later || !runs_on()) renew_blocks(stage, stages);
     run_along(stage);
   }
@@ -106,6 +106,12 @@ void KernelWorkspace::Impl::run_first_stages() {
     }
     if (stage < 0) run_along(stage);
   }
+}
+
+/// Switch functions have values where forces have none, and tell the sides on which these have: log|x| on the wrong side of 0.
+KernelStatus KernelWorkspace::Impl::without_solution(KernelStatus status) {
+  if (!program.runs[Along].empty()) interpreter::run_section(memory, Along, 0);
+  return status;
 }
 
 /// With a look at the solution before it is used.

@@ -72,6 +72,7 @@ struct KernelWorkspace::Impl {
   void find_direction();
   void sweep_block(std::size_t first);
   KernelStatus factor(int stages);
+  KernelStatus without_solution(KernelStatus status);
   KernelStatus factor_anew();
   KernelStatus factor_full();
   void need_full();

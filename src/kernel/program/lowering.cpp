@@ -118,6 +118,7 @@ Scaled Lowering::divide(Scaled numerator, Scaled denominator) {
                                  : pool.apply(Kind::Power, std::array{denominator.coefficient, pool.literal(-1)});
   const ConstantId coefficient = pool.multiply(numerator.coefficient, inverse);
   if (denominator.is_constant()) return {coefficient, numerator.node};
+  if (numerator.node == denominator.node) return constant(coefficient);  // x'/|x'| is the side of x'
   const NodeIndex top = numerator.is_constant() ? graph.leaf(Op::One) : numerator.node;
   return {coefficient, graph.quotient(top, denominator.node)};
 }
@@ -151,9 +152,16 @@ Scaled Lowering::power(Expr e) {
   const auto integer = number ? number->as_integer() : std::nullopt;
   if (integer && *integer >= 0) return integer_power(base, *integer);
   if (integer && *integer == -1) return divide(constant(graph.constants.literal(1)), base);
+  if (!number || number->sign() > 0)
+    if (const auto apart = power_of_choices(base, exponent.coefficient)) return *apart;
+  return plain_power(base, exponent.coefficient);
+}
+
+Scaled Lowering::plain_power(Scaled base, ConstantId exponent) {
+  const Rational* number = graph.constants.literal_or_null(exponent);
   const NodeIndex node = graph.node_of(base);
   if (number && *number == Rational(1, 2)) return graph.scaled(graph.unary(Op::SquareRoot, node));
-  return graph.scaled(graph.unary(Op::Power, node, exponent.coefficient));
+  return graph.scaled(graph.unary(Op::Power, node, exponent));
 }
 
 Scaled Lowering::time_derivative(Scaled argument) {

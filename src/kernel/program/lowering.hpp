@@ -29,6 +29,7 @@ class Lowering {
   Scaled multiply(std::vector<Scaled> factors);
   Scaled divide(Scaled numerator, Scaled denominator);
   Scaled power(Expr e);
+  Scaled plain_power(Scaled base, ConstantId exponent);
   Scaled integer_power(Scaled base, std::int64_t exponent);
   Scaled function(Kind kind, Scaled argument);
   /// y = f(u) with dy = f'(u) du, where f' may be written with y.
@@ -47,6 +48,8 @@ class Lowering {
   Scaled condition(Expr e);
   Scaled piecewise(Expr e);
   Scaled select(std::span<const std::pair<ConstantId, Scaled>> choices);
+  std::optional<ConstantId> constant_of(NodeIndex node) const;
+  std::optional<Scaled> power_of_choices(Scaled base, ConstantId exponent);
 
   /// What is known of the expressions of one context.
   struct Scope {

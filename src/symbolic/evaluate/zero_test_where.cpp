@@ -23,6 +23,7 @@ using Index = Eigen::Index;
 using Precise = std::unordered_map<Expr, Real100, ExprHash>;
 
 constexpr double on_relations = 1e-9;   // relative: from here the refinement takes over
+constexpr double independent = 1e-5;    // of the largest pivot
 constexpr int newton_turns = 60, refining_turns = 12, attempts_per_point = 12;
 const Real100 refined("1e-75"), vanishing("1e-60");
 
@@ -88,6 +89,16 @@ class OnRelations {
   /// How much each function changes when the unknowns change by their own size; `rows` of the functions' gradients.
   Vector changes(const std::vector<Expr>& rows, const Bindings& at) const {
     return matrix(rows, at).cwiseAbs() * reach_;
+  }
+
+  /// The number of relations that are independent there, by unknowns of their own sizes.
+  Index rank(const Bindings& at) const {
+    if (rows_ == 0) return 0;
+    const Matrix j = jacobian(at) * reach_.asDiagonal();
+    if (!j.allFinite()) return 0;
+    Eigen::ColPivHouseholderQR<Matrix> solver(row_weights(j).asDiagonal() * j);
+    solver.setThreshold(independent);
+    return solver.rank();
   }
 
   /// A point on the relations to 100 digits, or nothing.
@@ -200,34 +211,62 @@ class OnRelations {
 
 }  // namespace
 
+namespace {
+
+/// A point on the relations, and whether the differences vanish there.
+struct Judged {
+  Bindings point;
+  std::optional<double> difference;  // the first that does not vanish
+};
+
+/// What is 0 is measured by its terms and by what the unknowns' own sizes change in it. Nothing where a value is not finite.
+std::optional<Judged> judge(const Precise& point, const Sums& sums, const std::vector<Expr>& rows, const OnRelations& manifold) {
+  std::vector<Real100> value, size;
+  sums.evaluate<Real100>([&](Expr s) { return point.at(s); }, value, size);
+  if (!std::all_of(value.begin(), value.end(), [](const Real100& v) { return isfinite(v); })) return std::nullopt;
+  Judged out;
+  for (const auto& [symbol, x] : point) out.point.emplace(symbol, static_cast<double>(x));
+  const Vector change = manifold.changes(rows, out.point);
+  if (!change.allFinite()) return std::nullopt;
+  for (std::size_t i = 0; i < value.size() && !out.difference; ++i)
+    if (!(abs(value[i]) <= vanishing * (size[i] + Real100(change[static_cast<Index>(i)])))) out.difference = static_cast<double>(value[i]);
+  return out;
+}
+
+}  // namespace
+
 ZeroTest zero_test_where(std::span<const Expr> differences, std::span<const Expr> relations,
                          std::span<const Expr> unknowns, const Bindings& center, const ZeroTestOptions& options) {
-  ZeroTest test;
   OnRelations manifold(relations, unknowns, center);
   const Sums sums(differences);
   const std::vector<Expr> rows = manifold.rows_of(differences);
   std::mt19937_64 random(options.seed);
-  std::vector<Real100> value, size;
-  for (int attempt = 0; attempt < options.points * attempts_per_point && test.points < options.points; ++attempt) {
+  // Where coordinates fail (Euler angles at θ = 0) the relations hold for accelerations that no motion has: points count where their rank is
+  // as large as it gets.
+  Index rank = 0;
+  std::vector<Judged> regular;
+  const auto wanted = static_cast<std::size_t>(options.points);
+  for (int attempt = 0; attempt < options.points * attempts_per_point && regular.size() < wanted; ++attempt) {
     const auto point = manifold.point(random);
     if (!point) continue;
-    sums.evaluate<Real100>([&](Expr s) { return point->at(s); }, value, size);
-    if (!std::all_of(value.begin(), value.end(), [](const Real100& v) { return isfinite(v); })) continue;
-    Bindings rounded;
-    for (const auto& [symbol, x] : *point) rounded.emplace(symbol, static_cast<double>(x));
-    const Vector change = manifold.changes(rows, rounded);
-    if (!change.allFinite()) continue;
-    for (std::size_t i = 0; i < value.size(); ++i) {
-      if (abs(value[i]) <= vanishing * (size[i] + Real100(change[static_cast<Index>(i)]))) continue;
-      test.verdict = Verdict::Nonzero;
-      test.error_bound = 0;
-      test.witness_value = static_cast<double>(value[i]);
-      test.witness = rounded;
-      return test;
-    }
-    ++test.points;
+    std::optional<Judged> judged = judge(*point, sums, rows, manifold);
+    const Index here = judged ? manifold.rank(judged->point) : 0;
+    if (!judged || here < rank) continue;
+    if (here > rank) regular.clear();
+    rank = here;
+    regular.push_back(std::move(*judged));
   }
-  if (test.points == options.points) test.verdict = Verdict::Zero;
+  ZeroTest test;
+  test.points = static_cast<int>(regular.size());
+  for (const Judged& judged : regular) {
+    if (!judged.difference) continue;
+    test.verdict = Verdict::Nonzero;
+    test.error_bound = 0;
+    test.witness_value = *judged.difference;
+    test.witness = judged.point;
+    return test;
+  }
+  if (regular.size() == wanted) test.verdict = Verdict::Zero;
   else test.reason = "no point was found at which the constraints hold";
   return test;
 }
