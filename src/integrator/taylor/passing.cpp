@@ -14,8 +14,7 @@ namespace {
 
 constexpr int nodes = 8;
 constexpr int most_sweeps = 40;
-constexpr double settled = 1e-16, stalled = 1e-13;  // change of q̈ h by the last sweep, of the velocity
-constexpr double smooth = 2e-13;                    // error of q̈ h beside the nodes, of the velocity
+constexpr double settled = 1e-16;  // change of q̈ h by a sweep, of the velocity
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 using Nodes = std::array<double, nodes>;
@@ -60,6 +59,17 @@ struct TaylorStepper::Impl::Collocation {
   std::vector<std::int8_t> sides;              // at the last point that was asked for
 };
 
+/// The constraints are nearly singular at such places, and a state beside them has an acceleration that is far off.
+bool TaylorStepper::Impl::evaluate_on_constraints(double time, std::vector<double>& position, std::vector<double>& velocity) {
+  constexpr int turns = 3;
+  for (int turn = 0; turn < (m > 0 ? turns : 0); ++turn) {
+    if (probe.evaluate(time, position, velocity) != KernelStatus::Ok) return false;
+    probe.corrections(dq, dv);
+    for (std::size_t i = 0; i < n; ++i) position[i] += dq[i], velocity[i] += dv[i];
+  }
+  return probe.evaluate(time, position, velocity) == KernelStatus::Ok;
+}
+
 /// The polynomial's state at x; q̈ there by the equations is in `probe`. False: it has no value, or an event changes its sign.
 bool TaylorStepper::Impl::ask_beside(Collocation& c, double x) {
   std::vector<double> position(n), velocity(n);
@@ -73,10 +83,10 @@ bool TaylorStepper::Impl::ask_beside(Collocation& c, double x) {
     position[i] = q_now[i] + c.h * x * (v_now[i] + c.h * x * twice);
   }
   const double time = t.hi + c.h * x;
-  if (c.sides.empty()) return probe.evaluate(time, position, velocity) == KernelStatus::Ok && keeps_events();
+  if (c.sides.empty()) return evaluate_on_constraints(time, position, velocity) && keeps_events();
   for (std::size_t pass = 0; pass <= c.sides.size(); ++pass) {
     probe.set_branches(c.sides);
-    const bool defined = probe.evaluate(time, position, velocity) == KernelStatus::Ok;
+    const bool defined = evaluate_on_constraints(time, position, velocity);
     bool changed = false;
     for (std::size_t i = 0; i < c.sides.size(); ++i) {
       const double s = probe.switch_function(i, 0);
@@ -95,6 +105,10 @@ bool TaylorStepper::Impl::keeps_events() const {
     if (probe.event(i, 0) * event_state[i].side < 0) return false;
   return true;
 }
+
+/// What q̈ h may be off beside the nodes, of the velocity. Next to a singular configuration of the constraints q̈ has rounding errors across the
+/// branch on which the motion goes; the projection takes them out at the end, where the branches are apart.
+double TaylorStepper::Impl::smooth() const { return m > 0 ? 1e-8 : 2e-13; }
 
 /// q̈ at the nodes, until it is that of the polynomial through it.
 bool TaylorStepper::Impl::collocate(Collocation& c) {
@@ -117,7 +131,7 @@ bool TaylorStepper::Impl::collocate(Collocation& c) {
     }
     c.acceleration = std::move(now);
     c.integrand = std::move(integrand);
-    if (change <= settled || (change <= stalled && change > before / 2)) return true;
+    if (change <= settled || (change <= smooth() / 2 && change > before / 2)) return true;
     before = change;
   }
   return false;
@@ -127,7 +141,7 @@ bool TaylorStepper::Impl::is_smooth(Collocation& c) {
   for (const double x : {0.055, 0.31, 0.69, 1.0}) {
     if (!ask_beside(c, x)) return false;
     for (std::size_t i = 0; i < n; ++i)
-      if (!(std::abs(c.h * (probe.acceleration(i) - value(c.acceleration[i], x))) <= smooth * c.size[i])) return false;
+      if (!(std::abs(c.h * (probe.acceleration(i) - value(c.acceleration[i], x))) <= smooth() * c.size[i])) return false;
   }
   return true;
 }
@@ -188,7 +202,7 @@ bool TaylorStepper::Impl::passes_from_here(double bound, Step& result) {
 
 /// Whether the low orders of the series say that the motion is smooth over h, as the last ones do not.
 bool TaylorStepper::Impl::seems_smooth(double h) const {
-  constexpr double small = 1e-9;
+  constexpr double small = 1e-7;
   for (std::size_t i = 0; i < n; ++i) {
     const double size = std::max(std::abs(v_now[i]), epsilon * std::abs(q_now[i]) / h);
     for (int k = 5; k <= 6; ++k)
@@ -197,12 +211,14 @@ bool TaylorStepper::Impl::seems_smooth(double h) const {
   return true;
 }
 
-/// Steps that become much shorter than they were, though the motion is smooth.
+/// Steps that become much shorter than they were, though the motion is smooth. Multipliers give a place away early, so that it comes to lie in the middle of
+/// the step, away from all nodes.
 bool TaylorStepper::Impl::passes_shrinking(double chosen, double bound, Step& result) {
-  constexpr double much = 0.01;
+  const double much = m > 0 ? 0.2 : 0.01;
   longest = std::max(longest, std::isfinite(chosen) ? chosen : 0);
   if (!(chosen < much * longest) || control.order < nodes) return false;
-  for (const double h : {0.05 * longest, 5 * chosen})
+  const std::array<double, 3> lengths = m > 0 ? std::array{3.6 * chosen, 4.4 * chosen, 8 * chosen} : std::array{0.05 * longest, 5 * chosen, 15 * chosen};
+  for (const double h : lengths)
     if (seems_smooth(h) && passes(h, bound, result)) return true;
   return false;
 }

@@ -50,8 +50,10 @@ struct TaylorStepper::Impl {
   bool equations_hold(const KernelWorkspace& at_end);
   bool take_back(Step& result);
   void renew_momenta();
+  bool evaluate_on_constraints(double time, std::vector<double>& position, std::vector<double>& velocity);
   bool ask_beside(Collocation& c, double x);
   bool keeps_events() const;
+  double smooth() const;
   bool collocate(Collocation& c);
   bool is_smooth(Collocation& c);
   void pass(const Collocation& c, double bound, Step& result);

@@ -35,6 +35,16 @@ std::vector<Expr> terms_of(Expr e) {
   return terms;
 }
 
+/// The highest derivative of a coordinate in it; a multiplier goes with accelerations.
+int level_of(std::span<const Expr> expression) {
+  int level = 0;
+  for (const Expr& symbol : symbols_of(expression)) {
+    if (symbol.role() == Role::Coordinate) level = std::max(level, symbol.order());
+    if (symbol.role() == Role::Multiplier) level = 2;
+  }
+  return std::min(level, 2);
+}
+
 /// Sums of terms, evaluated with their sizes.
 class Sums {
  public:
@@ -74,6 +84,8 @@ class OnRelations {
   OnRelations(std::span<const Expr> relations, std::span<const Expr> unknowns, const Bindings& center)
       : relations_(relations), unknowns_(unknowns.begin(), unknowns.end()), center_(center) {
     jacobian_ = rows_of(relations);
+    for (const Expr& relation : relations) relation_levels_.push_back(level_of({&relation, 1}));
+    for (const Expr& unknown : unknowns_) unknown_levels_.push_back(level_of({&unknown, 1}));
     rows_ = static_cast<Index>(relations.size());
     reach_.resize(static_cast<Index>(unknowns_.size()));
     for (std::size_t i = 0; i < unknowns_.size(); ++i) reach_[static_cast<Index>(i)] = own_size(center.at(unknowns_[i]));
@@ -91,10 +103,12 @@ class OnRelations {
     return matrix(rows, at).cwiseAbs() * reach_;
   }
 
-  /// The number of relations that are independent there, by unknowns of their own sizes.
+  /// The number of relations that are independent there, by the unknowns of the highest level, of their own sizes.
   Index rank(const Bindings& at) const {
-    if (rows_ == 0) return 0;
-    const Matrix j = jacobian(at) * reach_.asDiagonal();
+    if (rows_ == 0 || unknown_levels_.empty()) return 0;
+    const int highest = *std::max_element(unknown_levels_.begin(), unknown_levels_.end());
+    const Vector determined = chosen(unknown_levels_, [highest](int level) { return level == highest; });
+    const Matrix j = jacobian(at) * reach_.cwiseProduct(determined).asDiagonal();
     if (!j.allFinite()) return 0;
     Eigen::ColPivHouseholderQR<Matrix> solver(row_weights(j).asDiagonal() * j);
     solver.setThreshold(independent);
@@ -126,25 +140,43 @@ class OnRelations {
   }
   Matrix jacobian(const Bindings& at) const { return matrix(jacobian_, at); }
 
+  /// Positions first, then velocities by those, then accelerations and multipliers: all at once would be drawn to where coordinates fail (Euler angles at
+  /// θ = 0), since there an equation of motion holds whatever the accelerations are.
   bool approach(Bindings& at) const {
+    for (int level = 0; level <= 2; ++level) {
+      Bindings nearer = at;
+      const auto here = [level](int of) { return of == level; };
+      if (newton(nearer, chosen(relation_levels_, here), chosen(unknown_levels_, here))) at = std::move(nearer);
+    }
+    const auto all = [](int) { return true; };
+    return newton(at, chosen(relation_levels_, all), chosen(unknown_levels_, all));
+  }
+
+  template <class Choose>
+  static Vector chosen(const std::vector<int>& levels, Choose choose) {
+    Vector out(static_cast<Index>(levels.size()));
+    for (std::size_t i = 0; i < levels.size(); ++i) out[static_cast<Index>(i)] = choose(levels[i]) ? 1 : 0;
+    return out;
+  }
+
+  /// On the relations and with the unknowns that are marked by 1.
+  bool newton(Bindings& at, const Vector& marked, const Vector& moving) const {
     std::vector<double> value, size;
     const Vector change = changes(jacobian_, at);
     if (!change.allFinite()) return false;
     const auto measure = [&] {
       relations_.evaluate<double>([&](Expr s) { return at.at(s); }, value, size);
       double worst = 0;
-      for (std::size_t i = 0; i < value.size(); ++i)
+      for (std::size_t i = 0; i < value.size(); ++i) {
+        value[i] *= marked[static_cast<Index>(i)];
         worst = std::max(worst, !std::isfinite(value[i]) ? HUGE_VAL : value[i] == 0 ? 0 : std::abs(value[i]) / (size[i] + change[static_cast<Index>(i)]));
+      }
       return worst;
     };
-    const auto norm = [&](const Vector& weight) {
-      double sum = 0;
-      for (Index i = 0; i < rows_; ++i) sum += std::pow(weight[i] * value[static_cast<std::size_t>(i)], 2);
-      return std::sqrt(sum);
-    };
+    const auto norm = [&](const Vector& weight) { return weight.cwiseProduct(Eigen::Map<const Vector>(value.data(), rows_)).norm(); };
     double error = measure();
     for (int turn = 0; turn < newton_turns && error > on_relations; ++turn) {
-      const Matrix j = jacobian(at);
+      const Matrix j = marked.asDiagonal() * jacobian(at) * moving.asDiagonal();
       if (!j.allFinite() || !std::isfinite(error)) return false;
       const Vector weight = row_weights(j);
       const Vector step = solve(j, Eigen::Map<const Vector>(value.data(), rows_));
@@ -205,6 +237,7 @@ class OnRelations {
   std::vector<Expr> unknowns_;
   const Bindings& center_;
   std::vector<Expr> jacobian_;
+  std::vector<int> relation_levels_, unknown_levels_;
   Index rows_ = 0;
   Vector reach_;
 };
