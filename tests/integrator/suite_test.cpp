@@ -54,6 +54,32 @@ TEST_CASE("the error follows the tolerance") {
   CHECK(taylor_order(0) == 20);
 }
 
+TEST_CASE("a larger tolerance takes fewer steps") {
+  const auto steps = [](auto build, double tolerance) {
+    Mechanics m;
+    build(m);
+    auto stepper = m.stepper({.tolerance = tolerance});
+    advance(stepper, 20);
+    return stepper.steps();
+  };
+  const auto kepler = [](Mechanics& m) { build_kepler(m, 0.6); };
+  for (const double finer : {0.0, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4}) {
+    const double larger = finer > 0 ? 10 * finer : 1e-14;
+    CAPTURE(finer);
+    CHECK(steps(build_double_pendulum, larger) <= steps(build_double_pendulum, finer));
+    CHECK(steps(kepler, larger) <= steps(kepler, finer));
+  }
+  CHECK(2 * steps(kepler, 1e-3) < 1.6 * steps(kepler, 0));
+}
+
+TEST_CASE("the energy of an oscillator errs as rounding adds up at random") {
+  Mechanics m;
+  build_oscillator(m, 1, 0);
+  auto stepper = m.stepper();
+  advance(stepper, 2e5);  // with rounded powers of the length, the same in all steps: 1e-12
+  CHECK(std::abs(stepper.q()[0] * stepper.q()[0] + stepper.v()[0] * stepper.v()[0] - 1) < 3e-13);
+}
+
 TEST_CASE("reversibility: forwards and back returns to the start") {
   Mechanics m;
   build_double_pendulum(m);

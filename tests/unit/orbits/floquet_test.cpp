@@ -16,7 +16,7 @@ double period_of_pendulum(double amplitude) {
 
 /// x'' + (a − 2 q cos 2t) x = 0: the trace over π is 2 − 4 Δ(0) sin²(π√a/2) with Hill's determinant (Whittaker and
 /// Watson, §19.42).
-double trace_by_hill(double a, double q) {
+double trace_by_hill(double a, double q) {  // a < 0 as well: sin² becomes −sinh²
   constexpr int rows = 20000;
   // A tridiagonal determinant with unit diagonal, from the top: D_k = D_{k−1} − ξ_k ξ_{k−1} D_{k−2}.
   const auto xi = [&](int r) { return q / (4.0 * r * r - a); };
@@ -26,8 +26,8 @@ double trace_by_hill(double a, double q) {
     before = now;
     now = next;
   }
-  const double s = std::sin(std::numbers::pi * std::sqrt(a) / 2);
-  return 2 - 4 * now * s * s;
+  const double half = std::numbers::pi * std::sqrt(std::abs(a)) / 2, s = a > 0 ? std::sin(half) : std::sinh(half);
+  return 2 - 4 * now * std::copysign(s * s, a);
 }
 
 }  // namespace
@@ -114,6 +114,48 @@ TEST_CASE(
   CHECK(r.motion.start.v[0] == doctest::Approx(-1.3 * amplitude.imag()).epsilon(1e-13));
   CHECK(r.largest == doctest::Approx(std::exp(-0.1 * r.motion.period)).epsilon(1e-13));
   CHECK(r.stability == OrbitalStability::Attracting);
+}
+
+TEST_CASE("Kapitza's pendulum: an equilibrium of a driven system has multipliers, by Hill's determinant") {
+  const auto kapitza = [](const std::string& rest) {
+    return ModelText("system kapitza\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2, a = 0.1 m\ncoord θ : angle\n"
+                     "gravity (0, -g)\nrun 2 s\n" + rest);
+  };
+  const std::string point = "point P mass m at (l sin θ, a cos(Ω t) - l cos θ)\n";
+  for (const double w : {100.0, 40.0})
+    for (const bool up : {false, true}) {
+      CAPTURE(w);
+      CAPTURE(up);
+      const FloquetResult r = floquet_of(kapitza("param Ω = " + std::to_string(w) + " rad/s\n" + point + "start θ = " + (up ? "pi" : "0") + "\n"));
+      CHECK(r.motion.rests);
+      CHECK(r.trace == doctest::Approx(trace_by_hill((up ? -4 : 4) * 9.81 / (w * w), 0.2)).epsilon(1e-7));  // of the rows of the determinant
+      CHECK(r.stability == (up && w < 44 ? OrbitalStability::Unstable : OrbitalStability::Neutral));  // a Ω against √(2 g l)
+    }
+}
+
+TEST_CASE("equilibria of a driven system are judged by multipliers, not by frozen frequencies") {
+  const auto verdicts = [](double w, const std::string& more) {
+    const ModelText m("system kapitza\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2, a = 0.1 m\ncoord θ : angle\nparam Ω = " + std::to_string(w) +
+                      " rad/s\npoint P mass m at (l sin θ, a cos(Ω t) - l cos θ)\ngravity (0, -g)\n" + more);
+    const PointEquations points(m.equations);
+    Diagnostics told;
+    auto study = modal_study(points, {0, {0.0}, {0.0}}, told);
+    REQUIRE(study);
+    REQUIRE(study->entries.size() == 2);
+    const auto neighbours = settle_driven(*study, points, m.model, m.equations, nullptr);
+    std::vector<Stability> out;
+    for (std::size_t i = 0; i < 2; ++i) {
+      CHECK(neighbours[i].has_value());
+      CHECK(study->entries[i].analysis.modes.empty());
+      out.push_back(study->entries[i].analysis.stability.verdict);
+    }
+    return out;  // hanging, upright
+  };
+  CHECK(verdicts(100, "") == std::vector{Stability::Undecided, Stability::Undecided});
+  CHECK(verdicts(40, "") == std::vector{Stability::Undecided, Stability::Unstable});
+  const std::string friction = "D = 0.1 [N m s] θ'^2\n";
+  CHECK(verdicts(100, friction) == std::vector{Stability::Asymptotic, Stability::Asymptotic});
+  CHECK(verdicts(40, friction) == std::vector{Stability::Asymptotic, Stability::Unstable});
 }
 
 TEST_CASE("what has no Floquet multipliers is told") {
