@@ -13,6 +13,7 @@ namespace maupertuis {
 namespace {
 
 constexpr int nodes = 8;
+constexpr int looks = 33;          // beside the nodes
 constexpr int most_sweeps = 40;
 constexpr double settled = 1e-16;  // change of q̈ h by a sweep, of the velocity
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -138,7 +139,8 @@ bool TaylorStepper::Impl::collocate(Collocation& c) {
 }
 
 bool TaylorStepper::Impl::is_smooth(Collocation& c) {
-  for (const double x : {0.055, 0.31, 0.69, 1.0}) {
+  for (int k = 1; k <= looks; ++k) {
+    const double x = static_cast<double>(k) / looks;
     if (!ask_beside(c, x)) return false;
     for (std::size_t i = 0; i < n; ++i)
       if (!(std::abs(c.h * (probe.acceleration(i) - value(c.acceleration[i], x))) <= smooth() * c.size[i])) return false;
@@ -192,10 +194,11 @@ bool TaylorStepper::Impl::passes(double h, double bound, Step& result) {
   return found;
 }
 
-/// Where there is no series: from shares of the longest step, or of the run, downward.
+/// Where there is no series: from small shares of the longest step, or of the run, downward. Such a step looks at points alone, and must be too short for
+/// anything to happen between them.
 bool TaylorStepper::Impl::passes_from_here(double bound, Step& result) {
   const double whole = longest > 0 ? longest : std::abs(remaining(bound));
-  for (double share = 0.03; share > 1e-9; share *= 0.2)
+  for (double share = 1e-5; share > 1e-11; share *= 0.2)
     if (passes(share * whole, bound, result)) return true;
   return false;
 }
@@ -211,15 +214,16 @@ bool TaylorStepper::Impl::seems_smooth(double h) const {
   return true;
 }
 
-/// Steps that become much shorter than they were, though the motion is smooth. Multipliers give a place away early, so that it comes to lie in the middle of
-/// the step, away from all nodes.
+/// Steps that shrink without end, though the motion is smooth: to a millionth of the longest, which no wall or pulse asks for. Multipliers give a place away
+/// early: where they alone shorten the step it comes to lie in the middle, away from all nodes.
 bool TaylorStepper::Impl::passes_shrinking(double chosen, double bound, Step& result) {
-  const double much = m > 0 ? 0.2 : 0.01;
+  constexpr double endless = 1e-6, much = 0.2;
   longest = std::max(longest, std::isfinite(chosen) ? chosen : 0);
-  if (!(chosen < much * longest) || control.order < nodes) return false;
-  const std::array<double, 3> lengths = m > 0 ? std::array{3.6 * chosen, 4.4 * chosen, 8 * chosen} : std::array{0.05 * longest, 5 * chosen, 15 * chosen};
-  for (const double h : lengths)
-    if (seems_smooth(h) && passes(h, bound, result)) return true;
+  if (!(chosen < (m > 0 ? much : endless) * longest) || control.order < nodes) return false;
+  const bool by_multipliers = m > 0 && taylor::step_within_multipliers(work, n, m, control, 3.6 * chosen) < 1.5 * chosen;
+  if (!by_multipliers && !(chosen < endless * longest)) return false;
+  for (const double times : {by_multipliers ? 3.6 : 5, by_multipliers ? 4.4 : 15, 8.0})
+    if (seems_smooth(times * chosen) && passes(times * chosen, bound, result)) return true;
   return false;
 }
 
