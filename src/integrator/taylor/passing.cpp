@@ -109,7 +109,7 @@ bool TaylorStepper::Impl::keeps_events() const {
 
 /// What q̈ h may be off beside the nodes, of the velocity. Next to a singular configuration of the constraints q̈ has rounding errors across the
 /// branch on which the motion goes; the projection takes them out at the end, where the branches are apart.
-double TaylorStepper::Impl::smooth() const { return m > 0 ? 1e-8 : 2e-13; }
+double TaylorStepper::Impl::smooth() const { return m > 0 ? 1e-6 : 2e-13; }
 
 /// q̈ at the nodes, until it is that of the polynomial through it.
 bool TaylorStepper::Impl::collocate(Collocation& c) {
@@ -220,7 +220,7 @@ bool TaylorStepper::Impl::passes_shrinking(double chosen, double bound, Step& re
   constexpr double endless = 1e-6, much = 0.2;
   longest = std::max(longest, std::isfinite(chosen) ? chosen : 0);
   if (!(chosen < (m > 0 ? much : endless) * longest) || control.order < nodes) return false;
-  const bool by_multipliers = m > 0 && taylor::step_within_multipliers(work, n, m, control, 3.6 * chosen) < 1.5 * chosen;
+  const bool by_multipliers = m > 0 && taylor::step_within_multipliers(work, n, m, control, 3.6 * chosen) < 3.6 * chosen;
   if (!by_multipliers && !(chosen < endless * longest)) return false;
   for (const double times : {by_multipliers ? 3.6 : 5, by_multipliers ? 4.4 : 15, 8.0})
     if (seems_smooth(times * chosen) && passes(times * chosen, bound, result)) return true;
