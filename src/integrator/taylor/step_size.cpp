@@ -1,5 +1,7 @@
 #include "integrator/taylor/step_size.hpp"
 
+#include "integrator/taylor/end_check.hpp"
+
 #include <maupertuis/integrator.hpp>
 
 #include <algorithm>
@@ -24,9 +26,10 @@ namespace {
 /// energy of a double pendulum grew by 4e-18 a step.
 double log_of_last_term(double tolerance) { return std::log(std::max(tolerance, rounding_tolerance())) - 4; }
 
+constexpr int order_at_rounding = 20;
+
 /// ln(h/ρ): −2 at rounding level, where the order is 20; near there the cost is flat. A tolerance 100 times as large takes a step 1.1 times as long.
 double log_of_factor(double tolerance) {
-  constexpr int order_at_rounding = 20;
   constexpr double growth = 0.02;
   const double finest = log_of_last_term(0);
   return finest / order_at_rounding + growth * (log_of_last_term(tolerance) - finest);
@@ -36,7 +39,9 @@ double log_of_factor(double tolerance) {
 
 int taylor_order(double tolerance) {
   constexpr double rounding = 1e-9;
-  return std::max(2, static_cast<int>(std::ceil(log_of_last_term(tolerance) / log_of_factor(tolerance) - rounding)));
+  // Disks allow (their tolerance)^{1/(p + 1)} of a radius: no less than at rounding level.
+  const double by_disks = (order_at_rounding + 1) * std::log(taylor::safe_tolerance(tolerance)) / std::log(taylor::safe_tolerance(0)) - 1;
+  return std::max(2, static_cast<int>(std::ceil(std::max(by_disks, log_of_last_term(tolerance) / log_of_factor(tolerance)) - rounding)));
 }
 
 namespace taylor {

@@ -189,7 +189,7 @@ TEST_CASE("a singular configuration ends the run with the reason, or is passed w
   CHECK(std::abs(std::pow(end.final.q[1], 3) - std::pow(end.final.q[0], 2)) < 1e-9);
 }
 
-TEST_CASE("a parallelogram goes through its flat position on its branch, also where the coupler needs an infinite force there") {
+TEST_CASE("a parallelogram through its flat position: on with the motion where no force is needed, else the reason") {
   const std::string linkage = "system p\nparam l = 1 m, d = 2 m, J = 1 kg m^2\ncoord a, b, c : angle\nT = 1/2 J (a'^2 + b'^2 + c'^2)\n"
                               "constraint l cos a + d cos c = d + l cos b name horizontal\nconstraint l sin a + d sin c = l sin b name vertical\n"
                               "start a = 60 deg, a' = -1 rad/s, c = 0, b = 60 deg\n";
@@ -198,17 +198,13 @@ TEST_CASE("a parallelogram goes through its flat position on its branch, also wh
   CHECK(through.ok());
   CHECK(through.final.q[0] == doctest::Approx(1.0471975511965976 - 5).epsilon(1e-12));
   CHECK(through.final.q[1] == doctest::Approx(through.final.q[0]).epsilon(1e-12));
-  // With a weight on the crank the coupler would have to carry an infinite force there; the motion is that of one pendulum all the same.
+  // With a weight on the crank the coupler would have to carry an infinite force there.
   ModelText loaded(linkage + "V = 3 [J] sin a\n");
-  const auto weighted = run(loaded, 5);
-  REQUIRE(weighted.ok());
-  ModelText reduced("system r\nparam J = 1 kg m^2\ncoord a : angle\nT = J a'^2\nV = 3 [J] sin a\nstart a = 60 deg, a' = -1 rad/s\n");
-  const auto alone = run(reduced, 5);
-  REQUIRE(alone.ok());
-  CHECK(alone.final.q[0] < 0);  // it has been through
-  CHECK(weighted.final.q[0] == doctest::Approx(alone.final.q[0]).epsilon(1e-8));
-  CHECK(weighted.final.q[1] == doctest::Approx(alone.final.q[0]).epsilon(1e-8));
-  CHECK(weighted.statistics.energy_drift < 1e-11);
+  const auto stuck = run(loaded, 5);
+  CHECK(stuck.ending == Ending::SingularConstraints);
+  CHECK(std::abs(stuck.final.q[0]) < 0.1);
+  CHECK(stuck.statistics.energy_drift < 1e-12);
+  CHECK(std::abs(stuck.final.q[0] - stuck.final.q[1]) < 1e-7);
 }
 
 TEST_CASE("the stiff method takes over where stability limits the steps, and says so") {
