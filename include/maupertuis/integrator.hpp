@@ -81,7 +81,7 @@ class TaylorStepper {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The order that a tolerance asks for, p = ⌈−½ ln ε + 1⌉, and the tolerance at rounding level.
+/// The order that a tolerance asks for (20 at rounding level, 12 at 1e-6; docs/theory/taylor.md), and the tolerance at rounding level.
 int taylor_order(double tolerance);
 double rounding_tolerance();
 

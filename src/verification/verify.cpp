@@ -263,7 +263,17 @@ class Verifier {
     const std::string text = to_plain(form.value, equations_.order);
     constexpr std::size_t longest = 300;
     if (form.intermediates.empty() && text.size() <= longest) return fmt::format("{} is {}, not 0.", what, text);
-    return fmt::format("{} is not 0: at a sample state it is {:.6g}.", what, test.witness_value);
+    return fmt::format("{} is not 0: at {} it is {:.6g}.", what, state_text(test.witness), test.witness_value);
+  }
+
+  /// "x = 0.3, x' = -1.2 (SI)" of a sample.
+  std::string state_text(const Bindings& sample) const {
+    std::string out;
+    for (const Coordinate& c : equations_.system->coordinates)
+      for (const Expr& symbol : {c.q, c.velocity})
+        if (const auto found = sample.find(symbol); found != sample.end())
+          out += fmt::format("{}{}{} = {:.6g}", out.empty() ? "" : ", ", c.name, symbol == c.q ? "" : "'", found->second);
+    return out.empty() ? "a sample state" : out + " (SI)";
   }
 
   // ------------------------------------------------------------------------------------------------ runs
