@@ -40,6 +40,8 @@ class StiffStepper {
   std::span<const double> q() const;  // [n]
   std::span<const double> v() const;  // [n]
   std::size_t steps() const;
+  /// Steps so far that were taken back, since a force acted within them that the formula had not seen.
+  std::size_t rejected() const;
   std::size_t switches() const { return 0; }
   /// The largest so far of φ and its rate at the ends of steps, as TaylorStepper::constraint_residual measures it.
   double constraint_residual() const;

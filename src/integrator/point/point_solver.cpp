@@ -125,6 +125,13 @@ void PointSolver::derivatives(MatrixXd& by_q, MatrixXd& by_v) {
   by_v = -solved.topRightCorner(n, n);
 }
 
+MatrixXd PointSolver::mobility() const {
+  const Index n = index(n_), r = index(rows_.size());
+  MatrixXd forces = MatrixXd::Zero(n + r, n);
+  forces.topRows(n).setIdentity();
+  return (scale_.asDiagonal() * factored_.solve(MatrixXd(scale_.asDiagonal() * forces))).topRows(n);
+}
+
 bool PointSolver::move_onto(LinearizedRows& rows, std::span<double> changed, std::size_t first) {
   double last = std::numeric_limits<double>::infinity(), first_move = 0;
   for (int turn = 0; turn < 20; ++turn) {

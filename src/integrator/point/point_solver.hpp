@@ -52,6 +52,8 @@ class PointSolver {
   const std::vector<std::size_t>& rows() const { return rows_; }
   /// After solve: ∂a/∂q and ∂a/∂v, [n × n] each.
   void derivatives(Eigen::MatrixXd& by_q, Eigen::MatrixXd& by_v);
+  /// After solve: ∂a/∂F for forces F beside the balance, [n × n].
+  Eigen::MatrixXd mobility() const;
   /// Moves (q, v) by the least kinetic change onto φ = 0, then rates = 0, to rounding. False if it does not converge.
   /// Costs one solve, and nothing without constraints.
   bool project(double t, std::span<double> q, std::span<double> v);

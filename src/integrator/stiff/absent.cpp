@@ -21,6 +21,7 @@ double StiffStepper::time() const { return 0; }
 std::span<const double> StiffStepper::q() const { return {}; }
 std::span<const double> StiffStepper::v() const { return {}; }
 std::size_t StiffStepper::steps() const { return 0; }
+std::size_t StiffStepper::rejected() const { return 0; }
 double StiffStepper::constraint_residual() const { return 0; }
 bool StiffStepper::covers(double) const { return false; }
 Sample StiffStepper::sample(double) const { return {}; }

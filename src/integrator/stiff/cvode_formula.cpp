@@ -34,6 +34,8 @@ class CvodeFormula final : public Formula {
   void restart(double t, std::span<const double> y) override;
   Advance advance(double bound, std::span<double> y) override;
   void interpolate(double t, std::span<double> y) const override;
+  int order() const override;
+  void limit(double longest) override { require_success(CVodeSetMaxStep(memory_, longest)); }
 
  private:
   // Called by CVODE with `this` as user data; 0: done, 1: try a shorter step.
@@ -125,6 +127,12 @@ Advance CvodeFormula::advance(double bound, std::span<double> y) {
 void CvodeFormula::interpolate(double t, std::span<double> y) const {
   const Vector out(y, context_);
   require_success(CVodeGetDky(memory_, t, 0, out));
+}
+
+int CvodeFormula::order() const {
+  int order = 0;
+  require_success(CVodeGetLastOrder(memory_, &order));
+  return order;
 }
 
 }  // namespace

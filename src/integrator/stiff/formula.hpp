@@ -20,6 +20,7 @@ struct Advance {
   std::optional<std::size_t> event;
   std::optional<Failure> failure;  // then nothing was reached
   bool history_ends = false;       // the next step needs a restart
+  bool drifted = false;            // over a jump, without the formula
 };
 
 /// Backward differentiation over a history of its own. States are those of Motion.
@@ -32,6 +33,10 @@ class Formula {
   virtual Advance advance(double bound, std::span<double> y) = 0;
   /// The state at a time in the last step, off the constraints by what the tolerance allows.
   virtual void interpolate(double t, std::span<double> y) const = 0;
+  /// Of the last step.
+  virtual int order() const = 0;
+  /// No step shall be longer from now on; 0: as long as the errors allow.
+  virtual void limit(double longest) = 0;
 };
 
 /// CVODE: y' = f(t, y). Precondition: no constraints.

@@ -40,6 +40,8 @@ class IdaFormula final : public Formula {
   void restart(double t, std::span<const double> y) override;
   Advance advance(double bound, std::span<double> y) override;
   void interpolate(double t, std::span<double> y) const override;
+  int order() const override;
+  void limit(double longest) override { require_success(IDASetMaxStep(memory_, longest)); }
 
  private:
   // Called by IDA with `this` as user data; 0: done, 1: try a shorter step.
@@ -197,6 +199,12 @@ void IdaFormula::interpolate(double t, std::span<double> y) const {
   require_success(IDAGetDky(memory_, t, 0, state));
   std::copy_n(values(state).begin(), 2 * n, y.begin());
   if (integrals() > 0) require_success(IDAGetQuadDky(memory_, t, 0, Vector(y.subspan(2 * n), context_)));
+}
+
+int IdaFormula::order() const {
+  int order = 0;
+  require_success(IDAGetLastOrder(memory_, &order));
+  return order;
 }
 
 }  // namespace

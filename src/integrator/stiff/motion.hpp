@@ -30,6 +30,8 @@ class Motion {
   /// The reciprocals of the errors that a step may make. Each coordinate and velocity is measured against its own size, which
   /// it keeps for a while when it passes through zero; whatever follows v in y has no part in the control of the error.
   bool weigh(std::span<const double> y, std::span<double> weights);
+  /// What a step may err in velocity i.
+  double velocity_error(std::size_t i) const { return options.tolerance * sizes_[freedoms() + i] + options.absolute; }
 
   const MotionFunctions functions;
   StiffOptions options;

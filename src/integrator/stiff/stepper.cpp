@@ -1,5 +1,6 @@
 #ifdef MAUPERTUIS_SUNDIALS
 #include "integrator/point/sample.hpp"
+#include "integrator/stiff/force_check.hpp"
 #include "integrator/stiff/formula.hpp"
 #include "integrator/stiff/reason.hpp"
 
@@ -20,7 +21,7 @@ bool has_stiff_method() { return true; }
 struct StiffStepper::Impl {
   Impl(const MotionFunctions& functions, std::span<const double> parameters, const StiffOptions& options)
       : n(functions.freedoms), motion(functions, parameters, options), observables(functions.observables),
-        formula(functions.constraints > 0 ? stiff::index_two(motion) : stiff::explicit_rates(motion)), now(motion.states()) {
+        formula(functions.constraints > 0 ? stiff::index_two(motion) : stiff::explicit_rates(motion)), check(motion), now(motion.states()) {
     observables.set_parameters(parameters);
   }
 
@@ -32,6 +33,10 @@ struct StiffStepper::Impl {
     auto [ending, reason] = stiff::reason_of(failure, motion.status, t);
     return ended(ending, std::move(reason));
   }
+  std::optional<Step> advance(double bound, std::vector<double>& next, stiff::Advance& reached);
+  void drift(double h, std::vector<double>& next, stiff::Advance& reached);
+  void begin_anew(double bound, std::vector<double>& next);
+  void bound_steps(double length);
   bool stands_still(double bound);
   Step ended(StepEnding ending, std::string reason) const { return {t, t, ending, std::move(reason), {}, 0}; }
   Sample sample(double time) const;
@@ -41,6 +46,7 @@ struct StiffStepper::Impl {
   mutable stiff::Motion motion;
   mutable FunctionWorkspace observables;
   std::unique_ptr<stiff::Formula> formula;
+  stiff::ForceCheck check;
 
   double t = 0, t_before = 0;
   std::vector<double> now, before;  // the states at the ends of the last step
@@ -48,7 +54,8 @@ struct StiffStepper::Impl {
   bool history_ends = false;        // … but does not go on from its end
   double direction = 0;
   double t_window = 0;              // a thousand steps ago
-  std::size_t steps = 0;
+  std::size_t steps = 0, rejected = 0;
+  double longest = 0;               // of the next step, while the one before was taken back; 0: no limit
   double residual = 0;              // of the constraints, the largest so far
   mutable Sample start_sample;
 };
@@ -58,8 +65,9 @@ void StiffStepper::Impl::start(double time, std::span<const double> q, std::span
   std::fill(now.begin(), now.end(), 0.0);
   std::copy(v.begin(), v.end(), std::copy(q.begin(), q.end(), now.begin()));
   before = now;
-  steps = 0;
+  steps = rejected = 0;
   residual = 0;
+  bound_steps(0);
   motion.forget_sizes();
   motion.at_point.forget_rows();
   motion.solve(t, now);
@@ -91,21 +99,14 @@ Step StiffStepper::Impl::step(double bound) {
   stiff::Advance reached;
   std::vector<double> next = now;
   if (close) reached.reached = bound, reached.history_ends = true;
-  else reached = formula->advance(bound, next);
-  if (reached.failure && history) {  // other rows of the constraints, or less noise of an old history, may help
-    motion.at_point.forget_rows();
-    restart();
-    direction = towards;
-    next = now;
-    if (motion.status == PointStatus::Ok) reached = formula->advance(bound, next);
-  }
-  if (reached.failure) return failed(*reached.failure);
+  else if (const auto end = advance(bound, next, reached)) return *end;
+  const bool drifted = reached.drifted;
   t_before = t;
   before.swap(now);
   now.swap(next);
   result.end = t = reached.reached;
   result.event = reached.event;
-  history = !close;
+  history = !close && !drifted;
   history_ends = reached.history_ends || reached.event;
   ++steps;
   if (motion.functions.constraints > 0 && motion.solve(t, now))
@@ -116,6 +117,52 @@ Step StiffStepper::Impl::step(double bound) {
                                 "switch with forces that push back to it from both sides, as dry friction at rest does", t);
   }
   return result;
+}
+
+/// One step of the formula in which no force acted unseen: others are taken back, and begun anew at a quarter of their length. A step
+/// that was accepted allows the next one twice its limit.
+std::optional<Step> StiffStepper::Impl::advance(double bound, std::vector<double>& next, stiff::Advance& reached) {
+  while (true) {
+    reached = formula->advance(bound, next);
+    if (reached.failure && history) {  // other rows of the constraints, or less noise of an old history, may help
+      motion.at_point.forget_rows();
+      begin_anew(bound, next);
+      if (motion.status == PointStatus::Ok) reached = formula->advance(bound, next);
+    }
+    if (reached.failure) return failed(*reached.failure);
+    if (check.sees_all(*formula, t, reached.reached, next)) break;
+    ++rejected;
+    const double length = 0.25 * std::abs(reached.reached - t);
+    begin_anew(bound, next);
+    const double resolution = 16 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t), std::abs(bound));
+    if (length <= resolution) {
+      drift(std::copysign(std::min(resolution, std::abs(bound - t)), bound - t), next, reached);
+      return std::nullopt;
+    }
+    bound_steps(length);
+  }
+  if (longest > 0) bound_steps(2 * longest < std::abs(bound - reached.reached) ? 2 * longest : 0);
+  return std::nullopt;
+}
+
+/// Over a jump of the forces, which lies within the resolution of time: what it gives there is rounding. Where one follows another without
+/// end, time stands still.
+void StiffStepper::Impl::drift(double h, std::vector<double>& next, stiff::Advance& reached) {
+  for (std::size_t i = 0; i < n; ++i) next[i] += h * now[n + i];
+  reached = {};
+  reached.reached = t + h;
+  reached.history_ends = reached.drifted = true;
+}
+
+void StiffStepper::Impl::begin_anew(double bound, std::vector<double>& next) {
+  restart();
+  direction = bound < t ? -1 : 1;
+  next = now;
+}
+
+void StiffStepper::Impl::bound_steps(double length) {
+  longest = length;
+  formula->limit(length);
 }
 
 /// A thousand steps that make less than a ten-billionth of the way: the rest would take longer than anyone waits.
@@ -162,6 +209,7 @@ double StiffStepper::time() const { return impl_->t; }
 std::span<const double> StiffStepper::q() const { return impl_->motion.q_of(impl_->now); }
 std::span<const double> StiffStepper::v() const { return impl_->motion.v_of(impl_->now); }
 std::size_t StiffStepper::steps() const { return impl_->steps; }
+std::size_t StiffStepper::rejected() const { return impl_->rejected; }
 
 double StiffStepper::constraint_residual() const { return impl_->residual; }
 

@@ -1,4 +1,5 @@
 #include "integrator/point/sample.hpp"
+#include "integrator/variational/force_check.hpp"
 #include "integrator/variational/stages.hpp"
 
 #include <maupertuis/require.hpp>
@@ -28,7 +29,7 @@ variational::Tableau tableau_for(int order, bool constrained) {
 struct VariationalStepper::Impl {
   Impl(const VariationalFunctions& f, std::span<const double> parameters, const VariationalOptions& o)
       : functions(f.motion), options(o), n(f.motion.freedoms), at_point(f.motion, parameters),
-        solver(f, parameters, tableau_for(o.order, f.motion.constraints > 0)), partial(solver),
+        solver(f, parameters, tableau_for(o.order, f.motion.constraints > 0)), partial(solver), check(f, parameters),
         observables(f.motion.observables), events(f.motion.events), integrands(f.motion.integrands) {
     for (FunctionWorkspace* work : {&observables, &events, &integrands}) work->set_parameters(parameters);
     event_values.resize(functions.events.outputs());
@@ -57,6 +58,7 @@ struct VariationalStepper::Impl {
   mutable PointSolver at_point;
   StageSolver solver;
   mutable StageSolver partial;  // shorter steps within the last one
+  variational::ForceCheck check;
   mutable FunctionWorkspace observables, events, integrands;
   mutable std::vector<double> event_values;
 
@@ -121,6 +123,12 @@ void VariationalStepper::Impl::start(double t, std::span<const double> q, std::s
   first = true;
   at_point.forget_rows();
   first_status = at_point.solve(t, q, v);
+  if (first_status == PointStatus::Ok) {
+    const Eigen::VectorXd mobility = at_point.mobility().diagonal();
+    std::vector<double> inertia(n);
+    for (std::size_t i = 0; i < n; ++i) inertia[i] = mobility[static_cast<Eigen::Index>(i)] > 0 ? 1 / mobility[static_cast<Eigen::Index>(i)] : 0;
+    check.start(inertia);
+  }
   solver.set_rows(at_point.rows());
   partial.set_rows(at_point.rows());
 }
@@ -146,6 +154,12 @@ Step VariationalStepper::Impl::step(double bound) {
   Phase end;
   const StageStatus status = solver.solve(now, this_h, end_time, end);
   if (status != StageStatus::Ok) return ended(ending_of(status), reason_of(status, now.t, this_h));
+  const variational::Sight sight = check.look(solver, now.t, this_h, leading(end.p));
+  if (sight == variational::Sight::NonFinite) return ended(StepEnding::Overflow, reason_of(StageStatus::NonFinite, now.t, this_h));
+  if (sight == variational::Sight::NotAll)
+    return ended(StepEnding::NoConvergence,
+                 fmt::format("a force acts between the nodes of the step from t = {:.17g} s to {:.17g} s that they do not see: the step is too "
+                             "long there", now.t, now.t + this_h));
 
   before = std::move(now);
   now = std::move(end);

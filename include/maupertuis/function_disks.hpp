@@ -1,0 +1,40 @@
+#pragma once
+#include <maupertuis/function_kernel.hpp>
+
+#include <span>
+#include <vector>
+
+namespace maupertuis {
+
+struct FunctionInstruction;
+
+/// Bounds of a function's values where its inputs are polynomials in s and |s| ≤ r in the complex plane (docs/design/safe_steps.md):
+/// what points cannot see, a disk that contains them can. Each value f has a *reach* ≥ |f(s) − f(0)|, bounds of its modulus, and a *tail*: the reach of
+/// what is no polynomial of the inputs' degree; ∞ where the disk meets a singularity, or a switch that is not decided on it. By Cauchy's
+/// estimate a polynomial of degree K − 1 leaves out at most tail · x^K/(1 − x) of f at |s| = x r.
+///
+/// Cost: some 10 operations an instruction.
+class FunctionDisks {
+ public:
+  explicit FunctionDisks(const FunctionKernel& kernel);
+  /// `centre`: evaluated at s = 0. reach: [inputs] on the disk.
+  void evaluate(const FunctionWorkspace& centre, std::span<const double> reach);
+  double reach(std::size_t output) const;
+  double tail(std::size_t output) const;
+
+ private:
+  struct Bounds {
+    double reach = 0, tail = 0, low = 0, high = 0;  // low ≤ |f| ≤ high
+  };
+  Bounds result(const FunctionInstruction& i, std::span<const double> centre) const;
+  Bounds product(const FunctionInstruction& i, std::span<const double> centre) const;
+  Bounds quotient(const FunctionInstruction& i, std::span<const double> centre) const;
+  Bounds power(std::uint32_t a, double exponent, double value) const;
+  Bounds function(const FunctionInstruction& i, std::span<const double> centre) const;
+  Bounds chosen(const FunctionInstruction& i, std::span<const double> centre) const;
+
+  FunctionKernel kernel_;
+  std::vector<Bounds> bounds_;  // [slots]
+};
+
+}  // namespace maupertuis

@@ -1,0 +1,245 @@
+#include "kernel/function/program.hpp"
+
+#include <maupertuis/function_disks.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace maupertuis {
+namespace {
+
+using Op = FunctionOp;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double half_pi = 1.5707963267948966;
+
+/// The smaller one; what is not a number bounds nothing.
+double smaller(double x, double y) { return x < y || std::isnan(y) ? x : y; }
+double bound(double x) { return std::isnan(x) ? infinity : x; }
+double inverse(double x) { return x > 0 ? 1 / x : infinity; }
+double away(double x) { return std::max(0.0, x); }
+
+}  // namespace
+
+FunctionDisks::FunctionDisks(const FunctionKernel& kernel) : kernel_(kernel), bounds_(kernel.program().slots) {}
+
+double FunctionDisks::reach(std::size_t output) const { return bounds_[kernel_.program().outputs[output]].reach; }
+double FunctionDisks::tail(std::size_t output) const { return bounds_[kernel_.program().outputs[output]].tail; }
+
+void FunctionDisks::evaluate(const FunctionWorkspace& work, std::span<const double> reach) {
+  const FunctionProgram& program = kernel_.program();
+  const std::span<const double> centre = work.slots();
+  for (std::size_t k = 0; k < program.slots; ++k) {
+    const double c = std::abs(centre[k]), d = k < program.inputs ? reach[k] : 0;
+    bounds_[k] = {d, 0, away(c - d), c + d};
+  }
+  for (const FunctionInstruction& i : program.changing) {
+    Bounds b = result(i, centre);
+    b.reach = bound(b.reach), b.tail = bound(b.tail);
+    const double c = std::abs(centre[i.out]);
+    b.low = std::max(std::isnan(b.low) ? 0.0 : b.low, std::isnan(c - b.reach) ? 0.0 : away(c - b.reach));
+    b.high = smaller(c + b.reach, bound(b.high));
+    bounds_[i.out] = b;
+  }
+}
+
+FunctionDisks::Bounds FunctionDisks::result(const FunctionInstruction& i, std::span<const double> centre) const {
+  const Bounds& x = bounds_[i.a];
+  switch (i.op) {
+    case Op::Add:
+    case Op::Subtract: {
+      const Bounds& y = bounds_[i.b];
+      return {x.reach + y.reach, x.tail + y.tail, away(std::max(x.low - y.high, y.low - x.high)), x.high + y.high};
+    }
+    case Op::Negate: return x;
+    case Op::Multiply: return product(i, centre);
+    case Op::Divide: return quotient(i, centre);
+    case Op::Square: return power(i.a, 2, centre[i.out]);
+    case Op::Sqrt: return power(i.a, 0.5, centre[i.out]);
+    case Op::PowerInteger: return power(i.a, i.exponent, centre[i.out]);
+    case Op::Power:
+      if (bounds_[i.b].reach > 0) return {infinity, infinity, 0, infinity};
+      return power(i.a, centre[i.b], centre[i.out]);
+    case Op::Abs:
+    case Op::Sign:
+    case Op::Step:
+    case Op::Min:
+    case Op::Max:
+    case Op::Less:
+    case Op::LessEqual:
+    case Op::And:
+    case Op::Or:
+    case Op::Choose: return chosen(i, centre);
+    case Op::Sin:
+    case Op::Cos:
+    case Op::Tan:
+    case Op::Asin:
+    case Op::Acos:
+    case Op::Atan:
+    case Op::Sinh:
+    case Op::Cosh:
+    case Op::Tanh:
+    case Op::Asinh:
+    case Op::Acosh:
+    case Op::Atanh:
+    case Op::Exp:
+    case Op::Log:
+    case Op::Atan2: return function(i, centre);
+  }
+  throw std::logic_error("a disk met an operation that has no bounds; please report");
+}
+
+/// A constant factor leaves a polynomial what it is.
+FunctionDisks::Bounds FunctionDisks::product(const FunctionInstruction& i, std::span<const double> centre) const {
+  const Bounds &x = bounds_[i.a], &y = bounds_[i.b];
+  const double u = std::abs(centre[i.a]), v = std::abs(centre[i.b]);
+  const auto times = [](double size, double r) { return size == 0 ? 0.0 : size * r; };
+  if (x.reach == 0) return {times(u, y.reach), times(u, y.tail), times(u, y.low), times(u, y.high)};
+  if (y.reach == 0) return {times(v, x.reach), times(v, x.tail), times(v, x.low), times(v, x.high)};
+  const double reach = smaller(u * y.reach + v * x.reach + x.reach * y.reach, x.high * y.high + u * v);
+  return {reach, reach, x.low * y.low, x.high * y.high};
+}
+
+/// a/b − a₀/b₀ = ((a − a₀) − (a₀/b₀)(b − b₀))/b
+FunctionDisks::Bounds FunctionDisks::quotient(const FunctionInstruction& i, std::span<const double> centre) const {
+  const Bounds &x = bounds_[i.a], &y = bounds_[i.b];
+  if (!(y.low > 0)) return {infinity, infinity, 0, infinity};
+  if (y.reach == 0) return {x.reach / y.low, x.tail / y.low, x.low / y.low, x.high / y.low};
+  const double ratio = std::abs(centre[i.out]), high = x.high / y.low;
+  const double reach = smaller(high + ratio, (x.reach + ratio * y.reach) / y.low);
+  return {reach, reach, x.low / y.high, high};
+}
+
+/// f' = c w^{c−1}, largest where |w| is largest or smallest; a disk about 0 is one of whole positive powers alone.
+FunctionDisks::Bounds FunctionDisks::power(std::uint32_t a, double c, double value) const {
+  const Bounds& x = bounds_[a];
+  const bool whole = c >= 0 && c == std::nearbyint(c);
+  if (x.reach == 0) return {0, 0, std::abs(value), std::abs(value)};
+  if (!whole && !(x.low > 0)) return {infinity, infinity, 0, infinity};
+  const double slope = std::abs(c) * std::pow(c >= 1 ? x.high : x.low, c - 1);
+  const double one = std::pow(x.low, c), other = std::pow(x.high, c), high = std::max(one, other);
+  const double reach = smaller(high + std::abs(value), slope * x.reach);
+  return {reach, reach, std::min(one, other), high};
+}
+
+/// Mostly |f(w) − f(w₀)| ≤ |w − w₀| sup |f′|, the supremum over the disk of w.
+FunctionDisks::Bounds FunctionDisks::function(const FunctionInstruction& i, std::span<const double> centre) const {
+  const Bounds& x = bounds_[i.a];
+  const double w = centre[i.a], size = std::abs(w), d = x.reach, value = std::abs(centre[i.out]);
+  const bool second = i.op == Op::Atan2;
+  if (d == 0 && !(second && bounds_[i.b].reach > 0)) return {0, 0, value, value};
+  if (!(d < infinity)) return {infinity, infinity, 0, infinity};
+  const auto by_slope = [&](double slope) { return Bounds{slope * d, slope * d, 0, infinity}; };
+  const auto within = [&](double reach, double high, double low = 0) { return Bounds{reach, reach, low, high}; };
+  switch (i.op) {
+    // sin w − sin w₀ = sin w₀ (cos z − 1) + cos w₀ sin z with |z| ≤ d, cos z − 1 ≤ ½ d sinh d
+    case Op::Sin: return within(std::abs(std::sin(w)) * 0.5 * d * std::sinh(d) + std::abs(std::cos(w)) * std::sinh(d), std::cosh(d));
+    case Op::Cos: return within(std::abs(std::cos(w)) * 0.5 * d * std::sinh(d) + std::abs(std::sin(w)) * std::sinh(d), std::cosh(d));
+    // |sinh w| and |cosh w| lie between sinh and cosh of |Re w|
+    case Op::Sinh:
+    case Op::Cosh: {
+      const double most = std::cosh(size + d);
+      return within(smaller(most + value, d * most), most, size > d ? std::sinh(size - d) : 0);
+    }
+    case Op::Exp: {
+      const double high = std::exp(w + d);
+      return within(high * std::min(1.0, d), high, std::exp(w - d));
+    }
+    case Op::Log: return by_slope(inverse(x.low));
+    case Op::Tan: {  // 1/cos²
+      const double least = away(std::abs(std::cos(w)) * (2 - std::cosh(d)) - std::abs(std::sin(w)) * std::sinh(d));
+      return by_slope(inverse(least * least));
+    }
+    case Op::Asin:
+    case Op::Acos: return by_slope(inverse(std::sqrt(away(std::abs(1 - w) - d) * away(std::abs(1 + w) - d))));
+    case Op::Atan: {
+      const double least = away(std::hypot(1.0, w) - d);
+      return by_slope(inverse(least * least));
+    }
+    case Op::Tanh: {  // |cosh w| ≥ sinh |Re w|, and ≥ cos |Im w|
+      const double least = std::max(d < half_pi ? std::cos(d) : 0.0, size > d ? std::sinh(size - d) : 0.0);
+      return by_slope(inverse(least * least));
+    }
+    case Op::Asinh: return by_slope(inverse(away(std::hypot(1.0, w) - d)));
+    case Op::Acosh: return by_slope(inverse(std::sqrt(away(w - 1 - d) * away(w + 1 - d))));
+    case Op::Atanh: return by_slope(inverse(away(std::abs(1 - w) - d) * away(std::abs(1 + w) - d)));
+    case Op::Atan2: {  // |dφ| ≤ (|dx| + |dy|)/|x ± iy|
+      const double both = d + bounds_[i.b].reach, far = std::hypot(w, centre[i.b]) - both;
+      return within(far > 0 ? both / far : infinity, infinity);
+    }
+    case Op::Add:
+    case Op::Subtract:
+    case Op::Multiply:
+    case Op::Divide:
+    case Op::Negate:
+    case Op::Square:
+    case Op::Sqrt:
+    case Op::PowerInteger:
+    case Op::Power:
+    case Op::Abs:
+    case Op::Sign:
+    case Op::Step:
+    case Op::Min:
+    case Op::Max:
+    case Op::Less:
+    case Op::LessEqual:
+    case Op::And:
+    case Op::Or:
+    case Op::Choose: break;  // not here
+  }
+  throw std::logic_error("a disk met an operation that has no bounds; please report");
+}
+
+/// Where the disk decides, the branch in force is the function.
+FunctionDisks::Bounds FunctionDisks::chosen(const FunctionInstruction& i, std::span<const double> centre) const {
+  const Bounds &x = bounds_[i.a], &y = bounds_[i.b];
+  const double w = std::abs(centre[i.a]);
+  const Bounds constant{0, 0, std::abs(centre[i.out]), std::abs(centre[i.out])}, undecided{infinity, infinity, 0, infinity};
+  switch (i.op) {
+    case Op::Abs: return w > x.reach || x.reach == 0 ? x : undecided;
+    case Op::Sign:
+    case Op::Step: return w > x.reach || x.reach == 0 ? constant : undecided;
+    case Op::Less:
+    case Op::LessEqual: {
+      const double both = x.reach + y.reach;
+      return std::abs(centre[i.a] - centre[i.b]) > both || both == 0 ? constant : undecided;
+    }
+    case Op::Min:
+    case Op::Max: {
+      const double both = x.reach + y.reach, difference = centre[i.a] - centre[i.b];
+      if (!(std::abs(difference) > both || both == 0)) return undecided;
+      return (difference < 0) == (i.op == Op::Min) ? x : y;
+    }
+    case Op::And:
+    case Op::Or: return x.reach == 0 && y.reach == 0 ? constant : undecided;
+    case Op::Choose: return bounds_[i.c].reach == 0 ? (centre[i.c] != 0 ? x : y) : undecided;
+    case Op::Add:
+    case Op::Subtract:
+    case Op::Multiply:
+    case Op::Divide:
+    case Op::Negate:
+    case Op::Square:
+    case Op::Sqrt:
+    case Op::PowerInteger:
+    case Op::Power:
+    case Op::Sin:
+    case Op::Cos:
+    case Op::Tan:
+    case Op::Asin:
+    case Op::Acos:
+    case Op::Atan:
+    case Op::Sinh:
+    case Op::Cosh:
+    case Op::Tanh:
+    case Op::Asinh:
+    case Op::Acosh:
+    case Op::Atanh:
+    case Op::Exp:
+    case Op::Log:
+    case Op::Atan2: break;  // not here
+  }
+  throw std::logic_error("a disk met an operation that has no bounds; please report");
+}
+
+}  // namespace maupertuis
