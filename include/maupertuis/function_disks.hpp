@@ -16,9 +16,11 @@ struct FunctionInstruction;
 /// Cost: some 10 operations an instruction.
 class FunctionDisks {
  public:
-  explicit FunctionDisks(const FunctionKernel& kernel);
-  /// `centre`: evaluated at s = 0. reach: [inputs] on the disk.
-  void evaluate(const FunctionWorkspace& centre, std::span<const double> reach);
+  FunctionDisks(const FunctionKernel& kernel, std::span<const double> parameters);
+  /// The inputs at s = 0, [inputs].
+  void set_centre(std::span<const double> inputs);
+  /// reach: [inputs] on the disk about the centre.
+  void evaluate(std::span<const double> reach);
   double reach(std::size_t output) const;
   double tail(std::size_t output) const;
 
@@ -26,15 +28,17 @@ class FunctionDisks {
   struct Bounds {
     double reach = 0, tail = 0, low = 0, high = 0;  // low ≤ |f| ≤ high
   };
-  Bounds result(const FunctionInstruction& i, std::span<const double> centre) const;
-  Bounds product(const FunctionInstruction& i, std::span<const double> centre) const;
-  Bounds quotient(const FunctionInstruction& i, std::span<const double> centre) const;
+  Bounds result(const FunctionInstruction& i) const;
+  Bounds product(const FunctionInstruction& i) const;
+  Bounds quotient(const FunctionInstruction& i) const;
   Bounds power(std::uint32_t a, double exponent, double value) const;
-  Bounds function(const FunctionInstruction& i, std::span<const double> centre) const;
-  Bounds chosen(const FunctionInstruction& i, std::span<const double> centre) const;
+  Bounds function(const FunctionInstruction& i) const;
+  Bounds chosen(const FunctionInstruction& i) const;
 
   FunctionKernel kernel_;
-  std::vector<Bounds> bounds_;  // [slots]
+  FunctionWorkspace every_value_;  // of the program
+  std::vector<double> centre_;     // [slots]
+  std::vector<Bounds> bounds_;     // [slots]
 };
 
 }  // namespace maupertuis

@@ -59,9 +59,6 @@ class FunctionWorkspace {
   /// NaN or infinity where a function has no value. Nothing is allocated.
   /// Precondition: inputs.size() == kernel.inputs(), outputs.size() == kernel.outputs().
   void evaluate(std::span<const double> inputs, std::span<double> outputs);
-  const FunctionKernel& kernel() const { return kernel_; }
-  /// Every value of the program at the last inputs, as FunctionProgram numbers them.
-  std::span<const double> slots() const { return slots_; }
 
  private:
   FunctionKernel kernel_;

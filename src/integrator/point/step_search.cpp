@@ -79,7 +79,7 @@ const std::array<double, StepSearch::path_points>& StepSearch::path_nodes() {
 }
 
 StepSearch::StepSearch(const FunctionKernel& function, std::span<const double> parameters)
-    : function_(function), work_(function), disks_(function), path_(function.inputs()), point_(function.inputs()),
+    : function_(function), work_(function), disks_(function, parameters), path_(function.inputs()), point_(function.inputs()),
       reach_(function.inputs()), values_(function.outputs()), tails_(function.outputs()) {
   work_.set_parameters(parameters);
 }
@@ -101,10 +101,11 @@ std::span<const double> StepSearch::values_at(double x) {
 
 /// A large disk leaves least to its tail, a small one meets least that is singular.
 bool StepSearch::is_resolved(const Piece& piece, const Small& small) {
-  values_at(piece.centre);
+  for (std::size_t i = 0; i < path_.size(); ++i) point_[i] = value(path_[i], piece.centre);
+  disks_.set_centre(point_);
   for (const double ratio : {16.0, 8.0, 5.0}) {
     for (std::size_t i = 0; i < path_.size(); ++i) reach_[i] = reach_of(path_[i], piece.centre, ratio * piece.half);
-    disks_.evaluate(work_, reach_);
+    disks_.evaluate(reach_);
     const double left_out = of_interpolation * std::pow(ratio, -static_cast<double>(piece_points)) / (1 - 1 / ratio);
     for (std::size_t k = 0; k < tails_.size(); ++k) tails_[k] = left_out * disks_.tail(k);
     if (small(tails_)) return true;

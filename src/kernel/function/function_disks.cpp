@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <numeric>
 #include <stdexcept>
 
 namespace maupertuis {
@@ -20,31 +22,43 @@ double bound(double x) { return std::isnan(x) ? infinity : x; }
 double inverse(double x) { return x > 0 ? 1 / x : infinity; }
 double away(double x) { return std::max(0.0, x); }
 
+/// The same program, with each slot as an output.
+FunctionKernel with_every_value(const FunctionKernel& kernel) {
+  auto program = std::make_shared<FunctionProgram>(kernel.program());
+  program->outputs.resize(program->slots);
+  std::iota(program->outputs.begin(), program->outputs.end(), 0u);
+  return FunctionKernel(std::move(program));
+}
+
 }  // namespace
 
-FunctionDisks::FunctionDisks(const FunctionKernel& kernel) : kernel_(kernel), bounds_(kernel.program().slots) {}
+FunctionDisks::FunctionDisks(const FunctionKernel& kernel, std::span<const double> parameters)
+    : kernel_(kernel), every_value_(with_every_value(kernel)), centre_(kernel.program().slots), bounds_(kernel.program().slots) {
+  every_value_.set_parameters(parameters);
+}
+
+void FunctionDisks::set_centre(std::span<const double> inputs) { every_value_.evaluate(inputs, centre_); }
 
 double FunctionDisks::reach(std::size_t output) const { return bounds_[kernel_.program().outputs[output]].reach; }
 double FunctionDisks::tail(std::size_t output) const { return bounds_[kernel_.program().outputs[output]].tail; }
 
-void FunctionDisks::evaluate(const FunctionWorkspace& work, std::span<const double> reach) {
+void FunctionDisks::evaluate(std::span<const double> reach) {
   const FunctionProgram& program = kernel_.program();
-  const std::span<const double> centre = work.slots();
   for (std::size_t k = 0; k < program.slots; ++k) {
-    const double c = std::abs(centre[k]), d = k < program.inputs ? reach[k] : 0;
+    const double c = std::abs(centre_[k]), d = k < program.inputs ? reach[k] : 0;
     bounds_[k] = {d, 0, away(c - d), c + d};
   }
   for (const FunctionInstruction& i : program.changing) {
-    Bounds b = result(i, centre);
+    Bounds b = result(i);
     b.reach = bound(b.reach), b.tail = bound(b.tail);
-    const double c = std::abs(centre[i.out]);
+    const double c = std::abs(centre_[i.out]);
     b.low = std::max(std::isnan(b.low) ? 0.0 : b.low, std::isnan(c - b.reach) ? 0.0 : away(c - b.reach));
     b.high = smaller(c + b.reach, bound(b.high));
     bounds_[i.out] = b;
   }
 }
 
-FunctionDisks::Bounds FunctionDisks::result(const FunctionInstruction& i, std::span<const double> centre) const {
+FunctionDisks::Bounds FunctionDisks::result(const FunctionInstruction& i) const {
   const Bounds& x = bounds_[i.a];
   switch (i.op) {
     case Op::Add:
@@ -53,14 +67,14 @@ FunctionDisks::Bounds FunctionDisks::result(const FunctionInstruction& i, std::s
       return {x.reach + y.reach, x.tail + y.tail, away(std::max(x.low - y.high, y.low - x.high)), x.high + y.high};
     }
     case Op::Negate: return x;
-    case Op::Multiply: return product(i, centre);
-    case Op::Divide: return quotient(i, centre);
-    case Op::Square: return power(i.a, 2, centre[i.out]);
-    case Op::Sqrt: return power(i.a, 0.5, centre[i.out]);
-    case Op::PowerInteger: return power(i.a, i.exponent, centre[i.out]);
+    case Op::Multiply: return product(i);
+    case Op::Divide: return quotient(i);
+    case Op::Square: return power(i.a, 2, centre_[i.out]);
+    case Op::Sqrt: return power(i.a, 0.5, centre_[i.out]);
+    case Op::PowerInteger: return power(i.a, i.exponent, centre_[i.out]);
     case Op::Power:
       if (bounds_[i.b].reach > 0) return {infinity, infinity, 0, infinity};
-      return power(i.a, centre[i.b], centre[i.out]);
+      return power(i.a, centre_[i.b], centre_[i.out]);
     case Op::Abs:
     case Op::Sign:
     case Op::Step:
@@ -70,7 +84,7 @@ FunctionDisks::Bounds FunctionDisks::result(const FunctionInstruction& i, std::s
     case Op::LessEqual:
     case Op::And:
     case Op::Or:
-    case Op::Choose: return chosen(i, centre);
+    case Op::Choose: return chosen(i);
     case Op::Sin:
     case Op::Cos:
     case Op::Tan:
@@ -85,15 +99,15 @@ FunctionDisks::Bounds FunctionDisks::result(const FunctionInstruction& i, std::s
     case Op::Atanh:
     case Op::Exp:
     case Op::Log:
-    case Op::Atan2: return function(i, centre);
+    case Op::Atan2: return function(i);
   }
   throw std::logic_error("a disk met an operation that has no bounds; please report");
 }
 
 /// A constant factor leaves a polynomial what it is.
-FunctionDisks::Bounds FunctionDisks::product(const FunctionInstruction& i, std::span<const double> centre) const {
+FunctionDisks::Bounds FunctionDisks::product(const FunctionInstruction& i) const {
   const Bounds &x = bounds_[i.a], &y = bounds_[i.b];
-  const double u = std::abs(centre[i.a]), v = std::abs(centre[i.b]);
+  const double u = std::abs(centre_[i.a]), v = std::abs(centre_[i.b]);
   const auto times = [](double size, double r) { return size == 0 ? 0.0 : size * r; };
   if (x.reach == 0) return {times(u, y.reach), times(u, y.tail), times(u, y.low), times(u, y.high)};
   if (y.reach == 0) return {times(v, x.reach), times(v, x.tail), times(v, x.low), times(v, x.high)};
@@ -102,11 +116,11 @@ FunctionDisks::Bounds FunctionDisks::product(const FunctionInstruction& i, std::
 }
 
 /// a/b − a₀/b₀ = ((a − a₀) − (a₀/b₀)(b − b₀))/b
-FunctionDisks::Bounds FunctionDisks::quotient(const FunctionInstruction& i, std::span<const double> centre) const {
+FunctionDisks::Bounds FunctionDisks::quotient(const FunctionInstruction& i) const {
   const Bounds &x = bounds_[i.a], &y = bounds_[i.b];
   if (!(y.low > 0)) return {infinity, infinity, 0, infinity};
   if (y.reach == 0) return {x.reach / y.low, x.tail / y.low, x.low / y.low, x.high / y.low};
-  const double ratio = std::abs(centre[i.out]), high = x.high / y.low;
+  const double ratio = std::abs(centre_[i.out]), high = x.high / y.low;
   const double reach = smaller(high + ratio, (x.reach + ratio * y.reach) / y.low);
   return {reach, reach, x.low / y.high, high};
 }
@@ -124,9 +138,9 @@ FunctionDisks::Bounds FunctionDisks::power(std::uint32_t a, double c, double val
 }
 
 /// Mostly |f(w) − f(w₀)| ≤ |w − w₀| sup |f′|, the supremum over the disk of w.
-FunctionDisks::Bounds FunctionDisks::function(const FunctionInstruction& i, std::span<const double> centre) const {
+FunctionDisks::Bounds FunctionDisks::function(const FunctionInstruction& i) const {
   const Bounds& x = bounds_[i.a];
-  const double w = centre[i.a], size = std::abs(w), d = x.reach, value = std::abs(centre[i.out]);
+  const double w = centre_[i.a], size = std::abs(w), d = x.reach, value = std::abs(centre_[i.out]);
   const bool second = i.op == Op::Atan2;
   if (d == 0 && !(second && bounds_[i.b].reach > 0)) return {0, 0, value, value};
   if (!(d < infinity)) return {infinity, infinity, 0, infinity};
@@ -165,7 +179,7 @@ FunctionDisks::Bounds FunctionDisks::function(const FunctionInstruction& i, std:
     case Op::Acosh: return by_slope(inverse(std::sqrt(away(w - 1 - d) * away(w + 1 - d))));
     case Op::Atanh: return by_slope(inverse(away(std::abs(1 - w) - d) * away(std::abs(1 + w) - d)));
     case Op::Atan2: {  // |dφ| ≤ (|dx| + |dy|)/|x ± iy|
-      const double both = d + bounds_[i.b].reach, far = std::hypot(w, centre[i.b]) - both;
+      const double both = d + bounds_[i.b].reach, far = std::hypot(w, centre_[i.b]) - both;
       return within(far > 0 ? both / far : infinity, infinity);
     }
     case Op::Add:
@@ -192,10 +206,10 @@ FunctionDisks::Bounds FunctionDisks::function(const FunctionInstruction& i, std:
 }
 
 /// Where the disk decides, the branch in force is the function.
-FunctionDisks::Bounds FunctionDisks::chosen(const FunctionInstruction& i, std::span<const double> centre) const {
+FunctionDisks::Bounds FunctionDisks::chosen(const FunctionInstruction& i) const {
   const Bounds &x = bounds_[i.a], &y = bounds_[i.b];
-  const double w = std::abs(centre[i.a]);
-  const Bounds constant{0, 0, std::abs(centre[i.out]), std::abs(centre[i.out])}, undecided{infinity, infinity, 0, infinity};
+  const double w = std::abs(centre_[i.a]);
+  const Bounds constant{0, 0, std::abs(centre_[i.out]), std::abs(centre_[i.out])}, undecided{infinity, infinity, 0, infinity};
   switch (i.op) {
     case Op::Abs: return w > x.reach || x.reach == 0 ? x : undecided;
     case Op::Sign:
@@ -203,17 +217,17 @@ FunctionDisks::Bounds FunctionDisks::chosen(const FunctionInstruction& i, std::s
     case Op::Less:
     case Op::LessEqual: {
       const double both = x.reach + y.reach;
-      return std::abs(centre[i.a] - centre[i.b]) > both || both == 0 ? constant : undecided;
+      return std::abs(centre_[i.a] - centre_[i.b]) > both || both == 0 ? constant : undecided;
     }
     case Op::Min:
     case Op::Max: {
-      const double both = x.reach + y.reach, difference = centre[i.a] - centre[i.b];
+      const double both = x.reach + y.reach, difference = centre_[i.a] - centre_[i.b];
       if (!(std::abs(difference) > both || both == 0)) return undecided;
       return (difference < 0) == (i.op == Op::Min) ? x : y;
     }
     case Op::And:
     case Op::Or: return x.reach == 0 && y.reach == 0 ? constant : undecided;
-    case Op::Choose: return bounds_[i.c].reach == 0 ? (centre[i.c] != 0 ? x : y) : undecided;
+    case Op::Choose: return bounds_[i.c].reach == 0 ? (centre_[i.c] != 0 ? x : y) : undecided;
     case Op::Add:
     case Op::Subtract:
     case Op::Multiply:

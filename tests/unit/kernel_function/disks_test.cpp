@@ -61,7 +61,7 @@ TEST_CASE("a disk contains the values of each function on it") {
     const Expr x = context.symbol("x", Role::Coordinate), y = context.symbol("y", Role::Coordinate);
     const FunctionKernel kernel = build_function({.inputs = {x, y}, .parameters = {}, .outputs = {c.expression(x, y)}});
     FunctionWorkspace work(kernel);
-    FunctionDisks disks(kernel);
+    FunctionDisks disks(kernel, {});
     for (const double x0 : {0.3, 1.7, 3.1, 5.0})
       for (const double y0 : {0.9, 2.2})
         for (const double radius : {0.01, 0.1, 0.5, 1.5}) {
@@ -72,7 +72,8 @@ TEST_CASE("a disk contains the values of each function on it") {
           const double point[] = {x0, y0}, reach[] = {radius, 0.6 * radius};
           double value = 0;
           work.evaluate(point, {&value, 1});
-          disks.evaluate(work, reach);
+          disks.set_centre(point);
+          disks.evaluate(reach);
           if (!(disks.reach(0) < HUGE_VAL)) continue;
           ++finite;
           double largest = 0;
@@ -96,12 +97,10 @@ TEST_CASE("a disk is not much larger than what it contains, and does not bound w
   const Expr x = context.symbol("x", Role::Coordinate), y = context.symbol("y", Role::Coordinate);
   const auto bounds = [&](Expr e, double x0, double reach) {
     const FunctionKernel kernel = build_function({.inputs = {x, y}, .parameters = {}, .outputs = {e}});
-    FunctionWorkspace work(kernel);
-    FunctionDisks disks(kernel);
+    FunctionDisks disks(kernel, {});
     const double point[] = {x0, 1}, radius[] = {reach, 0};
-    double value = 0;
-    work.evaluate(point, {&value, 1});
-    disks.evaluate(work, radius);
+    disks.set_centre(point);
+    disks.evaluate(radius);
     return std::pair{disks.reach(0), disks.tail(0)};
   };
   CHECK(bounds(3 * x - 2 * y, 1, 0.5).first == doctest::Approx(1.5));
