@@ -7,7 +7,7 @@ namespace maupertuis {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr int most_pieces = 3000;
+constexpr int most_pieces = 1500;
 constexpr double shortest = 0x1p-30;
 /// What interpolation at ten Chebyshev points adds to the best polynomial: 1 + Lebesgue's constant, and the rest of the series.
 constexpr double of_interpolation = 4.0;

@@ -53,7 +53,8 @@ struct StiffStepper::Impl {
   bool history = false;             // the formula holds the polynomials of the last step
   bool history_ends = false;        // … but does not go on from its end
   double direction = 0;
-  double t_window = 0;              // a thousand steps ago
+  double t_window = 0;              // a thousand steps ago, at
+  std::size_t attempts_window = 0;  // so many steps and rejections
   std::size_t steps = 0, rejected = 0;
   double longest = 0;               // of the next step, while the one before was taken back; 0: no limit
   double residual = 0;              // of the constraints, the largest so far
@@ -65,7 +66,7 @@ void StiffStepper::Impl::start(double time, std::span<const double> q, std::span
   std::fill(now.begin(), now.end(), 0.0);
   std::copy(v.begin(), v.end(), std::copy(q.begin(), q.end(), now.begin()));
   before = now;
-  steps = rejected = 0;
+  steps = rejected = attempts_window = 0;
   residual = 0;
   bound_steps(0);
   motion.forget_sizes();
@@ -165,13 +166,14 @@ void StiffStepper::Impl::bound_steps(double length) {
   formula->limit(length);
 }
 
-/// A thousand steps that make less than a ten-billionth of the way: the rest would take longer than anyone waits.
+/// A thousand steps, those taken back counted, that make less than a billionth of the way: the rest would take longer than anyone waits.
 bool StiffStepper::Impl::stands_still(double bound) {
   constexpr std::size_t window = 1000;
-  if (steps % window != 0) return false;
+  if (steps + rejected < attempts_window + window) return false;
+  attempts_window = steps + rejected;
   const double advanced = std::abs(t - t_window);
   t_window = t;
-  return advanced < 1e-10 * std::max(std::abs(t), std::abs(bound - t));
+  return advanced < 1e-9 * std::max(std::abs(t), std::abs(bound - t));
 }
 
 /// The state at a time of the last step, on the constraints.

@@ -25,7 +25,7 @@ unsigned long long from_environment(const char* name, unsigned long long otherwi
 }
 
 /// Classes of which not one may be wrong. Of the others the table tells.
-const std::set<std::string> hold = {};
+const std::set<std::string> hold = {"walls", "pulses", "layers"};
 
 struct Count {
   std::array<int, 5> of{};  // by verdict
@@ -101,7 +101,7 @@ TEST_CASE("random steep models: no wrong number without a word") {
     if (hold.count(kind))
       CHECK(c.of[static_cast<std::size_t>(Verdict::Wrong)] == 0);
     else if (c.of[2] > 0)
-      MESSAGE(kind << " to be mended: " << c.of[2] << " wrong");
+      MESSAGE(fmt::format("{} to be mended: {} wrong", kind, c.of[2]));
   }
   // The reference judges nearly all: too sensitive ones are rare.
   CHECK(judged >= static_cast<int>(count) * 9 / 10);
