@@ -56,6 +56,8 @@ const char* stability_word(OrbitalStability stability) {
       return "neutral";
     case OrbitalStability::Unstable:
       return "unstable";
+    case OrbitalStability::Undecided:
+      return "undecided";
   }
   return "";
 }
@@ -90,6 +92,8 @@ std::string stability_sentence(const FloquetResult& r) {
                  : "neutral: stable to first order, all multipliers lie on the unit circle";
     case OrbitalStability::Unstable:
       return fmt::format("unstable: in each period some neighbours move away by a factor {}", brief(r.largest));
+    case OrbitalStability::Undecided:
+      return "undecided: the multipliers contradict what the geometry of the motion asks of them";
   }
   return "";
 }
@@ -142,7 +146,8 @@ Json floquet_json(const FloquetResult& r, const MechanicalSystem& system) {
   const auto or_null = [](const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); };
   out["checks"] = {{"symplectic_residual", or_null(r.symplectic_residual)},
                    {"log_determinant", or_null(r.log_determinant)},
-                   {"integrated_divergence", or_null(r.integrated_divergence)}};
+                   {"integrated_divergence", or_null(r.integrated_divergence)},
+                   {"error", or_null(r.error)}};
   return out;
 }
 

@@ -27,6 +27,8 @@ std::string stability_text(const FloquetResult& r) {
     return fmt::format("unstable: neighbours move away by a factor {} in each period", factor);
   if (r.stability == OrbitalStability::Attracting)
     return fmt::format("attracting: neighbours come nearer by a factor {} in each period", factor);
+  if (r.stability == OrbitalStability::Undecided)
+    return "undecided: the multipliers contradict what the geometry of the motion asks of them";
   return "neutral: all multipliers lie on the unit circle";
 }
 

@@ -62,7 +62,12 @@ constexpr CodeEntry entries[] = {
     {"W1401", "Lyapunov exponents that do not add up",
      "The exponents add up to the mean rate at which the flow changes volumes: zero without dissipation, minus the "
      "damping rates else. If they "
-     "do not, directions became parallel to rounding before they were orthogonalized.",
+     "do not, the neighbours of this motion were not carried to rounding; each exponent may be wrong by as much, and its error says so.",
+     "", ""},
+    {"W1402", "multipliers that the geometry contradicts",
+     "Without forces and damping the derivative of the return map preserves the symplectic form; else its determinant is the exponential of the "
+     "divergence, integrated over the period. Where it misses them by more than rounding its eigenvalues are no better, and those near the unit circle "
+     "may lie on either side of it.",
      "", ""},
 };
 

@@ -1,8 +1,5 @@
 #include "analysis/orbits/divergence.hpp"
 
-#include <maupertuis/integrator.hpp>
-#include <maupertuis/motion_kernel.hpp>
-
 namespace maupertuis::orbits {
 namespace {
 
@@ -17,25 +14,28 @@ constexpr Node half_rule[] = {{0.183434642495649805, 0.362683783378361983},
 
 }  // namespace
 
-std::optional<double> integrated_divergence(const EquationsOfMotion& equations, const TangentGeometry& geometry,
-                                            const MotionState& start, double duration) {
-  if (geometry.symplectic()) return 0.0;
-  if (!geometry.divergence(start)) return std::nullopt;
+DivergenceIntegral::DivergenceIntegral(const EquationsOfMotion& equations, const TangentGeometry& geometry)
+    : geometry_(geometry) {
+  if (geometry.symplectic()) return;
   const MotionKernel motion = motion_kernel(equations);
-  TaylorStepper stepper(motion.kernel, motion.parameters, {});
-  stepper.start(start.t, start.q, start.v);
-  const double end = start.t + duration;
+  stepper_.emplace(motion.kernel, motion.parameters, TaylorOptions{});
+}
+
+std::optional<double> DivergenceIntegral::operator()(const MotionState& start, double end) {
+  if (!stepper_) return 0.0;
+  if (!geometry_.divergence(start)) return std::nullopt;
+  stepper_->start(start.t, start.q, start.v);
   double sum = 0;
   MotionState at = start;
-  while (stepper.time() != end) {
-    const Step step = stepper.step(end);
+  while (stepper_->time() != end) {
+    const Step step = stepper_->step(end);
     if (step.ending != StepEnding::None) return std::nullopt;
     const double middle = 0.5 * (step.begin + step.end), half = 0.5 * (step.end - step.begin);
     for (const Node& node : half_rule)
       for (const double side : {-1.0, 1.0}) {
         at.t = middle + side * node.place * half;
-        stepper.state(at.t, at.q, at.v);
-        sum += half * node.weight * *geometry.divergence(at);
+        stepper_->state(at.t, at.q, at.v);
+        sum += half * node.weight * *geometry_.divergence(at);
       }
   }
   return sum;

@@ -1,10 +1,12 @@
 #include "analysis/orbits/closing.hpp"
 #include "analysis/orbits/divergence.hpp"
+#include "analysis/orbits/verdict.hpp"
 #include "analysis/tangent/point_functions.hpp"
 
 #include <eigen3/Eigen/Eigenvalues>
 #include <eigen3/Eigen/LU>
 #include <eigen3/Eigen/QR>
+#include <eigen3/Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -17,13 +19,6 @@ using orbits::ReturnMap;
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using Index = Eigen::Index;
-
-/// How far from the unit circle a multiplier may lie by rounding. Those of a Lagrangian motion come in pairs μ, 1/μ,
-/// which may be defective where further integrals exist: then rounding ε shows as √ε.
-double width_of_circle(const FloquetResult& result) {
-  const double closure = std::max(result.motion.closure, 1e-14);
-  return result.symplectic_residual ? std::max(1e-6, 10 * std::sqrt(closure)) : std::max(1e-9, 1e3 * closure);
-}
 
 /// The part of the return map that is not trivial. f is an eigenvector with the multiplier 1, and ∂E an eigenvector of
 /// the transpose: on the directions that are normal to both, dΦ_T is that of the quotient, in orthonormal directions.
@@ -65,6 +60,13 @@ class Multipliers {
     return lu.matrixLU().diagonal().cwiseAbs().array().log().sum();
   }
 
+  /// The least relative error of dΦ_T that moves log |det| by so much: |tr(dΦ_T⁻¹ E)| ≤ d ‖dΦ_T⁻¹‖ ‖E‖.
+  double error_from_determinant(double difference) const {
+    const Vector values = Eigen::JacobiSVD<Matrix>(map_.monodromy).singularValues();
+    if (values.size() == 0) return 0;
+    return std::abs(difference) * values.minCoeff() / (values.maxCoeff() * static_cast<double>(values.size()));
+  }
+
  private:
   /// In the coordinates of the return map.
   std::vector<Vector> trivial_directions(bool driven) const {
@@ -84,32 +86,43 @@ class Multipliers {
   ReturnMap map_;
 };
 
-double symplectic_residual(const TangentGeometry& geometry, const Closed& closed) {
-  const auto before = geometry.symplectic_products(closed.begin), after = geometry.symplectic_products(closed.end);
-  double difference = 0, size = 0;
+/// ω of the basis before and after: the largest difference, against the largest of ω itself and against the sizes of the directions.
+struct SymplecticMiss {
+  double residual = 0, relative = 0;
+};
+
+SymplecticMiss symplectic_miss(const TangentGeometry& geometry, const Closed& closed) {
+  const auto before = geometry.symplectic_products(closed.begin), after = geometry.symplectic_products(closed.end),
+             sizes_before = geometry.symplectic_sizes(closed.begin, closed.sizes), sizes = geometry.symplectic_sizes(closed.end, closed.sizes);
+  const auto grow = [](double& largest, double value) {
+    if (!(value <= largest)) largest = value;  // also not a number
+  };
+  SymplecticMiss out;
+  double size = 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
-    if (const double here = std::abs(after[i] - before[i]); !(here <= difference))
-      difference = here;  // also not a number
+    const double difference = std::abs(after[i] - before[i]);
+    grow(out.residual, difference);
+    if (difference != 0) grow(out.relative, difference / (sizes[i] + sizes_before[i]));
     size = std::max(size, std::abs(before[i]));
   }
-  return size > 0 ? difference / size : difference;
+  if (size > 0) out.residual /= size;
+  return out;
 }
 
 void check(const EquationsOfMotion& equations, const Closed& closed, const Multipliers& multipliers,
            FloquetResult& out) {
   const TangentGeometry geometry(equations);
-  if (geometry.symplectic()) out.symplectic_residual = symplectic_residual(geometry, closed);
+  if (geometry.symplectic()) {
+    const SymplecticMiss miss = symplectic_miss(geometry, closed);
+    out.symplectic_residual = miss.residual;
+    out.error = miss.relative;
+  }
+  const PeriodicMotion& motion = out.motion;
   out.integrated_divergence =
-      orbits::integrated_divergence(equations, geometry, closed.motion.start, closed.motion.period);
-  if (out.integrated_divergence) out.log_determinant = multipliers.log_determinant();
-}
-
-OrbitalStability stability_of(const FloquetResult& out) {
-  if (out.multipliers.size() == out.trivial) return OrbitalStability::Neutral;
-  const double width = width_of_circle(out);
-  return out.largest > 1 + width   ? OrbitalStability::Unstable
-         : out.largest < 1 - width ? OrbitalStability::Attracting
-                                   : OrbitalStability::Neutral;
+      orbits::DivergenceIntegral(equations, geometry)(motion.start, motion.start.t + motion.period);
+  if (!out.integrated_divergence) return;
+  out.log_determinant = multipliers.log_determinant();
+  out.error = std::max(out.error.value_or(0), multipliers.error_from_determinant(*out.log_determinant - *out.integrated_divergence));
 }
 
 }  // namespace
@@ -123,7 +136,8 @@ std::optional<FloquetResult> floquet(const Model& model, const EquationsOfMotion
   const Multipliers multipliers(equations, *closed);
   multipliers.fill(out);
   check(equations, *closed, multipliers, out);
-  out.stability = stability_of(out);
+  out.stability = orbits::stability_of(out);
+  orbits::warn_of_error(out, diagnostics);
   return out;
 }
 

@@ -106,6 +106,23 @@ std::vector<double> TangentGeometry::symplectic_products(const TangentPoint& poi
   return out;
 }
 
+std::vector<double> TangentGeometry::symplectic_sizes(const TangentPoint& point, std::span<const double> sizes) const {
+  const Impl& s = *impl_;
+  const Matrix slopes = s.momenta->slopes(point.state);
+  const auto columns = static_cast<Index>(point.columns());
+  const Matrix y = Eigen::Map<const Matrix>(point.directions.data(), 2 * s.n, columns);
+  Matrix q = y.topRows(s.n), p = slopes * y;
+  const Eigen::VectorXd size = Eigen::Map<const Eigen::VectorXd>(sizes.data(), 2 * s.n), momentum = slopes.cwiseAbs() * size;
+  for (Index k = 0; k < s.n; ++k) {
+    const double w = momentum[k] > 0 ? std::sqrt(momentum[k] / size[k]) : 1.0;
+    q.row(k) *= w;
+    p.row(k) /= w;
+  }
+  const Eigen::VectorXd norms = (q.colwise().squaredNorm() + p.colwise().squaredNorm()).cwiseSqrt().transpose();
+  const Matrix out = norms * norms.transpose();
+  return {out.data(), out.data() + out.size()};
+}
+
 std::optional<double> TangentGeometry::divergence(const MotionState& state) const {
   const Impl& s = *impl_;
   if (!s.holonomic || !s.force_slopes) return std::nullopt;

@@ -131,8 +131,9 @@ sparse::EntryWriter LiftedSolve::entries_in_line() const {
   return {*system_, {.value = [this](Builder& to, Slot slot) { return to.given(sparse::NowArray, number_[slot]); }, .constant = constant, .choice = choice}};
 }
 
-/// Of M₀⁻¹ at a sampled state.
+/// Of M₀⁻¹ at a sampled state, where the pattern of M₀ allows it.
 bool LiftedSolve::is_symmetric(std::span<const double> sample) {
+  if (!sparse::has_symmetric_pattern(program_)) return false;
   constexpr double tolerance = 1e-6;
   const std::size_t n = program_.unknowns;
   solver_->factor(sample);

@@ -78,6 +78,7 @@ struct KernelWorkspace::Impl {
   void need_full();
   bool is_residual_side_by_side() const;
   void find_own_vectors();
+  bool has_symmetric_pattern();
   bool has_mass_in_eights() const;
   void fetch_eights();
   void fetch_mass(std::size_t i, const double* tangents, std::size_t step, std::size_t first, std::size_t last);
@@ -120,6 +121,7 @@ struct KernelWorkspace::Impl {
   std::pair<Slot, Slot> residual_vectors;  // see find_residual_vectors()
   bool residual_side_by_side = false;
   std::vector<std::int8_t> own;      // see packed::InverseSolution
+  std::optional<bool> symmetric_pattern;  // of M₀, once it was asked for
   bool mass_in_eights = false;       // see has_mass_in_eights()
   bool has_direction = false;        // `tangent` is that of q̈_k, if `owed` is taken from it
   const double* owed = nullptr;      // tangents in the direction of what the first solution was wrong by; null: nothing

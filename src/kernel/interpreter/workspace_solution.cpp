@@ -93,14 +93,20 @@ void KernelWorkspace::Impl::fetch_mass(std::size_t i, const double* tangents, st
   for (double* entry = row + first; entry != end; ++entry, tangents += step) *entry = *tangents;
 }
 
+/// A symmetric M₀ is inverted without pivoting, and its inverse read by rows or columns alike.
+bool KernelWorkspace::Impl::has_symmetric_pattern() {
+  if (!symmetric_pattern) symmetric_pattern = sparse::has_symmetric_pattern(kernel.program());
+  return *symmetric_pattern;
+}
+
 /// Its factors.
 KernelStatus KernelWorkspace::Impl::factor_full() {
   const std::size_t n = unknowns;
   need_full();
   if (!engine.are_finite(bordered.data(), n, n, n)) return KernelStatus::NonFinite;
-  by_inverse = by_matrix && n == program.freedoms && engine.negative_inverse(bordered.data(), n, inverse.data());
+  by_inverse = by_matrix && n == program.freedoms && has_symmetric_pattern() && engine.negative_inverse(bordered.data(), n, inverse.data());
   if (by_inverse) return KernelStatus::Ok;
-  if (!solver) solver.emplace(program.freedoms, n - program.freedoms);
+  if (!solver) solver.emplace(program.freedoms, n - program.freedoms, n > program.freedoms || has_symmetric_pattern());
   std::copy(bordered.begin(), bordered.end(), solver->matrix().begin());
   if (const auto undetermined = solver->factor()) {
     singular = *undetermined;

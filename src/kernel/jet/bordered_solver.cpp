@@ -23,8 +23,8 @@ constexpr double least_share = 1e-8;
 }  // namespace
 
 struct BorderedSolver::Impl {
-  Impl(std::size_t freedoms, std::size_t constraints)
-      : n(freedoms), m(constraints), size(n + m), plain(m == 0 ? n : 0), entries(m == 0 ? 0 : size * size), scale(size, 1.0),
+  Impl(std::size_t freedoms, std::size_t constraints, bool may_be_symmetric)
+      : n(freedoms), m(constraints), size(n + m), plain(m == 0 ? n : 0, may_be_symmetric), entries(m == 0 ? 0 : size * size), scale(size, 1.0),
         kept(m, true), determined(m, true) {}
 
   Eigen::Map<Matrix> view() { return {entries.data(), static_cast<Index>(size), static_cast<Index>(size)}; }
@@ -169,8 +169,8 @@ std::size_t BorderedSolver::Impl::undetermined_coordinate() {
   return worst;
 }
 
-BorderedSolver::BorderedSolver(std::size_t freedoms, std::size_t constraints)
-    : impl_(std::make_unique<Impl>(freedoms, constraints)) {}
+BorderedSolver::BorderedSolver(std::size_t freedoms, std::size_t constraints, bool may_be_symmetric)
+    : impl_(std::make_unique<Impl>(freedoms, constraints, may_be_symmetric)) {}
 BorderedSolver::~BorderedSolver() = default;
 BorderedSolver::BorderedSolver(BorderedSolver&&) noexcept = default;
 

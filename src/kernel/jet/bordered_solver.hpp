@@ -14,7 +14,8 @@ namespace maupertuis::jet {
 /// the force each of them carries is not determined.
 class BorderedSolver {
  public:
-  BorderedSolver(std::size_t freedoms, std::size_t constraints);
+  /// `may_be_symmetric`: M, as for LinearSolver; with constraints it makes no difference.
+  BorderedSolver(std::size_t freedoms, std::size_t constraints, bool may_be_symmetric = true);
   ~BorderedSolver();
   BorderedSolver(BorderedSolver&&) noexcept;
 

@@ -23,7 +23,7 @@ double scale_for(double x) { return x > 0 ? std::ldexp(1.0, -std::ilogb(x) / 2) 
 }  // namespace
 
 struct LinearSolver::Impl {
-  explicit Impl(std::size_t n) : size(n), m(n * n), scale(n), inverse_pivot(n) {}
+  Impl(std::size_t n, bool symmetric) : size(n), may_be_symmetric(symmetric), m(n * n), scale(n), inverse_pivot(n) {}
 
   double& at(std::size_t i, std::size_t j) { return m[i * size + j]; }
   double at(std::size_t i, std::size_t j) const { return m[i * size + j]; }
@@ -36,6 +36,7 @@ struct LinearSolver::Impl {
   void plain_solve(std::span<double> b) const;
 
   std::size_t size;
+  bool may_be_symmetric;
   std::vector<double> m;              // [n × n]; after plain_cholesky its lower triangle is L
   std::vector<double> scale;          // [n]
   std::vector<double> inverse_pivot;  // [n]
@@ -109,7 +110,7 @@ void LinearSolver::Impl::plain_solve(std::span<double> b) const {
   }
 }
 
-LinearSolver::LinearSolver(std::size_t size) : impl_(std::make_unique<Impl>(size)) {}
+LinearSolver::LinearSolver(std::size_t size, bool may_be_symmetric) : impl_(std::make_unique<Impl>(size, may_be_symmetric)) {}
 LinearSolver::~LinearSolver() = default;
 LinearSolver::LinearSolver(LinearSolver&&) noexcept = default;
 std::span<double> LinearSolver::matrix() { return impl_->m; }
@@ -118,7 +119,7 @@ std::optional<std::size_t> LinearSolver::factor() {
   Impl& s = *impl_;
   if (s.size == 0) return std::nullopt;
   s.scale_to_unit_diagonal();
-  if (!s.is_symmetric()) return s.full_lu();
+  if (!s.may_be_symmetric || !s.is_symmetric()) return s.full_lu();
   if (s.size > small) {
     s.cholesky.compute(s.view());
     s.method = Impl::Method::Cholesky;

@@ -11,7 +11,9 @@ namespace maupertuis::jet {
 /// that units do not decide what counts as singular.
 class LinearSolver {
  public:
-  explicit LinearSolver(std::size_t size);
+  /// `may_be_symmetric`: what differs from a symmetric M by rounding of its diagonal is one. False: it is not, by its pattern, and entries as small as
+  /// that mean what they say.
+  explicit LinearSolver(std::size_t size, bool may_be_symmetric = true);
   ~LinearSolver();
   LinearSolver(LinearSolver&&) noexcept;
 

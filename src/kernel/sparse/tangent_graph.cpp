@@ -1,5 +1,7 @@
 #include "kernel/sparse/tangent_graph.hpp"
 
+#include <cstdint>
+
 namespace maupertuis::sparse {
 namespace {
 
@@ -73,6 +75,23 @@ std::vector<Edge> tangent_edges(const Program& program) {
   for (const Run& run : program.runs[Dynamics])
     for (std::uint32_t i = run.first; i < run.last; ++i) collector(program.instructions[i]);
   return std::move(collector.edges);
+}
+
+bool has_symmetric_pattern(const Program& program) {
+  constexpr std::size_t bits = 64;
+  const std::size_t n = program.unknowns, words = (n + bits - 1) / bits;
+  std::vector<std::uint64_t> followed(program.slots * words, 0);  // of each slot, a bit for each unknown
+  for (std::size_t d = 0; d < n; ++d) followed[d * words + d / bits] |= std::uint64_t{1} << d % bits;
+  for (const Edge& edge : tangent_edges(program))
+    for (std::size_t w = 0; w < words; ++w) followed[edge.out * words + w] |= followed[edge.operand * words + w];
+  const auto follows = [&](std::size_t i, std::size_t j) {
+    const Slot slot = program.residual[i];
+    return program.tangent_lags[slot] == 2 && (followed[slot * words + j / bits] >> j % bits & 1) != 0;
+  };
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (follows(i, j) != follows(j, i)) return false;
+  return true;
 }
 
 bool is_constant(Rule rule) { return rule == Rule::One || rule == Rule::Coefficient || rule == Rule::Choice; }

@@ -32,6 +32,11 @@ struct Edge {
 /// Every edge of section Dynamics, in the order of the instructions.
 std::vector<Edge> tangent_edges(const Program& program);
 
+/// Whether the residual of every unknown i follows q̈_j where that of j follows q̈_i. Elsewhere M₀ is not symmetric however small the entries are that
+/// have no counterpart: those of a motion with its tangents beside it are as small as the tangents, and yet all that these know of the motion.
+/// Cost: edges × unknowns / 64.
+bool has_symmetric_pattern(const Program& program);
+
 /// Whether it depends on parameters and sides of switches alone.
 bool is_constant(Rule rule);
 double constant_factor(const Edge& edge, const Program& program, const double* constants);

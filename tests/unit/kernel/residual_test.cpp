@@ -195,3 +195,24 @@ TEST_CASE("no freedoms: functions of time alone") {
   CHECK(work.integrand(0, 0) == 0.5);
   CHECK(work.integrand(0, 1) == 1);
 }
+
+TEST_CASE("an entry of M without a counterpart counts, however small it is") {
+  // x'' = 1 moves y, z, … as little as ε, and they are moved by nothing else. Up to 16 unknowns by an inverse, beyond by factors.
+  for (const int followers : {1, 7, 15, 20})
+    for (const double size : {1e-3, 1e-9, 1e-12, 1e-15, 1e-18}) {
+      CAPTURE(followers);
+      CAPTURE(size);
+      System s;
+      const Expr x = s.coordinate("x", 0, 0), epsilon = s.parameter("ε", size);
+      s.source.residual.push_back(s.dot(s.dot(x)) - Rational(1));
+      for (int i = 1; i <= followers; ++i) {
+        const Expr y = s.coordinate("y" + std::to_string(i), 0, 0);
+        s.source.residual.push_back(Rational(i) * s.dot(s.dot(y)) + epsilon * s.dot(s.dot(x)));
+      }
+      KernelWorkspace work(build_kernel(s.source), 4);
+      work.set_parameters(s.parameters);
+      REQUIRE(work.expand(0, s.q, s.v) == KernelStatus::Ok);
+      CHECK(work.acceleration(0) == doctest::Approx(1).epsilon(1e-15));
+      for (int i = 1; i <= followers; ++i) CHECK(work.acceleration(static_cast<std::size_t>(i)) * i / size == doctest::Approx(-1).epsilon(1e-14));
+    }
+}

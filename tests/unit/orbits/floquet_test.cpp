@@ -1,5 +1,7 @@
 #include "support.hpp"
 
+#include "analysis/orbits/verdict.hpp"
+
 // Periods and multipliers that are known: elliptic integrals, Hill's determinant, Liouville, published digits.
 
 using namespace maupertuis;
@@ -59,6 +61,60 @@ TEST_CASE("the Cartesian pendulum has the same period and no other multipliers")
   CHECK(r.multipliers.size() == 2);
   CHECK(r.motion.period == doctest::Approx(period_of_pendulum(1)).epsilon(1e-11));
   CHECK(*r.symplectic_residual < 1e-11);
+}
+
+TEST_CASE("a double pendulum's orbit: coupled through cos(a - b), whose slope vanishes on the way, and yet neutral") {
+  const FloquetResult r = floquet_of(
+      ModelText("system dp\ndimensionless\ncoord a, b : angle\n"
+                "L = a'^2 + 1/2 b'^2 + a' b' cos(a - b) + 9.81 (2 cos a + cos b)\nstart a = 0.5875, b = 0.8307\nrun 10\n"));
+  CHECK(r.stability == OrbitalStability::Neutral);
+  CHECK(std::abs(r.largest - 1) < 1e-10);
+  CHECK(*r.symplectic_residual < 1e-13);
+  CHECK(*r.error < 1e-13);
+}
+
+TEST_CASE("the verdict hears what the geometry says") {
+  FloquetResult r;
+  r.multipliers = {{0.9, 0}, {0.5, 0}, {1, 0}};
+  r.trivial = 1;
+  r.largest = 0.9;
+  CHECK(orbits::stability_of(r) == OrbitalStability::Attracting);  // constraints between velocities: nothing to ask
+  r.integrated_divergence = r.log_determinant = std::log(0.45);
+  r.error = 1e-13;
+  CHECK(orbits::stability_of(r) == OrbitalStability::Attracting);
+  r.integrated_divergence = 0.0;  // volumes stay: nothing attracts
+  CHECK(orbits::stability_of(r) == OrbitalStability::Undecided);
+  r.integrated_divergence = 0.1;
+  CHECK(orbits::stability_of(r) == OrbitalStability::Undecided);
+  r.integrated_divergence = std::log(0.45);
+  r.symplectic_residual = 1e-14;
+  CHECK(orbits::stability_of(r) == OrbitalStability::Undecided);
+  r.largest = 1 - 1e-7;  // a defective pair
+  CHECK(orbits::stability_of(r) == OrbitalStability::Neutral);
+  r.error = 1e-9;
+  CHECK(orbits::stability_of(r) == OrbitalStability::Undecided);
+  r.largest = 1.5;
+  CHECK(orbits::stability_of(r) == OrbitalStability::Unstable);
+  r.largest = 1 + 1e-4;  // within 10 √error
+  CHECK(orbits::stability_of(r) == OrbitalStability::Undecided);
+  Diagnostics diagnostics;
+  orbits::warn_of_error(r, diagnostics);
+  REQUIRE(diagnostics.items().size() == 1);
+  CHECK(diagnostics.items().front().code == "W1402");
+  r.error = 1e-11;
+  orbits::warn_of_error(r, diagnostics);
+  CHECK(diagnostics.items().size() == 1);
+}
+
+TEST_CASE("forces that could have been a potential let nothing attract either") {
+  // Two equal oscillators by forces: dΦ has a defective pair beside it, whose rounding is √ε.
+  const FloquetResult r =
+      floquet_of(ModelText("system f\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n"
+                           "force x = -x - x (x^2 + y^2)\nforce y = -y - y (x^2 + y^2)\nstart x = 0.7, y' = 0.4\nrun 30\n"),
+                 {});
+  CHECK_FALSE(r.symplectic_residual);
+  CHECK(*r.integrated_divergence == 0);
+  CHECK(r.stability == OrbitalStability::Neutral);
 }
 
 TEST_CASE("Mathieu's equation: the trace by Hill's determinant, stable and unstable") {

@@ -58,6 +58,27 @@ TEST_CASE("a driven damped pendulum: the sum is −c, the largest alone agrees w
   CHECK(std::abs(one_alone.exponents[0] - all.exponents[0]) < 4 * (all.errors[0] + one_alone.errors[0]));
 }
 
+TEST_CASE("intervals may be any: directions that part too far are made orthonormal on the way") {
+  const ModelText m(one + "V = -1/2 x^2\nstart x = 1e-30\nrun 60\n");
+  for (const double interval : {1.0, 60.0}) {
+    LyapunovOptions options;
+    options.interval = interval;
+    options.transient = 16;
+    const LyapunovResult r = lyapunov_of(m, options);  // e^(2t) over 60 is 1e52
+    CHECK(r.exponents[1] == doctest::Approx(-1).epsilon(1e-9));
+    CHECK(*r.sum_rule_residual < 1e-12);
+  }
+}
+
+TEST_CASE("the sum rule along a chaotic motion with damping that depends on the place") {
+  const LyapunovResult r = lyapunov_of(
+      ModelText("system d\ndimensionless\ncoord a, b : angle\nL = a'^2 + 1/2 b'^2 + a' b' cos(a - b) + 9.81 (2 cos a + cos b)\n"
+                "D = 1/2 (0.02 + 0.01 cos b) a'^2\ninput u = 9 cos(2 t)\nforce a = u\nstart a = 2.5, b = 2\nrun 100\n"));
+  CHECK(r.exponents[0] > 0.1);  // another run of it would be another motion after some 30
+  CHECK(*r.sum_rule_residual < 1e-11);
+  CHECK(r.errors[3] >= *r.sum_rule_residual);
+}
+
 TEST_CASE("constraints: the spherical pendulum by its constraint has four exponents, all zero") {
   const LyapunovResult r = lyapunov_of(ModelText(
       "system sphere\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y, z : length\npoint P mass m at (x, y, z)\n"
