@@ -102,8 +102,9 @@ class TangentGeometry {
   /// ω of each pair of columns [columns × columns], row by row: ω(a, b) = δq_a·δp_b − δp_a·δq_b with δp = ∂p/∂q δq + M
   /// δq̇.
   std::vector<double> symplectic_products(const TangentPoint& point) const;
-  /// ‖a‖ ‖b‖ of each pair in canonical coordinates w q, p/w, in which ω keeps its form, with w for each freedom such that both are alike in a motion
-  /// whose coordinates and velocities have these sizes [2n, > 0]: a relative error ε of the columns changes a product by some ε of that.
+  /// ‖a‖ ‖b‖ of each pair in canonical coordinates w q, p/w, in which ω keeps its form, with w for each freedom such
+  /// that both are alike in a motion whose coordinates and velocities have these sizes [2n, > 0]: a relative error ε of
+  /// the columns changes a product by some ε of that.
   std::vector<double> symplectic_sizes(const TangentPoint& point, std::span<const double> sizes) const;
   /// d/dt log of the volume that dΦ carries along in the phase space of q and p, over the directions that the
   /// constraints allow: tr((ZᵀMZ)⁻¹ Zᵀ (∂F/∂q̇) Z), F = Q − ∂D/∂q̇, A Z = 0 (Liouville). 1/s Nothing for constraints

@@ -86,14 +86,16 @@ class Multipliers {
   ReturnMap map_;
 };
 
-/// ω of the basis before and after: the largest difference, against the largest of ω itself and against the sizes of the directions.
+/// ω of the basis before and after: the largest difference, against the largest of ω itself and against the sizes of
+/// the directions.
 struct SymplecticMiss {
   double residual = 0, relative = 0;
 };
 
 SymplecticMiss symplectic_miss(const TangentGeometry& geometry, const Closed& closed) {
   const auto before = geometry.symplectic_products(closed.begin), after = geometry.symplectic_products(closed.end),
-             sizes_before = geometry.symplectic_sizes(closed.begin, closed.sizes), sizes = geometry.symplectic_sizes(closed.end, closed.sizes);
+             sizes_before = geometry.symplectic_sizes(closed.begin, closed.sizes),
+             sizes = geometry.symplectic_sizes(closed.end, closed.sizes);
   const auto grow = [](double& largest, double value) {
     if (!(value <= largest)) largest = value;  // also not a number
   };
@@ -122,7 +124,8 @@ void check(const EquationsOfMotion& equations, const Closed& closed, const Multi
       orbits::DivergenceIntegral(equations, geometry)(motion.start, motion.start.t + motion.period);
   if (!out.integrated_divergence) return;
   out.log_determinant = multipliers.log_determinant();
-  out.error = std::max(out.error.value_or(0), multipliers.error_from_determinant(*out.log_determinant - *out.integrated_divergence));
+  out.error = std::max(out.error.value_or(0),
+                       multipliers.error_from_determinant(*out.log_determinant - *out.integrated_divergence));
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ constexpr std::size_t rows_of_convergence = 400;
 constexpr double steps_of_interval =
     8;  // Taylor steps between orthogonalizations: directions grow by some e in a step at most
 constexpr double least_intervals = 40;
-/// The logarithm of the factor by which directions may part before they are made orthonormal again: rounding of the largest is 1e-10 of the smallest then.
+/// The logarithm of the factor by which directions may part before they are made orthonormal again: rounding of the
+/// largest is 1e-10 of the smallest then.
 constexpr double most_parting = 14;
 constexpr int most_halvings = 40;
 
@@ -120,8 +121,9 @@ class LyapunovRun {
     return true;
   }
 
-  /// Directions over one interval, with what was found there; nothing where the motion does not go on. Where they part so far that the smaller ones
-  /// are lost in the rounding of the larger, they are orthogonalized on the way as well: what pieces take away multiplies.
+  /// Directions over one interval, with what was found there; nothing where the motion does not go on. Where they part
+  /// so far that the smaller ones are lost in the rounding of the larger, they are orthogonalized on the way as well:
+  /// what pieces take away multiplies.
   std::optional<Vector> carry(double t, int halvings = 0) {
     const MotionState from = point_.state;
     const Matrix frame = directions_;
@@ -248,7 +250,8 @@ class LyapunovRun {
     diagnostics_.warning(
         "W1401", {},
         fmt::format("the exponents add up to {:.6g} 1/s instead of {:.6g} 1/s", out_.sum + ends, *out_.expected_sum),
-        "Their sum is the mean divergence of the flow (Liouville), which is known without them: neighbours of this motion were not carried to rounding.",
+        "Their sum is the mean divergence of the flow (Liouville), which is known without them: neighbours of this "
+        "motion were not carried to rounding.",
         "Take no exponent for more certain than its error, which allows for that.");
   }
 
@@ -271,11 +274,11 @@ class LyapunovRun {
   Vector sizes_;
   double transient_ = 0, begin_ = 0;
   std::size_t intervals_ = 0;
-  MotionState before_;                 // where the average begins
-  Matrix frame_before_, frame_after_;  // the directions there, and at the end
-  std::vector<Vector> logs_;           // of each interval
+  MotionState before_;                                    // where the average begins
+  Matrix frame_before_, frame_after_;                     // the directions there, and at the end
+  std::vector<Vector> logs_;                              // of each interval
   std::optional<orbits::DivergenceIntegral> divergence_;  // of all exponents
-  std::optional<double> volume_ = 0;   // its integral over the intervals; nothing where there is none
+  std::optional<double> volume_ = 0;  // its integral over the intervals; nothing where there is none
   TangentStop stop_;
   LyapunovResult out_;
 };

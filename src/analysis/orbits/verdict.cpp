@@ -16,8 +16,8 @@ constexpr double no_divergence = 1e-12;
 
 bool misses_geometry(const FloquetResult& r) { return !(r.error.value_or(0) <= largest_sound_error); }
 
-/// Multipliers of a Lagrangian motion come in pairs μ, 1/μ, and so do those of forces that could have been one: pairs that meet on the circle
-/// may be defective, and then an error ε shows as √ε.
+/// Multipliers of a Lagrangian motion come in pairs μ, 1/μ, and so do those of forces that could have been one: pairs
+/// that meet on the circle may be defective, and then an error ε shows as √ε.
 bool has_pairs(const FloquetResult& r) {
   return r.symplectic_residual || (r.integrated_divergence && std::abs(*r.integrated_divergence) <= no_divergence);
 }
@@ -51,8 +51,9 @@ void warn_of_error(const FloquetResult& result, Diagnostics& diagnostics) {
   if (!misses_geometry(result)) return;
   diagnostics.warning(
       "W1402", {}, fmt::format("the derivative of the return map is right to {:.2g} only", *result.error),
-      result.symplectic_residual ? "The motion of a Lagrangian preserves the symplectic form, and this derivative does not."
-                                 : "Its determinant is not what the divergence of the flow makes it (Liouville).",
+      result.symplectic_residual
+          ? "The motion of a Lagrangian preserves the symplectic form, and this derivative does not."
+          : "Its determinant is not what the divergence of the flow makes it (Liouville).",
       "Look for a motion of shorter period, or one that passes less near to a singularity; multipliers near the unit "
       "circle are not told from it here.");
 }

@@ -112,7 +112,8 @@ std::vector<double> TangentGeometry::symplectic_sizes(const TangentPoint& point,
   const auto columns = static_cast<Index>(point.columns());
   const Matrix y = Eigen::Map<const Matrix>(point.directions.data(), 2 * s.n, columns);
   Matrix q = y.topRows(s.n), p = slopes * y;
-  const Eigen::VectorXd size = Eigen::Map<const Eigen::VectorXd>(sizes.data(), 2 * s.n), momentum = slopes.cwiseAbs() * size;
+  const Eigen::VectorXd size = Eigen::Map<const Eigen::VectorXd>(sizes.data(), 2 * s.n),
+                        momentum = slopes.cwiseAbs() * size;
   for (Index k = 0; k < s.n; ++k) {
     const double w = momentum[k] > 0 ? std::sqrt(momentum[k] / size[k]) : 1.0;
     q.row(k) *= w;

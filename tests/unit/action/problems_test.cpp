@@ -259,3 +259,15 @@ TEST_CASE("what has no action, ends off the constraints, ends in the wrong order
   CHECK(code_of_search(circle, fixed_ends({1, 0}, 0, {1, 1}, 1)) == "E1202");
   CHECK(code_of_search(circle, fixed_ends({1, 0}, 1, {0, 1}, 0)) == "E1203");
 }
+
+TEST_CASE("conjugate points of a double pendulum: det ∂q/∂q̇(0) of differences in 113 bits changes its sign at 3.935433753879") {
+  for (const std::string run : {"6", "5.3"}) {
+    const ModelText m("system dp\ndimensionless\ncoord a, b : angle\nL = a'^2 + 1/2 b'^2 + a' b' cos(a - b) + 9.81 (2 cos a + cos b)\n"
+                      "start a = 1.2, b = -0.4\nrun " + run + "\n");
+    Diagnostics diagnostics;
+    const auto found = action_of_motion(m.model, m.equations, {}, diagnostics);
+    REQUIRE(found);
+    REQUIRE(found->path.second.conjugate.size() == 10);
+    CHECK(std::abs(found->path.second.conjugate[6].t - 3.935433753879) < 1e-10);
+  }
+}

@@ -64,9 +64,9 @@ TEST_CASE("the Cartesian pendulum has the same period and no other multipliers")
 }
 
 TEST_CASE("a double pendulum's orbit: coupled through cos(a - b), whose slope vanishes on the way, and yet neutral") {
-  const FloquetResult r = floquet_of(
-      ModelText("system dp\ndimensionless\ncoord a, b : angle\n"
-                "L = a'^2 + 1/2 b'^2 + a' b' cos(a - b) + 9.81 (2 cos a + cos b)\nstart a = 0.5875, b = 0.8307\nrun 10\n"));
+  const FloquetResult r = floquet_of(ModelText(
+      "system dp\ndimensionless\ncoord a, b : angle\n"
+      "L = a'^2 + 1/2 b'^2 + a' b' cos(a - b) + 9.81 (2 cos a + cos b)\nstart a = 0.5875, b = 0.8307\nrun 10\n"));
   CHECK(r.stability == OrbitalStability::Neutral);
   CHECK(std::abs(r.largest - 1) < 1e-10);
   CHECK(*r.symplectic_residual < 1e-13);
@@ -108,10 +108,10 @@ TEST_CASE("the verdict hears what the geometry says") {
 
 TEST_CASE("forces that could have been a potential let nothing attract either") {
   // Two equal oscillators by forces: dΦ has a defective pair beside it, whose rounding is √ε.
-  const FloquetResult r =
-      floquet_of(ModelText("system f\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n"
-                           "force x = -x - x (x^2 + y^2)\nforce y = -y - y (x^2 + y^2)\nstart x = 0.7, y' = 0.4\nrun 30\n"),
-                 {});
+  const FloquetResult r = floquet_of(
+      ModelText("system f\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n"
+                "force x = -x - x (x^2 + y^2)\nforce y = -y - y (x^2 + y^2)\nstart x = 0.7, y' = 0.4\nrun 30\n"),
+      {});
   CHECK_FALSE(r.symplectic_residual);
   CHECK(*r.integrated_divergence == 0);
   CHECK(r.stability == OrbitalStability::Neutral);

@@ -71,9 +71,9 @@ TEST_CASE("intervals may be any: directions that part too far are made orthonorm
 }
 
 TEST_CASE("the sum rule along a chaotic motion with damping that depends on the place") {
-  const LyapunovResult r = lyapunov_of(
-      ModelText("system d\ndimensionless\ncoord a, b : angle\nL = a'^2 + 1/2 b'^2 + a' b' cos(a - b) + 9.81 (2 cos a + cos b)\n"
-                "D = 1/2 (0.02 + 0.01 cos b) a'^2\ninput u = 9 cos(2 t)\nforce a = u\nstart a = 2.5, b = 2\nrun 100\n"));
+  const LyapunovResult r = lyapunov_of(ModelText(
+      "system d\ndimensionless\ncoord a, b : angle\nL = a'^2 + 1/2 b'^2 + a' b' cos(a - b) + 9.81 (2 cos a + cos b)\n"
+      "D = 1/2 (0.02 + 0.01 cos b) a'^2\ninput u = 9 cos(2 t)\nforce a = u\nstart a = 2.5, b = 2\nrun 100\n"));
   CHECK(r.exponents[0] > 0.1);  // another run of it would be another motion after some 30
   CHECK(*r.sum_rule_residual < 1e-11);
   CHECK(r.errors[3] >= *r.sum_rule_residual);
