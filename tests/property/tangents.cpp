@@ -51,6 +51,8 @@ rc::Gen<Coupled> coupled() {
                       });
 }
 
+void showValue(const Coupled& c, std::ostream& out) { out << c.text << "t = " << c.duration; }
+
 /// ∂(final)/∂(start component) by central differences: their error is h² times the third derivative.
 std::vector<double> quotient(const ModelText& m, double t, std::size_t coordinate, int order) {
   const Rational h = *Rational::parse("1e-9");
@@ -68,8 +70,6 @@ struct Arbitrary<Coupled> {
   static Gen<Coupled> arbitrary() { return coupled(); }
 };
 }  // namespace rc
-
-inline void showValue(const Coupled& c, std::ostream& out) { out << c.text << "t = " << c.duration; }
 
 TEST_CASE("neighbours of random coupled motions are those that 113 bits find") {
   rc::holds("tangents", [](const Coupled& c) {
