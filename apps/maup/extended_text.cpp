@@ -10,8 +10,8 @@ namespace {
 
 std::string number_text(const AgreedNumber& x) {
   if (x.text.empty()) return "not determined";
-  if (x.digits > 0) return (x.text[0] == '-' ? "" : " ") + x.text;
-  return fmt::format(" 0  (no digit is certain: the runs differ by {})", x.difference);
+  if (x.digits > 0) return x.text;
+  return fmt::format("0  (no digit is certain: the runs differ by {})", x.difference);
 }
 
 /// A time that was asked for is exact: its zeros at the end say nothing.
@@ -27,7 +27,7 @@ std::string state_text(const ExtendedState& state, const ExtendedResult& result)
   const std::string& second = result.independent.unit;
   std::string out = fmt::format("{} = {}{}{}\n", result.independent.name, time_text(state.t), second.empty() ? "" : " ", second);
   const auto line = [&out](const std::string& name, const AgreedNumber& x, const std::string& unit) {
-    out += fmt::format("  {:<8} {}{}{}\n", name, number_text(x), unit == "1" || unit.empty() ? "" : " ", unit == "1" ? "" : unit);
+    out += fmt::format("  {} = {}{}{}\n", name, number_text(x), unit == "1" || unit.empty() ? "" : " ", unit == "1" ? "" : unit);
   };
   const std::size_t n = state.q.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -70,8 +70,9 @@ std::string extended_text(const ExtendedResult& result) {
   const bool told = !result.at.empty() && result.at.back().reached && result.at.back().t.text == result.final.t.text;
   if (result.final.reached && !told) out += state_text(result.final, result);
   const ExtendedStatistics& s = result.statistics;
-  return out + fmt::format("{} steps of order {} with {} bits in {} s; digits on which {} steps of order {} with {} bits agree, in {} s\n",
-                           s.steps, s.order, s.bits, brief(s.seconds), s.check_steps, s.check_order, s.check_bits, brief(s.check_seconds));
+  return out + fmt::format("{} steps of order {} with {} bits in {} s; digits on which {} steps of order {} in {} s and {} steps of order {} with {} bits in {} s agree\n",
+                           s.steps, s.order, s.bits, brief(s.seconds), s.companion_steps, s.companion_order, brief(s.companion_seconds), s.check_steps,
+                           s.check_order, s.check_bits, brief(s.check_seconds));
 }
 
 Json extended_document(const ExtendedResult& result, const std::string& precision, const MechanicalSystem& system) {
@@ -84,7 +85,8 @@ Json extended_document(const ExtendedResult& result, const std::string& precisio
   const ExtendedStatistics& s = result.statistics;
   document["statistics"] = {{"steps", s.steps}, {"order", s.order}, {"bits", s.bits}, {"seconds", s.seconds},
                             {"check_steps", s.check_steps}, {"check_order", s.check_order}, {"check_bits", s.check_bits},
-                            {"check_seconds", s.check_seconds}, {"switches", s.switches}, {"rows", result.rows.size()}};
+                            {"check_seconds", s.check_seconds}, {"companion_steps", s.companion_steps},
+                            {"companion_order", s.companion_order}, {"companion_seconds", s.companion_seconds}, {"switches", s.switches}, {"rows", result.rows.size()}};
   document["ended"] = {{"reason", result.reason.empty() ? ending_name(result.ending) : result.reason},
                        {"kind", ending_name(result.ending)}, {"ok", result.ok()}};
   return document;

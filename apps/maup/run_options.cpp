@@ -71,6 +71,10 @@ void add_method_options(CLI::App& command, RunOptions& options) {
   command.add_flag("--no-cache", options.no_cache, "Neither read nor keep machine code of other runs");
 }
 
+void add_errors_option(CLI::App& command, RunOptions& options) {
+  command.add_flag("--no-errors", options.no_errors, "No companion runs: numbers without what is known of their errors");
+}
+
 void add_span_options(CLI::App& command, RunOptions& options) {
   const auto duration =
       command.add_option("--duration", options.duration, "Run this long instead; negative: backwards in time")
@@ -129,6 +133,7 @@ SimulationOptions simulation_options(const RunOptions& options, Diagnostics& dia
   if (options.order) out.order = *options.order;
   out.backend = options.backend == "compiled" ? Backend::Compiled : options.backend == "interpreter" ? Backend::Interpreter : Backend::Automatic;
   out.cache = !options.no_cache;
+  if (options.no_errors) out.errors = ErrorEstimates::None;
   const auto* written = statement_of<syntax::MethodStatement>(tree);
   const StepMethod method = out.method ? *out.method : method_named(written ? written->word.text : "auto");
   const bool fixed_steps = method == StepMethod::Variational;

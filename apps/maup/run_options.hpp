@@ -21,11 +21,14 @@ struct RunOptions {
   std::string until, within;
   std::string backend = "auto";
   bool no_cache = false;
+  bool no_errors = false;
   std::vector<std::string> at;
 };
 
 /// --method, --step, --order, --tol, --backend, --no-cache.
 void add_method_options(CLI::App& command, RunOptions& options);
+/// --no-errors.
+void add_errors_option(CLI::App& command, RunOptions& options);
 /// --duration, --backward, --until, --within, --every, --at.
 void add_span_options(CLI::App& command, RunOptions& options);
 

@@ -35,6 +35,9 @@ struct ExtendedStatistics {
   std::size_t steps = 0, check_steps = 0, switches = 0;
   int order = 0, check_order = 0, bits = 0, check_bits = 0;
   double seconds = 0, check_seconds = 0;    // of both runs
+  std::size_t companion_steps = 0;          // of the run with another order and other last bits
+  int companion_order = 0;
+  double companion_seconds = 0;
 };
 
 struct ExtendedResult {
@@ -51,8 +54,9 @@ struct ExtendedResult {
   bool ok() const { return ending == Ending::Finished || ending == Ending::UntilReached; }
 };
 
-/// Runs the experiment of a model in many digits, twice: the second time with at least a word more of mantissa, a tolerance 1e-4 times
-/// smaller and an order that follows. Only the digits on which both agree are given.
+/// Runs the experiment of a model in many digits, three times: a companion has another order, other steps, and numbers without an end in binary one unit of
+/// the last place higher or lower; the check has at least a word more of mantissa, a tolerance 1e-4 times smaller and an order that follows. Only the digits
+/// of the check that both others agree with are given.
 ///
 /// Parameters, literals, start values and times are taken as written: 9.81 is the decimal, 30 deg is π/6. Where the constraints leave a choice
 /// between positions that the start does not give, it is the one of `consistent_start`, moved onto the constraints in all digits.
@@ -60,7 +64,7 @@ struct ExtendedResult {
 std::optional<ExtendedResult> simulate_extended(const Model& model, const EquationsOfMotion& equations,
                                                 const ExtendedSimulationOptions& options, Diagnostics& diagnostics);
 
-/// RFC 4180, as to_csv of a trajectory, with the digits on which both runs agree; empty cells where there are none.
+/// RFC 4180, as to_csv of a trajectory, with the digits on which all runs agree; empty cells where there are none.
 std::string to_csv(const ExtendedResult& result);
 
 }  // namespace maupertuis

@@ -14,6 +14,10 @@
 
 namespace maupertuis {
 
+/// What a run tells of its errors (docs/design/certain_digits.md). None: nothing, and no companion runs. States: those of the states, reactions and
+/// probes at the times asked for and at the end. Rows: those of each row of the trajectory too.
+enum class ErrorEstimates { None, States, Rows };
+
 struct SimulationOptions {
   std::optional<StepMethod> method;         // nothing: that of the model's `method`, or Automatic
   double step = 0;                          // s, Variational: the length of its steps; 0: that of the model's `method`
@@ -24,9 +28,17 @@ struct SimulationOptions {
   std::optional<double> output_every;       // s
   Backend backend = Backend::Automatic;     // of Taylor's steps
   bool cache = true;                        // of compiled code, on disk
+  ErrorEstimates errors = ErrorEstimates::States;
   std::size_t maximum_steps = 100'000'000;
   const std::atomic<bool>* interrupt = nullptr;  // set by Ctrl-C
   std::function<void(double)> progress;     // told the fraction of the run that is done, now and then
+};
+
+/// By how much the numbers of a state may be off, each in the unit of its number: 0 where it is exact, infinite where no digit is
+/// certain, NaN beside a NaN.
+struct StateErrors {
+  double t = 0;                             // 0 but for a time that was located: the end of `run until`
+  std::vector<double> q, v, multipliers, reactions;
 };
 
 struct State {
@@ -34,6 +46,7 @@ struct State {
   std::vector<double> q, v, a;              // [n] each; a is NaN where the accelerations have no value
   std::vector<double> multipliers;          // [constraints] λ; NaN where the equations do not determine it
   std::vector<double> reactions;            // [SimulationResult::reactions]
+  std::optional<StateErrors> errors{};      // without where nobody asked
 };
 
 enum class Ending {
@@ -61,6 +74,15 @@ struct SimulationStatistics {
   double energy_drift = 0;                  // docs/theory: |h_E(t) − h_E(0) − work| / max Σ|terms of h_E|
   double constraint_residual = 0;           // docs/theory: largest φ, dφ/dt, ψ, each by the sizes of its terms
   std::size_t switches = 0;                 // located switch crossings
+  std::size_t companions = 0;               // runs beside it that tell its errors
+  double companion_seconds = 0;             // they took, all together
+};
+
+/// From a time on no digit of some columns of the trajectory is certain: the companions have gone ways of their own.
+struct Uncertainty {
+  std::vector<std::size_t> columns;         // of the state, q and q'; empty: something is certain of each all along the run
+  double from = 0;                          // s: from here on, for all of these
+  bool everything = false;                  // these are all that move
 };
 
 struct SimulationResult {
@@ -69,6 +91,7 @@ struct SimulationResult {
   State start, final;
   std::vector<State> at;                    // in the order asked; q is empty where the run ended before
   SimulationStatistics statistics;
+  Uncertainty uncertain;
   Ending ending = Ending::Finished;
   std::string reason;                       // one sentence for every ending but Finished
   bool ok() const { return ending == Ending::Finished || ending == Ending::UntilReached; }
@@ -113,9 +136,11 @@ DynamicsSource dynamics_source(const EquationsOfMotion& equations);
 struct Probe {
   std::vector<Expr> expressions;
   std::vector<std::vector<double>> values;  // [at][expressions], filled by the run
+  std::vector<std::vector<double>> errors;  // [at][expressions] as in StateErrors; empty without companions
 };
 
-/// Runs the experiment of a model. What was computed is kept whatever the ending.
+/// Runs the experiment of a model. What was computed is kept whatever the ending. Unless options.errors says no, companion runs tell the
+/// errors: seven in the lanes of vector registers up to 4 unknowns, which take about as long again, else three, each as long as the run itself.
 /// Nothing is returned when the start or the run length is missing or wrong (then `diagnostics` says so).
 std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMotion& equations,
                                          const SimulationOptions& options, Diagnostics& diagnostics,

@@ -18,12 +18,18 @@ struct Trajectory {
   std::vector<Column> columns;
   std::vector<double> times;                 // [rows] in the order of the run (descending when backwards)
   std::vector<double> values;                // [rows × columns]
+  std::vector<double> errors;                // [rows × columns] by how much each may be off (uncertainty.hpp); empty: not known
   std::map<std::string, std::string> metadata;  // system, version, method, tolerance, …
 
   std::size_t rows() const { return times.size(); }
   double at(std::size_t row, std::size_t column) const { return values[row * columns.size() + column]; }
+  double error(std::size_t row, std::size_t column) const { return errors[row * columns.size() + column]; }
   std::optional<std::size_t> column(const std::string& name) const;
 };
+
+/// The trajectory with its errors as further columns, error(θ1) of θ1 in the same unit, after all others. For files; without errors, as it is.
+/// Infinite where no digit is certain.
+Trajectory with_error_columns(const Trajectory& trajectory);
 
 /// The formats that `write_trajectory` knows, by their endings.
 inline constexpr std::string_view trajectory_endings[] = {".csv", ".npy", ".json"};

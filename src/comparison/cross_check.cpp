@@ -97,6 +97,7 @@ maupertuis::CrossCheck CrossCheck::run() const {
 /// False where one of them cannot start there.
 bool CrossCheck::run_from(const MotionState& start, maupertuis::CrossCheck& out) const {
   SimulationOptions options = options_;
+  options.errors = ErrorEstimates::None;
   options.duration = duration().value_or(default_duration);
   options.at.clear();
   for (int k = 1; k <= samples; ++k) options.at.push_back(start.t + *options.duration * k / samples);
@@ -138,6 +139,7 @@ std::optional<Disagreement> CrossCheck::disagreement(const std::vector<MotionSta
   std::optional<Disagreement> best;
   double largest = rounding;
   SimulationOptions options = options_;
+  options.errors = ErrorEstimates::None;
   options.duration = 0;
   options.at.clear();
   std::vector<MotionState> states = motions_.states();

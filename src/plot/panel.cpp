@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -117,15 +118,76 @@ std::vector<Polyline> thinned(const std::vector<Polyline>& lines, bool over_time
   return result;
 }
 
+/// How far up and down a value may be: an infinite error takes the whole panel.
+struct Reach {
+  double x, top, bottom;
+};
+
+std::vector<Reach> reaches_of(const Figure& figure, const Panel& panel, const Series& series, const Axis& across, const Axis& up) {
+  std::vector<Reach> out;
+  const double low = panel.top + panel.height;
+  const auto y = [&](double value) { return panel.top + panel.height * (1 - up.position(value)); };
+  for (std::size_t row = 0; row < figure.trajectory.rows(); ++row) {
+    const double value = series.at(figure.trajectory, row), error = series.factor * figure.trajectory.error(row, series.column);
+    const double x = figure.left + figure.frame_width() * across.position(figure.horizontal.at(figure.trajectory, row));
+    const bool known = std::isfinite(value) && !std::isnan(error);
+    Reach reach{x, known ? std::clamp(y(value + error), panel.top, low) : 0, known ? std::clamp(y(value - error), panel.top, low) : 0};
+    constexpr double column = 0.5;  // px; what falls into one is drawn as one
+    if (!out.empty() && std::abs(out.back().x - x) < column && known && out.back().bottom > 0)
+      out.back() = {out.back().x, std::min(out.back().top, reach.top), std::max(out.back().bottom, reach.bottom)};
+    else out.push_back(reach);
+  }
+  return out;
+}
+
+/// The band in which the curve may lie, where it is wider than the curve itself.
+std::string draw_band(const Figure& figure, const Panel& panel, std::size_t index, const Axis& across, const Axis& up) {
+  constexpr double visible = 1.5;  // px
+  if (figure.trajectory.errors.empty() || !figure.horizontal.is_time) return {};
+  const std::vector<Reach> reaches = reaches_of(figure, panel, panel.series[index], across, up);
+  std::vector<Polyline> bands;
+  for (std::size_t i = 0; i < reaches.size();) {
+    Polyline upper, lower;
+    for (; i < reaches.size() && reaches[i].bottom - reaches[i].top > visible; ++i) {
+      upper.push_back({reaches[i].x, reaches[i].top});
+      lower.push_back({reaches[i].x, reaches[i].bottom});
+    }
+    if (upper.empty()) ++i;
+    else {
+      upper.insert(upper.end(), lower.rbegin(), lower.rend());
+      bands.push_back(straighten(upper, 0.04));
+    }
+  }
+  if (bands.empty()) return {};
+  return fmt::format("<path class=\"band {} d=\"{}\"/>\n", series_attributes(index, panel.series.size()), path_data(bands));
+}
+
+/// A phase portrait without what is not certain at all, and that alone.
+std::pair<Polyline, Polyline> split_by_certainty(const Figure& figure, const Series& series, const Polyline& pixels) {
+  std::pair<Polyline, Polyline> out{pixels, {}};
+  const Trajectory& rows = figure.trajectory;
+  if (rows.errors.empty() || figure.horizontal.is_time) return out;
+  out.second = pixels;
+  const Pixel gap{std::nan(""), std::nan("")};
+  for (std::size_t row = 0; row < rows.rows(); ++row) {
+    const bool lost = std::isinf(rows.error(row, series.column)) || std::isinf(rows.error(row, figure.horizontal.column));
+    (lost ? out.first : out.second)[row] = gap;
+  }
+  return out;
+}
+
 std::string draw_curve(const Figure& figure, const Panel& panel, std::size_t index, const Axis& across, const Axis& up) {
   const std::string attributes = series_attributes(index, panel.series.size());
-  const auto lines = split_at_gaps(pixels_of(figure, panel, panel.series[index], across, up));
+  const auto [certain, lost] = split_by_certainty(figure, panel.series[index], pixels_of(figure, panel, panel.series[index], across, up));
+  const auto lines = split_at_gaps(certain);
   const bool over_time = figure.horizontal.is_time;
   const auto drawn = thinned(lines, over_time, figure.options.width, figure.height);
   std::size_t points = 0;
   for (const Polyline& line : drawn) points += line.size();
   std::string svg = fmt::format("<path class=\"curve {}{} d=\"{}\"/>\n", points > 1500 ? "dense " : "", attributes,
                                 path_data(drawn));
+  if (const auto faint = split_at_gaps(lost); !faint.empty())
+    svg += fmt::format("<path class=\"curve lost {} d=\"{}\"/>\n", attributes, path_data(thinned(faint, false, figure.options.width, figure.height)));
   const auto dot = [&](Pixel p, double radius) {
     svg += fmt::format("<circle class=\"dot {} cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{}\"/>\n", attributes, p.x, p.y, radius);
   };
@@ -208,6 +270,7 @@ double legend_height(const Panel& panel, double width) {
 std::string draw_panel(const Figure& figure, const Panel& panel, const Axis& across, const Axis& up, bool lowest) {
   std::string svg = draw_frame(figure, panel, across, up, lowest);
   svg += draw_outline(figure, panel, across, up);
+  for (std::size_t k = 0; k < panel.series.size() && figure.options.dots_by.empty(); ++k) svg += draw_band(figure, panel, k, across, up);
   for (std::size_t k = 0; k < panel.series.size(); ++k)
     svg += figure.options.dots_by.empty() ? draw_curve(figure, panel, k, across, up) : draw_dots(figure, panel, panel.series[k], across, up);
   return svg + draw_vertical_label(panel, up) + draw_legend(panel, figure);

@@ -148,6 +148,7 @@ std::string plot_problem(const Trajectory& trajectory, const PlotOptions& option
 std::string plot_svg(const Trajectory& trajectory, const PlotOptions& options) {
   MAUP_REQUIRE(plot_problem(trajectory, options).empty());
   MAUP_REQUIRE(trajectory.values.size() == trajectory.rows() * trajectory.columns.size());
+  MAUP_REQUIRE(trajectory.errors.empty() || trajectory.errors.size() == trajectory.values.size());
   MAUP_REQUIRE(options.outline.empty() || (options.columns.size() == 1 && !options.against.empty()));
   Figure figure{trajectory, options, Series{trajectory.independent.name, trajectory.independent.unit, 1, 0, true}, group_by_unit(trajectory, options), 0, 0, 0, 0};
   if (!options.against.empty()) figure.horizontal = series_of(trajectory, options.against, options.degrees);

@@ -1,6 +1,8 @@
 #include "report/motion_parts.hpp"
 #include "report/notation.hpp"
 
+#include <maupertuis/uncertainty.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +14,22 @@ namespace {
 constexpr std::size_t most_phase_portraits = 4;
 constexpr std::size_t most_numbers = 150'000;   // of a drawing: about a megabyte of page
 constexpr double plot_width = 440;
+
+/// The state at the end with its certain digits, of small systems; and from when on there are none.
+void add_certainty(ReportContent& content, const SimulationResult& run, const MechanicalSystem& system) {
+  constexpr std::size_t most_coordinates = 6;
+  const auto add = [&](std::string name, std::string value) { content.statistics.emplace_back(std::move(name), std::move(value)); };
+  const auto& errors = run.final.errors;
+  for (std::size_t i = 0; errors && i < std::min(run.final.q.size(), run.final.q.size() > most_coordinates ? 0 : most_coordinates); ++i) {
+    const Trajectory::Column& column = run.trajectory.columns[i];
+    add(column.name + " at the end", std::isinf(errors->q[i]) ? "no digit is certain"
+                                                              : with_uncertainty(run.final.q[i], errors->q[i]) + (column.unit.empty() ? "" : " " + column.unit));
+  }
+  if (run.uncertain.columns.empty()) return;
+  std::string names;
+  for (const std::size_t column : run.uncertain.columns) names += (names.empty() ? "" : ", ") + run.trajectory.columns[column].name;
+  add(run.uncertain.everything ? "nothing is certain" : "no digit is certain of " + names, "from " + system.moment(short_number(run.uncertain.from, 4)) + " on");
+}
 
 void add_statistics(ReportContent& content, const SimulationResult& run, const MechanicalSystem& system) {
   const SimulationStatistics& s = run.statistics;
@@ -26,6 +44,7 @@ void add_statistics(ReportContent& content, const SimulationResult& run, const M
   add("energy drift", short_number(s.energy_drift, 2));
   if (s.constraint_residual > 0) add("constraint residual", short_number(s.constraint_residual, 2));
   add("time of computation", short_number(s.seconds, 2) + " s, and " + short_number(s.compile_seconds, 2) + " s for the kernel");
+  add_certainty(content, run, system);
   if (run.ending != Ending::Finished && !run.reason.empty()) {
     content.ending = run.reason;
     content.ending[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(content.ending[0])));
@@ -38,15 +57,18 @@ void add_drift_column(Trajectory& run) {
   const auto energy = run.column("energy");
   if (!energy || run.rows() == 0) return;
   const std::size_t width = run.columns.size();
-  std::vector<double> values;
+  std::vector<double> values, errors;
   values.reserve(run.rows() * (width + 1));
   for (std::size_t row = 0; row < run.rows(); ++row) {
+    for (std::size_t column = 0; !run.errors.empty() && column <= width; ++column)
+      errors.push_back(run.error(row, column < width ? column : *energy));
     values.insert(values.end(), run.values.begin() + static_cast<std::ptrdiff_t>(row * width),
                   run.values.begin() + static_cast<std::ptrdiff_t>((row + 1) * width));
     values.push_back(run.at(row, *energy) - run.at(0, *energy));
   }
   run.columns.push_back({"energy drift", run.columns[*energy].unit});
   run.values = std::move(values);
+  run.errors = std::move(errors);
 }
 
 void add_picture(ReportContent& content, std::string caption, std::vector<std::string> columns, std::string against = {}) {

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <algorithm>
 #include <cmath>
+#include <random>
 
-/// A run in many digits: the exact plan, the run, the check run with a wider mantissa, and what both agree on.
+/// A run in many digits: the exact plan, the run, a companion of other order and other last bits, the check run with a wider mantissa, and what all agree on.
 namespace maupertuis {
 namespace {
 
@@ -52,34 +54,69 @@ class ExtendedRun {
   ExtendedResult carry_out() {
     name_columns();
     auto begin = Clock::now();
-    if (options_.progress) settings_.progress = [this](double fraction) { options_.progress(0.4 * fraction); };
+    if (options_.progress) settings_.progress = [this](double fraction) { options_.progress(0.28 * fraction); };
     const ExtendedMotion rough = run_extended(plan_.problem, level_.mantissa, settings_);
-    out_.statistics = {rough.steps, 0, rough.switches, rough.order, 0, level_.bits, level_.check_bits, seconds_since(begin), 0};
+    out_.statistics = {rough.steps, 0, rough.switches, rough.order, 0, level_.bits, level_.check_bits, seconds_since(begin), 0, 0, 0, 0};
     tell_ending(rough);
     out_.at.resize(options_.at.size());
     if (out_.ending == Ending::Interrupted || !rough.final.reached) return std::move(out_);
+    end_with(rough);
+    begin = Clock::now();
+    const ExtendedMotion companion = companion_run(rough);
+    out_.statistics.companion_steps = companion.steps;
+    out_.statistics.companion_order = companion.order;
+    out_.statistics.companion_seconds = seconds_since(begin);
     begin = Clock::now();
     const ExtendedMotion fine = check_run(rough);
     out_.statistics.check_steps = fine.steps;
     out_.statistics.check_order = fine.order;
     out_.statistics.check_seconds = seconds_since(begin);
-    compare(rough, fine);
+    compare(rough, companion, fine);
     return std::move(out_);
   }
 
  private:
-  /// Where the first run could not go on, its check ends at the same time.
-  ExtendedMotion check_run(const ExtendedMotion& rough) {
+  /// Where the first run could not go on, the others end at the same time.
+  void end_with(const ExtendedMotion& rough) {
+    if (rough.ending == StepEnding::None) return;
+    plan_.numbers[plan_.end_index] = system_.context->number(*Rational::parse(rough.final.t));
+    plan_.problem.numbers = kernel_of_numbers(plan_.numbers);
+  }
+
+  /// Parameters and start values that have no end in binary, one unit of the last place of the run up or down.
+  std::vector<Expr> nudged_numbers() const {
+    std::vector<Expr> out = plan_.numbers;
+    std::mt19937_64 random(1744);
+    const std::size_t n = system_.coordinates.size(), p = plan_.problem.kernel.parameters();
+    const Expr one = system_.context->number(1), unit = pow(system_.context->number(2), Rational(1 - level_.bits));
+    const auto nudge = [&](Expr& number) {
+      const Rational* const exact = number.number_or_null();
+      if (exact && *exact == Rational::from_double(exact->to_double())) return;
+      number = number * ((random() >> 63) != 0 ? one + unit : one - unit);
+    };
+    for (std::size_t i = 0; i < p; ++i) nudge(out[i]);
+    for (std::size_t i = plan_.end_index + 2; i < plan_.end_index + 2 + 2 * n; ++i) nudge(out[i]);
+    return out;
+  }
+
+  ExtendedMotion companion_run(const ExtendedMotion& rough) {
     ExtendedProblem problem = plan_.problem;
-    if (rough.ending != StepEnding::None) {
-      plan_.numbers[plan_.end_index] = system_.context->number(*Rational::parse(rough.final.t));
-      problem.numbers = kernel_of_numbers(plan_.numbers);
-    }
+    problem.numbers = kernel_of_numbers(nudged_numbers());
+    ExtendedOptions settings = settings_;
+    settings.log2_tolerance = std::max(settings.log2_tolerance - 2 * std::log2(10.0), log2_rounding(level_.mantissa));
+    settings.order = rough.order + 3;
+    settings.maximum_steps = 2 * rough.steps + 1000;
+    if (options_.progress) settings.progress = [this](double fraction) { options_.progress(0.28 + 0.28 * fraction); };
+    return run_extended(problem, level_.mantissa, settings);
+  }
+
+  ExtendedMotion check_run(const ExtendedMotion& rough) {
+    const ExtendedProblem& problem = plan_.problem;
     ExtendedOptions settings = settings_;
     settings.log2_tolerance = std::max(settings.log2_tolerance - 4 * std::log2(10.0), log2_rounding(level_.check));
     if (settings.order > 0) settings.order += 4;
     settings.maximum_steps = 2 * rough.steps + 1000;
-    if (options_.progress) settings.progress = [this](double fraction) { options_.progress(0.4 + 0.6 * fraction); };
+    if (options_.progress) settings.progress = [this](double fraction) { options_.progress(0.56 + 0.44 * fraction); };
     return run_extended(problem, level_.check, settings);
   }
 
@@ -92,42 +129,53 @@ class ExtendedRun {
     out_.reason = motion.met ? "the condition of `run until` was met" : "the condition of `run until` was not met within the time given";
   }
 
-  void compare(const ExtendedMotion& rough, const ExtendedMotion& fine) {
-    for (std::size_t i = 0; i < rough.at.size(); ++i) out_.at[plan_.order_of_times[i]] = agreed(rough.at[i], fine.at[i]);
-    if (fine.ending == StepEnding::Interrupted) {
-      out_.ending = Ending::Interrupted;
-      out_.reason = fine.reason;
-      return;
-    }
-    out_.final = agreed(rough.final, fine.final);
-    for (std::size_t i = 0; i < std::min(rough.rows.size(), fine.rows.size()); ++i)
-      out_.rows.push_back(agreed(rough.rows[i], fine.rows[i]));
+  void compare(const ExtendedMotion& rough, const ExtendedMotion& companion, const ExtendedMotion& fine) {
+    for (std::size_t i = 0; i < rough.at.size(); ++i)
+      out_.at[plan_.order_of_times[i]] = agreed({rough.at[i], companion.at[i], fine.at[i]});
+    for (const ExtendedMotion* motion : {&companion, &fine})
+      if (motion->ending == StepEnding::Interrupted) {
+        out_.ending = Ending::Interrupted;
+        out_.reason = motion->reason;
+        return;
+      }
+    out_.final = agreed({rough.final, companion.final, fine.final});
+    for (std::size_t i = 0; i < std::min({rough.rows.size(), companion.rows.size(), fine.rows.size()}); ++i)
+      out_.rows.push_back(agreed({rough.rows[i], companion.rows[i], fine.rows[i]}));
   }
 
-  AgreedNumber agreed(const std::string& rough, const std::string& fine) const {
-    return rough.empty() || fine.empty() ? AgreedNumber{} : agreed_number(rough, fine, level_.digits);
+  /// One state, three times.
+  struct Samples {
+    const ExtendedSample &rough, &companion, &fine;
+  };
+
+  /// The digits of `fine` that neither of the others contradicts. A companion that did not come so far contradicts them all.
+  AgreedNumber agreed(const std::string& rough, const std::string& companion, const std::string& fine) const {
+    if (rough.empty() || fine.empty()) return {};
+    if (companion.empty()) return {"0", 0, "more than can be told: one of them did not come so far"};
+    const AgreedNumber first = agreed_number(rough, fine, level_.digits), second = agreed_number(companion, fine, level_.digits);
+    return first.digits <= second.digits ? first : second;
   }
 
-  std::vector<AgreedNumber> agreed(const std::vector<std::string>& rough, const std::vector<std::string>& fine, std::size_t first,
-                                   std::size_t count) const {
+  std::vector<AgreedNumber> agreed(const Samples& s, const std::vector<std::string> ExtendedSample::*values, std::size_t first, std::size_t count) const {
     std::vector<AgreedNumber> out;
-    for (std::size_t i = first; i < first + count; ++i) out.push_back(agreed(rough[i], fine[i]));
+    for (std::size_t i = first; i < first + count; ++i)
+      out.push_back(agreed((s.rough.*values)[i], s.companion.reached ? (s.companion.*values)[i] : std::string(), (s.fine.*values)[i]));
     return out;
   }
 
-  ExtendedState agreed(const ExtendedSample& rough, const ExtendedSample& fine) const {
+  ExtendedState agreed(const Samples& s) const {
     ExtendedState out;
-    if (!rough.reached || !fine.reached) return out;
-    const std::size_t n = rough.q.size();
+    if (!s.rough.reached || !s.fine.reached) return out;
+    const std::size_t n = s.rough.q.size();
     out.reached = true;
-    out.t = agreed(rough.t, fine.t);
-    out.q = agreed(rough.q, fine.q, 0, n);
-    out.v = agreed(rough.v, fine.v, 0, n);
-    out.energy = agreed(rough.observables[0], fine.observables[0]);
-    out.points = agreed(rough.observables, fine.observables, 1, plan_.points);
-    out.reactions = agreed(rough.observables, fine.observables, 1 + plan_.points, plan_.reactions);
+    out.t = agreed(s.rough.t, s.companion.reached ? s.companion.t : s.rough.t, s.fine.t);
+    out.q = agreed(s, &ExtendedSample::q, 0, n);
+    out.v = agreed(s, &ExtendedSample::v, 0, n);
+    out.energy = agreed(s, &ExtendedSample::observables, 0, 1).front();
+    out.points = agreed(s, &ExtendedSample::observables, 1, plan_.points);
+    out.reactions = agreed(s, &ExtendedSample::observables, 1 + plan_.points, plan_.reactions);
     for (const Observables::Dependence& d : observables_.dependences)
-      if (rough.multipliers[d.constraint].empty()) out.reactions[d.observable - observables_.energy_terms - plan_.points] = {};
+      if (s.rough.multipliers[d.constraint].empty()) out.reactions[d.observable - observables_.energy_terms - plan_.points] = {};
     return out;
   }
 

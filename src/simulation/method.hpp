@@ -2,6 +2,7 @@
 #include <maupertuis/integrator.hpp>
 #include <maupertuis/step.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -19,6 +20,7 @@ class Method {
   virtual double time() const = 0;
   virtual bool covers(double t) const = 0;
   virtual Sample sample(double t) const = 0;
+  virtual void state(double t, std::span<double> q, std::span<double> v) const = 0;
   virtual const Sample& step_start() const = 0;
   virtual std::size_t steps() const = 0;
   virtual std::size_t rejected() const = 0;
@@ -37,6 +39,12 @@ class MethodOf final : public Method {
   double time() const override { return stepper_.time(); }
   bool covers(double t) const override { return stepper_.covers(t); }
   Sample sample(double t) const override { return stepper_.sample(t); }
+  void state(double t, std::span<double> q, std::span<double> v) const override {
+    if constexpr (requires { stepper_.state(t, q, v); }) return stepper_.state(t, q, v);
+    const Sample found = stepper_.sample(t);
+    std::copy(found.q.begin(), found.q.end(), q.begin());
+    std::copy(found.v.begin(), found.v.end(), v.begin());
+  }
   const Sample& step_start() const override { return stepper_.step_start(); }
   std::size_t steps() const override { return stepper_.steps(); }
   std::size_t rejected() const override {

@@ -22,13 +22,17 @@ KernelSource motion_source(const EquationsOfMotion& equations) {
   return source;
 }
 
-Kernel motion_kernel(const EquationsOfMotion& equations, const WantedFunctions& wanted) {
+KernelSource motion_source(const EquationsOfMotion& equations, const WantedFunctions& wanted) {
   const MechanicalSystem& system = *equations.system;
   KernelSource source = motion_source(equations);
   source.observables = in_terms_of_motion(system, wanted.observables);
   source.events = in_terms_of_motion(system, wanted.events);
   source.integrands = in_terms_of_motion(system, wanted.integrands);
-  return build_kernel(source);
+  return source;
+}
+
+Kernel motion_kernel(const EquationsOfMotion& equations, const WantedFunctions& wanted) {
+  return build_kernel(motion_source(equations, wanted));
 }
 
 MotionKernel motion_kernel(const EquationsOfMotion& equations, std::span<const Expr> events) {

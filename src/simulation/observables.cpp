@@ -5,6 +5,9 @@
 #include <maupertuis/reactions.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace maupertuis {
 namespace {
@@ -57,6 +60,20 @@ Observables collect_observables(const EquationsOfMotion& equations, const Probe*
   }
   find_dependences(out, equations);
   return out;
+}
+
+void append_row(std::vector<double>& values, const Sample& sample, const Observables& observables) {
+  values.insert(values.end(), sample.q.begin(), sample.q.end());
+  values.insert(values.end(), sample.v.begin(), sample.v.end());
+  const auto energies = sample.observables.begin() + static_cast<std::ptrdiff_t>(observables.energy_terms);
+  const std::size_t shown = observables.points + observables.reactions.size();
+  values.insert(values.end(), energies, energies + static_cast<std::ptrdiff_t>(shown));
+  values.push_back(std::accumulate(sample.observables.begin(), energies, 0.0));
+}
+
+void leave_out_undetermined(Sample& sample, const Observables& observables) {
+  for (const Observables::Dependence& d : observables.dependences)
+    if (std::isnan(sample.multipliers[d.constraint])) sample.observables[d.observable] = std::numeric_limits<double>::quiet_NaN();
 }
 
 void name_trajectory_columns(const MechanicalSystem& system, const Observables& observables, std::vector<Trajectory::Column>& columns,

@@ -1,5 +1,6 @@
 #pragma once
 #include <maupertuis/simulation.hpp>
+#include <maupertuis/step.hpp>
 
 #include <string>
 #include <vector>
@@ -25,6 +26,12 @@ struct Observables {
 };
 
 Observables collect_observables(const EquationsOfMotion& equations, const Probe* probe);
+
+/// A row of a trajectory after t, at the end of `values`: q, q', the points, the reactions, the energy.
+void append_row(std::vector<double>& values, const Sample& sample, const Observables& observables);
+
+/// What depends on a multiplier that the equations do not determine is no number.
+void leave_out_undetermined(Sample& sample, const Observables& observables);
 
 /// The columns of a trajectory after t: q, q', the points, the reactions (also on their own), the energy.
 void name_trajectory_columns(const MechanicalSystem& system, const Observables& observables, std::vector<Trajectory::Column>& columns,

@@ -3,8 +3,10 @@
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/simulation.hpp>
 
+#include "simulation/companions.hpp"
 #include "simulation/ending.hpp"
 #include "simulation/energy_terms.hpp"
+#include "simulation/errors.hpp"
 #include "simulation/methods.hpp"
 #include "simulation/motion_kernel.hpp"
 #include "simulation/observables.hpp"
@@ -16,10 +18,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
-/// One run, in named stages: plan (numbers), kernel (program), steps, measures. The observables of the kernel are, in
+/// One run, in named stages: plan (numbers), kernel (program), steps, measures, companions (errors). The observables of the kernel are, in
 /// this order: the terms of h_E, the positions of the points, the reactions, the probes.
 namespace maupertuis {
 namespace {
@@ -213,24 +214,16 @@ class Run {
     }
   }
 
-  /// What depends on a multiplier that the equations do not determine is no number.
   Sample sample(double t) const {
     Sample out = method_->sample(t);
-    for (const Observables::Dependence& d : observables_.dependences)
-      if (std::isnan(out.multipliers[d.constraint])) out.observables[d.observable] = std::numeric_limits<double>::quiet_NaN();
+    leave_out_undetermined(out, observables_);
     return out;
   }
 
   void add_row(const Sample& sample) {
     Trajectory& trajectory = result_.trajectory;
     trajectory.times.push_back(sample.t);
-    auto& values = trajectory.values;
-    values.insert(values.end(), sample.q.begin(), sample.q.end());
-    values.insert(values.end(), sample.v.begin(), sample.v.end());
-    const auto points = sample.observables.begin() + static_cast<std::ptrdiff_t>(observables_.energy_terms);
-    const std::size_t shown = observables_.points + observables_.reactions.size();
-    values.insert(values.end(), points, points + static_cast<std::ptrdiff_t>(shown));
-    values.push_back(balance_.energy_of(sample));
+    append_row(trajectory.values, sample, observables_);
   }
 
   State state_of(const Sample& sample) const {
@@ -301,6 +294,24 @@ void warn_of_backend(const BackendUse& use, Backend wanted, Diagnostics& diagnos
                         "Make the folder writable, name another by XDG_CACHE_HOME, or give --no-cache.");
 }
 
+/// The errors, as companion runs tell them.
+void add_errors(SimulationResult& result, Probe* probe, const Model& model, const EquationsOfMotion& equations, const SimulationOptions& options,
+                const RunPlan& plan, const Observables& observables, const WantedFunctions& wanted) {
+  const auto begin = Clock::now();
+  const RoundedNumbers numbers(model, equations, plan, wanted);
+  const CompanionPlan companion_plan{model, equations, options, plan, observables, result, comparison_grid(result.trajectory, plan, options.errors),
+                                     options.errors == ErrorEstimates::Rows};
+  const Companions companions = run_companions(companion_plan, wanted, numbers);
+  if (companions.interrupted) {
+    result.ending = Ending::Interrupted;
+    result.reason = "the run was done, but interrupted while its errors were looked for";
+    return;
+  }
+  tell_errors(result, probe, companion_plan, companions, numbers);
+  result.statistics.companions = companions.runs.size();
+  result.statistics.companion_seconds = seconds_since(begin);
+}
+
 }  // namespace
 
 std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMotion& equations,
@@ -324,6 +335,8 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   const double compile_seconds = seconds_since(begin);
 
   SimulationResult result = run.carry_out();
+  if (options.errors != ErrorEstimates::None && result.ending != Ending::Interrupted)
+    add_errors(result, probe, model, equations, options, *plan, observables, wanted);
   if (run.turned_stiff()) note_stiffness(result, model.system, diagnostics);
   if (options.method == StepMethod::Automatic || options.method == StepMethod::Taylor || options.backend == Backend::Compiled)
     warn_of_backend(run.backend(), options.backend, diagnostics);

@@ -359,13 +359,14 @@ class Verifier {
     for (std::size_t k = 0; k < times.size(); ++k) {
       if (times[k] != request.time) continue;
       if (probe.values[k].empty()) result.message = "The run ended before: " + run->reason + ".";
-      else judge_value(request, probe.values[k][column], result);
+      else judge_value(request, probe.values[k][column], probe.errors.empty() ? 0 : probe.errors[k][column], result);
       return;
     }
   }
 
-  /// |actual − expected| ≤ tolerance, absolute or relative to |expected|. Without a tolerance the digits as written count.
-  void judge_value(const Request& request, double actual, ExpectationResult& result) {
+  /// The tolerance is absolute or relative to |expected|. Without one the digits as written count. `uncertainty`: by how much `actual` may be off; 0 where
+  /// nobody asked.
+  void judge_value(const Request& request, double actual, double uncertainty, ExpectationResult& result) {
     const Expectation& e = model_.experiment.expectations[request.expectation];
     const double expected = number(e.value);
     const double tolerance = !e.tolerance ? 1e-9 * std::abs(expected) : number(e.tolerance) * (e.relative ? std::abs(expected) : 1.0);
@@ -373,9 +374,19 @@ class Verifier {
     result.actual = fmt::format("{:.17g}{}", actual / e.display_factor, unit);
     result.expected = fmt::format("{:.17g}{}", expected / e.display_factor, unit);
     result.tolerance = e.relative ? fmt::format("rel {:g}", number(e.tolerance)) : fmt::format("± {:g}{}", tolerance / e.display_factor, unit);
-    const double error = std::abs(actual - expected);
-    result.passed = error <= tolerance;
-    result.message = fmt::format("off by {:.2g}{}", error / e.display_factor, unit);
+    const ValueVerdict verdict = value_verdict(actual, expected, tolerance, uncertainty);
+    result.passed = verdict.passed;
+    result.beyond_digits = verdict.beyond_digits;
+    result.message = fmt::format("off by {:.2g}{}", std::abs(actual - expected) / e.display_factor, unit);
+    if (uncertainty > 0)
+      result.uncertainty = std::isinf(uncertainty) ? "no digit is certain" : fmt::format("± {:.2g}{}", uncertainty / std::abs(e.display_factor), unit);
+    if (verdict.beyond_digits) result.message += "; " + beyond_digits(verdict, result.uncertainty);
+  }
+
+  static std::string beyond_digits(const ValueVerdict& verdict, const std::string& uncertainty) {
+    const std::string known = uncertainty == "no digit is certain" ? "of what came out no digit is certain" : "what came out is known to " + uncertainty + " alone";
+    if (verdict.passed) return known + ", so that the tolerance asks for more digits than there are";
+    return known + (verdict.may_hold ? ", so that this run does not tell whether it holds" : ", and still it does not hold");
   }
 
   void judge_along_run(const Request& request, std::size_t column, const SimulationResult& run, const Probe& probe) {
@@ -443,6 +454,16 @@ class Verifier {
 };
 
 }  // namespace
+
+ValueVerdict value_verdict(double actual, double expected, double tolerance, double error) {
+  constexpr double most_pessimistic = 100, last_bits = 4 * std::numeric_limits<double>::epsilon();
+  const double off = std::abs(actual - expected);
+  ValueVerdict out;
+  out.beyond_digits = error > tolerance && error > last_bits * std::abs(actual);
+  out.passed = off <= tolerance && (!out.beyond_digits || error <= most_pessimistic * tolerance);
+  out.may_hold = !out.passed && off <= tolerance + error;
+  return out;
+}
 
 std::size_t Verification::passed() const {
   return static_cast<std::size_t>(std::count_if(results.begin(), results.end(), [](const auto& r) { return r.passed; }));

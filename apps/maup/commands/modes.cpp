@@ -36,6 +36,7 @@ struct ModesOptions {
 std::optional<MotionState> state_at(Study& study, double time, const Console& console) {
   SimulationOptions options;
   options.duration = 0.0;
+  options.errors = ErrorEstimates::None;
   options.at = {time};
   const auto run = run_model(study, options, console);
   if (!run) return std::nullopt;

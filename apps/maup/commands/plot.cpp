@@ -21,7 +21,8 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
   Json document = json_document("plot");
   document["file"] = options.output;
   const bool readable_model = !study.wrong();
-  const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
+  SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
+  if (settings.errors != ErrorEstimates::None) settings.errors = ErrorEstimates::Rows;
   if (readable_model && study.wrong()) {
     finish(console, study, document);
     return ExitCode::Usage;
@@ -60,6 +61,7 @@ void add_plot(CommandLine& line) {
   add_model_options(command, options->model);
   add_span_options(command, options->run);
   add_method_options(command, options->run);
+  add_errors_option(command, options->run);
   PlotOptions& picture = options->picture;
   command.add_option("-o,--output", options->output, "The picture (default: standard output)")->type_name("FILE.svg");
   command.add_option("--y", picture.columns, "What to draw, e.g. θ,\"θ'\" (default: everything)")

@@ -122,7 +122,11 @@ ExitCode report(const ReportOptions& options, Console& console) {
   if (!study.certificate()) return finish(console, study, document);
 
   std::optional<SimulationResult> result;
-  if (!options.without_run && !is_about_paths_alone(*study.model())) result = run_model(study, report_run(*study.model(), settings), console);
+  if (!options.without_run && !is_about_paths_alone(*study.model())) {
+    SimulationOptions of_run = report_run(*study.model(), settings);
+    if (of_run.errors != ErrorEstimates::None) of_run.errors = ErrorEstimates::Rows;
+    result = run_model(study, of_run, console);
+  }
   if (study.wrong()) return finish(console, study, document);
   const LongRun orbits = long_run(options, study);
   std::optional<PathSearch> paths;
@@ -159,6 +163,7 @@ void add_report(CommandLine& line) {
   add_model_options(command, options->model);
   add_span_options(command, options->run);
   add_method_options(command, options->run);
+  add_errors_option(command, options->run);
   command.add_option("-o,--output", options->output, "The page (default: SYSTEM.html), or - for standard output")
       ->type_name("FILE.html");
   add_orbits_options(command, options->orbits);

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include <maupertuis/plot.hpp>
+#include <maupertuis/uncertainty.hpp>
 
 namespace maupertuis::app {
 namespace {
@@ -18,6 +19,7 @@ struct SimulateOptions {
   RunOptions run;
   std::string output, plot;
   std::optional<std::string> precision;   // none: that of the model
+  bool errors = false;
 };
 
 bool ends_with(const std::string& text, const std::string& end) {
@@ -26,6 +28,10 @@ bool ends_with(const std::string& text, const std::string& end) {
 
 /// Before the run: a wrong ending must not cost an hour of computing.
 void check_endings(const SimulateOptions& options, Diagnostics& diagnostics) {
+  if (options.errors && (options.run.no_errors || options.output.empty()))
+    diagnostics.error("E0809", {}, options.run.no_errors ? "--errors and --no-errors exclude each other." : "--errors is about the file of -o, and there is none.",
+                      "It writes the errors of each row beside it; those of the states that are printed stand there anyway.",
+                      options.run.no_errors ? "Leave one of them out." : "Add -o motion.csv, or leave --errors out.");
   const std::string& output = options.output;
   if (!output.empty() && !ends_with(output, ".csv") && !ends_with(output, ".npy") && !ends_with(output, ".json"))
     diagnostics.error("E0810", {}, fmt::format("{} names no format of a trajectory.", output), {},
@@ -38,6 +44,21 @@ void check_endings(const SimulateOptions& options, Diagnostics& diagnostics) {
 /// A λ that the equations do not determine is null.
 Json number_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
+/// As numbers of `state`; null where no digit is certain.
+Json errors_json(const State& state, const SimulationResult& result, const MechanicalSystem& system) {
+  Json out = Json::object();
+  const StateErrors& errors = *state.errors;
+  if (errors.t != 0) out["t"] = number_or_null(errors.t);
+  for (std::size_t i = 0; i < errors.q.size(); ++i) {
+    out[system.coordinates[i].name] = number_or_null(errors.q[i]);
+    out[system.coordinates[i].name + "'"] = number_or_null(errors.v[i]);
+  }
+  for (std::size_t i = 0; i < errors.multipliers.size(); ++i)
+    out[system.constraints[i].multiplier.name()] = number_or_null(errors.multipliers[i]);
+  for (std::size_t i = 0; i < errors.reactions.size(); ++i) out[result.reactions[i].name] = number_or_null(errors.reactions[i]);
+  return out;
+}
+
 Json state_json(const State& state, const SimulationResult& result, const MechanicalSystem& system) {
   Json values = Json::object();
   for (std::size_t i = 0; i < state.q.size(); ++i) {
@@ -48,7 +69,16 @@ Json state_json(const State& state, const SimulationResult& result, const Mechan
   for (std::size_t i = 0; i < state.multipliers.size(); ++i)
     multipliers[system.constraints[i].multiplier.name()] = number_or_null(state.multipliers[i]);
   for (std::size_t i = 0; i < state.reactions.size(); ++i) reactions[result.reactions[i].name] = number_or_null(state.reactions[i]);
-  return {{"t", state.t}, {"state", std::move(values)}, {"multipliers", std::move(multipliers)}, {"reactions", std::move(reactions)}};
+  Json out = {{"t", state.t}, {"state", std::move(values)}, {"multipliers", std::move(multipliers)}, {"reactions", std::move(reactions)}};
+  if (state.errors) out["errors"] = errors_json(state, result, system);
+  return out;
+}
+
+Json uncertain_json(const SimulationResult& result) {
+  Json names = Json::array();
+  for (const std::size_t column : result.uncertain.columns) names.push_back(result.trajectory.columns[column].name);
+  if (names.empty()) return nullptr;
+  return {{"from", result.uncertain.from}, {"what", std::move(names)}, {"everything", result.uncertain.everything}};
 }
 
 Json document_of(const SimulationResult& result, const MechanicalSystem& system) {
@@ -61,32 +91,52 @@ Json document_of(const SimulationResult& result, const MechanicalSystem& system)
   document["statistics"] = {{"steps", s.steps}, {"rejected", s.rejected}, {"seconds", s.seconds}, {"compile_seconds", s.compile_seconds},
                             {"order", s.order}, {"method", s.method}, {"backend", s.backend}, {"energy_drift", s.energy_drift},
                             {"constraint_residual", s.constraint_residual}, {"switches", s.switches},
-                            {"rows", result.trajectory.rows()}};
+                            {"rows", result.trajectory.rows()}, {"companions", s.companions}, {"companion_seconds", s.companion_seconds}};
+  document["uncertain"] = uncertain_json(result);
   document["events"] = Json::array();
   document["ended"] = {{"reason", result.reason.empty() ? ending_name(result.ending) : result.reason},
                        {"kind", ending_name(result.ending)}, {"ok", result.ok()}};
   return document;
 }
 
+/// -5.0034072(1) rad; where nobody asked for errors all 17 digits.
+std::string number_text(double value, const std::optional<StateErrors>& errors, double error, const std::string& unit) {
+  const std::string with_blank = unit.empty() || unit == "1" ? "" : " " + unit;
+  if (!errors) return exact(value) + with_blank;
+  if (std::isinf(error)) return "?  (no digit is certain)";
+  return with_uncertainty(value, error) + with_blank;
+}
+
 std::string state_text(const State& state, const SimulationResult& result, const MechanicalSystem& system) {
   if (state.q.empty()) return system.moment(exact(state.t)) + "\n  not reached\n";
-  std::string out = system.moment(exact(state.t)) + "\n";
+  const auto& errors = state.errors;
+  const bool located = errors && errors->t != 0;
+  std::string out = system.moment(!located ? exact(state.t) : std::isinf(errors->t) ? "?" : with_uncertainty(state.t, errors->t)) + "\n";
+  const auto line = [&](const std::string& name, double value, double error, const std::string& unit) {
+    out += fmt::format("  {} = {}\n", name, number_text(value, errors, error, unit));
+  };
   for (std::size_t i = 0; i < state.q.size(); ++i) {
     const Coordinate& c = system.coordinates[i];
-    const std::string unit = system.dimensionless ? "1" : to_string(c.dimension);
-    const std::string rate = system.dimensionless ? "1" : to_string(c.dimension / system.independent_dimension);
-    const auto line = [&out](const std::string& name, double value, const std::string& unit_word) {
-      out += fmt::format("  {:<8} {: .17g}{}{}\n", name, value, unit_word == "1" ? "" : " ", unit_word == "1" ? "" : unit_word);
-    };
-    line(c.name, state.q[i], unit);
-    line(c.name + "'", state.v[i], rate);
+    line(c.name, state.q[i], errors ? errors->q[i] : 0, system.dimensionless ? "" : to_string(c.dimension));
+    line(c.name + "'", state.v[i], errors ? errors->v[i] : 0, system.dimensionless ? "" : to_string(c.dimension / system.independent_dimension));
   }
   for (std::size_t i = 0; i < state.reactions.size(); ++i) {
     const Trajectory::Column& column = result.reactions[i];
-    if (std::isnan(state.reactions[i])) out += fmt::format("  {:<8}  not determined\n", column.name);
-    else out += fmt::format("  {:<8} {: .17g}{}{}\n", column.name, state.reactions[i], column.unit.empty() ? "" : " ", column.unit);
+    if (std::isnan(state.reactions[i])) out += fmt::format("  {}: not determined\n", column.name);
+    else line(column.name, state.reactions[i], errors ? errors->reactions[i] : 0, column.unit);
   }
   return out;
+}
+
+/// From when on nothing is certain; empty where something is all along the run.
+std::string uncertain_text(const SimulationResult& result, const MechanicalSystem& system) {
+  const Uncertainty& uncertain = result.uncertain;
+  if (uncertain.columns.empty()) return {};
+  std::string names;
+  for (const std::size_t column : uncertain.columns) names += (names.empty() ? "" : ", ") + result.trajectory.columns[column].name;
+  const std::string from = system.moment(brief(uncertain.from));
+  return uncertain.everything ? fmt::format("From {} on nothing is certain of this motion.\n", from)
+                              : fmt::format("From {} on no digit is certain of {}.\n", from, names);
 }
 
 std::string text_of(const SimulationResult& result, const MechanicalSystem& system) {
@@ -97,15 +147,17 @@ std::string text_of(const SimulationResult& result, const MechanicalSystem& syst
   const std::string method = s.method == "taylor" ? fmt::format("of order {}", s.order)
                              : s.method == "stiff" ? "of the stiff method" : fmt::format("of the variational method, order {},", s.order);
   const std::string residual = system.constrained() ? fmt::format("; constraint residual {}", brief(s.constraint_residual)) : "";
-  return out + fmt::format("{} steps {} in {} s ({}, ready in {} s); energy drift {}{}\n", s.steps, method, brief(s.seconds),
-                           s.backend, brief(s.compile_seconds), brief(s.energy_drift), residual);
+  const std::string companions = s.companions > 0 ? fmt::format("; errors from {} companions in {} s", s.companions, brief(s.companion_seconds)) : "";
+  return out + uncertain_text(result, system) +
+         fmt::format("{} steps {} in {} s ({}, ready in {} s); energy drift {}{}{}\n", s.steps, method, brief(s.seconds), s.backend,
+                     brief(s.compile_seconds), brief(s.energy_drift), residual, companions);
 }
 
 /// What was computed is written whatever the ending.
 void write_files(const SimulateOptions& options, const SimulationResult& result, Study& study) {
   Diagnostics& diagnostics = study.diagnostics();
   if (!options.output.empty()) {
-    const std::string failure = write_trajectory(result.trajectory, options.output);
+    const std::string failure = write_trajectory(options.errors ? with_error_columns(result.trajectory) : result.trajectory, options.output);
     if (!failure.empty()) cannot_write(failure, diagnostics);
   }
   if (!options.plot.empty()) {
@@ -118,7 +170,9 @@ void write_files(const SimulateOptions& options, const SimulationResult& result,
 ExitCode simulate_model(const SimulateOptions& options, Study& study, Console& console) {
   const bool readable_model = !study.wrong();
   check_endings(options, study.diagnostics());
-  const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
+  SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
+  const bool rows_wanted = options.errors || !options.plot.empty();
+  if (rows_wanted && settings.errors != ErrorEstimates::None) settings.errors = ErrorEstimates::Rows;
   if (readable_model && study.wrong()) {
     finish(console, study, json_document("simulate"));
     return ExitCode::Usage;
@@ -139,8 +193,11 @@ ExitCode simulate_model(const SimulateOptions& options, Study& study, Console& c
   return files_written ? exit_code(result->ending) : ExitCode::RunFailed;
 }
 
-/// Pictures and binary trajectories hold doubles.
+/// Pictures and binary trajectories hold doubles; the digits that are printed are the errors.
 void check_extended_files(const SimulateOptions& options, Diagnostics& diagnostics) {
+  if (options.errors || options.run.no_errors)
+    diagnostics.error("E0809", {}, fmt::format("{} belongs to runs in double.", options.errors ? "--errors" : "--no-errors"),
+                      "In many digits those are written of which several runs agree: their number tells the error.", "Leave it out.");
   if (!options.plot.empty())
     diagnostics.error("E0809", {}, "--plot draws what double computes.", "A picture shows no more digits.", "Give --precision double for it.");
   if (!options.output.empty() && !ends_with(options.output, ".csv"))
@@ -192,6 +249,8 @@ void add_simulate(CommandLine& line) {
   add_model_options(command, options->model);
   add_span_options(command, options->run);
   add_method_options(command, options->run);
+  add_errors_option(command, options->run);
+  command.add_flag("--errors", options->errors, "Columns error(θ), … of the errors of each row in the file of -o");
   command.add_option("--precision", options->precision, "double, quad (113 bits) or 100 (decimal digits): as many digits as two runs agree on; default: the model's `precision`, or double")
       ->check(CLI::IsMember({"double", "quad", "100"}))
       ->type_name("DIGITS");

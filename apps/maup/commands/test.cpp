@@ -31,10 +31,11 @@ std::optional<Verification> verify_study(Study& study, const SimulationOptions& 
 }
 
 std::string text_of(const ExpectationResult& r, const std::string& file) {
-  if (r.passed) return {};
-  std::string out = fmt::format("{}:{}: {} fails\n", file, r.line, r.text);
-  if (!r.actual.empty()) out += fmt::format("    found     {}\n    expected  {}{}\n", r.actual, r.expected,
-                                            r.tolerance.empty() ? "" : " " + r.tolerance);
+  if (r.passed && !r.beyond_digits) return {};
+  std::string out = fmt::format("{}:{}: {} {}\n", file, r.line, r.text, r.passed ? "holds, but asks for more digits than are known" : "fails");
+  const auto and_then = [](const std::string& text) { return text.empty() ? text : " " + text; };
+  if (!r.actual.empty())
+    out += fmt::format("    found     {}{}\n    expected  {}{}\n", r.actual, and_then(r.beyond_digits ? r.uncertainty : ""), r.expected, and_then(r.tolerance));
   if (!r.message.empty()) out += fmt::format("    {}\n", r.message);
   if (!r.pitfall.empty()) out += fmt::format("    {}\n", r.pitfall);
   return out;
@@ -42,7 +43,7 @@ std::string text_of(const ExpectationResult& r, const std::string& file) {
 
 Json to_json(const ExpectationResult& r, const std::string& file) {
   return {{"file", file}, {"line", r.line}, {"text", r.text}, {"passed", r.passed}, {"actual", r.actual},
-          {"expected", r.expected}, {"tolerance", r.tolerance}, {"message", r.message}, {"pitfall", r.pitfall}};
+          {"expected", r.expected}, {"tolerance", r.tolerance}, {"uncertainty", r.uncertainty}, {"beyond_digits", r.beyond_digits}, {"message", r.message}, {"pitfall", r.pitfall}};
 }
 
 FileOutcome test_file(const std::string& path, const SimulationOptions& settings, Console& console, Json& document) {
@@ -125,6 +126,7 @@ void add_test(CommandLine& line) {
                                [options](Console& console) { return test_models(*options, console); });
   command.add_option("MODEL", options->paths, "Model files, or - for standard input")->required();
   add_method_options(command, options->run);
+  add_errors_option(command, options->run);
 }
 
 }  // namespace maupertuis::app

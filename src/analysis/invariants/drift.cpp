@@ -43,6 +43,7 @@ void measure_drift(Invariants& result, const Model& model, const EquationsOfMoti
   const double begin = experiment.start_time ? number(experiment.start_time) : 0, duration = number(length);
   SimulationOptions options;
   options.duration = duration;
+  options.errors = ErrorEstimates::None;
   for (int k = 0; k <= samples; ++k) options.at.push_back(begin + duration * k / samples);
   Probe probe;
   const std::size_t count = result.integrals.size();

@@ -88,7 +88,7 @@ class Batch {
   AlignedArray memory_;
   std::size_t used_ = 0;
   LaneArrays arrays_{};
-  double *end_, *fresh_, *next_;
+  double *end_, *fresh_, *next_, *factor_;
   std::size_t active_ = 0;
   std::size_t rounds_ = 0;                      // steps of all lanes so far
   std::size_t last_round_ = 0;                  // in which no lane has used up its steps
@@ -100,12 +100,11 @@ Batch::Batch(Job& job)
     : job_(job), arithmetic_(best_steps()), n_(job.freedoms), width_(static_cast<std::size_t>(job.expansion->width())),
       work_(job.kernel, job.control.order, job.expansion), safety_(job, work_), lanes_(width_), turns_(width_, taylor::Turns(job.kernel)),
       energy_(job.options.energy_terms), leading_(n_), chosen_(width_), position_(n_),
-      memory_(aligned((4 * n_ + 9) * width_)) {
+      memory_(aligned((4 * n_ + 10) * width_)) {
   if (job.options.energy_terms > 0) point_ = std::make_unique<KernelWorkspace>(job.kernel, 1);
   arrays_.width = width_;
   arrays_.freedoms = n_;
   arrays_.order = job.control.order;
-  arrays_.factor = job.control.factor;
   for (int k = 0; k < arrays_.order + 3; ++k) {
     whole_.push_back(k);
     inverse_.push_back(-1.0 / k);
@@ -119,6 +118,8 @@ Batch::Batch(Job& job)
   arrays_.reaches = take(1), arrays_.shrinks = take(1);
   arrays_.end = end_ = take(1), fresh_ = take(1);
   arrays_.next = next_ = take(1);
+  arrays_.factor = factor_ = take(1);
+  std::fill_n(factor_, width_, job.control.factor);
   arrays_.quality = work_.quality();
   // LinearSolver takes M₀ for singular at a sixteenth of this.
   arrays_.least_quality = 64 * std::numeric_limits<double>::epsilon() * static_cast<double>(n_);
@@ -148,6 +149,7 @@ void Batch::begin(std::size_t lane, std::size_t trajectory) {
   Lane& l = lanes_[lane];
   l = {trajectory, true, rounds_, OutputTimes(job_.start.times, job_.begin(trajectory), job_.end(trajectory)), {}};
   next_[lane] = l.times.next();
+  factor_[lane] = job_.control.factor * job_.step_factor(trajectory);
   last_round_ = 0;
   ++active_;
   if (!shared_parameters_) work_.set_parameters(static_cast<int>(lane), job_.parameters(trajectory));

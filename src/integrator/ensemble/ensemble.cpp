@@ -21,6 +21,7 @@ void check(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptio
   MAUP_REQUIRE(start.parameters.size() == p || start.parameters.size() == count * p);
   MAUP_REQUIRE(start.begin.empty() || start.begin.size() == 1 || start.begin.size() == count);
   MAUP_REQUIRE(start.end.size() == 1 || start.end.size() == count);
+  MAUP_REQUIRE(start.step_factors.empty() || start.step_factors.size() == count);
   MAUP_REQUIRE(std::is_sorted(start.times.begin(), start.times.end()));
   MAUP_REQUIRE(options.energy_terms <= kernel.observables());
   MAUP_REQUIRE(options.width >= 0 && options.width <= 16 && (options.width & (options.width - 1)) == 0);

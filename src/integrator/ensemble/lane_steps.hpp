@@ -10,7 +10,7 @@ namespace maupertuis::ensemble {
 struct LaneArrays {
   std::size_t width, freedoms, row;
   int order;                 // of the polynomial of q̇
-  double factor;             // of the estimated radius of convergence
+  const double* factor;      // [width] of the estimated radius of convergence
   const double* whole;       // [order + 3] 0, 1, 2, …
   const double* inverse;     // [order + 1] −1/k; the first is not used
   const double* coefficients;

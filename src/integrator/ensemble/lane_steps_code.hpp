@@ -182,7 +182,7 @@ class Steps {
       const V by_order = rough_log2<V, I>(largest[e]) * a_.inverse[p - e] + (e > 1 ? log2_widened : 0.0);
       exponent = ((largest[e] > 0) & (by_order < exponent)) ? by_order : exponent;
     }
-    const V length = exp2_of(exponent) * a_.factor;
+    const V length = exp2_of(exponent) * get(a_.factor);
     return exponent < infinity ? length : V{} + infinity;
   }
 

@@ -1,0 +1,262 @@
+#include "simulation/companions.hpp"
+
+#include "simulation/methods.hpp"
+
+#include <maupertuis/ensemble.hpp>
+#include <maupertuis/integrator.hpp>
+#include <maupertuis/motion_kernel.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace maupertuis {
+namespace {
+
+constexpr std::uint64_t seed = 1744;  // the year of the principle; with the number of a companion: equal runs have equal companions
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+/// Adds its differences up, so that long trajectories are held once. Where the run itself has no number there is no difference.
+void take_in(Companions& to, CompanionRun run, const CompanionPlan& plan) {
+  const std::size_t columns = plan.columns();
+  to.squares.resize(plan.grid.size() * columns);
+  for (std::size_t g = 0; g < plan.grid.size(); ++g)
+    for (std::size_t c = 0; c < columns; ++c) {
+      const double value = plan.result.trajectory.at(plan.grid[g], c), off = run.rows[g * columns + c] - value;
+      if (std::isfinite(value)) to.squares[g * columns + c] += std::isfinite(off) ? off * off : std::numeric_limits<double>::infinity();
+    }
+  run.rows = {};
+  to.runs.push_back(std::move(run));
+}
+
+/// Indices of the times asked for, in the order of the run.
+std::vector<std::size_t> order_of_requests(const CompanionPlan& plan) {
+  const std::vector<double>& at = plan.options.at;
+  std::vector<std::size_t> out(at.size());
+  std::iota(out.begin(), out.end(), std::size_t{0});
+  const bool backwards = plan.run.end < plan.run.begin;
+  std::stable_sort(out.begin(), out.end(), [&](std::size_t a, std::size_t b) { return backwards ? at[a] > at[b] : at[a] < at[b]; });
+  return out;
+}
+
+Companions interrupted() {
+  Companions out;
+  out.interrupted = true;
+  return out;
+}
+
+// ---------------------------------------------------------------------------------------------- one after the other
+
+class Recorder {
+ public:
+  Recorder(const CompanionPlan& plan, Method& method) : plan_(plan), method_(method), requests_(order_of_requests(plan)) {
+    out_.at.resize(plan.options.at.size());
+  }
+
+  /// Nothing where the user has interrupted it.
+  std::optional<CompanionRun> record(const RoundedNumbers::Draw& draw) {
+    const bool until = plan_.result.ending == Ending::UntilReached;
+    const double bound = until ? plan_.run.end : plan_.result.final.t;
+    method_.start(plan_.run.begin, draw.q, draw.v);
+    cover();
+    while (method_.time() != bound) {
+      const Step step = method_.step(bound);
+      cover();
+      if (step.ending == StepEnding::Interrupted) return std::nullopt;
+      if (until && step.event) out_.final = sample(method_.time());
+      if (step.ending != StepEnding::None || out_.final) break;
+    }
+    if (!until && method_.time() == bound) out_.final = sample(bound);
+    out_.rows.resize(plan_.grid.size() * plan_.columns(), nothing);
+    return std::move(out_);
+  }
+
+ private:
+  Sample sample(double t) const {
+    Sample out = method_.sample(t);
+    leave_out_undetermined(out, plan_.observables);
+    return out;
+  }
+
+  void cover() {
+    for (; next_row_ < plan_.grid.size() && method_.covers(plan_.time(next_row_)); ++next_row_) add_row(plan_.time(next_row_));
+    for (; next_request_ < requests_.size() && method_.covers(plan_.options.at[requests_[next_request_]]); ++next_request_)
+      out_.at[requests_[next_request_]] = sample(plan_.options.at[requests_[next_request_]]);
+  }
+
+  void add_row(double t) {
+    if (plan_.whole_rows) return append_row(out_.rows, sample(t), plan_.observables);
+    const std::size_t n = plan_.run.q.size(), from = out_.rows.size();
+    out_.rows.resize(from + 2 * n);
+    method_.state(t, std::span(out_.rows).subspan(from, n), std::span(out_.rows).subspan(from + n, n));
+  }
+
+  const CompanionPlan& plan_;
+  Method& method_;
+  std::vector<std::size_t> requests_;
+  std::size_t next_row_ = 0, next_request_ = 0;
+  CompanionRun out_;
+};
+
+std::size_t most_steps(const CompanionPlan& plan) {
+  const std::size_t steps = plan.result.statistics.steps, most = std::numeric_limits<std::size_t>::max();
+  return steps < most / 8 ? 8 * steps + 1000 : most;
+}
+
+/// Of tolerances that the user chose a smaller one: its own error must not hide that of the run. At rounding level nothing is smaller; there the order
+/// alone makes other steps.
+TaylorOptions taylor_options(const CompanionPlan& plan, int companion) {
+  TaylorOptions out;
+  out.tolerance = std::max(rounding_tolerance(), plan.options.tolerance / (20 * (companion + 1)));
+  out.order = plan.result.statistics.order + 1 + companion;
+  out.maximum_steps = most_steps(plan);
+  out.interrupt = plan.options.interrupt;
+  out.backend = plan.options.backend;
+  out.cache = plan.options.cache;
+  return out;
+}
+
+std::unique_ptr<Method> finer_stiff(const CompanionPlan& plan, const WantedFunctions& wanted, int companion) {
+  constexpr double least = 1e-14;  // CVODE gives up at rounding level
+  StiffOptions out;
+  if (plan.options.method == StepMethod::Stiff && plan.options.tolerance != 0) out.tolerance = plan.options.tolerance;
+  out.tolerance = std::max(std::min(least, out.tolerance / 2), out.tolerance / (companion == 0 ? 5 : 25));
+  out.maximum_steps = most_steps(plan);
+  out.interrupt = plan.options.interrupt;
+  Diagnostics told_by_the_run;
+  return stiff_method(plan.equations, wanted, out, told_by_the_run);
+}
+
+std::unique_ptr<Method> finer_variational(const CompanionPlan& plan, const WantedFunctions& wanted, int companion) {
+  VariationalOptions out;
+  out.step = plan.options.step / (companion == 0 ? 1.5 : 2);
+  out.order = plan.result.statistics.order;
+  out.maximum_steps = most_steps(plan);
+  out.interrupt = plan.options.interrupt;
+  Diagnostics told_by_the_run;
+  return variational_method(plan.equations, wanted, out, told_by_the_run);
+}
+
+Companions one_after_the_other(const CompanionPlan& plan, const WantedFunctions& wanted, const RoundedNumbers& numbers) {
+  const std::string& name = plan.result.statistics.method;
+  const bool taylor = name == "taylor";
+  Companions out;
+  for (int k = 0; k < (taylor ? 3 : 2); ++k) {
+    RoundedNumbers::Draw draw = numbers.draw(seed + static_cast<std::uint64_t>(k));
+    if (!taylor) draw.q = plan.run.q, draw.v = plan.run.v;  // rounding is nothing beside their tolerances
+    const std::unique_ptr<Method> method = taylor            ? method_of(TaylorStepper(numbers.kernel(), draw.parameters, taylor_options(plan, k)))
+                                           : name == "stiff" ? finer_stiff(plan, wanted, k)
+                                                             : finer_variational(plan, wanted, k);
+    auto run = Recorder(plan, *method).record(draw);
+    if (!run) return interrupted();
+    take_in(out, std::move(*run), plan);
+  }
+  return out;
+}
+
+// ------------------------------------------------------------------------------------------------------ side by side
+
+constexpr std::size_t in_a_register = 7, most_unknowns = 4;
+constexpr std::size_t most_numbers = 60'000'000;  // of all samples: half a gigabyte
+
+bool fit_side_by_side(const CompanionPlan& plan, const Kernel& kernel) {
+  const std::size_t n = plan.run.q.size(), samples = plan.grid.size() + plan.options.at.size();
+  return n <= most_unknowns && fits_lanes(kernel) && plan.result.statistics.method == "taylor" && plan.result.ok() &&
+         in_a_register * samples * 2 * n <= most_numbers;
+}
+
+class SideBySide {
+ public:
+  SideBySide(const CompanionPlan& plan, const RoundedNumbers& numbers) : plan_(plan), kernel_(numbers.kernel()), point_(kernel_, 1) {
+    for (std::size_t k = 0; k < in_a_register; ++k) {
+      draws_.push_back(numbers.draw(seed + k));
+      const auto append = [](std::vector<double>& to, const std::vector<double>& from) { to.insert(to.end(), from.begin(), from.end()); };
+      append(q_, draws_[k].q), append(v_, draws_[k].v), append(parameters_, draws_[k].parameters);
+      factors_.push_back(1 - static_cast<double>(k) / 32);
+    }
+    for (std::size_t g = 0; g < plan.grid.size(); ++g) times_.push_back(plan.time(g));
+    for (std::size_t i = 0; i < plan.options.at.size(); ++i)
+      if (!plan.result.at[i].q.empty()) times_.push_back(plan.options.at[i]);
+    std::sort(times_.begin(), times_.end());
+    times_.erase(std::unique(times_.begin(), times_.end()), times_.end());
+  }
+
+  /// Nothing where a lane was given up: its steps are then those of a run alone.
+  std::optional<Companions> run() {
+    EnsembleStart start;
+    start.q = q_, start.v = v_, start.parameters = parameters_, start.step_factors = factors_, start.times = times_;
+    start.begin = {&plan_.run.begin, 1};
+    start.end = {&plan_.result.final.t, 1};
+    EnsembleOptions options;
+    options.tolerance = std::max(rounding_tolerance(), plan_.options.tolerance / 40);
+    options.order = plan_.result.statistics.order + 2;
+    options.maximum_steps = most_steps(plan_);
+    options.width = 8;
+    options.threads = 1;
+    options.interrupt = plan_.options.interrupt;
+    options.backend = plan_.options.backend;
+    options.cache = plan_.options.cache;
+    const EnsembleResult found = advance_ensemble(kernel_, start, options);
+    if (std::any_of(found.endings.begin(), found.endings.end(), [](const TrajectoryEnding& e) { return e.ending == StepEnding::Interrupted; }))
+      return interrupted();
+    if (std::any_of(found.endings.begin(), found.endings.end(), [](const TrajectoryEnding& e) { return e.alone; })) return std::nullopt;
+    Companions out;
+    out.factor = 3;
+    out.running_maximum = false;
+    for (std::size_t k = 0; k < in_a_register; ++k) take_in(out, recorded(found, k), plan_);
+    return out;
+  }
+
+ private:
+  CompanionRun recorded(const EnsembleResult& found, std::size_t k) {
+    point_.set_parameters(draws_[k].parameters);
+    CompanionRun out;
+    for (std::size_t g = 0; g < plan_.grid.size(); ++g) {
+      const double t = plan_.time(g);
+      const std::size_t i = index_of(t);
+      if (plan_.whole_rows) {
+        append_row(out.rows, sample(t, found.q_of(k, i), found.v_of(k, i)), plan_.observables);
+        continue;
+      }
+      for (const auto part : {found.q_of(k, i), found.v_of(k, i)}) out.rows.insert(out.rows.end(), part.begin(), part.end());
+    }
+    for (std::size_t r = 0; r < plan_.options.at.size(); ++r) {
+      const double t = plan_.options.at[r];
+      const bool reached = !plan_.result.at[r].q.empty();
+      out.at.push_back(reached ? sample(t, found.q_of(k, index_of(t)), found.v_of(k, index_of(t))) : Sample());
+    }
+    if (found.endings[k].ok()) out.final = sample(plan_.result.final.t, found.q_of(k), found.v_of(k));
+    return out;
+  }
+
+  std::size_t index_of(double t) const {
+    return static_cast<std::size_t>(std::lower_bound(times_.begin(), times_.end(), t) - times_.begin());
+  }
+
+  Sample sample(double t, std::span<const double> q, std::span<const double> v) {
+    Sample out;
+    out.t = t;
+    out.q.assign(q.begin(), q.end());
+    out.v.assign(v.begin(), v.end());
+    const bool known = std::isfinite(q[0]) && point_.evaluate(t, q, v) == KernelStatus::Ok;
+    for (std::size_t i = 0; i < kernel_.observables(); ++i) out.observables.push_back(known ? point_.observable(i) : nothing);
+    return out;
+  }
+
+  const CompanionPlan& plan_;
+  const Kernel& kernel_;
+  KernelWorkspace point_;
+  std::vector<RoundedNumbers::Draw> draws_;
+  std::vector<double> q_, v_, parameters_, factors_, times_;
+};
+
+}  // namespace
+
+Companions run_companions(const CompanionPlan& plan, const WantedFunctions& wanted, const RoundedNumbers& numbers) {
+  if (fit_side_by_side(plan, numbers.kernel()))
+    if (auto found = SideBySide(plan, numbers).run()) return std::move(*found);
+  return one_after_the_other(plan, wanted, numbers);
+}
+
+}  // namespace maupertuis

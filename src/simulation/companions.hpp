@@ -1,0 +1,47 @@
+#pragma once
+#include "simulation/method.hpp"
+#include "simulation/observables.hpp"
+#include "simulation/rounded_numbers.hpp"
+
+#include <optional>
+#include <vector>
+
+/// Runs of the same motion beside the one that counts: other orders, other steps, numbers rounded the other way. What they differ by tells
+/// how much of a result is known (docs/design/certain_digits.md).
+namespace maupertuis {
+
+/// What a companion is to follow: the run, and where it is looked at.
+struct CompanionPlan {
+  const Model& model;
+  const EquationsOfMotion& equations;
+  const SimulationOptions& options;
+  const RunPlan& run;
+  const Observables& observables;
+  const SimulationResult& result;  // of the run that counts
+  std::vector<std::size_t> grid;   // rows of the trajectory that are compared, in the order of the run
+  bool whole_rows = false;         // all their columns, else q and q' alone
+
+  double time(std::size_t g) const { return result.trajectory.times[grid[g]]; }
+  std::size_t columns() const { return whole_rows ? result.trajectory.columns.size() : 2 * run.q.size(); }
+};
+
+/// What one companion left.
+struct CompanionRun {
+  std::vector<double> rows;        // [grid × columns]; NaN at times that it did not come to; empty once they are added up
+  std::vector<Sample> at;          // [options.at]; q is empty where it did not come to
+  std::optional<Sample> final;     // at the end of the run that counts, or where it met the condition of `run until` itself
+};
+
+struct Companions {
+  std::vector<CompanionRun> runs;
+  std::vector<double> squares;     // [grid × columns] of the differences, of all runs; infinite where one had no value
+  double factor = 4;               // the error is so many times the root of the mean square of the differences
+  bool running_maximum = true;     // and the largest of these so far
+  bool interrupted = false;
+};
+
+/// Up to 4 unknowns, and where the kernel fits into lanes, seven side by side; else three, one after the other; of the stiff and the variational method two,
+/// with tolerances or steps several times smaller. Cost: seven in lanes about that of the run; else that of the run each, two to three times that for finer steps.
+Companions run_companions(const CompanionPlan& plan, const WantedFunctions& wanted, const RoundedNumbers& numbers);
+
+}  // namespace maupertuis

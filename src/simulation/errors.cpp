@@ -1,0 +1,227 @@
+#include "simulation/errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace maupertuis {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t usual_rows = 400;   // that are compared where no row is to have its errors
+/// Of the largest value of a column: an error above it leaves no digit, and grows no further than the motion reaches.
+constexpr double saturated = 0.5;
+/// Of the largest value among columns of one unit: what is smaller is rounding noise about zero, not a motion.
+constexpr double noise = 1e-6;
+
+/// No number is known better than it is rounded; zero is exact where all agree on it.
+double with_rounding(double error, double value) {
+  return std::max(error, std::numeric_limits<double>::epsilon() * std::abs(value));
+}
+
+class Teller {
+ public:
+  Teller(SimulationResult& result, const CompanionPlan& plan, const Companions& companions, const RoundedNumbers& numbers)
+      : result_(result), plan_(plan), companions_(companions), numbers_(numbers), n_(plan.run.q.size()),
+        columns_(plan.columns()) {
+    find_rows();
+    find_loss();
+  }
+
+  void tell(Probe* probe) {
+    for (std::size_t i = 0; i < result_.at.size(); ++i)
+      if (!result_.at[i].q.empty()) tell_state(result_.at[i], [i](const CompanionRun& run) { return sample_or_null(run.at[i]); });
+    tell_state(result_.final, [](const CompanionRun& run) { return run.final ? &*run.final : nullptr; });
+    if (result_.ending == Ending::UntilReached)
+      result_.final.errors->t = error_of(result_.final.t, [](const CompanionRun& run) { return run.final ? run.final->t : infinity; });
+    if (plan_.whole_rows) tell_rows();
+    if (probe) tell_probe(*probe);
+  }
+
+ private:
+  static const Sample* sample_or_null(const Sample& sample) { return sample.q.empty() ? nullptr : &sample; }
+
+  /// factor · √(mean of (x_k − x)²); infinite where a companion has no value: it ended before.
+  template <class ValueOf>
+  double difference(double value, ValueOf value_of) const {
+    if (!std::isfinite(value)) return std::numeric_limits<double>::quiet_NaN();
+    double sum = 0;
+    for (const CompanionRun& run : companions_.runs) {
+      const double other = value_of(run);
+      if (!std::isfinite(other)) return infinity;
+      sum += (other - value) * (other - value);
+    }
+    return companions_.factor * std::sqrt(sum / static_cast<double>(companions_.runs.size()));
+  }
+  template <class ValueOf>
+  double error_of(double value, ValueOf value_of) const {
+    return with_rounding(difference(value, value_of), value);
+  }
+
+  // ------------------------------------------------------------------------------------------------------------ rows
+
+  /// [grid × columns] differences; with a running maximum the largest so far.
+  void find_rows() {
+    for (std::size_t g = 0; g < plan_.grid.size(); ++g)
+      for (std::size_t c = 0; c < columns_; ++c) {
+        double e = companions_.factor * std::sqrt(companions_.squares[g * columns_ + c] / static_cast<double>(companions_.runs.size()));
+        if (g == 0 && plan_.time(0) == plan_.run.begin && is_given(c)) e = 0;
+        if (companions_.running_maximum && g > 0) e = std::max(e, errors_[(g - 1) * columns_ + c]);
+        errors_.push_back(e);
+      }
+  }
+
+  bool is_given(std::size_t column) const {
+    return column < n_ ? numbers_.given_q(column) : column < 2 * n_ && numbers_.given_v(column - n_);
+  }
+
+  double largest(std::size_t column) const {
+    double out = 0;
+    for (std::size_t row = 0; row < result_.trajectory.rows(); ++row)
+      if (const double x = std::abs(result_.trajectory.at(row, column)); std::isfinite(x)) out = std::max(out, x);
+    return out;
+  }
+
+  /// Each column of the state that is lost at the end, and since when.
+  void find_loss() {
+    lost_from_.assign(2 * n_, infinity);
+    if (plan_.grid.empty()) return;
+    std::vector<double> sizes;
+    for (std::size_t c = 0; c < 2 * n_; ++c) sizes.push_back(largest(c));
+    const auto& names = result_.trajectory.columns;
+    bool everything = true;
+    for (std::size_t c = 0; c < 2 * n_; ++c) {
+      double of_unit = 0;
+      for (std::size_t other = 0; other < 2 * n_; ++other)
+        if (names[other].unit == names[c].unit) of_unit = std::max(of_unit, sizes[other]);
+      std::size_t g = plan_.grid.size();
+      while (g > 0 && is_lost(errors_[(g - 1) * columns_ + c], sizes[c], of_unit)) --g;
+      if (g == plan_.grid.size()) {
+        everything = everything && sizes[c] == 0;
+        continue;
+      }
+      lost_from_[c] = plan_.time(g);
+      note_loss(c);
+    }
+    result_.uncertain.everything = everything && !result_.uncertain.columns.empty();
+  }
+
+  static bool is_lost(double error, double size, double of_unit) { return error > 0 && error >= saturated * size && error >= noise * of_unit; }
+
+  void note_loss(std::size_t column) {
+    Uncertainty& uncertain = result_.uncertain;
+    if (uncertain.columns.empty() || is_later(lost_from_[column], uncertain.from)) uncertain.from = lost_from_[column];
+    uncertain.columns.push_back(column);
+  }
+
+  bool is_later(double t, double than) const { return plan_.run.end < plan_.run.begin ? t < than : t > than; }
+  bool is_lost_at(std::size_t column, double t) const { return lost_from_[column] < infinity && !is_later(lost_from_[column], t); }
+  bool everything_lost_at(double t) const {
+    return result_.uncertain.everything && !is_later(result_.uncertain.from, t);
+  }
+
+  /// The largest difference of a column of the state up to t, where the estimate is a running maximum.
+  double before(std::size_t column, double t) const {
+    double out = 0;
+    if (!companions_.running_maximum) return out;
+    for (std::size_t g = 0; g < plan_.grid.size() && !is_later(plan_.time(g), t); ++g) out = errors_[g * columns_ + column];
+    return out;
+  }
+
+  // ---------------------------------------------------------------------------------------------------------- states
+
+  template <class SampleOf>
+  void tell_state(State& state, SampleOf sample_of) {
+    StateErrors out;
+    const bool at_start = state.t == plan_.run.begin;
+    for (std::size_t i = 0; i < 2 * n_; ++i) {
+      const double value = i < n_ ? state.q[i] : state.v[i - n_];
+      double e = difference(value, [&](const CompanionRun& run) {
+        const Sample* const sample = sample_of(run);
+        return !sample ? infinity : i < n_ ? sample->q[i] : sample->v[i - n_];
+      });
+      e = with_rounding(std::max(e, before(i, state.t)), value);
+      if (at_start && is_given(i)) e = 0;
+      if (is_lost_at(i, state.t)) e = infinity;
+      (i < n_ ? out.q : out.v).push_back(e);
+    }
+    for (std::size_t i = 0; i < state.multipliers.size(); ++i)
+      out.multipliers.push_back(error_of(state.multipliers[i], [&](const CompanionRun& run) {
+        const Sample* const sample = sample_of(run);
+        return sample && i < sample->multipliers.size() ? sample->multipliers[i] : infinity;
+      }));
+    const std::size_t first = plan_.observables.energy_terms + plan_.observables.points;
+    for (std::size_t i = 0; i < state.reactions.size(); ++i) out.reactions.push_back(observable_error(state.reactions[i], first + i, state.t, sample_of));
+    state.errors = std::move(out);
+  }
+
+  /// Where the state is lost, a function of it is too, unless it is known all the same (an energy).
+  template <class SampleOf>
+  double observable_error(double value, std::size_t observable, double t, SampleOf sample_of) const {
+    const double e = error_of(value, [&](const CompanionRun& run) {
+      const Sample* const sample = sample_of(run);
+      return sample ? sample->observables[observable] : infinity;
+    });
+    return everything_lost_at(t) && e >= saturated * std::abs(value) ? infinity : e;
+  }
+
+  void tell_probe(Probe& probe) const {
+    probe.errors.assign(probe.values.size(), {});
+    const std::size_t first = plan_.observables.expressions.size() - plan_.observables.probes;
+    for (std::size_t i = 0; i < probe.values.size(); ++i)
+      for (std::size_t k = 0; k < probe.values[i].size(); ++k)
+        probe.errors[i].push_back(observable_error(probe.values[i][k], first + k, plan_.options.at[i],
+                                                   [i](const CompanionRun& run) { return sample_or_null(run.at[i]); }));
+  }
+
+  /// A row that is not in the grid is the last one, of an event or an early end: its companions are the ends.
+  void tell_rows() {
+    Trajectory& rows = result_.trajectory;
+    std::size_t g = 0;
+    const auto of_ends = [&](double value, std::size_t column) {
+      return difference(value, [&](const CompanionRun& run) {
+        std::vector<double> end;
+        if (run.final) append_row(end, *run.final, plan_.observables);
+        return run.final ? end[column] : infinity;
+      });
+    };
+    for (std::size_t row = 0; row < rows.rows(); ++row) {
+      const bool in_grid = g < plan_.grid.size() && plan_.grid[g] == row;
+      for (std::size_t c = 0; c < columns_; ++c) {
+        const double value = rows.at(row, c);
+        double e = in_grid ? errors_[g * columns_ + c] : of_ends(value, c);
+        const bool exact = row == 0 && e == 0 && is_given(c);
+        if (!exact) e = with_rounding(e, value);
+        if (c < 2 * n_ && is_lost_at(c, rows.times[row])) e = infinity;
+        rows.errors.push_back(std::isfinite(value) ? e : std::numeric_limits<double>::quiet_NaN());
+      }
+      if (in_grid) ++g;
+    }
+  }
+
+  SimulationResult& result_;
+  const CompanionPlan& plan_;
+  const Companions& companions_;
+  const RoundedNumbers& numbers_;
+  std::size_t n_, columns_;
+  std::vector<double> errors_;          // [grid × columns]
+  std::vector<double> lost_from_;       // [2n] s; infinite: it is not
+};
+
+}  // namespace
+
+std::vector<std::size_t> comparison_grid(const Trajectory& rows, const RunPlan& plan, ErrorEstimates wanted) {
+  std::size_t count = std::min(rows.rows(), plan.output_times.size());
+  while (count > 0 && rows.times[count - 1] != plan.output_times[count - 1]) --count;
+  const std::size_t stride = wanted == ErrorEstimates::Rows ? 1 : 1 + count / usual_rows;
+  std::vector<std::size_t> out;
+  for (std::size_t row = 0; row < count; row += stride) out.push_back(row);
+  if (count > 0 && out.back() != count - 1) out.push_back(count - 1);
+  return out;
+}
+
+void tell_errors(SimulationResult& result, Probe* probe, const CompanionPlan& plan, const Companions& companions, const RoundedNumbers& numbers) {
+  Teller(result, plan, companions, numbers).tell(probe);
+}
+
+}  // namespace maupertuis

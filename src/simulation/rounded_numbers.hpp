@@ -1,0 +1,52 @@
+#pragma once
+#include "simulation/function_kernels.hpp"
+#include "simulation/run_plan.hpp"
+
+#include <maupertuis/kernel.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace maupertuis {
+
+/// The numbers of a motion and which of them double does not hold exactly: parameters, start values, and literals of the formulas (9.81, 1/3, π),
+/// which are parameters of a kernel of their own. A companion run takes each of those one unit in the last place higher or lower, at random: so the motion shows
+/// what its numbers were rounded by. 1/2 and 2 are exact and stay.
+class RoundedNumbers {
+ public:
+  /// The kernel has neither integrands nor, unless the run ends at one, events. Cost: that of build_kernel.
+  RoundedNumbers(const Model& model, const EquationsOfMotion& equations, const RunPlan& plan, const WantedFunctions& wanted);
+
+  const Kernel& kernel() const { return kernel_; }
+
+  struct Draw {
+    std::vector<double> parameters;  // of kernel()
+    std::vector<double> q, v;        // [n] the start
+  };
+  /// Equal seeds give equal numbers.
+  Draw draw(std::uint64_t seed) const;
+
+  /// Whether a start value stands as it was given, so that there is nothing to be known about it.
+  bool given_q(std::size_t i) const { return q_[i].given; }
+  bool given_v(std::size_t i) const { return v_[i].given; }
+
+ private:
+  struct Value {
+    double value = 0;
+    bool rounded = false;
+  };
+  struct StartNumber {
+    double value = 0;
+    bool rounded = false, given = false;
+    Expr formula;  // in parameters, where the value follows from them
+  };
+  void take_literals(KernelSource& source);
+  void take_start(const Model& model, const RunPlan& plan);
+
+  std::vector<Value> parameters_;       // [parameters of the system + literals]
+  std::vector<Expr> symbols_;           // of those of the system
+  std::vector<StartNumber> q_, v_;      // [n]
+  Kernel kernel_{nullptr};
+};
+
+}  // namespace maupertuis

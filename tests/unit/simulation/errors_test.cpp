@@ -1,0 +1,186 @@
+#include "../model_text.hpp"
+
+#include <maupertuis/simulation.hpp>
+
+#include <cmath>
+#include <limits>
+
+using namespace maupertuis;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+SimulationResult run(const std::string& text, SimulationOptions options = {}, Probe* probe = nullptr) {
+  const ModelText m(text);
+  Diagnostics diagnostics;
+  auto result = simulate(m.model, m.equations, options, diagnostics, probe);
+  INFO(render(diagnostics, m.source));
+  REQUIRE(result);
+  return std::move(*result);
+}
+
+SimulationOptions at(std::vector<double> times) {
+  SimulationOptions options;
+  options.at = std::move(times);
+  return options;
+}
+
+const std::string oscillator = R"(system oscillator
+param m = 0.3 kg, k = 1.1 N/m
+coord x : length
+T = 1/2 m x'^2
+V = 1/2 k x^2
+start x = 1 m
+run 40 s
+)";
+
+const std::string double_pendulum = R"(system double_pendulum
+param m = 1 kg, l = 1 m, g = 9.81 m/s^2
+coord a, b : angle
+point A mass m at l (sin a, -cos a)
+point B mass m at A + l (sin b, -cos b)
+gravity (0, -g)
+start a = 2 rad, b = 2.5 rad
+run 60 s
+)";
+
+}  // namespace
+
+TEST_CASE("the stated error covers the true one: an oscillator whose frequency is rounded") {
+  const SimulationResult r = run(oscillator, at({1, 7, 40}));
+  CHECK(r.statistics.companions == 7);
+  for (const State& s : r.at) {
+    REQUIRE(s.errors);
+    const long double omega = std::sqrt(1.1L / 0.3L);
+    const double off = static_cast<double>(std::abs(s.q[0] - std::cos(omega * s.t)));
+    CHECK(off <= s.errors->q[0]);
+    CHECK(s.errors->q[0] < 1e-13);
+  }
+  CHECK(r.at[2].errors->q[0] > r.at[0].errors->q[0]);  // the phase is what grows
+}
+
+TEST_CASE("what is rounded counts, what is exact does not: companions move 0.3 and 1/3, not 1/2") {
+  // Free fall: no step to be wrong in, and the error is that of g alone, ½ t² ulp(g).
+  const std::string fall = "system fall\nparam m = 1 kg, g = 9.81 m/s^2\ncoord x : length\nT = 1/2 m x'^2\nV = m g x\nstart x = 1 m\nrun 100 s\n";
+  const double rounded = run(fall).final.errors->q[0];
+  CHECK(rounded > 0.5 * 100 * 100 * 8.8e-16);
+  const std::string exact = "system fall\nparam m = 1 kg, g = 9.75 m/s^2\ncoord x : length\nT = 1/2 m x'^2\nV = m g x\nstart x = 1 m\nrun 100 s\n";
+  const SimulationResult r = run(exact);
+  CHECK(r.final.errors->q[0] == epsilon * std::abs(r.final.q[0]));
+  // A literal within a formula is a number as well.
+  const std::string literal = "system fall\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/3 x\nstart x = 1\nrun 100\n";
+  CHECK(run(literal).final.errors->q[0] > 1e-13);
+}
+
+TEST_CASE("zero by symmetry and given starts are exact") {
+  const std::string text = "system two\nparam m = 1 kg, k = 2 N/m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = 1/2 k (x^2 + y^2)\n"
+                           "start x = 0.1 m\nrun 5 s\n";
+  const SimulationResult r = run(text, at({0, 5}));
+  CHECK(r.at[0].errors->q[0] == 0);
+  CHECK(r.at[0].errors->v[0] == 0);
+  CHECK(r.at[1].errors->q[0] > 0);
+  CHECK(r.at[1].q[1] == 0);
+  CHECK(r.at[1].errors->q[1] == 0);
+  CHECK(r.at[1].errors->v[1] == 0);
+  CHECK(r.uncertain.columns.empty());
+}
+
+TEST_CASE("a chaotic run says from when on nothing is certain") {
+  const SimulationResult r = run(double_pendulum, at({1, 10, 59}));
+  CHECK(r.uncertain.everything);
+  CHECK(r.uncertain.from > 15);
+  CHECK(r.uncertain.from < 60);
+  CHECK(r.at[0].errors->q[0] < 1e-13);
+  CHECK(r.at[1].errors->q[0] > 1e-12);
+  CHECK(r.at[1].errors->q[0] < 1e-4);
+  CHECK(r.final.errors->v[0] == infinity);
+  CHECK(r.final.errors->v[1] == infinity);
+}
+
+TEST_CASE("equal runs have equal errors, and each row has one where that is asked") {
+  SimulationOptions options = at({3});
+  options.errors = ErrorEstimates::Rows;
+  const SimulationResult a = run(oscillator, options), b = run(oscillator, options);
+  REQUIRE(a.trajectory.errors.size() == a.trajectory.values.size());
+  CHECK(a.trajectory.errors == b.trajectory.errors);
+  CHECK(a.at[0].errors->q == b.at[0].errors->q);
+  CHECK(a.trajectory.error(0, 0) == 0);
+  const std::size_t last = a.trajectory.rows() - 1;
+  CHECK(a.trajectory.error(last, 0) == doctest::Approx(a.final.errors->q[0]).epsilon(0.1));
+  const std::size_t energy = *a.trajectory.column("energy");
+  CHECK(a.trajectory.error(last, energy) > 0);
+  CHECK(a.trajectory.error(last, energy) < 1e-13);
+
+  options.errors = ErrorEstimates::None;
+  const SimulationResult without = run(oscillator, options);
+  CHECK(without.trajectory.values == a.trajectory.values);  // companions change nothing of the run itself
+  CHECK_FALSE(without.final.errors);
+  CHECK(without.trajectory.errors.empty());
+  CHECK(without.statistics.companions == 0);
+}
+
+TEST_CASE("the time of run until has an error, and so has the state there") {
+  const std::string text = "system throw\nparam m = 1 kg, g = 9.81 m/s^2\ncoord x : length, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = m g y\n"
+                           "start x' = 3 m/s, y = 100 m\nrun until y = 0 within 60 s\n";
+  const SimulationResult r = run(text);
+  REQUIRE(r.ending == Ending::UntilReached);
+  const long double right = std::sqrt(200 / 9.81L);
+  REQUIRE(r.final.errors);
+  CHECK(static_cast<double>(std::abs(r.final.t - right)) <= r.final.errors->t);
+  CHECK(r.final.errors->t < 1e-13);
+  CHECK(static_cast<double>(std::abs(r.final.q[0] - 3 * right)) <= r.final.errors->q[0]);
+  CHECK(r.final.errors->q[0] < 1e-13);
+}
+
+TEST_CASE("tolerances show: a coarse run knows that it is coarse") {
+  SimulationOptions options = at({40});
+  options.tolerance = 1e-6;
+  const SimulationResult r = run(oscillator, options);
+  const double off = std::abs(r.at[0].q[0] - static_cast<double>(std::cos(40 * std::sqrt(1.1L / 0.3L))));
+  CHECK(off > 1e-10);
+  CHECK(off <= r.at[0].errors->q[0]);
+  CHECK(r.at[0].errors->q[0] <= 100 * off);
+}
+
+TEST_CASE("constraints, switches, stiff and variational runs are compared with companions of their own") {
+  const std::string pendulum = "system pendulum\nparam m = 1 kg, l = 0.7 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\ngravity (0, -g)\n"
+                               "constraint x^2 + y^2 = l^2 name rod\nstart x = 0.5 m, y = -0.4 m\nrun 10 s\n";
+  const SimulationResult rod = run(pendulum, at({0, 4}));
+  CHECK(rod.statistics.companions == 3);
+  REQUIRE(rod.at[1].errors->reactions.size() == 1);
+  CHECK(rod.at[1].errors->reactions[0] > 0);
+  CHECK(rod.at[1].errors->reactions[0] < 1e-10);
+  CHECK(rod.at[1].errors->multipliers[0] > 0);
+
+  const std::string kinked = "system kink\nparam m = 1 kg, k = 1.3 N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2 + 3 [N] abs(x)\nstart x = 1 m\nrun 10 s\n";
+  const SimulationResult kink = run(kinked);
+  CHECK(kink.statistics.switches > 3);
+  CHECK(kink.final.errors->q[0] > 0);
+  CHECK(kink.final.errors->q[0] < 1e-11);
+
+  SimulationOptions options;
+  options.method = StepMethod::Variational;
+  options.step = 0.05;
+  const SimulationResult coarse = run(oscillator, options);
+  const double right = static_cast<double>(std::cos(40 * std::sqrt(1.1L / 0.3L)));
+  CHECK(std::abs(coarse.final.q[0] - right) > 1e-6);
+  CHECK(std::abs(coarse.final.q[0] - right) <= coarse.final.errors->q[0]);
+  CHECK(coarse.final.errors->q[0] <= 100 * std::abs(coarse.final.q[0] - right));
+}
+
+TEST_CASE("probes have errors of their own") {
+  const ModelText m(oscillator);
+  Probe probe;
+  probe.expressions = {m.q(0) * m.q(0), m.v(0)};
+  Diagnostics diagnostics;
+  const auto r = simulate(m.model, m.equations, at({0.5, 40}), diagnostics, &probe);
+  REQUIRE(r);
+  REQUIRE(probe.errors.size() == 2);
+  CHECK(probe.errors[1].size() == 2);
+  CHECK(probe.errors[1][1] == doctest::Approx(r->at[1].errors->v[0]).epsilon(1e-6));
+  const double expected = 2 * std::abs(r->at[1].q[0]) * r->at[1].errors->q[0];
+  CHECK(probe.errors[1][0] > 0.5 * expected);
+  CHECK(probe.errors[1][0] < 2 * expected);
+}
