@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-/// How good stated errors are, against runs of 113 bits. MAUP_CERTAIN_DIGITS=N in the environment takes N models (docs/design/certain_digits.md has the
-/// numbers of 1000), and MAUP_CERTAIN_DIGITS_FROM another first seed.
+/// How good stated errors are, against runs of 113 bits. MAUP_CERTAIN_DIGITS=N in the environment takes N models, and MAUP_CERTAIN_DIGITS_FROM another
+/// first seed (docs/design/certain_digits.md has the numbers).
 namespace maupertuis::property {
 namespace {
 
