@@ -1,6 +1,8 @@
 #include "kernel/function/program.hpp"
 
 #include <maupertuis/function_disks.hpp>
+#include <maupertuis/kinds.hpp>
+#include <maupertuis/lambert_w.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -85,20 +87,7 @@ FunctionDisks::Bounds FunctionDisks::result(const FunctionInstruction& i) const 
     case Op::And:
     case Op::Or:
     case Op::Choose: return chosen(i);
-    case Op::Sin:
-    case Op::Cos:
-    case Op::Tan:
-    case Op::Asin:
-    case Op::Acos:
-    case Op::Atan:
-    case Op::Sinh:
-    case Op::Cosh:
-    case Op::Tanh:
-    case Op::Asinh:
-    case Op::Acosh:
-    case Op::Atanh:
-    case Op::Exp:
-    case Op::Log:
+    case Op::Function:
     case Op::Atan2: return function(i);
   }
   throw std::logic_error("a disk met an operation that has no bounds; please report");
@@ -146,63 +135,55 @@ FunctionDisks::Bounds FunctionDisks::function(const FunctionInstruction& i) cons
   if (!(d < infinity)) return {infinity, infinity, 0, infinity};
   const auto by_slope = [&](double slope) { return Bounds{slope * d, slope * d, 0, infinity}; };
   const auto within = [&](double reach, double high, double low = 0) { return Bounds{reach, reach, low, high}; };
-  switch (i.op) {
+  if (second) {  // |dφ| ≤ (|dx| + |dy|)/|x ± iy|
+    const double both = d + bounds_[i.b].reach, far = std::hypot(w, centre_[i.b]) - both;
+    return within(far > 0 ? both / far : infinity, infinity);
+  }
+  switch (i.function) {
     // sin w − sin w₀ = sin w₀ (cos z − 1) + cos w₀ sin z with |z| ≤ d, cos z − 1 ≤ ½ d sinh d
-    case Op::Sin: return within(std::abs(std::sin(w)) * 0.5 * d * std::sinh(d) + std::abs(std::cos(w)) * std::sinh(d), std::cosh(d));
-    case Op::Cos: return within(std::abs(std::cos(w)) * 0.5 * d * std::sinh(d) + std::abs(std::sin(w)) * std::sinh(d), std::cosh(d));
+    case Kind::Sin: return within(std::abs(std::sin(w)) * 0.5 * d * std::sinh(d) + std::abs(std::cos(w)) * std::sinh(d), std::cosh(d));
+    case Kind::Cos: return within(std::abs(std::cos(w)) * 0.5 * d * std::sinh(d) + std::abs(std::sin(w)) * std::sinh(d), std::cosh(d));
     // |sinh w| and |cosh w| lie between sinh and cosh of |Re w|
-    case Op::Sinh:
-    case Op::Cosh: {
+    case Kind::Sinh:
+    case Kind::Cosh: {
       const double most = std::cosh(size + d);
       return within(smaller(most + value, d * most), most, size > d ? std::sinh(size - d) : 0);
     }
-    case Op::Exp: {
+    case Kind::Exp: {
       const double high = std::exp(w + d);
       return within(high * std::min(1.0, d), high, std::exp(w - d));
     }
-    case Op::Log: return by_slope(inverse(x.low));
-    case Op::Tan: {  // 1/cos²
+    case Kind::Log: return by_slope(inverse(x.low));
+    case Kind::Tan: {  // 1/cos²
       const double least = away(std::abs(std::cos(w)) * (2 - std::cosh(d)) - std::abs(std::sin(w)) * std::sinh(d));
       return by_slope(inverse(least * least));
     }
-    case Op::Asin:
-    case Op::Acos: return by_slope(inverse(std::sqrt(away(std::abs(1 - w) - d) * away(std::abs(1 + w) - d))));
-    case Op::Atan: {
+    case Kind::Asin:
+    case Kind::Acos: return by_slope(inverse(std::sqrt(away(std::abs(1 - w) - d) * away(std::abs(1 + w) - d))));
+    case Kind::Atan: {
       const double least = away(std::hypot(1.0, w) - d);
       return by_slope(inverse(least * least));
     }
-    case Op::Tanh: {  // |cosh w| ≥ sinh |Re w|, and ≥ cos |Im w|
+    case Kind::Tanh: {  // |cosh w| ≥ sinh |Re w|, and ≥ cos |Im w|
       const double least = std::max(d < half_pi ? std::cos(d) : 0.0, size > d ? std::sinh(size - d) : 0.0);
       return by_slope(inverse(least * least));
     }
-    case Op::Asinh: return by_slope(inverse(away(std::hypot(1.0, w) - d)));
-    case Op::Acosh: return by_slope(inverse(std::sqrt(away(w - 1 - d) * away(w + 1 - d))));
-    case Op::Atanh: return by_slope(inverse(away(std::abs(1 - w) - d) * away(std::abs(1 + w) - d)));
-    case Op::Atan2: {  // |dφ| ≤ (|dx| + |dy|)/|x ± iy|
-      const double both = d + bounds_[i.b].reach, far = std::hypot(w, centre_[i.b]) - both;
-      return within(far > 0 ? both / far : infinity, infinity);
+    case Kind::Asinh: return by_slope(inverse(away(std::hypot(1.0, w) - d)));
+    case Kind::Acosh: return by_slope(inverse(std::sqrt(away(w - 1 - d) * away(w + 1 - d))));
+    case Kind::Atanh: return by_slope(inverse(away(std::abs(1 - w) - d) * away(std::abs(1 + w) - d)));
+    case Kind::Erf: {  // |exp(−w²)| = exp(−Re w²), largest on the rim: in front of the centre, or beside it
+      const double real = size <= 2 * d ? 0.5 * size * size - d * d : (size - d) * (size - d);
+      return by_slope(1.1283791670955126 * std::exp(-real));
     }
-    case Op::Add:
-    case Op::Subtract:
-    case Op::Multiply:
-    case Op::Divide:
-    case Op::Negate:
-    case Op::Square:
-    case Op::Sqrt:
-    case Op::PowerInteger:
-    case Op::Power:
-    case Op::Abs:
-    case Op::Sign:
-    case Op::Step:
-    case Op::Min:
-    case Op::Max:
-    case Op::Less:
-    case Op::LessEqual:
-    case Op::And:
-    case Op::Or:
-    case Op::Choose: break;  // not here
+    case Kind::LambertW: {  // |W′(z)| ≤ W′(Re z), which grows towards the branch point −1/e
+      const double next = w - d;
+      return by_slope(next > -0.367879441171 ? inverse(next + std::exp(lambert_w(next))) : infinity);
+    }
+    case Kind::Number: case Kind::Pi: case Kind::Symbol: case Kind::Sum: case Kind::Product: case Kind::Power: case Kind::TimeDerivative:
+    case Kind::Abs: case Kind::Sign: case Kind::Step: case Kind::Atan2: case Kind::Min: case Kind::Max: case Kind::Piecewise:
+    case Kind::Less: case Kind::LessEqual: case Kind::And: case Kind::Or: break;
   }
-  throw std::logic_error("a disk met an operation that has no bounds; please report");
+  throw unknown_kind(i.function, "the bounds on disks");
 }
 
 /// Where the disk decides, the branch in force is the function.
@@ -237,20 +218,7 @@ FunctionDisks::Bounds FunctionDisks::chosen(const FunctionInstruction& i) const 
     case Op::Sqrt:
     case Op::PowerInteger:
     case Op::Power:
-    case Op::Sin:
-    case Op::Cos:
-    case Op::Tan:
-    case Op::Asin:
-    case Op::Acos:
-    case Op::Atan:
-    case Op::Sinh:
-    case Op::Cosh:
-    case Op::Tanh:
-    case Op::Asinh:
-    case Op::Acosh:
-    case Op::Atanh:
-    case Op::Exp:
-    case Op::Log:
+    case Op::Function:
     case Op::Atan2: break;  // not here
   }
   throw std::logic_error("a disk met an operation that has no bounds; please report");
