@@ -63,10 +63,12 @@ class Critical {
     equations_.set_parameter(e_.parameter, value_ + sign_ * distance);
     Diagnostics unheard;
     const auto study = modal_study_at(equations_, start_, e_.at, unheard);
-    if (!study || study->entries.empty()) return false;
-    const Stability verdict = study->entries.front().analysis.stability.verdict;
-    const bool stable = verdict == Stability::Energetic || verdict == Stability::Asymptotic;
-    return e_.word == "stable" ? stable : verdict == Stability::Unstable;
+    if (!study || study->entries.empty() || !study->kinks.empty()) return false;
+    return std::all_of(study->entries.begin(), study->entries.end(), [&](const ModalEntry& entry) {
+      const Stability verdict = entry.analysis.stability.verdict;
+      const bool stable = verdict == Stability::Energetic || verdict == Stability::Asymptotic;
+      return e_.word == "stable" ? stable : verdict == Stability::Unstable;
+    });
   }
 
   /// The verdict holds at `yes` and not at `no`.
