@@ -175,6 +175,7 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(Slot slot, Watched& watched, con
     const Piece now = piece(slot, x, T(until - x));
     if (now.width == 0) {
       const Gap beyond = gap(slot, x, until, watched.side);
+      watched.at_zero = false;
       if (beyond.root && (beyond.root->kind == RootKind::Crossing || wants_jumps)) return beyond.root;
       watched = {beyond.side, false};
       x = beyond.end;
@@ -182,6 +183,7 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(Slot slot, Watched& watched, con
     }
     if (watched.side == 0) watched.side = watched.at_zero ? now.polynomial.direction() : watching::sign(now.polynomial.p[0]);
     const auto root = crossing(now.polynomial, watched);
+    watched.at_zero = false;  // the step goes on from it, wherever it ends
     if (wants_touching) {
       const auto touch = touching(touches::up_to(now.polynomial, root), watched.side);
       const T end = root ? *root : T(1);
@@ -189,7 +191,6 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(Slot slot, Watched& watched, con
     }
     if (root) return RootOf<T>{std::min(until, refined(slot, now, x, *root)), RootKind::Crossing};
     x += now.width;
-    watched.at_zero = false;
   }
   return std::nullopt;
 }
