@@ -73,6 +73,17 @@ void TaylorStepper::Impl::advance(double bound, double h, const Crossing& crossi
   result.end = t.hi;
 }
 
+/// Whether steps shrink as the inverse square of their number, or faster, and what is left would take more of them than a run has: looked at where their
+/// number doubles, so that equal runs end alike.
+bool TaylorStepper::Impl::comes_to_a_stop(double bound) {
+  constexpr std::size_t first_look = 8192;
+  constexpr double shrinks = 0.3, too_many = 1e8;
+  if (steps < first_look || (steps & (steps - 1)) != 0 || steps == last_look) return false;
+  last_look = steps;
+  const double before = std::exchange(length_at_look, std::abs(t.hi - begin.hi));
+  return before > 0 && length_at_look < shrinks * before && std::abs(remaining(bound)) > too_many * length_at_look;
+}
+
 bool TaylorStepper::Impl::is_at_rest() const {
   constexpr double rest = 1e-200;
   const double *const v = work.coordinate(1), *const half_a = work.coordinate(2);
@@ -109,6 +120,11 @@ Step TaylorStepper::Impl::step(double bound) {
     return result;
   }
   compile_if_it_pays(bound);
+  if (comes_to_a_stop(bound)) {
+    end(result, StepEnding::StepUnderflow,
+        "The steps go on shrinking, so that their number would have no bound: a force or a switch oscillates without end near here.");
+    return result;
+  }
   if (!expanded && turns.wind(q))
     for (std::size_t i = 0; i < n; ++i) q_now[i] = q[i].hi;
   if (!std::exchange(expanded, false) && !expand(bound, result)) {
@@ -191,6 +207,8 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.safe.forget();
   s.end_check.forget();
   s.end_status = KernelStatus::Ok;
+  s.last_look = 0;
+  s.length_at_look = 0;
   s.constraint_residual = 0;
   s.stuck = 0;
   // Before any step the dense output is the starting point.

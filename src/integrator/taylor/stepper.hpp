@@ -45,6 +45,7 @@ struct TaylorStepper::Impl {
   Step step(double bound);
   double choose_length(double bound);
   bool is_at_rest() const;
+  bool comes_to_a_stop(double bound);
   bool make_step(double bound, double h, Step& result);
   bool settles(double bound, const Crossing& crossing, Step& result);
   bool equations_hold(const KernelWorkspace& at_end);
@@ -118,6 +119,8 @@ struct TaylorStepper::Impl {
   double longest = 0;                    // length so far
   std::vector<double> largest_row;       // [constraints] of A so far
   std::size_t steps = 0, switches = 0, rejected = 0;
+  std::size_t last_look = 0;             // the number of steps at which comes_to_a_stop() looked
+  double length_at_look = 0;             // of a step then
   KernelStatus end_status = KernelStatus::Ok;  // of the last look at an end
   bool runs_long = false;                // code was asked for that pays in long runs
   int stuck = 0;                         // crossings in a row that did not move time

@@ -25,7 +25,7 @@ unsigned long long from_environment(const char* name, unsigned long long otherwi
 }
 
 /// Classes of which not one may be wrong. Of the others the table tells.
-const std::set<std::string> hold = {"walls", "pulses", "layers"};
+const std::set<std::string> hold = {"walls", "pulses", "layers", "switches", "mixed"};
 
 struct Count {
   std::array<int, 5> of{};  // by verdict
