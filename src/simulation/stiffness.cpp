@@ -35,7 +35,7 @@ bool StiffnessWatch::sees_stiffness(const Sample& start, const Step& step, doubl
     if (acceleration_[i] > 0) scale = std::min(scale, speed_[i] / acceleration_[i]);
   steps_ = 0;
   lengths_.push_back(length);
-  if (length < steady * lengths_[(lengths_.size() - 1) / 2]) return false;
+  if (lengths_.size() < 2 || length < steady * lengths_[(lengths_.size() - 1) / 2]) return false;
   return scale < HUGE_VAL && length < far_shorter * scale && std::abs(end - step.end) > many * length;
 }
 
