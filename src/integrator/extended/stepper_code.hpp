@@ -206,6 +206,8 @@ typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) {
     const auto root = roots_->first(is_switch ? work_.program().switch_slots[i] : work_.program().events[i - count], watched, until, !is_switch, is_switch);
     if (root) note(first, root->x, i, together);
   }
+  // A step of no length leaves the others where they were.
+  for (std::size_t i = 0; i < count && first.x == 0; ++i) first.after[i].at_zero = switch_state_[i].at_zero;
   for (const std::size_t i : first.roots) {
     taylor::Watched& watched = first.after[i];
     watched = {i < count ? static_cast<std::int8_t>(-watched.side) : std::int8_t{0}, true};

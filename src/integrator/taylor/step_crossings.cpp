@@ -85,6 +85,8 @@ TaylorStepper::Impl::Crossing TaylorStepper::Impl::first_crossing(double h) {
     const auto root = roots->first(is_switch ? work.program().switch_slots[i] : work.program().events[i - switches_here], watched, until, !is_switch, is_switch);
     if (root) note(first_of_all, root->x, i, together);
   }
+  // A step of no length leaves the others where they were.
+  for (std::size_t i = 0; i < switches_here && first_of_all.x == 0; ++i) first_of_all.after[i].at_zero = switch_state[i].at_zero;
   for (const std::size_t i : first_of_all.roots) {
     taylor::Watched& watched = first_of_all.after[i];
     watched = {i < switches_here ? static_cast<std::int8_t>(-watched.side) : std::int8_t{0}, true};
