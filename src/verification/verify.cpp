@@ -287,7 +287,7 @@ class Verifier {
       const Expectation& e = model_.experiment.expectations[index];
       if (!run) results_[index].message = "The run could not start.";
       else if (run->ending != Ending::UntilReached) results_[index].message = "The run ended before: " + run->reason + ".";
-      else if (e.kind == Kind::UntilAt) judge_value({index, 0, false}, run->final.t, results_[index]);
+      else if (e.kind == Kind::UntilAt) judge_value({index, 0, false}, run->final.t, run->final.errors ? run->final.errors->t : 0.0, results_[index]);
       else requests_.push_back({index, run->final.t, false});
     }
   }
