@@ -123,10 +123,10 @@ void check_series(const Case& c, const KernelWorkspace& work) {
 TEST_CASE("the cases are all functions of the table") {
   const auto list = cases();
   std::apply([&](const auto&... row) {
-    const auto is_there = [&](std::string_view name) {
-      return std::any_of(list.begin(), list.end(), [&](const Case& c) { return c.name == name; });
+    const auto check = [&](std::string_view name) {
+      CHECK_MESSAGE(std::any_of(list.begin(), list.end(), [&](const Case& c) { return c.name == name; }), std::string(name));
     };
-    (CHECK_MESSAGE(is_there(row.name), std::string(row.name)), ...);
+    (check(row.name), ...);
   }, functions::rows);
 }
 
