@@ -10,7 +10,7 @@
 namespace {
 
 using namespace maupertuis;
-using State = std::vector<double>;
+using Vector = std::vector<double>;
 
 /// Two rods in Cartesian coordinates, the upper one rheonomic: its hinge moves.
 constexpr const char* kRods =
@@ -23,14 +23,14 @@ constexpr const char* kAngles =
     "let X1 = sin(3 t)/10 + sin a\nlet Y1 = -cos a\nlet X2 = X1 + 0.8 sin b\nlet Y2 = Y1 - 0.8 cos b\n"
     "T = 1/2 m1 (X1'^2 + Y1'^2) + 1/2 m2 (X2'^2 + Y2'^2)\nV = g (m1 Y1 + m2 Y2)\nD = 0.05 (X2'^2 + Y2'^2)\n";
 
-State run(Method& method, const State& q, const State& v, double end) {
+Vector run(Method& method, const Vector& q, const Vector& v, double end) {
   method.start(0, q, v);
   while (method.time() != end) {
     const Step step = method.step(end);
     INFO(step.reason);
     REQUIRE(step.ending == StepEnding::None);
   }
-  State out = method.sample(end).q;
+  Vector out = method.sample(end).q;
   const Sample sample = method.sample(end);
   out.insert(out.end(), sample.multipliers.begin(), sample.multipliers.end());
   return out;
@@ -49,9 +49,9 @@ TEST_CASE("variational, stiff and independent coordinates give one motion, and o
   const auto stiff = stiff_method(rods.equations, {}, tight, diagnostics);
   const auto independent = variational_method(angles.equations, {}, fine, diagnostics);
   const double a = 0.5, b = -0.4, end = 2;
-  const State q{std::sin(a), -std::cos(a), std::sin(a) + 0.8 * std::sin(b), -std::cos(a) - 0.8 * std::cos(b)};
-  const State v{0.3, 0, 0.3, 0};  // the hinge starts with 3/10; both angles at rest
-  const State one = run(*variational, q, v, end), two = run(*stiff, q, v, end), three = run(*independent, {a, b}, {0, 0}, end);
+  const Vector q{std::sin(a), -std::cos(a), std::sin(a) + 0.8 * std::sin(b), -std::cos(a) - 0.8 * std::cos(b)};
+  const Vector v{0.3, 0, 0.3, 0};  // the hinge starts with 3/10; both angles at rest
+  const Vector one = run(*variational, q, v, end), two = run(*stiff, q, v, end), three = run(*independent, {a, b}, {0, 0}, end);
   REQUIRE(one.size() == 6);
   for (std::size_t i = 0; i < 6; ++i) CHECK(two[i] == doctest::Approx(one[i]).epsilon(1e-7));
   const double x1 = std::sin(6.0) / 10 + std::sin(three[0]);
@@ -67,7 +67,7 @@ TEST_CASE("the slider crank of the SUNDIALS examples, recomputed to 24 digits: b
       "coord q : angle, x : number, p : angle\nlet l = sqrt(x^2 - x (cos p + a cos q) + (1 + a^2)/4 + a cos(p - q)/2)\n"
       "T = J1 q'^2/2 + m2 x'^2/2 + J2 p'^2/2\nV = k (l - l0)^2/2\nD = c l'^2/2\nforce x = F\nforce p = -F sin p\n"
       "constraint x = cos p + a cos q name along\nconstraint 0 = sin p + a sin q name across\n");
-  const State reference{-1.429996967647227372640421, 0.9390306135782662263334509, 0.5178947564898862480481259,
+  const Vector reference{-1.429996967647227372640421, 0.9390306135782662263334509, 0.5178947564898862480481259,
                         0.05499161053776447944428012, 0.02942223164778110036987099, -0.004440989758956746845820136};
   Diagnostics diagnostics;
   VariationalOptions fine;
@@ -82,7 +82,7 @@ TEST_CASE("the slider crank of the SUNDIALS examples, recomputed to 24 digits: b
       CHECK(std::abs(s.q[i] - reference[i]) < tolerance);
       CHECK(std::abs(s.v[i] - reference[3 + i]) < tolerance);
     }
-    method->start(0, State{std::acos(0.0), std::sqrt(0.75), -std::acos(0.0) / 3}, State{0, 0, 0});
+    method->start(0, Vector{std::acos(0.0), std::sqrt(0.75), -std::acos(0.0) / 3}, Vector{0, 0, 0});
     CHECK(std::abs(s.observables[0] - method->sample(0).observables[0] - s.integrals[0]) < tolerance);
   };
   check(variational_method(m.equations, wanted, fine, diagnostics), 1e-12);

@@ -1,5 +1,6 @@
 #include "../model_text.hpp"
 
+#include <cmath>
 #include <maupertuis/verification.hpp>
 
 #include <limits>
