@@ -80,7 +80,8 @@ class EnergyBalance {
       energy += sample.observables[i];
       scale += std::abs(sample.observables[i]);
     }
-    if (!std::isfinite(energy)) return;  // a state without forces: the ending tells
+    overflows_ = overflows_ || std::isinf(scale);
+    if (!std::isfinite(energy)) return;  // a point at which the formula has no value, though the motion passes it; or the ending tells
     if (!begun_) first_ = energy;
     begun_ = true;
     largest_scale_ = std::max(largest_scale_, scale);
@@ -96,12 +97,14 @@ class EnergyBalance {
     return std::accumulate(sample.observables.begin(), sample.observables.begin() + static_cast<std::ptrdiff_t>(terms_), 0.0);
   }
   double drift() const { return largest_scale_ > 0 ? largest_error_ / largest_scale_ : 0; }
+  /// Nothing is known of it: a term was infinite, or it had no value at any state.
+  bool is_lost() const { return overflows_ || (terms_ > 0 && !begun_); }
 
  private:
   static double work_of(const Sample& sample) { return sample.integrals.empty() ? 0 : sample.integrals[0]; }
 
   std::size_t terms_;
-  bool begun_ = false;
+  bool begun_ = false, overflows_ = false;
   double first_ = 0, largest_scale_ = 0, largest_error_ = 0, work_before_ = 0;
 };
 
@@ -242,6 +245,10 @@ class Run {
       result_.ending = Ending::UntilNotReached;
       result_.reason = fmt::format("the condition of `run until` was not met within {:g}{}", std::abs(plan_.end - plan_.begin),
                                    with_blank(model_.system.independent_unit()));
+    }
+    if (result_.ok() && balance_.is_lost()) {
+      result_.ending = Ending::Overflow;
+      result_.reason = "The energy is infinite or has no value along this motion, so that nothing tells whether it is right.";
     }
     result_.statistics.steps = steps_before_ + method_->steps();
     result_.statistics.rejected = rejected_before_ + method_->rejected();

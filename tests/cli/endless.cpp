@@ -25,6 +25,7 @@ const Endless endless[] = {
     {"switches that come ever faster: dry friction and a constant push back", "force x = -sign(x) - 0.5 sign(x')\nstart x = 1\nrun 20\n", 1, 20},
     {"a square wave without end near a time", "force x = sign(sin(1/(t - 2)))\nrun 3\n", 1.9, 2.1},
     {"steps below the spacing of t", "V = 1e12 x^2\nstart at 1e12\nstart x = 1\nrun 10\n", 1e12 - 1, 1e12 + 11},
+    {"an energy beyond the range of double", "V = 1/2 x^2 + exp(700) exp(700 + 0 x)\nstart x' = 1\nrun 3\n", 3, 3},
     {"a collision", "V = -1/abs(x)\nstart x = 1\nrun 5\n", 1.1, 1.12},
 };
 
