@@ -28,8 +28,8 @@ struct EnsembleStart {
   std::span<const double> parameters;  // [trajectories × p], or [p] for all
   std::span<const double> begin;       // s, [trajectories] or [1]; empty: 0
   std::span<const double> end;         // s, [trajectories] or [1]; before begin: backwards
-  std::span<const double> step_factors;  // [trajectories] in (0, 1], of the lengths that the tolerance asks for; empty: 1. Not of those that go alone
   std::span<const double> times;       // s, ascending: the states wanted on the way, of every trajectory
+  std::span<const double> step_factors{};  // [trajectories] in (0, 1], of the lengths that the tolerance asks for; empty: 1. Not of those that go alone
 };
 
 struct EnsembleOptions {

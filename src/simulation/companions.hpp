@@ -35,7 +35,7 @@ struct CompanionRun {
 struct Companions {
   std::vector<CompanionRun> runs;
   std::vector<double> squares;     // [grid × columns] of the differences, of all runs; infinite where one had no value
-  double factor = 4;               // the error is so many times the root of the mean square of the differences
+  double factor = 3;               // the error is so many times the root of the mean square of the differences
   bool running_maximum = true;     // and the largest of these so far
   bool interrupted = false;
 };

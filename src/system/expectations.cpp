@@ -202,6 +202,8 @@ bool about_subject(Elaboration& e, Expectation& out, const ExpectStatement& s) {
   place.reactions = s.kind != Kind::Integral;  // momenta
   const std::optional<Value> subject = number(e, *s.subject, place);
   if (!subject || !levels(e, out, s)) return false;
+  // Forces of constraints cannot be differentiated: without them the same has to have a meaning.
+  if (subject->order >= 2 && !number(e, *s.subject)) return false;
   out.subject = subject->scalar();
   out.dimension = subject->dimension;
   if (out.kind != Kind::NotConserved && !e.context.depends_on_time(out.subject.id())) warn_identity(e, out);

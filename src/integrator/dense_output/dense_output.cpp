@@ -27,8 +27,11 @@ void DenseOutput::resize(std::size_t freedoms, std::size_t integral_count, int d
 void DenseOutput::copy(const double* first, std::size_t stride) {
   const std::size_t row = padded(freedoms_);
   for (int k = 0; k <= degree_; ++k)
-    for (std::size_t i = 0; i < row; i += 8)  // rows end with whole vectors
-      std::memcpy(coefficients_.data() + static_cast<std::size_t>(k) * row + i, first + static_cast<std::size_t>(k) * stride + i, 8 * sizeof(double));
+    if (stride >= row)  // rows of a workspace end with whole vectors
+      for (std::size_t i = 0; i < row; i += 8)
+        std::memcpy(coefficients_.data() + static_cast<std::size_t>(k) * row + i, first + static_cast<std::size_t>(k) * stride + i, 8 * sizeof(double));
+    else
+      std::copy_n(first + static_cast<std::size_t>(k) * stride, freedoms_, coefficients_.data() + static_cast<std::size_t>(k) * row);
   refer_to(coefficients_.data(), padded(freedoms_));
 }
 

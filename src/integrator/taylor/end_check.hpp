@@ -23,6 +23,8 @@ class EndCheck {
   std::span<const double> rates() const { return rates_; }
   /// Of [n] q̈ by the polynomial and by the equations. h: length of the step.
   bool agrees(std::span<const double> by_polynomial, const double* half_by_equations, std::size_t step, double h) const;
+  /// The same against the fastest coordinate: for a step that halving did not mend.
+  bool agrees_on_the_whole(std::span<const double> by_polynomial, const double* half_by_equations, double h) const;
   /// The same where the first look failed. `roundings`: [n] what rounding makes of q̈.
   bool agrees_but_for_rounding(std::span<const double> by_polynomial, std::span<const double> by_equations, std::span<const double> roundings, double h) const;
 

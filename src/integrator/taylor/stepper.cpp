@@ -132,6 +132,7 @@ Step TaylorStepper::Impl::step(double bound) {
     return result;
   }
   double chosen = choose_length(bound);
+  attempts = 0;
   if (passes_shrinking(chosen, bound, result)) return result;
   if (m > 0 && forces_diverge()) {
     end(result, StepEnding::SingularConstraints, "The constraints are singular near here: the forces that they ask for grow without bound.");
@@ -147,6 +148,7 @@ Step TaylorStepper::Impl::step(double bound) {
     const double left = remaining(bound);
     if (make_step(bound, chosen < std::abs(left) ? std::copysign(chosen, left) : left, result)) return result;
     ++rejected;
+    ++attempts;
     if (!take_back(result)) return result;
   }
 }
@@ -208,6 +210,7 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.end_check.forget();
   s.end_status = KernelStatus::Ok;
   s.last_look = 0;
+  s.noisy = false;
   s.length_at_look = 0;
   s.constraint_residual = 0;
   s.stuck = 0;

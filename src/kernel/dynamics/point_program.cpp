@@ -51,7 +51,7 @@ void PointProgram::call(const FunctionCall& call) {
       cells_[call.out] = std::sinh(a);
       cells_[call.second] = std::cosh(a);
       break;
-    case Op::Function: cells_[call.out] = interpreter::elementary<double>(call.function, a, cells_[call.b]);
+    case Op::Function: cells_[call.out] = interpreter::elementary<double>(call.function, a, cells_[call.b]); break;
     case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: case Op::Linear: case Op::Products: case Op::Square:
     case Op::Quotient: case Op::SinCos: case Op::Derivative: case Op::Select: throw unknown_op(call.op, "a call");
   }
