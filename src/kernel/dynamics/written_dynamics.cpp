@@ -122,7 +122,7 @@ class FlatWriter {
         cells_[call.out] = to_.call(Kind::Sinh, a);
         cells_[call.second] = to_.call(Kind::Cosh, a);
         break;
-      case Op::Function: cells_[call.out] = to_.call(call.function, a, call.function == Kind::Atan2 ? at(call.b) : straight::none);
+      case Op::Function: cells_[call.out] = to_.call(call.function, a, call.function == Kind::Atan2 ? at(call.b) : straight::none); break;
       case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: case Op::Linear: case Op::Products: case Op::Square:
       case Op::Quotient: case Op::SinCos: case Op::Derivative: case Op::Select: throw unknown_op(call.op, "a call");
     }
