@@ -333,10 +333,15 @@ TEST_CASE("a coarser tolerance takes fewer steps, at the order that it asks for"
   const EnsembleResult rough = advance_ensemble(kepler(), input.start(), coarse);
   CHECK(rough.order == taylor_order(1e-8));
   CHECK(fine.order == taylor_order(0));
+  std::size_t rough_steps = 0, fine_steps = 0;  // a circle takes few steps at the highest order
+  double rough_drift = 0, fine_drift = 0;
   for (std::size_t i = 0; i < input.count(); ++i) {
-    CHECK(rough.endings[i].steps < fine.endings[i].steps);
-    CHECK(rough.endings[i].energy_drift < 1e-6);
+    rough_steps += rough.endings[i].steps, fine_steps += fine.endings[i].steps;
+    rough_drift = std::max(rough_drift, rough.endings[i].energy_drift), fine_drift = std::max(fine_drift, fine.endings[i].energy_drift);
   }
+  CHECK(rough_steps < fine_steps);
+  CHECK(rough_drift > fine_drift);
+  CHECK(rough_drift < 1e-6);
 }
 
 TEST_CASE("what a backend throws comes out of the call") {
