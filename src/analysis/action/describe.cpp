@@ -1,6 +1,9 @@
 #include "analysis/action/fields.hpp"
 #include "analysis/action/inertia.hpp"
+#include "analysis/action/kinks.hpp"
 #include "analysis/action/problem.hpp"
+
+#include <maupertuis/switch_text.hpp>
 
 #include <fmt/format.h>
 
@@ -68,6 +71,13 @@ void fill_second(Problem& problem, const Refined& refined, const FixedEnds& fixe
   out.check = fields.check;
 }
 
+std::string no_index_at(const KinkPassed& kink, const Problem& problem) {
+  const std::string where = switch_text(kink.difference, problem.equations.order);
+  return fmt::format("The path passes a kink of L{} near {}, where the second variation has a part that the counts do not know: "
+                     "there is no index.",
+                     where.empty() ? "" : ", " + where + ",", place(kink.t, problem.model.system));
+}
+
 }  // namespace
 
 StationaryPath describe(Problem& problem, const Refined& refined, const ActionEnds& ends, const SingularEnds& singular,
@@ -87,6 +97,10 @@ StationaryPath describe(Problem& problem, const Refined& refined, const ActionEn
   momentum_at(problem.functional, fine, last, out.end_momentum, out.end_energy);
   const FixedEnds fixed = fixed_of(ends);
   const Vector least = problem.least(&ends);
+  if (const auto kink = kink_passed(out.path, problem.kinks, problem.model.system)) {
+    out.second.reason = out.check.reason = no_index_at(*kink, problem);
+    return out;
+  }
   fill_second(problem, refined, fixed, least, singular, options, out);
   if (out.second.by_inertia && out.second.by_fields && !out.second.index)
     diagnostics.warning("W1201", {}, "the two counts of a Morse index disagree", out.second.reason,

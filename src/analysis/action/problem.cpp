@@ -1,5 +1,7 @@
 #include "analysis/action/problem.hpp"
 
+#include "analysis/action/kinks.hpp"
+
 #include <maupertuis/evaluate.hpp>
 
 #include <fmt/format.h>
@@ -58,7 +60,7 @@ bool interrupted(const ActionOptions& options, Diagnostics& diagnostics) {
 }
 
 Problem::Problem(const Model& m, const EquationsOfMotion& e)
-    : model(m), equations(e), functional(e), rule(std::make_shared<const Rule>(degree)), typical(Vector::Ones(functional.freedoms())) {
+    : model(m), equations(e), functional(e), rule(std::make_shared<const Rule>(degree)), kinks(kinks_of(e)), typical(Vector::Ones(functional.freedoms())) {
   const MechanicalSystem& system = *e.system;
   for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
     const Coordinate& c = system.coordinates[i];

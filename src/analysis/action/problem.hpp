@@ -23,6 +23,7 @@ struct Problem {
   const EquationsOfMotion& equations;
   Functional functional;
   std::shared_ptr<const Rule> rule;
+  std::vector<Expr> kinks;  // of L: what no count of the index knows
   Vector typical;  // [n] how large coordinates are, before a path is known
 
   Index n() const { return functional.freedoms(); }

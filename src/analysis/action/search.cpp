@@ -2,6 +2,8 @@
 #include "analysis/action/shots.hpp"
 #include "analysis/action/starts.hpp"
 
+#include <maupertuis/switch_text.hpp>
+
 #include <fmt/format.h>
 
 #include <eigen3/Eigen/QR>
@@ -234,6 +236,15 @@ void refuse_no_path(const Search& search, Problem& problem, const ActionEnds& en
                     "the start, as after half a period of a harmonic oscillator. Try other ends, or another duration.");
 }
 
+void warn_of_kinks(const Problem& problem, Diagnostics& diagnostics) {
+  if (problem.kinks.empty()) return;
+  const std::string where = switch_text(problem.kinks.front(), problem.equations.order);
+  diagnostics.warning("W1202", {}, fmt::format("L has a kink{}: paths through it may be missing", where.empty() ? "" : " where " + where),
+                      "The search follows L by its derivatives, which jump there, so that it does not reach all paths that pass the "
+                      "kink: one of a smaller action may be among them.",
+                      "A smooth function, as sqrt(x^2 + d^2) for abs(x), has all its paths found as others have.");
+}
+
 /// The same ends with each angle that is fixed at both some whole turns further.
 std::vector<std::pair<ActionEnds, std::vector<int>>> with_turns(const ActionEnds& ends, const MechanicalSystem& system, std::size_t turns) {
   std::vector<std::pair<ActionEnds, std::vector<int>>> out{{ends, std::vector<int>(ends.to.size(), 0)}};
@@ -287,6 +298,7 @@ std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOf
     return std::nullopt;
   }
   std::stable_sort(out.paths.begin(), out.paths.end(), [](const auto& a, const auto& b) { return a.action < b.action; });
+  warn_of_kinks(problem, diagnostics);
   return out;
 }
 

@@ -1,5 +1,7 @@
 #include "support.hpp"
 
+#include <algorithm>
+
 using namespace maupertuis;
 
 namespace {
@@ -92,4 +94,27 @@ V = -cos θ
   }
   std::sort(indices.begin(), indices.end());
   CHECK(indices == std::vector<std::size_t>{0, 0, 1, 1, 2});
+}
+
+TEST_CASE("a path through a kink gets no index, and the search says what it may miss") {
+  const ModelText m("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = abs(x)\n");
+  Diagnostics told;
+  const auto through = stationary_paths(m.model, m.equations, fixed_ends({1}, 0, {-1}, 2), {}, told);
+  REQUIRE(through);
+  for (const StationaryPath& p : through->paths) {
+    CHECK_FALSE(p.second.index);
+    CHECK(p.second.reason.find("kink of L, x = 0,") != std::string::npos);
+    CHECK(kind_of(p.second) == "stationary");
+  }
+  REQUIRE(told.items().size() == 1);
+  CHECK(told.items()[0].code == "W1202");
+  // Beside the kink all is as ever: x'' = -1 up to x > 0 all along.
+  const auto beside = stationary_paths(m.model, m.equations, fixed_ends({1}, 0, {1}, 1), {}, told);
+  REQUIRE(beside);
+  const bool minimum = std::any_of(beside->paths.begin(), beside->paths.end(), [](const StationaryPath& p) { return p.second.index == 0u; });
+  CHECK(minimum);
+  // max(x, 0)^2 has a continuous derivative: no kink.
+  const ModelText smooth("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = max(x, 0)^2\n");
+  const PathSearch found = paths_of(smooth, fixed_ends({1}, 0, {-1}, 1));
+  CHECK(found.paths.front().second.index == 0u);
 }
