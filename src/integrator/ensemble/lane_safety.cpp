@@ -6,7 +6,7 @@
 namespace maupertuis::ensemble {
 
 LaneSafety::LaneSafety(const Job& job, const LaneWorkspace& work)
-    : work_(work), n_(job.freedoms), width_(static_cast<std::size_t>(work.width())), order_(job.control.order), parameters_(width_), point_(job.kernel, 1) {
+    : work_(work), n_(job.freedoms), width_(static_cast<std::size_t>(work.width())), order_(job.control.order), parameters_(width_), point_(job.kernel, 1), point_disks_(point_.program()) {
   lanes_.reserve(width_);
   for (std::size_t lane = 0; lane < width_; ++lane)
     lanes_.push_back({taylor::SafeLength(job.kernel.program(), taylor::safe_tolerance(job.options.tolerance)), taylor::EndCheck(n_, job.options.tolerance), std::vector<double>(n_), {}, 0});
@@ -76,7 +76,7 @@ bool LaneSafety::holds_at(std::size_t lane, double t, std::span<const double> q,
 }
 
 bool LaneSafety::holds_but_for_rounding(std::size_t lane, double t, std::span<const double> q, std::span<const double> v) {
-  return taylor::agrees_but_for_rounding(lanes_[lane].end, lanes_[lane].expected, point_of(lane), t, q, v, lanes_[lane].tau);
+  return taylor::agrees_but_for_rounding(lanes_[lane].end, lanes_[lane].expected, point_of(lane), t, q, v, lanes_[lane].tau, point_disks_);
 }
 
 }  // namespace maupertuis::ensemble

@@ -45,6 +45,7 @@ class LaneSafety {
   std::vector<Lane> lanes_;
   std::vector<std::vector<double>> parameters_;  // [lanes]
   KernelWorkspace point_;           // M, and what rounding makes of q̈
+  Disks point_disks_;
   std::size_t point_lane_ = ~std::size_t{0};
   KernelWorkspace& point_of(std::size_t lane);
 };

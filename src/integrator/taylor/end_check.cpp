@@ -102,11 +102,10 @@ std::vector<double> acceleration_roundings(std::vector<double> b, std::size_t n,
 
 /// q̈ at the state, what rounding of the formula's values makes of it, and what a change of the state by rounding does.
 bool agrees_but_for_rounding(const EndCheck& check, std::span<const double> by_polynomial, KernelWorkspace& point, double t, std::span<const double> q,
-                             std::span<const double> v, double h) {
+                             std::span<const double> v, double h, Disks& disks) {
   const std::size_t n = q.size(), m = point.program().unknowns - n;
   std::vector<double> here(n), position(n), velocity(n);
   if (point.evaluate(t, q, v) != KernelStatus::Ok) return false;
-  Disks disks(point.program());
   disks.set_constants(point.constants());
   disks.begin({point.coordinate(0), point.row_stride(), 1});
   std::vector<double> roundings = acceleration_roundings(bordered_matrix(point, n, m), n, m, disks, std::abs(h), epsilon);
@@ -151,7 +150,9 @@ bool TaylorStepper::Impl::equations_hold(const KernelWorkspace& at_end) {
   by_polynomial.resize(n);
   dense.accelerations(tau, by_polynomial);
   if (tau == 0 || end_check.agrees(by_polynomial, at_end.coordinate(2), 1, tau)) return true;
-  if (taylor::agrees_but_for_rounding(end_check, by_polynomial, probe, t.hi, q_now, v_now, tau)) return true;
+  const bool rounds = taylor::agrees_but_for_rounding(end_check, by_polynomial, probe, t.hi, q_now, v_now, tau, safe.disks());
+  safe.set_constants(work.constants());  // the disks had those of the point
+  if (rounds) return true;
   // Noise in a coordinate that does not move does not fall with the length of the step.
   constexpr int halvings = 3;
   if (attempts < halvings && !noisy) return false;

@@ -51,8 +51,9 @@ std::vector<double> bordered_matrix(const Work& work, std::size_t freedoms, std:
 /// `length`: of the step; `unit`: the rounding of 1.
 std::vector<double> acceleration_roundings(std::vector<double> bordered, std::size_t freedoms, std::size_t constraints, Disks& disks, double length, double unit);
 
-/// The slow look at the end of a step of length h, where the quick one failed. `point` has the parameters and sides of the step.
+/// The slow look at the end of a step of length h, where the quick one failed. `point` has the parameters and sides of the step; `disks` are of its program,
+/// and have its constants afterwards.
 bool agrees_but_for_rounding(const EndCheck& check, std::span<const double> by_polynomial, KernelWorkspace& point, double t, std::span<const double> q,
-                             std::span<const double> v, double h);
+                             std::span<const double> v, double h, Disks& disks);
 
 }  // namespace maupertuis::taylor
