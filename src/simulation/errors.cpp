@@ -94,8 +94,7 @@ class Teller {
       double of_unit = 0;
       for (std::size_t other = 0; other < 2 * n_; ++other)
         if (names[other].unit == names[c].unit) of_unit = std::max(of_unit, sizes[other]);
-      std::size_t g = plan_.grid.size();
-      while (g > 0 && is_lost(errors_[(g - 1) * columns_ + c], sizes[c], of_unit)) --g;
+      const std::size_t g = first_lost(c, sizes[c], of_unit);
       if (g == plan_.grid.size()) {
         everything = everything && sizes[c] == 0;
         continue;
@@ -104,6 +103,18 @@ class Teller {
       note_loss(c);
     }
     result_.uncertain.everything = everything && !result_.uncertain.columns.empty();
+  }
+
+  /// The first row that is lost and from which on most are: companions that go ways of their own come near each other by chance now and then.
+  std::size_t first_lost(std::size_t column, double size, double of_unit) const {
+    constexpr double most = 0.75;
+    const std::size_t rows = plan_.grid.size();
+    std::size_t first = rows, lost = 0;
+    for (std::size_t g = rows; g-- > 0;) {
+      if (!is_lost(errors_[g * columns_ + column], size, of_unit)) continue;
+      if (static_cast<double>(++lost) >= most * static_cast<double>(rows - g)) first = g;
+    }
+    return first;
   }
 
   static bool is_lost(double error, double size, double of_unit) { return error > 0 && error >= saturated * size && error >= noise * of_unit; }
