@@ -48,7 +48,7 @@ struct Followed {
     work.evaluate(0, zero, zero);
     retrace = std::make_unique<Retrace<double>>(program, order, std::span(&slot, 1));
     disks = std::make_unique<Disks>(program, std::span(&slot, 1));
-    for (const Constant& constant : program.constants) constants.push_back(constant.kind == Kind::Number ? constant.value : 1.0);
+    constants.assign(work.constants(), work.constants() + program.constants.size());  // what packing adds comes behind them
     retrace->set_constants(constants.data());
     std::vector<std::vector<double>> rows(order + 2, std::vector<double>(2));
     for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = {c[0][k], c[1][k]};
@@ -71,6 +71,20 @@ struct Case {
   double x0 = 0.6;
   double singular = infinity;  // distance of the nearest singularity from x₀ along x
 };
+
+/// By its power series, which does for |z| < 3.
+Complex error_function(Complex z) {
+  Complex sum = 0, power = z;  // (−1)ⁿ z^{2n+1}/n!
+  for (int n = 0; n < 80; ++n, power *= -z * z / double(n)) sum += power / (2.0 * n + 1);
+  return 2 / std::sqrt(std::numbers::pi) * sum;
+}
+
+/// w eʷ = z by Newton's method, from the principal side.
+Complex lambert(Complex z) {
+  Complex w = std::log(1.0 + z);
+  for (int turn = 0; turn < 60; ++turn) w -= (w * std::exp(w) - z) / (std::exp(w) * (w + 1.0));
+  return w;
+}
 
 const std::vector<Case>& cases() {
   const Complex i(0, 1);
@@ -99,6 +113,8 @@ const std::vector<Case>& cases() {
       {"atanh x", [](Followed& f) { return apply(Kind::Atanh, f.x); }, [](Complex x, Complex, Complex) { return std::atanh(x); }, 0.6, 0.4},
       {"atan2(y, x)", [](Followed& f) { const Expr both[] = {f.y, f.x}; return f.context.function(Kind::Atan2, both); },
        [i](Complex x, Complex y, Complex) { return -i * std::log((x + i * y) / std::sqrt(x * x + y * y)); }, 0.6},
+      {"erf 2x", [](Followed& f) { return apply(Kind::Erf, f.x * Rational(2)); }, [](Complex x, Complex, Complex) { return error_function(2.0 * x); }},
+      {"lambert_w x", [](Followed& f) { return apply(Kind::LambertW, f.x); }, [](Complex x, Complex, Complex) { return lambert(x); }, 0.6, 0.6 + std::exp(-1.0)},
       {"logistic", [](Followed& f) { return pow(f.context.number(1) + apply(Kind::Exp, f.x * Rational(-300)), -1); },
        [](Complex x, Complex, Complex) { return 1.0 / (1.0 + std::exp(-300.0 * x)); }, 0.6, 0.6},
       {"sin(5 t) x + t^3", [](Followed& f) { return sin(f.t * Rational(5)) * f.x + pow(f.t, 3); },
