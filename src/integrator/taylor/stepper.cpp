@@ -76,11 +76,14 @@ void TaylorStepper::Impl::advance(double bound, double h, const Crossing& crossi
 /// Whether steps shrink as the inverse square of their number, or faster, and what is left would take more of them than a run has: looked at where their
 /// number doubles, so that equal runs end alike.
 bool TaylorStepper::Impl::comes_to_a_stop(double bound) {
-  constexpr std::size_t first_look = 8192;
+  constexpr std::size_t first_look = 4096;
   constexpr double shrinks = 0.3, too_many = 1e8;
   if (steps < first_look || (steps & (steps - 1)) != 0 || steps == last_look) return false;
+  // The mean of the steps since the last look: single ones differ by more than that.
+  const double mean = std::abs(t.hi - time_at_look) / static_cast<double>(steps - last_look);
   last_look = steps;
-  const double before = std::exchange(length_at_look, std::abs(t.hi - begin.hi));
+  time_at_look = t.hi;
+  const double before = std::exchange(length_at_look, mean);
   return before > 0 && length_at_look < shrinks * before && std::abs(remaining(bound)) > too_many * length_at_look;
 }
 
@@ -212,6 +215,7 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.last_look = 0;
   s.noisy = false;
   s.length_at_look = 0;
+  s.time_at_look = t;
   s.constraint_residual = 0;
   s.stuck = 0;
   // Before any step the dense output is the starting point.

@@ -120,7 +120,7 @@ struct TaylorStepper::Impl {
   std::vector<double> largest_row;       // [constraints] of A so far
   std::size_t steps = 0, switches = 0, rejected = 0;
   std::size_t last_look = 0;             // the number of steps at which comes_to_a_stop() looked
-  double length_at_look = 0;             // of a step then
+  double length_at_look = 0, time_at_look = 0;  // mean of the steps before it, and the time then
   bool noisy = false;                    // halving did not mend the last steps, see equations_hold()
   int attempts = 0;                      // at the present step that were taken back
   KernelStatus end_status = KernelStatus::Ok;  // of the last look at an end
