@@ -45,3 +45,15 @@ TEST_CASE("a run that cannot go on says why and where, soon") {
     CHECK_MESSAGE(trouble.empty(), name << ": " << trouble << " " << run.err);
   }
 }
+
+TEST_CASE("a long chaotic run is not taken for one whose steps go on shrinking") {
+  const Folder folder;
+  const std::string text = "system d\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord a, b : angle\npoint A mass m at l (sin a, -cos a)\n"
+                           "point B mass m at A + l (sin b, -cos b)\ngravity (0, -g)\nstart a = 120 deg, b = -10 deg\nrun 2000000 s\n";
+  // The looks are at 4096, 8192, … steps; 3 s carry it past a million, and Ctrl-C ends it.
+  const Outcome run = shell("timeout --signal=INT 3 \"$MAUP\" simulate " + folder.write("long.lag", text) + " --no-errors --json --backend interpreter");
+  const auto document = nlohmann::json::parse(run.out, nullptr, false);
+  REQUIRE_FALSE(document.is_discarded());
+  CHECK(document["ended"].value("reason", "").find("interrupted") != std::string::npos);
+  CHECK(document["statistics"]["steps"] > 16384);
+}
