@@ -55,6 +55,8 @@ class Disks {
   /// What rounding makes of R_j at s = 0, in units of the rounding of 1: each value adds its own size to what its operands hand on, and a derivative
   /// divides by `length`, over which its operand is known. Cost: some 10 operations an instruction for each length.
   double residual_rounding(std::size_t j, double length);
+  /// [slots] of polynomials in t; very large for all else.
+  std::span<const int> degrees() const { return degree_; }
   std::size_t residuals() const { return residual_.size(); }
   double tail(std::uint32_t slot) const { return tail_[slot]; }
   double reach(std::uint32_t slot) const { return reach_[slot]; }

@@ -99,6 +99,10 @@ enum class KernelStatus {
 /// c_1 and c_1 after τ, Σ_{k≥2} c_k τ^{k−1} and Σ_{k≥2} k c_k τ^{k−1}. Rows and results are read and written in eights.
 using PolynomialIncrements = void(const double* first, std::size_t stride, std::size_t columns, int degree, double tau, double* dq, double* dv);
 PolynomialIncrements polynomial_increments;
+/// Σ_{k≥2} k (k − 1) c_k τ^{k−2} of the same polynomials; written in eights.
+void polynomial_accelerations(const double* first, std::size_t stride, std::size_t columns, int degree, double tau, double* a);
+/// Σ_{k≥1} w_k |c_k| of each column for three rows of weights [3][degree + 1]; sizes: [3][columns], rounded up to eights.
+void polynomial_sizes(const double* first, std::size_t stride, std::size_t columns, int degree, const double* weights, double* sizes);
 /// q += (dq + q̇) τ and q̇ += dv with compensation: q and q̇ are sums hi + lo, pair by pair [count][2]. Results may take the place of what they come from.
 void add_increments(std::size_t count, double tau, const double* dq, const double* dv, const double* q, const double* v, double* q_out, double* v_out);
 

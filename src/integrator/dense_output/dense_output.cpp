@@ -51,14 +51,9 @@ void DenseOutput::advance(double tau, std::span<Compensated> q_out, std::span<Co
   }
 }
 
-void DenseOutput::accelerations(double tau, std::span<double> a) const {
-  std::fill(a.begin(), a.end(), 0.0);
-  double power = 1;
-  for (int k = 2; k <= degree_; ++k, power *= tau) {
-    const double* const row = first_ + static_cast<std::size_t>(k) * stride_;
-    const double weight = k * (k - 1) * power;
-    for (std::size_t i = 0; i < a.size(); ++i) a[i] += row[i] * weight;
-  }
+std::span<const double> DenseOutput::accelerations(double tau) const {
+  polynomial_accelerations(first_, stride_, freedoms_, degree_, tau, increments_.data());
+  return {increments_.data(), freedoms_};
 }
 
 }  // namespace maupertuis

@@ -39,8 +39,8 @@ class DenseOutput {
   void advance(double tau, std::span<Compensated> q_out, std::span<Compensated> v_out,
                std::span<Compensated> integrals_out) const;
 
-  /// q̈ after τ. [n]
-  void accelerations(double tau, std::span<double> a) const;
+  /// [n] q̈ after τ, until the next call of this or advance().
+  std::span<const double> accelerations(double tau) const;
 
   std::vector<Compensated> q, v;        // [n] at τ = 0
   std::vector<Compensated> integrals;   // [m] at τ = 0

@@ -9,7 +9,7 @@ LaneSafety::LaneSafety(const Job& job, const LaneWorkspace& work)
     : work_(work), n_(job.freedoms), width_(static_cast<std::size_t>(work.width())), order_(job.control.order), parameters_(width_), point_(job.kernel, 1), point_disks_(point_.program()) {
   lanes_.reserve(width_);
   for (std::size_t lane = 0; lane < width_; ++lane)
-    lanes_.push_back({taylor::SafeLength(job.kernel.program(), taylor::safe_tolerance(job.options.tolerance)), taylor::EndCheck(n_, job.options.tolerance), std::vector<double>(n_), {}, 0});
+    lanes_.push_back({taylor::SafeLength(job.kernel.program(), order_, taylor::safe_tolerance(job.options.tolerance)), taylor::EndCheck(n_, job.options.tolerance), std::vector<double>(n_), {}, 0});
 }
 
 /// The kernel at one point of a lane's motion.
@@ -46,7 +46,7 @@ double LaneSafety::within(std::size_t lane, double t, double wanted, double left
     if (point.evaluate(t, q, v) == KernelStatus::Ok) l.safe.set_momenta(l.end.rates(), point);
   }
   const std::size_t row = static_cast<std::size_t>(work_.coordinate(1) - work_.coordinate(0));
-  return l.safe.within({work_.coordinate(0) + lane, row, order_, 1, width_}, wanted, left);
+  return l.safe.within({work_.coordinate(0) + lane, row, order_, 1, width_}, t, wanted, left);
 }
 
 void LaneSafety::expect(std::size_t lane, double tau) {

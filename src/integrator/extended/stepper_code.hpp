@@ -9,7 +9,7 @@ template <class T>
 Stepper<T>::Stepper(const Kernel& kernel, std::span<const T> parameters, const ExtendedOptions& options, double log2_tolerance)
     : kernel_(kernel), options_(options), log2_tolerance_(log2_tolerance), control_(step_control(log2_tolerance, options.order)),
       work_(kernel, control_.order), probe_(kernel, 1), n_(kernel.freedoms()), switch_state_(kernel.switches().size()),
-      event_state_(kernel.events()), safe_(work_.program(), 1e4 * std::exp2(log2_tolerance)) {
+      event_state_(kernel.events()), safe_(work_.program(), control_.order, 1e4 * std::exp2(log2_tolerance)) {
   if (watches()) {
     std::vector<Slot> slots = work_.program().switch_slots;
     slots.insert(slots.end(), work_.program().events.begin(), work_.program().events.end());
@@ -289,7 +289,7 @@ double Stepper<T>::safe_length(double log2_wanted, double log2_left) {
   take_rough_constants();
   safe_.set_constants(rough_constants_.data());
   const double safe = safe_.within(rows_.of(work_.coordinate(0), work_.row_stride(), control_.order, static_cast<int>(std::floor(log2_most))),
-                                   std::exp2(log2_wanted), std::exp2(log2_left));
+                                   static_cast<double>(t_), std::exp2(log2_wanted), std::exp2(log2_left));
   return safe >= std::exp2(log2_wanted) ? log2_wanted : std::log2(safe);
 }
 

@@ -147,8 +147,7 @@ bool TaylorStepper::Impl::settles(double bound, const Crossing& crossing, Step& 
 
 bool TaylorStepper::Impl::equations_hold(const KernelWorkspace& at_end) {
   const double tau = (t.hi - begin.hi) + (t.lo - begin.lo);  // as the state was advanced: the rounding of t counts in short steps
-  by_polynomial.resize(n);
-  dense.accelerations(tau, by_polynomial);
+  const std::span<const double> by_polynomial = dense.accelerations(tau);
   if (tau == 0 || end_check.agrees(by_polynomial, at_end.coordinate(2), 1, tau)) return true;
   const bool rounds = taylor::agrees_but_for_rounding(end_check, by_polynomial, probe, t.hi, q_now, v_now, tau, safe.disks());
   safe.set_constants(work.constants());  // the disks had those of the point

@@ -31,27 +31,57 @@ double rounded_down(double h) {
   return std::ldexp(std::floor(mantissa * 256) / 256, exponent);
 }
 
+/// Of a disk's radius to the length of a step: so that x^p is far below the tolerance. 5.8 at order 20 and rounding level.
+double usual_ratio(int order, double tolerance) { return std::clamp(std::pow(4e3 / tolerance, 1.0 / order), 2.0, 16.0); }
+
 }  // namespace
 
-SafeLength::SafeLength(const Program& program, double tolerance) : disks_(program), tolerance_(tolerance) {}
+SafeLength::SafeLength(const Program& program, int order, double tolerance)
+    : disks_(program), usual_ratio_(usual_ratio(order, tolerance)), known_(program, disks_.degrees(), usual_ratio_), constants_(program.constants.size()),
+      allowed_(disks_.residuals()), tolerance_(tolerance), order_(order), ratio_(usual_ratio_) {}
 
 void SafeLength::forget() {
+  masses_.clear();
   momenta_.clear();
   momentum_rates_.clear();
   asked_ = asked_momenta_ = 0;
   needs_coefficients_ = false;
-  ratio_ = 4.5;
+  ratio_ = usual_ratio_;
+  known_.forget();
+  allow();
   best_radius_ = radius_ = 0;
 }
 
+void SafeLength::set_constants(const double* constants) {
+  disks_.set_constants(constants);
+  if (std::equal(constants_.begin(), constants_.end(), constants)) return;
+  constants_.assign(constants, constants + constants_.size());
+  known_.forget();
+}
+
+void SafeLength::allow() {
+  for (std::size_t j = 0; j < allowed_.size(); ++j) allowed_[j] = tolerance_ * momentum(j);
+}
+
 bool SafeLength::wants_momenta(std::span<const double> rates) {
-  constexpr std::size_t most = 64;      // unknowns: M costs n²
+  constexpr std::size_t most = 300;     // unknowns: M costs n²
+  constexpr std::size_t usual = 16;
   constexpr double grown = 1.5;
   if (rates.size() > most) return false;
-  if (momentum_rates_.empty() || ++asked_momenta_ % period_of_momenta == 0) return true;
-  for (std::size_t i = 0; i < rates.size(); ++i)
-    if (rates[i] > grown * momentum_rates_[i]) return true;
+  if (masses_.empty() || ++asked_momenta_ % (period_of_momenta * (1 + rates.size() / usual)) == 0) return true;
+  bool grows = false;
+  for (std::size_t i = 0; i < rates.size(); ++i) grows |= rates[i] > grown * momentum_rates_[i];
+  if (grows) find_momenta(rates);
   return false;
+}
+
+void SafeLength::find_momenta(std::span<const double> rates) {
+  const std::size_t n = rates.size();
+  momentum_rates_.assign(rates.begin(), rates.end());
+  momenta_.assign(disks_.residuals(), 0.0);
+  for (std::size_t j = 0; j < momenta_.size(); ++j)
+    for (std::size_t k = 0; k < n; ++k) momenta_[j] += masses_[j * n + k] * rates[k];
+  allow();
 }
 
 double SafeLength::momentum(std::size_t j) const { return j < momenta_.size() ? std::max(momenta_[j], rest) : rest; }
@@ -100,12 +130,30 @@ double SafeLength::search(double most) {
   return best;
 }
 
-double SafeLength::within(const SlotCoefficients& coefficients, double wanted, double most) {
-  if (!is_needed()) return wanted;
-  order_ = coefficients.order;
+/// By what was learned of motions of these sizes: first by the momenta, then by the rounding of R here.
+bool SafeLength::is_known(const SlotCoefficients& coefficients, double time, double h) {
+  using enum KnownLengths::Answer;
+  const KnownLengths::Answer answer = known_.ask(coefficients, time, h);
+  if (answer != Unknown) return answer == Safe;
+  known_.bound(constants_.data(), false);
+  if (known_.accept(allowed_)) return true;
   disks_.begin(coefficients);
+  allowed_by_rounding_.resize(allowed_.size());
+  for (std::size_t j = 0; j < allowed_.size(); ++j)
+    allowed_by_rounding_[j] = std::max(allowed_[j], known_.length() * tolerance_ * disks_.residual_rounding(j, known_.radius()));
+  if (known_.accept(allowed_by_rounding_)) return true;
+  known_.bound(constants_.data(), true);
+  if (known_.accept(allowed_by_rounding_)) return true;
+  known_.give_up();
+  return false;
+}
+
+double SafeLength::within(const SlotCoefficients& coefficients, double time, double wanted, double most) {
+  if (!is_needed()) return wanted;
   const double h = std::min(wanted, most);
   if (!(h > 0)) return wanted;
+  if (is_known(coefficients, time, h)) return wanted;
+  disks_.begin(coefficients);
   // What was right in the last step is asked first: the whole length by the rules, or with the coefficients where those have to help.
   using enum Disks::Depth;
   const double radius = ratio_ * h;

@@ -1,4 +1,6 @@
 #pragma once
+#include "integrator/taylor/known_lengths.hpp"
+
 #include <maupertuis/disks.hpp>
 
 #include <cmath>
@@ -15,33 +17,35 @@ namespace maupertuis::taylor {
 class SafeLength {
  public:
   /// The program must outlive this.
-  SafeLength(const Program& program, double tolerance);
+  SafeLength(const Program& program, int order, double tolerance);
 
   void forget();
   /// False: R is linear in q, and any length is safe.
   bool is_needed() const { return disks_.residual_has_tails(); }
-  void set_constants(const double* constants) { disks_.set_constants(constants); }
-  /// Whether velocities have grown so much since the last set_momenta, or that lies so far back, that momenta are to be found anew. M changes along the
-  /// motion, but its size is all that counts. rates: [n] the largest velocities so far.
+  void set_constants(const double* constants);
+  /// Whether M is to be looked at for the momenta: at the beginning, and from time to time, since it changes along the motion, but its size is all that counts.
+  /// In between momenta follow velocities that grow. rates: [n] the largest velocities so far.
   bool wants_momenta(std::span<const double> rates);
-  /// Σ_k |M_jk| rate_k with M of the point that the workspace holds.
+  /// Σ_k |M_jk| rate_k, and of constraints Σ_k |A_jk| rate_k, with M and A of the point that the workspace holds.
   template <class Work>
   void set_momenta(std::span<const double> rates, const Work& work) {
-    momentum_rates_.assign(rates.begin(), rates.end());
-    momenta_.resize(rates.size(), 0.0);
-    for (std::size_t j = 0; j < rates.size(); ++j) {
-      double sum = 0;
-      for (std::size_t k = 0; k < rates.size(); ++k) sum += std::abs(static_cast<double>(work.mass(j, k))) * rates[k];
-      momenta_[j] = std::max(momenta_[j], sum);
-    }
+    const std::size_t n = rates.size();
+    masses_.resize(disks_.residuals() * n, 0.0);
+    for (std::size_t j = 0; j < disks_.residuals(); ++j)
+      for (std::size_t k = 0; k < n; ++k)
+        masses_[j * n + k] = std::max(masses_[j * n + k], std::abs(static_cast<double>(j < n ? work.mass(j, k) : work.constraint_matrix(j - n, k))));
+    find_momenta(rates);
   }
   /// The largest safe length up to `wanted` (> 0, may be infinite) for steps up to `most` (finite). 0: none was found.
-  double within(const SlotCoefficients& coefficients, double wanted, double most);
+  double within(const SlotCoefficients& coefficients, double time, double wanted, double most);
   /// Bounds that `within` left, at the radius it chose.
   Disks& disks() { return disks_; }
   double radius() const { return radius_; }
 
  private:
+  void find_momenta(std::span<const double> rates);
+  void allow();
+  bool is_known(const SlotCoefficients& coefficients, double time, double h);
   bool passes(double h);
   bool passes_on(double radius, double h, Disks::Depth depth);
   double allowed();
@@ -49,11 +53,17 @@ class SafeLength {
   double momentum(std::size_t j) const;
 
   Disks disks_;
+  double usual_ratio_;
+  KnownLengths known_;
+  std::vector<double> constants_;      // [constants] that the known lengths belong to
+  std::vector<double> allowed_;        // [residuals] tolerance · momentum
+  std::vector<double> allowed_by_rounding_;
   double tolerance_;
-  int order_ = 0;
-  std::vector<double> momenta_, momentum_rates_;  // [n] or empty; the rates that they belong to
+  int order_;
+  std::vector<double> masses_;                    // [residuals][n] the largest |M| and |A| so far; empty: none
+  std::vector<double> momenta_, momentum_rates_;  // [residuals] or empty; [n] the rates that they belong to
   unsigned asked_momenta_ = 0;
-  double ratio_ = 4.5;                 // radius over length that was right last
+  double ratio_;                       // radius over length that was right last
   double best_radius_ = 0;            // of the last search; 0: none yet
   double radius_ = 0;
   bool needs_coefficients_ = false;   // since the rules alone did not do in the last steps

@@ -107,7 +107,7 @@ double TaylorStepper::Impl::choose_length(double bound) {
   if (is_at_rest()) chosen = std::numeric_limits<double>::infinity();
   if (!switch_state.empty() || first) safe.set_constants(work.constants());
   renew_momenta();
-  return safe.within({work.coordinate(0), work.row_stride(), control.order, 1}, chosen, left);
+  return safe.within({work.coordinate(0), work.row_stride(), control.order, 1}, t.hi, chosen, left);
 }
 
 Step TaylorStepper::Impl::step(double bound) {

@@ -16,7 +16,7 @@ namespace maupertuis {
 struct TaylorStepper::Impl {
   Impl(const Kernel& k, std::span<const double> parameters, const TaylorOptions& o)
       : kernel(k), options(o), control(taylor::step_control(o.tolerance, o.order)), work(k, control.order),
-        probe(k, 1), n(k.freedoms()), m(k.constraints()), safe(work.program(), taylor::safe_tolerance(o.tolerance)), end_check(n, o.tolerance),
+        probe(k, 1), n(k.freedoms()), m(k.constraints()), safe(work.program(), control.order, taylor::safe_tolerance(o.tolerance)), end_check(n, o.tolerance),
         turns(k), dense_turns(k), switch_state(k.switches().size()), event_state(k.events()) {
     work.set_parameters(parameters);
     probe.set_parameters(parameters);
@@ -103,7 +103,6 @@ struct TaylorStepper::Impl {
   std::vector<Compensated> q, v, integrals;
   std::vector<double> q_now, v_now;      // [n] their leading parts
   std::vector<double> dq, dv;            // [n] back to the constraints
-  std::vector<double> by_polynomial;     // [n] q̈ at the end of a step
   double constraint_residual = 0;
   DenseOutput dense;
   taylor::Turns turns, dense_turns;      // of q, and of the last step

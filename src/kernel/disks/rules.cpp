@@ -1,7 +1,6 @@
 #include "kernel/disks/node.hpp"
+#include "kernel/disks/slopes.hpp"
 
-#include <maupertuis/kinds.hpp>
-#include <maupertuis/lambert_w.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +13,6 @@ namespace maupertuis {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double half_pi = 1.5707963267948966;
 
 double power_of(double base, double exponent) { return exponent == 0 ? 1.0 : std::pow(base, exponent); }
 
@@ -183,54 +181,21 @@ Disks::Bounds Disks::chosen(const Instruction& i) const {
 /// The reach of f(w) from the largest |f′| on the disk of w.
 Disks::Bounds Disks::function(const Node& node) const {
   const Instruction& i = node.instruction;
-  const double w = centre(i.a), size = std::abs(w), d = reach_[i.a], value = std::abs(centre(i.out));
+  const double w = centre(i.a), d = reach_[i.a], value = std::abs(centre(i.out));
   if (d == 0 && (i.b == no_slot || reach_[i.b] == 0)) return {0, 0, value, value};
   if (!(d < infinity)) return {infinity, infinity, 0, infinity};
-  const auto by_slope = [&](double slope) { return Bounds{slope >= 0 ? slope * d : infinity, slope >= 0 ? slope * d : infinity, 0, infinity}; };
-  const auto inverse = [](double x) { return x > 0 ? 1 / x : infinity; };
-  const auto away = [](double x) { return std::max(0.0, x); };
-  switch (i.function) {
-    case Kind::Exp: {
-      const double high = std::exp(w + d), reach = high * std::min(1.0, d);
-      return {reach, reach, std::exp(w - d), high};
-    }
-    case Kind::Log: return by_slope(inverse(low_[i.a]));
-    case Kind::Tan: {  // 1/cos²
-      const double cosh = std::cosh(d), sinh = std::sinh(d), c = std::abs(std::cos(w)), s = std::abs(std::sin(w));
-      const double least = away(c - (c * (cosh - 1) + s * sinh));
-      return by_slope(inverse(least * least));
-    }
-    case Kind::Asin:
-    case Kind::Acos: return by_slope(inverse(std::sqrt(away(std::abs(1 - w) - d) * away(std::abs(1 + w) - d))));
-    case Kind::Atan: {
-      const double least = away(std::hypot(1.0, w) - d);
-      return by_slope(inverse(least * least));
-    }
-    case Kind::Tanh: {  // |cosh w| ≥ sinh |Re w|, and ≥ cos |Im w|
-      const double least = std::max(d < half_pi ? std::cos(d) : 0.0, size > d ? std::sinh(size - d) : 0.0);
-      return by_slope(inverse(least * least));
-    }
-    case Kind::Asinh: return by_slope(inverse(away(std::hypot(1.0, w) - d)));
-    case Kind::Acosh: return by_slope(inverse(std::sqrt(away(w - 1 - d) * away(w + 1 - d))));
-    case Kind::Atanh: return by_slope(inverse(away(std::abs(1 - w) - d) * away(std::abs(1 + w) - d)));
-    case Kind::Atan2: {  // |dφ| ≤ (|dx| + |dy|)/|x ± iy|
-      const double both = d + reach_[i.b], far = std::hypot(w, centre(i.b)) - both;
-      const double reach = far > 0 ? both / far : infinity;
-      return {reach, reach, 0, infinity};
-    }
-    case Kind::Erf: {  // |exp(−w²)| = exp(−Re w²), largest on the rim: in front of the centre, or beside it
-      const double real = size <= 2 * d ? 0.5 * size * size - d * d : (size - d) * (size - d);
-      return by_slope(1.1283791670955126 * std::exp(-real));
-    }
-    case Kind::LambertW: {  // W = ∫ z/(z + t) dσ(t) over t ≥ 1/e with dσ ≥ 0, so that |W′(z)| ≤ W′(Re z)
-      const double next = w - d;   // towards the branch point −1/e
-      return by_slope(next > -0.367879441171 ? inverse(next + std::exp(lambert_w(next))) : infinity);
-    }
-    case Kind::Number: case Kind::Pi: case Kind::Symbol: case Kind::Sum: case Kind::Product: case Kind::Power: case Kind::TimeDerivative:
-    case Kind::Sin: case Kind::Cos: case Kind::Sinh: case Kind::Cosh: case Kind::Abs: case Kind::Sign: case Kind::Step: case Kind::Min:
-    case Kind::Max: case Kind::Piecewise: case Kind::Less: case Kind::LessEqual: case Kind::And: case Kind::Or: break;
+  if (i.function == Kind::Exp) {
+    const double high = std::exp(w + d), reach = high * std::min(1.0, d);
+    return {reach, reach, std::exp(w - d), high};
   }
-  throw unknown_kind(i.function, "the bounds on disks");
+  if (i.function == Kind::Atan2) {  // |dφ| ≤ (|dx| + |dy|)/|x ± iy|
+    const double both = d + reach_[i.b], far = std::hypot(w, centre(i.b)) - both;
+    const double reach = far > 0 ? both / far : infinity;
+    return {reach, reach, 0, infinity};
+  }
+  const double slope = largest_slope(i.function, w, d, low_[i.a]);
+  const double reach = slope >= 0 ? slope * d : infinity;
+  return {reach, reach, 0, infinity};
 }
 
 }  // namespace maupertuis

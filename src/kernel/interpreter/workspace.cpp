@@ -215,6 +215,12 @@ double KernelWorkspace::radius(double h) const {
 void polynomial_increments(const double* first, std::size_t stride, std::size_t columns, int degree, double tau, double* dq, double* dv) {
   packed::engine().increments(first, stride, columns, degree, tau, dq, dv);
 }
+void polynomial_accelerations(const double* first, std::size_t stride, std::size_t columns, int degree, double tau, double* a) {
+  packed::engine().accelerations(first, stride, columns, degree, tau, a);
+}
+void polynomial_sizes(const double* first, std::size_t stride, std::size_t columns, int degree, const double* weights, double* sizes) {
+  packed::engine().sizes(first, stride, columns, degree, weights, sizes);
+}
 void add_increments(std::size_t count, double tau, const double* dq, const double* dv, const double* q, const double* v, double* q_out, double* v_out) {
   packed::engine().add_increments(count, tau, dq, dv, q, v, q_out, v_out);
 }

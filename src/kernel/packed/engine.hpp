@@ -104,6 +104,10 @@ struct Engine {
   bool (*run_stages_by_inverse)(const Tables&, const InverseSolution&, int first, int last, bool goes_on);
   /// Σ_{k=2..degree} c_k τ^{k−1} and Σ k c_k τ^{k−1} of `count` columns, c_k = first + k · stride: read and written in eights.
   void (*increments)(const double* first, std::size_t stride, std::size_t count, int degree, double tau, double* dq, double* dv);
+  /// Σ_{k=2..degree} k (k − 1) c_k τ^{k−2}, in eights like `increments`.
+  void (*accelerations)(const double* first, std::size_t stride, std::size_t count, int degree, double tau, double* a);
+  /// See maupertuis::polynomial_sizes.
+  void (*sizes)(const double* first, std::size_t stride, std::size_t count, int degree, const double* weights, double* sizes);
   /// See maupertuis::add_increments.
   void (*add_increments)(std::size_t count, double tau, const double* dq, const double* dv, const double* q, const double* v, double* q_out, double* v_out);
   /// See KernelWorkspace::radius.

@@ -22,6 +22,6 @@ namespace maupertuis::packed::MAUP_ENGINE {
 extern const Engine engine;
 const Engine engine{MAUP_ENGINE_NAME,      run_stage,   renew_blocks,     worthwhile_sums_ahead, tangents,   sine_cosine,
                     negative_inverse,      transpose,   solve_by_inverse, rows_are_finite,       add,        cancel, negate, set_accelerations,
-                    correct,               run_stages_by_inverse, increments, add_increments, radius};
+                    correct,               run_stages_by_inverse, increments, accelerations, sizes, add_increments, radius};
 
 }  // namespace maupertuis::packed::MAUP_ENGINE

@@ -23,6 +23,40 @@ void increments(const double* first, std::size_t stride, std::size_t count, int 
   }
 }
 
+/// Σ_{k≥2} k (k − 1) c_k τ^{k−2}, powers apart as above.
+void accelerations(const double* first, std::size_t stride, std::size_t count, int degree, double tau, double* a) {
+  const auto step = static_cast<std::ptrdiff_t>(stride);
+  const Vector t = all(tau), square = t * t, fourth = square * square;
+  for (std::size_t i = 0; i < count; i += lanes) {
+    Vector sum[4] = {all(0), all(0), all(0), all(0)};
+    for (int k = 2 + (degree - 2) / 4 * 4; k >= 2; k -= 4) {
+      const double* const c = first + k * step + static_cast<std::ptrdiff_t>(i);
+#pragma GCC unroll 4
+      for (int r = 0; r < 4; ++r)
+        if (k + r <= degree) sum[r] = sum[r] * fourth + load(c + r * step) * all((k + r) * (k + r - 1));
+    }
+    save(a + i, (sum[0] + sum[1] * t) + (sum[2] + sum[3] * t) * square);
+  }
+}
+
+/// Σ_{k≥1} weights[s][k] |c_k| for s = 0, 1, 2; odd and even k apart, so that half of the operations wait for each other.
+void sizes(const double* first, std::size_t stride, std::size_t count, int degree, const double* weights, double* sizes) {
+  const auto step = static_cast<std::ptrdiff_t>(stride);
+  const std::size_t orders = static_cast<std::size_t>(degree) + 1, padded = (count + lanes - 1) / lanes * lanes;
+  for (std::size_t i = 0; i < count; i += lanes) {
+    Vector sum[2][3] = {{all(0), all(0), all(0)}, {all(0), all(0), all(0)}};
+    const double* const c = first + i;
+    const auto add = [&](int parity, int k) {
+      const Vector size = absolute(load(c + k * step));
+#pragma GCC unroll 3
+      for (std::size_t s = 0; s < 3; ++s) sum[parity][s] += size * all(weights[s * orders + static_cast<std::size_t>(k)]);
+    };
+    for (int k = 1; k < degree; k += 2) add(0, k), add(1, k + 1);
+    if (degree % 2 != 0) add(0, degree);
+    for (std::size_t s = 0; s < 3; ++s) save(sizes + s * padded + i, sum[0][s] + sum[1][s]);
+  }
+}
+
 /// hi + lo += b − lo by Knuth's TwoSum.
 template <class V>
 void add_compensated(V& hi, V& lo, V b) {

@@ -1,0 +1,10 @@
+#pragma once
+#include <maupertuis/expression.hpp>
+
+namespace maupertuis {
+
+/// The largest |f′| of an elementary function of one argument on a disk of radius d > 0 about the real number w; infinite where the disk meets a singularity.
+/// low: a lower bound of |w| on it.
+double largest_slope(Kind function, double w, double d, double low);
+
+}  // namespace maupertuis
