@@ -100,7 +100,7 @@ Batch::Batch(Job& job)
     : job_(job), arithmetic_(best_steps()), n_(job.freedoms), width_(static_cast<std::size_t>(job.expansion->width())),
       work_(job.kernel, job.control.order, job.expansion), safety_(job, work_), lanes_(width_), turns_(width_, taylor::Turns(job.kernel)),
       energy_(job.options.energy_terms), leading_(n_), chosen_(width_), position_(n_),
-      memory_(aligned((4 * n_ + 10) * width_)) {
+      memory_(aligned((8 * n_ + 11) * width_)) {
   if (job.options.energy_terms > 0) point_ = std::make_unique<KernelWorkspace>(job.kernel, 1);
   arrays_.width = width_;
   arrays_.freedoms = n_;
@@ -119,6 +119,7 @@ Batch::Batch(Job& job)
   arrays_.end = end_ = take(1), fresh_ = take(1);
   arrays_.next = next_ = take(1);
   arrays_.factor = factor_ = take(1);
+  arrays_.acceleration = take(n_), arrays_.sizes = take(3 * n_), arrays_.radius = take(1);
   std::fill_n(factor_, width_, job.control.factor);
   arrays_.quality = work_.quality();
   // LinearSolver takes M₀ for singular at a sixteenth of this.
@@ -184,9 +185,9 @@ void Batch::step() {
   const bool wanted = arithmetic_.cut_to_end(arrays_) || rounds_ >= last_round_;
   std::copy_n(chosen_.begin(), width_, arrays_.length);
   if (wanted) look();
-  for (std::size_t lane = 0; lane < width_; ++lane)
-    if (lanes_[lane].active) safety_.expect(lane, arrays_.step[lane]);
   arithmetic_.advance(arrays_);
+  for (std::size_t lane = 0; lane < width_; ++lane)
+    if (lanes_[lane].active) safety_.expect(lane, arrays_.step[lane], arrays_.acceleration + lane);
   ++rounds_;
   for (std::size_t lane = 0; wanted && lane < width_; ++lane) {
     if (lanes_[lane].active && arrays_.reaches[lane] != 0) finish_if_it_holds(lane);
@@ -247,11 +248,13 @@ void Batch::check_ends() {
 /// Lengths that no value of the program forbids, as TaylorStepper has them. The control goes on from what it chose itself.
 void Batch::keep_lengths_safe() {
   std::copy_n(arrays_.length, width_, chosen_.begin());
+  const auto left = [this](std::size_t lane) { return std::abs((end_[lane] - arrays_.t_high[lane]) - arrays_.t_low[lane]); };
+  for (std::size_t lane = 0; lane < width_; ++lane) arrays_.radius[lane] = safety_.radius(arrays_.length[lane], left(lane));
+  arithmetic_.find_sizes(arrays_);
   for (std::size_t lane = 0; lane < width_; ++lane) {
-    const double left = std::abs((end_[lane] - arrays_.t_high[lane]) - arrays_.t_low[lane]);
-    if (!lanes_[lane].active || !(left > 0)) continue;
     const double wanted = arrays_.length[lane];
-    if (wanted > 0) arrays_.length[lane] = safety_.within(lane, arrays_.t_high[lane], wanted, left);
+    if (lanes_[lane].active && left(lane) > 0 && wanted > 0)
+      arrays_.length[lane] = safety_.within(lane, arrays_.t_high[lane], wanted, left(lane), arrays_.sizes + lane);
   }
 }
 

@@ -7,9 +7,11 @@ namespace maupertuis::ensemble {
 
 LaneSafety::LaneSafety(const Job& job, const LaneWorkspace& work)
     : work_(work), n_(job.freedoms), width_(static_cast<std::size_t>(work.width())), order_(job.control.order), parameters_(width_), point_(job.kernel, 1), point_disks_(point_.program()) {
+  const double tolerance = taylor::safe_tolerance(job.options.tolerance);
+  const auto known = taylor::SafeLength::shared_by_motions(job.kernel.program(), order_, tolerance);
   lanes_.reserve(width_);
   for (std::size_t lane = 0; lane < width_; ++lane)
-    lanes_.push_back({taylor::SafeLength(job.kernel.program(), order_, taylor::safe_tolerance(job.options.tolerance)), taylor::EndCheck(n_, job.options.tolerance), std::vector<double>(n_), {}, 0});
+    lanes_.push_back({taylor::SafeLength(job.kernel.program(), order_, tolerance, known), taylor::EndCheck(n_, job.options.tolerance), std::vector<double>(n_), {}, 0});
 }
 
 /// The kernel at one point of a lane's motion.
@@ -35,7 +37,9 @@ void LaneSafety::take_state(std::size_t lane, std::vector<double>& q, std::vecto
   for (std::size_t i = 0; i < n_; ++i) q[i] = work_.coordinate(0)[i * width_ + lane], v[i] = work_.coordinate(1)[i * width_ + lane];
 }
 
-double LaneSafety::within(std::size_t lane, double t, double wanted, double left) {
+double LaneSafety::radius(double wanted, double left) const { return lanes_.front().safe.disk_radius(std::min(wanted, left)); }
+
+double LaneSafety::within(std::size_t lane, double t, double wanted, double left, const double* sizes) {
   Lane& l = lanes_[lane];
   l.end.note_rates(work_.coordinate(1) + lane, work_.coordinate(2) + lane, width_, std::min(wanted, left));
   if (!l.safe.is_needed()) return wanted;
@@ -46,17 +50,13 @@ double LaneSafety::within(std::size_t lane, double t, double wanted, double left
     if (point.evaluate(t, q, v) == KernelStatus::Ok) l.safe.set_momenta(l.end.rates(), point);
   }
   const std::size_t row = static_cast<std::size_t>(work_.coordinate(1) - work_.coordinate(0));
-  return l.safe.within({work_.coordinate(0) + lane, row, order_, 1, width_}, t, wanted, left);
+  return l.safe.within({work_.coordinate(0) + lane, row, order_, 1, width_}, t, wanted, left, sizes);
 }
 
-void LaneSafety::expect(std::size_t lane, double tau) {
+void LaneSafety::expect(std::size_t lane, double tau, const double* acceleration) {
   Lane& l = lanes_[lane];
   l.tau = tau;
-  for (std::size_t i = 0; i < n_; ++i) {
-    double a = 0;
-    for (int k = order_ + 1; k >= 2; --k) a = a * tau + k * (k - 1) * work_.coordinate(k)[i * width_ + lane];
-    l.expected[i] = a;
-  }
+  for (std::size_t i = 0; i < n_; ++i) l.expected[i] = acceleration[i * width_];
 }
 
 bool LaneSafety::holds(std::size_t lane, double t) {

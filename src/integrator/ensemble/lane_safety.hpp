@@ -18,10 +18,12 @@ class LaneSafety {
 
   /// A motion begins in a lane.
   void begin(std::size_t lane, std::span<const double> parameters);
-  /// The largest safe length up to `wanted` for steps up to `left`; both > 0. t: of the lane.
-  double within(std::size_t lane, double t, double wanted, double left);
-  /// The step that the lane is about to make, whose end the next expansion decides on.
-  void expect(std::size_t lane, double tau);
+  /// Of the disk on which sizes are wanted for a step of that length.
+  double radius(double wanted, double left) const;
+  /// The largest safe length up to `wanted` for steps up to `left`; both > 0. t: of the lane; sizes: LaneArrays::sizes from the lane on, at that radius.
+  double within(std::size_t lane, double t, double wanted, double left, const double* sizes);
+  /// The step that the lane has made, whose end the next expansion decides on, and q̈ there by the polynomial: [n], `width` apart.
+  void expect(std::size_t lane, double tau, const double* acceleration);
   /// Whether q̈ of the present expansion is what the last step ended with.
   bool holds(std::size_t lane, double t);
   /// The same at an end that is not expanded any more. q, v: [n].

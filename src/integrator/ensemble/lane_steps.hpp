@@ -23,6 +23,9 @@ struct LaneArrays {
   const double* quality;     // [width] of the solution; at most `least_quality`: not to be trusted
   double least_quality;
   const double* next;        // [width] requested time; infinity: none is left
+  double* acceleration;      // [n][width] q̈ by the polynomial, after the step
+  double* radius;            // [width] of a disk
+  double* sizes;             // [3][n][width] on |s| ≤ radius: Σ_{k≥1} |c_k| r^k, and of the first two derivatives all terms
 };
 
 struct LaneSteps {
@@ -34,8 +37,10 @@ struct LaneSteps {
   bool (*cut_to_end)(const LaneArrays& lanes);
   /// Whether some |q| is above the limit.
   bool (*exceed)(const LaneArrays& lanes, double limit);
-  /// The state and the time after `step`.
+  /// The state, the time and the accelerations after `step`.
   void (*advance)(const LaneArrays& lanes);
+  /// sizes from radius.
+  void (*find_sizes)(const LaneArrays& lanes);
 };
 
 /// Null pointers where the build lacks the instruction set.

@@ -89,11 +89,14 @@ class Steps {
     for (std::size_t i = 0; i < a_.freedoms; ++i) {
       const std::size_t at = i * a_.width;
       const double* c = a_.coefficients + static_cast<std::size_t>(a_.order + 1) * a_.row + at;
-      V dq{}, dv{};  // Σ c_k τ^{k−2}, Σ k c_k τ^{k−2} over k ≥ 2
+      V dq{}, dv{}, a{};  // Σ c_k τ^{k−2}, Σ k c_k τ^{k−2}, Σ k (k − 1) c_k τ^{k−2} over k ≥ 2
       for (int k = a_.order + 1; k >= 2; --k, c -= a_.row) {
+        const V of_rate = get(c) * a_.whole[k];
         dq = fused(dq, tau, get(c));
-        dv = fused(dv, tau, get(c) * a_.whole[k]);
+        dv = fused(dv, tau, of_rate);
+        a = fused(a, tau, of_rate * a_.whole[k - 1]);
       }
+      put(a_.acceleration + at, a);
       add(a_.q_high + at, a_.q_low + at, fused(dq, tau, get(a_.v_high + at) + get(a_.v_low + at)) * tau);
       add(a_.v_high + at, a_.v_low + at, dv * tau);
     }
@@ -101,6 +104,24 @@ class Steps {
     add(a_.t_high, a_.t_low, tau);
     put(a_.t_high, arrives ? get(a_.end) : get(a_.t_high));
     put(a_.t_low, arrives ? V{} : get(a_.t_low));
+  }
+
+  void find_sizes() const {
+    const V r = get(a_.radius);
+    const std::size_t size = a_.freedoms * a_.width;
+    for (std::size_t i = 0; i < a_.freedoms; ++i) {
+      const std::size_t at = i * a_.width;
+      const double* c = a_.coefficients + static_cast<std::size_t>(a_.order + 1) * a_.row + at;
+      V q{}, v{}, a{};
+      for (int k = a_.order + 1; k >= 2; --k, c -= a_.row) {
+        const V of_q = absolute(get(c)), of_rate = of_q * a_.whole[k];
+        q = fused(q, r, of_q), v = fused(v, r, of_rate), a = fused(a, r, of_rate * a_.whole[k - 1]);
+      }
+      const V first = absolute(get(c));
+      put(a_.sizes + at, fused(q, r, first) * r);
+      put(a_.sizes + size + at, fused(v, r, first));
+      put(a_.sizes + 2 * size + at, a);
+    }
   }
 
  private:
@@ -225,7 +246,11 @@ void advance(const LaneArrays& lanes) {
   for_lanes(lanes, [](auto steps) { steps.advance(); });
 }
 
-inline LaneSteps steps_of_this_file() { return {choose_length, cut_to_end, exceed, advance}; }
+void find_sizes(const LaneArrays& lanes) {
+  for_lanes(lanes, [](auto steps) { steps.find_sizes(); });
+}
+
+inline LaneSteps steps_of_this_file() { return {choose_length, cut_to_end, exceed, advance, find_sizes}; }
 
 }  // namespace
 }  // namespace maupertuis::ensemble

@@ -129,7 +129,16 @@ void TaylorStepper::Impl::renew_momenta() {
 /// there is that of the next step.
 bool TaylorStepper::Impl::settles(double bound, const Crossing& crossing, Step& result) {
   if (m > 0 && !watches()) {
+    constexpr int halvings = 16;
+    const double residual_before = constraint_residual;
     land(result, (t.hi - begin.hi) + (t.lo - begin.lo));
+    // Next to a singular position a shorter step may keep the constraints where a long one does not.
+    if (result.ending == StepEnding::SingularConstraints && attempts < halvings) {
+      result.ending = StepEnding::None;
+      result.reason.clear();
+      constraint_residual = residual_before;
+      return false;
+    }
     if (result.ending != StepEnding::None || !expanded) return true;
     return equations_hold(work);
   }

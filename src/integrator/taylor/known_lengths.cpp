@@ -1,17 +1,29 @@
 #include "integrator/taylor/known_lengths.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <utility>
 
 namespace maupertuis::taylor {
 namespace {
 
 constexpr std::size_t bin_count = 64;
-/// Eight bins an octave: the three leading bits of the mantissa.
-constexpr int dropped_bits = 49;
+/// Eight bins an octave, numbered from a radius of 1 on.
+constexpr int an_octave = 8;
+int key_of(double radius) {
+  int exponent = 0;
+  const double mantissa = std::frexp(radius, &exponent);  // ½ … 1
+  return exponent * an_octave + static_cast<int>((mantissa - 0.5) * 2 * an_octave);
+}
+double upper_end(int key) {
+  const int place = (key % an_octave + an_octave) % an_octave;
+  return std::ldexp(0.5 + 0.5 * (place + 1) / an_octave, (key - place) / an_octave);
+}
+
+std::size_t place_of(int key) { return static_cast<unsigned>(key) % bin_count; }
+
 /// Of a limit beyond the size that was met; of what is observed, of its own size.
-constexpr double widening = 1.8, widening_anew = 1.1, margin = 0.1;
+constexpr double widening = 1.8, widening_anew = 1.1, observed_margin = 0.1;
 /// A sine is as small as its angle; beyond this, the angle does not matter.
 constexpr double small_angle = 0.3, no_limit = 1e300;
 /// A bin that goes on meeting larger motions learns of them ever more seldom.
@@ -19,26 +31,44 @@ constexpr unsigned patience = 8;
 
 }  // namespace
 
-KnownLengths::KnownLengths(const Program& program, std::span<const int> degrees, double ratio)
-    : envelope_(program, degrees), unknowns_(program.unknowns), residuals_(program.residual.size()), padded_((program.unknowns + 7) / 8 * 8), ratio_(ratio),
-      bins_(bin_count), sizes_(3 * padded_) {}
+KnownLengths::KnownLengths(const Program& program, std::span<const int> degrees, double ratio, bool for_several)
+    : envelope_(program, degrees), unknowns_(program.unknowns), residuals_(program.residual.size()), constant_count_(program.constants.size()),
+      padded_((program.unknowns + 7) / 8 * 8), ratio_(ratio), for_several_(for_several), bins_(bin_count), sizes_(3 * padded_) {}
 
-void KnownLengths::forget() {
-  for (Bin& bin : bins_) bin.key = ~std::uint64_t{0};
+bool KnownLengths::belongs_to(const double* constants) {
+  constexpr double rounding = 1e-9;  // bounds are no sharper than this
+  if (constants_.empty()) constants_.assign(constants, constants + constant_count_);
+  for (std::size_t i = 0; i < constant_count_; ++i)
+    if (!(std::abs(constants[i] - constants_[i]) <= rounding * std::abs(constants_[i]))) return false;
+  return true;
 }
 
+void KnownLengths::adopt(const double* constants) {
+  if (belongs_to(constants)) return;
+  constants_.clear();
+  belongs_to(constants);
+  forget();
+}
+
+void KnownLengths::forget() {
+  for (Bin& bin : bins_) bin.key = no_key;
+}
+
+double KnownLengths::disk_radius(double h) const { return upper_end(key_of(ratio_ * h)); }
+
 KnownLengths::Bin& KnownLengths::bin_of(double radius) {
-  const std::uint64_t key = std::bit_cast<std::uint64_t>(radius) >> dropped_bits;
-  Bin& bin = bins_[key % bin_count];
+  const int key = key_of(radius);
+  Bin& bin = bins_[place_of(key)];
   if (bin.key != key) begin(bin, key);
   return bin;
 }
 
 /// The radius of a bin is its upper end. It begins with the limits of a neighbour.
-void KnownLengths::begin(Bin& bin, std::uint64_t key) const {
-  const std::size_t orders = static_cast<std::size_t>(order_) + 2, observed = envelope_.observed().size();
-  bin = {.key = key, .radius = std::bit_cast<double>((key + 1) << dropped_bits), .weights = std::vector<double>(3 * orders),
-         .limits = std::vector<double>(4 * padded_), .least = std::vector<double>(observed), .most = std::vector<double>(observed)};
+void KnownLengths::begin(Bin& bin, int key) const {
+  const std::size_t orders = static_cast<std::size_t>(now_.order) + 2, observed = envelope_.observed().size();
+  bin = {.key = key, .radius = upper_end(key), .weights = std::vector<double>(3 * orders),
+         .limits = std::vector<double>(4 * padded_), .least = std::vector<double>(observed), .most = std::vector<double>(observed),
+         .needed = std::vector<double>(residuals_)};
   double power = 1;  // r^{k−1}
   for (std::size_t k = 1; k < orders; ++k, power *= bin.radius) {
     const double n = static_cast<double>(k);
@@ -46,8 +76,8 @@ void KnownLengths::begin(Bin& bin, std::uint64_t key) const {
     bin.weights[orders + k] = n * power;
     bin.weights[2 * orders + k] = n * (n - 1) * (power / bin.radius);
   }
-  for (const std::uint64_t next : {key + 1, key - 1}) {
-    const Bin& other = bins_[next % bin_count];
+  for (const int next : {key + 1, key - 1}) {
+    const Bin& other = bins_[place_of(next)];
     if (other.key != next || !other.holds) continue;
     bin.limits = other.limits, bin.least = other.least, bin.most = other.most, bin.time = other.time;
     bin.has_limits = true;
@@ -55,48 +85,51 @@ void KnownLengths::begin(Bin& bin, std::uint64_t key) const {
   }
 }
 
-KnownLengths::Answer KnownLengths::ask(const SlotCoefficients& coefficients, double time, double h) {
-  if (coefficients.unit != 1) return Answer::GivenUp;
-  order_ = coefficients.order;
-  centre_ = coefficients.rows;
-  step_ = coefficients.step;
+KnownLengths::Answer KnownLengths::ask(const SlotCoefficients& coefficients, double time, double h, std::span<const double> allowed, const double* sizes) {
+  now_ = coefficients;
+  given_ = sizes;
+  has_sizes_ = false;
+  bin_ = nullptr;
+  if (coefficients.unit != 1 || (coefficients.step != 1 && !sizes)) return Answer::GivenUp;
   time_ = std::abs(time);
   Bin& bin = bin_of(ratio_ * h);
   bin_ = &bin;
   ++bin.visits;
   const bool may_learn = bin.visits > bin.next_try;
   if (!bin.holds && !may_learn) return Answer::GivenUp;
-  const bool is_alone = step_ == 1;
-  polynomial_sizes(is_alone ? coefficients.rows : side_by_side(coefficients), is_alone ? coefficients.stride : padded_, unknowns_, order_ + 1, bin.weights.data(),
-                   sizes_.data());
-  return bin.holds && is_within(bin) ? Answer::Safe : may_learn ? Answer::Unknown : Answer::GivenUp;
+  find_sizes();
+  bool is_safe = bin.holds && is_within(bin);
+  for (std::size_t j = 0; j < residuals_; ++j) is_safe &= bin.needed[j] <= allowed[j];
+  return is_safe ? Answer::Safe : may_learn ? Answer::Unknown : Answer::GivenUp;
 }
 
-/// The coordinates of a motion that stands in a lane among others.
-const double* KnownLengths::side_by_side(const SlotCoefficients& coefficients) {
-  const std::size_t orders = static_cast<std::size_t>(order_) + 2;
-  gathered_.resize(orders * padded_);
-  for (std::size_t k = 0; k < orders; ++k) {
-    const double* const row = coefficients.rows + k * coefficients.stride;
-    double* const to = gathered_.data() + k * padded_;
-    for (std::size_t i = 0; i < unknowns_; ++i) to[i] = row[i * step_];
-  }
-  return gathered_.data();
+void KnownLengths::find_sizes() {
+  if (std::exchange(has_sizes_, true)) return;
+  if (!given_) return polynomial_sizes(now_.rows, now_.stride, unknowns_, now_.order + 1, bin_->weights.data(), sizes_.data());
+  for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t i = 0; i < unknowns_; ++i) sizes_[row * padded_ + i] = given_[(row * unknowns_ + i) * now_.step];
 }
 
-void KnownLengths::bound(const double* constants, bool anew) {
+void KnownLengths::bound(Limits limits) {
   Bin& bin = *bin_;
-  widen(bin, anew || !bin.has_limits, anew ? widening_anew : widening);
+  find_sizes();
+  widen(bin, bin.has_limits ? limits : std::max(limits, Limits::Anew));
   const auto row = [&](std::size_t i) { return std::span(bin.limits).subspan(i * padded_, unknowns_); };
-  envelope_.evaluate(constants, {row(0), row(1), row(2), row(3), bin.least, bin.most, bin.time}, bin.radius, order_);
+  envelope_.evaluate(constants_.data(), {row(0), row(1), row(2), row(3), bin.least, bin.most, bin.time}, bin.radius, now_.order);
 }
 
-bool KnownLengths::accept(std::span<const double> allowed) {
-  const double x = 1 / ratio_, left_out = length() * std::pow(x, order_) / (1 - x);
-  bool holds = true;
-  for (std::size_t j = 0; j < residuals_; ++j) holds = holds && left_out * envelope_.residual_tail(j) <= allowed[j];
-  bin_->holds = holds;
-  if (holds) bin_->next_try = bin_->visits + ++bin_->learned / patience;
+bool KnownLengths::accept(std::span<const double> allowed, std::span<const double> by_rounding) {
+  const double x = 1 / ratio_, left_out = length() * std::pow(x, now_.order) / (1 - x);
+  bool holds = true, rounds = false;
+  for (std::size_t j = 0; j < residuals_; ++j) {
+    const double needed = left_out * envelope_.residual_tail(j);
+    const bool by_momentum = needed <= allowed[j];
+    bin_->needed[j] = by_momentum ? needed : 0;
+    rounds = rounds || !by_momentum;
+    holds = holds && (by_momentum || (!by_rounding.empty() && needed <= by_rounding[j]));
+  }
+  bin_->holds = holds && !(rounds && for_several_);
+  if (bin_->holds) bin_->next_try = bin_->visits + ++bin_->learned / patience;
   return holds;
 }
 
@@ -114,7 +147,10 @@ bool KnownLengths::is_within(const Bin& bin) const {
   return within;
 }
 
-void KnownLengths::widen(Bin& bin, bool anew, double widened) const {
+void KnownLengths::widen(Bin& bin, Limits limits) const {
+  const bool anew = limits != Limits::Widened;
+  const double widened = limits == Limits::Widened ? widening : limits == Limits::Anew ? widening_anew : 1.0;
+  const double margin = limits == Limits::Exact ? 0.0 : observed_margin;
   const auto raise = [&](double& limit, double size) {
     if (anew || !(size <= limit)) limit = widened * size;
   };
@@ -122,7 +158,7 @@ void KnownLengths::widen(Bin& bin, bool anew, double widened) const {
   raise(bin.time, time_);
   for (std::size_t i = 0; i < unknowns_; ++i) {
     const double size = std::abs(centre(i));
-    raise(bin.limits[i], envelope_.needs_centre(i) ? size : size < small_angle ? 2 * size : no_limit);
+    raise(bin.limits[i], envelope_.needs_centre(i) ? size : size < small_angle ? (widened > 1 ? 2 * size : size) : no_limit);
   }
   for (std::size_t i = 0; i < 3 * padded_; ++i) raise(bin.limits[padded_ + i], sizes_[i]);
   const std::span<const Slot> observed = envelope_.observed();

@@ -11,6 +11,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Of a radius: beyond, Cauchy's estimate says little, and tails of derivatives are bounded up to here.
 constexpr double most_of_radius = 0.5;
 constexpr double from_disk_to_disk = 1.4142135623730951;
+/// Of radii to the length of a step; first_ratio is one of largest_ratio/√2^i.
+constexpr double largest_ratio = 8, first_ratio = 5.656854249492381;
 /// Below it a momentum is that of rest, whatever its unit.
 constexpr double rest = 1e-40;
 constexpr int most_disks = 400;
@@ -36,9 +38,13 @@ double usual_ratio(int order, double tolerance) { return std::clamp(std::pow(4e3
 
 }  // namespace
 
-SafeLength::SafeLength(const Program& program, int order, double tolerance)
-    : disks_(program), usual_ratio_(usual_ratio(order, tolerance)), known_(program, disks_.degrees(), usual_ratio_), constants_(program.constants.size()),
-      allowed_(disks_.residuals()), tolerance_(tolerance), order_(order), ratio_(usual_ratio_) {}
+SafeLength::SafeLength(const Program& program, int order, double tolerance, std::shared_ptr<KnownLengths> shared)
+    : disks_(program), usual_ratio_(usual_ratio(order, tolerance)), own_(program, disks_.degrees(), usual_ratio_, shared != nullptr), shared_(std::move(shared)),
+      known_(&own_), allowed_(disks_.residuals()), tolerance_(tolerance), order_(order), ratio_(first_ratio) {}
+
+std::shared_ptr<KnownLengths> SafeLength::shared_by_motions(const Program& program, int order, double tolerance) {
+  return std::make_shared<KnownLengths>(program, Disks(program).degrees(), usual_ratio(order, tolerance), true);
+}
 
 void SafeLength::forget() {
   masses_.clear();
@@ -46,17 +52,16 @@ void SafeLength::forget() {
   momentum_rates_.clear();
   asked_ = asked_momenta_ = 0;
   needs_coefficients_ = false;
-  ratio_ = usual_ratio_;
-  known_.forget();
+  ratio_ = first_ratio;
+  own_.forget();
   allow();
   best_radius_ = radius_ = 0;
 }
 
 void SafeLength::set_constants(const double* constants) {
   disks_.set_constants(constants);
-  if (std::equal(constants_.begin(), constants_.end(), constants)) return;
-  constants_.assign(constants, constants + constants_.size());
-  known_.forget();
+  known_ = shared_ && shared_->belongs_to(constants) ? shared_.get() : &own_;
+  if (known_ == &own_) own_.adopt(constants);
 }
 
 void SafeLength::allow() {
@@ -78,7 +83,7 @@ bool SafeLength::wants_momenta(std::span<const double> rates) {
 void SafeLength::find_momenta(std::span<const double> rates) {
   const std::size_t n = rates.size();
   momentum_rates_.assign(rates.begin(), rates.end());
-  momenta_.assign(disks_.residuals(), 0.0);
+  momenta_.assign(n, 0.0);
   for (std::size_t j = 0; j < momenta_.size(); ++j)
     for (std::size_t k = 0; k < n; ++k) momenta_[j] += masses_[j * n + k] * rates[k];
   allow();
@@ -118,9 +123,18 @@ double SafeLength::allowed() {
   return x * radius_;
 }
 
-/// From large disks to small ones, until no smaller one can allow more.
-double SafeLength::search(double most) {
-  double radius = best_radius_ > 0 ? std::min(8 * most, 4 * best_radius_) : 8 * most, best = 0;
+/// Whether the coefficients allow h on any of the disks from largest_ratio h on. This and the bound of the step alone decide; all else is a short cut to them.
+bool SafeLength::passes_somewhere(const SlotCoefficients& coefficients, double h) {
+  disks_.begin(coefficients);
+  for (double ratio = largest_ratio; most_of_radius * ratio > 0.999; ratio /= from_disk_to_disk)
+    if (passes_on(ratio * h, h, Disks::Depth::Coefficients)) return ratio_ = ratio, needs_coefficients_ = true;
+  return false;
+}
+
+/// The largest length that is allowed, from large disks to small ones, until no smaller one can allow more.
+double SafeLength::search(const SlotCoefficients& coefficients, double most) {
+  disks_.begin(coefficients);
+  double radius = best_radius_ > 0 ? std::min(largest_ratio * most, 4 * best_radius_) : largest_ratio * most, best = 0;
   for (int i = 0; i < most_disks && most_of_radius * radius > best; ++i, radius /= from_disk_to_disk) {
     radius_ = radius;
     disks_.evaluate(radius);
@@ -130,32 +144,44 @@ double SafeLength::search(double most) {
   return best;
 }
 
+/// Whether an envelope of this step and no other allows it.
+bool SafeLength::is_safe_alone(const SlotCoefficients& coefficients) {
+  if (!known_->has_asked()) return false;
+  known_->bound(KnownLengths::Limits::Exact);
+  return known_->accept(allowed_, allowed_by_rounding(coefficients));
+}
+
 /// By what was learned of motions of these sizes: first by the momenta, then by the rounding of R here.
-bool SafeLength::is_known(const SlotCoefficients& coefficients, double time, double h) {
+bool SafeLength::is_known(const SlotCoefficients& coefficients, double time, double h, const double* sizes) {
   using enum KnownLengths::Answer;
-  const KnownLengths::Answer answer = known_.ask(coefficients, time, h);
+  using enum KnownLengths::Limits;
+  const KnownLengths::Answer answer = known_->ask(coefficients, time, h, allowed_, sizes);
   if (answer != Unknown) return answer == Safe;
-  known_.bound(constants_.data(), false);
-  if (known_.accept(allowed_)) return true;
-  disks_.begin(coefficients);
-  allowed_by_rounding_.resize(allowed_.size());
-  for (std::size_t j = 0; j < allowed_.size(); ++j)
-    allowed_by_rounding_[j] = std::max(allowed_[j], known_.length() * tolerance_ * disks_.residual_rounding(j, known_.radius()));
-  if (known_.accept(allowed_by_rounding_)) return true;
-  known_.bound(constants_.data(), true);
-  if (known_.accept(allowed_by_rounding_)) return true;
-  known_.give_up();
+  known_->bound(Widened);
+  if (known_->accept(allowed_)) return true;
+  const std::span<const double> by_rounding = allowed_by_rounding(coefficients);
+  if (known_->accept(allowed_, by_rounding)) return true;
+  known_->bound(Anew);
+  if (known_->accept(allowed_, by_rounding)) return true;
+  known_->give_up();
   return false;
 }
 
-double SafeLength::within(const SlotCoefficients& coefficients, double time, double wanted, double most) {
+std::span<const double> SafeLength::allowed_by_rounding(const SlotCoefficients& coefficients) {
+  disks_.begin(coefficients);
+  allowed_by_rounding_.resize(allowed_.size());
+  for (std::size_t j = 0; j < allowed_.size(); ++j) allowed_by_rounding_[j] = known_->length() * tolerance_ * disks_.residual_rounding(j, known_->radius());
+  return allowed_by_rounding_;
+}
+
+double SafeLength::within(const SlotCoefficients& coefficients, double time, double wanted, double most, const double* sizes) {
   if (!is_needed()) return wanted;
   const double h = std::min(wanted, most);
   if (!(h > 0)) return wanted;
-  if (is_known(coefficients, time, h)) return wanted;
-  disks_.begin(coefficients);
+  if (is_known(coefficients, time, h, sizes)) return wanted;
   // What was right in the last step is asked first: the whole length by the rules, or with the coefficients where those have to help.
   using enum Disks::Depth;
+  disks_.begin(coefficients);
   const double radius = ratio_ * h;
   const bool by_rules = !needs_coefficients_ || ++asked_ % period == 0;
   if (by_rules) {
@@ -164,11 +190,9 @@ double SafeLength::within(const SlotCoefficients& coefficients, double time, dou
     disks_.begin(coefficients);
   }
   if (passes_on(from_disk_to_disk * radius, h, Coefficients) || passes_on(radius, h, Coefficients)) return needs_coefficients_ = true, wanted;
-  disks_.begin(coefficients);
-  const double found = search(h);
-  if (found > 0) ratio_ = std::clamp(best_radius_ / std::min(found, h), 1 / most_of_radius, 64.0);
-  if (found >= h) return wanted;
-  return rounded_down(found);
+  if (passes_somewhere(coefficients, h)) return wanted;
+  if (is_safe_alone(coefficients)) return wanted;
+  return rounded_down(search(coefficients, h));
 }
 
 }  // namespace maupertuis::taylor

@@ -105,7 +105,7 @@ double TaylorStepper::Impl::choose_length(double bound) {
   if (!safe.is_needed()) return chosen;
   // What is left of velocities below the range of double tells nothing of the motion.
   if (is_at_rest()) chosen = std::numeric_limits<double>::infinity();
-  if (!switch_state.empty() || first) safe.set_constants(work.constants());
+  if (!switch_state.empty() || !safe.has_constants()) safe.set_constants(work.constants());
   renew_momenta();
   return safe.within({work.coordinate(0), work.row_stride(), control.order, 1}, t.hi, chosen, left);
 }
