@@ -1,0 +1,139 @@
+// What is known of lengths belongs to motions that are no larger, and to no others.
+#include "integrator/taylor/known_lengths.hpp"
+
+#include <doctest/doctest.h>
+#include <maupertuis/kernel.hpp>
+#include <maupertuis/transform.hpp>
+
+#include <memory>
+#include <vector>
+
+using namespace maupertuis;
+using taylor::KnownLengths;
+
+namespace {
+
+constexpr int order = 20;
+constexpr double ratio = 5;
+using enum KnownLengths::Answer;
+using enum KnownLengths::Limits;
+
+/// x'' + 1/(x + 2) + y² sin 3x = 0, y'' + x y = 0, with a motion through (x, y) = (0.3, 0.5).
+struct Motion {
+  Context context;
+  Kernel kernel;
+  KernelWorkspace work;
+  std::vector<double> rows;
+  Motion() : kernel(make(context)), work(kernel, order) {
+    work.set_parameters({});
+    const double q[] = {0.3, 0.5}, v[] = {0.2, -0.1};
+    REQUIRE(work.expand(0, q, v) == KernelStatus::Ok);
+    rows.assign(work.coordinate(0), work.coordinate(0) + (order + 2) * work.row_stride());
+  }
+  static Kernel make(Context& context) {
+    KernelSource source;
+    const Expr x = context.symbol("x", Role::Coordinate), y = context.symbol("y", Role::Coordinate);
+    const auto second = [&](const Expr& q) { return context.time_derivative(context.time_derivative(q)); };
+    source.coordinates = {x, y};
+    source.residual = {second(x) + pow(x + Rational(2), -1) + y * y * sin(x * Rational(3)), second(y) + x * y};
+    return build_kernel(source);
+  }
+  SlotCoefficients coefficients() const { return {rows.data(), work.row_stride(), order, 1}; }
+  double& coefficient(int k, std::size_t i) { return rows[static_cast<std::size_t>(k) * work.row_stride() + i]; }
+};
+
+struct Known {
+  std::unique_ptr<Disks> disks;
+  KnownLengths lengths;
+  explicit Known(const Motion& m, bool for_several = false)
+      : disks(std::make_unique<Disks>(m.work.program())), lengths(m.work.program(), disks->degrees(), ratio, for_several) {
+    lengths.adopt(m.work.constants());
+  }
+};
+
+const std::vector<double> much = {1, 1}, nothing = {0, 0};
+
+}  // namespace
+
+TEST_CASE("a length that was learned is known for the motion itself, and not for one that is larger anywhere") {
+  Motion m;
+  Known known(m);
+  CHECK(known.lengths.ask(m.coefficients(), 0, 0.05, much) == Unknown);
+  known.lengths.bound(Widened);
+  REQUIRE(known.lengths.accept(much));
+  CHECK(known.lengths.ask(m.coefficients(), 0, 0.05, much) == Safe);
+  for (const int k : {1, 2, 3, order + 1})
+    for (const std::size_t i : {0, 1}) {
+      Motion other;
+      other.coefficient(k, i) = k > 3 ? 1e12 : 2 * other.coefficient(k, i) + 1;
+      CAPTURE(k);
+      CAPTURE(i);
+      CHECK(known.lengths.ask(other.coefficients(), 0, 0.05, much) != Safe);
+    }
+  Motion farther;
+  farther.coefficient(0, 1) *= 2;  // y stands in products
+  CHECK(known.lengths.ask(farther.coefficients(), 0, 0.05, much) != Safe);
+  CHECK(known.lengths.ask(m.coefficients(), 0, 0.05, much) == Safe);
+}
+
+TEST_CASE("a denominator that comes nearer to zero is another motion") {
+  Motion m;
+  Known known(m);
+  known.lengths.ask(m.coefficients(), 0, 0.05, much);
+  known.lengths.bound(Widened);
+  REQUIRE(known.lengths.accept(much));
+  const Slot denominator = [&] {
+    for (const Instruction& i : m.work.program().instructions)
+      if (i.op == Op::Quotient || i.op == Op::Power) return i.op == Op::Quotient ? i.b : i.a;
+    return no_slot;
+  }();
+  REQUIRE(denominator != no_slot);
+  m.rows[denominator] *= 0.5;
+  CHECK(known.lengths.ask(m.coefficients(), 0, 0.05, much) != Safe);
+}
+
+TEST_CASE("what is allowed counts, also when it shrinks later") {
+  Motion m;
+  Known known(m);
+  known.lengths.ask(m.coefficients(), 0, 0.05, much);
+  known.lengths.bound(Exact);
+  CHECK(!known.lengths.accept(nothing));
+  REQUIRE(known.lengths.accept(much));
+  CHECK(known.lengths.ask(m.coefficients(), 0, 0.05, much) == Safe);
+  CHECK(known.lengths.ask(m.coefficients(), 0, 0.05, nothing) != Safe);
+}
+
+TEST_CASE("a longer step is another question, one of the same bin is not") {
+  Motion m;
+  Known known(m);
+  known.lengths.ask(m.coefficients(), 0, 0.05, much);
+  known.lengths.bound(Widened);
+  REQUIRE(known.lengths.accept(much));
+  CHECK(known.lengths.ask(m.coefficients(), 0, 0.0501, much) == Safe);
+  CHECK(known.lengths.ask(m.coefficients(), 0, 0.06, much) != Safe);
+  const double h = 0.05, r = known.lengths.disk_radius(h);
+  CHECK(r >= ratio * h);
+  CHECK(r <= 1.125 * ratio * h);
+}
+
+TEST_CASE("rounding allows one motion a step, and is remembered for it alone") {
+  for (const bool for_several : {false, true}) {
+    Motion m;
+    Known known(m, for_several);
+    known.lengths.ask(m.coefficients(), 0, 0.05, nothing);
+    known.lengths.bound(Exact);
+    CHECK(known.lengths.accept(nothing, much));
+    CHECK((known.lengths.ask(m.coefficients(), 0, 0.05, nothing) == Safe) == !for_several);
+  }
+}
+
+TEST_CASE("lengths belong to constants, up to their last digits") {
+  Motion m;
+  Known known(m, true);
+  std::vector<double> constants(m.work.constants(), m.work.constants() + m.work.program().constants.size());
+  CHECK(known.lengths.belongs_to(constants.data()));
+  constants[0] *= 1 + 1e-14;
+  CHECK(known.lengths.belongs_to(constants.data()));
+  for (double& c : constants) c *= 1.01;
+  CHECK(!known.lengths.belongs_to(constants.data()));
+}
