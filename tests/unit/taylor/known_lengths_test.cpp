@@ -1,6 +1,7 @@
 // What is known of lengths belongs to motions that are no larger, and to no others.
 #include "integrator/taylor/known_lengths.hpp"
 
+#include <cmath>
 #include <doctest/doctest.h>
 #include <maupertuis/kernel.hpp>
 #include <maupertuis/transform.hpp>
@@ -111,7 +112,7 @@ TEST_CASE("a longer step is another question, one of the same bin is not") {
   REQUIRE(known.lengths.accept(much));
   CHECK(known.lengths.ask(m.coefficients(), 0, 0.0501, much) == Safe);
   CHECK(known.lengths.ask(m.coefficients(), 0, 0.06, much) != Safe);
-  const double h = 0.05, r = known.lengths.disk_radius(h);
+  const double h = 0.053, r = known.lengths.disk_radius(h);
   CHECK(r >= ratio * h);
   CHECK(r <= 1.125 * ratio * h);
 }
@@ -136,4 +137,33 @@ TEST_CASE("lengths belong to constants, up to their last digits") {
   CHECK(known.lengths.belongs_to(constants.data()));
   for (double& c : constants) c *= 1.01;
   CHECK(!known.lengths.belongs_to(constants.data()));
+}
+
+TEST_CASE("what a step leaves out is h d x^p/(1 - x)") {
+  Motion m;
+  Known known(m);
+  known.lengths.ask(m.coefficients(), 0, 0.05, much);
+  known.lengths.bound(Exact);
+  const double r = known.lengths.radius(), h = known.lengths.length(), x = h / r;
+  CHECK(r == doctest::Approx(ratio * h));
+  std::vector<double> sizes[4];
+  for (std::size_t i = 0; i < 2; ++i) {
+    double sums[3] = {0, 0, 0};
+    for (int k = 1; k <= order + 1; ++k)
+      for (int d = 0; d < 3; ++d) sums[d] += std::abs(m.coefficient(k, i)) * std::pow(r, k - d) * (d == 0 ? 1 : d == 1 ? k : k * (k - 1));
+    sizes[0].push_back(std::abs(m.coefficient(0, i)));
+    for (std::size_t d = 0; d < 3; ++d) sizes[d + 1].push_back(sums[d]);
+  }
+  Envelope envelope(m.work.program(), known.disks->degrees());
+  std::vector<double> observed;
+  for (const Slot slot : envelope.observed()) observed.push_back(m.rows[slot]);
+  envelope.evaluate(m.work.constants(), {sizes[0], sizes[1], sizes[2], sizes[3], observed, observed, 0}, r, order);
+  std::vector<double> enough, short_of;
+  for (std::size_t j = 0; j < 2; ++j) {
+    const double left_out = h * envelope.residual_tail(j) * std::pow(x, order) / (1 - x);
+    CHECK(left_out > 0);
+    enough.push_back(left_out * (1 + 1e-9)), short_of.push_back(left_out * (1 - 1e-9));
+  }
+  CHECK(known.lengths.accept(enough));
+  CHECK(!known.lengths.accept(short_of));
 }
