@@ -11,8 +11,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Of a radius: beyond, Cauchy's estimate says little, and tails of derivatives are bounded up to here.
 constexpr double most_of_radius = 0.5;
 constexpr double from_disk_to_disk = 1.4142135623730951;
-/// Of radii to the length of a step; first_ratio is one of largest_ratio/√2^i.
-constexpr double largest_ratio = 8, first_ratio = 5.656854249492381;
 /// Below it a momentum is that of rest, whatever its unit.
 constexpr double rest = 1e-40;
 constexpr int most_disks = 400;
@@ -33,14 +31,21 @@ double rounded_down(double h) {
   return std::ldexp(std::floor(mantissa * 256) / 256, exponent);
 }
 
-/// Of a disk's radius to the length of a step: so that x^p is far below the tolerance. 5.8 at order 20 and rounding level.
+/// The largest ratio of a disk's radius to the length of a step that is asked about, √2 beyond the usual one at least. Smaller ones are √2 apart.
+double above(double usual) {
+  double ratio = 8;
+  while (ratio < from_disk_to_disk * usual) ratio *= from_disk_to_disk;
+  return ratio;
+}
+
+/// The usual one: so that x^p is far below the tolerance. 5.8 at order 20 and rounding level.
 double usual_ratio(int order, double tolerance) { return std::clamp(std::pow(4e3 / tolerance, 1.0 / order), 2.0, 16.0); }
 
 }  // namespace
 
 SafeLength::SafeLength(const Program& program, int order, double tolerance, std::shared_ptr<KnownLengths> shared)
     : disks_(program), usual_ratio_(usual_ratio(order, tolerance)), own_(program, disks_.degrees(), usual_ratio_, shared != nullptr), shared_(std::move(shared)),
-      known_(&own_), allowed_(disks_.residuals()), tolerance_(tolerance), order_(order), ratio_(first_ratio) {}
+      known_(&own_), allowed_(disks_.residuals()), tolerance_(tolerance), order_(order), largest_ratio_(above(usual_ratio_)), ratio_(largest_ratio_ / from_disk_to_disk) {}
 
 std::shared_ptr<KnownLengths> SafeLength::shared_by_motions(const Program& program, int order, double tolerance) {
   return std::make_shared<KnownLengths>(program, Disks(program).degrees(), usual_ratio(order, tolerance), true);
@@ -52,7 +57,7 @@ void SafeLength::forget() {
   momentum_rates_.clear();
   asked_ = asked_momenta_ = 0;
   needs_coefficients_ = false;
-  ratio_ = first_ratio;
+  ratio_ = largest_ratio_ / from_disk_to_disk;
   own_.forget();
   allow();
   best_radius_ = radius_ = 0;
@@ -109,24 +114,25 @@ bool SafeLength::passes_on(double radius, double h, Disks::Depth depth) {
   return passes(h);
 }
 
-/// The largest h that the tails at this radius allow.
+/// The largest h that the tails at this radius allow; by logarithms, since with a hundred digits quotients leave the range of double.
 double SafeLength::allowed() {
-  double x = most_of_radius;
+  double log2_x = std::log2(most_of_radius);
   for (std::size_t j = 0; j < disks_.residuals(); ++j) {
-    const double tail = disks_.residual_tail(j) / (tolerance_ * (1 - most_of_radius));
+    const double tail = disks_.residual_tail(j);
     if (!(tail < infinity)) return 0;
     if (tail == 0) continue;
-    const double by_momentum = std::pow(momentum(j) / (tail * radius_), 1.0 / (order_ + 1));
-    const double by_rounding = std::pow(disks_.residual_rounding(j, radius_) / tail, 1.0 / order_);
-    x = std::min(x, std::max(by_momentum, by_rounding));
+    const double log2_allowed = std::log2(tolerance_) + std::log2(1 - most_of_radius) - std::log2(tail);
+    const double by_momentum = (log2_allowed + std::log2(momentum(j)) - std::log2(radius_)) / (order_ + 1);
+    const double by_rounding = (log2_allowed + std::log2(disks_.residual_rounding(j, radius_))) / order_;
+    log2_x = std::min(log2_x, std::max(by_momentum, by_rounding));
   }
-  return x * radius_;
+  return std::exp2(log2_x) * radius_;
 }
 
-/// Whether the coefficients allow h on any of the disks from largest_ratio h on. This and the bound of the step alone decide; all else is a short cut to them.
+/// Whether the coefficients allow h on any of the disks from the largest radius on. This and the bound of the step alone decide; all else is a short cut to them.
 bool SafeLength::passes_somewhere(const SlotCoefficients& coefficients, double h) {
   disks_.begin(coefficients);
-  for (double ratio = largest_ratio; most_of_radius * ratio > 0.999; ratio /= from_disk_to_disk)
+  for (double ratio = largest_ratio_; most_of_radius * ratio > 0.999; ratio /= from_disk_to_disk)
     if (passes_on(ratio * h, h, Disks::Depth::Coefficients)) return ratio_ = ratio, needs_coefficients_ = true;
   return false;
 }
@@ -134,7 +140,7 @@ bool SafeLength::passes_somewhere(const SlotCoefficients& coefficients, double h
 /// The largest length that is allowed, from large disks to small ones, until no smaller one can allow more.
 double SafeLength::search(const SlotCoefficients& coefficients, double most) {
   disks_.begin(coefficients);
-  double radius = best_radius_ > 0 ? std::min(largest_ratio * most, 4 * best_radius_) : largest_ratio * most, best = 0;
+  double radius = best_radius_ > 0 ? std::min(largest_ratio_ * most, 4 * best_radius_) : largest_ratio_ * most, best = 0;
   for (int i = 0; i < most_disks && most_of_radius * radius > best; ++i, radius /= from_disk_to_disk) {
     radius_ = radius;
     disks_.evaluate(radius);

@@ -73,6 +73,7 @@ class SafeLength {
   std::vector<double> masses_;                    // [n][n] the largest |M| so far; empty: none
   std::vector<double> momenta_, momentum_rates_;  // [n] or empty; the rates that they belong to
   unsigned asked_momenta_ = 0;
+  double largest_ratio_;
   double ratio_;                       // radius over length that was right last
   double best_radius_ = 0;            // of the last search; 0: none yet
   double radius_ = 0;
