@@ -201,6 +201,46 @@ TEST_CASE("a wrong angular velocity of a body is seen by d'Alembert's principle 
   CHECK(failed(certify(*equations, &readable)) == Names{"dalembert"});
 }
 
+TEST_CASE("a body in the plane: its turn is checked by d'Alembert's principle, from its rotation matrix") {
+  const char* const rod = R"(system rod
+param m = 1 kg, J = 0.1 kg m^2, h = 30 cm, τ = 2 N m, g = 9.81 m/s^2
+coord θ, φ : angle
+body arm mass m inertia J at h (sin θ, -cos θ) rotation angle θ
+body wheel mass m inertia 2 J at 2 h (sin θ, -cos θ) rotation angle φ - 2 θ
+torque on wheel from arm = τ
+gravity (0, -g)
+)";
+  check_passes(rod, true);
+  for (const std::string body : {"arm", "wheel"}) {
+    ModelText model(rod);
+    auto broken = std::make_shared<MechanicalSystem>(*model.system);
+    for (EnergyTerm& term : broken->kinetic)
+      if (term.origin == "rotation of body " + body) term.value = term.value * Rational(2);
+    Diagnostics diagnostics;
+    const auto equations = euler_lagrange(broken, diagnostics);
+    REQUIRE(equations);
+    const Derivation readable = readable_derivation(*equations, false);
+    CHECK(failed(certify(*equations, &readable)) == Names{"dalembert"});
+  }
+}
+
+TEST_CASE("terms given to L beside particles belong to d'Alembert's principle") {
+  const std::string text = "param m = 1 kg, b = 2 N s/m, k = 3 N/m\ncoord x, y : length\npoint P mass m at (x, y)\n";
+  check_passes((text + "V = 1/2 k x^2\nU = b x y'\nL += 1/2 b (x y' - y x') - k x y\n").c_str(), true);
+}
+
+TEST_CASE("points at which nothing is defined are no evidence") {
+  // A root that a prime field does not follow, and that no real point has.
+  ModelText model("dimensionless\nparam m = 1\ncoord x : number\nT = 1/2 m x'^2\nV = x\n");
+  Context& c = *model.system->context;
+  const Expr nowhere = sqrt(-sqrt(c.number(3) + Rational(2) * sqrt(c.number(2))) - pow(model.q(0), Rational(2)));
+  model.equations.residual[0] = model.equations.residual[0] + nowhere - nowhere * (c.number(1) + pow(model.q(0), Rational(2)));
+  const Certificate certificate = certify(model.equations, nullptr);
+  CHECK_FALSE(certificate.passed());
+  for (const CertificateCheck& check : certificate.checks)
+    if (check.name == "jet_residual") CHECK(check.verdict != Verdict::Zero);
+}
+
 TEST_CASE("a gyroscopic term of the wrong sign is invisible to the power balance") {
   const Names names = caught(charge, [](EquationsOfMotion& e) {
     const Expr b = e.system->find_parameter("B")->symbol;

@@ -203,11 +203,39 @@ TEST_CASE("four coordinates of a constraint that is no sphere are tried off the 
   // A mistake that vanishes where x² + y² + u² + v² = 1, where a quaternion of norm 1 would be.
   const char* const dumbbell = "system dumbbell\ndimensionless\nparam m = 1, l = 1\ncoord x, y, u, v : number\n"
                                "point A mass m at (x, y)\npoint B mass m at (u, v)\nconstraint (x - u)^2 + (y - v)^2 = l^2\n";
-  ModelText model(dumbbell);
+  for (const std::string body : {"", "coord θ : number\nbody wheel inertia m rotation angle θ\n"}) {
+  ModelText model(dumbbell + body);
   CHECK(certify(model.equations, nullptr).passed());
-  const auto& q = model.system->coordinates;
   Expr beyond = -model.system->context->number(1);
-  for (const Coordinate& c : q) beyond = beyond + pow(c.q, Rational(2));
+  for (std::size_t i = 0; i < 4; ++i) beyond = beyond + pow(model.q(i), Rational(2));
   model.equations.residual[0] = model.equations.residual[0] + beyond;
   CHECK(failed(certify(model.equations, nullptr)).count("dalembert"));
+  }
+}
+
+TEST_CASE("a constraint with an input needs the second derivative of the input") {
+  // x = u(t): A q'' − b is x'' − u''.
+  ModelText model("param m = 1 kg\ncoord x, y : length\npoint P mass m at (x, y)\nconstraint x = y name rod\n");
+  auto driven = std::make_shared<MechanicalSystem>(*model.system);
+  const Expr u = driven->context->symbol("u", Role::Input), rate = driven->context->time_derivative(u);
+  driven->written = nullptr;
+  driven->constraints[0].value = model.q(0) - u;
+  Diagnostics diagnostics;
+  auto equations = euler_lagrange(driven, diagnostics);
+  REQUIRE(equations);
+  CHECK(failed(certify(*equations, nullptr)).empty());
+  equations->constraint_accelerations[0] = equations->constraint_accelerations[0] + driven->context->time_derivative(rate);
+  CHECK(failed(certify(*equations, nullptr)) == Names{"constraint_rows"});
+}
+
+TEST_CASE("large systems with constraints pass without their matrices, and fail as small ones do") {
+  std::string text = "param m = 1 kg, l = 1 m\ncoord x1, y1, x2, y2, x3, y3, x4, y4 : length\n";
+  for (const std::string k : {"1", "2", "3", "4"}) text += "point P" + k + " mass m at (x" + k + ", y" + k + ")\n";
+  ModelText model(text + "constraint x1^2 + y1^2 = l^2\nconstraint (x4 - x3)^2 + (y4 - y3)^2 = l^2\n");
+  CHECK(certify(model.equations, nullptr).passed());
+  CertifyOptions full;
+  full.full = true;
+  CHECK(certify(model.equations, nullptr, full).passed());
+  model.equations.constraint_accelerations[1] = -model.equations.constraint_accelerations[1];
+  CHECK(failed(certify(model.equations, nullptr)) == Names{"constraint_rows"});
 }

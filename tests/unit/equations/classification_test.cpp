@@ -104,6 +104,20 @@ constraint x' cos ψ + y' sin ψ - b ψ' = R φ2' name right
                       differentiate(f, m.q(j)) * differentiate(wanted, m.q(i))).verdict == Verdict::Zero);
 }
 
+TEST_CASE("a combination names the constraints that it is made of, wherever they stand") {
+  const std::string text = "param m = 1 kg, R = 20 cm, b = 30 cm\ncoord x, y : length\ncoord ψ, φ1, φ2 : angle\n"
+                           "T = 1/2 m (x'^2 + y'^2) + 1/2 m b^2 ψ'^2 + 1/4 m R^2 (φ1'^2 + φ2'^2)\n";
+  const std::string blade = "constraint y' cos ψ = x' sin ψ\n", left = "constraint x' cos ψ + y' sin ψ + b ψ' = R φ1'\n",
+                    right = "constraint x' cos ψ + y' sin ψ - b ψ' = R φ2'\n";
+  const auto named = [&](const std::string& constraints) {
+    const Analysed m(text + constraints);
+    REQUIRE(m.found.combinations.size() == 1);
+    return m.found.combinations[0].constraints;
+  };
+  CHECK(named(left + right + blade) == Set{0, 1});
+  CHECK(named(left + blade + right) == Set{0, 2});
+}
+
 TEST_CASE("gears: their constraints are holonomic, one freedom is left") {
   const Analysed m(R"(param Rs = 20 mm, Rp = 15 mm, I = 1e-5 kg m^2
 coord φs, φp, φc, φr : angle

@@ -4,6 +4,8 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/print.hpp>
 
+#include <algorithm>
+
 using namespace maupertuis;
 
 namespace {
@@ -192,6 +194,17 @@ TEST_CASE("the textbook path with multipliers") {
   CHECK(find("(m R^2 + I) φ''") == "0");
   CHECK(find("λ1") == "-m R sin ψ φ' ψ'");
   CHECK(find("constraint 1") == "λ1");
+}
+
+TEST_CASE("Chetaev's rule is told where velocities stand in A, and only there") {
+  const auto told = [](const char* text) {
+    const ModelText m(text);
+    const Derivation d = readable_derivation(m.equations, true);
+    return std::any_of(d.steps.begin(), d.steps.end(), [](const DerivationStep& step) { return step.rule == "Chetaev's rule"; });
+  };
+  CHECK(told("param m = 1 kg, a = 2\ncoord x, y, z : length\npoint P mass m at (x, y, z)\nconstraint sqrt(x'^2 + y'^2) = a z'\n"));
+  CHECK_FALSE(told(rolling_disk));
+  CHECK_FALSE(told(pendulum));
 }
 
 TEST_CASE("parameters are bound to their values in SI units, t to 0") {

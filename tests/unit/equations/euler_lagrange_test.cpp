@@ -144,3 +144,12 @@ TEST_CASE("the textbook path shows every chain-rule term") {
   CHECK(rate.find("θ2''") != std::string::npos);
   CHECK(rate.find("sin(θ1 - θ2)") != std::string::npos);
 }
+
+TEST_CASE("the steps of a derivation stand in their sections, in the order of the textbook") {
+  const ModelText m(double_pendulum);
+  std::vector<std::string> sections;
+  for (const DerivationStep& step : readable_derivation(m.equations, true).steps)
+    if (sections.empty() || sections.back() != step.section) sections.push_back(step.section);
+  CHECK(sections == std::vector<std::string>{"Coordinates", "Positions", "Velocities", "Speeds", "Kinetic energy", "Potential energy", "Lagrangian",
+                                             "Equation of θ1", "Equation of θ2", "Solved for the accelerations"});
+}

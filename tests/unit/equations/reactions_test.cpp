@@ -178,6 +178,28 @@ reaction hold = release α
   CHECK(equal(hold.value, m.p("J") * m.a(0) - m.p("τ")));
 }
 
+TEST_CASE("a torque between two bodies acts back on the one that it comes from") {
+  const std::string text = R"(system s
+param J = 2 kg m^2, α = 10 deg, τ = 3 N m
+coord θ, φ : angle
+body A inertia J at (0, 0) rotation angle φ
+body B inertia J at (0, 0) rotation angle θ + α
+reaction hold = release α
+)";
+  const ModelText pushed(text + "torque on B from A = τ\n"), pushing(text + "torque on A from B = τ\n");
+  CHECK(equal(only_reaction(pushed).value, pushed.p("J") * pushed.a(0) - pushed.p("τ")));
+  CHECK(equal(only_reaction(pushing).value, pushing.p("J") * pushing.a(0) + pushing.p("τ")));
+}
+
+TEST_CASE("the multiplier of a quaternion's norm is no force, and that is said") {
+  const ModelText m("param J = 1 kg m^2\nbody top inertia diag(J, J, 2 J) rotation quaternion\n");
+  const auto all = reactions(m.equations);
+  REQUIRE(all.size() == 1);
+  CHECK(equal(all[0].value, m.system->constraints[0].multiplier));
+  CHECK(all[0].arrows.empty());
+  CHECK(all[0].sentence == "no force: the multiplier keeps the four numbers that turn top on the unit sphere");
+}
+
 TEST_CASE("a length in a given T has no reaction, and the reason is said") {
   const ModelText m("system s\nparam m = 1 kg, l = 1 m\ncoord θ : angle\nT = 1/2 m l^2 θ'^2\nreaction rod = release l\n");
   const auto all = reactions(m.equations);
