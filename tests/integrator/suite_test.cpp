@@ -269,6 +269,18 @@ TEST_CASE("a run ends with its reason, and keeps what it reached") {
     CHECK(step.reason.find("collision") != std::string::npos);
     CHECK(stepper.time() == doctest::Approx(std::acos(-1.0) / std::sqrt(8.0)).epsilon(1e-12));
   }
+  SUBCASE("steps that go on shrinking: a force that oscillates without end near t = 2") {
+    Mechanics m;
+    const auto x = m.coordinate("x", 0, 0);
+    const auto rest = m.context.time() - Rational(2);
+    m.source.residual = {m.dot(m.dot(x)) - sin(pow(rest, -1)) / rest};
+    auto stepper = m.stepper({.maximum_steps = 1'000'000});
+    const Step step = advance(stepper, 3);
+    CHECK(step.ending == StepEnding::StepUnderflow);
+    CHECK(stepper.time() > 1.9);
+    CHECK(stepper.time() < 2);
+    CHECK(stepper.steps() < 100'000);
+  }
   SUBCASE("blow-up: x'' = 2 x³ with x = 1/(1 − t)") {
     Mechanics m;
     const auto x = m.coordinate("x", 1, 1);
