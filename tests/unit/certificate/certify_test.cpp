@@ -306,3 +306,21 @@ V = sqrt(3 + 2 sqrt(2)) x
       CHECK((exact || check.statement.find("60 digits") != std::string::npos));
     }
 }
+
+TEST_CASE("derivatives of derivatives are followed as far as they are written") {
+  ModelText model("dimensionless\nparam m = 1\ncoord x, y : number\nT = 1/2 m (x'^2 + y'^2)\nV = x y\n");
+  Context& c = *model.system->context;
+  const Expr x = model.q(0), v = model.v(0);
+  // d²/dt² and d³/dt³ of x, as nested d/dt and written out, where x'' + y = 0 is no help.
+  Expr nested = sin(x), plain = nested;
+  for (const int depth : {1, 2, 3}) {
+    CAPTURE(depth);
+    nested = c.time_derivative(nested);
+    plain = total_time_derivative(plain);
+    EquationsOfMotion equations = model.equations;
+    equations.residual[1] = equations.residual[1] + (nested - plain) * v;
+    CHECK(failed(certify(equations, nullptr)).empty());
+    equations.residual[1] = equations.residual[1] + plain;
+    CHECK(failed(certify(equations, nullptr)).count("jet_residual"));
+  }
+}
