@@ -41,10 +41,14 @@ std::unique_ptr<Method> taylor_method(const EquationsOfMotion& equations, const 
   return method_of(TaylorStepper(motion_kernel(equations, wanted), parameter_values(*equations.system), out));
 }
 
+double stiff_tolerance(const SimulationOptions& options) {
+  return options.tolerance != 0 ? options.tolerance : StiffOptions{}.tolerance;
+}
+
 std::unique_ptr<Method> stiff_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
                                      const SimulationOptions& options, Diagnostics& diagnostics) {
   StiffOptions out;
-  if (options.tolerance != 0) out.tolerance = options.tolerance;
+  out.tolerance = stiff_tolerance(options);
   out.maximum_steps = options.maximum_steps;
   out.interrupt = options.interrupt;
   return stiff_method(equations, wanted, out, diagnostics);
@@ -281,11 +285,11 @@ std::string title_of(const std::string& method) {
   return method == "taylor" ? "Taylor" : method == "stiff" ? "stiff (backward differentiation)" : "variational";
 }
 
-void note_stiffness(const SimulationResult& result, const MechanicalSystem& system, Diagnostics& diagnostics) {
+void note_stiffness(const SimulationResult& result, const MechanicalSystem& system, double tolerance, Diagnostics& diagnostics) {
   diagnostics.note("N0702", std::nullopt, "the stiff method took over",
                    fmt::format("Fast, strongly damped parts of the motion had died out, and yet limited Taylor's steps; "
                                "the backward differentiation formulas went on with a tolerance of {:g} to {}.",
-                               1e-10, system.moment(fmt::format("{:g}", result.final.t))),
+                               tolerance, system.moment(fmt::format("{:g}", result.final.t))),
                    "Use --method taylor to keep Taylor's steps, or --tol for another tolerance.");
 }
 
@@ -344,7 +348,7 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   SimulationResult result = run.carry_out();
   if (options.errors != ErrorEstimates::None && result.ending != Ending::Interrupted)
     add_errors(result, probe, model, equations, options, *plan, observables, wanted);
-  if (run.turned_stiff()) note_stiffness(result, model.system, diagnostics);
+  if (run.turned_stiff()) note_stiffness(result, model.system, stiff_tolerance(options), diagnostics);
   if (options.method == StepMethod::Automatic || options.method == StepMethod::Taylor || options.backend == Backend::Compiled)
     warn_of_backend(run.backend(), options.backend, diagnostics);
   result.statistics.compile_seconds += compile_seconds;

@@ -88,11 +88,11 @@ Expr anonymous_constant(Elaboration& e, const std::string& name, Expr value, con
 }  // namespace
 
 Value value_of_number(Elaboration& e, const Expression& x) {
-  const std::optional<Rational> r = x.text.size() <= 1000 ? Rational::parse(x.text) : std::nullopt;
+  const std::optional<Rational> r = Rational::parse(x.text);
   if (!r || !std::isfinite(r->to_double()) || (r->to_double() == 0 && !r->is_zero())) {
     e.diagnostics.error("E0218", x.span,
                         fmt::format("the number {} is beyond the range of computation", x.text.substr(0, 40)),
-                        "Numbers have at most 1000 digits and lie between 1e-308 and 1e308 in size.",
+                        "Numbers lie between 1e-308 and 1e308 in size.",
                         "Choose units in which it is of moderate size.");
     return Value::poison();
   }

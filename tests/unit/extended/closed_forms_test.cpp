@@ -14,6 +14,8 @@ TEST_CASE("the harmonic oscillator to 100 digits; 0.1 is the decimal, a third is
     const ExtendedResult r = run(m, options);
     REQUIRE(r.ok());
     const int least = precision == Precision::Quad ? 31 : 100;
+    CHECK(r.statistics.seconds > 0);
+    CHECK(r.statistics.check_seconds > 0);
     check_digits(r.at[0].q[0], x(Decimal("0.7")), least);
     check_digits(r.at[1].q[0], Decimal("0.1"), least);
     check_digits(r.at[2].q[0], x(Decimal("2.3")), least);

@@ -184,3 +184,13 @@ TEST_CASE("probes have errors of their own") {
   CHECK(probe.errors[1][0] > 0.5 * expected);
   CHECK(probe.errors[1][0] < 2 * expected);
 }
+
+TEST_CASE("rounding noise about zero is no motion that was lost") {
+  // 0.1 + 0.2 − 0.3 is nothing but rounding: it moves y by some 1e-17 beside an x of 1.
+  const SimulationResult r = run("system s\ndimensionless\nparam a = 0.1, b = 0.2, c = 0.3\ncoord x, y : number\n"
+                                 "T = 1/2 (x'^2 + y'^2)\nV = 1/2 (x^2 + y^2) + (a + b - c) x y\nstart x = 1\nrun 10\n");
+  REQUIRE(r.final.errors);
+  CHECK(std::abs(r.final.q[1]) < 1e-14);
+  CHECK(r.final.errors->q[1] > 0);
+  CHECK(r.uncertain.columns.empty());
+}

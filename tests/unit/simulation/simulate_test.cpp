@@ -146,6 +146,34 @@ TEST_CASE("a model without a run says so") {
   CHECK(diagnostics.items().front().code == "E0701");
 }
 
+TEST_CASE("an output interval has to be a positive time, and leave rows that can be kept") {
+  const ModelText m(oscillator);
+  const auto code_of = [&](double every) {
+    SimulationOptions options;
+    options.output_every = every;
+    Diagnostics diagnostics;
+    CHECK_FALSE(simulate(m.model, m.equations, options, diagnostics));
+    REQUIRE(diagnostics.items().size() == 1);
+    return diagnostics.items().front().code;
+  };
+  CHECK(code_of(-0.1) == "E0704");
+  CHECK(code_of(std::nan("")) == "E0704");
+  CHECK(code_of(1e-12) == "E0705");
+}
+
+TEST_CASE("multipliers without a name have their units: of positions an energy over φ, of velocities an action") {
+  const std::string point = "system s\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\ngravity (0, -g)\n";
+  const auto unit = [&](const std::string& constraint) {
+    const SimulationResult r = run(ModelText(point + constraint + "\nstart x = 1 m\nrun 0.1 s\n"));
+    REQUIRE(r.reactions.size() == 1);
+    return r.reactions[0].unit;
+  };
+  CHECK(unit("constraint x^2 + y^2 = l^2") == "N/m");
+  CHECK(unit("constraint x = l") == "N");
+  CHECK(unit("constraint x' = 0") == "N");
+  CHECK(unit("constraint l x' = 0") == "N/m");
+}
+
 TEST_CASE("the output grid begins and ends with the run") {
   const ModelText m(std::string(oscillator) + "output every 300 ms\n");
   const SimulationResult r = run(m);

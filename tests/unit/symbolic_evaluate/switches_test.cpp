@@ -106,6 +106,13 @@ TEST_CASE_FIXTURE(Fixture, "all branches of nested switches are found, and what 
   CHECK(found.missing == 2);
 }
 
+TEST_CASE_FIXTURE(Fixture, "narrow bands between two constants are found, in several coordinates at once") {
+  const std::array switches{x - Rational(1000), x - Rational(1001), y - Rational(2000), y - Rational(2001), t - Rational(7000), t - Rational(7001)};
+  const BranchPoints found = points_in_branches(switches, search());
+  CHECK(found.combinations == 64);
+  CHECK(found.missing == 64 - 27);  // below, in and above each band
+}
+
 TEST_CASE_FIXTURE(Fixture, "the formula on one side of a switch") {
   const Expr f = abs(x) + max(x, y) + piecewise(less(x, number(0)), y, step(x) * number(3));
   const Expr above = on_side({&f, 1}, x, true)[0], below = on_side({&f, 1}, x, false)[0];

@@ -53,3 +53,16 @@ TEST_CASE_FIXTURE(Circle, "repeated relations do no harm") {
   const Expr e = sqrt(x * x + y * y) - l;
   CHECK(zero_test_where({&e, 1}, twice, unknowns, center).verdict == Verdict::Zero);
 }
+
+TEST_CASE_FIXTURE(Circle, "symbols that are held keep their size, whatever it is") {
+  const Expr k = c.symbol("k", Role::Parameter);
+  for (const double held : {0.0, 1e-9, 3.0, 1e9}) {
+    CAPTURE(held);
+    center[k] = held;
+    CHECK(test(k * (x * x + y * y - l * l)).verdict == Verdict::Zero);
+    if (held == 0) continue;
+    const ZeroTest different = test(x * x + y * y - l * l + k);
+    CHECK(different.verdict == Verdict::Nonzero);
+    CHECK(different.witness.at(k) == doctest::Approx(held).epsilon(0.02));
+  }
+}

@@ -134,6 +134,10 @@ TEST_CASE("plain text: functions") {
   const std::array branches{n.c.function(Kind::Less, std::array{n.x, n.c.number(0)}), -n.k * n.x, n.k * n.x};
   CHECK(n.plain(n.c.function(Kind::Piecewise, branches)) == "piecewise(x < 0 : -k x, else : k x)");
   CHECK(n.plain(n.c.function(Kind::Atan2, std::array{n.x, n.l})) == "atan2(x, l)");
+  const Expr direction = n.c.function(Kind::Atan2, std::array{n.x, n.l});
+  CHECK(n.plain(pow(direction, Rational(2))) == "atan2(x, l)^2");
+  CHECK(n.latex(pow(direction, Rational(2))) == "\\left(\\operatorname{atan2}\\left(x, l\\right)\\right)^{2}");
+  CHECK(n.mathml(direction).find("<mo>,</mo>") != std::string::npos);
 }
 
 TEST_CASE("plain text: quantities of the model") {

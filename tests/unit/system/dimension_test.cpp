@@ -99,6 +99,24 @@ TEST_CASE("numbers with units in formulas become anonymous constants, angles do 
   CHECK(value(s.potential_energy(), e.at({1}, {0})) == Approx(3 * std::cos(0.5 + std::acos(-1.0) / 6) + 3));
 }
 
+TEST_CASE("a bracket is measured by the product of its sides over an action") {
+  const std::string model = "param m = 1 kg, k = 2 N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\n";
+  for (const char* line : {"expect bracket (x, p_x) = 1", "expect bracket (p_x, x) = -1", "expect bracket (x^2, p_x) = 2 x", "expect bracket (p_x, k x^2) = -2 k x", "expect bracket (x, x) = 0"}) {
+    const Elaborated e(model + line + "\n");
+    CHECK_MESSAGE(e.codes() == "", line << ": " << e.messages());
+    CHECK(e.experiment().expectations.size() == 1);
+  }
+  CHECK(Elaborated(model + "expect bracket (x, p_x) = x\n").codes() == "E0304");
+  CHECK(Elaborated(model + "expect bracket (x^2, p_x) = 2\n").codes() == "E0304");
+}
+
+TEST_CASE("numbers may have 200 bytes") {
+  const std::string model = "param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\nV = 1 [J/m] x * ";
+  CHECK(Elaborated(model + "0." + std::string(198, '3') + "\n").codes() == "");
+  CHECK(Elaborated(model + "0." + std::string(199, '3') + "\n").codes() == "E0101");
+  CHECK(Elaborated(model + "1" + std::string(199, '0') + "\n").codes() == "");
+}
+
 TEST_CASE("dimensionless models have no units") {
   const Elaborated e(
       "dimensionless\nparam μ = 0.0123\ncoord x, y : length, θ : angle\nT = x'^2 + y' + y'^2 + θ'^2\nV = x + y^2 + sin "

@@ -48,6 +48,13 @@ TEST_CASE("springs with and without a rest length, torsion springs, dampers, gra
   CHECK(value(e.system().dissipation_function(), at) == Approx(0.5 * 0.6 * stretch_rate * stretch_rate));
 }
 
+TEST_CASE("a torsion spring on a name that is not there, or on one without a value, is told once") {
+  const std::string model = "param m = 1 kg, κ = 4 N m/rad\ncoord x : length\nT = 1/2 m x'^2\n";
+  CHECK(Elaborated(model + "torsion spring z stiffness κ\n").codes() == "E0201");
+  CHECK(Elaborated(model + "let z = x + m\ntorsion spring z stiffness κ\n").codes() == "E0302");
+  CHECK(Elaborated(model + "torsion spring m stiffness κ\n").codes().find("E0212") == 0);
+}
+
 TEST_CASE("virtual work: forces at points, torques, torques between bodies, forces along coordinates") {
   const Elaborated e(
       "param m = 1 kg, l = 2 m, F = 3 N, τ = 5 N m, J = 1 kg m^2\ncoord x : length, θ, φ : angle\n"

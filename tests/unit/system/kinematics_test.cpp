@@ -115,7 +115,8 @@ TEST_CASE("places in frames: components along the axes of the frame, points of t
       "param m = 1 kg, a = 2 m, b = 3 m\ncoord x : length, θ, φ : angle\n"
       "frame F at (x, 0) rotation angle θ\nframe G at (a, 0) rotation angle φ in F\n"
       "point P mass m at (b, 0) in G\npoint Q mass m at P + (0, b) in F\npoint R mass m at (P + Q)/2\n"
-      "let d = (b, b)\npoint S mass m at d in G\n");
+      "let d = (b, b)\npoint S mass m at d in G\n"
+      "let there = P - Q, back = -Q + P, far = -(Q - 2 P) - P\npoint U at there in F\npoint V at back in F\npoint W at far in F\n");
   const double x = 0.4, th = 0.7, phi = -0.3, a = 2, b = 3;
   const auto at = e.at({x, th, phi}, {0, 0, 0});
   const auto place = [&](const char* name, int k) {
@@ -128,6 +129,11 @@ TEST_CASE("places in frames: components along the axes of the frame, points of t
   CHECK(place("Q", 1) == Approx(py + b * std::cos(th)));
   CHECK(place("R", 0) == Approx(px - b * std::sin(th) / 2));
   CHECK(place("S", 0) == Approx(x + a * std::cos(th) + b * std::cos(th + phi) - b * std::sin(th + phi)));
+  // From Q to P, a direction however it is written: laid off from the origin of F along its axes.
+  for (const char* name : {"U", "V", "W"}) {
+    CHECK(place(name, 0) == Approx(place("U", 0)));
+    CHECK(place(name, 1) == Approx(place("U", 1)));
+  }
 }
 
 TEST_CASE("in the plane the angular velocity is the sum of the rates") {

@@ -123,3 +123,16 @@ TEST_CASE("the jump is named with its size and its place") {
   CHECK(message("param m = 1 kg, d = 1 m\ncoord x : length\npoint P mass m at (x + d step(x), 0)\n") ==
         "the position of P jumps where x = 0");
 }
+
+TEST_CASE("what is said of a coordinate without kinetic energy fits the way T is given") {
+  const auto told = [](const std::string& text) {
+    const Elaborated e("param m = 1 kg, b = 2 kg/s, k = 1 N/m\ncoord x, y : length\nV = 1/2 k y^2\n" + text);
+    REQUIRE(e.codes().find("E0407") != std::string::npos);
+    return e.diagnostics.items().back().reason;
+  };
+  const std::string masses = "No mass moves when y changes", given = "y' does not enter T";
+  CHECK(told("point P mass m at (x, 0)\n").find(masses) == 0);
+  CHECK(told("T = 1/2 m x'^2\n").find(given) == 0);
+  CHECK(told("point P mass m at (x, 0)\nT += 1/2 m x'^2\n").find(given) == 0);
+  CHECK(told("point P mass m at (x, 0)\nL += b y x'\n").find(given) == 0);
+}
