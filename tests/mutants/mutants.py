@@ -149,11 +149,11 @@ def measure(module, wanted, draw, work):
 class Work:
     def __init__(self, arguments, ledger, build, limits):
         self.folder, self.ledger, self.build, self.limits = arguments.folder, ledger, build, limits
-        self.jobs, self.again, self.tried = arguments.jobs, arguments.again, set()
+        self.jobs, self.again, self.tried = arguments.jobs, arguments.again, set(equivalents())
 
     def judge(self, trial, mutant, text):
         known = self.ledger.get(mutant, text)
-        if known and (known["verdict"] != "survived" or not self.again or mutant.name in self.tried):
+        if known and (known["verdict"] != "survived" or not self.again or mutant.name in self.tried):  # or no test can see it
             return known
         self.tried.add(mutant.name)
         entry = self.ledger.add(mutant, text, *trial.judge(mutant, text, suites_of(mutant.path), self.limits))

@@ -40,7 +40,7 @@ REFERENCE = Suite("reference", "maup", ("{program}", "test", *sorted(
 SUITES = {
     "equations": [unit("unit_equations"), unit("unit_certificate"), PRINTED, REJECTED, unit("unit_simulation"), REFERENCE],
     "certificate": [unit("unit_certificate"), unit("property"), REJECTED, PRINTED],
-    "symbolic/expression": [unit("unit_symbolic"), unit("unit_symbolic_evaluate"), unit("unit_symbolic_readable"), PRINTED],
+    "symbolic/expression": [unit("unit_symbolic"), unit("unit_symbolic_evaluate"), unit("unit_symbolic_readable"), unit("unit_symbolic_print"), PRINTED],
     "symbolic/transform": [unit("unit_symbolic"), unit("unit_symbolic_readable"), unit("unit_equations"), PRINTED],
     "symbolic/evaluate": [unit("unit_symbolic_evaluate"), unit("unit_certificate"), unit("unit_equations"), unit("property")],
     "symbolic/print": [unit("unit_symbolic_print"), unit("unit_symbolic_readable"), PRINTED],

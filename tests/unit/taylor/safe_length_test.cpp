@@ -95,7 +95,7 @@ TEST_CASE("where the momentum is small, rounding of the force is the measure") {
     CAPTURE(tolerance);
     const double truly = std::pow(tolerance / left_out(1), 1.0 / order);  // left out: tolerance times the force
     const double found = passage.longest(tolerance, 0);
-    CHECK(found <= 2 * truly);  // the force adds up roundings of more than one value
+    CHECK(found <= truly);
     CHECK(found >= 0.55 * truly);
   }
 }

@@ -78,7 +78,9 @@ TEST_CASE("a run that cannot start says so once, whatever lines need it") {
 TEST_CASE("an equation that a mistake would make empty explains no claim") {
   // Without its damping the row of y would be 0 = 0.
   const std::string model = "dimensionless\nparam c = 2\ncoord x, y : number\nT = 1/2 x'^2\nD = 1/2 c y'^2\n";
-  const ExpectationResult r = only(model + "claim y' = 1\n");
-  CHECK_FALSE(r.passed);
-  CHECK(r.pitfall.empty());
+  for (const char* claim : {"claim y' = 1", "claim c = 1"}) {
+    const ExpectationResult r = only(model + claim + "\n");
+    CHECK_FALSE(r.passed);
+    CHECK_MESSAGE(r.pitfall.empty(), claim << ": " << r.pitfall);
+  }
 }
