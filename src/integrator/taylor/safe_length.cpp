@@ -88,9 +88,12 @@ bool SafeLength::wants_momenta(std::span<const double> rates) {
 void SafeLength::find_momenta(std::span<const double> rates) {
   const std::size_t n = rates.size();
   momentum_rates_.assign(rates.begin(), rates.end());
-  momenta_.assign(n, 0.0);
-  for (std::size_t j = 0; j < momenta_.size(); ++j)
-    for (std::size_t k = 0; k < n; ++k) momenta_[j] += masses_[j * n + k] * rates[k];
+  momenta_.resize(n, 0.0);
+  for (std::size_t j = 0; j < n; ++j) {
+    double sum = 0;
+    for (std::size_t k = 0; k < n; ++k) sum += masses_[j * n + k] * rates[k];
+    momenta_[j] = std::max(momenta_[j], sum);
+  }
   allow();
 }
 
