@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace maupertuis::app {
 namespace {
@@ -26,11 +27,12 @@ std::string with_unit(const std::string& number, const std::string& unit) { retu
 
 std::string moment(double t, const MechanicalSystem& system) { return system.moment(fmt::format("{:.12g}", t)); }
 
-/// One digit, rounded up: an error is not made smaller by printing it.
+/// One digit, rounded up: an error is not made smaller by printing it. (std::stod would throw where the result is
+/// subnormal or infinite.)
 std::string error_text(double error) {
   const std::string nearest = fmt::format("{:.0e}", error);
-  if (!(std::stod(nearest) < error)) return fmt::format("{:.1g}", error);
-  const double digit = std::stod(nearest.substr(0, 1)), power = std::stod("1" + nearest.substr(1));
+  if (!(std::strtod(nearest.c_str(), nullptr) < error)) return fmt::format("{:.1g}", error);
+  const double digit = nearest[0] - '0', power = std::strtod(("1" + nearest.substr(1)).c_str(), nullptr);
   return fmt::format("{:.1g}", (digit + 1) * power);
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <random>
 
 /// The start in stages: what is written, positions on the constraints, velocities on the constraints, what was moved.
@@ -18,7 +19,7 @@ constexpr double rounding_of_digits = 1e-9;
 std::string change_text(double from, double to) {
   for (int digits = 6; digits < 17; ++digits) {
     const std::string before = fmt::format("{:.{}g}", from, digits), after = fmt::format("{:.{}g}", to, digits);
-    const double shown = std::stod(after) - std::stod(before);
+    const double shown = std::strtod(after.c_str(), nullptr) - std::strtod(before.c_str(), nullptr);
     if (std::abs(shown - (to - from)) <= 0.05 * std::abs(to - from)) return fmt::format("from {} to {}", before, after);
   }
   return fmt::format("from {:.17g} to {:.17g}", from, to);

@@ -222,7 +222,8 @@ class Verifier {
     const int degree = std::clamp(velocity_degree(integral, *equations_.system).value_or(2), 2, 4);
     const auto& found = invariants(degree);
     if (!found) {
-      result.message = "The search did not run.";
+      const std::string why = diagnostics_.empty() ? "" : diagnostics_.items().back().message;
+      result.message = fmt::format("The search did not run{}{}.", why.empty() ? "" : ": ", why);
       return;
     }
     result.passed = is_function_of(integral, *found, equations_);

@@ -76,11 +76,13 @@ LongRun long_run(const ReportOptions& options, Study& study) {
 /// The page; a model that cannot run (no start, no `run`) still gets its equations.
 std::string page_of(Study& study, const std::optional<SimulationResult>& result, const SimulationOptions& settings,
                     const LongRun& orbits, const std::optional<PathSearch>& paths) {
+  const Model& model = *study.model();
+  const EquationsOfMotion& equations = *study.equations();
   ReportParts parts;
   if (paths) parts.paths = &*paths;
   Verification verification;
   EquilibriumParts equilibria;
-  if (moves_in_time(study.model()->system)) equilibria = equilibrium_parts(*study.model(), *study.equations());
+  if (moves_in_time(model.system)) equilibria = equilibrium_parts(model, equations);
   if (equilibria.study) parts.modes = &*equilibria.study;
   if (equilibria.locus) parts.locus = &*equilibria.locus;
   if (result) parts.simulation = &*result;
@@ -88,19 +90,20 @@ std::string page_of(Study& study, const std::optional<SimulationResult>& result,
   if (orbits.section) parts.section = &*orbits.section;
   if (orbits.lyapunov) parts.lyapunov = &*orbits.lyapunov;
   parts.section_what = orbits.section_what;
-  if (result && !study.model()->experiment.expectations.empty()) {
-    verification = verify(*study.model(), *study.equations(), study.source(), settings, study.diagnostics());
+  // What the page cannot say of a system is no mistake of the model.
+  Diagnostics unheard;
+  if (result && !model.experiment.expectations.empty()) {
+    verification = verify(model, equations, study.source(), settings, unheard);
     parts.verification = &verification;
   }
-  // A page is not worth a long search; what it cannot say of a system is no mistake of the model.
+  // A page is not worth a long search.
   InvariantsOptions search;
   search.largest_basis = 600;
   search.drift = false;
-  Diagnostics unheard;
-  const auto invariants = find_invariants(*study.model(), *study.equations(), search, unheard);
+  const auto invariants = find_invariants(model, equations, search, unheard);
   if (invariants) parts.invariants = &*invariants;
-  return report_html(compose_report(*study.model(), study.source(), *study.equations(), *study.derivation(true),
-                                    *study.certificate(), study.diagnostics(), parts));
+  return report_html(compose_report(model, study.source(), equations, *study.derivation(true), *study.certificate(),
+                                    study.diagnostics(), parts));
 }
 
 /// It says between what ends its paths run, and nothing of a run.

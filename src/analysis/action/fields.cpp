@@ -349,6 +349,7 @@ class Study {
       w.topLeftCorner(d, first.cols()) = first;
       w.bottomRightCorner(d, last.cols()) = last;
     }
+    if (w.cols() == 0) return 0;  // constraints leave nothing of the ends' freedom
     const Matrix on = w.transpose() * c * w;
     const Vector values = Eigen::SelfAdjointEigenSolver<Matrix>((on + on.transpose()) / 2, Eigen::EigenvaluesOnly).eigenvalues();
     const double zero = 1e-8 * c.cwiseAbs().maxCoeff();  // the same closed orbit, begun later, changes nothing

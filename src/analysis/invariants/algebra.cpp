@@ -4,8 +4,6 @@
 #include "analysis/invariants/search.hpp"
 #include "analysis/invariants/symmetry.hpp"
 
-#include <maupertuis/constraint_manifold.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +24,7 @@ std::vector<bool> independent_functions_of_state(const MotionRows& rows, const E
   const std::size_t given = rows.conservative ? 0 : all.size();
   if (rows.conservative) all.clear();
   all.insert(all.end(), functions.begin(), functions.end());
-  all = in_terms_of_motion(system, expand_time_derivatives(all));
+  all = in_state_variables(system, all);
   std::vector<Expr> entries;
   for (const Expr& f : all) {
     const auto slopes = gradient(f, state);
@@ -50,7 +48,7 @@ PoissonAlgebra::PoissonAlgebra(const MotionRows& rows, const EquationsOfMotion& 
   const MechanicalSystem& system = *rows.system;
   for (const Coordinate& c : system.coordinates) q_.push_back(c.q);
   momentum_by_position_ = {q_.size(), q_.size(), {}};
-  for (const Expr& p : in_terms_of_motion(system, equations.momenta))
+  for (const Expr& p : in_state_variables(system, equations.momenta))
     for (const Expr& slope : gradient(p, q_)) momentum_by_position_.entries.push_back(slope);
 }
 

@@ -1,6 +1,5 @@
 #include "analysis/invariants/ansatz.hpp"
 
-#include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/print.hpp>
 
@@ -90,9 +89,9 @@ bool is_reversible(const MotionRows& rows) {
 void take_body(Ansatz& a, const MechanicalSystem& system) {
   if (system.bodies.size() != 1 || system.space_dimension != 3 || system.coordinates.size() > 4) return;
   const Body& body = system.bodies[0];
-  a.velocities = in_terms_of_motion(system, body.angular_velocity);
+  a.velocities = in_state_variables(system, body.angular_velocity);
   for (std::size_t axis = 0; axis < 3; ++axis) a.directions.push_back(body.rotation.at(2, axis));
-  a.directions = in_terms_of_motion(system, a.directions);
+  a.directions = in_state_variables(system, a.directions);
 }
 
 }  // namespace
@@ -102,8 +101,8 @@ Ansatz make_ansatz(const EquationsOfMotion& equations, const MotionRows& rows) {
   Ansatz a{Generators(*system.context), {}, {}, {}, {}, {}, {}};
   a.atoms = collect_atoms(equations, a.generators);
   a.world = world_of(equations);
-  a.energy = in_terms_of_motion(system, {&equations.energy_function, 1}).front();
-  a.momenta = in_terms_of_motion(system, equations.momenta);
+  a.energy = in_state_variables(system, {equations.energy_function}).front();
+  a.momenta = in_state_variables(system, equations.momenta);
   for (const Coordinate& c : system.coordinates) a.velocities.push_back(c.velocity);
   take_body(a, system);
   a.constant_mass = std::all_of(rows.mass.entries.begin(), rows.mass.entries.end(), is_parametric);

@@ -4,8 +4,6 @@
 #include "analysis/invariants/search.hpp"
 #include "analysis/invariants/symmetry.hpp"
 
-#include <maupertuis/constraint_manifold.hpp>
-
 #include <algorithm>
 
 namespace maupertuis::invariants {
@@ -47,7 +45,7 @@ void add_balance_laws(Invariants& result, Ansatz& ansatz, const EquationsOfMotio
       if (system.constrained()) force = force + equations.constraint_forces[i];
       rate = rate + force * (*displacement)[i];
     }
-    rate = in_terms_of_motion(system, expand_time_derivatives(std::vector<Expr>{rate})).front();
+    rate = in_state_variables(system, {rate}).front();
     if (zero_test(rate).verdict == Verdict::Zero) continue;
     result.balance_laws.push_back(
         {naming.name, readable(naming.scaled, equations.order), readable(rate, equations.order)});

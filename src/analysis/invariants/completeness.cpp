@@ -2,9 +2,9 @@
 
 #include "analysis/invariants/field_linear_algebra.hpp"
 #include "analysis/invariants/given_numbers.hpp"
+#include "analysis/invariants/motion_sampler.hpp"
 #include "symbolic/evaluate/normalize.hpp"
 
-#include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <algorithm>
@@ -49,7 +49,7 @@ class TaylorCoefficients {
     variables_.push_back(system_.context->time());
     std::vector<Expr> functions{equations.lagrangian_expanded};
     functions.insert(functions.end(), equations.momenta.begin(), equations.momenta.end());
-    functions = in_terms_of_motion(system_, expand_time_derivatives(functions));
+    functions = in_state_variables(system_, functions);
     for (std::size_t f = 0; f < functions.size(); ++f) derive(f, functions[f], order);
   }
   const std::vector<Expr>& roots() const { return roots_; }

@@ -8,28 +8,25 @@
 #include <algorithm>
 
 namespace maupertuis::invariants {
-namespace {
 
 using evaluation::mix;
 
-ExprVector without_inputs(const MechanicalSystem& system, const ExprVector& v) {
+ExprVector in_state_variables(const MechanicalSystem& system, const ExprVector& v) {
   return in_terms_of_motion(system, expand_time_derivatives(v));
 }
-
-}  // namespace
 
 MotionRows motion_rows(const EquationsOfMotion& equations) {
   const MechanicalSystem& system = *equations.system;
   MotionRows rows{equations.system, mass_matrix(equations), bias(equations), {}, {}, {}, false};
-  rows.mass.entries = without_inputs(system, rows.mass.entries);
-  rows.bias = without_inputs(system, rows.bias);
+  rows.mass.entries = in_state_variables(system, rows.mass.entries);
+  rows.bias = in_state_variables(system, rows.bias);
   if (!system.constrained()) return rows;
   rows.constraint = constraint_matrix(equations);
-  rows.constraint.entries = without_inputs(system, rows.constraint.entries);
-  rows.acceleration = without_inputs(system, constraint_bias(equations));
+  rows.constraint.entries = in_state_variables(system, rows.constraint.entries);
+  rows.acceleration = in_state_variables(system, constraint_bias(equations));
   ExprMap at_rest;
   for (const Coordinate& c : system.coordinates) at_rest.emplace(c.velocity, system.context->number(0));
-  for (const Expr& rate : substitute(without_inputs(system, equations.constraint_rates), at_rest))
+  for (const Expr& rate : substitute(in_state_variables(system, equations.constraint_rates), at_rest))
     rows.velocity.push_back(-rate);
   return rows;
 }
@@ -37,13 +34,13 @@ MotionRows motion_rows(const EquationsOfMotion& equations) {
 ExprVector conservative_residual(const EquationsOfMotion& equations) {
   ExprVector q;
   for (const Coordinate& c : equations.system->coordinates) q.push_back(c.q);
-  return without_inputs(*equations.system, variational_residual(equations.lagrangian, q));
+  return in_state_variables(*equations.system, variational_residual(equations.lagrangian, q));
 }
 
 MotionRows conservative_rows(const EquationsOfMotion& equations) {
   const MechanicalSystem& system = *equations.system;
   MotionRows rows{equations.system, mass_matrix(equations), {}, {}, {}, {}, true};
-  rows.mass.entries = without_inputs(system, rows.mass.entries);
+  rows.mass.entries = in_state_variables(system, rows.mass.entries);
   ExprMap at_rest;
   for (const Coordinate& c : system.coordinates) at_rest.emplace(c.acceleration, system.context->number(0));
   rows.bias = substitute(conservative_residual(equations), at_rest);
@@ -71,7 +68,7 @@ MotionSampler::MotionSampler(const MotionRows& rows, std::vector<Expr> functions
   append(rows.constraint.entries);
   append(rows.acceleration);
   append(rows.velocity);
-  functions = in_terms_of_motion(*system_, expand_time_derivatives(functions));
+  functions = in_state_variables(*system_, functions);
   append(functions);
   if (with_rates)
     for (const Expr& f : functions) roots.push_back(total_time_derivative(f));

@@ -11,6 +11,9 @@
 
 namespace maupertuis::invariants {
 
+/// In q, q', q'', t and parameters alone: inputs and definitions put in, each d/dt carried out.
+ExprVector in_state_variables(const MechanicalSystem& system, const ExprVector& v);
+
 /// The rows that determine the motion, in q, q', t and parameters alone (inputs and definitions put in):
 ///     M q̈ − Aᵀλ = −h,   A q̈ = b,   and for the velocities A q̇ = a₀.
 struct MotionRows {

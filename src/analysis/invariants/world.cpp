@@ -1,6 +1,6 @@
 #include "analysis/invariants/world.hpp"
 
-#include <maupertuis/constraint_manifold.hpp>
+#include "analysis/invariants/motion_sampler.hpp"
 
 #include <map>
 
@@ -55,7 +55,7 @@ class Builder {
 
  private:
   void add_particle(const ExprVector& position, Expr mass) {
-    const ExprVector r = in_terms_of_motion(system_, position), v = velocity_of(r);
+    const ExprVector r = in_state_variables(system_, position), v = velocity_of(r);
     world_.points.push_back({r, v, mass});
     add_to(world_.momentum, v, mass);
     add_to(world_.mass_moment, r, mass);
@@ -65,14 +65,14 @@ class Builder {
   /// The centre of mass and a point along each body axis.
   void add_body(const Body& body) {
     if (body.mass && !body.position.empty()) add_particle(body.position, body.mass);
-    const ExprVector spin = in_terms_of_motion(system_, spin_of(body, *system_.context));
+    const ExprVector spin = in_state_variables(system_, spin_of(body, *system_.context));
     add_to(world_.angular_momentum, spin, one_);
     const std::size_t d = body.rotation.rows;
     for (std::size_t axis = 0; axis < d; ++axis) {
       ExprVector tip;
       for (std::size_t i = 0; i < d; ++i)
         tip.push_back(body.position.empty() ? body.rotation.at(i, axis) : body.position[i] + body.rotation.at(i, axis));
-      tip = in_terms_of_motion(system_, tip);
+      tip = in_state_variables(system_, tip);
       world_.points.push_back({tip, velocity_of(tip), {}});
     }
   }
