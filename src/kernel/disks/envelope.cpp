@@ -1,18 +1,12 @@
 #include "kernel/disks/envelope.hpp"
 
-#include "kernel/disks/slopes.hpp"
+#include <maupertuis/slopes.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 namespace maupertuis {
-namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-}  // namespace
 
 Envelope::Envelope(const Program& program, std::span<const int> degrees)
     : program_(program), degrees_(degrees.begin(), degrees.end()), needs_size_(program.slots, 0), rates_(program.slots, 0), values_(program.slots), place_(program.slots, -1) {
@@ -97,7 +91,7 @@ Envelope::Value Envelope::evaluate(const Instruction& i, const double* constants
     case Op::Function: return function(i);
     case Op::Derivative: {
       const Value& a = values_[i.a];
-      return {a.high[1], 2 * a.high[1], 0, {a.high[1], a.high[2], infinity}, {a.tail[1], a.tail[2], a.tail[2] > 0 ? infinity : 0}};
+      return {a.high[1], 2 * a.high[1], 0, {a.high[1], a.high[2], infinity}, {a.tail[1], a.tail[2], a.tail[2] == 0 ? 0 : infinity}};
     }
     case Op::Select: {
       std::uint32_t t = i.first_term;
@@ -110,8 +104,9 @@ Envelope::Value Envelope::evaluate(const Instruction& i, const double* constants
 
 /// The modulus of a sum is at least the largest lower bound of a term less the upper bounds of the others.
 Envelope::Value Envelope::sum(const Instruction& i, const double* constants) const {
-  Value total{0, 0, 0, {0, 0, 0}, {0, 0, 0}};
   const int rates = rates_[i.out];
+  Value total{.centre = 0, .reach = 0};
+  for (int d = 0; d <= rates; ++d) total.high[d] = total.tail[d] = 0;
   double largest = 0;  // of low + high
   for (std::uint32_t t = i.first_term; t < i.last_term; ++t) {
     const Term& term = program_.terms[t];
@@ -130,7 +125,7 @@ Envelope::Value Envelope::sum(const Instruction& i, const double* constants) con
     for (int d = 0; d <= rates; ++d) {
       const bool is_known = s + d < 3;
       total.high[d] += c * (is_known ? f->high[s + d] : infinity);
-      total.tail[d] += c * (is_known ? f->tail[s + d] : f->tail[2] > 0 ? infinity : 0.0);
+      total.tail[d] += c * (is_known ? f->tail[s + d] : f->tail[2] == 0 ? 0.0 : infinity);
     }
     largest = std::max(largest, c * ((s == 0 ? f->low : 0.0) + f->high[s]));
   }
@@ -174,7 +169,7 @@ Envelope::Value Envelope::power(const Value& w, double c) const {
   const auto largest = [&](double exponent, double factor) {  // of |factor w^exponent|
     return factor == 0 ? 0.0 : std::abs(factor) * (exponent == 0 ? 1.0 : exponent > 0 ? std::pow(w.high[0], exponent) : w.low > 0 ? std::pow(w.low, exponent) : infinity);
   };
-  if (!is_whole && !(w.low > 0)) return {infinity, infinity, 0, {infinity, infinity, infinity}, {infinity, infinity, infinity}};
+  if (!is_whole && !(w.low > 0)) return {};
   const double slope = largest(c - 1, c), bend = largest(c - 2, c * (c - 1));
   Value f;
   f.high[0] = largest(c, 1);
@@ -203,14 +198,13 @@ Envelope::Value Envelope::circular(const Value& w, bool hyperbolic) const {
 
 /// By the largest slope over the disks of all arguments; second derivatives are not looked at.
 Envelope::Value Envelope::function(const Instruction& i) const {
-  constexpr Value unbounded{infinity, infinity, 0, {infinity, infinity, infinity}, {infinity, infinity, infinity}};
   const Value& w = values_[i.a];
-  if (i.b != no_slot || place_[i.a] < 0) return unbounded;
+  if (i.b != no_slot || place_[i.a] < 0) return {};
   const auto at = static_cast<std::size_t>(place_[i.a]);
   const double least = sizes_.least[at], most = sizes_.most[at], d = 0.5 * (most - least) + w.reach;
-  if (!(d < infinity)) return unbounded;
+  if (!(d < infinity)) return {};
   const double slope = largest_slope(i.function, 0.5 * (least + most), d, w.low);
-  Value f = unbounded;
+  Value f;
   f.reach = w.reach == 0 ? 0.0 : slope * w.reach;
   if (i.function == Kind::Exp) {
     f.low = std::exp(least - w.reach), f.centre = std::exp(most);

@@ -2,6 +2,8 @@
 #include "kernel/program/program.hpp"
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -34,10 +36,12 @@ class Envelope {
   double residual_tail(std::size_t j) const { return program_.residual[j] == no_slot ? 0.0 : values_[program_.residual[j]].tail[0]; }
 
  private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  /// What no rule bounds is infinite.
   struct Value {
-    double centre, reach;     // |f(0)|, |f(s) − f(0)|
-    double low;               // ≤ |f|
-    double high[3], tail[3];  // ≥ |f|, |ḟ|, |f̈|, and of what of them is no polynomial
+    double centre = infinity, reach = infinity;                                         // |f(0)|, |f(s) − f(0)|
+    double low = 0;                                                                     // ≤ |f|
+    double high[3] = {infinity, infinity, infinity}, tail[3] = {infinity, infinity, infinity};  // ≥ |f|, |ḟ|, |f̈|, and of what of them is no polynomial
   };
 
   void find_needs();

@@ -1,6 +1,6 @@
 #include "kernel/disks/node.hpp"
-#include "kernel/disks/slopes.hpp"
 
+#include <maupertuis/slopes.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,7 @@
 #include "kernel/function/program.hpp"
 
 #include <maupertuis/function_disks.hpp>
-#include <maupertuis/kinds.hpp>
-#include <maupertuis/lambert_w.hpp>
+#include <maupertuis/slopes.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,12 +15,10 @@ namespace {
 
 using Op = FunctionOp;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double half_pi = 1.5707963267948966;
 
 /// The smaller one; what is not a number bounds nothing.
 double smaller(double x, double y) { return x < y || std::isnan(y) ? x : y; }
 double bound(double x) { return std::isnan(x) ? infinity : x; }
-double inverse(double x) { return x > 0 ? 1 / x : infinity; }
 double away(double x) { return std::max(0.0, x); }
 
 /// The same program, with each slot as an output.
@@ -133,57 +130,25 @@ FunctionDisks::Bounds FunctionDisks::function(const FunctionInstruction& i) cons
   const bool second = i.op == Op::Atan2;
   if (d == 0 && !(second && bounds_[i.b].reach > 0)) return {0, 0, value, value};
   if (!(d < infinity)) return {infinity, infinity, 0, infinity};
-  const auto by_slope = [&](double slope) { return Bounds{slope * d, slope * d, 0, infinity}; };
   const auto within = [&](double reach, double high, double low = 0) { return Bounds{reach, reach, low, high}; };
   if (second) {  // |dφ| ≤ (|dx| + |dy|)/|x ± iy|
     const double both = d + bounds_[i.b].reach, far = std::hypot(w, centre_[i.b]) - both;
     return within(far > 0 ? both / far : infinity, infinity);
   }
-  switch (i.function) {
-    // sin w − sin w₀ = sin w₀ (cos z − 1) + cos w₀ sin z with |z| ≤ d, cos z − 1 ≤ ½ d sinh d
-    case Kind::Sin: return within(std::abs(std::sin(w)) * 0.5 * d * std::sinh(d) + std::abs(std::cos(w)) * std::sinh(d), std::cosh(d));
-    case Kind::Cos: return within(std::abs(std::cos(w)) * 0.5 * d * std::sinh(d) + std::abs(std::sin(w)) * std::sinh(d), std::cosh(d));
-    // |sinh w| and |cosh w| lie between sinh and cosh of |Re w|
-    case Kind::Sinh:
-    case Kind::Cosh: {
-      const double most = std::cosh(size + d);
-      return within(smaller(most + value, d * most), most, size > d ? std::sinh(size - d) : 0);
-    }
-    case Kind::Exp: {
-      const double high = std::exp(w + d);
-      return within(high * std::min(1.0, d), high, std::exp(w - d));
-    }
-    case Kind::Log: return by_slope(inverse(x.low));
-    case Kind::Tan: {  // 1/cos²
-      const double least = away(std::abs(std::cos(w)) * (2 - std::cosh(d)) - std::abs(std::sin(w)) * std::sinh(d));
-      return by_slope(inverse(least * least));
-    }
-    case Kind::Asin:
-    case Kind::Acos: return by_slope(inverse(std::sqrt(away(std::abs(1 - w) - d) * away(std::abs(1 + w) - d))));
-    case Kind::Atan: {
-      const double least = away(std::hypot(1.0, w) - d);
-      return by_slope(inverse(least * least));
-    }
-    case Kind::Tanh: {  // |cosh w| ≥ sinh |Re w|, and ≥ cos |Im w|
-      const double least = std::max(d < half_pi ? std::cos(d) : 0.0, size > d ? std::sinh(size - d) : 0.0);
-      return by_slope(inverse(least * least));
-    }
-    case Kind::Asinh: return by_slope(inverse(away(std::hypot(1.0, w) - d)));
-    case Kind::Acosh: return by_slope(inverse(std::sqrt(away(w - 1 - d) * away(w + 1 - d))));
-    case Kind::Atanh: return by_slope(inverse(away(std::abs(1 - w) - d) * away(std::abs(1 + w) - d)));
-    case Kind::Erf: {  // |exp(−w²)| = exp(−Re w²), largest on the rim: in front of the centre, or beside it
-      const double real = size <= 2 * d ? 0.5 * size * size - d * d : (size - d) * (size - d);
-      return by_slope(1.1283791670955126 * std::exp(-real));
-    }
-    case Kind::LambertW: {  // |W′(z)| ≤ W′(Re z), which grows towards the branch point −1/e
-      const double next = w - d;
-      return by_slope(next > -0.367879441171 ? inverse(next + std::exp(lambert_w(next))) : infinity);
-    }
-    case Kind::Number: case Kind::Pi: case Kind::Symbol: case Kind::Sum: case Kind::Product: case Kind::Power: case Kind::TimeDerivative:
-    case Kind::Abs: case Kind::Sign: case Kind::Step: case Kind::Atan2: case Kind::Min: case Kind::Max: case Kind::Piecewise:
-    case Kind::Less: case Kind::LessEqual: case Kind::And: case Kind::Or: break;
+  const double cos = std::abs(std::cos(w)), sin = std::abs(std::sin(w));
+  // sin w − sin w₀ = sin w₀ (cos z − 1) + cos w₀ sin z with |z| ≤ d, |cos z − 1| ≤ ½ d sinh d
+  if (i.function == Kind::Sin) return within(sin * 0.5 * d * std::sinh(d) + cos * std::sinh(d), std::cosh(d));
+  if (i.function == Kind::Cos) return within(cos * 0.5 * d * std::sinh(d) + sin * std::sinh(d), std::cosh(d));
+  if (i.function == Kind::Sinh || i.function == Kind::Cosh) {  // both lie between sinh and cosh of |Re w|
+    const double most = std::cosh(size + d);
+    return within(smaller(most + value, d * most), most, size > d ? std::sinh(size - d) : 0);
   }
-  throw unknown_kind(i.function, "the bounds on disks");
+  if (i.function == Kind::Exp) {
+    const double high = std::exp(w + d);
+    return within(high * std::min(1.0, d), high, std::exp(w - d));
+  }
+  const double reach = d * largest_slope(i.function, w, d, x.low);
+  return within(reach, infinity);
 }
 
 /// Where the disk decides, the branch in force is the function.

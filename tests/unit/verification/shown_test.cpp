@@ -70,7 +70,8 @@ TEST_CASE("a run that cannot start says so once, whatever lines need it") {
   for (const std::string& text : {lines[0], lines[1], lines[2], lines[0] + lines[1], lines[0] + lines[2], lines[0] + lines[1] + lines[2]}) {
     CAPTURE(text);
     std::size_t errors = 0;
-    for (const Diagnostic& d : heard(torn + text).items()) errors += d.severity == Severity::Error;
+    const Diagnostics diagnostics = heard(torn + text);
+    for (const Diagnostic& d : diagnostics.items()) errors += d.severity == Severity::Error;
     CHECK(errors == 1);
   }
 }

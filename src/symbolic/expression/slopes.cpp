@@ -1,4 +1,4 @@
-#include "kernel/disks/slopes.hpp"
+#include <maupertuis/slopes.hpp>
 
 #include <maupertuis/kinds.hpp>
 #include <maupertuis/lambert_w.hpp>
