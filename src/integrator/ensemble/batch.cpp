@@ -249,12 +249,12 @@ void Batch::check_ends() {
 void Batch::keep_lengths_safe() {
   std::copy_n(arrays_.length, width_, chosen_.begin());
   const auto left = [this](std::size_t lane) { return std::abs((end_[lane] - arrays_.t_high[lane]) - arrays_.t_low[lane]); };
-  for (std::size_t lane = 0; lane < width_; ++lane) arrays_.radius[lane] = safety_.radius(arrays_.length[lane], left(lane));
+  const auto makes_step = [&](std::size_t lane) { return lanes_[lane].active && left(lane) > 0 && arrays_.length[lane] > 0; };
+  for (std::size_t lane = 0; lane < width_; ++lane) arrays_.radius[lane] = makes_step(lane) ? safety_.radius(arrays_.length[lane], left(lane)) : 0.0;
   arithmetic_.find_sizes(arrays_);
   for (std::size_t lane = 0; lane < width_; ++lane) {
-    const double wanted = arrays_.length[lane];
-    if (lanes_[lane].active && left(lane) > 0 && wanted > 0)
-      arrays_.length[lane] = safety_.within(lane, arrays_.t_high[lane], wanted, left(lane), arrays_.sizes + lane);
+    if (!makes_step(lane)) continue;
+    arrays_.length[lane] = safety_.within(lane, arrays_.t_high[lane], arrays_.length[lane], left(lane), arrays_.sizes + lane);
   }
 }
 

@@ -35,9 +35,9 @@ KnownLengths::KnownLengths(const Program& program, std::span<const int> degrees,
     : envelope_(program, degrees), unknowns_(program.unknowns), residuals_(program.residual.size()), constant_count_(program.constants.size()),
       padded_((program.unknowns + 7) / 8 * 8), ratio_(ratio), for_several_(for_several), bins_(bin_count), sizes_(3 * padded_) {}
 
-bool KnownLengths::belongs_to(const double* constants) {
+bool KnownLengths::belongs_to(const double* constants) const {
   constexpr double rounding = 1e-9;  // bounds are no sharper than this
-  if (constants_.empty()) constants_.assign(constants, constants + constant_count_);
+  if (constants_.size() != constant_count_) return false;
   for (std::size_t i = 0; i < constant_count_; ++i)
     if (!(std::abs(constants[i] - constants_[i]) <= rounding * std::abs(constants_[i]))) return false;
   return true;
@@ -45,8 +45,7 @@ bool KnownLengths::belongs_to(const double* constants) {
 
 void KnownLengths::adopt(const double* constants) {
   if (belongs_to(constants)) return;
-  constants_.clear();
-  belongs_to(constants);
+  constants_.assign(constants, constants + constant_count_);
   forget();
 }
 
@@ -155,7 +154,7 @@ void KnownLengths::widen(Bin& bin, Limits limits) const {
     if (anew || !(size <= limit)) limit = widened * size;
   };
   bin.has_limits = true;
-  raise(bin.time, time_);
+  raise(bin.time, envelope_.needs_time() ? time_ : no_limit);
   for (std::size_t i = 0; i < unknowns_; ++i) {
     const double size = std::abs(centre(i));
     raise(bin.limits[i], envelope_.needs_centre(i) ? size : size < small_angle ? (widened > 1 ? 2 * size : size) : no_limit);

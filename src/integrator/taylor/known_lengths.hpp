@@ -23,9 +23,9 @@ class KnownLengths {
   /// ratio: of the disk's radius to the length of the step. The program must outlive this.
   KnownLengths(const Program& program, std::span<const int> degrees, double ratio, bool for_several);
 
-  /// Whether what is known belongs to these constants, up to some of their last digits, or nothing is known yet: then it will.
-  bool belongs_to(const double* constants);
-  /// Forgets what belongs to others.
+  /// Whether what is known belongs to these constants, up to some of their last digits.
+  bool belongs_to(const double* constants) const;
+  /// Forgets what belongs to others: what will be known belongs to these.
   void adopt(const double* constants);
   bool has_constants() const { return !constants_.empty(); }
   void forget();

@@ -31,21 +31,21 @@ double rounded_down(double h) {
   return std::ldexp(std::floor(mantissa * 256) / 256, exponent);
 }
 
-/// The largest ratio of a disk's radius to the length of a step that is asked about, √2 beyond the usual one at least. Smaller ones are √2 apart.
-double above(double usual) {
+/// The ratio of a disk's radius to the length of a step with which x^p is far below the tolerance: 5.8 at order 20 and rounding level.
+double usual_ratio(int order, double tolerance) { return std::clamp(std::pow(4e3 / tolerance, 1.0 / order), 2.0, 16.0); }
+
+/// The largest ratio that is asked about: 8, or √2 beyond the usual one at least. Smaller ones are √2 apart.
+double largest_ratio(double usual) {
   double ratio = 8;
   while (ratio < from_disk_to_disk * usual) ratio *= from_disk_to_disk;
   return ratio;
 }
 
-/// The usual one: so that x^p is far below the tolerance. 5.8 at order 20 and rounding level.
-double usual_ratio(int order, double tolerance) { return std::clamp(std::pow(4e3 / tolerance, 1.0 / order), 2.0, 16.0); }
-
 }  // namespace
 
 SafeLength::SafeLength(const Program& program, int order, double tolerance, std::shared_ptr<KnownLengths> shared)
     : disks_(program), usual_ratio_(usual_ratio(order, tolerance)), own_(program, disks_.degrees(), usual_ratio_, shared != nullptr), shared_(std::move(shared)),
-      known_(&own_), allowed_(disks_.residuals()), tolerance_(tolerance), order_(order), largest_ratio_(above(usual_ratio_)), ratio_(largest_ratio_ / from_disk_to_disk) {}
+      allowed_(disks_.residuals()), tolerance_(tolerance), order_(order), largest_ratio_(largest_ratio(usual_ratio_)), ratio_(largest_ratio_ / from_disk_to_disk) {}
 
 std::shared_ptr<KnownLengths> SafeLength::shared_by_motions(const Program& program, int order, double tolerance) {
   return std::make_shared<KnownLengths>(program, Disks(program).degrees(), usual_ratio(order, tolerance), true);
@@ -65,8 +65,9 @@ void SafeLength::forget() {
 
 void SafeLength::set_constants(const double* constants) {
   disks_.set_constants(constants);
-  known_ = shared_ && shared_->belongs_to(constants) ? shared_.get() : &own_;
-  if (known_ == &own_) own_.adopt(constants);
+  if (shared_ && !shared_->has_constants()) shared_->adopt(constants);
+  uses_shared_ = shared_ && shared_->belongs_to(constants);
+  if (!uses_shared_) own_.adopt(constants);
 }
 
 void SafeLength::allow() {
@@ -155,31 +156,31 @@ double SafeLength::search(const SlotCoefficients& coefficients, double most) {
 
 /// Whether an envelope of this step and no other allows it.
 bool SafeLength::is_safe_alone(const SlotCoefficients& coefficients) {
-  if (!known_->has_asked()) return false;
-  known_->bound(KnownLengths::Limits::Exact);
-  return known_->accept(allowed_, allowed_by_rounding(coefficients));
+  if (!known().has_asked()) return false;
+  known().bound(KnownLengths::Limits::Exact);
+  return known().accept(allowed_, allowed_by_rounding(coefficients));
 }
 
 /// By what was learned of motions of these sizes: first by the momenta, then by the rounding of R here.
 bool SafeLength::is_known(const SlotCoefficients& coefficients, double time, double h, const double* sizes) {
   using enum KnownLengths::Answer;
   using enum KnownLengths::Limits;
-  const KnownLengths::Answer answer = known_->ask(coefficients, time, h, allowed_, sizes);
+  const KnownLengths::Answer answer = known().ask(coefficients, time, h, allowed_, sizes);
   if (answer != Unknown) return answer == Safe;
-  known_->bound(Widened);
-  if (known_->accept(allowed_)) return true;
+  known().bound(Widened);
+  if (known().accept(allowed_)) return true;
   const std::span<const double> by_rounding = allowed_by_rounding(coefficients);
-  if (known_->accept(allowed_, by_rounding)) return true;
-  known_->bound(Anew);
-  if (known_->accept(allowed_, by_rounding)) return true;
-  known_->give_up();
+  if (known().accept(allowed_, by_rounding)) return true;
+  known().bound(Anew);
+  if (known().accept(allowed_, by_rounding)) return true;
+  known().give_up();
   return false;
 }
 
 std::span<const double> SafeLength::allowed_by_rounding(const SlotCoefficients& coefficients) {
   disks_.begin(coefficients);
   allowed_by_rounding_.resize(allowed_.size());
-  for (std::size_t j = 0; j < allowed_.size(); ++j) allowed_by_rounding_[j] = known_->length() * tolerance_ * disks_.residual_rounding(j, known_->radius());
+  for (std::size_t j = 0; j < allowed_.size(); ++j) allowed_by_rounding_[j] = known().length() * tolerance_ * disks_.residual_rounding(j, known().radius());
   return allowed_by_rounding_;
 }
 

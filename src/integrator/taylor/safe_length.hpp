@@ -25,7 +25,7 @@ class SafeLength {
   void forget();
   /// False: R is linear in q, and any length is safe.
   bool is_needed() const { return disks_.residual_has_tails(); }
-  bool has_constants() const { return known_->has_constants(); }
+  bool has_constants() const { return known().has_constants(); }
   void set_constants(const double* constants);
   /// Whether M is to be looked at for the momenta: at the beginning, and from time to time, since it changes along the motion, but its size is all that counts.
   /// In between momenta follow velocities that grow. rates: [n] the largest velocities so far.
@@ -49,6 +49,8 @@ class SafeLength {
   double radius() const { return radius_; }
 
  private:
+  const KnownLengths& known() const { return uses_shared_ ? *shared_ : own_; }
+  KnownLengths& known() { return uses_shared_ ? *shared_ : own_; }
   void find_momenta(std::span<const double> rates);
   void allow();
   bool is_known(const SlotCoefficients& coefficients, double time, double h, const double* sizes);
@@ -65,7 +67,7 @@ class SafeLength {
   double usual_ratio_;
   KnownLengths own_;
   std::shared_ptr<KnownLengths> shared_;
-  KnownLengths* known_;                // one of the two
+  bool uses_shared_ = false;           // whose constants are those of this motion
   std::vector<double> allowed_;        // [residuals] tolerance · momentum
   std::vector<double> allowed_by_rounding_;
   double tolerance_;

@@ -19,24 +19,24 @@ constexpr double ratio = 5;
 using enum KnownLengths::Answer;
 using enum KnownLengths::Limits;
 
-/// x'' + 1/(x + 2) + y² sin 3x = 0, y'' + x y = 0, with a motion through (x, y) = (0.3, 0.5).
+/// x'' + 1/(x + 2) + y² sin 3x = 0, y'' + x y = 0, with a motion through (x, y) = (0.3, 0.5). Driven: x sin 2t = 0 instead of 1/(x + 2) = 0.
 struct Motion {
   Context context;
   Kernel kernel;
   KernelWorkspace work;
   std::vector<double> rows;
-  Motion() : kernel(make(context)), work(kernel, order) {
+  explicit Motion(bool driven = false, double t = 0) : kernel(make(context, driven)), work(kernel, order) {
     work.set_parameters({});
     const double q[] = {0.3, 0.5}, v[] = {0.2, -0.1};
-    REQUIRE(work.expand(0, q, v) == KernelStatus::Ok);
+    REQUIRE(work.expand(t, q, v) == KernelStatus::Ok);
     rows.assign(work.coordinate(0), work.coordinate(0) + (order + 2) * work.row_stride());
   }
-  static Kernel make(Context& context) {
+  static Kernel make(Context& context, bool driven) {
     KernelSource source;
     const Expr x = context.symbol("x", Role::Coordinate), y = context.symbol("y", Role::Coordinate);
     const auto second = [&](const Expr& q) { return context.time_derivative(context.time_derivative(q)); };
     source.coordinates = {x, y};
-    source.residual = {second(x) + pow(x + Rational(2), -1) + y * y * sin(x * Rational(3)), second(y) + x * y};
+    source.residual = {second(x) + (driven ? x * sin(context.time() * Rational(2)) : pow(x + Rational(2), -1)) + y * y * sin(x * Rational(3)), second(y) + x * y};
     return build_kernel(source);
   }
   SlotCoefficients coefficients() const { return {rows.data(), work.row_stride(), order, 1}; }
@@ -50,6 +50,12 @@ struct Known {
       : disks(std::make_unique<Disks>(m.work.program())), lengths(m.work.program(), disks->degrees(), ratio, for_several) {
     lengths.adopt(m.work.constants());
   }
+  KnownLengths::Answer ask(const Motion& m, const std::vector<double>& allowed, double h = 0.05, double t = 0) { return lengths.ask(m.coefficients(), t, h, allowed); }
+  /// Asks about the motion at time t and bounds its like.
+  void bound(const Motion& m, const std::vector<double>& allowed, KnownLengths::Limits limits, double t = 0) {
+    ask(m, allowed, 0.05, t);
+    lengths.bound(limits);
+  }
 };
 
 const std::vector<double> much = {1, 1}, nothing = {0, 0};
@@ -59,29 +65,28 @@ const std::vector<double> much = {1, 1}, nothing = {0, 0};
 TEST_CASE("a length that was learned is known for the motion itself, and not for one that is larger anywhere") {
   Motion m;
   Known known(m);
-  CHECK(known.lengths.ask(m.coefficients(), 0, 0.05, much) == Unknown);
+  CHECK(known.ask(m, much) == Unknown);
   known.lengths.bound(Widened);
   REQUIRE(known.lengths.accept(much));
-  CHECK(known.lengths.ask(m.coefficients(), 0, 0.05, much) == Safe);
+  CHECK(known.ask(m, much) == Safe);
   for (const int k : {1, 2, 3, order + 1})
     for (const std::size_t i : {0, 1}) {
       Motion other;
       other.coefficient(k, i) = k > 3 ? 1e12 : 2 * other.coefficient(k, i) + 1;
       CAPTURE(k);
       CAPTURE(i);
-      CHECK(known.lengths.ask(other.coefficients(), 0, 0.05, much) != Safe);
+      CHECK(known.ask(other, much) != Safe);
     }
   Motion farther;
   farther.coefficient(0, 1) *= 2;  // y stands in products
-  CHECK(known.lengths.ask(farther.coefficients(), 0, 0.05, much) != Safe);
-  CHECK(known.lengths.ask(m.coefficients(), 0, 0.05, much) == Safe);
+  CHECK(known.ask(farther, much) != Safe);
+  CHECK(known.ask(m, much) == Safe);
 }
 
 TEST_CASE("a denominator that comes nearer to zero is another motion") {
   Motion m;
   Known known(m);
-  known.lengths.ask(m.coefficients(), 0, 0.05, much);
-  known.lengths.bound(Widened);
+  known.bound(m, much, Widened);
   REQUIRE(known.lengths.accept(much));
   const Slot denominator = [&] {
     for (const Instruction& i : m.work.program().instructions)
@@ -90,28 +95,37 @@ TEST_CASE("a denominator that comes nearer to zero is another motion") {
   }();
   REQUIRE(denominator != no_slot);
   m.rows[denominator] *= 0.5;
-  CHECK(known.lengths.ask(m.coefficients(), 0, 0.05, much) != Safe);
+  CHECK(known.ask(m, much) != Safe);
+}
+
+TEST_CASE("an angle that grows with time is bounded as one at any time") {
+  Motion m(true);
+  Known early(m), late(m);
+  early.bound(m, much, Exact, 0.001);  // sin 2t is 0.002, and 0.985
+  late.bound(m, much, Exact, 0.7);
+  for (double allowed = 1; allowed > 1e-30; allowed /= 1.02) {
+    CAPTURE(allowed);
+    REQUIRE(early.lengths.accept({{allowed, 1}}) == late.lengths.accept({{allowed, 1}}));
+  }
 }
 
 TEST_CASE("what is allowed counts, also when it shrinks later") {
   Motion m;
   Known known(m);
-  known.lengths.ask(m.coefficients(), 0, 0.05, much);
-  known.lengths.bound(Exact);
+  known.bound(m, much, Exact);
   CHECK(!known.lengths.accept(nothing));
   REQUIRE(known.lengths.accept(much));
-  CHECK(known.lengths.ask(m.coefficients(), 0, 0.05, much) == Safe);
-  CHECK(known.lengths.ask(m.coefficients(), 0, 0.05, nothing) != Safe);
+  CHECK(known.ask(m, much) == Safe);
+  CHECK(known.ask(m, nothing) != Safe);
 }
 
 TEST_CASE("a longer step is another question, one of the same bin is not") {
   Motion m;
   Known known(m);
-  known.lengths.ask(m.coefficients(), 0, 0.05, much);
-  known.lengths.bound(Widened);
+  known.bound(m, much, Widened);
   REQUIRE(known.lengths.accept(much));
-  CHECK(known.lengths.ask(m.coefficients(), 0, 0.0501, much) == Safe);
-  CHECK(known.lengths.ask(m.coefficients(), 0, 0.06, much) != Safe);
+  CHECK(known.ask(m, much, 0.0501) == Safe);
+  CHECK(known.ask(m, much, 0.06) != Safe);
   const double h = 0.053, r = known.lengths.disk_radius(h);
   CHECK(r >= ratio * h);
   CHECK(r <= 1.125 * ratio * h);
@@ -121,10 +135,9 @@ TEST_CASE("rounding allows one motion a step, and is remembered for it alone") {
   for (const bool for_several : {false, true}) {
     Motion m;
     Known known(m, for_several);
-    known.lengths.ask(m.coefficients(), 0, 0.05, nothing);
-    known.lengths.bound(Exact);
+    known.bound(m, nothing, Exact);
     CHECK(known.lengths.accept(nothing, much));
-    CHECK((known.lengths.ask(m.coefficients(), 0, 0.05, nothing) == Safe) == !for_several);
+    CHECK((known.ask(m, nothing) == Safe) == !for_several);
   }
 }
 
@@ -142,8 +155,7 @@ TEST_CASE("lengths belong to constants, up to their last digits") {
 TEST_CASE("what a step leaves out is h d x^p/(1 - x)") {
   Motion m;
   Known known(m);
-  known.lengths.ask(m.coefficients(), 0, 0.05, much);
-  known.lengths.bound(Exact);
+  known.bound(m, much, Exact);
   const double r = known.lengths.radius(), h = known.lengths.length(), x = h / r;
   CHECK(r == doctest::Approx(ratio * h));
   std::vector<double> sizes[4];
