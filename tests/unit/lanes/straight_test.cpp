@@ -1,6 +1,8 @@
 #include "../processors.hpp"
+#include "kernel/program/program.hpp"
 #include "lane_systems.hpp"
 
+#include <algorithm>
 #include <array>
 
 // One motion in straight-line code, the whole expansion at once, against the engine of packs: coefficients, M, and what a step asks of the rows besides.
@@ -29,6 +31,15 @@ void check_coefficients(const KernelWorkspace& code, const KernelWorkspace& engi
     for (std::size_t i = 0; i < n; ++i) size = std::max(size, std::abs(engine.coordinate(k)[i]));
     for (std::size_t i = 0; i < n; ++i) CHECK(std::abs(code.coordinate(k)[i] - engine.coordinate(k)[i]) <= tolerance * (k + 1) * epsilon * size);
   }
+  // Bounds on disks read what every instruction gives at the centre, also where no other order of it is stored. R itself may be left as it was before q̈.
+  const Program& program = engine.program();
+  for (const Run& run : program.runs[Dynamics])
+    for (std::uint32_t at = run.first; at < run.last; ++at)
+      for (const Slot slot : {program.instructions[at].out, program.instructions[at].second}) {
+        if (slot == no_slot || std::find(program.residual.begin(), program.residual.end(), slot) != program.residual.end()) continue;
+        CAPTURE(slot);
+        CHECK(code.coordinate(0)[slot] == doctest::Approx(engine.coordinate(0)[slot]).epsilon(1e-11).scale(100));
+      }
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j) CHECK(code.mass(i, j) == doctest::Approx(engine.mass(i, j)).epsilon(1e-12).scale(1e-12));
 }
