@@ -178,3 +178,22 @@ TEST_CASE("with a hundred digits a mass of 1e192 has the lengths of a mass of 1"
   CHECK(found > 0);
   CHECK(heavy.longest(1e-120) == doctest::Approx(found).epsilon(0.02));
 }
+
+TEST_CASE("what is known of motions with other constants allows nothing") {
+  constexpr double tolerance = 1e-4, h = 0.1;
+  const auto force = [](Rational size, Rational steep) { return Passage([=](Expr x) { return size * apply(Kind::Exp, x * steep); }, order); };
+  // The second force is smaller in all that the step knows of it, and 10⁵ times larger at its end.
+  const Passage gentle = force(Rational(2), Rational(1, 2)), steep = force(Rational(1, 100'000'000), Rational(300));
+  REQUIRE(gentle.work.program().constants.size() == steep.work.program().constants.size());
+  const auto shared = SafeLength::shared_by_motions(gentle.work.program(), order, tolerance);
+  const auto longest = [&](const Passage& p) {
+    SafeLength bounds(p.work.program(), order, tolerance, shared);
+    bounds.set_constants(p.work.constants());
+    const double rates[] = {1};
+    bounds.set_momenta(rates, p.work);
+    return bounds.within(p.coefficients(), 0, h, 1);
+  };
+  CHECK(longest(gentle) == h);
+  CHECK(longest(steep) < 0.9 * h);
+  CHECK(longest(gentle) == h);
+}
