@@ -194,7 +194,7 @@ typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) {
   first.after.insert(first.after.end(), event_state_.begin(), event_state_.end());
   take_rough_constants();
   roots_->set_constants(work_.constants(), rough_constants_.data());
-  roots_->begin(t_, h, [this](int k) { return work_.coordinate(k); });
+  roots_->begin({t_, T(0)}, h, [this](int k) { return work_.coordinate(k); });
   const T together = std::max(T(4 * epsilon<T>()), T(4 * epsilon<T>() * abs(t_ / h)));
   const std::size_t count = switch_state_.size();
   for (std::size_t i = 0; i < first.after.size(); ++i) {

@@ -42,11 +42,17 @@ class RootSearchOf {
     retrace_.set_constants(constants);
     disks_.set_constants(rough);
   }
+  /// The time at which a step begins, hi + lo.
+  struct Time {
+    T hi = T(0), lo = T(0);
+  };
   /// row(k): the k-th coefficients of all unknowns about t; h: length of the step, not 0.
   template <class Row>
-  void begin(const T& t, const T& h, Row&& row) {
-    retrace_.set_motion(t, row);
+  void begin(const Time& time, const T& h, Row&& row) {
+    retrace_.set_motion(time.hi, time.lo, row);
+    t_ = time;
     h_ = h;
+    const T& t = time.hi;
     // Below it two times are the same, or nearly so.
     using std::abs;
     resolution_ = std::max(T(64 * std::numeric_limits<T>::epsilon()), T(4 * std::numeric_limits<T>::epsilon() * abs(t) / abs(h)));
@@ -66,6 +72,7 @@ class RootSearchOf {
     retrace_.evaluate(T(h_ * x));
     return retrace_.row(0)[slot];
   }
+  T at_a_time(const T& x) const;
   T refined(Slot slot, const Piece& piece, const T& begin, const T& root);
   struct Gap {
     T end;                             // where the function is analytic again
@@ -77,6 +84,7 @@ class RootSearchOf {
   Retrace<T> retrace_;
   Disks disks_;
   ScaledRows<T> rows_;
+  Time t_;
   T h_ = T(1), resolution_ = T(0);
 };
 

@@ -122,6 +122,17 @@ typename RootSearchOf<T>::Piece RootSearchOf<T>::piece(Slot slot, const T& x, co
   return result;
 }
 
+/// Times are rounded, the parts of a step are not: a function of t is looked at where t + h x is a number of the type, so that its root is known
+/// better than t is. Steps of a few roundings of t have no such places.
+template <class T>
+T RootSearchOf<T>::at_a_time(const T& x) const {
+  using std::abs;
+  constexpr double most = 1e-6;  // of the step
+  const T time = t_.hi + (t_.lo + h_ * x);
+  const T near = ((time - t_.hi) - t_.lo) / h_;
+  return abs(near - x) <= T(most) ? near : x;
+}
+
 /// Secants on the function itself, whose digits near the root are its own and not those of the polynomial.
 template <class T>
 T RootSearchOf<T>::refined(Slot slot, const Piece& piece, const T& begin, const T& root) {
@@ -132,9 +143,9 @@ T RootSearchOf<T>::refined(Slot slot, const Piece& piece, const T& begin, const 
   T x = begin + piece.width * root;
   if (slope == 0) return x;
   for (int turn = 0; turn < 2; ++turn) {
-    const T change = value(slot, x) / slope * piece.width;
+    const T there = at_a_time(x), change = value(slot, there) / slope * piece.width;
     if (!(abs(change) <= T(1e-6) * piece.width)) break;
-    x -= change;
+    x = there - change;
   }
   return std::clamp(x, begin, T(begin + piece.width));
 }

@@ -73,7 +73,7 @@ TaylorStepper::Impl::Crossing TaylorStepper::Impl::first_crossing(double h) {
   first_of_all.after = switch_state;
   first_of_all.after.insert(first_of_all.after.end(), event_state.begin(), event_state.end());
   roots->set_constants(work.constants(), work.constants());
-  roots->begin(t.hi, h, [this](int k) { return work.coordinate(k); });
+  roots->begin({t.hi, t.lo}, h, [this](int k) { return work.coordinate(k); });
   const double together = std::max(4 * std::numeric_limits<double>::epsilon(), 4 * std::numeric_limits<double>::epsilon() * std::abs(t.hi / h));
   const std::size_t switches_here = switch_state.size();
   for (std::size_t i = 0; i < first_of_all.after.size(); ++i) {

@@ -27,10 +27,10 @@ class Retrace {
     std::copy_n(constants, memory_.constants.size(), memory_.constants.begin());
     interpreter::prepare_terms(memory_);
   }
-  /// q_p(s) = Σ_k row(k)[i] s^k for k ≤ order + 1, beginning at t.
+  /// q_p(s) = Σ_k row(k)[i] s^k for k ≤ order + 1, beginning at t + rest.
   template <class Row>
-  void set_motion(const T& t, Row&& row) {
-    t_ = t;
+  void set_motion(const T& t, const T& rest, Row&& row) {
+    t_ = t, rest_ = rest;
     for (int k = 0; k <= order_ + 1; ++k) std::copy_n(row(k), program_.unknowns, polynomials_.data() + static_cast<std::size_t>(k) * program_.unknowns);
   }
   /// All orders about s.
@@ -68,7 +68,7 @@ class Retrace {
   }
 
   void run(const T& s, int stages) {
-    interpreter::set_leaves(memory_, T(t_ + s), order_ + 2 + (-2 - program_.first_stage));
+    interpreter::set_leaves(memory_, T(t_ + (rest_ + s)), order_ + 2 + (-2 - program_.first_stage));
     shift(s, stages + 1);
     for (int stage = program_.first_stage; stage < stages; ++stage)
       for (const std::uint32_t index : needed_) {
@@ -94,7 +94,7 @@ class Retrace {
   int order_;
   interpreter::MemoryOf<T> memory_;
   std::vector<T> polynomials_;               // [order + 2][unknowns]
-  T t_ = T(0);
+  T t_ = T(0), rest_ = T(0);
   std::vector<std::uint32_t> needed_;        // instructions, in order
   std::vector<const Instruction*> producer_; // [slots]
 };

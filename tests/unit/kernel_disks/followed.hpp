@@ -55,7 +55,7 @@ struct Followed {
     retrace->set_constants(constants.data());
     std::vector<std::vector<double>> rows(order + 2, std::vector<double>(2));
     for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = {c[0][k], c[1][k]};
-    retrace->set_motion(t0, [&](int k) { return rows[static_cast<std::size_t>(k)].data(); });
+    retrace->set_motion(t0, 0.0, [&](int k) { return rows[static_cast<std::size_t>(k)].data(); });
     retrace->expand_about(0);
     disks->set_constants(constants.data());
     disks->begin({retrace->row(0), retrace->stride(), order});
