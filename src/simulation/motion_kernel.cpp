@@ -4,6 +4,7 @@
 
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/motion_kernel.hpp>
+#include <maupertuis/transform.hpp>
 
 namespace maupertuis {
 
@@ -25,9 +26,10 @@ KernelSource motion_source(const EquationsOfMotion& equations) {
 KernelSource motion_source(const EquationsOfMotion& equations, const WantedFunctions& wanted) {
   const MechanicalSystem& system = *equations.system;
   KernelSource source = motion_source(equations);
-  source.observables = in_terms_of_motion(system, wanted.observables);
+  source.residual = without_overflow(source.residual);
+  source.observables = without_overflow(in_terms_of_motion(system, wanted.observables));
   source.events = in_terms_of_motion(system, wanted.events);
-  source.integrands = in_terms_of_motion(system, wanted.integrands);
+  source.integrands = without_overflow(in_terms_of_motion(system, wanted.integrands));
   return source;
 }
 

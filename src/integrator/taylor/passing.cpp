@@ -183,7 +183,7 @@ void TaylorStepper::Impl::pass(const Collocation& c, double bound, Step& result)
 bool TaylorStepper::Impl::passes(double h, double bound, Step& result) {
   Collocation c;
   c.h = std::copysign(h, remaining(bound));
-  if (!(h < std::abs(remaining(bound))) || control.order < nodes) return false;
+  if (!(h > 0 && h < std::abs(remaining(bound))) || control.order < nodes) return false;
   c.acceleration.assign(n, Nodes{});
   c.integrand.assign(integrals.size(), Nodes{});
   for (std::size_t i = 0; i < n; ++i) c.size.push_back(std::max(std::abs(v_now[i]), epsilon * std::abs(q_now[i]) / h));

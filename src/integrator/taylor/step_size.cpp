@@ -62,6 +62,9 @@ double velocity(const KernelWorkspace& work, std::size_t i, int k) {
   return (k + 1) * std::abs(work.coordinate(k + 1)[i]);
 }
 
+/// Velocities below it are those of rest, whatever their unit; what underflows on the way has no ratio to go by.
+constexpr double rest = 1e-200;
+
 /// The size of a coordinate's velocity over a step of length h.
 double size_of(const KernelWorkspace& work, std::size_t i, int order, double h) {
   double size = 0, power = 1;
@@ -69,7 +72,7 @@ double size_of(const KernelWorkspace& work, std::size_t i, int order, double h) 
   // A coordinate that others set in motion late begins with a higher power of time.
   for (int k = 4; size == 0 && k <= order; ++k) size = velocity(work, i, k) * std::pow(h, k);
   // A velocity that moves q by less than its rounding within the step does not count.
-  return std::max(size, rounding_tolerance() * std::abs(work.coordinate(0)[i]) / h);
+  return std::max({size, rounding_tolerance() * std::abs(work.coordinate(0)[i]) / h, rest});
 }
 
 /// KernelWorkspace::radius where a coordinate begins to move late: min of (size / |v_k|)^(1/k) over the coordinates and the last two k; earlier k
@@ -97,7 +100,7 @@ double first_guess(const KernelWorkspace& work, std::size_t freedoms, int order)
     for (int j = std::min({3, order - 2, k - 1}); j >= 0; --j) {
       double largest = 0;
       for (std::size_t i = 0; i < freedoms; ++i)
-        if (const double early = velocity(work, i, j); early > 0) largest = std::max(largest, velocity(work, i, k) / early);
+        if (const double early = velocity(work, i, j); early > rest) largest = std::max(largest, velocity(work, i, k) / early);
       growth = std::max(growth, std::pow(largest, 1.0 / (k - j)));
     }
   return growth > 0 ? 1 / growth : 1;

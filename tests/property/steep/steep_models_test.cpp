@@ -73,7 +73,7 @@ class Session {
     Count& c = counts_[d.kind];
     ++c.of[static_cast<std::size_t>(j.verdict)];
     if (j.verdict == Verdict::Right) c.largest = std::max(c.largest, j.error);
-    if (j.verdict == Verdict::Wrong) keep(number, d, j);
+    if (j.verdict == Verdict::Wrong || (j.verdict != Verdict::Right && std::getenv("STEEP_KEEP"))) keep(number, d, j);
     if (j.verdict == Verdict::Wrong)
       told_ +=
           fmt::format("WRONG {} {}: error {:.2g}, stated {:.2g} {}\n", d.kind, number, j.error, j.stated, j.reason);
