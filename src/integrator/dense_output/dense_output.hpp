@@ -32,6 +32,10 @@ class DenseOutput {
   }
   /// … or copies them.
   void copy(const double* first, std::size_t stride);
+  /// Copies what it referred to, before something else takes its place.
+  void keep() {
+    if (first_ != coefficients_.data()) copy(first_, stride_);
+  }
   /// Of the integrands; their integrals start from `integrals`.
   double* integrand(int k) { return integrands_.data() + static_cast<std::size_t>(k) * integrals.size(); }
 

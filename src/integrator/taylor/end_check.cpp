@@ -131,6 +131,7 @@ bool TaylorStepper::Impl::settles(double bound, const Crossing& crossing, Step& 
   if (m > 0 && !watches()) {
     constexpr int halvings = 16;
     const double residual_before = constraint_residual;
+    dense.keep();
     land(result, (t.hi - begin.hi) + (t.lo - begin.lo));
     // Next to a singular position a shorter step may keep the constraints where a long one does not.
     if (result.ending == StepEnding::SingularConstraints && attempts < halvings) {
@@ -146,6 +147,7 @@ bool TaylorStepper::Impl::settles(double bound, const Crossing& crossing, Step& 
   if (goes_on) {
     if (turns.wind(q))
       for (std::size_t i = 0; i < n; ++i) q_now[i] = q[i].hi;
+    dense.keep();
     end_status = work.expand(t.hi, q_now, v_now);
     expanded = end_status == KernelStatus::Ok;
     return expanded && equations_hold(work);
@@ -178,6 +180,7 @@ bool TaylorStepper::Impl::take_back(Step& result) {
   std::copy(dense.integrals.begin(), dense.integrals.end(), integrals.begin());
   for (std::size_t i = 0; i < n; ++i) q_now[i] = q[i].hi, v_now[i] = v[i].hi;
   result.end = t.hi;
+  dense.keep();
   const KernelStatus status = work.expand(t.hi, q_now, v_now);
   return status == KernelStatus::Ok || fail(result, status);
 }

@@ -16,12 +16,12 @@ void multipliers_of(const KernelWorkspace& work, std::vector<double>& values) {
 
 }  // namespace
 
-/// The next expansion takes the place of this one while the step is still asked for.
+/// The polynomial of the step where it was expanded; what is compiled adds it up there.
 void TaylorStepper::Impl::keep_polynomial() {
   begin = t;
   if (dense_turns.changes() != turns.changes()) dense_turns = turns;
   set_sides(probe);
-  dense.copy(work.coordinate(0), work.row_stride());
+  dense.refer_to(work.coordinate(0), work.row_stride(), work.increments());
   for (std::size_t i = 0; i < integrals.size(); ++i)
     for (int k = 0; k <= control.order + 1; ++k) dense.integrand(k)[i] = work.integrand(i, k);
   std::copy(q.begin(), q.end(), dense.q.begin());

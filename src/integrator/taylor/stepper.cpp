@@ -55,6 +55,7 @@ bool TaylorStepper::Impl::fail(Step& result, KernelStatus status) const {
 }
 
 bool TaylorStepper::Impl::expand(double bound, Step& result) {
+  dense.keep();
   set_sides(work);
   const KernelStatus status = work.expand(t.hi, q_now, v_now);
   if (status != KernelStatus::Ok) return fail(result, status);
