@@ -64,7 +64,7 @@ bool LaneSafety::holds(std::size_t lane, double t) {
   if (l.tau == 0 || l.end.agrees(l.expected, work_.coordinate(2) + lane, width_, l.tau)) return true;
   std::vector<double> q, v;
   take_state(lane, q, v);
-  return holds_but_for_rounding(lane, t, q, v);
+  return holds_but_for_rounding(lane, work_.coordinate(2) + lane, width_, t, q, v);
 }
 
 bool LaneSafety::holds_at(std::size_t lane, double t, std::span<const double> q, std::span<const double> v) {
@@ -72,11 +72,11 @@ bool LaneSafety::holds_at(std::size_t lane, double t, std::span<const double> q,
   if (l.tau == 0) return true;
   KernelWorkspace& point = point_of(lane);
   if (point.evaluate(t, q, v) != KernelStatus::Ok) return false;
-  return l.end.agrees(l.expected, point.coordinate(2), 1, l.tau) || holds_but_for_rounding(lane, t, q, v);
+  return l.end.agrees(l.expected, point.coordinate(2), 1, l.tau) || holds_but_for_rounding(lane, point.coordinate(2), 1, t, q, v);
 }
 
-bool LaneSafety::holds_but_for_rounding(std::size_t lane, double t, std::span<const double> q, std::span<const double> v) {
-  return taylor::agrees_but_for_rounding(lanes_[lane].end, lanes_[lane].expected, point_of(lane), t, q, v, lanes_[lane].tau, point_disks_);
+bool LaneSafety::holds_but_for_rounding(std::size_t lane, const double* half_by_equations, std::size_t step, double t, std::span<const double> q, std::span<const double> v) {
+  return taylor::agrees_but_for_rounding(lanes_[lane].end, lanes_[lane].expected, half_by_equations, step, point_of(lane), t, q, v, lanes_[lane].tau, point_disks_);
 }
 
 }  // namespace maupertuis::ensemble

@@ -30,7 +30,7 @@ class LaneSafety {
   bool holds_at(std::size_t lane, double t, std::span<const double> q, std::span<const double> v);
 
  private:
-  bool holds_but_for_rounding(std::size_t lane, double t, std::span<const double> q, std::span<const double> v);
+  bool holds_but_for_rounding(std::size_t lane, const double* half_by_equations, std::size_t step, double t, std::span<const double> q, std::span<const double> v);
   void take_state(std::size_t lane, std::vector<double>& q, std::vector<double>& v) const;
 
   struct Lane {

@@ -100,23 +100,28 @@ std::vector<double> acceleration_roundings(std::vector<double> b, std::size_t n,
   return result;
 }
 
-/// q̈ at the state, what rounding of the formula's values makes of it, and what a change of the state by rounding does.
-bool agrees_but_for_rounding(const EndCheck& check, std::span<const double> by_polynomial, KernelWorkspace& point, double t, std::span<const double> q,
-                             std::span<const double> v, double h, Disks& disks) {
+/// What a change of the state by rounding does to q̈ is asked first: mostly it is enough. Then q̈ at the state, and what rounding of the formula's values makes of it.
+bool agrees_but_for_rounding(const EndCheck& check, std::span<const double> by_polynomial, const double* half_by_equations, std::size_t step, KernelWorkspace& point, double t,
+                             std::span<const double> q, std::span<const double> v, double h, Disks& disks) {
   const std::size_t n = q.size(), m = point.program().unknowns - n;
-  std::vector<double> here(n), position(n), velocity(n);
-  if (point.evaluate(t, q, v) != KernelStatus::Ok) return false;
-  disks.set_constants(point.constants());
-  disks.begin({point.coordinate(0), point.row_stride(), 1});
-  std::vector<double> roundings = acceleration_roundings(bordered_matrix(point, n, m), n, m, disks, std::abs(h), epsilon);
+  std::vector<double> here(n), position(n), velocity(n), by_state(n);
   for (std::size_t i = 0; i < n; ++i) {
-    here[i] = point.acceleration(i);
+    here[i] = 2 * half_by_equations[i * step];
     position[i] = q[i] * (1 + (i % 2 == 0 ? epsilon : -epsilon));
     velocity[i] = v[i] * (1 + epsilon);
   }
   if (point.evaluate(t * (1 + epsilon), position, velocity) != KernelStatus::Ok) return false;
-  for (std::size_t i = 0; i < n; ++i) roundings[i] += std::abs(point.acceleration(i) - here[i]);
-  return check.agrees_but_for_rounding(by_polynomial, here, roundings, h);
+  for (std::size_t i = 0; i < n; ++i) by_state[i] = point.acceleration(i);
+  const auto add_change = [&](std::vector<double> roundings) {
+    for (std::size_t i = 0; i < n; ++i) roundings[i] += std::abs(by_state[i] - here[i]);
+    return roundings;
+  };
+  if (check.agrees_but_for_rounding(by_polynomial, here, add_change(std::vector<double>(n)), h)) return true;
+  if (point.evaluate(t, q, v) != KernelStatus::Ok) return false;
+  disks.set_constants(point.constants());
+  disks.begin({point.coordinate(0), point.row_stride(), 1});
+  for (std::size_t i = 0; i < n; ++i) here[i] = point.acceleration(i);
+  return check.agrees_but_for_rounding(by_polynomial, here, add_change(acceleration_roundings(bordered_matrix(point, n, m), n, m, disks, std::abs(h), epsilon)), h);
 }
 
 }  // namespace taylor
@@ -160,7 +165,7 @@ bool TaylorStepper::Impl::equations_hold(const KernelWorkspace& at_end) {
   const double tau = (t.hi - begin.hi) + (t.lo - begin.lo);  // as the state was advanced: the rounding of t counts in short steps
   const std::span<const double> by_polynomial = dense.accelerations(tau);
   if (tau == 0 || end_check.agrees(by_polynomial, at_end.coordinate(2), 1, tau)) return true;
-  const bool rounds = taylor::agrees_but_for_rounding(end_check, by_polynomial, probe, t.hi, q_now, v_now, tau, safe.disks());
+  const bool rounds = taylor::agrees_but_for_rounding(end_check, by_polynomial, at_end.coordinate(2), 1, probe, t.hi, q_now, v_now, tau, safe.disks());
   safe.set_constants(work.constants());  // the disks had those of the point
   if (rounds) return true;
   // Noise in a coordinate that does not move does not fall with the length of the step.

@@ -53,7 +53,8 @@ std::vector<double> acceleration_roundings(std::vector<double> bordered, std::si
 
 /// The slow look at the end of a step of length h, where the quick one failed. `point` has the parameters and sides of the step; `disks` are of its program,
 /// and have its constants afterwards.
-bool agrees_but_for_rounding(const EndCheck& check, std::span<const double> by_polynomial, KernelWorkspace& point, double t, std::span<const double> q,
-                             std::span<const double> v, double h, Disks& disks);
+/// half_by_equations: ½ q̈_i at [i · step]; it may be that of `point`, which is evaluated anew.
+bool agrees_but_for_rounding(const EndCheck& check, std::span<const double> by_polynomial, const double* half_by_equations, std::size_t step, KernelWorkspace& point, double t,
+                             std::span<const double> q, std::span<const double> v, double h, Disks& disks);
 
 }  // namespace maupertuis::taylor

@@ -23,7 +23,7 @@ double upper_end(int key) {
 std::size_t place_of(int key) { return static_cast<unsigned>(key) % bin_count; }
 
 /// Of a limit beyond the size that was met; of what is observed, of its own size.
-constexpr double widening = 1.8, widening_anew = 1.1, observed_margin = 0.1;
+constexpr double widening = 1.8, generous_widening = 6, level_widening = 3, widening_anew = 1.1, observed_margin = 0.1;
 /// A sine is as small as its angle; beyond this, the angle does not matter.
 constexpr double small_angle = 0.3, no_limit = 1e300;
 /// A bin that goes on meeting larger motions learns of them ever more seldom.
@@ -92,14 +92,20 @@ KnownLengths::Answer KnownLengths::ask(const SlotCoefficients& coefficients, dou
   if (coefficients.unit != 1 || (coefficients.step != 1 && !sizes)) return Answer::GivenUp;
   time_ = std::abs(time);
   Bin& bin = bin_of(ratio_ * h);
-  bin_ = &bin;
   ++bin.visits;
+  bin_ = &bin;
+  has_sizes_ = false;
   const bool may_learn = bin.visits > bin.next_try;
   if (!bin.holds && !may_learn) return Answer::GivenUp;
   find_sizes();
-  bool is_safe = bin.holds && is_within(bin);
-  for (std::size_t j = 0; j < residuals_; ++j) is_safe &= bin.needed[j] <= allowed[j];
+  const bool is_safe = bin.holds && is_within(bin) && meets(bin, allowed);
   return is_safe ? Answer::Safe : may_learn ? Answer::Unknown : Answer::GivenUp;
+}
+
+bool KnownLengths::meets(const Bin& bin, std::span<const double> allowed) const {
+  bool meets = true;
+  for (std::size_t j = 0; j < residuals_; ++j) meets &= bin.needed[j] <= allowed[j];
+  return meets;
 }
 
 void KnownLengths::find_sizes() {
@@ -128,6 +134,7 @@ bool KnownLengths::accept(std::span<const double> allowed, std::span<const doubl
     holds = holds && (by_momentum || (!by_rounding.empty() && needed <= by_rounding[j]));
   }
   bin_->holds = holds && !(rounds && for_several_);
+  if (!bin_->holds && bin_->generosity > 0) --bin_->generosity;
   if (bin_->holds) bin_->next_try = bin_->visits + ++bin_->learned / patience;
   return holds;
 }
@@ -148,7 +155,7 @@ bool KnownLengths::is_within(const Bin& bin) const {
 
 void KnownLengths::widen(Bin& bin, Limits limits) const {
   const bool anew = limits != Limits::Widened;
-  const double widened = limits == Limits::Widened ? widening : limits == Limits::Anew ? widening_anew : 1.0;
+  const double widened = limits == Limits::Widened ? (bin.generosity > 1 ? level_widening : bin.generosity > 0 ? generous_widening : widening) : limits == Limits::Anew ? widening_anew : 1.0;
   const double margin = limits == Limits::Exact ? 0.0 : observed_margin;
   const auto raise = [&](double& limit, double size) {
     if (anew || !(size <= limit)) limit = widened * size;
@@ -159,7 +166,11 @@ void KnownLengths::widen(Bin& bin, Limits limits) const {
     const double size = std::abs(centre(i));
     raise(bin.limits[i], envelope_.needs_centre(i) ? size : size < small_angle ? (widened > 1 ? 2 * size : size) : no_limit);
   }
-  for (std::size_t i = 0; i < 3 * padded_; ++i) raise(bin.limits[padded_ + i], sizes_[i]);
+  for (std::size_t row = 0; row < 3; ++row) {
+    const double* const size = sizes_.data() + row * padded_;
+    const double largest = limits == Limits::Widened && bin.generosity > 1 ? *std::max_element(size, size + unknowns_) : 0.0;
+    for (std::size_t i = 0; i < unknowns_; ++i) raise(bin.limits[(row + 1) * padded_ + i], std::max(size[i], largest));
+  }
   const std::span<const Slot> observed = envelope_.observed();
   for (std::size_t i = 0; i < observed.size(); ++i) {
     const double value = centre(observed[i]), beside = margin * std::abs(value);

@@ -54,6 +54,7 @@ class KnownLengths {
     double radius = 0;
     bool has_limits = false, holds = false;
     unsigned visits = 0, learned = 0, next_try = 0;
+    int generosity = 2;               // how far limits go beyond the sizes that were met; less, each time that a bound is refused
     double time = 0;                  // the largest |t|
     std::vector<double> weights;      // [3][orders] of |c_k| in the sizes
     std::vector<double> limits;       // [4][padded]
@@ -64,6 +65,7 @@ class KnownLengths {
   Bin& bin_of(double radius);
   void begin(Bin& bin, int key) const;
   double centre(std::size_t slot) const { return now_.rows[slot * now_.step]; }
+  bool meets(const Bin& bin, std::span<const double> allowed) const;
   void find_sizes();
   bool is_within(const Bin& bin) const;
   void widen(Bin& bin, Limits limits) const;

@@ -77,7 +77,7 @@ void SafeLength::allow() {
 bool SafeLength::wants_momenta(std::span<const double> rates) {
   constexpr std::size_t most = 300;     // unknowns: M costs n²
   constexpr std::size_t usual = 16;
-  constexpr double grown = 1.5;
+  constexpr double grown = 3;
   if (rates.size() > most) return false;
   if (masses_.empty() || ++asked_momenta_ % (period_of_momenta * (1 + rates.size() / usual)) == 0) return true;
   bool grows = false;

@@ -82,7 +82,7 @@ Envelope::Value Envelope::evaluate(const Instruction& i, const double* constants
     case Op::Companion: break;
     case Op::Linear:
     case Op::Products: return sum(i, constants);
-    case Op::Square: return product(i.a, i.a, rates_[i.out]);
+    case Op::Square: return product(i.a, i.a);
     case Op::Quotient: return quotient(i);
     case Op::SquareRoot: return power(values_[i.a], 0.5);
     case Op::Power: return power(values_[i.a], constants[i.constant]);
@@ -102,49 +102,58 @@ Envelope::Value Envelope::evaluate(const Instruction& i, const double* constants
   throw std::logic_error("an envelope met an operation that it does not know; please report");
 }
 
-/// The modulus of a sum is at least the largest lower bound of a term less the upper bounds of the others.
+/// What a term with c adds, `shift` derivatives up. The loops are of one length, so that they become vectors.
+void Envelope::add(Value& total, double& largest, double c, const Value& f, int shift) {
+  if (shift == 0) {
+    total.centre += c * f.centre;
+    total.reach += c * f.reach;
+    for (int d = 0; d < 3; ++d) total.high[d] += c * f.high[d];
+    for (int d = 0; d < 3; ++d) total.tail[d] += c * f.tail[d];
+    largest = std::max(largest, c * (f.low + f.high[0]));
+    return;
+  }
+  total.centre += c * f.high[shift];
+  total.reach += 2 * c * f.high[shift];
+  for (int d = 0; d < 3; ++d) {
+    const bool is_known = shift + d < 3;
+    total.high[d] += c * (is_known ? f.high[shift + d] : infinity);
+    total.tail[d] += c * (is_known ? f.tail[shift + d] : f.tail[2] == 0 ? 0.0 : infinity);
+  }
+  largest = std::max(largest, c * f.high[shift]);
+}
+
+/// The modulus of a sum is at least the largest lower bound of a term less the upper bounds of the others. Derivatives that no one wants may be anything.
 Envelope::Value Envelope::sum(const Instruction& i, const double* constants) const {
-  const int rates = rates_[i.out];
-  Value total{.centre = 0, .reach = 0};
-  for (int d = 0; d <= rates; ++d) total.high[d] = total.tail[d] = 0;
+  Value total{.centre = 0, .reach = 0, .low = 0, .high = {0, 0, 0}, .tail = {0, 0, 0}};
   double largest = 0;  // of low + high
+  const bool has_products = i.op == Op::Products;
   for (std::uint32_t t = i.first_term; t < i.last_term; ++t) {
     const Term& term = program_.terms[t];
     const double c = std::abs(constants[term.coefficient]);
     if (c == 0) continue;
-    Value product_of_two;
-    const Value* f = &values_[term.a];
-    if (i.op == Op::Products && t >= i.first_product) {
-      product_of_two = product(term.a, term.b, rates);
-      if (degrees_[term.a] + degrees_[term.b] < order_) std::fill(product_of_two.tail, product_of_two.tail + 3, 0.0);
-      f = &product_of_two;
+    if (has_products && t >= i.first_product) {
+      Value f = product(term.a, term.b);
+      if (degrees_[term.a] + degrees_[term.b] < order_) f.tail[0] = f.tail[1] = f.tail[2] = 0;
+      add(total, largest, c, f, static_cast<int>(term.shift));
+    } else {
+      add(total, largest, c, values_[term.a], static_cast<int>(term.shift));
     }
-    const int s = static_cast<int>(term.shift);
-    total.centre += c * (s == 0 ? f->centre : f->high[s]);
-    total.reach += c * (s == 0 ? f->reach : 2 * f->high[s]);
-    for (int d = 0; d <= rates; ++d) {
-      const bool is_known = s + d < 3;
-      total.high[d] += c * (is_known ? f->high[s + d] : infinity);
-      total.tail[d] += c * (is_known ? f->tail[s + d] : f->tail[2] == 0 ? 0.0 : infinity);
-    }
-    largest = std::max(largest, c * ((s == 0 ? f->low : 0.0) + f->high[s]));
   }
   total.low = total.high[0] < infinity ? std::max(0.0, largest - total.high[0]) : 0.0;
   return total;
 }
 
 /// (u v)˙ = u̇ v + u v̇. All of it counts as tail: two polynomials give one of a degree beyond the kept one.
-Envelope::Value Envelope::product(Slot a, Slot b, int rates) const {
+Envelope::Value Envelope::product(Slot a, Slot b) const {
   const Value &u = values_[a], &v = values_[b];
   Value f;
   f.centre = u.centre * v.centre;
   f.low = u.low * v.low;
   f.high[0] = u.high[0] * v.high[0];
+  f.high[1] = u.high[1] * v.high[0] + u.high[0] * v.high[1];
+  f.high[2] = u.high[2] * v.high[0] + 2 * u.high[1] * v.high[1] + u.high[0] * v.high[2];
   f.reach = std::min(u.centre * v.reach + v.centre * u.reach + u.reach * v.reach, f.high[0] + f.centre);
-  f.tail[0] = f.reach;
-  if (rates == 0) return f;
-  f.tail[1] = f.high[1] = u.high[1] * v.high[0] + u.high[0] * v.high[1];
-  f.tail[2] = f.high[2] = u.high[2] * v.high[0] + 2 * u.high[1] * v.high[1] + u.high[0] * v.high[2];
+  f.tail[0] = f.reach, f.tail[1] = f.high[1], f.tail[2] = f.high[2];
   return f;
 }
 

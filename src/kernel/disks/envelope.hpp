@@ -48,8 +48,9 @@ class Envelope {
   void observe(Slot slot);
   void set(Slot slot, Value value);
   Value evaluate(const Instruction& instruction, const double* constants) const;
+  static void add(Value& total, double& largest, double c, const Value& f, int shift);
   Value sum(const Instruction& instruction, const double* constants) const;
-  Value product(Slot a, Slot b, int rates) const;
+  Value product(Slot a, Slot b) const;
   Value quotient(const Instruction& instruction) const;
   Value power(const Value& base, double exponent) const;
   Value circular(const Value& angle, bool hyperbolic) const;

@@ -138,10 +138,10 @@ TEST_CASE("a residual that is linear in q allows any length") {
   CHECK(steep_force(Rational(1), order).bounds(1e-12).is_needed());
 }
 
-TEST_CASE("momenta follow velocities that have grown by half; M is looked at now and then") {
+TEST_CASE("momenta follow velocities that have grown threefold; M is looked at now and then") {
   const Passage passage = steep_force(Rational(1, 1000), order);
   SafeLength bounds(passage.work.program(), order, 1e-12);
-  const double slow[] = {2}, faster[] = {2.9}, fast[] = {3.1};
+  const double slow[] = {2}, faster[] = {5.9}, fast[] = {6.1};
   CHECK(bounds.wants_momenta(slow));
   bounds.set_constants(passage.work.constants());
   bounds.set_momenta(slow, passage.work);
@@ -151,7 +151,7 @@ TEST_CASE("momenta follow velocities that have grown by half; M is looked at now
   CHECK(!bounds.wants_momenta(faster));
   CHECK(length() == at_first);
   CHECK(!bounds.wants_momenta(fast));
-  CHECK(length() == passage.longest(1e-12, 3.1));
+  CHECK(length() == passage.longest(1e-12, 6.1));
   CHECK(length() > at_first);
   int asked = 1;
   while (!bounds.wants_momenta(slow) && asked < 10000) ++asked;
