@@ -22,8 +22,10 @@ double upper_end(int key) {
 
 std::size_t place_of(int key) { return static_cast<unsigned>(key) % bin_count; }
 
-/// Of a limit beyond the size that was met; of what is observed, of its own size.
-constexpr double widening = 1.8, generous_widening = 6, level_widening = 3, widening_anew = 1.1, observed_margin = 0.1;
+/// Of a limit beyond the size that was met, by the generosity of the bin: 2 beyond the largest of all coordinates, below beyond its own.
+constexpr double widenings[] = {1.8, 6, 3}, widening_anew = 1.1;
+constexpr int beyond_all = 2;
+constexpr double observed_margin = 0.1;  // of its own size
 /// A sine is as small as its angle; beyond this, the angle does not matter.
 constexpr double small_angle = 0.3, no_limit = 1e300;
 /// A bin that goes on meeting larger motions learns of them ever more seldom.
@@ -155,7 +157,7 @@ bool KnownLengths::is_within(const Bin& bin) const {
 
 void KnownLengths::widen(Bin& bin, Limits limits) const {
   const bool anew = limits != Limits::Widened;
-  const double widened = limits == Limits::Widened ? (bin.generosity > 1 ? level_widening : bin.generosity > 0 ? generous_widening : widening) : limits == Limits::Anew ? widening_anew : 1.0;
+  const double widened = limits == Limits::Widened ? widenings[bin.generosity] : limits == Limits::Anew ? widening_anew : 1.0;
   const double margin = limits == Limits::Exact ? 0.0 : observed_margin;
   const auto raise = [&](double& limit, double size) {
     if (anew || !(size <= limit)) limit = widened * size;
@@ -168,7 +170,7 @@ void KnownLengths::widen(Bin& bin, Limits limits) const {
   }
   for (std::size_t row = 0; row < 3; ++row) {
     const double* const size = sizes_.data() + row * padded_;
-    const double largest = limits == Limits::Widened && bin.generosity > 1 ? *std::max_element(size, size + unknowns_) : 0.0;
+    const double largest = limits == Limits::Widened && bin.generosity == beyond_all ? *std::max_element(size, size + unknowns_) : 0.0;
     for (std::size_t i = 0; i < unknowns_; ++i) raise(bin.limits[(row + 1) * padded_ + i], std::max(size[i], largest));
   }
   const std::span<const Slot> observed = envelope_.observed();
