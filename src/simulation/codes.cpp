@@ -59,7 +59,8 @@ constexpr std::array entries{
               "", ""},
     CodeEntry{"W0705", "the compiled code could not be kept for the next run",
               "Machine code is kept in $XDG_CACHE_HOME/maupertuis or ~/.cache/maupertuis, so that the next run of the same "
-              "model begins at once. The folder cannot be written. The run itself is not affected.",
+              "model begins at once. The folder cannot be written; or it belongs to another user, or others can write to it, who could have put in code that "
+              "would run as you: then it is neither written nor read. The run itself is not affected.",
               "", ""},
     CodeEntry{"N0702", "the stiff method took over",
               "Where a fast, strongly damped motion has died out, an explicit method still has to follow its time scale. "

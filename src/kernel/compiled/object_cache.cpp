@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-
+#include <utility>
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace maupertuis::compiled {
@@ -61,39 +63,98 @@ fs::path ObjectCache::usual_folder() {
   return {};
 }
 
+namespace {
+
+/// A descriptor, closed at the end of its scope.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  explicit operator bool() const { return number_ >= 0; }
+  int number() const { return number_; }
+  bool close() { return number_ < 0 || ::close(std::exchange(number_, -1)) == 0; }
+
+ private:
+  int number_;
+};
+
+/// What runs as the user must have been written by the user: anyone who can write here could have put in code of his own.
+std::string why_not_private(const struct stat& status, const std::string& name) {
+  if (status.st_uid != geteuid()) return name + " belongs to another user";
+  if ((status.st_mode & (S_IWGRP | S_IWOTH)) != 0) return name + " can be written by others (chmod go-w)";
+  return {};
+}
+
+/// A folder that is no link and that the user alone writes to; else `trouble` says why it is not used.
+Descriptor open_private(const fs::path& folder, std::string& trouble) {
+  Descriptor out(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+  struct stat status {};
+  if (!out || fstat(out.number(), &status) != 0) trouble = folder.string() + " cannot be used: " + std::strerror(errno);
+  else trouble = why_not_private(status, folder.string());
+  return Descriptor(trouble.empty() ? dup(out.number()) : -1);
+}
+
+bool read_all(int file, char* to, std::size_t size) {
+  while (size > 0) {
+    const ssize_t count = ::read(file, to, size);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return false;
+    to += count, size -= static_cast<std::size_t>(count);
+  }
+  return true;
+}
+
+bool write_all(int file, const char* from, std::size_t size) {
+  while (size > 0) {
+    const ssize_t count = ::write(file, from, size);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return false;
+    from += count, size -= static_cast<std::size_t>(count);
+  }
+  return true;
+}
+
+}  // namespace
+
+/// A pipe or a device in an object's place is passed over: opened without waiting, it is no file.
 std::optional<std::vector<char>> ObjectCache::read(const Digest& key) const {
   if (folder_.empty()) return {};
-  std::ifstream in(path_of(key), std::ios::binary | std::ios::ate);
-  const auto size = static_cast<std::streamoff>(in.tellg());
-  if (!in || size < static_cast<std::streamoff>(sizeof(Header))) return {};
+  std::string trouble;
+  const Descriptor folder = open_private(folder_, trouble);
+  if (!folder) return {};
+  const Descriptor file(openat(folder.number(), name_of(key).c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  struct stat status {};
+  if (!file || fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode) || !why_not_private(status, {}).empty()) return {};
+  const auto size = static_cast<std::uintmax_t>(status.st_size);
+  if (size < sizeof(Header) || size > limit_) return {};
   Header header;
-  std::vector<char> object(static_cast<std::size_t>(size) - sizeof header);
-  in.seekg(0);
-  in.read(reinterpret_cast<char*>(&header), sizeof header);
-  in.read(object.data(), static_cast<std::streamsize>(object.size()));
+  std::vector<char> object(size - sizeof header);
+  if (!read_all(file.number(), reinterpret_cast<char*>(&header), sizeof header) || !read_all(file.number(), object.data(), object.size())) return {};
   const Header expected = header_of(key, object);
-  if (!in || std::memcmp(&header, &expected, sizeof header) != 0) return {};
-  std::error_code ignored;  // a cache that cannot be written still serves
-  fs::last_write_time(path_of(key), fs::file_time_type::clock::now(), ignored);
+  if (std::memcmp(&header, &expected, sizeof header) != 0) return {};
+  const timespec now[2] = {{0, UTIME_OMIT}, {0, UTIME_NOW}};
+  static_cast<void>(futimens(file.number(), now));  // a cache that cannot be written still serves
   return object;
 }
 
 std::string ObjectCache::write(const Digest& key, std::span<const char> object) const {
   if (folder_.empty()) return "neither XDG_CACHE_HOME nor HOME is set";
   std::error_code error;
-  fs::create_directories(folder_, error);
-  if (error) return folder_.string() + " cannot be made: " + error.message();
-  fs::path temporary = path_of(key);
-  temporary += temporary_ending();
+  fs::create_directories(folder_.parent_path(), error);
+  if (error || (mkdir(folder_.c_str(), S_IRWXU) != 0 && errno != EEXIST))
+    return folder_.string() + " cannot be made: " + (error ? error.message() : std::strerror(errno));
+  std::string trouble;
+  const Descriptor folder = open_private(folder_, trouble);
+  if (!folder) return trouble;
+  const std::string temporary = name_of(key) + temporary_ending();
   const Header header = header_of(key, object);
-  std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-  out.write(reinterpret_cast<const char*>(&header), sizeof header);
-  out.write(object.data(), static_cast<std::streamsize>(object.size()));
-  out.close();
-  if (out) fs::rename(temporary, path_of(key), error);
-  if (!out || error) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
+  Descriptor file(openat(folder.number(), temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR));
+  const bool whole = file && write_all(file.number(), reinterpret_cast<const char*>(&header), sizeof header) &&
+                     write_all(file.number(), object.data(), object.size());
+  if (!file.close() || !whole || renameat(folder.number(), temporary.c_str(), folder.number(), name_of(key).c_str()) != 0) {
+    static_cast<void>(unlinkat(folder.number(), temporary.c_str(), 0));
     return folder_.string() + " cannot be written";
   }
   trim();

@@ -12,6 +12,7 @@ namespace maupertuis::compiled {
 
 /// Objects on disk, one file a key. A file carries its key, its length and a checksum: one that is damaged, cut off or foreign is as good as absent and is
 /// written anew. Files appear whole, by renaming; so processes may read and write at once.
+/// Code runs as the user: it is taken only from a folder and from files that the user owns and no one else can write to, and never through a link.
 class ObjectCache {
  public:
   static constexpr std::uintmax_t usual_limit = std::uintmax_t{256} << 20;
@@ -34,7 +35,7 @@ class ObjectCache {
   const std::filesystem::path& folder() const { return folder_; }
 
  private:
-  std::filesystem::path path_of(const Digest& key) const { return folder_ / (key.hex() + ".o"); }
+  static std::string name_of(const Digest& key) { return key.hex() + ".o"; }
   void trim() const;
   std::filesystem::path folder_;
   std::uintmax_t limit_;

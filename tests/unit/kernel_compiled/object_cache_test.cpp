@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <fstream>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -124,6 +125,56 @@ TEST_CASE("a folder that cannot be made or written is told, and read as empty") 
   CHECK(cache.write({1, 1}, object_of(10, 'e')).find("cannot be made") != std::string::npos);
   CHECK(cache.usage().files == 0);
   CHECK(ObjectCache({}).write({1, 1}, object_of(10, 'e')) == "neither XDG_CACHE_HOME nor HOME is set");
+}
+
+TEST_CASE("code that another could have written is not taken") {
+  const ObjectCache cache(fresh_folder("private-cache"));
+  const Digest key{5, 6};
+  const auto object = object_of(100, 'g');
+  REQUIRE(cache.write(key, object) == "");
+  using fs::perms;
+  CHECK((fs::status(cache.folder()).permissions() & perms::mask) == perms::owner_all);
+  for (const perms other : {perms::group_write, perms::others_write}) {
+    fs::permissions(file_of(cache, key), other, fs::perm_options::add);
+    CHECK(!cache.read(key));
+    REQUIRE(cache.write(key, object) == "");
+    CHECK(cache.read(key) == object);
+    fs::permissions(cache.folder(), other, fs::perm_options::add);
+    CHECK(!cache.read(key));
+    CHECK(cache.write(key, object).find("can be written by others") != std::string::npos);
+    fs::permissions(cache.folder(), perms::owner_all, fs::perm_options::replace);
+    CHECK(cache.read(key) == object);
+  }
+  if (geteuid() != 0) return;  // none but root gives files away
+  REQUIRE(chown(file_of(cache, key).c_str(), 12345, 12345) == 0);
+  CHECK(!cache.read(key));
+  REQUIRE(cache.write(key, object) == "");
+  REQUIRE(chown(cache.folder().c_str(), 12345, 12345) == 0);
+  CHECK(!cache.read(key));
+  CHECK(cache.write(key, object).find("belongs to another user") != std::string::npos);
+}
+
+TEST_CASE("links, folders and pipes in an object's place are passed over, without waiting") {
+  const fs::path folder = fresh_folder("odd-cache"), elsewhere = fresh_folder("odd-cache-elsewhere");
+  const ObjectCache cache(folder), other(elsewhere);
+  const Digest key{7, 8};
+  const auto object = object_of(100, 'h');
+  REQUIRE(cache.write({1, 1}, object) == "");
+  REQUIRE(other.write(key, object) == "");
+  fs::create_symlink(file_of(other, key), file_of(cache, key));
+  CHECK(!cache.read(key));
+  REQUIRE(cache.write(key, object_of(100, 'i')) == "");  // in place of the link, not through it
+  CHECK(other.read(key) == object);
+  CHECK(cache.read(key) == object_of(100, 'i'));
+  REQUIRE(mkfifo(file_of(cache, {7, 9}).c_str(), 0600) == 0);
+  CHECK(!cache.read({7, 9}));
+  CHECK(cache.write({7, 9}, object) == "");
+  fs::create_directory(file_of(cache, {7, 10}));
+  CHECK(!cache.read({7, 10}));
+  const fs::path link = fresh_folder("linked-cache");
+  fs::create_directory_symlink(folder, link);
+  CHECK(!ObjectCache(link).read(key));
+  CHECK(ObjectCache(link).write(key, object).find("cannot be used") != std::string::npos);
 }
 
 TEST_CASE("a write that fails at its end, as on a full device, leaves nothing") {
