@@ -63,6 +63,9 @@ constexpr CodeEntry own_codes[] = {
      "The format of a result follows the ending of its file: .csv, .npy, .json for a trajectory, .svg for a picture, "
      ".html for a report.",
      "maup simulate pendulum.lag -o motion.xls", "maup simulate pendulum.lag -o motion.csv"},
+    {"E0812", "the result would be written over the model",
+     "The file of -o, or of a plot, is the model that is read. Results never take the place of what they were made from.",
+     "maup reduce arm.lag -o arm.lag", "maup reduce arm.lag -o arm_reduced.lag"},
     {"E1305", "the motion does not reach the time asked for",
      "`maup modes --at 3s` linearizes about the state of the motion at that time; the run ended before. Its reason is quoted.", "", ""},
     {"E0811", "there is no such column to plot",

@@ -53,26 +53,6 @@ ExitCode finish_usage(Console& console, Study& study, const char* command) {
   return ExitCode::Usage;
 }
 
-namespace {
-
-bool ends_with(const std::string& text, std::string_view end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
-}  // namespace
-
-void check_picture_name(const std::string& path, Diagnostics& diagnostics) {
-  if (!path.empty() && !ends_with(path, ".svg"))
-    diagnostics.error("E0810", {}, fmt::format("{} names no format of a picture.", path), {}, "Take .svg.");
-}
-
-void check_table_name(const std::string& path, Diagnostics& diagnostics) {
-  const bool known = ends_with(path, ".csv") || ends_with(path, ".npy") || ends_with(path, ".json");
-  if (!path.empty() && !known)
-    diagnostics.error("E0810", {}, fmt::format("{} names no format of a table.", path), {},
-                      "Take an ending .csv, .npy or .json.");
-}
-
 bool write_rows(const std::string& path, const Trajectory& rows, Diagnostics& diagnostics) {
   const std::string failure = path.empty() ? std::string() : write_trajectory(rows, path);
   if (!failure.empty()) cannot_write(failure, diagnostics);

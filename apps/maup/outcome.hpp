@@ -26,10 +26,6 @@ ExitCode finish_without(Console& console, Study& study, const char* command);
 /// Ends a command whose options have no sense.
 ExitCode finish_usage(Console& console, Study& study, const char* command);
 
-/// E0810 where the name of a file that was asked for has no ending of a picture (.svg), of a table (.csv, .npy, .json).
-void check_picture_name(const std::string& path, Diagnostics& diagnostics);
-void check_table_name(const std::string& path, Diagnostics& diagnostics);
-
 /// Writes a file the user asked for; false and E0804 when that fails.
 bool write_result(const std::string& path, const std::string& content, Diagnostics& diagnostics);
 /// The same for rows, in the format of the ending; an empty path asks for nothing.

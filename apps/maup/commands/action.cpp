@@ -2,6 +2,7 @@
 #include "command.hpp"
 #include "interrupt.hpp"
 #include "outcome.hpp"
+#include "output_files.hpp"
 #include "quantity.hpp"
 
 #include <CLI/CLI.hpp>
@@ -62,9 +63,6 @@ void check_belonging(const ActionCommand& o, Diagnostics& diagnostics) {
     diagnostics.error("E0809", {},
                       fmt::format("{} needs {} beside it.", o.from ? "--from" : "--to", o.from ? "--to" : "--from"), {},
                       "Give both ends of --path, or neither: then they are those of the model's path.");
-  if (!o.plot.empty() && o.plot == o.plot_paths)
-    diagnostics.error("E0809", {}, fmt::format("--plot and --plot-paths both ask for {}.", o.plot), {},
-                      "Give two files.");
 }
 
 void check_usage(const ActionCommand& o, Diagnostics& diagnostics) {
@@ -77,9 +75,7 @@ void check_usage(const ActionCommand& o, Diagnostics& diagnostics) {
   else
     check_belonging(o, diagnostics);
   check_counts(o, diagnostics);
-  check_picture_name(o.plot, diagnostics);
-  check_picture_name(o.plot_paths, diagnostics);
-  check_table_name(o.output, diagnostics);
+  check_output_files({{"-o", o.output, FileKind::Table}, {"--plot", o.plot, FileKind::Picture}, {"--plot-paths", o.plot_paths, FileKind::Picture}}, o.model.path, diagnostics);
 }
 
 /// Without ends in the model or on the command line it is the motion that is looked at.

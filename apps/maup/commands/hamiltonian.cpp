@@ -1,6 +1,7 @@
 #include "command.hpp"
 #include "hamiltonian_text.hpp"
 #include "outcome.hpp"
+#include "output_files.hpp"
 #include "quantity.hpp"
 #include "run_options.hpp"
 
@@ -131,6 +132,7 @@ Json motion_json(const CanonicalMotion& motion) {
 ExitCode integrate(const HamiltonianOptions& options, const PhaseSpace& found, Study& study, Console& console,
                    Json& document) {
   const SimulationOptions settings = simulation_options(options.run, study.diagnostics());
+  check_output_files({{"-o", options.output, FileKind::Table}}, options.model.path, study.diagnostics());
   if (study.wrong()) return ExitCode::Usage;
   const auto run = run_model(study, settings, console);
   if (!run) return ExitCode::ModelWrong;

@@ -2,6 +2,7 @@
 #include "modes_text.hpp"
 #include "orbits_text.hpp"
 #include "outcome.hpp"
+#include "output_files.hpp"
 #include "quantity.hpp"
 #include "run_options.hpp"
 
@@ -249,6 +250,8 @@ bool check_usage(const ModesOptions& o, Diagnostics& diagnostics) {
         "It follows all equilibria along a parameter; these options look at single points.", "Leave one of them out.");
     return false;
   }
+  check_output_files({{"--plot", o.plot, FileKind::Picture}, {"--roots", o.roots, FileKind::Picture}, {"--csv", o.csv, FileKind::Csv}}, o.model.path, diagnostics);
+  if (diagnostics.has_errors()) return false;
   if (!o.orbit || (o.at.empty() && !o.locus() && o.q.empty() && o.outputs.empty())) return true;
   diagnostics.error("E0809", {}, "--orbit has neither --at, --sweep, --y nor a regulator beside it.",
                     "The multipliers of a periodic motion belong to the whole orbit, and not to a point.",

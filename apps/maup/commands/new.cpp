@@ -1,5 +1,6 @@
 #include "command.hpp"
 #include "outcome.hpp"
+#include "output_files.hpp"
 #include "starters.hpp"
 
 #include <CLI/CLI.hpp>
@@ -73,6 +74,8 @@ ExitCode write_starter(const NewOptions& options, Console& console) {
     console.print(text);
     return ExitCode::Fine;
   }
+  check_output_files({{"-o", path, FileKind::Model}}, "-", diagnostics);
+  if (diagnostics.has_errors()) return finish_new(ExitCode::Usage, path, diagnostics, console);
   std::error_code error;
   if (!options.force && std::filesystem::exists(path, error)) {
     diagnostics.error("E0807", {}, fmt::format("{} exists already.", path), {},

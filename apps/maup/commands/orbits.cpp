@@ -1,6 +1,7 @@
 #include "orbits_options.hpp"
 #include "orbits_text.hpp"
 #include "outcome.hpp"
+#include "output_files.hpp"
 #include "quantity.hpp"
 
 #include <fmt/format.h>
@@ -33,8 +34,7 @@ void check_usage(const Options& o, Diagnostics& diagnostics) {
   if (o.orbits.floquet + o.orbits.lyapunov + o.orbits.has_section() != 1)
     diagnostics.error("E0809", {}, "maup orbits does one thing at a time.", {},
                       "Give --floquet, --section \"x = 0 rising\", --strobe 2s or --lyapunov.");
-  check_picture_name(o.plot, diagnostics);
-  check_table_name(o.output, diagnostics);
+  check_output_files({{"-o", o.output, FileKind::Table}, {"--plot", o.plot, FileKind::Picture}}, o.model.path, diagnostics);
   if (o.orbits.floquet && (!o.plot.empty() || !o.output.empty()))
     diagnostics.error("E0809", {}, "--floquet has no table and no picture.", {},
                       "Leave --plot and -o out, or take --json.");

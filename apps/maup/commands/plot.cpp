@@ -1,4 +1,5 @@
 #include "outcome.hpp"
+#include "output_files.hpp"
 #include "run_options.hpp"
 
 #include <CLI/CLI.hpp>
@@ -23,6 +24,7 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
   const bool readable_model = !study.wrong();
   SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
   if (settings.errors != ErrorEstimates::None) settings.errors = ErrorEstimates::Rows;
+  if (options.output != "-") check_output_files({{"-o", options.output, FileKind::Picture}}, options.model.path, study.diagnostics());
   if (readable_model && study.wrong()) {
     finish(console, study, document);
     return ExitCode::Usage;

@@ -1,6 +1,7 @@
 #include "command.hpp"
 #include "comparison_text.hpp"
 #include "outcome.hpp"
+#include "output_files.hpp"
 #include "quantity.hpp"
 
 #include <fmt/format.h>
@@ -32,6 +33,10 @@ std::string account(const Reduction& r) {
 ExitCode reduce_model(const ReduceOptions& options, Console& console) {
   Study study(options.path);
   Json document = json_document("reduce");
+  const bool readable_model = !study.wrong();
+  const std::string output = options.output == "-" ? std::string() : options.output;
+  check_output_files({{"-o", output, FileKind::Model}}, options.path, study.diagnostics());
+  if (readable_model && study.wrong()) return finish_usage(console, study, "reduce");
   const EquationsOfMotion* equations = study.equations();
   if (!equations || refuse_held_integrals(study) || !study.certificate()) return finish(console, study, document);
   const Reduction r = reduce(*study.model(), *equations, *study.tree(), study.source(), study.diagnostics());
@@ -44,12 +49,12 @@ ExitCode reduce_model(const ReduceOptions& options, Console& console) {
     document["proof"] = {{"points", r.proof->ground.points},
                          {"error_bound", r.proof->ground.error_bound},
                          {"run_difference", r.proof->run.ran ? Json(r.proof->run.difference) : Json(nullptr)}};
-  if (!r.text.empty() && !options.output.empty()) {
-    if (!write_result(options.output, r.text, study.diagnostics())) {
+  if (!r.text.empty() && !output.empty()) {
+    if (!write_result(output, r.text, study.diagnostics())) {
       finish(console, study, document);
       return ExitCode::RunFailed;
     }
-    if (!console.json()) console.print(fmt::format("{}\n{}", options.output, account(r)));
+    if (!console.json()) console.print(fmt::format("{}\n{}", output, account(r)));
   } else if (!r.text.empty() && !console.json()) {
     console.print(r.text);
     console.say(account(r));
@@ -70,7 +75,7 @@ void add_reduce(CommandLine& line) {
                                "  maup reduce planetary_gear.lag --json\n",
                                [options](Console& console) { return reduce_model(*options, console); });
   command.add_option("MODEL", options->path, "The model file (.lag), or - for standard input")->required();
-  command.add_option("-o,--output", options->output, "Write the reduced model to this file");
+  command.add_option("-o,--output", options->output, "Write the reduced model to this file (.lag), or - for standard output");
 }
 
 }  // namespace maupertuis::app

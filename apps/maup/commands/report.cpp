@@ -1,6 +1,7 @@
 #include "interrupt.hpp"
 #include "orbits_options.hpp"
 #include "outcome.hpp"
+#include "output_files.hpp"
 #include "run_options.hpp"
 
 #include <CLI/CLI.hpp>
@@ -118,6 +119,7 @@ ExitCode report(const ReportOptions& options, Console& console) {
   const bool readable_model = !study.wrong();
   const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
   check_orbits_options(options.orbits, study.diagnostics());
+  if (options.output != "-") check_output_files({{"-o", options.output, FileKind::Page}}, options.model.path, study.diagnostics());
   if (readable_model && study.wrong()) return finish_usage(console, study, "report");
   if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);
   if (refuse_held_integrals(study)) return finish(console, study, document);

@@ -1,5 +1,6 @@
 #include "extended_text.hpp"
 #include "outcome.hpp"
+#include "output_files.hpp"
 #include "quantity.hpp"
 #include "run_options.hpp"
 
@@ -22,23 +23,13 @@ struct SimulateOptions {
   bool errors = false;
 };
 
-bool ends_with(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 /// Before the run: a wrong ending must not cost an hour of computing.
 void check_endings(const SimulateOptions& options, Diagnostics& diagnostics) {
   if (options.errors && (options.run.no_errors || options.output.empty()))
     diagnostics.error("E0809", {}, options.run.no_errors ? "--errors and --no-errors exclude each other." : "--errors is about the file of -o, and there is none.",
                       "It writes the errors of each row beside it; those of the states that are printed stand there anyway.",
                       options.run.no_errors ? "Leave one of them out." : "Add -o motion.csv, or leave --errors out.");
-  const std::string& output = options.output;
-  if (!output.empty() && !ends_with(output, ".csv") && !ends_with(output, ".npy") && !ends_with(output, ".json"))
-    diagnostics.error("E0810", {}, fmt::format("{} names no format of a trajectory.", output), {},
-                      ends_with(output, ".h5") ? "not supported yet: HDF5. Take .csv, .npy or .json."
-                                               : "Take an ending .csv, .npy or .json.");
-  if (!options.plot.empty() && !ends_with(options.plot, ".svg"))
-    diagnostics.error("E0810", {}, fmt::format("{} names no format of a picture.", options.plot), {}, "Take .svg.");
+  check_output_files({{"-o", options.output, FileKind::Table}, {"--plot", options.plot, FileKind::Picture}}, options.model.path, diagnostics);
 }
 
 /// A λ that the equations do not determine is null.
@@ -200,8 +191,7 @@ void check_extended_files(const SimulateOptions& options, Diagnostics& diagnosti
                       "In many digits those are written of which several runs agree: their number tells the error.", "Leave it out.");
   if (!options.plot.empty())
     diagnostics.error("E0809", {}, "--plot draws what double computes.", "A picture shows no more digits.", "Give --precision double for it.");
-  if (!options.output.empty() && !ends_with(options.output, ".csv"))
-    diagnostics.error("E0810", {}, fmt::format("{} is no format for numbers in many digits.", options.output), {}, "Take an ending .csv.");
+  check_output_files({{"-o", options.output, FileKind::Csv}}, options.model.path, diagnostics);
 }
 
 ExitCode simulate_extended_model(const SimulateOptions& options, const std::string& digits, Study& study, Console& console) {

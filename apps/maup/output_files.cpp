@@ -1,0 +1,74 @@
+#include "output_files.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace maupertuis::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Kind {
+  const char* name;
+  std::vector<std::string_view> endings;
+};
+
+Kind kind_of(FileKind kind) {
+  switch (kind) {
+    case FileKind::Picture: return {"picture", {".svg"}};
+    case FileKind::Table: return {"table", {".csv", ".npy", ".json"}};
+    case FileKind::Csv: return {"text table", {".csv"}};
+    case FileKind::Page: return {"page", {".html", ".htm"}};
+    case FileKind::Model: return {"model", {".lag"}};
+  }
+  return {};
+}
+
+bool is_special(const std::string& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  return a == b || (fs::exists(a, error) && fs::exists(b, error) && fs::equivalent(a, b, error));
+}
+
+std::string help_for(const OutputFile& file, const Kind& kind) {
+  const std::string extension = fs::path(file.path).extension().string();
+  if (extension == ".h5") return "not supported yet: HDF5. Take .csv, .npy or .json.";
+  if (file.kind == FileKind::Picture && (extension == ".png" || extension == ".pdf"))
+    return fmt::format("not supported yet: {}. Take .svg, which browsers and LaTeX (\\includesvg) show.", extension);
+  if (kind.endings.size() == 1) return fmt::format("Take {}.", kind.endings[0]);
+  const std::span<const std::string_view> others(kind.endings.data(), kind.endings.size() - 1);
+  return fmt::format("Take an ending {} or {}.", fmt::join(others, ", "), kind.endings.back());
+}
+
+}  // namespace
+
+void check_output_files(std::initializer_list<OutputFile> files, const std::string& model, Diagnostics& diagnostics) {
+  for (auto file = files.begin(); file != files.end(); ++file) {
+    if (file->path.empty()) continue;
+    const Kind kind = kind_of(file->kind);
+    if (model != "-" && !is_special(file->path) && is_same_file(file->path, model)) {
+      diagnostics.error("E0812", {}, fmt::format("{} {} is the model that is read.", file->option, file->path), "Writing it would lose the model.",
+                        "Give another name.");
+      continue;
+    }
+    const bool known = std::any_of(kind.endings.begin(), kind.endings.end(), [&](std::string_view end) { return std::string_view(file->path).ends_with(end); });
+    if (!known && !is_special(file->path))
+      diagnostics.error("E0810", {}, fmt::format("{} names no format of a {}.", file->path, kind.name), {}, help_for(*file, kind));
+    const auto twin = std::find_if(files.begin(), file, [&](const OutputFile& other) { return !other.path.empty() && is_same_file(other.path, file->path); });
+    if (twin != file && !is_special(file->path))
+      diagnostics.error("E0809", {}, fmt::format("{} and {} both ask for {}.", twin->option, file->option, file->path), {}, "Give two files.");
+  }
+}
+
+}  // namespace maupertuis::app

@@ -1,0 +1,22 @@
+#pragma once
+#include <maupertuis/diagnostic.hpp>
+
+#include <initializer_list>
+#include <string>
+
+namespace maupertuis::app {
+
+/// What a file that is asked for will hold; its endings say so.
+enum class FileKind { Picture, Table, Csv, Page, Model };  // .svg; .csv, .npy, .json; .csv; .html, .htm; .lag
+
+struct OutputFile {
+  const char* option;  // that asks for it, as it is written
+  std::string path;    // empty: it is not asked for
+  FileKind kind;
+};
+
+/// Before anything is computed: E0810 for an ending of another kind, E0812 for the model that is read, E0809 where two options ask for one file. Devices and
+/// pipes take what they are given. "-" is a file name here; commands that take it for standard output leave it out.
+void check_output_files(std::initializer_list<OutputFile> files, const std::string& model, Diagnostics& diagnostics);
+
+}  // namespace maupertuis::app
