@@ -1,6 +1,7 @@
 #include "command_line.hpp"
 
 #include "command.hpp"
+#include "interrupt.hpp"
 #include "json.hpp"
 
 #include <CLI/CLI.hpp>
@@ -82,7 +83,11 @@ ExitCode CommandLine::run(int argc, char** argv) {
   }
   line.console.use_json(line.json);
   line.console.use_color(line.color);
-  const ExitCode code = line.chosen(line.console);
+  ExitCode code = line.chosen(line.console);
+  if (interrupt_flag().load() && code != ExitCode::Interrupted) {
+    line.console.say("Interrupted: what stands here is not the whole of it.\n");
+    code = ExitCode::Interrupted;
+  }
   const std::string failure = line.console.flush();
   if (failure.empty()) return code;
   Diagnostics diagnostics;
@@ -106,6 +111,7 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
 int run(int argc, char** argv) {
   // A closed pipe is then an error of the write, which is said, instead of a signal.
   std::signal(SIGPIPE, SIG_IGN);
+  watch_interrupts();
   try {
     CommandLine line;
     add_check(line);

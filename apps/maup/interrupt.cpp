@@ -1,17 +1,22 @@
 #include "interrupt.hpp"
 
+#include <cerrno>
 #include <csignal>
 #include <ctime>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace maupertuis::app {
 namespace {
 
-// A signal handler has no argument to carry state in: the one place where a global is unavoidable.
+// A signal handler has no argument to carry state in: the one place where globals are unavoidable.
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
-
 std::atomic<long long> first_at{0};
 static_assert(std::atomic<long long>::is_always_lock_free);
+timer_t patience;
+
+constexpr long long grace = 700, repeated = 500;  // milliseconds
 
 long long milliseconds() {
   timespec now{};
@@ -19,24 +24,60 @@ long long milliseconds() {
   return 1000LL * now.tv_sec + now.tv_nsec / 1'000'000;
 }
 
-/// The first one ends the run in good order; one that follows later, from an impatient user, ends the program. What arrives
+void set_timer(long long after) {
+  const itimerspec once{{0, 0}, {after / 1000, (after % 1000) * 1'000'000}};
+  timer_settime(patience, 0, &once, nullptr);
+}
+
+/// What does not look at the flag, or waits for a pipe that no one reads, is ended here. Files appear whole or not at all.
+[[noreturn]] void leave() {
+  constexpr char words[] = "\nInterrupted: nothing more is computed, and what was not written yet is lost.\n";
+  static_cast<void>(!write(STDERR_FILENO, words, sizeof words - 1));
+  _exit(130);
+}
+
+extern "C" void on_timer(int) { leave(); }
+
+/// The first one asks the run to end in good order, within the grace; one that follows later, from an impatient user, ends the program. What arrives
 /// at once is the same wish twice: shells and `timeout` signal the process and its group.
-extern "C" void on_interrupt(int signal) {
+extern "C" void on_interrupt(int) {
+  const int error = errno;
   if (!interrupted.exchange(true)) {
     first_at = milliseconds();
-    return;
+    set_timer(grace);
+  } else if (milliseconds() - first_at >= repeated) {
+    leave();
   }
-  if (milliseconds() - first_at < 500) return;
-  std::signal(signal, SIG_DFL);
-  std::raise(signal);
+  errno = error;
+}
+
+void install(int signal, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;
+  sigaction(signal, &action, nullptr);
 }
 
 }  // namespace
 
-const std::atomic<bool>& interrupt_flag() {
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
-  return interrupted;
+void watch_interrupts() {
+  sigevent event{};
+  event.sigev_notify = SIGEV_SIGNAL;
+  event.sigev_signo = SIGALRM;
+  if (timer_create(CLOCK_MONOTONIC, &event, &patience) != 0) return;  // then a signal ends the program as it always does
+  install(SIGALRM, on_timer);
+  for (const int signal : {SIGINT, SIGTERM}) install(signal, on_interrupt);
+}
+
+const std::atomic<bool>& interrupt_flag() { return interrupted; }
+
+Saving::Saving(const std::string& path) {
+  struct stat status {};
+  is_file_ = stat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode);
+  if (is_file_ && interrupted) set_timer(most);
+}
+Saving::~Saving() {
+  if (is_file_ && interrupted) set_timer(grace);
 }
 
 }  // namespace maupertuis::app

@@ -1,9 +1,24 @@
 #pragma once
 #include <atomic>
+#include <string>
 
 namespace maupertuis::app {
 
-/// From the first call on, Ctrl-C sets the flag instead of ending the program; a second Ctrl-C ends it at once.
+/// From here on Ctrl-C and SIGTERM set the flag. What has not ended 0.7 s later, or at a second Ctrl-C, is ended with code 130.
+void watch_interrupts();
 const std::atomic<bool>& interrupt_flag();
+
+/// While a file is written that holds what was computed up to an interrupt: more time, but not without end, and none for a pipe.
+class Saving {
+ public:
+  explicit Saving(const std::string& path);
+  ~Saving();
+  Saving(const Saving&) = delete;
+  Saving& operator=(const Saving&) = delete;
+
+ private:
+  static constexpr long long most = 20'000;  // milliseconds
+  bool is_file_ = false;
+};
 
 }  // namespace maupertuis::app

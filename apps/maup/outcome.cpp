@@ -54,6 +54,7 @@ ExitCode finish_usage(Console& console, Study& study, const char* command) {
 }
 
 bool write_rows(const std::string& path, const Trajectory& rows, Diagnostics& diagnostics) {
+  const Saving saving(path);
   const std::string failure = path.empty() ? std::string() : write_trajectory(rows, path);
   if (!failure.empty()) cannot_write(failure, diagnostics);
   return failure.empty();
@@ -64,6 +65,7 @@ void cannot_write(const std::string& failure, Diagnostics& diagnostics) {
 }
 
 bool write_result(const std::string& path, const std::string& content, Diagnostics& diagnostics) {
+  const Saving saving(path);
   const std::string failure = write_file(path, content);
   if (!failure.empty()) cannot_write(failure, diagnostics);
   return failure.empty();

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -70,6 +73,19 @@ int write_in_place(const Target& target, const std::string& content) {
   return ::close(descriptor) != 0 && error == 0 ? errno : error;
 }
 
+// What a process left beside the target that ended while it wrote: the number of the process stands in the name.
+void remove_left_over(const Target& target) {
+  namespace fs = std::filesystem;
+  const std::string begin = fs::path(target.path).filename().string() + ".partial-";
+  std::error_code error;
+  for (fs::directory_iterator it(target.folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (name.compare(0, begin.size(), begin) != 0) continue;
+    const long process = std::strtol(name.c_str() + begin.size(), nullptr, 10);
+    if (process > 0 && ::kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH) ::unlink(it->path().c_str());
+  }
+}
+
 // A name beside the target that nobody has yet. The descriptor, or -1 with errno set.
 int open_beside(const Target& target, std::string& name) {
   for (int attempt = 0; attempt < 100; ++attempt) {
@@ -90,6 +106,7 @@ void sync_folder(const std::string& folder) {
 
 int replace(const Target& target, const std::string& content) {
   std::string name;
+  remove_left_over(target);
   const int descriptor = open_beside(target, name);
   if (descriptor < 0) return errno;
   int error = write_all(descriptor, content);

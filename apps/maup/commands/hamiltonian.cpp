@@ -138,9 +138,7 @@ ExitCode integrate(const HamiltonianOptions& options, const PhaseSpace& found, S
   if (!run) return ExitCode::ModelWrong;
   const auto motion = canonical_motion(found.hamiltonian, *study.equations(), *run, settings, study.diagnostics());
   if (!motion) return ExitCode::ModelWrong;
-  if (!options.output.empty())
-    if (const std::string failure = write_trajectory(motion->trajectory, options.output); !failure.empty())
-      cannot_write(failure, study.diagnostics());
+  write_rows(options.output, motion->trajectory, study.diagnostics());
   document["integration"] = motion_json(*motion);
   if (!console.json()) console.print(motion_text(*motion, *run, study.model()->system));
   if (!motion->ending.empty() && !console.json())

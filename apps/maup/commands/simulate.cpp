@@ -148,8 +148,7 @@ std::string text_of(const SimulationResult& result, const MechanicalSystem& syst
 void write_files(const SimulateOptions& options, const SimulationResult& result, Study& study) {
   Diagnostics& diagnostics = study.diagnostics();
   if (!options.output.empty()) {
-    const std::string failure = write_trajectory(options.errors ? with_error_columns(result.trajectory) : result.trajectory, options.output);
-    if (!failure.empty()) cannot_write(failure, diagnostics);
+    write_rows(options.output, options.errors ? with_error_columns(result.trajectory) : result.trajectory, diagnostics);
   }
   if (!options.plot.empty()) {
     PlotOptions picture;
