@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace maupertuis::app {
 namespace {
 
@@ -68,10 +70,25 @@ std::string integral_text(const std::string& symbol, const ConservedFunction& in
   return text + "\n";
 }
 
-std::string brackets_text(const Invariants& found, const ReadingOrder& order) {
+/// Whether a formula in I1, I2, … names only the first `count` of them.
+bool is_about(Expr value, const Invariants& found, std::size_t count) {
+  const auto nodes = topological_order({&value, 1});
+  return std::none_of(found.symbols.begin() + static_cast<std::ptrdiff_t>(count), found.symbols.end(), [&](const Expr& s) {
+    return std::find(nodes.begin(), nodes.end(), s) != nodes.end();
+  });
+}
+
+std::string relations_text(const Invariants& found, std::size_t count, const ReadingOrder& order) {
+  std::string text;
+  for (const IntegralRelation& r : found.relations)
+    if (is_about(r.value.value, found, count)) text += fmt::format("  {} = 0\n", to_plain(r.value, order));
+  return text.empty() ? "" : "\nRelations\n" + text;
+}
+
+std::string brackets_text(const Invariants& found, std::size_t count, const ReadingOrder& order) {
   std::string text;
   for (const PoissonBracket& b : found.brackets)
-    text += fmt::format("  {{{}, {}}} = {}\n", found.symbols[b.first].name(), found.symbols[b.second].name(),
+    if (b.second < count) text += fmt::format("  {{{}, {}}} = {}\n", found.symbols[b.first].name(), found.symbols[b.second].name(),
                         b.value.value ? to_plain(b.value, order) : "a further function");
   return text.empty() ? "" : "\nPoisson brackets that do not vanish\n" + text;
 }
@@ -122,15 +139,17 @@ std::string completeness_text(const Invariants& found) {
 
 }  // namespace
 
-std::string invariants_text(const Invariants& found, const EquationsOfMotion& equations) {
+std::string invariants_text(const Invariants& found, const EquationsOfMotion& equations, bool all) {
   const ReadingOrder& order = equations.order;
+  const std::size_t count = all ? found.integrals.size() : found.shown;
   std::string text;
-  for (std::size_t i = 0; i < found.integrals.size(); ++i)
+  for (std::size_t i = 0; i < count; ++i)
     text += integral_text(found.symbols[i].name(), found.integrals[i], equations);
   if (found.integrals.empty()) text += "No integral was found.\n";
-  if (!found.relations.empty()) text += "\nRelations\n";
-  for (const IntegralRelation& r : found.relations) text += fmt::format("  {} = 0\n", to_plain(r.value, order));
-  text += brackets_text(found, order);
+  if (count < found.integrals.size())
+    text += fmt::format("{} more {} of these: --all\n", found.integrals.size() - count,
+                        found.integrals.size() - count == 1 ? "is a function" : "are functions");
+  text += relations_text(found, count, order) + brackets_text(found, count, order);
   if (!found.balance_laws.empty()) text += "\nBalance laws\n";
   for (const BalanceLaw& law : found.balance_laws)
     text += fmt::format("  {}: d/d{} ({}) = {}\n", law.name, equations.system->independent, to_plain(law.quantity, order), formula(law.rate, order));
@@ -169,6 +188,7 @@ void add_invariants_json(Json& document, const Invariants& found, const Equation
   const ReadingOrder& order = equations.order;
   document["integrals"] = Json::array();
   for (const ConservedFunction& i : found.integrals) document["integrals"].push_back(integral_json(i, order));
+  document["shown"] = found.shown;
   document["independent"] = found.rank;
   document["independent_without_time"] = found.autonomous_rank;
   document["relations"] = Json::array();

@@ -8,7 +8,7 @@
 namespace maupertuis::app {
 
 /// What `maup invariants` prints: each integral with its name, symmetry and proof, then what holds between them.
-std::string invariants_text(const Invariants& found, const EquationsOfMotion& equations);
+std::string invariants_text(const Invariants& found, const EquationsOfMotion& equations, bool all);
 /// Fills the document of `maup invariants --json`.
 void add_invariants_json(Json& document, const Invariants& found, const EquationsOfMotion& equations);
 

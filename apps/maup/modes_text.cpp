@@ -231,9 +231,17 @@ std::string multipliers_text(const MechanicalSystem& system, const OperatingPoin
   return out.empty() ? out : "  multipliers (SI): " + out + "\n";
 }
 
+/// " (one of a family, along y, z)": neighbours along these coordinates are equilibria too.
+std::string family_text(const MechanicalSystem& system, const Equilibrium& e) {
+  if (e.family == 0) return "";
+  const std::string ways = e.family_along.empty() ? "" : ", along " + listed(system, e.family_along, "");
+  return fmt::format(" (one of a family{})", ways);
+}
+
 /// "x = 0, on the side x > 0"
 std::string place_text(const MechanicalSystem& system, const ModalEntry& e, const ModalStudy& study) {
-  return point_text(system, e.equilibrium, study.translations) + (e.side.empty() ? "" : ", on the side " + e.side);
+  return point_text(system, e.equilibrium, study.translations) + family_text(system, e.equilibrium) +
+         (e.side.empty() ? "" : ", on the side " + e.side);
 }
 
 std::string summary(const MechanicalSystem& system, const ModalStudy& study) {
@@ -243,7 +251,10 @@ std::string summary(const MechanicalSystem& system, const ModalStudy& study) {
   const std::size_t moving = study.entries.size() - resting;
   std::string out = fmt::format("{} {}", resting, resting == 1 ? "equilibrium" : "equilibria");
   if (moving > 0) out += fmt::format(", {} steady {}", moving, moving == 1 ? "motion" : "motions");
-  out += fmt::format(" (Newton's method from {} points; there may be more)\n\n", study.starts);
+  out += fmt::format(" (Newton's method from {} points; there may be more)\n", study.starts);
+  if (study.outside > 0)
+    out += fmt::format("{} further, ten typical sizes and more from the start, left out\n", study.outside);
+  out += "\n";
   std::vector<std::vector<std::string>> rows;
   for (std::size_t i = 0; i < study.entries.size(); ++i) {
     const ModalEntry& e = study.entries[i];
@@ -408,6 +419,7 @@ Json modes_document(const MechanicalSystem& system, const ModalStudy& study) {
   Json document = json_document("modes");
   document["system"] = system.name;
   document["starts"] = study.starts;
+  document["outside"] = study.outside;
   document["translations"] = Json::array();
   for (const Translation& t : study.translations)
     document["translations"].push_back({{"direction", t.direction}, {"conserved", t.conserved}});
@@ -418,6 +430,7 @@ Json modes_document(const MechanicalSystem& system, const ModalStudy& study) {
     entry["side"] = e.side.empty() ? Json(nullptr) : Json(e.side);
     entry["residual"] = e.equilibrium.residual;
     entry["family"] = e.equilibrium.family;
+    entry["family_along"] = names_json(system, e.equilibrium.family_along, "");
     const StabilityReport& s = e.analysis.stability;
     entry["stability"] = {{"verdict", verdict_word(s.verdict)},
                           {"reason", s.reason},

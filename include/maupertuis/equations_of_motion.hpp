@@ -117,8 +117,8 @@ struct SolvedAcceleration {
   std::vector<std::size_t> coupled_with;  // the coordinates of its block, itself included
 };
 
-/// q̈ by Cramer's rule for blocks of at most two coordinates; larger or singular blocks are left to the numerical solve.
-/// With constraints in terms of λ.
+/// q̈ by Cramer's rule for blocks of at most two coordinates, and for those of up to six where each right side takes no
+/// more than 400 characters; longer or singular blocks are left to the numerical solve. With constraints in terms of λ.
 std::vector<SolvedAcceleration> solved_accelerations(const EquationsOfMotion& equations);
 
 /// λ = (A M⁻¹ Aᵀ)⁻¹ (b + A M⁻¹ h) [m] for at most two constraints on coordinates as in solved_accelerations; else empty.

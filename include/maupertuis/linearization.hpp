@@ -89,19 +89,22 @@ struct Equilibrium {
   bool at_rest = true;            // an equilibrium; else a steady motion
   double residual = 0;            // largest |R_i| divided by the size of its derivatives: rounding level
   std::size_t family = 0;         // how many further ways it can be moved and stay one, beside translations
+  std::vector<std::size_t> family_along;  // the coordinates that change on these ways, ascending
   bool coordinates_fail = false;  // M is singular there on what the constraints leave free: r = 0 of polar coordinates
 };
 
 struct EquilibriumSearchResult {
-  std::vector<Equilibrium> found;  // those at rest first, then by energy of position, then by coordinates
+  std::vector<Equilibrium> found;  // the one nearest to the start, then those at rest, by energy, then by coordinates
   std::vector<Translation> translations;
-  std::size_t starts = 0;  // Newton's method began from so many points
+  std::size_t starts = 0;   // Newton's method began from so many points
+  std::size_t outside = 0;  // further ones, ten typical sizes and more from the start: left out
 };
 
 /// Newton's method (Gauss-Newton with damping, minimum norm steps) from many starts, the same in every run: the model's
 /// own, all coordinates zero, angles at 0 and π, then scattered points. Nothing says that no further ones exist. Points
-/// are distinct modulo 2π in coordinates in which the equations are periodic, and modulo translations. Steady motions
-/// keep the momenta of the start along conserved translations, unless `fixed` holds their velocities.
+/// are distinct modulo 2π in coordinates in which the equations are periodic, and modulo translations. Of a family, a
+/// curve or surface of equilibria, the member nearest to the start stands for all. Steady motions keep the momenta of
+/// the start along conserved translations, unless `fixed` holds their velocities.
 EquilibriumSearchResult find_equilibria(const PointEquations& equations, const EquilibriumSearch& search);
 
 /// The one nearest to a start: Newton's method from there alone. Nothing where it does not converge.

@@ -77,6 +77,7 @@ struct ModalStudy {
   std::vector<Kink> kinks;                 // sides of points that have no entry
   std::vector<Translation> translations;
   std::size_t starts = 0;                  // of the search; 0: a point was given
+  std::size_t outside = 0;                 // equilibria that were found too far from the start to be meant
 };
 
 /// All equilibria and steady motions that the search finds, each linearized. Nothing, and E1301 or E1303, where there are none.

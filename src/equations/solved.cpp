@@ -1,10 +1,12 @@
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/linear_system.hpp>
+#include <maupertuis/print.hpp>
 
 #include "equations/simplified.hpp"
 
 #include <functional>
+#include <map>
 #include <numeric>
 
 namespace maupertuis {
@@ -20,6 +22,66 @@ ReadableForm quotient(Expr numerator, Expr denominator, const ReadingOrder& orde
 }
 
 bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict != Verdict::Nonzero; }
+
+/// Cramer's rule for a block of three to six coupled rows, as long as what it writes stays short:
+///
+///     q̈_j = −Σ_i C_ij h_i / det M,      C_ij the cofactor of M_ij
+///
+/// Minors are expanded along their first row; each occurs once, whatever asks for it, in canonical form, so that what
+/// cancels is gone before it is multiplied on.
+class LargeBlock {
+ public:
+  LargeBlock(const ExprMatrix& m, const std::vector<std::size_t>& block) : m_(m), block_(block) {}
+
+  /// Right sides in the order of the block; empty where one is too long, or M is singular.
+  std::vector<ReadableForm> solve(const ExprVector& h, const ReadingOrder& order) {
+    const std::size_t n = block_.size();
+    const unsigned all = (1u << n) - 1;
+    const Expr determinant = n <= largest ? minor(all, all) : Expr();
+    if (!determinant || vanishes(determinant)) return {};
+    std::vector<ReadableForm> out;
+    for (std::size_t j = 0; j < n; ++j) {
+      ExprVector terms;
+      for (std::size_t i = 0; i < n; ++i) {
+        const Expr cofactor = minor(all & ~(1u << i), all & ~(1u << j));
+        if (!cofactor) return {};
+        terms.push_back((i + j) % 2 == 0 ? -(cofactor * h[block_[i]]) : cofactor * h[block_[i]]);
+      }
+      const Expr numerator = fourier_form(determinant.context().sum(terms), most_terms);
+      if (!numerator) return {};
+      out.push_back(quotient(numerator, determinant, order));
+      if (!out.back().intermediates.empty() || to_plain(out.back().value, order).size() > longest) return {};
+    }
+    return out;
+  }
+
+ private:
+  static constexpr std::size_t largest = 6, most_terms = 120, longest = 400;   // rows, terms of a sum, characters
+
+  /// The determinant of the rows and columns whose bits are set, as many of each; an empty handle where it is long.
+  Expr minor(unsigned rows, unsigned columns) {
+    if (rows == 0) return m_.entries.front().context().number(1);
+    const auto [known, is_new] = minors_.try_emplace({rows, columns});
+    if (!is_new) return known->second;
+    std::size_t row = 0;
+    while (!(rows >> row & 1)) ++row;
+    ExprVector terms;
+    bool negative = false;
+    for (std::size_t column = 0; column < block_.size(); ++column) {
+      if (!(columns >> column & 1)) continue;
+      const Expr entry = m_.at(block_[row], block_[column]);
+      const Expr rest = entry.is_zero() ? entry : minor(rows & ~(1u << row), columns & ~(1u << column));
+      if (!rest) return minors_[{rows, columns}] = Expr();
+      terms.push_back(negative ? -(entry * rest) : entry * rest);
+      negative = !negative;
+    }
+    return minors_[{rows, columns}] = fourier_form(m_.entries.front().context().sum(terms), most_terms);
+  }
+
+  const ExprMatrix& m_;
+  const std::vector<std::size_t>& block_;
+  std::map<std::pair<unsigned, unsigned>, Expr> minors_;
+};
 
 std::vector<SolvedAcceleration> solved_for(const EquationsOfMotion& equations, const ExprVector& h) {
   const std::size_t n = equations.system->coordinates.size();
@@ -42,6 +104,9 @@ std::vector<SolvedAcceleration> solved_for(const EquationsOfMotion& equations, c
       if (vanishes(determinant)) continue;
       solved[i].right = quotient(m.at(i, j) * h[j] - m.at(j, j) * h[i], determinant, equations.order);
       solved[j].right = quotient(m.at(j, i) * h[i] - m.at(i, i) * h[j], determinant, equations.order);
+    } else {
+      const std::vector<ReadableForm> rights = LargeBlock(m, block).solve(h, equations.order);
+      for (std::size_t k = 0; k < rights.size(); ++k) solved[block[k]].right = rights[k];
     }
   }
   return solved;
@@ -53,7 +118,7 @@ Expr row_times(const ExprMatrix& a, std::size_t row, const ExprVector& x) {
   return x.front().context().sum(terms);
 }
 
-/// M⁻¹ applied to a vector, block by block; empty where a block is singular or larger than two.
+/// M⁻¹ applied to a vector, block by block; empty where a block is singular or too long to be solved.
 ExprVector apply_inverse_mass(const EquationsOfMotion& equations, const ExprVector& vector) {
   ExprVector negated, result;
   for (const Expr& entry : vector) negated.push_back(-entry);

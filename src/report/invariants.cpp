@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace maupertuis {
 namespace {
 
@@ -62,7 +64,7 @@ std::string summary_of(const Invariants& found) {
 void add_invariants(ReportContent& content, const EquationsOfMotion& equations, const Invariants& found,
                     const SimulationResult* run) {
   const ReadingOrder& order = equations.order;
-  for (std::size_t i = 0; i < found.integrals.size(); ++i) {
+  for (std::size_t i = 0; i < found.shown; ++i) {
     const ConservedFunction& integral = found.integrals[i];
     ReportContent::Conserved row;
     row.sentence = sentence_of(integral);
@@ -72,9 +74,15 @@ void add_invariants(ReportContent& content, const EquationsOfMotion& equations, 
     if (run) add_values_along_run(row, equations, integral.value, unit, run->trajectory);
     content.conserved.push_back(std::move(row));
   }
-  for (const IntegralRelation& relation : found.relations)
+  const auto is_hidden = [&](Expr node) {
+    return std::find(found.symbols.begin() + static_cast<std::ptrdiff_t>(found.shown), found.symbols.end(), node) != found.symbols.end();
+  };
+  for (const IntegralRelation& relation : found.relations) {
+    const auto nodes = topological_order({&relation.value.value, 1});
+    if (std::any_of(nodes.begin(), nodes.end(), is_hidden)) continue;
     content.conserved.push_back(
         {"Between them holds", {"<mn>0</mn>", to_mathml(relation.value, order), "", ""}, "", ""});
+  }
   for (const BalanceLaw& law : found.balance_laws)
     content.conserved.push_back({law.name + " is changed by forces or constraints, at the rate",
                                  {"", to_mathml(law.rate, order), "", ""},

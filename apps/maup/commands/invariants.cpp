@@ -11,6 +11,7 @@ struct CommandOptions {
   ModelOptions model;
   InvariantsOptions search;
   bool no_drift = false;
+  bool all = false;
 };
 
 ExitCode invariants_of_model(const CommandOptions& options, Console& console) {
@@ -24,7 +25,7 @@ ExitCode invariants_of_model(const CommandOptions& options, Console& console) {
   if (!found) return finish(console, study, document);
   document["system"] = equations->system->name;
   add_invariants_json(document, *found, *equations);
-  if (!console.json()) console.print(invariants_text(*found, *equations));
+  if (!console.json()) console.print(invariants_text(*found, *equations, options.all));
   return finish(console, study, document);
 }
 
@@ -45,6 +46,7 @@ void add_invariants(CommandLine& line) {
   command
       .add_option("--largest-basis", options->search.largest_basis, "At most so many functions in one search (1400)")
       ->check(CLI::Range(10, 20000));
+  command.add_flag("--all", options->all, "Also those that are functions of others and have no name");
   command.add_flag("--no-drift", options->no_drift, "Leave out the run that measures the drift");
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace maupertuis::invariants {
 
@@ -102,10 +103,12 @@ class AlgebraWriter {
 
   void carry_out() {
     const bool hamiltonian = !rows_.system->constrained() && result_.integrals.front().kind != IntegralKind::Direct;
+    if (hamiltonian && values_.size() <= most_integrals) {
+      find_brackets();
+      show_what_brackets_lead_to();
+    }
     if (values_.size() <= most_integrals) find_relations();
-    if (!hamiltonian) return;
-    if (values_.size() <= most_integrals) find_brackets();
-    find_involution();
+    if (hamiltonian) find_involution();
   }
 
  private:
@@ -120,19 +123,25 @@ class AlgebraWriter {
     return context_.sum(sum);
   }
 
+  /// Between those that are shown first: what a reader looks for is not told through the others.
   void find_relations() {
-    if (std::all_of(result_.integrals.begin(), result_.integrals.end(),
-                    [](const ConservedFunction& i) { return i.independent; }))
-      return;
+    find_relations_of(result_.shown);
+    if (result_.shown < values_.size()) find_relations_of(values_.size());
+  }
+
+  void find_relations_of(std::size_t count) {
+    const auto end = result_.integrals.begin() + static_cast<std::ptrdiff_t>(count);
+    if (std::all_of(result_.integrals.begin(), end, [](const ConservedFunction& i) { return i.independent; })) return;
+    const std::vector<Expr> values(values_.begin(), values_.begin() + static_cast<std::ptrdiff_t>(count));
     Generators g(context_);
     for (const int degree : {2, 3}) {
       Basis basis;
-      basis.monomials = products_up_to(g, values_, degree);
+      basis.monomials = products_up_to(g, values, degree);
       basis.monomials.insert(basis.monomials.begin(), Monomial{});
       if (basis.monomials.size() > 400) return;
       const SearchResult found = vanishing_combinations(rows_, g, basis, seed_);
       for (const Combination& c : found.found) {
-        if (result_.relations.size() + result_.rank >= values_.size()) return;
+        if (result_.relations.size() + result_.rank >= count) return;
         take_relation(c);
       }
       if (found.too_long > 0) return;
@@ -160,14 +169,62 @@ class AlgebraWriter {
 
   void find_brackets() {
     const std::size_t count = values_.size();
-    commute_.assign(count * count, true);
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t j = i + 1; j < count; ++j) {
         const Expr value = poisson_.bracket(values_[i], values_[j]);
         if (zero_test(value).verdict == Verdict::Zero) continue;
-        commute_[i * count + j] = commute_[j * count + i] = false;
         result_.brackets.push_back({i, j, closed(value)});
       }
+  }
+
+  // ------------------------------------------------------------------------------------------ what the algebra asks for
+
+  bool holds(Expr value, std::size_t integral) const {
+    const auto nodes = topological_order({&value, 1});
+    return std::find(nodes.begin(), nodes.end(), result_.symbols[integral]) != nodes.end();
+  }
+
+  /// Integrals that stand in a bracket of two shown ones are shown too: I5 of {I1, I3} = I5. They change places with those
+  /// that stay behind, and numbers follow the places.
+  void show_what_brackets_lead_to() {
+    std::vector<bool> is_shown(values_.size(), false);
+    std::fill(is_shown.begin(), is_shown.begin() + static_cast<std::ptrdiff_t>(result_.shown), true);
+    for (bool more = true; more;) {
+      more = false;
+      for (const PoissonBracket& b : result_.brackets)
+        for (std::size_t i = 0; b.value.value && is_shown[b.first] && is_shown[b.second] && i < values_.size(); ++i)
+          if (!is_shown[i] && holds(b.value.value, i)) is_shown[i] = more = true;
+    }
+    std::vector<std::size_t> order(values_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto end = std::stable_partition(order.begin(), order.end(), [&](std::size_t i) { return is_shown[i]; });
+    result_.shown = static_cast<std::size_t>(end - order.begin());
+    move_to(order);
+  }
+
+  /// `order`: [integrals] which one stands at each place from now on. Those that are shown keep their order, so that
+  /// only brackets with hidden ones can change the side on which an integral stands.
+  void move_to(const std::vector<std::size_t>& order) {
+    std::vector<ConservedFunction> moved;
+    std::vector<std::size_t> place(order.size());
+    ExprMap renamed;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      moved.push_back(result_.integrals[order[k]]);
+      place[order[k]] = k;
+      renamed.emplace(result_.symbols[order[k]], result_.symbols[k]);
+    }
+    result_.integrals = std::move(moved);
+    for (PoissonBracket& b : result_.brackets) {
+      b.first = place[b.first], b.second = place[b.second];
+      if (b.value.value) b.value.value = substitute(b.value.value, renamed);
+      if (b.first < b.second) continue;
+      std::swap(b.first, b.second);
+      if (b.value.value) b.value.value = -b.value.value;
+    }
+    std::stable_sort(result_.brackets.begin(), result_.brackets.end(), [](const PoissonBracket& a, const PoissonBracket& b) {
+      return std::pair(a.first, a.second) < std::pair(b.first, b.second);
+    });
+    for (std::size_t k = 0; k < order.size(); ++k) values_[k] = result_.integrals[k].value;
   }
 
   /// A bracket as a combination of 1, the integrals and their products in pairs.
@@ -259,7 +316,6 @@ class AlgebraWriter {
   PoissonAlgebra poisson_;
   std::vector<std::vector<Expr>> relation_gradients_;  // [relations][integrals]
   std::vector<Expr> values_;
-  std::vector<bool> commute_;
 };
 
 }  // namespace

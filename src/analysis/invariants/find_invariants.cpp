@@ -54,6 +54,7 @@ class Finder {
     put_in_order();
     mark_independent();
     remove_functions_of_others();
+    put_shown_first();
     number_them();
     if (options_.relations) add_algebra(result_, rows_, equations_, options_.seed + 5);
     add_balance_laws(result_, ansatz_, equations_, options_);
@@ -228,6 +229,12 @@ class Finder {
       if (is_new || stays) kept.push_back(std::move(i));
     }
     result_.integrals = std::move(kept);
+  }
+
+  void put_shown_first() {
+    const auto is_shown = [](const ConservedFunction& i) { return i.independent || !i.name.empty(); };
+    const auto end = std::stable_partition(result_.integrals.begin(), result_.integrals.end(), is_shown);
+    result_.shown = static_cast<std::size_t>(end - result_.integrals.begin());
   }
 
   /// I1, I2, …, or other letters where the model uses these names.

@@ -1,3 +1,4 @@
+#include "analysis/linearization/families.hpp"
 #include "analysis/linearization/steady_state.hpp"
 
 #include <maupertuis/require.hpp>
@@ -13,6 +14,7 @@ namespace {
 
 constexpr double turn = 6.283185307179586, pi = 3.141592653589793;
 constexpr double same = 1e-6;             // of typical sizes: closer points are one
+constexpr double box = 10;                // of typical sizes: equilibria further from the start are not meant
 constexpr double straight_snap = 1e-7;    // a coordinate so near to a plain value is tried there
 
 double wrapped(double angle) {
@@ -24,7 +26,7 @@ class Search {
  public:
   Search(const PointEquations& equations, const EquilibriumSearch& search)
       : equations_(equations), e_(equations.impl()), search_(search), sizes_(typical_sizes(equations.system(), search.start)),
-        translations_(equations.translations(preferred())) {}
+        translations_(equations.translations(preferred())), families_(e_, sizes_) {}
 
   EquilibriumSearchResult all() {
     EquilibriumSearchResult result;
@@ -32,8 +34,9 @@ class Search {
     result.starts = starts.size();
     if (may_rest()) from_each(starts, true);
     if (search_.steady && may_move()) from_each(starts, false);
-    result.found = std::move(found_);
-    std::stable_sort(result.found.begin(), result.found.end(), [&](const auto& x, const auto& y) { return before(x, y); });
+    result.found = all_found();
+    if (search_.guesses.empty()) result.outside = leave_out_far_ones(result.found);
+    put_in_order(result.found);
     result.translations = translations_;
     return result;
   }
@@ -41,8 +44,8 @@ class Search {
   std::vector<Equilibrium> nearest() {
     const std::vector<OperatingPoint> starts{model_start()};
     if (may_rest()) from_each(starts, true);
-    if (found_.empty() && search_.steady && may_move()) from_each(starts, false);
-    return std::move(found_);
+    if (all_found().empty() && search_.steady && may_move()) from_each(starts, false);
+    return all_found();
   }
 
  private:
@@ -163,7 +166,7 @@ class Search {
       settle(*solution, system);
       if (!at_rest && is_at_rest(solution->point)) continue;
       if (!holds_for_all_times(solution->point)) continue;
-      keep({solution->point, at_rest, solution->residual, solution->family, false});
+      keep({solution->point, at_rest, solution->residual, solution->family, solution->along, false}, system);
     }
   }
 
@@ -202,21 +205,59 @@ class Search {
     return true;
   }
 
-  void keep(const Equilibrium& candidate) {
+  void keep(const Equilibrium& candidate, const SteadyState& system) {
+    if (candidate.family > 0) return families_.add(candidate, system);
     for (const Equilibrium& other : found_)
-      if (distance(candidate, other) < same) return;
+      if (distance(e_, sizes_, candidate.point, other.point) < same) return;
     found_.push_back(candidate);
   }
 
-  double distance(const Equilibrium& x, const Equilibrium& y) const {
+  std::vector<Equilibrium> all_found() const {
+    std::vector<Equilibrium> out = found_;
+    const std::vector<Equilibrium> families = families_.representatives(model_start());
+    out.insert(out.end(), families.begin(), families.end());
+    return out;
+  }
+
+  // ---------------------------------------------------------------------------------------------- what is shown, and where
+
+  /// Newton's method may end anywhere, and a potential that repeats in a length has equilibria without end. A person
+  /// means those about the start.
+  bool is_far(const Equilibrium& x) const {
+    for (std::size_t i = 0; i < e_.n; ++i)
+      if (!e_.is_periodic[i] && !held(i) && std::abs(x.point.q[i] - search_.start.q[i]) > box * sizes_[i]) return true;
+    return false;
+  }
+
+  /// How many were left out: none where all are far.
+  std::size_t leave_out_far_ones(std::vector<Equilibrium>& found) const {
+    std::vector<Equilibrium> near;
+    for (const Equilibrium& x : found)
+      if (!is_far(x)) near.push_back(x);
+    if (near.empty()) return 0;
+    const std::size_t outside = found.size() - near.size();
+    found = std::move(near);
+    return outside;
+  }
+
+  /// How far the start would have to be displaced; of equals the one with less energy.
+  double displacement(const Equilibrium& x) const {
     double largest = 0;
     for (std::size_t i = 0; i < e_.n; ++i) {
-      double dq = x.point.q[i] - y.point.q[i];
-      if (e_.is_periodic[i]) dq = std::remainder(dq, turn);
-      const double dv = x.point.v[i] - y.point.v[i], speed = std::max({sizes_[i], std::abs(x.point.v[i]), std::abs(y.point.v[i])});
-      largest = std::max({largest, std::abs(dq) / sizes_[i], std::abs(dv) / speed});
+      if (held(i)) continue;
+      const double dq = x.point.q[i] - search_.start.q[i];
+      largest = std::max(largest, std::abs(e_.is_periodic[i] ? std::remainder(dq, turn) : dq) / sizes_[i]);
     }
     return largest;
+  }
+
+  void put_in_order(std::vector<Equilibrium>& found) const {
+    std::stable_sort(found.begin(), found.end(), [&](const auto& x, const auto& y) { return before(x, y); });
+    std::size_t nearest = 0;
+    for (std::size_t i = 1; i < found.size() && found[i].at_rest == found[0].at_rest; ++i)
+      if (displacement(found[i]) < displacement(found[nearest]) - same) nearest = i;
+    if (nearest > 0) std::rotate(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(nearest),
+                                 found.begin() + static_cast<std::ptrdiff_t>(nearest) + 1);
   }
 
   bool before(const Equilibrium& x, const Equilibrium& y) const {
@@ -233,7 +274,8 @@ class Search {
   const EquilibriumSearch& search_;
   std::vector<double> sizes_;
   std::vector<Translation> translations_;
-  std::vector<Equilibrium> found_;
+  std::vector<Equilibrium> found_;   // those that stand alone
+  Families families_;
 };
 
 void mark_failing_coordinates(const PointEquations& equations, std::vector<Equilibrium>& found) {

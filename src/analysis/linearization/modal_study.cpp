@@ -147,6 +147,7 @@ std::optional<ModalStudy> modal_study(const PointEquations& equations, const Mot
   }
   ModalStudy study = analysed(equations, std::move(result.found), std::move(result.translations));
   study.starts = result.starts;
+  study.outside = result.outside;
   if (refuse_kinks_alone(equations, study, std::nullopt, diagnostics)) return std::nullopt;
   warn_of_failing(equations, study, diagnostics);
   tell_of_kinks(equations, study, diagnostics);
@@ -188,7 +189,7 @@ std::optional<ModalStudy> modal_study_of(const PointEquations& equations, const 
   }
   ModalStudy study;
   study.translations = equations.translations();
-  ModalEntry entry{{*point, false, 0, 0, false}, linearize(equations, *point).linearization, {}, {}};
+  ModalEntry entry{{*point, false, 0, 0, {}, false}, linearize(equations, *point).linearization, {}, {}};
   entry.analysis = modal_analysis(equations, entry.linearization, {}, nullptr);
   study.entries.push_back(std::move(entry));
   return study;

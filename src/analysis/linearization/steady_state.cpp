@@ -118,11 +118,11 @@ double SteadyState::residual_at(OperatingPoint& point) const {
 
 /// Directions of the kernel along which there are solutions. A kernel alone is none: where two equilibria meet it has a dimension too,
 /// and leads nowhere.
-std::size_t SteadyState::family_at(const OperatingPoint& point, const System& s, const Vector& z) const {
+void SteadyState::find_family(Solution& solution, const System& s, const Vector& z) const {
   const Equilibration by(s.j);
   const KernelFirst split = kernel_first(by.of(s.j), rank_threshold * std::max(1.0, by.of(s.j).norm()));
-  constexpr double step = 1e-3, curved = 0.1;
-  std::size_t out = 0;
+  constexpr double step = 1e-3, curved = 0.1, felt = 1e-3;
+  std::vector<bool> moves(e_.n, false);
   for (Index k = 0; k < split.kernel; ++k) {
     Vector direction = by.columns.cwiseProduct(split.basis.col(k));
     double size = 0;   // of the largest move, in typical sizes; multipliers do not count
@@ -133,14 +133,18 @@ std::size_t SteadyState::family_at(const OperatingPoint& point, const System& s,
     }
     if (!(size > 0)) continue;
     direction *= step / size;
-    OperatingPoint moved = point;
+    OperatingPoint moved = solution.point;
     place(z + direction, moved);
     const auto there = solve(moved, false);
     if (!there) continue;
     const Vector gone = unknowns(there->point) - z;
-    out += (gone - direction).cwiseQuotient(by.columns).norm() < curved * direction.cwiseQuotient(by.columns).norm();
+    if (!((gone - direction).cwiseQuotient(by.columns).norm() < curved * direction.cwiseQuotient(by.columns).norm())) continue;
+    ++solution.family;
+    for (std::size_t i = 0; i < free_q_.size(); ++i)
+      if (std::abs(gone[static_cast<Index>(i)]) > felt * step * sizes_[free_q_[i]]) moves[free_q_[i]] = true;
   }
-  return out;
+  for (std::size_t i = 0; i < e_.n; ++i)
+    if (moves[i]) solution.along.push_back(i);
 }
 
 std::optional<SteadyState::Solution> SteadyState::solve(const OperatingPoint& from, bool with_family) const {
@@ -179,7 +183,9 @@ std::optional<SteadyState::Solution> SteadyState::solve(const OperatingPoint& fr
     error = scaled(s, z);
   }
   if (!(error <= arrived)) return std::nullopt;
-  return Solution{point, error, with_family && rank < s.j.cols() ? family_at(point, s, z) : 0};
+  Solution solution{point, error, 0, {}};
+  if (with_family && rank < s.j.cols()) find_family(solution, s, z);
+  return solution;
 }
 
 }  // namespace maupertuis

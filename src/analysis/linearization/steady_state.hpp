@@ -22,6 +22,7 @@ class SteadyState {
     OperatingPoint point;
     double residual = 0;            // largest row, divided by its derivatives times typical sizes
     std::size_t family = 0;         // ways to move on and stay a solution
+    std::vector<std::size_t> along; // the coordinates that change on them, ascending
   };
   /// From the positions and velocities of `from`; nothing where the iteration does not arrive.
   std::optional<Solution> solve(const OperatingPoint& from, bool with_family = true) const;
@@ -39,7 +40,7 @@ class SteadyState {
   void fit_multipliers(OperatingPoint& point) const;
   double scale_of(const System& s, const Vector& z, Index row) const;
   double scaled(const System& s, const Vector& z) const;
-  std::size_t family_at(const OperatingPoint& point, const System& s, const Vector& z) const;
+  void find_family(Solution& solution, const System& s, const Vector& z) const;
 
   PointEquations::Impl& e_;
   const std::vector<Translation>& translations_;

@@ -1,0 +1,96 @@
+#include "analysis/linearization/families.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace maupertuis {
+namespace {
+
+constexpr double turn = 6.283185307179586;
+constexpr int pieces = 4;               // of the line between two members
+constexpr double jump = 0.45;           // of its length, between neighbouring solutions: another family
+constexpr std::size_t neighbours = 6;   // known members that a new one is linked with
+
+double along(const PointEquations::Impl& e, std::size_t i, double from, double to) {
+  return e.is_periodic[i] ? std::remainder(to - from, turn) : to - from;
+}
+
+OperatingPoint between(const PointEquations::Impl& e, const OperatingPoint& x, const OperatingPoint& y, double part) {
+  OperatingPoint out = x;
+  for (std::size_t i = 0; i < e.n; ++i) {
+    out.q[i] += part * along(e, i, x.q[i], y.q[i]);
+    out.v[i] += part * (y.v[i] - x.v[i]);
+  }
+  return out;
+}
+
+void unite(std::vector<std::size_t>& into, const std::vector<std::size_t>& more) {
+  std::vector<std::size_t> both;
+  std::set_union(into.begin(), into.end(), more.begin(), more.end(), std::back_inserter(both));
+  into = std::move(both);
+}
+
+}  // namespace
+
+double distance(const PointEquations::Impl& e, const std::vector<double>& sizes, const OperatingPoint& x,
+                const OperatingPoint& y) {
+  double largest = 0;
+  for (std::size_t i = 0; i < e.n; ++i) {
+    const double speed = std::max({sizes[i], std::abs(x.v[i]), std::abs(y.v[i])});
+    largest = std::max({largest, std::abs(along(e, i, x.q[i], y.q[i])) / sizes[i], std::abs(x.v[i] - y.v[i]) / speed});
+  }
+  return largest;
+}
+
+bool Families::linked(const Equilibrium& x, const Equilibrium& y, const SteadyState& system) const {
+  const double whole = distance(e_, sizes_, x.point, y.point);
+  OperatingPoint last = x.point;
+  for (int k = 1; k < pieces; ++k) {
+    const auto there = system.solve(between(e_, x.point, y.point, static_cast<double>(k) / pieces), false);
+    if (!there || distance(e_, sizes_, last, there->point) > jump * whole) return false;
+    last = there->point;
+  }
+  return distance(e_, sizes_, last, y.point) <= jump * whole;
+}
+
+std::size_t Families::leader(std::size_t member) const {
+  while (above_[member] != member) member = above_[member];
+  return member;
+}
+
+void Families::add(Equilibrium candidate, const SteadyState& system) {
+  std::vector<std::size_t> near;
+  for (std::size_t i = 0; i < members_.size(); ++i)
+    if (members_[i].at_rest == candidate.at_rest && members_[i].family == candidate.family) near.push_back(i);
+  std::sort(near.begin(), near.end(), [&](std::size_t i, std::size_t j) {
+    return distance(e_, sizes_, members_[i].point, candidate.point) < distance(e_, sizes_, members_[j].point, candidate.point);
+  });
+  near.resize(std::min(near.size(), neighbours));
+  const std::size_t own = members_.size();
+  above_.push_back(own);
+  for (const std::size_t i : near)
+    if (leader(i) != leader(own) && linked(members_[i], candidate, system)) above_[leader(own)] = leader(i);
+  members_.push_back(std::move(candidate));
+}
+
+std::vector<Equilibrium> Families::representatives(const OperatingPoint& start) const {
+  std::vector<std::size_t> chosen(members_.size(), members_.size());   // [leaders]
+  std::vector<std::vector<std::size_t>> directions(members_.size());   // [leaders] coordinates
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    const std::size_t family = leader(i);
+    unite(directions[family], members_[i].family_along);
+    if (chosen[family] == members_.size() || distance(e_, sizes_, members_[i].point, start) <
+                                                 distance(e_, sizes_, members_[chosen[family]].point, start))
+      chosen[family] = i;
+  }
+  std::vector<Equilibrium> out;
+  for (std::size_t family = 0; family < members_.size(); ++family) {
+    if (chosen[family] == members_.size()) continue;
+    out.push_back(members_[chosen[family]]);
+    out.back().family_along = directions[family];
+  }
+  return out;
+}
+
+}  // namespace maupertuis
