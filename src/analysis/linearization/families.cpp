@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <iterator>
+#include <map>
 
 namespace maupertuis {
 namespace {
 
-constexpr double turn = 6.283185307179586;
-constexpr int pieces = 4;               // of the line between two members
-constexpr double jump = 0.45;           // of its length, between neighbouring solutions: another family
-constexpr std::size_t neighbours = 6;   // known members that a new one is linked with
+constexpr int most_tried = 3;   // members of one family that a new one is linked with, the nearest first
 
 double along(const PointEquations::Impl& e, std::size_t i, double from, double to) {
-  return e.is_periodic[i] ? std::remainder(to - from, turn) : to - from;
+  return e.is_periodic[i] ? std::remainder(to - from, 2 * std::acos(-1.0)) : to - from;
 }
 
 OperatingPoint between(const PointEquations::Impl& e, const OperatingPoint& x, const OperatingPoint& y, double part) {
@@ -44,14 +42,19 @@ double distance(const PointEquations::Impl& e, const std::vector<double>& sizes,
 }
 
 bool Families::linked(const Equilibrium& x, const Equilibrium& y, const SteadyState& system) const {
-  const double whole = distance(e_, sizes_, x.point, y.point);
-  OperatingPoint last = x.point;
-  for (int k = 1; k < pieces; ++k) {
-    const auto there = system.solve(between(e_, x.point, y.point, static_cast<double>(k) / pieces), false);
-    if (!there || distance(e_, sizes_, last, there->point) > jump * whole) return false;
-    last = there->point;
+  constexpr double same = 1e-6, longest = 0.1;   // of typical sizes
+  OperatingPoint at = x.point;
+  double left = distance(e_, sizes_, at, y.point);
+  const double step = std::min(left / 4, longest);
+  for (int turns = static_cast<int>(4 * left / std::max(step, same)); left > std::max(step, same); --turns) {
+    const auto next = turns > 0 ? system.solve(between(e_, at, y.point, step / left), false) : std::nullopt;
+    if (!next || distance(e_, sizes_, at, next->point) > 2 * step) return false;
+    const double now = distance(e_, sizes_, next->point, y.point);
+    if (!(now < left)) return false;
+    at = next->point;
+    left = now;
   }
-  return distance(e_, sizes_, last, y.point) <= jump * whole;
+  return true;
 }
 
 std::size_t Families::leader(std::size_t member) const {
@@ -66,11 +69,12 @@ void Families::add(Equilibrium candidate, const SteadyState& system) {
   std::sort(near.begin(), near.end(), [&](std::size_t i, std::size_t j) {
     return distance(e_, sizes_, members_[i].point, candidate.point) < distance(e_, sizes_, members_[j].point, candidate.point);
   });
-  near.resize(std::min(near.size(), neighbours));
   const std::size_t own = members_.size();
   above_.push_back(own);
+  std::map<std::size_t, int> tried;   // of each family
   for (const std::size_t i : near)
-    if (leader(i) != leader(own) && linked(members_[i], candidate, system)) above_[leader(own)] = leader(i);
+    if (leader(i) != leader(own) && ++tried[leader(i)] <= most_tried && linked(members_[i], candidate, system))
+      above_[leader(own)] = leader(i);
   members_.push_back(std::move(candidate));
 }
 

@@ -11,12 +11,15 @@ double distance(const PointEquations::Impl& equations, const std::vector<double>
                 const OperatingPoint& y);
 
 /// Gathers equilibria that lie on one curve or surface of equilibria (a trough, a ring). Two members belong together
-/// where Newton's method, begun at points between them, finds a path of solutions without a jump:
+/// where one walks to the other by short steps, each towards it and then back to the nearest equilibrium by Newton's
+/// method:
 ///
-///     x ──o──o──o──o──o── y        o: solutions found from points of the straight line
+///          · ·            ·: a step towards y    o: the equilibrium next to it
+///     x ──o──o──o── y
 ///
-/// Rings are closed by their members in between. What the search met too sparsely to link stays apart: a family is
-/// then listed twice, never is one hidden.
+/// Beside another family the walk comes back to its own and gets no further. A walk across a ring gets stuck as well:
+/// rings are closed by their members in between. What the search met too sparsely to link stays apart: a family is then
+/// listed twice, never is one hidden.
 class Families {
  public:
   Families(const PointEquations::Impl& equations, std::vector<double> sizes) : e_(equations), sizes_(std::move(sizes)) {}

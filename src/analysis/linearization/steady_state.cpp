@@ -97,11 +97,17 @@ double SteadyState::scale_of(const System& s, const Vector& z, Index row) const 
 
 /// The largest row, divided by its scale: a relative error of positions. The first n rows are forces, and forces times typical sizes are
 /// works, which compare: a force that no unknown changes (one sideways on a bicycle that runs upright) is rounding of the others.
+/// Of the largest force over a typical size: work below rounding of it is none.
+double SteadyState::largest_work(const System& s, const Vector& z) const {
+  double work = 0;
+  for (Index i = 0; i < static_cast<Index>(e_.n); ++i) work = std::max(work, scale_of(s, z, i) * sizes_[static_cast<std::size_t>(i)]);
+  return work;
+}
+
 double SteadyState::scaled(const System& s, const Vector& z) const {
   if (!s.f.allFinite() || !s.j.allFinite()) return HUGE_VAL;
   const auto forces = static_cast<Index>(e_.n);
-  double work = 0;
-  for (Index i = 0; i < forces; ++i) work = std::max(work, scale_of(s, z, i) * sizes_[static_cast<std::size_t>(i)]);
+  const double work = largest_work(s, z);
   double largest = 0;
   for (Index i = 0; i < s.f.size(); ++i) {
     if (s.f[i] == 0 || (i < forces && std::abs(s.f[i]) * sizes_[static_cast<std::size_t>(i)] <= rounding_of_work * work)) continue;
@@ -116,32 +122,78 @@ double SteadyState::residual_at(OperatingPoint& point) const {
   return scaled(system_at(point), unknowns(point));
 }
 
-/// Directions of the kernel along which there are solutions. A kernel alone is none: where two equilibria meet it has a dimension too,
-/// and leads nowhere.
-void SteadyState::find_family(Solution& solution, const System& s, const Vector& z) const {
-  const Equilibration by(s.j);
-  const KernelFirst split = kernel_first(by.of(s.j), rank_threshold * std::max(1.0, by.of(s.j).norm()));
-  constexpr double step = 1e-3, curved = 0.1, felt = 1e-3;
-  std::vector<bool> moves(e_.n, false);
-  for (Index k = 0; k < split.kernel; ++k) {
-    Vector direction = by.columns.cwiseProduct(split.basis.col(k));
-    double size = 0;   // of the largest move, in typical sizes; multipliers do not count
-    for (std::size_t i = 0; i < free_q_.size(); ++i) size = std::max(size, std::abs(direction[static_cast<Index>(i)]) / sizes_[free_q_[i]]);
-    for (std::size_t i = 0; i < free_rates_.size(); ++i) {
-      const auto at = static_cast<Index>(free_q_.size() + i);
-      size = std::max(size, std::abs(direction[at]) / std::max(1.0, std::abs(z[at])));
+/// How long a move of the unknowns is, in typical sizes; multipliers do not count.
+double SteadyState::length(const Vector& move, const Vector& z) const {
+  double out = 0;
+  for (std::size_t i = 0; i < free_q_.size(); ++i) out = std::max(out, std::abs(move[static_cast<Index>(i)]) / sizes_[free_q_[i]]);
+  for (std::size_t i = 0; i < free_rates_.size(); ++i) {
+    const auto at = static_cast<Index>(free_q_.size() + i);
+    out = std::max(out, std::abs(move[at]) / std::max(1.0, std::abs(z[at])));
+  }
+  return out;
+}
+
+/// Multipliers that vanish up to rounding leave derivatives by the coordinates that are rounding as well. Equilibration
+/// would make entries like any other of them.
+Matrix SteadyState::without_rounding(const System& s, const Vector& z) const {
+  Matrix out = s.j;
+  const double none = rounding_of_work * largest_work(s, z);
+  for (std::size_t i = 0; i < e_.n; ++i)
+    for (std::size_t j = 0; j < free_q_.size(); ++j) {
+      double& entry = out(static_cast<Index>(i), static_cast<Index>(j));
+      if (std::abs(entry) * sizes_[i] * sizes_[free_q_[j]] <= none) entry = 0;
     }
-    if (!(size > 0)) continue;
-    direction *= step / size;
+  return out;
+}
+
+/// Orthonormal moves of positions and rates [rows × ways] along which the derivatives vanish, with the multipliers that go
+/// with them: each as unknowns in the units of `by`.
+Matrix SteadyState::soft_ways(const Matrix& derivatives, const Equilibration& by) const {
+  constexpr double soft = 1e-7, moves = 1e-4;   // of the equilibrated derivatives; squared, against changes of multipliers alone
+  const Matrix j = by.of(derivatives);
+  const KernelFirst split = kernel_first(j, soft * std::max(1.0, j.norm()));
+  const Matrix kernel = split.basis.leftCols(split.kernel);
+  const Matrix moving = kernel.topRows(static_cast<Index>(free_q_.size() + free_rates_.size()));
+  Matrix out(kernel.rows(), 0);
+  if (split.kernel == 0) return out;
+  const SymmetricEigen parts = symmetric_eigen(moving.transpose() * moving);
+  for (Index k = 0; k < parts.values.size(); ++k) {
+    if (!(parts.values[k] > moves)) continue;
+    out.conservativeResize(Eigen::NoChange, out.cols() + 1);
+    out.col(out.cols() - 1) = kernel * parts.vectors.col(k) / std::sqrt(parts.values[k]);
+  }
+  return out;
+}
+
+/// A kernel alone is no family: where two equilibria meet it has a dimension too, and leads nowhere. So a short way is
+/// gone along each of its directions, and Newton's method asked where the next solution is. It projects on the family,
+/// and its projections have as many dimensions as the family.
+void SteadyState::find_family(Solution& solution, const System& s, const Vector& z) const {
+  constexpr double step = 1e-3, followed = 0.25, felt = 1e-3;   // followed: squared
+  const Matrix derivatives = without_rounding(s, z);
+  const Equilibration by(derivatives);
+  const Matrix ways = soft_ways(derivatives, by);
+  const auto moving = static_cast<Index>(free_q_.size() + free_rates_.size());
+  Matrix gone = Matrix::Zero(moving, ways.cols());   // by the length of the way
+  for (Index k = 0; k < ways.cols(); ++k) {
+    const Vector whole = by.columns.cwiseProduct(ways.col(k));
+    const double part = step / length(whole, z);
+    if (!std::isfinite(part)) continue;
     OperatingPoint moved = solution.point;
-    place(z + direction, moved);
+    place(z + part * whole, moved);
     const auto there = solve(moved, false);
-    if (!there) continue;
-    const Vector gone = unknowns(there->point) - z;
-    if (!((gone - direction).cwiseQuotient(by.columns).norm() < curved * direction.cwiseQuotient(by.columns).norm())) continue;
+    // Multipliers that constraints leave open are fitted anew at each point: they say nothing about the way.
+    if (there) gone.col(k) = (unknowns(there->point) - z).head(moving).cwiseQuotient(by.columns.head(moving)) / part;
+  }
+  if (gone.isZero(0)) return;   // no way at all, or none that was followed
+  const SymmetricEigen projections = symmetric_eigen(gone.transpose() * gone);
+  std::vector<bool> moves(e_.n, false);
+  for (Index k = 0; k < projections.values.size(); ++k) {
+    if (!(projections.values[k] > followed)) continue;
     ++solution.family;
+    const Vector way = by.columns.head(moving).cwiseProduct(gone * projections.vectors.col(k));
     for (std::size_t i = 0; i < free_q_.size(); ++i)
-      if (std::abs(gone[static_cast<Index>(i)]) > felt * step * sizes_[free_q_[i]]) moves[free_q_[i]] = true;
+      if (std::abs(way[static_cast<Index>(i)]) / sizes_[free_q_[i]] > felt * length(way, z)) moves[free_q_[i]] = true;
   }
   for (std::size_t i = 0; i < e_.n; ++i)
     if (moves[i]) solution.along.push_back(i);
@@ -156,13 +208,11 @@ std::optional<SteadyState::Solution> SteadyState::solve(const OperatingPoint& fr
   z = unknowns(point);
   System s = system_at(point);
   double error = scaled(s, z);
-  Index rank = 0;
   for (int turn = 0; turn < most_turns; ++turn) {
     if (!std::isfinite(error) && !(s.f.allFinite() && s.j.allFinite())) return std::nullopt;
     const Equilibration by(s.j);
     const Vector weighted = by.rows.cwiseProduct(s.f);
     const LeastSquares solved = least_squares(by.of(s.j), -weighted, rank_threshold);
-    rank = solved.rank;
     const Vector step = by.columns.cwiseProduct(solved.x.col(0));
     if (s.f.isZero(0) || !step.allFinite()) break;
     bool closer = false;
@@ -184,7 +234,7 @@ std::optional<SteadyState::Solution> SteadyState::solve(const OperatingPoint& fr
   }
   if (!(error <= arrived)) return std::nullopt;
   Solution solution{point, error, 0, {}};
-  if (with_family && rank < s.j.cols()) find_family(solution, s, z);
+  if (with_family) find_family(solution, s, z);
   return solution;
 }
 

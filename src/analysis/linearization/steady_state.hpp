@@ -1,4 +1,5 @@
 #pragma once
+#include "analysis/linearization/dense.hpp"
 #include "analysis/linearization/point_equations.hpp"
 
 #include <optional>
@@ -40,6 +41,10 @@ class SteadyState {
   void fit_multipliers(OperatingPoint& point) const;
   double scale_of(const System& s, const Vector& z, Index row) const;
   double scaled(const System& s, const Vector& z) const;
+  double length(const Vector& move, const Vector& z) const;
+  double largest_work(const System& s, const Vector& z) const;
+  Matrix without_rounding(const System& s, const Vector& z) const;
+  Matrix soft_ways(const Matrix& derivatives, const Equilibration& by) const;
   void find_family(Solution& solution, const System& s, const Vector& z) const;
 
   PointEquations::Impl& e_;

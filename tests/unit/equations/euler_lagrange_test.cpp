@@ -3,6 +3,8 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/print.hpp>
 
+#include <fmt/format.h>
+
 using namespace maupertuis;
 
 namespace {
@@ -110,6 +112,30 @@ TEST_CASE("solved form: uncoupled coordinates are solved one by one") {
   REQUIRE(solved.size() == 2);
   CHECK(solved[0].coupled_with.size() == 1);
   CHECK(equal(solved[0].right.value, -m.p("k") * (m.q(0) - m.q(1)) / m.p("m")));
+}
+
+TEST_CASE("solved form: three links in closed form, that annihilates the equations; six links stay a matrix") {
+  const auto chain = [](int links) {
+    std::string text = "system chain\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n", before;
+    for (int i = 1; i <= links; ++i) text += fmt::format("{}q{}", i == 1 ? "coord " : ", ", i);
+    text += " : angle\n";
+    for (int i = 1; i <= links; ++i, before = fmt::format("P{} + ", i - 1))
+      text += fmt::format("point P{0} mass m at {1}l (sin q{0}, -cos q{0})\n", i, before);
+    return text + "gravity (0, -g)\n";
+  };
+  const ModelText three(chain(3));
+  const auto solved = solved_accelerations(three.equations);
+  REQUIRE(solved.size() == 3);
+  ExprMap put_in;
+  for (std::size_t i = 0; i < 3; ++i) {
+    REQUIRE(solved[i].right.value);
+    CHECK(solved[i].coupled_with.size() == 3);
+    put_in.emplace(three.a(i), solved[i].right.value);
+  }
+  for (const Expr& row : three.equations.residual)
+    CHECK(zero_test(substitute(expand_time_derivatives(row), put_in)).verdict == Verdict::Zero);
+  const ModelText six(chain(6));
+  for (const SolvedAcceleration& a : solved_accelerations(six.equations)) CHECK_FALSE(a.right.value);
 }
 
 TEST_CASE("definitions of parameters stay symbols in print, with a legend, and the certificate's substitution closes") {
