@@ -1,16 +1,13 @@
 #pragma once
 #include "console.hpp"
 #include "exit_code.hpp"
+#include "options.hpp"
 
 #include <maupertuis/mechanical_system.hpp>
 
 #include <functional>
 #include <memory>
 #include <string>
-
-namespace CLI {
-class App;
-}
 
 namespace maupertuis::app {
 
@@ -24,7 +21,7 @@ class CommandLine {
   ~CommandLine();
 
   /// Adds a command with --json and --color. `examples`: three lines that open its --help.
-  CLI::App& add(const std::string& name, const std::string& summary, const std::string& examples, Action action);
+  Command& add(const std::string& name, const std::string& summary, const std::string& examples, Action action);
 
   /// Reads the arguments and runs the command that they name.
   ExitCode run(int argc, char** argv);
@@ -39,7 +36,7 @@ struct ModelOptions {
   std::string path;
   Overrides overrides;
 };
-void add_model_options(CLI::App& command, ModelOptions& options);
+void add_model_options(Command& command, ModelOptions& options);
 
 void add_check(CommandLine& line);
 void add_derive(CommandLine& line);

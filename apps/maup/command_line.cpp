@@ -4,7 +4,6 @@
 #include "interrupt.hpp"
 #include "json.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <csignal>
@@ -13,18 +12,6 @@
 
 namespace maupertuis::app {
 namespace {
-
-/// --help of a command opens with its examples.
-class HelpWithExamples : public CLI::Formatter {
- public:
-  explicit HelpWithExamples(std::string examples) : examples_(std::move(examples)) { column_width(34); }
-  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
-    return "Examples:\n" + examples_ + "\n" + CLI::Formatter::make_help(app, std::move(name), mode);
-  }
-
- private:
-  std::string examples_;
-};
 
 std::string last_resort(const char* what) {
   return fmt::format(
@@ -36,50 +23,45 @@ std::string last_resort(const char* what) {
 }  // namespace
 
 struct CommandLine::Implementation {
-  CLI::App app{"Lagrangian mechanics: a model file in, certified equations and machine-precision motion out.", "maup"};
+  CommandParser parser{"Lagrangian mechanics: a model file in, certified equations and machine-precision motion out.",
+                       "maup " MAUPERTUIS_VERSION,
+                       "\n`maup COMMAND --help` shows examples and options. A first model: maup new pendulum"};
   Console console;
   bool json = false;
   Console::Color color = Console::Color::Auto;
   Action chosen;
 };
 
-CommandLine::CommandLine() : implementation_(std::make_unique<Implementation>()) {
-  CLI::App& app = implementation_->app;
-  app.require_subcommand(1);
-  app.set_version_flag("--version", "maup " MAUPERTUIS_VERSION);
-  app.get_formatter()->column_width(16);
-  app.footer("\n`maup COMMAND --help` shows examples and options. A first model: maup new pendulum");
-}
+CommandLine::CommandLine() : implementation_(std::make_unique<Implementation>()) {}
 
 CommandLine::~CommandLine() = default;
 
-CLI::App& CommandLine::add(const std::string& name, const std::string& summary, const std::string& examples,
-                           Action action) {
+Command& CommandLine::add(const std::string& name, const std::string& summary, const std::string& examples, Action action) {
   Implementation& line = *implementation_;
-  CLI::App& command = *line.app.add_subcommand(name, summary);
-  command.formatter(std::make_shared<HelpWithExamples>(examples));
+  Command& command =
+      line.parser.add(name, summary, examples, [&line, action = std::move(action)] { line.chosen = action; });
   command.add_flag("--json", line.json, "The result as a JSON document on standard output");
   command
-      .add_option_function<std::string>(
+      .add_option_function(
           "--color",
-          [&line](const std::string& word) {
-            line.color = word == "always" ? Console::Color::Always
-                         : word == "never" ? Console::Color::Never
-                                           : Console::Color::Auto;
+          [&line](const Command::Words& words) {
+            line.color = words.back() == "always" ? Console::Color::Always
+                         : words.back() == "never" ? Console::Color::Never
+                                                   : Console::Color::Auto;
           },
           "Color in messages; NO_COLOR is honoured")
-      ->check(CLI::IsMember({"auto", "always", "never"}))
+      ->expected(1, 1)
+      ->one_of({"auto", "always", "never"})
       ->type_name("auto|always|never");
-  command.callback([&line, action = std::move(action)] { line.chosen = action; });
   return command;
 }
 
 ExitCode CommandLine::run(int argc, char** argv) {
   Implementation& line = *implementation_;
-  try {
-    line.app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return line.app.exit(error) == 0 ? ExitCode::Fine : ExitCode::Usage;
+  switch (line.parser.parse(argc, argv)) {
+    case CommandParser::Outcome::Command: break;
+    case CommandParser::Outcome::Answered: return ExitCode::Fine;
+    case CommandParser::Outcome::Mistake: return ExitCode::Usage;
   }
   line.console.use_json(line.json);
   line.console.use_color(line.color);
@@ -98,7 +80,7 @@ ExitCode CommandLine::run(int argc, char** argv) {
   return ExitCode::RunFailed;
 }
 
-void add_model_options(CLI::App& command, ModelOptions& options) {
+void add_model_options(Command& command, ModelOptions& options) {
   command.add_option("MODEL", options.path, "The model file (.lag), or - for standard input")->required();
   command.add_option("--set", options.overrides.parameters, "Another value of a parameter, e.g. m=2kg")
       ->allow_extra_args(false)

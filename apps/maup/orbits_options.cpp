@@ -4,7 +4,6 @@
 #include "quantity.hpp"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <maupertuis/constraint_manifold.hpp>
 
@@ -45,9 +44,9 @@ std::string run_until(const std::string& equation, const Model* model) {
 
 }  // namespace
 
-void add_orbits_options(CLI::App& command, OrbitsOptions& options) {
+void add_orbits_options(Command& command, OrbitsOptions& options) {
   const auto count = [&command](const char* name, std::size_t& value, const char* what) {
-    command.add_option(name, value, what)->check(CLI::PositiveNumber)->type_name("NUMBER");
+    command.add_option(name, value, what)->positive()->type_name("NUMBER");
   };
   const auto time = [&command](const char* name, std::optional<std::string>& value, const char* what) {
     command.add_option(name, value, what)->type_name("TIME");

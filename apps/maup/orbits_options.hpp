@@ -21,7 +21,7 @@ struct OrbitsOptions {
   bool has_section() const { return !section.empty() || strobe; }
 };
 
-void add_orbits_options(CLI::App& command, OrbitsOptions& options);
+void add_orbits_options(Command& command, OrbitsOptions& options);
 /// Times that are none, --section beside --strobe (E0809).
 void check_orbits_options(const OrbitsOptions& options, Diagnostics& diagnostics);
 

@@ -3,7 +3,6 @@
 #include "interrupt.hpp"
 #include "quantity.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <chrono>
@@ -54,11 +53,11 @@ class Progress {
 
 }  // namespace
 
-void add_method_options(CLI::App& command, RunOptions& options) {
+void add_method_options(Command& command, RunOptions& options) {
   command.add_option("--method", options.method,
                      "How to step: auto (Taylor's, and the stiff one from where stability limits them), taylor, variational "
                      "(needs --step), stiff; default: the model's `method`, or auto")
-      ->check(CLI::IsMember({"auto", "taylor", "variational", "stiff"}))
+      ->one_of({"auto", "taylor", "variational", "stiff"})
       ->type_name("METHOD");
   command.add_option("--step", options.step, "The length of the steps of --method variational")->type_name("TIME");
   command.add_option("--order", options.order, "The order of the steps (variational: 2, 4, … 12)")->type_name("NUMBER");
@@ -66,16 +65,16 @@ void add_method_options(CLI::App& command, RunOptions& options) {
       ->type_name("NUMBER");
   command.add_option("--backend", options.backend,
                      "What carries the steps out: auto (machine code where the run is long enough to pay for it), interpreter, compiled")
-      ->check(CLI::IsMember({"auto", "interpreter", "compiled"}))
+      ->one_of({"auto", "interpreter", "compiled"})
       ->type_name("BACKEND");
   command.add_flag("--no-cache", options.no_cache, "Neither read nor keep machine code of other runs");
 }
 
-void add_errors_option(CLI::App& command, RunOptions& options) {
+void add_errors_option(Command& command, RunOptions& options) {
   command.add_flag("--no-errors", options.no_errors, "No companion runs: numbers without what is known of their errors");
 }
 
-void add_span_options(CLI::App& command, RunOptions& options) {
+void add_span_options(Command& command, RunOptions& options) {
   const auto duration =
       command.add_option("--duration", options.duration, "Run this long instead; negative: backwards in time")
           ->type_name("TIME");

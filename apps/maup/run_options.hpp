@@ -26,11 +26,11 @@ struct RunOptions {
 };
 
 /// --method, --step, --order, --tol, --backend, --no-cache.
-void add_method_options(CLI::App& command, RunOptions& options);
+void add_method_options(Command& command, RunOptions& options);
 /// --no-errors.
-void add_errors_option(CLI::App& command, RunOptions& options);
+void add_errors_option(Command& command, RunOptions& options);
 /// --duration, --backward, --until, --within, --every, --at.
-void add_span_options(CLI::App& command, RunOptions& options);
+void add_span_options(Command& command, RunOptions& options);
 
 /// The options in numbers, with the flag of Ctrl-C. A wrong value is a diagnostic (E0809). `tree`: of the model whose
 /// `method` a step or an order without --method belongs to; may be null.

@@ -5,7 +5,6 @@
 #include "output_files.hpp"
 #include "quantity.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <maupertuis/action_pictures.hpp>
@@ -251,11 +250,11 @@ ExitCode study_action(const ActionCommand& o, Console& console) {
 
 void add_action(CommandLine& line) {
   const auto options = std::make_shared<ActionCommand>();
-  CLI::App& command = line.add("action", "Stationary paths, the action along them, conjugate points, Morse index",
-                               "  maup action oscillator.lag --ends \"(0.4 m) at 0 to (-1.1 m) at 2 s\"\n"
-                               "  maup action particle.lag --path \"x = 4 t + 7, y = 3 t + 5\" --from 0s --to 10s\n"
-                               "  maup action pendulum.lag --motion --plot neighbours.svg\n",
-                               [options](Console& console) { return study_action(*options, console); });
+  Command& command = line.add("action", "Stationary paths, the action along them, conjugate points, Morse index",
+                              "  maup action oscillator.lag --ends \"(0.4 m) at 0 to (-1.1 m) at 2 s\"\n"
+                              "  maup action particle.lag --path \"x = 4 t + 7, y = 3 t + 5\" --from 0s --to 10s\n"
+                              "  maup action pendulum.lag --motion --plot neighbours.svg\n",
+                              [options](Console& console) { return study_action(*options, console); });
   add_model_options(command, options->model);
   command.add_option("--ends", options->ends, "Ends of the path instead of the model's: \"(0, 1) at 0 to (2, free) at 1\"")->type_name("ENDS");
   command.add_option("--paths", options->paths, "At most so many stationary paths (default: 8)")->type_name("N");

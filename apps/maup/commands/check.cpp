@@ -4,7 +4,6 @@
 #include "quantity.hpp"
 #include "study.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <cmath>
@@ -158,11 +157,11 @@ ExitCode check(const ModelOptions& options, Console& console) {
 
 void add_check(CommandLine& line) {
   const auto options = std::make_shared<ModelOptions>();
-  CLI::App& command = line.add("check", "Look for mistakes in a model; a summary of the system",
-                               "  maup check pendulum.lag\n"
-                               "  maup check pendulum.lag --set l=2m --start θ=90deg\n"
-                               "  maup new double-pendulum -o - | maup check - --json\n",
-                               [options](Console& console) { return check(*options, console); });
+  Command& command = line.add("check", "Look for mistakes in a model; a summary of the system",
+                              "  maup check pendulum.lag\n"
+                              "  maup check pendulum.lag --set l=2m --start θ=90deg\n"
+                              "  maup new double-pendulum -o - | maup check - --json\n",
+                              [options](Console& console) { return check(*options, console); });
   add_model_options(command, *options);
 }
 

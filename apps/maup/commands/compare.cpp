@@ -5,7 +5,6 @@
 #include "run_options.hpp"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 
@@ -210,7 +209,7 @@ ExitCode compare_models(const CompareOptions& options, Console& console) {
 
 void add_compare(CommandLine& line) {
   const auto options = std::make_shared<CompareOptions>();
-  CLI::App& command = line.add(
+  Command& command = line.add(
       "compare", "Whether two models give the same motion; exit 4 if not, 5 if it is not proved",
       "  maup compare cartesian.lag angle.lag --map \"x = l sin θ, y = -l cos θ\"\n"
       "  maup compare inertial.lag rotating.lag --map \"x = u cos(Ω t) - v sin(Ω t), y = u sin(Ω t) + v cos(Ω t)\"\n"

@@ -4,7 +4,6 @@
 #include "equation_forms.hpp"
 #include "outcome.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <map>
@@ -170,17 +169,17 @@ ExitCode derive(const DeriveOptions& options, Console& console) {
 
 void add_derive(CommandLine& line) {
   const auto options = std::make_shared<DeriveOptions>();
-  CLI::App& command = line.add("derive", "The equations of motion, certified",
-                               "  maup derive pendulum.lag\n"
-                               "  maup derive pendulum.lag --steps\n"
-                               "  maup derive pendulum.lag --form solved --latex > equations.tex\n",
-                               [options](Console& console) { return derive(*options, console); });
+  Command& command = line.add("derive", "The equations of motion, certified",
+                              "  maup derive pendulum.lag\n"
+                              "  maup derive pendulum.lag --steps\n"
+                              "  maup derive pendulum.lag --form solved --latex > equations.tex\n",
+                              [options](Console& console) { return derive(*options, console); });
   add_model_options(command, options->model);
   command.add_flag("--steps", options->steps, "The textbook derivation, line by line, each with its rule");
-  CLI::Option* form = command
+  Option* form = command
       .add_option("--form", options->form,
                   "standard: R = Aᵀλ; solved: q'' = …, λ = …; matrix: M, h, A and b of M q'' + h = Aᵀλ, A q'' = b; residual: R")
-      ->check(CLI::IsMember({"standard", "solved", "matrix", "residual"}))
+      ->one_of({"standard", "solved", "matrix", "residual"})
       ->type_name("FORM");
   command.add_flag("--eliminate", options->eliminate, "The equations without multipliers: combinations in which Aᵀλ cancels")
       ->excludes(form);
@@ -188,10 +187,10 @@ void add_derive(CommandLine& line) {
   const auto mathml = command.add_flag("--mathml", options->mathml, "MathML")->excludes(latex);
   command.add_flag("--plain", options->plain, "The equations alone, one a line")->excludes(latex)->excludes(mathml);
   command.add_option("--certify", options->certify, "full: also that a gauge term dG/dt changes nothing")
-      ->check(CLI::IsMember({"standard", "full"}))
+      ->one_of({"standard", "full"})
       ->type_name("standard|full");
   command.add_option("--emit", options->emit, "What a stage made: syntax, system, equations, program or jet")
-      ->check(CLI::IsMember({"syntax", "system", "equations", "program", "jet"}))
+      ->one_of({"syntax", "system", "equations", "program", "jet"})
       ->type_name("STAGE");
 }
 

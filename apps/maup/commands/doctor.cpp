@@ -1,7 +1,6 @@
 #include "command.hpp"
 #include "json.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <maupertuis/backend.hpp>
 #include <maupertuis/lanes.hpp>

@@ -2,7 +2,6 @@
 #include "command.hpp"
 #include "json.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 namespace maupertuis::app {
@@ -64,11 +63,11 @@ ExitCode explain(std::string code, Console& console) {
 
 void add_explain(CommandLine& line) {
   const auto code = std::make_shared<std::string>();
-  CLI::App& command = line.add("explain", "What a message means and how to mend it",
-                               "  maup explain E0301\n"
-                               "  maup explain                           # lists all codes\n"
-                               "  maup explain W0401 --json\n",
-                               [code](Console& console) { return explain(*code, console); });
+  Command& command = line.add("explain", "What a message means and how to mend it",
+                              "  maup explain E0301\n"
+                              "  maup explain                           # lists all codes\n"
+                              "  maup explain W0401 --json\n",
+                              [code](Console& console) { return explain(*code, console); });
   command.add_option("CODE", *code, "The code of a message, e.g. E0301; none: the list");
 }
 

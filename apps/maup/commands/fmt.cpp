@@ -2,7 +2,6 @@
 #include "outcome.hpp"
 #include "study.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 namespace maupertuis::app {
@@ -57,11 +56,11 @@ ExitCode format_all(const FmtOptions& options, Console& console) {
 
 void add_fmt(CommandLine& line) {
   const auto options = std::make_shared<FmtOptions>();
-  CLI::App& command = line.add("fmt", "Lay out models in the canonical way; comments stay",
-                               "  maup fmt pendulum.lag                  # to standard output\n"
-                               "  maup fmt --in-place models/*.lag\n"
-                               "  maup fmt --check models/*.lag          # exit 1 if one would change\n",
-                               [options](Console& console) { return format_all(*options, console); });
+  Command& command = line.add("fmt", "Lay out models in the canonical way; comments stay",
+                              "  maup fmt pendulum.lag                  # to standard output\n"
+                              "  maup fmt --in-place models/*.lag\n"
+                              "  maup fmt --check models/*.lag          # exit 1 if one would change\n",
+                              [options](Console& console) { return format_all(*options, console); });
   command.add_option("MODEL", options->paths, "Model files, or - for standard input")->required();
   const auto in_place = command.add_flag("-i,--in-place", options->in_place, "Rewrite the files");
   command.add_flag("--check", options->check, "Write nothing; exit 1 if a file would change")->excludes(in_place);

@@ -6,7 +6,6 @@
 #include "run_options.hpp"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 
@@ -175,11 +174,11 @@ ExitCode hamiltonian_of(const HamiltonianOptions& options, Console& console) {
 
 void add_hamiltonian(CommandLine& line) {
   const auto options = std::make_shared<HamiltonianOptions>();
-  CLI::App& command = line.add("hamiltonian", "Momenta, H, canonical equations, Routhian, Poisson brackets",
-                               "  maup hamiltonian top.lag\n"
-                               "  maup hamiltonian kepler.lag --bracket \"x p_y - y p_x\" \"p_x^2 + p_y^2\"\n"
-                               "  maup hamiltonian double_pendulum.lag --integrate --duration 5s\n",
-                               [options](Console& console) { return hamiltonian_of(*options, console); });
+  Command& command = line.add("hamiltonian", "Momenta, H, canonical equations, Routhian, Poisson brackets",
+                              "  maup hamiltonian top.lag\n"
+                              "  maup hamiltonian kepler.lag --bracket \"x p_y - y p_x\" \"p_x^2 + p_y^2\"\n"
+                              "  maup hamiltonian double_pendulum.lag --integrate --duration 5s\n",
+                              [options](Console& console) { return hamiltonian_of(*options, console); });
   add_model_options(command, options->model);
   command
       .add_option("--routhian", options->routhian, "The Routhian without these coordinates (default: the cyclic ones)")

@@ -2,7 +2,6 @@
 #include "invariants_text.hpp"
 #include "outcome.hpp"
 
-#include <CLI/CLI.hpp>
 
 namespace maupertuis::app {
 namespace {
@@ -33,19 +32,19 @@ ExitCode invariants_of_model(const CommandOptions& options, Console& console) {
 
 void add_invariants(CommandLine& line) {
   const auto options = std::make_shared<CommandOptions>();
-  CLI::App& command = line.add("invariants", "Symmetries and conserved quantities, proved",
-                               "  maup invariants kepler.lag\n"
-                               "  maup invariants kovalevskaya_top.lag --degree 4\n"
-                               "  maup invariants double_pendulum.lag --set g=0 --json\n",
-                               [options](Console& console) { return invariants_of_model(*options, console); });
+  Command& command = line.add("invariants", "Symmetries and conserved quantities, proved",
+                              "  maup invariants kepler.lag\n"
+                              "  maup invariants kovalevskaya_top.lag --degree 4\n"
+                              "  maup invariants double_pendulum.lag --set g=0 --json\n",
+                              [options](Console& console) { return invariants_of_model(*options, console); });
   add_model_options(command, options->model);
   command
       .add_option("--degree", options->search.velocity_degree,
                   "Search polynomials of the velocities up to this degree (2)")
-      ->check(CLI::Range(1, 4));
+      ->between(1, 4);
   command
       .add_option("--largest-basis", options->search.largest_basis, "At most so many functions in one search (1400)")
-      ->check(CLI::Range(10, 20000));
+      ->between(10, 20000);
   command.add_flag("--all", options->all, "Also those that are functions of others and have no name");
   command.add_flag("--no-drift", options->no_drift, "Leave out the run that measures the drift");
 }

@@ -7,7 +7,6 @@
 #include "run_options.hpp"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <maupertuis/mode_pictures.hpp>
 #include <maupertuis/modes.hpp>
@@ -283,11 +282,11 @@ ExitCode modes(ModesOptions options, Console& console) {
 
 void add_modes(CommandLine& line) {
   const auto options = std::make_shared<ModesOptions>();
-  CLI::App& command = line.add("modes", "Equilibria, linearization, frequencies, mode shapes, stability",
-                               "  maup modes double_pendulum.lag\n"
-                               "  maup modes balanced_cart.lag --at \"θ=180deg\" --Q \"1, 1, 0, 0\" --R 0.1\n"
-                               "  maup modes bead_on_hoop.lag --plot bifurcation.svg --csv locus.csv\n",
-                               [options](Console& console) { return modes(*options, console); });
+  Command& command = line.add("modes", "Equilibria, linearization, frequencies, mode shapes, stability",
+                              "  maup modes double_pendulum.lag\n"
+                              "  maup modes balanced_cart.lag --at \"θ=180deg\" --Q \"1, 1, 0, 0\" --R 0.1\n"
+                              "  maup modes bead_on_hoop.lag --plot bifurcation.svg --csv locus.csv\n",
+                              [options](Console& console) { return modes(*options, console); });
   add_model_options(command, options->model);
   command
       .add_option("--at", options->at,
@@ -299,7 +298,7 @@ void add_modes(CommandLine& line) {
                   "sin θ\" \"θ'\"")
       ->type_name("FORMULA ...");
   command
-      .add_option_function<std::vector<std::string>>(
+      .add_option_function(
           "--orbit",
           [options](const std::vector<std::string>& given) { options->orbit = given.empty() ? "" : given.front(); },
           "Floquet multipliers of the periodic motion near the start instead; its period where it is known")

@@ -3,7 +3,6 @@
 #include "output_files.hpp"
 #include "starters.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -91,14 +90,14 @@ ExitCode write_starter(const NewOptions& options, Console& console) {
 
 void add_new(CommandLine& line) {
   const auto options = std::make_shared<NewOptions>();
-  CLI::App& command = line.add("new", "Write a starter model",
-                               "  maup new pendulum                      # writes pendulum.lag\n"
-                               "  maup new chain --links 100 -o chain.lag\n"
-                               "  maup new --list\n",
-                               [options](Console& console) { return write_starter(*options, console); });
+  Command& command = line.add("new", "Write a starter model",
+                              "  maup new pendulum                      # writes pendulum.lag\n"
+                              "  maup new chain --links 100 -o chain.lag\n"
+                              "  maup new --list\n",
+                              [options](Console& console) { return write_starter(*options, console); });
   command.add_option("NAME", options->name, "Which starter");
   command.add_option("-o,--output", options->output, "The file to write (NAME.lag by default), or - for standard output");
-  command.add_option("--links", options->links, "Number of links of the chain")->check(CLI::Range(1, 10000));
+  command.add_option("--links", options->links, "Number of links of the chain")->between(1, 10000);
   command.add_flag("--force", options->force, "Overwrite a file that exists");
   command.add_flag("--list", options->list, "Name the starters");
 }

@@ -5,7 +5,6 @@
 #include "quantity.hpp"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <maupertuis/report.hpp>
 
@@ -93,7 +92,7 @@ ExitCode study_orbits(const Options& o, Console& console) {
 
 void add_orbits(CommandLine& line) {
   const auto options = std::make_shared<Options>();
-  CLI::App& command = line.add(
+  Command& command = line.add(
       "orbits", "Periodic motions with their Floquet multipliers, Poincaré sections, Lyapunov exponents",
       "  maup orbits pendulum.lag --floquet\n"
       "  maup orbits henon_heiles.lag --section \"x = 0 rising\" --starts 24 --plot section.svg\n"

@@ -2,7 +2,6 @@
 #include "output_files.hpp"
 #include "run_options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <maupertuis/plot.hpp>
@@ -55,11 +54,11 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
 
 void add_plot(CommandLine& line) {
   const auto options = std::make_shared<PlotCommandOptions>();
-  CLI::App& command = line.add("plot", "The motion as an SVG picture",
-                               "  maup plot pendulum.lag -o pendulum.svg\n"
-                               "  maup plot pendulum.lag --y θ --degrees -o angle.svg\n"
-                               "  maup plot pendulum.lag --x θ --y \"θ'\" -o phase.svg\n",
-                               [options](Console& console) { return plot_model(*options, console); });
+  Command& command = line.add("plot", "The motion as an SVG picture",
+                              "  maup plot pendulum.lag -o pendulum.svg\n"
+                              "  maup plot pendulum.lag --y θ --degrees -o angle.svg\n"
+                              "  maup plot pendulum.lag --x θ --y \"θ'\" -o phase.svg\n",
+                              [options](Console& console) { return plot_model(*options, console); });
   add_model_options(command, options->model);
   add_span_options(command, options->run);
   add_method_options(command, options->run);

@@ -5,7 +5,6 @@
 #include "quantity.hpp"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <maupertuis/comparison.hpp>
 
@@ -69,11 +68,11 @@ ExitCode reduce_model(const ReduceOptions& options, Console& console) {
 
 void add_reduce(CommandLine& line) {
   const auto options = std::make_shared<ReduceOptions>();
-  CLI::App& command = line.add("reduce", "Independent coordinates of a constrained model, and the model in them",
-                               "  maup reduce cartesian_pendulum.lag\n"
-                               "  maup reduce cartesian_pendulum.lag -o pendulum.lag\n"
-                               "  maup reduce planetary_gear.lag --json\n",
-                               [options](Console& console) { return reduce_model(*options, console); });
+  Command& command = line.add("reduce", "Independent coordinates of a constrained model, and the model in them",
+                              "  maup reduce cartesian_pendulum.lag\n"
+                              "  maup reduce cartesian_pendulum.lag -o pendulum.lag\n"
+                              "  maup reduce planetary_gear.lag --json\n",
+                              [options](Console& console) { return reduce_model(*options, console); });
   command.add_option("MODEL", options->path, "The model file (.lag), or - for standard input")->required();
   command.add_option("-o,--output", options->output, "Write the reduced model to this file (.lag), or - for standard output");
 }

@@ -4,7 +4,6 @@
 #include "output_files.hpp"
 #include "run_options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <maupertuis/invariants.hpp>
@@ -160,11 +159,11 @@ ExitCode report(const ReportOptions& options, Console& console) {
 
 void add_report(CommandLine& line) {
   const auto options = std::make_shared<ReportOptions>();
-  CLI::App& command = line.add("report", "The whole study on one page that needs no network",
-                               "  maup report pendulum.lag               # writes pendulum.html\n"
-                               "  maup report pendulum.lag -o study.html\n"
-                               "  maup report pendulum.lag --set l=2m --duration 60s -o long.html\n",
-                               [options](Console& console) { return report(*options, console); });
+  Command& command = line.add("report", "The whole study on one page that needs no network",
+                              "  maup report pendulum.lag               # writes pendulum.html\n"
+                              "  maup report pendulum.lag -o study.html\n"
+                              "  maup report pendulum.lag --set l=2m --duration 60s -o long.html\n",
+                              [options](Console& console) { return report(*options, console); });
   add_model_options(command, options->model);
   add_span_options(command, options->run);
   add_method_options(command, options->run);

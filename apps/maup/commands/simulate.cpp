@@ -4,7 +4,6 @@
 #include "quantity.hpp"
 #include "run_options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <cmath>
@@ -230,18 +229,18 @@ ExitCode simulate_in_any_precision(const SimulateOptions& options, Console& cons
 
 void add_simulate(CommandLine& line) {
   const auto options = std::make_shared<SimulateOptions>();
-  CLI::App& command = line.add("simulate", "Run the experiment of a model",
-                               "  maup simulate pendulum.lag\n"
-                               "  maup simulate pendulum.lag --at 3s -o motion.csv --plot motion.svg\n"
-                               "  maup simulate pendulum.lag --set l=2m --start θ=170deg --duration -5s --json\n",
-                               [options](Console& console) { return simulate_in_any_precision(*options, console); });
+  Command& command = line.add("simulate", "Run the experiment of a model",
+                              "  maup simulate pendulum.lag\n"
+                              "  maup simulate pendulum.lag --at 3s -o motion.csv --plot motion.svg\n"
+                              "  maup simulate pendulum.lag --set l=2m --start θ=170deg --duration -5s --json\n",
+                              [options](Console& console) { return simulate_in_any_precision(*options, console); });
   add_model_options(command, options->model);
   add_span_options(command, options->run);
   add_method_options(command, options->run);
   add_errors_option(command, options->run);
   command.add_flag("--errors", options->errors, "Columns error(θ), … of the errors of each row in the file of -o");
   command.add_option("--precision", options->precision, "double, quad (113 bits) or 100 (decimal digits): as many digits as two runs agree on; default: the model's `precision`, or double")
-      ->check(CLI::IsMember({"double", "quad", "100"}))
+      ->one_of({"double", "quad", "100"})
       ->type_name("DIGITS");
   command.add_option("-o,--output", options->output, "The trajectory: .csv, .npy or .json")->type_name("FILE");
   command.add_option("--plot", options->plot, "Its time series as a picture: .svg")->type_name("FILE");

@@ -1,7 +1,6 @@
 #include "outcome.hpp"
 #include "run_options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <maupertuis/verification.hpp>
@@ -119,11 +118,11 @@ ExitCode test_models(const TestOptions& options, Console& console) {
 
 void add_test(CommandLine& line) {
   const auto options = std::make_shared<TestOptions>();
-  CLI::App& command = line.add("test", "Run the expect and claim lines of models; exit 4 if one fails",
-                               "  maup test pendulum.lag\n"
-                               "  maup test models/*.lag\n"
-                               "  maup test pendulum.lag --json\n",
-                               [options](Console& console) { return test_models(*options, console); });
+  Command& command = line.add("test", "Run the expect and claim lines of models; exit 4 if one fails",
+                              "  maup test pendulum.lag\n"
+                              "  maup test models/*.lag\n"
+                              "  maup test pendulum.lag --json\n",
+                              [options](Console& console) { return test_models(*options, console); });
   command.add_option("MODEL", options->paths, "Model files, or - for standard input")->required();
   add_method_options(command, options->run);
   add_errors_option(command, options->run);

@@ -1,0 +1,99 @@
+#include "options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <optional>
+
+namespace maupertuis::app {
+
+Option* Option::type_name(const std::string& name) { return own_->type_name(name), this; }
+Option* Option::required() { return own_->required(), this; }
+Option* Option::needs(const Option* other) { return own_->needs(other->own_), this; }
+Option* Option::excludes(const Option* other) { return own_->excludes(other->own_), this; }
+Option* Option::one_of(std::initializer_list<const char*> words) {
+  return own_->check(CLI::IsMember(std::vector<std::string>(words.begin(), words.end()))), this;
+}
+Option* Option::between(int least, int most) { return own_->check(CLI::Range(least, most)), this; }
+Option* Option::positive() { return own_->check(CLI::PositiveNumber), this; }
+Option* Option::delimiter(char separator) { return own_->delimiter(separator), this; }
+Option* Option::allow_extra_args(bool allowed) { return own_->allow_extra_args(allowed), this; }
+Option* Option::type_size(int arguments) { return own_->type_size(arguments), this; }
+Option* Option::expected(int least, int most) { return own_->expected(least, most), this; }
+
+template <class Value>
+Option* Command::add_option(const std::string& names, Value& value, const std::string& what) {
+  return kept(own_.add_option(names, value, what));
+}
+template Option* Command::add_option(const std::string&, std::string&, const std::string&);
+template Option* Command::add_option(const std::string&, std::optional<std::string>&, const std::string&);
+template Option* Command::add_option(const std::string&, std::vector<std::string>&, const std::string&);
+template Option* Command::add_option(const std::string&, int&, const std::string&);
+template Option* Command::add_option(const std::string&, std::size_t&, const std::string&);
+template Option* Command::add_option(const std::string&, std::optional<int>&, const std::string&);
+template Option* Command::add_option(const std::string&, std::optional<std::int64_t>&, const std::string&);
+template Option* Command::add_option(const std::string&, std::optional<double>&, const std::string&);
+
+Option* Command::add_option_function(const std::string& names, std::function<void(const Words&)> take, const std::string& what) {
+  return kept(own_.add_option_function<Words>(names, std::move(take), what));
+}
+Option* Command::add_flag(const std::string& names, bool& value, const std::string& what) {
+  return kept(own_.add_flag(names, value, what));
+}
+Option* Command::add_flag_callback(const std::string& names, std::function<void()> act, const std::string& what) {
+  return kept(own_.add_flag_callback(names, std::move(act), what));
+}
+void Command::allow_extras() { own_.allow_extras(); }
+void Command::group(const std::string& name) { own_.group(name); }
+
+namespace {
+
+/// --help of a command opens with its examples.
+class HelpWithExamples : public CLI::Formatter {
+ public:
+  explicit HelpWithExamples(std::string examples) : examples_(std::move(examples)) { column_width(34); }
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+    return "Examples:\n" + examples_ + "\n" + CLI::Formatter::make_help(app, std::move(name), mode);
+  }
+
+ private:
+  std::string examples_;
+};
+
+}  // namespace
+
+struct CommandParser::Implementation {
+  CLI::App app;
+  std::deque<Command> commands;
+};
+
+CommandParser::CommandParser(const std::string& what, const std::string& version, const std::string& footer)
+    : implementation_(new Implementation{CLI::App(what, "maup"), {}}) {
+  CLI::App& app = implementation_->app;
+  app.require_subcommand(1);
+  app.set_version_flag("--version", version);
+  app.get_formatter()->column_width(16);
+  app.footer(footer);
+}
+
+CommandParser::~CommandParser() = default;
+
+Command& CommandParser::add(const std::string& name, const std::string& summary, const std::string& examples,
+                            std::function<void()> chosen) {
+  CLI::App& command = *implementation_->app.add_subcommand(name, summary);
+  command.formatter(std::make_shared<HelpWithExamples>(examples));
+  command.callback(std::move(chosen));
+  return implementation_->commands.emplace_back(command);
+}
+
+CommandParser::Outcome CommandParser::parse(int argc, char** argv) {
+  CLI::App& app = implementation_->app;
+  try {
+    app.parse(argc, argv);
+    return Outcome::Command;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? Outcome::Answered : Outcome::Mistake;
+  }
+}
+
+}  // namespace maupertuis::app
