@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <optional>
+#include <set>
 
 using namespace maupertuis;
 using namespace maupertuis::property;
@@ -71,6 +72,21 @@ TEST_CASE("a property that is false is falsified, and most random expressions ha
   });
   CHECK(tried >= 100);
   CHECK(found > tried * 9 / 10);
+}
+
+TEST_CASE("random expressions hold every kind of the table, and every function of theirs is defined at a point") {
+  World w;
+  std::set<Kind> seen;
+  for (std::uint32_t choice = 0; choice < 64; ++choice) {
+    const Expr e = made_by(choice + (2u << 6) + (1u << 12), w.leaves, Functions::WithSwitches);
+    CHECK(std::isfinite(evaluate(e, w.point)));
+    for (const Expr& node : topological_order({&e, 1})) seen.insert(node.kind());
+  }
+  for (auto kind = static_cast<std::size_t>(Kind::Number); kind <= static_cast<std::size_t>(Kind::Or); ++kind) {
+    if (static_cast<Kind>(kind) == Kind::TimeDerivative) continue;  // the Lagrangians have it, by a factor of their own
+    CAPTURE(std::string(name_of(static_cast<Kind>(kind))));
+    CHECK(seen.count(static_cast<Kind>(kind)) == 1);
+  }
 }
 
 TEST_CASE("a derivative is the first-order part of a variation") {

@@ -1,5 +1,6 @@
 #pragma once
 #include <maupertuis/expression.hpp>
+#include <maupertuis/functions.hpp>
 
 #include <rapidcheck.h>
 
@@ -17,38 +18,61 @@ struct Recipe {
 
 enum class Functions { Polynomial, Smooth, WithSwitches };
 
+/// A function of the table, of an argument inside its domain and, where it grows quickly, of a bounded one.
+inline Expr function_of_table(std::size_t row, Expr e) {
+  const auto kind = static_cast<Kind>(static_cast<std::size_t>(Kind::Sin) + row);
+  const Expr above_two = pow(e, Rational(2)) + Rational(2);
+  if (kind == Kind::Acosh || kind == Kind::Log || kind == Kind::LambertW) return apply(kind, above_two);
+  if (kind == Kind::Asin || kind == Kind::Acos || kind == Kind::Atanh || kind == Kind::Tan) return apply(kind, e / above_two);
+  if (kind == Kind::Exp || kind == Kind::Sinh || kind == Kind::Cosh) return apply(kind, sin(e));
+  return apply(kind, e);
+}
+
+/// One of the kinds that jump or have a kink.
+inline Expr switch_of(std::uint32_t choice, Expr a, Expr b) {
+  Context& c = a.context();
+  const auto of_two = [&](Kind kind, Expr first, Expr second) { return c.function(kind, std::array{first, second}); };
+  const auto where = [&](Expr condition) { return c.function(Kind::Piecewise, std::array{condition, a, b * b}); };
+  const Expr less = of_two(Kind::Less, a, b);
+  switch (choice) {
+    case 0: return apply(Kind::Abs, a);
+    case 1: return a * apply(Kind::Sign, b);
+    case 2: return a * apply(Kind::Step, b);
+    case 3: return of_two(Kind::Max, a, b);
+    case 4: return of_two(Kind::Min, a, b);
+    case 5: return where(less);
+    case 6: return where(of_two(Kind::And, less, of_two(Kind::LessEqual, b, Rational(2) * a + Rational(1))));
+    default: return where(of_two(Kind::Or, less, of_two(Kind::LessEqual, b, Rational(3) * a - Rational(1))));
+  }
+}
+
+inline constexpr std::uint32_t polynomials = 6, composites = 6, switches = 8;
+inline constexpr std::uint32_t smooth = polynomials + composites + static_cast<std::uint32_t>(functions::count);
+
+/// Polynomials, composites of several functions, each function of the table, switches: in this order.
 inline Expr made_by(std::uint32_t step, const std::vector<Expr>& made, Functions functions) {
   const auto pick = [&](std::uint32_t bits) { return made[bits % made.size()]; };
-  const Expr a = pick(step / 32), b = pick(step / 4096);
+  const Expr a = pick(step / 64), b = pick(step / 4096);
   Context& c = a.context();
-  const auto of_two = [&](Kind kind) { return c.function(kind, std::array{a, b}); };
   const Expr positive = pow(b, Rational(2)) + Rational(2);
-  const std::uint32_t choices = functions == Functions::Polynomial ? 6 : functions == Functions::Smooth ? 20 : 25;
-  switch (step % 32 % choices) {
+  const std::uint32_t choices = functions == Functions::Polynomial ? polynomials
+                                : functions == Functions::Smooth   ? smooth
+                                                                   : smooth + switches;
+  const std::uint32_t choice = step % 64 % choices;
+  if (choice >= smooth) return switch_of(choice - smooth, a, b);
+  if (choice >= polynomials + composites) return function_of_table(choice - polynomials - composites, a);
+  switch (choice) {
     case 0: return a + b;
     case 1: return a - b;
     case 2: case 3: return a * b;
     case 4: return pow(a, Rational(2));
-    case 5: return Rational(static_cast<int>(step / 4096 % 7) - 3, 1 + static_cast<int>(step / 32 % 4)) * a;
-    case 6: return sin(a);
-    case 7: return cos(a);
-    case 8: return sin(a - b);
-    case 9: return cos(Rational(2) * a + b);
-    case 10: return a / positive;
-    case 11: return sqrt(positive);
-    case 12: return a * pow(positive, Rational(-3, 2));
-    case 13: return apply(Kind::Atan, a);
-    case 14: return apply(Kind::Log, positive);
-    case 15: return apply(Kind::Tanh, a);
-    case 16: return apply(Kind::Exp, sin(a));
-    case 17: return c.function(Kind::Atan2, std::array{a, positive});
-    case 18: return apply(Kind::Erf, a);
-    case 19: return apply(Kind::LambertW, positive);
-    case 20: return apply(Kind::Abs, a);
-    case 21: return of_two(Kind::Max);
-    case 22: return of_two(Kind::Min);
-    case 23: return a * apply(Kind::Sign, b);
-    default: return c.function(Kind::Piecewise, std::array{c.function(Kind::Less, std::array{a, b}), a, b * b});
+    case 5: return Rational(static_cast<int>(step / 4096 % 7) - 3, 1 + static_cast<int>(step / 64 % 4)) * a;
+    case 6: return sin(a - b);
+    case 7: return cos(Rational(2) * a + b);
+    case 8: return a / positive;
+    case 9: return a * pow(positive, Rational(-3, 2));
+    case 10: return sin(a + c.pi() * Rational(1, 5)) * sqrt(positive);
+    default: return c.function(Kind::Atan2, std::array{a, positive});
   }
 }
 
