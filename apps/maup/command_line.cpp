@@ -20,6 +20,10 @@ std::string last_resort(const char* what) {
       what);
 }
 
+Console::Color color_named(const std::string& word) {
+  return word == "always" ? Console::Color::Always : word == "never" ? Console::Color::Never : Console::Color::Auto;
+}
+
 }  // namespace
 
 struct CommandLine::Implementation {
@@ -28,7 +32,7 @@ struct CommandLine::Implementation {
                        "\n`maup COMMAND --help` shows examples and options. A first model: maup new pendulum"};
   Console console;
   bool json = false;
-  Console::Color color = Console::Color::Auto;
+  std::string color;
   Action chosen;
 };
 
@@ -41,16 +45,7 @@ Command& CommandLine::add(const std::string& name, const std::string& summary, c
   Command& command =
       line.parser.add(name, summary, examples, [&line, action = std::move(action)] { line.chosen = action; });
   command.add_flag("--json", line.json, "The result as a JSON document on standard output");
-  command
-      .add_option_function(
-          "--color",
-          [&line](const Command::Words& words) {
-            line.color = words.back() == "always" ? Console::Color::Always
-                         : words.back() == "never" ? Console::Color::Never
-                                                   : Console::Color::Auto;
-          },
-          "Color in messages; NO_COLOR is honoured")
-      ->expected(1, 1)
+  command.add_option("--color", line.color, "Color in messages; NO_COLOR is honoured")
       ->one_of({"auto", "always", "never"})
       ->type_name("auto|always|never");
   return command;
@@ -64,7 +59,7 @@ ExitCode CommandLine::run(int argc, char** argv) {
     case CommandParser::Outcome::Mistake: return ExitCode::Usage;
   }
   line.console.use_json(line.json);
-  line.console.use_color(line.color);
+  line.console.use_color(color_named(line.color));
   ExitCode code = line.chosen(line.console);
   if (interrupt_flag().load() && code != ExitCode::Interrupted) {
     line.console.say("Interrupted: what stands here is not the whole of it.\n");
