@@ -7,8 +7,10 @@
 #include <algorithm>
 
 #include <maupertuis/across_switches.hpp>
+#include <maupertuis/couplings.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/reactions.hpp>
+#include <maupertuis/shared_form.hpp>
 
 namespace maupertuis::app {
 namespace {
@@ -62,21 +64,49 @@ std::string readable_line(const std::string& left, Expr value, const ReadingOrde
   return out;
 }
 
-std::string momenta_and_energy(const EquationsOfMotion& equations) {
-  const auto& coordinates = equations.system->coordinates;
+/// Lines of a system in which everything is coupled: by the parts that they share with what stands above.
+class SharedLines {
+ public:
+  SharedLines(const ReadingOrder& order, std::vector<Intermediate> known) : order_(order), known_(std::move(known)) {}
+
+  std::string operator()(const std::vector<std::string>& names, std::span<const Expr> values) {
+    const SharedForm form = shared_form(values, order_, known_);
+    std::string out;
+    for (std::size_t i = 0; i < names.size(); ++i) out += fmt::format("  {} = {}\n", names[i], to_plain(form.rows[i], order_));
+    if (!form.intermediates.empty()) out += "with\n";
+    for (const Intermediate& i : form.intermediates)
+      out += fmt::format("  {} = {}\n", to_plain(i.symbol, order_), to_plain(i.value, order_));
+    known_.insert(known_.end(), form.intermediates.begin(), form.intermediates.end());
+    return out;
+  }
+
+ private:
+  const ReadingOrder& order_;
+  std::vector<Intermediate> known_;
+};
+
+std::string momenta_and_energy(const EquationsOfMotion& equations, const Derivation& derivation) {
   const ConservedQuantities conserved = conserved_quantities(equations);
-  std::string out = "\nMomenta\n";
-  for (std::size_t i = 0; i < coordinates.size(); ++i)
-    out += readable_line("p_" + coordinates[i].name, equations.shown().momenta[i], equations.order);
-  out += "\nEnergy function\n" + readable_line("h_E", equations.shown().energy_function, equations.order);
+  std::vector<std::string> momenta;
+  for (const Coordinate& c : equations.system->coordinates) momenta.push_back("p_" + c.name);
+  SharedLines shared(equations.order, derivation.intermediates);
+  const bool is_dense = couples_too_much_to_read(equations);
+  const auto lines = [&](const std::vector<std::string>& names, std::span<const Expr> values) {
+    if (is_dense) return shared(names, values);
+    std::string out;
+    for (std::size_t i = 0; i < names.size(); ++i) out += readable_line(names[i], values[i], equations.order);
+    return out;
+  };
+  std::string out = "\nMomenta\n" + lines(momenta, equations.shown().momenta);
+  out += "\nEnergy function\n" + lines({"h_E"}, {&equations.shown().energy_function, 1});
   if (!conserved.energy_case.empty()) out += fmt::format("  {}\n", conserved.energy_case);
-  if (!conserved.energy_conserved) out += readable_line("dh_E/d" + equations.system->independent, equations.shown().power, equations.order);
+  if (!conserved.energy_conserved) out += lines({"dh_E/d" + equations.system->independent}, {&equations.shown().power, 1});
   if (const auto jump = across_switches(*equations.system, equations.energy_function, equations.order).jump)
     out += fmt::format("  h_E jumps where {}: what is switched there does work at once.\n", jump->place);
 
   std::vector<std::string> names;
   for (const std::size_t i : conserved.conserved_momenta)
-    names.push_back(fmt::format("p_{} ({} is cyclic)", coordinates[i].name, coordinates[i].name));
+    names.push_back(fmt::format("{} ({} is cyclic)", momenta[i], equations.system->coordinates[i].name));
   if (conserved.energy_conserved) names.emplace_back("h_E");
   out += fmt::format("\nConserved\n  {}\n", names.empty() ? "nothing among the momenta and h_E"
                                                           : fmt::format("{}", fmt::join(names, ", ")));
@@ -125,7 +155,7 @@ std::string lecture(Study& study, const EquationForm& form, const Certificate& c
     out += fmt::format("  {} = {}\n", to_plain(i.symbol, order), to_plain(i.value, order));
   out += legend(*equations.system, order);
   out += reactions_text(equations);
-  out += momenta_and_energy(equations);
+  out += momenta_and_energy(equations, *study.derivation(false));
   return out + certificate_text(certificate);
 }
 

@@ -12,6 +12,18 @@ namespace maupertuis {
 /// derivatives.
 std::vector<Expr> in_terms_of_motion(const MechanicalSystem& system, std::span<const Expr> expressions);
 
+/// The same for many lists: what is put in is made once.
+class MotionTerms {
+ public:
+  explicit MotionTerms(const MechanicalSystem& system);
+  std::vector<Expr> operator()(std::span<const Expr> expressions) const;
+  Expr operator()(Expr e) const { return (*this)({&e, 1}).front(); }
+
+ private:
+  std::unordered_map<Expr, Expr, ExprHash> replacements_;
+  bool twice_ = false;   // definitions hold inputs, or the other way round
+};
+
 /// The values of all parameters, as symbols bound to SI values; with t = 0.
 Bindings parameter_bindings(const MechanicalSystem& system);
 
@@ -19,6 +31,12 @@ Bindings parameter_bindings(const MechanicalSystem& system);
 struct MotionState {
   double t = 0;
   std::vector<double> q, v;  // [n] each
+};
+
+/// An entry of a matrix, in numbers.
+struct MatrixEntry {
+  std::size_t row = 0, column = 0;
+  double value = 0;
 };
 
 /// The configurations and velocities that the constraints of a system allow, in numbers: for starts and for ranks at
@@ -35,6 +53,9 @@ class ConstraintManifold {
   /// A [m × n] by rows, M [n × n] by rows; φ or ψ [m]; ψ of velocity rows, dφ/dt of the others [m].
   std::vector<double> matrix(const MotionState& state) const;
   std::vector<double> mass(const MotionState& state) const;
+  /// A without the entries that are 0 as formulas, by rows; the diagonal of M, without M.
+  std::vector<MatrixEntry> matrix_entries(const MotionState& state) const;
+  std::vector<double> mass_diagonal(const MotionState& state) const;
   std::vector<double> values(const MotionState& state) const;
   std::vector<double> rates(const MotionState& state) const;
   /// |φ_i| divided by the sum of the sizes of its terms and of |A_ij q_j|, 0 for constraints of velocities [m].
@@ -44,7 +65,7 @@ class ConstraintManifold {
   std::vector<double> relative_rates(const MotionState& state) const;
 
   /// Moves the coordinates that are not `fixed` [n] onto φ = 0 by the least kinetic change (Gauss-Newton in the metric M,
-  /// or in the scaled Euclidean one where M is not positive definite). Rows that are not `active` [m] are left out;
+  /// or in the scaled Euclidean one where M is not positive definite, or has more entries than would be worth it). Rows that are not `active` [m] are left out;
   /// empty: all are in. False, with the best point reached in `state`, where it does not get there.
   bool move_positions(MotionState& state, const std::vector<bool>& fixed, const std::vector<bool>& active = {}) const;
   /// The same for the velocities, at a configuration that is on the manifold: dφ/dt = 0, ψ = 0 and the rates.

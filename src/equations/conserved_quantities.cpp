@@ -1,6 +1,8 @@
 #include <maupertuis/across_switches.hpp>
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/jacobian.hpp>
+#include <maupertuis/seen_nonzero.hpp>
 
 namespace maupertuis {
 namespace {
@@ -30,10 +32,13 @@ bool free_of_constraints(const EquationsOfMotion& equations, std::size_t i) {
 /// the constraint does no work.
 Expr power_on_constraints(const EquationsOfMotion& equations) {
   Expr power = equations.power;
+  ExprVector velocities;
+  for (const Coordinate& q : equations.system->coordinates) velocities.push_back(q.velocity);
+  const SparseGradient by_velocities(velocities);
   for (const Constraint& c : equations.system->constraints) {
     if (c.level == Constraint::Level::Position) continue;
     ExprVector terms;
-    for (const Coordinate& q : equations.system->coordinates) terms.push_back(q.velocity * differentiate(c.value, q.velocity));
+    for (const auto& [i, slope] : by_velocities(c.value)) terms.push_back(velocities[i] * slope);
     const Expr work = c.value.context().sum(terms);
     for (const int degree : {2, 3, 4})
       if (vanishes(work - Rational(degree) * c.value)) power = power - Rational(degree - 1) * (c.multiplier * c.value);
@@ -50,8 +55,9 @@ ConservedQuantities conserved_quantities(const EquationsOfMotion& equations) {
   const auto forces = gradient(equations.lagrangian_expanded, q);
 
   ConservedQuantities result;
+  const std::vector<bool> varies = seen_nonzero(forces);   // most do, and forces along a chain share their parts
   for (std::size_t i = 0; i < q.size(); ++i) {
-    if (!vanishes(forces[i])) continue;
+    if (varies[i] || !vanishes(forces[i])) continue;
     result.cyclic.push_back(i);
     if (vanishes(equations.generalized_forces[i] - equations.dissipative_terms[i]) && free_of_constraints(equations, i) &&
         !across_switches(system, equations.momenta[i], equations.order).jump)

@@ -1,10 +1,12 @@
 #include <maupertuis/constraint_analysis.hpp>
+#include <maupertuis/jacobian.hpp>
 
 #include "equations/antiderivative.hpp"
 #include "equations/integrable_part.hpp"
 #include "equations/manifold_samples.hpp"
 #include "equations/row_reduction.hpp"
 #include "equations/simplified.hpp"
+#include "equations/sparse_rows.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +19,8 @@ using Matrix = Eigen::MatrixXd;
 using Index = Eigen::Index;
 
 constexpr double vanishing = 1e-4;  // a row on the manifold against beside it
+/// Beyond this number of entries ranks are taken by elimination, not by singular values.
+constexpr std::size_t largest_dense = 64 * 128;
 
 bool zero(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero; }
 
@@ -50,15 +54,24 @@ class Analysis {
   /// dφ or a·dq + a₀ dt; constraints that are not affine in the velocities have none.
   void make_forms() {
     forms_.resize(m_);
+    const MotionTerms in_terms(system_);
+    const SparseGradient by_variables(variables_), by_velocities(velocities_);
+    ExprMap at_rest;
+    for (const Expr& v : velocities_) at_rest.emplace(v, number(0));
+    // Only velocity constraints are classified by their forms; the others enter beside them.
+    const bool needed = std::any_of(system_.constraints.begin(), system_.constraints.end(), [](const Constraint& c) {
+      return c.level == Constraint::Level::Velocity;
+    });
     for (std::size_t i = 0; i < m_; ++i) {
-      const Expr value = in_terms_of_motion(system_, {&system_.constraints[i].value, 1}).front();
+      const Expr value = in_terms(system_.constraints[i].value);
       ConstraintReport& report = out_.constraints[i];
       if (is_holonomic(i)) {
-        forms_[i].components = gradient(value, variables_);
-        report.scleronomic = zero(forms_[i].components[n_]);
+        const std::vector<SparseGradient::Entry> entries = by_variables(value);
+        if (needed) forms_[i].components = in_full(entries, n_ + 1);
+        report.scleronomic = entries.empty() || entries.back().column != n_ || zero(entries.back().value);
         continue;
       }
-      if (affine_form(value, forms_[i])) {
+      if (affine_form(value, by_velocities, at_rest, forms_[i])) {
         report.constraint_class = ConstraintClass::Nonholonomic;
         report.scleronomic = zero(forms_[i].components[n_]) && free_of_time(forms_[i].components);
       } else {
@@ -70,21 +83,27 @@ class Analysis {
   }
 
   bool is_holonomic(std::size_t i) const { return system_.constraints[i].level == Constraint::Level::Position; }
+  Expr number(int value) const { return system_.context->number(Rational(value)); }
 
-  bool affine_form(Expr value, OneForm& form) const {
-    form.components = gradient(value, velocities_);
-    for (const Expr& a : form.components)
-      for (const Expr& second : gradient(a, velocities_))
-        if (!zero(second)) return false;
-    ExprMap at_rest;
-    for (const Expr& v : velocities_) at_rest.emplace(v, system_.context->number(Rational(0)));
-    form.components = substitute(form.components, at_rest);
+  ExprVector in_full(const std::vector<SparseGradient::Entry>& entries, std::size_t count) const {
+    ExprVector out(count, number(0));
+    for (const auto& [column, value] : entries) out[column] = value;
+    return out;
+  }
+
+  bool affine_form(Expr value, const SparseGradient& by_velocities, const ExprMap& at_rest, OneForm& form) const {
+    const std::vector<SparseGradient::Entry> entries = by_velocities(value);
+    for (const SparseGradient::Entry& a : entries)
+      for (const SparseGradient::Entry& second : by_velocities(a.value))
+        if (!zero(second.value)) return false;
+    form.components = substitute(in_full(entries, n_), at_rest);
     form.components.push_back(substitute(value, at_rest));
     return true;
   }
 
   bool free_of_time(const ExprVector& form) const {
-    return std::all_of(form.begin(), form.end(), [&](Expr a) { return zero(differentiate(a, variables_[n_])); });
+    return std::all_of(form.begin(), form.end(),
+                       [&](Expr a) { return a.is_number() || zero(differentiate(a, variables_[n_])); });
   }
 
   bool has_velocity_forms() const {
@@ -110,67 +129,107 @@ class Analysis {
   }
 
   /// A with its columns in the scale of the masses.
-  Matrix rows_at(const MotionState& state) const {
-    const std::vector<double> a = manifold_.matrix(state), mass = manifold_.mass(state);
-    Matrix out(static_cast<Index>(m_), static_cast<Index>(n_));
-    for (std::size_t j = 0; j < n_; ++j) {
-      const double diagonal = mass[j * n_ + j];
+  SparseRows rows_at(const MotionState& state) const {
+    const std::vector<double> mass = manifold_.mass_diagonal(state);
+    SparseRows out{n_, std::vector<SparseRows::Row>(m_)};
+    for (const MatrixEntry& e : manifold_.matrix_entries(state)) {
+      const double diagonal = mass[e.column];
       const double scale = std::isfinite(diagonal) && diagonal > 0 ? std::sqrt(diagonal) : 1;
-      for (std::size_t i = 0; i < m_; ++i)
-        out(static_cast<Index>(i), static_cast<Index>(j)) = a[i * n_ + j] / scale;
+      out.rows[e.row].emplace_back(e.column, e.value / scale);
     }
     return out;
   }
 
+  bool is_large() const { return m_ * n_ > largest_dense; }
+
+  static Matrix dense(const SparseRows& a) {
+    Matrix out = Matrix::Zero(static_cast<Index>(a.rows.size()), static_cast<Index>(a.columns));
+    for (std::size_t i = 0; i < a.rows.size(); ++i)
+      for (const auto& [column, value] : a.rows[i]) out(static_cast<Index>(i), static_cast<Index>(column)) = value;
+    return out;
+  }
+
+  std::size_t rank_of(const SparseRows& a) const { return is_large() ? sparse_rank(a) : numerical_rank(dense(a)); }
+
+  static void scale_row(SparseRows::Row& row, double factor) {
+    for (auto& entry : row) entry.second *= factor;
+    if (factor == 0) row.clear();
+  }
+
   void take_ranks() {
     for (const MotionState& point : points_) rows_.push_back(rows_at(point));
-    Matrix at_start = start_ ? rows_at(*start_) : rows_[0];
-    for (Index i = 0; i < static_cast<Index>(m_); ++i) {
-      double length = 0, length_beside = 0;
-      for (const Matrix& a : rows_) length = std::max(length, a.row(i).norm());
-      for (const MotionState& point : beside_) length_beside = std::max(length_beside, rows_at(point).row(i).norm());
+    SparseRows at_start = start_ ? rows_at(*start_) : rows_[0];
+    std::vector<double> lengths(m_, 0), beside(m_, 0);
+    const auto measure = [&](const SparseRows& a, std::vector<double>& longest) {
+      for (std::size_t i = 0; i < m_; ++i) longest[i] = std::max(longest[i], norm(a.rows[i]));
+    };
+    for (const SparseRows& a : rows_) measure(a, lengths);
+    for (const MotionState& point : beside_) measure(rows_at(point), beside);
+    for (std::size_t i = 0; i < m_; ++i) {
       // φ = 0 where its gradient vanishes is met to half of the digits only.
-      const double scale = length > vanishing * length_beside ? 1 / length : 0;
-      for (Matrix& a : rows_) a.row(i) *= scale;
-      at_start.row(i) *= scale;
+      const double scale = lengths[i] > vanishing * beside[i] ? 1 / lengths[i] : 0;
+      for (SparseRows& a : rows_) scale_row(a.rows[i], scale);
+      scale_row(at_start.rows[i], scale);
     }
     std::vector<std::size_t> ranks;
-    for (const Matrix& a : rows_) {
-      ranks.push_back(numerical_rank(a));
-      out_.holonomic_rank = std::max(out_.holonomic_rank, numerical_rank(holonomic(a)));
+    for (const SparseRows& a : rows_) {
+      ranks.push_back(rank_of(a));
+      out_.holonomic_rank = std::max(out_.holonomic_rank, only_holonomic() ? ranks.back() : rank_of(holonomic(a)));
     }
     best_ = static_cast<std::size_t>(std::max_element(ranks.begin(), ranks.end()) - ranks.begin());
     out_.rank = ranks[best_];
     out_.rank_varies = *std::min_element(ranks.begin(), ranks.end()) < out_.rank;
-    out_.start_rank = start_ ? std::min(numerical_rank(at_start), out_.rank) : out_.rank;
+    out_.start_rank = start_ ? std::min(rank_of(at_start), out_.rank) : out_.rank;
   }
 
-  Matrix holonomic(const Matrix& a) const {
-    Matrix out = a;
+  bool only_holonomic() const {
     for (std::size_t i = 0; i < m_; ++i)
-      if (!is_holonomic(i)) out.row(static_cast<Index>(i)).setZero();
+      if (!is_holonomic(i)) return false;
+    return true;
+  }
+
+  SparseRows holonomic(const SparseRows& a) const {
+    SparseRows out = a;
+    for (std::size_t i = 0; i < m_; ++i)
+      if (!is_holonomic(i)) out.rows[i].clear();
     return out;
   }
 
   /// Each row that adds nothing to the earlier ones, as their combination. What takes part in one has no definite λ.
   void find_dependent_rows() {
-    const Matrix& a = rows_[best_];
-    const std::vector<std::size_t> chosen = independent_rows(a);
     std::vector<bool> undetermined(m_, false);
-    for (std::size_t i = 0; i < m_; ++i) {
-      if (std::find(chosen.begin(), chosen.end(), i) != chosen.end()) continue;
-      ConstraintReport& report = out_.constraints[i];
-      report.redundant = undetermined[i] = true;
-      std::vector<std::size_t> earlier;
-      for (const std::size_t k : chosen)
-        if (k < i) earlier.push_back(k);
-      for (const std::size_t k : part_taking(a, i, earlier)) {
-        report.depends_on.push_back(k);
-        undetermined[k] = true;
-      }
+    for (const auto& [row, depends_on] : is_large() ? dependent_rows(rows_[best_]) : dependent_rows(dense(rows_[best_]))) {
+      out_.constraints[row].redundant = undetermined[row] = true;
+      out_.constraints[row].depends_on = depends_on;
+      for (const std::size_t k : depends_on) undetermined[k] = true;
     }
     for (std::size_t i = 0; i < m_; ++i)
       if (undetermined[i]) out_.undetermined.push_back(i);
+  }
+
+  using Dependent = std::vector<std::pair<std::size_t, std::vector<std::size_t>>>;
+
+  static Dependent dependent_rows(const SparseRows& a) {
+    Dependent out;
+    for (const DependentRow& found : dependence_of(a).dependent) {
+      out.push_back({found.row, {}});
+      for (const auto& [k, weight] : found.combination)
+        if (std::abs(weight) * norm(a.rows[k]) > 1e-7 * norm(a.rows[found.row])) out.back().second.push_back(k);
+    }
+    return out;
+  }
+
+  Dependent dependent_rows(const Matrix& a) const {
+    Dependent out;
+    const std::vector<std::size_t> chosen = independent_rows(a);
+    for (std::size_t i = 0; i < m_; ++i) {
+      if (std::find(chosen.begin(), chosen.end(), i) != chosen.end()) continue;
+      std::vector<std::size_t> earlier;
+      for (const std::size_t k : chosen)
+        if (k < i) earlier.push_back(k);
+      out.push_back({i, part_taking(a, i, earlier)});
+    }
+    return out;
   }
 
   static std::vector<std::size_t> part_taking(const Matrix& a, std::size_t row, const std::vector<std::size_t>& of) {
@@ -228,7 +287,7 @@ class Analysis {
   ExprVector variables_, velocities_;  // q and t [n + 1]; q̇ [n]
   std::vector<OneForm> forms_;         // [m]; without components where ψ is not affine
   std::vector<MotionState> points_, beside_;  // on the constraints, and where they were taken from
-  std::vector<Matrix> rows_;           // A at the points, scaled
+  std::vector<SparseRows> rows_;       // A at the points, scaled
   std::size_t best_ = 0;               // a point of the largest rank
   ConstraintAnalysis out_;
 };

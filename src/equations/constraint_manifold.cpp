@@ -1,4 +1,9 @@
 #include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/jacobian.hpp>
+#include <maupertuis/repeated_evaluation.hpp>
+#include <maupertuis/require.hpp>
+
+#include "equations/sparse_step.hpp"
 
 #include <eigen3/Eigen/Cholesky>
 #include <eigen3/Eigen/QR>
@@ -15,6 +20,7 @@ using Index = Eigen::Index;
 constexpr double rounding = 1e-16;   // below it there is nothing to gain
 constexpr double reached = 1e-11;    // good enough where rounding does not let it come closer
 constexpr int most_turns = 60;
+constexpr int turns_to_halve = 5;    // the error, of a large system
 
 std::vector<Expr> terms_of(Expr e) {
   if (!e.is(Kind::Sum)) return {e};
@@ -35,7 +41,24 @@ struct Functions {
     first.push_back(terms.size());
   }
   std::size_t count() const { return first.empty() ? 0 : first.size() - 1; }
+  std::optional<RepeatedEvaluation> evaluation;   // of the terms, once all are there
 };
+
+/// A matrix by the entries that are not 0 as formulas.
+struct Entries {
+  std::vector<std::size_t> rows, columns;
+  std::vector<Expr> values;
+
+  void add(std::size_t row, std::size_t column, Expr value) {
+    rows.push_back(row), columns.push_back(column), values.push_back(value);
+  }
+  std::optional<RepeatedEvaluation> evaluation;   // of the values, once all are there
+};
+
+/// Beyond this number of entries the matrices of a step are kept sparse.
+constexpr std::size_t largest_dense = 64 * 128;
+/// Of M, that a metric is worth.
+constexpr std::size_t most_of_metric = 200000;
 
 struct Sizes {
   Vector value, scale;
@@ -47,53 +70,79 @@ struct Sizes {
 struct ConstraintManifold::Impl {
   Impl(const EquationsOfMotion& equations, const std::vector<Expr>& further);
 
-  Bindings bind(const MotionState& state) const;
+  std::vector<double> evaluate_at(const MotionState& state, const RepeatedEvaluation& evaluation) const;
   Sizes sizes(const Functions& functions, const MotionState& state) const;
-  Sizes sizes(bool positions, const MotionState& state, const Matrix& rows) const;
-  Matrix matrix(const std::vector<Expr>& entries, const MotionState& state) const;
+  Sizes sizes(bool positions, const MotionState& state, const std::vector<MatrixEntry>& rows) const;
+  std::vector<MatrixEntry> numbers(const Entries& entries, const MotionState& state) const;
+  std::vector<MatrixEntry> mass_numbers(const MotionState& state) const;
+  Matrix dense(const std::vector<MatrixEntry>& entries, std::size_t rows) const;
   Matrix metric(const MotionState& state) const;
+  Vector least_step(const std::vector<MatrixEntry>& a, const Sizes& f, const std::vector<std::size_t>& chosen,
+                    const MotionState& state, const std::vector<Index>& free, Vector& weight) const;
+  bool is_sparse() const { return (rates.count() + m) * n > largest_dense; }
   bool move(MotionState& state, bool positions, const std::vector<bool>& fixed, const std::vector<bool>& active) const;
 
   std::size_t n, m;
+  MotionTerms in_terms;
   Bindings parameters;
   Expr time;
+  std::unordered_map<Expr, std::size_t, ExprHash> places;   // of q, and n later of q̇
+  std::vector<Expr> momenta;          // [n]
   std::vector<Expr> q, v;
   std::vector<bool> on_positions;     // [m]
   Functions values, rates;            // [m], [m + further]
-  std::vector<Expr> a, mass;          // [(m + further) × n], [n × n]
+  Entries a, mass;                    // [(m + further) × n], [n × n]
+  bool has_metric = true;             // false: M has too many entries, and `mass` its diagonal alone
 };
 
 ConstraintManifold::Impl::Impl(const EquationsOfMotion& equations, const std::vector<Expr>& further)
     : n(equations.system->coordinates.size()), m(equations.system->constraints.size()),
-      parameters(parameter_bindings(*equations.system)), time(equations.system->context->time()) {
+      in_terms(*equations.system), parameters(parameter_bindings(*equations.system)),
+      time(equations.system->context->time()), momenta(equations.momenta) {
   const MechanicalSystem& system = *equations.system;
   for (const Coordinate& c : system.coordinates) q.push_back(c.q), v.push_back(c.velocity);
-  const auto plain = [&](Expr e) { return in_terms_of_motion(system, expand_time_derivatives({&e, 1})).front(); };
-  const auto add_row = [&](Expr f, const std::vector<Expr>& by) {
-    for (const Expr& entry : gradient(f, by)) a.push_back(entry);
+  const SparseGradient by_q(q), by_v(v);
+  const auto plain = [&](Expr e) { return in_terms(expand_time_derivatives({&e, 1})).front(); };
+  std::size_t row = 0;
+  const auto add_row = [&](Expr f, const SparseGradient& gradient) {
+    for (const auto& [column, value] : gradient(f)) a.add(row, column, value);
+    ++row;
   };
   for (std::size_t i = 0; i < m; ++i) {
     on_positions.push_back(system.constraints[i].level == Constraint::Level::Position);
     values.add(plain(system.constraints[i].value));
     rates.add(plain(equations.constraint_rates[i]));
-    add_row(plain(system.constraints[i].value), on_positions.back() ? q : v);
+    add_row(plain(system.constraints[i].value), on_positions.back() ? by_q : by_v);
   }
   for (const Expr& f : further) {
     rates.add(plain(f));
-    add_row(plain(f), v);
+    add_row(plain(f), by_v);
   }
-  mass = in_terms_of_motion(system, mass_matrix(equations).entries);
+  const auto entries = sparse_jacobian(equations.momenta, v, is_sparse() ? most_of_metric : n * n);
+  has_metric = entries.has_value();
+  if (entries)
+    for (const JacobianEntry& e : *entries) mass.add(e.row, e.column, e.value);
+  else
+    for (std::size_t i = 0; i < n; ++i) mass.add(i, i, differentiate(equations.momenta[i], v[i]));
+  mass.values = in_terms(mass.values);
+  for (std::size_t i = 0; i < n; ++i) places.emplace(q[i], i), places.emplace(v[i], n + i);
+  for (Functions* f : {&values, &rates}) f->evaluation.emplace(f->terms);
+  for (Entries* e : {&a, &mass}) e->evaluation.emplace(e->values);
 }
 
-Bindings ConstraintManifold::Impl::bind(const MotionState& state) const {
-  Bindings out = parameters;
-  out[time] = state.t;
-  for (std::size_t i = 0; i < n; ++i) out[q[i]] = state.q[i], out[v[i]] = state.v[i];
-  return out;
+std::vector<double> ConstraintManifold::Impl::evaluate_at(const MotionState& state, const RepeatedEvaluation& evaluation) const {
+  return evaluation([&](Expr symbol) {
+    if (symbol == time) return state.t;
+    if (const auto place = places.find(symbol); place != places.end())
+      return place->second < n ? state.q[place->second] : state.v[place->second - n];
+    const auto parameter = parameters.find(symbol);
+    MAUP_REQUIRE(parameter != parameters.end() && "every symbol must be bound");
+    return parameter->second;
+  });
 }
 
 Sizes ConstraintManifold::Impl::sizes(const Functions& functions, const MotionState& state) const {
-  const std::vector<double> terms = evaluate(functions.terms, bind(state));
+  const std::vector<double> terms = evaluate_at(state, *functions.evaluation);
   Sizes out{Vector::Zero(static_cast<Index>(functions.count())), Vector::Zero(static_cast<Index>(functions.count()))};
   for (std::size_t i = 0; i < functions.count(); ++i)
     for (std::size_t k = functions.first[i]; k < functions.first[i + 1]; ++k) {
@@ -104,24 +153,32 @@ Sizes ConstraintManifold::Impl::sizes(const Functions& functions, const MotionSt
 }
 
 /// Terms hide in products of sums: what the unknowns themselves contribute counts as well.
-Sizes ConstraintManifold::Impl::sizes(bool positions, const MotionState& state, const Matrix& rows) const {
+Sizes ConstraintManifold::Impl::sizes(bool positions, const MotionState& state, const std::vector<MatrixEntry>& rows) const {
   Sizes out = sizes(positions ? values : rates, state);
   const std::vector<double>& x = positions ? state.q : state.v;
-  for (Index i = 0; i < out.scale.size(); ++i)
-    for (std::size_t j = 0; j < n; ++j)
-      if (const double size = std::abs(rows(i, static_cast<Index>(j)) * x[j]); std::isfinite(size)) out.scale[i] += size;
+  for (const MatrixEntry& e : rows)
+    if (const double size = std::abs(e.value * x[e.column]); std::isfinite(size) && static_cast<Index>(e.row) < out.scale.size())
+      out.scale[static_cast<Index>(e.row)] += size;
   return out;
 }
 
-Matrix ConstraintManifold::Impl::matrix(const std::vector<Expr>& entries, const MotionState& state) const {
-  const std::vector<double> numbers = evaluate(entries, bind(state));
-  using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  return Eigen::Map<const ByRows>(numbers.data(), static_cast<Index>(n == 0 ? 0 : numbers.size() / n), static_cast<Index>(n));
+std::vector<MatrixEntry> ConstraintManifold::Impl::numbers(const Entries& entries, const MotionState& state) const {
+  const std::vector<double> values_here = evaluate_at(state, *entries.evaluation);
+  std::vector<MatrixEntry> out;
+  out.reserve(values_here.size());
+  for (std::size_t k = 0; k < values_here.size(); ++k) out.push_back({entries.rows[k], entries.columns[k], values_here[k]});
+  return out;
+}
+
+Matrix ConstraintManifold::Impl::dense(const std::vector<MatrixEntry>& entries, std::size_t rows) const {
+  Matrix out = Matrix::Zero(static_cast<Index>(rows), static_cast<Index>(n));
+  for (const MatrixEntry& e : entries) out(static_cast<Index>(e.row), static_cast<Index>(e.column)) = e.value;
+  return out;
 }
 
 /// M, or where it is not positive definite the scaled Euclidean metric: its diagonal, 1 where that is not positive.
 Matrix ConstraintManifold::Impl::metric(const MotionState& state) const {
-  Matrix g = matrix(mass, state);
+  Matrix g = dense(numbers(mass, state), n);
   const Eigen::LLT<Matrix> cholesky(g);
   const bool definite = cholesky.info() == Eigen::Success && g.allFinite() &&
                         cholesky.matrixLLT().diagonal().cwiseAbs().minCoeff() >
@@ -177,13 +234,16 @@ double largest_relative(const Sizes& f, const std::vector<std::size_t>& chosen) 
 
 /// What is left of f_i is below the rounding of the unknowns x together, in the metric: their sizes may hide from f_i, as a
 /// spin of 200 rad/s about one axis does from the rate 0 about another.
-bool below_rounding(const Sizes& f, const std::vector<std::size_t>& chosen, const Matrix& a, const Matrix& metric, const std::vector<double>& x) {
-  const Vector lengths = metric.diagonal().cwiseAbs().cwiseSqrt();
+bool below_rounding(const Sizes& f, const std::vector<std::size_t>& chosen, const std::vector<MatrixEntry>& a,
+                    const Vector& metric_diagonal, const std::vector<double>& x) {
+  const Vector lengths = metric_diagonal.cwiseAbs().cwiseSqrt();
   const double size = lengths.cwiseProduct(Eigen::Map<const Vector>(x.data(), lengths.size())).norm();
+  Vector rows = Vector::Zero(f.value.size());
+  for (const MatrixEntry& e : a)
+    if (static_cast<Index>(e.row) < rows.size()) rows[static_cast<Index>(e.row)] += std::pow(e.value / lengths[static_cast<Index>(e.column)], 2);
   for (const std::size_t i : chosen) {
     const auto k = static_cast<Index>(i);
-    const double row = a.row(k).transpose().cwiseQuotient(lengths).norm();
-    if (!(std::abs(f.value[k]) <= std::max(reached * f.scale[k], rounding * row * size))) return false;
+    if (!(std::abs(f.value[k]) <= std::max(reached * f.scale[k], rounding * std::sqrt(rows[k]) * size))) return false;
   }
   return true;
 }
@@ -200,7 +260,31 @@ Rows weighted(const Matrix& a, const Sizes& f, const std::vector<std::size_t>& c
   return out;
 }
 
+bool all_finite(const std::vector<MatrixEntry>& entries) {
+  return std::all_of(entries.begin(), entries.end(), [](const MatrixEntry& e) { return std::isfinite(e.value); });
+}
+
 }  // namespace
+
+std::vector<MatrixEntry> ConstraintManifold::Impl::mass_numbers(const MotionState& state) const {
+  if (has_metric) return numbers(mass, state);
+  return {};
+}
+
+/// `weight`: by what each chosen row is multiplied so that its length is 1.
+Vector ConstraintManifold::Impl::least_step(const std::vector<MatrixEntry>& all, const Sizes& f,
+                                            const std::vector<std::size_t>& chosen, const MotionState& state,
+                                            const std::vector<Index>& free, Vector& weight) const {
+  if (!is_sparse()) {
+    const Rows rows = weighted(dense(all, rates.count()), f, chosen);
+    weight = rows.weight;
+    return maupertuis::least_step(rows.a, rows.error, metric(state), free);
+  }
+  SparseStep step(n, free);
+  weight = step.set_rows(all, chosen);
+  step.set_metric(mass_numbers(state));
+  return step.solve(chosen_values(f, chosen).cwiseProduct(weight));
+}
 
 bool ConstraintManifold::Impl::move(MotionState& state, bool positions, const std::vector<bool>& fixed,
                                     const std::vector<bool>& active) const {
@@ -213,29 +297,39 @@ bool ConstraintManifold::Impl::move(MotionState& state, bool positions, const st
     if (!fixed[i]) free.push_back(static_cast<Index>(i));
 
   std::vector<double>& x = positions ? state.q : state.v;
-  Matrix all = matrix(a, state);
+  std::vector<MatrixEntry> all = numbers(a, state);
   Sizes f = sizes(positions, state, all);
   double error = largest_relative(f, chosen);
+  double checkpoint = HUGE_VAL;
   for (int turn = 0; turn < most_turns && error > rounding && !free.empty(); ++turn) {
-    if (!all.allFinite() || !f.value.allFinite()) return false;
-    const Rows rows = weighted(all, f, chosen);
-    const Vector step = least_step(rows.a, rows.error, metric(state), free);
+    if (!all_finite(all) || !f.value.allFinite()) return false;
+    Vector weight;
+    const Vector step = least_step(all, f, chosen, state, free, weight);
+    const double error_before = chosen_values(f, chosen).cwiseProduct(weight).norm();
     const std::vector<double> before = x;
     bool closer = false;
-    for (double damping = 1; !closer && damping > 1e-9; damping /= 2) {
+    // With thousands of rows a turn costs: what creeps, or is met to rounding, is not gone on with.
+    if (is_sparse() && turn % turns_to_halve == 0) {
+      if (error_before > checkpoint / 2) break;
+      checkpoint = error_before;
+    }
+    const double smallest_damping = !is_sparse() ? 1e-9 : error <= reached ? 0.2 : 1e-3;
+    for (double damping = 1; !closer && damping > smallest_damping; damping /= 2) {
       for (std::size_t i = 0; i < n; ++i) x[i] = before[i] + damping * step[static_cast<Index>(i)];
       f = sizes(functions, state);
-      closer = chosen_values(f, chosen).cwiseProduct(rows.weight).norm() < rows.error.norm();
+      closer = chosen_values(f, chosen).cwiseProduct(weight).norm() < error_before;
     }
     if (!closer) {
       x = before;
       break;
     }
-    all = matrix(a, state);
+    all = numbers(a, state);
     f = sizes(positions, state, all);
     error = largest_relative(f, chosen);
   }
-  return error <= reached || below_rounding(f, chosen, all, metric(state), x);
+  if (error <= reached) return true;
+  const Vector diagonal = is_sparse() ? positive_diagonal(mass_numbers(state), n) : Vector(metric(state).diagonal());
+  return below_rounding(f, chosen, all, diagonal, x);
 }
 
 ConstraintManifold::ConstraintManifold(const EquationsOfMotion& equations, std::vector<Expr> rates)
@@ -245,10 +339,10 @@ ConstraintManifold::ConstraintManifold(ConstraintManifold&&) noexcept = default;
 
 namespace {
 
-std::vector<double> by_rows(const Matrix& m, std::size_t rows) {
-  std::vector<double> out;
-  for (Index i = 0; i < static_cast<Index>(rows); ++i)
-    for (Index j = 0; j < m.cols(); ++j) out.push_back(m(i, j));
+std::vector<double> by_rows(const std::vector<MatrixEntry>& entries, std::size_t rows, std::size_t columns) {
+  std::vector<double> out(rows * columns, 0);
+  for (const MatrixEntry& e : entries)
+    if (e.row < rows) out[e.row * columns + e.column] = e.value;
   return out;
 }
 
@@ -264,10 +358,26 @@ std::vector<double> relative(const Sizes& f) {
 
 std::size_t ConstraintManifold::constraints() const { return impl_->m; }
 std::vector<double> ConstraintManifold::matrix(const MotionState& state) const {
-  return by_rows(impl_->matrix(impl_->a, state), impl_->m);
+  return by_rows(impl_->numbers(impl_->a, state), impl_->m, impl_->n);
 }
 std::vector<double> ConstraintManifold::mass(const MotionState& state) const {
-  return by_rows(impl_->matrix(impl_->mass, state), impl_->n);
+  if (impl_->has_metric) return by_rows(impl_->numbers(impl_->mass, state), impl_->n, impl_->n);
+  Entries all;
+  for (const JacobianEntry& e : jacobian(impl_->momenta, impl_->v)) all.add(e.row, e.column, e.value);
+  all.values = impl_->in_terms(all.values);
+  all.evaluation.emplace(all.values);
+  return by_rows(impl_->numbers(all, state), impl_->n, impl_->n);
+}
+std::vector<MatrixEntry> ConstraintManifold::matrix_entries(const MotionState& state) const {
+  std::vector<MatrixEntry> out = impl_->numbers(impl_->a, state);
+  std::erase_if(out, [&](const MatrixEntry& e) { return e.row >= impl_->m; });
+  return out;
+}
+std::vector<double> ConstraintManifold::mass_diagonal(const MotionState& state) const {
+  std::vector<double> out(impl_->n, 0);
+  for (const MatrixEntry& e : impl_->numbers(impl_->mass, state))
+    if (e.row == e.column) out[e.row] = e.value;
+  return out;
 }
 std::vector<double> ConstraintManifold::values(const MotionState& state) const {
   return list(impl_->sizes(impl_->values, state).value, impl_->m);
@@ -276,13 +386,13 @@ std::vector<double> ConstraintManifold::rates(const MotionState& state) const {
   return list(impl_->sizes(impl_->rates, state).value, impl_->m);
 }
 std::vector<double> ConstraintManifold::relative_values(const MotionState& state) const {
-  std::vector<double> out = relative(impl_->sizes(true, state, impl_->matrix(impl_->a, state)));
+  std::vector<double> out = relative(impl_->sizes(true, state, impl_->numbers(impl_->a, state)));
   for (std::size_t i = 0; i < out.size(); ++i)
     if (!impl_->on_positions[i]) out[i] = 0;
   return out;
 }
 std::vector<double> ConstraintManifold::relative_rates(const MotionState& state) const {
-  return relative(impl_->sizes(false, state, impl_->matrix(impl_->a, state)));
+  return relative(impl_->sizes(false, state, impl_->numbers(impl_->a, state)));
 }
 bool ConstraintManifold::move_positions(MotionState& state, const std::vector<bool>& fixed, const std::vector<bool>& active) const {
   return impl_->move(state, true, fixed, active);

@@ -1,4 +1,5 @@
 #include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/jacobian.hpp>
 
 #include <array>
 
@@ -51,10 +52,16 @@ void add_constraints(EquationsOfMotion& equations, const MechanicalSystem& syste
 /// λ·A q̇ on the constraints, where A q̇ = −∂φ/∂t, or q̇·∂ψ/∂q̇ − ψ: zero for constraints that do no work.
 Expr constraint_power(const MechanicalSystem& system, const ExprVector& velocities) {
   Context& context = *system.context;
+  const SparseGradient by_velocities(velocities);
+  const auto work = [&](Expr value) {
+    ExprVector terms;
+    for (const auto& [i, entry] : by_velocities(value)) terms.push_back(velocities[i] * entry);
+    return context.sum(terms);
+  };
   ExprVector terms;
   for (const Constraint& c : system.constraints) {
     if (c.level == Constraint::Level::Position) terms.push_back(-(c.multiplier * explicit_rate(c.value)));
-    else terms.push_back(c.multiplier * (dot(velocities, gradient(c.value, velocities), context) - c.value));
+    else terms.push_back(c.multiplier * (work(c.value) - c.value));
   }
   return context.sum(terms);
 }
@@ -101,10 +108,8 @@ std::optional<EquationsOfMotion> euler_lagrange(std::shared_ptr<const Mechanical
 ExprMatrix mass_matrix(const EquationsOfMotion& equations) {
   const ExprVector velocities = symbols_of_order(*equations.system, 1);
   const std::size_t n = velocities.size();
-  ExprMatrix m{n, n, {}};
-  m.entries.reserve(n * n);
-  for (const Expr& momentum : equations.momenta)
-    for (const Expr& entry : gradient(momentum, velocities)) m.entries.push_back(entry);
+  ExprMatrix m{n, n, ExprVector(n * n, equations.system->context->number(0))};
+  for (const auto& [row, column, value] : jacobian(equations.momenta, velocities)) m.entries[row * n + column] = value;
   return m;
 }
 
@@ -118,9 +123,13 @@ ExprVector bias(const EquationsOfMotion& equations) {
 ExprMatrix constraint_matrix(const EquationsOfMotion& equations) {
   const MechanicalSystem& system = *equations.system;
   const ExprVector q = symbols_of_order(system, 0), velocities = symbols_of_order(system, 1);
-  ExprMatrix a{system.constraints.size(), q.size(), {}};
-  for (const Constraint& c : system.constraints)
-    for (const Expr& entry : gradient(c.value, c.level == Constraint::Level::Position ? q : velocities)) a.entries.push_back(entry);
+  const SparseGradient by_q(q), by_velocities(velocities);
+  ExprMatrix a{system.constraints.size(), q.size(), ExprVector(system.constraints.size() * q.size(), system.context->number(0))};
+  for (std::size_t k = 0; k < a.rows; ++k) {
+    const Constraint& c = system.constraints[k];
+    for (const auto& [column, value] : (c.level == Constraint::Level::Position ? by_q : by_velocities)(c.value))
+      a.entries[k * a.columns + column] = value;
+  }
   return a;
 }
 

@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t attempts = 40;
 constexpr std::size_t wanted = 4;
+constexpr std::size_t many = 128;      // coordinates
 constexpr double near = 0.1;           // of the reach of a coordinate: on the branch of the start
 constexpr double longest_time = 0.01;  // s after the start: driven linkages need not close much later
 
@@ -57,7 +58,9 @@ class Sampler {
     MotionState state = from;
     state.t += longest_time * std::abs(random());
     for (std::size_t i = 0; i < state.q.size(); ++i) {
-      state.q[i] += size * std::max(reach_[i], std::abs(from.q[i])) * random();
+      // The far end of a long chain is not scattered by a tenth of its distance from the origin.
+      const double scale = state.q.size() > many ? reach_[i] : std::max(reach_[i], std::abs(from.q[i]));
+      state.q[i] += size * scale * random();
       state.v[i] += reach_[i] * random();
     }
     last_ = state;

@@ -2,21 +2,29 @@
 
 namespace maupertuis {
 
-std::vector<Expr> in_terms_of_motion(const MechanicalSystem& system, std::span<const Expr> expressions) {
-  ExprMap replacements;
+MotionTerms::MotionTerms(const MechanicalSystem& system)
+    : twice_(!system.inputs.empty() && !system.definitions.empty()) {
   for (const Definition& d : system.definitions)
-    if (d.symbol) replacements.emplace(d.symbol, d.value);
+    if (d.symbol) replacements_.emplace(d.symbol, d.value);
   for (const Input& input : system.inputs) {
     // Residuals and powers hold u and u'; certificates go no further than u''.
     Expr symbol = input.symbol, formula = input.formula;
     for (int order = 0; order <= 2; ++order) {
-      replacements.emplace(symbol, formula);
+      replacements_.emplace(symbol, formula);
       symbol = system.context->time_derivative(symbol);
       formula = total_time_derivative(formula);
     }
   }
-  std::vector<Expr> once = substitute(expressions, replacements);
-  return system.inputs.empty() || system.definitions.empty() ? once : substitute(once, replacements);
+}
+
+std::vector<Expr> MotionTerms::operator()(std::span<const Expr> expressions) const {
+  if (replacements_.empty()) return {expressions.begin(), expressions.end()};
+  std::vector<Expr> once = substitute(expressions, replacements_);
+  return twice_ ? substitute(once, replacements_) : once;
+}
+
+std::vector<Expr> in_terms_of_motion(const MechanicalSystem& system, std::span<const Expr> expressions) {
+  return MotionTerms(system)(expressions);
 }
 
 Bindings parameter_bindings(const MechanicalSystem& system) {

@@ -42,7 +42,7 @@ std::vector<std::size_t> independent_rows(const Eigen::MatrixXd& m) {
   for (Eigen::Index i = 0; i < m.rows(); ++i) {
     Eigen::MatrixXd trial(basis.rows() + 1, m.cols());
     trial << basis, m.row(i);
-    if (numerical_rank(trial) < static_cast<std::size_t>(trial.rows()) || m.row(i).norm() == 0) continue;
+    if (m.row(i).norm() == 0 || numerical_rank(trial) < static_cast<std::size_t>(trial.rows())) continue;
     basis = std::move(trial);
     chosen.push_back(static_cast<std::size_t>(i));
   }

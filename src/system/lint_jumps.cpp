@@ -1,5 +1,6 @@
 #include "system/lint.hpp"
 
+#include <maupertuis/kinds.hpp>
 #include <maupertuis/switch_text.hpp>
 #include <maupertuis/switches.hpp>
 
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_set>
 
 /// What jumps at a switch gives an impulse, which the equations of motion do not contain.
 ///
@@ -45,11 +47,28 @@ class Continuity {
   /// E0431: before the energies, which jump where the points do.
   bool positions() {
     bool jumps = false;
+    struct Placed {
+      ExprVector components;
+      std::string what;
+      Span span;
+    };
+    std::vector<Placed> all;
     for (const Point& p : s_.system.points)
-      if (p.mass) jumps |= position_jumps(p.position, fmt::format("the position of {}", p.name), p.span);
+      if (p.mass) all.push_back({p.position, fmt::format("the position of {}", p.name), p.span});
     for (const Body& b : s_.system.bodies) {
-      jumps |= b.mass && position_jumps(b.position, fmt::format("the position of {}", b.name), b.span);
-      jumps |= position_jumps(b.rotation.entries, fmt::format("the orientation of {}", b.name), b.span);
+      if (b.mass) all.push_back({b.position, fmt::format("the position of {}", b.name), b.span});
+      all.push_back({b.rotation.entries, fmt::format("the orientation of {}", b.name), b.span});
+    }
+    ExprVector together;   // what stands below many positions is walked once
+    for (const Placed& x : all) together.insert(together.end(), x.components.begin(), x.components.end());
+    together = moving(together);
+    const auto switched = above_switches(together);
+    auto next = together.begin();
+    for (const Placed& x : all) {
+      const ExprVector functions(next, next + static_cast<std::ptrdiff_t>(x.components.size()));
+      next += static_cast<std::ptrdiff_t>(x.components.size());
+      if (std::any_of(functions.begin(), functions.end(), [&](Expr e) { return switched.count(e.id()) != 0; }))
+        jumps |= position_jumps(functions, x.what, x.span);
     }
     return jumps;
   }
@@ -58,7 +77,8 @@ class Continuity {
   void lagrangian() {
     std::vector<Part> parts;
     const auto add = [&](const std::vector<EnergyTerm>& terms, int sign, const char* letter) {
-      for (const EnergyTerm& t : terms) parts.push_back({sign * moving(t.value), &t, letter});
+      const ExprVector values = moving(values_of(terms));
+      for (std::size_t i = 0; i < terms.size(); ++i) parts.push_back({sign * values[i], &terms[i], letter});
     };
     if (s_.system.lagrangian_given) {
       parts.push_back({moving(s_.system.lagrangian_given->value), &*s_.system.lagrangian_given, "L"});
@@ -78,7 +98,9 @@ class Continuity {
   /// E0430: the force is ∂D/∂q̇.
   void dissipation() {
     std::vector<Part> parts;
-    for (const EnergyTerm& t : s_.system.dissipation) parts.push_back({moving(t.value), &t, "D"});
+    const std::vector<EnergyTerm>& terms = s_.system.dissipation;
+    const ExprVector moved = moving(values_of(terms));
+    for (std::size_t i = 0; i < terms.size(); ++i) parts.push_back({moved[i], &terms[i], "D"});
     ExprVector values;
     for (const Part& p : parts) values.push_back(p.value);
     if (!values.empty())
@@ -114,8 +136,27 @@ class Continuity {
     return out;
   }
 
+  static ExprVector values_of(const std::vector<EnergyTerm>& terms) {
+    ExprVector out;
+    for (const EnergyTerm& t : terms) out.push_back(t.value);
+    return out;
+  }
+
   /// In q, q̇, t and parameters.
-  Expr moving(Expr e) const { return substitute(expand_time_derivatives(e), formulas_); }
+  Expr moving(Expr e) const { return moving(ExprVector{e}).front(); }
+  ExprVector moving(const ExprVector& list) const { return substitute(expand_time_derivatives(list), formulas_); }
+
+  /// The nodes below the roots from which one that switches can be reached.
+  static std::unordered_set<NodeId> above_switches(const ExprVector& roots) {
+    std::unordered_set<NodeId> out;
+    for (const Expr& node : topological_order(roots)) {
+      const auto arguments = node.argument_ids();
+      if (has_switch(node.kind()) || std::any_of(arguments.begin(), arguments.end(), [&](NodeId id) { return out.count(id) != 0; }))
+        out.insert(node.id());
+    }
+    return out;
+  }
+
   /// The parameters as the exact numbers that they are: pieces that meet for 0.1 and 0.3 meet to the last digit.
   ExprVector in_numbers(std::span<const Expr> expressions) const { return substitute(expressions, values_); }
 
@@ -254,9 +295,7 @@ class Continuity {
         "Let ∂L/∂q' pass the switch without a jump, for example sqrt(v^2 + d^2) for abs(v).");
   }
 
-  bool position_jumps(const ExprVector& position, const std::string& what, Span span) {
-    ExprVector functions;
-    for (const Expr& e : position) functions.push_back(moving(e));
+  bool position_jumps(const ExprVector& functions, const std::string& what, Span span) {
     const ExprVector switches = switches_in(functions);
     for (const SwitchSample& x : sample_switches(in_numbers(functions), in_numbers(switches), search_))
       for (const double jump : x.jump)

@@ -1,3 +1,4 @@
+#include "system/kinetic_form.hpp"
 #include "system/lint_manifold.hpp"
 
 #include <fmt/format.h>
@@ -10,6 +11,9 @@
 /// constraints it may be singular, as long as it is regular on the directions that they leave.
 namespace maupertuis::lint_rules {
 namespace {
+
+/// Beyond this number of coordinates M is made only where the form of the kinetic energy leaves a question.
+constexpr std::size_t largest_looked_at_whole = 40;
 
 /// M at a point. Up to a dozen freedoms by exact second derivatives; beyond, by unit differences of the momenta, which
 /// are exact where T is quadratic in the velocities. Empty where L is undefined.
@@ -252,6 +256,8 @@ void note_of_tied_coordinates(Subject& s, const Row& massless) {
 }  // namespace
 
 bool mass_matrix_rules(Subject& s, const std::vector<bool>& unused) {
+  // What is regular everywhere is regular on the constraints.
+  if (s.freedoms() > largest_looked_at_whole && kinetic_form_is_definite(s, sample(s, 0))) return false;
   const MassMatrix matrix(s);
   const Manifold manifold(s);
   const Findings found = examine(s, matrix, manifold, {});

@@ -1,3 +1,4 @@
+#include <maupertuis/jacobian.hpp>
 #include <maupertuis/mechanical_system.hpp>
 #include <maupertuis/transform.hpp>
 
@@ -48,6 +49,7 @@ ExprVector MechanicalSystem::generalized_forces() const {
     q.push_back(c.q);
     velocities.push_back(c.velocity);
   }
+  const SparseGradient by_q(q), by_velocities(velocities);
   std::vector<ExprVector> terms(coordinates.size());
   for (const AppliedForce& f : forces) {
     if (f.kind == AppliedForce::Kind::Generalized) {
@@ -56,8 +58,8 @@ ExprVector MechanicalSystem::generalized_forces() const {
     }
     const ExprVector lever = expand_time_derivatives(f.lever);
     for (std::size_t k = 0; k < lever.size(); ++k) {
-      const ExprVector arm = gradient(lever[k], f.kind == AppliedForce::Kind::OnPoint ? q : velocities);
-      for (std::size_t i = 0; i < arm.size(); ++i) terms[i].push_back(f.components[k] * arm[i]);
+      for (const auto& [i, arm] : (f.kind == AppliedForce::Kind::OnPoint ? by_q : by_velocities)(lever[k]))
+        terms[i].push_back(f.components[k] * arm);
     }
   }
   ExprVector out;

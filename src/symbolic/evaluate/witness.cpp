@@ -1,3 +1,5 @@
+#include <maupertuis/seen_nonzero.hpp>
+
 #include "symbolic/evaluate/witness.hpp"
 
 #include "symbolic/evaluate/interval.hpp"
@@ -23,8 +25,17 @@ Bindings random_real_point(const Tape& tape, int trial, std::uint64_t seed) {
   return point;
 }
 
+namespace {
+
+using Range = Interval<double>;
+
+bool excludes_zero(const Range& v) {
+  return !v.is_nan() && !v.contains_zero() && std::isfinite(v.low) && std::isfinite(v.high);
+}
+
+}  // namespace
+
 std::optional<Witness> find_witness(const Tape& tape, int points, std::uint64_t seed) {
-  using Range = Interval<double>;
   std::vector<Range> values;
   for (int trial = 0; trial < points; ++trial) {
     const Bindings point = random_real_point(tape, trial, seed);
@@ -32,11 +43,30 @@ std::optional<Witness> find_witness(const Tape& tape, int points, std::uint64_t 
     run(tape, numbers, values);
     for (std::size_t i = 0; i < tape.roots().size(); ++i) {
       const Range& v = values[tape.roots()[i]];
-      if (!v.is_nan() && !v.contains_zero() && std::isfinite(v.low) && std::isfinite(v.high))
-        return Witness{point, v.low / 2 + v.high / 2, i};
+      if (excludes_zero(v)) return Witness{point, v.low / 2 + v.high / 2, i};
     }
   }
   return std::nullopt;
 }
 
 }  // namespace maupertuis::evaluation
+
+namespace maupertuis {
+
+std::vector<bool> seen_nonzero(std::span<const Expr> expressions) {
+  using namespace evaluation;
+  std::vector<bool> seen(expressions.size(), false);
+  if (expressions.empty()) return seen;
+  const Tape tape(expressions);
+  std::vector<Range> values;
+  for (int trial = 0; trial < 2; ++trial) {
+    const Bindings point = random_real_point(tape, trial, ZeroTestOptions{}.seed);
+    RealNumbers<Range> numbers([&](Expr symbol) { const double x = point.at(symbol); return Range{x, x}; });
+    run(tape, numbers, values);
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      if (excludes_zero(values[tape.roots()[i]])) seen[i] = true;
+  }
+  return seen;
+}
+
+}  // namespace maupertuis

@@ -7,7 +7,7 @@ namespace maupertuis {
 
 std::vector<Expr> gradient(Expr e, std::span<const Expr> symbols) {
   MAUP_REQUIRE(!e.context().has_time_derivative(e.id()));
-  const auto adjoints = reverse_sweep(e, symbols);
+  const auto adjoints = reverse_sweep(e, places_of(symbols));
   std::vector<Expr> derivatives;
   derivatives.reserve(symbols.size());
   for (const Expr& symbol : symbols) {
@@ -21,7 +21,7 @@ std::vector<Expr> variational_residual(Expr lagrangian, std::span<const Expr> co
   Context& context = lagrangian.context();
   std::vector<Expr> symbols(coordinates.begin(), coordinates.end());
   for (const Expr& q : coordinates) symbols.push_back(context.time_derivative(q));
-  const auto adjoints = reverse_sweep(lagrangian, symbols);
+  const auto adjoints = reverse_sweep(lagrangian, places_of(symbols));
   const auto adjoint_of = [&](Expr symbol) {
     const auto found = adjoints.find(symbol.id());
     return found == adjoints.end() ? context.number(0) : found->second;

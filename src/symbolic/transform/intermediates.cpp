@@ -1,5 +1,8 @@
+#include <maupertuis/shared_form.hpp>
+
 #include "symbolic/transform/intermediates.hpp"
 #include "symbolic/transform/rebuild.hpp"
+#include "symbolic/transform/reverse_sweep.hpp"
 
 #include <algorithm>
 #include <string>
@@ -12,16 +15,17 @@ namespace {
 /// Names that nothing in the context has yet: c2 and s2 for the cosine and sine of the second coordinate, k1, k2, …
 class FreshNames {
  public:
-  FreshNames(Context& context, const ReadingOrder& order) : context_(context), order_(order) {
+  FreshNames(Context& context, const ReadingOrder& order) : context_(context), places_(places_of(order.coordinates)) {
     for (NodeId id = 1; id <= context.node_count(); ++id)
       if (const Expr e = context.node(id); e.is_symbol()) taken_.insert(e.name());
   }
 
   Expr name_for(Expr value) {
     if (value.is(Kind::Sin) || value.is(Kind::Cos)) {
-      const auto place = std::find(order_.coordinates.begin(), order_.coordinates.end(), value[0]);
-      const std::string name = (value.is(Kind::Sin) ? "s" : "c") + std::to_string(place - order_.coordinates.begin() + 1);
-      if (place != order_.coordinates.end() && taken_.insert(name).second) return symbol(name);
+      if (const auto place = places_.find(value[0].id()); place != places_.end()) {
+        const std::string name = (value.is(Kind::Sin) ? "s" : "c") + std::to_string(place->second + 1);
+        if (taken_.insert(name).second) return symbol(name);
+      }
     }
     std::string name;
     do name = "k" + std::to_string(++last_);
@@ -33,7 +37,7 @@ class FreshNames {
   Expr symbol(const std::string& name) { return context_.symbol(name, Role::Auxiliary); }
 
   Context& context_;
-  const ReadingOrder& order_;
+  std::unordered_map<NodeId, std::size_t> places_;   // of the coordinates
   std::unordered_set<std::string> taken_;
   int last_ = 0;
 };
@@ -85,6 +89,46 @@ std::vector<Row> split(std::span<const Expr> rows, const std::vector<Expr>& acce
   return result;
 }
 
+/// What stands in several places of the roots gets a name, children first, so that every value is written in names that
+/// stand before it.
+class NamedParts {
+ public:
+  NamedParts(std::span<const Expr> roots, const ReadingOrder& order, std::span<const Intermediate> known)
+      : names_(roots.front().context(), order) {
+    for (const Intermediate& i : known) known_.emplace(i.value, i.symbol);
+    const std::vector<Expr> nodes = topological_order(roots);
+    std::unordered_map<NodeId, int> uses;
+    for (const Expr& root : roots) ++uses[root.id()];
+    for (const Expr& node : nodes)
+      for (const NodeId argument : node.argument_ids()) ++uses[argument];
+    for (const Expr& node : nodes) {
+      Expr value = rebuild(node, [&](Expr argument) { return written_.at(argument.id()); });
+      if (const auto name = known_.find(value); name != known_.end()) value = name->second;
+      else if (uses[node.id()] > 1 && !is_small(value) && !is_condition(node.kind())) value = named(value);
+      written_.emplace(node.id(), value);
+    }
+  }
+
+  Expr written(Expr e) const { return written_.at(e.id()); }
+  std::vector<Intermediate> intermediates;
+
+ private:
+  Expr named(Expr value) {
+    intermediates.push_back({names_.name_for(value), value});
+    return intermediates.back().symbol;
+  }
+
+  FreshNames names_;
+  ExprMap known_;                                // values that have a name already
+  std::unordered_map<NodeId, Expr> written_;
+};
+
+/// The terms of a sum, of the sums that are its terms, and so on: opposite ones meet.
+void gather_terms(Expr e, std::vector<Expr>& terms) {
+  if (!e.is(Kind::Sum)) return terms.push_back(e);
+  for (std::size_t i = 0; i < e.size(); ++i) gather_terms(e[i], terms);
+}
+
 }  // namespace
 
 std::vector<ReadableForm> with_intermediates(std::span<const Expr> rows, const ReadingOrder& order) {
@@ -96,36 +140,35 @@ std::vector<ReadableForm> with_intermediates(std::span<const Expr> rows, const R
     roots.insert(roots.end(), row.coefficients.begin(), row.coefficients.end());
     roots.push_back(row.rest);
   }
-
-  const std::vector<Expr> nodes = topological_order(roots);
-  std::unordered_map<NodeId, int> uses;
-  for (const Expr& root : roots) ++uses[root.id()];
-  for (const Expr& node : nodes)
-    for (const NodeId argument : node.argument_ids()) ++uses[argument];
-
-  // Children first, so that every value is written in names that stand before it.
-  FreshNames names(context, order);
-  std::unordered_map<NodeId, Expr> written;
-  std::vector<Intermediate> intermediates;
-  for (const Expr& node : nodes) {
-    Expr value = rebuild(node, [&](Expr argument) { return written.at(argument.id()); });
-    if (uses[node.id()] > 1 && !is_small(value) && !is_condition(node.kind())) {
-      intermediates.push_back({names.name_for(value), value});
-      value = intermediates.back().symbol;
-    }
-    written.emplace(node.id(), value);
-  }
-
+  const NamedParts parts(roots, order, {});
   std::vector<ReadableForm> forms;
   for (const Row& row : split_rows) {
     std::vector<Expr> terms;
-    for (std::size_t j = 0; j < rates.size(); ++j) terms.push_back(written.at(row.coefficients[j].id()) * rates[j]);
-    const Expr rest = written.at(row.rest.id());
+    for (std::size_t j = 0; j < rates.size(); ++j) terms.push_back(parts.written(row.coefficients[j]) * rates[j]);
+    const Expr rest = parts.written(row.rest);
     if (!rest.is(Kind::Sum)) terms.push_back(rest);
     else for (std::size_t i = 0; i < rest.size(); ++i) terms.push_back(rest[i]);
-    forms.push_back({context.sum(terms), intermediates, {}});
+    forms.push_back({context.sum(terms), parts.intermediates, {}});
   }
   return forms;
 }
 
 }  // namespace maupertuis::terms
+
+namespace maupertuis {
+
+SharedForm shared_form(std::span<const Expr> rows, const ReadingOrder& order, std::span<const Intermediate> known) {
+  SharedForm form;
+  if (rows.empty()) return form;
+  const std::vector<Expr> expanded = expand_time_derivatives(rows);
+  const terms::NamedParts parts(expanded, order, known);
+  for (const Expr& row : expanded) {
+    std::vector<Expr> summands;
+    terms::gather_terms(parts.written(row), summands);
+    form.rows.push_back(row.context().sum(summands));
+  }
+  form.intermediates = parts.intermediates;
+  return form;
+}
+
+}  // namespace maupertuis

@@ -1,4 +1,4 @@
-#include <maupertuis/transform.hpp>
+#include <maupertuis/shared_form.hpp>
 
 #include "symbolic/transform/candidates.hpp"
 #include "symbolic/transform/denominators.hpp"
@@ -52,6 +52,17 @@ Expr readable_row(CandidateChooser& chooser, const Polynomial& p) {
   return chooser.cost()(other) < chooser.cost()(plain) ? other : plain;
 }
 
+/// Of so many rows the first one alone lists the intermediates, and none is collected by its accelerations.
+constexpr std::size_t most_rows_listed_whole = 100;
+
+std::vector<ReadableForm> by_shared_parts(std::span<const Expr> expanded, const ReadingOrder& order) {
+  SharedForm shared = shared_form(expanded, order);
+  std::vector<ReadableForm> rows;
+  for (const Expr& row : shared.rows) rows.push_back({row, {}, {}});
+  rows.front().intermediates = std::move(shared.intermediates);
+  return rows;
+}
+
 }  // namespace
 
 ReadableForm readable(Expr e, const ReadingOrder& order, const ReadableOptions& options) {
@@ -85,7 +96,8 @@ std::vector<ReadableForm> readable_equations(std::span<const Expr> residuals, co
       rows.push_back({readable_row(chooser, polynomials[i]), {}, own});
     }
   } catch (const terms::TooManyTerms&) {
-    rows = terms::with_intermediates(expanded, order);
+    rows = expanded.size() > most_rows_listed_whole ? by_shared_parts(expanded, order)
+                                                     : terms::with_intermediates(expanded, order);
     for (std::size_t i = 0; rows_are_coordinates && i < rows.size(); ++i) rows[i].own = order.coordinates[i];
   }
   return rows;

@@ -2,18 +2,22 @@
 
 #include "symbolic/transform/derivative_rules.hpp"
 
+#include <algorithm>
 #include <unordered_set>
 
 namespace maupertuis {
 namespace {
 
-/// The nodes of `order` from which a symbol can be reached.
-std::unordered_set<NodeId> active_nodes(const std::vector<Expr>& order, std::span<const Expr> symbols) {
+/// The nodes of `order` from which a wanted symbol can be reached.
+std::unordered_set<NodeId> active_nodes(const std::vector<Expr>& order,
+                                        const std::unordered_map<NodeId, std::size_t>& wanted) {
   std::unordered_set<NodeId> active;
-  for (const Expr& symbol : symbols) active.insert(symbol.id());
-  for (const Expr& node : order)
-    for (const NodeId argument : node.argument_ids())
-      if (active.count(argument)) { active.insert(node.id()); break; }
+  for (const Expr& node : order) {
+    const auto arguments = node.argument_ids();
+    if (wanted.count(node.id()) != 0 ||
+        std::any_of(arguments.begin(), arguments.end(), [&](NodeId id) { return active.count(id) != 0; }))
+      active.insert(node.id());
+  }
   return active;
 }
 
@@ -24,10 +28,17 @@ Expr passed_to_argument(Expr node, std::size_t index, Expr adjoint) {
 
 }  // namespace
 
-std::unordered_map<NodeId, Expr> reverse_sweep(Expr e, std::span<const Expr> symbols) {
+std::unordered_map<NodeId, std::size_t> places_of(std::span<const Expr> symbols) {
+  std::unordered_map<NodeId, std::size_t> places;
+  places.reserve(symbols.size());
+  for (std::size_t i = 0; i < symbols.size(); ++i) places.emplace(symbols[i].id(), i);
+  return places;
+}
+
+std::unordered_map<NodeId, Expr> reverse_sweep(Expr e, const std::unordered_map<NodeId, std::size_t>& wanted) {
   Context& context = e.context();
   const auto order = topological_order({&e, 1});
-  const auto active = active_nodes(order, symbols);
+  const auto active = active_nodes(order, wanted);
   std::unordered_map<NodeId, std::vector<Expr>> contributions;
   std::unordered_map<NodeId, Expr> adjoints;
   if (!active.count(e.id())) return adjoints;
