@@ -24,7 +24,7 @@ bool refuse_acceleration_of_start(Elaboration& e, const Expression& x) {
 std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
   if (const std::optional<std::size_t> q = quaternion_component(e, x)) {
     if (refuse_acceleration_of_start(e, x)) return std::nullopt;
-    return StartValue{*q, x.primes, {}, {}};
+    return StartValue{*q, x.primes, {}, {}, {}, 1};
   }
   if (x.kind == Expression::Kind::Member) {
     const Declaration* base =
