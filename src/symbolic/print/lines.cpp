@@ -107,7 +107,7 @@ class Breaker {
   Pieces product(const std::vector<Layout>& parts) const {
     std::size_t widest = 0;
     for (std::size_t i = 1; i < parts.size(); ++i)
-      if (width(parts[i]) > width(parts[widest])) widest = i;
+      if (room_in(parts[i]) > room_in(parts[widest])) widest = i;
     Pieces pieces = needs_brackets(parts, widest) ? in_brackets(parts[widest], {}) : whole(parts[widest]);
     const auto at = parts.begin() + static_cast<std::ptrdiff_t>(widest);
     if (at + 1 != parts.end()) put_product_behind(pieces, factors({at + 1, parts.end()}));
@@ -130,6 +130,12 @@ class Breaker {
     pieces.insert(pieces.end(), more.begin(), more.end());
   }
 
+  /// How much a factor gives when it is broken: an inverse, 1/(a + b), stays as it is.
+  static double room_in(const Layout& l) {
+    const bool inverse = l.shape == Shape::Quotient && l.parts[0].shape == Shape::Number;
+    return inverse ? 0 : width(l);
+  }
+
   /// Broken though it may fit by itself: it stands beside others.
   Pieces whole(const Layout& l) const { return Breaker(std::min(line_, width(l) * 0.99)).term(l); }
 
@@ -140,6 +146,12 @@ class Breaker {
 
   /// (a + b)/c with a wide numerator reads 1/c (a + b); with a wide denominator the two stand on either side of a slash.
   Pieces quotient(const Layout& above, const Layout& below) const {
+    if (fits(below) && above.shape == Shape::Number) {
+      Layout whole;
+      whole.shape = Shape::Quotient;
+      whole.parts = {above, below};
+      return {whole};
+    }
     if (fits(below)) {
       Layout inverse;
       inverse.shape = Shape::Quotient;

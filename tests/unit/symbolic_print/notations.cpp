@@ -162,7 +162,7 @@ TEST_CASE("LaTeX") {
   CHECK(n.latex(pow(sin(n.a), Rational(2))) == "\\sin^{2} \\theta_1");
   CHECK(n.latex(n.m * n.g * n.l) == "m\\, g\\, l");
   CHECK(n.latex(n.k / (n.m + n.k / n.l)) == "\\frac{k}{m + \\frac{k}{l}}");
-  CHECK(n.latex(n.m * pow(n.l + n.k / n.l, Rational(2))) == "m \\left(l + \\frac{k}{l}\\right)^{2}");
+  CHECK(n.latex(n.m * pow(n.l + n.k / n.l, Rational(2))) == "\\left(l + \\frac{k}{l}\\right)^{2} m");
   CHECK(symbol_to_latex(n.c.symbol("l12", Role::Parameter)) == "l_{12}");
   CHECK(symbol_to_latex(n.c.symbol("ω_rotor", Role::Parameter)) == "\\omega_{\\mathrm{rotor}}");
   CHECK(symbol_to_latex(n.c.symbol("q1_left", Role::Coordinate, 1)) == "\\dot{q}_{1,\\mathrm{left}}");

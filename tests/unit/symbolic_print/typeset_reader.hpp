@@ -295,7 +295,7 @@ class Mathml {
   }
 
   std::string as_latex(const std::string& tag, const std::vector<std::string>& parts, const std::string& leaf) const {
-    static const std::map<std::string, std::string> signs{{"&#x2062;", " "}, {"&#x2061;", " "}, {"&#x2212;", "-"}, {"&#x22C5;", " \\cdot "}, {"&lt;", "<"},
+    static const std::map<std::string, std::string> signs{{"&#x2062;", " "}, {"&#x2061;", " "}, {"&#x2212;", "-"}, {"&#x22C5;", " \\cdot "}, {"⋅", " \\cdot "}, {"&lt;", "<"},
                                                           {"&#x2264;", " \\le "}, {"&#x2227;", " \\wedge "}, {"&#x2228;", " \\vee "}};
     if (tag == "mrow") return joined(parts).rfind("{", 0) == 0 ? joined(parts).substr(1) : joined(parts);   // the brace before cases
     if (tag == "mn") return " " + leaf + " ";
