@@ -15,23 +15,11 @@
 namespace maupertuis::app {
 namespace {
 
-std::string step_line(const DerivationStep& step, Notation notation, const ReadingOrder& order) {
+std::string step_text(const DerivationStep& step, const ReadingOrder& order) {
+  if (!step.right) return step.sentence;
   const std::string rule = step.rule.empty() ? step.section : step.rule;
-  switch (notation) {
-    case Notation::Plain: {
-      if (!step.right) return step.sentence;
-      const std::string note = step.sentence.empty() ? rule : rule + "; " + step.sentence;
-      return fmt::format("{} = {}    ({})", step.left, to_plain(step.right, order), note);
-    }
-    case Notation::Latex:
-      if (!step.right) return fmt::format("& \\text{{{}}}", latex_text(step.sentence));
-      return fmt::format("{} &= {} && \\text{{({})}}", step.left_latex, to_latex(step.right, order), latex_text(rule));
-    case Notation::Mathml:
-      if (!step.right) return fmt::format("<mtext>{}</mtext>", xml_text(step.sentence));
-      return fmt::format("<mtext>{}</mtext><mo>=</mo>{}<mtext>  ({})</mtext>", xml_text(step.left),
-                         to_mathml(step.right, order), xml_text(rule));
-  }
-  return {};
+  const std::string note = step.sentence.empty() ? rule : rule + "; " + step.sentence;
+  return fmt::format("{} = {}    ({})", to_plain(step.left), to_plain(step.right, order), note);
 }
 
 std::string steps_text(const Derivation& derivation, const ReadingOrder& order) {
@@ -41,7 +29,7 @@ std::string steps_text(const Derivation& derivation, const ReadingOrder& order) 
       section = step.section;
       out += fmt::format("{}{}\n", out.empty() ? "" : "\n", section);
     }
-    out += "  " + step_line(step, Notation::Plain, order) + "\n";
+    out += "  " + step_text(step, order) + "\n";
     for (const Intermediate& i : step.intermediates)
       out += fmt::format("    with {} = {}\n", to_plain(i.symbol, order), to_plain(i.value, order));
   }
@@ -134,7 +122,7 @@ std::string certificate_text(const Certificate& certificate) {
     std::string ground;
     if (!check.applies) ground = "does not apply";
     else if (check.verdict != Verdict::Zero) ground = fmt::format("{}: {}", verdict_name(check.verdict), check.reason);
-    else if (check.points == 0) ground = "term by term";
+    else if (check.points == 0 && check.error_bound == 0) ground = "term by term";
     else if (check.error_bound < 1) ground = fmt::format("{} points, error below {}", check.points, brief(check.error_bound));
     else ground = fmt::format("{} points, no bound claimed", check.points);
     out += fmt::format("  {:<{}} {} ({})\n", check.name, name_width, check.statement, ground);
@@ -148,8 +136,9 @@ std::string lecture(Study& study, const EquationForm& form, const Certificate& c
   std::string out;
   if (with_steps) out += steps_text(*study.derivation(true), order) + "\n";
   out += fmt::format("Equations of motion of {}\n", equations.system->name);
-  for (const EquationLine& line : form.lines) out += "  " + to_text(line, Notation::Plain, order) + "\n";
-  for (const EquationLine& line : form.constraints) out += "  " + to_text(line, Notation::Plain, order) + "\n";
+  for (const auto* lines : {&form.lines, &form.constraints})
+    for (const EquationLine& line : *lines)
+      out += fmt::format("  {}{}\n", plain_text(shown_line(line, order)), line.note.empty() ? "" : "    (" + line.note + ")");
   if (!form.intermediates.empty()) out += "with\n";
   for (const Intermediate& i : form.intermediates)
     out += fmt::format("  {} = {}\n", to_plain(i.symbol, order), to_plain(i.value, order));
@@ -159,10 +148,22 @@ std::string lecture(Study& study, const EquationForm& form, const Certificate& c
   return out + certificate_text(certificate);
 }
 
-std::vector<std::string> step_lines(const Derivation& derivation, Notation notation, const ReadingOrder& order) {
-  std::vector<std::string> lines;
-  for (const DerivationStep& step : derivation.steps) {
-    lines.push_back(step_line(step, notation, order));
+std::vector<FormulaLine> step_lines(const std::vector<DerivationStep>& steps, const MechanicalSystem& system, const ReadingOrder& order) {
+  std::vector<FormulaLine> lines;
+  for (const DerivationStep& step : steps) {
+    FormulaLine line;
+    line.section = step.section;
+    line.note = step.rule;
+    line.sentence = step.sentence;
+    line.left = step.left;
+    if (step.right) line.right = lay_out(step.right, order);
+    if (step.is_equation()) std::swap(line.left, line.right);
+    lines.push_back(std::move(line));
+    for (const Intermediate& i : step.intermediates) {
+      lines.push_back(definition_line(i, system, order));
+      lines.back().section = step.section;
+      lines.back().note = "with";
+    }
   }
   return lines;
 }
@@ -170,9 +171,9 @@ std::vector<std::string> step_lines(const Derivation& derivation, Notation notat
 Json steps_json(const Derivation& derivation, const ReadingOrder& order) {
   Json list = Json::array();
   for (const DerivationStep& step : derivation.steps)
-    list.push_back({{"section", step.section}, {"rule", step.rule}, {"left", step.left},
+    list.push_back({{"section", step.section}, {"rule", step.rule}, {"left", to_plain(step.left)},
                     {"right", step.right ? to_plain(step.right, order) : std::string()},
-                    {"latex", step.right ? step.left_latex + " = " + to_latex(step.right, order) : std::string()},
+                    {"latex", step.right ? to_latex(step.left) + " = " + to_latex(step.right, order) : std::string()},
                     {"sentence", step.sentence}});
   return list;
 }

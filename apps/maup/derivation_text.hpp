@@ -11,8 +11,8 @@ std::string lecture(Study& study, const EquationForm& form, const Certificate& c
 /// The checks of a certificate, a line each, under a head.
 std::string certificate_text(const Certificate& certificate);
 
-/// The textbook path in one notation, a line a step; LaTeX and MathML leave sentences to \text and <mtext>.
-std::vector<std::string> step_lines(const Derivation& derivation, Notation notation, const ReadingOrder& order);
+/// The textbook path, a line a step, and what the names in it stand for.
+std::vector<FormulaLine> step_lines(const std::vector<DerivationStep>& steps, const MechanicalSystem& system, const ReadingOrder& order);
 /// [{section, rule, left, right, latex, sentence}]
 Json steps_json(const Derivation& derivation, const ReadingOrder& order);
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <maupertuis/print.hpp>
 
 namespace maupertuis::app {
@@ -46,29 +48,41 @@ std::vector<EquationLine> constraint_lines(const Derivation& derivation) {
   return lines;
 }
 
+/// A name for the model language that the system has not given to anything.
+std::string free_name(const std::string& wanted, const MechanicalSystem& system) {
+  std::string name = identifier(wanted);
+  const auto taken = [&](const auto& list) { return std::any_of(list.begin(), list.end(), [&](const auto& item) { return item.name == name; }); };
+  while (taken(system.parameters) || taken(system.definitions) || taken(system.coordinates) || taken(system.inputs) ||
+         taken(system.points) || taken(system.bodies))
+    name += "_";
+  return name;
+}
+
+/// (Aᵀλ)[x]
+Layout constraint_force(const Coordinate& c, const ReadingOrder& order) {
+  const Layout both = layouts::product({layouts::power(layouts::name("A"), layouts::name("T")), layouts::name("λ")});
+  return layouts::labelled(fmt::format("(Aᵀλ)[{}]", c.name), layouts::indexed(both, {lay_out(c.q, order)}));
+}
+
 EquationForm standard_form(Study& study, bool as_residual) {
   const EquationsOfMotion& equations = *study.equations();
   const Derivation& derivation = *study.derivation(false);
   EquationForm form;
   for (std::size_t i = 0; i < derivation.equations.size(); ++i) {
     const std::string& name = equations.system->coordinates[i].name;
-    EquationLine line{name, {}, {}, {}, derivation.equations[i], {}, {}};
+    EquationLine line{name, {}, derivation.equations[i], {}, {}, {}, false};
     if (!as_residual && equations.system->constrained()) line.equal_to = derivation.constraint_forces[i].value;
     if (as_residual) {
-      line.left_plain = fmt::format("R[{}]", name);
-      line.left_latex = fmt::format("R_{{{}}}", symbol_to_latex(equations.system->coordinates[i].q));
-      line.left_mathml = fmt::format("<msub><mi>R</mi>{}</msub>", to_mathml(equations.system->coordinates[i].q, {}));
+      line.left = layouts::indexed(layouts::name("R"), {lay_out(equations.system->coordinates[i].q, equations.order)});
+      line.name = free_name("R_" + name, *equations.system);
     }
     form.lines.push_back(std::move(line));
   }
   if (as_residual)
     for (std::size_t i = 0; i < derivation.constraint_forces.size(); ++i) {
       const Coordinate& c = equations.system->coordinates[i];
-      form.lines.push_back({c.name, fmt::format("(Aᵀλ)[{}]", c.name),
-                            fmt::format("(A^{{T}} \\lambda)_{{{}}}", symbol_to_latex(c.q)),
-                            fmt::format("<msub><mrow><mo>(</mo><msup><mi>A</mi><mi>T</mi></msup><mi>λ</mi><mo>)</mo></mrow>{}</msub>",
-                                        to_mathml(c.q, {})),
-                            derivation.constraint_forces[i], {}, {}});
+      form.lines.push_back({c.name, constraint_force(c, equations.order), derivation.constraint_forces[i], {}, {},
+                            free_name("R_" + c.name, *equations.system), true});
     }
   form.constraints = constraint_lines(derivation);
   form.intermediates = derivation.intermediates;
@@ -106,7 +120,7 @@ bool add_multipliers(EquationForm& form, ExprMap& solution, Study& study) {
   }
   for (std::size_t k = 0; k < solved.size(); ++k) {
     const Expr symbol = equations.multipliers[k];
-    form.lines.push_back({{}, symbol_to_plain(symbol), symbol_to_latex(symbol), to_mathml(symbol, equations.order), solved[k], {}, {}});
+    form.lines.push_back({{}, lay_out(symbol, equations.order), solved[k], {}, {}, {}, false});
     solution[symbol] = solved[k].value;
   }
   return true;
@@ -121,8 +135,7 @@ EquationForm solved_form(Study& study) {
     const std::string& name = equations.system->coordinates[solved.coordinate].name;
     const Expr left = acceleration(equations, solved.coordinate);
     if (!solved.right.value) return refuse_solved(study, solved), EquationForm{};
-    form.lines.push_back({name, symbol_to_plain(left), symbol_to_latex(left), to_mathml(left, equations.order),
-                          solved.right, {}, {}});
+    form.lines.push_back({name, lay_out(left, equations.order), solved.right, {}, {}, {}, false});
     append(form.intermediates, solved.right.intermediates);
     solution[left] = without_intermediates(solved.right.value, solved.right.intermediates);
   }
@@ -148,7 +161,7 @@ EquationForm eliminated_form(Study& study) {
   }
   EquationForm form;
   for (std::size_t i = 0; i < eliminated->rows.size(); ++i)
-    form.lines.push_back({equations.system->coordinates[eliminated->independent[i]].name, {}, {}, {}, eliminated->rows[i], {}, {}});
+    form.lines.push_back({equations.system->coordinates[eliminated->independent[i]].name, {}, eliminated->rows[i], {}, {}, {}, false});
   form.constraints = constraint_lines(*study.derivation(false));
   return form;
 }
@@ -163,8 +176,8 @@ class MatrixLines {
     ReadableForm shown = readable(value, equations_.order);
     append(form.intermediates, shown.intermediates);
     const Expr whole = without_intermediates(shown.value, shown.intermediates);
-    form.lines.push_back({coordinate, fmt::format("{}[{}]", letter, names), fmt::format("{}_{{{}}}", letter, indices),
-                          fmt::format("<msub><mi>{}</mi><mrow><mn>{}</mn></mrow></msub>", letter, indices), std::move(shown), {}, {}});
+    const Layout left = layouts::labelled(fmt::format("{}[{}]", letter, names), layouts::indexed(layouts::name(letter), {layouts::number(indices)}));
+    form.lines.push_back({coordinate, left, std::move(shown), {}, {}, free_name(letter + "_" + names, *equations_.system), false});
     return whole;
   }
 
@@ -243,35 +256,45 @@ EquationForm equation_form(Form form, Study& study) {
   return {};
 }
 
-EquationLine definition_line(const Intermediate& intermediate, const ReadingOrder& order) {
-  const Expr name = intermediate.symbol;
-  EquationLine line{{}, to_plain(name, order), to_latex(name, order), to_mathml(name, order), {}, {}, {}};
-  line.right.value = intermediate.value;
+FormulaLine definition_line(const Intermediate& intermediate, const MechanicalSystem& system, const ReadingOrder& order) {
+  FormulaLine line;
+  line.left = lay_out(intermediate.symbol, order);
+  line.right = lay_out(intermediate.value, order);
+  line.declared = "let";
+  for (const Definition& d : system.definitions) line.known |= d.symbol && d.symbol == intermediate.symbol;
   return line;
 }
 
-std::string to_text(const EquationLine& line, Notation notation, const ReadingOrder& order) {
-  const bool named = !line.left_plain.empty();
-  switch (notation) {
-    case Notation::Plain: {
-      const std::string right = to_plain(line.right, order);
-      if (named) return line.left_plain + " = " + right;
-      return right + " = " + (line.equal_to ? to_plain(line.equal_to, order) : "0") + (line.note.empty() ? "" : "    (" + line.note + ")");
-    }
-    case Notation::Latex: {
-      const std::string right = to_latex(line.right, order);
-      if (named) return line.left_latex + " &= " + right;
-      return right + " &= " + (line.equal_to ? to_latex(line.equal_to, order) : "0") +
-             (line.note.empty() ? "" : fmt::format(" && \\text{{({})}}", latex_text(line.note)));
-    }
-    case Notation::Mathml: {
-      const std::string right = to_mathml(line.right, order);
-      if (named) return line.left_mathml + "<mo>=</mo>" + right;
-      return right + "<mo>=</mo>" + (line.equal_to ? to_mathml(line.equal_to, order) : "<mn>0</mn>") +
-             (line.note.empty() ? "" : fmt::format("<mtext>  ({})</mtext>", xml_text(line.note)));
-    }
+std::vector<FormulaLine> symbol_legend(const MechanicalSystem& system, const ReadingOrder& order) {
+  std::vector<FormulaLine> lines;
+  for (const Coordinate& c : system.coordinates) {
+    if (c.name.find('.') == std::string::npos) continue;
+    FormulaLine line;
+    line.left = lay_out(c.q, order);
+    line.right = layouts::words(c.name);
+    line.note = "in the model";
+    lines.push_back(std::move(line));
   }
-  return {};
+  return lines;
+}
+
+FormulaLine shown_line(const EquationLine& line, const ReadingOrder& order) {
+  FormulaLine shown;
+  shown.left = line.left;
+  shown.right = lay_out(line.right, order);
+  shown.note = line.note;
+  if (!line.left.empty()) return shown;
+  shown.left = std::move(shown.right);
+  shown.right = line.equal_to ? lay_out(line.equal_to, order) : layouts::number("0");
+  return shown;
+}
+
+FormulaLine language_line(const EquationLine& line, const ReadingOrder& order) {
+  FormulaLine shown = shown_line(line, order);
+  if (line.name.empty()) return shown;
+  shown.left = layouts::name(line.name);
+  if (!line.repeated) shown.declared = "let";
+  return shown;
 }
 
 }  // namespace maupertuis::app

@@ -12,10 +12,12 @@ enum class Form { Standard, Solved, Matrix, Residual, Eliminated };
 /// One line `left = right` of a result; an empty left stands for `right = equal_to`, or `right = 0`.
 struct EquationLine {
   std::string coordinate;  // whose equation it is; empty for a line of M
-  std::string left_plain, left_latex, left_mathml;
+  Layout left;
   ReadableForm right;
   Expr equal_to;           // a force of constraint, the other side of a constraint; empty: 0
   std::string note;        // the name of a constraint
+  std::string name;        // what the language calls the left side where that is no name to it: M_θ1_θ2 for M[θ1, θ2]
+  bool repeated = false;   // `name` has been declared by an earlier line: this one says that it is equal to the right side
 };
 
 /// The equations of motion in one of their forms, each proved equal to the residual by the zero test before it is
@@ -27,10 +29,15 @@ struct EquationForm {
 };
 EquationForm equation_form(Form form, Study& study);
 
-/// c1 = value
-EquationLine definition_line(const Intermediate& intermediate, const ReadingOrder& order);
+/// c1 = value; as known where `system` has a definition of this name.
+FormulaLine definition_line(const Intermediate& intermediate, const MechanicalSystem& system, const ReadingOrder& order);
 
-/// `left = right`, with nothing around it.
-std::string to_text(const EquationLine& line, Notation notation, const ReadingOrder& order);
+/// The coordinates that print shows by another name than the model's: q_w for ball.qw.
+std::vector<FormulaLine> symbol_legend(const MechanicalSystem& system, const ReadingOrder& order);
+
+/// As it is shown to a reader.
+FormulaLine shown_line(const EquationLine& line, const ReadingOrder& order);
+/// As the model language reads it: a left side that is no name gets one, by `let`.
+FormulaLine language_line(const EquationLine& line, const ReadingOrder& order);
 
 }  // namespace maupertuis::app

@@ -20,28 +20,18 @@ const char* word_of(LegendreKind kind) {
   return "";
 }
 
-bool is_equation(const DerivationStep& line) { return line.left == "0"; }
-
 std::vector<DerivationStep> all_lines(const PhaseSpace& found) {
   const ReadingOrder& order = found.hamiltonian.order;
   std::vector<DerivationStep> lines = found.lines;
   for (const Bracket& b : found.brackets)
-    lines.push_back({"Poisson brackets", {}, fmt::format("{{{}, {}}}", to_plain(b.a, order), to_plain(b.b, order)),
-                     fmt::format("\\{{{}, {}\\}}", to_latex(b.a, order), to_latex(b.b, order)), b.value.value, {}, b.value.intermediates});
+    lines.push_back({"Poisson brackets", {}, layouts::braces(lay_out(b.a, order), lay_out(b.b, order)), b.value.value, {}, b.value.intermediates});
   return lines;
 }
 
 std::string plain_line(const DerivationStep& line, const ReadingOrder& order) {
   if (!line.right) return line.sentence;
-  return is_equation(line) ? to_plain(line.right, order) + " = 0" : line.left + " = " + to_plain(line.right, order);
-}
-
-std::string line_in(const DerivationStep& line, Notation notation, const ReadingOrder& order) {
-  if (notation == Notation::Plain) return plain_line(line, order);
-  if (notation == Notation::Latex)
-    return is_equation(line) ? to_latex(line.right, order) + " &= 0" : line.left_latex + " &= " + to_latex(line.right, order);
-  return is_equation(line) ? to_mathml(line.right, order) + "<mo>=</mo><mn>0</mn>"
-                           : fmt::format("<mtext>{}</mtext><mo>=</mo>{}", xml_text(line.left), to_mathml(line.right, order));
+  const std::string right = to_plain(line.right, order);
+  return line.is_equation() ? right + " = 0" : to_plain(line.left) + " = " + right;
 }
 
 Json form_json(const ReadableForm& form, const ReadingOrder& order) {
@@ -90,15 +80,16 @@ std::string phase_space_text(const PhaseSpace& found) {
 }
 
 std::string phase_space_text(const PhaseSpace& found, Notation notation) {
-  std::vector<std::string> lines;
-  for (const DerivationStep& line : all_lines(found)) {
-    if (line.right) lines.push_back(line_in(line, notation, found.hamiltonian.order));
-    for (const Intermediate& i : line.intermediates)
-      lines.push_back(line_in({{}, {}, symbol_to_plain(i.symbol), symbol_to_latex(i.symbol), i.value, {}, {}}, notation, found.hamiltonian.order));
+  const MechanicalSystem& system = *found.hamiltonian.system;
+  const ReadingOrder& order = found.hamiltonian.order;
+  std::vector<FormulaLine> lines;
+  for (FormulaLine& line : step_lines(all_lines(found), system, order)) {
+    line.note.clear();
+    line.section.clear();
+    if (!line.right.empty()) lines.push_back(std::move(line));
   }
-  if (notation == Notation::Latex) return latex_document(lines);
-  if (notation == Notation::Mathml) return mathml_document(lines);
-  return fmt::format("{}\n", fmt::join(lines, "\n"));
+  for (const Intermediate& i : found.hamiltonian.legend) lines.push_back(definition_line(i, system, order));
+  return document(lines, notation);
 }
 
 void add_to(Json& document, const PhaseSpace& found) {

@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -29,9 +33,7 @@ std::string unicode_declarations() {
   return out;
 }
 
-}  // namespace
-
-std::string latex_text(const std::string& text) {
+std::string latex_prose(std::string_view text) {
   std::string out;
   for (const char c : text) {
     if (c == '^' || c == '~' || c == '\\') {
@@ -41,6 +43,141 @@ std::string latex_text(const std::string& text) {
     if (std::string_view("#$%&_{}").find(c) != std::string_view::npos) out += '\\';
     out += c;
   }
+  return out;
+}
+
+// ------------------------------------------------------------------------------------------------------------ LaTeX
+
+constexpr double page_width = 46;      // em of 10 pt that fit into a line of the document, with room for what is estimated
+constexpr double widest_left = 12;     // of a left side that lines are aligned at
+constexpr double indent = 2;           // of what follows on further lines
+
+/// An equation that begins at the margin, or `left &= right`: then `left_column` em are taken.
+std::string latex_line(const FormulaLine& line, double left_column, bool aligned) {
+  const double room = page_width - left_column;
+  const bool apart = !line.left.empty() && (aligned || width(line.left) <= widest_left);
+  std::vector<Layout> lines;
+  if (apart) lines = broken_lines({}, line.right, room, room - indent);
+  else lines = broken_lines(line.left, line.right, room, room - indent);
+  std::string out = apart ? to_latex(line.left) + " &= " : "& ";
+  for (std::size_t i = 0; i < lines.size(); ++i) out += (i ? " \\\\\n&\\quad " : "") + to_latex(lines[i]);
+  if (line.note.empty()) return out;
+  constexpr std::size_t longest_note = 60;
+  const std::string note = fmt::format("\\text{{\\small {}}}", latex_prose(line.note));
+  return out + (line.note.size() <= longest_note ? fmt::format(" \\tag*{{{}}}", note)
+                                                  : fmt::format(" \\tag*{{\\parbox{{7cm}}{{\\raggedleft\\small {}}}}}", latex_prose(line.note)));
+}
+
+/// Formulas that stand under each other. They are aligned at their signs where each fits into a line.
+std::string latex_display(const std::vector<const FormulaLine*>& lines) {
+  double left = 0, named = 0, right = 0;
+  for (const FormulaLine* line : lines) {
+    const double own = width(line->left);
+    left = std::max(left, own);
+    if (own <= widest_left) named = std::max(named, own);
+    right = std::max(right, width(line->right));
+  }
+  const bool aligned = left + right + 2 <= page_width;
+  std::vector<std::string> rows;
+  for (const FormulaLine* line : lines) rows.push_back(latex_line(*line, (aligned ? left : named) + 2, aligned));
+  return fmt::format("\\begin{{align*}}\n{}\n\\end{{align*}}\n", fmt::join(rows, " \\\\\n"));
+}
+
+/// Letters that neither LaTeX nor the declarations know are shown by their code.
+std::string other_letters(std::string_view text, std::string_view declared) {
+  std::set<std::uint32_t> codes;
+  for (std::size_t at = 0; at < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[at]);
+    const std::size_t size = lead < 0x80 ? 1 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
+    std::uint32_t code = size == 1 ? lead : lead & (0xFFu >> (size + 1));
+    for (std::size_t i = 1; i < size && at + i < text.size(); ++i) code = code << 6 | (static_cast<unsigned char>(text[at + i]) & 0x3Fu);
+    if (code > 0x17F) codes.insert(code);
+    at += size;
+  }
+  std::string out;
+  for (const std::uint32_t code : codes)
+    if (const std::string name = fmt::format("{:04X}", code); declared.find("{" + name + "}") == std::string_view::npos)
+      out += fmt::format("\\DeclareUnicodeCharacter{{{0}}}{{\\fbox{{\\tiny {0}}}}}\n", name);
+  return out;
+}
+
+std::string latex_document(const std::vector<FormulaLine>& lines) {
+  std::string body, section;
+  std::vector<const FormulaLine*> display;
+  const auto end_display = [&] {
+    if (!display.empty()) body += latex_display(display);
+    display.clear();
+  };
+  for (const FormulaLine& line : lines) {
+    if (line.section != section) {
+      end_display();
+      section = line.section;
+      if (!section.empty()) body += fmt::format("\\subsection*{{{}}}\n", latex_prose(section));
+    }
+    if (!line.right.empty()) display.push_back(&line);
+    else end_display(), body += fmt::format("{}\\par\n", latex_prose(line.sentence));
+  }
+  end_display();
+  const std::string declared = unicode_declarations();
+  return fmt::format(
+      "\\documentclass[fleqn]{{article}}\n\\usepackage[a4paper,margin=2cm]{{geometry}}\n\\usepackage{{amsmath}}\n"
+      "\\setlength{{\\mathindent}}{{0pt}}\n\\setlength{{\\parindent}}{{0pt}}\n\\allowdisplaybreaks\n{}{}\\begin{{document}}\n{}\\end{{document}}\n",
+      declared, other_letters(body, declared), body);
+}
+
+// ----------------------------------------------------------------------------------------------------------- MathML
+
+constexpr double mathml_width = 60;
+
+std::string mathml_document(const std::vector<FormulaLine>& lines) {
+  std::string out = "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\">\n<mtable columnalign=\"left\" displaystyle=\"true\">\n";
+  const auto row = [&](const std::string& content) { out += "<mtr><mtd><mrow>" + content + "</mrow></mtd></mtr>\n"; };
+  for (const FormulaLine& line : lines) {
+    if (line.right.empty()) {
+      row(fmt::format("<mtext>{}</mtext>", xml_text(line.sentence)));
+      continue;
+    }
+    const std::vector<Layout> pieces = broken_lines(line.left, line.right, mathml_width, mathml_width - indent);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const bool last = i + 1 == pieces.size();
+      row((i ? "<mspace width=\"2em\"/>" : "") + to_mathml(pieces[i]) +
+          (last && !line.note.empty() ? fmt::format("<mtext>\u2003({})</mtext>", xml_text(line.note)) : std::string()));
+    }
+  }
+  return out + "</mtable>\n</math>\n";
+}
+
+// ------------------------------------------------------------------------------------------------------------ plain
+
+std::string plain_document(const std::vector<FormulaLine>& lines) {
+  std::string out;
+  for (const FormulaLine& line : lines) {
+    if (line.right.empty()) out += "# " + line.sentence + "\n";
+    else
+      out += fmt::format("{}{}{}{}\n", line.known ? "# " : "", line.declared.empty() ? "" : line.declared + " ", plain_text(line),
+                         line.note.empty() ? "" : "    # " + line.note);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string plain_text(const FormulaLine& line) {
+  return (line.left.empty() ? std::string() : to_plain(line.left) + " = ") + to_plain(line.right);
+}
+
+std::string latex_text(const FormulaLine& line) {
+  return (line.left.empty() ? std::string() : to_latex(line.left) + " = ") + to_latex(line.right);
+}
+
+std::string identifier(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const bool kept = (c & 0x80) || std::isalnum(static_cast<unsigned char>(c));
+    if (kept) out += c;
+    else if (!out.empty() && out.back() != '_') out += '_';
+  }
+  while (!out.empty() && out.back() == '_') out.pop_back();
   return out;
 }
 
@@ -55,17 +192,13 @@ std::string xml_text(const std::string& text) {
   return out;
 }
 
-std::string latex_document(const std::vector<std::string>& lines) {
-  return fmt::format(
-      "\\documentclass{{article}}\n\\usepackage[a3paper,landscape,margin=2cm]{{geometry}}\n\\usepackage{{amsmath}}\n"
-      "\\allowdisplaybreaks\n{}\\begin{{document}}\n\\begin{{align*}}\n{}\n\\end{{align*}}\n\\end{{document}}\n",
-      unicode_declarations(), fmt::join(lines, " \\\\\n"));
-}
-
-std::string mathml_document(const std::vector<std::string>& rows) {
-  std::string out = "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\">\n<mtable columnalign=\"left\">\n";
-  for (const std::string& row : rows) out += "<mtr><mtd><mrow>" + row + "</mrow></mtd></mtr>\n";
-  return out + "</mtable>\n</math>\n";
+std::string document(const std::vector<FormulaLine>& lines, Notation notation) {
+  switch (notation) {
+    case Notation::Plain: return plain_document(lines);
+    case Notation::Latex: return latex_document(lines);
+    case Notation::Mathml: return mathml_document(lines);
+  }
+  return {};
 }
 
 }  // namespace maupertuis::app

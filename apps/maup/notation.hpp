@@ -1,4 +1,6 @@
 #pragma once
+#include <maupertuis/layout.hpp>
+
 #include <string>
 #include <vector>
 
@@ -6,13 +8,29 @@ namespace maupertuis::app {
 
 enum class Notation { Plain, Latex, Mathml };
 
-/// Prose inside \text{}: the preamble of latex_document declares the letters and signs that it may hold.
-std::string latex_text(const std::string& text);
-std::string xml_text(const std::string& text);
+/// A line of a result: left = right, right alone where left is empty, or a sentence alone. It may open a section, and carry a
+/// note, the rule of a step or the name of a constraint.
+struct FormulaLine {
+  Layout left, right;
+  std::string note, sentence, section;
+  std::string declared;    // the word before it in the model language: "let"
+  bool known = false;      // a definition that the model has itself: nothing to be declared again
+};
 
-/// A LaTeX document that compiles by itself, with one aligned display.
-std::string latex_document(const std::vector<std::string>& lines);
-/// One <math> element with a table of lines.
-std::string mathml_document(const std::vector<std::string>& rows);
+/// The lines in one notation alone, for another program.
+///
+/// Plain text is the model language, a line each: equations as after `expect equation`, names as `let`, notes and what the
+/// model has itself as comments. LaTeX is a document that compiles by itself, MathML one <math> element; both break long
+/// lines.
+std::string document(const std::vector<FormulaLine>& lines, Notation notation);
+
+/// left = right for JSON.
+std::string plain_text(const FormulaLine& line);
+std::string latex_text(const FormulaLine& line);
+
+/// A name that the language reads, of pieces that it may not: "M_θ1_θ2".
+std::string identifier(std::string_view text);
+
+std::string xml_text(const std::string& text);
 
 }  // namespace maupertuis::app

@@ -1,4 +1,5 @@
 #pragma once
+#include <maupertuis/layout.hpp>
 #include <maupertuis/mechanical_system.hpp>
 #include <maupertuis/transform.hpp>
 
@@ -83,11 +84,13 @@ ConservedQuantities conserved_quantities(const EquationsOfMotion& equations);
 struct DerivationStep {
   std::string section;   // "Coordinates", "Kinetic energy", "∂L/∂q̇", …
   std::string rule;      // "chain rule", "definition of L", "Euler-Lagrange"
-  std::string left;      // plain text of the left side, "d/dt ∂L/∂θ1'"; its LaTeX beside it
-  std::string left_latex;
+  Layout left;           // d/dt ∂L/∂θ1'; empty if the step is a sentence alone
   Expr right;            // readable; empty if the step is a sentence alone
   std::string sentence;  // shown instead of, or after, the formula
   std::vector<Intermediate> intermediates;  // that `right` uses
+
+  /// 0 = right, which is read as right = 0.
+  bool is_equation() const { return left.shape == Shape::Number && left.text == "0"; }
 };
 
 /// A constraint as two sides whose difference is φ or ψ, term by term as the model has them.

@@ -38,6 +38,7 @@ struct Parameter {
   double si_value = 0;              // its double
   Dimension dimension;
   std::string unit;                 // as written, "cm"; empty without one
+  double unit_factor = 1;           // its SI value, 0.01
   bool used = false;                // some other line of the model names it
   Span span;
 };
@@ -217,6 +218,8 @@ struct StartValue {
   int order = 0;                    // 0: q, 1: q'
   Expr value;                       // parameters and numbers only, SI
   Span span;
+  std::string unit;                 // as written, "deg"; empty where the value is a formula or a bare number
+  double unit_factor = 1;           // its SI value
 };
 
 /// ± 1e-7 beside one value of a point.

@@ -1,5 +1,6 @@
 #pragma once
 #include <maupertuis/expression.hpp>
+#include <maupertuis/layout.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <string>
@@ -12,7 +13,7 @@ namespace maupertuis {
 std::string to_plain(Expr e, const ReadingOrder& order);
 /// The left side of an equation, with the terms of its own coordinate first. So for the other two notations.
 std::string to_plain(const ReadableForm& form, const ReadingOrder& order);
-/// LaTeX of math mode, without dollars: `m_2 l_1 l_2 \cos(\theta_1 - \theta_2)\, \ddot{\theta}_2`.
+/// LaTeX of math mode, without dollars: `m_2\, l_1\, l_2 \cos(\theta_1 - \theta_2)\, \ddot{\theta}_2`.
 std::string to_latex(Expr e, const ReadingOrder& order);
 std::string to_latex(const ReadableForm& form, const ReadingOrder& order);
 /// Presentation MathML: the children of a <math> element (one <mrow>).

@@ -2,6 +2,7 @@
 #include <maupertuis/action.hpp>
 #include <maupertuis/diagram.hpp>
 #include <maupertuis/invariants.hpp>
+#include <maupertuis/layout.hpp>
 #include <maupertuis/locus.hpp>
 #include <maupertuis/modes.hpp>
 #include <maupertuis/orbits.hpp>
@@ -38,11 +39,11 @@ struct Drawing {
   bool empty() const { return elements.empty() || times.empty(); }
 };
 
-/// All that a report shows. Formulas are MathML: the children of a <math> element. Everything else is plain text in
+/// All that a report shows. Formulas are layouts, which the page writes as MathML. Everything else is plain text in
 /// UTF-8; nothing needs escaping. Empty parts do not appear on the page.
 struct ReportContent {
   struct Formula {
-    std::string left, right;             // MathML; left may be empty; a formula without right is a sentence alone
+    Layout left, right;                  // left may be empty; a formula without right is a sentence alone
     std::string rule;                    // "chain rule"
     std::string sentence;
   };
@@ -51,12 +52,13 @@ struct ReportContent {
     std::vector<Formula> lines;
   };
   struct Parameter {
-    std::string symbol;                  // MathML
+    Layout symbol;
     std::string value, unit;             // "60", "cm"
     std::string si;                      // "0.6 m" where the text has other units
   };
   struct Coordinate {
-    std::string symbol, velocity;        // MathML
+    Layout symbol, velocity;
+    std::string name;                    // in the model, where the symbol is shown otherwise: "ball.qw"
     std::string kind;                    // "angle", "length in m"
     std::string start, start_velocity;   // "2 rad", "0 rad/s"
   };

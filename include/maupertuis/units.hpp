@@ -41,6 +41,15 @@ struct Unit {
 
 /// One unit word with or without an SI prefix: "mm", "kg", "deg", "min". Exact names beat prefixes.
 std::optional<Unit> find_unit(std::string_view word);
+/// A word that SI reads in one way and people in another: PS is a petasiemens, and a horsepower in German. Nobody should
+/// find out by a factor of 10^12, so that it is no unit of a model.
+struct AmbiguousUnit {
+  std::string_view word;
+  std::string_view meanings;   // "a petasiemens (1e15 S) or a metric horsepower (735.49875 W)"
+  std::string_view instead;    // "735.49875 W for the horsepower, 1e15 S for the conductance"
+};
+const AmbiguousUnit* find_ambiguous_unit(std::string_view word);
+
 /// All words that find_unit knows without prefixes, for did-you-mean.
 std::vector<std::string> unit_words();
 

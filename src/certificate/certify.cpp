@@ -34,17 +34,21 @@ CertificateCheck check_of(Route route, const RoutesResult& primes, const RoutesR
   check.statement = texts[route].statement;
   const RouteResult& exact = primes.routes[route];
   check.row = exact.row;
-  if (primes.complete && !exact.fails) {
+  if (primes.complete && !exact.fails && exact.points > 0) {
     check.verdict = Verdict::Zero;
     check.points = exact.points;
     check.error_bound = primes.error_bound;
+    return check;
+  }
+  if (!reals) {
+    check.reason = "it was compared at no point";
     return check;
   }
   const RouteResult& digits = reals->routes[route];
   if (digits.fails) {
     check.verdict = Verdict::Nonzero;
     check.reason = fmt::format("the two sides differ by {:.6g} at a random point", digits.difference);
-  } else if (reals->complete) {
+  } else if (reals->complete && digits.points > 0) {
     check.verdict = Verdict::Zero;
     check.points = digits.points;
     check.statement += fmt::format(", to 60 digits at {} points, not proved", digits.points);

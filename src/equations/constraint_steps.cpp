@@ -16,14 +16,12 @@ constexpr std::size_t longest = 400;   // characters: beyond it a solved form hi
 
 bool on_positions(const Constraint& c) { return c.level == Constraint::Level::Position; }
 
-/// φ_rod, ψ_2, and in LaTeX.
-struct ConstraintName {
-  std::string plain, latex;
-};
-ConstraintName name_of(const MechanicalSystem& system, std::size_t k) {
+/// φ_rod, ψ_2.
+Layout name_of(const MechanicalSystem& system, std::size_t k) {
   const Constraint& c = system.constraints[k];
   const std::string tail = !c.name.empty() ? c.name : !c.body.empty() ? c.body : std::to_string(k + 1);
-  return {(on_positions(c) ? "φ_" : "ψ_") + tail, fmt::format("{}_{{{}}}", on_positions(c) ? "\\varphi" : "\\psi", latex_name(tail))};
+  const std::string letter = on_positions(c) ? "φ" : "ψ";
+  return layouts::labelled(letter + "_" + tail, layouts::indexed(layouts::name(letter), {layouts::name(tail)}));
 }
 
 bool is_short(const ReadableForm& form, const ReadingOrder& order) {
@@ -46,7 +44,7 @@ void write_eliminated(StepWriter& out) {
   }
   out.open("Multipliers eliminated");
   for (const ReadableForm& row : eliminated->rows)
-    out.as_is(to_plain(row, out.equations().order), to_latex(row, out.equations().order), {out.context().number(0), {}, {}}, rule);
+    out.as_is(lay_out(row, out.equations().order), {out.context().number(0), {}, {}}, rule);
 }
 
 }  // namespace
@@ -72,18 +70,16 @@ void write_constraints(StepWriter& out) {
   bool chetaev = false;
   for (std::size_t k = 0; k < s.constraints.size(); ++k) {
     const Constraint& c = s.constraints[k];
-    const ConstraintName name = name_of(s, k);
+    const Layout name = name_of(s, k);
     const ConstraintEquation written = constraint_equation(out.equations(), k);
-    out.as_is(to_plain(written.left, order), to_latex(written.left, order), {written.right, {}, {}},
-              fmt::format("{}: {} = left − right, zero along the motion", written.name, name.plain));
+    out.as_is(lay_out(written.left, order), {written.right, {}, {}},
+              fmt::format("{}: {} = left − right, zero along the motion", written.name, to_plain(name)));
     for (std::size_t i = 0; i < a.columns; ++i) {
       if (a.at(k, i).is_zero()) continue;
       const Coordinate& q = s.coordinates[i];
-      const std::string prime = on_positions(c) ? "" : "'";
       chetaev |= !on_positions(c) && depends_on_velocities(a.at(k, i));
-      out.as_is(fmt::format("∂{}/∂{}{}", name.plain, q.name, prime),
-                  fmt::format("\\frac{{\\partial {}}}{{\\partial {}}}", name.latex, symbol_to_latex(on_positions(c) ? q.q : q.velocity)),
-                  {simplified(a.at(k, i), order), {}, {}}, fmt::format("row of A: the generalized force on {} is this times {}", q.name, symbol_to_plain(c.multiplier)));
+      out.as_is(layouts::partial(name, out.symbol(on_positions(c) ? q.q : q.velocity)),
+                {simplified(a.at(k, i), order), {}, {}}, fmt::format("row of A: the generalized force on {} is this times {}", q.name, symbol_to_plain(c.multiplier)));
     }
   }
   if (chetaev)
@@ -102,8 +98,8 @@ void write_constraint_accelerations(StepWriter& out) {
       if (!a.at(k, i).is_zero()) terms.push_back(simplified(a.at(k, i), order) * s.coordinates[i].acceleration);
     const Expr left = out.context().sum(terms);
     const bool position = on_positions(s.constraints[k]);
-    out.formula(to_plain(left, order), to_latex(left, order), b[k],
-                fmt::format("A q'' = b: the {} derivative of {} is zero", position ? "second" : "first", name_of(s, k).plain));
+    out.formula(lay_out(left, order), b[k],
+                fmt::format("A q'' = b: the {} derivative of {} is zero", position ? "second" : "first", to_plain(name_of(s, k))));
   }
 }
 
@@ -114,7 +110,7 @@ void write_solved_multipliers(StepWriter& out, bool any_left) {
                          std::all_of(solved.begin(), solved.end(), [&](const ReadableForm& f) { return is_short(f, order); });
   for (std::size_t k = 0; all_short && k < solved.size(); ++k) {
     const Expr symbol = out.equations().multipliers[k];
-    out.as_is(symbol_to_plain(symbol), symbol_to_latex(symbol), std::move(solved[k]), "A M⁻¹ Aᵀ λ = b + A M⁻¹ h");
+    out.as_is(out.symbol(symbol), std::move(solved[k]), "A M⁻¹ Aᵀ λ = b + A M⁻¹ h");
   }
   if (any_left || !all_short)
     out.sentence("M q'' + h = Aᵀλ, A q'' = b",
@@ -131,7 +127,9 @@ void write_reactions(StepWriter& out, const std::vector<Reaction>& reactions) {
       continue;
     }
     const bool named = r.name.find(' ') == std::string::npos;
-    out.formula(named ? fmt::format("reaction({})", r.name) : r.name, fmt::format("F_{{\\text{{{}}}}}", r.name), r.value, r.sentence);
+    out.formula(layouts::labelled(named ? fmt::format("reaction({})", r.name) : r.name,
+                                  layouts::indexed(layouts::name("F"), {named ? layouts::name(r.name) : layouts::words(r.name)})),
+                r.value, r.sentence);
   }
 }
 

@@ -44,19 +44,19 @@ void write_kinematics(StepWriter& out) {
   };
   out.open("Positions");
   each_component([&](const std::string& name, const char* axis, Expr value) {
-    out.formula(name + "." + axis, fmt::format("{}_{{{}}}", axis, latex_name(name)), value, "definition of the point");
+    out.formula(out.component(name, axis), value, "definition of the point");
   });
   out.open("Velocities");
   each_component([&](const std::string& name, const char* axis, Expr value) {
-    out.formula(name + "." + axis + "'", fmt::format("\\dot{{{}}}_{{{}}}", axis, latex_name(name)),
-                out.context().time_derivative(value), "chain rule: ṙ = Σ ∂r/∂q q' + ∂r/∂t");
+    out.formula(out.component(name, axis, 1), out.context().time_derivative(value), "chain rule: ṙ = Σ ∂r/∂q q' + ∂r/∂t");
   });
   out.open("Speeds");
   for (const Moving& point : moving) {
     ExprVector squares;
     for (const Expr& component : *point.position)
       squares.push_back(pow(out.context().time_derivative(component), Rational(2)));
-    out.formula("v_" + point.name + "^2", fmt::format("v_{{{}}}^2", latex_name(point.name)), out.context().sum(squares),
+    const Layout speed = layouts::labelled("v_" + point.name, layouts::indexed(layouts::name("v"), {layouts::name(point.name)}));
+    out.formula(layouts::power(speed, layouts::number("2")), out.context().sum(squares),
                 out.system().space_dimension == 2 ? "v² = x'² + y'²" : "v² = x'² + y'² + z'²");
   }
 }
@@ -67,12 +67,19 @@ void write_angular_velocities(StepWriter& out) {
   for (const Body& body : out.system().bodies) {
     const bool planar = body.angular_velocity.size() == 1;
     for (std::size_t i = 0; i < body.angular_velocity.size(); ++i) {
-      const std::string axis = planar ? "" : fmt::format(".{}", axis_names[i]);
-      const std::string latex_axis = planar ? "" : fmt::format(",{}", axis_names[i]);
-      out.formula(body.name + ".ω" + axis, fmt::format("\\omega_{{{}{}}}", latex_name(body.name), latex_axis),
+      out.formula(out.component(body.name, "ω", 0, planar ? "" : axis_names[i]),
                   body.angular_velocity[i], "rotation of the body, in body axes");
     }
   }
+}
+
+/// T(particle A), in print with what it belongs to below.
+Layout part_of(const std::string& letter, const std::string& what) {
+  return layouts::labelled(fmt::format("{}({})", letter, what), layouts::indexed(layouts::name(letter), {layouts::words(what)}));
+}
+
+Layout generalized_force(const StepWriter& out, const Coordinate& c) {
+  return layouts::labelled("Q_" + c.name, layouts::indexed(layouts::name("Q"), {out.symbol(c.q)}));
 }
 
 void write_energy(StepWriter& out, const char* section, const std::string& letter, const std::vector<EnergyTerm>& terms,
@@ -85,10 +92,9 @@ void write_energy(StepWriter& out, const char* section, const std::string& lette
     values.push_back(term.value);
     given &= term.origin == letter;
     if (terms.size() > 1)
-      out.formula(fmt::format("{}({})", letter, term.origin), fmt::format("{}_{{\\text{{{}}}}}", letter, term.origin),
-                  term.value, term.origin);
+      out.formula(part_of(letter, term.origin), term.value, term.origin);
   }
-  out.formula(letter, letter, out.context().sum(values), given ? "as given" : rule);
+  out.formula(layouts::name(letter), out.context().sum(values), given ? "as given" : rule);
 }
 
 void write_lagrangian(StepWriter& out) {
@@ -101,7 +107,7 @@ void write_lagrangian(StepWriter& out) {
   const bool extra = !s.lagrangian_extra.empty();
   std::string rule = s.lagrangian_given ? "as given" : s.generalized_potential.empty() ? "L = T - V" : "L = T - V - U";
   if (extra) rule += ", and the terms added to L";
-  out.formula("L", "L", out.equations().lagrangian_expanded, rule);
+  out.formula(layouts::name("L"), out.equations().lagrangian_expanded, rule);
 }
 
 /// The virtual work behind each Q: F·∂r/∂q, τ·∂ω/∂q'.
@@ -126,14 +132,15 @@ void write_virtual_work(StepWriter& out) {
       const Expr work = out.context().sum(terms);
       if (work.is_zero()) continue;
       const std::string from = force.reaction_on.empty() ? "" : " from " + force.reaction_on;
-      out.formula(fmt::format("Q_{}({} {}{})", c.name, torque ? "torque on" : "force on", force.target, from),
-                  fmt::format("Q_{{{}}}", symbol_to_latex(c.q)), work,
+      const std::string what = fmt::format("{} {}{}", torque ? "torque on" : "force on", force.target, from);
+      out.formula(layouts::labelled(fmt::format("Q_{}({})", c.name, what),
+                                    layouts::indexed(layouts::name("Q"), {out.symbol(c.q), layouts::words(what)})),
+                  work,
                   torque ? fmt::format("virtual work: τ·∂ω/∂{}'", c.name) : fmt::format("virtual work: F·∂r/∂{}", c.name));
     }
   }
   for (std::size_t i = 0; i < s.coordinates.size(); ++i)
-    out.formula("Q_" + s.coordinates[i].name, fmt::format("Q_{{{}}}", symbol_to_latex(s.coordinates[i].q)),
-                out.equations().generalized_forces[i], "sum of the virtual works");
+    out.formula(generalized_force(out, s.coordinates[i]), out.equations().generalized_forces[i], "sum of the virtual works");
 }
 
 /// d/dt ∂L/∂q̇ = Σ_j (∂p/∂q̇_j q̈_j + ∂p/∂q_j q̇_j) + ∂p/∂t (+ ∂p/∂u u̇), each chain-rule term on its own.
@@ -161,30 +168,26 @@ ReadableForm total_derivative_terms(const StepWriter& out, Expr momentum) {
 void write_row(StepWriter& out, std::size_t i, const Derivation& derivation) {
   const EquationsOfMotion& eq = out.equations();
   const Coordinate& c = out.system().coordinates[i];
-  const std::string latex = symbol_to_latex(c.q), latex_dot = symbol_to_latex(c.velocity);
+  const Layout L = layouts::name("L"), D = layouts::name("D"), by_velocity = layouts::partial(L, out.symbol(c.velocity));
   out.open("Equation of " + c.name);
-  out.formula("∂L/∂" + c.name + "'", fmt::format("\\frac{{\\partial L}}{{\\partial {}}}", latex_dot), eq.momenta[i],
+  out.formula(by_velocity, eq.momenta[i],
               fmt::format("partial derivative, q and {} held fixed: the momentum p_{}", out.system().independent, c.name));
   const std::string t = out.system().independent, total = t == "t" ? "total time derivative" : "total derivative";
-  out.as_is(fmt::format("d/d{} ∂L/∂{}'", t, c.name),
-            fmt::format("\\frac{{d}}{{d{}}} \\frac{{\\partial L}}{{\\partial {}}}", symbol_to_latex(out.context().time()), latex_dot),
+  out.as_is(layouts::rate(by_velocity, out.symbol(out.context().time()), true),
             total_derivative_terms(out, eq.momenta[i]), fmt::format("{}: chain rule through q', q and {}", total, t));
-  out.formula("∂L/∂" + c.name, fmt::format("\\frac{{\\partial L}}{{\\partial {}}}", latex),
-              differentiate(eq.lagrangian_expanded, c.q), fmt::format("partial derivative, q' and {} held fixed", t));
+  out.formula(layouts::partial(L, out.symbol(c.q)), differentiate(eq.lagrangian_expanded, c.q), fmt::format("partial derivative, q' and {} held fixed", t));
   if (!eq.dissipative_terms[i].is_zero())
-    out.formula("∂D/∂" + c.name + "'", fmt::format("\\frac{{\\partial D}}{{\\partial {}}}", latex_dot),
-                eq.dissipative_terms[i], "partial derivative of the dissipation function");
+    out.formula(layouts::partial(D, out.symbol(c.velocity)), eq.dissipative_terms[i], "partial derivative of the dissipation function");
   std::string rule = fmt::format("d/d{} ∂L/∂q' − ∂L/∂q", t);
   if (!eq.dissipative_terms[i].is_zero()) rule += " + ∂D/∂q'";
   rule += eq.generalized_forces[i].is_zero() ? " = " : " = Q";
   if (derivation.constraint_forces.empty()) {
     rule += eq.generalized_forces[i].is_zero() ? "0" : "";
-    out.as_is("0", "0", derivation.equations[i], "Euler-Lagrange: " + rule + ", collected and simplified");
+    out.as_is(layouts::number("0"), derivation.equations[i], "Euler-Lagrange: " + rule + ", collected and simplified");
     return;
   }
   rule += eq.generalized_forces[i].is_zero() ? "Aᵀλ" : " + Aᵀλ";
-  out.as_is(to_plain(derivation.equations[i], eq.order), to_latex(derivation.equations[i], eq.order),
-            derivation.constraint_forces[i], "Lagrange with multipliers: " + rule + ", collected and simplified");
+  out.as_is(lay_out(derivation.equations[i], eq.order), derivation.constraint_forces[i], "Lagrange with multipliers: " + rule + ", collected and simplified");
 }
 
 void write_solved(StepWriter& out) {
@@ -197,7 +200,7 @@ void write_solved(StepWriter& out) {
                           to_plain(solved.right.value, out.equations().order).size() <= longest;
     any_left |= !is_short;
     if (is_short)
-      out.as_is(c.name + "''", symbol_to_latex(c.acceleration), std::move(solved.right),
+      out.as_is(out.symbol(c.acceleration), std::move(solved.right),
                 solved.coupled_with.size() == 1 ? "divided by the coefficient of " + c.name + "''" : "Cramer's rule");
   }
   if (out.system().constrained()) return write_solved_multipliers(out, any_left);

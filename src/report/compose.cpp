@@ -23,24 +23,32 @@ std::string unit_of(const MechanicalSystem& system, const Dimension& dimension) 
   return system.dimensionless ? std::string() : to_string(dimension);
 }
 
-ReportContent::Coordinate coordinate_row(const EquationsOfMotion& equations, std::size_t i, const SimulationResult* run) {
+/// A start in the unit that the text gives it in.
+std::string start_text(const Model& model, std::size_t coordinate, int order, double value, const std::string& si_unit) {
+  for (const StartValue& s : model.experiment.start)
+    if (s.coordinate == coordinate && s.order == order && !s.unit.empty()) return quantity(value / s.unit_factor, s.unit);
+  return quantity(value, si_unit);
+}
+
+ReportContent::Coordinate coordinate_row(const Model& model, const EquationsOfMotion& equations, std::size_t i, const SimulationResult* run) {
   const MechanicalSystem& system = *equations.system;
   const Coordinate& c = system.coordinates[i];
   const std::string unit = unit_of(system, c.dimension);
-  ReportContent::Coordinate row{to_mathml(c.q, equations.order), to_mathml(c.velocity, equations.order), c.kind, "", ""};
+  ReportContent::Coordinate row{lay_out(c.q, equations.order), lay_out(c.velocity, equations.order), "", c.kind, "", ""};
+  if (c.name.find('.') != std::string::npos) row.name = c.name;
   if (row.kind.empty() || row.kind == "number") row.kind = unit.empty() || unit == "1" ? "number" : "in " + unit;
   if (!run || run->start.q.size() <= i) return row;
-  row.start = quantity(run->start.q[i], unit);
-  row.start_velocity = quantity(run->start.v[i], unit_of(system, c.dimension / system.independent_dimension));
+  row.start = start_text(model, i, 0, run->start.q[i], unit);
+  row.start_velocity = start_text(model, i, 1, run->start.v[i], unit_of(system, c.dimension / system.independent_dimension));
   return row;
 }
 
-// The value as the text has it, 60 cm, with 0.6 m beside it; only the latter where the unit cannot be read back.
+// The value as the text has it, 60 cm, with 0.6 m beside it.
 ReportContent::Parameter parameter_row(const EquationsOfMotion& equations, const Parameter& parameter) {
   const std::string si_unit = unit_of(*equations.system, parameter.dimension);
-  const double factor = unit_factor(parameter.unit);
-  const std::string symbol = to_mathml(parameter.symbol, equations.order);
-  if (factor == 0) return {symbol, short_number(parameter.si_value, 10), si_unit == "1" ? "" : si_unit, ""};
+  const double factor = parameter.unit_factor;
+  const Layout symbol = lay_out(parameter.symbol, equations.order);
+  if (parameter.unit.empty()) return {symbol, short_number(parameter.si_value, 10), si_unit == "1" ? "" : si_unit, ""};
   const bool same = parameter.unit == si_unit || factor == 1;
   return {symbol, short_number(parameter.si_value / factor, 10), parameter.unit,
           same ? std::string() : quantity(parameter.si_value, si_unit, 10)};
@@ -75,37 +83,35 @@ void add_model(ReportContent& content, const Model& model, const SourceText& sou
   add_freedoms(content, equations, run);
   if (system.dimensionless) content.summary.emplace_back("units", "dimensionless");
   for (std::size_t i = 0; i < system.coordinates.size(); ++i)
-    content.coordinates.push_back(coordinate_row(equations, i, run));
+    content.coordinates.push_back(coordinate_row(model, equations, i, run));
   for (const Parameter& parameter : system.parameters)
     if (parameter.symbol.role() == Role::Parameter) content.parameters.push_back(parameter_row(equations, parameter));
   for (const Definition& definition : system.definitions)
     if (definition.symbol)
-      content.definitions.push_back({to_mathml(definition.symbol, equations.order), to_mathml(definition.value, equations.order), "", ""});
+      content.definitions.push_back({lay_out(definition.symbol, equations.order), lay_out(definition.value, equations.order), "", ""});
   for (const Input& input : system.inputs)
-    content.definitions.push_back({to_mathml(input.symbol, equations.order), to_mathml(input.formula, equations.order), "", ""});
+    content.definitions.push_back({lay_out(input.symbol, equations.order), lay_out(input.formula, equations.order), "", ""});
 }
 
 std::vector<Formula> intermediate_rows(const std::vector<Intermediate>& intermediates, const ReadingOrder& order) {
   std::vector<Formula> rows;
-  for (const Intermediate& i : intermediates) rows.push_back({to_mathml(i.symbol, order), to_mathml(i.value, order), "", ""});
+  for (const Intermediate& i : intermediates) rows.push_back({lay_out(i.symbol, order), lay_out(i.value, order), "", ""});
   return rows;
 }
 
 void add_equations(ReportContent& content, const Derivation& derivation, const ReadingOrder& order) {
   for (std::size_t i = 0; i < derivation.equations.size(); ++i) {
     const bool constrained = !derivation.constraint_forces.empty();
-    content.equations.push_back({to_mathml(derivation.equations[i], order),
-                                 constrained ? to_mathml(derivation.constraint_forces[i], order) : "<mn>0</mn>", "", ""});
+    content.equations.push_back({lay_out(derivation.equations[i], order),
+                                 constrained ? lay_out(derivation.constraint_forces[i], order) : layouts::number("0"), "", ""});
   }
   for (const ConstraintEquation& c : derivation.constraints)
-    content.equations.push_back({to_mathml(c.left, order), to_mathml(c.right, order), "", c.name});
+    content.equations.push_back({lay_out(c.left, order), lay_out(c.right, order), "", c.name});
   content.intermediates = intermediate_rows(derivation.intermediates, order);
   static constexpr std::array<std::string_view, 5> energies{"T", "V", "U", "D", "L"};
   for (const auto name : energies)
     for (const DerivationStep& step : derivation.steps)
-      if (step.left == name && step.right)
-        content.energies.push_back(
-            {left_side_mathml(step.left, derivatives_are_primes(order)), to_mathml(step.right, order), "", ""});
+      if (step.right && to_plain(step.left) == name) content.energies.push_back({step.left, lay_out(step.right, order), "", ""});
 }
 
 std::vector<ReportContent::Section> sections_of(const std::vector<DerivationStep>& steps, const ReadingOrder& order) {
@@ -113,11 +119,11 @@ std::vector<ReportContent::Section> sections_of(const std::vector<DerivationStep
   for (const DerivationStep& step : steps) {
     if (sections.empty() || sections.back().title != step.section) sections.push_back({step.section, {}});
     auto& lines = sections.back().lines;
-    Formula line{left_side_mathml(step.left, derivatives_are_primes(order)), "", step.rule, step.sentence};
-    if (step.right) line.right = to_mathml(step.right, order);
-    else line.left.clear();
+    Formula line{step.left, {}, step.rule, step.sentence};
+    if (step.right) line.right = lay_out(step.right, order);
+    else line.left = {};
     // An equation reads `… = 0`, not `0 = …`.
-    if (step.left == "0") std::swap(line.left, line.right);
+    if (step.is_equation()) std::swap(line.left, line.right);
     lines.push_back(line);
     for (Formula& where : intermediate_rows(step.intermediates, order)) {
       where.rule = "with";

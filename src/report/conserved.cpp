@@ -45,9 +45,9 @@ std::string drift_of(const std::vector<double>& values, const std::string& unit)
   return short_number(size > 0 ? change / size : 0, 2);
 }
 
-ReportContent::Formula formula(std::string left, Expr right, const ReadingOrder& order) {
+ReportContent::Formula formula(Layout left, Expr right, const ReadingOrder& order) {
   const ReadableForm form = readable(expand_time_derivatives(right), order);
-  return {left_side_mathml(left, derivatives_are_primes(order)), to_mathml(form.value, order), "", ""};
+  return {std::move(left), lay_out(form.value, order), "", ""};
 }
 
 void add_momentum(ReportContent& content, const EquationsOfMotion& equations, std::size_t i, const SimulationResult* run) {
@@ -55,7 +55,7 @@ void add_momentum(ReportContent& content, const EquationsOfMotion& equations, st
   const Coordinate& c = system.coordinates[i];
   ReportContent::Conserved quantity_row;
   quantity_row.sentence = fmt::format("{} is cyclic, and nothing acts on it: its momentum is conserved.", c.name);
-  quantity_row.formula = formula("p_" + c.name, equations.shown().momenta[i], equations.order);
+  quantity_row.formula = formula(layouts::indexed(layouts::name("p"), {lay_out(c.q, equations.order)}), equations.shown().momenta[i], equations.order);
   if (run) {
     const std::string unit = system.dimensionless ? "" : to_string(system.lagrangian_dimension * system.independent_dimension / c.dimension);
     add_values_along_run(quantity_row, equations, equations.momenta[i], unit, run->trajectory);
@@ -69,12 +69,12 @@ void add_energy(ReportContent& content, const EquationsOfMotion& equations, cons
   row.sentence = conserved.energy_case;
   if (!conserved.energy_conserved) {
     row.sentence += " It is not conserved; along the motion it changes at the rate";
-    row.formula = formula("d/d" + equations.system->independent + " h_E", equations.shown().power, equations.order);
+    row.formula = formula(layouts::rate(layouts::name("h_E"), lay_out(equations.system->context->time(), equations.order), true), equations.shown().power, equations.order);
     content.conserved.push_back(std::move(row));
     return;
   }
   row.sentence += " It is conserved.";
-  row.formula = formula("h_E", equations.shown().energy_function, equations.order);
+  row.formula = formula(layouts::name("h_E"), equations.shown().energy_function, equations.order);
   if (const auto column = run ? run->trajectory.column("energy") : std::nullopt; column && run->trajectory.rows() > 0) {
     row.value = quantity(run->trajectory.at(0, *column), run->trajectory.columns[*column].unit, 10);
     row.drift = short_number(run->statistics.energy_drift, 2);

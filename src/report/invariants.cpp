@@ -68,7 +68,7 @@ void add_invariants(ReportContent& content, const EquationsOfMotion& equations, 
     const ConservedFunction& integral = found.integrals[i];
     ReportContent::Conserved row;
     row.sentence = sentence_of(integral);
-    row.formula = {to_mathml(found.symbols[i], order), to_mathml(integral.readable, order), "", ""};
+    row.formula = {lay_out(found.symbols[i], order), lay_out(integral.readable, order), "", ""};
     const MechanicalSystem& system = *equations.system;
     const std::string unit = system.dimensionless ? "" : to_string(dimension_of(integral.value, system));
     if (run) add_values_along_run(row, equations, integral.value, unit, run->trajectory);
@@ -81,11 +81,11 @@ void add_invariants(ReportContent& content, const EquationsOfMotion& equations, 
     const auto nodes = topological_order({&relation.value.value, 1});
     if (std::any_of(nodes.begin(), nodes.end(), is_hidden)) continue;
     content.conserved.push_back(
-        {"Between them holds", {"<mn>0</mn>", to_mathml(relation.value, order), "", ""}, "", ""});
+        {"Between them holds", {layouts::number("0"), lay_out(relation.value, order), "", ""}, "", ""});
   }
   for (const BalanceLaw& law : found.balance_laws)
     content.conserved.push_back({law.name + " is changed by forces or constraints, at the rate",
-                                 {"", to_mathml(law.rate, order), "", ""},
+                                 {{}, lay_out(law.rate, order), "", ""},
                                  "",
                                  ""});
   ReportContent::Conserved summary;

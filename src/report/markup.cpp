@@ -1,7 +1,5 @@
 #include "report/markup.hpp"
 
-#include "report/mathml.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -60,62 +58,33 @@ std::string number_html(std::string_view number) {
 
 namespace {
 
-constexpr std::size_t one_line = 70;      // characters that fit into a line of the page, about
-constexpr std::size_t surely_fits = 36;   // … of a narrow window
+constexpr double one_line = 34;      // em that fit into a line of the page
+constexpr double surely_fits = 18;   // … of a narrow window
 
-MathRow typeset_row(std::string_view fragment) {
-  MathRow row = parse_mathml(fragment);
-  typeset(row);
+Layout with_sign(const Layout& left, const Layout& right) {
+  if (left.empty()) return right;
+  if (right.empty()) return left;
+  Layout equals, row;
+  equals.shape = Shape::Sign;
+  equals.text = "=";
+  row.shape = Shape::Row;
+  row.parts = {left, equals, right};
   return row;
-}
-
-std::string math_element(const MathRow& row) {
-  return fmt::format("<math displaystyle=\"true\"><mrow>{}</mrow></math>", to_string(row));
-}
-
-// The places where a line may break: before the signs of the sum, and of sums in brackets that are longer than a line.
-std::vector<MathRow> pieces_of(const MathRow& sum) {
-  std::vector<MathRow> pieces;
-  for (MathRow& term : signed_terms(sum)) {
-    if (letters_in(term) <= one_line) pieces.push_back(std::move(term));
-    else for (MathRow& part : open_longest_bracket(std::move(term))) pieces.push_back(std::move(part));
-  }
-  return pieces;
 }
 
 }  // namespace
 
-std::string inline_math(std::string_view fragment) {
-  return fragment.empty() ? std::string() : fmt::format("<math>{}</math>", to_string(typeset_row(fragment)));
+std::string inline_math(const Layout& formula) {
+  return formula.empty() ? std::string() : fmt::format("<math>{}</math>", to_mathml(formula));
 }
 
-std::string display_math(std::string_view left, std::string_view right) {
-  MathRow whole = typeset_row(left);
-  const MathRow right_row = typeset_row(right);
-  const std::size_t letters = letters_in(whole) + letters_in(right_row);
-  const MathElement equals{"mo", " form=\"infix\"", "=", {}};
-  std::vector<MathRow> pieces;
-  if (letters <= surely_fits) {
-    if (!left.empty() && !right.empty()) whole.push_back(equals);
-    whole.insert(whole.end(), right_row.begin(), right_row.end());
-    pieces = {whole};
-  } else {
-    pieces = pieces_of(whole);
-    auto further = pieces_of(right_row);
-    // `= 0` stays with the last term, a longer right side begins with its sign.
-    const bool short_right = further.size() == 1 && letters_in(further[0]) <= 2;
-    if (!pieces.empty() && !further.empty()) {
-      further[0].insert(further[0].begin(), equals);
-      if (short_right || letters_in(pieces.back()) <= 12) {
-        pieces.back().insert(pieces.back().end(), further[0].begin(), further[0].end());
-        further.erase(further.begin());
-      }
-    }
-    pieces.insert(pieces.end(), further.begin(), further.end());
-  }
+std::string display_math(const Layout& left, const Layout& right) {
+  const double whole = width(left) + width(right);
+  const std::vector<Layout> parts = whole <= surely_fits ? std::vector<Layout>{with_sign(left, right)} : pieces(left, right, one_line);
   std::string html;
-  for (const MathRow& piece : pieces) html += (html.empty() ? "" : "<wbr>") + math_element(piece);
-  return fmt::format("<div class=\"formula{}\">{}</div>", letters > one_line ? " long" : "", html);
+  for (const Layout& piece : parts)
+    html += fmt::format("{}<math displaystyle=\"true\">{}</math>", html.empty() ? "" : "<wbr>", to_mathml(piece));
+  return fmt::format("<div class=\"formula{}\">{}</div>", whole > one_line ? " long" : "", html);
 }
 
 // ------------------------------------------------------------------------------------------------------------- text

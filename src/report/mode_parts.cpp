@@ -20,38 +20,33 @@ constexpr double turn = 6.283185307179586;
 
 // ---------------------------------------------------------------------------------------------------------------- formulas
 
-std::string number_mathml(double x) {
-  const std::string text = short_number(std::abs(x), 4);
-  return (x < 0 ? "<mo>−</mo>" : "") + fmt::format("<mn>{}</mn>", text);
+Layout number_layout(double x) {
+  Layout out = layouts::number(short_number(std::abs(x), 4));
+  out.negative = x < 0;
+  return out;
 }
 
 template <class Entry>
-std::string matrix_mathml(std::size_t rows, std::size_t columns, Entry&& entry) {
-  std::string out = "<mrow><mo>(</mo><mtable>";
-  for (std::size_t i = 0; i < rows; ++i) {
-    out += "<mtr>";
-    for (std::size_t j = 0; j < columns; ++j) out += "<mtd><mrow>" + entry(i, j) + "</mrow></mtd>";
-    out += "</mtr>";
-  }
-  return out + "</mtable><mo>)</mo></mrow>";
+Layout matrix_layout(std::size_t rows, std::size_t columns, Entry&& entry) {
+  std::vector<Layout> entries;
+  for (std::size_t i = 0; i < rows; ++i)
+    for (std::size_t j = 0; j < columns; ++j) entries.push_back(entry(i, j));
+  return layouts::matrix(std::move(entries), columns);
 }
 
-std::string name_mathml(std::string_view name) { return fmt::format("<mi mathvariant=\"bold\">{}</mi>", name); }
-std::string dotted(int dots) {
-  constexpr std::string_view above[] = {"", "˙", "¨"};
-  return dots == 0 ? "<mi>ξ</mi>" : fmt::format("<mover accent=\"true\"><mi>ξ</mi><mo>{}</mo></mover>", above[dots]);
-}
-std::string term(std::string_view matrix, int dots) { return name_mathml(matrix) + "<mo>&#x2062;</mo>" + dotted(dots); }
+/// M ξ̈, C ξ̇, K ξ
+Layout term(const char* matrix, int dots) { return layouts::product({layouts::bold(matrix), layouts::name("ξ", dots)}); }
 
 struct Shown {
   bool velocity = false, position = false, input = false;
 };
 
 Formula balance(const Shown& shown) {
-  std::string left = "<mrow>" + term("M", 2);
-  if (shown.velocity) left += "<mo>+</mo>" + term("C", 1);
-  if (shown.position) left += "<mo>+</mo>" + term("K", 0);
-  return {left + "</mrow>", shown.input ? "<mrow>" + name_mathml("B") + "<mo>&#x2062;</mo><mi>u</mi></mrow>" : "<mn>0</mn>", "", ""};
+  std::vector<Layout> terms{term("M", 2)};
+  if (shown.velocity) terms.push_back(term("C", 1));
+  if (shown.position) terms.push_back(term("K", 0));
+  const Layout right = shown.input ? layouts::product({layouts::bold("B"), layouts::name("u")}) : layouts::number("0");
+  return {terms.size() == 1 ? terms.front() : layouts::sum(std::move(terms)), right, "", ""};
 }
 
 bool any(const RealMatrix& m) {
@@ -63,15 +58,15 @@ bool any(const ExprMatrix& m) {
 
 std::vector<Formula> formulas_of(const SymbolicLinearization& s, const ReadingOrder& order) {
   std::vector<Formula> out;
-  for (const auto& [left, right] : s.equilibrium) out.push_back({to_mathml(left, order), to_mathml(right, order), "", ""});
+  for (const auto& [left, right] : s.equilibrium) out.push_back({lay_out(left, order), lay_out(right, order), "", ""});
   const Shown shown{any(s.damping), any(s.stiffness), any(s.input)};
   out.push_back(balance(shown));
   const std::tuple<const char*, const ExprMatrix*, bool> all[] = {
       {"M", &s.mass, true}, {"C", &s.damping, shown.velocity}, {"K", &s.stiffness, shown.position}, {"B", &s.input, shown.input}};
   for (const auto& [name, matrix, is_shown] : all)
     if (is_shown)
-      out.push_back({name_mathml(name), matrix_mathml(matrix->rows, matrix->columns, [&, m = matrix](std::size_t i, std::size_t j) { return to_mathml(m->at(i, j), order); }), "", ""});
-  if (s.square) out.push_back({"<msup><mi>ω</mi><mn>2</mn></msup>", to_mathml(s.square, order), "", ""});
+      out.push_back({layouts::bold(name), matrix_layout(matrix->rows, matrix->columns, [&, m = matrix](std::size_t i, std::size_t j) { return lay_out(m->at(i, j), order); }), "", ""});
+  if (s.square) out.push_back({layouts::power(layouts::name("ω"), layouts::number("2")), lay_out(s.square, order), "", ""});
   return out;
 }
 
@@ -88,7 +83,7 @@ std::vector<Formula> formulas_of(const Linearization& l) {
   const std::tuple<const char*, const RealMatrix*, bool> all[] = {{"M", &l.mass, true}, {"C", &c, shown.velocity}, {"K", &k, shown.position}, {"B", &l.input, shown.input}};
   for (const auto& [name, matrix, is_shown] : all)
     if (is_shown)
-      out.push_back({name_mathml(name), matrix_mathml(matrix->rows, matrix->columns, [m = matrix](std::size_t i, std::size_t j) { return number_mathml(m->at(i, j)); }), "", ""});
+      out.push_back({layouts::bold(name), matrix_layout(matrix->rows, matrix->columns, [m = matrix](std::size_t i, std::size_t j) { return number_layout(m->at(i, j)); }), "", ""});
   return out;
 }
 

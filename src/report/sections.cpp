@@ -113,7 +113,8 @@ std::string coordinates_table(const ReportContent& content) {
   for (const auto& c : content.coordinates) started = started || !c.start.empty();
   std::string rows;
   for (const auto& c : content.coordinates) {
-    rows += fmt::format("<tr><td>{}</td><td>{}</td>", inline_math(c.symbol), unit_html(c.kind));
+    const std::string name = c.name.empty() ? "" : fmt::format(" <code>{}</code>", escape_html(c.name));
+    rows += fmt::format("<tr><td>{}{}</td><td>{}</td>", inline_math(c.symbol), name, unit_html(c.kind));
     if (started)
       rows += fmt::format("<td class=\"number\">{}</td><td class=\"number\">{}</td>", number_html(c.start),
                           number_html(c.start_velocity));

@@ -20,20 +20,29 @@ bool is_quantity(const Expression& x) {
   return std::all_of(x.arguments.begin(), x.arguments.end(), [](const auto& a) { return is_quantity(*a); });
 }
 
-std::string unit_text(Elaboration& e, const Expression& x) {
-  if (x.kind == Expression::Kind::Unary) return unit_text(e, *x.arguments[0]);
-  return x.unit ? written_unit(e.source, *x.unit) : std::string();
+struct WrittenUnit {
+  std::string text;
+  double factor = 1;   // in SI
+};
+
+/// Of a quantity that was read without a mistake.
+WrittenUnit unit_of_quantity(Elaboration& e, const Expression& x) {
+  if (x.kind == Expression::Kind::Unary) return unit_of_quantity(e, *x.arguments[0]);
+  if (!x.unit) return {};
+  const std::optional<Unit> unit = unit_of(e, *x.unit);
+  return unit ? WrittenUnit{written_unit(e.source, *x.unit), maupertuis::evaluate(factor_of(e.context, *unit), Bindings{})} : WrittenUnit{};
 }
 
 Expr add_parameter(Elaboration& e, const Declaration& d, const std::string& name, Expr value,
-                   const Dimension& dimension, const std::string& unit) {
+                   const Dimension& dimension, const WrittenUnit& unit) {
   Parameter p;
   p.name = name;
   p.symbol = e.context.symbol(name, Role::Parameter);
   p.value = value;
   p.si_value = maupertuis::evaluate(value, Bindings{});
   p.dimension = dimension;
-  p.unit = unit;
+  p.unit = unit.text;
+  p.unit_factor = unit.factor;
   p.span = d.span;
   e.values[p.symbol] = p.si_value;
   e.exact_values[p.symbol] = value;
@@ -94,7 +103,7 @@ void elaborate_parameter(Elaboration& e, Declaration& d) {
   place.in_parameter = place.inline_constants = true;
   Value v = evaluate_formula(e, x, place);
   if (v.poisoned || !is_possible(e, d, v, x)) return;
-  const std::string unit = unit_text(e, x);
+  const WrittenUnit unit = unit_of_quantity(e, x);
   const char* axes[] = {".x", ".y", ".z"};
   for (std::size_t i = 0; i < v.parts.size(); ++i)
     v.parts[i] = add_parameter(e, d, v.is_vector ? d.name + axes[i] : d.name, v.parts[i], v.dimension, unit);

@@ -1,4 +1,5 @@
 #include "system/elaboration.hpp"
+#include "system/unit_expression.hpp"
 
 #include <fmt/format.h>
 
@@ -23,7 +24,7 @@ bool refuse_acceleration_of_start(Elaboration& e, const Expression& x) {
 std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
   if (const std::optional<std::size_t> q = quaternion_component(e, x)) {
     if (refuse_acceleration_of_start(e, x)) return std::nullopt;
-    return StartValue{*q, x.primes, {}, {}};
+    return StartValue{*q, x.primes, {}, {}, {}, 1};
   }
   if (x.kind == Expression::Kind::Member) {
     const Declaration* base =
@@ -100,6 +101,21 @@ Value constant_vector_of(Elaboration& e, const Expression& x, const Dimension& e
   return known_before_the_run(e, vector_of(e, x, expected, what, place), x, what);
 }
 
+namespace {
+
+/// 60 deg of `start θ = -60 deg`: what shows the start shows it in the unit of the text.
+void note_written_unit(Elaboration& e, StartValue& s, const Expression& value, const Dimension& expected) {
+  const Expression* x = &value;
+  while (x->kind == Expression::Kind::Unary) x = x->arguments[0].get();
+  if (x->kind != Expression::Kind::Quantity || !x->unit || x->unit->factors.empty() || !all_units(*x->unit)) return;
+  const std::optional<Unit> unit = unit_of(e, *x->unit);
+  if (!unit || !unit->dimension.same_as(expected)) return;   // its words are names of the model
+  s.unit = written_unit(e.source, *x->unit);
+  s.unit_factor = maupertuis::evaluate(factor_of(e.context, *unit), Bindings{});
+}
+
+}  // namespace
+
 std::optional<StartValue> start_value(Elaboration& e, const syntax::StartStatement::Item& item) {
   std::optional<StartValue> s = start_variable(e, *item.variable);
   if (!s) {
@@ -113,6 +129,7 @@ std::optional<StartValue> start_value(Elaboration& e, const syntax::StartStateme
   warn_of_degrees(e, v, expected, *item.value);
   s->value = v.scalar();
   s->span = item.variable->span;
+  note_written_unit(e, *s, *item.value, expected);
   return s;
 }
 

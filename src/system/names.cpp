@@ -107,14 +107,21 @@ std::optional<Value> angular_velocity(Elaboration& e, const Expression& x) {
   return v;
 }
 
-/// p_θ where momenta may stand; nothing where it names none.
-std::optional<Value> momentum(Elaboration& e, const Expression& x) {
+/// p_θ, p_ball.qw where momenta may stand; nothing where it names none.
+std::optional<Value> momentum(Elaboration& e, const std::string& name) {
   const MechanicalSystem& system = e.system();
   for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
-    if (x.text != momentum_name(system, i)) continue;
+    if (name != momentum_name(system, i)) continue;
     const Dimension action = system.lagrangian_dimension * e.time();
     return Value::of(momentum_symbol(system, i), action / system.coordinates[i].dimension, 1);
   }
+  return std::nullopt;
+}
+
+/// λ_rod as derivations print it, where multiplier(rod) may stand. A multiplier never has the name of something declared.
+std::optional<Value> multiplier(Elaboration& e, const std::string& name) {
+  for (const Constraint& c : e.system().constraints)
+    if (c.multiplier && c.multiplier.name() == name) return value_of_multiplier(e, c);
   return std::nullopt;
 }
 
@@ -181,8 +188,10 @@ Value value_of_name(Elaboration& e, const Expression& x, const Place& place) {
     return time_derivative(e, v, x.primes, x);
   }
   if (x.text == "O") return origin(e, place);
-  if (place.reactions && x.primes == 0)
-    if (const std::optional<Value> p = momentum(e, x)) return *p;
+  if (place.reactions && x.primes == 0) {
+    if (const std::optional<Value> p = momentum(e, x.text)) return *p;
+    if (const std::optional<Value> force = multiplier(e, x.text)) return *force;
+  }
   unknown_name(e, x.text, x.name_span);
   return Value::poison();
 }
@@ -194,6 +203,8 @@ Value value_of_member(Elaboration& e, const Expression& x, const Place& place) {
     e.table.find(x.arguments[0]->text)->used = true;
     return derivative_of_coordinate(e, Value::of(e.system().coordinates[*q].q, Dimension{}, 0), x.primes);
   }
+  if (place.reactions && x.primes == 0 && x.arguments[0]->kind == Expression::Kind::Name)
+    if (const std::optional<Value> p = momentum(e, x.arguments[0]->text + "." + x.text)) return *p;
   Place world = place;
   world.frame = nullptr;  // .x is a world component
   const Value base = evaluate_formula(e, *x.arguments[0], world);

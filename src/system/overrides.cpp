@@ -55,6 +55,7 @@ void replace(Elaboration& e, Declaration& d, const Elaboration& inner) {
       p.value = given.value;
       p.si_value = given.si_value;
       p.unit = given.unit;
+      p.unit_factor = given.unit_factor;
       if (d.value.fits_any) p.dimension = given.dimension;
       e.values[p.symbol] = p.si_value;
       e.exact_values[p.symbol] = p.value;

@@ -80,7 +80,7 @@ void start_quaternions(Elaboration& e) {
       rest = rest - pow(s.value, Rational(2));
     }
     const std::optional<double> size = constant_value(e, rest);
-    if (!w_is_given && size && *size > 0) e.experiment().start.push_back({d.index, 0, sqrt(rest), d.span});
+    if (!w_is_given && size && *size > 0) e.experiment().start.push_back({d.index, 0, sqrt(rest), d.span, {}, 1});
   }
 }
 

@@ -88,6 +88,8 @@ Value of_release(Elaboration& e, const Release& r, bool multiplier, const Expres
 
 }  // namespace
 
+Value value_of_multiplier(Elaboration& e, const Constraint& c) { return of_constraint(e, c, true); }
+
 Value value_of_reaction(Elaboration& e, const Expression& x, const Place& place) {
   const Expression& name = *x.arguments[0];
   if (name.kind != Expression::Kind::Name || name.primes > 0) {

@@ -40,6 +40,12 @@ std::optional<Unit> unit_of(Elaboration& e, const syntax::UnitExpression& words)
   Unit out;
   bool known = true;
   for (const auto& word : words.factors) {
+    if (const AmbiguousUnit* ambiguous = find_ambiguous_unit(word.word)) {
+      e.diagnostics.error("E0313", word.span, fmt::format("`{}` may be two units", word.word),
+                          fmt::format("It is {}.", ambiguous->meanings), fmt::format("Write {}.", ambiguous->instead));
+      known = false;
+      continue;
+    }
     const std::optional<Unit> unit = find_unit(word.word);
     if (!unit) {
       unknown_unit(e, word);

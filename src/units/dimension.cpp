@@ -79,7 +79,7 @@ Dimension charge() { return Dimension::base(Dimension::Current) * time(); }
 Dimension velocity() { return length() / time(); }
 Dimension acceleration() { return velocity() / time(); }
 Dimension force() { return mass() * acceleration(); }
-Dimension torque() { return force() * length(); }
+Dimension torque() { return force() * length() / angle(); }
 Dimension energy() { return force() * length(); }
 Dimension power() { return energy() / time(); }
 Dimension moment_of_inertia() { return mass() * length() * length(); }

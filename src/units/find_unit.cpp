@@ -63,6 +63,12 @@ std::optional<Unit> find_unit(std::string_view written) {
   return std::nullopt;
 }
 
+const AmbiguousUnit* find_ambiguous_unit(std::string_view word) {
+  const auto table = ambiguous_units();
+  const auto found = std::find_if(table.begin(), table.end(), [&](const AmbiguousUnit& unit) { return unit.word == word; });
+  return found == table.end() ? nullptr : &*found;
+}
+
 std::vector<std::string> unit_words() {
   std::vector<std::string> words;
   for (const UnitEntry& entry : unit_table()) words.emplace_back(entry.word);

@@ -106,8 +106,27 @@ constexpr PrefixEntry kPrefixes[] = {
     {"n", -9},  {"p", -12}, {"f", -15}, {"a", -18}, {"z", -21}, {"y", -24}, {"r", -27}, {"q", -30},
 };
 
+/// Words with a prefix that are written for something else, and words of other systems that differ from one of these by a
+/// capital letter. Exact names beat prefixes: min is the minute, ft the foot, au the astronomical unit, hp the mechanical
+/// horsepower (550 ft lbf/s).
+constexpr AmbiguousUnit kAmbiguous[] = {
+    {"PS", "a petasiemens (1e15 S) or a metric horsepower (735.49875 W)", "735.49875 W for the horsepower, 1e15 S for the conductance"},
+    {"PA", "a petaampere (1e15 A) or, in capitals, a pascal", "Pa for the pressure, 1e15 A for the current"},
+    {"EV", "an exavolt (1e18 V) or, in capitals, an electronvolt", "eV for the energy, 1e18 V for the voltage"},
+    {"Gs", "a gigasecond (1e9 s) or a gauss (1e-4 T)", "G for the magnetic field, 1e9 s for the time"},
+    {"Gal", "a gal of geodesy (1 cm/s^2) or a gallon", "cm/s^2 for the acceleration, gal for the volume"},
+    {"Tm", "a terametre (1e12 m) or a tesla metre", "T m for the product, 1e12 m for the length"},
+    {"MS", "a megasiemens (1e6 S) or, in capitals, a millisecond", "ms for the time, 1e6 S for the conductance"},
+    {"Ms", "a megasecond (1e6 s) or a millisecond", "ms for the millisecond, 1e6 s for the megasecond"},
+    {"as", "an attosecond (1e-18 s) or a second of arc", "arcsec for the angle, 1e-18 s for the time"},
+    {"mas", "a thousandth of a second of arc, or a mistyped ms", "1e-3 arcsec for the angle, ms for the time"},
+    {"CV", "a metric horsepower (735.49875 W) or a coulomb volt", "735.49875 W for the horsepower, C V for the product"},
+    {"ton", "a tonne, or a short or a long ton", "t for 1000 kg, 2000 lb or 2240 lb for the others"},
+};
+
 }  // namespace
 
+std::span<const AmbiguousUnit> ambiguous_units() { return kAmbiguous; }
 std::span<const UnitEntry> unit_table() { return kUnits; }
 std::span<const PrefixEntry> prefix_table() { return kPrefixes; }
 

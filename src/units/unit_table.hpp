@@ -1,4 +1,6 @@
 #pragma once
+#include <maupertuis/units.hpp>
+
 #include <array>
 #include <cstdint>
 #include <span>
@@ -20,6 +22,7 @@ struct PrefixEntry {
   int power;                 // of ten
 };
 
+std::span<const AmbiguousUnit> ambiguous_units();
 std::span<const UnitEntry> unit_table();
 std::span<const PrefixEntry> prefix_table();
 

@@ -26,7 +26,7 @@ TEST_CASE("derive with x in the place of t: primes, d/dx, and the cycloid's equa
   CHECK(contains(steps.out, "Certificate: passed"));
   CHECK(!contains(steps.out, "d/dt"));
   const Outcome latex = maup({"derive", "-", "--steps", "--latex"}, brachistochrone);
-  CHECK(contains(latex.out, "\\frac{d}{dx}"));
+  CHECK(contains(latex.out, "\\frac{\\mathrm{d}}{\\mathrm{d} x}"));
   CHECK(contains(latex.out, "y_1''"));
   CHECK(!contains(latex.out.substr(latex.out.find("\\begin{document}")), "dot"));
   const Outcome mathml = maup({"derive", "-", "--mathml"}, brachistochrone);

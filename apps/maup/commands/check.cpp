@@ -20,14 +20,20 @@ std::string with_unit(const std::string& number, const Dimension& dimension) {
 
 std::string joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
 
-/// θ = 120 deg, x' = 2 m/s: angles in degrees, the rest in SI.
+/// θ = 120 deg, x' = 2 m/s: as the text has it, in SI where it has a formula.
 std::string start_text(const StartValue& start, const MechanicalSystem& system) {
   const Coordinate& c = system.coordinates[start.coordinate];
   const double value = evaluate(in_terms_of_motion(system, {&start.value, 1})[0], parameter_bindings(system));
   const std::string name = c.name + std::string(static_cast<std::size_t>(start.order), '\'');
   if (system.dimensionless) return fmt::format("{} = {}", name, brief(value));
-  if (c.kind == "angle" && start.order == 0) return fmt::format("{} = {} deg", name, brief(value * 180 / std::acos(-1.0)));
+  if (!start.unit.empty()) return fmt::format("{} = {} {}", name, brief(value / start.unit_factor), start.unit);
   return fmt::format("{} = {}", name, with_unit(brief(value), start.order ? c.dimension / system.independent_dimension : c.dimension));
+}
+
+/// A torque of 0.1 N m is no energy of 0.1 J: the unit of the text where the value is one number of it, else that of SI.
+std::string parameter_text(const Parameter& p, const MechanicalSystem& system) {
+  const double factor = p.unit_factor;
+  return p.unit.empty() || system.dimensionless ? with_unit(brief(p.si_value), p.dimension) : brief(p.si_value / factor) + " " + p.unit;
 }
 
 double value_of(Expr e, const MechanicalSystem& system) {
@@ -97,7 +103,7 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
   words.clear();
   for (const Parameter& p : system.parameters)
     if (p.symbol.role() == Role::Parameter)
-      words.push_back(fmt::format("{} = {}", p.name, with_unit(brief(p.si_value), p.dimension)));
+      words.push_back(fmt::format("{} = {}", p.name, parameter_text(p, system)));
   if (words.size() > 12) words = {fmt::format("{} of them", words.size())};
   line("parameters", joined(words));
   words.clear();

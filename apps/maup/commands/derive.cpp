@@ -32,8 +32,8 @@ struct DeriveOptions {
 Json equations_json(const EquationForm& form, const ReadingOrder& order) {
   Json list = Json::array();
   for (const EquationLine& line : form.lines)
-    list.push_back({{"coordinate", line.coordinate}, {"plain", to_text(line, Notation::Plain, order)},
-                    {"latex", to_text(line, Notation::Latex, order)}});
+    list.push_back({{"coordinate", line.coordinate}, {"plain", plain_text(shown_line(line, order))},
+                    {"latex", latex_text(shown_line(line, order))}});
   return list;
 }
 
@@ -122,17 +122,23 @@ Json document_of(const DeriveOptions& options, Study& study, const EquationForm&
   return document;
 }
 
-/// In one notation alone, for another program: the steps if asked for, else the equations.
+/// In one notation alone, for another program: the steps if asked for, the equations, what their names stand for.
 std::string in_notation(const DeriveOptions& options, Notation notation, Study& study, const EquationForm& form) {
-  const ReadingOrder& order = study.equations()->order;
-  std::vector<std::string> lines;
-  if (options.steps) lines = step_lines(*study.derivation(true), notation, order);
-  for (const EquationLine& line : form.lines) lines.push_back(to_text(line, notation, order));
-  for (const EquationLine& line : form.constraints) lines.push_back(to_text(line, notation, order));
-  for (const Intermediate& i : form.intermediates) lines.push_back(to_text(definition_line(i, order), notation, order));
-  if (notation == Notation::Latex) return latex_document(lines);
-  if (notation == Notation::Mathml) return mathml_document(lines);
-  return fmt::format("{}\n", fmt::join(lines, "\n"));
+  const EquationsOfMotion& equations = *study.equations();
+  const ReadingOrder& order = equations.order;
+  std::vector<FormulaLine> lines;
+  if (options.steps) lines = step_lines(study.derivation(true)->steps, *equations.system, order);
+  const std::string section = options.steps ? "Equations of motion" : "";
+  const auto add = [&](FormulaLine line) {
+    line.section = section;
+    lines.push_back(std::move(line));
+  };
+  for (const auto* part : {&form.lines, &form.constraints})
+    for (const EquationLine& line : *part) add(notation == Notation::Plain ? language_line(line, order) : shown_line(line, order));
+  for (const Intermediate& i : form.intermediates) add(definition_line(i, *equations.system, order));
+  if (notation == Notation::Plain) return document(lines, notation);
+  for (FormulaLine& line : symbol_legend(*equations.system, order)) add(std::move(line));
+  return document(lines, notation);
 }
 
 ExitCode emit_stage(const DeriveOptions& options, Study& study, Console& console) {

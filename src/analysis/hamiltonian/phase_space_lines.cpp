@@ -34,14 +34,13 @@ class Lines {
   }
 
  private:
-  void formula(const std::string& section, const std::string& rule, const std::string& left, const std::string& left_latex,
-               const ReadableForm& right) {
-    lines_.push_back({section, rule, left, left_latex, right.value, {}, right.intermediates});
+  void formula(const std::string& section, const std::string& rule, Layout left, const ReadableForm& right) {
+    lines_.push_back({section, rule, std::move(left), right.value, {}, right.intermediates});
   }
   void formula(const std::string& section, const std::string& rule, Expr left, const ReadableForm& right) {
-    formula(section, rule, symbol_to_plain(left), symbol_to_latex(left), right);
+    formula(section, rule, lay_out(left, h_.order), right);
   }
-  void sentence(const std::string& section, std::string text) { lines_.push_back({section, {}, {}, {}, {}, std::move(text), {}}); }
+  void sentence(const std::string& section, std::string text) { lines_.push_back({section, {}, {}, {}, std::move(text), {}}); }
 
   /// The shortest of the readable form and Σ M_ij q_j' + b_i with each coefficient in brackets.
   ReadableForm momentum(std::size_t i) const {
@@ -69,7 +68,7 @@ class Lines {
   void primary_constraints() {
     for (const LegendreBlock& block : h_.legendre.blocks) {
       for (const Expr& c : block.primary_constraints)
-        formula("Primary constraints", "follows from p = ∂L/∂q'", "0", "0", ReadableForm{c, {}, {}});
+        formula("Primary constraints", "follows from p = ∂L/∂q'", layouts::number("0"), ReadableForm{c, {}, {}});
       if (block.kind == LegendreKind::Singular && !block.primary_constraints.empty())
         sentence("Primary constraints", fmt::format("The momenta do not determine every velocity of {}; H stands for its values on these constraints, and "
                                                     "H plus any multiples of them gives the same motion.",
@@ -99,9 +98,9 @@ class Lines {
       return;
     }
     if (h_.legendre.readable.value) {
-      formula(section, "H = p·q' − L", "H", "H", h_.legendre.readable);
+      formula(section, "H = p·q' − L", layouts::name("H"), h_.legendre.readable);
     } else {
-      formula(section, "H = p·q' − L", "H", "H", ReadableForm{with_velocities(), {}, {}});
+      formula(section, "H = p·q' − L", layouts::name("H"), ReadableForm{with_velocities(), {}, {}});
       for (const LegendreBlock& block : h_.legendre.blocks)
         if (!block.energy_is_readable && block.kind == LegendreKind::Singular)
           sentence(section, fmt::format("The velocities of {} stand for any solution of M q' = p − b, the lines of the momenta: H is the same for all of them where "
@@ -122,7 +121,7 @@ class Lines {
     if (conserved.energy_conserved) names += ", H";
     if (!text.empty()) sentence(section, text);
     if (!conserved.energy_conserved)
-      formula(section, "along the motion", "dH/d" + h_.system->independent, fmt::format("\\frac{{dH}}{{d{}}}", symbol_to_latex(h_.system->context->time())), ReadableForm{tidy(shown_.power, h_.order), {}, {}});
+      formula(section, "along the motion", layouts::rate(layouts::name("H"), lay_out(h_.system->context->time(), h_.order)), ReadableForm{tidy(shown_.power, h_.order), {}, {}});
     sentence(section, names.empty() ? "Neither H nor a momentum is conserved." : "Conserved: " + names.substr(2) + ".");
   }
 
@@ -145,11 +144,11 @@ class Lines {
 
   void routh(const Routhian& r) {
     const std::string section = "Routhian without " + names_of(r.replaced, *h_.system);
-    formula(section, "R = L − Σ p q'", "R", "\\mathcal{R}", r.readable);
+    formula(section, "R = L − Σ p q'", layouts::name("R"), r.readable);
     if (r.rest.empty()) sentence(section, "No other coordinate is left: the motion is known once its momenta are.");
-    else if (r.conserved) formula(section, "−R at rest", "V_eff", "V_{\\mathrm{eff}}", r.effective_potential);
+    else if (r.conserved) formula(section, "−R at rest", layouts::name("V_eff"), r.effective_potential);
     for (const CanonicalEquation& e : r.velocities) formula(section, "q' = −∂R/∂p", e.left, e.right);
-    for (const ReadableForm& row : r.equations) formula(section, "Routh, p constant", "0", "0", row);
+    for (const ReadableForm& row : r.equations) formula(section, "Routh, p constant", layouts::number("0"), row);
     if (r.conserved && !r.rest.empty() && r.equations.empty())
       sentence(section, "Its equations of motion would fill more than some lines.");
     if (!r.conserved)

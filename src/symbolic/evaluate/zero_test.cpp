@@ -75,6 +75,10 @@ ZeroTest zero_test(std::span<const Expr> differences, const ZeroTestOptions& opt
     test.error_bound = 0;
     return test;
   }
+  if (options.points < 1) {
+    test.reason = "no point was asked for";
+    return test;
+  }
   // One real point first: it settles most of what is not zero, for the price of one walk.
   if (const auto witness = find_witness(Tape(roots), 2, options.seed)) return nonzero(*witness);
 

@@ -20,7 +20,7 @@ constexpr std::array before_functions{
 constexpr std::array after_functions{
     KindInfo{Kind::Abs, "abs", 1, Parity::Even, {}, {}, false},
     KindInfo{Kind::Sign, "sign", 1, Parity::Odd, "\\operatorname{sgn}", "sgn", false},
-    KindInfo{Kind::Step, "step", 1, Parity::None, "\\Theta", "Θ", false},
+    KindInfo{Kind::Step, "step", 1, Parity::None, "\\operatorname{step}", "step", false},
     KindInfo{Kind::Atan2, "atan2", 2, Parity::None, "\\operatorname{atan2}", "atan2", false},
     KindInfo{Kind::Min, "min", 2, Parity::None, "\\min", "min", false},
     KindInfo{Kind::Max, "max", 2, Parity::None, "\\max", "max", false},

@@ -9,7 +9,8 @@
 
 #include <algorithm>
 
-namespace maupertuis::print {
+namespace maupertuis {
+namespace print {
 namespace {
 
 Layout combined(Shape shape, std::vector<Layout> parts) {
@@ -19,18 +20,32 @@ Layout combined(Shape shape, std::vector<Layout> parts) {
   return layout;
 }
 
-Layout number_text(std::string text) {
-  Layout layout;
+Layout with_text(Shape shape, std::string text, std::vector<Layout> parts = {}) {
+  Layout layout = combined(shape, std::move(parts));
   layout.text = std::move(text);
   return layout;
 }
 
+Layout number_text(std::string text) { return with_text(Shape::Number, std::move(text)); }
+
 /// Turning the argument around turns the value around, or leaves it. sign keeps its argument as it was written.
 Parity parity_of(Kind kind) { return kind == Kind::Sign ? Parity::None : kind_info(kind).parity; }
 
+/// The only body or frame with coordinates of its own, ball.qw, …; empty where there are none or several.
+std::string lone_body(const ReadingOrder& order) {
+  std::string found;
+  for (const Expr& q : order.coordinates) {
+    const std::size_t dot = q.name().find('.');
+    if (dot == std::string::npos) continue;
+    if (!found.empty() && found != q.name().substr(0, dot)) return {};
+    found = q.name().substr(0, dot);
+  }
+  return found;
+}
+
 class Builder {
  public:
-  explicit Builder(const ReadingOrder& order) : ranks_(order) {}
+  explicit Builder(const ReadingOrder& order) : ranks_(order), body_(lone_body(order)) {}
 
   /// The whole expression: only here does the row's own coordinate come first.
   Layout build_top(Expr e) const { return e.is(Kind::Sum) ? sum(e, SumPlace::Top) : build(e); }
@@ -55,11 +70,11 @@ class Builder {
     throw unknown_kind(e.kind(), "the printer");
   }
 
-  static Layout leaf(Expr e) {
+  Layout leaf(Expr e) const {
     if (e.is_number()) return number(e.number());
     if (e.is(Kind::Pi)) return combined(Shape::Pi, {});
-    Layout layout = combined(Shape::Symbol, {});
-    layout.symbol = e;
+    Layout layout = layouts::symbol(e);
+    if (!body_.empty()) layout.text = name_within_body(e.name(), body_);
     return layout;
   }
 
@@ -216,6 +231,7 @@ class Builder {
   }
 
   ReadingRanks ranks_;
+  std::string body_;   // ball.qw is shown as q_w where no other body has such coordinates
 };
 
 bool decimal_digits(std::string denominator, int& digits) {
@@ -257,12 +273,107 @@ bool starts_with_number(const Layout& layout) {
   return layout.shape == Shape::Number;
 }
 
-ReadingOrder row_order(const ReadingOrder& order, const ReadableForm& form) {
-  ReadingOrder with_own = order;
-  with_own.own = form.own;
-  return with_own;
+namespace {
+
+/// Nothing closes the brace of cases: what follows would be read as part of them.
+bool ends_with_cases(const Layout& l) {
+  return l.shape == Shape::Cases || (l.shape == Shape::Product && ends_with_cases(l.parts.back()));
 }
 
-Layout lay_out(Expr e, const ReadingOrder& order) { return Builder(order).build_top(e); }
+}  // namespace
 
-}  // namespace maupertuis::print
+bool needs_brackets(const std::vector<Layout>& parts, std::size_t i) {
+  const Layout& l = parts[i];
+  if (i + 1 < parts.size() && ends_with_cases(l)) return true;
+  return l.negative || l.shape == Shape::Sum || l.shape == Shape::Comparison || l.shape == Shape::Logic;
+}
+
+bool is_simple_base(const Layout& base) {
+  if (base.negative) return false;
+  if (base.shape == Shape::Symbol) return base.symbol.role() != Role::Constant;
+  return base.shape == Shape::Number || base.shape == Shape::Pi || base.shape == Shape::Name || base.shape == Shape::Bold ||
+         base.shape == Shape::Indexed;
+}
+
+bool has_bare_argument(const Layout& apply) {
+  const Layout& first = apply.parts.front();
+  if (!is_circular(apply.function) || first.negative) return false;
+  return first.shape == Shape::Pi || (first.shape == Shape::Symbol && first.symbol.role() != Role::Constant);
+}
+
+bool needs_brackets_above_slash(const Layout& numerator) {
+  return numerator.negative || numerator.shape == Shape::Sum || numerator.shape == Shape::Cases ||
+         numerator.shape == Shape::Quotient || numerator.shape == Shape::Comparison || numerator.shape == Shape::Logic;
+}
+
+bool needs_brackets_below_slash(const Layout& denominator) {
+  return needs_brackets_above_slash(denominator) || denominator.shape == Shape::Product;
+}
+
+bool is_tall(const Layout& l) {
+  if (l.shape == Shape::Quotient || l.shape == Shape::Root || l.shape == Shape::Cases || l.shape == Shape::Matrix ||
+      l.shape == Shape::Derivative || l.shape == Shape::Partial || l.shape == Shape::Rate)
+    return true;
+  const std::size_t count = l.shape == Shape::Power ? 1 : l.parts.size();   // an exponent stands on one line
+  return std::any_of(l.parts.begin(), l.parts.begin() + static_cast<std::ptrdiff_t>(count), is_tall);
+}
+
+}  // namespace print
+
+Layout lay_out(Expr e, const ReadingOrder& order) { return print::Builder(order).build_top(e); }
+
+Layout lay_out(const ReadableForm& form, const ReadingOrder& order) {
+  ReadingOrder with_own = order;
+  with_own.own = form.own;
+  return lay_out(form.value, with_own);
+}
+
+namespace layouts {
+
+using print::combined;
+using print::with_text;
+
+Layout number(std::string text) { return with_text(Shape::Number, std::move(text)); }
+Layout bold(std::string text, int dots) {
+  Layout layout = with_text(Shape::Bold, std::move(text));
+  layout.dots = dots;
+  return layout;
+}
+Layout name(std::string text, int dots, bool primes) {
+  Layout layout = with_text(Shape::Name, std::move(text));
+  layout.dots = dots;
+  layout.primes = primes;
+  return layout;
+}
+Layout symbol(Expr symbol) {
+  Layout layout = combined(Shape::Symbol, {});
+  layout.symbol = symbol;
+  return layout;
+}
+Layout words(std::string text) { return with_text(Shape::Words, std::move(text)); }
+Layout indexed(Layout base, std::vector<Layout> below) {
+  below.insert(below.begin(), std::move(base));
+  return combined(Shape::Indexed, std::move(below));
+}
+Layout power(Layout base, Layout exponent) { return combined(Shape::Power, {std::move(base), std::move(exponent)}); }
+Layout product(std::vector<Layout> factors) { return combined(Shape::Product, std::move(factors)); }
+Layout sum(std::vector<Layout> terms) {
+  Layout layout = combined(Shape::Sum, std::move(terms));
+  layout.minus.assign(layout.parts.size(), false);
+  return layout;
+}
+Layout partial(Layout of, Layout by) { return combined(Shape::Partial, {std::move(of), std::move(by)}); }
+Layout rate(Layout of, Layout by, bool in_front) {
+  if (!in_front) return combined(Shape::Rate, {std::move(of), std::move(by)});
+  return combined(Shape::Row, {combined(Shape::Rate, {Layout{}, std::move(by)}), std::move(of)});
+}
+Layout braces(Layout a, Layout b) { return combined(Shape::Braces, {std::move(a), std::move(b)}); }
+Layout matrix(std::vector<Layout> entries, std::size_t columns) {
+  Layout layout = combined(Shape::Matrix, std::move(entries));
+  layout.columns = columns;
+  return layout;
+}
+Layout labelled(std::string plain, Layout typeset) { return with_text(Shape::Labelled, std::move(plain), {std::move(typeset)}); }
+
+}  // namespace layouts
+}  // namespace maupertuis

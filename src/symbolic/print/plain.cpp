@@ -17,7 +17,11 @@ Level level(const Layout& l) {
     case Shape::Product: case Shape::Quotient: return ProductLevel;
     case Shape::Power: return PowerLevel;
     case Shape::Apply: return l.text.empty() ? AtomLevel : PowerLevel;
-    case Shape::Number: case Shape::Symbol: case Shape::Pi: case Shape::Root: case Shape::Derivative: case Shape::Cases: break;
+    case Shape::Row: return SumLevel;
+    case Shape::Labelled: case Shape::Number: case Shape::Symbol: case Shape::Pi: case Shape::Root: case Shape::Derivative:
+    case Shape::Cases: case Shape::Empty: case Shape::Name: case Shape::Bold: case Shape::Words: case Shape::Indexed:
+    case Shape::Partial: case Shape::Rate: case Shape::Braces: case Shape::Matrix: case Shape::Sign: case Shape::Open:
+    case Shape::Close: break;
   }
   return AtomLevel;
 }
@@ -80,6 +84,38 @@ std::string write_cases(const Layout& l) {
   return text + "else : " + write(l.parts.back()) + ")";
 }
 
+std::string write_logic(const Layout& l) {
+  std::string text;
+  for (const Layout& part : l.parts) {
+    if (!text.empty()) text += l.function == Kind::And ? " and " : " or ";
+    const bool brackets = part.shape == Shape::Logic && part.function != l.function;
+    text += brackets ? "(" + write(part) + ")" : write(part);
+  }
+  return text;
+}
+
+std::string write_rate(const Layout& l) {
+  return l.parts[0].empty() ? "d/d" + write(l.parts[1]) : "d" + write(l.parts[0]) + "/d" + write(l.parts[1]);
+}
+
+std::string write_matrix(const Layout& l) {
+  std::string text = "(";
+  for (std::size_t i = 0; i < l.parts.size(); ++i)
+    text += (i % l.columns ? ", " : i ? "), (" : "(") + write(l.parts[i]);
+  return text + "))";
+}
+
+std::string write_row(const Layout& l) {
+  std::string text;
+  for (const Layout& part : l.parts) {
+    const bool glued = text.empty() || text.back() == '(' || part.shape == Shape::Close;
+    text += (glued ? "" : " ") + write(part);
+  }
+  return text;
+}
+
+std::string name_with_dots(const Layout& l) { return l.text + std::string(static_cast<std::size_t>(l.dots), '\''); }
+
 std::string write_unsigned(const Layout& l) {
   switch (l.shape) {
     case Shape::Number: return l.text;
@@ -93,8 +129,24 @@ std::string write_unsigned(const Layout& l) {
     case Shape::Apply: return write_apply(l);
     case Shape::Derivative: return "dot(" + write(l.parts[0]) + ")";
     case Shape::Comparison: return join(l.parts, l.function == Kind::Less ? " < " : " <= ");
-    case Shape::Logic: return join(l.parts, l.function == Kind::And ? " and " : " or ");
+    case Shape::Logic: return write_logic(l);
     case Shape::Cases: return write_cases(l);
+    case Shape::Empty: return {};
+    case Shape::Name: case Shape::Bold: return name_with_dots(l);
+    case Shape::Words: return l.text;
+    case Shape::Indexed: {
+      const std::vector<Layout> below(l.parts.begin() + 1, l.parts.end());
+      return write(l.parts[0]) + "[" + join(below, ", ") + "]";
+    }
+    case Shape::Partial: return "∂" + write(l.parts[0]) + "/∂" + write(l.parts[1]);
+    case Shape::Rate: return write_rate(l);
+    case Shape::Braces: return "{" + join(l.parts, ", ") + "}";
+    case Shape::Matrix: return write_matrix(l);
+    case Shape::Labelled: return l.text;
+    case Shape::Row: return write_row(l);
+    case Shape::Sign: return l.text == "⋅" ? "*" : l.text;
+    case Shape::Open: return (l.function == Kind::Number ? std::string() : std::string(name_of(l.function))) + "(";
+    case Shape::Close: return ")" + (l.parts.empty() ? std::string() : "^" + write_at(l.parts[0], AtomLevel));
   }
   return {};
 }
@@ -104,11 +156,11 @@ std::string write(const Layout& l) { return (l.negative ? "-" : "") + write_unsi
 }  // namespace
 }  // namespace print
 
-std::string to_plain(Expr e, const ReadingOrder& order) { return print::write(print::lay_out(e, order)); }
+std::string to_plain(const Layout& layout) { return print::write(layout); }
 
-std::string to_plain(const ReadableForm& form, const ReadingOrder& order) {
-  return to_plain(form.value, print::row_order(order, form));
-}
+std::string to_plain(Expr e, const ReadingOrder& order) { return to_plain(lay_out(e, order)); }
+
+std::string to_plain(const ReadableForm& form, const ReadingOrder& order) { return to_plain(lay_out(form, order)); }
 
 std::string symbol_to_plain(Expr symbol) {
   if (symbol.role() == Role::Constant) {  // as the language reads it in a formula: 3 [J]

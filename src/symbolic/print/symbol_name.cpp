@@ -11,9 +11,9 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Number of UTF-8 letters.
-std::size_t letters(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+/// A combining mark of U+0300 to U+036F, as in λ̃.
+bool is_mark(std::string_view letter) {
+  return letter.size() == 2 && (letter[0] == '\xcc' || (letter[0] == '\xcd' && static_cast<unsigned char>(letter[1]) <= 0xaf));
 }
 
 constexpr std::array<std::pair<std::string_view, std::string_view>, 49> greek{{
@@ -33,36 +33,78 @@ std::string_view latex_greek(std::string_view letter) {
   return place == greek.end() ? std::string_view{} : place->second;
 }
 
+std::vector<std::string_view> letters_of(std::string_view text) {
+  std::vector<std::string_view> letters;
+  for (std::size_t at = 0; at < text.size();) {
+    std::size_t end = at + 1;
+    while (end < text.size() && (text[end] & 0xC0) == 0x80) ++end;
+    const std::string_view letter = text.substr(at, end - at);
+    if (is_mark(letter) && !letters.empty()) letters.back() = text.substr(static_cast<std::size_t>(letters.back().data() - text.data()), letters.back().size() + letter.size());
+    else letters.push_back(letter);
+    at = end;
+  }
+  return letters;
+}
+
+std::size_t letter_count(std::string_view text) { return letters_of(text).size(); }
+
+bool is_digits(std::string_view text) { return !text.empty() && std::all_of(text.begin(), text.end(), is_digit); }
+
+namespace {
+
+/// What stands between underscores, in order; nothing for two of them.
+std::vector<std::string> parts_of(std::string_view text) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find('_', at), text.size());
+    if (end > at) parts.emplace_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return parts;
+}
+
+/// θ1 → θ with 1 below; mt → m with t below; mt1 → m with t1 below. A word keeps its letters.
+void take_index(SymbolName& name, std::string_view head) {
+  std::size_t digits = head.size();
+  while (digits > 0 && is_digit(head[digits - 1])) --digits;
+  if (digits == 0) digits = head.size();
+  const auto letters = letters_of(head.substr(0, digits));
+  const bool two = letters.size() == 2 && !is_digit(letters[1].front());
+  const std::size_t cut = two ? letters[0].size() : digits;
+  name.body = head.substr(0, cut);
+  if (cut < head.size()) name.below.emplace_back(head.substr(cut));
+}
+
+}  // namespace
+
 SymbolName split_name(std::string_view name) {
   SymbolName result;
-  std::size_t cut = name.find('_');
-  const bool underscore = cut != std::string_view::npos && cut > 0 && cut + 1 < name.size();
-  if (!underscore) {
-    cut = name.size();
-    while (cut > 0 && is_digit(name[cut - 1])) --cut;
-    if (cut == 0) cut = name.size();
+  if (const std::size_t dot = name.find('.'); dot != std::string_view::npos && dot > 0 && dot + 1 < name.size()) {
+    result = split_name(name.substr(dot + 1));
+    result.below.emplace_back(name.substr(0, dot));
+    return result;
   }
-  result.body = std::string(name.substr(0, cut));
-  result.subscript = std::string(name.substr(std::min(name.size(), underscore ? cut + 1 : cut)));
-  if (underscore) {
-    // θ1_max: both parts go below.
-    std::size_t digits = result.body.size();
-    while (digits > 1 && is_digit(result.body[digits - 1])) --digits;
-    if (digits < result.body.size()) result.subscript = result.body.substr(digits) + "," + result.subscript;
-    result.body.resize(digits);
-  }
-  std::replace(result.subscript.begin(), result.subscript.end(), '_', ',');
-  result.body_is_word = letters(result.body) > 1;
-  result.subscript_is_word = letters(result.subscript) > 1 && !std::all_of(result.subscript.begin(), result.subscript.end(),
-                                                                            [](char c) { return is_digit(c) || c == ','; });
+  const auto parts = parts_of(name);
+  if (parts.empty() || name.front() == '_') return {std::string(name), {}};
+  take_index(result, parts.front());
+  result.below.insert(result.below.end(), parts.begin() + 1, parts.end());
   return result;
 }
 
-ShownSymbol shown_symbol(Expr symbol) {
+std::string name_within_body(std::string_view name, std::string_view body) {
+  if (is_integral(name)) name.remove_prefix(integral_sign.size());
+  const std::string prefix = std::string(body) + ".";
+  if (name.substr(0, prefix.size()) == prefix) return std::string(name.substr(prefix.size()));
+  if (name.substr(0, prefix.size() + 2) == "p_" + prefix) return "p_" + std::string(name.substr(prefix.size() + 2));
+  return {};
+}
+
+ShownSymbol shown_symbol(Expr symbol, const std::string& within_body) {
   const std::string& name = symbol.name();
   const bool primes = symbol.order() > 0 && independent_name(symbol.context()) != "t";
-  if (symbol.order() == 0 || !is_integral(name)) return {name, symbol.order(), primes};
-  return {name.substr(integral_sign.size()), symbol.order() - 1, primes};
+  const bool quantity = symbol.order() > 0 && is_integral(name);
+  const std::string shown = !within_body.empty() ? within_body : quantity ? name.substr(integral_sign.size()) : name;
+  return {shown, symbol.order() - (quantity ? 1 : 0), primes};
 }
 
 std::string independent_name(Context& context) {

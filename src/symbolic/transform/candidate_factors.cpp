@@ -43,11 +43,37 @@ int CandidateChooser::reading_sign(const Polynomial& sum) const {
   return sign;
 }
 
+Rational CandidateChooser::readable_content(const Polynomial& p) {
+  constexpr std::size_t at_a_glance = 4;
+  const Rational content = rational_content(p);
+  if (content.is_one()) return content;
+  std::size_t before = 0, after = digits_of(content), longest = after;
+  for (const Term& t : p) {
+    const std::size_t digits = digits_of(t.coefficient / content);
+    before += digits_of(t.coefficient);
+    after += digits;
+    longest = std::max(longest, digits);
+  }
+  return longest > at_a_glance && after > before ? Rational(1) : content;
+}
+
 /// Flat, but for the numeric factor: 2 (a + b), so that a coefficient that is multiplied on later meets it.
 Expr CandidateChooser::without_content(const Polynomial& p) {
   if (p.size() < 2) return flat(p);
-  const Rational content = rational_content(p);
+  const Rational content = readable_content(p);
   return algebra_.context().number(content) * flat(algebra_.scale(p, Rational(1) / content));
+}
+
+/// 1.99999985 x − 0.00000005 y, not 0.00000005 (39999997 x − y): no number in front that makes others longer.
+void CandidateChooser::take_in_long_coefficient(Factored& parts) {
+  for (Factored::Part& part : parts.parts) {
+    if (part.multiplicity != 1) continue;
+    Polynomial whole = algebra_.scale(part.sum, parts.coefficient);
+    if (readable_content(whole) == abs(parts.coefficient)) return;
+    part.sum = std::move(whole);
+    parts.coefficient = 1;
+    return;
+  }
 }
 
 Expr CandidateChooser::factored(const Polynomial& p) {
@@ -81,6 +107,7 @@ Factored CandidateChooser::factored_parts(const Polynomial& p) {
 }
 
 Expr CandidateChooser::product_of(Factored parts) {
+  take_in_long_coefficient(parts);
   std::vector<Expr> factors{algebra_.expression(parts.monomial, true)};
   for (Factored::Part& part : parts.parts) {
     const int sign = reading_sign(part.sum);

@@ -39,7 +39,7 @@ Expr CandidateChooser::content_outside(Expr e) {
     coefficients.push_back({0, 0, split_coefficient(e[i]).coefficient});
     all_negative &= coefficients.back().coefficient.sign() < 0;
   }
-  const Rational content = all_negative ? -rational_content(coefficients) : rational_content(coefficients);
+  const Rational content = all_negative ? -readable_content(coefficients) : readable_content(coefficients);
   if (content.is_one()) return e;
   std::vector<Expr> terms;
   for (std::size_t i = 0; i < e.size(); ++i) terms.push_back(e[i] / content);

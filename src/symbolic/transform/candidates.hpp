@@ -55,6 +55,8 @@ class CandidateChooser {
   /// What all terms stand over, if a sum is in it; else 1.
   MonomialId common_denominator(const Polynomial& p);
   Expr content_outside(Expr e);
+  /// The number that all coefficients are multiples of; 1 where they would be longer without it.
+  static Rational readable_content(const Polynomial& p);
 
   bool has_rates_inside_functions(const Polynomial& p) const;
   std::vector<std::pair<Fraction, Polynomial>> by_rate_degree(const Polynomial& p) const;
@@ -67,6 +69,7 @@ class CandidateChooser {
   Expr factored(const Polynomial& p);
   Factored factored_parts(const Polynomial& p);
   Expr product_of(Factored parts);
+  void take_in_long_coefficient(Factored& parts);
 
   Expr search_best(const Polynomial& p);
   enum class Part { Parameter, Rate, Other };

@@ -1,5 +1,7 @@
 #include "symbolic/transform/reading_cost.hpp"
 
+#include <algorithm>
+
 namespace maupertuis::terms {
 namespace {
 
@@ -8,9 +10,17 @@ constexpr double plus = 0.9, brackets = 1.3, light_brackets = 0.8;
 constexpr double exponent = 0.4, root = 0.8, other_exponent = 1, below_the_bar = 0.2;
 constexpr double function_of_name = 1.5, function = 1.1, angle = 0.9, multiple_of_angle = 1.6, name_in_angle = 0.5;
 
+/// What a long number costs beyond a short one.
+double length_cost(const Rational& value) {
+  constexpr std::size_t at_a_glance = 4;
+  constexpr double digit = 0.12;
+  const std::size_t digits = digits_of(value);
+  return digits > at_a_glance ? digit * static_cast<double>(digits - at_a_glance) : 0;
+}
+
 double coefficient_cost(const Rational& value) {
   if (abs(value).is_one()) return 0;
-  return value.is_integer() ? whole_factor : fraction_factor;
+  return (value.is_integer() ? whole_factor : fraction_factor) + length_cost(value);
 }
 
 /// (m1 + m2) and (r - l0) are taken in at a glance; brackets around products make the eye go back.
@@ -24,6 +34,16 @@ double brackets_around(Expr sum) {
 
 }  // namespace
 
+std::size_t digits_of(const Rational& value) {
+  const Rational size = abs(value);
+  if (size.is_integer()) return size.numerator_string().size();
+  for (int places = 1; places <= 9; ++places) {
+    const Rational shifted = size * pow(Rational(10), places);
+    if (shifted.is_integer()) return std::max(shifted.numerator_string().size(), static_cast<std::size_t>(places) + 1);
+  }
+  return size.numerator_string().size() + size.denominator_string().size();
+}
+
 double ReadingCost::operator()(Expr e) {
   if (const auto known = known_.find(e.id()); known != known_.end()) return known->second;
   const double value = compute(e);
@@ -32,7 +52,7 @@ double ReadingCost::operator()(Expr e) {
 }
 
 double ReadingCost::compute(Expr e) {
-  if (e.is_number()) return lone_number;
+  if (e.is_number()) return lone_number + length_cost(e.number());
   if (e.is(Kind::Power)) return of_power(e);
   if (e.is(Kind::Product)) return of_product(e);
   if (e.is(Kind::Sin) || e.is(Kind::Cos) || e.is(Kind::Tan)) return of_circular(e);

@@ -21,4 +21,7 @@ class ReadingCost {
   std::unordered_map<NodeId, double> known_;
 };
 
+/// Digits that a reader sees: 3 of 9.81, 2 of 1/2, 9 of 0.00000005.
+std::size_t digits_of(const Rational& value);
+
 }  // namespace maupertuis::terms

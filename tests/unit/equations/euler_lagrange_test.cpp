@@ -158,7 +158,7 @@ TEST_CASE("the textbook path shows every chain-rule term") {
   const Derivation d = readable_derivation(m.equations, true);
   const auto find = [&](const std::string& left) {
     for (const DerivationStep& step : d.steps)
-      if (step.left == left) return to_plain(step.right, m.equations.order);
+      if (to_plain(step.left) == left) return to_plain(step.right, m.equations.order);
     return std::string("missing");
   };
   CHECK(find("B.x") == "l1 sin θ1 + l2 sin θ2");

@@ -35,23 +35,25 @@ TEST_CASE("units and numbers as in print") {
 }
 
 TEST_CASE("a short equation is one formula, a long sum breaks before its signs") {
-  CHECK(display_math("<mi>T</mi>", "<mi>x</mi>") ==
-        "<div class=\"formula\"><math displaystyle=\"true\"><mrow><mi>T</mi><mo form=\"infix\">=</mo><mi>x</mi></mrow></math></div>");
-  const std::string ten = "<mi>abcdefghij</mi>", term = "<mrow>" + ten + "<mo>+</mo>" + ten + "</mrow>";
-  const std::string sum = "<mrow>" + term + "<mo>+</mo>" + ten + "<mo>−</mo>" + ten + "<mo>+</mo>" + ten + "</mrow>";
-  const std::string html = display_math(sum, "<mn>0</mn>");
+  const Layout x = layouts::name("x"), ten = layouts::name("abcdefghij"), zero = layouts::number("0");
+  CHECK(display_math(layouts::name("T"), x) ==
+        "<div class=\"formula\"><math displaystyle=\"true\"><mrow><mrow><mi>T</mi><mo form=\"infix\">=</mo><mi>x</mi></mrow></mrow></math></div>");
+  const Layout term = layouts::product({ten, layouts::sum({ten, ten})});
+  Layout sum = layouts::sum({term, ten, ten, ten});
+  sum.minus[2] = true;
+  const std::string html = display_math(sum, zero);
   CHECK(count(html, "<math") == 4);
   CHECK(count(html, "<wbr>") == 3);
-  CHECK(html.find("<mrow>" + term + "</mrow></math>") != std::string::npos);  // signs inside a term do not break
-  CHECK(html.find("<mrow><mo form=\"infix\">−</mo>" + ten + "</mrow>") != std::string::npos);
-  CHECK(html.find(ten + "<mo form=\"infix\">=</mo><mn>0</mn></mrow>") != std::string::npos);  // = 0 stays with the last term
-  CHECK(inline_math("") == "");
+  CHECK(count(html, "<mi>abcdefghij</mi><mo>+</mo><mi>abcdefghij</mi>") == 1);  // signs inside a term do not break
+  CHECK(html.find("<mrow><mo form=\"infix\">&#x2212;</mo><mi>abcdefghij</mi></mrow>") != std::string::npos);
+  CHECK(html.find("<mi>abcdefghij</mi><mo form=\"infix\">=</mo><mn>0</mn></mrow>") != std::string::npos);  // = 0 stays with the last term
+  CHECK(inline_math({}) == "");
 }
 
 TEST_CASE("a bracket longer than a line breaks inside") {
-  std::string inner;
-  for (int i = 0; i < 5; ++i) inner += std::string(i ? "<mo>+</mo>" : "") + "<mi>abcdefghijklmnopqrst</mi>";
-  const std::string html = display_math("<mrow><mi>m</mi><mrow><mo>(</mo>" + inner + "<mo>)</mo></mrow><mi>x</mi></mrow>", "<mn>0</mn>");
+  const Layout long_name = layouts::name("abcdefghijklmnopqrst");
+  const Layout bracket = layouts::sum({long_name, long_name, long_name, long_name, long_name});
+  const std::string html = display_math(layouts::product({layouts::name("m"), bracket, layouts::name("x")}), layouts::number("0"));
   CHECK(count(html, "<math") == 5);
   CHECK(count(html, ">(</mo>") == 1);
   CHECK(count(html, ">)</mo>") == 1);
@@ -59,10 +61,12 @@ TEST_CASE("a bracket longer than a line breaks inside") {
 }
 
 TEST_CASE("the first sign of a sum belongs to its first term") {
-  const std::string ten = "<mi>abcdefghij</mi>";
-  const std::string html = display_math("<mrow><mo>−</mo>" + ten + "<mo>+</mo>" + ten + "<mo>+</mo>" + ten + "<mo>+</mo>" + ten + "</mrow>", "<mn>0</mn>");
+  const Layout ten = layouts::name("abcdefghij");
+  Layout sum = layouts::sum({ten, ten, ten, ten});
+  sum.minus[0] = true;
+  const std::string html = display_math(sum, layouts::number("0"));
   CHECK(count(html, "<math") == 4);
-  CHECK(html.find("<mrow><mo>−</mo>" + ten + "</mrow>") != std::string::npos);
+  CHECK(html.find("<mrow><mo form=\"prefix\">&#x2212;</mo><mi>abcdefghij</mi></mrow>") != std::string::npos);
 }
 
 TEST_CASE("the model text: statement words and comments are marked") {

@@ -1,4 +1,5 @@
 #include "../forgotten_kind.hpp"
+#include "typeset_reader.hpp"
 
 #include <maupertuis/functions.hpp>
 #include <maupertuis/print.hpp>
@@ -44,10 +45,15 @@ double evaluate(const syntax::Expression& e) {
     if (e.op == O::Power) return std::pow(arg(0), arg(1));
     if (e.op == O::Less) return arg(0) < arg(1);
     if (e.op == O::LessEqual) return arg(0) <= arg(1);
+    if (e.op == O::And) return arg(0) != 0 && arg(1) != 0;
+    if (e.op == O::Or) return arg(0) != 0 || arg(1) != 0;
   }
   if (e.kind == K::Call) {
     const std::map<std::string, double (*)(double)> functions{
         {"sin", std::sin}, {"cos", std::cos}, {"tan", std::tan}, {"exp", std::exp}, {"sqrt", std::sqrt}, {"abs", std::fabs}};
+    if (e.text == "min") return std::min(arg(0), arg(1));
+    if (e.text == "step") return arg(0) >= 0;
+    if (e.text == "log") return std::log(arg(0));
     if (const auto f = functions.find(e.text); f != functions.end()) return f->second(arg(0));
   }
   throw std::logic_error("a formula that these tests do not print");
@@ -67,6 +73,12 @@ double evaluate(Expr e) {
   if (e.is(Kind::Exp)) return std::exp(arg(0));
   if (e.is(Kind::Abs)) return std::fabs(arg(0));
   if (e.is(Kind::Less)) return arg(0) < arg(1);
+  if (e.is(Kind::LessEqual)) return arg(0) <= arg(1);
+  if (e.is(Kind::And)) return arg(0) != 0 && arg(1) != 0;
+  if (e.is(Kind::Or)) return arg(0) != 0 || arg(1) != 0;
+  if (e.is(Kind::Min)) return std::min(arg(0), arg(1));
+  if (e.is(Kind::Step)) return arg(0) >= 0;
+  if (e.is(Kind::Log)) return std::log(arg(0));
   if (e.is(Kind::Piecewise)) return arg(0) != 0 ? arg(1) : arg(2);
   throw std::logic_error("an expression that these tests do not make");
 }
@@ -82,7 +94,7 @@ Expr random_expression(Context& c, const std::vector<int>& choices, std::size_t&
       default: return c.symbol(coordinates[static_cast<std::size_t>(pick(3))], Role::Coordinate, pick(3));
     }
   }
-  switch (pick(12)) {
+  switch (pick(15)) {
     case 0: case 1: return sub() + sub();
     case 2: return sub() - sub();
     case 3: case 4: return sub() * sub();
@@ -92,9 +104,14 @@ Expr random_expression(Context& c, const std::vector<int>& choices, std::size_t&
     case 8: return apply(pick(2) ? Kind::Sin : Kind::Cos, c.symbol("θ1", Role::Coordinate, pick(2)));
     case 9: return apply(pick(2) ? Kind::Tan : Kind::Exp, c.symbol("x", Role::Coordinate) * Rational(pick(5) - 2, 2));
     case 10: return c.power(apply(Kind::Abs, sub()) + Rational(1), sub());
+    case 11: return c.power(c.number(Rational(3, 2)), sub() / (c.symbol("k", Role::Parameter) * c.symbol("x", Role::Coordinate)));
+    case 12: return c.power(c.symbol("a", Role::Parameter), -(sub() / c.symbol("b", Role::Parameter)));
+    case 13: return c.function(Kind::Min, std::array{sub(), sub()}) * apply(pick(2) ? Kind::Step : Kind::Log, c.symbol("x", Role::Coordinate));
     default: {
       const std::array sides{c.symbol("a", Role::Parameter), c.symbol("x", Role::Coordinate)};
-      const std::array branches{c.function(Kind::Less, sides), sub(), sub()};
+      const Expr less = c.function(Kind::Less, sides), other = c.function(Kind::LessEqual, std::array{c.symbol("b", Role::Parameter), sides[1]});
+      const Expr either = c.function(Kind::Or, std::array{less, other}), both = c.function(Kind::And, std::array{less, either});
+      const std::array branches{pick(2) ? less : pick(2) ? either : both, sub(), sub()};
       return c.function(Kind::Piecewise, branches);
     }
   }
@@ -102,25 +119,60 @@ Expr random_expression(Context& c, const std::vector<int>& choices, std::size_t&
 
 }  // namespace
 
-TEST_CASE("what is printed can be read back") {
-  CHECK(rc::check([] {
-    const auto choices = *rc::gen::container<std::vector<int>>(40, rc::gen::inRange(0, 5040));
-    Context c;
-    ReadingOrder order;
+struct Case {
+  Context c;
+  ReadingOrder order;
+  Expr e;
+
+  Case() {
     for (const char* p : parameters) order.parameters.push_back(c.symbol(p, Role::Parameter));
     for (const char* q : coordinates) order.coordinates.push_back(c.symbol(q, Role::Coordinate));
+    const auto choices = *rc::gen::container<std::vector<int>>(40, rc::gen::inRange(0, 5040));
     std::size_t next = 0;
-    const Expr e = random_expression(c, choices, next, 3);
-    const std::string text = to_plain(e, order);
+    e = random_expression(c, choices, next, 3);
+  }
+};
+
+bool same_value(double printed, double meant) {
+  return !std::isfinite(meant) || std::abs(printed - meant) <= 1e-9 * std::max(1.0, std::abs(meant));
+}
+
+TEST_CASE("what is printed can be read back") {
+  CHECK(rc::check([] {
+    Case it;
+    const std::string text = to_plain(it.e, it.order);
     const SourceText source("test.lag", "system s\nparam a = 1, b = 1, m1 = 1, k = 1\ncoord x : length, θ1, θ2 : angle\nlet z = " + text + "\n");
     Diagnostics diagnostics;
     const syntax::SyntaxTree tree = syntax::parse(source, diagnostics);
     if (diagnostics.has_errors()) RC_FAIL(text + ": " + diagnostics.items().front().message);
     const auto* let = std::get_if<syntax::LetStatement>(&tree.statements.back().body);
     RC_ASSERT(let != nullptr);
-    const double printed = evaluate(*let->items.front().value), meant = evaluate(e);
-    if (!std::isfinite(meant)) return;
-    if (!(std::abs(printed - meant) <= 1e-9 * std::max(1.0, std::abs(meant)))) RC_FAIL(text);
+    if (!same_value(evaluate(*let->items.front().value), evaluate(it.e))) RC_FAIL(text);
+  }));
+}
+
+TEST_CASE("LaTeX and MathML say what is meant to one who reads them as they stand") {
+  CHECK(rc::check([] {
+    Case it;
+    const double meant = evaluate(it.e);
+    const std::string latex = to_latex(it.e, it.order), mathml = to_mathml(it.e, it.order);
+    if (!same_value(typeset_reader::value_of_latex(latex, value_of_name), meant)) RC_FAIL(latex);
+    if (!same_value(typeset_reader::value_of_mathml(mathml, value_of_name), meant)) RC_FAIL(mathml);
+  }));
+}
+
+TEST_CASE("a line that was broken says the same in its pieces") {
+  CHECK(rc::check([] {
+    Case it;
+    const Layout layout = lay_out(it.e, it.order);
+    for (const double line : {3.0, 8.0, 20.0}) {
+      std::string latex, mathml;
+      for (const Layout& piece : broken_lines(layout, {}, line, line)) latex += " " + to_latex(piece), mathml += to_mathml(piece);
+      for (const char* size : {"\\bigl", "\\bigr", "\\Bigl", "\\Bigr", "{}"})
+        for (auto at = latex.find(size); at != std::string::npos; at = latex.find(size)) latex.erase(at, std::string(size).size());
+      if (!same_value(typeset_reader::value_of_latex(latex, value_of_name), evaluate(it.e))) RC_FAIL(latex);
+      if (!same_value(typeset_reader::value_of_mathml(mathml, value_of_name), evaluate(it.e))) RC_FAIL(mathml);
+    }
   }));
 }
 

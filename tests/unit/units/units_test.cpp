@@ -205,3 +205,22 @@ TEST_CASE("dimensions have names in physics") {
   CHECK(physical_name(one()) == "number");
   CHECK(physical_name(mass() * pow(length(), 5)) == "");
 }
+
+TEST_CASE("a word that people write for something else than SI reads is ambiguous, and no unit of the table is") {
+  for (const char* word : {"PS", "Gs", "Tm", "EV", "PA", "MS", "Gal", "as"}) {
+    const AmbiguousUnit* unit = find_ambiguous_unit(word);
+    REQUIRE_MESSAGE(unit, word);
+    CHECK(!unit->meanings.empty());
+    CHECK(!unit->instead.empty());
+  }
+  for (const std::string& word : unit_words()) CHECK_MESSAGE(!find_ambiguous_unit(word), word);
+  // Exact names beat prefixes: none of these is a prefix before another unit.
+  for (const char* word : {"min", "ft", "au", "hp", "cd", "Pa", "nmi", "yd", "mol", "ms", "kg", "pS", "mS", "GW"})
+    CHECK_MESSAGE(!find_ambiguous_unit(word), word);
+}
+
+TEST_CASE("a torque is an energy per angle, in N m") {
+  CHECK(to_string(dimensions::torque()) == "N m");
+  CHECK(to_string(dimensions::torque() * dimensions::angle()) == "J");
+  CHECK(dimensions::torque().same_as(dimensions::energy()));
+}
