@@ -8,8 +8,14 @@
 
 namespace maupertuis::app {
 
+/// The file could not be read at all: nothing is known of the model.
+bool unreadable(const Diagnostics& diagnostics);
+/// Of several files the worst: Ctrl-C, a file that could not be read, a wrong model, a failed expectation.
+ExitCode worse(ExitCode a, ExitCode b);
+
 /// Ends a command that prints one document: the diagnostics go to standard error, or into the document under --json.
-/// Returns Usage if the file could not be read, ModelWrong if there are other errors, else Fine.
+/// Returns Usage if the file could not be read, RunFailed if the document holds a NaN or an infinity (E0816), ModelWrong if
+/// there are other errors, else Fine.
 ExitCode finish(Console& console, Study& study, Json document);
 
 /// What a study found, to be printed or to stand in the document under its kind.

@@ -33,7 +33,7 @@ class Progress {
  public:
   explicit Progress(const Console& console) : console_(console) {}
   ~Progress() {
-    if (drawn_) console_.say("\r\x1b[K");
+    if (drawn_) console_.draw("\r\x1b[K");
   }
   void operator()(double fraction) {
     const auto now = Clock::now();
@@ -42,7 +42,7 @@ class Progress {
     const double passed = std::chrono::duration<double>(now - begin_).count();
     if (passed < 0.5 || !(fraction > 0)) return;
     drawn_ = true;
-    console_.say(fmt::format("\r\x1b[K{:3.0f} %, {:.0f} s to go", 100 * fraction, passed / fraction - passed));
+    console_.draw(fmt::format("\r\x1b[K{:3.0f} %, {:.0f} s to go", 100 * fraction, passed / fraction - passed));
   }
 
  private:

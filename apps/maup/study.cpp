@@ -105,6 +105,7 @@ const Model* Study::model() {
   // that were lost with it, so that their absence is not reported again.
   if (!parsed || parsed->statements.empty()) return nullptr;
   if (auto model = elaborate(*parsed, source_, diagnostics_, overrides_); model && !wrong()) {
+    const InterruptScope scope(*model->system.context, interrupt_);
     Diagnostics found;
     lint(*model, source_, found);
     add_lint(found, admits_singular_, diagnostics_);
@@ -116,8 +117,9 @@ const Model* Study::model() {
 
 const EquationsOfMotion* Study::equations() {
   if (!derived_ && model()) {
-    derived_ = true;
+    const InterruptScope scope = interruptible();
     equations_ = euler_lagrange(std::shared_ptr<const MechanicalSystem>(model_, &model_->system), diagnostics_);
+    derived_ = true;
   }
   return equations_ && !wrong() ? &*equations_ : nullptr;
 }
@@ -125,6 +127,7 @@ const EquationsOfMotion* Study::equations() {
 const Derivation* Study::derivation(bool with_steps) {
   if (!equations()) return nullptr;
   if (!derivation_ || (with_steps && !has_steps_)) {
+    const InterruptScope scope = interruptible();
     derivation_ = readable_derivation(*equations_, with_steps);
     has_steps_ = with_steps;
   }
@@ -133,6 +136,7 @@ const Derivation* Study::derivation(bool with_steps) {
 
 const Certificate* Study::certificate(const CertifyOptions& options) {
   if (certificate_ || !equations()) return certificate_ ? &*certificate_ : nullptr;
+  const InterruptScope scope = interruptible();
   certificate_ = certify(*equations_, derivation_ ? &*derivation_ : nullptr, options);
   for (const CertificateCheck& check : certificate_->checks) {
     if (!check.applies || check.verdict == Verdict::Zero) continue;

@@ -1,6 +1,9 @@
 #pragma once
+#include "interrupt.hpp"
+
 #include <maupertuis/certificate.hpp>
 #include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/interrupt_scope.hpp>
 #include <maupertuis/mechanical_system.hpp>
 
 #include <memory>
@@ -22,6 +25,11 @@ class Study {
   const SourceText& source() const { return source_; }
   Diagnostics& diagnostics() { return diagnostics_; }
   bool wrong() const { return diagnostics_.has_errors(); }
+
+  /// Stages end by Interrupted when this asks them to: Ctrl-C, if nothing else is said.
+  void set_interrupt(const Interrupt& interrupt) { interrupt_ = interrupt; }
+  /// The same for what a command goes on to compute from the model, while the scope lives. Precondition: model() is there.
+  InterruptScope interruptible() const { return {*model_->system.context, interrupt_}; }
 
   const syntax::SyntaxTree* tree();
   /// Puts a `run …` statement in the place of the model's own. Precondition: no later stage was asked for.
@@ -46,6 +54,7 @@ class Study {
   const Certificate* certificate(const CertifyOptions& options = {});
 
  private:
+  Interrupt interrupt_ = &interrupt_flag();
   Diagnostics diagnostics_;
   SourceText source_;
   Overrides overrides_;

@@ -82,6 +82,7 @@ void judge(const Certificate& certificate, Diagnostics& diagnostics) {
 
 PhaseSpace analyse(const HamiltonianOptions& options, Study& study) {
   PhaseSpace found;
+  const InterruptScope scope = study.interruptible();
   const EquationsOfMotion& equations = *study.equations();
   found.hamiltonian = hamiltonian(equations);
   report_legendre(found.hamiltonian, study.diagnostics());

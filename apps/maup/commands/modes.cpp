@@ -272,6 +272,7 @@ ExitCode modes(ModesOptions options, Console& console) {
   if (!equations || refuse_held_integrals(study) || refuse_without_time(study) || !study.certificate())
     return finish(console, study, json_document("modes"));
   if (options.orbit) return orbit(options, study, console);
+  const InterruptScope scope = study.interruptible();
   const auto start = consistent_start(*study.model(), *equations, study.diagnostics());
   if (!start) return finish(console, study, json_document("modes"));
   PointEquations at_points(*equations, measured(options.outputs, *study.model()));

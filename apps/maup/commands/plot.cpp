@@ -1,3 +1,4 @@
+#include "numbers.hpp"
 #include "outcome.hpp"
 #include "output_files.hpp"
 #include "run_options.hpp"
@@ -41,6 +42,7 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
     finish(console, study, document);
     return ExitCode::Usage;
   }
+  check_numbers(result->trajectory, study.diagnostics());
   const std::string svg = plot_svg(result->trajectory, picture);
   if (options.output != "-") write_result(options.output, svg, study.diagnostics());
   else if (console.json()) document["svg"] = svg;

@@ -1,5 +1,6 @@
 #include "extended_text.hpp"
 #include "outcome.hpp"
+#include "numbers.hpp"
 #include "output_files.hpp"
 #include "quantity.hpp"
 #include "run_options.hpp"
@@ -150,6 +151,7 @@ void write_files(const SimulateOptions& options, const SimulationResult& result,
   if (!options.output.empty()) {
     write_rows(options.output, options.errors ? with_error_columns(result.trajectory) : result.trajectory, diagnostics);
   }
+  if (options.output.empty()) check_numbers(result.trajectory, diagnostics);
   if (!options.plot.empty()) {
     PlotOptions picture;
     picture.title = study.model()->system.title;
@@ -179,8 +181,8 @@ ExitCode simulate_model(const SimulateOptions& options, Study& study, Console& c
       console.say(fmt::format("The run ended at {}: {}\n", system.moment(exact(result->final.t)), result->reason));
   }
   const bool files_written = !study.wrong();
-  finish(console, study, document_of(*result, system));
-  return files_written ? exit_code(result->ending) : ExitCode::RunFailed;
+  const ExitCode told = finish(console, study, document_of(*result, system));
+  return files_written && told != ExitCode::RunFailed ? exit_code(result->ending) : ExitCode::RunFailed;
 }
 
 /// Pictures and binary trajectories hold doubles; the digits that are printed are the errors.
@@ -215,8 +217,8 @@ ExitCode simulate_extended_model(const SimulateOptions& options, const std::stri
       console.say(fmt::format("The run ended at {}: {}\n", system.moment(exact(result->reached)), result->reason));
   }
   const bool files_written = !study.wrong();
-  finish(console, study, extended_document(*result, digits, system));
-  return files_written ? exit_code(result->ending) : ExitCode::RunFailed;
+  const ExitCode told = finish(console, study, extended_document(*result, digits, system));
+  return files_written && told != ExitCode::RunFailed ? exit_code(result->ending) : ExitCode::RunFailed;
 }
 
 /// The precision of the command line, else that of the model. A word that is none is for the model to refuse.

@@ -1,7 +1,8 @@
 #pragma once
 #include "analysis/action/directions.hpp"
 
-#include <atomic>
+#include <maupertuis/interrupt.hpp>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +28,6 @@ struct FieldStudy {
 /// an unstable motion does no harm. Precondition: M is positive definite on the directions allowed.
 FieldStudy jacobi_fields(Functional& functional, const EquationsOfMotion& weighted, Expr lagrangian, const Trial& trial,
                          const FixedEnds& fixed, bool singular_start, bool singular_end, const Vector& least,
-                         const std::atomic<bool>* interrupt);
+                         const Interrupt& interrupt);
 
 }  // namespace maupertuis::action

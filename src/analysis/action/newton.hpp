@@ -1,13 +1,13 @@
 #pragma once
 #include "analysis/action/directions.hpp"
 
-#include <atomic>
+#include <maupertuis/interrupt.hpp>
 
 namespace maupertuis::action {
 
 struct NewtonOptions {
   int most_iterations = 60;
-  const std::atomic<bool>* interrupt = nullptr;
+  Interrupt interrupt;
 };
 
 struct NewtonResult {
