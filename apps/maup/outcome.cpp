@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace maupertuis::app {
 
@@ -14,6 +15,24 @@ bool unreadable(const Diagnostics& diagnostics) {
   return std::any_of(items.begin(), items.end(), [](const Diagnostic& d) {
     return d.code == "E0801" || d.code == "E0802" || d.code == "E0803";
   });
+}
+
+void show_told(const Console& console, const Study& study) {
+  bool first = true;
+  for (const Study::Told& told : study.told()) {
+    if (!std::exchange(first, false)) console.say("\n");
+    console.show(told.diagnostics, told.source);
+  }
+}
+
+Json told_json(const Study& study) {
+  Json list = Json::array();
+  for (const Study::Told& told : study.told())
+    for (Json& d : to_json(told.diagnostics, told.source)) {
+      if (told.of_option) d["option"] = told.source.name();
+      list.push_back(std::move(d));
+    }
+  return list;
 }
 
 ExitCode worse(ExitCode a, ExitCode b) {
@@ -27,10 +46,10 @@ ExitCode finish(Console& console, Study& study, Json document) {
   if (console.json()) {
     document["ok"] = !study.wrong() && !interrupt_flag();
     if (interrupt_flag()) document["interrupted"] = true;
-    document["diagnostics"] = to_json(study.diagnostics(), study.source());
+    document["diagnostics"] = told_json(study);
     console.print_document(document);
   } else {
-    console.show(study.diagnostics(), study.source());
+    show_told(console, study);
   }
   if (unreadable(study.diagnostics())) return ExitCode::Usage;
   if (!numbers) return ExitCode::RunFailed;

@@ -180,13 +180,13 @@ ExtendedSimulationOptions extended_options(const RunOptions& options, Precision 
   return out;
 }
 
-std::string run_statement(const RunOptions& options) {
-  if (options.until.empty()) return {};
-  std::string statement =
-      fmt::format("run until {} within {}", options.until, options.within.empty() ? "60 s" : options.within);
-  for (char& c : statement)
-    if (c == '\n' || c == '#') c = ' ';  // one statement, whatever was typed
-  return statement;
+void put_in_run(const RunOptions& options, Study& study) {
+  if (options.until.empty()) return;
+  OptionStatement statement("run until ");
+  statement.add_typed("--until", options.until).add(" within ");
+  if (options.within.empty()) statement.add("60 s");
+  else statement.add_typed("--within", options.within);
+  study.replace_run(statement);
 }
 
 std::optional<SimulationResult> run_model(Study& study, const SimulationOptions& options, const Console& console) {

@@ -83,10 +83,13 @@ void SectionBudget::leave_out(std::string_view section) {
 
 Diagnostics SectionBudget::warnings() const {
   Diagnostics out;
-  for (const std::string& section : left_out_)
+  const double seconds = seconds_.value_or(0);
+  for (const std::string& section : left_out_) {
+    const bool named = std::find(names().begin(), names().end(), section) != names().end();
     out.warning("W0813", {}, fmt::format("the section `{}` is left out", section),
-                fmt::format("It did not come in its share of the budget of {} s: no section takes more than half of what is left.", brief(seconds_.value_or(0))),
-                fmt::format("Give it more time, --budget {}s, or ask for it alone: --sections {}.", brief(10 * seconds_.value_or(0)), section));
+                fmt::format("It did not come in its share of the budget of {} s: no section takes more than half of what is left.", brief(seconds)),
+                fmt::format("Give it more time, --budget {}s{}.", brief(10 * seconds), named ? fmt::format(", or ask for it alone: --sections {}", section) : ""));
+  }
   return out;
 }
 

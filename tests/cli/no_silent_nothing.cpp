@@ -133,3 +133,27 @@ TEST_CASE("2: a file that cannot be read, by every command") {
   CHECK(maup({"test", there, folder.write("wrong.lag", "system x\nV = q\n")}).code == 1);
   CHECK(maup({"compare", there, folder.write("empty.lag", "")}).code == 1);
 }
+
+TEST_CASE("a mistake in an option is shown in what the option said, not in a line that nobody wrote") {
+  const Folder folder;
+  const std::string model = folder.write("pendulum.lag", pendulum);
+  const std::vector<std::vector<std::string>> lines{{"simulate", model, "--until", "20s"},
+                                                    {"simulate", model, "--until", "θ = 0", "--within", "3 kg"},
+                                                    {"modes", model, "--sweep", "m = 1 .. 2 kgg"},
+                                                    {"modes", model, "--y", "θ + nonsense"},
+                                                    {"hamiltonian", model, "--bracket", "θ", "p_nothing"},
+                                                    {"orbits", model, "--section", "q = 0 rising"},
+                                                    {"action", model, "--ends", "(0 kg) at 0 to (1) at 1 s"}};
+  for (const auto& line : lines) {
+    CAPTURE(line[2]);
+    const Outcome outcome = maup(line);
+    CHECK(outcome.code != 0);
+    CHECK_MESSAGE(contains(outcome.err, "- " + line[line.size() - (line[2] == "--bracket" ? 3 : 2)] + ":1:"), outcome.err);
+    for (const char* own : {"run until", "path from", "sweep m", "expect "}) CHECK_FALSE(contains(outcome.err, std::string("| ") + own));
+    std::vector<std::string> json = line;
+    json.push_back("--json");
+    const auto document = nlohmann::json::parse(maup(json).out);
+    CHECK(document["diagnostics"][0]["option"] == line[line.size() - (line[2] == "--bracket" ? 3 : 2)]);
+    CHECK(document["diagnostics"][0]["line"] == 1);
+  }
+}

@@ -30,7 +30,7 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
     finish(console, study, document);
     return ExitCode::Usage;
   }
-  if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);
+  put_in_run(options.run, study);
   const auto result = run_model(study, settings, console);
   if (!result) return finish(console, study, document);
 

@@ -269,7 +269,7 @@ ExitCode report(const ReportOptions& options, Console& console) {
   const auto seconds = budget_seconds(options.budget, study.diagnostics());
   if (options.output != "-") check_output_files({{"-o", options.output, FileKind::Page}}, options.model.path, study.diagnostics());
   if (readable_model && study.wrong()) return finish_usage(console, study, "report");
-  if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);
+  put_in_run(options.run, study);
   if (refuse_held_integrals(study) || !study.model()) return finish(console, study, document);
 
   std::optional<SectionBudget> budget(std::in_place, seconds, options.sections, console);

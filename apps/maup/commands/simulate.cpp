@@ -169,7 +169,7 @@ ExitCode simulate_model(const SimulateOptions& options, Study& study, Console& c
     finish(console, study, json_document("simulate"));
     return ExitCode::Usage;
   }
-  if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);
+  put_in_run(options.run, study);
 
   const auto result = run_model(study, settings, console);
   if (!result) return finish(console, study, json_document("simulate"));
@@ -205,7 +205,7 @@ ExitCode simulate_extended_model(const SimulateOptions& options, const std::stri
     finish(console, study, json_document("simulate"));
     return ExitCode::Usage;
   }
-  if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);
+  put_in_run(options.run, study);
 
   const auto result = run_model(study, settings, console);
   if (!result) return finish(console, study, json_document("simulate"));
