@@ -9,7 +9,7 @@
 
 namespace maupertuis::app {
 
-using Clock = Interrupt::Clock;
+using Clock = std::chrono::steady_clock;
 
 const std::vector<std::string>& SectionBudget::names() {
   static const std::vector<std::string> all{"equations", "motion", "modes",      "orbits",      "paths",
@@ -30,17 +30,15 @@ bool SectionBudget::wanted(std::string_view section) const {
   return chosen_.empty() || std::find(chosen_.begin(), chosen_.end(), section) != chosen_.end();
 }
 
-Interrupt SectionBudget::begin(std::string_view section) {
-  const Interrupt by_user = &interrupt_flag();
-  by_user.throw_if_asked();
-  const auto now = Clock::now();
-  const auto left = seconds_ ? end_ - now : Clock::duration::zero();
+/// The share of the section that begins, in seconds; nothing without a budget.
+std::optional<double> SectionBudget::begin(std::string_view section) {
+  Interrupt(&interrupt_flag()).throw_if_asked();
+  const double left = seconds_ ? std::max(0.0, std::chrono::duration<double>(end_ - Clock::now()).count()) : 0;
   if (console_.interactive() && !console_.json()) {
     drawn_ = true;
-    const std::string time = seconds_ ? fmt::format(", {:.0f} s of {:.0f} s left", std::chrono::duration<double>(std::max(left, Clock::duration::zero())).count(), *seconds_) : "";
-    console_.draw(fmt::format("\r\x1b[K{}{}", section, time));
+    console_.draw(fmt::format("\r\x1b[K{}{}", section, seconds_ ? fmt::format(", {:.0f} s of {:.0f} s left", left, *seconds_) : ""));
   }
-  return seconds_ ? by_user.until(now + left / 2) : by_user;
+  return seconds_ ? std::optional(left / 2) : std::nullopt;
 }
 
 /// A section may have several parts; it came if all of them did.
@@ -57,7 +55,8 @@ bool SectionBudget::carry_out(std::string_view section, Context& context, const 
 }
 
 bool SectionBudget::attempt(std::string_view section, Context& context, const std::function<void(const Interrupt&)>& work) {
-  const Interrupt interrupt = begin(section);
+  const Deadline deadline(begin(section));
+  const Interrupt interrupt = &deadline.flag();
   bool came = false;
   try {
     const InterruptScope scope(context, interrupt);
@@ -72,7 +71,8 @@ bool SectionBudget::attempt(std::string_view section, Context& context, const st
 
 void SectionBudget::carry_out_in_part(std::string_view section, const std::function<void(const Interrupt&)>& work) {
   if (!wanted(section)) return;
-  work(begin(section));
+  const Deadline deadline(begin(section));
+  work(&deadline.flag());
   Interrupt(&interrupt_flag()).throw_if_asked();
   note(section, true);
 }

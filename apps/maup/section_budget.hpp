@@ -4,6 +4,7 @@
 #include <maupertuis/diagnostic.hpp>
 #include <maupertuis/interrupt_scope.hpp>
 
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
@@ -43,10 +44,10 @@ class SectionBudget {
   Diagnostics warnings() const;
 
  private:
-  Interrupt begin(std::string_view section);
+  std::optional<double> begin(std::string_view section);
   void note(std::string_view section, bool came);
 
-  Interrupt::Clock::time_point end_;
+  std::chrono::steady_clock::time_point end_;
   std::optional<double> seconds_;
   std::vector<std::string> chosen_, written_, left_out_;
   const Console& console_;

@@ -1,8 +1,8 @@
 #pragma once
-#include <maupertuis/interrupt.hpp>
 #include <maupertuis/lanes.hpp>
 #include <maupertuis/step.hpp>
 
+#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -39,7 +39,7 @@ struct EnsembleOptions {
   int width = 0;                                 // motions side by side: 1, 2, 4, 8, 16; 0: what suits the processor
   int threads = 0;                               // 0: as many as the machine runs at once
   std::size_t energy_terms = 0;                  // so many first observables add up to an energy that is conserved
-  Interrupt interrupt;  // looked at once a step
+  const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
   /// Automatic: compiled code where as many steps are expected as pay for it; that differs from the interpreter by rounding errors.
   Backend backend = Backend::Automatic;
   bool cache = true;                             // of compiled code

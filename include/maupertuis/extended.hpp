@@ -1,8 +1,8 @@
 #pragma once
-#include <maupertuis/interrupt.hpp>
 #include <maupertuis/kernel.hpp>
 #include <maupertuis/step.hpp>
 
+#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -33,7 +33,7 @@ struct ExtendedOptions {
   double log2_tolerance = 0;     // of the relative tolerance of a step; 0: rounding level
   int order = 0;                 // of the polynomial of q̇; 0: from the tolerance
   std::size_t maximum_steps = 100'000'000;
-  Interrupt interrupt;
+  const std::atomic<bool>* interrupt = nullptr;
   std::function<void(double)> progress;  // told the fraction of the run that is done, now and then
 };
 

@@ -1,12 +1,12 @@
 #pragma once
 #include <maupertuis/diagnostic.hpp>
-#include <maupertuis/interrupt.hpp>
 #include <maupertuis/modes.hpp>
 #include <maupertuis/simulation.hpp>
 #include <maupertuis/tangent.hpp>
 #include <maupertuis/trajectory.hpp>
 #include <maupertuis/trajectory.hpp>
 
+#include <atomic>
 #include <complex>
 #include <cstddef>
 #include <functional>
@@ -21,7 +21,7 @@ namespace maupertuis {
 
 struct FloquetOptions {
   std::optional<double> period;  // s: of the motion, or near it; nothing: looked for within the model's run
-  Interrupt interrupt;
+  const std::atomic<bool>* interrupt = nullptr;
   std::optional<MotionState> start = std::nullopt;  // instead of that of the model
 };
 
@@ -76,7 +76,7 @@ std::optional<FloquetResult> floquet(const Model& model, const EquationsOfMotion
 /// modes each entry gets its multipliers over the period of the drive, and the verdict that these give. [entries]; nothing where the drive
 /// does not repeat; empty where the equations do not depend on the time.
 std::vector<std::optional<FloquetResult>> settle_driven(ModalStudy& study, const PointEquations& points, const Model& model,
-                                                        const EquationsOfMotion& equations, const Interrupt& interrupt);
+                                                        const EquationsOfMotion& equations, const std::atomic<bool>* interrupt);
 
 // --------------------------------------------------------------------------------------------------- Poincaré sections
 
@@ -91,7 +91,7 @@ struct SectionOptions {
   std::optional<double> energy;  // J, instead of that of the model's start
   double longest = 0;            // s: no motion is followed for longer; 0: 10⁴ times the model's run, or 10⁶ s
   double tolerance = 0;          // of the steps; 0: rounding level
-  Interrupt interrupt;
+  const std::atomic<bool>* interrupt = nullptr;
   std::function<void(double)> progress;
 };
 
@@ -137,7 +137,7 @@ struct LyapunovOptions {
   std::optional<double> duration;   // s; nothing: the model's run
   double interval = 0;              // s between orthogonalizations; 0: chosen
   std::optional<double> transient;  // s of the motion before the average begins; nothing: a tenth of the duration
-  Interrupt interrupt;
+  const std::atomic<bool>* interrupt = nullptr;
   std::function<void(double)> progress;
 };
 

@@ -3,10 +3,10 @@
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/equations_of_motion.hpp>
 #include <maupertuis/evaluate.hpp>
-#include <maupertuis/interrupt.hpp>
 #include <maupertuis/kernel.hpp>
 #include <maupertuis/trajectory.hpp>
 
+#include <atomic>
 #include <functional>
 #include <optional>
 #include <string>
@@ -30,7 +30,7 @@ struct SimulationOptions {
   bool cache = true;                        // of compiled code, on disk
   ErrorEstimates errors = ErrorEstimates::States;
   std::size_t maximum_steps = 100'000'000;
-  Interrupt interrupt;  // set by Ctrl-C
+  const std::atomic<bool>* interrupt = nullptr;  // set by Ctrl-C
   std::function<void(double)> progress;     // told the fraction of the run that is done, now and then
 };
 

@@ -1,9 +1,9 @@
 #pragma once
 #include <maupertuis/constraint_manifold.hpp>
 #include <maupertuis/equations_of_motion.hpp>
-#include <maupertuis/interrupt.hpp>
 #include <maupertuis/step.hpp>
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -45,7 +45,7 @@ struct TangentStop {
 struct TangentOptions {
   double tolerance = 0;                          // relative, per step; 0: rounding level of double
   std::size_t maximum_steps = 100'000'000;       // of each advance
-  Interrupt interrupt;  // looked at once a step
+  const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
 };
 
 /// The flow of a system together with its derivative. One thread at a time.

@@ -8,7 +8,7 @@ namespace maupertuis {
 /// between the ends of the model, about number 2 by the action, or about a path that is given. The search is done at first use, for all lines of a model.
 class ActionClaims {
  public:
-  ActionClaims(const Model& model, const EquationsOfMotion& equations, const Interrupt& interrupt)
+  ActionClaims(const Model& model, const EquationsOfMotion& equations, const std::atomic<bool>* interrupt)
       : model_(model), equations_(equations) {
     options_.variations = false;
     options_.interrupt = interrupt;

@@ -9,7 +9,7 @@ namespace maupertuis {
 /// Expectations of a model with `precision quad` or `precision 100` that all digits can decide: coordinates and velocities at times.
 class ExtendedClaims {
  public:
-  ExtendedClaims(const Model& model, const EquationsOfMotion& equations, const Interrupt& interrupt)
+  ExtendedClaims(const Model& model, const EquationsOfMotion& equations, const std::atomic<bool>* interrupt)
       : model_(model), equations_(equations), interrupt_(interrupt) {}
   /// Whether the model asks for more digits than double has, and the subject is a coordinate or a velocity.
   bool takes(const Expectation& expectation) const;
@@ -23,7 +23,7 @@ class ExtendedClaims {
 
   const Model& model_;
   const EquationsOfMotion& equations_;
-  Interrupt interrupt_;
+  const std::atomic<bool>* interrupt_;
 };
 
 }  // namespace maupertuis

@@ -10,7 +10,7 @@ namespace maupertuis {
 /// finds it; `over` gives a period, or nearly one, which is looked for otherwise. One search for each such time.
 class OrbitClaims {
  public:
-  OrbitClaims(const Model& model, const EquationsOfMotion& equations, const Interrupt& interrupt)
+  OrbitClaims(const Model& model, const EquationsOfMotion& equations, const std::atomic<bool>* interrupt)
       : model_(model), equations_(equations), interrupt_(interrupt) {}
   void decide(const Expectation& expectation, ExpectationResult& result);
 
@@ -23,7 +23,7 @@ class OrbitClaims {
 
   const Model& model_;
   const EquationsOfMotion& equations_;
-  Interrupt interrupt_;
+  const std::atomic<bool>* interrupt_;
   std::map<double, Answer> answers_;   // by the period that was given; 0: none
 };
 

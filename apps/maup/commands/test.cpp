@@ -50,7 +50,7 @@ Json to_json(const ExpectationResult& r, const std::string& file) {
 /// What was decided before an interrupt came does not tell what the whole run would have: nothing is said of such a model.
 std::optional<Verification> verify_whole(Study& study, const SimulationOptions& settings) {
   auto verification = verify_study(study, settings);
-  settings.interrupt.throw_if_asked();
+  Interrupt(settings.interrupt).throw_if_asked();
   return verification;
 }
 
@@ -98,7 +98,7 @@ ExitCode test_models(const TestOptions& options, Console& console) {
   std::size_t tested = 0, passed = 0, failed = 0, wrong = 0;
   try {
     for (const std::string& path : options.paths) {
-      settings.interrupt.throw_if_asked();
+      Interrupt(settings.interrupt).throw_if_asked();
       const FileOutcome outcome = test_file(path, settings, console, document);
       ++tested;
       code = worse(code, outcome.code);

@@ -39,7 +39,7 @@ Matrix inverse_times(const Matrix& a, const Matrix& b) { return a.partialPivLu()
 class Neighbours {
  public:
   Neighbours(Functional& functional, const EquationsOfMotion& weighted, const Trial& trial, bool backward, double stretch,
-             const Interrupt& interrupt)
+             const std::atomic<bool>* interrupt)
       : functional_(functional), trial_(trial), path_(to_path(trial)), n_(functional.freedoms()), k_(functional.integrals()),
         sign_(backward ? -1 : 1), flow_(weighted, {0, 100'000, interrupt}) {
     set_scale(stretch);
@@ -171,7 +171,7 @@ class ActionAlong {
 class Study {
  public:
   Study(Functional& functional, const EquationsOfMotion& weighted, Expr lagrangian, const Trial& trial,
-        const FixedEnds& fixed, const Vector& least, std::vector<double> breaks, const Interrupt& interrupt)
+        const FixedEnds& fixed, const Vector& least, std::vector<double> breaks, const std::atomic<bool>* interrupt)
       : functional_(functional), trial_(trial), fixed_(fixed), breaks_(std::move(breaks)),
         backward_(breaks_.back() < breaks_.front()), whole_(std::abs(breaks_.back() - breaks_.front())),
         neighbours_(functional, weighted, trial, backward_, whole_ / static_cast<double>(breaks_.size() - 1), interrupt),
@@ -395,7 +395,7 @@ std::size_t FieldStudy::count() const {
 
 FieldStudy jacobi_fields(Functional& functional, const EquationsOfMotion& weighted, Expr lagrangian, const Trial& trial,
                          const FixedEnds& fixed, bool singular_start, bool singular_end, const Vector& least,
-                         const Interrupt& interrupt) {
+                         const std::atomic<bool>* interrupt) {
   std::vector<double> breaks = breaks_of(trial, singular_start, singular_end);
   if (breaks.size() < 2) {
     FieldStudy out;

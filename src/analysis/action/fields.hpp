@@ -1,8 +1,7 @@
 #pragma once
 #include "analysis/action/directions.hpp"
 
-#include <maupertuis/interrupt.hpp>
-
+#include <atomic>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +27,6 @@ struct FieldStudy {
 /// an unstable motion does no harm. Precondition: M is positive definite on the directions allowed.
 FieldStudy jacobi_fields(Functional& functional, const EquationsOfMotion& weighted, Expr lagrangian, const Trial& trial,
                          const FixedEnds& fixed, bool singular_start, bool singular_end, const Vector& least,
-                         const Interrupt& interrupt);
+                         const std::atomic<bool>* interrupt);
 
 }  // namespace maupertuis::action

@@ -131,7 +131,7 @@ NewtonResult solve_stationarity(Functional& functional, Trial& trial, const Fixe
   Iteration it{functional, trial, fixed, scale, {}, {}, {}, {}, {}, {}, 0};
   double damping = 1, before = HUGE_VAL;
   for (out.iterations = 0; out.iterations < options.most_iterations; ++out.iterations) {
-    if (options.interrupt.asked()) return out;
+    if (options.interrupt && options.interrupt->load()) return out;
     if (!it.factor_and_solve()) return out;
     const Vector step = it.step, multipliers = it.multipliers;
     const double length = it.length(), norm = it.norm();

@@ -1,13 +1,13 @@
 #pragma once
 #include "analysis/action/directions.hpp"
 
-#include <maupertuis/interrupt.hpp>
+#include <atomic>
 
 namespace maupertuis::action {
 
 struct NewtonOptions {
   int most_iterations = 60;
-  Interrupt interrupt;
+  const std::atomic<bool>* interrupt = nullptr;
 };
 
 struct NewtonResult {

@@ -53,7 +53,7 @@ bool has_action(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
 }
 
 bool interrupted(const ActionOptions& options, Diagnostics& diagnostics) {
-  if (!options.interrupt.asked()) return false;
+  if (!options.interrupt || !options.interrupt->load()) return false;
   diagnostics.error("E1210", {}, "interrupted",
                     "The study was ended before it was done; what was found until then is not shown.", {});
   return true;

@@ -2,8 +2,8 @@
 #include "analysis/action/refine.hpp"
 
 #include <maupertuis/action.hpp>
-#include <maupertuis/interrupt.hpp>
 
+#include <atomic>
 #include <string>
 
 /// What every question about the action begins with.

@@ -87,7 +87,7 @@ class Search {
   const Vector& least() const { return least_; }
 
  private:
-  bool stopped() const { return options_.interrupt.asked(); }
+  bool stopped() const { return options_.interrupt && options_.interrupt->load(); }
 
   /// One start; false where it leads nowhere.
   void attempt(Trial trial, const std::string& name) {

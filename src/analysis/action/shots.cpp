@@ -24,7 +24,7 @@ struct Shot {
 
 class Shooter {
  public:
-  Shooter(Problem& problem, const ActionEnds& ends, const Interrupt& interrupt)
+  Shooter(Problem& problem, const ActionEnds& ends, const std::atomic<bool>* interrupt)
       : problem_(problem), ends_(ends), from_(*ends.from[0]), to_(*ends.to[0]), kernel_(build_kernel(motion_source(problem.equations))),
         stepper_(kernel_, parameter_values(*problem.equations.system), {.maximum_steps = 20'000, .interrupt = interrupt}) {}
 
@@ -111,7 +111,7 @@ class Shooter {
 
 }  // namespace
 
-Shots shoot_all(Problem& problem, const ActionEnds& ends, const Interrupt& interrupt) {
+Shots shoot_all(Problem& problem, const ActionEnds& ends, const std::atomic<bool>* interrupt) {
   return Shooter(problem, ends, interrupt).run();
 }
 

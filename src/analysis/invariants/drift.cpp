@@ -55,7 +55,7 @@ void measure_drift(Invariants& result, const Model& model, const EquationsOfMoti
     probe.expressions.push_back(sum_of_squares(integral.value));
   Diagnostics of_the_run;
   const auto run = simulate(model, equations, options, of_the_run, &probe);
-  options.interrupt.throw_if_asked();
+  interrupt_of(*model.system.context).throw_if_asked();
   if (!run || !run->ok()) {
     diagnostics.warning("W1004", {}, "the drift of the integrals was not measured",
                         run ? "The run of the model ended before its time: " + run->reason + "."

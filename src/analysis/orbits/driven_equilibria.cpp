@@ -25,7 +25,7 @@ StabilityReport report_of(const FloquetResult& neighbours) {
 }  // namespace
 
 std::vector<std::optional<FloquetResult>> settle_driven(ModalStudy& study, const PointEquations& points, const Model& model,
-                                                        const EquationsOfMotion& equations, const Interrupt& interrupt) {
+                                                        const EquationsOfMotion& equations, const std::atomic<bool>* interrupt) {
   std::vector<std::optional<FloquetResult>> out;
   if (points.autonomous()) return out;
   for (ModalEntry& entry : study.entries) {

@@ -41,7 +41,7 @@ class SectionRun {
     for (std::size_t k = 0; k < starts->size(); ++k) {
       follow(k, (*starts)[k]);
       if (options_.progress) options_.progress((k + 1.0) / static_cast<double>(starts->size()));
-      if (options_.interrupt.asked()) break;
+      if (options_.interrupt && options_.interrupt->load()) break;
     }
     return crossed() ? std::optional(std::move(out_)) : std::nullopt;
   }

@@ -1,5 +1,7 @@
 #include "analysis/orbits/section_starts.hpp"
 
+#include <maupertuis/interrupt.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -172,11 +174,11 @@ std::optional<Grid> fitted(const Plane& plane, const MotionState& near, const st
   return std::nullopt;
 }
 
-std::vector<MotionState> spread(const Plane& plane, const Grid& grid, std::size_t count, const Interrupt& interrupt) {
+std::vector<MotionState> spread(const Plane& plane, const Grid& grid, std::size_t count, const std::atomic<bool>* interrupt) {
   constexpr double plastic = 1.32471795724474602596;  // x³ = x + 1
   std::vector<MotionState> out;
   for (std::size_t k = 1; out.size() < count && k < 400 * count; ++k) {
-    if (k % 1024 == 0) interrupt.throw_if_asked();
+    if (k % 1024 == 0) Interrupt(interrupt).throw_if_asked();
     const double u = std::fmod(0.5 + static_cast<double>(k) / plastic, 1.0),
                  w = std::fmod(0.5 + static_cast<double>(k) / (plastic * plastic), 1.0);
     const double b = grid.x(grid.first[0] + u * (grid.last[0] + 1 - grid.first[0])),

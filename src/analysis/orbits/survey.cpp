@@ -52,7 +52,7 @@ std::vector<double> sizes_of(const MechanicalSystem& system, const std::vector<M
 }  // namespace
 
 Survey survey(const MechanicalSystem& system, const MotionKernel& motion, const MotionState& start, double duration,
-              const Interrupt& interrupt) {
+              const std::atomic<bool>* interrupt) {
   Survey out;
   TaylorStepper stepper(motion.kernel, motion.parameters, {.interrupt = interrupt});
   stepper.start(start.t, start.q, start.v);

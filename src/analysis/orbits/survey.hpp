@@ -1,8 +1,8 @@
 #pragma once
 #include <maupertuis/constraint_manifold.hpp>
-#include <maupertuis/interrupt.hpp>
 #include <maupertuis/motion_kernel.hpp>
 
+#include <atomic>
 #include <string>
 #include <vector>
 
@@ -20,6 +20,6 @@ struct Survey {
 };
 
 Survey survey(const MechanicalSystem& system, const MotionKernel& motion, const MotionState& start, double duration,
-              const Interrupt& interrupt);
+              const std::atomic<bool>* interrupt);
 
 }  // namespace maupertuis::orbits

@@ -27,7 +27,7 @@ struct Job {
   std::span<const double> v(std::size_t trajectory) const { return start.v.subspan(trajectory * freedoms, freedoms); }
   std::span<const double> parameters(std::size_t trajectory) const;
   double step_factor(std::size_t trajectory) const { return start.step_factors.empty() ? 1 : start.step_factors[trajectory]; }
-  bool interrupted() const { return options.interrupt.asked(); }
+  bool interrupted() const { return options.interrupt && options.interrupt->load(std::memory_order_relaxed); }
   /// The number of a trajectory that nobody has taken; `trajectories` when there is none.
   std::size_t take();
 };

@@ -322,7 +322,7 @@ void Stepper<T>::state_after(const T& tau, std::vector<T>& q, std::vector<T>& v)
 template <class T>
 typename Stepper<T>::Outcome Stepper<T>::step(const T& bound) {
   if (t_ == bound) return {};
-  if (options_.interrupt.asked()) return {StepEnding::Interrupted, "The run was interrupted."};
+  if (options_.interrupt && options_.interrupt->load(std::memory_order_relaxed)) return {StepEnding::Interrupted, "The run was interrupted."};
   if (steps_ >= options_.maximum_steps) return {StepEnding::TooManySteps, "The run used up its steps."};
   if (const auto stopped = expand(bound)) return *stopped;
   const T left = bound - t_;

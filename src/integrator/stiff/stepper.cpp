@@ -85,7 +85,7 @@ void StiffStepper::Impl::restart() {
 
 Step StiffStepper::Impl::step(double bound) {
   const StiffOptions& options = motion.options;
-  if (options.interrupt.asked()) return ended(StepEnding::Interrupted, "the run was interrupted");
+  if (options.interrupt && *options.interrupt) return ended(StepEnding::Interrupted, "the run was interrupted");
   if (steps >= options.maximum_steps)
     return ended(StepEnding::TooManySteps, fmt::format("the run reached its limit of {} steps", options.maximum_steps));
 

@@ -115,7 +115,7 @@ Step TaylorStepper::Impl::step(double bound) {
   Step result;
   result.begin = result.end = t.hi;
   if (remaining(bound) == 0) return result;
-  if (options.interrupt.asked()) {
+  if (options.interrupt && options.interrupt->load(std::memory_order_relaxed)) {
     end(result, StepEnding::Interrupted, "The run was interrupted.");
     return result;
   }

@@ -134,7 +134,7 @@ void VariationalStepper::Impl::start(double t, std::span<const double> q, std::s
 }
 
 Step VariationalStepper::Impl::step(double bound) {
-  if (options.interrupt.asked()) return ended(StepEnding::Interrupted, "the run was interrupted");
+  if (options.interrupt && *options.interrupt) return ended(StepEnding::Interrupted, "the run was interrupted");
   if (steps >= options.maximum_steps)
     return ended(StepEnding::TooManySteps, fmt::format("the run reached its limit of {} steps", options.maximum_steps));
   if (first_status == PointStatus::Singular) return ended(StepEnding::SingularMass, reason_of(StageStatus::Singular, now.t, 0));

@@ -1,4 +1,4 @@
-// What is computed from expressions ends when it is asked to, by a flag or at a time, and nothing of it stays behind.
+// What is computed from expressions ends when it is asked to, and nothing of it stays behind.
 #include "../model_text.hpp"
 
 #include <maupertuis/certificate.hpp>
@@ -50,14 +50,13 @@ const Work all[] = {
 
 }  // namespace
 
-TEST_CASE("a flag that is set, or a time that is past, ends each of them; afterwards they go through") {
+TEST_CASE("a flag that is set ends each of them; afterwards they go through") {
   const std::atomic<bool> set = true;
-  const Interrupt past = Interrupt().until(Interrupt::Clock::now());
   for (const Work& work : all) {
     CAPTURE(work.name);
     const ModelText m(text);
-    for (const Interrupt& interrupt : {Interrupt(&set), past}) {
-      const InterruptScope scope(*m.system->context, interrupt);
+    {
+      const InterruptScope scope(*m.system->context, &set);
       CHECK_THROWS_AS(work.carry_out(m), Interrupted);
     }
     CHECK_FALSE(interrupt_of(*m.system->context).asked());
@@ -65,9 +64,10 @@ TEST_CASE("a flag that is set, or a time that is past, ends each of them; afterw
   }
 }
 
-TEST_CASE("a time to come does not disturb; scopes end where they began") {
+TEST_CASE("a flag that is not set does not disturb; scopes end where they began") {
   const ModelText m(text);
-  const InterruptScope outer(*m.system->context, Interrupt().until(Interrupt::Clock::now() + std::chrono::hours(1)));
+  std::atomic<bool> flag = false;
+  const InterruptScope outer(*m.system->context, &flag);
   {
     const std::atomic<bool> set = true;
     const InterruptScope inner(*m.system->context, &set);
@@ -75,18 +75,6 @@ TEST_CASE("a time to come does not disturb; scopes end where they began") {
   }
   CHECK_FALSE(interrupt_of(*m.system->context).asked());
   CHECK_NOTHROW(readable_derivation(m.equations, true));
-}
-
-TEST_CASE("the earlier of two times counts, and the flag beside them") {
-  std::atomic<bool> flag = false;
-  const auto now = Interrupt::Clock::now();
-  const Interrupt interrupt = Interrupt(&flag).until(now + std::chrono::hours(1));
-  CHECK_FALSE(interrupt.asked());
-  CHECK(interrupt.until(now).asked());
-  CHECK(interrupt.until(now).until(now + std::chrono::hours(2)).asked());
-  flag = true;
-  CHECK(interrupt.asked());
-  CHECK_THROWS_AS(interrupt.throw_if_asked(), Interrupted);
 }
 
 TEST_CASE("a section of a page that is given up leaves nothing behind, the others stay") {
