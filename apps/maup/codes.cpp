@@ -66,6 +66,21 @@ constexpr CodeEntry own_codes[] = {
     {"E0812", "the result would be written over the model",
      "The file of -o, or of a plot, is the model that is read. Results never take the place of what they were made from.",
      "maup reduce arm.lag -o arm.lag", "maup reduce arm.lag -o arm_reduced.lag"},
+    {"W0813", "a section of the report is left out",
+     "A report has a budget of time, 20 s unless --budget says otherwise. No section takes more than half of what is left of it, so that a slow one "
+     "does not take the others with it; one that does not come is left out, and the page says so. `--sections` computes the named ones alone.",
+     "maup report chain.lag", "maup report chain.lag --budget 10min"},
+    {"W0815", "an environment variable has an unknown value",
+     "MAUPERTUIS_INSTRUCTIONS holds the vector instructions back: `none`, `avx2`, or `avx512` for all that the processor has. Any other word is left out of account.",
+     "MAUPERTUIS_INSTRUCTIONS=sse maup simulate pendulum.lag", "MAUPERTUIS_INSTRUCTIONS=avx2 maup simulate pendulum.lag"},
+    {"W0817", "the name of a file is not what it seems",
+     "The name holds escape bytes, characters that turn the direction of writing, or a letter of another alphabet that looks Latin. It is shown with such characters "
+     "spelled out (\\x1b, \\u202e); typing what is seen finds another file, or none.", "", ""},
+    {"E0816", "a result is no finite number",
+     "A result is a number, or says that there is none. Where NaN or an infinity would stand in it the command has failed: the quantity grew beyond the range of "
+     "numbers, or its formula has no value there (a root of a negative number, a division by zero).", "", ""},
+    {"E0814", "the budget of a report was used up before its equations were certified",
+     "Every section of a page stands on the certified equations: without them there is none.", "maup report chain.lag --budget 1s", "maup report chain.lag --budget none"},
     {"E1305", "the motion does not reach the time asked for",
      "`maup modes --at 3s` linearizes about the state of the motion at that time; the run ended before. Its reason is quoted.", "", ""},
     {"E0811", "there is no such column to plot",

@@ -6,8 +6,11 @@
 
 #include <fmt/format.h>
 
+#include <maupertuis/vector_instructions.hpp>
+
 #include <csignal>
 #include <exception>
+#include <sstream>
 #include <vector>
 
 namespace maupertuis::app {
@@ -22,6 +25,30 @@ std::string last_resort(const char* what) {
 
 Console::Color color_named(const std::string& word) {
   return word == "always" ? Console::Color::Always : word == "never" ? Console::Color::Never : Console::Color::Auto;
+}
+
+/// Also under --json: no document is about the environment.
+void warn_of_environment(const Console& console) {
+  const std::string word = unknown_vector_instructions();
+  if (word.empty()) return;
+  Diagnostics diagnostics;
+  diagnostics.warning("W0815", {}, fmt::format("MAUPERTUIS_INSTRUCTIONS says `{}`, which is no kind of vector instructions", word),
+                      "It is left out of account: the processor decides.", "Write avx512, avx2 or none, or unset it.");
+  console.draw(render(diagnostics, SourceText("the environment", ""), {.color = console.colored_messages()}));
+}
+
+/// Runs a command; after an interrupt says what there is of it.
+ExitCode outcome_of(const Action& action, Console& console) {
+  ExitCode code = ExitCode::Interrupted;
+  try {
+    code = action(console);
+  } catch (const Interrupted&) {
+    if (!interrupt_flag().load()) throw;  // a deadline that no one waited for
+  }
+  if (!interrupt_flag().load()) return code;
+  console.say(console.has_data() ? "Interrupted: what stands here is not the whole of it.\n"
+                                 : "Interrupted: there was nothing to show yet.\n");
+  return ExitCode::Interrupted;
 }
 
 }  // namespace
@@ -53,18 +80,19 @@ Command& CommandLine::add(const std::string& name, const std::string& summary, c
 
 ExitCode CommandLine::run(int argc, char** argv) {
   Implementation& line = *implementation_;
-  switch (line.parser.parse(argc, argv)) {
+  std::ostringstream out, err;
+  const CommandParser::Outcome asked = line.parser.parse(argc, argv, out, err);
+  line.console.print(out.str());
+  line.console.say(err.str());
+  switch (asked) {
     case CommandParser::Outcome::Command: break;
-    case CommandParser::Outcome::Answered: return ExitCode::Fine;
-    case CommandParser::Outcome::Mistake: return ExitCode::Usage;
+    case CommandParser::Outcome::Answered: return line.console.flush().empty() ? ExitCode::Fine : ExitCode::Usage;
+    case CommandParser::Outcome::Mistake: return line.console.flush(), ExitCode::Usage;
   }
   line.console.use_json(line.json);
   line.console.use_color(color_named(line.color));
-  ExitCode code = line.chosen(line.console);
-  if (interrupt_flag().load() && code != ExitCode::Interrupted) {
-    line.console.say("Interrupted: what stands here is not the whole of it.\n");
-    code = ExitCode::Interrupted;
-  }
+  warn_of_environment(line.console);
+  const ExitCode code = outcome_of(line.chosen, line.console);
   const std::string failure = line.console.flush();
   if (failure.empty()) return code;
   Diagnostics diagnostics;

@@ -6,20 +6,31 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <maupertuis/look_alikes.hpp>
 #include <nlohmann/json.hpp>
 
 namespace maupertuis::app {
 
+void Console::print(std::string_view text) { data_ += visible(text); }
+
+void Console::print_file(std::string_view text) {
+  if (isatty(STDOUT_FILENO) == 1) print(text);
+  else data_ += text;
+}
+
 void Console::print_document(const nlohmann::ordered_json& document) {
   // `replace`: a name from a file that is not UTF-8 must not stop the document.
-  data_ += document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  // Characters that turn the direction of writing become escapes of JSON's own form.
+  data_ += visible(document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) + "\n";
 }
 
 void Console::show(const Diagnostics& diagnostics, const SourceText& source) const {
-  if (!json_ && !diagnostics.empty()) say(render(diagnostics, source, {.color = colored_messages()}));
+  if (!json_ && !diagnostics.empty()) draw(render(diagnostics, source, {.color = colored_messages()}));
 }
 
-void Console::say(std::string_view text) const { std::fwrite(text.data(), 1, text.size(), stderr); }
+void Console::say(std::string_view text) const { draw(visible(text)); }
+
+void Console::draw(std::string_view text) const { std::fwrite(text.data(), 1, text.size(), stderr); }
 
 std::string Console::flush() {
   errno = 0;
@@ -29,7 +40,11 @@ std::string Console::flush() {
   return errno == EPIPE ? "its reader has closed the pipe" : std::strerror(errno);
 }
 
-bool Console::interactive() const { return isatty(STDERR_FILENO) == 1; }
+// A dumb terminal shows escape sequences instead of carrying them out.
+bool Console::interactive() const {
+  const char* const terminal = std::getenv("TERM");
+  return isatty(STDERR_FILENO) == 1 && (!terminal || std::strcmp(terminal, "dumb") != 0);
+}
 
 bool Console::colored_messages() const {
   if (color_ != Color::Auto) return color_ == Color::Always;

@@ -7,7 +7,8 @@
 
 namespace maupertuis::app {
 
-/// Where a command puts what it has to say: data on standard output, messages on standard error.
+/// Where a command puts what it has to say: data on standard output, messages on standard error. Characters that a terminal
+/// would act on instead of showing them, as names of models and files can hold, are spelled out (look_alikes.hpp).
 class Console {
  public:
   enum class Color { Auto, Always, Never };
@@ -17,12 +18,18 @@ class Console {
   bool json() const { return json_; }
 
   /// Collects data; it is written at once by flush(), so that a full disk or a closed pipe is noticed and said.
-  void print(std::string_view text) { data_ += text; }
+  void print(std::string_view text);
+  /// The same for the text of a file, byte by byte where standard output is no terminal.
+  void print_file(std::string_view text);
   void print_document(const nlohmann::ordered_json& document);
   /// Renders to standard error (nothing under --json, whose document holds the diagnostics).
   void show(const Diagnostics& diagnostics, const SourceText& source) const;
   void say(std::string_view text) const;
+  /// To standard error as it is: escape sequences of our own.
+  void draw(std::string_view text) const;
 
+  /// Whether something was printed that flush() will write.
+  bool has_data() const { return !data_.empty(); }
   /// Writes what was printed; the reason when it could not be written, else empty.
   std::string flush();
 

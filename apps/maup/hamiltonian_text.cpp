@@ -34,9 +34,17 @@ std::string plain_line(const DerivationStep& line, const ReadingOrder& order) {
   return line.is_equation() ? right + " = 0" : to_plain(line.left) + " = " + right;
 }
 
+/// What the names in a form stand for that are its own.
+Json intermediates_json(const ReadableForm& form, const ReadingOrder& order) {
+  Json list = Json::array();
+  for (const Intermediate& i : form.intermediates)
+    list.push_back({{"name", to_plain(i.symbol, order)}, {"plain", to_plain(i.value, order)}, {"latex", to_latex(i.value, order)}});
+  return list;
+}
+
 Json form_json(const ReadableForm& form, const ReadingOrder& order) {
   if (!form.value) return {};
-  return {{"plain", to_plain(form, order)}, {"latex", to_latex(form, order)}};
+  return {{"plain", to_plain(form, order)}, {"latex", to_latex(form, order)}, {"intermediates", intermediates_json(form, order)}};
 }
 
 Json equations_json(const std::vector<CanonicalEquation>& equations, const ReadingOrder& order) {
@@ -48,6 +56,33 @@ Json equations_json(const std::vector<CanonicalEquation>& equations, const Readi
     list.push_back(std::move(one));
   }
   return list;
+}
+
+/// q' = …; of a velocity that is not written out the equation it follows from, together with the others of its group: p = ….
+Json velocities_json(const Hamiltonian& h) {
+  Json list = equations_json(h.velocities, h.order);
+  for (std::size_t i = 0; i < h.velocities.size(); ++i) {
+    list[i]["implicit"] = !h.velocities[i].right.value;
+    if (h.velocities[i].right.value) continue;
+    list[i]["velocity"] = list[i]["left"];
+    list[i]["left"] = symbol_to_plain(h.momenta[i]);
+    list[i]["has_velocities"] = true;
+    list[i].update(form_json(readable(h.momentum_values[i], h.order), h.order));
+  }
+  return list;
+}
+
+/// H as the text has it: in momenta, and where M⁻¹ is too long to be written out in velocities as well.
+Json energy_json(const PhaseSpace& found) {
+  const Hamiltonian& h = found.hamiltonian;
+  if (h.legendre.readable.value) return form_json(h.legendre.readable, h.order);
+  for (const DerivationStep& line : found.lines)
+    if (line.left == "H" && line.right) {
+      Json out = form_json({line.right, line.intermediates, {}}, h.order);
+      out["has_velocities"] = true;
+      return out;
+    }
+  return {};
 }
 
 Json routhian_json(const Routhian& r, const Hamiltonian& h) {
@@ -99,11 +134,9 @@ void add_to(Json& document, const PhaseSpace& found) {
   for (std::size_t i = 0; i < h.momenta.size(); ++i) {
     document["coordinates"].push_back(h.system->coordinates[i].name);
     const ReadableForm value = readable(h.momentum_values[i], h.order);
-    Json intermediates = Json::array();
-    for (const Intermediate& k : value.intermediates)
-      intermediates.push_back({{"name", to_plain(k.symbol, h.order)}, {"plain", to_plain(k.value, h.order)}});
-    document["momenta"].push_back({{"name", symbol_to_plain(h.momenta[i])}, {"plain", to_plain(value, h.order)},
-                                   {"latex", to_latex(value, h.order)}, {"intermediates", std::move(intermediates)}});
+    Json row{{"name", symbol_to_plain(h.momenta[i])}};
+    row.update(form_json(value, h.order));
+    document["momenta"].push_back(std::move(row));
   }
   for (const LegendreBlock& block : h.legendre.blocks) {
     Json names = Json::array(), constraints = Json::array();
@@ -112,8 +145,8 @@ void add_to(Json& document, const PhaseSpace& found) {
     document["groups"].push_back({{"coordinates", std::move(names)}, {"kind", word_of(block.kind)}, {"primary_constraints", std::move(constraints)}});
   }
   document["regular"] = h.regular();
-  document["hamiltonian"] = form_json(h.legendre.readable, h.order);
-  document["velocities"] = equations_json(h.velocities, h.order);
+  document["hamiltonian"] = energy_json(found);
+  document["velocities"] = velocities_json(h);
   document["forces"] = equations_json(h.forces, h.order);
   document["routhian"] = found.routhian ? routhian_json(*found.routhian, h) : Json();
   document["brackets"] = Json::array();

@@ -86,13 +86,13 @@ Command& CommandParser::add(const std::string& name, const std::string& summary,
   return implementation_->commands.emplace_back(command);
 }
 
-CommandParser::Outcome CommandParser::parse(int argc, char** argv) {
+CommandParser::Outcome CommandParser::parse(int argc, char** argv, std::ostream& out, std::ostream& err) {
   CLI::App& app = implementation_->app;
   try {
     app.parse(argc, argv);
     return Outcome::Command;
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? Outcome::Answered : Outcome::Mistake;
+    return app.exit(error, out, err) == 0 ? Outcome::Answered : Outcome::Mistake;
   }
 }
 

@@ -2,6 +2,7 @@
 #include <deque>
 #include <functional>
 #include <initializer_list>
+#include <iosfwd>
 #include <memory>
 #include <string>
 #include <vector>
@@ -81,7 +82,8 @@ class CommandParser {
 
   /// `examples` open the command's --help; `chosen` is called by parse() when the arguments name the command.
   Command& add(const std::string& name, const std::string& summary, const std::string& examples, std::function<void()> chosen);
-  Outcome parse(int argc, char** argv);
+  /// What is answered goes to `out`, what is told of a mistake to `err`.
+  Outcome parse(int argc, char** argv, std::ostream& out, std::ostream& err);
 
  private:
   struct Implementation;

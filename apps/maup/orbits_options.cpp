@@ -30,7 +30,7 @@ WrittenSection split_section(std::string text) {
 }
 
 /// The length of the model's own run stays, as the limit of the new one.
-std::string run_until(const std::string& equation, const Model* model) {
+OptionStatement run_until(const std::string& equation, const Model* model) {
   double within = 1e6;
   if (model) {
     const Experiment& e = model->experiment;
@@ -39,7 +39,7 @@ std::string run_until(const std::string& equation, const Model* model) {
       within = evaluate(in_terms_of_motion(model->system, {&length, 1}).front(), parameter_bindings(model->system));
   }
   const char* const unit = model && model->system.dimensionless ? "" : " s";
-  return fmt::format("run until {} within {}{}", equation, exact(within), unit);
+  return OptionStatement("run until ").add_typed("--section", equation).add(fmt::format(" within {}{}", exact(within), unit));
 }
 
 }  // namespace

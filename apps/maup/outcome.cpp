@@ -1,16 +1,15 @@
 #include "outcome.hpp"
 
 #include "interrupt.hpp"
+#include "numbers.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace maupertuis::app {
 
-namespace {
-
-/// The file could not be read at all: nothing is known of the model.
 bool unreadable(const Diagnostics& diagnostics) {
   const auto items = diagnostics.items();
   return std::any_of(items.begin(), items.end(), [](const Diagnostic& d) {
@@ -18,17 +17,42 @@ bool unreadable(const Diagnostics& diagnostics) {
   });
 }
 
-}  // namespace
+void show_told(const Console& console, const Study& study) {
+  bool first = true;
+  for (const Study::Told& told : study.told()) {
+    if (!std::exchange(first, false)) console.say("\n");
+    console.show(told.diagnostics, told.source);
+  }
+}
+
+Json told_json(const Study& study) {
+  Json list = Json::array();
+  for (const Study::Told& told : study.told())
+    for (Json& d : to_json(told.diagnostics, told.source)) {
+      if (told.of_option) d["option"] = told.source.name();
+      list.push_back(std::move(d));
+    }
+  return list;
+}
+
+ExitCode worse(ExitCode a, ExitCode b) {
+  for (const ExitCode code : {ExitCode::Interrupted, ExitCode::Usage, ExitCode::ModelWrong, ExitCode::ExpectationFailed})
+    if (a == code || b == code) return code;
+  return ExitCode::Fine;
+}
 
 ExitCode finish(Console& console, Study& study, Json document) {
+  const bool numbers = check_numbers(document, study.diagnostics());
   if (console.json()) {
-    document["ok"] = !study.wrong();
-    document["diagnostics"] = to_json(study.diagnostics(), study.source());
+    document["ok"] = !study.wrong() && !interrupt_flag();
+    if (interrupt_flag()) document["interrupted"] = true;
+    document["diagnostics"] = told_json(study);
     console.print_document(document);
   } else {
-    console.show(study.diagnostics(), study.source());
+    show_told(console, study);
   }
   if (unreadable(study.diagnostics())) return ExitCode::Usage;
+  if (!numbers) return ExitCode::RunFailed;
   return study.wrong() ? ExitCode::ModelWrong : ExitCode::Fine;
 }
 
@@ -38,8 +62,8 @@ ExitCode finish_with(Console& console, Study& study, const char* command, const 
   document["system"] = study.model()->system.name;
   document[answer.kind] = answer.json;
   const bool written = !study.wrong();
-  finish(console, study, document);
-  return written ? ExitCode::Fine : ExitCode::RunFailed;
+  const ExitCode told = finish(console, study, document);
+  return written && told == ExitCode::Fine ? ExitCode::Fine : ExitCode::RunFailed;
 }
 
 ExitCode finish_without(Console& console, Study& study, const char* command) {
@@ -57,7 +81,7 @@ bool write_rows(const std::string& path, const Trajectory& rows, Diagnostics& di
   const Saving saving(path);
   const std::string failure = path.empty() ? std::string() : write_trajectory(rows, path);
   if (!failure.empty()) cannot_write(failure, diagnostics);
-  return failure.empty();
+  return check_numbers(rows, diagnostics) && failure.empty();
 }
 
 void cannot_write(const std::string& failure, Diagnostics& diagnostics) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <maupertuis/look_alikes.hpp>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -37,12 +39,24 @@ void cannot_open(const std::string& path, int error, Diagnostics& diagnostics) {
     diagnostic.help = "`maup new pendulum` writes a first model.";
 }
 
+/// A name that is not what it seems is told with every file that has one.
+void warn_of_letters(const std::string& path, Diagnostics& diagnostics) {
+  const std::string name = std::filesystem::path(path).filename().string(), foreign = foreign_letter(name);
+  if (visible(name) != name)
+    diagnostics.warning("W0817", {}, fmt::format("the name of the file is shown as {}", visible(name)), "It holds characters that a terminal carries out instead of showing them.",
+                        "Rename it.");
+  else if (!foreign.empty())
+    diagnostics.warning("W0817", {}, fmt::format("the name of the file mixes two alphabets: {}", foreign), fmt::format("It looks like {}, and is another name.", latin_look(name)),
+                        "Rename it.");
+}
+
 }  // namespace
 
 std::string display_name(const std::string& path) { return path == "-" ? "standard input" : path; }
 
 std::string read_file(const std::string& path, Diagnostics& diagnostics) {
   std::error_code error;
+  warn_of_letters(path, diagnostics);
   if (path != "-" && std::filesystem::is_directory(path, error)) {
     diagnostics.error("E0802", {}, fmt::format("{} is a directory, not a model file.", path), {},
                       "Name one of the .lag files in it.");

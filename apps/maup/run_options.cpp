@@ -32,7 +32,7 @@ class Progress {
  public:
   explicit Progress(const Console& console) : console_(console) {}
   ~Progress() {
-    if (drawn_) console_.say("\r\x1b[K");
+    if (drawn_) console_.draw("\r\x1b[K");
   }
   void operator()(double fraction) {
     const auto now = Clock::now();
@@ -41,7 +41,7 @@ class Progress {
     const double passed = std::chrono::duration<double>(now - begin_).count();
     if (passed < 0.5 || !(fraction > 0)) return;
     drawn_ = true;
-    console_.say(fmt::format("\r\x1b[K{:3.0f} %, {:.0f} s to go", 100 * fraction, passed / fraction - passed));
+    console_.draw(fmt::format("\r\x1b[K{:3.0f} %, {:.0f} s to go", 100 * fraction, passed / fraction - passed));
   }
 
  private:
@@ -179,13 +179,13 @@ ExtendedSimulationOptions extended_options(const RunOptions& options, Precision 
   return out;
 }
 
-std::string run_statement(const RunOptions& options) {
-  if (options.until.empty()) return {};
-  std::string statement =
-      fmt::format("run until {} within {}", options.until, options.within.empty() ? "60 s" : options.within);
-  for (char& c : statement)
-    if (c == '\n' || c == '#') c = ' ';  // one statement, whatever was typed
-  return statement;
+void put_in_run(const RunOptions& options, Study& study) {
+  if (options.until.empty()) return;
+  OptionStatement statement("run until ");
+  statement.add_typed("--until", options.until).add(" within ");
+  if (options.within.empty()) statement.add("60 s");
+  else statement.add_typed("--within", options.within);
+  study.replace_run(statement);
 }
 
 std::optional<SimulationResult> run_model(Study& study, const SimulationOptions& options, const Console& console) {

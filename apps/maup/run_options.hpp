@@ -42,8 +42,8 @@ std::string precision_of(const syntax::SyntaxTree* tree);
 /// The same for a run in many digits: times exactly as written.
 ExtendedSimulationOptions extended_options(const RunOptions& options, Precision precision, Diagnostics& diagnostics);
 
-/// The `run` statement that --until writes into the model; empty without.
-std::string run_statement(const RunOptions& options);
+/// Puts `run until …` of --until in the place of the model's run; nothing without the option.
+void put_in_run(const RunOptions& options, Study& study);
 
 /// Certifies, runs, draws progress. Nothing when the model does not allow a run.
 std::optional<SimulationResult> run_model(Study& study, const SimulationOptions& options, const Console& console);

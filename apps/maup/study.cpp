@@ -21,52 +21,77 @@ const syntax::SyntaxTree* Study::tree() {
 
 namespace {
 
-/// The text with a statement in the place of the first one of a kind, or at its end.
-template <class Kind>
-SourceText with_statement(const SourceText& source, const syntax::SyntaxTree& tree, const std::string& statement) {
-  std::string text(source.text());
-  const auto own = std::find_if(tree.statements.begin(), tree.statements.end(),
-                                [](const syntax::Statement& s) { return std::holds_alternative<Kind>(s.body); });
-  if (own != tree.statements.end())
-    text.replace(own->span.begin, own->span.end - own->span.begin, statement);
-  else
-    text += "\n" + statement + "\n";
-  return SourceText(source.name(), std::move(text));
+void add(const Diagnostic& d, Diagnostics& to) {
+  switch (d.severity) {
+    case Severity::Error: to.error(d.code, d.span, d.message, d.reason, d.help); break;
+    case Severity::Warning: to.warning(d.code, d.span, d.message, d.reason, d.help); break;
+    case Severity::Note: to.note(d.code, d.span, d.message, d.reason, d.help); break;
+  }
 }
 
 }  // namespace
 
-void Study::replace_run(const std::string& statement) {
+/// In the place of the first statement of its kind, or at the end of the text. Lines that follow keep their numbers.
+template <class Kind>
+void Study::replace(const OptionStatement& statement) {
   MAUP_REQUIRE(!elaborated_);
   const syntax::SyntaxTree* parsed = tree();
   if (!parsed || wrong()) return;
-  source_ = with_statement<syntax::RunStatement>(source_, *parsed, statement);
+  const auto own = std::find_if(parsed->statements.begin(), parsed->statements.end(),
+                                [](const syntax::Statement& s) { return std::holds_alternative<Kind>(s.body); });
+  if (own == parsed->statements.end()) return add_statements({statement});
+  const std::string_view before = source_.text();
+  const Span place = own->span;
+  const auto lines = static_cast<std::size_t>(std::count(before.begin() + place.begin, before.begin() + place.end, '\n'));
+  std::string text(before);
+  text.replace(place.begin, place.end - place.begin, statement.text() + std::string(lines, '\n'));
+  placed_.push_back({place.begin, statement});
+  source_ = SourceText(source_.name(), std::move(text));
   tree_.reset();
 }
 
-void Study::replace_path(const std::string& statement) {
-  MAUP_REQUIRE(!elaborated_);
-  const syntax::SyntaxTree* parsed = tree();
-  if (!parsed || wrong()) return;
-  source_ = with_statement<syntax::PathStatement>(source_, *parsed, statement);
-  tree_.reset();
-}
+void Study::replace_run(const OptionStatement& statement) { replace<syntax::RunStatement>(statement); }
+void Study::replace_path(const OptionStatement& statement) { replace<syntax::PathStatement>(statement); }
+void Study::replace_sweep(const OptionStatement& statement) { replace<syntax::SweepStatement>(statement); }
 
-void Study::replace_sweep(const std::string& statement) {
-  MAUP_REQUIRE(!elaborated_);
-  const syntax::SyntaxTree* parsed = tree();
-  if (!parsed || wrong()) return;
-  source_ = with_statement<syntax::SweepStatement>(source_, *parsed, statement);
-  tree_.reset();
-}
-
-void Study::add_statements(const std::vector<std::string>& statements) {
+void Study::add_statements(const std::vector<OptionStatement>& statements) {
   MAUP_REQUIRE(!elaborated_);
   if (!tree() || wrong() || statements.empty()) return;
   std::string text(source_.text());
-  for (const std::string& statement : statements) text += "\n" + as_one_line(statement);
+  for (const OptionStatement& statement : statements) {
+    text += "\n";
+    placed_.push_back({static_cast<std::uint32_t>(text.size()), statement});
+    text += statement.text();
+  }
   source_ = SourceText(source_.name(), text + "\n");
   tree_.reset();
+}
+
+/// A place in the words around what was typed is taken for all of it.
+std::optional<OptionPlace> Study::option_at(Span span) const {
+  for (const auto& [begin, statement] : placed_) {
+    if (span.begin < begin || span.begin > begin + statement.text().size() || statement.pieces().empty()) continue;
+    const std::uint32_t at = span.begin - begin;
+    const auto inside = std::find_if(statement.pieces().begin(), statement.pieces().end(), [&](const auto& p) { return at >= p.begin && at < p.end; });
+    const OptionStatement::Piece& piece = inside != statement.pieces().end() ? *inside : statement.pieces().front();
+    const std::uint32_t length = piece.end - piece.begin;
+    Span place{0, length};
+    if (inside != statement.pieces().end()) place = {at - piece.begin, std::min(span.end - begin, piece.end) - piece.begin};
+    return OptionPlace{SourceText(piece.option, statement.text().substr(piece.begin, length)), place};
+  }
+  return std::nullopt;
+}
+
+std::vector<Study::Told> Study::told() const {
+  std::vector<Told> out;
+  for (Diagnostic d : diagnostics_.items()) {
+    const auto place = d.span ? option_at(*d.span) : std::nullopt;
+    if (place) d.span = place->span;
+    const SourceText& source = place ? place->source : source_;
+    if (out.empty() || out.back().of_option || place) out.push_back({source, {}, place.has_value()});
+    add(d, out.back().diagnostics);
+  }
+  return out;
 }
 
 void Study::admit_singular_mass_matrix() {
@@ -77,25 +102,11 @@ void Study::admit_singular_mass_matrix() {
 namespace {
 
 void add_lint(const Diagnostics& lint, bool admits_singular, Diagnostics& diagnostics) {
-  for (const Diagnostic& d : lint.items()) {
-    if (admits_singular && (d.code == "E0407" || d.code == "E0408")) continue;
-    Diagnostics one;
-    switch (d.severity) {
-      case Severity::Error: one.error(d.code, d.span, d.message, d.reason, d.help); break;
-      case Severity::Warning: one.warning(d.code, d.span, d.message, d.reason, d.help); break;
-      case Severity::Note: one.note(d.code, d.span, d.message, d.reason, d.help); break;
-    }
-    diagnostics.append(one);
-  }
+  for (const Diagnostic& d : lint.items())
+    if (!admits_singular || (d.code != "E0407" && d.code != "E0408")) add(d, diagnostics);
 }
 
 }  // namespace
-
-std::string as_one_line(std::string statement) {
-  for (char& c : statement)
-    if (c == '\n' || c == '\r' || c == '#') c = ' ';
-  return statement;
-}
 
 const Model* Study::model() {
   if (elaborated_) return model_.get();
@@ -105,6 +116,7 @@ const Model* Study::model() {
   // that were lost with it, so that their absence is not reported again.
   if (!parsed || parsed->statements.empty()) return nullptr;
   if (auto model = elaborate(*parsed, source_, diagnostics_, overrides_); model && !wrong()) {
+    const InterruptScope scope(*model->system.context, interrupt_);
     Diagnostics found;
     lint(*model, source_, found);
     add_lint(found, admits_singular_, diagnostics_);
@@ -116,8 +128,9 @@ const Model* Study::model() {
 
 const EquationsOfMotion* Study::equations() {
   if (!derived_ && model()) {
-    derived_ = true;
+    const InterruptScope scope = interruptible();
     equations_ = euler_lagrange(std::shared_ptr<const MechanicalSystem>(model_, &model_->system), diagnostics_);
+    derived_ = true;
   }
   return equations_ && !wrong() ? &*equations_ : nullptr;
 }
@@ -125,6 +138,7 @@ const EquationsOfMotion* Study::equations() {
 const Derivation* Study::derivation(bool with_steps) {
   if (!equations()) return nullptr;
   if (!derivation_ || (with_steps && !has_steps_)) {
+    const InterruptScope scope = interruptible();
     derivation_ = readable_derivation(*equations_, with_steps);
     has_steps_ = with_steps;
   }
@@ -133,6 +147,7 @@ const Derivation* Study::derivation(bool with_steps) {
 
 const Certificate* Study::certificate(const CertifyOptions& options) {
   if (certificate_ || !equations()) return certificate_ ? &*certificate_ : nullptr;
+  const InterruptScope scope = interruptible();
   certificate_ = certify(*equations_, derivation_ ? &*derivation_ : nullptr, options);
   for (const CertificateCheck& check : certificate_->checks) {
     if (!check.applies || check.verdict == Verdict::Zero) continue;

@@ -1,6 +1,10 @@
 #pragma once
+#include "interrupt.hpp"
+#include "option_statement.hpp"
+
 #include <maupertuis/certificate.hpp>
 #include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/interrupt_scope.hpp>
 #include <maupertuis/mechanical_system.hpp>
 
 #include <memory>
@@ -23,16 +27,28 @@ class Study {
   Diagnostics& diagnostics() { return diagnostics_; }
   bool wrong() const { return diagnostics_.has_errors(); }
 
+  /// Diagnostics with the text that their places are in: that of the model, or what an option said.
+  struct Told {
+    SourceText source;
+    Diagnostics diagnostics;
+    bool of_option = false;
+  };
+  std::vector<Told> told() const;
+
+  /// Stages end by Interrupted when this asks them to: Ctrl-C, if nothing else is said.
+  void set_interrupt(const Interrupt& interrupt) { interrupt_ = interrupt; }
+  /// The same for what a command goes on to compute from the model, while the scope lives. Precondition: model() is there.
+  InterruptScope interruptible() const { return {*model_->system.context, interrupt_}; }
+
   const syntax::SyntaxTree* tree();
   /// Puts a `run …` statement in the place of the model's own. Precondition: no later stage was asked for.
-  void replace_run(const std::string& statement);
+  void replace_run(const OptionStatement& statement);
   /// The same for a `path …` statement.
-  void replace_path(const std::string& statement);
+  void replace_path(const OptionStatement& statement);
   /// The same for a `sweep …` statement.
-  void replace_sweep(const std::string& statement);
-  /// Adds statements of the command line after the model's own, one a line: `#` and line ends in them become spaces.
-  /// Precondition as above.
-  void add_statements(const std::vector<std::string>& statements);
+  void replace_sweep(const OptionStatement& statement);
+  /// Adds statements of the command line after the model's own, one a line. Precondition as above.
+  void add_statements(const std::vector<OptionStatement>& statements);
   /// For questions that do not need accelerations: a mass matrix that is singular (E0407, E0408) is no mistake then.
   /// Precondition as above.
   void admit_singular_mass_matrix();
@@ -46,6 +62,17 @@ class Study {
   const Certificate* certificate(const CertifyOptions& options = {});
 
  private:
+  /// A statement that stands in source_ at `begin`.
+  struct Placed {
+    std::uint32_t begin;
+    OptionStatement statement;
+  };
+  template <class Kind>
+  void replace(const OptionStatement& statement);
+  std::optional<OptionPlace> option_at(Span span) const;
+
+  std::vector<Placed> placed_;
+  Interrupt interrupt_ = &interrupt_flag();
   Diagnostics diagnostics_;
   SourceText source_;
   Overrides overrides_;
@@ -60,8 +87,6 @@ class Study {
   std::optional<Certificate> certificate_;
 };
 
-/// What was typed as one statement: no line ends and no comment in it.
-std::string as_one_line(std::string statement);
 /// E0244 where the model holds an integral of its paths: there is no motion then. For commands about motions.
 bool refuse_held_integrals(Study& study);
 /// Whether the independent variable is a time; without units nothing says that it is none.

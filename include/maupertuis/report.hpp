@@ -11,6 +11,7 @@
 #include <maupertuis/trajectory.hpp>
 #include <maupertuis/verification.hpp>
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -177,10 +178,14 @@ struct ReportParts {
 /// the energy allows.
 PlotOptions section_picture(const SectionResult& section, const std::string& what, const MechanicalSystem& system);
 
-/// Fills a report from the artifacts of one study. `derivation` with its steps; messages are those of `diagnostics`
-/// that are no errors.
+/// Carries out the work of a section of the page (its id: "phase-space") or does without: false, and nothing of it is shown.
+using SectionGuard = std::function<bool(std::string_view section, const std::function<void()>& work)>;
+
+/// Fills a report from the artifacts of one study, each section under the guard. `derivation` with its steps, or empty.
 ReportContent compose_report(const Model& model, const SourceText& source, const EquationsOfMotion& equations,
-                             const Derivation& derivation, const Certificate& certificate,
-                             const Diagnostics& diagnostics, const ReportParts& parts = {});
+                             const Derivation& derivation, const Certificate& certificate, const ReportParts& parts = {},
+                             const SectionGuard& guard = {});
+/// The messages of a page: those of `diagnostics` that are no errors.
+void add_messages(ReportContent& content, const Diagnostics& diagnostics, const SourceText& source);
 
 }  // namespace maupertuis

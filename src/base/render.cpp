@@ -1,4 +1,5 @@
 #include <maupertuis/diagnostic.hpp>
+#include <maupertuis/look_alikes.hpp>
 
 #include <fmt/format.h>
 
@@ -32,11 +33,18 @@ const char* severity_color(Severity severity) {
 
 bool starts_character(char byte) { return (static_cast<unsigned char>(byte) & 0xC0u) != 0x80u; }
 
-/// Tabs and control bytes as one space, so that the caret stands where it should and a terminal is safe.
+/// Tabs as one space and what is not shown as one mark, so that the caret stands where it should and a terminal is safe.
 std::string printable(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  std::string out;
+  for (std::size_t i = 0; i < text.size();) {
+    std::size_t end = i + 1;
+    while (end < text.size() && !starts_character(text[end])) ++end;
+    const std::string_view character = text.substr(i, end - i);
+    if (character == "\t") out += ' ';
+    else if (visible(character) == character && character != "\n") out += character;
+    else out += "\xEF\xBF\xBD";  // the replacement character
+    i = end;
+  }
   return out;
 }
 
@@ -79,7 +87,7 @@ std::string source_excerpt(const Diagnostic& d, const SourceText& source, Paint 
 }
 
 std::string head_line(const Diagnostic& d, const SourceText& source, Paint paint) {
-  std::string place = source.name();
+  std::string place = visible(source.name());
   if (d.span) {
     const LineColumn at = source.locate(d.span->begin);
     place += fmt::format(":{}:{}", at.line, at.column);
@@ -95,11 +103,11 @@ std::string head_line(const Diagnostic& d, const SourceText& source, Paint paint
 std::string render(const Diagnostic& d, const SourceText& source, const RenderOptions& options) {
   const Paint paint{options.color};
   std::string out = head_line(d, source, paint);
-  out += fmt::format("\n{}{}{}\n", paint.code("\x1b[1m"), d.message, paint.code("\x1b[0m"));
+  out += fmt::format("\n{}{}{}\n", paint.code("\x1b[1m"), visible(d.message), paint.code("\x1b[0m"));
   if (d.span) out += "\n" + source_excerpt(d, source, paint);
-  if (!d.reason.empty()) out += "\n" + d.reason + "\n";
+  if (!d.reason.empty()) out += "\n" + visible(d.reason) + "\n";
   if (!d.help.empty()) out += fmt::format("{}{}Help:{} {}\n", d.reason.empty() ? "\n" : "", paint.code("\x1b[32m"),
-                                          paint.code("\x1b[0m"), d.help);
+                                          paint.code("\x1b[0m"), visible(d.help));
   return out;
 }
 

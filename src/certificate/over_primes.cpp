@@ -1,5 +1,7 @@
 #include "certificate/compare.hpp"
 
+#include <maupertuis/interrupt_scope.hpp>
+
 #include "symbolic/evaluate/degree.hpp"
 #include "symbolic/evaluate/field_numbers.hpp"
 #include "symbolic/evaluate/normalize.hpp"
@@ -57,6 +59,7 @@ bool compare_at_points(const Questions& questions, const evaluation::Tape& tape,
     std::optional<FieldNumbers> numbers;
     bool mended = false;
     for (int attempt = 0; attempt < 60 + 8 * wanted && found < wanted; attempt += !mended) {
+      interrupt_of(*questions.system.context).throw_if_asked();
       try {
         if (!mended) {
           seed = mix(seed);

@@ -1,5 +1,7 @@
 #include "certificate/compare.hpp"
 
+#include <maupertuis/interrupt_scope.hpp>
+
 #include "symbolic/evaluate/prime_field.hpp"
 #include "symbolic/evaluate/real100.hpp"
 #include "symbolic/evaluate/real_numbers.hpp"
@@ -69,6 +71,7 @@ RoutesResult compare_over_reals(const Questions& questions, std::uint64_t seed, 
   std::vector<Jet<Real100>> values;
   int found = 0;
   for (int attempt = 0; result.complete && found < points && attempt < 20 * points; ++attempt) {
+    interrupt_of(*questions.system.context).throw_if_asked();
     HundredDigits numbers(mix(seed + static_cast<std::uint64_t>(attempt)));
     const auto all = differences(questions, tape, numbers, some_direction(numbers, n), values);
     const Real100 scale = largest(values), tolerance = scale * Real100(1e-60);

@@ -80,7 +80,6 @@ void add_model(ReportContent& content, const Model& model, const SourceText& sou
   content.source = system.source;
   content.file = source.name() == "-" ? "" : source.name().substr(source.name().rfind('/') + 1);
   content.model_text = source.text();
-  add_freedoms(content, equations, run);
   if (system.dimensionless) content.summary.emplace_back("units", "dimensionless");
   for (std::size_t i = 0; i < system.coordinates.size(); ++i)
     content.coordinates.push_back(coordinate_row(model, equations, i, run));
@@ -154,6 +153,8 @@ void add_certificate(ReportContent& content, const Certificate& certificate) {
   }
 }
 
+}  // namespace
+
 void add_messages(ReportContent& content, const Diagnostics& diagnostics, const SourceText& source) {
   for (const Diagnostic& d : diagnostics.items()) {
     if (d.severity == Severity::Error) continue;
@@ -166,25 +167,31 @@ void add_messages(ReportContent& content, const Diagnostics& diagnostics, const 
   }
 }
 
-}  // namespace
-
 ReportContent compose_report(const Model& model, const SourceText& source, const EquationsOfMotion& equations,
-                             const Derivation& derivation, const Certificate& certificate,
-                             const Diagnostics& diagnostics, const ReportParts& parts) {
+                             const Derivation& derivation, const Certificate& certificate, const ReportParts& parts,
+                             const SectionGuard& guard) {
   ReportContent content;
+  // What a section has put into the content before it was given up is taken back.
+  const auto section = [&](std::string_view name, const std::function<void()>& work) {
+    if (!guard) return work();
+    ReportContent before = content;
+    if (!guard(name, work)) content = std::move(before);
+  };
+  section("model", [&] { add_freedoms(content, equations, parts.simulation); });
   add_model(content, model, source, equations, parts.simulation);
-  add_messages(content, diagnostics, source);
-  add_equations(content, derivation, equations.order);
-  content.derivation = sections_of(derivation.steps, equations.order);
-  add_phase_space(content, equations);
+  section("equations", [&] { add_equations(content, derivation, equations.order); });
+  section("derivation", [&] { content.derivation = sections_of(derivation.steps, equations.order); });
+  section("phase-space", [&] { add_phase_space(content, equations); });
   add_certificate(content, certificate);
-  const ConservedQuantities conserved = conserved_quantities(equations);
-  add_conserved(content, equations, conserved, parts.simulation, parts.invariants);
-  if (parts.simulation) add_motion(content, model, equations, conserved.energy_conserved, *parts.simulation);
-  if (parts.modes) add_modes(content, model, equations, *parts.modes);
-  if (parts.locus) add_loci(content, model.system, *parts.locus);
-  add_orbits(content, model.system, parts);
-  if (parts.paths) add_action(content, model.system, *parts.paths);
+  section("conserved", [&] { add_conserved(content, equations, conserved_quantities(equations), parts.simulation, parts.invariants); });
+  if (parts.simulation)
+    section("motion", [&] { add_motion(content, model, equations, conserved_quantities(equations).energy_conserved, *parts.simulation); });
+  section("modes", [&] {
+    if (parts.modes) add_modes(content, model, equations, *parts.modes);
+    if (parts.locus) add_loci(content, model.system, *parts.locus);
+  });
+  section("orbits", [&] { add_orbits(content, model.system, parts); });
+  if (parts.paths) section("paths", [&] { add_action(content, model.system, *parts.paths); });
   if (parts.verification) content.expectations = parts.verification->results;
   return content;
 }

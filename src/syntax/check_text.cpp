@@ -12,6 +12,16 @@ constexpr std::size_t kMostBytes = 8u << 20;
 
 bool is_control(unsigned char c) { return (c < 0x20 && c != '\t' && c != '\n' && c != '\r') || c == 0x7F; }
 
+bool turns_direction(char32_t c) { return c == 0x61C || c == 0x200E || c == 0x200F || (c >= 0x202A && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069); }
+
+/// In comments and titles; elsewhere it is an error of its own. Once in a text.
+void warn_of_direction(const SourceText& source, Span span, char32_t c, Diagnostics& diagnostics) {
+  const auto items = diagnostics.items();
+  if (std::any_of(items.begin(), items.end(), [](const Diagnostic& d) { return d.code == "W0108"; })) return;
+  diagnostics.warning("W0108", span, fmt::format("line {} holds a character that is not shown (U+{:04X})", source.locate(span.begin).line, static_cast<std::uint32_t>(c)),
+                      "It turns the direction of writing, so that an editor shows other text than is read here.", "Remove it.");
+}
+
 }  // namespace
 
 bool check_text(const SourceText& source, Diagnostics& diagnostics) {
@@ -45,6 +55,7 @@ bool check_text(const SourceText& source, Diagnostics& diagnostics) {
                         "Model texts are UTF-8; in other encodings θ, ° and é are other bytes.", "Save the file as UTF-8.");
       return false;
     }
+    if (turns_direction(c->value)) warn_of_direction(source, {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(i + c->length)}, c->value, diagnostics);
     i += c->length;
   }
   return true;

@@ -123,6 +123,14 @@ constexpr CodeEntry kEntries[] = {
      "cos ω t is t times the cosine of ω. With units the argument would be seen to be no angle; in a dimensionless model nothing tells.",
      "system s\ndimensionless\nparam w = 2\ncoord x : number\nV = x cos w t\n",
      "system s\ndimensionless\nparam w = 2\ncoord x : number\nV = x cos(w t)\n"},
+    {"W0106", "two names look alike",
+     "Letters of the Latin, Greek and Cyrillic alphabets can look exactly the same: `a` and Cyrillic `а` are two names that no reader can tell apart. Such a pair "
+     "comes from copied text or from a keyboard of another language.",
+     "param а = 1 m, a = 2 m", "param b = 1 m, a = 2 m"},
+    {"W0107", "a name mixes alphabets",
+     "A letter of another alphabet that looks Latin stands among Latin letters. The name cannot be found by typing what is seen.", "", ""},
+    {"W0108", "a character that is not shown",
+     "Unicode has characters that turn the direction of writing and are not shown themselves. In a comment or a title they make an editor show other text than is read.", "", ""},
     {"W0105", "a number after a factor",
      "x 2 is twice x. Who writes it often means x^2.", "system s\ncoord x : number\nV = x 2\n", "system s\ncoord x : number\nV = x^2\n"},
 };

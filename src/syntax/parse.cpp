@@ -1,5 +1,6 @@
 #include "syntax/declarations.hpp"
 #include "syntax/lexer.hpp"
+#include "syntax/lint_letters.hpp"
 #include "syntax/statement_parser.hpp"
 
 #include <fmt/format.h>
@@ -40,6 +41,7 @@ SyntaxTree parse(const SourceText& source, Diagnostics& diagnostics) {
     return tree;
   }
   const Declarations declarations(*list, statements);
+  lint_letters(*list, statements, source, diagnostics);
   const ParseContext context{*list, source, declarations, diagnostics};
   std::size_t failures = 0;
   for (const StatementTokens& statement : statements) {

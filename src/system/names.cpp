@@ -1,8 +1,11 @@
 #include "system/elaboration.hpp"
 
+#include <maupertuis/look_alikes.hpp>
 #include <maupertuis/momentum.hpp>
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 /// Names in formulas.
 namespace maupertuis::elaboration {
@@ -136,6 +139,13 @@ void unknown_time(Elaboration& e, Span span) {
                       fmt::format("Write {}, or declare t.", x));
 }
 
+/// A declared name that looks as this one does, in letters of another alphabet; empty if there is none.
+std::string twin_of(const std::string& text, const std::vector<std::string>& names) {
+  const std::string look = latin_look(text);
+  const auto twin = std::find_if(names.begin(), names.end(), [&](const std::string& name) { return latin_look(name) == look; });
+  return twin == names.end() ? std::string() : *twin;
+}
+
 }  // namespace
 
 void unknown_name(Elaboration& e, const std::string& text, Span span) {
@@ -144,6 +154,12 @@ void unknown_name(Elaboration& e, const std::string& text, Span span) {
   if (text == "t") return unknown_time(e, span);
   std::vector<std::string> names = e.table.names();
   if (names.size() > 2000) names.resize(2000);
+  if (const std::string twin = twin_of(text, names); !twin.empty()) {
+    const std::string foreign = foreign_letter(twin).empty() ? foreign_letter(text) : foreign_letter(twin);
+    e.diagnostics.error("E0201", span, fmt::format("`{}` is not declared; a name that looks the same is", text),
+                        foreign.empty() ? "Its letters are of another alphabet." : fmt::format("In one of the two {}.", foreign), "Type both with the same letters.");
+    return;
+  }
   const std::string near = did_you_mean(text, names);
   if (near.empty() && find_unit(text) && !e.dimensionless) {
     e.diagnostics.error(

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -61,6 +63,38 @@ Outcome shell(const std::string& command) {
       quoted(folder.path("err"));
   const auto begin = std::chrono::steady_clock::now();
   const int status = std::system(script.c_str());
+  Outcome outcome;
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  outcome.out = read(folder.path("out"));
+  outcome.err = read(folder.path("err"));
+  return outcome;
+}
+
+namespace {
+
+/// The program with its streams in files; the number of the process.
+pid_t start(const std::vector<std::string>& arguments, const std::string& in, const std::string& out, const std::string& err) {
+  const pid_t process = ::fork();
+  if (process != 0) return process;
+  std::vector<char*> words{const_cast<char*>(MAUP_PROGRAM)};
+  for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+  words.push_back(nullptr);
+  const bool ready = std::freopen(in.c_str(), "r", stdin) && std::freopen(out.c_str(), "w", stdout) && std::freopen(err.c_str(), "w", stderr);
+  if (ready) ::execv(MAUP_PROGRAM, words.data());
+  ::_exit(127);
+}
+
+}  // namespace
+
+Outcome interrupted(const std::vector<std::string>& arguments, int signal, double after, const std::string& input) {
+  const Folder folder;
+  const pid_t process = start(arguments, input, folder.path("out"), folder.path("err"));
+  ::usleep(static_cast<useconds_t>(1e6 * after));
+  const auto begin = std::chrono::steady_clock::now();
+  ::kill(process, signal);
+  int status = 0;
+  ::waitpid(process, &status, 0);
   Outcome outcome;
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;

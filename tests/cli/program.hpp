@@ -16,6 +16,10 @@ Outcome maup(const std::vector<std::string>& arguments, const std::string& input
 /// Runs any shell command line; $MAUP is the program.
 Outcome shell(const std::string& command);
 
+/// Starts maup with these arguments, sends the signal after a moment, and waits. `seconds`: from the signal to the end.
+/// `input`: the file on standard input.
+Outcome interrupted(const std::vector<std::string>& arguments, int signal, double after, const std::string& input = "/dev/null");
+
 /// A directory of its own, removed at the end.
 class Folder {
  public:

@@ -229,7 +229,7 @@ ExitCode study_action(const ActionCommand& o, Console& console) {
   const bool readable_model = !as_written.wrong();
   check_usage(o, as_written.diagnostics());
   if (readable_model && as_written.wrong()) return finish_usage(console, as_written, "action");
-  if (!o.ends.empty()) as_written.replace_path("path from " + o.ends);
+  if (!o.ends.empty()) as_written.replace_path(OptionStatement("path from ").add_typed("--ends", o.ends));
   if (!as_written.certificate()) return finish(console, as_written, json_document("action"));
   check_search(o, as_written);
   const auto own = o.path.empty() ? nullptr : study_of_path(o, as_written);

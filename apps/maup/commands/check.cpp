@@ -141,6 +141,8 @@ ExitCode check(const ModelOptions& options, Console& console) {
   const Model* model = study.model();
   const EquationsOfMotion* equations = study.equations();  // a singular mass matrix is found here
   std::optional<Findings> findings;
+  std::optional<InterruptScope> scope;
+  if (equations) scope.emplace(*model->system.context, &interrupt_flag());
   if (equations) findings = look_into(*model, *equations, study.diagnostics());
   if (console.json()) {
     Json document = json_document("check");

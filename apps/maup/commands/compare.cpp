@@ -184,14 +184,16 @@ ExitCode compare_models(const CompareOptions& options, Console& console) {
     return finish_all(console, a, b, of_map, map_text, std::move(document), code);
   };
   if (of_map.has_errors()) return end(json_document("compare"), ExitCode::Usage);
-  const bool readable = !a.source().text().empty() && !b.source().text().empty();
+  const bool readable = !unreadable(a.diagnostics()) && !unreadable(b.diagnostics());
   const EquationsOfMotion* a_equations = a.equations();
   if (!b.equations() || !a_equations || refuse_held_integrals(a) || refuse_held_integrals(b) || !a.certificate() || !b.certificate())
     return end(json_document("compare"), readable ? ExitCode::ModelWrong : ExitCode::Usage);
 
+  const InterruptScope of_a = a.interruptible(), of_b = b.interruptible();
   const auto map = read_map(*a.model(), b.source(), map_text, of_map);
   if (!map) return end(json_document("compare"), ExitCode::ModelWrong);
   const auto b_system = std::shared_ptr<const MechanicalSystem>(map->b, &map->b->system);
+  const InterruptScope of_pair(*b_system->context, &interrupt_flag());
   const auto b_equations = euler_lagrange(b_system, of_map);
   if (!b_equations) return end(json_document("compare"), ExitCode::ModelWrong);
   ComparisonOptions how;

@@ -26,10 +26,11 @@ ExitCode format_one(const std::string& path, const FmtOptions& options, Console&
   if (!console.json()) {
     console.show(study.diagnostics(), study.source());
     if (options.check && changed) console.say(fmt::format("{}: not in canonical layout\n", study.source().name()));
-    if (!options.in_place && !options.check && !study.wrong()) console.print(text);
+    if (!options.in_place && !options.check && !study.wrong()) console.print_file(text);
   } else if (!options.in_place && !options.check) {
     files.back()["text"] = text;
   }
+  if (unreadable(study.diagnostics())) return ExitCode::Usage;
   return study.wrong() || (options.check && changed) ? ExitCode::ModelWrong : ExitCode::Fine;
 }
 
@@ -41,7 +42,7 @@ ExitCode format_all(const FmtOptions& options, Console& console) {
       console.say("maup fmt: standard input cannot be rewritten in place; leave --in-place away.\n");
       return ExitCode::Usage;
     }
-    if (format_one(path, options, console, files) != ExitCode::Fine) worst = ExitCode::ModelWrong;
+    worst = worse(worst, format_one(path, options, console, files));
   }
   if (console.json()) {
     Json document = json_document("fmt");

@@ -45,17 +45,19 @@ std::vector<std::size_t> coordinates_named(const std::vector<std::string>& names
 }
 
 /// Brackets are read by the model language itself, as expectations after the model's own statements.
-std::vector<std::string> bracket_statements(const std::vector<std::string>& arguments) {
-  std::vector<std::string> statements;
+std::vector<OptionStatement> bracket_statements(const std::vector<std::string>& arguments) {
+  std::vector<OptionStatement> statements;
   for (std::size_t i = 0; i + 1 < arguments.size(); i += 2)
-    statements.push_back(as_one_line(fmt::format("expect bracket ({}, {}) = 0", arguments[i], arguments[i + 1])));
+    statements.push_back(
+        OptionStatement("expect bracket (").add_typed("--bracket", arguments[i]).add(", ").add_typed("--bracket", arguments[i + 1]).add(") = 0"));
   return statements;
 }
 
-std::vector<Bracket> brackets_of(const std::vector<std::string>& statements, const Hamiltonian& h, Study& study) {
+std::vector<Bracket> brackets_of(const std::vector<OptionStatement>& statements, const Hamiltonian& h, Study& study) {
   std::vector<Bracket> found;
   for (const Expectation& e : study.model()->experiment.expectations) {
-    if (std::find(statements.begin(), statements.end(), e.text) == statements.end()) continue;
+    const bool asked = std::any_of(statements.begin(), statements.end(), [&](const OptionStatement& s) { return s.text() == e.text; });
+    if (!asked) continue;
     const auto value = poisson_bracket(e.subject, e.values.front(), h);
     if (!value)
       study.diagnostics().error("E1104", e.span, "this bracket cannot be formed",
@@ -81,6 +83,7 @@ void judge(const Certificate& certificate, Diagnostics& diagnostics) {
 
 PhaseSpace analyse(const HamiltonianOptions& options, Study& study) {
   PhaseSpace found;
+  const InterruptScope scope = study.interruptible();
   const EquationsOfMotion& equations = *study.equations();
   found.hamiltonian = hamiltonian(equations);
   report_legendre(found.hamiltonian, study.diagnostics());
@@ -148,7 +151,7 @@ ExitCode integrate(const HamiltonianOptions& options, const PhaseSpace& found, S
 ExitCode hamiltonian_of(const HamiltonianOptions& options, Console& console) {
   Study study(options.model.path, options.model.overrides);
   Json document = json_document("hamiltonian");
-  if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);
+  put_in_run(options.run, study);
   study.add_statements(bracket_statements(options.bracket));
   if (!options.integrate) study.admit_singular_mass_matrix();  // then there are primary constraints
   if (!study.model() || refuse_held_integrals(study) || !study.certificate()) return finish(console, study, document);

@@ -20,6 +20,7 @@ ExitCode invariants_of_model(const CommandOptions& options, Console& console) {
   if (!equations || refuse_held_integrals(study) || !study.certificate()) return finish(console, study, document);
   InvariantsOptions search = options.search;
   search.drift = !options.no_drift;
+  const InterruptScope scope = study.interruptible();
   const auto found = find_invariants(*study.model(), *equations, search, study.diagnostics());
   if (!found) return finish(console, study, document);
   document["system"] = equations->system->name;

@@ -65,9 +65,9 @@ std::optional<ModalStudy> carry_out(const ModesOptions& options, Study& study, c
 /// Outputs are read by the model language itself, as left sides of equations.
 constexpr std::string_view before_output = "expect equation ";
 
-std::vector<std::string> output_statements(const std::vector<std::string>& outputs) {
-  std::vector<std::string> statements;
-  for (const std::string& y : outputs) statements.push_back(as_one_line(fmt::format("{}{} = 0", before_output, y)));
+std::vector<OptionStatement> output_statements(const std::vector<std::string>& outputs) {
+  std::vector<OptionStatement> statements;
+  for (const std::string& y : outputs) statements.push_back(OptionStatement(before_output).add_typed("--y", y).add(" = 0"));
   return statements;
 }
 
@@ -265,12 +265,13 @@ ExitCode modes(ModesOptions options, Console& console) {
     finish(console, study, json_document("modes"));
     return ExitCode::Usage;
   }
-  if (!options.sweep.empty()) study.replace_sweep("sweep " + options.sweep);
+  if (!options.sweep.empty()) study.replace_sweep(OptionStatement("sweep ").add_typed("--sweep", options.sweep));
   study.add_statements(output_statements(options.outputs));
   const EquationsOfMotion* equations = study.equations();
   if (!equations || refuse_held_integrals(study) || refuse_without_time(study) || !study.certificate())
     return finish(console, study, json_document("modes"));
   if (options.orbit) return orbit(options, study, console);
+  const InterruptScope scope = study.interruptible();
   const auto start = consistent_start(*study.model(), *equations, study.diagnostics());
   if (!start) return finish(console, study, json_document("modes"));
   PointEquations at_points(*equations, measured(options.outputs, *study.model()));

@@ -1,3 +1,4 @@
+#include "numbers.hpp"
 #include "outcome.hpp"
 #include "output_files.hpp"
 #include "run_options.hpp"
@@ -28,7 +29,7 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
     finish(console, study, document);
     return ExitCode::Usage;
   }
-  if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);
+  put_in_run(options.run, study);
   const auto result = run_model(study, settings, console);
   if (!result) return finish(console, study, document);
 
@@ -40,6 +41,7 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
     finish(console, study, document);
     return ExitCode::Usage;
   }
+  check_numbers(result->trajectory, study.diagnostics());
   const std::string svg = plot_svg(result->trajectory, picture);
   if (options.output != "-") write_result(options.output, svg, study.diagnostics());
   else if (console.json()) document["svg"] = svg;

@@ -38,6 +38,7 @@ ExitCode reduce_model(const ReduceOptions& options, Console& console) {
   if (readable_model && study.wrong()) return finish_usage(console, study, "reduce");
   const EquationsOfMotion* equations = study.equations();
   if (!equations || refuse_held_integrals(study) || !study.certificate()) return finish(console, study, document);
+  const InterruptScope scope = study.interruptible();
   const Reduction r = reduce(*study.model(), *equations, *study.tree(), study.source(), study.diagnostics());
   document["dependent"] = r.dependent;
   document["independent"] = r.independent;
@@ -55,7 +56,7 @@ ExitCode reduce_model(const ReduceOptions& options, Console& console) {
     }
     if (!console.json()) console.print(fmt::format("{}\n{}", output, account(r)));
   } else if (!r.text.empty() && !console.json()) {
-    console.print(r.text);
+    console.print_file(r.text);
     console.say(account(r));
   } else if (!console.json() && !r.dependent.empty()) {
     console.say(fmt::format("independent coordinates near the start: {}; dependent: {}\n", joined(r.independent),

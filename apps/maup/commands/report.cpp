@@ -2,13 +2,18 @@
 #include "orbits_options.hpp"
 #include "outcome.hpp"
 #include "output_files.hpp"
+#include "quantity.hpp"
 #include "run_options.hpp"
+#include "section_budget.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <maupertuis/invariants.hpp>
 #include <maupertuis/report.hpp>
 #include <maupertuis/verification.hpp>
+
+#include <algorithm>
 
 namespace maupertuis::app {
 namespace {
@@ -19,91 +24,30 @@ struct ReportOptions {
   std::string output;  // empty: NAME.html of the system
   bool without_run = false;
   OrbitsOptions orbits;
+  std::vector<std::string> sections;
+  std::string budget = "20s";
 };
 
-struct EquilibriumParts {
-  std::optional<ModalStudy> study;
+/// What the sections of a page show, as far as each has come.
+struct Findings {
+  std::optional<SimulationResult> run;
+  std::optional<Verification> verification;
+  std::optional<Invariants> invariants;
+  std::optional<ModalStudy> modes;
   std::optional<Locus> locus;
-};
-
-/// What can be said of equilibria; a model without any has no such part, and that is no mistake of a report.
-EquilibriumParts equilibrium_parts(const Model& model, const EquationsOfMotion& equations) {
-  EquilibriumParts out;
-  Diagnostics unheard;
-  const auto start = consistent_start(model, equations, unheard);
-  if (!start) return out;
-  PointEquations at_points(equations);
-  out.study = modal_study(at_points, start->state, unheard);
-  if (out.study) settle_driven(*out.study, at_points, model, equations, &interrupt_flag());
-  if (const auto& sweep = model.experiment.sweep) {
-    const auto value = [&](Expr e) { return evaluate(in_terms_of_motion(model.system, {&e, 1}).front(), parameter_bindings(model.system)); };
-    out.locus = parameter_locus(at_points, start->state, sweep->parameter, value(sweep->from), value(sweep->to), sweep->steps);
-  }
-  return out;
-}
-
-/// What was asked about the long run.
-struct LongRun {
   std::optional<FloquetResult> floquet;
   std::optional<SectionResult> section;
   std::string section_what;
   std::optional<LyapunovResult> lyapunov;
+  std::optional<PathSearch> paths;
+
+  ReportParts parts() const;
 };
 
-void find_section(const ReportOptions& options, Study& study, LongRun& out) {
-  const SectionStudy section = section_study(options.orbits, options.model, study);
-  Study& own = *section.study;
-  out.section_what = section.what;
-  if (own.equations()) out.section = poincare_section(*own.model(), *own.equations(), section.options, own.diagnostics());
-  for (const Diagnostic& d : own.diagnostics().items())  // without their places, which are in a text of their own
-    if (d.severity == Severity::Error) study.diagnostics().error(d.code, {}, d.message, d.reason, d.help);
-}
-
-/// What cannot be had is an error of the study, and no page is written.
-LongRun long_run(const ReportOptions& options, Study& study) {
-  LongRun out;
-  const Model& model = *study.model();
-  const EquationsOfMotion& equations = *study.equations();
-  const OrbitsOptions& asked = options.orbits;
-  const bool any = asked.has_section() || asked.floquet || asked.lyapunov;
-  if (any && refuse_without_time(study)) return out;
-  if (asked.has_section()) find_section(options, study, out);
-  if (asked.floquet) out.floquet = floquet(model, equations, floquet_options(asked), study.diagnostics());
-  if (asked.lyapunov) out.lyapunov = lyapunov_exponents(model, equations, lyapunov_options(asked), study.diagnostics());
-  return out;
-}
-
-/// The page; a model that cannot run (no start, no `run`) still gets its equations.
-std::string page_of(Study& study, const std::optional<SimulationResult>& result, const SimulationOptions& settings,
-                    const LongRun& orbits, const std::optional<PathSearch>& paths) {
-  const Model& model = *study.model();
-  const EquationsOfMotion& equations = *study.equations();
-  ReportParts parts;
-  if (paths) parts.paths = &*paths;
-  Verification verification;
-  EquilibriumParts equilibria;
-  if (moves_in_time(model.system)) equilibria = equilibrium_parts(model, equations);
-  if (equilibria.study) parts.modes = &*equilibria.study;
-  if (equilibria.locus) parts.locus = &*equilibria.locus;
-  if (result) parts.simulation = &*result;
-  if (orbits.floquet) parts.floquet = &*orbits.floquet;
-  if (orbits.section) parts.section = &*orbits.section;
-  if (orbits.lyapunov) parts.lyapunov = &*orbits.lyapunov;
-  parts.section_what = orbits.section_what;
-  // What the page cannot say of a system is no mistake of the model.
-  Diagnostics unheard;
-  if (result && !model.experiment.expectations.empty()) {
-    verification = verify(model, equations, study.source(), settings, unheard);
-    parts.verification = &verification;
-  }
-  // A page is not worth a long search.
-  InvariantsOptions search;
-  search.largest_basis = 600;
-  search.drift = false;
-  const auto invariants = find_invariants(model, equations, search, unheard);
-  if (invariants) parts.invariants = &*invariants;
-  return report_html(compose_report(model, study.source(), equations, *study.derivation(true), *study.certificate(),
-                                    study.diagnostics(), parts));
+ReportParts Findings::parts() const {
+  const auto pointer = [](const auto& found) { return found ? &*found : nullptr; };
+  return {pointer(run),     pointer(verification), pointer(invariants), pointer(modes),    pointer(locus),
+          pointer(floquet), pointer(section),      section_what,        pointer(lyapunov), pointer(paths)};
 }
 
 /// It says between what ends its paths run, and nothing of a run.
@@ -112,47 +56,230 @@ bool is_about_paths_alone(const Model& model) {
   return e.path && !e.duration && !e.until;
 }
 
-ExitCode report(const ReportOptions& options, Console& console) {
-  Study study(options.model.path, options.model.overrides);
-  Json document = json_document("report");
-  const bool readable_model = !study.wrong();
-  const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
-  check_orbits_options(options.orbits, study.diagnostics());
-  if (options.output != "-") check_output_files({{"-o", options.output, FileKind::Page}}, options.model.path, study.diagnostics());
-  if (readable_model && study.wrong()) return finish_usage(console, study, "report");
-  if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);
-  if (refuse_held_integrals(study)) return finish(console, study, document);
-  study.derivation(true);  // before the certificate, so that it vouches for the readable form too
-  if (!study.certificate()) return finish(console, study, document);
+/// One page under construction.
+class Page {
+ public:
+  Page(const ReportOptions& options, Study& study, SectionBudget& budget, const SimulationOptions& settings, const Console& console)
+      : options_(options), study_(study), budget_(budget), settings_(settings), console_(console), context_(*study.model()->system.context) {}
 
-  std::optional<SimulationResult> result;
-  if (!options.without_run && !is_about_paths_alone(*study.model())) {
-    SimulationOptions of_run = report_run(*study.model(), settings);
+  /// What every section stands on. Without it there is no page; the diagnostics say why.
+  bool certify() {
+    if (budget_.wanted("equations") || budget_.wanted("derivation")) derive();
+    const bool came = budget_.attempt("certificate", context_, [&](const Interrupt& interrupt) {
+      study_.set_interrupt(interrupt);
+      study_.certificate();
+    });
+    study_.set_interrupt(&interrupt_flag());
+    if (came) return study_.certificate() != nullptr;
+    study_.diagnostics().error("E0814", {}, "the budget was used up before the equations were certified", "Nothing is shown that is not.",
+                               "Give the page more time, such as --budget 10min.");
+    return false;
+  }
+
+  /// False where what was asked for cannot be had: an error of the study then, and no page is written.
+  bool find() {
+    if (!options_.without_run && !is_about_paths_alone(model())) run();
+    if (study_.wrong() || !find_long_run()) return false;
+    find_paths();
+    if (study_.wrong()) return false;
+    budget_.carry_out("expectations", context_, [&](const Interrupt& interrupt) { verify_model(interrupt); });
+    budget_.carry_out("conserved", context_, [&](const Interrupt&) { find_conserved(); });
+    if (moves_in_time(model().system)) budget_.carry_out("modes", context_, [&](const Interrupt& interrupt) { find_modes(interrupt); });
+    return true;
+  }
+
+  std::string html() {
+    const Derivation none;
+    const bool readable = budget_.wanted("equations") || budget_.wanted("derivation");
+    const Derivation* derivation = readable && derived_ ? study_.derivation(true) : &none;
+    ReportContent content = compose_report(model(), study_.source(), equations(), *derivation, *study_.certificate(), found_.parts(),
+                                           [&](std::string_view name, const std::function<void()>& work) { return compose(name, work); });
+    study_.diagnostics().append(budget_.warnings());
+    add_messages(content, study_.diagnostics(), study_.source());
+    return report_html(content);
+  }
+
+  const std::optional<SimulationResult>& result() const { return found_.run; }
+
+ private:
+  const Model& model() const { return *study_.model(); }
+  const EquationsOfMotion& equations() const { return *study_.equations(); }
+
+  bool compose(std::string_view name, const std::function<void()>& work) {
+    const auto under_interrupt = [&](const Interrupt&) { work(); };
+    return name == "model" ? budget_.attempt(name, context_, under_interrupt) : budget_.carry_out(name, context_, under_interrupt);
+  }
+
+  /// Before the certificate, so that it vouches for the readable form too.
+  void derive() {
+    derived_ = budget_.attempt("equations", context_, [&](const Interrupt& interrupt) {
+      study_.set_interrupt(interrupt);
+      study_.derivation(true);
+    });
+    study_.set_interrupt(&interrupt_flag());
+    if (!derived_) budget_.leave_out("derivation");
+  }
+
+  /// A run that the budget ends is shown up to there.
+  void run() {
+    SimulationOptions of_run = report_run(model(), settings_);
     if (of_run.errors != ErrorEstimates::None) of_run.errors = ErrorEstimates::Rows;
-    result = run_model(study, of_run, console);
+    budget_.carry_out_in_part("motion", [&](const Interrupt& interrupt) {
+      of_run.interrupt = interrupt;
+      found_.run = run_model(study_, of_run, console_);
+    });
+    if (found_.run && found_.run->ending == Ending::Interrupted)
+      found_.run->reason = fmt::format("its share of the budget of {} was used up", options_.budget);
   }
-  if (study.wrong()) return finish(console, study, document);
-  const LongRun orbits = long_run(options, study);
-  std::optional<PathSearch> paths;
-  if (const Model& model = *study.model(); model.experiment.path) {
-    ActionOptions search;
-    search.interrupt = &interrupt_flag();
-    paths = stationary_paths(model, *study.equations(), ends_of(model), search, study.diagnostics());
+
+  /// What was asked about the long run.
+  bool find_long_run() {
+    const OrbitsOptions& asked = options_.orbits;
+    const bool any = asked.has_section() || asked.floquet || asked.lyapunov;
+    if (!any) return true;
+    if (refuse_without_time(study_)) return false;
+    budget_.carry_out("orbits", context_, [&](const Interrupt& interrupt) {
+      Diagnostics said;
+      if (asked.has_section()) find_section(interrupt, said);
+      if (asked.floquet) {
+        FloquetOptions wanted = floquet_options(asked);
+        wanted.interrupt = interrupt;
+        found_.floquet = floquet(model(), equations(), wanted, said);
+      }
+      if (asked.lyapunov) {
+        LyapunovOptions wanted = lyapunov_options(asked);
+        wanted.interrupt = interrupt;
+        found_.lyapunov = lyapunov_exponents(model(), equations(), wanted, said);
+      }
+      interrupt.throw_if_asked();
+      study_.diagnostics().append(said);
+    });
+    return !study_.wrong();
   }
-  if (study.wrong()) return finish_without(console, study, "report");
-  const std::string page = page_of(study, result, settings, orbits, paths);
+
+  void find_section(const Interrupt& interrupt, Diagnostics& said) {
+    SectionStudy section = section_study(options_.orbits, options_.model, study_);
+    Study& own = *section.study;
+    found_.section_what = section.what;
+    section.options.interrupt = interrupt;
+    if (own.equations()) found_.section = poincare_section(*own.model(), *own.equations(), section.options, own.diagnostics());
+    for (const Diagnostic& d : own.diagnostics().items())  // without their places, which are in a text of their own
+      if (d.severity == Severity::Error) said.error(d.code, {}, d.message, d.reason, d.help);
+  }
+
+  void find_paths() {
+    if (!model().experiment.path) return;
+    budget_.carry_out("paths", context_, [&](const Interrupt& interrupt) {
+      ActionOptions search;
+      search.interrupt = interrupt;
+      Diagnostics said;
+      found_.paths = stationary_paths(model(), equations(), ends_of(model()), search, said);
+      interrupt.throw_if_asked();
+      study_.diagnostics().append(said);
+    });
+  }
+
+  void verify_model(const Interrupt& interrupt) {
+    if (!found_.run || model().experiment.expectations.empty()) return;
+    SimulationOptions options = settings_;
+    options.interrupt = interrupt;
+    Diagnostics unheard;  // what the page cannot say of a system is no mistake of the model
+    auto verification = verify(model(), equations(), study_.source(), options, unheard);
+    interrupt.throw_if_asked();
+    found_.verification = std::move(verification);
+  }
+
+  void find_conserved() {
+    InvariantsOptions search;
+    search.largest_basis = 600;  // a page is not worth a long search
+    search.drift = false;
+    Diagnostics unheard;
+    found_.invariants = find_invariants(model(), equations(), search, unheard);
+  }
+
+  /// A model without equilibria has no such part, and that is no mistake of a report.
+  void find_modes(const Interrupt& interrupt) {
+    Diagnostics unheard;
+    const auto start = consistent_start(model(), equations(), unheard);
+    if (!start) return;
+    PointEquations at_points(equations());
+    auto found = modal_study(at_points, start->state, unheard);
+    if (found) settle_driven(*found, at_points, model(), equations(), interrupt);
+    interrupt.throw_if_asked();
+    if (const auto& sweep = model().experiment.sweep) {
+      const auto value = [&](Expr e) { return evaluate(in_terms_of_motion(model().system, {&e, 1}).front(), parameter_bindings(model().system)); };
+      found_.locus = parameter_locus(at_points, start->state, sweep->parameter, value(sweep->from), value(sweep->to), sweep->steps);
+    }
+    found_.modes = std::move(found);
+  }
+
+  const ReportOptions& options_;
+  Study& study_;
+  SectionBudget& budget_;
+  const SimulationOptions& settings_;
+  const Console& console_;
+  Context& context_;
+  Findings found_;
+  bool derived_ = false;
+};
+
+/// The time of --budget; nothing for "none". What is no time is an error.
+std::optional<double> budget_seconds(const std::string& text, Diagnostics& diagnostics) {
+  if (text == "none") return std::nullopt;
+  const auto seconds = parse_time(text);
+  if (!seconds || !(*seconds > 0) || *seconds > 1e8)
+    diagnostics.error("E0809", {}, fmt::format("--budget \"{}\" is no length of time.", text), {}, "Write a positive time such as 20s or \"2 min\", or none.");
+  return seconds;
+}
+
+void check_sections(const std::vector<std::string>& chosen, Diagnostics& diagnostics) {
+  const auto& names = SectionBudget::names();
+  for (const std::string& name : chosen) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    const std::string near = did_you_mean(name, names);
+    diagnostics.error("E0809", {}, fmt::format("--sections: a report has no section `{}`.", name), {},
+                      near.empty() ? fmt::format("It has {}.", fmt::join(names, ", ")) : fmt::format("Did you mean {}?", near));
+  }
+}
+
+ExitCode write_page(const std::string& page, Page& built, const ReportOptions& options, Study& study, Json& document, Console& console) {
   const std::string path = options.output.empty() ? study.model()->system.name + ".html" : options.output;
   if (path == "-") console.print(page);
   else write_result(path, page, study.diagnostics());
   document["file"] = path;
   document["bytes"] = page.size();
   const bool written = !study.wrong();
+  const auto& result = built.result();
   if (written && path != "-" && !console.json())
     console.say(fmt::format("Wrote {} ({} kB). Open it in any browser.\n", path, (page.size() + 999) / 1000));
   if (result && !result->ok() && !console.json()) console.say(fmt::format("The run ended early: {}\n", result->reason));
   finish(console, study, document);
   if (!written) return ExitCode::RunFailed;
-  return result ? exit_code(result->ending) : ExitCode::Fine;
+  return !result || result->ending == Ending::Interrupted ? ExitCode::Fine : exit_code(result->ending);
+}
+
+ExitCode report(const ReportOptions& options, Console& console) {
+  Study study(options.model.path, options.model.overrides);
+  Json document = json_document("report");
+  const bool readable_model = !study.wrong();
+  const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
+  check_orbits_options(options.orbits, study.diagnostics());
+  check_sections(options.sections, study.diagnostics());
+  const auto seconds = budget_seconds(options.budget, study.diagnostics());
+  if (options.output != "-") check_output_files({{"-o", options.output, FileKind::Page}}, options.model.path, study.diagnostics());
+  if (readable_model && study.wrong()) return finish_usage(console, study, "report");
+  put_in_run(options.run, study);
+  if (refuse_held_integrals(study) || !study.model()) return finish(console, study, document);
+
+  std::optional<SectionBudget> budget(std::in_place, seconds, options.sections, console);
+  Page page(options, study, *budget, settings, console);
+  if (!page.certify()) return finish_without(console, study, "report");
+  if (!page.find()) return finish_without(console, study, "report");
+  const std::string html = page.html();
+  document["sections"] = budget->written();
+  document["left_out"] = budget->left_out();
+  budget.reset();  // wipes the line of progress
+  return write_page(html, page, options, study, document, console);
 }
 
 }  // namespace
@@ -160,10 +287,10 @@ ExitCode report(const ReportOptions& options, Console& console) {
 void add_report(CommandLine& line) {
   const auto options = std::make_shared<ReportOptions>();
   Command& command = line.add("report", "The whole study on one page that needs no network",
-                              "  maup report pendulum.lag               # writes pendulum.html\n"
-                              "  maup report pendulum.lag -o study.html\n"
-                              "  maup report pendulum.lag --set l=2m --duration 60s -o long.html\n",
-                              [options](Console& console) { return report(*options, console); });
+                               "  maup report pendulum.lag               # writes pendulum.html\n"
+                               "  maup report chain.lag --budget 2min -o study.html\n"
+                               "  maup report pendulum.lag --sections equations,motion --duration 60s\n",
+                               [options](Console& console) { return report(*options, console); });
   add_model_options(command, options->model);
   add_span_options(command, options->run);
   add_method_options(command, options->run);
@@ -172,6 +299,12 @@ void add_report(CommandLine& line) {
       ->type_name("FILE.html");
   add_orbits_options(command, options->orbits);
   command.add_flag("--no-run", options->without_run, "Equations alone: no motion, no pictures");
+  command.add_option("--sections", options->sections, fmt::format("These alone, beside the model and the certificate: {}", fmt::join(SectionBudget::names(), ", ")))
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAME,...");
+  command.add_option("--budget", options->budget, "The time that the page may take (default 20s), or none; sections that do not come in it are left out")
+      ->type_name("TIME");
 }
 
 }  // namespace maupertuis::app

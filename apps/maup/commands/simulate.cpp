@@ -1,5 +1,6 @@
 #include "extended_text.hpp"
 #include "outcome.hpp"
+#include "numbers.hpp"
 #include "output_files.hpp"
 #include "quantity.hpp"
 #include "run_options.hpp"
@@ -149,6 +150,7 @@ void write_files(const SimulateOptions& options, const SimulationResult& result,
   if (!options.output.empty()) {
     write_rows(options.output, options.errors ? with_error_columns(result.trajectory) : result.trajectory, diagnostics);
   }
+  if (options.output.empty()) check_numbers(result.trajectory, diagnostics);
   if (!options.plot.empty()) {
     PlotOptions picture;
     picture.title = study.model()->system.title;
@@ -166,7 +168,7 @@ ExitCode simulate_model(const SimulateOptions& options, Study& study, Console& c
     finish(console, study, json_document("simulate"));
     return ExitCode::Usage;
   }
-  if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);
+  put_in_run(options.run, study);
 
   const auto result = run_model(study, settings, console);
   if (!result) return finish(console, study, json_document("simulate"));
@@ -178,8 +180,8 @@ ExitCode simulate_model(const SimulateOptions& options, Study& study, Console& c
       console.say(fmt::format("The run ended at {}: {}\n", system.moment(exact(result->final.t)), result->reason));
   }
   const bool files_written = !study.wrong();
-  finish(console, study, document_of(*result, system));
-  return files_written ? exit_code(result->ending) : ExitCode::RunFailed;
+  const ExitCode told = finish(console, study, document_of(*result, system));
+  return files_written && told != ExitCode::RunFailed ? exit_code(result->ending) : ExitCode::RunFailed;
 }
 
 /// Pictures and binary trajectories hold doubles; the digits that are printed are the errors.
@@ -202,7 +204,7 @@ ExitCode simulate_extended_model(const SimulateOptions& options, const std::stri
     finish(console, study, json_document("simulate"));
     return ExitCode::Usage;
   }
-  if (const std::string statement = run_statement(options.run); !statement.empty()) study.replace_run(statement);
+  put_in_run(options.run, study);
 
   const auto result = run_model(study, settings, console);
   if (!result) return finish(console, study, json_document("simulate"));
@@ -214,8 +216,8 @@ ExitCode simulate_extended_model(const SimulateOptions& options, const std::stri
       console.say(fmt::format("The run ended at {}: {}\n", system.moment(exact(result->reached)), result->reason));
   }
   const bool files_written = !study.wrong();
-  finish(console, study, extended_document(*result, digits, system));
-  return files_written ? exit_code(result->ending) : ExitCode::RunFailed;
+  const ExitCode told = finish(console, study, extended_document(*result, digits, system));
+  return files_written && told != ExitCode::RunFailed ? exit_code(result->ending) : ExitCode::RunFailed;
 }
 
 /// The precision of the command line, else that of the model. A word that is none is for the model to refuse.

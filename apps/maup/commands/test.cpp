@@ -26,6 +26,7 @@ std::optional<Verification> verify_study(Study& study, const SimulationOptions& 
   study.equations();
   if (auto verification = verify_errors(*tree, study.source(), study.diagnostics())) return verification;
   if (study.wrong() || !study.certificate()) return {};
+  const InterruptScope scope = study.interruptible();
   return verify(*study.model(), *study.equations(), study.source(), settings, study.diagnostics());
 }
 
@@ -45,18 +46,25 @@ Json to_json(const ExpectationResult& r, const std::string& file) {
           {"expected", r.expected}, {"tolerance", r.tolerance}, {"uncertainty", r.uncertainty}, {"beyond_digits", r.beyond_digits}, {"message", r.message}, {"pitfall", r.pitfall}};
 }
 
+/// What was decided before an interrupt came does not tell what the whole run would have: nothing is said of such a model.
+std::optional<Verification> verify_whole(Study& study, const SimulationOptions& settings) {
+  auto verification = verify_study(study, settings);
+  Interrupt(settings.interrupt).throw_if_asked();
+  return verification;
+}
+
 FileOutcome test_file(const std::string& path, const SimulationOptions& settings, Console& console, Json& document) {
   Study study(path);
   FileOutcome outcome;
   const std::string& file = study.source().name();
-  const auto verification = verify_study(study, settings);
+  const auto verification = verify_whole(study, settings);
   if (verification) {
     outcome.results = verification->results;
     if (verification->failed() > 0) outcome.code = ExitCode::ExpectationFailed;
   }
   // Errors that the model expects are no errors of the test.
   const bool expected_errors = verification && !study.equations();
-  if (study.wrong() && !expected_errors) outcome.code = ExitCode::ModelWrong;
+  if (study.wrong() && !expected_errors) outcome.code = unreadable(study.diagnostics()) ? ExitCode::Usage : ExitCode::ModelWrong;
 
   for (const ExpectationResult& r : outcome.results) {
     document["expectations"].push_back(to_json(r, file));
@@ -69,17 +77,10 @@ FileOutcome test_file(const std::string& path, const SimulationOptions& settings
       document["diagnostics"].push_back(std::move(d));
     }
   }
-  if (!console.json() && outcome.code != ExitCode::ModelWrong)
+  if (!console.json() && (outcome.code == ExitCode::Fine || outcome.code == ExitCode::ExpectationFailed))
     console.print(fmt::format("{}: {} of {} expectations hold\n", file, verification ? verification->passed() : 0,
                               outcome.results.size()));
   return outcome;
-}
-
-/// A wrong model outweighs a failed expectation; Ctrl-C outweighs both.
-ExitCode worse(ExitCode a, ExitCode b) {
-  for (const ExitCode code : {ExitCode::Interrupted, ExitCode::ModelWrong, ExitCode::ExpectationFailed})
-    if (a == code || b == code) return code;
-  return ExitCode::Fine;
 }
 
 ExitCode test_models(const TestOptions& options, Console& console) {
@@ -93,24 +94,28 @@ ExitCode test_models(const TestOptions& options, Console& console) {
   document["expectations"] = Json::array();
   document["diagnostics"] = Json::array();
   ExitCode code = ExitCode::Fine;
-  std::size_t passed = 0, failed = 0, wrong = 0;
-  for (const std::string& path : options.paths) {
-    if (settings.interrupt->load()) {
-      code = ExitCode::Interrupted;
-      break;
+  std::size_t tested = 0, passed = 0, failed = 0, wrong = 0;
+  try {
+    for (const std::string& path : options.paths) {
+      Interrupt(settings.interrupt).throw_if_asked();
+      const FileOutcome outcome = test_file(path, settings, console, document);
+      ++tested;
+      code = worse(code, outcome.code);
+      wrong += outcome.code == ExitCode::ModelWrong || outcome.code == ExitCode::Usage;
+      for (const ExpectationResult& r : outcome.results) ++(r.passed ? passed : failed);
     }
-    const FileOutcome outcome = test_file(path, settings, console, document);
-    code = worse(code, settings.interrupt->load() ? ExitCode::Interrupted : outcome.code);
-    wrong += outcome.code == ExitCode::ModelWrong;
-    for (const ExpectationResult& r : outcome.results) ++(r.passed ? passed : failed);
+  } catch (const Interrupted&) {
+    code = ExitCode::Interrupted;
+    document["interrupted"] = true;
+    if (!console.json() && options.paths.size() > 1) console.say(fmt::format("{} of {} models were tested.\n", tested, options.paths.size()));
   }
   document["passed"] = passed;
   document["failed"] = failed;
   document["ok"] = code == ExitCode::Fine;
   if (console.json()) console.print_document(document);
   else if (options.paths.size() > 1)
-    console.print(fmt::format("{} models: {} expectations hold, {} fail{}\n", options.paths.size(), passed, failed,
-                              wrong ? fmt::format(", {} models are wrong", wrong) : ""));
+    console.print(fmt::format("{} models: {} expectations hold, {} fail{}\n", tested, passed, failed,
+                              wrong ? fmt::format(", {} models are wrong or could not be read", wrong) : ""));
   return code;
 }
 

@@ -5,6 +5,7 @@
 #include "analysis/invariants/motion_sampler.hpp"
 #include "symbolic/evaluate/normalize.hpp"
 
+#include <maupertuis/interrupt_scope.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <algorithm>
@@ -116,7 +117,7 @@ class DeterminingEquations {
     const auto rows = matrix();
     if (!rows) return {};
     const PrimeField& field = numbers_.field();
-    const std::vector<NullVector> kernel = null_vectors(*rows, field);
+    const std::vector<NullVector> kernel = null_vectors(*rows, field, interrupt_of(*system_.context));
     std::vector<std::size_t> out;
     for (int j = 0; j <= order_; ++j) {
       const auto width =
@@ -125,7 +126,7 @@ class DeterminingEquations {
       for (std::size_t i = 0; i < kernel.size(); ++i)
         for (std::size_t k = 0; k < kernel[i].columns.size(); ++k)
           if (kernel[i].columns[k] < width) low.at(i, kernel[i].columns[k]) = kernel[i].entries[k];
-      out.push_back(echelon(low, field).size());
+      out.push_back(echelon(low, field, interrupt_of(*system_.context)).size());
     }
     return out;
   }
@@ -145,6 +146,7 @@ class DeterminingEquations {
     if (!find_point()) return std::nullopt;
     std::size_t row = 0;
     for (std::size_t p = 0; p < points; ++p) {
+      interrupt_of(*system_.context).throw_if_asked();
       for (int attempt = 0;; ++attempt) {
         if (attempt == 200) return std::nullopt;
         if (try_velocities()) break;

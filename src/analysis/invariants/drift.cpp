@@ -1,5 +1,7 @@
 #include "analysis/invariants/drift.hpp"
 
+#include <maupertuis/interrupt_scope.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -44,6 +46,7 @@ void measure_drift(Invariants& result, const Model& model, const EquationsOfMoti
   SimulationOptions options;
   options.duration = duration;
   options.errors = ErrorEstimates::None;
+  options.interrupt = interrupt_of(*model.system.context);
   for (int k = 0; k <= samples; ++k) options.at.push_back(begin + duration * k / samples);
   Probe probe;
   const std::size_t count = result.integrals.size();
@@ -52,6 +55,7 @@ void measure_drift(Invariants& result, const Model& model, const EquationsOfMoti
     probe.expressions.push_back(sum_of_squares(integral.value));
   Diagnostics of_the_run;
   const auto run = simulate(model, equations, options, of_the_run, &probe);
+  interrupt_of(*model.system.context).throw_if_asked();
   if (!run || !run->ok()) {
     diagnostics.warning("W1004", {}, "the drift of the integrals was not measured",
                         run ? "The run of the model ended before its time: " + run->reason + "."

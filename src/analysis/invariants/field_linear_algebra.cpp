@@ -22,9 +22,10 @@ void subtract_row(FieldMatrix& m, std::size_t row, std::size_t pivot, std::size_
 
 }  // namespace
 
-std::vector<std::size_t> echelon(FieldMatrix& m, const PrimeField& field) {
+std::vector<std::size_t> echelon(FieldMatrix& m, const PrimeField& field, const Interrupt& interrupt) {
   std::vector<std::size_t> pivots;
   for (std::size_t column = 0; column < m.columns && pivots.size() < m.rows; ++column) {
+    interrupt.throw_if_asked();
     const std::size_t top = pivots.size();
     std::size_t row = top;
     while (row < m.rows && m.at(row, column) == 0) ++row;
@@ -37,14 +38,15 @@ std::vector<std::size_t> echelon(FieldMatrix& m, const PrimeField& field) {
   return pivots;
 }
 
-std::vector<NullVector> null_vectors(FieldMatrix m, const PrimeField& field) {
-  const std::vector<std::size_t> pivots = echelon(m, field);
+std::vector<NullVector> null_vectors(FieldMatrix m, const PrimeField& field, const Interrupt& interrupt) {
+  const std::vector<std::size_t> pivots = echelon(m, field, interrupt);
   std::vector<NullVector> out;
   for (std::size_t column = 0, next = 0; column < m.columns; ++column) {
     if (next < pivots.size() && pivots[next] == column) {
       ++next;
       continue;
     }
+    interrupt.throw_if_asked();
     // Back substitution over the pivots before this column.
     std::vector<Value> x(m.columns, 0);
     x[column] = field.one();

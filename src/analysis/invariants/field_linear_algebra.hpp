@@ -1,4 +1,5 @@
 #pragma once
+#include <maupertuis/interrupt.hpp>
 #include <maupertuis/rational.hpp>
 
 #include "symbolic/evaluate/prime_field.hpp"
@@ -23,8 +24,8 @@ struct FieldMatrix {
 };
 
 /// Row echelon form with unit pivots, in place; the columns of the pivots, ascending. Columns are taken from the left,
-/// so that a column without a pivot depends on those before it. Cost rows · columns · rank / 2.
-std::vector<std::size_t> echelon(FieldMatrix& m, const PrimeField& field);
+/// so that a column without a pivot depends on those before it. Cost rows · columns · rank / 2; throws Interrupted.
+std::vector<std::size_t> echelon(FieldMatrix& m, const PrimeField& field, const Interrupt& interrupt = {});
 
 /// A vector of the null space of a matrix: entries that are not zero, columns ascending, the last of them 1.
 struct NullVector {
@@ -33,7 +34,7 @@ struct NullVector {
 };
 /// For each column without a pivot the one combination of it and pivot columns before it that vanishes. These
 /// circuits have the smallest supports: restricted to its columns, the null space of each has dimension 1.
-std::vector<NullVector> null_vectors(FieldMatrix m, const PrimeField& field);
+std::vector<NullVector> null_vectors(FieldMatrix m, const PrimeField& field, const Interrupt& interrupt = {});
 
 /// Some x with N x = c, for the augmented matrix [N | c]; nothing where there is none. Free unknowns are 0.
 std::optional<std::vector<Value>> solve(FieldMatrix augmented, const PrimeField& field);

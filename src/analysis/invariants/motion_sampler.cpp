@@ -1,6 +1,7 @@
 #include "analysis/invariants/motion_sampler.hpp"
 
 #include <maupertuis/constraint_manifold.hpp>
+#include <maupertuis/interrupt_scope.hpp>
 #include <maupertuis/transform.hpp>
 
 #include "symbolic/evaluate/normalize.hpp"
@@ -170,7 +171,7 @@ bool MotionSampler::bind_accelerations(const std::vector<Value>& at) {
   }
   for (std::size_t k = 0; k < m_; ++k) bordered.at(n_ + k, size) = root(first + m_ * n_ + k);
   FieldMatrix reduced = bordered;
-  const auto pivots = echelon(reduced, field());
+  const auto pivots = echelon(reduced, field(), interrupt_of(*system_->context));
   // Redundant constraints leave multipliers open; accelerations must not be.
   for (std::size_t i = 0; i < n_; ++i)
     if (i >= pivots.size() || pivots[i] != i) return false;
@@ -197,6 +198,7 @@ std::optional<MotionSampler::Sample> MotionSampler::draw(const ParameterRoots& r
   bool mended = false;
   bind_parameters(roots);
   for (int attempt = 0; attempt < attempts && unsolved < 8; attempt += !mended) {
+    interrupt_of(*system_->context).throw_if_asked();
     if (!mended) numbers_->set_seed(seed_ = mix(seed_));
     mended = false;
     for (const Coordinate& c : system_->coordinates)

@@ -1,5 +1,7 @@
 #include "analysis/invariants/search.hpp"
 
+#include <maupertuis/interrupt_scope.hpp>
+
 #include "analysis/invariants/parameter_fit.hpp"
 
 #include <algorithm>
@@ -49,7 +51,7 @@ class Search {
     if (!result.sampled) return result;
     std::vector<std::size_t> all(basis_.monomials.size());
     std::iota(all.begin(), all.end(), 0u);
-    std::vector<NullVector> vectors = null_vectors(matrix(all, of_rates_, samples_.size()), field_);
+    std::vector<NullVector> vectors = null_vectors(matrix(all, of_rates_, samples_.size()), field_, interrupt_of(generators_.context()));
     std::stable_sort(vectors.begin(), vectors.end(),
                      [](const NullVector& a, const NullVector& b) { return a.columns.size() < b.columns.size(); });
     if (of_rates_) vectors = new_functions(vectors);
@@ -76,11 +78,13 @@ class Search {
 
   FieldMatrix matrix(const std::vector<std::size_t>& columns, bool rates, std::size_t rows) const {
     FieldMatrix m(rows, columns.size());
-    for (std::size_t i = 0; i < rows; ++i)
+    for (std::size_t i = 0; i < rows; ++i) {
+      interrupt_of(generators_.context()).throw_if_asked();
       for (std::size_t k = 0; k < columns.size(); ++k) {
         const ValueAndRate v = evaluate_monomial(basis_.monomials[columns[k]], samples_[i], field_);
         m.at(i, k) = rates ? v.rate : v.value;
       }
+    }
     return m;
   }
 
@@ -104,7 +108,7 @@ class Search {
       }
     }
     std::vector<NullVector> out;
-    for (const std::size_t pivot : echelon(values, field_))
+    for (const std::size_t pivot : echelon(values, field_, interrupt_of(generators_.context())))
       if (pivot >= first) out.push_back(vectors[pivot - first]);
     return out;
   }

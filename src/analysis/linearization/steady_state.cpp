@@ -1,5 +1,7 @@
 #include "analysis/linearization/steady_state.hpp"
 
+#include <maupertuis/interrupt_scope.hpp>
+
 #include "analysis/linearization/dense.hpp"
 
 #include <algorithm>
@@ -209,6 +211,7 @@ std::optional<SteadyState::Solution> SteadyState::solve(const OperatingPoint& fr
   System s = system_at(point);
   double error = scaled(s, z);
   for (int turn = 0; turn < most_turns; ++turn) {
+    interrupt_of(*e_.system->context).throw_if_asked();
     if (!std::isfinite(error) && !(s.f.allFinite() && s.j.allFinite())) return std::nullopt;
     const Equilibration by(s.j);
     const Vector weighted = by.rows.cwiseProduct(s.f);

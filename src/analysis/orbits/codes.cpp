@@ -59,6 +59,13 @@ constexpr CodeEntry entries[] = {
      "The constraints leave no direction in which a neighbour of the motion could lie, so that there is no rate at "
      "which neighbours part.",
      "", ""},
+    {"E1411", "a time of the averages is out of proportion",
+     "Lyapunov exponents are averages over the run, which begin after the transient and are taken in intervals. An interval longer than the run, or one that "
+     "cuts it into more than a million, and a transient of more than 10^8 steps have no sense; left out, both are chosen.",
+     "maup orbits model.lag --lyapunov --interval 1e-300s", "maup orbits model.lag --lyapunov"},
+    {"E1412", "more exponents than directions",
+     "A system of n freedoms has 2 n exponents: one for each direction in which a neighbour can lie, in positions and velocities.",
+     "maup orbits pendulum.lag --lyapunov --exponents 7", "maup orbits pendulum.lag --lyapunov --exponents 2"},
     {"W1401", "Lyapunov exponents that do not add up",
      "The exponents add up to the mean rate at which the flow changes volumes: zero without dissipation, minus the "
      "damping rates else. If they "

@@ -32,6 +32,8 @@ constexpr double least_intervals = 40;
 /// largest is 1e-10 of the smallest then.
 constexpr double most_parting = 14;
 constexpr int most_halvings = 40;
+constexpr double most_intervals = 1e6;        // each keeps the logarithms of its directions
+constexpr double most_steps_of_transient = 1e8;
 
 class LyapunovRun {
  public:
@@ -68,12 +70,31 @@ class LyapunovRun {
     if (seen.steps == 0) return orbits::refuse_end(start->state.t, seen.ended, diagnostics_);
     sizes_ = Eigen::Map<const Vector>(seen.sizes.data(), static_cast<Index>(seen.sizes.size()));
     const double step = (seen.states.back().t - start->state.t) / static_cast<double>(seen.steps);
+    if (!check_interval(*duration) || !check_transient(step)) return false;
     const double wanted =
         options_.interval > 0 ? options_.interval : std::min(steps_of_interval * step, *duration / least_intervals);
     intervals_ = static_cast<std::size_t>(std::max(1.0, std::round(*duration / wanted)));
     out_.interval = *duration / static_cast<double>(intervals_);
     point_.state = start->state;
     return true;
+  }
+
+  bool check_interval(double duration) {
+    if (options_.interval == 0) return true;
+    if (!(options_.interval > 0 && std::isfinite(options_.interval))) return orbits::refuse_no_time("the interval", diagnostics_);
+    if (options_.interval <= duration && duration / options_.interval <= most_intervals) return true;
+    diagnostics_.error("E1411", {}, fmt::format("intervals of {:.6g} s do not divide a run of {:.6g} s", options_.interval, duration),
+                       fmt::format("Directions are made orthonormal again after each interval: at least one, at most {:.0f} of them.", most_intervals),
+                       "Leave --interval out, or take one between.");
+    return false;
+  }
+
+  bool check_transient(double step) {
+    if (transient_ / step <= most_steps_of_transient) return true;
+    diagnostics_.error("E1411", {}, fmt::format("a transient of {:.6g} s never ends", transient_),
+                       fmt::format("One step of this motion is about {:.2g} s long: it would take {:.1g} of them.", step, transient_ / step),
+                       "Take a shorter one: the average begins after it.");
+    return false;
   }
 
   std::optional<double> length_of_run() const { return orbits::length_of_run(model_, options_.duration, diagnostics_); }
@@ -85,6 +106,11 @@ class LyapunovRun {
                                                   static_cast<Index>(all.columns()));
     const Index d = basis.cols(), k = options_.exponents == 0 ? d : std::min(d, static_cast<Index>(options_.exponents));
     out_.dimension = static_cast<std::size_t>(d);
+    if (static_cast<Index>(options_.exponents) > d) {
+      diagnostics_.error("E1412", {}, fmt::format("this motion has {} exponents, not {}", d, options_.exponents),
+                         "Each direction of a neighbour, in positions and velocities, has one.", fmt::format("Ask for at most {}, or for all: leave --exponents out.", d));
+      return false;
+    }
     if (k == 0) {
       diagnostics_.error("E1410", {}, "the constraints leave nothing that could move",
                          "Without a freedom there are no neighbours.", "Leave a constraint out.");

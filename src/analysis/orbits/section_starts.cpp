@@ -1,5 +1,7 @@
 #include "analysis/orbits/section_starts.hpp"
 
+#include <maupertuis/interrupt.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,6 +22,7 @@ constexpr int cells = 120;  // of the grid in each direction
 constexpr int most_doublings = 8;
 constexpr int columns_of_outline = 240;
 constexpr int halvings = 40;
+constexpr std::size_t most_starts = 100'000;
 
 class Plane {
  public:
@@ -171,10 +174,11 @@ std::optional<Grid> fitted(const Plane& plane, const MotionState& near, const st
   return std::nullopt;
 }
 
-std::vector<MotionState> spread(const Plane& plane, const Grid& grid, std::size_t count) {
+std::vector<MotionState> spread(const Plane& plane, const Grid& grid, std::size_t count, const std::atomic<bool>* interrupt) {
   constexpr double plastic = 1.32471795724474602596;  // x³ = x + 1
   std::vector<MotionState> out;
   for (std::size_t k = 1; out.size() < count && k < 400 * count; ++k) {
+    if (k % 1024 == 0) Interrupt(interrupt).throw_if_asked();
     const double u = std::fmod(0.5 + static_cast<double>(k) / plastic, 1.0),
                  w = std::fmod(0.5 + static_cast<double>(k) / (plastic * plastic), 1.0);
     const double b = grid.x(grid.first[0] + u * (grid.last[0] + 1 - grid.first[0])),
@@ -229,6 +233,8 @@ std::optional<SectionPlane> spread_starts(const EquationsOfMotion& equations, co
     diagnostics.error("E1407", {}, "several starts cannot be spread over this section", why, help);
     return std::nullopt;
   };
+  if (options.starts > most_starts)
+    return refuse(fmt::format("{} of them were asked for; no picture shows more than {}.", options.starts, most_starts), "Take fewer.");
   if (plane.by_velocity())
     return refuse("A velocity stands in the section: then it does not fix a coordinate.",
                   "Take a section by positions, such as \"x = 0 rising\", or one start.");
@@ -241,7 +247,7 @@ std::optional<SectionPlane> spread_starts(const EquationsOfMotion& equations, co
   out.along = plane.along();
   out.across = plane.across();
   out.energy = energy;
-  out.starts = spread(plane, *grid, options.starts);
+  out.starts = spread(plane, *grid, options.starts, options.interrupt);
   out.outline = outline_of(plane, *grid);
   if (out.starts.empty())
     return refuse("The part of the section that the energy allows is too small.", "Choose another energy.");

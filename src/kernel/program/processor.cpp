@@ -1,5 +1,7 @@
 #include "kernel/program/processor.hpp"
 
+#include <maupertuis/vector_instructions.hpp>
+
 #include <algorithm>
 #include <cstdlib>
 #include <string_view>
@@ -18,9 +20,13 @@ VectorInstructions of_processor() {
 #endif
 }
 
-VectorInstructions allowed() {
+std::string_view wanted() {
   const char* const text = std::getenv("MAUPERTUIS_INSTRUCTIONS");
-  const std::string_view most = text ? text : "";
+  return text ? text : "";
+}
+
+VectorInstructions allowed() {
+  const std::string_view most = wanted();
   return most == "none" ? VectorInstructions::None : most == "avx2" ? VectorInstructions::Avx2 : VectorInstructions::Avx512;
 }
 
@@ -29,6 +35,12 @@ VectorInstructions allowed() {
 VectorInstructions vector_instructions() {
   static const VectorInstructions used = std::min(of_processor(), allowed());
   return used;
+}
+
+std::string unknown_vector_instructions() {
+  const std::string_view word = wanted();
+  const bool known = word.empty() || word == "none" || word == "avx2" || word == "avx512";
+  return known ? std::string() : std::string(word);
 }
 
 const char* code_processor() {

@@ -2,6 +2,8 @@
 
 #include "symbolic/evaluate/witness.hpp"
 
+#include <maupertuis/interrupt_scope.hpp>
+
 #include "symbolic/evaluate/interval.hpp"
 #include "symbolic/evaluate/prime_field.hpp"
 #include "symbolic/evaluate/real_numbers.hpp"
@@ -38,6 +40,7 @@ bool excludes_zero(const Range& v) {
 std::optional<Witness> find_witness(const Tape& tape, int points, std::uint64_t seed) {
   std::vector<Range> values;
   for (int trial = 0; trial < points; ++trial) {
+    interrupt_of(tape.expression(0).context()).throw_if_asked();
     const Bindings point = random_real_point(tape, trial, seed);
     RealNumbers<Range> numbers([&](Expr symbol) { const double x = point.at(symbol); return Range{x, x}; });
     run(tape, numbers, values);

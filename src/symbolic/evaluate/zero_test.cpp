@@ -1,4 +1,5 @@
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/interrupt_scope.hpp>
 #include <maupertuis/transform.hpp>
 
 #include "symbolic/evaluate/degree.hpp"
@@ -19,7 +20,7 @@ struct FieldResult {
   double smallest_group = 1;
 };
 
-FieldResult test_over_primes(const Tape& tape, const FieldHints& hints, int points_per_prime, std::uint64_t seed) {
+FieldResult test_over_primes(const Tape& tape, const FieldHints& hints, int points_per_prime, std::uint64_t seed, const Interrupt& interrupt) {
   FieldResult result;
   std::vector<FieldNumbers::Value> values;
   for (int prime = 0; prime < 2; ++prime) {
@@ -31,6 +32,7 @@ FieldResult test_over_primes(const Tape& tape, const FieldHints& hints, int poin
       std::optional<FieldNumbers> numbers;
       bool mended = false;
       for (int attempt = 0; attempt < 60 + 8 * points_per_prime && found < points_per_prime; attempt += !mended) {
+        interrupt.throw_if_asked();
         try {
           if (!mended) {
             seed = mix(seed);
@@ -86,7 +88,7 @@ ZeroTest zero_test(std::span<const Expr> differences, const ZeroTestOptions& opt
   const FieldHints hints = field_hints(tape);
   const Complexity size = complexity(tape);
   const int points = points_needed(size, options.points);
-  const FieldResult field = test_over_primes(tape, hints, points, options.seed);
+  const FieldResult field = test_over_primes(tape, hints, points, options.seed, interrupt_of(roots.front().context()));
   if (field.outcome == FieldResult::Outcome::AllZero) {
     test.verdict = Verdict::Zero;
     test.points = field.points;

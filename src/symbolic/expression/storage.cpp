@@ -61,6 +61,7 @@ void Context::Storage::grow_table() {
 }
 
 NodeId Context::Storage::intern(Kind kind, std::span<const NodeId> arguments) {
+  look_at_interrupt();
   grow_table();
   NodeId* slot = find_slot(hash_arguments(kind, arguments), [&](const Node& node) {
     return node.kind == kind && node.count == arguments.size() &&
@@ -80,6 +81,7 @@ NodeId Context::Storage::intern(Kind kind, std::span<const NodeId> arguments) {
 }
 
 NodeId Context::Storage::intern_number(const Rational& value) {
+  look_at_interrupt();
   grow_table();
   NodeId* slot = find_slot(hash_number(value), [&](const Node& node) {
     return node.kind == Kind::Number && numbers[node.payload] == value;

@@ -1,5 +1,6 @@
 #pragma once
 #include <maupertuis/expression.hpp>
+#include <maupertuis/interrupt_scope.hpp>
 
 #include <deque>
 #include <string>
@@ -36,12 +37,20 @@ struct Context::Storage {
   std::vector<std::unique_ptr<NodeId[]>> chunks;
   std::size_t chunk_used = 0, chunk_size = 0;
 
+  mutable Interrupt interrupt;           // not of the expressions, but of the work on them: see InterruptScope
+  std::uint32_t until_look = 1;          // nodes still to be asked for before it is looked at again
+
   Storage();
   NodeId intern(Kind kind, std::span<const NodeId> arguments);
   NodeId intern_number(const Rational& value);
   NodeId append(Node node);
 
  private:
+  void look_at_interrupt() {
+    if (--until_look != 0) return;
+    until_look = 256;
+    interrupt.throw_if_asked();
+  }
   template <class Equal>
   NodeId* find_slot(std::size_t hash, Equal equal);
   const NodeId* copy_arguments(std::span<const NodeId> arguments);

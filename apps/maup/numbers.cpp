@@ -1,0 +1,48 @@
+#include "numbers.hpp"
+
+#include "quantity.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace maupertuis::app {
+namespace {
+
+/// "/points/0/modes/1/frequency", or empty.
+std::string place_of_no_number(const Json& value, const std::string& place) {
+  if (value.is_number_float() && !std::isfinite(value.get<double>())) return place.empty() ? "/" : place;
+  if (!value.is_structured()) return {};
+  for (const auto& [key, part] : value.items())
+    if (std::string found = place_of_no_number(part, place + "/" + key); !found.empty()) return found;
+  return {};
+}
+
+void tell(const std::string& what, Diagnostics& diagnostics) {
+  diagnostics.error("E0816", {}, fmt::format("{} is no finite number", what), "A quantity grew beyond the range of numbers, or a formula has no value there.",
+                    "Change start, parameters or the length of the run so that it stays within 1e308.");
+}
+
+bool may_be_open(const std::string& column) { return column.rfind("reaction(", 0) == 0 || column.rfind("error(", 0) == 0; }
+
+}  // namespace
+
+bool check_numbers(const Json& document, Diagnostics& diagnostics) {
+  const std::string place = place_of_no_number(document, "");
+  if (!place.empty()) tell(fmt::format("the result at {}", place), diagnostics);
+  return place.empty();
+}
+
+bool check_numbers(const Trajectory& rows, Diagnostics& diagnostics) {
+  for (std::size_t column = 0; column < rows.columns.size(); ++column) {
+    if (may_be_open(rows.columns[column].name)) continue;
+    for (std::size_t row = 0; row < rows.rows(); ++row)
+      if (!std::isfinite(rows.at(row, column))) {
+        tell(fmt::format("{} at {} = {}", rows.columns[column].name, rows.independent.name, brief(rows.times[row])), diagnostics);
+        return false;
+      }
+  }
+  return true;
+}
+
+}  // namespace maupertuis::app

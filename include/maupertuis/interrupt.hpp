@@ -1,0 +1,30 @@
+#pragma once
+#include <atomic>
+#include <exception>
+
+namespace maupertuis {
+
+/// Thrown by work that has nothing to show yet when it is asked to stop. Whoever gave it the flag catches it.
+class Interrupted : public std::exception {
+ public:
+  const char* what() const noexcept override { return "interrupted"; }
+};
+
+/// When long work is to stop: as soon as a flag is set, by Ctrl-C or when its time is over. Steppers look at the flag once a step, everything
+/// else at least a few times a second. What has a part to show returns it; what has none throws Interrupted.
+class Interrupt {
+ public:
+  /// The flag outlives whatever holds this; null: never.
+  Interrupt(const std::atomic<bool>* flag = nullptr) : flag_(flag) {}
+
+  operator const std::atomic<bool>*() const { return flag_; }
+  bool asked() const { return flag_ && flag_->load(std::memory_order_relaxed); }
+  void throw_if_asked() const {
+    if (asked()) throw Interrupted();
+  }
+
+ private:
+  const std::atomic<bool>* flag_;
+};
+
+}  // namespace maupertuis

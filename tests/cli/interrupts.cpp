@@ -1,0 +1,120 @@
+// Ctrl-C and SIGTERM end every command soon, with 130 and a word; files are whole or absent.
+#include "json.hpp"
+
+#include <doctest/doctest.h>
+
+#include <csignal>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+using namespace cli_test;
+
+namespace {
+
+// A second is promised; a loaded machine may take several times that.
+constexpr double soon = 10, moment = 1.5;
+
+const char* const henon = PROJECT_DIR "/models/henon_heiles.lag";
+const char* const driven = PROJECT_DIR "/models/double_pendulum.lag";
+
+/// A chain of pendulums: its equations are far longer than its text.
+std::string chain(int links) {
+  std::string text = "system chain\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n", last;
+  for (int i = 1; i <= links; ++i) {
+    const std::string n = std::to_string(i);
+    text += "coord a" + n + " : angle\npoint P" + n + " mass m at " + last + "l (sin a" + n + ", -cos a" + n + ")\n";
+    last = "P" + n + " + ";
+  }
+  return text + "gravity (0, -g)\nstart a1 = 60 deg\nrun 10 s\n";
+}
+
+void check_end(const Outcome& outcome) {
+  CHECK(outcome.code == 130);
+  CHECK_MESSAGE(contains(outcome.err, "nterrupted"), outcome.err);
+  CHECK(outcome.seconds < soon);
+}
+
+}  // namespace
+
+TEST_CASE("every command ends soon after the signal") {
+  const Folder folder;
+  const std::string model = folder.write("pendulum.lag", pendulum), links = folder.write("chain.lag", chain(24)),
+                    rich = folder.write("rich.lag", std::string(pendulum) + "expect θ at 100000000 s = 1 rad ± 1\n");
+  const std::vector<std::vector<std::string>> commands{
+      {"simulate", model, "--duration", "100000000s", "--every", "1000s"},
+      {"simulate", model, "--duration", "100000000s", "--precision", "quad"},
+      {"simulate", model, "--duration", "100000000s", "--method", "variational", "--step", "1ms"},
+      {"plot", model, "--duration", "100000000s", "--every", "1000s", "-o", folder.path("motion.svg")},
+      {"report", model, "--duration", "100000000s", "--every", "1000s", "--budget", "none", "-o", folder.path("page.html")},
+      {"report", links, "--budget", "none", "-o", folder.path("page.html")},
+      {"test", model, rich},
+      {"invariants", links},
+      {"hamiltonian", model, "--integrate", "--duration", "100000000s"},
+      {"orbits", driven, "--lyapunov", "--duration", "100000000s"},
+      {"orbits", henon, "--section", "x = 0 rising", "--crossings", "1000000000"},
+      {"orbits", henon, "--section", "x = 0 rising", "--starts", "100000", "--energy", "0.125"},
+      {"orbits", driven, "--strobe", "1000s", "--crossings", "1000000000"},
+      {"modes", model, "--at", "100000000s"},
+      {"compare", model, model, "--duration", "100000000s"},
+  };
+  int signal = SIGINT;
+  for (const auto& command : commands) {
+    std::string line;
+    for (const std::string& word : command) line += word + " ";
+    CAPTURE(line);
+    check_end(interrupted(command, signal, moment));
+    signal = signal == SIGINT ? SIGTERM : SIGINT;
+  }
+  for (const std::string& name : folder.names()) CHECK_MESSAGE(!contains(name, ".partial"), name);
+}
+
+TEST_CASE("what was found until then is printed and called partial") {
+  const Folder folder;
+  const Outcome section = interrupted({"orbits", henon, "--section", "x = 0 rising", "--crossings", "1000000000", "--json"}, SIGINT, moment);
+  check_end(section);
+  const auto document = nlohmann::json::parse(section.out, nullptr, false);
+  REQUIRE_FALSE(document.is_discarded());
+  CHECK(document["interrupted"] == true);
+  CHECK(document["ok"] == false);
+  CHECK(document["section"]["crossings"].size() > 0);
+
+  const std::string fine = folder.write("fine.lag", std::string(pendulum) + "expect freedoms = 1\n"),
+                    endless = folder.write("endless.lag", std::string(pendulum) + "expect θ at 100000000 s = 1 rad ± 1\n");
+  const Outcome test = interrupted({"test", fine, endless, fine}, SIGTERM, moment);
+  check_end(test);
+  CHECK(contains(test.out, "fine.lag: 1 of 1 expectations hold"));
+  CHECK(contains(test.err, "1 of 3 models were tested."));
+
+  const std::string rows = folder.path("motion.csv");
+  const Outcome run = interrupted({"simulate", fine, "--duration", "100000000s", "--every", "1000s", "-o", rows}, SIGINT, moment);
+  check_end(run);
+  CHECK(contains(run.out, "θ = "));
+  const std::string text = read(rows);
+  CHECK(std::count(text.begin(), text.end(), '\n') > 2);
+  CHECK(text.substr(text.size() - 2) == "\r\n");
+}
+
+TEST_CASE("pipes that nobody reads or writes hold no command up") {
+  const Folder folder;
+  const std::string model = folder.write("pendulum.lag", pendulum), in = folder.path("model.lag"), out = folder.path("rows.csv"), page = folder.path("page.html");
+  for (const std::string& name : {in, out, page}) REQUIRE(::mkfifo(name.c_str(), 0600) == 0);
+  const int writer = ::open(in.c_str(), O_RDWR);  // so that opening it for reading does not wait, and reading does
+  for (const char* command : {"check", "derive", "simulate", "fmt", "test", "report"}) {
+    CAPTURE(command);
+    check_end(interrupted({command, in}, SIGINT, 1));
+    check_end(interrupted({command, "-"}, SIGTERM, 1, in));
+  }
+  ::close(writer);
+  check_end(interrupted({"simulate", model, "-o", out}, SIGINT, 2));
+  check_end(interrupted({"report", model, "-o", page}, SIGTERM, 4));
+}
+
+TEST_CASE("a file that a killed run left beside its output goes with the next one") {
+  const Folder folder;
+  const std::string model = folder.write("pendulum.lag", pendulum), rows = folder.path("motion.csv");
+  const std::string gone = folder.write("motion.csv.partial-999999999-0", "half a"), alive = folder.write("motion.csv.partial-" + std::to_string(::getpid()) + "-0", "half a");
+  CHECK(maup({"simulate", model, "-o", rows}).code == 0);
+  CHECK(::access(gone.c_str(), F_OK) != 0);
+  CHECK(::access(alive.c_str(), F_OK) == 0);
+}
