@@ -14,7 +14,20 @@ using Kind = Drawing::Kind;
 using Outline = SolidShape::Outline;
 
 constexpr double body_tint = 0.22, whole_trail = 0.2;
-constexpr std::size_t ids_of_an_element = 64, contour = 48;
+constexpr std::size_t ids_of_an_element = 4096, contour = 48;
+
+/// The same line by this number of points, so that an animated picture finds each of them again.
+Outline with_points(const Outline& line, std::size_t count) {
+  Outline out;
+  const std::size_t n = line.points.size() / 3;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double at = static_cast<double>(i * (n - 1)) / static_cast<double>(count - 1);
+    const std::size_t k = std::min(static_cast<std::size_t>(at), n - 2);
+    for (std::size_t c = 0; c < 3; ++c)
+      out.points.push_back(line.points[3 * k + c] + (at - static_cast<double>(k)) * (line.points[3 * k + 3 + c] - line.points[3 * k + c]));
+  }
+  return out;
+}
 
 class Painter {
  public:
@@ -282,7 +295,7 @@ void Painter::ball(const SolidShape& shape, const std::vector<double>& pose, dou
     Outline half;
     for (std::size_t i = first + 1; i <= first + n && seen(i); ++i) half.points.insert(half.points.end(), &line.points[i % n * 3], &line.points[i % n * 3] + 3);
     if (half.points.size() < 6) ++id_;
-    else stroke(outline(pose, half), {Ink::Ink, 0, 0.6}, 1, depth);
+    else stroke(outline(pose, with_points(half, 25)), {Ink::Ink, 0, 0.6}, 1, depth);
   }
 }
 

@@ -2,7 +2,7 @@
 // Geometry is in the scene; here are the camera, what it hides, and which lies in front. A test compares the two.
 'use strict';
 const maupScene = (() => {
-  const bodyTint = 0.22, wholeTrail = 0.2, idsOfAnElement = 64, contour = 48, awayInRadii = 6;
+  const bodyTint = 0.22, wholeTrail = 0.2, idsOfAnElement = 4096, contour = 48, awayInRadii = 6;
   const hypot = Math.hypot, finite = p => p.every(Number.isFinite);
   const series = (index, strength = 1) => ({ink: 'series', series: index, strength});
   const plain = (ink, strength = 1) => ({ink, series: 0, strength});
@@ -202,7 +202,7 @@ const maupScene = (() => {
         const half = [];
         for (let i = first + 1; i <= first + n && seen(i); ++i) half.push(...point(i));
         if (half.length < 6) ++id;
-        else stroke(outline(pose, half)[0], plain('ink', 0.6), 1, depth);
+        else stroke(outline(pose, withPoints(half, 25))[0], plain('ink', 0.6), 1, depth);
       }
     }
 
@@ -293,6 +293,16 @@ const maupScene = (() => {
     planes.forEach(order);
     if (d === 3) items.sort((a, b) => a.depth - b.depth);
     return items;
+  }
+
+  // The same line in space by this number of points.
+  function withPoints(line, count) {
+    const out = [], n = line.length / 3;
+    for (let i = 0; i < count; ++i) {
+      const at = i * (n - 1) / (count - 1), k = Math.min(Math.floor(at), n - 2);
+      for (let c = 0; c < 3; ++c) out.push(line[3 * k + c] + (at - k) * (line[3 * k + 3 + c] - line[3 * k + c]));
+    }
+    return out;
   }
 
   function thinned(line, step) {
