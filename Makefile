@@ -1,5 +1,5 @@
 # Thin: each rule calls a script of scripts/, which installs what is missing, configures by a CMake preset and builds.
-.PHONY: demo build test bench instructions fuzz mutants steep-models format install clean
+.PHONY: demo build test bench instructions fuzz mutants steep-models gallery format install clean
 
 demo:     # check, derive, simulate and report models/double_pendulum.lag
 	@scripts/demo
@@ -17,6 +17,8 @@ mutants:  # one-line changes of the sources: nine of ten must be seen by the tes
 	@scripts/mutants
 steep-models:  # COUNT=10000 random steep models against 113 bits; FIRST=1 chooses which
 	@scripts/steep_models $(or $(COUNT),10000) $(FIRST)
+gallery:  # the pictures of docs/gallery
+	@scripts/gallery
 format:   # clang-format over the sources
 	@scripts/format
 install:  # PREFIX=/usr/local by default

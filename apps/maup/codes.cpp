@@ -60,7 +60,7 @@ constexpr CodeEntry own_codes[] = {
      "number below 1.",
      "maup simulate pendulum.lag --at 3kg", "maup simulate pendulum.lag --at 3s"},
     {"E0810", "the ending of a file names no format",
-     "The format of a result follows the ending of its file: .csv, .npy, .json for a trajectory, .svg for a picture, "
+     "The format of a result follows the ending of its file: .csv, .npy, .json for a trajectory, .svg, .png, .pdf for a picture, "
      ".html for a report.",
      "maup simulate pendulum.lag -o motion.xls", "maup simulate pendulum.lag -o motion.csv"},
     {"E0812", "the result would be written over the model",
@@ -81,6 +81,19 @@ constexpr CodeEntry own_codes[] = {
      "numbers, or its formula has no value there (a root of a negative number, a division by zero).", "", ""},
     {"E0814", "the budget of a report was used up before its equations were certified",
      "Every section of a page stands on the certified equations: without them there is none.", "maup report chain.lag --budget 1s", "maup report chain.lag --budget none"},
+    {"E0840", "a picture of this kind cannot be made here",
+     "PNG, PDF and videos are drawn by librsvg and cairo, which are opened when they are needed. They are not on this machine, or the picture "
+     "is too large for them. SVG is written by maup itself.",
+     "", ""},
+    {"E0841", "a film needs ffmpeg",
+     "MP4 and GIF are encoded by ffmpeg, a program of its own that is looked for in the folders of PATH. It is not there, or it could not do what "
+     "it was asked for; what it says is quoted. Pages and animated SVG are written by maup itself.",
+     "", ""},
+    {"E0842", "a film that is too long", "The frames are more than a file of this kind can hold and be of use.", "", ""},
+    {"E0843", "nothing to draw",
+     "A drawing shows where things are: points, bodies, springs, and what a `draw` statement names. A model of coordinates and energies alone says "
+     "nothing of that.",
+     "", ""},
     {"E1305", "the motion does not reach the time asked for",
      "`maup modes --at 3s` linearizes about the state of the motion at that time; the run ended before. Its reason is quoted.", "", ""},
     {"E0811", "there is no such column to plot",

@@ -50,6 +50,7 @@ void add_modes(CommandLine& line);
 void add_orbits(CommandLine& line);
 void add_action(CommandLine& line);
 void add_plot(CommandLine& line);
+void add_animate(CommandLine& line);
 void add_report(CommandLine& line);
 void add_fmt(CommandLine& line);
 void add_new(CommandLine& line);

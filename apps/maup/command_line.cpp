@@ -131,6 +131,7 @@ int run(int argc, char** argv) {
     add_orbits(line);
     add_action(line);
     add_plot(line);
+    add_animate(line);
     add_report(line);
     add_fmt(line);
     add_new(line);

@@ -3,6 +3,8 @@
 #include "interrupt.hpp"
 #include "numbers.hpp"
 
+#include <maupertuis/picture.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -93,6 +95,14 @@ bool write_result(const std::string& path, const std::string& content, Diagnosti
   const std::string failure = write_file(path, content);
   if (!failure.empty()) cannot_write(failure, diagnostics);
   return failure.empty();
+}
+
+bool write_picture(const std::string& path, const std::string& svg, Diagnostics& diagnostics) {
+  if (!path.ends_with(".png") && !path.ends_with(".pdf")) return write_result(path, svg, diagnostics);
+  const PictureBytes picture = path.ends_with(".png") ? png_of(svg) : pdf_of(svg);
+  if (picture.problem.empty()) return write_result(path, picture.bytes, diagnostics);
+  diagnostics.error("E0840", {}, fmt::format("{} cannot be made: {}.", path, picture.problem), {}, "Take .svg, which needs nothing else.");
+  return false;
 }
 
 }  // namespace maupertuis::app

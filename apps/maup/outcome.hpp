@@ -39,6 +39,8 @@ ExitCode finish_usage(Console& console, Study& study, const char* command);
 
 /// Writes a file the user asked for; false and E0804 when that fails.
 bool write_result(const std::string& path, const std::string& content, Diagnostics& diagnostics);
+/// The same for a picture, in the format of the ending: .svg, .png or .pdf.
+bool write_picture(const std::string& path, const std::string& svg, Diagnostics& diagnostics);
 /// The same for rows, in the format of the ending; an empty path asks for nothing.
 bool write_rows(const std::string& path, const Trajectory& rows, Diagnostics& diagnostics);
 /// The diagnostic of it; `failure` is the sentence of the writer.

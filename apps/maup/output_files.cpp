@@ -1,5 +1,7 @@
 #include "output_files.hpp"
 
+#include <maupertuis/picture.hpp>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -21,11 +23,12 @@ struct Kind {
 
 Kind kind_of(FileKind kind) {
   switch (kind) {
-    case FileKind::Picture: return {"picture", {".svg"}};
+    case FileKind::Picture: return {"picture", {".svg", ".png", ".pdf"}};
     case FileKind::Table: return {"table", {".csv", ".npy", ".json"}};
     case FileKind::Csv: return {"text table", {".csv"}};
     case FileKind::Page: return {"page", {".html", ".htm"}};
     case FileKind::Model: return {"model", {".lag"}};
+    case FileKind::Animation: return {"moving picture", {".mp4", ".gif", ".html", ".htm", ".svg"}};
   }
   return {};
 }
@@ -44,8 +47,7 @@ bool is_same_file(const std::string& a, const std::string& b) {
 std::string help_for(const OutputFile& file, const Kind& kind) {
   const std::string extension = fs::path(file.path).extension().string();
   if (extension == ".h5") return "not supported yet: HDF5. Take .csv, .npy or .json.";
-  if (file.kind == FileKind::Picture && (extension == ".png" || extension == ".pdf"))
-    return fmt::format("not supported yet: {}. Take .svg, which browsers and LaTeX (\\includesvg) show.", extension);
+  if (file.kind == FileKind::Animation && (extension == ".png" || extension == ".pdf")) return "One moment is a picture: add --still 2s.";
   if (kind.endings.size() == 1) return fmt::format("Take {}.", kind.endings[0]);
   const std::span<const std::string_view> others(kind.endings.data(), kind.endings.size() - 1);
   return fmt::format("Take an ending {} or {}.", fmt::join(others, ", "), kind.endings.back());
@@ -65,6 +67,10 @@ void check_output_files(std::initializer_list<OutputFile> files, const std::stri
     const bool known = std::any_of(kind.endings.begin(), kind.endings.end(), [&](std::string_view end) { return std::string_view(file->path).ends_with(end); });
     if (!known && !is_special(file->path))
       diagnostics.error("E0810", {}, fmt::format("{} names no format of a {}.", file->path, kind.name), {}, help_for(*file, kind));
+    const std::string extension = fs::path(file->path).extension().string();
+    if (extension == ".png" || extension == ".pdf")
+      if (const std::string problem = known ? picture_problem() : std::string(); !problem.empty())
+        diagnostics.error("E0840", {}, fmt::format("{} cannot be made: {}.", file->path, problem), {}, "Take .svg, which needs nothing else.");
     const auto twin = std::find_if(files.begin(), file, [&](const OutputFile& other) { return !other.path.empty() && is_same_file(other.path, file->path); });
     if (twin != file && !is_special(file->path))
       diagnostics.error("E0809", {}, fmt::format("{} and {} both ask for {}.", twin->option, file->option, file->path), {}, "Give two files.");

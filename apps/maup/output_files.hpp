@@ -7,7 +7,7 @@
 namespace maupertuis::app {
 
 /// What a file that is asked for will hold; its endings say so.
-enum class FileKind { Picture, Table, Csv, Page, Model };  // .svg; .csv, .npy, .json; .csv; .html, .htm; .lag
+enum class FileKind { Picture, Table, Csv, Page, Model, Animation };  // .svg, .png, .pdf; .csv, .npy, .json; .csv; .html, .htm; .lag; .mp4, …
 
 struct OutputFile {
   const char* option;  // that asks for it, as it is written

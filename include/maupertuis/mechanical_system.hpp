@@ -92,6 +92,13 @@ struct Frame {
   Span span;
 };
 
+/// A spring or a damper between two places, as it is drawn; what it does stands in V or D.
+struct Link {
+  enum class Kind { Spring, Damper } kind = Kind::Spring;
+  std::string from_name, to_name;   // "" where an end is an expression
+  ExprVector from, to;              // world axes, metres
+};
+
 /// One additive part of T, V, U, L or D and where it comes from.
 struct EnergyTerm {
   Expr value;                       // may hold TimeDerivative nodes
@@ -167,6 +174,7 @@ struct MechanicalSystem {
   std::vector<Frame> frames;
   std::vector<Point> points;
   std::vector<Body> bodies;
+  std::vector<Link> links;
   ExprVector gravity;                    // [dimension], or empty
 
   std::vector<EnergyTerm> kinetic;       // T
@@ -269,6 +277,8 @@ struct DrawElement {
   std::vector<ExprVector> path;     // positions, world axes; Reaction: none
   std::vector<Expr> sizes;          // metres
   std::vector<std::string> names;   // of the points of the path, "" where it is an expression; Reaction: of what acts
+  ExprVector direction = {};        // Disc, Hoop: the axis; Ground, Wall: the normal; empty: not written
+  std::string text = {};            // Label: what is written there
 };
 
 /// start sat.ω = (0.01, 2, 0.01) rad/s: a body rate that the velocities must give.

@@ -1,6 +1,7 @@
 #pragma once
 #include <maupertuis/action.hpp>
 #include <maupertuis/diagram.hpp>
+#include <maupertuis/drawing.hpp>
 #include <maupertuis/invariants.hpp>
 #include <maupertuis/layout.hpp>
 #include <maupertuis/locus.hpp>
@@ -18,27 +19,6 @@
 #include <vector>
 
 namespace maupertuis {
-
-/// The drawing of a model as numbers: positions of every element at the times of the frames, world axes, metres.
-struct Drawing {
-  enum class Kind { Line, Trail, Box, Circle, Spring, Reaction };
-  struct Element {
-    Kind kind = Kind::Line;
-    std::size_t points = 1;              // Line: at least 2; Spring: 2; Reaction: 2, foot and tip of the arrow; others: 1
-    std::vector<double> positions;       // [frames × points × dimension]; NaN where a position has no value
-    std::vector<double> sizes;           // [frames × 1 or 2] Circle: radius; Box: width, height; others: none
-    std::vector<double> rotation;        // [frames] rad, of a Box in 2-D; empty: upright
-    std::vector<double> masses;          // [points] kg, 0 for a point without mass: those with mass are drawn as bobs
-    std::vector<std::string> names;      // [points], "" where the text has an expression
-  };
-  int dimension = 2;                     // 2 or 3
-  std::vector<double> times;             // [frames] s, ascending or descending
-  std::vector<Element> elements;         // the first is drawn first
-  std::vector<double> gravity;           // [dimension] its direction; empty without gravity
-  bool dimensionless = false;            // no metres, no seconds
-
-  bool empty() const { return elements.empty() || times.empty(); }
-};
 
 /// All that a report shows. Formulas are layouts, which the page writes as MathML. Everything else is plain text in
 /// UTF-8; nothing needs escaping. Empty parts do not appear on the page.
@@ -150,11 +130,8 @@ struct ReportContent {
 /// The drawing is animated on a canvas; formulas are MathML, plots are SVG; light and dark, narrow and wide, on paper.
 std::string report_html(const ReportContent& content);
 
-/// The positions of the model's drawing at the rows of a run, at most `frames` of them. Where the model has no `draw`,
-/// its massive points and bodies are marked. Nothing where there is neither.
-/// With the equations the forces of `draw reaction rod` too: arrows on the points, the longest a third of the scene.
-std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& trajectory, std::size_t frames = 6000,
-                                        const EquationsOfMotion* equations = nullptr);
+/// The drawing of a report alone, in motion, with its controls; a page that needs nothing else.
+std::string animation_html(const Drawing& drawing, const std::string& title);
 
 /// `options` with output as fine as an animation wants it (50 rows a second, 1000 to 10,000 in all), where neither they
 /// nor the model say how often.

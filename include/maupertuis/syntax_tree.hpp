@@ -151,9 +151,13 @@ struct MethodStatement { Name word; int order = 0; ExpressionPtr step; };   // o
 struct PrecisionStatement { Name word; };
 
 struct DrawItem {
-  enum class Kind { Line, Trail, Box, Circle, Spring, Reaction } kind = Kind::Line;
-  std::vector<ExpressionPtr> path;       // Line: the points; others: one (Spring: two; Reaction: the call, `reaction rod`)
-  std::vector<ExpressionPtr> sizes;      // Box: width, height; Circle: radius
+  enum class Kind {
+    Line, Trail, Box, Circle, Spring, Reaction, Disc, Hoop, Ellipsoid, Damper, Pivot, Ground, Wall, Label, Follow
+  } kind = Kind::Line;
+  std::vector<ExpressionPtr> path;       // Line: the points; Spring, Damper: two; Reaction: the call, `reaction rod`; others: one
+  std::vector<ExpressionPtr> sizes;      // Box: width, height, perhaps depth; Ellipsoid: semi-axes; Circle, Disc, Hoop: radius
+  ExpressionPtr direction;               // Disc, Hoop: the axis; Ground, Wall: the normal; null: not written
+  std::string text;                      // Label; empty: the name of the point
   Span span;
 };
 struct DrawStatement { std::vector<DrawItem> items; };

@@ -47,6 +47,19 @@ std::string header(const ReportContent& content) {
   return html + facts_line(content);
 }
 
+/// Up to the body. `title` is escaped.
+std::string head(const std::string& title) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n<title>{}</title>\n"
+      "<link rel=\"icon\" href=\"data:,\">\n<style>\n{}{}{}\n</style>\n</head>\n<body>\n"
+      "<button id=\"theme\" type=\"button\"><svg viewBox=\"0 0 24 24\" aria-hidden=\"true\">"
+      "<path d=\"M12 3a9 9 0 1 0 0 18V3z\"/><circle cx=\"12\" cy=\"12\" r=\"9\" fill=\"none\" stroke=\"currentColor\" "
+      "stroke-width=\"1.4\"/></svg></button>\n",
+      policy, title, theme_rules(), page_style, plot_page_style());
+}
+
 struct Part {
   std::string_view id, title;
   std::string html;
@@ -76,21 +89,23 @@ std::string report_html(const ReportContent& content) {
     body += part.html;
   }
   const std::string title = escape_html(content.title.empty() ? content.name : content.title);
-  std::string page = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n<title>{}</title>\n"
-      "<link rel=\"icon\" href=\"data:,\">\n<style>\n{}{}{}\n</style>\n</head>\n<body>\n",
-      policy, title, theme_rules(), page_style, plot_page_style());
-  page += "<button id=\"theme\" type=\"button\"><svg viewBox=\"0 0 24 24\" aria-hidden=\"true\">"
-          "<path d=\"M12 3a9 9 0 1 0 0 18V3z\"/><circle cx=\"12\" cy=\"12\" r=\"9\" fill=\"none\" stroke=\"currentColor\" "
-          "stroke-width=\"1.4\"/></svg></button>\n";
+  std::string page = head(title);
   page += header(content);
   page += fmt::format("<nav aria-label=\"Contents\">\n{}</nav>\n</header>\n<main>\n{}</main>\n", navigation, body);
   page += "<footer>Made by Maupertuis. Equations in MathML; everything on this page is contained in it.</footer>\n";
   page += fmt::format("<script>\n{}</script>\n", page_script);
-  if (body.find("<figure id=\"animation\"") != std::string::npos || body.find("<figure class=\"mode\"") != std::string::npos) page += fmt::format("<script>\n{}</script>\n", animation_script);
+  const bool moves = body.find("<figure id=\"animation\"") != std::string::npos || body.find("<figure class=\"mode\"") != std::string::npos;
+  if (moves) page += fmt::format("<script>\n{}</script>\n", animation_script);
   return page + "</body>\n</html>\n";
+}
+
+std::string animation_html(const Drawing& drawing, const std::string& title) {
+  ReportContent content;
+  content.title = title;
+  content.drawing = drawing;
+  return head(escape_html(title)) + header(content) + "</header>\n<main>\n" + drawing_section(content) +
+         "</main>\n<footer>Made by Maupertuis. Everything on this page is contained in it.</footer>\n" +
+         fmt::format("<script>\n{}</script>\n<script>\n{}</script>\n</body>\n</html>\n", page_script, animation_script);
 }
 
 }  // namespace maupertuis

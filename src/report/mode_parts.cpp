@@ -134,11 +134,9 @@ Drawing thinned(const Drawing& d) {
     return kept;
   };
   out.times = keep(d.times, 1);
-  for (Drawing::Element& e : out.elements) {
-    e.sizes = keep(e.sizes, e.sizes.size() / d.times.size());
-    e.rotation = keep(e.rotation, e.rotation.size() / d.times.size());
-    e.positions = keep(e.positions, e.positions.size() / d.times.size());
-  }
+  out.follow = keep(d.follow, d.follow.size() / d.times.size());
+  for (Drawing::Element& e : out.elements)
+    if (!e.still) e.positions = keep(e.positions, e.positions.size() / d.times.size());
   return out;
 }
 
@@ -148,6 +146,7 @@ std::pair<double, double> extent_and_motion(const Drawing& d) {
   std::vector<double> low(dimension, HUGE_VAL), high(dimension, -HUGE_VAL);
   double motion = 0;
   for (const Drawing::Element& e : d.elements) {
+    if (e.still) continue;
     const std::size_t width = e.points * dimension;
     for (std::size_t i = 0; i < e.positions.size(); ++i) {
       if (!std::isfinite(e.positions[i])) continue;

@@ -100,8 +100,10 @@ void add_pictures(ReportContent& content, const MechanicalSystem& system, const 
 
 std::size_t frames_within_budget(const Model& model) {
   std::size_t numbers = 0;
+  const auto dimension = static_cast<std::size_t>(model.system.space_dimension);
   for (const DrawElement& element : model.experiment.drawing)
-    numbers += element.path.size() * static_cast<std::size_t>(model.system.space_dimension) + element.sizes.size();
+    numbers += (element.sizes.empty() ? element.path.size() : dimension + 1) * dimension;
+  numbers += model.system.links.size() * (dimension + 1) * dimension;
   return std::clamp<std::size_t>(most_numbers / std::max<std::size_t>(numbers, 4), 1500, 12'000);
 }
 

@@ -22,7 +22,4 @@ std::string paths_section(const ReportContent& content);
 std::string diagrams_html(const std::vector<ReportContent::Locus>& diagrams);
 std::string expectations_section(const ReportContent& content);
 
-/// The frames of a drawing for the script.
-std::string drawing_json(const Drawing& drawing);
-
 }  // namespace maupertuis

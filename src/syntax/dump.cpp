@@ -17,7 +17,8 @@ constexpr std::string_view kExpectations[] = {"value at", "energy conserved", "c
                                               "action", "morse index", "path at", "value", "eigenvalues", "matrix", "stable", "multipliers",
                                               "trace", "period", "until at"};
 constexpr std::string_view kRotations[] = {"angle", "axis and angle", "euler", "roll, pitch, yaw", "quaternion", "quaternion coordinates"};
-constexpr std::string_view kShapes[] = {"line", "trail", "box", "circle", "spring", "reaction"};
+constexpr std::string_view kShapes[] = {"line", "trail", "box", "circle", "spring", "reaction", "disc", "hoop", "ellipsoid", "damper",
+                                         "pivot", "ground", "wall", "label", "follow"};
 constexpr std::string_view kInertias[] = {"none", "scalar", "diagonal", "full"};
 
 std::string unit_text(const UnitExpression& unit) {
@@ -92,7 +93,7 @@ class Dumper {
     for (const DrawItem& item : s.items) {
       word(kShapes[static_cast<int>(item.kind)], "");
       ++depth_;
-      children("path", item.path), children("sizes", item.sizes);
+      children("path", item.path), children("sizes", item.sizes), child("direction", item.direction), word("text", item.text);
       --depth_;
     }
   }

@@ -86,33 +86,70 @@ StatementBody StatementParser::sweep_statement() {
   return sweep;
 }
 
+namespace {
+
+using Shape = DrawItem::Kind;
+constexpr std::pair<std::string_view, Shape> shapes[] = {
+    {"reaction", Shape::Reaction}, {"trail", Shape::Trail}, {"box", Shape::Box}, {"circle", Shape::Circle},
+    {"disc", Shape::Disc}, {"hoop", Shape::Hoop}, {"ellipsoid", Shape::Ellipsoid}, {"spring", Shape::Spring},
+    {"damper", Shape::Damper}, {"pivot", Shape::Pivot}, {"ground", Shape::Ground}, {"wall", Shape::Wall},
+    {"label", Shape::Label}, {"follow", Shape::Follow}};
+
+}  // namespace
+
+// O - A - B,   spring A - B
+void StatementParser::draw_line(DrawItem& item) {
+  item.path = {operand("a point")};
+  while (accept("-")) item.path.push_back(operand("a point after `-`"));
+  if (item.path.size() < 2)
+    fail_expected("`-` and another point", "Draw a line A - B, trail A, box A 1 m by 1 m, circle A 1 m or spring A - B.");
+  if (item.kind != Shape::Line && item.path.size() > 2)
+    fail("E0111", item.path[2]->span, item.kind == Shape::Spring ? "a spring has two ends" : "a damper has two ends");
+}
+
+// box cart 0.4 m by 0.2 m,   disc wheel 20 cm axis (0, 1, 0),   ellipsoid stone 20 cm by 5 cm by 3 cm
+void StatementParser::draw_solid(DrawItem& item) {
+  const bool has_sides = item.kind == Shape::Box || item.kind == Shape::Ellipsoid;
+  item.path = {operand("a point, a body or a frame")};
+  item.sizes = {quantity()};
+  if (has_sides && !accept("by")) fail_expected("`by` and the height of it", "Write for example box cart 0.4 m by 0.2 m.");
+  if (has_sides) item.sizes.push_back(quantity());
+  if (has_sides && accept("by")) item.sizes.push_back(quantity());
+  if ((item.kind == Shape::Disc || item.kind == Shape::Hoop) && accept("axis")) item.direction = operand("the axis, a vector");
+}
+
 DrawItem StatementParser::draw_item() {
   DrawItem item;
   const Span first = peek().span;
-  const bool shape = peek(1).kind == Token::Kind::Name || peek(1).is("(");
-  const auto keyword = [&](std::string_view word) { return shape && accept(word); };
-  if (keyword("reaction")) {
-    item.kind = DrawItem::Kind::Reaction;
-    item.path = {bare_reaction(previous())};
-  } else if (keyword("trail")) {
-    item.kind = DrawItem::Kind::Trail;
-    item.path = {operand("a point after `trail`")};
-  } else if (keyword("box")) {
-    item.kind = DrawItem::Kind::Box;
-    item.path = {operand("a point after `box`")};
-    item.sizes = {quantity()};
-    if (!accept("by")) fail_expected("`by` and the height of the box", "Write for example box cart 0.4 m by 0.2 m.");
-    item.sizes.push_back(quantity());
-  } else if (keyword("circle")) {
-    item.kind = DrawItem::Kind::Circle;
-    item.path = {operand("a point after `circle`")};
-    item.sizes = {quantity()};
-  } else {
-    if (keyword("spring")) item.kind = DrawItem::Kind::Spring;
-    item.path = {operand("a point")};
-    while (accept("-")) item.path.push_back(operand("a point after `-`"));
-    if (item.path.size() < 2) fail_expected("`-` and another point", "Draw a line A - B, trail A, box A 1 m by 1 m, circle A 1 m or spring A - B.");
-    if (item.kind == DrawItem::Kind::Spring && item.path.size() > 2) fail("E0111", item.path[2]->span, "a spring has two ends");
+  if (peek(1).kind == Token::Kind::Name || peek(1).is("("))  // otherwise a point of that name: wall - A
+    for (const auto& [word, kind] : shapes)
+      if (accept(word)) {
+        item.kind = kind;
+        break;
+      }
+  switch (item.kind) {
+    case Shape::Reaction: item.path = {bare_reaction(previous())}; break;
+    case Shape::Line:
+    case Shape::Spring:
+    case Shape::Damper: draw_line(item); break;
+    case Shape::Box:
+    case Shape::Circle:
+    case Shape::Disc:
+    case Shape::Hoop:
+    case Shape::Ellipsoid: draw_solid(item); break;
+    case Shape::Ground:
+    case Shape::Wall:
+      if (!accept("at")) fail_expected("`at` and a place on it", "Write for example ground at (0, -R) or wall at (0, 0) normal (1, 0).");
+      item.path = {operand("a place after `at`")};
+      if (accept("normal")) item.direction = operand("the normal, a vector");
+      break;
+    case Shape::Label:
+      item.path = {operand("a point after `label`")};
+      if (peek().kind == Token::Kind::String) item.text = next().text;
+      break;
+    case Shape::Trail:
+    case Shape::Pivot:
+    case Shape::Follow: item.path = {operand("a point")}; break;
   }
   item.span = cover(first, previous().span);
   return item;

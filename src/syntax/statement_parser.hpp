@@ -72,6 +72,8 @@ class StatementParser : private ExpressionParser {
   std::vector<ExpressionPtr> with_unit_after(std::vector<ExpressionPtr> numbers);
   bool opens_components() const;
   DrawItem draw_item();
+  void draw_line(DrawItem& item);
+  void draw_solid(DrawItem& item);
   void tolerance(ExpectStatement& expect, bool required);
   std::optional<int> whole_number();
   ExpectStatement expectation(bool claim);

@@ -1,6 +1,6 @@
 #include "system/elaboration.hpp"
 
-/// What is drawn: lines through points, trails, boxes, circles, springs.
+/// What is drawn: lines through points, trails, solids, springs, what stands still, labels.
 namespace maupertuis::elaboration {
 
 void elaborate_drawing(Elaboration& e, const syntax::DrawStatement& s) {
@@ -25,6 +25,12 @@ void elaborate_drawing(Elaboration& e, const syntax::DrawStatement& s) {
       poisoned = poisoned || v.poisoned;
       if (!v.poisoned) element.sizes.push_back(v.scalar());
     }
+    if (item.direction) {
+      const Value v = vector_of(e, *item.direction, Dimension{}, "a direction");
+      poisoned = poisoned || v.poisoned;
+      element.direction = v.parts;
+    }
+    element.text = item.text;
     if (!poisoned) e.experiment().drawing.push_back(std::move(element));
   }
 }

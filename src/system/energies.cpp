@@ -53,9 +53,12 @@ void gravity(Elaboration& e, const syntax::GravityStatement& g, Span span) {
   for (const Body& b : s.bodies) weigh(b.mass, b.position, b.name);
 }
 
-std::optional<ExprVector> between(Elaboration& e, const syntax::Expression& from, const syntax::Expression& to) {
+/// The way from one end to the other; the link is kept, to be drawn.
+std::optional<ExprVector> between(Elaboration& e, Link::Kind kind, const syntax::Expression& from, const syntax::Expression& to) {
   const Value a = position_of(e, from, nullptr), b = position_of(e, to, nullptr);
   if (a.poisoned || b.poisoned) return std::nullopt;
+  const auto name = [](const syntax::Expression& x) { return x.kind == syntax::Expression::Kind::Name ? x.text : std::string(); };
+  e.system().links.push_back({kind, name(from), name(to), a.parts, b.parts});
   return vector_sum(b.parts, scaled(e.number(-1), a.parts));
 }
 
@@ -71,7 +74,7 @@ void check_positive(Elaboration& e, const Value& v, const syntax::Expression& x,
 
 /// V = ½ k (|r| − l₀)², without the root where l₀ = 0.
 void spring(Elaboration& e, const syntax::SpringStatement& s, Span span) {
-  const std::optional<ExprVector> r = between(e, *s.from, *s.to);
+  const std::optional<ExprVector> r = between(e, Link::Kind::Spring, *s.from, *s.to);
   const Value k = scalar_of(e, *s.stiffness, dimensions::force() / dimensions::length(), "a stiffness");
   const Value l0 = s.length ? scalar_of(e, *s.length, dimensions::length(), "the rest length of a spring")
                             : Value::of(e.number(0), Dimension{});
@@ -106,7 +109,7 @@ void torsion_spring(Elaboration& e, const syntax::TorsionSpringStatement& s, Spa
 
 /// D = ½ c (d|r|/dt)².
 void damper(Elaboration& e, const syntax::DamperStatement& s, Span span) {
-  const std::optional<ExprVector> r = between(e, *s.from, *s.to);
+  const std::optional<ExprVector> r = between(e, Link::Kind::Damper, *s.from, *s.to);
   const Value c = scalar_of(e, *s.coefficient, dimensions::force() / dimensions::velocity(), "a damping coefficient");
   check_positive(e, c, *s.coefficient, "this damping coefficient",
                  "Such a damper feeds energy in instead of taking it out.");

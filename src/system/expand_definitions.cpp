@@ -34,6 +34,10 @@ void for_each_expression(MechanicalSystem& s, const std::function<void(Expr&)>& 
     vector(b.angular_velocity);
     vector(b.angular_velocity_world);
   }
+  for (Link& l : s.links) {
+    vector(l.from);
+    vector(l.to);
+  }
   vector(s.gravity);
   for (auto* list : {&s.kinetic, &s.potential, &s.generalized_potential, &s.dissipation, &s.lagrangian_extra})
     terms(*list);
@@ -72,6 +76,7 @@ void for_each_expression(Experiment& x, const std::function<void(Expr&)>& visit)
     for (ExprVector& p : d.path)
       for (Expr& e : p) visit(e);
     for (Expr& e : d.sizes) visit(e);
+    for (Expr& e : d.direction) visit(e);
   }
   for (Expectation& p : x.expectations) {
     for (Expr* e : {&p.subject, &p.subject_right, &p.time, &p.value, &p.tolerance, &p.from, &p.to}) present(*e);

@@ -13,7 +13,7 @@ const char* const bead = "system bead\ndimensionless\nparam Ω = 2\ncoord x : nu
 
 /// Every option of a command that writes a file.
 const std::vector<std::vector<std::string>> writers{
-    {"simulate", "-o"}, {"simulate", "--plot"}, {"plot", "-o"}, {"report", "-o"}, {"reduce", "-o"}, {"action", "--motion", "-o"}, {"action", "--motion", "--plot"},
+    {"simulate", "-o"}, {"simulate", "--plot"}, {"plot", "-o"}, {"report", "-o"}, {"animate", "-o"}, {"animate", "--still", "1s", "-o"}, {"reduce", "-o"}, {"action", "--motion", "-o"}, {"action", "--motion", "--plot"},
     {"hamiltonian", "--integrate", "-o"}, {"orbits", "--lyapunov", "-o"}, {"orbits", "--lyapunov", "--plot"}, {"modes", "--plot"}, {"modes", "--roots"}, {"modes", "--csv"}};
 
 Outcome write(std::vector<std::string> command, const std::string& model, const std::string& file) {
@@ -41,9 +41,9 @@ TEST_CASE("the model is never written over, under whatever name") {
 
 TEST_CASE("a name of another kind is refused before anything is computed") {
   const Folder folder;
-  const std::string model = folder.write("bead.lag", bead), other = folder.write("thesis.pdf", "years of work");
+  const std::string model = folder.write("bead.lag", bead), other = folder.write("thesis.doc", "years of work");
   for (const auto& writer : writers)
-    for (const std::string& name : {other, folder.path("new.png"), folder.path("noending")}) {
+    for (const std::string& name : {other, folder.path("new.jpg"), folder.path("noending")}) {
       CAPTURE(writer[0] + " " + writer.back() + " " + name);
       const Outcome outcome = write(writer, model, name);
       CHECK(outcome.code == 2);
@@ -51,7 +51,7 @@ TEST_CASE("a name of another kind is refused before anything is computed") {
     }
   CHECK(maup({"new", "pendulum", "--force", "-o", other}).code == 2);
   CHECK(read(other) == "years of work");
-  CHECK(folder.names() == std::vector<std::string>{"bead.lag", "thesis.pdf"});
+  CHECK(folder.names() == std::vector<std::string>{"bead.lag", "thesis.doc"});
 }
 
 TEST_CASE("two options that ask for one file; devices take what they are given") {

@@ -214,14 +214,14 @@ void write_files(const ActionCommand& o, const ActionFindings& found, Study& stu
   if (!o.plot.empty()) {
     Diagram d = neighbours_diagram(system, found.variations);
     d.title = title + ": S of neighbours";
-    write_result(o.plot, diagram_svg(d), study.diagnostics());
+    write_picture(o.plot, diagram_svg(d), study.diagnostics());
   }
   if (o.plot_paths.empty()) return;
   std::vector<const StationaryPath*> paths;
   for (const StationaryPath& p : found.paths) paths.push_back(&p);
   Diagram d = paths_diagram(system, paths);
   d.title = title;
-  write_result(o.plot_paths, diagram_svg(d), study.diagnostics());
+  write_picture(o.plot_paths, diagram_svg(d), study.diagnostics());
 }
 
 ExitCode study_action(const ActionCommand& o, Console& console) {

@@ -27,7 +27,6 @@ ExitCode not_supported_yet(const std::string& name, Console& console) {
 void add_later_commands(CommandLine& line) {
   const std::pair<const char*, const char*> commands[] = {
       {"sweep", "parameter studies and ensembles"},
-      {"animate", "GIF, MP4, HTML"},
       {"export", "c, python, latex, fmu, html"},
       {"studio", "the interactive browser page"},
   };

@@ -151,13 +151,13 @@ bool write_locus(const ModesOptions& options, const MechanicalSystem& system, co
   if (!options.roots.empty()) {
     Diagram d = root_locus(system, locus);
     d.title = system.title;
-    good = write_result(options.roots, diagram_svg(d), diagnostics) && good;
+    good = write_picture(options.roots, diagram_svg(d), diagnostics) && good;
   }
   if (options.plot.empty()) return good;
   std::vector<Diagram> diagrams = bifurcation_diagrams(system, locus, 1);
   if (diagrams.empty()) return good;
   diagrams.front().title = system.title;
-  return write_result(options.plot, diagram_svg(diagrams.front()), diagnostics) && good;
+  return write_picture(options.plot, diagram_svg(diagrams.front()), diagnostics) && good;
 }
 
 ExitCode locus(const ModesOptions& options, Study& study, PointEquations& equations, const MotionState& start,

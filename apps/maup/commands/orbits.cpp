@@ -84,7 +84,7 @@ ExitCode study_orbits(const Options& o, Console& console) {
                                         : find_lyapunov(o, study);
   if (!found) return finish_without(console, study, "orbits");
   write_rows(o.output, found->rows, study.diagnostics());
-  if (!o.plot.empty()) write_result(o.plot, plot_svg(found->rows, found->picture), study.diagnostics());
+  if (!o.plot.empty()) write_picture(o.plot, plot_svg(found->rows, found->picture), study.diagnostics());
   return finish_with(console, study, "orbits", found->answer);
 }
 

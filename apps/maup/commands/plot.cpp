@@ -43,7 +43,7 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
   }
   check_numbers(result->trajectory, study.diagnostics());
   const std::string svg = plot_svg(result->trajectory, picture);
-  if (options.output != "-") write_result(options.output, svg, study.diagnostics());
+  if (options.output != "-") write_picture(options.output, svg, study.diagnostics());
   else if (console.json()) document["svg"] = svg;
   else console.print(svg);
   const bool written = !study.wrong();
@@ -56,17 +56,17 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
 
 void add_plot(CommandLine& line) {
   const auto options = std::make_shared<PlotCommandOptions>();
-  Command& command = line.add("plot", "The motion as an SVG picture",
-                              "  maup plot pendulum.lag -o pendulum.svg\n"
-                              "  maup plot pendulum.lag --y θ --degrees -o angle.svg\n"
-                              "  maup plot pendulum.lag --x θ --y \"θ'\" -o phase.svg\n",
-                              [options](Console& console) { return plot_model(*options, console); });
+  Command& command = line.add("plot", "The motion as a picture: SVG, PNG or PDF",
+                               "  maup plot pendulum.lag -o pendulum.svg\n"
+                               "  maup plot pendulum.lag --y θ --degrees -o angle.pdf\n"
+                               "  maup plot pendulum.lag --x θ --y \"θ'\" -o phase.svg\n",
+                               [options](Console& console) { return plot_model(*options, console); });
   add_model_options(command, options->model);
   add_span_options(command, options->run);
   add_method_options(command, options->run);
   add_errors_option(command, options->run);
   PlotOptions& picture = options->picture;
-  command.add_option("-o,--output", options->output, "The picture (default: standard output)")->type_name("FILE.svg");
+  command.add_option("-o,--output", options->output, "The picture (default: standard output)")->type_name("FILE.svg|png|pdf");
   command.add_option("--y", picture.columns, "What to draw, e.g. θ,\"θ'\" (default: everything)")
       ->delimiter(',')
       ->allow_extra_args(false)

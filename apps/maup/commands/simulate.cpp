@@ -154,7 +154,7 @@ void write_files(const SimulateOptions& options, const SimulationResult& result,
   if (!options.plot.empty()) {
     PlotOptions picture;
     picture.title = study.model()->system.title;
-    write_result(options.plot, plot_svg(result.trajectory, picture), diagnostics);
+    write_picture(options.plot, plot_svg(result.trajectory, picture), diagnostics);
   }
 }
 

@@ -1,9 +1,11 @@
-// Writes a report of made-up numbers for the browser test: `report_browser_page plane|space FILE`.
+// For the tests of the page: `report_browser_page plane|space FILE` writes a report of made-up numbers,
+// `report_browser_page scene-plane|scene-space FILE` a drawing with some of its frames, as JSON.
+#include <maupertuis/mechanical_system.hpp>
 #include <maupertuis/report.hpp>
 
 #include <cmath>
 #include <cstdio>
-#include <limits>
+#include <cstdlib>
 #include <string>
 
 using namespace maupertuis;
@@ -19,46 +21,45 @@ std::string symbol(const std::string& letter, const std::string& index = {}, con
   return index.empty() ? base : "<msub>" + base + "<mn>" + index + "</mn></msub>";
 }
 
-// A cart on a rail with a pendulum, a spring to the wall, a box and a disc; and a point that is lost for a while.
-Drawing plane_drawing() {
-  Drawing drawing;
-  drawing.gravity = {0, -9.81};
-  Drawing::Element wall{Drawing::Kind::Spring, 2, {}, {}, {}, {0, 0}, {"", "cart"}};
-  Drawing::Element box{Drawing::Kind::Box, 1, {}, {}, {}, {2}, {"cart"}};
-  Drawing::Element rod{Drawing::Kind::Line, 2, {}, {}, {}, {0, 0.5}, {"cart", "bob"}};
-  Drawing::Element disc{Drawing::Kind::Circle, 1, {}, {}, {}, {0}, {""}};
-  Drawing::Element trail{Drawing::Kind::Trail, 1, {}, {}, {}, {0.5}, {"bob"}};
+/// A model's drawing along a run that formulas prescribe.
+template <class Q>
+Drawing drawn(const char* text, Q q) {
+  Diagnostics diagnostics;
+  const SourceText source("page.lag", text);
+  const auto model = elaborate(syntax::parse(source, diagnostics), source, diagnostics);
+  if (!model) std::fputs(render(diagnostics, source).c_str(), stderr), std::exit(1);
+  Trajectory run;
+  const auto& coordinates = model->system.coordinates;
+  for (const char* dash : {"", "'"})
+    for (const Coordinate& c : coordinates) run.columns.push_back({c.name + dash, ""});
   for (int i = 0; i < frames; ++i) {
-    const double t = duration * i / (frames - 1), x = 0.4 * std::cos(2 * t), angle = 0.9 * std::cos(3.1 * t);
-    const double bob_x = x + 0.8 * std::sin(angle), bob_y = -0.8 * std::cos(angle);
-    drawing.times.push_back(t);
-    wall.positions.insert(wall.positions.end(), {-1.2, 0, x - 0.2, 0});
-    box.positions.insert(box.positions.end(), {x, 0});
-    box.sizes.insert(box.sizes.end(), {0.4, 0.2});
-    rod.positions.insert(rod.positions.end(), {x, 0, bob_x, bob_y});
-    disc.positions.insert(disc.positions.end(), {i < 200 ? 0.9 : std::numeric_limits<double>::quiet_NaN(), 0.3});
-    disc.sizes.push_back(0.1);
-    trail.positions.insert(trail.positions.end(), {bob_x, bob_y});
+    const double t = duration * i / (frames - 1), h = 1e-6;
+    run.times.push_back(t);
+    for (std::size_t k = 0; k < coordinates.size(); ++k) run.values.push_back(q(k, t));
+    for (std::size_t k = 0; k < coordinates.size(); ++k) run.values.push_back((q(k, t + h) - q(k, t - h)) / (2 * h));
   }
-  drawing.elements = {trail, wall, box, rod, disc};
-  return drawing;
+  return evaluate_drawing(*model, run).value();
 }
 
+// A cart on a rail with a pendulum, a spring and a dashpot to the wall, a box, a wheel and a label; and a point that is lost at the end.
+Drawing plane_drawing() {
+  return drawn("system plane\nparam m = 1 kg, k = 3 N/m, c = 1 N s/m, l = 80 cm, w = 1.2 m, R = 10 cm, T0 = 6 s\ncoord x : length, θ : angle\n"
+               "point cart mass 4 m at (x, 0)\npoint bob mass m at cart + l (sin θ, -cos θ)\nframe wheel at (x, R) rotation angle -x/R\n"
+               "point lost at (w sqrt(1 - t/T0), 3 R)\nspring (-w, 0) - cart stiffness k length w\ndamper (-w, -R) - cart coefficient c\n"
+               "gravity (0, -9.81 [m/s^2])\nrun 8 s\n"
+               "draw trail bob, box cart 0.4 m by 0.2 m, cart - bob, hoop wheel R, circle lost R, label bob, wall at (-w, 0), ground at (0, -R)\n",
+               [](std::size_t k, double t) { return k == 0 ? 0.4 * std::cos(2 * t) : 0.9 * std::cos(3.1 * t); });
+}
+
+// Everything that space has: rods, a ball that turns, a box, a disc that rolls its spokes, a hoop that follows an axis, a spring, the floor.
 Drawing space_drawing() {
-  Drawing drawing;
-  drawing.dimension = 3;
-  drawing.gravity = {0, 0, -9.81};
-  Drawing::Element rod{Drawing::Kind::Line, 2, {}, {}, {}, {0, 1}, {"O", "bob"}};
-  Drawing::Element trail{Drawing::Kind::Trail, 1, {}, {}, {}, {1}, {"bob"}};
-  for (int i = 0; i < frames; ++i) {
-    const double t = duration * i / (frames - 1), tilt = 0.8 + 0.3 * std::sin(5 * t), turn = 1.7 * t;
-    const double x = std::sin(tilt) * std::cos(turn), y = std::sin(tilt) * std::sin(turn), z = -std::cos(tilt);
-    drawing.times.push_back(t);
-    rod.positions.insert(rod.positions.end(), {0, 0, 0, x, y, z});
-    trail.positions.insert(trail.positions.end(), {x, y, z});
-  }
-  drawing.elements = {trail, rod};
-  return drawing;
+  return drawn("system space\nparam m = 1 kg, k = 3 N/m, l = 1 m, I = 1 kg m^2, r = 20 cm\ncoord θ, φ : angle\n"
+               "point bob mass m at l (sin θ cos φ, sin θ sin φ, -cos θ)\nbody ball mass m inertia diag(I, I, I) at (l/2, l/2, 0) rotation euler zxz (φ, θ, 3 φ)\n"
+               "frame wheel at (-l/2, l/2, -l/2) rotation axis (0, 1, 0) angle 4 φ\nframe crate at (-l/2, -l/2, 0) rotation axis (1, 0, 0) angle φ\n"
+               "spring (0, 0, l) - ball stiffness k\ngravity (0, 0, -9.81 [m/s^2])\nrun 8 s\n"
+               "draw trail bob, O - bob, ellipsoid ball r by 2 r by r/2, disc wheel 2 r axis (0, 1, 0), box crate r by 2 r by 3 r,\n"
+               "    hoop O r axis (sin θ cos φ, sin θ sin φ, cos θ), label bob \"B\"\n",
+               [](std::size_t k, double t) { return k == 0 ? 0.8 + 0.3 * std::sin(5 * t) : 1.7 * t; });
 }
 
 Trajectory trajectory() {
@@ -120,11 +121,39 @@ ReportContent content(bool space) {
   return c;
 }
 
+std::string numbers(const std::vector<double>& list) {
+  std::string out = "[";
+  char text[32];
+  for (const double x : list) std::snprintf(text, sizeof text, "%s%.9g", out.size() > 1 ? "," : "", x), out += text;
+  return out + "]";
+}
+
+/// The drawing, and its strokes at some moments from the standard view of the page.
+std::string scene(const Drawing& drawing) {
+  FrameOptions options;
+  options.width = 640;
+  options.height = 420;
+  options.camera.fitted = false;
+  const View view(drawing, options);
+  std::string out = "{\"scene\":" + drawing_json(drawing) + ",\"width\":640,\"height\":420,\"moments\":[";
+  for (const double elapsed : {0.0, 1.234, 5.5, 7.9}) {
+    out += (out.back() == '[' ? "{\"elapsed\":" : ",{\"elapsed\":") + std::to_string(elapsed) + ",\"items\":[";
+    for (const FrameItem& item : frame_items(drawing, view, elapsed, options))
+      out += (out.back() == '[' ? "{\"id\":" : ",{\"id\":") + std::to_string(item.id) + ",\"closed\":" + (item.closed ? "true" : "false") +
+             ",\"width\":" + std::to_string(item.width) + ",\"radius\":" + std::to_string(item.radius) + ",\"fill\":" + std::to_string(item.fill.ink == FrameColour::Ink::None ? 0 : item.fill.strength) +
+             ",\"stroke\":" + std::to_string(item.stroke.ink == FrameColour::Ink::None ? 0 : item.stroke.strength) + ",\"points\":" + numbers(item.points) + "}";
+    out += "]}";
+  }
+  return out + "]}";
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
   if (count != 3) return 2;
-  const std::string problem = write_file(arguments[2], report_html(content(arguments[1] == std::string("space"))));
+  const std::string what = arguments[1];
+  const std::string text = what == "scene-plane" ? scene(plane_drawing()) : what == "scene-space" ? scene(space_drawing()) : report_html(content(what == "space"));
+  const std::string problem = write_file(arguments[2], text);
   if (problem.empty()) return 0;
   std::fprintf(stderr, "%s\n", problem.c_str());
   return 1;

@@ -15,7 +15,7 @@ bool has(const std::string& page, const std::string& part) { return page.find(pa
 Drawing one_point() {
   Drawing drawing;
   drawing.times = {0, 1};
-  drawing.elements = {{Drawing::Kind::Line, 1, {0, 0, 1, std::nan("")}, {}, {}, {1}, {"A"}}};
+  drawing.elements = {{Drawing::Kind::Path, 1, {0, 0, 1, std::nan("")}, false, {1}, {0.1}, {"A"}, {}, {}}};
   return drawing;
 }
 

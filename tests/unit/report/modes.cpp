@@ -18,7 +18,7 @@ ReportContent with_modes() {
   point.rows.push_back({"oscillation", "3.13 rad/s", "0.498 Hz", "2.01 s", ""});
   Drawing swing;
   swing.times = {0, 0.5, 1};
-  swing.elements.push_back({Drawing::Kind::Line, 1, {0, 0, 0.1, 0, 0, 0}, {}, {}, {1}, {"A"}});
+  swing.elements.push_back({Drawing::Kind::Path, 1, {0, 0, 0.1, 0, 0, 0}, false, {1}, {0.1}, {"A"}, {}, {}});
   point.shapes.push_back({"Mode 1: 3.13 rad/s", swing, std::nullopt});
   Diagram stems;
   stems.y_name = "shape";

@@ -1,5 +1,5 @@
 // The drawing follows the run: at its rows exactly, between them on the cubic through positions and velocities.
-#include <maupertuis/report.hpp>
+#include <maupertuis/drawing.hpp>
 
 #include <doctest/doctest.h>
 
@@ -47,10 +47,11 @@ TEST_CASE("a coarse run is filled in: the rod keeps its length, the angle its mo
   p.draw(syntax::DrawItem::Kind::Line, {"O", "bob"}, {p.origin(), p.model.system.points[0].position});
   const auto drawing = evaluate_drawing(p.model, p.run);
   REQUIRE(drawing);
-  REQUIRE(drawing->elements.size() == 1);
+  REQUIRE(drawing->elements.size() == 2);  // the pivot of O, then the rod
+  CHECK(drawing->elements[0].still);
   CHECK(drawing->times.size() >= 600);
   CHECK(drawing->times.back() == p.run.times.back());
-  const auto& element = drawing->elements[0];
+  const auto& element = drawing->elements[1];
   CHECK(element.masses == std::vector<double>{0, 3});
   for (std::size_t f = 0; f < drawing->times.size(); ++f) {
     const double x = element.positions[4 * f + 2], y = element.positions[4 * f + 3];
@@ -67,12 +68,12 @@ TEST_CASE("a fine run is thinned to the frames asked for") {
   REQUIRE(drawing);
   CHECK(drawing->times.size() <= 1000);
   CHECK(drawing->times.size() > 500);
-  const auto& positions = drawing->elements[0].positions;
+  const auto& positions = drawing->elements[0].positions;  // nothing else is drawn
   CHECK(positions[0] == doctest::Approx(2 * std::sin(1)));
   CHECK(positions.size() == 2 * drawing->times.size());
 }
 
-TEST_CASE("sizes are evaluated; a box turns with its body") {
+TEST_CASE("a box has its sizes and turns with its body") {
   Pendulum p(0.1, 63);
   Context& c = *p.model.system.context;
   const Expr theta = p.model.system.coordinates[0].q;
@@ -85,19 +86,27 @@ TEST_CASE("sizes are evaluated; a box turns with its body") {
   const auto drawing = evaluate_drawing(p.model, p.run);
   REQUIRE(drawing);
   const auto& element = drawing->elements[0];
-  CHECK(element.sizes[0] == 2);
-  CHECK(element.sizes[1] == 1);
-  // 4 θ runs beyond π: the angle goes on without a jump.
-  for (std::size_t f = 1; f < drawing->times.size(); ++f)
-    CHECK(std::abs(element.rotation[f] - element.rotation[f - 1]) < 0.1);
-  CHECK(element.rotation.front() - element.rotation[element.rotation.size() / 2] == doctest::Approx(8).epsilon(0.01));
+  REQUIRE(element.kind == Drawing::Kind::Solid);
+  for (std::size_t f = 0; f < drawing->times.size(); ++f) {
+    const double* at = &element.positions[6 * f];
+    const double angle = 4 * std::cos(drawing->times[f]);
+    CHECK(at[2] - at[0] == doctest::Approx(1 * std::cos(angle)).epsilon(1e-5));  // half of the width l = 2
+    CHECK(at[3] - at[1] == doctest::Approx(1 * std::sin(angle)).epsilon(1e-5));
+    CHECK(at[4] - at[0] == doctest::Approx(-0.5 * std::sin(angle)).epsilon(1e-5));
+  }
 }
 
-TEST_CASE("without a draw statement massive points are marked; without points there is no drawing") {
+TEST_CASE("without a draw statement masses are marked and rods found; without points there is no drawing") {
   Pendulum p(0.1, 63);
   const auto drawing = evaluate_drawing(p.model, p.run);
   REQUIRE(drawing);
-  CHECK(drawing->elements.size() == 2);
+  int rods = 0, trails = 0;
+  for (const auto& e : drawing->elements) {
+    rods += e.kind == Drawing::Kind::Path && e.points == 2;
+    trails += e.kind == Drawing::Kind::Trail;
+  }
+  CHECK(rods == 1);
+  CHECK(trails == 1);
   p.model.system.points.clear();
   CHECK_FALSE(evaluate_drawing(p.model, p.run));
 }
@@ -111,19 +120,3 @@ TEST_CASE("no rows, one row") {
   CHECK(drawing->times.size() == 1);
 }
 
-TEST_CASE("a report asks for rows as an animation needs them, unless someone said otherwise") {
-  Pendulum p(0.1, 2);
-  Context& c = *p.model.system.context;
-  p.model.experiment.duration = c.number(100);
-  CHECK(report_run(p.model, {}).output_every.value() == doctest::Approx(0.02));
-  p.model.experiment.duration = c.number(100000);
-  CHECK(report_run(p.model, {}).output_every.value() == doctest::Approx(10));
-  SimulationOptions options;
-  options.output_every = 3;
-  CHECK(report_run(p.model, options).output_every == 3.0);
-  options = {};
-  options.duration = -2;
-  CHECK(report_run(p.model, options).output_every.value() == doctest::Approx(0.002));
-  p.model.experiment.output_every = c.number(1);
-  CHECK_FALSE(report_run(p.model, {}).output_every);
-}

@@ -1,0 +1,272 @@
+#include "interrupt.hpp"
+#include "outcome.hpp"
+#include "output_files.hpp"
+#include "quantity.hpp"
+#include "run_options.hpp"
+#include "video.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <maupertuis/drawing.hpp>
+#include <maupertuis/picture.hpp>
+#include <maupertuis/report.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+/// The drawing of a model in motion, as a film, a page, a moving picture, or one moment of it.
+namespace maupertuis::app {
+namespace {
+
+constexpr double most_frames_of_svg = 1500, most_frames = 20'000, smallest_side = 16, largest_side = 4096, most_fps = 120;
+
+struct AnimateOptions {
+  ModelOptions model;
+  RunOptions run;
+  std::string output, size, from, to, still, view, trail = "fading";
+  double fps = 0, speed = 0;
+  bool once = false, dark = false, plain = false;
+};
+
+/// The options in numbers.
+struct Film {
+  FrameOptions picture;
+  bool height_given = false;
+  double fps = 30, speed = 1;
+  std::vector<double> elapsed;     // of the frames, s from the start of the run
+  double seconds() const { return static_cast<double>(elapsed.size() > 1 ? elapsed.size() - 1 : 1) / fps; }
+};
+
+std::string ending_of(const AnimateOptions& o) {
+  const std::size_t dot = o.output.rfind('.');
+  return dot == std::string::npos ? "" : o.output.substr(dot);
+}
+
+void wrong_option(Diagnostics& diagnostics, const std::string& what, const std::string& help) {
+  diagnostics.error("E0809", {}, what, {}, help);
+}
+
+/// 640x360, or 640: the height then suits the drawing.
+void read_size(const AnimateOptions& o, Film& film, Diagnostics& diagnostics) {
+  if (o.size.empty()) return;
+  unsigned width = 0, height = 0;
+  char rest = 0;
+  const int count = std::sscanf(o.size.c_str(), "%5u%*1[x×X]%5u%c", &width, &height, &rest);
+  const bool alone = o.size.find_first_not_of("0123456789") == std::string::npos;
+  const auto good = [](unsigned side) { return side >= smallest_side && side <= largest_side; };
+  if ((count != 2 && !(count == 1 && alone)) || !good(width) || (count == 2 && !good(height)))
+    return wrong_option(diagnostics, fmt::format("--size {} is no size of a picture.", o.size),
+                        fmt::format("Write WIDTHxHEIGHT in pixels, such as 640x360, each from {} to {}; or the width alone.", smallest_side, largest_side));
+  film.picture.width = width;
+  film.picture.height = height;
+  film.height_given = count == 2;
+}
+
+void read_view(const AnimateOptions& o, Film& film, Diagnostics& diagnostics) {
+  if (o.view.empty()) return;
+  double azimuth = 0, elevation = 0;
+  char rest = 0;
+  if (std::sscanf(o.view.c_str(), "%lf,%lf%c", &azimuth, &elevation, &rest) != 2 || !std::isfinite(azimuth) || !(std::abs(elevation) <= 90))
+    return wrong_option(diagnostics, fmt::format("--view {} is no direction.", o.view), "Write azimuth and elevation of the eye in degrees, such as -50,20.");
+  constexpr double degree = 3.14159265358979323846 / 180;
+  film.picture.camera.azimuth = azimuth * degree;
+  film.picture.camera.elevation = elevation * degree;
+}
+
+Film read_options(const AnimateOptions& o, Diagnostics& diagnostics) {
+  Film film;
+  read_size(o, film, diagnostics);
+  read_view(o, film, diagnostics);
+  film.picture.theme = o.dark ? PlotTheme::Dark : PlotTheme::Light;
+  film.picture.furniture = !o.plain;
+  film.picture.trail = o.trail == "none" ? TrailLength::None : o.trail == "whole" ? TrailLength::Whole : TrailLength::Fading;
+  film.fps = o.fps;
+  if (o.fps == 0) film.fps = ending_of(o) == ".mp4" ? 30 : ending_of(o) == ".gif" ? 20 : 12;
+  if (!(film.fps > 0) || film.fps > most_fps) wrong_option(diagnostics, fmt::format("--fps {:g} is no rate of frames.", o.fps), fmt::format("Write a number up to {:g}.", most_fps));
+  if (o.speed < 0 || !std::isfinite(o.speed)) wrong_option(diagnostics, fmt::format("--speed {:g} is no speed.", o.speed), "Write how many seconds of motion a second of the film shows, such as 0.5.");
+  if (!o.view.empty() && ending_of(o) == ".html") wrong_option(diagnostics, "--view is not for pages.", "On a page the reader turns the drawing.");
+  return film;
+}
+
+/// A time of the motion as seconds since its first moment; `otherwise` where it is not given.
+double moment(const char* option, const std::string& text, const Drawing& drawing, double otherwise, Diagnostics& diagnostics) {
+  if (text.empty()) return otherwise;
+  const std::optional<Rational> t = parse_exact_time(text);
+  const double first = drawing.times.front(), last = drawing.times.back();
+  const double elapsed = t ? (last < first ? first - t->to_double() : t->to_double() - first) : NAN;
+  const double duration = std::abs(last - first);
+  if (elapsed >= -1e-9 * duration && elapsed <= duration * (1 + 1e-9)) return std::clamp(elapsed, 0.0, duration);
+  wrong_option(diagnostics, fmt::format("{} {} is no time of this run.", option, text),
+               fmt::format("It goes from {:.6g} s to {:.6g} s; `--duration` makes it longer.", first, last));
+  return otherwise;
+}
+
+/// The speed at which a run takes a pleasant time to watch: its own, or a power of ten of it.
+double pleasant_speed(double duration) {
+  return duration >= 2 && duration <= 120 ? 1 : std::pow(10, std::round(std::log10(duration > 0 ? duration / 15 : 1)));
+}
+
+void choose_frames(const AnimateOptions& o, const Drawing& drawing, Film& film, Diagnostics& diagnostics) {
+  const double duration = std::abs(drawing.times.back() - drawing.times.front());
+  if (!film.height_given) film.picture.height = fitting_height(drawing, film.picture.width);
+  const double from = moment("--from", o.from, drawing, 0, diagnostics), to = moment("--to", o.to, drawing, duration, diagnostics);
+  if (!(from < to) && duration > 0 && !diagnostics.has_errors()) wrong_option(diagnostics, "--from is not before --to.", "Give the earlier time to --from.");
+  film.speed = o.speed > 0 ? o.speed : pleasant_speed(to - from);
+  film.picture.trail_time = 3 * film.speed;
+  const double count = std::floor((to - from) / film.speed * film.fps * (1 + 1e-12)) + 1;
+  const double most = ending_of(o) == ".svg" ? most_frames_of_svg : most_frames;
+  if (count > most) {
+    diagnostics.error("E0842", {}, fmt::format("{} would have {:.0f} frames.", o.output, count), fmt::format("More than {:.0f} are not made of this kind.", most),
+                      "Show less of the motion (--from, --to), show it faster (--speed), or with fewer frames a second (--fps).");
+    return;
+  }
+  for (double i = 0; i < count; ++i) film.elapsed.push_back(std::min(to, from + i * film.speed / film.fps));
+}
+
+std::string caption(const Drawing& drawing, double elapsed, double step, const FrameOptions& picture) {
+  if (!picture.furniture || drawing.times.size() < 2) return {};
+  const double first = drawing.times.front(), t = drawing.times.back() < first ? first - elapsed : first + elapsed;
+  const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step > 0 ? step : 1))), 0, 9);
+  return fmt::format("t = {:.{}f}{}", t, digits, drawing.dimensionless ? "" : " s");
+}
+
+std::string still_svg(const AnimateOptions& o, const Drawing& drawing, Film& film, Diagnostics& diagnostics) {
+  if (!film.height_given) film.picture.height = fitting_height(drawing, film.picture.width);
+  const double duration = std::abs(drawing.times.back() - drawing.times.front());
+  const double elapsed = moment("--still", o.still, drawing, 0, diagnostics);
+  film.picture.trail_time = 3 * pleasant_speed(duration);
+  film.picture.caption = caption(drawing, elapsed, duration / 1000, film.picture);
+  film.elapsed = {elapsed};
+  return frame_svg(drawing, elapsed, film.picture);
+}
+
+/// Draws and encodes frame by frame; empty where it was interrupted or failed, and the diagnostics say why.
+std::string video_of(const AnimateOptions& o, const Drawing& drawing, Film& film, const Console& console, Diagnostics& diagnostics) {
+  Video::Options options;
+  options.format = ending_of(o) == ".gif" ? Video::Format::Gif : Video::Format::Mp4;
+  options.width = 2 * static_cast<int>(std::lround(film.picture.width / 2));
+  options.height = 2 * static_cast<int>(std::lround(film.picture.height / 2));
+  options.fps = film.fps;
+  options.loop = !o.once;
+  film.picture.width = options.width;
+  film.picture.height = options.height;
+  Video video(find_ffmpeg(), options);
+  const std::size_t tenth = std::max<std::size_t>(1, film.elapsed.size() / 100);
+  for (std::size_t i = 0; i < film.elapsed.size(); ++i) {
+    if (interrupt_flag().load()) return {};
+    film.picture.caption = caption(drawing, film.elapsed[i], film.speed / film.fps / 2, film.picture);
+    if (!video.add(pixels_of(frame_svg(drawing, film.elapsed[i], film.picture), options.width, options.height))) break;
+    if (console.interactive() && !console.json() && i % tenth == 0) console.say(fmt::format("\r\x1b[K{} of {} frames", i + 1, film.elapsed.size()));
+  }
+  if (console.interactive() && !console.json()) console.say("\r\x1b[K");
+  const Video::Film made = video.finish();
+  if (!made.problem.empty())
+    diagnostics.error("E0841", {}, fmt::format("ffmpeg did not make {}.", o.output), fmt::format("It says: {}.", made.problem), "An .html or .svg needs no ffmpeg.");
+  return made.bytes;
+}
+
+/// Before anything is computed.
+void check_tools(const AnimateOptions& o, Diagnostics& diagnostics) {
+  const std::string ending = ending_of(o);
+  if (!o.still.empty() || (ending != ".mp4" && ending != ".gif")) return;
+  if (find_ffmpeg().empty())
+    diagnostics.error("E0841", {}, fmt::format("{} needs ffmpeg, which is in no folder of PATH.", o.output), {}, "On Debian, `apt install ffmpeg` brings it. An .html or .svg needs nothing.");
+  else if (const std::string problem = picture_problem(); !problem.empty())
+    diagnostics.error("E0840", {}, fmt::format("{} cannot be made: {}.", o.output, problem), {}, "Take .html or .svg, which need nothing else.");
+}
+
+std::optional<Drawing> drawing_of(const AnimateOptions& o, Study& study, const SimulationOptions& settings, Console& console, std::optional<SimulationResult>& result) {
+  if (study.wrong() || !study.model() || !study.equations()) return {};
+  SimulationOptions run = report_run(*study.model(), settings);
+  run.errors = ErrorEstimates::None;
+  result = run_model(study, run, console);
+  if (!result) return {};
+  std::optional<Drawing> drawing = evaluate_drawing(*study.model(), result->trajectory, 12'000, study.equations());
+  if (!drawing)
+    study.diagnostics().error("E0843", {}, fmt::format("{} has nothing to draw.", study.model()->system.name), "A drawing shows points, bodies, springs and what `draw` names; this model has none.",
+                              "Mark a point, `point P at (x, y)`, or plot the coordinates: maup plot.");
+  static_cast<void>(o);
+  return drawing;
+}
+
+ExitCode animate(AnimateOptions o, Console& console) {
+  Study study(o.model.path, o.model.overrides);
+  Json document = json_document("animate");
+  const bool readable_model = !study.wrong();
+  const SimulationOptions settings = simulation_options(o.run, study.diagnostics(), study.tree());
+  if (o.output.empty()) o.output = (study.model() ? study.model()->system.name : "motion") + (o.still.empty() ? ".html" : ".svg");
+  Diagnostics& diagnostics = study.diagnostics();
+  if (study.model() || !readable_model) {
+    Film unused = read_options(o, diagnostics);
+    check_output_files({{"-o", o.output, o.still.empty() ? FileKind::Animation : FileKind::Picture}}, o.model.path, diagnostics);
+    check_tools(o, diagnostics);
+    if (readable_model && study.wrong()) return finish_usage(console, study, "animate");
+  }
+  if (const std::string statement = run_statement(o.run); !statement.empty()) study.replace_run(statement);
+  std::optional<SimulationResult> result;
+  const std::optional<Drawing> drawing = drawing_of(o, study, settings, console, result);
+  if (!drawing) return finish(console, study, document);
+
+  Film film = read_options(o, diagnostics);
+  std::string bytes;
+  const std::string ending = ending_of(o), title = study.model()->system.title.empty() ? study.model()->system.name : study.model()->system.title;
+  if (!o.still.empty()) bytes = still_svg(o, *drawing, film, diagnostics);
+  else choose_frames(o, *drawing, film, diagnostics);
+  if (study.wrong()) return finish_usage(console, study, "animate");
+  if (o.still.empty()) {
+    if (ending == ".html" || ending == ".htm") bytes = animation_html(*drawing, title);
+    else if (ending == ".mp4" || ending == ".gif") bytes = video_of(o, *drawing, film, console, diagnostics);
+    else {
+      film.picture.trail_pieces = 4;
+      bytes = animated_svg(*drawing, {film.elapsed, film.seconds(), !o.once}, film.picture);
+    }
+  }
+  if (interrupt_flag().load()) {
+    if (!console.json()) console.say(fmt::format("Interrupted: {} was not written.\n", o.output));
+    finish(console, study, document);
+    return ExitCode::Interrupted;
+  }
+  if (!study.wrong()) o.still.empty() ? write_result(o.output, bytes, diagnostics) : write_picture(o.output, bytes, diagnostics);
+  document["file"] = o.output;
+  document["frames"] = film.elapsed.size();
+  document["width"] = film.picture.width;
+  document["height"] = film.picture.height;
+  if (o.still.empty()) document["fps"] = film.fps, document["speed"] = film.speed, document["seconds"] = film.seconds();
+  const bool written = !study.wrong();
+  if (written && !console.json())
+    console.say(o.still.empty() ? fmt::format("Wrote {} ({} frames, {:.3g} s, {} kB).\n", o.output, film.elapsed.size(), film.seconds(), (bytes.size() + 999) / 1000)
+                                : fmt::format("Wrote {}.\n", o.output));
+  if (!result->ok() && !console.json()) console.say(fmt::format("The run ended early: {}\n", result->reason));
+  finish(console, study, document);
+  return written ? exit_code(result->ending) : ExitCode::RunFailed;
+}
+
+}  // namespace
+
+void add_animate(CommandLine& line) {
+  const auto options = std::make_shared<AnimateOptions>();
+  CLI::App& command = line.add("animate", "The drawing in motion: MP4, GIF, a page, an animated SVG; or one moment of it",
+                               "  maup animate pendulum.lag -o pendulum.mp4\n"
+                               "  maup animate top.lag -o top.gif --size 480x360 --to 4s --speed 0.5\n"
+                               "  maup animate pendulum.lag --still 2s -o figure.pdf\n",
+                               [options](Console& console) { return animate(*options, console); });
+  add_model_options(command, options->model);
+  add_span_options(command, options->run);
+  add_method_options(command, options->run);
+  command.add_option("-o,--output", options->output, "What to write (default: SYSTEM.html); the ending names the format")->type_name("FILE.mp4|gif|html|svg");
+  command.add_option("--still", options->still, "One moment instead, as .svg, .png or .pdf")->type_name("TIME");
+  command.add_option("--size", options->size, "In pixels (default: 720 wide, as high as suits the drawing)")->type_name("WIDTHxHEIGHT");
+  command.add_option("--fps", options->fps, "Frames a second (default: 30 in MP4, 20 in GIF, 12 in SVG)")->type_name("NUMBER");
+  command.add_option("--speed", options->speed, "Seconds of motion that a second shows (default: 1, or a power of ten)")->type_name("NUMBER");
+  command.add_option("--from", options->from, "From this time of the motion on")->type_name("TIME");
+  command.add_option("--to", options->to, "Up to this time")->type_name("TIME");
+  command.add_flag("--once", options->once, "Plays once; GIF and SVG begin anew otherwise");
+  command.add_flag_callback("--loop", [options] { options->once = false; }, "Begins anew at the end (the default of GIF and SVG)");
+  command.add_option("--trail", options->trail, "What points leave behind")->check(CLI::IsMember({"fading", "whole", "none"}))->type_name("fading|whole|none");
+  command.add_option("--view", options->view, "From where a drawing in space is seen, in degrees (default: -51.6,18.3)")->type_name("AZIMUTH,ELEVATION");
+  command.add_flag("--dark", options->dark, "Light on dark");
+  command.add_flag("--plain", options->plain, "Without scale, axes, direction of gravity and time");
+}
+
+}  // namespace maupertuis::app

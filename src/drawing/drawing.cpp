@@ -1,0 +1,122 @@
+#include "drawing/outlines.hpp"
+
+#include <maupertuis/constraint_manifold.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+/// The drawing at the frames of an animation. The state between two rows of the run comes from the cubic through its
+/// coordinates and velocities at both; positions are then those of the state, so that a rod keeps its length.
+namespace maupertuis {
+namespace {
+
+using drawing::Outline;
+
+constexpr std::size_t fewest_frames = 600;
+
+// States of the run at any time between two of its rows.
+class Motion {
+ public:
+  Motion(const MechanicalSystem& system, const Trajectory& run, const Bindings& parameters)
+      : system_(system), run_(run), bindings_(parameters) {
+    for (const Coordinate& c : system.coordinates) columns_.push_back({run.column(c.name), run.column(c.name + "'")});
+  }
+
+  bool complete() const {
+    return std::all_of(columns_.begin(), columns_.end(), [](const auto& c) { return c.first && c.second; });
+  }
+
+  // The state at the part `u` in [0, 1) of the way from `row` to the next.
+  const Bindings& state(std::size_t row, double u) {
+    const std::size_t next = std::min(row + 1, run_.rows() - 1);
+    const double h = run_.times[next] - run_.times[row];
+    bindings_[system_.context->time()] = time(row, u);
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      const auto [q, v] = columns_[i];
+      const double q0 = run_.at(row, *q), q1 = run_.at(next, *q), v0 = run_.at(row, *v), v1 = run_.at(next, *v);
+      bindings_[system_.coordinates[i].q] = u == 0 ? q0 : hermite(q0, q1, h * v0, h * v1, u);
+      bindings_[system_.coordinates[i].velocity] = v0 + u * (v1 - v0);
+    }
+    return bindings_;
+  }
+
+  double column(std::size_t index, std::size_t row, double u) const {
+    const std::size_t next = std::min(row + 1, run_.rows() - 1);
+    return (1 - u) * run_.at(row, index) + u * run_.at(next, index);
+  }
+
+  double time(std::size_t row, double u) const {
+    const std::size_t next = std::min(row + 1, run_.rows() - 1);
+    return run_.times[row] + u * (run_.times[next] - run_.times[row]);
+  }
+
+ private:
+  static double hermite(double p0, double p1, double m0, double m1, double u) {
+    const double w = 1 - u;
+    return p0 * (1 + 2 * u) * w * w + p1 * (3 - 2 * u) * u * u + m0 * u * w * w - m1 * u * u * w;
+  }
+
+  const MechanicalSystem& system_;
+  const Trajectory& run_;
+  Bindings bindings_;
+  std::vector<std::pair<std::optional<std::size_t>, std::optional<std::size_t>>> columns_;
+};
+
+/// What stands still has one frame, of the first moment. The force of an arrow is in newtons; metres come at the end.
+void add_frame(Drawing& drawing, std::vector<Outline>& outlines, const std::vector<double>& values, const Motion& motion,
+               std::size_t row, double u) {
+  const bool first = drawing.times.empty();
+  drawing.times.push_back(motion.time(row, u));
+  std::size_t at = 0;
+  for (Outline& outline : outlines) {
+    std::vector<double>& out = outline.element.positions;
+    const std::size_t count = outline.values.size();
+    const double factor = outline.reaction ? motion.column(*outline.reaction, row, u) : 1;
+    for (std::size_t i = 0; i < count; ++i)
+      if (first || !outline.element.still)
+        out.push_back(values[at + i] * (outline.placement == Outline::Placement::Force && 2 * i >= count ? factor : 1));
+    at += count;
+  }
+  for (; at < values.size(); ++at) drawing.follow.push_back(values[at]);
+}
+
+std::vector<double> gravity_of(const MechanicalSystem& system, const Bindings& parameters) {
+  if (system.gravity.empty()) return {};
+  Bindings start = parameters;
+  for (const Coordinate& c : system.coordinates) start.insert({{c.q, 0.0}, {c.velocity, 0.0}});
+  start.insert({system.context->time(), 0.0});
+  return evaluate(in_terms_of_motion(system, system.gravity), start);
+}
+
+}  // namespace
+
+std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& run, std::size_t frames,
+                                        const EquationsOfMotion* equations) {
+  const MechanicalSystem& system = model.system;
+  const Bindings parameters = parameter_bindings(system);
+  Motion motion(system, run, parameters);
+  if (run.rows() == 0 || frames == 0 || !motion.complete()) return std::nullopt;
+  drawing::Plan plan = drawing::plan_of(model, parameters, equations, run);
+  if (plan.outlines.empty()) return std::nullopt;
+
+  std::vector<Expr> wanted;
+  for (const Outline& outline : plan.outlines) wanted.insert(wanted.end(), outline.values.begin(), outline.values.end());
+  wanted.insert(wanted.end(), plan.follow.begin(), plan.follow.end());
+  wanted = in_terms_of_motion(system, wanted);
+
+  Drawing drawing;
+  drawing.dimension = system.space_dimension;
+  drawing.dimensionless = system.dimensionless;
+  drawing.gravity = gravity_of(system, parameters);
+  const std::size_t rows = run.rows(), stride = (rows + frames - 1) / frames;
+  const std::size_t parts = rows > 1 ? std::max<std::size_t>(1, (fewest_frames + rows - 2) / (rows - 1)) : 1;
+  for (std::size_t row = 0; row < rows; row += stride)
+    for (std::size_t k = 0; k < (row + 1 == rows ? 1 : stride == 1 ? parts : 1); ++k) {
+      const double u = static_cast<double>(k) / static_cast<double>(parts);
+      add_frame(drawing, plan.outlines, evaluate(wanted, motion.state(row, u)), motion, row, u);
+    }
+  drawing::settle(drawing, plan.outlines, plan, system, parameters);
+  return drawing;
+}
+
+}  // namespace maupertuis
