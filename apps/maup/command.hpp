@@ -1,6 +1,7 @@
 #pragma once
 #include "console.hpp"
 #include "exit_code.hpp"
+#include "option_table.hpp"
 
 #include <maupertuis/mechanical_system.hpp>
 
@@ -28,6 +29,9 @@ class CommandLine {
 
   /// Reads the arguments and runs the command that they name.
   ExitCode run(int argc, char** argv);
+
+  /// What --help says, in parts.
+  OptionTable table() const;
 
  private:
   struct Implementation;
@@ -58,6 +62,8 @@ void add_fmt(CommandLine& line);
 void add_new(CommandLine& line);
 void add_explain(CommandLine& line);
 void add_doctor(CommandLine& line);
+void add_completions(CommandLine& line);
+void add_manual(CommandLine& line);
 /// The commands of later versions: they say so.
 void add_later_commands(CommandLine& line);
 

@@ -3,16 +3,20 @@
 #include "command.hpp"
 #include "interrupt.hpp"
 #include "json.hpp"
+#include "option_table_of.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <csignal>
 #include <exception>
+#include <map>
 #include <vector>
 
 namespace maupertuis::app {
 namespace {
+
+constexpr const char* version_text = "maup " MAUPERTUIS_VERSION;
 
 /// --help of a command opens with its examples.
 class HelpWithExamples : public CLI::Formatter {
@@ -41,12 +45,13 @@ struct CommandLine::Implementation {
   bool json = false;
   Console::Color color = Console::Color::Auto;
   Action chosen;
+  std::map<std::string, std::string> examples;  // by command
 };
 
 CommandLine::CommandLine() : implementation_(std::make_unique<Implementation>()) {
   CLI::App& app = implementation_->app;
   app.require_subcommand(1);
-  app.set_version_flag("--version", "maup " MAUPERTUIS_VERSION);
+  app.set_version_flag("--version", version_text);
   app.get_formatter()->column_width(16);
   app.footer("\n`maup COMMAND --help` shows examples and options. A first model: maup new pendulum");
 }
@@ -58,6 +63,7 @@ CLI::App& CommandLine::add(const std::string& name, const std::string& summary, 
   Implementation& line = *implementation_;
   CLI::App& command = *line.app.add_subcommand(name, summary);
   command.formatter(std::make_shared<HelpWithExamples>(examples));
+  line.examples[name] = examples;
   command.add_flag("--json", line.json, "The result as a JSON document on standard output");
   command
       .add_option_function<std::string>(
@@ -98,6 +104,14 @@ ExitCode CommandLine::run(int argc, char** argv) {
   return ExitCode::RunFailed;
 }
 
+OptionTable CommandLine::table() const {
+  OptionTable table;
+  fill_option_table(implementation_->app, table);
+  table.version = version_text;
+  for (CommandRow& command : table.commands) command.examples = implementation_->examples.at(command.name);
+  return table;
+}
+
 void add_model_options(CLI::App& command, ModelOptions& options) {
   command.add_option("MODEL", options.path, "The model file (.lag), or - for standard input")->required();
   command.add_option("--set", options.overrides.parameters, "Another value of a parameter, e.g. m=2kg")
@@ -131,6 +145,8 @@ int run(int argc, char** argv) {
     add_new(line);
     add_explain(line);
     add_doctor(line);
+    add_completions(line);
+    add_manual(line);
     add_later_commands(line);
     return static_cast<int>(line.run(argc, argv));
   } catch (const std::bad_alloc&) {
