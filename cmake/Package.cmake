@@ -45,16 +45,23 @@ if(GZIP_PROGRAM)
   package(runtime maupertuis science
     RECOMMENDS "maupertuis-llvm (= ${package_version})" SUGGESTS "xdg-utils, libmaupertuis-dev (= ${package_version})"
     SUMMARY "Lagrangian mechanics from a text model"
-    DESCRIPTION "Write where the masses are, and maup derives the equations of motion, certifies them by independent routes, and runs them to the last digits of double precision. It finds equilibria and modes, conserved quantities, periodic motions and paths of stationary action, and writes a whole study on one page.")
+    DESCRIPTION "Write where the masses are, and maup derives the equations of motion,
+certifies them by independent routes, and runs them to the last digits of
+double precision. It finds equilibria and modes, conserved quantities,
+periodic motions and paths of stationary action, and writes a whole study
+on one page.")
   if(TARGET maup_kernel_llvm)
     package(llvm maupertuis-llvm science
       DEPENDS "maupertuis (= ${package_version}), libsleef3"
       SUMMARY "machine code for the motions of maupertuis"
-      DESCRIPTION "The module with which maup compiles the equations of a model for this processor. Long runs and ensembles are several times as fast with it, and give the same results up to rounding.")
+      DESCRIPTION "The module with which maup compiles the equations of a model for this
+processor. Long runs and ensembles are several times as fast with it, and
+give the same results up to rounding.")
   endif()
   package(dev libmaupertuis-dev libdevel
     DEPENDS "libfmt-dev, libsundials-dev, liblapack-dev, libblas-dev" RECOMMENDS "maupertuis-llvm (= ${package_version})"
     SUMMARY "Lagrangian mechanics from a text model - library"
-    DESCRIPTION "The headers, the static library and the CMake package with which programs derive, certify and run the motion of mechanical systems as maup does.")
+    DESCRIPTION "The headers, the static library and the CMake package with which programs
+derive, certify and run the motion of mechanical systems as maup does.")
   include(CPack)
 endif()

@@ -122,32 +122,43 @@ void add_model_options(CLI::App& command, ModelOptions& options) {
       ->type_name("NAME=VALUE");
 }
 
-int run(int argc, char** argv) {
-  // A closed pipe is then an error of the write, which is said, instead of a signal.
-  std::signal(SIGPIPE, SIG_IGN);
-  watch_interrupts();
+namespace {
+
+void add_all_commands(CommandLine& line) {
+  add_check(line);
+  add_derive(line);
+  add_simulate(line);
+  add_test(line);
+  add_invariants(line);
+  add_hamiltonian(line);
+  add_compare(line);
+  add_reduce(line);
+  add_modes(line);
+  add_orbits(line);
+  add_action(line);
+  add_plot(line);
+  add_report(line);
+  add_fmt(line);
+  add_new(line);
+  add_explain(line);
+  add_doctor(line);
+  add_completions(line);
+  add_manual(line);
+  add_later_commands(line);
+}
+
+}  // namespace
+
+OptionTable option_table() {
+  CommandLine line;
+  add_all_commands(line);
+  return line.table();
+}
+
+int run_command_line(int argc, char** argv) {
   try {
     CommandLine line;
-    add_check(line);
-    add_derive(line);
-    add_simulate(line);
-    add_test(line);
-    add_invariants(line);
-    add_hamiltonian(line);
-    add_compare(line);
-    add_reduce(line);
-    add_modes(line);
-    add_orbits(line);
-    add_action(line);
-    add_plot(line);
-    add_report(line);
-    add_fmt(line);
-    add_new(line);
-    add_explain(line);
-    add_doctor(line);
-    add_completions(line);
-    add_manual(line);
-    add_later_commands(line);
+    add_all_commands(line);
     return static_cast<int>(line.run(argc, argv));
   } catch (const std::bad_alloc&) {
     std::fputs("maup: out of memory.\n", stderr);
@@ -157,6 +168,13 @@ int run(int argc, char** argv) {
     std::fputs(last_resort("unknown exception").c_str(), stderr);
   }
   return static_cast<int>(ExitCode::RunFailed);
+}
+
+int run(int argc, char** argv) {
+  // A closed pipe is then an error of the write, which is said, instead of a signal.
+  std::signal(SIGPIPE, SIG_IGN);
+  watch_interrupts();
+  return run_command_line(argc, argv);
 }
 
 }  // namespace maupertuis::app

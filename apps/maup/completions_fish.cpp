@@ -24,7 +24,7 @@ std::string names(const OptionRow& row) {
 }
 
 /// What completes an argument: -a with its words, -F for files.
-std::string argument(const OptionRow& row) {
+std::string fish_argument(const OptionRow& row) {
   switch (argument_kind(row)) {
     case ArgumentKind::Words: return fmt::format(" -f -a {}", quoted(fmt::format("{}", fmt::join(row.words, " "))));
     case ArgumentKind::Model: return " -k -f -a '(__fish_complete_suffix .lag)'";
@@ -36,9 +36,9 @@ std::string argument(const OptionRow& row) {
 
 std::string line(const std::string& program, const std::string& condition, const OptionRow& row) {
   std::string out = fmt::format("complete -c {} -n {}", program, quoted(condition));
-  if (row.positional) return argument_kind(row) == ArgumentKind::Other ? std::string() : out + argument(row) + "\n";
+  if (row.positional) return argument_kind(row) == ArgumentKind::Other ? std::string() : out + fish_argument(row) + "\n";
   out += names(row);
-  if (!row.value.empty()) out += (row.value_optional ? "" : " -r") + argument(row);
+  if (!row.value.empty()) out += (row.value_optional ? "" : " -r") + fish_argument(row);
   return fmt::format("{} -d {}\n", out, quoted(one_line(row.what)));
 }
 

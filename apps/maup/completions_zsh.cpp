@@ -36,7 +36,7 @@ std::string escaped(const std::string& text, const char* special) {
   return out;
 }
 
-std::string argument(const OptionRow& row) {
+std::string zsh_argument(const OptionRow& row) {
   switch (argument_kind(row)) {
     case ArgumentKind::Words: return fmt::format("({})", fmt::join(row.words, " "));
     case ArgumentKind::Model: return "_files -g \"*.lag(-.)\"";
@@ -49,7 +49,7 @@ std::string argument(const OptionRow& row) {
 /// '*--set=[Another value of a parameter]:NAME=VALUE: '
 std::string option_spec(const OptionRow& row) {
   std::string value;
-  if (!row.value.empty()) value = fmt::format("{}:{}:{}", row.value_optional ? ":" : "", escaped(row.value, ":"), argument(row));
+  if (!row.value.empty()) value = fmt::format("{}:{}:{}", row.value_optional ? ":" : "", escaped(row.value, ":"), zsh_argument(row));
   const std::string rest = fmt::format("[{}]{}'", escaped(one_line(row.what), "[]"), value);
   const auto with_sign = [&row](const std::string& name) {
     return row.value.empty() ? name : name + (name.rfind("--", 0) == 0 ? "=" : "+");
@@ -65,7 +65,7 @@ std::string specs(const std::vector<OptionRow>& rows, const char* between) {
   int place = 0;
   for (const OptionRow& row : rows)
     if (!row.positional) out.push_back(option_spec(row));
-    else out.push_back(fmt::format("'{}:{}:{}'", row.many ? "*" : std::to_string(++place), escaped(row.names[0], ":"), argument(row)));
+    else out.push_back(fmt::format("'{}:{}:{}'", row.many ? "*" : std::to_string(++place), escaped(row.names[0], ":"), zsh_argument(row)));
   return fmt::format("{}", fmt::join(out, between));
 }
 

@@ -111,7 +111,7 @@ class Writer {
       : rules_(rules), names_(names), random_(random) {}
 
   void write(const Node& node, int depth) {
-    if (++written_ > most) return;
+    if (++written_ > most) depth = deep + 1;
     switch (node.kind) {
       case Kind::Word: add(node.text); return;
       case Kind::Free: add(node.text == "any character" ? "x" : random_.one_in(2) ? "zxz" : "θ"); return;
@@ -132,7 +132,7 @@ class Writer {
   std::string take() { return std::move(out_); }
 
  private:
-  static constexpr int most = 400, deep = 24;
+  static constexpr int most = 120, deep = 14;
 
   /// Deep down the first alternative that does not go deeper, such as a number.
   const Node& choice(const Node& node, int depth) {
@@ -142,6 +142,26 @@ class Writer {
     return random_.of(node.parts);
   }
 
+  /// What a person would write, of names that were declared.
+  std::string plain_formula(int height) {
+    static const std::vector<std::string> functions{"sin", "cos", "exp", "sqrt", "log", "abs", "tanh", "atan", "sign", "step", "norm"};
+    const auto part = [&] { return plain_formula(height - 1); };
+    if (height <= 0) {
+      if (names_.empty() || random_.one_in(4)) return std::to_string(random_.below(5));
+      return random_.of(names_) + (random_.one_in(8) ? "'" : "");
+    }
+    switch (random_.below(9)) {
+      case 0: return part() + " + " + part();
+      case 1: return part() + " - " + part();
+      case 2: return part() + "/(" + part() + ")";
+      case 3: return "(" + part() + ")^" + std::to_string(random_.below(5));
+      case 4: return random_.of(functions) + "(" + part() + ")";
+      case 5: return "-(" + part() + ")";
+      case 6: return random_.one_in(4) ? "(" + part() + ", " + part() + ")" : part() + " + 1";
+      default: return "(" + part() + ") (" + part() + ")";
+    }
+  }
+
   void rule(const std::string& name, int depth) {
     static const std::vector<std::string> numbers{"0", "1", "2", "-1", "0.5", "9.81", "1e-3", "3", "1/3", "1e300", "1e-300", "0.1", "12345678901234567890"};
     static const std::vector<std::string> units{"kg", "m", "s", "rad", "deg", "N", "J", "m/s", "m/s^2", "N/m", "kg m^2", "Hz", "1", "A", "V", "mm", "h"};
@@ -149,6 +169,7 @@ class Writer {
     if (name == "digits") return add(std::to_string(random_.one_in(20) ? random_.below(100000) : random_.below(5)));
     if (name == "number") return add(random_.one_in(6) ? random_.of(numbers) : std::to_string(random_.below(4)));
     if (name == "units" && !random_.one_in(4)) return add(random_.of(units));
+    if (name == "formula" && !random_.one_in(5)) return add(plain_formula(static_cast<int>(random_.below(4))));
     if (name == "text") return add("\"a title\"");
     if (name == "newline") return add("\n");
     if (name == "letter" || name == "digit") return add("x");
