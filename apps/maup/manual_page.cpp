@@ -81,8 +81,9 @@ std::string examples(const CommandRow& command) {
 
 std::string command_section(const std::string& program, const CommandRow& command) {
   std::string out = ".SS " + command.name + "\n" + synopsis(program, command) + ".PP\n" + roff(command.summary + ".") + "\n";
-  for (const OptionRow& row : command.options)
-    if (row.names.back() != "--help") out += entry(row);
+  for (const bool positional : {true, false})
+    for (const OptionRow& row : command.options)
+      if (row.positional == positional && row.names.back() != "--help") out += entry(row);
   return out + examples(command);
 }
 

@@ -23,7 +23,7 @@ OptionRow row_of(const CLI::Option& option) {
     row.value = value.substr(0, value.find(':'));
     row.words = words_of(value);
     row.value_optional = option.get_items_expected_min() == 0 && !row.positional;
-    row.many = row.positional && option.get_items_expected_max() > 1;
+    row.many = option.get_items_expected_max() > 1;
   }
   row.what = option.get_description();
   row.required = option.get_required();

@@ -9,8 +9,8 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-const Words times{"0.1s", "0.2 s", "300ms", "0.5", "0", "-0.3s", "1e-300s", "3kg", "", "s", "0.01 min", "0.1s,0.2s", "1e400s"};
-const Words counts{"1", "2", "3", "5", "0", "-1", "1e-8", "0.5", "20", "abc", "1e999", "", "99999999999999999999", "1e-3", "6"};
+const Words times{"0.1s", "0.2 s", "300ms", "0.5", "0.01 min"}, odd_times{"0", "-0.3s", "1e-300s", "3kg", "", "s", "0.1s,0.2s", "1e400s"};
+const Words counts{"1", "2", "3", "4", "6", "12"}, odd_counts{"0", "-1", "1e-8", "1e-3", "0.5", "20", "abc", "1e999", "", "99999999999999999999"};
 const Words files{"out.csv", "out.npy", "out.json", "out.svg", "out.html", "out.lag", "out.png", "out", "", "model.lag", "nowhere/out.csv", "-", ".", "/dev/full"};
 const Words junk{"", "-", "--", "x", "=", "θ", "0", "'", "\"", "(", "x = ", "a\nb", "#", "é", "\xff", "{}", "%s"};
 
@@ -21,16 +21,17 @@ bool has(const std::string& text, const char* part) { return text.find(part) != 
 }  // namespace
 
 std::string Generator::value_for(const app::OptionRow& row, const std::vector<std::string>& names, Random& random) const {
-  if (random.one_in(25)) return random.of(junk);
+  if (random.one_in(40)) return random.of(junk);
+  const bool odd = random.one_in(5);
   if (!row.words.empty()) return random.one_in(12) ? random.of(words_) : random.of(row.words);
   const auto formula = [&] { return random.one_in(2) && !names.empty() ? random.of(names) : grammar_.sentence("formula", names, random); };
   const std::string name = names.empty() ? "x" : random.of(names);
   const std::string& value = row.value;
   if (value.rfind("FILE", 0) == 0) return random.of(files);
   if (has(value, "NAME=VALUE")) return name + (random.one_in(6) ? "'" : "") + "=" + grammar_.sentence("quantity", names, random);
-  if (has(value, "POINT")) return random.one_in(3) ? random.of(times) : name + "=" + formula();
-  if (has(value, "TIME") || has(value, "PERIOD")) return random.of(times);
-  if (has(value, "NUMBER") || has(value, "INT") || has(value, "FLOAT") || value == "N") return random.of(counts);
+  if (has(value, "POINT")) return random.one_in(3) ? random.of(odd ? odd_times : times) : name + "=" + formula();
+  if (has(value, "TIME") || has(value, "PERIOD")) return random.of(odd ? odd_times : times);
+  if (has(value, "NUMBER") || has(value, "INT") || has(value, "FLOAT") || value == "N") return random.of(odd ? odd_counts : counts);
   if (has(value, "EQUATION")) return formula() + " = " + formula() + (random.one_in(3) ? " rising" : "");
   if (has(value, "SWEEP")) return name + " = 0 .. 2 steps " + std::to_string(2 + random.below(6));
   if (has(value, "ENDS")) return "(" + random.of(counts) + ") at 0 to (" + random.of(counts) + ") at 1 s";
@@ -59,6 +60,7 @@ std::vector<std::string> Generator::arguments(const std::string& model, Random& 
     if (random.one_in(4) && name.rfind("--", 0) == 0) return out.push_back(name + "=" + value);
     out.insert(out.end(), {name, value});
   };
+  const std::size_t rarity = random.one_in(3) ? 8 : 40;  // of options
   bool has_length = false;
   const app::OptionRow* length = nullptr;
   for (const app::OptionRow& row : command->options) {
@@ -70,7 +72,7 @@ std::vector<std::string> Generator::arguments(const std::string& model, Random& 
       const bool is_length = row.names.back() == "--duration";
       if (is_length) length = &row;
       if (row.names.back() == "--help" && !random.one_in(40)) continue;
-      if (!random.one_in(8)) continue;
+      if (!random.one_in(rarity)) continue;
       option(row);
       has_length = has_length || is_length;
     }

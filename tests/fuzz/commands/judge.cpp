@@ -28,10 +28,20 @@ std::string no_number(const std::string& text) {
     for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
       const auto end = at + std::char_traits<char>::length(word);
       const auto in_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || static_cast<unsigned char>(c) >= 0x80; };
-      if ((at == 0 || !in_word(text[at - 1])) && (end == text.size() || !in_word(text[end]))) return line_with(text.substr(at > 60 ? at - 60 : 0), word);
+      // "\\nand" in a document is the end of a line
+      if ((at == 0 || (!in_word(text[at - 1]) && text[at - 1] != '\\')) && (end == text.size() || !in_word(text[end]))) return line_with(text.substr(at > 60 ? at - 60 : 0), word);
     }
   }
   return {};
+}
+
+/// A page holds a program, whose words are not results.
+std::string without_scripts(std::string text) {
+  for (auto begin = text.find("<script"); begin != std::string::npos; begin = text.find("<script", begin + 1)) {
+    const auto end = text.find("</script>", begin);
+    text.erase(begin, end == std::string::npos ? end : end - begin);
+  }
+  return text;
 }
 
 /// Somebody typed the word: then it may be quoted.
@@ -55,7 +65,7 @@ std::optional<std::string> of_numbers(const Input& input, const Outcome& outcome
   for (const auto& [name, text] : outcome.files) {
     const bool is_text = name.size() < 4 || name.compare(name.size() - 4, 4, ".npy") != 0;
     if (!is_text || name == "model.lag" || asks_for(input, "--errors")) continue;  // of an error inf is documented: no digit is certain
-    if (const std::string line = no_number(text); !line.empty()) return "no number in a file " + name.substr(name.rfind('.') + 1) + ": " + line;
+    if (const std::string line = no_number(without_scripts(text)); !line.empty()) return "no number in a file " + name.substr(name.rfind('.') + 1) + ": " + line;
   }
   return {};
 }
