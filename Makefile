@@ -1,5 +1,5 @@
 # Thin: each rule calls a script of scripts/, which installs what is missing, configures by a CMake preset and builds.
-.PHONY: demo build test bench instructions fuzz mutants steep-models gallery format install clean
+.PHONY: demo build test bench instructions fuzz mutants steep-models gallery format install package clean
 
 demo:     # check, derive, simulate and report models/double_pendulum.lag
 	@scripts/demo
@@ -11,8 +11,8 @@ bench:    # the tables of docs/benchmarks.md, measured here
 	@scripts/bench
 instructions:  # counts of fixed work under valgrind, against benchmarks/instruction_counts.json
 	@scripts/instructions
-fuzz:     # two minutes of libFuzzer on parse → check → derive
-	@scripts/fuzz
+fuzz:     # SECONDS=120 of libFuzzer on parse → check → derive, and as long of drawn inputs for every command
+	@scripts/fuzz $(SECONDS)
 mutants:  # one-line changes of the sources: nine of ten must be seen by the tests
 	@scripts/mutants
 steep-models:  # COUNT=10000 random steep models against 113 bits; FIRST=1 chooses which
@@ -23,5 +23,7 @@ format:   # clang-format over the sources
 	@scripts/format
 install:  # PREFIX=/usr/local by default
 	@scripts/install
+package:  # build/packages/*.deb: the program, the module with LLVM, what other programs are built with
+	@scripts/package
 clean:
 	@rm -rf build build-sanitize build-fuzz

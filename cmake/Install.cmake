@@ -1,11 +1,12 @@
-# `cmake --install`: the program, the library, the headers, and the package that find_package(maupertuis) finds.
+# `cmake --install`: the program, the library, the headers, and the package that find_package(maupertuis) finds. Each part belongs to one
+# of the packages of cmake/Package.cmake: runtime, llvm, dev.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/maupertuis)
-install(TARGETS maupertuis EXPORT maupertuis_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/maupertuis DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(EXPORT maupertuis_targets FILE maupertuis-targets.cmake NAMESPACE maupertuis:: DESTINATION ${package_dir})
+install(TARGETS maupertuis EXPORT maupertuis_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/maupertuis DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
+install(EXPORT maupertuis_targets FILE maupertuis-targets.cmake NAMESPACE maupertuis:: DESTINATION ${package_dir} COMPONENT dev)
 configure_package_config_file(cmake/maupertuis-config.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/maupertuis-config.cmake
   INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/maupertuis-config-version.cmake
@@ -13,13 +14,20 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/maupertuis-config-v
 install(FILES
   ${CMAKE_CURRENT_BINARY_DIR}/maupertuis-config.cmake
   ${CMAKE_CURRENT_BINARY_DIR}/maupertuis-config-version.cmake
-  DESTINATION ${package_dir})
+  DESTINATION ${package_dir} COMPONENT dev)
 
-install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/maupertuis FILES_MATCHING PATTERN *.lag)
+install(FILES LICENSE CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT sources)  # packages have these as Debian wants them
+install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
+install(DIRECTORY docs/manual docs/theory DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT runtime)
+install(DIRECTORY models DESTINATION ${CMAKE_INSTALL_DATADIR}/maupertuis COMPONENT runtime FILES_MATCHING PATTERN *.lag)
 if(MAUPERTUIS_PROGRAM)
-  install(TARGETS maup RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS maup RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
+  include(cmake/Documents.cmake)
+  include(cmake/Desktop.cmake)
 endif()
 if(TARGET maup_kernel_llvm)
-  install(TARGETS maup_kernel_llvm LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/maupertuis)
+  install(TARGETS maup_kernel_llvm LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/maupertuis COMPONENT llvm)
+endif()
+if(MAUPERTUIS_PROGRAM AND PROJECT_IS_TOP_LEVEL)
+  include(cmake/Package.cmake)
 endif()

@@ -26,6 +26,9 @@ class CommandLine {
   /// Reads the arguments and runs the command that they name.
   ExitCode run(int argc, char** argv);
 
+  /// What --help says, in parts.
+  OptionTable table() const;
+
  private:
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
@@ -56,6 +59,8 @@ void add_fmt(CommandLine& line);
 void add_new(CommandLine& line);
 void add_explain(CommandLine& line);
 void add_doctor(CommandLine& line);
+void add_completions(CommandLine& line);
+void add_manual(CommandLine& line);
 /// The commands of later versions: they say so.
 void add_later_commands(CommandLine& line);
 

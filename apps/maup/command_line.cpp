@@ -16,6 +16,8 @@
 namespace maupertuis::app {
 namespace {
 
+constexpr const char* version_text = "maup " MAUPERTUIS_VERSION;
+
 std::string last_resort(const char* what) {
   return fmt::format(
       "maup: internal error: {}\nThis is a defect of maup, not of your model. Please report it, with the model and the "
@@ -55,7 +57,7 @@ ExitCode outcome_of(const Action& action, Console& console) {
 
 struct CommandLine::Implementation {
   CommandParser parser{"Lagrangian mechanics: a model file in, certified equations and machine-precision motion out.",
-                       "maup " MAUPERTUIS_VERSION,
+                       version_text,
                        "\n`maup COMMAND --help` shows examples and options. A first model: maup new pendulum"};
   Console console;
   bool json = false;
@@ -103,6 +105,12 @@ ExitCode CommandLine::run(int argc, char** argv) {
   return ExitCode::RunFailed;
 }
 
+OptionTable CommandLine::table() const {
+  OptionTable table = implementation_->parser.table();
+  table.version = version_text;
+  return table;
+}
+
 void add_model_options(Command& command, ModelOptions& options) {
   command.add_option("MODEL", options.path, "The model file (.lag), or - for standard input")->required();
   command.add_option("--set", options.overrides.parameters, "Another value of a parameter, e.g. m=2kg")
@@ -113,31 +121,44 @@ void add_model_options(Command& command, ModelOptions& options) {
       ->type_name("NAME=VALUE");
 }
 
-int run(int argc, char** argv) {
-  // A closed pipe is then an error of the write, which is said, instead of a signal.
-  std::signal(SIGPIPE, SIG_IGN);
-  watch_interrupts();
+namespace {
+
+void add_all_commands(CommandLine& line) {
+  add_check(line);
+  add_derive(line);
+  add_simulate(line);
+  add_test(line);
+  add_invariants(line);
+  add_hamiltonian(line);
+  add_compare(line);
+  add_reduce(line);
+  add_modes(line);
+  add_orbits(line);
+  add_action(line);
+  add_plot(line);
+  add_animate(line);
+  add_report(line);
+  add_fmt(line);
+  add_new(line);
+  add_explain(line);
+  add_doctor(line);
+  add_completions(line);
+  add_manual(line);
+  add_later_commands(line);
+}
+
+}  // namespace
+
+OptionTable option_table() {
+  CommandLine line;
+  add_all_commands(line);
+  return line.table();
+}
+
+int run_command_line(int argc, char** argv) {
   try {
     CommandLine line;
-    add_check(line);
-    add_derive(line);
-    add_simulate(line);
-    add_test(line);
-    add_invariants(line);
-    add_hamiltonian(line);
-    add_compare(line);
-    add_reduce(line);
-    add_modes(line);
-    add_orbits(line);
-    add_action(line);
-    add_plot(line);
-    add_animate(line);
-    add_report(line);
-    add_fmt(line);
-    add_new(line);
-    add_explain(line);
-    add_doctor(line);
-    add_later_commands(line);
+    add_all_commands(line);
     return static_cast<int>(line.run(argc, argv));
   } catch (const std::bad_alloc&) {
     std::fputs("maup: out of memory.\n", stderr);
@@ -147,6 +168,13 @@ int run(int argc, char** argv) {
     std::fputs(last_resort("unknown exception").c_str(), stderr);
   }
   return static_cast<int>(ExitCode::RunFailed);
+}
+
+int run(int argc, char** argv) {
+  // A closed pipe is then an error of the write, which is said, instead of a signal.
+  std::signal(SIGPIPE, SIG_IGN);
+  watch_interrupts();
+  return run_command_line(argc, argv);
 }
 
 }  // namespace maupertuis::app

@@ -1,8 +1,11 @@
 #include "options.hpp"
 
+#include "option_table_of.hpp"
+
 #include <CLI/CLI.hpp>
 
 #include <cstdint>
+#include <map>
 #include <optional>
 
 namespace maupertuis::app {
@@ -65,10 +68,11 @@ class HelpWithExamples : public CLI::Formatter {
 struct CommandParser::Implementation {
   CLI::App app;
   std::deque<Command> commands;
+  std::map<std::string, std::string> examples;  // by command
 };
 
 CommandParser::CommandParser(const std::string& what, const std::string& version, const std::string& footer)
-    : implementation_(new Implementation{CLI::App(what, "maup"), {}}) {
+    : implementation_(new Implementation{CLI::App(what, "maup"), {}, {}}) {
   CLI::App& app = implementation_->app;
   app.require_subcommand(1);
   app.set_version_flag("--version", version);
@@ -82,8 +86,16 @@ Command& CommandParser::add(const std::string& name, const std::string& summary,
                             std::function<void()> chosen) {
   CLI::App& command = *implementation_->app.add_subcommand(name, summary);
   command.formatter(std::make_shared<HelpWithExamples>(examples));
+  implementation_->examples[name] = examples;
   command.callback(std::move(chosen));
   return implementation_->commands.emplace_back(command);
+}
+
+OptionTable CommandParser::table() const {
+  OptionTable table;
+  fill_option_table(implementation_->app, table);
+  for (CommandRow& command : table.commands) command.examples = implementation_->examples.at(command.name);
+  return table;
 }
 
 CommandParser::Outcome CommandParser::parse(int argc, char** argv, std::ostream& out, std::ostream& err) {

@@ -1,4 +1,6 @@
 #pragma once
+#include "option_table.hpp"
+
 #include <deque>
 #include <functional>
 #include <initializer_list>
@@ -84,6 +86,8 @@ class CommandParser {
   Command& add(const std::string& name, const std::string& summary, const std::string& examples, std::function<void()> chosen);
   /// What is answered goes to `out`, what is told of a mistake to `err`.
   Outcome parse(int argc, char** argv, std::ostream& out, std::ostream& err);
+  /// What --help says, in parts; all but the version.
+  OptionTable table() const;
 
  private:
   struct Implementation;

@@ -2,6 +2,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace maupertuis::app {
 
@@ -13,6 +14,9 @@ struct Starter {
 
 /// The fixed ones, from starters/*.lag.
 std::span<const Starter> starters();
+
+/// Of all starters, sorted; `chain` among them.
+std::vector<std::string> starter_names();
 
 /// N pendulums, each hung from the one before.
 std::string chain_starter(int links);

@@ -5,7 +5,6 @@
 #include "run_options.hpp"
 #include "video.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <maupertuis/drawing.hpp>
@@ -246,7 +245,7 @@ ExitCode animate(AnimateOptions o, Console& console) {
 
 void add_animate(CommandLine& line) {
   const auto options = std::make_shared<AnimateOptions>();
-  CLI::App& command = line.add("animate", "The drawing in motion: MP4, GIF, a page, an animated SVG; or one moment of it",
+  Command& command = line.add("animate", "The drawing in motion: MP4, GIF, a page, an animated SVG; or one moment of it",
                                "  maup animate pendulum.lag -o pendulum.mp4\n"
                                "  maup animate top.lag -o top.gif --size 480x360 --to 4s --speed 0.5\n"
                                "  maup animate pendulum.lag --still 2s -o figure.pdf\n",
@@ -263,7 +262,7 @@ void add_animate(CommandLine& line) {
   command.add_option("--to", options->to, "Up to this time")->type_name("TIME");
   command.add_flag("--once", options->once, "Plays once; GIF and SVG begin anew otherwise");
   command.add_flag_callback("--loop", [options] { options->once = false; }, "Begins anew at the end (the default of GIF and SVG)");
-  command.add_option("--trail", options->trail, "What points leave behind")->check(CLI::IsMember({"fading", "whole", "none"}))->type_name("fading|whole|none");
+  command.add_option("--trail", options->trail, "What points leave behind")->one_of({"fading", "whole", "none"})->type_name("fading|whole|none");
   command.add_option("--view", options->view, "From where a drawing in space is seen, in degrees (default: -51.6,18.3)")->type_name("AZIMUTH,ELEVATION");
   command.add_flag("--dark", options->dark, "Light on dark");
   command.add_flag("--plain", options->plain, "Without scale, axes, direction of gravity and time");

@@ -18,13 +18,6 @@ struct NewOptions {
   bool list = false;
 };
 
-std::vector<std::string> names() {
-  std::vector<std::string> all{"chain"};
-  for (const Starter& starter : starters()) all.emplace_back(starter.name);
-  std::sort(all.begin(), all.end());
-  return all;
-}
-
 std::string text_of(const NewOptions& options) {
   if (options.name == "chain") return chain_starter(options.links);
   for (const Starter& starter : starters())
@@ -33,9 +26,9 @@ std::string text_of(const NewOptions& options) {
 }
 
 void unknown_starter(const std::string& name, Diagnostics& diagnostics) {
-  const std::string near = did_you_mean(name, names());
+  const std::string near = did_you_mean(name, starter_names());
   diagnostics.error("E0808", {}, fmt::format("There is no starter named {}.", name), {},
-                    near.empty() ? fmt::format("The starters are {}.", fmt::join(names(), ", "))
+                    near.empty() ? fmt::format("The starters are {}.", fmt::join(starter_names(), ", "))
                                  : fmt::format("Did you mean {}?", near));
 }
 
@@ -54,9 +47,9 @@ ExitCode finish_new(ExitCode code, const std::string& path, const Diagnostics& d
 
 ExitCode list_starters(Console& console) {
   Json document = json_document("new");
-  document["starters"] = names();
+  document["starters"] = starter_names();
   if (console.json()) console.print_document(document);
-  else console.print(fmt::format("{}\n", fmt::join(names(), "\n")));
+  else console.print(fmt::format("{}\n", fmt::join(starter_names(), "\n")));
   return ExitCode::Fine;
 }
 
@@ -87,6 +80,13 @@ ExitCode write_starter(const NewOptions& options, Console& console) {
 }
 
 }  // namespace
+
+std::vector<std::string> starter_names() {
+  std::vector<std::string> all{"chain"};
+  for (const Starter& starter : starters()) all.emplace_back(starter.name);
+  std::sort(all.begin(), all.end());
+  return all;
+}
 
 void add_new(CommandLine& line) {
   const auto options = std::make_shared<NewOptions>();

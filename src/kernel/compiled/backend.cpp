@@ -95,8 +95,11 @@ std::vector<char> ask_module(const Request& request, Compiled& out) {
 fs::path module_path() {
   if (const char* const named = std::getenv("MAUPERTUIS_LLVM_MODULE")) return named;
   std::error_code ignored;
-  const fs::path beside = program_folder() / "../lib/maupertuis" / MAUPERTUIS_LLVM_FILE;
-  if (fs::exists(beside, ignored)) return beside.lexically_normal();
+  // As it was built, and as it was installed, wherever the whole of it has been moved since.
+  for (const char* const folder : {"../lib/maupertuis", MAUPERTUIS_MODULE_FROM_PROGRAM}) {
+    const fs::path beside = program_folder() / folder / MAUPERTUIS_LLVM_FILE;
+    if (fs::exists(beside, ignored)) return beside.lexically_normal();
+  }
   return fs::path(MAUPERTUIS_MODULE_FOLDER) / MAUPERTUIS_LLVM_FILE;
 }
 
