@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <maupertuis/interrupt_scope.hpp>
 #include <maupertuis/vector_instructions.hpp>
 
 #include <csignal>

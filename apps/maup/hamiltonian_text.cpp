@@ -77,7 +77,7 @@ Json energy_json(const PhaseSpace& found) {
   const Hamiltonian& h = found.hamiltonian;
   if (h.legendre.readable.value) return form_json(h.legendre.readable, h.order);
   for (const DerivationStep& line : found.lines)
-    if (line.left == "H" && line.right) {
+    if (line.right && to_plain(line.left) == "H") {
       Json out = form_json({line.right, line.intermediates, {}}, h.order);
       out["has_velocities"] = true;
       return out;

@@ -26,16 +26,16 @@ class SparseGradient {
 };
 
 /// An entry of a matrix of derivatives that is not 0 as it stands.
-struct JacobianEntry {
+struct DerivativeEntry {
   std::size_t row = 0, column = 0;
   Expr value;
 };
 
 /// ∂rows_i/∂symbols_j without its zeros, by rows, then columns. Cost O(nodes below each row), not O(rows · symbols).
-std::vector<JacobianEntry> jacobian(std::span<const Expr> rows, std::span<const Expr> symbols);
+std::vector<DerivativeEntry> jacobian(std::span<const Expr> rows, std::span<const Expr> symbols);
 
 /// The same, or nothing where it has more than `most` entries: told at the price of the first `most`.
-std::optional<std::vector<JacobianEntry>> sparse_jacobian(std::span<const Expr> rows, std::span<const Expr> symbols,
+std::optional<std::vector<DerivativeEntry>> sparse_jacobian(std::span<const Expr> rows, std::span<const Expr> symbols,
                                                           std::size_t most);
 
 }  // namespace maupertuis

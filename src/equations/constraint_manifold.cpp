@@ -121,7 +121,7 @@ ConstraintManifold::Impl::Impl(const EquationsOfMotion& equations, const std::ve
   const auto entries = sparse_jacobian(equations.momenta, v, is_sparse() ? most_of_metric : n * n);
   has_metric = entries.has_value();
   if (entries)
-    for (const JacobianEntry& e : *entries) mass.add(e.row, e.column, e.value);
+    for (const DerivativeEntry& e : *entries) mass.add(e.row, e.column, e.value);
   else
     for (std::size_t i = 0; i < n; ++i) mass.add(i, i, differentiate(equations.momenta[i], v[i]));
   mass.values = in_terms(mass.values);
@@ -363,7 +363,7 @@ std::vector<double> ConstraintManifold::matrix(const MotionState& state) const {
 std::vector<double> ConstraintManifold::mass(const MotionState& state) const {
   if (impl_->has_metric) return by_rows(impl_->numbers(impl_->mass, state), impl_->n, impl_->n);
   Entries all;
-  for (const JacobianEntry& e : jacobian(impl_->momenta, impl_->v)) all.add(e.row, e.column, e.value);
+  for (const DerivativeEntry& e : jacobian(impl_->momenta, impl_->v)) all.add(e.row, e.column, e.value);
   all.values = impl_->in_terms(all.values);
   all.evaluation.emplace(all.values);
   return by_rows(impl_->numbers(all, state), impl_->n, impl_->n);

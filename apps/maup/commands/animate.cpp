@@ -202,7 +202,7 @@ ExitCode animate(AnimateOptions o, Console& console) {
     check_tools(o, diagnostics);
     if (readable_model && study.wrong()) return finish_usage(console, study, "animate");
   }
-  if (const std::string statement = run_statement(o.run); !statement.empty()) study.replace_run(statement);
+  put_in_run(o.run, study);
   std::optional<SimulationResult> result;
   const std::optional<Drawing> drawing = drawing_of(o, study, settings, console, result);
   if (!drawing) return finish(console, study, document);

@@ -19,10 +19,10 @@ std::vector<SparseGradient::Entry> SparseGradient::operator()(Expr e) const {
   return entries;
 }
 
-std::optional<std::vector<JacobianEntry>> sparse_jacobian(std::span<const Expr> rows, std::span<const Expr> symbols,
+std::optional<std::vector<DerivativeEntry>> sparse_jacobian(std::span<const Expr> rows, std::span<const Expr> symbols,
                                                           std::size_t most) {
   const SparseGradient gradient(symbols);
-  std::vector<JacobianEntry> entries;
+  std::vector<DerivativeEntry> entries;
   for (std::size_t row = 0; row < rows.size(); ++row) {
     for (const auto& [column, value] : gradient(rows[row])) entries.push_back({row, column, value});
     if (entries.size() > most) return std::nullopt;
@@ -30,7 +30,7 @@ std::optional<std::vector<JacobianEntry>> sparse_jacobian(std::span<const Expr> 
   return entries;
 }
 
-std::vector<JacobianEntry> jacobian(std::span<const Expr> rows, std::span<const Expr> symbols) {
+std::vector<DerivativeEntry> jacobian(std::span<const Expr> rows, std::span<const Expr> symbols) {
   return *sparse_jacobian(rows, symbols, std::numeric_limits<std::size_t>::max());
 }
 
