@@ -121,8 +121,6 @@ const Statement* statement_of(const syntax::SyntaxTree* tree) {
   return nullptr;
 }
 
-
-
 /// A length of time in the place of the condition is a common slip.
 void check_until(const RunOptions& options, Diagnostics& diagnostics) {
   if (options.until.empty() || !parse_time(options.until)) return;
