@@ -238,7 +238,7 @@ TEST_CASE("the paths as a file, in x") {
 }
 
 TEST_CASE("with x in the place of t a report has primes alone, also on left sides") {
-  const Outcome told = maup({"report", gallery("brachistochrone"), "-o", "-"});
+  const Outcome told = maup({"report", gallery("brachistochrone"), "-o", "-", "--budget", "none"});
   CHECK_MESSAGE(told.code == 0, told.err);
   CHECK(contains(told.out, "&#x2032;"));
   for (const char* const dot : {"&#x02D9;", "&#x00A8;"}) CHECK(!contains(told.out, dot));
@@ -259,11 +259,11 @@ TEST_CASE("S along a motion has the unit of L times that of what stands in the p
 }
 
 TEST_CASE("the paths of a model in its report, which needs no run") {
-  const Outcome told = maup({"report", gallery("oscillator_path"), "-o", "-"});
+  const Outcome told = maup({"report", gallery("oscillator_path"), "-o", "-", "--budget", "none"});
   CHECK_MESSAGE(told.code == 0, told.err);
   CHECK(contains(told.out, "Stationary paths of the action"));
   CHECK(contains(told.out, "by the inertia of the second variation"));
-  const Outcome unreachable = maup({"report", "-", "-o", "-"}, oscillator("3.14159265358979"));
+  const Outcome unreachable = maup({"report", "-", "-o", "-", "--budget", "none"}, oscillator("3.14159265358979"));
   CHECK(unreachable.code != 0);
   CHECK(contains(unreachable.err, "E1204"));
 }

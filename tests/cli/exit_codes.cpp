@@ -17,7 +17,7 @@ TEST_CASE("0: a right model goes through every command") {
     CHECK(!outcome.out.empty());
     CHECK(outcome.err.empty());
   }
-  const Outcome report = maup({"report", model, "-o", folder.path("page.html")});
+  const Outcome report = maup({"report", model, "-o", folder.path("page.html"), "--budget", "none"});
   CHECK_MESSAGE(report.code == 0, report.err);
   CHECK(contains(read(folder.path("page.html")), "<math"));
 }

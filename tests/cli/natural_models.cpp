@@ -28,3 +28,29 @@ TEST_CASE("invariants: a robot whose frames hold derivatives") {
   const Outcome run = shell("timeout 200 \"$MAUP\" invariants " PROJECT_DIR "/tests/problems/urdf_panda.lag");
   CHECK(run.code == 0);
 }
+
+TEST_CASE("action: ends that leave a free particle a translation have an index, by both counts") {
+  const Folder folder;
+  const std::string ends[] = {"(0 m, free) at 0 to (1 m, free) at 1000 s", "(free, free) at 0 to (free, free) at 1 ms", "(free, 1 m) at 0 to (free, 3 m) at 7 s"};
+  for (const char* mass : {"1 kg", "1e-6 kg", "1e6 kg"})
+    for (const std::string& e : ends) {
+      CAPTURE(e);
+      const Outcome run = maup({"action", "-", "--ends", e, "--paths", "2"},
+                               std::string("system free\nparam m = ") + mass + "\ncoord x, y : length\npoint P mass m at (x, y)\n");
+      CHECK(run.code == 0);
+      CHECK_MESSAGE(run.err.empty(), run.err);
+      CHECK(run.out.find("a minimum of S (index 0)") != std::string::npos);
+    }
+}
+
+TEST_CASE("derive: L with a condition between a coordinate and its velocity is certified or refused for its jump") {
+  const char* const jumps[] = {"piecewise(x < x' : x'^2, else : x'^2/2)", "x'^2/2 - max(x, x')", "x'^2/2 + min(x, x')^2"};
+  const char* const smooth[] = {"x'^2/2 + piecewise(x < x' : (x' - x)^2, else : 0)", "x'^2/2 + max(x' - x, 0)^2", "x'^2/2 + abs(x' - x)^3"};
+  for (const char* l : jumps) CHECK(maup({"derive", "-"}, std::string("system s\ndimensionless\ncoord x : number\nL = ") + l + "\n").err.find("error E043") != std::string::npos);
+  for (const char* l : smooth) {
+    CAPTURE(l);
+    const Outcome run = maup({"derive", "-"}, std::string("system s\ndimensionless\ncoord x : number\nL = ") + l + "\n");
+    CHECK(run.code == 0);
+    CHECK(run.out.find("Certificate: passed") != std::string::npos);
+  }
+}

@@ -137,7 +137,11 @@ TEST_CASE("2: a file that cannot be read, by every command") {
 TEST_CASE("a mistake in an option is shown in what the option said, not in a line that nobody wrote") {
   const Folder folder;
   const std::string model = folder.write("pendulum.lag", pendulum);
-  const std::vector<std::vector<std::string>> lines{{"simulate", model, "--until", "20s"},
+  const Outcome time = maup({"simulate", model, "--until", "20s"});
+  CHECK(time.code == 2);
+  CHECK(contains(time.err, "Write --duration 20s"));
+  CHECK_FALSE(contains(time.err, "run until"));
+  const std::vector<std::vector<std::string>> lines{{"simulate", model, "--until", "θ = nonsense"},
                                                     {"simulate", model, "--until", "θ = 0", "--within", "3 kg"},
                                                     {"modes", model, "--sweep", "m = 1 .. 2 kgg"},
                                                     {"modes", model, "--y", "θ + nonsense"},

@@ -85,12 +85,37 @@ pid_t start(const std::vector<std::string>& arguments, const std::string& in, co
   ::_exit(127);
 }
 
+/// Whether it handles SIGINT: before that it has not begun.
+bool has_begun(pid_t process) {
+  std::istringstream status(read("/proc/" + std::to_string(process) + "/status"));
+  for (std::string line; std::getline(status, line);)
+    if (line.rfind("SigCgt:", 0) == 0) return (std::stoull(line.substr(7), nullptr, 16) >> (SIGINT - 1)) & 1;
+  return false;
+}
+
+void wait_until_busy(pid_t process, double processor_seconds) {
+  const auto begin = std::chrono::steady_clock::now();
+  for (int asleep = 0; asleep < 5 && std::chrono::steady_clock::now() - begin < std::chrono::seconds(60);) {
+    ::usleep(20'000);
+    if (!has_begun(process)) continue;
+    const std::string line = read("/proc/" + std::to_string(process) + "/stat");
+    std::istringstream stat(line.substr(line.rfind(')') + 2));
+    std::string state, skipped;
+    stat >> state;
+    for (int i = 0; i < 10; ++i) stat >> skipped;
+    double user = 0, system = 0;
+    stat >> user >> system;
+    if ((user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK)) >= processor_seconds || state == "Z") return;
+    asleep = state == "S" ? asleep + 1 : 0;
+  }
+}
+
 }  // namespace
 
 Outcome interrupted(const std::vector<std::string>& arguments, int signal, double after, const std::string& input) {
   const Folder folder;
   const pid_t process = start(arguments, input, folder.path("out"), folder.path("err"));
-  ::usleep(static_cast<useconds_t>(1e6 * after));
+  wait_until_busy(process, after);
   const auto begin = std::chrono::steady_clock::now();
   ::kill(process, signal);
   int status = 0;

@@ -62,7 +62,7 @@ class Page {
   Page(const ReportOptions& options, Study& study, SectionBudget& budget, const SimulationOptions& settings, const Console& console)
       : options_(options), study_(study), budget_(budget), settings_(settings), console_(console), context_(*study.model()->system.context) {}
 
-  /// What every section stands on. Without it there is no page; the diagnostics say why.
+  /// What every section stands on. Without it there is no page; the diagnostics say why. False where it did not come in time (E0814).
   bool certify() {
     if (budget_.wanted("equations") || budget_.wanted("derivation")) derive();
     const bool came = budget_.attempt("certificate", context_, [&](const Interrupt& interrupt) {
@@ -70,16 +70,28 @@ class Page {
       study_.certificate();
     });
     study_.set_interrupt(&interrupt_flag());
-    if (came) return study_.certificate() != nullptr;
+    if (came) return true;
     study_.diagnostics().error("E0814", {}, "the budget was used up before the equations were certified", "Nothing is shown that is not.",
                                "Give the page more time, such as --budget 10min.");
     return false;
   }
 
+  /// A run that the budget ends is shown up to there.
+  void run() {
+    if (options_.without_run || is_about_paths_alone(model())) return;
+    SimulationOptions of_run = report_run(model(), settings_);
+    if (of_run.errors != ErrorEstimates::None) of_run.errors = ErrorEstimates::Rows;
+    budget_.carry_out_in_part("motion", [&](const Interrupt& interrupt) {
+      of_run.interrupt = interrupt;
+      found_.run = run_model(study_, of_run, console_);
+    });
+    if (found_.run && found_.run->ending == Ending::Interrupted)
+      found_.run->reason = fmt::format("its share of the budget of {} was used up", options_.budget);
+  }
+
   /// False where what was asked for cannot be had: an error of the study then, and no page is written.
   bool find() {
-    if (!options_.without_run && !is_about_paths_alone(model())) run();
-    if (study_.wrong() || !find_long_run()) return false;
+    if (!find_long_run()) return false;
     find_paths();
     if (study_.wrong()) return false;
     budget_.carry_out("expectations", context_, [&](const Interrupt& interrupt) { verify_model(interrupt); });
@@ -118,18 +130,6 @@ class Page {
     });
     study_.set_interrupt(&interrupt_flag());
     if (!derived_) budget_.leave_out("derivation");
-  }
-
-  /// A run that the budget ends is shown up to there.
-  void run() {
-    SimulationOptions of_run = report_run(model(), settings_);
-    if (of_run.errors != ErrorEstimates::None) of_run.errors = ErrorEstimates::Rows;
-    budget_.carry_out_in_part("motion", [&](const Interrupt& interrupt) {
-      of_run.interrupt = interrupt;
-      found_.run = run_model(study_, of_run, console_);
-    });
-    if (found_.run && found_.run->ending == Ending::Interrupted)
-      found_.run->reason = fmt::format("its share of the budget of {} was used up", options_.budget);
   }
 
   /// What was asked about the long run.
@@ -274,6 +274,8 @@ ExitCode report(const ReportOptions& options, Console& console) {
   std::optional<SectionBudget> budget(std::in_place, seconds, options.sections, console);
   Page page(options, study, *budget, settings, console);
   if (!page.certify()) return finish_without(console, study, "report");
+  if (!study.wrong()) page.run();
+  if (study.wrong()) return finish(console, study, document);
   if (!page.find()) return finish_without(console, study, "report");
   const std::string html = page.html();
   document["sections"] = budget->written();

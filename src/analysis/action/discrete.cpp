@@ -137,7 +137,7 @@ struct Assembler {
     const Vector anchor = nodes.col(trial.mesh.rule_of(e).anchor);
     const Matrix apart = nodes.colwise() - anchor;  // so that a path far from 0 has slopes as exact as one near it
     const Index n = nodes.rows(), count = order == 2 ? rule.points.size() : 0;
-    BlockSum hessian(n, rule.degree + 1, 4 * count), kinetic(n, rule.degree + 1, count);
+    BlockSum hessian(n, rule.degree + 1, 4 * count), kinetic(n, rule.degree + 1, count), displacement(n, rule.degree + 1, count);
     for (Index g = 0; g < rule.points.size(); ++g) {
       const auto [t, w, phi, dphi] = place_of(trial.mesh, e, g);
       const Vector q = anchor + apart * phi, v = apart * dphi;
@@ -148,11 +148,12 @@ struct Assembler {
       out.action_size += std::abs(w * density.lagrangian);
       out.integrals += w * density.integrals;
       if (order > 0) add_gradient(e, phi, dphi, w);
-      if (order == 2) add_hessian(hessian, kinetic, phi, dphi, w);
+      if (order == 2) add_hessian(hessian, kinetic, displacement, phi, dphi, w);
     }
     if (order < 2) return;
     out.hessians.push_back(hessian.total());
     out.kinetic.push_back(kinetic.total());
+    out.displacement.push_back(displacement.total());
   }
 
   void add_gradient(Index e, const Vector& phi, const Vector& dphi, double w) {
@@ -166,7 +167,7 @@ struct Assembler {
     }
   }
 
-  void add_hessian(BlockSum& hessian, BlockSum& kinetic, const Vector& phi, const Vector& dphi, double w) {
+  void add_hessian(BlockSum& hessian, BlockSum& kinetic, BlockSum& displacement, const Vector& phi, const Vector& dphi, double w) {
     const Index n = functional.freedoms();
     const Matrix qv = density.hessian.topRightCorner(n, n), vv = density.hessian.bottomRightCorner(n, n);
     hessian.add(density.hessian.topLeftCorner(n, n), phi, phi, w);
@@ -174,6 +175,7 @@ struct Assembler {
     hessian.add(qv.transpose(), dphi, phi, w);
     hessian.add(vv, dphi, dphi, w);
     kinetic.add(norm_of(vv).asDiagonal(), dphi, dphi, w);
+    displacement.add(norm_of(vv).asDiagonal(), phi, phi, w / (trial.mesh.whole * trial.mesh.whole));
   }
 };
 

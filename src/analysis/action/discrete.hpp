@@ -70,6 +70,7 @@ struct Assembly {
   Matrix integral_gradients;             // [n nodes × k]
   std::vector<Matrix> hessians;          // [elements] each [n (degree + 1)]², node by node
   std::vector<Matrix> kinetic;           // order 2: the same for ∫ ξ' |M| ξ' dt: by what eigenvalues are measured
+  std::vector<Matrix> displacement;      // order 2: the same for ∫ ξ |M| ξ dt/T², T the whole: what a translation, which has no ξ', is measured by
 };
 
 /// order as of Functional::evaluate.

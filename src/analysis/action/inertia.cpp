@@ -53,7 +53,7 @@ class Counter {
     for (Index e = 0; e < trial.mesh.elements(); ++e) {
       const auto at = static_cast<std::size_t>(e);
       hessians_.push_back(reduced_element(trial, a_.hessians[at], directions_, e));
-      kinetic_.push_back(reduced_element(trial, a_.kinetic[at], directions_, e));
+      norms_.push_back(reduced_element(trial, a_.kinetic[at] + a_.displacement[at], directions_, e));
       add_curvature(functional, e);
     }
     number_breaks();
@@ -93,7 +93,7 @@ class Counter {
 
   Index add_element(Index e, double shift, Matrix& rest) const {
     const auto at = static_cast<std::size_t>(e);
-    const Matrix all = hessians_[at] - shift * kinetic_[at];
+    const Matrix all = hessians_[at] - shift * norms_[at];
     const Index p = trial_.mesh.rule->degree, left = width(e, 0), right = width(e, p), inner = all.rows() - left - right;
     // Outer: the left break, the right break, the integral constraints.
     const Index outer = left + right + k_;
@@ -142,7 +142,7 @@ class Counter {
   Assembly a_;
   Directions directions_;
   std::vector<Vector> columns_;
-  std::vector<Matrix> hessians_, kinetic_;
+  std::vector<Matrix> hessians_, norms_;
   std::vector<Index> first_;  // where the unknowns of a break begin
   Index breaks_ = 0;
 };

@@ -3,8 +3,8 @@
 
 namespace maupertuis::action {
 
-/// The second variation on a mesh: how many of its eigenvalues, relative to ∫ ξ' |M| ξ' dt, are negative, and how many are
-/// zero to rounding.
+/// The second variation on a mesh: how many of its eigenvalues, relative to ∫ (ξ' |M| ξ' + ξ |M| ξ/T²) dt, are negative, and how many are
+/// zero to rounding: of a translation, which free ends can allow, ∫ ξ' |M| ξ' dt alone is zero as well.
 struct Inertia {
   std::size_t negative = 0, nullity = 0;
   double nearest = 0;  // no other eigenvalue lies within ± this
