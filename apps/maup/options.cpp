@@ -1,7 +1,5 @@
 #include "options.hpp"
 
-#include "option_table_of.hpp"
-
 #include <CLI/CLI.hpp>
 
 #include <cstdint>
@@ -64,6 +62,37 @@ class HelpWithExamples : public CLI::Formatter {
   std::string examples_;
 };
 
+/// "{auto,taylor,stiff}", which the parser says of a choice, behind the name of the value: METHOD:{auto,taylor,stiff}.
+std::vector<std::string> words_of(const std::string& value) {
+  const auto begin = value.find(":{"), end = value.rfind('}');
+  if (begin == std::string::npos || end == std::string::npos) return {};
+  return CLI::detail::split(value.substr(begin + 2, end - begin - 2), ',');
+}
+
+OptionRow row_of(const CLI::Option& option) {
+  OptionRow row;
+  row.positional = option.get_positional();
+  if (row.positional) row.names = {option.get_name(true, false)};
+  for (const std::string& name : option.get_snames()) row.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) row.names.push_back("--" + name);
+  if (option.get_items_expected_max() > 0) {
+    const std::string value = option.get_type_name();
+    row.value = value.substr(0, value.find(':'));
+    row.words = words_of(value);
+    row.value_optional = option.get_items_expected_min() == 0 && !row.positional;
+    row.many = option.get_items_expected_max() > 1;
+  }
+  row.what = option.get_description();
+  row.required = option.get_required();
+  return row;
+}
+
+std::vector<OptionRow> rows_of(const CLI::App& app) {
+  std::vector<OptionRow> rows;
+  for (const CLI::Option* option : app.get_options()) rows.push_back(row_of(*option));
+  return rows;
+}
+
 }  // namespace
 
 struct CommandParser::Implementation {
@@ -93,9 +122,20 @@ Command& CommandParser::add(const std::string& name, const std::string& summary,
 }
 
 OptionTable CommandParser::table() const {
+  const CLI::App& app = implementation_->app;
   OptionTable table;
-  fill_option_table(implementation_->app, table);
-  for (CommandRow& command : table.commands) command.examples = implementation_->examples.at(command.name);
+  table.program = app.get_name();
+  table.summary = app.get_description();
+  table.options = rows_of(app);
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    CommandRow row;
+    row.name = command->get_name();
+    row.summary = command->get_description();
+    row.examples = implementation_->examples.at(row.name);
+    row.later = command->get_group() != "Subcommands";
+    row.options = rows_of(*command);
+    table.commands.push_back(std::move(row));
+  }
   return table;
 }
 

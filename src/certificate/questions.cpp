@@ -76,7 +76,7 @@ void Questions::ask_about_matter() {
     if (p.mass) particles.push_back({ask(p.mass), ask(p.position)});
   for (const Body& b : system.bodies) {
     if (b.mass) particles.push_back({ask(b.mass), ask(b.position)});
-    bodies.push_back({ask(b.inertia.entries), ask(b.rotation.entries)});
+    if (b.inertia.rows > 0) bodies.push_back({ask(b.inertia.entries), ask(b.rotation.entries)});  // else it turns without effort
   }
   has_matter = !particles.empty() || !bodies.empty();
   if (!has_matter) return;

@@ -87,7 +87,7 @@ void add_energy(ReportContent& content, const EquationsOfMotion& equations, cons
 void add_values_along_run(ReportContent::Conserved& row, const EquationsOfMotion& equations, Expr function, const std::string& unit,
                           const Trajectory& run) {
   const auto values = along_run(equations, function, run);
-  if (values.empty()) return;
+  if (values.empty() || !std::isfinite(values[0])) return;  // the run ended where it began, in a state that has no such value
   row.value = quantity(values[0], unit, 10);
   row.drift = drift_of(values, unit);
 }

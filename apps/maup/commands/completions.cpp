@@ -5,7 +5,6 @@
 #include "json.hpp"
 #include "starters.hpp"
 
-
 namespace maupertuis::app {
 namespace {
 

@@ -87,7 +87,14 @@ ExitCode test_models(const TestOptions& options, Console& console) {
   Diagnostics wrong_options;
   const SimulationOptions settings = simulation_options(options.run, wrong_options);
   if (wrong_options.has_errors()) {
-    console.show(wrong_options, SourceText("maup test", ""));
+    const SourceText nowhere("maup test", "");
+    console.show(wrong_options, nowhere);
+    if (console.json()) {
+      Json document = json_document("test");
+      document["ok"] = false;
+      document["diagnostics"] = app::to_json(wrong_options, nowhere);
+      console.print_document(document);
+    }
     return ExitCode::Usage;
   }
   Json document = json_document("test");

@@ -35,13 +35,19 @@ std::string no_number(const std::string& text) {
   return {};
 }
 
-/// A page holds a program, whose words are not results.
+/// A page holds a program, whose words are not results; data are scripts with a type.
 std::string without_scripts(std::string text) {
-  for (auto begin = text.find("<script"); begin != std::string::npos; begin = text.find("<script", begin + 1)) {
+  for (auto begin = text.find("<script>"); begin != std::string::npos; begin = text.find("<script>", begin)) {
     const auto end = text.find("</script>", begin);
     text.erase(begin, end == std::string::npos ? end : end - begin);
   }
   return text;
+}
+
+/// A message quotes what was understood of an option; it is no result.
+std::string without_messages(const std::string& text) {
+  static const std::regex message("\"(message|reason|help)\": \"[^\n]*");
+  return text.find("\"message\"") == std::string::npos ? text : std::regex_replace(text, message, "");
 }
 
 /// Somebody typed the word: then it may be quoted.
@@ -61,7 +67,7 @@ std::string unknown_code(const std::string& text, const std::set<std::string>& c
 
 std::optional<std::string> of_numbers(const Input& input, const Outcome& outcome) {
   if (writes_no_number_itself(input)) return {};
-  if (const std::string line = no_number(outcome.out); !line.empty()) return "no number in the result: " + line;
+  if (const std::string line = no_number(without_messages(outcome.out)); !line.empty()) return "no number in the result: " + line;
   for (const auto& [name, text] : outcome.files) {
     const bool is_text = name.size() < 4 || name.compare(name.size() - 4, 4, ".npy") != 0;
     if (!is_text || name == "model.lag" || asks_for(input, "--errors")) continue;  // of an error inf is documented: no digit is certain
@@ -87,7 +93,8 @@ std::optional<std::string> failure(const Input& input, const Outcome& outcome, c
                                    const std::set<std::string>& catalogue) {
   const std::string command = input.arguments.empty() ? "" : input.arguments[0];
   const std::string all = outcome.err + "\n" + outcome.out;
-  if (has(all, "please report") || has(all, "Please report")) return command + ": " + line_with(all, has(all, "please report") ? "please report" : "lease report");
+  const bool asks_to_report = has(all, "please report") || has(all, "Please report");
+  if (asks_to_report && command != "explain") return command + ": " + line_with(all, has(all, "please report") ? "please report" : "lease report");
   if (has(outcome.err, "internal precondition")) return command + ": " + line_with(outcome.err, "internal precondition");
   if (outcome.signal) return command + ": ended by signal " + std::to_string(outcome.signal);
   if (outcome.too_long && !outcome.interruptible) return command + ": takes too long, and does not end when it is asked to";

@@ -11,6 +11,7 @@
 #include "supervisor.hpp"
 
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -100,7 +101,15 @@ Generator generator(std::uint64_t seed) {
 
 void print(const Input& input) { std::printf("%s\n", to_text(input).c_str()); }
 
+volatile std::sig_atomic_t asked_to_end = 0;
+
+/// What was counted until then is told; the commands themselves have handlers of their own.
+void end_in_good_order() {
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { asked_to_end = 1; });
+}
+
 int draw(const Asked& asked) {
+  end_in_good_order();
   const Generator drawn = generator(asked.seed);
   const Rules by = rules();
   const auto begin = std::chrono::steady_clock::now();
@@ -119,7 +128,7 @@ int draw(const Asked& asked) {
     std::ofstream(fs::path(asked.keep) / (std::to_string(asked.seed) + "_" + std::to_string(number) + ".fuzz"), std::ios::binary) << to_text(small);
   };
   supervisor.run(asked.first, asked.count, [&](std::uint64_t number) { return drawn.input(number); }, judge, tell,
-                 [&] { return passed() > asked.seconds; });
+                 [&] { return asked_to_end || passed() > asked.seconds; });
   const auto& counts = supervisor.counts();
   std::printf("\n%llu inputs in %.0f s; runs longer than 20 s that ended when asked: %llu; exit codes:", static_cast<unsigned long long>(counts.inputs), passed(),
               static_cast<unsigned long long>(counts.long_runs));

@@ -150,7 +150,8 @@ void Supervisor::run(std::uint64_t first, std::uint64_t count, const Draw& draw,
     shared_->clock_begin = seconds_of(CLOCK_MONOTONIC);
     std::fflush(nullptr);
     const pid_t pid = fork();
-    if (pid == 0) child(from, std::min(end, from + limits_.inputs_of_process), draw, judge);
+    const std::uint64_t last = std::min(end, from + limits_.inputs_of_process);
+    if (pid == 0) child(from, last, draw, judge);
     if (pid < 0) throw std::runtime_error("no process");
     clockid_t clock{};
     clock_getcpuclockid(pid, &clock);
@@ -170,12 +171,12 @@ void Supervisor::run(std::uint64_t first, std::uint64_t count, const Draw& draw,
     counts_.inputs += at - from;
     if (stopped) return;
     outcome.code = shared_->code;
-    if (asked != 0 && at < end) {
+    if (asked != 0 && at < last) {
       outcome.too_long = true;
       outcome.interruptible = shared_->interrupted;
     } else if (WIFSIGNALED(status)) {
       outcome.signal = WTERMSIG(status);
-    } else if (!shared_->failed && WEXITSTATUS(status) != 0) {
+    } else if (!shared_->failed && at < last) {
       outcome.signal = SIGABRT;  // it ended the program without returning
     }
     if (shared_->failed || outcome.too_long || outcome.signal) {
