@@ -175,7 +175,7 @@ void check_tools(const AnimateOptions& o, Diagnostics& diagnostics) {
     diagnostics.error("E0840", {}, fmt::format("{} cannot be made: {}.", o.output, problem), {}, "Take .html or .svg, which need nothing else.");
 }
 
-std::optional<Drawing> drawing_of(const AnimateOptions& o, Study& study, const SimulationOptions& settings, Console& console, std::optional<SimulationResult>& result) {
+std::optional<Drawing> drawing_of(Study& study, const SimulationOptions& settings, Console& console, std::optional<SimulationResult>& result) {
   if (study.wrong() || !study.model() || !study.equations()) return {};
   SimulationOptions run = report_run(*study.model(), settings);
   run.errors = ErrorEstimates::None;
@@ -185,7 +185,6 @@ std::optional<Drawing> drawing_of(const AnimateOptions& o, Study& study, const S
   if (!drawing)
     study.diagnostics().error("E0843", {}, fmt::format("{} has nothing to draw.", study.model()->system.name), "A drawing shows points, bodies, springs and what `draw` names; this model has none.",
                               "Mark a point, `point P at (x, y)`, or plot the coordinates: maup plot.");
-  static_cast<void>(o);
   return drawing;
 }
 
@@ -194,18 +193,16 @@ ExitCode animate(AnimateOptions o, Console& console) {
   Json document = json_document("animate");
   const bool readable_model = !study.wrong();
   const SimulationOptions settings = simulation_options(o.run, study.diagnostics(), study.tree());
-  if (o.output.empty()) o.output = (study.model() ? study.model()->system.name : "motion") + (o.still.empty() ? ".html" : ".svg");
   Diagnostics& diagnostics = study.diagnostics();
-  if (study.model() || !readable_model) {
-    Film unused = read_options(o, diagnostics);
-    check_output_files({{"-o", o.output, o.still.empty() ? FileKind::Animation : FileKind::Picture}}, o.model.path, diagnostics);
-    check_tools(o, diagnostics);
-    if (readable_model && study.wrong()) return finish_usage(console, study, "animate");
-  }
+  read_options(o, diagnostics);  // for what is wrong with them, before anything is computed
+  check_output_files({{"-o", o.output, o.still.empty() ? FileKind::Animation : FileKind::Picture}}, o.model.path, diagnostics);
+  check_tools(o, diagnostics);
+  if (readable_model && study.wrong()) return finish_usage(console, study, "animate");
   put_in_run(o.run, study);
   std::optional<SimulationResult> result;
-  const std::optional<Drawing> drawing = drawing_of(o, study, settings, console, result);
+  const std::optional<Drawing> drawing = drawing_of(study, settings, console, result);
   if (!drawing) return finish(console, study, document);
+  if (o.output.empty()) o.output = study.model()->system.name + (o.still.empty() ? ".html" : ".svg");
 
   Film film = read_options(o, diagnostics);
   std::string bytes;
