@@ -51,7 +51,7 @@ void read_size(const AnimateOptions& o, Film& film, Diagnostics& diagnostics) {
   if (o.size.empty()) return;
   unsigned width = 0, height = 0;
   char rest = 0;
-  const int count = std::sscanf(o.size.c_str(), "%5u%*1[x×X]%5u%c", &width, &height, &rest);
+  const int count = std::sscanf(o.size.c_str(), "%5u%*1[xX]%5u%c", &width, &height, &rest);
   const bool alone = o.size.find_first_not_of("0123456789") == std::string::npos;
   const auto good = [](unsigned side) { return side >= smallest_side && side <= largest_side; };
   if ((count != 2 && !(count == 1 && alone)) || !good(width) || (count == 2 && !good(height)))
