@@ -126,8 +126,14 @@ void choose_frames(const AnimateOptions& o, const Drawing& drawing, Film& film, 
 std::string caption(const Drawing& drawing, double elapsed, double step, const FrameOptions& picture) {
   if (!picture.furniture || drawing.times.size() < 2) return {};
   const double first = drawing.times.front(), t = drawing.times.back() < first ? first - elapsed : first + elapsed;
-  const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step > 0 ? step : 1))), 0, 9);
-  return fmt::format("t = {:.{}f}{}", t, digits, drawing.dimensionless ? "" : " s");
+  // In thousandths, millionths … of a second where the whole run is short.
+  static constexpr const char* units[] = {"s", "ms", "μs", "ns", "ps", "fs"};
+  const double longest = std::max(std::abs(first), std::abs(drawing.times.back()));
+  std::size_t unit = 0;
+  double factor = 1;
+  for (; !drawing.dimensionless && longest > 0 && longest * factor < 1e-2 && unit + 1 < std::size(units); ++unit) factor *= 1000;
+  const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step > 0 ? step * factor : 1))), 0, 9);
+  return fmt::format("t = {:.{}f}{}{}", t * factor, digits, drawing.dimensionless ? "" : " ", drawing.dimensionless ? "" : units[unit]);
 }
 
 std::string still_svg(const AnimateOptions& o, const Drawing& drawing, Film& film, Diagnostics& diagnostics) {
@@ -206,12 +212,13 @@ ExitCode animate(AnimateOptions o, Console& console) {
 
   Film film = read_options(o, diagnostics);
   std::string bytes;
+  const bool page = o.still.empty() && (ending_of(o) == ".html" || ending_of(o) == ".htm");
   const std::string ending = ending_of(o), title = study.model()->system.title.empty() ? study.model()->system.name : study.model()->system.title;
   if (!o.still.empty()) bytes = still_svg(o, *drawing, film, diagnostics);
-  else choose_frames(o, *drawing, film, diagnostics);
+  else if (!page) choose_frames(o, *drawing, film, diagnostics);
   if (study.wrong()) return finish_usage(console, study, "animate");
   if (o.still.empty()) {
-    if (ending == ".html" || ending == ".htm") bytes = animation_html(*drawing, title);
+    if (page) bytes = animation_html(*drawing, title);
     else if (ending == ".mp4" || ending == ".gif") bytes = video_of(o, *drawing, film, console, diagnostics);
     else {
       film.picture.trail_pieces = 4;
@@ -225,13 +232,16 @@ ExitCode animate(AnimateOptions o, Console& console) {
   }
   if (!study.wrong()) o.still.empty() ? write_result(o.output, bytes, diagnostics) : write_picture(o.output, bytes, diagnostics);
   document["file"] = o.output;
-  document["frames"] = film.elapsed.size();
-  document["width"] = film.picture.width;
-  document["height"] = film.picture.height;
-  if (o.still.empty()) document["fps"] = film.fps, document["speed"] = film.speed, document["seconds"] = film.seconds();
+  if (!page) {
+    document["frames"] = film.elapsed.size();
+    document["width"] = film.picture.width;
+    document["height"] = film.picture.height;
+  }
+  if (o.still.empty() && !page) document["fps"] = film.fps, document["speed"] = film.speed, document["seconds"] = film.seconds();
   const bool written = !study.wrong();
   if (written && !console.json())
-    console.say(o.still.empty() ? fmt::format("Wrote {} ({} frames, {:.3g} s, {} kB).\n", o.output, film.elapsed.size(), film.seconds(), (bytes.size() + 999) / 1000)
+    console.say(page ? fmt::format("Wrote {} ({} kB). Open it in any browser.\n", o.output, (bytes.size() + 999) / 1000)
+                : o.still.empty() ? fmt::format("Wrote {} ({} frames, {:.3g} s, {} kB).\n", o.output, film.elapsed.size(), film.seconds(), (bytes.size() + 999) / 1000)
                                 : fmt::format("Wrote {}.\n", o.output));
   if (!result->ok() && !console.json()) console.say(fmt::format("The run ended early: {}\n", result->reason));
   finish(console, study, document);
