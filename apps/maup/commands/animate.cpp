@@ -51,7 +51,7 @@ void read_size(const AnimateOptions& o, Film& film, Diagnostics& diagnostics) {
   if (o.size.empty()) return;
   unsigned width = 0, height = 0;
   char rest = 0;
-  const int count = std::sscanf(o.size.c_str(), "%5u%*1[x×X]%5u%c", &width, &height, &rest);
+  const int count = std::sscanf(o.size.c_str(), "%5u%*1[xX]%5u%c", &width, &height, &rest);
   const bool alone = o.size.find_first_not_of("0123456789") == std::string::npos;
   const auto good = [](unsigned side) { return side >= smallest_side && side <= largest_side; };
   if ((count != 2 && !(count == 1 && alone)) || !good(width) || (count == 2 && !good(height)))
@@ -126,8 +126,14 @@ void choose_frames(const AnimateOptions& o, const Drawing& drawing, Film& film, 
 std::string caption(const Drawing& drawing, double elapsed, double step, const FrameOptions& picture) {
   if (!picture.furniture || drawing.times.size() < 2) return {};
   const double first = drawing.times.front(), t = drawing.times.back() < first ? first - elapsed : first + elapsed;
-  const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step > 0 ? step : 1))), 0, 9);
-  return fmt::format("t = {:.{}f}{}", t, digits, drawing.dimensionless ? "" : " s");
+  // In thousandths, millionths … of a second where the whole run is short.
+  static constexpr const char* units[] = {"s", "ms", "μs", "ns", "ps", "fs"};
+  const double longest = std::max(std::abs(first), std::abs(drawing.times.back()));
+  std::size_t unit = 0;
+  double factor = 1;
+  for (; !drawing.dimensionless && longest > 0 && longest * factor < 1e-2 && unit + 1 < std::size(units); ++unit) factor *= 1000;
+  const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step > 0 ? step * factor : 1))), 0, 9);
+  return fmt::format("t = {:.{}f}{}{}", t * factor, digits, drawing.dimensionless ? "" : " ", drawing.dimensionless ? "" : units[unit]);
 }
 
 std::string still_svg(const AnimateOptions& o, const Drawing& drawing, Film& film, Diagnostics& diagnostics) {
@@ -175,7 +181,7 @@ void check_tools(const AnimateOptions& o, Diagnostics& diagnostics) {
     diagnostics.error("E0840", {}, fmt::format("{} cannot be made: {}.", o.output, problem), {}, "Take .html or .svg, which need nothing else.");
 }
 
-std::optional<Drawing> drawing_of(const AnimateOptions& o, Study& study, const SimulationOptions& settings, Console& console, std::optional<SimulationResult>& result) {
+std::optional<Drawing> drawing_of(Study& study, const SimulationOptions& settings, Console& console, std::optional<SimulationResult>& result) {
   if (study.wrong() || !study.model() || !study.equations()) return {};
   SimulationOptions run = report_run(*study.model(), settings);
   run.errors = ErrorEstimates::None;
@@ -185,7 +191,6 @@ std::optional<Drawing> drawing_of(const AnimateOptions& o, Study& study, const S
   if (!drawing)
     study.diagnostics().error("E0843", {}, fmt::format("{} has nothing to draw.", study.model()->system.name), "A drawing shows points, bodies, springs and what `draw` names; this model has none.",
                               "Mark a point, `point P at (x, y)`, or plot the coordinates: maup plot.");
-  static_cast<void>(o);
   return drawing;
 }
 
@@ -194,27 +199,26 @@ ExitCode animate(AnimateOptions o, Console& console) {
   Json document = json_document("animate");
   const bool readable_model = !study.wrong();
   const SimulationOptions settings = simulation_options(o.run, study.diagnostics(), study.tree());
-  if (o.output.empty()) o.output = (study.model() ? study.model()->system.name : "motion") + (o.still.empty() ? ".html" : ".svg");
   Diagnostics& diagnostics = study.diagnostics();
-  if (study.model() || !readable_model) {
-    Film unused = read_options(o, diagnostics);
-    check_output_files({{"-o", o.output, o.still.empty() ? FileKind::Animation : FileKind::Picture}}, o.model.path, diagnostics);
-    check_tools(o, diagnostics);
-    if (readable_model && study.wrong()) return finish_usage(console, study, "animate");
-  }
+  read_options(o, diagnostics);  // for what is wrong with them, before anything is computed
+  check_output_files({{"-o", o.output, o.still.empty() ? FileKind::Animation : FileKind::Picture}}, o.model.path, diagnostics);
+  check_tools(o, diagnostics);
+  if (readable_model && study.wrong()) return finish_usage(console, study, "animate");
   put_in_run(o.run, study);
   std::optional<SimulationResult> result;
-  const std::optional<Drawing> drawing = drawing_of(o, study, settings, console, result);
+  const std::optional<Drawing> drawing = drawing_of(study, settings, console, result);
   if (!drawing) return finish(console, study, document);
+  if (o.output.empty()) o.output = study.model()->system.name + (o.still.empty() ? ".html" : ".svg");
 
   Film film = read_options(o, diagnostics);
   std::string bytes;
+  const bool page = o.still.empty() && (ending_of(o) == ".html" || ending_of(o) == ".htm");
   const std::string ending = ending_of(o), title = study.model()->system.title.empty() ? study.model()->system.name : study.model()->system.title;
   if (!o.still.empty()) bytes = still_svg(o, *drawing, film, diagnostics);
-  else choose_frames(o, *drawing, film, diagnostics);
+  else if (!page) choose_frames(o, *drawing, film, diagnostics);
   if (study.wrong()) return finish_usage(console, study, "animate");
   if (o.still.empty()) {
-    if (ending == ".html" || ending == ".htm") bytes = animation_html(*drawing, title);
+    if (page) bytes = animation_html(*drawing, title);
     else if (ending == ".mp4" || ending == ".gif") bytes = video_of(o, *drawing, film, console, diagnostics);
     else {
       film.picture.trail_pieces = 4;
@@ -228,13 +232,16 @@ ExitCode animate(AnimateOptions o, Console& console) {
   }
   if (!study.wrong()) o.still.empty() ? write_result(o.output, bytes, diagnostics) : write_picture(o.output, bytes, diagnostics);
   document["file"] = o.output;
-  document["frames"] = film.elapsed.size();
-  document["width"] = film.picture.width;
-  document["height"] = film.picture.height;
-  if (o.still.empty()) document["fps"] = film.fps, document["speed"] = film.speed, document["seconds"] = film.seconds();
+  if (!page) {
+    document["frames"] = film.elapsed.size();
+    document["width"] = film.picture.width;
+    document["height"] = film.picture.height;
+  }
+  if (o.still.empty() && !page) document["fps"] = film.fps, document["speed"] = film.speed, document["seconds"] = film.seconds();
   const bool written = !study.wrong();
   if (written && !console.json())
-    console.say(o.still.empty() ? fmt::format("Wrote {} ({} frames, {:.3g} s, {} kB).\n", o.output, film.elapsed.size(), film.seconds(), (bytes.size() + 999) / 1000)
+    console.say(page ? fmt::format("Wrote {} ({} kB). Open it in any browser.\n", o.output, (bytes.size() + 999) / 1000)
+                : o.still.empty() ? fmt::format("Wrote {} ({} frames, {:.3g} s, {} kB).\n", o.output, film.elapsed.size(), film.seconds(), (bytes.size() + 999) / 1000)
                                 : fmt::format("Wrote {}.\n", o.output));
   if (!result->ok() && !console.json()) console.say(fmt::format("The run ended early: {}\n", result->reason));
   finish(console, study, document);

@@ -1,9 +1,11 @@
 #include "command.hpp"
 #include "json.hpp"
+#include "video.hpp"
 
 #include <fmt/format.h>
 #include <maupertuis/backend.hpp>
 #include <maupertuis/lanes.hpp>
+#include <maupertuis/picture.hpp>
 #include <maupertuis/regulator.hpp>
 #include <maupertuis/stiff.hpp>
 
@@ -41,6 +43,8 @@ std::vector<Finding> examine() {
       {"integrators", has_stiff_method() ? "taylor, variational, stiff (SUNDIALS)" : "taylor, variational; stiff needs SUNDIALS"},
       {"regulator", has_lapack() ? "LAPACK" : "needs LAPACK"},
       {"trajectory formats", "csv, npy, json"},
+      {"pictures", picture_problem().empty() ? "svg, png, pdf" : "svg; png and pdf need librsvg2-2"},
+      {"films", picture_problem().empty() && !find_ffmpeg().empty() ? "html, svg, mp4, gif" : "html, svg; mp4 and gif need ffmpeg and librsvg2-2"},
       {"not in this version", "contacts, friction, events, fields, sweeps, HDF5"},
   };
 }
