@@ -1,8 +1,8 @@
 #include "comparison/freedoms.hpp"
 
+#include "linear_algebra/dense.hpp"
+
 #include <fmt/format.h>
-#include <eigen3/Eigen/LU>
-#include <eigen3/Eigen/QR>
 
 namespace maupertuis::comparison {
 namespace {

@@ -1,6 +1,5 @@
 #include "comparison/parametrization.hpp"
-
-#include <eigen3/Eigen/QR>
+#include "linear_algebra/dense.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "comparison/rewrite.hpp"
+#include "linear_algebra/dense.hpp"
 
 #include <fmt/format.h>
-#include <eigen3/Eigen/QR>
 
 #include <algorithm>
 #include <cmath>

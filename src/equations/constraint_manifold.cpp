@@ -4,9 +4,8 @@
 #include <maupertuis/require.hpp>
 
 #include "equations/sparse_step.hpp"
+#include "linear_algebra/dense.hpp"
 
-#include <eigen3/Eigen/Cholesky>
-#include <eigen3/Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -204,7 +203,7 @@ Vector least_step(const Matrix& a, const Vector& error, const Matrix& g, const s
   const Matrix scaled = cholesky.matrixL().solve(columns.transpose()).transpose();  // A L⁻ᵀ
   Eigen::CompleteOrthogonalDecomposition<Matrix> solver(scaled);
   solver.setThreshold(1e-11);
-  const Vector y = solver.solve(-error);
+  const Vector y = solver.solve(Vector(-error));
   const Vector part = cholesky.matrixU().solve(y);
   Vector out = Vector::Zero(a.cols());
   for (Index j = 0; j < count; ++j) out[free[static_cast<std::size_t>(j)]] = part[j];

@@ -1,7 +1,6 @@
 #include "equations/row_reduction.hpp"
 
-#include <eigen3/Eigen/QR>
-#include <eigen3/Eigen/SVD>
+#include "linear_algebra/dense.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,6 @@
 #include "system/lint_manifold.hpp"
 
-#include <eigen3/Eigen/Eigenvalues>
-#include <eigen3/Eigen/QR>
+#include "linear_algebra/dense.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -97,7 +96,7 @@ bool Manifold::settle(Bindings& point, const ExprVector& unknowns, const ExprVec
       const double size = a.row(i).cwiseAbs().maxCoeff();
       if (size > 0) a.row(i) /= size, r(i) /= size;
     }
-    const Eigen::VectorXd change = a.completeOrthogonalDecomposition().solve(-r);
+    const Eigen::VectorXd change = a.completeOrthogonalDecomposition().solve(Eigen::VectorXd(-r));
     double size = 1;
     for (std::size_t j = 0; j < n; ++j) {
       double& x = point[unknowns[j]];

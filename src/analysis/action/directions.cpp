@@ -1,6 +1,6 @@
 #include "analysis/action/directions.hpp"
 
-#include <eigen3/Eigen/QR>
+#include "linear_algebra/dense.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +45,7 @@ Matrix null_basis(const Matrix& rows, Index n) {
   if (scaled.rows() == 0) return Matrix::Identity(n, n);
   Eigen::ColPivHouseholderQR<Matrix> qr(scaled.transpose());
   qr.setThreshold(least_rank_pivot);
-  const Matrix q = qr.householderQ() * Matrix::Identity(n, n);
+  const Matrix q = columns_of_q(qr, n);
   return q.rightCols(n - qr.rank());
 }
 

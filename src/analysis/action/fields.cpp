@@ -1,15 +1,11 @@
 #include "analysis/action/fields.hpp"
 
 #include "analysis/action/newton.hpp"
+#include "linear_algebra/dense.hpp"
 
 #include <maupertuis/integrator.hpp>
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/tangent.hpp>
-
-#include <eigen3/Eigen/Eigenvalues>
-#include <eigen3/Eigen/LU>
-#include <eigen3/Eigen/QR>
-#include <eigen3/Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -216,7 +212,7 @@ class Study {
         continue;
       }
       Matrix next = carried.transfer * frame_;
-      next = Eigen::HouseholderQR<Matrix>(next).householderQ() * Matrix::Identity(next.rows(), next.cols());
+      next = columns_of_q(Eigen::HouseholderQR<Matrix>(next), next.cols());
       const Vector sizes = Eigen::JacobiSVD<Matrix>(next.topRows(next.cols())).singularValues();
       const bool last = to == breaks_.back();
       if (!last && sizes.minCoeff() < too_near_end) {

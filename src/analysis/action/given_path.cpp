@@ -1,11 +1,11 @@
 #include "analysis/action/problem.hpp"
+#include "linear_algebra/dense.hpp"
 
 #include <maupertuis/function_kernel.hpp>
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/transform.hpp>
 
 #include <fmt/format.h>
-#include <eigen3/Eigen/QR>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,7 @@
 #include "analysis/action/inertia.hpp"
 
 #include "analysis/action/newton.hpp"
-
-#include <eigen3/Eigen/Cholesky>
-#include <eigen3/Eigen/Eigenvalues>
+#include "linear_algebra/dense.hpp"
 
 #include <algorithm>
 #include <cmath>

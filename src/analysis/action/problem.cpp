@@ -1,12 +1,11 @@
 #include "analysis/action/problem.hpp"
 
 #include "analysis/action/kinks.hpp"
+#include "linear_algebra/dense.hpp"
 
 #include <maupertuis/evaluate.hpp>
 
 #include <fmt/format.h>
-#include <eigen3/Eigen/Eigenvalues>
-#include <eigen3/Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -99,7 +98,7 @@ Index Problem::first_elements(const Trial& trial) const {
     f.evaluate(t, s.q.data(), s.v.data(), trial.multipliers, 2, density);
     if (!density.finite) continue;
     const Matrix mass = density.hessian.bottomRightCorner(n(), n());
-    const Matrix ratio = mass.fullPivLu().solve(density.hessian.topLeftCorner(n(), n()));
+    const Matrix ratio = mass.fullPivLu().solve(Matrix(density.hessian.topLeftCorner(n(), n())));
     if (ratio.allFinite()) largest = std::max(largest, ratio.eigenvalues().cwiseAbs().maxCoeff());
   }
   const double waves = std::sqrt(largest) * trial.mesh.whole / std::numbers::pi;

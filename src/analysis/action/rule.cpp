@@ -1,6 +1,6 @@
 #include "analysis/action/rule.hpp"
 
-#include <eigen3/Eigen/LU>
+#include "linear_algebra/dense.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,12 +1,11 @@
 #include "analysis/action/problem.hpp"
 #include "analysis/action/shots.hpp"
 #include "analysis/action/starts.hpp"
+#include "linear_algebra/dense.hpp"
 
 #include <maupertuis/switch_text.hpp>
 
 #include <fmt/format.h>
-
-#include <eigen3/Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -114,7 +113,7 @@ class Search {
     if (!a.finite) return;
     const Index inner = a.gradient.size() - 2 * n;
     const Matrix c = a.integral_gradients.middleRows(n, inner);
-    const Vector lambda = trial.multipliers - c.colPivHouseholderQr().solve(a.gradient.segment(n, inner));
+    const Vector lambda = trial.multipliers - c.colPivHouseholderQr().solve(Vector(a.gradient.segment(n, inner)));
     if (lambda.allFinite()) trial.multipliers = lambda;
   }
 

@@ -1,8 +1,7 @@
 #include "analysis/action/problem.hpp"
+#include "linear_algebra/dense.hpp"
 
 #include <fmt/format.h>
-#include <eigen3/Eigen/Eigenvalues>
-#include <eigen3/Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -119,7 +118,7 @@ class Neighbourhood {
   void allow(Matrix& xi) const {
     for (Index k = 0; k < xi.cols(); ++k) {
       const Matrix& z = directions_.basis[static_cast<std::size_t>(k)];
-      xi.col(k) = z.cols() == 0 ? Vector(Vector::Zero(xi.rows())) : Vector(z * z.householderQr().solve(xi.col(k)));
+      xi.col(k) = z.cols() == 0 ? Vector(Vector::Zero(xi.rows())) : Vector(z * z.householderQr().solve(Vector(xi.col(k))));
     }
   }
 

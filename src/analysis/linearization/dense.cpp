@@ -1,9 +1,6 @@
 #include "analysis/linearization/dense.hpp"
 
-#include <eigen3/Eigen/Cholesky>
-#include <eigen3/Eigen/Eigenvalues>
-#include <eigen3/Eigen/LU>
-#include <eigen3/Eigen/QR>
+#include "linear_algebra/dense.hpp"
 
 #include <cmath>
 

@@ -3,10 +3,9 @@
 #include "analysis/orbits/drive.hpp"
 #include "analysis/orbits/messages.hpp"
 #include "analysis/tangent/point_functions.hpp"
+#include "linear_algebra/dense.hpp"
 
 #include <fmt/format.h>
-#include <eigen3/Eigen/QR>
-#include <eigen3/Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -335,7 +334,7 @@ ReturnMap return_map(const TangentPoint& begin, const TangentPoint& end, const s
                carried = Eigen::Map<const Matrix>(end.directions.data(), rows, d);
   Eigen::HouseholderQR<Matrix> qr(size.cwiseInverse().asDiagonal() * basis);
   ReturnMap out;
-  out.directions = qr.householderQ() * Matrix::Identity(rows, d);
+  out.directions = columns_of_q(qr, d);
   const Matrix combination = basis.transpose() * (size.asDiagonal() * out.directions);
   out.monodromy = out.directions.transpose() * (size.cwiseInverse().asDiagonal() * (carried * combination));
   return out;

@@ -2,11 +2,7 @@
 #include "analysis/orbits/divergence.hpp"
 #include "analysis/orbits/verdict.hpp"
 #include "analysis/tangent/point_functions.hpp"
-
-#include <eigen3/Eigen/Eigenvalues>
-#include <eigen3/Eigen/LU>
-#include <eigen3/Eigen/QR>
-#include <eigen3/Eigen/SVD>
+#include "linear_algebra/dense.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +23,7 @@ Matrix quotient(const ReturnMap& map, std::vector<Vector> trivial) {
   Matrix rows(map.monodromy.rows(), static_cast<Index>(trivial.size()));
   for (std::size_t i = 0; i < trivial.size(); ++i) rows.col(static_cast<Index>(i)) = trivial[i].normalized();
   const Index d = rows.rows();
-  const Matrix q = Eigen::HouseholderQR<Matrix>(rows).householderQ() * Matrix::Identity(d, d);
+  const Matrix q = columns_of_q(Eigen::HouseholderQR<Matrix>(rows), d);
   const Matrix rest = q.rightCols(d - rows.cols());
   return rest.transpose() * map.monodromy * rest;
 }

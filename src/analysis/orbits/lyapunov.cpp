@@ -1,12 +1,11 @@
 #include "analysis/orbits/divergence.hpp"
 #include "analysis/orbits/messages.hpp"
 #include "analysis/orbits/survey.hpp"
+#include "linear_algebra/dense.hpp"
 
 #include <maupertuis/orbits.hpp>
 
 #include <fmt/format.h>
-#include <eigen3/Eigen/LU>
-#include <eigen3/Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -130,7 +129,7 @@ class LyapunovRun {
   Vector orthogonalize() {
     Eigen::HouseholderQR<Matrix> qr(directions_);
     const Vector diagonal = qr.matrixQR().diagonal();
-    directions_ = qr.householderQ() * Matrix::Identity(directions_.rows(), directions_.cols());
+    directions_ = columns_of_q(qr, directions_.cols());
     return diagonal.cwiseAbs().array().log();
   }
 

@@ -1,11 +1,10 @@
 #include "analysis/tangent/point_functions.hpp"
+#include "linear_algebra/dense.hpp"
 
 #include <maupertuis/tangent.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <eigen3/Eigen/LU>
-#include <eigen3/Eigen/QR>
 
 namespace maupertuis {
 namespace {
@@ -24,7 +23,7 @@ Matrix null_space(Matrix c) {
     if (const double size = c.row(i).norm(); size > 0) c.row(i) /= size;
   Eigen::ColPivHouseholderQR<Matrix> qr(c.transpose());
   qr.setThreshold(least_rank_pivot);
-  const Matrix q = qr.householderQ() * Matrix::Identity(n, n);
+  const Matrix q = columns_of_q(qr, n);
   return q.rightCols(n - qr.rank()).transpose();
 }
 

@@ -1,7 +1,7 @@
 #pragma once
-#include <maupertuis/motion_functions.hpp>
+#include "linear_algebra/dense.hpp"
 
-#include <eigen3/Eigen/Dense>
+#include <maupertuis/motion_functions.hpp>
 
 #include <span>
 #include <vector>

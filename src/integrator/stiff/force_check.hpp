@@ -1,8 +1,7 @@
 #pragma once
 #include "integrator/point/step_search.hpp"
 #include "integrator/stiff/formula.hpp"
-
-#include <eigen3/Eigen/Dense>
+#include "linear_algebra/dense.hpp"
 
 #include <span>
 #include <vector>

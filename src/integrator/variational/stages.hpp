@@ -2,8 +2,7 @@
 #include "integrator/dense_output/dense_output.hpp"
 #include "integrator/point/point_solver.hpp"
 #include "integrator/variational/tableau.hpp"
-
-#include <eigen3/Eigen/Dense>
+#include "linear_algebra/dense.hpp"
 
 #include <limits>
 #include <span>

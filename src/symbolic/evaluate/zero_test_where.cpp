@@ -1,10 +1,10 @@
 #include <maupertuis/evaluate.hpp>
 #include <maupertuis/transform.hpp>
 
+#include "linear_algebra/dense.hpp"
 #include "symbolic/evaluate/real100.hpp"
 #include "symbolic/evaluate/real_numbers.hpp"
 
-#include <eigen3/Eigen/QR>
 #include <algorithm>
 #include <random>
 
@@ -203,7 +203,7 @@ class OnRelations {
     const Vector weight = row_weights(j);
     Eigen::CompleteOrthogonalDecomposition<Matrix> solver(weight.asDiagonal() * j);
     solver.setThreshold(1e-10);
-    return solver.solve(weight.cwiseProduct(r));
+    return solver.solve(Vector(weight.cwiseProduct(r)));
   }
 
   std::optional<Precise> refine(const Bindings& at) const {
