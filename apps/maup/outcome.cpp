@@ -53,7 +53,7 @@ ExitCode finish(Console& console, Study& study, Json document) {
   } else {
     show_told(console, study);
   }
-  if (unreadable(study.diagnostics())) return ExitCode::Usage;
+  if (unreadable(study.diagnostics()) || study.only_options_are_wrong()) return ExitCode::Usage;
   if (!numbers) return ExitCode::RunFailed;
   return study.wrong() ? ExitCode::ModelWrong : ExitCode::Fine;
 }

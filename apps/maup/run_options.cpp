@@ -188,8 +188,25 @@ ExtendedSimulationOptions extended_options(const RunOptions& options, Precision 
   return out;
 }
 
+namespace {
+
+/// What is no equation: a time, which belongs to --duration, or half of one.
+bool refuse_until(Study& study, const std::string& until) {
+  if (until.find('=') != std::string::npos) return false;
+  const std::string quoted = until.find(' ') == std::string::npos ? until : "\"" + until + "\"";
+  if (parse_exact_time(until))
+    study.refuse_option("--until", until, fmt::format("--until {} is a time, and no condition", quoted),
+                        "A run ends when the equation of --until holds.", fmt::format("Write --duration {} to run that long.", quoted));
+  else
+    study.refuse_option("--until", until, fmt::format("--until {} is no equation", quoted),
+                        "A run ends when the two sides of it become equal.", fmt::format("Write for example --until \"{} = 0\".", until));
+  return true;
+}
+
+}  // namespace
+
 void put_in_run(const RunOptions& options, Study& study) {
-  if (options.until.empty()) return;
+  if (options.until.empty() || refuse_until(study, options.until)) return;
   OptionStatement statement("run until ");
   statement.add_typed("--until", options.until).add(" within ");
   if (options.within.empty()) statement.add("60 s");

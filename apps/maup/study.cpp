@@ -67,8 +67,44 @@ void Study::add_statements(const std::vector<OptionStatement>& statements) {
   tree_.reset();
 }
 
+namespace {
+
+constexpr std::uint32_t kBehindAllTexts = 1u << 30;   // places of refuse_option, by its numbers; a model has 8 MiB at most
+
+}  // namespace
+
+/// --set, --start, --at: lines behind the text, in the order of Overrides (see system/overrides.cpp).
+std::optional<OptionPlace> Study::override_at(Span span) const {
+  auto begin = static_cast<std::uint32_t>(source_.text().size() + 1);
+  if (span.begin < begin) return std::nullopt;
+  for (const auto& [option, texts] : {std::pair("--set", &overrides_.parameters), std::pair("--start", &overrides_.start),
+                                      std::pair("--at", &overrides_.at)})
+    for (const std::string& text : *texts) {
+      const auto end = begin + static_cast<std::uint32_t>(text.size());
+      if (span.begin <= end) return OptionPlace{SourceText(option, text), {span.begin - begin, std::min(span.end, end) - begin}};
+      begin = end + 1;
+    }
+  return std::nullopt;
+}
+
+void Study::refuse_option(const std::string& option, const std::string& typed, std::string message, std::string reason,
+                          std::string help, std::optional<Span> piece) {
+  const auto place = kBehindAllTexts + static_cast<std::uint32_t>(refused_.size());
+  refused_.push_back({SourceText(option, typed), piece.value_or(Span{0, static_cast<std::uint32_t>(typed.size())})});
+  diagnostics_.error("E0809", Span{place, place}, std::move(message), std::move(reason), std::move(help));
+}
+
+bool Study::only_options_are_wrong() const {
+  const auto items = diagnostics_.items();
+  return wrong() && std::none_of(items.begin(), items.end(), [&](const Diagnostic& d) {
+    return d.severity == Severity::Error && !(d.span && option_at(*d.span));
+  });
+}
+
 /// A place in the words around what was typed is taken for all of it.
 std::optional<OptionPlace> Study::option_at(Span span) const {
+  if (span.begin >= kBehindAllTexts) return refused_.at(span.begin - kBehindAllTexts);
+  if (const auto place = override_at(span)) return place;
   for (const auto& [begin, statement] : placed_) {
     if (span.begin < begin || span.begin > begin + statement.text().size() || statement.pieces().empty()) continue;
     const std::uint32_t at = span.begin - begin;

@@ -34,6 +34,11 @@ class Study {
     bool of_option = false;
   };
   std::vector<Told> told() const;
+  /// E0809 about what an option said, or a piece of it.
+  void refuse_option(const std::string& option, const std::string& typed, std::string message, std::string reason = {},
+                     std::string help = {}, std::optional<Span> piece = {});
+  /// Every error is one in what an option said: the model is as it should be.
+  bool only_options_are_wrong() const;
 
   /// Stages end by Interrupted when this asks them to: Ctrl-C, if nothing else is said.
   void set_interrupt(const Interrupt& interrupt) { interrupt_ = interrupt; }
@@ -70,8 +75,10 @@ class Study {
   template <class Kind>
   void replace(const OptionStatement& statement);
   std::optional<OptionPlace> option_at(Span span) const;
+  std::optional<OptionPlace> override_at(Span span) const;
 
   std::vector<Placed> placed_;
+  std::vector<OptionPlace> refused_;   // by refuse_option
   Interrupt interrupt_ = &interrupt_flag();
   Diagnostics diagnostics_;
   SourceText source_;

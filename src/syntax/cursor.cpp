@@ -32,8 +32,19 @@ const Token& ExpressionParser::expect(std::string_view sign_or_word, std::string
   return next();
 }
 
+// 9,81: a comma between digits, without blanks, where no list of numbers can stand.
+void ExpressionParser::refuse_decimal_comma() {
+  const bool comma = peek().is(",") && peek().attached && previous().kind == Token::Kind::Number && peek(1).kind == Token::Kind::Number &&
+                     peek(1).attached;
+  if (!comma) return;
+  const Span span = cover(previous().span, peek(1).span);
+  fail("E0105", span, fmt::format("`{}` is not a number", text_of(span)), "Numbers are written with a decimal point; a comma separates.",
+       fmt::format("Write {}.{}.", previous().text, peek(1).text));
+}
+
 void ExpressionParser::expect_end() {
   if (at_end()) return;
+  refuse_decimal_comma();
   const Token& token = peek();
   std::string help;
   if (token.is("[")) help = "A unit in square brackets stands directly after a number or a vector of numbers: 3 [J].";
@@ -60,6 +71,7 @@ void ExpressionParser::fail(std::string code, Span span, std::string message, st
 }
 
 void ExpressionParser::fail_expected(std::string_view what, std::string help) {
+  refuse_decimal_comma();
   fail("E0111", peek().span, fmt::format("expected {}, found {}", what, describe(peek())), "", std::move(help));
 }
 

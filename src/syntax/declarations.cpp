@@ -1,5 +1,7 @@
 #include "syntax/declarations.hpp"
 
+#include <algorithm>
+
 namespace maupertuis::syntax {
 namespace {
 
@@ -70,6 +72,13 @@ Declarations::Kind Declarations::kind(std::string_view name) const {
   if (underscore == std::string_view::npos || underscore == 0) return Kind::None;
   const auto field = names_.find(std::string(name.substr(0, underscore)));
   return field != names_.end() && field->second == Kind::Field ? Kind::Field : Kind::None;
+}
+
+std::vector<std::string> Declarations::names() const {
+  std::vector<std::string> out;
+  for (const auto& [name, kind] : names_) out.push_back(name);
+  std::sort(out.begin(), out.end());  // messages do not depend on the order of a hash table
+  return out;
 }
 
 std::vector<Name> Declarations::of(const TokenList& list, const StatementTokens& statement) {

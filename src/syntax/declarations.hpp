@@ -17,6 +17,7 @@ class Declarations {
 
   Kind kind(std::string_view name) const;
   bool contains(std::string_view name) const { return kind(name) != Kind::None; }
+  std::vector<std::string> names() const;
   bool dimensionless() const { return dimensionless_; }
   /// What stands in the place of t: `independent x`.
   const std::string& independent() const { return independent_; }

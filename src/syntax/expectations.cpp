@@ -144,7 +144,7 @@ void StatementParser::expect_conserved(ExpectStatement& expect) {
     ExpectStatement::Level level;
     level.left = formula();
     this->expect("=", "the left side of the level");
-    level.right = formula();
+    level.right = quantity();
     expect.where.push_back(std::move(level));
   } while (accept(","));
   if (peek().is("±") || peek().is("rel"))

@@ -72,6 +72,17 @@ StatementBody StatementParser::precision_statement() {
   return PrecisionStatement{{std::string(next().text), word.span}};
 }
 
+// A bare number before `..` has the unit of the other end: 20 .. 200 rad/s.
+ExpressionPtr StatementParser::with_unit_of(ExpressionPtr from, const Expression& to) {
+  const Expression& other = to.kind == Expression::Kind::Unary ? *to.arguments[0] : to;
+  if (other.kind != Expression::Kind::Quantity || !is_constant(*from)) return from;
+  auto quantity = std::make_shared<Expression>(other);
+  quantity->span = from->span;
+  quantity->depth = from->depth + 1;
+  quantity->arguments = {std::move(from)};
+  return quantity;
+}
+
 // sweep Ω = 0 .. 12 rad/s steps 121
 StatementBody StatementParser::sweep_statement() {
   next();
@@ -81,6 +92,7 @@ StatementBody StatementParser::sweep_statement() {
   sweep.from = quantity();
   expect("..", "the first value");
   sweep.to = quantity();
+  sweep.from = with_unit_of(sweep.from, *sweep.to);
   if (!accept("steps")) missing_clause("steps", "sweep", "sweep Ω = 0 .. 12 rad/s steps 121");
   sweep.steps = quantity();
   return sweep;

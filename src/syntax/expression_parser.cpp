@@ -1,5 +1,7 @@
 #include "syntax/expression_parser.hpp"
 
+#include <maupertuis/spelling.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,20 +20,27 @@ bool starts_factor(const Token& token) {
          (token.kind == Token::Kind::Name && !is_clause_word(token.text));
 }
 
-std::optional<Operator> product_operator(const Token& token) {
-  if (token.is("*")) return Operator::Multiply;
-  if (token.is("/")) return Operator::Divide;
-  if (token.is("·")) return Operator::Dot;
-  if (token.is("×")) return Operator::Cross;
-  return std::nullopt;
-}
-
 bool is_not_a_number(std::string_view word) {
   return word == "nan" || word == "NaN" || word == "NAN" || word == "inf" || word == "Inf" || word == "INF" ||
          word == "infinity" || word == "Infinity";
 }
 
 }  // namespace
+
+// A number however it is written: no name stands in it but pi.
+bool ExpressionParser::is_constant(const Expression& e) {
+  const bool number = e.kind == Kind::Number || e.kind == Kind::Binary || e.kind == Kind::Unary || e.kind == Kind::Call ||
+                      (e.kind == Kind::Name && e.text == "pi" && e.primes == 0);
+  return number && std::all_of(e.arguments.begin(), e.arguments.end(), [](const ExpressionPtr& a) { return is_constant(*a); });
+}
+
+std::optional<Operator> ExpressionParser::product_operator(const Token& token) {
+  if (token.is("*")) return Operator::Multiply;
+  if (token.is("/")) return Operator::Divide;
+  if (token.is("·")) return Operator::Dot;
+  if (token.is("×")) return Operator::Cross;
+  return std::nullopt;
+}
 
 ExpressionParser::Nesting::Nesting(ExpressionParser& p) : parser(p) {
   if (++parser.nesting_ <= kDeepestNesting) return;
@@ -179,12 +188,7 @@ ExpressionParser::Node ExpressionParser::number() {
   check_number(token);
   Node node = make(Kind::Number, token.span);
   node->text = token.text;
-  if (peek().is("[")) {
-    UnitExpression unit = bracketed_unit();
-    node = make(Kind::Quantity, cover(token.span, unit.span), {node});
-    node->unit = std::move(unit);
-    node->unit_bracketed = true;
-  }
+  if (peek().is("[")) node = with_bracketed_unit(std::move(node));
   if (peek().kind == Token::Kind::Number) {
     fail("E0123", cover(token.span, peek().span), "two numbers stand side by side", "A product of numbers needs a sign between them.",
          fmt::format("Write {} * {}, or {}{} if it is one number.", token.text, peek().text, token.text, peek().text));
@@ -214,6 +218,7 @@ ExpressionParser::Node ExpressionParser::name() {
   Node node = make(Kind::Name, token.span);
   node->text = token.text;
   node->name_span = token.span;
+  if (peek().is("[") && token.is("pi")) return with_bracketed_unit(std::move(node));
   if (peek().is("[")) {
     fail("E0119", peek().span, fmt::format("a unit in square brackets cannot follow `{}`", token.text),
          "A name has its unit from its declaration; in formulas only numbers are given units.", "Write the unit after a number: 3 [J].");
@@ -244,20 +249,49 @@ void ExpressionParser::check_application(const Token& name) {
          fmt::format("{} depends on {} by itself.", name.text, time ? "time" : independent), fmt::format("Write {}.", name.text));
   }
   if (kind != Declared::None || is_predefined(name.text) || energy_of(name.text) || is_momentum(name.text)) return;
+  unknown_before_bracket(name);
+}
+
+// mgl(1 - cos θ), arctan(x), sine(x): what it was meant to be, with the text to write.
+void ExpressionParser::unknown_before_bracket(const Token& name) {
+  const std::string bracket = text_to_closing_bracket();
+  const std::string message = fmt::format("`{}` is neither a function nor a name of this model", name.text);
+  if (const std::string_view formula = formula_of_habit(name.text); !formula.empty()) {
+    fail("E0122", name.span, message, "The language has one spelling for each function.", fmt::format("Write {}.", formula));
+  }
+  if (const std::string_view function = function_of_habit(name.text); !function.empty()) {
+    fail("E0122", name.span, message, "The language has one spelling for each function.", fmt::format("Write {}{}.", function, bracket));
+  }
+  if (const Spelling right = right_spelling(name.text, context_.declarations.names()); !right.text.empty()) {
+    const bool applied = find_function(right.text.substr(right.text.rfind(' ') + 1)) != nullptr;
+    fail("E0122", name.span, message, right.reason, fmt::format("Write {}{}{}.", right.text, applied ? "" : " ", bracket));
+  }
   std::vector<std::string> candidates;
   for (const Function& function : functions()) candidates.emplace_back(function.name);
   const std::string near = did_you_mean(name.text, candidates);
-  fail("E0122", name.span, fmt::format("`{}` is neither a function nor a name of this model", name.text),
-       "Before a bracket stands a function or a factor.",
+  fail("E0122", name.span, message, "Before a bracket stands a function or a factor.",
        near.empty() ? "Declare it with `param` or `let` if it is a factor." : fmt::format("Did you mean `{}`?", near));
 }
 
-ExpressionParser::Node ExpressionParser::bracket() {
+// From the bracket that opens here to its partner; (…) where that is long.
+std::string ExpressionParser::text_to_closing_bracket() const {
+  constexpr std::size_t longest = 60;
+  int depth = 0;
+  for (std::size_t i = 0; index_ + i < end_; ++i) {
+    depth += peek(i).is("(") ? 1 : peek(i).is(")") ? -1 : 0;
+    if (depth > 0) continue;
+    const std::string text = text_of(cover(peek().span, peek(i).span));
+    return text.size() <= longest && text.find('\n') == std::string::npos ? text : "(…)";
+  }
+  return "(…)";
+}
+
+ExpressionParser::Node ExpressionParser::bracket(bool of_quantities) {
   const Nesting nesting(*this);
   const Token& open = next();
   if (peek().is(")")) fail("E0126", cover(open.span, peek().span), "these brackets are empty", "", "Write a formula or a vector in them.");
   std::vector<Node> parts;
-  do parts.push_back(in_condition_ ? disjunction() : sum());
+  do parts.push_back(of_quantities ? quantity() : in_condition_ ? disjunction() : sum());
   while (accept(","));
   if (!peek().is(")")) fail_expected("`,` or `)`");
   const Span span = cover(open.span, next().span);
@@ -266,7 +300,7 @@ ExpressionParser::Node ExpressionParser::bracket() {
     if (node->bracketed) node = std::make_shared<Expression>(*node);
     node->bracketed = true;
     node->span = span;
-    return node;
+    return peek().is("[") && is_constant(*node) ? with_bracketed_unit(std::move(node)) : node;
   }
   if (parts.size() > 3) {
     fail("E0126", span, fmt::format("this vector has {} components", parts.size()), "A model is two- or three-dimensional.",
@@ -275,9 +309,13 @@ ExpressionParser::Node ExpressionParser::bracket() {
   Node vector = make(Kind::Vector, span);
   vector->arguments.assign(parts.begin(), parts.end());
   finish(vector);
-  if (!peek().is("[")) return vector;
+  return peek().is("[") ? with_bracketed_unit(std::move(vector)) : vector;
+}
+
+// 3 [J], pi [rad/s], (2 pi) [rad/s], (1, 2) [m]
+ExpressionParser::Node ExpressionParser::with_bracketed_unit(Node value) {
   UnitExpression unit = bracketed_unit();
-  Node node = make(Kind::Quantity, cover(span, unit.span), {vector});
+  Node node = make(Kind::Quantity, cover(value->span, unit.span), {value});
   node->unit = std::move(unit);
   node->unit_bracketed = true;
   return node;

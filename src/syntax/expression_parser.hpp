@@ -42,7 +42,11 @@ class ExpressionParser {
   bool accept(std::string_view sign_or_word);
   const Token& expect(std::string_view sign_or_word, std::string_view after);
   void expect_end();
+  /// E0105 where `9,81` stands at the cursor: a decimal comma.
+  void refuse_decimal_comma();
   static std::string describe(const Token& token);
+  static std::optional<Operator> product_operator(const Token& token);
+  static bool is_constant(const Expression& e);
   [[noreturn]] void fail(std::string code, Span span, std::string message, std::string reason = {}, std::string help = {});
   [[noreturn]] void fail_expected(std::string_view what, std::string help = {});
   void warn(std::string code, Span span, std::string message, std::string reason, std::string help);
@@ -65,7 +69,7 @@ class ExpressionParser {
   Node bare_reaction(const Token& word);
 
   // -------------------------------------------------------------------------------------------- quantities
-  /// A quantity place: `-10 deg`, `(1, 2) m`, or a formula.
+  /// A quantity place: `-10 deg`, `10 pi rad/s`, `(1, 2) m`, `(1 m, 2 m)`, or a formula.
   Node quantity();
   UnitExpression bracketed_unit();
   std::optional<UnitExpression> units();
@@ -87,7 +91,9 @@ class ExpressionParser {
   Node primary();
   Node number();
   Node name();
-  Node bracket();
+  /// `of_quantities`: its components are quantity places.
+  Node bracket(bool of_quantities = false);
+  Node with_bracketed_unit(Node value);
   Node call(const Function& function);
   Node bare_argument(const Token& function, const Node& exponent);
   Node arguments_of(const Token& name, const Function& function);
@@ -99,11 +105,17 @@ class ExpressionParser {
 
   void check_number(const Token& token);
   void check_application(const Token& name);
+  [[noreturn]] void unknown_before_bracket(const Token& name);
+  std::string text_to_closing_bracket() const;
   bool is_momentum(std::string_view name) const;
   void lint_product(const Expression& left, Operator op, const Expression& right);
   void lint_sum(const Expression& left, const Expression& right);
 
   Node quantity_or_null();
+  std::size_t tokens_of_number(std::size_t ahead) const;
+  Node constant();
+  Node constant_power();
+  [[noreturn]] void refuse_ambiguous_slash();
   bool ends_quantity(const Token& token) const;
   bool unit_factors(UnitExpression& unit, int sign);
   bool unit_factor(UnitExpression& unit, int sign);

@@ -19,12 +19,12 @@ StatementBody StatementParser::contact_statement() {
   LaterStatement statement = later(next());
   statement.expressions.push_back(formula());
   if (!accept(">=") && !accept("<=")) fail_expected("`>=` or `<=` after the left side of the contact");
-  statement.expressions.push_back(formula());
+  statement.expressions.push_back(quantity());
   while (!at_end()) {
     if (accept("name")) {
       statement.names.push_back(new_name("the name of the contact"));
     } else if (accept("restitution") || accept("friction") || accept("static") || accept("slip")) {
-      statement.expressions.push_back(formula());
+      statement.expressions.push_back(quantity());
     } else {
       missing_clause("restitution, friction, static, slip or name", "contact", "contact y >= 0 restitution e friction μ slip x' name floor");
     }
@@ -38,7 +38,7 @@ StatementBody StatementParser::friction_statement() {
   statement.expressions.push_back(variable());
   while (!at_end()) {
     if (accept("coefficient") || accept("static") || accept("normal") || accept("limit")) {
-      statement.expressions.push_back(formula());
+      statement.expressions.push_back(quantity());
     } else {
       missing_clause("coefficient, static, normal or limit", "friction", "friction x coefficient μ normal m g");
     }
@@ -66,7 +66,7 @@ StatementBody StatementParser::event_statement() {
   list([&] {
     statement.expressions.push_back(variable());
     expect("=", "what is set");
-    statement.expressions.push_back(formula());
+    statement.expressions.push_back(quantity());
   });
   return statement;
 }
@@ -93,9 +93,11 @@ StatementBody StatementParser::field_statement() {
     do {
       statement.expressions.push_back(variable());
       expect("=", "the independent variable");
-      statement.expressions.push_back(quantity());
+      const ExpressionPtr from = quantity();
       expect("..", "the first end");
-      statement.expressions.push_back(quantity());
+      const ExpressionPtr to = quantity();
+      statement.expressions.push_back(with_unit_of(from, *to));
+      statement.expressions.push_back(to);
     } while (accept(","));
   }
   if (accept("cells")) {

@@ -1,5 +1,6 @@
 #include "syntax/lexer.hpp"
 
+#include "syntax/latex_habits.hpp"
 #include "syntax/unicode.hpp"
 #include "syntax/word_letters.hpp"
 #include "syntax/words.hpp"
@@ -56,20 +57,37 @@ struct Spelling {
 };
 // Longest first where one begins another. An empty canonical spelling: see complain_about_sign.
 constexpr std::array kSigns = {
-    Spelling{"+/-", "±"}, Spelling{"**", ""},  Spelling{"//", ""},  Spelling{"==", ""},  Spelling{"!=", ""},
+    Spelling{"+/-", "±"}, Spelling{"**", ""},  Spelling{":=", ""},  Spelling{"//", ""},  Spelling{"==", ""},  Spelling{"!=", ""},
     Spelling{"..", ".."}, Spelling{"+=", "+="}, Spelling{"<=", "<="}, Spelling{">=", ">="}, Spelling{"≤", "<="},
     Spelling{"≥", ">="},  Spelling{"−", "-"},  Spelling{"+", "+"},  Spelling{"-", "-"},  Spelling{"*", "*"},
     Spelling{"/", "/"},   Spelling{"^", "^"},  Spelling{"(", "("},  Spelling{")", ")"},  Spelling{"[", "["},
     Spelling{"]", "]"},   Spelling{",", ","},  Spelling{":", ":"},  Spelling{"=", "="},  Spelling{"<", "<"},
     Spelling{">", ">"},   Spelling{"'", "'"},  Spelling{"′", "'"},  Spelling{"’", "'"},  Spelling{".", "."},
     Spelling{"±", "±"},   Spelling{"·", "·"},  Spelling{"⋅", "·"},  Spelling{"\u0387", "·"}, Spelling{"×", "×"},
+    Spelling{"∙", "·"},   Spelling{"∗", "*"},  Spelling{"÷", "/"},  Spelling{"∕", "/"},  Spelling{"´", "'"},
+    Spelling{"ʹ", "'"},   Spelling{"‘", "'"},
 };
+
+// The mark that ends a text which begins with this one; empty for other characters.
+constexpr std::string_view closing_mark(char32_t opening) {
+  switch (opening) {
+    case U'"': return "\"";
+    case U'“': case U'”': return "”";
+    case U'„': return "“";
+    case U'«': return "»";
+    default: return {};
+  }
+}
+
+// ʹ is a letter to Unicode.
+constexpr bool is_prime_letter(char32_t c) { return c == U'ʹ'; }
 
 struct Advice {
   std::string_view written, message, help;
 };
 constexpr std::array kAdvice = {
-    Advice{"**", "`**` is not a sign of the language", "A power is written with `^`: x^2."},
+    Advice{":=", "`:=` is not a sign of the language", "A definition is written with `=`: let a = …."},
+    Advice{"%", "`%` is not a sign of the language", "A comment begins with `#`; the unit is percent."},
     Advice{"//", "`//` is not a sign of the language", "A comment begins with `#`."},
     Advice{"==", "`==` is not a sign of the language", "An equation is written with one `=`."},
     Advice{"!=", "`!=` is not a sign of the language", "Conditions use < <= > >= and or."},
@@ -127,8 +145,9 @@ class Lexer {
   void read_token() {
     const CodePoint c = *decode(text_, position_);
     if (is_digit(text_[position_]) || (c.value == '.' && is_digit_at(position_ + 1))) return read_number();
-    if (is_letter(c.value)) return read_name();
-    if (c.value == '"' || c.value == U'“') return read_string(c.value == '"' ? "\""sv : "”"sv);
+    if (is_letter(c.value) && !is_prime_letter(c.value)) return read_name();
+    if (const std::string_view closing = closing_mark(c.value); !closing.empty()) return read_string(closing, c.length);
+    if (c.value == '\\') return read_latex();
     if (c.value == U'√') return read_root();
     if (c.value == U'°') return read_degree();
     if (superscript_sign_or_digit(c.value)) return read_superscript();
@@ -235,12 +254,11 @@ class Lexer {
 
   // --------------------------------------------------------------------------------------- strings and signs
 
-  void read_string(std::string_view closing) {
+  void read_string(std::string_view closing, std::size_t opening) {
     const std::size_t begin = position_;
     const bool attached = line_continues() && list_.tokens.back().span.end == begin;
     const bool inner_quote = attached && text_on_line_;
     const bool typed_as_prime = attached && !inner_quote;
-    const std::size_t opening = closing == "\"" ? 1 : 3;
     const std::size_t line_end = std::min(text_.find('\n', begin), text_.size());
     const std::size_t end = text_.find(closing, begin + opening);
     if (attached || end >= line_end) {
@@ -282,6 +300,33 @@ class Lexer {
     malformed(begin, "Write the root with brackets: √(x).");
   }
 
+  // \theta, \frac{a}{b}: told with what to write; the rest of the statement is read as if it stood there.
+  void read_latex() {
+    const std::size_t begin = position_;
+    const LatexCommand command = latex_command(text_.substr(begin));
+    position_ += command.length;
+    complain("E0104", begin, fmt::format("`{}` is a command of LaTeX", text_.substr(begin, command.length)), "A model is plain text.", command.help);
+    if (command.tokens.empty()) return emit_unreadable(begin);
+    for (std::size_t i = 0; i < command.tokens.size(); ++i) emit(command.tokens[i].kind, command.tokens[i].text, begin, i > 0);
+  }
+
+  // What stands around `**`, with the right sign: x^2.
+  std::string power_here() const {
+    const auto is_word = [](char c) { return is_digit(c) || c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c & 0x80); };
+    std::size_t next = position_;
+    while (next < text_.size() && text_[next] == ' ') ++next;
+    std::size_t end = next;
+    while (end < text_.size() && is_word(text_[end])) ++end;
+    const bool base = line_continues() && (list_.tokens.back().kind == Token::Kind::Name || list_.tokens.back().kind == Token::Kind::Number);
+    if (!base || end == next || end - next > kLongestWord) return "x^2";
+    return fmt::format("{}^{}", list_.tokens.back().text, text_.substr(next, end - next));
+  }
+
+  bool at_line_end() const {
+    const std::size_t next = text_.find_first_not_of(" \t\r", position_);
+    return next == std::string_view::npos || text_[next] == '\n' || text_[next] == '#';
+  }
+
   void read_degree() {
     const std::size_t begin = position_;
     position_ += std::string_view("°").size();
@@ -309,7 +354,7 @@ class Lexer {
     }
     position_ += sign != kSigns.end() ? sign->written.size() : c.length;
     complain_about_sign(begin);
-    if (text_.substr(begin, 2) == "//") position_ = std::min(text_.find('\n', begin), text_.size());
+    if (text_.substr(begin, 2) == "//" || (text_[begin] == '%' && !line_continues())) position_ = std::min(text_.find('\n', begin), text_.size());
     emit_unreadable(begin);
   }
 
@@ -317,6 +362,9 @@ class Lexer {
     const std::string_view written = text_.substr(begin, position_ - begin);
     const bool repeated = !list_.tokens.empty() && list_.tokens.back().unreadable() && list_.tokens.back().span.end == begin;
     if (repeated) return;
+    if (written == "**")
+      return complain("E0104", begin, "`**` is not a sign of the language", "", fmt::format("Write {}: a power has the sign `^`.", power_here()));
+    if (written == ";" && at_line_end()) return complain("E0104", begin, "`;` ends no statement", "", "Leave it out: one statement a line.");
     const auto advice = std::find_if(kAdvice.begin(), kAdvice.end(), [&](const Advice& a) { return a.written == written; });
     if (advice != kAdvice.end()) {
       complain("E0104", begin, std::string(advice->message), "", std::string(advice->help));

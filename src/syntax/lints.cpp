@@ -37,7 +37,8 @@ void ExpressionParser::lint_product(const Expression& left, Operator op, const E
   const Expression& before = last_factor(left);
   const bool denominator_is_name = is_binary(left, Operator::Divide) && !before.bracketed &&
                                    (before.kind == Kind::Name || before.kind == Kind::Member);
-  if (op == Operator::Juxtapose && denominator_is_name && is_plain_factor(right)) {
+  const bool derivative = before.text == "dt" && !context_.declarations.contains("dt");  // d/dt θ: `system` tells it
+  if (op == Operator::Juxtapose && denominator_is_name && is_plain_factor(right) && !derivative) {
     const Expression& numerator = last_factor(*left.arguments[0]);
     const Span span = cover(numerator.span, right.span);
     warn("W0101", span, fmt::format("`{}` multiplies by {}", text_of(span), text_of(right)),

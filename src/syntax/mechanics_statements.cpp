@@ -10,10 +10,10 @@ void StatementParser::missing_clause(std::string_view clause, std::string_view s
   fail("E0127", statement_span(), fmt::format("this {} has no `{}`", statement, clause), "", fmt::format("Write for example {}.", example));
 }
 
-// The formula after a clause word that has been read; each clause stands once.
-ExpressionPtr StatementParser::clause_formula(std::string_view clause, const ExpressionPtr& already) {
+// The quantity after a clause word that has been read; each clause stands once.
+ExpressionPtr StatementParser::clause_quantity(std::string_view clause, const ExpressionPtr& already) {
   if (already) fail("E0127", previous().span, fmt::format("`{}` is given twice", clause), "Each part of a statement stands once.", "Remove one of them.");
-  return formula();
+  return quantity();
 }
 
 std::vector<ExpressionPtr> StatementParser::bracketed_values(std::size_t count, std::string_view form) {
@@ -21,14 +21,14 @@ std::vector<ExpressionPtr> StatementParser::bracketed_values(std::size_t count, 
   if (!peek().is("(")) fail_expected(fmt::format("`(` as in {}", form));
   next();
   std::vector<ExpressionPtr> values;
-  do values.push_back(formula());
+  do values.push_back(quantity());
   while (accept(","));
   if (!peek().is(")")) fail_expected("`,` or `)`");
   const Span span = cover(open, next().span);
   if (values.size() != count) {
     fail("E0116", span, fmt::format("here stand {} values, not {}", count, values.size()), "", fmt::format("Write {}.", form));
   }
-  return values;
+  return with_unit_after(std::move(values));
 }
 
 // After the word `rotation`.
@@ -36,12 +36,12 @@ Rotation StatementParser::rotation() {
   Rotation rotation;
   const Token& form = next();
   if (form.is("angle")) {
-    rotation.values = {formula()};
+    rotation.values = {quantity()};
   } else if (form.is("axis")) {
     rotation.kind = Rotation::Kind::AxisAngle;
     rotation.axis = operand("the axis, a vector in brackets");
     if (!accept("angle")) fail_expected("`angle` after the axis", "Write for example rotation axis (0, 0, 1) angle φ.");
-    rotation.values = {formula()};
+    rotation.values = {quantity()};
   } else if (form.is("euler")) {
     rotation.kind = Rotation::Kind::Euler;
     const Token& sequence = peek();
@@ -80,7 +80,7 @@ void StatementParser::inertia(BodyStatement& body) {
     body.inertia = bracketed_values(6, "inertia full(xx, yy, zz, xy, xz, yz)");
   } else {
     body.inertia_kind = BodyStatement::Inertia::Scalar;
-    body.inertia = {formula()};
+    body.inertia = {quantity()};
   }
   body.inertia_span = cover(first, previous().span);
 }
@@ -90,7 +90,7 @@ StatementBody StatementParser::frame_statement() {
   FrameStatement frame;
   frame.name = new_name("the name of a frame");
   while (!at_end()) {
-    if (accept("at")) frame.at = clause_formula("at", frame.at);
+    if (accept("at")) frame.at = clause_quantity("at", frame.at);
     else if (accept("rotation")) frame.rotation = rotation();
     else if (accept("in")) frame.in = used_name("the name of a frame");
     else missing_clause("at, rotation or in", "frame", "frame F at (x, y) rotation angle θ");
@@ -104,8 +104,8 @@ StatementBody StatementParser::point_statement() {
   PointStatement point;
   point.name = new_name("the name of a point");
   while (!at_end()) {
-    if (accept("mass")) point.mass = clause_formula("mass", point.mass);
-    else if (accept("at")) point.at = clause_formula("at", point.at);
+    if (accept("mass")) point.mass = clause_quantity("mass", point.mass);
+    else if (accept("at")) point.at = clause_quantity("at", point.at);
     else if (accept("in")) point.in = used_name("the name of a frame");
     else missing_clause("mass, at or in", "point", "point P mass m at (x, y)");
   }
@@ -118,9 +118,9 @@ StatementBody StatementParser::body_statement() {
   BodyStatement body;
   body.name = new_name("the name of a body");
   while (!at_end()) {
-    if (accept("mass")) body.mass = clause_formula("mass", body.mass);
+    if (accept("mass")) body.mass = clause_quantity("mass", body.mass);
     else if (accept("inertia")) inertia(body);
-    else if (accept("at")) body.at = clause_formula("at", body.at);
+    else if (accept("at")) body.at = clause_quantity("at", body.at);
     else if (accept("rotation")) body.rotation = rotation();
     else if (accept("in")) body.in = used_name("the name of a frame");
     else missing_clause("mass, inertia, at, rotation or in", "body", "body B mass m inertia I at (x, y) rotation angle θ");
@@ -130,7 +130,7 @@ StatementBody StatementParser::body_statement() {
 
 StatementBody StatementParser::gravity_statement() {
   next();
-  return GravityStatement{formula()};
+  return GravityStatement{quantity()};
 }
 
 StatementBody StatementParser::spring_statement() {
@@ -140,8 +140,8 @@ StatementBody StatementParser::spring_statement() {
   expect("-", "the first end of the spring");
   spring.to = operand("a point");
   while (!at_end()) {
-    if (accept("stiffness")) spring.stiffness = clause_formula("stiffness", spring.stiffness);
-    else if (accept("length")) spring.length = clause_formula("length", spring.length);
+    if (accept("stiffness")) spring.stiffness = clause_quantity("stiffness", spring.stiffness);
+    else if (accept("length")) spring.length = clause_quantity("length", spring.length);
     else missing_clause("stiffness or length", "spring", "spring A - B stiffness k length l0");
   }
   if (!spring.stiffness) missing_clause("stiffness", "spring", "spring A - B stiffness k length l0");
@@ -155,7 +155,7 @@ StatementBody StatementParser::damper_statement() {
   expect("-", "the first end of the damper");
   damper.to = operand("a point");
   if (!accept("coefficient")) missing_clause("coefficient", "damper", "damper A - B coefficient c");
-  damper.coefficient = formula();
+  damper.coefficient = quantity();
   return damper;
 }
 
@@ -167,8 +167,8 @@ StatementBody StatementParser::torsion_statement() {
   TorsionSpringStatement spring;
   spring.coordinate = used_name("the name of a coordinate");
   while (!at_end()) {
-    if (accept("stiffness")) spring.stiffness = clause_formula("stiffness", spring.stiffness);
-    else if (accept("rest")) spring.rest = clause_formula("rest", spring.rest);
+    if (accept("stiffness")) spring.stiffness = clause_quantity("stiffness", spring.stiffness);
+    else if (accept("rest")) spring.rest = clause_quantity("rest", spring.rest);
     else missing_clause("stiffness or rest", "torsion spring", "torsion spring θ stiffness k rest θ0");
   }
   if (!spring.stiffness) missing_clause("stiffness", "torsion spring", "torsion spring θ stiffness k rest θ0");
@@ -186,7 +186,7 @@ StatementBody StatementParser::force_statement() {
   }
   if (accept("in")) force.in = used_name("the name of a frame");
   expect("=", fmt::format("`{}`", force.on.text));
-  force.value = formula();
+  force.value = quantity();
   if (!force.in && accept("in")) force.in = used_name("the name of a frame");
   return force;
 }
@@ -204,7 +204,7 @@ StatementBody StatementParser::torque_statement() {
   if (accept("from")) torque.from = used_name("the name of a body");
   if (accept("in")) torque.in = used_name("the name of a frame");
   expect("=", fmt::format("`{}`", torque.from ? torque.from->text : torque.on.text));
-  torque.value = formula();
+  torque.value = quantity();
   if (!torque.in && accept("in")) torque.in = used_name("the name of a frame");
   return torque;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 /// Quantity places and units (rules 1 and 8). Which words are units is not known here: a number followed only by
@@ -10,14 +11,26 @@
 namespace maupertuis::syntax {
 namespace {
 
+using namespace std::string_view_literals;
 using Kind = Expression::Kind;
 
 constexpr int kLargestExponent = 99;
 
-bool is_unit_word(const Token& token, const Token& after) {
+// `third`: the token after `after` and one more, which ends sec^2.
+bool is_unit_word(const Token& token, const Token& after, const Token& third) {
+  const auto ends = [](const Token& t) { return t.kind == Token::Kind::End || t.is(",") || t.is(")"); };
+  const bool seconds = token.is("sec") && (ends(after) || (after.is("^") && ends(third)));  // `system` says: write s
   const Function* function = find_function(token.text);
-  if (function && function->bare) return false;  // 2 cos θ; but min is a unit too
+  if (function && function->bare && !seconds) return false;  // 2 cos θ; but min is a unit too
   return token.kind == Token::Kind::Name && !is_clause_word(token.text) && !token.is("pi") && !after.is("'") && !after.is(".");
+}
+
+bool is_pi(const Token& token) { return token.kind == Token::Kind::Name && token.is("pi"); }
+
+bool is_function_of_numbers(const Token& token) {
+  if (token.kind != Token::Kind::Name || !find_function(token.text)) return false;
+  constexpr std::array others = {"piecewise"sv, "dot"sv, "cross"sv, "norm"sv, "multiplier"sv, "reaction"sv};
+  return std::find(others.begin(), others.end(), token.text) == others.end();
 }
 
 }  // namespace
@@ -41,37 +54,87 @@ ExpressionParser::Node ExpressionParser::quantity() {
   return formula();
 }
 
-// NUMBER or VECTOR, unit words or none, and then the end of the place; null if that is not what stands there.
+// How many tokens a number takes that begins there: 3, pi, (1 + 2), sqrt(2); 0 where none does.
+std::size_t ExpressionParser::tokens_of_number(std::size_t ahead) const {
+  const Token& first = peek(ahead);
+  if (first.kind == Token::Kind::Number || is_pi(first)) return 1;
+  const bool function = is_function_of_numbers(first) && peek(ahead + 1).is("(");
+  if (!first.is("(") && !function) return 0;
+  int depth = 0;
+  for (std::size_t i = ahead + (function ? 1 : 0);; ++i) {
+    const Token& token = peek(i);
+    depth += token.is("(") ? 1 : token.is(")") ? -1 : 0;
+    if (depth == 0) return i + 1 - ahead;
+    const bool word = token.kind == Token::Kind::Name && !is_pi(token) && !is_function_of_numbers(token);
+    const bool vector = token.is(",") && depth == 1 && !function;
+    if (token.kind == Token::Kind::End || word || vector || token.is("[") || token.is("'")) return 0;
+  }
+}
+
+// 1/2, 10 pi, 2*10^-5, sqrt(2), (1 + 2)/3: what a sign or a power joins to the number that stands there.
+ExpressionParser::Node ExpressionParser::constant() {
+  Node left = constant_power();
+  while (true) {
+    const auto written = product_operator(peek());
+    const bool number_after_number = !written && peek().kind == Token::Kind::Number;  // the 1 of 5 1/s
+    if (number_after_number || tokens_of_number(written ? 1 : 0) == 0) return left;
+    if (written) next();
+    Node right = constant_power();
+    left = binary(written.value_or(Operator::Juxtapose), std::move(left), std::move(right));
+  }
+}
+
+ExpressionParser::Node ExpressionParser::constant_power() {
+  const Token& token = peek();
+  Node base;
+  if (token.is("(")) {
+    base = bracket();
+  } else if (token.kind == Token::Kind::Number) {
+    base = make(Kind::Number, next().span);
+    base->text = token.text;
+  } else {
+    base = primary();
+  }
+  const bool powered = peek().is("^") && tokens_of_number(peek(1).is("-") ? 2 : 1) > 0;
+  if (!powered) return base;
+  next();
+  const Nesting nesting(*this);
+  return binary(Operator::Power, std::move(base), exponent());
+}
+
+// A number or a vector, unit words or none, and then the end of the place; null if that is not what stands there.
 ExpressionParser::Node ExpressionParser::quantity_or_null() {
   Node value;
-  if (peek().kind == Token::Kind::Number) {
-    value = make(Kind::Number, next().span);
-    value->text = previous().text;
+  const std::size_t first = index_;
+  if (tokens_of_number(0) > 0) {
+    value = constant();
   } else if (peek().is("(")) {
-    value = bracket();
+    value = bracket(true);
     if (value->kind != Kind::Vector) return nullptr;
   } else {
     return nullptr;
   }
-  if (ends_quantity(peek())) {
-    if (value->kind == Kind::Number) check_number(previous());
-    return value;
+  if (!ends_quantity(peek())) {
+    auto unit = units();
+    if (!unit || !ends_quantity(peek())) return nullptr;
+    if (ambiguous_slash_) {
+      const bool all_names = std::all_of(unit->factors.begin(), unit->factors.end(),
+                                         [&](const auto& factor) { return context_.declarations.contains(factor.word); });
+      if (all_names) return nullptr;
+      refuse_ambiguous_slash();
+    }
+    value = make(Kind::Quantity, cover(value->span, unit->span), {value});
+    value->unit = std::move(unit);
   }
-  const Token& number = previous();
-  auto unit = units();
-  if (!unit || !ends_quantity(peek())) return nullptr;
-  if (ambiguous_slash_) {
-    const bool all_names = std::all_of(unit->factors.begin(), unit->factors.end(),
-                                       [&](const auto& factor) { return context_.declarations.contains(factor.word); });
-    if (all_names) return nullptr;
-    fail("E0118", *ambiguous_slash_, fmt::format("`{}` has two meanings", text_of(*ambiguous_slash_)),
-         "It is not clear whether the second unit belongs to the denominator.",
-         fmt::format("Write /({}) if both belong below the slash, else put the second one before it.", text_of(*ambiguous_slash_)));
-  }
-  if (value->kind == Kind::Number) check_number(number);
-  Node node = make(Kind::Quantity, cover(value->span, unit->span), {value});
-  node->unit = std::move(unit);
-  return node;
+  for (std::size_t i = first; i < index_; ++i)
+    if (context_.list.tokens[i].kind == Token::Kind::Number) check_number(context_.list.tokens[i]);
+  return value;
+}
+
+void ExpressionParser::refuse_ambiguous_slash() {
+  fail("E0118", *ambiguous_slash_, fmt::format("`{}` has two meanings", text_of(*ambiguous_slash_)),
+       "It is not clear whether the second unit belongs to the denominator.",
+       fmt::format("Write /({}) if both belong below the slash, else put the second one before it.", text_of(*ambiguous_slash_)));
 }
 
 bool ExpressionParser::ends_quantity(const Token& token) const {
@@ -95,11 +158,7 @@ UnitExpression ExpressionParser::bracketed_unit() {
     fail("E0119", peek().span, fmt::format("expected `]` after the unit, found {}", describe(peek())), "Square brackets hold a unit.",
          "Write for example [N], [kg m^2/s], [1/s] or [1].");
   }
-  if (ambiguous_slash_) {
-    fail("E0118", *ambiguous_slash_, fmt::format("`{}` has two meanings", text_of(*ambiguous_slash_)),
-         "It is not clear whether the second unit belongs to the denominator.",
-         fmt::format("Write /({}) if both belong below the slash, else put the second one before it.", text_of(*ambiguous_slash_)));
-  }
+  if (ambiguous_slash_) refuse_ambiguous_slash();
   unit.span = cover(open, next().span);
   return unit;
 }
@@ -128,7 +187,7 @@ bool ExpressionParser::unit_factors(UnitExpression& unit, int sign) {
       next();
       if (!unit_factors(unit, -sign) || !accept(")")) return false;
       divided = false;
-    } else if (is_unit_word(peek(), peek(1))) {
+    } else if (is_unit_word(peek(), peek(1), peek(3))) {
       if (!slash && divided && !ambiguous_slash_) ambiguous_slash_ = cover(denominator, here);
       if (!unit_factor(unit, slash ? -sign : sign)) return false;
       if (slash) {

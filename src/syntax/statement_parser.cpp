@@ -205,7 +205,7 @@ StatementBody StatementParser::input_statement() {
     input.unit = bracketed_unit();
   }
   expect("=", "the name of an input");
-  input.value = formula();
+  input.value = quantity();
   return input;
 }
 

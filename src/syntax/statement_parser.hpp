@@ -71,6 +71,7 @@ class StatementParser : private ExpressionParser {
   std::vector<ExpressionPtr> components();
   std::vector<ExpressionPtr> with_unit_after(std::vector<ExpressionPtr> numbers);
   bool opens_components() const;
+  static ExpressionPtr with_unit_of(ExpressionPtr from, const Expression& to);
   DrawItem draw_item();
   void draw_line(DrawItem& item);
   void draw_solid(DrawItem& item);
@@ -98,7 +99,7 @@ class StatementParser : private ExpressionParser {
   void matrix_row(ExpectStatement& expect);
   void expect_stable(ExpectStatement& expect);
   std::vector<ExpressionPtr> matrix_variables();
-  ExpressionPtr clause_formula(std::string_view clause, const ExpressionPtr& already);
+  ExpressionPtr clause_quantity(std::string_view clause, const ExpressionPtr& already);
   [[noreturn]] void missing_clause(std::string_view clause, std::string_view statement, std::string_view example);
   Span statement_span() const;
 
@@ -110,6 +111,7 @@ class StatementParser : private ExpressionParser {
       const std::size_t first = index_;
       try {
         item();
+        refuse_decimal_comma();
         if (!at_end() && !peek().is(",")) expect_end();
       } catch (const Abandoned&) {
         failed = true;

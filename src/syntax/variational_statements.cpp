@@ -12,7 +12,7 @@ StatementBody StatementParser::constraint_statement() {
   constraint.integral = peek().is("integral") && !peek(1).is("=") && !context_.declarations.contains("integral") && accept("integral");
   constraint.left = formula();
   expect("=", "the left side of the constraint");
-  constraint.right = constraint.integral ? quantity() : formula();
+  constraint.right = quantity();
   if (accept("name")) constraint.name = new_name("the name of the constraint");
   return constraint;
 }
@@ -102,8 +102,7 @@ std::vector<ExpressionPtr> StatementParser::with_unit_after(std::vector<Expressi
   if (!unit) fail_expected("a unit after the bracket");
   for (ExpressionPtr& value : out) {
     if (!value) continue;
-    const Expression& number = value->kind == Expression::Kind::Unary ? *value->arguments[0] : *value;
-    if (number.kind != Expression::Kind::Number)
+    if (!is_constant(*value))
       fail("E0111", value->span, fmt::format("expected a number, since a unit follows the bracket, found `{}`", text_of(*value)),
            "A unit after a bracket is that of all its numbers.", "Write the unit, or none, at each of them.");
     auto quantity = std::make_shared<Expression>();

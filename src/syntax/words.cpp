@@ -74,7 +74,34 @@ constexpr std::array<std::pair<std::string_view, EnergyStatement::Which>, 10> kE
     {"dissipation", EnergyStatement::Which::D},
 }};
 
+using Pair = std::pair<std::string_view, std::string_view>;
+
+// Functions of textbooks and of other languages.
+constexpr Pair kFunctionHabits[] = {
+    {"ln", "log"},        {"Log", "log"},       {"Ln", "log"},        {"Exp", "exp"},       {"Sqrt", "sqrt"},     {"root", "sqrt"},
+    {"Abs", "abs"},       {"fabs", "abs"},      {"sgn", "sign"},      {"Sign", "sign"},     {"signum", "sign"},   {"sine", "sin"},
+    {"cosine", "cos"},    {"tangent", "tan"},   {"Sin", "sin"},       {"Cos", "cos"},       {"Tan", "tan"},       {"SIN", "sin"},
+    {"COS", "cos"},       {"TAN", "tan"},       {"tg", "tan"},        {"ctg", "cot"},       {"cotan", "cot"},     {"cosec", "csc"},
+    {"arcsin", "asin"},   {"arccos", "acos"},   {"arctan", "atan"},   {"arctg", "atan"},    {"arctan2", "atan2"}, {"Arcsin", "asin"},
+    {"Arccos", "acos"},   {"Arctan", "atan"},   {"arsinh", "asinh"},  {"arcosh", "acosh"},  {"artanh", "atanh"},  {"arcsinh", "asinh"},
+    {"arccosh", "acosh"}, {"arctanh", "atanh"}, {"sh", "sinh"},       {"ch", "cosh"},       {"th", "tanh"},
+    {"heaviside", "step"}, {"Heaviside", "step"}, {"lambertw", "lambert_w"}, {"LambertW", "lambert_w"},
+};
+constexpr Pair kFormulaHabits[] = {
+    {"log10", "log(x)/log(10)"}, {"lg", "log(x)/log(10)"}, {"log2", "log(x)/log(2)"}, {"pow", "x^2 for pow(x, 2)"},
+    {"sqr", "x^2"},              {"square", "x^2"},        {"cbrt", "x^(1/3)"},       {"csch", "1/sinh(x)"},
+    {"coth", "1/tanh(x)"},       {"if", "piecewise(x < 0 : a, else : b)"},            {"vec", "the components in brackets: (a, b)"},
+};
+
+std::string_view find_in(std::span<const Pair> pairs, std::string_view word) {
+  const auto found = std::find_if(pairs.begin(), pairs.end(), [&](const Pair& pair) { return pair.first == word; });
+  return found == pairs.end() ? std::string_view() : found->second;
+}
+
 }  // namespace
+
+std::string_view function_of_habit(std::string_view word) { return find_in(kFunctionHabits, word); }
+std::string_view formula_of_habit(std::string_view word) { return find_in(kFormulaHabits, word); }
 
 std::span<const std::string_view> statement_words() { return kStatementWords; }
 std::span<const std::string_view> clause_words() { return kClauseWords; }

@@ -22,6 +22,11 @@ struct Function {
 };
 std::span<const Function> functions();
 
+/// `asin` for arcsin, `log` for ln; empty for words that are no function elsewhere either.
+std::string_view function_of_habit(std::string_view word);
+/// The same for those that take another form here: `log(x)/log(10)` for log10.
+std::string_view formula_of_habit(std::string_view word);
+
 bool is_statement_word(std::string_view word);
 bool is_clause_word(std::string_view word);
 const Function* find_function(std::string_view word);

@@ -12,11 +12,12 @@ namespace {
 
 using syntax::Expression;
 
-/// A number or a vector of numbers, perhaps negative, perhaps with a unit.
+/// A number or a vector of numbers, perhaps calculated, perhaps with a unit: 3 kg, -1/2, 10 pi rad/s, (1, 2) m.
 bool is_quantity(const Expression& x) {
-  using Kind = Expression::Kind;
-  if (x.kind == Kind::Number || x.kind == Kind::Quantity) return true;
-  if (x.kind != Kind::Unary && x.kind != Kind::Vector) return false;
+  using Form = Expression::Kind;
+  if (x.kind == Form::Name) return x.text == "pi" && x.primes == 0;
+  const bool calculated = x.kind == Form::Unary || x.kind == Form::Vector || x.kind == Form::Binary || x.kind == Form::Call;
+  if (x.kind != Form::Number && x.kind != Form::Quantity && !calculated) return false;
   return std::all_of(x.arguments.begin(), x.arguments.end(), [](const auto& a) { return is_quantity(*a); });
 }
 
@@ -25,12 +26,30 @@ struct WrittenUnit {
   double factor = 1;   // in SI
 };
 
-/// Of a quantity that was read without a mistake.
-WrittenUnit unit_of_quantity(Elaboration& e, const Expression& x) {
-  if (x.kind == Expression::Kind::Unary) return unit_of_quantity(e, *x.arguments[0]);
-  if (!x.unit) return {};
-  const std::optional<Unit> unit = unit_of(e, *x.unit);
-  return unit ? WrittenUnit{written_unit(e.source, *x.unit), maupertuis::evaluate(factor_of(e.context, *unit), Bindings{})} : WrittenUnit{};
+/// Words after a number that are names and no units: 1/3 m l^2.
+bool names_stand_in(Elaboration& e, const Expression& x) {
+  if (x.unit && !x.unit_bracketed)
+    for (const auto& word : x.unit->factors)
+      if (const Declaration* d = e.table.find(word.word); d && d->statement && !find_unit(word.word)) return true;
+  return std::any_of(x.arguments.begin(), x.arguments.end(), [&](const auto& a) { return names_stand_in(e, *a); });
+}
+
+void quantities_in(const Expression& x, std::vector<const Expression*>& out) {
+  if (x.kind == Expression::Kind::Quantity) out.push_back(&x);
+  else
+    for (const auto& a : x.arguments) quantities_in(*a, out);
+}
+
+/// Of a quantity that was read without a mistake. Of 10 pi [rad/s] it is rad/s; of a calculation with several units that of SI.
+WrittenUnit unit_of_quantity(Elaboration& e, const Expression& x, const Dimension& dimension) {
+  std::vector<const Expression*> quantities;
+  quantities_in(x, quantities);
+  if (quantities.empty()) return {};
+  const bool vector = x.kind == Expression::Kind::Vector;
+  if (quantities.size() > 1 && !vector) return {to_string(dimension), 1};
+  const std::optional<Unit> unit = unit_of(e, *quantities.front()->unit);
+  if (!unit || !unit->dimension.same_as(dimension)) return {to_string(dimension), 1};
+  return {written_unit(e.source, *quantities.front()->unit), maupertuis::evaluate(factor_of(e.context, *unit), Bindings{})};
 }
 
 Expr add_parameter(Elaboration& e, const Declaration& d, const std::string& name, Expr value,
@@ -92,7 +111,7 @@ void elaborate_parameter(Elaboration& e, Declaration& d) {
   const Expression& x = *std::get<syntax::ParamStatement>(d.statement->body).items[d.item].value;
   d.done = true;
   d.value = Value::poison();
-  if (!is_quantity(x)) {
+  if (!is_quantity(x) || names_stand_in(e, x)) {
     e.diagnostics.error("E0209", x.span, "a parameter is given by a quantity, not by a formula",
                         "A parameter is a number with its unit, which a study may change; what follows from other "
                         "quantities is a definition.",
@@ -103,7 +122,7 @@ void elaborate_parameter(Elaboration& e, Declaration& d) {
   place.in_parameter = place.inline_constants = true;
   Value v = evaluate_formula(e, x, place);
   if (v.poisoned || !is_possible(e, d, v, x)) return;
-  const WrittenUnit unit = unit_of_quantity(e, x);
+  const WrittenUnit unit = unit_of_quantity(e, x, v.dimension);
   const char* axes[] = {".x", ".y", ".z"};
   for (std::size_t i = 0; i < v.parts.size(); ++i)
     v.parts[i] = add_parameter(e, d, v.is_vector ? d.name + axes[i] : d.name, v.parts[i], v.dimension, unit);

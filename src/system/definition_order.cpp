@@ -29,6 +29,8 @@ class Dependencies {
   void expression(Ids& out, const ExpressionPtr& e) {
     if (!e) return;
     if (e->kind == syntax::Expression::Kind::Name) name(out, e->text);
+    if (e->unit && !e->unit_bracketed)  // its words may be names
+      for (const auto& word : e->unit->factors) name(out, word.word);
     for (const ExpressionPtr& a : e->arguments) expression(out, a);
   }
   void rotation(Ids& out, const std::optional<syntax::Rotation>& r) {

@@ -176,14 +176,14 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
     diagnostics.sort_by_place();
     return std::nullopt;
   }
-  apply_parameter_overrides(e, overrides.parameters);
+  apply_parameter_overrides(e, overrides);
 
   for (const DeclarationId id : definition_order(e.table, tree, diagnostics)) elaborate_declaration(e, id);
   elaborate_forces(e);
   elaborate_constraints(e);
   elaborate_experiment(e);
-  apply_start_overrides(e, overrides.start);
-  apply_at_overrides(e, overrides.at);
+  apply_start_overrides(e, overrides);
+  apply_at_overrides(e, overrides);
   start_quaternions(e);
 
   require_coordinates(e, any_coordinate);

@@ -73,6 +73,8 @@ Value value_of_multiplier(Elaboration& e, const Constraint& c);
 /// A number or vector with unit words.
 Value value_of_number(Elaboration& e, const syntax::Expression& x);
 Value value_of_quantity(Elaboration& e, const syntax::Expression& x, const Place& place);
+/// Whether `x` is a habit of paper that the language does not have (e^x, d/dt θ, 9.81 m/s^2): then it was told.
+bool tell_habit(Elaboration& e, const syntax::Expression& x);
 /// A sum, a product, a power of values.
 Value add(Elaboration& e, const Value& a, const Value& b, bool subtract, const syntax::Expression& x,
           const Place& place);
@@ -195,9 +197,9 @@ void warn_unused(Elaboration& e);
 /// Replaces the symbols of definitions everywhere and keeps the system as written beside it.
 void expand_definitions(Model& model);
 
-/// `m=2kg`, `θ=1` of the command line; mistakes are told without a place in the model.
-void apply_parameter_overrides(Elaboration& e, const std::vector<std::string>& overrides);
-void apply_start_overrides(Elaboration& e, const std::vector<std::string>& overrides);
-void apply_at_overrides(Elaboration& e, const std::vector<std::string>& overrides);
+/// `m=2kg`, `θ=1` of the command line; mistakes are told at their places in the options, see overrides.cpp.
+void apply_parameter_overrides(Elaboration& e, const Overrides& overrides);
+void apply_start_overrides(Elaboration& e, const Overrides& overrides);
+void apply_at_overrides(Elaboration& e, const Overrides& overrides);
 
 }  // namespace maupertuis::elaboration

@@ -2,6 +2,7 @@
 
 #include <maupertuis/look_alikes.hpp>
 #include <maupertuis/momentum.hpp>
+#include <maupertuis/spelling.hpp>
 
 #include <fmt/format.h>
 
@@ -158,6 +159,10 @@ void unknown_name(Elaboration& e, const std::string& text, Span span) {
     const std::string foreign = foreign_letter(twin).empty() ? foreign_letter(text) : foreign_letter(twin);
     e.diagnostics.error("E0201", span, fmt::format("`{}` is not declared; a name that looks the same is", text),
                         foreign.empty() ? "Its letters are of another alphabet." : fmt::format("In one of the two {}.", foreign), "Type both with the same letters.");
+    return;
+  }
+  if (const syntax::Spelling right = syntax::right_spelling(text, names); !right.text.empty()) {
+    e.diagnostics.error("E0201", span, fmt::format("`{}` is not declared", text), right.reason, fmt::format("Write {}.", right.text));
     return;
   }
   const std::string near = did_you_mean(text, names);

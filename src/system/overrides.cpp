@@ -2,46 +2,69 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 /// `--set m=2kg` and `--start θ=1` of the command line: each is read as a statement of its own (`param m = 2kg`), and
-/// its value takes the place of the model's. A mistake in it has no place in the model text.
+/// its value takes the place of the model's. The texts of the options count as lines behind the text of the model, in the
+/// order of Overrides: that is where a mistake in one of them has its place.
 namespace maupertuis::elaboration {
 namespace {
 
 /// One override as a model text of one statement.
 struct Fragment {
   std::string option, text;
+  std::uint32_t place;   // of the text, behind that of the model
+  std::uint32_t head;    // bytes before it in the statement
   SourceText source;
   Diagnostics diagnostics;
   syntax::SyntaxTree tree;
 
-  Fragment(const char* option, const char* statement, const std::string& text)
+  Fragment(const char* option, const char* statement, const std::string& text, std::uint32_t place)
       : option(option),
         text(text),
+        place(place),
+        head(static_cast<std::uint32_t>(std::string_view(statement).size() + 1)),
         source("command line", fmt::format("{} {}\n", statement, text)),
         tree(syntax::parse(source, diagnostics)) {}
 };
 
-void refuse(Elaboration& e, const Fragment& f, const std::string& message, std::string reason, std::string help) {
-  e.diagnostics.error("E0224", std::nullopt, fmt::format("{} {}: {}", f.option, f.text, message), std::move(reason),
-                      std::move(help));
+Span all_of(const Fragment& f) { return {f.head, f.head + static_cast<std::uint32_t>(f.text.size())}; }
+
+void refuse(Elaboration& e, const Fragment& f, Span span, const std::string& message, std::string reason, std::string help) {
+  const Span all = all_of(f);
+  const auto shifted = [&](std::uint32_t at) { return f.place + std::clamp(at, all.begin, all.end) - all.begin; };
+  e.diagnostics.error("E0224", Span{shifted(span.begin), shifted(span.end)}, fmt::format("{} {}: {}", f.option, f.text, message),
+                      std::move(reason), std::move(help));
 }
 
 /// The first mistake inside the fragment, told as one of the option; true if there was any.
 bool hand_over(Elaboration& e, const Fragment& f) {
   for (const Diagnostic& d : f.diagnostics.items()) {
     if (d.severity != Severity::Error) continue;
-    refuse(e, f, d.message, d.reason, d.help);
+    refuse(e, f, d.span.value_or(all_of(f)), d.message, d.reason, d.help);
     return true;
   }
   return false;
 }
 
-void unknown_parameter(Elaboration& e, const Fragment& f, const std::string& name, const Declaration* d) {
+/// Where the n-th text of the overrides stands: each is a line of its own behind the model.
+std::uint32_t place_behind(const Elaboration& e, const Overrides& overrides, std::size_t n) {
+  std::size_t place = e.source.text().size() + 1;
+  for (const auto* list : {&overrides.parameters, &overrides.start, &overrides.at})
+    for (const std::string& text : *list) {
+      if (n-- == 0) return static_cast<std::uint32_t>(place);
+      place += text.size() + 1;
+    }
+  return static_cast<std::uint32_t>(place);
+}
+
+void unknown_parameter(Elaboration& e, const Fragment& f, const Declaration& given, const Declaration* d) {
+  const std::string& name = given.name;
   std::vector<std::string> names;
   for (const Declaration& other : e.table.declarations())
     if (other.kind == Declaration::Kind::Parameter) names.push_back(other.name);
   const std::string near = did_you_mean(name, names);
-  refuse(e, f,
+  refuse(e, f, given.span,
          d && d->statement ? fmt::format("`{}` is a {}, not a parameter", name, word_of(d->kind))
                            : fmt::format("the model has no parameter `{}`", name),
          "Only parameters can be set.", near.empty() ? "" : fmt::format("Did you mean `{}`?", near));
@@ -64,13 +87,13 @@ void replace(Elaboration& e, Declaration& d, const Elaboration& inner) {
 
 void set_parameter(Elaboration& e, Fragment& f, Elaboration& inner, Declaration& given) {
   Declaration* d = e.table.find(given.name);
-  if (!d || d->kind != Declaration::Kind::Parameter) return unknown_parameter(e, f, given.name, d);
+  if (!d || d->kind != Declaration::Kind::Parameter) return unknown_parameter(e, f, given, d);
   elaborate_parameter(inner, given);
   if (hand_over(e, f) || d->value.poisoned || given.value.poisoned) return;
   const bool fits = d->value.fits_any || given.value.fits_any || given.value.dimension.same_as(d->value.dimension);
   if (!fits || given.value.parts.size() != d->value.parts.size())
     return refuse(
-        e, f,
+        e, f, std::get<syntax::ParamStatement>(given.statement->body).items[given.item].value->span,
         fmt::format("`{}` is {}, this is {}", d->name, describe(d->value.dimension), describe(given.value.dimension)),
         "A parameter keeps its dimension.",
         fmt::format("Write --set {}=… with a unit of the same dimension.", d->name));
@@ -100,9 +123,9 @@ Elaboration::Elaboration(const Elaboration& outer, const syntax::SyntaxTree& tre
   model.system.independent_dimension = outer.model.system.independent_dimension;
 }
 
-void apply_parameter_overrides(Elaboration& e, const std::vector<std::string>& overrides) {
-  for (const std::string& text : overrides) {
-    Fragment f("--set", "param", text);
+void apply_parameter_overrides(Elaboration& e, const Overrides& overrides) {
+  for (std::size_t i = 0; i < overrides.parameters.size(); ++i) {
+    Fragment f("--set", "param", overrides.parameters[i], place_behind(e, overrides, i));
     if (hand_over(e, f)) continue;
     Elaboration inner(e, f.tree, f.source, f.diagnostics);
     for (Declaration& given : inner.table.declarations())
@@ -126,8 +149,8 @@ namespace {
 
 /// The items of `--start θ=1, φ'=2` or `--at …`, each handed to `take(inner, item)` until a mistake was told.
 template <class Take>
-void for_each_item(Elaboration& e, const char* option, const std::string& text, Take&& take) {
-  Fragment f(option, "start", text);
+void for_each_item(Elaboration& e, const char* option, const std::string& text, std::uint32_t place, Take&& take) {
+  Fragment f(option, "start", text, place);
   if (hand_over(e, f)) return;
   Elaboration inner(e, f.tree, f.source, f.diagnostics);
   inner.table.adopt(e.table);
@@ -151,17 +174,17 @@ void replace_start(std::vector<StartValue>& list, StartValue value) {
 
 }  // namespace
 
-void apply_start_overrides(Elaboration& e, const std::vector<std::string>& overrides) {
-  for (const std::string& text : overrides)
-    for_each_item(e, "--start", text, [&](Elaboration& inner, const auto& item) {
+void apply_start_overrides(Elaboration& e, const Overrides& overrides) {
+  for (std::size_t i = 0; i < overrides.start.size(); ++i)
+    for_each_item(e, "--start", overrides.start[i], place_behind(e, overrides, overrides.parameters.size() + i), [&](Elaboration& inner, const auto& item) {
       if (is_body_rate(inner, *item.variable)) return override_rates(e, start_rates(inner, item));
       if (const auto value = start_value(inner, item)) replace_start(e.experiment().start, *value);
     });
 }
 
-void apply_at_overrides(Elaboration& e, const std::vector<std::string>& overrides) {
-  for (const std::string& text : overrides)
-    for_each_item(e, "--at", text, [&](Elaboration& inner, const auto& item) {
+void apply_at_overrides(Elaboration& e, const Overrides& overrides) {
+  for (std::size_t i = 0; i < overrides.at.size(); ++i)
+    for_each_item(e, "--at", overrides.at[i], place_behind(e, overrides, overrides.parameters.size() + overrides.start.size() + i), [&](Elaboration& inner, const auto& item) {
       if (const auto value = start_value(inner, item)) replace_start(e.experiment().at, *value);
     });
 }

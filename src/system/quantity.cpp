@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 /// Numbers and quantities (rule 1 of the language): `3 [J]` of a formula, `2 m` of a quantity place, where `m` may be
@@ -12,18 +13,20 @@ namespace {
 
 using syntax::Expression;
 
-bool all_names(Elaboration& e, const syntax::UnitExpression& words) {
-  for (const auto& word : words.factors) {
-    const Declaration* d = e.table.find(word.word);
-    if (!d || !d->statement) return false;
-  }
-  return !words.factors.empty();
+/// The dimension of a word as a name of the model; nothing where it is none.
+std::optional<Dimension> dimension_of_name(Elaboration& e, const std::string& word) {
+  const Declaration* d = e.table.find(word);
+  if (d && d->statement) return d->value.dimension;
+  return word == e.system().independent ? std::optional(e.time()) : std::nullopt;
 }
 
-Dimension dimension_of_names(Elaboration& e, const syntax::UnitExpression& words) {
+std::optional<Dimension> dimension_of_names(Elaboration& e, const syntax::UnitExpression& words) {
   Dimension out;
-  for (const auto& word : words.factors)
-    out = out * pow(e.table.find(word.word)->value.dimension, word.exponent_numerator, word.exponent_denominator);
+  for (const auto& word : words.factors) {
+    const std::optional<Dimension> d = dimension_of_name(e, word.word);
+    if (!d) return std::nullopt;
+    out = out * pow(*d, word.exponent_numerator, word.exponent_denominator);
+  }
   return out;
 }
 
@@ -42,24 +45,30 @@ Value product_of_names(Elaboration& e, const Expression& x, const Place& place) 
   return out;
 }
 
+bool any_name_but_no_unit(Elaboration& e, const syntax::UnitExpression& words) {
+  return std::any_of(words.factors.begin(), words.factors.end(),
+                     [&](const auto& word) { return !find_unit(word.word) && dimension_of_name(e, word.word); });
+}
+
 /// Whether the words are the names of the model rather than units. Nothing: both fit, which was reported.
 std::optional<bool> words_are_names(Elaboration& e, const Expression& x, const Place& place) {
   const syntax::UnitExpression& words = *x.unit;
-  if (x.unit_bracketed || place.in_parameter || !all_names(e, words)) return false;
-  if (!all_units(words)) return true;
+  if (x.unit_bracketed || place.in_parameter || words.factors.empty()) return false;
+  const std::optional<Dimension> of_names = dimension_of_names(e, words);
+  if (!all_units(words)) return of_names || e.dimensionless || any_name_but_no_unit(e, words);
+  if (!of_names) return false;
   if (!place.expected || e.dimensionless) return e.dimensionless;
   Dimension as_units;
   for (const auto& w : words.factors)
     as_units = as_units * pow(find_unit(w.word)->dimension, w.exponent_numerator, w.exponent_denominator);
   const bool units_fit = as_units.same_as(*place.expected);
-  const bool names_fit = dimension_of_names(e, words).same_as(*place.expected);
+  const bool names_fit = of_names->same_as(*place.expected);
   if (units_fit && names_fit) {
     const std::string text(e.source.slice(words.span));
-    e.diagnostics.error(
-        "E0307", words.span, fmt::format("`{}` is a unit and also a name of this model", text),
-        fmt::format("Both readings give {} here.", describe(*place.expected)),
-        fmt::format("Write {} [{}] for the unit or {} * {} for the name.", e.source.slice(x.arguments[0]->span), text,
-                    e.source.slice(x.arguments[0]->span), text));
+    const std::string_view number = e.source.slice(x.arguments[0]->span);
+    e.diagnostics.error("E0307", words.span, fmt::format("`{}` is a unit and also a name of this model", text),
+                        fmt::format("Both readings give {} here.", describe(*place.expected)),
+                        fmt::format("Write {0} [{1}] for the unit or {0} * {1} for the name.", number, text));
     return std::nullopt;
   }
   return names_fit;
@@ -102,33 +111,55 @@ Value value_of_number(Elaboration& e, const Expression& x) {
   return v;
 }
 
+namespace {
+
+/// "3", "(1/2)": what stands before the unit, to be read back with the unit in brackets behind it.
+std::string written_number(const Elaboration& e, const Expression& x) {
+  if (x.kind == Expression::Kind::Number) return std::string(e.source.slice(x.span));
+  const std::string text = syntax::to_string(x);
+  return x.bracketed || x.kind == Expression::Kind::Name ? text : "(" + text + ")";
+}
+
+/// Constants count as positive, as parameters do.
+bool is_positive_number(const Expr& part) {
+  return symbols_of({&part, 1}).empty() && maupertuis::evaluate(part, Bindings{}) > 0;
+}
+
+bool refuse_second_unit(Elaboration& e, const Value& v, const Expression& x) {
+  if (v.fits_any || v.dimension.is_one()) return false;
+  e.diagnostics.error("E0302", x.unit->span, fmt::format("this unit follows {}", describe(v.dimension)),
+                      "What stands before a unit is a bare number, or a vector of bare numbers.",
+                      "Write the unit once.");
+  return true;
+}
+
+}  // namespace
+
 Value value_of_quantity(Elaboration& e, const Expression& x, const Place& place) {
   const std::optional<bool> names = words_are_names(e, x, place);
   if (!names) return Value::poison();
   if (*names) return product_of_names(e, x, place);
   const std::optional<Unit> unit = unit_of(e, *x.unit);
-  Value v = evaluate_formula(e, *x.arguments[0], place);
-  if (!unit || v.poisoned) return Value::poison();
+  Place bare = place;
+  bare.expected.reset();
+  bare.frame = nullptr;  // its components are turned below, as quantities
+  Value v = evaluate_formula(e, *x.arguments[0], bare);
+  if (!unit || v.poisoned || refuse_second_unit(e, v, x)) return Value::poison();
   v.fits_any = false;
   v.is_literal = false;
   v.dimension = unit->dimension;
   v.hertz = unit->is_hertz;
   const Expr factor = factor_of(e.context, *unit);
-  const bool constant = x.unit_bracketed && !place.inline_constants && !unit->dimension.is_one();
+  const bool constant = !place.in_parameter && !place.inline_constants && !unit->dimension.is_one();
+  const std::string written = written_unit(e.source, *x.unit);
   for (Expr& part : v.parts) {
     const Expr si = part * factor;
-    const std::string written = written_unit(e.source, *x.unit);
     // A component of a vector is named by its own value: (3, 4) [N] is 3 N and 4 N.
-    if (constant && part.is_number() && !part.is_zero())
-      part = anonymous_constant(
-          e,
-          fmt::format("{} {}",
-                      v.is_vector ? part.number().to_string() : std::string(e.source.slice(x.arguments[0]->span)),
-                      written),
-          si, *unit, written, x.span);
-    else
-      part = si;
+    const bool named = constant && (v.is_vector ? part.is_number() && !part.is_zero() : is_positive_number(part));
+    const std::string number = !named ? "" : v.is_vector ? part.number().to_string() : written_number(e, *x.arguments[0]);
+    part = named ? anonymous_constant(e, fmt::format("{} {}", number, written), si, *unit, written, x.span) : si;
   }
+  if (v.is_vector && place.frame) v.parts = rotate(place.frame->rotation, v.parts);
   return v;
 }
 

@@ -5,10 +5,41 @@
 namespace maupertuis::elaboration {
 namespace {
 
+/// Words for units that the language has as letters.
+constexpr std::pair<std::string_view, std::string_view> kUnitWords[] = {
+    {"sec", "s"},       {"second", "s"},  {"seconds", "s"}, {"meter", "m"},   {"meters", "m"},  {"metre", "m"},    {"metres", "m"},
+    {"kilogram", "kg"}, {"gram", "g"},    {"grams", "g"},   {"newton", "N"},  {"Newton", "N"},  {"joule", "J"},    {"Joule", "J"},
+    {"watt", "W"},      {"Watt", "W"},    {"volt", "V"},    {"Volt", "V"},    {"ampere", "A"},  {"radian", "rad"}, {"radians", "rad"},
+    {"degrees", "deg"}, {"hz", "Hz"},     {"Kg", "kg"},     {"KG", "kg"},     {"Rad", "rad"},   {"hours", "h"},    {"minutes", "min"},
+    {"ms2", "m/s^2"},   {"msec", "ms"},   {"Ohm", "ohm"},   {"mps", "m/s"},   {"rads", "rad"},
+};
+
+/// `N m` for Nm: two or three units without a blank between them; empty if it is not made of them.
+std::string units_apart(const std::string& word, int most = 3) {
+  for (std::size_t cut = word.size() - 1; cut > 0 && most > 1; --cut) {
+    const auto first = find_unit(word.substr(0, cut));
+    if (!first) continue;
+    const std::string rest = word.substr(cut);
+    const auto second = find_unit(rest);
+    if (second && !second->dimension.same_as(first->dimension)) return word.substr(0, cut) + " " + rest;
+    if (const std::string apart = units_apart(rest, most - 1); !apart.empty()) return word.substr(0, cut) + " " + apart;
+  }
+  return "";
+}
+
+/// What the word was probably meant to be; empty where nothing is near.
+std::string unit_meant(const std::string& word, std::span<const std::string> candidates) {
+  for (const auto& [spelled, letters] : kUnitWords)
+    if (spelled == word) return fmt::format("Write {}.", letters);
+  if (const std::string apart = word.size() <= 8 ? units_apart(word) : ""; !apart.empty())
+    return fmt::format("Write {}: units of a product stand apart.", apart);
+  const std::string near = did_you_mean(word, candidates);
+  return near.empty() ? "" : fmt::format("Did you mean `{}`?", near);
+}
+
 void unknown_unit(Elaboration& e, const syntax::UnitExpression::Factor& word) {
   std::vector<std::string> candidates = {"kg", "mm", "cm", "km", "ms", "kN", "mN", "kW", "mH", "mA", "kHz"};
   for (std::string& unit : unit_words()) candidates.push_back(std::move(unit));
-  const std::string near = did_you_mean(word.word, candidates);
   const Declaration* named = e.table.find(word.word);
   if (named && named->statement) {
     e.diagnostics.error("E0209", word.span,
@@ -20,7 +51,7 @@ void unknown_unit(Elaboration& e, const syntax::UnitExpression::Factor& word) {
   e.diagnostics.error(
       "E0301", word.span, fmt::format("`{}` is no unit", word.word),
       "Units are SI units with their prefixes, derived units, and common ones such as deg, rpm, bar, inch.",
-      near.empty() ? "" : fmt::format("Did you mean `{}`?", near));
+      unit_meant(word.word, candidates));
 }
 
 std::optional<Rational> exact_power(const Rational& base, int numerator, int denominator) {

@@ -3,6 +3,8 @@
 #include <maupertuis/along_motion.hpp>
 #include "verification/pitfalls.hpp"
 
+#include <algorithm>
+
 namespace maupertuis {
 namespace {
 
@@ -25,7 +27,9 @@ bool proportional(Expr a, Expr b) {
 
 bool follows_from(Expr difference, const EquationsOfMotion& equations, const ExprVector& residual) {
   if (has_acceleration(difference)) {
-    const AlongMotion mistaken(equations, residual);
+    ExprVector balance = residual;
+    for (std::size_t i = 0; i < equations.constraint_forces.size(); ++i) balance[i] = balance[i] - equations.constraint_forces[i];
+    const AlongMotion mistaken(equations, balance);
     return mistaken.solvable() && mistaken.vanishes(difference).verdict == Verdict::Zero;
   }
   for (const Expr& row : residual) {
@@ -35,13 +39,20 @@ bool follows_from(Expr difference, const EquationsOfMotion& equations, const Exp
   return false;
 }
 
+bool is_about(const Pitfall& pitfall, const Resemblance* resemblance) {
+  if (!resemblance || resemblance->origins.empty() || pitfall.about.empty()) return true;
+  return std::all_of(resemblance->origins.begin(), resemblance->origins.end(), [&](TermOrigin origin) {
+    return std::find(pitfall.about.begin(), pitfall.about.end(), origin) != pitfall.about.end();
+  });
+}
+
 }  // namespace
 
-std::string diagnose_claim(Expr difference, const EquationsOfMotion& equations) {
+std::string diagnose_claim(Expr difference, const EquationsOfMotion& equations, const Resemblance* resemblance) {
   const Expr plain = expand_time_derivatives(difference);
   for (const Pitfall& pitfall : pitfalls(equations))
-    if (follows_from(plain, equations, pitfall.residual)) return pitfall.sentence;
-  return {};
+    if (is_about(pitfall, resemblance) && follows_from(plain, equations, pitfall.residual)) return pitfall.sentence;
+  return resemblance ? resemblance->sentence : "";
 }
 
 }  // namespace maupertuis

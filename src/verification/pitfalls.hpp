@@ -1,5 +1,5 @@
 #pragma once
-#include <maupertuis/equations_of_motion.hpp>
+#include "verification/row_terms.hpp"
 
 #include <string>
 #include <vector>
@@ -10,6 +10,7 @@ namespace maupertuis {
 struct Pitfall {
   std::string sentence;   // "the term ∂T/∂q is missing: T depends on the coordinates as well"
   ExprVector residual;    // [n] may be free of q̈
+  std::vector<TermOrigin> about;  // the terms that it changes; empty: any
 };
 
 std::vector<Pitfall> pitfalls(const EquationsOfMotion& equations);

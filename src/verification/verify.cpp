@@ -253,7 +253,11 @@ class Verifier {
     }
     result.actual = test.verdict == Verdict::Undecided ? "undecided" : "does not follow";
     result.message = failed_identity(test, "Along the motion, left side − right side", difference);
-    if (test.verdict == Verdict::Nonzero) result.pitfall = diagnose_claim(difference, equations_);
+    if (test.verdict != Verdict::Nonzero) return;
+    const auto resemblance = resembled_equation(difference, equations_);
+    if (resemblance) result.message = resemblance->text;
+    result.pitfall = diagnose_claim(difference, equations_, resemblance ? &*resemblance : nullptr);
+    if (resemblance && result.pitfall.empty()) result.message += " No known mistake has this signature.";
   }
 
   /// Names the difference where it is short enough to be read.

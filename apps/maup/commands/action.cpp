@@ -1,4 +1,5 @@
 #include "action_text.hpp"
+#include "columns.hpp"
 #include "command.hpp"
 #include "interrupt.hpp"
 #include "outcome.hpp"
@@ -98,60 +99,49 @@ ActionOptions options_of(const ActionCommand& o) {
 
 // --------------------------------------------------------------------------------------------------------- a given path
 
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(' '), last = text.find_last_not_of(' ');
-  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
-}
-
-/// "x = 4 t + 7, y = atan2(t, 1)" → pieces between commas outside of brackets.
-std::vector<std::string> pieces_of(const std::string& text) {
-  std::vector<std::string> out(1);
-  int depth = 0;
-  for (const char c : text) {
-    depth += (c == '(') - (c == ')');
-    if (c == ',' && depth == 0) out.emplace_back();
-    else out.back() += c;
-  }
-  return out;
-}
-
-/// The formulas in the order of the coordinates: "(4 t + 7, 3 t + 5)".
-std::optional<std::string> formulas_of(const std::string& text, const MechanicalSystem& system, Diagnostics& diagnostics) {
-  std::vector<std::string> formulas(system.coordinates.size());
-  std::string wrong;
-  for (const std::string& piece : pieces_of(text)) {
-    const auto equals = piece.find('=');
-    const std::string name = trimmed(piece.substr(0, equals));
+/// The formulas of --path in the order of the coordinates, as pieces of its text: x = 4 t + 7, y = 3 t + 5.
+std::optional<std::vector<Span>> formulas_of(const std::string& text, Study& study) {
+  const MechanicalSystem& system = study.model()->system;
+  std::vector<Span> formulas(system.coordinates.size());
+  std::optional<Span> wrong;
+  for (const Span piece : pieces_of(text)) {
+    const auto equals = text.find('=', piece.begin);
+    const bool has_sides = equals < piece.end;
+    const Span left = has_sides ? pieces_of(text.substr(0, equals).substr(piece.begin)).front() : Span{};
+    const std::string name = text.substr(piece.begin + left.begin, left.end - left.begin);
     const auto found = std::find_if(system.coordinates.begin(), system.coordinates.end(), [&](const Coordinate& c) { return c.name == name; });
-    if (equals == std::string::npos || found == system.coordinates.end()) wrong = piece;
-    else formulas[static_cast<std::size_t>(found - system.coordinates.begin())] = trimmed(piece.substr(equals + 1));
+    if (!has_sides || found == system.coordinates.end()) wrong = piece;
+    else formulas[static_cast<std::size_t>(found - system.coordinates.begin())] = {static_cast<std::uint32_t>(equals + 1), piece.end};
   }
-  std::string out, names;
+  std::string names;
   for (std::size_t i = 0; i < formulas.size(); ++i) {
     names += fmt::format("{}{} = …", i ? ", " : "", system.coordinates[i].name);
-    out += (i ? ", " : "") + formulas[i];
-    if (formulas[i].empty() && wrong.empty()) wrong = text;
+    if (formulas[i].begin == formulas[i].end && !wrong) wrong = Span{0, static_cast<std::uint32_t>(text.size())};
   }
-  if (wrong.empty()) return "(" + out + ")";
-  diagnostics.error("E0809", {}, fmt::format("--path \"{}\": \"{}\" gives no path.", text, trimmed(wrong)), {},
-                    fmt::format("Write a formula for each coordinate: \"{}\".", names));
+  if (!wrong) return formulas;
+  study.refuse_option("--path", text, fmt::format("--path \"{}\": \"{}\" gives no path.", text, text.substr(wrong->begin, wrong->end - wrong->begin)),
+               {}, fmt::format("Write a formula for each coordinate: \"{}\".", names), wrong);
   return std::nullopt;
 }
 
 /// A path is read as the expectation of a model of its own, so that it may hold whatever a formula may.
 std::unique_ptr<Study> study_of_path(const ActionCommand& o, Study& as_written) {
-  const auto formulas = formulas_of(o.path, as_written.model()->system, as_written.diagnostics());
+  const auto formulas = formulas_of(o.path, as_written);
   if (!formulas) return nullptr;
   const std::string& independent = as_written.model()->system.independent;
-  std::string statement = "expect action of " + *formulas;
-  if (o.from && o.to) statement += fmt::format(" from {} to {}", *o.from, *o.to);
+  OptionStatement statement("expect action of (");
+  for (std::size_t i = 0; i < formulas->size(); ++i)
+    statement.add(i ? ", " : "").add_typed("--path", o.path.substr((*formulas)[i].begin, (*formulas)[i].end - (*formulas)[i].begin));
+  statement.add(")");
+  if (o.from && o.to) statement.add(" from ").add_typed("--from", *o.from).add(" to ").add_typed("--to", *o.to);
   else if (!as_written.model()->experiment.path) {
     as_written.diagnostics().error("E0809", {}, "--path needs to know from where to where.", {},
                                    fmt::format("Give --from and --to, the ends of {}, or `path from …` in the model.", independent));
     return nullptr;
   }
-  return std::make_unique<Study>(SourceText(as_written.source().name() + " with --path", std::string(as_written.source().text()) + "\n" + statement + " = 0 rel 1\n"),
-                                 o.model.overrides);
+  auto own = std::make_unique<Study>(as_written.source(), o.model.overrides);
+  own->add_statements({statement.add(" = 0 rel 1")});
+  return own;
 }
 
 std::optional<ActionFindings> find_given(const ActionCommand& o, Study& study) {

@@ -94,11 +94,23 @@ bool check_outputs(const ModesOptions& options, const ModalStudy& found, Study& 
   return check_measured(model.system, found, names, study.diagnostics());
 }
 
+/// "γ = 20 .. 200 rad/s", perhaps with its number of values.
+OptionStatement sweep_statement(const std::string& sweep) {
+  OptionStatement statement("sweep ");
+  statement.add_typed("--sweep", sweep);
+  return sweep.find("steps") == std::string::npos ? statement.add(" steps 121") : statement;
+}
+
 // --------------------------------------------------------------------------------------------------------------
 // regulator
 
-/// "1, 2, 3" a diagonal, "1, 0; 0, 2" rows, "0.1" a multiple of 1. Nothing where it is none of these.
-std::optional<RealMatrix> weights(const std::string& text, std::size_t size) {
+/// "1, 2, 3" a diagonal, "1, 0; 0, 2" rows, "0.1" a multiple of 1. Nothing, and a message, where it is none of these.
+std::optional<RealMatrix> weights(const char* option, const std::string& text, std::size_t size, Study& study) {
+  const auto wrong = [&](std::string message, std::size_t begin, std::size_t end) {
+    study.refuse_option(option, text, std::move(message), "", "Write a diagonal \"1, 10\", rows \"1, 0; 0, 10\", or one number.",
+                 Span{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)});
+    return std::nullopt;
+  };
   std::vector<std::vector<double>> rows(1);
   for (const char* at = text.c_str(); *at;) {
     char* end = nullptr;
@@ -112,7 +124,8 @@ std::optional<RealMatrix> weights(const std::string& text, std::size_t size) {
     } else if (*at == ',' || *at == ' ') {
       ++at;
     } else {
-      return std::nullopt;
+      const std::size_t begin = static_cast<std::size_t>(at - text.c_str());
+      return wrong(fmt::format("{} {}: here stands no number", option, text), begin, std::min(text.find_first_of(" ,;", begin), text.size()));
     }
   }
   RealMatrix out{rows.size(), rows[0].size(), {}};
@@ -123,22 +136,18 @@ std::optional<RealMatrix> weights(const std::string& text, std::size_t size) {
     return out;
   }
   for (const auto& row : rows) {
-    if (row.size() != out.columns) return std::nullopt;
+    if (row.size() != out.columns) return wrong(fmt::format("{} {}: its rows are of different lengths", option, text), 0, text.size());
     out.entries.insert(out.entries.end(), row.begin(), row.end());
   }
   return out;
 }
 
-std::optional<Regulator> regulator_of(const ModesOptions& options, const ModalStudy& study, Diagnostics& diagnostics) {
-  const Linearization& l = study.entries.front().linearization;
-  const auto q = weights(options.q, l.a.rows), r = weights(options.r.empty() ? "1" : options.r, l.b.columns);
-  for (const auto& [matrix, name, text] : {std::tuple(&q, "--Q", &options.q), std::tuple(&r, "--R", &options.r)})
-    if (!*matrix) {
-      diagnostics.error("E0809", {}, fmt::format("{} {}: no list of numbers and no matrix", name, *text), "",
-                        "Write a diagonal \"1, 10\", rows \"1, 0; 0, 10\", or one number.");
-      return std::nullopt;
-    }
-  return linear_quadratic_regulator(l, *q, *r, diagnostics);
+std::optional<Regulator> regulator_of(const ModesOptions& options, const ModalStudy& found, Study& study) {
+  const Linearization& l = found.entries.front().linearization;
+  const auto q = weights("--Q", options.q, l.a.rows, study);
+  const auto r = weights("--R", options.r.empty() ? "1" : options.r, l.b.columns, study);
+  if (!q || !r) return std::nullopt;
+  return linear_quadratic_regulator(l, *q, *r, study.diagnostics());
 }
 
 // ------------------------------------------------------------------------------------------------------------------
@@ -208,7 +217,7 @@ ExitCode points(const ModesOptions& options, Study& study, const PointEquations&
   }
   if (!console.json()) console.print(modes_text(system, *result, formulas, study.equations()->order, options.outputs, neighbours));
   if (options.q.empty()) return finish(console, study, document);
-  const auto regulator = regulator_of(options, *result, study.diagnostics());
+  const auto regulator = regulator_of(options, *result, study);
   if (regulator) document["regulator"] = regulator_json(*regulator);
   if (regulator && !console.json())
     console.print(regulator_text(system, result->entries.front().linearization, *regulator));
@@ -265,7 +274,7 @@ ExitCode modes(ModesOptions options, Console& console) {
     finish(console, study, json_document("modes"));
     return ExitCode::Usage;
   }
-  if (!options.sweep.empty()) study.replace_sweep(OptionStatement("sweep ").add_typed("--sweep", options.sweep));
+  if (!options.sweep.empty()) study.replace_sweep(sweep_statement(options.sweep));
   study.add_statements(output_statements(options.outputs));
   const EquationsOfMotion* equations = study.equations();
   if (!equations || refuse_held_integrals(study) || refuse_without_time(study) || !study.certificate())

@@ -1,3 +1,4 @@
+#include "columns.hpp"
 #include "numbers.hpp"
 #include "outcome.hpp"
 #include "output_files.hpp"
@@ -14,6 +15,7 @@ struct PlotCommandOptions {
   ModelOptions model;
   RunOptions run;
   PlotOptions picture;
+  std::vector<std::string> y, x;   // lists of columns, as written
   std::string output = "-";
 };
 
@@ -22,6 +24,7 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
   Json document = json_document("plot");
   document["file"] = options.output;
   const bool readable_model = !study.wrong();
+  const AskedColumns y("--y", options.y, study), x("--x", options.x, study);
   SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
   if (settings.errors != ErrorEstimates::None) settings.errors = ErrorEstimates::Rows;
   if (options.output != "-") check_output_files({{"-o", options.output, FileKind::Picture}}, options.model.path, study.diagnostics());
@@ -30,10 +33,17 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
     return ExitCode::Usage;
   }
   put_in_run(options.run, study);
-  const auto result = run_model(study, settings, console);
+  auto result = run_model(study, settings, console);
   if (!result) return finish(console, study, document);
+  for (const AskedColumns* asked : {&y, &x}) {
+    auto rows = asked->added_to(std::move(result->trajectory), study);
+    if (!rows) return finish_usage(console, study, "plot");
+    result->trajectory = std::move(*rows);
+  }
 
   PlotOptions picture = options.picture;
+  picture.columns = y.names();
+  if (!x.empty() && x.names().front() != result->trajectory.independent.name) picture.against = x.names().front();
   if (picture.title.empty()) picture.title = study.model()->system.title;
   const std::string problem = plot_problem(result->trajectory, picture);
   if (!problem.empty()) {
@@ -67,12 +77,12 @@ void add_plot(CommandLine& line) {
   add_errors_option(command, options->run);
   PlotOptions& picture = options->picture;
   command.add_option("-o,--output", options->output, "The picture (default: standard output)")->type_name("FILE.svg|png|pdf");
-  command.add_option("--y", picture.columns, "What to draw, e.g. θ,\"θ'\" (default: everything)")
-      ->delimiter(',')
+  command.add_option("--y", options->y, "What to draw: columns and formulas, e.g. \"θ, θ1 - θ2, 1/2 m l^2 θ'^2\" (default: every column)")
       ->allow_extra_args(false)
-      ->type_name("NAME,...");
-  command.add_option("--x", picture.against, "Against what (default: time); a column gives a phase portrait")
-      ->type_name("NAME");
+      ->type_name("FORMULA,...");
+  command.add_option("--x", options->x, "Against what (default: time); a column or formula gives a phase portrait")
+      ->allow_extra_args(false)
+      ->type_name("FORMULA");
   command.add_option("--title", picture.title, "Title (default: that of the system)");
   command.add_flag("--degrees", picture.degrees, "Angles in degrees");
   command.add_flag_callback("--dark", [&picture] { picture.theme = PlotTheme::Dark; }, "Light on dark");

@@ -1,3 +1,4 @@
+#include "columns.hpp"
 #include "extended_text.hpp"
 #include "outcome.hpp"
 #include "numbers.hpp"
@@ -19,6 +20,7 @@ struct SimulateOptions {
   ModelOptions model;
   RunOptions run;
   std::string output, plot;
+  std::vector<std::string> columns;       // lists, as written; none: every column
   std::optional<std::string> precision;   // none: that of the model
   bool errors = false;
 };
@@ -29,6 +31,9 @@ void check_endings(const SimulateOptions& options, Diagnostics& diagnostics) {
     diagnostics.error("E0809", {}, options.run.no_errors ? "--errors and --no-errors exclude each other." : "--errors is about the file of -o, and there is none.",
                       "It writes the errors of each row beside it; those of the states that are printed stand there anyway.",
                       options.run.no_errors ? "Leave one of them out." : "Add -o motion.csv, or leave --errors out.");
+  if (!options.columns.empty() && options.output.empty() && options.plot.empty())
+    diagnostics.error("E0809", {}, "--columns is about the files of -o and --plot, and there is none.", "It chooses what stands in them.",
+                      "Add -o motion.csv or --plot motion.svg.");
   check_output_files({{"-o", options.output, FileKind::Table}, {"--plot", options.plot, FileKind::Picture}}, options.model.path, diagnostics);
 }
 
@@ -145,22 +150,23 @@ std::string text_of(const SimulationResult& result, const MechanicalSystem& syst
 }
 
 /// What was computed is written whatever the ending.
-void write_files(const SimulateOptions& options, const SimulationResult& result, Study& study) {
+void write_files(const SimulateOptions& options, const AskedColumns& columns, const SimulationResult& result, Study& study) {
   Diagnostics& diagnostics = study.diagnostics();
-  if (!options.output.empty()) {
-    write_rows(options.output, options.errors ? with_error_columns(result.trajectory) : result.trajectory, diagnostics);
-  }
+  const auto rows = columns.empty() ? result.trajectory : columns.chosen_from(result.trajectory, study);
+  if (!rows) return;
+  if (!options.output.empty()) write_rows(options.output, options.errors ? with_error_columns(*rows) : *rows, diagnostics);
   if (options.output.empty()) check_numbers(result.trajectory, diagnostics);
   if (!options.plot.empty()) {
     PlotOptions picture;
     picture.title = study.model()->system.title;
-    write_picture(options.plot, plot_svg(result.trajectory, picture), diagnostics);
+    write_picture(options.plot, plot_svg(*rows, picture), diagnostics);
   }
 }
 
 ExitCode simulate_model(const SimulateOptions& options, Study& study, Console& console) {
   const bool readable_model = !study.wrong();
   check_endings(options, study.diagnostics());
+  const AskedColumns columns("--columns", options.columns, study);
   SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
   const bool rows_wanted = options.errors || !options.plot.empty();
   if (rows_wanted && settings.errors != ErrorEstimates::None) settings.errors = ErrorEstimates::Rows;
@@ -172,7 +178,7 @@ ExitCode simulate_model(const SimulateOptions& options, Study& study, Console& c
 
   const auto result = run_model(study, settings, console);
   if (!result) return finish(console, study, json_document("simulate"));
-  write_files(options, *result, study);
+  write_files(options, columns, *result, study);
   const MechanicalSystem& system = study.model()->system;
   if (!console.json()) {
     console.print(text_of(*result, system));
@@ -189,6 +195,9 @@ void check_extended_files(const SimulateOptions& options, Diagnostics& diagnosti
   if (options.errors || options.run.no_errors)
     diagnostics.error("E0809", {}, fmt::format("{} belongs to runs in double.", options.errors ? "--errors" : "--no-errors"),
                       "In many digits those are written of which several runs agree: their number tells the error.", "Leave it out.");
+  if (!options.columns.empty())
+    diagnostics.error("E0809", {}, "--columns belongs to runs in double.", "In many digits every column is written.",
+                      "Leave it out, or give --precision double.");
   if (!options.plot.empty())
     diagnostics.error("E0809", {}, "--plot draws what double computes.", "A picture shows no more digits.", "Give --precision double for it.");
   check_output_files({{"-o", options.output, FileKind::Csv}}, options.model.path, diagnostics);
@@ -246,6 +255,9 @@ void add_simulate(CommandLine& line) {
       ->type_name("DIGITS");
   command.add_option("-o,--output", options->output, "The trajectory: .csv, .npy or .json")->type_name("FILE");
   command.add_option("--plot", options->plot, "Its time series as a picture: .svg")->type_name("FILE");
+  command.add_option("--columns", options->columns, "What stands in these files: columns and formulas, e.g. \"θ1 - θ2, B.x, energy\" (default: every column)")
+      ->allow_extra_args(false)
+      ->type_name("FORMULA,...");
 }
 
 }  // namespace maupertuis::app

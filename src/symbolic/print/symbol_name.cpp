@@ -113,8 +113,10 @@ std::string independent_name(Context& context) {
 }
 
 QuantityName split_quantity(std::string_view name) {
-  const std::size_t space = name.find(' ');
-  if (space == std::string_view::npos || name.empty()) return {std::string(name), {}};
+  std::size_t space = 0;  // the first one outside brackets: (10 pi) rad/s
+  for (int depth = 0; space < name.size() && (depth > 0 || name[space] != ' '); ++space)
+    depth += name[space] == '(' ? 1 : name[space] == ')' ? -1 : 0;
+  if (space == name.size()) return {std::string(name), {}};
   std::string unit(name.substr(space + 1));
   if (unit.size() > 2 && unit.front() == '[' && unit.back() == ']') unit = unit.substr(1, unit.size() - 2);
   return {std::string(name.substr(0, space)), unit};

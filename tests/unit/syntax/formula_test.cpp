@@ -169,7 +169,7 @@ TEST_CASE("quantity places") {
   CHECK(quantity_of("(1, -2) m") == "[(vector 1 (neg 2)) m:1]");
   CHECK(quantity_of("3") == "3");
   CHECK(quantity_of("m/s/s") == "(/ (/ m s) s)");
-  CHECK(quantity_of("1/2 m") == "(_ (/ 1 2) m)");
+  CHECK(quantity_of("1/2 m") == "[(/ 1 2) m:1]");
   CHECK(quantity_of("2 pi") == "(_ 2 pi)");
   CHECK(quantity_of("2 m + 3") == "(+ (_ 2 m) 3)");
   CHECK(quantity_of("sqrt(2)") == "(sqrt 2)");

@@ -36,7 +36,7 @@ TEST_CASE("--start replaces and adds") {
   CHECK(evaluate(e.experiment().start[1].value, {}) == 2);
 }
 
-TEST_CASE("mistakes on the command line are told without a place in the model") {
+TEST_CASE("mistakes on the command line have their places behind the model, where the options count as lines") {
   for (const auto& [option, message] : std::vector<std::pair<std::string, std::string>>{
            {"k=2", "--set k=2: the model has no parameter `k`"},
            {"J=2", "--set J=2: `J` is a definition, not a parameter"},
@@ -47,7 +47,9 @@ TEST_CASE("mistakes on the command line are told without a place in the model") 
     CHECK(e.codes() == "E0224");
     CHECK(e.first_message() == message);
     CHECK_FALSE(e.model);
-    CHECK_FALSE(e.diagnostics.items()[0].span);
+    REQUIRE(e.diagnostics.items()[0].span);
+    CHECK(e.diagnostics.items()[0].span->begin > e.source.text().size());
+    CHECK(e.diagnostics.items()[0].span->end <= e.source.text().size() + 1 + option.size());
   }
   CHECK(with({"m 2"}).codes() == "E0224");
   CHECK(with({}, {"x=1"}).first_message() == "--start x=1: `x` is not declared");

@@ -46,7 +46,8 @@ TEST_CASE("each mistake in the energies and forces of an oscillator is told from
     INFO(mistake.claim, " | ", found);
     CHECK(begins_with(found, mistake.sentence));
   }
-  CHECK(mistake_of(oscillator, "m x'' = 3 F - c x' - k x") == "");  // wrong, and by none of them
+  CHECK(begins_with(mistake_of(oscillator, "m x'' = 3 F - c x' - k x"), "a generalized force has a factor 3"));  // by none of them
+  CHECK(mistake_of(oscillator, "m x'' = F - c x' - k x + k") == "");                                             // wrong, and nobody knows why
 }
 
 TEST_CASE("a momentum put into L whose velocity also stands linearly, as in a magnetic field") {

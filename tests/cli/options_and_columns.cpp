@@ -1,0 +1,135 @@
+#include <doctest/doctest.h>
+
+#include "json.hpp"
+#include "program.hpp"
+
+#include <sstream>
+
+// Mistakes in an option are shown in the option; formulas stand wherever columns are asked for.
+
+using namespace cli_test;
+
+namespace {
+
+const std::string kDouble =
+    "system double_pendulum\nparam m1 = 1 kg, m2 = 1 kg, l1 = 1 m, l2 = 1 m, g = 9.81 m/s^2, Ω = 1 rad/s\ncoord θ1, θ2 : angle\n"
+    "point A mass m1 at l1 (sin θ1, -cos θ1)\npoint B mass m2 at A + l2 (sin θ2, -cos θ2)\ngravity (0, -g)\n"
+    "start θ1 = 0.3 rad, θ2 = 0.1 rad\nrun 0.2 s\n";
+
+/// The numbers of a CSV text by rows; its first line is left out.
+std::vector<std::vector<double>> numbers(const std::string& csv) {
+  std::vector<std::vector<double>> rows;
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    rows.emplace_back();
+    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(std::stod(cell));
+  }
+  return rows;
+}
+
+struct Wrong {
+  std::vector<std::string> arguments;
+  const char *option, *text, *carets, *says;
+};
+
+}  // namespace
+
+TEST_CASE("a mistake in an option is shown in the option, with carets below it, and exits with 2") {
+  for (const Wrong& w : {
+           Wrong{{"simulate", "-", "--until", "20s"}, "--until", "20s", "^^^", "Write --duration 20s"},
+           Wrong{{"simulate", "-", "--until", "B.y"}, "--until", "B.y", "^^^", "B.y = 0"},
+           Wrong{{"simulate", "-", "--until", "B.z = 0"}, "--until", "B.z = 0", "  ^", "two-dimensional"},
+           Wrong{{"simulate", "-", "--until", "B.y = 0", "--within", "2 kgg"}, "--within", "2 kgg", "  ^^^", "no unit"},
+           Wrong{{"plot", "-", "--until", "θ3 = 0"}, "--until", "θ3 = 0", "^^", "Did you mean"},
+           Wrong{{"simulate", "-", "--set", "l1=2 mx"}, "--set", "l1=2 mx", "     ^^", "no unit"},
+           Wrong{{"simulate", "-", "--set", "q=2"}, "--set", "q=2", "^", "no parameter"},
+           Wrong{{"simulate", "-", "--set", "l1=2 kg"}, "--set", "l1=2 kg", "   ^^^^", "mass"},
+           Wrong{{"simulate", "-", "--set", "l1=2m", "--set", "g=1 N"}, "--set", "g=1 N", "  ^^^", "force"},
+           Wrong{{"simulate", "-", "--start", "θ1=2 s"}, "--start", "θ1=2 s", "   ^^^", "time"},
+           Wrong{{"modes", "-", "--at", "θ9=0"}, "--at", "θ9=0", "^^", "not declared"},
+           Wrong{{"modes", "-", "--sweep", "Ω = 0 .. 12 rad steps 3"}, "--sweep", "Ω = 0 .. 12 rad steps 3", "", "rad/s"},
+           Wrong{{"modes", "-", "--at", "θ1=0", "--Q", "1, x, 3, 4"}, "--Q", "1, x, 3, 4", "   ^", "no number"},
+           Wrong{{"plot", "-", "--y", "θ1 - θ3"}, "--y", "θ1 - θ3", "     ^^", "Did you mean"},
+           Wrong{{"plot", "-", "--y", "θ1 - l1"}, "--y", "θ1 - l1", "     ^^", "angle"},
+           Wrong{{"simulate", "-", "--columns", "θ1, cos θ1 - t", "-o", "/dev/null"}, "--columns", "cos θ1 - t", "         ^", "time"},
+           Wrong{{"hamiltonian", "-", "--bracket", "θ1", "p_θ9"}, "--bracket", "p_θ9", "^^^^", "not declared"},
+           Wrong{{"action", "-", "--path", "θ1 = t, θ2 = 3 m", "--from", "0s", "--to", "1s"}, "--path", "t", "", ""},
+       }) {
+    std::string command;
+    for (const std::string& a : w.arguments) command += a + " ";
+    CAPTURE(command);
+    const Outcome outcome = maup(w.arguments, kDouble);
+    INFO(outcome.err);
+    CHECK(outcome.code == 2);
+    CHECK(contains(outcome.err, std::string(" ") + w.option + ":1:"));
+    CHECK(contains(outcome.err, std::string("1 | ") + w.text + "\n"));
+    CHECK(contains(outcome.err, std::string("| ") + w.carets));
+    CHECK(contains(outcome.err, w.says));
+    CHECK_FALSE(contains(outcome.err, "<stdin>:1"));
+  }
+}
+
+TEST_CASE("JSON tells the option, and a mistake of the model keeps its line") {
+  const auto wrong = json_of(maup({"simulate", "-", "--json", "--set", "l1=2 mx"}, kDouble));
+  CHECK(wrong.at("diagnostics").at(0).at("option") == "--set");
+  CHECK(wrong.at("diagnostics").at(0).at("column") == 6);
+  const std::string model = "\n\nrun 3 s\n" + kDouble.substr(0, kDouble.find("run 0.2")) + "let a = b\n";
+  const auto of_model = json_of(maup({"simulate", "-", "--json", "--until", "B.y = 0"}, model));
+  CHECK(of_model.at("diagnostics").at(0).at("line") == 11);
+  CHECK_FALSE(of_model.at("diagnostics").at(0).contains("option"));
+}
+
+TEST_CASE("--until takes the place of the model's own run") {
+  const Outcome outcome = maup({"simulate", "-", "--json", "--until", "θ1 = 0", "--within", "5 s"}, kDouble);
+  CHECK(outcome.code == 0);
+  CHECK(json_of(outcome).at("ended").at("kind") == "until reached");
+}
+
+TEST_CASE("formulas are columns of a trajectory, with units, and the rows are what they say") {
+  const Folder folder;
+  const std::string file = folder.path("m.csv");
+  const Outcome outcome = maup({"simulate", "-", "-o", file, "--columns", "θ1 - θ2, θ1, θ2, max(θ1, θ2), 1/2 m1 (l1 θ1')^2, θ1'', energy, θ1'"}, kDouble);
+  REQUIRE_MESSAGE(outcome.code == 0, outcome.err);
+  const std::string csv = read(file);
+  CHECK(contains(csv, "θ1 - θ2 [rad],θ1 [rad],θ2 [rad],\"max(θ1, θ2) [rad]\",1/2 m1 (l1 θ1')^2 [J]"));
+  const auto rows = numbers(csv.substr(csv.find('\n') - 1 + 1));
+  REQUIRE(rows.size() > 5);
+  for (const auto& row : rows) {
+    REQUIRE(row.size() == 9);
+    CHECK(row[1] == doctest::Approx(row[2] - row[3]));
+    CHECK(row[4] == doctest::Approx(std::max(row[2], row[3])));
+    CHECK(row[5] == doctest::Approx(0.5 * row[8] * row[8]));
+  }
+  // θ1'' is the slope of θ1'.
+  const std::size_t k = rows.size() / 2;
+  CHECK(rows[k][6] == doctest::Approx((rows[k + 1][8] - rows[k - 1][8]) / (rows[k + 1][0] - rows[k - 1][0])).epsilon(1e-2));
+}
+
+TEST_CASE("formulas on both axes of a picture; with errors of their own") {
+  const Outcome picture = maup({"plot", "-", "--x", "θ1 - θ2", "--y", "θ1' - θ2', sin(θ1)"}, kDouble);
+  CHECK(picture.code == 0);
+  CHECK(contains(picture.out, "<svg"));
+  const Folder folder;
+  const std::string file = folder.path("m.csv");
+  REQUIRE(maup({"simulate", "-", "-o", file, "--errors", "--columns", "2 θ1, θ1"}, kDouble).code == 0);
+  const auto rows = numbers(read(file));
+  for (const auto& row : rows) CHECK(row[3] == doctest::Approx(2 * row[4]));
+}
+
+TEST_CASE("forces of constraints in formulas") {
+  const std::string rod = "system rod\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\ngravity (0, -g)\n"
+                          "constraint x^2 + y^2 = l^2 name rod\nstart x = 0.6 m, y = -0.8 m\nrun 0.5 s\n";
+  const Folder folder;
+  const std::string file = folder.path("m.csv");
+  const Outcome outcome = maup({"simulate", "-", "-o", file, "--columns", "reaction(rod), 2 reaction(rod)/(m g), multiplier(rod)"}, rod);
+  REQUIRE_MESSAGE(outcome.code == 0, outcome.err);
+  for (const auto& row : numbers(read(file))) CHECK(row[2] == doctest::Approx(2 * row[1] / 9.81));
+}
+
+TEST_CASE("--sweep with one unit and without its number of values") {
+  const Outcome outcome = maup({"modes", "-", "--sweep", "l2 = 1 .. 2 m", "--json"}, kDouble);
+  CHECK(outcome.code == 0);
+}
