@@ -1,6 +1,7 @@
 #include "verification/phase_space_claims.hpp"
 
 #include <maupertuis/along_motion.hpp>
+#include <maupertuis/integral_symbol.hpp>
 #include <maupertuis/print.hpp>
 
 #include <fmt/format.h>
@@ -16,11 +17,21 @@ std::vector<std::size_t> coordinates_of(const Expectation& e, const MechanicalSy
   return found;
 }
 
+bool has_velocity(Expr e) {
+  for (const Expr& s : symbols_of({&e, 1}))
+    if (s.role() == Role::Coordinate && s.order() == 1 && !is_integral(s.name())) return true;
+  return false;
+}
+
+/// H as it is printed where the velocities do not follow from the momenta, or were not written out: with velocities in it, or with momenta that obey
+/// primary constraints. Where p = ∂L/∂q' it is the energy function.
+Expr difference_from_energy(Expr right, const EquationsOfMotion& equations) { return with_momenta(right, equations) - equations.energy_function; }
+
 /// What the system has in the place of the left side; an empty handle, and the reason, where it has none.
 Expr left_side(const Expectation& e, const EquationsOfMotion& equations, const Hamiltonian& h, std::string& reason) {
   if (e.word == "hamiltonian") {
-    reason = "the velocities do not follow from the momenta";
-    return h.regular() ? h.value : Expr();
+    reason = "it was not written out";
+    return h.value ? h.value : equations.energy_function;
   }
   if (e.word == "bracket") {
     const auto found = poisson_bracket(e.subject, e.values.front(), h);
@@ -46,7 +57,8 @@ void decide_phase_space(const Expectation& e, const EquationsOfMotion& equations
     return;
   }
   const Expr right = e.word == "bracket" ? in_phase_space(e.subject_right, h) : e.subject_right;
-  const Expr difference[] = {left - right};
+  const bool by_energy = e.word == "hamiltonian" && (!h.regular() || has_velocity(right));
+  const Expr difference[] = {by_energy ? difference_from_energy(right, equations) : left - right};
   const ZeroTest test = zero_test(with_definitions(*h.system, difference).front());
   result.passed = test.verdict == Verdict::Zero;
   result.actual = result.passed ? result.expected : test.verdict == Verdict::Nonzero ? "another function" : "undecided";
@@ -54,7 +66,7 @@ void decide_phase_space(const Expectation& e, const EquationsOfMotion& equations
     result.message = ground_of(test, false);
     return;
   }
-  const ReadableForm form = readable(left, h.order);
+  const ReadableForm form = readable(by_energy && h.legendre.readable.value ? h.legendre.readable.value : left, h.order);
   const std::string text = to_plain(form, h.order);
   constexpr std::size_t longest = 300;
   result.message = test.verdict == Verdict::Undecided ? "Undecided: " + test.reason
