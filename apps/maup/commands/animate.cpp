@@ -194,6 +194,7 @@ ExitCode animate(AnimateOptions o, Console& console) {
   Json document = json_document("animate");
   const bool readable_model = !study.wrong();
   const SimulationOptions settings = simulation_options(o.run, study.diagnostics(), study.tree());
+  put_in_run(o.run, study);  // before the model is made
   if (o.output.empty()) o.output = (study.model() ? study.model()->system.name : "motion") + (o.still.empty() ? ".html" : ".svg");
   Diagnostics& diagnostics = study.diagnostics();
   if (study.model() || !readable_model) {
@@ -202,7 +203,6 @@ ExitCode animate(AnimateOptions o, Console& console) {
     check_tools(o, diagnostics);
     if (readable_model && study.wrong()) return finish_usage(console, study, "animate");
   }
-  put_in_run(o.run, study);
   std::optional<SimulationResult> result;
   const std::optional<Drawing> drawing = drawing_of(o, study, settings, console, result);
   if (!drawing) return finish(console, study, document);
