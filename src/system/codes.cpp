@@ -233,8 +233,8 @@ constexpr CodeEntry kEntries[] = {
     {"E0313", "a unit word with two meanings",
      "By the rules of SI PS is a petasiemens, and to many a horsepower; Gs is a gigasecond, and a gauss. A model that takes the wrong "
      "one is off by many powers of ten, so that neither is taken silently.",
-     "coord x : length\nparam m = 1 kg, P = 1 PS\nT = 1/2 m x'^2\n",
-     "coord x : length\nparam m = 1 kg, P = 735.49875 W\nT = 1/2 m x'^2\n"},
+     "coord x : length\nparam m = 1 kg, v = 1 m/s, P = 1 PS\nT = 1/2 m x'^2\nforce x = P/v\n",
+     "coord x : length\nparam m = 1 kg, v = 1 m/s, P = 735.49875 W\nT = 1/2 m x'^2\nforce x = P/v\n"},
     {"E0312", "a unit in a formula needs brackets",
      "In formulas m is a name, never the metre. A number with a unit is written 3 [m] there.",
      "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nV = 3 N x\n",
