@@ -43,7 +43,8 @@ endmacro()
 
 if(GZIP_PROGRAM)
   package(runtime maupertuis science
-    RECOMMENDS "maupertuis-llvm (= ${package_version})" SUGGESTS "xdg-utils, libmaupertuis-dev (= ${package_version})"
+    RECOMMENDS "maupertuis-llvm (= ${package_version}), librsvg2-2"  # the latter is opened by name, for PNG and PDF
+    SUGGESTS "ffmpeg, xdg-utils, libmaupertuis-dev (= ${package_version})"
     SUMMARY "Lagrangian mechanics from a text model"
     DESCRIPTION "Write where the masses are, and maup derives the equations of motion,
 certifies them by independent routes, and runs them to the last digits of

@@ -28,7 +28,7 @@ inline constexpr ExitCodeRow exit_codes[] = {
     {ExitCode::ExpectationFailed,
      "an expectation failed, or two models that were compared are not the same motion, or nothing could be decided"},
     {ExitCode::NotProved, "two models that were compared are the same motion by evidence from points, without a proof"},
-    {ExitCode::Interrupted, "interrupted by Ctrl-C; what was computed is kept"},
+    {ExitCode::Interrupted, "interrupted by Ctrl-C or SIGTERM; what was computed is kept"},
 };
 
 }  // namespace maupertuis::app

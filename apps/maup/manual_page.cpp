@@ -17,6 +17,8 @@ struct Term {
 
 constexpr Term environment[] = {
     {"NO_COLOR", "If it is set and not empty, messages have no color."},
+    {"TERM", "If it is dumb, messages have no color and no progress is drawn."},
+    {"PATH", "Where ffmpeg is looked for, which makes films."},
     {"XDG_CACHE_HOME", "Machine code of earlier runs is kept in its folder maupertuis, which is the user's alone; else in HOME/.cache."},
     {"HOME", "See XDG_CACHE_HOME."},
     {"MAUPERTUIS_LLVM_MODULE", "The file of the module that makes machine code, instead of the one installed with the program."},

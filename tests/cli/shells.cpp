@@ -64,12 +64,13 @@ bool has_program(const std::string& name) {
   return false;
 }
 
-/// What Tab offers in bash after these words, sorted.
+/// What Tab offers in bash after these words.
 std::set<std::string> offered(const std::string& folder, const std::vector<std::string>& words) {
-  std::string line = "cd " + folder + "; source <($MAUP completions bash); COMP_WORDS=(maup";
-  for (const std::string& word : words) line += " '" + word + "'";
-  line += "); COMP_CWORD=" + std::to_string(words.size()) + "; _maup; printf \"%s\\\\n\" \"${COMPREPLY[@]}\"";
-  const Outcome outcome = shell("bash -c \"" + std::regex_replace(line, std::regex("\"|\\$"), "\\$&") + "\"");
+  const Folder own;
+  std::string script = "cd '" + folder + "'\nsource <(" MAUP_PROGRAM " completions bash)\nCOMP_WORDS=(maup";
+  for (const std::string& word : words) script += " '" + word + "'";
+  script += ")\nCOMP_CWORD=" + std::to_string(words.size()) + "\n_maup\nprintf '%s\\n' \"${COMPREPLY[@]}\"\n";
+  const Outcome outcome = shell("bash " + own.write("typed.bash", script));
   CHECK_MESSAGE(outcome.err.empty(), outcome.err);
   std::set<std::string> out;
   for (const std::string& word : lines_of(outcome.out))
