@@ -131,7 +131,7 @@ std::string caption(const Drawing& drawing, double elapsed, double step, const F
   const double longest = std::max(std::abs(first), std::abs(drawing.times.back()));
   std::size_t unit = 0;
   double factor = 1;
-  for (; !drawing.dimensionless && longest > 0 && longest * factor < 1e-2 && unit + 1 < std::size(units); ++unit) factor *= 1000;
+  for (; !drawing.dimensionless && longest > 0 && longest * factor < 1 && unit + 1 < std::size(units); ++unit) factor *= 1000;
   const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step > 0 ? step * factor : 1))), 0, 9);
   return fmt::format("t = {:.{}f}{}{}", t * factor, digits, drawing.dimensionless ? "" : " ", drawing.dimensionless ? "" : units[unit]);
 }
