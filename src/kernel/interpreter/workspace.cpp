@@ -18,6 +18,7 @@ void KernelWorkspace::Impl::bind() {
   tables.packs = packed.packs.data();
   tables.pack_count = packed.packs.size();
   tables.blocks = packed.blocks.data();
+  tables.block_count = packed.blocks.size();
   tables.columns = packed.columns.data();
   tables.products = packed.products.data();
   tables.functions = packed.functions.data();
@@ -40,14 +41,6 @@ void KernelWorkspace::Impl::bind() {
   };
   lane_coefficients.resize(packed.coefficients.size());
   tables.coefficients = lane_coefficients.data();
-  if (adds_up_ahead()) sums.assign(packed::count_convolutions(packed) * packed::rolled_group * packed::lanes, 0.0);
-  tables.has_sums = !sums.empty();
-  ready.emplace(packed, packed::Numbers{memory.rows.data(), memory.stride, lane_coefficients.data(), tables.has_sums ? sums.data() : nullptr});
-  tables.ready = ready->packs.data();
-  tables.copies = ready->copies.data();
-  tables.copy_count = ready->copies.size();
-  tables.convolution_runs = ready->convolution_runs.data();
-  tables.convolution_run_count = ready->convolution_runs.size();
 }
 
 void KernelWorkspace::Impl::compute_constants() {
@@ -169,12 +162,11 @@ void KernelWorkspace::Impl::run_stage(int stage) {
   engine.run_stage(tables, stage);
 }
 
-/// What no stage follows needs no copies, and no sums.
+/// What no stage follows needs no copies.
 void KernelWorkspace::Impl::renew_blocks(int stage, int stages) {
   if (stage + 1 >= stages) return;
   if (compiled.stage) compiled.ahead(&arguments, stage);
   else engine.renew_blocks(tables, stage);
-  if (!compiled.stage && tables.has_sums) engine.add_up_ahead(tables, stage);
 }
 
 /// What follows the solution of a stage.

@@ -58,7 +58,6 @@ struct KernelWorkspace::Impl {
   bool runs_on() const;
   bool run_later_stages(int stages);
   void renew_blocks(int stage, int stages);
-  bool adds_up_ahead() const { return engine.add_up_ahead && order > packed::rolled_group; }
   void run_along(int stage);
   bool outputs_follow_accelerations() const;
   bool run_compiled(int stages);
@@ -105,7 +104,6 @@ struct KernelWorkspace::Impl {
   packed::Tables tables;
   packed::TangentMatrix tangents;    // by_matrix: the engine's view of `tangent`
   const packed::Engine& engine = packed::engine();
-  std::optional<packed::ReadyProgram> ready;
   std::vector<packed::Order> of_orders;  // those below 0, which nothing reads, then [orders]
   interpreter::Doubles lane_coefficients;  // [packed.coefficients]
   std::vector<double> parameters;

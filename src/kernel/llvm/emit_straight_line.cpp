@@ -117,17 +117,6 @@ class LineEmitter {
     ++pieces_;
   }
 
-  template <class F>
-  void for_operands(const Node& node, F&& f) const {
-    for (const straight::Value v : {node.a, node.b, node.c})
-      if (v != straight::none) f(v);
-    for (std::uint32_t i = node.first; i < node.last; ++i) {
-      if (straight::lists_operands(node)) { f(line_.operands[i]); continue; }
-      for (const straight::Value v : {line_.terms[i].a, line_.terms[i].b, line_.terms[i].c})
-        if (v != straight::none) f(v);
-    }
-  }
-
   /// Of values that a later piece reads. Stores and checks are made where their value is, guarded stores in the last piece.
   void find_places() {
     place_.assign(line_.nodes.size(), 0);
@@ -141,7 +130,7 @@ class LineEmitter {
     for (std::size_t i = 0; i < line_.nodes.size(); ++i) {
       const Node& node = line_.nodes[i];
       if (node.what == Node::Sine || node.what == Node::Cosine || node.what == Node::Lane) continue;
-      for_operands(node, [&](straight::Value v) { use(v, piece_of_[i]); });
+      straight::for_operands(line_, node, [&](straight::Value v) { use(v, piece_of_[i]); });
     }
     checks_in_.resize(pieces_), finite_in_.resize(pieces_), stores_of_.resize(line_.nodes.size());
     const auto piece_of = [&](straight::Value v) { return remade(holder(v)) ? pieces_ - 1 : piece_of_[holder(v)]; };

@@ -1,9 +1,10 @@
 #pragma once
 #include "kernel/packed/compiled.hpp"
-#include "kernel/packed/ready.hpp"
+#include "kernel/packed/layout.hpp"
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 /// Runs packs on rows of Taylor coefficients. The same source is compiled for several instruction sets, and the best one that
 /// the processor has is taken at run time. Plain structures alone stand at this border, so that no inline function of another header is
@@ -17,16 +18,26 @@ struct ScalarRules {
   void (*tangent)(void* context, std::uint32_t instruction, double* tangents) = nullptr;  // [slots], one direction
 };
 
+/// 1/k to twice the digits of a double: a rounded reciprocal alone errs the same way in every step.
+struct Reciprocal {
+  double leading = 0, rest = 0;
+};
+
+/// What a pack needs to know of order k.
+struct Order {
+  double* row = nullptr;
+  std::ptrdiff_t offset = 0;            // of the row from that of order 0
+  std::array<double, 3> shift_factors{};  // 1, k + 1, (k + 1)(k + 2)
+  Reciprocal reciprocal;                // of k; of 0: none
+  int number = 0;                       // k
+};
+std::vector<Order> orders_of(double* rows, std::size_t stride, int count);
+
 struct Tables {
-  const ReadyPack* ready = nullptr;      // [pack_count]
-  const Copy* copies = nullptr;
-  std::size_t copy_count = 0;
-  bool has_sums = false;                 // of add_up_ahead()
-  const ConvolutionRun* convolution_runs = nullptr;
-  std::size_t convolution_run_count = 0;
   const Pack* packs = nullptr;
   std::size_t pack_count = 0;
   const Block* blocks = nullptr;
+  std::size_t block_count = 0;
   const Column* columns = nullptr;
   const ColumnRun* runs = nullptr;
   const ProductTerm* products = nullptr;
@@ -68,9 +79,6 @@ struct Engine {
   void (*run_stage)(const Tables&, int stage);
   /// Copies of blocks, when the coefficients of the stage are final.
   void (*renew_blocks)(const Tables&, int stage);
-  /// After renew_blocks(), from stage 0 on in turn: sums of products for the stages that follow, to which run_stage() adds what is missing. Null where that
-  /// takes longer than it saves.
-  void (*add_up_ahead)(const Tables&, int stage);
   /// Tangents of order 0: in, those of the coordinates; out, those of all slots of Dynamics. [directions][slots of a row]
   void (*tangents)(const Tables&, double* tangents, std::size_t stride, std::size_t directions);
   /// sin x and cos x of `count` ≤ 8 numbers, in out[0 …) and out[8 …); the next power of two of them is read and written. Aligned to 64 bytes.
@@ -99,8 +107,8 @@ struct Engine {
   /// What the coefficients of the stage that later orders read owe to q̈_k: in a slot of lag ℓ, Σ_d weights[d] · tangents[d] times 1,
   /// 1/(k+1), 1/((k+1)(k+2)) for ℓ = 2, 1, 0.
   void (*correct)(const Tables&, int stage, const TangentMatrix&, const double* weights);
-  /// Stages `first` ≥ 1 to `last` − 1, each with all that belongs to it: run_stage(), solve_by_inverse(), set_accelerations(), correct(), and where another
-  /// follows (after the last one: if it `goes_on`) renew_blocks() and add_up_ahead(). False where a q̈ is not finite, which stays in the coefficients.
+  /// Stages `first` ≥ 1 to `last` − 1, each with all that belongs to it: run_stage(), solve_by_inverse(), set_accelerations(), correct(), and
+  /// where another follows (after the last one: if it `goes_on`) renew_blocks(). False where a q̈ is not finite, which stays in the coefficients.
   bool (*run_stages_by_inverse)(const Tables&, const InverseSolution&, int first, int last, bool goes_on);
   /// Σ_{k=2..degree} c_k τ^{k−1} and Σ k c_k τ^{k−1} of `count` columns, c_k = first + k · stride: read and written in eights.
   void (*increments)(const double* first, std::size_t stride, std::size_t count, int degree, double tau, double* dq, double* dv);

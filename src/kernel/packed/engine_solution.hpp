@@ -350,7 +350,6 @@ bool run_stages_of(const Tables& tables, const InverseSolution& in, int first, i
     complete<N>(s, in, zero);
     if (stage + 1 == last && !goes_on) break;
     renew(s);
-    if (tables.has_sums) add_up_ahead(tables, stage);
   }
   return are_finite(zero);
 }

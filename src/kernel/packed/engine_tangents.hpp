@@ -70,7 +70,7 @@ class Tangents {
     for (std::uint32_t i = run.first; i < run.last; ++i, c += lanes) {
       const Column& column = t_.columns[i];
 #pragma GCC unroll 8
-      for (int d = 0; d < W; ++d) sums[d] += load(c) * column_values<kind>(row(d), column.source, column);
+      for (int d = 0; d < W; ++d) sums[d] += load(c) * column_values<kind>(row(d), column);
     }
   }
 

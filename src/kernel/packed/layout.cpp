@@ -192,8 +192,10 @@ class Packs {
     for (ReadColumn& read : found) {
       const auto at = static_cast<std::uint32_t>(out_.columns.size());
       if (at == pack.first_column || key(read.column) != key(out_.columns.back()))
-        out_.runs.push_back({read.column.kind, read.column.shift, passes_tangent(read.column, pack.lag), at, at});
-      ++out_.runs.back().last;
+        out_.runs.push_back({read.column.kind, read.column.shift, passes_tangent(read.column, pack.lag), at, at, read.column.kind == Column::Broadcast});
+      ColumnRun& run = out_.runs.back();
+      run.neighbours = run.neighbours && (run.first == at || read.column.source == out_.columns[run.first].source + (at - run.first));
+      ++run.last;
       add_column(std::move(read), pack.lag);
     }
     pack.last_column = static_cast<std::uint32_t>(out_.columns.size());

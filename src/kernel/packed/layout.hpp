@@ -43,6 +43,7 @@ struct ColumnRun {
   std::uint8_t shift = 0;
   bool passes_tangent = false;
   std::uint32_t first = 0, last = 0;    // columns
+  bool neighbours = false;              // Broadcast: of slots side by side
 };
 
 /// Coefficient of the lane · a · b.

@@ -57,7 +57,6 @@ class Builder {
   Value add(Node node);
   Value add(Node::What what, std::vector<Term> terms, Node node = {});
   std::vector<Term> folded(const std::vector<Term>& terms) const;
-  std::vector<Value> operands_of(const Node& node) const;
   std::vector<bool> needed() const;
   void sort_by_urgency(std::vector<Value>& order) const;
 

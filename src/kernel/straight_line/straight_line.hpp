@@ -76,6 +76,18 @@ struct StraightLine {
   std::size_t size() const { return nodes.size() + terms.size(); }
 };
 
+/// Calls f(value) for each operand of a node of the line.
+template <class F>
+void for_operands(const StraightLine& line, const Node& node, F&& f) {
+  for (const Value v : {node.a, node.b, node.c})
+    if (v != none) f(v);
+  for (std::uint32_t i = node.first; i < node.last; ++i) {
+    if (lists_operands(node)) { f(line.operands[i]); continue; }
+    for (const Value v : {line.terms[i].a, line.terms[i].b, line.terms[i].c})
+      if (v != none) f(v);
+  }
+}
+
 /// Doubles of the array that code takes after those of its program: first whether all went well, see `sound`, then numbers on their way
 /// from one function to the next.
 inline std::size_t scratch_size(const StraightLine& line) { return 8 + line.nodes.size() * line.wide; }

@@ -88,18 +88,6 @@ class Widening {
     return out;
   }
 
-  template <class F>
-  void for_operands(Value v, F&& f) const {
-    const Node& n = node(v);
-    for (const Value w : {n.a, n.b, n.c})
-      if (w != none) f(w);
-    for (std::uint32_t i = n.first; i < n.last; ++i) {
-      if (lists_operands(n)) { f(line_.operands[i]); continue; }
-      for (const Value w : {line_.terms[i].a, line_.terms[i].b, line_.terms[i].c})
-        if (w != none) f(w);
-    }
-  }
-
   /// Whatever it needs first; false where that needs it itself.
   bool make(Value root) {
     for (Lanes stack{root}; !stack.empty();) {
@@ -107,7 +95,7 @@ class Widening {
       if (made_[v] != none) { stack.pop_back(); continue; }
       const std::size_t before = stack.size();
       for (const Value member : members(v))
-        for_operands(member, [&](Value w) {
+        for_operands(line_, node(member), [&](Value w) {
           if (made_[members(w).front()] == none) stack.push_back(w);
         });
       if (stack.size() == before) {
