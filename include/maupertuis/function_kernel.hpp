@@ -24,7 +24,7 @@ struct FunctionSource {
 
 struct FunctionProgram;
 
-/// An immutable straight line (src/kernel/straight_line); cheap to copy, safe to share between threads.
+/// An immutable straight-line program; cheap to copy, safe to share between threads.
 class FunctionKernel {
  public:
   FunctionKernel();  // without inputs and outputs
@@ -33,7 +33,7 @@ class FunctionKernel {
   std::size_t inputs() const;
   std::size_t parameters() const;
   std::size_t outputs() const;
-  /// Numbers that a call makes, those of parameters alone not counted.
+  /// Instructions of a call, those of parameters alone not counted.
   std::size_t size() const;
   /// Whether any output depends on this input.
   bool uses(std::size_t input) const;
@@ -53,9 +53,6 @@ FunctionKernel build_function(const FunctionSource& source);
 class FunctionWorkspace {
  public:
   explicit FunctionWorkspace(const FunctionKernel& kernel);
-  ~FunctionWorkspace();
-  FunctionWorkspace(const FunctionWorkspace& other);
-  FunctionWorkspace(FunctionWorkspace&&) noexcept;
 
   /// Precondition: values.size() == kernel.parameters().
   void set_parameters(std::span<const double> values);
@@ -64,8 +61,8 @@ class FunctionWorkspace {
   void evaluate(std::span<const double> inputs, std::span<double> outputs);
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  FunctionKernel kernel_;
+  std::vector<double> slots_;
 };
 
 /// ∂ value[row] / ∂ input[column], where it does not vanish identically.

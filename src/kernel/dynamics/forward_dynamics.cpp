@@ -1,8 +1,8 @@
 #include <maupertuis/forward_dynamics.hpp>
 
 #include "kernel/dynamics/written_dynamics.hpp"
-#include "kernel/interpreter/elementary.hpp"
-#include "kernel/interpreter/sampled_states.hpp"
+#include "kernel/reference/elementary.hpp"
+#include "kernel/reference/sampled_states.hpp"
 #include "kernel/sparse/graph_product.hpp"
 #include "kernel/straight_line/compile.hpp"
 #include "kernel/straight_line/evaluator.hpp"
@@ -17,8 +17,8 @@
 #include <tuple>
 #include <utility>
 
-/// q̈ and forces as straight lines (written_dynamics.hpp), run as machine code or number by number. Where a pivot of M₀ is small there, the full
-/// matrix of a workspace decides.
+/// q̈ and forces as straight lines (written_dynamics.hpp), run as machine code or number by number. Where a pivot of M₀
+/// is small there, the full matrix of a workspace decides.
 namespace maupertuis {
 namespace {
 
@@ -34,15 +34,17 @@ using Pivots = std::optional<std::vector<sparse::Pivot>>;
 
 bool same_order(const Pivots& pivots, const Pivots& others) {
   if (!pivots || !others) return !pivots && !others;
-  return std::equal(pivots->begin(), pivots->end(), others->begin(), others->end(), [](const sparse::Pivot& x, const sparse::Pivot& y) {
-    return x.row == y.row && x.column == y.column && x.rows == y.rows && x.columns == y.columns;
-  });
+  return std::equal(pivots->begin(), pivots->end(), others->begin(), others->end(),
+                    [](const sparse::Pivot& x, const sparse::Pivot& y) {
+                      return x.row == y.row && x.column == y.column && x.rows == y.rows && x.columns == y.columns;
+                    });
 }
 
 /// Of an elimination and both substitutions.
 std::size_t products_of(const std::vector<sparse::Pivot>& pivots) {
   std::size_t count = 0;
-  for (const sparse::Pivot& pivot : pivots) count += pivot.rows.size() * pivot.columns.size() + pivot.rows.size() + pivot.columns.size();
+  for (const sparse::Pivot& pivot : pivots)
+    count += pivot.rows.size() * pivot.columns.size() + pivot.rows.size() + pivot.columns.size();
   return count;
 }
 
@@ -55,9 +57,17 @@ std::size_t products_of_full(const sparse::LiftedSystem& system, std::size_t n) 
 
 struct ForwardDynamics::Impl {
   Impl(const Kernel& k, std::span<const std::size_t> which, const ForwardDynamicsOptions& o)
-      : kernel(k), options(o), program(k.program()), inputs(which.begin(), which.end()), n(program.freedoms), full(k, 1),
-        parameters(program.parameters, 0.0), sides(program.switches.size(), 1), constants(program.constants.size()),
-        live(program.constants.size(), false), rest(program.unknowns, 0.0) {
+      : kernel(k),
+        options(o),
+        program(k.program()),
+        inputs(which.begin(), which.end()),
+        n(program.freedoms),
+        full(k, 1),
+        parameters(program.parameters, 0.0),
+        sides(program.switches.size(), 1),
+        constants(program.constants.size()),
+        live(program.constants.size(), false),
+        rest(program.unknowns, 0.0) {
     if (program.unknowns == n) system = sparse::lift(program, std::vector<bool>(program.slots, false));
     find_live();
     write_lines();
@@ -78,7 +88,8 @@ struct ForwardDynamics::Impl {
   void write_lines();
   bool pays() const;
   void compile();
-  bool run(std::size_t line, double t, std::span<const double> q, std::span<const double> v, const double* a, std::span<double> out);
+  bool run(std::size_t line, double t, std::span<const double> q, std::span<const double> v, const double* a,
+           std::span<double> out);
   KernelStatus by_full_matrix(double t, std::span<const double> q, std::span<const double> v, std::span<double> a);
 
   Kernel kernel;
@@ -111,7 +122,8 @@ void ForwardDynamics::Impl::find_live() {
   for (std::uint32_t i = 0; i < program.constants.size(); ++i) {
     const Constant& c = program.constants[i];
     if (c.kind == Kind::Symbol) live[i] = std::find(inputs.begin(), inputs.end(), c.index) != inputs.end();
-    for (std::uint32_t k = 0; k < c.arguments; ++k) live[i] = live[i] || live[program.constant_arguments[c.first_argument + k]];
+    for (std::uint32_t k = 0; k < c.arguments; ++k)
+      live[i] = live[i] || live[program.constant_arguments[c.first_argument + k]];
     if (live[i]) live_order.push_back(i);
   }
 }
@@ -124,14 +136,16 @@ double ForwardDynamics::Impl::constant(std::size_t i) {
   std::vector<double> many;
   double* values = operands;
   if (c.arguments > 64) many.resize(c.arguments), values = many.data();
-  for (std::uint32_t k = 0; k < c.arguments; ++k) values[k] = constants[program.constant_arguments[c.first_argument + k]];
-  return interpreter::constant_operation<double>(c.kind, {values, c.arguments});
+  for (std::uint32_t k = 0; k < c.arguments; ++k)
+    values[k] = constants[program.constant_arguments[c.first_argument + k]];
+  return reference::constant_operation<double>(c.kind, {values, c.arguments});
 }
 
 double ForwardDynamics::Impl::number(const dynamics::NumberSource& source) const {
   switch (source.what) {
     case dynamics::NumberSource::OfConstant: return constants[source.index];
-    case dynamics::NumberSource::OfChoice: return sparse::constant_factor(system->edges[source.index], program, constants.data());
+    case dynamics::NumberSource::OfChoice:
+      return sparse::constant_factor(system->edges[source.index], program, constants.data());
     case dynamics::NumberSource::OfPivot: break;
   }
   return (*pivots)[source.index].size;
@@ -146,7 +160,8 @@ void ForwardDynamics::Impl::compute_constants() {
   if (system) plan();
   numbers.clear(), live_numbers.clear();
   for (const dynamics::NumberSource& source : written.numbers) {
-    if (source.what == dynamics::NumberSource::OfConstant && live[source.index]) live_numbers.push_back(static_cast<std::uint32_t>(numbers.size()));
+    if (source.what == dynamics::NumberSource::OfConstant && live[source.index])
+      live_numbers.push_back(static_cast<std::uint32_t>(numbers.size()));
     numbers.push_back(number(source));
   }
   behind.assign(evaluators.size(), true);
@@ -156,7 +171,7 @@ void ForwardDynamics::Impl::compute_constants() {
 /// Lines of another order of elimination do not belong to the pivots that are chosen here.
 void ForwardDynamics::Impl::plan() {
   const std::vector<double> origin(n, 0.0);
-  const auto samples = interpreter::sampled_entries(program, *system, constants, 0, origin, origin);
+  const auto samples = reference::sampled_entries(program, *system, constants, 0, origin, origin);
   Pivots chosen = sparse::eliminate(*system, samples, {});
   const bool is_cheaper = chosen && products_of(*chosen) < products_of_full(*system, n);
   const bool is_full = n <= most_full && (!is_cheaper || n == by_determinant) && is_symmetric(samples);
@@ -167,7 +182,8 @@ void ForwardDynamics::Impl::plan() {
   if (changes) write_lines();
 }
 
-/// M₀ at the sampled states, column by column. The residual of a Lagrangian has a symmetric M; one that is written by hand need not.
+/// M₀ at the sampled states, column by column. The residual of a Lagrangian has a symmetric M; one that is written by
+/// hand need not.
 bool ForwardDynamics::Impl::is_symmetric(const std::vector<std::vector<double>>& samples) {
   constexpr double rounding = 1e-12;
   sparse::GraphProduct product(*system);
@@ -188,15 +204,17 @@ bool ForwardDynamics::Impl::is_symmetric(const std::vector<std::vector<double>>&
 void ForwardDynamics::Impl::write_lines() {
   written = dynamics::write_dynamics(program, {has_plan ? &*system : nullptr, pivots ? &*pivots : nullptr});
   evaluators.clear();
-  for (const straight::StraightLine& line : written.lines) evaluators.emplace_back(line, std::array<std::uint32_t, 1>{dynamics::NumberArray});
+  for (const straight::StraightLine& line : written.lines)
+    evaluators.emplace_back(line, std::array<std::uint32_t, 1>{dynamics::NumberArray});
   code = {}, report = {};
 }
 
-// ------------------------------------------------------------------------------------------------------------------ machine code
+// -------------------------------------------------------------------------------------------------------- machine code
 
 bool ForwardDynamics::Impl::pays() const {
   const double terms = static_cast<double>(written.lines.back().size());
-  return options.expected_calls * terms * seconds_saved_a_term > seconds_of_compiler + terms * seconds_of_compiler_a_term;
+  return options.expected_calls * terms * seconds_saved_a_term >
+         seconds_of_compiler + terms * seconds_of_compiler_a_term;
 }
 
 void ForwardDynamics::Impl::compile() {
@@ -204,10 +222,11 @@ void ForwardDynamics::Impl::compile() {
   if (program.unknowns != n) report = {.trouble = "the accelerations of systems with constraints are not compiled"};
   else if (!has_plan) report = {.trouble = "no order of elimination holds at all of the sampled states"};
   else std::tie(code, report) = straight::compile(written.lines, {.cache = options.cache});
-  for (const straight::StraightLine& line : written.lines) scratch.resize(std::max(scratch.size(), straight::scratch_size(line)));
+  for (const straight::StraightLine& line : written.lines)
+    scratch.resize(std::max(scratch.size(), straight::scratch_size(line)));
 }
 
-// --------------------------------------------------------------------------------------------------------------------------- calls
+// --------------------------------------------------------------------------------------------------------------- calls
 
 void ForwardDynamics::Impl::renew_inputs(std::span<const double> u) {
   for (std::size_t i = 0; i < inputs.size(); ++i) parameters[inputs[i]] = u[i];
@@ -219,8 +238,8 @@ void ForwardDynamics::Impl::renew_inputs(std::span<const double> u) {
 }
 
 /// False: a pivot is small, or a number infinite or undefined; `out` is as it was.
-bool ForwardDynamics::Impl::run(std::size_t line, double t, std::span<const double> q, std::span<const double> v, const double* a,
-                                std::span<double> out) {
+bool ForwardDynamics::Impl::run(std::size_t line, double t, std::span<const double> q, std::span<const double> v,
+                                const double* a, std::span<double> out) {
   if (line >= written.lines.size()) return false;
   if (code) return code.guarded(line, &t, q.data(), v.data(), a, numbers.data(), out.data(), scratch.data());
   const double* const unused = nullptr;
@@ -229,7 +248,8 @@ bool ForwardDynamics::Impl::run(std::size_t line, double t, std::span<const doub
   return evaluators[line](&t, q.data(), v.data(), a, numbers.data(), out.data());
 }
 
-KernelStatus ForwardDynamics::Impl::by_full_matrix(double t, std::span<const double> q, std::span<const double> v, std::span<double> a) {
+KernelStatus ForwardDynamics::Impl::by_full_matrix(double t, std::span<const double> q, std::span<const double> v,
+                                                   std::span<double> a) {
   if (!inputs.empty()) full.set_parameters(parameters);
   const KernelStatus status = full.evaluate(t, q, v);
   if (status == KernelStatus::Ok)
@@ -237,7 +257,8 @@ KernelStatus ForwardDynamics::Impl::by_full_matrix(double t, std::span<const dou
   return status;
 }
 
-ForwardDynamics::ForwardDynamics(const Kernel& kernel, std::span<const std::size_t> inputs, const ForwardDynamicsOptions& options)
+ForwardDynamics::ForwardDynamics(const Kernel& kernel, std::span<const std::size_t> inputs,
+                                 const ForwardDynamicsOptions& options)
     : impl_(std::make_unique<Impl>(kernel, inputs, options)) {
   for (const std::size_t input : inputs) MAUP_REQUIRE(input < kernel.parameters());
 }
@@ -258,8 +279,8 @@ void ForwardDynamics::set_branches(std::span<const std::int8_t> sides) {
   impl_->compute_constants();
 }
 
-KernelStatus ForwardDynamics::accelerations(double t, std::span<const double> q, std::span<const double> v, std::span<const double> u,
-                                            std::span<double> a) {
+KernelStatus ForwardDynamics::accelerations(double t, std::span<const double> q, std::span<const double> v,
+                                            std::span<const double> u, std::span<double> a) {
   Impl& s = *impl_;
   MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && a.size() == s.n);
   s.set_inputs(u);

@@ -9,7 +9,8 @@ using straight::Term;
 using straight::Value;
 
 Value Numbers::number(straight::Builder& to, NumberSource source) {
-  const auto [found, fresh] = index_.try_emplace({source.what, source.index}, static_cast<std::uint32_t>(sources_.size()));
+  const auto [found, fresh] =
+      index_.try_emplace({source.what, source.index}, static_cast<std::uint32_t>(sources_.size()));
   if (fresh) sources_.push_back(source);
   return to.given(NumberArray, found->second);
 }
@@ -19,8 +20,10 @@ PointWriter::PointWriter(straight::Builder& to, Numbers& numbers, const Program&
       value_(program.slots, std::vector<Value>(static_cast<std::size_t>(orders_), zero_)) {
   if (program.one != no_slot) put(program.one, 0, to.literal(1));
   if (program.time != no_slot) put(program.time, 0, to.given(TimeArray, 0)), put(program.time, 1, to.literal(1));
-  for (Slot i = 0; i < program.freedoms; ++i) put(i, 0, to.given(PositionArray, i)), put(i, 1, to.given(VelocityArray, i));
-  for (Slot i = 0; i < program.freedoms && with_accelerations; ++i) put(i, 2, to.product(0.5, to.given(AccelerationArray, i)));
+  for (Slot i = 0; i < program.freedoms; ++i)
+    put(i, 0, to.given(PositionArray, i)), put(i, 1, to.given(VelocityArray, i));
+  for (Slot i = 0; i < program.freedoms && with_accelerations; ++i)
+    put(i, 2, to.product(0.5, to.given(AccelerationArray, i)));
   for (int stage = program.first_stage; stage <= 0; ++stage)
     for (const Run& run : program.runs[Dynamics])
       if (const int order = stage + 2 - run.lag; order >= 0) write(run, order);
@@ -141,7 +144,8 @@ void PointWriter::pair(const Instruction& i, int k, double sign) {
 void PointWriter::sines(const Run& run) {
   for (std::uint32_t first = run.first; first < run.last; first += 8) {
     std::vector<Value> angles;
-    for (std::uint32_t i = first; i < std::min(run.last, first + 8); ++i) angles.push_back(at(program_.instructions[i].a));
+    for (std::uint32_t i = first; i < std::min(run.last, first + 8); ++i)
+      angles.push_back(at(program_.instructions[i].a));
     const auto both = to_.sines(angles);
     for (std::uint32_t i = 0; i < both.size(); ++i) {
       put(program_.instructions[first + i].out, 0, both[i].first);

@@ -9,7 +9,15 @@
 namespace maupertuis::dynamics {
 
 /// Arrays of the lines, in order.
-enum Array : std::uint32_t { TimeArray, PositionArray, VelocityArray, AccelerationArray, NumberArray, ResultArray, arrays };
+enum Array : std::uint32_t {
+  TimeArray,
+  PositionArray,
+  VelocityArray,
+  AccelerationArray,
+  NumberArray,
+  ResultArray,
+  arrays
+};
 
 /// What a number of NumberArray is; all follow from parameters and the sides of switches.
 struct NumberSource {
@@ -26,8 +34,12 @@ class Numbers {
     const Constant& constant = program_.constants[id];
     return constant.kind == Kind::Number ? to.literal(constant.value) : number(to, {NumberSource::OfConstant, id});
   }
-  straight::Value choice(straight::Builder& to, std::uint32_t edge) { return number(to, {NumberSource::OfChoice, edge}); }
-  straight::Value usual_size(straight::Builder& to, std::uint32_t pivot) { return number(to, {NumberSource::OfPivot, pivot}); }
+  straight::Value choice(straight::Builder& to, std::uint32_t edge) {
+    return number(to, {NumberSource::OfChoice, edge});
+  }
+  straight::Value usual_size(straight::Builder& to, std::uint32_t pivot) {
+    return number(to, {NumberSource::OfPivot, pivot});
+  }
 
  private:
   straight::Value number(straight::Builder& to, NumberSource source);
@@ -37,8 +49,8 @@ class Numbers {
   std::map<std::pair<NumberSource::What, std::uint32_t>, std::uint32_t> index_;
 };
 
-/// Writes every coefficient of every order that the residual needs, each made once: the recurrences of the orders written out, without what
-/// vanishes (all of q̈ where it is 0, derivatives of constants).
+/// Writes every coefficient of every order that the residual needs, each made once: the recurrences of the orders
+/// written out, without what vanishes (all of q̈ where it is 0, derivatives of constants).
 class PointWriter {
  public:
   /// `with_accelerations`: else q̈ = 0.
@@ -51,7 +63,9 @@ class PointWriter {
   using Value = straight::Value;
   using Terms = std::vector<straight::Term>;
 
-  Value at(Slot slot, int order) const { return order < orders_ ? value_[slot][static_cast<std::size_t>(order)] : zero_; }
+  Value at(Slot slot, int order) const {
+    return order < orders_ ? value_[slot][static_cast<std::size_t>(order)] : zero_;
+  }
   void put(Slot slot, int order, Value value) { value_[slot][static_cast<std::size_t>(order)] = value; }
   void write(const Run& run, int order);
   void write(const Instruction& i, int order);

@@ -10,7 +10,7 @@ using straight::Builder;
 using straight::Term;
 using straight::Value;
 
-/// A pivot below this leaves the solution to the interpreter, which knows other ways.
+/// A pivot below this leaves the solution to the full matrix.
 constexpr double least_share = 1e-3, least_full_share = 1e-6;
 /// From this many coordinates on, columns of M₀ stand side by side in wide values.
 constexpr std::size_t least_wide = 5;
@@ -18,16 +18,18 @@ constexpr std::size_t least_wide = 5;
 constexpr std::size_t most_sorted = 2500, most_sorted_full = 400;
 
 /// The entries of a lifted system from the values at order 0.
-std::vector<Value> write_entries(Builder& to, Numbers& numbers, const sparse::LiftedSystem& system, const PointWriter& point) {
-  const sparse::EntryWriter write(system, {.value = [&](Builder&, Slot slot) { return point.at(slot); },
-                                           .constant = [&](Builder& b, ConstantId id) { return numbers.constant(b, id); },
-                                           .choice = [&](Builder& b, std::uint32_t edge) { return numbers.choice(b, edge); }});
+std::vector<Value> write_entries(Builder& to, Numbers& numbers, const sparse::LiftedSystem& system,
+                                 const PointWriter& point) {
+  const sparse::EntryWriter write(system,
+                                  {.value = [&](Builder&, Slot slot) { return point.at(slot); },
+                                   .constant = [&](Builder& b, ConstantId id) { return numbers.constant(b, id); },
+                                   .choice = [&](Builder& b, std::uint32_t edge) { return numbers.choice(b, edge); }});
   std::vector<Value> out;
   for (std::uint32_t e = 0; e < system.entries.size(); ++e) out.push_back(write(to, e));
   return out;
 }
 
-// ---------------------------------------------------------------------------------------------------------------- the full matrix
+// ----------------------------------------------------------------------------------------------------- the full matrix
 
 /// The lower triangle of M₀ along the tangent graph, its columns one by one or side by side.
 class MatrixWriter {
@@ -80,7 +82,8 @@ class MatrixWriter {
   }
   std::vector<Term> wide_terms(std::uint32_t row) const {
     std::vector<Term> out;
-    for (const std::uint32_t e : of_row_[row]) out.push_back({1, entries_[e], straight::none, tangents_[system_.entries[e].column]});
+    for (const std::uint32_t e : of_row_[row])
+      out.push_back({1, entries_[e], straight::none, tangents_[system_.entries[e].column]});
     return out;
   }
 
@@ -101,7 +104,8 @@ std::vector<Value> write_pair_solution(Builder& to, Value a, Value b, Value c, s
   to.check({a, a, least_full_share});
   to.check({determinant, to.product(1, a, c), least_full_share});
   const Value inverse = to.reciprocal(determinant);
-  return {to.sum({{1, c, right[0]}, {-1, b, right[1]}}, inverse), to.sum({{1, a, right[1]}, {-1, b, right[0]}}, inverse)};
+  return {to.sum({{1, c, right[0]}, {-1, b, right[1]}}, inverse),
+          to.sum({{1, a, right[1]}, {-1, b, right[0]}}, inverse)};
 }
 
 /// x with L D Lᵀ x = b; m: [n × n], its lower triangle.

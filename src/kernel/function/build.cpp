@@ -23,14 +23,18 @@ class FunctionWriter {
  public:
   explicit FunctionWriter(const FunctionSource& source) : source_(source) {
     for (std::uint32_t i = 0; i < source.inputs.size(); ++i) of_.emplace(source.inputs[i], to_.given(InputArray, i));
-    for (std::uint32_t i = 0; i < source.parameters.size(); ++i) of_.emplace(source.parameters[i], to_.given(ParameterArray, i));
+    for (std::uint32_t i = 0; i < source.parameters.size(); ++i)
+      of_.emplace(source.parameters[i], to_.given(ParameterArray, i));
   }
 
   FunctionProgram run() {
     for (const Expr& e : topological_order(source_.outputs))
       if (!of_.count(e)) of_.emplace(e, write(e));
     for (std::uint32_t i = 0; i < source_.outputs.size(); ++i) to_.store(at(source_.outputs[i]), ValueArray, i);
-    FunctionProgram out{to_.finish(function_arrays, 1, 0), source_.inputs.size(), source_.parameters.size(), {}, 0};
+    FunctionProgram out;
+    out.line = to_.finish(function_arrays, 1, 0);
+    out.evaluation = straight::Evaluation(out.line, seldom_arrays);
+    out.inputs = source_.inputs.size(), out.parameters = source_.parameters.size();
     find_changes(out);
     return out;
   }

@@ -2,9 +2,6 @@
 #include <maupertuis/require.hpp>
 
 #include "kernel/function/program.hpp"
-#include "kernel/straight_line/evaluator.hpp"
-
-#include <array>
 
 namespace maupertuis {
 
@@ -15,30 +12,19 @@ std::size_t FunctionKernel::outputs() const { return program_->line.stores.size(
 std::size_t FunctionKernel::size() const { return program_->size; }
 bool FunctionKernel::uses(std::size_t input) const { return program_->used[input]; }
 
-struct FunctionWorkspace::Impl {
-  explicit Impl(const FunctionKernel& k) : kernel(k), evaluator(k.program().line, std::array<std::uint32_t, 1>{ParameterArray}) {
-    if (kernel.parameters() == 0) set({});
-  }
-  void set(std::span<const double> values) { evaluator.set(unused, values.data(), unused); }
-
-  static constexpr const double* unused = nullptr;
-  FunctionKernel kernel;
-  straight::Evaluator evaluator;
-};
-
-FunctionWorkspace::FunctionWorkspace(const FunctionKernel& kernel) : impl_(std::make_unique<Impl>(kernel)) {}
-FunctionWorkspace::~FunctionWorkspace() = default;
-FunctionWorkspace::FunctionWorkspace(const FunctionWorkspace& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
-FunctionWorkspace::FunctionWorkspace(FunctionWorkspace&&) noexcept = default;
+FunctionWorkspace::FunctionWorkspace(const FunctionKernel& kernel)
+    : kernel_(kernel), slots_(kernel.program().evaluation.cells().begin(), kernel.program().evaluation.cells().end()) {}
 
 void FunctionWorkspace::set_parameters(std::span<const double> values) {
-  MAUP_REQUIRE(values.size() == impl_->kernel.parameters());
-  impl_->set(values);
+  MAUP_REQUIRE(values.size() == kernel_.parameters());
+  double* const arrays[] = {nullptr, const_cast<double*>(values.data()), nullptr};
+  kernel_.program().evaluation.set(slots_.data(), arrays);
 }
 
 void FunctionWorkspace::evaluate(std::span<const double> inputs, std::span<double> outputs) {
-  MAUP_REQUIRE(inputs.size() == impl_->kernel.inputs() && outputs.size() == impl_->kernel.outputs());
-  impl_->evaluator(inputs.data(), impl_->unused, outputs.data());
+  MAUP_REQUIRE(inputs.size() == kernel_.inputs() && outputs.size() == kernel_.outputs());
+  double* const arrays[] = {const_cast<double*>(inputs.data()), nullptr, outputs.data()};
+  kernel_.program().evaluation.run(slots_.data(), arrays);
 }
 
 }  // namespace maupertuis

@@ -1,5 +1,4 @@
 #include "kernel/function/program.hpp"
-#include "kernel/straight_line/evaluator.hpp"
 
 #include <maupertuis/function_disks.hpp>
 #include <maupertuis/kinds.hpp>
@@ -7,7 +6,6 @@
 #include <maupertuis/slopes.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -45,7 +43,8 @@ Bounds within_reach(Bounds b) {
 }
 
 Bounds sum(const Bounds& x, const Bounds& y) {
-  return within_reach({x.centre + y.centre, x.reach + y.reach, x.tail + y.tail, away(std::max(x.low - y.high, y.low - x.high)), x.high + y.high});
+  return within_reach({x.centre + y.centre, x.reach + y.reach, x.tail + y.tail,
+                       away(std::max(x.low - y.high, y.low - x.high)), x.high + y.high});
 }
 
 /// A constant factor leaves a polynomial what it is.
@@ -94,7 +93,9 @@ Bounds function(Kind kind, const Bounds& x, double centre) {
   const double w = x.centre, size = std::abs(w), d = x.reach;
   if (d == 0) return constant(centre);
   if (!(d < infinity)) return undecided(centre);
-  const auto within = [&](double reach, double high, double low = 0) { return Bounds{centre, reach, reach, low, high}; };
+  const auto within = [&](double reach, double high, double low = 0) {
+    return Bounds{centre, reach, reach, low, high};
+  };
   const double cos = std::abs(std::cos(w)), sin = std::abs(std::sin(w));
   // sin w − sin w₀ = sin w₀ (cos z − 1) + cos w₀ sin z with |z| ≤ d, |cos z − 1| ≤ ½ d sinh d
   if (kind == Kind::Sin) return within(sin * 0.5 * d * std::sinh(d) + cos * std::sinh(d), std::cosh(d));
@@ -116,8 +117,10 @@ Bounds call(Kind kind, const Bounds& x, const Bounds& y, double centre) {
   const double both = x.reach + y.reach, difference = x.centre - y.centre;
   const auto with_centre = [centre](Bounds b) { b.centre = centre; return b; };
   if (kind == Kind::Abs) return decides(x.centre, x.reach) ? with_centre(x) : undecided(centre);
-  if (kind == Kind::Sign || kind == Kind::Step) return decides(x.centre, x.reach) ? constant(centre) : undecided(centre);
-  if (kind == Kind::Less || kind == Kind::LessEqual) return decides(difference, both) ? constant(centre) : undecided(centre);
+  if (kind == Kind::Sign || kind == Kind::Step)
+    return decides(x.centre, x.reach) ? constant(centre) : undecided(centre);
+  if (kind == Kind::Less || kind == Kind::LessEqual)
+    return decides(difference, both) ? constant(centre) : undecided(centre);
   if (kind == Kind::And || kind == Kind::Or) return both == 0 ? constant(centre) : undecided(centre);
   if (kind != Kind::Min && kind != Kind::Max) throw unknown_kind(kind, "the bounds on a disk");
   if (!decides(difference, both)) return undecided(centre);
@@ -135,7 +138,7 @@ straight::StraightLine with_every_value(straight::StraightLine line) {
 
 struct FunctionDisks::Impl {
   Impl(const FunctionKernel& k, std::span<const double> parameters)
-      : kernel(k), line(kernel.program().line), every_value(with_every_value(line), std::array<std::uint32_t, 1>{ParameterArray}),
+      : kernel(k), line(kernel.program().line), every_value(with_every_value(line), seldom_arrays),
         centre(line.nodes.size()), bounds(line.nodes.size()) {
     every_value.set(unused, parameters.data(), unused);
   }
@@ -164,8 +167,15 @@ struct FunctionDisks::Impl {
       case Node::Sum: return sum_of(node);
       case Node::Root: return power(at(node.a), 0.5, centre[v]);
       case Node::Call: return call(node.function, at(node.a), at(node.b), centre[v]);
-      case Node::Chosen: return at(node.a).reach > 0 ? undecided(centre[v]) : centre[node.a] != 0 ? at(node.b) : at(node.c);
-      case Node::Magnitudes: case Node::Larger: case Node::Angles: case Node::Sine: case Node::Cosine: case Node::Unit: case Node::Wide:
+      case Node::Chosen:
+        return at(node.a).reach > 0 ? undecided(centre[v]) : centre[node.a] != 0 ? at(node.b) : at(node.c);
+      case Node::Magnitudes:
+      case Node::Larger:
+      case Node::Angles:
+      case Node::Sine:
+      case Node::Cosine:
+      case Node::Unit:
+      case Node::Wide:
       case Node::Lane: case Node::Gather: break;
     }
     throw std::logic_error("a disk met a node that has no bounds; please report");
@@ -186,7 +196,9 @@ FunctionDisks::FunctionDisks(const FunctionKernel& kernel, std::span<const doubl
 FunctionDisks::~FunctionDisks() = default;
 FunctionDisks::FunctionDisks(FunctionDisks&&) noexcept = default;
 
-void FunctionDisks::set_centre(std::span<const double> inputs) { impl_->every_value(inputs.data(), impl_->unused, impl_->centre.data()); }
+void FunctionDisks::set_centre(std::span<const double> inputs) {
+  impl_->every_value(inputs.data(), impl_->unused, impl_->centre.data());
+}
 
 double FunctionDisks::reach(std::size_t output) const { return impl_->bounds[impl_->line.stores[output].value].reach; }
 double FunctionDisks::tail(std::size_t output) const { return impl_->bounds[impl_->line.stores[output].value].tail; }

@@ -4,7 +4,7 @@ namespace {
 
 template <int W>
 void sine_cosine_of(const double* x, double* out) {
-  const jet::SineCosine<W> value(jet::Vec<W>::load(x));
+  const series::SineCosine<W> value(series::Vec<W>::load(x));
   value.sine.store(out), value.cosine.store(out + lanes);
 }
 
@@ -48,7 +48,8 @@ inline void bring(const Stage& s, const Pack& pack, std::uint32_t index) {
 
 // ------------------------------------------------------------------------------------------------------------ columns
 
-[[gnu::noinline]] Vector run_of_columns(const Tables& t, const ColumnRun& run, const double* coefficients, const double* from) {
+[[gnu::noinline]] Vector run_of_columns(const Tables& t, const ColumnRun& run, const double* coefficients,
+                                        const double* from) {
   const Column* const columns = t.columns + run.first;
   const std::size_t count = run.last - run.first;
   switch (run.kind) {
@@ -66,9 +67,11 @@ inline Vector columns(const Stage& s, const Pack& pack) {
   const Order& order = s.order_of(pack.lag);
   for (const ColumnRun *run = s.t.runs + pack.first_run, *last = s.t.runs + pack.last_run; run != last; ++run) {
     const Column& first = s.t.columns[run->first];
-    const double *const from = order.row + run->shift * s.t.stride, *const coefficients = s.t.coefficients + first.coefficients;
-    const Vector part = run->neighbours ? columns_of_neighbours(from + first.source, run->last - run->first, coefficients)
-                                        : run_of_columns(s.t, *run, coefficients, from);
+    const double* const from = order.row + run->shift * s.t.stride;
+    const double* const coefficients = s.t.coefficients + first.coefficients;
+    const Vector part = run->neighbours
+                            ? columns_of_neighbours(from + first.source, run->last - run->first, coefficients)
+                            : run_of_columns(s.t, *run, coefficients, from);
     sum += part * all(order.shift_factors[run->shift]);
   }
   return sum;
@@ -91,7 +94,8 @@ Vector square(const Stage& s, const double* a, int k, int first) {
 
 inline Vector product(const Stage& s, const ProductTerm& term, int k) {
   const double* const a = s.cells(term.a);
-  return term.a == term.b ? square(s, a, k, 0) : convolution(a, s.cells(term.b), k, static_cast<std::ptrdiff_t>(s.t.stride));
+  return term.a == term.b ? square(s, a, k, 0)
+                          : convolution(a, s.cells(term.b), k, static_cast<std::ptrdiff_t>(s.t.stride));
 }
 
 /// Σ_{j=1..k} a_j b_{k−j}
@@ -104,7 +108,8 @@ inline Vector without_first(const Stage& s, std::uint32_t a, std::uint32_t b, in
 
 inline Vector sum_of_pack(const Stage& s, const Pack& pack, const Order& order) {
   Vector result = columns(s, pack);
-  for (const ProductTerm *term = s.t.products + pack.first_product, *last = s.t.products + pack.last_product; term != last; ++term) {
+  for (const ProductTerm *term = s.t.products + pack.first_product, *last = s.t.products + pack.last_product;
+       term != last; ++term) {
     bring(s, pack, term->a), bring(s, pack, term->b);
     result += load(s.t.coefficients + term->coefficients) * product(s, *term, order.number);
   }
@@ -113,7 +118,8 @@ inline Vector sum_of_pack(const Stage& s, const Pack& pack, const Order& order) 
 
 [[gnu::noinline]] void functions(const Tables& t, const Pack& pack) {
   if (pack.pairs == no_block) {
-    for (std::uint32_t f = pack.first_function; f < pack.last_function; ++f) t.scalar.value(t.scalar.context, t.functions[f], 0);
+    for (std::uint32_t f = pack.first_function; f < pack.last_function; ++f)
+      t.scalar.value(t.scalar.context, t.functions[f], 0);
     return;
   }
   const int count = static_cast<int>(pack.last_function - pack.first_function);
@@ -122,11 +128,12 @@ inline Vector sum_of_pack(const Stage& s, const Pack& pack, const Order& order) 
   const Block& block = t.blocks[pack.a];
   for (unsigned i = 0; i < lanes; ++i) u[i] = t.rows[block.slots[i]];
   sine_cosine(u, values, count);
-  for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) t.rows[pack.out + i] = values[i], t.rows[pack.pairs + i] = values[lanes + i];
+  for (unsigned i = 0; i < static_cast<unsigned>(count); ++i)
+    t.rows[pack.out + i] = values[i], t.rows[pack.pairs + i] = values[lanes + i];
 }
 
-/// 1/k comes with its residue: a rounded reciprocal would err the same way in every step. The integral at order k reads w up to order
-/// k − 1, where it is final.
+/// 1/k comes with its residue: a rounded reciprocal would err the same way in every step. The integral at order k reads
+/// w up to order k − 1, where it is final.
 inline void integral(const Stage& s, const Pack& pack, const Order& order) {
   bring(s, pack, pack.a);
   if (order.number == 0) return functions(s.t, pack);
@@ -136,7 +143,8 @@ inline void integral(const Stage& s, const Pack& pack, const Order& order) {
 
 inline Vector quotient(const Stage& s, const Pack& pack, const Order& order) {
   bring(s, pack, pack.a), bring(s, pack, pack.b);
-  return (load(s.cells(pack.a) + order.offset) - without_first(s, pack.b, pack.y, order.number)) / load(s.cells(pack.b));
+  return (load(s.cells(pack.a) + order.offset) - without_first(s, pack.b, pack.y, order.number)) /
+         load(s.cells(pack.b));
 }
 
 inline Vector square_root(const Stage& s, const Pack& pack, const Order& order) {

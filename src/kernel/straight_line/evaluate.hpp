@@ -3,8 +3,9 @@
 #include <cstddef>
 #include <cstdint>
 
-/// The loops that run a straight line, compiled for several instruction sets; the best one of the processor is taken at run time. Plain
-/// pointers, so that no inline function of a container is compiled for a processor that may not be there.
+/// The loops that run a straight line, compiled for several instruction sets; the best one of the processor is taken at
+/// run time. Plain pointers, so that no inline function of a container is compiled for a processor that may not be
+/// there.
 namespace maupertuis::straight {
 
 /// Place of a number among those of an evaluation.
@@ -16,13 +17,15 @@ struct CellTerm {
   Cell a, b, c;
 };
 
-/// Sums that do not wait for each other, of as many terms each: (Σ f a + Σ f a b + Σ f a b c) · times / over. Results and terms follow each other.
+/// Sums that do not wait for each other, of as many terms each: (Σ f a + Σ f a b + Σ f a b c) · times / over. Results
+/// and terms follow each other.
 struct SumRun {
   std::uint32_t linear, products, triples;           // terms of each sum
   std::uint32_t count;                               // sums
   Cell out;
   std::uint32_t first_linear, first_product, first_triple;
-  std::uint32_t first_scale;                         // where `times` and `over` of each stand; none where neither is there
+  /// where `times` and `over` of each stand; none where neither is there
+  std::uint32_t first_scale;
 };
 inline constexpr std::uint32_t no_scale = ~std::uint32_t{0};
 

@@ -1,5 +1,5 @@
 // No include guard: each evaluate_*.cpp compiles this once, for its own instruction set.
-#include "kernel/jet/sine_cosine.hpp"
+#include "kernel/series/sine_cosine.hpp"
 #include "kernel/straight_line/evaluate.hpp"
 
 namespace maupertuis::straight {
@@ -11,7 +11,8 @@ void sums(const EvaluationTables& t, const SumRun& run) {
   const int linear = Linear >= 0 ? Linear : static_cast<int>(run.linear);
   const int products = Products >= 0 ? Products : static_cast<int>(run.products);
   const int triples = Linear >= 0 && Products >= 0 ? 0 : static_cast<int>(run.triples);
-  const CellTerm *p = t.linear + run.first_linear, *q = t.products + run.first_product, *r = t.triples + run.first_triple;
+  const CellTerm *p = t.linear + run.first_linear, *q = t.products + run.first_product,
+                 *r = t.triples + run.first_triple;
   const Cell* scale = run.first_scale == no_scale ? nullptr : t.scales + run.first_scale;
   double *const x = t.cells, *out = x + run.out;
   for (std::uint32_t i = 0; i < run.count; ++i, p += linear, q += products, r += triples) {
@@ -47,7 +48,7 @@ void sums(const EvaluationTables& t, const SumRun& run) {
 }
 
 void wides(const EvaluationTables& t, const WideRun& run) {
-  using Vector = jet::Vec<8>;
+  using Vector = series::Vec<8>;
   const CellTerm* term = t.wide_terms + run.first_term;
   double* out = t.cells + run.out;
   for (std::uint32_t i = 0; i < run.count; ++i, out += 8) {
@@ -61,7 +62,7 @@ void wides(const EvaluationTables& t, const WideRun& run) {
 void sines(const EvaluationTables& t, const AngleStep& step) {
   alignas(64) double angle[8];
   for (int lane = 0; lane < 8; ++lane) angle[lane] = t.cells[step.angle[static_cast<std::size_t>(lane)]];
-  const jet::SineCosine<8> both(jet::Vec<8>::load(angle));
+  const series::SineCosine<8> both(series::Vec<8>::load(angle));
   both.sine.store(t.cells + step.out);
   both.cosine.store(t.cells + step.out + 8);
 }

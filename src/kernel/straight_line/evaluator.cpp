@@ -50,10 +50,14 @@ double call(Kind function, double x, double y) {
 }  // namespace
 
 /// Numbers the cells of a line and writes its nodes level by level.
-class Layout {
+class EvaluationLayout {
  public:
-  Layout(const StraightLine& line, std::span<const std::uint32_t> seldom, Evaluator& out)
-      : line_(line), out_(out), cell_(line.nodes.size(), 0), level_(line.nodes.size(), 0), changes_(line.nodes.size(), false),
+  EvaluationLayout(const StraightLine& line, std::span<const std::uint32_t> seldom, Evaluation& out)
+      : line_(line),
+        out_(out),
+        cell_(line.nodes.size(), 0),
+        level_(line.nodes.size(), 0),
+        changes_(line.nodes.size(), false),
         is_seldom_(line.arrays, false) {
     for (const std::uint32_t array : seldom) is_seldom_[array] = true;
   }
@@ -73,7 +77,8 @@ class Layout {
       first = last;
     }
     for (const Store& store : line_.stores) out_.stores_.push_back({store.array, store.index, cell(store.value)});
-    for (const PivotCheck& check : line_.checks) out_.checks_.push_back({cell(check.pivot), cell(check.size), check.share});
+    for (const PivotCheck& check : line_.checks)
+      out_.checks_.push_back({cell(check.pivot), cell(check.size), check.share});
     for (const Value v : line_.finite) out_.finite_.push_back(cell(v));
     out_.guarded_ = line_.guarded;
   }
@@ -83,8 +88,8 @@ class Layout {
   /// By a step of the evaluation.
   bool is_made(Value v) const {
     const Node::What what = node(v).what;
-    return what != Node::Literal && what != Node::Given && what != Node::Unit && what != Node::Lane && what != Node::Sine &&
-           what != Node::Cosine;
+    return what != Node::Literal && what != Node::Given && what != Node::Unit && what != Node::Lane &&
+           what != Node::Sine && what != Node::Cosine;
   }
 
   void find_levels() {
@@ -125,7 +130,8 @@ class Layout {
   Shape shape(Value v) const {
     Shape out;
     if (node(v).what != Node::Sum) return {node(v).last - node(v).first, 0, 0};
-    for (std::uint32_t t = node(v).first; t < node(v).last; ++t) ++list(line_.terms[t], out.linear, out.products, out.triples);
+    for (std::uint32_t t = node(v).first; t < node(v).last; ++t)
+      ++list(line_.terms[t], out.linear, out.products, out.triples);
     return out;
   }
 
@@ -138,7 +144,13 @@ class Layout {
   std::tuple<bool, std::uint32_t, int, std::uint32_t, std::uint32_t, std::uint32_t, bool> key(Value v) const {
     const Node& n = node(v);
     const Shape s = shape(v);
-    return {changes_[v], level_[v], n.what, s.linear, s.products, s.triples, n.what == Node::Sum && (n.a != none || n.b != none)};
+    return {changes_[v],
+            level_[v],
+            n.what,
+            s.linear,
+            s.products,
+            s.triples,
+            n.what == Node::Sum && (n.a != none || n.b != none)};
   }
 
   void write(std::span<const Value> run) {
@@ -146,8 +158,20 @@ class Layout {
       case Node::Sum: return write_sums(run);
       case Node::Wide: return write_wides(run);
       case Node::Angles: return write_angles(run);
-      case Node::Magnitudes: case Node::Larger: case Node::Chosen: case Node::Root: case Node::Call: return write_others(run);
-      case Node::Literal: case Node::Given: case Node::Sine: case Node::Cosine: case Node::Unit: case Node::Lane: case Node::Gather: break;
+      case Node::Magnitudes:
+      case Node::Larger:
+      case Node::Chosen:
+      case Node::Root:
+      case Node::Call:
+        return write_others(run);
+      case Node::Literal:
+      case Node::Given:
+      case Node::Sine:
+      case Node::Cosine:
+      case Node::Unit:
+      case Node::Lane:
+      case Node::Gather:
+        break;
     }
     throw std::logic_error("a straight line holds a node that is not evaluated; please report");
   }
@@ -167,8 +191,8 @@ class Layout {
   void write_sums(std::span<const Value> run) {
     const Shape s = shape(run[0]);
     const bool scales = node(run[0]).a != none || node(run[0]).b != none;
-    out_.sums_.push_back({s.linear, s.products, s.triples, size(run), take(run.size()), size(out_.linear_), size(out_.products_),
-                          size(out_.triples_), scales ? size(out_.scales_) : no_scale});
+    out_.sums_.push_back({s.linear, s.products, s.triples, size(run), take(run.size()), size(out_.linear_),
+                          size(out_.products_), size(out_.triples_), scales ? size(out_.scales_) : no_scale});
     step(EvaluationStep::Sums, out_.sums_);
     for (std::uint32_t i = 0; i < run.size(); ++i) {
       const Node& n = node(run[i]);
@@ -195,7 +219,8 @@ class Layout {
     for (const Value v : run) {
       AngleStep angles{{}, cell_[v] = take(16, 8)};
       angles.angle.fill(cell_of_one);
-      for (std::uint32_t i = node(v).first; i < node(v).last; ++i) angles.angle[i - node(v).first] = cell(line_.operands[i]);
+      for (std::uint32_t i = node(v).first; i < node(v).last; ++i)
+        angles.angle[i - node(v).first] = cell(line_.operands[i]);
       out_.angles_.push_back(angles);
       step(EvaluationStep::Angles, out_.angles_);
     }
@@ -207,74 +232,89 @@ class Layout {
       cell_[v] = take(1);
       const std::uint32_t first = size(out_.magnitudes_);
       for (std::uint32_t t = n.first; t < n.last; ++t) out_.magnitudes_.push_back(term(t));
-      out_.others_.push_back({n.what, n.function, cell_[v], cell(n.a), cell(n.b), cell(n.c), first, size(out_.magnitudes_)});
+      out_.others_.push_back(
+          {n.what, n.function, cell_[v], cell(n.a), cell(n.b), cell(n.c), first, size(out_.magnitudes_)});
       step(EvaluationStep::Other, out_.others_);
     }
   }
 
   const StraightLine& line_;
-  Evaluator& out_;
+  Evaluation& out_;
   std::vector<Cell> cell_;             // [nodes]
   std::vector<std::uint32_t> level_;   // [nodes] how many others it waits for, one after the other
   std::vector<bool> changes_;          // [nodes] whether it follows from more than the seldom arrays
   std::vector<bool> is_seldom_;        // [arrays]
 };
 
-Evaluator::Evaluator(const StraightLine& line, std::span<const std::uint32_t> seldom) {
-  Layout(line, seldom, *this).run();
-  if (seldom.empty()) run(0, changing_);
+Evaluation::Evaluation(const StraightLine& line, std::span<const std::uint32_t> seldom) {
+  EvaluationLayout(line, seldom, *this).run();
+  if (seldom_given_.empty()) run_steps(cells_.data(), 0, changing_);
 }
 
-void Evaluator::run(std::size_t first, std::size_t last) {
+void Evaluation::run_steps(double* cells, std::size_t first, std::size_t last) const {
   static const Evaluate evaluate = best_evaluate();
-  evaluate({sums_.data(), wides_.data(), angles_.data(), linear_.data(), products_.data(), triples_.data(), wide_terms_.data(),
-            scales_.data(), cells_.data(), this, other},
+  struct Context {
+    const Evaluation& evaluation;
+    double* cells;
+  } context{*this, cells};
+  const auto other = [](void* of, std::uint32_t index) {
+    const auto& [evaluation, all] = *static_cast<Context*>(of);
+    const OtherNode& node = evaluation.others_[index];
+    all[node.out] = evaluation.value(node, all);
+  };
+  evaluate({sums_.data(), wides_.data(), angles_.data(), linear_.data(), products_.data(), triples_.data(),
+            wide_terms_.data(), scales_.data(), cells, &context, other},
            steps_.data() + first, steps_.data() + last);
 }
 
-bool Evaluator::evaluate(double* const* arrays) {
-  fetch(given_, arrays);
-  run(changing_, steps_.size());
-  const bool sound = is_sound();
+void Evaluation::set(double* cells, double* const* arrays) const {
+  for (const Load& load : seldom_given_) cells[load.cell] = arrays[load.array][load.index];
+  run_steps(cells, 0, changing_);
+}
+
+bool Evaluation::run(double* cells, double* const* arrays) const {
+  for (const Load& load : given_) cells[load.cell] = arrays[load.array][load.index];
+  run_steps(cells, changing_, steps_.size());
+  const bool sound = is_sound(cells);
   if (sound || !guarded_)
-    for (const Load& store : stores_) arrays[store.array][store.index] = cells_[store.cell];
+    for (const Load& store : stores_) arrays[store.array][store.index] = cells[store.cell];
   return sound;
 }
 
-bool Evaluator::is_sound() const {
+bool Evaluation::is_sound(const double* cells) const {
   double rest = 0;
   bool sound = true;
   for (const Check& check : checks_) {
-    const double margin = cells_[check.pivot] - check.share * cells_[check.size];
+    const double margin = cells[check.pivot] - check.share * cells[check.size];
     sound &= margin > 0;
     rest += 0 * margin;
   }
-  for (const Cell cell : finite_) rest += 0 * cells_[cell];
+  for (const Cell cell : finite_) rest += 0 * cells[cell];
   return sound && rest == 0;
 }
 
-void Evaluator::other(void* self, std::uint32_t index) {
-  auto& evaluator = *static_cast<Evaluator*>(self);
-  const OtherNode& node = evaluator.others_[index];
-  evaluator.cells_[node.out] = evaluator.value(node);
-}
-
-double Evaluator::value(const OtherNode& node) const {
-  const double a = cells_[node.a], b = cells_[node.b];
+double Evaluation::value(const OtherNode& node, const double* cells) const {
+  const double a = cells[node.a], b = cells[node.b];
   switch (node.what) {
     case Node::Magnitudes: {
       double sum = 0;
       for (std::uint32_t t = node.first; t < node.last; ++t) {
         const CellTerm& term = magnitudes_[t];
-        sum += std::abs(term.factor * cells_[term.a] * cells_[term.b] * cells_[term.c]);
+        sum += std::abs(term.factor * cells[term.a] * cells[term.b] * cells[term.c]);
       }
       return sum;
     }
     case Node::Larger: return std::max(std::abs(a), std::abs(b));
-    case Node::Chosen: return a != 0 ? b : cells_[node.c];
+    case Node::Chosen: return a != 0 ? b : cells[node.c];
     case Node::Root: return std::sqrt(a);
     case Node::Call: return call(node.function, a, b);
-    case Node::Literal: case Node::Given: case Node::Sum: case Node::Angles: case Node::Sine: case Node::Cosine: case Node::Unit:
+    case Node::Literal:
+    case Node::Given:
+    case Node::Sum:
+    case Node::Angles:
+    case Node::Sine:
+    case Node::Cosine:
+    case Node::Unit:
     case Node::Wide: case Node::Lane: case Node::Gather: break;
   }
   throw std::logic_error("a straight line holds a node that is not evaluated; please report");

@@ -8,30 +8,27 @@
 
 namespace maupertuis::straight {
 
-/// Runs a straight line number by number, where there is no machine code of it: nodes that do not wait for each other and have as many
-/// terms stand together, so that the loop over them has no branches of its own. Nothing is allocated after construction.
-/// Precondition: wide nodes are Unit, Wide and Lane alone, of up to 8 lanes.
-class Evaluator {
+/// Numbers of an evaluation, aligned to 64 bytes.
+using Cells = std::vector<double, boost::alignment::aligned_allocator<double, 64>>;
+
+/// A straight line made ready to be run number by number, where there is no machine code of it: nodes that do not wait
+/// for each other and have as many terms stand together, so that the loop over them has no branches of its own. Nothing
+/// changes after construction. Precondition: wide nodes are Unit, Wide and Lane alone, of up to 8 lanes.
+class Evaluation {
  public:
   /// `seldom`: arrays whose numbers change seldom. What follows from them alone is computed by set() and not again.
-  explicit Evaluator(const StraightLine& line, std::span<const std::uint32_t> seldom = {});
+  explicit Evaluation(const StraightLine& line, std::span<const std::uint32_t> seldom = {});
 
+  /// What its cells hold at the beginning. Where angles or wide nodes are in the line, cells have to be aligned to 64
+  /// bytes.
+  const Cells& cells() const { return cells_; }
   /// After numbers of the seldom arrays changed; the other arrays are not read.
-  template <class... Arrays>
-  void set(Arrays... arrays) {
-    double* const all[] = {const_cast<double*>(static_cast<const double*>(arrays))...};
-    fetch(seldom_given_, all);
-    run(0, changing_);
-  }
-  /// As straight::Code: whether all went well; results of a guarded line are stored only then. The seldom arrays are not read.
-  template <class... Arrays>
-  bool operator()(Arrays... arrays) {
-    double* const all[] = {const_cast<double*>(static_cast<const double*>(arrays))...};
-    return evaluate(all);
-  }
+  void set(double* cells, double* const* arrays) const;
+  /// Whether all went well; results of a guarded line are stored only then. The seldom arrays are not read.
+  bool run(double* cells, double* const* arrays) const;
 
  private:
-  friend class Layout;
+  friend class EvaluationLayout;
 
   struct Load {
     std::uint32_t array, index;
@@ -49,14 +46,9 @@ class Evaluator {
     double share;
   };
 
-  void fetch(const std::vector<Load>& given, double* const* arrays) {
-    for (const Load& load : given) cells_[load.cell] = arrays[load.array][load.index];
-  }
-  void run(std::size_t first, std::size_t last);
-  bool evaluate(double* const* arrays);
-  bool is_sound() const;
-  static void other(void* self, std::uint32_t index);
-  double value(const OtherNode& node) const;
+  void run_steps(double* cells, std::size_t first, std::size_t last) const;
+  bool is_sound(const double* cells) const;
+  double value(const OtherNode& node, const double* cells) const;
 
   std::vector<EvaluationStep> steps_;
   std::size_t changing_ = 0;                 // the first step that does not follow from seldom arrays alone
@@ -70,7 +62,29 @@ class Evaluator {
   std::vector<Check> checks_;
   std::vector<Cell> finite_;
   bool guarded_ = false;
-  std::vector<double, boost::alignment::aligned_allocator<double, 64>> cells_;
+  Cells cells_;
+};
+
+/// An evaluation with cells of its own, called as straight::Code is.
+class Evaluator {
+ public:
+  explicit Evaluator(const StraightLine& line, std::span<const std::uint32_t> seldom = {})
+      : evaluation_(line, seldom), cells_(evaluation_.cells()) {}
+
+  template <class... Arrays>
+  void set(Arrays... arrays) {
+    double* const all[] = {const_cast<double*>(static_cast<const double*>(arrays))...};
+    evaluation_.set(cells_.data(), all);
+  }
+  template <class... Arrays>
+  bool operator()(Arrays... arrays) {
+    double* const all[] = {const_cast<double*>(static_cast<const double*>(arrays))...};
+    return evaluation_.run(cells_.data(), all);
+  }
+
+ private:
+  Evaluation evaluation_;
+  Cells cells_;
 };
 
 }  // namespace maupertuis::straight

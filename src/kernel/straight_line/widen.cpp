@@ -20,7 +20,12 @@ using Lanes = std::vector<Value>;
 class Widening {
  public:
   Widening(const StraightLine& line, const Rearranged& read, const Rearranged& written)
-      : line_(line), read_(read), written_(written), place_in_part_(line.nodes.size(), 0), made_(line.nodes.size(), none), open_(line.nodes.size(), false) {}
+      : line_(line),
+        read_(read),
+        written_(written),
+        place_in_part_(line.nodes.size(), 0),
+        made_(line.nodes.size(), none),
+        open_(line.nodes.size(), false) {}
 
   std::optional<StraightLine> run() {
     find_parts();
@@ -65,7 +70,8 @@ class Widening {
     bool alike = correspond(v, x.a, w, y.a) && correspond(v, x.b, w, y.b);
     for (std::uint32_t i = 0; i < x.last - x.first; ++i) {
       const Term &s = line_.terms[x.first + i], &t = line_.terms[y.first + i];
-      alike = alike && s.factor == t.factor && correspond(v, s.a, w, t.a) && correspond(v, s.b, w, t.b) && correspond(v, s.c, w, t.c);
+      alike = alike && s.factor == t.factor && correspond(v, s.a, w, t.a) && correspond(v, s.b, w, t.b) &&
+              correspond(v, s.c, w, t.c);
     }
     return alike;
   }
@@ -184,7 +190,8 @@ class Widening {
     const auto place = [&](const Lanes& lanes) {
       const std::vector<std::uint32_t> indices = indices_of(lanes);
       if (indices.empty() || indices[0] == indices[1]) return;
-      if (const auto free = read_.find(node(lanes[0]).array); free != read_.end()) free->second->place_together(indices);
+      if (const auto free = read_.find(node(lanes[0]).array); free != read_.end())
+        free->second->place_together(indices);
     };
     for (const Value v : parts_[0]) {
       for (std::uint32_t i = 0; i < node(v).last - node(v).first; ++i)
