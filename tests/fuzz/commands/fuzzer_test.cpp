@@ -32,7 +32,7 @@ int pretender(int count, char** words) {
   if (what == "silent") return 3;
   if (what == "report") std::fputs("internal error. Please report it\n", stderr);
   if (what == "code") std::fputs("-- error E9999 ---- x\n", stderr);
-  if (what == "nan") std::puts("x = nan m");
+  if (what == "number") std::puts("x = nan m");
   if (what == "file") std::ofstream("out.csv") << "t,x\n0,-inf\n";
   if (what == "json") std::puts("{\"a\": }");
   if (what == "escape") std::puts("\x1b[31m");
@@ -60,7 +60,7 @@ std::map<std::string, std::string> told(const std::vector<Input>& inputs, std::u
 
 TEST_CASE("each kind of failure is told, and what follows it still runs") {
   std::vector<Input> inputs;
-  for (const char* what : {"fine", "crash", "abort", "leave", "hang", "odd", "silent", "report", "code", "nan", "file", "escape", "fine", "fine"})
+  for (const char* what : {"fine", "crash", "abort", "leave", "hang", "odd", "silent", "report", "code", "number", "file", "escape", "fine", "fine"})
     inputs.push_back({{what}, "system a\n"});
   inputs.push_back({{"json", "--json"}, ""});
   std::uint64_t counted = 0;
@@ -76,7 +76,7 @@ TEST_CASE("each kind of failure is told, and what follows it still runs") {
   CHECK(wrong.at("silent").find("without a word") != std::string::npos);
   CHECK(wrong.at("report").find("lease report") != std::string::npos);
   CHECK(wrong.at("code").find("E9999") != std::string::npos);
-  CHECK(wrong.at("nan").find("no number in the result") != std::string::npos);
+  CHECK(wrong.at("number").find("no number in the result") != std::string::npos);
   CHECK(wrong.at("file").find("no number in a file csv") != std::string::npos);
   CHECK(wrong.at("json").find("JSON") != std::string::npos);
   CHECK(wrong.at("escape").find("control bytes") != std::string::npos);
