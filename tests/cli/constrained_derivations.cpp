@@ -32,12 +32,12 @@ run 1 s
 
 TEST_CASE("the forces of constraint stand on the right, the constraint below") {
   CHECK(maup({"derive", "-", "--plain"}, rod_pendulum).out ==
-        "m x'' = 2 x λ_rod\nm y'' + m g = 2 y λ_rod\nx^2 + y^2 = l^2    (rod)\n");
+        "m x'' = 2 x λ_rod\nm y'' + m g = 2 y λ_rod\nx^2 + y^2 = l^2    # rod\n");
 }
 
 TEST_CASE("--eliminate shows equations without multipliers") {
   CHECK(maup({"derive", "-", "--plain", "--eliminate"}, rod_pendulum).out ==
-        "m x y'' - m y x'' + m g x = 0\nx^2 + y^2 = l^2    (rod)\n");
+        "m x y'' - m y x'' + m g x = 0\nx^2 + y^2 = l^2    # rod\n");
   const Outcome disk = maup({"derive", "-", "--plain", "--eliminate"}, rolling_disk);
   CHECK(disk.out.substr(0, disk.out.find("x'")) == "(m R^2 + I) φ'' = 0\nJ ψ'' = 0\n");
   CHECK(maup({"derive", "-", "--eliminate", "--form", "matrix"}, rod_pendulum).code == 2);
@@ -47,7 +47,7 @@ TEST_CASE("--form solved gives λ, --form matrix gives A and b") {
   CHECK(maup({"derive", "-", "--plain", "--form", "solved"}, rod_pendulum).out ==
         "x'' = 2 x λ_rod/m\ny'' = 2 y λ_rod/m - g\nλ_rod = m (g y - x'^2 - y'^2)/(2 (x^2 + y^2))\n");
   const Outcome matrix = maup({"derive", "-", "--plain", "--form", "matrix"}, rod_pendulum);
-  CHECK(contains(matrix.out, "A[rod, x] = 2 x\nA[rod, y] = 2 y\nb[rod] = -2 x'^2 - 2 y'^2\n"));
+  CHECK(contains(matrix.out, "let A_rod_x = 2 x\nlet A_rod_y = 2 y\nlet b_rod = -2 x'^2 - 2 y'^2\n"));
 }
 
 TEST_CASE("what is too long is refused with its reason") {

@@ -35,7 +35,7 @@ TEST_CASE("1: statements and commands of later versions say so") {
   const Outcome statement = maup({"check", "-"}, std::string(pendulum) + "contact θ >= 0\n");
   CHECK(statement.code == 1);
   CHECK(contains(statement.err, "not supported yet"));
-  for (const char* command : {"sweep", "animate", "export", "studio"}) {
+  for (const char* command : {"sweep", "export", "studio"}) {
     CAPTURE(command);
     const Outcome outcome = maup({command, "x.lag", "--whatever"});
     CHECK(outcome.code == 1);

@@ -41,10 +41,10 @@ TEST_CASE("hamiltonian --bracket reads the language of the model, and its mistak
   CHECK(document["brackets"][1]["plain"] == "1/(m r)");
 
   const Outcome unknown = maup({"hamiltonian", model, "--bracket", "r", "p_s"});
-  CHECK(unknown.code == 1);
+  CHECK(unknown.code == 2);
   CHECK(contains(unknown.err, "E0201"));
   const Outcome acceleration = maup({"hamiltonian", model, "--bracket", "r", "r''"});
-  CHECK(acceleration.code == 1);
+  CHECK(acceleration.code == 2);
   CHECK(contains(acceleration.err, "E1104"));
 }
 
