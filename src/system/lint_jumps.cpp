@@ -21,6 +21,8 @@
 namespace maupertuis::lint_rules {
 namespace {
 
+/// So many are all put in numbers: what is looked at does not change the order in which nodes are made.
+constexpr std::size_t few_positions = 64;
 constexpr double cancelled = 1e-9;  // of two parts of an impulse
 
 /// One part of L or D: its value as it enters, and where it comes from.
@@ -67,7 +69,8 @@ class Continuity {
     for (const Placed& x : all) {
       const ExprVector functions(next, next + static_cast<std::ptrdiff_t>(x.components.size()));
       next += static_cast<std::ptrdiff_t>(x.components.size());
-      if (std::any_of(functions.begin(), functions.end(), [&](Expr e) { return switched.count(e.id()) != 0; }))
+      if (all.size() <= few_positions ||
+          std::any_of(functions.begin(), functions.end(), [&](Expr e) { return switched.count(e.id()) != 0; }))
         jumps |= position_jumps(functions, x.what, x.span);
     }
     return jumps;

@@ -48,7 +48,8 @@ Tape Tape::with_gaussians(std::span<const Expr> roots) {
     append_below(e, order, places);
     tape.gaussians_.emplace(places.at(e.id()), places.at(gaussian.id()));
   }
-  for (const Expr& root : roots) append_below(root, order, places);
+  for (const Expr& e : topological_order(roots))
+    if (places.try_emplace(e.id(), static_cast<Position>(order.size())).second) order.push_back(e);
   tape.lay_out(order, roots);
   return tape;
 }
