@@ -1,5 +1,7 @@
 #include "video.hpp"
 
+#include "interrupt.hpp"
+
 #include <fmt/format.h>
 
 #include <cerrno>
@@ -7,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sstream>
 #include <sys/mman.h>
@@ -110,6 +113,7 @@ Video::Video(const std::string& ffmpeg, const Options& options) : process_(std::
   posix_spawnattr_destroy(&attributes);
   close(ends[0]);
   p.input = ends[1];
+  fcntl(p.input, F_SETFL, O_NONBLOCK);
   if (error == 0) return;
   p.id = -1;
   p.problem = std::strerror(error);
@@ -120,8 +124,12 @@ Video::~Video() = default;
 bool Video::add(const std::vector<std::uint8_t>& pixels) {
   Process& p = *process_;
   for (std::size_t done = 0; p.id > 0 && done < pixels.size();) {
+    if (interrupt_flag().load()) return false;  // ffmpeg may be slow to take what it is given
+    pollfd ready{p.input, POLLOUT, 0};
+    constexpr int milliseconds = 50;
+    if (poll(&ready, 1, milliseconds) <= 0) continue;
     const ssize_t count = write(p.input, pixels.data() + done, pixels.size() - done);
-    if (count < 0 && errno == EINTR) continue;
+    if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (count <= 0) return false;
     done += static_cast<std::size_t>(count);
   }

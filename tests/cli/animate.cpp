@@ -181,6 +181,7 @@ TEST_CASE("Ctrl-C ends a film within a second, and leaves no part of it") {
   const std::string model = folder.write("wheel.lag", wheel);
   const Outcome outcome = shell("timeout --signal=INT 1.5 $MAUP animate " + model + " -o " + folder.path("a.mp4") + " --size 1920x1080 --speed 0.01; echo code $?");
   CHECK(outcome.seconds < 8);
+  CHECK(contains(outcome.err, "was not written"));
   CHECK((contains(outcome.out, "code 124") || contains(outcome.out, "code 130")));
   CHECK(folder.names() == std::vector<std::string>{"wheel.lag"});
 }

@@ -165,6 +165,7 @@ std::string video_of(const AnimateOptions& o, const Drawing& drawing, Film& film
     if (console.interactive() && !console.json() && i % tenth == 0) console.say(fmt::format("\r\x1b[K{} of {} frames", i + 1, film.elapsed.size()));
   }
   if (console.interactive() && !console.json()) console.say("\r\x1b[K");
+  if (interrupt_flag().load()) return {};  // the film in the making goes with `video`
   const Video::Film made = video.finish();
   if (!made.problem.empty())
     diagnostics.error("E0841", {}, fmt::format("ffmpeg did not make {}.", o.output), fmt::format("It says: {}.", made.problem), "An .html or .svg needs no ffmpeg.");
