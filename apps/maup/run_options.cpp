@@ -121,13 +121,6 @@ const Statement* statement_of(const syntax::SyntaxTree* tree) {
   return nullptr;
 }
 
-/// A length of time in the place of the condition is a common slip.
-void check_until(const RunOptions& options, Diagnostics& diagnostics) {
-  if (options.until.empty() || !parse_time(options.until)) return;
-  diagnostics.error("E0809", {}, fmt::format("--until \"{}\" is a time, and no equation.", options.until), "The run ends when the equation holds.",
-                    fmt::format("Write --duration {}, or an equation such as --until \"P.y = 0\".", options.until));
-}
-
 }  // namespace
 
 SimulationOptions simulation_options(const RunOptions& options, Diagnostics& diagnostics, const syntax::SyntaxTree* tree) {
@@ -156,7 +149,6 @@ SimulationOptions simulation_options(const RunOptions& options, Diagnostics& dia
     diagnostics.error("E0809", {}, "--every must be a positive time.");
   for (const std::string& text : options.at)
     if (const auto t = time_option("--at", text, diagnostics)) out.at.push_back(*t);
-  check_until(options, diagnostics);
   out.interrupt = &interrupt_flag();
   return out;
 }
@@ -183,7 +175,6 @@ ExtendedSimulationOptions extended_options(const RunOptions& options, Precision 
   if (out.output_every && out.output_every->sign() <= 0) diagnostics.error("E0809", {}, "--every must be a positive time.");
   for (const std::string& text : options.at)
     if (const auto t = exact_time_option("--at", text, diagnostics)) out.at.push_back(*t);
-  check_until(options, diagnostics);
   out.interrupt = &interrupt_flag();
   return out;
 }

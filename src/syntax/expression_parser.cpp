@@ -248,6 +248,7 @@ void ExpressionParser::check_application(const Token& name) {
          fmt::format("`{0}({1})` would be {0} times {2}", name.text, independent, time ? "the time" : independent),
          fmt::format("{} depends on {} by itself.", name.text, time ? "time" : independent), fmt::format("Write {}.", name.text));
   }
+  if (name.is("dt") && previous().is("dt") && context_.list.tokens[index_ - 2].is("/")) return;  // d/dt (…): `system` tells it
   if (kind != Declared::None || is_predefined(name.text) || energy_of(name.text) || is_momentum(name.text)) return;
   unknown_before_bracket(name);
 }

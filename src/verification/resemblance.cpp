@@ -196,7 +196,7 @@ class Resembler {
       Finding out{of, "", "", {t.origin}, 12 + factor_cost(of.factor)};
       if (const auto ratio = constant_ratio(written, t.value); ratio && constant_in_motion(*ratio)) {
         const Expr shown = *ratio * t.value;
-        if (!vanishes(shown - written) || ratio->is_zero()) continue;
+        if (!vanishes(shown - written) || ratio->is_zero() || terms_in(shown) > terms_in(t.value)) continue;
         out.difference = fmt::format("{} stands in the place of {}", text(shown, of.row), text(t.value, of.row));
         out.sentence = fmt::format("a factor of {} is wrong", name_of(t));
         return out;
@@ -213,6 +213,12 @@ class Resembler {
       }
     }
     return std::nullopt;
+  }
+
+  /// A factor leaves the number of terms as it is; F + k in the place of F has a term more.
+  static std::size_t terms_in(Expr e) {
+    const Expr expanded = expand(e);
+    return expanded && expanded.is(Kind::Sum) ? expanded.size() : 1;
   }
 
   /// The terms, and their sums by origin.

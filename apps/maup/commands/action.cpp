@@ -99,6 +99,12 @@ ActionOptions options_of(const ActionCommand& o) {
 
 // --------------------------------------------------------------------------------------------------------- a given path
 
+/// What stands in [begin, end), without the blanks before it.
+Span right_side(const std::string& text, std::size_t begin, std::uint32_t end) {
+  while (begin < end && text[begin] == ' ') ++begin;
+  return {static_cast<std::uint32_t>(begin), end};
+}
+
 /// The formulas of --path in the order of the coordinates, as pieces of its text: x = 4 t + 7, y = 3 t + 5.
 std::optional<std::vector<Span>> formulas_of(const std::string& text, Study& study) {
   const MechanicalSystem& system = study.model()->system;
@@ -111,7 +117,7 @@ std::optional<std::vector<Span>> formulas_of(const std::string& text, Study& stu
     const std::string name = text.substr(piece.begin + left.begin, left.end - left.begin);
     const auto found = std::find_if(system.coordinates.begin(), system.coordinates.end(), [&](const Coordinate& c) { return c.name == name; });
     if (!has_sides || found == system.coordinates.end()) wrong = piece;
-    else formulas[static_cast<std::size_t>(found - system.coordinates.begin())] = {static_cast<std::uint32_t>(equals + 1), piece.end};
+    else formulas[static_cast<std::size_t>(found - system.coordinates.begin())] = right_side(text, equals + 1, piece.end);
   }
   std::string names;
   for (std::size_t i = 0; i < formulas.size(); ++i) {

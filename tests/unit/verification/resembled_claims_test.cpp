@@ -58,7 +58,7 @@ const Wrong kWrong[] = {
     {"double", "m2 l2^2 θ2'' + m2 l1 l2 cos(θ1 - θ2) θ1'' + m2 g l2 sin θ2 = 0", "missing: -m2 l1 l2 sin(θ1 - θ2) θ1'^2", "velocities is missing"},
     {"double", "l2 θ2'' + l1 cos(θ1 - θ2) θ1'' + g sin θ2 = 0", "missing: -m2 l1 l2 sin(θ1 - θ2) θ1'^2", "velocities is missing"},
     {"double", "m2 l2^2 θ2'' - m2 l1 l2 sin(θ1 - θ2) θ1'^2 + m2 g l2 sin θ2 = 0", "missing: m2 l1 l2 cos(θ1 - θ2) θ1''", "coupling with θ1 is missing"},
-    {"cart", "(M + m) x'' + m l cos θ θ'' + b x' = F0 cos(w t)", "missing: -m l sin θ θ'^2", "velocities is missing"},
+    {"cart", "(M + m) x'' + m l cos θ θ'' + b x' = F0 cos(w t)", "missing: -m l sin θ θ'^2", "total time derivative"},
     {"cart", "(M + m) x'' + m l cos θ θ'' - m l sin θ θ'^2 = F0 cos(w t)", "missing: b x'", "dissipation"},
     {"cart", "(M + m) x'' + m l cos θ θ'' - m l sin θ θ'^2 + b x' = 0", "missing: -F0 cos(w t)", "force"},
     {"cart", "(M + m) x'' - m l sin θ θ'^2 + b x' = F0 cos(w t)", "missing: m l cos θ θ''", "coupling with θ is missing"},
@@ -85,7 +85,7 @@ const Wrong kWrong[] = {
     {"cone", "(1 + a^2) m r'' + m g a = 0", "missing: -m r φ'^2", "∂T/∂q"},
     // wrong signs
     {"pendulum", "m l^2 θ'' = m g l sin θ", "wrong sign: m g l sin θ", "V has the wrong sign"},
-    {"kepler", "m r'' + m r φ'^2 + k/r^2 = 0", "wrong sign: -m r φ'^2", "wrong sign"},
+    {"kepler", "m r'' + m r φ'^2 + k/r^2 = 0", "wrong sign: -m r φ'^2", "momentum of φ was put into L"},
     {"double", "m2 l2^2 θ2'' + m2 l1 l2 cos(θ1 - θ2) θ1'' + m2 l1 l2 sin(θ1 - θ2) θ1'^2 + m2 g l2 sin θ2 = 0", "wrong sign: -m2 l1 l2 sin(θ1 - θ2) θ1'^2", "velocities has the wrong sign"},
     {"atwood", "m2 x2'' - m2 g = -multiplier(rope)", "wrong sign: -λ_rope", "rope has the wrong sign"},
     {"charge", "m y'' = q B x'", "wrong sign: q B x'", "velocities has the wrong sign"},
