@@ -290,6 +290,7 @@ bool needs_brackets(const std::vector<Layout>& parts, std::size_t i) {
 
 bool is_simple_base(const Layout& base) {
   if (base.negative) return false;
+  if (base.shape == Shape::Labelled) return is_simple_base(base.parts[0]);   // v_A²
   if (base.shape == Shape::Symbol) return base.symbol.role() != Role::Constant;
   return base.shape == Shape::Number || base.shape == Shape::Pi || base.shape == Shape::Name || base.shape == Shape::Bold ||
          base.shape == Shape::Indexed;

@@ -209,3 +209,15 @@ TEST_CASE_FIXTURE(Names, "the answer depends on nothing but the expression and t
   CHECK(first.points == second.points);
   CHECK(first.error_bound == second.error_bound);
 }
+
+TEST_CASE("no point, no proof") {
+  Context c;
+  const Expr x = c.symbol("x", Role::Coordinate);
+  const Expr one = pow(sin(x), Rational(2)) + pow(cos(x), Rational(2));
+  ZeroTestOptions none;
+  none.points = 0;
+  CHECK(zero_test(one - Rational(1)).verdict == Verdict::Zero);
+  const ZeroTest test = zero_test(one - Rational(1), none);
+  CHECK(test.verdict == Verdict::Undecided);
+  CHECK(!test.reason.empty());
+}

@@ -264,6 +264,7 @@ TEST_CASE("left sides of derivations") {
   CHECK(to_plain(rate(name("H"), lay_out(n.c.time(), n.order))) == "dH/dt");
   const Layout speed = power(labelled("v_A", indexed(name("v"), {name("A")})), number("2"));
   CHECK(to_plain(speed) == "v_A^2");
+  CHECK(to_latex(speed) == "v_{A}^{2}");
   CHECK(to_mathml(indexed(name("Q"), {lay_out(n.a, n.order)})) == "<mrow><msub><mi>Q</mi><mrow><msub><mi>θ</mi><mn>1</mn></msub></mrow></msub></mrow>");
   CHECK(to_latex(name("y", 2, true)) == "y''");
   CHECK(to_latex(words("close_x & y")) == "\\text{close\\_x \\& y}");

@@ -156,3 +156,12 @@ TEST_CASE("a system beyond the budget gets intermediates with the same value") {
     for (unsigned seed = 1; seed <= 3; ++seed) CHECK(test::agree(rows[i], substitute(forms[i].value, values), seed));
   }
 }
+
+TEST_CASE("no number is taken out that makes the others longer") {
+  Lagrangian s;
+  const Expr k = s.parameter("k"), x = s.coordinate("x"), y = s.coordinate("y");
+  const auto number = [&](const char* text) { return s.context.number(*Rational::parse(text)); };
+  CHECK(s.text(number("1.99999985") * square(x) - number("0.00000005") * square(y)) == "1.99999985 x^2 - 0.00000005 y^2");
+  CHECK(s.text(sqrt(number("3.0000001") * square(x) + number("0.0000002") * square(y))) == "sqrt(3.0000001 x^2 + 0.0000002 y^2)");
+  CHECK(s.text(half * k * square(x) + half * k * square(y)) == "1/2 k (x^2 + y^2)");
+}
