@@ -54,7 +54,7 @@ Rational CandidateChooser::readable_content(const Polynomial& p) {
     after += digits;
     longest = std::max(longest, digits);
   }
-  return longest > at_a_glance && after > before ? Rational(1) : content;
+  return longest > at_a_glance && after >= before ? Rational(1) : content;
 }
 
 /// Flat, but for the numeric factor: 2 (a + b), so that a coefficient that is multiplied on later meets it.
