@@ -75,7 +75,9 @@ void add_energy(ReportContent& content, const EquationsOfMotion& equations, cons
   }
   row.sentence += " It is conserved.";
   row.formula = formula(layouts::name("h_E"), equations.shown().energy_function, equations.order);
-  if (const auto column = run ? run->trajectory.column("energy") : std::nullopt; column && run->trajectory.rows() > 0) {
+  const auto column = run ? run->trajectory.column("energy") : std::nullopt;
+  // A run that ended where it began may have no energy to show.
+  if (column && run->trajectory.rows() > 0 && std::isfinite(run->trajectory.at(0, *column))) {
     row.value = quantity(run->trajectory.at(0, *column), run->trajectory.columns[*column].unit, 10);
     row.drift = short_number(run->statistics.energy_drift, 2);
   }

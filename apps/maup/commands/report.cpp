@@ -243,7 +243,8 @@ void check_sections(const std::vector<std::string>& chosen, Diagnostics& diagnos
 }
 
 ExitCode write_page(const std::string& page, Page& built, const ReportOptions& options, Study& study, Json& document, Console& console) {
-  const std::string path = options.output.empty() ? study.model()->system.name + ".html" : options.output;
+  const std::string& name = study.model()->system.name;  // empty without a line `system`
+  const std::string path = options.output.empty() ? (name.empty() ? "report" : name) + ".html" : options.output;
   if (path == "-") console.print(page);
   else write_result(path, page, study.diagnostics());
   document["file"] = path;

@@ -25,10 +25,22 @@ Pivot eliminate(const Matrix& block, const Matrix& right) {
           eigen.eigenvectors() * (values.cwiseInverse().asDiagonal() * (eigen.eigenvectors().transpose() * right))};
 }
 
+/// The same inertia (Sylvester) with every unknown in a unit of its own: where a coordinate's sizes are far below those of another, its
+/// zeros would be lost in the rounding of that one.
+Matrix in_own_units(const Matrix& all) {
+  Vector unit(all.rows());
+  for (Index i = 0; i < all.rows(); ++i) {
+    const double own = std::abs(all(i, i)), size = own > 0 ? own : all.row(i).cwiseAbs().maxCoeff();
+    unit[i] = size > 0 ? 1 / std::sqrt(size) : 1;
+  }
+  return unit.asDiagonal() * all * unit.asDiagonal();
+}
+
 /// Negative eigenvalues of a symmetric matrix whose rows couple to near ones only, but for the last `border` ones: by
 /// elimination in pieces.
-Index negatives_of(Matrix all, Index border) {
+Index negatives_of(const Matrix& given, Index border) {
   constexpr Index whole = 600, piece = 96;
+  Matrix all = in_own_units(given);
   Index out = 0;
   while (all.rows() > whole + border) {
     const Index rest = all.rows() - piece;

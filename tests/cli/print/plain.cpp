@@ -56,6 +56,7 @@ TEST_CASE("every Hamiltonian of the gallery passes as an expectation of its own 
   std::size_t tried = 0;
   for (const std::string& file : models_in("models")) {
     const Outcome printed = maup({"hamiltonian", file, "--plain"});
+    if (printed.code == 1 && contains(printed.err, "E0244")) continue;   // an integral is held along a whole path: there is no phase space
     CHECK_MESSAGE(printed.code == 0, printed.err);
     std::string statements;
     for (const std::string& line : lines_of(printed.out)) {

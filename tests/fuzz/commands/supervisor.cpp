@@ -169,7 +169,7 @@ void Supervisor::run(std::uint64_t first, std::uint64_t count, const Draw& draw,
     }
     const std::uint64_t at = shared_->at;
     counts_.inputs += at - from;
-    if (stopped) return;
+    if (stopped) break;
     outcome.code = shared_->code;
     if (asked != 0 && at < last) {
       outcome.too_long = true;
