@@ -96,8 +96,10 @@ void Study::refuse_option(const std::string& option, const std::string& typed, s
 
 bool Study::only_options_are_wrong() const {
   const auto items = diagnostics_.items();
+  // A search for paths that fails between the ends of an option was asked for rightly: E12 are codes of searches.
+  const auto is_mistake_of_option = [&](const Diagnostic& d) { return d.span && option_at(*d.span) && d.code.rfind("E12", 0) != 0; };
   return wrong() && std::none_of(items.begin(), items.end(), [&](const Diagnostic& d) {
-    return d.severity == Severity::Error && !(d.span && option_at(*d.span));
+    return d.severity == Severity::Error && !is_mistake_of_option(d);
   });
 }
 

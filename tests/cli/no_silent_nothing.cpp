@@ -78,7 +78,7 @@ TEST_CASE("hamiltonian --json defines every name that it uses") {
     last = std::string("P") + n + " + ";
   }
   chain += "gravity (0, -g)\n";
-  const Outcome told = maup({"hamiltonian", folder.write("chain.lag", chain), "--bracket", "a1'^2 + a2'", "p_a1 p_a2^3", "--json"});
+  const Outcome told = maup({"hamiltonian", folder.write("chain.lag", chain), "--bracket", "a1'^2 + a2'^2", "p_a1 p_a2^3", "--json"});
   REQUIRE(told.code == 0);
   const auto document = nlohmann::json::parse(told.out);
   std::set<std::string> implicit;

@@ -180,7 +180,8 @@ class Page {
   }
 
   void verify_model(const Interrupt& interrupt) {
-    if (!found_.run || model().experiment.expectations.empty()) return;
+    const bool cannot_run = !found_.run && budget_.wanted("motion");
+    if (cannot_run || model().experiment.expectations.empty()) return;
     SimulationOptions options = settings_;
     options.interrupt = interrupt;
     Diagnostics unheard;  // what the page cannot say of a system is no mistake of the model
