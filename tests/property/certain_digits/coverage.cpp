@@ -89,7 +89,8 @@ TEST_CASE("stated errors cover the true ones, seven companions side by side") {
 }
 
 TEST_CASE("stated errors cover the true ones, three companions one after the other") {
-  const auto models = static_cast<int>(from_environment("MAUP_CERTAIN_DIGITS", 16)) / 2;
+  // 20 models give 880 values, and a share of 0.91 to a hundredth; with 8 it was read as anything from 0.89 to 0.93.
+  const auto models = static_cast<int>(from_environment("MAUP_CERTAIN_DIGITS", 40)) / 2;
   const Count count = measure(models, 500'000 + from_environment("MAUP_CERTAIN_DIGITS_FROM", 1), 5, 6);
   CHECK(count.values > static_cast<std::size_t>(models));
   CHECK(count.part_covered() >= 0.999);
