@@ -1,14 +1,33 @@
 #pragma once
-#include "kernel/sparse/tangent_graph.hpp"
+#include "kernel/program/program.hpp"
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
-/// A program made ready for lanes. What depends on its structure alone is found once: through which operands tangents
-/// at order 0 go, and which of them vanish, so that M₀ and the corrections of stored slots are short lists of products.
+/// A program made ready for lanes. What depends on its structure alone is found once: through which operands tangents at order 0
+/// go, and which of them vanish, so that M₀ and the corrections of stored slots are short lists of products.
 namespace maupertuis::lanes {
+
+/// The partial derivative of an instruction by one operand at order 0.
+struct Factor {
+  enum class Kind : std::uint8_t {
+    Constant,   // c
+    Scaled,     // c x
+    Twice,      // 2 x
+    Reciprocal, // 1 / x
+    Slope,      // −x / y
+    HalfRoot,   // 1 / (2 x)
+    Exponent,   // c x / y
+    Plus,       // x
+    Minus,      // −x
+    One,
+    Chosen,     // not 0 where the operand of term `x` of the Select with terms [constant, y) is the one in force
+  };
+  Kind kind;
+  ConstantId constant = 0;
+  std::uint32_t x = 0, y = 0;  // slots
+};
 
 struct Pair {
   std::uint32_t factor, tangent;
@@ -39,7 +58,7 @@ struct PlanView {
   const Term* terms;
   const Run* runs;
   std::size_t run_count;
-  const sparse::Edge* factors;
+  const Factor* factors;
   std::size_t factor_count;
   const Pair* pairs;
   const Combination* combinations;
@@ -61,10 +80,17 @@ class Plan {
   PlanView view() const;
 
  private:
-  void add_result(std::span<const sparse::Edge> edges);
+  void find_needed(const Program& program);
+  void add_instruction(const Program& program, const Instruction& i);
+  void add_tangents(const Instruction& i, Slot out, std::uint32_t first_edge);
   void add_corrections(const Program& program);
   std::uint32_t tangent_of(Slot slot, std::size_t direction) const;
 
+  /// One operand that passes tangents on to the instruction at hand.
+  struct Edge {
+    std::uint32_t factor;
+    Slot operand;
+  };
   /// The directions in which a slot moves, ascending, and where its tangents are.
   struct Moves {
     std::vector<std::uint32_t> directions;
@@ -72,9 +98,11 @@ class Plan {
   };
 
   const Program& program_;
+  std::vector<bool> needed_;            // [slots]
   std::vector<Moves> moves_;            // [slots]
+  std::vector<Edge> edges_;
   std::uint32_t tangents_ = 0;
-  std::vector<sparse::Edge> factors_;   // edges whose factors are computed
+  std::vector<Factor> factors_;
   std::vector<Pair> pairs_;
   std::vector<Combination> combinations_;
   std::vector<MassEntry> mass_;

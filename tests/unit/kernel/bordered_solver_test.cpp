@@ -1,4 +1,4 @@
-#include "kernel/dense/bordered_solver.hpp"
+#include "kernel/jet/bordered_solver.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-using maupertuis::dense::BorderedSolver;
+using maupertuis::jet::BorderedSolver;
 
 namespace {
 

@@ -1,0 +1,10 @@
+#include "kernel/jet/sine_cosine.hpp"
+
+#include <cmath>
+
+namespace maupertuis::jet {
+
+double standard_sine(double x) { return std::sin(x); }
+double standard_cosine(double x) { return std::cos(x); }
+
+}  // namespace maupertuis::jet
