@@ -181,7 +181,7 @@ TEST_CASE("what is dear to compile is included in few places") {
   };
   // Sources may store and multiply matrices as they like; factorizations are compiled once. The kernels' matrices are views of their own.
   const std::vector<Library> libraries{
-      {R"re(eigen3/Eigen/(Dense|LU|QR|SVD|Cholesky|Eigenvalues))re", {"src/linear_algebra/", "src/kernel/dense/"}},
+      {R"re(eigen3/Eigen/(Dense|LU|QR|SVD|Cholesky|Eigenvalues))re", {"src/linear_algebra/", "src/kernel/jet/"}},
       {R"re(CLI/.*)re", {"apps/maup/options.cpp", "apps/maup/option_table.cpp"}},
       {R"re(boost/multiprecision/.*)re",
        {"src/symbolic/evaluate/real100.hpp", "src/kernel/extended/number.hpp", "src/base/rational.cpp"}}};
