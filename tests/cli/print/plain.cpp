@@ -17,12 +17,16 @@ std::string as_statements(const std::string& printed) {
   return out;
 }
 
+/// E0244: an integral is held along a whole path, so that there are no equations of motion and no phase space.
+bool holds_an_integral(const Outcome& refused) { return refused.code == 1 && contains(refused.err, "E0244"); }
+
 void expect_equations(const std::string& file, const std::vector<std::string>& options) {
   std::vector<std::string> arguments{"derive", file, "--plain"};
   arguments.insert(arguments.end(), options.begin(), options.end());
   const Outcome derived = maup(arguments);
   const bool must_exist = options.empty() || options.back() == "residual";
   if (derived.code == 1 && !must_exist) return;   // too long for this form
+  if (holds_an_integral(derived)) return;
   CHECK_MESSAGE(derived.code == 0, derived.err);
   const Folder folder;
   const std::string model = folder.write("model.lag", without_expectations(read(file)) + as_statements(derived.out));
@@ -44,6 +48,7 @@ TEST_CASE("every equation of the gallery passes as an expectation of its own mod
 TEST_CASE("every M, h, A and b of the gallery is read back as definitions") {
   for (const std::string& file : models_in("models")) {
     const Outcome derived = maup({"derive", file, "--plain", "--form", "matrix"});
+    if (holds_an_integral(derived)) continue;
     CHECK_MESSAGE(derived.code == 0, derived.err);
     const Folder folder;
     const std::string model = folder.write("model.lag", without_expectations(read(file)) + derived.out);
@@ -56,7 +61,7 @@ TEST_CASE("every Hamiltonian of the gallery passes as an expectation of its own 
   std::size_t tried = 0;
   for (const std::string& file : models_in("models")) {
     const Outcome printed = maup({"hamiltonian", file, "--plain"});
-    if (printed.code == 1 && contains(printed.err, "E0244")) continue;   // an integral is held along a whole path: there is no phase space
+    if (holds_an_integral(printed)) continue;
     CHECK_MESSAGE(printed.code == 0, printed.err);
     std::string statements;
     for (const std::string& line : lines_of(printed.out)) {
