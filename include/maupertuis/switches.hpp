@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 /// Where abs, sign, step, min, max and piecewise go over from one branch to another (docs/theory/switches.md).
@@ -15,6 +17,22 @@ std::vector<Expr> switches_of(std::span<const Expr> roots);
 
 /// The formulas in force where g > 0 (`above`) or g < 0: every node that this switch decides is replaced by its branch.
 std::vector<Expr> on_side(std::span<const Expr> roots, Expr difference, bool above);
+
+/// The formulas where g > 0 minus those where g < 0. What a sum or a product has on both sides is not written twice.
+std::vector<Expr> jump_across(std::span<const Expr> roots, Expr difference);
+
+/// Where switches stand in some expressions. Cost: one walk; then what lies above a switch.
+class SwitchUses {
+ public:
+  explicit SwitchUses(std::span<const Expr> roots);
+  /// Of each root what the switch with this g decides: sums without the terms that do not hold it, 0 where nothing does.
+  std::vector<Expr> terms_with(Expr difference) const;
+
+ private:
+  std::vector<Expr> roots_;
+  std::unordered_map<NodeId, std::vector<NodeId>> parents_;
+  std::unordered_map<NodeId, std::vector<NodeId>> deciding_;  // [g] the nodes that it switches
+};
 
 /// What the search for points may move, and where it begins.
 struct SwitchSearch {
@@ -49,5 +67,27 @@ struct SwitchSample {
 /// sample. Cost: some thousand evaluations of the switches in double, four of the functions with 100 digits a sample.
 std::vector<SwitchSample> sample_switches(std::span<const Expr> functions, std::span<const Expr> switches,
                                           const SwitchSearch& search);
+
+/// Samples one switch after the other of functions that hold many. Of more than 24 the combinations of signs are not
+/// looked for: points are drawn. Cost a switch: one evaluation of the functions in double a sample, four of the branches
+/// in force there with 100 digits.
+class SwitchSampler {
+ public:
+  /// Precondition: the search has every symbol of the functions.
+  SwitchSampler(std::vector<Expr> functions, SwitchSearch search);
+  ~SwitchSampler();
+  SwitchSampler(SwitchSampler&&) noexcept;
+  SwitchSampler& operator=(SwitchSampler&&) noexcept;
+
+  const std::vector<Expr>& functions() const;
+  const SwitchSearch& search() const;
+  /// Precondition: the search has every symbol of g and of the functions `beside`, whose values follow those of the functions.
+  std::vector<SwitchSample> sample(Expr g, std::span<const Expr> beside = {}) const;
+
+ private:
+  struct Impl;
+  friend std::vector<SwitchSample> sample_switches(std::span<const Expr>, std::span<const Expr>, const SwitchSearch&);
+  std::unique_ptr<Impl> impl_;
+};
 
 }  // namespace maupertuis

@@ -24,8 +24,8 @@ Model started_at(const Model& model, double t, const std::vector<double>& q, con
     const Coordinate& c = model.system.coordinates[i];
     // A span other than the coordinate's own tells that the value is given.
     const Span given{c.span.begin, c.span.end + 1};
-    out.experiment.start.push_back({i, 0, number(q[i]), given});
-    out.experiment.start.push_back({i, 1, number(v[i]), given});
+    out.experiment.start.push_back({i, 0, number(q[i]), given, {}});
+    out.experiment.start.push_back({i, 1, number(v[i]), given, {}});
   }
   return out;
 }

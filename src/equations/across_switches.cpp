@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace maupertuis {
 namespace {
 
+constexpr std::size_t many_switches = 256;  // from here on each is passed at a few points
 constexpr double at_rest = 1e-30;  // of ġ at 1e-40 beside the switch: it vanishes there
 
 bool knows(const SwitchSearch& search, Expr e) {
@@ -35,7 +37,7 @@ SwitchSearch search_of_states(const MechanicalSystem& system) {
 AcrossSwitches across_switches(const MechanicalSystem& system, Expr function, const ReadingOrder& order,
                                const std::function<Expr(Expr)>& rate) {
   AcrossSwitches out;
-  const SwitchSearch search = search_of_states(system);
+  SwitchSearch search = search_of_states(system);
   ExprMap values;
   for (const Parameter& p : system.parameters) values.emplace(p.symbol, p.value);
   const auto moving = [&](Expr e) { return in_terms_of_motion(system, expand_time_derivatives({&e, 1})).front(); };
@@ -44,24 +46,26 @@ AcrossSwitches across_switches(const MechanicalSystem& system, Expr function, co
   for (const Expr& g : switches_of({&function, 1}))
     if (moves(search, g)) named.push_back(g);
   if (named.empty()) return out;
-  ExprVector functions{function};
-  std::vector<bool> has_rate;
-  for (const Expr& g : named) {
-    Expr passing = rate ? substitute(rate(g), values) : Expr();
-    has_rate.push_back(passing && knows(search, passing));
-    functions.push_back(has_rate.back() ? passing : system.context->number(1));
-  }
-  functions = substitute(functions, values);
-  if (!knows(search, functions.front())) return out;
+  if (named.size() > many_switches) search.points = 4;
+  function = substitute(function, values);
+  if (!knows(search, function)) return out;
 
+  const ExprVector places = substitute(named, values);
+  const SwitchUses uses({&function, 1});
+  std::optional<SwitchSampler> sampler;
   std::vector<bool> passed(named.size(), false);
-  for (const SwitchSample& s : sample_switches(functions, substitute(named, values), search)) {
-    const double before = s.below[1 + s.which], after = s.above[1 + s.which];
-    if (std::isnan(s.jump[0]) || !(std::max(std::abs(before), std::abs(after)) > at_rest)) continue;
-    ++out.points;
-    passed[s.which] = true;
-    if (s.jump[0] != 0 && !out.jump)
-      out.jump = JumpAcross{named[s.which], s.jump[0], s.at, switch_text(named[s.which], order)};
+  for (std::size_t k = 0; k < named.size(); ++k) {
+    const ExprVector decided = uses.terms_with(places[k]);
+    // The pieces of one function are sampled one after the other.
+    if (!sampler || sampler->functions() != decided) sampler.emplace(decided, search);
+    Expr passing = rate ? substitute(rate(named[k]), values) : Expr();
+    if (!passing || !knows(search, passing)) passing = system.context->number(1);
+    for (const SwitchSample& s : sampler->sample(places[k], {&passing, 1})) {
+      if (std::isnan(s.jump[0]) || !(std::max(std::abs(s.below[1]), std::abs(s.above[1])) > at_rest)) continue;
+      ++out.points;
+      passed[k] = true;
+      if (s.jump[0] != 0 && !out.jump) out.jump = JumpAcross{named[k], s.jump[0], s.at, switch_text(named[k], order)};
+    }
   }
   out.switches = static_cast<std::size_t>(std::count(passed.begin(), passed.end(), true));
   return out;

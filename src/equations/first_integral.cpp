@@ -128,10 +128,18 @@ Expr presentable(Expr e, const ExprVector& variables, const ReadingOrder& order)
 
 }  // namespace
 
-FirstIntegral first_integral(const OneForm& form, const ExprVector& variables, const ReadingOrder& order) {
+FirstIntegral first_integral(const OneForm& form, const ExprVector& all, const ReadingOrder& order) {
   if (topological_order(form.components).size() > most_nodes) return {};
-  ExprVector plain;
-  for (const Expr& a : form.components) plain.push_back(zero(a) ? a.context().number(Rational(0)) : simplified(a, order));
+  // Variables that the form neither moves nor reads have no part in it.
+  const std::vector<Expr> read = symbols_of(form.components);
+  ExprVector plain, variables;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Expr a = form.components[i];
+    if (a.is_zero() && std::find(read.begin(), read.end(), all[i]) == read.end()) continue;
+    variables.push_back(all[i]);
+    plain.push_back(zero(a) ? a.context().number(Rational(0)) : simplified(a, order));
+  }
+  if (variables.empty()) return {};
   for (const Expr& factor : candidate_factors(plain, variables)) {
     ExprVector trial;
     for (const Expr& a : plain) trial.push_back(a * factor);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <unordered_map>
 
 /// Frobenius. The directions X_j that all forms send to zero are solved for as X_j = ∂_j + Σ_p x_jp ∂_p, with p over the
 /// pivot variables; their Lie brackets have pivot components alone. Brackets are added until none is new. What the forms
@@ -19,6 +20,7 @@ using Index = Eigen::Index;
 struct Field {
   ExprVector components;
   std::vector<ExprVector> gradients;  // of the components by the variables
+  std::vector<bool> moves, reads;     // [variables] the component is not 0; some component depends on it
 };
 
 class Closure {
@@ -92,11 +94,27 @@ class Closure {
     }
   }
 
+  Field field(ExprVector components) const {
+    Field out{std::move(components), {}, {}, std::vector<bool>(variables_.size(), false)};
+    for (const Expr& c : out.components) out.moves.push_back(!c.is_zero());
+    for (const Expr& symbol : symbols_of(out.components))
+      if (const auto v = std::find(variables_.begin(), variables_.end(), symbol); v != variables_.end())
+        out.reads[static_cast<std::size_t>(v - variables_.begin())] = true;
+    return out;
+  }
+
   Field with_gradients(ExprVector components) const {
-    Field out{std::move(components), {}};
+    Field out = field(std::move(components));
     for (const Expr& c : out.components)
       out.gradients.push_back(c.is_number() ? ExprVector(variables_.size(), zero_) : gradient(c, variables_));
     return out;
+  }
+
+  /// Neither moves what the other reads: the bracket is 0.
+  static bool commute(const Field& x, const Field& y) {
+    for (std::size_t l = 0; l < x.moves.size(); ++l)
+      if ((x.moves[l] && y.reads[l]) || (y.moves[l] && x.reads[l])) return false;
+    return true;
   }
 
   /// X(e) = d/dε e(q + ε X) at ε = 0: all of them in one forward sweep, so that brackets of brackets stay small.
@@ -111,12 +129,14 @@ class Closure {
   }
 
   /// [X, Y] = X(Y) − Y(X). Components that vanish identically become 0.
-  ExprVector bracket(const Field& x, const ExprVector& y) const {
+  ExprVector bracket(const Field& x, const Field& y) const {
     ExprVector out(variables_.size(), zero_);
-    const ExprVector forward = along(x.components, y);
+    if (commute(x, y)) return out;
+    const ExprVector forward = along(x.components, y.components);
     for (const std::size_t p : pivots_) {
       ExprVector terms{forward[p]};
-      for (std::size_t l = 0; l < variables_.size(); ++l) terms.push_back(-(y[l] * x.gradients[p][l]));
+      for (std::size_t l = 0; l < variables_.size(); ++l)
+        if (y.moves[l] && !x.gradients[p][l].is_zero()) terms.push_back(-(y.components[l] * x.gradients[p][l]));
       const Expr value = sum_of(terms, zero_.context());
       out[p] = value.is_number() || zero_test(value).verdict != Verdict::Zero ? value : zero_;
     }
@@ -125,19 +145,19 @@ class Closure {
 
   void close() {
     bracket_numbers_.assign(points_.size(), Matrix(0, static_cast<Index>(pivots_.size())));
-    std::vector<ExprVector> newest;
+    std::vector<Field> newest;
     for (std::size_t i = 0; i < directions_.size(); ++i)
-      for (std::size_t j = i + 1; j < directions_.size(); ++j) add(bracket(directions_[i], directions_[j].components), newest);
+      for (std::size_t j = i + 1; j < directions_.size(); ++j) add(bracket(directions_[i], directions_[j]), newest);
     while (!newest.empty() && brackets_.size() < pivots_.size()) {
-      std::vector<ExprVector> next;
+      std::vector<Field> next;
       for (const Field& x : directions_)
-        for (const ExprVector& y : newest) add(bracket(x, y), next);
+        for (const Field& y : newest) add(bracket(x, y), next);
       newest = std::move(next);
     }
   }
 
   /// Keeps a bracket that is new at some point.
-  void add(ExprVector candidate, std::vector<ExprVector>& newest) {
+  void add(ExprVector candidate, std::vector<Field>& newest) {
     if (brackets_.size() == pivots_.size()) return;
     if (std::all_of(candidate.begin(), candidate.end(), [](Expr e) { return e.is_zero(); })) return;
     const std::vector<Eigen::RowVectorXd> numbers = numbers_of(candidate);
@@ -154,7 +174,7 @@ class Closure {
       bracket_numbers_[k] = std::move(m);
     }
     brackets_.push_back(candidate);
-    newest.push_back(std::move(candidate));
+    newest.push_back(field(std::move(candidate)));
   }
 
   /// The pivot components at each point; one that is rounding of its terms counts as zero.
@@ -248,11 +268,73 @@ class Closure {
   std::vector<Matrix> bracket_numbers_;   // [points] their pivot components, a row each
 };
 
+/// Forms and variables that have to do with each other.
+struct Group {
+  std::vector<std::size_t> forms, variables;
+};
+
+/// Forms that share no variable, neither as a component nor in one, leave directions that commute: each group is looked at alone.
+std::vector<Group> independent_groups(const std::vector<OneForm>& forms, const ExprVector& variables) {
+  std::vector<std::size_t> leader(variables.size());
+  std::iota(leader.begin(), leader.end(), std::size_t{0});
+  const auto find = [&](std::size_t v) {
+    while (leader[v] != v) v = leader[v] = leader[leader[v]];
+    return v;
+  };
+  std::unordered_map<Expr, std::size_t, ExprHash> index;
+  for (std::size_t v = 0; v < variables.size(); ++v) index.emplace(variables[v], v);
+  std::vector<std::size_t> first(forms.size(), 0);  // a form without variables goes to the first one
+  for (std::size_t i = 0; i < forms.size(); ++i) {
+    std::vector<std::size_t> touched;
+    for (std::size_t v = 0; v < variables.size(); ++v)
+      if (!forms[i].components[v].is_zero()) touched.push_back(v);
+    for (const Expr& symbol : symbols_of(forms[i].components))
+      if (const auto v = index.find(symbol); v != index.end()) touched.push_back(v->second);
+    for (const std::size_t v : touched) leader[find(v)] = find(touched.front());
+    if (!touched.empty()) first[i] = touched.front();
+  }
+  std::vector<Group> out;
+  std::unordered_map<std::size_t, std::size_t> place;
+  for (std::size_t i = 0; i < forms.size(); ++i) {
+    const auto [at, is_new] = place.try_emplace(find(first[i]), out.size());
+    if (is_new) out.emplace_back();
+    out[at->second].forms.push_back(i);
+  }
+  for (std::size_t v = 0; v < variables.size(); ++v)
+    if (const auto at = place.find(find(v)); at != place.end()) out[at->second].variables.push_back(v);
+  return out;
+}
+
+/// What was found for a group, in terms of all forms and variables.
+void put_back(const IntegrablePart& part, const Group& group, const ExprVector& variables, IntegrablePart& out) {
+  out.rank += part.rank;
+  out.integrable_rank += part.integrable_rank;
+  for (std::size_t i = 0; i < group.forms.size(); ++i) out.integrable[group.forms[i]] = part.integrable[i];
+  const Expr zero = variables[0].context().number(Rational(0));
+  for (const IntegrablePart::Combination& found : part.combinations) {
+    IntegrablePart::Combination whole;
+    for (const std::size_t i : found.forms) whole.forms.push_back(group.forms[i]);
+    whole.form.components.assign(variables.size(), zero);
+    for (std::size_t v = 0; v < group.variables.size(); ++v) whole.form.components[group.variables[v]] = found.form.components[v];
+    out.combinations.push_back(std::move(whole));
+  }
+}
+
 }  // namespace
 
 IntegrablePart integrable_part(const std::vector<OneForm>& forms, const ExprVector& variables,
                                const std::vector<Bindings>& points) {
-  return Closure(forms, variables, points).find();
+  IntegrablePart out;
+  out.integrable.assign(forms.size(), false);
+  for (const Group& group : independent_groups(forms, variables)) {
+    std::vector<OneForm> own(group.forms.size());
+    ExprVector among;
+    for (const std::size_t v : group.variables) among.push_back(variables[v]);
+    for (std::size_t i = 0; i < own.size(); ++i)
+      for (const std::size_t v : group.variables) own[i].components.push_back(forms[group.forms[i]].components[v]);
+    put_back(Closure(own, among, points).find(), group, variables, out);
+  }
+  return out;
 }
 
 }  // namespace maupertuis

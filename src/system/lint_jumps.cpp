@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <unordered_set>
 
 /// What jumps at a switch gives an impulse, which the equations of motion do not contain.
@@ -117,6 +118,11 @@ class Continuity {
     std::vector<double> by_position;  // [n]
     double rate = 0;                  // ġ, without accelerations
     bool has_velocity = false;
+
+    struct Formulas {
+      ExprVector values;              // those that are not 0
+      std::vector<std::size_t> rows;  // [values] by q, by q̇, by t
+    };
   };
 
   void center() {
@@ -173,6 +179,12 @@ class Continuity {
     return out;
   }
 
+  /// What a switch decides: the terms that hold it, of those functions and parts that do.
+  struct Decided {
+    std::vector<std::size_t> rows;  // [functions of the sampler] of functions, then parts
+    SwitchSampler sampler;
+  };
+
   /// Samples of functions and parts on each switch; the first that `wrong` finds is reported, one a switch.
   template <class Wrong>
   void examine(const ExprVector& functions, const std::vector<Part>& parts, Wrong wrong) {
@@ -181,50 +193,79 @@ class Continuity {
     ExprVector all = functions;
     for (const Part& p : parts) all.push_back(p.value);
     const ExprVector values = in_numbers(all), places = in_numbers(switches);
-    const auto samples = sample_switches(values, places, search_);
+    const SwitchUses uses(values);
+    std::optional<Decided> decided;
     for (std::size_t k = 0; k < switches.size(); ++k) {
+      decide(uses.terms_with(places[k]), decided);
+      const Slopes::Formulas slopes = slope_formulas(places[k]);
       std::vector<SwitchSample> found;
-      const auto take = [&](const SwitchSample& x) {
-        if (wrong(x, slopes(switches[k], x.at))) found.push_back(x);
+      const auto take = [&](SwitchSample x) {
+        std::vector<double> jump(values.size(), 0.0);
+        for (std::size_t i = 0; i < decided->rows.size(); ++i) jump[decided->rows[i]] = x.jump[i];
+        x.jump = std::move(jump);
+        x.at.insert(search_.center.begin(), search_.center.end());
+        if (wrong(x, slopes_at(slopes, x.at))) found.push_back(std::move(x));
       };
-      for (const SwitchSample& x : samples)
-        if (x.which == k) take(x);
+      for (SwitchSample& x : decided->sampler.sample(places[k])) take(std::move(x));
       if (found.empty())
-        for (SwitchSample& x : where_the_zero_test_points(values, places[k])) take(x);
+        for (SwitchSample& x : where_the_zero_test_points(decided->sampler, places[k])) take(std::move(x));
       if (!found.empty()) report(switches[k], found, functions.size(), parts);
     }
   }
 
+  /// Keeps what was prepared for the switch before where both stand in the same terms, as the pieces of one function do.
+  void decide(const ExprVector& terms, std::optional<Decided>& decided) const {
+    ExprVector values;
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < terms.size(); ++i)
+      if (!terms[i].is_zero()) values.push_back(terms[i]), rows.push_back(i);
+    if (decided && decided->rows == rows && decided->sampler.functions() == values) return;
+    SwitchSearch search = search_;
+    search.center.clear();
+    const std::vector<Expr> symbols = symbols_of(values);
+    for (const Expr& e : symbols)
+      if (const auto at = search_.center.find(e); at != search_.center.end()) search.center.insert(*at);
+    std::erase_if(search.moving, [&](Expr e) { return search.center.count(e) == 0; });
+    decided.emplace(Decided{std::move(rows), SwitchSampler(std::move(values), std::move(search))});
+  }
+
   /// Where g = 0 can be solved for a symbol the jump is a function of the others, which the zero test decides: what the
-  /// samples did not meet has a witness.
-  std::vector<SwitchSample> where_the_zero_test_points(const ExprVector& values, Expr g) const {
-    for (const Expr& x : search_.moving) {
+  /// samples did not meet has a witness. Where nothing else moves they have met all there is.
+  static std::vector<SwitchSample> where_the_zero_test_points(const SwitchSampler& sampler, Expr g) {
+    if (sampler.search().moving.size() < 2) return {};
+    for (const Expr& x : sampler.search().moving) {
       const Expr slope = differentiate(g, x);
       if (!slope.is_number() || slope.is_zero()) continue;
-      const ExprVector above = on_side(values, g, true), below = on_side(values, g, false);
-      ExprVector jump;
-      for (std::size_t i = 0; i < above.size(); ++i) jump.push_back(above[i] - below[i]);
-      const Expr solved = x - g / slope;
-      const ZeroTest test = zero_test(substitute(jump, {{x, solved}}));
+      const ZeroTest test = zero_test(substitute(jump_across(sampler.functions(), g), {{x, x - g / slope}}));
       if (test.verdict != Verdict::Nonzero || test.witness.empty()) return {};
-      SwitchSearch there = search_;
+      SwitchSearch there = sampler.search();
       for (const auto& [symbol, value] : test.witness) there.center[symbol] = value;
       there.points = 1;
-      return sample_switches(values, {&g, 1}, there);
+      return sample_switches(sampler.functions(), {&g, 1}, there);
     }
     return {};
   }
 
-  Slopes slopes(Expr g, const Bindings& at) const {
+  Slopes::Formulas slope_formulas(Expr g) const {
     ExprVector symbols = s_.order.coordinates;
     symbols.insert(symbols.end(), s_.velocities.begin(), s_.velocities.end());
     symbols.push_back(context_.time());
-    const std::vector<double> d = evaluate(in_numbers(gradient(g, symbols)), at);
+    Slopes::Formulas out;
+    const ExprVector d = in_numbers(gradient(g, symbols));
+    for (std::size_t i = 0; i < d.size(); ++i)
+      if (!d[i].is_zero()) out.values.push_back(d[i]), out.rows.push_back(i);
+    return out;
+  }
+
+  Slopes slopes_at(const Slopes::Formulas& formulas, const Bindings& at) const {
+    const std::vector<double> d = evaluate(formulas.values, at);
     const std::size_t n = s_.freedoms();
-    Slopes out{{d.begin(), d.begin() + static_cast<std::ptrdiff_t>(n)}, d[2 * n], false};
-    for (std::size_t i = 0; i < n; ++i) {
-      out.rate += d[i] * at.at(s_.velocities[i]);
-      out.has_velocity |= d[n + i] != 0;
+    Slopes out{std::vector<double>(n, 0.0), 0, false};
+    for (std::size_t k = 0; k < d.size(); ++k) {
+      const std::size_t row = formulas.rows[k];
+      if (row < n) out.by_position[row] = d[k], out.rate += d[k] * at.at(s_.velocities[row]);
+      else if (row < 2 * n) out.has_velocity |= d[k] != 0;
+      else out.rate += d[k];
     }
     return out;
   }

@@ -236,7 +236,8 @@ class Study {
     const Matrix q = frame.topRows(d), p = frame.bottomRows(d);
     const Matrix u = inverse_times(transfer.topRightCorner(d, d), transfer.topLeftCorner(d, d));
     const Matrix g = q.transpose() * u * q + q.transpose() * p;
-    return Eigen::SelfAdjointEigenSolver<Matrix>((g + g.transpose()) / 2, Eigen::EigenvaluesOnly).eigenvalues();
+    const Matrix symmetric = (g + g.transpose()) / 2;
+    return Eigen::SelfAdjointEigenSolver<Matrix>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
   }
 
   void count(const MotionState& from, double to, const Matrix& transfer, std::size_t at_end) {
@@ -347,7 +348,8 @@ class Study {
     }
     if (w.cols() == 0) return 0;  // constraints leave nothing of the ends' freedom
     const Matrix on = w.transpose() * c * w;
-    const Vector values = Eigen::SelfAdjointEigenSolver<Matrix>((on + on.transpose()) / 2, Eigen::EigenvaluesOnly).eigenvalues();
+    const Matrix symmetric = (on + on.transpose()) / 2;
+    const Vector values = Eigen::SelfAdjointEigenSolver<Matrix>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
     const double zero = 1e-8 * c.cwiseAbs().maxCoeff();  // the same closed orbit, begun later, changes nothing
     return static_cast<std::size_t>((values.array() < -zero).count());
   }

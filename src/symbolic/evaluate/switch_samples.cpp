@@ -3,6 +3,7 @@
 #include "symbolic/evaluate/branch_search.hpp"
 #include "symbolic/evaluate/real100.hpp"
 #include "symbolic/evaluate/real_numbers.hpp"
+#include "symbolic/evaluate/switch_nodes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,7 @@
 namespace maupertuis {
 namespace {
 
+using evaluation::Branches;
 using evaluation::BranchSearch;
 using evaluation::Position;
 using evaluation::Real100;
@@ -23,6 +25,7 @@ constexpr double falls = 1e-2;   // what vanishes like a power of the distance a
 constexpr double grows = 1e3;    // from 1e-20 to 1e-40: a singularity
 constexpr int most_halvings = 700;
 constexpr int most_brackets_of_a_line = 3;
+constexpr std::size_t most_together = 24;  // switches whose combinations of signs are looked for
 
 /// A point and a stretch along one symbol over which g changes its sign.
 struct Bracket {
@@ -79,86 +82,101 @@ double difference(const Real100& above_far, const Real100& below_far, const Real
   return static_cast<double>(Real100(above - below));
 }
 
-class Sampler {
- public:
-  Sampler(std::span<const Expr> functions, std::span<const Expr> switches, const SwitchSearch& search)
-      : functions_(functions), switches_(switches), search_(search), all_(switches, search) {
-    const BranchPoints branches = points_in_branches(switches, search);
-    bases_.push_back(search.center);
-    bases_.insert(bases_.end(), branches.points.begin(), branches.points.end());
+/// Those next to the base first.
+std::vector<Bracket> brackets(const BranchSearch& own, const Bindings& base, std::size_t symbol) {
+  std::vector<Bracket> out;
+  const Expr x = own.moving()[symbol];
+  Bindings point = base;
+  double before = 0, at_before = 0;
+  for (const double value : own.values_to_try(symbol)) {
+    point[x] = value;
+    const double here = own.values(point).front();
+    if (!(std::isfinite(here)) || here == 0) continue;  // the next one brackets a root that is met exactly
+    if (at_before * here < 0) out.push_back({base, x, before, value});
+    before = value, at_before = here;
   }
+  const double own_value = base.at(x);
+  std::stable_sort(out.begin(), out.end(), [&](const Bracket& a, const Bracket& b) {
+    return std::abs(a.low / 2 + a.high / 2 - own_value) < std::abs(b.low / 2 + b.high / 2 - own_value);
+  });
+  if (out.size() > most_brackets_of_a_line) out.resize(most_brackets_of_a_line);
+  return out;
+}
 
-  void sample(std::size_t which, std::vector<SwitchSample>& out) {
-    const Tape g(switches_.subspan(which, 1));
-    const BranchSearch own(switches_.subspan(which, 1), search_);
-    int taken = 0;
-    for (std::size_t k = 0; taken < search_.points && k < bases_.size() + static_cast<std::size_t>(search_.points); ++k) {
-      const Bindings base = k < bases_.size() ? bases_[k] : all_.draw();
-      for (std::size_t i = 0; i < own.moving().size() && taken < search_.points; ++i)
-        for (const Bracket& bracket : brackets(own, base, i)) {
-          const auto root = refine(g, bracket);
-          if (!root) continue;
-          out.push_back(both_sides(which, bracket, *root));
-          ++taken;
-        }
-    }
+SwitchSample both_sides(const Branches& functions, std::span<const Expr> beside, const Bracket& bracket, const Root& root) {
+  SwitchSample out;
+  const Real100 size = abs(root.at) + Real100(bracket.high - bracket.low);
+  out.at = bracket.point;
+  out.at[bracket.symbol] = static_cast<double>(root.at);
+  std::vector<Expr> around = functions.in_force(out.at);
+  around.insert(around.end(), beside.begin(), beside.end());
+  const Tape tape(around);
+  if (abs(root.at) < size * Real100(1e-16)) out.at[bracket.symbol] = 0;
+  const auto values = [&](const Real100& off) {
+    return precise_values(tape, bracket.point, bracket.symbol, root.rises ? root.at + size * off : root.at - size * off);
+  };
+  const auto above_far = values(far_off), below_far = values(-far_off), above = values(close_by), below = values(-close_by);
+  for (std::size_t i = 0; i < above.size(); ++i) {
+    out.below.push_back(static_cast<double>(below[i]));
+    out.above.push_back(static_cast<double>(above[i]));
+    out.jump.push_back(difference(above_far[i], below_far[i], above[i], below[i]));
   }
-
- private:
-  /// Those next to the base first.
-  static std::vector<Bracket> brackets(const BranchSearch& own, const Bindings& base, std::size_t symbol) {
-    std::vector<Bracket> out;
-    const Expr x = own.moving()[symbol];
-    Bindings point = base;
-    double before = 0, at_before = 0;
-    for (const double value : own.values_to_try(symbol)) {
-      point[x] = value;
-      const double here = own.values(point).front();
-      if (!(std::isfinite(here)) || here == 0) continue;  // the next one brackets a root that is met exactly
-      if (at_before * here < 0) out.push_back({base, x, before, value});
-      before = value, at_before = here;
-    }
-    const double own_value = base.at(x);
-    std::stable_sort(out.begin(), out.end(), [&](const Bracket& a, const Bracket& b) {
-      return std::abs(a.low / 2 + a.high / 2 - own_value) < std::abs(b.low / 2 + b.high / 2 - own_value);
-    });
-    if (out.size() > most_brackets_of_a_line) out.resize(most_brackets_of_a_line);
-    return out;
-  }
-
-  SwitchSample both_sides(std::size_t which, const Bracket& bracket, const Root& root) const {
-    const Real100 size = abs(root.at) + Real100(bracket.high - bracket.low);
-    const auto values = [&](const Real100& off) {
-      return precise_values(functions_, bracket.point, bracket.symbol, root.rises ? root.at + size * off : root.at - size * off);
-    };
-    const auto above_far = values(far_off), below_far = values(-far_off), above = values(close_by), below = values(-close_by);
-    SwitchSample out;
-    out.which = which;
-    out.at = bracket.point;
-    out.at[bracket.symbol] = abs(root.at) < size * Real100(1e-16) ? 0.0 : static_cast<double>(root.at);
-    for (std::size_t i = 0; i < above.size(); ++i) {
-      out.below.push_back(static_cast<double>(below[i]));
-      out.above.push_back(static_cast<double>(above[i]));
-      out.jump.push_back(difference(above_far[i], below_far[i], above[i], below[i]));
-    }
-    return out;
-  }
-
-  Tape functions_;
-  std::span<const Expr> switches_;
-  const SwitchSearch& search_;
-  BranchSearch all_;
-  std::vector<Bindings> bases_;
-};
+  return out;
+}
 
 }  // namespace
+
+struct SwitchSampler::Impl {
+  Impl(std::vector<Expr> f, std::span<const Expr> switches, SwitchSearch s) : search(std::move(s)), functions(std::move(f)) {
+    bases.push_back(search.center);
+    BranchSearch all(switches, search);
+    if (all.moving().size() < 2 && search.moving.size() < 2) return;  // the root is the same from any other base
+    if (switches.size() <= most_together) {
+      const BranchPoints branches = points_in_branches(switches, search);
+      bases.insert(bases.end(), branches.points.begin(), branches.points.end());
+    }
+    for (int k = 0; k < search.points; ++k) bases.push_back(all.draw());
+  }
+
+  std::vector<SwitchSample> sample(Expr which, std::span<const Expr> beside) const {
+    std::vector<SwitchSample> out;
+    const Tape g({&which, 1});
+    const BranchSearch own({&which, 1}, search);
+    const auto enough = [&] { return out.size() >= static_cast<std::size_t>(search.points); };
+    for (std::size_t k = 0; !enough() && k < bases.size(); ++k)
+      for (std::size_t i = 0; i < own.moving().size() && !enough(); ++i)
+        for (const Bracket& bracket : brackets(own, bases[k], i))
+          if (const auto root = refine(g, bracket)) out.push_back(both_sides(functions, beside, bracket, *root));
+    return out;
+  }
+
+  SwitchSearch search;
+  Branches functions;
+  std::vector<Bindings> bases;
+};
+
+SwitchSampler::SwitchSampler(std::vector<Expr> functions, SwitchSearch search) {
+  const std::vector<Expr> switches = switches_of(functions);
+  impl_ = std::make_unique<Impl>(std::move(functions), switches, std::move(search));
+}
+SwitchSampler::~SwitchSampler() = default;
+SwitchSampler::SwitchSampler(SwitchSampler&&) noexcept = default;
+SwitchSampler& SwitchSampler::operator=(SwitchSampler&&) noexcept = default;
+
+const std::vector<Expr>& SwitchSampler::functions() const { return impl_->functions.functions(); }
+const SwitchSearch& SwitchSampler::search() const { return impl_->search; }
+std::vector<SwitchSample> SwitchSampler::sample(Expr g, std::span<const Expr> beside) const { return impl_->sample(g, beside); }
 
 std::vector<SwitchSample> sample_switches(std::span<const Expr> functions, std::span<const Expr> switches,
                                           const SwitchSearch& search) {
   std::vector<SwitchSample> out;
   if (switches.empty()) return out;
-  Sampler sampler(functions, switches, search);
-  for (std::size_t k = 0; k < switches.size(); ++k) sampler.sample(k, out);
+  const SwitchSampler::Impl sampler({functions.begin(), functions.end()}, switches, search);
+  for (std::size_t k = 0; k < switches.size(); ++k)
+    for (SwitchSample& x : sampler.sample(switches[k], {})) {
+      x.which = k;
+      out.push_back(std::move(x));
+    }
   return out;
 }
 

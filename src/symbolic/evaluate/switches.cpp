@@ -3,6 +3,7 @@
 #include <maupertuis/transform.hpp>
 
 #include "symbolic/evaluate/branch_search.hpp"
+#include "symbolic/evaluate/switch_nodes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,25 +14,12 @@ namespace {
 
 using evaluation::BranchSearch;
 using evaluation::Signs;
+using evaluation::difference_of;
+using evaluation::opposite;
 
 constexpr std::size_t few_switches = 6;  // of which all combinations are looked for
 constexpr std::size_t most_combinations = 400;
 constexpr int draws = 48;
-
-/// g of a node that switches; an empty handle for all others.
-Expr difference_of(Expr node) {
-  if (node.is(Kind::Abs) || node.is(Kind::Sign) || node.is(Kind::Step)) return node[0];
-  const bool compares = node.is(Kind::Min) || node.is(Kind::Max) || node.is(Kind::Less) || node.is(Kind::LessEqual);
-  return compares ? node[1] - node[0] : Expr();
-}
-
-/// −g, term by term where it is a sum: as b − a is written beside a − b.
-Expr opposite(Expr g) {
-  if (!g.is(Kind::Sum)) return -g;
-  std::vector<Expr> terms;
-  for (std::size_t i = 0; i < g.size(); ++i) terms.push_back(-g[i]);
-  return g.context().sum(terms);
-}
 
 /// What a node that switches is where its g > 0, or where g < 0.
 Expr branch_of(Expr node, bool above) {

@@ -135,3 +135,30 @@ TEST_CASE("two forms: brackets agree with dω ∧ ω₁ ∧ ω₂ = 0") {
   CHECK(integrable > 5);
   CHECK(others > 5);
 }
+
+TEST_CASE("hundreds of velocity constraints that share nothing are looked at one by one, and put back in their places") {
+  // Wheels that roll along a line (each integrable), knife edges (none is), and pairs of which a combination is: x' = z w' and x' = z w' + y'.
+  std::string text = "dimensionless\n";
+  const int count = 100;
+  for (int i = 0; i < count; ++i) {
+    const std::string n = std::to_string(i);
+    text += "coord s" + n + ", φ" + n + ", u" + n + ", v" + n + ", α" + n + ", x" + n + ", y" + n + ", z" + n + ", w" + n + " : number\n";
+    for (const char* name : {"s", "φ", "u", "v", "α", "x", "y", "z", "w"}) text += "T += 1/2 " + (name + n) + "'^2\n";
+    text += "constraint s" + n + "' = 2 φ" + n + "'\n";
+    text += "constraint u" + n + "' sin α" + n + " = v" + n + "' cos α" + n + "\n";
+    text += "constraint x" + n + "' = z" + n + " w" + n + "'\n";
+    text += "constraint x" + n + "' = z" + n + " w" + n + "' + y" + n + "'\n";
+  }
+  const ModelText model(text.c_str());
+  Diagnostics diagnostics;
+  const auto equations = euler_lagrange(model.system, diagnostics);
+  REQUIRE(equations);
+  const ConstraintAnalysis analysis = analyse_constraints(*equations);
+  CHECK(analysis.integrable_rank == 2 * count);
+  CHECK(analysis.combinations.size() == count);
+  for (std::size_t i = 0; i < count; ++i) {
+    CHECK(analysis.constraints[4 * i].constraint_class == ConstraintClass::Integrable);
+    for (std::size_t k = 1; k < 4; ++k) CHECK(analysis.constraints[4 * i + k].constraint_class == ConstraintClass::Nonholonomic);
+    CHECK(analysis.combinations[i].constraints == std::vector<std::size_t>{4 * i + 2, 4 * i + 3});
+  }
+}

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
@@ -121,4 +122,65 @@ TEST_CASE_FIXTURE(Fixture, "the formula on one side of a switch") {
   CHECK(evaluate(below, left) == evaluate(f, left));
   CHECK(evaluate(above, left) == -2 + 0.5 + 3);  // the right formula at a point on the left
   CHECK(switches_of({&above, 1}).size() == 1);   // x − y is left
+}
+
+TEST_CASE_FIXTURE(Fixture, "of a sum and of its multiples a switch decides the terms that hold it") {
+  const Expr held = abs(x - y) * y, other = abs(t) + x;
+  const Expr root = number(3) * t * (held + other) + x;
+  const SwitchUses uses(std::array{root, other});
+  CHECK(uses.terms_with(x - y) == std::vector<Expr>{number(3) * t * held, number(0)});
+  CHECK(uses.terms_with(y - x) == std::vector<Expr>{number(3) * t * held, number(0)});
+  CHECK(uses.terms_with(t) == std::vector<Expr>{number(3) * t * abs(t), abs(t)});
+  CHECK(uses.terms_with(x) == std::vector<Expr>{number(0), number(0)});
+  const Expr both = step(t) * abs(t);   // no sum: the whole
+  CHECK(SwitchUses({&both, 1}).terms_with(t).front() == both);
+}
+
+TEST_CASE_FIXTURE(Fixture, "the jump across a switch leaves out what both sides have, and is their difference") {
+  const Expr f = y * (sin(x) + pow(abs(t) - number(2), Rational(2)) + abs(x)) + cos(y);
+  const Expr jump = jump_across({&f, 1}, t).front();
+  CHECK(zero_test(jump - (on_side({&f, 1}, t, true).front() - on_side({&f, 1}, t, false).front())).verdict == Verdict::Zero);
+  const auto symbols = symbols_of({&jump, 1});
+  CHECK(std::find(symbols.begin(), symbols.end(), x) == symbols.end());
+  const Expr g = y * step(t);
+  CHECK(jump_across({&g, 1}, t).front() == y);
+}
+
+TEST_CASE_FIXTURE(Fixture, "a sampler sees what switches within the branch of another one") {
+  // max(x, 3) where y > 0, |x| where not; sampled on x = 3 and x = 0 with either sign of y.
+  const Expr f = piecewise(less(number(0), y), max(x, number(3)) + step(x - number(3)), abs(x) + step(x));
+  const SwitchSampler sampler({f}, search());
+  std::set<double> jumps;
+  for (const SwitchSample& s : sampler.sample(x - number(3))) {
+    CHECK(s.at.at(x) == doctest::Approx(3));
+    CHECK(s.jump[0] == doctest::Approx(s.at.at(y) > 0 ? 1 : 0));
+    jumps.insert(s.jump[0]);
+  }
+  CHECK(jumps == std::set<double>{0, 1});
+  for (const SwitchSample& s : sampler.sample(x, std::array{x, t + number(2)})) {
+    CHECK(s.jump[0] == doctest::Approx(s.at.at(y) > 0 ? 0 : 1));
+    CHECK(s.above[2] == doctest::Approx(s.at.at(t) + 2));  // what is evaluated beside the functions
+  }
+}
+
+TEST_CASE_FIXTURE(Fixture, "a function of a thousand pieces is differentiated in proportion to its size") {
+  std::vector<Expr> pieces;
+  for (int k = 0; k < 1000; ++k) {
+    pieces.push_back(less(x, number(k)));
+    pieces.push_back(number(k) * pow(x, Rational(2)) + number(k % 3) * y * sin(x));
+  }
+  pieces.push_back(y);
+  const Expr f = context.function(Kind::Piecewise, pieces);
+  const std::array symbols{x, y, t};
+  const std::vector<Expr> slopes = gradient(sin(f) + x, symbols);
+  CHECK(topological_order(slopes).size() < 20 * topological_order({&f, 1}).size());
+  for (const double at : {0.5, 17.25, 611.125, 998.5, 1200.0}) {
+    const int k = static_cast<int>(std::floor(at)) + 1;
+    const Bindings point{{x, at}, {y, 0.375}, {t, 1}};
+    const double value = k < 1000 ? k * at * at + k % 3 * 0.375 * std::sin(at) : 0.375;
+    const double by_x = k < 1000 ? 2 * k * at + k % 3 * 0.375 * std::cos(at) : 0, by_y = k < 1000 ? k % 3 * std::sin(at) : 1;
+    CHECK(evaluate(slopes[0], point) == doctest::Approx(std::cos(value) * by_x + 1).epsilon(1e-9));
+    CHECK(evaluate(slopes[1], point) == doctest::Approx(std::cos(value) * by_y).epsilon(1e-9));
+    CHECK(slopes[2].is_zero());
+  }
 }

@@ -136,3 +136,32 @@ TEST_CASE("what is said of a coordinate without kinetic energy fits the way T is
   CHECK(told("point P mass m at (x, 0)\nT += 1/2 m x'^2\n").find(given) == 0);
   CHECK(told("point P mass m at (x, 0)\nL += b y x'\n").find(given) == 0);
 }
+
+TEST_CASE("one jump among thousands of pieces, or behind one of hundreds of springs, is found") {
+  const auto stairs = [](int pieces, int wrong) {
+    std::string text = "param m = 1 kg, L = 1 m, V0 = 1 J\ncoord x : length\nT = 1/2 m x'^2\nV = V0 piecewise(";
+    int level = 0;
+    for (int i = 1; i < pieces; ++i) {
+      const int slope = 1 + i % 7;
+      text += "x/L < " + std::to_string(i) + " : " + std::to_string(slope) + " (x/L - " + std::to_string(i - 1) + ") + " +
+              std::to_string(level + (i == wrong ? 1 : 0)) + ",\n  ";
+      level += slope;
+    }
+    return text + "else : " + std::to_string(level) + ")\n";
+  };
+  CHECK(Elaborated(stairs(2000, 0)).fine());
+  const Elaborated wrong(stairs(2000, 1234));
+  CHECK(wrong.codes() == "E0430 E0430");
+  CHECK(wrong.first_message() == "V jumps by 1 J where x/L = 1233");
+
+  const auto springs = [](int count, const std::string& more) {
+    std::string text = "param m = 1 kg, k = 100 N/m, l = 1 m\n";
+    for (int i = 0; i < count; ++i) text += "coord x" + std::to_string(i) + " : length\nT += 1/2 m x" + std::to_string(i) + "'^2\n";
+    for (int i = 1; i < count; ++i) text += "V += 1/2 k (abs(x" + std::to_string(i) + " - x" + std::to_string(i - 1) + ") - l)^2\n";
+    return text + more;
+  };
+  CHECK(Elaborated(springs(300, "")).fine());
+  const Elaborated torn(springs(300, "V += 1/2 k l^2 step(x200 - x199)\n"));
+  CHECK(torn.codes() == "E0430");
+  CHECK(torn.first_message().find("V jumps by 50 J where x199 - x200 = 0") != std::string::npos);
+}

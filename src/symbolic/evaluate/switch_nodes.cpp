@@ -1,0 +1,140 @@
+#include "symbolic/evaluate/switch_nodes.hpp"
+
+#include "symbolic/evaluate/real_numbers.hpp"
+#include "symbolic/transform/rebuild.hpp"
+
+#include <maupertuis/kinds.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <unordered_map>
+
+namespace maupertuis::evaluation {
+
+Expr difference_of(Expr node) {
+  if (node.is(Kind::Abs) || node.is(Kind::Sign) || node.is(Kind::Step)) return node[0];
+  const bool compares = node.is(Kind::Min) || node.is(Kind::Max) || node.is(Kind::Less) || node.is(Kind::LessEqual);
+  return compares ? node[1] - node[0] : Expr();
+}
+
+Expr opposite(Expr g) {
+  if (!g.is(Kind::Sum)) return -g;
+  std::vector<Expr> terms;
+  for (std::size_t i = 0; i < g.size(); ++i) terms.push_back(-g[i]);
+  return g.context().sum(terms);
+}
+
+namespace {
+
+constexpr double on_the_switch = 1e-9;
+
+/// What the values of a tape at one point decide, and what is left of its nodes.
+class Decisions {
+ public:
+  Decisions(const Tape& tape, const std::vector<bool>& switching, const Bindings& at) : tape_(tape), switching_(switching) {
+    RealNumbers<double> numbers([&](Expr symbol) { return at.at(symbol); });
+    run(tape, numbers, values_);
+  }
+
+  Expr in_force(Position at) {
+    const Expr e = tape_.expression(at);
+    if (!switching_[at]) return e;
+    if (const auto known = built_.find(at); known != built_.end()) return known->second;
+    const Expr out = build(at, e);
+    built_.emplace(at, out);
+    return out;
+  }
+
+ private:
+  Expr build(Position at, Expr e) {
+    switch (family_of(tape_.kind(at))) {
+      case Family::Switch: return of_one_argument(at, e);
+      case Family::Extremum:
+        if (const auto side = sign(tape_.argument(at, 1), tape_.argument(at, 0)))
+          return in_force(tape_.argument(at, (*side > 0) == e.is(Kind::Min) ? 0 : 1));
+        break;
+      case Family::Piecewise: return piecewise(at, e);
+      case Family::Leaf: case Family::Algebra: case Family::Function: case Family::Angle: case Family::Comparison:
+      case Family::Logic: case Family::TimeDerivative: break;
+    }
+    return with_arguments_in_force(at, e);
+  }
+
+  Expr with_arguments_in_force(Position at, Expr e) {
+    std::unordered_map<NodeId, Expr> arguments;
+    for (const Position argument : tape_.arguments(at)) arguments.emplace(tape_.expression(argument).id(), in_force(argument));
+    return rebuild(e, [&](Expr argument) { return arguments.at(argument.id()); });
+  }
+
+  Expr of_one_argument(Position at, Expr e) {
+    const Position x = tape_.argument(at, 0);
+    if (!(std::abs(values_[x]) > on_the_switch * size(x))) return with_arguments_in_force(at, e);
+    const Expr argument = in_force(x);
+    const bool above = values_[x] > 0;
+    if (e.is(Kind::Abs)) return above ? argument : -argument;
+    return e.context().number(above ? 1 : e.is(Kind::Sign) ? -1 : 0);
+  }
+
+  Expr piecewise(Position at, Expr e) {
+    std::vector<Expr> kept;
+    std::size_t i = 0;
+    for (; i + 1 < e.size(); i += 2) {
+      const auto condition = holds(tape_.argument(at, i));
+      if (condition && *condition) break;
+      if (!condition) kept.push_back(in_force(tape_.argument(at, i))), kept.push_back(in_force(tape_.argument(at, i + 1)));
+    }
+    kept.push_back(in_force(tape_.argument(at, i + 1 < e.size() ? i + 1 : i)));
+    return kept.size() == 1 ? kept.front() : e.context().function(Kind::Piecewise, kept);
+  }
+
+  /// What a sum came from: rounding is measured by that.
+  double size(Position at) const {
+    if (tape_.kind(at) != Kind::Sum) return std::abs(values_[at]);
+    double sum = 0;
+    for (const Position term : tape_.arguments(at)) sum += std::abs(values_[term]);
+    return sum;
+  }
+
+  std::optional<int> sign(Position a, Position b) const {
+    const double difference = values_[a] - values_[b];
+    if (!(std::abs(difference) > on_the_switch * (size(a) + size(b)))) return std::nullopt;
+    return difference > 0 ? 1 : -1;
+  }
+
+  std::optional<bool> holds(Position condition) const {
+    const Position a = tape_.argument(condition, 0), b = tape_.argument(condition, 1);
+    if (family_of(tape_.kind(condition)) == Family::Comparison) {
+      const auto side = sign(a, b);
+      return side ? std::optional<bool>(*side < 0) : std::nullopt;
+    }
+    const auto first = holds(a), second = holds(b);
+    const bool decisive = tape_.kind(condition) == Kind::Or;   // `true` decides an or, `false` an and
+    if ((first && *first == decisive) || (second && *second == decisive)) return decisive;
+    return first && second ? std::optional<bool>(!decisive) : std::nullopt;
+  }
+
+  const Tape& tape_;
+  const std::vector<bool>& switching_;
+  std::vector<double> values_;
+  std::unordered_map<Position, Expr> built_;
+};
+
+}  // namespace
+
+Branches::Branches(std::vector<Expr> functions) : functions_(std::move(functions)), tape_(functions_), switching_(tape_.size()) {
+  for (Position at = 0; at < tape_.size(); ++at) {
+    const auto arguments = tape_.arguments(at);
+    switching_[at] = has_switch(tape_.kind(at)) ||
+                     std::any_of(arguments.begin(), arguments.end(), [&](Position below) { return switching_[below]; });
+  }
+}
+
+std::vector<Expr> Branches::in_force(const Bindings& at) const {
+  Decisions decisions(tape_, switching_, at);
+  std::vector<Expr> out;
+  for (const Position root : tape_.roots()) out.push_back(decisions.in_force(root));
+  return out;
+}
+
+}  // namespace maupertuis::evaluation
