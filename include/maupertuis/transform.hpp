@@ -1,6 +1,7 @@
 #pragma once
 #include <maupertuis/expression.hpp>
 
+#include <memory>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -42,12 +43,16 @@ Expr expand(Expr e, std::size_t term_budget = 20000);
 /// and have switches at |u| = 300. Cost: O(nodes).
 std::vector<Expr> without_overflow(std::span<const Expr> roots);
 
+struct ReadingPlaces;
+
 /// The order in which a reader expects names: factors of a product and terms of a sum are printed by it. Symbols
 /// first in the list come first in a product; symbols that are missing come after, by order of creation.
 struct ReadingOrder {
   std::vector<Expr> parameters;   // masses before g before lengths before rates, then as declared
   std::vector<Expr> coordinates;  // order 0, as declared
   Expr own;                       // the coordinate whose equation this is: its terms stand first; empty: none
+  /// The places of the names, found at the first use and shared by copies. Lists that change later are looked up anew.
+  mutable std::shared_ptr<const ReadingPlaces> places = {};
 };
 
 /// A named intermediate that stands for a large sub-expression in a readable form.

@@ -8,6 +8,7 @@
 namespace maupertuis {
 namespace {
 
+constexpr int turns_from_nearby = 8;  // Newton's method begins a tenth of a typical size away, or is not on the family
 constexpr int most_tried = 3;   // members of one family that a new one is linked with, the nearest first
 
 double along(const PointEquations::Impl& e, std::size_t i, double from, double to) {
@@ -47,7 +48,7 @@ bool Families::linked(const Equilibrium& x, const Equilibrium& y, const SteadySt
   double left = distance(e_, sizes_, at, y.point);
   const double step = std::min(left / 4, longest);
   for (int turns = static_cast<int>(4 * left / std::max(step, same)); left > std::max(step, same); --turns) {
-    const auto next = turns > 0 ? system.solve(between(e_, at, y.point, step / left), false) : std::nullopt;
+    const auto next = turns > 0 ? system.solve(between(e_, at, y.point, step / left), false, turns_from_nearby) : std::nullopt;
     if (!next || distance(e_, sizes_, at, next->point) > 2 * step) return false;
     const double now = distance(e_, sizes_, next->point, y.point);
     if (!(now < left)) return false;

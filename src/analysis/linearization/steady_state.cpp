@@ -10,7 +10,6 @@
 namespace maupertuis {
 namespace {
 
-constexpr int most_turns = 80;
 constexpr double arrived = 1e-9;         // of what is left, by the sizes of coordinates
 constexpr double rank_threshold = 1e-11;
 constexpr double rounding_of_work = 1e-14;
@@ -201,7 +200,7 @@ void SteadyState::find_family(Solution& solution, const System& s, const Vector&
     if (moves[i]) solution.along.push_back(i);
 }
 
-std::optional<SteadyState::Solution> SteadyState::solve(const OperatingPoint& from, bool with_family) const {
+std::optional<SteadyState::Solution> SteadyState::solve(const OperatingPoint& from, bool with_family, int turns) const {
   OperatingPoint point = from;
   std::fill(point.a.begin(), point.a.end(), 0);
   Vector z = unknowns(point);
@@ -210,7 +209,7 @@ std::optional<SteadyState::Solution> SteadyState::solve(const OperatingPoint& fr
   z = unknowns(point);
   System s = system_at(point);
   double error = scaled(s, z);
-  for (int turn = 0; turn < most_turns; ++turn) {
+  for (int turn = 0; turn < turns; ++turn) {
     interrupt_of(*e_.system->context).throw_if_asked();
     if (!std::isfinite(error) && !(s.f.allFinite() && s.j.allFinite())) return std::nullopt;
     const Equilibration by(s.j);

@@ -25,8 +25,8 @@ class SteadyState {
     std::size_t family = 0;         // ways to move on and stay a solution
     std::vector<std::size_t> along; // the coordinates that change on them, ascending
   };
-  /// From the positions and velocities of `from`; nothing where the iteration does not arrive.
-  std::optional<Solution> solve(const OperatingPoint& from, bool with_family = true) const;
+  /// From the positions and velocities of `from`; nothing where the iteration does not arrive within so many turns.
+  std::optional<Solution> solve(const OperatingPoint& from, bool with_family = true, int turns = 80) const;
   /// The residual there, all unknowns as they are, with the multipliers that fit best.
   double residual_at(OperatingPoint& point) const;
 

@@ -9,6 +9,7 @@ namespace maupertuis::evaluation {
 using Real100 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<100>, boost::multiprecision::et_off>;
 
 inline Real100 real100_from(const Rational& value) {
+  if (const auto small = value.small()) return Real100(small->numerator) / Real100(small->denominator);
   return Real100(value.numerator_string()) / Real100(value.denominator_string());
 }
 

@@ -324,6 +324,7 @@ bool is_tall(const Layout& l) {
 Layout lay_out(Expr e, const ReadingOrder& order) { return print::Builder(order).build_top(e); }
 
 Layout lay_out(const ReadableForm& form, const ReadingOrder& order) {
+  places_of(order);   // before the copy, which shares them
   ReadingOrder with_own = order;
   with_own.own = form.own;
   return lay_out(form.value, with_own);

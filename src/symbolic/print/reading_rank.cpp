@@ -5,6 +5,21 @@
 
 #include <algorithm>
 
+namespace maupertuis {
+
+std::shared_ptr<const ReadingPlaces> places_of(const ReadingOrder& order) {
+  if (order.places && order.places->listed_parameters == order.parameters && order.places->listed_coordinates == order.coordinates)
+    return order.places;
+  const auto out = std::make_shared<ReadingPlaces>(ReadingPlaces{order.parameters, order.coordinates, {}, {}});
+  std::uint32_t next = 1;
+  for (const Expr& p : order.parameters) out->parameters.emplace(p.id(), next++);
+  next = 1;
+  for (const Expr& q : order.coordinates) out->coordinates.emplace(q.name(), next++);
+  return order.places = out;
+}
+
+}  // namespace maupertuis
+
 namespace maupertuis::print {
 namespace {
 
@@ -96,16 +111,13 @@ enum FactorClass : std::uint32_t { Constants, ParameterSums, Circle, Parameters,
 
 }  // namespace
 
-ReadingRanks::ReadingRanks(const ReadingOrder& order) {
-  for (const Expr& p : order.parameters) parameters_.emplace(p.id(), static_cast<std::uint32_t>(parameters_.size() + 1));
-  std::uint32_t next = 1;
-  for (const Expr& q : order.coordinates) coordinates_.emplace(q.name(), next++);
+ReadingRanks::ReadingRanks(const ReadingOrder& order) : places_(places_of(order)) {
   if (order.own) own_ = order.own.name();
 }
 
 std::uint32_t ReadingRanks::declared_rank(Expr symbol) const {
-  const auto place = coordinates_.find(symbol.name());
-  return place != coordinates_.end() ? place->second : unlisted + symbol.id();
+  const auto place = places_->coordinates.find(symbol.name());
+  return place != places_->coordinates.end() ? place->second : unlisted + symbol.id();
 }
 
 /// The row's own coordinate stands before the others among accelerations and velocities, but not in sin(θ1 − θ2).
@@ -115,8 +127,8 @@ std::uint32_t ReadingRanks::rate_rank(Expr symbol, bool own_first) const {
 
 std::uint32_t ReadingRanks::symbol_rank(Expr symbol) const {
   if (symbol.role() == Role::Coordinate) return declared_rank(symbol);
-  const auto place = parameters_.find(symbol.id());
-  return place != parameters_.end() ? place->second : unlisted + symbol.id();
+  const auto place = places_->parameters.find(symbol.id());
+  return place != places_->parameters.end() ? place->second : unlisted + symbol.id();
 }
 
 Rank ReadingRanks::factor(Expr factor) const {

@@ -4,6 +4,20 @@
 #include <unordered_map>
 #include <vector>
 
+namespace maupertuis {
+
+/// The place of each name of a ReadingOrder.
+struct ReadingPlaces {
+  std::vector<Expr> listed_parameters, listed_coordinates;       // that these are the places of
+  std::unordered_map<NodeId, std::uint32_t> parameters;
+  std::unordered_map<std::string, std::uint32_t> coordinates;    // by name, so that primes do not matter
+};
+
+/// Cost: once for an order and its copies, then a comparison of the lists.
+std::shared_ptr<const ReadingPlaces> places_of(const ReadingOrder& order);
+
+}  // namespace maupertuis
+
 /// Where a factor stands in a product and a term in a sum.
 namespace maupertuis::print {
 
@@ -27,8 +41,7 @@ class ReadingRanks {
   std::uint32_t rate_rank(Expr symbol, bool own_first) const;
   Rank rank_of_rest(Expr term) const;
 
-  std::unordered_map<NodeId, std::uint32_t> parameters_;
-  std::unordered_map<std::string, std::uint32_t> coordinates_;   // by name, so that primes do not matter
+  std::shared_ptr<const ReadingPlaces> places_;
   std::string own_;
 };
 
