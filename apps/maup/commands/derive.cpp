@@ -8,6 +8,7 @@
 
 #include <map>
 #include <maupertuis/constraint_analysis.hpp>
+#include <maupertuis/couplings.hpp>
 #include <maupertuis/print.hpp>
 #include <maupertuis/reactions.hpp>
 
@@ -85,6 +86,16 @@ Json reactions_json(const EquationsOfMotion& equations) {
   return list;
 }
 
+void add_mass_matrix(Json& document, const EquationsOfMotion& equations) {
+  const ExprMatrix m = mass_matrix(equations.shown());
+  document["mass_matrix"] = Json::array();
+  for (std::size_t i = 0; i < m.rows; ++i) {
+    Json row = Json::array();
+    for (std::size_t j = 0; j < m.columns; ++j) row.push_back(readable_text(m.at(i, j), equations.order));
+    document["mass_matrix"].push_back(std::move(row));
+  }
+}
+
 Json document_of(const DeriveOptions& options, Study& study, const EquationForm& form, const Certificate* certificate) {
   Json document = json_document("derive");
   const EquationsOfMotion* equations = study.equations();
@@ -98,19 +109,17 @@ Json document_of(const DeriveOptions& options, Study& study, const EquationForm&
   document["intermediates"] = Json::array();
   for (const Intermediate& i : form.intermediates)
     document["intermediates"].push_back({{"name", to_plain(i.symbol, order)}, {"plain", to_plain(i.value, order)}});
-  const ExprMatrix m = mass_matrix(equations->shown());
-  document["mass_matrix"] = Json::array();
-  for (std::size_t i = 0; i < m.rows; ++i) {
-    Json row = Json::array();
-    for (std::size_t j = 0; j < m.columns; ++j) row.push_back(readable_text(m.at(i, j), order));
-    document["mass_matrix"].push_back(std::move(row));
-  }
+  const bool entry_by_entry = options.form == "matrix" || !couples_too_much_to_read(*equations);
+  if (entry_by_entry) add_mass_matrix(document, *equations);
+  else document["left_out"] = Json::array({"mass_matrix", "momenta", "energy", "power"});
   if (equations->system->constrained()) add_constraints(document, study);
   if (Json list = reactions_json(*equations); !list.empty()) document["reactions"] = std::move(list);
-  document["momenta"] = Json::array();
-  for (const Expr p : equations->shown().momenta) document["momenta"].push_back(readable_text(p, order));
-  document["energy"] = readable_text(equations->shown().energy_function, order);
-  document["power"] = readable_text(equations->shown().power, order);
+  if (entry_by_entry) {
+    document["momenta"] = Json::array();
+    for (const Expr p : equations->shown().momenta) document["momenta"].push_back(readable_text(p, order));
+    document["energy"] = readable_text(equations->shown().energy_function, order);
+    document["power"] = readable_text(equations->shown().power, order);
+  }
   const ConservedQuantities conserved = conserved_quantities(*equations);
   Json names = Json::array();
   for (const std::size_t i : conserved.conserved_momenta) names.push_back("p_" + equations->system->coordinates[i].name);
