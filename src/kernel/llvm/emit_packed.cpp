@@ -1,6 +1,6 @@
 #include "kernel/llvm/emitters.hpp"
 #include "kernel/llvm/rolled_emitter.hpp"
-#include "kernel/llvm/straight_emitter.hpp"
+#include "kernel/llvm/unrolled_emitter.hpp"
 
 namespace maupertuis::llvm_backend {
 
@@ -28,16 +28,18 @@ std::size_t operations(const PackedProgram& program, int order) {
 /// Whether all stages can be written out one after the other.
 bool can_be_straight(const PackedProgram& program, int order) {
   const Program& p = program.program;
-  const bool has_select = std::any_of(p.instructions.begin(), p.instructions.end(), [](const Instruction& i) { return i.op == Op::Select; });
-  return p.unknowns == p.freedoms && p.unknowns <= most_unknowns && !has_select && operations(program, order) <= most_operations;
+  const bool has_select = std::any_of(p.instructions.begin(), p.instructions.end(),
+                                      [](const Instruction& i) { return i.op == Op::Select; });
+  return p.unknowns == p.freedoms && p.unknowns <= most_unknowns && !has_select &&
+         operations(program, order) <= most_operations;
 }
 
 }  // namespace
 
-void emit_packed(Emission& out, const compiled::Request& request) {
+void emit_packed(Emission& out, const machine_code::Request& request) {
   const auto& program = *static_cast<const PackedProgram*>(request.source);
   if (request.effort > 0 && can_be_straight(program, request.order)) {
-    StraightEmitter(out, program, request.stride, request.order).run();
+    UnrolledEmitter(out, program, request.stride, request.order).run();
     return emit_step(out, program.program.unknowns, request.stride, request.order);
   }
   if (program.packs.size() > most_packs) throw Declined("the program is too large to be compiled");

@@ -1,5 +1,5 @@
 #pragma once
-#include "kernel/compiled/request.hpp"
+#include "kernel/machine_code/request.hpp"
 
 #include <cstddef>
 #include <stdexcept>
@@ -14,12 +14,12 @@ struct Declined : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-void emit_self_test(Emission& out, const compiled::Request& request);
-void emit_lanes(Emission& out, const compiled::Request& request);
-void emit_straight_lines(Emission& out, const compiled::Request& request);
+void emit_self_test(Emission& out, const machine_code::Request& request);
+void emit_lanes(Emission& out, const machine_code::Request& request);
+void emit_straight_lines(Emission& out, const machine_code::Request& request);
 /// What a step does with the rows besides: radius and increments, as the engine's.
 void emit_step(Emission& out, std::size_t unknowns, std::size_t stride, int order);
 /// Straight-line code where the program is small and runs long, else rolled code.
-void emit_packed(Emission& out, const compiled::Request& request);
+void emit_packed(Emission& out, const machine_code::Request& request);
 
 }  // namespace maupertuis::llvm_backend

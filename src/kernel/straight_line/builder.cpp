@@ -22,9 +22,11 @@ std::uint64_t bits_of(double x) {
 
 Value Builder::add(Node node) {
   std::uint32_t depth = 0;
-  for (const Value operand : operands_of(node)) depth = std::max(depth, depth_[operand]);
+  for_operands(line_, node, [&](Value operand) { depth = std::max(depth, depth_[operand]); });
   const bool is_function = node.what == Node::Angles || node.what == Node::Call;
-  depth_.push_back(depth + (is_function ? depth_of_function : node.b != none && node.what == Node::Sum ? depth_of_division : depth_of_operation));
+  depth_.push_back(depth + (is_function                                ? depth_of_function
+                            : node.b != none && node.what == Node::Sum ? depth_of_division
+                                                                       : depth_of_operation));
   line_.nodes.push_back(node);
   return next() - 1;
 }
@@ -36,7 +38,8 @@ Value Builder::add(Node::What what, std::vector<Term> terms, Node node) {
       if (v != none) most = std::max(most, depth_[v]);
     return most;
   };
-  if (part_ == 0) std::stable_sort(terms.begin(), terms.end(), [&](const Term& x, const Term& y) { return depth(x) < depth(y); });
+  if (part_ == 0)
+    std::stable_sort(terms.begin(), terms.end(), [&](const Term& x, const Term& y) { return depth(x) < depth(y); });
   node.what = what;
   node.part = part_;
   node.first = static_cast<std::uint32_t>(line_.terms.size());
@@ -104,12 +107,15 @@ Value Builder::choose(Value condition, Value then, Value otherwise) {
 }
 
 Value Builder::root(Value a) { return add({.what = Node::Root, .a = a}); }
-Value Builder::call(Kind function, Value a, Value b) { return add({.what = Node::Call, .function = function, .a = a, .b = b}); }
+Value Builder::call(Kind function, Value a, Value b) {
+  return add({.what = Node::Call, .function = function, .a = a, .b = b});
+}
 
 std::vector<std::pair<Value, Value>> Builder::sines(const std::vector<Value>& angles) {
   const auto first = static_cast<std::uint32_t>(line_.operands.size());
   line_.operands.insert(line_.operands.end(), angles.begin(), angles.end());
-  const Value all = add({.what = Node::Angles, .first = first, .last = static_cast<std::uint32_t>(line_.operands.size())});
+  const Value all =
+      add({.what = Node::Angles, .first = first, .last = static_cast<std::uint32_t>(line_.operands.size())});
   std::vector<std::pair<Value, Value>> out;
   for (std::uint32_t i = 0; i < angles.size(); ++i) {
     const Value sine = add({.what = Node::Sine, .a = all, .index = i});
@@ -148,18 +154,6 @@ Value Builder::copy(Node node, std::vector<Term> terms, const std::vector<Value>
   return add(node);
 }
 
-std::vector<Value> Builder::operands_of(const Node& node) const {
-  std::vector<Value> out;
-  const auto add = [&](Value v) { if (v != none) out.push_back(v); };
-  add(node.a), add(node.b), add(node.c);
-  if (lists_operands(node)) {
-    for (std::uint32_t i = node.first; i < node.last; ++i) add(line_.operands[i]);
-  } else {
-    for (std::uint32_t i = node.first; i < node.last; ++i) add(line_.terms[i].a), add(line_.terms[i].b), add(line_.terms[i].c);
-  }
-  return out;
-}
-
 std::vector<bool> Builder::needed() const {
   std::vector<bool> out(line_.nodes.size(), false);
   for (const Store& store : line_.stores) out[store.value] = true;
@@ -167,19 +161,24 @@ std::vector<bool> Builder::needed() const {
   for (const Value v : line_.finite) out[v] = true;
   for (std::size_t i = out.size(); i-- > 0;)
     if (out[i])
-      for (const Value operand : operands_of(line_.nodes[i])) out[operand] = true;
+      for_operands(line_, line_.nodes[i], [&](Value operand) { out[operand] = true; });
   return out;
 }
 
-/// What has to be there first for the end of the line to be reached in time comes first. `order`: each preceded by what it needs.
+/// What has to be there first for the end of the line to be reached in time comes first. `order`: each preceded by what
+/// it needs.
 void Builder::sort_by_urgency(std::vector<Value>& order) const {
-  std::vector<std::uint32_t> wanted(line_.nodes.size(), 0), begins(line_.nodes.size(), 0);  // in cycles before the end, at the latest
+  // in cycles before the end, at the latest
+  std::vector<std::uint32_t> wanted(line_.nodes.size(), 0), begins(line_.nodes.size(), 0);
   for (std::size_t i = order.size(); i-- > 0;) {
     const Node& node = line_.nodes[order[i]];
-    const bool divides = node.what == Node::Sum && node.b != none, is_function = node.what == Node::Angles || node.what == Node::Call;
-    std::uint32_t last = wanted[order[i]] + (is_function ? cycles_of_function : divides ? cycles_of_division : cycles_of_operation);
+    const bool divides = node.what == Node::Sum && node.b != none,
+               is_function = node.what == Node::Angles || node.what == Node::Call;
+    std::uint32_t last = wanted[order[i]] + (is_function ? cycles_of_function
+                                             : divides   ? cycles_of_division
+                                                         : cycles_of_operation);
     begins[order[i]] = last;  // its last operation
-    for (const Value v : operands_of(node)) wanted[v] = std::max(wanted[v], last);
+    for_operands(line_, node, [&](Value v) { wanted[v] = std::max(wanted[v], last); });
     if (lists_operands(node)) continue;
     for (std::uint32_t t = node.last; t-- > node.first; last += cycles_of_fused)
       for (const Value v : {line_.terms[t].a, line_.terms[t].b, line_.terms[t].c})
@@ -196,8 +195,7 @@ StraightLine Builder::finish(std::uint32_t arrays, std::uint32_t wide, Value anc
       const Value v = open.back();
       if (number[v] != none) { open.pop_back(); continue; }
       const std::size_t before = open.size();
-      for (const Value operand : operands_of(line_.nodes[v]))
-        if (number[operand] == none) open.push_back(operand);
+      for_operands(line_, line_.nodes[v], [&](Value operand) { if (number[operand] == none) open.push_back(operand); });
       if (open.size() > before) continue;
       number[v] = static_cast<Value>(order.size());
       order.push_back(v);

@@ -47,9 +47,10 @@ class Builder {
   bool is_zero(Value v) const { return is_literal(v) && line_.nodes[v].literal == 0; }
   double literal_of(Value v) const { return line_.nodes[v].literal; }
 
-  /// In the order in which nodes after `anchor` were added, each preceded by what it needs and is not there yet; nodes before it are
-  /// made when first needed, and those that no store, check or finiteness needs are not there. Lines of at most `most_sorted` nodes are
-  /// in the order of their urgency instead: in longer ones too many numbers would wait in memory.
+  /// In the order in which nodes after `anchor` were added, each preceded by what it needs and is not there yet; nodes
+  /// before it are made when first needed, and those that no store, check or finiteness needs are not there. Lines of
+  /// at most `most_sorted` nodes are in the order of their urgency instead: in longer ones too many numbers would wait
+  /// in memory.
   StraightLine finish(std::uint32_t arrays, std::uint32_t wide, Value anchor, std::size_t most_sorted = 0);
   Value next() const { return static_cast<Value>(line_.nodes.size()); }
 
@@ -57,7 +58,6 @@ class Builder {
   Value add(Node node);
   Value add(Node::What what, std::vector<Term> terms, Node node = {});
   std::vector<Term> folded(const std::vector<Term>& terms) const;
-  std::vector<Value> operands_of(const Node& node) const;
   std::vector<bool> needed() const;
   void sort_by_urgency(std::vector<Value>& order) const;
 
