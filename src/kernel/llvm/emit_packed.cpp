@@ -2,7 +2,9 @@
 #include "kernel/llvm/rolled_emitter.hpp"
 #include "kernel/llvm/unrolled_emitter.hpp"
 
+#include <cstdlib>
 namespace maupertuis::llvm_backend {
+void emit_trial(Emission& out, const packed::PackedProgram& program, std::size_t stride, int order);
 
 using packed::Pack;
 using packed::PackedProgram;
@@ -39,7 +41,8 @@ bool can_be_straight(const PackedProgram& program, int order) {
 void emit_packed(Emission& out, const machine_code::Request& request) {
   const auto& program = *static_cast<const PackedProgram*>(request.source);
   if (request.effort > 0 && can_be_straight(program, request.order)) {
-    UnrolledEmitter(out, program, request.stride, request.order).run();
+    if (const char* t = std::getenv("MAUP_TRIAL"); t && *t == '1') emit_trial(out, program, request.stride, request.order);
+    else UnrolledEmitter(out, program, request.stride, request.order).run();
     return emit_step(out, program.program.unknowns, request.stride, request.order);
   }
   if (program.packs.size() > most_packs) throw Declined("the program is too large to be compiled");
