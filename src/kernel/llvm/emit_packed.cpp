@@ -1,6 +1,7 @@
 #include "kernel/llvm/emitters.hpp"
 #include "kernel/llvm/rolled_emitter.hpp"
 #include "kernel/llvm/unrolled_emitter.hpp"
+#include "kernel/unrolled/unroll.hpp"
 
 #include <cstdlib>
 namespace maupertuis::llvm_backend {
@@ -42,6 +43,7 @@ void emit_packed(Emission& out, const machine_code::Request& request) {
   const auto& program = *static_cast<const PackedProgram*>(request.source);
   if (request.effort > 0 && can_be_straight(program, request.order)) {
     if (const char* t = std::getenv("MAUP_TRIAL"); t && *t == '1') emit_trial(out, program, request.stride, request.order);
+    else if (t && *t == '2') emit_in_one_function(out, unrolled::unroll(program, request.stride, request.order), "line");
     else UnrolledEmitter(out, program, request.stride, request.order).run();
     return emit_step(out, program.program.unknowns, request.stride, request.order);
   }

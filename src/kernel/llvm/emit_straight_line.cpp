@@ -19,7 +19,7 @@ using straight::Node;
 using straight::StraightLine;
 
 /// Nodes and terms of one function, and of all.
-constexpr std::size_t most_in_function = 400, most_in_all = 60'000;
+constexpr std::size_t most_in_piece = 400, most_in_all = 60'000;
 
 /// When numbers are there, in cycles of a Zen 5, were there no lack of units: what of a sum is known last decides how
 /// it is added up.
@@ -85,12 +85,13 @@ class Timing {
 
 class LineEmitter {
  public:
-  LineEmitter(Emission& out, const StraightLine& line, std::string name)
+  LineEmitter(Emission& out, const StraightLine& line, std::string name, std::size_t most_in_function)
       : out_(out),
         b_(out.b),
         line_(line),
         timing_(line),
         name_(std::move(name)),
+        most_in_function_(most_in_function),
         real_(out.real(1)),
         values_(line.nodes.size(), nullptr) {}
 
@@ -118,7 +119,7 @@ class LineEmitter {
     for (std::size_t i = 0; i < line_.nodes.size(); ++i) {
       const Node& node = line_.nodes[i];
       const std::size_t size = remade(static_cast<straight::Value>(i)) ? 0 : 1 + (node.last - node.first);
-      if (length + size > most_in_function) ++pieces_, length = 0;
+      if (length + size > most_in_function_) ++pieces_, length = 0;
       length += size;
       const bool of_angles = node.what == Node::Sine || node.what == Node::Cosine;
       piece_of_[i] = of_angles ? piece_of_[node.a] : pieces_;
@@ -135,7 +136,7 @@ class LineEmitter {
       v = holder(v);
       if (remade(v) || place_[v] != 0 || piece_of_[v] == piece) return;
       place_[v] = next;
-      next += is_wide(v) ? line_.wide : 1;
+      next += line_.width(v);
     };
     for (std::size_t i = 0; i < line_.nodes.size(); ++i) {
       const Node& node = line_.nodes[i];
@@ -218,6 +219,7 @@ class LineEmitter {
     Value* sums[4] = {number(0), number(0), number(0), number(0)};
     if (piece_ > 0) sums[0] = fetch(real_, line_.arrays, 1);
     Value *wide_margin = nullptr, *wide_sum = nullptr;
+    std::uint64_t lanes = 0;
     std::size_t turn = 0;
     const auto require_finite = [&](Value* x) {
       Value*& sum = sums[turn++ % 4];
@@ -231,12 +233,13 @@ class LineEmitter {
         require_finite(now);
         continue;
       }
+      lanes = line_.width(check->pivot);
       wide_margin = wide_margin ? lesser(now, wide_margin) : now;
       Value* const none = out_.number(0, type);
       wide_sum = out_.fma(now, none, wide_sum ? wide_sum : none);
     }
     for (const straight::Value v : finite_in_[piece_]) require_finite(get(v));
-    for (std::uint64_t lane = 0; wide_sum && lane < line_.wide; ++lane) {
+    for (std::uint64_t lane = 0; lane < lanes; ++lane) {
       margin = lesser(b_.CreateExtractElement(wide_margin, lane), margin);
       require_finite(b_.CreateExtractElement(wide_sum, lane));
     }
@@ -254,8 +257,7 @@ class LineEmitter {
 
   // ------------------------------------------------------------------------------------------------------------ values
 
-  bool is_wide(straight::Value v) const { return straight::is_wide(line_.nodes[v]); }
-  llvm::Type* type_of(straight::Value v) { return is_wide(v) ? out_.real(static_cast<int>(line_.wide)) : real_; }
+  llvm::Type* type_of(straight::Value v) { return out_.real(static_cast<int>(line_.width(v))); }
   Value* number(double x) { return out_.number(x, real_); }
   /// The same in all lanes, where `type` is wide and the value is not.
   Value* as(llvm::Type* type, straight::Value v) {
@@ -319,10 +321,28 @@ class LineEmitter {
   }
 
   Value* gathered(const Node& node, llvm::Type* type) {
+    if (Value* const all = shuffled(node)) return all;
     Value* out = llvm::PoisonValue::get(type);
     for (std::uint32_t i = node.first; i < node.last; ++i)
-      out = b_.CreateInsertElement(out, get(line_.operands[i]), std::uint64_t{i - node.first});
+      out = b_.CreateInsertElement(out, fresh(line_.operands[i]), std::uint64_t{i - node.first});
     return out;
+  }
+
+  /// Lanes of one or two values; null: of others.
+  Value* shuffled(const Node& node) {
+    std::vector<straight::Value> sources;
+    std::vector<int> mask;
+    for (std::uint32_t i = node.first; i < node.last; ++i) {
+      const Node& lane = line_.nodes[line_.operands[i]];
+      if (lane.what != Node::Lane || line_.width(lane.a) != line_.width(line_.nodes[line_.operands[node.first]].a))
+        return nullptr;
+      const auto found = std::find(sources.begin(), sources.end(), lane.a);
+      const auto source = static_cast<std::uint32_t>(found - sources.begin());
+      if (found == sources.end()) sources.push_back(lane.a);
+      mask.push_back(static_cast<int>(source * line_.width(lane.a) + lane.index));
+    }
+    if (sources.size() > 2) return nullptr;
+    return b_.CreateShuffleVector(get(sources[0]), get(sources.back()), mask);
   }
 
   Value* larger(Value* x, Value* y) { return b_.CreateSelect(b_.CreateFCmpOGT(x, y), x, y); }
@@ -427,6 +447,7 @@ class LineEmitter {
   const StraightLine& line_;
   Timing timing_;
   std::string name_;
+  std::size_t most_in_function_;
   llvm::Type* real_;
   std::size_t pieces_ = 0, piece_ = 0;
   std::vector<std::size_t> piece_of_;  // [nodes]
@@ -440,12 +461,16 @@ class LineEmitter {
 
 }  // namespace
 
+void emit_in_one_function(Emission& out, const StraightLine& line, const std::string& name) {
+  LineEmitter(out, line, name, ~std::size_t{0}).run();
+}
+
 void emit_straight_lines(Emission& out, const machine_code::Request& request) {
   const auto& lines = *static_cast<const std::vector<StraightLine>*>(request.source);
   std::size_t size = 0;
   for (const StraightLine& line : lines) size += line.size();
   if (size > most_in_all) throw Declined("the program is too long to be written out as machine code");
-  for (std::size_t i = 0; i < lines.size(); ++i) LineEmitter(out, lines[i], "line" + std::to_string(i)).run();
+  for (std::size_t i = 0; i < lines.size(); ++i) LineEmitter(out, lines[i], "line" + std::to_string(i), most_in_piece).run();
 }
 
 }  // namespace maupertuis::llvm_backend

@@ -1,5 +1,6 @@
 #pragma once
 #include "kernel/machine_code/request.hpp"
+#include "kernel/straight_line/straight_line.hpp"
 
 #include <cstddef>
 #include <stdexcept>
@@ -17,6 +18,8 @@ struct Declined : std::runtime_error {
 void emit_self_test(Emission& out, const machine_code::Request& request);
 void emit_lanes(Emission& out, const machine_code::Request& request);
 void emit_straight_lines(Emission& out, const machine_code::Request& request);
+/// However long it is.
+void emit_in_one_function(Emission& out, const straight::StraightLine& line, const std::string& name);
 /// What a step does with the rows besides: radius and increments, as the engine's.
 void emit_step(Emission& out, std::size_t unknowns, std::size_t stride, int order);
 /// Straight-line code where the program is small and runs long, else rolled code.

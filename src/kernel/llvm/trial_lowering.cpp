@@ -151,6 +151,14 @@ Node Lowering::operand(std::uint32_t index, int order, std::uint32_t w) {
 
 template <class F, class G>
 Node Lowering::convolution(F&& a, G&& b, int first, int k) {
+  if (std::getenv("MAUP_ONE")) {
+    std::vector<int> order;
+    for (int j = first; j <= k; ++j) order.push_back(j);
+    std::stable_sort(order.begin(), order.end(), [&](int x, int y) { return std::abs(2 * x - first - k) < std::abs(2 * y - first - k); });
+    std::vector<Term> all;
+    for (const int j : order) all.push_back({a(j), b(k - j)});
+    return line_.sum(all);
+  }
   std::vector<int> order;
   for (int j = first; j <= k; ++j) order.push_back(j);
   std::stable_sort(order.begin(), order.end(), [&](int x, int y) { return std::abs(2 * x - first - k) < std::abs(2 * y - first - k); });

@@ -36,8 +36,15 @@ struct CompiledArguments {
   void* context = nullptr;
 };
 
-/// Straight-line code: all stages of section Dynamics. 0: done; else the reference has to repeat it.
-using CompiledExpand = int (*)(const CompiledArguments*);
+using CompiledExpandOld = int (*)(const CompiledArguments*);
+/// Unrolled code: all stages of section Dynamics. Its arrays in this order: rows with the leaves set, q and q̇ where they
+/// were written first, `coefficients` of lanes, constants, 8 doubles of scratch, which tell whether it went well
+/// (straight::sound); else the reference has to repeat it.
+using CompiledExpand = void (*)(double* rows, const double* q, const double* v, const double* coefficients,
+                                const double* constants, double* scratch);
+enum ArrayOfExpand : std::uint32_t {
+  RowsOfExpand, PositionsOfExpand, VelocitiesOfExpand, CoefficientsOfExpand, ConstantsOfExpand, arrays_of_expand
+};
 
 /// With straight-line code: as Engine::radius and Engine::increments, for its rows.
 using CompiledRadius = double (*)(const double* first, double h);

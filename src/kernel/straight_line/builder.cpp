@@ -45,7 +45,16 @@ Value Builder::add(Node::What what, std::vector<Term> terms, Node node) {
   node.first = static_cast<std::uint32_t>(line_.terms.size());
   line_.terms.insert(line_.terms.end(), terms.begin(), terms.end());
   node.last = static_cast<std::uint32_t>(line_.terms.size());
-  return add(node);
+  return add(as_wide_as_operands(node));
+}
+
+/// Where they have widths of their own.
+Node Builder::as_wide_as_operands(Node node) const {
+  std::uint32_t width = node.width;
+  for_operands(line_, node, [&](Value v) { width = std::max<std::uint32_t>(width, line_.nodes[v].width); });
+  node.width = static_cast<std::uint8_t>(width);
+  node.wide = node.wide || width > 1;
+  return node;
 }
 
 Value Builder::literal(double value) {
@@ -106,7 +115,7 @@ Value Builder::choose(Value condition, Value then, Value otherwise) {
   return then == otherwise ? then : add({.what = Node::Chosen, .a = condition, .b = then, .c = otherwise});
 }
 
-Value Builder::root(Value a) { return add({.what = Node::Root, .a = a}); }
+Value Builder::root(Value a) { return add(as_wide_as_operands({.what = Node::Root, .a = a})); }
 Value Builder::call(Kind function, Value a, Value b) {
   return add({.what = Node::Call, .function = function, .a = a, .b = b});
 }
@@ -137,12 +146,36 @@ Value Builder::wide(const std::vector<Term>& terms) {
   return add(Node::Wide, std::move(kept));
 }
 
-Value Builder::lane(Value wide, std::uint32_t index) { return add({.what = Node::Lane, .a = wide, .index = index}); }
+Value Builder::lane(Value wide, std::uint32_t index) {
+  const Node& node = line_.nodes[wide];
+  if (!is_wide(node)) return wide;
+  if (node.what == Node::Gather) return line_.operands[node.first + index];
+  const auto [found, fresh] = once_.try_emplace({Node::Lane, wide, index}, next());
+  return fresh ? add({.what = Node::Lane, .a = wide, .index = index}) : found->second;
+}
 
-Value Builder::gather(const std::vector<Value>& lanes) { return copy({.what = Node::Gather}, {}, lanes); }
+Value Builder::gather(const std::vector<Value>& lanes) {
+  const Node& first = line_.nodes[lanes[0]];
+  bool same = true, in_order = first.what == Node::Lane && line_.width(first.a) == lanes.size();
+  for (std::uint32_t i = 0; i < lanes.size(); ++i) {
+    const Node& node = line_.nodes[lanes[i]];
+    same = same && lanes[i] == lanes[0];
+    in_order = in_order && node.what == Node::Lane && node.a == first.a && node.index == i;
+  }
+  if (same || in_order) return same ? lanes[0] : first.a;
+  const auto [found, fresh] = gathered_.try_emplace(lanes, next());
+  return fresh ? copy({.what = Node::Gather, .width = static_cast<std::uint8_t>(lanes.size())}, {}, lanes)
+               : found->second;
+}
 
-Value Builder::wide_given(std::uint32_t array, std::uint32_t first) {
-  return add({.what = Node::Given, .wide = true, .array = array, .index = first});
+Value Builder::wide_given(std::uint32_t array, std::uint32_t first, std::uint32_t width) {
+  const auto [found, fresh] = once_.try_emplace({Node::Given, array, std::uint64_t{width} << 32 | first}, next());
+  if (!fresh) return found->second;
+  return add({.what = Node::Given,
+              .wide = true,
+              .width = static_cast<std::uint8_t>(width),
+              .array = array,
+              .index = first});
 }
 
 Value Builder::copy(Node node, std::vector<Term> terms, const std::vector<Value>& operands) {

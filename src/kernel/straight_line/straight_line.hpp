@@ -37,7 +37,8 @@ struct Node {
     Lane,        // number `index` of the wide node a
     Gather,      // wide: `operands`, a lane each
   } what = Literal;
-  bool wide = false;         // Given: numbers that follow each other; Sum, Magnitudes, Larger: lane by lane
+  bool wide = false;         // Given: numbers that follow each other; Sum, Magnitudes, Larger, Root: lane by lane
+  std::uint8_t width = 0;    // numbers of a wide node; 0: as many as StraightLine::wide
   std::uint8_t part = 0;     // 0: of none, see widen()
   Kind function = Kind::Exp;
   Value a = none, b = none, c = none;
@@ -64,6 +65,11 @@ inline bool is_wide(const Node& node) {
 }
 
 struct StraightLine {
+  std::uint32_t width(Value v) const {
+    const Node& node = nodes[v];
+    return !is_wide(node) ? 1 : node.width > 0 ? node.width : wide;
+  }
+
   std::vector<Node> nodes;
   std::vector<Term> terms;
   std::vector<Value> operands;
@@ -71,7 +77,7 @@ struct StraightLine {
   std::vector<PivotCheck> checks;
   std::vector<Value> finite;       // what must be neither infinite nor undefined
   std::uint32_t arrays = 0;        // that `Given` and `stores` refer to
-  std::uint32_t wide = 1;          // numbers of a wide value
+  std::uint32_t wide = 1;          // numbers of a wide value that has no width of its own
   /// stores come last, and only where all went well: results may go where arguments stood
   bool guarded = false;
 

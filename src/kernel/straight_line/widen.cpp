@@ -203,7 +203,7 @@ class Widening {
   Value gather(const Lanes& lanes) {
     std::vector<std::uint32_t> places = indices_of(lanes);
     for (std::uint32_t& place : places) place = place_of(read_, node(lanes[0]).array, place);
-    if (!places.empty() && follow_each_other(places)) return to_.wide_given(node(lanes[0]).array, places[0]);
+    if (!places.empty() && follow_each_other(places)) return to_.wide_given(node(lanes[0]).array, places[0], width());
     Lanes out;
     for (const Value v : lanes) out.push_back(single(v));
     return to_.gather(out);

@@ -12,7 +12,8 @@ namespace maupertuis::workspace {
 /// Machine code for one program, row stride and order; `memory` keeps it there. Either for the whole expansion
 /// (unrolled), or for one stage (rolled).
 struct ExpansionCode {
-  packed::CompiledExpand expand = nullptr;
+  packed::CompiledExpandOld expand = nullptr;
+  packed::CompiledExpand line = nullptr;
   packed::CompiledRadius radius = nullptr;
   packed::CompiledIncrements increments = nullptr;
   packed::CompiledFirst first = nullptr;

@@ -57,7 +57,12 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
 /// Unrolled code. False: there is none for this, or its results are not to be trusted.
 bool KernelWorkspace::Impl::run_compiled(int stages) {
   const workspace::Expansion& x = expansion;
-  if (!in_code.code.expand || stages != x.order || in_code.code.expand(&in_code.arguments) != 0) return false;
+  if ((!in_code.code.expand && !in_code.code.line) || stages != x.order) return false;
+  if (in_code.code.line) {
+    alignas(64) double scratch[8];
+    in_code.code.line(in_code.arguments.rows, in_code.arguments.q, in_code.arguments.v, in_code.arguments.coefficients, in_code.arguments.constants, scratch);
+    if (!(scratch[0] > 0 && scratch[1] == 0)) return false;
+  } else if (in_code.code.expand(&in_code.arguments) != 0) return false;
   solver.forget_point();
   const bool is_over = x.program.runs[Along].empty();
   if (is_over && at_point.empty()) return true;

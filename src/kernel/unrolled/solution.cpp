@@ -1,0 +1,159 @@
+#include "kernel/unrolled/unrolling.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace maupertuis::unrolled {
+
+static constexpr double least_pivot = 1e-10, least_determinant = 1e-280;
+
+/// The columns of −M₀⁻¹ by Gauss and Jordan on the transposed matrix without pivoting: stable where M₀ is symmetric and
+/// positive definite. The pivots against their diagonal entries tell whether it is.
+void Unrolling::factor() {
+  for (Step& step : steps_)
+    if (is_moved(step) && (!follows_ || step.is_awaited)) find_tangents(step);
+  std::vector<Value> matrix;
+  for (int d = 0; d < static_cast<int>(n_); ++d) {
+    std::vector<Value> lanes;
+    for (const Slot slot : p_.residual)
+      lanes.push_back(passes(slot, 0, 2) ? tangent(Step::T, slot, d) : to_.literal(0));
+    lanes.resize(width_of(n_), to_.literal(0));
+    matrix.push_back(to_.gather(lanes));
+    diagonal_.push_back(lanes[static_cast<std::size_t>(d)]);
+  }
+  inverse_ = matrix;
+  std::uint32_t pivot = 0;
+  for (; pivot + 1 < n_; pivot += 2) eliminate_pair(inverse_, pivot);
+  if (pivot < n_) eliminate(inverse_, pivot);
+  refine(inverse_, matrix);
+}
+
+Value Unrolling::with_lanes(Value row, const std::map<std::uint32_t, double>& changed) {
+  std::vector<Value> lanes;
+  for (std::uint32_t i = 0; i < width_of(n_); ++i)
+    lanes.push_back(changed.contains(i) ? to_.literal(changed.at(i)) : to_.lane(row, i));
+  return to_.gather(lanes);
+}
+
+void Unrolling::eliminate(std::vector<Value>& rows, std::uint32_t pivot) {
+  const Value p = to_.lane(rows[pivot], pivot);
+  require_positive(to_.sum({{1, p}}, none, diagonal_[pivot]), least_pivot);
+  const Value row = to_.product(1, to_.reciprocal(p), with_lanes(rows[pivot], {{pivot, 1}}));
+  for (std::uint32_t i = 0; i < n_; ++i)
+    if (i != pivot)
+      rows[i] = to_.sum({{1, with_lanes(rows[i], {{pivot, 0}})}, {-1, to_.lane(rows[i], pivot), row}});
+  rows[pivot] = row;
+}
+
+/// Two pivots at once: their rows are combined while their determinant is divided by. One that is too small to have all
+/// its digits is not sound.
+void Unrolling::eliminate_pair(std::vector<Value>& rows, std::uint32_t pivot) {
+  const std::uint32_t other = pivot + 1;
+  const auto with = [&](Value row, double x, double y) { return with_lanes(row, {{pivot, x}, {other, y}}); };
+  const auto entry = [&](std::uint32_t i, std::uint32_t j) { return to_.lane(rows[i], j); };
+  const Value a = entry(pivot, pivot), b = entry(pivot, other), c = entry(other, pivot), d = entry(other, other);
+  const Value determinant = to_.sum({{1, a, d}, {-1, b, c}});
+  require_positive(to_.sum({{1, a}}, none, diagonal_[pivot]), least_pivot);
+  require_positive(to_.sum({{1, determinant}}, none, to_.product(1, a, diagonal_[other])), least_pivot);
+  require_positive(to_.larger(determinant, determinant), least_determinant);
+  const Value inverse = to_.reciprocal(determinant);
+  const Value x = with(rows[pivot], 1, 0), y = with(rows[other], 0, 1);
+  const Value above = to_.sum({{1, d, x}, {-1, b, y}}), below = to_.sum({{1, a, y}, {-1, c, x}});
+  for (std::uint32_t i = 0; i < n_; ++i) {
+    if (i == pivot || i == other) continue;
+    const Value f = to_.product(1, entry(i, pivot), inverse), g = to_.product(1, entry(i, other), inverse);
+    rows[i] = to_.sum({{1, with(rows[i], 0, 0)}, {-1, f, above}, {-1, g, below}});
+  }
+  rows[pivot] = to_.product(1, inverse, above), rows[other] = to_.product(1, inverse, below);
+}
+
+/// Newton's step X + X (1 − N X) for the inverse X of N, and its sign: what rounding left in X would act on all orders
+/// of a step, and the energy of a double pendulum drift.
+void Unrolling::refine(std::vector<Value>& inverse, const std::vector<Value>& matrix) {
+  std::vector<Value> rest;
+  for (std::uint32_t i = 0; i < n_; ++i) {
+    std::vector<Term> terms{{1, with_lanes(to_.literal(0), {{i, 1}})}};
+    for (std::uint32_t j = 0; j < n_; ++j) terms.push_back({-1, to_.lane(matrix[i], j), inverse[j]});
+    rest.push_back(to_.sum(terms));
+  }
+  const std::vector<Value> before = inverse;
+  for (std::uint32_t i = 0; i < n_; ++i) {
+    std::vector<Term> change;
+    for (std::uint32_t j = 0; j < n_; ++j) change.push_back({1, to_.lane(before[i], j), rest[j]});
+    inverse[i] = to_.sum({{-1, before[i]}, {-1, to_.sum(change)}});
+  }
+}
+
+/// q̈_k = −M₀⁻¹ R_k; looking ahead, R_k lacks its part by q̈_{k−1}.
+void Unrolling::solve() {
+  std::vector<Term> now, before;
+  for (std::uint32_t d = 0; d < n_; ++d) {
+    now.push_back({1, at(p_.residual[d], stage_), inverse_[d]});
+    if (!looks_ahead(stage_)) continue;
+    const Value slope = to_.sum({{1, ahead_a_[d]}, {1.0 / stage_, ahead_b_[d]}});
+    before.push_back({1, to_.lane(accelerations_.back(), d), slope});
+  }
+  const Value found = before.empty() ? dot(now) : to_.sum({{1, dot(before)}, {1, dot(now)}});
+  accelerations_.push_back(found);
+  check_ = check_ == none ? found : to_.sum({{1, check_}, {1, found}});
+}
+
+void Unrolling::correct() {
+  const Value q = over(accelerations_.back(), (stage_ + 1.0) * (stage_ + 2.0));
+  coordinates_.push_back(q);
+  Slots slots;
+  for (std::uint32_t i = 0; i < n_; ++i) slots.push_back(i), final_of(i, stage_ + 2) = to_.lane(q, i);
+  store(slots, stage_ + 2, q);
+  for (const Step& step : steps_)
+    if (is_corrected(step.out[0]) && stage_ + 2 - step.lag >= 0) correct(step);
+}
+
+/// What a tangent is multiplied by.
+Value Unrolling::lanes_for(const Step& step, Value coordinates, int direction) {
+  if (direction != Step::own) return to_.lane(coordinates, static_cast<std::uint32_t>(direction));
+  std::vector<Value> lanes;
+  for (const int d : step.direction) lanes.push_back(to_.lane(coordinates, static_cast<std::uint32_t>(std::max(0, d))));
+  return gathered(std::move(lanes));
+}
+
+/// The next stage waits for this where nothing looks ahead: then the tangents are scaled, which are there before.
+void Unrolling::correct(const Step& step) {
+  const int order = stage_ + 2 - step.lag;
+  const double k = stage_;
+  const bool ahead = looks_ahead(stage_), by_coordinates = ahead && step.lag == 0;
+  const auto stage = static_cast<std::size_t>(stage_);
+  const auto set = [&](Value value, std::vector<Value>& values) {
+    for (std::uint32_t i = 0; i < step.out.size(); ++i)
+      values[static_cast<std::size_t>(order) * p_.slots + step.out[i]] = to_.lane(value, i);
+  };
+  std::vector<Value> lanes;
+  for (const Slot slot : step.out) lanes.push_back(final_of(slot, order));
+  Value result = gathered(std::move(lanes));
+  const auto& [first, a, b] = step.tangents;
+  if (ahead) {
+    // (k+1)_ℓ A + (k+1)_{ℓ−1} B over (k+1) k, since q_{k+1} = q̈_{k−1} / ((k+1) k)
+    std::set<int> directions;
+    for (const auto* part : {&a, &b})
+      for (const auto& [d, value] : *part) directions.insert(d);
+    std::vector<Term> terms{{1, result}};
+    for (const int d : directions) {
+      const double factor = step.lag == 1 ? 1 / k : 1;
+      std::vector<Term> slope;
+      if (a.contains(d)) slope.push_back({factor, a.at(d)});
+      if (b.contains(d)) slope.push_back({factor / (k + 2 - step.lag), b.at(d)});
+      const Value before = step.lag == 0 ? coordinates_[stage - 1] : accelerations_[stage - 1];
+      terms.push_back({1, to_.sum(slope), lanes_for(step, before, d)});
+    }
+    result = to_.sum(terms);
+  }
+  set(result, early_);
+  const double factor = by_coordinates || step.lag == 2 ? 1 : step.lag == 1 ? 1 / (k + 1) : 1 / ((k + 1) * (k + 2));
+  std::vector<Term> terms{{1, result}};
+  for (const auto& [d, value] : first)
+    terms.push_back({factor, value, lanes_for(step, by_coordinates ? coordinates_[stage] : accelerations_[stage], d)});
+  result = to_.sum(terms);
+  set(result, final_);
+  store(step.out, order, result);
+}
+
+}  // namespace maupertuis::unrolled
