@@ -1,18 +1,15 @@
 #include "kernel/llvm/emitters.hpp"
 #include "kernel/llvm/rolled_emitter.hpp"
-#include "kernel/llvm/unrolled_emitter.hpp"
 #include "kernel/unrolled/unroll.hpp"
 
-#include <cstdlib>
 namespace maupertuis::llvm_backend {
-void emit_trial(Emission& out, const packed::PackedProgram& program, std::size_t stride, int order);
 
 using packed::Pack;
 using packed::PackedProgram;
 
 namespace {
 
-/// Of straight-line code.
+/// Of unrolled code.
 constexpr std::size_t most_unknowns = 16, most_operations = 40'000;
 /// Of rolled code, whose compilation takes about 1 ms a pack.
 constexpr std::size_t most_packs = 3000;
@@ -29,7 +26,7 @@ std::size_t operations(const PackedProgram& program, int order) {
 }
 
 /// Whether all stages can be written out one after the other.
-bool can_be_straight(const PackedProgram& program, int order) {
+bool can_be_unrolled(const PackedProgram& program, int order) {
   const Program& p = program.program;
   const bool has_select = std::any_of(p.instructions.begin(), p.instructions.end(),
                                       [](const Instruction& i) { return i.op == Op::Select; });
@@ -41,10 +38,8 @@ bool can_be_straight(const PackedProgram& program, int order) {
 
 void emit_packed(Emission& out, const machine_code::Request& request) {
   const auto& program = *static_cast<const PackedProgram*>(request.source);
-  if (request.effort > 0 && can_be_straight(program, request.order)) {
-    if (const char* t = std::getenv("MAUP_TRIAL"); t && *t == '1') emit_trial(out, program, request.stride, request.order);
-    else if (t && *t == '2') emit_in_one_function(out, unrolled::unroll(program, request.stride, request.order), "line");
-    else UnrolledEmitter(out, program, request.stride, request.order).run();
+  if (request.effort > 0 && can_be_unrolled(program, request.order)) {
+    emit_as_one_function(out, unrolled::unroll(program, request.stride, request.order), "expand");
     return emit_step(out, program.program.unknowns, request.stride, request.order);
   }
   if (program.packs.size() > most_packs) throw Declined("the program is too large to be compiled");

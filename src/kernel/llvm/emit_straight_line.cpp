@@ -10,7 +10,7 @@
 
 /// The nodes of a straight line one after the other, values in registers as far as the compiler keeps them there. Long
 /// lines are cut into functions, since the time of a compiler grows faster than a function's length; what one hands to
-/// a later one goes through memory.
+/// a later one goes through memory. Where that would be waited for, a line is one function after all.
 namespace maupertuis::llvm_backend {
 namespace {
 
@@ -19,7 +19,7 @@ using straight::Node;
 using straight::StraightLine;
 
 /// Nodes and terms of one function, and of all.
-constexpr std::size_t most_in_piece = 400, most_in_all = 60'000;
+constexpr std::size_t most_in_function = 400, most_in_all = 60'000;
 
 /// When numbers are there, in cycles of a Zen 5, were there no lack of units: what of a sum is known last decides how
 /// it is added up.
@@ -85,13 +85,13 @@ class Timing {
 
 class LineEmitter {
  public:
-  LineEmitter(Emission& out, const StraightLine& line, std::string name, std::size_t most_in_function)
+  LineEmitter(Emission& out, const StraightLine& line, std::string name, bool is_one_function = false)
       : out_(out),
         b_(out.b),
         line_(line),
         timing_(line),
         name_(std::move(name)),
-        most_in_function_(most_in_function),
+        is_one_function_(is_one_function),
         real_(out.real(1)),
         values_(line.nodes.size(), nullptr) {}
 
@@ -119,7 +119,7 @@ class LineEmitter {
     for (std::size_t i = 0; i < line_.nodes.size(); ++i) {
       const Node& node = line_.nodes[i];
       const std::size_t size = remade(static_cast<straight::Value>(i)) ? 0 : 1 + (node.last - node.first);
-      if (length + size > most_in_function_) ++pieces_, length = 0;
+      if (length + size > most_in_function && !is_one_function_) ++pieces_, length = 0;
       length += size;
       const bool of_angles = node.what == Node::Sine || node.what == Node::Cosine;
       piece_of_[i] = of_angles ? piece_of_[node.a] : pieces_;
@@ -177,11 +177,12 @@ class LineEmitter {
     return f;
   }
 
-  /// All pieces of a line are of one type.
+  /// All pieces of a line are of one type. In a long one stores keep loads where they are wanted: moved to the front,
+  /// they would fill the registers.
   llvm::Function* function(const std::string& name, bool exported) {
     llvm::Function* const f = out_.function(name, parameters(), exported, line_.guarded ? b_.getInt8Ty() : nullptr);
     for (llvm::Argument& argument : f->args())
-      if (line_.guarded) argument.removeAttr(llvm::Attribute::NoAlias);
+      if (line_.guarded || is_one_function_) argument.removeAttr(llvm::Attribute::NoAlias);
     return f;
   }
 
@@ -278,7 +279,7 @@ class LineEmitter {
     const Node& node = line_.nodes[v];
     switch (node.what) {
       case Node::Literal: return values_[v] = number(node.literal);
-      case Node::Given: return values_[v] = fetch(type_of(v), node.array, node.index);
+      case Node::Given: return given(v);
       case Node::Lane: return values_[v] = lane(node);
       case Node::Unit:
         return values_[v] = b_.CreateInsertElement(out_.number(0, type_of(v)), number(1), std::uint64_t{node.index});
@@ -287,6 +288,12 @@ class LineEmitter {
     }
     if (place_[v] == 0) throw std::logic_error("a number is read before it is there; please report");
     return values_[v] = fetch(type_of(v), line_.arrays, place_[v]);
+  }
+
+  /// What is kept through a long function would be written to the stack, and read again from there.
+  Value* given(straight::Value v) {
+    Value* const x = fetch(type_of(v), line_.nodes[v].array, line_.nodes[v].index);
+    return is_one_function_ ? x : values_[v] = x;
   }
 
   /// Of a wide value in memory that number alone.
@@ -447,7 +454,7 @@ class LineEmitter {
   const StraightLine& line_;
   Timing timing_;
   std::string name_;
-  std::size_t most_in_function_;
+  bool is_one_function_;
   llvm::Type* real_;
   std::size_t pieces_ = 0, piece_ = 0;
   std::vector<std::size_t> piece_of_;  // [nodes]
@@ -461,8 +468,8 @@ class LineEmitter {
 
 }  // namespace
 
-void emit_in_one_function(Emission& out, const StraightLine& line, const std::string& name) {
-  LineEmitter(out, line, name, ~std::size_t{0}).run();
+void emit_as_one_function(Emission& out, const StraightLine& line, const std::string& name) {
+  LineEmitter(out, line, name, true).run();
 }
 
 void emit_straight_lines(Emission& out, const machine_code::Request& request) {
@@ -470,7 +477,7 @@ void emit_straight_lines(Emission& out, const machine_code::Request& request) {
   std::size_t size = 0;
   for (const StraightLine& line : lines) size += line.size();
   if (size > most_in_all) throw Declined("the program is too long to be written out as machine code");
-  for (std::size_t i = 0; i < lines.size(); ++i) LineEmitter(out, lines[i], "line" + std::to_string(i), most_in_piece).run();
+  for (std::size_t i = 0; i < lines.size(); ++i) LineEmitter(out, lines[i], "line" + std::to_string(i)).run();
 }
 
 }  // namespace maupertuis::llvm_backend

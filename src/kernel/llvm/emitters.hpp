@@ -18,11 +18,11 @@ struct Declined : std::runtime_error {
 void emit_self_test(Emission& out, const machine_code::Request& request);
 void emit_lanes(Emission& out, const machine_code::Request& request);
 void emit_straight_lines(Emission& out, const machine_code::Request& request);
-/// However long it is.
-void emit_in_one_function(Emission& out, const straight::StraightLine& line, const std::string& name);
+/// A line that is not guarded as one function, however long it is. Its arrays may overlap.
+void emit_as_one_function(Emission& out, const straight::StraightLine& line, const std::string& name);
 /// What a step does with the rows besides: radius and increments, as the engine's.
 void emit_step(Emission& out, std::size_t unknowns, std::size_t stride, int order);
-/// Straight-line code where the program is small and runs long, else rolled code.
+/// Unrolled code where the program is small and runs long, else rolled code.
 void emit_packed(Emission& out, const machine_code::Request& request);
 
 }  // namespace maupertuis::llvm_backend

@@ -85,9 +85,6 @@ struct Engine {
   /// Tangents of order 0: in, those of the coordinates; out, those of all slots of Dynamics. [directions][slots of a
   /// row]
   void (*tangents)(const Tables&, double* tangents, std::size_t stride, std::size_t directions);
-  /// sin x and cos x of `count` ≤ 8 numbers, in out[0 …) and out[8 …); the next power of two of them is read and
-  /// written. Aligned to 64 bytes.
-  void (*sine_cosine)(const double* x, double* out, int count);
   /// −M⁻¹ of a symmetric, positive definite matrix, by Gauss and Jordan: a product with it takes part in few
   /// dependences, where a substitution waits for each of its rows.
   ///   matrix   row by row [n × n], n ≤ 16

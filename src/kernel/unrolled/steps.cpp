@@ -1,4 +1,3 @@
-#include "kernel/packed/code.hpp"
 #include "kernel/unrolled/unrolling.hpp"
 
 #include <algorithm>
@@ -20,7 +19,7 @@ static Slots range(Slot first, std::size_t count) {
 
 Value Unrolling::constant(ConstantId id) {
   const Constant& c = p_.constants[id];
-  return c.kind == Kind::Number ? to_.literal(c.value) : to_.given(packed::ConstantsOfExpand, id);
+  return c.kind == Kind::Number ? to_.literal(c.value) : to_.given(Constants, id);
 }
 
 /// Numbers of the model's text are numbers of the code.
@@ -29,7 +28,7 @@ Value Unrolling::coefficients(std::uint32_t first, std::size_t count) {
   for (std::uint32_t i = 0; i < width_of(count); ++i) {
     lanes.push_back(constant(packed_.coefficients[first + i]));
     if (!to_.is_literal(lanes.back()))
-      return to_.wide_given(packed::CoefficientsOfExpand, first, width_of(count));
+      return to_.wide_given(Coefficients, first, width_of(count));
   }
   return to_.gather(lanes);
 }

@@ -1,6 +1,5 @@
 #include "kernel/unrolled/unroll.hpp"
 
-#include "kernel/packed/code.hpp"
 #include "kernel/unrolled/unrolling.hpp"
 
 namespace maupertuis::unrolled {
@@ -33,7 +32,7 @@ straight::StraightLine Unrolling::run() {
     if (stage_ == 1 && looks_ahead_) look_ahead();
   }
   for (std::uint32_t i = 0; i < n_; ++i) to_.require_finite(to_.lane(check_, i));
-  return to_.finish(packed::arrays_of_expand, 1, 0);
+  return to_.finish(arrays, 1, 0);
 }
 
 straight::StraightLine unroll(const packed::PackedProgram& program, std::size_t stride, int order) {

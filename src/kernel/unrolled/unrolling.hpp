@@ -1,6 +1,7 @@
 #pragma once
 #include "kernel/packed/layout.hpp"
 #include "kernel/straight_line/builder.hpp"
+#include "kernel/unrolled/unroll.hpp"
 
 #include <bit>
 #include <map>

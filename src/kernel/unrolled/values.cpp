@@ -1,4 +1,3 @@
-#include "kernel/packed/code.hpp"
 #include "kernel/unrolled/unrolling.hpp"
 
 #include <algorithm>
@@ -10,11 +9,11 @@ namespace maupertuis::unrolled {
 /// q or q̇. Few numbers are read one by one: a wider load would wait until all of what was written is in the cache.
 void Unrolling::give_coordinates(int order) {
   constexpr std::uint32_t most_singly = 4;  // beyond, putting them together takes longer
-  const auto array = order == 0 ? packed::PositionsOfExpand : packed::VelocitiesOfExpand;
+  const auto array = order == 0 ? Positions : Velocities;
   for (std::uint32_t i = 0; i < n_; ++i)
     final_of(i, order) = n_ <= most_singly
                              ? to_.given(array, i)
-                             : to_.lane(to_.wide_given(packed::RowsOfExpand, cell(order, 0), width_of(n_)), i);
+                             : to_.lane(to_.wide_given(Rows, cell(order, 0), width_of(n_)), i);
 }
 
 /// As far as it is known: coordinates of a stage count as 0 before its solution.
@@ -23,7 +22,7 @@ Value Unrolling::at(Slot slot, int order) {
   if (found != none) return found;
   if (slot < n_) return to_.literal(0);
   if (slot == p_.one || (slot == p_.time && order > 0)) return to_.literal(order == (slot == p_.one ? 0 : 1));
-  return found = to_.given(packed::RowsOfExpand, cell(order, slot));
+  return found = to_.given(Rows, cell(order, slot));
 }
 
 Value Unrolling::gathered(std::vector<Value> lanes) {
@@ -134,8 +133,8 @@ void Unrolling::keep(const Step& step, Value value) {
 /// Places behind the last one, up to a whole vector, belong to nobody.
 void Unrolling::store(const Slots& slots, int order, Value value) {
   const auto place = [&](Slot slot) { return static_cast<std::uint32_t>(cell(order, slot)); };
-  if (to_.width(value) >= slots.size()) return to_.store(value, packed::RowsOfExpand, place(slots[0]));
-  for (const Slot slot : slots) to_.store(value, packed::RowsOfExpand, place(slot));
+  if (to_.width(value) >= slots.size()) return to_.store(value, Rows, place(slots[0]));
+  for (const Slot slot : slots) to_.store(value, Rows, place(slot));
 }
 
 Value Unrolling::sum(const Step& step) {

@@ -1,9 +1,6 @@
 #include "kernel/workspace/expansion.hpp"
 
 #include "kernel/packed/convolutions.hpp"
-#include "kernel/reference/elementary.hpp"
-
-#include <cmath>
 
 namespace maupertuis::workspace {
 
@@ -71,22 +68,14 @@ bool Expansion::compute_constants() {
 void ExpansionInCode::adopt(ExpansionCode made, Expansion& x) {
   code = std::move(made);
   arguments = {.rows = x.memory.rows.data(), .coefficients = x.lane_coefficients.data()};
-  if (code.stage) {
-    sums.assign(packed::count_convolutions(x.packed) * packed::rolled_group * packed::lanes, 0.0);
-    tangent_row.assign(x.memory.stride, 0.0);
-    passing_row.assign(x.memory.stride, 0.0);
-    arguments.sums = sums.data();
-    arguments.tangent_row = tangent_row.data(), arguments.passing_row = passing_row.data();
-    arguments.value = x.tables.scalar.value, arguments.tangent = x.tables.scalar.tangent,
-    arguments.context = x.tables.scalar.context;
-    return;
-  }
-  arguments.term_coefficients = x.memory.coefficients.data(), arguments.constants = x.memory.constants.data();
-  arguments.sincos = x.engine.sine_cosine;
-  arguments.elementary = [](std::uint8_t kind, double a, double b) {
-    return static_cast<Kind>(kind) == Kind::Power ? std::pow(a, b)
-                                                  : reference::elementary(static_cast<Kind>(kind), a, b);
-  };
+  if (!code.stage) return;
+  sums.assign(packed::count_convolutions(x.packed) * packed::rolled_group * packed::lanes, 0.0);
+  tangent_row.assign(x.memory.stride, 0.0);
+  passing_row.assign(x.memory.stride, 0.0);
+  arguments.sums = sums.data();
+  arguments.tangent_row = tangent_row.data(), arguments.passing_row = passing_row.data();
+  arguments.value = x.tables.scalar.value, arguments.tangent = x.tables.scalar.tangent,
+  arguments.context = x.tables.scalar.context;
 }
 
 }  // namespace maupertuis::workspace

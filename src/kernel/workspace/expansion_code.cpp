@@ -19,7 +19,7 @@ std::pair<ExpansionCode, CompileReport> compile(const packed::PackedProgram& pro
     const auto find = [&](auto& function, const char* name) {
       function = reinterpret_cast<std::decay_t<decltype(function)>>(made->find(name));
     };
-    find(code.expand, "expand"), find(code.line, "line"), find(code.radius, "radius"), find(code.increments, "increments");
+    find(code.expand, "expand"), find(code.radius, "radius"), find(code.increments, "increments");
     find(code.first, "first"), find(code.stage, "stage"), find(code.solve, "solve"), find(code.correct, "correct");
     find(code.ahead, "ahead"), find(code.later, "later"), find(code.tangents, "tangents");
     code.memory = made;

@@ -12,8 +12,7 @@ namespace maupertuis::workspace {
 /// Machine code for one program, row stride and order; `memory` keeps it there. Either for the whole expansion
 /// (unrolled), or for one stage (rolled).
 struct ExpansionCode {
-  packed::CompiledExpandOld expand = nullptr;
-  packed::CompiledExpand line = nullptr;
+  packed::CompiledExpand expand = nullptr;
   packed::CompiledRadius radius = nullptr;
   packed::CompiledIncrements increments = nullptr;
   packed::CompiledFirst first = nullptr;

@@ -3,6 +3,7 @@
 #include <maupertuis/require.hpp>
 
 #include <algorithm>
+#include <array>
 
 /// The structured Taylor step (docs/design/kernel_program.md). Stage k finds q_{k+2}: with it set to 0 the residual is
 /// evaluated at order k, M₀ q̈_k = −R_k gives the acceleration, and every coefficient that later orders read is
@@ -38,8 +39,7 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
   if (x.program.time != no_slot) x.memory.row(0)[x.program.time] = t;
   double *const position = x.memory.row(0), *const velocity = x.memory.row(1);
   for (std::size_t i = 0; i < q.size(); ++i) position[i] = q[i], velocity[i] = v[i];
-  in_code.arguments.q = q.data(), in_code.arguments.v = v.data();
-  if (run_compiled(stages)) return KernelStatus::Ok;
+  if (run_unrolled(q, v, stages)) return KernelStatus::Ok;
   run_first_stages();
   if (const auto status = solver.factor(stages); status != KernelStatus::Ok) return without_solution(status);
   for (int stage = 0; stage < stages; ++stage) {
@@ -55,14 +55,13 @@ KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std
 }
 
 /// Unrolled code. False: there is none for this, or its results are not to be trusted.
-bool KernelWorkspace::Impl::run_compiled(int stages) {
-  const workspace::Expansion& x = expansion;
-  if ((!in_code.code.expand && !in_code.code.line) || stages != x.order) return false;
-  if (in_code.code.line) {
-    alignas(64) double scratch[8];
-    in_code.code.line(in_code.arguments.rows, in_code.arguments.q, in_code.arguments.v, in_code.arguments.coefficients, in_code.arguments.constants, scratch);
-    if (!(scratch[0] > 0 && scratch[1] == 0)) return false;
-  } else if (in_code.code.expand(&in_code.arguments) != 0) return false;
+bool KernelWorkspace::Impl::run_unrolled(std::span<const double> q, std::span<const double> v, int stages) {
+  workspace::Expansion& x = expansion;
+  if (!in_code.code.expand || stages != x.order) return false;
+  std::array<double, 8> scratch;
+  in_code.code.expand(x.memory.rows.data(), q.data(), v.data(), x.lane_coefficients.data(), x.memory.constants.data(),
+                      scratch.data());
+  if (!straight::sound(scratch.data())) return false;
   solver.forget_point();
   const bool is_over = x.program.runs[Along].empty();
   if (is_over && at_point.empty()) return true;
