@@ -5,13 +5,11 @@
 
 namespace maupertuis::unrolled {
 
-static constexpr double least_pivot = 1e-10, least_determinant = 1e-280;
-
 /// The columns of −M₀⁻¹ by Gauss and Jordan on the transposed matrix without pivoting: stable where M₀ is symmetric and
 /// positive definite. The pivots against their diagonal entries tell whether it is.
 void Unrolling::factor() {
   for (Step& step : steps_)
-    if (is_moved(step) && (!follows_ || step.is_awaited)) find_tangents(step);
+    if (is_moved(step)) find_tangents(step);
   std::vector<Value> matrix;
   for (int d = 0; d < static_cast<int>(n_); ++d) {
     std::vector<Value> lanes;
@@ -19,68 +17,43 @@ void Unrolling::factor() {
       lanes.push_back(passes(slot, 0, 2) ? tangent(Step::T, slot, d) : to_.literal(0));
     lanes.resize(width_of(n_), to_.literal(0));
     matrix.push_back(to_.gather(lanes));
-    diagonal_.push_back(lanes[static_cast<std::size_t>(d)]);
   }
   inverse_ = matrix;
-  std::uint32_t pivot = 0;
-  for (; pivot + 1 < n_; pivot += 2) eliminate_pair(inverse_, pivot);
-  if (pivot < n_) eliminate(inverse_, pivot);
-  refine(inverse_, matrix);
+  for (std::uint32_t pivot = 0; pivot < n_; ++pivot) eliminate(pivot, to_.lane(matrix[pivot], pivot));
+  refine(matrix);
 }
 
-Value Unrolling::with_lanes(Value row, const std::map<std::uint32_t, double>& changed) {
+Value Unrolling::with_lane(Value row, std::uint32_t lane, double number) {
   std::vector<Value> lanes;
-  for (std::uint32_t i = 0; i < width_of(n_); ++i)
-    lanes.push_back(changed.contains(i) ? to_.literal(changed.at(i)) : to_.lane(row, i));
+  for (std::uint32_t i = 0; i < width_of(n_); ++i) lanes.push_back(i == lane ? to_.literal(number) : to_.lane(row, i));
   return to_.gather(lanes);
 }
 
-void Unrolling::eliminate(std::vector<Value>& rows, std::uint32_t pivot) {
-  const Value p = to_.lane(rows[pivot], pivot);
-  require_positive(to_.sum({{1, p}}, none, diagonal_[pivot]), least_pivot);
-  const Value row = to_.product(1, to_.reciprocal(p), with_lanes(rows[pivot], {{pivot, 1}}));
-  for (std::uint32_t i = 0; i < n_; ++i)
-    if (i != pivot)
-      rows[i] = to_.sum({{1, with_lanes(rows[i], {{pivot, 0}})}, {-1, to_.lane(rows[i], pivot), row}});
-  rows[pivot] = row;
-}
-
-/// Two pivots at once: their rows are combined while their determinant is divided by. One that is too small to have all
-/// its digits is not sound.
-void Unrolling::eliminate_pair(std::vector<Value>& rows, std::uint32_t pivot) {
-  const std::uint32_t other = pivot + 1;
-  const auto with = [&](Value row, double x, double y) { return with_lanes(row, {{pivot, x}, {other, y}}); };
-  const auto entry = [&](std::uint32_t i, std::uint32_t j) { return to_.lane(rows[i], j); };
-  const Value a = entry(pivot, pivot), b = entry(pivot, other), c = entry(other, pivot), d = entry(other, other);
-  const Value determinant = to_.sum({{1, a, d}, {-1, b, c}});
-  require_positive(to_.sum({{1, a}}, none, diagonal_[pivot]), least_pivot);
-  require_positive(to_.sum({{1, determinant}}, none, to_.product(1, a, diagonal_[other])), least_pivot);
-  require_positive(to_.larger(determinant, determinant), least_determinant);
-  const Value inverse = to_.reciprocal(determinant);
-  const Value x = with(rows[pivot], 1, 0), y = with(rows[other], 0, 1);
-  const Value above = to_.sum({{1, d, x}, {-1, b, y}}), below = to_.sum({{1, a, y}, {-1, c, x}});
+void Unrolling::eliminate(std::uint32_t pivot, Value diagonal) {
+  constexpr double least_pivot = 1e-10;
+  const Value p = to_.lane(inverse_[pivot], pivot);
+  to_.check({p, diagonal, least_pivot});
+  const Value row = to_.product(1, to_.reciprocal(p), with_lane(inverse_[pivot], pivot, 1));
   for (std::uint32_t i = 0; i < n_; ++i) {
-    if (i == pivot || i == other) continue;
-    const Value f = to_.product(1, entry(i, pivot), inverse), g = to_.product(1, entry(i, other), inverse);
-    rows[i] = to_.sum({{1, with(rows[i], 0, 0)}, {-1, f, above}, {-1, g, below}});
+    const Value other = inverse_[i];
+    inverse_[i] = i == pivot ? row : to_.sum({{1, with_lane(other, pivot, 0)}, {-1, to_.lane(other, pivot), row}});
   }
-  rows[pivot] = to_.product(1, inverse, above), rows[other] = to_.product(1, inverse, below);
 }
 
 /// Newton's step X + X (1 − N X) for the inverse X of N, and its sign: what rounding left in X would act on all orders
 /// of a step, and the energy of a double pendulum drift.
-void Unrolling::refine(std::vector<Value>& inverse, const std::vector<Value>& matrix) {
+void Unrolling::refine(const std::vector<Value>& matrix) {
+  const std::vector<Value> before = inverse_;
   std::vector<Value> rest;
   for (std::uint32_t i = 0; i < n_; ++i) {
-    std::vector<Term> terms{{1, with_lanes(to_.literal(0), {{i, 1}})}};
-    for (std::uint32_t j = 0; j < n_; ++j) terms.push_back({-1, to_.lane(matrix[i], j), inverse[j]});
+    std::vector<Term> terms{{1, with_lane(to_.literal(0), i, 1)}};
+    for (std::uint32_t j = 0; j < n_; ++j) terms.push_back({-1, to_.lane(matrix[i], j), before[j]});
     rest.push_back(to_.sum(terms));
   }
-  const std::vector<Value> before = inverse;
   for (std::uint32_t i = 0; i < n_; ++i) {
     std::vector<Term> change;
     for (std::uint32_t j = 0; j < n_; ++j) change.push_back({1, to_.lane(before[i], j), rest[j]});
-    inverse[i] = to_.sum({{-1, before[i]}, {-1, to_.sum(change)}});
+    inverse_[i] = to_.sum({{-1, before[i]}, {-1, to_.sum(change)}});
   }
 }
 

@@ -1,7 +1,5 @@
 #include "kernel/unrolled/unrolling.hpp"
 
-#include <algorithm>
-
 namespace maupertuis::unrolled {
 
 using packed::Pack;
@@ -109,27 +107,6 @@ void Unrolling::add_instruction(const Instruction& i) {
     // leaves, and what is not unrolled
     case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: case Op::Select: return;
   }
-}
-
-/// What the residual of a stage waits for. Where that holds nothing which follows q̈ but the coordinates themselves, as
-/// with a constant M, all else comes after the solution and needs no corrections.
-void Unrolling::find_awaited() {
-  Slots open = p_.residual;
-  while (!open.empty()) {
-    const Slot slot = open.back();
-    open.pop_back();
-    if (step_of_[slot] < 0) continue;
-    Step& step = steps_[static_cast<std::size_t>(step_of_[slot])];
-    if (std::exchange(step.is_awaited, true)) continue;
-    const auto add = [&](const Slots& slots, int shift) {
-      for (const Slot s : slots)
-        if (p_.lags[s] + shift >= step.lag) open.push_back(s);
-    };
-    for (const Column& column : step.columns) add(column.slots, column.shift);
-    for (const Product& product : step.products) add(product.a, 0), add(product.b, 0);
-  }
-  follows_ = std::none_of(steps_.begin(), steps_.end(),
-                          [&](const Step& step) { return step.is_awaited && is_corrected(step.out[0]); });
 }
 
 }  // namespace maupertuis::unrolled

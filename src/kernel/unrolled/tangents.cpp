@@ -88,8 +88,7 @@ void Unrolling::find_tangents(Step& step) {
 /// Whether A and B of all steps are found by the rules for sums and integrals, and no sum reads what the stage before
 /// has just found: that would hold the q̈ that is to come last.
 bool Unrolling::can_look_ahead() const {
-  constexpr std::uint32_t most_unknowns = 4;
-  return !follows_ && n_ <= most_unknowns && std::all_of(steps_.begin(), steps_.end(), [&](const Step& step) {
+  return n_ <= most_waiting && std::all_of(steps_.begin(), steps_.end(), [&](const Step& step) {
     if (!is_moved(step)) return true;
     for (const Column& column : step.columns)
       for (const Slot slot : column.slots)

@@ -14,21 +14,16 @@ Unrolling::Unrolling(const packed::PackedProgram& program, std::size_t stride, i
   const auto orders = static_cast<std::size_t>(order - p_.first_stage + 2);
   final_.assign(orders * p_.slots, none), early_ = final_;
   for (const packed::Pack& pack : packed_.packs) add_steps(pack);
-  find_awaited();
   looks_ahead_ = can_look_ahead();
 }
 
 straight::StraightLine Unrolling::run() {
   for (stage_ = p_.first_stage; stage_ < order_; ++stage_) {
-    const bool solves = stage_ >= 0;
     rates_.clear();
-    if (!solves && stage_ >= -2) give_coordinates(stage_ + 2);
-    for (const Step& step : steps_)
-      if (!solves || !follows_ || step.is_awaited) find(step);
+    if (stage_ == -2 || stage_ == -1) give_coordinates(stage_ + 2);
+    for (const Step& step : steps_) find(step);
     if (stage_ == 0) factor();
-    if (solves) solve(), correct();
-    for (const Step& step : steps_)
-      if (solves && follows_ && !step.is_awaited) find(step);
+    if (stage_ >= 0) solve(), correct();
     if (stage_ == 1 && looks_ahead_) look_ahead();
   }
   for (std::uint32_t i = 0; i < n_; ++i) to_.require_finite(to_.lane(check_, i));

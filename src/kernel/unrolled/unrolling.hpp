@@ -43,7 +43,6 @@ struct Step {
   std::vector<Column> columns = {};
   std::vector<Product> products = {};
   std::vector<std::uint32_t> functions = {};  // Integral: the instructions that give order 0
-  bool is_awaited = false;                    // by the residual of the same stage
 
   /// How it answers to a change ε τ^m of a coordinate: of lag ℓ, with falling factorials, by
   ///     (m)_ℓ T τ^{m−ℓ} + ((m)_ℓ A + (m)_{ℓ−1} B) τ^{m−ℓ+1}.
@@ -53,6 +52,9 @@ struct Step {
   std::vector<int> direction = {};            // [lanes]
   std::map<int, Value> tangents[3] = {};
 };
+
+/// Unknowns up to which a stage mostly waits; beyond, it is bound by the number of operations.
+inline constexpr std::uint32_t most_waiting = 4;
 
 /// See docs/design/packed_kernels.md, "Unrolled code".
 class Unrolling {
@@ -69,7 +71,6 @@ class Unrolling {
   Slots slots_of(std::uint32_t block) const;
   Value coefficients(std::uint32_t first, std::size_t count);
   Value constant(ConstantId id);
-  void find_awaited();
 
   // ------------------------------------------------------------------------------------------------ values (values.cpp)
   int current_order(Slot slot) const { return stage_ + 2 - p_.lags[slot]; }
@@ -124,14 +125,12 @@ class Unrolling {
   // -------------------------------------------------------------------------------------------- solution (solution.cpp)
   bool looks_ahead(int stage) const { return looks_ahead_ && stage >= 2; }
   bool is_corrected(Slot slot) const {
-    return !follows_ && slot < p_.stored_end[2] && p_.tangent_lags[slot] != Program::unmoved;
+    return slot < p_.stored_end[2] && p_.tangent_lags[slot] != Program::unmoved;
   }
   void factor();
-  void eliminate(std::vector<Value>& rows, std::uint32_t pivot);
-  void eliminate_pair(std::vector<Value>& rows, std::uint32_t pivot);
-  void refine(std::vector<Value>& inverse, const std::vector<Value>& matrix);
-  Value with_lanes(Value row, const std::map<std::uint32_t, double>& lanes);
-  void require_positive(Value x, double least) { to_.check({x, to_.literal(1), least}); }
+  void eliminate(std::uint32_t pivot, Value diagonal);
+  void refine(const std::vector<Value>& matrix);
+  Value with_lane(Value row, std::uint32_t lane, double number);
   void solve();
   void correct();
   void correct(const Step& step);
@@ -145,14 +144,13 @@ class Unrolling {
   straight::Builder to_;
   std::vector<Step> steps_;
   std::vector<int> step_of_;                     // [slots] −1: none
-  bool follows_ = false;                         // all that follows q̈ is found after it
   bool looks_ahead_ = false;
   std::vector<Value> final_, early_;             // [orders × slots]; early: without q̈ of the stage
   std::map<std::pair<Value, int>, Value> weighted_;  // k u_k by u_k and k
   std::map<Slot, Value> starts_;                 // values of functions
   std::map<std::pair<Slot, int>, Value> rates_;  // of integrals of this stage: first and second derivatives
   std::vector<Value> accelerations_, coordinates_;   // [stages]
-  std::vector<Value> diagonal_, inverse_;        // of M₀; columns of −M₀⁻¹
+  std::vector<Value> inverse_;                   // columns of −M₀⁻¹
   std::vector<Value> ahead_a_, ahead_b_;         // q̈_k by q̈_{k−1}: A + B/k
   Value check_ = none;
 };

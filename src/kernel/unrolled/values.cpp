@@ -8,10 +8,9 @@ namespace maupertuis::unrolled {
 
 /// q or q̇. Few numbers are read one by one: a wider load would wait until all of what was written is in the cache.
 void Unrolling::give_coordinates(int order) {
-  constexpr std::uint32_t most_singly = 4;  // beyond, putting them together takes longer
   const auto array = order == 0 ? Positions : Velocities;
   for (std::uint32_t i = 0; i < n_; ++i)
-    final_of(i, order) = n_ <= most_singly
+    final_of(i, order) = n_ <= most_waiting
                              ? to_.given(array, i)
                              : to_.lane(to_.wide_given(Rows, cell(order, 0), width_of(n_)), i);
 }
