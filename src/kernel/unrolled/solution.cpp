@@ -19,25 +19,44 @@ void Unrolling::factor() {
     matrix.push_back(to_.gather(lanes));
   }
   inverse_ = matrix;
-  for (std::uint32_t pivot = 0; pivot < n_; ++pivot) eliminate(pivot, to_.lane(matrix[pivot], pivot));
+  for (std::uint32_t pivot = 0; pivot < n_; pivot += 2) eliminate(pivot, std::min(n_ - pivot, 2u), matrix);
   refine(matrix);
 }
 
-Value Unrolling::with_lane(Value row, std::uint32_t lane, double number) {
+/// The row with 0 in the lanes of the pivots, and `one` in a lane.
+Value Unrolling::without(Value row, std::uint32_t pivot, std::uint32_t count, std::uint32_t one) {
   std::vector<Value> lanes;
-  for (std::uint32_t i = 0; i < width_of(n_); ++i) lanes.push_back(i == lane ? to_.literal(number) : to_.lane(row, i));
+  for (std::uint32_t i = 0; i < width_of(n_); ++i)
+    lanes.push_back(i - pivot < count ? to_.literal(i == one) : to_.lane(row, i));
   return to_.gather(lanes);
 }
 
-void Unrolling::eliminate(std::uint32_t pivot, Value diagonal) {
-  constexpr double least_pivot = 1e-10;
-  const Value p = to_.lane(inverse_[pivot], pivot);
-  to_.check({p, diagonal, least_pivot});
-  const Value row = to_.product(1, to_.reciprocal(p), with_lane(inverse_[pivot], pivot, 1));
-  for (std::uint32_t i = 0; i < n_; ++i) {
-    const Value other = inverse_[i];
-    inverse_[i] = i == pivot ? row : to_.sum({{1, with_lane(other, pivot, 0)}, {-1, to_.lane(other, pivot), row}});
+/// Rows of the inverse of the pivots' block times theirs, from all others: two pivots at once divide once.
+void Unrolling::eliminate(std::uint32_t pivot, std::uint32_t count, const std::vector<Value>& matrix) {
+  constexpr double least_pivot = 1e-10, least_determinant = 1e-280;
+  const auto entry = [&](std::uint32_t i, std::uint32_t j) { return to_.lane(inverse_[i], j); };
+  const auto unit = [&](std::uint32_t i) { return without(inverse_[i], pivot, count, i); };
+  const std::uint32_t other = pivot + 1;
+  const Value a = entry(pivot, pivot);
+  to_.check({a, to_.lane(matrix[pivot], pivot), least_pivot});
+  std::vector<Value> rows{unit(pivot)};
+  Value determinant = a;
+  if (count == 2) {
+    const Value b = entry(pivot, other), c = entry(other, pivot), d = entry(other, other);
+    determinant = to_.sum({{1, a, d}, {-1, b, c}});
+    to_.check({determinant, to_.product(1, a, to_.lane(matrix[other], other)), least_pivot});
+    to_.check({determinant, to_.literal(1), least_determinant});  // one that is too small has lost digits
+    rows = {to_.sum({{1, d, unit(pivot)}, {-1, b, unit(other)}}), to_.sum({{1, a, unit(other)}, {-1, c, unit(pivot)}})};
   }
+  const Value reciprocal = to_.reciprocal(determinant);
+  for (std::uint32_t i = 0; i < n_; ++i) {
+    if (i - pivot < count) continue;
+    std::vector<Term> terms{{1, without(inverse_[i], pivot, count, n_)}};
+    for (std::uint32_t p = 0; p < count; ++p)
+      terms.push_back({-1, to_.product(1, entry(i, pivot + p), reciprocal), rows[p]});
+    inverse_[i] = to_.sum(terms);
+  }
+  for (std::uint32_t p = 0; p < count; ++p) inverse_[pivot + p] = to_.product(1, reciprocal, rows[p]);
 }
 
 /// Newton's step X + X (1 − N X) for the inverse X of N, and its sign: what rounding left in X would act on all orders
@@ -46,7 +65,7 @@ void Unrolling::refine(const std::vector<Value>& matrix) {
   const std::vector<Value> before = inverse_;
   std::vector<Value> rest;
   for (std::uint32_t i = 0; i < n_; ++i) {
-    std::vector<Term> terms{{1, with_lane(to_.literal(0), i, 1)}};
+    std::vector<Term> terms{{1, without(to_.literal(0), i, 1, i)}};
     for (std::uint32_t j = 0; j < n_; ++j) terms.push_back({-1, to_.lane(matrix[i], j), before[j]});
     rest.push_back(to_.sum(terms));
   }

@@ -128,9 +128,9 @@ class Unrolling {
     return slot < p_.stored_end[2] && p_.tangent_lags[slot] != Program::unmoved;
   }
   void factor();
-  void eliminate(std::uint32_t pivot, Value diagonal);
+  void eliminate(std::uint32_t pivot, std::uint32_t count, const std::vector<Value>& matrix);
   void refine(const std::vector<Value>& matrix);
-  Value with_lane(Value row, std::uint32_t lane, double number);
+  Value without(Value row, std::uint32_t pivot, std::uint32_t count, std::uint32_t one);
   void solve();
   void correct();
   void correct(const Step& step);
