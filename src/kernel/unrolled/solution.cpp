@@ -1,7 +1,6 @@
 #include "kernel/unrolled/unrolling.hpp"
 
 #include <algorithm>
-#include <set>
 
 namespace maupertuis::unrolled {
 
@@ -94,7 +93,7 @@ void Unrolling::correct() {
   const Value q = over(accelerations_.back(), (stage_ + 1.0) * (stage_ + 2.0));
   coordinates_.push_back(q);
   Slots slots;
-  for (std::uint32_t i = 0; i < n_; ++i) slots.push_back(i), final_of(i, stage_ + 2) = to_.lane(q, i);
+  for (std::uint32_t i = 0; i < n_; ++i) slots.push_back(i), final_[place(i, stage_ + 2)] = to_.lane(q, i);
   store(slots, stage_ + 2, q);
   for (const Step& step : steps_)
     if (is_corrected(step.out[0]) && stage_ + 2 - step.lag >= 0) correct(step);
@@ -108,44 +107,41 @@ Value Unrolling::lanes_for(const Step& step, Value coordinates, int direction) {
   return gathered(std::move(lanes));
 }
 
+void Unrolling::set(const Step& step, int order, Value value, std::vector<Value>& values) {
+  for (std::uint32_t i = 0; i < step.out.size(); ++i) values[place(step.out[i], order)] = to_.lane(value, i);
+}
+
 /// The next stage waits for this where nothing looks ahead: then the tangents are scaled, which are there before.
 void Unrolling::correct(const Step& step) {
   const int order = stage_ + 2 - step.lag;
   const double k = stage_;
-  const bool ahead = looks_ahead(stage_), by_coordinates = ahead && step.lag == 0;
-  const auto stage = static_cast<std::size_t>(stage_);
-  const auto set = [&](Value value, std::vector<Value>& values) {
-    for (std::uint32_t i = 0; i < step.out.size(); ++i)
-      values[static_cast<std::size_t>(order) * p_.slots + step.out[i]] = to_.lane(value, i);
-  };
-  std::vector<Value> lanes;
-  for (const Slot slot : step.out) lanes.push_back(final_of(slot, order));
-  Value result = gathered(std::move(lanes));
-  const auto& [first, a, b] = step.tangents;
-  if (ahead) {
-    // (k+1)_ℓ A + (k+1)_{ℓ−1} B over (k+1) k, since q_{k+1} = q̈_{k−1} / ((k+1) k)
-    std::set<int> directions;
-    for (const auto* part : {&a, &b})
-      for (const auto& [d, value] : *part) directions.insert(d);
-    std::vector<Term> terms{{1, result}};
-    for (const int d : directions) {
-      const double factor = step.lag == 1 ? 1 / k : 1;
-      std::vector<Term> slope;
-      if (a.contains(d)) slope.push_back({factor, a.at(d)});
-      if (b.contains(d)) slope.push_back({factor / (k + 2 - step.lag), b.at(d)});
-      const Value before = step.lag == 0 ? coordinates_[stage - 1] : accelerations_[stage - 1];
-      terms.push_back({1, to_.sum(slope), lanes_for(step, before, d)});
-    }
-    result = to_.sum(terms);
-  }
-  set(result, early_);
+  Value result = gather(step.out, order);
+  if (looks_ahead(stage_)) result = add_before(step, result);
+  set(step, order, result, early_);
+  const bool by_coordinates = looks_ahead(stage_) && step.lag == 0;
   const double factor = by_coordinates || step.lag == 2 ? 1 : step.lag == 1 ? 1 / (k + 1) : 1 / ((k + 1) * (k + 2));
+  const Value change = by_coordinates ? coordinates_.back() : accelerations_.back();
   std::vector<Term> terms{{1, result}};
-  for (const auto& [d, value] : first)
-    terms.push_back({factor, value, lanes_for(step, by_coordinates ? coordinates_[stage] : accelerations_[stage], d)});
+  for (const auto& [d, value] : step.tangents[Step::T]) terms.push_back({factor, value, lanes_for(step, change, d)});
   result = to_.sum(terms);
-  set(result, final_);
+  set(step, order, result, final_);
   store(step.out, order, result);
+}
+
+/// Its part by q̈_{k−1}: (k+1)_ℓ A + (k+1)_{ℓ−1} B over (k+1) k, since q_{k+1} = q̈_{k−1} / ((k+1) k).
+Value Unrolling::add_before(const Step& step, Value result) {
+  const auto &a = step.tangents[Step::A], &b = step.tangents[Step::B];
+  const auto stage = static_cast<std::size_t>(stage_);
+  const double factor = step.lag == 1 ? 1.0 / stage_ : 1;
+  const Value before = step.lag == 0 ? coordinates_[stage - 1] : accelerations_[stage - 1];
+  std::vector<Term> terms{{1, result}};
+  for (int d = Step::own; d < static_cast<int>(n_); ++d) {
+    std::vector<Term> slope;
+    if (a.contains(d)) slope.push_back({factor, a.at(d)});
+    if (b.contains(d)) slope.push_back({factor / (stage_ + 2.0 - step.lag), b.at(d)});
+    if (!slope.empty()) terms.push_back({1, to_.sum(slope), lanes_for(step, before, d)});
+  }
+  return to_.sum(terms);
 }
 
 }  // namespace maupertuis::unrolled

@@ -22,58 +22,72 @@ Value Unrolling::tangents(Step::Part part, const Slots& slots, const std::vector
   return gathered(std::move(lanes));
 }
 
-/// `second`: with all that A and B need.
-std::vector<Unrolling::Source> Unrolling::sources(const Step& step, bool second) {
+/// A source of the same lag as the step has f and, of factors at order 1, g; one of the lag before has h.
+std::vector<Unrolling::Source> Unrolling::sources(const Step& step) {
   std::vector<Source> out;
-  const auto value = [&](const Slots& slots, int order) { return gather(slots, order); };
-  const auto leads = [&](const Slots& slots) { return p_.lags[slots[0]] == step.lag; };
-  const auto is_behind = [&](const Slots& slots) { return second && p_.lags[slots[0]] == step.lag - 1; };
   for (const Column& c : step.columns)
-    if (p_.lags[c.slots[0]] + c.shift == step.lag) out.push_back({.slots = c.slots, .f = c.coefficient, .shift = c.shift});
-  const auto times = [&](const Product& p, double factor, const Slots& other, int order) {
-    return to_.product(factor, p.coefficient, value(other, order));
-  };
+    if (p_.lags[c.slots[0]] + c.shift == step.lag)
+      out.push_back({.slots = c.slots, .f = c.coefficient, .shift = c.shift});
   for (const Product& p : step.products) {
-    if (step.kind == Step::Sum) {
-      for (const auto& [x, y] : {std::pair{p.a, p.b}, std::pair{p.b, p.a}}) {
-        if (leads(x)) out.push_back({.slots = x, .f = times(p, 1, y, 0), .g = second ? times(p, 1, y, 1) : none});
-        else if (is_behind(x)) out.push_back({.slots = x, .h = times(p, 1, y, 0)});
+    switch (step.kind) {
+      case Step::Sum:
+        add_sources(step, p, p.a, p.b, out), add_sources(step, p, p.b, p.a, out);
+        break;
+      case Step::Integral:
+        add_integral(step, p, out);
+        break;
+      case Step::Quotient: {
+        const Value reciprocal = to_.reciprocal(gather(p.b, 0));
+        if (leads(p.a, step)) out.push_back({.slots = p.a, .f = reciprocal});
+        if (leads(p.b, step)) out.push_back({.slots = p.b, .f = to_.product(-1, gather(step.out, 0), reciprocal)});
+        break;
       }
-    } else if (step.kind == Step::Integral) {
-      // the factors (m)_ℓ (m − ℓ)/(m − ℓ + 1) of T_u w₁ are (m)_ℓ − (m)_{ℓ−1}
-      if (leads(p.a)) {
-        out.push_back({.slots = p.a, .f = times(p, 1, p.b, 0)});
-        if (second) out.back().g = times(p, 1, p.b, 1), out.back().h = times(p, -1, p.b, 1);
-      } else if (is_behind(p.a)) {
-        out.push_back({.slots = p.a, .h = times(p, 1, p.b, 0)});
-      }
-      if (second && leads(p.b)) out.push_back({.slots = p.b, .h = times(p, 1, p.a, 1)});
-    } else if (step.kind == Step::Quotient) {
-      const Value reciprocal = to_.reciprocal(value(p.b, 0));
-      if (leads(p.a)) out.push_back({.slots = p.a, .f = reciprocal});
-      if (leads(p.b)) out.push_back({.slots = p.b, .f = to_.product(-1, value(step.out, 0), reciprocal)});
-    } else if (leads(p.a)) {
-      const bool is_root = step.kind == Step::Root;
-      const Value y = value(step.out, 0);
-      out.push_back({.slots = p.a, .f = is_root ? to_.sum({{0.5}}, none, y)
-                                                : to_.sum({{1, p.coefficient, y}}, none, value(p.a, 0))});
+      case Step::Root:
+        out.push_back({.slots = p.a, .f = to_.sum({{0.5}}, none, gather(step.out, 0))});
+        break;
+      case Step::Power:
+        out.push_back({.slots = p.a, .f = to_.sum({{1, p.coefficient, gather(step.out, 0)}}, none, gather(p.a, 0))});
+        break;
     }
   }
   return out;
 }
 
+/// c a b by a
+void Unrolling::add_sources(const Step& step, const Product& p, const Slots& a, const Slots& b,
+                            std::vector<Source>& out) {
+  const Value b0 = to_.product(1, p.coefficient, gather(b, 0));
+  if (leads(a, step))
+    out.push_back({.slots = a, .f = b0, .g = first_order(p.coefficient, b)});
+  else if (p_.lags[a[0]] == step.lag - 1)
+    out.push_back({.slots = a, .h = b0});
+}
+
+/// y' = c w u': the factors (m)_ℓ (m − ℓ)/(m − ℓ + 1) of T_u w₁ are (m)_ℓ − (m)_{ℓ−1}.
+void Unrolling::add_integral(const Step& step, const Product& p, std::vector<Source>& out) {
+  add_sources(step, p, p.a, p.b, out);
+  if (leads(p.a, step) && out.back().g != none) out.back().h = to_.product(-1, out.back().g);
+  if (leads(p.b, step)) out.push_back({.slots = p.b, .h = first_order(p.coefficient, p.a)});
+}
+
+/// Where it is needed: after stage 0.
+Value Unrolling::first_order(Value coefficient, const Slots& slots) {
+  return stage_ == 0 ? none : to_.product(1, coefficient, gather(slots, 1));
+}
+
 /// Diagonal, if each lane depends on one direction at most.
 void Unrolling::find_tangents(Step& step) {
-  const std::vector<Source> all = sources(step, false);
+  const std::vector<Source> all = sources(step);
   std::vector<std::set<int>> of_lanes(step.out.size());
   std::set<int> directions;
   for (const Source& source : all)
-    for (std::size_t i = 0; i < step.out.size(); ++i)
+    for (std::size_t i = 0; source.f != none && i < step.out.size(); ++i)
       for (int d = 0; d < static_cast<int>(n_); ++d)
         if (!to_.is_zero(tangent(Step::T, source.slots[i], d))) of_lanes[i].insert(d), directions.insert(d);
   const auto add = [&](int name, const std::vector<int>& direction) {
     std::vector<Term> terms;
-    for (const Source& source : all) terms.push_back({1, source.f, tangents(Step::T, source.slots, direction)});
+    for (const Source& source : all)
+      if (source.f != none) terms.push_back({1, source.f, tangents(Step::T, source.slots, direction)});
     step.tangents[Step::T][name] = to_.sum(terms);
   };
   if (directions.empty()) return;
@@ -89,12 +103,12 @@ void Unrolling::find_tangents(Step& step) {
 /// has just found: that would hold the q̈ that is to come last.
 bool Unrolling::can_look_ahead() const {
   return n_ <= most_waiting && std::all_of(steps_.begin(), steps_.end(), [&](const Step& step) {
-    if (!is_moved(step)) return true;
-    for (const Column& column : step.columns)
-      for (const Slot slot : column.slots)
-        if (passes(slot, column.shift, step.lag - 1)) return false;
-    return step.kind == Step::Sum || step.kind == Step::Integral;
-  });
+           if (!is_moved(step)) return true;
+           for (const Column& column : step.columns)
+             for (const Slot slot : column.slots)
+               if (passes(slot, column.shift, step.lag - 1)) return false;
+           return step.kind == Step::Sum || step.kind == Step::Integral;
+         });
 }
 
 /// After stage 1, when all coefficients of order 1 are known that A and B take.
@@ -112,7 +126,7 @@ void Unrolling::look_ahead() {
 }
 
 void Unrolling::find_second_tangents(Step& step) {
-  const std::vector<Source> all = sources(step, true);
+  const std::vector<Source> all = sources(step);
   const auto add = [&](int name, const std::vector<int>& direction) {
     std::vector<Term> a, b;
     for (const Source& s : all) {

@@ -6,8 +6,8 @@ namespace maupertuis::unrolled {
 
 /// In the order of packed::CompiledExpand.
 enum Array : std::uint32_t {
-  Rows,          // [orders][stride]; q, q̇ and the leaves are set
-  Positions,     // [n] q and q̇ where they were written first, which are there sooner
+  Rows,       // [orders][stride]; q, q̇ and the leaves are set
+  Positions,  // [n] q and q̇ where they were written first, which are there sooner
   Velocities,
   Coefficients,  // of PackedProgram::coefficients
   Constants,     // of Program::constants

@@ -49,7 +49,7 @@ struct Step {
   /// By direction; `own`: of each lane in a direction of its own, −1 for none.
   enum Part : std::uint8_t { T, A, B };
   static constexpr int own = -1;
-  std::vector<int> direction = {};            // [lanes]
+  std::vector<int> direction = {};  // [lanes]
   std::map<int, Value> tangents[3] = {};
 };
 
@@ -63,7 +63,8 @@ class Unrolling {
   straight::StraightLine run();
 
  private:
-  // -------------------------------------------------------------------------------------------------- steps (steps.cpp)
+  // -------------------------------------------------------------------------------------------------- steps
+  // (steps.cpp)
   void add_steps(const packed::Pack& pack);
   void add_sum(const packed::Pack& pack, Step step);
   void add_instruction(const Instruction& i);
@@ -72,11 +73,11 @@ class Unrolling {
   Value coefficients(std::uint32_t first, std::size_t count);
   Value constant(ConstantId id);
 
-  // ------------------------------------------------------------------------------------------------ values (values.cpp)
+  // ------------------------------------------------------------------------------------------------ values
+  // (values.cpp)
   int current_order(Slot slot) const { return stage_ + 2 - p_.lags[slot]; }
   std::size_t cell(int order, Slot slot) const { return static_cast<std::size_t>(order) * stride_ + slot; }
-  Value& final_of(Slot slot, int order) { return final_[static_cast<std::size_t>(order) * p_.slots + slot]; }
-  Value& early_of(Slot slot, int order) { return early_[static_cast<std::size_t>(order) * p_.slots + slot]; }
+  std::size_t place(Slot slot, int order) const { return static_cast<std::size_t>(order) * p_.slots + slot; }
   void give_coordinates(int order);
   Value at(Slot slot, int order);
   Value gather(const Slots& slots, int order);
@@ -105,7 +106,8 @@ class Unrolling {
   Value root(const Step& step);
   Value power(const Step& step);
 
-  // -------------------------------------------------------------------------------------------- tangents (tangents.cpp)
+  // -------------------------------------------------------------------------------------------- tangents
+  // (tangents.cpp)
   /// T += f T', A += f A' + g T', B += f (B' + shift A') + h T' with those of some slots; `none` is 0.
   struct Source {
     Slots slots;
@@ -116,17 +118,20 @@ class Unrolling {
   bool passes(Slot slot, int shift, int lag) const { return p_.tangent_lags[slot] + shift == lag; }
   Value tangent(Step::Part part, Slot slot, int direction);
   Value tangents(Step::Part part, const Slots& slots, const std::vector<int>& directions);
-  std::vector<Source> sources(const Step& step, bool second);
+  bool leads(const Slots& slots, const Step& step) const { return p_.lags[slots[0]] == step.lag; }
+  std::vector<Source> sources(const Step& step);
+  void add_sources(const Step& step, const Product& p, const Slots& a, const Slots& b, std::vector<Source>& out);
+  void add_integral(const Step& step, const Product& p, std::vector<Source>& out);
+  Value first_order(Value coefficient, const Slots& slots);
   void find_tangents(Step& step);
   bool can_look_ahead() const;
   void look_ahead();
   void find_second_tangents(Step& step);
 
-  // -------------------------------------------------------------------------------------------- solution (solution.cpp)
+  // -------------------------------------------------------------------------------------------- solution
+  // (solution.cpp)
   bool looks_ahead(int stage) const { return looks_ahead_ && stage >= 2; }
-  bool is_corrected(Slot slot) const {
-    return slot < p_.stored_end[2] && p_.tangent_lags[slot] != Program::unmoved;
-  }
+  bool is_corrected(Slot slot) const { return slot < p_.stored_end[2] && p_.tangent_lags[slot] != Program::unmoved; }
   void factor();
   void eliminate(std::uint32_t pivot, std::uint32_t count, const std::vector<Value>& matrix);
   void refine(const std::vector<Value>& matrix);
@@ -134,6 +139,8 @@ class Unrolling {
   void solve();
   void correct();
   void correct(const Step& step);
+  Value add_before(const Step& step, Value result);
+  void set(const Step& step, int order, Value value, std::vector<Value>& values);
   Value lanes_for(const Step& step, Value coordinates, int direction);
 
   const packed::PackedProgram& packed_;
@@ -143,15 +150,15 @@ class Unrolling {
   std::uint32_t n_;
   straight::Builder to_;
   std::vector<Step> steps_;
-  std::vector<int> step_of_;                     // [slots] −1: none
+  std::vector<int> step_of_;  // [slots] −1: none
   bool looks_ahead_ = false;
-  std::vector<Value> final_, early_;             // [orders × slots]; early: without q̈ of the stage
+  std::vector<Value> final_, early_;                 // [orders × slots]; early: without q̈ of the stage
   std::map<std::pair<Value, int>, Value> weighted_;  // k u_k by u_k and k
-  std::map<Slot, Value> starts_;                 // values of functions
-  std::map<std::pair<Slot, int>, Value> rates_;  // of integrals of this stage: first and second derivatives
+  std::map<Slot, Value> starts_;                     // values of functions
+  std::map<std::pair<Slot, int>, Value> rates_;      // of integrals of this stage: first and second derivatives
   std::vector<Value> accelerations_, coordinates_;   // [stages]
-  std::vector<Value> inverse_;                   // columns of −M₀⁻¹
-  std::vector<Value> ahead_a_, ahead_b_;         // q̈_k by q̈_{k−1}: A + B/k
+  std::vector<Value> inverse_;                       // columns of −M₀⁻¹
+  std::vector<Value> ahead_a_, ahead_b_;             // q̈_k by q̈_{k−1}: A + B/k
   Value check_ = none;
 };
 

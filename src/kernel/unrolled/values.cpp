@@ -10,14 +10,13 @@ namespace maupertuis::unrolled {
 void Unrolling::give_coordinates(int order) {
   const auto array = order == 0 ? Positions : Velocities;
   for (std::uint32_t i = 0; i < n_; ++i)
-    final_of(i, order) = n_ <= most_waiting
-                             ? to_.given(array, i)
-                             : to_.lane(to_.wide_given(Rows, cell(order, 0), width_of(n_)), i);
+    final_[place(i, order)] =
+        n_ <= most_waiting ? to_.given(array, i) : to_.lane(to_.wide_given(Rows, cell(order, 0), width_of(n_)), i);
 }
 
 /// As far as it is known: coordinates of a stage count as 0 before its solution.
 Value Unrolling::at(Slot slot, int order) {
-  Value& found = final_of(slot, order);
+  Value& found = final_[place(slot, order)];
   if (found != none) return found;
   if (slot < n_) return to_.literal(0);
   if (slot == p_.one || (slot == p_.time && order > 0)) return to_.literal(order == (slot == p_.one ? 0 : 1));
@@ -40,9 +39,12 @@ Value Unrolling::operand(const Slots& slots, int order) {
   std::vector<Value> lanes;
   for (const Slot slot : slots) {
     const bool is_early = looks_ahead(stage_) && order == current_order(slot) - 1;
-    if (is_early && slot < n_) lanes.push_back(to_.literal(0));
-    else if (is_early && early_of(slot, order) != none) lanes.push_back(early_of(slot, order));
-    else lanes.push_back(at(slot, order));
+    if (is_early && slot < n_)
+      lanes.push_back(to_.literal(0));
+    else if (is_early && early_[place(slot, order)] != none)
+      lanes.push_back(early_[place(slot, order)]);
+    else
+      lanes.push_back(at(slot, order));
   }
   return gathered(std::move(lanes));
 }
@@ -115,17 +117,22 @@ void Unrolling::find(const Step& step) {
   k_ = stage_ + 2 - step.lag;
   if (k_ < 0) return;
   switch (step.kind) {
-    case Step::Sum: return keep(step, sum(step));
-    case Step::Integral: return keep(step, k_ == 0 ? functions(step) : integral(step));
-    case Step::Quotient: return keep(step, quotient(step));
-    case Step::Root: return keep(step, root(step));
-    case Step::Power: return keep(step, power(step));
+    case Step::Sum:
+      return keep(step, sum(step));
+    case Step::Integral:
+      return keep(step, k_ == 0 ? functions(step) : integral(step));
+    case Step::Quotient:
+      return keep(step, quotient(step));
+    case Step::Root:
+      return keep(step, root(step));
+    case Step::Power:
+      return keep(step, power(step));
   }
 }
 
 /// What is corrected is stored when it is final.
 void Unrolling::keep(const Step& step, Value value) {
-  for (std::uint32_t i = 0; i < step.out.size(); ++i) final_of(step.out[i], k_) = to_.lane(value, i);
+  set(step, k_, value, final_);
   if (stage_ < 0 || !is_corrected(step.out[0])) store(step.out, k_, value);
 }
 
@@ -150,7 +157,8 @@ Value Unrolling::columns(const Step& step, int shift, Value before) {
   std::vector<Term> derivatives, others;
   for (const Column& column : step.columns) {
     if (column.shift != shift) continue;
-    if (const Value known = rate(column); known != none) derivatives.push_back({1, column.coefficient, known});
+    if (const Value known = rate(column); known != none)
+      derivatives.push_back({1, column.coefficient, known});
     else if (const Value x = gather(column.slots, k_ + shift); !to_.is_zero(x))
       others.push_back({1, column.coefficient, x});
   }
@@ -165,8 +173,8 @@ Value Unrolling::columns(const Step& step, int shift, Value before) {
 Value Unrolling::rate(const Column& column) {
   std::vector<Value> lanes;
   for (const Slot slot : column.slots) {
-    const auto found = column.shift > 0 && current_order(slot) == k_ + column.shift ? rates_.find({slot, column.shift})
-                                                                                   : rates_.end();
+    const auto found =
+        column.shift > 0 && current_order(slot) == k_ + column.shift ? rates_.find({slot, column.shift}) : rates_.end();
     if (found == rates_.end()) return none;
     lanes.push_back(found->second);
   }
@@ -229,10 +237,12 @@ Value Unrolling::functions(const Step& step) {
   for (const std::uint32_t index : step.functions) {
     const Instruction& i = p_.instructions[index];
     const Value x = at(i.a, 0);
-    if (i.op == Op::SinCos) angles.push_back(x), of_angles.push_back(&i);
+    if (i.op == Op::SinCos)
+      angles.push_back(x), of_angles.push_back(&i);
     else if (i.op == Op::SinhCosh)
       starts_[i.out] = to_.call(Kind::Sinh, x), starts_[i.second] = to_.call(Kind::Cosh, x);
-    else starts_[i.out] = to_.call(i.function, x, i.b == no_slot ? none : at(i.b, 0));
+    else
+      starts_[i.out] = to_.call(i.function, x, i.b == no_slot ? none : at(i.b, 0));
   }
   if (!angles.empty()) {
     const auto both = to_.sines(angles);

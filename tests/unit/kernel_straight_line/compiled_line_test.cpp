@@ -150,6 +150,25 @@ TEST_CASE("guarded lines store only where all went well, and last: results may g
   }
 }
 
+TEST_CASE("values of several widths, whose lanes come from one value, from two, and from anywhere") {
+  Builder to;
+  const Value a = to.wide_given(0, 0, 4), b = to.wide_given(0, 4, 4), pair = to.wide_given(0, 1, 2), x = to.given(0, 8);
+  const auto lane = [&](Value v, std::uint32_t i) { return to.lane(v, i); };
+  const Value turned = to.gather({lane(a, 3), lane(a, 2), lane(a, 1), lane(a, 0)});
+  const Value both = to.gather({lane(a, 1), lane(b, 2), lane(b, 0), lane(a, 3)});
+  const Value any = to.gather({lane(pair, 1), x, lane(a, 0), to.literal(7)});
+  to.store(to.sum({{2, turned, x}, {-1, both}, {1}}), 1, 0);
+  to.store(to.sum({{1, any}}, a, b), 1, 4);
+  to.store(to.root(to.gather({lane(b, 3), lane(pair, 0)})), 1, 8);
+  const auto [code, report] = compile({to.finish(2, 1, 0)}, {.cache = false});
+  REQUIRE_MESSAGE(code, report.trouble);
+  const std::vector<double> g{1, 2, 3, 4, 5, 6, 8, 9, 0.5};
+  std::vector<double> y(10), scratch(8);
+  code(0, g.data(), y.data(), scratch.data());
+  CHECK(y == std::vector<double>{4 - 2 + 1, 3 - 8 + 1, 2 - 5 + 1, 1 - 4 + 1, 3.0 * 1 / 5, 0.5 * 2 / 6, 1.0 * 3 / 8,
+                                 7.0 * 4 / 9, 3, std::sqrt(2.0)});
+}
+
 TEST_CASE("a line that is too long is declined in a sentence") {
   Builder to;
   Value x = to.given(0, 0);

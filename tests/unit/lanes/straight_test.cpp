@@ -115,6 +115,8 @@ TEST_CASE("machine code of one motion: functions of t ahead of it, sums with t, 
   add_friction(list), add_driven(list), add_shaken_pendulum(list), add_mixed_angles(list);
   add_function(list, "quotient", 0.6, [](Expr u) { return sin(u) / (u + Rational(2)); });
   add_function(list, "power", 0.9, [](Expr u) { return pow(u, Rational(-3, 2)); });
+  add_function(list, "cosh", 0.4, [](Expr u) { return apply(Kind::Cosh, u); });
+  add_function(list, "power of itself", 0.9, [](Expr u) { return u.context().power(u, u); });
   for (unsigned seed = 1; seed <= 4; ++seed) make_random(add(list, "random " + std::to_string(seed)), seed);
   for (const auto& s : list) {
     CAPTURE(s->name);
