@@ -53,7 +53,7 @@ struct Step {
   std::map<int, Value> tangents[3] = {};
 };
 
-/// Unknowns up to which a stage mostly waits; beyond, it is bound by the number of operations.
+/// Unknowns up to which a stage mostly waits; beyond, the number of operations counts.
 inline constexpr std::uint32_t most_waiting = 4;
 
 /// See docs/design/packed_kernels.md, "Unrolled code".
