@@ -77,11 +77,6 @@ void Unrolling::add_sum(const Pack& pack, Step step) {
 void Unrolling::add_instruction(const Instruction& i) {
   Step step{.lag = i.lag, .out = {i.out}};
   const Value one = to_.literal(1);
-  const auto integral = [&](Slot out, Slot w, double factor) {
-    step.kind = Step::Integral, step.out = {out}, step.products = {{{i.a}, {w}, to_.literal(factor)}};
-    add(step);
-  };
-  const auto index = static_cast<std::uint32_t>(&i - p_.instructions.data());
   switch (i.op) {
     case Op::Linear: case Op::Products: case Op::Function:
       for (std::uint32_t t = i.first_term; t < i.last_term; ++t) {
@@ -90,7 +85,8 @@ void Unrolling::add_instruction(const Instruction& i) {
         else if (i.op == Op::Function) step.products.push_back({{b}, {a}, constant(coefficient)});
         else step.products.push_back({{a}, {b}, constant(coefficient)});
       }
-      if (i.op == Op::Function) step.kind = Step::Integral, step.functions = {index};
+      if (i.op == Op::Function)
+        step.kind = Step::Integral, step.functions = {static_cast<std::uint32_t>(&i - p_.instructions.data())};
       return add(std::move(step));
     case Op::Square: step.products = {{{i.a}, {i.a}, one}}; return add(std::move(step));
     case Op::Derivative: step.columns = {{{i.a}, 1, one}}; return add(std::move(step));
@@ -99,12 +95,8 @@ void Unrolling::add_instruction(const Instruction& i) {
     case Op::Power:
       step.kind = Step::Power, step.products = {{{i.a}, {}, constant(i.constant)}};
       return add(std::move(step));
+    // leaves, pairs, which are packs always, and what is not unrolled
     case Op::SinCos: case Op::SinhCosh:
-      step.functions = {index};
-      integral(i.out, i.second, 1);
-      step.functions.clear();
-      return integral(i.second, i.out, i.op == Op::SinCos ? -1 : 1);
-    // leaves, and what is not unrolled
     case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: case Op::Select: return;
   }
 }
