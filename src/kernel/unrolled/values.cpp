@@ -187,18 +187,11 @@ Value Unrolling::products(const Step& step, Value before) {
   return to_.sum(terms);
 }
 
-/// Products of several terms whose operands lie side by side are one convolution of wider values.
+/// Products of several terms are one convolution of wider values, where these are full.
 bool Unrolling::can_be_merged(const Step& step) const {
-  const std::size_t width = step.out.size(), whole = step.products.size() * width;
-  if (step.products.size() < 2 || whole > packed::lanes || !std::has_single_bit(whole)) return false;
-  const Product& first = step.products[0];
-  for (std::uint32_t i = 0; i < whole; ++i) {
-    const Product& p = step.products[i / width];
-    const Slot a = p.a[i % width], b = p.b[i % width];
-    if (a == b || a != first.a[0] + i || b != first.b[0] + i) return false;
-    if (p_.lags[a] != p_.lags[first.a[0]] || p_.lags[b] != p_.lags[first.b[0]]) return false;
-  }
-  return true;
+  const std::size_t whole = step.products.size() * step.out.size();
+  return step.products.size() > 1 && whole <= packed::lanes && std::has_single_bit(whole) &&
+         std::all_of(step.products.begin(), step.products.end(), [](const Product& p) { return p.a != p.b; });
 }
 
 Value Unrolling::merged_products(const Step& step, Value before) {
