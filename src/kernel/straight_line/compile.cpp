@@ -10,9 +10,9 @@ namespace {
 
 void add(machine_code::Digester& d, const Node& node) {
   for (const std::uint64_t part :
-       {std::uint64_t(node.what), std::uint64_t(node.wide), std::uint64_t(node.width), std::uint64_t(node.function), std::uint64_t(node.a),
-        std::uint64_t(node.b), std::uint64_t(node.c), std::uint64_t(node.array), std::uint64_t(node.index),
-        std::uint64_t(node.first), std::uint64_t(node.last)})
+       {std::uint64_t(node.what), std::uint64_t(node.wide), std::uint64_t(node.width), std::uint64_t(node.function),
+        std::uint64_t(node.a), std::uint64_t(node.b), std::uint64_t(node.c), std::uint64_t(node.array),
+        std::uint64_t(node.index), std::uint64_t(node.first), std::uint64_t(node.last)})
     d.add(part);
   d.add_double(node.literal);
 }

@@ -65,6 +65,7 @@ inline bool is_wide(const Node& node) {
 }
 
 struct StraightLine {
+  /// Numbers of a value.
   std::uint32_t width(Value v) const {
     const Node& node = nodes[v];
     return !is_wide(node) ? 1 : node.width > 0 ? node.width : wide;
@@ -99,7 +100,11 @@ void for_operands(const StraightLine& line, const Node& node, F&& f) {
 
 /// Doubles of the array that code takes after those of its program: first whether all went well, see `sound`, then
 /// numbers on their way from one function to the next.
-inline std::size_t scratch_size(const StraightLine& line) { return 8 + line.nodes.size() * line.wide; }
+inline std::size_t scratch_size(const StraightLine& line) {
+  std::size_t out = 8;
+  for (Value v = 0; v < line.nodes.size(); ++v) out += line.width(v);
+  return out;
+}
 
 /// What code leaves in its scratch, unless it is guarded: min (pivot − share · size), and 0 · Σ finite.
 inline bool sound(const double* scratch) { return scratch[0] > 0 && scratch[1] == 0; }
