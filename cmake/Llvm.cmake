@@ -38,7 +38,7 @@ endif()
 
 # The two sides of the border share types; the tag tells whether they are of one build.
 file(GLOB border CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/kernel/program/*.hpp ${PROJECT_SOURCE_DIR}/src/kernel/packed/*.hpp
-  ${PROJECT_SOURCE_DIR}/src/kernel/lanes/*.hpp ${PROJECT_SOURCE_DIR}/src/kernel/compiled/*.hpp
+  ${PROJECT_SOURCE_DIR}/src/kernel/lanes/*.hpp ${PROJECT_SOURCE_DIR}/src/kernel/machine_code/*.hpp
   ${PROJECT_SOURCE_DIR}/src/kernel/straight_line/*.hpp
   ${PROJECT_SOURCE_DIR}/include/maupertuis/expression.hpp ${PROJECT_SOURCE_DIR}/include/maupertuis/functions.hpp)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${border})

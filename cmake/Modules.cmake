@@ -67,9 +67,9 @@ endfunction()
 function(maup_describe_llvm_module)
   include(GNUInstallDirs)
   file(RELATIVE_PATH from_program /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR}/maupertuis)
-  set_source_files_properties(${PROJECT_SOURCE_DIR}/src/kernel/compiled/backend.cpp PROPERTIES COMPILE_DEFINITIONS
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/src/kernel/machine_code/backend.cpp PROPERTIES COMPILE_DEFINITIONS
     "MAUPERTUIS_BUILD_TAG=\"${MAUPERTUIS_BUILD_TAG}\";MAUPERTUIS_LLVM_FILE=\"libmaup_kernel_llvm.so\";MAUPERTUIS_MODULE_FROM_PROGRAM=\"${from_program}\";MAUPERTUIS_MODULE_FOLDER=\"${CMAKE_INSTALL_FULL_LIBDIR}/maupertuis\"")
-  target_link_libraries(maup_kernel_compiled PRIVATE ${CMAKE_DL_LIBS})
+  target_link_libraries(maup_kernel_machine_code PRIVATE ${CMAKE_DL_LIBS})
   set_property(GLOBAL APPEND PROPERTY MAUP_LIBRARIES ${CMAKE_DL_LIBS})
 endfunction()
 

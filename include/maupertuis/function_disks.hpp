@@ -1,22 +1,22 @@
 #pragma once
 #include <maupertuis/function_kernel.hpp>
 
+#include <memory>
 #include <span>
-#include <vector>
 
 namespace maupertuis {
-
-struct FunctionInstruction;
 
 /// Bounds of a function's values where its inputs are polynomials in s and |s| ≤ r in the complex plane (docs/design/safe_steps.md):
 /// what points cannot see, a disk that contains them can. Each value f has a *reach* ≥ |f(s) − f(0)|, bounds of its modulus, and a *tail*: the reach of
 /// what is no polynomial of the inputs' degree; ∞ where the disk meets a singularity, or a switch that is not decided on it. By Cauchy's
 /// estimate a polynomial of degree K − 1 leaves out at most tail · x^K/(1 − x) of f at |s| = x r.
 ///
-/// Cost: some 10 operations an instruction.
+/// Cost: some 10 operations a term.
 class FunctionDisks {
  public:
   FunctionDisks(const FunctionKernel& kernel, std::span<const double> parameters);
+  ~FunctionDisks();
+  FunctionDisks(FunctionDisks&&) noexcept;
   /// The inputs at s = 0, [inputs].
   void set_centre(std::span<const double> inputs);
   /// reach: [inputs] on the disk about the centre.
@@ -25,20 +25,8 @@ class FunctionDisks {
   double tail(std::size_t output) const;
 
  private:
-  struct Bounds {
-    double reach = 0, tail = 0, low = 0, high = 0;  // low ≤ |f| ≤ high
-  };
-  Bounds result(const FunctionInstruction& i) const;
-  Bounds product(const FunctionInstruction& i) const;
-  Bounds quotient(const FunctionInstruction& i) const;
-  Bounds power(std::uint32_t a, double exponent, double value) const;
-  Bounds function(const FunctionInstruction& i) const;
-  Bounds chosen(const FunctionInstruction& i) const;
-
-  FunctionKernel kernel_;
-  FunctionWorkspace every_value_;  // of the program
-  std::vector<double> centre_;     // [slots]
-  std::vector<Bounds> bounds_;     // [slots]
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace maupertuis

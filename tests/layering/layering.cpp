@@ -95,7 +95,7 @@ std::vector<std::string> violations(const source_tree::File& file, const std::st
       if (owner.empty()) found.push_back(place + included + " stands in no line of the table in ARCHITECTURE.md");
       else if (!allowed.count(owner)) found.push_back(place + module + " may not use " + owner + " (" + included + ")");
     } else if (const std::string owner = module_of_path(included, table); !owner.empty() && owner != module) {
-      // Private headers stay within a family (kernel/jet may read kernel/program's) and below in the table.
+      // Private headers stay within a family (kernel/series may read kernel/program's) and below in the table.
       const bool close = top_folder(owner) == top_folder(module) || confidants.count({module, owner}) || owner == "linear_algebra";
       if (!allowed.count(owner) || !close)
         found.push_back(place + module + " may not read the private header " + included);
@@ -149,10 +149,10 @@ TEST_CASE("a forbidden include is seen") {
   const source_tree::File upwards{"src/base/x.cpp", {"#include <vector>", "#include <maupertuis/simulation.hpp>"}};
   REQUIRE(violations(upwards, "base", table).size() == 1);
   CHECK(violations(upwards, "base", table)[0].rfind("src/base/x.cpp:2: base may not use simulation", 0) == 0);
-  const source_tree::File sideways{"src/kernel/jet/x.cpp", {"#include \"system/elaboration.hpp\""}};
-  CHECK(violations(sideways, "kernel/jet", table).size() == 1);
-  const source_tree::File own{"src/kernel/jet/x.cpp", {"#include \"kernel/jet/x.hpp\"", "#include \"kernel/program/y.hpp\""}};
-  CHECK(violations(own, "kernel/jet", table).empty());
+  const source_tree::File sideways{"src/kernel/series/x.cpp", {"#include \"system/elaboration.hpp\""}};
+  CHECK(violations(sideways, "kernel/series", table).size() == 1);
+  const source_tree::File own{"src/kernel/series/x.cpp", {"#include \"kernel/series/x.hpp\"", "#include \"kernel/program/y.hpp\""}};
+  CHECK(violations(own, "kernel/series", table).empty());
 }
 
 TEST_CASE("no cycle: every module is reached only from above") {
@@ -181,7 +181,7 @@ TEST_CASE("what is dear to compile is included in few places") {
   };
   // Sources may store and multiply matrices as they like; factorizations are compiled once. The kernels' matrices are views of their own.
   const std::vector<Library> libraries{
-      {R"re(eigen3/Eigen/(Dense|LU|QR|SVD|Cholesky|Eigenvalues))re", {"src/linear_algebra/", "src/kernel/jet/"}},
+      {R"re(eigen3/Eigen/(Dense|LU|QR|SVD|Cholesky|Eigenvalues))re", {"src/linear_algebra/", "src/kernel/dense/"}},
       {R"re(CLI/.*)re", {"apps/maup/options.cpp", "apps/maup/option_table.cpp"}},
       {R"re(boost/multiprecision/.*)re",
        {"src/symbolic/evaluate/real100.hpp", "src/kernel/extended/number.hpp", "src/base/rational.cpp"}}};

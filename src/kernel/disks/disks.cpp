@@ -31,15 +31,16 @@ Disks::Disks(const Program& program, std::span<const std::uint32_t> slots) : pro
         if (instruction.second != no_slot) made[instruction.second] = true;
       }
   for (const Slot slot : program.residual) residual_.push_back(slot == no_slot ? -1 : maker[slot]);
-  for (auto* values : {&reach_, &tail_, &low_, &high_, &reach_before_, &tail_before_, &series_, &rounding_}) values->assign(program.slots, 0.0);
+  for (auto* values : {&reach_, &tail_, &low_, &high_, &reach_before_, &tail_before_, &series_, &rounding_})
+    values->assign(program.slots, 0.0);
   for (auto& values : rate_reach_) values.assign(program.unknowns, 0.0);
   find_degrees();
   find_series(made);
   find_needs(slots);
 }
 
-/// Backwards from the tails that are asked for. The tail of a sum needs the tails of its terms and the reaches of what it multiplies; that of a
-/// function needs the reach of its operand.
+/// Backwards from the tails that are asked for. The tail of a sum needs the tails of its terms and the reaches of what
+/// it multiplies; that of a function needs the reach of its operand.
 void Disks::find_needs(std::span<const std::uint32_t> slots) {
   needs_reach_.assign(program_.slots, 0);
   needs_tail_.assign(program_.slots, 0);
@@ -60,7 +61,9 @@ void Disks::find_needs(std::span<const std::uint32_t> slots) {
 /// What is differentiated other than coordinates, and what that is made of.
 void Disks::find_derived() {
   std::vector<bool> wanted(program_.slots, false);
-  const auto want = [&](Slot slot) { if (slot != no_slot && slot >= program_.unknowns && slot != program_.time) wanted[slot] = true; };
+  const auto want = [&](Slot slot) {
+    if (slot != no_slot && slot >= program_.unknowns && slot != program_.time) wanted[slot] = true;
+  };
   for (const std::uint32_t at : needed_) {
     const Instruction& i = nodes_[at].instruction;
     if (i.op == Op::Derivative && needs_reach_[i.out]) want(i.a);
@@ -116,7 +119,8 @@ void Disks::find_degrees() {
         const Term& term = terms_[t];
         const bool is_product = i.op == Op::Products && t >= i.first_product;
         degree = std::max(degree, is_product ? product(degree_[term.a], degree_[term.b]) : degree_[term.a]);
-        linear = linear && linear_[term.a] && (!is_product || product(degree_[term.a], degree_[term.b]) < not_polynomial);
+        linear =
+            linear && linear_[term.a] && (!is_product || product(degree_[term.a], degree_[term.b]) < not_polynomial);
       }
     } else if (i.op == Op::Square) {
       degree = product(degree_[i.a], degree_[i.a]);
@@ -129,7 +133,8 @@ void Disks::find_degrees() {
     linear_[i.out] = linear;
     if (i.second != no_slot) degree_[i.second] = not_polynomial, linear_[i.second] = false;
   }
-  for (const Slot slot : program_.residual) residual_has_tails_ = residual_has_tails_ || (slot != no_slot && !linear_[slot]);
+  for (const Slot slot : program_.residual)
+    residual_has_tails_ = residual_has_tails_ || (slot != no_slot && !linear_[slot]);
 }
 
 /// Stored slots hold all orders; so do those that nothing corrects, since no acceleration moves them.
@@ -195,7 +200,8 @@ void Disks::find_powers() {
   for (std::size_t k = 4; k < powers_.size(); ++k) power[k] = power[k - 4] * fourth;
 }
 
-/// q, q̇ and q̈ of the coordinates, and of what multipliers are the second derivatives of: polynomials that are known whole.
+/// q, q̇ and q̈ of the coordinates, and of what multipliers are the second derivatives of: polynomials that are known
+/// whole.
 void Disks::evaluate_coordinates() {
   const int degree = now_.order + 1;
   for (std::size_t i = 0; i < program_.unknowns; ++i) {
@@ -208,7 +214,8 @@ void Disks::evaluate_coordinates() {
     }
     if (degree % 2 != 0) even += std::abs(coefficient(degree, slot)) * powers_[static_cast<std::size_t>(degree)];
     const double reach = even + odd;
-    for (int shift = 1; shift <= most_rates_; ++shift) rate_reach_[static_cast<std::size_t>(shift) - 1][i] = reach_of_rate(slot, shift);
+    for (int shift = 1; shift <= most_rates_; ++shift)
+      rate_reach_[static_cast<std::size_t>(shift) - 1][i] = reach_of_rate(slot, shift);
     const double c = std::abs(coefficient(0, slot));
     reach_[slot] = reach, tail_[slot] = 0;
     low_[slot] = std::max(0.0, c - reach), high_[slot] = c + reach;

@@ -9,13 +9,20 @@
 namespace maupertuis {
 
 Envelope::Envelope(const Program& program, std::span<const int> degrees)
-    : program_(program), degrees_(degrees.begin(), degrees.end()), needs_size_(program.slots, 0), rates_(program.slots, 0), values_(program.slots), place_(program.slots, -1) {
+    : program_(program),
+      degrees_(degrees.begin(), degrees.end()),
+      needs_size_(program.slots, 0),
+      rates_(program.slots, 0),
+      values_(program.slots),
+      place_(program.slots, -1) {
   find_needs();
 }
 
 /// Backwards: products, quotients and powers need the size of what they are made of, sines and derivatives do not.
 void Envelope::find_needs() {
-  const auto want = [this](Slot slot, int rates) { rates_[slot] = std::max(rates_[slot], static_cast<std::int8_t>(std::min(rates, 2))); };
+  const auto want = [this](Slot slot, int rates) {
+    rates_[slot] = std::max(rates_[slot], static_cast<std::int8_t>(std::min(rates, 2)));
+  };
   for (auto run = program_.runs[Dynamics].rbegin(); run != program_.runs[Dynamics].rend(); ++run)
     for (std::uint32_t at = run->last; at-- > run->first;) {
       const Instruction& i = program_.instructions[at];
@@ -32,7 +39,9 @@ void Envelope::find_needs() {
       for (const Slot slot : {i.a, i.b}) {
         if (is_sum || slot == no_slot) continue;
         if (!is_angle) needs_size_[slot] = 1;
-        if (i.op == Op::SquareRoot || i.op == Op::Power || i.op == Op::Function || (i.op == Op::Quotient && slot == i.b)) observe(slot);
+        if (i.op == Op::SquareRoot || i.op == Op::Power || i.op == Op::Function ||
+            (i.op == Op::Quotient && slot == i.b))
+          observe(slot);
         want(slot, i.op == Op::Derivative ? rates + 1 : rates);
       }
       if (i.op == Op::Function) observe(i.out);
@@ -49,7 +58,11 @@ void Envelope::evaluate(const double* constants, const MotionSizes& sizes, doubl
   order_ = order;
   sizes_ = sizes;
   for (std::size_t i = 0; i < program_.unknowns; ++i)
-    set(static_cast<Slot>(i), {sizes.centre[i], sizes.reach[i], 0, {sizes.centre[i] + sizes.reach[i], sizes.rate[i], sizes.acceleration[i]}, {0, 0, 0}});
+    set(static_cast<Slot>(i), {sizes.centre[i],
+                               sizes.reach[i],
+                               0,
+                               {sizes.centre[i] + sizes.reach[i], sizes.rate[i], sizes.acceleration[i]},
+                               {0, 0, 0}});
   if (program_.one != no_slot) values_[program_.one] = {1, 0, 1, {1, 0, 0}, {0, 0, 0}};
   if (program_.time != no_slot) set(program_.time, {sizes.time, radius, 0, {sizes.time + radius, 1, 0}, {0, 0, 0}});
   for (const Run& run : program_.runs[Dynamics])
@@ -91,7 +104,11 @@ Envelope::Value Envelope::evaluate(const Instruction& i, const double* constants
     case Op::Function: return function(i);
     case Op::Derivative: {
       const Value& a = values_[i.a];
-      return {a.high[1], 2 * a.high[1], 0, {a.high[1], a.high[2], infinity}, {a.tail[1], a.tail[2], a.tail[2] == 0 ? 0 : infinity}};
+      return {a.high[1],
+              2 * a.high[1],
+              0,
+              {a.high[1], a.high[2], infinity},
+              {a.tail[1], a.tail[2], a.tail[2] == 0 ? 0 : infinity}};
     }
     case Op::Select: {
       std::uint32_t t = i.first_term;
@@ -122,7 +139,8 @@ void Envelope::add(Value& total, double& largest, double c, const Value& f, int 
   largest = std::max(largest, c * f.high[shift]);
 }
 
-/// The modulus of a sum is at least the largest lower bound of a term less the upper bounds of the others. Derivatives that no one wants may be anything.
+/// The modulus of a sum is at least the largest lower bound of a term less the upper bounds of the others. Derivatives
+/// that no one wants may be anything.
 Envelope::Value Envelope::sum(const Instruction& i, const double* constants) const {
   Value total{.centre = 0, .reach = 0, .low = 0, .high = {0, 0, 0}, .tail = {0, 0, 0}};
   double largest = 0;  // of low + high
@@ -172,11 +190,16 @@ Envelope::Value Envelope::quotient(const Instruction& i) const {
   return f;
 }
 
-/// f = w^c: ḟ = c w^{c−1} ẇ, f̈ = c w^{c−1} ẅ + c (c − 1) w^{c−2} ẇ². A disk about 0 is one of whole positive powers alone.
+/// f = w^c: ḟ = c w^{c−1} ẇ, f̈ = c w^{c−1} ẅ + c (c − 1) w^{c−2} ẇ². A disk about 0 is one of whole positive powers
+/// alone.
 Envelope::Value Envelope::power(const Value& w, double c) const {
   const bool is_whole = c > 0 && c == std::nearbyint(c);
   const auto largest = [&](double exponent, double factor) {  // of |factor w^exponent|
-    return factor == 0 ? 0.0 : std::abs(factor) * (exponent == 0 ? 1.0 : exponent > 0 ? std::pow(w.high[0], exponent) : w.low > 0 ? std::pow(w.low, exponent) : infinity);
+    return factor == 0 ? 0.0
+                       : std::abs(factor) * (exponent == 0  ? 1.0
+                                             : exponent > 0 ? std::pow(w.high[0], exponent)
+                                             : w.low > 0    ? std::pow(w.low, exponent)
+                                                            : infinity);
   };
   if (!is_whole && !(w.low > 0)) return {};
   const double slope = largest(c - 1, c), bend = largest(c - 2, c * (c - 1));
@@ -191,7 +214,8 @@ Envelope::Value Envelope::power(const Value& w, double c) const {
   return f;
 }
 
-/// Sine and cosine of what is real at the centre are at most cosh δ, and all their derivatives; those of hyperbolic ones cosh(|w| + δ).
+/// Sine and cosine of what is real at the centre are at most cosh δ, and all their derivatives; those of hyperbolic
+/// ones cosh(|w| + δ).
 Envelope::Value Envelope::circular(const Value& w, bool hyperbolic) const {
   const double d = w.reach, cosh = hyperbolic ? std::cosh(w.centre + d) : std::cosh(d), sinh = std::sinh(d);
   Value f;

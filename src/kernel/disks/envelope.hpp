@@ -16,16 +16,19 @@ struct MotionSizes {
   double time = 0;                                            // the largest |t|
 };
 
-/// Bounds of the residual for all motions of certain sizes, where Disks bounds one motion: so that one bound serves many steps.
+/// Bounds of the residual for all motions of certain sizes, where Disks bounds one motion: so that one bound serves
+/// many steps.
 ///
-/// Each value f has upper bounds of |f|, |ḟ|, |f̈| on the disk and of what of them is no polynomial; all of them grow with the sizes of the coordinates, so that
-/// smaller ones are safe as well. Denominators, and what stands under roots and in functions, are *observed*: their values at the centre are given.
+/// Each value f has upper bounds of |f|, |ḟ|, |f̈| on the disk and of what of them is no polynomial; all of them grow
+/// with the sizes of the coordinates, so that smaller ones are safe as well. Denominators, and what stands under roots
+/// and in functions, are *observed*: their values at the centre are given.
 class Envelope {
  public:
   /// degrees: [slots] of polynomials in t, see Disks::degrees. The program must outlive this.
   Envelope(const Program& program, std::span<const int> degrees);
 
-  /// Whether the size of coordinate i counts, and not only how far it moves: little for an angle that stands in sines and cosines alone.
+  /// Whether the size of coordinate i counts, and not only how far it moves: little for an angle that stands in sines
+  /// and cosines alone.
   bool needs_centre(std::size_t i) const { return needs_size_[i] != 0; }
   bool needs_time() const { return program_.time != no_slot && needs_size_[program_.time] != 0; }
   std::span<const Slot> observed() const { return observed_; }
@@ -33,7 +36,9 @@ class Envelope {
   /// Bounds on |s| ≤ radius. constants: [program.constants]; order: of the polynomial of q̇.
   void evaluate(const double* constants, const MotionSizes& sizes, double radius, int order);
   /// Of R_j; infinite or not a number where there is no bound.
-  double residual_tail(std::size_t j) const { return program_.residual[j] == no_slot ? 0.0 : values_[program_.residual[j]].tail[0]; }
+  double residual_tail(std::size_t j) const {
+    return program_.residual[j] == no_slot ? 0.0 : values_[program_.residual[j]].tail[0];
+  }
 
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -41,7 +46,8 @@ class Envelope {
   struct Value {
     double centre = infinity, reach = infinity;                                         // |f(0)|, |f(s) − f(0)|
     double low = 0;                                                                     // ≤ |f|
-    double high[3] = {infinity, infinity, infinity}, tail[3] = {infinity, infinity, infinity};  // ≥ |f|, |ḟ|, |f̈|, and of what of them is no polynomial
+    /// ≥ |f|, |ḟ|, |f̈|, and of what of them is no polynomial
+    double high[3] = {infinity, infinity, infinity}, tail[3] = {infinity, infinity, infinity};
   };
 
   void find_needs();

@@ -1,5 +1,5 @@
 #pragma once
-#include "kernel/interpreter/interpreter.hpp"
+#include "kernel/reference/reference.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -8,15 +8,18 @@
 
 namespace maupertuis {
 
-/// Values of a program along a motion that is known: the coordinates (and the multipliers) are polynomials in s, and some slots are expanded
-/// about any s, by the interpreter's rules and without solving for anything. So a function that varies faster than the motion is followed
-/// in pieces, while the step stays as long as it is.
+/// Values of a program along a motion that is known: the coordinates (and the multipliers) are polynomials in s, and
+/// some slots are expanded about any s, by the interpreter's rules and without solving for anything. So a function that
+/// varies faster than the motion is followed in pieces, while the step stays as long as it is.
 template <class T>
 class Retrace {
  public:
   /// `slots`: those that are wanted; what they do not need is not carried out. The program must outlive this.
   Retrace(const Program& program, int order, std::span<const Slot> slots)
-      : program_(program), order_(order), memory_(program, order + 2 + (-2 - program.first_stage), program.slots), polynomials_((order + 2) * program.unknowns) {
+      : program_(program),
+        order_(order),
+        memory_(program, order + 2 + (-2 - program.first_stage), program.slots),
+        polynomials_((order + 2) * program.unknowns) {
     find_needed(slots);
     producer_.assign(program.slots, nullptr);
     for (const Instruction& i : program.instructions) producer_[i.out] = &i;
@@ -25,13 +28,14 @@ class Retrace {
   /// [program.constants]
   void set_constants(const T* constants) {
     std::copy_n(constants, memory_.constants.size(), memory_.constants.begin());
-    interpreter::prepare_terms(memory_);
+    reference::prepare_terms(memory_);
   }
   /// q_p(s) = Σ_k row(k)[i] s^k for k ≤ order + 1, beginning at t + rest.
   template <class Row>
   void set_motion(const T& t, const T& rest, Row&& row) {
     t_ = t, rest_ = rest;
-    for (int k = 0; k <= order_ + 1; ++k) std::copy_n(row(k), program_.unknowns, polynomials_.data() + static_cast<std::size_t>(k) * program_.unknowns);
+    for (int k = 0; k <= order_ + 1; ++k)
+      std::copy_n(row(k), program_.unknowns, polynomials_.data() + static_cast<std::size_t>(k) * program_.unknowns);
   }
   /// All orders about s.
   void expand_about(const T& s) { run(s, order_); }
@@ -42,7 +46,7 @@ class Retrace {
   const T* row(int k) const { return memory_.row(k); }
   const T* constants() const { return memory_.constants.data(); }
   std::size_t stride() const { return memory_.stride; }
-  T scale(Slot slot) const { return interpreter::term_size(memory_, producer_[slot], slot); }
+  T scale(Slot slot) const { return reference::term_size(memory_, producer_[slot], slot); }
 
  private:
   /// Backwards from what is wanted. What a function's differential needs may stand behind it, hence the turns.
@@ -68,12 +72,12 @@ class Retrace {
   }
 
   void run(const T& s, int stages) {
-    interpreter::set_leaves(memory_, T(t_ + (rest_ + s)), order_ + 2 + (-2 - program_.first_stage));
+    reference::set_leaves(memory_, T(t_ + (rest_ + s)), order_ + 2 + (-2 - program_.first_stage));
     shift(s, stages + 1);
     for (int stage = program_.first_stage; stage < stages; ++stage)
       for (const std::uint32_t index : needed_) {
         const int order = stage + 2 - program_.instructions[index].lag;
-        if (order >= 0) interpreter::run_instruction(memory_, index, order);
+        if (order >= 0) reference::run_instruction(memory_, index, order);
       }
   }
 
@@ -83,7 +87,8 @@ class Retrace {
     const int degree = order_ + 1;
     std::vector<T> c(static_cast<std::size_t>(degree) + 1);
     for (std::size_t i = 0; i < n; ++i) {
-      for (int k = 0; k <= degree; ++k) c[static_cast<std::size_t>(k)] = polynomials_[static_cast<std::size_t>(k) * n + i];
+      for (int k = 0; k <= degree; ++k)
+        c[static_cast<std::size_t>(k)] = polynomials_[static_cast<std::size_t>(k) * n + i];
       for (int done = 0; done <= std::min(last, degree); ++done)
         for (int k = degree; k-- > done;) c[static_cast<std::size_t>(k)] += s * c[static_cast<std::size_t>(k) + 1];
       for (int k = 0; k <= std::min(last, degree); ++k) memory_.row(k)[i] = c[static_cast<std::size_t>(k)];
@@ -92,7 +97,7 @@ class Retrace {
 
   const Program& program_;
   int order_;
-  interpreter::MemoryOf<T> memory_;
+  reference::MemoryOf<T> memory_;
   std::vector<T> polynomials_;               // [order + 2][unknowns]
   T t_ = T(0), rest_ = T(0);
   std::vector<std::uint32_t> needed_;        // instructions, in order

@@ -45,7 +45,9 @@ double Disks::rounding_of(const Node& node) const {
         const Term& term = terms_[t];
         const bool is_product = i.op == Op::Products && t >= i.first_product;
         const double c = term.size;
-        sum += c * (is_product ? of_product(term.a, term.b) + size(term.a) * size(term.b) : term.shift == 0 ? rounding_[term.a] : rounding_of_derivative(term.a, term.shift));
+        sum += c * (is_product        ? of_product(term.a, term.b) + size(term.a) * size(term.b)
+                    : term.shift == 0 ? rounding_[term.a]
+                                      : rounding_of_derivative(term.a, term.shift));
       }
       return sum;
     case Op::Square: return 2 * size(i.a) * rounding_[i.a];
@@ -56,7 +58,8 @@ double Disks::rounding_of(const Node& node) const {
     case Op::SinhCosh: return 0;  // by the caller
     case Op::Function:
       // dy = Σ c w du
-      for (std::uint32_t t = i.first_term; t < i.last_term; ++t) sum += terms_[t].size * size(terms_[t].a) * rounding_[terms_[t].b];
+      for (std::uint32_t t = i.first_term; t < i.last_term; ++t)
+        sum += terms_[t].size * size(terms_[t].a) * rounding_[terms_[t].b];
       return sum;
     case Op::Derivative: return rounding_of_derivative(i.a, 1);
     case Op::Select: {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
-/// The rules of docs/design/safe_steps.md: from bounds of the operands on a disk to those of the result. Most follow from
-/// |f(w) − f(w₀)| ≤ |w − w₀| sup |f′|, the supremum taken over the disk of the operand, which is convex.
+/// The rules of docs/design/safe_steps.md: from bounds of the operands on a disk to those of the result. Most follow
+/// from |f(w) − f(w₀)| ≤ |w − w₀| sup |f′|, the supremum taken over the disk of the operand, which is convex.
 namespace maupertuis {
 namespace {
 
@@ -73,7 +73,8 @@ double Disks::series_of_derivative(std::uint32_t slot, std::uint32_t shift) cons
   }
   const double unit = shift == 1 ? now_.unit : now_.unit * now_.unit;
   const double widened = (last + 2) / (radius_ * (1 - radius_ / previous_));
-  return sum / unit + tail_before_[slot] * passed_on_[static_cast<std::size_t>(lag)] * (shift == 1 ? widened : widened * widened);
+  return sum / unit +
+         tail_before_[slot] * passed_on_[static_cast<std::size_t>(lag)] * (shift == 1 ? widened : widened * widened);
 }
 
 /// The k-th coefficient of the derivative is at most (k + s)^s tail/r^{k+s}; with x ≤ ½ its sum is this tail's.
@@ -156,7 +157,8 @@ void Disks::pair(const Node& node) {
   const Instruction& i = node.instruction;
   const double d = reach_[i.a], s = std::abs(centre(i.out)), c = std::abs(centre(i.second));
   if (i.op == Op::SinCos) {
-    const double cosh = d <= 1 ? 1 + 0.5431 * d * d : std::cosh(d), sinh = d <= 1 ? d * cosh : std::sinh(d);  // cosh 1 = 1.54308
+    // cosh 1 = 1.54308
+    const double cosh = d <= 1 ? 1 + 0.5431 * d * d : std::cosh(d), sinh = d <= 1 ? d * cosh : std::sinh(d);
     const double rest = 0.5 * d * sinh;  // cosh − 1 ≤ ½ d sinh
     const double of_sine = s * rest + c * sinh, of_cosine = c * rest + s * sinh;
     set(i.out, {of_sine, of_sine, 0, cosh});

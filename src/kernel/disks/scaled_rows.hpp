@@ -6,8 +6,8 @@
 
 namespace maupertuis {
 
-/// Coefficients of any number type as Disks reads them: doubles as they are, others times powers of a unit, so that those of high orders stay in the
-/// range of double.
+/// Coefficients of any number type as Disks reads them: doubles as they are, others times powers of a unit, so that
+/// those of high orders stay in the range of double.
 template <class T>
 class ScaledRows {
  public:

@@ -1,33 +1,28 @@
 #include <maupertuis/forward_dynamics.hpp>
 
-#include "kernel/dynamics/compiled_dynamics.hpp"
-#include "kernel/dynamics/point_program.hpp"
-#include "kernel/interpreter/elementary.hpp"
-#include "kernel/interpreter/sampled_states.hpp"
-#include "kernel/jet/linear_solver.hpp"
+#include "kernel/dynamics/written_dynamics.hpp"
+#include "kernel/reference/elementary.hpp"
+#include "kernel/reference/sampled_states.hpp"
 #include "kernel/sparse/graph_product.hpp"
-#include "kernel/sparse/sparse_solver.hpp"
+#include "kernel/straight_line/compile.hpp"
+#include "kernel/straight_line/evaluator.hpp"
 
 #include <maupertuis/require.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <span>
+#include <tuple>
+#include <utility>
 
-/// q̈ in three parts: the residual with q̈ = 0 by a flat program, the entries of the lifted M₀ from values that it has made on its way, and
-/// the sparse solution.
+/// q̈ and forces as straight lines (written_dynamics.hpp), run as machine code or number by number. Where a pivot of M₀
+/// is small there, the full matrix of a workspace decides.
 namespace maupertuis {
 namespace {
 
-using dynamics::PointProgram;
-
-/// A pivot above this needs no check of the solution; below the lower one the full matrix decides.
-constexpr double sound_pivot = 1e-3, least_sound_pivot = 1e-7;
-/// Of the remainder, in units of its own rounding errors.
-constexpr double sound = 64;
-/// Beyond, a full matrix allocates.
+/// Beyond, a full matrix takes more products than the elimination.
 constexpr std::size_t most_full = 8;
 /// Less waits for the determinant of two equations than for eliminations, even where these take fewer products.
 constexpr std::size_t by_determinant = 2;
@@ -35,47 +30,52 @@ constexpr std::size_t by_determinant = 2;
 /// About what compiled code saves in a call, and what making it costs: estimates, of the right order only.
 constexpr double seconds_saved_a_term = 1e-9, seconds_of_compiler = 0.015, seconds_of_compiler_a_term = 3e-5;
 
-bool same_plan(const std::vector<sparse::Pivot>* pivots, const std::optional<std::vector<sparse::Pivot>>& others) {
+using Pivots = std::optional<std::vector<sparse::Pivot>>;
+
+bool same_order(const Pivots& pivots, const Pivots& others) {
   if (!pivots || !others) return !pivots && !others;
-  return std::equal(pivots->begin(), pivots->end(), others->begin(), others->end(), [](const sparse::Pivot& x, const sparse::Pivot& y) {
-    return x.row == y.row && x.column == y.column && x.rows == y.rows && x.columns == y.columns;
-  });
+  return std::equal(pivots->begin(), pivots->end(), others->begin(), others->end(),
+                    [](const sparse::Pivot& x, const sparse::Pivot& y) {
+                      return x.row == y.row && x.column == y.column && x.rows == y.rows && x.columns == y.columns;
+                    });
 }
 
-/// Slots whose values at order 0 the factors of the tangents are made of.
-std::vector<bool> slots_of_entries(const Program& program, const std::optional<sparse::LiftedSystem>& system) {
-  std::vector<bool> kept(program.slots, false);
-  if (!system) return kept;
-  for (const sparse::Edge& edge : system->edges) {
-    if (sparse::is_constant(edge.rule)) continue;
-    kept[edge.x] = true;
-    if (edge.y != no_slot) kept[edge.y] = true;
-  }
-  return kept;
+/// Of an elimination and both substitutions.
+std::size_t products_of(const std::vector<sparse::Pivot>& pivots) {
+  std::size_t count = 0;
+  for (const sparse::Pivot& pivot : pivots)
+    count += pivot.rows.size() * pivot.columns.size() + pivot.rows.size() + pivot.columns.size();
+  return count;
+}
+
+/// Of M₀ along the tangent graph, 8 columns at a time, of its L D Lᵀ and solution.
+std::size_t products_of_full(const sparse::LiftedSystem& system, std::size_t n) {
+  return (n + 7) / 8 * (system.entries.size() - system.minus_one.size()) + n * n * n / 6 + 2 * n * n;
 }
 
 }  // namespace
 
 struct ForwardDynamics::Impl {
   Impl(const Kernel& k, std::span<const std::size_t> which, const ForwardDynamicsOptions& o)
-      : kernel(k), options(o), program(k.program()), inputs(which.begin(), which.end()), n(program.freedoms),
-        system(sparse::lift(program, std::vector<bool>(program.slots, false))),
-        at_rest(program, false, slots_of_entries(program, system)), moving(program, true, std::vector<bool>(program.slots, false)),
-        full(k, 1), parameters(program.parameters, 0.0), sides(program.switches.size(), 1), constants(program.constants.size()),
-        live(program.constants.size(), false), unknown(program.unknowns), rest(program.unknowns), unit(program.unknowns) {
-    if (system) {
-      assembly.emplace(*system, program, at_rest.flat().value_of_slot);
-      product.emplace(*system);
-      entries.resize(system->entries.size());
-      cell_of_column.resize(system->size);
-      std::iota(cell_of_column.begin(), cell_of_column.end(), 0u);
-      x.resize(system->size);
-    }
+      : kernel(k),
+        options(o),
+        program(k.program()),
+        inputs(which.begin(), which.end()),
+        n(program.freedoms),
+        full(k, 1),
+        parameters(program.parameters, 0.0),
+        sides(program.switches.size(), 1),
+        constants(program.constants.size()),
+        live(program.constants.size(), false),
+        rest(program.unknowns, 0.0) {
+    if (program.unknowns == n) system = sparse::lift(program, std::vector<bool>(program.slots, false));
     find_live();
+    write_lines();
   }
 
   void find_live();
   double constant(std::size_t i);
+  double number(const dynamics::NumberSource& source) const;
   void compute_constants();
   /// In most calls there is nothing to do.
   void set_inputs(std::span<const double> u) {
@@ -83,42 +83,38 @@ struct ForwardDynamics::Impl {
     if (stale || !u.empty()) renew_inputs(u);
   }
   void renew_inputs(std::span<const double> u);
-  void choose_pivots();
-  bool has_symmetric_mass(std::span<const std::vector<double>> samples);
-  void renew_interpreter();
+  void plan();
+  bool is_symmetric(const std::vector<std::vector<double>>& samples);
+  void write_lines();
   bool pays() const;
   void compile();
-  KernelStatus interpreted(double t, std::span<const double> q, std::span<const double> v, std::span<double> a);
+  bool run(std::size_t line, double t, std::span<const double> q, std::span<const double> v, const double* a,
+           std::span<double> out);
   KernelStatus by_full_matrix(double t, std::span<const double> q, std::span<const double> v, std::span<double> a);
-  bool solve();
-  bool solve_full();
 
   Kernel kernel;
   ForwardDynamicsOptions options;
   const Program& program;
   std::vector<std::size_t> inputs;
   std::size_t n;
-  std::optional<sparse::LiftedSystem> system;
-  PointProgram at_rest, moving;          // with q̈ = 0, and with any
+  std::optional<sparse::LiftedSystem> system;  // none with constraints
   KernelWorkspace full;
   std::vector<double> parameters;
   std::vector<std::int8_t> sides;
   bool stale = true;
   std::vector<double> constants;
-  std::vector<bool> live;                // [constants] that follow from inputs
-  std::vector<std::uint32_t> live_order; // their indices
-  std::optional<sparse::Assembly> assembly;
-  std::optional<sparse::GraphProduct> product;
-  std::optional<sparse::SparseSolver> solver;  // of either of the two the cheaper one
-  std::optional<jet::LinearSolver> linear;
-  bool is_symmetric = false;             // M₀, as far as sampled states tell; for `linear`
-  std::optional<std::vector<sparse::Pivot>> pivots, compiled_pivots;  // in use; of the code, none: a full matrix
-  std::optional<dynamics::CompiledDynamics> compiled;
+  std::vector<bool> live;                      // [constants] that follow from inputs
+  std::vector<std::uint32_t> live_order;       // their indices
+  bool has_plan = false;                       // for M₀
+  Pivots pivots;                               // of it; none: a full matrix
+  dynamics::WrittenDynamics written;           // forces, then accelerations where there is a plan
+  std::vector<straight::Evaluator> evaluators; // [lines]
+  std::vector<double> numbers;                 // [written.numbers]
+  std::vector<std::uint32_t> live_numbers;     // those that follow from inputs
+  std::vector<bool> behind;                    // [lines] whose evaluator does not know the numbers yet
+  straight::Code code;
   CompileReport report;
-  bool interpreter_is_behind = false;          // coefficients do not yet follow from the inputs of the last call
-  std::vector<std::uint32_t> cell_of_column;
-  std::vector<double> entries, x;        // of the lifted system
-  std::vector<double> unknown, rest, unit;  // [unknowns]
+  std::vector<double> rest, scratch;           // [unknowns] zeros; of the code
   double operands[64] = {};
 };
 
@@ -126,7 +122,8 @@ void ForwardDynamics::Impl::find_live() {
   for (std::uint32_t i = 0; i < program.constants.size(); ++i) {
     const Constant& c = program.constants[i];
     if (c.kind == Kind::Symbol) live[i] = std::find(inputs.begin(), inputs.end(), c.index) != inputs.end();
-    for (std::uint32_t k = 0; k < c.arguments; ++k) live[i] = live[i] || live[program.constant_arguments[c.first_argument + k]];
+    for (std::uint32_t k = 0; k < c.arguments; ++k)
+      live[i] = live[i] || live[program.constant_arguments[c.first_argument + k]];
     if (live[i]) live_order.push_back(i);
   }
 }
@@ -139,45 +136,60 @@ double ForwardDynamics::Impl::constant(std::size_t i) {
   std::vector<double> many;
   double* values = operands;
   if (c.arguments > 64) many.resize(c.arguments), values = many.data();
-  for (std::uint32_t k = 0; k < c.arguments; ++k) values[k] = constants[program.constant_arguments[c.first_argument + k]];
-  return interpreter::constant_operation<double>(c.kind, {values, c.arguments});
+  for (std::uint32_t k = 0; k < c.arguments; ++k)
+    values[k] = constants[program.constant_arguments[c.first_argument + k]];
+  return reference::constant_operation<double>(c.kind, {values, c.arguments});
+}
+
+double ForwardDynamics::Impl::number(const dynamics::NumberSource& source) const {
+  switch (source.what) {
+    case dynamics::NumberSource::OfConstant: return constants[source.index];
+    case dynamics::NumberSource::OfChoice:
+      return sparse::constant_factor(system->edges[source.index], program, constants.data());
+    case dynamics::NumberSource::OfPivot: break;
+  }
+  return (*pivots)[source.index].size;
 }
 
 void ForwardDynamics::Impl::compute_constants() {
   if (!stale) return;
-  stale = interpreter_is_behind = false;
+  stale = false;
   for (std::size_t i = 0; i < constants.size(); ++i) constants[i] = constant(i);
-  at_rest.set_constants(constants);
-  moving.set_constants(constants);
-  if (assembly) assembly->set_constants(constants.data(), entries);
   full.set_parameters(parameters);
   full.set_branches(sides);
-  if (system && program.unknowns == n) choose_pivots();
+  if (system) plan();
+  numbers.clear(), live_numbers.clear();
+  for (const dynamics::NumberSource& source : written.numbers) {
+    if (source.what == dynamics::NumberSource::OfConstant && live[source.index])
+      live_numbers.push_back(static_cast<std::uint32_t>(numbers.size()));
+    numbers.push_back(number(source));
+  }
+  behind.assign(evaluators.size(), true);
   if (options.backend == Backend::Compiled || (options.backend == Backend::Automatic && pays())) compile();
 }
 
-void ForwardDynamics::Impl::choose_pivots() {
+/// Lines of another order of elimination do not belong to the pivots that are chosen here.
+void ForwardDynamics::Impl::plan() {
   const std::vector<double> origin(n, 0.0);
-  const auto samples = interpreter::sampled_entries(program, *system, constants, 0, origin, origin);
-  solver.reset();
-  linear.reset();
-  pivots = sparse::eliminate(*system, samples, {});
-  if (pivots) solver.emplace(*system, *pivots, cell_of_column);
-  const std::size_t full_products = product->matrix_products() + n * n * n / 6 + 2 * n * n;
-  const bool is_cheaper = solver && solver->factor_products() + solver->solve_products() < full_products;
-  if (n > most_full || (is_cheaper && n != by_determinant)) return;
-  linear.emplace(n);
-  is_symmetric = has_symmetric_mass(samples);
-  if (is_cheaper && !is_symmetric) linear.reset();
-  else solver.reset();
+  const auto samples = reference::sampled_entries(program, *system, constants, 0, origin, origin);
+  Pivots chosen = sparse::eliminate(*system, samples, {});
+  const bool is_cheaper = chosen && products_of(*chosen) < products_of_full(*system, n);
+  const bool is_full = n <= most_full && (!is_cheaper || n == by_determinant) && is_symmetric(samples);
+  if (is_full) chosen.reset();
+  const bool may_plan = is_full || chosen, changes = may_plan != has_plan || !same_order(chosen, pivots);
+  has_plan = may_plan;
+  pivots = std::move(chosen);
+  if (changes) write_lines();
 }
 
-/// The residual of a Lagrangian has a symmetric M; one that is written by hand need not.
-bool ForwardDynamics::Impl::has_symmetric_mass(std::span<const std::vector<double>> samples) {
+/// M₀ at the sampled states, column by column. The residual of a Lagrangian has a symmetric M; one that is written by
+/// hand need not.
+bool ForwardDynamics::Impl::is_symmetric(const std::vector<std::vector<double>>& samples) {
   constexpr double rounding = 1e-12;
+  sparse::GraphProduct product(*system);
+  std::vector<double> m(n * n);
   for (const std::vector<double>& sample : samples) {
-    const auto m = linear->matrix();
-    product->matrix(sample, m);
+    product.matrix(sample, m);
     double largest = 0, difference = 0;
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j) {
@@ -189,76 +201,55 @@ bool ForwardDynamics::Impl::has_symmetric_mass(std::span<const std::vector<doubl
   return true;
 }
 
-// ------------------------------------------------------------------------------------------------------------------ machine code
+void ForwardDynamics::Impl::write_lines() {
+  written = dynamics::write_dynamics(program, {has_plan ? &*system : nullptr, pivots ? &*pivots : nullptr});
+  evaluators.clear();
+  for (const straight::StraightLine& line : written.lines)
+    evaluators.emplace_back(line, std::array<std::uint32_t, 1>{dynamics::NumberArray});
+  code = {}, report = {};
+}
+
+// -------------------------------------------------------------------------------------------------------- machine code
 
 bool ForwardDynamics::Impl::pays() const {
-  const auto& flat = at_rest.flat();
-  const std::size_t solution = solver ? solver->factor_products() + solver->solve_products() : linear ? product->matrix_products() : 0;
-  const double terms = static_cast<double>(flat.linear_cell.size() + flat.product_a.size() + solution);
-  return options.expected_calls * terms * seconds_saved_a_term > seconds_of_compiler + terms * seconds_of_compiler_a_term;
+  const double terms = static_cast<double>(written.lines.back().size());
+  return options.expected_calls * terms * seconds_saved_a_term >
+         seconds_of_compiler + terms * seconds_of_compiler_a_term;
 }
 
-/// Code of another order of elimination does not belong to the pivots that were just chosen.
 void ForwardDynamics::Impl::compile() {
-  const auto decline = [this](const char* trouble) {
-    compiled.reset();
-    report = {.trouble = trouble};
-  };
-  if (program.unknowns != n) return decline("the accelerations of systems with constraints are not compiled");
-  if (!solver && !linear) return decline("no order of elimination holds at all of the sampled states");
-  if (linear && !is_symmetric) return decline("the mass matrix is not symmetric");
-  const dynamics::WrittenPlan plan{*system, solver ? &*pivots : nullptr};
-  if (!compiled || !same_plan(plan.pivots, compiled_pivots)) {
-    compiled.emplace(program, dynamics::write_dynamics(program, moving.flat(), at_rest.flat(), plan), CompileOptions{.cache = options.cache});
-    compiled_pivots = solver ? pivots : std::nullopt;
-    report = compiled->report();
-  }
-  if (!report.compiled) return compiled.reset();
-  compiled->set_constants(constants, *system, plan.pivots);
+  if (code) return;
+  if (program.unknowns != n) report = {.trouble = "the accelerations of systems with constraints are not compiled"};
+  else if (!has_plan) report = {.trouble = "no order of elimination holds at all of the sampled states"};
+  else std::tie(code, report) = straight::compile(written.lines, {.cache = options.cache});
+  for (const straight::StraightLine& line : written.lines)
+    scratch.resize(std::max(scratch.size(), straight::scratch_size(line)));
 }
+
+// --------------------------------------------------------------------------------------------------------------- calls
 
 void ForwardDynamics::Impl::renew_inputs(std::span<const double> u) {
   for (std::size_t i = 0; i < inputs.size(); ++i) parameters[inputs[i]] = u[i];
   compute_constants();
   if (inputs.empty()) return;
   for (const std::uint32_t i : live_order) constants[i] = constant(i);
-  interpreter_is_behind = true;
-  if (compiled) compiled->renew(constants, live);
-  else renew_interpreter();
+  for (const std::uint32_t i : live_numbers) numbers[i] = number(written.numbers[i]);
+  behind.assign(evaluators.size(), true);
 }
 
-void ForwardDynamics::Impl::renew_interpreter() {
-  if (!interpreter_is_behind) return;
-  interpreter_is_behind = false;
-  at_rest.renew(constants, live);
-  moving.renew(constants, live);
-  if (assembly) assembly->set_constants(constants.data(), entries);
+/// False: a pivot is small, or a number infinite or undefined; `out` is as it was.
+bool ForwardDynamics::Impl::run(std::size_t line, double t, std::span<const double> q, std::span<const double> v,
+                                const double* a, std::span<double> out) {
+  if (line >= written.lines.size()) return false;
+  if (code) return code.guarded(line, &t, q.data(), v.data(), a, numbers.data(), out.data(), scratch.data());
+  const double* const unused = nullptr;
+  if (behind[line]) evaluators[line].set(unused, unused, unused, unused, numbers.data(), unused);
+  behind[line] = false;
+  return evaluators[line](&t, q.data(), v.data(), a, numbers.data(), out.data());
 }
 
-/// unknown → x. False: the full matrix is to decide.
-bool ForwardDynamics::Impl::solve() {
-  if (!solver) return false;
-  (*assembly)(at_rest.cells(), entries);
-  const double least = solver->factor(entries);
-  if (!(least > least_sound_pivot)) return false;
-  solver->solve(unknown, x.data());
-  if (!(least > sound_pivot)) {
-    if (!(product->remainder(entries, {x.data(), n}, unknown, rest) <= sound)) return false;
-  }
-  return interpreter::is_finite({x.data(), n});
-}
-
-/// The same by M itself, which the tangents give 8 columns at a time.
-bool ForwardDynamics::Impl::solve_full() {
-  (*assembly)(at_rest.cells(), entries);
-  product->matrix(entries, linear->matrix());
-  if (!interpreter::is_finite(linear->matrix()) || linear->factor()) return false;
-  linear->solve(unknown);
-  std::copy_n(unknown.begin(), n, x.begin());
-  return interpreter::is_finite({x.data(), n});
-}
-
-KernelStatus ForwardDynamics::Impl::by_full_matrix(double t, std::span<const double> q, std::span<const double> v, std::span<double> a) {
+KernelStatus ForwardDynamics::Impl::by_full_matrix(double t, std::span<const double> q, std::span<const double> v,
+                                                   std::span<double> a) {
   if (!inputs.empty()) full.set_parameters(parameters);
   const KernelStatus status = full.evaluate(t, q, v);
   if (status == KernelStatus::Ok)
@@ -266,17 +257,8 @@ KernelStatus ForwardDynamics::Impl::by_full_matrix(double t, std::span<const dou
   return status;
 }
 
-KernelStatus ForwardDynamics::Impl::interpreted(double t, std::span<const double> q, std::span<const double> v, std::span<double> a) {
-  renew_interpreter();
-  if (!solver && !linear) return by_full_matrix(t, q, v, a);
-  at_rest.evaluate(t, q, v, {});
-  for (std::size_t i = 0; i < n; ++i) unknown[i] = -at_rest.residual(i);
-  if (!(linear ? solve_full() : solve())) return by_full_matrix(t, q, v, a);
-  std::copy_n(x.begin(), n, a.begin());
-  return KernelStatus::Ok;
-}
-
-ForwardDynamics::ForwardDynamics(const Kernel& kernel, std::span<const std::size_t> inputs, const ForwardDynamicsOptions& options)
+ForwardDynamics::ForwardDynamics(const Kernel& kernel, std::span<const std::size_t> inputs,
+                                 const ForwardDynamicsOptions& options)
     : impl_(std::make_unique<Impl>(kernel, inputs, options)) {
   for (const std::size_t input : inputs) MAUP_REQUIRE(input < kernel.parameters());
 }
@@ -297,13 +279,12 @@ void ForwardDynamics::set_branches(std::span<const std::int8_t> sides) {
   impl_->compute_constants();
 }
 
-KernelStatus ForwardDynamics::accelerations(double t, std::span<const double> q, std::span<const double> v, std::span<const double> u,
-                                            std::span<double> a) {
+KernelStatus ForwardDynamics::accelerations(double t, std::span<const double> q, std::span<const double> v,
+                                            std::span<const double> u, std::span<double> a) {
   Impl& s = *impl_;
   MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && a.size() == s.n);
   s.set_inputs(u);
-  if (s.compiled && s.compiled->accelerations(t, q.data(), v.data(), a.data())) return KernelStatus::Ok;
-  return s.interpreted(t, q, v, a);
+  return s.run(1, t, q, v, s.rest.data(), a) ? KernelStatus::Ok : s.by_full_matrix(t, q, v, a);
 }
 
 void ForwardDynamics::forces(double t, std::span<const double> q, std::span<const double> v, std::span<const double> a,
@@ -311,9 +292,7 @@ void ForwardDynamics::forces(double t, std::span<const double> q, std::span<cons
   Impl& s = *impl_;
   MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && a.size() == s.n && out.size() == s.n);
   s.set_inputs(u);
-  if (s.compiled) return s.compiled->forces(t, q.data(), v.data(), a.data(), out.data());
-  s.moving.evaluate(t, q, v, a);
-  for (std::size_t i = 0; i < s.n; ++i) out[i] = s.moving.residual(i);
+  s.run(0, t, q, v, a.data(), out);
 }
 
 void ForwardDynamics::bias(double t, std::span<const double> q, std::span<const double> v, std::span<const double> u,
@@ -321,31 +300,17 @@ void ForwardDynamics::bias(double t, std::span<const double> q, std::span<const 
   Impl& s = *impl_;
   MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && out.size() == s.n);
   s.set_inputs(u);
-  if (s.compiled) return s.compiled->forces(t, q.data(), v.data(), nullptr, out.data());
-  s.at_rest.evaluate(t, q, v, {});
-  for (std::size_t i = 0; i < s.n; ++i) out[i] = s.at_rest.residual(i);
+  s.run(0, t, q, v, s.rest.data(), out);
 }
 
 void ForwardDynamics::mass(double t, std::span<const double> q, std::span<const double> v, std::span<double> out) {
   Impl& s = *impl_;
   MAUP_REQUIRE(q.size() == s.n && v.size() == s.n && out.size() == s.n * s.n);
   s.compute_constants();
-  s.renew_interpreter();
-  std::fill(out.begin(), out.end(), 0.0);
-  if (!s.system) {
-    s.full.evaluate(t, q, v);
-    for (std::size_t i = 0; i < s.n; ++i)
-      for (std::size_t j = 0; j < s.n; ++j) out[i * s.n + j] = s.full.mass(i, j);
-    return;
-  }
-  s.at_rest.evaluate(t, q, v, {});
-  (*s.assembly)(s.at_rest.cells(), s.entries);
-  for (std::size_t j = 0; j < s.n; ++j) {
-    std::fill(s.unit.begin(), s.unit.end(), 0.0);
-    s.unit[j] = 1;
-    s.product->multiply(s.entries, s.unit, s.rest);
-    for (std::size_t i = 0; i < s.n; ++i) out[i * s.n + j] = s.rest[i];
-  }
+  if (!s.inputs.empty()) s.full.set_parameters(s.parameters);
+  s.full.evaluate(t, q, v);
+  for (std::size_t i = 0; i < s.n; ++i)
+    for (std::size_t j = 0; j < s.n; ++j) out[i * s.n + j] = s.full.mass(i, j);
 }
 
 const CompileReport& ForwardDynamics::compile_report() const { return impl_->report; }

@@ -9,9 +9,9 @@
 
 namespace maupertuis::extended {
 
-/// B x = b for many right-hand sides by one elimination with full pivoting, which reveals the rank; the matrix is equilibrated
-/// first, by powers of two and so exactly. Where B is singular, the unknowns that it does not determine are 0 and the rows that
-/// depend on others are left out. Cost n³/3, n² a right-hand side.
+/// B x = b for many right-hand sides by one elimination with full pivoting, which reveals the rank; the matrix is
+/// equilibrated first, by powers of two and so exactly. Where B is singular, the unknowns that it does not determine
+/// are 0 and the rows that depend on others are left out. Cost n³/3, n² a right-hand side.
 template <class T>
 class LinearSolver {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-#include "kernel/interpreter/elementary.hpp"
+#include "kernel/reference/elementary.hpp"
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
@@ -8,10 +8,12 @@
 
 namespace maupertuis::extended {
 
-/// A binary floating-point number with a mantissa of that many bits, rounded to nearest. Bits that fill whole words cost least.
+/// A binary floating-point number with a mantissa of that many bits, rounded to nearest. Bits that fill whole words
+/// cost least.
 template <unsigned Bits>
-using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<Bits, boost::multiprecision::digit_base_2>,
-                                           boost::multiprecision::et_off>;
+using Real =
+    boost::multiprecision::number<boost::multiprecision::cpp_bin_float<Bits, boost::multiprecision::digit_base_2>,
+                                  boost::multiprecision::et_off>;
 
 /// log₂ |x|, −∞ for 0: sizes of coefficients leave the range of double.
 template <class T>
@@ -41,15 +43,15 @@ bool is_finite(const T& x) { return (boost::multiprecision::isfinite)(x); }
 
 }  // namespace maupertuis::extended
 
-namespace maupertuis::interpreter {
+namespace maupertuis::reference {
 
 template <unsigned Bits>
-struct Exactly<boost::multiprecision::number<boost::multiprecision::cpp_bin_float<Bits, boost::multiprecision::digit_base_2>,
-                                             boost::multiprecision::et_off>> {
+struct Exactly<boost::multiprecision::number<
+    boost::multiprecision::cpp_bin_float<Bits, boost::multiprecision::digit_base_2>, boost::multiprecision::et_off>> {
   using T = extended::Real<Bits>;
   static T pi() { return boost::math::constants::pi<T>(); }
   /// Rounded at most three times.
   static T from(const Rational& value) { return T(value.numerator_string()) / T(value.denominator_string()); }
 };
 
-}  // namespace maupertuis::interpreter
+}  // namespace maupertuis::reference

@@ -1,6 +1,6 @@
 #pragma once
 #include "kernel/extended/linear_solver.hpp"
-#include "kernel/interpreter/interpreter.hpp"
+#include "kernel/reference/reference.hpp"
 
 #include <maupertuis/kernel.hpp>
 #include <maupertuis/require.hpp>
@@ -12,9 +12,9 @@
 
 namespace maupertuis::extended {
 
-/// KernelWorkspace over T: the interpreter's rules on the program of a kernel, with its literals taken exactly. The functions
-/// mean what they mean there. The structured Taylor step is that of docs/design/kernel_program.md; at this cost of an operation there
-/// is nothing to gain by blocking, so that each stage corrects by one sweep of tangents.
+/// KernelWorkspace over T: the interpreter's rules on the program of a kernel, with its literals taken exactly. The
+/// functions mean what they mean there. The structured Taylor step is that of docs/design/kernel_program.md; at this
+/// cost of an operation there is nothing to gain by blocking, so that each stage corrects by one sweep of tangents.
 template <class T>
 class Workspace {
  public:
@@ -49,7 +49,9 @@ class Workspace {
   T constraint_scale(std::size_t i) const;
   T constraint_rate_scale(std::size_t i) const;
   const T& mass(std::size_t i, std::size_t j) const { return bordered_[i * unknowns_ + j]; }
-  T constraint_matrix(std::size_t i, std::size_t j) const { return -bordered_[(program_.freedoms + i) * unknowns_ + j]; }
+  T constraint_matrix(std::size_t i, std::size_t j) const {
+    return -bordered_[(program_.freedoms + i) * unknowns_ + j];
+  }
   void corrections(std::span<T> dq, std::span<T> dv);
   double pivot_ratio() const { return solver_.pivot_ratio(); }
 
@@ -66,13 +68,13 @@ class Workspace {
   bool constraints_agree();
   void correct(int stage);
   T coefficient(Slot slot, int k) const;
-  T size_of(Slot slot) const { return interpreter::term_size(memory_, producer_[slot], slot); }
+  T size_of(Slot slot) const { return reference::term_size(memory_, producer_[slot], slot); }
   void solve_for(std::span<T> out, std::span<const T> error);
 
   Kernel kernel_;
   const Program& program_;
   int order_, orders_;
-  interpreter::MemoryOf<T> memory_;
+  reference::MemoryOf<T> memory_;
   std::vector<T> parameters_;
   std::vector<std::int8_t> sides_;
   bool stale_ = true;                       // constants to be computed
@@ -82,7 +84,7 @@ class Workspace {
   std::vector<T> direction_;                // [slots] tangents
   LinearSolver<T> solver_;
   std::vector<bool> determined_;            // [m]
-  std::vector<std::uint32_t> moved_, of_mass_;  // instructions that tangents go through: for corrections, for M₀
+  std::vector<sparse::Edge> edges_, of_mass_;  // that tangents go through: for corrections, for M₀
   std::vector<const Instruction*> producer_;  // [slots]
   std::size_t singular_ = 0, contradicting_ = 0;
   int last_stage_ = 0;

@@ -1,9 +1,9 @@
 #pragma once
 #include "kernel/extended/workspace.hpp"
-#include "kernel/interpreter/elementary_code.hpp"
-#include "kernel/interpreter/memory_code.hpp"
-#include "kernel/interpreter/run_code.hpp"
-#include "kernel/interpreter/tangents_code.hpp"
+#include "kernel/reference/elementary_code.hpp"
+#include "kernel/reference/memory_code.hpp"
+#include "kernel/reference/run_code.hpp"
+#include "kernel/reference/tangents_code.hpp"
 
 namespace maupertuis::extended {
 
@@ -14,11 +14,21 @@ inline constexpr double share_power = 0.4;
 
 template <class T>
 Workspace<T>::Workspace(const Kernel& kernel, int order)
-    : kernel_(kernel), program_(kernel.program()), order_(order), orders_(order + 2 + (-2 - program_.first_stage)),
-      memory_(program_, orders_, program_.slots), parameters_(program_.parameters, T(0)), sides_(program_.switches.size(), 1),
-      unknowns_(program_.unknowns), bordered_(unknowns_ * unknowns_), unknown_(unknowns_), direction_(program_.slots, T(0)),
-      determined_(unknowns_ - program_.freedoms, true), moved_(interpreter::moved_instructions(program_)),
-      of_mass_(interpreter::instructions_of_mass(program_)), producer_(program_.slots, nullptr) {
+    : kernel_(kernel),
+      program_(kernel.program()),
+      order_(order),
+      orders_(order + 2 + (-2 - program_.first_stage)),
+      memory_(program_, orders_, program_.slots),
+      parameters_(program_.parameters, T(0)),
+      sides_(program_.switches.size(), 1),
+      unknowns_(program_.unknowns),
+      bordered_(unknowns_ * unknowns_),
+      unknown_(unknowns_),
+      direction_(program_.slots, T(0)),
+      determined_(unknowns_ - program_.freedoms, true),
+      edges_(sparse::tangent_edges(program_)),
+      of_mass_(sparse::edges_of_mass(program_)),
+      producer_(program_.slots, nullptr) {
   MAUP_REQUIRE(order >= 1);
   for (const Instruction& i : program_.instructions) producer_[i.out] = &i;
 }
@@ -44,7 +54,7 @@ bool Workspace<T>::border() {
   for (std::size_t d = 0; d < unknowns_; ++d) {
     std::fill_n(direction_.begin(), unknowns_, T(0));
     direction_[d] = T(1);
-    interpreter::tangents<1>(memory_, direction_.data(), of_mass_);
+    reference::tangents<1>(memory_, direction_.data(), of_mass_);
     for (std::size_t i = 0; i < unknowns_; ++i) {
       const Slot slot = program_.residual[i];
       bordered_[i * unknowns_ + d] = program_.tangent_lags[slot] == 2 ? direction_[slot] : T(0);
@@ -54,8 +64,8 @@ bool Workspace<T>::border() {
   return finite;
 }
 
-/// A direction that the matrix does not see may be one of multipliers alone: then the constraints depend on each other, and the motion
-/// is determined all the same.
+/// A direction that the matrix does not see may be one of multipliers alone: then the constraints depend on each other,
+/// and the motion is determined all the same.
 template <class T>
 KernelStatus Workspace<T>::factor() {
   if (!border()) return KernelStatus::NonFinite;
@@ -112,7 +122,7 @@ void Workspace<T>::correct(int stage) {
   T* const next = memory_.row(stage + 2);
   for (std::size_t i = 0; i < unknowns_; ++i) next[i] = unknown_[i] / divisors[0];
   std::copy(unknown_.begin(), unknown_.end(), direction_.begin());
-  interpreter::tangents<1>(memory_, direction_.data(), moved_);
+  reference::tangents<1>(memory_, direction_.data(), edges_);
   auto first = static_cast<Slot>(unknowns_);
   for (int lag = 0; lag <= 2; ++lag) {
     const Slot last = program_.stored_end[static_cast<std::size_t>(lag)];
@@ -126,7 +136,7 @@ template <class T>
 KernelStatus Workspace<T>::stages(int count) {
   for (int stage = program_.first_stage; stage < count; ++stage) {
     if (stage >= 0) std::fill_n(memory_.row(stage + 2), unknowns_, T(0));
-    interpreter::run_section(memory_, Dynamics, stage);
+    reference::run_section(memory_, Dynamics, stage);
     if (stage == 0)
       if (const KernelStatus status = factor(); status != KernelStatus::Ok) return status;
     if (stage >= 0) {
@@ -134,8 +144,8 @@ KernelStatus Workspace<T>::stages(int count) {
       if (stage == 0 && !constraints_agree()) return KernelStatus::Contradiction;
       correct(stage);
     }
-    interpreter::run_section(memory_, Along, stage);
-    if (stage <= 0) interpreter::run_section(memory_, AtPoint, stage);
+    reference::run_section(memory_, Along, stage);
+    if (stage <= 0) reference::run_section(memory_, AtPoint, stage);
   }
   return KernelStatus::Ok;
 }
@@ -145,10 +155,10 @@ KernelStatus Workspace<T>::run(const T& t, std::span<const T> q, std::span<const
   MAUP_REQUIRE(q.size() == program_.freedoms && v.size() == program_.freedoms);
   // Some functions of the number type throw where they have no value, others give NaN.
   try {
-    if (stale_) interpreter::compute_constants<T>(memory_, parameters_, sides_);
+    if (stale_) reference::compute_constants<T>(memory_, parameters_, sides_);
     stale_ = false;
     last_stage_ = count - 1;
-    interpreter::set_leaves(memory_, t, orders_);
+    reference::set_leaves(memory_, t, orders_);
     for (int k = 0; k < 2; ++k) std::fill_n(memory_.row(k), unknowns_, T(0));
     std::copy(q.begin(), q.end(), memory_.row(0));
     std::copy(v.begin(), v.end(), memory_.row(1));
@@ -164,7 +174,7 @@ KernelStatus Workspace<T>::run(const T& t, std::span<const T> q, std::span<const
 /// Switch functions have values where forces have none: as of KernelWorkspace.
 template <class T>
 KernelStatus Workspace<T>::without_solution(KernelStatus status) try {
-  interpreter::run_section(memory_, Along, 0);
+  reference::run_section(memory_, Along, 0);
   return status;
 } catch (const std::exception&) {
   return status;

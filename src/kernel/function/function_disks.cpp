@@ -1,19 +1,28 @@
 #include "kernel/function/program.hpp"
 
 #include <maupertuis/function_disks.hpp>
+#include <maupertuis/kinds.hpp>
+#include <maupertuis/require.hpp>
 #include <maupertuis/slopes.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <numeric>
 #include <stdexcept>
 
 namespace maupertuis {
+
+/// Of a value on the disk: its number at the centre, reach, tail, and low ≤ |f| ≤ high.
+struct DiskBounds {
+  double centre = 0, reach = 0, tail = 0, low = 0, high = 0;
+};
+
 namespace {
 
-using Op = FunctionOp;
+using Bounds = DiskBounds;
+using straight::Node;
+using straight::Value;
+
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The smaller one; what is not a number bounds nothing.
@@ -21,172 +30,182 @@ double smaller(double x, double y) { return x < y || std::isnan(y) ? x : y; }
 double bound(double x) { return std::isnan(x) ? infinity : x; }
 double away(double x) { return std::max(0.0, x); }
 
-/// The same program, with each slot as an output.
-FunctionKernel with_every_value(const FunctionKernel& kernel) {
-  auto program = std::make_shared<FunctionProgram>(kernel.program());
-  program->outputs.resize(program->slots);
-  std::iota(program->outputs.begin(), program->outputs.end(), 0u);
-  return FunctionKernel(std::move(program));
+Bounds undecided(double centre) { return {centre, infinity, infinity, 0, infinity}; }
+Bounds constant(double centre) { return {centre, 0, 0, std::abs(centre), std::abs(centre)}; }
+
+/// What the centre and its reach say as well.
+Bounds within_reach(Bounds b) {
+  b.reach = bound(b.reach), b.tail = bound(b.tail);
+  const double c = std::abs(b.centre);
+  b.low = std::max(std::isnan(b.low) ? 0.0 : b.low, std::isnan(c - b.reach) ? 0.0 : away(c - b.reach));
+  b.high = smaller(c + b.reach, bound(b.high));
+  return b;
+}
+
+Bounds sum(const Bounds& x, const Bounds& y) {
+  return within_reach({x.centre + y.centre, x.reach + y.reach, x.tail + y.tail,
+                       away(std::max(x.low - y.high, y.low - x.high)), x.high + y.high});
+}
+
+/// A constant factor leaves a polynomial what it is.
+Bounds product(const Bounds& x, const Bounds& y) {
+  const double u = std::abs(x.centre), v = std::abs(y.centre), centre = x.centre * y.centre;
+  const auto scaled = [&](double size, const Bounds& b) {
+    const auto times = [size](double r) { return size == 0 ? 0.0 : size * r; };
+    return within_reach({centre, times(b.reach), times(b.tail), times(b.low), times(b.high)});
+  };
+  if (x.reach == 0) return scaled(u, y);
+  if (y.reach == 0) return scaled(v, x);
+  const double reach = smaller(u * y.reach + v * x.reach + x.reach * y.reach, x.high * y.high + u * v);
+  return within_reach({centre, reach, reach, x.low * y.low, x.high * y.high});
+}
+
+/// a/b − a₀/b₀ = ((a − a₀) − (a₀/b₀)(b − b₀))/b
+Bounds quotient(const Bounds& x, const Bounds& y) {
+  const double centre = x.centre / y.centre, ratio = std::abs(centre), high = x.high / y.low;
+  if (!(y.low > 0)) return undecided(centre);
+  if (y.reach == 0) return within_reach({centre, x.reach / y.low, x.tail / y.low, x.low / y.low, high});
+  const double reach = smaller(high + ratio, (x.reach + ratio * y.reach) / y.low);
+  return within_reach({centre, reach, reach, x.low / y.high, high});
+}
+
+/// f' = c w^{c−1}, largest where |w| is largest or smallest; a disk about 0 is one of whole positive powers alone.
+Bounds power(const Bounds& x, double c, double centre) {
+  const bool whole = c >= 0 && c == std::nearbyint(c);
+  if (x.reach == 0) return constant(centre);
+  if (!whole && !(x.low > 0)) return undecided(centre);
+  const double slope = std::abs(c) * std::pow(c >= 1 ? x.high : x.low, c - 1);
+  const double one = std::pow(x.low, c), other = std::pow(x.high, c), high = std::max(one, other);
+  const double reach = smaller(high + std::abs(centre), slope * x.reach);
+  return {centre, reach, reach, std::min(one, other), high};
+}
+
+/// |dφ| ≤ (|dx| + |dy|)/|x ± iy|
+Bounds angle(const Bounds& x, const Bounds& y, double centre) {
+  const double both = x.reach + y.reach, far = std::hypot(x.centre, y.centre) - both;
+  if (both == 0) return constant(centre);
+  const double reach = far > 0 ? both / far : infinity;
+  return {centre, reach, reach, 0, infinity};
+}
+
+/// Mostly |f(w) − f(w₀)| ≤ |w − w₀| sup |f′|, the supremum over the disk of w.
+Bounds function(Kind kind, const Bounds& x, double centre) {
+  const double w = x.centre, size = std::abs(w), d = x.reach;
+  if (d == 0) return constant(centre);
+  if (!(d < infinity)) return undecided(centre);
+  const auto within = [&](double reach, double high, double low = 0) {
+    return Bounds{centre, reach, reach, low, high};
+  };
+  const double cos = std::abs(std::cos(w)), sin = std::abs(std::sin(w));
+  // sin w − sin w₀ = sin w₀ (cos z − 1) + cos w₀ sin z with |z| ≤ d, |cos z − 1| ≤ ½ d sinh d
+  if (kind == Kind::Sin) return within(sin * 0.5 * d * std::sinh(d) + cos * std::sinh(d), std::cosh(d));
+  if (kind == Kind::Cos) return within(cos * 0.5 * d * std::sinh(d) + sin * std::sinh(d), std::cosh(d));
+  if (kind == Kind::Sinh || kind == Kind::Cosh) {  // both lie between sinh and cosh of |Re w|
+    const double most = std::cosh(size + d);
+    return within(smaller(most + std::abs(centre), d * most), most, size > d ? std::sinh(size - d) : 0);
+  }
+  if (kind == Kind::Exp) return within(std::exp(w + d) * std::min(1.0, d), std::exp(w + d), std::exp(w - d));
+  return within(d * largest_slope(kind, w, d, x.low), infinity);
+}
+
+/// Where the disk decides, the branch in force is the function.
+Bounds call(Kind kind, const Bounds& x, const Bounds& y, double centre) {
+  if (is_function(kind)) return function(kind, x, centre);
+  if (kind == Kind::Atan2) return angle(x, y, centre);
+  if (kind == Kind::Power) return y.reach > 0 ? undecided(centre) : power(x, y.centre, centre);
+  const auto decides = [](double distance, double reach) { return std::abs(distance) > reach || reach == 0; };
+  const double both = x.reach + y.reach, difference = x.centre - y.centre;
+  const auto with_centre = [centre](Bounds b) { b.centre = centre; return b; };
+  if (kind == Kind::Abs) return decides(x.centre, x.reach) ? with_centre(x) : undecided(centre);
+  if (kind == Kind::Sign || kind == Kind::Step)
+    return decides(x.centre, x.reach) ? constant(centre) : undecided(centre);
+  if (kind == Kind::Less || kind == Kind::LessEqual)
+    return decides(difference, both) ? constant(centre) : undecided(centre);
+  if (kind == Kind::And || kind == Kind::Or) return both == 0 ? constant(centre) : undecided(centre);
+  if (kind != Kind::Min && kind != Kind::Max) throw unknown_kind(kind, "the bounds on a disk");
+  if (!decides(difference, both)) return undecided(centre);
+  return with_centre((difference < 0) == (kind == Kind::Min) ? x : y);
+}
+
+/// Outputs are the values of all nodes.
+straight::StraightLine with_every_value(straight::StraightLine line) {
+  line.stores.clear();
+  for (Value v = 0; v < line.nodes.size(); ++v) line.stores.push_back({v, ValueArray, v});
+  return line;
 }
 
 }  // namespace
 
+struct FunctionDisks::Impl {
+  Impl(const FunctionKernel& k, std::span<const double> parameters)
+      : kernel(k), line(kernel.program().line), every_value(with_every_value(line), seldom_arrays),
+        centre(line.nodes.size()), bounds(line.nodes.size()) {
+    every_value.set(unused, parameters.data(), unused);
+  }
+
+  Bounds at(Value v) const { return v == straight::none ? constant(1) : bounds[v]; }
+
+  Bounds sum_of(const Node& node) const {
+    Bounds out;
+    for (std::uint32_t t = node.first; t < node.last; ++t) {
+      const straight::Term& term = line.terms[t];
+      const Bounds one = product(product(product(constant(term.factor), at(term.a)), at(term.b)), at(term.c));
+      out = t == node.first ? one : sum(out, one);
+    }
+    if (node.a != straight::none) out = product(out, at(node.a));
+    return node.b == straight::none ? out : quotient(out, at(node.b));
+  }
+
+  Bounds result(Value v, std::span<const double> reach) const {
+    const Node& node = line.nodes[v];
+    switch (node.what) {
+      case Node::Literal: return constant(centre[v]);
+      case Node::Given: {
+        const double d = node.array == InputArray ? reach[node.index] : 0, c = std::abs(centre[v]);
+        return {centre[v], d, 0, away(c - d), c + d};
+      }
+      case Node::Sum: return sum_of(node);
+      case Node::Root: return power(at(node.a), 0.5, centre[v]);
+      case Node::Call: return call(node.function, at(node.a), at(node.b), centre[v]);
+      case Node::Chosen:
+        return at(node.a).reach > 0 ? undecided(centre[v]) : centre[node.a] != 0 ? at(node.b) : at(node.c);
+      case Node::Magnitudes:
+      case Node::Larger:
+      case Node::Angles:
+      case Node::Sine:
+      case Node::Cosine:
+      case Node::Unit:
+      case Node::Wide:
+      case Node::Lane: case Node::Gather: break;
+    }
+    throw std::logic_error("a disk met a node that has no bounds; please report");
+  }
+
+  static constexpr const double* unused = nullptr;
+  FunctionKernel kernel;
+  const straight::StraightLine& line;
+  straight::Evaluator every_value;
+  std::vector<double> centre;      // [nodes]
+  std::vector<Bounds> bounds;      // [nodes]
+};
+
 FunctionDisks::FunctionDisks(const FunctionKernel& kernel, std::span<const double> parameters)
-    : kernel_(kernel), every_value_(with_every_value(kernel)), centre_(kernel.program().slots), bounds_(kernel.program().slots) {
-  every_value_.set_parameters(parameters);
+    : impl_(std::make_unique<Impl>(kernel, parameters)) {
+  MAUP_REQUIRE(parameters.size() == kernel.parameters());
+}
+FunctionDisks::~FunctionDisks() = default;
+FunctionDisks::FunctionDisks(FunctionDisks&&) noexcept = default;
+
+void FunctionDisks::set_centre(std::span<const double> inputs) {
+  impl_->every_value(inputs.data(), impl_->unused, impl_->centre.data());
 }
 
-void FunctionDisks::set_centre(std::span<const double> inputs) { every_value_.evaluate(inputs, centre_); }
-
-double FunctionDisks::reach(std::size_t output) const { return bounds_[kernel_.program().outputs[output]].reach; }
-double FunctionDisks::tail(std::size_t output) const { return bounds_[kernel_.program().outputs[output]].tail; }
+double FunctionDisks::reach(std::size_t output) const { return impl_->bounds[impl_->line.stores[output].value].reach; }
+double FunctionDisks::tail(std::size_t output) const { return impl_->bounds[impl_->line.stores[output].value].tail; }
 
 void FunctionDisks::evaluate(std::span<const double> reach) {
-  const FunctionProgram& program = kernel_.program();
-  for (std::size_t k = 0; k < program.slots; ++k) {
-    const double c = std::abs(centre_[k]), d = k < program.inputs ? reach[k] : 0;
-    bounds_[k] = {d, 0, away(c - d), c + d};
-  }
-  for (const FunctionInstruction& i : program.changing) {
-    Bounds b = result(i);
-    b.reach = bound(b.reach), b.tail = bound(b.tail);
-    const double c = std::abs(centre_[i.out]);
-    b.low = std::max(std::isnan(b.low) ? 0.0 : b.low, std::isnan(c - b.reach) ? 0.0 : away(c - b.reach));
-    b.high = smaller(c + b.reach, bound(b.high));
-    bounds_[i.out] = b;
-  }
-}
-
-FunctionDisks::Bounds FunctionDisks::result(const FunctionInstruction& i) const {
-  const Bounds& x = bounds_[i.a];
-  switch (i.op) {
-    case Op::Add:
-    case Op::Subtract: {
-      const Bounds& y = bounds_[i.b];
-      return {x.reach + y.reach, x.tail + y.tail, away(std::max(x.low - y.high, y.low - x.high)), x.high + y.high};
-    }
-    case Op::Negate: return x;
-    case Op::Multiply: return product(i);
-    case Op::Divide: return quotient(i);
-    case Op::Square: return power(i.a, 2, centre_[i.out]);
-    case Op::Sqrt: return power(i.a, 0.5, centre_[i.out]);
-    case Op::PowerInteger: return power(i.a, i.exponent, centre_[i.out]);
-    case Op::Power:
-      if (bounds_[i.b].reach > 0) return {infinity, infinity, 0, infinity};
-      return power(i.a, centre_[i.b], centre_[i.out]);
-    case Op::Abs:
-    case Op::Sign:
-    case Op::Step:
-    case Op::Min:
-    case Op::Max:
-    case Op::Less:
-    case Op::LessEqual:
-    case Op::And:
-    case Op::Or:
-    case Op::Choose: return chosen(i);
-    case Op::Function:
-    case Op::Atan2: return function(i);
-  }
-  throw std::logic_error("a disk met an operation that has no bounds; please report");
-}
-
-/// A constant factor leaves a polynomial what it is.
-FunctionDisks::Bounds FunctionDisks::product(const FunctionInstruction& i) const {
-  const Bounds &x = bounds_[i.a], &y = bounds_[i.b];
-  const double u = std::abs(centre_[i.a]), v = std::abs(centre_[i.b]);
-  const auto times = [](double size, double r) { return size == 0 ? 0.0 : size * r; };
-  if (x.reach == 0) return {times(u, y.reach), times(u, y.tail), times(u, y.low), times(u, y.high)};
-  if (y.reach == 0) return {times(v, x.reach), times(v, x.tail), times(v, x.low), times(v, x.high)};
-  const double reach = smaller(u * y.reach + v * x.reach + x.reach * y.reach, x.high * y.high + u * v);
-  return {reach, reach, x.low * y.low, x.high * y.high};
-}
-
-/// a/b − a₀/b₀ = ((a − a₀) − (a₀/b₀)(b − b₀))/b
-FunctionDisks::Bounds FunctionDisks::quotient(const FunctionInstruction& i) const {
-  const Bounds &x = bounds_[i.a], &y = bounds_[i.b];
-  if (!(y.low > 0)) return {infinity, infinity, 0, infinity};
-  if (y.reach == 0) return {x.reach / y.low, x.tail / y.low, x.low / y.low, x.high / y.low};
-  const double ratio = std::abs(centre_[i.out]), high = x.high / y.low;
-  const double reach = smaller(high + ratio, (x.reach + ratio * y.reach) / y.low);
-  return {reach, reach, x.low / y.high, high};
-}
-
-/// f' = c w^{c−1}, largest where |w| is largest or smallest; a disk about 0 is one of whole positive powers alone.
-FunctionDisks::Bounds FunctionDisks::power(std::uint32_t a, double c, double value) const {
-  const Bounds& x = bounds_[a];
-  const bool whole = c >= 0 && c == std::nearbyint(c);
-  if (x.reach == 0) return {0, 0, std::abs(value), std::abs(value)};
-  if (!whole && !(x.low > 0)) return {infinity, infinity, 0, infinity};
-  const double slope = std::abs(c) * std::pow(c >= 1 ? x.high : x.low, c - 1);
-  const double one = std::pow(x.low, c), other = std::pow(x.high, c), high = std::max(one, other);
-  const double reach = smaller(high + std::abs(value), slope * x.reach);
-  return {reach, reach, std::min(one, other), high};
-}
-
-/// Mostly |f(w) − f(w₀)| ≤ |w − w₀| sup |f′|, the supremum over the disk of w.
-FunctionDisks::Bounds FunctionDisks::function(const FunctionInstruction& i) const {
-  const Bounds& x = bounds_[i.a];
-  const double w = centre_[i.a], size = std::abs(w), d = x.reach, value = std::abs(centre_[i.out]);
-  const bool second = i.op == Op::Atan2;
-  if (d == 0 && !(second && bounds_[i.b].reach > 0)) return {0, 0, value, value};
-  if (!(d < infinity)) return {infinity, infinity, 0, infinity};
-  const auto within = [&](double reach, double high, double low = 0) { return Bounds{reach, reach, low, high}; };
-  if (second) {  // |dφ| ≤ (|dx| + |dy|)/|x ± iy|
-    const double both = d + bounds_[i.b].reach, far = std::hypot(w, centre_[i.b]) - both;
-    return within(far > 0 ? both / far : infinity, infinity);
-  }
-  const double cos = std::abs(std::cos(w)), sin = std::abs(std::sin(w));
-  // sin w − sin w₀ = sin w₀ (cos z − 1) + cos w₀ sin z with |z| ≤ d, |cos z − 1| ≤ ½ d sinh d
-  if (i.function == Kind::Sin) return within(sin * 0.5 * d * std::sinh(d) + cos * std::sinh(d), std::cosh(d));
-  if (i.function == Kind::Cos) return within(cos * 0.5 * d * std::sinh(d) + sin * std::sinh(d), std::cosh(d));
-  if (i.function == Kind::Sinh || i.function == Kind::Cosh) {  // both lie between sinh and cosh of |Re w|
-    const double most = std::cosh(size + d);
-    return within(smaller(most + value, d * most), most, size > d ? std::sinh(size - d) : 0);
-  }
-  if (i.function == Kind::Exp) {
-    const double high = std::exp(w + d);
-    return within(high * std::min(1.0, d), high, std::exp(w - d));
-  }
-  const double reach = d * largest_slope(i.function, w, d, x.low);
-  return within(reach, infinity);
-}
-
-/// Where the disk decides, the branch in force is the function.
-FunctionDisks::Bounds FunctionDisks::chosen(const FunctionInstruction& i) const {
-  const Bounds &x = bounds_[i.a], &y = bounds_[i.b];
-  const double w = std::abs(centre_[i.a]);
-  const Bounds constant{0, 0, std::abs(centre_[i.out]), std::abs(centre_[i.out])}, undecided{infinity, infinity, 0, infinity};
-  switch (i.op) {
-    case Op::Abs: return w > x.reach || x.reach == 0 ? x : undecided;
-    case Op::Sign:
-    case Op::Step: return w > x.reach || x.reach == 0 ? constant : undecided;
-    case Op::Less:
-    case Op::LessEqual: {
-      const double both = x.reach + y.reach;
-      return std::abs(centre_[i.a] - centre_[i.b]) > both || both == 0 ? constant : undecided;
-    }
-    case Op::Min:
-    case Op::Max: {
-      const double both = x.reach + y.reach, difference = centre_[i.a] - centre_[i.b];
-      if (!(std::abs(difference) > both || both == 0)) return undecided;
-      return (difference < 0) == (i.op == Op::Min) ? x : y;
-    }
-    case Op::And:
-    case Op::Or: return x.reach == 0 && y.reach == 0 ? constant : undecided;
-    case Op::Choose: return bounds_[i.c].reach == 0 ? (centre_[i.c] != 0 ? x : y) : undecided;
-    case Op::Add:
-    case Op::Subtract:
-    case Op::Multiply:
-    case Op::Divide:
-    case Op::Negate:
-    case Op::Square:
-    case Op::Sqrt:
-    case Op::PowerInteger:
-    case Op::Power:
-    case Op::Function:
-    case Op::Atan2: break;  // not here
-  }
-  throw std::logic_error("a disk met an operation that has no bounds; please report");
+  Impl& s = *impl_;
+  for (Value v = 0; v < s.bounds.size(); ++v) s.bounds[v] = within_reach(s.result(v, reach));
 }
 
 }  // namespace maupertuis

@@ -1,35 +1,25 @@
 #pragma once
-#include <maupertuis/expression.hpp>
+#include "kernel/straight_line/evaluator.hpp"
 
+#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 namespace maupertuis {
 
-/// What an instruction does to its operands x (slot a) and y (slot b).
-enum class FunctionOp : std::uint8_t {
-  Add, Subtract, Multiply, Divide, Negate, Square, Sqrt, PowerInteger, Power,
-  Function,  // of one argument, by the table of functions
-  Abs, Sign, Step, Atan2, Min, Max, Less, LessEqual, And, Or,
-  Choose,  // x where the condition in slot c holds, else y
-};
+/// Arrays of the line of a function.
+enum FunctionArray : std::uint32_t { InputArray, ParameterArray, ValueArray, function_arrays };
 
-struct FunctionInstruction {
-  FunctionOp op = FunctionOp::Add;
-  Kind function = Kind::Exp;  // Function: which
-  std::int32_t exponent = 0;  // PowerInteger
-  std::uint32_t out = 0, a = 0, b = 0, c = 0;
-};
+/// The parameters are set seldom.
+inline constexpr std::array<std::uint32_t, 1> seldom_arrays{ParameterArray};
 
-/// Slots in this order: inputs, parameters, numbers, results of instructions. Conditions are 1 or 0.
+/// The functions of a kernel as a straight line, whose stores are the outputs in order, and its evaluation.
 struct FunctionProgram {
-  std::size_t inputs = 0, parameters = 0, slots = 0;
-  std::vector<double> numbers;
-  std::vector<FunctionInstruction> fixed;     // of parameters and numbers alone, in order
-  std::vector<FunctionInstruction> changing;  // the rest, in order
-  std::vector<std::uint32_t> outputs;         // slots
+  straight::StraightLine line;
+  straight::Evaluation evaluation{straight::StraightLine()};
+  std::size_t inputs = 0, parameters = 0;
   std::vector<bool> used;                     // [inputs]
+  std::size_t size = 0;                       // nodes that a call makes
 };
 
 }  // namespace maupertuis

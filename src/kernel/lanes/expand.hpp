@@ -1,10 +1,10 @@
 #pragma once
-#include "kernel/jet/sine_cosine.hpp"
+#include "kernel/series/sine_cosine.hpp"
 #include "kernel/lanes/plan.hpp"
 #include "kernel/lanes/recurrences.hpp"
 
-/// The structured Taylor step of docs/design/kernel_program.md for W lanes: the stages of KernelWorkspace without constraints.
-/// Each file that includes this is compiled for one instruction set (see vector.hpp for what that asks).
+/// The structured Taylor step of docs/design/kernel_program.md for W lanes: the stages of KernelWorkspace without
+/// constraints. Each file that includes this is compiled for one instruction set (see vector.hpp for what that asks).
 namespace maupertuis::lanes {
 namespace {
 
@@ -14,7 +14,11 @@ class Machine {
   using V = Vec<W>;
 
   Machine(const PlanView& plan, double* rows, const double* constants, double* scratch)
-      : p_(plan), n_(plan.unknowns), step_(static_cast<std::ptrdiff_t>(plan.stride) * W), rows_(rows), constants_(constants) {
+      : p_(plan),
+        n_(plan.unknowns),
+        step_(static_cast<std::ptrdiff_t>(plan.stride) * W),
+        rows_(rows),
+        constants_(constants) {
     const auto take = [&scratch](std::size_t count) {
       double* const from = scratch;
       scratch += count * W;
@@ -73,7 +77,8 @@ class Machine {
     row_ = rows_ + order * step_;
     switch (run.op) {
       case Op::Linear: return each(run, [this](const Instruction& i) { linear_part(i).store(at(i.out)); });
-      case Op::Products: return each(run, [this](const Instruction& i) { (linear_part(i) + products(i)).store(at(i.out)); });
+      case Op::Products:
+        return each(run, [this](const Instruction& i) { (linear_part(i) + products(i)).store(at(i.out)); });
       case Op::Square: return each(run, [this](const Instruction& i) { square(series(i.a), k_).store(at(i.out)); });
       case Op::Quotient: return each(run, [this](const Instruction& i) { quotient_of(i).store(at(i.out)); });
       case Op::SquareRoot: return each(run, [this](const Instruction& i) { square_root_of(i).store(at(i.out)); });
@@ -148,7 +153,8 @@ class Machine {
   }
 
   V function(const Instruction& i) const {
-    if (k_ == 0) return by_lane(i, [](const Instruction& f, double x, double y) { return elementary_function(f.function, x, y); });
+    if (k_ == 0)
+      return by_lane(i, [](const Instruction& f, double x, double y) { return elementary_function(f.function, x, y); });
     V sum = V::all(0);
     for (std::uint32_t t = i.first_term; t < i.last_term; ++t) {
       const Term& term = p_.terms[t];
@@ -183,28 +189,28 @@ class Machine {
 
   // --------------------------------------------------------------------------------------------------- tangents
 
-  V factor_value(const Factor& f) const {
-    using K = Factor::Kind;
-    switch (f.kind) {
-      case K::Constant: return constant(f.constant);
-      case K::Scaled: return constant(f.constant) * initial(f.x);
-      case K::Twice: return initial(f.x) + initial(f.x);
-      case K::Reciprocal: return V::all(1) / initial(f.x);
-      case K::Slope: return -initial(f.x) / initial(f.y);
-      case K::HalfRoot: return V::all(0.5) / initial(f.x);
-      case K::Exponent: return constant(f.constant) * initial(f.x) / initial(f.y);
-      case K::Plus: return initial(f.x);
-      case K::Minus: return -initial(f.x);
-      case K::Chosen: return in_force(f);
-      case K::One: break;
+  V factor_value(const sparse::Edge& f) const {
+    using sparse::Rule;
+    switch (f.rule) {
+      case Rule::Coefficient: return constant(f.index);
+      case Rule::Scaled: return constant(f.index) * initial(f.x);
+      case Rule::Double: return initial(f.x) + initial(f.x);
+      case Rule::Reciprocal: return V::all(1) / initial(f.x);
+      case Rule::Ratio: return -initial(f.y) / initial(f.x);
+      case Rule::HalfReciprocal: return V::all(0.5) / initial(f.x);
+      case Rule::PowerSlope: return constant(f.index) * initial(f.y) / initial(f.x);
+      case Rule::Value: return initial(f.x);
+      case Rule::Negative: return -initial(f.x);
+      case Rule::Choice: return in_force(f);
+      case Rule::One: break;
     }
     return V::all(1);
   }
 
-  V in_force(const Factor& f) const {
+  V in_force(const sparse::Edge& f) const {
     V result = V::all(1);
-    if (f.x + 1 < f.y) result = select(constant(p_.terms[f.x].coefficient) == V::all(0), V::all(0), result);
-    for (std::uint32_t t = f.constant; t < f.x; ++t)
+    if (f.index + 1 < f.y) result = select(constant(p_.terms[f.index].coefficient) == V::all(0), V::all(0), result);
+    for (std::uint32_t t = f.x; t < f.index; ++t)
       result = select(constant(p_.terms[t].coefficient) == V::all(0), result, V::all(0));
     return result;
   }
@@ -230,7 +236,8 @@ class Machine {
   V factor() {
     find_tangents();
     for (std::size_t i = 0; i < n_ * n_; ++i) V::all(0).store(matrix_ + i * W);
-    for (std::size_t i = 0; i < p_.mass_count; ++i) tangent(p_.mass[i].tangent).store(entry(p_.mass[i].row, p_.mass[i].column));
+    for (std::size_t i = 0; i < p_.mass_count; ++i)
+      tangent(p_.mass[i].tangent).store(entry(p_.mass[i].row, p_.mass[i].column));
     const V symmetric = symmetry();
     V least = V::all(1), largest = V::all(0);
     for (std::size_t j = 0; j < n_; ++j) {

@@ -16,13 +16,16 @@ std::size_t row_stride(const Program& program);
 std::size_t scratch_size(const Program& program);
 
 /// All constants of one lane, at constants[id · W].
-void evaluate_constants(const Program& program, std::span<const double> parameters, double* constants, std::size_t width);
+void evaluate_constants(const Program& program, std::span<const double> parameters, double* constants,
+                        std::size_t width);
 
 /// The stages first_stage … stages − 1 of section Dynamics.
-///   rows       [orders][stride][W]. In: slots of One and Time at all orders, q and q̇ in rows 0 and 1 (q̇_k and λ_k beyond are
+///   rows       [orders][stride][W]. In: slots of One and Time at all orders, q and q̇ in rows 0 and 1 (q̇_k and λ_k
+///   beyond are
 ///              found). Out: every coefficient of the slots of Dynamics up to the order that the stages reach.
 ///   constants  [program.constants][W], evaluated: each lane may have its own parameters.
-///   quality    [W] out: the smallest pivot of M₀, scaled to a unit diagonal, in units of the largest; NaN where something is
+///   quality    [W] out: the smallest pivot of M₀, scaled to a unit diagonal, in units of the largest; NaN where
+///   something is
 ///              not finite. A lane of low quality is to be repeated by the reference interpreter, which decides.
 ///   scratch    [scratch_size(program)][W]
 /// All pointers are aligned to 64 bytes. The results of a lane depend neither on W nor on the other lanes, to the bit.

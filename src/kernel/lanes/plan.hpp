@@ -1,33 +1,14 @@
 #pragma once
-#include "kernel/program/program.hpp"
+#include "kernel/sparse/tangent_graph.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
-/// A program made ready for lanes. What depends on its structure alone is found once: through which operands tangents at order 0
-/// go, and which of them vanish, so that M₀ and the corrections of stored slots are short lists of products.
+/// A program made ready for lanes. What depends on its structure alone is found once: through which operands tangents
+/// at order 0 go, and which of them vanish, so that M₀ and the corrections of stored slots are short lists of products.
 namespace maupertuis::lanes {
-
-/// The partial derivative of an instruction by one operand at order 0.
-struct Factor {
-  enum class Kind : std::uint8_t {
-    Constant,   // c
-    Scaled,     // c x
-    Twice,      // 2 x
-    Reciprocal, // 1 / x
-    Slope,      // −x / y
-    HalfRoot,   // 1 / (2 x)
-    Exponent,   // c x / y
-    Plus,       // x
-    Minus,      // −x
-    One,
-    Chosen,     // not 0 where the operand of term `x` of the Select with terms [constant, y) is the one in force
-  };
-  Kind kind;
-  ConstantId constant = 0;
-  std::uint32_t x = 0, y = 0;  // slots
-};
 
 struct Pair {
   std::uint32_t factor, tangent;
@@ -58,7 +39,7 @@ struct PlanView {
   const Term* terms;
   const Run* runs;
   std::size_t run_count;
-  const Factor* factors;
+  const sparse::Edge* factors;
   std::size_t factor_count;
   const Pair* pairs;
   const Combination* combinations;
@@ -80,17 +61,10 @@ class Plan {
   PlanView view() const;
 
  private:
-  void find_needed(const Program& program);
-  void add_instruction(const Program& program, const Instruction& i);
-  void add_tangents(const Instruction& i, Slot out, std::uint32_t first_edge);
+  void add_result(std::span<const sparse::Edge> edges);
   void add_corrections(const Program& program);
   std::uint32_t tangent_of(Slot slot, std::size_t direction) const;
 
-  /// One operand that passes tangents on to the instruction at hand.
-  struct Edge {
-    std::uint32_t factor;
-    Slot operand;
-  };
   /// The directions in which a slot moves, ascending, and where its tangents are.
   struct Moves {
     std::vector<std::uint32_t> directions;
@@ -98,11 +72,9 @@ class Plan {
   };
 
   const Program& program_;
-  std::vector<bool> needed_;            // [slots]
   std::vector<Moves> moves_;            // [slots]
-  std::vector<Edge> edges_;
   std::uint32_t tangents_ = 0;
-  std::vector<Factor> factors_;
+  std::vector<sparse::Edge> factors_;   // edges whose factors are computed
   std::vector<Pair> pairs_;
   std::vector<Combination> combinations_;
   std::vector<MassEntry> mass_;

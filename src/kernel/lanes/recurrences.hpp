@@ -1,12 +1,12 @@
 #pragma once
-#include "kernel/jet/vector.hpp"
+#include "kernel/series/vector.hpp"
 
-/// The recurrences of kernel/jet/rules.hpp for W lanes, with products fused into sums. `step`: from one order of a slot to the next,
-/// in doubles; sums in two chains where one would make the processor wait.
+/// The recurrences of kernel/series/rules.hpp for W lanes, with products fused into sums. `step`: from one order of a
+/// slot to the next, in doubles; sums in two chains where one would make the processor wait.
 namespace maupertuis::lanes {
 namespace {
 
-using namespace jet;
+using namespace series;
 
 template <int W>
 struct Series {

@@ -1,4 +1,4 @@
-#include "kernel/interpreter/elementary.hpp"
+#include "kernel/reference/elementary.hpp"
 #include "kernel/lanes/lanes.hpp"
 
 #include <maupertuis/lanes.hpp>
@@ -9,7 +9,8 @@
 namespace maupertuis {
 namespace lanes {
 
-void evaluate_constants(const Program& program, std::span<const double> parameters, double* constants, std::size_t width) {
+void evaluate_constants(const Program& program, std::span<const double> parameters, double* constants,
+                        std::size_t width) {
   std::vector<double> operands;
   for (std::size_t i = 0; i < program.constants.size(); ++i) {
     const Constant& constant = program.constants[i];
@@ -19,18 +20,15 @@ void evaluate_constants(const Program& program, std::span<const double> paramete
     operands.clear();
     for (std::uint32_t k = 0; k < constant.arguments; ++k)
       operands.push_back(constants[program.constant_arguments[constant.first_argument + k] * width]);
-    value = interpreter::constant_operation<double>(constant.kind, operands);
+    value = reference::constant_operation<double>(constant.kind, operands);
   }
 }
-
-}  // namespace lanes
-
-namespace {
 
 /// Zeros at an address that vector instructions like.
 class AlignedArray {
  public:
-  explicit AlignedArray(std::size_t size) : data_(static_cast<double*>(::operator new(size * sizeof(double), alignment))) {
+  explicit AlignedArray(std::size_t size)
+      : data_(static_cast<double*>(::operator new(size * sizeof(double), alignment))) {
     for (std::size_t i = 0; i < size; ++i) data_[i] = 0;
   }
   ~AlignedArray() { ::operator delete(data_, alignment); }
@@ -44,21 +42,22 @@ class AlignedArray {
   double* data_;
 };
 
-std::size_t orders_of(const Program& program, int order) {
+static std::size_t orders_of(const Program& program, int order) {
   return static_cast<std::size_t>(order + 2 + (-2 - program.first_stage));
 }
 
-}  // namespace
+}  // namespace lanes
 
 struct LaneWorkspace::Impl {
   Impl(const Kernel& k, int p, std::shared_ptr<const LaneExpansion> e)
       : kernel(k), program(k.program()), expansion(std::move(e)), order(p),
         width(static_cast<std::size_t>(expansion->width())), row(lanes::row_stride(program) * width),
-        rows(orders_of(program, p) * row), constants((program.constants.size() + 1) * width), quality(width),
+        rows(lanes::orders_of(program, p) * row), constants((program.constants.size() + 1) * width), quality(width),
         scratch(lanes::scratch_size(program) * width), unused_time(width) {
     for (std::size_t lane = 0; lane < width; ++lane) {
       if (program.one != no_slot) rows.data()[program.one * width + lane] = 1;
-      if (program.time != no_slot && orders_of(program, p) > 1) rows.data()[row + program.time * width + lane] = 1;
+      if (program.time != no_slot && lanes::orders_of(program, p) > 1)
+        rows.data()[row + program.time * width + lane] = 1;
     }
   }
 
@@ -67,7 +66,7 @@ struct LaneWorkspace::Impl {
   std::shared_ptr<const LaneExpansion> expansion;
   int order;
   std::size_t width, row;  // doubles of a row
-  AlignedArray rows, constants, quality, scratch, unused_time;
+  lanes::AlignedArray rows, constants, quality, scratch, unused_time;
 };
 
 LaneWorkspace::LaneWorkspace(const Kernel& kernel, int order, std::shared_ptr<const LaneExpansion> expansion) {
@@ -87,7 +86,8 @@ void LaneWorkspace::set_parameters(int lane, std::span<const double> values) {
 
 std::vector<double> LaneWorkspace::constants(int lane) const {
   std::vector<double> values;
-  for (std::size_t i = 0; i < impl_->program.constants.size(); ++i) values.push_back(impl_->constants.data()[i * impl_->width + static_cast<std::size_t>(lane)]);
+  for (std::size_t i = 0; i < impl_->program.constants.size(); ++i)
+    values.push_back(impl_->constants.data()[i * impl_->width + static_cast<std::size_t>(lane)]);
   return values;
 }
 
@@ -96,7 +96,9 @@ double* LaneWorkspace::time() {
   return slot == no_slot ? impl_->unused_time.data() : impl_->rows.data() + slot * impl_->width;
 }
 double* LaneWorkspace::coordinate(int k) { return impl_->rows.data() + static_cast<std::size_t>(k) * impl_->row; }
-const double* LaneWorkspace::coordinate(int k) const { return impl_->rows.data() + static_cast<std::size_t>(k) * impl_->row; }
+const double* LaneWorkspace::coordinate(int k) const {
+  return impl_->rows.data() + static_cast<std::size_t>(k) * impl_->row;
+}
 
 void LaneWorkspace::expand() {
   Impl& s = *impl_;

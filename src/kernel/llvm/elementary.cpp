@@ -1,4 +1,4 @@
-#include "kernel/compiled/request.hpp"
+#include "kernel/machine_code/request.hpp"
 #include "kernel/llvm/emission.hpp"
 #include "kernel/llvm/emitters.hpp"
 
@@ -7,8 +7,9 @@
 #include <algorithm>
 #include <numeric>
 
-/// Elementary functions, where SLEEF has them, by its deterministic variants: `finz` with fused multiply-adds, `cinz` without. Both give the same bits at
-/// every width of vector, so that a wide number is cut into what the processor's registers hold.
+/// Elementary functions, where SLEEF has them, by its deterministic variants: `finz` with fused multiply-adds, `cinz`
+/// without. Both give the same bits at every width of vector, so that a wide number is cut into what the processor's
+/// registers hold.
 namespace maupertuis::llvm_backend {
 namespace {
 
@@ -61,12 +62,15 @@ Value* Emission::joined(const std::vector<Value*>& pieces) {
   std::vector<int> lanes(2 * static_cast<std::size_t>(width_of(pieces[0]->getType())));
   std::iota(lanes.begin(), lanes.end(), 0);
   std::vector<Value*> halves;
-  for (std::size_t i = 0; i < pieces.size(); i += 2) halves.push_back(b.CreateShuffleVector(pieces[i], pieces[i + 1], lanes));
+  for (std::size_t i = 0; i < pieces.size(); i += 2)
+    halves.push_back(b.CreateShuffleVector(pieces[i], pieces[i + 1], lanes));
   return joined(halves);
 }
 
-/// One call. A pair of doubles comes back in registers, a pair of vectors through memory, as the calling convention of C has it.
-std::vector<Value*> Emission::call(const std::string& name, int width, const std::vector<Value*>& arguments, int results) {
+/// One call. A pair of doubles comes back in registers, a pair of vectors through memory, as the calling convention of
+/// C has it.
+std::vector<Value*> Emission::call(const std::string& name, int width, const std::vector<Value*>& arguments,
+                                   int results) {
   std::vector<llvm::Type*> types(arguments.size(), real(width));
   llvm::Type* const pair = llvm::StructType::get(real(width), real(width));
   const bool by_memory = results == 2 && width > 1;
@@ -94,8 +98,8 @@ std::vector<Value*> Emission::call(const std::string& name, int width, const std
 
 std::vector<Value*> Emission::call_wide(const std::string& stem, const std::vector<Value*>& arguments, int results) {
   const int width = std::min(width_of(arguments[0]->getType()), features.vector_width);
-  const std::string name = std::string(features.fma ? "Sleef_finz_" : "Sleef_cinz_") + stem + "d" + std::to_string(width) +
-                           "_u10" + flavour(width, features.fma);
+  const std::string name = std::string(features.fma ? "Sleef_finz_" : "Sleef_cinz_") + stem + "d" +
+                           std::to_string(width) + "_u10" + flavour(width, features.fma);
   std::vector<std::vector<Value*>> pieces;  // [arguments][pieces]
   for (Value* const argument : arguments) pieces.push_back(parts(argument, width));
   std::vector<std::vector<Value*>> out(static_cast<std::size_t>(results));
@@ -110,9 +114,9 @@ std::vector<Value*> Emission::call_wide(const std::string& stem, const std::vect
   return joined_results;
 }
 
-/// Lane by lane, by the program's own function: a name that kernel/compiled resolves.
+/// Lane by lane, by the program's own function: a name that kernel/machine_code resolves.
 Value* Emission::call_program(Kind function, Value* x) {
-  const std::string name = compiled::program_function_prefix + std::string(name_of(function));
+  const std::string name = machine_code::program_function_prefix + std::string(name_of(function));
   std::vector<Value*> values;
   for (Value* const lane : parts(x, 1)) values.push_back(call(name, 1, {lane}, 1)[0]);
   if (values.size() == 1) return values[0];

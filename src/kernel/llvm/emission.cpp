@@ -34,7 +34,7 @@ llvm::Function* Emission::function(const std::string& name, const std::vector<ll
   return f;
 }
 
-// ------------------------------------------------------------------------------------------------------------------ memory
+// -------------------------------------------------------------------------------------------------------------- memory
 
 /// Addresses are multiples of the size of what they hold, up to a cache line.
 static llvm::Align alignment(llvm::Type* type) {
@@ -44,14 +44,16 @@ static llvm::Align alignment(llvm::Type* type) {
 
 Value* Emission::load(llvm::Type* type, Value* address) { return b.CreateAlignedLoad(type, address, alignment(type)); }
 
-void Emission::store(Value* value, Value* address) { b.CreateAlignedStore(value, address, alignment(value->getType())); }
+void Emission::store(Value* value, Value* address) {
+  b.CreateAlignedStore(value, address, alignment(value->getType()));
+}
 
 Value* Emission::at(Value* address, std::int64_t offset) {
   return offset == 0 ? address : b.CreateInBoundsPtrAdd(address, b.getInt64(static_cast<std::uint64_t>(offset)));
 }
 Value* Emission::at(Value* address, Value* offset) { return b.CreateInBoundsPtrAdd(address, offset); }
 
-// -------------------------------------------------------------------------------------------------------------- arithmetic
+// ---------------------------------------------------------------------------------------------------------- arithmetic
 
 Value* Emission::number(double value, llvm::Type* like) { return llvm::ConstantFP::get(like, value); }
 
@@ -66,8 +68,12 @@ Value* Emission::fma(Value* x, Value* y, Value* z) {
 }
 Value* Emission::square_root(Value* x) { return b.CreateUnaryIntrinsic(llvm::Intrinsic::sqrt, x); }
 Value* Emission::absolute(Value* x) { return b.CreateUnaryIntrinsic(llvm::Intrinsic::fabs, x); }
-Value* Emission::minimum(Value* x, Value* y) { return b.CreateSelect(b.CreateFCmpOGE(x, y), y, b.CreateSelect(b.CreateFCmpUNO(y, y), y, x)); }
-Value* Emission::maximum(Value* x, Value* y) { return b.CreateSelect(b.CreateFCmpOLE(x, y), y, b.CreateSelect(b.CreateFCmpUNO(y, y), y, x)); }
+Value* Emission::minimum(Value* x, Value* y) {
+  return b.CreateSelect(b.CreateFCmpOGE(x, y), y, b.CreateSelect(b.CreateFCmpUNO(y, y), y, x));
+}
+Value* Emission::maximum(Value* x, Value* y) {
+  return b.CreateSelect(b.CreateFCmpOLE(x, y), y, b.CreateSelect(b.CreateFCmpUNO(y, y), y, x));
+}
 
 /// Markstein: the remainder of a first guess is exact, and its quotient is added to it.
 Value* Emission::quotient(Value* x, Value* y, Value* reciprocal) {
@@ -77,7 +83,7 @@ Value* Emission::quotient(Value* x, Value* y, Value* reciprocal) {
   return fma(remainder, reciprocal, guess);
 }
 
-// ------------------------------------------------------------------------------------------------------------------- loops
+// --------------------------------------------------------------------------------------------------------------- loops
 
 std::vector<Value*> Emission::loop(Value* begin, Value* end, std::vector<Value*> carried,
                                    const std::function<std::vector<Value*>(Value*, const std::vector<Value*>&)>& body) {

@@ -13,9 +13,9 @@
 
 namespace maupertuis::llvm_backend {
 
-/// What emitters write with: a module, a builder in the function that is open, and the arithmetic that all of them share. Numbers are
-/// doubles or vectors of them, as the caller makes them; every operation works lane by lane in the same way at each width, so that
-/// the results of a lane do not depend on the width.
+/// What emitters write with: a module, a builder in the function that is open, and the arithmetic that all of them
+/// share. Numbers are doubles or vectors of them, as the caller makes them; every operation works lane by lane in the
+/// same way at each width, so that the results of a lane do not depend on the width.
 class Emission {
  public:
   using Value = llvm::Value;
@@ -26,8 +26,8 @@ class Emission {
   llvm::Type* real(int width);                   // double, or <width x double>
   llvm::Type* pointer() { return b.getPtrTy(); }
   llvm::Type* integer() { return b.getInt64Ty(); }
-  /// Opens a function: exported under its name, or private to the module (never inlined) where `exported` is false. Its pointers
-  /// do not alias. `result`: void where it is null.
+  /// Opens a function: exported under its name, or private to the module (never inlined) where `exported` is false. Its
+  /// pointers do not alias. `result`: void where it is null.
   llvm::Function* function(const std::string& name, const std::vector<llvm::Type*>& parameters, bool exported = true,
                            llvm::Type* result = nullptr);
   /// Closes it: `ret void`.
@@ -57,14 +57,14 @@ class Emission {
   /// x / y given r = 1/y, rounded: within 0.51 ulp, and without a division
   Value* quotient(Value* x, Value* y, Value* reciprocal);
 
-  /// f(x), or f(x, y) of Atan2 and Power: SLEEF's functions of 1 ulp that give the same results at every width; what SLEEF lacks is
-  /// asked of the program lane by lane.
+  /// f(x), or f(x, y) of Atan2 and Power: SLEEF's functions of 1 ulp that give the same results at every width; what
+  /// SLEEF lacks is asked of the program lane by lane.
   Value* elementary(Kind function, Value* x, Value* y = nullptr);
   std::pair<Value*, Value*> sincos(Value* x);
 
   // ------------------------------------------------------------------------------------------------------------- loops
-  /// for (i = begin; i < end; ++i) with values carried from turn to turn; returns their last ones. `body` gets i and the
-  /// carried values, and returns the next ones.
+  /// for (i = begin; i < end; ++i) with values carried from turn to turn; returns their last ones. `body` gets i and
+  /// the carried values, and returns the next ones.
   std::vector<Value*> loop(Value* begin, Value* end, std::vector<Value*> carried,
                            const std::function<std::vector<Value*>(Value* i, const std::vector<Value*>&)>& body);
   /// if (condition) { body }

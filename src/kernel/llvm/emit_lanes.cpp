@@ -19,24 +19,37 @@ constexpr int most_orders = 128;
 
 }  // namespace
 
-void emit_lanes(Emission& out, const compiled::Request& request) {
+void emit_lanes(Emission& out, const machine_code::Request& request) {
   const auto& program = *static_cast<const Program*>(request.source);
-  if (program.unknowns != program.freedoms) throw Declined("constraints are not compiled for several motions side by side");
-  if (program.unknowns > most_unknowns || program.terms.size() > most_terms) throw Declined("the program is too large to be compiled");
+  if (program.unknowns != program.freedoms)
+    throw Declined("constraints are not compiled for several motions side by side");
+  if (program.unknowns > most_unknowns || program.terms.size() > most_terms)
+    throw Declined("the program is too large to be compiled");
   LanesEmitter(out, program, request.width).run();
 }
 
 LanesEmitter::LanesEmitter(Emission& out, const Program& program, int width)
-    : out_(out), program_(program), plan_(program), view_(plan_.view()), width_(width),
-      bytes_(8 * width), row_bytes_(static_cast<std::int64_t>(view_.stride) * bytes_), n_(program.unknowns), real_(out.real(width)),
-      matrix_at_(view_.tangent_count), pivots_at_(matrix_at_ + n_ * n_), reciprocals_at_(pivots_at_ + n_) {
+    : out_(out),
+      program_(program),
+      plan_(program),
+      view_(plan_.view()),
+      width_(width),
+      bytes_(8 * width),
+      row_bytes_(static_cast<std::int64_t>(view_.stride) * bytes_),
+      n_(program.unknowns),
+      real_(out.real(width)),
+      matrix_at_(view_.tangent_count),
+      pivots_at_(matrix_at_ + n_ * n_),
+      reciprocals_at_(pivots_at_ + n_) {
   find_stored();
   plan_accumulators();
 }
 
 void LanesEmitter::run() {
-  function_ = out_.function("expand", {out_.pointer(), out_.pointer(), out_.pointer(), out_.pointer(), out_.b.getInt32Ty()});
-  rows_ = function_->getArg(0), constants_ = function_->getArg(1), quality_ = function_->getArg(2), scratch_ = function_->getArg(3);
+  function_ =
+      out_.function("expand", {out_.pointer(), out_.pointer(), out_.pointer(), out_.pointer(), out_.b.getInt32Ty()});
+  rows_ = function_->getArg(0), constants_ = function_->getArg(1), quality_ = function_->getArg(2),
+  scratch_ = function_->getArg(3);
   stages_ = out_.b.CreateSExt(function_->getArg(4), out_.integer());
   done_ = llvm::BasicBlock::Create(out_.context, "", function_);
   refuse_more_orders();
@@ -59,7 +72,8 @@ void LanesEmitter::refuse_more_orders() {
   table_orders();
   llvm::BasicBlock* const refused = llvm::BasicBlock::Create(out_.context, "", function_, done_);
   llvm::BasicBlock* const tabled = llvm::BasicBlock::Create(out_.context, "", function_, refused);
-  b.CreateCondBr(b.CreateICmpSGT(stages_, b.getInt64(static_cast<std::uint64_t>(most_orders - most_ahead()))), refused, tabled);
+  b.CreateCondBr(b.CreateICmpSGT(stages_, b.getInt64(static_cast<std::uint64_t>(most_orders - most_ahead()))), refused,
+                 tabled);
   b.SetInsertPoint(refused);
   out_.store(number(std::numeric_limits<double>::quiet_NaN()), quality_);
   b.CreateBr(done_);
@@ -142,7 +156,7 @@ void LanesEmitter::begin_values() {
   }
 }
 
-// ----------------------------------------------------------------------------------------------------------------- orders
+// -------------------------------------------------------------------------------------------------------------- orders
 
 Value* LanesEmitter::row_of(Value* order) {
   return out_.at(rows_, out_.b.CreateMul(order, out_.b.getInt64(static_cast<std::uint64_t>(row_bytes_))));
@@ -157,11 +171,13 @@ void LanesEmitter::table_orders() {
   std::vector<double> table;
   for (int m = 0; m < most_orders; ++m) {
     const double x = m, y = x * (x + 1), over_x = 1 / x, over_y = 1 / y;
-    const std::array<double, 8> line{x, over_x, std::fma(-over_x, x, 1.0) * over_x, y, over_y, std::fma(-over_y, y, 1.0) * over_y, 0, 0};
+    const std::array<double, 8> line{
+        x, over_x, std::fma(-over_x, x, 1.0) * over_x, y, over_y, std::fma(-over_y, y, 1.0) * over_y, 0, 0};
     table.insert(table.end(), line.begin(), line.end());
   }
   llvm::Constant* const values = llvm::ConstantDataArray::get(out_.context, table);
-  auto* const global = new llvm::GlobalVariable(*out_.module, values->getType(), true, llvm::GlobalValue::InternalLinkage, values, "orders");
+  auto* const global = new llvm::GlobalVariable(*out_.module, values->getType(), true,
+                                                llvm::GlobalValue::InternalLinkage, values, "orders");
   global->setAlignment(llvm::Align(bytes_of_order));
   orders_ = global;
 }
@@ -169,12 +185,13 @@ void LanesEmitter::table_orders() {
 Value* LanesEmitter::order(int ahead, OrderColumn column) {
   llvm::Type* const scalar = out_.b.getDoubleTy();
   const int at = 8 * static_cast<int>(column);
-  Value* const address = is_known() ? out_.at(orders_, known(ahead) * bytes_of_order + at) : out_.at(stage_orders_, ahead * bytes_of_order + at);
+  Value* const address = is_known() ? out_.at(orders_, known(ahead) * bytes_of_order + at)
+                                    : out_.at(stage_orders_, ahead * bytes_of_order + at);
   return out_.splat(out_.b.CreateAlignedLoad(scalar, address, llvm::Align(8)), real_);
 }
 
-/// x/d = x (r + ρ) with r the rounded reciprocal and ρ what it lacks: right to 0.51 ulp, without a division of vectors, and without the
-/// error that a product with r alone would repeat in every step.
+/// x/d = x (r + ρ) with r the rounded reciprocal and ρ what it lacks: right to 0.51 ulp, without a division of vectors,
+/// and without the error that a product with r alone would repeat in every step.
 Value* LanesEmitter::over(Value* x, int ahead, OrderColumn number, OrderColumn reciprocal, OrderColumn lack) {
   if (!out_.features.fma) return out_.divide(x, order(ahead, number));
   return out_.fma(x, order(ahead, reciprocal), out_.multiply(x, order(ahead, lack)));
@@ -187,7 +204,7 @@ Value* LanesEmitter::index(int ahead) {
 
 Value* LanesEmitter::half(int ahead) { return out_.b.CreateLShr(index(ahead), 1); }
 
-// ----------------------------------------------------------------------------------------------------------------- values
+// -------------------------------------------------------------------------------------------------------------- values
 
 bool LanesEmitter::is_literal(ConstantId id, double value) const {
   const Constant& c = program_.constants[id];

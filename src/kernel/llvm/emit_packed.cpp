@@ -1,6 +1,6 @@
 #include "kernel/llvm/emitters.hpp"
 #include "kernel/llvm/rolled_emitter.hpp"
-#include "kernel/llvm/straight_emitter.hpp"
+#include "kernel/unrolled/unroll.hpp"
 
 namespace maupertuis::llvm_backend {
 
@@ -9,7 +9,7 @@ using packed::PackedProgram;
 
 namespace {
 
-/// Of straight-line code.
+/// Of unrolled code.
 constexpr std::size_t most_unknowns = 16, most_operations = 40'000;
 /// Of rolled code, whose compilation takes about 1 ms a pack.
 constexpr std::size_t most_packs = 3000;
@@ -26,18 +26,20 @@ std::size_t operations(const PackedProgram& program, int order) {
 }
 
 /// Whether all stages can be written out one after the other.
-bool can_be_straight(const PackedProgram& program, int order) {
+bool can_be_unrolled(const PackedProgram& program, int order) {
   const Program& p = program.program;
-  const bool has_select = std::any_of(p.instructions.begin(), p.instructions.end(), [](const Instruction& i) { return i.op == Op::Select; });
-  return p.unknowns == p.freedoms && p.unknowns <= most_unknowns && !has_select && operations(program, order) <= most_operations;
+  const bool has_select = std::any_of(p.instructions.begin(), p.instructions.end(),
+                                      [](const Instruction& i) { return i.op == Op::Select; });
+  return p.unknowns == p.freedoms && p.unknowns <= most_unknowns && !has_select &&
+         operations(program, order) <= most_operations;
 }
 
 }  // namespace
 
-void emit_packed(Emission& out, const compiled::Request& request) {
+void emit_packed(Emission& out, const machine_code::Request& request) {
   const auto& program = *static_cast<const PackedProgram*>(request.source);
-  if (request.effort > 0 && can_be_straight(program, request.order)) {
-    StraightEmitter(out, program, request.stride, request.order).run();
+  if (request.effort > 0 && can_be_unrolled(program, request.order)) {
+    emit_as_one_function(out, unrolled::unroll(program, request.stride, request.order), "expand");
     return emit_step(out, program.program.unknowns, request.stride, request.order);
   }
   if (program.packs.size() > most_packs) throw Declined("the program is too large to be compiled");

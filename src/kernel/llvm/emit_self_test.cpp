@@ -4,7 +4,7 @@
 namespace maupertuis::llvm_backend {
 
 /// Arithmetic, a root, and a call of SLEEF's: what the other emitters rest on.
-void emit_self_test(Emission& out, const compiled::Request& request) {
+void emit_self_test(Emission& out, const machine_code::Request& request) {
   const llvm::Function* const f = out.function("self_test", {out.pointer(), out.pointer()});
   llvm::Value* const x = out.load(out.real(request.width), f->getArg(0));
   const auto [sine, cosine] = out.sincos(x);

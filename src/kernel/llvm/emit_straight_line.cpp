@@ -8,8 +8,9 @@
 #include <string>
 #include <utility>
 
-/// The nodes of a straight line one after the other, values in registers as far as the compiler keeps them there. Long lines are cut
-/// into functions, since the time of a compiler grows faster than a function's length; what one hands to a later one goes through memory.
+/// The nodes of a straight line one after the other, values in registers as far as the compiler keeps them there. Long
+/// lines are cut into functions, since the time of a compiler grows faster than a function's length; what one hands to
+/// a later one goes through memory. Where that would be waited for, a line is one function after all.
 namespace maupertuis::llvm_backend {
 namespace {
 
@@ -20,7 +21,8 @@ using straight::StraightLine;
 /// Nodes and terms of one function, and of all.
 constexpr std::size_t most_in_function = 400, most_in_all = 60'000;
 
-/// When numbers are there, in cycles of a Zen 5, were there no lack of units: what of a sum is known last decides how it is added up.
+/// When numbers are there, in cycles of a Zen 5, were there no lack of units: what of a sum is known last decides how
+/// it is added up.
 class Timing {
  public:
   explicit Timing(const StraightLine& line) : line_(line), ready_(line.nodes.size(), 0) {
@@ -66,7 +68,8 @@ class Timing {
       case Node::Wide: case Node::Magnitudes: return chain(node, node.last);
       case Node::Angles: case Node::Gather: {
         int out = node.what == Node::Angles ? angles : addition;
-        for (std::uint32_t i = node.first; i < node.last; ++i) out = std::max(out, at(line_.operands[i]) + (node.what == Node::Angles ? angles : addition));
+        for (std::uint32_t i = node.first; i < node.last; ++i)
+          out = std::max(out, at(line_.operands[i]) + (node.what == Node::Angles ? angles : addition));
         return out;
       }
       case Node::Root: return operands + root;
@@ -82,8 +85,15 @@ class Timing {
 
 class LineEmitter {
  public:
-  LineEmitter(Emission& out, const StraightLine& line, std::string name)
-      : out_(out), b_(out.b), line_(line), timing_(line), name_(std::move(name)), real_(out.real(1)), values_(line.nodes.size(), nullptr) {}
+  LineEmitter(Emission& out, const StraightLine& line, std::string name, bool is_one_function = false)
+      : out_(out),
+        b_(out.b),
+        line_(line),
+        timing_(line),
+        name_(std::move(name)),
+        is_one_function_(is_one_function),
+        real_(out.real(1)),
+        values_(line.nodes.size(), nullptr) {}
 
   void run() {
     cut();
@@ -94,7 +104,7 @@ class LineEmitter {
   }
 
  private:
-  // ------------------------------------------------------------------------------------------------------------------- pieces
+  // ------------------------------------------------------------------------------------------------------------ pieces
 
   bool remade(straight::Value v) const {
     const Node::What what = line_.nodes[v].what;
@@ -109,7 +119,7 @@ class LineEmitter {
     for (std::size_t i = 0; i < line_.nodes.size(); ++i) {
       const Node& node = line_.nodes[i];
       const std::size_t size = remade(static_cast<straight::Value>(i)) ? 0 : 1 + (node.last - node.first);
-      if (length + size > most_in_function) ++pieces_, length = 0;
+      if (length + size > most_in_function && !is_one_function_) ++pieces_, length = 0;
       length += size;
       const bool of_angles = node.what == Node::Sine || node.what == Node::Cosine;
       piece_of_[i] = of_angles ? piece_of_[node.a] : pieces_;
@@ -117,18 +127,8 @@ class LineEmitter {
     ++pieces_;
   }
 
-  template <class F>
-  void for_operands(const Node& node, F&& f) const {
-    for (const straight::Value v : {node.a, node.b, node.c})
-      if (v != straight::none) f(v);
-    for (std::uint32_t i = node.first; i < node.last; ++i) {
-      if (straight::lists_operands(node)) { f(line_.operands[i]); continue; }
-      for (const straight::Value v : {line_.terms[i].a, line_.terms[i].b, line_.terms[i].c})
-        if (v != straight::none) f(v);
-    }
-  }
-
-  /// Of values that a later piece reads. Stores and checks are made where their value is, guarded stores in the last piece.
+  /// Of values that a later piece reads. Stores and checks are made where their value is, guarded stores in the last
+  /// piece.
   void find_places() {
     place_.assign(line_.nodes.size(), 0);
     std::int64_t next = 8;
@@ -136,12 +136,12 @@ class LineEmitter {
       v = holder(v);
       if (remade(v) || place_[v] != 0 || piece_of_[v] == piece) return;
       place_[v] = next;
-      next += is_wide(v) ? line_.wide : 1;
+      next += line_.width(v);
     };
     for (std::size_t i = 0; i < line_.nodes.size(); ++i) {
       const Node& node = line_.nodes[i];
       if (node.what == Node::Sine || node.what == Node::Cosine || node.what == Node::Lane) continue;
-      for_operands(node, [&](straight::Value v) { use(v, piece_of_[i]); });
+      straight::for_operands(line_, node, [&](straight::Value v) { use(v, piece_of_[i]); });
     }
     checks_in_.resize(pieces_), finite_in_.resize(pieces_), stores_of_.resize(line_.nodes.size());
     const auto piece_of = [&](straight::Value v) { return remade(holder(v)) ? pieces_ - 1 : piece_of_[holder(v)]; };
@@ -160,7 +160,8 @@ class LineEmitter {
   std::vector<llvm::Type*> parameters() { return std::vector<llvm::Type*>(line_.arrays + 1, out_.pointer()); }
 
   llvm::Function* piece() {
-    llvm::Function* const f = pieces_ == 1 ? function(name_, true) : function(name_ + "_" + std::to_string(piece_), false);
+    llvm::Function* const f =
+        pieces_ == 1 ? function(name_, true) : function(name_ + "_" + std::to_string(piece_), false);
     arrays_.clear();
     for (llvm::Argument& argument : f->args()) arrays_.push_back(&argument);
     std::fill(values_.begin(), values_.end(), nullptr);
@@ -176,11 +177,12 @@ class LineEmitter {
     return f;
   }
 
-  /// All pieces of a line are of one type.
+  /// All pieces of a line are of one type. In a long one stores keep loads where they are wanted: moved to the front,
+  /// they would fill the registers.
   llvm::Function* function(const std::string& name, bool exported) {
     llvm::Function* const f = out_.function(name, parameters(), exported, line_.guarded ? b_.getInt8Ty() : nullptr);
     for (llvm::Argument& argument : f->args())
-      if (line_.guarded) argument.removeAttr(llvm::Attribute::NoAlias);
+      if (line_.guarded || is_one_function_) argument.removeAttr(llvm::Attribute::NoAlias);
     return f;
   }
 
@@ -218,6 +220,7 @@ class LineEmitter {
     Value* sums[4] = {number(0), number(0), number(0), number(0)};
     if (piece_ > 0) sums[0] = fetch(real_, line_.arrays, 1);
     Value *wide_margin = nullptr, *wide_sum = nullptr;
+    std::uint64_t lanes = 0;
     std::size_t turn = 0;
     const auto require_finite = [&](Value* x) {
       Value*& sum = sums[turn++ % 4];
@@ -231,12 +234,13 @@ class LineEmitter {
         require_finite(now);
         continue;
       }
+      lanes = line_.width(check->pivot);
       wide_margin = wide_margin ? lesser(now, wide_margin) : now;
       Value* const none = out_.number(0, type);
       wide_sum = out_.fma(now, none, wide_sum ? wide_sum : none);
     }
     for (const straight::Value v : finite_in_[piece_]) require_finite(get(v));
-    for (std::uint64_t lane = 0; wide_sum && lane < line_.wide; ++lane) {
+    for (std::uint64_t lane = 0; lane < lanes; ++lane) {
       margin = lesser(b_.CreateExtractElement(wide_margin, lane), margin);
       require_finite(b_.CreateExtractElement(wide_sum, lane));
     }
@@ -252,10 +256,9 @@ class LineEmitter {
 
   Value* lesser(Value* x, Value* y) { return b_.CreateSelect(b_.CreateFCmpOLT(x, y), x, y); }
 
-  // ------------------------------------------------------------------------------------------------------------------- values
+  // ------------------------------------------------------------------------------------------------------------ values
 
-  bool is_wide(straight::Value v) const { return straight::is_wide(line_.nodes[v]); }
-  llvm::Type* type_of(straight::Value v) { return is_wide(v) ? out_.real(static_cast<int>(line_.wide)) : real_; }
+  llvm::Type* type_of(straight::Value v) { return out_.real(static_cast<int>(line_.width(v))); }
   Value* number(double x) { return out_.number(x, real_); }
   /// The same in all lanes, where `type` is wide and the value is not.
   Value* as(llvm::Type* type, straight::Value v) {
@@ -267,21 +270,30 @@ class LineEmitter {
   Value* fetch(llvm::Type* type, std::uint32_t array, std::int64_t index) {
     return b_.CreateAlignedLoad(type, address(array, index), llvm::Align(8));
   }
-  void put(Value* x, std::uint32_t array, std::int64_t index) { b_.CreateAlignedStore(x, address(array, index), llvm::Align(8)); }
+  void put(Value* x, std::uint32_t array, std::int64_t index) {
+    b_.CreateAlignedStore(x, address(array, index), llvm::Align(8));
+  }
 
   Value* get(straight::Value v) {
     if (values_[v]) return values_[v];
     const Node& node = line_.nodes[v];
     switch (node.what) {
       case Node::Literal: return values_[v] = number(node.literal);
-      case Node::Given: return values_[v] = fetch(type_of(v), node.array, node.index);
+      case Node::Given: return given(v);
       case Node::Lane: return values_[v] = lane(node);
-      case Node::Unit: return values_[v] = b_.CreateInsertElement(out_.number(0, type_of(v)), number(1), std::uint64_t{node.index});
+      case Node::Unit:
+        return values_[v] = b_.CreateInsertElement(out_.number(0, type_of(v)), number(1), std::uint64_t{node.index});
       case Node::Sum: case Node::Magnitudes: case Node::Larger: case Node::Chosen: case Node::Angles: case Node::Sine:
       case Node::Cosine: case Node::Root: case Node::Call: case Node::Wide: case Node::Gather: break;
     }
     if (place_[v] == 0) throw std::logic_error("a number is read before it is there; please report");
     return values_[v] = fetch(type_of(v), line_.arrays, place_[v]);
+  }
+
+  /// What is kept through a long function would be written to the stack, and read again from there.
+  Value* given(straight::Value v) {
+    Value* const x = fetch(type_of(v), line_.nodes[v].array, line_.nodes[v].index);
+    return is_one_function_ ? x : values_[v] = x;
   }
 
   /// Of a wide value in memory that number alone.
@@ -300,11 +312,14 @@ class LineEmitter {
     switch (node.what) {
       case Node::Sum: return keep(v, scaled(node, sum(node, type_of(v)), type_of(v)));
       case Node::Magnitudes: return keep(v, magnitudes(node, type_of(v)));
-      case Node::Larger: return keep(v, larger(out_.absolute(as(type_of(v), node.a)), out_.absolute(as(type_of(v), node.b))));
-      case Node::Chosen: return keep(v, b_.CreateSelect(b_.CreateFCmpUNE(get(node.a), number(0)), get(node.b), get(node.c)));
+      case Node::Larger:
+        return keep(v, larger(out_.absolute(as(type_of(v), node.a)), out_.absolute(as(type_of(v), node.b))));
+      case Node::Chosen:
+        return keep(v, b_.CreateSelect(b_.CreateFCmpUNE(get(node.a), number(0)), get(node.b), get(node.c)));
       case Node::Angles: return angles(v);
       case Node::Root: return keep(v, out_.square_root(get(node.a)));
-      case Node::Call: return keep(v, out_.elementary(node.function, get(node.a), node.b == straight::none ? nullptr : get(node.b)));
+      case Node::Call:
+        return keep(v, out_.elementary(node.function, get(node.a), node.b == straight::none ? nullptr : get(node.b)));
       case Node::Wide: return keep(v, wide(node, type_of(v)));
       case Node::Gather: return keep(v, gathered(node, type_of(v)));
       case Node::Sine: case Node::Cosine: return;   // they come with their angles
@@ -313,14 +328,33 @@ class LineEmitter {
   }
 
   Value* gathered(const Node& node, llvm::Type* type) {
+    if (Value* const all = shuffled(node)) return all;
     Value* out = llvm::PoisonValue::get(type);
-    for (std::uint32_t i = node.first; i < node.last; ++i) out = b_.CreateInsertElement(out, get(line_.operands[i]), std::uint64_t{i - node.first});
+    for (std::uint32_t i = node.first; i < node.last; ++i)
+      out = b_.CreateInsertElement(out, fresh(line_.operands[i]), std::uint64_t{i - node.first});
     return out;
+  }
+
+  /// Lanes of one or two values; null: of others.
+  Value* shuffled(const Node& node) {
+    std::vector<straight::Value> sources;
+    std::vector<int> mask;
+    for (std::uint32_t i = node.first; i < node.last; ++i) {
+      const Node& lane = line_.nodes[line_.operands[i]];
+      if (lane.what != Node::Lane || line_.width(lane.a) != line_.width(line_.nodes[line_.operands[node.first]].a))
+        return nullptr;
+      const auto found = std::find(sources.begin(), sources.end(), lane.a);
+      const auto source = static_cast<std::uint32_t>(found - sources.begin());
+      if (found == sources.end()) sources.push_back(lane.a);
+      mask.push_back(static_cast<int>(source * line_.width(lane.a) + lane.index));
+    }
+    if (sources.size() > 2) return nullptr;
+    return b_.CreateShuffleVector(get(sources[0]), get(sources.back()), mask);
   }
 
   Value* larger(Value* x, Value* y) { return b_.CreateSelect(b_.CreateFCmpOGT(x, y), x, y); }
 
-  // --------------------------------------------------------------------------------------------------------------------- sums
+  // -------------------------------------------------------------------------------------------------------------- sums
 
   /// All but the last of the values of a term, and the last.
   std::pair<Value*, Value*> halves(const straight::Term& t, llvm::Type* type, bool positive) {
@@ -373,17 +407,18 @@ class LineEmitter {
       const straight::Term& t = line_.terms[i];
       Value* const last = get(t.c);
       Value* head = t.a == straight::none ? number(t.factor) : get(t.a);
-      if (t.a != straight::none && t.factor != 1) head = t.factor == -1 ? out_.negate(head) : out_.multiply(head, number(t.factor));
+      if (t.a != straight::none && t.factor != 1)
+        head = t.factor == -1 ? out_.negate(head) : out_.multiply(head, number(t.factor));
       Value* const many = out_.splat(head, type);
       out = out ? out_.fma(many, last, out) : out_.multiply(many, last);
     }
     return out ? out : out_.number(0, type);
   }
 
-  // ------------------------------------------------------------------------------------------------------------------- sines
+  // ------------------------------------------------------------------------------------------------------------- sines
 
-  /// What the caller has perhaps just written is read number by number: a wider load would wait until all of it is in the cache.
-  /// `volatile` keeps LLVM from joining them.
+  /// What the caller has perhaps just written is read number by number: a wider load would wait until all of it is in
+  /// the cache. `volatile` keeps LLVM from joining them.
   Value* fresh(straight::Value v) {
     const Node& node = line_.nodes[v];
     if (node.what != Node::Given) return get(v);
@@ -419,6 +454,7 @@ class LineEmitter {
   const StraightLine& line_;
   Timing timing_;
   std::string name_;
+  bool is_one_function_;
   llvm::Type* real_;
   std::size_t pieces_ = 0, piece_ = 0;
   std::vector<std::size_t> piece_of_;  // [nodes]
@@ -432,7 +468,11 @@ class LineEmitter {
 
 }  // namespace
 
-void emit_straight_lines(Emission& out, const compiled::Request& request) {
+void emit_as_one_function(Emission& out, const StraightLine& line, const std::string& name) {
+  LineEmitter(out, line, name, true).run();
+}
+
+void emit_straight_lines(Emission& out, const machine_code::Request& request) {
   const auto& lines = *static_cast<const std::vector<StraightLine>*>(request.source);
   std::size_t size = 0;
   for (const StraightLine& line : lines) size += line.size();

@@ -14,9 +14,9 @@
 namespace maupertuis::llvm_backend {
 namespace {
 
-using compiled::Emitter;
-using compiled::Reply;
-using compiled::Request;
+using machine_code::Emitter;
+using machine_code::Reply;
+using machine_code::Request;
 using Clock = std::chrono::steady_clock;
 
 void emit(Emission& out, const Request& request) {
@@ -41,13 +41,16 @@ char* copy_of(const char* bytes, std::size_t size) {
 void verify(const llvm::Module& module) {
   std::string text;
   llvm::raw_string_ostream stream(text);
-  if (llvm::verifyModule(module, &stream)) throw std::logic_error("wrong intermediate representation: " + text + "; please report");
+  if (llvm::verifyModule(module, &stream))
+    throw std::logic_error("wrong intermediate representation: " + text + "; please report");
 }
 #else
 void verify(const llvm::Module&) {}
 #endif
 
-double seconds_between(Clock::time_point a, Clock::time_point b) { return std::chrono::duration<double>(b - a).count(); }
+double seconds_between(Clock::time_point a, Clock::time_point b) {
+  return std::chrono::duration<double>(b - a).count();
+}
 
 void answer(const Request& request, Reply& reply) {
   const auto begin = Clock::now();
@@ -84,11 +87,14 @@ void release(Reply* reply) noexcept {
 
 const char* processor() { return host_processor().c_str(); }
 
-constexpr compiled::ModuleInterface interface{MAUPERTUIS_BUILD_TAG, LLVM_VERSION_STRING, &processor, &compile, &release};
+constexpr machine_code::ModuleInterface interface {
+  MAUPERTUIS_BUILD_TAG, LLVM_VERSION_STRING, &processor, &compile, &release
+};
 
 }  // namespace
 }  // namespace maupertuis::llvm_backend
 
-extern "C" __attribute__((visibility("default"))) const maupertuis::compiled::ModuleInterface* maupertuis_llvm_module() {
+extern "C" __attribute__((visibility("default"))) const maupertuis::machine_code::ModuleInterface*
+maupertuis_llvm_module() {
   return &maupertuis::llvm_backend::interface;
 }

@@ -8,17 +8,19 @@
 
 /// The Taylor expansion of W motions as code: lanes::Expand for one program.
 ///
-/// A processor could do the sums of products in a fraction of the time that the chain of operations from one stage to the next takes;
-/// so what hangs on that chain is kept short. Of a convolution Σ a_j b_{m−j}
+/// A processor could do the sums of products in a fraction of the time that the chain of operations from one stage to
+/// the next takes; so what hangs on that chain is kept short. Of a convolution Σ a_j b_{m−j}
 ///
-///   the *interior*, 2 ≤ j ≤ m − 2, holds coefficients that are final a stage earlier; it is added up there, before that stage is
-///     solved, while the processor would wait. Interiors of one lag share a loop and the loads of common operands, and those of two
-///     stages are added up at once, which takes half of the loads;
+///   the *interior*, 2 ≤ j ≤ m − 2, holds coefficients that are final a stage earlier; it is added up there, before
+///   that stage is
+///     solved, while the processor would wait. Interiors of one lag share a loop and the loads of common operands, and
+///     those of two stages are added up at once, which takes half of the loads;
 ///   the *newest* products, of orders 1 and m − 1, are added at the end of the stage before, as soon as it is solved;
 ///   those at the *ends*, of orders 0 and m, need the instructions of this stage.
 ///
-/// What instructions hand to each other stays in registers; coefficients that later orders read are stored. Coordinates count as 0 at
-/// their new order until the stage is solved, and whatever is linear in them vanishes and is not emitted. The corrections are the sums of lanes::Plan.
+/// What instructions hand to each other stays in registers; coefficients that later orders read are stored. Coordinates
+/// count as 0 at their new order until the stage is solved, and whatever is linear in them vanishes and is not emitted.
+/// The corrections are the sums of lanes::Plan.
 namespace maupertuis::llvm_backend {
 
 class LanesEmitter {
@@ -29,8 +31,9 @@ class LanesEmitter {
  private:
   using Value = llvm::Value;
 
-  // ------------------------------------------------------------------------------------------------ stages (emit_lanes.cpp)
-  /// Stages below this are written out: there sums have fewer products than those of two stages at once take for granted.
+  // ------------------------------------------------------------------------------------------- stages (emit_lanes.cpp)
+  /// Stages below this are written out: there sums have fewer products than those of two stages at once take for
+  /// granted.
   static constexpr int first_rolled = 4;
   void stage();
   void begin_values();
@@ -52,13 +55,17 @@ class LanesEmitter {
   Value* order(int ahead, OrderColumn column = OrderColumn::Order);  // in all lanes
   Value* index(int ahead);         // m, 64-bit integer
   Value* half(int ahead);          // ⌊m / 2⌋
-  Value* over_order(Value* x, int ahead) { return over(x, ahead, OrderColumn::Order, OrderColumn::Reciprocal, OrderColumn::Lack); }
+  Value* over_order(Value* x, int ahead) {
+    return over(x, ahead, OrderColumn::Order, OrderColumn::Reciprocal, OrderColumn::Lack);
+  }
   /// x / (m (m + 1)) at once: the error of two roundings would be larger, and the same in every step.
-  Value* over_orders(Value* x, int ahead) { return over(x, ahead, OrderColumn::Pair, OrderColumn::PairReciprocal, OrderColumn::PairLack); }
+  Value* over_orders(Value* x, int ahead) {
+    return over(x, ahead, OrderColumn::Pair, OrderColumn::PairReciprocal, OrderColumn::PairLack);
+  }
   Value* over(Value* x, int ahead, OrderColumn number, OrderColumn reciprocal, OrderColumn lack);
   Value* row_of(Value* order);
 
-  // ----------------------------------------------------------------------------------------------------------------- values
+  // ------------------------------------------------------------------------------------------------------------ values
   struct Coefficient {
     Value* value = nullptr;        // null: it is `unit`, +1 or −1
     int unit = 0;
@@ -82,7 +89,7 @@ class LanesEmitter {
   Value* or_zero(Value* x) { return x ? x : number(0); }
   Value* scratch(std::size_t index) { return out_.at(scratch_, static_cast<std::int64_t>(index) * bytes_); }
 
-  // ------------------------------------------------------------------------------------------ interiors (lanes_interiors.cpp)
+  // ----------------------------------------------------------------------------------- interiors (lanes_interiors.cpp)
   enum class Shape : std::uint8_t { Product, Square, Weighted, Power };
   /// Σ a_j b_{m−j}, Σ a_j a_{m−j} (half of it), Σ j a_j b_{m−j}, Σ (p j − (m − j)) a_j b_{m−j}.
   struct Piece {
@@ -109,7 +116,8 @@ class LanesEmitter {
   };
   void plan_accumulators();
   std::uint32_t add_accumulator(int ahead, std::vector<Piece> pieces);
-  void group_terms(const Instruction& i, std::uint32_t first, std::uint32_t last, Shape shape, std::vector<Group>& groups);
+  void group_terms(const Instruction& i, std::uint32_t first, std::uint32_t last, Shape shape,
+                   std::vector<Group>& groups);
   void prepare_next();
   bool prepares_two() const;
   void interiors_of(const std::vector<std::uint32_t>& group, bool two);
@@ -127,7 +135,7 @@ class LanesEmitter {
   Value* newest(const Piece& piece, int ahead, Value* sum);
   Value* latest(Slot slot, int ahead);
 
-  // -------------------------------------------------------------------------------------- instructions (lanes_instructions.cpp)
+  // ----------------------------------------------------------------------------- instructions (lanes_instructions.cpp)
   void instruction(std::uint32_t index);
   Value* linear_part(const Instruction& i);
   Value* products(std::uint32_t index, Value* sum);
@@ -146,13 +154,13 @@ class LanesEmitter {
   Value* divide_by_first(Value* x, std::uint32_t index, Value* divisor);
   void keep_reciprocal(std::uint32_t index, Value* divisor);
 
-  // ----------------------------------------------------------------------------------------------- solution (lanes_solution.cpp)
+  // ------------------------------------------------------------------------------------- solution (lanes_solution.cpp)
   void find_stored();
   void factor();
   void factor_mass();
   void find_tangents();
-  Value* factor_value(const lanes::Factor& f);
-  Value* in_force(const lanes::Factor& f);
+  Value* factor_value(const sparse::Edge& f);
+  Value* in_force(const sparse::Edge& f);
   Value* symmetry(const std::vector<Value*>& m);
   void decompose(std::vector<Value*> m, Value* symmetric);
   void solve();

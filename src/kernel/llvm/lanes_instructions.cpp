@@ -1,6 +1,7 @@
 #include "kernel/llvm/lanes_emitter.hpp"
 
-/// The operations of kernel/program at one order: what the interiors leave open (semantics: kernel/interpreter/run_code.hpp).
+/// The operations of kernel/program at one order: what the interiors leave open (semantics:
+/// kernel/reference/run_code.hpp).
 namespace maupertuis::llvm_backend {
 
 using llvm::Value;
@@ -52,8 +53,8 @@ Value* LanesEmitter::derivative_of(Slot slot, int m, std::uint32_t times) {
   return rate ? out_.multiply(rate, order(m + 1)) : out_.multiply(x, order(m + 1, OrderColumn::Pair));
 }
 
-/// The products with coefficients of order 0 and m, all there is at order 0: those whose factor of order m was there before this
-/// stage, or those for which it is `late`. Of a weighted sum it comes divided by m.
+/// The products with coefficients of order 0 and m, all there is at order 0: those whose factor of order m was there
+/// before this stage, or those for which it is `late`. Of a weighted sum it comes divided by m.
 Value* LanesEmitter::ends(const Piece& piece, int m, Value* sum, bool late) {
   const auto is_late = [&](Slot slot) { return ahead_of(slot) <= m; };
   if (is_order_zero(m)) return late ? plus(sum, read(piece.a, m), read(piece.b, m), piece.negative) : sum;
@@ -64,8 +65,8 @@ Value* LanesEmitter::ends(const Piece& piece, int m, Value* sum, bool late) {
   return sum;
 }
 
-/// All of an accumulator's products, what is known first added first; a weighted sum is divided by m, and what it was before is the derivative of
-/// the integral.
+/// All of an accumulator's products, what is known first added first; a weighted sum is divided by m, and what it was
+/// before is the derivative of the integral.
 Value* LanesEmitter::sum_of(std::uint32_t index, Slot integral) {
   const Accumulator& accumulator = accumulators_[index];
   const int m = accumulator.ahead;
@@ -107,7 +108,7 @@ Value* LanesEmitter::self_sum(std::uint32_t index) {
   return accumulator.sum;
 }
 
-// ------------------------------------------------------------------------------------- divisions by coefficients of order 0
+// -------------------------------------------------------------------------------- divisions by coefficients of order 0
 
 void LanesEmitter::keep_reciprocal(std::uint32_t index, Value* divisor) {
   out_.store(out_.divide(number(1), divisor), scratch(reciprocals_at_ + index));
@@ -162,11 +163,12 @@ Value* LanesEmitter::power(std::uint32_t index) {
   }
   const Accumulator& accumulator = accumulators_[groups_[index][0].accumulator];
   Value* sum = accumulator.sum;
-  if (Value* const u = read(i.a, m)) sum = plus(sum, out_.multiply(u, out_.multiply(constant(i.constant), order(m))), first(i.out));
+  if (Value* const u = read(i.a, m))
+    sum = plus(sum, out_.multiply(u, out_.multiply(constant(i.constant), order(m))), first(i.out));
   return divide_by_first(sum ? over_order(sum, m) : nullptr, index, first(i.a));
 }
 
-// -------------------------------------------------------------------------------------------------------- differentials
+// ------------------------------------------------------------------------------------------------------- differentials
 
 /// dy = z du, dz = ± y du
 void LanesEmitter::pair(std::uint32_t index) {
@@ -174,12 +176,14 @@ void LanesEmitter::pair(std::uint32_t index) {
   const int m = ahead_of(i.out);
   if (is_order_zero(m)) {
     Value* const u = or_zero(read(i.a, m));
-    const auto [y, z] = i.op == Op::SinCos ? out_.sincos(u) : std::pair{out_.elementary(Kind::Sinh, u), out_.elementary(Kind::Cosh, u)};
+    const auto [y, z] =
+        i.op == Op::SinCos ? out_.sincos(u) : std::pair{out_.elementary(Kind::Sinh, u), out_.elementary(Kind::Cosh, u)};
     define(i.out, y);
     define(i.second, z);
     return;
   }
-  Value *const y = sum_of(groups_[index][0].accumulator, i.out), *const z = sum_of(groups_[index][1].accumulator, i.second);
+  Value* const y = sum_of(groups_[index][0].accumulator, i.out);
+  Value* const z = sum_of(groups_[index][1].accumulator, i.second);
   define(i.out, y);
   define(i.second, z);
 }

@@ -15,19 +15,21 @@ constexpr int least_order_of_two = 6;
 
 using llvm::Value;
 
-// -------------------------------------------------------------------------------------------------------------------- plan
+// ---------------------------------------------------------------------------------------------------------------- plan
 
 std::uint32_t LanesEmitter::add_accumulator(int ahead, std::vector<Piece> pieces) {
   accumulators_.push_back({ahead, std::move(pieces), nullptr, {}, {}, false});
   return static_cast<std::uint32_t>(accumulators_.size() - 1);
 }
 
-void LanesEmitter::group_terms(const Instruction& i, std::uint32_t first, std::uint32_t last, Shape shape, std::vector<Group>& groups) {
+void LanesEmitter::group_terms(const Instruction& i, std::uint32_t first, std::uint32_t last, Shape shape,
+                               std::vector<Group>& groups) {
   for (std::uint32_t t = first; t < last; ++t) {
     const Term& term = program_.terms[t];
     const bool minus = is_literal(term.coefficient, -1), unit = minus || is_literal(term.coefficient, 1);
     // Weighted: c w du, with a = w, b = u.
-    const Piece piece = shape == Shape::Weighted ? Piece{shape, term.b, term.a, minus} : Piece{shape, term.a, term.b, minus};
+    const Piece piece =
+        shape == Shape::Weighted ? Piece{shape, term.b, term.a, minus} : Piece{shape, term.a, term.b, minus};
     const auto same = std::find_if(groups.begin(), groups.end(), [&](const Group& g) {
       return unit ? g.coefficient.unit == 1 : g.coefficient.unit == 0 && g.id == term.coefficient;
     });
@@ -61,7 +63,7 @@ void LanesEmitter::plan_accumulators() {
     }
 }
 
-// ------------------------------------------------------------------------------------------------------------------- pairs
+// --------------------------------------------------------------------------------------------------------------- pairs
 
 /// The coefficients of an order, and what of them was loaded.
 struct LanesEmitter::Row {
@@ -77,18 +79,22 @@ Value* LanesEmitter::loaded(Row& row, Slot slot) {
 /// The factor a_j of a piece with its weight, in the pair with the other row.
 Value* LanesEmitter::weighted(const Piece& piece, Row& row, const Row& other) {
   Value* const a = loaded(row, piece.a);
-  if (piece.shape == Shape::Power) return out_.multiply(a, out_.fma(constant(piece.exponent), row.number, out_.negate(other.number)));
+  if (piece.shape == Shape::Power)
+    return out_.multiply(a, out_.fma(constant(piece.exponent), row.number, out_.negate(other.number)));
   if (piece.shape != Shape::Weighted) return a;
   Value*& value = row.weighted[piece.a];
   return value ? value : value = out_.multiply(a, row.number);
 }
 
-/// The products of orders (j, m − j) and (m − j, j) of all pieces, these in a chain of their own where there are several.
+/// The products of orders (j, m − j) and (m − j, j) of all pieces, these in a chain of their own where there are
+/// several.
 void LanesEmitter::add_pair(const Accumulator& accumulator, Row& low, Row& high, Sum& sum) {
-  for (const Piece& piece : accumulator.pieces) sum.first = plus(sum.first, weighted(piece, low, high), loaded(high, piece.b), piece.negative);
+  for (const Piece& piece : accumulator.pieces)
+    sum.first = plus(sum.first, weighted(piece, low, high), loaded(high, piece.b), piece.negative);
   Value*& second = accumulator.pieces.size() > 1 ? sum.second : sum.first;
   for (const Piece& piece : accumulator.pieces)
-    if (piece.shape != Shape::Square) second = plus(second, weighted(piece, high, low), loaded(low, piece.b), piece.negative);
+    if (piece.shape != Shape::Square)
+      second = plus(second, weighted(piece, high, low), loaded(low, piece.b), piece.negative);
 }
 
 /// The product at j = m/2 > 1: of a square half of it, since the whole is doubled.
@@ -137,17 +143,18 @@ Value* LanesEmitter::newest(const Piece& piece, int last, Value* sum) {
   return plus(sum, b, last_a, piece.negative);
 }
 
-// ------------------------------------------------------------------------------------------------------------------- loops
+// --------------------------------------------------------------------------------------------------------------- loops
 
-/// The interiors of the next stage, which wait for nothing of this one: every other time together with those of the stage after it, of which the pair of
-/// order 2 is left for that stage.
+/// The interiors of the next stage, which wait for nothing of this one: every other time together with those of the
+/// stage after it, of which the pair of order 2 is left for that stage.
 void LanesEmitter::prepare_next() {
   std::vector<std::uint32_t> list;
   for (std::uint32_t k = 0; k < accumulators_.size(); ++k) {
     accumulators_[k].next = {};
     if (!is_known() || known(accumulators_[k].ahead + 1) >= 4) list.push_back(k);
   }
-  std::stable_sort(list.begin(), list.end(), [&](std::uint32_t x, std::uint32_t y) { return accumulators_[x].ahead < accumulators_[y].ahead; });
+  std::stable_sort(list.begin(), list.end(),
+                   [&](std::uint32_t x, std::uint32_t y) { return accumulators_[x].ahead < accumulators_[y].ahead; });
   for (auto first = list.begin(); first != list.end();) {
     const int ahead = accumulators_[*first].ahead;
     auto last = first;
@@ -161,7 +168,9 @@ void LanesEmitter::prepare_next() {
 
 bool LanesEmitter::prepares_two() const { return ((is_known() ? known(0) : parity_) & 1) == (first_rolled & 1); }
 
-LanesEmitter::Row LanesEmitter::row_at(Value* j) { return {row_of(j), out_.splat(out_.b.CreateSIToFP(j, out_.b.getDoubleTy()), real_), {}, {}}; }
+LanesEmitter::Row LanesEmitter::row_at(Value* j) {
+  return {row_of(j), out_.splat(out_.b.CreateSIToFP(j, out_.b.getDoubleTy()), real_), {}, {}};
+}
 
 /// The pair of order 2, which the stage before left.
 void LanesEmitter::finish(const std::vector<std::uint32_t>& group) {
@@ -176,8 +185,8 @@ void LanesEmitter::finish(const std::vector<std::uint32_t>& group) {
   }
 }
 
-/// The middle, then all pairs from the middle outward: (j, m − j) with j ≥ 2, and of the stage after it (j + 1, m − j), so that what was
-/// loaded serves twice.
+/// The middle, then all pairs from the middle outward: (j, m − j) with j ≥ 2, and of the stage after it (j + 1, m − j),
+/// so that what was loaded serves twice.
 void LanesEmitter::interiors_of(const std::vector<std::uint32_t>& group, bool two) {
   const int ahead = accumulators_[group[0]].ahead + 1;
   for (const std::uint32_t k : group) {
@@ -187,7 +196,8 @@ void LanesEmitter::interiors_of(const std::vector<std::uint32_t>& group, bool tw
     accumulator.after = {two && is_odd(ahead) ? middle_of(accumulator, ahead + 1) : nullptr};
   }
   const auto add = [&](Row& low, Row& high, bool after) {
-    for (const std::uint32_t k : group) add_pair(accumulators_[k], low, high, after ? accumulators_[k].after : accumulators_[k].next);
+    for (const std::uint32_t k : group)
+      add_pair(accumulators_[k], low, high, after ? accumulators_[k].after : accumulators_[k].next);
   };
   if (is_known()) {
     const int m = known(ahead);

@@ -32,32 +32,34 @@ void LanesEmitter::find_stored() {
     }
 }
 
-// -------------------------------------------------------------------------------------------------------------- tangents
+// ------------------------------------------------------------------------------------------------------------ tangents
 
-Value* LanesEmitter::factor_value(const lanes::Factor& f) {
-  using K = lanes::Factor::Kind;
-  switch (f.kind) {
-    case K::Constant: return constant(f.constant);
-    case K::Scaled: return scaled(coefficient(f.constant), first(f.x));
-    case K::Twice: return out_.add(first(f.x), first(f.x));
-    case K::Reciprocal: return out_.divide(number(1), first(f.x));
-    case K::Slope: return out_.divide(out_.negate(first(f.x)), first(f.y));
-    case K::HalfRoot: return out_.divide(number(0.5), first(f.x));
-    case K::Exponent: return out_.divide(out_.multiply(constant(f.constant), first(f.x)), first(f.y));
-    case K::Plus: return first(f.x);
-    case K::Minus: return out_.negate(first(f.x));
-    case K::Chosen: return in_force(f);
-    case K::One: break;
+Value* LanesEmitter::factor_value(const sparse::Edge& f) {
+  using sparse::Rule;
+  switch (f.rule) {
+    case Rule::Coefficient: return constant(f.index);
+    case Rule::Scaled: return scaled(coefficient(f.index), first(f.x));
+    case Rule::Double: return out_.add(first(f.x), first(f.x));
+    case Rule::Reciprocal: return out_.divide(number(1), first(f.x));
+    case Rule::Ratio: return out_.divide(out_.negate(first(f.y)), first(f.x));
+    case Rule::HalfReciprocal: return out_.divide(number(0.5), first(f.x));
+    case Rule::PowerSlope: return out_.divide(out_.multiply(constant(f.index), first(f.y)), first(f.x));
+    case Rule::Value: return first(f.x);
+    case Rule::Negative: return out_.negate(first(f.x));
+    case Rule::Choice: return in_force(f);
+    case Rule::One: break;
   }
   return number(1);
 }
 
-/// Terms [constant, y) of a Select: 1 where the condition of term x is the first that holds.
-Value* LanesEmitter::in_force(const lanes::Factor& f) {
-  const auto holds = [&](std::uint32_t t) { return out_.b.CreateFCmpUNE(constant(program_.terms[t].coefficient), number(0)); };
+/// Terms [x, y) of a Select: 1 where the condition of term `index` is the first that holds.
+Value* LanesEmitter::in_force(const sparse::Edge& f) {
+  const auto holds = [&](std::uint32_t t) {
+    return out_.b.CreateFCmpUNE(constant(program_.terms[t].coefficient), number(0));
+  };
   Value* result = number(1);
-  if (f.x + 1 < f.y) result = out_.b.CreateSelect(holds(f.x), result, number(0));
-  for (std::uint32_t t = f.constant; t < f.x; ++t) result = out_.b.CreateSelect(holds(t), number(0), result);
+  if (f.index + 1 < f.y) result = out_.b.CreateSelect(holds(f.index), result, number(0));
+  for (std::uint32_t t = f.x; t < f.index; ++t) result = out_.b.CreateSelect(holds(t), number(0), result);
   return result;
 }
 
@@ -68,7 +70,7 @@ void LanesEmitter::find_tangents() {
   tangents_.assign(view_.tangent_count, nullptr);
   tangents_[0] = number(1);
   const auto product = [&](Value* sum, const lanes::Pair& pair) {
-    const bool is_one = pair.tangent == 0, factor_is_one = view_.factors[pair.factor].kind == lanes::Factor::Kind::One;
+    const bool is_one = pair.tangent == 0, factor_is_one = view_.factors[pair.factor].rule == sparse::Rule::One;
     if (is_one) return plus(sum, factors[pair.factor]);
     if (factor_is_one) return plus(sum, tangents_[pair.tangent]);
     return plus(sum, factors[pair.factor], tangents_[pair.tangent]);
@@ -79,7 +81,9 @@ void LanesEmitter::find_tangents() {
     for (std::uint32_t k = c.first; k < c.last; ++k) {
       const lanes::Pair& pair = view_.pairs[k];
       if (!c.chooses) sum = product(sum, pair);
-      else sum = out_.b.CreateSelect(out_.b.CreateFCmpUNE(factors[pair.factor], number(0)), tangents_[pair.tangent], or_zero(sum));
+      else
+        sum = out_.b.CreateSelect(out_.b.CreateFCmpUNE(factors[pair.factor], number(0)), tangents_[pair.tangent],
+                                  or_zero(sum));
     }
     tangents_[c.out] = or_zero(sum);
   }
@@ -92,13 +96,15 @@ void LanesEmitter::find_tangents() {
     }
 }
 
-// -------------------------------------------------------------------------------------------------------------- solution
+// ------------------------------------------------------------------------------------------------------------ solution
 
-/// In a function of its own: it hands everything on through memory, and the time of a compiler grows faster than a function's length.
+/// In a function of its own: it hands everything on through memory, and the time of a compiler grows faster than a
+/// function's length.
 void LanesEmitter::factor() {
   llvm::IRBuilder<>::InsertPointGuard guard(out_.b);
   const std::vector<Value*> outside{rows_, constants_, quality_, scratch_};
-  llvm::Function* const f = out_.function("factor", {out_.pointer(), out_.pointer(), out_.pointer(), out_.pointer()}, false);
+  llvm::Function* const f =
+      out_.function("factor", {out_.pointer(), out_.pointer(), out_.pointer(), out_.pointer()}, false);
   rows_ = f->getArg(0), constants_ = f->getArg(1), quality_ = f->getArg(2), scratch_ = f->getArg(3);
   factor_mass();
   out_.end_function();
@@ -109,7 +115,8 @@ void LanesEmitter::factor() {
 void LanesEmitter::factor_mass() {
   find_tangents();
   std::vector<Value*> m(n_ * n_, nullptr);
-  for (std::size_t i = 0; i < view_.mass_count; ++i) m[view_.mass[i].row * n_ + view_.mass[i].column] = tangents_[view_.mass[i].tangent];
+  for (std::size_t i = 0; i < view_.mass_count; ++i)
+    m[view_.mass[i].row * n_ + view_.mass[i].column] = tangents_[view_.mass[i].tangent];
   for (Value*& entry : m) entry = or_zero(entry);
   Value* const symmetric = symmetry(m);
   decompose(std::move(m), symmetric);
@@ -126,13 +133,14 @@ Value* LanesEmitter::symmetry(const std::vector<Value*>& m) {
       Value* const difference = out_.subtract(below, above);
       Value* const diagonal = out_.absolute(out_.multiply(m[i * n_ + i], m[j * n_ + j]));
       Value* const size = out_.multiply(out_.fma(below, below, diagonal), number(tolerance * tolerance));
-      result = out_.b.CreateSelect(out_.b.CreateFCmpULT(size, out_.multiply(difference, difference)), number(0), result);
+      result =
+          out_.b.CreateSelect(out_.b.CreateFCmpULT(size, out_.multiply(difference, difference)), number(0), result);
     }
   return result;
 }
 
-/// M₀ = L D Lᵀ: L below the diagonal, 1/D beside, in scratch; the quality is the smallest pivot over the largest, each in units of its
-/// diagonal element.
+/// M₀ = L D Lᵀ: L below the diagonal, 1/D beside, in scratch; the quality is the smallest pivot over the largest, each
+/// in units of its diagonal element.
 void LanesEmitter::decompose(std::vector<Value*> m, Value* symmetric) {
   Value *least = number(1), *largest = number(0);
   for (std::size_t j = 0; j < n_; ++j) {
@@ -187,7 +195,8 @@ void LanesEmitter::solve() {
   if (n_ > most_by_inverse) solve_by_factors();
   else
     for (std::size_t i = 0; i < n_; ++i) {
-      for (std::size_t j = 0; j < n_; ++j) acceleration_[i] = plus(acceleration_[i], read(program_.residual[j], 0), minus_inverse(i, j));
+      for (std::size_t j = 0; j < n_; ++j)
+        acceleration_[i] = plus(acceleration_[i], read(program_.residual[j], 0), minus_inverse(i, j));
       acceleration_[i] = or_zero(acceleration_[i]);
     }
   Value* quality = out_.load(real_, quality_);
@@ -196,7 +205,9 @@ void LanesEmitter::solve() {
 }
 
 void LanesEmitter::solve_by_factors() {
-  const auto below = [&](std::size_t i, std::size_t k) { return out_.negate(out_.load(real_, scratch(matrix_at_ + i * n_ + k))); };
+  const auto below = [&](std::size_t i, std::size_t k) {
+    return out_.negate(out_.load(real_, scratch(matrix_at_ + i * n_ + k)));
+  };
   std::vector<Value*>& x = acceleration_;
   for (std::size_t i = 0; i < n_; ++i) {
     Value* const residual = read(program_.residual[i], 0);

@@ -1,13 +1,14 @@
 #include "kernel/llvm/rolled_emitter.hpp"
 
-#include "kernel/packed/compiled.hpp"
+#include "kernel/packed/code.hpp"
 
 #include <algorithm>
 #include <cstddef>
 
-/// Sums of products that later stages will want. Within loops over the convolutions of a class every order is known but for the stage: with D_a = lag − lag of a
-/// (D_b likewise), at the beginning of stage s, m = s + 2 − lag, the operand a is final up to order m − 1 + D_a. That highest order stage s multiplies itself
-/// (late_terms()), so that sums need not wait for it.
+/// Sums of products that later stages will want. Within loops over the convolutions of a class every order is known but
+/// for the stage: with D_a = lag − lag of a (D_b likewise), at the beginning of stage s, m = s + 2 − lag, the operand a
+/// is final up to order m − 1 + D_a. That highest order stage s multiplies itself (late_terms()), so that sums need not
+/// wait for it.
 namespace maupertuis::llvm_backend {
 
 using llvm::Value;
@@ -64,11 +65,15 @@ void RolledEmitter::renew_blocks() {
 
 /// Where the solution did not.
 void RolledEmitter::renew_copies() {
-  if (std::none_of(p_.blocks.begin(), p_.blocks.end(), [this](const Block& block) { return p_.copies_coordinates(block); })) return;
+  if (std::none_of(p_.blocks.begin(), p_.blocks.end(),
+                   [this](const Block& block) { return p_.copies_coordinates(block); }))
+    return;
   auto& b = out_.b;
   llvm::Function* const function = b.GetInsertBlock()->getParent();
-  llvm::BasicBlock *const missing = llvm::BasicBlock::Create(out_.context, "", function), *const there = llvm::BasicBlock::Create(out_.context, "", function);
-  Value* const has = b.CreateAlignedLoad(b.getInt64Ty(), at(arguments_, offsetof(packed::CompiledArguments, has_copies)), llvm::Align(8));
+  llvm::BasicBlock* const missing = llvm::BasicBlock::Create(out_.context, "", function);
+  llvm::BasicBlock* const there = llvm::BasicBlock::Create(out_.context, "", function);
+  Value* const has = b.CreateAlignedLoad(
+      b.getInt64Ty(), at(arguments_, offsetof(packed::CompiledArguments, has_copies)), llvm::Align(8));
   b.CreateCondBr(b.CreateICmpEQ(has, b.getInt64(0)), missing, there);
   b.SetInsertPoint(missing);
   for (const Block& block : p_.blocks)
@@ -88,9 +93,10 @@ void RolledEmitter::renew(const Block& block) {
   final_[block.first] = renewed;
 }
 
-/// Loops over the convolutions of each class, a few of each in turn, since neighbours have operands in common, which are then still in the first cache. `body`
-/// gets the addresses of their operands at order 0 and of their sums.
-void RolledEmitter::each_convolution(const std::function<void(const Class&, Value*, Value*, Value*)>& body, const std::function<bool(const Class&)>& takes_part) {
+/// Loops over the convolutions of each class, a few of each in turn, since neighbours have operands in common, which
+/// are then still in the first cache. `body` gets the addresses of their operands at order 0 and of their sums.
+void RolledEmitter::each_convolution(const std::function<void(const Class&, Value*, Value*, Value*)>& body,
+                                     const std::function<bool(const Class&)>& takes_part) {
   constexpr std::size_t at_once = 4;
   auto& b = out_.b;
   std::size_t most = 0;
@@ -101,7 +107,9 @@ void RolledEmitter::each_convolution(const std::function<void(const Class&, Valu
   out_.loop(b.getInt64(0), b.getInt64(turns), {}, [&](Value* turn, const std::vector<Value*>&) {
     for (const auto& [key, members] : classes_) {
       if (!takes_part(key)) continue;
-      const auto bound = [&](Value* at_turn) { return b.CreateUDiv(b.CreateMul(at_turn, b.getInt64(members.size())), b.getInt64(turns)); };
+      const auto bound = [&](Value* at_turn) {
+        return b.CreateUDiv(b.CreateMul(at_turn, b.getInt64(members.size())), b.getInt64(turns));
+      };
       loop_over(key, members, bound(turn), bound(b.CreateAdd(turn, b.getInt64(1))), body);
     }
     return std::vector<Value*>{};
@@ -117,7 +125,8 @@ void RolledEmitter::loop_over(const Class& key, const std::vector<std::size_t>& 
   out_.loop(first, end, {}, [&](Value* i, const std::vector<Value*>&) {
     Value* const entry = out_.at(places, b.CreateShl(i, 3));
     const auto operand = [&](std::int64_t place) {
-      return out_.at(rows_, b.CreateZExt(b.CreateAlignedLoad(b.getInt32Ty(), at(entry, place), llvm::Align(4)), b.getInt64Ty()));
+      return out_.at(
+          rows_, b.CreateZExt(b.CreateAlignedLoad(b.getInt32Ty(), at(entry, place), llvm::Align(4)), b.getInt64Ty()));
     };
     body(key, operand(0), operand(4), out_.at(sums, b.CreateMul(i, b.getInt64(sums_bytes))));
     return std::vector<Value*>{};
@@ -128,7 +137,8 @@ void RolledEmitter::loop_over(const Class& key, const std::vector<std::size_t>& 
 llvm::GlobalVariable* RolledEmitter::offsets(const std::vector<std::size_t>& members) {
   std::vector<std::uint32_t> bytes;
   for (const std::size_t i : members)
-    for (const std::uint32_t block : {convolutions_[i].a, convolutions_[i].b}) bytes.push_back(8 * p_.blocks[block].first);
+    for (const std::uint32_t block : {convolutions_[i].a, convolutions_[i].b})
+      bytes.push_back(8 * p_.blocks[block].first);
   return table(bytes);
 }
 
@@ -137,7 +147,8 @@ llvm::GlobalVariable* RolledEmitter::table(const std::vector<std::uint32_t>& num
   return new llvm::GlobalVariable(*out_.module, values->getType(), true, llvm::GlobalValue::PrivateLinkage, values);
 }
 
-/// Of the stage s + 1: Σ a_j b_{m−j} over all that is final, but for what that stage adds, which may be one product twice.
+/// Of the stage s + 1: Σ a_j b_{m−j} over all that is final, but for what that stage adds, which may be one product
+/// twice.
 void RolledEmitter::add_up_alone(int stage) {
   each_convolution([&](const Class& c, Value* x, Value* y, Value* sums) {
     const auto [lag, a_ahead, b_ahead] = c;
@@ -170,7 +181,9 @@ Value* RolledEmitter::late_terms(const packed::Convolution& c, Value* sum) {
   const auto term = [&](std::uint32_t x, std::uint32_t y, int ahead) {
     if (ahead > 1) return;
     const auto kept = kept_.find(p_.blocks[x].first);
-    Value* const newest = kept != kept_.end() ? kept->second : load(at(slot_at(row(0), p_.blocks[x].first), (1 - p_.blocks[x].lag) * row_bytes_));
+    Value* const newest = kept != kept_.end()
+                              ? kept->second
+                              : load(at(slot_at(row(0), p_.blocks[x].first), (1 - p_.blocks[x].lag) * row_bytes_));
     sum = out_.fma(newest, load(at(slot_at(rows_, p_.blocks[y].first), (1 - ahead) * row_bytes_)), sum);
   };
   term(c.a, c.b, a_ahead);
@@ -185,8 +198,9 @@ void RolledEmitter::begin_group() {
   each_convolution([&](const Class& c, Value* x, Value* y, Value* sums) { add_up_group(c, {0, 0}, x, y, sums); });
 }
 
-/// With m the order of the group's first stage, operands are final up to m − 1 + D, or `left_out` orders less: a_j for first ≤ j < m meets b_{m+r−j} of all four
-/// stages r, which slide by one from j to j + 1. The first stage adds late terms itself.
+/// With m the order of the group's first stage, operands are final up to m − 1 + D, or `left_out` orders less: a_j for
+/// first ≤ j < m meets b_{m+r−j} of all four stages r, which slide by one from j to j + 1. The first stage adds late
+/// terms itself.
 void RolledEmitter::add_up_group(const Class& c, const Group& group, Value* x, Value* y, Value* sums) {
   auto& b = out_.b;
   const auto [lag, a_ahead, b_ahead] = c;
@@ -206,17 +220,21 @@ void RolledEmitter::add_up_group(const Class& c, const Group& group, Value* x, V
   for (int r = 0; r < rolled_group; ++r) {
     const int beyond = 1 + std::max(r + group.left_out, r == 0 && late ? 1 : 0);
     Value* sum = nullptr;
-    for (int j = std::max(0, beyond - b_ahead); j < first; ++j) sum = plus(sum, known(low_a, x, j), known(high_b, top_b, r - j));
+    for (int j = std::max(0, beyond - b_ahead); j < first; ++j)
+      sum = plus(sum, known(low_a, x, j), known(high_b, top_b, r - j));
     for (int i = std::max(0, beyond - a_ahead); i <= r; ++i) sum = plus(sum, from(top_a, r - i), from(y, i));
     now.push_back(sum ? sum : llvm::Constant::getNullValue(vector_));
   }
   for (int r = 0; r < rolled_group; ++r) now.push_back(known(high_b, top_b, r - first));
-  // One order j further: a_j from the first address, and the next of b from below the second, which is where the first of the window came from.
+  // One order j further: a_j from the first address, and the next of b from below the second, which is where the first
+  // of the window came from.
   const auto turn = [&](const std::vector<Value*>& values, int steps, int first_of_last) {
-    std::vector<Value*> totals(values.begin() + 2, values.begin() + 2 + rolled_group), window(values.begin() + 2 + rolled_group, values.end());
+    std::vector<Value*> totals(values.begin() + 2, values.begin() + 2 + rolled_group),
+        window(values.begin() + 2 + rolled_group, values.end());
     for (int u = 0; u < steps; ++u) {
       Value* const a_j = from(values[0], u);
-      for (std::size_t r = u + 1 < steps ? 0 : static_cast<std::size_t>(first_of_last); r < rolled_group; ++r) totals[r] = out_.fma(a_j, window[r], totals[r]);
+      for (std::size_t r = u + 1 < steps ? 0 : static_cast<std::size_t>(first_of_last); r < rolled_group; ++r)
+        totals[r] = out_.fma(a_j, window[r], totals[r]);
       std::copy_backward(window.begin(), window.end() - 1, window.end());
       window[0] = from(values[1], -(u + 1));
     }
@@ -225,12 +243,17 @@ void RolledEmitter::add_up_group(const Class& c, const Group& group, Value* x, V
     next.insert(next.end(), window.begin(), window.end());
     return next;
   };
-  // m − first orders, less what is left out of a; s = 4 ⌊s/4⌋ + phase. The last one is a_{m−1} b_1 for the first stage, and late.
-  const int beyond = group.phase + 3 - lag - first - (a_ahead == 0 ? group.left_out : 0), rest = (beyond + 2 * rolled_group) % rolled_group;
-  Value* const turns = b.CreateNSWAdd(b.CreateLShr(stage_, 2), b.getInt64(static_cast<std::uint64_t>((beyond - rest) / rolled_group)));
-  now = out_.loop(b.getInt64(0), turns, now, [&](Value*, const std::vector<Value*>& values) { return turn(values, rolled_group, 0); });
+  // m − first orders, less what is left out of a; s = 4 ⌊s/4⌋ + phase. The last one is a_{m−1} b_1 for the first stage,
+  // and late.
+  const int beyond = group.phase + 3 - lag - first - (a_ahead == 0 ? group.left_out : 0),
+            rest = (beyond + 2 * rolled_group) % rolled_group;
+  Value* const turns =
+      b.CreateNSWAdd(b.CreateLShr(stage_, 2), b.getInt64(static_cast<std::uint64_t>((beyond - rest) / rolled_group)));
+  now = out_.loop(b.getInt64(0), turns, now,
+                  [&](Value*, const std::vector<Value*>& values) { return turn(values, rolled_group, 0); });
   now = turn(now, rest, late && a_ahead == 0 && group.left_out == 0 ? 1 : 0);
-  for (std::size_t r = 0; r < rolled_group; ++r) save(now[2 + r], at(sums, static_cast<std::int64_t>(r) * vector_bytes));
+  for (std::size_t r = 0; r < rolled_group; ++r)
+    save(now[2 + r], at(sums, static_cast<std::int64_t>(r) * vector_bytes));
 }
 
 /// What stage s, the `passed`-th of its group, has made final, for those that follow the next one in the group.

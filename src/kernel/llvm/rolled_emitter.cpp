@@ -1,6 +1,6 @@
 #include "kernel/llvm/rolled_emitter.hpp"
 
-#include "kernel/packed/compiled.hpp"
+#include "kernel/packed/code.hpp"
 
 #include <cstddef>
 
@@ -88,7 +88,8 @@ void RolledEmitter::stage() {
 
 void RolledEmitter::run_packs() {
   // q_{k+2} counts as 0 also where it is read with other numbers, or by what is called back.
-  for (Slot slot = 0; slot < program_.unknowns; slot += lanes) save(llvm::Constant::getNullValue(vector_), slot_at(row(2), slot));
+  for (Slot slot = 0; slot < program_.unknowns; slot += lanes)
+    save(llvm::Constant::getNullValue(vector_), slot_at(row(2), slot));
   recent_.clear();
   passing_row_ = field(offsetof(packed::CompiledArguments, passing_row));
   for (std::size_t i = 0; i < p_.packs.size(); ++i) {

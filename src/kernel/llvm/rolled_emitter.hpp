@@ -1,6 +1,6 @@
 #pragma once
 #include "kernel/llvm/emission.hpp"
-#include "kernel/packed/compiled.hpp"
+#include "kernel/packed/code.hpp"
 #include "kernel/packed/convolutions.hpp"
 
 #include <array>
@@ -9,19 +9,22 @@
 #include <optional>
 #include <vector>
 
-/// A packed program of any size as code whose stages are turns of a loop: `stage` runs the packs of section Dynamics, with their addresses
-/// written out, and `tangents` their derivatives; `ahead` adds up the products that later stages share in coefficients that are final. The solution stays with the
-/// workspace, so that constraints and any number of unknowns are no matter; instructions that stand alone are called back.
+/// A packed program of any size as code whose stages are turns of a loop: `stage` runs the packs of section Dynamics,
+/// with their addresses written out, and `tangents` their derivatives; `ahead` adds up the products that later stages
+/// share in coefficients that are final. The solution stays with the workspace, so that constraints and any number of
+/// unknowns are no matter; instructions that stand alone are called back.
 ///
-/// Rows of a large program do not fit into the first cache, and a sum over orders reads all of them. So the stages from 1 on form groups of
-/// four, and what the sums of a group have in common is read once. Σ_j a_j b_{m−j} at stage s has three parts:
+/// Rows of a large program do not fit into the first cache, and a sum over orders reads all of them. So the stages from
+/// 1 on form groups of four, and what the sums of a group have in common is read once. Σ_j a_j b_{m−j} at stage s has
+/// three parts:
 ///
 ///   the *interior*: operands that were final before the group began, for its four stages at once, in a loop over j;
-///   what each stage of the group makes final, added to the sums of those that follow the next one, which does it itself;
-///   the *ends*, a_m b_0 and a_0 b_m, where an operand is of stage s itself.
+///   what each stage of the group makes final, added to the sums of those that follow the next one, which does it
+///   itself; the *ends*, a_m b_0 and a_0 b_m, where an operand is of stage s itself.
 ///
-/// Stages up to 4 have sums so short that the three would overlap: each is added up by itself. The stages up to 0, with the values of elementary functions,
-/// are written out for long runs (`first`), else the engine's. In long runs that are solved by −M₀⁻¹ all stages from 1 on are one loop (`later`).
+/// Stages up to 4 have sums so short that the three would overlap: each is added up by itself. The stages up to 0, with
+/// the values of elementary functions, are written out for long runs (`first`), else the engine's. In long runs that
+/// are solved by −M₀⁻¹ all stages from 1 on are one loop (`later`).
 namespace maupertuis::llvm_backend {
 
 class RolledEmitter {
@@ -36,7 +39,8 @@ class RolledEmitter {
   using Column = packed::Column;
   using Pack = packed::Pack;
 
-  /// How far the operands of a convolution are ahead of it: lag − lag of a, lag − lag of b. Loops over convolutions are of one class.
+  /// How far the operands of a convolution are ahead of it: lag − lag of a, lag − lag of b. Loops over convolutions are
+  /// of one class.
   using Class = std::array<int, 3>;    // lag, and the two differences
   /// A value in a register, and when it was made.
   struct Recent {
@@ -44,10 +48,11 @@ class RolledEmitter {
     std::size_t time;
   };
 
-  // -------------------------------------------------------------------------------------------- stages (rolled_emitter.cpp)
+  // --------------------------------------------------------------------------------------- stages (rolled_emitter.cpp)
   void find_convolutions();
   Value* field(std::size_t offset);                 // of the arguments, an address
-  void open(const char* name, const std::vector<llvm::Type*>& others, llvm::Type* result = nullptr);  // a function of CompiledArguments* and these
+  /// a function of CompiledArguments* and these
+  void open(const char* name, const std::vector<llvm::Type*>& others, llvm::Type* result = nullptr);
   void open_stage(const char* name);                // … the stage
   void set_stage(Value* stage);
   void stage();
@@ -55,16 +60,19 @@ class RolledEmitter {
   Value* row(int ahead) { return rows_of_stage_[static_cast<std::size_t>(ahead)]; }  // of order stage + ahead
   int ahead_of(const Pack& pack) const { return 2 - pack.lag; }
   /// Coordinates of the order that is to be found count as 0.
-  bool vanishes(Slot slot, int ahead) const { return slot < program_.unknowns && ahead == 2 && written_.value_or(0) >= 0; }
+  bool vanishes(Slot slot, int ahead) const {
+    return slot < program_.unknowns && ahead == 2 && written_.value_or(0) >= 0;
+  }
 
-  // --------------------------------------------------------------------------------------- stages up to 0 (rolled_first.cpp)
+  // --------------------------------------------------------------------------------- stages up to 0 (rolled_first.cpp)
   void first_stages();
   Value* short_convolution(const packed::Convolution& c, bool a_ends, bool b_ends);
   void functions(const Pack& pack);
   void sines(const Pack& pack);
 
-  // ----------------------------------------------------------------------------------------------- packs (rolled_packs.cpp)
-  static constexpr std::size_t longest_memory = 6;  // packs for which a value stays in a register; then it is read from its row
+  // ------------------------------------------------------------------------------------------ packs (rolled_packs.cpp)
+  /// packs for which a value stays in a register; then it is read from its row
+  static constexpr std::size_t longest_memory = 6;
   void pack(std::size_t index);
   void find_passing(bool residual_too);
   void keep(const Pack& pack, Value* value);
@@ -91,7 +99,7 @@ class RolledEmitter {
   void call_rule(std::uint32_t instruction, int ahead);
   bool vanishes(const Block& block, int ahead) const;
 
-  // ----------------------------------------------------------------------------------------- tangents (rolled_tangents.cpp)
+  // ------------------------------------------------------------------------------------ tangents (rolled_tangents.cpp)
   void tangents();
   void tangent(const Pack& pack, Value* row);
   Value* tangent_columns(const Pack& pack, Value* row);
@@ -99,7 +107,7 @@ class RolledEmitter {
   Value* change(const Pack& pack, std::uint32_t block, Value* row);
   Value* at_point(std::uint32_t block) { return values_of(p_.blocks[block], rows_); }
 
-  // ----------------------------------------------------------------------------------------- solution (rolled_solution.cpp)
+  // ------------------------------------------------------------------------------------ solution (rolled_solution.cpp)
   void solution();
   void solve_by(Value* inverse, Value* tangent_row);
   void correction();
@@ -112,7 +120,7 @@ class RolledEmitter {
   std::vector<int> corrected_lags() const;
   std::vector<bool> needed_for_corrections(const std::vector<int>& lag) const;
 
-  // ----------------------------------------------------------------------------------------------- ahead (rolled_ahead.cpp)
+  // ------------------------------------------------------------------------------------------ ahead (rolled_ahead.cpp)
   void ahead();
   void renew_blocks();
   void renew_copies();
@@ -137,7 +145,7 @@ class RolledEmitter {
   /// The distance from which on a stage does not add what it reads itself.
   static int nearest(const Class& c) { return adds_late(c) ? 2 : 1; }
 
-  // ----------------------------------------------------------------------------------------------- later (rolled_later.cpp)
+  // ------------------------------------------------------------------------------------------ later (rolled_later.cpp)
   bool has_later() const;
   void later();
   void later_stage(Value* stage, Value* end, Value* inverse);
@@ -155,27 +163,32 @@ class RolledEmitter {
   std::vector<Slot> kept_slots() const;
   bool is_found_now(Slot first) const;
 
-  // ------------------------------------------------------------------------------------------- filling (rolled_filling.cpp)
+  // -------------------------------------------------------------------------------------- filling (rolled_filling.cpp)
   void choose_slots();
   void gap();
   void fill_next();
-  void each_of(const Class& key, const std::vector<std::size_t>& members, const std::function<void(const Class&, Value* a, Value* b, Value* sums)>& body);
+  void each_of(const Class& key, const std::vector<std::size_t>& members,
+               const std::function<void(const Class&, Value* a, Value* b, Value* sums)>& body);
   void add_up_first();
   Value* sum_of_next(const Class& c, Value* a, Value* b);
   Class class_of(const packed::Convolution& c) const;
 
-  // ----------------------------------------------------------------------------------------------------------------- values
+  // ------------------------------------------------------------------------------------------------------------ values
   Value* load(Value* address) { return out_.b.CreateAlignedLoad(vector_, address, llvm::Align(8)); }
   void save(Value* value, Value* address) { out_.b.CreateAlignedStore(value, address, llvm::Align(8)); }
   Value* load_one(Value* address) { return out_.b.CreateAlignedLoad(out_.b.getDoubleTy(), address, llvm::Align(8)); }
   Value* at(Value* address, std::int64_t bytes) { return out_.at(address, bytes); }
   Value* slot_at(Value* row, Slot slot) { return at(row, 8 * std::int64_t{slot}); }
   /// Of a slot that may be passing.
-  Value* place(Value* row, Slot slot) { return slot_at(passing_row_ && passing_[slot / packed::lanes] ? passing_row_ : row, slot); }
+  Value* place(Value* row, Slot slot) {
+    return slot_at(passing_row_ && passing_[slot / packed::lanes] ? passing_row_ : row, slot);
+  }
   Value* splat(Value* scalar) { return out_.splat(scalar, vector_); }
   /// A whole number, from a 64-bit integer, in all lanes.
   Value* real(Value* integer) { return splat(out_.b.CreateSIToFP(integer, out_.b.getDoubleTy())); }
-  Value* stage_plus(int n) { return n == 0 ? stage_ : out_.b.CreateNSWAdd(stage_, out_.b.getInt64(static_cast<std::uint64_t>(n))); }
+  Value* stage_plus(int n) {
+    return n == 0 ? stage_ : out_.b.CreateNSWAdd(stage_, out_.b.getInt64(static_cast<std::uint64_t>(n)));
+  }
   /// x y + sum; a null sum is zero.
   Value* plus(Value* sum, Value* x, Value* y) { return sum ? out_.fma(x, y, sum) : out_.multiply(x, y); }
   Value* gather(Value* row, const std::array<Slot, packed::lanes>& slots, bool is_here = false);
@@ -196,7 +209,8 @@ class RolledEmitter {
   std::optional<int> written_;          // the stage, if it is known when the code is made
   std::vector<Value*> rows_of_stage_;   // from its own on, as many as functions of t alone are ahead
   std::array<Value*, packed::rolled_group> sums_of_stage_{};  // by phase
-  Value *divisor_ = nullptr, *reciprocal_ = nullptr, *lack_ = nullptr;  // (k + 1)(k + 2), 1 over it, and what rounding took from that
+  /// (k + 1)(k + 2), 1 over it, and what rounding took from that
+  Value *divisor_ = nullptr, *reciprocal_ = nullptr, *lack_ = nullptr;
   std::array<Value*, 3> correction_factors_{};  // by lag
   /// The last running sum: that of its own lanes, and what these add to (null: nothing).
   struct Scan {
@@ -226,7 +240,8 @@ class RolledEmitter {
   };
   std::optional<Filling> filling_;
   Value* has_next_ = nullptr;             // whether another stage follows
-  /// Of `later`: corrections of the stage before that stand between the packs of a stage, and with what they are written.
+  /// Of `later`: corrections of the stage before that stand between the packs of a stage, and with what they are
+  /// written.
   struct Deferred {
     std::vector<bool> now;                // [packs] whose tangents a stage finds at its end
     std::vector<std::size_t> packs;       // the others, in order

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
-/// Sums for later stages between the packs of a stage (rolled_later.cpp). What waits in a stage, from one running sum to the next and from the residual to q̈,
-/// leaves the processor idle, and these wait for nothing of it. Convolutions share *slots* between the packs, and each has a *phase*, so that a quarter of them
-/// begins a group in each stage, and every stage has the same amount of work.
+/// Sums for later stages between the packs of a stage (rolled_later.cpp). What waits in a stage, from one running sum
+/// to the next and from the residual to q̈, leaves the processor idle, and these wait for nothing of it. Convolutions
+/// share *slots* between the packs, and each has a *phase*, so that a quarter of them begins a group in each stage, and
+/// every stage has the same amount of work.
 ///
-/// In stage s, of which nothing is final, a group of the stages s + 1 … s + 4 begins for the convolutions of phase s mod 4; for the others what stage s − 1
-/// has made final goes to those of their group that follow stage s. (Stage s itself has it from late_terms().) Before the first group a stage is added up by itself.
+/// In stage s, of which nothing is final, a group of the stages s + 1 … s + 4 begins for the convolutions of phase s
+/// mod 4; for the others what stage s − 1 has made final goes to those of their group that follow stage s. (Stage s
+/// itself has it from late_terms().) Before the first group a stage is added up by itself.
 namespace maupertuis::llvm_backend {
 
 using llvm::Value;
@@ -19,7 +21,8 @@ static constexpr std::int64_t sums_bytes = rolled_group * vector_bytes;
 /// Convolutions in the order of their packs, a few to a slot between the packs.
 void RolledEmitter::choose_slots() {
   constexpr std::size_t most_slots = 8, in_slot = 2;
-  const std::size_t count = convolutions_.size(), slots = count == 0 ? 0 : std::clamp<std::size_t>(count / in_slot, 1, most_slots);
+  const std::size_t count = convolutions_.size(),
+                    slots = count == 0 ? 0 : std::clamp<std::size_t>(count / in_slot, 1, most_slots);
   Filling f;
   f.slots.resize(slots), f.last.resize(slots), f.turn.resize(slots);
   for (std::size_t i = 0; i < count; ++i) {
@@ -31,7 +34,9 @@ void RolledEmitter::choose_slots() {
   filling_ = std::move(f);
 }
 
-RolledEmitter::Class RolledEmitter::class_of(const packed::Convolution& c) const { return {c.lag, c.lag - p_.blocks[c.a].lag, c.lag - p_.blocks[c.b].lag}; }
+RolledEmitter::Class RolledEmitter::class_of(const packed::Convolution& c) const {
+  return {c.lag, c.lag - p_.blocks[c.a].lag, c.lag - p_.blocks[c.b].lag};
+}
 
 /// Between two packs: the slots that are due, if the stage has read the sums that they write over.
 void RolledEmitter::gap() {
@@ -50,8 +55,10 @@ void RolledEmitter::fill_next() {
   const int phase = static_cast<int>(f.next++ % rolled_group);
   llvm::Function* const function = b.GetInsertBlock()->getParent();
   const auto block = [&] { return llvm::BasicBlock::Create(out_.context, "", function); };
-  llvm::BasicBlock *const needed = block(), *const alone = block(), *const grouped = block(), *const begins = block(), *const done = block();
-  Value* const position = b.CreateAnd(b.CreateSub(stage_, b.getInt64(static_cast<std::uint64_t>(phase))), b.getInt64(rolled_group - 1));
+  llvm::BasicBlock* const needed = block();
+  llvm::BasicBlock* const alone = block(), *const grouped = block(), *const begins = block(), *const done = block();
+  Value* const position =
+      b.CreateAnd(b.CreateSub(stage_, b.getInt64(static_cast<std::uint64_t>(phase))), b.getInt64(rolled_group - 1));
   b.CreateCondBr(has_next_, needed, done);
   b.SetInsertPoint(needed);
   b.CreateCondBr(b.CreateICmpSLT(stage_, b.getInt64(static_cast<std::uint64_t>(phase + rolled_group))), alone, grouped);
@@ -60,7 +67,9 @@ void RolledEmitter::fill_next() {
     for (const auto& [key, which] : members) each_of(key, which, body);
     b.CreateBr(done);
   };
-  each(alone, [&](const Class& c, Value* x, Value* y, Value* sums) { save(sum_of_next(c, x, y), out_.at(sums, b.CreateShl(position, 6))); });
+  each(alone, [&](const Class& c, Value* x, Value* y, Value* sums) {
+    save(sum_of_next(c, x, y), out_.at(sums, b.CreateShl(position, 6)));
+  });
   b.SetInsertPoint(grouped);
   llvm::SwitchInst* const choice = b.CreateSwitch(position, begins);
   each(begins, [&](const Class& c, Value* x, Value* y, Value* sums) { add_up_group(c, {1, phase}, x, y, sums); });
@@ -73,12 +82,14 @@ void RolledEmitter::fill_next() {
 }
 
 /// Of one class and one slot, so that they are neighbours: one after the other if they are few, else in a loop.
-void RolledEmitter::each_of(const Class& key, const std::vector<std::size_t>& members, const std::function<void(const Class&, Value*, Value*, Value*)>& body) {
+void RolledEmitter::each_of(const Class& key, const std::vector<std::size_t>& members,
+                            const std::function<void(const Class&, Value*, Value*, Value*)>& body) {
   constexpr std::size_t few = 2;
   if (members.size() > few) return loop_over(key, members, out_.b.getInt64(0), out_.b.getInt64(members.size()), body);
   for (const std::size_t i : members) {
     const packed::Convolution& c = convolutions_[i];
-    body(key, slot_at(rows_, p_.blocks[c.a].first), slot_at(rows_, p_.blocks[c.b].first), at(sums_, static_cast<std::int64_t>(sums_of_[i]) * sums_bytes));
+    body(key, slot_at(rows_, p_.blocks[c.a].first), slot_at(rows_, p_.blocks[c.b].first),
+         at(sums_, static_cast<std::int64_t>(sums_of_[i]) * sums_bytes));
   }
 }
 
@@ -90,8 +101,10 @@ void RolledEmitter::add_up_first() {
         const auto [lag, a_ahead, b_ahead] = c;
         Value* sum = sum_of_next(c, x, y);
         if (lag == 1 + a_ahead + b_ahead)
-          sum = out_.fma(out_.negate(load(at(x, (2 - lag + a_ahead) * row_bytes_))), load(at(y, (1 - a_ahead) * row_bytes_)), sum);
-        save(sum, at(sums, static_cast<std::int64_t>((rolled_group - slot % rolled_group) % rolled_group) * vector_bytes));
+          sum = out_.fma(out_.negate(load(at(x, (2 - lag + a_ahead) * row_bytes_))),
+                         load(at(y, (1 - a_ahead) * row_bytes_)), sum);
+        save(sum,
+             at(sums, static_cast<std::int64_t>((rolled_group - slot % rolled_group) % rolled_group) * vector_bytes));
       });
 }
 
@@ -101,10 +114,13 @@ Value* RolledEmitter::sum_of_next(const Class& c, Value* x, Value* y) {
   const auto [lag, a_ahead, b_ahead] = c;
   const int first = std::max(0, 2 - b_ahead);
   Value* const end = stage_plus(4 - lag - std::max(0, 2 - a_ahead));  // m = s + 3 − lag
-  Value* const top = out_.at(y, b.CreateNSWMul(stage_plus(3 - lag - first), b.getInt64(static_cast<std::uint64_t>(row_bytes_))));
-  return out_.loop(b.getInt64(static_cast<std::uint64_t>(first)), end, {llvm::Constant::getNullValue(vector_), at(x, first * row_bytes_), top},
+  Value* const top =
+      out_.at(y, b.CreateNSWMul(stage_plus(3 - lag - first), b.getInt64(static_cast<std::uint64_t>(row_bytes_))));
+  return out_.loop(b.getInt64(static_cast<std::uint64_t>(first)), end,
+                   {llvm::Constant::getNullValue(vector_), at(x, first * row_bytes_), top},
                    [&](Value*, const std::vector<Value*>& now) {
-                     return std::vector<Value*>{out_.fma(load(now[1]), load(now[2]), now[0]), at(now[1], row_bytes_), at(now[2], -row_bytes_)};
+                     return std::vector<Value*>{out_.fma(load(now[1]), load(now[2]), now[0]), at(now[1], row_bytes_),
+                                                at(now[2], -row_bytes_)};
                    })[0];
 }
 

@@ -1,13 +1,13 @@
 #include "kernel/llvm/rolled_emitter.hpp"
 #include "kernel/llvm/sines.hpp"
 
-#include "kernel/packed/compiled.hpp"
+#include "kernel/packed/code.hpp"
 
 #include <algorithm>
 #include <cstddef>
 
-/// The stages up to 0, written out one after the other: they alone have values of functions, and sums over orders that are so short that nothing is
-/// added up beforehand.
+/// The stages up to 0, written out one after the other: they alone have values of functions, and sums over orders that
+/// are so short that nothing is added up beforehand.
 namespace maupertuis::llvm_backend {
 
 using llvm::Value;
@@ -20,7 +20,8 @@ void RolledEmitter::first_stages() {
     written_ = stage;
     stage_ = out_.b.getInt64(static_cast<std::uint64_t>(stage));
     rows_of_stage_.clear();
-    for (int k = 0; k <= -program_.first_stage; ++k) rows_of_stage_.push_back(stage + k < 0 ? nullptr : row_of(stage_plus(k)));
+    for (int k = 0; k <= -program_.first_stage; ++k)
+      rows_of_stage_.push_back(stage + k < 0 ? nullptr : row_of(stage_plus(k)));
     for (std::size_t i = 0; i < p_.packs.size(); ++i)
       if (stage + ahead_of(p_.packs[i]) >= 0) pack(i);
     for (const Block& block : p_.blocks)
@@ -58,12 +59,14 @@ void RolledEmitter::sines(const Pack& pack) {
   const std::uint32_t count = pack.last_function - pack.first_function;
   if (count == 0) return;  // the cosines of the pack before
   const Block& block = p_.blocks[pack.a];
-  Value* const u = block.is_range ? load(slot_at(row(ahead_of(pack)), block.slots[0])) : gather(row(ahead_of(pack)), block.slots);
+  Value* const u =
+      block.is_range ? load(slot_at(row(ahead_of(pack)), block.slots[0])) : gather(row(ahead_of(pack)), block.slots);
   const auto call = [&] { return out_.sincos(u); };
   auto [sine, cosine] = out_.features.fma ? sines_in_place(out_.b, u, call) : call();
   if (pack.width == 2 * count) {
     std::vector<int> places;
-    for (std::uint32_t lane = 0; lane < lanes; ++lane) places.push_back(static_cast<int>(lane < count ? lane : std::min(lane - count, count - 1) + lanes));
+    for (std::uint32_t lane = 0; lane < lanes; ++lane)
+      places.push_back(static_cast<int>(lane < count ? lane : std::min(lane - count, count - 1) + lanes));
     return keep(pack, out_.b.CreateShuffleVector(sine, cosine, places));
   }
   keep(pack, sine);

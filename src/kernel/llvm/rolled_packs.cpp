@@ -1,6 +1,6 @@
 #include "kernel/llvm/rolled_emitter.hpp"
 
-#include "kernel/packed/compiled.hpp"
+#include "kernel/packed/code.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -36,26 +36,31 @@ void RolledEmitter::keep(const Pack& pack, Value* value, Value* row) {
 
 // ------------------------------------------------------------------------------------------------------------- passing
 
-/// Vectors that are read in the stage that made them and never again: they need not stand in a row of their order, each of which would have to be brought
-/// from the second cache to be written to.
-/// `residual_too`: the solution that follows reads it there.
+/// Vectors that are read in the stage that made them and never again: they need not stand in a row of their order, each
+/// of which would have to be brought from the second cache to be written to. `residual_too`: the solution that follows
+/// reads it there.
 void RolledEmitter::find_passing(bool residual_too) {
   passing_.assign(p_.cells / lanes + 1, false);
   const auto is_scalar = [](const Pack& pack) { return pack.kind == Pack::Scalar; };
   if (program_.unknowns != program_.freedoms || std::any_of(p_.packs.begin(), p_.packs.end(), is_scalar)) return;
   const auto set = [this](const Pack& pack, bool value) {
-    for (Slot out = pack.out; out < pack.out + std::max(pack.strands, 1u) * lanes; out += lanes) passing_[out / lanes] = value;
+    for (Slot out = pack.out; out < pack.out + std::max(pack.strands, 1u) * lanes; out += lanes)
+      passing_[out / lanes] = value;
   };
   for (const Pack& pack : p_.packs) {
-    const bool is_sum = pack.kind == Pack::Sum || pack.kind == Pack::Scan || pack.kind == Pack::ScanDown || pack.kind == Pack::Strand;
-    if (is_sum && pack.out >= program_.stored_end[2] && program_.tangent_lags[pack.out + pack.width - 1] != Program::unmoved) set(pack, true);
+    const bool is_sum =
+        pack.kind == Pack::Sum || pack.kind == Pack::Scan || pack.kind == Pack::ScanDown || pack.kind == Pack::Strand;
+    if (is_sum && pack.out >= program_.stored_end[2] &&
+        program_.tangent_lags[pack.out + pack.width - 1] != Program::unmoved)
+      set(pack, true);
   }
   for (const Slot slot : program_.residual) passing_[slot / lanes] = passing_[slot / lanes] && residual_too;
   // What is read across two vectors stands beside each other.
   for (bool changed = true; std::exchange(changed, false);)
     for (const Column& column : p_.columns) {
       if (column.kind != Column::Contiguous && column.kind != Column::Reversed) continue;
-      const Slot lowest = column.kind == Column::Reversed ? column.source - (lanes - 1) : column.source, last = lowest + lanes - 1;
+      const Slot lowest = column.kind == Column::Reversed ? column.source - (lanes - 1) : column.source,
+                 last = lowest + lanes - 1;
       if (passing_[lowest / lanes] == passing_[last / lanes]) continue;
       passing_[lowest / lanes] = passing_[last / lanes] = false;
       changed = true;
@@ -71,11 +76,15 @@ Value* RolledEmitter::columns(const Pack& pack) {
     const Column& column = p_.columns[c];
     const int ahead = ahead_of(pack) + column.shift;
     const bool is_first_order = written_ && *written_ + ahead == 0;
-    const auto is_nothing = [&](Slot slot) { return (slot == program_.one && !is_first_order) || vanishes(slot, ahead); };
+    const auto is_nothing = [&](Slot slot) {
+      return (slot == program_.one && !is_first_order) || vanishes(slot, ahead);
+    };
     const bool single = column.kind == Column::Broadcast;
-    if (single ? is_nothing(column.source) : std::all_of(column.sources.begin(), column.sources.end(), is_nothing)) continue;
+    if (single ? is_nothing(column.source) : std::all_of(column.sources.begin(), column.sources.end(), is_nothing))
+      continue;
     Value*& sum = sums[column.shift];
-    sum = plus_scaled(sum, column.coefficients, column_values(column, row(ahead), 2 - program_.lags[column.source] == ahead));
+    sum = plus_scaled(sum, column.coefficients,
+                      column_values(column, row(ahead), 2 - program_.lags[column.source] == ahead));
   }
   Value* const next = sums[1] || sums[2] ? real(stage_plus(ahead_of(pack) + 1)) : nullptr;
   if (sums[2]) sums[1] = plus(sums[1], real(stage_plus(ahead_of(pack) + 2)), sums[2]);
@@ -83,7 +92,8 @@ Value* RolledEmitter::columns(const Pack& pack) {
   return sums[0];
 }
 
-/// sum + x times coefficients, which are multiplied by only where they are not all 1, or all −1, whatever the parameters are. A null sum is zero.
+/// sum + x times coefficients, which are multiplied by only where they are not all 1, or all −1, whatever the
+/// parameters are. A null sum is zero.
 Value* RolledEmitter::plus_scaled(Value* sum, std::uint32_t first, Value* x) {
   const auto are_all = [&](double value) {
     const auto begin = p_.coefficients.begin() + first;
@@ -111,7 +121,8 @@ Value* RolledEmitter::column_values(const Column& column, Value* row, bool is_he
 Value* RolledEmitter::splat_of(Slot slot, Value* row, bool is_here) {
   const Slot lane = slot % lanes;
   Value* const here = is_here ? in_register(slot - lane) : nullptr;
-  return here ? out_.b.CreateShuffleVector(here, std::vector<int>(lanes, static_cast<int>(lane))) : splat(load_one(place(row, slot)));
+  return here ? out_.b.CreateShuffleVector(here, std::vector<int>(lanes, static_cast<int>(lane)))
+              : splat(load_one(place(row, slot)));
 }
 
 /// What the packs before have left, if it is still in a register.
@@ -123,7 +134,8 @@ Value* RolledEmitter::in_register(Slot first) const {
 /// Of one or two vectors a row one shuffle, if they are not still being written in pieces.
 Value* RolledEmitter::gather(Value* row, const std::array<Slot, lanes>& slots, bool is_here) {
   auto& b = out_.b;
-  if (std::all_of(slots.begin(), slots.end(), [&](Slot s) { return s == slots[0]; })) return splat(load_one(place(row, slots[0])));
+  if (std::all_of(slots.begin(), slots.end(), [&](Slot s) { return s == slots[0]; }))
+    return splat(load_one(place(row, slots[0])));
   const auto base = [](Slot slot) { return slot / lanes * lanes; };
   const Slot first = base(slots[0]);
   const auto other = std::find_if(slots.begin(), slots.end(), [&](Slot slot) { return base(slot) != first; });
@@ -138,11 +150,13 @@ Value* RolledEmitter::gather(Value* row, const std::array<Slot, lanes>& slots, b
     return b.CreateShuffleVector(vector(first), vector(second), places);
   }
   Value* result = llvm::PoisonValue::get(vector_);
-  for (std::uint64_t lane = 0; lane < lanes; ++lane) result = b.CreateInsertElement(result, load_one(place(row, slots[lane])), lane);
+  for (std::uint64_t lane = 0; lane < lanes; ++lane)
+    result = b.CreateInsertElement(result, load_one(place(row, slots[lane])), lane);
   return result;
 }
 
-/// Each lane with all lanes before it, or after it: in pairs, fours and eights the second half adds the last sum of the first.
+/// Each lane with all lanes before it, or after it: in pairs, fours and eights the second half adds the last sum of the
+/// first.
 Value* RolledEmitter::running_sum(Value* v, bool down) {
   if (!v) return llvm::Constant::getNullValue(vector_);
   constexpr int nothing = static_cast<int>(lanes);  // a lane of zeros
@@ -158,7 +172,8 @@ Value* RolledEmitter::running_sum(Value* v, bool down) {
   return v;
 }
 
-/// What the pack before has come to is known as its carry and its own sum, so that one addition a pack waits for the other.
+/// What the pack before has come to is known as its carry and its own sum, so that one addition a pack waits for the
+/// other.
 Value* RolledEmitter::carried(const Pack& pack, Value* sum, Value* row) {
   Value* carry = nullptr;
   if (pack.carry != no_slot) {
@@ -188,14 +203,15 @@ void RolledEmitter::join(const Pack& pack, bool down, Value* row) {
   for (std::size_t i = 0; i < strands_.size(); ++i) {
     if (i % segment != 0) strands_[i].sum = out_.add(strands_[i - 1].sum, strands_[i].sum);
     if (i % segment == 0) before.push_back(total);
-    if (i % segment == segment - 1 || i + 1 == strands_.size()) total = total ? out_.add(total, strands_[i].sum) : strands_[i].sum;
+    if (i % segment == segment - 1 || i + 1 == strands_.size())
+      total = total ? out_.add(total, strands_[i].sum) : strands_[i].sum;
   }
   constexpr int last = static_cast<int>(lanes) - 1;
   std::vector<int> places;
   for (int lane = 0; lane <= last; ++lane) places.push_back(down ? lane + 1 : lane == 0 ? 2 * last + 1 : lane - 1);
-  Value* owed = running_sum(out_.b.CreateShuffleVector(total, llvm::Constant::getNullValue(vector_), places), down);
-  if (pack.carry != no_slot) owed = out_.add(owed, splat(load_one(place(row, pack.carry))));
-  for (Value*& sum : before) sum = sum ? out_.add(sum, owed) : owed;
+  Value* missing = running_sum(out_.b.CreateShuffleVector(total, llvm::Constant::getNullValue(vector_), places), down);
+  if (pack.carry != no_slot) missing = out_.add(missing, splat(load_one(place(row, pack.carry))));
+  for (Value*& sum : before) sum = sum ? out_.add(sum, missing) : missing;
   for (std::size_t i = 0; i < strands_.size(); ++i) {
     Value* const sum = out_.add(strands_[i].sum, before[i / segment]);
     save(sum, place(row, strands_[i].out));
@@ -221,7 +237,8 @@ Value* RolledEmitter::convolution(std::size_t number, bool a_ends, bool b_ends) 
     Value* const sum = short_convolution(c, a_ends, b_ends);
     return sum ? sum : llvm::Constant::getNullValue(vector_);
   }
-  Value* sum = load(at(sums_of_stage_[phase_[number]], static_cast<std::int64_t>(sums_of_[number] * packed::rolled_group * 8 * lanes)));
+  Value* sum = load(at(sums_of_stage_[phase_[number]],
+                       static_cast<std::int64_t>(sums_of_[number] * packed::rolled_group * 8 * lanes)));
   sum = late_terms(c, sum);
   if (a_ends) sum = end(c.a, c.b, c.lag, sum);
   if (b_ends) sum = end(c.b, c.a, c.lag, sum);
@@ -242,7 +259,8 @@ bool RolledEmitter::vanishes(const Block& block, int ahead) const {
 Value* RolledEmitter::newest(std::uint32_t index, int ahead) {
   const Block& block = p_.blocks[index];
   Value* values = block.direct || block.is_range ? in_register(block.slots[0]) : nullptr;
-  if (!values) values = block.direct || block.is_range ? values_of(block, row(ahead)) : gather(row(ahead), block.slots, true);
+  if (!values)
+    values = block.direct || block.is_range ? values_of(block, row(ahead)) : gather(row(ahead), block.slots, true);
   return block.weighted ? out_.multiply(values, real(stage_plus(ahead))) : values;
 }
 
@@ -252,7 +270,8 @@ Value* RolledEmitter::values_of(const Block& block, Value* row) {
   return block.is_range ? load(slot_at(row, block.slots[0])) : gather(row, block.slots);
 }
 
-/// k y_k = c Σ_{j≥1} (j u_j) w_{k−j}; j u_j is 0 for j = 0. Divided by k without the rounding of 1/k, which would be the same in every step.
+/// k y_k = c Σ_{j≥1} (j u_j) w_{k−j}; j u_j is 0 for j = 0. Divided by k without the rounding of 1/k, which would be
+/// the same in every step.
 void RolledEmitter::integral(std::size_t index) {
   const Pack& pack = p_.packs[index];
   if (written_ && *written_ + ahead_of(pack) == 0) return functions(pack);
@@ -271,7 +290,8 @@ void RolledEmitter::quotient(std::size_t index) {
   Value* const sum = convolution(first_convolution_[index], true, false);
   const int ahead = ahead_of(pack), before = p_.blocks[pack.a].lag;
   Value* const a = before == pack.lag ? newest(pack.a, ahead) : load(slot_at(row(ahead), p_.blocks[pack.a].first));
-  // At order 0 what a block copies is not there yet; of a lower lag it is, and what is in a register may be of a higher order.
+  // At order 0 what a block copies is not there yet; of a lower lag it is, and what is in a register may be of a higher
+  // order.
   const bool is_of_stage = written_ && *written_ + ahead == 0 && p_.blocks[pack.b].lag == pack.lag;
   keep(pack, out_.divide(out_.subtract(a, sum), is_of_stage ? newest(pack.b, ahead) : first(pack.b)));
 }
@@ -292,7 +312,8 @@ void RolledEmitter::call_rule(std::uint32_t instruction, int ahead) {
   auto& b = out_.b;
   Value* const context = field(offsetof(packed::CompiledArguments, context));
   Value* const value = field(offsetof(packed::CompiledArguments, value));
-  auto* const signature = llvm::FunctionType::get(b.getVoidTy(), {out_.pointer(), b.getInt32Ty(), b.getInt32Ty()}, false);
+  auto* const signature =
+      llvm::FunctionType::get(b.getVoidTy(), {out_.pointer(), b.getInt32Ty(), b.getInt32Ty()}, false);
   b.CreateCall(signature, value, {context, b.getInt32(instruction), b.CreateTrunc(stage_plus(ahead), b.getInt32Ty())});
 }
 

@@ -1,12 +1,12 @@
 #include "kernel/llvm/rolled_emitter.hpp"
 
-#include "kernel/packed/compiled.hpp"
+#include "kernel/packed/code.hpp"
 
 #include <algorithm>
 #include <cstddef>
 
-/// q̈_k of a stage as a product with −M₀⁻¹, and what the coefficients of the stage owe to it: nothing in between leaves the registers and is
-/// read again in another width.
+/// q̈_k of a stage as a product with −M₀⁻¹, and what the coefficients of the stage owe to it: nothing in between leaves
+/// the registers and is read again in another width.
 namespace maupertuis::llvm_backend {
 
 using llvm::Value;
@@ -15,7 +15,8 @@ using packed::lanes;
 void RolledEmitter::solution() {
   if (program_.unknowns != program_.freedoms || program_.unknowns > packed::most_by_inverse) return;
   open_stage("solve");
-  solve_by(field(offsetof(packed::CompiledArguments, inverse)), field(offsetof(packed::CompiledArguments, tangent_row)));
+  solve_by(field(offsetof(packed::CompiledArguments, inverse)),
+           field(offsetof(packed::CompiledArguments, tangent_row)));
   out_.end_function();
 }
 
@@ -62,7 +63,8 @@ std::vector<Value*> RolledEmitter::product_with_inverse(Value* inverse) {
 
 /// x / ((k + 1)(k + 2)) without the rounding of the reciprocal, which would be the same in every step.
 Value* RolledEmitter::over_divisor(Value* x) {
-  return out_.features.fma ? out_.fma(x, splat(reciprocal_), out_.multiply(x, splat(lack_))) : out_.divide(x, splat(divisor_));
+  return out_.features.fma ? out_.fma(x, splat(reciprocal_), out_.multiply(x, splat(lack_)))
+                           : out_.divide(x, splat(divisor_));
 }
 
 /// q̈_k = −x and all that follows from it, where x and the tangents in its direction are there.
@@ -71,10 +73,12 @@ void RolledEmitter::correction() {
   open_stage("correct");
   Value* const tangents = field(offsetof(packed::CompiledArguments, tangents));
   set_correction_factors(-1);
-  for (Slot slot = 0; slot < program_.unknowns; slot += lanes) save(over_divisor(load(slot_at(tangents, slot))), slot_at(row(2), slot));
+  for (Slot slot = 0; slot < program_.unknowns; slot += lanes)
+    save(over_divisor(load(slot_at(tangents, slot))), slot_at(row(2), slot));
   const std::vector<int> lag = corrected_lags();
   for (std::size_t i = 0; i < lag.size(); ++i)
-    if (const auto slot = static_cast<Slot>(i * lanes); lag[i] >= 0) correct(slot, lag[i], load(slot_at(tangents, slot)));
+    if (const auto slot = static_cast<Slot>(i * lanes); lag[i] >= 0)
+      correct(slot, lag[i], load(slot_at(tangents, slot)));
   correct_copies(tangents);
   out_.end_function();
 }
@@ -83,10 +87,12 @@ void RolledEmitter::correction() {
 void RolledEmitter::correct_copies(Value* tangents) {
   for (const Block& block : p_.blocks)
     if (p_.copies_coordinates(block))
-      save(out_.multiply(over_divisor(load(slot_at(tangents, block.first))), real(stage_plus(2))), slot_at(row(2), block.first));
+      save(out_.multiply(over_divisor(load(slot_at(tangents, block.first))), real(stage_plus(2))),
+           slot_at(row(2), block.first));
 }
 
-/// A change of q̈_k changes a coefficient of a slot of lag 2, 1, 0 by its tangent times 1, 1/(k + 1), 1/((k + 1)(k + 2)). `sign`: that of the tangents.
+/// A change of q̈_k changes a coefficient of a slot of lag 2, 1, 0 by its tangent times 1, 1/(k + 1), 1/((k + 1)(k +
+/// 2)). `sign`: that of the tangents.
 void RolledEmitter::set_correction_factors(int sign) {
   auto& b = out_.b;
   llvm::Type* const scalar = b.getDoubleTy();
@@ -94,7 +100,8 @@ void RolledEmitter::set_correction_factors(int sign) {
   divisor_ = out_.multiply(out_.multiply(out_.number(sign, scalar), number(1)), number(2));
   reciprocal_ = out_.divide(out_.number(1, scalar), divisor_);
   lack_ = out_.multiply(out_.fma(out_.negate(reciprocal_), divisor_, out_.number(1, scalar)), reciprocal_);
-  correction_factors_ = {splat(reciprocal_), splat(out_.divide(out_.number(sign, scalar), number(1))), out_.number(sign, vector_)};
+  correction_factors_ = {splat(reciprocal_), splat(out_.divide(out_.number(sign, scalar), number(1))),
+                         out_.number(sign, vector_)};
 }
 
 /// Tangents of what is corrected, pack by pack, each added to its coefficients as soon as it is there.
@@ -111,7 +118,8 @@ void RolledEmitter::correct(Value* tangent_row) {
       if (int& own = lag[out / lanes]; own >= 0) correct(out, std::exchange(own, -1), in_register(out));
   }
   for (std::size_t i = 0; i < lag.size(); ++i)  // what stands alone
-    if (const auto slot = static_cast<Slot>(i * lanes); lag[i] >= 0) correct(slot, lag[i], load(slot_at(tangent_row, slot)));
+    if (const auto slot = static_cast<Slot>(i * lanes); lag[i] >= 0)
+      correct(slot, lag[i], load(slot_at(tangent_row, slot)));
 }
 
 void RolledEmitter::correct(Slot slot, int lag, Value* tangent) {
@@ -145,7 +153,8 @@ std::vector<bool> RolledEmitter::needed_for_corrections(const std::vector<int>& 
     const Pack& pack = p_.packs[i];
     const Slot end = pack.out + std::max(pack.strands, 1u) * lanes;
     needed[i] = all_before || pack.kind == Pack::Scalar || lag[pack.out / lanes] >= 0;
-    for (Slot slot = pack.out; slot < end && pack.kind != Pack::Scalar; ++slot) needed[i] = needed[i] || slot_needed[slot];
+    for (Slot slot = pack.out; slot < end && pack.kind != Pack::Scalar; ++slot)
+      needed[i] = needed[i] || slot_needed[slot];
     if (!needed[i]) continue;
     all_before = all_before || pack.kind == Pack::Scalar;
     for (Slot slot = pack.out; slot < end && pack.strands > 0; ++slot) need(slot);
@@ -157,7 +166,8 @@ std::vector<bool> RolledEmitter::needed_for_corrections(const std::vector<int>& 
         need(column.kind == Column::Broadcast ? column.source : column.kind == Column::Contiguous ? column.source + k
              : column.kind == Column::Reversed ? column.source - k : column.sources[k]);
     }
-    for (std::uint32_t k = pack.first_product; k < pack.last_product; ++k) need_block(pack, p_.products[k].a), need_block(pack, p_.products[k].b);
+    for (std::uint32_t k = pack.first_product; k < pack.last_product; ++k)
+      need_block(pack, p_.products[k].a), need_block(pack, p_.products[k].b);
     need_block(pack, pack.a);
     if (pack.kind == Pack::Quotient) need_block(pack, pack.b);
   }

@@ -1,10 +1,11 @@
 #include "kernel/llvm/rolled_emitter.hpp"
 
-#include "kernel/packed/compiled.hpp"
+#include "kernel/packed/code.hpp"
 
 #include <cstddef>
 
-/// Tangents of order 0 in one direction. The highest derivative of q in a slot of lag ℓ enters through operands of lag ℓ alone.
+/// Tangents of order 0 in one direction. The highest derivative of q in a slot of lag ℓ enters through operands of lag
+/// ℓ alone.
 namespace maupertuis::llvm_backend {
 
 using llvm::Value;
@@ -47,7 +48,8 @@ void RolledEmitter::tangent(const Pack& pack, Value* row) {
   }
   Value* const context = b.CreateLoad(out_.pointer(), at(arguments_, offsetof(packed::CompiledArguments, context)));
   Value* const rule = b.CreateLoad(out_.pointer(), at(arguments_, offsetof(packed::CompiledArguments, tangent)));
-  auto* const signature = llvm::FunctionType::get(b.getVoidTy(), {out_.pointer(), b.getInt32Ty(), out_.pointer()}, false);
+  auto* const signature =
+      llvm::FunctionType::get(b.getVoidTy(), {out_.pointer(), b.getInt32Ty(), out_.pointer()}, false);
   b.CreateCall(signature, rule, {context, b.getInt32(pack.instruction), row});
 }
 

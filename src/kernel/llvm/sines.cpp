@@ -2,8 +2,8 @@
 
 #include <llvm/IR/MDBuilder.h>
 
-/// The numbers of kernel/jet/sine_cosine.hpp in another order: what is known last is added last, and polynomials are evaluated in three
-/// parts at once, since such a calculation is all waiting.
+/// The numbers of kernel/series/sine_cosine.hpp in another order: what is known last is added last, and polynomials are
+/// evaluated in three parts at once, since such a calculation is all waiting.
 namespace maupertuis::llvm_backend {
 namespace {
 
@@ -11,7 +11,8 @@ using llvm::Value;
 
 class InPlace {
  public:
-  InPlace(llvm::IRBuilder<>& b, Value* x) : b_(b), x_(x), type_(x->getType()), whole_(type_->getWithNewType(b.getInt64Ty())) {}
+  InPlace(llvm::IRBuilder<>& b, Value* x)
+      : b_(b), x_(x), type_(x->getType()), whole_(type_->getWithNewType(b.getInt64Ty())) {}
 
   SineAndCosine run() {
     reduce();
@@ -35,10 +36,12 @@ class InPlace {
   Value* fma(Value* x, double y, Value* z) { return fma(x, number(y), z); }
   Value* fma(Value* x, double y, double z) { return fma(x, number(y), number(z)); }
 
-  /// high + low = x − n π/2 to 2⁻¹⁰⁰; adding the shifter rounds to a whole number, whose last bits the sum then ends with. The first
-  /// difference is exact, and so is what the second one lost, unless cancellation left less than 10⁻¹⁰ of x; then it is half a unit of it.
+  /// high + low = x − n π/2 to 2⁻¹⁰⁰; adding the shifter rounds to a whole number, whose last bits the sum then ends
+  /// with. The first difference is exact, and so is what the second one lost, unless cancellation left less than 10⁻¹⁰
+  /// of x; then it is half a unit of it.
   void reduce() {
-    constexpr double shifter = 0x1.8p52, first_part = -0x1.921fb54442d18p0, second_part = -0x1.1a62633145c07p-54, third_part = 0x1.f1976b7ed8fbcp-110;
+    constexpr double shifter = 0x1.8p52, first_part = -0x1.921fb54442d18p0, second_part = -0x1.1a62633145c07p-54,
+                     third_part = 0x1.f1976b7ed8fbcp-110;
     Value* const shifted = fma(x_, 0x1.45f306dc9c883p-1, shifter);
     Value* const n = subtract(shifted, number(shifter));
     Value* const first = fma(n, first_part, x_);
@@ -94,7 +97,8 @@ class InPlace {
 /// A number becomes two, since choices between single numbers can become branches that no processor foresees.
 Value* paired(llvm::IRBuilder<>& b, Value* x) {
   if (x->getType()->isVectorTy()) return x;
-  return b.CreateInsertElement(llvm::ConstantFP::get(llvm::FixedVectorType::get(x->getType(), 2), 0.0), x, std::uint64_t{0});
+  return b.CreateInsertElement(llvm::ConstantFP::get(llvm::FixedVectorType::get(x->getType(), 2), 0.0), x,
+                               std::uint64_t{0});
 }
 
 }  // namespace
@@ -102,7 +106,8 @@ Value* paired(llvm::IRBuilder<>& b, Value* x) {
 SineAndCosine sines_in_place(llvm::IRBuilder<>& b, Value* x, const std::function<SineAndCosine()>& beyond) {
   InPlace lanes(b, paired(b, x));
   auto [sine, cosine] = lanes.run();
-  if (!x->getType()->isVectorTy()) sine = b.CreateExtractElement(sine, std::uint64_t{0}), cosine = b.CreateExtractElement(cosine, std::uint64_t{0});
+  if (!x->getType()->isVectorTy())
+    sine = b.CreateExtractElement(sine, std::uint64_t{0}), cosine = b.CreateExtractElement(cosine, std::uint64_t{0});
   llvm::BasicBlock* const here = b.GetInsertBlock();
   llvm::BasicBlock* const rare = llvm::BasicBlock::Create(b.getContext(), "", here->getParent());
   llvm::BasicBlock* const after = llvm::BasicBlock::Create(b.getContext(), "", here->getParent());

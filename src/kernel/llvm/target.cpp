@@ -20,8 +20,8 @@ namespace {
 
 constexpr char triple[] = "x86_64-pc-linux-gnu";
 
-/// Loops are emitted with the addresses that they are to have, two that move and constants beside them; strength reduction would give
-/// every operand an address of its own and keep them on the stack.
+/// Loops are emitted with the addresses that they are to have, two that move and constants beside them; strength
+/// reduction would give every operand an address of its own and keep them on the stack.
 void leave_loops_alone() {
   const char* const options[] = {"maupertuis", "-disable-lsr"};
   llvm::cl::ParseCommandLineOptions(2, options);
@@ -51,8 +51,8 @@ std::string host_features() {
 }
 
 std::unique_ptr<llvm::TargetMachine> machine_for(const std::string& processor, const std::string& features) {
-  std::unique_ptr<llvm::TargetMachine> out(x86().createTargetMachine(triple, processor, features, {}, llvm::Reloc::PIC_,
-                                                                     llvm::CodeModel::Small, llvm::CodeGenOptLevel::Default));
+  std::unique_ptr<llvm::TargetMachine> out(x86().createTargetMachine(
+      triple, processor, features, {}, llvm::Reloc::PIC_, llvm::CodeModel::Small, llvm::CodeGenOptLevel::Default));
   if (!out) throw Declined("LLVM makes no code for " + processor);
   return out;
 }

@@ -38,7 +38,8 @@ class Collapse {
     for (const Step& step : steps_) for_operands(step, [&](Slot slot, int) { ++readers[slot]; });
     std::vector<Step*> sum_at(program_.slots, nullptr);
     for (Step& step : steps_)
-      if (step.head.op == Op::Linear && step.chain < 0 && readers[step.head.out] == 1 && !elsewhere[step.head.out]) sum_at[step.head.out] = &step;
+      if (step.head.op == Op::Linear && step.chain < 0 && readers[step.head.out] == 1 && !elsewhere[step.head.out])
+        sum_at[step.head.out] = &step;
     const ConstantId one = literal(program_, 1);
     for (Step& step : steps_) {
       if (!is_sum(step)) continue;
@@ -57,7 +58,8 @@ class Collapse {
     Terms terms;
     for (std::size_t t = 1; t < step.linear.size(); ++t) add(terms, step.linear[t]);
     step.linear.resize(1);
-    for (const auto& [place, coefficient] : terms) step.linear.push_back({coefficient, place.first, no_slot, place.second});
+    for (const auto& [place, coefficient] : terms)
+      step.linear.push_back({coefficient, place.first, no_slot, place.second});
   }
 
   /// The smallest sums first, as long as there is room.
@@ -77,7 +79,8 @@ class Collapse {
         add(terms, *term);
     }
     step.linear.clear();
-    for (const auto& [place, coefficient] : terms) step.linear.push_back({coefficient, place.first, no_slot, place.second});
+    for (const auto& [place, coefficient] : terms)
+      step.linear.push_back({coefficient, place.first, no_slot, place.second});
   }
 
   using Terms = std::map<std::pair<Slot, std::uint32_t>, ConstantId>;
@@ -95,7 +98,9 @@ class Collapse {
     if (!fresh) place->second = apply(Kind::Sum, place->second, term.coefficient);
   }
 
-  bool is_one(ConstantId id) const { return program_.constants[id].kind == Kind::Number && program_.constants[id].value == 1; }
+  bool is_one(ConstantId id) const {
+    return program_.constants[id].kind == Kind::Number && program_.constants[id].value == 1;
+  }
 
   ConstantId multiply(ConstantId x, ConstantId y) {
     return is_one(x) ? y : is_one(y) ? x : apply(Kind::Product, x, y);
@@ -114,8 +119,8 @@ class Collapse {
   std::vector<bool> read_elsewhere() const {
     std::vector<bool> read(program_.slots, false);
     const auto reads = [&](Slot slot) { if (slot != no_slot) read[slot] = true; };
-    for (const auto* slots : {&program_.residual, &program_.constraint_values, &program_.constraint_rates, &program_.switch_slots,
-                              &program_.events, &program_.observables, &program_.integrands})
+    for (const auto* slots : {&program_.residual, &program_.constraint_values, &program_.constraint_rates,
+                              &program_.switch_slots, &program_.events, &program_.observables, &program_.integrands})
       for (const Slot slot : *slots) reads(slot);
     for (const Section section : {Along, AtPoint})
       for (const Run& run : program_.runs[section])
@@ -189,12 +194,17 @@ namespace {
 class Chains {
  public:
   Chains(const Program& program, std::vector<Step>& steps)
-      : program_(program), steps_(steps), sum_of_(program.slots, none), next_(steps.size(), none), before_(steps.size(), none) {}
+      : program_(program),
+        steps_(steps),
+        sum_of_(program.slots, none),
+        next_(steps.size(), none),
+        before_(steps.size(), none) {}
 
   void find(std::size_t least, ConstantId zero) {
     for (std::size_t i = 0; i < steps_.size(); ++i)
       if (is_linear(steps_[i])) sum_of_[steps_[i].head.out] = i;
-    // What is carried on itself comes first: the next joint of a chain, and not the centre of a rod, which is a sum of the joint before as well.
+    // What is carried on itself comes first: the next joint of a chain, and not the centre of a rod, which is a sum of
+    // the joint before as well.
     const std::vector<bool> is_carried_on = carried_on();
     for (const bool is_first : {true, false})
       for (std::size_t i = 0; i < steps_.size(); ++i)
@@ -205,14 +215,18 @@ class Chains {
   }
 
  private:
-  static bool is_linear(const Step& step) { return step.head.op == Op::Linear && step.products.empty() && !step.linear.empty(); }
-  bool is_one(ConstantId id) const { return program_.constants[id].kind == Kind::Number && program_.constants[id].value == 1; }
+  static bool is_linear(const Step& step) {
+    return step.head.op == Op::Linear && step.products.empty() && !step.linear.empty();
+  }
+  bool is_one(ConstantId id) const {
+    return program_.constants[id].kind == Kind::Number && program_.constants[id].value == 1;
+  }
 
   /// Whether sum i may carry on what stands in one of its terms.
   bool may_carry_on(std::size_t i, const Term& term) const {
     const std::size_t before = sum_of_[term.a];
-    return before != none && before < i && term.shift == 0 && is_one(term.coefficient) && steps_[before].head.lag == steps_[i].head.lag &&
-           steps_[i].linear.size() <= most_terms;
+    return before != none && before < i && term.shift == 0 && is_one(term.coefficient) &&
+           steps_[before].head.lag == steps_[i].head.lag && steps_[i].linear.size() <= most_terms;
   }
 
   std::vector<bool> carried_on() const {
@@ -236,8 +250,8 @@ class Chains {
     }
   }
 
-  /// Members from the first on, as long as what is added does not depend on the members before. The first one adds to nothing: to the leaf 1 times 0, if
-  /// there is one.
+  /// Members from the first on, as long as what is added does not depend on the members before. The first one adds to
+  /// nothing: to the leaf 1 times 0, if there is one.
   bool mark(std::size_t first, int number, std::size_t least, ConstantId zero) {
     std::vector<std::size_t> members{first};
     std::vector<bool> depends(program_.slots, false);
@@ -276,10 +290,13 @@ class Chains {
 
 }  // namespace
 
-void find_chains(Program& program, std::vector<Step>& steps, std::size_t least) { Chains(program, steps).find(least, literal(program, 0)); }
+void find_chains(Program& program, std::vector<Step>& steps, std::size_t least) {
+  Chains(program, steps).find(least, literal(program, 0));
+}
 
 bool has_no_choices(const Program& program) {
-  return std::none_of(program.instructions.begin(), program.instructions.end(), [](const Instruction& i) { return i.op == Op::Select; });
+  return std::none_of(program.instructions.begin(), program.instructions.end(),
+                      [](const Instruction& i) { return i.op == Op::Select; });
 }
 
 }  // namespace maupertuis::packed

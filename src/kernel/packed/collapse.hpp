@@ -3,36 +3,44 @@
 
 #include <vector>
 
+/// What is done to the sums of a program before its instructions become packs. d/dt becomes a shift of an index. Running
+/// sums s_i = s_{i−1} + x_i are found, along a chain for instance. Other sums are written out in the sums that read them,
+///
+///     s = a + b,  t = s + c,  u = s − d      →      t = a + b + c,  u = a + b − d
+///
+/// so that fewer wait for each other; what nothing reads any more is dropped.
 namespace maupertuis::packed {
 
 /// An instruction with terms of its own.
 struct Step {
   Instruction head;
   std::vector<Term> linear, products;   // Function: its differential is in `products`; Select: its choices in `linear`
-  int chain = -1;                       // number of the running sum that it belongs to; its first linear term is the sum before, or for the
+  /// number of the running sum that it belongs to; its first linear term is the sum before, or for the
+  int chain = -1;
                                         // first member the leaf 1 times 0
 };
 
 /// The instructions of section Dynamics, in order.
 std::vector<Step> dynamics_of(const Program& program);
 
-/// Finds running sums s_i = s_{i−1} + …, of at least `least` members, and numbers them. What is added must not depend on them. d/dt has to be a
-/// linear term by then (collapse_sums does that). The coefficient 0 is appended to the program's constants.
+/// Finds running sums s_i = s_{i−1} + …, of at least `least` members, and numbers them. What is added must not depend
+/// on them. d/dt has to be a linear term by then (collapse_sums does that). The coefficient 0 is appended to the
+/// program's constants.
 void find_chains(Program& program, std::vector<Step>& steps, std::size_t least);
 
 /// d/dt becomes a linear term with a shift.
 void write_derivatives(Program& program, std::vector<Step>& steps);
 
-/// Writes sums that sums read out in them, so that fewer wait for each other, and drops those that nothing reads any more.
-/// A sum gets at most `longest` terms that way. New coefficients are appended to the program's constants.
+/// Writes sums that sums read out in them, so that fewer wait for each other, and drops those that nothing reads any
+/// more. A sum gets at most `longest` terms that way. New coefficients are appended to the program's constants.
 void collapse_sums(Program& program, std::vector<Step>& steps, std::size_t longest);
 
-/// The coefficients of products go to factors that are sums and read nowhere else, whose slots then hold other values than those of the program
-/// as it was.
+/// The coefficients of products go to factors that are sums and read nowhere else, whose slots then hold other values
+/// than those of the program as it was.
 void scale_factors(Program& program, std::vector<Step>& steps);
 
-/// Whether the program selects nothing: then all that it computes is finite, or nothing is to be trusted, so that any of it may be multiplied
-/// by 0.
+/// Whether the program selects nothing: then all that it computes is finite, or nothing is to be trusted, so that any
+/// of it may be multiplied by 0.
 bool has_no_choices(const Program& program);
 
 /// Calls f(slot, shift) for each operand whose value of the same time is needed.

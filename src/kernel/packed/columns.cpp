@@ -7,8 +7,8 @@
 namespace maupertuis::packed {
 namespace {
 
-/// Whether 8 lanes can be read at once. Lanes beyond the sums are multiplied by 0, so that they must hold numbers: they do if
-/// they belong to the same pack.
+/// Whether 8 lanes can be read at once. Lanes beyond the sums are multiplied by 0, so that they must hold numbers: they
+/// do if they belong to the same pack.
 bool is_range(const Sums& sums, std::size_t t) {
   const Slot first = sums[0][t].a;
   for (std::size_t lane = 0; lane < sums.size(); ++lane)
@@ -24,13 +24,16 @@ bool is_reversed(const Sums& sums, std::size_t t) {
 
 Sums by_shift_and_slot(Sums sums) {
   for (auto& terms : sums)
-    std::stable_sort(terms.begin(), terms.end(), [](const Term& x, const Term& y) { return std::tuple(x.shift, x.a) < std::tuple(y.shift, y.a); });
+    std::stable_sort(terms.begin(), terms.end(),
+                     [](const Term& x, const Term& y) { return std::tuple(x.shift, x.a) < std::tuple(y.shift, y.a); });
   return sums;
 }
 
 /// Whether the sums have as many terms, alike in shift and lag place by place.
 bool are_alike(const Program& program, const Sums& sums) {
-  const auto alike = [&](const Term& x, const Term& y) { return x.shift == y.shift && program.tangent_lags[x.a] == program.tangent_lags[y.a]; };
+  const auto alike = [&](const Term& x, const Term& y) {
+    return x.shift == y.shift && program.tangent_lags[x.a] == program.tangent_lags[y.a];
+  };
   return std::all_of(sums.begin(), sums.end(), [&](const auto& terms) {
     return std::equal(terms.begin(), terms.end(), sums[0].begin(), sums[0].end(), alike);
   });
@@ -46,7 +49,8 @@ std::vector<ReadColumn> columns_by_operand(const Sums& sums, ConstantId zero) {
     }
   std::vector<ReadColumn> found;
   for (const auto& [key, coefficients] : by_operand)
-    found.push_back({{.kind = Column::Broadcast, .shift = static_cast<std::uint8_t>(key.first), .source = key.second}, coefficients});
+    found.push_back({{.kind = Column::Broadcast, .shift = static_cast<std::uint8_t>(key.first), .source = key.second},
+                     coefficients});
   return found;
 }
 
@@ -64,16 +68,20 @@ std::vector<ReadColumn> columns_with_holes(const Program& program, Sums sums, Co
     for (std::size_t lane = 0; lane < sums.size(); ++lane)
       for (const Term& term : sums[lane]) {
         const Slot first = term.a / lanes * lanes;
-        if (term.a == first + lane && program.lags[first] == program.lags[term.a] && program.tangent_lags[first] == program.tangent_lags[term.a])
+        if (term.a == first + lane && program.lags[first] == program.lags[term.a] &&
+            program.tangent_lags[first] == program.tangent_lags[term.a])
           ++lanes_of[{term.shift, first}];
       }
-    const auto best = std::max_element(lanes_of.begin(), lanes_of.end(), [](const auto& x, const auto& y) { return x.second < y.second; });
+    const auto best = std::max_element(lanes_of.begin(), lanes_of.end(),
+                                       [](const auto& x, const auto& y) { return x.second < y.second; });
     if (best == lanes_of.end() || best->second < least_lanes) break;
     const auto [shift, first] = best->first;
-    ReadColumn read{{.kind = Column::Contiguous, .shift = static_cast<std::uint8_t>(shift), .source = first}, std::vector<ConstantId>(lanes, zero)};
+    ReadColumn read{{.kind = Column::Contiguous, .shift = static_cast<std::uint8_t>(shift), .source = first},
+                    std::vector<ConstantId>(lanes, zero)};
     for (Slot lane = 0; lane < lanes; ++lane) read.column.sources[lane] = first + lane;
     for (std::size_t lane = 0; lane < sums.size(); ++lane) {
-      const auto term = std::find_if(sums[lane].begin(), sums[lane].end(), [&](const Term& x) { return x.shift == shift && x.a == first + lane; });
+      const auto term = std::find_if(sums[lane].begin(), sums[lane].end(),
+                                     [&](const Term& x) { return x.shift == shift && x.a == first + lane; });
       if (term == sums[lane].end()) continue;
       read.coefficients[lane] = term->coefficient;
       sums[lane].erase(term);
@@ -113,7 +121,8 @@ ReadColumn aligned_column(const Program& program, const Sums& sums, TermKind kin
   std::vector<Slot> sources;
   for (const auto& terms : sums) {
     std::size_t seen = 0;
-    const auto term = std::find_if(terms.begin(), terms.end(), [&](const Term& x) { return kind_of(program, x) == kind && seen++ == place; });
+    const auto term = std::find_if(terms.begin(), terms.end(),
+                                   [&](const Term& x) { return kind_of(program, x) == kind && seen++ == place; });
     sources.push_back(term == terms.end() ? no_slot : term->a);
     read.coefficients.push_back(term == terms.end() ? zero : term->coefficient);
   }
@@ -164,7 +173,8 @@ std::vector<ReadColumn> aligned_columns_of(const Program& program, const Sums& u
   }
   std::vector<ReadColumn> found;
   for (const auto& [kind, count] : longest)
-    for (std::size_t place = 0; place < count; ++place) found.push_back(aligned_column(program, sums, kind, place, zero));
+    for (std::size_t place = 0; place < count; ++place)
+      found.push_back(aligned_column(program, sums, kind, place, zero));
   if (has_one) found.push_back(std::move(of_one));
   return found;
 }

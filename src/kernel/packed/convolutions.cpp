@@ -12,7 +12,13 @@ std::vector<Convolution> convolutions_of(const PackedProgram& program, const Pac
     case Pack::Integral: out.push_back({pack.a, pack.b, pack.lag}); break;
     case Pack::Quotient: out.push_back({pack.b, pack.y, pack.lag}); break;
     case Pack::SquareRoot: out.push_back({pack.y, pack.y, pack.lag}); break;
-    case Pack::Scan: case Pack::ScanDown: case Pack::Strand: case Pack::Join: case Pack::JoinDown: case Pack::Scalar: break;
+    case Pack::Scan:
+    case Pack::ScanDown:
+    case Pack::Strand:
+    case Pack::Join:
+    case Pack::JoinDown:
+    case Pack::Scalar:
+      break;
   }
   return out;
 }

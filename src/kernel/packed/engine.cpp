@@ -2,6 +2,8 @@
 
 #include "kernel/program/processor.hpp"
 
+#include <cmath>
+
 namespace maupertuis::packed {
 
 namespace baseline { extern const Engine engine; }
@@ -16,6 +18,17 @@ const Engine& engine() {
   if (vector_instructions() == VectorInstructions::Avx2) return avx2::engine;
 #endif
   return baseline::engine;
+}
+
+std::vector<Order> orders_of(double* rows, std::size_t stride, int count) {
+  std::vector<Order> out;
+  for (int number = 0; number < count; ++number) {
+    const std::ptrdiff_t offset = number * static_cast<std::ptrdiff_t>(stride);
+    const double k = number;
+    const Reciprocal reciprocal = number == 0 ? Reciprocal{} : Reciprocal{1 / k, std::fma(-k, 1 / k, 1.0) / k};
+    out.push_back({rows + offset, offset, {1, k + 1, (k + 1) * (k + 2)}, reciprocal, number});
+  }
+  return out;
 }
 
 }  // namespace maupertuis::packed

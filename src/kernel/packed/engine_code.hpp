@@ -1,13 +1,11 @@
 // No include guard: each engine_*.cpp compiles this once, for its own instruction set, in a namespace of its own.
 #include <maupertuis/rough_powers.hpp>
-#include "kernel/jet/sine_cosine.hpp"
+#include "kernel/series/sine_cosine.hpp"
 #include "kernel/packed/engine.hpp"
 
 #include "kernel/packed/engine_vectors.hpp"
 
 #include "kernel/packed/engine_convolution.hpp"
-
-#include "kernel/packed/engine_ahead.hpp"
 
 #include "kernel/packed/engine_stage.hpp"
 
@@ -20,8 +18,24 @@
 namespace maupertuis::packed::MAUP_ENGINE {
 
 extern const Engine engine;
-const Engine engine{MAUP_ENGINE_NAME,      run_stage,   renew_blocks,     worthwhile_sums_ahead, tangents,   sine_cosine,
-                    negative_inverse,      transpose,   solve_by_inverse, rows_are_finite,       add,        cancel, negate, set_accelerations,
-                    correct,               run_stages_by_inverse, increments, accelerations, sizes, add_increments, radius};
+const Engine engine{MAUP_ENGINE_NAME,
+                    run_stage,
+                    renew_blocks,
+                    tangents,
+                    negative_inverse,
+                    transpose,
+                    solve_by_inverse,
+                    rows_are_finite,
+                    add,
+                    cancel,
+                    negate,
+                    set_accelerations,
+                    correct,
+                    run_stages_by_inverse,
+                    increments,
+                    accelerations,
+                    sizes,
+                    add_increments,
+                    radius};
 
 }  // namespace maupertuis::packed::MAUP_ENGINE

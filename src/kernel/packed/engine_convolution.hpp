@@ -2,8 +2,9 @@
 namespace maupertuis::packed::MAUP_ENGINE {
 namespace {
 
-/// Σ_{j=0..N} a_j b_{N−j}, from the middle outward in four chains; the outermost terms, whose factors may just have been found, are added to the
-/// sum of all others. Written out for each N, so that no loop ends in a branch that the processor did not foresee.
+/// Σ_{j=0..N} a_j b_{N−j}, from the middle outward in four chains; the outermost terms, whose factors may just have
+/// been found, are added to the sum of all others. Written out for each N, so that no loop ends in a branch that the
+/// processor did not foresee.
 template <int N>
 Vector convolution_of(const double* a, const double* b, std::ptrdiff_t stride) {
   if constexpr (N == 0) return load(a) * load(b);
@@ -30,11 +31,12 @@ inline Vector long_convolution(const double* a, const double* b, int n, std::ptr
 }
 
 using Convolution = Vector (*)(const double*, const double*, std::ptrdiff_t);
-const Convolution convolutions[] = {
-    convolution_of<0>,  convolution_of<1>,  convolution_of<2>,  convolution_of<3>,  convolution_of<4>,  convolution_of<5>,
-    convolution_of<6>,  convolution_of<7>,  convolution_of<8>,  convolution_of<9>,  convolution_of<10>, convolution_of<11>,
-    convolution_of<12>, convolution_of<13>, convolution_of<14>, convolution_of<15>, convolution_of<16>, convolution_of<17>,
-    convolution_of<18>, convolution_of<19>, convolution_of<20>, convolution_of<21>, convolution_of<22>, convolution_of<23>};
+const Convolution convolutions[] = {convolution_of<0>,  convolution_of<1>,  convolution_of<2>,  convolution_of<3>,
+                                    convolution_of<4>,  convolution_of<5>,  convolution_of<6>,  convolution_of<7>,
+                                    convolution_of<8>,  convolution_of<9>,  convolution_of<10>, convolution_of<11>,
+                                    convolution_of<12>, convolution_of<13>, convolution_of<14>, convolution_of<15>,
+                                    convolution_of<16>, convolution_of<17>, convolution_of<18>, convolution_of<19>,
+                                    convolution_of<20>, convolution_of<21>, convolution_of<22>, convolution_of<23>};
 constexpr int most_written_out = 23;
 
 /// Σ_{j=0..n} a_j b_{n−j}

@@ -2,8 +2,10 @@
 namespace maupertuis::packed::MAUP_ENGINE {
 namespace {
 
-/// Powers of τ apart by their remainders mod 4, each by Horner's rule, so that a quarter of the operations wait for each other.
-void increments(const double* first, std::size_t stride, std::size_t count, int degree, double tau, double* dq, double* dv) {
+/// Powers of τ apart by their remainders mod 4, each by Horner's rule, so that a quarter of the operations wait for
+/// each other.
+void increments(const double* first, std::size_t stride, std::size_t count, int degree, double tau, double* dq,
+                double* dv) {
   const auto step = static_cast<std::ptrdiff_t>(stride);
   const Vector t = all(tau), square = t * t, fourth = square * square;
   for (std::size_t i = 0; i < count; i += lanes) {
@@ -39,8 +41,10 @@ void accelerations(const double* first, std::size_t stride, std::size_t count, i
   }
 }
 
-/// Σ_{k≥1} weights[s][k] |c_k| for s = 0, 1, 2; odd and even k apart, so that half of the operations wait for each other.
-void sizes(const double* first, std::size_t stride, std::size_t count, int degree, const double* weights, double* sizes) {
+/// Σ_{k≥1} weights[s][k] |c_k| for s = 0, 1, 2; odd and even k apart, so that half of the operations wait for each
+/// other.
+void sizes(const double* first, std::size_t stride, std::size_t count, int degree, const double* weights,
+           double* sizes) {
   const auto step = static_cast<std::ptrdiff_t>(stride);
   const std::size_t orders = static_cast<std::size_t>(degree) + 1, padded = (count + lanes - 1) / lanes * lanes;
   for (std::size_t i = 0; i < count; i += lanes) {
@@ -49,7 +53,8 @@ void sizes(const double* first, std::size_t stride, std::size_t count, int degre
     const auto add = [&](int parity, int k) {
       const Vector size = absolute(load(c + k * step));
 #pragma GCC unroll 3
-      for (std::size_t s = 0; s < 3; ++s) sum[parity][s] += size * all(weights[s * orders + static_cast<std::size_t>(k)]);
+      for (std::size_t s = 0; s < 3; ++s)
+        sum[parity][s] += size * all(weights[s * orders + static_cast<std::size_t>(k)]);
     };
     for (int k = 1; k < degree; k += 2) add(0, k), add(1, k + 1);
     if (degree % 2 != 0) add(0, degree);
@@ -67,14 +72,17 @@ void add_compensated(V& hi, V& lo, V b) {
 /// Eight numbers hi and lo that stand pair by pair.
 inline void load_pairs(const double* p, Vector& hi, Vector& lo) {
   const Vector a = load(p), b = load(p + lanes);
-  hi = __builtin_shuffle(a, b, Places{0, 2, 4, 6, 8, 10, 12, 14}), lo = __builtin_shuffle(a, b, Places{1, 3, 5, 7, 9, 11, 13, 15});
+  hi = __builtin_shuffle(a, b, Places{0, 2, 4, 6, 8, 10, 12, 14}),
+  lo = __builtin_shuffle(a, b, Places{1, 3, 5, 7, 9, 11, 13, 15});
 }
 inline void save_pairs(double* p, Vector hi, Vector lo) {
-  save(p, __builtin_shuffle(hi, lo, Places{0, 8, 1, 9, 2, 10, 3, 11})), save(p + lanes, __builtin_shuffle(hi, lo, Places{4, 12, 5, 13, 6, 14, 7, 15}));
+  save(p, __builtin_shuffle(hi, lo, Places{0, 8, 1, 9, 2, 10, 3, 11})),
+      save(p + lanes, __builtin_shuffle(hi, lo, Places{4, 12, 5, 13, 6, 14, 7, 15}));
 }
 
 /// What is added to lo may be fused with its product: TwoSum takes it as one number.
-void add_increments(std::size_t count, double tau, const double* dq, const double* dv, const double* q, const double* v, double* q_out, double* v_out) {
+void add_increments(std::size_t count, double tau, const double* dq, const double* dv, const double* q, const double* v,
+                    double* q_out, double* v_out) {
   std::size_t i = 0;
   for (; i + lanes <= count; i += lanes) {
     Vector q_hi, q_lo, v_hi, v_lo;
@@ -102,8 +110,8 @@ inline double least_lane(Vector v) {
   return v[0];
 }
 
-/// Of each order the largest coefficient of all coordinates, in their own measure; logarithms of these alone. Early orders first: they are there while the
-/// last coefficients are still waited for.
+/// Of each order the largest coefficient of all coordinates, in their own measure; logarithms of these alone. Early
+/// orders first: they are there while the last coefficients are still waited for.
 double radius(const double* first, std::size_t stride, std::size_t count, int order, double h) {
   constexpr double widened = 0.32192809488736235;  // log₂ 1.25
   constexpr int most = 6;

@@ -24,7 +24,8 @@ constexpr double symmetry_squared = 1e-24;
 template <std::size_t N>
 bool is_symmetric(const double*, const Vector (&rows)[N][1]) {
   Vector columns[lanes] = {}, diagonal = all(0), fails = all(0);
-  for (std::size_t i = 0; i < N; ++i) columns[i] = rows[i][0], diagonal = lane_numbers == all(static_cast<double>(i)) ? rows[i][0] : diagonal;
+  for (std::size_t i = 0; i < N; ++i)
+    columns[i] = rows[i][0], diagonal = lane_numbers == all(static_cast<double>(i)) ? rows[i][0] : diagonal;
   transpose_rows(columns);
   for (std::size_t i = 0; i < N; ++i) {
     const Vector difference = rows[i][0] - columns[i], limit = all(symmetry_squared * diagonal[i]) * diagonal;
@@ -44,8 +45,8 @@ bool is_symmetric(const double* m, const Vector (&)[N][2]) {
   return symmetric;
 }
 
-/// Column p, of vector V, gives its room to that of the inverse. V is known when this is compiled, since an address that is not lets every load wait
-/// for the stores before it. False: the pivot is too small.
+/// Column p, of vector V, gives its room to that of the inverse. V is known when this is compiled, since an address
+/// that is not lets every load wait for the stores before it. False: the pivot is too small.
 template <std::size_t V, std::size_t N, std::size_t W>
 [[gnu::always_inline]] inline bool eliminate(const double* m, Vector (&rows)[N][W], std::size_t p) {
   constexpr double least_pivot = 1e-10;
@@ -70,7 +71,8 @@ template <std::size_t V, std::size_t N, std::size_t W>
 /// All columns: up to 8 written out, with the rows in registers.
 template <std::size_t N>
 bool eliminate_all(const double* m, Vector (&rows)[N][1]) {
-  return [&]<std::size_t... P>(std::index_sequence<P...>) { return (eliminate<0>(m, rows, P) && ...); }(std::make_index_sequence<N>());
+  return [&]<std::size_t... P>(std::index_sequence<P...>) { return (eliminate<0>(m, rows, P) && ...); }
+  (std::make_index_sequence<N>());
 }
 template <std::size_t N>
 bool eliminate_all(const double* m, Vector (&rows)[N][2]) {
@@ -89,7 +91,8 @@ bool invert(const double* m, double* inverse) {
   alignas(64) double row[W * lanes] = {};
   for (std::size_t i = 0; i < N; ++i) {
     for (std::size_t j = 0; j < N; ++j) row[j] = m[i * N + j];
-    for (std::size_t w = 0; w < W; ++w) rows[i][w] = N % lanes == 0 ? load(m + i * N + w * lanes) : load(row + w * lanes);
+    for (std::size_t w = 0; w < W; ++w)
+      rows[i][w] = N % lanes == 0 ? load(m + i * N + w * lanes) : load(row + w * lanes);
   }
   if (!is_symmetric(m, rows) || !eliminate_all(m, rows)) return false;
   for (std::size_t i = 0; i < N; ++i)
@@ -118,7 +121,8 @@ void transpose(const double* from, std::size_t from_stride, double* to, std::siz
 
 /// V vectors of the solution.
 template <std::size_t V>
-bool solve_vectors(const double* inverse, std::size_t stride, const double* row, const Slot* residual, std::size_t n, double* solution) {
+bool solve_vectors(const double* inverse, std::size_t stride, const double* row, const Slot* residual, std::size_t n,
+                   double* solution) {
   Vector even[V], odd[V];
   for (std::size_t v = 0; v < V; ++v) even[v] = odd[v] = all(0);
   const auto add = [&](std::size_t d, Vector* sums) {
@@ -137,7 +141,8 @@ bool solve_vectors(const double* inverse, std::size_t stride, const double* row,
   return are_finite(zero);
 }
 
-bool solve_by_inverse(const double* inverse, std::size_t stride, const double* row, const Slot* residual, std::size_t n, double* solution) {
+bool solve_by_inverse(const double* inverse, std::size_t stride, const double* row, const Slot* residual, std::size_t n,
+                      double* solution) {
   bool finite = true;
   for (std::size_t i = 0; i < stride;) {
     const auto block = [&]<std::size_t V>() {
@@ -176,7 +181,8 @@ Sizes add(double* values, const double* change, double factor, std::size_t count
   for (std::size_t i = 0; i < count; i += lanes) {
     const Vector before = load(values + i), added = all(factor) * load(change + i);
     const auto used = lane_numbers < all(static_cast<double>(count - i));
-    of_values = larger(of_values, absolute(used ? before : all(0))), of_change = larger(of_change, absolute(used ? added : all(0)));
+    of_values = larger(of_values, absolute(used ? before : all(0))),
+    of_change = larger(of_change, absolute(used ? added : all(0)));
     save(values + i, before + added);
   }
   return {largest_lane(of_values), largest_lane(of_change)};
@@ -184,18 +190,21 @@ Sizes add(double* values, const double* change, double factor, std::size_t count
 
 bool cancel(const double* x, const double* y, const double* most, std::size_t count) {
   Vector fails = all(0);
-  for (std::size_t i = 0; i < count; i += lanes) fails = absolute(load(x + i) + load(y + i)) <= load(most + i) ? fails : all(1);
+  for (std::size_t i = 0; i < count; i += lanes)
+    fails = absolute(load(x + i) + load(y + i)) <= load(most + i) ? fails : all(1);
   return largest_lane(fails) == 0;
 }
 
 void negate(const double* from, double* to, std::size_t count) {
-  for (std::size_t i = 0; i < count; i += lanes) save(to + i, lane_numbers < all(static_cast<double>(count - i)) ? -load(from + i) : all(0));
+  for (std::size_t i = 0; i < count; i += lanes)
+    save(to + i, lane_numbers < all(static_cast<double>(count - i)) ? -load(from + i) : all(0));
 }
 
 void set_accelerations(const Tables& tables, int stage, const double* solution, std::size_t unknowns, int sign) {
   double* const next = tables.rows + static_cast<std::size_t>(stage + 2) * tables.stride;
   // A division: the error of a rounded reciprocal would be the same in every step and so add up.
-  for (std::size_t i = 0; i < unknowns; i += lanes) save(next + i, load(solution + i) / all(sign * (stage + 1.0) * (stage + 2.0)));
+  for (std::size_t i = 0; i < unknowns; i += lanes)
+    save(next + i, load(solution + i) / all(sign * (stage + 1.0) * (stage + 2.0)));
 }
 
 /// Σ_d weights[d] · rows[d · stride], in sums that do not wait for each other.
@@ -221,12 +230,14 @@ struct Factors {
 
 /// What N directions add to the coefficients of a stage.
 template <std::size_t N>
-inline void add_directions(const Stage& s, const TangentMatrix& tangents, const double* values, const Vector (&weights)[N]) {
+inline void add_directions(const Stage& s, const TangentMatrix& tangents, const double* values,
+                           const Vector (&weights)[N]) {
   const Factors factors(s);
   std::size_t i = tangents.first;
   for (int lag = 0; lag <= 2; ++lag) {
     double* const row = s.order_of(lag).row;
-    for (const Vector factor = all(factors.of_lag[lag]); i < tangents.end[static_cast<std::size_t>(lag)]; i += lanes)  // the slots of the next lag begin with a vector
+    for (const Vector factor = all(factors.of_lag[lag]); i < tangents.end[static_cast<std::size_t>(lag)];
+         i += lanes)  // the slots of the next lag begin with a vector
       save(row + i, load(row + i) + factor * weighted(weights, values + i, tangents.stride));
   }
 }
@@ -248,7 +259,8 @@ using CorrectBy = void (*)(const Stage&, const TangentMatrix&, std::size_t, cons
 
 void correct(const Tables& tables, int stage, const TangentMatrix& tangents, const double* weights) {
   constexpr std::size_t most = 8;
-  static constexpr CorrectBy by[] = {nullptr, correct_by<1>, correct_by<2>, correct_by<3>, correct_by<4>, correct_by<5>, correct_by<6>, correct_by<7>, correct_by<8>};
+  static constexpr CorrectBy by[] = {nullptr,       correct_by<1>, correct_by<2>, correct_by<3>, correct_by<4>,
+                                     correct_by<5>, correct_by<6>, correct_by<7>, correct_by<8>};
   const Stage s(tables, stage);
   for (std::size_t d = 0; d < tangents.directions; d += most)
     by[tangents.directions - d < most ? tangents.directions - d : most](s, tangents, d, weights);
@@ -262,10 +274,12 @@ template <class Visit>
 inline void for_corrected(const TangentMatrix& tangents, const Visit& visit) {
   std::size_t i = tangents.first;
   for (int lag = 0; lag <= 2; ++lag)
-    for (; i < tangents.end[static_cast<std::size_t>(lag)]; i += lanes) visit(lag, i);  // the slots of the next lag begin with a vector
+    /// the slots of the next lag begin with a vector
+    for (; i < tangents.end[static_cast<std::size_t>(lag)]; i += lanes) visit(lag, i);
 }
 
-/// A vector of tangents each of whose lanes follows one unknown, lane by lane those of vector `own` of all: these numbers.
+/// A vector of tangents each of whose lanes follows one unknown, lane by lane those of vector `own` of all: these
+/// numbers.
 inline Vector own_tangents(const TangentMatrix& tangents, std::size_t place, std::size_t own) {
   Vector out = all(0);
   for (std::size_t d = own * lanes, lane = 0; lane < lanes && d < tangents.directions; ++d, ++lane)
@@ -273,8 +287,9 @@ inline Vector own_tangents(const TangentMatrix& tangents, std::size_t place, std
   return out;
 }
 
-/// Of N unknowns: what a stage adds to the corrected slots. Those whose lanes follow one unknown each: by its acceleration. Others, up to most_answered unknowns:
-/// by each entry of the residual, what −M₀⁻¹ and the tangents after it make of it, [N][lanes].
+/// Of N unknowns: what a stage adds to the corrected slots. Those whose lanes follow one unknown each: by its
+/// acceleration. Others, up to most_answered unknowns: by each entry of the residual, what −M₀⁻¹ and the tangents after
+/// it make of it, [N][lanes].
 template <std::size_t N>
 void find_answers(const InverseSolution& in) {
   double* out = in.answers;
@@ -350,7 +365,6 @@ bool run_stages_of(const Tables& tables, const InverseSolution& in, int first, i
     complete<N>(s, in, zero);
     if (stage + 1 == last && !goes_on) break;
     renew(s);
-    if (tables.has_sums) add_up_ahead(tables, stage);
   }
   return are_finite(zero);
 }
@@ -358,7 +372,9 @@ bool run_stages_of(const Tables& tables, const InverseSolution& in, int first, i
 using RunStages = bool (*)(const Tables&, const InverseSolution&, int first, int last, bool goes_on);
 
 template <std::size_t... N>
-constexpr std::array<RunStages, most_inverted> by_unknowns(std::index_sequence<N...>) { return {run_stages_of<N + 1>...}; }
+constexpr std::array<RunStages, most_inverted> by_unknowns(std::index_sequence<N...>) {
+  return {run_stages_of<N + 1>...};
+}
 
 bool run_stages_by_inverse(const Tables& tables, const InverseSolution& in, int first, int last, bool goes_on) {
   static constexpr auto run_stages = by_unknowns(std::make_index_sequence<most_inverted>());

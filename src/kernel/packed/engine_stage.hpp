@@ -4,7 +4,7 @@ namespace {
 
 template <int W>
 void sine_cosine_of(const double* x, double* out) {
-  const jet::SineCosine<W> value(jet::Vec<W>::load(x));
+  const series::SineCosine<W> value(series::Vec<W>::load(x));
   value.sine.store(out), value.cosine.store(out + lanes);
 }
 
@@ -15,56 +15,63 @@ void sine_cosine(const double* x, double* out, int count) {
 
 /// What packs of a stage have in common.
 struct Stage {
-  Stage(const Tables& tables, int number)
-      : t(tables), stage(number), late(number > first_late_stage), position((number - 1) % rolled_group * static_cast<int>(lanes)),
-        newest(tables.orders + (number + 2)) {}
+  Stage(const Tables& tables, int number) : t(tables), stage(number), newest(tables.orders + (number + 2)) {}
 
   /// Of slots of that lag; not below 0.
   const Order& order_of(int lag) const { return *(newest - lag); }
   bool has_order_of(int lag) const { return stage + 2 >= lag; }
+  /// Of a block at order 0.
+  const double* cells(std::uint32_t block) const { return t.rows + t.blocks[block].first; }
 
   const Tables& t;
   int stage;
-  bool late;                             // sums made ahead are without what the stage before has found
-  std::ptrdiff_t position;               // of sums made ahead for this stage
   const Order* newest;                   // of lag 0
 };
 
 // ------------------------------------------------------------------------------------------------------------- copies
 
-inline Vector permuted(const double* row, const Copy& copy) {
-#ifdef __AVX512F__
-  return __builtin_shuffle(load(row + copy.first), load(row + copy.second), *reinterpret_cast<const UnalignedPlaces*>(copy.places.data()));
-#else
-  return gather(row, copy.slots);
-#endif
-}
-[[gnu::noinline]] Vector gathered(const double* row, const Copy& copy) { return gather(row, copy.slots); }
+[[gnu::noinline]] Vector gathered(const double* row, const Block& block) { return gather(row, block.slots.data()); }
 
-inline void make(const Stage& s, const Copy& copy) {
-  double* const row = s.order_of(copy.lag).row;
-  const Vector values = copy.kind == Copy::Range ? load(row + copy.first) : copy.kind == Copy::TwoVectors ? permuted(row, copy) : gathered(row, copy);
-  save(row + copy.to, copy.weighted ? values * all(s.order_of(copy.lag).number) : values);
+/// A block that is not direct: from slots of a row to its cells of the same row.
+inline void copy(const Stage& s, const Block& block) {
+  const Order& order = s.order_of(block.lag);
+  const Vector values = block.is_range ? load(order.row + block.slots[0]) : gathered(order.row, block);
+  save(order.row + block.first, block.weighted ? values * all(order.number) : values);
+}
+
+/// An operand at an order that is not final yet, or not there: its copy is not either.
+inline void bring(const Stage& s, const Pack& pack, std::uint32_t index) {
+  if (index == no_block) return;
+  const Block& block = s.t.blocks[index];
+  if (!block.direct && block.lag >= pack.lag && s.has_order_of(block.lag)) copy(s, block);
 }
 
 // ------------------------------------------------------------------------------------------------------------ columns
 
-[[gnu::noinline]] Vector run_of_columns(const ReadyRun& run, const double* row) {
+[[gnu::noinline]] Vector run_of_columns(const Tables& t, const ColumnRun& run, const double* coefficients,
+                                        const double* from) {
+  const Column* const columns = t.columns + run.first;
+  const std::size_t count = run.last - run.first;
   switch (run.kind) {
-    case Column::Broadcast: return columns_of_kind<Column::Broadcast>(run, row);
-    case Column::Contiguous: return columns_of_kind<Column::Contiguous>(run, row);
-    case Column::Reversed: return columns_of_kind<Column::Reversed>(run, row);
+    case Column::Broadcast: return columns_of_kind<Column::Broadcast>(columns, count, coefficients, from);
+    case Column::Contiguous: return columns_of_kind<Column::Contiguous>(columns, count, coefficients, from);
+    case Column::Reversed: return columns_of_kind<Column::Reversed>(columns, count, coefficients, from);
     case Column::Gather: break;
   }
-  return columns_of_kind<Column::Gather>(run, row);
+  return columns_of_kind<Column::Gather>(columns, count, coefficients, from);
 }
 
 /// d/dt multiplies by k + 1.
-inline Vector columns(const Stage& s, const ReadyPack& pack) {
+inline Vector columns(const Stage& s, const Pack& pack) {
   Vector sum = all(0);
   const Order& order = s.order_of(pack.lag);
-  for (const ReadyRun* run = s.stage > 0 ? pack.later_runs : pack.runs; run != pack.last_run; ++run) {
-    const Vector part = run->neighbours ? columns_of_neighbours(*run, order.row) : run_of_columns(*run, order.row);
+  for (const ColumnRun *run = s.t.runs + pack.first_run, *last = s.t.runs + pack.last_run; run != last; ++run) {
+    const Column& first = s.t.columns[run->first];
+    const double* const from = order.row + run->shift * s.t.stride;
+    const double* const coefficients = s.t.coefficients + first.coefficients;
+    const Vector part = run->neighbours
+                            ? columns_of_neighbours(from + first.source, run->last - run->first, coefficients)
+                            : run_of_columns(s.t, *run, coefficients, from);
     sum += part * all(order.shift_factors[run->shift]);
   }
   return sum;
@@ -85,81 +92,34 @@ Vector square(const Stage& s, const double* a, int k, int first) {
   return sum;
 }
 
-[[gnu::noinline]] Vector product(const Stage& s, const ReadyProduct& term, int k) {
-  return term.a == term.b ? square(s, term.a, k, 0) : convolution(term.a, term.b, k, static_cast<std::ptrdiff_t>(s.t.stride));
+inline Vector product(const Stage& s, const ProductTerm& term, int k) {
+  const double* const a = s.cells(term.a);
+  return term.a == term.b ? square(s, a, k, 0)
+                          : convolution(a, s.cells(term.b), k, static_cast<std::ptrdiff_t>(s.t.stride));
 }
 
 /// Σ_{j=1..k} a_j b_{k−j}
-[[gnu::noinline]] Vector without_first(const Stage& s, const double* a, const double* b, int k) {
+inline Vector without_first(const Stage& s, std::uint32_t a, std::uint32_t b, int k) {
   const auto stride = static_cast<std::ptrdiff_t>(s.t.stride);
-  return k == 0 ? all(0) : convolution(a + stride, b, k - 1, stride);
-}
-
-/// The convolution of a sum made ahead with those ends that were not there yet.
-inline Vector completed(const Stage& s, const ReadyProduct& term, std::ptrdiff_t offset) {
-  Vector sum = load(term.sum + s.position);
-  for (const EndTerm* end = s.late ? term.ends : term.new_ends; end != term.last_end; ++end) sum += load(end->operand + offset) * load(end->factor);
-  return sum;
+  return k == 0 ? all(0) : convolution(s.cells(a) + stride, s.cells(b), k - 1, stride);
 }
 
 // -------------------------------------------------------------------------------------------------------------- packs
 
-/// Runs a pack; returns the last one that is done with it.
-using RunPack = const ReadyPack* (*)(const Stage&, const ReadyPack*);
-
-/// `ByAhead`: by sums made ahead, as far as they are: always, but for operands of t alone that are ahead of q̈.
-template <bool ByAhead>
-bool has_sum(const ReadyProduct& term) { return ByAhead && term.sum; }
-
-template <bool ByAhead>
-const ReadyPack* run_sum(const Stage& s, const ReadyPack* pack) {
-  const Order& order = s.order_of(pack->lag);
-  Vector result = columns(s, *pack);
-  for (const ReadyProduct* term = pack->products; term != pack->last_product; ++term)
-    result += load(term->coefficients) * (has_sum<ByAhead>(*term) ? completed(s, *term, order.offset) : product(s, *term, order.number));
-  save(order.row + pack->out, result);
-  return pack;
-}
-
-const ReadyPack* run_neighbours(const Stage& s, const ReadyPack* pack) {
-  const ReadyRun& run = *pack->later_runs;
-  const Order& order = s.order_of(pack->lag);
-  save(order.row + pack->out, columns_of_neighbours(run, order.row) * all(order.shift_factors[run.shift]));
-  return pack;
-}
-
-const ReadyPack* run_products(const Stage& s, const ReadyPack* pack) {
-  const Order& order = s.order_of(pack->lag);
-  Vector result = all(0);
-  for (const ReadyProduct* term = pack->products; term != pack->last_product; ++term)
-    result += load(term->coefficients) * completed(s, *term, order.offset);
-  save(order.row + pack->out, result);
-  return pack;
-}
-
-const ReadyPack* run_scan(const Stage& s, const ReadyPack* pack) {
-  double* const row = s.order_of(pack->lag).row;
-  const Vector terms = columns(s, *pack);
-  save(row + pack->out, (pack->kind == Pack::Scan ? running_sum(terms) : running_sum_down(terms)) + carry_of(pack->carry, row));
-  return pack;
-}
-
-/// All of a running sum.
-const ReadyPack* run_strands(const Stage& s, const ReadyPack* pack) {
-  double* const row = s.order_of(pack->lag).row;
-  Vector sum = all(0);
-  for (; pack->kind == Pack::Strand; ++pack) {
-    sum += columns(s, *pack);
-    save(row + pack->out, sum);
+inline Vector sum_of_pack(const Stage& s, const Pack& pack, const Order& order) {
+  Vector result = columns(s, pack);
+  for (const ProductTerm *term = s.t.products + pack.first_product, *last = s.t.products + pack.last_product;
+       term != last; ++term) {
+    bring(s, pack, term->a), bring(s, pack, term->b);
+    result += load(s.t.coefficients + term->coefficients) * product(s, *term, order.number);
   }
-  const Pack& join = *pack->pack;
-  join_strands(join, sum, row, join.kind == Pack::Join ? before_lanes : before_lanes_down);
-  return pack;
+  return result;
 }
 
 [[gnu::noinline]] void functions(const Tables& t, const Pack& pack) {
   if (pack.pairs == no_block) {
-    for (std::uint32_t f = pack.first_function; f < pack.last_function; ++f) t.scalar.value(t.scalar.context, t.functions[f], 0);
+    for (std::uint32_t f = pack.first_function; f < pack.last_function; ++f)
+      t.scalar.value(t.scalar.context, t.functions[f], 0);
     return;
   }
   const int count = static_cast<int>(pack.last_function - pack.first_function);
@@ -168,83 +128,54 @@ const ReadyPack* run_strands(const Stage& s, const ReadyPack* pack) {
   const Block& block = t.blocks[pack.a];
   for (unsigned i = 0; i < lanes; ++i) u[i] = t.rows[block.slots[i]];
   sine_cosine(u, values, count);
-  for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) t.rows[pack.out + i] = values[i], t.rows[pack.pairs + i] = values[lanes + i];
+  for (unsigned i = 0; i < static_cast<unsigned>(count); ++i)
+    t.rows[pack.out + i] = values[i], t.rows[pack.pairs + i] = values[lanes + i];
 }
 
-/// 1/k comes with its residue: a rounded reciprocal would err the same way in every step.
-inline void save_integral(const Order& order, const ReadyPack& pack, Vector sum) {
-  sum *= load(pack.coefficients);
+/// 1/k comes with its residue: a rounded reciprocal would err the same way in every step. The integral at order k reads
+/// w up to order k − 1, where it is final.
+inline void integral(const Stage& s, const Pack& pack, const Order& order) {
+  bring(s, pack, pack.a);
+  if (order.number == 0) return functions(s.t, pack);
+  const Vector sum = without_first(s, pack.a, pack.b, order.number) * load(s.t.coefficients + pack.coefficients);
   save(order.row + pack.out, sum * all(order.reciprocal.rest) + sum * all(order.reciprocal.leading));
 }
 
-const ReadyPack* run_integral(const Stage& s, const ReadyPack* pack) {
-  const Order& order = s.order_of(pack->lag);
-  if (order.number == 0) functions(s.t, *pack->pack);
-  else save_integral(order, *pack, without_first(s, pack->a, pack->b, order.number));
-  return pack;
+inline Vector quotient(const Stage& s, const Pack& pack, const Order& order) {
+  bring(s, pack, pack.a), bring(s, pack, pack.b);
+  return (load(s.cells(pack.a) + order.offset) - without_first(s, pack.b, pack.y, order.number)) /
+         load(s.cells(pack.b));
 }
 
-const ReadyPack* run_integral_by_sum(const Stage& s, const ReadyPack* pack) {
-  const Order& order = s.order_of(pack->lag);
-  save_integral(order, *pack, completed(s, *pack->products, order.offset));
-  return pack;
+inline Vector square_root(const Stage& s, const Pack& pack, const Order& order) {
+  bring(s, pack, pack.a);
+  Vector u = load(s.cells(pack.a) + order.offset);
+  const double* const y = s.cells(pack.y);
+  if (order.number > 0) return (u - square(s, y, order.number, 1)) / (load(y) + load(y));
+  for (unsigned lane = 0; lane < lanes; ++lane) u[lane] = __builtin_sqrt(u[lane]);
+  return u;
 }
 
-template <bool ByAhead>
-const ReadyPack* run_quotient(const Stage& s, const ReadyPack* pack) {
-  const Order& order = s.order_of(pack->lag);
-  const Vector sum = has_sum<ByAhead>(*pack->products) ? completed(s, *pack->products, order.offset) : without_first(s, pack->b, pack->y, order.number);
-  save(order.row + pack->out, (load(pack->a + order.offset) - sum) / load(pack->b));
-  return pack;
-}
-
-template <bool ByAhead>
-const ReadyPack* run_square_root(const Stage& s, const ReadyPack* pack) {
-  const Order& order = s.order_of(pack->lag);
-  const Vector u = load(pack->a + order.offset);
-  const double* const y = pack->y;
-  Vector result;
-  if (order.number == 0)
-    for (unsigned lane = 0; lane < lanes; ++lane) result[lane] = __builtin_sqrt(u[lane]);
-  else
-    result = (u - (has_sum<ByAhead>(*pack->products) ? completed(s, *pack->products, order.offset) : square(s, y, order.number, 1))) / (load(y) + load(y));
-  save(order.row + pack->out, result);
-  return pack;
-}
-
-const ReadyPack* run_scalar(const Stage& s, const ReadyPack* pack) {
-  s.t.scalar.value(s.t.scalar.context, pack->pack->instruction, s.order_of(pack->lag).number);
-  return pack;
-}
-
-/// By Pack::Kind, joins being done with their strands; with sums made ahead by Way.
-constexpr RunPack by_itself[] = {run_sum<false>, run_scan, run_scan, run_strands, nullptr, nullptr, run_integral, run_quotient<false>, run_square_root<false>, run_scalar};
-constexpr RunPack by_way[] = {run_sum<true>,      run_scan,   run_scan,       run_strands,  nullptr,           nullptr, run_integral, run_quotient<true>,
-                              run_square_root<true>, run_scalar, run_neighbours, run_products, run_integral_by_sum};
-
-/// Stages up to 0, and all where no sums are made ahead.
-void run_by_itself(const Stage& s) {
-  const ReadyPack* const last = s.t.ready + s.t.pack_count;
-  for (const ReadyPack* pack = s.t.ready; pack != last; ++pack) {
-    if (!s.has_order_of(pack->lag)) continue;
-    for (const Copy* copy = pack->copies; copy != pack->last_copy; ++copy)
-      if (s.has_order_of(copy->lag)) make(s, *copy);
-    pack = by_itself[pack->kind](s, pack);
-  }
-}
-
-/// Later stages.
-inline void run_by_sums(const Stage& s) {
-  const ReadyPack* const last = s.t.ready + s.t.pack_count;
-  for (const ReadyPack* pack = s.t.ready; pack != last; ++pack) {
-    for (const Copy* copy = pack->copies; copy != pack->last_copy_ahead; ++copy) make(s, *copy);
-    pack = by_way[pack->way](s, pack);
+inline void run_pack(const Stage& s, const Pack& pack) {
+  const Order& order = s.order_of(pack.lag);
+  double *const row = order.row, *const out = row + pack.out;
+  switch (pack.kind) {
+    case Pack::Sum: return save(out, sum_of_pack(s, pack, order));
+    case Pack::Scan: return save(out, running_sum(columns(s, pack)) + carry_of(pack.carry, row));
+    case Pack::ScanDown: return save(out, running_sum_down(columns(s, pack)) + carry_of(pack.carry, row));
+    case Pack::Strand: return save(out, columns(s, pack) + (pack.carry == no_slot ? all(0) : load(row + pack.carry)));
+    case Pack::Join: return join_strands(pack, load(row + pack.last_strand), row, before_lanes);
+    case Pack::JoinDown: return join_strands(pack, load(row + pack.last_strand), row, before_lanes_down);
+    case Pack::Integral: return integral(s, pack, order);
+    case Pack::Quotient: return save(out, quotient(s, pack, order));
+    case Pack::SquareRoot: return save(out, square_root(s, pack, order));
+    case Pack::Scalar: return s.t.scalar.value(s.t.scalar.context, pack.instruction, order.number);
   }
 }
 
 inline void run_packs(const Stage& s) {
-  if (s.t.has_sums && s.stage > 0) run_by_sums(s);
-  else run_by_itself(s);
+  for (const Pack *pack = s.t.packs, *last = s.t.packs + s.t.pack_count; pack != last; ++pack)
+    if (s.has_order_of(pack->lag)) run_pack(s, *pack);
 }
 
 void run_stage(const Tables& tables, int stage) {
@@ -255,9 +186,8 @@ void run_stage(const Tables& tables, int stage) {
 }
 
 inline void renew(const Stage& s) {
-  const Copy* const last = s.t.copies + s.t.copy_count;
-  for (const Copy* copy = s.t.copies; copy != last; ++copy)
-    if (s.has_order_of(copy->lag)) make(s, *copy);
+  for (const Block *block = s.t.blocks, *last = s.t.blocks + s.t.block_count; block != last; ++block)
+    if (!block->direct && s.has_order_of(block->lag)) copy(s, *block);
 }
 void renew_blocks(const Tables& tables, int stage) { renew(Stage(tables, stage)); }
 

@@ -2,12 +2,13 @@
 namespace maupertuis::packed::MAUP_ENGINE {
 namespace {
 
-/// As the reference: the highest derivative of q in a slot of lag ℓ enters through operands of lag ℓ alone. W directions at once, so that each
-/// pack is looked up once for all of them.
+/// As the reference: the highest derivative of q in a slot of lag ℓ enters through operands of lag ℓ alone. W
+/// directions at once, so that each pack is looked up once for all of them.
 template <int W>
 class Tangents {
  public:
-  Tangents(const Tables& tables, double* tangents, std::size_t stride) : t_(tables), tangents_(tangents), stride_(stride) {}
+  Tangents(const Tables& tables, double* tangents, std::size_t stride)
+      : t_(tables), tangents_(tangents), stride_(stride) {}
 
   void run() const {
     for (std::size_t i = 0; i < t_.pack_count; ++i) {
@@ -33,7 +34,9 @@ class Tangents {
   double* row(int direction) const { return tangents_ + static_cast<std::size_t>(direction) * stride_; }
   Vector value_of(std::uint32_t index) const { return read(t_.blocks[index], t_.rows); }
   static Vector read(const Block& block, const double* from) {
-    return block.direct ? load(from + block.first) : block.is_range ? load(from + block.slots[0]) : gather(from, block.slots.data());
+    return block.direct     ? load(from + block.first)
+           : block.is_range ? load(from + block.slots[0])
+                            : gather(from, block.slots.data());
   }
 
   /// One by one: as an array it would be cleared in memory.
@@ -70,7 +73,7 @@ class Tangents {
     for (std::uint32_t i = run.first; i < run.last; ++i, c += lanes) {
       const Column& column = t_.columns[i];
 #pragma GCC unroll 8
-      for (int d = 0; d < W; ++d) sums[d] += load(c) * column_values<kind>(row(d), column.source, column);
+      for (int d = 0; d < W; ++d) sums[d] += load(c) * column_values<kind>(row(d), column);
     }
   }
 
@@ -111,7 +114,8 @@ class Tangents {
     Vector sums[W];
     clear(sums);
     columns(pack, sums);
-    for (int d = 0; d < W; ++d) save(row(d) + pack.out, pack.carry == no_slot ? sums[d] : sums[d] + load(row(d) + pack.carry));
+    for (int d = 0; d < W; ++d)
+      save(row(d) + pack.out, pack.carry == no_slot ? sums[d] : sums[d] + load(row(d) + pack.carry));
   }
 
   void join(const Pack& pack, Vector (*before)(Vector)) const {

@@ -13,15 +13,15 @@ inline Vector gather(const double* p, const Slot* slots) {
 }
 
 typedef long long Places __attribute__((vector_size(64)));
-typedef long long UnalignedPlaces __attribute__((vector_size(64), aligned(8)));
 
-/// Reads columns of one kind, each with its coefficients.
+/// What a column of one kind reads.
 template <Column::Kind kind>
-inline Vector column_values(const double* from, Slot place, const Column& column) {
-  if constexpr (kind == Column::Broadcast) return all(from[place]);
-  else if constexpr (kind == Column::Contiguous) return load(from + place);
-  else if constexpr (kind == Column::Reversed) return __builtin_shuffle(load(from + place - (lanes - 1)), Places{7, 6, 5, 4, 3, 2, 1, 0});
-  else return gather(from + (place - column.source), column.sources.data());
+inline Vector column_values(const double* from, const Column& column) {
+  if constexpr (kind == Column::Broadcast) return all(from[column.source]);
+  else if constexpr (kind == Column::Contiguous) return load(from + column.source);
+  else if constexpr (kind == Column::Reversed)
+    return __builtin_shuffle(load(from + column.source - (lanes - 1)), Places{7, 6, 5, 4, 3, 2, 1, 0});
+  else return gather(from, column.sources.data());
 }
 
 /// Σ_i term(i), in sums that do not wait for each other.
@@ -38,16 +38,18 @@ template <class Term>
   return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
-/// Σ of coefficients · columns.
+/// Σ of coefficients · columns, whose coefficients follow each other.
 template <Column::Kind kind>
-inline Vector columns_of_kind(const ReadyRun& run, const double* from) {
-  return sum_of(run.count, [&](std::size_t i) { return load(run.coefficients + i * lanes) * column_values<kind>(from, run.places[i], run.columns[i]); });
+inline Vector columns_of_kind(const Column* columns, std::size_t count, const double* coefficients,
+                              const double* from) {
+  return sum_of(count,
+                [&](std::size_t i) { return load(coefficients + i * lanes) * column_values<kind>(from, columns[i]); });
 }
-/// Often as many as a vector has lanes.
-[[gnu::always_inline]] inline Vector columns_of_neighbours(const ReadyRun& run, const double* from) {
-  const double *const first = from + run.places[0], *const coefficients = run.coefficients;
+/// The same of slots side by side, from `first` on. Often as many as a vector has lanes.
+[[gnu::always_inline]] inline Vector columns_of_neighbours(const double* first, std::size_t count,
+                                                           const double* coefficients) {
   const auto term = [&](std::size_t i) { return all(first[i]) * load(coefficients + i * lanes); };
-  if (run.count != lanes) return sum_of(run.count, term);
+  if (count != lanes) return sum_of(count, term);
   Vector sums[4];
 #pragma GCC unroll 4
   for (std::size_t j = 0; j < 4; ++j) sums[j] = term(j) + term(j + 4);
@@ -69,16 +71,21 @@ inline Vector running_sum_down(Vector v) {
 }
 
 /// All lanes before each.
-inline Vector before_lanes(Vector v) { return running_sum(__builtin_shuffle(v, all(0), Places{8, 0, 1, 2, 3, 4, 5, 6})); }
-inline Vector before_lanes_down(Vector v) { return running_sum_down(__builtin_shuffle(v, all(0), Places{1, 2, 3, 4, 5, 6, 7, 8})); }
+inline Vector before_lanes(Vector v) {
+  return running_sum(__builtin_shuffle(v, all(0), Places{8, 0, 1, 2, 3, 4, 5, 6}));
+}
+inline Vector before_lanes_down(Vector v) {
+  return running_sum_down(__builtin_shuffle(v, all(0), Places{1, 2, 3, 4, 5, 6, 7, 8}));
+}
 
 /// What a running sum adds to.
 inline Vector carry_of(Slot carry, const double* row) { return carry == no_slot ? all(0) : all(row[carry]); }
 
-/// A running sum whose lanes are each right but for the lanes before.
+/// Of a running sum in eight parts (Pack::Join): all its vectors add what the lanes before each came to in the last one.
 inline void join_strands(const Pack& pack, Vector last, double* row, Vector (*before)(Vector)) {
-  const Vector owed = before(last) + carry_of(pack.carry, row);
-  for (double* strand = row + pack.out; strand != row + pack.out + pack.strands * lanes; strand += lanes) save(strand, load(strand) + owed);
+  const Vector missing = before(last) + carry_of(pack.carry, row);
+  for (double* strand = row + pack.out; strand != row + pack.out + pack.strands * lanes; strand += lanes)
+    save(strand, load(strand) + missing);
 }
 
 const Vector lane_numbers = {0, 1, 2, 3, 4, 5, 6, 7};

@@ -95,7 +95,8 @@ class Grouping {
         for (std::uint32_t i = run.first; i < run.last; ++i) {
           const Instruction& instruction = in_.instructions[i];
           store(instruction.a), store(instruction.b);
-          for (std::uint32_t t = instruction.first_term; t < instruction.last_term; ++t) store(in_.terms[t].a), store(in_.terms[t].b);
+          for (std::uint32_t t = instruction.first_term; t < instruction.last_term; ++t)
+            store(in_.terms[t].a), store(in_.terms[t].b);
         }
     for (const auto* slots : {&in_.switch_slots, &in_.events, &in_.observables, &in_.integrands, &in_.constraint_values,
                               &in_.constraint_rates})
@@ -112,7 +113,9 @@ class Grouping {
     const std::size_t producer = producer_[slot];
     if (producer == none) return 0;
     const bool is_second = steps_[producer].head.second == slot;
-    return 2 + 2 * (static_cast<std::size_t>(level_[producer]) * 32 + static_cast<std::size_t>(steps_[producer].head.op)) + is_second;
+    return 2 +
+           2 * (static_cast<std::size_t>(level_[producer]) * 32 + static_cast<std::size_t>(steps_[producer].head.op)) +
+           is_second;
   }
 
   /// The factor of lower lag first; like terms of several sums in like places.
@@ -120,17 +123,19 @@ class Grouping {
     for (Step& s : steps_) {
       if (s.head.op != Op::Products && s.head.op != Op::Linear) continue;
       for (Term& term : s.products)
-        if (std::tuple(lag(term.b), class_of(term.b), term.b) < std::tuple(lag(term.a), class_of(term.a), term.a)) std::swap(term.a, term.b);
+        if (std::tuple(lag(term.b), class_of(term.b), term.b) < std::tuple(lag(term.a), class_of(term.a), term.a))
+          std::swap(term.a, term.b);
       std::stable_sort(s.products.begin(), s.products.end(), [&](const Term& x, const Term& y) {
-        return std::tuple(lag(x.a), lag(x.b), class_of(x.a), class_of(x.b)) < std::tuple(lag(y.a), lag(y.b), class_of(y.a), class_of(y.b));
+        return std::tuple(lag(x.a), lag(x.b), class_of(x.a), class_of(x.b)) <
+               std::tuple(lag(y.a), lag(y.b), class_of(y.a), class_of(y.b));
       });
     }
   }
 
-  // -------------------------------------------------------------------------------------------------------- strands
+  // --------------------------------------------------------------------------------------- running sums in eight parts
 
-  /// Running sums whose members stand in the eights of order_, but for some at the ends. Where members wait for something that those before do not, they are
-  /// of a higher level, and a group of their own.
+  /// Running sums whose members stand in the eights of order_, but for some at the ends. Where members wait for
+  /// something that those before do not, they are of a higher level, and a group of their own.
   void cut_chains() {
     find_homes();
     std::map<std::pair<int, int>, std::vector<std::size_t>> chains;
@@ -139,7 +144,8 @@ class Grouping {
     for (const auto& [chain, members] : chains) cut_chain(members);
   }
 
-  /// [slots] the place in order_ of the coordinate that a slot belongs to: that of what it adds to a running sum, or else of its first operand.
+  /// [slots] the place in order_ of the coordinate that a slot belongs to: that of what it adds to a running sum, or
+  /// else of its first operand.
   void find_homes() {
     home_.assign(in_.slots, none);
     for (std::size_t place = 0; place < order_.coordinates.size(); ++place) home_[order_.coordinates[place]] = place;
@@ -159,7 +165,8 @@ class Grouping {
 
   void cut_chain(const std::vector<std::size_t>& members) {
     const auto is_whole = [&](std::size_t i) { return home(i) < order_.whole; };
-    const auto begin = std::find_if(members.begin(), members.end(), is_whole), end = std::find_if_not(begin, members.end(), is_whole);
+    const auto begin = std::find_if(members.begin(), members.end(), is_whole),
+               end = std::find_if_not(begin, members.end(), is_whole);
     if (!are_strands({begin, end})) return;
     for (auto i = begin; i != end; ++i) piece_[*i] = Strands;
     for (auto i = end; i != members.end(); ++i) piece_[*i] = After;
@@ -237,7 +244,8 @@ class Grouping {
       if (piece_[group.steps[0]] == Strands) {
         group.in_strands = true;
         group.down = home(group.steps.front()) % lanes != 0;
-        std::sort(group.steps.begin(), group.steps.end(), [&](std::size_t x, std::size_t y) { return home(x) < home(y); });
+        std::sort(group.steps.begin(), group.steps.end(),
+                  [&](std::size_t x, std::size_t y) { return home(x) < home(y); });
       } else if (step(group.steps[0]).chain >= 0) {
         group.down = rank_[step(group.steps.front()).head.out] > rank_[step(group.steps.back()).head.out];
         if (group.down) std::reverse(group.steps.begin(), group.steps.end());
@@ -249,8 +257,8 @@ class Grouping {
     }
   }
 
-  /// A running sum begins in the lane in which what its first step adds stands, as far as its steps agree. Vectors are then read as they were
-  /// written: one that lies across two would have to wait until both are in the cache.
+  /// A running sum begins in the lane in which what its first step adds stands, as far as its steps agree. Vectors are
+  /// then read as they were written: one that lies across two would have to wait until both are in the cache.
   void set_fronts() {
     std::vector<std::size_t> lane_of(in_.slots, none);
     for (Slot slot = 0; slot < in_.unknowns; ++slot) lane_of[slot] = slot % lanes;
@@ -260,7 +268,8 @@ class Grouping {
         for (std::size_t place = 0; place < group.steps.size(); ++place) {
           const std::vector<Term>& terms = step(group.steps[place]).linear;
           for (std::size_t t = 1; t < terms.size(); ++t)
-            if (const std::size_t lane = lane_of[terms[t].a]; lane != none) ++votes[(lane + lanes - place % lanes) % lanes];
+            if (const std::size_t lane = lane_of[terms[t].a]; lane != none)
+              ++votes[(lane + lanes - place % lanes) % lanes];
         }
         group.front = static_cast<std::size_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
       }

@@ -14,11 +14,12 @@ struct Group {
   bool packs = false;                   // worth vectors
   bool down = false;                    // a running sum from the last lane to the first
   bool in_strands = false;              // a running sum in eight parts, a lane each
-  std::size_t front = 0;                // lanes before the first step that stay empty, so that operands stand in the same lanes
+  /// lanes before the first step that stay empty, so that operands stand in the same lanes
+  std::size_t front = 0;
 };
 
-/// Groups in order of execution, each ordered so that operands of one group come from neighbouring results of another. Like terms of the
-/// products of a group come to like places; running sums that wait for each other are given up.
+/// Groups in order of execution, each ordered so that operands of one group come from neighbouring results of another.
+/// Like terms of the products of a group come to like places; running sums that wait for each other are given up.
 std::vector<Group> group_steps(const Program& program, std::vector<Step>& steps, const LaneOrder& order);
 
 }  // namespace maupertuis::packed

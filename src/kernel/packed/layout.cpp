@@ -9,8 +9,9 @@
 #include <span>
 #include <tuple>
 
-/// Sums are written out (collapse), groups of instructions of one shape and level found and ordered (grouping), their slots numbered group
-/// by group (numbering), and packs of up to eight lanes cut from the groups: here, with the blocks and columns (columns) that they read.
+/// Sums are written out (collapse), groups of instructions of one shape and level found and ordered (grouping), their
+/// slots numbered group by group (numbering), and packs of up to eight lanes cut from the groups: here, with the blocks
+/// and columns (columns) that they read.
 namespace maupertuis::packed {
 namespace {
 
@@ -20,7 +21,8 @@ constexpr std::size_t most_of_small = 16, shortest_chain = 8;
 class Packs {
  public:
   /// `holes`: see columns_of().
-  Packs(Renumbered renumbered, std::vector<Slot> number, const std::vector<Step>& steps, const std::vector<Group>& groups, bool holes)
+  Packs(Renumbered renumbered, std::vector<Slot> number, const std::vector<Step>& steps,
+        const std::vector<Group>& groups, bool holes)
       : steps_(steps), groups_(groups), index_(std::move(renumbered.index)), holes_(holes) {
     out_.program = std::move(renumbered.program);
     out_.number = std::move(number);
@@ -40,9 +42,11 @@ class Packs {
       }
       const std::size_t end = group.front + group.steps.size(), chunks = padded(end) / lanes;
       for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
-        const std::size_t first = lanes * (group.down ? chunks - 1 - chunk : chunk), front = first == 0 ? group.front : 0;
+        const std::size_t first = lanes * (group.down ? chunks - 1 - chunk : chunk),
+                          front = first == 0 ? group.front : 0;
         const Members all = group.steps;
-        write_pack(all.subspan(first + front - group.front, std::min<std::size_t>(first + lanes, end) - first - front), group, front);
+        write_pack(all.subspan(first + front - group.front, std::min<std::size_t>(first + lanes, end) - first - front),
+                   group, front);
       }
     }
     out_.cells = next_cell_;
@@ -52,8 +56,12 @@ class Packs {
  private:
 
   void scalar(std::size_t i, int level) {
-    out_.packs.push_back({.kind = Pack::Scalar, .lag = step(i).head.lag, .level = static_cast<std::int8_t>(std::min(level, 127)),
-                          .width = 1, .out = out_.number[step(i).head.out], .instruction = index_[i]});
+    out_.packs.push_back({.kind = Pack::Scalar,
+                          .lag = step(i).head.lag,
+                          .level = static_cast<std::int8_t>(std::min(level, 127)),
+                          .width = 1,
+                          .out = out_.number[step(i).head.out],
+                          .instruction = index_[i]});
   }
 
   using Members = std::span<const std::size_t>;
@@ -89,8 +97,11 @@ class Packs {
 
   Pack pack_of(Members members, const Group& group, std::size_t front = 0) const {
     const Instruction& head = step(members[0]).head;
-    return {.lag = head.lag, .level = static_cast<std::int8_t>(std::min(group.level, 127)), .width = static_cast<std::uint32_t>(front + members.size()),
-            .out = static_cast<Slot>(out_.number[head.out] - front), .instruction = index_[members[0]]};
+    return {.lag = head.lag,
+            .level = static_cast<std::int8_t>(std::min(group.level, 127)),
+            .width = static_cast<std::uint32_t>(front + members.size()),
+            .out = static_cast<Slot>(out_.number[head.out] - front),
+            .instruction = index_[members[0]]};
   }
 
   /// `front`: lanes before the first member.
@@ -104,7 +115,8 @@ class Packs {
       case Op::Function: function(pack, members); break;
       case Op::Quotient:
         pack.kind = Pack::Quotient;
-        pack.a = heads(members, &Instruction::a), pack.b = heads(members, &Instruction::b, true), pack.y = heads(members, &Instruction::out);
+        pack.a = heads(members, &Instruction::a), pack.b = heads(members, &Instruction::b, true),
+        pack.y = heads(members, &Instruction::out);
         break;
       case Op::SquareRoot:
         pack.kind = Pack::SquareRoot;
@@ -117,7 +129,8 @@ class Packs {
     out_.packs.push_back(pack);
   }
 
-  /// `filled`: lanes that are not in use repeat the first, since 0/0 would not be a number, and what reads vectors with holes reads them too.
+  /// `filled`: lanes that are not in use repeat the first, since 0/0 would not be a number, and what reads vectors with
+  /// holes reads them too.
   std::uint32_t heads(Members members, Slot Instruction::* operand, bool filled = false) {
     std::vector<Slot> slots;
     for (const std::size_t i : members) slots.push_back(out_.number[step(i).head.*operand]);
@@ -148,7 +161,8 @@ class Packs {
     const ConstantId plus = literal(1), other = literal(sign);
     std::vector<Slot> u, out, second;
     for (const std::size_t i : members)
-      u.push_back(out_.number[step(i).head.a]), out.push_back(out_.number[step(i).head.out]), second.push_back(out_.number[step(i).head.second]);
+      u.push_back(out_.number[step(i).head.a]), out.push_back(out_.number[step(i).head.out]),
+          second.push_back(out_.number[step(i).head.second]);
     functions(pack, members);
     if (sign < 0) pack.pairs = second[0];
     const std::size_t count = members.size();
@@ -187,13 +201,20 @@ class Packs {
     Sums sums = sums_of(members);
     sums.insert(sums.begin(), front, {});
     auto found = columns_of(out_.program, sums, zero_, holes_);
-    const auto key = [&](const Column& column) { return std::tuple(column.shift, column.kind, passes_tangent(column, pack.lag)); };
-    std::stable_sort(found.begin(), found.end(), [&](const ReadColumn& x, const ReadColumn& y) { return key(x.column) < key(y.column); });
+    const auto key = [&](const Column& column) {
+      return std::tuple(column.shift, column.kind, passes_tangent(column, pack.lag));
+    };
+    std::stable_sort(found.begin(), found.end(),
+                     [&](const ReadColumn& x, const ReadColumn& y) { return key(x.column) < key(y.column); });
     for (ReadColumn& read : found) {
       const auto at = static_cast<std::uint32_t>(out_.columns.size());
       if (at == pack.first_column || key(read.column) != key(out_.columns.back()))
-        out_.runs.push_back({read.column.kind, read.column.shift, passes_tangent(read.column, pack.lag), at, at});
-      ++out_.runs.back().last;
+        out_.runs.push_back({read.column.kind, read.column.shift, passes_tangent(read.column, pack.lag), at, at,
+                             read.column.kind == Column::Broadcast});
+      ColumnRun& run = out_.runs.back();
+      run.neighbours = run.neighbours &&
+                       (run.first == at || read.column.source == out_.columns[run.first].source + (at - run.first));
+      ++run.last;
       add_column(std::move(read), pack.lag);
     }
     pack.last_column = static_cast<std::uint32_t>(out_.columns.size());
@@ -217,7 +238,8 @@ class Packs {
     pack.kind = Pack::Sum;
     columns(pack, members);
     pack.first_aligned = static_cast<std::uint32_t>(out_.columns.size());
-    for (ReadColumn& read : aligned_columns_of(out_.program, sums_of(members), zero_)) add_column(std::move(read), pack.lag);
+    for (ReadColumn& read : aligned_columns_of(out_.program, sums_of(members), zero_))
+      add_column(std::move(read), pack.lag);
     pack.last_aligned = static_cast<std::uint32_t>(out_.columns.size());
     pack.first_product = static_cast<std::uint32_t>(out_.products.size());
     const Step& shape = step(members[0]);
@@ -237,7 +259,9 @@ class Packs {
     pack.last_product = static_cast<std::uint32_t>(out_.products.size());
   }
 
-  bool passes_tangent(const Column& column, int lag) const { return out_.program.tangent_lags[column.source] + column.shift == lag; }
+  bool passes_tangent(const Column& column, int lag) const {
+    return out_.program.tangent_lags[column.source] + column.shift == lag;
+  }
 
   void add_column(ReadColumn read, int lag) {
     read.column.passes_tangent = passes_tangent(read.column, lag);
@@ -255,14 +279,18 @@ class Packs {
   std::uint32_t block(const std::vector<Slot>& slots, bool weighted, bool filled = false) {
     bool range = !weighted && !filled && (slots.size() == lanes || slots[0] % lanes == 0);
     for (std::size_t lane = 0; lane < slots.size(); ++lane) range = range && slots[lane] == slots[0] + lane;
-    const auto [place, fresh] = blocks_.try_emplace({slots, weighted ? 1 : filled ? 2 : 0}, static_cast<std::uint32_t>(out_.blocks.size()));
+    const auto [place, fresh] = blocks_.try_emplace({slots, weighted ? 1
+                                                            : filled ? 2
+                                                                     : 0},
+                                                    static_cast<std::uint32_t>(out_.blocks.size()));
     if (!fresh) return place->second;
     Block result{.first = slots[0], .direct = range, .weighted = weighted, .lag = out_.program.lags[slots[0]],
                  .width = static_cast<std::uint32_t>(slots.size())};
     result.slots.fill(slots[0]);
     std::copy(slots.begin(), slots.end(), result.slots.begin());
     result.is_range = !filled && (slots.size() == lanes || slots[0] % lanes == 0);
-    for (std::size_t lane = 0; lane < slots.size(); ++lane) result.is_range = result.is_range && slots[lane] == slots[0] + lane;
+    for (std::size_t lane = 0; lane < slots.size(); ++lane)
+      result.is_range = result.is_range && slots[lane] == slots[0] + lane;
     if (!range) {
       result.first = static_cast<Slot>(next_cell_);
       next_cell_ += lanes;
@@ -302,11 +330,13 @@ PackedProgram pack(const Program& program, const LaneOrder& order) {
   write_derivatives(extended, steps);
   if (large) find_chains(extended, steps, shortest_chain);
   collapse_sums(extended, steps, large ? longest_sum_of_large : longest_sum_of_small);
-  if (!large) scale_factors(extended, steps);  // of large ones, lifted solutions know the slots of the program as it was
+  // of large ones, lifted solutions know the slots of the program as it was
+  if (!large) scale_factors(extended, steps);
   const std::vector<Group> groups = group_steps(program, steps, order);
   Numbering numbering = number_slots(program, steps, groups);
   Renumbered renumbered = renumber(program, std::move(extended), steps, groups, numbering);
-  return Packs(std::move(renumbered), std::move(numbering.number), steps, groups, large && has_no_choices(program)).run();
+  return Packs(std::move(renumbered), std::move(numbering.number), steps, groups, large && has_no_choices(program))
+      .run();
 }
 
 }  // namespace maupertuis::packed

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-/// The same program, laid out for vectors: instructions of one shape that do not wait for each other become a *pack* of up
-/// to 8 lanes, whose results lie side by side, and whose operands do too wherever possible.
+/// The same program, laid out for vectors: instructions of one shape that do not wait for each other become a *pack* of
+/// up to 8 lanes, whose results lie side by side, and whose operands do too wherever possible.
 namespace maupertuis::packed {
 
 inline constexpr std::uint32_t lanes = 8;
@@ -43,6 +43,7 @@ struct ColumnRun {
   std::uint8_t shift = 0;
   bool passes_tangent = false;
   std::uint32_t first = 0, last = 0;    // columns
+  bool neighbours = false;              // Broadcast: of slots side by side
 };
 
 /// Coefficient of the lane · a · b.
@@ -51,14 +52,30 @@ struct ProductTerm {
   std::uint32_t coefficients = 0;
 };
 
+/// Up to eight results side by side.
+///
+/// A running sum s_i = s_{i−1} + x_i of many members lies in vectors in one of two ways:
+///
+///     one member after the other            a chain in eight parts of equal length, a lane each
+///
+///       vector   lanes 0 … 7                  vector   lane 0   lane 1   lane 2   …
+///         0      s0   s1   s2  …  s7            0       s0       s12      s24
+///         1      s8   s9   s10 …  s15           1       s1       s13      s25
+///         …                                     …       …        …        …
+///                                               11      s11      s23      s35
+///
+/// On the left (Scan) each lane adds the lanes before it, by three shuffles, and all lanes add the last sum of the vector
+/// before. On the right each vector (Strand) adds its columns to the vector before, so that every lane is the running sum
+/// of its own part; then (Join) each lane of all these vectors adds what the lanes before it came to in the last vector:
+/// lane 2 what s11 and s23 were until then. That takes one sum across lanes in place of one a vector.
 struct Pack {
   enum Kind : std::uint8_t {
     Sum,         // columns + products
-    Scan,        // running sums of columns: each lane adds to the lane before, the first to `carry` where there is one
+    Scan,        // running sums of columns, one member after the other; `carry`: the sum before, where there is one
     ScanDown,    // the same from the last lane to the first
-    Strand,      // a running sum in eight parts, a lane each: its columns and the vector `carry`, where there is one
-    Join,        // at the end of such strands: each lane of all of them and all lanes before it of the last one, and `carry` where there is one
-    JoinDown,    // the same from the last lane to the first
+    Strand,      // a vector of a running sum in eight parts; `carry`: the vector before, where there is one
+    Join,        // after the last of these; `carry`: the sum that the whole goes on with, where there is one
+    JoinDown,    // the same where the parts follow each other from the last lane to the first
     Integral,    // y with dy = c w du: sines, cosines, exponentials, inverse functions
     Quotient,    // block a / block b
     SquareRoot,  // of block a
@@ -70,8 +87,10 @@ struct Pack {
   Slot out = 0;                         // first of `lanes` slots, beginning at a multiple of it (not for Scalar)
   std::uint32_t first_column = 0, last_column = 0, first_product = 0, last_product = 0;  // Sum
   std::uint32_t first_run = 0, last_run = 0;  // Sum and Scan: the columns, run by run
-  std::uint32_t first_aligned = 0, last_aligned = 0;  // Sum: the same columns by their place in the sums, for compiled code
-  std::uint32_t a = no_block, b = no_block, y = no_block;  // Integral: u (weighted), w; Quotient: a, b, y; SquareRoot: u, –, y
+  /// Sum: the same columns by their place in the sums, for compiled code
+  std::uint32_t first_aligned = 0, last_aligned = 0;
+  /// Integral: u (weighted), w; Quotient: a, b, y; SquareRoot: u, –, y
+  std::uint32_t a = no_block, b = no_block, y = no_block;
   std::uint32_t coefficients = 0;       // Integral: c
   Slot carry = no_slot;                 // Scan: what the first lane adds to; Strand, Join: see there; no_slot: nothing
   std::uint32_t strands = 0;            // Join: their number; `out` is the lowest of their vectors
@@ -83,7 +102,8 @@ struct Pack {
 
 struct PackedProgram {
   Program program;                      // renumbered, with slots between packs that nothing uses
-  std::vector<Slot> number;             // [slots of the program as it was] where they went; no_slot: written out in the sums that read them
+  /// [slots of the program as it was] where they went; no_slot: written out in the sums that read them
+  std::vector<Slot> number;
   std::size_t cells = 0;                // slots and cells of blocks: doubles of a row
   std::vector<Pack> packs;              // section Dynamics, in order of execution
   std::vector<Block> blocks;
@@ -93,14 +113,16 @@ struct PackedProgram {
   std::vector<std::uint32_t> functions; // indices of instructions
   std::vector<ConstantId> coefficients; // of lanes that are not in use: the constant 0
 
-  /// Weighted, and not side by side where they stand: what a solution gives for them may be put into the block's cells at once.
+  /// Weighted, and not side by side where they stand: what a solution gives for them may be put into the block's cells
+  /// at once.
   bool copies_coordinates(const Block& block) const {
-    return block.weighted && !block.is_range && std::all_of(block.slots.begin(), block.slots.end(), [this](Slot s) { return s < program.freedoms; });
+    return block.weighted && !block.is_range &&
+           std::all_of(block.slots.begin(), block.slots.end(), [this](Slot s) { return s < program.freedoms; });
   }
 };
 
-/// Coordinates in the order in which vectors are to hold what belongs to them: the first `whole` by eights, whose lanes are eight parts of a chain,
-/// one after the other or the other way round.
+/// Coordinates in the order in which vectors are to hold what belongs to them: the first `whole` by eights, whose lanes
+/// are eight parts of a chain, one after the other or the other way round.
 struct LaneOrder {
   std::vector<Slot> coordinates;
   std::size_t whole = 0;

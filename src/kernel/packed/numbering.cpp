@@ -77,9 +77,14 @@ class SlotNumbers {
 
 class Renumbering {
  public:
-  Renumbering(const Program& program, Program constants, const std::vector<Step>& steps, const std::vector<Group>& groups,
-              const Numbering& numbering)
-      : in_(program), program_(std::move(constants)), steps_(steps), groups_(groups), number_(numbering.number), index_(steps.size()) {
+  Renumbering(const Program& program, Program constants, const std::vector<Step>& steps,
+              const std::vector<Group>& groups, const Numbering& numbering)
+      : in_(program),
+        program_(std::move(constants)),
+        steps_(steps),
+        groups_(groups),
+        number_(numbering.number),
+        index_(steps.size()) {
     program_.slots = numbering.slots;
     program_.stored_end = numbering.stored_end;
   }
@@ -89,11 +94,13 @@ class Renumbering {
     std::array<std::vector<Run>, SectionCount> runs;
     program_.instructions.clear();
     const auto append = [&](Instruction instruction, std::span<const Term> linear, std::span<const Term> products) {
-      for (Slot* slot : {&instruction.out, &instruction.second, &instruction.a, &instruction.b}) *slot = renumbered(*slot);
+      for (Slot* slot : {&instruction.out, &instruction.second, &instruction.a, &instruction.b})
+        *slot = renumbered(*slot);
       instruction.first_term = static_cast<std::uint32_t>(terms.size());
       for (const Term& term : linear) terms.push_back({term.coefficient, renumbered(term.a), no_slot, term.shift});
       instruction.first_product = static_cast<std::uint32_t>(terms.size());
-      for (const Term& term : products) terms.push_back({term.coefficient, renumbered(term.a), renumbered(term.b), term.shift});
+      for (const Term& term : products)
+        terms.push_back({term.coefficient, renumbered(term.a), renumbered(term.b), term.shift});
       instruction.last_term = static_cast<std::uint32_t>(terms.size());
       program_.instructions.push_back(instruction);
     };
@@ -135,14 +142,15 @@ class Renumbering {
     for (const Group& group : groups_) {  // empty lanes are read with the others
       const Slot first = number_[steps_[group.steps[0]].head.out];
       std::fill_n(lags.begin() + static_cast<std::ptrdiff_t>(first - group.front), group.front, lags[first]);
-      std::fill_n(tangent_lags.begin() + static_cast<std::ptrdiff_t>(first - group.front), group.front, tangent_lags[first]);
+      std::fill_n(tangent_lags.begin() + static_cast<std::ptrdiff_t>(first - group.front), group.front,
+                  tangent_lags[first]);
     }
     program_.lags = std::move(lags);
     program_.tangent_lags = std::move(tangent_lags);
     program_.one = renumbered(in_.one);
     program_.time = renumbered(in_.time);
-    for (auto* slots : {&program_.residual, &program_.constraint_values, &program_.constraint_rates, &program_.switch_slots,
-                        &program_.events, &program_.observables, &program_.integrands})
+    for (auto* slots : {&program_.residual, &program_.constraint_values, &program_.constraint_rates,
+                        &program_.switch_slots, &program_.events, &program_.observables, &program_.integrands})
       for (Slot& slot : *slots) slot = renumbered(slot);
   }
 
@@ -162,8 +170,8 @@ Numbering number_slots(const Program& program, const std::vector<Step>& steps, c
   return SlotNumbers(program, steps, groups).run();
 }
 
-Renumbered renumber(const Program& program, Program constants, const std::vector<Step>& steps, const std::vector<Group>& groups,
-                    const Numbering& numbering) {
+Renumbered renumber(const Program& program, Program constants, const std::vector<Step>& steps,
+                    const std::vector<Group>& groups, const Numbering& numbering) {
   return Renumbering(program, std::move(constants), steps, groups, numbering).run();
 }
 

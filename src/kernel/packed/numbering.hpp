@@ -6,7 +6,8 @@
 
 namespace maupertuis::packed {
 
-/// Where slots go: coordinates; corrected slots by lag; the other slots of Dynamics; everything else. Packs begin at multiples of 8.
+/// Where slots go: coordinates; corrected slots by lag; the other slots of Dynamics; everything else. Packs begin at
+/// multiples of 8.
 struct Numbering {
   std::vector<Slot> number;             // [slots as they were]; no_slot: sums were written over it
   std::array<Slot, 3> stored_end{};
@@ -20,8 +21,9 @@ struct Renumbered {
   std::vector<std::uint32_t> index;     // [steps] of their instructions
 };
 
-/// `program` with the instructions of the groups in section Dynamics, and new numbers everywhere. `constants`: with those that were appended for the steps.
-Renumbered renumber(const Program& program, Program constants, const std::vector<Step>& steps, const std::vector<Group>& groups,
-                    const Numbering& numbering);
+/// `program` with the instructions of the groups in section Dynamics, and new numbers everywhere. `constants`: with
+/// those that were appended for the steps.
+Renumbered renumber(const Program& program, Program constants, const std::vector<Step>& steps,
+                    const std::vector<Group>& groups, const Numbering& numbering);
 
 }  // namespace maupertuis::packed

@@ -24,7 +24,9 @@ ConstantId ConstantPool::append(Constant constant, std::optional<Rational> ratio
 ConstantId ConstantPool::literal(const Rational& value) {
   const auto [place, fresh] = literals_.try_emplace(value.to_string(), 0);
   if (fresh) {
-    place->second = append({.kind = Kind::Number, .value = value.to_double(), .index = static_cast<std::uint32_t>(literals.size())}, value);
+    place->second =
+        append({.kind = Kind::Number, .value = value.to_double(), .index = static_cast<std::uint32_t>(literals.size())},
+               value);
     literals.push_back(value);
   }
   return place->second;
@@ -120,8 +122,9 @@ ConstantPool::Polynomial ConstantPool::make_polynomial(ConstantId id) {
 
 bool ConstantPool::are_opposite(ConstantId a, ConstantId b) {
   const Polynomial &x = polynomial(a), &y = polynomial(b);
-  return std::equal(x.begin(), x.end(), y.begin(), y.end(),
-                    [](const auto& of_x, const auto& of_y) { return of_x.first == of_y.first && of_x.second == -of_y.second; });
+  return std::equal(x.begin(), x.end(), y.begin(), y.end(), [](const auto& of_x, const auto& of_y) {
+    return of_x.first == of_y.first && of_x.second == -of_y.second;
+  });
 }
 
 // -------------------------------------------------------------------------------------------------------- nodes

@@ -12,7 +12,8 @@
 namespace maupertuis::lowering {
 
 Lowering::Lowering(const KernelSource& source) {
-  for (const Expr& q : source.coordinates) coordinates_.emplace(q.id(), static_cast<std::uint32_t>(coordinates_.size()));
+  for (const Expr& q : source.coordinates)
+    coordinates_.emplace(q.id(), static_cast<std::uint32_t>(coordinates_.size()));
   for (const Expr& p : source.parameters) parameters_.emplace(p.id(), static_cast<std::uint32_t>(parameters_.size()));
   for (const Expr& m : source.multipliers)
     multipliers_.emplace(m.id(), static_cast<std::uint32_t>(coordinates_.size() + multipliers_.size()));
@@ -128,7 +129,8 @@ Scaled Lowering::product(Expr e) {
   for (std::size_t i = 0; i < e.size(); ++i) {
     const PowerOf factor = split_power(e[i]);
     // A reciprocal that stands here alone becomes part of one division.
-    const bool divides = factor.exponent == Rational(-1) && scope_.uses[e[i].id()] == 1 && !of(factor.base).is_constant();
+    const bool divides =
+        factor.exponent == Rational(-1) && scope_.uses[e[i].id()] == 1 && !of(factor.base).is_constant();
     (divides ? below : above).push_back(divides ? of(factor.base) : of(e[i]));
   }
   const Scaled numerator = multiply(std::move(above));

@@ -78,12 +78,14 @@ Scaled Lowering::select(std::span<const std::pair<ConstantId, Scaled>> choices) 
 /// The value of a node that does not move.
 std::optional<ConstantId> Lowering::constant_of(NodeIndex node) const {
   const Node& n = graph.nodes[node];
-  if (n.op == Op::Linear && n.terms.size() == 1 && graph.nodes[n.terms[0].a].op == Op::One) return n.terms[0].coefficient;
+  if (n.op == Op::Linear && n.terms.size() == 1 && graph.nodes[n.terms[0].a].op == Op::One)
+    return n.terms[0].coefficient;
   return std::nullopt;
 }
 
-/// max(x, 0)^(3/2): a power has no series about 0, and where the constant is chosen there is nothing to expand. Constants are taken to their powers
-/// apart, and stand as 1 in what is expanded. Nothing where no choice is a constant.
+/// max(x, 0)^(3/2): a power has no series about 0, and where the constant is chosen there is nothing to expand.
+/// Constants are taken to their powers apart, and stand as 1 in what is expanded. Nothing where no choice is a
+/// constant.
 std::optional<Scaled> Lowering::power_of_choices(Scaled base, ConstantId exponent) {
   if (graph.nodes[base.node].op != Op::Select) return std::nullopt;
   ConstantPool& pool = graph.constants;
@@ -99,7 +101,10 @@ std::optional<Scaled> Lowering::power_of_choices(Scaled base, ConstantId exponen
   const Scaled power = plain_power(select(moving), exponent);
   for (const Term& term : terms) {
     const auto fixed = constant_of(term.a);
-    powers.emplace_back(term.coefficient, fixed ? constant(pool.apply(Kind::Power, std::array{pool.multiply(base.coefficient, *fixed), exponent})) : power);
+    powers.emplace_back(
+        term.coefficient,
+        fixed ? constant(pool.apply(Kind::Power, std::array{pool.multiply(base.coefficient, *fixed), exponent}))
+              : power);
   }
   return select(powers);
 }

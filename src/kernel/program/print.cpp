@@ -28,7 +28,8 @@ std::string_view op_name(Op op) {
 }
 
 std::logic_error unknown_op(Op op, std::string_view who) {
-  return std::logic_error(fmt::format("{} met the instruction `{}`, for which it has no rule; please report", who, op_name(op)));
+  return std::logic_error(
+      fmt::format("{} met the instruction `{}`, for which it has no rule; please report", who, op_name(op)));
 }
 
 namespace {
@@ -77,7 +78,8 @@ class Printer {
     std::string text;
     if (constant.kind == Kind::Number) text = fmt::format("{}", constant.value);
     else if (constant.kind == Kind::Symbol) text = program_.parameter_names[constant.index];
-    else if (constant.kind == Kind::Sign && constant.arguments == 0) text = fmt::format("side of switch {}", constant.index);
+    else if (constant.kind == Kind::Sign && constant.arguments == 0)
+      text = fmt::format("side of switch {}", constant.index);
     else {
       text = function_name(constant.kind);
       for (std::uint32_t i = 0; i < constant.arguments; ++i)

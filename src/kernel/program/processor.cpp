@@ -13,7 +13,8 @@ VectorInstructions of_processor() {
 #if defined(__x86_64__)
   __builtin_cpu_init();
   if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return VectorInstructions::None;
-  const bool widest = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+  const bool widest =
+      __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
   return widest ? VectorInstructions::Avx512 : VectorInstructions::Avx2;
 #else
   return VectorInstructions::None;
@@ -27,7 +28,9 @@ std::string_view wanted() {
 
 VectorInstructions allowed() {
   const std::string_view most = wanted();
-  return most == "none" ? VectorInstructions::None : most == "avx2" ? VectorInstructions::Avx2 : VectorInstructions::Avx512;
+  return most == "none"   ? VectorInstructions::None
+         : most == "avx2" ? VectorInstructions::Avx2
+                          : VectorInstructions::Avx512;
 }
 
 }  // namespace

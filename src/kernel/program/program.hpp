@@ -16,8 +16,8 @@
 /// functions, and everything computed from these alone; they are one double each, computed when the parameters or
 /// the sides are set. *Slots* are jets: slot s has a coefficient x_k for each order k.
 ///
-/// Lags. A slot of lag 0 follows q, of lag 1 q̇, of lag 2 q̈: at stage k, which finds q_{k+2}, it is at order k + 2 − lag.
-/// d/dt is an instruction that raises the lag by one and does nothing but shift the index.
+/// Lags. A slot of lag 0 follows q, of lag 1 q̇, of lag 2 q̈: at stage k, which finds q_{k+2}, it is at order k + 2 −
+/// lag. d/dt is an instruction that raises the lag by one and does nothing but shift the index.
 namespace maupertuis {
 
 using ConstantId = std::uint32_t;
@@ -44,7 +44,8 @@ enum class Op : std::uint8_t {
   Select,        // the first operand whose condition (a constant) holds
 };
 
-/// c · dʳa/dtʳ with r = shift, c · a · b, or of a Function's differential c · w du (a = w, b = u), or of a Select (c: condition, a: value).
+/// c · dʳa/dtʳ with r = shift, c · a · b, or of a Function's differential c · w du (a = w, b = u), or of a Select (c:
+/// condition, a: value).
 struct Term {
   ConstantId coefficient;
   Slot a;

@@ -46,14 +46,16 @@ class Collection {
     for (const auto& [function, other] : {std::pair{product.a, product.b}, std::pair{product.b, product.a}}) {
       const Node& f = graph_.nodes[function];
       if (f.op == Op::SinCos) sines_.emplace(function, Product{i, function, function, {coefficient, other}});
-      if (f.op == Op::Companion && graph_.nodes[f.a].op == Op::SinCos) cosines_.push_back({i, f.a, function, {coefficient, other}});
+      if (f.op == Op::Companion && graph_.nodes[f.a].op == Op::SinCos)
+        cosines_.push_back({i, f.a, function, {coefficient, other}});
     }
   }
 
   /// As a sum of derivatives of other nodes; false: it has too many parts.
   bool expand(Scaled value, std::uint32_t shift, std::vector<Term>& parts) {
     const Node& node = graph_.nodes[value.node];
-    if (node.op == Op::Derivative && shift < Term::most_shift) return expand({value.coefficient, node.a}, shift + 1, parts);
+    if (node.op == Op::Derivative && shift < Term::most_shift)
+      return expand({value.coefficient, node.a}, shift + 1, parts);
     if (node.op != Op::Linear) {
       const auto same = part(parts, value.node, shift);
       if (same != parts.end()) same->coefficient = graph_.constants.add(same->coefficient, value.coefficient);
@@ -110,6 +112,8 @@ class Collection {
 
 }  // namespace
 
-std::vector<Term> collect_rotations(Graph& graph, std::vector<Term> terms) { return Collection(graph, std::move(terms)).run(); }
+std::vector<Term> collect_rotations(Graph& graph, std::vector<Term> terms) {
+  return Collection(graph, std::move(terms)).run();
+}
 
 }  // namespace maupertuis::lowering

@@ -19,7 +19,8 @@ class Scheduler {
       : graph_(graph), outputs_(outputs), program_(program), section_(graph.nodes.size(), dead) {}
 
   void run() {
-    for (const auto* roots : {&outputs_.residual, &outputs_.constraint_values, &outputs_.constraint_rates}) mark(*roots, Dynamics);
+    for (const auto* roots : {&outputs_.residual, &outputs_.constraint_values, &outputs_.constraint_rates})
+      mark(*roots, Dynamics);
     for (const auto* roots : {&outputs_.switches, &outputs_.events, &outputs_.integrands}) mark(*roots, Along);
     mark(outputs_.observables, AtPoint);
     find_lags();
@@ -32,8 +33,9 @@ class Scheduler {
   }
 
  private:
-  /// Calls f(operand, number of d/dt taken of it) for every node whose value of the same order must be known before. A Function does not wait for
-  /// the factors w of its differential: it reads their earlier orders only, and w may itself be made from it.
+  /// Calls f(operand, number of d/dt taken of it) for every node whose value of the same order must be known before. A
+  /// Function does not wait for the factors w of its differential: it reads their earlier orders only, and w may itself
+  /// be made from it.
   template <class F>
   void for_operands(const Node& node, F&& f) const {
     const int shift = node.op == Op::Derivative ? 1 : 0;
@@ -118,7 +120,8 @@ class Scheduler {
     level_.assign(graph_.nodes.size(), 0);
     for (std::size_t i = 0; i < graph_.nodes.size(); ++i) {
       if (is_leaf(graph_.nodes[i].op)) continue;
-      for_operands(graph_.nodes[i], [&](NodeIndex operand, int) { level_[i] = std::max(level_[i], level_[operand] + 1); });
+      for_operands(graph_.nodes[i],
+                   [&](NodeIndex operand, int) { level_[i] = std::max(level_[i], level_[operand] + 1); });
     }
   }
 

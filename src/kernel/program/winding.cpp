@@ -27,7 +27,9 @@ class Windings {
         if (slot != no_slot) refuse(slot);
     for (const Slot slot : program_.observables) result_.observables.push_back(gains_[slot]);
     for (auto& gains : result_.observables)
-      gains.erase(std::remove_if(gains.begin(), gains.end(), [&](const TurnGain& g) { return !result_.coordinates[g.coordinate]; }), gains.end());
+      gains.erase(std::remove_if(gains.begin(), gains.end(),
+                                 [&](const TurnGain& g) { return !result_.coordinates[g.coordinate]; }),
+                  gains.end());
     return std::move(result_);
   }
 
@@ -36,7 +38,13 @@ class Windings {
     switch (i.op) {
       case Op::SinCos: case Op::Derivative: return;
       case Op::Linear: case Op::Products: return sum(i);
-      case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: case Op::Square: case Op::Quotient: case Op::SquareRoot:
+      case Op::One:
+      case Op::Time:
+      case Op::Coordinate:
+      case Op::Companion:
+      case Op::Square:
+      case Op::Quotient:
+      case Op::SquareRoot:
       case Op::Power: case Op::SinhCosh: case Op::Function: case Op::Select: break;
     }
     for (const Slot operand : {i.a, i.b})
@@ -48,7 +56,8 @@ class Windings {
   void sum(const Instruction& i) {
     for (std::uint32_t t = i.first_term; t < i.first_product; ++t)
       if (const Term& term = program_.terms[t]; term.shift == 0) add(gains_[i.out], term);
-    for (std::uint32_t t = i.first_product; t < i.last_term; ++t) refuse(program_.terms[t].a), refuse(program_.terms[t].b);
+    for (std::uint32_t t = i.first_product; t < i.last_term; ++t)
+      refuse(program_.terms[t].a), refuse(program_.terms[t].b);
   }
 
   void add(std::vector<TurnGain>& to, const Term& term) {
@@ -56,11 +65,13 @@ class Windings {
     const std::optional<int> factor = whole(term.coefficient);
     if (!factor) return refuse(term.a);
     for (const TurnGain& gain : gains_[term.a]) {
-      const auto same = std::find_if(to.begin(), to.end(), [&](const TurnGain& g) { return g.coordinate == gain.coordinate; });
+      const auto same =
+          std::find_if(to.begin(), to.end(), [&](const TurnGain& g) { return g.coordinate == gain.coordinate; });
       if (same == to.end()) to.push_back({gain.coordinate, *factor * gain.turns});
       else same->turns += *factor * gain.turns;
     }
-    if (std::any_of(to.begin(), to.end(), [](const TurnGain& g) { return std::abs(g.turns) > most_turns; })) refuse(term.a);
+    if (std::any_of(to.begin(), to.end(), [](const TurnGain& g) { return std::abs(g.turns) > most_turns; }))
+      refuse(term.a);
     to.erase(std::remove_if(to.begin(), to.end(), [](const TurnGain& g) { return g.turns == 0; }), to.end());
   }
 

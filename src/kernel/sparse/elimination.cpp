@@ -20,10 +20,19 @@ struct Cell {
 
 class Elimination {
  public:
-  Elimination(const LiftedSystem& system, const std::vector<std::vector<double>>& samples, const EliminationOptions& options)
-      : options_(options), own_column_(system.own_column), rows_(system.size), columns_(system.size), row_scale_(system.size, 1.0),
-        column_scale_(system.size, 1.0), group_of_column_(nearest_coordinates(system)), group_of_row_(system.size),
-        members_(system.row_of_residual.size()), border_(members_.size()), stale_(members_.size(), true) {
+  Elimination(const LiftedSystem& system, const std::vector<std::vector<double>>& samples,
+              const EliminationOptions& options)
+      : options_(options),
+        own_column_(system.own_column),
+        rows_(system.size),
+        columns_(system.size),
+        row_scale_(system.size, 1.0),
+        column_scale_(system.size, 1.0),
+        group_of_column_(nearest_coordinates(system)),
+        group_of_row_(system.size),
+        members_(system.row_of_residual.size()),
+        border_(members_.size()),
+        stale_(members_.size(), true) {
     for (std::uint32_t e = 0; e < system.entries.size(); ++e) {
       Cell cell{system.entries[e].column, {}};
       for (std::size_t s = 0; s < most_states; ++s) cell.values[s] = samples[s % samples.size()][e];
@@ -105,7 +114,8 @@ class Elimination {
     return least;
   }
 
-  /// M₀ may be singular at a sampled state: then no pivot is large there. The first one is that of the motion, and stays.
+  /// M₀ may be singular at a sampled state: then no pivot is large there. The first one is that of the motion, and
+  /// stays.
   bool drop_worst_state() {
     Values best{};
     for (const std::uint32_t group : open_)
@@ -173,7 +183,8 @@ class Elimination {
     part_ = 0;
   }
 
-  /// Whether what has no acceptable pivot here went to a neighbour: a multiplier has none before its coordinates are gone.
+  /// Whether what has no acceptable pivot here went to a neighbour: a multiplier has none before its coordinates are
+  /// gone.
   bool eliminate_group(std::uint32_t group) {
     std::uint32_t round = round_;
     while (const auto place = best_pivot(group)) eliminate(place->first, place->second, round++);
@@ -258,7 +269,8 @@ class Elimination {
     pivots_.push_back(std::move(pivot));
   }
 
-  /// What is left of the group keeps as many rows as columns: the row that owned the column owns that of this row from now on.
+  /// What is left of the group keeps as many rows as columns: the row that owned the column owns that of this row from
+  /// now on.
   void take_from_group(std::uint32_t row, std::uint32_t column) {
     std::erase(members_[group_of_row_[row]], row);
     if (own_column_[row] == column) return;
@@ -298,7 +310,8 @@ class Elimination {
 }  // namespace
 
 std::optional<std::vector<Pivot>> eliminate(const LiftedSystem& system, const std::vector<std::vector<double>>& samples,
-                                            const EliminationOptions& options, const std::vector<std::vector<std::uint32_t>>& parts) {
+                                            const EliminationOptions& options,
+                                            const std::vector<std::vector<std::uint32_t>>& parts) {
   if (samples.empty() || samples.size() > most_states) return std::nullopt;
   return Elimination(system, samples, options).run(parts);
 }

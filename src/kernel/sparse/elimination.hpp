@@ -1,20 +1,24 @@
 #pragma once
 #include "kernel/sparse/lifted_system.hpp"
 
-/// In which order a sparse matrix is eliminated, and what fills in.
+/// The order in which a sparse matrix is eliminated, and the entries that come into being on the way.
 ///
-/// The unknowns fall into groups, one a coordinate: the tangents that are nearest to it in the graph. A link of a chain is a group, with its
-/// point, its force and its angle. Groups are eliminated whole, those with few neighbours first (Markowitz's rule for blocks: rows that
-/// they touch times columns that they touch), and those of equal cost that do not touch each other in one round. A chain is eliminated from
-/// its tip, which is the recursion of articulated bodies; a tree from all its tips at once; a loop leaves a small full part.
+/// Unknowns are eliminated in groups, one for each coordinate: the coordinate itself with those tangents that are nearest
+/// to it in the graph. In a chain a group is a link, with its angle, its point and the force on that. The group with the
+/// smallest border goes first (rows that it touches times columns that it touches: Markowitz's rule for groups). Groups
+/// of equal cost that do not touch each other share a round, in which none waits for another. So
 ///
-/// Within a group the unknown of a row is its pivot wherever that is large enough: where M₀ is definite this is a block elimination of a
-/// definite matrix, which needs no exchange of rows. No pivot is exchanged later, so each must be large in its column at every
-/// one of several sampled states.
+///     a chain   tip → … → root      is eliminated link by link, which is the recursion of articulated bodies
+///     a tree    tips → … → root     from all its tips at once
+///     a loop                        leaves a small full matrix
 ///
-/// Parts (parts.hpp) are eliminated before all else, group by group and all parts in turn. What two parts leave of the group between them is
-/// not definite in the order of the rows' own unknowns, (1 + Λ I) with definite Λ and I, but it is in another one: there the pivot is
-/// what keeps its sign at all states and is largest where it is least.
+/// Within a group the pivot of a row is the unknown that the row is for, wherever that entry is large enough: where M₀ is
+/// definite no exchange of rows is needed then. Pivots are not exchanged later, so each has to be large in its column at
+/// every one of several sampled states.
+///
+/// Parts of a chain (parts.hpp), where there are any, go before all else. The group between two parts then has the matrix
+/// 1 + Λ I, with definite Λ and I, whose diagonal may vanish: there the pivot is the entry that keeps its sign at all
+/// states and is largest where it is least.
 namespace maupertuis::sparse {
 
 struct Pivot {
@@ -30,8 +34,8 @@ struct EliminationOptions {
   double least_share = 0.05;      // of any other
 };
 
-/// `samples`: [states][entries] values, at most 16 states; the first one counts most. In order of rounds; nothing where no
-/// acceptable pivot is left.
+/// `samples`: [states][entries] values, at most 16 states; the first one counts most. In order of rounds; nothing where
+/// no acceptable pivot is left.
 std::optional<std::vector<Pivot>> eliminate(const LiftedSystem& system, const std::vector<std::vector<double>>& samples,
                                             const EliminationOptions& options,
                                             const std::vector<std::vector<std::uint32_t>>& parts = {});

@@ -30,7 +30,8 @@ GraphProduct::GraphProduct(const LiftedSystem& system) : unknowns_(system.row_of
   }
   for (const RowEntry& e : row_entries_) terms_.push_back({e.entry, e.column});
   for (const Row& row : rows_)
-    block_rows_.push_back({row.residual == none ? row.column : static_cast<std::uint32_t>(n) + row.residual, row.first, row.last});
+    block_rows_.push_back(
+        {row.residual == none ? row.column : static_cast<std::uint32_t>(n) + row.residual, row.first, row.last});
   block_.assign(8 * (n + unknowns_), 0.0);
 }
 
@@ -39,7 +40,8 @@ void GraphProduct::matrix(std::span<const double> entries, std::span<double> out
   for (std::size_t first = 0; first < n; first += 8) {
     for (std::size_t i = 0; i < 8 * n; ++i) block_[i] = 0;
     for (std::size_t d = 0; d < 8 && first + d < n; ++d) block_[8 * (first + d) + d] = 1;
-    loops().block(block_rows_.data(), block_rows_.data() + block_rows_.size(), terms_.data(), entries.data(), block_.data());
+    loops().block(block_rows_.data(), block_rows_.data() + block_rows_.size(), terms_.data(), entries.data(),
+                  block_.data());
     const double* const result = block_.data() + 8 * z_.size();
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t d = 0; d < 8 && first + d < n; ++d) out[i * n + first + d] = result[8 * i + d];
@@ -50,14 +52,15 @@ void GraphProduct::multiply(std::span<const double> entries, std::span<const dou
   for (std::size_t i = 0; i < x.size(); ++i) z_[i].value = x[i];
   for (const Row& row : rows_) {
     double sum = 0;
-    for (std::uint32_t k = row.first; k < row.last; ++k) sum += entries[row_entries_[k].entry] * z_[row_entries_[k].column].value;
+    for (std::uint32_t k = row.first; k < row.last; ++k)
+      sum += entries[row_entries_[k].entry] * z_[row_entries_[k].column].value;
     (row.residual == none ? z_[row.column].value : out[row.residual]) = sum;
   }
 }
 
 double GraphProduct::remainder(std::span<const double> entries, std::span<const double> x, std::span<const double> b,
-                               std::span<double> rest, const double* cells, std::span<const std::uint32_t> cell_of_column,
-                               std::size_t known) {
+                               std::span<double> rest, const double* cells,
+                               std::span<const std::uint32_t> cell_of_column, std::size_t known) {
   constexpr double unit = std::numeric_limits<double>::epsilon() / 2;
   for (std::size_t i = 0; i < x.size(); ++i) z_[i] = {x[i], 0};
   double worst = 0;

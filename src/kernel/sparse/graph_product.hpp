@@ -17,11 +17,13 @@ class GraphProduct {
   /// Products of matrix(), in vectors of 8.
   std::size_t matrix_products() const { return (unknowns_ + 7) / 8 * terms_.size(); }
 
-  /// rest = b − M₀ x. Returns its largest part in units of a bound of the rounding errors with which it was computed (running error
-  /// analysis: N. J. Higham, Accuracy and Stability of Numerical Algorithms, §3.3): below 1, x cannot be told from an exact solution.
-  /// Tangents that are known too are compared in the same way: those of cells below `known`, at cells[cell_of_column[…]].
-  double remainder(std::span<const double> entries, std::span<const double> x, std::span<const double> b, std::span<double> rest,
-                   const double* cells = nullptr, std::span<const std::uint32_t> cell_of_column = {}, std::size_t known = 0);
+  /// rest = b − M₀ x. Returns its largest part in units of a bound of the rounding errors with which it was computed
+  /// (running error analysis: N. J. Higham, Accuracy and Stability of Numerical Algorithms, §3.3): below 1, x cannot be
+  /// told from an exact solution. Tangents that are known too are compared in the same way: those of cells below
+  /// `known`, at cells[cell_of_column[…]].
+  double remainder(std::span<const double> entries, std::span<const double> x, std::span<const double> b,
+                   std::span<double> rest, const double* cells = nullptr,
+                   std::span<const std::uint32_t> cell_of_column = {}, std::size_t known = 0);
 
  private:
   struct Row {

@@ -12,8 +12,13 @@ constexpr std::uint32_t none = ~std::uint32_t{0};
 class Lift {
  public:
   Lift(const Program& program, const std::vector<bool>& stored)
-      : program_(program), stored_(stored), edges_(tangent_edges(program)), row_(program.slots, none), column_(program.slots, none),
-        moves_(program.slots, false), needed_(program.slots, false) {}
+      : program_(program),
+        stored_(stored),
+        edges_(tangent_edges(program)),
+        row_(program.slots, none),
+        column_(program.slots, none),
+        moves_(program.slots, false),
+        needed_(program.slots, false) {}
 
   std::optional<LiftedSystem> run() {
     drop_constant_edges();
@@ -107,7 +112,9 @@ class Lift {
       const Edge& edge = system_.edges[i];
       const bool is_number = edge.rule == Rule::Coefficient && program_.constants[edge.index].kind == Kind::Number;
       const double other = std::numeric_limits<double>::quiet_NaN();
-      system_.literal[system_.entry_of_edge[i]] += edge.rule == Rule::One ? 1 : is_number ? program_.constants[edge.index].value : other;
+      system_.literal[system_.entry_of_edge[i]] += edge.rule == Rule::One ? 1
+                                                   : is_number            ? program_.constants[edge.index].value
+                                                                          : other;
     }
   }
 
@@ -123,7 +130,9 @@ class Lift {
 
 }  // namespace
 
-std::optional<LiftedSystem> lift(const Program& program, const std::vector<bool>& stored) { return Lift(program, stored).run(); }
+std::optional<LiftedSystem> lift(const Program& program, const std::vector<bool>& stored) {
+  return Lift(program, stored).run();
+}
 
 Assembly::Assembly(const LiftedSystem& system, const Program& program, std::span<const Slot> number)
     : program_(program), minus_and_plus_(system.entries.size(), 0.0), base_(system.entries.size()) {
@@ -140,7 +149,8 @@ Assembly::Assembly(const LiftedSystem& system, const Program& program, std::span
     }
     edge.x = number[edge.x];
     if (edge.y != no_slot) edge.y = number[edge.y];
-    const bool is_multiple = edge.rule == Rule::Scaled || edge.rule == Rule::Value || edge.rule == Rule::Negative || edge.rule == Rule::Double;
+    const bool is_multiple = edge.rule == Rule::Scaled || edge.rule == Rule::Value || edge.rule == Rule::Negative ||
+                             edge.rule == Rule::Double;
     if (is_multiple) {
       (has_multiple[entry] ? more_ : first_).push_back({edge.x, entry, 0, 0});
       (has_multiple[entry] ? edges_of_more_ : edges_of_first_).push_back(edge);
@@ -158,12 +168,17 @@ Assembly::Assembly(const LiftedSystem& system, const Program& program, std::span
 void Assembly::set_constants(const double* constants, std::span<double> values) {
   constants_ = constants;
   base_ = minus_and_plus_;
-  for (std::size_t i = 0; i < constant_.size(); ++i) base_[entry_of_constant_[i]] += constant_factor(constant_[i], program_, constants);
+  for (std::size_t i = 0; i < constant_.size(); ++i)
+    base_[entry_of_constant_[i]] += constant_factor(constant_[i], program_, constants);
   std::copy(base_.begin(), base_.end(), values.begin());
   const auto factor = [&](const Edge& edge) {
-    return edge.rule == Rule::Scaled ? constants[edge.index] : edge.rule == Rule::Double ? 2.0 : edge.rule == Rule::Negative ? -1.0 : 1.0;
+    return edge.rule == Rule::Scaled     ? constants[edge.index]
+           : edge.rule == Rule::Double   ? 2.0
+           : edge.rule == Rule::Negative ? -1.0
+                                         : 1.0;
   };
-  for (std::size_t i = 0; i < first_.size(); ++i) first_[i].factor = factor(edges_of_first_[i]), first_[i].base = base_[first_[i].entry];
+  for (std::size_t i = 0; i < first_.size(); ++i)
+    first_[i].factor = factor(edges_of_first_[i]), first_[i].base = base_[first_[i].entry];
   for (std::size_t i = 0; i < more_.size(); ++i) more_[i].factor = factor(edges_of_more_[i]);
 }
 

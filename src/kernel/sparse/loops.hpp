@@ -2,25 +2,23 @@
 #include <cstddef>
 #include <cstdint>
 
-/// The loops of the sparse solver, compiled for several instruction sets; the best one of the processor is taken at run time. Plain pointers, so
-/// that no inline function of a container is compiled for a processor that may not be there.
+/// The loops of the sparse solver, compiled for several instruction sets; the best one of the processor is taken at run
+/// time. Plain pointers, so that no inline function of a container is compiled for a processor that may not be there.
 namespace maupertuis::sparse {
 
-/// Sums of products whose operands are known before: x_target = scale · x_target + Σ factor · x_operand. Sums of one level do not wait for each
-/// other; those of as many products stand together, so that a loop over them has no branches of its own.
-struct SweepRun {
+/// Sums of products whose operands are known before: x_target = scale · x_target + Σ factor · x_operand. Sums of one
+/// level do not wait for each other; those of as many products stand together, so that a loop over them has no branches
+/// of its own.
+struct SumRun {
   std::uint32_t products;        // of each sum
   std::uint32_t first, last;     // sums
   std::uint32_t first_product;   // of the first sum; they follow each other
-  /// Not 0: a spine, see LoopSweep. Periods of so many sums of two products, and one of as many products as it has branches and of one more
-  /// factor, with which the hub before comes to it through the branches.
-  std::uint32_t branches;
-  bool starts;                   // at a value that is there; else at 0. Of a spine the branches; the hub always starts
+  bool starts;                   // at a value that is there; else at 0
+  bool negates;                  // forward: the pivots are −1
 };
-inline constexpr std::size_t most_branches = 4;
 
 struct SweepTables {
-  const SweepRun *runs, *last_run;
+  const SumRun *runs, *last_run;
   const std::uint32_t *target, *operand;
   const double *scale, *factors;
 };

@@ -13,23 +13,21 @@ inline double minus(double sum, double a, double b) {
 #endif
 }
 
-inline double plus(double sum, double a, double b) { return minus(sum, -a, b); }
-
 /// Products below 0: as many as the run has.
 template <int Products, bool Starts>
-void sums(const SweepTables& t, const SweepRun& run, double* x) {
+void sums(const SweepTables& t, const SumRun& run, double* x) {
   const int count = Products >= 0 ? Products : static_cast<int>(run.products);
   const double* factor = t.factors + run.first_product;
   const std::uint32_t* operand = t.operand + run.first_product;
   for (std::uint32_t i = run.first; i < run.last; ++i, factor += count, operand += count) {
     double sum = Starts ? t.scale[i] * x[t.target[i]] : 0;
-    for (int k = 0; k < count; ++k) sum = plus(sum, factor[k], x[operand[k]]);
+    for (int k = 0; k < count; ++k) sum = minus(sum, -factor[k], x[operand[k]]);
     x[t.target[i]] = sum;
   }
 }
 
 template <bool Starts>
-void sums(const SweepTables& t, const SweepRun& run, double* x) {
+void sums(const SweepTables& t, const SumRun& run, double* x) {
   switch (run.products) {
     case 0: return sums<0, Starts>(t, run, x);
     case 1: return sums<1, Starts>(t, run, x);
@@ -40,39 +38,9 @@ void sums(const SweepTables& t, const SweepRun& run, double* x) {
   }
 }
 
-/// A hub takes from the hub before what all branches together bring of it, so that it waits for one product and not for those of the branches.
-template <int Branches, bool Starts>
-void spine(const SweepTables& t, const SweepRun& run, double* x) {
-  const double *factor = t.factors + run.first_product, *scale = t.scale + run.first;
-  const std::uint32_t *target = t.target + run.first, *const last = t.target + run.last, *operand = t.operand + run.first_product;
-  double branch[Branches], hub = x[operand[1]];
-  for (int j = 0; j < Branches; ++j) branch[j] = x[operand[2 * j]];
-  for (; target != last; target += Branches + 1, scale += Branches + 1, factor += 3 * Branches + 1) {
-    double next = scale[Branches] * x[target[Branches]];
-    for (int j = 0; j < Branches; ++j) {
-      const double without = plus(Starts ? scale[j] * x[target[j]] : 0, factor[2 * j], branch[j]);
-      next = plus(next, factor[2 * Branches + j], without);
-      x[target[j]] = branch[j] = plus(without, factor[2 * j + 1], hub);
-    }
-    x[target[Branches]] = hub = plus(next, factor[3 * Branches], hub);
-  }
-}
-
-template <bool Starts>
-void spine(const SweepTables& t, const SweepRun& run, double* x) {
-  switch (run.branches) {
-    case 1: return spine<1, Starts>(t, run, x);
-    case 2: return spine<2, Starts>(t, run, x);
-    case 3: return spine<3, Starts>(t, run, x);
-    default: return spine<4, Starts>(t, run, x);
-  }
-}
-
 void sweep(const SweepTables& t, double* x) {
-  for (const SweepRun* run = t.runs; run != t.last_run; ++run) {
-    if (run->branches > 0) run->starts ? spine<true>(t, *run, x) : spine<false>(t, *run, x);
-    else run->starts ? sums<true>(t, *run, x) : sums<false>(t, *run, x);
-  }
+  for (const SumRun* run = t.runs; run != t.last_run; ++run)
+    run->starts ? sums<true>(t, *run, x) : sums<false>(t, *run, x);
 }
 
 double size(double x) { return __builtin_fabs(x); }

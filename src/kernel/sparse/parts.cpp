@@ -7,7 +7,8 @@ namespace maupertuis::sparse {
 namespace {
 
 constexpr std::uint32_t none = ~std::uint32_t{0};
-/// Levels at both ends that are left to the separators, besides the outermost of these: ends differ from what lies between.
+/// Levels at both ends that are left to the separators, besides the outermost of these: ends differ from what lies
+/// between.
 constexpr std::size_t spared = 2;
 
 using Levels = std::vector<std::vector<std::uint32_t>>;

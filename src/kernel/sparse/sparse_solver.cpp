@@ -10,17 +10,24 @@ namespace {
 constexpr std::uint32_t none = ~std::uint32_t{0};
 }  // namespace
 
-/// With pivots p = 0, 1, … in order, at places (r_p, c_p): L holds the columns below them, U the rows beside them divided by the
-/// pivot. Then  y_p = (b_{r_p} − Σ_{k<p} L_{r_p,k} y_k)/d_p,  x_{c_p} = y_p − Σ_{j>p} U_{p,j} x_{c_j}.
+/// With pivots p = 0, 1, … in order, at places (r_p, c_p): L holds the columns below them, U the rows beside them
+/// divided by the pivot. Then  y_p = (b_{r_p} − Σ_{k<p} L_{r_p,k} y_k)/d_p,  x_{c_p} = y_p − Σ_{j>p} U_{p,j} x_{c_j}.
 class SparseBuilder {
  public:
-  SparseBuilder(const LiftedSystem& system, const std::vector<Pivot>& pivots, std::span<const std::uint32_t> cells, SparseSolver& solver)
-      : system_(system), pivots_(pivots), cells_(cells), s_(solver), pivot_of_row_(system.size), pivot_of_column_(system.size) {}
+  SparseBuilder(const LiftedSystem& system, const std::vector<Pivot>& pivots, std::span<const std::uint32_t> cells,
+                SparseSolver& solver)
+      : system_(system),
+        pivots_(pivots),
+        cells_(cells),
+        s_(solver),
+        pivot_of_row_(system.size),
+        pivot_of_column_(system.size) {}
 
   void run() {
     for (std::uint32_t p = 0; p < pivots_.size(); ++p)
       pivot_of_row_[pivots_[p].row] = p, pivot_of_column_[pivots_[p].column] = p;
-    for (std::uint32_t e = 0; e < system_.entries.size(); ++e) entry_at_[key(system_.entries[e].row, system_.entries[e].column)] = e;
+    for (std::uint32_t e = 0; e < system_.entries.size(); ++e)
+      entry_at_[key(system_.entries[e].row, system_.entries[e].column)] = e;
     find_constant_pivots();
     s_.inverse_.assign(pivots_.size(), 0.0);
     build_forward();
@@ -78,14 +85,17 @@ class SparseBuilder {
       has_y_[p] = has_b[p] || !sum.others.empty();
       if (!has_y_[p]) continue;
       sum.level = level[p];
-      std::stable_sort(sum.others.begin(), sum.others.end(), [&](std::uint32_t a, std::uint32_t b) { return level[a] < level[b]; });
+      std::stable_sort(sum.others.begin(), sum.others.end(),
+                       [&](std::uint32_t a, std::uint32_t b) { return level[a] < level[b]; });
       s_.forward_depth_ = std::max<std::size_t>(s_.forward_depth_, sum.level + 1);
       sums.push_back(std::move(sum));
     }
-    lay_out(s_.forward_, sums, [&](const Sum& sum, std::uint32_t other) { return key(pivots_[sum.pivot].row, pivots_[other].column); });
+    lay_out(s_.forward_, sums,
+            [&](const Sum& sum, std::uint32_t other) { return key(pivots_[sum.pivot].row, pivots_[other].column); });
   }
 
-  /// What belongs to no part comes first, and the order within a part is that of the part alone: so parts that are alike stay so.
+  /// What belongs to no part comes first, and the order within a part is that of the part alone: so parts that are
+  /// alike stay so.
   void build_backward() {
     const std::size_t n = pivots_.size();
     std::uint32_t between_parts = 0;
@@ -110,13 +120,16 @@ class SparseBuilder {
       if (sum.others.empty() && has_y_[p]) continue;  // x = y
       sum.level = level[p];
       const auto order = [&](std::uint32_t a) {
-        return pivots_[p].part != 0 && pivots_[a].part == 0 ? std::pair(0U, pivots_[a].column) : std::pair(level[a], 0U);
+        return pivots_[p].part != 0 && pivots_[a].part == 0 ? std::pair(0U, pivots_[a].column)
+                                                            : std::pair(level[a], 0U);
       };
-      std::stable_sort(sum.others.begin(), sum.others.end(), [&](std::uint32_t a, std::uint32_t b) { return order(a) < order(b); });
+      std::stable_sort(sum.others.begin(), sum.others.end(),
+                       [&](std::uint32_t a, std::uint32_t b) { return order(a) < order(b); });
       s_.backward_depth_ = std::max<std::size_t>(s_.backward_depth_, sum.level + 1);
       sums.push_back(std::move(sum));
     }
-    lay_out(s_.backward_, sums, [&](const Sum& sum, std::uint32_t other) { return key(pivots_[sum.pivot].row, pivots_[other].column); });
+    lay_out(s_.backward_, sums,
+            [&](const Sum& sum, std::uint32_t other) { return key(pivots_[sum.pivot].row, pivots_[other].column); });
   }
 
   template <class Key>
@@ -127,7 +140,8 @@ class SparseBuilder {
     for (std::uint32_t i = 0; i < sums.size(); ++i) {
       const Sum& sum = sums[i];
       if (i == 0 || order(sums[i - 1]) != order(sum))
-        sweep.runs.push_back({static_cast<std::uint32_t>(sum.others.size()), i, i, static_cast<std::uint32_t>(sweep.operand.size()), sum.starts, sum.negates});
+        sweep.runs.push_back({static_cast<std::uint32_t>(sum.others.size()), i, i,
+                              static_cast<std::uint32_t>(sweep.operand.size()), sum.starts, sum.negates});
       sweep.runs.back().last = i + 1;
       sweep.target.push_back(cell(sum.pivot));
       sweep.pivot.push_back(sum.pivot);
@@ -152,8 +166,8 @@ class SparseBuilder {
     std::uint64_t place;
   };
 
-  /// An entry of L or U is its entry of the matrix minus the products of all earlier pivots. What is known early is computed early, with
-  /// much else of its kind.
+  /// An entry of L or U is its entry of the matrix minus the products of all earlier pivots. What is known early is
+  /// computed early, with much else of its kind.
   void build_factorization() {
     std::vector<Work> work;
     std::vector<std::uint32_t> pivot_level(pivots_.size(), 0);
@@ -164,7 +178,8 @@ class SparseBuilder {
       if (is_minus_one_[p]) s_.inverse_[p] = -1;
       else work.push_back(std::move(own));
       for (const std::uint32_t row : pivot.rows) add_factor(work, FactorRun::Lower, row, pivot.column, p, 0);
-      for (const std::uint32_t column : pivot.columns) add_factor(work, FactorRun::Upper, pivot.row, column, p, pivot_level[p]);
+      for (const std::uint32_t column : pivot.columns)
+        add_factor(work, FactorRun::Upper, pivot.row, column, p, pivot_level[p]);
       for (const std::uint32_t row : pivot.rows)
         for (const std::uint32_t column : pivot.columns)
           products_[key(row, column)].push_back({factor_at(key(row, pivot.column)), factor_at(key(pivot.row, column))});
@@ -179,14 +194,21 @@ class SparseBuilder {
     for (const Work& w : work) {
       const bool plain = w.products.empty() && w.sum.entry < system_.entries.size();
       if (!plain || w.kind == FactorRun::Pivot || (w.kind == FactorRun::Upper && !is_minus_one_[w.sum.pivot])) continue;
-      s_.literal_factor_[w.sum.target] = w.kind == FactorRun::Upper ? -system_.literal[w.sum.entry] : system_.literal[w.sum.entry];
+      s_.literal_factor_[w.sum.target] =
+          w.kind == FactorRun::Upper ? -system_.literal[w.sum.entry] : system_.literal[w.sum.entry];
     }
   }
 
   Work work_of(FactorRun::Kind kind, std::uint32_t row, std::uint32_t column, std::uint32_t pivot) {
     const auto entry = entry_at_.find(key(row, column));
-    Work out{kind, 0, {none, entry == entry_at_.end() ? static_cast<std::uint32_t>(system_.entries.size()) : entry->second, pivot}, {}, key(row, column)};
-    if (const auto found = products_.find(key(row, column)); found != products_.end()) out.products = std::move(found->second);
+    Work out{
+        kind,
+        0,
+        {none, entry == entry_at_.end() ? static_cast<std::uint32_t>(system_.entries.size()) : entry->second, pivot},
+        {},
+        key(row, column)};
+    if (const auto found = products_.find(key(row, column)); found != products_.end())
+      out.products = std::move(found->second);
     const auto level = [&](const FactorProduct& p) { return std::max(factor_level_[p.lower], factor_level_[p.upper]); };
     for (const FactorProduct& product : out.products) out.level = std::max(out.level, level(product) + 1);
     std::stable_sort(out.products.begin(), out.products.end(),  // the newest last
@@ -194,8 +216,8 @@ class SparseBuilder {
     return out;
   }
 
-  void add_factor(std::vector<Work>& work, FactorRun::Kind kind, std::uint32_t row, std::uint32_t column, std::uint32_t pivot,
-                  std::uint32_t least_level) {
+  void add_factor(std::vector<Work>& work, FactorRun::Kind kind, std::uint32_t row, std::uint32_t column,
+                  std::uint32_t pivot, std::uint32_t least_level) {
     work.push_back(work_of(kind, row, column, pivot));
     Work& w = work.back();
     w.level = std::max(w.level, least_level);
@@ -229,7 +251,8 @@ class SparseBuilder {
       s_.column_of_pivot_.push_back(pivots_[p].column);
       s_.part_of_cell_[cell(p)] = part;
       for (const std::uint32_t row : pivots_[p].rows) s_.part_of_factor_[factor_at(key(row, pivots_[p].column))] = part;
-      for (const std::uint32_t column : pivots_[p].columns) s_.part_of_factor_[factor_at(key(pivots_[p].row, column))] = part;
+      for (const std::uint32_t column : pivots_[p].columns)
+        s_.part_of_factor_[factor_at(key(pivots_[p].row, column))] = part;
     }
   }
 
@@ -246,20 +269,21 @@ class SparseBuilder {
   std::uint32_t next_factor_ = 0;
 };
 
-SparseSolver::SparseSolver(const LiftedSystem& system, const std::vector<Pivot>& pivots, std::span<const std::uint32_t> cells) {
+SparseSolver::SparseSolver(const LiftedSystem& system, const std::vector<Pivot>& pivots,
+                           std::span<const std::uint32_t> cells) {
   SparseBuilder(system, pivots, cells, *this).run();
-  forward_loop_ = LoopSweep(sums_of(forward_), true);
-  backward_loop_ = LoopSweep(sums_of(backward_), false);
 }
 
-std::vector<SweepSum> SparseSolver::sums_of(const Sweep& sweep) {
-  std::vector<SweepSum> out;
-  for (const SumRun& run : sweep.runs)
+/// Factors times pivots are made here once a factorization, not in each solution.
+void SparseSolver::Sweep::set(const SparseSolver& solver) {
+  const bool divides = this == &solver.forward_;
+  scale.resize(target.size()), factors.resize(operand.size());
+  for (const SumRun& run : runs)
     for (std::uint32_t i = run.first, k = run.first_product; i < run.last; ++i) {
-      out.push_back({sweep.target[i], sweep.pivot[i], run.starts, {}});
-      for (std::uint32_t j = 0; j < run.products; ++j, ++k) out.back().products.push_back({sweep.operand[k], sweep.first_factor + k});
+      scale[i] = divides ? solver.inverse_[pivot[i]] : 1;
+      for (const std::uint32_t end = k + run.products; k < end; ++k)
+        factors[k] = -scale[i] * solver.factors_[first_factor + k];
     }
-  return out;
 }
 
 std::vector<std::uint32_t> SparseSolver::order_of_columns() const {
@@ -271,10 +295,10 @@ std::vector<std::uint32_t> SparseSolver::order_of_columns() const {
 double SparseSolver::factor(std::span<const double> entries) {
   std::copy(entries.begin(), entries.end(), entries_.begin());
   const FactorRun* const runs = factor_runs_.data();
-  const double least = loops().factor({runs, runs + factor_runs_.size(), sums_.data(), products_.data(), entries_.data(), usual_size_.data(),
-                                       factors_.data(), inverse_.data()});
-  forward_loop_.set(factors_.data(), inverse_.data());
-  backward_loop_.set(factors_.data(), inverse_.data());
+  const double least = loops().factor({runs, runs + factor_runs_.size(), sums_.data(), products_.data(),
+                                       entries_.data(), usual_size_.data(), factors_.data(), inverse_.data()});
+  forward_.set(*this);
+  backward_.set(*this);
   return least;
 }
 
@@ -285,8 +309,8 @@ void SparseSolver::solve(const double* right, std::span<const std::uint32_t> pla
     for (std::size_t i = 0; i < n; ++i) x[cells[i]] = right[i];
   else
     for (std::size_t i = 0; i < n; ++i) x[cells[i]] = right[places[i]];
-  loops().sweep(forward_loop_.tables(), x);
-  loops().sweep(backward_loop_.tables(), x);
+  loops().sweep(forward_.tables(), x);
+  loops().sweep(backward_.tables(), x);
 }
 
 }  // namespace maupertuis::sparse

@@ -1,30 +1,28 @@
 #pragma once
 #include "kernel/sparse/elimination.hpp"
-#include "kernel/sparse/sweep.hpp"
+#include "kernel/sparse/loops.hpp"
 #include "kernel/sparse/written_entries.hpp"
 
 #include <optional>
 
-/// Factors and solutions of a lifted system as flat loops over index arrays: what is computed from what was decided once, when
-/// the pivots were chosen. Nothing is allocated after construction.
+/// Factors and solutions of a lifted system as flat loops over index arrays: what is computed from what was decided
+/// once, when the pivots were chosen. Nothing is allocated after construction.
 namespace maupertuis::sparse {
 
 /// What code of a solution works on, in this order; then its scratch.
 enum SolveArray : std::uint32_t { FactorArray, InverseArray, RightSideArray, UnknownArray, solve_arrays };
 
-/// The same of code of a factorization, whose entries are made of values at order 0 and of constants; and of code of several solutions at once with the
-/// factors that they need.
-enum FactorArrays : std::uint32_t { NowArray, ConstantArray, UsualSizeArray, FactorOutArray, FactorInverseArray, factor_arrays };
-enum ColumnArrays : std::uint32_t { UnitArray = ConstantArray + 1, ColumnArray, column_arrays };
-
-/// Sums of one level and one shape: v = start − Σ a b.
-struct SumRun {
-  std::uint32_t products;        // of each sum
-  std::uint32_t first, last;     // sums
-  std::uint32_t first_product;   // of the first sum; they follow each other
-  bool starts;                   // at a value that is there; else at 0
-  bool negates;                  // forward: the pivots are −1
+/// The same of code of a factorization, whose entries are made of values at order 0 and of constants; and of code of
+/// several solutions at once with the factors that they need.
+enum FactorArrays : std::uint32_t {
+  NowArray,
+  ConstantArray,
+  UsualSizeArray,
+  FactorOutArray,
+  FactorInverseArray,
+  factor_arrays
 };
+enum ColumnArrays : std::uint32_t { UnitArray = ConstantArray + 1, ColumnArray, column_arrays };
 
 inline constexpr std::uint32_t no_place = ~std::uint32_t{0};
 
@@ -39,8 +37,8 @@ class SparseSolver {
   SparseSolver(const LiftedSystem& system, const std::vector<Pivot>& pivots, std::span<const std::uint32_t> cells);
 
   /// The factors of the matrix with these entries. [entries]
-  /// Returns the smallest pivot in units of the terms that it was computed from (what cancellation left of it) and of its size where
-  /// the pivots were chosen; 0 or NaN where there are no factors.
+  /// Returns the smallest pivot in units of the terms that it was computed from (what cancellation left of it) and of
+  /// its size where the pivots were chosen; 0 or NaN where there are no factors.
   double factor(std::span<const double> entries);
 
   /// M₀ x = b: x and the wanted tangents in its direction, each in its cell; the cells of other unknowns are scratch.
@@ -63,10 +61,11 @@ class SparseSolver {
   straight::StraightLine written_solve(const RightSide& side) const;
   const double* factors() const { return factors_.data(); }
   const double* inverse_pivots() const { return inverse_.data(); }
-  /// factor() as a straight line over the arrays of FactorArrays, of which three are below; sound() where every pivot is above `least_share` of
-  /// what factor() measures it by. `entry` reads the first two.
+  /// factor() as a straight line over the arrays of FactorArrays, of which three are below; sound() where every pivot
+  /// is above `least_share` of what factor() measures it by. `entry` reads the first two.
   straight::StraightLine written_factor(const EntryWriter& entry, double least_share) const;
-  /// factor() and a solution for each right side as a straight line over the arrays of ColumnArrays. No pivot is looked at.
+  /// factor() and a solution for each right side as a straight line over the arrays of ColumnArrays. No pivot is looked
+  /// at.
   straight::StraightLine written_columns(const EntryWriter& entry, std::span<const RightSide> sides) const;
   double* factors() { return factors_.data(); }
   double* inverse_pivots() { return inverse_.data(); }
@@ -93,17 +92,21 @@ class SparseSolver {
     std::vector<std::uint32_t> pivot;    // [sums] forward: of the row
     std::vector<std::uint32_t> operand;  // [products] cells
     std::uint32_t first_factor = 0;      // of the first product in factors_; they follow each other
+    std::vector<double> scale, factors;  // [sums], [products] with their signs, forward times inverse pivots
+
+    void set(const SparseSolver& solver);
+    SweepTables tables() const {
+      return {runs.data(), runs.data() + runs.size(), target.data(), operand.data(), scale.data(), factors.data()};
+    }
   };
 
-  WrittenFactors write_factors(straight::Builder& to, const EntryWriter& entry, std::optional<double> least_share) const;
+  WrittenFactors write_factors(straight::Builder& to, const EntryWriter& entry,
+                               std::optional<double> least_share) const;
   void write_solutions(straight::Builder& to, const WrittenFactors& factors, std::uint32_t right, std::uint32_t unknown,
                        std::span<const RightSide> sides) const;
 
   std::vector<std::uint32_t> cell_of_residual_;  // [unknowns] where b_i goes
-  static std::vector<SweepSum> sums_of(const Sweep& sweep);
-
   Sweep forward_, backward_;
-  LoopSweep forward_loop_, backward_loop_;
   std::vector<FactorRun> factor_runs_;
   std::vector<FactorSum> sums_;
   std::vector<FactorProduct> products_;

@@ -1,5 +1,6 @@
 #include "kernel/sparse/tangent_graph.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace maupertuis::sparse {
@@ -77,6 +78,26 @@ std::vector<Edge> tangent_edges(const Program& program) {
   return std::move(collector.edges);
 }
 
+std::vector<Edge> tangent_edges(const Program& program, const Instruction& instruction) {
+  Collector collector(program);
+  collector(instruction);
+  return std::move(collector.edges);
+}
+
+std::vector<Edge> edges_to(const Program& program, std::vector<bool> needed) {
+  std::vector<Edge> edges = tangent_edges(program), out;
+  for (auto edge = edges.rbegin(); edge != edges.rend(); ++edge)
+    if (needed[edge->out]) needed[edge->operand] = true, out.push_back(*edge);
+  std::reverse(out.begin(), out.end());
+  return out;
+}
+
+std::vector<Edge> edges_of_mass(const Program& program) {
+  std::vector<bool> needed(program.slots, false);
+  for (const Slot slot : program.residual) needed[slot] = program.tangent_lags[slot] == 2;
+  return edges_to(program, std::move(needed));
+}
+
 bool has_symmetric_pattern(const Program& program) {
   constexpr std::size_t bits = 64;
   const std::size_t n = program.unknowns, words = (n + bits - 1) / bits;
@@ -92,32 +113,6 @@ bool has_symmetric_pattern(const Program& program) {
     for (std::size_t j = 0; j < i; ++j)
       if (follows(i, j) != follows(j, i)) return false;
   return true;
-}
-
-bool is_constant(Rule rule) { return rule == Rule::One || rule == Rule::Coefficient || rule == Rule::Choice; }
-
-double constant_factor(const Edge& edge, const Program& program, const double* constants) {
-  if (edge.rule == Rule::One) return 1;
-  if (edge.rule == Rule::Coefficient) return constants[edge.index];
-  // Choice: the first term whose condition holds is taken, the last one if none does.
-  std::uint32_t t = edge.x;
-  while (t + 1 < edge.y && constants[program.terms[t].coefficient] == 0) ++t;
-  return t == edge.index ? 1 : 0;
-}
-
-double factor_at(const Edge& edge, const double* constants, const double* now) {
-  switch (edge.rule) {
-    case Rule::Scaled: return constants[edge.index] * now[edge.x];
-    case Rule::Value: return now[edge.x];
-    case Rule::Negative: return -now[edge.x];
-    case Rule::Double: return 2 * now[edge.x];
-    case Rule::Reciprocal: return 1 / now[edge.x];
-    case Rule::HalfReciprocal: return 0.5 / now[edge.x];
-    case Rule::Ratio: return -now[edge.y] / now[edge.x];
-    case Rule::PowerSlope: return constants[edge.index] * now[edge.y] / now[edge.x];
-    case Rule::One: case Rule::Coefficient: case Rule::Choice: break;   // see constant_factor
-  }
-  return 0;
 }
 
 }  // namespace maupertuis::sparse

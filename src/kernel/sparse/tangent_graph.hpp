@@ -3,8 +3,9 @@
 
 #include <vector>
 
-/// Directional derivatives of order 0 are linear: ∂(slot)/∂q^(ℓ) is a sum over the operands of equal lag, each with a factor
-/// that the coefficients of order 0 give. The factors are the edges of a graph that leads from q̈ to the residual.
+/// Directional derivatives of order 0 are linear: ∂(slot)/∂q^(ℓ) is a sum over the operands of equal lag, each with a
+/// factor that the coefficients of order 0 give. The factors are the edges of a graph that leads from q̈ to the
+/// residual.
 namespace maupertuis::sparse {
 
 /// What the factor of an edge is made of. x and y are values at order 0, c a coefficient of a term.
@@ -29,18 +30,48 @@ struct Edge {
   Slot x = no_slot, y = no_slot;        // Choice: first and last term
 };
 
-/// Every edge of section Dynamics, in the order of the instructions.
+/// Every edge of section Dynamics, in the order of the instructions; those of one result stand together.
 std::vector<Edge> tangent_edges(const Program& program);
+/// Of one instruction.
+std::vector<Edge> tangent_edges(const Program& program, const Instruction& instruction);
+/// Those through which q̈ has an influence on slots that are needed. [slots]
+std::vector<Edge> edges_to(const Program& program, std::vector<bool> needed);
+/// Those that M₀ goes through.
+std::vector<Edge> edges_of_mass(const Program& program);
 
-/// Whether the residual of every unknown i follows q̈_j where that of j follows q̈_i. Elsewhere M₀ is not symmetric however small the entries are that
-/// have no counterpart: those of a motion with its tangents beside it are as small as the tangents, and yet all that these know of the motion.
-/// Cost: edges × unknowns / 64.
+/// Whether the residual of every unknown i follows q̈_j where that of j follows q̈_i. Elsewhere M₀ is not symmetric
+/// however small the entries are that have no counterpart: those of a motion with its tangents beside it are as small
+/// as the tangents, and yet all that these know of the motion. Cost: edges × unknowns / 64.
 bool has_symmetric_pattern(const Program& program);
 
 /// Whether it depends on parameters and sides of switches alone.
-bool is_constant(Rule rule);
-double constant_factor(const Edge& edge, const Program& program, const double* constants);
-/// `now`: [slots] values at order 0.
-double factor_at(const Edge& edge, const double* constants, const double* now);
+inline bool is_constant(Rule rule) { return rule == Rule::One || rule == Rule::Coefficient || rule == Rule::Choice; }
+
+template <class T>
+T constant_factor(const Edge& edge, const Program& program, const T* constants) {
+  if (edge.rule == Rule::One) return T(1);
+  if (edge.rule == Rule::Coefficient) return constants[edge.index];
+  // Choice: the first term whose condition holds is taken, the last one if none does.
+  std::uint32_t t = edge.x;
+  while (t + 1 < edge.y && constants[program.terms[t].coefficient] == 0) ++t;
+  return T(t == edge.index ? 1 : 0);
+}
+
+/// Of any other edge. `now`: [slots] values at order 0.
+template <class T>
+T factor_at(const Edge& edge, const T* constants, const T* now) {
+  switch (edge.rule) {
+    case Rule::Scaled: return constants[edge.index] * now[edge.x];
+    case Rule::Value: return now[edge.x];
+    case Rule::Negative: return -now[edge.x];
+    case Rule::Double: return 2 * now[edge.x];
+    case Rule::Reciprocal: return 1 / now[edge.x];
+    case Rule::HalfReciprocal: return T(0.5) / now[edge.x];
+    case Rule::Ratio: return -now[edge.y] / now[edge.x];
+    case Rule::PowerSlope: return constants[edge.index] * now[edge.y] / now[edge.x];
+    case Rule::One: case Rule::Coefficient: case Rule::Choice: break;   // see constant_factor
+  }
+  return T(0);
+}
 
 }  // namespace maupertuis::sparse

@@ -11,7 +11,8 @@ using straight::Value;
 
 class Writer {
  public:
-  Writer(Builder& to, const WrittenSystem& written) : to_(to), w_(written), side_(written.system.size), y_(written.pivots.size()), upper_(written.pivots.size()) {}
+  Writer(Builder& to, const WrittenSystem& written)
+      : to_(to), w_(written), side_(written.system.size), y_(written.pivots.size()), upper_(written.pivots.size()) {}
 
   std::vector<Value> run(std::span<const Value> b) {
     for (std::size_t e = 0; e < w_.entries.size(); ++e)
@@ -34,7 +35,8 @@ class Writer {
 
   Value checked(std::size_t p, const std::vector<Term>& terms) {
     const Value pivot = to_.sum(terms);
-    if (!to_.is_literal(pivot)) to_.check({to_.magnitudes({{1, pivot}}), to_.larger(to_.magnitudes(terms), w_.usual_size[p]), w_.least_share});
+    if (!to_.is_literal(pivot))
+      to_.check({to_.magnitudes({{1, pivot}}), to_.larger(to_.magnitudes(terms), w_.usual_size[p]), w_.least_share});
     return pivot;
   }
 
@@ -42,7 +44,8 @@ class Writer {
   void eliminate(std::size_t p) {
     const Pivot& pivot = w_.pivots[p];
     const Value inverse = to_.reciprocal(checked(p, take(pivot.row, pivot.column)));
-    for (const std::uint32_t column : pivot.columns) upper_[p].emplace_back(column, to_.sum(take(pivot.row, column), inverse));
+    for (const std::uint32_t column : pivot.columns)
+      upper_[p].emplace_back(column, to_.sum(take(pivot.row, column), inverse));
     y_[p] = to_.sum(side_[pivot.row], inverse);
     for (const std::uint32_t row : pivot.rows) {
       const Value lower = to_.sum(take(row, pivot.column));
@@ -73,6 +76,8 @@ class Writer {
 
 }  // namespace
 
-std::vector<Value> write_solution(Builder& to, const WrittenSystem& written, std::span<const Value> b) { return Writer(to, written).run(b); }
+std::vector<Value> write_solution(Builder& to, const WrittenSystem& written, std::span<const Value> b) {
+  return Writer(to, written).run(b);
+}
 
 }  // namespace maupertuis::sparse

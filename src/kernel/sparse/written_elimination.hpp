@@ -13,8 +13,9 @@ struct WrittenSystem {
   double least_share;                           // of a pivot in what it was computed from and in its usual size
 };
 
-/// x [columns] with M₀ x = b; b: [unknowns]. Every pivot that is no literal is checked. Each right side follows its pivots, so that factors
-/// and solution do not wait for each other.
-std::vector<straight::Value> write_solution(straight::Builder& to, const WrittenSystem& written, std::span<const straight::Value> b);
+/// x [columns] with M₀ x = b; b: [unknowns]. Every pivot that is no literal is checked. Each right side follows its
+/// pivots, so that factors and solution do not wait for each other.
+std::vector<straight::Value> write_solution(straight::Builder& to, const WrittenSystem& written,
+                                            std::span<const straight::Value> b);
 
 }  // namespace maupertuis::sparse

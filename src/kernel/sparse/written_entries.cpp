@@ -9,7 +9,10 @@ using straight::Term;
 using straight::Value;
 
 EntryWriter::EntryWriter(const LiftedSystem& system, EntrySources sources)
-    : system_(system), sources_(std::move(sources)), number_(system.entries.size(), 0.0), edges_(system.entries.size()) {
+    : system_(system),
+      sources_(std::move(sources)),
+      number_(system.entries.size(), 0.0),
+      edges_(system.entries.size()) {
   for (const std::uint32_t e : system.minus_one) number_[e] -= 1;
   for (const std::uint32_t e : system.plus_one) number_[e] += 1;
   for (std::uint32_t i = 0; i < system.edges.size(); ++i) edges_[system.entry_of_edge[i]].push_back(i);

@@ -10,8 +10,8 @@ using straight::Builder;
 using straight::Term;
 using straight::Value;
 
-/// Sums of FactorTables, those of parts first; what a part leaves for the others is a sum of its own. Factors that are the same number
-/// at every point are not stored, since written_solve knows them.
+/// Sums of FactorTables, those of parts first; what a part leaves for the others is a sum of its own. Factors that are
+/// the same number at every point are not stored, since written_solve knows them.
 class FactorWriter {
  public:
   /// Without `least_share` nothing is stored and no pivot checked.
@@ -46,7 +46,8 @@ class FactorWriter {
     std::vector<Term> terms;
     const std::uint32_t first = run.first_product + (sum - run.first) * run.products;
     for (std::uint32_t k = first; k < first + run.products; ++k)
-      if (const FactorProduct& p = s_.products_[k]; s_.part_of_factor_[p.lower] == part) terms.push_back({-1, factor_[p.lower], factor_[p.upper]});
+      if (const FactorProduct& p = s_.products_[k]; s_.part_of_factor_[p.lower] == part)
+        terms.push_back({-1, factor_[p.lower], factor_[p.upper]});
     return terms;
   }
 
@@ -59,7 +60,8 @@ class FactorWriter {
     const Value entry = starts ? entry_(to_, sum.entry) : to_.literal(0);
     if (run.kind == FactorRun::Pivot) return pivot(sum.pivot, entry, std::move(terms));
     terms.push_back({1, entry});
-    factor_[sum.target] = to_.sum(std::move(terms), run.kind == FactorRun::Upper ? inverse_[sum.pivot] : straight::none);
+    factor_[sum.target] =
+        to_.sum(std::move(terms), run.kind == FactorRun::Upper ? inverse_[sum.pivot] : straight::none);
     if (least_share_) to_.store(factor_[sum.target], FactorOutArray, sum.target);
   }
 
@@ -98,7 +100,8 @@ class FactorWriter {
   std::vector<std::vector<Value>> partial_;   // [sums] of parts
 };
 
-WrittenFactors SparseSolver::write_factors(Builder& to, const EntryWriter& entry, std::optional<double> least_share) const {
+WrittenFactors SparseSolver::write_factors(Builder& to, const EntryWriter& entry,
+                                           std::optional<double> least_share) const {
   return FactorWriter(*this, to, entry, least_share).run();
 }
 

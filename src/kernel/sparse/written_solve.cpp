@@ -10,13 +10,14 @@ using straight::Builder;
 using straight::Term;
 using straight::Value;
 
-/// Factors and pivots are there from the beginning, the unknowns of a sum are not: what is known is multiplied first, so that a sum waits for
-/// one operation after its newest unknown. Forward, what a part leaves for a sum between parts is a sum of its own; and all parts are
-/// written down in the same order, so that they can be seen to be alike. Of several right sides each has the sums of one after the other, since these
-/// do not wait for each other.
+/// Factors and pivots are there from the beginning, the unknowns of a sum are not: what is known is multiplied first,
+/// so that a sum waits for one operation after its newest unknown. Forward, what a part leaves for a sum between parts
+/// is a sum of its own; and all parts are written down in the same order, so that they can be seen to be alike. Of
+/// several right sides each has the sums of one after the other, since these do not wait for each other.
 class SolveWriter {
  public:
-  SolveWriter(const SparseSolver& solver, Builder& to, const WrittenFactors& factors) : s_(solver), to_(to), factors_(factors) {}
+  SolveWriter(const SparseSolver& solver, Builder& to, const WrittenFactors& factors)
+      : s_(solver), to_(to), factors_(factors) {}
 
   void run(std::uint32_t right, std::uint32_t unknown, std::span<const SparseSolver::RightSide> sides) {
     for (const auto& side : sides) start(right, side.places);
@@ -56,14 +57,16 @@ class SolveWriter {
 
   void write(const Sweep& sweep, const SumRun& run, std::uint32_t i, bool forward) {
     const Value scale = forward && !run.negates ? factors_.inverse[sweep.pivot[i]] : to_.literal(run.negates ? -1 : 1);
-    const std::uint32_t part = s_.part_of_pivot_[sweep.pivot[i]], first = run.first_product + (i - run.first) * run.products;
+    const std::uint32_t part = s_.part_of_pivot_[sweep.pivot[i]],
+                        first = run.first_product + (i - run.first) * run.products;
     const bool shares = x_.size() > 1 && !to_.is_literal(scale);  // the product of both
     std::vector<Product> products;
     to_.set_part(part);
     for (std::uint32_t k = first; k < first + run.products; ++k) {
       const Value factor = factors_.factor[sweep.first_factor + k];
       if (forward && s_.part_of_cell_[sweep.operand[k]] != part) continue;
-      products.push_back({shares ? straight::none : scale, shares ? to_.product(1, scale, factor) : factor, sweep.operand[k]});
+      products.push_back(
+          {shares ? straight::none : scale, shares ? to_.product(1, scale, factor) : factor, sweep.operand[k]});
     }
     for (std::size_t side = 0; side < x_.size(); ++side) write(side, sweep.target[i], run.starts, scale, products);
   }
@@ -85,7 +88,8 @@ class SolveWriter {
     std::vector<std::pair<std::uint32_t, std::pair<const SumRun*, std::uint32_t>>> sums;
     for (const SumRun& run : s_.forward_.runs)
       for (std::uint32_t i = run.first; i < run.last; ++i)
-        if (const std::uint32_t pivot = s_.forward_.pivot[i]; s_.part_of_pivot_[pivot] == 0) sums.push_back({s_.column_of_pivot_[pivot], {&run, i}});
+        if (const std::uint32_t pivot = s_.forward_.pivot[i]; s_.part_of_pivot_[pivot] == 0)
+          sums.push_back({s_.column_of_pivot_[pivot], {&run, i}});
     std::sort(sums.begin(), sums.end());
     for (std::uint32_t part = 1; part <= s_.parts_; ++part)
       for (const auto& [column, sum] : sums) {
@@ -107,8 +111,8 @@ class SolveWriter {
   std::vector<std::vector<Value>> partial_;   // [cells] sums of parts, of one right side
 };
 
-void SparseSolver::write_solutions(Builder& to, const WrittenFactors& factors, std::uint32_t right, std::uint32_t unknown,
-                                   std::span<const RightSide> sides) const {
+void SparseSolver::write_solutions(Builder& to, const WrittenFactors& factors, std::uint32_t right,
+                                   std::uint32_t unknown, std::span<const RightSide> sides) const {
   SolveWriter(*this, to, factors).run(right, unknown, sides);
 }
 

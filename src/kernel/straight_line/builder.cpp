@@ -22,9 +22,11 @@ std::uint64_t bits_of(double x) {
 
 Value Builder::add(Node node) {
   std::uint32_t depth = 0;
-  for (const Value operand : operands_of(node)) depth = std::max(depth, depth_[operand]);
+  for_operands(line_, node, [&](Value operand) { depth = std::max(depth, depth_[operand]); });
   const bool is_function = node.what == Node::Angles || node.what == Node::Call;
-  depth_.push_back(depth + (is_function ? depth_of_function : node.b != none && node.what == Node::Sum ? depth_of_division : depth_of_operation));
+  depth_.push_back(depth + (is_function                                ? depth_of_function
+                            : node.b != none && node.what == Node::Sum ? depth_of_division
+                                                                       : depth_of_operation));
   line_.nodes.push_back(node);
   return next() - 1;
 }
@@ -36,13 +38,23 @@ Value Builder::add(Node::What what, std::vector<Term> terms, Node node) {
       if (v != none) most = std::max(most, depth_[v]);
     return most;
   };
-  if (part_ == 0) std::stable_sort(terms.begin(), terms.end(), [&](const Term& x, const Term& y) { return depth(x) < depth(y); });
+  if (part_ == 0)
+    std::stable_sort(terms.begin(), terms.end(), [&](const Term& x, const Term& y) { return depth(x) < depth(y); });
   node.what = what;
   node.part = part_;
   node.first = static_cast<std::uint32_t>(line_.terms.size());
   line_.terms.insert(line_.terms.end(), terms.begin(), terms.end());
   node.last = static_cast<std::uint32_t>(line_.terms.size());
-  return add(node);
+  return add(as_wide_as_operands(node));
+}
+
+/// Where they have widths of their own.
+Node Builder::as_wide_as_operands(Node node) const {
+  std::uint32_t width = node.width;
+  for_operands(line_, node, [&](Value v) { width = std::max<std::uint32_t>(width, line_.nodes[v].width); });
+  node.width = static_cast<std::uint8_t>(width);
+  node.wide = node.wide || width > 1;
+  return node;
 }
 
 Value Builder::literal(double value) {
@@ -103,13 +115,16 @@ Value Builder::choose(Value condition, Value then, Value otherwise) {
   return then == otherwise ? then : add({.what = Node::Chosen, .a = condition, .b = then, .c = otherwise});
 }
 
-Value Builder::root(Value a) { return add({.what = Node::Root, .a = a}); }
-Value Builder::call(Kind function, Value a, Value b) { return add({.what = Node::Call, .function = function, .a = a, .b = b}); }
+Value Builder::root(Value a) { return add(as_wide_as_operands({.what = Node::Root, .a = a})); }
+Value Builder::call(Kind function, Value a, Value b) {
+  return add({.what = Node::Call, .function = function, .a = a, .b = b});
+}
 
 std::vector<std::pair<Value, Value>> Builder::sines(const std::vector<Value>& angles) {
   const auto first = static_cast<std::uint32_t>(line_.operands.size());
   line_.operands.insert(line_.operands.end(), angles.begin(), angles.end());
-  const Value all = add({.what = Node::Angles, .first = first, .last = static_cast<std::uint32_t>(line_.operands.size())});
+  const Value all =
+      add({.what = Node::Angles, .first = first, .last = static_cast<std::uint32_t>(line_.operands.size())});
   std::vector<std::pair<Value, Value>> out;
   for (std::uint32_t i = 0; i < angles.size(); ++i) {
     const Value sine = add({.what = Node::Sine, .a = all, .index = i});
@@ -131,12 +146,36 @@ Value Builder::wide(const std::vector<Term>& terms) {
   return add(Node::Wide, std::move(kept));
 }
 
-Value Builder::lane(Value wide, std::uint32_t index) { return add({.what = Node::Lane, .a = wide, .index = index}); }
+Value Builder::lane(Value wide, std::uint32_t index) {
+  const Node& node = line_.nodes[wide];
+  if (!is_wide(node)) return wide;
+  if (node.what == Node::Gather) return line_.operands[node.first + index];
+  const auto [found, fresh] = once_.try_emplace({Node::Lane, wide, index}, next());
+  return fresh ? add({.what = Node::Lane, .a = wide, .index = index}) : found->second;
+}
 
-Value Builder::gather(const std::vector<Value>& lanes) { return copy({.what = Node::Gather}, {}, lanes); }
+Value Builder::gather(const std::vector<Value>& lanes) {
+  const Node& first = line_.nodes[lanes[0]];
+  bool same = true, in_order = first.what == Node::Lane && line_.width(first.a) == lanes.size();
+  for (std::uint32_t i = 0; i < lanes.size(); ++i) {
+    const Node& node = line_.nodes[lanes[i]];
+    same = same && lanes[i] == lanes[0];
+    in_order = in_order && node.what == Node::Lane && node.a == first.a && node.index == i;
+  }
+  if (same || in_order) return same ? lanes[0] : first.a;
+  const auto [found, fresh] = gathered_.try_emplace(lanes, next());
+  return fresh ? copy({.what = Node::Gather, .width = static_cast<std::uint8_t>(lanes.size())}, {}, lanes)
+               : found->second;
+}
 
-Value Builder::wide_given(std::uint32_t array, std::uint32_t first) {
-  return add({.what = Node::Given, .wide = true, .array = array, .index = first});
+Value Builder::wide_given(std::uint32_t array, std::uint32_t first, std::uint32_t width) {
+  const auto [found, fresh] = once_.try_emplace({Node::Given, array, std::uint64_t{width} << 32 | first}, next());
+  if (!fresh) return found->second;
+  return add({.what = Node::Given,
+              .wide = true,
+              .width = static_cast<std::uint8_t>(width),
+              .array = array,
+              .index = first});
 }
 
 Value Builder::copy(Node node, std::vector<Term> terms, const std::vector<Value>& operands) {
@@ -148,18 +187,6 @@ Value Builder::copy(Node node, std::vector<Term> terms, const std::vector<Value>
   return add(node);
 }
 
-std::vector<Value> Builder::operands_of(const Node& node) const {
-  std::vector<Value> out;
-  const auto add = [&](Value v) { if (v != none) out.push_back(v); };
-  add(node.a), add(node.b), add(node.c);
-  if (lists_operands(node)) {
-    for (std::uint32_t i = node.first; i < node.last; ++i) add(line_.operands[i]);
-  } else {
-    for (std::uint32_t i = node.first; i < node.last; ++i) add(line_.terms[i].a), add(line_.terms[i].b), add(line_.terms[i].c);
-  }
-  return out;
-}
-
 std::vector<bool> Builder::needed() const {
   std::vector<bool> out(line_.nodes.size(), false);
   for (const Store& store : line_.stores) out[store.value] = true;
@@ -167,19 +194,24 @@ std::vector<bool> Builder::needed() const {
   for (const Value v : line_.finite) out[v] = true;
   for (std::size_t i = out.size(); i-- > 0;)
     if (out[i])
-      for (const Value operand : operands_of(line_.nodes[i])) out[operand] = true;
+      for_operands(line_, line_.nodes[i], [&](Value operand) { out[operand] = true; });
   return out;
 }
 
-/// What has to be there first for the end of the line to be reached in time comes first. `order`: each preceded by what it needs.
+/// What has to be there first for the end of the line to be reached in time comes first. `order`: each preceded by what
+/// it needs.
 void Builder::sort_by_urgency(std::vector<Value>& order) const {
-  std::vector<std::uint32_t> wanted(line_.nodes.size(), 0), begins(line_.nodes.size(), 0);  // in cycles before the end, at the latest
+  // in cycles before the end, at the latest
+  std::vector<std::uint32_t> wanted(line_.nodes.size(), 0), begins(line_.nodes.size(), 0);
   for (std::size_t i = order.size(); i-- > 0;) {
     const Node& node = line_.nodes[order[i]];
-    const bool divides = node.what == Node::Sum && node.b != none, is_function = node.what == Node::Angles || node.what == Node::Call;
-    std::uint32_t last = wanted[order[i]] + (is_function ? cycles_of_function : divides ? cycles_of_division : cycles_of_operation);
+    const bool divides = node.what == Node::Sum && node.b != none,
+               is_function = node.what == Node::Angles || node.what == Node::Call;
+    std::uint32_t last = wanted[order[i]] + (is_function ? cycles_of_function
+                                             : divides   ? cycles_of_division
+                                                         : cycles_of_operation);
     begins[order[i]] = last;  // its last operation
-    for (const Value v : operands_of(node)) wanted[v] = std::max(wanted[v], last);
+    for_operands(line_, node, [&](Value v) { wanted[v] = std::max(wanted[v], last); });
     if (lists_operands(node)) continue;
     for (std::uint32_t t = node.last; t-- > node.first; last += cycles_of_fused)
       for (const Value v : {line_.terms[t].a, line_.terms[t].b, line_.terms[t].c})
@@ -196,8 +228,7 @@ StraightLine Builder::finish(std::uint32_t arrays, std::uint32_t wide, Value anc
       const Value v = open.back();
       if (number[v] != none) { open.pop_back(); continue; }
       const std::size_t before = open.size();
-      for (const Value operand : operands_of(line_.nodes[v]))
-        if (number[operand] == none) open.push_back(operand);
+      for_operands(line_, line_.nodes[v], [&](Value operand) { if (number[operand] == none) open.push_back(operand); });
       if (open.size() > before) continue;
       number[v] = static_cast<Value>(order.size());
       order.push_back(v);

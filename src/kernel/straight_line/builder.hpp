@@ -29,9 +29,11 @@ class Builder {
 
   Value unit(std::uint32_t lane);
   Value wide(const std::vector<Term>& terms);
+  /// Of a number: itself.
   Value lane(Value wide, std::uint32_t index);
+  /// One number where all lanes are the same.
   Value gather(const std::vector<Value>& lanes);
-  Value wide_given(std::uint32_t array, std::uint32_t first);
+  Value wide_given(std::uint32_t array, std::uint32_t first, std::uint32_t width);
   /// A node of another line, with operands and terms of this one.
   Value copy(Node node, std::vector<Term> terms, const std::vector<Value>& operands);
 
@@ -46,18 +48,21 @@ class Builder {
   bool is_literal(Value v) const { return v != none && line_.nodes[v].what == Node::Literal; }
   bool is_zero(Value v) const { return is_literal(v) && line_.nodes[v].literal == 0; }
   double literal_of(Value v) const { return line_.nodes[v].literal; }
+  /// Sums and roots of wide values are as wide as the widest of these.
+  std::uint32_t width(Value v) const { return line_.width(v); }
 
-  /// In the order in which nodes after `anchor` were added, each preceded by what it needs and is not there yet; nodes before it are
-  /// made when first needed, and those that no store, check or finiteness needs are not there. Lines of at most `most_sorted` nodes are
-  /// in the order of their urgency instead: in longer ones too many numbers would wait in memory.
+  /// In the order in which nodes after `anchor` were added, each preceded by what it needs and is not there yet; nodes
+  /// before it are made when first needed, and those that no store, check or finiteness needs are not there. Lines of
+  /// at most `most_sorted` nodes are in the order of their urgency instead: in longer ones too many numbers would wait
+  /// in memory.
   StraightLine finish(std::uint32_t arrays, std::uint32_t wide, Value anchor, std::size_t most_sorted = 0);
   Value next() const { return static_cast<Value>(line_.nodes.size()); }
 
  private:
   Value add(Node node);
   Value add(Node::What what, std::vector<Term> terms, Node node = {});
+  Node as_wide_as_operands(Node node) const;
   std::vector<Term> folded(const std::vector<Term>& terms) const;
-  std::vector<Value> operands_of(const Node& node) const;
   std::vector<bool> needed() const;
   void sort_by_urgency(std::vector<Value>& order) const;
 
@@ -65,6 +70,7 @@ class Builder {
   std::uint8_t part_ = 0;
   std::vector<std::uint32_t> depth_;  // [nodes] of operations that it waits for
   std::map<std::tuple<std::uint8_t, std::uint64_t, std::uint64_t>, Value> once_;
+  std::map<std::vector<Value>, Value> gathered_;
 };
 
 }  // namespace maupertuis::straight

@@ -1,25 +1,26 @@
 #include "kernel/straight_line/compile.hpp"
 
-#include "kernel/compiled/backend.hpp"
-#include "kernel/compiled/digest.hpp"
+#include "kernel/machine_code/backend.hpp"
+#include "kernel/machine_code/digest.hpp"
 
-#include <optional>
 #include <string>
 
 namespace maupertuis::straight {
 namespace {
 
-void add(compiled::Digester& d, const Node& node) {
-  for (const std::uint64_t part : {std::uint64_t(node.what), std::uint64_t(node.wide), std::uint64_t(node.function), std::uint64_t(node.a), std::uint64_t(node.b),
-                                   std::uint64_t(node.c), std::uint64_t(node.array), std::uint64_t(node.index),
-                                   std::uint64_t(node.first), std::uint64_t(node.last)})
+void add(machine_code::Digester& d, const Node& node) {
+  for (const std::uint64_t part :
+       {std::uint64_t(node.what), std::uint64_t(node.wide), std::uint64_t(node.width), std::uint64_t(node.function),
+        std::uint64_t(node.a), std::uint64_t(node.b), std::uint64_t(node.c), std::uint64_t(node.array),
+        std::uint64_t(node.index), std::uint64_t(node.first), std::uint64_t(node.last)})
     d.add(part);
   d.add_double(node.literal);
 }
 
-void add(compiled::Digester& d, const StraightLine& line) {
-  for (const std::size_t part : {line.nodes.size(), line.terms.size(), line.operands.size(), line.stores.size(), line.checks.size(),
-                                 line.finite.size(), std::size_t{line.arrays}, std::size_t{line.wide}, std::size_t{line.guarded}})
+void add(machine_code::Digester& d, const StraightLine& line) {
+  for (const std::size_t part :
+       {line.nodes.size(), line.terms.size(), line.operands.size(), line.stores.size(), line.checks.size(),
+        line.finite.size(), std::size_t{line.arrays}, std::size_t{line.wide}, std::size_t{line.guarded}})
     d.add(part);
   for (const Node& node : line.nodes) add(d, node);
   for (const Term& term : line.terms) d.add_double(term.factor), d.add(term.a), d.add(term.b), d.add(term.c);
@@ -32,24 +33,18 @@ void add(compiled::Digester& d, const StraightLine& line) {
 }  // namespace
 
 std::pair<Code, CompileReport> compile(const std::vector<StraightLine>& lines, const CompileOptions& options) {
-  compiled::Digester digester;
+  machine_code::Digester digester;
   digester.add(lines.size());
   for (const StraightLine& line : lines) add(digester, line);
-  const compiled::Digest digest = digester.digest();
-  compiled::Request request;
-  request.emitter = compiled::Emitter::StraightLines;
+  machine_code::Request request;
+  request.emitter = machine_code::Emitter::StraightLines;
   request.source = &lines;
-  request.source_digest[0] = digest.high, request.source_digest[1] = digest.low;
-  request.effort = options.long_run ? 1 : 0;
-  request.processor = options.processor.c_str();
-  std::optional<compiled::ObjectCache> cache;
-  if (options.cache) cache.emplace(compiled::ObjectCache::usual_folder());
-  compiled::Compiled made = compiled::compile(request, cache ? &*cache : nullptr);
+  auto [made, report] = machine_code::compile(request, digester.digest(), options);
   Code code;
-  code.memory_ = made.code;
-  for (std::size_t i = 0; made.code && i < lines.size(); ++i) code.functions_.push_back(made.code->find("line" + std::to_string(i)));
-  return {std::move(code), {.compiled = made.code != nullptr, .trouble = std::move(made.trouble),
-                            .cache_trouble = std::move(made.cache_trouble), .from_cache = made.from_cache, .seconds = made.seconds}};
+  code.memory_ = made;
+  for (std::size_t i = 0; made && i < lines.size(); ++i)
+    code.functions_.push_back(made->find("line" + std::to_string(i)));
+  return {std::move(code), std::move(report)};
 }
 
 }  // namespace maupertuis::straight

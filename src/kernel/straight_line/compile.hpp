@@ -9,8 +9,8 @@
 
 namespace maupertuis::straight {
 
-/// Machine code of some straight lines: one function each, whose arguments are the line's arrays and last its scratch, see
-/// scratch_size(). Arrays do not overlap, except those of guarded lines.
+/// Machine code of some straight lines: one function each, whose arguments are the line's arrays and last its scratch,
+/// see scratch_size(). Arrays do not overlap, except those of guarded lines.
 class Code {
  public:
   Code() = default;

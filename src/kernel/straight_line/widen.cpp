@@ -20,7 +20,12 @@ using Lanes = std::vector<Value>;
 class Widening {
  public:
   Widening(const StraightLine& line, const Rearranged& read, const Rearranged& written)
-      : line_(line), read_(read), written_(written), place_in_part_(line.nodes.size(), 0), made_(line.nodes.size(), none), open_(line.nodes.size(), false) {}
+      : line_(line),
+        read_(read),
+        written_(written),
+        place_in_part_(line.nodes.size(), 0),
+        made_(line.nodes.size(), none),
+        open_(line.nodes.size(), false) {}
 
   std::optional<StraightLine> run() {
     find_parts();
@@ -65,7 +70,8 @@ class Widening {
     bool alike = correspond(v, x.a, w, y.a) && correspond(v, x.b, w, y.b);
     for (std::uint32_t i = 0; i < x.last - x.first; ++i) {
       const Term &s = line_.terms[x.first + i], &t = line_.terms[y.first + i];
-      alike = alike && s.factor == t.factor && correspond(v, s.a, w, t.a) && correspond(v, s.b, w, t.b) && correspond(v, s.c, w, t.c);
+      alike = alike && s.factor == t.factor && correspond(v, s.a, w, t.a) && correspond(v, s.b, w, t.b) &&
+              correspond(v, s.c, w, t.c);
     }
     return alike;
   }
@@ -88,18 +94,6 @@ class Widening {
     return out;
   }
 
-  template <class F>
-  void for_operands(Value v, F&& f) const {
-    const Node& n = node(v);
-    for (const Value w : {n.a, n.b, n.c})
-      if (w != none) f(w);
-    for (std::uint32_t i = n.first; i < n.last; ++i) {
-      if (lists_operands(n)) { f(line_.operands[i]); continue; }
-      for (const Value w : {line_.terms[i].a, line_.terms[i].b, line_.terms[i].c})
-        if (w != none) f(w);
-    }
-  }
-
   /// Whatever it needs first; false where that needs it itself.
   bool make(Value root) {
     for (Lanes stack{root}; !stack.empty();) {
@@ -107,7 +101,7 @@ class Widening {
       if (made_[v] != none) { stack.pop_back(); continue; }
       const std::size_t before = stack.size();
       for (const Value member : members(v))
-        for_operands(member, [&](Value w) {
+        for_operands(line_, node(member), [&](Value w) {
           if (made_[members(w).front()] == none) stack.push_back(w);
         });
       if (stack.size() == before) {
@@ -196,7 +190,8 @@ class Widening {
     const auto place = [&](const Lanes& lanes) {
       const std::vector<std::uint32_t> indices = indices_of(lanes);
       if (indices.empty() || indices[0] == indices[1]) return;
-      if (const auto free = read_.find(node(lanes[0]).array); free != read_.end()) free->second->place_together(indices);
+      if (const auto free = read_.find(node(lanes[0]).array); free != read_.end())
+        free->second->place_together(indices);
     };
     for (const Value v : parts_[0]) {
       for (std::uint32_t i = 0; i < node(v).last - node(v).first; ++i)
@@ -208,7 +203,7 @@ class Widening {
   Value gather(const Lanes& lanes) {
     std::vector<std::uint32_t> places = indices_of(lanes);
     for (std::uint32_t& place : places) place = place_of(read_, node(lanes[0]).array, place);
-    if (!places.empty() && follow_each_other(places)) return to_.wide_given(node(lanes[0]).array, places[0]);
+    if (!places.empty() && follow_each_other(places)) return to_.wide_given(node(lanes[0]).array, places[0], width());
     Lanes out;
     for (const Value v : lanes) out.push_back(single(v));
     return to_.gather(out);

@@ -6,7 +6,8 @@
 
 namespace maupertuis::straight {
 
-/// Where numbers of an array go whose order is known to two straight lines alone: what a lane each reads or writes goes side by side.
+/// Where numbers of an array go whose order is known to two straight lines alone: what a lane each reads or writes goes
+/// side by side.
 class Places {
  public:
   explicit Places(std::size_t size) : place_(size, none), top_(static_cast<std::uint32_t>(size)) {}
@@ -25,14 +26,18 @@ class Places {
 /// By array.
 using Rearranged = std::map<std::uint32_t, Places*>;
 
-/// The parts of `line` as one whose numbers are wide, a part a lane; nothing where they are not alike, or wait for each other. Alike are
-/// parts whose sums follow each other with the same terms, as far as these are of the part; all else that they read is gathered. Stores
-/// to numbers of `written` that have no place are left out: nobody reads them.
+/// Parts of a line that do the same with different numbers become one part whose numbers are vectors, a lane for each:
+///
+///     part 1:  x1 = a1 b1         part 2:  x2 = a2 b2               (x1 x2) = (a1 a2) (b1 b2)
+///              y1 = x1 + c                 y2 = x2 + c      →       (y1 y2) = (x1 x2) + (c c)
+///
+/// Parts are alike if their sums follow each other with the same terms, as far as these are of the part itself. What they
+/// read besides is the same for all, or is gathered from wherever it stands. Nothing comes back where parts are not
+/// alike, or wait for each other. Stores to numbers of `written` that have no place are left out: nobody reads them.
 std::optional<StraightLine> widen(const StraightLine& line, const Rearranged& read, const Rearranged& written);
 
-/// `line` for `lanes` right sides at once: its numbers of the arrays `read` and `written` stand for `lanes` numbers that follow each other. What depends on
-/// none of `read` is not stored.
-/// Precondition: nothing in it is wide.
+/// `line` for `lanes` right sides at once: its numbers of the arrays `read` and `written` stand for `lanes` numbers
+/// that follow each other. What depends on none of `read` is not stored. Precondition: nothing in it is wide.
 StraightLine in_columns(StraightLine line, std::uint32_t read, std::uint32_t written, std::uint32_t lanes);
 
 }  // namespace maupertuis::straight

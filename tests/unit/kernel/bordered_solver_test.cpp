@@ -1,4 +1,4 @@
-#include "kernel/jet/bordered_solver.hpp"
+#include "kernel/dense/bordered_solver.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-using maupertuis::jet::BorderedSolver;
+using maupertuis::dense::BorderedSolver;
 
 namespace {
 

@@ -70,7 +70,7 @@ TEST_CASE("up to 48 unknowns: −M₀⁻¹ by eight columns at once, times M in 
     Lifted code(build_kernel(rods.source));
     code.solve.compile({.cache = false, .processor = {}});
     const auto n = static_cast<std::size_t>(count), padded = (n + 7) / 8 * 8;
-    interpreter::Doubles inverse(padded * padded, 0.0);
+    reference::Doubles inverse(padded * padded, 0.0);
     for (unsigned seed = 1; seed <= 3; ++seed) {
       const Point p = random_point(n, seed);
       code.move_to(p);

@@ -34,7 +34,7 @@ TEST_CASE("the tangents of the stored slots come with the solution") {
   REQUIRE(lifted.solve.solve_first(lifted.memory, x));
   std::vector<double> tangents(lifted.memory.stride, 0.0);
   std::copy(x.begin(), x.end(), tangents.begin());
-  interpreter::tangents<1>(lifted.memory, tangents.data(), interpreter::moved_instructions(lifted.packed.program));
+  reference::tangents<1>(lifted.memory, tangents.data(), sparse::tangent_edges(lifted.packed.program));
   for (Slot slot = 0; slot < lifted.packed.program.stored_end[2]; ++slot)
     CHECK(lifted.solve.tangents(later)[slot] == doctest::Approx(tangents[slot]).epsilon(1e-11));
 }

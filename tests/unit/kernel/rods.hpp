@@ -1,6 +1,6 @@
 #pragma once
-#include "kernel/interpreter/lifted_solve.hpp"
-#include "kernel/packed/compiled.hpp"
+#include "kernel/workspace/lifted_solve.hpp"
+#include "kernel/packed/code.hpp"
 
 #include <doctest/doctest.h>
 #include <maupertuis/transform.hpp>
@@ -76,15 +76,15 @@ struct Lifted {
       : kernel(k), program(kernel.program()),
         strip(program.unknowns > packed::most_by_inverse ? sparse::strip_of(program) : sparse::Strip{}), packed(packed::pack(program, {strip.order, strip.whole})),
         memory(packed.program, 1 - program.first_stage, packed.cells), solve(program, strip, packed, memory.stride) {
-    interpreter::compute_constants(memory, one, {});
+    reference::compute_constants(memory, one, {});
     solve.set_constants(memory);
   }
   void move_to(const Point& p) {
-    interpreter::set_leaves(memory, 0, 1 - program.first_stage);
+    reference::set_leaves(memory, 0, 1 - program.first_stage);
     std::copy(p.q.begin(), p.q.end(), memory.row(0));
     std::copy(p.v.begin(), p.v.end(), memory.row(1));
     std::fill_n(memory.row(2), p.q.size(), 0.0);
-    for (int stage = program.first_stage; stage <= 0; ++stage) interpreter::run_section(memory, Dynamics, stage);
+    for (int stage = program.first_stage; stage <= 0; ++stage) reference::run_section(memory, Dynamics, stage);
   }
 
   bool factor() { return solve.has_pivots(memory) && solve.factor(memory); }
@@ -93,8 +93,8 @@ struct Lifted {
   const Program& program;
   sparse::Strip strip;
   packed::PackedProgram packed;
-  interpreter::Memory memory;
-  interpreter::LiftedSolve solve;
+  reference::Memory memory;
+  workspace::LiftedSolve solve;
 };
 
 /// One more coordinate, without inertia at 0: idle idle'' + 1 = 0.

@@ -98,7 +98,7 @@ TEST_CASE("shared sub-expressions are computed once, those of parameters outside
   Symbols s;
   Expr e = s.x;
   for (int i = 0; i < 200; ++i) e = sin(e) * e + e;
-  CHECK(build_function({{s.x}, {}, {e}}).size() == 600);
+  CHECK(build_function({{s.x}, {}, {e}}).size() == 400);  // a sine, and a sum with a product in it
   CHECK(build_function({{s.x}, {s.k}, {s.x * sin(s.k) * apply(Kind::Exp, s.k)}}).size() <= 2);
 }
 

@@ -30,6 +30,31 @@ TEST_CASE("zeros, ones and signs are folded") {
   CHECK(evaluate(line, {{5, 3}, {0}}).arrays[1][0] == -2);
 }
 
+TEST_CASE("values of several widths: what is gathered in order is the value itself, and a number where all lanes are the same") {
+  Builder to;
+  const Value a = to.wide_given(0, 0, 4), b = to.wide_given(0, 4, 2), x = to.given(0, 6);
+  CHECK(to.wide_given(0, 0, 4) == a);
+  CHECK(to.wide_given(0, 0, 2) != a);
+  const auto lanes = [&](Value v, const std::vector<std::uint32_t>& which) {
+    std::vector<Value> out;
+    for (const std::uint32_t i : which) out.push_back(to.lane(v, i));
+    return out;
+  };
+  CHECK(to.gather(lanes(a, {0, 1, 2, 3})) == a);
+  CHECK(to.gather(lanes(a, {0, 1})) != b);
+  CHECK(to.width(to.gather(lanes(a, {0, 1}))) == 2);
+  CHECK(to.gather(lanes(a, {1, 1, 1, 1})) == to.lane(a, 1));
+  CHECK(to.gather({x, x}) == x);
+  CHECK(to.lane(x, 1) == x);
+  const Value mixed = to.gather({to.lane(b, 1), x});
+  CHECK(to.gather({to.lane(b, 1), x}) == mixed);
+  CHECK(to.lane(mixed, 1) == x);
+  CHECK(to.width(to.sum({{1, x, b}, {2, b}})) == 2);
+  CHECK(to.width(to.sum({{1, x}}, none, a)) == 4);
+  CHECK(to.width(to.root(b)) == 2);
+  CHECK(to.width(to.sum({{1, x, x}})) == 1);
+}
+
 TEST_CASE("what nothing needs is not there; what is needed stands before its use, from the anchor on in the order of writing") {
   Builder to;
   const Value x = to.given(0, 0), a = to.product(2, x), unused = to.product(3, x, x);

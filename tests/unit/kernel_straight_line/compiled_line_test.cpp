@@ -1,5 +1,6 @@
 #include "../processors.hpp"
 #include "evaluate_line.hpp"
+#include "random_line.hpp"
 
 #include "kernel/straight_line/compile.hpp"
 
@@ -12,45 +13,6 @@
 
 using namespace maupertuis;
 using namespace maupertuis::straight;
-
-namespace {
-
-/// Sums of earlier nodes, of every kind, none of which leaves the numbers around 1.
-StraightLine random_line(unsigned seed, int length) {
-  std::mt19937 random(seed);
-  Builder to;
-  std::vector<Value> values;
-  for (std::uint32_t i = 0; i < 6; ++i) values.push_back(to.given(0, i));
-  const auto any = [&] { return values[values.size() - 1 - random() % std::min<std::size_t>(values.size(), 40)]; };
-  const auto bounded = [&](Value v) { return to.sines({v})[0].first; };
-  const auto factor = [&] { return std::vector<double>{1, -1, 0.5, -0.25}[random() % 4]; };
-  for (int i = 0; i < length; ++i) switch (random() % 9) {
-      case 0: values.push_back(bounded(to.sum({{factor(), any(), any()}, {factor(), any()}, {factor(), any(), any(), any()}}))); break;
-      case 1: values.push_back(bounded(to.sum({{factor(), any()}, {factor()}}, any(), to.sum({{1, any(), any()}, {2}})))); break;
-      case 2: values.push_back(bounded(to.magnitudes({{factor(), any(), any()}, {factor(), any()}}))); break;
-      case 3: values.push_back(to.larger(any(), any())); break;
-      case 4: values.push_back(to.choose(to.sum({{1, any()}, {-1, any()}}), any(), any())); break;
-      case 5: values.push_back(bounded(to.root(to.sum({{1, any(), any()}, {3}})))); break;
-      case 6: values.push_back(bounded(to.call(Kind::Exp, any()))); break;
-      case 7: {
-        std::vector<Value> angles;
-        for (unsigned k = 0; k <= random() % 8; ++k) angles.push_back(k < 6 && random() % 2 ? to.given(0, k) : any());
-        for (const auto& [sine, cosine] : to.sines(angles)) values.push_back(sine), values.push_back(cosine);
-        break;
-      }
-      default: {
-        const Value wide = to.wide({{factor(), any(), none, to.unit(random() % 8)}, {factor(), none, none, to.unit(3)}});
-        const Value next = to.wide({{0.5, any(), none, wide}, {factor(), any(), none, to.unit(5)}});
-        values.push_back(bounded(to.lane(next, 3))), values.push_back(to.lane(next, random() % 8));
-      }
-    }
-  for (std::uint32_t i = 0; i < 30; ++i) to.store(values[values.size() - 1 - 3 * i % values.size()], 1, i);
-  to.check({to.larger(values.back(), values[2]), to.literal(1), 1e-3});
-  to.require_finite(values.back());
-  return to.finish(2, 8, values[values.size() / 2]);
-}
-
-}  // namespace
 
 TEST_CASE("random lines, short ones and ones that are cut into functions, for this processor and lesser ones") {
   const std::vector<double> x{0.3, -0.7, 1.1, 0.9, -0.2, 0.5};
@@ -186,6 +148,25 @@ TEST_CASE("guarded lines store only where all went well, and last: results may g
       if (sound) CHECK(x == std::vector<double>{2, y[1], 3});
     }
   }
+}
+
+TEST_CASE("values of several widths, whose lanes come from one value, from two, and from anywhere") {
+  Builder to;
+  const Value a = to.wide_given(0, 0, 4), b = to.wide_given(0, 4, 4), pair = to.wide_given(0, 1, 2), x = to.given(0, 8);
+  const auto lane = [&](Value v, std::uint32_t i) { return to.lane(v, i); };
+  const Value turned = to.gather({lane(a, 3), lane(a, 2), lane(a, 1), lane(a, 0)});
+  const Value both = to.gather({lane(a, 1), lane(b, 2), lane(b, 0), lane(a, 3)});
+  const Value any = to.gather({lane(pair, 1), x, lane(a, 0), to.literal(7)});
+  to.store(to.sum({{2, turned, x}, {-1, both}, {1}}), 1, 0);
+  to.store(to.sum({{1, any}}, a, b), 1, 4);
+  to.store(to.root(to.gather({lane(b, 3), lane(pair, 0)})), 1, 8);
+  const auto [code, report] = compile({to.finish(2, 1, 0)}, {.cache = false});
+  REQUIRE_MESSAGE(code, report.trouble);
+  const std::vector<double> g{1, 2, 3, 4, 5, 6, 8, 9, 0.5};
+  std::vector<double> y(10), scratch(8);
+  code(0, g.data(), y.data(), scratch.data());
+  CHECK(y == std::vector<double>{4 - 2 + 1, 3 - 8 + 1, 2 - 5 + 1, 1 - 4 + 1, 3.0 * 1 / 5, 0.5 * 2 / 6, 1.0 * 3 / 8,
+                                 7.0 * 4 / 9, 3, std::sqrt(2.0)});
 }
 
 TEST_CASE("a line that is too long is declined in a sentence") {

@@ -1,3 +1,0 @@
-#include "kernel/dynamics/evaluate_code.hpp"
-
-maupertuis::dynamics::Evaluate maupertuis::dynamics::baseline_evaluate() { return evaluate; }

@@ -1,0 +1,119 @@
+#pragma once
+#include "kernel/reference/reference.hpp"
+#include "kernel/packed/layout.hpp"
+#include "kernel/sparse/graph_product.hpp"
+#include "kernel/sparse/parts.hpp"
+#include "kernel/sparse/sparse_solver.hpp"
+#include "kernel/straight_line/compile.hpp"
+
+#include <optional>
+
+namespace maupertuis::workspace {
+
+using reference::Doubles;
+using reference::Memory;
+
+/// M₀ x = b for systems so large that a full M₀ costs more. M₀ of a chain is full, but it is what is left of a sparse
+/// matrix when the points between q̈ and the residual are eliminated: that larger system (sparse::LiftedSystem) is solved in
+/// place of M₀, at a cost that grows as the number of links.
+///
+/// Its pivots are chosen once, and may become small where the motion goes. So the first solution of each step is put into
+/// the equations again. What it leaves of b decides: the step is solved here, perhaps with a correction of each solution;
+/// or by the full matrix, which alone tells what is singular.
+class LiftedSolve {
+ public:
+  /// `program`: as it was before it was packed; `strip`: by which it was.
+  LiftedSolve(const Program& program, const sparse::Strip& strip, const packed::PackedProgram& packed,
+              std::size_t stride);
+
+  void set_constants(const Memory& memory);
+  /// From then on solutions are machine code, made whenever pivots are chosen; where that cannot be the loops go on.
+  void compile(const CompileOptions& options);
+  /// Of the pivots in use; nothing where no code was asked for, or no pivots are chosen yet.
+  const std::optional<CompileReport>& compile_report() const { return report_; }
+  /// For each point that `memory` holds at order 0, first of all; false: there are no acceptable pivots, and the full
+  /// matrix is to decide.
+  bool has_pivots(const Memory& memory);
+  /// The factors at the point; false: the full matrix is to decide.
+  bool factor(const Memory& memory);
+  /// The first solution after factor(), as in solve(), and corrected if it is rough; false: it does not hold, and the
+  /// full matrix is to decide; b is as it was.
+  bool solve_first(const Memory& memory, std::span<double> b);
+  /// Without factor(): −M₀⁻¹, [padded × padded] with padded = unknowns rounded up to a multiple of 8, aligned to 64
+  /// bytes; what is beyond the unknowns has to be 0, and stays so. Up to 48 unknowns a product with it takes less than
+  /// a solution. Nothing is checked. False: there is no code for that.
+  bool negative_inverse(const Memory& memory, double* inverse);
+  /// b → q̈_k and λ_k in place.
+  void solve(std::span<double> b);
+  /// Whether the solutions of a stage are good as they come.
+  bool is_direct(int stage) const { return !refines_ && !is_rough(stage); }
+  /// M₀ x = R as it stands in a row of the packed program: x and the tangents in its direction, slot by slot.
+  const double* solve_row(const double* row);
+  /// Whether that gives x also in the cells of blocks that copy coordinates.
+  bool solves_for_copies() const { return bool{code_}; }
+  /// In the direction of the last solution, of a stage, those of the stored slots of the packed program; null where
+  /// they are too rough.
+  const double* tangents(int stage) const { return is_rough(stage) ? nullptr : cells_.data(); }
+  /// A solution in parts leaves up to 40 times as much of b as one from link to link, since it closes the gaps between
+  /// parts by forces, which are large where a chain is heavy. A motion depends on its orders the less the higher they
+  /// are: q̈₀ is to be solved for twice, and its tangents found from it. (With q̈₁ solved for twice as well, energies err
+  /// by as much.)
+  bool is_rough(int stage) const { return in_parts_ && stage == 0; }
+
+  /// The smallest pivot in units of its terms and of its size where the pivots were chosen; by code 1 where all are
+  /// sound, else 0.
+  double least_pivot() const { return least_pivot_; }
+  /// Nothing before the first factor(), and where there are no pivots.
+  const sparse::SparseSolver* solver() const { return solver_ ? &*solver_ : nullptr; }
+
+ private:
+  bool fail();
+  void assemble(const Memory& memory);
+  bool choose_pivots(const Memory& memory);
+  double remainder(std::span<const double> b);
+  void add_correction();
+  bool make_code(std::span<const double> sample);
+  using Parts = std::vector<std::vector<std::uint32_t>>;
+  bool choose_parts(const std::vector<std::vector<double>>& samples, const std::vector<sparse::Pivot>& pivots);
+  bool try_parts(const std::vector<std::vector<double>>& samples, const Parts& parts);
+  using AllWanted = std::vector<sparse::SparseSolver::Wanted>;
+  AllWanted wanted() const;
+  bool is_symmetric(std::span<const double> sample);
+  sparse::EntryWriter entries_in_line() const;
+  straight::StraightLine columns();
+  bool compile_lines(const std::vector<straight::StraightLine>& lines);
+  void drop_solver();
+  void run_factor(const Memory& memory);
+  void run_solve(std::span<const double> b, double* x);
+
+  const Program& program_;
+  const sparse::Strip& strip_;
+  std::size_t stored_;                           // cells that tangents() gives
+  std::optional<sparse::LiftedSystem> system_;
+  std::optional<sparse::Assembly> assembly_;
+  std::optional<sparse::GraphProduct> product_;
+  std::optional<sparse::SparseSolver> solver_;
+  std::vector<std::uint32_t> places_;            // [unknowns] of the residual in a row
+  std::vector<std::uint32_t> cell_of_column_;    // [columns] slots of the packed program, then cells of their own
+  AllWanted copies_;                             // of q̈ in the cells of blocks
+  std::vector<Slot> number_;                     // [slots] in a row of the packed program
+  std::vector<double> entries_;                  // [entries]
+  bool has_entries_ = false;                     // of this point
+  std::vector<double> residual_;                 // [unknowns] b − M₀ x
+  Doubles cells_, change_;                       // [stride + columns]
+  Doubles row_;                                  // [stride] b, where code reads it
+  double least_pivot_ = 1;
+  bool refines_ = false;                         // each solution of this step
+  int failures_ = 0;
+  std::optional<CompileOptions> options_;        // of the code that is wanted
+  std::optional<CompileReport> report_;
+  /// of the solver's solve(), then of what is named here, where it is not 0
+  straight::Code code_;
+  std::size_t factor_line_ = 0, columns_line_ = 0;
+  /// of negative_inverse(), [eights of columns]: eights of rows that are found there, but not the other way round
+  std::vector<std::vector<std::size_t>> mirrored_;
+  bool in_parts_ = false, parts_failed_ = false;
+  std::vector<double> scratch_;                  // of the code
+};
+
+}  // namespace maupertuis::workspace

@@ -1,0 +1,183 @@
+#include "kernel/workspace/workspace.hpp"
+
+#include <maupertuis/require.hpp>
+
+#include <algorithm>
+#include <array>
+
+/// The structured Taylor step (docs/design/kernel_program.md). Stage k finds q_{k+2}: with it set to 0 the residual is
+/// evaluated at order k, M₀ q̈_k = −R_k gives the acceleration, and every coefficient that later orders read is
+/// corrected by its derivative in the direction of q̈_k, which is that of order 0 up to a factor.
+namespace maupertuis {
+
+using workspace::StageSolver;
+
+KernelWorkspace::Impl::Impl(const Kernel& kernel, int order)
+    : expansion(kernel, order),
+      solver(expansion, in_code),
+      at_point(expansion.program),
+      corrects_points(outputs_follow_accelerations()) {}
+
+/// Whether an output at a point, or what it is computed from after the solve, is corrected in row 0.
+bool KernelWorkspace::Impl::outputs_follow_accelerations() const {
+  const Program& program = expansion.program;
+  const auto follows = [&](Slot slot) {
+    return slot != no_slot && slot >= program.unknowns && program.tangent_lags[slot] == 2;
+  };
+  for (const auto* slots : {&program.switch_slots, &program.events, &program.observables, &program.integrands,
+                            &program.constraint_values, &program.constraint_rates})
+    if (std::any_of(slots->begin(), slots->end(), follows)) return true;
+  return !program.runs[Along].empty() || at_point.follows_acceleration();
+}
+
+KernelStatus KernelWorkspace::Impl::run(double t, std::span<const double> q, std::span<const double> v, int stages) {
+  workspace::Expansion& x = expansion;
+  MAUP_REQUIRE(q.size() == x.program.freedoms && v.size() == x.program.freedoms);
+  if (x.compute_constants()) solver.constants_changed();
+  x.last_stage = stages - 1;
+  solver.begin(stages == 1 && !corrects_points);
+  if (x.program.time != no_slot) x.memory.row(0)[x.program.time] = t;
+  double *const position = x.memory.row(0), *const velocity = x.memory.row(1);
+  for (std::size_t i = 0; i < q.size(); ++i) position[i] = q[i], velocity[i] = v[i];
+  if (run_unrolled(q, v, stages)) return KernelStatus::Ok;
+  run_first_stages();
+  if (const auto status = solver.factor(stages); status != KernelStatus::Ok) return without_solution(status);
+  for (int stage = 0; stage < stages; ++stage) {
+    if (stage > 0 && runs_on()) return run_later_stages(stages) ? KernelStatus::Ok : KernelStatus::NonFinite;
+    if (stage == 0 || !solver.solve_directly(stage, [&] { run_stage(stage); }))
+      if (const auto status = run_step_by_step(stage); status != KernelStatus::Ok)
+        return stage > 0 ? status : without_solution(status);
+    if (!in_code.code.later || !runs_on()) renew_blocks(stage, stages);
+    run_along(stage);
+  }
+  const bool has_looked = solver.later() == StageSolver::LaterStages::StepByStep;
+  return has_looked || solver.are_coefficients_finite(stages) ? KernelStatus::Ok : KernelStatus::NonFinite;
+}
+
+/// Unrolled code. False: there is none for this, or its results are not to be trusted.
+bool KernelWorkspace::Impl::run_unrolled(std::span<const double> q, std::span<const double> v, int stages) {
+  workspace::Expansion& x = expansion;
+  if (!in_code.code.expand || stages != x.order) return false;
+  std::array<double, 8> scratch;
+  in_code.code.expand(x.memory.rows.data(), q.data(), v.data(), x.lane_coefficients.data(), x.memory.constants.data(),
+                      scratch.data());
+  if (!straight::sound(scratch.data())) return false;
+  solver.forget_point();
+  const bool is_over = x.program.runs[Along].empty();
+  if (is_over && at_point.empty()) return true;
+  for (int stage = x.program.first_stage; stage < (is_over ? 1 : stages); ++stage) run_along(stage);
+  return true;
+}
+
+/// Up to 0, but for its solution.
+void KernelWorkspace::Impl::run_first_stages() {
+  workspace::Expansion& x = expansion;
+  std::fill_n(x.memory.row(2), x.padded_unknowns(), 0.0);
+  const auto first = in_code.code.first;
+  if (first) first(&in_code.arguments);
+  for (int stage = x.program.first_stage; stage <= 0; ++stage) {
+    if (!first) {
+      x.engine.run_stage(x.tables, stage);
+      if (stage < 0) x.engine.renew_blocks(x.tables, stage);
+    }
+    if (stage < 0) run_along(stage);
+  }
+}
+
+/// Switch functions have values where forces have none, and tell the sides on which these have: log|x| on the wrong
+/// side of 0.
+KernelStatus KernelWorkspace::Impl::without_solution(KernelStatus status) {
+  if (!expansion.program.runs[Along].empty()) reference::run_section(expansion.memory, Along, 0);
+  return status;
+}
+
+/// With a look at the solution before it is used.
+KernelStatus KernelWorkspace::Impl::run_step_by_step(int stage) {
+  in_code.arguments.has_copies = 0;
+  if (stage > 0) run_stage(stage);
+  return solver.solve_and_look(stage);
+}
+
+/// Whether all stages from 1 on run in one go.
+bool KernelWorkspace::Impl::runs_on() const {
+  return solver.later() == StageSolver::LaterStages::ByInverse &&
+         (!in_code.code.stage || (in_code.code.later && expansion.program.runs[Along].empty()));
+}
+
+/// False: a q̈ is not finite.
+bool KernelWorkspace::Impl::run_later_stages(int stages) {
+  if (in_code.code.later) return in_code.code.later(&in_code.arguments, stages) == 1;
+  const workspace::Expansion& x = expansion;
+  const packed::InverseSolution solution = solver.inverse_solution();
+  if (x.program.runs[Along].empty()) return x.engine.run_stages_by_inverse(x.tables, solution, 1, stages, false);
+  bool finite = true;
+  for (int stage = 1; stage < stages; ++stage) {
+    finite &= x.engine.run_stages_by_inverse(x.tables, solution, stage, stage + 1, stage + 1 < stages);
+    run_along(stage);
+  }
+  return finite;
+}
+
+/// From 1 on, with q_{k+2} = 0.
+void KernelWorkspace::Impl::run_stage(int stage) {
+  if (in_code.code.stage) return in_code.code.stage(&in_code.arguments, stage);
+  expansion.engine.run_stage(expansion.tables, stage);
+}
+
+/// What no stage follows needs no copies.
+void KernelWorkspace::Impl::renew_blocks(int stage, int stages) {
+  if (stage + 1 >= stages) return;
+  if (in_code.code.stage) in_code.code.ahead(&in_code.arguments, stage);
+  else expansion.engine.renew_blocks(expansion.tables, stage);
+}
+
+/// What follows the solution of a stage.
+void KernelWorkspace::Impl::run_along(int stage) {
+  if (!expansion.program.runs[Along].empty()) reference::run_section(expansion.memory, Along, stage);
+  if (stage <= 0) at_point.run(expansion.memory, stage);
+}
+
+// ------------------------------------------------------------------------------------------------------- the workspace
+
+KernelWorkspace::KernelWorkspace(const Kernel& kernel, int order) : impl_(std::make_unique<Impl>(kernel, order)) {
+  MAUP_REQUIRE(order >= 1);
+}
+
+KernelWorkspace::~KernelWorkspace() = default;
+KernelWorkspace::KernelWorkspace(KernelWorkspace&&) noexcept = default;
+
+CompileReport KernelWorkspace::compile(const CompileOptions& options) {
+  Impl& s = *impl_;
+  if (s.expansion.unknowns == 0) return {.trouble = "there are no coordinates, and so no equations to compile"};
+  s.solver.compile(options);
+  auto [code, report] = workspace::compile(s.expansion.packed, s.expansion.order, s.expansion.memory.stride, options);
+  if (code.memory) {
+    s.in_code.adopt(std::move(code), s.expansion);
+    s.solver.adopt_code();
+  }
+  return report;
+}
+
+void KernelWorkspace::set_parameters(std::span<const double> values) {
+  workspace::Expansion& x = impl_->expansion;
+  MAUP_REQUIRE(values.size() == x.parameters.size());
+  x.parameters.assign(values.begin(), values.end());
+  x.stale = true;
+}
+
+void KernelWorkspace::set_branches(std::span<const std::int8_t> sides) {
+  workspace::Expansion& x = impl_->expansion;
+  MAUP_REQUIRE(sides.size() == x.sides.size());
+  x.stale = x.stale || !std::equal(sides.begin(), sides.end(), x.sides.begin());
+  x.sides.assign(sides.begin(), sides.end());
+}
+
+KernelStatus KernelWorkspace::expand(double t, std::span<const double> q, std::span<const double> v) {
+  return impl_->run(t, q, v, impl_->expansion.order);
+}
+
+KernelStatus KernelWorkspace::evaluate(double t, std::span<const double> q, std::span<const double> v) {
+  return impl_->run(t, q, v, 1);
+}
+
+}  // namespace maupertuis
