@@ -15,7 +15,8 @@ void sine_cosine(const double* x, double* out, int count) {
 
 /// What packs of a stage have in common.
 struct Stage {
-  Stage(const Tables& tables, int number) : t(tables), stage(number), newest(tables.orders + (number + 2)) {}
+  Stage(const Tables& tables, int number)
+      : t(tables), stage(number), by_sums(has_sums_ahead(number)), newest(tables.orders + (number + 2)) {}
 
   /// Of slots of that lag; not below 0.
   const Order& order_of(int lag) const { return *(newest - lag); }
@@ -25,6 +26,7 @@ struct Stage {
 
   const Tables& t;
   int stage;
+  bool by_sums;                          // that were made ahead
   const Order* newest;                   // of lag 0
 };
 
@@ -32,10 +34,20 @@ struct Stage {
 
 [[gnu::noinline]] Vector gathered(const double* row, const Block& block) { return gather(row, block.slots.data()); }
 
+/// One permutation, where the processor has it and two vectors hold all; eight loads else.
+inline Vector values_at(const double* row, const Block& block) {
+  if (block.is_range) return load(row + block.slots[0]);
+#ifdef __AVX512F__
+  if (block.in_two_vectors)
+    return __builtin_shuffle(load(row + block.vectors[0]), load(row + block.vectors[1]), places_of(block));
+#endif
+  return gathered(row, block);
+}
+
 /// A block that is not direct: from slots of a row to its cells of the same row.
 inline void copy(const Stage& s, const Block& block) {
   const Order& order = s.order_of(block.lag);
-  const Vector values = block.is_range ? load(order.row + block.slots[0]) : gathered(order.row, block);
+  const Vector values = values_at(order.row, block);
   save(order.row + block.first, block.weighted ? values * all(order.number) : values);
 }
 
@@ -65,7 +77,8 @@ inline void bring(const Stage& s, const Pack& pack, std::uint32_t index) {
 inline Vector columns(const Stage& s, const Pack& pack) {
   Vector sum = all(0);
   const Order& order = s.order_of(pack.lag);
-  for (const ColumnRun *run = s.t.runs + pack.first_run, *last = s.t.runs + pack.last_run; run != last; ++run) {
+  const std::uint32_t first_run = s.stage > 0 ? pack.first_later_run : pack.first_run;
+  for (const ColumnRun *run = s.t.runs + first_run, *last = s.t.runs + pack.last_run; run != last; ++run) {
     const Column& first = s.t.columns[run->first];
     const double* const from = order.row + run->shift * s.t.stride;
     const double* const coefficients = s.t.coefficients + first.coefficients;
@@ -92,26 +105,40 @@ Vector square(const Stage& s, const double* a, int k, int first) {
   return sum;
 }
 
-inline Vector product(const Stage& s, const ProductTerm& term, int k) {
-  const double* const a = s.cells(term.a);
-  return term.a == term.b ? square(s, a, k, 0)
-                          : convolution(a, s.cells(term.b), k, static_cast<std::ptrdiff_t>(s.t.stride));
+inline Vector product(const Stage& s, const Convolution& c, int k) {
+  const double *const a = s.t.rows + c.first_a, *const b = s.t.rows + c.first_b;
+  return a == b ? square(s, a, k, 0) : convolution(a, b, k, static_cast<std::ptrdiff_t>(s.t.stride));
 }
 
 /// Σ_{j=1..k} a_j b_{k−j}
-inline Vector without_first(const Stage& s, std::uint32_t a, std::uint32_t b, int k) {
+inline Vector without_first(const Stage& s, const Convolution& c, int k) {
   const auto stride = static_cast<std::ptrdiff_t>(s.t.stride);
-  return k == 0 ? all(0) : convolution(s.cells(a) + stride, s.cells(b), k - 1, stride);
+  return k == 0 ? all(0) : convolution(s.t.rows + c.first_a + stride, s.t.rows + c.first_b, k - 1, stride);
+}
+
+inline bool goes_by_sum(const Stage& s, const Convolution& c) { return s.by_sums && c.goes_ahead; }
+
+/// A convolution by the sum that was made ahead.
+inline Vector completed(const Stage& s, const Convolution& c, int k) {
+  if (c.copies_a) copy(s, s.t.blocks[c.a]);
+  if (c.copies_b) copy(s, s.t.blocks[c.b]);
+  return completed_sum(s.t, c, s.stage, k);
 }
 
 // -------------------------------------------------------------------------------------------------------------- packs
 
-inline Vector sum_of_pack(const Stage& s, const Pack& pack, const Order& order) {
+[[gnu::noinline]] Vector sum_of_pack(const Stage& s, const Pack& pack, const Order& order) {
   Vector result = columns(s, pack);
-  for (const ProductTerm *term = s.t.products + pack.first_product, *last = s.t.products + pack.last_product;
-       term != last; ++term) {
-    bring(s, pack, term->a), bring(s, pack, term->b);
-    result += load(s.t.coefficients + term->coefficients) * product(s, *term, order.number);
+  const ProductTerm* term = s.t.products + pack.first_product;
+  for (const Convolution *c = s.t.convolutions + pack.first_convolution, *last = s.t.convolutions + pack.last_convolution;
+       c != last; ++c, ++term) {
+    const Vector factor = load(s.t.coefficients + term->coefficients);
+    if (goes_by_sum(s, *c)) {
+      result += factor * completed(s, *c, order.number);
+    } else {
+      bring(s, pack, c->a), bring(s, pack, c->b);
+      result += factor * product(s, *c, order.number);
+    }
   }
   return result;
 }
@@ -134,24 +161,32 @@ inline Vector sum_of_pack(const Stage& s, const Pack& pack, const Order& order) 
 
 /// 1/k comes with its residue: a rounded reciprocal would err the same way in every step. The integral at order k reads
 /// w up to order k − 1, where it is final.
-inline void integral(const Stage& s, const Pack& pack, const Order& order) {
-  bring(s, pack, pack.a);
+[[gnu::noinline]] void integral(const Stage& s, const Pack& pack, const Order& order) {
+  const Convolution& c = s.t.convolutions[pack.first_convolution];
+  const bool by_sum = goes_by_sum(s, c);
+  if (!by_sum) bring(s, pack, pack.a);
   if (order.number == 0) return functions(s.t, pack);
-  const Vector sum = without_first(s, pack.a, pack.b, order.number) * load(s.t.coefficients + pack.coefficients);
+  const Vector sum = (by_sum ? completed(s, c, order.number) : without_first(s, c, order.number)) *
+                     load(s.t.coefficients + pack.coefficients);
   save(order.row + pack.out, sum * all(order.reciprocal.rest) + sum * all(order.reciprocal.leading));
 }
 
-inline Vector quotient(const Stage& s, const Pack& pack, const Order& order) {
+[[gnu::noinline]] Vector quotient(const Stage& s, const Pack& pack, const Order& order) {
+  const Convolution& c = s.t.convolutions[pack.first_convolution];
   bring(s, pack, pack.a), bring(s, pack, pack.b);
-  return (load(s.cells(pack.a) + order.offset) - without_first(s, pack.b, pack.y, order.number)) /
-         load(s.cells(pack.b));
+  const Vector sum = goes_by_sum(s, c) ? completed(s, c, order.number) : without_first(s, c, order.number);
+  return (load(s.cells(pack.a) + order.offset) - sum) / load(s.cells(pack.b));
 }
 
-inline Vector square_root(const Stage& s, const Pack& pack, const Order& order) {
+[[gnu::noinline]] Vector square_root(const Stage& s, const Pack& pack, const Order& order) {
+  const Convolution& c = s.t.convolutions[pack.first_convolution];
   bring(s, pack, pack.a);
   Vector u = load(s.cells(pack.a) + order.offset);
   const double* const y = s.cells(pack.y);
-  if (order.number > 0) return (u - square(s, y, order.number, 1)) / (load(y) + load(y));
+  if (order.number > 0) {
+    const Vector sum = goes_by_sum(s, c) ? completed(s, c, order.number) : square(s, y, order.number, 1);
+    return (u - sum) / (load(y) + load(y));
+  }
   for (unsigned lane = 0; lane < lanes; ++lane) u[lane] = __builtin_sqrt(u[lane]);
   return u;
 }
@@ -160,7 +195,8 @@ inline void run_pack(const Stage& s, const Pack& pack) {
   const Order& order = s.order_of(pack.lag);
   double *const row = order.row, *const out = row + pack.out;
   switch (pack.kind) {
-    case Pack::Sum: return save(out, sum_of_pack(s, pack, order));
+    case Pack::Sum:
+      return save(out, pack.first_convolution == pack.last_convolution ? columns(s, pack) : sum_of_pack(s, pack, order));
     case Pack::Scan: return save(out, running_sum(columns(s, pack)) + carry_of(pack.carry, row));
     case Pack::ScanDown: return save(out, running_sum_down(columns(s, pack)) + carry_of(pack.carry, row));
     case Pack::Strand: return save(out, columns(s, pack) + (pack.carry == no_slot ? all(0) : load(row + pack.carry)));
@@ -188,6 +224,7 @@ void run_stage(const Tables& tables, int stage) {
 inline void renew(const Stage& s) {
   for (const Block *block = s.t.blocks, *last = s.t.blocks + s.t.block_count; block != last; ++block)
     if (!block->direct && s.has_order_of(block->lag)) copy(s, *block);
+  if (begins_sums_ahead(s.stage)) make_sums_ahead(s.t, s.stage);
 }
 void renew_blocks(const Tables& tables, int stage) { renew(Stage(tables, stage)); }
 

@@ -25,6 +25,10 @@ struct Block {
   std::uint32_t width = 0;
   std::array<Slot, lanes> slots{};      // what is copied
   bool is_range = false;                // … is side by side
+  /// … lies in two vectors of a row: where these begin, and of each lane its place in them, 0 … 15.
+  bool in_two_vectors = false;
+  std::array<Slot, 2> vectors{};
+  std::array<long long, lanes> places{};
 };
 
 /// Σ over columns: coefficient of the lane · dʳ/dtʳ of an operand.
@@ -50,6 +54,19 @@ struct ColumnRun {
 struct ProductTerm {
   std::uint32_t a = 0, b = 0;           // blocks
   std::uint32_t coefficients = 0;
+};
+
+/// Σ_j a_j b_{m−j} of a pack of lag ℓ, which finds m = k + 2 − ℓ at stage k. The engine and rolled code make these sums
+/// for several stages at once (`engine_ahead.hpp`), of all that is final, and leave what is newer to the stages.
+struct Convolution {
+  std::uint32_t a = 0, b = 0;           // blocks
+  std::int8_t lag = 0;                  // ℓ
+  std::int8_t a_ahead = 0, b_ahead = 0; // ℓ − lag of the operand: by so many orders it is known earlier
+  bool goes_ahead = false;              // both are 0 … ℓ; functions of t alone may be known earlier still
+  /// No a_m b_0, or no a_0 b_m: a stage finds that operand itself, or it is of coordinates, which count as 0.
+  bool lacks_newest_a = false, lacks_newest_b = false;
+  bool copies_a = false, copies_b = false;  // a stage has to copy the newest first, as it is not final
+  Slot first_a = 0, first_b = 0;        // cells of the operands
 };
 
 /// Up to eight results side by side.
@@ -87,6 +104,8 @@ struct Pack {
   Slot out = 0;                         // first of `lanes` slots, beginning at a multiple of it (not for Scalar)
   std::uint32_t first_column = 0, last_column = 0, first_product = 0, last_product = 0;  // Sum
   std::uint32_t first_run = 0, last_run = 0;  // Sum and Scan: the columns, run by run
+  std::uint32_t first_later_run = 0;    // from stage 1 on: without what the number 1 gives
+  std::uint32_t first_convolution = 0, last_convolution = 0;  // of a Sum one a product
   /// Sum: the same columns by their place in the sums, for compiled code
   std::uint32_t first_aligned = 0, last_aligned = 0;
   /// Integral: u (weighted), w; Quotient: a, b, y; SquareRoot: u, –, y
@@ -110,6 +129,7 @@ struct PackedProgram {
   std::vector<Column> columns;
   std::vector<ColumnRun> runs;
   std::vector<ProductTerm> products;
+  std::vector<Convolution> convolutions;
   std::vector<std::uint32_t> functions; // indices of instructions
   std::vector<ConstantId> coefficients; // of lanes that are not in use: the constant 0
 

@@ -13,34 +13,45 @@ inline double minus(double sum, double a, double b) {
 #endif
 }
 
-/// Products below 0: as many as the run has.
-template <int Products, bool Starts>
-void sums(const SweepTables& t, const SumRun& run, double* x) {
-  const int count = Products >= 0 ? Products : static_cast<int>(run.products);
-  const double* factor = t.factors + run.first_product;
-  const std::uint32_t* operand = t.operand + run.first_product;
-  for (std::uint32_t i = run.first; i < run.last; ++i, factor += count, operand += count) {
-    double sum = Starts ? t.scale[i] * x[t.target[i]] : 0;
-    for (int k = 0; k < count; ++k) sum = minus(sum, -factor[k], x[operand[k]]);
-    x[t.target[i]] = sum;
+void one_by_one(const SweepTables& t, const SweepRun& run, double* x) {
+  const double *scale = t.scale + run.first, *factor = t.factors + t.sums[run.first].first;
+  const std::uint32_t* operand = t.operand + t.sums[run.first].first;
+  for (const SweepSum *sum = t.sums + run.first, *last = t.sums + run.last; sum != last; ++sum, ++scale) {
+    double value = sum->starts ? *scale * x[sum->target] : 0;
+    for (const std::uint32_t* const end = t.operand + sum->last; operand != end; ++operand, ++factor)
+      value = minus(value, -*factor, x[*operand]);
+    x[sum->target] = value;
   }
 }
 
-template <bool Starts>
-void sums(const SweepTables& t, const SumRun& run, double* x) {
-  switch (run.products) {
-    case 0: return sums<0, Starts>(t, run, x);
-    case 1: return sums<1, Starts>(t, run, x);
-    case 2: return sums<2, Starts>(t, run, x);
-    case 3: return sums<3, Starts>(t, run, x);
-    case 4: return sums<4, Starts>(t, run, x);
-    default: return sums<-1, Starts>(t, run, x);
+template <int Sides, bool Starts>
+void recurrence(const SweepTables& t, const SweepRun& run, double* x) {
+  const SweepSum *sum = t.sums + run.first, *const last = t.sums + run.last;
+  const double *scale = t.scale + run.first, *factor = t.factors + sum->first;
+  double side[Sides], joint = x[t.operand[sum->first + 1]];
+  for (int j = 0; j < Sides; ++j) side[j] = x[t.operand[sum[j].first]];
+  for (; sum != last; sum += Sides + 1, scale += Sides + 1, factor += 3 * Sides + 1) {
+    double next = scale[Sides] * x[sum[Sides].target];
+    for (int j = 0; j < Sides; ++j) {
+      const double without_joint = minus(Starts ? scale[j] * x[sum[j].target] : 0, -factor[2 * j], side[j]);
+      next = minus(next, -factor[2 * Sides + j], without_joint);
+      x[sum[j].target] = side[j] = minus(without_joint, -factor[2 * j + 1], joint);
+    }
+    x[sum[Sides].target] = joint = minus(next, -factor[3 * Sides], joint);
   }
 }
+
+using RunSums = void (*)(const SweepTables&, const SweepRun&, double* x);
+/// By the number of sides, and whether these start at a value.
+constexpr RunSums run_sums[][2] = {{one_by_one, one_by_one},
+                                   {recurrence<1, false>, recurrence<1, true>},
+                                   {recurrence<2, false>, recurrence<2, true>},
+                                   {recurrence<3, false>, recurrence<3, true>},
+                                   {recurrence<4, false>, recurrence<4, true>}};
 
 void sweep(const SweepTables& t, double* x) {
-  for (const SumRun* run = t.runs; run != t.last_run; ++run)
-    run->starts ? sums<true>(t, *run, x) : sums<false>(t, *run, x);
+  for (const SweepRun* run = t.runs; run != t.last_run; ++run)
+    run_sums[run->sides][t.sums[run->first].starts](t, *run, x);
 }
 
 double size(double x) { return __builtin_fabs(x); }
