@@ -25,7 +25,7 @@ inline bool has_sums_ahead(int stage) { return makes_sums_ahead && stage > rolle
 constexpr int left_out(int r, int ahead) { return r + 1 > ahead ? r + 1 - ahead : 0; }
 
 inline double* sum_ahead(const Tables& t, const Convolution& c, int r) {
-  return t.sums + ((&c - t.convolutions) * rolled_group + r) * static_cast<std::ptrdiff_t>(lanes);
+  return t.sums + (c.number * rolled_group + static_cast<std::size_t>(r)) * lanes;
 }
 
 /// For j from 4 up to what is final, a_j meets a window of four coefficients of b that slides by one.
@@ -67,15 +67,17 @@ void make_sums_ahead(const Tables& t, int stage) {
     if (c->goes_ahead) make_sums_of[c->a_ahead][c->b_ahead](t, *c, stage);
 }
 
-/// With the terms that were left to this stage.
-inline Vector completed_sum(const Tables& t, const Convolution& c, int stage, int k) {
+/// sum + Σ_i x_{k−i} y_i of the terms that were left to this stage, the newest last.
+inline Vector add_end(Vector sum, const double* x, const double* y, int first, int count, std::ptrdiff_t stride) {
+  for (int i = count - 1; i >= first; --i) sum += load(x - i * stride) * load(y + i * stride);
+  return sum;
+}
+
+inline Vector completed_sum(const Tables& t, const Convolution& c, int r, std::ptrdiff_t offset) {
   const auto stride = static_cast<std::ptrdiff_t>(t.stride);
   const double *const a = t.rows + c.first_a, *const b = t.rows + c.first_b;
-  const int r = (stage - 1) % rolled_group;
-  Vector sum = load(sum_ahead(t, c, r));
-  for (int i = c.lacks_newest_a; i < left_out(r, c.a_ahead); ++i) sum += load(a + (k - i) * stride) * load(b + i * stride);
-  for (int i = c.lacks_newest_b; i < left_out(r, c.b_ahead); ++i) sum += load(b + (k - i) * stride) * load(a + i * stride);
-  return sum;
+  const Vector sum = add_end(load(sum_ahead(t, c, r)), a + offset, b, c.lacks_newest_a, r + 1 - c.a_ahead, stride);
+  return add_end(sum, b + offset, a, c.lacks_newest_b, r + 1 - c.b_ahead, stride);
 }
 
 }  // namespace

@@ -210,8 +210,11 @@ class Packs {
     for (ReadColumn& read : found) {
       const auto at = static_cast<std::uint32_t>(out_.columns.size());
       if (at == pack.first_column || key(read.column) != key(out_.columns.back()))
-        out_.runs.push_back({read.column.kind, read.column.shift, passes_tangent(read.column, pack.lag), at, at,
-                             read.column.kind == Column::Broadcast});
+        out_.runs.push_back({.kind = read.column.kind, .shift = read.column.shift,
+                             .passes_tangent = passes_tangent(read.column, pack.lag), .first = at, .last = at,
+                             .source = read.column.source,
+                             .coefficients = static_cast<std::uint32_t>(out_.coefficients.size()),
+                             .neighbours = read.column.kind == Column::Broadcast});
       ColumnRun& run = out_.runs.back();
       run.neighbours = run.neighbours &&
                        (run.first == at || read.column.source == out_.columns[run.first].source + (at - run.first));
@@ -281,6 +284,17 @@ class Packs {
       case Pack::Scan: case Pack::ScanDown: case Pack::Strand: case Pack::Join: case Pack::JoinDown: case Pack::Scalar: break;
     }
     pack.last_convolution = static_cast<std::uint32_t>(out_.convolutions.size());
+    pack.way = way_of(pack);
+  }
+
+  std::uint8_t way_of(const Pack& pack) const {
+    const auto first = out_.convolutions.begin() + pack.first_convolution, last = out_.convolutions.begin() + pack.last_convolution;
+    const bool all_ahead = std::all_of(first, last, [](const Convolution& c) { return c.goes_ahead; });
+    const std::uint32_t runs = pack.last_run - pack.first_later_run;
+    if (pack.kind == Pack::Sum && first == last && runs == 1 && out_.runs[pack.first_later_run].neighbours) return Pack::Neighbours;
+    if (pack.kind == Pack::Sum && runs == 0 && all_ahead) return Pack::Products;
+    if (pack.kind == Pack::Integral && all_ahead) return Pack::IntegralBySum;
+    return pack.kind;
   }
 
   void convolution(const Pack& pack, std::uint32_t a, bool finds_a, std::uint32_t b, bool finds_b) {
@@ -290,6 +304,7 @@ class Packs {
       return ahead(block) == 0 && (finds || is_of_coordinates(out_.blocks[block]));
     };
     Convolution c{a, b, pack.lag, ahead(a), ahead(b), fits(ahead(a)) && fits(ahead(b))};
+    c.number = static_cast<std::uint32_t>(out_.convolutions.size());
     c.first_a = out_.blocks[a].first, c.first_b = out_.blocks[b].first;
     c.lacks_newest_a = lacks_newest(a, finds_a), c.lacks_newest_b = lacks_newest(b, finds_b);
     c.copies_a = !c.lacks_newest_a && !out_.blocks[a].direct && ahead(a) <= 0;

@@ -47,6 +47,8 @@ struct ColumnRun {
   std::uint8_t shift = 0;
   bool passes_tangent = false;
   std::uint32_t first = 0, last = 0;    // columns
+  Slot source = 0;                      // of the first one, as its coefficients
+  std::uint32_t coefficients = 0;
   bool neighbours = false;              // Broadcast: of slots side by side
 };
 
@@ -67,6 +69,7 @@ struct Convolution {
   bool lacks_newest_a = false, lacks_newest_b = false;
   bool copies_a = false, copies_b = false;  // a stage has to copy the newest first, as it is not final
   Slot first_a = 0, first_b = 0;        // cells of the operands
+  std::uint32_t number = 0;             // of all
 };
 
 /// Up to eight results side by side.
@@ -98,6 +101,13 @@ struct Pack {
     SquareRoot,  // of block a
     Scalar,      // one instruction, by the reference rules
   } kind = Scalar;
+  /// How a stage from 1 on runs it: by its kind, but what needs little has code of its own.
+  enum Way : std::uint8_t {
+    Neighbours = Scalar + 1,  // one run of neighbours
+    Products,                 // where sums are made ahead: products by these
+    IntegralBySum,
+  };
+  std::uint8_t way = Scalar;            // Kind or Way
   std::int8_t lag = 0;
   std::int8_t level = 0;
   std::uint32_t width = 0;              // lanes in use
