@@ -13,13 +13,15 @@ inline double minus(double sum, double a, double b) {
 #endif
 }
 
+/// Products below 0: as many as the sums of the run have.
+template <int Products, bool Starts>
 void one_by_one(const SweepTables& t, const SweepRun& run, double* x) {
-  const double *scale = t.scale + run.first, *factor = t.factors + t.sums[run.first].first;
-  const std::uint32_t* operand = t.operand + t.sums[run.first].first;
-  for (const SweepSum *sum = t.sums + run.first, *last = t.sums + run.last; sum != last; ++sum, ++scale) {
-    double value = sum->starts ? *scale * x[sum->target] : 0;
-    for (const std::uint32_t* const end = t.operand + sum->last; operand != end; ++operand, ++factor)
-      value = minus(value, -*factor, x[*operand]);
+  const SweepSum *sum = t.sums + run.first, *const last = t.sums + run.last;
+  const int count = Products >= 0 ? Products : static_cast<int>(sum->last - sum->first);
+  const double *scale = t.scale + run.first, *factor = t.factors + sum->first;
+  for (const std::uint32_t* operand = t.operand + sum->first; sum != last; ++sum, ++scale, factor += count, operand += count) {
+    double value = Starts ? *scale * x[sum->target] : 0;
+    for (int k = 0; k < count; ++k) value = minus(value, -factor[k], x[operand[k]]);
     x[sum->target] = value;
   }
 }
@@ -41,17 +43,20 @@ void recurrence(const SweepTables& t, const SweepRun& run, double* x) {
   }
 }
 
-using RunSums = void (*)(const SweepTables&, const SweepRun&, double* x);
-/// By the number of sides, and whether these start at a value.
-constexpr RunSums run_sums[][2] = {{one_by_one, one_by_one},
-                                   {recurrence<1, false>, recurrence<1, true>},
-                                   {recurrence<2, false>, recurrence<2, true>},
-                                   {recurrence<3, false>, recurrence<3, true>},
-                                   {recurrence<4, false>, recurrence<4, true>}};
+template <bool Starts>
+void run_sums(const SweepTables& t, const SweepRun& run, double* x) {
+  using RunSums = void (*)(const SweepTables&, const SweepRun&, double*);
+  static constexpr RunSums by_sides[] = {nullptr, recurrence<1, Starts>, recurrence<2, Starts>, recurrence<3, Starts>,
+                                         recurrence<4, Starts>};
+  static constexpr RunSums by_products[] = {one_by_one<0, Starts>, one_by_one<1, Starts>, one_by_one<2, Starts>,
+                                            one_by_one<3, Starts>, one_by_one<4, Starts>, one_by_one<-1, Starts>};
+  const std::uint32_t products = t.sums[run.first].last - t.sums[run.first].first;
+  (run.sides > 0 ? by_sides[run.sides] : by_products[products < 5 ? products : 5])(t, run, x);
+}
 
 void sweep(const SweepTables& t, double* x) {
   for (const SweepRun* run = t.runs; run != t.last_run; ++run)
-    run_sums[run->sides][t.sums[run->first].starts](t, *run, x);
+    t.sums[run->first].starts ? run_sums<true>(t, *run, x) : run_sums<false>(t, *run, x);
 }
 
 double size(double x) { return __builtin_fabs(x); }

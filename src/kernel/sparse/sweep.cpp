@@ -101,7 +101,7 @@ class SweepOrder {
 
   void open(std::uint32_t sides) {
     const auto first = static_cast<std::uint32_t>(out_.sums_.size());
-    if (sides > 0 || out_.runs_.empty() || out_.runs_.back().sides > 0) out_.runs_.push_back({first, first, sides});
+    out_.runs_.push_back({first, first, sides});
   }
 
   void write(const std::vector<Link>& links) {
@@ -113,12 +113,14 @@ class SweepOrder {
     }
   }
 
-  /// Like sums after each other, so that the processor foresees their ends.
+  /// Sums of one shape after each other, so that a loop over them has no branches of its own.
   void write(std::vector<std::uint32_t>& level) {
     const auto shape = [this](std::uint32_t i) { return std::pair(sums_[i].last - sums_[i].first, sums_[i].starts); };
     std::stable_sort(level.begin(), level.end(), [&](std::uint32_t i, std::uint32_t j) { return shape(i) < shape(j); });
-    if (!level.empty()) open(0);
-    for (const std::uint32_t sum : level) write(sum, products_of(sum));
+    for (std::size_t i = 0; i < level.size(); ++i) {
+      if (i == 0 || shape(level[i - 1]) != shape(level[i])) open(0);
+      write(level[i], products_of(level[i]));
+    }
   }
 
   void write(std::uint32_t sum, const Products& products) {
