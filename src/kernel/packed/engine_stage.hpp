@@ -105,13 +105,14 @@ Vector square(const Stage& s, const double* a, int k, int first) {
   return sum;
 }
 
-inline Vector product(const Stage& s, const Convolution& c, int k) {
+[[gnu::noinline]] Vector product(const Stage& s, const Pack& pack, const Convolution& c, int k) {
+  bring(s, pack, c.a), bring(s, pack, c.b);
   const double *const a = s.t.rows + c.first_a, *const b = s.t.rows + c.first_b;
   return a == b ? square(s, a, k, 0) : convolution(a, b, k, static_cast<std::ptrdiff_t>(s.t.stride));
 }
 
 /// Σ_{j=1..k} a_j b_{k−j}
-inline Vector without_first(const Stage& s, const Convolution& c, int k) {
+[[gnu::noinline]] Vector without_first(const Stage& s, const Convolution& c, int k) {
   const auto stride = static_cast<std::ptrdiff_t>(s.t.stride);
   return k == 0 ? all(0) : convolution(s.t.rows + c.first_a + stride, s.t.rows + c.first_b, k - 1, stride);
 }
@@ -136,13 +137,8 @@ const Pack* run_sum(const Stage& s, const Pack* pack) {
   const ProductTerm* term = s.t.products + pack->first_product;
   for (const Convolution *c = s.t.convolutions + pack->first_convolution, *last = s.t.convolutions + pack->last_convolution;
        c != last; ++c, ++term) {
-    const Vector factor = load(s.t.coefficients + term->coefficients);
-    if (goes_by_sum(s, *c)) {
-      result += factor * completed(s, *c, order);
-    } else {
-      bring(s, *pack, c->a), bring(s, *pack, c->b);
-      result += factor * product(s, *c, order.number);
-    }
+    const Vector sum = goes_by_sum(s, *c) ? completed(s, *c, order) : product(s, *pack, *c, order.number);
+    result += load(s.t.coefficients + term->coefficients) * sum;
   }
   save(order.row + pack->out, result);
   return pack;
