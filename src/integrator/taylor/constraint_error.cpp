@@ -65,4 +65,22 @@ double correction_size(const KernelWorkspace& work, std::span<const double> dq, 
   return std::max(by_position, by_velocity);
 }
 
+void ConstraintRecord::start() {
+  residual = best_pivot_ratio = 0;
+  restraint = 1;
+  most_in_force = 0;
+  largest_row.assign(largest_row.size(), 0.0);
+}
+
+bool ConstraintRecord::has_vanishing_row(const KernelWorkspace& work) {
+  bool vanishes = false;
+  for (std::size_t j = 0; j < largest_row.size(); ++j) {
+    double size = 0;
+    for (std::size_t i = 0; i < dq.size(); ++i) size = std::max(size, std::abs(work.constraint_matrix(j, i)));
+    largest_row[j] = std::max(largest_row[j], size);
+    vanishes = vanishes || size < vanishing * largest_row[j];
+  }
+  return vanishes;
+}
+
 }  // namespace maupertuis::taylor
