@@ -27,7 +27,8 @@ bool TaylorStepper::Impl::project(Step& result, bool known) {
   const double allowed = std::max(1e-7, 1e3 * options.tolerance);
   for (int turn = 0; turn < 20; ++turn) {
     if (!std::exchange(known, false)) work.corrections(constraints.dq, constraints.dv);
-    if (!first && !(error <= allowed && taylor::correction_size(work, constraints.dq, constraints.dv, length) <= allowed)) {
+    if (!first &&
+        !(error <= allowed && taylor::correction_size(work, constraints.dq, constraints.dv, length) <= allowed)) {
       end(result, StepEnding::SingularConstraints,
           "The constraints are singular near here: they do not determine where the motion goes.");
       return false;
@@ -45,9 +46,10 @@ bool TaylorStepper::Impl::project(Step& result, bool known) {
   return false;
 }
 
-/// Next to a singular configuration of the constraints what rounding left of them is blown up by the projection, and λ and q̈
-/// lose digits as the pivots fall. The motion goes through it all the same where it is determined, so that a step must not
-/// end just there: then it is made shorter, and the next one passes. The expansion at its end is that of the next step.
+/// Next to a singular configuration of the constraints what rounding left of them is blown up by the projection, and λ
+/// and q̈ lose digits as the pivots fall. The motion goes through it all the same where it is determined, so that a step
+/// must not end just there: then it is made shorter, and the next one passes. The expansion at its end is that of the
+/// next step.
 void TaylorStepper::Impl::land(Step& result, double tau) {
   const double sound = std::max(1e-12, 1e2 * options.tolerance), allowed = std::max(1e-7, 1e3 * options.tolerance);
   bool defined = false;
@@ -58,8 +60,10 @@ void TaylorStepper::Impl::land(Step& result, double tau) {
       work.corrections(constraints.dq, constraints.dv);
       const double error = taylor::constraint_error(work, n, m, length);
       const std::size_t in_force = work.constraints_in_force();
-      const bool regular = in_force >= constraints.most_in_force && work.pivot_ratio() > 1e-6 * constraints.best_pivot_ratio;
-      if (regular && error <= allowed && taylor::correction_size(work, constraints.dq, constraints.dv, length) <= sound) {
+      const bool regular =
+          in_force >= constraints.most_in_force && work.pivot_ratio() > 1e-6 * constraints.best_pivot_ratio;
+      if (regular && error <= allowed &&
+          taylor::correction_size(work, constraints.dq, constraints.dv, length) <= sound) {
         if (in_force > constraints.most_in_force) constraints.best_pivot_ratio = 0;
         constraints.most_in_force = in_force;
         constraints.best_pivot_ratio = std::max(constraints.best_pivot_ratio, work.pivot_ratio());

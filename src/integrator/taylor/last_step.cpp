@@ -75,8 +75,7 @@ Sample LastStep::sample(double time, KernelWorkspace& point) const {
   for (std::size_t i = 0; i < n; ++i) result.a.push_back(ok ? point.acceleration(i) : nothing);
   result.multipliers.assign(multipliers_, nothing);
   if (ok) multipliers_of(point, result.multipliers);
-  for (std::size_t i = 0; i < observables_; ++i)
-    result.observables.push_back(ok ? point.observable(i) : nothing);
+  for (std::size_t i = 0; i < observables_; ++i) result.observables.push_back(ok ? point.observable(i) : nothing);
   turns.add_to(result.observables);
   for (std::size_t i = 0; i < n; ++i) result.q[i] = turns.unwound(i, position[i]);
   return result;

@@ -27,7 +27,7 @@ class LastStep {
 
   Compensated begin;
   DenseOutput dense;
-  Turns turns;          // of dense.q
+  Turns turns;  // of dense.q
   Sample start_sample;
 
  private:

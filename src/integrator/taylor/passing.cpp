@@ -5,15 +5,16 @@
 #include <cmath>
 #include <limits>
 
-/// Steps that no series makes. Where a formula has a singularity that the motion has not (sin x/x at 0, multipliers where a linkage is flat), or one that
-/// moves nothing yet (max(x, 0)^(3/2) at 0), coefficients are lost to cancellation the earlier the nearer it is, or are not there at all. Such a place is
-/// passed by collocation at Gauss's points, none of which is an end: the force is asked for beside the place alone. What was passed must be smooth:
-/// at points that are no nodes the polynomial has the acceleration that the equations give.
+/// Steps that no series makes. Where a formula has a singularity that the motion has not (sin x/x at 0, multipliers
+/// where a linkage is flat), or one that moves nothing yet (max(x, 0)^(3/2) at 0), coefficients are lost to
+/// cancellation the earlier the nearer it is, or are not there at all. Such a place is passed by collocation at Gauss's
+/// points, none of which is an end: the force is asked for beside the place alone. What was passed must be smooth: at
+/// points that are no nodes the polynomial has the acceleration that the equations give.
 namespace maupertuis {
 namespace {
 
 constexpr int nodes = 8;
-constexpr int looks = 33;          // beside the nodes
+constexpr int looks = 33;  // beside the nodes
 constexpr int most_sweeps = 40;
 constexpr double settled = 1e-16;  // change of q̈ h by a sweep, of the velocity
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -21,7 +22,8 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 using Nodes = std::array<double, nodes>;
 
 Nodes gauss_points() {
-  constexpr std::array<double, nodes / 2> half{0.18343464249564980, 0.52553240991632899, 0.79666647741362674, 0.96028985649753623};
+  constexpr std::array<double, nodes / 2> half{0.18343464249564980, 0.52553240991632899, 0.79666647741362674,
+                                               0.96028985649753623};
   Nodes out{};
   for (std::size_t i = 0; i < half.size(); ++i) {
     out[nodes / 2 + i] = (1 + half[i]) / 2;
@@ -75,7 +77,7 @@ class TaylorStepper::Impl::Collocation {
   double smooth() const { return s_.m > 0 ? 1e-6 : 2e-13; }
 
   Impl& s_;
-  std::vector<double> size_;                   // [n] of the velocities
+  std::vector<double> size_;  // [n] of the velocities
 };
 
 TaylorStepper::Impl::Collocation::Collocation(Impl& stepper, double length)
@@ -187,7 +189,8 @@ void TaylorStepper::Impl::pass(const Collocation& c, double bound, Step& result)
   }
   last.dense.copy(rows.data(), stride);
   for (int k = 0; k <= control.order + 1; ++k)
-    for (std::size_t i = 0; i < state.integrals.size(); ++i) last.dense.integrand(k)[i] = k < nodes ? c.integrand[i][k] / power(k) : 0;
+    for (std::size_t i = 0; i < state.integrals.size(); ++i)
+      last.dense.integrand(k)[i] = k < nodes ? c.integrand[i][k] / power(k) : 0;
   last.start_sample = last.sample(last.begin.hi, probe);
   const bool reaches_bound = c.h == remaining(bound);
   state.move(last.dense, last.begin, c.h);
@@ -214,8 +217,8 @@ bool TaylorStepper::Impl::passes(double h, double bound, Step& result) {
   return found;
 }
 
-/// Where there is no series: from small shares of the longest step, or of the run, downward. Such a step looks at points alone, and must be too short for
-/// anything to happen between them.
+/// Where there is no series: from small shares of the longest step, or of the run, downward. Such a step looks at
+/// points alone, and must be too short for anything to happen between them.
 bool TaylorStepper::Impl::passes_from_here(double bound, Step& result) {
   const double whole = longest > 0 ? longest : std::abs(remaining(bound));
   for (double share = 1e-5; share > 1e-11; share *= 0.2)
@@ -234,13 +237,15 @@ bool TaylorStepper::Impl::seems_smooth(double h) const {
   return true;
 }
 
-/// Steps that shrink without end, though the motion is smooth: to a millionth of the longest, which no wall or pulse asks for. Multipliers give a place away
-/// early: where they alone shorten the step it comes to lie in the middle, away from all nodes.
+/// Steps that shrink without end, though the motion is smooth: to a millionth of the longest, which no wall or pulse
+/// asks for. Multipliers give a place away early: where they alone shorten the step it comes to lie in the middle, away
+/// from all nodes.
 bool TaylorStepper::Impl::passes_shrinking(double chosen, double bound, Step& result) {
   constexpr double endless = 1e-6, much = 0.2;
   longest = std::max(longest, std::isfinite(chosen) ? chosen : 0);
   if (!(chosen < (m > 0 ? much : endless) * longest) || control.order < nodes) return false;
-  const bool by_multipliers = m > 0 && taylor::step_within_multipliers(work, n, m, control, 3.6 * chosen) < 3.6 * chosen;
+  const bool by_multipliers =
+      m > 0 && taylor::step_within_multipliers(work, n, m, control, 3.6 * chosen) < 3.6 * chosen;
   if (!by_multipliers && !(chosen < endless * longest)) return false;
   for (const double times : {by_multipliers ? 3.6 : 5, by_multipliers ? 4.4 : 15, 8.0})
     if (seems_smooth(times * chosen) && passes(times * chosen, bound, result)) return true;

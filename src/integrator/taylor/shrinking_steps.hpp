@@ -24,7 +24,7 @@ class ShrinkingSteps {
   }
 
  private:
-  std::size_t steps_ = 0;   // at the last look
+  std::size_t steps_ = 0;  // at the last look
   double time_ = 0, mean_ = 0;
 };
 

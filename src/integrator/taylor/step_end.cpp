@@ -36,8 +36,8 @@ bool TaylorStepper::Impl::equations_hold(const KernelWorkspace& at_end) {
   const double tau = last.tau_of(state.t);
   const std::span<const double> by_polynomial = last.dense.accelerations(tau);
   if (tau == 0 || end_check.agrees(by_polynomial, at_end.coordinate(2), 1, tau)) return true;
-  const bool rounds = taylor::agrees_but_for_rounding(end_check, by_polynomial, at_end.coordinate(2), 1, probe, state.t.hi,
-                                                      state.q_now, state.v_now, tau, safe.disks());
+  const bool rounds = taylor::agrees_but_for_rounding(end_check, by_polynomial, at_end.coordinate(2), 1, probe,
+                                                      state.t.hi, state.q_now, state.v_now, tau, safe.disks());
   safe.set_constants(work.constants());  // the disks had those of the point
   if (rounds) return true;
   // Noise in a coordinate that does not move does not fall with the length of the step.

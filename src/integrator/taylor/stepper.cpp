@@ -51,9 +51,12 @@ bool TaylorStepper::Impl::decide_sides(double bound, Step& result) {
   const double h = taylor::step_size(work, n, control, length);
   SideChooser chooser(work, watched.switches, [&](const std::vector<std::int8_t>&) { return trial(bound); });
   switch (chooser.decide(std::copysign(std::min(h, std::abs(remaining(bound))), remaining(bound)))) {
-    case SideChooser::Outcome::Decided: return true;
-    case SideChooser::Outcome::Failed: return fail(result, KernelStatus::NonFinite);
-    case SideChooser::Outcome::Sliding: break;
+    case SideChooser::Outcome::Decided:
+      return true;
+    case SideChooser::Outcome::Failed:
+      return fail(result, KernelStatus::NonFinite);
+    case SideChooser::Outcome::Sliding:
+      break;
   }
   end(result, StepEnding::Sliding,
       "Both sides of a switch push the motion back to it, so that it would slide along the switch.");
@@ -76,7 +79,8 @@ bool TaylorStepper::Impl::is_at_rest() const {
   return true;
 }
 
-/// What the last coefficients, the multipliers and the disks about every value allow; infinite for a motion that is a polynomial.
+/// What the last coefficients, the multipliers and the disks about every value allow; infinite for a motion that is a
+/// polynomial.
 double TaylorStepper::Impl::choose_length(double bound) {
   double chosen = constraints.restraint * taylor::step_size(work, n, control, length);
   const double left = std::abs(remaining(bound));
@@ -99,7 +103,8 @@ bool TaylorStepper::Impl::may_go_on(double bound, Step& result) {
     end(result, StepEnding::TooManySteps, "The run used up its steps.");
   else if (shrinking.come_to_a_stop(steps, state.t.hi, remaining(bound)))
     end(result, StepEnding::StepUnderflow,
-        "The steps go on shrinking, so that their number would have no bound: a force or a switch oscillates without end near here.");
+        "The steps go on shrinking, so that their number would have no bound: a force or a switch oscillates without "
+        "end near here.");
   return result.ending == StepEnding::None;
 }
 
@@ -143,7 +148,8 @@ bool TaylorStepper::Impl::make_step(double bound, double h, Step& result) {
   last.record_start(work);
   const taylor::Crossing crossing = watched.empty() ? taylor::Crossing() : watched.first_crossing(work, state.t, h);
   if (crossing.found && stuck >= 100) {
-    end(result, StepEnding::Sliding, "Switches follow each other in no time: the motion has come to slide along a switch.");
+    end(result, StepEnding::Sliding,
+        "Switches follow each other in no time: the motion has come to slide along a switch.");
     return true;
   }
   advance(bound, h, crossing, result);
@@ -204,7 +210,8 @@ std::size_t TaylorStepper::switches() const { return impl_->switches; }
 const BackendUse& TaylorStepper::backend() const { return impl_->code.use(); }
 
 bool TaylorStepper::covers(double t) const {
-  const double low = std::min(impl_->last.begin.hi, impl_->state.t.hi), high = std::max(impl_->last.begin.hi, impl_->state.t.hi);
+  const double low = std::min(impl_->last.begin.hi, impl_->state.t.hi),
+               high = std::max(impl_->last.begin.hi, impl_->state.t.hi);
   return low <= t && t <= high;
 }
 

@@ -14,9 +14,18 @@ namespace maupertuis {
 /// the first crossing, advance, and look whether the equations hold at its end; a step that fails is taken back.
 struct TaylorStepper::Impl {
   Impl(const Kernel& k, std::span<const double> parameters, const TaylorOptions& o)
-      : kernel(k), options(o), control(taylor::step_control(o.tolerance, o.order)), n(k.freedoms()), m(k.constraints()),
-        work(k, control.order), probe(k, 1), state(k), last(k, control.order), watched(k, work),
-        safe(work.program(), control.order, taylor::safe_tolerance(o.tolerance)), end_check(n, o.tolerance),
+      : kernel(k),
+        options(o),
+        control(taylor::step_control(o.tolerance, o.order)),
+        n(k.freedoms()),
+        m(k.constraints()),
+        work(k, control.order),
+        probe(k, 1),
+        state(k),
+        last(k, control.order),
+        watched(k, work),
+        safe(work.program(), control.order, taylor::safe_tolerance(o.tolerance)),
+        end_check(n, o.tolerance),
         constraints(n, m) {
     work.set_parameters(parameters);
     probe.set_parameters(parameters);
@@ -59,9 +68,9 @@ struct TaylorStepper::Impl {
   Kernel kernel;
   TaylorOptions options;
   taylor::StepControl control;
-  const std::size_t n, m;                // freedoms, constraints
+  const std::size_t n, m;  // freedoms, constraints
   KernelWorkspace work;
-  mutable KernelWorkspace probe;         // for the kernel at points within the step
+  mutable KernelWorkspace probe;  // for the kernel at points within the step
   taylor::MotionState state;
   taylor::LastStep last;
   taylor::WatchedFunctions watched;
@@ -72,19 +81,19 @@ struct TaylorStepper::Impl {
   taylor::EndCheck end_check;
   taylor::ConstraintRecord constraints;
   taylor::ShrinkingSteps shrinking;
-  double length = 0;                     // the last one that the control chose
-  double longest = 0;                    // so far
+  double length = 0;   // the last one that the control chose
+  double longest = 0;  // so far
 
   // How the run goes.
-  bool first = true;                     // no step made yet
-  bool expanded = false;                 // the workspace holds the motion through the present state already
-  bool noisy = false;                    // halving did not mend the last steps, see equations_hold()
-  int attempts = 0;                      // at the present step that were taken back
-  int stuck = 0;                         // crossings in a row that did not move time
+  bool first = true;                           // no step made yet
+  bool expanded = false;                       // the workspace holds the motion through the present state already
+  bool noisy = false;                          // halving did not mend the last steps, see equations_hold()
+  int attempts = 0;                            // at the present step that were taken back
+  int stuck = 0;                               // crossings in a row that did not move time
   KernelStatus end_status = KernelStatus::Ok;  // of the last look at an end
   std::size_t steps = 0, switches = 0, rejected = 0;
   double run_begin = 0;
-  mutable std::vector<double> q_unwound; // [n]
+  mutable std::vector<double> q_unwound;  // [n]
 };
 
 }  // namespace maupertuis

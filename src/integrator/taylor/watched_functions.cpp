@@ -18,8 +18,8 @@ void note(Crossing& crossing, double x, std::size_t index, double together) {
   crossing.roots.push_back(index);
 }
 
-/// The side that an event function has as the step begins. True if it is not the one that it had as the last step ended:
-/// then a root lies between them, within rounding.
+/// The side that an event function has as the step begins. True if it is not the one that it had as the last step
+/// ended: then a root lies between them, within rounding.
 bool begins_past_root(const KernelWorkspace& work, std::size_t index, double h, Watched& watched) {
   const auto polynomial = judged(event_polynomial(work, index, h));
   const std::int8_t before = watched.side;
@@ -96,8 +96,10 @@ void WatchedFunctions::leave(const Crossing& crossing, Step& result) {
   for (std::size_t i = 0; i < crossing.after.size(); ++i)
     (i < count ? switches[i] : events[i - count]) = crossing.after[i];
   for (const std::size_t i : crossing.roots) {
-    if (i < count) ++result.switches;
-    else if (!result.event) result.event = i - count;
+    if (i < count)
+      ++result.switches;
+    else if (!result.event)
+      result.event = i - count;
   }
 }
 

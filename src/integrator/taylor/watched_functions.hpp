@@ -12,10 +12,10 @@ namespace maupertuis::taylor {
 
 /// Where a step ends at a switch or an event.
 struct Crossing {
-  double x = 1;                // fraction of the step
+  double x = 1;  // fraction of the step
   bool found = false;
   std::vector<std::size_t> roots;  // switches, then events
-  std::vector<Watched> after;  // the same, as the step leaves them
+  std::vector<Watched> after;      // the same, as the step leaves them
 };
 
 /// The switch functions and events of a motion: on which sides they are, and where along a step they first leave them.
@@ -28,9 +28,9 @@ class WatchedFunctions {
   void set_sides(KernelWorkspace& work) const {
     if (!switches.empty()) copy_sides(work);
   }
-  /// Signs of the switch functions at the start, zeros left open: enough for the values there. A function within another
-  /// comes before it. Under sides that are not those of the state forces may have no value (log|x|), but switch functions
-  /// do.
+  /// Signs of the switch functions at the start, zeros left open: enough for the values there. A function within
+  /// another comes before it. Under sides that are not those of the state forces may have no value (log|x|), but switch
+  /// functions do.
   void choose_first_sides(KernelWorkspace& work, const MotionState& state);
   /// The first roots of the step of length h that the workspace holds. Switches may change at jumps too, events not.
   Crossing first_crossing(const KernelWorkspace& work, const Compensated& t, double h);

@@ -195,7 +195,7 @@ void RolledEmitter::strand(const Pack& pack, Value* columns) {
   strands_.push_back({pack.out, columns ? columns : llvm::Constant::getNullValue(vector_)});
 }
 
-/// In segments that do not wait for each other, then what each owes to those before it and to the lanes before.
+/// In segments that do not wait for each other, then what each lacks of those before it and of the lanes before.
 void RolledEmitter::join(const Pack& pack, bool down, Value* row) {
   constexpr std::size_t segment = 4;
   std::vector<Value*> before;  // [segments] all segments before it; null: nothing
@@ -275,7 +275,7 @@ Value* RolledEmitter::values_of(const Block& block, Value* row) {
 void RolledEmitter::integral(std::size_t index) {
   const Pack& pack = p_.packs[index];
   if (written_ && *written_ + ahead_of(pack) == 0) return functions(pack);
-  Value* const sum = plus_scaled(nullptr, pack.coefficients, convolution(p_.packs[index].first_convolution, true, false));
+  Value* const sum = plus_scaled(nullptr, pack.coefficients, convolution(pack.first_convolution, true, false));
   llvm::Type* const scalar = out_.b.getDoubleTy();
   Value* const k = out_.b.CreateSIToFP(stage_plus(ahead_of(pack)), scalar);
   if (!out_.features.fma) return keep(pack, out_.divide(sum, splat(k)));

@@ -113,7 +113,7 @@ struct Engine {
   void (*negate)(const double* from, double* to, std::size_t count);
   /// q_{k+2} = q̈_k / ((k+1)(k+2)) for k = stage, q̈_k = sign · `solution`; read and written in eights.
   void (*set_accelerations)(const Tables&, int stage, const double* solution, std::size_t unknowns, int sign);
-  /// What the coefficients of the stage that later orders read owe to q̈_k: in a slot of lag ℓ, Σ_d weights[d] ·
+  /// How q̈_k changes the coefficients of the stage that later orders read: in a slot of lag ℓ by Σ_d weights[d] ·
   /// tangents[d] times 1, 1/(k+1), 1/((k+1)(k+2)) for ℓ = 2, 1, 0.
   void (*correct)(const Tables&, int stage, const TangentMatrix&, const double* weights);
   /// Stages `first` ≥ 1 to `last` − 1, each with all that belongs to it: run_stage(), solve_by_inverse(),

@@ -1,12 +1,12 @@
-// Part of engine_code.hpp: sums of products for the next four stages at once, so that a coefficient is read once for all
-// of them. After stage s, one of 4, 8, 12, …, of the stages s + 1 + r with r = 0 … 3:
+// Part of engine_code.hpp: sums of products for the next four stages at once, so that a coefficient is read once for
+// all of them. After stage s, one of 4, 8, 12, …, of the stages s + 1 + r with r = 0 … 3:
 //
 //     Σ_j a_j b_{k−j}     j = 0   1   …                          k − 1   k
 //                             │   │   ├──── final after stage s ────┤   │   │
 //                             └───┴── b is newer than that    a is ──┴───┘
 //
-// The middle is summed here; the ends, r + 1 terms on each side or fewer where an operand is known earlier, are what the stage
-// itself adds.
+// The middle is summed here; the ends, r + 1 terms on each side or fewer where an operand is known earlier, are what the
+// stage itself adds.
 namespace maupertuis::packed::MAUP_ENGINE {
 namespace {
 

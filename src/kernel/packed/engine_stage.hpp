@@ -16,7 +16,8 @@ void sine_cosine(const double* x, double* out, int count) {
 /// What packs of a stage have in common.
 struct Stage {
   Stage(const Tables& tables, int number)
-      : t(tables), stage(number), by_sums(has_sums_ahead(number)), position((number - 1) % rolled_group), newest(tables.orders + (number + 2)) {}
+      : t(tables), stage(number), by_sums(has_sums_ahead(number)), position((number - 1) % rolled_group),
+        newest(tables.orders + (number + 2)) {}
 
   /// Of slots of that lag; not below 0.
   const Order& order_of(int lag) const { return *(newest - lag); }
@@ -76,7 +77,8 @@ inline void bring(const Stage& s, const Pack& pack, std::uint32_t index) {
 
 /// d/dt multiplies by k + 1.
 inline Vector columns_of(const Stage& s, const ColumnRun& run, const Order& order) {
-  const double *const from = order.row + run.shift * s.t.stride, *const coefficients = s.t.coefficients + run.coefficients;
+  const double* const from = order.row + run.shift * s.t.stride;
+  const double* const coefficients = s.t.coefficients + run.coefficients;
   return (run.neighbours ? columns_of_neighbours(from + run.source, run.last - run.first, coefficients)
                          : run_of_columns(s.t, run, coefficients, from)) *
          all(order.shift_factors[run.shift]);
@@ -135,8 +137,8 @@ const Pack* run_sum(const Stage& s, const Pack* pack) {
   const Order& order = s.order_of(pack->lag);
   Vector result = columns(s, *pack, order);
   const ProductTerm* term = s.t.products + pack->first_product;
-  for (const Convolution *c = s.t.convolutions + pack->first_convolution, *last = s.t.convolutions + pack->last_convolution;
-       c != last; ++c, ++term) {
+  const Convolution* const last = s.t.convolutions + pack->last_convolution;
+  for (const Convolution* c = s.t.convolutions + pack->first_convolution; c != last; ++c, ++term) {
     const Vector sum = goes_by_sum(s, *c) ? completed(s, *c, order) : product(s, *pack, *c, order.number);
     result += load(s.t.coefficients + term->coefficients) * sum;
   }
@@ -157,8 +159,8 @@ const Pack* run_products(const Stage& s, const Pack* pack) {
   const Order& order = s.order_of(pack->lag);
   Vector result = all(0);
   const ProductTerm* term = s.t.products + pack->first_product;
-  for (const Convolution *c = s.t.convolutions + pack->first_convolution, *last = s.t.convolutions + pack->last_convolution;
-       c != last; ++c, ++term)
+  const Convolution* const last = s.t.convolutions + pack->last_convolution;
+  for (const Convolution* c = s.t.convolutions + pack->first_convolution; c != last; ++c, ++term)
     result += load(s.t.coefficients + term->coefficients) * completed(s, *c, order);
   save(order.row + pack->out, result);
   return pack;
@@ -248,9 +250,10 @@ const Pack* run_scalar(const Stage& s, const Pack* pack) {
 }
 
 /// By Pack::Kind, joins being done with their strands; from stage 1 on by Pack::Way as well, where there are sums.
-constexpr RunPack run_of[] = {run_sum,      run_scan<running_sum>, run_scan<running_sum_down>, run_strands, nullptr, nullptr,
-                              run_integral, run_quotient,          run_square_root,            run_scalar,
-                              run_neighbours, run_products, run_integral_by_sum};
+constexpr RunPack run_of[] = {run_sum,        run_scan<running_sum>, run_scan<running_sum_down>, run_strands,
+                              nullptr,        nullptr,               run_integral,               run_quotient,
+                              run_square_root, run_scalar,           run_neighbours,             run_products,
+                              run_integral_by_sum};
 
 /// Up to stage 0.
 void run_first_packs(const Stage& s) {
@@ -264,7 +267,7 @@ inline void run_packs(const Stage& s) {
   if (s.by_sums)
     for (; pack != last; ++pack) pack = run_of[pack->way](s, pack);
   else
-    for (; pack != last; ++pack) pack = run_of[pack->way == Pack::Neighbours ? std::uint8_t{Pack::Neighbours} : std::uint8_t{pack->kind}](s, pack);
+    for (; pack != last; ++pack) pack = (pack->way == Pack::Neighbours ? run_neighbours : run_of[pack->kind])(s, pack);
 }
 
 void run_stage(const Tables& tables, int stage) {

@@ -281,17 +281,20 @@ class Packs {
       case Pack::Integral: convolution(pack, pack.a, false, pack.b, true); break;
       case Pack::Quotient: convolution(pack, pack.b, false, pack.y, true); break;
       case Pack::SquareRoot: convolution(pack, pack.y, true, pack.y, true); break;
-      case Pack::Scan: case Pack::ScanDown: case Pack::Strand: case Pack::Join: case Pack::JoinDown: case Pack::Scalar: break;
+      case Pack::Scan: case Pack::ScanDown: case Pack::Strand: case Pack::Join: case Pack::JoinDown:
+      case Pack::Scalar: break;
     }
     pack.last_convolution = static_cast<std::uint32_t>(out_.convolutions.size());
     pack.way = way_of(pack);
   }
 
   std::uint8_t way_of(const Pack& pack) const {
-    const auto first = out_.convolutions.begin() + pack.first_convolution, last = out_.convolutions.begin() + pack.last_convolution;
+    const auto first = out_.convolutions.begin() + pack.first_convolution;
+    const auto last = out_.convolutions.begin() + pack.last_convolution;
     const bool all_ahead = std::all_of(first, last, [](const Convolution& c) { return c.goes_ahead; });
     const std::uint32_t runs = pack.last_run - pack.first_later_run;
-    if (pack.kind == Pack::Sum && first == last && runs == 1 && out_.runs[pack.first_later_run].neighbours) return Pack::Neighbours;
+    if (pack.kind == Pack::Sum && first == last && runs == 1 && out_.runs[pack.first_later_run].neighbours)
+      return Pack::Neighbours;
     if (pack.kind == Pack::Sum && runs == 0 && all_ahead) return Pack::Products;
     if (pack.kind == Pack::Integral && all_ahead) return Pack::IntegralBySum;
     return pack.kind;

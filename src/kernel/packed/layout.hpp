@@ -84,10 +84,10 @@ struct Convolution {
 ///         …                                     …       …        …        …
 ///                                               11      s11      s23      s35
 ///
-/// On the left (Scan) each lane adds the lanes before it, by three shuffles, and all lanes add the last sum of the vector
-/// before. On the right each vector (Strand) adds its columns to the vector before, so that every lane is the running sum
-/// of its own part; then (Join) each lane of all these vectors adds what the lanes before it came to in the last vector:
-/// lane 2 what s11 and s23 were until then. That takes one sum across lanes in place of one a vector.
+/// On the left (Scan) each lane adds the lanes before it, by three shuffles, and all lanes add the last sum of the
+/// vector before. On the right each vector (Strand) adds its columns to the vector before, so that every lane is the
+/// running sum of its own part; then (Join) each lane of all these vectors adds what the lanes before it came to in the
+/// last vector: lane 2 what s11 and s23 were until then. That takes one sum across lanes in place of one a vector.
 struct Pack {
   enum Kind : std::uint8_t {
     Sum,         // columns + products

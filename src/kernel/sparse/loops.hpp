@@ -14,8 +14,8 @@ struct SweepSum {
   bool negates;                  // forward: the pivot is −1
 };
 
-/// Sums of one shape one after the other, or of a recurrence (LoopSweep) so many sides and a joint for each link. The last
-/// product of a joint has the factor from joint to joint.
+/// Sums of one shape one after the other, or of a recurrence (LoopSweep) so many sides and a joint for each link. The
+/// last product of a joint has the factor from joint to joint.
 struct SweepRun {
   std::uint32_t first, last;     // sums
   std::uint32_t sides;           // 0: none is a recurrence

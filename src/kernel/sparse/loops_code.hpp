@@ -19,7 +19,8 @@ void one_by_one(const SweepTables& t, const SweepRun& run, double* x) {
   const SweepSum *sum = t.sums + run.first, *const last = t.sums + run.last;
   const int count = Products >= 0 ? Products : static_cast<int>(sum->last - sum->first);
   const double *scale = t.scale + run.first, *factor = t.factors + sum->first;
-  for (const std::uint32_t* operand = t.operand + sum->first; sum != last; ++sum, ++scale, factor += count, operand += count) {
+  const std::uint32_t* operand = t.operand + sum->first;
+  for (; sum != last; ++sum, ++scale, factor += count, operand += count) {
     double value = Starts ? *scale * x[sum->target] : 0;
     for (int k = 0; k < count; ++k) value = minus(value, -factor[k], x[operand[k]]);
     x[sum->target] = value;

@@ -78,11 +78,11 @@ class SweepOrder {
   /// Whether the link is one of a recurrence, and follows `before`; its sides get that one's order.
   bool goes_on(const Link* before, Link& link) const {
     std::vector<std::uint32_t>& sides = link.sides;
-    if (sides.empty() || sides.size() > most_sides || link.of_joint.size() != sides.size() || !sums_[link.joint].starts) return false;
-    const auto is_side = [&](std::uint32_t i) {
-      return sums_[i].last - sums_[i].first == 2 && sums_[i].starts == sums_[before ? before->sides[0] : sides[0]].starts;
-    };
-    if ((before && before->sides.size() != sides.size()) || !std::all_of(sides.begin(), sides.end(), is_side)) return false;
+    if (sides.empty() || sides.size() > most_sides || link.of_joint.size() != sides.size()) return false;
+    if (!sums_[link.joint].starts || (before && before->sides.size() != sides.size())) return false;
+    const bool start = sums_[before ? before->sides[0] : sides[0]].starts;
+    const auto is_side = [&](std::uint32_t i) { return sums_[i].last - sums_[i].first == 2 && sums_[i].starts == start; };
+    if (!std::all_of(sides.begin(), sides.end(), is_side)) return false;
     const std::uint32_t joint_before = before ? sums_[before->joint].target : operands_[sums_[sides[0]].first + 1];
     for (std::size_t j = 0; j < sides.size(); ++j) {
       const auto follows = [&](std::uint32_t i) {

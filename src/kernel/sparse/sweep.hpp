@@ -8,8 +8,8 @@ namespace maupertuis::sparse {
 /// One of the two substitutions of a solution, in the order in which loops run it: sums as soon as their operands are
 /// known, and what nothing waits for last.
 ///
-/// Of a chain most sums are a *recurrence* from joint to joint. A joint h reads what the links before it bring in one or
-/// more sides a_j (the coordinates of a point), and each side reads itself and the joint before:
+/// Of a chain most sums are a *recurrence* from joint to joint. A joint h reads what the links before it bring in one
+/// or more sides a_j (the coordinates of a point), and each side reads itself and the joint before:
 ///
 ///     sides   a₁ ───→ a₁′ ───→ a₁″          a_j′ = s_j a_j′ + f_j a_j + g_j h
 ///                ↗   ╲   ↗   ╲              h′   = s h′ + Σ_j p_j a_j′
@@ -23,8 +23,8 @@ class LoopSweep {
   /// `operands`: [products] cells. No sum reads what a later one makes.
   LoopSweep(const std::vector<SweepSum>& sums, const std::vector<std::uint32_t>& operands);
 
-  /// After a factorization; `factors`: [products] as the sums had them. `inverse_pivots`: by which sums are multiplied, or
-  /// null. Factors times pivots are made here once, not in each solution.
+  /// After a factorization; `factors`: [products] as the sums had them. `inverse_pivots`: by which sums are multiplied,
+  /// or null. Factors times pivots are made here once, not in each solution.
   void set(const double* factors, const double* inverse_pivots);
   SweepTables tables() const {
     return {runs_.data(), runs_.data() + runs_.size(), sums_.data(), operand_.data(), scale_.data(), factors_.data()};

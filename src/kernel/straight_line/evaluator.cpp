@@ -274,8 +274,8 @@ void Evaluation::run_steps(double* cells, std::size_t first, std::size_t last) c
     const OtherNode& node = evaluation.others_[index];
     all[node.out] = value(node.what, node.function, all[node.a], all[node.b], all[node.c]);
   };
-  evaluate({sums_.data(), wides_.data(), sizes_.data(), angles_.data(), linear_.data(), products_.data(), triples_.data(),
-            wide_terms_.data(), size_terms_.data(), scales_.data(), cells, &context, other},
+  evaluate({sums_.data(), wides_.data(), sizes_.data(), angles_.data(), linear_.data(), products_.data(),
+            triples_.data(), wide_terms_.data(), size_terms_.data(), scales_.data(), cells, &context, other},
            steps_.data() + first, steps_.data() + last);
 }
 
