@@ -8,20 +8,11 @@
 /// How a step keeps to the constraints, and where it must not end.
 namespace maupertuis {
 
-/// A row of A that goes to zero while the steps do: its multiplier has a pole there. Rounding errors of the state grow with it, so that
-/// further steps would lead to whatever branch of the configurations they happen to be on.
+/// A row of A that goes to zero while the steps do: its multiplier has a pole there. Rounding errors of the state grow
+/// with it, so that further steps would lead to whatever branch of the configurations they happen to be on.
 bool TaylorStepper::Impl::forces_diverge() {
-  constexpr double vanishing = 1e-6;
   longest = std::max(longest, length);
-  largest_row.resize(m, 0.0);
-  bool vanishes = false;
-  for (std::size_t j = 0; j < m; ++j) {
-    double size = 0;
-    for (std::size_t i = 0; i < n; ++i) size = std::max(size, std::abs(work.constraint_matrix(j, i)));
-    largest_row[j] = std::max(largest_row[j], size);
-    vanishes = vanishes || size < vanishing * largest_row[j];
-  }
-  return vanishes && length > 0 && length < vanishing * longest;
+  return constraints.has_vanishing_row(work) && length > 0 && length < taylor::ConstraintRecord::vanishing * longest;
 }
 
 /// Brings q and q̇ back to the constraints. The expansion has factored the bordered matrix, so that this costs two
@@ -29,24 +20,23 @@ bool TaylorStepper::Impl::forces_diverge() {
 /// `known`: the corrections are there.
 bool TaylorStepper::Impl::project(Step& result, bool known) {
   double error = taylor::constraint_error(work, n, m, length);
-  if (!first) constraint_residual = std::max(constraint_residual, error);
+  if (!first) constraints.residual = std::max(constraints.residual, error);
   // In a rotation the radius of convergence is no bound: steps get so long that each order of λ multiplies the rounding
   // errors of those before it. What a step leaves in the constraints shows it.
-  if (!first && error > taylor::rounding_of_constraints + options.tolerance) restraint = 0.45;
+  if (!first && error > taylor::rounding_of_constraints + options.tolerance) constraints.restraint = 0.45;
   const double allowed = std::max(1e-7, 1e3 * options.tolerance);
   for (int turn = 0; turn < 20; ++turn) {
-    if (!std::exchange(known, false)) work.corrections(dq, dv);
-    if (!first && !(error <= allowed && taylor::correction_size(work, dq, dv, length) <= allowed)) {
+    if (!std::exchange(known, false)) work.corrections(constraints.dq, constraints.dv);
+    if (!first &&
+        !(error <= allowed && taylor::correction_size(work, constraints.dq, constraints.dv, length) <= allowed)) {
       end(result, StepEnding::SingularConstraints,
           "The constraints are singular near here: they do not determine where the motion goes.");
       return false;
     }
-    for (std::size_t i = 0; i < n; ++i) {
-      q[i].add(dq[i]), v[i].add(dv[i]);
-      q_now[i] = q[i].hi, v_now[i] = v[i].hi;
-    }
+    state.add(constraints.dq, constraints.dv);
     if (error <= taylor::rounding_of_constraints) return true;
-    if (const KernelStatus status = work.expand(t.hi, q_now, v_now); status != KernelStatus::Ok) return fail(result, status);
+    if (const KernelStatus status = work.expand(state.t.hi, state.q_now, state.v_now); status != KernelStatus::Ok)
+      return fail(result, status);
     const double now = taylor::constraint_error(work, n, m, length);
     if (turn > 2 && now > 0.5 * error) break;
     error = now;
@@ -56,25 +46,27 @@ bool TaylorStepper::Impl::project(Step& result, bool known) {
   return false;
 }
 
-/// Next to a singular configuration of the constraints what rounding left of them is blown up by the projection, and λ and q̈
-/// lose digits as the pivots fall. The
-/// motion goes through it all the same where it is determined, so that a step must not end just there: then it is made
-/// shorter, and the next one passes. The expansion at its end is that of the next step.
+/// Next to a singular configuration of the constraints what rounding left of them is blown up by the projection, and λ
+/// and q̈ lose digits as the pivots fall. The motion goes through it all the same where it is determined, so that a step
+/// must not end just there: then it is made shorter, and the next one passes. The expansion at its end is that of the
+/// next step.
 void TaylorStepper::Impl::land(Step& result, double tau) {
   const double sound = std::max(1e-12, 1e2 * options.tolerance), allowed = std::max(1e-7, 1e3 * options.tolerance);
   bool defined = false;
   for (int trial = 0; trial < 12; ++trial) {
-    set_sides(work);
-    if (work.expand(t.hi, q_now, v_now) == KernelStatus::Ok) {
+    watched.set_sides(work);
+    if (work.expand(state.t.hi, state.q_now, state.v_now) == KernelStatus::Ok) {
       defined = true;
-      work.corrections(dq, dv);
+      work.corrections(constraints.dq, constraints.dv);
       const double error = taylor::constraint_error(work, n, m, length);
       const std::size_t in_force = work.constraints_in_force();
-      const bool regular = in_force >= most_in_force && work.pivot_ratio() > 1e-6 * best_pivot_ratio;
-      if (regular && error <= allowed && taylor::correction_size(work, dq, dv, length) <= sound) {
-        if (in_force > most_in_force) best_pivot_ratio = 0;
-        most_in_force = in_force;
-        best_pivot_ratio = std::max(best_pivot_ratio, work.pivot_ratio());
+      const bool regular =
+          in_force >= constraints.most_in_force && work.pivot_ratio() > 1e-6 * constraints.best_pivot_ratio;
+      if (regular && error <= allowed &&
+          taylor::correction_size(work, constraints.dq, constraints.dv, length) <= sound) {
+        if (in_force > constraints.most_in_force) constraints.best_pivot_ratio = 0;
+        constraints.most_in_force = in_force;
+        constraints.best_pivot_ratio = std::max(constraints.best_pivot_ratio, work.pivot_ratio());
         Step projected;
         expanded = project(projected, true);
         return;
@@ -91,11 +83,8 @@ void TaylorStepper::Impl::land(Step& result, double tau) {
 
 /// Ends the last step earlier.
 void TaylorStepper::Impl::move_to(double tau, Step& result) {
-  dense.advance(tau, q, v, integrals);
-  t = begin;
-  t.add(tau);
-  for (std::size_t i = 0; i < n; ++i) q_now[i] = q[i].hi, v_now[i] = v[i].hi;
-  result.end = t.hi;
+  state.move(last.dense, last.begin, tau);
+  result.end = state.t.hi;
 }
 
 }  // namespace maupertuis

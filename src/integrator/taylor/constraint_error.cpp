@@ -20,14 +20,16 @@ double rate_bound(const KernelWorkspace& work, std::size_t row, std::size_t free
   double motion = 0, gradient = 0, rest = 0;
   for (std::size_t i = 0; i < freedoms; ++i) {
     const double a = work.constraint_matrix(row, i), v = speed(work, i, h), mass = work.mass(i, i);
-    if (mass > 0) motion += mass * v * v, gradient += a * a / mass;
-    else rest += std::abs(a) * v;
+    if (mass > 0)
+      motion += mass * v * v, gradient += a * a / mass;
+    else
+      rest += std::abs(a) * v;
   }
   return std::sqrt(motion * gradient) + rest;
 }
 
-/// What rounding of the coordinates makes of φ: a rate that moves φ by less than that in a step does not count, so that a
-/// motion which comes to rest ends in peace.
+/// What rounding of the coordinates makes of φ: a rate that moves φ by less than that in a step does not count, so that
+/// a motion which comes to rest ends in peace.
 double rounding_of_position(const KernelWorkspace& work, std::size_t row, std::size_t freedoms) {
   double size = work.constraint_scale(row);
   for (std::size_t i = 0; i < freedoms; ++i) size += std::abs(work.constraint_matrix(row, i) * work.coordinate(0)[i]);
@@ -60,9 +62,29 @@ double correction_size(const KernelWorkspace& work, std::span<const double> dq, 
   }
   // What rounding of q is in a step is no motion.
   const double rounding = 64 * std::numeric_limits<double>::epsilon() * std::sqrt(place);
-  const double by_position = std::sqrt(positions) <= rounding ? 0 : ratio(std::sqrt(positions), std::sqrt(place) + h * std::sqrt(motion));
-  const double by_velocity = h * std::sqrt(velocities) <= rounding ? 0 : ratio(std::sqrt(velocities), std::sqrt(motion));
+  const double by_position =
+      std::sqrt(positions) <= rounding ? 0 : ratio(std::sqrt(positions), std::sqrt(place) + h * std::sqrt(motion));
+  const double by_velocity =
+      h * std::sqrt(velocities) <= rounding ? 0 : ratio(std::sqrt(velocities), std::sqrt(motion));
   return std::max(by_position, by_velocity);
+}
+
+void ConstraintRecord::start() {
+  residual = best_pivot_ratio = 0;
+  restraint = 1;
+  most_in_force = 0;
+  largest_row.assign(largest_row.size(), 0.0);
+}
+
+bool ConstraintRecord::has_vanishing_row(const KernelWorkspace& work) {
+  bool vanishes = false;
+  for (std::size_t j = 0; j < largest_row.size(); ++j) {
+    double size = 0;
+    for (std::size_t i = 0; i < dq.size(); ++i) size = std::max(size, std::abs(work.constraint_matrix(j, i)));
+    largest_row[j] = std::max(largest_row[j], size);
+    vanishes = vanishes || size < vanishing * largest_row[j];
+  }
+  return vanishes;
 }
 
 }  // namespace maupertuis::taylor

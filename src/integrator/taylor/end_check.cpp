@@ -1,14 +1,11 @@
 #include "integrator/taylor/end_check.hpp"
 
-#include "integrator/taylor/stepper.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-namespace maupertuis {
-namespace taylor {
+namespace maupertuis::taylor {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -124,70 +121,4 @@ bool agrees_but_for_rounding(const EndCheck& check, std::span<const double> by_p
   return check.agrees_but_for_rounding(by_polynomial, here, add_change(acceleration_roundings(bordered_matrix(point, n, m), n, m, disks, std::abs(h), epsilon)), h);
 }
 
-}  // namespace taylor
-
-void TaylorStepper::Impl::renew_momenta() {
-  if (safe.wants_momenta(end_check.rates())) safe.set_momenta(end_check.rates(), work);
-}
-
-/// The end of a step, in the mode in which the step was made, before anything acts there. Where nothing else is in the way, the expansion
-/// there is that of the next step.
-bool TaylorStepper::Impl::settles(double bound, const Crossing& crossing, Step& result) {
-  if (m > 0 && !watches()) {
-    constexpr int halvings = 16;
-    const double residual_before = constraint_residual;
-    dense.keep();
-    land(result, (t.hi - begin.hi) + (t.lo - begin.lo));
-    // Next to a singular position a shorter step may keep the constraints where a long one does not.
-    if (result.ending == StepEnding::SingularConstraints && attempts < halvings) {
-      result.ending = StepEnding::None;
-      result.reason.clear();
-      constraint_residual = residual_before;
-      return false;
-    }
-    if (result.ending != StepEnding::None || !expanded) return true;
-    return equations_hold(work);
-  }
-  const bool goes_on = m == 0 && switch_state.empty() && !crossing.found && t.hi != bound;
-  if (goes_on) {
-    if (turns.wind(q))
-      for (std::size_t i = 0; i < n; ++i) q_now[i] = q[i].hi;
-    dense.keep();
-    end_status = work.expand(t.hi, q_now, v_now);
-    expanded = end_status == KernelStatus::Ok;
-    return expanded && equations_hold(work);
-  }
-  end_status = probe.evaluate(t.hi, q_now, v_now);
-  return end_status == KernelStatus::Ok && equations_hold(probe);
-}
-
-bool TaylorStepper::Impl::equations_hold(const KernelWorkspace& at_end) {
-  const double tau = (t.hi - begin.hi) + (t.lo - begin.lo);  // as the state was advanced: the rounding of t counts in short steps
-  const std::span<const double> by_polynomial = dense.accelerations(tau);
-  if (tau == 0 || end_check.agrees(by_polynomial, at_end.coordinate(2), 1, tau)) return true;
-  const bool rounds = taylor::agrees_but_for_rounding(end_check, by_polynomial, at_end.coordinate(2), 1, probe, t.hi, q_now, v_now, tau, safe.disks());
-  safe.set_constants(work.constants());  // the disks had those of the point
-  if (rounds) return true;
-  // Noise in a coordinate that does not move does not fall with the length of the step.
-  constexpr int halvings = 3;
-  if (attempts < halvings && !noisy) return false;
-  noisy = end_check.agrees_on_the_whole(by_polynomial, at_end.coordinate(2), tau);
-  return noisy;
-}
-
-/// The state at the beginning of the step that failed, and its expansion.
-bool TaylorStepper::Impl::take_back(Step& result) {
-  expanded = false;
-  t = begin;
-  turns = dense_turns;
-  std::copy(dense.q.begin(), dense.q.end(), q.begin());
-  std::copy(dense.v.begin(), dense.v.end(), v.begin());
-  std::copy(dense.integrals.begin(), dense.integrals.end(), integrals.begin());
-  for (std::size_t i = 0; i < n; ++i) q_now[i] = q[i].hi, v_now[i] = v[i].hi;
-  result.end = t.hi;
-  dense.keep();
-  const KernelStatus status = work.expand(t.hi, q_now, v_now);
-  return status == KernelStatus::Ok || fail(result, status);
-}
-
-}  // namespace maupertuis
+}  // namespace maupertuis::taylor

@@ -137,7 +137,7 @@ void RolledEmitter::loop_over(const Class& key, const std::vector<std::size_t>& 
 llvm::GlobalVariable* RolledEmitter::offsets(const std::vector<std::size_t>& members) {
   std::vector<std::uint32_t> bytes;
   for (const std::size_t i : members)
-    for (const std::uint32_t block : {convolutions_[i].a, convolutions_[i].b})
+    for (const std::uint32_t block : {p_.convolutions[i].a, p_.convolutions[i].b})
       bytes.push_back(8 * p_.blocks[block].first);
   return table(bytes);
 }

@@ -30,15 +30,9 @@ void RolledEmitter::run(bool long_run) {
 // -------------------------------------------------------------------------------------------------------- convolutions
 
 void RolledEmitter::find_convolutions() {
-  for (const Pack& pack : p_.packs) {
-    first_convolution_.push_back(convolutions_.size());
-    for (const packed::Convolution& c : packed::convolutions_of(p_, pack)) {
-      classes_[{c.lag, c.lag - p_.blocks[c.a].lag, c.lag - p_.blocks[c.b].lag}].push_back(convolutions_.size());
-      convolutions_.push_back(c);
-    }
-  }
-  sums_of_.resize(convolutions_.size());
-  phase_.resize(convolutions_.size(), 0);
+  for (std::size_t i = 0; i < p_.convolutions.size(); ++i) classes_[class_of(p_.convolutions[i])].push_back(i);
+  sums_of_.resize(p_.convolutions.size());
+  phase_.resize(p_.convolutions.size(), 0);
   std::size_t place = 0;  // sums of one class lie side by side
   for (const auto& [key, members] : classes_)
     for (const std::size_t i : members) sums_of_[i] = place++;
@@ -95,7 +89,7 @@ void RolledEmitter::run_packs() {
   for (std::size_t i = 0; i < p_.packs.size(); ++i) {
     if (deferred_) correct_up_to(read_of_stage_before(i));
     pack(i);
-    if (filling_) filling_->read = i + 1 < p_.packs.size() ? first_convolution_[i + 1] : convolutions_.size();
+    if (filling_) filling_->read = p_.packs[i].last_convolution;
     if (deferred_) correct_before(deferred_->packs.size() * (i + 1) / p_.packs.size());
     gap();
   }

@@ -1,7 +1,7 @@
 #pragma once
 #include "kernel/llvm/emission.hpp"
 #include "kernel/packed/code.hpp"
-#include "kernel/packed/convolutions.hpp"
+#include "kernel/packed/layout.hpp"
 
 #include <array>
 #include <functional>
@@ -171,7 +171,7 @@ class RolledEmitter {
                const std::function<void(const Class&, Value* a, Value* b, Value* sums)>& body);
   void add_up_first();
   Value* sum_of_next(const Class& c, Value* a, Value* b);
-  Class class_of(const packed::Convolution& c) const;
+  static Class class_of(const packed::Convolution& c) { return {c.lag, c.a_ahead, c.b_ahead}; }
 
   // ------------------------------------------------------------------------------------------------------------ values
   Value* load(Value* address) { return out_.b.CreateAlignedLoad(vector_, address, llvm::Align(8)); }
@@ -199,9 +199,7 @@ class RolledEmitter {
   const Program& program_;
   std::int64_t row_bytes_;
   llvm::Type* vector_;                 // of packed::lanes doubles
-  std::vector<packed::Convolution> convolutions_;
   std::vector<std::size_t> sums_of_;   // [convolutions] places
-  std::vector<std::size_t> first_convolution_;  // [packs]
   std::map<Class, std::vector<std::size_t>> classes_;
   std::vector<std::size_t> phase_;     // [convolutions] of `later`; else 0
 

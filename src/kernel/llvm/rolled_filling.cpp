@@ -21,21 +21,17 @@ static constexpr std::int64_t sums_bytes = rolled_group * vector_bytes;
 /// Convolutions in the order of their packs, a few to a slot between the packs.
 void RolledEmitter::choose_slots() {
   constexpr std::size_t most_slots = 8, in_slot = 2;
-  const std::size_t count = convolutions_.size(),
+  const std::size_t count = p_.convolutions.size(),
                     slots = count == 0 ? 0 : std::clamp<std::size_t>(count / in_slot, 1, most_slots);
   Filling f;
   f.slots.resize(slots), f.last.resize(slots), f.turn.resize(slots);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t slot = i * slots / count;
     phase_[i] = slot % rolled_group;
-    f.slots[slot][class_of(convolutions_[i])].push_back(i);
+    f.slots[slot][class_of(p_.convolutions[i])].push_back(i);
     f.last[slot] = i;
   }
   filling_ = std::move(f);
-}
-
-RolledEmitter::Class RolledEmitter::class_of(const packed::Convolution& c) const {
-  return {c.lag, c.lag - p_.blocks[c.a].lag, c.lag - p_.blocks[c.b].lag};
 }
 
 /// Between two packs: the slots that are due, if the stage has read the sums that they write over.
@@ -87,7 +83,7 @@ void RolledEmitter::each_of(const Class& key, const std::vector<std::size_t>& me
   constexpr std::size_t few = 2;
   if (members.size() > few) return loop_over(key, members, out_.b.getInt64(0), out_.b.getInt64(members.size()), body);
   for (const std::size_t i : members) {
-    const packed::Convolution& c = convolutions_[i];
+    const packed::Convolution& c = p_.convolutions[i];
     body(key, slot_at(rows_, p_.blocks[c.a].first), slot_at(rows_, p_.blocks[c.b].first),
          at(sums_, static_cast<std::int64_t>(sums_of_[i]) * sums_bytes));
   }

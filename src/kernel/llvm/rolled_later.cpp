@@ -130,7 +130,7 @@ void RolledEmitter::choose_deferred() {
     for (const auto& [key, members] : filling_->slots[slot])
       for (const std::size_t i : members)
         filling_->turn[slot] = std::max(
-            {filling_->turn[slot], turn_of(p_.blocks[convolutions_[i].a]), turn_of(p_.blocks[convolutions_[i].b])});
+            {filling_->turn[slot], turn_of(p_.blocks[p_.convolutions[i].a]), turn_of(p_.blocks[p_.convolutions[i].b])});
 }
 
 /// Of the operands of the first packs, those of the highest order that a stage has found at its end: they need not go

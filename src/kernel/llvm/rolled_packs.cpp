@@ -195,7 +195,7 @@ void RolledEmitter::strand(const Pack& pack, Value* columns) {
   strands_.push_back({pack.out, columns ? columns : llvm::Constant::getNullValue(vector_)});
 }
 
-/// In segments that do not wait for each other, then what each owes to those before it and to the lanes before.
+/// In segments that do not wait for each other, then what each lacks of those before it and of the lanes before.
 void RolledEmitter::join(const Pack& pack, bool down, Value* row) {
   constexpr std::size_t segment = 4;
   std::vector<Value*> before;  // [segments] all segments before it; null: nothing
@@ -224,7 +224,7 @@ void RolledEmitter::join(const Pack& pack, bool down, Value* row) {
 Value* RolledEmitter::products(std::size_t index, Value* result) {
   const Pack& pack = p_.packs[index];
   for (std::uint32_t i = pack.first_product; i < pack.last_product; ++i) {
-    Value* const sum = convolution(first_convolution_[index] + i - pack.first_product, true, true);
+    Value* const sum = convolution(p_.packs[index].first_convolution + i - pack.first_product, true, true);
     result = plus_scaled(result, p_.products[i].coefficients, sum);
   }
   return result ? result : llvm::Constant::getNullValue(vector_);
@@ -232,7 +232,7 @@ Value* RolledEmitter::products(std::size_t index, Value* result) {
 
 /// Σ_j a_j b_{m−j}: what is known, and those ends that take part.
 Value* RolledEmitter::convolution(std::size_t number, bool a_ends, bool b_ends) {
-  const packed::Convolution& c = convolutions_[number];
+  const packed::Convolution& c = p_.convolutions[number];
   if (written_) {
     Value* const sum = short_convolution(c, a_ends, b_ends);
     return sum ? sum : llvm::Constant::getNullValue(vector_);
@@ -275,7 +275,7 @@ Value* RolledEmitter::values_of(const Block& block, Value* row) {
 void RolledEmitter::integral(std::size_t index) {
   const Pack& pack = p_.packs[index];
   if (written_ && *written_ + ahead_of(pack) == 0) return functions(pack);
-  Value* const sum = plus_scaled(nullptr, pack.coefficients, convolution(first_convolution_[index], true, false));
+  Value* const sum = plus_scaled(nullptr, pack.coefficients, convolution(pack.first_convolution, true, false));
   llvm::Type* const scalar = out_.b.getDoubleTy();
   Value* const k = out_.b.CreateSIToFP(stage_plus(ahead_of(pack)), scalar);
   if (!out_.features.fma) return keep(pack, out_.divide(sum, splat(k)));
@@ -287,7 +287,7 @@ void RolledEmitter::integral(std::size_t index) {
 /// y_k = (a_k − Σ_{j≥1} b_j y_{k−j}) / b_0
 void RolledEmitter::quotient(std::size_t index) {
   const Pack& pack = p_.packs[index];
-  Value* const sum = convolution(first_convolution_[index], true, false);
+  Value* const sum = convolution(p_.packs[index].first_convolution, true, false);
   const int ahead = ahead_of(pack), before = p_.blocks[pack.a].lag;
   Value* const a = before == pack.lag ? newest(pack.a, ahead) : load(slot_at(row(ahead), p_.blocks[pack.a].first));
   // At order 0 what a block copies is not there yet; of a lower lag it is, and what is in a register may be of a higher
@@ -299,7 +299,7 @@ void RolledEmitter::quotient(std::size_t index) {
 /// y_k = (u_k − Σ_{0<j<k} y_j y_{k−j}) / (2 y_0)
 void RolledEmitter::square_root(std::size_t index) {
   const Pack& pack = p_.packs[index];
-  Value* const sum = convolution(first_convolution_[index], false, false);
+  Value* const sum = convolution(p_.packs[index].first_convolution, false, false);
   const int ahead = ahead_of(pack), before = p_.blocks[pack.a].lag;
   Value* const u = before == pack.lag ? newest(pack.a, ahead) : load(slot_at(row(ahead), p_.blocks[pack.a].first));
   if (written_ && *written_ + ahead == 0) return keep(pack, out_.square_root(u));

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 
-/// q̈_k of a stage as a product with −M₀⁻¹, and what the coefficients of the stage owe to it: nothing in between leaves
-/// the registers and is read again in another width.
+/// q̈_k of a stage as a product with −M₀⁻¹, and what it changes in the coefficients of the stage: nothing in between
+/// leaves the registers and is read again in another width.
 namespace maupertuis::llvm_backend {
 
 using llvm::Value;

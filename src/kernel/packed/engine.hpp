@@ -41,6 +41,9 @@ struct Tables {
   const Column* columns = nullptr;
   const ColumnRun* runs = nullptr;
   const ProductTerm* products = nullptr;
+  const Convolution* convolutions = nullptr;
+  std::size_t convolution_count = 0;
+  double* sums = nullptr;                // [convolutions][rolled_group][lanes], aligned to 64 bytes
   const std::uint32_t* functions = nullptr;
   const double* coefficients = nullptr;  // values of PackedProgram::coefficients
   double* rows = nullptr;                // [orders][stride], aligned to 64 bytes
@@ -80,7 +83,7 @@ struct Engine {
   const char* name;
   /// Every pack at the order that belongs to the stage, from stage 1 on with q_{k+2} = 0, which it sets.
   void (*run_stage)(const Tables&, int stage);
-  /// Copies of blocks, when the coefficients of the stage are final.
+  /// When the coefficients of the stage are final: copies of blocks, and sums of products for the stages that follow.
   void (*renew_blocks)(const Tables&, int stage);
   /// Tangents of order 0: in, those of the coordinates; out, those of all slots of Dynamics. [directions][slots of a
   /// row]
@@ -107,7 +110,7 @@ struct Engine {
   void (*negate)(const double* from, double* to, std::size_t count);
   /// q_{k+2} = q̈_k / ((k+1)(k+2)) for k = stage, q̈_k = sign · `solution`; read and written in eights.
   void (*set_accelerations)(const Tables&, int stage, const double* solution, std::size_t unknowns, int sign);
-  /// What the coefficients of the stage that later orders read owe to q̈_k: in a slot of lag ℓ, Σ_d weights[d] ·
+  /// How q̈_k changes the coefficients of the stage that later orders read: in a slot of lag ℓ by Σ_d weights[d] ·
   /// tangents[d] times 1, 1/(k+1), 1/((k+1)(k+2)) for ℓ = 2, 1, 0.
   void (*correct)(const Tables&, int stage, const TangentMatrix&, const double* weights);
   /// Stages `first` ≥ 1 to `last` − 1, each with all that belongs to it: run_stage(), solve_by_inverse(),

@@ -30,8 +30,8 @@ inline Vector long_convolution(const double* a, const double* b, int n, std::ptr
   return even + odd;
 }
 
-using Convolution = Vector (*)(const double*, const double*, std::ptrdiff_t);
-const Convolution convolutions[] = {convolution_of<0>,  convolution_of<1>,  convolution_of<2>,  convolution_of<3>,
+using WrittenOut = Vector (*)(const double*, const double*, std::ptrdiff_t);
+const WrittenOut convolutions[] = {convolution_of<0>,  convolution_of<1>,  convolution_of<2>,  convolution_of<3>,
                                     convolution_of<4>,  convolution_of<5>,  convolution_of<6>,  convolution_of<7>,
                                     convolution_of<8>,  convolution_of<9>,  convolution_of<10>, convolution_of<11>,
                                     convolution_of<12>, convolution_of<13>, convolution_of<14>, convolution_of<15>,

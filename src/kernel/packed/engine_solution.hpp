@@ -222,7 +222,7 @@ Vector weighted(const Vector (&weights)[N], const double* rows, std::size_t stri
   return sums[0];
 }
 
-/// Of what coefficients owe to q̈_k, by lag.
+/// Of what q̈_k changes in coefficients, by lag.
 struct Factors {
   explicit Factors(const Stage& s) : of_lag{1 / s.order_of(2).shift_factors[2], s.order_of(1).reciprocal.leading, 1} {}
   double of_lag[3];

@@ -15,7 +15,9 @@ void sine_cosine(const double* x, double* out, int count) {
 
 /// What packs of a stage have in common.
 struct Stage {
-  Stage(const Tables& tables, int number) : t(tables), stage(number), newest(tables.orders + (number + 2)) {}
+  Stage(const Tables& tables, int number)
+      : t(tables), stage(number), by_sums(has_sums_ahead(number)), position((number - 1) % rolled_group),
+        newest(tables.orders + (number + 2)) {}
 
   /// Of slots of that lag; not below 0.
   const Order& order_of(int lag) const { return *(newest - lag); }
@@ -25,6 +27,8 @@ struct Stage {
 
   const Tables& t;
   int stage;
+  bool by_sums;                          // that were made ahead
+  int position;                          // of this stage among the four of a sum
   const Order* newest;                   // of lag 0
 };
 
@@ -32,10 +36,20 @@ struct Stage {
 
 [[gnu::noinline]] Vector gathered(const double* row, const Block& block) { return gather(row, block.slots.data()); }
 
+/// One permutation, where the processor has it and two vectors hold all; eight loads else.
+inline Vector values_at(const double* row, const Block& block) {
+  if (block.is_range) return load(row + block.slots[0]);
+#ifdef __AVX512F__
+  if (block.in_two_vectors)
+    return __builtin_shuffle(load(row + block.vectors[0]), load(row + block.vectors[1]), places_of(block));
+#endif
+  return gathered(row, block);
+}
+
 /// A block that is not direct: from slots of a row to its cells of the same row.
 inline void copy(const Stage& s, const Block& block) {
   const Order& order = s.order_of(block.lag);
-  const Vector values = block.is_range ? load(order.row + block.slots[0]) : gathered(order.row, block);
+  const Vector values = values_at(order.row, block);
   save(order.row + block.first, block.weighted ? values * all(order.number) : values);
 }
 
@@ -62,18 +76,19 @@ inline void bring(const Stage& s, const Pack& pack, std::uint32_t index) {
 }
 
 /// d/dt multiplies by k + 1.
-inline Vector columns(const Stage& s, const Pack& pack) {
+inline Vector columns_of(const Stage& s, const ColumnRun& run, const Order& order) {
+  const double* const from = order.row + run.shift * s.t.stride;
+  const double* const coefficients = s.t.coefficients + run.coefficients;
+  return (run.neighbours ? columns_of_neighbours(from + run.source, run.last - run.first, coefficients)
+                         : run_of_columns(s.t, run, coefficients, from)) *
+         all(order.shift_factors[run.shift]);
+}
+
+inline Vector columns(const Stage& s, const Pack& pack, const Order& order) {
   Vector sum = all(0);
-  const Order& order = s.order_of(pack.lag);
-  for (const ColumnRun *run = s.t.runs + pack.first_run, *last = s.t.runs + pack.last_run; run != last; ++run) {
-    const Column& first = s.t.columns[run->first];
-    const double* const from = order.row + run->shift * s.t.stride;
-    const double* const coefficients = s.t.coefficients + first.coefficients;
-    const Vector part = run->neighbours
-                            ? columns_of_neighbours(from + first.source, run->last - run->first, coefficients)
-                            : run_of_columns(s.t, *run, coefficients, from);
-    sum += part * all(order.shift_factors[run->shift]);
-  }
+  const std::uint32_t first = s.stage > 0 ? pack.first_later_run : pack.first_run;
+  for (const ColumnRun *run = s.t.runs + first, *last = s.t.runs + pack.last_run; run != last; ++run)
+    sum += columns_of(s, *run, order);
   return sum;
 }
 
@@ -92,28 +107,79 @@ Vector square(const Stage& s, const double* a, int k, int first) {
   return sum;
 }
 
-inline Vector product(const Stage& s, const ProductTerm& term, int k) {
-  const double* const a = s.cells(term.a);
-  return term.a == term.b ? square(s, a, k, 0)
-                          : convolution(a, s.cells(term.b), k, static_cast<std::ptrdiff_t>(s.t.stride));
+[[gnu::noinline]] Vector product(const Stage& s, const Pack& pack, const Convolution& c, int k) {
+  bring(s, pack, c.a), bring(s, pack, c.b);
+  const double *const a = s.t.rows + c.first_a, *const b = s.t.rows + c.first_b;
+  return a == b ? square(s, a, k, 0) : convolution(a, b, k, static_cast<std::ptrdiff_t>(s.t.stride));
 }
 
 /// Σ_{j=1..k} a_j b_{k−j}
-inline Vector without_first(const Stage& s, std::uint32_t a, std::uint32_t b, int k) {
+[[gnu::noinline]] Vector without_first(const Stage& s, const Convolution& c, int k) {
   const auto stride = static_cast<std::ptrdiff_t>(s.t.stride);
-  return k == 0 ? all(0) : convolution(s.cells(a) + stride, s.cells(b), k - 1, stride);
+  return k == 0 ? all(0) : convolution(s.t.rows + c.first_a + stride, s.t.rows + c.first_b, k - 1, stride);
+}
+
+inline bool goes_by_sum(const Stage& s, const Convolution& c) { return s.by_sums && c.goes_ahead; }
+
+/// A convolution by the sum that was made ahead.
+inline Vector completed(const Stage& s, const Convolution& c, const Order& order) {
+  if (c.copies_a) copy(s, s.t.blocks[c.a]);
+  if (c.copies_b) copy(s, s.t.blocks[c.b]);
+  return completed_sum(s.t, c, s.position, order.offset);
 }
 
 // -------------------------------------------------------------------------------------------------------------- packs
 
-inline Vector sum_of_pack(const Stage& s, const Pack& pack, const Order& order) {
-  Vector result = columns(s, pack);
-  for (const ProductTerm *term = s.t.products + pack.first_product, *last = s.t.products + pack.last_product;
-       term != last; ++term) {
-    bring(s, pack, term->a), bring(s, pack, term->b);
-    result += load(s.t.coefficients + term->coefficients) * product(s, *term, order.number);
+/// Runs a pack; returns the last one that is done with it.
+using RunPack = const Pack* (*)(const Stage&, const Pack*);
+
+const Pack* run_sum(const Stage& s, const Pack* pack) {
+  const Order& order = s.order_of(pack->lag);
+  Vector result = columns(s, *pack, order);
+  const ProductTerm* term = s.t.products + pack->first_product;
+  const Convolution* const last = s.t.convolutions + pack->last_convolution;
+  for (const Convolution* c = s.t.convolutions + pack->first_convolution; c != last; ++c, ++term) {
+    const Vector sum = goes_by_sum(s, *c) ? completed(s, *c, order) : product(s, *pack, *c, order.number);
+    result += load(s.t.coefficients + term->coefficients) * sum;
   }
-  return result;
+  save(order.row + pack->out, result);
+  return pack;
+}
+
+const Pack* run_neighbours(const Stage& s, const Pack* pack) {
+  const Order& order = s.order_of(pack->lag);
+  const ColumnRun& run = s.t.runs[pack->first_later_run];
+  const Vector sum = columns_of_neighbours(order.row + run.shift * s.t.stride + run.source, run.last - run.first,
+                                           s.t.coefficients + run.coefficients);
+  save(order.row + pack->out, sum * all(order.shift_factors[run.shift]));
+  return pack;
+}
+
+const Pack* run_products(const Stage& s, const Pack* pack) {
+  const Order& order = s.order_of(pack->lag);
+  Vector result = all(0);
+  const ProductTerm* term = s.t.products + pack->first_product;
+  const Convolution* const last = s.t.convolutions + pack->last_convolution;
+  for (const Convolution* c = s.t.convolutions + pack->first_convolution; c != last; ++c, ++term)
+    result += load(s.t.coefficients + term->coefficients) * completed(s, *c, order);
+  save(order.row + pack->out, result);
+  return pack;
+}
+
+template <Vector (*running)(Vector)>
+const Pack* run_scan(const Stage& s, const Pack* pack) {
+  const Order& order = s.order_of(pack->lag);
+  save(order.row + pack->out, running(columns(s, *pack, order)) + carry_of(pack->carry, order.row));
+  return pack;
+}
+
+/// All of a running sum in eight parts.
+const Pack* run_strands(const Stage& s, const Pack* pack) {
+  const Order& order = s.order_of(pack->lag);
+  Vector sum = all(0);
+  for (; pack->kind == Pack::Strand; ++pack) save(order.row + pack->out, sum += columns(s, *pack, order));
+  join_strands(*pack, sum, order.row, pack->kind == Pack::Join ? before_lanes : before_lanes_down);
+  return pack;
 }
 
 [[gnu::noinline]] void functions(const Tables& t, const Pack& pack) {
@@ -132,50 +198,76 @@ inline Vector sum_of_pack(const Stage& s, const Pack& pack, const Order& order) 
     t.rows[pack.out + i] = values[i], t.rows[pack.pairs + i] = values[lanes + i];
 }
 
-/// 1/k comes with its residue: a rounded reciprocal would err the same way in every step. The integral at order k reads
-/// w up to order k − 1, where it is final.
-inline void integral(const Stage& s, const Pack& pack, const Order& order) {
-  bring(s, pack, pack.a);
-  if (order.number == 0) return functions(s.t, pack);
-  const Vector sum = without_first(s, pack.a, pack.b, order.number) * load(s.t.coefficients + pack.coefficients);
+/// 1/k comes with its residue: a rounded reciprocal would err the same way in every step.
+inline void save_integral(const Stage& s, const Pack& pack, const Order& order, Vector sum) {
+  sum *= load(s.t.coefficients + pack.coefficients);
   save(order.row + pack.out, sum * all(order.reciprocal.rest) + sum * all(order.reciprocal.leading));
 }
 
-inline Vector quotient(const Stage& s, const Pack& pack, const Order& order) {
-  bring(s, pack, pack.a), bring(s, pack, pack.b);
-  return (load(s.cells(pack.a) + order.offset) - without_first(s, pack.b, pack.y, order.number)) /
-         load(s.cells(pack.b));
+/// The integral at order k reads w up to order k − 1, where it is final.
+const Pack* run_integral(const Stage& s, const Pack* pack) {
+  const Order& order = s.order_of(pack->lag);
+  bring(s, *pack, pack->a);
+  if (order.number == 0) functions(s.t, *pack);
+  else save_integral(s, *pack, order, without_first(s, s.t.convolutions[pack->first_convolution], order.number));
+  return pack;
 }
 
-inline Vector square_root(const Stage& s, const Pack& pack, const Order& order) {
-  bring(s, pack, pack.a);
-  Vector u = load(s.cells(pack.a) + order.offset);
-  const double* const y = s.cells(pack.y);
-  if (order.number > 0) return (u - square(s, y, order.number, 1)) / (load(y) + load(y));
-  for (unsigned lane = 0; lane < lanes; ++lane) u[lane] = __builtin_sqrt(u[lane]);
-  return u;
+const Pack* run_integral_by_sum(const Stage& s, const Pack* pack) {
+  const Order& order = s.order_of(pack->lag);
+  save_integral(s, *pack, order, completed(s, s.t.convolutions[pack->first_convolution], order));
+  return pack;
 }
 
-inline void run_pack(const Stage& s, const Pack& pack) {
-  const Order& order = s.order_of(pack.lag);
-  double *const row = order.row, *const out = row + pack.out;
-  switch (pack.kind) {
-    case Pack::Sum: return save(out, sum_of_pack(s, pack, order));
-    case Pack::Scan: return save(out, running_sum(columns(s, pack)) + carry_of(pack.carry, row));
-    case Pack::ScanDown: return save(out, running_sum_down(columns(s, pack)) + carry_of(pack.carry, row));
-    case Pack::Strand: return save(out, columns(s, pack) + (pack.carry == no_slot ? all(0) : load(row + pack.carry)));
-    case Pack::Join: return join_strands(pack, load(row + pack.last_strand), row, before_lanes);
-    case Pack::JoinDown: return join_strands(pack, load(row + pack.last_strand), row, before_lanes_down);
-    case Pack::Integral: return integral(s, pack, order);
-    case Pack::Quotient: return save(out, quotient(s, pack, order));
-    case Pack::SquareRoot: return save(out, square_root(s, pack, order));
-    case Pack::Scalar: return s.t.scalar.value(s.t.scalar.context, pack.instruction, order.number);
+const Pack* run_quotient(const Stage& s, const Pack* pack) {
+  const Order& order = s.order_of(pack->lag);
+  const Convolution& c = s.t.convolutions[pack->first_convolution];
+  bring(s, *pack, pack->a), bring(s, *pack, pack->b);
+  const Vector sum = goes_by_sum(s, c) ? completed(s, c, order) : without_first(s, c, order.number);
+  save(order.row + pack->out, (load(s.cells(pack->a) + order.offset) - sum) / load(s.cells(pack->b)));
+  return pack;
+}
+
+const Pack* run_square_root(const Stage& s, const Pack* pack) {
+  const Order& order = s.order_of(pack->lag);
+  const Convolution& c = s.t.convolutions[pack->first_convolution];
+  bring(s, *pack, pack->a);
+  Vector u = load(s.cells(pack->a) + order.offset);
+  const double* const y = s.cells(pack->y);
+  if (order.number > 0) {
+    const Vector sum = goes_by_sum(s, c) ? completed(s, c, order) : square(s, y, order.number, 1);
+    u = (u - sum) / (load(y) + load(y));
+  } else {
+    for (unsigned lane = 0; lane < lanes; ++lane) u[lane] = __builtin_sqrt(u[lane]);
   }
+  save(order.row + pack->out, u);
+  return pack;
+}
+
+const Pack* run_scalar(const Stage& s, const Pack* pack) {
+  s.t.scalar.value(s.t.scalar.context, pack->instruction, s.order_of(pack->lag).number);
+  return pack;
+}
+
+/// By Pack::Kind, joins being done with their strands; from stage 1 on by Pack::Way as well, where there are sums.
+constexpr RunPack run_of[] = {run_sum,        run_scan<running_sum>, run_scan<running_sum_down>, run_strands,
+                              nullptr,        nullptr,               run_integral,               run_quotient,
+                              run_square_root, run_scalar,           run_neighbours,             run_products,
+                              run_integral_by_sum};
+
+/// Up to stage 0.
+void run_first_packs(const Stage& s) {
+  for (const Pack *pack = s.t.packs, *last = s.t.packs + s.t.pack_count; pack != last; ++pack)
+    if (s.has_order_of(pack->lag)) pack = run_of[pack->kind](s, pack);
 }
 
 inline void run_packs(const Stage& s) {
-  for (const Pack *pack = s.t.packs, *last = s.t.packs + s.t.pack_count; pack != last; ++pack)
-    if (s.has_order_of(pack->lag)) run_pack(s, *pack);
+  if (s.stage <= 0) return run_first_packs(s);
+  const Pack *pack = s.t.packs, *const last = s.t.packs + s.t.pack_count;
+  if (s.by_sums)
+    for (; pack != last; ++pack) pack = run_of[pack->way](s, pack);
+  else
+    for (; pack != last; ++pack) pack = (pack->way == Pack::Neighbours ? run_neighbours : run_of[pack->kind])(s, pack);
 }
 
 void run_stage(const Tables& tables, int stage) {
@@ -188,6 +280,7 @@ void run_stage(const Tables& tables, int stage) {
 inline void renew(const Stage& s) {
   for (const Block *block = s.t.blocks, *last = s.t.blocks + s.t.block_count; block != last; ++block)
     if (!block->direct && s.has_order_of(block->lag)) copy(s, *block);
+  if (begins_sums_ahead(s.stage)) make_sums_ahead(s.t, s.stage);
 }
 void renew_blocks(const Tables& tables, int stage) { renew(Stage(tables, stage)); }
 

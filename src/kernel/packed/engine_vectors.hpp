@@ -13,6 +13,9 @@ inline Vector gather(const double* p, const Slot* slots) {
 }
 
 typedef long long Places __attribute__((vector_size(64)));
+typedef long long UnalignedPlaces __attribute__((vector_size(64), aligned(8)));
+
+inline Places places_of(const Block& block) { return *reinterpret_cast<const UnalignedPlaces*>(block.places.data()); }
 
 /// What a column of one kind reads.
 template <Column::Kind kind>

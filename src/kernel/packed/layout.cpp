@@ -50,6 +50,7 @@ class Packs {
       }
     }
     out_.cells = next_cell_;
+    for (Pack& pack : out_.packs) convolutions(pack);
     return std::move(out_);
   }
 
@@ -209,8 +210,11 @@ class Packs {
     for (ReadColumn& read : found) {
       const auto at = static_cast<std::uint32_t>(out_.columns.size());
       if (at == pack.first_column || key(read.column) != key(out_.columns.back()))
-        out_.runs.push_back({read.column.kind, read.column.shift, passes_tangent(read.column, pack.lag), at, at,
-                             read.column.kind == Column::Broadcast});
+        out_.runs.push_back({.kind = read.column.kind, .shift = read.column.shift,
+                             .passes_tangent = passes_tangent(read.column, pack.lag), .first = at, .last = at,
+                             .source = read.column.source,
+                             .coefficients = static_cast<std::uint32_t>(out_.coefficients.size()),
+                             .neighbours = read.column.kind == Column::Broadcast});
       ColumnRun& run = out_.runs.back();
       run.neighbours = run.neighbours &&
                        (run.first == at || read.column.source == out_.columns[run.first].source + (at - run.first));
@@ -219,6 +223,14 @@ class Packs {
     }
     pack.last_column = static_cast<std::uint32_t>(out_.columns.size());
     pack.last_run = static_cast<std::uint32_t>(out_.runs.size());
+    pack.first_later_run = pack.first_run + (pack.first_run != pack.last_run && is_of_one(out_.runs[pack.first_run]));
+  }
+
+  /// The number 1 has no orders but 0.
+  bool is_of_one(const ColumnRun& run) const {
+    return run.kind == Column::Broadcast &&
+           std::all_of(out_.columns.begin() + run.first, out_.columns.begin() + run.last,
+                       [this](const Column& column) { return column.source == out_.program.one; });
   }
 
   Sums sums_of(Members members) const {
@@ -259,6 +271,54 @@ class Packs {
     pack.last_product = static_cast<std::uint32_t>(out_.products.size());
   }
 
+  void convolutions(Pack& pack) {
+    pack.first_convolution = static_cast<std::uint32_t>(out_.convolutions.size());
+    switch (pack.kind) {
+      case Pack::Sum:
+        for (std::uint32_t i = pack.first_product; i < pack.last_product; ++i)
+          convolution(pack, out_.products[i].a, false, out_.products[i].b, false);
+        break;
+      case Pack::Integral: convolution(pack, pack.a, false, pack.b, true); break;
+      case Pack::Quotient: convolution(pack, pack.b, false, pack.y, true); break;
+      case Pack::SquareRoot: convolution(pack, pack.y, true, pack.y, true); break;
+      case Pack::Scan: case Pack::ScanDown: case Pack::Strand: case Pack::Join: case Pack::JoinDown:
+      case Pack::Scalar: break;
+    }
+    pack.last_convolution = static_cast<std::uint32_t>(out_.convolutions.size());
+    pack.way = way_of(pack);
+  }
+
+  std::uint8_t way_of(const Pack& pack) const {
+    const auto first = out_.convolutions.begin() + pack.first_convolution;
+    const auto last = out_.convolutions.begin() + pack.last_convolution;
+    const bool all_ahead = std::all_of(first, last, [](const Convolution& c) { return c.goes_ahead; });
+    const std::uint32_t runs = pack.last_run - pack.first_later_run;
+    if (pack.kind == Pack::Sum && first == last && runs == 1 && out_.runs[pack.first_later_run].neighbours)
+      return Pack::Neighbours;
+    if (pack.kind == Pack::Sum && runs == 0 && all_ahead) return Pack::Products;
+    if (pack.kind == Pack::Integral && all_ahead) return Pack::IntegralBySum;
+    return pack.kind;
+  }
+
+  void convolution(const Pack& pack, std::uint32_t a, bool finds_a, std::uint32_t b, bool finds_b) {
+    const auto ahead = [&](std::uint32_t block) { return static_cast<std::int8_t>(pack.lag - out_.blocks[block].lag); };
+    const auto fits = [&](std::int8_t by) { return by >= 0 && by <= pack.lag; };
+    const auto lacks_newest = [&](std::uint32_t block, bool finds) {
+      return ahead(block) == 0 && (finds || is_of_coordinates(out_.blocks[block]));
+    };
+    Convolution c{a, b, pack.lag, ahead(a), ahead(b), fits(ahead(a)) && fits(ahead(b))};
+    c.number = static_cast<std::uint32_t>(out_.convolutions.size());
+    c.first_a = out_.blocks[a].first, c.first_b = out_.blocks[b].first;
+    c.lacks_newest_a = lacks_newest(a, finds_a), c.lacks_newest_b = lacks_newest(b, finds_b);
+    c.copies_a = !c.lacks_newest_a && !out_.blocks[a].direct && ahead(a) <= 0;
+    c.copies_b = !c.lacks_newest_b && !out_.blocks[b].direct && ahead(b) <= 0;
+    out_.convolutions.push_back(c);
+  }
+
+  bool is_of_coordinates(const Block& block) const {
+    return std::all_of(block.slots.begin(), block.slots.end(), [&](Slot slot) { return slot < out_.program.unknowns; });
+  }
+
   bool passes_tangent(const Column& column, int lag) const {
     return out_.program.tangent_lags[column.source] + column.shift == lag;
   }
@@ -291,12 +351,25 @@ class Packs {
     result.is_range = !filled && (slots.size() == lanes || slots[0] % lanes == 0);
     for (std::size_t lane = 0; lane < slots.size(); ++lane)
       result.is_range = result.is_range && slots[lane] == slots[0] + lane;
+    find_vectors(result);
     if (!range) {
       result.first = static_cast<Slot>(next_cell_);
       next_cell_ += lanes;
     }
     out_.blocks.push_back(result);
     return place->second;
+  }
+
+  static void find_vectors(Block& block) {
+    const auto vector_of = [&](std::size_t lane) { return block.slots[lane] / lanes * lanes; };
+    block.vectors = {vector_of(0), vector_of(0)};
+    block.in_two_vectors = true;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      auto& [first, second] = block.vectors;
+      if (first == second) second = vector_of(lane);
+      block.in_two_vectors = block.in_two_vectors && (vector_of(lane) == first || vector_of(lane) == second);
+      block.places[lane] = block.slots[lane] % lanes + (vector_of(lane) == first ? 0 : lanes);
+    }
   }
 
   ConstantId literal(int value) {

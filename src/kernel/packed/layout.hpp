@@ -25,6 +25,10 @@ struct Block {
   std::uint32_t width = 0;
   std::array<Slot, lanes> slots{};      // what is copied
   bool is_range = false;                // … is side by side
+  /// … lies in two vectors of a row: where these begin, and of each lane its place in them, 0 … 15.
+  bool in_two_vectors = false;
+  std::array<Slot, 2> vectors{};
+  std::array<long long, lanes> places{};
 };
 
 /// Σ over columns: coefficient of the lane · dʳ/dtʳ of an operand.
@@ -43,6 +47,8 @@ struct ColumnRun {
   std::uint8_t shift = 0;
   bool passes_tangent = false;
   std::uint32_t first = 0, last = 0;    // columns
+  Slot source = 0;                      // of the first one, as its coefficients
+  std::uint32_t coefficients = 0;
   bool neighbours = false;              // Broadcast: of slots side by side
 };
 
@@ -50,6 +56,20 @@ struct ColumnRun {
 struct ProductTerm {
   std::uint32_t a = 0, b = 0;           // blocks
   std::uint32_t coefficients = 0;
+};
+
+/// Σ_j a_j b_{m−j} of a pack of lag ℓ, which finds m = k + 2 − ℓ at stage k. The engine and rolled code make these sums
+/// for several stages at once (`engine_ahead.hpp`), of all that is final, and leave what is newer to the stages.
+struct Convolution {
+  std::uint32_t a = 0, b = 0;           // blocks
+  std::int8_t lag = 0;                  // ℓ
+  std::int8_t a_ahead = 0, b_ahead = 0; // ℓ − lag of the operand: by so many orders it is known earlier
+  bool goes_ahead = false;              // both are 0 … ℓ; functions of t alone may be known earlier still
+  /// No a_m b_0, or no a_0 b_m: a stage finds that operand itself, or it is of coordinates, which count as 0.
+  bool lacks_newest_a = false, lacks_newest_b = false;
+  bool copies_a = false, copies_b = false;  // a stage has to copy the newest first, as it is not final
+  Slot first_a = 0, first_b = 0;        // cells of the operands
+  std::uint32_t number = 0;             // of all
 };
 
 /// Up to eight results side by side.
@@ -64,10 +84,10 @@ struct ProductTerm {
 ///         …                                     …       …        …        …
 ///                                               11      s11      s23      s35
 ///
-/// On the left (Scan) each lane adds the lanes before it, by three shuffles, and all lanes add the last sum of the vector
-/// before. On the right each vector (Strand) adds its columns to the vector before, so that every lane is the running sum
-/// of its own part; then (Join) each lane of all these vectors adds what the lanes before it came to in the last vector:
-/// lane 2 what s11 and s23 were until then. That takes one sum across lanes in place of one a vector.
+/// On the left (Scan) each lane adds the lanes before it, by three shuffles, and all lanes add the last sum of the
+/// vector before. On the right each vector (Strand) adds its columns to the vector before, so that every lane is the
+/// running sum of its own part; then (Join) each lane of all these vectors adds what the lanes before it came to in the
+/// last vector: lane 2 what s11 and s23 were until then. That takes one sum across lanes in place of one a vector.
 struct Pack {
   enum Kind : std::uint8_t {
     Sum,         // columns + products
@@ -81,12 +101,21 @@ struct Pack {
     SquareRoot,  // of block a
     Scalar,      // one instruction, by the reference rules
   } kind = Scalar;
+  /// How a stage from 1 on runs it: by its kind, but what needs little has code of its own.
+  enum Way : std::uint8_t {
+    Neighbours = Scalar + 1,  // one run of neighbours
+    Products,                 // where sums are made ahead: products by these
+    IntegralBySum,
+  };
+  std::uint8_t way = Scalar;            // Kind or Way
   std::int8_t lag = 0;
   std::int8_t level = 0;
   std::uint32_t width = 0;              // lanes in use
   Slot out = 0;                         // first of `lanes` slots, beginning at a multiple of it (not for Scalar)
   std::uint32_t first_column = 0, last_column = 0, first_product = 0, last_product = 0;  // Sum
   std::uint32_t first_run = 0, last_run = 0;  // Sum and Scan: the columns, run by run
+  std::uint32_t first_later_run = 0;    // from stage 1 on: without what the number 1 gives
+  std::uint32_t first_convolution = 0, last_convolution = 0;  // of a Sum one a product
   /// Sum: the same columns by their place in the sums, for compiled code
   std::uint32_t first_aligned = 0, last_aligned = 0;
   /// Integral: u (weighted), w; Quotient: a, b, y; SquareRoot: u, –, y
@@ -110,6 +139,7 @@ struct PackedProgram {
   std::vector<Column> columns;
   std::vector<ColumnRun> runs;
   std::vector<ProductTerm> products;
+  std::vector<Convolution> convolutions;
   std::vector<std::uint32_t> functions; // indices of instructions
   std::vector<ConstantId> coefficients; // of lanes that are not in use: the constant 0
 

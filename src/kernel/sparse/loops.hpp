@@ -6,20 +6,26 @@
 /// time. Plain pointers, so that no inline function of a container is compiled for a processor that may not be there.
 namespace maupertuis::sparse {
 
-/// Sums of products whose operands are known before: x_target = scale · x_target + Σ factor · x_operand. Sums of one
-/// level do not wait for each other; those of as many products stand together, so that a loop over them has no branches
-/// of its own.
-struct SumRun {
-  std::uint32_t products;        // of each sum
-  std::uint32_t first, last;     // sums
-  std::uint32_t first_product;   // of the first sum; they follow each other
+/// x_target = scale · x_target + Σ factor · x_operand, of operands that are known before.
+struct SweepSum {
+  std::uint32_t target, pivot;
+  std::uint32_t first, last;     // products; those of all sums follow each other
   bool starts;                   // at a value that is there; else at 0
-  bool negates;                  // forward: the pivots are −1
+  bool negates;                  // forward: the pivot is −1
 };
 
+/// Sums of one shape one after the other, or of a recurrence (LoopSweep) so many sides and a joint for each link. The
+/// last product of a joint has the factor from joint to joint.
+struct SweepRun {
+  std::uint32_t first, last;     // sums
+  std::uint32_t sides;           // 0: none is a recurrence
+};
+inline constexpr std::size_t most_sides = 4;
+
 struct SweepTables {
-  const SumRun *runs, *last_run;
-  const std::uint32_t *target, *operand;
+  const SweepRun *runs, *last_run;
+  const SweepSum* sums;
+  const std::uint32_t* operand;
   const double *scale, *factors;
 };
 

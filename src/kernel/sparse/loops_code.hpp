@@ -13,34 +13,51 @@ inline double minus(double sum, double a, double b) {
 #endif
 }
 
-/// Products below 0: as many as the run has.
+/// Products below 0: as many as the sums of the run have.
 template <int Products, bool Starts>
-void sums(const SweepTables& t, const SumRun& run, double* x) {
-  const int count = Products >= 0 ? Products : static_cast<int>(run.products);
-  const double* factor = t.factors + run.first_product;
-  const std::uint32_t* operand = t.operand + run.first_product;
-  for (std::uint32_t i = run.first; i < run.last; ++i, factor += count, operand += count) {
-    double sum = Starts ? t.scale[i] * x[t.target[i]] : 0;
-    for (int k = 0; k < count; ++k) sum = minus(sum, -factor[k], x[operand[k]]);
-    x[t.target[i]] = sum;
+void one_by_one(const SweepTables& t, const SweepRun& run, double* x) {
+  const SweepSum *sum = t.sums + run.first, *const last = t.sums + run.last;
+  const int count = Products >= 0 ? Products : static_cast<int>(sum->last - sum->first);
+  const double *scale = t.scale + run.first, *factor = t.factors + sum->first;
+  const std::uint32_t* operand = t.operand + sum->first;
+  for (; sum != last; ++sum, ++scale, factor += count, operand += count) {
+    double value = Starts ? *scale * x[sum->target] : 0;
+    for (int k = 0; k < count; ++k) value = minus(value, -factor[k], x[operand[k]]);
+    x[sum->target] = value;
+  }
+}
+
+template <int Sides, bool Starts>
+void recurrence(const SweepTables& t, const SweepRun& run, double* x) {
+  const SweepSum *sum = t.sums + run.first, *const last = t.sums + run.last;
+  const double *scale = t.scale + run.first, *factor = t.factors + sum->first;
+  double side[Sides], joint = x[t.operand[sum->first + 1]];
+  for (int j = 0; j < Sides; ++j) side[j] = x[t.operand[sum[j].first]];
+  for (; sum != last; sum += Sides + 1, scale += Sides + 1, factor += 3 * Sides + 1) {
+    double next = scale[Sides] * x[sum[Sides].target];
+    for (int j = 0; j < Sides; ++j) {
+      const double without_joint = minus(Starts ? scale[j] * x[sum[j].target] : 0, -factor[2 * j], side[j]);
+      next = minus(next, -factor[2 * Sides + j], without_joint);
+      x[sum[j].target] = side[j] = minus(without_joint, -factor[2 * j + 1], joint);
+    }
+    x[sum[Sides].target] = joint = minus(next, -factor[3 * Sides], joint);
   }
 }
 
 template <bool Starts>
-void sums(const SweepTables& t, const SumRun& run, double* x) {
-  switch (run.products) {
-    case 0: return sums<0, Starts>(t, run, x);
-    case 1: return sums<1, Starts>(t, run, x);
-    case 2: return sums<2, Starts>(t, run, x);
-    case 3: return sums<3, Starts>(t, run, x);
-    case 4: return sums<4, Starts>(t, run, x);
-    default: return sums<-1, Starts>(t, run, x);
-  }
+void run_sums(const SweepTables& t, const SweepRun& run, double* x) {
+  using RunSums = void (*)(const SweepTables&, const SweepRun&, double*);
+  static constexpr RunSums by_sides[] = {nullptr, recurrence<1, Starts>, recurrence<2, Starts>, recurrence<3, Starts>,
+                                         recurrence<4, Starts>};
+  static constexpr RunSums by_products[] = {one_by_one<0, Starts>, one_by_one<1, Starts>, one_by_one<2, Starts>,
+                                            one_by_one<3, Starts>, one_by_one<4, Starts>, one_by_one<-1, Starts>};
+  const std::uint32_t products = t.sums[run.first].last - t.sums[run.first].first;
+  (run.sides > 0 ? by_sides[run.sides] : by_products[products < 5 ? products : 5])(t, run, x);
 }
 
 void sweep(const SweepTables& t, double* x) {
-  for (const SumRun* run = t.runs; run != t.last_run; ++run)
-    run->starts ? sums<true>(t, *run, x) : sums<false>(t, *run, x);
+  for (const SweepRun* run = t.runs; run != t.last_run; ++run)
+    t.sums[run->first].starts ? run_sums<true>(t, *run, x) : run_sums<false>(t, *run, x);
 }
 
 double size(double x) { return __builtin_fabs(x); }

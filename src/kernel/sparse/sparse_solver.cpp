@@ -36,6 +36,8 @@ class SparseBuilder {
     for (const Pivot& pivot : pivots_) s_.usual_size_.push_back(pivot.size);
     s_.entries_.assign(system_.entries.size() + 1, 0.0);
     note_parts();
+    s_.forward_loop_ = LoopSweep(s_.forward_.sums, s_.forward_.operand);
+    s_.backward_loop_ = LoopSweep(s_.backward_.sums, s_.backward_.operand);
   }
 
  private:
@@ -137,14 +139,10 @@ class SparseBuilder {
     const auto order = [](const Sum& sum) { return std::tuple(sum.level, sum.others.size(), sum.starts, sum.negates); };
     std::stable_sort(sums.begin(), sums.end(), [&](const Sum& a, const Sum& b) { return order(a) < order(b); });
     sweep.first_factor = next_factor_;
-    for (std::uint32_t i = 0; i < sums.size(); ++i) {
-      const Sum& sum = sums[i];
-      if (i == 0 || order(sums[i - 1]) != order(sum))
-        sweep.runs.push_back({static_cast<std::uint32_t>(sum.others.size()), i, i,
-                              static_cast<std::uint32_t>(sweep.operand.size()), sum.starts, sum.negates});
-      sweep.runs.back().last = i + 1;
-      sweep.target.push_back(cell(sum.pivot));
-      sweep.pivot.push_back(sum.pivot);
+    for (const Sum& sum : sums) {
+      const auto first = static_cast<std::uint32_t>(sweep.operand.size());
+      sweep.sums.push_back({cell(sum.pivot), sum.pivot, first, first + static_cast<std::uint32_t>(sum.others.size()),
+                            sum.starts, sum.negates});
       for (const std::uint32_t other : sum.others) {
         sweep.operand.push_back(cell(other));
         factor_at_[place(sum, other)] = next_factor_++;
@@ -274,18 +272,6 @@ SparseSolver::SparseSolver(const LiftedSystem& system, const std::vector<Pivot>&
   SparseBuilder(system, pivots, cells, *this).run();
 }
 
-/// Factors times pivots are made here once a factorization, not in each solution.
-void SparseSolver::Sweep::set(const SparseSolver& solver) {
-  const bool divides = this == &solver.forward_;
-  scale.resize(target.size()), factors.resize(operand.size());
-  for (const SumRun& run : runs)
-    for (std::uint32_t i = run.first, k = run.first_product; i < run.last; ++i) {
-      scale[i] = divides ? solver.inverse_[pivot[i]] : 1;
-      for (const std::uint32_t end = k + run.products; k < end; ++k)
-        factors[k] = -scale[i] * solver.factors_[first_factor + k];
-    }
-}
-
 std::vector<std::uint32_t> SparseSolver::order_of_columns() const {
   std::vector<std::uint32_t> out(column_of_pivot_.size());
   for (std::uint32_t pivot = 0; pivot < out.size(); ++pivot) out[column_of_pivot_[pivot]] = pivot;
@@ -297,8 +283,8 @@ double SparseSolver::factor(std::span<const double> entries) {
   const FactorRun* const runs = factor_runs_.data();
   const double least = loops().factor({runs, runs + factor_runs_.size(), sums_.data(), products_.data(),
                                        entries_.data(), usual_size_.data(), factors_.data(), inverse_.data()});
-  forward_.set(*this);
-  backward_.set(*this);
+  forward_loop_.set(factors_.data() + forward_.first_factor, inverse_.data());
+  backward_loop_.set(factors_.data() + backward_.first_factor, nullptr);
   return least;
 }
 
@@ -309,8 +295,8 @@ void SparseSolver::solve(const double* right, std::span<const std::uint32_t> pla
     for (std::size_t i = 0; i < n; ++i) x[cells[i]] = right[i];
   else
     for (std::size_t i = 0; i < n; ++i) x[cells[i]] = right[places[i]];
-  loops().sweep(forward_.tables(), x);
-  loops().sweep(backward_.tables(), x);
+  loops().sweep(forward_loop_.tables(), x);
+  loops().sweep(backward_loop_.tables(), x);
 }
 
 }  // namespace maupertuis::sparse

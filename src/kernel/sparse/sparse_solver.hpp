@@ -1,6 +1,6 @@
 #pragma once
 #include "kernel/sparse/elimination.hpp"
-#include "kernel/sparse/loops.hpp"
+#include "kernel/sparse/sweep.hpp"
 #include "kernel/sparse/written_entries.hpp"
 
 #include <optional>
@@ -87,17 +87,9 @@ class SparseSolver {
 
   /// Sums over factors and unknowns of a solution, in the order in which they are made.
   struct Sweep {
-    std::vector<SumRun> runs;
-    std::vector<std::uint32_t> target;   // [sums] cells
-    std::vector<std::uint32_t> pivot;    // [sums] forward: of the row
+    std::vector<SweepSum> sums;          // targets are cells; pivot, forward: of the row
     std::vector<std::uint32_t> operand;  // [products] cells
     std::uint32_t first_factor = 0;      // of the first product in factors_; they follow each other
-    std::vector<double> scale, factors;  // [sums], [products] with their signs, forward times inverse pivots
-
-    void set(const SparseSolver& solver);
-    SweepTables tables() const {
-      return {runs.data(), runs.data() + runs.size(), target.data(), operand.data(), scale.data(), factors.data()};
-    }
   };
 
   WrittenFactors write_factors(straight::Builder& to, const EntryWriter& entry,
@@ -107,6 +99,7 @@ class SparseSolver {
 
   std::vector<std::uint32_t> cell_of_residual_;  // [unknowns] where b_i goes
   Sweep forward_, backward_;
+  LoopSweep forward_loop_, backward_loop_;
   std::vector<FactorRun> factor_runs_;
   std::vector<FactorSum> sums_;
   std::vector<FactorProduct> products_;

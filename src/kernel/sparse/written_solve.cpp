@@ -43,9 +43,8 @@ class SolveWriter {
   }
 
   void sweep(const Sweep& sweep, bool forward, bool of_parts) {
-    for (const SumRun& run : sweep.runs)
-      for (std::uint32_t i = run.first; i < run.last; ++i)
-        if ((s_.part_of_pivot_[sweep.pivot[i]] != 0) == of_parts) write(sweep, run, i, forward);
+    for (const SweepSum& sum : sweep.sums)
+      if ((s_.part_of_pivot_[sum.pivot] != 0) == of_parts) write(sweep, sum, forward);
     to_.set_part(0);
   }
 
@@ -55,20 +54,19 @@ class SolveWriter {
     std::uint32_t cell;
   };
 
-  void write(const Sweep& sweep, const SumRun& run, std::uint32_t i, bool forward) {
-    const Value scale = forward && !run.negates ? factors_.inverse[sweep.pivot[i]] : to_.literal(run.negates ? -1 : 1);
-    const std::uint32_t part = s_.part_of_pivot_[sweep.pivot[i]],
-                        first = run.first_product + (i - run.first) * run.products;
+  void write(const Sweep& sweep, const SweepSum& sum, bool forward) {
+    const Value scale = forward && !sum.negates ? factors_.inverse[sum.pivot] : to_.literal(sum.negates ? -1 : 1);
+    const std::uint32_t part = s_.part_of_pivot_[sum.pivot];
     const bool shares = x_.size() > 1 && !to_.is_literal(scale);  // the product of both
     std::vector<Product> products;
     to_.set_part(part);
-    for (std::uint32_t k = first; k < first + run.products; ++k) {
+    for (std::uint32_t k = sum.first; k < sum.last; ++k) {
       const Value factor = factors_.factor[sweep.first_factor + k];
       if (forward && s_.part_of_cell_[sweep.operand[k]] != part) continue;
       products.push_back(
           {shares ? straight::none : scale, shares ? to_.product(1, scale, factor) : factor, sweep.operand[k]});
     }
-    for (std::size_t side = 0; side < x_.size(); ++side) write(side, sweep.target[i], run.starts, scale, products);
+    for (std::size_t side = 0; side < x_.size(); ++side) write(side, sum.target, sum.starts, scale, products);
   }
 
   void write(std::size_t side, std::uint32_t cell, bool starts, Value scale, const std::vector<Product>& products) {
@@ -85,22 +83,18 @@ class SolveWriter {
   void add_up_parts() {
     if (s_.parts_ == 0) return;
     partial_.resize(s_.part_of_cell_.size());
-    std::vector<std::pair<std::uint32_t, std::pair<const SumRun*, std::uint32_t>>> sums;
-    for (const SumRun& run : s_.forward_.runs)
-      for (std::uint32_t i = run.first; i < run.last; ++i)
-        if (const std::uint32_t pivot = s_.forward_.pivot[i]; s_.part_of_pivot_[pivot] == 0)
-          sums.push_back({s_.column_of_pivot_[pivot], {&run, i}});
+    std::vector<std::pair<std::uint32_t, const SweepSum*>> sums;
+    for (const SweepSum& sum : s_.forward_.sums)
+      if (s_.part_of_pivot_[sum.pivot] == 0) sums.push_back({s_.column_of_pivot_[sum.pivot], &sum});
     std::sort(sums.begin(), sums.end());
     for (std::uint32_t part = 1; part <= s_.parts_; ++part)
       for (const auto& [column, sum] : sums) {
-        const auto [run, i] = sum;
         std::vector<Term> terms;
-        const std::uint32_t first = run->first_product + (i - run->first) * run->products;
-        for (std::uint32_t k = first; k < first + run->products; ++k)
+        for (std::uint32_t k = sum->first; k < sum->last; ++k)
           if (const std::uint32_t cell = s_.forward_.operand[k]; s_.part_of_cell_[cell] == part)
             terms.push_back({1, factors_.factor[s_.forward_.first_factor + k], x_[0][cell]});
         to_.set_part(part);
-        if (!terms.empty()) partial_[s_.forward_.target[i]].push_back(to_.sum(std::move(terms)));
+        if (!terms.empty()) partial_[sum->target].push_back(to_.sum(std::move(terms)));
       }
   }
 

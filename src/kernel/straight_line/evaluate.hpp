@@ -36,6 +36,13 @@ struct WideRun {
   std::uint32_t first_term;
 };
 
+/// Σ |f a b c| of as many terms each, or max(|a|, |b|) of one term.
+struct SizeRun {
+  std::uint32_t terms, count;
+  Cell out;
+  std::uint32_t first_term;
+};
+
 /// Sines of up to 8 angles to `out` … and cosines to `out + 8` ….
 struct AngleStep {
   std::array<Cell, 8> angle;
@@ -43,15 +50,16 @@ struct AngleStep {
 };
 
 struct EvaluationStep {
-  enum Kind : std::uint8_t { Sums, Wides, Angles, Other } kind;
+  enum Kind : std::uint8_t { Sums, Wides, Magnitudes, Larger, Angles, Other } kind;
   std::uint32_t index;
 };
 
 struct EvaluationTables {
   const SumRun* sums;
   const WideRun* wides;
+  const SizeRun* sizes;                              // Magnitudes, Larger
   const AngleStep* angles;
-  const CellTerm *linear, *products, *triples, *wide_terms;
+  const CellTerm *linear, *products, *triples, *wide_terms, *size_terms;
   const Cell* scales;                                // `times` and `over` in turn
   double* cells;                                     // aligned to 64 bytes
   void* context;                                     // of `other`

@@ -16,11 +16,14 @@ void sums(const EvaluationTables& t, const SumRun& run) {
   const Cell* scale = run.first_scale == no_scale ? nullptr : t.scales + run.first_scale;
   double *const x = t.cells, *out = x + run.out;
   for (std::uint32_t i = 0; i < run.count; ++i, p += linear, q += products, r += triples) {
-    double sum = 0, rest = 0;
+    double sum = 0;
     for (int k = 0; k < linear; ++k) sum += p[k].factor * x[p[k].a];
-    for (int k = 0; k < products; ++k) rest += q[k].factor * x[q[k].a] * x[q[k].b];
-    for (int k = 0; k < triples; ++k) rest += r[k].factor * x[r[k].a] * x[r[k].b] * x[r[k].c];
-    sum += rest;
+    if constexpr (Products != 0) {
+      double rest = 0;
+      for (int k = 0; k < products; ++k) rest += q[k].factor * x[q[k].a] * x[q[k].b];
+      for (int k = 0; k < triples; ++k) rest += r[k].factor * x[r[k].a] * x[r[k].b] * x[r[k].c];
+      sum += rest;
+    }
     if (scale) sum = sum * x[scale[0]] / x[scale[1]], scale += 2;
     *out++ = sum;
   }
@@ -59,6 +62,25 @@ void wides(const EvaluationTables& t, const WideRun& run) {
   }
 }
 
+void magnitudes(const EvaluationTables& t, const SizeRun& run) {
+  const CellTerm* term = t.size_terms + run.first_term;
+  const double* const x = t.cells;
+  for (double *out = t.cells + run.out, *const last = out + run.count; out != last; ++out) {
+    double sum = 0;
+    for (const CellTerm* const end = term + run.terms; term != end; ++term)
+      sum += __builtin_fabs(term->factor * x[term->a] * x[term->b] * x[term->c]);
+    *out = sum;
+  }
+}
+
+void larger(const EvaluationTables& t, const SizeRun& run) {
+  const CellTerm* term = t.size_terms + run.first_term;
+  for (double *out = t.cells + run.out, *const last = out + run.count; out != last; ++out, ++term) {
+    const double a = __builtin_fabs(t.cells[term->a]), b = __builtin_fabs(t.cells[term->b]);
+    *out = a < b ? b : a;
+  }
+}
+
 void sines(const EvaluationTables& t, const AngleStep& step) {
   alignas(64) double angle[8];
   for (int lane = 0; lane < 8; ++lane) angle[lane] = t.cells[step.angle[static_cast<std::size_t>(lane)]];
@@ -71,6 +93,8 @@ void evaluate(const EvaluationTables& t, const EvaluationStep* step, const Evalu
   for (; step != last; ++step) switch (step->kind) {
       case EvaluationStep::Sums: sums(t, t.sums[step->index]); break;
       case EvaluationStep::Wides: wides(t, t.wides[step->index]); break;
+      case EvaluationStep::Magnitudes: magnitudes(t, t.sizes[step->index]); break;
+      case EvaluationStep::Larger: larger(t, t.sizes[step->index]); break;
       case EvaluationStep::Angles: sines(t, t.angles[step->index]); break;
       case EvaluationStep::Other: t.other(t.context, step->index);
     }

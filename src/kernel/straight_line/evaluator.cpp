@@ -47,6 +47,13 @@ double call(Kind function, double x, double y) {
   throw unknown_kind(function, "a straight line");
 }
 
+double value(Node::What what, Kind function, double a, double b, double c) {
+  if (what == Node::Chosen) return a != 0 ? b : c;
+  if (what == Node::Root) return std::sqrt(a);
+  if (what == Node::Call) return call(function, a, b);
+  throw std::logic_error("a straight line holds a node that is not evaluated; please report");
+}
+
 }  // namespace
 
 /// Numbers the cells of a line and writes its nodes level by level.
@@ -158,12 +165,8 @@ class EvaluationLayout {
       case Node::Sum: return write_sums(run);
       case Node::Wide: return write_wides(run);
       case Node::Angles: return write_angles(run);
-      case Node::Magnitudes:
-      case Node::Larger:
-      case Node::Chosen:
-      case Node::Root:
-      case Node::Call:
-        return write_others(run);
+      case Node::Magnitudes: case Node::Larger: return write_sizes(run);
+      case Node::Chosen: case Node::Root: case Node::Call: return write_others(run);
       case Node::Literal:
       case Node::Given:
       case Node::Sine:
@@ -215,6 +218,18 @@ class EvaluationLayout {
     }
   }
 
+  void write_sizes(std::span<const Value> run) {
+    const bool compares = node(run[0]).what == Node::Larger;
+    out_.sizes_.push_back({shape(run[0]).linear, size(run), take(run.size()), size(out_.size_terms_)});
+    step(compares ? EvaluationStep::Larger : EvaluationStep::Magnitudes, out_.sizes_);
+    for (std::uint32_t i = 0; i < run.size(); ++i) {
+      const Node& n = node(run[i]);
+      cell_[run[i]] = out_.sizes_.back().out + i;
+      if (compares) out_.size_terms_.push_back({1, cell(n.a), cell(n.b), cell_of_one});
+      for (std::uint32_t t = n.first; t < n.last; ++t) out_.size_terms_.push_back(term(t));
+    }
+  }
+
   void write_angles(std::span<const Value> run) {
     for (const Value v : run) {
       AngleStep angles{{}, cell_[v] = take(16, 8)};
@@ -230,10 +245,7 @@ class EvaluationLayout {
     for (const Value v : run) {
       const Node& n = node(v);
       cell_[v] = take(1);
-      const std::uint32_t first = size(out_.magnitudes_);
-      for (std::uint32_t t = n.first; t < n.last; ++t) out_.magnitudes_.push_back(term(t));
-      out_.others_.push_back(
-          {n.what, n.function, cell_[v], cell(n.a), cell(n.b), cell(n.c), first, size(out_.magnitudes_)});
+      out_.others_.push_back({n.what, n.function, cell_[v], cell(n.a), cell(n.b), cell(n.c)});
       step(EvaluationStep::Other, out_.others_);
     }
   }
@@ -260,10 +272,10 @@ void Evaluation::run_steps(double* cells, std::size_t first, std::size_t last) c
   const auto other = [](void* of, std::uint32_t index) {
     const auto& [evaluation, all] = *static_cast<Context*>(of);
     const OtherNode& node = evaluation.others_[index];
-    all[node.out] = evaluation.value(node, all);
+    all[node.out] = value(node.what, node.function, all[node.a], all[node.b], all[node.c]);
   };
-  evaluate({sums_.data(), wides_.data(), angles_.data(), linear_.data(), products_.data(), triples_.data(),
-            wide_terms_.data(), scales_.data(), cells, &context, other},
+  evaluate({sums_.data(), wides_.data(), sizes_.data(), angles_.data(), linear_.data(), products_.data(),
+            triples_.data(), wide_terms_.data(), size_terms_.data(), scales_.data(), cells, &context, other},
            steps_.data() + first, steps_.data() + last);
 }
 
@@ -291,33 +303,6 @@ bool Evaluation::is_sound(const double* cells) const {
   }
   for (const Cell cell : finite_) rest += 0 * cells[cell];
   return sound && rest == 0;
-}
-
-double Evaluation::value(const OtherNode& node, const double* cells) const {
-  const double a = cells[node.a], b = cells[node.b];
-  switch (node.what) {
-    case Node::Magnitudes: {
-      double sum = 0;
-      for (std::uint32_t t = node.first; t < node.last; ++t) {
-        const CellTerm& term = magnitudes_[t];
-        sum += std::abs(term.factor * cells[term.a] * cells[term.b] * cells[term.c]);
-      }
-      return sum;
-    }
-    case Node::Larger: return std::max(std::abs(a), std::abs(b));
-    case Node::Chosen: return a != 0 ? b : cells[node.c];
-    case Node::Root: return std::sqrt(a);
-    case Node::Call: return call(node.function, a, b);
-    case Node::Literal:
-    case Node::Given:
-    case Node::Sum:
-    case Node::Angles:
-    case Node::Sine:
-    case Node::Cosine:
-    case Node::Unit:
-    case Node::Wide: case Node::Lane: case Node::Gather: break;
-  }
-  throw std::logic_error("a straight line holds a node that is not evaluated; please report");
 }
 
 }  // namespace maupertuis::straight

@@ -34,12 +34,11 @@ class Evaluation {
     std::uint32_t array, index;
     Cell cell;
   };
-  /// A node besides sums and sines: its operands by their cells.
+  /// A node besides sums, sizes and sines: its operands by their cells.
   struct OtherNode {
     Node::What what;
     Kind function;
     Cell out, a, b, c;
-    std::uint32_t first = 0, last = 0;  // Magnitudes: terms
   };
   struct Check {
     Cell pivot, size;
@@ -48,15 +47,15 @@ class Evaluation {
 
   void run_steps(double* cells, std::size_t first, std::size_t last) const;
   bool is_sound(const double* cells) const;
-  double value(const OtherNode& node, const double* cells) const;
 
   std::vector<EvaluationStep> steps_;
   std::size_t changing_ = 0;                 // the first step that does not follow from seldom arrays alone
   std::vector<SumRun> sums_;
   std::vector<WideRun> wides_;
+  std::vector<SizeRun> sizes_;
   std::vector<AngleStep> angles_;
   std::vector<OtherNode> others_;
-  std::vector<CellTerm> linear_, products_, triples_, wide_terms_, magnitudes_;
+  std::vector<CellTerm> linear_, products_, triples_, wide_terms_, size_terms_;
   std::vector<Cell> scales_;
   std::vector<Load> given_, seldom_given_, stores_;
   std::vector<Check> checks_;

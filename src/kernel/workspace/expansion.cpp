@@ -1,7 +1,5 @@
 #include "kernel/workspace/expansion.hpp"
 
-#include "kernel/packed/convolutions.hpp"
-
 namespace maupertuis::workspace {
 
 Expansion::Expansion(const Kernel& k, int p)
@@ -38,6 +36,10 @@ void Expansion::bind() {
   const int before_all = -2 - program.first_stage;  // so that stages without an order of lag 0 find their place
   of_orders.insert(of_orders.begin(), static_cast<std::size_t>(before_all), {});
   tables.orders = of_orders.data() + before_all;
+  sums.assign(packed.convolutions.size() * packed::rolled_group * packed::lanes, 0.0);
+  tables.convolutions = packed.convolutions.data();
+  tables.convolution_count = packed.convolutions.size();
+  tables.sums = sums.data();
   lane_coefficients.resize(packed.coefficients.size());
   tables.coefficients = lane_coefficients.data();
   for (const packed::Pack& pack : packed.packs)
@@ -69,12 +71,11 @@ void ExpansionInCode::adopt(ExpansionCode made, Expansion& x) {
   code = std::move(made);
   arguments = {.rows = x.memory.rows.data(), .coefficients = x.lane_coefficients.data()};
   if (!code.stage) return;
-  sums.assign(packed::count_convolutions(x.packed) * packed::rolled_group * packed::lanes, 0.0);
   tangent_row.assign(x.memory.stride, 0.0);
   passing_row.assign(x.memory.stride, 0.0);
-  arguments.sums = sums.data();
+  arguments.sums = x.sums.data();
   arguments.tangent_row = tangent_row.data(), arguments.passing_row = passing_row.data();
-  arguments.value = x.tables.scalar.value, arguments.tangent = x.tables.scalar.tangent,
+  arguments.value = x.tables.scalar.value, arguments.tangent = x.tables.scalar.tangent;
   arguments.context = x.tables.scalar.context;
 }
 

@@ -43,6 +43,7 @@ struct Expansion {
   packed::Tables tables;
   std::vector<packed::Order> of_orders;    // those below 0, which nothing reads, then [orders]
   Doubles lane_coefficients;    // [packed.coefficients]
+  Doubles sums;                 // [convolutions × rolled_group × 8] of products, made for stages that follow
   std::map<std::uint32_t, std::vector<sparse::Edge>> edges_of_scalars;  // of instructions that stand alone
   std::vector<const Instruction*> producer;  // [slots]
   std::vector<double> parameters;
@@ -61,7 +62,6 @@ struct ExpansionInCode {
 
   ExpansionCode code;
   packed::CompiledArguments arguments;
-  Doubles sums;                 // of rolled code: [convolutions × rolled_group × 8]
   Doubles tangent_row, passing_row;  // scratch
 };
 

@@ -1,0 +1,48 @@
+#pragma once
+#include "integrator/taylor/motion_state.hpp"
+#include "integrator/taylor/roots.hpp"
+#include "integrator/taylor/switches.hpp"
+
+#include <maupertuis/integrator.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace maupertuis::taylor {
+
+/// Where a step ends at a switch or an event.
+struct Crossing {
+  double x = 1;  // fraction of the step
+  bool found = false;
+  std::vector<std::size_t> roots;  // switches, then events
+  std::vector<Watched> after;      // the same, as the step leaves them
+};
+
+/// The switch functions and events of a motion: on which sides they are, and where along a step they first leave them.
+class WatchedFunctions {
+ public:
+  WatchedFunctions(const Kernel& kernel, const KernelWorkspace& work);
+
+  void start();
+  bool empty() const { return switches.empty() && events.empty(); }
+  void set_sides(KernelWorkspace& work) const {
+    if (!switches.empty()) copy_sides(work);
+  }
+  /// Signs of the switch functions at the start, zeros left open: enough for the values there. A function within
+  /// another comes before it. Under sides that are not those of the state forces may have no value (log|x|), but switch
+  /// functions do.
+  void choose_first_sides(KernelWorkspace& work, const MotionState& state);
+  /// The first roots of the step of length h that the workspace holds. Switches may change at jumps too, events not.
+  Crossing first_crossing(const KernelWorkspace& work, const Compensated& t, double h);
+  /// The sides that a step leaves behind; how many switches changed, and which event was met, go to the result.
+  void leave(const Crossing& crossing, Step& result);
+
+  std::vector<Watched> switches, events;
+
+ private:
+  void copy_sides(KernelWorkspace& work) const;
+
+  std::optional<RootSearch> roots_;  // where something is watched
+};
+
+}  // namespace maupertuis::taylor
