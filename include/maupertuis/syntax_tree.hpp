@@ -142,7 +142,7 @@ struct StartStatement {
 struct RunStatement {
   ExpressionPtr duration;                // run 10 s
   ExpressionPtr until_left, until_right; // run until A = B
-  ExpressionPtr within;
+  ExpressionPtr within;                  // null: beside a model, where none is written
 };
 struct OutputStatement { ExpressionPtr every; };
 /// method variational order 4 step 10 ms;  method stiff
@@ -222,7 +222,7 @@ struct ConstraintStatement {
 };
 
 /// sweep Ω = 0 .. 12 rad/s steps 121
-struct SweepStatement { ExpressionPtr variable, from, to, steps; };
+struct SweepStatement { ExpressionPtr variable, from, to, steps; };  // steps null: beside a model, where none are written
 
 /// independent x : length. Stands in the place of t.
 struct IndependentStatement {
@@ -260,16 +260,39 @@ struct Statement {
   Span span;                             // from its first word to its last
 };
 
+class Declarations;
+
 struct SyntaxTree {
   std::vector<Statement> statements;     // in the order of the text
   std::vector<Comment> comments;
   /// Declared by statements that were left out because of an error: a use of one of them is no second mistake.
   std::vector<Name> lost_names;
+  /// The names that the text declares: they decide how a text beside it is read. Null where the text has no statement.
+  std::shared_ptr<const Declarations> declarations;
 };
 
 /// Reads a model text. Errors go to `diagnostics`, all of them; a statement with an error is left out, the rest stands.
 /// Time and memory are linear in the text; nesting is bounded (E0108), so is the size of the text (E0101).
 SyntaxTree parse(const SourceText& source, Diagnostics& diagnostics);
+
+/// Parts of statements in a text of their own beside the model, such as an option of a command line or a field of a form.
+/// They are read with the names that `model` declares: these decide what `2e1` and `f(x)` mean. Nothing after a mistake,
+/// which `diagnostics` tells at its place in `text`.
+struct Equation { ExpressionPtr left, right; };                    // P.y = 0
+struct Assignment { ExpressionPtr variable, value; };              // of a list x = 4 t, y = 3 t + 5
+ExpressionPtr parse_formula(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
+/// A number with its unit, or a formula of such.
+ExpressionPtr parse_quantity(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
+std::optional<Equation> parse_equation(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
+std::optional<std::vector<Assignment>> parse_assignments(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
+/// What stands behind the words `param`, `start`, `run`.
+std::optional<ParamStatement> parse_parameters(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
+std::optional<StartStatement> parse_start(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
+std::optional<RunStatement> parse_run(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
+/// What stands behind `sweep`; the number of values may be left out, and `steps` is null then.
+std::optional<SweepStatement> parse_sweep(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
+/// What stands behind `path from`.
+std::optional<PathStatement> parse_path(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
 
 /// The text in canonical layout (`maup fmt`). Idempotent; keeps comments and the order of statements.
 /// Precondition: `source` parsed without errors to `tree`.

@@ -11,6 +11,17 @@ class StatementParser : private ExpressionParser {
   /// One statement; `system x "…" source "…"` is two.
   std::vector<Statement> run();
 
+  // What stands alone beside a model, behind a token that stands for the words left out: parts.cpp.
+  ExpressionPtr formula_alone();
+  ExpressionPtr quantity_alone();
+  Equation equation_alone();
+  std::vector<Assignment> assignments_alone();
+  ParamStatement parameters_alone();
+  StartStatement start_alone();
+  RunStatement run_alone();
+  SweepStatement sweep_alone();
+  PathStatement path_alone();
+
  private:
   using Handler = StatementBody (StatementParser::*)();
   struct Entry {
@@ -66,7 +77,12 @@ class StatementParser : private ExpressionParser {
   Rotation rotation();
   std::vector<ExpressionPtr> bracketed_values(std::size_t count, std::string_view form);
   void inertia(BodyStatement& body);
+  template <class Part>
+  Part ended(Part part);
   StartStatement::Item assignment();
+  RunStatement run_length();
+  SweepStatement sweep_values();
+  PathStatement path_ends();
   PathStatement::End path_end();
   std::vector<ExpressionPtr> components();
   std::vector<ExpressionPtr> with_unit_after(std::vector<ExpressionPtr> numbers);

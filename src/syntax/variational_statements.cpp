@@ -44,8 +44,13 @@ constexpr std::string_view kPathExample = "path from (0, 1) at 0 to (2, free) at
 // path from (0, 1) at 0 to (2, free) at 1
 StatementBody StatementParser::path_statement() {
   next();
-  PathStatement path;
   if (!accept("from")) missing_clause("from", "path", kPathExample);
+  return path_ends();
+}
+
+// (0, 1) at 0 to (2, free) at 1
+PathStatement StatementParser::path_ends() {
+  PathStatement path;
   path.from = path_end();
   if (!accept("to")) missing_clause("to", "path", kPathExample);
   path.to = path_end();

@@ -98,7 +98,7 @@ Value value_of_reaction(Elaboration& e, const Expression& x, const Place& place)
     return Value::poison();
   }
   if (!place.reactions) {
-    e.diagnostics.error("E0225", x.span, fmt::format("`{}` cannot stand here", e.source.slice(x.span)), kReasonOfPlace,
+    e.diagnostics.error("E0225", x.span, fmt::format("`{}` cannot stand here", e.texts.slice(x.span)), kReasonOfPlace,
                         "Write it in `expect` or `claim`.");
     return Value::poison();
   }
