@@ -1,8 +1,9 @@
 #include "command.hpp"
 #include "constraint_text.hpp"
+#include "interrupt.hpp"
+#include "open_study.hpp"
 #include "outcome.hpp"
 #include "quantity.hpp"
-#include "open_study.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,6 @@
 #include "command.hpp"
 #include "comparison_text.hpp"
+#include "interrupt.hpp"
 #include "outcome.hpp"
 #include "quantity.hpp"
 #include "run_options.hpp"

@@ -1,6 +1,6 @@
 #include "command.hpp"
-#include "outcome.hpp"
 #include "open_study.hpp"
+#include "outcome.hpp"
 
 #include <fmt/format.h>
 
