@@ -91,6 +91,12 @@ TEST_CASE("a run, a sweep, a section and formulas beside the model") {
   CHECK(value(formula.experiment().asked[0].value, formula.at({0}, {1})) == Approx(0.18));
 }
 
+TEST_CASE("a text beside the model is one part, whatever its lines") {
+  const Elaborated formula = saying(OverrideKind::Formula, "1/2 J\nθ'^2");
+  REQUIRE_MESSAGE(formula.fine(), formula.messages());
+  CHECK(physical_name(formula.experiment().asked.at(0).dimension) == "energy");
+}
+
 TEST_CASE("what stands in the place of the model's own is not looked at there") {
   const std::string text = std::string(kModel) + "run 2 kg\n";
   CHECK(Elaborated(text).codes() == "E0304");
