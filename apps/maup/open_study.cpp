@@ -22,8 +22,8 @@ Study open_study(const ModelOptions& options) {
   return study;
 }
 
-void refuse_option(Study& study, const std::string& option, const std::string& typed, std::string message, std::string reason,
-                   std::string help, std::optional<Span> piece) {
+void refuse_option(Study& study, const std::string& option, const std::string& typed, std::string message,
+                   std::string reason, std::string help, std::optional<Span> piece) {
   const SourceId text = study.add_text(option, typed);
   Span place = piece.value_or(Span{0, static_cast<std::uint32_t>(typed.size())});
   place.source = text;
@@ -43,8 +43,8 @@ bool is_of_a_search(const std::string& code) {
 bool only_options_are_wrong(const Study& study) {
   const auto items = study.diagnostics().items();
   return study.wrong() && std::all_of(items.begin(), items.end(), [](const Diagnostic& d) {
-    return d.severity != Severity::Error || (d.span && d.span->source != 0 && !is_of_a_search(d.code));
-  });
+           return d.severity != Severity::Error || (d.span && d.span->source != 0 && !is_of_a_search(d.code));
+         });
 }
 
 }  // namespace maupertuis::app

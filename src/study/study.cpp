@@ -7,7 +7,8 @@ namespace maupertuis {
 
 Study::Study(SourceText source, const Interrupt& interrupt) : source_(std::move(source)), interrupt_(interrupt) {}
 
-// ------------------------------------------------------------------------------------------------------ beside the text
+// ------------------------------------------------------------------------------------------------------ beside the
+// text
 
 SourceId Study::override_with(OverrideKind kind, std::string label, std::string text) {
   MAUP_REQUIRE(!elaborated_);
@@ -25,15 +26,16 @@ void Study::admit_singular_mass_matrix() {
   admits_singular_ = true;
 }
 
-// ----------------------------------------------------------------------------------------------------------- the stages
+// ----------------------------------------------------------------------------------------------------------- the
+// stages
 
 const syntax::SyntaxTree* Study::tree() {
   if (!tree_ && !wrong()) tree_ = syntax::parse(source_, diagnostics_);
   return tree_ ? &*tree_ : nullptr;
 }
 
-/// All mistakes of a text at once: after a wrong statement the others are still looked at. The tree knows the names that
-/// were lost with it, so that their absence is not reported again.
+/// All mistakes of a text at once: after a wrong statement the others are still looked at. The tree knows the names
+/// that were lost with it, so that their absence is not reported again.
 bool Study::elaborate_model(Diagnostics& found, std::optional<Model>& model) const {
   model = elaborate(*tree_, source_, found, overrides_);
   if (!model || found.has_errors()) return false;
@@ -49,7 +51,7 @@ const Model* Study::model() {
   if (elaborated_) return model_.get();
   if (tree() && !tree_->statements.empty()) {
     overrides_.read(*tree_, diagnostics_);
-    Diagnostics found = diagnostics_;   // kept when the stage is complete
+    Diagnostics found = diagnostics_;  // kept when the stage is complete
     std::optional<Model> model;
     if (elaborate_model(found, model)) model_ = std::make_shared<const Model>(std::move(*model));
     found.sort_by_place();
@@ -84,11 +86,12 @@ void Study::report(const CertificateCheck& check) {
   const std::string row =
       check.row < coordinates.size() ? fmt::format(" (equation of {})", coordinates[check.row].name) : std::string();
   if (check.verdict == Verdict::Nonzero)
-    diagnostics_.error("E0690", {}, fmt::format("The derivation failed its check `{}`{}.", check.name, row), check.statement,
+    diagnostics_.error("E0690", {}, fmt::format("The derivation failed its check `{}`{}.", check.name, row),
+                       check.statement,
                        "The equations are not shown, because they are wrong. Please report this model.");
   else
-    diagnostics_.warning("W0691", {}, fmt::format("The check `{}`{} could not be decided.", check.name, row), check.reason,
-                         "The equations are shown, but they are not certified.");
+    diagnostics_.warning("W0691", {}, fmt::format("The check `{}`{} could not be decided.", check.name, row),
+                         check.reason, "The equations are shown, but they are not certified.");
 }
 
 const Certificate* Study::certificate(const CertifyOptions& options) {
@@ -99,7 +102,8 @@ const Certificate* Study::certificate(const CertifyOptions& options) {
   return wrong() ? nullptr : &*certificate_;
 }
 
-// -------------------------------------------------------------------------------------------------------- what they tell
+// -------------------------------------------------------------------------------------------------------- what they
+// tell
 
 std::optional<SimulationResult> Study::motion(const SimulationOptions& options) {
   if (wrong() || refuse_held_integrals() || !certificate()) return std::nullopt;
@@ -122,10 +126,11 @@ std::optional<Verification> Study::verification(const SimulationOptions& options
 
 bool Study::refuse_held_integrals() {
   if (!model() || model_->system.integral_constraints.empty()) return false;
-  diagnostics_.error("E0244", model_->system.integral_constraints.front().span, "the model holds an integral of its paths",
-                     "Its equations are those of L + λ G with one λ for a whole path, which only the two ends of the path determine: "
-                     "there is no motion from a start.",
-                     "`maup action` finds the paths between two ends, and λ.");
+  diagnostics_.error(
+      "E0244", model_->system.integral_constraints.front().span, "the model holds an integral of its paths",
+      "Its equations are those of L + λ G with one λ for a whole path, which only the two ends of the path determine: "
+      "there is no motion from a start.",
+      "`maup action` finds the paths between two ends, and λ.");
   return true;
 }
 
@@ -135,7 +140,8 @@ bool moves_in_time(const MechanicalSystem& system) {
 
 bool Study::refuse_without_time() {
   if (!model() || moves_in_time(model_->system)) return false;
-  diagnostics_.error("E0245", std::nullopt, fmt::format("the independent variable of this model is {}, no time", model_->system.independent),
+  diagnostics_.error("E0245", std::nullopt,
+                     fmt::format("the independent variable of this model is {}, no time", model_->system.independent),
                      "Equilibria, frequencies, periods and exponents belong to motions in time.",
                      "`maup derive`, `maup simulate` and `maup action` work for such models.");
   return true;

@@ -106,11 +106,13 @@ std::optional<Equation> parse_equation(const SourceText& text, const SyntaxTree&
   return parse_part(text, model, diagnostics, &P::equation_alone);
 }
 
-std::optional<std::vector<Assignment>> parse_assignments(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics) {
+std::optional<std::vector<Assignment>> parse_assignments(const SourceText& text, const SyntaxTree& model,
+                                                         Diagnostics& diagnostics) {
   return parse_part(text, model, diagnostics, &P::assignments_alone);
 }
 
-std::optional<ParamStatement> parse_parameters(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics) {
+std::optional<ParamStatement> parse_parameters(const SourceText& text, const SyntaxTree& model,
+                                               Diagnostics& diagnostics) {
   return parse_part(text, model, diagnostics, &P::parameters_alone);
 }
 

@@ -128,7 +128,7 @@ void elaborate_constraints(Elaboration& e);
 /// The name of a constraint or of a release; false, and a message, if it is none.
 bool names_a_reaction(Elaboration& e, const syntax::Name& name);
 /// `expect constraint roll is nonholonomic`: whether there is such a constraint, and such a class.
-bool check_class_of_constraint(Elaboration& e, const syntax::ExpectStatement& s);
+bool check_class_of_constraint(Elaboration& e, const syntax::expectation::ConstraintClass& x);
 void elaborate_release(Elaboration& e, const syntax::ReactionStatement& s);
 
 /// `rotation quaternion` without components: the body or frame has four coordinates, whose norm is constrained.
@@ -157,25 +157,29 @@ void elaborate_expectation(Elaboration& e, const syntax::ExpectStatement& s, Spa
 using Expected = std::optional<expectation::Kind>;
 /// One number that stands in a formula; `what` is told in E0210 where it is a vector.
 std::optional<Value> number_of(Elaboration& e, const syntax::Expression& x, const Place& place, const char* what);
+/// As written; the namespace of what they mean is `expectation`.
+namespace written = syntax::expectation;
 /// The quantity below signs, whose unit the value is shown in.
 const syntax::Expression& unsigned_quantity(const syntax::Expression& x);
 /// The unit in which `value` is written, where it is one of `dimension`: that in which what comes out is shown.
 std::optional<expectation::DisplayUnit> display_unit(Elaboration& e, const syntax::Expression& value, const Dimension& dimension);
 /// ± 1e-9 is in the unit of the value, unless it has one of its own; rel 1e-9 is a bare number. Nothing after a mistake.
 /// `hertz`: it was written in turns.
-std::optional<expectation::Tolerance> tolerance_of(Elaboration& e, const syntax::ExpressionPtr& size, bool relative, const Dimension& dimension,
+std::optional<expectation::Tolerance> tolerance_of(Elaboration& e, const syntax::Tolerance& tolerance, const Dimension& dimension,
                                                    const expectation::DisplayUnit& unit, bool* hertz = nullptr);
 /// A value known before the run with its tolerance; `what` names it in messages.
-std::optional<expectation::Number> expected_number(Elaboration& e, const syntax::ExpectStatement& s, const Dimension& dimension, const std::string& what);
+std::optional<expectation::Number> expected_number(Elaboration& e, const written::Number& number, const Dimension& dimension, const std::string& what);
 /// The configuration of `at θ = 0, φ' = 2 rad/s`.
-std::optional<std::vector<StartValue>> point_of_expectation(Elaboration& e, const syntax::ExpectStatement& s);
+std::optional<std::vector<StartValue>> point_of_expectation(Elaboration& e, const written::Point& point);
 /// E0246 where the run does not end at a condition.
 bool refuse_without_until(Elaboration& e, Span span);
 // linear_expectations.cpp
-Expected expect_eigenvalues(Elaboration& e, const syntax::ExpectStatement& s);
-Expected expect_matrix(Elaboration& e, const syntax::ExpectStatement& s);
-Expected expect_stable(Elaboration& e, const syntax::ExpectStatement& s);
-Expected expect_return_map(Elaboration& e, const syntax::ExpectStatement& s);
+Expected meaning_of(Elaboration& e, const written::Eigenvalues& x, Span line);
+Expected meaning_of(Elaboration& e, const written::Matrix& x, Span line);
+Expected meaning_of(Elaboration& e, const written::Stable& x, Span line);
+Expected meaning_of(Elaboration& e, const written::Multipliers& x, Span line);
+Expected meaning_of(Elaboration& e, const written::Trace& x, Span line);
+Expected meaning_of(Elaboration& e, const written::Period& x, Span line);
 /// `method` and `precision`.
 void elaborate_method(Elaboration& e, const syntax::MethodStatement& s);
 void elaborate_precision(Elaboration& e, const syntax::PrecisionStatement& s);
@@ -190,13 +194,12 @@ std::string in_words(const Elaboration& e, std::string text);
 void elaborate_path(Elaboration& e, const syntax::PathStatement& s, Span span);
 void elaborate_integral_constraint(Elaboration& e, const syntax::ConstraintStatement& s, Span span);
 /// expect action, expect index, expect path.
-Expected expect_action(Elaboration& e, const syntax::ExpectStatement& s, Span span);
-Expected expect_index(Elaboration& e, const syntax::ExpectStatement& s, Span span);
-Expected expect_on_path(Elaboration& e, const syntax::ExpectStatement& s, Span span);
+Expected meaning_of(Elaboration& e, const written::Action& x, Span line);
+Expected meaning_of(Elaboration& e, const written::ActionAlong& x, Span line);
+Expected meaning_of(Elaboration& e, const written::MorseIndex& x, Span line);
+Expected meaning_of(Elaboration& e, const written::PathAt& x, Span line);
 /// x = 4 t, y = 3 t + 5 of the overrides.
 void override_given_path(Elaboration& e);
-/// E0244 where an expectation about a motion stands in a model with integral constraints.
-bool refuse_motion_of_path(Elaboration& e, const syntax::ExpectStatement& s, Span span);
 
 /// The pose of a frame or body by its name; null, and a message, if it is none.
 const Pose* find_pose(Elaboration& e, const std::optional<syntax::Name>& name);

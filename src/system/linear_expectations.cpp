@@ -5,32 +5,32 @@
 #include <algorithm>
 #include <cmath>
 
-/// Expectations about the neighbours of a point or of a periodic motion: eigenvalues, matrices, critical parameters, return maps.
+/// Expectations about the neighbours of a point or of a periodic motion: eigenvalues, matrices, critical parameters,
+/// return maps.
 namespace maupertuis::elaboration {
 namespace {
 
-using syntax::ExpectStatement;
-using syntax::Expression;
 using expectation::MatrixVariable;
-using Kind = ExpectStatement::Kind;
+using syntax::Expression;
 
 /// Real and imaginary parts of one dimension; shown in the unit of the last that has one.
-std::optional<expectation::Spectrum> spectrum(Elaboration& e, const ExpectStatement& s, const Dimension& dimension, const char* what) {
+std::optional<expectation::Spectrum> spectrum(Elaboration& e, const written::Spectrum& x, const Dimension& dimension,
+                                              const char* what) {
   expectation::Spectrum out;
   bool good = true;
-  const auto part = [&](const syntax::ExpressionPtr& x) {
-    if (!x) return e.number(0);
-    const Value v = constant_of(e, *x, dimension, what);
+  const auto part = [&](const syntax::ExpressionPtr& value) {
+    if (!value) return e.number(0);
+    const Value v = constant_of(e, *value, dimension, what);
     good = good && !v.poisoned;
-    if (const auto unit = display_unit(e, *x, dimension)) out.unit = *unit;
+    if (const auto unit = display_unit(e, *value, dimension)) out.unit = *unit;
     return v.poisoned ? e.number(0) : v.scalar();
   };
-  for (std::size_t i = 0; i < s.values.size(); ++i) {
-    out.real.push_back(part(s.values[i]));
-    out.imaginary.push_back(part(s.imaginary[i]));
+  for (std::size_t i = 0; i < x.real.size(); ++i) {
+    out.real.push_back(part(x.real[i]));
+    out.imaginary.push_back(part(x.imaginary[i]));
   }
   if (!good) return std::nullopt;
-  const auto tolerance = tolerance_of(e, s.tolerance, s.relative, dimension, out.unit);
+  const auto tolerance = tolerance_of(e, x.tolerance, dimension, out.unit);
   if (!tolerance) return std::nullopt;
   out.tolerance = *tolerance;
   return out;
@@ -52,22 +52,27 @@ std::optional<MatrixVariable> matrix_variable(Elaboration& e, const Expression& 
   const auto by_name = [&](const auto& item) { return x.kind == Expression::Kind::Name && item.name == x.text; };
   if (allowed.inputs) {
     const auto input = std::find_if(system.inputs.begin(), system.inputs.end(), by_name);
-    if (input != system.inputs.end() && x.primes == 0) return MatrixVariable{static_cast<std::size_t>(input - system.inputs.begin()), -1};
+    if (input != system.inputs.end() && x.primes == 0)
+      return MatrixVariable{static_cast<std::size_t>(input - system.inputs.begin()), -1};
   } else if (x.primes <= (allowed.rates ? 1 : 0)) {
     if (const auto component = quaternion_component(e, x)) return MatrixVariable{*component, x.primes};
     const auto q = std::find_if(system.coordinates.begin(), system.coordinates.end(), by_name);
-    if (q != system.coordinates.end()) return MatrixVariable{static_cast<std::size_t>(q - system.coordinates.begin()), x.primes};
+    if (q != system.coordinates.end())
+      return MatrixVariable{static_cast<std::size_t>(q - system.coordinates.begin()), x.primes};
   }
-  refuse_matrix(e, x.span, fmt::format("`{}` is no {} of this matrix", e.texts.slice(x.span), allowed.inputs ? "column" : "variable"),
-                allowed.inputs   ? "The columns of B belong to the inputs of the model."
-                : allowed.rates ? "The states are coordinates and their velocities."
-                                : "Its rows and columns belong to coordinates.",
-                "");
+  refuse_matrix(
+      e, x.span,
+      fmt::format("`{}` is no {} of this matrix", e.texts.slice(x.span), allowed.inputs ? "column" : "variable"),
+      allowed.inputs  ? "The columns of B belong to the inputs of the model."
+      : allowed.rates ? "The states are coordinates and their velocities."
+                      : "Its rows and columns belong to coordinates.",
+      "");
   return std::nullopt;
 }
 
 /// As written, or all.
-bool matrix_variables(Elaboration& e, const std::vector<syntax::ExpressionPtr>& written, Allowed allowed, std::vector<MatrixVariable>& out) {
+bool matrix_variables(Elaboration& e, const std::vector<syntax::ExpressionPtr>& written, Allowed allowed,
+                      std::vector<MatrixVariable>& out) {
   for (const auto& x : written) {
     const auto v = matrix_variable(e, *x, allowed);
     if (!v) return false;
@@ -88,7 +93,8 @@ Dimension dimension_of(const Elaboration& e, const MatrixVariable& v) {
 }
 
 /// M q̈ + (C + G) q̇ + (K + N) q is a force; A x + B u is a rate of x.
-Dimension dimension_of_entry(const Elaboration& e, char letter, const MatrixVariable& row, const MatrixVariable& column) {
+Dimension dimension_of_entry(const Elaboration& e, char letter, const MatrixVariable& row,
+                             const MatrixVariable& column) {
   const Dimension i = dimension_of(e, row), j = dimension_of(e, column), t = e.time();
   if (letter == 'A' || letter == 'B') return i / (t * j);
   const Dimension k = e.model.system.lagrangian_dimension / (i * j);
@@ -96,13 +102,13 @@ Dimension dimension_of_entry(const Elaboration& e, char letter, const MatrixVari
 }
 
 /// Numbers without a unit are in SI, as in papers on robots; others have the dimension of their place.
-bool entries(Elaboration& e, expectation::Matrix& out, const ExpectStatement& s) {
+bool entries(Elaboration& e, expectation::Matrix& out, const written::Matrix& m) {
   bool good = true, one_unit = true;
   Dimension dimension;
-  for (std::size_t k = 0; k < s.values.size(); ++k) {
-    const Expression& x = *s.values[k];
+  for (std::size_t k = 0; k < m.entries.size(); ++k) {
+    const Expression& x = *m.entries[k];
     const bool bare = unsigned_quantity(x).kind == Expression::Kind::Number;
-    dimension = dimension_of_entry(e, out.letter, out.rows[k / s.width], out.columns[k % s.width]);
+    dimension = dimension_of_entry(e, out.letter, out.rows[k / m.width], out.columns[k % m.width]);
     const Value v = constant_of(e, x, bare ? Dimension{} : dimension, fmt::format("this entry of {}", out.letter));
     good = good && !v.poisoned;
     out.entries.push_back(v.poisoned ? e.number(0) : v.scalar());
@@ -112,22 +118,27 @@ bool entries(Elaboration& e, expectation::Matrix& out, const ExpectStatement& s)
   }
   if (!one_unit) out.unit = {};
   if (!good) return false;
-  const auto tolerance = tolerance_of(e, s.tolerance, s.relative, dimension, out.unit);
+  const auto tolerance = tolerance_of(e, m.tolerance, dimension, out.unit);
   if (tolerance) out.tolerance = *tolerance;
   return tolerance.has_value();
 }
 
 /// What the rows and columns belong to: as written, or all. False, and a message, where there are not as many.
-bool variables(Elaboration& e, expectation::Matrix& out, const ExpectStatement& s) {
+bool variables(Elaboration& e, expectation::Matrix& out, const written::Matrix& m) {
   const bool states = out.letter == 'A' || out.letter == 'B', inputs = out.letter == 'B';
-  if (!matrix_variables(e, s.rows, {states, false}, out.rows)) return false;
-  if (s.columns.empty() && !inputs) out.columns = out.rows;
-  else if (!matrix_variables(e, s.columns, {states && !inputs, inputs}, out.columns)) return false;
-  const std::size_t rows = s.values.size() / s.width;
-  if (rows == out.rows.size() && s.width == out.columns.size()) return true;
-  const Span span = cover(s.values.front()->span, s.values.back()->span);
-  refuse_matrix(e, span, fmt::format("this matrix is {} by {}, and {} is {} by {}", rows, s.width, out.letter, out.rows.size(), out.columns.size()),
-                states ? "Its rows belong to the states: coordinates, then velocities." : "Its rows belong to the coordinates, in the order of their declaration.",
+  if (!matrix_variables(e, m.rows, {states, false}, out.rows)) return false;
+  if (m.columns.empty() && !inputs)
+    out.columns = out.rows;
+  else if (!matrix_variables(e, m.columns, {states && !inputs, inputs}, out.columns))
+    return false;
+  const std::size_t rows = m.entries.size() / m.width;
+  if (rows == out.rows.size() && m.width == out.columns.size()) return true;
+  const Span span = cover(m.entries.front()->span, m.entries.back()->span);
+  refuse_matrix(e, span,
+                fmt::format("this matrix is {} by {}, and {} is {} by {}", rows, m.width, out.letter, out.rows.size(),
+                            out.columns.size()),
+                states ? "Its rows belong to the states: coordinates, then velocities."
+                       : "Its rows belong to the coordinates, in the order of their declaration.",
                 "Name the rows after `in` and the columns after `by` where only some are meant.");
   return false;
 }
@@ -135,11 +146,13 @@ bool variables(Elaboration& e, expectation::Matrix& out, const ExpectStatement& 
 /// The parameter of a critical value; null, and a message, if it is none.
 const Parameter* critical_parameter(Elaboration& e, const Expression& x) {
   const auto& parameters = e.system().parameters;
-  const auto p = std::find_if(parameters.begin(), parameters.end(),
-                              [&](const Parameter& p) { return x.kind == Expression::Kind::Name && x.primes == 0 && p.name == x.text; });
+  const auto p = std::find_if(parameters.begin(), parameters.end(), [&](const Parameter& p) {
+    return x.kind == Expression::Kind::Name && x.primes == 0 && p.name == x.text;
+  });
   if (p == parameters.end()) {
     e.diagnostics.error("E0248", x.span, fmt::format("`{}` is no parameter", e.texts.slice(x.span)),
-                        "A critical value is one of a parameter, at which the stability changes.", "Make it a `param`.");
+                        "A critical value is one of a parameter, at which the stability changes.",
+                        "Make it a `param`.");
     return nullptr;
   }
   if (Declaration* d = e.table.find(p->name)) d->used = true;
@@ -148,56 +161,71 @@ const Parameter* critical_parameter(Elaboration& e, const Expression& x) {
 
 }  // namespace
 
-Expected expect_eigenvalues(Elaboration& e, const ExpectStatement& s) {
-  auto point = point_of_expectation(e, s);
+Expected meaning_of(Elaboration& e, const written::Eigenvalues& x, Span) {
+  auto point = point_of_expectation(e, x.at);
   if (!point) return std::nullopt;
-  auto expected = spectrum(e, s, e.dimension(Dimension{}) / e.time(), "an eigenvalue");
+  auto expected = spectrum(e, x.expected, e.dimension(Dimension{}) / e.time(), "an eigenvalue");
   return expected ? Expected(expectation::Eigenvalues{std::move(*point), std::move(*expected)}) : std::nullopt;
 }
 
-Expected expect_matrix(Elaboration& e, const ExpectStatement& s) {
+Expected meaning_of(Elaboration& e, const written::Matrix& x, Span) {
   expectation::Matrix out;
-  out.letter = s.name.text[0];
-  if (out.letter != 'M' && s.rows.empty() && e.system().constrained()) {
-    refuse_matrix(e, s.name.span, fmt::format("it is not said which rows of {} these are", out.letter),
-                  "With constraints the equations are linearized in independent coordinates, which the program chooses.",
-                  "Name them after `in`, for example A in (θ, θ') at θ = 0 : …; `maup modes` shows which there are.");
+  out.letter = x.letter.text[0];
+  if (out.letter != 'M' && x.rows.empty() && e.system().constrained()) {
+    refuse_matrix(
+        e, x.letter.span, fmt::format("it is not said which rows of {} these are", out.letter),
+        "With constraints the equations are linearized in independent coordinates, which the program chooses.",
+        "Name them after `in`, for example A in (θ, θ') at θ = 0 : …; `maup modes` shows which there are.");
     return std::nullopt;
   }
-  if (!variables(e, out, s)) return std::nullopt;
-  auto point = point_of_expectation(e, s);
-  if (!point || !entries(e, out, s)) return std::nullopt;
+  if (!variables(e, out, x)) return std::nullopt;
+  auto point = point_of_expectation(e, x.at);
+  if (!point || !entries(e, out, x)) return std::nullopt;
   out.at = std::move(*point);
   return out;
 }
 
-Expected expect_stable(Elaboration& e, const ExpectStatement& s) {
-  const Parameter* p = critical_parameter(e, *s.subject);
+Expected meaning_of(Elaboration& e, const written::Stable& x, Span) {
+  const Parameter* p = critical_parameter(e, *x.parameter);
   if (!p) return std::nullopt;
-  const auto critical = expected_number(e, s, p->dimension, fmt::format("`{}`", p->name));
+  const auto critical = expected_number(e, x.critical, p->dimension, fmt::format("`{}`", p->name));
   if (!critical) return std::nullopt;
-  auto point = point_of_expectation(e, s);
+  auto point = point_of_expectation(e, x.at);
   if (!point) return std::nullopt;
-  return expectation::Stable{s.word.text == "stable", static_cast<std::size_t>(p - e.system().parameters.data()), s.above, *critical,
-                             std::move(*point)};
+  return expectation::Stable{x.word.text == "stable", static_cast<std::size_t>(p - e.system().parameters.data()),
+                             x.above, *critical, std::move(*point)};
 }
 
-/// multipliers, trace, period: `over` a time that is a period, or nearly one.
-Expected expect_return_map(Elaboration& e, const ExpectStatement& s) {
-  Expr over;
-  if (s.time) {
-    const Value time = constant_of(e, *s.time, e.time(), in_words(e, "the time of a period"));
-    if (time.poisoned) return std::nullopt;
-    over = time.scalar();
-  }
-  if (s.kind == Kind::Multipliers) {
-    auto expected = spectrum(e, s, Dimension{}, "a multiplier");
-    return expected ? Expected(expectation::Multipliers{over, std::move(*expected)}) : std::nullopt;
-  }
-  const bool is_trace = s.kind == Kind::Trace;
-  const auto expected = expected_number(e, s, is_trace ? Dimension{} : e.time(), is_trace ? "the trace of a return map" : "a period");
-  if (!expected) return std::nullopt;
-  return is_trace ? Expected(expectation::Trace{over, *expected}) : Expected(expectation::Period{over, *expected});
+namespace {
+
+/// `over` a time that is a period, or nearly one; empty where none is written. Nothing after a mistake.
+std::optional<Expr> time_of_period(Elaboration& e, const syntax::ExpressionPtr& over) {
+  if (!over) return Expr();
+  const Value time = constant_of(e, *over, e.time(), in_words(e, "the time of a period"));
+  return time.poisoned ? std::nullopt : std::optional(time.scalar());
+}
+
+}  // namespace
+
+Expected meaning_of(Elaboration& e, const written::Multipliers& x, Span) {
+  const auto over = time_of_period(e, x.over);
+  if (!over) return std::nullopt;
+  auto expected = spectrum(e, x.expected, Dimension{}, "a multiplier");
+  return expected ? Expected(expectation::Multipliers{*over, std::move(*expected)}) : std::nullopt;
+}
+
+Expected meaning_of(Elaboration& e, const written::Trace& x, Span) {
+  const auto over = time_of_period(e, x.over);
+  if (!over) return std::nullopt;
+  const auto expected = expected_number(e, x.expected, Dimension{}, "the trace of a return map");
+  return expected ? Expected(expectation::Trace{*over, *expected}) : std::nullopt;
+}
+
+Expected meaning_of(Elaboration& e, const written::Period& x, Span) {
+  const auto over = time_of_period(e, x.over);
+  if (!over) return std::nullopt;
+  const auto expected = expected_number(e, x.expected, e.time(), "a period");
+  return expected ? Expected(expectation::Period{*over, *expected}) : std::nullopt;
 }
 
 }  // namespace maupertuis::elaboration

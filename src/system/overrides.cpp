@@ -31,7 +31,8 @@ void unknown_parameter(Elaboration& e, const Beside& said, const Declaration& gi
   refuse_override(said.text, given.span,
                   d && d->statement ? fmt::format("`{}` is a {}, not a parameter", name, word_of(d->kind))
                                     : fmt::format("the model has no parameter `{}`", name),
-                  "Only parameters can be set.", near.empty() ? "" : fmt::format("Did you mean `{}`?", near), e.diagnostics);
+                  "Only parameters can be set.", near.empty() ? "" : fmt::format("Did you mean `{}`?", near),
+                  e.diagnostics);
 }
 
 /// Puts the value and unit that were given in the place of the model's.
@@ -53,10 +54,11 @@ void replace(Elaboration& e, Declaration& d, const Elaboration& inner) {
 bool check_kept_dimension(Elaboration& e, const Beside& said, const Declaration& d, const Declaration& given) {
   const bool fits = d.value.fits_any || given.value.fits_any || given.value.dimension.same_as(d.value.dimension);
   if (fits && given.value.parts.size() == d.value.parts.size()) return true;
-  refuse_override(said.text, std::get<syntax::ParamStatement>(given.statement->body).items[given.item].value->span,
-                  fmt::format("`{}` is {}, this is {}", d.name, describe(d.value.dimension), describe(given.value.dimension)),
-                  "A parameter keeps its dimension.", fmt::format("Write {} {}=… with a unit of the same dimension.", said.text.name(), d.name),
-                  e.diagnostics);
+  refuse_override(
+      said.text, std::get<syntax::ParamStatement>(given.statement->body).items[given.item].value->span,
+      fmt::format("`{}` is {}, this is {}", d.name, describe(d.value.dimension), describe(given.value.dimension)),
+      "A parameter keeps its dimension.",
+      fmt::format("Write {} {}=… with a unit of the same dimension.", said.text.name(), d.name), e.diagnostics);
   return false;
 }
 
@@ -64,7 +66,8 @@ void set_parameter(Elaboration& e, const Beside& said, Elaboration& inner, Decla
   Declaration* d = e.table.find(given.name);
   if (!d || d->kind != Declaration::Kind::Parameter) return unknown_parameter(e, said, given, d);
   elaborate_parameter(inner, given);
-  if (said.hand_over(e) || d->value.poisoned || given.value.poisoned || !check_kept_dimension(e, said, *d, given)) return;
+  if (said.hand_over(e) || d->value.poisoned || given.value.poisoned || !check_kept_dimension(e, said, *d, given))
+    return;
   replace(e, *d, inner);
   if (d->value.fits_any) {
     d->value.dimension = given.value.dimension;
@@ -127,7 +130,8 @@ void for_each_item(Elaboration& e, const syntax::StartStatement& part, Take&& ta
 }
 
 void replace_start(std::vector<StartValue>& list, StartValue value) {
-  std::erase_if(list, [&](const StartValue& old) { return old.coordinate == value.coordinate && old.order == value.order; });
+  std::erase_if(list,
+                [&](const StartValue& old) { return old.coordinate == value.coordinate && old.order == value.order; });
   list.push_back(std::move(value));
 }
 

@@ -7,7 +7,6 @@
 namespace maupertuis::elaboration {
 namespace {
 
-using syntax::ExpectStatement;
 
 // -------------------------------------------------------------------------------------------- independent variable
 
@@ -236,15 +235,15 @@ bool given_ends(Elaboration& e, PathFormulas& out, const syntax::ExpressionPtr& 
 }
 
 /// action of (x(t), y(t)) from a to b
-std::optional<PathFormulas> given_path(Elaboration& e, const ExpectStatement& s, Span span) {
+std::optional<PathFormulas> given_path(Elaboration& e, const written::ActionAlong& x, Span line) {
   PathFormulas out;
-  const Span whole = cover(s.values.front()->span, s.values.back()->span);
-  bool good = check_count(e, s.values.size(), whole, "this path");
-  for (std::size_t i = 0; i < s.values.size() && good; ++i) {
-    out.q.push_back(along_path(e, e.system().coordinates[i], *s.values[i]));
+  const Span whole = cover(x.q.front()->span, x.q.back()->span);
+  bool good = check_count(e, x.q.size(), whole, "this path");
+  for (std::size_t i = 0; i < x.q.size() && good; ++i) {
+    out.q.push_back(along_path(e, e.system().coordinates[i], *x.q[i]));
     good = static_cast<bool>(out.q.back());
   }
-  return given_ends(e, out, s.from, s.to, span) && good ? std::optional(std::move(out)) : std::nullopt;
+  return given_ends(e, out, x.from, x.to, line) && good ? std::optional(std::move(out)) : std::nullopt;
 }
 
 /// The index of the coordinate that a path gives a value; nothing, and a message, if it is none or has one.
@@ -289,40 +288,34 @@ void override_given_path(Elaboration& e) {
     e.experiment().given_path = std::move(out);
 }
 
-Expected expect_action(Elaboration& e, const ExpectStatement& s, Span span) {
-  std::optional<PathFormulas> along;
-  if (!s.values.empty()) along = given_path(e, s, span);
-  if (s.values.empty() ? refuse_without_path(e, span) : !along) return std::nullopt;
-  const auto expected = expected_number(e, s, e.system().lagrangian_dimension * e.time(), "the action");
-  if (!expected) return std::nullopt;
-  return along ? Expected(expectation::ActionAlong{std::move(*along), *expected}) : Expected(expectation::Action{s.occurrence, *expected});
+Expected meaning_of(Elaboration& e, const written::Action& x, Span line) {
+  if (refuse_without_path(e, line)) return std::nullopt;
+  const auto expected = expected_number(e, x.expected, e.system().lagrangian_dimension * e.time(), "the action");
+  return expected ? Expected(expectation::Action{x.path, *expected}) : std::nullopt;
 }
 
-Expected expect_index(Elaboration& e, const ExpectStatement& s, Span span) {
-  const Value v = constant_of(e, *s.value, Dimension{}, "a Morse index");
-  if (v.poisoned || refuse_without_path(e, span)) return std::nullopt;
-  return expectation::MorseIndex{s.occurrence, v.scalar()};
+Expected meaning_of(Elaboration& e, const written::ActionAlong& x, Span line) {
+  auto along = given_path(e, x, line);
+  if (!along) return std::nullopt;
+  const auto expected = expected_number(e, x.expected, e.system().lagrangian_dimension * e.time(), "the action");
+  return expected ? Expected(expectation::ActionAlong{std::move(*along), *expected}) : std::nullopt;
 }
 
-Expected expect_on_path(Elaboration& e, const ExpectStatement& s, Span span) {
-  const auto subject = number_of(e, *s.subject, Place{}, "an expectation");
-  const Value at = constant_of(e, *s.time, e.time(), in_words(e, "the time of an expectation"));
-  if (!subject || at.poisoned || refuse_without_path(e, span)) return std::nullopt;
-  if (refuse_acceleration(e, *subject, *s.subject, "what is expected of a path")) return std::nullopt;
+Expected meaning_of(Elaboration& e, const written::MorseIndex& x, Span line) {
+  const Value v = constant_of(e, *x.index, Dimension{}, "a Morse index");
+  if (v.poisoned || refuse_without_path(e, line)) return std::nullopt;
+  return expectation::MorseIndex{x.path, v.scalar()};
+}
+
+Expected meaning_of(Elaboration& e, const written::PathAt& x, Span line) {
+  const auto subject = number_of(e, *x.subject, Place{}, "an expectation");
+  const Value at = constant_of(e, *x.time, e.time(), in_words(e, "the time of an expectation"));
+  if (!subject || at.poisoned || refuse_without_path(e, line)) return std::nullopt;
+  if (refuse_acceleration(e, *subject, *x.subject, "what is expected of a path")) return std::nullopt;
   const Dimension dimension = subject->fits_any ? Dimension{} : subject->dimension;
-  const auto expected = expected_number(e, s, dimension, fmt::format("`{}`", e.texts.slice(s.subject->span)));
+  const auto expected = expected_number(e, x.expected, dimension, fmt::format("`{}`", e.texts.slice(x.subject->span)));
   if (!expected) return std::nullopt;
-  return expectation::PathAt{s.occurrence, subject->scalar(), at.scalar(), *expected};
-}
-
-bool refuse_motion_of_path(Elaboration& e, const ExpectStatement& s, Span span) {
-  using Kind = ExpectStatement::Kind;
-  const bool about_path = s.kind == Kind::Action || s.kind == Kind::MorseIndex || s.kind == Kind::PathAt;
-  if (about_path || s.kind == Kind::Error || e.system().integral_constraints.empty()) return false;
-  e.diagnostics.error("E0244", span, "this expectation is about a motion, and the model holds an integral of its paths",
-                      "The multiplier of an integral belongs to a whole path: without its two ends there is no motion.",
-                      "Expect `action`, `index` or `path q at …` instead.");
-  return true;
+  return expectation::PathAt{x.path, subject->scalar(), at.scalar(), *expected};
 }
 
 }  // namespace maupertuis::elaboration

@@ -14,8 +14,9 @@ namespace maupertuis {
 namespace {
 
 std::string jump_text(const JumpAcross& jump) {
-  return fmt::format("It is constant on each side of a switch and jumps by {:.6g} (SI units){}: it is not conserved across.",
-                     std::abs(jump.jump), jump.place.empty() ? "" : " where " + jump.place);
+  return fmt::format(
+      "It is constant on each side of a switch and jumps by {:.6g} (SI units){}: it is not conserved across.",
+      std::abs(jump.jump), jump.place.empty() ? "" : " where " + jump.place);
 }
 
 }  // namespace
@@ -28,7 +29,9 @@ const AlongMotion& IdentityClaims::along() {
   return *along_;
 }
 
-std::string IdentityClaims::ground(const ZeroTest& test) const { return ground_of(test, equations_.system->constrained()); }
+std::string IdentityClaims::ground(const ZeroTest& test) const {
+  return ground_of(test, equations_.system->constrained());
+}
 
 bool IdentityClaims::needs_solvable(ExpectationResult& result) {
   if (along().solvable()) return true;
@@ -43,7 +46,8 @@ void IdentityClaims::decide(const expectation::Conserved& e, ExpectationResult& 
   const ZeroTest test = along().vanishes(rate);
   result.expected = "d/dt = 0 along the motion";
   if (test.verdict == Verdict::Zero)
-    if (const AcrossSwitches sides = along().across(with_momenta(e.subject, equations_)); sides.switches > 0 || sides.jump)
+    if (const AcrossSwitches sides = along().across(with_momenta(e.subject, equations_));
+        sides.switches > 0 || sides.jump)
       return judge_sides(test, sides, result);
   result.passed = test.verdict == Verdict::Zero;
   result.actual = result.passed ? result.expected : "d/dt is not 0";
@@ -68,12 +72,16 @@ void IdentityClaims::decide_on_level(const expectation::Conserved& e, Expectatio
     const ZeroTest stays = along().vanishes_on(along().rate(x), level);
     if (stays.verdict == Verdict::Zero) continue;
     result.actual = stays.verdict == Verdict::Nonzero ? "the motion leaves the level" : "undecided";
-    result.message = stays.verdict == Verdict::Nonzero ? "A quantity that is given for the level changes along the motion." : stays.reason;
+    result.message = stays.verdict == Verdict::Nonzero
+                         ? "A quantity that is given for the level changes along the motion."
+                         : stays.reason;
     return;
   }
   const ZeroTest test = along().vanishes_on(along().rate(with_momenta(e.subject, equations_)), level);
   result.passed = test.verdict == Verdict::Zero;
-  result.actual = result.passed ? result.expected : test.verdict == Verdict::Nonzero ? "d/dt is not 0 on the level" : "undecided";
+  result.actual = result.passed                      ? result.expected
+                  : test.verdict == Verdict::Nonzero ? "d/dt is not 0 on the level"
+                                                     : "undecided";
   result.message = result.passed ? fmt::format("vanishes to 60 digits at {} points of the level", test.points)
                    : test.verdict == Verdict::Nonzero
                        ? fmt::format("At a state on the level its time derivative is {:.6g}.", test.witness_value)
@@ -98,8 +106,12 @@ void IdentityClaims::decide(const expectation::NotConserved& e, ExpectationResul
       result.message = jump_text(*sides.jump);
       return;
     }
-  result.actual = result.passed ? result.expected : test.verdict == Verdict::Zero ? "d/dt = 0: it is conserved" : "undecided";
-  result.message = result.passed ? "a state was found at which it changes" : test.verdict == Verdict::Zero ? ground(test) : test.reason;
+  result.actual = result.passed                   ? result.expected
+                  : test.verdict == Verdict::Zero ? "d/dt = 0: it is conserved"
+                                                  : "undecided";
+  result.message = result.passed                   ? "a state was found at which it changes"
+                   : test.verdict == Verdict::Zero ? ground(test)
+                                                   : test.reason;
 }
 
 /// The search of `maup invariants`, of the degree that the expectation has in the velocities; one for each degree.
@@ -132,10 +144,12 @@ void IdentityClaims::decide(const expectation::Integral& e, ExpectationResult& r
     result.message = jump_text(*sides.jump);
     return;
   }
-  result.message = result.passed ? fmt::format("a function of the {} integrals of degree up to {} in the velocities, by the rank of gradients",
-                                               found->integrals.size(), degree)
-                                 : fmt::format("It is no function of the {} integrals of degree up to {} in the velocities that were found.",
-                                               found->integrals.size(), degree);
+  result.message =
+      result.passed
+          ? fmt::format("a function of the {} integrals of degree up to {} in the velocities, by the rank of gradients",
+                        found->integrals.size(), degree)
+          : fmt::format("It is no function of the {} integrals of degree up to {} in the velocities that were found.",
+                        found->integrals.size(), degree);
 }
 
 void IdentityClaims::decide(const expectation::Equation& e, ExpectationResult& result) {

@@ -9,8 +9,8 @@
 
 namespace maupertuis {
 
-/// expect equation, claim, expect conserved, expect … not conserved, expect integral: identities along the motion, by the
-/// zero test, and by the search for integrals, which is done once for each degree.
+/// expect equation, claim, expect conserved, expect … not conserved, expect integral: identities along the motion, by
+/// the zero test, and by the search for integrals, which is done once for each degree.
 class IdentityClaims {
  public:
   IdentityClaims(const Model& model, const EquationsOfMotion& equations, Diagnostics& diagnostics)
@@ -23,7 +23,7 @@ class IdentityClaims {
  private:
   /// What should vanish along the motion, with the accelerations put in, and what messages call it.
   struct Identity {
-    const char* name;   // "Its time derivative along the motion"
+    const char* name;  // "Its time derivative along the motion"
     Expr value;
   };
   const AlongMotion& along();
@@ -39,7 +39,7 @@ class IdentityClaims {
   const EquationsOfMotion& equations_;
   Diagnostics& diagnostics_;
   std::optional<AlongMotion> along_;
-  std::map<int, std::optional<Invariants>> invariants_;   // by degree in the velocities
+  std::map<int, std::optional<Invariants>> invariants_;  // by degree in the velocities
 };
 
 }  // namespace maupertuis

@@ -15,17 +15,19 @@ bool has_velocity(Expr e) {
   return false;
 }
 
-/// H as it is printed where the velocities do not follow from the momenta, or were not written out: with velocities in it, or with momenta that obey
-/// primary constraints. Where p = ∂L/∂q' it is the energy function.
-Expr difference_from_energy(Expr right, const EquationsOfMotion& equations) { return with_momenta(right, equations) - equations.energy_function; }
+/// H as it is printed where the velocities do not follow from the momenta, or were not written out: with velocities in
+/// it, or with momenta that obey primary constraints. Where p = ∂L/∂q' it is the energy function.
+Expr difference_from_energy(Expr right, const EquationsOfMotion& equations) {
+  return with_momenta(right, equations) - equations.energy_function;
+}
 
 /// Two sides of an identity in phase space.
 struct Sides {
-  std::string what;      // "hamiltonian"
-  Expr left;             // what the system has; an empty handle where it has none
-  std::string reason;    // why it has none
-  Expr difference;       // left − right
-  Expr shown;            // what is printed as the left side
+  std::string what;    // "hamiltonian"
+  Expr left;           // what the system has; an empty handle where it has none
+  std::string reason;  // why it has none
+  Expr difference;     // left − right
+  Expr shown;          // what is printed as the left side
 };
 
 void judge_sides(const Sides& sides, const Hamiltonian& h, ExpectationResult& result) {
@@ -53,7 +55,8 @@ void judge_sides(const Sides& sides, const Hamiltonian& h, ExpectationResult& re
 
 }  // namespace
 
-void decide_phase_space(const expectation::Hamiltonian& e, const EquationsOfMotion& equations, ExpectationResult& result) {
+void decide_phase_space(const expectation::Hamiltonian& e, const EquationsOfMotion& equations,
+                        ExpectationResult& result) {
   const Hamiltonian h = hamiltonian(equations);
   const Expr left = h.value ? h.value : equations.energy_function;
   const bool by_energy = !h.regular() || has_velocity(e.value);
@@ -66,8 +69,9 @@ void decide_phase_space(const expectation::Routhian& e, const EquationsOfMotion&
   const Hamiltonian h = hamiltonian(equations);
   const auto found = routhian(equations, h, &e.coordinates);
   const Expr left = found ? found->value : Expr();
-  judge_sides({"routhian", left, "the momenta of these coordinates do not determine their velocities", left ? left - e.value : Expr(), left}, h,
-              result);
+  judge_sides({"routhian", left, "the momenta of these coordinates do not determine their velocities",
+               left ? left - e.value : Expr(), left},
+              h, result);
 }
 
 void decide_phase_space(const expectation::Bracket& e, const EquationsOfMotion& equations, ExpectationResult& result) {

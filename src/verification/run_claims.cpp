@@ -17,9 +17,12 @@ constexpr const char* kNoStart = "The run could not start.";
 std::string ended_before(const SimulationResult& run) { return "The run ended before: " + run.reason + "."; }
 
 std::string beyond_digits(const ValueVerdict& verdict, const std::string& uncertainty) {
-  const std::string known = uncertainty == "no digit is certain" ? "of what came out no digit is certain" : "what came out is known to " + uncertainty + " alone";
+  const std::string known = uncertainty == "no digit is certain"
+                                ? "of what came out no digit is certain"
+                                : "what came out is known to " + uncertainty + " alone";
   if (verdict.passed) return known + ", so that the tolerance asks for more digits than there are";
-  return known + (verdict.may_hold ? ", so that this run does not tell whether it holds" : ", and still it does not hold");
+  return known +
+         (verdict.may_hold ? ", so that this run does not tell whether it holds" : ", and still it does not hold");
 }
 
 void report_drift(ExpectationResult& result, double drift, double tolerance) {
@@ -50,8 +53,10 @@ void RunClaims::take_timed(std::vector<ExpectationResult>& results) {
   for (const ExtendedClaims::Line& line : timed_) {
     const expectation::ValueAt& e = *line.expectation;
     const double time = number(e.time, begin);
-    if (claims.takes(e)) (time >= begin ? ahead : behind).push_back(line);
-    else values_.push_back({line.index, &e.expected, e.subject, time});
+    if (claims.takes(e))
+      (time >= begin ? ahead : behind).push_back(line);
+    else
+      values_.push_back({line.index, &e.expected, e.subject, time});
   }
   for (const auto* lines : {&ahead, &behind})
     if (!lines->empty()) claims.decide(*lines, results, diagnostics_);
@@ -60,15 +65,19 @@ void RunClaims::take_timed(std::vector<ExpectationResult>& results) {
 /// When the condition of `run until` is met: by the model's own run.
 void RunClaims::find_end(std::vector<ExpectationResult>& results) {
   if (ends_.empty()) return;
-  Diagnostics unheard;   // a run that cannot start says so once
+  Diagnostics unheard;  // a run that cannot start says so once
   const bool alone = values_.empty() && drifts_.empty() && energies_.empty();
   const auto run = simulate(model_, equations_, options_, alone ? diagnostics_ : unheard);
   for (const End& end : ends_) {
     ExpectationResult& result = results[end.line];
-    if (!run) result.message = kNoStart;
-    else if (run->ending != Ending::UntilReached) result.message = ended_before(*run);
-    else if (!end.subject) judge_value(*end.expected, run->final.t, run->final.errors ? run->final.errors->t : 0.0, result);
-    else values_.push_back({end.line, end.expected, end.subject, run->final.t});
+    if (!run)
+      result.message = kNoStart;
+    else if (run->ending != Ending::UntilReached)
+      result.message = ended_before(*run);
+    else if (!end.subject)
+      judge_value(*end.expected, run->final.t, run->final.errors ? run->final.errors->t : 0.0, result);
+    else
+      values_.push_back({end.line, end.expected, end.subject, run->final.t});
   }
 }
 
@@ -76,12 +85,13 @@ void RunClaims::find_end(std::vector<ExpectationResult>& results) {
 void RunClaims::run_direction(bool forwards, std::vector<ExpectationResult>& results) {
   const double begin = number(model_.experiment.start_time);
   std::vector<Value> values;
-  std::copy_if(values_.begin(), values_.end(), std::back_inserter(values), [&](const Value& v) { return (v.time >= begin) == forwards; });
+  std::copy_if(values_.begin(), values_.end(), std::back_inserter(values),
+               [&](const Value& v) { return (v.time >= begin) == forwards; });
   const bool whole_run = forwards && !(energies_.empty() && drifts_.empty());
   if (values.empty() && !whole_run) return;
 
   SimulationOptions options = options_;
-  if (!whole_run) options.duration = 0.0;      // as far as the times asked for
+  if (!whole_run) options.duration = 0.0;  // as far as the times asked for
   options.at.clear();
   Probe probe;
   for (const Value& v : values) {
@@ -96,45 +106,57 @@ void RunClaims::run_direction(bool forwards, std::vector<ExpectationResult>& res
   const auto run = simulate(model_, equations_, options, diagnostics_, &probe);
   judge_values(values, options.at, run, probe, results);
   if (!forwards) return;
-  for (std::size_t i = 0; i < drifts_.size(); ++i) judge_drift(drifts_[i], values.size() + i, run, probe, results[drifts_[i].line]);
+  for (std::size_t i = 0; i < drifts_.size(); ++i)
+    judge_drift(drifts_[i], values.size() + i, run, probe, results[drifts_[i].line]);
   for (const Energy& e : energies_) judge_energy(e, run, results[e.line]);
 }
 
 /// 200 times along the run.
 std::vector<double> RunClaims::samples() const {
   const double begin = number(model_.experiment.start_time);
-  const double length = options_.duration ? *options_.duration : number(model_.experiment.duration, number(model_.experiment.within));
+  const double length =
+      options_.duration ? *options_.duration : number(model_.experiment.duration, number(model_.experiment.within));
   constexpr int count = 200;
   std::vector<double> times;
   for (int k = 0; k <= count; ++k) times.push_back(begin + length * k / count);
   return times;
 }
 
-void RunClaims::judge_values(const std::vector<Value>& values, const std::vector<double>& times, const std::optional<SimulationResult>& run,
-                             const Probe& probe, std::vector<ExpectationResult>& results) const {
+void RunClaims::judge_values(const std::vector<Value>& values, const std::vector<double>& times,
+                             const std::optional<SimulationResult>& run, const Probe& probe,
+                             std::vector<ExpectationResult>& results) const {
   for (std::size_t column = 0; column < values.size(); ++column) {
     ExpectationResult& result = results[values[column].line];
-    const auto row = static_cast<std::size_t>(std::find(times.begin(), times.end(), values[column].time) - times.begin());
-    if (!run) result.message = kNoStart;
-    else if (probe.values[row].empty()) result.message = ended_before(*run);
-    else judge_value(*values[column].expected, probe.values[row][column], probe.errors.empty() ? 0 : probe.errors[row][column], result);
+    const auto row =
+        static_cast<std::size_t>(std::find(times.begin(), times.end(), values[column].time) - times.begin());
+    if (!run)
+      result.message = kNoStart;
+    else if (probe.values[row].empty())
+      result.message = ended_before(*run);
+    else
+      judge_value(*values[column].expected, probe.values[row][column],
+                  probe.errors.empty() ? 0 : probe.errors[row][column], result);
   }
 }
 
 /// `uncertainty`: by how much `actual` may be off; 0 where nobody asked.
-void RunClaims::judge_value(const expectation::Number& e, double actual, double uncertainty, ExpectationResult& result) const {
+void RunClaims::judge_value(const expectation::Number& e, double actual, double uncertainty,
+                            ExpectationResult& result) const {
   judge_number(e, model_.system, actual, result);
   const double expected = number(e.value);
-  const ValueVerdict verdict = value_verdict(actual, expected, allowed_difference(e.tolerance, model_.system, expected), uncertainty);
+  const ValueVerdict verdict =
+      value_verdict(actual, expected, allowed_difference(e.tolerance, model_.system, expected), uncertainty);
   result.passed = verdict.passed;
   result.beyond_digits = verdict.beyond_digits;
   if (uncertainty > 0)
-    result.uncertainty = std::isinf(uncertainty) ? "no digit is certain" : fmt::format("± {:.2g}{}", uncertainty / std::abs(e.unit.factor), unit_after(e.unit));
+    result.uncertainty = std::isinf(uncertainty)
+                             ? "no digit is certain"
+                             : fmt::format("± {:.2g}{}", uncertainty / std::abs(e.unit.factor), unit_after(e.unit));
   if (verdict.beyond_digits) result.message += "; " + beyond_digits(verdict, result.uncertainty);
 }
 
-void RunClaims::judge_drift(const Drift& drift, std::size_t column, const std::optional<SimulationResult>& run, const Probe& probe,
-                            ExpectationResult& result) const {
+void RunClaims::judge_drift(const Drift& drift, std::size_t column, const std::optional<SimulationResult>& run,
+                            const Probe& probe, ExpectationResult& result) const {
   if (!run) {
     result.message = kNoStart;
     return;
@@ -152,7 +174,8 @@ void RunClaims::judge_drift(const Drift& drift, std::size_t column, const std::o
   report_drift(result, largest > 0 ? (high - low) / largest : 0, number(drift.expectation->tolerance.size));
 }
 
-void RunClaims::judge_energy(const Energy& energy, const std::optional<SimulationResult>& run, ExpectationResult& result) const {
+void RunClaims::judge_energy(const Energy& energy, const std::optional<SimulationResult>& run,
+                             ExpectationResult& result) const {
   constexpr double usual_tolerance = 1e-12;
   if (!run) {
     result.message = kNoStart;
@@ -160,8 +183,9 @@ void RunClaims::judge_energy(const Energy& energy, const std::optional<Simulatio
     result.expected = "constant along the run";
     result.actual = "not conserved";
     const auto jump = across_switches(model_.system, equations_.energy_function, equations_.order).jump;
-    result.message = !jump ? "Forces, friction or an explicit time in L change the energy of this system."
-                           : fmt::format("The energy jumps where {}: what is switched there does work at once.", jump->place);
+    result.message =
+        !jump ? "Forces, friction or an explicit time in L change the energy of this system."
+              : fmt::format("The energy jumps where {}: what is switched there does work at once.", jump->place);
   } else if (!run->ok()) {
     result.message = ended_before(*run);
   } else {

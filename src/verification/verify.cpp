@@ -17,8 +17,12 @@ namespace {
 /// Hands each line to what decides its kind. What several lines share is made at first use.
 class Verifier {
  public:
-  Verifier(const Model& model, const EquationsOfMotion& equations, const SimulationOptions& options, Diagnostics& diagnostics)
-      : model_(model), equations_(equations), interrupt_(options.interrupt), identities_(model, equations, diagnostics),
+  Verifier(const Model& model, const EquationsOfMotion& equations, const SimulationOptions& options,
+           Diagnostics& diagnostics)
+      : model_(model),
+        equations_(equations),
+        interrupt_(options.interrupt),
+        identities_(model, equations, diagnostics),
         runs_(model, equations, options, diagnostics) {}
 
   Verification carry_out(const SourceText& source) {
@@ -49,14 +53,18 @@ class Verifier {
   void decide(const expectation::Integral& e, ExpectationResult& result) { identities_.decide(e, result); }
   void decide(const expectation::Equation& e, ExpectationResult& result) { identities_.decide(e, result); }
 
-  void decide(const expectation::Hamiltonian& e, ExpectationResult& result) { decide_phase_space(e, equations_, result); }
+  void decide(const expectation::Hamiltonian& e, ExpectationResult& result) {
+    decide_phase_space(e, equations_, result);
+  }
   void decide(const expectation::Routhian& e, ExpectationResult& result) { decide_phase_space(e, equations_, result); }
   void decide(const expectation::Bracket& e, ExpectationResult& result) { decide_phase_space(e, equations_, result); }
 
   void decide(const expectation::Freedoms& e, ExpectationResult& result) {
     decide_freedoms(number_of(model_.system, e.number), constraints(), result);
   }
-  void decide(const expectation::ConstraintClass& e, ExpectationResult& result) { decide_class(e, model_.system, constraints(), result); }
+  void decide(const expectation::ConstraintClass& e, ExpectationResult& result) {
+    decide_class(e, model_.system, constraints(), result);
+  }
 
   void decide(const expectation::Frequencies& e, ExpectationResult& result) { modes().decide(e, result); }
   void decide(const expectation::Eigenvalues& e, ExpectationResult& result) { modes().decide(e, result); }
@@ -104,7 +112,7 @@ class Verifier {
   const Model& model_;
   const EquationsOfMotion& equations_;
   const std::atomic<bool>* interrupt_;
-  std::size_t line_ = 0;   // of the expectation that is looked at
+  std::size_t line_ = 0;  // of the expectation that is looked at
   IdentityClaims identities_;
   RunClaims runs_;
   std::optional<ConstraintAnalysis> constraints_;
@@ -116,7 +124,8 @@ class Verifier {
 }  // namespace
 
 std::size_t Verification::passed() const {
-  return static_cast<std::size_t>(std::count_if(results.begin(), results.end(), [](const auto& r) { return r.passed; }));
+  return static_cast<std::size_t>(
+      std::count_if(results.begin(), results.end(), [](const auto& r) { return r.passed; }));
 }
 
 Verification verify(const Model& model, const EquationsOfMotion& equations, const SourceText& source,

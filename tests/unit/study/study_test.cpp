@@ -16,7 +16,9 @@ const std::string kPendulum =
     "gravity (0, -g)\n";
 const std::string kExperiment = "start θ = 60 deg\nrun 1 s\n";
 
-Study pendulum(const std::string& experiment = kExperiment) { return Study(SourceText("pendulum.lag", kPendulum + experiment)); }
+Study pendulum(const std::string& experiment = kExperiment) {
+  return Study(SourceText("pendulum.lag", kPendulum + experiment));
+}
 
 std::string told(const Study& study) { return render(study.diagnostics(), study.texts()); }
 
@@ -69,8 +71,10 @@ TEST_CASE("what is said beside the text is what the text would say, and the text
   beside.override_with(OverrideKind::Parameters, "length", "l = 2 m");
   beside.override_with(OverrideKind::Start, "start", "θ = 90 deg, θ' = 1 rad/s");
   beside.override_with(OverrideKind::Run, "run", "3 s");
-  Study edited(SourceText("pendulum.lag", "system pendulum\nparam m = 1 kg, l = 2 m, g = 9.81 m/s^2\ncoord θ : angle\n"
-                                          "point bob mass m at l (sin θ, -cos θ)\ngravity (0, -g)\nstart θ = 90 deg, θ' = 1 rad/s\nrun 3 s\n"));
+  Study edited(
+      SourceText("pendulum.lag",
+                 "system pendulum\nparam m = 1 kg, l = 2 m, g = 9.81 m/s^2\ncoord θ : angle\n"
+                 "point bob mass m at l (sin θ, -cos θ)\ngravity (0, -g)\nstart θ = 90 deg, θ' = 1 rad/s\nrun 3 s\n"));
   check_same(end_of(beside), end_of(edited));
   CHECK(beside.source().text() == kPendulum + kExperiment);
 
@@ -127,7 +131,8 @@ TEST_CASE("an interrupted stage tells nothing and does its work when it is asked
   constexpr int links = 40;
   for (int i = 1; i <= links; ++i) {
     text += "x" + std::to_string(i) + (i < links ? ", " : " : number\n");
-    energy += " + cos(x" + std::to_string(i) + "' + x" + std::to_string(i % links + 1) + ")^3 + x" + std::to_string(i) + "'^2";
+    energy += " + cos(x" + std::to_string(i) + "' + x" + std::to_string(i % links + 1) + ")^3 + x" + std::to_string(i) +
+              "'^2";
   }
   Study study(SourceText("chain.lag", "dimensionless\n" + text + "L = " + energy + "\n"), &stop);
   CHECK_THROWS_AS(study.certificate(), Interrupted);
@@ -141,7 +146,8 @@ TEST_CASE("an interrupted stage tells nothing and does its work when it is asked
 }
 
 TEST_CASE("what becomes of expectations, and of a text that expects a mistake") {
-  Study study = pendulum(kExperiment + "expect energy conserved\nexpect equation l θ'' = -g sin θ\nclaim l θ'' = g sin θ\n");
+  Study study =
+      pendulum(kExperiment + "expect energy conserved\nexpect equation l θ'' = -g sin θ\nclaim l θ'' = g sin θ\n");
   const auto verification = study.verification();
   REQUIRE_MESSAGE(verification, told(study));
   CHECK(verification->passed() == 2);
