@@ -139,9 +139,10 @@ struct PathAt { int path = 0; Expr subject, time; Number expected; };
 /// error E0412: a model whose text has this mistake.
 struct Error { std::string code; };
 
-using Kind = std::variant<ValueAt, ValueAtUntil, UntilAt, EnergyConserved, ConservedAlongRun, Conserved, NotConserved, Integral, Equation,
-                          Hamiltonian, Routhian, Bracket, Freedoms, ConstraintClass, Frequencies, Eigenvalues, Matrix, Equilibrium,
-                          Stable, Multipliers, Trace, Period, Action, ActionAlong, MorseIndex, PathAt, Error>;
+using Kind = std::variant<ValueAt, ValueAtUntil, UntilAt, EnergyConserved, ConservedAlongRun, Conserved, NotConserved,
+                          Integral, Equation, Hamiltonian, Routhian, Bracket, Freedoms, ConstraintClass, Frequencies,
+                          Eigenvalues, Matrix, Equilibrium, Stable, Multipliers, Trace, Period, Action, ActionAlong,
+                          MorseIndex, PathAt, Error>;
 
 }  // namespace expectation
 

@@ -24,16 +24,17 @@ enum class OverrideKind {
   GivenTo,      // 10 s: where it ends
 };
 
-/// What an experiment is to do otherwise than its model says, and what is asked of it beside: options of a command line,
-/// fields of a form, arguments of a call. Parts of statements of the model language, each a text of its own, in which its
-/// mistakes have their places. The model text stays as it is.
+/// What an experiment is to do otherwise than its model says, and what is asked of it beside: options of a command
+/// line, fields of a form, arguments of a call. Parts of statements of the model language, each a text of its own, in
+/// which its mistakes have their places. The model text stays as it is.
 class ExperimentOverrides {
  public:
-  /// Takes up a text; `label` is what messages call it, "--until". Returns its number, which its places have. Nothing is read yet.
+  /// Takes up a text; `label` is what messages call it, "--until". Returns its number, which its places have. Nothing
+  /// is read yet.
   SourceId add(OverrideKind kind, std::string label, std::string text);
   /// A text that holds no part of a statement, for places in it.
   SourceId add_text(std::string label, std::string text);
-  /// Reads all texts with the names of `model`. What cannot be read is left out and told in `diagnostics`, one mistake a text.
+  /// Reads all texts with the names of `model`. What cannot be read is left out and told in `diagnostics`.
   void read(const syntax::SyntaxTree& model, Diagnostics& diagnostics);
 
   /// Text k has the number k + 1.

@@ -193,14 +193,14 @@ struct Routhian { std::vector<ExpressionPtr> coordinates; ExpressionPtr value; }
 struct Bracket { ExpressionPtr a, b, value; };                     // bracket (A, B) = C
 struct Freedoms { ExpressionPtr number; };                         // freedoms = 2
 struct ConstraintClass { Name constraint, word; };                 // constraint roll is nonholonomic
-struct Frequencies {                                               // frequencies [squared] at θ = 0 : 0.5 Hz, 1.2 Hz rel 1e-9
+struct Frequencies {                                               // frequencies [squared] at θ = 0 : 0.5 Hz rel 1e-9
   bool squared = false;
   Point at;
   std::vector<ExpressionPtr> values;
   Tolerance tolerance;
 };
 struct Eigenvalues { Point at; Spectrum expected; };               // eigenvalues at θ = 0 : …
-struct Matrix {                                                    // A in (x, x') by u at q1 = 0 : ((2, 1), (1, 1)) kg m^2 ± 1e-9
+struct Matrix {                                                    // A in (x, x') at x = 0 : ((2, 1), (1, 1)) ± 1e-9
   Name letter;                                                     // M; A, B, C, G, K, N of the linearization
   std::vector<ExpressionPtr> rows, columns;                        // variables; none: all
   Point at;
@@ -209,7 +209,7 @@ struct Matrix {                                                    // A in (x, x
   Tolerance tolerance;
 };
 struct Place { StartStatement::Item value; Tolerance tolerance; };
-struct Equilibrium { std::vector<Place> at; Name word; };          // equilibrium at θ = 0.84 ± 1e-7 is stable; word empty: not written
+struct Equilibrium { std::vector<Place> at; Name word; };          // equilibrium at θ = 0 ± 1e-7 is stable; or no word
 struct Stable {                                                    // stable for Ω < 5.7 rad/s ± 1e-2 at θ = 0
   Name word;                                                       // stable, unstable
   ExpressionPtr parameter;
@@ -231,9 +231,10 @@ struct PathAt { int path = 0; ExpressionPtr subject, time; Number expected; };  
 struct Event { Name name; int occurrence = 1; Number time; };      // event hit 3 at 0.45 s ± 1e-11
 struct Error { Name code; };                                       // error E0412
 
-using Kind = std::variant<ValueAt, ValueAtUntil, UntilAt, EnergyConserved, ConservedAlongRun, Conserved, NotConserved, Integral, Equation,
-                          Hamiltonian, Routhian, Bracket, Freedoms, ConstraintClass, Frequencies, Eigenvalues, Matrix, Equilibrium,
-                          Stable, Multipliers, Trace, Period, Action, ActionAlong, MorseIndex, PathAt, Event, Error>;
+using Kind = std::variant<ValueAt, ValueAtUntil, UntilAt, EnergyConserved, ConservedAlongRun, Conserved, NotConserved,
+                          Integral, Equation, Hamiltonian, Routhian, Bracket, Freedoms, ConstraintClass, Frequencies,
+                          Eigenvalues, Matrix, Equilibrium, Stable, Multipliers, Trace, Period, Action, ActionAlong,
+                          MorseIndex, PathAt, Event, Error>;
 
 }  // namespace expectation
 
@@ -247,7 +248,7 @@ struct ConstraintStatement {
 };
 
 /// sweep Ω = 0 .. 12 rad/s steps 121
-struct SweepStatement { ExpressionPtr variable, from, to, steps; };  // steps null: beside a model, where none are written
+struct SweepStatement { ExpressionPtr variable, from, to, steps; };  // steps null: beside a model, not written
 
 /// independent x : length. Stands in the place of t.
 struct IndependentStatement {
@@ -300,17 +301,19 @@ struct SyntaxTree {
 /// Time and memory are linear in the text; nesting is bounded (E0108), so is the size of the text (E0101).
 SyntaxTree parse(const SourceText& source, Diagnostics& diagnostics);
 
-/// Parts of statements in a text of their own beside the model, such as an option of a command line or a field of a form.
-/// They are read with the names that `model` declares: these decide what `2e1` and `f(x)` mean. Nothing after a mistake,
-/// which `diagnostics` tells at its place in `text`.
+/// Parts of statements in a text of their own beside the model, such as an option of a command line or a field of a
+/// form. They are read with the names that `model` declares: these decide what `2e1` and `f(x)` mean. Nothing after a
+/// mistake, which `diagnostics` tells at its place in `text`.
 struct Assignment { ExpressionPtr variable, value; };              // of a list x = 4 t, y = 3 t + 5
 ExpressionPtr parse_formula(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
 /// A number with its unit, or a formula of such.
 ExpressionPtr parse_quantity(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
 std::optional<Equation> parse_equation(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
-std::optional<std::vector<Assignment>> parse_assignments(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
+std::optional<std::vector<Assignment>> parse_assignments(const SourceText& text, const SyntaxTree& model,
+                                                         Diagnostics& diagnostics);
 /// What stands behind the words `param`, `start`, `run`.
-std::optional<ParamStatement> parse_parameters(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
+std::optional<ParamStatement> parse_parameters(const SourceText& text, const SyntaxTree& model,
+                                               Diagnostics& diagnostics);
 std::optional<StartStatement> parse_start(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
 std::optional<RunStatement> parse_run(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
 /// What stands behind `sweep`; the number of values may be left out, and `steps` is null then.
