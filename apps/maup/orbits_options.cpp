@@ -78,7 +78,8 @@ LyapunovOptions lyapunov_options(const OrbitsOptions& options) {
 }
 
 void put_in_section(const OrbitsOptions& options, Study& study) {
-  if (!options.section.empty()) study.override_with(OverrideKind::Section, "--section", split_section(options.section).equation);
+  if (!options.section.empty())
+    study.override_with(OverrideKind::Section, "--section", split_section(options.section).equation);
 }
 
 SectionOptions section_options(const OrbitsOptions& options, Study& study) {
@@ -95,7 +96,8 @@ SectionOptions section_options(const OrbitsOptions& options, Study& study) {
 }
 
 std::string section_text(const OrbitsOptions& options) {
-  return options.strobe ? fmt::format("strobe every {} s", brief(*time_of(options.strobe))) : fmt::format("section {}", options.section);
+  return options.strobe ? fmt::format("strobe every {} s", brief(*time_of(options.strobe)))
+                        : fmt::format("section {}", options.section);
 }
 
 }  // namespace maupertuis::app

@@ -229,20 +229,28 @@ class Rewriter {
   }
 
   // ------------------------------------------------------------------------------ expectations, drawing
-  bool asks_for_lost_force(const ExpressionPtr& e) const { return asks_for(e, "reaction", no_reaction_) || asks_for(e, "multiplier", no_multiplier_); }
+  bool asks_for_lost_force(const ExpressionPtr& e) const {
+    return asks_for(e, "reaction", no_reaction_) || asks_for(e, "multiplier", no_multiplier_);
+  }
 
   /// Points are given in the coordinates that there were.
   bool names_gone(const syntax::expectation::Point& point) const {
-    return std::any_of(point.begin(), point.end(), [&](const StartStatement::Item& item) { return gone_.count(to_string_without_primes(*item.variable)) != 0; });
+    return std::any_of(point.begin(), point.end(), [&](const StartStatement::Item& item) {
+      return gone_.count(to_string_without_primes(*item.variable)) != 0;
+    });
   }
 
   bool is_lost(const syntax::expectation::ValueAt& x) const { return asks_for_lost_force(x.subject); }
   bool is_lost(const syntax::expectation::ValueAtUntil& x) const { return asks_for_lost_force(x.subject); }
   bool is_lost(const syntax::expectation::ConservedAlongRun& x) const { return asks_for_lost_force(x.subject); }
-  bool is_lost(const syntax::expectation::Conserved& x) const { return asks_for_lost_force(x.subject) || (!x.where.empty() && !gone_.empty()); }
+  bool is_lost(const syntax::expectation::Conserved& x) const {
+    return asks_for_lost_force(x.subject) || (!x.where.empty() && !gone_.empty());
+  }
   bool is_lost(const syntax::expectation::NotConserved& x) const { return asks_for_lost_force(x.subject); }
   bool is_lost(const syntax::expectation::Integral& x) const { return asks_for_lost_force(x.subject); }
-  bool is_lost(const syntax::expectation::Equation& x) const { return asks_for_lost_force(x.left) || asks_for_lost_force(x.right); }
+  bool is_lost(const syntax::expectation::Equation& x) const {
+    return asks_for_lost_force(x.left) || asks_for_lost_force(x.right);
+  }
   bool is_lost(const syntax::expectation::ConstraintClass& x) const {
     return no_multiplier_.count(x.constraint.text) || no_reaction_.count(x.constraint.text);
   }
@@ -259,7 +267,8 @@ class Rewriter {
   bool is_lost(const syntax::expectation::Eigenvalues& x) const { return names_gone(x.at); }
   bool is_lost(const syntax::expectation::Stable& x) const { return names_gone(x.at); }
   bool is_lost(const syntax::expectation::Equilibrium& x) const {
-    return std::any_of(x.at.begin(), x.at.end(), [&](const syntax::expectation::Place& place) { return names_gone({place.value}); });
+    return std::any_of(x.at.begin(), x.at.end(),
+                       [&](const syntax::expectation::Place& place) { return names_gone({place.value}); });
   }
   bool is_lost(const syntax::expectation::UntilAt&) const { return false; }
   bool is_lost(const syntax::expectation::EnergyConserved&) const { return false; }

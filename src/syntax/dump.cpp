@@ -99,32 +99,51 @@ class Dumper {
     std::visit(*this, s.kind);
   }
   void operator()(const expectation::ValueAt& x) {
-    head(expectation_, x.time ? "value at" : "value"), child("subject", x.subject), child("time", x.time), expected(x.expected);
+    head(expectation_, x.time ? "value at" : "value"), child("subject", x.subject), child("time", x.time),
+        expected(x.expected);
   }
-  void operator()(const expectation::ValueAtUntil& x) { head(expectation_, "value at until"), child("subject", x.subject), expected(x.expected); }
+  void operator()(const expectation::ValueAtUntil& x) {
+    head(expectation_, "value at until"), child("subject", x.subject), expected(x.expected);
+  }
   void operator()(const expectation::UntilAt& x) { head(expectation_, "until at"), expected(x.expected); }
-  void operator()(const expectation::EnergyConserved& x) { head(expectation_, "energy conserved"), tolerance(x.tolerance); }
-  void operator()(const expectation::ConservedAlongRun& x) { head(expectation_, "conserved"), child("subject", x.subject), tolerance(x.tolerance); }
+  void operator()(const expectation::EnergyConserved& x) {
+    head(expectation_, "energy conserved"), tolerance(x.tolerance);
+  }
+  void operator()(const expectation::ConservedAlongRun& x) {
+    head(expectation_, "conserved"), child("subject", x.subject), tolerance(x.tolerance);
+  }
   void operator()(const expectation::Conserved& x) {
     head(expectation_, "conserved"), child("subject", x.subject);
     for (const Equation& level : x.where) child("where", level.left), child("equals", level.right);
   }
-  void operator()(const expectation::NotConserved& x) { head(expectation_, "not conserved"), child("subject", x.subject); }
+  void operator()(const expectation::NotConserved& x) {
+    head(expectation_, "not conserved"), child("subject", x.subject);
+  }
   void operator()(const expectation::Integral& x) { head(expectation_, "integral"), child("subject", x.subject); }
-  void operator()(const expectation::Equation& x) { head(expectation_, "equation"), child("left", x.left), child("right", x.right); }
+  void operator()(const expectation::Equation& x) {
+    head(expectation_, "equation"), child("left", x.left), child("right", x.right);
+  }
   void operator()(const expectation::Hamiltonian& x) { head(expectation_, "hamiltonian"), child("value", x.value); }
-  void operator()(const expectation::Routhian& x) { head(expectation_, "routhian"), children("coordinate", x.coordinates), child("value", x.value); }
-  void operator()(const expectation::Bracket& x) { head(expectation_, "bracket"), child("a", x.a), child("b", x.b), child("value", x.value); }
+  void operator()(const expectation::Routhian& x) {
+    head(expectation_, "routhian"), children("coordinate", x.coordinates), child("value", x.value);
+  }
+  void operator()(const expectation::Bracket& x) {
+    head(expectation_, "bracket"), child("a", x.a), child("b", x.b), child("value", x.value);
+  }
   void operator()(const expectation::Freedoms& x) { head(expectation_, "freedoms"), child("value", x.number); }
   void operator()(const expectation::ConstraintClass& x) {
     head(expectation_, "constraint class"), word("name", x.constraint.text), word("word", x.word.text);
   }
   void operator()(const expectation::Frequencies& x) {
-    head(expectation_, "frequencies"), word("squared", x.squared ? "yes" : ""), assignments(x.at), children("values", x.values), tolerance(x.tolerance);
+    head(expectation_, "frequencies"), word("squared", x.squared ? "yes" : ""), assignments(x.at),
+        children("values", x.values), tolerance(x.tolerance);
   }
-  void operator()(const expectation::Eigenvalues& x) { head(expectation_, "eigenvalues"), assignments(x.at), spectrum(x.expected); }
+  void operator()(const expectation::Eigenvalues& x) {
+    head(expectation_, "eigenvalues"), assignments(x.at), spectrum(x.expected);
+  }
   void operator()(const expectation::Matrix& x) {
-    head(expectation_, "matrix"), word("name", x.letter.text), children("row", x.rows), children("column", x.columns), assignments(x.at);
+    head(expectation_, "matrix"), word("name", x.letter.text), children("row", x.rows), children("column", x.columns),
+        assignments(x.at);
     word("width", std::to_string(x.width)), children("values", x.entries), tolerance(x.tolerance);
   }
   void operator()(const expectation::Equilibrium& x) {
@@ -132,21 +151,36 @@ class Dumper {
     for (const expectation::Place& place : x.at) assignments({place.value}), tolerance(place.tolerance);
   }
   void operator()(const expectation::Stable& x) {
-    head(expectation_, "stable"), word("word", x.word.text), word("above", x.above ? "yes" : ""), child("subject", x.parameter);
+    head(expectation_, "stable"), word("word", x.word.text), word("above", x.above ? "yes" : ""),
+        child("subject", x.parameter);
     expected(x.critical), assignments(x.at);
   }
-  void operator()(const expectation::Multipliers& x) { head(expectation_, "multipliers"), child("time", x.over), spectrum(x.expected); }
-  void operator()(const expectation::Trace& x) { head(expectation_, "trace"), child("time", x.over), expected(x.expected); }
-  void operator()(const expectation::Period& x) { head(expectation_, "period"), child("time", x.over), expected(x.expected); }
-  void operator()(const expectation::Action& x) { head(expectation_, "action"), number("path", x.path), expected(x.expected); }
+  void operator()(const expectation::Multipliers& x) {
+    head(expectation_, "multipliers"), child("time", x.over), spectrum(x.expected);
+  }
+  void operator()(const expectation::Trace& x) {
+    head(expectation_, "trace"), child("time", x.over), expected(x.expected);
+  }
+  void operator()(const expectation::Period& x) {
+    head(expectation_, "period"), child("time", x.over), expected(x.expected);
+  }
+  void operator()(const expectation::Action& x) {
+    head(expectation_, "action"), number("path", x.path), expected(x.expected);
+  }
   void operator()(const expectation::ActionAlong& x) {
-    head(expectation_, "action"), children("along", x.q), child("from", x.from), child("to", x.to), expected(x.expected);
+    head(expectation_, "action"), children("along", x.q), child("from", x.from), child("to", x.to),
+        expected(x.expected);
   }
-  void operator()(const expectation::MorseIndex& x) { head(expectation_, "morse index"), number("path", x.path), child("value", x.index); }
+  void operator()(const expectation::MorseIndex& x) {
+    head(expectation_, "morse index"), number("path", x.path), child("value", x.index);
+  }
   void operator()(const expectation::PathAt& x) {
-    head(expectation_, "path at"), number("path", x.path), child("subject", x.subject), child("time", x.time), expected(x.expected);
+    head(expectation_, "path at"), number("path", x.path), child("subject", x.subject), child("time", x.time),
+        expected(x.expected);
   }
-  void operator()(const expectation::Event& x) { head(expectation_, "event at"), word("name", x.name.text), number("occurrence", x.occurrence), expected(x.time); }
+  void operator()(const expectation::Event& x) {
+    head(expectation_, "event at"), word("name", x.name.text), number("occurrence", x.occurrence), expected(x.time);
+  }
   void operator()(const expectation::Error& x) { head(expectation_, "error"), word("name", x.code.text); }
   void operator()(const ConstraintStatement& s) {
     head(s.integral ? "integral constraint" : "constraint", s.name ? s.name->text : ""), child("left", s.left), child("right", s.right);

@@ -9,7 +9,8 @@
 namespace maupertuis {
 namespace elaboration {
 
-Elaboration::Elaboration(const syntax::SyntaxTree& tree, const SourceTexts& texts, const ExperimentOverrides& overrides, Diagnostics& diagnostics)
+Elaboration::Elaboration(const syntax::SyntaxTree& tree, const SourceTexts& texts, const ExperimentOverrides& overrides,
+                         Diagnostics& diagnostics)
     : tree(tree),
       texts(texts),
       overrides(overrides),

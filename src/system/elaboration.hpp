@@ -162,13 +162,16 @@ namespace written = syntax::expectation;
 /// The quantity below signs, whose unit the value is shown in.
 const syntax::Expression& unsigned_quantity(const syntax::Expression& x);
 /// The unit in which `value` is written, where it is one of `dimension`: that in which what comes out is shown.
-std::optional<expectation::DisplayUnit> display_unit(Elaboration& e, const syntax::Expression& value, const Dimension& dimension);
-/// ± 1e-9 is in the unit of the value, unless it has one of its own; rel 1e-9 is a bare number. Nothing after a mistake.
-/// `hertz`: it was written in turns.
-std::optional<expectation::Tolerance> tolerance_of(Elaboration& e, const syntax::Tolerance& tolerance, const Dimension& dimension,
-                                                   const expectation::DisplayUnit& unit, bool* hertz = nullptr);
+std::optional<expectation::DisplayUnit> display_unit(Elaboration& e, const syntax::Expression& value,
+                                                     const Dimension& dimension);
+/// ± 1e-9 is in the unit of the value, unless it has one of its own; rel 1e-9 is a bare number. Nothing after a
+/// mistake. `hertz`: it was written in turns.
+std::optional<expectation::Tolerance> tolerance_of(Elaboration& e, const syntax::Tolerance& tolerance,
+                                                   const Dimension& dimension, const expectation::DisplayUnit& unit,
+                                                   bool* hertz = nullptr);
 /// A value known before the run with its tolerance; `what` names it in messages.
-std::optional<expectation::Number> expected_number(Elaboration& e, const written::Number& number, const Dimension& dimension, const std::string& what);
+std::optional<expectation::Number> expected_number(Elaboration& e, const written::Number& number,
+                                                   const Dimension& dimension, const std::string& what);
 /// The configuration of `at θ = 0, φ' = 2 rad/s`.
 std::optional<std::vector<StartValue>> point_of_expectation(Elaboration& e, const written::Point& point);
 /// E0246 where the run does not end at a condition.

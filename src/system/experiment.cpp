@@ -175,13 +175,14 @@ Expr condition(Elaboration& e, const Expression& left_side, const Expression& ri
   const Value left = evaluate_formula(e, left_side, along_motion);
   if (left.poisoned) return {};
   if (left.is_vector) {
-    e.diagnostics.error("E0210", left_side.span, fmt::format("{} when a number reaches its value, not a vector", what), "",
-                        "Take a component with .x or .y.");
+    e.diagnostics.error("E0210", left_side.span, fmt::format("{} when a number reaches its value, not a vector", what),
+                        "", "Take a component with .x or .y.");
     return {};
   }
   Place place;
   place.inline_constants = true;
-  const Value right = scalar_of(e, right_side, left.dimension, fmt::format("`{}`", e.texts.slice(left_side.span)), place);
+  const Value right =
+      scalar_of(e, right_side, left.dimension, fmt::format("`{}`", e.texts.slice(left_side.span)), place);
   return right.poisoned ? Expr() : left.scalar() - right.scalar();
 }
 
@@ -193,7 +194,8 @@ void run(Elaboration& e, const syntax::RunStatement& s) {
     return;
   }
   constexpr int usual_limit = 60;
-  const Value within = s.within ? constant_of(e, *s.within, e.time(), in_words(e, "the longest time of a run")) : Value::poison();
+  const Value within =
+      s.within ? constant_of(e, *s.within, e.time(), in_words(e, "the longest time of a run")) : Value::poison();
   if (!s.within) x.within = e.number(usual_limit);
   if (!within.poisoned) x.within = within.scalar();
   x.until = condition(e, *s.until_left, *s.until_right, "a run ends");
@@ -241,7 +243,8 @@ void sweep(Elaboration& e, const syntax::SweepStatement& s, Span span) {
   const std::string what = fmt::format("`{}`", parameter->name);
   const Value from = constant_of(e, *s.from, parameter->dimension, what), to = constant_of(e, *s.to, parameter->dimension, what);
   constexpr double usual_count = 121;
-  const Value steps = s.steps ? constant_of(e, *s.steps, Dimension{}, "the number of values of a sweep") : Value::poison();
+  const Value steps =
+      s.steps ? constant_of(e, *s.steps, Dimension{}, "the number of values of a sweep") : Value::poison();
   if (from.poisoned || to.poisoned || (s.steps && steps.poisoned)) return;
   const double count = s.steps ? constant_value(e, steps.scalar()).value_or(0) : usual_count;
   constexpr double most = 1e6;
@@ -303,7 +306,8 @@ void override_experiment(Elaboration& e) {
   if (o.run) run(e, *o.run);
   if (o.sweep) sweep(e, *o.sweep, o.sweep->variable->span);
   if (o.path) elaborate_path(e, *o.path, cover(o.path->from.span, o.path->to.at->span));
-  if (o.section) e.experiment().section = condition(e, *o.section->left, *o.section->right, "a motion meets its section");
+  if (o.section)
+    e.experiment().section = condition(e, *o.section->left, *o.section->right, "a motion meets its section");
   for (const syntax::ExpressionPtr& formula : o.formulas) {
     Place along_motion;
     along_motion.reactions = true;
@@ -326,7 +330,8 @@ void elaborate_experiment(Elaboration& e) {
     if (const auto* x = std::get_if<syntax::MethodStatement>(&s.body)) elaborate_method(e, *x);
     if (const auto* x = std::get_if<syntax::PrecisionStatement>(&s.body)) elaborate_precision(e, *x);
     if (const auto* x = std::get_if<syntax::SweepStatement>(&s.body); x && !e.overrides.sweep) sweep(e, *x, s.span);
-    if (const auto* x = std::get_if<syntax::PathStatement>(&s.body); x && !e.overrides.path) elaborate_path(e, *x, s.span);
+    if (const auto* x = std::get_if<syntax::PathStatement>(&s.body); x && !e.overrides.path)
+      elaborate_path(e, *x, s.span);
     if (const auto* x = std::get_if<syntax::DrawStatement>(&s.body)) elaborate_drawing(e, *x);
     if (const auto* x = std::get_if<syntax::ExpectStatement>(&s.body)) elaborate_expectation(e, *x, s.span);
   }

@@ -224,7 +224,8 @@ Expr along_path(Elaboration& e, const Coordinate& c, const syntax::Expression& f
 }
 
 /// Between what a path that is given runs; `from` null: the ends of the model's path. False after a mistake.
-bool given_ends(Elaboration& e, PathFormulas& out, const syntax::ExpressionPtr& from, const syntax::ExpressionPtr& to, Span path) {
+bool given_ends(Elaboration& e, PathFormulas& out, const syntax::ExpressionPtr& from, const syntax::ExpressionPtr& to,
+                Span path) {
   if (!from || !to) return !refuse_without_path(e, path);
   const Value begin = constant_of(e, *from, e.time(), in_words(e, "the time of an end of a path"));
   const Value end = constant_of(e, *to, e.time(), in_words(e, "the time of an end of a path"));
@@ -256,15 +257,17 @@ std::optional<std::size_t> coordinate_of_path(Elaboration& e, const syntax::Expr
   e.diagnostics.error("E0241", x.span,
                       found ? fmt::format("`{}` has its value along the path", list[*found].name)
                             : fmt::format("`{}` is no coordinate", e.texts.slice(x.span)),
-                      fmt::format("A path gives every coordinate one value: {}.", names_of_coordinates(e.system())), "");
+                      fmt::format("A path gives every coordinate one value: {}.", names_of_coordinates(e.system())),
+                      "");
   return std::nullopt;
 }
 
 bool check_complete(Elaboration& e, const PathFormulas& path, Span span) {
   for (std::size_t i = 0; i < path.q.size(); ++i) {
     if (path.q[i]) continue;
-    e.diagnostics.error("E0241", span, fmt::format("the path does not say what `{}` is", e.system().coordinates[i].name),
-                        fmt::format("A path gives every coordinate its value: {}.", names_of_coordinates(e.system())), "");
+    e.diagnostics.error(
+        "E0241", span, fmt::format("the path does not say what `{}` is", e.system().coordinates[i].name),
+        fmt::format("A path gives every coordinate its value: {}.", names_of_coordinates(e.system())), "");
     return false;
   }
   return true;

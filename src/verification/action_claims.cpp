@@ -54,7 +54,8 @@ std::string ActionClaims::among_others(int number) const {
 void ActionClaims::decide(const expectation::Action& e, ExpectationResult& result) {
   const StationaryPath* stationary = path(e.path, result);
   if (!stationary) return;
-  judge(e.expected, stationary->action, fmt::format("error about {:.1g}{}", stationary->action_error, among_others(e.path)), result);
+  judge(e.expected, stationary->action,
+        fmt::format("error about {:.1g}{}", stationary->action_error, among_others(e.path)), result);
 }
 
 void ActionClaims::decide(const expectation::PathAt& e, ExpectationResult& result) {
@@ -72,7 +73,8 @@ void ActionClaims::decide(const expectation::PathAt& e, ExpectationResult& resul
 void ActionClaims::decide(const expectation::ActionAlong& e, ExpectationResult& result) {
   std::optional<ActionEnds> ends;
   if (model_.experiment.path && !e.along.from) ends = ends_of(model_);
-  const double start = e.along.from ? number(model_, e.along.from) : ends->start, end = e.along.to ? number(model_, e.along.to) : ends->end;
+  const double start = e.along.from ? number(model_, e.along.from) : ends->start,
+               end = e.along.to ? number(model_, e.along.to) : ends->end;
   Diagnostics told;
   const auto found = action_of_path(model_, equations_, e.along.q, start, end, ends, options_, told);
   if (!found) {
@@ -93,7 +95,8 @@ void ActionClaims::decide(const expectation::MorseIndex& e, ExpectationResult& r
   result.message = p->second.index ? "by inertia and by Jacobi fields" : p->second.reason;
 }
 
-void ActionClaims::judge(const expectation::Number& expected, double actual, const std::string& ground, ExpectationResult& result) const {
+void ActionClaims::judge(const expectation::Number& expected, double actual, const std::string& ground,
+                         ExpectationResult& result) const {
   judge_number(expected, model_.system, actual, result);
   result.message += "; " + ground;
 }

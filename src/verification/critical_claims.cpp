@@ -15,9 +15,17 @@ constexpr int samples = 24;
 
 class Critical {
  public:
-  Critical(const expectation::Stable& e, PointEquations& equations, const MotionState& start, const Experiment& experiment)
-      : e_(e), equations_(equations), system_(equations.system()), start_(start), own_(equations.parameter(e.parameter)),
-        value_(number_of(system_, e.critical.value)), tolerance_(allowed_difference(e.critical.tolerance, system_, value_)), sign_(e.above ? 1 : -1), reach_(reach(experiment)) {}
+  Critical(const expectation::Stable& e, PointEquations& equations, const MotionState& start,
+           const Experiment& experiment)
+      : e_(e),
+        equations_(equations),
+        system_(equations.system()),
+        start_(start),
+        own_(equations.parameter(e.parameter)),
+        value_(number_of(system_, e.critical.value)),
+        tolerance_(allowed_difference(e.critical.tolerance, system_, value_)),
+        sign_(e.above ? 1 : -1),
+        reach_(reach(experiment)) {}
   ~Critical() { equations_.set_parameter(e_.parameter, own_); }
   Critical(const Critical&) = delete;
   Critical& operator=(const Critical&) = delete;
@@ -99,7 +107,8 @@ class Critical {
   }
   std::string shown(double distance) const { return fmt::format("{} = {}", system_.parameters[e_.parameter].name, number(value_ + sign_ * distance)); }
   std::string sentence(double critical) const {
-    return fmt::format("{} for {} {} {}", word(), system_.parameters[e_.parameter].name, e_.above ? ">" : "<", number(critical));
+    return fmt::format("{} for {} {} {}", word(), system_.parameters[e_.parameter].name, e_.above ? ">" : "<",
+                       number(critical));
   }
 
   const expectation::Stable& e_;
@@ -111,8 +120,8 @@ class Critical {
 
 }  // namespace
 
-void decide_critical(const expectation::Stable& e, PointEquations& equations, const MotionState& start, ExpectationResult& result,
-                     const Experiment& experiment) {
+void decide_critical(const expectation::Stable& e, PointEquations& equations, const MotionState& start,
+                     ExpectationResult& result, const Experiment& experiment) {
   Critical(e, equations, start, experiment).decide(result);
 }
 

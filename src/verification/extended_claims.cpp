@@ -27,12 +27,14 @@ Rational ExtendedClaims::exact(Expr e) const {
   return number ? *number : Rational::from_double(number_of(model_.system, e));
 }
 
-void ExtendedClaims::decide(const std::vector<Line>& lines, std::vector<ExpectationResult>& results, Diagnostics& diagnostics) const {
+void ExtendedClaims::decide(const std::vector<Line>& lines, std::vector<ExpectationResult>& results,
+                            Diagnostics& diagnostics) const {
   ExtendedSimulationOptions options;
   options.precision = format_of(model_) == NumberFormat::Quad ? Precision::Quad : Precision::Digits100;
   options.duration = Rational(0);   // as far as the times asked for
   options.interrupt = interrupt_;
-  for (const Line& line : lines) options.at.push_back(exact(line.expectation->time ? line.expectation->time : model_.experiment.start_time));
+  for (const Line& line : lines)
+    options.at.push_back(exact(line.expectation->time ? line.expectation->time : model_.experiment.start_time));
   const auto run = simulate_extended(model_, equations_, options, diagnostics);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     ExpectationResult& result = results[lines[i].index];
@@ -49,7 +51,8 @@ const AgreedNumber& ExtendedClaims::value_in(const ExtendedState& state, Expr su
 }
 
 /// What two runs do not agree on counts as error.
-void ExtendedClaims::judge(const expectation::ValueAt& e, const ExtendedState& state, const std::string& reason, ExpectationResult& result) const {
+void ExtendedClaims::judge(const expectation::ValueAt& e, const ExtendedState& state, const std::string& reason,
+                           ExpectationResult& result) const {
   if (!state.reached) {
     result.message = "The run ended before: " + reason + ".";
     return;
@@ -58,8 +61,8 @@ void ExtendedClaims::judge(const expectation::ValueAt& e, const ExtendedState& s
   const auto actual = Rational::parse(number.text), difference = Rational::parse(number.difference);
   const auto& [value, tolerance, unit] = e.expected;
   const Rational expected = exact(value);
-  const Rational allowed =
-      !tolerance.size ? abs(expected) * Rational(1, 1'000'000'000) : exact(tolerance.size) * (tolerance.relative ? abs(expected) : Rational(1));
+  const Rational allowed = !tolerance.size ? abs(expected) * Rational(1, 1'000'000'000)
+                                           : exact(tolerance.size) * (tolerance.relative ? abs(expected) : Rational(1));
   result.actual = number.text + (unit.name.empty() ? "" : " (in SI)");
   result.expected = fmt::format("{:.17g}{}", expected.to_double() / unit.factor, unit_after(unit));
   result.tolerance = tolerance_text(tolerance, unit, model_.system);

@@ -41,7 +41,8 @@ std::string spectrum_text(const std::vector<Complex>& values, const expectation:
 
 std::vector<Complex> expected_spectrum(const expectation::Spectrum& e, const MechanicalSystem& system) {
   std::vector<Complex> written, out;
-  for (std::size_t i = 0; i < e.real.size(); ++i) written.emplace_back(number_of(system, e.real[i]), number_of(system, e.imaginary[i]));
+  for (std::size_t i = 0; i < e.real.size(); ++i)
+    written.emplace_back(number_of(system, e.real[i]), number_of(system, e.imaginary[i]));
   for (const Complex& z : written) {
     out.push_back(z);
     const bool has_partner = std::find(written.begin(), written.end(), std::conj(z)) != written.end();
@@ -72,13 +73,16 @@ std::vector<std::size_t> partners(const std::vector<Complex>& actual, const std:
 
 }  // namespace
 
-std::string tolerance_text(const expectation::Tolerance& tolerance, const expectation::DisplayUnit& unit, const MechanicalSystem& system) {
+std::string tolerance_text(const expectation::Tolerance& tolerance, const expectation::DisplayUnit& unit,
+                           const MechanicalSystem& system) {
   if (!tolerance.size) return "rel 1e-09";
   const double size = number_of(system, tolerance.size);
-  return tolerance.relative ? fmt::format("rel {:g}", size) : fmt::format("± {:g}{}", size / unit.factor, unit_after(unit));
+  return tolerance.relative ? fmt::format("rel {:g}", size)
+                            : fmt::format("± {:g}{}", size / unit.factor, unit_after(unit));
 }
 
-void judge_number(const expectation::Number& e, const MechanicalSystem& system, double actual, ExpectationResult& result) {
+void judge_number(const expectation::Number& e, const MechanicalSystem& system, double actual,
+                  ExpectationResult& result) {
   const double expected = number_of(system, e.value), error = std::abs(actual - expected);
   result.actual = fmt::format("{:.17g}{}", actual / e.unit.factor, unit_after(e.unit));
   result.expected = fmt::format("{:.17g}{}", expected / e.unit.factor, unit_after(e.unit));
@@ -87,9 +91,12 @@ void judge_number(const expectation::Number& e, const MechanicalSystem& system, 
   result.message = fmt::format("off by {:.2g}{}", error / e.unit.factor, unit_after(e.unit));
 }
 
-std::size_t spectrum_size(const expectation::Spectrum& e, const MechanicalSystem& system) { return expected_spectrum(e, system).size(); }
+std::size_t spectrum_size(const expectation::Spectrum& e, const MechanicalSystem& system) {
+  return expected_spectrum(e, system).size();
+}
 
-void judge_spectrum(const expectation::Spectrum& e, const MechanicalSystem& system, const std::vector<Complex>& actual, ExpectationResult& result) {
+void judge_spectrum(const expectation::Spectrum& e, const MechanicalSystem& system, const std::vector<Complex>& actual,
+                    ExpectationResult& result) {
   const std::vector<Complex> expected = expected_spectrum(e, system);
   result.actual = spectrum_text(actual, e.unit);
   result.expected = spectrum_text(expected, e.unit);
@@ -107,12 +114,15 @@ void judge_spectrum(const expectation::Spectrum& e, const MechanicalSystem& syst
     const double error = std::abs(actual[i] - z);
     largest = std::max(largest, error);
     result.passed = error <= allowed_difference(e.tolerance, system, std::abs(z));
-    result.message = fmt::format("{} is off by {:.2g}{}.", complex_text(z, e.unit), error / e.unit.factor, unit_after(e.unit));
+    result.message =
+        fmt::format("{} is off by {:.2g}{}.", complex_text(z, e.unit), error / e.unit.factor, unit_after(e.unit));
   }
-  if (result.passed) result.message = fmt::format("off by at most {:.2g}{}", largest / e.unit.factor, unit_after(e.unit));
+  if (result.passed)
+    result.message = fmt::format("off by at most {:.2g}{}", largest / e.unit.factor, unit_after(e.unit));
 }
 
-void judge_entries(const expectation::Matrix& e, const MechanicalSystem& system, const std::vector<double>& actual, ExpectationResult& result) {
+void judge_entries(const expectation::Matrix& e, const MechanicalSystem& system, const std::vector<double>& actual,
+                   ExpectationResult& result) {
   const std::size_t width = e.columns.size();
   const auto text = [&](const std::vector<double>& values) {
     std::string out;
@@ -131,9 +141,11 @@ void judge_entries(const expectation::Matrix& e, const MechanicalSystem& system,
     const double error = std::abs(actual[k] - expected[k]);
     largest = std::max(largest, error);
     result.passed = error <= allowed_difference(e.tolerance, system, expected[k]);
-    result.message = fmt::format("The entry in row {}, column {} is off by {:.2g}{}.", k / width + 1, k % width + 1, error / e.unit.factor, unit_after(e.unit));
+    result.message = fmt::format("The entry in row {}, column {} is off by {:.2g}{}.", k / width + 1, k % width + 1,
+                                 error / e.unit.factor, unit_after(e.unit));
   }
-  if (result.passed) result.message = fmt::format("off by at most {:.2g}{}", largest / e.unit.factor, unit_after(e.unit));
+  if (result.passed)
+    result.message = fmt::format("off by at most {:.2g}{}", largest / e.unit.factor, unit_after(e.unit));
 }
 
 }  // namespace maupertuis

@@ -113,8 +113,9 @@ void check_ends(const ActionCommand& o, Study& study) {
   if (o.path.empty() || o.from || !o.ends.empty() || !tree) return;
   for (const syntax::Statement& s : tree->statements)
     if (std::holds_alternative<syntax::PathStatement>(s.body)) return;
-  study.diagnostics().error("E0809", {}, "--path needs to know from where to where.", {},
-                            "Give --from and --to, the ends of the independent variable, or `path from …` in the model.");
+  study.diagnostics().error(
+      "E0809", {}, "--path needs to know from where to where.", {},
+      "Give --from and --to, the ends of the independent variable, or `path from …` in the model.");
 }
 
 std::optional<ActionFindings> find_given(const ActionCommand& o, Study& study) {

@@ -73,7 +73,8 @@ ExprVector measured(const Model& model) {
 bool check_outputs(const ModesOptions& options, const ModalStudy& found, Study& study) {
   const Model& model = *study.model();
   std::vector<OutputName> names;
-  for (std::size_t i = 0; i < options.outputs.size(); ++i) names.push_back({options.outputs[i], model.experiment.asked[i].span});
+  for (std::size_t i = 0; i < options.outputs.size(); ++i)
+    names.push_back({options.outputs[i], model.experiment.asked[i].span});
   return check_measured(model.system, found, names, study.diagnostics());
 }
 
@@ -83,8 +84,9 @@ bool check_outputs(const ModesOptions& options, const ModalStudy& found, Study& 
 /// "1, 2, 3" a diagonal, "1, 0; 0, 2" rows, "0.1" a multiple of 1. Nothing, and a message, where it is none of these.
 std::optional<RealMatrix> weights(const char* option, const std::string& text, std::size_t size, Study& study) {
   const auto wrong = [&](std::string message, std::size_t begin, std::size_t end) {
-    refuse_option(study, option, text, std::move(message), "", "Write a diagonal \"1, 10\", rows \"1, 0; 0, 10\", or one number.",
-                 Span{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)});
+    refuse_option(study, option, text, std::move(message), "",
+                  "Write a diagonal \"1, 10\", rows \"1, 0; 0, 10\", or one number.",
+                  Span{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)});
     return std::nullopt;
   };
   std::vector<std::vector<double>> rows(1);

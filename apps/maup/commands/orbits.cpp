@@ -47,7 +47,8 @@ std::optional<Findings> find_floquet(const Options& o, Study& study) {
 }
 
 std::optional<Findings> find_section(const Options& o, Study& study) {
-  const auto result = poincare_section(*study.model(), *study.equations(), section_options(o.orbits, study), study.diagnostics());
+  const auto result =
+      poincare_section(*study.model(), *study.equations(), section_options(o.orbits, study), study.diagnostics());
   if (!result) return {};
   const MechanicalSystem& system = study.model()->system;
   const std::string what = section_text(o.orbits);
@@ -74,7 +75,8 @@ ExitCode study_orbits(const Options& o, Console& console) {
   check_usage(o, study.diagnostics());
   if (readable_model && study.wrong()) return finish_usage(console, study, "orbits");
   put_in_section(o.orbits, study);
-  if (study.refuse_held_integrals() || study.refuse_without_time() || !study.certificate()) return finish(console, study, json_document("orbits"));
+  if (study.refuse_held_integrals() || study.refuse_without_time() || !study.certificate())
+    return finish(console, study, json_document("orbits"));
   const auto found = o.orbits.has_section() ? find_section(o, study)
                      : o.orbits.floquet     ? find_floquet(o, study)
                                             : find_lyapunov(o, study);
