@@ -8,20 +8,6 @@ namespace maupertuis::app {
 namespace {
 
 constexpr CodeEntry own_codes[] = {
-    {"E0245", "a study of motions in time for a model without it",
-     "Equilibria, frequencies, periods and exponents belong to motions in time. Where another variable stands in its place there are "
-     "equations (`maup derive`), their solutions from a start (`maup simulate`) and between two ends (`maup action`).",
-     "", ""},
-    {"E0690", "a derivation failed its certificate",
-     "Every derivation is checked by routes that share nothing with it: jets of L along random paths, d'Alembert's "
-     "principle over the particles, the power balance. One of them found a different value, so the derived equations "
-     "are wrong and are not shown. That is a defect of the program, never of the model: please report it.",
-     "", ""},
-    {"W0691", "a check of the certificate was undecided",
-     "A check could neither prove that a difference vanishes nor find a point where it does not, for example because "
-     "the model takes a root or a logarithm of something that is negative almost everywhere. The equations are shown, "
-     "but nothing vouches for them.",
-     "", ""},
     {"E0692", "equations too coupled to be written out solved",
      "Solving for the accelerations needs the inverse of the mass matrix. For more than two coupled coordinates its "
      "formulas fill pages and help nobody; runs factor the matrix in numbers instead. The same holds for the multipliers "
@@ -108,7 +94,7 @@ std::span<const CodeEntry> all_codes() {
     std::vector<CodeEntry> codes(std::begin(own_codes), std::end(own_codes));
     for (const auto entries :
          {syntax_codes(), system_codes(), equations_codes(), simulation_codes(), verification_codes(), comparison_codes(),
-          invariants_codes(), hamiltonian_codes(), action_codes(), linearization_codes(), orbits_codes()})
+          invariants_codes(), hamiltonian_codes(), action_codes(), linearization_codes(), orbits_codes(), study_codes()})
       codes.insert(codes.end(), entries.begin(), entries.end());
     // By number, so that E0301 and W0302 stand together.
     std::sort(codes.begin(), codes.end(),

@@ -33,9 +33,6 @@ std::vector<Span> pieces_of(const std::string& text) {
 
 namespace {
 
-/// Formulas are read by the model language itself, as left sides of expectations behind the model's own.
-constexpr std::string_view kBeforeFormula = "expect equation ";
-
 /// θ, θ', and what only a trajectory has names for. Any other name is a formula too, and is read as one.
 bool is_column_name(const std::string& name, const syntax::SyntaxTree* tree) {
   const auto begins = [&](std::string_view head) { return name.compare(0, head.size(), head) == 0; };
@@ -121,30 +118,24 @@ class FormulaColumn {
 }  // namespace
 
 AskedColumns::AskedColumns(const std::string& option, const std::vector<std::string>& texts, Study& study) : option_(option) {
-  std::vector<OptionStatement> statements;
   for (const std::string& text : texts)
     for (const Span piece : pieces_of(text)) {
       const std::string name = text.substr(piece.begin, piece.end - piece.begin);
       if (std::find(names_.begin(), names_.end(), name) != names_.end()) continue;
       names_.push_back(name);
       if (is_column_name(name, study.tree())) continue;
-      formulas_.push_back(name);
-      statements.push_back(OptionStatement(kBeforeFormula).add_typed(option, name).add(" = 0"));
+      formulas_.push_back({name, study.ask(option, name)});
     }
-  study.add_statements(statements);
 }
 
 std::optional<Trajectory> AskedColumns::added_to(Trajectory rows, Study& study) const {
   const Model& model = *study.model();
-  for (const std::string& formula : formulas_) {
+  for (const auto& [formula, index] : formulas_) {
     if (rows.column(formula)) continue;  // sat.qw is a coordinate
-    const auto& list = model.experiment.expectations;
-    const std::string statement = fmt::format("{}{} = 0", kBeforeFormula, as_one_line(formula));
-    const auto asked = std::find_if(list.begin(), list.end(), [&](const Expectation& e) { return e.text == statement; });
-    if (asked == list.end()) throw std::logic_error("a formula of an option was lost; please report");
-    FormulaColumn column(asked->subject, *study.equations());
+    const AskedFormula& asked = model.experiment.asked.at(index);
+    FormulaColumn column(asked.value, *study.equations());
     if (column.needs_motion()) {
-      study.refuse_option(option_, formula, fmt::format("{} is not determined by the state in this model", formula),
+      refuse_option(study, option_, formula, fmt::format("{} is not determined by the state in this model", formula),
                           "Accelerations and forces of constraints follow from the state only where the equations have one solution.",
                           "Ask for coordinates, velocities and what is made of them.");
       return std::nullopt;
@@ -152,7 +143,7 @@ std::optional<Trajectory> AskedColumns::added_to(Trajectory rows, Study& study) 
     std::vector<double> values, errors;
     column.append_to(rows, values, errors);
     Trajectory longer = rows;
-    longer.columns.push_back({formula, model.system.dimensionless ? std::string() : to_string(asked->dimension)});
+    longer.columns.push_back({formula, model.system.dimensionless ? std::string() : to_string(asked.dimension)});
     longer.values.clear();
     longer.errors.clear();
     for (std::size_t row = 0; row < rows.rows(); ++row) {

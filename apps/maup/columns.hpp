@@ -1,5 +1,5 @@
 #pragma once
-#include "study.hpp"
+#include "open_study.hpp"
 
 #include <maupertuis/trajectory.hpp>
 
@@ -16,7 +16,7 @@ std::vector<Span> pieces_of(const std::string& text);
 /// language in q, q', q'', t, momenta and reactions, with units. Several texts are one list.
 class AskedColumns {
  public:
-  /// Tells coordinates from formulas by the tree of the study, and adds the formulas to its statements.
+  /// Tells coordinates from formulas by the tree of the study, and asks it for the formulas.
   /// Precondition: no stage after the tree was asked for.
   AskedColumns(const std::string& option, const std::vector<std::string>& texts, Study& study);
 
@@ -30,8 +30,14 @@ class AskedColumns {
   std::optional<Trajectory> chosen_from(const Trajectory& rows, Study& study) const;
 
  private:
+  struct Formula {
+    std::string text;
+    std::size_t asked;   // index in Experiment::asked
+  };
+
   std::string option_;
-  std::vector<std::string> names_, formulas_;
+  std::vector<std::string> names_;
+  std::vector<Formula> formulas_;
 };
 
 }  // namespace maupertuis::app

@@ -3,11 +3,10 @@
 #include "exit_code.hpp"
 #include "options.hpp"
 
-#include <maupertuis/mechanical_system.hpp>
-
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace maupertuis::app {
 
@@ -37,7 +36,7 @@ class CommandLine {
 /// The positional MODEL, and --set and --start.
 struct ModelOptions {
   std::string path;
-  Overrides overrides;
+  std::vector<std::string> set, start;  // as written
 };
 void add_model_options(Command& command, ModelOptions& options);
 

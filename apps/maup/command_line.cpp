@@ -114,10 +114,10 @@ OptionTable CommandLine::table() const {
 
 void add_model_options(Command& command, ModelOptions& options) {
   command.add_option("MODEL", options.path, "The model file (.lag), or - for standard input")->required();
-  command.add_option("--set", options.overrides.parameters, "Another value of a parameter, e.g. m=2kg")
+  command.add_option("--set", options.set, "Another value of a parameter, e.g. m=2kg")
       ->allow_extra_args(false)
       ->type_name("NAME=VALUE");
-  command.add_option("--start", options.overrides.start, "Another start value, e.g. θ=10deg or \"θ'=1 rad/s\"")
+  command.add_option("--start", options.start, "Another start value, e.g. θ=10deg or \"θ'=1 rad/s\"")
       ->allow_extra_args(false)
       ->type_name("NAME=VALUE");
 }

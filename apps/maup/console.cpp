@@ -24,8 +24,8 @@ void Console::print_document(const nlohmann::ordered_json& document) {
   data_ += visible(document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) + "\n";
 }
 
-void Console::show(const Diagnostics& diagnostics, const SourceText& source) const {
-  if (!json_ && !diagnostics.empty()) draw(render(diagnostics, source, {.color = colored_messages()}));
+void Console::show(const Diagnostics& diagnostics, const SourceTexts& texts) const {
+  if (!json_ && !diagnostics.empty()) draw(render(diagnostics, texts, {.color = colored_messages()}));
 }
 
 void Console::say(std::string_view text) const { draw(visible(text)); }

@@ -23,7 +23,7 @@ class Console {
   void print_file(std::string_view text);
   void print_document(const nlohmann::ordered_json& document);
   /// Renders to standard error (nothing under --json, whose document holds the diagnostics).
-  void show(const Diagnostics& diagnostics, const SourceText& source) const;
+  void show(const Diagnostics& diagnostics, const SourceTexts& texts) const;
   void say(std::string_view text) const;
   /// To standard error as it is: escape sequences of our own.
   void draw(std::string_view text) const;

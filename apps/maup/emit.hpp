@@ -1,5 +1,5 @@
 #pragma once
-#include "study.hpp"
+#include "open_study.hpp"
 
 #include <string>
 

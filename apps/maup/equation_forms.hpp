@@ -1,6 +1,6 @@
 #pragma once
 #include "notation.hpp"
-#include "study.hpp"
+#include "open_study.hpp"
 
 #include <string>
 #include <vector>

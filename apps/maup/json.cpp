@@ -22,15 +22,16 @@ const char* verdict_name(Verdict verdict) {
   return "";
 }
 
-Json to_json(const Diagnostics& diagnostics, const SourceText& source) {
+Json to_json(const Diagnostics& diagnostics, const SourceTexts& texts) {
   Json list = Json::array();
   for (const Diagnostic& d : diagnostics.items()) {
     Json item = {{"code", d.code}, {"severity", severity_name(d.severity)}, {"line", nullptr}, {"column", nullptr},
                  {"message", d.message}, {"reason", d.reason}, {"help", d.help}};
     if (d.span) {
-      const LineColumn place = source.locate(d.span->begin);
+      const LineColumn place = texts.locate(*d.span);
       item["line"] = place.line;
       item["column"] = place.column;
+      if (d.span->source != texts.model().id()) item["option"] = texts.of(*d.span).name();
     }
     list.push_back(std::move(item));
   }

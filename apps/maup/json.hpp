@@ -11,8 +11,9 @@ using Json = nlohmann::ordered_json;
 /// What every document of --json opens with: {"schema": 1, "command": …}.
 Json json_document(const char* command);
 
-/// [{code, severity, line, column, message, reason, help}]; line and column are null without a place.
-Json to_json(const Diagnostics& diagnostics, const SourceText& source);
+/// [{code, severity, line, column, message, reason, help}]; line and column are null without a place, and `option` is
+/// there where the place is in what an option said.
+Json to_json(const Diagnostics& diagnostics, const SourceTexts& texts);
 /// {passed, checks: [{name, statement, verdict, points, error_bound}]}
 Json to_json(const Certificate& certificate);
 

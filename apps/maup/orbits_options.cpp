@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <maupertuis/constraint_manifold.hpp>
-
 namespace maupertuis::app {
 namespace {
 
@@ -20,26 +18,11 @@ struct WrittenSection {
   SectionDirection direction = SectionDirection::Both;
 };
 
-WrittenSection split_section(std::string text) {
-  text = as_one_line(std::move(text));
+WrittenSection split_section(const std::string& text) {
   for (const auto& [word, direction] : {std::pair(std::string(" rising"), SectionDirection::Rising),
                                         std::pair(std::string(" falling"), SectionDirection::Falling)})
-    if (text.size() >= word.size() && text.compare(text.size() - word.size(), word.size(), word) == 0)
-      return {text.substr(0, text.size() - word.size()), direction};
+    if (text.ends_with(word)) return {text.substr(0, text.size() - word.size()), direction};
   return {text, SectionDirection::Both};
-}
-
-/// The length of the model's own run stays, as the limit of the new one.
-OptionStatement run_until(const std::string& equation, const Model* model) {
-  double within = 1e6;
-  if (model) {
-    const Experiment& e = model->experiment;
-    const Expr length = e.duration ? e.duration : e.within;
-    if (length)
-      within = evaluate(in_terms_of_motion(model->system, {&length, 1}).front(), parameter_bindings(model->system));
-  }
-  const char* const unit = model && model->system.dimensionless ? "" : " s";
-  return OptionStatement("run until ").add_typed("--section", equation).add(fmt::format(" within {}{}", exact(within), unit));
 }
 
 }  // namespace
@@ -94,23 +77,27 @@ LyapunovOptions lyapunov_options(const OrbitsOptions& options) {
   return out;
 }
 
-SectionStudy section_study(const OrbitsOptions& options, const ModelOptions& model, Study& as_written) {
-  SectionStudy out;
-  out.study = std::make_unique<Study>(as_written.source(), model.overrides);
-  const WrittenSection written = split_section(options.section);
-  out.options.direction = written.direction;
-  out.options.strobe = time_of(options.strobe);
-  out.options.longest = time_of(options.longest).value_or(0);
-  out.options.crossings = options.crossings;
-  out.options.starts = options.starts;
-  out.options.energy = options.energy;
-  out.options.interrupt = &interrupt_flag();
-  out.what = options.strobe ? fmt::format("strobe every {} s", brief(*out.options.strobe))
-                            : fmt::format("section {}", options.section);
-  if (options.strobe) return out;
-  out.study->replace_run(run_until(written.equation, as_written.model()));
-  if (const Model* m = out.study->model()) out.options.section = m->experiment.until;
+void put_in_section(const OrbitsOptions& options, Study& study) {
+  if (!options.section.empty())
+    study.override_with(OverrideKind::Section, "--section", split_section(options.section).equation);
+}
+
+SectionOptions section_options(const OrbitsOptions& options, Study& study) {
+  SectionOptions out;
+  out.section = study.model()->experiment.section;
+  out.direction = split_section(options.section).direction;
+  out.strobe = time_of(options.strobe);
+  out.longest = time_of(options.longest).value_or(0);
+  out.crossings = options.crossings;
+  out.starts = options.starts;
+  out.energy = options.energy;
+  out.interrupt = &interrupt_flag();
   return out;
+}
+
+std::string section_text(const OrbitsOptions& options) {
+  return options.strobe ? fmt::format("strobe every {} s", brief(*time_of(options.strobe)))
+                        : fmt::format("section {}", options.section);
 }
 
 }  // namespace maupertuis::app

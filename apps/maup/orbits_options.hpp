@@ -1,10 +1,9 @@
 #pragma once
 #include "command.hpp"
-#include "study.hpp"
+#include "open_study.hpp"
 
 #include <maupertuis/orbits.hpp>
 
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -28,13 +27,11 @@ void check_orbits_options(const OrbitsOptions& options, Diagnostics& diagnostics
 FloquetOptions floquet_options(const OrbitsOptions& options);
 LyapunovOptions lyapunov_options(const OrbitsOptions& options);
 
-/// A section as the model of its own that it is read in: the equation stands in the place of the condition of `run
-/// until`, so that it may hold whatever a condition may. Spans of its diagnostics are in that text.
-struct SectionStudy {
-  std::unique_ptr<Study> study;
-  SectionOptions options;
-  std::string what;  // "section x = 0 rising", "strobe every 2 s"
-};
-SectionStudy section_study(const OrbitsOptions& options, const ModelOptions& model, Study& as_written);
+/// Says the equation of --section beside the model. Precondition: the study has no model yet.
+void put_in_section(const OrbitsOptions& options, Study& study);
+/// Precondition: the study has a model.
+SectionOptions section_options(const OrbitsOptions& options, Study& study);
+/// "section x = 0 rising", "strobe every 2 s"
+std::string section_text(const OrbitsOptions& options);
 
 }  // namespace maupertuis::app

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 namespace maupertuis::app {
 
@@ -17,24 +16,6 @@ bool unreadable(const Diagnostics& diagnostics) {
   return std::any_of(items.begin(), items.end(), [](const Diagnostic& d) {
     return d.code == "E0801" || d.code == "E0802" || d.code == "E0803";
   });
-}
-
-void show_told(const Console& console, const Study& study) {
-  bool first = true;
-  for (const Study::Told& told : study.told()) {
-    if (!std::exchange(first, false)) console.say("\n");
-    console.show(told.diagnostics, told.source);
-  }
-}
-
-Json told_json(const Study& study) {
-  Json list = Json::array();
-  for (const Study::Told& told : study.told())
-    for (Json& d : to_json(told.diagnostics, told.source)) {
-      if (told.of_option) d["option"] = told.source.name();
-      list.push_back(std::move(d));
-    }
-  return list;
 }
 
 ExitCode worse(ExitCode a, ExitCode b) {
@@ -48,12 +29,12 @@ ExitCode finish(Console& console, Study& study, Json document) {
   if (console.json()) {
     document["ok"] = !study.wrong() && !interrupt_flag();
     if (interrupt_flag()) document["interrupted"] = true;
-    document["diagnostics"] = told_json(study);
+    document["diagnostics"] = to_json(study.diagnostics(), study.texts());
     console.print_document(document);
   } else {
-    show_told(console, study);
+    console.show(study.diagnostics(), study.texts());
   }
-  if (unreadable(study.diagnostics()) || study.only_options_are_wrong()) return ExitCode::Usage;
+  if (unreadable(study.diagnostics()) || only_options_are_wrong(study)) return ExitCode::Usage;
   if (!numbers) return ExitCode::RunFailed;
   return study.wrong() ? ExitCode::ModelWrong : ExitCode::Fine;
 }

@@ -2,7 +2,7 @@
 #include "console.hpp"
 #include "exit_code.hpp"
 #include "json.hpp"
-#include "study.hpp"
+#include "open_study.hpp"
 
 #include <maupertuis/trajectory.hpp>
 
@@ -12,11 +12,6 @@ namespace maupertuis::app {
 bool unreadable(const Diagnostics& diagnostics);
 /// Of several files the worst: Ctrl-C, a file that could not be read, a wrong model, a failed expectation.
 ExitCode worse(ExitCode a, ExitCode b);
-
-/// The messages of a study to standard error, each with the text that its place is in.
-void show_told(const Console& console, const Study& study);
-/// The same for a document; `option` where the place is in what an option said.
-Json told_json(const Study& study);
 
 /// Ends a command that prints one document: the diagnostics go to standard error, or into the document under --json.
 /// Returns Usage if the file could not be read, RunFailed if the document holds a NaN or an infinity (E0816), ModelWrong if

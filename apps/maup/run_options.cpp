@@ -186,10 +186,10 @@ bool refuse_until(Study& study, const std::string& until) {
   if (until.find('=') != std::string::npos) return false;
   const std::string quoted = until.find(' ') == std::string::npos ? until : "\"" + until + "\"";
   if (parse_exact_time(until))
-    study.refuse_option("--until", until, fmt::format("--until {} is a time, and no condition", quoted),
+    refuse_option(study, "--until", until, fmt::format("--until {} is a time, and no condition", quoted),
                         "A run ends when the equation of --until holds.", fmt::format("Write --duration {} to run that long.", quoted));
   else
-    study.refuse_option("--until", until, fmt::format("--until {} is no equation", quoted),
+    refuse_option(study, "--until", until, fmt::format("--until {} is no equation", quoted),
                         "A run ends when the two sides of it become equal.", fmt::format("Write for example --until \"{} = 0\".", until));
   return true;
 }
@@ -198,27 +198,22 @@ bool refuse_until(Study& study, const std::string& until) {
 
 void put_in_run(const RunOptions& options, Study& study) {
   if (options.until.empty() || refuse_until(study, options.until)) return;
-  OptionStatement statement("run until ");
-  statement.add_typed("--until", options.until).add(" within ");
-  if (options.within.empty()) statement.add("60 s");
-  else statement.add_typed("--within", options.within);
-  study.replace_run(statement);
+  study.override_with(OverrideKind::Until, "--until", options.until);
+  if (!options.within.empty()) study.override_with(OverrideKind::Within, "--within", options.within);
 }
 
 std::optional<SimulationResult> run_model(Study& study, const SimulationOptions& options, const Console& console) {
-  if (study.wrong() || refuse_held_integrals(study) || !study.certificate()) return {};
   Progress progress(console);
   SimulationOptions with_progress = options;
   if (console.interactive()) with_progress.progress = [&progress](double fraction) { progress(fraction); };
-  return simulate(*study.model(), *study.equations(), with_progress, study.diagnostics());
+  return study.motion(with_progress);
 }
 
 std::optional<ExtendedResult> run_model(Study& study, const ExtendedSimulationOptions& options, const Console& console) {
-  if (study.wrong() || refuse_held_integrals(study) || !study.certificate()) return {};
   Progress progress(console);
   ExtendedSimulationOptions with_progress = options;
   if (console.interactive()) with_progress.progress = [&progress](double fraction) { progress(fraction); };
-  return simulate_extended(*study.model(), *study.equations(), with_progress, study.diagnostics());
+  return study.motion(with_progress);
 }
 
 ExitCode exit_code(Ending ending) {

@@ -1,6 +1,6 @@
 #pragma once
 #include "command.hpp"
-#include "study.hpp"
+#include "open_study.hpp"
 
 #include <maupertuis/extended_simulation.hpp>
 #include <maupertuis/simulation.hpp>
@@ -42,7 +42,7 @@ std::string precision_of(const syntax::SyntaxTree* tree);
 /// The same for a run in many digits: times exactly as written.
 ExtendedSimulationOptions extended_options(const RunOptions& options, Precision precision, Diagnostics& diagnostics);
 
-/// Puts `run until …` of --until in the place of the model's run; nothing without the option.
+/// Says --until and --within beside the model; nothing without them.
 void put_in_run(const RunOptions& options, Study& study);
 
 /// Certifies, runs, draws progress. Nothing when the model does not allow a run.

@@ -23,5 +23,6 @@ std::span<const CodeEntry> hamiltonian_codes();
 std::span<const CodeEntry> action_codes();
 std::span<const CodeEntry> linearization_codes();
 std::span<const CodeEntry> orbits_codes();
+std::span<const CodeEntry> study_codes();
 
 }  // namespace maupertuis

@@ -15,7 +15,7 @@ enum class Severity { Note, Warning, Error };
 struct Diagnostic {
   std::string code;            // stable: E0412 (error), W0203 (warning), N0101 (note)
   Severity severity = Severity::Error;
-  std::optional<Span> span;    // none: the mistake is not at a place of the model text
+  std::optional<Span> span;    // none: the mistake is not at a place of a text
   std::string message;         // one line: what is wrong
   std::string reason;          // one sentence of physics or of the language: why
   std::string help;            // one sentence: what to write instead
@@ -30,12 +30,13 @@ class Diagnostics {
                       std::string help = {});
   Diagnostic& note(std::string code, std::optional<Span> span, std::string message, std::string reason = {},
                    std::string help = {});
+  void append(Diagnostic diagnostic);
   void append(const Diagnostics& others);
 
   bool has_errors() const;
   bool empty() const { return items_.empty(); }
   std::span<const Diagnostic> items() const { return items_; }
-  /// Orders by place in the text (those without a place last), stable.
+  /// Orders by place (the model first, then the texts beside it; those without a place last), stable.
   void sort_by_place();
 
  private:
@@ -60,8 +61,9 @@ struct RenderOptions {
 };
 
 /// Elm's layout: a head line with the code, the source line with a caret under the exact span, the reason, the help.
-std::string render(const Diagnostic& diagnostic, const SourceText& source, const RenderOptions& options = {});
-std::string render(const Diagnostics& diagnostics, const SourceText& source, const RenderOptions& options = {});
+/// Precondition: the places are in `texts`; a SourceText alone is one such.
+std::string render(const Diagnostic& diagnostic, const SourceTexts& texts, const RenderOptions& options = {});
+std::string render(const Diagnostics& diagnostics, const SourceTexts& texts, const RenderOptions& options = {});
 
 /// The nearest of `candidates` to a misspelt `name` (Damerau-Levenshtein, at most a third of its length off);
 /// empty if none is near.

@@ -1,6 +1,8 @@
 #pragma once
 #include <maupertuis/diagnostic.hpp>
+#include <maupertuis/expectation.hpp>
 #include <maupertuis/expression.hpp>
+#include <maupertuis/overrides.hpp>
 #include <maupertuis/syntax_tree.hpp>
 #include <maupertuis/units.hpp>
 
@@ -221,57 +223,6 @@ struct MechanicalSystem {
 
 // ------------------------------------------------------------------------------------------------------- experiment
 
-struct StartValue {
-  std::size_t coordinate = 0;
-  int order = 0;                    // 0: q, 1: q'
-  Expr value;                       // parameters and numbers only, SI
-  Span span;
-  std::string unit;                 // as written, "deg"; empty where the value is a formula or a bare number
-  double unit_factor = 1;           // its SI value
-};
-
-/// ± 1e-7 beside one value of a point.
-struct PointTolerance {
-  Expr size;                        // SI, or a bare number where relative; empty: the value is kept as it is
-  bool relative = false;
-  std::string display_unit;
-  double display_factor = 1;
-};
-
-/// What a row or a column of a matrix belongs to.
-struct MatrixVariable {
-  std::size_t index = 0;            // of the coordinate or of the input
-  int order = 0;                    // 0: q, 1: q', -1: an input
-};
-
-struct Expectation {
-  syntax::ExpectStatement::Kind kind{};
-  bool claim = false;
-  std::string text;                 // as written
-  std::string name, word;
-  Expr subject, subject_right;      // Equation: subject = subject_right; ValueAt and others: subject
-  Expr time, value, tolerance;      // SI; empty where absent
-  Expr from, to;                    // Action of a given path: its ends, SI; those of the model's path where none are written
-  bool relative = false;
-  int occurrence = 0;               // of an event; of a path, 0: the one with the smallest action
-  std::vector<StartValue> at;       // of a point: `at θ = 0`
-  std::vector<PointTolerance> at_tolerances;  // [at] Equilibrium
-  std::vector<Expr> where;          // Conserved: functions that vanish on the level
-  bool at_until = false;            // ValueAt: when `run until` ends
-  std::vector<Expr> values;         // Frequencies: angular, rad/s, or their squares; Action: a given path [n] in t, or none;
-                                    // Eigenvalues, Multipliers: real parts; Matrix: entries by rows, SI
-  std::vector<Expr> imaginary;      // [values] Eigenvalues, Multipliers
-  std::size_t width = 0;            // Matrix: entries in a row
-  std::vector<MatrixVariable> rows, columns;  // Matrix; none: all, in the order of the model
-  std::size_t parameter = 0;        // Stable: index in MechanicalSystem::parameters
-  bool above = false;               // Stable: for values above the critical one
-  bool squared = false;             // Frequencies: `frequencies squared`
-  Dimension dimension;              // of subject
-  std::string display_unit;         // as written beside the value; empty: SI
-  double display_factor = 1;        // SI value of one display unit
-  Span span;
-};
-
 struct DrawElement {
   syntax::DrawItem::Kind kind{};
   std::vector<ExprVector> path;     // positions, world axes; Reaction: none
@@ -316,11 +267,18 @@ struct PathEnds {
   Span span;
 };
 
+/// A formula that was asked beside the model.
+struct AskedFormula {
+  Expr value;                       // in q, q', q'', t, momenta, multipliers and reactions
+  Dimension dimension;
+  Span span;
+};
+
 /// What to do with a system: where it starts, how long it runs, what is drawn and what is expected.
 struct Experiment {
   std::vector<StartValue> start;    // unwritten = 0
   std::vector<StartRate> start_rates;
-  std::vector<StartValue> at;       // the point that the command line asks about
+  std::vector<StartValue> at;       // the point that is asked about; by overrides alone, as `asked`, `section` and `given_path`
   bool start_exactly = false;
   Expr start_time;                  // empty: 0
   Expr duration;                    // of `run 10 s`; empty if the model has none
@@ -333,6 +291,9 @@ struct Experiment {
   std::optional<PathEnds> path;
   std::vector<DrawElement> drawing;
   std::vector<Expectation> expectations;
+  std::vector<AskedFormula> asked;  // in the order of the overrides
+  Expr section;                     // vanishes on it; empty if none was asked for
+  std::optional<PathFormulas> given_path;
 };
 
 struct Model {
@@ -340,17 +301,11 @@ struct Model {
   Experiment experiment;
 };
 
-/// What the command line changes: `--set m=2kg`, `--start θ=1`.
-struct Overrides {
-  std::vector<std::string> parameters;
-  std::vector<std::string> start;
-  std::vector<std::string> at;      // `--at θ=0` of `maup modes`: fills Experiment::at
-};
-
 /// Resolves names and units, infers dimensions, builds kinematics and energies. All mistakes go to `diagnostics`;
 /// nothing is returned when there is an error. Physics lint is a pass of its own (`lint`).
+/// Precondition: `overrides` were read with `tree`.
 std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics,
-                               const Overrides& overrides = {});
+                               const ExperimentOverrides& overrides = {});
 
 /// Physics lint on an elaborated model: coordinates unused or without kinetic energy, claimed energies against those of
 /// the points, velocities in V, total time derivatives in L, gravity counted twice, more coordinates than freedoms, …

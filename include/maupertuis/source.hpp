@@ -1,23 +1,29 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace maupertuis {
 
+/// Which text a place is in: 0 is the model, others are texts beside it, such as an option of a command line.
+using SourceId = std::uint32_t;
+
 /// A half-open range of bytes of one source text.
 struct Span {
   std::uint32_t begin = 0;
   std::uint32_t end = 0;
+  SourceId source = 0;
 
   friend bool operator==(Span, Span) = default;
 };
 
-/// The smallest span that covers both.
+/// The smallest span that covers both; the first where they are in two texts.
 inline Span cover(Span a, Span b) {
-  return {a.begin < b.begin ? a.begin : b.begin, a.end > b.end ? a.end : b.end};
+  if (a.source != b.source) return a;
+  return {a.begin < b.begin ? a.begin : b.begin, a.end > b.end ? a.end : b.end, a.source};
 }
 
 /// A place as an editor counts it: both from 1, the column in characters (UTF-8 code points).
@@ -26,12 +32,15 @@ struct LineColumn {
   std::uint32_t column = 1;
 };
 
-/// A model text with its name and the table of its lines. Every Span refers to one SourceText.
+/// A text with its name and the table of its lines: a model, or what was said beside one. Spans in it have its number.
 class SourceText {
  public:
-  SourceText(std::string name, std::string text);
+  SourceText(std::string name, std::string text, SourceId id = 0);
 
   const std::string& name() const { return name_; }
+  SourceId id() const { return id_; }
+  /// All of it.
+  Span whole() const { return {0, static_cast<std::uint32_t>(text_.size()), id_}; }
   std::string_view text() const { return text_; }
   std::string_view slice(Span span) const;
 
@@ -43,7 +52,25 @@ class SourceText {
  private:
   std::string name_;
   std::string text_;
+  SourceId id_;
   std::vector<std::uint32_t> starts_;  // [lines] offset of the first byte of each line
+};
+
+/// The texts that the places of one study are in: that of the model, and those beside it, text k with the number k + 1.
+/// A view; the texts outlive it.
+class SourceTexts {
+ public:
+  SourceTexts(const SourceText& model, std::span<const SourceText> beside = {}) : model_(&model), beside_(beside) {}
+
+  /// Precondition: the place is in one of them.
+  const SourceText& of(Span span) const;
+  const SourceText& model() const { return *model_; }
+  std::string_view slice(Span span) const { return of(span).slice(span); }
+  LineColumn locate(Span span) const { return of(span).locate(span.begin); }
+
+ private:
+  const SourceText* model_;
+  std::span<const SourceText> beside_;
 };
 
 }  // namespace maupertuis

@@ -142,7 +142,7 @@ struct StartStatement {
 struct RunStatement {
   ExpressionPtr duration;                // run 10 s
   ExpressionPtr until_left, until_right; // run until A = B
-  ExpressionPtr within;
+  ExpressionPtr within;                  // null: beside a model, where none is written
 };
 struct OutputStatement { ExpressionPtr every; };
 /// method variational order 4 step 10 ms;  method stiff
@@ -164,55 +164,81 @@ struct DrawStatement { std::vector<DrawItem> items; };
 
 struct ReactionStatement { Name name; Name released; };            // reaction rod = release l1
 
-/// expect … and claim …
-struct ExpectStatement {
-  enum class Kind {
-    ValueAt,          // subject at `time` = value ± / rel tolerance
-    EnergyConserved,  // expect energy conserved rel 1e-13
-    Conserved,        // expect conserved EXPR [rel 1e-13]
-    NotConserved,     // expect EXPR not conserved
-    Equation,         // expect equation left = right;  claim left = right
-    Freedoms,         // expect freedoms = 2
-    ConstraintClass,  // expect constraint roll is nonholonomic
-    Integral,         // expect integral EXPR
-    Frequencies,      // expect frequencies at θ = 0 : list
-    EventAt,          // expect event hit 3 at T ± tol
-    Error,            // expect error E0412
-    Equilibrium,      // expect equilibrium at θ = 0 is stable
-    Action,           // expect action = VALUE ± tol;  expect action of (x(t), y(t)) = VALUE ± tol
-    MorseIndex,       // expect index = 1
-    PathAt,           // expect path x at 0.5 s = VALUE ± tol
-    Value,            // expect EXPR = VALUE ± tol (no time: parameters only, or the start)
-    Eigenvalues,      // expect eigenvalues at θ = 0 : -0.1 1/s, (-0.2, 1.3) 1/s rel 1e-9
-    Matrix,           // expect M at q1 = 0 : ((2, 1), (1, 1)) kg m^2 ± tol; A, B, C, G, K, N of the linearization
-    Stable,           // expect stable for Ω < 5.7 rad/s ± tol at θ = 0
-    Multipliers,      // expect multipliers over 2 s : (0.98, 0.19) rel 1e-9
-    Trace,            // expect trace over 2 s = 2.3 ± tol
-    Period,           // expect period over 2 s = 2.1 s ± tol
-    UntilAt,          // expect until at 1.2 s ± tol: when `run until` ends
-  } kind = Kind::ValueAt;
-  bool claim = false;
-  Name name;                             // constraint, event, reaction; the code of Error; the letter of Matrix
-  Name word;                             // nonholonomic, …
-  ExpressionPtr subject, time, value;    // Equation: subject = value
-  ExpressionPtr tolerance;               // ± (absolute) or rel
-  bool relative = false;
-  int occurrence = 0;                    // EventAt; Action, MorseIndex, PathAt: `path 2`; 0: the path with the smallest action
-  std::vector<ExpressionPtr> values;     // Frequencies; Action: a given path, one a coordinate; none: the stationary path;
-                                         // Eigenvalues, Multipliers: real parts; Matrix: its entries by rows
-  std::vector<ExpressionPtr> imaginary;  // [values] Eigenvalues, Multipliers: imaginary parts, null where none is written
-  std::size_t width = 0;                 // Matrix: entries in a row
-  std::vector<ExpressionPtr> rows, columns;  // Matrix: `in (x, x') by u`, the variables of its rows and columns
-  bool squared = false;                  // Frequencies: expect frequencies squared …
-  std::vector<StartStatement::Item> at;  // Frequencies, Equilibrium and others about a point: `at θ = 0`
-  struct Tolerance { ExpressionPtr size; bool relative = false; };
-  std::vector<Tolerance> at_tolerances;  // [at] Equilibrium: `at θ = 0.84 ± 1e-7`; size null where none is written
-  struct Level { ExpressionPtr left, right; };
-  std::vector<Level> where;              // Conserved: `where p_φ = 0`
-  bool at_until = false;                 // ValueAt: `at until` in the place of a time
-  bool above = false;                    // Stable: `for Ω > …`
-  ExpressionPtr from, to;                // Action of a given path: its ends; null: those of the model's `path`
+struct Equation { ExpressionPtr left, right; };                    // P.y = 0
+
+/// ± 1e-9 or rel 1e-9; size null where none is written.
+struct Tolerance { ExpressionPtr size; bool relative = false; };
+
+/// What stands behind `expect` and `claim`: a struct a kind.
+namespace expectation {
+
+struct Number { ExpressionPtr value; Tolerance tolerance; };       // 0.5 rad ± 1e-9
+struct Spectrum {                                                  // -0.1 1/s, (-0.2, 1.3) 1/s rel 1e-9
+  std::vector<ExpressionPtr> real, imaginary;                      // [values] imaginary: null where none is written
+  Tolerance tolerance;
 };
+using Point = std::vector<StartStatement::Item>;                   // at θ = 0, φ' = 2 rad/s
+
+struct ValueAt { ExpressionPtr subject, time; Number expected; };  // θ at 10 s = …; θ = …, at the start: time null
+struct ValueAtUntil { ExpressionPtr subject; Number expected; };   // θ at until = …
+struct UntilAt { Number expected; };                               // until at 1.2 s ± 1e-9
+struct EnergyConserved { Tolerance tolerance; };                   // energy conserved rel 1e-13
+struct ConservedAlongRun { ExpressionPtr subject; Tolerance tolerance; };   // conserved F rel 1e-13
+struct Conserved { ExpressionPtr subject; std::vector<Equation> where; };   // conserved F where p_φ = 0
+struct NotConserved { ExpressionPtr subject; };                    // F not conserved
+struct Integral { ExpressionPtr subject; };                        // integral F
+using Equation = syntax::Equation;                                 // equation left = right; claim left = right
+struct Hamiltonian { ExpressionPtr value; };                       // hamiltonian = H
+struct Routhian { std::vector<ExpressionPtr> coordinates; ExpressionPtr value; };   // routhian of φ, ψ = R
+struct Bracket { ExpressionPtr a, b, value; };                     // bracket (A, B) = C
+struct Freedoms { ExpressionPtr number; };                         // freedoms = 2
+struct ConstraintClass { Name constraint, word; };                 // constraint roll is nonholonomic
+struct Frequencies {                                               // frequencies [squared] at θ = 0 : 0.5 Hz rel 1e-9
+  bool squared = false;
+  Point at;
+  std::vector<ExpressionPtr> values;
+  Tolerance tolerance;
+};
+struct Eigenvalues { Point at; Spectrum expected; };               // eigenvalues at θ = 0 : …
+struct Matrix {                                                    // A in (x, x') at x = 0 : ((2, 1), (1, 1)) ± 1e-9
+  Name letter;                                                     // M; A, B, C, G, K, N of the linearization
+  std::vector<ExpressionPtr> rows, columns;                        // variables; none: all
+  Point at;
+  std::vector<ExpressionPtr> entries;                              // by rows
+  std::size_t width = 0;                                           // entries in a row
+  Tolerance tolerance;
+};
+struct Place { StartStatement::Item value; Tolerance tolerance; };
+struct Equilibrium { std::vector<Place> at; Name word; };          // equilibrium at θ = 0 ± 1e-7 is stable; or no word
+struct Stable {                                                    // stable for Ω < 5.7 rad/s ± 1e-2 at θ = 0
+  Name word;                                                       // stable, unstable
+  ExpressionPtr parameter;
+  bool above = false;                                              // for Ω > …
+  Number critical;
+  Point at;
+};
+struct Multipliers { ExpressionPtr over; Spectrum expected; };     // multipliers over 2 s : …; over null: not written
+struct Trace { ExpressionPtr over; Number expected; };             // trace over 2 s = …
+struct Period { ExpressionPtr over; Number expected; };            // period over 2 s = …
+struct Action { int path = 0; Number expected; };                  // action = …; action of path 2 = …; 0: not written
+struct ActionAlong {                                               // action of (x(t), y(t)) from 0 s to 10 s = …
+  std::vector<ExpressionPtr> q;
+  ExpressionPtr from, to;                                          // null: the ends of the model's `path`
+  Number expected;
+};
+struct MorseIndex { int path = 0; ExpressionPtr index; };          // index of path 2 = 1
+struct PathAt { int path = 0; ExpressionPtr subject, time; Number expected; };   // path 2 x at 0.5 s = …
+struct Event { Name name; int occurrence = 1; Number time; };      // event hit 3 at 0.45 s ± 1e-11
+struct Error { Name code; };                                       // error E0412
+
+using Kind = std::variant<ValueAt, ValueAtUntil, UntilAt, EnergyConserved, ConservedAlongRun, Conserved, NotConserved,
+                          Integral, Equation, Hamiltonian, Routhian, Bracket, Freedoms, ConstraintClass, Frequencies,
+                          Eigenvalues, Matrix, Equilibrium, Stable, Multipliers, Trace, Period, Action, ActionAlong,
+                          MorseIndex, PathAt, Event, Error>;
+
+}  // namespace expectation
+
+struct ExpectStatement { bool claim = false; expectation::Kind kind; };
 
 /// constraint LEFT = RIGHT name rod,   constraint integral LEFT = RIGHT name length
 struct ConstraintStatement {
@@ -222,7 +248,7 @@ struct ConstraintStatement {
 };
 
 /// sweep Ω = 0 .. 12 rad/s steps 121
-struct SweepStatement { ExpressionPtr variable, from, to, steps; };
+struct SweepStatement { ExpressionPtr variable, from, to, steps; };  // steps null: beside a model, not written
 
 /// independent x : length. Stands in the place of t.
 struct IndependentStatement {
@@ -260,16 +286,40 @@ struct Statement {
   Span span;                             // from its first word to its last
 };
 
+class Declarations;
+
 struct SyntaxTree {
   std::vector<Statement> statements;     // in the order of the text
   std::vector<Comment> comments;
   /// Declared by statements that were left out because of an error: a use of one of them is no second mistake.
   std::vector<Name> lost_names;
+  /// The names that the text declares: they decide how a text beside it is read. Null where the text has no statement.
+  std::shared_ptr<const Declarations> declarations;
 };
 
 /// Reads a model text. Errors go to `diagnostics`, all of them; a statement with an error is left out, the rest stands.
 /// Time and memory are linear in the text; nesting is bounded (E0108), so is the size of the text (E0101).
 SyntaxTree parse(const SourceText& source, Diagnostics& diagnostics);
+
+/// Parts of statements in a text of their own beside the model, such as an option of a command line or a field of a
+/// form. They are read with the names that `model` declares: these decide what `2e1` and `f(x)` mean. Nothing after a
+/// mistake, which `diagnostics` tells at its place in `text`.
+struct Assignment { ExpressionPtr variable, value; };              // of a list x = 4 t, y = 3 t + 5
+ExpressionPtr parse_formula(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
+/// A number with its unit, or a formula of such.
+ExpressionPtr parse_quantity(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
+std::optional<Equation> parse_equation(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
+std::optional<std::vector<Assignment>> parse_assignments(const SourceText& text, const SyntaxTree& model,
+                                                         Diagnostics& diagnostics);
+/// What stands behind the words `param`, `start`, `run`.
+std::optional<ParamStatement> parse_parameters(const SourceText& text, const SyntaxTree& model,
+                                               Diagnostics& diagnostics);
+std::optional<StartStatement> parse_start(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
+std::optional<RunStatement> parse_run(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
+/// What stands behind `sweep`; the number of values may be left out, and `steps` is null then.
+std::optional<SweepStatement> parse_sweep(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
+/// What stands behind `path from`.
+std::optional<PathStatement> parse_path(const SourceText& text, const SyntaxTree& model, Diagnostics& diagnostics);
 
 /// The text in canonical layout (`maup fmt`). Idempotent; keeps comments and the order of statements.
 /// Precondition: `source` parsed without errors to `tree`.

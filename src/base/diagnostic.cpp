@@ -25,6 +25,8 @@ Diagnostic& Diagnostics::note(std::string code, std::optional<Span> span, std::s
   return add(Severity::Note, std::move(code), span, std::move(message), std::move(reason), std::move(help));
 }
 
+void Diagnostics::append(Diagnostic diagnostic) { items_.push_back(std::move(diagnostic)); }
+
 void Diagnostics::append(const Diagnostics& others) {
   items_.insert(items_.end(), others.items_.begin(), others.items_.end());
 }
@@ -34,7 +36,9 @@ bool Diagnostics::has_errors() const {
 }
 
 void Diagnostics::sort_by_place() {
-  const auto place = [](const Diagnostic& d) { return d.span ? static_cast<std::uint64_t>(d.span->begin) : ~0ull; };
+  const auto place = [](const Diagnostic& d) {
+    return d.span ? (static_cast<std::uint64_t>(d.span->source) << 32) + d.span->begin : ~0ull;
+  };
   std::stable_sort(items_.begin(), items_.end(),
                    [&](const Diagnostic& a, const Diagnostic& b) { return place(a) < place(b); });
 }

@@ -100,8 +100,9 @@ std::string head_line(const Diagnostic& d, const SourceText& source, Paint paint
 
 }  // namespace
 
-std::string render(const Diagnostic& d, const SourceText& source, const RenderOptions& options) {
+std::string render(const Diagnostic& d, const SourceTexts& texts, const RenderOptions& options) {
   const Paint paint{options.color};
+  const SourceText& source = d.span ? texts.of(*d.span) : texts.model();
   std::string out = head_line(d, source, paint);
   out += fmt::format("\n{}{}{}\n", paint.code("\x1b[1m"), visible(d.message), paint.code("\x1b[0m"));
   if (d.span) out += "\n" + source_excerpt(d, source, paint);
@@ -111,7 +112,7 @@ std::string render(const Diagnostic& d, const SourceText& source, const RenderOp
   return out;
 }
 
-std::string render(const Diagnostics& diagnostics, const SourceText& source, const RenderOptions& options) {
+std::string render(const Diagnostics& diagnostics, const SourceTexts& texts, const RenderOptions& options) {
   std::string out;
   std::size_t shown = 0;
   for (const Diagnostic& d : diagnostics.items()) {
@@ -120,7 +121,7 @@ std::string render(const Diagnostics& diagnostics, const SourceText& source, con
       break;
     }
     if (shown++) out += "\n";
-    out += render(d, source, options);
+    out += render(d, texts, options);
   }
   return out;
 }

@@ -1,10 +1,12 @@
+#include <maupertuis/require.hpp>
 #include <maupertuis/source.hpp>
 
 #include <algorithm>
 
 namespace maupertuis {
 
-SourceText::SourceText(std::string name, std::string text) : name_(std::move(name)), text_(std::move(text)) {
+SourceText::SourceText(std::string name, std::string text, SourceId id)
+    : name_(std::move(name)), text_(std::move(text)), id_(id) {
   starts_.push_back(0);
   for (std::size_t i = 0; i < text_.size(); ++i)
     if (text_[i] == '\n') starts_.push_back(static_cast<std::uint32_t>(i + 1));
@@ -33,6 +35,12 @@ std::string_view SourceText::line(std::uint32_t number) const {
   std::size_t end = number < starts_.size() ? starts_[number] - 1 : text_.size();
   if (end > begin && text_[end - 1] == '\r') --end;
   return std::string_view(text_).substr(begin, end - begin);
+}
+
+const SourceText& SourceTexts::of(Span span) const {
+  if (span.source == model_->id()) return *model_;
+  MAUP_REQUIRE(span.source >= 1 && span.source <= beside_.size());
+  return beside_[span.source - 1];
 }
 
 }  // namespace maupertuis

@@ -229,18 +229,58 @@ class Rewriter {
   }
 
   // ------------------------------------------------------------------------------ expectations, drawing
+  bool asks_for_lost_force(const ExpressionPtr& e) const {
+    return asks_for(e, "reaction", no_reaction_) || asks_for(e, "multiplier", no_multiplier_);
+  }
+
+  /// Points are given in the coordinates that there were.
+  bool names_gone(const syntax::expectation::Point& point) const {
+    return std::any_of(point.begin(), point.end(), [&](const StartStatement::Item& item) {
+      return gone_.count(to_string_without_primes(*item.variable)) != 0;
+    });
+  }
+
+  bool is_lost(const syntax::expectation::ValueAt& x) const { return asks_for_lost_force(x.subject); }
+  bool is_lost(const syntax::expectation::ValueAtUntil& x) const { return asks_for_lost_force(x.subject); }
+  bool is_lost(const syntax::expectation::ConservedAlongRun& x) const { return asks_for_lost_force(x.subject); }
+  bool is_lost(const syntax::expectation::Conserved& x) const {
+    return asks_for_lost_force(x.subject) || (!x.where.empty() && !gone_.empty());
+  }
+  bool is_lost(const syntax::expectation::NotConserved& x) const { return asks_for_lost_force(x.subject); }
+  bool is_lost(const syntax::expectation::Integral& x) const { return asks_for_lost_force(x.subject); }
+  bool is_lost(const syntax::expectation::Equation& x) const {
+    return asks_for_lost_force(x.left) || asks_for_lost_force(x.right);
+  }
+  bool is_lost(const syntax::expectation::ConstraintClass& x) const {
+    return no_multiplier_.count(x.constraint.text) || no_reaction_.count(x.constraint.text);
+  }
+  // Other coordinates have other momenta, matrices and paths.
+  bool is_lost(const syntax::expectation::Hamiltonian&) const { return true; }
+  bool is_lost(const syntax::expectation::Routhian&) const { return true; }
+  bool is_lost(const syntax::expectation::Bracket&) const { return true; }
+  bool is_lost(const syntax::expectation::Matrix&) const { return !gone_.empty(); }
+  bool is_lost(const syntax::expectation::Action&) const { return !gone_.empty(); }
+  bool is_lost(const syntax::expectation::ActionAlong&) const { return !gone_.empty(); }
+  bool is_lost(const syntax::expectation::MorseIndex&) const { return !gone_.empty(); }
+  bool is_lost(const syntax::expectation::PathAt& x) const { return !gone_.empty() || asks_for_lost_force(x.subject); }
+  bool is_lost(const syntax::expectation::Frequencies& x) const { return names_gone(x.at); }
+  bool is_lost(const syntax::expectation::Eigenvalues& x) const { return names_gone(x.at); }
+  bool is_lost(const syntax::expectation::Stable& x) const { return names_gone(x.at); }
+  bool is_lost(const syntax::expectation::Equilibrium& x) const {
+    return std::any_of(x.at.begin(), x.at.end(),
+                       [&](const syntax::expectation::Place& place) { return names_gone({place.value}); });
+  }
+  bool is_lost(const syntax::expectation::UntilAt&) const { return false; }
+  bool is_lost(const syntax::expectation::EnergyConserved&) const { return false; }
+  bool is_lost(const syntax::expectation::Freedoms&) const { return false; }
+  bool is_lost(const syntax::expectation::Multipliers&) const { return false; }
+  bool is_lost(const syntax::expectation::Trace&) const { return false; }
+  bool is_lost(const syntax::expectation::Period&) const { return false; }
+  bool is_lost(const syntax::expectation::Event&) const { return false; }
+  bool is_lost(const syntax::expectation::Error&) const { return false; }
+
   void expectation(Span span, const ExpectStatement& s) {
-    bool lost = s.kind == ExpectStatement::Kind::ConstraintClass && no_multiplier_.count(s.name.text);
-    lost = lost || (s.kind == ExpectStatement::Kind::Equation && !s.word.text.empty());  // other coordinates have other momenta
-    for (const ExpressionPtr& e : {s.subject, s.value})
-      lost = lost || asks_for(e, "reaction", no_reaction_) || asks_for(e, "multiplier", no_multiplier_);
-    lost = lost || no_reaction_.count(s.name.text);
-    // Points, matrices and levels are given in the coordinates that there were, and in their momenta.
-    for (const StartStatement::Item& item : s.at) lost = lost || gone_.count(to_string_without_primes(*item.variable));
-    lost = lost || ((s.kind == ExpectStatement::Kind::Matrix || !s.where.empty()) && !gone_.empty());
-    const bool about_path = s.kind == ExpectStatement::Kind::Action || s.kind == ExpectStatement::Kind::MorseIndex ||
-                            s.kind == ExpectStatement::Kind::PathAt;
-    if (lost || (about_path && !gone_.empty())) leave_out(span);
+    if (std::visit([&](const auto& x) { return is_lost(x); }, s.kind)) leave_out(span);
   }
 
   void drawing(Span span, const DrawStatement& s) {

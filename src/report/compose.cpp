@@ -159,7 +159,7 @@ void add_messages(ReportContent& content, const Diagnostics& diagnostics, const 
   for (const Diagnostic& d : diagnostics.items()) {
     if (d.severity == Severity::Error) continue;
     ReportContent::Message message{d.severity, d.code, d.message, d.reason, d.help, 0, ""};
-    if (d.span && d.span->begin < source.text().size()) {  // else it is about an option
+    if (d.span && d.span->source == source.id()) {  // else it is about a text beside the model
       message.line = source.locate(d.span->begin).line;
       message.text = source.line(message.line);
     }

@@ -50,12 +50,13 @@ bool check_text(const SourceText& source, Diagnostics& diagnostics) {
     const auto c = decode(text, i);
     if (!c) {
       const auto at = static_cast<std::uint32_t>(i);
-      diagnostics.error("E0102", Span{at, at + 1},
+      diagnostics.error("E0102", Span{at, at + 1, source.id()},
                         fmt::format("the byte 0x{:02X} is not UTF-8", static_cast<unsigned char>(text[i])),
                         "Model texts are UTF-8; in other encodings θ, ° and é are other bytes.", "Save the file as UTF-8.");
       return false;
     }
-    if (turns_direction(c->value)) warn_of_direction(source, {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(i + c->length)}, c->value, diagnostics);
+    const Span here{static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(i + c->length), source.id()};
+    if (turns_direction(c->value)) warn_of_direction(source, here, c->value, diagnostics);
     i += c->length;
   }
   return true;

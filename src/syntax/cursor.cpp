@@ -7,8 +7,8 @@ namespace maupertuis::syntax {
 
 ExpressionParser::ExpressionParser(const ParseContext& context, const StatementTokens& statement)
     : context_(context), begin_(statement.begin), index_(statement.begin), end_(statement.end) {
-  const std::uint32_t end = context.list.tokens[end_ - 1].span.end;
-  end_token_.span = {end, end};
+  const Span last = context.list.tokens[end_ - 1].span;
+  end_token_.span = {last.end, last.end, last.source};
 }
 
 const Token& ExpressionParser::peek(std::size_t ahead) const {

@@ -12,10 +12,6 @@ using Kind = Expression::Kind;
 constexpr std::string_view kOperators[] = {"+", "-", "*", "juxtaposed", "/", "·", "×", "^", "-", "<", "<=", ">", ">=", "and", "or"};
 constexpr std::string_view kKinds[] = {"number", "quantity", "name",   "member",          "call",
                                        "vector", "binary",   "unary", "time derivative", "piecewise"};
-constexpr std::string_view kExpectations[] = {"value at", "energy conserved", "conserved", "not conserved", "equation", "freedoms",
-                                              "constraint class", "integral", "frequencies", "event at", "error", "equilibrium",
-                                              "action", "morse index", "path at", "value", "eigenvalues", "matrix", "stable", "multipliers",
-                                              "trace", "period", "until at"};
 constexpr std::string_view kRotations[] = {"angle", "axis and angle", "euler", "roll, pitch, yaw", "quaternion", "quaternion coordinates"};
 constexpr std::string_view kShapes[] = {"line", "trail", "box", "circle", "spring", "reaction", "disc", "hoop", "ellipsoid", "damper",
                                          "pivot", "ground", "wall", "label", "follow"};
@@ -99,23 +95,93 @@ class Dumper {
   }
   void operator()(const ReactionStatement& s) { head("reaction", s.name.text), word("released", s.released.text); }
   void operator()(const ExpectStatement& s) {
-    head(s.claim ? "claim" : "expect", kExpectations[static_cast<int>(s.kind)]);
-    word("name", s.name.text), word("word", s.word.text), word("occurrence", s.occurrence ? std::to_string(s.occurrence) : "");
-    word("squared", s.squared ? "yes" : ""), word("above", s.above ? "yes" : ""), word("at until", s.at_until ? "yes" : "");
-    children("row", s.rows), children("column", s.columns);
-    for (std::size_t i = 0; i < s.at.size(); ++i) {
-      assignments({s.at[i]});
-      if (i < s.at_tolerances.size()) child(s.at_tolerances[i].relative ? "relative tolerance" : "tolerance", s.at_tolerances[i].size);
-    }
-    child("subject", s.subject), child("time", s.time), child("from", s.from), child("to", s.to);
-    for (const auto& level : s.where) child("where", level.left), child("equals", level.right);
-    child("value", s.value), word("width", s.width ? std::to_string(s.width) : "");
-    for (std::size_t i = 0; i < s.values.size(); ++i) {
-      child("values", s.values[i]);
-      if (i < s.imaginary.size()) child("imaginary", s.imaginary[i]);
-    }
-    child(s.relative ? "relative tolerance" : "tolerance", s.tolerance);
+    expectation_ = s.claim ? "claim" : "expect";
+    std::visit(*this, s.kind);
   }
+  void operator()(const expectation::ValueAt& x) {
+    head(expectation_, x.time ? "value at" : "value"), child("subject", x.subject), child("time", x.time),
+        expected(x.expected);
+  }
+  void operator()(const expectation::ValueAtUntil& x) {
+    head(expectation_, "value at until"), child("subject", x.subject), expected(x.expected);
+  }
+  void operator()(const expectation::UntilAt& x) { head(expectation_, "until at"), expected(x.expected); }
+  void operator()(const expectation::EnergyConserved& x) {
+    head(expectation_, "energy conserved"), tolerance(x.tolerance);
+  }
+  void operator()(const expectation::ConservedAlongRun& x) {
+    head(expectation_, "conserved"), child("subject", x.subject), tolerance(x.tolerance);
+  }
+  void operator()(const expectation::Conserved& x) {
+    head(expectation_, "conserved"), child("subject", x.subject);
+    for (const Equation& level : x.where) child("where", level.left), child("equals", level.right);
+  }
+  void operator()(const expectation::NotConserved& x) {
+    head(expectation_, "not conserved"), child("subject", x.subject);
+  }
+  void operator()(const expectation::Integral& x) { head(expectation_, "integral"), child("subject", x.subject); }
+  void operator()(const expectation::Equation& x) {
+    head(expectation_, "equation"), child("left", x.left), child("right", x.right);
+  }
+  void operator()(const expectation::Hamiltonian& x) { head(expectation_, "hamiltonian"), child("value", x.value); }
+  void operator()(const expectation::Routhian& x) {
+    head(expectation_, "routhian"), children("coordinate", x.coordinates), child("value", x.value);
+  }
+  void operator()(const expectation::Bracket& x) {
+    head(expectation_, "bracket"), child("a", x.a), child("b", x.b), child("value", x.value);
+  }
+  void operator()(const expectation::Freedoms& x) { head(expectation_, "freedoms"), child("value", x.number); }
+  void operator()(const expectation::ConstraintClass& x) {
+    head(expectation_, "constraint class"), word("name", x.constraint.text), word("word", x.word.text);
+  }
+  void operator()(const expectation::Frequencies& x) {
+    head(expectation_, "frequencies"), word("squared", x.squared ? "yes" : ""), assignments(x.at),
+        children("values", x.values), tolerance(x.tolerance);
+  }
+  void operator()(const expectation::Eigenvalues& x) {
+    head(expectation_, "eigenvalues"), assignments(x.at), spectrum(x.expected);
+  }
+  void operator()(const expectation::Matrix& x) {
+    head(expectation_, "matrix"), word("name", x.letter.text), children("row", x.rows), children("column", x.columns),
+        assignments(x.at);
+    word("width", std::to_string(x.width)), children("values", x.entries), tolerance(x.tolerance);
+  }
+  void operator()(const expectation::Equilibrium& x) {
+    head(expectation_, "equilibrium"), word("word", x.word.text);
+    for (const expectation::Place& place : x.at) assignments({place.value}), tolerance(place.tolerance);
+  }
+  void operator()(const expectation::Stable& x) {
+    head(expectation_, "stable"), word("word", x.word.text), word("above", x.above ? "yes" : ""),
+        child("subject", x.parameter);
+    expected(x.critical), assignments(x.at);
+  }
+  void operator()(const expectation::Multipliers& x) {
+    head(expectation_, "multipliers"), child("time", x.over), spectrum(x.expected);
+  }
+  void operator()(const expectation::Trace& x) {
+    head(expectation_, "trace"), child("time", x.over), expected(x.expected);
+  }
+  void operator()(const expectation::Period& x) {
+    head(expectation_, "period"), child("time", x.over), expected(x.expected);
+  }
+  void operator()(const expectation::Action& x) {
+    head(expectation_, "action"), number("path", x.path), expected(x.expected);
+  }
+  void operator()(const expectation::ActionAlong& x) {
+    head(expectation_, "action"), children("along", x.q), child("from", x.from), child("to", x.to),
+        expected(x.expected);
+  }
+  void operator()(const expectation::MorseIndex& x) {
+    head(expectation_, "morse index"), number("path", x.path), child("value", x.index);
+  }
+  void operator()(const expectation::PathAt& x) {
+    head(expectation_, "path at"), number("path", x.path), child("subject", x.subject), child("time", x.time),
+        expected(x.expected);
+  }
+  void operator()(const expectation::Event& x) {
+    head(expectation_, "event at"), word("name", x.name.text), number("occurrence", x.occurrence), expected(x.time);
+  }
+  void operator()(const expectation::Error& x) { head(expectation_, "error"), word("name", x.code.text); }
   void operator()(const ConstraintStatement& s) {
     head(s.integral ? "integral constraint" : "constraint", s.name ? s.name->text : ""), child("left", s.left), child("right", s.right);
   }
@@ -149,6 +215,14 @@ class Dumper {
 
   void name(std::string_view label, const std::optional<Name>& name) {
     if (name) word(label, name->text);
+  }
+
+  void number(std::string_view label, int value) { word(label, value ? std::to_string(value) : ""); }
+  void tolerance(const Tolerance& t) { child(t.relative ? "relative tolerance" : "tolerance", t.size); }
+  void expected(const expectation::Number& n) { child("value", n.value), tolerance(n.tolerance); }
+  void spectrum(const expectation::Spectrum& s) {
+    for (std::size_t i = 0; i < s.real.size(); ++i) child("values", s.real[i]), child("imaginary", s.imaginary[i]);
+    tolerance(s.tolerance);
   }
 
   void child(std::string_view label, const ExpressionPtr& expression) {
@@ -189,6 +263,7 @@ class Dumper {
   }
 
   std::size_t depth_ = 1;
+  std::string_view expectation_;   // "expect" or "claim"
 };
 
 }  // namespace

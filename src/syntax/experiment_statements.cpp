@@ -29,8 +29,8 @@ StatementBody StatementParser::start_statement() {
   return start;
 }
 
-StatementBody StatementParser::run_statement() {
-  next();
+// 10 s,   until P.y = 0 within 60 s; the limit is left out at most
+RunStatement StatementParser::run_length() {
   RunStatement run;
   if (!accept("until")) {
     run.duration = quantity();
@@ -39,8 +39,14 @@ StatementBody StatementParser::run_statement() {
   run.until_left = formula();
   expect("=", "the left side of `until`");
   run.until_right = quantity();
-  if (!accept("within")) missing_clause("within", "run", "run until P.y = 0 within 60 s");
-  run.within = quantity();
+  if (accept("within")) run.within = quantity();
+  return run;
+}
+
+StatementBody StatementParser::run_statement() {
+  next();
+  RunStatement run = run_length();
+  if (run.until_left && !run.within) missing_clause("within", "run", "run until P.y = 0 within 60 s");
   return run;
 }
 
@@ -83,9 +89,8 @@ ExpressionPtr StatementParser::with_unit_of(ExpressionPtr from, const Expression
   return quantity;
 }
 
-// sweep Ω = 0 .. 12 rad/s steps 121
-StatementBody StatementParser::sweep_statement() {
-  next();
+// Ω = 0 .. 12 rad/s, perhaps with the number of values
+SweepStatement StatementParser::sweep_values() {
   SweepStatement sweep;
   sweep.variable = variable();
   expect("=", "what is swept");
@@ -93,8 +98,15 @@ StatementBody StatementParser::sweep_statement() {
   expect("..", "the first value");
   sweep.to = quantity();
   sweep.from = with_unit_of(sweep.from, *sweep.to);
-  if (!accept("steps")) missing_clause("steps", "sweep", "sweep Ω = 0 .. 12 rad/s steps 121");
-  sweep.steps = quantity();
+  if (accept("steps")) sweep.steps = quantity();
+  return sweep;
+}
+
+// sweep Ω = 0 .. 12 rad/s steps 121
+StatementBody StatementParser::sweep_statement() {
+  next();
+  SweepStatement sweep = sweep_values();
+  if (!sweep.steps) missing_clause("steps", "sweep", "sweep Ω = 0 .. 12 rad/s steps 121");
   return sweep;
 }
 

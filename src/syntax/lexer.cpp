@@ -104,7 +104,7 @@ constexpr std::array kAdvice = {
 class Lexer {
  public:
   Lexer(const SourceText& source, Diagnostics& diagnostics)
-      : text_(source.text()), diagnostics_(diagnostics) {}
+      : text_(source.text()), id_(source.id()), diagnostics_(diagnostics) {}
 
   std::optional<TokenList> run() {
     if (text_.substr(0, 3) == "\xEF\xBB\xBF") position_ = 3;  // byte order mark
@@ -388,8 +388,8 @@ class Lexer {
   }
   bool line_continues() const { return !line_start_ && !list_.tokens.empty(); }
 
-  static Span span_from(std::size_t begin, std::size_t end) {
-    return {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+  Span span_from(std::size_t begin, std::size_t end) const {
+    return {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end), id_};
   }
 
   void emit(Token::Kind kind, std::string text, std::size_t begin, bool inside = false) {
@@ -435,6 +435,7 @@ class Lexer {
   }
 
   std::string_view text_;
+  SourceId id_;
   Diagnostics& diagnostics_;
   TokenList list_;
   std::size_t position_ = 0;

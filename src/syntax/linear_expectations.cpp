@@ -1,40 +1,46 @@
 #include "syntax/statement_parser.hpp"
 
-/// What is expected of the neighbours of a point or of a periodic motion: eigenvalues, matrices, stability, the return map.
+/// What is expected of the neighbours of a point or of a periodic motion: eigenvalues, matrices, stability, the return
+/// map.
 namespace maupertuis::syntax {
 
-using Kind = ExpectStatement::Kind;
-
 // [at θ = 0, φ' = 2 rad/s]
-void StatementParser::expect_point(ExpectStatement& expect) {
-  if (!accept("at")) return;
-  do expect.at.push_back(assignment());
+expectation::Point StatementParser::expected_point() {
+  expectation::Point point;
+  if (!accept("at")) return point;
+  do point.push_back(assignment());
   while (accept(","));
+  return point;
 }
 
 // -5.6 1/s, (-0.2, 1.3) 1/s, 0 rel 1e-9: a bracket is a real and an imaginary part
-void StatementParser::expect_complex_values(ExpectStatement& expect) {
-  this->expect(":", "what comes before");
+expectation::Spectrum StatementParser::expected_spectrum() {
+  expectation::Spectrum spectrum;
+  expect(":", "what comes before");
   do {
     const Token& first = peek();
     std::vector<ExpressionPtr> parts;
-    if (opens_components()) parts = components();
-    else parts.push_back(quantity());
+    if (opens_components())
+      parts = components();
+    else
+      parts.push_back(quantity());
     if (parts.size() > 2 || !parts.front() || !parts.back())
       fail("E0111", cover(first.span, previous().span), "expected a real and an imaginary part in this bracket",
            "A complex number is written (a, b); it stands for the pair a ± i b.", "Write for example (-0.1, 1.2) 1/s.");
-    expect.values.push_back(parts.front());
-    expect.imaginary.push_back(parts.size() == 2 ? parts.back() : nullptr);
+    spectrum.real.push_back(parts.front());
+    spectrum.imaginary.push_back(parts.size() == 2 ? parts.back() : nullptr);
   } while (accept(","));
-  tolerance(expect, true);
+  spectrum.tolerance = tolerance(true);
+  return spectrum;
 }
 
 // eigenvalues at θ = 0 : -0.1 1/s, (-0.2, 1.3) 1/s rel 1e-9
-void StatementParser::expect_eigenvalues(ExpectStatement& expect) {
+expectation::Kind StatementParser::expect_eigenvalues() {
   next();
-  expect.kind = Kind::Eigenvalues;
-  expect_point(expect);
-  expect_complex_values(expect);
+  expectation::Eigenvalues eigenvalues;
+  eigenvalues.at = expected_point();
+  eigenvalues.expected = expected_spectrum();
+  return eigenvalues;
 }
 
 // multipliers :, trace =, period =, each perhaps `over` a time that is a period, or nearly one
@@ -43,14 +49,13 @@ bool StatementParser::opens_return_map() const {
   return (peek().is("trace") || peek().is("period")) && (peek(1).is("over") || peek(1).is("="));
 }
 
-void StatementParser::expect_return_map(ExpectStatement& expect) {
+expectation::Kind StatementParser::expect_return_map() {
   const Token& word = next();
-  expect.kind = word.is("multipliers") ? Kind::Multipliers : word.is("trace") ? Kind::Trace : Kind::Period;
-  if (accept("over")) expect.time = quantity();
-  if (expect.kind == Kind::Multipliers) return expect_complex_values(expect);
-  this->expect("=", "what is expected");
-  expect.value = quantity();
-  tolerance(expect, true);
+  const ExpressionPtr over = accept("over") ? quantity() : nullptr;
+  if (word.is("multipliers")) return expectation::Multipliers{over, expected_spectrum()};
+  expect("=", "what is expected");
+  if (word.is("trace")) return expectation::Trace{over, expected_number()};
+  return expectation::Period{over, expected_number()};
 }
 
 // A letter, and a colon outside brackets: `M at 3 s = 2 kg ± 1e-9` is about a quantity M.
@@ -78,51 +83,54 @@ std::vector<ExpressionPtr> StatementParser::matrix_variables() {
 }
 
 // (2, 1) of a matrix; its length is that of the rows above
-void StatementParser::matrix_row(ExpectStatement& expect) {
+void StatementParser::matrix_row(expectation::Matrix& matrix) {
   const Token& first = peek();
   if (!accept("(")) fail_expected("`(` and a row of the matrix", "Write its rows in brackets: ((1, 2), (3, 4)).");
   std::size_t width = 0;
-  do expect.values.push_back(quantity()), ++width;
+  do matrix.entries.push_back(quantity()), ++width;
   while (accept(","));
   if (!accept(")")) fail_expected("`,` or `)`");
-  if (expect.width == 0) expect.width = width;
-  if (width != expect.width)
-    fail("E0111", cover(first.span, previous().span), "expected as many entries as in the row above", "The rows of a matrix are of one length.");
+  if (matrix.width == 0) matrix.width = width;
+  if (width != matrix.width)
+    fail("E0111", cover(first.span, previous().span), "expected as many entries as in the row above",
+         "The rows of a matrix are of one length.");
 }
 
 // M at q1 = 0, q2 = 1 : ((2, 1), (1, 1)) kg m^2 rel 1e-9,   A in (x, x') at x = 0 : …,   B in x' by u : 1.8 1/kg ± 1e-4
-void StatementParser::expect_matrix(ExpectStatement& expect) {
-  expect.kind = Kind::Matrix;
+expectation::Kind StatementParser::expect_matrix() {
+  expectation::Matrix matrix;
   const Token& letter = next();
-  expect.name = {std::string(letter.text), letter.span};
-  if (accept("in")) expect.rows = matrix_variables();
-  if (accept("by")) expect.columns = matrix_variables();
-  expect_point(expect);
-  this->expect(":", "the configuration");
+  matrix.letter = {std::string(letter.text), letter.span};
+  if (accept("in")) matrix.rows = matrix_variables();
+  if (accept("by")) matrix.columns = matrix_variables();
+  matrix.at = expected_point();
+  expect(":", "the configuration");
   if (peek().is("(")) {
     const bool rows = peek(1).is("(") && accept("(");
-    do matrix_row(expect);
+    do matrix_row(matrix);
     while (rows && accept(","));
     if (rows && !accept(")")) fail_expected("`,` or `)`");
-    expect.values = with_unit_after(std::move(expect.values));
+    matrix.entries = with_unit_after(std::move(matrix.entries));
   } else {
-    expect.width = 1;
-    expect.values = {quantity()};
+    matrix.width = 1;
+    matrix.entries = {quantity()};
   }
-  tolerance(expect, true);
+  matrix.tolerance = tolerance(true);
+  return matrix;
 }
 
 // stable for Ω < 5.72 rad/s ± 1e-2 at θ = 0
-void StatementParser::expect_stable(ExpectStatement& expect) {
-  expect.kind = Kind::Stable;
-  expect.word = used_name("stable or unstable");
+expectation::Kind StatementParser::expect_stable() {
+  expectation::Stable stable;
+  stable.word = used_name("stable or unstable");
   next();
-  expect.subject = variable();
-  expect.above = peek().is(">");
-  if (!accept("<") && !accept(">")) fail_expected("`<` or `>` and the critical value", "Write for example expect stable for Ω < 5.7 rad/s ± 1e-2.");
-  expect.value = quantity();
-  tolerance(expect, true);
-  expect_point(expect);
+  stable.parameter = variable();
+  stable.above = peek().is(">");
+  if (!accept("<") && !accept(">"))
+    fail_expected("`<` or `>` and the critical value", "Write for example expect stable for Ω < 5.7 rad/s ± 1e-2.");
+  stable.critical = expected_number();
+  stable.at = expected_point();
+  return stable;
 }
 
 }  // namespace maupertuis::syntax

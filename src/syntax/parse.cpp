@@ -40,9 +40,9 @@ SyntaxTree parse(const SourceText& source, Diagnostics& diagnostics) {
                       "`maup new pendulum` writes a model to start from.");
     return tree;
   }
-  const Declarations declarations(*list, statements);
+  tree.declarations = std::make_shared<const Declarations>(*list, statements);
   lint_letters(*list, statements, source, diagnostics);
-  const ParseContext context{*list, source, declarations, diagnostics};
+  const ParseContext context{*list, source, *tree.declarations, diagnostics};
   std::size_t failures = 0;
   for (const StatementTokens& statement : statements) {
     try {

@@ -11,6 +11,17 @@ class StatementParser : private ExpressionParser {
   /// One statement; `system x "…" source "…"` is two.
   std::vector<Statement> run();
 
+  // What stands alone beside a model, behind a token that stands for the words left out: parts.cpp.
+  ExpressionPtr formula_alone();
+  ExpressionPtr quantity_alone();
+  Equation equation_alone();
+  std::vector<Assignment> assignments_alone();
+  ParamStatement parameters_alone();
+  StartStatement start_alone();
+  RunStatement run_alone();
+  SweepStatement sweep_alone();
+  PathStatement path_alone();
+
  private:
   using Handler = StatementBody (StatementParser::*)();
   struct Entry {
@@ -66,7 +77,12 @@ class StatementParser : private ExpressionParser {
   Rotation rotation();
   std::vector<ExpressionPtr> bracketed_values(std::size_t count, std::string_view form);
   void inertia(BodyStatement& body);
+  template <class Part>
+  Part ended(Part part);
   StartStatement::Item assignment();
+  RunStatement run_length();
+  SweepStatement sweep_values();
+  PathStatement path_ends();
   PathStatement::End path_end();
   std::vector<ExpressionPtr> components();
   std::vector<ExpressionPtr> with_unit_after(std::vector<ExpressionPtr> numbers);
@@ -75,29 +91,33 @@ class StatementParser : private ExpressionParser {
   DrawItem draw_item();
   void draw_line(DrawItem& item);
   void draw_solid(DrawItem& item);
-  void tolerance(ExpectStatement& expect, bool required);
+  Tolerance tolerance(bool required);
   std::optional<int> whole_number();
-  ExpectStatement expectation(bool claim);
-  void expect_value(ExpectStatement& expect);
-  void expect_conserved(ExpectStatement& expect);
-  void expect_frequencies(ExpectStatement& expect);
-  void expect_equilibrium(ExpectStatement& expect);
-  void expect_event(ExpectStatement& expect);
-  void expect_phase_space(ExpectStatement& expect);
-  void expect_action(ExpectStatement& expect);
-  void expect_path(ExpectStatement& expect);
-  void expect_index(ExpectStatement& expect);
+  expectation::Kind expected(bool claim);
+  expectation::Number expected_number();
+  expectation::Kind expect_equation();
+  expectation::Kind expect_class();
+  expectation::Kind expect_until();
+  expectation::Kind expect_value(bool claim);
+  expectation::Kind expect_conserved();
+  expectation::Kind expect_frequencies();
+  expectation::Kind expect_equilibrium();
+  expectation::Kind expect_event();
+  expectation::Kind expect_phase_space();
+  expectation::Kind expect_action();
+  expectation::Kind expect_path();
+  expectation::Kind expect_index();
   int path_number();
   // linear_expectations.cpp
   bool opens_matrix() const;
   bool opens_return_map() const;
-  void expect_point(ExpectStatement& expect);
-  void expect_complex_values(ExpectStatement& expect);
-  void expect_eigenvalues(ExpectStatement& expect);
-  void expect_return_map(ExpectStatement& expect);
-  void expect_matrix(ExpectStatement& expect);
-  void matrix_row(ExpectStatement& expect);
-  void expect_stable(ExpectStatement& expect);
+  expectation::Point expected_point();
+  expectation::Spectrum expected_spectrum();
+  expectation::Kind expect_eigenvalues();
+  expectation::Kind expect_return_map();
+  expectation::Kind expect_matrix();
+  void matrix_row(expectation::Matrix& matrix);
+  expectation::Kind expect_stable();
   std::vector<ExpressionPtr> matrix_variables();
   ExpressionPtr clause_quantity(std::string_view clause, const ExpressionPtr& already);
   [[noreturn]] void missing_clause(std::string_view clause, std::string_view statement, std::string_view example);

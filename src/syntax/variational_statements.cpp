@@ -44,8 +44,13 @@ constexpr std::string_view kPathExample = "path from (0, 1) at 0 to (2, free) at
 // path from (0, 1) at 0 to (2, free) at 1
 StatementBody StatementParser::path_statement() {
   next();
-  PathStatement path;
   if (!accept("from")) missing_clause("from", "path", kPathExample);
+  return path_ends();
+}
+
+// (0, 1) at 0 to (2, free) at 1
+PathStatement StatementParser::path_ends() {
+  PathStatement path;
   path.from = path_end();
   if (!accept("to")) missing_clause("to", "path", kPathExample);
   path.to = path_end();
@@ -117,40 +122,45 @@ std::vector<ExpressionPtr> StatementParser::with_unit_after(std::vector<Expressi
 }
 
 // action = 3 J s ± 1e-9,   action of path 2 = 3 J s ± 1e-9,   action of (4 t + 7, 3 t) from 0 s to 10 s = 435 J s ± 1e-9
-void StatementParser::expect_action(ExpectStatement& expect) {
+expectation::Kind StatementParser::expect_action() {
   next();
-  expect.kind = ExpectStatement::Kind::Action;
+  const auto right_side = [&] {
+    expect("=", "`action`");
+    return expected_number();
+  };
   if (peek().is("of") && peek(1).is("path")) {
     next(), next();
-    expect.occurrence = path_number();
-  } else if (accept("of")) {
-    if (!peek().is("(")) fail_expected("`(` and the path", "Write for example expect action of (4 t, 3 t) = 435 ± 1e-9.");
-    next();
-    do expect.values.push_back(formula());
-    while (accept(","));
-    if (!peek().is(")")) fail_expected("`,` or `)`");
-    next();
-    if (accept("from")) {
-      expect.from = quantity();
-      this->expect("to", "the beginning of the path");
-      expect.to = quantity();
-    }
+    const int number = path_number();
+    return expectation::Action{number, right_side()};
   }
-  this->expect("=", "`action`");
-  expect.value = quantity();
-  tolerance(expect, true);
+  if (!accept("of")) return expectation::Action{0, right_side()};
+  expectation::ActionAlong along;
+  if (!peek().is("(")) fail_expected("`(` and the path", "Write for example expect action of (4 t, 3 t) = 435 ± 1e-9.");
+  next();
+  do along.q.push_back(formula());
+  while (accept(","));
+  if (!peek().is(")")) fail_expected("`,` or `)`");
+  next();
+  if (accept("from")) {
+    along.from = quantity();
+    expect("to", "the beginning of the path");
+    along.to = quantity();
+  }
+  along.expected = right_side();
+  return along;
 }
 
 // index = 1,   index of path 2 = 1
-void StatementParser::expect_index(ExpectStatement& expect) {
+expectation::Kind StatementParser::expect_index() {
   next();
-  expect.kind = ExpectStatement::Kind::MorseIndex;
+  expectation::MorseIndex out;
   if (accept("of")) {
-    this->expect("path", "`of`");
-    expect.occurrence = path_number();
+    expect("path", "`of`");
+    out.path = path_number();
   }
-  this->expect("=", "`index`");
-  expect.value = quantity();
+  expect("=", "`index`");
+  out.index = quantity();
+  return out;
 }
 
 // Which of the paths, the one with the smallest action first: 1, 2, …
@@ -162,16 +172,16 @@ int StatementParser::path_number() {
 }
 
 // path x at 0.5 s = 0.2 m ± 1e-9,   path 2 x at 0.5 s = 0.2 m ± 1e-9
-void StatementParser::expect_path(ExpectStatement& expect) {
+expectation::Kind StatementParser::expect_path() {
   next();
-  expect.kind = ExpectStatement::Kind::PathAt;
-  if (peek().kind == Token::Kind::Number) expect.occurrence = path_number();
-  expect.subject = formula();
-  this->expect("at", "what is expected of the path");
-  expect.time = quantity();
-  this->expect("=", "the place on the path");
-  expect.value = quantity();
-  tolerance(expect, true);
+  expectation::PathAt out;
+  if (peek().kind == Token::Kind::Number) out.path = path_number();
+  out.subject = formula();
+  expect("at", "what is expected of the path");
+  out.time = quantity();
+  expect("=", "the place on the path");
+  out.expected = expected_number();
+  return out;
 }
 
 }  // namespace maupertuis::syntax

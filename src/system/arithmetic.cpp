@@ -70,7 +70,7 @@ void report_sum(Elaboration& e, const Value& a, const Value& b, const Expression
       : x.op == Operator::Subtract
           ? fmt::format("this {} {} from {}", verb, describe(b.dimension), describe(a.dimension))
           : fmt::format("this {} {} to {}", verb, describe(b.dimension), describe(a.dimension));
-  const std::string text(e.source.slice((left_is_wrong ? left : right)->span));
+  const std::string text(e.texts.slice((left_is_wrong ? left : right)->span));
   e.diagnostics.error(
       "E0302", (left_is_wrong ? left : right)->span, message, reason,
       dimension_advice(left_is_wrong ? a.dimension : b.dimension, place.expected.value_or(a.dimension)));
@@ -254,7 +254,7 @@ Value time_derivative(Elaboration& e, Value v, int times, const Expression& x) {
   bool moves = false;
   for (const Expr& part : v.parts) moves = moves || e.context.depends_on_time(part.id());
   if (!moves) {
-    const std::string text(e.source.slice(x.span));
+    const std::string text(e.texts.slice(x.span));
     e.diagnostics.error("E0217", x.span, fmt::format("`{}` does not change {}", text.substr(0, text.find('\'')), in_words(e, "in time")),
                         "The derivative of a constant is zero.",
                         "Leave the term out, or take the derivative of a coordinate.");

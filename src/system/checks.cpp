@@ -110,7 +110,7 @@ bool check_components(Elaboration& e, std::size_t count, Span span) {
                                   e.system().space_dimension == 2 ? "two" : "three"),
                       e.dimension_from ? fmt::format("The model is {}-dimensional since line {}.",
                                                      e.system().space_dimension == 2 ? "two" : "three",
-                                                     e.source.locate(e.dimension_from->begin).line)
+                                                     e.texts.locate(*e.dimension_from).line)
                                        : "",
                       e.system().space_dimension == 2 ? "Give every vector three components for a model in space."
                                                       : "Give every vector three components.");

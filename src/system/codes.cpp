@@ -90,7 +90,7 @@ constexpr CodeEntry kEntries[] = {
      "accelerations from the equations of motion.",
      "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nstart m = 2 kg\n",
      "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nstart x = 2 m\n"},
-    {"E0224", "a value of the command line does not fit the model",
+    {"E0224", "a value given beside the model does not fit it",
      "--set takes a parameter and a quantity of its dimension, --set m=2kg; --start takes a coordinate or its "
      "velocity, --start θ=30deg.",
      "", ""},
@@ -136,8 +136,8 @@ constexpr CodeEntry kEntries[] = {
      "independent x : length\ncoord y : length\nparam m = 1 kg\nT = 1/2 m y'^2\n",
      "independent x : length\ncoord y : length\nL = sqrt(1 + y'^2)\n"},
     {"E0241", "a path with too few or too many values",
-     "`path from (0, 1) at 0 to (2, free) at 1` and `expect action of (…)` give every coordinate its value, in the order of their declaration. "
-     "`free` stands at an end where a coordinate may have any value.",
+     "`path from (0, 1) at 0 to (2, free) at 1` and `expect action of (…)` give every coordinate its value, in the order of their declaration; "
+     "`maup action --path \"x = 4 t, y = 3 t\"` names them. `free` stands at an end where a coordinate may have any value.",
      "dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2)\npath from (0, 0) at 0 to 1 at 1\n",
      "dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2)\npath from (0, 0) at 0 to (1, free) at 1\n"},
     {"E0242", "a path that ends before it begins",

@@ -134,7 +134,7 @@ void warn_of_repetition(Elaboration& e) {
         "W0425", b.span, "this constraint is written already",
         fmt::format("It is that of line {}: the motion stays the same, but which of the two exerts the force is not "
                     "determined.",
-                    e.source.locate(a.span.begin).line),
+                    e.texts.locate(a.span).line),
         "Leave one of them out.");
   }
 }

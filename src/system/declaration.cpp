@@ -58,8 +58,8 @@ constexpr const char* kLong[] = {"kinetic", "potential", "generalized_potential"
 
 }  // namespace
 
-SymbolTable::SymbolTable(const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics)
-    : diagnostics_(diagnostics), source_(source) {
+SymbolTable::SymbolTable(const syntax::SyntaxTree& tree, const SourceTexts& texts, Diagnostics& diagnostics)
+    : diagnostics_(diagnostics), texts_(texts) {
   for (const char* name : kShort) {
     Declaration d;
     d.kind = Kind::Energy;
@@ -110,7 +110,7 @@ void SymbolTable::add(Kind kind, const syntax::Name& name, const syntax::Stateme
   const Declaration& first = declarations_[found->second];
   diagnostics_.error(
       "E0202", name.span, fmt::format("`{}` is declared twice", name.text),
-      fmt::format("It is already a {} in line {}.", word_of(first.kind), source_.locate(first.span.begin).line),
+      fmt::format("It is already a {} in line {}.", word_of(first.kind), texts_.locate(first.span).line),
       "Give one of them another name.");
 }
 

@@ -28,7 +28,7 @@ using DeclarationId = std::size_t;
 class SymbolTable {
  public:
   /// Collects the names of `tree`; says which are declared twice.
-  SymbolTable(const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics);
+  SymbolTable(const syntax::SyntaxTree& tree, const SourceTexts& texts, Diagnostics& diagnostics);
 
   std::vector<Declaration>& declarations() { return declarations_; }
   Declaration& operator[](DeclarationId id) { return declarations_[id]; }
@@ -48,7 +48,7 @@ class SymbolTable {
   void add(Declaration::Kind kind, const syntax::Name& name, const syntax::Statement& statement, std::size_t item);
 
   Diagnostics& diagnostics_;
-  const SourceText& source_;
+  SourceTexts texts_;
   std::vector<Declaration> declarations_;  // the energies T V U L D first
   std::unordered_map<std::string, DeclarationId> by_name_;
   std::unordered_map<std::string, bool> lost_;

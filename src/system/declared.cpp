@@ -49,7 +49,7 @@ WrittenUnit unit_of_quantity(Elaboration& e, const Expression& x, const Dimensio
   if (quantities.size() > 1 && !vector) return {to_string(dimension), 1};
   const std::optional<Unit> unit = unit_of(e, *quantities.front()->unit);
   if (!unit || !unit->dimension.same_as(dimension)) return {to_string(dimension), 1};
-  return {written_unit(e.source, *quantities.front()->unit), maupertuis::evaluate(factor_of(e.context, *unit), Bindings{})};
+  return {written_unit(e.texts, *quantities.front()->unit), maupertuis::evaluate(factor_of(e.context, *unit), Bindings{})};
 }
 
 Expr add_parameter(Elaboration& e, const Declaration& d, const std::string& name, Expr value,

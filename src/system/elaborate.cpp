@@ -9,11 +9,13 @@
 namespace maupertuis {
 namespace elaboration {
 
-Elaboration::Elaboration(const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics)
+Elaboration::Elaboration(const syntax::SyntaxTree& tree, const SourceTexts& texts, const ExperimentOverrides& overrides,
+                         Diagnostics& diagnostics)
     : tree(tree),
-      source(source),
+      texts(texts),
+      overrides(overrides),
       diagnostics(diagnostics),
-      table(tree, source, diagnostics),
+      table(tree, texts, diagnostics),
       model{MechanicalSystem{}, Experiment{}},
       context(*(model.system.context = std::make_shared<Context>())) {}
 
@@ -156,9 +158,9 @@ void fix_space_dimension(Elaboration& e) {
 }  // namespace elaboration
 
 std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics,
-                               const Overrides& overrides) {
+                               const ExperimentOverrides& overrides) {
   using namespace elaboration;
-  Elaboration e(tree, source, diagnostics);
+  Elaboration e(tree, SourceTexts(source, overrides.texts()), overrides, diagnostics);
   headings(e);
   name_independent(e);
   fix_space_dimension(e);
@@ -176,14 +178,13 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
     diagnostics.sort_by_place();
     return std::nullopt;
   }
-  apply_parameter_overrides(e, overrides);
+  override_parameters(e);
 
   for (const DeclarationId id : definition_order(e.table, tree, diagnostics)) elaborate_declaration(e, id);
   elaborate_forces(e);
   elaborate_constraints(e);
   elaborate_experiment(e);
-  apply_start_overrides(e, overrides);
-  apply_at_overrides(e, overrides);
+  override_start(e);
   start_quaternions(e);
 
   require_coordinates(e, any_coordinate);

@@ -22,7 +22,8 @@ struct Place {
 
 struct Elaboration {
   const syntax::SyntaxTree& tree;
-  const SourceText& source;
+  SourceTexts texts;
+  const ExperimentOverrides& overrides;
   Diagnostics& diagnostics;
   SymbolTable table;
   Model model;
@@ -39,10 +40,10 @@ struct Elaboration {
   bool lagrangian_settled = false;                // its first part has said what dimension that is
   std::optional<Span> dimension_from;  // the first vector: its length is the dimension of space
 
-  Elaboration(const syntax::SyntaxTree& tree, const SourceText& source, Diagnostics& diagnostics);
-  /// Of a fragment of the command line, which shares the context and the values of `outer`.
-  Elaboration(const Elaboration& outer, const syntax::SyntaxTree& tree, const SourceText& source,
+  Elaboration(const syntax::SyntaxTree& tree, const SourceTexts& texts, const ExperimentOverrides& overrides,
               Diagnostics& diagnostics);
+  /// Of declarations beside the model, which share the context and the values of `outer`.
+  Elaboration(const Elaboration& outer, const syntax::SyntaxTree& tree, Diagnostics& diagnostics);
 
   MechanicalSystem& system() { return model.system; }
   Experiment& experiment() { return model.experiment; }
@@ -127,7 +128,7 @@ void elaborate_constraints(Elaboration& e);
 /// The name of a constraint or of a release; false, and a message, if it is none.
 bool names_a_reaction(Elaboration& e, const syntax::Name& name);
 /// `expect constraint roll is nonholonomic`: whether there is such a constraint, and such a class.
-bool check_class_of_constraint(Elaboration& e, const syntax::ExpectStatement& s);
+bool check_class_of_constraint(Elaboration& e, const syntax::expectation::ConstraintClass& x);
 void elaborate_release(Elaboration& e, const syntax::ReactionStatement& s);
 
 /// `rotation quaternion` without components: the body or frame has four coordinates, whose norm is constrained.
@@ -152,14 +153,36 @@ bool is_body_rate(Elaboration& e, const syntax::Expression& x);
 std::vector<StartRate> start_rates(Elaboration& e, const syntax::StartStatement::Item& item);
 void elaborate_experiment(Elaboration& e);
 void elaborate_expectation(Elaboration& e, const syntax::ExpectStatement& s, Span span);
-/// The unit in which `value` is written is that in which what comes out is shown.
-void set_display_unit(Elaboration& e, Expectation& out, const syntax::Expression& value);
-/// ± 1e-9 is in that unit, unless it has one of its own; rel 1e-9 is a bare number. False after a mistake.
-bool tolerance_of(Elaboration& e, Expectation& out, const syntax::ExpectStatement& s, const Dimension& dimension);
-/// Eigenvalues, Matrix, Stable, Multipliers, Trace, Period: linear_expectations.cpp. False after a mistake.
-bool expect_of_neighbours(Elaboration& e, Expectation& out, const syntax::ExpectStatement& s);
-/// The configuration of `at θ = 0, φ' = 2 rad/s`. False after a mistake.
-bool point_of_expectation(Elaboration& e, Expectation& out, const syntax::ExpectStatement& s);
+/// What a line says; nothing after a mistake.
+using Expected = std::optional<expectation::Kind>;
+/// One number that stands in a formula; `what` is told in E0210 where it is a vector.
+std::optional<Value> number_of(Elaboration& e, const syntax::Expression& x, const Place& place, const char* what);
+/// As written; the namespace of what they mean is `expectation`.
+namespace written = syntax::expectation;
+/// The quantity below signs, whose unit the value is shown in.
+const syntax::Expression& unsigned_quantity(const syntax::Expression& x);
+/// The unit in which `value` is written, where it is one of `dimension`: that in which what comes out is shown.
+std::optional<expectation::DisplayUnit> display_unit(Elaboration& e, const syntax::Expression& value,
+                                                     const Dimension& dimension);
+/// ± 1e-9 is in the unit of the value, unless it has one of its own; rel 1e-9 is a bare number. Nothing after a
+/// mistake. `hertz`: it was written in turns.
+std::optional<expectation::Tolerance> tolerance_of(Elaboration& e, const syntax::Tolerance& tolerance,
+                                                   const Dimension& dimension, const expectation::DisplayUnit& unit,
+                                                   bool* hertz = nullptr);
+/// A value known before the run with its tolerance; `what` names it in messages.
+std::optional<expectation::Number> expected_number(Elaboration& e, const written::Number& number,
+                                                   const Dimension& dimension, const std::string& what);
+/// The configuration of `at θ = 0, φ' = 2 rad/s`.
+std::optional<std::vector<StartValue>> point_of_expectation(Elaboration& e, const written::Point& point);
+/// E0246 where the run does not end at a condition.
+bool refuse_without_until(Elaboration& e, Span span);
+// linear_expectations.cpp
+Expected meaning_of(Elaboration& e, const written::Eigenvalues& x, Span line);
+Expected meaning_of(Elaboration& e, const written::Matrix& x, Span line);
+Expected meaning_of(Elaboration& e, const written::Stable& x, Span line);
+Expected meaning_of(Elaboration& e, const written::Multipliers& x, Span line);
+Expected meaning_of(Elaboration& e, const written::Trace& x, Span line);
+Expected meaning_of(Elaboration& e, const written::Period& x, Span line);
 /// `method` and `precision`.
 void elaborate_method(Elaboration& e, const syntax::MethodStatement& s);
 void elaborate_precision(Elaboration& e, const syntax::PrecisionStatement& s);
@@ -173,12 +196,13 @@ bool elaborate_independent(Elaboration& e);
 std::string in_words(const Elaboration& e, std::string text);
 void elaborate_path(Elaboration& e, const syntax::PathStatement& s, Span span);
 void elaborate_integral_constraint(Elaboration& e, const syntax::ConstraintStatement& s, Span span);
-/// expect action, expect index, expect path: all but the tolerance. False after a mistake.
-bool expect_action(Elaboration& e, Expectation& out, const syntax::ExpectStatement& s);
-bool expect_index(Elaboration& e, Expectation& out, const syntax::ExpectStatement& s);
-bool expect_on_path(Elaboration& e, Expectation& out, const syntax::ExpectStatement& s);
-/// E0244 where an expectation about a motion stands in a model with integral constraints.
-bool refuse_motion_of_path(Elaboration& e, const syntax::ExpectStatement& s, Span span);
+/// expect action, expect index, expect path.
+Expected meaning_of(Elaboration& e, const written::Action& x, Span line);
+Expected meaning_of(Elaboration& e, const written::ActionAlong& x, Span line);
+Expected meaning_of(Elaboration& e, const written::MorseIndex& x, Span line);
+Expected meaning_of(Elaboration& e, const written::PathAt& x, Span line);
+/// x = 4 t, y = 3 t + 5 of the overrides.
+void override_given_path(Elaboration& e);
 
 /// The pose of a frame or body by its name; null, and a message, if it is none.
 const Pose* find_pose(Elaboration& e, const std::optional<syntax::Name>& name);
@@ -197,9 +221,9 @@ void warn_unused(Elaboration& e);
 /// Replaces the symbols of definitions everywhere and keeps the system as written beside it.
 void expand_definitions(Model& model);
 
-/// `m=2kg`, `θ=1` of the command line; mistakes are told at their places in the options, see overrides.cpp.
-void apply_parameter_overrides(Elaboration& e, const Overrides& overrides);
-void apply_start_overrides(Elaboration& e, const Overrides& overrides);
-void apply_at_overrides(Elaboration& e, const Overrides& overrides);
+/// Values of parameters in the place of the model's, before anything is made of them; overrides.cpp.
+void override_parameters(Elaboration& e);
+/// The values of a start and of the point that is asked about; after the model's own.
+void override_start(Elaboration& e);
 
 }  // namespace maupertuis::elaboration

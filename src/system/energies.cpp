@@ -63,7 +63,7 @@ std::optional<ExprVector> between(Elaboration& e, Link::Kind kind, const syntax:
 }
 
 std::string pair_name(const Elaboration& e, const syntax::ExpressionPtr& from, const syntax::ExpressionPtr& to) {
-  return fmt::format("{} - {}", e.source.slice(from->span), e.source.slice(to->span));
+  return fmt::format("{} - {}", e.texts.slice(from->span), e.texts.slice(to->span));
 }
 
 /// A stiffness or damping coefficient below zero gives energy away.
@@ -177,8 +177,8 @@ bool lagrangian_given_by_parts(const MechanicalSystem& s) {
 
 void given_twice(Elaboration& e, const EnergyStatement& s, Span first) {
   e.diagnostics.error("E0207", s.name_span, fmt::format("the {} is given twice", name_of_energy(s.which)),
-                      fmt::format("It is already given in line {}.", e.source.locate(first.begin).line),
-                      fmt::format("Write `{} += …` to add to it.", e.source.slice(s.name_span)));
+                      fmt::format("It is already given in line {}.", e.texts.locate(first).line),
+                      fmt::format("Write `{} += …` to add to it.", e.texts.slice(s.name_span)));
 }
 
 void refuse_over_dampers(Elaboration& e, const EnergyStatement& s) {

@@ -52,15 +52,63 @@ void for_each_expression(MechanicalSystem& s, const std::function<void(Expr&)>& 
     for (Expr* x : {&c.integrand, &c.value}) visit(*x);
 }
 
+/// Calls `visit` on every expression of an expectation.
+struct ExpectationVisitor {
+  const std::function<void(Expr&)>& visit;
+
+  void present(Expr& e) const {
+    if (e) visit(e);
+  }
+  void all(std::vector<Expr>& list) const {
+    for (Expr& e : list) visit(e);
+  }
+  void starts(std::vector<StartValue>& list) const {
+    for (StartValue& s : list) visit(s.value);
+  }
+  void number(expectation::Number& n) const { visit(n.value), present(n.tolerance.size); }
+  void spectrum(expectation::Spectrum& s) const { all(s.real), all(s.imaginary), present(s.tolerance.size); }
+  void path(PathFormulas& p) const { all(p.q), present(p.from), present(p.to); }
+
+  void operator()(expectation::ValueAt& x) const { visit(x.subject), present(x.time), number(x.expected); }
+  void operator()(expectation::ValueAtUntil& x) const { visit(x.subject), number(x.expected); }
+  void operator()(expectation::UntilAt& x) const { number(x.expected); }
+  void operator()(expectation::EnergyConserved& x) const { present(x.tolerance.size); }
+  void operator()(expectation::ConservedAlongRun& x) const { visit(x.subject), present(x.tolerance.size); }
+  void operator()(expectation::Conserved& x) const { visit(x.subject), all(x.where); }
+  void operator()(expectation::NotConserved& x) const { visit(x.subject); }
+  void operator()(expectation::Integral& x) const { visit(x.subject); }
+  void operator()(expectation::Equation& x) const { visit(x.left), visit(x.right); }
+  void operator()(expectation::Hamiltonian& x) const { visit(x.value); }
+  void operator()(expectation::Routhian& x) const { visit(x.value); }
+  void operator()(expectation::Bracket& x) const { visit(x.a), visit(x.b), visit(x.value); }
+  void operator()(expectation::Freedoms& x) const { visit(x.number); }
+  void operator()(expectation::ConstraintClass&) const {}
+  void operator()(expectation::Frequencies& x) const { starts(x.at), all(x.values), present(x.tolerance.size); }
+  void operator()(expectation::Eigenvalues& x) const { starts(x.at), spectrum(x.expected); }
+  void operator()(expectation::Matrix& x) const { starts(x.at), all(x.entries), present(x.tolerance.size); }
+  void operator()(expectation::Equilibrium& x) const {
+    for (expectation::Place& place : x.at) {
+      visit(place.value.value);
+      if (place.tolerance) present(place.tolerance->size);
+    }
+  }
+  void operator()(expectation::Stable& x) const { number(x.critical), starts(x.at); }
+  void operator()(expectation::Multipliers& x) const { present(x.over), spectrum(x.expected); }
+  void operator()(expectation::Trace& x) const { present(x.over), number(x.expected); }
+  void operator()(expectation::Period& x) const { present(x.over), number(x.expected); }
+  void operator()(expectation::Action& x) const { number(x.expected); }
+  void operator()(expectation::ActionAlong& x) const { path(x.along), number(x.expected); }
+  void operator()(expectation::MorseIndex& x) const { visit(x.index); }
+  void operator()(expectation::PathAt& x) const { visit(x.subject), visit(x.time), number(x.expected); }
+  void operator()(expectation::Error&) const {}
+};
+
 void for_each_expression(Experiment& x, const std::function<void(Expr&)>& visit) {
   const auto present = [&](Expr& e) {
     if (e) visit(e);
   };
-  const auto starts = [&](std::vector<StartValue>& list) {
-    for (StartValue& s : list) visit(s.value);
-  };
-  starts(x.start);
-  starts(x.at);
+  for (auto* list : {&x.start, &x.at})
+    for (StartValue& s : *list) visit(s.value);
   if (x.path) {
     for (ExprVector* end : {&x.path->from, &x.path->to})
       for (Expr& component : *end) present(component);
@@ -78,13 +126,11 @@ void for_each_expression(Experiment& x, const std::function<void(Expr&)>& visit)
     for (Expr& e : d.sizes) visit(e);
     for (Expr& e : d.direction) visit(e);
   }
-  for (Expectation& p : x.expectations) {
-    for (Expr* e : {&p.subject, &p.subject_right, &p.time, &p.value, &p.tolerance, &p.from, &p.to}) present(*e);
-    for (ExprVector* list : {&p.values, &p.imaginary, &p.where})
-      for (Expr& e : *list) visit(e);
-    for (PointTolerance& t : p.at_tolerances) present(t.size);
-    starts(p.at);
-  }
+  const ExpectationVisitor of_expectation{visit};
+  for (Expectation& p : x.expectations) std::visit(of_expectation, p.kind);
+  for (AskedFormula& f : x.asked) visit(f.value);
+  present(x.section);
+  if (x.given_path) of_expectation.path(*x.given_path);
 }
 
 }  // namespace

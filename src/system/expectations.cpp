@@ -5,344 +5,392 @@
 
 /// expect and claim: what is checked here is that both sides can be equal at all.
 namespace maupertuis::elaboration {
-namespace {
 
-using syntax::ExpectStatement;
 using syntax::Expression;
-using Kind = ExpectStatement::Kind;
 
-/// The quantity below signs, whose unit the value is shown in.
+// ---------------------------------------------------------------------------------------------------------- the parts
+
 const Expression& unsigned_quantity(const Expression& x) {
   return x.kind == Expression::Kind::Unary ? unsigned_quantity(*x.arguments[0]) : x;
 }
 
-}  // namespace
-
-void set_display_unit(Elaboration& e, Expectation& out, const Expression& value) {
+std::optional<expectation::DisplayUnit> display_unit(Elaboration& e, const Expression& value,
+                                                     const Dimension& dimension) {
   const Expression& q = unsigned_quantity(value);
-  if (q.kind != Expression::Kind::Quantity || !q.unit || !all_units(*q.unit)) return;
+  if (q.kind != Expression::Kind::Quantity || !q.unit || !all_units(*q.unit)) return std::nullopt;
   const std::optional<Unit> unit = unit_of(e, *q.unit);
-  if (!unit || !unit->dimension.same_as(out.dimension)) return;
-  out.display_unit = written_unit(e.source, *q.unit);
-  out.display_factor = maupertuis::evaluate(factor_of(e.context, *unit), Bindings{});
+  if (!unit || !unit->dimension.same_as(dimension)) return std::nullopt;
+  return expectation::DisplayUnit{written_unit(e.texts, *q.unit),
+                                  maupertuis::evaluate(factor_of(e.context, *unit), Bindings{})};
 }
 
-bool tolerance_of(Elaboration& e, Expectation& out, const ExpectStatement& s, const Dimension& dimension) {
-  if (!s.tolerance) return true;
-  out.relative = s.relative;
-  const bool own_unit = unsigned_quantity(*s.tolerance).kind == Expression::Kind::Quantity;
-  const Value v = constant_of(e, *s.tolerance, s.relative || !own_unit ? Dimension{} : dimension,
-                              s.relative ? "a relative tolerance" : "a tolerance");
-  if (v.poisoned) return false;
-  const bool in_display_unit = !s.relative && !own_unit && !out.display_unit.empty();
-  const std::optional<double> size = constant_value(e, v.scalar());
-  if (size && !(*size >= 0)) {
-    e.diagnostics.error("E0222", s.tolerance->span, "a tolerance is not negative",
-                        "It is the largest difference that passes.", "");
-    return false;
+std::optional<expectation::Tolerance> tolerance_of(Elaboration& e, const syntax::Tolerance& tolerance,
+                                                   const Dimension& dimension, const expectation::DisplayUnit& unit,
+                                                   bool* hertz) {
+  const auto& [size, relative] = tolerance;
+  if (!size) return expectation::Tolerance{};
+  const bool own_unit = unsigned_quantity(*size).kind == Expression::Kind::Quantity;
+  const Value v = constant_of(e, *size, relative || !own_unit ? Dimension{} : dimension,
+                              relative ? "a relative tolerance" : "a tolerance");
+  if (v.poisoned) return std::nullopt;
+  const std::optional<double> number = constant_value(e, v.scalar());
+  if (number && !(*number >= 0)) {
+    e.diagnostics.error("E0222", size->span, "a tolerance is not negative", "It is the largest difference that passes.",
+                        "");
+    return std::nullopt;
   }
-  out.tolerance = v.scalar();
-  const bool turns = out.kind == Kind::Frequencies && !out.squared && v.hertz;  // values are kept in rad/s
-  if (turns) out.tolerance = v.scalar() * e.number(2) * e.context.pi();
-  if (in_display_unit) out.tolerance = v.scalar() * Rational::from_double(out.display_factor);
-  return true;
+  if (hertz) *hertz = v.hertz;
+  const bool in_display_unit = !relative && !own_unit && !unit.name.empty();
+  return expectation::Tolerance{in_display_unit ? v.scalar() * Rational::from_double(unit.factor) : v.scalar(),
+                                relative};
 }
 
-namespace {
-
-bool unit_and_tolerance(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  set_display_unit(e, out, *s.value);
-  return tolerance_of(e, out, s, out.dimension);
+std::optional<expectation::Number> expected_number(Elaboration& e, const written::Number& number,
+                                                   const Dimension& dimension, const std::string& what) {
+  const Value value = constant_of(e, *number.value, dimension, what);
+  if (value.poisoned) return std::nullopt;
+  const expectation::DisplayUnit unit = display_unit(e, *number.value, dimension).value_or(expectation::DisplayUnit{});
+  const auto tolerance = tolerance_of(e, number.tolerance, dimension, unit);
+  if (!tolerance) return std::nullopt;
+  return expectation::Number{value.scalar(), *tolerance, unit};
 }
 
-std::optional<Value> number(Elaboration& e, const Expression& x, const Place& place = {}) {
+std::optional<Value> number_of(Elaboration& e, const Expression& x, const Place& place, const char* what) {
   const Value v = evaluate_formula(e, x, place);
   if (v.poisoned) return std::nullopt;
   if (!v.is_vector) return v;
-  e.diagnostics.error("E0210", x.span, "an expectation is about a number, not a vector", "",
+  e.diagnostics.error("E0210", x.span, fmt::format("{} is about a number, not a vector", what), "",
                       "Take a component with .x or .y, or its length with norm(…).");
   return std::nullopt;
 }
 
-/// E0246 where the run of the model does not end at a condition.
-bool refuse_without_until(Elaboration& e, Span span) {
+std::optional<std::vector<StartValue>> point_of_expectation(Elaboration& e, const written::Point& point) {
+  std::vector<StartValue> out;
+  for (const auto& item : point)
+    if (auto value = start_value(e, item)) out.push_back(std::move(*value));
+  return out.size() == point.size() ? std::optional(std::move(out)) : std::nullopt;
+}
+
+namespace {
+
+std::optional<Value> number(Elaboration& e, const Expression& x, const Place& place = {}) {
+  return number_of(e, x, place, "an expectation");
+}
+
+/// Momenta, multipliers and reactions may stand there.
+Place along_motion() {
+  Place place;
+  place.reactions = true;
+  return place;
+}
+
+bool runs_until(const Elaboration& e) {
+  if (e.overrides.run) return e.overrides.run->until_left != nullptr;
   for (const syntax::Statement& s : e.tree.statements)
-    if (const auto* run = std::get_if<syntax::RunStatement>(&s.body); run && run->until_left) return false;
+    if (const auto* run = std::get_if<syntax::RunStatement>(&s.body); run && run->until_left) return true;
+  return false;
+}
+
+}  // namespace
+
+bool refuse_without_until(Elaboration& e, Span span) {
+  if (runs_until(e)) return false;
   e.diagnostics.error("E0246", span, "the run of this model does not end at a condition",
                       "`until` is the moment at which the condition of `run until` is met.",
                       "Add it, for example `run until P.y = 0 within 60 s`, or expect the value at a time.");
   return true;
 }
 
+// ------------------------------------------------------------------------------------------------------- along the run
+
+namespace {
+
 /// until at 1.2 s ± 1e-9
-bool until_at(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  const Value value = constant_of(e, *s.value, e.time(), in_words(e, "the time of an expectation"));
-  if (value.poisoned || refuse_without_until(e, out.span)) return false;
-  out.value = value.scalar();
-  out.dimension = e.time();
-  return unit_and_tolerance(e, out, s);
+Expected meaning_of(Elaboration& e, const written::UntilAt& x, Span line) {
+  const auto time = expected_number(e, x.expected, e.time(), in_words(e, "the time of an expectation"));
+  if (!time || refuse_without_until(e, line)) return std::nullopt;
+  return expectation::UntilAt{*time};
 }
 
-bool value_at(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  Place place;
-  place.reactions = true;
-  const std::optional<Value> subject = number(e, *s.subject, place);
-  out.at_until = s.at_until;
-  if (s.at_until && refuse_without_until(e, out.span)) return false;
-  if (s.time) {
-    const Value time = constant_of(e, *s.time, e.time(), in_words(e, "the time of an expectation"));
-    if (time.poisoned) return false;
-    out.time = time.scalar();
+/// The value that is expected of a quantity.
+std::optional<expectation::Number> number_beside(Elaboration& e, const Value& subject, const Expression& formula,
+                                                 const written::Number& number) {
+  return expected_number(e, number, subject.fits_any ? Dimension{} : subject.dimension,
+                         fmt::format("`{}`", e.texts.slice(formula.span)));
+}
+
+/// θ at 10 s = 0.5 rad ± 1e-9,   T = 3 J ± 1e-9
+Expected meaning_of(Elaboration& e, const written::ValueAt& x, Span) {
+  const std::optional<Value> subject = number(e, *x.subject, along_motion());
+  Expr at;
+  if (x.time) {
+    const Value time = constant_of(e, *x.time, e.time(), in_words(e, "the time of an expectation"));
+    if (time.poisoned) return std::nullopt;
+    at = time.scalar();
   }
-  if (!subject) return false;
-  out.subject = subject->scalar();
-  out.dimension = subject->dimension;
-  const Dimension expected = subject->fits_any ? Dimension{} : subject->dimension;
-  const Value value = constant_of(e, *s.value, expected, fmt::format("`{}`", e.source.slice(s.subject->span)));
-  if (value.poisoned) return false;
-  out.value = value.scalar();
-  return unit_and_tolerance(e, out, s);
+  if (!subject) return std::nullopt;
+  const auto expected = number_beside(e, *subject, *x.subject, x.expected);
+  return expected ? Expected(expectation::ValueAt{subject->scalar(), at, *expected}) : std::nullopt;
 }
 
-void warn_identity(Elaboration& e, const Expectation& out) {
-  e.diagnostics.warning("W0420", out.span, "this expectation says nothing",
+/// θ at until = 0.5 rad ± 1e-9
+Expected meaning_of(Elaboration& e, const written::ValueAtUntil& x, Span line) {
+  const std::optional<Value> subject = number(e, *x.subject, along_motion());
+  if (refuse_without_until(e, line) || !subject) return std::nullopt;
+  const auto expected = number_beside(e, *subject, *x.subject, x.expected);
+  return expected ? Expected(expectation::ValueAtUntil{subject->scalar(), *expected}) : std::nullopt;
+}
+
+Expected meaning_of(Elaboration& e, const written::EnergyConserved& x, Span) {
+  const auto tolerance = tolerance_of(e, x.tolerance, e.system().lagrangian_dimension, {});
+  return tolerance ? Expected(expectation::EnergyConserved{*tolerance}) : std::nullopt;
+}
+
+// ---------------------------------------------------------------------------------------------------------- identities
+
+void warn_identity(Elaboration& e, Span span) {
+  e.diagnostics.warning("W0420", span, "this expectation says nothing",
                         "Its two sides are the same formula: it holds for every motion of every system.",
                         "Expect something that the equations of motion decide.");
 }
 
-bool equation(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  Place place;
-  place.reactions = true;
-  const Value left = evaluate_formula(e, *s.subject, place);
+Expected meaning_of(Elaboration& e, const written::Equation& x, Span line) {
+  Place place = along_motion();
+  const Value left = evaluate_formula(e, *x.left, place);
   if (!left.poisoned) place.expected = left.dimension;
-  const Value right = evaluate_formula(e, *s.value, place);
-  if (left.poisoned || right.poisoned) return false;
+  const Value right = evaluate_formula(e, *x.right, place);
+  if (left.poisoned || right.poisoned) return std::nullopt;
   for (const Value* v : {&left, &right}) {
     if (!v->is_vector) continue;
-    e.diagnostics.error("E0210", (v == &left ? s.subject : s.value)->span, "an equation is about numbers, not vectors",
-                        "", "Write one for each component.");
-    return false;
+    e.diagnostics.error("E0210", (v == &left ? x.left : x.right)->span, "an equation is about numbers, not vectors", "",
+                        "Write one for each component.");
+    return std::nullopt;
   }
   if (!left.fits_any && !right.fits_any && !left.dimension.same_as(right.dimension) && !e.dimensionless) {
     e.diagnostics.error(
-        "E0304", s.value->span,
+        "E0304", x.right->span,
         fmt::format("the left side is {}, this is {}", describe(left.dimension), describe(right.dimension)),
         "Both sides of an equation have one dimension.", "");
-    return false;
+    return std::nullopt;
   }
-  out.subject = left.scalar();
-  out.subject_right = right.scalar();
-  out.dimension = left.fits_any ? right.dimension : left.dimension;
-  const Expr difference[] = {out.subject - out.subject_right};
-  if (difference[0].is_zero() || zero_test(expand_time_derivatives(difference[0])).verdict == Verdict::Zero)
-    warn_identity(e, out);
-  return true;
+  const Expr difference = left.scalar() - right.scalar();
+  if (difference.is_zero() || zero_test(expand_time_derivatives(difference)).verdict == Verdict::Zero)
+    warn_identity(e, line);
+  return expectation::Equation{left.scalar(), right.scalar()};
 }
 
-/// A coordinate as a name alone.
-Expr coordinate_named(Elaboration& e, const Expression& x) {
-  const Coordinate* c = x.kind == Expression::Kind::Name && x.primes == 0 ? e.system().find_coordinate(x.text) : nullptr;
-  if (c) return c->q;
-  e.diagnostics.error("E0228", x.span, fmt::format("`{}` is no coordinate", e.source.slice(x.span)),
+/// The index of a coordinate as a name alone.
+std::optional<std::size_t> coordinate_named(Elaboration& e, const Expression& x) {
+  const Coordinate* c =
+      x.kind == Expression::Kind::Name && x.primes == 0 ? e.system().find_coordinate(x.text) : nullptr;
+  if (c) return static_cast<std::size_t>(c - e.system().coordinates.data());
+  e.diagnostics.error("E0228", x.span, fmt::format("`{}` is no coordinate", e.texts.slice(x.span)),
                       "A Routhian replaces velocities of coordinates by their momenta.",
                       "Name them, separated by commas: expect routhian of φ, ψ = …");
-  return {};
+  return std::nullopt;
 }
 
-/// hamiltonian = H, routhian of φ = R: energies in q, p and, for the latter, the other velocities.
-bool energy_of_phase_space(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  Place place;
-  place.reactions = true;
-  for (const syntax::ExpressionPtr& x : s.values) {
-    out.values.push_back(coordinate_named(e, *x));
-    if (!out.values.back()) return false;
+/// An energy in q, p and perhaps velocities; an empty handle after a mistake.
+Expr energy_of_phase_space(Elaboration& e, const Expression& x, const char* what) {
+  const Value v = scalar_of(e, x, e.system().lagrangian_dimension, what, along_motion());
+  return v.poisoned ? Expr() : v.scalar();
+}
+
+Expected meaning_of(Elaboration& e, const written::Hamiltonian& x, Span) {
+  const Expr value = energy_of_phase_space(e, *x.value, "the Hamiltonian");
+  return value ? Expected(expectation::Hamiltonian{value}) : std::nullopt;
+}
+
+Expected meaning_of(Elaboration& e, const written::Routhian& x, Span) {
+  expectation::Routhian out;
+  for (const syntax::ExpressionPtr& name : x.coordinates) {
+    const auto coordinate = coordinate_named(e, *name);
+    if (!coordinate) return std::nullopt;
+    out.coordinates.push_back(*coordinate);
   }
-  const std::string what = out.values.empty() ? "the Hamiltonian" : "the Routhian";
-  const Value v = scalar_of(e, *s.value, e.system().lagrangian_dimension, what, place);
-  if (v.poisoned) return false;
-  out.subject_right = v.scalar();
-  out.dimension = v.dimension;
-  return true;
+  out.value = energy_of_phase_space(e, *x.value, "the Routhian");
+  return out.value ? Expected(std::move(out)) : std::nullopt;
 }
 
 /// {A, B} = C has the dimension of A B divided by that of q p, an action.
-bool bracket(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  Place place;
-  place.reactions = true;
-  const std::optional<Value> a = number(e, *s.subject, place), b = number(e, *s.values[0], place), c = number(e, *s.value, place);
-  if (!a || !b || !c) return false;
-  out.subject = a->scalar();
-  out.values = {b->scalar()};
-  out.subject_right = c->scalar();
-  out.dimension = a->dimension * b->dimension / (e.system().lagrangian_dimension * e.time());
-  if (e.dimensionless || a->fits_any || b->fits_any || c->fits_any || c->dimension.same_as(out.dimension)) return true;
-  e.diagnostics.error("E0304", s.value->span,
-                      fmt::format("the bracket is {}, this is {}", describe(out.dimension), describe(c->dimension)),
+Expected meaning_of(Elaboration& e, const written::Bracket& x, Span) {
+  const Place place = along_motion();
+  const std::optional<Value> a = number(e, *x.a, place), b = number(e, *x.b, place), c = number(e, *x.value, place);
+  if (!a || !b || !c) return std::nullopt;
+  const Dimension dimension = a->dimension * b->dimension / (e.system().lagrangian_dimension * e.time());
+  if (e.dimensionless || a->fits_any || b->fits_any || c->fits_any || c->dimension.same_as(dimension))
+    return expectation::Bracket{a->scalar(), b->scalar(), c->scalar()};
+  e.diagnostics.error("E0304", x.value->span,
+                      fmt::format("the bracket is {}, this is {}", describe(dimension), describe(c->dimension)),
                       "{A, B} has the dimension of A B divided by that of q p, an action.", "");
-  return false;
+  return std::nullopt;
 }
 
 /// where p_φ = 0: left − right, which vanishes on the level.
-bool levels(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  Place place;
-  place.reactions = true;
-  for (const ExpectStatement::Level& level : s.where) {
+std::optional<std::vector<Expr>> levels(Elaboration& e, const std::vector<syntax::Equation>& where) {
+  const Place place = along_motion();
+  std::vector<Expr> out;
+  for (const syntax::Equation& level : where) {
     const std::optional<Value> left = number(e, *level.left, place);
-    if (!left) return false;
-    const Value right = scalar_of(e, *level.right, left->dimension, fmt::format("`{}`", e.source.slice(level.left->span)), place);
-    if (right.poisoned || refuse_acceleration(e, *left, *level.left, "a level") || refuse_acceleration(e, right, *level.right, "a level"))
-      return false;
-    out.where.push_back(left->scalar() - right.scalar());
+    if (!left) return std::nullopt;
+    const Value right =
+        scalar_of(e, *level.right, left->dimension, fmt::format("`{}`", e.texts.slice(level.left->span)), place);
+    if (right.poisoned || refuse_acceleration(e, *left, *level.left, "a level") ||
+        refuse_acceleration(e, right, *level.right, "a level"))
+      return std::nullopt;
+    out.push_back(left->scalar() - right.scalar());
   }
-  return true;
+  return out;
 }
 
-bool about_subject(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  Place place;
-  place.reactions = s.kind != Kind::Integral;  // momenta
-  const std::optional<Value> subject = number(e, *s.subject, place);
-  if (!subject || !levels(e, out, s)) return false;
-  // Forces of constraints cannot be differentiated: without them the same has to have a meaning.
-  if (subject->order >= 2 && !number(e, *s.subject)) return false;
-  out.subject = subject->scalar();
-  out.dimension = subject->dimension;
-  if (out.kind != Kind::NotConserved && !e.context.depends_on_time(out.subject.id())) warn_identity(e, out);
-  return tolerance_of(e, out, s, out.dimension);
+/// A quantity whose derivative along the motion is asked for. Forces of constraints cannot be differentiated: where an
+/// acceleration stands in it, it has to have a meaning without them.
+std::optional<Value> differentiable(Elaboration& e, const Expression& x, const Place& place = along_motion()) {
+  const std::optional<Value> subject = number(e, x, place);
+  if (subject && subject->order >= 2 && !number(e, x)) return std::nullopt;
+  return subject;
 }
 
-bool freedoms(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  const Value v = constant_of(e, *s.value, Dimension{}, "a number of freedoms");
-  if (v.poisoned) return false;
-  out.value = v.scalar();
-  return true;
+/// A constant of every motion of every system.
+void warn_of_constant(Elaboration& e, const Value& subject, Span line) {
+  if (!e.context.depends_on_time(subject.scalar().id())) warn_identity(e, line);
 }
 
-bool frequencies(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  bool good = point_of_expectation(e, out, s);
+Expected meaning_of(Elaboration& e, const written::Conserved& x, Span line) {
+  const auto subject = differentiable(e, *x.subject);
+  if (!subject) return std::nullopt;
+  auto where = levels(e, x.where);
+  if (!where) return std::nullopt;
+  warn_of_constant(e, *subject, line);
+  return expectation::Conserved{subject->scalar(), std::move(*where)};
+}
+
+Expected meaning_of(Elaboration& e, const written::ConservedAlongRun& x, Span line) {
+  const auto subject = differentiable(e, *x.subject);
+  if (!subject) return std::nullopt;
+  warn_of_constant(e, *subject, line);
+  const auto tolerance = tolerance_of(e, x.tolerance, subject->dimension, {});
+  return tolerance ? Expected(expectation::ConservedAlongRun{subject->scalar(), *tolerance}) : std::nullopt;
+}
+
+Expected meaning_of(Elaboration& e, const written::NotConserved& x, Span) {
+  const auto subject = differentiable(e, *x.subject);
+  return subject ? Expected(expectation::NotConserved{subject->scalar()}) : std::nullopt;
+}
+
+/// Without momenta.
+Expected meaning_of(Elaboration& e, const written::Integral& x, Span line) {
+  const auto subject = differentiable(e, *x.subject, Place{});
+  if (!subject) return std::nullopt;
+  warn_of_constant(e, *subject, line);
+  return expectation::Integral{subject->scalar()};
+}
+
+Expected meaning_of(Elaboration& e, const written::Freedoms& x, Span) {
+  const Value v = constant_of(e, *x.number, Dimension{}, "a number of freedoms");
+  return v.poisoned ? std::nullopt : Expected(expectation::Freedoms{v.scalar()});
+}
+
+Expected meaning_of(Elaboration& e, const written::ConstraintClass& x, Span) {
+  if (!check_class_of_constraint(e, x)) return std::nullopt;
+  return expectation::ConstraintClass{x.constraint.text, x.word.text};
+}
+
+// -------------------------------------------------------------------------------------------------------- about a
+// point
+
+Expected meaning_of(Elaboration& e, const written::Frequencies& x, Span) {
+  expectation::Frequencies out;
+  auto point = point_of_expectation(e, x.at);
   const Dimension rate = Dimension{} / e.time();
-  out.squared = s.squared;
-  out.dimension = e.dimension(s.squared ? rate * rate : rate);
-  for (const auto& x : s.values) {
-    const Expression& q = unsigned_quantity(*x);
-    const Value v = constant_of(e, *x, out.dimension, s.squared ? "the square of a frequency" : "a frequency");
+  const Dimension dimension = e.dimension(x.squared ? rate * rate : rate);
+  const Expr full_turn = e.number(2) * e.context.pi();  // values are kept in rad/s
+  out.squared = x.squared;
+  bool good = point.has_value();
+  for (const auto& value : x.values) {
+    const Value v = constant_of(e, *value, dimension, x.squared ? "the square of a frequency" : "a frequency");
     good = good && !v.poisoned;
-    if (q.kind == Expression::Kind::Quantity) set_display_unit(e, out, *x);
+    if (const auto unit = display_unit(e, *value, dimension)) out.unit = *unit;
     if (v.poisoned) continue;
-    const Expr turn = v.hertz && !s.squared ? e.number(2) * e.context.pi() : e.number(1);  // kept in rad/s
-    out.values.push_back(v.scalar() * turn);
-    out.display_factor *= maupertuis::evaluate(turn, Bindings{});
+    const bool turns = v.hertz && !x.squared;
+    out.values.push_back(turns ? v.scalar() * full_turn : v.scalar());
+    if (turns) out.unit.factor *= maupertuis::evaluate(full_turn, Bindings{});
   }
-  return tolerance_of(e, out, s, out.dimension) && good;
+  bool turns = false;
+  const auto tolerance = tolerance_of(e, x.tolerance, dimension, out.unit, &turns);
+  if (!tolerance || !good) return std::nullopt;
+  out.at = std::move(*point);
+  out.tolerance = *tolerance;
+  if (turns && !x.squared) out.tolerance.size = tolerance->size * full_turn;
+  return out;
 }
 
-/// ± 1e-7 beside one value of the point.
-bool point_tolerance(Elaboration& e, Expectation& out, const ExpectStatement& s, std::size_t i) {
-  Expectation one;
-  ExpectStatement written;
-  const StartValue& place = out.at[i];
-  const Dimension& q = e.system().coordinates[place.coordinate].dimension;
-  if (place.order > 0 && s.at_tolerances[i].size) {
-    e.diagnostics.error("E0250", s.at_tolerances[i].size->span, "a rate is given, not found",
-                        "A steady motion belongs to its rates: the coordinates are solved for, beginning at their values.",
-                        "Give the tolerance beside a coordinate, and the rate without one.");
-    return false;
+/// One value of the point, perhaps ± 1e-7.
+std::optional<expectation::Place> place_of_equilibrium(Elaboration& e, const written::Place& x, StartValue value) {
+  if (!x.tolerance.size) return expectation::Place{std::move(value), std::nullopt, {}};
+  if (value.order > 0) {
+    e.diagnostics.error(
+        "E0250", x.tolerance.size->span, "a rate is given, not found",
+        "A steady motion belongs to its rates: the coordinates are solved for, beginning at their values.",
+        "Give the tolerance beside a coordinate, and the rate without one.");
+    return std::nullopt;
   }
-  one.dimension = place.order == 0 ? q : q / e.time();
-  written.tolerance = s.at_tolerances[i].size;
-  written.relative = s.at_tolerances[i].relative;
-  set_display_unit(e, one, *s.at[i].value);
-  const bool good = tolerance_of(e, one, written, one.dimension);
-  out.at_tolerances.push_back({one.tolerance, one.relative, one.display_unit, one.display_factor});
-  return good;
+  const Dimension dimension = e.system().coordinates[value.coordinate].dimension;
+  const expectation::DisplayUnit unit = display_unit(e, *x.value.value, dimension).value_or(expectation::DisplayUnit{});
+  const auto tolerance = tolerance_of(e, x.tolerance, dimension, unit);
+  if (!tolerance) return std::nullopt;
+  return expectation::Place{std::move(value), *tolerance, unit};
 }
 
-bool equilibrium(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  const bool known = s.word.text.empty() || s.word.text == "stable" || s.word.text == "unstable" || s.word.text == "undecided";
+Expected meaning_of(Elaboration& e, const written::Equilibrium& x, Span) {
+  const std::string& word = x.word.text;
+  const bool known = word.empty() || word == "stable" || word == "unstable" || word == "undecided";
   if (!known)
-    e.diagnostics.error("E0238", s.word.span, fmt::format("`{}` is no word for the stability of an equilibrium", s.word.text),
-                        "The energy or the eigenvalues prove it stable or unstable, or the linearization does not decide.",
-                        "Write stable, unstable or undecided.");
-  if (!point_of_expectation(e, out, s) || !known) return false;
-  bool good = true;
-  for (std::size_t i = 0; i < s.at.size(); ++i) good = point_tolerance(e, out, s, i) && good;
-  return good;
+    e.diagnostics.error(
+        "E0238", x.word.span, fmt::format("`{}` is no word for the stability of an equilibrium", word),
+        "The energy or the eigenvalues prove it stable or unstable, or the linearization does not decide.",
+        "Write stable, unstable or undecided.");
+  written::Point written_point;
+  for (const written::Place& place : x.at) written_point.push_back(place.value);
+  const auto point = point_of_expectation(e, written_point);
+  if (!point || !known) return std::nullopt;
+  expectation::Equilibrium out;
+  out.word = word;
+  for (std::size_t i = 0; i < point->size(); ++i)
+    if (auto place = place_of_equilibrium(e, x.at[i], (*point)[i])) out.at.push_back(std::move(*place));
+  return out.at.size() == point->size() ? Expected(std::move(out)) : std::nullopt;
 }
 
-bool later(Elaboration& e, Span span) {
-  e.diagnostics.error("E0503", span, "not supported yet: an expected event",
+// ----------------------------------------------------------------------------------------------------------------
+// others
+
+Expected meaning_of(Elaboration& e, const written::Event&, Span line) {
+  e.diagnostics.error("E0503", line, "not supported yet: an expected event",
                       "Contacts and events are carried out by a later version.", "Leave this line out for now.");
-  return false;
+  return std::nullopt;
 }
 
-bool fill(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  switch (s.kind) {
-    case Kind::ValueAt:
-    case Kind::Value:
-      return value_at(e, out, s);
-    case Kind::EnergyConserved:
-      return tolerance_of(e, out, s, e.system().lagrangian_dimension);
-    case Kind::Conserved:
-    case Kind::NotConserved:
-    case Kind::Integral:
-      return about_subject(e, out, s);
-    case Kind::Equation:
-      return s.word.text.empty() ? equation(e, out, s)
-             : s.subject           ? bracket(e, out, s)
-                                   : energy_of_phase_space(e, out, s);
-    case Kind::Freedoms:
-      return freedoms(e, out, s);
-    case Kind::Frequencies:
-      return frequencies(e, out, s);
-    case Kind::Equilibrium:
-      return equilibrium(e, out, s);
-    case Kind::ConstraintClass:
-      return check_class_of_constraint(e, s);
-    case Kind::EventAt:
-      return later(e, out.span);
-    case Kind::Action:
-      return expect_action(e, out, s) && unit_and_tolerance(e, out, s);
-    case Kind::MorseIndex:
-      return expect_index(e, out, s);
-    case Kind::PathAt:
-      return expect_on_path(e, out, s) && unit_and_tolerance(e, out, s);
-    case Kind::Eigenvalues:
-    case Kind::Matrix:
-    case Kind::Stable:
-    case Kind::Multipliers:
-    case Kind::Trace:
-    case Kind::Period:
-      return expect_of_neighbours(e, out, s);
-    case Kind::UntilAt:
-      return until_at(e, out, s);
-    case Kind::Error:
-      return true;
-  }
-  return false;
+Expected meaning_of(Elaboration&, const written::Error& x, Span) { return expectation::Error{x.code.text}; }
+
+/// E0244 where an expectation about a motion stands in a model with integral constraints.
+bool refuse_motion_of_path(Elaboration& e, const written::Kind& kind, Span line) {
+  const bool about_path =
+      std::holds_alternative<written::Action>(kind) || std::holds_alternative<written::ActionAlong>(kind) ||
+      std::holds_alternative<written::MorseIndex>(kind) || std::holds_alternative<written::PathAt>(kind);
+  if (about_path || std::holds_alternative<written::Error>(kind) || e.system().integral_constraints.empty())
+    return false;
+  e.diagnostics.error("E0244", line, "this expectation is about a motion, and the model holds an integral of its paths",
+                      "The multiplier of an integral belongs to a whole path: without its two ends there is no motion.",
+                      "Expect `action`, `index` or `path q at …` instead.");
+  return true;
 }
 
 }  // namespace
 
-bool point_of_expectation(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  bool good = true;
-  for (const auto& item : s.at) {
-    const std::optional<StartValue> value = start_value(e, item);
-    good = good && value;
-    if (value) out.at.push_back(*value);
-  }
-  return good;
-}
-
-void elaborate_expectation(Elaboration& e, const ExpectStatement& s, Span span) {
-  Expectation out;
-  out.kind = s.kind;
-  out.claim = s.claim;
-  out.text = std::string(e.source.slice(span));
-  out.name = s.name.text;
-  out.word = s.word.text;
-  out.occurrence = s.occurrence;
-  out.span = span;
-  if (refuse_motion_of_path(e, s, span)) return;
-  if (fill(e, out, s)) e.experiment().expectations.push_back(std::move(out));
+void elaborate_expectation(Elaboration& e, const syntax::ExpectStatement& s, Span line) {
+  if (refuse_motion_of_path(e, s.kind, line)) return;
+  if (auto kind = std::visit([&](const auto& x) { return meaning_of(e, x, line); }, s.kind))
+    e.experiment().expectations.push_back({std::string(e.texts.slice(line)), s.claim, line, std::move(*kind)});
 }
 
 }  // namespace maupertuis::elaboration

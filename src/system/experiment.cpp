@@ -15,7 +15,7 @@ using Kind = Declaration::Kind;
 
 bool refuse_acceleration_of_start(Elaboration& e, const Expression& x) {
   if (x.primes <= 1) return false;
-  e.diagnostics.error("E0223", x.span, fmt::format("the acceleration `{}` cannot be chosen", e.source.slice(x.span)),
+  e.diagnostics.error("E0223", x.span, fmt::format("the acceleration `{}` cannot be chosen", e.texts.slice(x.span)),
                       "The equations of motion give it from positions and velocities.", "Leave it out.");
   return true;
 }
@@ -33,14 +33,14 @@ std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
     if (!base && x.arguments[0]->kind == Expression::Kind::Name)
       unknown_name(e, x.arguments[0]->text, x.arguments[0]->name_span);
     else
-      e.diagnostics.error("E0504", x.span, fmt::format("not supported yet: a start of `{}`", e.source.slice(x.span)),
+      e.diagnostics.error("E0504", x.span, fmt::format("not supported yet: a start of `{}`", e.texts.slice(x.span)),
                           "A start gives coordinates, their velocities and the angular velocities of bodies; what else "
                           "follows from them "
                           "is solved for by a later version.",
                           "Give the coordinates and velocities that belong to it.");
     return std::nullopt;
   }
-  const std::string text(e.source.slice(x.span));
+  const std::string text(e.texts.slice(x.span));
   Declaration* d = x.kind == Expression::Kind::Name ? e.table.find(x.text) : nullptr;
   if (x.kind == Expression::Kind::Name && (!d || !d->statement)) {
     unknown_name(e, x.text, x.name_span);
@@ -63,8 +63,8 @@ std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
 }
 
 void duplicate_start(Elaboration& e, Span second, Span first) {
-  e.diagnostics.error("E0208", second, fmt::format("`{}` starts twice", e.source.slice(second)),
-                      fmt::format("Its start is already given in line {}.", e.source.locate(first.begin).line),
+  e.diagnostics.error("E0208", second, fmt::format("`{}` starts twice", e.texts.slice(second)),
+                      fmt::format("Its start is already given in line {}.", e.texts.locate(first).line),
                       "Keep one of them.");
 }
 
@@ -110,7 +110,7 @@ void note_written_unit(Elaboration& e, StartValue& s, const Expression& value, c
   if (x->kind != Expression::Kind::Quantity || !x->unit || x->unit->factors.empty() || !all_units(*x->unit)) return;
   const std::optional<Unit> unit = unit_of(e, *x->unit);
   if (!unit || !unit->dimension.same_as(expected)) return;   // its words are names of the model
-  s.unit = written_unit(e.source, *x->unit);
+  s.unit = written_unit(e.texts, *x->unit);
   s.unit_factor = maupertuis::evaluate(factor_of(e.context, *unit), Bindings{});
 }
 
@@ -124,7 +124,7 @@ std::optional<StartValue> start_value(Elaboration& e, const syntax::StartStateme
   }
   const Coordinate& c = e.system().coordinates[s->coordinate];
   const Dimension expected = s->order == 0 ? c.dimension : c.dimension / e.time();
-  const Value v = constant_of(e, *item.value, expected, fmt::format("`{}`", e.source.slice(item.variable->span)));
+  const Value v = constant_of(e, *item.value, expected, fmt::format("`{}`", e.texts.slice(item.variable->span)));
   if (v.poisoned) return std::nullopt;
   warn_of_degrees(e, v, expected, *item.value);
   s->value = v.scalar();
@@ -168,6 +168,24 @@ void start(Elaboration& e, const syntax::StartStatement& s) {
   }
 }
 
+/// left − right of a condition along the motion; an empty handle after a mistake.
+Expr condition(Elaboration& e, const Expression& left_side, const Expression& right_side, const char* what) {
+  Place along_motion;
+  along_motion.reactions = true;
+  const Value left = evaluate_formula(e, left_side, along_motion);
+  if (left.poisoned) return {};
+  if (left.is_vector) {
+    e.diagnostics.error("E0210", left_side.span, fmt::format("{} when a number reaches its value, not a vector", what),
+                        "", "Take a component with .x or .y.");
+    return {};
+  }
+  Place place;
+  place.inline_constants = true;
+  const Value right =
+      scalar_of(e, right_side, left.dimension, fmt::format("`{}`", e.texts.slice(left_side.span)), place);
+  return right.poisoned ? Expr() : left.scalar() - right.scalar();
+}
+
 void run(Elaboration& e, const syntax::RunStatement& s) {
   Experiment& x = e.experiment();
   if (s.duration) {
@@ -175,22 +193,12 @@ void run(Elaboration& e, const syntax::RunStatement& s) {
     if (!v.poisoned) x.duration = v.scalar();
     return;
   }
-  Place along_motion;
-  along_motion.reactions = true;
-  const Value left = evaluate_formula(e, *s.until_left, along_motion);
-  const Value within = constant_of(e, *s.within, e.time(), in_words(e, "the longest time of a run"));
+  constexpr int usual_limit = 60;
+  const Value within =
+      s.within ? constant_of(e, *s.within, e.time(), in_words(e, "the longest time of a run")) : Value::poison();
+  if (!s.within) x.within = e.number(usual_limit);
   if (!within.poisoned) x.within = within.scalar();
-  if (left.poisoned) return;
-  Place place;
-  place.inline_constants = true;
-  const Value right = left.is_vector ? Value::poison()
-                                     : scalar_of(e, *s.until_right, left.dimension,
-                                                 fmt::format("`{}`", e.source.slice(s.until_left->span)), place);
-  if (left.is_vector)
-    e.diagnostics.error("E0210", s.until_left->span, "a run ends when a number reaches its value, not a vector", "",
-                        "Take a component with .x or .y.");
-  if (right.poisoned) return;
-  x.until = left.scalar() - right.scalar();
+  x.until = condition(e, *s.until_left, *s.until_right, "a run ends");
 }
 
 void output(Elaboration& e, const syntax::OutputStatement& s) {
@@ -211,7 +219,7 @@ const std::pair<const char*, StepMethod> kMethods[] = {{"auto", StepMethod::Auto
 
 /// The parameter that a sweep names; null, and a message, if it is none.
 const Parameter* swept_parameter(Elaboration& e, const Expression& x) {
-  const std::string text(e.source.slice(x.span));
+  const std::string text(e.texts.slice(x.span));
   Declaration* d = x.kind == Expression::Kind::Name && x.primes == 0 ? e.table.find(x.text) : nullptr;
   if (x.kind == Expression::Kind::Name && (!d || !d->statement)) {
     unknown_name(e, x.text, x.name_span);
@@ -234,9 +242,11 @@ void sweep(Elaboration& e, const syntax::SweepStatement& s, Span span) {
   if (!parameter) return;
   const std::string what = fmt::format("`{}`", parameter->name);
   const Value from = constant_of(e, *s.from, parameter->dimension, what), to = constant_of(e, *s.to, parameter->dimension, what);
-  const Value steps = constant_of(e, *s.steps, Dimension{}, "the number of values of a sweep");
-  if (from.poisoned || to.poisoned || steps.poisoned) return;
-  const double count = constant_value(e, steps.scalar()).value_or(0);
+  constexpr double usual_count = 121;
+  const Value steps =
+      s.steps ? constant_of(e, *s.steps, Dimension{}, "the number of values of a sweep") : Value::poison();
+  if (from.poisoned || to.poisoned || (s.steps && steps.poisoned)) return;
+  const double count = s.steps ? constant_value(e, steps.scalar()).value_or(0) : usual_count;
   constexpr double most = 1e6;
   if (!(count >= 2 && count <= most && count == std::floor(count))) {
     e.diagnostics.error("E0239", s.steps->span, "a sweep has a whole number of values, at least 2 and at most a million",
@@ -288,17 +298,40 @@ void elaborate_precision(Elaboration& e, const syntax::PrecisionStatement& s) {
                         "Write double (16 digits), quad (33 digits) or 100 (digits).");
 }
 
+namespace {
+
+/// What was said beside the model takes the place of its own, and is not looked at there.
+void override_experiment(Elaboration& e) {
+  const ExperimentOverrides& o = e.overrides;
+  if (o.run) run(e, *o.run);
+  if (o.sweep) sweep(e, *o.sweep, o.sweep->variable->span);
+  if (o.path) elaborate_path(e, *o.path, cover(o.path->from.span, o.path->to.at->span));
+  if (o.section)
+    e.experiment().section = condition(e, *o.section->left, *o.section->right, "a motion meets its section");
+  for (const syntax::ExpressionPtr& formula : o.formulas) {
+    Place along_motion;
+    along_motion.reactions = true;
+    if (const auto v = number_of(e, *formula, along_motion, "a formula that is asked for"))
+      e.experiment().asked.push_back({v->scalar(), v->dimension, formula->span});
+  }
+  override_given_path(e);
+}
+
+}  // namespace
+
 void elaborate_experiment(Elaboration& e) {
   for (const syntax::Statement& s : e.tree.statements)
     if (const auto* x = std::get_if<syntax::ReactionStatement>(&s.body)) elaborate_release(e, *x);
+  override_experiment(e);
   for (const syntax::Statement& s : e.tree.statements) {
     if (const auto* x = std::get_if<syntax::StartStatement>(&s.body)) start(e, *x);
-    if (const auto* x = std::get_if<syntax::RunStatement>(&s.body)) run(e, *x);
+    if (const auto* x = std::get_if<syntax::RunStatement>(&s.body); x && !e.overrides.run) run(e, *x);
     if (const auto* x = std::get_if<syntax::OutputStatement>(&s.body)) output(e, *x);
     if (const auto* x = std::get_if<syntax::MethodStatement>(&s.body)) elaborate_method(e, *x);
     if (const auto* x = std::get_if<syntax::PrecisionStatement>(&s.body)) elaborate_precision(e, *x);
-    if (const auto* x = std::get_if<syntax::SweepStatement>(&s.body)) sweep(e, *x, s.span);
-    if (const auto* x = std::get_if<syntax::PathStatement>(&s.body)) elaborate_path(e, *x, s.span);
+    if (const auto* x = std::get_if<syntax::SweepStatement>(&s.body); x && !e.overrides.sweep) sweep(e, *x, s.span);
+    if (const auto* x = std::get_if<syntax::PathStatement>(&s.body); x && !e.overrides.path)
+      elaborate_path(e, *x, s.span);
     if (const auto* x = std::get_if<syntax::DrawStatement>(&s.body)) elaborate_drawing(e, *x);
     if (const auto* x = std::get_if<syntax::ExpectStatement>(&s.body)) elaborate_expectation(e, *x, s.span);
   }

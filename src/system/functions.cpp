@@ -47,7 +47,7 @@ bool refuse_vector(Elaboration& e, const Value& v, const Expression& x, const Ex
 
 /// `cos ω t` is (cos ω) t: the argument is no angle, and the product was meant.
 std::string help_for_bare(Elaboration& e, const Expression& x) {
-  const std::string argument(e.source.slice(x.arguments[0]->span));
+  const std::string argument(e.texts.slice(x.arguments[0]->span));
   return x.bare ? fmt::format(
                       "Without brackets {0} takes `{1}` alone: put the whole argument in brackets, such as {0}({1} t).",
                       x.text, argument)

@@ -29,7 +29,7 @@ bool joins(const Expression& x, Operator op) { return x.kind == Expression::Kind
 bool is_plain_product(const Expression& x) { return is_plain_binary(x, Operator::Juxtapose) || is_plain_binary(x, Operator::Multiply); }
 
 std::string text_inside(Elaboration& e, const Expression& x) {
-  std::string text(e.source.slice(x.span));
+  std::string text(e.texts.slice(x.span));
   return x.bracketed && text.size() > 2 ? text.substr(1, text.size() - 2) : text;
 }
 
@@ -55,8 +55,8 @@ const Expression& factor_at_end(const Expression& x) { return is_plain_product(x
 void tell_derivative(Elaboration& e, Span span, const Expression& of, int order) {
   const bool named = (of.kind == Expression::Kind::Name || of.kind == Expression::Kind::Member) && !of.bracketed;
   const std::string primes(static_cast<std::size_t>(order), '\'');
-  const std::string text = of.bracketed || named ? std::string(e.source.slice(of.span)) : fmt::format("({})", e.source.slice(of.span));
-  e.diagnostics.error("E0201", span, fmt::format("`{}` is no derivative here", e.source.slice(span)),
+  const std::string text = of.bracketed || named ? std::string(e.texts.slice(of.span)) : fmt::format("({})", e.texts.slice(of.span));
+  e.diagnostics.error("E0201", span, fmt::format("`{}` is no derivative here", e.texts.slice(span)),
                       "A derivative by the time is written with a prime; d and dt would be names.",
                       fmt::format("Write {}{}.", text, primes));
 }
@@ -90,7 +90,7 @@ bool quotient_of_differentials(Elaboration& e, const Expression& x) {
   const syntax::Spelling spelled = syntax::right_spelling("dot_" + word.text.substr(1), names);  // θ' for dtheta and dθ
   if (spelled.text.empty()) return false;
   const Span span = cover(word.span, x.arguments[1]->span);
-  e.diagnostics.error("E0201", span, fmt::format("`{}` is no derivative here", e.source.slice(span)),
+  e.diagnostics.error("E0201", span, fmt::format("`{}` is no derivative here", e.texts.slice(span)),
                       "A derivative by the time is written with a prime; d and dt would be names.",
                       fmt::format("Write {}.", spelled.text));
   return true;
@@ -127,11 +127,11 @@ bool number_with_unit(Elaboration& e, const Expression& x) {
     left = left->arguments[0].get();
   }
   if (left == &x || free == 0 || !is_written_number(*left)) return false;
-  const std::string number(e.source.slice(left->span));
+  const std::string number(e.texts.slice(left->span));
   const Span whole = operands(x);
-  std::string unit(e.source.slice({left->span.end, whole.end}));
+  std::string unit(e.texts.slice({left->span.end, whole.end, whole.source}));
   unit.erase(0, unit.find_first_not_of(" *·"));
-  e.diagnostics.error("E0312", whole, fmt::format("`{}` stands in a formula without brackets around its unit", e.source.slice(whole)),
+  e.diagnostics.error("E0312", whole, fmt::format("`{}` stands in a formula without brackets around its unit", e.texts.slice(whole)),
                       "In a formula a unit stands in square brackets, so that it cannot be taken for a name.",
                       fmt::format("Write {} [{}].", number, unit));
   return true;

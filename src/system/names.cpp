@@ -61,7 +61,7 @@ Value refuse_as_quantity(Elaboration& e, Declaration& d, const Expression& x) {
 bool refuse_high_order(Elaboration& e, const Expression& x) {
   if (x.primes <= 2) return false;
   constexpr int shown = 8;  // a thousand primes are not read, they are counted
-  const std::string written = x.primes <= shown ? std::string(e.source.slice(x.span)) : x.text + "''…";
+  const std::string written = x.primes <= shown ? std::string(e.texts.slice(x.span)) : x.text + "''…";
   e.diagnostics.error("E0401", x.span, fmt::format("`{}` is a derivative of order {}", written, x.primes),
                       "Mechanics knows positions, velocities and accelerations.", "");
   return true;
@@ -70,7 +70,7 @@ bool refuse_high_order(Elaboration& e, const Expression& x) {
 Value component(Elaboration& e, const Value& base, const Expression& x) {
   const std::size_t index = x.text == "x" ? 0 : x.text == "y" ? 1 : x.text == "z" ? 2 : 3;
   if (!base.is_vector || index == 3) {
-    const std::string text(e.source.slice(x.arguments[0]->span));
+    const std::string text(e.texts.slice(x.arguments[0]->span));
     e.diagnostics.error(
         "E0216", x.name_span, fmt::format("`{}` has no `.{}`", text, x.text),
         base.is_vector ? "A vector has the components .x, .y and .z."

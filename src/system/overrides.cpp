@@ -1,76 +1,41 @@
 #include "system/elaboration.hpp"
+#include "system/override_messages.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-/// `--set m=2kg` and `--start θ=1` of the command line: each is read as a statement of its own (`param m = 2kg`), and
-/// its value takes the place of the model's. The texts of the options count as lines behind the text of the model, in the
-/// order of Overrides: that is where a mistake in one of them has its place.
+/// What was said beside the model, in the place of its own: values of parameters, of the start and of a point.
 namespace maupertuis::elaboration {
 namespace {
 
-/// One override as a model text of one statement.
-struct Fragment {
-  std::string option, text;
-  std::uint32_t place;   // of the text, behind that of the model
-  std::uint32_t head;    // bytes before it in the statement
-  SourceText source;
-  Diagnostics diagnostics;
+/// A statement that was said beside the model, with the mistakes in it: they are told as mistakes of its text.
+struct Beside {
+  const SourceText& text;
   syntax::SyntaxTree tree;
+  Diagnostics found;
 
-  Fragment(const char* option, const char* statement, const std::string& text, std::uint32_t place)
-      : option(option),
-        text(text),
-        place(place),
-        head(static_cast<std::uint32_t>(std::string_view(statement).size() + 1)),
-        source("command line", fmt::format("{} {}\n", statement, text)),
-        tree(syntax::parse(source, diagnostics)) {}
+  template <class Part>
+  Beside(const Elaboration& e, const Part& part, Span span) : text(e.texts.of(span)) {
+    tree.statements.push_back({part, span});
+  }
+  bool hand_over(Elaboration& e) const { return tell_of_override(found, text, e.diagnostics); }
 };
 
-Span all_of(const Fragment& f) { return {f.head, f.head + static_cast<std::uint32_t>(f.text.size())}; }
-
-void refuse(Elaboration& e, const Fragment& f, Span span, const std::string& message, std::string reason, std::string help) {
-  const Span all = all_of(f);
-  const auto shifted = [&](std::uint32_t at) { return f.place + std::clamp(at, all.begin, all.end) - all.begin; };
-  e.diagnostics.error("E0224", Span{shifted(span.begin), shifted(span.end)}, fmt::format("{} {}: {}", f.option, f.text, message),
-                      std::move(reason), std::move(help));
-}
-
-/// The first mistake inside the fragment, told as one of the option; true if there was any.
-bool hand_over(Elaboration& e, const Fragment& f) {
-  for (const Diagnostic& d : f.diagnostics.items()) {
-    if (d.severity != Severity::Error) continue;
-    refuse(e, f, d.span.value_or(all_of(f)), d.message, d.reason, d.help);
-    return true;
-  }
-  return false;
-}
-
-/// Where the n-th text of the overrides stands: each is a line of its own behind the model.
-std::uint32_t place_behind(const Elaboration& e, const Overrides& overrides, std::size_t n) {
-  std::size_t place = e.source.text().size() + 1;
-  for (const auto* list : {&overrides.parameters, &overrides.start, &overrides.at})
-    for (const std::string& text : *list) {
-      if (n-- == 0) return static_cast<std::uint32_t>(place);
-      place += text.size() + 1;
-    }
-  return static_cast<std::uint32_t>(place);
-}
-
-void unknown_parameter(Elaboration& e, const Fragment& f, const Declaration& given, const Declaration* d) {
+void unknown_parameter(Elaboration& e, const Beside& said, const Declaration& given, const Declaration* d) {
   const std::string& name = given.name;
   std::vector<std::string> names;
   for (const Declaration& other : e.table.declarations())
     if (other.kind == Declaration::Kind::Parameter) names.push_back(other.name);
   const std::string near = did_you_mean(name, names);
-  refuse(e, f, given.span,
-         d && d->statement ? fmt::format("`{}` is a {}, not a parameter", name, word_of(d->kind))
-                           : fmt::format("the model has no parameter `{}`", name),
-         "Only parameters can be set.", near.empty() ? "" : fmt::format("Did you mean `{}`?", near));
+  refuse_override(said.text, given.span,
+                  d && d->statement ? fmt::format("`{}` is a {}, not a parameter", name, word_of(d->kind))
+                                    : fmt::format("the model has no parameter `{}`", name),
+                  "Only parameters can be set.", near.empty() ? "" : fmt::format("Did you mean `{}`?", near),
+                  e.diagnostics);
 }
 
-/// Puts the value and unit that the fragment gave in place of the model's.
+/// Puts the value and unit that were given in the place of the model's.
 void replace(Elaboration& e, Declaration& d, const Elaboration& inner) {
   for (const Parameter& given : inner.model.system.parameters)
     for (Parameter& p : e.system().parameters) {
@@ -85,18 +50,24 @@ void replace(Elaboration& e, Declaration& d, const Elaboration& inner) {
     }
 }
 
-void set_parameter(Elaboration& e, Fragment& f, Elaboration& inner, Declaration& given) {
+/// False where the dimension is another.
+bool check_kept_dimension(Elaboration& e, const Beside& said, const Declaration& d, const Declaration& given) {
+  const bool fits = d.value.fits_any || given.value.fits_any || given.value.dimension.same_as(d.value.dimension);
+  if (fits && given.value.parts.size() == d.value.parts.size()) return true;
+  refuse_override(
+      said.text, std::get<syntax::ParamStatement>(given.statement->body).items[given.item].value->span,
+      fmt::format("`{}` is {}, this is {}", d.name, describe(d.value.dimension), describe(given.value.dimension)),
+      "A parameter keeps its dimension.",
+      fmt::format("Write {} {}=… with a unit of the same dimension.", said.text.name(), d.name), e.diagnostics);
+  return false;
+}
+
+void set_parameter(Elaboration& e, const Beside& said, Elaboration& inner, Declaration& given) {
   Declaration* d = e.table.find(given.name);
-  if (!d || d->kind != Declaration::Kind::Parameter) return unknown_parameter(e, f, given, d);
+  if (!d || d->kind != Declaration::Kind::Parameter) return unknown_parameter(e, said, given, d);
   elaborate_parameter(inner, given);
-  if (hand_over(e, f) || d->value.poisoned || given.value.poisoned) return;
-  const bool fits = d->value.fits_any || given.value.fits_any || given.value.dimension.same_as(d->value.dimension);
-  if (!fits || given.value.parts.size() != d->value.parts.size())
-    return refuse(
-        e, f, std::get<syntax::ParamStatement>(given.statement->body).items[given.item].value->span,
-        fmt::format("`{}` is {}, this is {}", d->name, describe(d->value.dimension), describe(given.value.dimension)),
-        "A parameter keeps its dimension.",
-        fmt::format("Write --set {}=… with a unit of the same dimension.", d->name));
+  if (said.hand_over(e) || d->value.poisoned || given.value.poisoned || !check_kept_dimension(e, said, *d, given))
+    return;
   replace(e, *d, inner);
   if (d->value.fits_any) {
     d->value.dimension = given.value.dimension;
@@ -106,12 +77,12 @@ void set_parameter(Elaboration& e, Fragment& f, Elaboration& inner, Declaration&
 
 }  // namespace
 
-Elaboration::Elaboration(const Elaboration& outer, const syntax::SyntaxTree& tree, const SourceText& source,
-                         Diagnostics& diagnostics)
+Elaboration::Elaboration(const Elaboration& outer, const syntax::SyntaxTree& tree, Diagnostics& diagnostics)
     : tree(tree),
-      source(source),
+      texts(outer.texts),
+      overrides(outer.overrides),
       diagnostics(diagnostics),
-      table(tree, source, diagnostics),
+      table(tree, outer.texts, diagnostics),
       model{MechanicalSystem{}, Experiment{}},
       context(outer.context),
       values(outer.values),
@@ -123,13 +94,13 @@ Elaboration::Elaboration(const Elaboration& outer, const syntax::SyntaxTree& tre
   model.system.independent_dimension = outer.model.system.independent_dimension;
 }
 
-void apply_parameter_overrides(Elaboration& e, const Overrides& overrides) {
-  for (std::size_t i = 0; i < overrides.parameters.size(); ++i) {
-    Fragment f("--set", "param", overrides.parameters[i], place_behind(e, overrides, i));
-    if (hand_over(e, f)) continue;
-    Elaboration inner(e, f.tree, f.source, f.diagnostics);
+void override_parameters(Elaboration& e) {
+  for (const syntax::ParamStatement& part : e.overrides.parameters) {
+    Beside said(e, part, part.items.front().name.span);
+    Elaboration inner(e, said.tree, said.found);
+    if (said.hand_over(e)) continue;
     for (Declaration& given : inner.table.declarations())
-      if (given.kind == Declaration::Kind::Parameter) set_parameter(e, f, inner, given);
+      if (given.kind == Declaration::Kind::Parameter) set_parameter(e, said, inner, given);
   }
 }
 
@@ -139,53 +110,42 @@ void override_rates(Elaboration& e, const std::vector<StartRate>& rates) {
   std::vector<StartRate>& list = e.experiment().start_rates;
   for (const StartRate& rate : rates) {
     std::erase_if(list, [&](const StartRate& old) { return old.rate == rate.rate; });
-    list.push_back({rate.rate, rate.value, {}});
+    list.push_back(rate);
   }
 }
 
-}  // namespace
-
-namespace {
-
-/// The items of `--start θ=1, φ'=2` or `--at …`, each handed to `take(inner, item)` until a mistake was told.
+/// The items of `θ=1, φ'=2`, each handed to `take(inner, item)` until a mistake was told.
 template <class Take>
-void for_each_item(Elaboration& e, const char* option, const std::string& text, std::uint32_t place, Take&& take) {
-  Fragment f(option, "start", text, place);
-  if (hand_over(e, f)) return;
-  Elaboration inner(e, f.tree, f.source, f.diagnostics);
+void for_each_item(Elaboration& e, const syntax::StartStatement& part, Take&& take) {
+  if (part.items.empty()) return;
+  Beside said(e, part, part.items.front().variable->span);
+  Elaboration inner(e, said.tree, said.found);
   inner.table.adopt(e.table);
   inner.system().coordinates = e.system().coordinates;
   inner.poses = e.poses;
-  for (const syntax::Statement& s : f.tree.statements) {
-    const auto* start = std::get_if<syntax::StartStatement>(&s.body);
-    if (!start) continue;
-    for (const auto& item : start->items) {
-      take(inner, item);
-      if (hand_over(e, f)) break;
-    }
+  for (const auto& item : part.items) {
+    take(inner, item);
+    if (said.hand_over(e)) break;
   }
 }
 
 void replace_start(std::vector<StartValue>& list, StartValue value) {
-  std::erase_if(list, [&](const StartValue& old) { return old.coordinate == value.coordinate && old.order == value.order; });
-  value.span = {};
-  list.push_back(value);
+  std::erase_if(list,
+                [&](const StartValue& old) { return old.coordinate == value.coordinate && old.order == value.order; });
+  list.push_back(std::move(value));
 }
 
 }  // namespace
 
-void apply_start_overrides(Elaboration& e, const Overrides& overrides) {
-  for (std::size_t i = 0; i < overrides.start.size(); ++i)
-    for_each_item(e, "--start", overrides.start[i], place_behind(e, overrides, overrides.parameters.size() + i), [&](Elaboration& inner, const auto& item) {
+void override_start(Elaboration& e) {
+  for (const syntax::StartStatement& part : e.overrides.start)
+    for_each_item(e, part, [&](Elaboration& inner, const auto& item) {
       if (is_body_rate(inner, *item.variable)) return override_rates(e, start_rates(inner, item));
-      if (const auto value = start_value(inner, item)) replace_start(e.experiment().start, *value);
+      if (auto value = start_value(inner, item)) replace_start(e.experiment().start, std::move(*value));
     });
-}
-
-void apply_at_overrides(Elaboration& e, const Overrides& overrides) {
-  for (std::size_t i = 0; i < overrides.at.size(); ++i)
-    for_each_item(e, "--at", overrides.at[i], place_behind(e, overrides, overrides.parameters.size() + overrides.start.size() + i), [&](Elaboration& inner, const auto& item) {
-      if (const auto value = start_value(inner, item)) replace_start(e.experiment().at, *value);
+  for (const syntax::StartStatement& part : e.overrides.at)
+    for_each_item(e, part, [&](Elaboration& inner, const auto& item) {
+      if (auto value = start_value(inner, item)) replace_start(e.experiment().at, std::move(*value));
     });
 }
 

@@ -64,8 +64,8 @@ std::optional<bool> words_are_names(Elaboration& e, const Expression& x, const P
   const bool units_fit = as_units.same_as(*place.expected);
   const bool names_fit = of_names->same_as(*place.expected);
   if (units_fit && names_fit) {
-    const std::string text(e.source.slice(words.span));
-    const std::string_view number = e.source.slice(x.arguments[0]->span);
+    const std::string text(e.texts.slice(words.span));
+    const std::string_view number = e.texts.slice(x.arguments[0]->span);
     e.diagnostics.error("E0307", words.span, fmt::format("`{}` is a unit and also a name of this model", text),
                         fmt::format("Both readings give {} here.", describe(*place.expected)),
                         fmt::format("Write {0} [{1}] for the unit or {0} * {1} for the name.", number, text));
@@ -115,7 +115,7 @@ namespace {
 
 /// "3", "(1/2)": what stands before the unit, to be read back with the unit in brackets behind it.
 std::string written_number(const Elaboration& e, const Expression& x) {
-  if (x.kind == Expression::Kind::Number) return std::string(e.source.slice(x.span));
+  if (x.kind == Expression::Kind::Number) return std::string(e.texts.slice(x.span));
   const std::string text = syntax::to_string(x);
   return x.bracketed || x.kind == Expression::Kind::Name ? text : "(" + text + ")";
 }
@@ -151,7 +151,7 @@ Value value_of_quantity(Elaboration& e, const Expression& x, const Place& place)
   v.hertz = unit->is_hertz;
   const Expr factor = factor_of(e.context, *unit);
   const bool constant = !place.in_parameter && !place.inline_constants && !unit->dimension.is_one();
-  const std::string written = written_unit(e.source, *x.unit);
+  const std::string written = written_unit(e.texts, *x.unit);
   for (Expr& part : v.parts) {
     const Expr si = part * factor;
     // A component of a vector is named by its own value: (3, 4) [N] is 3 N and 4 N.

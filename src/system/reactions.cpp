@@ -98,7 +98,7 @@ Value value_of_reaction(Elaboration& e, const Expression& x, const Place& place)
     return Value::poison();
   }
   if (!place.reactions) {
-    e.diagnostics.error("E0225", x.span, fmt::format("`{}` cannot stand here", e.source.slice(x.span)), kReasonOfPlace,
+    e.diagnostics.error("E0225", x.span, fmt::format("`{}` cannot stand here", e.texts.slice(x.span)), kReasonOfPlace,
                         "Write it in `expect` or `claim`.");
     return Value::poison();
   }
@@ -114,18 +114,18 @@ Value value_of_reaction(Elaboration& e, const Expression& x, const Place& place)
 
 bool names_a_reaction(Elaboration& e, const syntax::Name& name) { return find_named(e, name) != nullptr; }
 
-bool check_class_of_constraint(Elaboration& e, const syntax::ExpectStatement& s) {
+bool check_class_of_constraint(Elaboration& e, const syntax::expectation::ConstraintClass& x) {
   static const std::array<std::string, 5> classes = {"holonomic", "nonholonomic", "scleronomic", "rheonomic",
                                                      "integrable"};
-  Declaration* d = find_named(e, s.name);
+  Declaration* d = find_named(e, x.constraint);
   if (d && d->kind == Kind::Reaction) {
-    e.diagnostics.error("E0226", s.name.span, fmt::format("`{}` is a reaction, not a constraint", d->name),
+    e.diagnostics.error("E0226", x.constraint.span, fmt::format("`{}` is a reaction, not a constraint", d->name),
                         "The choice of coordinates has removed its constraint.", "");
     d = nullptr;
   }
-  if (std::find(classes.begin(), classes.end(), s.word.text) != classes.end()) return d != nullptr;
-  const std::string near = did_you_mean(s.word.text, classes);
-  e.diagnostics.error("E0227", s.word.span, fmt::format("`{}` is no class of constraints", s.word.text),
+  if (std::find(classes.begin(), classes.end(), x.word.text) != classes.end()) return d != nullptr;
+  const std::string near = did_you_mean(x.word.text, classes);
+  e.diagnostics.error("E0227", x.word.span, fmt::format("`{}` is no class of constraints", x.word.text),
                       "A constraint is holonomic, nonholonomic, scleronomic, rheonomic or integrable.",
                       near.empty() ? "" : fmt::format("Did you mean `{}`?", near));
   return false;

@@ -38,7 +38,7 @@ bool is_body_rate(Elaboration& e, const Expression& x) {
 
 std::vector<StartRate> start_rates(Elaboration& e, const syntax::StartStatement::Item& item) {
   const Expression& x = *item.variable;
-  const std::string name(e.source.slice(x.span));
+  const std::string name(e.texts.slice(x.span));
   const Value rate = evaluate_formula(e, x);
   const Dimension expected = e.dimension(dimensions::angle()) / e.time();
   if (rate.poisoned) return {};

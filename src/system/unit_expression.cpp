@@ -116,9 +116,9 @@ Expr factor_of(Context& context, const Unit& unit) {
   return unit.pi_power == 0 ? factor : factor * pow(context.pi(), Rational(unit.pi_power));
 }
 
-std::string written_unit(const SourceText& source, const syntax::UnitExpression& words) {
+std::string written_unit(const SourceTexts& texts, const syntax::UnitExpression& words) {
   if (words.factors.empty()) return {};
-  std::string text(source.slice(words.span));
+  std::string text(texts.slice(words.span));
   const std::size_t first = text.find_first_not_of("[ "), last = text.find_last_not_of("] ");
   return first == std::string::npos ? std::string() : text.substr(first, last - first + 1);
 }

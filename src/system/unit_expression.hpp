@@ -10,6 +10,6 @@ bool all_units(const syntax::UnitExpression& words);
 /// factor · π^pi_power, exactly.
 Expr factor_of(Context& context, const Unit& unit);
 /// The unit as it stands in the text, without brackets.
-std::string written_unit(const SourceText& source, const syntax::UnitExpression& words);
+std::string written_unit(const SourceTexts& texts, const syntax::UnitExpression& words);
 
 }  // namespace maupertuis::elaboration

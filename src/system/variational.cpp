@@ -7,7 +7,6 @@
 namespace maupertuis::elaboration {
 namespace {
 
-using syntax::ExpectStatement;
 
 // -------------------------------------------------------------------------------------------- independent variable
 
@@ -198,6 +197,7 @@ void elaborate_integral_constraint(Elaboration& e, const syntax::ConstraintState
 namespace {
 
 bool states_path(const Elaboration& e) {
+  if (e.overrides.path) return true;
   for (const syntax::Statement& s : e.tree.statements)
     if (std::get_if<syntax::PathStatement>(&s.body)) return true;
   return false;
@@ -211,78 +211,114 @@ bool refuse_without_path(Elaboration& e, Span span) {
   return true;
 }
 
+/// What one coordinate is along a path; an empty handle after a mistake.
+Expr along_path(Elaboration& e, const Coordinate& c, const syntax::Expression& formula) {
+  const Value v = scalar_of(e, formula, c.dimension, fmt::format("`{}` along the path", c.name));
+  if (v.poisoned) return {};
+  if (v.order < 0) return v.scalar();
+  const Span at = culprit_of_order(e, formula, 0);
+  e.diagnostics.error("E0222", at.end > at.begin ? at : formula.span,
+                      fmt::format("a path is a function of {}, not of coordinates", e.system().independent),
+                      "It says what the coordinates are, each at its place of the list.", "");
+  return {};
+}
+
+/// Between what a path that is given runs; `from` null: the ends of the model's path. False after a mistake.
+bool given_ends(Elaboration& e, PathFormulas& out, const syntax::ExpressionPtr& from, const syntax::ExpressionPtr& to,
+                Span path) {
+  if (!from || !to) return !refuse_without_path(e, path);
+  const Value begin = constant_of(e, *from, e.time(), in_words(e, "the time of an end of a path"));
+  const Value end = constant_of(e, *to, e.time(), in_words(e, "the time of an end of a path"));
+  if (!in_order(e, begin, end, to->span)) return false;
+  out.from = begin.scalar();
+  out.to = end.scalar();
+  return true;
+}
+
 /// action of (x(t), y(t)) from a to b
-bool given_path(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  const Span whole = cover(s.values.front()->span, s.values.back()->span);
-  bool good = check_count(e, s.values.size(), whole, "this path");
-  for (std::size_t i = 0; i < s.values.size() && good; ++i) {
-    const Coordinate& c = e.system().coordinates[i];
-    const Value v = scalar_of(e, *s.values[i], c.dimension, fmt::format("`{}` along the path", c.name));
-    if (!v.poisoned && v.order >= 0) {
-      const Span at = culprit_of_order(e, *s.values[i], 0);
-      e.diagnostics.error("E0222", at.end > at.begin ? at : s.values[i]->span,
-                          fmt::format("a path is a function of {}, not of coordinates", e.system().independent),
-                          "It says what the coordinates are, each at its place of the list.", "");
-      good = false;
-    }
-    good = good && !v.poisoned;
-    if (good) out.values.push_back(v.scalar());
+std::optional<PathFormulas> given_path(Elaboration& e, const written::ActionAlong& x, Span line) {
+  PathFormulas out;
+  const Span whole = cover(x.q.front()->span, x.q.back()->span);
+  bool good = check_count(e, x.q.size(), whole, "this path");
+  for (std::size_t i = 0; i < x.q.size() && good; ++i) {
+    out.q.push_back(along_path(e, e.system().coordinates[i], *x.q[i]));
+    good = static_cast<bool>(out.q.back());
   }
-  if (!s.from) return !refuse_without_path(e, out.span) && good;
-  const Value from = constant_of(e, *s.from, e.time(), in_words(e, "the time of an end of a path"));
-  const Value to = constant_of(e, *s.to, e.time(), in_words(e, "the time of an end of a path"));
-  if (!in_order(e, from, to, s.to->span)) return false;
-  out.from = from.scalar();
-  out.to = to.scalar();
-  return good;
+  return given_ends(e, out, x.from, x.to, line) && good ? std::optional(std::move(out)) : std::nullopt;
+}
+
+/// The index of the coordinate that a path gives a value; nothing, and a message, if it is none or has one.
+std::optional<std::size_t> coordinate_of_path(Elaboration& e, const syntax::Expression& x, const PathFormulas& path) {
+  const auto& list = e.system().coordinates;
+  std::optional<std::size_t> found = quaternion_component(e, x);
+  for (std::size_t i = 0; i < list.size() && !found; ++i)
+    if (x.kind == syntax::Expression::Kind::Name && list[i].name == x.text) found = i;
+  if (found && x.primes == 0 && !path.q[*found]) return found;
+  e.diagnostics.error("E0241", x.span,
+                      found ? fmt::format("`{}` has its value along the path", list[*found].name)
+                            : fmt::format("`{}` is no coordinate", e.texts.slice(x.span)),
+                      fmt::format("A path gives every coordinate one value: {}.", names_of_coordinates(e.system())),
+                      "");
+  return std::nullopt;
+}
+
+bool check_complete(Elaboration& e, const PathFormulas& path, Span span) {
+  for (std::size_t i = 0; i < path.q.size(); ++i) {
+    if (path.q[i]) continue;
+    e.diagnostics.error(
+        "E0241", span, fmt::format("the path does not say what `{}` is", e.system().coordinates[i].name),
+        fmt::format("A path gives every coordinate its value: {}.", names_of_coordinates(e.system())), "");
+    return false;
+  }
+  return true;
 }
 
 }  // namespace
 
-bool expect_action(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  if (s.values.empty() ? refuse_without_path(e, out.span) : !given_path(e, out, s)) return false;
-  out.dimension = e.system().lagrangian_dimension * e.time();
-  const Value v = constant_of(e, *s.value, out.dimension, "the action");
-  if (v.poisoned) return false;
-  out.value = v.scalar();
-  return true;
-}
-
-bool expect_index(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  const Value v = constant_of(e, *s.value, Dimension{}, "a Morse index");
-  if (v.poisoned || refuse_without_path(e, out.span)) return false;
-  out.value = v.scalar();
-  return true;
-}
-
-bool expect_on_path(Elaboration& e, Expectation& out, const ExpectStatement& s) {
-  const Value subject = evaluate_formula(e, *s.subject);
-  const Value at = constant_of(e, *s.time, e.time(), in_words(e, "the time of an expectation"));
-  if (subject.poisoned || at.poisoned || refuse_without_path(e, out.span)) return false;
-  if (subject.is_vector) {
-    e.diagnostics.error("E0210", s.subject->span, "an expectation is about a number, not a vector", "",
-                        "Take a component with .x or .y, or its length with norm(…).");
-    return false;
+void override_given_path(Elaboration& e) {
+  const std::vector<syntax::Assignment>& written = e.overrides.given_path;
+  if (written.empty()) return;
+  PathFormulas out;
+  out.q.resize(e.system().coordinates.size());
+  for (const syntax::Assignment& one : written) {
+    const auto coordinate = coordinate_of_path(e, *one.variable, out);
+    if (!coordinate) return;
+    out.q[*coordinate] = along_path(e, e.system().coordinates[*coordinate], *one.value);
+    if (!out.q[*coordinate]) return;
   }
-  if (refuse_acceleration(e, subject, *s.subject, "what is expected of a path")) return false;
-  out.subject = subject.scalar();
-  out.time = at.scalar();
-  out.dimension = subject.dimension;
-  const Value v = constant_of(e, *s.value, subject.fits_any ? Dimension{} : subject.dimension,
-                              fmt::format("`{}`", e.source.slice(s.subject->span)));
-  if (v.poisoned) return false;
-  out.value = v.scalar();
-  return true;
+  const Span whole = cover(written.front().variable->span, written.back().value->span);
+  if (check_complete(e, out, whole) && given_ends(e, out, e.overrides.given_from, e.overrides.given_to, whole))
+    e.experiment().given_path = std::move(out);
 }
 
-bool refuse_motion_of_path(Elaboration& e, const ExpectStatement& s, Span span) {
-  using Kind = ExpectStatement::Kind;
-  const bool about_path = s.kind == Kind::Action || s.kind == Kind::MorseIndex || s.kind == Kind::PathAt;
-  if (about_path || s.kind == Kind::Error || e.system().integral_constraints.empty()) return false;
-  e.diagnostics.error("E0244", span, "this expectation is about a motion, and the model holds an integral of its paths",
-                      "The multiplier of an integral belongs to a whole path: without its two ends there is no motion.",
-                      "Expect `action`, `index` or `path q at …` instead.");
-  return true;
+Expected meaning_of(Elaboration& e, const written::Action& x, Span line) {
+  if (refuse_without_path(e, line)) return std::nullopt;
+  const auto expected = expected_number(e, x.expected, e.system().lagrangian_dimension * e.time(), "the action");
+  return expected ? Expected(expectation::Action{x.path, *expected}) : std::nullopt;
+}
+
+Expected meaning_of(Elaboration& e, const written::ActionAlong& x, Span line) {
+  auto along = given_path(e, x, line);
+  if (!along) return std::nullopt;
+  const auto expected = expected_number(e, x.expected, e.system().lagrangian_dimension * e.time(), "the action");
+  return expected ? Expected(expectation::ActionAlong{std::move(*along), *expected}) : std::nullopt;
+}
+
+Expected meaning_of(Elaboration& e, const written::MorseIndex& x, Span line) {
+  const Value v = constant_of(e, *x.index, Dimension{}, "a Morse index");
+  if (v.poisoned || refuse_without_path(e, line)) return std::nullopt;
+  return expectation::MorseIndex{x.path, v.scalar()};
+}
+
+Expected meaning_of(Elaboration& e, const written::PathAt& x, Span line) {
+  const auto subject = number_of(e, *x.subject, Place{}, "an expectation");
+  const Value at = constant_of(e, *x.time, e.time(), in_words(e, "the time of an expectation"));
+  if (!subject || at.poisoned || refuse_without_path(e, line)) return std::nullopt;
+  if (refuse_acceleration(e, *subject, *x.subject, "what is expected of a path")) return std::nullopt;
+  const Dimension dimension = subject->fits_any ? Dimension{} : subject->dimension;
+  const auto expected = expected_number(e, x.expected, dimension, fmt::format("`{}`", e.texts.slice(x.subject->span)));
+  if (!expected) return std::nullopt;
+  return expectation::PathAt{x.path, subject->scalar(), at.scalar(), *expected};
 }
 
 }  // namespace maupertuis::elaboration

@@ -9,8 +9,6 @@
 namespace maupertuis {
 namespace {
 
-using Asked = syntax::ExpectStatement::Kind;
-
 double number(const Model& model, Expr e) { return number_of(model.system, e); }
 
 std::string first_trouble(const Diagnostics& told) {
@@ -33,62 +31,73 @@ double value_on(const ActionPath& path, double t, Expr subject, const Mechanical
 
 }  // namespace
 
-const StationaryPath* ActionClaims::path(const Expectation& e, ExpectationResult& result) {
+const StationaryPath* ActionClaims::path(int number, ExpectationResult& result) {
   if (!searched_) {
     searched_ = true;
     Diagnostics told;
     found_ = stationary_paths(model_, equations_, ends_of(model_), options_, told);
     if (!found_) trouble_ = first_trouble(told);
   }
-  const std::size_t wanted = e.occurrence > 0 ? static_cast<std::size_t>(e.occurrence) : 1;
+  const std::size_t wanted = number > 0 ? static_cast<std::size_t>(number) : 1;
   if (found_ && wanted <= found_->paths.size()) return &found_->paths[wanted - 1];
   result.actual = found_ ? fmt::format("{} stationary path{}", found_->paths.size(), found_->paths.size() == 1 ? "" : "s") : "no stationary path";
   result.message = found_ ? "There is no such path; " + found_->bound : trouble_;
   return nullptr;
 }
 
-void ActionClaims::decide(const Expectation& e, ExpectationResult& result) {
-  if (e.kind == Asked::Action && !e.values.empty()) return decide_given(e, result);
-  const StationaryPath* stationary = path(e, result);
+std::string ActionClaims::among_others(int number) const {
+  if (found_->paths.size() == 1) return {};
+  return number > 1 ? fmt::format("; of {} paths, number {} by the action", found_->paths.size(), number)
+                    : fmt::format("; of {} paths, the one with the smallest action", found_->paths.size());
+}
+
+void ActionClaims::decide(const expectation::Action& e, ExpectationResult& result) {
+  const StationaryPath* stationary = path(e.path, result);
   if (!stationary) return;
-  if (e.kind == Asked::MorseIndex) return decide_index(e, *stationary, result);
-  const std::string among = found_->paths.size() == 1 ? ""
-                            : e.occurrence > 1       ? fmt::format("; of {} paths, number {} by the action", found_->paths.size(), e.occurrence)
-                                                     : fmt::format("; of {} paths, the one with the smallest action", found_->paths.size());
-  if (e.kind == Asked::Action)
-    return judge(e, stationary->action, fmt::format("error about {:.1g}{}", stationary->action_error, among), result);
+  judge(e.expected, stationary->action,
+        fmt::format("error about {:.1g}{}", stationary->action_error, among_others(e.path)), result);
+}
+
+void ActionClaims::decide(const expectation::PathAt& e, ExpectationResult& result) {
+  const StationaryPath* stationary = path(e.path, result);
+  if (!stationary) return;
   const double t = number(model_, e.time);
   if (!(t >= stationary->path.start && t <= stationary->path.end)) {
     result.message = "The path does not reach there.";
     return;
   }
-  judge(e, value_on(stationary->path, t, e.subject, model_.system), fmt::format("error about {:.1g} of the size{}", stationary->path_error, among), result);
+  judge(e.expected, value_on(stationary->path, t, e.subject, model_.system),
+        fmt::format("error about {:.1g} of the size{}", stationary->path_error, among_others(e.path)), result);
 }
 
-void ActionClaims::decide_given(const Expectation& e, ExpectationResult& result) {
+void ActionClaims::decide(const expectation::ActionAlong& e, ExpectationResult& result) {
   std::optional<ActionEnds> ends;
-  if (model_.experiment.path && !e.from) ends = ends_of(model_);
+  if (model_.experiment.path && !e.along.from) ends = ends_of(model_);
+  const double start = e.along.from ? number(model_, e.along.from) : ends->start,
+               end = e.along.to ? number(model_, e.along.to) : ends->end;
   Diagnostics told;
-  const double start = e.from ? number(model_, e.from) : ends->start, end = e.to ? number(model_, e.to) : ends->end;
-  const auto found = action_of_path(model_, equations_, e.values, start, end, ends, options_, told);
+  const auto found = action_of_path(model_, equations_, e.along.q, start, end, ends, options_, told);
   if (!found) {
     result.actual = "no action";
     result.message = first_trouble(told);
     return;
   }
-  judge(e, found->action, fmt::format("error about {:.1g}", found->action_error), result);
+  judge(e.expected, found->action, fmt::format("error about {:.1g}", found->action_error), result);
 }
 
-void ActionClaims::decide_index(const Expectation& e, const StationaryPath& p, ExpectationResult& result) const {
-  const double expected = number(model_, e.value);
+void ActionClaims::decide(const expectation::MorseIndex& e, ExpectationResult& result) {
+  const StationaryPath* p = path(e.path, result);
+  if (!p) return;
+  const double expected = number(model_, e.index);
   result.expected = fmt::format("{:g}", expected);
-  result.actual = p.second.index ? std::to_string(*p.second.index) : "unknown";
-  result.passed = p.second.index && static_cast<double>(*p.second.index) == expected;
-  result.message = p.second.index ? "by inertia and by Jacobi fields" : p.second.reason;
+  result.actual = p->second.index ? std::to_string(*p->second.index) : "unknown";
+  result.passed = p->second.index && static_cast<double>(*p->second.index) == expected;
+  result.message = p->second.index ? "by inertia and by Jacobi fields" : p->second.reason;
 }
 
-void ActionClaims::judge(const Expectation& e, double actual, const std::string& ground, ExpectationResult& result) const {
-  judge_number(e, model_.system, actual, result);
+void ActionClaims::judge(const expectation::Number& expected, double actual, const std::string& ground,
+                         ExpectationResult& result) const {
+  judge_number(expected, model_.system, actual, result);
   result.message += "; " + ground;
 }
 

@@ -13,13 +13,17 @@ class ActionClaims {
     options_.variations = false;
     options_.interrupt = interrupt;
   }
-  void decide(const Expectation& expectation, ExpectationResult& result);
+  void decide(const expectation::Action& expectation, ExpectationResult& result);
+  void decide(const expectation::ActionAlong& expectation, ExpectationResult& result);
+  void decide(const expectation::MorseIndex& expectation, ExpectationResult& result);
+  void decide(const expectation::PathAt& expectation, ExpectationResult& result);
 
  private:
-  const StationaryPath* path(const Expectation& expectation, ExpectationResult& result);
-  void decide_given(const Expectation& expectation, ExpectationResult& result);
-  void decide_index(const Expectation& expectation, const StationaryPath& path, ExpectationResult& result) const;
-  void judge(const Expectation& expectation, double actual, const std::string& ground, ExpectationResult& result) const;
+  /// Path `number` by the action, from 1, or 0 for the first; null, and why, where there is none.
+  const StationaryPath* path(int number, ExpectationResult& result);
+  /// "; of 3 paths, number 2 by the action"
+  std::string among_others(int number) const;
+  void judge(const expectation::Number& expected, double actual, const std::string& ground, ExpectationResult& result) const;
 
   const Model& model_;
   const EquationsOfMotion& equations_;

@@ -18,9 +18,9 @@ void decide_freedoms(double expected, const ConstraintAnalysis& found, Expectati
     result.message += fmt::format(" Those of the velocities at an instant are {}.", found.instantaneous_freedoms);
 }
 
-void decide_class(const Expectation& e, const MechanicalSystem& system, const ConstraintAnalysis& found, ExpectationResult& result) {
+void decide_class(const expectation::ConstraintClass& e, const MechanicalSystem& system, const ConstraintAnalysis& found, ExpectationResult& result) {
   result.expected = e.word;
-  const Constraint* constraint = system.find_constraint(e.name);
+  const Constraint* constraint = system.find_constraint(e.constraint);
   if (!constraint || !found.clashing.empty()) {
     result.message = constraint ? "The constraints exclude each other." : "There is no such constraint.";
     return;

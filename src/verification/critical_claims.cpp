@@ -15,20 +15,28 @@ constexpr int samples = 24;
 
 class Critical {
  public:
-  Critical(const Expectation& e, PointEquations& equations, const MotionState& start, const Experiment& experiment)
-      : e_(e), equations_(equations), system_(equations.system()), start_(start), own_(equations.parameter(e.parameter)),
-        value_(number_of(system_, e.value)), tolerance_(allowed_difference(e, system_, value_)), sign_(e.above ? 1 : -1), reach_(reach(experiment)) {}
+  Critical(const expectation::Stable& e, PointEquations& equations, const MotionState& start,
+           const Experiment& experiment)
+      : e_(e),
+        equations_(equations),
+        system_(equations.system()),
+        start_(start),
+        own_(equations.parameter(e.parameter)),
+        value_(number_of(system_, e.critical.value)),
+        tolerance_(allowed_difference(e.critical.tolerance, system_, value_)),
+        sign_(e.above ? 1 : -1),
+        reach_(reach(experiment)) {}
   ~Critical() { equations_.set_parameter(e_.parameter, own_); }
   Critical(const Critical&) = delete;
   Critical& operator=(const Critical&) = delete;
 
   void decide(ExpectationResult& result) {
     result.expected = sentence(value_);
-    result.tolerance = tolerance_text(e_, system_);
+    result.tolerance = tolerance_text(e_.critical.tolerance, e_.critical.unit, system_);
     const bool inside = holds(tolerance_), outside = holds(-tolerance_);
     const std::optional<double> change = inside == outside ? change_elsewhere(inside) : std::optional(bisected(tolerance_, -tolerance_));
     if (!change) {
-      result.actual = inside ? fmt::format("{} on both sides", e_.word) : fmt::format("not {} on either side", e_.word);
+      result.actual = inside ? fmt::format("{} on both sides", word()) : fmt::format("not {} on either side", word());
       result.message = fmt::format("Looked at {} … {}.", shown(-reach_), shown(reach_));
       return;
     }
@@ -39,7 +47,7 @@ class Critical {
     }
     for (int k = 0; k < samples; ++k)
       if (const double d = sample(k); !holds(d)) {
-        result.message = fmt::format("It is not {} at {}.", e_.word, shown(d));
+        result.message = fmt::format("It is not {} at {}.", word(), shown(d));
         return;
       }
     result.passed = true;
@@ -67,7 +75,7 @@ class Critical {
     return std::all_of(study->entries.begin(), study->entries.end(), [&](const ModalEntry& entry) {
       const Stability verdict = entry.analysis.stability.verdict;
       const bool stable = verdict == Stability::Energetic || verdict == Stability::Asymptotic;
-      return e_.word == "stable" ? stable : verdict == Stability::Unstable;
+      return e_.stable ? stable : verdict == Stability::Unstable;
     });
   }
 
@@ -93,15 +101,17 @@ class Critical {
     return std::nullopt;
   }
 
+  const char* word() const { return e_.stable ? "stable" : "unstable"; }
   std::string number(double value) const {
-    return fmt::format("{:.10g}{}", value / e_.display_factor, e_.display_unit.empty() ? "" : " " + e_.display_unit);
+    return fmt::format("{:.10g}{}", value / e_.critical.unit.factor, unit_after(e_.critical.unit));
   }
   std::string shown(double distance) const { return fmt::format("{} = {}", system_.parameters[e_.parameter].name, number(value_ + sign_ * distance)); }
   std::string sentence(double critical) const {
-    return fmt::format("{} for {} {} {}", e_.word, system_.parameters[e_.parameter].name, e_.above ? ">" : "<", number(critical));
+    return fmt::format("{} for {} {} {}", word(), system_.parameters[e_.parameter].name, e_.above ? ">" : "<",
+                       number(critical));
   }
 
-  const Expectation& e_;
+  const expectation::Stable& e_;
   PointEquations& equations_;
   const MechanicalSystem& system_;
   const MotionState& start_;
@@ -110,8 +120,8 @@ class Critical {
 
 }  // namespace
 
-void decide_critical(const Expectation& e, PointEquations& equations, const MotionState& start, ExpectationResult& result,
-                     const Experiment& experiment) {
+void decide_critical(const expectation::Stable& e, PointEquations& equations, const MotionState& start,
+                     ExpectationResult& result, const Experiment& experiment) {
   Critical(e, equations, start, experiment).decide(result);
 }
 

@@ -13,8 +13,8 @@ NumberFormat format_of(const Model& model) { return model.experiment.precision.v
 
 }  // namespace
 
-bool ExtendedClaims::takes(const Expectation& e) const {
-  if (format_of(model_) == NumberFormat::Double || !e.subject || e.at_until) return false;
+bool ExtendedClaims::takes(const expectation::ValueAt& e) const {
+  if (format_of(model_) == NumberFormat::Double) return false;
   const auto& coordinates = model_.system.coordinates;
   return std::any_of(coordinates.begin(), coordinates.end(), [&](const Coordinate& c) { return c.q == e.subject || c.velocity == e.subject; });
 }
@@ -27,20 +27,19 @@ Rational ExtendedClaims::exact(Expr e) const {
   return number ? *number : Rational::from_double(number_of(model_.system, e));
 }
 
-void ExtendedClaims::decide(const std::vector<std::size_t>& which, std::vector<ExpectationResult>& results, Diagnostics& diagnostics) const {
+void ExtendedClaims::decide(const std::vector<Line>& lines, std::vector<ExpectationResult>& results,
+                            Diagnostics& diagnostics) const {
   ExtendedSimulationOptions options;
   options.precision = format_of(model_) == NumberFormat::Quad ? Precision::Quad : Precision::Digits100;
   options.duration = Rational(0);   // as far as the times asked for
   options.interrupt = interrupt_;
-  for (const std::size_t index : which) {
-    const Expectation& e = model_.experiment.expectations[index];
-    options.at.push_back(exact(e.time ? e.time : model_.experiment.start_time));
-  }
+  for (const Line& line : lines)
+    options.at.push_back(exact(line.expectation->time ? line.expectation->time : model_.experiment.start_time));
   const auto run = simulate_extended(model_, equations_, options, diagnostics);
-  for (std::size_t i = 0; i < which.size(); ++i) {
-    ExpectationResult& result = results[which[i]];
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    ExpectationResult& result = results[lines[i].index];
     if (!run) result.message = "The run could not start.";
-    else judge(model_.experiment.expectations[which[i]], run->at[i], run->reason, result);
+    else judge(*lines[i].expectation, run->at[i], run->reason, result);
   }
 }
 
@@ -52,18 +51,21 @@ const AgreedNumber& ExtendedClaims::value_in(const ExtendedState& state, Expr su
 }
 
 /// What two runs do not agree on counts as error.
-void ExtendedClaims::judge(const Expectation& e, const ExtendedState& state, const std::string& reason, ExpectationResult& result) const {
+void ExtendedClaims::judge(const expectation::ValueAt& e, const ExtendedState& state, const std::string& reason,
+                           ExpectationResult& result) const {
   if (!state.reached) {
     result.message = "The run ended before: " + reason + ".";
     return;
   }
   const AgreedNumber& number = value_in(state, e.subject);
   const auto actual = Rational::parse(number.text), difference = Rational::parse(number.difference);
-  const Rational expected = exact(e.value);
-  const Rational allowed = !e.tolerance ? abs(expected) * Rational(1, 1'000'000'000) : exact(e.tolerance) * (e.relative ? abs(expected) : Rational(1));
-  result.actual = number.text + (e.display_unit.empty() ? "" : " (in SI)");
-  result.expected = fmt::format("{:.17g}{}", expected.to_double() / e.display_factor, e.display_unit.empty() ? "" : " " + e.display_unit);
-  result.tolerance = tolerance_text(e, model_.system);
+  const auto& [value, tolerance, unit] = e.expected;
+  const Rational expected = exact(value);
+  const Rational allowed = !tolerance.size ? abs(expected) * Rational(1, 1'000'000'000)
+                                           : exact(tolerance.size) * (tolerance.relative ? abs(expected) : Rational(1));
+  result.actual = number.text + (unit.name.empty() ? "" : " (in SI)");
+  result.expected = fmt::format("{:.17g}{}", expected.to_double() / unit.factor, unit_after(unit));
+  result.tolerance = tolerance_text(tolerance, unit, model_.system);
   if (!actual || !difference || allowed < *difference) {
     result.message = fmt::format("Two runs of different accuracy differ by {}, more than the tolerance.", number.difference);
     return;

@@ -17,31 +17,32 @@ double number_of(const MechanicalSystem& system, Expr e, double otherwise) {
   return evaluate(in_terms_of_motion(system, {&e, 1}).front(), parameter_bindings(system));
 }
 
-double allowed_difference(const Expectation& e, const MechanicalSystem& system, double size) {
-  if (!e.tolerance) return 1e-9 * std::abs(size);
-  return number_of(system, e.tolerance) * (e.relative ? std::abs(size) : 1.0);
+double allowed_difference(const expectation::Tolerance& tolerance, const MechanicalSystem& system, double size) {
+  if (!tolerance.size) return 1e-9 * std::abs(size);
+  return number_of(system, tolerance.size) * (tolerance.relative ? std::abs(size) : 1.0);
 }
+
+std::string unit_after(const expectation::DisplayUnit& unit) { return unit.name.empty() ? "" : " " + unit.name; }
 
 namespace {
 
-std::string unit_after(const Expectation& e) { return e.display_unit.empty() ? "" : " " + e.display_unit; }
-
-std::string complex_text(Complex z, const Expectation& e) {
-  const Complex shown = z / e.display_factor;
+std::string complex_text(Complex z, const expectation::DisplayUnit& unit) {
+  const Complex shown = z / unit.factor;
   return z.imag() == 0 ? fmt::format("{:.17g}", shown.real()) : fmt::format("({:.17g}, {:.17g})", shown.real(), shown.imag());
 }
 
 /// Lower halves of pairs are left out.
-std::string spectrum_text(const std::vector<Complex>& values, const Expectation& e) {
+std::string spectrum_text(const std::vector<Complex>& values, const expectation::DisplayUnit& unit) {
   std::string out;
   for (const Complex& z : values)
-    if (z.imag() >= 0) out += (out.empty() ? "" : ", ") + complex_text(z, e);
-  return out.empty() ? "none" : out + unit_after(e);
+    if (z.imag() >= 0) out += (out.empty() ? "" : ", ") + complex_text(z, unit);
+  return out.empty() ? "none" : out + unit_after(unit);
 }
 
-std::vector<Complex> expected_spectrum(const Expectation& e, const MechanicalSystem& system) {
+std::vector<Complex> expected_spectrum(const expectation::Spectrum& e, const MechanicalSystem& system) {
   std::vector<Complex> written, out;
-  for (std::size_t i = 0; i < e.values.size(); ++i) written.emplace_back(number_of(system, e.values[i]), number_of(system, e.imaginary[i]));
+  for (std::size_t i = 0; i < e.real.size(); ++i)
+    written.emplace_back(number_of(system, e.real[i]), number_of(system, e.imaginary[i]));
   for (const Complex& z : written) {
     out.push_back(z);
     const bool has_partner = std::find(written.begin(), written.end(), std::conj(z)) != written.end();
@@ -72,28 +73,34 @@ std::vector<std::size_t> partners(const std::vector<Complex>& actual, const std:
 
 }  // namespace
 
-std::string tolerance_text(const Expectation& e, const MechanicalSystem& system) {
-  if (!e.tolerance) return "rel 1e-09";
-  const double tolerance = number_of(system, e.tolerance);
-  return e.relative ? fmt::format("rel {:g}", tolerance) : fmt::format("± {:g}{}", tolerance / e.display_factor, unit_after(e));
+std::string tolerance_text(const expectation::Tolerance& tolerance, const expectation::DisplayUnit& unit,
+                           const MechanicalSystem& system) {
+  if (!tolerance.size) return "rel 1e-09";
+  const double size = number_of(system, tolerance.size);
+  return tolerance.relative ? fmt::format("rel {:g}", size)
+                            : fmt::format("± {:g}{}", size / unit.factor, unit_after(unit));
 }
 
-void judge_number(const Expectation& e, const MechanicalSystem& system, double actual, ExpectationResult& result) {
+void judge_number(const expectation::Number& e, const MechanicalSystem& system, double actual,
+                  ExpectationResult& result) {
   const double expected = number_of(system, e.value), error = std::abs(actual - expected);
-  result.actual = fmt::format("{:.17g}{}", actual / e.display_factor, unit_after(e));
-  result.expected = fmt::format("{:.17g}{}", expected / e.display_factor, unit_after(e));
-  result.tolerance = tolerance_text(e, system);
-  result.passed = error <= allowed_difference(e, system, expected);
-  result.message = fmt::format("off by {:.2g}{}", error / e.display_factor, unit_after(e));
+  result.actual = fmt::format("{:.17g}{}", actual / e.unit.factor, unit_after(e.unit));
+  result.expected = fmt::format("{:.17g}{}", expected / e.unit.factor, unit_after(e.unit));
+  result.tolerance = tolerance_text(e.tolerance, e.unit, system);
+  result.passed = error <= allowed_difference(e.tolerance, system, expected);
+  result.message = fmt::format("off by {:.2g}{}", error / e.unit.factor, unit_after(e.unit));
 }
 
-std::size_t spectrum_size(const Expectation& e, const MechanicalSystem& system) { return expected_spectrum(e, system).size(); }
+std::size_t spectrum_size(const expectation::Spectrum& e, const MechanicalSystem& system) {
+  return expected_spectrum(e, system).size();
+}
 
-void judge_spectrum(const Expectation& e, const MechanicalSystem& system, const std::vector<Complex>& actual, ExpectationResult& result) {
+void judge_spectrum(const expectation::Spectrum& e, const MechanicalSystem& system, const std::vector<Complex>& actual,
+                    ExpectationResult& result) {
   const std::vector<Complex> expected = expected_spectrum(e, system);
-  result.actual = spectrum_text(actual, e);
-  result.expected = spectrum_text(expected, e);
-  result.tolerance = tolerance_text(e, system);
+  result.actual = spectrum_text(actual, e.unit);
+  result.expected = spectrum_text(expected, e.unit);
+  result.tolerance = tolerance_text(e.tolerance, e.unit, system);
   if (actual.size() != expected.size()) {
     result.message = fmt::format("{} values are expected, a complex one for itself and its conjugate, and there are {}.", expected.size(), actual.size());
     return;
@@ -106,33 +113,39 @@ void judge_spectrum(const Expectation& e, const MechanicalSystem& system, const 
     const Complex z = partner[i] < expected.size() ? expected[partner[i]] : Complex(std::nan(""), 0);
     const double error = std::abs(actual[i] - z);
     largest = std::max(largest, error);
-    result.passed = error <= allowed_difference(e, system, std::abs(z));
-    result.message = fmt::format("{} is off by {:.2g}{}.", complex_text(z, e), error / e.display_factor, unit_after(e));
+    result.passed = error <= allowed_difference(e.tolerance, system, std::abs(z));
+    result.message =
+        fmt::format("{} is off by {:.2g}{}.", complex_text(z, e.unit), error / e.unit.factor, unit_after(e.unit));
   }
-  if (result.passed) result.message = fmt::format("off by at most {:.2g}{}", largest / e.display_factor, unit_after(e));
+  if (result.passed)
+    result.message = fmt::format("off by at most {:.2g}{}", largest / e.unit.factor, unit_after(e.unit));
 }
 
-void judge_entries(const Expectation& e, const MechanicalSystem& system, const std::vector<double>& actual, ExpectationResult& result) {
+void judge_entries(const expectation::Matrix& e, const MechanicalSystem& system, const std::vector<double>& actual,
+                   ExpectationResult& result) {
+  const std::size_t width = e.columns.size();
   const auto text = [&](const std::vector<double>& values) {
     std::string out;
     for (std::size_t k = 0; k < values.size(); ++k)
-      out += fmt::format("{}{:.17g}", k == 0 ? "((" : k % e.width == 0 ? "), (" : ", ", values[k] / e.display_factor);
-    return out + "))" + unit_after(e);
+      out += fmt::format("{}{:.17g}", k == 0 ? "((" : k % width == 0 ? "), (" : ", ", values[k] / e.unit.factor);
+    return out + "))" + unit_after(e.unit);
   };
   std::vector<double> expected;
-  for (const Expr& value : e.values) expected.push_back(number_of(system, value));
+  for (const Expr& value : e.entries) expected.push_back(number_of(system, value));
   result.actual = text(actual);
   result.expected = text(expected);
-  result.tolerance = tolerance_text(e, system);
+  result.tolerance = tolerance_text(e.tolerance, e.unit, system);
   double largest = 0;
   result.passed = actual.size() == expected.size();
   for (std::size_t k = 0; k < expected.size() && result.passed; ++k) {
     const double error = std::abs(actual[k] - expected[k]);
     largest = std::max(largest, error);
-    result.passed = error <= allowed_difference(e, system, expected[k]);
-    result.message = fmt::format("The entry in row {}, column {} is off by {:.2g}{}.", k / e.width + 1, k % e.width + 1, error / e.display_factor, unit_after(e));
+    result.passed = error <= allowed_difference(e.tolerance, system, expected[k]);
+    result.message = fmt::format("The entry in row {}, column {} is off by {:.2g}{}.", k / width + 1, k % width + 1,
+                                 error / e.unit.factor, unit_after(e.unit));
   }
-  if (result.passed) result.message = fmt::format("off by at most {:.2g}{}", largest / e.display_factor, unit_after(e));
+  if (result.passed)
+    result.message = fmt::format("off by at most {:.2g}{}", largest / e.unit.factor, unit_after(e.unit));
 }
 
 }  // namespace maupertuis

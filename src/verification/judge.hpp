@@ -12,21 +12,27 @@ double number_of(const MechanicalSystem& system, Expr e, double otherwise = 0);
 
 /// The largest difference that passes where `size` is expected: the tolerance, or that part of |size|. Without a tolerance
 /// the digits as written count: 1e-9 of the size.
-double allowed_difference(const Expectation& e, const MechanicalSystem& system, double size);
+double allowed_difference(const expectation::Tolerance& tolerance, const MechanicalSystem& system, double size);
 
 /// "rel 1e-09", "± 1e-09 rad": what is shown beside the expected value.
-std::string tolerance_text(const Expectation& e, const MechanicalSystem& system);
+std::string tolerance_text(const expectation::Tolerance& tolerance, const expectation::DisplayUnit& unit,
+                           const MechanicalSystem& system);
+
+/// " rad", or nothing in SI.
+std::string unit_after(const expectation::DisplayUnit& unit);
 
 /// Fills everything but the message, which says by how much it is off.
-void judge_number(const Expectation& e, const MechanicalSystem& system, double actual, ExpectationResult& result);
+void judge_number(const expectation::Number& expected, const MechanicalSystem& system, double actual,
+                  ExpectationResult& result);
 
-/// As sets: e.values + i e.imaginary, of which one with an imaginary part stands for itself and its conjugate, against `actual`.
-void judge_spectrum(const Expectation& e, const MechanicalSystem& system, const std::vector<std::complex<double>>& actual,
-                    ExpectationResult& result);
-/// How many values e stands for.
-std::size_t spectrum_size(const Expectation& e, const MechanicalSystem& system);
+/// As sets, with the conjugates.
+void judge_spectrum(const expectation::Spectrum& expected, const MechanicalSystem& system,
+                    const std::vector<std::complex<double>>& actual, ExpectationResult& result);
+/// How many values it stands for.
+std::size_t spectrum_size(const expectation::Spectrum& expected, const MechanicalSystem& system);
 
-/// The same numbers by rows, `width` in each.
-void judge_entries(const Expectation& e, const MechanicalSystem& system, const std::vector<double>& actual, ExpectationResult& result);
+/// Entry by entry, by rows.
+void judge_entries(const expectation::Matrix& expected, const MechanicalSystem& system,
+                   const std::vector<double>& actual, ExpectationResult& result);
 
 }  // namespace maupertuis

@@ -11,7 +11,7 @@
 namespace maupertuis {
 namespace {
 
-std::string name_of(const MatrixVariable& v, const MechanicalSystem& system) {
+std::string name_of(const expectation::MatrixVariable& v, const MechanicalSystem& system) {
   if (v.order < 0) return system.inputs[v.index].name;
   return system.coordinates[v.index].name + (v.order == 1 ? "'" : "");
 }
@@ -28,7 +28,7 @@ const RealMatrix& matrix_of(char letter, const Linearization& l) {
 }
 
 /// Its row: of the states positions first, then velocities. Nothing for a coordinate that depends on others.
-std::optional<std::size_t> place_of(const MatrixVariable& v, const Linearization& l) {
+std::optional<std::size_t> place_of(const expectation::MatrixVariable& v, const Linearization& l) {
   if (v.order < 0) return v.index;
   const std::vector<std::size_t>& list = v.order == 0 ? l.independent : l.independent_velocities;
   const auto found = std::find(list.begin(), list.end(), v.index);
@@ -45,7 +45,7 @@ std::string independent_names(const Linearization& l, const MechanicalSystem& sy
 
 }  // namespace
 
-void decide_mass_matrix(const Expectation& e, const EquationsOfMotion& equations, const MotionState& start, ExpectationResult& result) {
+void decide_mass_matrix(const expectation::Matrix& e, const EquationsOfMotion& equations, const MotionState& start, ExpectationResult& result) {
   const MechanicalSystem& system = *equations.system;
   const ExprMatrix m = mass_matrix(equations);
   Bindings at = parameter_bindings(system);
@@ -59,16 +59,16 @@ void decide_mass_matrix(const Expectation& e, const EquationsOfMotion& equations
     at[s.order == 0 ? c.q : c.velocity] = number_of(system, s.value);
   }
   std::vector<double> actual;
-  for (const MatrixVariable& row : e.rows)
-    for (const MatrixVariable& column : e.columns) {
+  for (const expectation::MatrixVariable& row : e.rows)
+    for (const expectation::MatrixVariable& column : e.columns) {
       const Expr entry = m.at(row.index, column.index);
       actual.push_back(evaluate(expand_time_derivatives(in_terms_of_motion(system, {&entry, 1}).front()), at));
     }
   judge_entries(e, system, actual, result);
 }
 
-void decide_linearization(const Expectation& e, const MechanicalSystem& system, const Linearization& l, ExpectationResult& result) {
-  const char letter = e.name[0];
+void decide_linearization(const expectation::Matrix& e, const MechanicalSystem& system, const Linearization& l, ExpectationResult& result) {
+  const char letter = e.letter;
   result.expected = fmt::format("{} as written", letter);
   if (letter != 'A' && letter != 'B' && !l.second_order()) {
     result.actual = "not defined";
@@ -77,8 +77,8 @@ void decide_linearization(const Expectation& e, const MechanicalSystem& system, 
   }
   const RealMatrix& matrix = matrix_of(letter, l);
   std::vector<double> actual;
-  for (const MatrixVariable& row : e.rows)
-    for (const MatrixVariable& column : e.columns) {
+  for (const expectation::MatrixVariable& row : e.rows)
+    for (const expectation::MatrixVariable& column : e.columns) {
       const auto i = place_of(row, l), j = place_of(column, l);
       if (!i || !j) {
         result.actual = "not defined";

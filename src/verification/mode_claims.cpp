@@ -17,8 +17,8 @@ namespace {
 
 double number(const Model& model, Expr e) { return number_of(model.system, e); }
 
-/// One for each mode of oscillation, and 0 for each pair of vanishing eigenvalues; ascending. Squared: ω², negative for modes that
-/// grow and decay instead.
+/// One for each mode of oscillation, and 0 for each pair of vanishing eigenvalues; ascending. Squared: ω², negative for
+/// modes that grow and decay instead.
 std::vector<double> frequencies(const ModalAnalysis& analysis, bool squared) {
   std::vector<double> out;
   std::size_t zeros = 0;
@@ -33,40 +33,31 @@ std::vector<double> frequencies(const ModalAnalysis& analysis, bool squared) {
   return out;
 }
 
-std::string list_text(const std::vector<double>& values, const Expectation& e) {
+std::string list_text(const std::vector<double>& values, const expectation::Frequencies& e) {
   std::string out;
-  for (const double v : values) out += fmt::format("{}{:.17g}", out.empty() ? "" : ", ", v / e.display_factor);
-  const std::string unit = !e.display_unit.empty() ? e.display_unit : e.squared ? "rad^2/s^2" : "rad/s";
+  for (const double v : values) out += fmt::format("{}{:.17g}", out.empty() ? "" : ", ", v / e.unit.factor);
+  const std::string unit = !e.unit.name.empty() ? e.unit.name : e.squared ? "rad^2/s^2" : "rad/s";
   return out.empty() ? "none" : out + " " + unit;
 }
 
 }  // namespace
 
-ModeClaims::ModeClaims(const Model& model, const EquationsOfMotion& equations) : model_(model), derived_(equations), equations_(equations) {
+ModeClaims::ModeClaims(const Model& model, const EquationsOfMotion& equations)
+    : model_(model), derived_(equations), equations_(equations) {
   Diagnostics unheard;  // why there is no start is for a run to say
-  if (const auto start = consistent_start(model, equations, unheard)) start_ = start->state;
-  else start_ = {0, std::vector<double>(model.system.coordinates.size()), std::vector<double>(model.system.coordinates.size())};
+  if (const auto start = consistent_start(model, equations, unheard))
+    start_ = start->state;
+  else
+    start_ = {0, std::vector<double>(model.system.coordinates.size()),
+              std::vector<double>(model.system.coordinates.size())};
 }
 
-/// Values with a tolerance are where the search begins; the others are kept.
-std::optional<ModalStudy> ModeClaims::study_at(const Expectation& e, Diagnostics& told) const {
-  MotionState begin = start_;
-  std::vector<StartValue> kept;
-  for (std::size_t i = 0; i < e.at.size(); ++i) {
-    if (i >= e.at_tolerances.size() || !e.at_tolerances[i].size) kept.push_back(e.at[i]);
-    else begin.q[e.at[i].coordinate] = number(model_, e.at[i].value);
-  }
-  return modal_study_at(equations_, begin, kept, told);
-}
-
-void ModeClaims::decide(const Expectation& e, ExpectationResult& result) {
-  using Asked = syntax::ExpectStatement::Kind;
-  if (e.kind == Asked::Stable) return decide_critical(e, equations_, start_, result, model_.experiment);
-  if (e.kind == Asked::Matrix && e.name == "M") return decide_mass_matrix(e, derived_, start_, result);
+void ModeClaims::decide_at(const MotionState& begin, const std::vector<StartValue>& at, const char* what,
+                           const Judge& judge, ExpectationResult& result) {
   Diagnostics told;
-  auto study = study_at(e, told);
+  auto study = modal_study_at(equations_, begin, at, told);
   if (!study) {
-    result.expected = e.kind == Asked::Equilibrium ? "an equilibrium" : "an equilibrium or a steady motion";
+    result.expected = what;
     result.actual = "none";
     for (const Diagnostic& d : told.items()) result.message = d.message + ". " + d.reason;
     return;
@@ -74,42 +65,84 @@ void ModeClaims::decide(const Expectation& e, ExpectationResult& result) {
   settle_driven(*study, equations_, model_, derived_, nullptr);
   // On a kink each side is judged for itself, and all have to agree.
   for (const ModalEntry& entry : study->entries) {
-    decide_of(e, entry, result);
+    judge(entry, result);
     if (!entry.side.empty()) result.message = fmt::format("On the side {} of a kink: {}", entry.side, result.message);
     if (!result.passed) return;
   }
   if (study->kinks.empty()) return;
   result.passed = false;
-  result.message = fmt::format("On the side {} of a kink forces are left over: there is no linearization.", study->kinks.front().side);
+  result.message = fmt::format("On the side {} of a kink forces are left over: there is no linearization.",
+                               study->kinks.front().side);
 }
 
-void ModeClaims::decide_of(const Expectation& e, const ModalEntry& entry, ExpectationResult& result) const {
-  using Asked = syntax::ExpectStatement::Kind;
-  if (e.kind == Asked::Equilibrium) return decide_stability(e, entry, result);
-  if (!equations_.autonomous()) {
-    result.expected = e.kind == Asked::Frequencies ? "frequencies" : "a linearization";
-    result.actual = "none";
-    result.message = fmt::format("The coefficients change with the time, and those frozen at an instant mean nothing; {}.", entry.analysis.stability.reason);
-    return;
+void ModeClaims::decide_linear(const std::vector<StartValue>& at, const char* what, const Judge& judge,
+                               ExpectationResult& result) {
+  decide_at(
+      start_, at, "an equilibrium or a steady motion",
+      [&](const ModalEntry& entry, ExpectationResult& of_entry) {
+        if (equations_.autonomous()) return judge(entry, of_entry);
+        of_entry.expected = what;
+        of_entry.actual = "none";
+        of_entry.message =
+            fmt::format("The coefficients change with the time, and those frozen at an instant mean nothing; {}.",
+                        entry.analysis.stability.reason);
+      },
+      result);
+}
+
+void ModeClaims::decide(const expectation::Frequencies& e, ExpectationResult& result) {
+  decide_linear(
+      e.at, "frequencies",
+      [&](const ModalEntry& entry, ExpectationResult& r) { judge_frequencies(e, entry.analysis, r); }, result);
+}
+
+void ModeClaims::decide(const expectation::Eigenvalues& e, ExpectationResult& result) {
+  decide_linear(
+      e.at, "a linearization",
+      [&](const ModalEntry& entry, ExpectationResult& r) {
+        judge_spectrum(e.expected, model_.system, entry.analysis.eigenvalues, r);
+      },
+      result);
+}
+
+void ModeClaims::decide(const expectation::Matrix& e, ExpectationResult& result) {
+  if (e.letter == 'M') return decide_mass_matrix(e, derived_, start_, result);
+  decide_linear(
+      e.at, "a linearization",
+      [&](const ModalEntry& entry, ExpectationResult& r) {
+        decide_linearization(e, model_.system, entry.linearization, r);
+      },
+      result);
+}
+
+/// Values with a tolerance are where the search begins; the others are kept.
+void ModeClaims::decide(const expectation::Equilibrium& e, ExpectationResult& result) {
+  MotionState begin = start_;
+  std::vector<StartValue> kept;
+  for (const expectation::Place& place : e.at) {
+    if (!place.tolerance)
+      kept.push_back(place.value);
+    else
+      begin.q[place.value.coordinate] = number(model_, place.value.value);
   }
-  if (e.kind == Asked::Matrix) return decide_linearization(e, model_.system, entry.linearization, result);
-  if (e.kind == Asked::Eigenvalues) return judge_spectrum(e, model_.system, entry.analysis.eigenvalues, result);
-  decide_frequencies(e, entry.analysis, result);
+  decide_at(
+      begin, kept, "an equilibrium",
+      [&](const ModalEntry& entry, ExpectationResult& r) { judge_stability(e, entry, r); }, result);
+}
+
+void ModeClaims::decide(const expectation::Stable& e, ExpectationResult& result) {
+  decide_critical(e, equations_, start_, result, model_.experiment);
 }
 
 /// Whether it lies where it should; what has no tolerance was found to within its rounding.
-bool ModeClaims::decide_place(const Expectation& e, const ModalEntry& entry, ExpectationResult& result) const {
-  for (std::size_t i = 0; i < e.at_tolerances.size(); ++i) {
-    const PointTolerance& tolerance = e.at_tolerances[i];
-    if (!tolerance.size) continue;
-    Expectation one;
-    one.value = e.at[i].value;
-    one.tolerance = tolerance.size;
-    one.relative = tolerance.relative;
-    one.display_unit = tolerance.display_unit;
-    one.display_factor = tolerance.display_factor;
-    judge_number(one, model_.system, entry.equilibrium.point.q[e.at[i].coordinate], result);
-    const std::string& name = model_.system.coordinates[e.at[i].coordinate].name;
+bool ModeClaims::judge_place(const expectation::Equilibrium& e, const ModalEntry& entry,
+                             ExpectationResult& result) const {
+  for (const expectation::Place& place : e.at) {
+    if (!place.tolerance) continue;
+    const std::size_t i = place.value.coordinate;
+    judge_number({place.value.value, *place.tolerance, place.unit}, model_.system, entry.equilibrium.point.q[i],
+                 result);
+    const std::string& name = model_.system.coordinates[i].name;
     result.actual = name + " = " + result.actual;
     result.expected = name + " = " + result.expected;
     if (!result.passed) return false;
@@ -117,15 +150,17 @@ bool ModeClaims::decide_place(const Expectation& e, const ModalEntry& entry, Exp
   return true;
 }
 
-void ModeClaims::decide_frequencies(const Expectation& e, const ModalAnalysis& analysis, ExpectationResult& result) const {
+void ModeClaims::judge_frequencies(const expectation::Frequencies& e, const ModalAnalysis& analysis,
+                                   ExpectationResult& result) const {
   std::vector<double> expected;
   for (const Expr& v : e.values) expected.push_back(number(model_, v));
   std::sort(expected.begin(), expected.end());
   const std::vector<double> actual = frequencies(analysis, e.squared);
-  const double tolerance = number(model_, e.tolerance);
+  const double tolerance = number(model_, e.tolerance.size);
   result.actual = list_text(actual, e);
   result.expected = list_text(expected, e);
-  result.tolerance = e.relative ? fmt::format("rel {:g}", tolerance) : fmt::format("± {:g}", tolerance / e.display_factor);
+  result.tolerance =
+      e.tolerance.relative ? fmt::format("rel {:g}", tolerance) : fmt::format("± {:g}", tolerance / e.unit.factor);
   if (e.squared && !analysis.symmetric) {
     result.message = "Squares are the eigenvalues of M ξ'' + K ξ = 0; here forces depend on velocities.";
     return;
@@ -136,17 +171,22 @@ void ModeClaims::decide_frequencies(const Expectation& e, const ModalAnalysis& a
   }
   double worst = 0;
   for (std::size_t i = 0; i < actual.size(); ++i) {
-    const double allowed = e.relative ? tolerance * std::abs(expected[i]) : tolerance, error = std::abs(actual[i] - expected[i]);
+    const double allowed = e.tolerance.relative ? tolerance * std::abs(expected[i]) : tolerance,
+                 error = std::abs(actual[i] - expected[i]);
     worst = std::max(worst, error <= allowed ? error / std::max(allowed, 1e-300) : HUGE_VAL);
   }
   result.passed = worst <= 1;
-  result.message = result.passed ? fmt::format("residual of the eigenvalue problem {:.1e}", analysis.residual) : "A frequency is off by more than the tolerance.";
+  result.message = result.passed ? fmt::format("residual of the eigenvalue problem {:.1e}", analysis.residual)
+                                 : "A frequency is off by more than the tolerance.";
 }
 
-void ModeClaims::decide_stability(const Expectation& e, const ModalEntry& entry, ExpectationResult& result) const {
-  if (!decide_place(e, entry, result)) return;
+void ModeClaims::judge_stability(const expectation::Equilibrium& e, const ModalEntry& entry,
+                                 ExpectationResult& result) const {
+  if (!judge_place(e, entry, result)) return;
   const Stability verdict = entry.analysis.stability.verdict;
-  const std::string_view word = verdict == Stability::Unstable ? "unstable" : verdict == Stability::Undecided ? "undecided" : "stable";
+  const std::string_view word = verdict == Stability::Unstable    ? "unstable"
+                                : verdict == Stability::Undecided ? "undecided"
+                                                                  : "stable";
   if (result.actual.empty()) {
     result.actual = entry.equilibrium.at_rest ? "an equilibrium" : "a steady motion";
     result.expected = "an equilibrium";

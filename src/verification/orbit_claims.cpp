@@ -6,13 +6,13 @@
 
 namespace maupertuis {
 
-const OrbitClaims::Answer& OrbitClaims::answer(const Expectation& e) {
-  const double given = number_of(model_.system, e.time);
+const OrbitClaims::Answer& OrbitClaims::answer(Expr over) {
+  const double given = number_of(model_.system, over);
   const auto [at, is_new] = answers_.try_emplace(given);
   if (!is_new) return at->second;
   FloquetOptions options;
   options.interrupt = interrupt_;
-  if (e.time) options.period = given;
+  if (over) options.period = given;
   Diagnostics told;
   at->second.found = floquet(model_, equations_, options, told);
   for (const Diagnostic& d : told.items())
@@ -20,24 +20,44 @@ const OrbitClaims::Answer& OrbitClaims::answer(const Expectation& e) {
   return at->second;
 }
 
-void OrbitClaims::decide(const Expectation& e, ExpectationResult& result) {
-  const Answer& a = answer(e);
-  if (!a.found) {
-    result.actual = "no periodic motion";
-    result.message = a.trouble;
-    return;
-  }
-  const FloquetResult& f = *a.found;
-  using Asked = syntax::ExpectStatement::Kind;
-  if (e.kind == Asked::Multipliers) {
-    // Those that are 1 by themselves may be written or left out.
-    auto values = f.multipliers;
-    if (spectrum_size(e, model_.system) != values.size()) values.resize(values.size() - f.trivial);
-    judge_spectrum(e, model_.system, values, result);
-  } else {
-    judge_number(e, model_.system, e.kind == Asked::Trace ? f.trace : f.motion.period, result);
-  }
+const FloquetResult* OrbitClaims::motion(Expr over, ExpectationResult& result) {
+  const Answer& a = answer(over);
+  if (a.found) return &*a.found;
+  result.actual = "no periodic motion";
+  result.message = a.trouble;
+  return nullptr;
+}
+
+namespace {
+
+void add_ground(const FloquetResult& f, ExpectationResult& result) {
   result.message += fmt::format("; periodic motion of {:.9g} s, closed to {:.1e}", f.motion.period, f.motion.closure);
+}
+
+}  // namespace
+
+void OrbitClaims::decide(const expectation::Multipliers& e, ExpectationResult& result) {
+  const FloquetResult* f = motion(e.over, result);
+  if (!f) return;
+  // Those that are 1 by themselves may be written or left out.
+  auto values = f->multipliers;
+  if (spectrum_size(e.expected, model_.system) != values.size()) values.resize(values.size() - f->trivial);
+  judge_spectrum(e.expected, model_.system, values, result);
+  add_ground(*f, result);
+}
+
+void OrbitClaims::decide(const expectation::Trace& e, ExpectationResult& result) {
+  const FloquetResult* f = motion(e.over, result);
+  if (!f) return;
+  judge_number(e.expected, model_.system, f->trace, result);
+  add_ground(*f, result);
+}
+
+void OrbitClaims::decide(const expectation::Period& e, ExpectationResult& result) {
+  const FloquetResult* f = motion(e.over, result);
+  if (!f) return;
+  judge_number(e.expected, model_.system, f->motion.period, result);
+  add_ground(*f, result);
 }
 
 }  // namespace maupertuis

@@ -12,14 +12,18 @@ class OrbitClaims {
  public:
   OrbitClaims(const Model& model, const EquationsOfMotion& equations, const std::atomic<bool>* interrupt)
       : model_(model), equations_(equations), interrupt_(interrupt) {}
-  void decide(const Expectation& expectation, ExpectationResult& result);
+  void decide(const expectation::Multipliers& expectation, ExpectationResult& result);
+  void decide(const expectation::Trace& expectation, ExpectationResult& result);
+  void decide(const expectation::Period& expectation, ExpectationResult& result);
 
  private:
   struct Answer {
     std::optional<FloquetResult> found;
     std::string trouble;
   };
-  const Answer& answer(const Expectation& expectation);
+  const Answer& answer(Expr over);
+  /// The motion of that period; null, and why, where there is none.
+  const FloquetResult* motion(Expr over, ExpectationResult& result);
 
   const Model& model_;
   const EquationsOfMotion& equations_;

@@ -8,8 +8,9 @@ std::optional<Verification> verify_errors(const syntax::SyntaxTree& tree, const 
   Verification verification;
   for (const syntax::Statement& statement : tree.statements) {
     const auto* expect = std::get_if<syntax::ExpectStatement>(&statement.body);
-    if (!expect || expect->kind != syntax::ExpectStatement::Kind::Error) continue;
-    const std::string& code = expect->name.text;
+    const auto* error = expect ? std::get_if<syntax::expectation::Error>(&expect->kind) : nullptr;
+    if (!error) continue;
+    const std::string& code = error->code.text;
     ExpectationResult result;
     result.line = source.locate(statement.span.begin).line;
     result.text = std::string(source.slice(statement.span));

@@ -56,7 +56,7 @@ TEST_CASE("a mistake in an option is shown in the option, with carets below it, 
            Wrong{{"plot", "-", "--y", "θ1 - l1"}, "--y", "θ1 - l1", "     ^^", "angle"},
            Wrong{{"simulate", "-", "--columns", "θ1, cos θ1 - t", "-o", "/dev/null"}, "--columns", "cos θ1 - t", "         ^", "time"},
            Wrong{{"hamiltonian", "-", "--bracket", "θ1", "p_θ9"}, "--bracket", "p_θ9", "^^^^", "not declared"},
-           Wrong{{"action", "-", "--path", "θ1 = t, θ2 = 3 m", "--from", "0s", "--to", "1s"}, "--path", "t", "", ""},
+           Wrong{{"action", "-", "--path", "θ1 = t, θ2 = 3 m", "--from", "0s", "--to", "1s"}, "--path", "θ1 = t, θ2 = 3 m", "     ^", "along the path"},
        }) {
     std::string command;
     for (const std::string& a : w.arguments) command += a + " ";

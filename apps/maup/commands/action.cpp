@@ -1,5 +1,4 @@
 #include "action_text.hpp"
-#include "columns.hpp"
 #include "command.hpp"
 #include "interrupt.hpp"
 #include "outcome.hpp"
@@ -99,65 +98,34 @@ ActionOptions options_of(const ActionCommand& o) {
 
 // --------------------------------------------------------------------------------------------------------- a given path
 
-/// What stands in [begin, end), without the blanks before it.
-Span right_side(const std::string& text, std::size_t begin, std::uint32_t end) {
-  while (begin < end && text[begin] == ' ') ++begin;
-  return {static_cast<std::uint32_t>(begin), end};
+/// Says the formulas of --path and their ends beside the model.
+void put_in_path(const ActionCommand& o, Study& study) {
+  if (!o.ends.empty()) study.override_with(OverrideKind::Path, "--ends", o.ends);
+  if (o.path.empty()) return;
+  study.override_with(OverrideKind::GivenPath, "--path", o.path);
+  if (o.from) study.override_with(OverrideKind::GivenFrom, "--from", *o.from);
+  if (o.to) study.override_with(OverrideKind::GivenTo, "--to", *o.to);
 }
 
-/// The formulas of --path in the order of the coordinates, as pieces of its text: x = 4 t + 7, y = 3 t + 5.
-std::optional<std::vector<Span>> formulas_of(const std::string& text, Study& study) {
-  const MechanicalSystem& system = study.model()->system;
-  std::vector<Span> formulas(system.coordinates.size());
-  std::optional<Span> wrong;
-  for (const Span piece : pieces_of(text)) {
-    const auto equals = text.find('=', piece.begin);
-    const bool has_sides = equals < piece.end;
-    const Span left = has_sides ? pieces_of(text.substr(0, equals).substr(piece.begin)).front() : Span{};
-    const std::string name = text.substr(piece.begin + left.begin, left.end - left.begin);
-    const auto found = std::find_if(system.coordinates.begin(), system.coordinates.end(), [&](const Coordinate& c) { return c.name == name; });
-    if (!has_sides || found == system.coordinates.end()) wrong = piece;
-    else formulas[static_cast<std::size_t>(found - system.coordinates.begin())] = right_side(text, equals + 1, piece.end);
-  }
-  std::string names;
-  for (std::size_t i = 0; i < formulas.size(); ++i) {
-    names += fmt::format("{}{} = …", i ? ", " : "", system.coordinates[i].name);
-    if (formulas[i].begin == formulas[i].end && !wrong) wrong = Span{0, static_cast<std::uint32_t>(text.size())};
-  }
-  if (!wrong) return formulas;
-  study.refuse_option("--path", text, fmt::format("--path \"{}\": \"{}\" gives no path.", text, text.substr(wrong->begin, wrong->end - wrong->begin)),
-               {}, fmt::format("Write a formula for each coordinate: \"{}\".", names), wrong);
-  return std::nullopt;
-}
-
-/// A path is read as the expectation of a model of its own, so that it may hold whatever a formula may.
-std::unique_ptr<Study> study_of_path(const ActionCommand& o, Study& as_written) {
-  const auto formulas = formulas_of(o.path, as_written);
-  if (!formulas) return nullptr;
-  const std::string& independent = as_written.model()->system.independent;
-  OptionStatement statement("expect action of (");
-  for (std::size_t i = 0; i < formulas->size(); ++i)
-    statement.add(i ? ", " : "").add_typed("--path", o.path.substr((*formulas)[i].begin, (*formulas)[i].end - (*formulas)[i].begin));
-  statement.add(")");
-  if (o.from && o.to) statement.add(" from ").add_typed("--from", *o.from).add(" to ").add_typed("--to", *o.to);
-  else if (!as_written.model()->experiment.path) {
-    as_written.diagnostics().error("E0809", {}, "--path needs to know from where to where.", {},
-                                   fmt::format("Give --from and --to, the ends of {}, or `path from …` in the model.", independent));
-    return nullptr;
-  }
-  auto own = std::make_unique<Study>(as_written.source(), o.model.overrides);
-  own->add_statements({statement.add(" = 0 rel 1")});
-  return own;
+/// Formulas have no ends of their own.
+void check_ends(const ActionCommand& o, Study& study) {
+  const syntax::SyntaxTree* tree = study.tree();
+  if (o.path.empty() || o.from || !o.ends.empty() || !tree) return;
+  for (const syntax::Statement& s : tree->statements)
+    if (std::holds_alternative<syntax::PathStatement>(s.body)) return;
+  study.diagnostics().error(
+      "E0809", {}, "--path needs to know from where to where.", {},
+      "Give --from and --to, the ends of the independent variable, or `path from …` in the model.");
 }
 
 std::optional<ActionFindings> find_given(const ActionCommand& o, Study& study) {
   const Model& model = *study.model();
-  const Expectation& e = model.experiment.expectations.back();
+  const PathFormulas& given = *model.experiment.given_path;
   const auto number = [&](Expr x) { return evaluate(in_terms_of_motion(model.system, {&x, 1}).front(), parameter_bindings(model.system)); };
   std::optional<ActionEnds> ends;
-  if (model.experiment.path && !e.from) ends = ends_of(model);
-  const double start = e.from ? number(e.from) : ends->start, end = e.to ? number(e.to) : ends->end;
-  auto found = action_of_path(model, *study.equations(), e.values, start, end, ends, options_of(o), study.diagnostics());
+  if (model.experiment.path && !given.from) ends = ends_of(model);
+  const double start = given.from ? number(given.from) : ends->start, end = given.to ? number(given.to) : ends->end;
+  auto found = action_of_path(model, *study.equations(), given.q, start, end, ends, options_of(o), study.diagnostics());
   if (!found) return std::nullopt;
   ActionFindings out{{"given", action_text(*found, model.system), action_json(*found, model.system)},
                      path_rows({&found->path}, model.system),
@@ -221,22 +189,23 @@ void write_files(const ActionCommand& o, const ActionFindings& found, Study& stu
 }
 
 ExitCode study_action(const ActionCommand& o, Console& console) {
-  Study as_written(o.model.path, o.model.overrides);
-  const bool readable_model = !as_written.wrong();
-  check_usage(o, as_written.diagnostics());
-  if (readable_model && as_written.wrong()) return finish_usage(console, as_written, "action");
-  if (!o.ends.empty()) as_written.replace_path(OptionStatement("path from ").add_typed("--ends", o.ends));
-  if (!as_written.certificate()) return finish(console, as_written, json_document("action"));
-  check_search(o, as_written);
-  const auto own = o.path.empty() ? nullptr : study_of_path(o, as_written);
-  if (as_written.wrong()) return finish_usage(console, as_written, "action");
-  Study& study = own ? *own : as_written;
-  if (!study.equations()) return finish(console, study, json_document("action"));
+  Study study = open_study(o.model);
+  const bool readable_model = !study.wrong();
+  check_usage(o, study.diagnostics());
+  if (readable_model && study.wrong()) return finish_usage(console, study, "action");
+  const bool good_text = study.tree() && !study.wrong();
+  if (good_text) check_ends(o, study);
+  if (good_text && study.wrong()) return finish_usage(console, study, "action");
+  put_in_path(o, study);
+  if (!study.certificate()) return finish(console, study, json_document("action"));
+  check_search(o, study);
+  if (study.wrong()) return finish_usage(console, study, "action");
 
-  const auto found = own                                           ? find_given(o, study)
-                     : o.periodic                                  ? find_orbit(o, study)
-                     : !o.motion && study.model()->experiment.path ? find_paths(o, study)
-                                                                   : find_motion(o, study);
+  const Experiment& experiment = study.model()->experiment;
+  const auto found = experiment.given_path          ? find_given(o, study)
+                     : o.periodic                   ? find_orbit(o, study)
+                     : !o.motion && experiment.path ? find_paths(o, study)
+                                                    : find_motion(o, study);
   if (!found) return finish_without(console, study, "action");
   write_files(o, *found, study);
   return finish_with(console, study, "action", found->answer);

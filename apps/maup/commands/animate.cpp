@@ -196,7 +196,7 @@ std::optional<Drawing> drawing_of(Study& study, const SimulationOptions& setting
 }
 
 ExitCode animate(AnimateOptions o, Console& console) {
-  Study study(o.model.path, o.model.overrides);
+  Study study = open_study(o.model);
   Json document = json_document("animate");
   const bool readable_model = !study.wrong();
   const SimulationOptions settings = simulation_options(o.run, study.diagnostics(), study.tree());

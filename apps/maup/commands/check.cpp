@@ -1,8 +1,9 @@
 #include "command.hpp"
 #include "constraint_text.hpp"
+#include "interrupt.hpp"
+#include "open_study.hpp"
 #include "outcome.hpp"
 #include "quantity.hpp"
-#include "study.hpp"
 
 #include <fmt/format.h>
 
@@ -137,7 +138,7 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
 }
 
 ExitCode check(const ModelOptions& options, Console& console) {
-  Study study(options.path, options.overrides);
+  Study study = open_study(options);
   const Model* model = study.model();
   const EquationsOfMotion* equations = study.equations();  // a singular mass matrix is found here
   std::optional<Findings> findings;

@@ -1,5 +1,6 @@
 #include "command.hpp"
 #include "comparison_text.hpp"
+#include "interrupt.hpp"
 #include "outcome.hpp"
 #include "quantity.hpp"
 #include "run_options.hpp"
@@ -176,7 +177,7 @@ ExitCode finish_all(Console& console, Study& a, Study& b, const Diagnostics& of_
 }
 
 ExitCode compare_models(const CompareOptions& options, Console& console) {
-  Study a(options.a), b(options.b);
+  Study a = open_study(options.a), b = open_study(options.b);
   Diagnostics of_map;
   const SourceText map_text("--map", options.map);
   SimulationOptions settings = simulation_options(options.run, of_map);
@@ -186,7 +187,7 @@ ExitCode compare_models(const CompareOptions& options, Console& console) {
   if (of_map.has_errors()) return end(json_document("compare"), ExitCode::Usage);
   const bool readable = !unreadable(a.diagnostics()) && !unreadable(b.diagnostics());
   const EquationsOfMotion* a_equations = a.equations();
-  if (!b.equations() || !a_equations || refuse_held_integrals(a) || refuse_held_integrals(b) || !a.certificate() || !b.certificate())
+  if (!b.equations() || !a_equations || a.refuse_held_integrals() || b.refuse_held_integrals() || !a.certificate() || !b.certificate())
     return end(json_document("compare"), readable ? ExitCode::ModelWrong : ExitCode::Usage);
 
   const InterruptScope of_a = a.interruptible(), of_b = b.interruptible();

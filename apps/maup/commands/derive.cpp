@@ -160,10 +160,10 @@ ExitCode emit_stage(const DeriveOptions& options, Study& study, Console& console
 }
 
 ExitCode derive(const DeriveOptions& options, Console& console) {
-  Study study(options.model.path, options.model.overrides);
+  Study study = open_study(options.model);
   if (!options.emit.empty()) return emit_stage(options, study, console);
 
-  if (refuse_held_integrals(study)) return finish(console, study, document_of(options, study, {}, nullptr));
+  if (study.refuse_held_integrals()) return finish(console, study, document_of(options, study, {}, nullptr));
   study.derivation(options.steps);
   const Certificate* certificate = study.certificate({.full = options.certify == "full"});
   EquationForm form;

@@ -1,6 +1,6 @@
 #include "command.hpp"
+#include "open_study.hpp"
 #include "outcome.hpp"
-#include "study.hpp"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ struct FmtOptions {
 
 /// One file; a file with a mistake in its text stays as it is.
 ExitCode format_one(const std::string& path, const FmtOptions& options, Console& console, Json& files) {
-  Study study(path);
+  Study study = open_study(path);
   const syntax::SyntaxTree* tree = study.tree();
   std::string text;
   if (tree && !study.wrong()) text = syntax::format(*tree, study.source());

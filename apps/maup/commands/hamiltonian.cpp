@@ -44,27 +44,19 @@ std::vector<std::size_t> coordinates_named(const std::vector<std::string>& names
   return found;
 }
 
-/// Brackets are read by the model language itself, as expectations after the model's own statements.
-std::vector<OptionStatement> bracket_statements(const std::vector<std::string>& arguments) {
-  std::vector<OptionStatement> statements;
-  for (std::size_t i = 0; i + 1 < arguments.size(); i += 2)
-    statements.push_back(
-        OptionStatement("expect bracket (").add_typed("--bracket", arguments[i]).add(", ").add_typed("--bracket", arguments[i + 1]).add(") = 0"));
-  return statements;
-}
-
-std::vector<Bracket> brackets_of(const std::vector<OptionStatement>& statements, const Hamiltonian& h, Study& study) {
+/// Of the formulas of --bracket, two for each.
+std::vector<Bracket> brackets_of(const Hamiltonian& h, Study& study) {
+  const std::vector<AskedFormula>& asked = study.model()->experiment.asked;
   std::vector<Bracket> found;
-  for (const Expectation& e : study.model()->experiment.expectations) {
-    const bool asked = std::any_of(statements.begin(), statements.end(), [&](const OptionStatement& s) { return s.text() == e.text; });
-    if (!asked) continue;
-    const auto value = poisson_bracket(e.subject, e.values.front(), h);
+  for (std::size_t i = 0; i + 1 < asked.size(); i += 2) {
+    const Expr a = asked[i].value, b = asked[i + 1].value;
+    const auto value = poisson_bracket(a, b, h);
     if (!value)
-      study.diagnostics().error("E1104", e.span, "this bracket cannot be formed",
+      study.diagnostics().error("E1104", asked[i].span, "this bracket cannot be formed",
                                 "A velocity stands in it that does not follow from the momenta, or an acceleration.",
                                 "Write it in coordinates, momenta and t.");
     else
-      found.push_back({e.subject, e.values.front(), *value});
+      found.push_back({a, b, *value});
   }
   return found;
 }
@@ -89,7 +81,7 @@ PhaseSpace analyse(const HamiltonianOptions& options, Study& study) {
   report_legendre(found.hamiltonian, study.diagnostics());
   const std::vector<std::size_t> replaced = coordinates_named(options.routhian, study);
   found.routhian = routhian(equations, found.hamiltonian, replaced.empty() ? nullptr : &replaced);
-  found.brackets = brackets_of(bracket_statements(options.bracket), found.hamiltonian, study);
+  found.brackets = brackets_of(found.hamiltonian, study);
   found.certificate = certify(found.hamiltonian, equations);
   if (found.routhian)
     for (CertificateCheck& check : certify(*found.routhian, found.hamiltonian, equations).checks)
@@ -149,12 +141,12 @@ ExitCode integrate(const HamiltonianOptions& options, const PhaseSpace& found, S
 }
 
 ExitCode hamiltonian_of(const HamiltonianOptions& options, Console& console) {
-  Study study(options.model.path, options.model.overrides);
+  Study study = open_study(options.model);
   Json document = json_document("hamiltonian");
   put_in_run(options.run, study);
-  study.add_statements(bracket_statements(options.bracket));
+  for (const std::string& formula : options.bracket) study.ask("--bracket", formula);
   if (!options.integrate) study.admit_singular_mass_matrix();  // then there are primary constraints
-  if (!study.model() || refuse_held_integrals(study) || !study.certificate()) return finish(console, study, document);
+  if (!study.model() || study.refuse_held_integrals() || !study.certificate()) return finish(console, study, document);
   const PhaseSpace found = analyse(options, study);
   if (study.wrong()) return finish(console, study, document);
   if (!console.json()) {

@@ -14,10 +14,10 @@ struct CommandOptions {
 };
 
 ExitCode invariants_of_model(const CommandOptions& options, Console& console) {
-  Study study(options.model.path, options.model.overrides);
+  Study study = open_study(options.model);
   Json document = json_document("invariants");
   const EquationsOfMotion* equations = study.equations();
-  if (!equations || refuse_held_integrals(study) || !study.certificate()) return finish(console, study, document);
+  if (!equations || study.refuse_held_integrals() || !study.certificate()) return finish(console, study, document);
   InvariantsOptions search = options.search;
   search.drift = !options.no_drift;
   const InterruptScope scope = study.interruptible();

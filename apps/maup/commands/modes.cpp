@@ -62,43 +62,20 @@ std::optional<ModalStudy> carry_out(const ModesOptions& options, Study& study, c
 // ----------------------------------------------------------------------------------------------------------------
 // outputs
 
-/// Outputs are read by the model language itself, as left sides of equations.
-constexpr std::string_view before_output = "expect equation ";
-
-std::vector<OptionStatement> output_statements(const std::vector<std::string>& outputs) {
-  std::vector<OptionStatement> statements;
-  for (const std::string& y : outputs) statements.push_back(OptionStatement(before_output).add_typed("--y", y).add(" = 0"));
-  return statements;
-}
-
-/// What the statements above say, in their order, which is that of the model's last expectations.
-ExprVector measured(const std::vector<std::string>& outputs, const Model& model) {
+/// What --y asks for.
+ExprVector measured(const Model& model) {
   ExprVector found;
-  const auto& expectations = model.experiment.expectations;
-  for (std::size_t i = expectations.size() - outputs.size(); i < expectations.size(); ++i)
-    found.push_back(expectations[i].subject);
+  for (const AskedFormula& y : model.experiment.asked) found.push_back(y.value);
   return found;
 }
 
 /// Numbers that are none are not shown.
 bool check_outputs(const ModesOptions& options, const ModalStudy& found, Study& study) {
   const Model& model = *study.model();
-  const auto& expectations = model.experiment.expectations;
   std::vector<OutputName> names;
-  for (std::size_t i = 0; i < options.outputs.size(); ++i) {
-    const std::string& text = options.outputs[i];
-    const Span statement = expectations[expectations.size() - options.outputs.size() + i].span;
-    const auto begin = statement.begin + static_cast<std::uint32_t>(before_output.size());
-    names.push_back({text, Span{begin, begin + static_cast<std::uint32_t>(text.size())}});
-  }
+  for (std::size_t i = 0; i < options.outputs.size(); ++i)
+    names.push_back({options.outputs[i], model.experiment.asked[i].span});
   return check_measured(model.system, found, names, study.diagnostics());
-}
-
-/// "γ = 20 .. 200 rad/s", perhaps with its number of values.
-OptionStatement sweep_statement(const std::string& sweep) {
-  OptionStatement statement("sweep ");
-  statement.add_typed("--sweep", sweep);
-  return sweep.find("steps") == std::string::npos ? statement.add(" steps 121") : statement;
 }
 
 // --------------------------------------------------------------------------------------------------------------
@@ -107,8 +84,9 @@ OptionStatement sweep_statement(const std::string& sweep) {
 /// "1, 2, 3" a diagonal, "1, 0; 0, 2" rows, "0.1" a multiple of 1. Nothing, and a message, where it is none of these.
 std::optional<RealMatrix> weights(const char* option, const std::string& text, std::size_t size, Study& study) {
   const auto wrong = [&](std::string message, std::size_t begin, std::size_t end) {
-    study.refuse_option(option, text, std::move(message), "", "Write a diagonal \"1, 10\", rows \"1, 0; 0, 10\", or one number.",
-                 Span{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)});
+    refuse_option(study, option, text, std::move(message), "",
+                  "Write a diagonal \"1, 10\", rows \"1, 0; 0, 10\", or one number.",
+                  Span{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)});
     return std::nullopt;
   };
   std::vector<std::vector<double>> rows(1);
@@ -267,23 +245,23 @@ bool check_usage(const ModesOptions& o, Diagnostics& diagnostics) {
   return false;
 }
 
-ExitCode modes(ModesOptions options, Console& console) {
-  if (!options.at.empty() && !parse_time(options.at)) options.model.overrides.at = {options.at};
-  Study study(options.model.path, options.model.overrides);
+ExitCode modes(const ModesOptions& options, Console& console) {
+  Study study = open_study(options.model);
   if (!study.wrong() && !check_usage(options, study.diagnostics())) {
     finish(console, study, json_document("modes"));
     return ExitCode::Usage;
   }
-  if (!options.sweep.empty()) study.replace_sweep(sweep_statement(options.sweep));
-  study.add_statements(output_statements(options.outputs));
+  if (!options.at.empty() && !parse_time(options.at)) study.override_with(OverrideKind::At, "--at", options.at);
+  if (!options.sweep.empty()) study.override_with(OverrideKind::Sweep, "--sweep", options.sweep);
+  for (const std::string& y : options.outputs) study.ask("--y", y);
   const EquationsOfMotion* equations = study.equations();
-  if (!equations || refuse_held_integrals(study) || refuse_without_time(study) || !study.certificate())
+  if (!equations || study.refuse_held_integrals() || study.refuse_without_time() || !study.certificate())
     return finish(console, study, json_document("modes"));
   if (options.orbit) return orbit(options, study, console);
   const InterruptScope scope = study.interruptible();
   const auto start = consistent_start(*study.model(), *equations, study.diagnostics());
   if (!start) return finish(console, study, json_document("modes"));
-  PointEquations at_points(*equations, measured(options.outputs, *study.model()));
+  PointEquations at_points(*equations, measured(*study.model()));
   return options.locus() ? locus(options, study, at_points, start->state, console)
                          : points(options, study, at_points, start->state, console);
 }

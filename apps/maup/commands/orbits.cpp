@@ -46,14 +46,15 @@ std::optional<Findings> find_floquet(const Options& o, Study& study) {
   return Findings{{"floquet", floquet_text(*result, system), floquet_json(*result, system)}, {}, {}};
 }
 
-std::optional<Findings> find_section(const SectionStudy& section) {
-  Study& study = *section.study;
-  const auto result = poincare_section(*study.model(), *study.equations(), section.options, study.diagnostics());
+std::optional<Findings> find_section(const Options& o, Study& study) {
+  const auto result =
+      poincare_section(*study.model(), *study.equations(), section_options(o.orbits, study), study.diagnostics());
   if (!result) return {};
   const MechanicalSystem& system = study.model()->system;
-  return Findings{{"section", section_text(*result, section.what, system), section_json(*result, section.what, system)},
+  const std::string what = section_text(o.orbits);
+  return Findings{{"section", section_text(*result, what, system), section_json(*result, what, system)},
                   section_rows(*result, system),
-                  section_picture(*result, section.what, system)};
+                  section_picture(*result, what, system)};
 }
 
 std::optional<Findings> find_lyapunov(const Options& o, Study& study) {
@@ -69,19 +70,16 @@ std::optional<Findings> find_lyapunov(const Options& o, Study& study) {
 }
 
 ExitCode study_orbits(const Options& o, Console& console) {
-  Study as_written(o.model.path, o.model.overrides);
-  const bool readable_model = !as_written.wrong();
-  check_usage(o, as_written.diagnostics());
-  if (readable_model && as_written.wrong()) return finish_usage(console, as_written, "orbits");
-  if (refuse_held_integrals(as_written) || refuse_without_time(as_written) || !as_written.certificate()) return finish(console, as_written, json_document("orbits"));
-  SectionStudy section;
-  if (o.orbits.has_section()) section = section_study(o.orbits, o.model, as_written);
-  Study& study = section.study ? *section.study : as_written;
-  if (!study.equations()) return finish(console, study, json_document("orbits"));
-
-  const auto found = section.study      ? find_section(section)
-                     : o.orbits.floquet ? find_floquet(o, study)
-                                        : find_lyapunov(o, study);
+  Study study = open_study(o.model);
+  const bool readable_model = !study.wrong();
+  check_usage(o, study.diagnostics());
+  if (readable_model && study.wrong()) return finish_usage(console, study, "orbits");
+  put_in_section(o.orbits, study);
+  if (study.refuse_held_integrals() || study.refuse_without_time() || !study.certificate())
+    return finish(console, study, json_document("orbits"));
+  const auto found = o.orbits.has_section() ? find_section(o, study)
+                     : o.orbits.floquet     ? find_floquet(o, study)
+                                            : find_lyapunov(o, study);
   if (!found) return finish_without(console, study, "orbits");
   write_rows(o.output, found->rows, study.diagnostics());
   if (!o.plot.empty()) write_picture(o.plot, plot_svg(found->rows, found->picture), study.diagnostics());

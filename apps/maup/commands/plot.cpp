@@ -20,7 +20,7 @@ struct PlotCommandOptions {
 };
 
 ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
-  Study study(options.model.path, options.model.overrides);
+  Study study = open_study(options.model);
   Json document = json_document("plot");
   document["file"] = options.output;
   const bool readable_model = !study.wrong();

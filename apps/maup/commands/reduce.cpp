@@ -30,14 +30,14 @@ std::string account(const Reduction& r) {
 }
 
 ExitCode reduce_model(const ReduceOptions& options, Console& console) {
-  Study study(options.path);
+  Study study = open_study(options.path);
   Json document = json_document("reduce");
   const bool readable_model = !study.wrong();
   const std::string output = options.output == "-" ? std::string() : options.output;
   check_output_files({{"-o", output, FileKind::Model}}, options.path, study.diagnostics());
   if (readable_model && study.wrong()) return finish_usage(console, study, "reduce");
   const EquationsOfMotion* equations = study.equations();
-  if (!equations || refuse_held_integrals(study) || !study.certificate()) return finish(console, study, document);
+  if (!equations || study.refuse_held_integrals() || !study.certificate()) return finish(console, study, document);
   const InterruptScope scope = study.interruptible();
   const Reduction r = reduce(*study.model(), *equations, *study.tree(), study.source(), study.diagnostics());
   document["dependent"] = r.dependent;

@@ -137,7 +137,7 @@ class Page {
     const OrbitsOptions& asked = options_.orbits;
     const bool any = asked.has_section() || asked.floquet || asked.lyapunov;
     if (!any) return true;
-    if (refuse_without_time(study_)) return false;
+    if (study_.refuse_without_time()) return false;
     budget_.carry_out("orbits", context_, [&](const Interrupt& interrupt) {
       Diagnostics said;
       if (asked.has_section()) find_section(interrupt, said);
@@ -158,13 +158,10 @@ class Page {
   }
 
   void find_section(const Interrupt& interrupt, Diagnostics& said) {
-    SectionStudy section = section_study(options_.orbits, options_.model, study_);
-    Study& own = *section.study;
-    found_.section_what = section.what;
-    section.options.interrupt = interrupt;
-    if (own.equations()) found_.section = poincare_section(*own.model(), *own.equations(), section.options, own.diagnostics());
-    for (const Diagnostic& d : own.diagnostics().items())  // without their places, which are in a text of their own
-      if (d.severity == Severity::Error) said.error(d.code, {}, d.message, d.reason, d.help);
+    SectionOptions wanted = section_options(options_.orbits, study_);
+    wanted.interrupt = interrupt;
+    found_.section_what = section_text(options_.orbits);
+    found_.section = poincare_section(model(), equations(), wanted, said);
   }
 
   void find_paths() {
@@ -261,7 +258,7 @@ ExitCode write_page(const std::string& page, Page& built, const ReportOptions& o
 }
 
 ExitCode report(const ReportOptions& options, Console& console) {
-  Study study(options.model.path, options.model.overrides);
+  Study study = open_study(options.model);
   Json document = json_document("report");
   const bool readable_model = !study.wrong();
   const SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
@@ -271,7 +268,8 @@ ExitCode report(const ReportOptions& options, Console& console) {
   if (options.output != "-") check_output_files({{"-o", options.output, FileKind::Page}}, options.model.path, study.diagnostics());
   if (readable_model && study.wrong()) return finish_usage(console, study, "report");
   put_in_run(options.run, study);
-  if (refuse_held_integrals(study) || !study.model()) return finish(console, study, document);
+  put_in_section(options.orbits, study);
+  if (study.refuse_held_integrals() || !study.model()) return finish(console, study, document);
 
   std::optional<SectionBudget> budget(std::in_place, seconds, options.sections, console);
   Page page(options, study, *budget, settings, console);

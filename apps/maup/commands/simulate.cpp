@@ -231,7 +231,7 @@ ExitCode simulate_extended_model(const SimulateOptions& options, const std::stri
 
 /// The precision of the command line, else that of the model. A word that is none is for the model to refuse.
 ExitCode simulate_in_any_precision(const SimulateOptions& options, Console& console) {
-  Study study(options.model.path, options.model.overrides);
+  Study study = open_study(options.model);
   const std::string digits = options.precision ? *options.precision : precision_of(study.tree());
   return digits == "quad" || digits == "100" ? simulate_extended_model(options, digits, study, console) : simulate_model(options, study, console);
 }

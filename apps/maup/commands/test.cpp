@@ -19,17 +19,6 @@ struct FileOutcome {
   std::vector<ExpectationResult> results;
 };
 
-/// A model whose text says `expect error …` is tested by its diagnostics, any other by its motion and equations.
-std::optional<Verification> verify_study(Study& study, const SimulationOptions& settings) {
-  const syntax::SyntaxTree* tree = study.tree();
-  if (!tree) return {};
-  study.equations();
-  if (auto verification = verify_errors(*tree, study.source(), study.diagnostics())) return verification;
-  if (study.wrong() || !study.certificate()) return {};
-  const InterruptScope scope = study.interruptible();
-  return verify(*study.model(), *study.equations(), study.source(), settings, study.diagnostics());
-}
-
 std::string text_of(const ExpectationResult& r, const std::string& file) {
   if (r.passed && !r.beyond_digits) return {};
   std::string out = fmt::format("{}:{}: {} {}\n", file, r.line, r.text, r.passed ? "holds, but asks for more digits than are known" : "fails");
@@ -48,13 +37,13 @@ Json to_json(const ExpectationResult& r, const std::string& file) {
 
 /// What was decided before an interrupt came does not tell what the whole run would have: nothing is said of such a model.
 std::optional<Verification> verify_whole(Study& study, const SimulationOptions& settings) {
-  auto verification = verify_study(study, settings);
+  auto verification = study.verification(settings);
   Interrupt(settings.interrupt).throw_if_asked();
   return verification;
 }
 
 FileOutcome test_file(const std::string& path, const SimulationOptions& settings, Console& console, Json& document) {
-  Study study(path);
+  Study study = open_study(path);
   FileOutcome outcome;
   const std::string& file = study.source().name();
   const auto verification = verify_whole(study, settings);

@@ -159,7 +159,7 @@ std::optional<ModalStudy> modal_study_at(const PointEquations& equations, const 
   const EquilibriumSearch asked = question(equations, start, at);
   std::optional<Equilibrium> nearest;
   std::vector<Equilibrium> found = answer(equations, asked, nearest);
-  const std::optional<Span> place = at.empty() || at.front().span == Span{} ? std::nullopt : std::optional(at.front().span);
+  const std::optional<Span> place = at.empty() ? std::nullopt : std::optional(at.front().span);
   std::vector<bool> preferred = asked.fixed.v;
   const std::vector<Translation> translations = equations.translations(preferred);
   if (found.empty()) {

@@ -1,9 +1,8 @@
 // A program of somebody else: a pendulum from its text to its motion.
-#include <maupertuis/certificate.hpp>
 #include <maupertuis/ensemble.hpp>
 #include <maupertuis/motion_kernel.hpp>
 #include <maupertuis/print.hpp>
-#include <maupertuis/simulation.hpp>
+#include <maupertuis/study.hpp>
 
 #include <cmath>
 #include <cstdio>
@@ -26,26 +25,21 @@ bool ensemble_agrees(const EquationsOfMotion& equations, double expected) {
 }
 
 int main() {
-  const SourceText source("pendulum.lag",
-                          "system pendulum\n"
-                          "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\n"
-                          "coord θ : angle\n"
-                          "point bob mass m at l (sin θ, -cos θ)\n"
-                          "gravity (0, -g)\n"
-                          "start θ = 60 deg\n"
-                          "run 10 s\n");
-  Diagnostics diagnostics;
-  const syntax::SyntaxTree tree = syntax::parse(source, diagnostics);
-  std::optional<Model> read = elaborate(tree, source, diagnostics);
-  if (!read || diagnostics.has_errors()) return std::puts(render(diagnostics, source).c_str()), 1;
-  const auto model = std::make_shared<const Model>(std::move(*read));
-  const auto equations = euler_lagrange({model, &model->system}, diagnostics);
-  if (!equations) return 2;
-  const Derivation derivation = readable_derivation(*equations, false);
-  const std::string text = to_plain(derivation.equations.at(0), equations->order) + " = 0";
+  Study study(SourceText("pendulum.lag",
+                         "system pendulum\n"
+                         "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\n"
+                         "coord θ : angle\n"
+                         "point bob mass m at l (sin θ, -cos θ)\n"
+                         "gravity (0, -g)\n"
+                         "start θ = 10 deg\n"
+                         "run 10 s\n"));
+  study.override_with(OverrideKind::Start, "angle", "θ = 60 deg");
+  const EquationsOfMotion* equations = study.equations();
+  if (!equations) return std::puts(render(study.diagnostics(), study.texts()).c_str()), 1;
+  const std::string text = to_plain(study.derivation(false)->equations.at(0), equations->order) + " = 0";
   if (text != "m l^2 θ'' + m g l sin θ = 0") return std::puts(text.c_str()), 3;
-  if (!certify(*equations, &derivation).passed()) return 4;
-  const auto result = simulate(*model, *equations, {}, diagnostics);
+  if (!study.certificate()->passed()) return 4;
+  const auto result = study.motion();
   if (!result || !result->ok() || result->statistics.energy_drift > 1e-12) return 5;
   if (!ensemble_agrees(*equations, result->final.q[0])) return 6;
   std::printf("%s\nθ(10 s) = %.15g\n", text.c_str(), result->final.q[0]);

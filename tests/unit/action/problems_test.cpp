@@ -181,12 +181,12 @@ expect action of (4 t + 7 + 1/1000 t (t - 10) sin t, 3 t + 5 + 1/1000 t (t - 10)
   Diagnostics diagnostics;
   const double wanted[] = {435, 436.29121428571428571};
   for (std::size_t k = 0; k < 2; ++k) {
-    const auto found = action_of_path(m.model, m.equations, m.model.experiment.expectations[k].values, 0, 10, std::nullopt, {}, diagnostics);
+    const auto found = action_of_path(m.model, m.equations, std::get<expectation::ActionAlong>(m.model.experiment.expectations[k].kind).along.q, 0, 10, std::nullopt, {}, diagnostics);
     REQUIRE(found);
     CHECK(found->action == doctest::Approx(wanted[k]).epsilon(1e-13));
     CHECK(found->stationary == (k == 0));
   }
-  CHECK_FALSE(action_of_path(m.model, m.equations, m.model.experiment.expectations[0].values, 0, 10, fixed_ends({7, 5, 1}, 0, {47, 35, 22}, 10), {}, diagnostics));
+  CHECK_FALSE(action_of_path(m.model, m.equations, std::get<expectation::ActionAlong>(m.model.experiment.expectations[0].kind).along.q, 0, 10, fixed_ends({7, 5, 1}, 0, {47, 35, 22}, 10), {}, diagnostics));
   REQUIRE(diagnostics.items().size() == 1);
   CHECK(diagnostics.items().front().code == "E1205");
 }

@@ -134,49 +134,59 @@ TEST_CASE("experiments") {
   CHECK(only<DrawStatement>("draw box - trail").items[0].path.size() == 2);
 }
 
+namespace {
+
+/// The only expectation of a line, of this kind.
+template <class Kind>
+Kind expected(const std::string& line) {
+  const auto statement = only<ExpectStatement>(line);
+  INFO(line);
+  REQUIRE(std::holds_alternative<Kind>(statement.kind));
+  return std::get<Kind>(statement.kind);
+}
+
+}  // namespace
+
 TEST_CASE("expectations about neighbours of a point or a periodic motion") {
-  using Kind = ExpectStatement::Kind;
-  const auto place = only<ExpectStatement>("expect equilibrium at x = 0.8369151 m ± 1e-7, y = 0 rel 1e-3, z = 1 is stable");
-  CHECK(place.kind == Kind::Equilibrium);
-  REQUIRE(place.at_tolerances.size() == 3);
-  CHECK(text_of(place.at_tolerances[0].size) == "1e-7");
-  CHECK_FALSE(place.at_tolerances[0].relative);
-  CHECK(place.at_tolerances[1].relative);
-  CHECK_FALSE(place.at_tolerances[2].size);
+  using namespace expectation;
+  const auto place = expected<Equilibrium>("expect equilibrium at x = 0.8369151 m ± 1e-7, y = 0 rel 1e-3, z = 1 is stable");
+  REQUIRE(place.at.size() == 3);
+  CHECK(text_of(place.at[0].tolerance.size) == "1e-7");
+  CHECK_FALSE(place.at[0].tolerance.relative);
+  CHECK(place.at[1].tolerance.relative);
+  CHECK_FALSE(place.at[2].tolerance.size);
   CHECK(place.word.text == "stable");
-  const auto values = only<ExpectStatement>("expect eigenvalues at θ = 0 : -5.6 1/s, (-0.2, 1.3) 1/s, 0 rel 1e-9");
-  CHECK(values.kind == Kind::Eigenvalues);
-  REQUIRE(values.values.size() == 3);
+  const auto values = expected<Eigenvalues>("expect eigenvalues at θ = 0 : -5.6 1/s, (-0.2, 1.3) 1/s, 0 rel 1e-9").expected;
+  REQUIRE(values.real.size() == 3);
   CHECK_FALSE(values.imaginary[0]);
   CHECK(shape(*values.imaginary[1]) == "[1.3 s:-1]");
-  const auto matrix = only<ExpectStatement>("expect M at q1 = 0, q2 = 1 : ((2, 1), (1, 3)) kg m^2 ± 1e-9");
-  CHECK(matrix.kind == Kind::Matrix);
-  CHECK(matrix.name.text == "M");
+  const auto matrix = expected<Matrix>("expect M at q1 = 0, q2 = 1 : ((2, 1), (1, 3)) kg m^2 ± 1e-9");
+  CHECK(matrix.letter.text == "M");
   CHECK(matrix.width == 2);
-  CHECK(matrix.values.size() == 4);
-  CHECK(text_of(matrix.values[3]) == "3 kg m^2");
-  const auto entry = only<ExpectStatement>("expect A in θ' by θ at θ = 0 : 31.18 1/s^2 ± 1e-2");
+  CHECK(matrix.entries.size() == 4);
+  CHECK(text_of(matrix.entries[3]) == "3 kg m^2");
+  const auto entry = expected<Matrix>("expect A in θ' by θ at θ = 0 : 31.18 1/s^2 ± 1e-2");
   CHECK(entry.width == 1);
   CHECK(text_of(entry.rows[0]) == "θ'");
   CHECK(text_of(entry.columns[0]) == "θ");
-  CHECK(only<ExpectStatement>("expect M at 3 s = 2 kg ± 1e-9").kind == Kind::ValueAt);
+  expected<ValueAt>("expect M at 3 s = 2 kg ± 1e-9");
   CHECK(codes("expect M at x = 0 : ((1, 2), (3)) ± 1e-9") == "E0111");
   CHECK(codes("expect eigenvalues at x = 0 : (1, 2, 3) ± 1e-9") == "E0111");
-  const auto stable = only<ExpectStatement>("expect stable for Ω < 5.72 rad/s ± 1e-2 at θ = 0");
-  CHECK(stable.kind == Kind::Stable);
+  const auto stable = expected<Stable>("expect stable for Ω < 5.72 rad/s ± 1e-2 at θ = 0");
   CHECK_FALSE(stable.above);
   CHECK(stable.at.size() == 1);
-  CHECK(only<ExpectStatement>("expect unstable for Ω > 5.72 rad/s ± 1e-2").above);
-  CHECK(only<ExpectStatement>("expect multipliers over 2 s : (0.9, 0.1), 1 rel 1e-9").kind == Kind::Multipliers);
-  CHECK(text_of(only<ExpectStatement>("expect trace over 2 s = 2 ± 1e-9").time) == "2 s");
-  CHECK_FALSE(only<ExpectStatement>("expect period = 2 s ± 1e-9").time);
-  CHECK(only<ExpectStatement>("expect until at 2 s ± 1e-9").kind == Kind::UntilAt);
-  CHECK(only<ExpectStatement>("expect x at until = 2 m ± 1e-9").at_until);
-  CHECK(only<ExpectStatement>("expect action of path 2 = 2 ± 1e-9").occurrence == 2);
-  CHECK(only<ExpectStatement>("expect index of path 2 = 1").occurrence == 2);
-  CHECK(only<ExpectStatement>("expect path 2 x at 1 = 1 ± 1e-9").occurrence == 2);
+  CHECK(text_of(stable.critical.tolerance.size) == "1e-2");
+  CHECK(expected<Stable>("expect unstable for Ω > 5.72 rad/s ± 1e-2").above);
+  CHECK(expected<Multipliers>("expect multipliers over 2 s : (0.9, 0.1), 1 rel 1e-9").expected.real.size() == 2);
+  CHECK(text_of(expected<Trace>("expect trace over 2 s = 2 ± 1e-9").over) == "2 s");
+  CHECK_FALSE(expected<Period>("expect period = 2 s ± 1e-9").over);
+  CHECK(text_of(expected<UntilAt>("expect until at 2 s ± 1e-9").expected.value) == "2 s");
+  CHECK(text_of(expected<ValueAtUntil>("expect x at until = 2 m ± 1e-9").subject) == "x");
+  CHECK(expected<Action>("expect action of path 2 = 2 ± 1e-9").path == 2);
+  CHECK(expected<MorseIndex>("expect index of path 2 = 1").path == 2);
+  CHECK(expected<PathAt>("expect path 2 x at 1 = 1 ± 1e-9").path == 2);
   CHECK(codes("expect action of path 1.5 = 2 ± 1e-9") == "E0111");
-  const auto level = only<ExpectStatement>("expect conserved x' y where p_φ = 0, y' = 1");
+  const auto level = expected<Conserved>("expect conserved x' y where p_φ = 0, y' = 1");
   REQUIRE(level.where.size() == 2);
   CHECK(text_of(level.where[1].left) == "y'");
   CHECK(codes("expect conserved x where y = 0 rel 1e-9") == "E0111");
@@ -186,7 +196,7 @@ TEST_CASE("words of expectations are ordinary names where the model declares the
   for (const char* word : {"period", "trace"}) {
     Parsed parsed("param " + std::string(word) + " = 1\nexpect " + word + " = 1 ± 1e-9\n");
     REQUIRE_MESSAGE(parsed.fine(), parsed.messages());
-    CHECK(std::get<ExpectStatement>(parsed.tree.statements[1].body).kind == ExpectStatement::Kind::Value);
+    CHECK(std::holds_alternative<expectation::ValueAt>(std::get<ExpectStatement>(parsed.tree.statements[1].body).kind));
   }
 }
 
@@ -201,39 +211,39 @@ TEST_CASE("method and precision") {
 }
 
 TEST_CASE("expectations") {
-  using Kind = ExpectStatement::Kind;
-  const auto at = only<ExpectStatement>("expect θ at 10 s = 0.123456789012 rad ± 1e-11");
-  CHECK(at.kind == Kind::ValueAt);
+  using namespace expectation;
+  const auto at = expected<ValueAt>("expect θ at 10 s = 0.123456789012 rad ± 1e-11");
   CHECK(text_of(at.time) == "10 s");
-  CHECK(text_of(at.value) == "0.123456789012 rad");
-  CHECK(text_of(at.tolerance) == "1e-11");
-  CHECK_FALSE(at.relative);
-  CHECK(only<ExpectStatement>("expect θ'' at 10 s = 1 rad/s^2 rel 1e-10").relative);
-  CHECK(only<ExpectStatement>("expect θ at 10 s = 1 rad +/- 1e-3").tolerance);
-  CHECK(text_of(only<ExpectStatement>("expect reaction rod at 3 s = 12.3 N ± 1e-9").subject) == "reaction rod");
-  CHECK(only<ExpectStatement>("expect energy conserved rel 1e-13").kind == Kind::EnergyConserved);
-  CHECK(text_of(only<ExpectStatement>("expect conserved m x' + 1 rel 1e-13").tolerance) == "1e-13");
-  CHECK_FALSE(only<ExpectStatement>("expect conserved x'").tolerance);
-  CHECK(only<ExpectStatement>("expect x' + 1 not conserved").kind == Kind::NotConserved);
-  const auto equation = only<ExpectStatement>("expect equation m l^2 θ'' + m g l sin θ = 0");
-  CHECK(equation.kind == Kind::Equation);
-  CHECK(text_of(equation.subject) == "m l^2 θ'' + m g l sin θ");
-  CHECK(text_of(only<ExpectStatement>("expect freedoms = 2").value) == "2");
-  const auto kind = only<ExpectStatement>("expect constraint roll is nonholonomic");
-  CHECK(kind.name.text == "roll");
+  CHECK(text_of(at.expected.value) == "0.123456789012 rad");
+  CHECK(text_of(at.expected.tolerance.size) == "1e-11");
+  CHECK_FALSE(at.expected.tolerance.relative);
+  CHECK(expected<ValueAt>("expect θ'' at 10 s = 1 rad/s^2 rel 1e-10").expected.tolerance.relative);
+  CHECK(expected<ValueAt>("expect θ at 10 s = 1 rad +/- 1e-3").expected.tolerance.size);
+  CHECK(text_of(expected<ValueAt>("expect reaction rod at 3 s = 12.3 N ± 1e-9").subject) == "reaction rod");
+  CHECK(expected<EnergyConserved>("expect energy conserved rel 1e-13").tolerance.relative);
+  CHECK(text_of(expected<ConservedAlongRun>("expect conserved m x' + 1 rel 1e-13").tolerance.size) == "1e-13");
+  CHECK(expected<Conserved>("expect conserved x'").where.empty());
+  CHECK(text_of(expected<NotConserved>("expect x' + 1 not conserved").subject) == "x' + 1");
+  const auto equation = expected<expectation::Equation>("expect equation m l^2 θ'' + m g l sin θ = 0");
+  CHECK(text_of(equation.left) == "m l^2 θ'' + m g l sin θ");
+  CHECK(text_of(expected<Freedoms>("expect freedoms = 2").number) == "2");
+  const auto kind = expected<ConstraintClass>("expect constraint roll is nonholonomic");
+  CHECK(kind.constraint.text == "roll");
   CHECK(kind.word.text == "nonholonomic");
-  CHECK(only<ExpectStatement>("expect integral (m1 + m2) x' + m2 l θ' cos θ").kind == Kind::Integral);
-  const auto frequencies = only<ExpectStatement>("expect frequencies at θ1 = 0, θ2 = 0 : 0.5 Hz, 1.2 Hz rel 1e-9");
+  CHECK(text_of(expected<Integral>("expect integral (m1 + m2) x'").subject) == "(m1 + m2) x'");
+  const auto frequencies = expected<Frequencies>("expect frequencies at θ1 = 0, θ2 = 0 : 0.5 Hz, 1.2 Hz rel 1e-9");
   CHECK(frequencies.at.size() == 2);
   CHECK(frequencies.values.size() == 2);
-  const auto event = only<ExpectStatement>("expect event hit 3 at 0.4515236409857 s ± 1e-11");
+  CHECK(text_of(expected<Hamiltonian>("expect hamiltonian = p^2").value) == "p^2");
+  CHECK(expected<Routhian>("expect routhian of φ, ψ = p_φ^2").coordinates.size() == 2);
+  CHECK(text_of(expected<Bracket>("expect bracket (x, p_x) = 1").b) == "p_x");
+  const auto event = expected<Event>("expect event hit 3 at 0.4515236409857 s ± 1e-11");
   CHECK(event.name.text == "hit");
   CHECK(event.occurrence == 3);
-  CHECK(only<ExpectStatement>("expect error E0412").name.text == "E0412");
-  const auto claim = only<ExpectStatement>("claim θ'' = -g/l sin θ");
-  CHECK(claim.claim);
-  CHECK(claim.kind == Kind::Equation);
-  CHECK(only<ExpectStatement>("expect m1 + m2 = 3 kg ± 1e-9").kind == Kind::Value);
+  CHECK(expected<Error>("expect error E0412").code.text == "E0412");
+  CHECK(only<ExpectStatement>("claim θ'' = -g/l sin θ").claim);
+  CHECK(text_of(expected<expectation::Equation>("claim θ'' = -g/l sin θ").left) == "θ''");
+  CHECK_FALSE(expected<ValueAt>("expect m1 + m2 = 3 kg ± 1e-9").time);
   CHECK(codes("expect θ at 10 s = 1 rad") == "E0127");
 }
 

@@ -100,34 +100,43 @@ TEST_CASE("constraint integral") {
   CHECK(!only<ConstraintStatement>("constraint x = 3").integral);
 }
 
+namespace {
+
+template <class Kind>
+Kind expected(const std::string& line, const std::string& names = "") {
+  const auto statement = names.empty() ? only<ExpectStatement>(line) : only<ExpectStatement>(line, names);
+  INFO(line);
+  REQUIRE(std::holds_alternative<Kind>(statement.kind));
+  return std::get<Kind>(statement.kind);
+}
+
+}  // namespace
+
 TEST_CASE("expectations of paths") {
-  const auto action = only<ExpectStatement>("expect action = -0.37 ± 1e-9");
-  CHECK(action.kind == ExpectStatement::Kind::Action);
-  CHECK(action.values.empty());
-  const auto given = only<ExpectStatement>("expect action of (4 t + 7, 3 t) from 0 s to 10 s = 435 J s rel 1e-9");
-  CHECK(shapes(given.values) == Shapes{"(+ (_ 4 t) 7)", "(_ 3 t)"});
+  using namespace expectation;
+  CHECK(expected<Action>("expect action = -0.37 ± 1e-9").path == 0);
+  const auto given = expected<ActionAlong>("expect action of (4 t + 7, 3 t) from 0 s to 10 s = 435 J s rel 1e-9");
+  CHECK(shapes(given.q) == Shapes{"(+ (_ 4 t) 7)", "(_ 3 t)"});
   CHECK(given.from);
   CHECK(given.to);
-  CHECK(given.relative);
-  CHECK(!only<ExpectStatement>("expect action of (t) = 1/2 ± 1e-9").from);
-  CHECK(only<ExpectStatement>("expect index = 1").kind == ExpectStatement::Kind::MorseIndex);
-  const auto on_path = only<ExpectStatement>("expect path x' at 0.5 s = 0.2 m/s ± 1e-9");
-  CHECK(on_path.kind == ExpectStatement::Kind::PathAt);
-  CHECK(shape(*on_path.subject) == "x'");
-  CHECK(only<ExpectStatement>("expect path (x + y)^2 at 1 = 2 ± 1e-9").kind == ExpectStatement::Kind::PathAt);
+  CHECK(given.expected.tolerance.relative);
+  CHECK(!expected<ActionAlong>("expect action of (t) = 1/2 ± 1e-9").from);
+  CHECK(expected<MorseIndex>("expect index = 1").path == 0);
+  CHECK(shape(*expected<PathAt>("expect path x' at 0.5 s = 0.2 m/s ± 1e-9").subject) == "x'");
+  expected<PathAt>("expect path (x + y)^2 at 1 = 2 ± 1e-9");
   CHECK(codes("expect action = 3") == "E0127");
   CHECK(codes("expect path x = 3 ± 1") == "E0111");
   CHECK(codes("expect action of 4 t = 3 ± 1") == "E0111");
 }
 
 TEST_CASE("action, index and path stay usable as names") {
-  using Kind = ExpectStatement::Kind;
+  using expectation::ValueAt;
   const std::string names = "coord action, index, path : number\n";
-  CHECK(only<ExpectStatement>("expect action = 3 ± 1", names).kind == Kind::Value);
-  CHECK(only<ExpectStatement>("expect index = 1", names).kind == Kind::Value);
-  CHECK(only<ExpectStatement>("expect path x at 1 = 3 ± 1", names + "param x = 2\n").kind == Kind::ValueAt);
-  CHECK(only<ExpectStatement>("expect path at 1 = 3 ± 1", names).kind == Kind::ValueAt);
-  CHECK(only<ExpectStatement>("expect action at 2 s = 3 ± 1").kind == Kind::ValueAt);
+  CHECK_FALSE(expected<ValueAt>("expect action = 3 ± 1", names).time);
+  CHECK_FALSE(expected<ValueAt>("expect index = 1", names).time);
+  CHECK(expected<ValueAt>("expect path x at 1 = 3 ± 1", names + "param x = 2\n").time);
+  CHECK(expected<ValueAt>("expect path at 1 = 3 ± 1", names).time);
+  CHECK(expected<ValueAt>("expect action at 2 s = 3 ± 1").time);
 }
 
 TEST_CASE("variational statements keep their text and their tree when formatted") {
@@ -160,6 +169,6 @@ TEST_CASE("golden: the tree of variational statements") {
         "independent x\n  kind unit m\n"
         "path\n  from:\n    number 0\n  from:\n    quantity m\n      number 1\n  at:\n    number 0\n  to free\n  at:\n    quantity m\n      number 2\n"
         "integral constraint area\n  left:\n    name y\n  right:\n    number 1\n"
-        "expect action\n  from:\n    number 0\n  to:\n    quantity m\n      number 1\n  value:\n    number 2\n  values:\n    name x\n  tolerance:\n    number 1\n"
+        "expect action\n  along:\n    name x\n  from:\n    number 0\n  to:\n    quantity m\n      number 1\n  value:\n    number 2\n  tolerance:\n    number 1\n"
         "expect path at\n  subject:\n    name y\n  time:\n    quantity m\n      number 1\n  value:\n    number 2\n  tolerance:\n    number 1\n");
 }

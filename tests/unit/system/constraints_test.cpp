@@ -136,7 +136,7 @@ TEST_CASE("multipliers and reactions have their units, and their place") {
   const Elaborated m(
       head + "draw reaction roll\nexpect constraint roll is nonholonomic\nexpect reaction roll at 1 s = 3 N ± 1\n");
   CHECK(m.experiment().drawing.at(0).names.at(0) == "roll");
-  CHECK(m.experiment().expectations.at(0).name == "roll");
-  CHECK(m.experiment().expectations.at(0).word == "nonholonomic");
-  CHECK(m.experiment().expectations.at(1).subject == m.system().constraints[1].reaction);
+  CHECK(m.expected<expectation::ConstraintClass>(0).constraint == "roll");
+  CHECK(m.expected<expectation::ConstraintClass>(0).word == "nonholonomic");
+  CHECK(m.expected<expectation::ValueAt>(1).subject == m.system().constraints[1].reaction);
 }

@@ -75,7 +75,7 @@ TEST_CASE("dimensions of definitions are inferred, quantities converted exactly"
   CHECK(physical_name(s.definitions[0].dimension) == "energy");
   CHECK(evaluate(e.experiment().start[0].value, e.at({0}, {0})) == 0.01);
   // a tolerance without a unit is in the unit of the value
-  CHECK(evaluate(e.experiment().expectations[0].tolerance, e.at({0}, {0})) == Approx(0.0005));
+  CHECK(evaluate(e.expected<expectation::ValueAt>(0).expected.tolerance.size, e.at({0}, {0})) == Approx(0.0005));
 }
 
 TEST_CASE("a word after a number is a unit or a name, whichever fits") {

@@ -135,10 +135,10 @@ TEST_CASE("the coordinates of a quaternion stand in starts, expectations, lets a
   const Bindings at = m.at({0, 1, 0, 0, 0}, {0, 0, 0.5, 0, 0});
   CHECK(evaluate(m.experiment().start_rates[0].rate, at) == doctest::Approx(1));
   CHECK(evaluate(m.experiment().start_rates[1].value, {}) == doctest::Approx(2));
-  CHECK(m.experiment().expectations[0].subject == m.system().coordinates[1].q);
+  CHECK(m.expected<expectation::ValueAt>(0).subject == m.system().coordinates[1].q);
 
-  const Overrides overrides{{}, {"sat.qw=0.5", "sat.ω=(7,8,9)rad/s"}};
-  const Elaborated o(std::string(kSatellite) + "start sat.ω.y = 1 rad/s\n", overrides);
+  const Elaborated o(std::string(kSatellite) + "start sat.ω.y = 1 rad/s\n",
+                     {{OverrideKind::Start, "--start", "sat.qw=0.5"}, {OverrideKind::Start, "--start", "sat.ω=(7,8,9)rad/s"}});
   REQUIRE_MESSAGE(o.experiment().start_rates.size() == 3, o.messages());
   CHECK(evaluate(o.experiment().start_rates[1].value, {}) == doctest::Approx(8));
   REQUIRE(o.experiment().start.size() == 1);

@@ -78,7 +78,7 @@ claim θ'' = 0
   CHECK(e.experiment().start.size() == 3);
   CHECK(e.experiment().drawing.size() == 5);
   CHECK(e.experiment().expectations.size() == 6);
-  CHECK(e.experiment().expectations[0].display_unit == "deg");
+  CHECK(e.expected<expectation::ValueAt>(0).expected.unit.name == "deg");
   CHECK(dump(e.system()).find("from torsion spring θ") != std::string::npos);
 }
 

@@ -9,14 +9,24 @@
 
 namespace maupertuis::test {
 
+/// What is said beside a model.
+struct Said {
+  OverrideKind kind;
+  std::string label, text;
+};
+using Beside = std::vector<Said>;
+
 /// A model text, elaborated and linted.
 struct Elaborated {
   SourceText source;
+  ExperimentOverrides overrides;
   Diagnostics diagnostics;
   std::optional<Model> model;
 
-  explicit Elaborated(std::string text, const Overrides& overrides = {}) : source("test.lag", std::move(text)) {
+  explicit Elaborated(std::string text, const Beside& beside = {}) : source("test.lag", std::move(text)) {
     const syntax::SyntaxTree tree = syntax::parse(source, diagnostics);
+    for (const Said& said : beside) overrides.add(said.kind, said.label, said.text);
+    overrides.read(tree, diagnostics);
     model = elaborate(tree, source, diagnostics, overrides);
     if (model) lint(*model, source, diagnostics);
   }
@@ -28,13 +38,20 @@ struct Elaborated {
     REQUIRE_MESSAGE(model.has_value(), messages());
     return model->experiment;
   }
+  /// Expectation number i, of this kind.
+  template <class Kind>
+  const Kind& expected(std::size_t i) const {
+    const Kind* kind = std::get_if<Kind>(&experiment().expectations.at(i).kind);
+    REQUIRE(kind);
+    return *kind;
+  }
   /// Nothing but notes, which tell of no mistake.
   bool fine() const {
     for (const Diagnostic& d : diagnostics.items())
       if (d.severity != Severity::Note) return false;
     return model.has_value();
   }
-  std::string messages() const { return render(diagnostics, source); }
+  std::string messages() const { return render(diagnostics, {source, overrides.texts()}); }
   std::string codes() const {
     std::string all;
     for (const Diagnostic& d : diagnostics.items()) all += (all.empty() ? "" : " ") + d.code;

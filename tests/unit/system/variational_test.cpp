@@ -132,12 +132,9 @@ TEST_CASE("mistakes in a path, with their places") {
 }
 
 TEST_CASE("--set goes into the ends of a path") {
-  Overrides overrides;
-  overrides.parameters = {"l=5"};
-  const Elaborated m(two + "path from (0, 1) at 0 to (2 l, free) at l\n", overrides);
+  const Elaborated m(two + "path from (0, 1) at 0 to (2 l, free) at l\n", {{OverrideKind::Parameters, "--set", "l=5"}});
   CHECK(evaluate(m.experiment().path->to[0], m.at({0, 0}, {0, 0})) == 10);
-  overrides.parameters = {"l=-5"};
-  CHECK(Elaborated(two + "path from (0, 1) at 0 to (2, free) at l\n", overrides).codes() == "E0242");
+  CHECK(Elaborated(two + "path from (0, 1) at 0 to (2, free) at l\n", {{OverrideKind::Parameters, "--set", "l=-5"}}).codes() == "E0242");
 }
 
 TEST_CASE("definitions of parameters are expanded in ends, integrals and expectations") {
@@ -151,10 +148,10 @@ TEST_CASE("definitions of parameters are expanded in ends, integrals and expecta
   CHECK(evaluate(x.path->end, at) == 6);
   CHECK(evaluate(held.integrand, at) == 66);
   CHECK(evaluate(held.value, at) == 6);
-  CHECK(evaluate(x.expectations[0].values[0], at) == 6);
-  CHECK(evaluate(x.expectations[0].to, at) == 6);
-  CHECK(evaluate(x.expectations[1].subject, at) == 42);
-  CHECK(evaluate(x.expectations[1].time, at) == 3);
+  CHECK(evaluate(m.expected<expectation::ActionAlong>(0).along.q[0], at) == 6);
+  CHECK(evaluate(m.expected<expectation::ActionAlong>(0).along.to, at) == 6);
+  CHECK(evaluate(m.expected<expectation::PathAt>(1).subject, at) == 42);
+  CHECK(evaluate(m.expected<expectation::PathAt>(1).time, at) == 3);
 }
 
 TEST_CASE("a held integral has the dimension of its integrand times that of the independent variable") {
@@ -205,8 +202,8 @@ TEST_CASE("expectations of paths: dimensions, ends and counts") {
   CHECK(codes(path + "expect path x'' at 1 s = 0.5 m/s^2 ± 1e-9") == "E0401");
   CHECK(codes("expect path x at 1 s = 0.5 m ± 1e-9") == "E0243");
   const Elaborated unit(m + path + "expect action = 2 mJ s ± 0.5\n");
-  CHECK(unit.experiment().expectations[0].display_unit == "mJ s");
-  CHECK(number(unit.experiment().expectations[0].tolerance) == doctest::Approx(0.5e-3));
+  CHECK(unit.expected<expectation::Action>(0).expected.unit.name == "mJ s");
+  CHECK(number(unit.expected<expectation::Action>(0).expected.tolerance.size) == doctest::Approx(0.5e-3));
 }
 
 TEST_CASE("where an integral is held, expectations are about paths") {

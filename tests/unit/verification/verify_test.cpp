@@ -144,3 +144,12 @@ TEST_CASE("energy that a switch in time changes") {
   CHECK_FALSE(only(meissner + "expect conserved 1/2 x'^2 + 1/2 (2 + sign(cos(t))) x^2\n").passed);
   CHECK(only("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = abs(x)\nstart x = 1\nrun 5\nexpect energy conserved\n").passed);
 }
+
+TEST_CASE("what fails an identity is named: the derivative of a quantity, the difference of the sides of an equation") {
+  const std::string fall =
+      "system fall\nparam m = 1 kg, g = 9.81 m/s^2\ncoord y : length\npoint P mass m at (0, y)\ngravity (0, -g)\n";
+  CHECK(only(fall + "expect conserved m y'\n").message == "Its time derivative along the motion is -m g, not 0.");
+  CHECK(only(fall + "expect conserved p_y\n").message == "Its time derivative along the motion is -m g, not 0.");
+  CHECK(only(fall + "expect equation m y = 2 m y\n").message == "Along the motion, left side − right side is -m y, not 0.");
+  CHECK(only(fall + "expect equation y''^2 = g y''\n").message == "Along the motion, left side − right side is 2 g^2, not 0.");
+}

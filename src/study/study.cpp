@@ -1,0 +1,150 @@
+#include <maupertuis/require.hpp>
+#include <maupertuis/study.hpp>
+
+#include <fmt/format.h>
+
+namespace maupertuis {
+
+Study::Study(SourceText source, const Interrupt& interrupt) : source_(std::move(source)), interrupt_(interrupt) {}
+
+// ------------------------------------------------------------------------------------------------------ beside the
+// text
+
+SourceId Study::override_with(OverrideKind kind, std::string label, std::string text) {
+  MAUP_REQUIRE(!elaborated_);
+  if (kind == OverrideKind::Formula) ++asked_;
+  return overrides_.add(kind, std::move(label), std::move(text));
+}
+
+std::size_t Study::ask(std::string label, std::string formula) {
+  override_with(OverrideKind::Formula, std::move(label), std::move(formula));
+  return asked_ - 1;
+}
+
+void Study::admit_singular_mass_matrix() {
+  MAUP_REQUIRE(!elaborated_);
+  admits_singular_ = true;
+}
+
+// ----------------------------------------------------------------------------------------------------------- the
+// stages
+
+const syntax::SyntaxTree* Study::tree() {
+  if (!tree_ && !wrong()) tree_ = syntax::parse(source_, diagnostics_);
+  return tree_ ? &*tree_ : nullptr;
+}
+
+/// All mistakes of a text at once: after a wrong statement the others are still looked at. The tree knows the names
+/// that were lost with it, so that their absence is not reported again.
+bool Study::elaborate_model(Diagnostics& found, std::optional<Model>& model) const {
+  model = elaborate(*tree_, source_, found, overrides_);
+  if (!model || found.has_errors()) return false;
+  const InterruptScope scope(*model->system.context, interrupt_);
+  Diagnostics lints;
+  lint(*model, source_, lints);
+  for (const Diagnostic& d : lints.items())
+    if (!admits_singular_ || (d.code != "E0407" && d.code != "E0408")) found.append(d);
+  return !found.has_errors();
+}
+
+const Model* Study::model() {
+  if (elaborated_) return model_.get();
+  if (tree() && !tree_->statements.empty()) {
+    overrides_.read(*tree_, diagnostics_);
+    Diagnostics found = diagnostics_;  // kept when the stage is complete
+    std::optional<Model> model;
+    if (elaborate_model(found, model)) model_ = std::make_shared<const Model>(std::move(*model));
+    found.sort_by_place();
+    diagnostics_ = std::move(found);
+  }
+  elaborated_ = true;
+  return model_.get();
+}
+
+const EquationsOfMotion* Study::equations() {
+  if (!derived_ && model()) {
+    const InterruptScope scope = interruptible();
+    equations_ = euler_lagrange(std::shared_ptr<const MechanicalSystem>(model_, &model_->system), diagnostics_);
+    derived_ = true;
+  }
+  return equations_ && !wrong() ? &*equations_ : nullptr;
+}
+
+const Derivation* Study::derivation(bool with_steps) {
+  if (!equations()) return nullptr;
+  if (!derivation_ || (with_steps && !has_steps_)) {
+    const InterruptScope scope = interruptible();
+    derivation_ = readable_derivation(*equations_, with_steps);
+    has_steps_ = with_steps;
+  }
+  return &*derivation_;
+}
+
+void Study::report(const CertificateCheck& check) {
+  if (!check.applies || check.verdict == Verdict::Zero) return;
+  const auto& coordinates = model_->system.coordinates;
+  const std::string row =
+      check.row < coordinates.size() ? fmt::format(" (equation of {})", coordinates[check.row].name) : std::string();
+  if (check.verdict == Verdict::Nonzero)
+    diagnostics_.error("E0690", {}, fmt::format("The derivation failed its check `{}`{}.", check.name, row),
+                       check.statement,
+                       "The equations are not shown, because they are wrong. Please report this model.");
+  else
+    diagnostics_.warning("W0691", {}, fmt::format("The check `{}`{} could not be decided.", check.name, row),
+                         check.reason, "The equations are shown, but they are not certified.");
+}
+
+const Certificate* Study::certificate(const CertifyOptions& options) {
+  if (certificate_ || !equations()) return certificate_ ? &*certificate_ : nullptr;
+  const InterruptScope scope = interruptible();
+  certificate_ = certify(*equations_, derivation_ ? &*derivation_ : nullptr, options);
+  for (const CertificateCheck& check : certificate_->checks) report(check);
+  return wrong() ? nullptr : &*certificate_;
+}
+
+// -------------------------------------------------------------------------------------------------------- what they
+// tell
+
+std::optional<SimulationResult> Study::motion(const SimulationOptions& options) {
+  if (wrong() || refuse_held_integrals() || !certificate()) return std::nullopt;
+  return simulate(*model_, *equations_, options, diagnostics_);
+}
+
+std::optional<ExtendedResult> Study::motion(const ExtendedSimulationOptions& options) {
+  if (wrong() || refuse_held_integrals() || !certificate()) return std::nullopt;
+  return simulate_extended(*model_, *equations_, options, diagnostics_);
+}
+
+std::optional<Verification> Study::verification(const SimulationOptions& options) {
+  if (!tree()) return std::nullopt;
+  equations();
+  if (auto of_errors = verify_errors(*tree_, source_, diagnostics_)) return of_errors;
+  if (wrong() || !certificate()) return std::nullopt;
+  const InterruptScope scope = interruptible();
+  return verify(*model_, *equations_, source_, options, diagnostics_);
+}
+
+bool Study::refuse_held_integrals() {
+  if (!model() || model_->system.integral_constraints.empty()) return false;
+  diagnostics_.error(
+      "E0244", model_->system.integral_constraints.front().span, "the model holds an integral of its paths",
+      "Its equations are those of L + λ G with one λ for a whole path, which only the two ends of the path determine: "
+      "there is no motion from a start.",
+      "`maup action` finds the paths between two ends, and λ.");
+  return true;
+}
+
+bool moves_in_time(const MechanicalSystem& system) {
+  return system.dimensionless || system.independent_dimension.same_as(dimensions::time());
+}
+
+bool Study::refuse_without_time() {
+  if (!model() || moves_in_time(model_->system)) return false;
+  diagnostics_.error("E0245", std::nullopt,
+                     fmt::format("the independent variable of this model is {}, no time", model_->system.independent),
+                     "Equilibria, frequencies, periods and exponents belong to motions in time.",
+                     "`maup derive`, `maup simulate` and `maup action` work for such models.");
+  return true;
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,206 @@
+#include "verification/run_claims.hpp"
+
+#include "verification/judge.hpp"
+#include "verification/phase_space_claims.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace maupertuis {
+namespace {
+
+constexpr const char* kNoStart = "The run could not start.";
+
+std::string ended_before(const SimulationResult& run) { return "The run ended before: " + run.reason + "."; }
+
+std::string beyond_digits(const ValueVerdict& verdict, const std::string& uncertainty) {
+  const std::string known = uncertainty == "no digit is certain"
+                                ? "of what came out no digit is certain"
+                                : "what came out is known to " + uncertainty + " alone";
+  if (verdict.passed) return known + ", so that the tolerance asks for more digits than there are";
+  return known +
+         (verdict.may_hold ? ", so that this run does not tell whether it holds" : ", and still it does not hold");
+}
+
+void report_drift(ExpectationResult& result, double drift, double tolerance) {
+  result.expected = "constant along the run";
+  result.actual = fmt::format("drift {:.3g}", drift);
+  result.tolerance = fmt::format("rel {:g}", tolerance);
+  result.passed = drift <= tolerance;
+  if (!result.passed) result.message = "It changes more than the tolerance along the run.";
+}
+
+}  // namespace
+
+double RunClaims::number(Expr e, double otherwise) const { return number_of(model_.system, e, otherwise); }
+
+void RunClaims::carry_out(std::vector<ExpectationResult>& results) {
+  take_timed(results);
+  find_end(results);
+  if (values_.empty() && drifts_.empty() && energies_.empty()) return;
+  run_direction(true, results);
+  run_direction(false, results);
+}
+
+/// Those that the model wants in more digits than double has are decided at once.
+void RunClaims::take_timed(std::vector<ExpectationResult>& results) {
+  const double begin = number(model_.experiment.start_time);
+  const ExtendedClaims claims(model_, equations_, options_.interrupt);
+  std::vector<ExtendedClaims::Line> ahead, behind;
+  for (const ExtendedClaims::Line& line : timed_) {
+    const expectation::ValueAt& e = *line.expectation;
+    const double time = number(e.time, begin);
+    if (claims.takes(e))
+      (time >= begin ? ahead : behind).push_back(line);
+    else
+      values_.push_back({line.index, &e.expected, e.subject, time});
+  }
+  for (const auto* lines : {&ahead, &behind})
+    if (!lines->empty()) claims.decide(*lines, results, diagnostics_);
+}
+
+/// When the condition of `run until` is met: by the model's own run.
+void RunClaims::find_end(std::vector<ExpectationResult>& results) {
+  if (ends_.empty()) return;
+  Diagnostics unheard;  // a run that cannot start says so once
+  const bool alone = values_.empty() && drifts_.empty() && energies_.empty();
+  const auto run = simulate(model_, equations_, options_, alone ? diagnostics_ : unheard);
+  for (const End& end : ends_) {
+    ExpectationResult& result = results[end.line];
+    if (!run)
+      result.message = kNoStart;
+    else if (run->ending != Ending::UntilReached)
+      result.message = ended_before(*run);
+    else if (!end.subject)
+      judge_value(*end.expected, run->final.t, run->final.errors ? run->final.errors->t : 0.0, result);
+    else
+      values_.push_back({end.line, end.expected, end.subject, run->final.t});
+  }
+}
+
+/// Quantities that are watched all along the run, and its energy, belong to the way forwards.
+void RunClaims::run_direction(bool forwards, std::vector<ExpectationResult>& results) {
+  const double begin = number(model_.experiment.start_time);
+  std::vector<Value> values;
+  std::copy_if(values_.begin(), values_.end(), std::back_inserter(values),
+               [&](const Value& v) { return (v.time >= begin) == forwards; });
+  const bool whole_run = forwards && !(energies_.empty() && drifts_.empty());
+  if (values.empty() && !whole_run) return;
+
+  SimulationOptions options = options_;
+  if (!whole_run) options.duration = 0.0;  // as far as the times asked for
+  options.at.clear();
+  Probe probe;
+  for (const Value& v : values) {
+    probe.expressions.push_back(with_momenta(v.subject, equations_));
+    options.at.push_back(v.time);
+  }
+  if (forwards && !drifts_.empty()) {
+    for (const Drift& d : drifts_) probe.expressions.push_back(with_momenta(d.expectation->subject, equations_));
+    const std::vector<double> along = samples();
+    options.at.insert(options.at.end(), along.begin(), along.end());
+  }
+  const auto run = simulate(model_, equations_, options, diagnostics_, &probe);
+  judge_values(values, options.at, run, probe, results);
+  if (!forwards) return;
+  for (std::size_t i = 0; i < drifts_.size(); ++i)
+    judge_drift(drifts_[i], values.size() + i, run, probe, results[drifts_[i].line]);
+  for (const Energy& e : energies_) judge_energy(e, run, results[e.line]);
+}
+
+/// 200 times along the run.
+std::vector<double> RunClaims::samples() const {
+  const double begin = number(model_.experiment.start_time);
+  const double length =
+      options_.duration ? *options_.duration : number(model_.experiment.duration, number(model_.experiment.within));
+  constexpr int count = 200;
+  std::vector<double> times;
+  for (int k = 0; k <= count; ++k) times.push_back(begin + length * k / count);
+  return times;
+}
+
+void RunClaims::judge_values(const std::vector<Value>& values, const std::vector<double>& times,
+                             const std::optional<SimulationResult>& run, const Probe& probe,
+                             std::vector<ExpectationResult>& results) const {
+  for (std::size_t column = 0; column < values.size(); ++column) {
+    ExpectationResult& result = results[values[column].line];
+    const auto row =
+        static_cast<std::size_t>(std::find(times.begin(), times.end(), values[column].time) - times.begin());
+    if (!run)
+      result.message = kNoStart;
+    else if (probe.values[row].empty())
+      result.message = ended_before(*run);
+    else
+      judge_value(*values[column].expected, probe.values[row][column],
+                  probe.errors.empty() ? 0 : probe.errors[row][column], result);
+  }
+}
+
+/// `uncertainty`: by how much `actual` may be off; 0 where nobody asked.
+void RunClaims::judge_value(const expectation::Number& e, double actual, double uncertainty,
+                            ExpectationResult& result) const {
+  judge_number(e, model_.system, actual, result);
+  const double expected = number(e.value);
+  const ValueVerdict verdict =
+      value_verdict(actual, expected, allowed_difference(e.tolerance, model_.system, expected), uncertainty);
+  result.passed = verdict.passed;
+  result.beyond_digits = verdict.beyond_digits;
+  if (uncertainty > 0)
+    result.uncertainty = std::isinf(uncertainty)
+                             ? "no digit is certain"
+                             : fmt::format("± {:.2g}{}", uncertainty / std::abs(e.unit.factor), unit_after(e.unit));
+  if (verdict.beyond_digits) result.message += "; " + beyond_digits(verdict, result.uncertainty);
+}
+
+void RunClaims::judge_drift(const Drift& drift, std::size_t column, const std::optional<SimulationResult>& run,
+                            const Probe& probe, ExpectationResult& result) const {
+  if (!run) {
+    result.message = kNoStart;
+    return;
+  }
+  double low = std::numeric_limits<double>::infinity(), high = -low, largest = 0;
+  for (const auto& row : probe.values) {
+    if (row.empty()) {
+      result.message = ended_before(*run);
+      return;
+    }
+    low = std::min(low, row[column]);
+    high = std::max(high, row[column]);
+    largest = std::max(largest, std::abs(row[column]));
+  }
+  report_drift(result, largest > 0 ? (high - low) / largest : 0, number(drift.expectation->tolerance.size));
+}
+
+void RunClaims::judge_energy(const Energy& energy, const std::optional<SimulationResult>& run,
+                             ExpectationResult& result) const {
+  constexpr double usual_tolerance = 1e-12;
+  if (!run) {
+    result.message = kNoStart;
+  } else if (!conserved_quantities(equations_).energy_conserved) {
+    result.expected = "constant along the run";
+    result.actual = "not conserved";
+    const auto jump = across_switches(model_.system, equations_.energy_function, equations_.order).jump;
+    result.message =
+        !jump ? "Forces, friction or an explicit time in L change the energy of this system."
+              : fmt::format("The energy jumps where {}: what is switched there does work at once.", jump->place);
+  } else if (!run->ok()) {
+    result.message = ended_before(*run);
+  } else {
+    report_drift(result, run->statistics.energy_drift, number(energy.expectation->tolerance.size, usual_tolerance));
+  }
+}
+
+ValueVerdict value_verdict(double actual, double expected, double tolerance, double error) {
+  constexpr double most_pessimistic = 100, last_bits = 4 * std::numeric_limits<double>::epsilon();
+  const double off = std::abs(actual - expected);
+  ValueVerdict out;
+  out.beyond_digits = error > tolerance && error > last_bits * std::abs(actual);
+  out.passed = off <= tolerance && (!out.beyond_digits || error <= most_pessimistic * tolerance);
+  out.may_hold = !out.passed && off <= tolerance + error;
+  return out;
+}
+
+}  // namespace maupertuis
