@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace maupertuis {
 
@@ -145,13 +146,18 @@ struct FunctionDisks::Impl {
 
   Bounds at(Value v) const { return v == straight::none ? constant(1) : bounds[v]; }
 
+  Bounds term_of(const straight::Term& term) const {
+    Bounds out = constant(term.factor);
+    bool is_one = term.factor == 1;
+    for (const Value v : {term.a, term.b, term.c})
+      if (v != straight::none) out = std::exchange(is_one, false) ? bounds[v] : product(out, bounds[v]);
+    return out;
+  }
+
   Bounds sum_of(const Node& node) const {
     Bounds out;
-    for (std::uint32_t t = node.first; t < node.last; ++t) {
-      const straight::Term& term = line.terms[t];
-      const Bounds one = product(product(product(constant(term.factor), at(term.a)), at(term.b)), at(term.c));
-      out = t == node.first ? one : sum(out, one);
-    }
+    for (std::uint32_t t = node.first; t < node.last; ++t)
+      out = t == node.first ? term_of(line.terms[t]) : sum(out, term_of(line.terms[t]));
     if (node.a != straight::none) out = product(out, at(node.a));
     return node.b == straight::none ? out : quotient(out, at(node.b));
   }

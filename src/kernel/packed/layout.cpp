@@ -310,8 +310,12 @@ class Packs {
     c.number = static_cast<std::uint32_t>(out_.convolutions.size());
     c.first_a = out_.blocks[a].first, c.first_b = out_.blocks[b].first;
     c.lacks_newest_a = lacks_newest(a, finds_a), c.lacks_newest_b = lacks_newest(b, finds_b);
-    c.copies_a = !c.lacks_newest_a && !out_.blocks[a].direct && ahead(a) <= 0;
-    c.copies_b = !c.lacks_newest_b && !out_.blocks[b].direct && ahead(b) <= 0;
+    const auto is_copied = [&](std::uint32_t block) {  // by an earlier one of the pack
+      return std::any_of(out_.convolutions.begin() + pack.first_convolution, out_.convolutions.end(),
+                         [&](const Convolution& x) { return (x.a == block && x.copies_a) || (x.b == block && x.copies_b); });
+    };
+    c.copies_a = !c.lacks_newest_a && !out_.blocks[a].direct && ahead(a) <= 0 && !is_copied(a);
+    c.copies_b = !c.lacks_newest_b && !out_.blocks[b].direct && ahead(b) <= 0 && !is_copied(b) && !(a == b && c.copies_a);
     out_.convolutions.push_back(c);
   }
 

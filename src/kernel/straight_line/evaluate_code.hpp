@@ -6,11 +6,11 @@ namespace maupertuis::straight {
 namespace {
 
 /// Counts below 0 are those of the run.
-template <int Linear, int Products>
+template <int Linear, int Products, int Triples = 0>
 void sums(const EvaluationTables& t, const SumRun& run) {
   const int linear = Linear >= 0 ? Linear : static_cast<int>(run.linear);
   const int products = Products >= 0 ? Products : static_cast<int>(run.products);
-  const int triples = Linear >= 0 && Products >= 0 ? 0 : static_cast<int>(run.triples);
+  const int triples = Triples >= 0 ? Triples : static_cast<int>(run.triples);
   const CellTerm *p = t.linear + run.first_linear, *q = t.products + run.first_product,
                  *r = t.triples + run.first_triple;
   const Cell* scale = run.first_scale == no_scale ? nullptr : t.scales + run.first_scale;
@@ -18,7 +18,7 @@ void sums(const EvaluationTables& t, const SumRun& run) {
   for (std::uint32_t i = 0; i < run.count; ++i, p += linear, q += products, r += triples) {
     double sum = 0;
     for (int k = 0; k < linear; ++k) sum += p[k].factor * x[p[k].a];
-    if constexpr (Products != 0) {
+    if constexpr (Products != 0 || Triples != 0) {
       double rest = 0;
       for (int k = 0; k < products; ++k) rest += q[k].factor * x[q[k].a] * x[q[k].b];
       for (int k = 0; k < triples; ++k) rest += r[k].factor * x[r[k].a] * x[r[k].b] * x[r[k].c];
@@ -40,7 +40,10 @@ void sums_of(const EvaluationTables& t, const SumRun& run) {
 }
 
 void sums(const EvaluationTables& t, const SumRun& run) {
-  if (run.triples > 0) return sums<-1, -1>(t, run);
+  if (run.triples > 0) {
+    if (run.linear > 0 || run.products > 0 || run.triples > 2) return sums<-1, -1, -1>(t, run);
+    return run.triples == 1 ? sums<0, 0, 1>(t, run) : sums<0, 0, 2>(t, run);
+  }
   switch (run.linear) {
     case 0: return sums_of<0>(t, run);
     case 1: return sums_of<1>(t, run);
