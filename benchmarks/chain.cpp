@@ -16,7 +16,8 @@ std::string chain_text(int links) {
   std::string names, points, start;
   for (int i = 1; i <= links; ++i) {
     names += fmt::format("{}θ{}", i > 1 ? ", " : "", i);
-    points += fmt::format("point P{0} mass m at {1}l (sin θ{0}, -cos θ{0})\n", i, i > 1 ? fmt::format("P{} + ", i - 1) : "");
+    points +=
+        fmt::format("point P{0} mass m at {1}l (sin θ{0}, -cos θ{0})\n", i, i > 1 ? fmt::format("P{} + ", i - 1) : "");
     start += fmt::format("{}θ{} = {:.6f} rad", i > 1 ? ", " : "", i, 2.0 + 0.5 * (i - 1) / std::max(1, links - 1));
   }
   return fmt::format(
@@ -44,7 +45,8 @@ ChainMotion chain_motion(int links) {
   const auto model = read(chain_text(links));
   DynamicsSource source = dynamics_source(derive(model));
   source.kernel.observables.clear();
-  ChainMotion motion{build_kernel(source.kernel), source.parameters, {}, std::vector<double>(static_cast<std::size_t>(links), 0.0)};
+  ChainMotion motion{
+      build_kernel(source.kernel), source.parameters, {}, std::vector<double>(static_cast<std::size_t>(links), 0.0)};
   for (int i = 0; i < links; ++i) motion.q.push_back(2.0 + 0.5 * i / std::max(1, links - 1));
   return motion;
 }

@@ -19,12 +19,13 @@ maupertuis::EquationsOfMotion derive(const std::shared_ptr<const maupertuis::Mod
 
 /// The chain as numbers: m = l = 1, g = 9.81, at rest from angles linearly from 2.0 to 2.5 rad.
 struct ChainMotion {
-  maupertuis::Kernel kernel;                  // the residual alone
+  maupertuis::Kernel kernel;  // the residual alone
   std::vector<double> parameters, q, v;
 };
 ChainMotion chain_motion(int links);
 
-/// Lets a stepper with compiled code come to the code of long runs, which it makes when the steps to come promise to pay for it.
+/// Lets a stepper with compiled code come to the code of long runs, which it makes when the steps to come promise to
+/// pay for it.
 void settle(maupertuis::TaylorStepper& stepper, const ChainMotion& chain);
 
 /// The energy of that chain by the closed form, and the size of its terms, the same for all motions from one start.

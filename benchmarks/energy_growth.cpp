@@ -1,5 +1,6 @@
-// How the energy error grows with the number of steps: with √t where rounding errors are independent (Brouwer's law), with t where they
-// are not. Kepler's orbit and the double pendulum, compiled steps at rounding level; bench_energy_growth [STEPS], 10⁷ by default.
+// How the energy error grows with the number of steps: with √t where rounding errors are independent (Brouwer's law),
+// with t where they are not. Kepler's orbit and the double pendulum, compiled steps at rounding level;
+// bench_energy_growth [STEPS], 10⁷ by default.
 #include "chain.hpp"
 
 #include <fmt/format.h>
@@ -16,21 +17,25 @@ namespace {
 using namespace maupertuis;
 
 constexpr char kepler[] =
-    "system kepler\ndimensionless\nparam m = 1, k = 1\ncoord x, y : number\nT = 1/2 m (x'^2 + y'^2)\nV = -k/(x^2 + y^2)^(1/2)\n"
+    "system kepler\ndimensionless\nparam m = 1, k = 1\ncoord x, y : number\nT = 1/2 m (x'^2 + y'^2)\nV = -k/(x^2 + "
+    "y^2)^(1/2)\n"
     "start x = 0.4, y = 0, x' = 0, y' = 2\nrun 1\n";
 
 double energy(const Sample& sample, std::size_t terms) {
-  return std::accumulate(sample.observables.begin(), sample.observables.begin() + static_cast<std::ptrdiff_t>(terms), 0.0);
+  return std::accumulate(sample.observables.begin(), sample.observables.begin() + static_cast<std::ptrdiff_t>(terms),
+                         0.0);
 }
 
-void measure(const char* name, const std::string& text, const std::vector<double>& q, const std::vector<double>& v, double largest) {
+void measure(const char* name, const std::string& text, const std::vector<double>& q, const std::vector<double>& v,
+             double largest) {
   const MotionKernel motion = motion_kernel(bench::derive(bench::read(text)));
   TaylorOptions options;
   options.backend = Backend::Compiled;
   TaylorStepper stepper(motion.kernel, motion.parameters, options);
   stepper.start(0, q, v);
   const Sample first = stepper.sample(0);
-  const double scale = std::accumulate(first.observables.begin(), first.observables.begin() + static_cast<std::ptrdiff_t>(motion.energy_terms),
+  const double scale = std::accumulate(first.observables.begin(),
+                                       first.observables.begin() + static_cast<std::ptrdiff_t>(motion.energy_terms),
                                        0.0, [](double sum, double x) { return sum + std::abs(x); });
   const double begin = energy(first, motion.energy_terms);
   double next = 1e3;

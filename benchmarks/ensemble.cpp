@@ -1,5 +1,5 @@
-// Batches of trajectories of a chain of pendulums on one thread (Google Benchmark). Before anything is timed, the energy of every
-// trajectory has to be conserved, and some of them have to agree with a stepper of their own.
+// Batches of trajectories of a chain of pendulums on one thread (Google Benchmark). Before anything is timed, the
+// energy of every trajectory has to be conserved, and some of them have to agree with a stepper of their own.
 #include "chain.hpp"
 
 #include <benchmark/benchmark.h>
@@ -25,7 +25,8 @@ struct Batch {
   std::vector<double> q, v;
 
   explicit Batch(int links)
-      : motion(motion_kernel(bench::derive(bench::read(bench::chain_text(links))))), n(static_cast<std::size_t>(links)),
+      : motion(motion_kernel(bench::derive(bench::read(bench::chain_text(links))))),
+        n(static_cast<std::size_t>(links)),
         v(trajectories * n, 0.0) {
     for (std::size_t i = 0; i < trajectories; ++i)
       for (std::size_t k = 0; k < n; ++k) {
@@ -57,7 +58,8 @@ void check(const Batch& batch, int width, Backend backend, int order) {
     require(ending.ok() && !ending.alone && ending.energy_drift < 1e-13, "energy");
   for (std::size_t i = 0; i < trajectories; i += 37) {
     TaylorStepper stepper(batch.motion.kernel, batch.motion.parameters, {});
-    stepper.start(0, std::span(batch.q).subspan(i * batch.n, batch.n), std::span(batch.v).subspan(i * batch.n, batch.n));
+    stepper.start(0, std::span(batch.q).subspan(i * batch.n, batch.n),
+                  std::span(batch.v).subspan(i * batch.n, batch.n));
     while (stepper.time() != duration) require(stepper.step(duration).ending == StepEnding::None, "stepper");
     for (std::size_t k = 0; k < batch.n; ++k) require(std::abs(stepper.q()[k] - result.q_of(i)[k]) < 1e-11, "state");
   }
@@ -82,9 +84,13 @@ void ensemble(benchmark::State& state, Backend backend) {
 }
 
 BENCHMARK_CAPTURE(ensemble, interpreter, Backend::Interpreter)
-    ->ArgNames({"links", "width", "order"})->ArgsProduct({{1, 2, 4, 8}, {1, 8, 16}, {0}})->Unit(benchmark::kMillisecond);
+    ->ArgNames({"links", "width", "order"})
+    ->ArgsProduct({{1, 2, 4, 8}, {1, 8, 16}, {0}})
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(ensemble, compiled, Backend::Compiled)
-    ->ArgNames({"links", "width", "order"})->ArgsProduct({{1, 2, 4, 8}, {8, 16}, {0, 26}})->Unit(benchmark::kMillisecond);
+    ->ArgNames({"links", "width", "order"})
+    ->ArgsProduct({{1, 2, 4, 8}, {8, 16}, {0, 26}})
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

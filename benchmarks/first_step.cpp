@@ -1,6 +1,6 @@
-// bench_first_step LINKS: from the text of a chain to its first compiled step, once, in a fresh process and with nothing read from
-// a cache. Prints {"links", "cpu_seconds", "compiled"}; the processor time is that of the whole process, loading included. Where compiled
-// code does not apply the step is the interpreter's, and "compiled" is false.
+// bench_first_step LINKS: from the text of a chain to its first compiled step, once, in a fresh process and with
+// nothing read from a cache. Prints {"links", "cpu_seconds", "compiled"}; the processor time is that of the whole
+// process, loading included. Where compiled code does not apply the step is the interpreter's, and "compiled" is false.
 #include "chain.hpp"
 #include "measure.hpp"
 
@@ -23,7 +23,8 @@ int main(int, char** arguments) {
   timespec cpu{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
 
-  const bench::ChainEnergy begin = bench::chain_energy(chain.q, chain.v), end = bench::chain_energy(stepper.q(), stepper.v());
+  const bench::ChainEnergy begin = bench::chain_energy(chain.q, chain.v),
+                           end = bench::chain_energy(stepper.q(), stepper.v());
   bench::require(step.ending == StepEnding::None, ("no step: " + step.reason).c_str());
   bench::require(std::abs(end.value - begin.value) <= 1e-13 * begin.terms, "energy");
   fmt::print("{{\"links\": {}, \"cpu_seconds\": {:.6f}, \"compiled\": {}}}\n", chain.q.size(),

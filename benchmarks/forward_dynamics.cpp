@@ -26,12 +26,18 @@ struct Case {
   std::vector<double> q, v, a;
 
   explicit Case(const std::string& text, Backend backend)
-      : equations(bench::derive(bench::read(text))), source(dynamics_source(equations)), kernel(build_kernel(source.kernel)),
-        dynamics(kernel, source.inputs, {.backend = backend, .cache = false}), q(kernel.freedoms()), v(q), a(q) {
+      : equations(bench::derive(bench::read(text))),
+        source(dynamics_source(equations)),
+        kernel(build_kernel(source.kernel)),
+        dynamics(kernel, source.inputs, {.backend = backend, .cache = false}),
+        q(kernel.freedoms()),
+        v(q),
+        a(q) {
     dynamics.set_parameters(source.parameters);
     if (const CompileReport& report = dynamics.compile_report(); report.compiled != (backend == Backend::Compiled))
       throw std::runtime_error("no compiled code: " + report.trouble);
-    for (std::size_t i = 0; i < q.size(); ++i) q[i] = 0.3 + 0.11 * static_cast<double>(i % 7), v[i] = 0.5 - 0.2 * static_cast<double>(i % 3);
+    for (std::size_t i = 0; i < q.size(); ++i)
+      q[i] = 0.3 + 0.11 * static_cast<double>(i % 7), v[i] = 0.5 - 0.2 * static_cast<double>(i % 3);
     check();
   }
 
@@ -47,7 +53,8 @@ struct Case {
     double largest = 0;
     for (const double x : a) largest = std::max(largest, std::abs(x));
     for (std::size_t i = 0; i < q.size(); ++i)
-      if (!(std::abs(rest[i]) <= 1e-10 * (1 + std::abs(weight[i]))) || !(std::abs(a[i] - work.acceleration(i)) <= 1e-9 * largest))
+      if (!(std::abs(rest[i]) <= 1e-10 * (1 + std::abs(weight[i]))) ||
+          !(std::abs(a[i] - work.acceleration(i)) <= 1e-9 * largest))
         throw std::runtime_error("wrong accelerations");
   }
 
@@ -69,7 +76,9 @@ void run(const std::string& text, Backend backend, benchmark::State& state) {
   }
 }
 
-void chain(benchmark::State& state, Backend backend) { run(bench::chain_text(static_cast<int>(state.range(0))), backend, state); }
+void chain(benchmark::State& state, Backend backend) {
+  run(bench::chain_text(static_cast<int>(state.range(0))), backend, state);
+}
 
 void arm(benchmark::State& state, Backend backend) {
   std::ifstream file(PROJECT_DIR "/tests/problems/arm_seven_joints.lag");
@@ -83,15 +92,37 @@ void compiled_chain(benchmark::State& state) { chain(state, Backend::Compiled); 
 void interpreted_arm(benchmark::State& state) { arm(state, Backend::Interpreter); }
 void compiled_arm(benchmark::State& state) { arm(state, Backend::Compiled); }
 
-BENCHMARK(interpreted_chain)->Name("chain")->Arg(1)->Arg(2)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100)->Arg(200)->Arg(500)->Arg(1000)->Unit(benchmark::kNanosecond);
+BENCHMARK(interpreted_chain)
+    ->Name("chain")
+    ->Arg(1)
+    ->Arg(2)
+    ->Arg(4)
+    ->Arg(8)
+    ->Arg(20)
+    ->Arg(50)
+    ->Arg(100)
+    ->Arg(200)
+    ->Arg(500)
+    ->Arg(1000)
+    ->Unit(benchmark::kNanosecond);
 // Longer ones are declined.
-BENCHMARK(compiled_chain)->Arg(1)->Arg(2)->Arg(4)->Arg(8)->Arg(20)->Arg(50)->Arg(100)->Arg(200)->Unit(benchmark::kNanosecond);
+BENCHMARK(compiled_chain)
+    ->Arg(1)
+    ->Arg(2)
+    ->Arg(4)
+    ->Arg(8)
+    ->Arg(20)
+    ->Arg(50)
+    ->Arg(100)
+    ->Arg(200)
+    ->Unit(benchmark::kNanosecond);
 BENCHMARK(interpreted_arm)->Name("arm")->Unit(benchmark::kNanosecond);
 BENCHMARK(compiled_arm)->Unit(benchmark::kNanosecond);
 
 #ifdef MAUPERTUIS_MUJOCO
 
-/// The same chain: relative angles φ_i = θ_i − θ_{i−1} about the axis −y … in the plane x z, a point mass at the end of each link.
+/// The same chain: relative angles φ_i = θ_i − θ_{i−1} about the axis −y … in the plane x z, a point mass at the end of
+/// each link.
 std::string mujoco_chain(int links) {
   std::string head, tail;
   for (int i = 0; i < links; ++i) {
@@ -99,8 +130,10 @@ std::string mujoco_chain(int links) {
             "'><joint type='hinge' axis='0 -1 0'/><inertial pos='0 0 -1' mass='1' diaginertia='1e-9 1e-9 1e-9'/>";
     tail += "</body>";
   }
-  return "<mujoco><compiler boundmass='0' boundinertia='0'/><option gravity='0 0 -9.81'><flag contact='disable' constraint='disable'/></option>"
-         "<worldbody>" + head + tail + "</worldbody></mujoco>";
+  return "<mujoco><compiler boundmass='0' boundinertia='0'/><option gravity='0 0 -9.81'><flag contact='disable' "
+         "constraint='disable'/></option>"
+         "<worldbody>" +
+         head + tail + "</worldbody></mujoco>";
 }
 
 void mujoco(benchmark::State& state) {
@@ -124,7 +157,8 @@ void mujoco(benchmark::State& state) {
   mj_forward(model, data);
   double sum = 0, largest = 0, worst = 0;
   for (const double x : ours.a) largest = std::max(largest, std::abs(x));
-  for (int i = 0; i < n; ++i) sum += data->qacc[i], worst = std::max(worst, std::abs(sum - ours.a[static_cast<std::size_t>(i)]));
+  for (int i = 0; i < n; ++i)
+    sum += data->qacc[i], worst = std::max(worst, std::abs(sum - ours.a[static_cast<std::size_t>(i)]));
   if (!(worst <= 1e-6 * largest)) throw std::runtime_error("MuJoCo has other accelerations");
   for (auto _ : state) {
     mj_forward(model, data);

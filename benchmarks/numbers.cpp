@@ -60,7 +60,8 @@ void row(const std::string& what, const std::string& measured, const std::string
 std::string milliseconds(double seconds) { return fmt::format("{:.1f} ms", 1e3 * seconds); }
 
 void derive_double_pendulum() {
-  const std::string first = "(m1 + m2) l1^2 θ1'' + m2 l1 l2 cos(θ1 - θ2) θ2'' + m2 l1 l2 sin(θ1 - θ2) θ2'^2 + (m1 + m2) g l1 sin θ1 = 0";
+  const std::string first =
+      "(m1 + m2) l1^2 θ1'' + m2 l1 l2 cos(θ1 - θ2) θ2'' + m2 l1 l2 sin(θ1 - θ2) θ2'^2 + (m1 + m2) g l1 sin θ1 = 0";
   std::vector<double> seconds;
   for (int i = 0; i < 21; ++i) {
     const auto run = bench::run_process({MAUP_PROGRAM, "derive", PROJECT_DIR "/models/double_pendulum.lag"});
@@ -107,7 +108,8 @@ void computational_chain() {
     const EquationsOfMotion equations = bench::derive(bench::read(bench::chain_text(100)));
     require(certify(equations, nullptr).passed(), "certificate of the 100-link chain");
   });
-  row("computational form of the 100-link chain, derived and certified (b) to (d)", milliseconds(seconds), "1 s", seconds <= 1);
+  row("computational form of the 100-link chain, derived and certified (b) to (d)", milliseconds(seconds), "1 s",
+      seconds <= 1);
 
   double residual[2], matrix[2];
   for (int i = 0; i < 2; ++i) {
@@ -126,7 +128,8 @@ void long_run() {
       "system double_pendulum\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ1, θ2 : angle\n"
       "point A mass m at l (sin θ1, -cos θ1)\npoint B mass m at A + l (sin θ2, -cos θ2)\ngravity (0, -g)\n"
       "start θ1 = 2.0 rad, θ2 = 2.5 rad\nrun 1000 s\n");
-  const auto at = bench::run_process({MAUP_PROGRAM, "simulate", model.path(), "--at", "2s", "--duration", "2s", "--json"});
+  const auto at =
+      bench::run_process({MAUP_PROGRAM, "simulate", model.path(), "--at", "2s", "--duration", "2s", "--json"});
   const auto state = nlohmann::json::parse(at.output).at("at").at(0).at("state");
   require(std::abs(state.at("θ1").get<double>() + 2.922032235907541) < 1e-13, "θ1 at 2 s");
   require(std::abs(state.at("θ2").get<double>() - 0.11738517220261478) < 1e-13, "θ2 at 2 s");
@@ -141,14 +144,16 @@ void long_run() {
     drift = std::max(drift, statistics.at("energy_drift").get<double>());
     peaks.push_back(static_cast<double>(run.peak_kilobytes) / 1024);
   }
-  row("double pendulum, 1000 s at rounding level, interpreter", milliseconds(median(seconds)), "200 ms", median(seconds) <= 0.2);
+  row("double pendulum, 1000 s at rounding level, interpreter", milliseconds(median(seconds)), "200 ms",
+      median(seconds) <= 0.2);
   row("its relative energy error", fmt::format("{:.1e}", drift), "2e-12", drift <= 2e-12);
   row("its peak memory", fmt::format("{:.1f} MB", median(peaks)), "50 MB", median(peaks) <= 50);
 }
 
 /// Median stepping time of `maup simulate MODEL`, after `maup test` has found its reference values right.
 /// every: the time between rows.
-nlohmann::json constrained_run(const std::string& model, const char* duration, double& seconds, const char* every = nullptr) {
+nlohmann::json constrained_run(const std::string& model, const char* duration, double& seconds,
+                               const char* every = nullptr) {
   std::vector<double> times;
   nlohmann::json statistics;
   for (int i = 0; i < 5; ++i) {
@@ -175,11 +180,13 @@ void constrained_runs() {
 
   require(bench::run_process({MAUP_PROGRAM, "test", problems + "ivp_fekete.lag"}).exit_code == 0, "Fekete's points");
   constrained_run(problems + "ivp_fekete.lag", "1000s", seconds);
-  row("Fekete's points, 60 coordinates and 20 constraints, to t = 1000", fmt::format("{:.2f} s", seconds), "2 s", seconds <= 2);
+  row("Fekete's points, 60 coordinates and 20 constraints, to t = 1000", fmt::format("{:.2f} s", seconds), "2 s",
+      seconds <= 2);
 
   // 10,000 periods of 4 K(1/√2) √(l/g) from rest at 90°.
   const auto statistics = constrained_run(problems + "iftomm_a01_pendulum.lag", "23678.419475762374493s", seconds);
-  const double residual = statistics.at("constraint_residual").get<double>(), drift = statistics.at("energy_drift").get<double>();
+  const double residual = statistics.at("constraint_residual").get<double>(),
+               drift = statistics.at("energy_drift").get<double>();
   row("pendulum in x and y over 10,000 periods", fmt::format("{:.2f} s", seconds), "", true);
   row("its constraint residual", fmt::format("{:.1e}", residual), "1e-14", residual <= 1e-14);
   row("its relative energy error", fmt::format("{:.1e}", drift), "1e-12", drift <= 1e-12);
@@ -190,7 +197,8 @@ void constrained_runs() {
 int main() {
   fmt::print("| what | measured | at most |\n|---|---|---|\n");
   int wrong = 0;
-  for (const auto& section : {derive_double_pendulum, check_chain, readable_chain, computational_chain, long_run, constrained_runs}) {
+  for (const auto& section :
+       {derive_double_pendulum, check_chain, readable_chain, computational_chain, long_run, constrained_runs}) {
     try {
       section();
     } catch (const std::exception& error) {

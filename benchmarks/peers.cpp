@@ -1,5 +1,5 @@
-// 100 s of the double pendulum by several integrators at several tolerances: error of the energy against time. The others get a
-// right-hand side written by hand and all optimizations of the compiler.
+// 100 s of the double pendulum by several integrators at several tolerances: error of the energy against time. The
+// others get a right-hand side written by hand and all optimizations of the compiler.
 #include "chain.hpp"
 #include "measure.hpp"
 
@@ -20,7 +20,7 @@
 namespace {
 
 using bench::require;
-using State = std::array<double, 4>;  // θ1, θ2, θ1', θ2'
+using State = std::array<double, 4>;                 // θ1, θ2, θ1', θ2'
 using Observer = std::function<void(const State&)>;  // empty: nothing is looked at, and the run is timed
 
 constexpr double duration = 100;  // s
@@ -113,8 +113,10 @@ State cvode_adams(double tolerance, const Observer& observe) {
   std::copy(begin.begin(), begin.end(), value);
   void* memory = CVodeCreate(CV_ADAMS, context);
   SUNNonlinearSolver solver = SUNNonlinSol_FixedPoint(x, 0, context);
-  bool fine = CVodeInit(memory, cvode_right, 0, x) == CV_SUCCESS && CVodeSStolerances(memory, tolerance, tolerance) == CV_SUCCESS &&
-              CVodeSetNonlinearSolver(memory, solver) == CV_SUCCESS && CVodeSetMaxNumSteps(memory, 100'000'000) == CV_SUCCESS &&
+  bool fine = CVodeInit(memory, cvode_right, 0, x) == CV_SUCCESS &&
+              CVodeSStolerances(memory, tolerance, tolerance) == CV_SUCCESS &&
+              CVodeSetNonlinearSolver(memory, solver) == CV_SUCCESS &&
+              CVodeSetMaxNumSteps(memory, 100'000'000) == CV_SUCCESS &&
               CVodeSetStopTime(memory, duration) == CV_SUCCESS;
   for (double t = 0; fine && t < duration;) {
     fine = CVode(memory, duration, x, &t, observe ? CV_ONE_STEP : CV_NORMAL) >= 0;

@@ -33,7 +33,8 @@ ProcessRun run_process(const std::vector<std::string>& arguments) {
   close(ends[1]);
   if (failed) throw std::runtime_error("cannot start " + arguments[0]);
   char buffer[1 << 16];
-  for (ssize_t count; (count = read(ends[0], buffer, sizeof buffer)) > 0;) run.output.append(buffer, static_cast<std::size_t>(count));
+  for (ssize_t count; (count = read(ends[0], buffer, sizeof buffer)) > 0;)
+    run.output.append(buffer, static_cast<std::size_t>(count));
   close(ends[0]);
   int status = 0;
   rusage usage{};

@@ -1,5 +1,5 @@
-// Taylor steps of chains of pendulums by the public API (Google Benchmark): compiled and by the interpreter alone. Before
-// anything is timed, the energy has to be conserved, and the compiled motion has to be that of the interpreter.
+// Taylor steps of chains of pendulums by the public API (Google Benchmark): compiled and by the interpreter alone.
+// Before anything is timed, the energy has to be conserved, and the compiled motion has to be that of the interpreter.
 //
 //     bench_stepping --benchmark_filter=compiled/8
 #include "chain.hpp"
@@ -71,7 +71,8 @@ void steps(benchmark::State& state, Backend backend) {
     state.counters["energy_drift"] = drift;
     state.counters["order"] = stepper.order();
     state.counters["steps_of_a_run"] = static_cast<double>(stepper.steps());
-    state.counters["step"] = benchmark::Counter(static_cast<double>(steps), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.counters["step"] =
+        benchmark::Counter(static_cast<double>(steps), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
   } catch (const std::exception& error) {
     state.SkipWithError(error.what());
   }
@@ -79,8 +80,17 @@ void steps(benchmark::State& state, Backend backend) {
 
 void sizes(benchmark::internal::Benchmark* rows) {
   rows->ArgNames({"links", "ms", "order"})->Unit(benchmark::kMillisecond);
-  for (const auto& [links, milliseconds] :
-       {std::pair{1, 100'000}, {2, 1'000'000}, {4, 100'000}, {8, 20'000}, {16, 10'000}, {32, 5000}, {50, 2000}, {100, 1000}, {200, 500}, {500, 200}, {1000, 100}})
+  for (const auto& [links, milliseconds] : {std::pair{1, 100'000},
+                                            {2, 1'000'000},
+                                            {4, 100'000},
+                                            {8, 20'000},
+                                            {16, 10'000},
+                                            {32, 5000},
+                                            {50, 2000},
+                                            {100, 1000},
+                                            {200, 500},
+                                            {500, 200},
+                                            {1000, 100}})
     rows->Args({links, milliseconds, 0});
 }
 

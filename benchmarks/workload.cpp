@@ -25,7 +25,8 @@ void steps(int links, int count) {
   TaylorStepper stepper(chain.kernel, chain.parameters, options);
   stepper.start(0, chain.q, chain.v);
   for (int i = 0; i < count; ++i) require(stepper.step(1e6).ending == StepEnding::None, "a step failed");
-  const bench::ChainEnergy begin = bench::chain_energy(chain.q, chain.v), end = bench::chain_energy(stepper.q(), stepper.v());
+  const bench::ChainEnergy begin = bench::chain_energy(chain.q, chain.v),
+                           end = bench::chain_energy(stepper.q(), stepper.v());
   require(std::abs(end.value - begin.value) <= 1e-12 * (begin.terms + end.terms), "energy");
 }
 
@@ -52,8 +53,12 @@ int main(int arguments, char** argument) {
   require(arguments == 4, "three arguments are expected");
   const std::string what = argument[1];
   const int links = std::atoi(argument[2]), count = std::atoi(argument[3]);
-  if (what == "steps") steps(links, count);
-  else if (what == "forward") forward(links, count);
-  else if (what == "derive") derive(links, count);
-  else require(false, ("no work named " + what).c_str());
+  if (what == "steps")
+    steps(links, count);
+  else if (what == "forward")
+    forward(links, count);
+  else if (what == "derive")
+    derive(links, count);
+  else
+    require(false, ("no work named " + what).c_str());
 }

@@ -23,7 +23,9 @@ std::string action_unit(const MechanicalSystem& system) {
   return unit_of(system.lagrangian_dimension * system.independent_dimension, system);
 }
 
-std::string with_unit(const std::string& number, const std::string& unit) { return unit.empty() ? number : number + " " + unit; }
+std::string with_unit(const std::string& number, const std::string& unit) {
+  return unit.empty() ? number : number + " " + unit;
+}
 
 std::string moment(double t, const MechanicalSystem& system) { return system.moment(fmt::format("{:.12g}", t)); }
 
@@ -43,8 +45,8 @@ std::string value_of_action(double value, double error, const MechanicalSystem& 
 std::string kind_text(const SecondVariation& s) {
   if (!s.index) return "stationary, of unknown index: " + s.reason;
   if (s.nullity > 0)
-    return fmt::format("degenerate: index {}, and {} variation{} that leave{} S as it is to second order", *s.index, s.nullity,
-                       s.nullity == 1 ? "" : "s", s.nullity == 1 ? "s" : "");
+    return fmt::format("degenerate: index {}, and {} variation{} that leave{} S as it is to second order", *s.index,
+                       s.nullity, s.nullity == 1 ? "" : "s", s.nullity == 1 ? "s" : "");
   return *s.index == 0 ? "a minimum of S (index 0)" : fmt::format("a saddle of S, index {}", *s.index);
 }
 
@@ -59,7 +61,8 @@ std::string conjugate_text(const SecondVariation& s, const MechanicalSystem& sys
 
 std::string counts_text(const SecondVariation& s) {
   if (!s.by_inertia) return {};
-  std::string out = fmt::format("{} negative eigenvalue{} of the second variation", *s.by_inertia, *s.by_inertia == 1 ? "" : "s");
+  std::string out =
+      fmt::format("{} negative eigenvalue{} of the second variation", *s.by_inertia, *s.by_inertia == 1 ? "" : "s");
   if (!s.by_fields) return out;
   out += fmt::format("; {} by Jacobi fields", *s.by_fields);
   if (s.concavity) out += fmt::format(", of which {} by the freedom of the ends", *s.concavity);
@@ -69,18 +72,20 @@ std::string counts_text(const SecondVariation& s) {
 std::string check_text(const StationaryPath& p, const MechanicalSystem& system) {
   const MotionCheck& c = p.check;
   if (!c.done) return c.reason.empty() ? "" : "not carried: " + c.reason;
-  std::string out = fmt::format("the motion, carried over {} stretch{}, misses the path by {:.1e} of its size", c.stretches,
-                                c.stretches == 1 ? "" : "es", c.missed);
+  std::string out = fmt::format("the motion, carried over {} stretch{}, misses the path by {:.1e} of its size",
+                                c.stretches, c.stretches == 1 ? "" : "es", c.missed);
   if (c.from == p.path.start && c.to == p.path.end)
     return out + fmt::format("; its ∫ L d{} is off by {:.1e}", system.independent, std::abs(c.action - p.action));
   return out + fmt::format(" from {} on, where L is finite", moment(c.from, system));
 }
 
-std::string list(const std::vector<double>& values, const MechanicalSystem& system, const char* prefix, const char* suffix) {
+std::string list(const std::vector<double>& values, const MechanicalSystem& system, const char* prefix,
+                 const char* suffix) {
   std::string out;
   for (std::size_t i = 0; i < values.size(); ++i)
-    out += fmt::format("{}{}{}{} {}", out.empty() ? "" : ", ", prefix, system.coordinates[i].name, suffix,
-                       std::isfinite(values[i]) ? fmt::format("= {:.9g}", values[i]) : "without a value, since L is infinite there");
+    out += fmt::format(
+        "{}{}{}{} {}", out.empty() ? "" : ", ", prefix, system.coordinates[i].name, suffix,
+        std::isfinite(values[i]) ? fmt::format("= {:.9g}", values[i]) : "without a value, since L is infinite there");
   return out;
 }
 
@@ -94,13 +99,15 @@ std::string path_text(const StationaryPath& p, const MechanicalSystem& system) {
   if (p.end_energy) out += line("−∂S/∂T", fmt::format("h_E = {:.9g}", *p.end_energy));
   for (std::size_t i = 0; i < p.multipliers.size(); ++i) {
     const std::string& name = system.integral_constraints[i].name;
-    out += line("multiplier", fmt::format("λ{} = {:.12g}", name.empty() ? std::to_string(i + 1) : "_" + name, p.multipliers[i]));
+    out += line("multiplier",
+                fmt::format("λ{} = {:.12g}", name.empty() ? std::to_string(i + 1) : "_" + name, p.multipliers[i]));
   }
   if (const std::string check = check_text(p, system); !check.empty()) out += line("checked", check);
   double slope = 0;
   for (const TestVariation& v : p.second.variations) slope = std::max(slope, std::abs(v.slope));
   if (!p.second.variations.empty())
-    out += line("first variation", fmt::format("at most {:.1e} of its terms, on {} neighbouring families", slope, p.second.variations.size()));
+    out += line("first variation", fmt::format("at most {:.1e} of its terms, on {} neighbouring families", slope,
+                                               p.second.variations.size()));
   return out;
 }
 
@@ -110,7 +117,8 @@ std::string ends_text(const ActionEnds& ends, const MechanicalSystem& system) {
     for (const auto& x : q) out += (out.empty() ? "" : ", ") + (x ? brief(*x) : std::string("free"));
     return "(" + out + ")";
   };
-  return fmt::format("from {} at {} to {} at {}", at(ends.from), moment(ends.start, system), at(ends.to), moment(ends.end, system));
+  return fmt::format("from {} at {} to {} at {}", at(ends.from), moment(ends.start, system), at(ends.to),
+                     moment(ends.end, system));
 }
 
 Json or_null(const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); }
@@ -126,13 +134,18 @@ Json by_coordinate(const std::vector<double>& values, const MechanicalSystem& sy
 Json variations_json(const std::vector<TestVariation>& variations) {
   Json out = Json::array();
   for (const TestVariation& v : variations)
-    out.push_back({{"name", v.name}, {"slope", v.slope}, {"curvature", v.curvature}, {"epsilon", v.epsilon}, {"change", v.change}});
+    out.push_back({{"name", v.name},
+                   {"slope", v.slope},
+                   {"curvature", v.curvature},
+                   {"epsilon", v.epsilon},
+                   {"change", v.change}});
   return out;
 }
 
 Json path_json(const StationaryPath& p, const MechanicalSystem& system) {
   const SecondVariation& s = p.second;
-  Json out = {{"action", p.action}, {"action_error", p.action_error}, {"path_error", p.path_error}, {"residual", p.residual}};
+  Json out = {
+      {"action", p.action}, {"action_error", p.action_error}, {"path_error", p.path_error}, {"residual", p.residual}};
   out["kind"] = kind_of(s);
   out["index"] = or_null(s.index);
   out["by_inertia"] = or_null(s.by_inertia);
@@ -142,7 +155,8 @@ Json path_json(const StationaryPath& p, const MechanicalSystem& system) {
   out["nearest_eigenvalue"] = s.nearest;
   out["reason"] = s.reason;
   out["conjugate_points"] = Json::array();
-  for (const ConjugatePoint& c : s.conjugate) out["conjugate_points"].push_back({{"t", c.t}, {"multiplicity", c.multiplicity}});
+  for (const ConjugatePoint& c : s.conjugate)
+    out["conjugate_points"].push_back({{"t", c.t}, {"multiplicity", c.multiplicity}});
   out["start_velocity"] = by_coordinate(p.start_velocity, system);
   out["start_momentum"] = by_coordinate(p.start_momentum, system);
   out["end_momentum"] = by_coordinate(p.end_momentum, system);
@@ -152,7 +166,9 @@ Json path_json(const StationaryPath& p, const MechanicalSystem& system) {
   out["turns"] = p.turns;
   out["found_from"] = p.found_from;
   const MotionCheck& c = p.check;
-  out["check"] = {{"done", c.done}, {"stretches", c.stretches}, {"missed", c.missed}, {"action", c.action}, {"from", c.from}, {"to", c.to}, {"reason", c.reason}};
+  out["check"] = {{"done", c.done},     {"stretches", c.stretches}, {"missed", c.missed},
+                  {"action", c.action}, {"from", c.from},           {"to", c.to},
+                  {"reason", c.reason}};
   out["variations"] = variations_json(s.variations);
   return out;
 }
@@ -160,13 +176,15 @@ Json path_json(const StationaryPath& p, const MechanicalSystem& system) {
 }  // namespace
 
 std::string action_text(const PathSearch& search, const MechanicalSystem& system) {
-  std::string out = fmt::format("{}: {} stationary path{} {}\n", system.name, search.paths.size(), search.paths.size() == 1 ? "" : "s",
-                                ends_text(search.ends, system));
+  std::string out = fmt::format("{}: {} stationary path{} {}\n", system.name, search.paths.size(),
+                                search.paths.size() == 1 ? "" : "s", ends_text(search.ends, system));
   for (std::size_t k = 0; k < search.paths.size(); ++k) {
     const StationaryPath& p = search.paths[k];
     std::string turns;
     for (std::size_t i = 0; i < p.turns.size(); ++i)
-      if (p.turns[i] != 0) turns += fmt::format(", {} turn{} of {} further", p.turns[i], std::abs(p.turns[i]) == 1 ? "" : "s", system.coordinates[i].name);
+      if (p.turns[i] != 0)
+        turns += fmt::format(", {} turn{} of {} further", p.turns[i], std::abs(p.turns[i]) == 1 ? "" : "s",
+                             system.coordinates[i].name);
     out += fmt::format("  path {}, found from {}{}\n", k + 1, p.found_from, turns) + path_text(p, system);
   }
   return out + "  " + search.bound + "\n";
@@ -178,41 +196,55 @@ Json action_json(const PathSearch& search, const MechanicalSystem& system) {
     for (std::size_t i = 0; i < q.size(); ++i) out[system.coordinates[i].name] = or_null(q[i]);
     return out;
   };
-  Json out = {{"start", search.ends.start}, {"end", search.ends.end}, {"from", end(search.ends.from)}, {"to", end(search.ends.to)},
-              {"starts", search.starts}, {"failed", search.failed}, {"bound", search.bound}};
+  Json out = {{"start", search.ends.start}, {"end", search.ends.end},  {"from", end(search.ends.from)},
+              {"to", end(search.ends.to)},  {"starts", search.starts}, {"failed", search.failed},
+              {"bound", search.bound}};
   out["paths"] = Json::array();
   for (const StationaryPath& p : search.paths) out["paths"].push_back(path_json(p, system));
   return out;
 }
 
 std::string action_text(const GivenPath& given, const MechanicalSystem& system) {
-  std::string out = fmt::format("{}: the path given, from {} to {}\n", system.name, moment(given.start, system), moment(given.end, system));
+  std::string out = fmt::format("{}: the path given, from {} to {}\n", system.name, moment(given.start, system),
+                                moment(given.end, system));
   out += line("S", value_of_action(given.action, given.action_error, system));
   for (std::size_t i = 0; i < given.integrals.size(); ++i) {
     const std::string& name = system.integral_constraints[i].name;
-    out += line("integral", fmt::format("{} = {:.16g}", name.empty() ? std::to_string(i + 1) : name, given.integrals[i]));
+    out +=
+        line("integral", fmt::format("{} = {:.16g}", name.empty() ? std::to_string(i + 1) : name, given.integrals[i]));
   }
-  if (given.stationary) out += line("stationary", fmt::format("yes: the equations hold to {:.1e} of their terms", given.residual));
+  if (given.stationary)
+    out += line("stationary", fmt::format("yes: the equations hold to {:.1e} of their terms", given.residual));
   else
-    out += line("stationary", fmt::format("no: the equation of {} is off by {:.2g} of its terms at {}", system.coordinates[given.residual_row].name,
-                                          given.residual, moment(given.residual_at, system)));
+    out += line("stationary", fmt::format("no: the equation of {} is off by {:.2g} of its terms at {}",
+                                          system.coordinates[given.residual_row].name, given.residual,
+                                          moment(given.residual_at, system)));
   for (const TestVariation& v : given.variations)
     out += line("neighbours", fmt::format("{:<18} dS/dε is {:.2g} of its terms", v.name, v.slope));
   return out;
 }
 
 Json action_json(const GivenPath& given, const MechanicalSystem& system) {
-  return {{"start", given.start}, {"end", given.end}, {"action", given.action}, {"action_error", given.action_error}, {"integrals", given.integrals},
-          {"stationary", given.stationary}, {"residual", given.residual}, {"residual_at", given.residual_at},
-          {"residual_of", system.coordinates[given.residual_row].name}, {"variations", variations_json(given.variations)}};
+  return {{"start", given.start},
+          {"end", given.end},
+          {"action", given.action},
+          {"action_error", given.action_error},
+          {"integrals", given.integrals},
+          {"stationary", given.stationary},
+          {"residual", given.residual},
+          {"residual_at", given.residual_at},
+          {"residual_of", system.coordinates[given.residual_row].name},
+          {"variations", variations_json(given.variations)}};
 }
 
 std::string action_text(const MotionAction& motion, const MechanicalSystem& system) {
   const StationaryPath& p = motion.path;
-  std::string out = fmt::format("{}: the motion from {} to {}\n", system.name, moment(p.path.start, system), moment(p.path.end, system));
+  std::string out = fmt::format("{}: the motion from {} to {}\n", system.name, moment(p.path.start, system),
+                                moment(p.path.end, system));
   out += path_text(p, system);
   if (p.second.index && !p.second.conjugate.empty())
-    out += fmt::format("  S is a minimum among paths between the same ends up to {}, and a saddle beyond.\n", moment(p.second.conjugate.front().t, system));
+    out += fmt::format("  S is a minimum among paths between the same ends up to {}, and a saddle beyond.\n",
+                       moment(p.second.conjugate.front().t, system));
   return out;
 }
 

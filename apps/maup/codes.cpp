@@ -10,12 +10,15 @@ namespace {
 constexpr CodeEntry own_codes[] = {
     {"E0692", "equations too coupled to be written out solved",
      "Solving for the accelerations needs the inverse of the mass matrix. For more than two coupled coordinates its "
-     "formulas fill pages and help nobody; runs factor the matrix in numbers instead. The same holds for the multipliers "
-     "of more than two constraints, and where M is singular and only the constraints make the motion unique. The matrix "
+     "formulas fill pages and help nobody; runs factor the matrix in numbers instead. The same holds for the "
+     "multipliers "
+     "of more than two constraints, and where M is singular and only the constraints make the motion unique. The "
+     "matrix "
      "form shows M and h of M q'' + h = 0, with A and b of M q'' + h = Aᵀλ, A q'' = b.",
      "maup derive chain.lag --form solved", "maup derive chain.lag --form matrix"},
     {"E0693", "multipliers too long to be eliminated",
-     "Combinations Zᵀ(M q'' + h) = 0 with A Z = 0 hold no multipliers. They are written out where they are short; with many "
+     "Combinations Zᵀ(M q'' + h) = 0 with A Z = 0 hold no multipliers. They are written out where they are short; with "
+     "many "
      "constraints, or where one constraint repeats others so that A has no full rank, they are not.",
      "maup derive linkage.lag --eliminate", "maup derive linkage.lag --form matrix"},
     {"E0801", "a file cannot be read",
@@ -29,7 +32,8 @@ constexpr CodeEntry own_codes[] = {
      "full memory.",
      "", ""},
     {"E0804", "a file cannot be written",
-     "The system refused to create or complete the file; its reason is quoted. A result goes to a temporary name in the "
+     "The system refused to create or complete the file; its reason is quoted. A result goes to a temporary name in "
+     "the "
      "same folder and is renamed when complete, so that a file that was there before is untouched.",
      "", ""},
     {"E0805", "the result could not be written to standard output",
@@ -46,44 +50,62 @@ constexpr CodeEntry own_codes[] = {
      "number below 1.",
      "maup simulate pendulum.lag --at 3kg", "maup simulate pendulum.lag --at 3s"},
     {"E0810", "the ending of a file names no format",
-     "The format of a result follows the ending of its file: .csv, .npy, .json for a trajectory, .svg, .png, .pdf for a picture, "
+     "The format of a result follows the ending of its file: .csv, .npy, .json for a trajectory, .svg, .png, .pdf for "
+     "a picture, "
      ".html for a report.",
      "maup simulate pendulum.lag -o motion.xls", "maup simulate pendulum.lag -o motion.csv"},
     {"E0812", "the result would be written over the model",
-     "The file of -o, or of a plot, is the model that is read. Results never take the place of what they were made from.",
+     "The file of -o, or of a plot, is the model that is read. Results never take the place of what they were made "
+     "from.",
      "maup reduce arm.lag -o arm.lag", "maup reduce arm.lag -o arm_reduced.lag"},
     {"W0813", "a section of the report is left out",
-     "A report has a budget of time, 20 s unless --budget says otherwise. No section takes more than half of what is left of it, so that a slow one "
-     "does not take the others with it; one that does not come is left out, and the page says so. `--sections` computes the named ones alone.",
+     "A report has a budget of time, 20 s unless --budget says otherwise. No section takes more than half of what is "
+     "left of it, so that a slow one "
+     "does not take the others with it; one that does not come is left out, and the page says so. `--sections` "
+     "computes the named ones alone.",
      "maup report chain.lag", "maup report chain.lag --budget 10min"},
     {"W0815", "an environment variable has an unknown value",
-     "MAUPERTUIS_INSTRUCTIONS holds the vector instructions back: `none`, `avx2`, or `avx512` for all that the processor has. Any other word is left out of account.",
-     "MAUPERTUIS_INSTRUCTIONS=sse maup simulate pendulum.lag", "MAUPERTUIS_INSTRUCTIONS=avx2 maup simulate pendulum.lag"},
+     "MAUPERTUIS_INSTRUCTIONS holds the vector instructions back: `none`, `avx2`, or `avx512` for all that the "
+     "processor has. Any other word is left out of account.",
+     "MAUPERTUIS_INSTRUCTIONS=sse maup simulate pendulum.lag",
+     "MAUPERTUIS_INSTRUCTIONS=avx2 maup simulate pendulum.lag"},
     {"W0817", "the name of a file is not what it seems",
-     "The name holds escape bytes, characters that turn the direction of writing, or a letter of another alphabet that looks Latin. It is shown with such characters "
-     "spelled out (\\x1b, \\u202e); typing what is seen finds another file, or none.", "", ""},
+     "The name holds escape bytes, characters that turn the direction of writing, or a letter of another alphabet that "
+     "looks Latin. It is shown with such characters "
+     "spelled out (\\x1b, \\u202e); typing what is seen finds another file, or none.",
+     "", ""},
     {"E0816", "a result is no finite number",
-     "A result is a number, or says that there is none. Where NaN or an infinity would stand in it the command has failed: the quantity grew beyond the range of "
-     "numbers, or its formula has no value there (a root of a negative number, a division by zero).", "", ""},
+     "A result is a number, or says that there is none. Where NaN or an infinity would stand in it the command has "
+     "failed: the quantity grew beyond the range of "
+     "numbers, or its formula has no value there (a root of a negative number, a division by zero).",
+     "", ""},
     {"E0814", "the budget of a report was used up before its equations were certified",
-     "Every section of a page stands on the certified equations: without them there is none.", "maup report chain.lag --budget 1s", "maup report chain.lag --budget none"},
+     "Every section of a page stands on the certified equations: without them there is none.",
+     "maup report chain.lag --budget 1s", "maup report chain.lag --budget none"},
     {"E0840", "a picture of this kind cannot be made here",
-     "PNG, PDF and videos are drawn by librsvg and cairo, which are opened when they are needed. They are not on this machine, or the picture "
+     "PNG, PDF and videos are drawn by librsvg and cairo, which are opened when they are needed. They are not on this "
+     "machine, or the picture "
      "is too large for them. SVG is written by maup itself.",
      "", ""},
     {"E0841", "a film needs ffmpeg",
-     "MP4 and GIF are encoded by ffmpeg, a program of its own that is looked for in the folders of PATH. It is not there, or it could not do what "
+     "MP4 and GIF are encoded by ffmpeg, a program of its own that is looked for in the folders of PATH. It is not "
+     "there, or it could not do what "
      "it was asked for; what it says is quoted. Pages and animated SVG are written by maup itself.",
      "", ""},
-    {"E0842", "a film that is too long", "The frames are more than a file of this kind can hold and be of use.", "", ""},
+    {"E0842", "a film that is too long", "The frames are more than a file of this kind can hold and be of use.", "",
+     ""},
     {"E0843", "nothing to draw",
-     "A drawing shows where things are: points, bodies, springs, and what a `draw` statement names. A model of coordinates and energies alone says "
+     "A drawing shows where things are: points, bodies, springs, and what a `draw` statement names. A model of "
+     "coordinates and energies alone says "
      "nothing of that.",
      "", ""},
     {"E1305", "the motion does not reach the time asked for",
-     "`maup modes --at 3s` linearizes about the state of the motion at that time; the run ended before. Its reason is quoted.", "", ""},
+     "`maup modes --at 3s` linearizes about the state of the motion at that time; the run ended before. Its reason is "
+     "quoted.",
+     "", ""},
     {"E0811", "there is no such column to plot",
-     "A plot shows the columns of the trajectory: coordinates (θ), velocities (θ'), coordinates of points (B.x), energies.",
+     "A plot shows the columns of the trajectory: coordinates (θ), velocities (θ'), coordinates of points (B.x), "
+     "energies.",
      "maup plot pendulum.lag --y w", "maup plot pendulum.lag --y \"θ'\""},
 };
 
@@ -92,9 +114,9 @@ constexpr CodeEntry own_codes[] = {
 std::span<const CodeEntry> all_codes() {
   static const std::vector<CodeEntry> all = [] {
     std::vector<CodeEntry> codes(std::begin(own_codes), std::end(own_codes));
-    for (const auto entries :
-         {syntax_codes(), system_codes(), equations_codes(), simulation_codes(), verification_codes(), comparison_codes(),
-          invariants_codes(), hamiltonian_codes(), action_codes(), linearization_codes(), orbits_codes(), study_codes()})
+    for (const auto entries : {syntax_codes(), system_codes(), equations_codes(), simulation_codes(),
+                               verification_codes(), comparison_codes(), invariants_codes(), hamiltonian_codes(),
+                               action_codes(), linearization_codes(), orbits_codes(), study_codes()})
       codes.insert(codes.end(), entries.begin(), entries.end());
     // By number, so that E0301 and W0302 stand together.
     std::sort(codes.begin(), codes.end(),

@@ -36,10 +36,13 @@ namespace {
 /// θ, θ', and what only a trajectory has names for. Any other name is a formula too, and is read as one.
 bool is_column_name(const std::string& name, const syntax::SyntaxTree* tree) {
   const auto begins = [&](std::string_view head) { return name.compare(0, head.size(), head) == 0; };
-  if (name == "t" || name == "energy" || begins("reaction(") || begins("error(") || begins("λ") || begins("Λ")) return true;
+  if (name == "t" || name == "energy" || begins("reaction(") || begins("error(") || begins("λ") || begins("Λ"))
+    return true;
   if (!tree) return false;
   for (const syntax::Statement& s : tree->statements) {
-    if (const auto* independent = std::get_if<syntax::IndependentStatement>(&s.body); independent && independent->name.text == name) return true;
+    if (const auto* independent = std::get_if<syntax::IndependentStatement>(&s.body);
+        independent && independent->name.text == name)
+      return true;
     if (const auto* coord = std::get_if<syntax::CoordStatement>(&s.body))
       for (const auto& item : coord->items)
         if (item.name.text == name || item.name.text + "'" == name) return true;
@@ -55,7 +58,8 @@ class FormulaColumn {
  public:
   FormulaColumn(Expr formula, const EquationsOfMotion& equations) : system_(*equations.system) {
     ExprMap momenta;
-    for (std::size_t i = 0; i < equations.momenta.size(); ++i) momenta.emplace(momentum_symbol(system_, i), equations.momenta[i]);
+    for (std::size_t i = 0; i < equations.momenta.size(); ++i)
+      momenta.emplace(momentum_symbol(system_, i), equations.momenta[i]);
     const Expr of_state = substitute(formula, momenta);
     const Expr with_forces = with_reactions(equations, {&of_state, 1}).front();
     value_ = expand_time_derivatives(in_terms_of_motion(system_, {&with_forces, 1}).front());
@@ -94,8 +98,10 @@ class FormulaColumn {
     const auto motion = accelerations_and_multipliers(equations);
     if (!motion) return;
     ExprMap values;
-    for (std::size_t i = 0; i < motion->accelerations.size(); ++i) values.emplace(system_.coordinates[i].acceleration, motion->accelerations[i]);
-    for (std::size_t i = 0; i < motion->multipliers.size(); ++i) values.emplace(equations.multipliers[i], motion->multipliers[i]);
+    for (std::size_t i = 0; i < motion->accelerations.size(); ++i)
+      values.emplace(system_.coordinates[i].acceleration, motion->accelerations[i]);
+    for (std::size_t i = 0; i < motion->multipliers.size(); ++i)
+      values.emplace(equations.multipliers[i], motion->multipliers[i]);
     const Expr put_in = substitute(value_, values);
     value_ = expand_time_derivatives(in_terms_of_motion(system_, {&put_in, 1}).front());
   }
@@ -111,13 +117,14 @@ class FormulaColumn {
 
   const MechanicalSystem& system_;
   Expr value_;
-  std::vector<Expr> symbols_;          // q and q' that are columns
+  std::vector<Expr> symbols_;  // q and q' that are columns
   std::vector<std::size_t> columns_;
 };
 
 }  // namespace
 
-AskedColumns::AskedColumns(const std::string& option, const std::vector<std::string>& texts, Study& study) : option_(option) {
+AskedColumns::AskedColumns(const std::string& option, const std::vector<std::string>& texts, Study& study)
+    : option_(option) {
   for (const std::string& text : texts)
     for (const Span piece : pieces_of(text)) {
       const std::string name = text.substr(piece.begin, piece.end - piece.begin);
@@ -135,9 +142,10 @@ std::optional<Trajectory> AskedColumns::added_to(Trajectory rows, Study& study) 
     const AskedFormula& asked = model.experiment.asked.at(index);
     FormulaColumn column(asked.value, *study.equations());
     if (column.needs_motion()) {
-      refuse_option(study, option_, formula, fmt::format("{} is not determined by the state in this model", formula),
-                          "Accelerations and forces of constraints follow from the state only where the equations have one solution.",
-                          "Ask for coordinates, velocities and what is made of them.");
+      refuse_option(
+          study, option_, formula, fmt::format("{} is not determined by the state in this model", formula),
+          "Accelerations and forces of constraints follow from the state only where the equations have one solution.",
+          "Ask for coordinates, velocities and what is made of them.");
       return std::nullopt;
     }
     std::vector<double> values, errors;
@@ -170,7 +178,9 @@ std::optional<Trajectory> AskedColumns::chosen_from(const Trajectory& all, Study
       chosen.push_back(*column);
     } else if (name != rows->independent.name) {  // which is always the first column
       const std::string near = did_you_mean(name, known);
-      study.diagnostics().error("E0811", {}, fmt::format("there is no column {}{}", name, near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+      study.diagnostics().error(
+          "E0811", {},
+          fmt::format("there is no column {}{}", name, near.empty() ? "" : fmt::format("; did you mean {}?", near)));
       return std::nullopt;
     }
   }

@@ -32,7 +32,7 @@ class AskedColumns {
  private:
   struct Formula {
     std::string text;
-    std::size_t asked;   // index in Experiment::asked
+    std::size_t asked;  // index in Experiment::asked
   };
 
   std::string option_;

@@ -35,7 +35,8 @@ void warn_of_environment(const Console& console) {
   const std::string word = unknown_vector_instructions();
   if (word.empty()) return;
   Diagnostics diagnostics;
-  diagnostics.warning("W0815", {}, fmt::format("MAUPERTUIS_INSTRUCTIONS says `{}`, which is no kind of vector instructions", word),
+  diagnostics.warning("W0815", {},
+                      fmt::format("MAUPERTUIS_INSTRUCTIONS says `{}`, which is no kind of vector instructions", word),
                       "It is left out of account: the processor decides.", "Write avx512, avx2 or none, or unset it.");
   console.draw(render(diagnostics, SourceText("the environment", ""), {.color = console.colored_messages()}));
 }
@@ -70,7 +71,8 @@ CommandLine::CommandLine() : implementation_(std::make_unique<Implementation>())
 
 CommandLine::~CommandLine() = default;
 
-Command& CommandLine::add(const std::string& name, const std::string& summary, const std::string& examples, Action action) {
+Command& CommandLine::add(const std::string& name, const std::string& summary, const std::string& examples,
+                          Action action) {
   Implementation& line = *implementation_;
   Command& command =
       line.parser.add(name, summary, examples, [&line, action = std::move(action)] { line.chosen = action; });
@@ -88,9 +90,12 @@ ExitCode CommandLine::run(int argc, char** argv) {
   line.console.print(out.str());
   line.console.say(err.str());
   switch (asked) {
-    case CommandParser::Outcome::Command: break;
-    case CommandParser::Outcome::Answered: return line.console.flush().empty() ? ExitCode::Fine : ExitCode::Usage;
-    case CommandParser::Outcome::Mistake: return line.console.flush(), ExitCode::Usage;
+    case CommandParser::Outcome::Command:
+      break;
+    case CommandParser::Outcome::Answered:
+      return line.console.flush().empty() ? ExitCode::Fine : ExitCode::Usage;
+    case CommandParser::Outcome::Mistake:
+      return line.console.flush(), ExitCode::Usage;
   }
   line.console.use_json(line.json);
   line.console.use_color(color_named(line.color));

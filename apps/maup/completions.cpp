@@ -39,14 +39,19 @@ _{0}() {{
 complete -F _{0} {0}
 )";
 
-/// What completes an argument: the assignments that the frame above reads. The ! says that it is the value of an option, whatever it begins with.
+/// What completes an argument: the assignments that the frame above reads. The ! says that it is the value of an
+/// option, whatever it begins with.
 std::string bash_argument(const OptionRow& row) {
   const std::string mark = row.positional ? "" : "!";
   switch (argument_kind(row)) {
-    case ArgumentKind::Words: return fmt::format("words='{}{}'", mark, fmt::join(row.words, " "));
-    case ArgumentKind::Model: return fmt::format("files='{}model'", mark);
-    case ArgumentKind::File: return fmt::format("files='{}any'", mark);
-    case ArgumentKind::Other: return row.positional ? ":" : "words='!'";
+    case ArgumentKind::Words:
+      return fmt::format("words='{}{}'", mark, fmt::join(row.words, " "));
+    case ArgumentKind::Model:
+      return fmt::format("files='{}model'", mark);
+    case ArgumentKind::File:
+      return fmt::format("files='{}any'", mark);
+    case ArgumentKind::Other:
+      return row.positional ? ":" : "words='!'";
   }
   return ":";
 }
@@ -65,8 +70,8 @@ std::string bash_command(const CommandRow& command) {
     if (row.positional || row.value.empty() || row.value_optional) continue;
     values += fmt::format("        {}) {} ;;\n", fmt::join(row.names, "|"), bash_argument(row));
   }
-  return fmt::format("    {})\n      options='{}'\n      case $before in\n{}        *) {} ;;\n      esac ;;\n", command.name,
-                     fmt::join(option_names(command.options), " "), values, rest);
+  return fmt::format("    {})\n      options='{}'\n      case $before in\n{}        *) {} ;;\n      esac ;;\n",
+                     command.name, fmt::join(option_names(command.options), " "), values, rest);
 }
 
 }  // namespace
@@ -91,7 +96,8 @@ std::string bash_completions(const OptionTable& table) {
   std::vector<std::string> names;
   for (const CommandRow& command : table.commands)
     if (!command.later) names.push_back(command.name);
-  std::string cases = fmt::format("    '') words='{}' options='{}' ;;\n", fmt::join(names, " "), fmt::join(option_names(table.options), " "));
+  std::string cases = fmt::format("    '') words='{}' options='{}' ;;\n", fmt::join(names, " "),
+                                  fmt::join(option_names(table.options), " "));
   for (const CommandRow& command : table.commands)
     if (!command.later) cases += bash_command(command);
   return fmt::format(fmt::runtime(bash_frame), table.program, cases);

@@ -5,7 +5,8 @@
 
 namespace maupertuis::app {
 
-/// Scripts that a shell loads: after them Tab knows the commands, their options, the words that an option takes, and which arguments are models.
+/// Scripts that a shell loads: after them Tab knows the commands, their options, the words that an option takes, and
+/// which arguments are models.
 std::string bash_completions(const OptionTable& table);
 std::string zsh_completions(const OptionTable& table);
 std::string fish_completions(const OptionTable& table);

@@ -29,19 +29,26 @@ if [[ $zsh_eval_context[-1] == loadautofunc ]]; then _{0} "$@"; else compdef _{0
 std::string escaped(const std::string& text, const char* special) {
   std::string out;
   for (const char c : text) {
-    if (c == '\'') out += "'\\''";
-    else if (std::string_view(special).find(c) != std::string_view::npos) (out += '\\') += c;
-    else out += c;
+    if (c == '\'')
+      out += "'\\''";
+    else if (std::string_view(special).find(c) != std::string_view::npos)
+      (out += '\\') += c;
+    else
+      out += c;
   }
   return out;
 }
 
 std::string zsh_argument(const OptionRow& row) {
   switch (argument_kind(row)) {
-    case ArgumentKind::Words: return fmt::format("({})", fmt::join(row.words, " "));
-    case ArgumentKind::Model: return "_files -g \"*.lag(-.)\"";
-    case ArgumentKind::File: return "_files";
-    case ArgumentKind::Other: return " ";
+    case ArgumentKind::Words:
+      return fmt::format("({})", fmt::join(row.words, " "));
+    case ArgumentKind::Model:
+      return "_files -g \"*.lag(-.)\"";
+    case ArgumentKind::File:
+      return "_files";
+    case ArgumentKind::Other:
+      return " ";
   }
   return " ";
 }
@@ -49,7 +56,8 @@ std::string zsh_argument(const OptionRow& row) {
 /// '*--set=[Another value of a parameter]:NAME=VALUE: '
 std::string option_spec(const OptionRow& row) {
   std::string value;
-  if (!row.value.empty()) value = fmt::format("{}:{}:{}", row.value_optional ? ":" : "", escaped(row.value, ":"), zsh_argument(row));
+  if (!row.value.empty())
+    value = fmt::format("{}:{}:{}", row.value_optional ? ":" : "", escaped(row.value, ":"), zsh_argument(row));
   const std::string rest = fmt::format("[{}]{}'", escaped(one_line(row.what), "[]"), value);
   const auto with_sign = [&row](const std::string& name) {
     return row.value.empty() ? name : name + (name.rfind("--", 0) == 0 ? "=" : "+");
@@ -64,8 +72,11 @@ std::string specs(const std::vector<OptionRow>& rows, const char* between) {
   std::vector<std::string> out;
   int place = 0;
   for (const OptionRow& row : rows)
-    if (!row.positional) out.push_back(option_spec(row));
-    else out.push_back(fmt::format("'{}:{}:{}'", row.many ? "*" : std::to_string(++place), escaped(row.names[0], ":"), zsh_argument(row)));
+    if (!row.positional)
+      out.push_back(option_spec(row));
+    else
+      out.push_back(fmt::format("'{}:{}:{}'", row.many ? "*" : std::to_string(++place), escaped(row.names[0], ":"),
+                                zsh_argument(row)));
   return fmt::format("{}", fmt::join(out, between));
 }
 
@@ -76,7 +87,8 @@ std::string zsh_completions(const OptionTable& table) {
   for (const CommandRow& command : table.commands) {
     if (command.later) continue;
     commands += fmt::format("    '{}:{}'\n", command.name, escaped(one_line(command.summary), ":"));
-    cases += fmt::format("        {})\n          _arguments {} ;;\n", command.name, specs(command.options, " \\\n            "));
+    cases += fmt::format("        {})\n          _arguments {} ;;\n", command.name,
+                         specs(command.options, " \\\n            "));
   }
   return fmt::format(fmt::runtime(frame), table.program, commands, specs(table.options, " "), cases);
 }

@@ -14,8 +14,10 @@ namespace maupertuis::app {
 void Console::print(std::string_view text) { data_ += visible(text); }
 
 void Console::print_file(std::string_view text) {
-  if (isatty(STDOUT_FILENO) == 1) print(text);
-  else data_ += text;
+  if (isatty(STDOUT_FILENO) == 1)
+    print(text);
+  else
+    data_ += text;
 }
 
 void Console::print_document(const nlohmann::ordered_json& document) {

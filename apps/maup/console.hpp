@@ -7,8 +7,9 @@
 
 namespace maupertuis::app {
 
-/// Where a command puts what it has to say: data on standard output, messages on standard error. Characters that a terminal
-/// would act on instead of showing them, as names of models and files can hold, are spelled out (look_alikes.hpp).
+/// Where a command puts what it has to say: data on standard output, messages on standard error. Characters that a
+/// terminal would act on instead of showing them, as names of models and files can hold, are spelled out
+/// (look_alikes.hpp).
 class Console {
  public:
   enum class Color { Auto, Always, Never };

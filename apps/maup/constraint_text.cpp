@@ -26,14 +26,17 @@ std::string constraint_line(const EquationsOfMotion& equations, const Constraint
   std::string out = fmt::format("{}: {}, {}", system.constraint_label(index), words(report.constraint_class),
                                 report.scleronomic ? "scleronomic" : "rheonomic");
   if (report.integral.found()) out += "; " + integral_text(equations, report.integral);
-  if (report.redundant && report.depends_on.empty()) out += "; redundant: its gradient vanishes";
-  else if (report.redundant) out += "; redundant: depends on " + labels(system, report.depends_on);
+  if (report.redundant && report.depends_on.empty())
+    out += "; redundant: its gradient vanishes";
+  else if (report.redundant)
+    out += "; redundant: depends on " + labels(system, report.depends_on);
   return out;
 }
 
 }  // namespace
 
-void summarise_constraints(const EquationsOfMotion& equations, const ConstraintAnalysis& analysis, const SummaryLine& line) {
+void summarise_constraints(const EquationsOfMotion& equations, const ConstraintAnalysis& analysis,
+                           const SummaryLine& line) {
   const MechanicalSystem& system = *equations.system;
   if (!system.constrained()) return line("freedoms", std::to_string(analysis.configuration_freedoms));
   const std::size_t count = analysis.constraints.size();
@@ -42,10 +45,12 @@ void summarise_constraints(const EquationsOfMotion& equations, const ConstraintA
     line(i == 0 ? "constraints" : "", constraint_line(equations, analysis.constraints[i], i));
   if (count > most_lines) line("", fmt::format("… ({} of them)", count));
   for (const IntegrableCombination& found : analysis.combinations)
-    line("integrable together", fmt::format("{}{}{}", labels(system, found.constraints), found.integral.found() ? ": " : "",
-                                            integral_text(equations, found.integral)));
+    line("integrable together",
+         fmt::format("{}{}{}", labels(system, found.constraints), found.integral.found() ? ": " : "",
+                     integral_text(equations, found.integral)));
   line("rank", fmt::format("{} of {} rows", analysis.rank, count));
-  line("freedoms", fmt::format("{} of configuration, {} at an instant", analysis.configuration_freedoms, analysis.instantaneous_freedoms));
+  line("freedoms", fmt::format("{} of configuration, {} at an instant", analysis.configuration_freedoms,
+                               analysis.instantaneous_freedoms));
   line("undetermined λ", labels(system, analysis.undetermined));
 }
 
@@ -70,12 +75,13 @@ Json constraints_to_json(const EquationsOfMotion& equations, const ConstraintAna
     const Constraint& constraint = equations.system->constraints[i];
     Json depends = Json::array();
     for (const std::size_t k : report.depends_on) depends.push_back(equations.system->constraint_label(k));
-    out.push_back({{"name", constraint.name.empty() ? equations.system->constraint_label(i) : constraint.name},
-                   {"class", word(report.constraint_class)},
-                   {"scleronomic", report.scleronomic},
-                   {"redundant", report.redundant},
-                   {"depends_on", depends},
-                   {"integral", report.integral.found() ? Json(integral_text(equations, report.integral)) : Json(nullptr)}});
+    out.push_back(
+        {{"name", constraint.name.empty() ? equations.system->constraint_label(i) : constraint.name},
+         {"class", word(report.constraint_class)},
+         {"scleronomic", report.scleronomic},
+         {"redundant", report.redundant},
+         {"depends_on", depends},
+         {"integral", report.integral.found() ? Json(integral_text(equations, report.integral)) : Json(nullptr)}});
   }
   return out;
 }

@@ -14,7 +14,8 @@ using SummaryLine = std::function<void(const char* head, const std::string& text
 
 /// The constraints with their classes, the freedoms, the multipliers that are not determined. Nothing of constraints
 /// that cannot be met.
-void summarise_constraints(const EquationsOfMotion& equations, const ConstraintAnalysis& analysis, const SummaryLine& line);
+void summarise_constraints(const EquationsOfMotion& equations, const ConstraintAnalysis& analysis,
+                           const SummaryLine& line);
 
 /// What the constraints changed of the start, `x' = 0.4 m/s`; empty if nothing.
 std::string moved_start(const MechanicalSystem& system, const ConsistentStart& start);

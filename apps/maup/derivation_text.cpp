@@ -60,7 +60,8 @@ class SharedLines {
   std::string operator()(const std::vector<std::string>& names, std::span<const Expr> values) {
     const SharedForm form = shared_form(values, order_, known_);
     std::string out;
-    for (std::size_t i = 0; i < names.size(); ++i) out += fmt::format("  {} = {}\n", names[i], to_plain(form.rows[i], order_));
+    for (std::size_t i = 0; i < names.size(); ++i)
+      out += fmt::format("  {} = {}\n", names[i], to_plain(form.rows[i], order_));
     if (!form.intermediates.empty()) out += "with\n";
     for (const Intermediate& i : form.intermediates)
       out += fmt::format("  {} = {}\n", to_plain(i.symbol, order_), to_plain(i.value, order_));
@@ -88,7 +89,8 @@ std::string momenta_and_energy(const EquationsOfMotion& equations, const Derivat
   std::string out = "\nMomenta\n" + lines(momenta, equations.shown().momenta);
   out += "\nEnergy function\n" + lines({"h_E"}, {&equations.shown().energy_function, 1});
   if (!conserved.energy_case.empty()) out += fmt::format("  {}\n", conserved.energy_case);
-  if (!conserved.energy_conserved) out += lines({"dh_E/d" + equations.system->independent}, {&equations.shown().power, 1});
+  if (!conserved.energy_conserved)
+    out += lines({"dh_E/d" + equations.system->independent}, {&equations.shown().power, 1});
   if (const auto jump = across_switches(*equations.system, equations.energy_function, equations.order).jump)
     out += fmt::format("  h_E jumps where {}: what is switched there does work at once.\n", jump->place);
 
@@ -96,8 +98,8 @@ std::string momenta_and_energy(const EquationsOfMotion& equations, const Derivat
   for (const std::size_t i : conserved.conserved_momenta)
     names.push_back(fmt::format("{} ({} is cyclic)", momenta[i], equations.system->coordinates[i].name));
   if (conserved.energy_conserved) names.emplace_back("h_E");
-  out += fmt::format("\nConserved\n  {}\n", names.empty() ? "nothing among the momenta and h_E"
-                                                          : fmt::format("{}", fmt::join(names, ", ")));
+  out += fmt::format("\nConserved\n  {}\n",
+                     names.empty() ? "nothing among the momenta and h_E" : fmt::format("{}", fmt::join(names, ", ")));
   return out;
 }
 
@@ -106,8 +108,10 @@ std::string reactions_text(const EquationsOfMotion& equations) {
   std::string out;
   for (const Reaction& r : reactions(equations)) {
     if (out.empty()) out = "\nReactions\n";
-    if (r.value) out += readable_line(r.name, r.value, equations.order) + "    " + r.sentence + "\n";
-    else out += fmt::format("  {}: {}\n", r.name, r.sentence);
+    if (r.value)
+      out += readable_line(r.name, r.value, equations.order) + "    " + r.sentence + "\n";
+    else
+      out += fmt::format("  {}: {}\n", r.name, r.sentence);
   }
   return out;
 }
@@ -120,11 +124,16 @@ std::string certificate_text(const Certificate& certificate) {
   for (const CertificateCheck& check : certificate.checks) name_width = std::max(name_width, check.name.size());
   for (const CertificateCheck& check : certificate.checks) {
     std::string ground;
-    if (!check.applies) ground = "does not apply";
-    else if (check.verdict != Verdict::Zero) ground = fmt::format("{}: {}", verdict_name(check.verdict), check.reason);
-    else if (check.points == 0 && check.error_bound == 0) ground = "term by term";
-    else if (check.error_bound < 1) ground = fmt::format("{} points, error below {}", check.points, brief(check.error_bound));
-    else ground = fmt::format("{} points, no bound claimed", check.points);
+    if (!check.applies)
+      ground = "does not apply";
+    else if (check.verdict != Verdict::Zero)
+      ground = fmt::format("{}: {}", verdict_name(check.verdict), check.reason);
+    else if (check.points == 0 && check.error_bound == 0)
+      ground = "term by term";
+    else if (check.error_bound < 1)
+      ground = fmt::format("{} points, error below {}", check.points, brief(check.error_bound));
+    else
+      ground = fmt::format("{} points, no bound claimed", check.points);
     out += fmt::format("  {:<{}} {} ({})\n", check.name, name_width, check.statement, ground);
   }
   return out;
@@ -138,7 +147,8 @@ std::string lecture(Study& study, const EquationForm& form, const Certificate& c
   out += fmt::format("Equations of motion of {}\n", equations.system->name);
   for (const auto* lines : {&form.lines, &form.constraints})
     for (const EquationLine& line : *lines)
-      out += fmt::format("  {}{}\n", plain_text(shown_line(line, order)), line.note.empty() ? "" : "    (" + line.note + ")");
+      out += fmt::format("  {}{}\n", plain_text(shown_line(line, order)),
+                         line.note.empty() ? "" : "    (" + line.note + ")");
   if (!form.intermediates.empty()) out += "with\n";
   for (const Intermediate& i : form.intermediates)
     out += fmt::format("  {} = {}\n", to_plain(i.symbol, order), to_plain(i.value, order));
@@ -148,7 +158,8 @@ std::string lecture(Study& study, const EquationForm& form, const Certificate& c
   return out + certificate_text(certificate);
 }
 
-std::vector<FormulaLine> step_lines(const std::vector<DerivationStep>& steps, const MechanicalSystem& system, const ReadingOrder& order) {
+std::vector<FormulaLine> step_lines(const std::vector<DerivationStep>& steps, const MechanicalSystem& system,
+                                    const ReadingOrder& order) {
   std::vector<FormulaLine> lines;
   for (const DerivationStep& step : steps) {
     FormulaLine line;
@@ -171,7 +182,9 @@ std::vector<FormulaLine> step_lines(const std::vector<DerivationStep>& steps, co
 Json steps_json(const Derivation& derivation, const ReadingOrder& order) {
   Json list = Json::array();
   for (const DerivationStep& step : derivation.steps)
-    list.push_back({{"section", step.section}, {"rule", step.rule}, {"left", to_plain(step.left)},
+    list.push_back({{"section", step.section},
+                    {"rule", step.rule},
+                    {"left", to_plain(step.left)},
                     {"right", step.right ? to_plain(step.right, order) : std::string()},
                     {"latex", step.right ? to_latex(step.left) + " = " + to_latex(step.right, order) : std::string()},
                     {"sentence", step.sentence}});

@@ -12,7 +12,8 @@ std::string lecture(Study& study, const EquationForm& form, const Certificate& c
 std::string certificate_text(const Certificate& certificate);
 
 /// The textbook path, a line a step, and what the names in it stand for.
-std::vector<FormulaLine> step_lines(const std::vector<DerivationStep>& steps, const MechanicalSystem& system, const ReadingOrder& order);
+std::vector<FormulaLine> step_lines(const std::vector<DerivationStep>& steps, const MechanicalSystem& system,
+                                    const ReadingOrder& order);
 /// [{section, rule, left, right, latex, sentence}]
 Json steps_json(const Derivation& derivation, const ReadingOrder& order);
 

@@ -31,7 +31,8 @@ bool proved(const std::vector<Expr>& differences, const char* what, Study& study
     study.diagnostics().error("E0690", {}, fmt::format("The {} form differs from the derived equations.", what), {},
                               "It is not shown, because it is wrong. Please report this model.");
   else
-    study.diagnostics().warning("W0691", {}, fmt::format("The {} form could not be compared with the derivation.", what),
+    study.diagnostics().warning("W0691", {},
+                                fmt::format("The {} form could not be compared with the derivation.", what),
                                 test.reason, "It is shown, but it is not certified.");
   return test.verdict == Verdict::Undecided;
 }
@@ -51,7 +52,9 @@ std::vector<EquationLine> constraint_lines(const Derivation& derivation) {
 /// A name for the model language that the system has not given to anything.
 std::string free_name(const std::string& wanted, const MechanicalSystem& system) {
   std::string name = identifier(wanted);
-  const auto taken = [&](const auto& list) { return std::any_of(list.begin(), list.end(), [&](const auto& item) { return item.name == name; }); };
+  const auto taken = [&](const auto& list) {
+    return std::any_of(list.begin(), list.end(), [&](const auto& item) { return item.name == name; });
+  };
   while (taken(system.parameters) || taken(system.definitions) || taken(system.coordinates) || taken(system.inputs) ||
          taken(system.points) || taken(system.bodies))
     name += "_";
@@ -81,8 +84,13 @@ EquationForm standard_form(Study& study, bool as_residual) {
   if (as_residual)
     for (std::size_t i = 0; i < derivation.constraint_forces.size(); ++i) {
       const Coordinate& c = equations.system->coordinates[i];
-      form.lines.push_back({c.name, constraint_force(c, equations.order), derivation.constraint_forces[i], {}, {},
-                            free_name("R_" + c.name, *equations.system), true});
+      form.lines.push_back({c.name,
+                            constraint_force(c, equations.order),
+                            derivation.constraint_forces[i],
+                            {},
+                            {},
+                            free_name("R_" + c.name, *equations.system),
+                            true});
     }
   form.constraints = constraint_lines(derivation);
   form.intermediates = derivation.intermediates;
@@ -94,21 +102,23 @@ void refuse_solved(Study& study, const SolvedAcceleration& solved) {
   const std::string left = symbol_to_plain(system.coordinates[solved.coordinate].acceleration);
   const std::size_t others = solved.coupled_with.size() - 1;
   if (others <= 1)
-    study.diagnostics().error("E0692", {}, fmt::format("The mass matrix gives no {} by itself.", left),
-                              "It is singular: only the constraints together with it determine this acceleration.",
-                              "`--eliminate` shows the equations without multipliers, `--form matrix` shows M, h, A and b.");
+    study.diagnostics().error(
+        "E0692", {}, fmt::format("The mass matrix gives no {} by itself.", left),
+        "It is singular: only the constraints together with it determine this acceleration.",
+        "`--eliminate` shows the equations without multipliers, `--form matrix` shows M, h, A and b.");
   else
-    study.diagnostics().error("E0692", {}, fmt::format("{} is coupled with {} other accelerations.", left, others),
-                              "Written out, the inverse of their mass matrix would fill pages and help nobody; runs factor it numerically.",
-                              system.constrained() ? "`--form matrix` shows M, h, A and b of M q'' + h = Aᵀλ, A q'' = b."
-                                                   : "`--form matrix` shows M and h of M q'' + h = 0.");
+    study.diagnostics().error(
+        "E0692", {}, fmt::format("{} is coupled with {} other accelerations.", left, others),
+        "Written out, the inverse of their mass matrix would fill pages and help nobody; runs factor it numerically.",
+        system.constrained() ? "`--form matrix` shows M, h, A and b of M q'' + h = Aᵀλ, A q'' = b."
+                             : "`--form matrix` shows M and h of M q'' + h = 0.");
 }
 
 /// λ = …, one line each; false after an error.
 bool add_multipliers(EquationForm& form, ExprMap& solution, Study& study) {
   const EquationsOfMotion& equations = study.equations()->shown();
   const std::vector<ReadableForm> solved = solved_multipliers(equations);
-  constexpr std::size_t longest = 600;   // characters
+  constexpr std::size_t longest = 600;  // characters
   bool is_short = !solved.empty();
   for (const ReadableForm& value : solved)
     is_short &= value.intermediates.empty() && to_plain(value.value, equations.order).size() <= longest;
@@ -155,13 +165,15 @@ EquationForm eliminated_form(Study& study) {
   if (!eliminated) {
     study.diagnostics().error(
         "E0693", {}, "The multipliers cannot be eliminated in a few lines.",
-        "The combinations of the equations in which they cancel are too long to be read, or some constraint repeats others.",
+        "The combinations of the equations in which they cancel are too long to be read, or some constraint repeats "
+        "others.",
         "`--form matrix` shows M, h, A and b of M q'' + h = Aᵀλ, A q'' = b, which runs solve numerically.");
     return {};
   }
   EquationForm form;
   for (std::size_t i = 0; i < eliminated->rows.size(); ++i)
-    form.lines.push_back({equations.system->coordinates[eliminated->independent[i]].name, {}, eliminated->rows[i], {}, {}, {}, false});
+    form.lines.push_back(
+        {equations.system->coordinates[eliminated->independent[i]].name, {}, eliminated->rows[i], {}, {}, {}, false});
   form.constraints = constraint_lines(*study.derivation(false));
   return form;
 }
@@ -172,12 +184,15 @@ class MatrixLines {
   explicit MatrixLines(const EquationsOfMotion& equations) : equations_(equations) {}
 
   /// The value as it is shown.
-  Expr add(const std::string& letter, const std::string& names, const std::string& indices, const std::string& coordinate, Expr value) {
+  Expr add(const std::string& letter, const std::string& names, const std::string& indices,
+           const std::string& coordinate, Expr value) {
     ReadableForm shown = readable(value, equations_.order);
     append(form.intermediates, shown.intermediates);
     const Expr whole = without_intermediates(shown.value, shown.intermediates);
-    const Layout left = layouts::labelled(fmt::format("{}[{}]", letter, names), layouts::indexed(layouts::name(letter), {layouts::number(indices)}));
-    form.lines.push_back({coordinate, left, std::move(shown), {}, {}, free_name(letter + "_" + names, *equations_.system), false});
+    const Layout left = layouts::labelled(fmt::format("{}[{}]", letter, names),
+                                          layouts::indexed(layouts::name(letter), {layouts::number(indices)}));
+    form.lines.push_back(
+        {coordinate, left, std::move(shown), {}, {}, free_name(letter + "_" + names, *equations_.system), false});
     return whole;
   }
 
@@ -224,7 +239,8 @@ EquationForm matrix_form(Study& study) {
       if (j != i) rows[j] = rows[j] + entry * acceleration(equations, i);
     }
   for (std::size_t i = 0; i < n; ++i)
-    rows[i] = rows[i] + lines.add("h", coordinates[i].name, std::to_string(i + 1), coordinates[i].name, h[i]) - equations.residual[i];
+    rows[i] = rows[i] + lines.add("h", coordinates[i].name, std::to_string(i + 1), coordinates[i].name, h[i]) -
+              equations.residual[i];
   if (equations.system->constrained()) add_constraint_matrix(lines, equations, rows);
   return proved(rows, "matrix", study) ? std::move(lines.form) : EquationForm{};
 }
@@ -247,16 +263,22 @@ EquationForm with_definitions(EquationForm form, Study& study) {
 EquationForm equation_form(Form form, Study& study) {
   if (!study.equations()) return {};
   switch (form) {
-    case Form::Standard: return standard_form(study, false);
-    case Form::Solved: return with_definitions(solved_form(study), study);
-    case Form::Matrix: return with_definitions(matrix_form(study), study);
-    case Form::Residual: return standard_form(study, true);
-    case Form::Eliminated: return with_definitions(eliminated_form(study), study);
+    case Form::Standard:
+      return standard_form(study, false);
+    case Form::Solved:
+      return with_definitions(solved_form(study), study);
+    case Form::Matrix:
+      return with_definitions(matrix_form(study), study);
+    case Form::Residual:
+      return standard_form(study, true);
+    case Form::Eliminated:
+      return with_definitions(eliminated_form(study), study);
   }
   return {};
 }
 
-FormulaLine definition_line(const Intermediate& intermediate, const MechanicalSystem& system, const ReadingOrder& order) {
+FormulaLine definition_line(const Intermediate& intermediate, const MechanicalSystem& system,
+                            const ReadingOrder& order) {
   FormulaLine line;
   line.left = lay_out(intermediate.symbol, order);
   line.right = lay_out(intermediate.value, order);

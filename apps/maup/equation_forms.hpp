@@ -14,23 +14,26 @@ struct EquationLine {
   std::string coordinate;  // whose equation it is; empty for a line of M
   Layout left;
   ReadableForm right;
-  Expr equal_to;           // a force of constraint, the other side of a constraint; empty: 0
-  std::string note;        // the name of a constraint
-  std::string name;        // what the language calls the left side where that is no name to it: M_θ1_θ2 for M[θ1, θ2]
-  bool repeated = false;   // `name` has been declared by an earlier line: this one says that it is equal to the right side
+  Expr equal_to;     // a force of constraint, the other side of a constraint; empty: 0
+  std::string note;  // the name of a constraint
+  std::string name;  // what the language calls the left side where that is no name to it: M_θ1_θ2 for M[θ1, θ2]
+  bool repeated =
+      false;  // `name` has been declared by an earlier line: this one says that it is equal to the right side
 };
 
 /// The equations of motion in one of their forms, each proved equal to the residual by the zero test before it is
-/// shown; one that is not is an error (E0690) and the list is empty. E0692, E0693: too long for `Solved`, for `Eliminated`.
+/// shown; one that is not is an error (E0690) and the list is empty. E0692, E0693: too long for `Solved`, for
+/// `Eliminated`.
 struct EquationForm {
   std::vector<EquationLine> lines;
-  std::vector<EquationLine> constraints;   // as the model has them; in the forms that are equations of motion
+  std::vector<EquationLine> constraints;  // as the model has them; in the forms that are equations of motion
   std::vector<Intermediate> intermediates;
 };
 EquationForm equation_form(Form form, Study& study);
 
 /// c1 = value; as known where `system` has a definition of this name.
-FormulaLine definition_line(const Intermediate& intermediate, const MechanicalSystem& system, const ReadingOrder& order);
+FormulaLine definition_line(const Intermediate& intermediate, const MechanicalSystem& system,
+                            const ReadingOrder& order);
 
 /// The coordinates that print shows by another name than the model's: q_w for ball.qw.
 std::vector<FormulaLine> symbol_legend(const MechanicalSystem& system, const ReadingOrder& order);

@@ -24,7 +24,8 @@ inline constexpr ExitCodeRow exit_codes[] = {
     {ExitCode::ModelWrong, "the model is wrong, or asks for something of a later version"},
     {ExitCode::Usage, "usage: an option, or a file that cannot be read"},
     {ExitCode::RunFailed,
-     "the run failed: it ended early (reason, time and state are given, and what was computed is kept), or a result could not be written"},
+     "the run failed: it ended early (reason, time and state are given, and what was computed is kept), or a result "
+     "could not be written"},
     {ExitCode::ExpectationFailed,
      "an expectation failed, or two models that were compared are not the same motion, or nothing could be decided"},
     {ExitCode::NotProved, "two models that were compared are the same motion by evidence from points, without a proof"},

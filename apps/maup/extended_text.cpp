@@ -25,16 +25,19 @@ std::string time_text(const AgreedNumber& t) {
 
 std::string state_text(const ExtendedState& state, const ExtendedResult& result) {
   const std::string& second = result.independent.unit;
-  std::string out = fmt::format("{} = {}{}{}\n", result.independent.name, time_text(state.t), second.empty() ? "" : " ", second);
+  std::string out =
+      fmt::format("{} = {}{}{}\n", result.independent.name, time_text(state.t), second.empty() ? "" : " ", second);
   const auto line = [&out](const std::string& name, const AgreedNumber& x, const std::string& unit) {
-    out += fmt::format("  {} = {}{}{}\n", name, number_text(x), unit == "1" || unit.empty() ? "" : " ", unit == "1" ? "" : unit);
+    out += fmt::format("  {} = {}{}{}\n", name, number_text(x), unit == "1" || unit.empty() ? "" : " ",
+                       unit == "1" ? "" : unit);
   };
   const std::size_t n = state.q.size();
   for (std::size_t i = 0; i < n; ++i) {
     line(result.columns[i].name, state.q[i], result.columns[i].unit);
     line(result.columns[n + i].name, state.v[i], result.columns[n + i].unit);
   }
-  for (std::size_t i = 0; i < state.reactions.size(); ++i) line(result.reactions[i].name, state.reactions[i], result.reactions[i].unit);
+  for (std::size_t i = 0; i < state.reactions.size(); ++i)
+    line(result.reactions[i].name, state.reactions[i], result.reactions[i].unit);
   line("energy", state.energy, result.columns.back().unit);
   return out;
 }
@@ -58,21 +61,27 @@ Json state_json(const ExtendedState& state, const ExtendedResult& result) {
     digits[result.reactions[i].name] = state.reactions[i].digits;
   }
   digits["energy"] = state.energy.digits;
-  return {{"t", time_text(state.t)}, {"state", std::move(values)}, {"reactions", std::move(reactions)},
-          {"energy", number_json(state.energy)}, {"digits", std::move(digits)}};
+  return {{"t", time_text(state.t)},
+          {"state", std::move(values)},
+          {"reactions", std::move(reactions)},
+          {"energy", number_json(state.energy)},
+          {"digits", std::move(digits)}};
 }
 
 }  // namespace
 
 std::string extended_text(const ExtendedResult& result) {
   std::string out;
-  for (const ExtendedState& state : result.at) out += state.reached ? state_text(state, result) : "a time asked for was not reached\n";
+  for (const ExtendedState& state : result.at)
+    out += state.reached ? state_text(state, result) : "a time asked for was not reached\n";
   const bool told = !result.at.empty() && result.at.back().reached && result.at.back().t.text == result.final.t.text;
   if (result.final.reached && !told) out += state_text(result.final, result);
   const ExtendedStatistics& s = result.statistics;
-  return out + fmt::format("{} steps of order {} with {} bits in {} s; digits on which {} steps of order {} in {} s and {} steps of order {} with {} bits in {} s agree\n",
-                           s.steps, s.order, s.bits, brief(s.seconds), s.companion_steps, s.companion_order, brief(s.companion_seconds), s.check_steps,
-                           s.check_order, s.check_bits, brief(s.check_seconds));
+  return out + fmt::format(
+                   "{} steps of order {} with {} bits in {} s; digits on which {} steps of order {} in {} s and {} "
+                   "steps of order {} with {} bits in {} s agree\n",
+                   s.steps, s.order, s.bits, brief(s.seconds), s.companion_steps, s.companion_order,
+                   brief(s.companion_seconds), s.check_steps, s.check_order, s.check_bits, brief(s.check_seconds));
 }
 
 Json extended_document(const ExtendedResult& result, const std::string& precision, const MechanicalSystem& system) {
@@ -83,12 +92,22 @@ Json extended_document(const ExtendedResult& result, const std::string& precisio
   document["at"] = Json::array();
   for (const ExtendedState& state : result.at) document["at"].push_back(state_json(state, result));
   const ExtendedStatistics& s = result.statistics;
-  document["statistics"] = {{"steps", s.steps}, {"order", s.order}, {"bits", s.bits}, {"seconds", s.seconds},
-                            {"check_steps", s.check_steps}, {"check_order", s.check_order}, {"check_bits", s.check_bits},
-                            {"check_seconds", s.check_seconds}, {"companion_steps", s.companion_steps},
-                            {"companion_order", s.companion_order}, {"companion_seconds", s.companion_seconds}, {"switches", s.switches}, {"rows", result.rows.size()}};
+  document["statistics"] = {{"steps", s.steps},
+                            {"order", s.order},
+                            {"bits", s.bits},
+                            {"seconds", s.seconds},
+                            {"check_steps", s.check_steps},
+                            {"check_order", s.check_order},
+                            {"check_bits", s.check_bits},
+                            {"check_seconds", s.check_seconds},
+                            {"companion_steps", s.companion_steps},
+                            {"companion_order", s.companion_order},
+                            {"companion_seconds", s.companion_seconds},
+                            {"switches", s.switches},
+                            {"rows", result.rows.size()}};
   document["ended"] = {{"reason", result.reason.empty() ? ending_name(result.ending) : result.reason},
-                       {"kind", ending_name(result.ending)}, {"ok", result.ok()}};
+                       {"kind", ending_name(result.ending)},
+                       {"ok", result.ok()}};
   return document;
 }
 

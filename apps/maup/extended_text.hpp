@@ -10,7 +10,8 @@ namespace maupertuis::app {
 /// The states of a run in many digits, one number a line, and what it cost.
 std::string extended_text(const ExtendedResult& result);
 
-/// The document of `maup simulate --precision … --json`: numbers are strings, with the count of their digits beside them.
+/// The document of `maup simulate --precision … --json`: numbers are strings, with the count of their digits beside
+/// them.
 Json extended_document(const ExtendedResult& result, const std::string& precision, const MechanicalSystem& system);
 
 }  // namespace maupertuis::app

@@ -11,11 +11,16 @@ namespace {
 
 const char* word_of(LegendreKind kind) {
   switch (kind) {
-    case LegendreKind::Quadratic: return "quadratic";
-    case LegendreKind::Implicit: return "implicit";
-    case LegendreKind::Root: return "root";
-    case LegendreKind::Singular: return "singular";
-    case LegendreKind::Unsolved: return "unsolved";
+    case LegendreKind::Quadratic:
+      return "quadratic";
+    case LegendreKind::Implicit:
+      return "implicit";
+    case LegendreKind::Root:
+      return "root";
+    case LegendreKind::Singular:
+      return "singular";
+    case LegendreKind::Unsolved:
+      return "unsolved";
   }
   return "";
 }
@@ -24,7 +29,12 @@ std::vector<DerivationStep> all_lines(const PhaseSpace& found) {
   const ReadingOrder& order = found.hamiltonian.order;
   std::vector<DerivationStep> lines = found.lines;
   for (const Bracket& b : found.brackets)
-    lines.push_back({"Poisson brackets", {}, layouts::braces(lay_out(b.a, order), lay_out(b.b, order)), b.value.value, {}, b.value.intermediates});
+    lines.push_back({"Poisson brackets",
+                     {},
+                     layouts::braces(lay_out(b.a, order), lay_out(b.b, order)),
+                     b.value.value,
+                     {},
+                     b.value.intermediates});
   return lines;
 }
 
@@ -38,13 +48,17 @@ std::string plain_line(const DerivationStep& line, const ReadingOrder& order) {
 Json intermediates_json(const ReadableForm& form, const ReadingOrder& order) {
   Json list = Json::array();
   for (const Intermediate& i : form.intermediates)
-    list.push_back({{"name", to_plain(i.symbol, order)}, {"plain", to_plain(i.value, order)}, {"latex", to_latex(i.value, order)}});
+    list.push_back({{"name", to_plain(i.symbol, order)},
+                    {"plain", to_plain(i.value, order)},
+                    {"latex", to_latex(i.value, order)}});
   return list;
 }
 
 Json form_json(const ReadableForm& form, const ReadingOrder& order) {
   if (!form.value) return {};
-  return {{"plain", to_plain(form, order)}, {"latex", to_latex(form, order)}, {"intermediates", intermediates_json(form, order)}};
+  return {{"plain", to_plain(form, order)},
+          {"latex", to_latex(form, order)},
+          {"intermediates", intermediates_json(form, order)}};
 }
 
 Json equations_json(const std::vector<CanonicalEquation>& equations, const ReadingOrder& order) {
@@ -58,7 +72,8 @@ Json equations_json(const std::vector<CanonicalEquation>& equations, const Readi
   return list;
 }
 
-/// q' = …; of a velocity that is not written out the equation it follows from, together with the others of its group: p = ….
+/// q' = …; of a velocity that is not written out the equation it follows from, together with the others of its group: p
+/// = ….
 Json velocities_json(const Hamiltonian& h) {
   Json list = equations_json(h.velocities, h.order);
   for (std::size_t i = 0; i < h.velocities.size(); ++i) {
@@ -93,8 +108,11 @@ Json routhian_json(const Routhian& r, const Hamiltonian& h) {
   };
   Json rows = Json::array();
   for (const ReadableForm& row : r.equations) rows.push_back(form_json(row, r.order));
-  return {{"replaced", names(r.replaced)}, {"conserved", r.conserved}, {"value", form_json(r.readable, r.order)},
-          {"effective_potential", form_json(r.effective_potential, r.order)}, {"velocities", equations_json(r.velocities, r.order)},
+  return {{"replaced", names(r.replaced)},
+          {"conserved", r.conserved},
+          {"value", form_json(r.readable, r.order)},
+          {"effective_potential", form_json(r.effective_potential, r.order)},
+          {"velocities", equations_json(r.velocities, r.order)},
           {"equations", std::move(rows)}};
 }
 
@@ -102,7 +120,8 @@ Json routhian_json(const Routhian& r, const Hamiltonian& h) {
 
 std::string phase_space_text(const PhaseSpace& found) {
   const Hamiltonian& h = found.hamiltonian;
-  std::string out = h.system->name.empty() ? "Phase space\n" : fmt::format("Phase space of {}\n", h.system->name), section;
+  std::string out = h.system->name.empty() ? "Phase space\n" : fmt::format("Phase space of {}\n", h.system->name),
+              section;
   for (const DerivationStep& line : all_lines(found)) {
     if (line.section != section) out += fmt::format("\n{}\n", section = line.section);
     out += "  " + plain_line(line, h.order) + "\n";
@@ -110,7 +129,8 @@ std::string phase_space_text(const PhaseSpace& found) {
       out += fmt::format("    with {} = {}\n", to_plain(i.symbol, h.order), to_plain(i.value, h.order));
   }
   if (!h.legend.empty()) out += "\nDefinitions\n";
-  for (const Intermediate& i : h.legend) out += fmt::format("  {} = {}\n", to_plain(i.symbol, h.order), to_plain(i.value, h.order));
+  for (const Intermediate& i : h.legend)
+    out += fmt::format("  {} = {}\n", to_plain(i.symbol, h.order), to_plain(i.value, h.order));
   return found.certificate.checks.empty() ? out : out + certificate_text(found.certificate);
 }
 
@@ -142,7 +162,9 @@ void add_to(Json& document, const PhaseSpace& found) {
     Json names = Json::array(), constraints = Json::array();
     for (const std::size_t i : block.coordinates) names.push_back(h.system->coordinates[i].name);
     for (const Expr& c : block.primary_constraints) constraints.push_back(to_plain(c, h.order));
-    document["groups"].push_back({{"coordinates", std::move(names)}, {"kind", word_of(block.kind)}, {"primary_constraints", std::move(constraints)}});
+    document["groups"].push_back({{"coordinates", std::move(names)},
+                                  {"kind", word_of(block.kind)},
+                                  {"primary_constraints", std::move(constraints)}});
   }
   document["regular"] = h.regular();
   document["hamiltonian"] = energy_json(found);

@@ -20,8 +20,8 @@ struct PhaseSpace {
   Hamiltonian hamiltonian;
   std::optional<Routhian> routhian;
   std::vector<Bracket> brackets;
-  std::vector<DerivationStep> lines;       // but the brackets
-  Certificate certificate;                 // of both
+  std::vector<DerivationStep> lines;  // but the brackets
+  Certificate certificate;            // of both
 };
 
 /// Sections with their formulas, for a reader.

@@ -1,11 +1,11 @@
 #include "interrupt.hpp"
 
+#include <sys/stat.h>
+#include <unistd.h>
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <ctime>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace maupertuis::app {
 namespace {
@@ -31,7 +31,8 @@ void set_timer(timer_t timer, long long after) {
   timer_settime(timer, 0, &once, nullptr);
 }
 
-/// What does not look at the flag, or waits for a pipe that no one reads, is ended here. Files appear whole or not at all.
+/// What does not look at the flag, or waits for a pipe that no one reads, is ended here. Files appear whole or not at
+/// all.
 [[noreturn]] void leave() {
   constexpr char words[] = "\nInterrupted: nothing more is computed, and what was not written yet is lost.\n";
   static_cast<void>(!write(STDERR_FILENO, words, sizeof words - 1));
@@ -41,8 +42,9 @@ void set_timer(timer_t timer, long long after) {
 extern "C" void on_patience(int) { leave(); }
 extern "C" void on_deadline(int) { over = true; }
 
-/// The first one asks the run to end in good order, within the grace; one that follows later, from an impatient user, ends the program. What arrives
-/// at once is the same wish twice: shells and `timeout` signal the process and its group.
+/// The first one asks the run to end in good order, within the grace; one that follows later, from an impatient user,
+/// ends the program. What arrives at once is the same wish twice: shells and `timeout` signal the process and its
+/// group.
 extern "C" void on_interrupt(int) {
   const int error = errno;
   if (!interrupted.exchange(true)) {
@@ -73,7 +75,8 @@ bool make_timer(int signal, timer_t& timer) {
 
 void watch_interrupts() {
   // Two signals: one of the same kind that comes while another waits is lost.
-  if (!make_timer(SIGALRM, patience) || !make_timer(SIGVTALRM, deadline)) return;  // then a signal ends the program as it always does
+  if (!make_timer(SIGALRM, patience) || !make_timer(SIGVTALRM, deadline))
+    return;  // then a signal ends the program as it always does
   install(SIGALRM, on_patience);
   install(SIGVTALRM, on_deadline);
   for (const int signal : {SIGINT, SIGTERM}) install(signal, on_interrupt);

@@ -5,7 +5,8 @@
 
 namespace maupertuis::app {
 
-/// From here on Ctrl-C and SIGTERM set the flag. What has not ended 0.7 s later, or at a second Ctrl-C, is ended with code 130.
+/// From here on Ctrl-C and SIGTERM set the flag. What has not ended 0.7 s later, or at a second Ctrl-C, is ended with
+/// code 130.
 void watch_interrupts();
 const std::atomic<bool>& interrupt_flag();
 
@@ -19,7 +20,8 @@ class Deadline {
   const std::atomic<bool>& flag() const;
 };
 
-/// While a file is written that holds what was computed up to an interrupt: more time, but not without end, and none for a pipe.
+/// While a file is written that holds what was computed up to an interrupt: more time, but not without end, and none
+/// for a pipe.
 class Saving {
  public:
   explicit Saving(const std::string& path);

@@ -64,7 +64,8 @@ std::string integral_text(const std::string& symbol, const ConservedFunction& in
   const ReadingOrder& order = equations.order;
   std::string text = fmt::format("{:<4} {}\n", symbol, formula(integral.readable, order));
   if (!integral.name.empty()) text += fmt::format("     {}\n", integral.name);
-  text += fmt::format("     from: {}\n     {}", origin(integral, equations), ground(integral.certificate, *equations.system));
+  text += fmt::format("     from: {}\n     {}", origin(integral, equations),
+                      ground(integral.certificate, *equations.system));
   if (integral.drift) text += fmt::format("; drift in the run {:.1e}", *integral.drift);
   if (!integral.independent) text += "; a function of those before it at fixed t";
   return text + "\n";
@@ -73,9 +74,8 @@ std::string integral_text(const std::string& symbol, const ConservedFunction& in
 /// Whether a formula in I1, I2, … names only the first `count` of them.
 bool is_about(Expr value, const Invariants& found, std::size_t count) {
   const auto nodes = topological_order({&value, 1});
-  return std::none_of(found.symbols.begin() + static_cast<std::ptrdiff_t>(count), found.symbols.end(), [&](const Expr& s) {
-    return std::find(nodes.begin(), nodes.end(), s) != nodes.end();
-  });
+  return std::none_of(found.symbols.begin() + static_cast<std::ptrdiff_t>(count), found.symbols.end(),
+                      [&](const Expr& s) { return std::find(nodes.begin(), nodes.end(), s) != nodes.end(); });
 }
 
 std::string relations_text(const Invariants& found, std::size_t count, const ReadingOrder& order) {
@@ -88,8 +88,9 @@ std::string relations_text(const Invariants& found, std::size_t count, const Rea
 std::string brackets_text(const Invariants& found, std::size_t count, const ReadingOrder& order) {
   std::string text;
   for (const PoissonBracket& b : found.brackets)
-    if (b.second < count) text += fmt::format("  {{{}, {}}} = {}\n", found.symbols[b.first].name(), found.symbols[b.second].name(),
-                        b.value.value ? to_plain(b.value, order) : "a further function");
+    if (b.second < count)
+      text += fmt::format("  {{{}, {}}} = {}\n", found.symbols[b.first].name(), found.symbols[b.second].name(),
+                          b.value.value ? to_plain(b.value, order) : "a further function");
   return text.empty() ? "" : "\nPoisson brackets that do not vanish\n" + text;
 }
 
@@ -113,7 +114,8 @@ std::string one_side_text(const Invariants& found, const ReadingOrder& order) {
   std::string text = found.on_one_side.empty() ? "" : "\nConstant on each side of a switch, not across it\n";
   for (std::size_t i = 0; i < std::min(most, found.on_one_side.size()); ++i) {
     const auto& [value, place] = found.on_one_side[i];
-    text += fmt::format("  {}{}\n", formula(readable(value, order), order), place.empty() ? "" : ", which jumps where " + place);
+    text += fmt::format("  {}{}\n", formula(readable(value, order), order),
+                        place.empty() ? "" : ", which jumps where " + place);
   }
   if (found.on_one_side.size() > most) text += fmt::format("  and {} more\n", found.on_one_side.size() - most);
   return text;
@@ -143,8 +145,7 @@ std::string invariants_text(const Invariants& found, const EquationsOfMotion& eq
   const ReadingOrder& order = equations.order;
   const std::size_t count = all ? found.integrals.size() : found.shown;
   std::string text;
-  for (std::size_t i = 0; i < count; ++i)
-    text += integral_text(found.symbols[i].name(), found.integrals[i], equations);
+  for (std::size_t i = 0; i < count; ++i) text += integral_text(found.symbols[i].name(), found.integrals[i], equations);
   if (found.integrals.empty()) text += "No integral was found.\n";
   if (count < found.integrals.size())
     text += fmt::format("{} more {} of these: --all\n", found.integrals.size() - count,
@@ -152,7 +153,8 @@ std::string invariants_text(const Invariants& found, const EquationsOfMotion& eq
   text += relations_text(found, count, order) + brackets_text(found, count, order);
   if (!found.balance_laws.empty()) text += "\nBalance laws\n";
   for (const BalanceLaw& law : found.balance_laws)
-    text += fmt::format("  {}: d/d{} ({}) = {}\n", law.name, equations.system->independent, to_plain(law.quantity, order), formula(law.rate, order));
+    text += fmt::format("  {}: d/d{} ({}) = {}\n", law.name, equations.system->independent,
+                        to_plain(law.quantity, order), formula(law.rate, order));
   text += one_side_text(found, order);
   if (!found.integrals.empty()) text += integrability_text(found);
   return text + completeness_text(found);

@@ -6,18 +6,24 @@ Json json_document(const char* command) { return {{"schema", 1}, {"command", com
 
 const char* severity_name(Severity severity) {
   switch (severity) {
-    case Severity::Note: return "note";
-    case Severity::Warning: return "warning";
-    case Severity::Error: return "error";
+    case Severity::Note:
+      return "note";
+    case Severity::Warning:
+      return "warning";
+    case Severity::Error:
+      return "error";
   }
   return "";
 }
 
 const char* verdict_name(Verdict verdict) {
   switch (verdict) {
-    case Verdict::Zero: return "zero";
-    case Verdict::Nonzero: return "nonzero";
-    case Verdict::Undecided: return "undecided";
+    case Verdict::Zero:
+      return "zero";
+    case Verdict::Nonzero:
+      return "nonzero";
+    case Verdict::Undecided:
+      return "undecided";
   }
   return "";
 }
@@ -25,8 +31,10 @@ const char* verdict_name(Verdict verdict) {
 Json to_json(const Diagnostics& diagnostics, const SourceTexts& texts) {
   Json list = Json::array();
   for (const Diagnostic& d : diagnostics.items()) {
-    Json item = {{"code", d.code}, {"severity", severity_name(d.severity)}, {"line", nullptr}, {"column", nullptr},
-                 {"message", d.message}, {"reason", d.reason}, {"help", d.help}};
+    Json item = {{"code", d.code},       {"severity", severity_name(d.severity)},
+                 {"line", nullptr},      {"column", nullptr},
+                 {"message", d.message}, {"reason", d.reason},
+                 {"help", d.help}};
     if (d.span) {
       const LineColumn place = texts.locate(*d.span);
       item["line"] = place.line;
@@ -42,8 +50,11 @@ Json to_json(const Certificate& certificate) {
   Json checks = Json::array();
   for (const CertificateCheck& check : certificate.checks) {
     if (check.applies)
-      checks.push_back({{"name", check.name}, {"statement", check.statement}, {"verdict", verdict_name(check.verdict)},
-                        {"points", check.points}, {"error_bound", check.error_bound}});
+      checks.push_back({{"name", check.name},
+                        {"statement", check.statement},
+                        {"verdict", verdict_name(check.verdict)},
+                        {"points", check.points},
+                        {"error_bound", check.error_bound}});
   }
   return {{"passed", certificate.passed()}, {"checks", std::move(checks)}};
 }

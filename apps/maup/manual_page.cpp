@@ -19,13 +19,17 @@ constexpr Term environment[] = {
     {"NO_COLOR", "If it is set and not empty, messages have no color."},
     {"TERM", "If it is dumb, messages have no color and no progress is drawn."},
     {"PATH", "Where ffmpeg is looked for, which makes films."},
-    {"XDG_CACHE_HOME", "Machine code of earlier runs is kept in its folder maupertuis, which is the user's alone; else in HOME/.cache."},
+    {"XDG_CACHE_HOME",
+     "Machine code of earlier runs is kept in its folder maupertuis, which is the user's alone; else in HOME/.cache."},
     {"HOME", "See XDG_CACHE_HOME."},
-    {"MAUPERTUIS_LLVM_MODULE", "The file of the module that makes machine code, instead of the one installed with the program."},
-    {"MAUPERTUIS_INSTRUCTIONS", "avx2 or none: do without wider vector instructions, as on a processor that lacks them."},
+    {"MAUPERTUIS_LLVM_MODULE",
+     "The file of the module that makes machine code, instead of the one installed with the program."},
+    {"MAUPERTUIS_INSTRUCTIONS",
+     "avx2 or none: do without wider vector instructions, as on a processor that lacks them."},
 };
 
-/// Text as groff shows it sign by sign: no escape, no request, no typographic quotes, and hyphens that can be searched for.
+/// Text as groff shows it sign by sign: no escape, no request, no typographic quotes, and hyphens that can be searched
+/// for.
 std::string roff(const std::string& text) {
   std::string out;
   bool line_begins = true;
@@ -33,13 +37,26 @@ std::string roff(const std::string& text) {
     if (line_begins && (c == '.' || c == '\'')) out += "\\&";
     line_begins = c == '\n';
     switch (c) {
-      case '\\': out += "\\e"; break;
-      case '-': out += "\\-"; break;
-      case '\'': out += "\\(aq"; break;
-      case '`': out += "\\(ga"; break;
-      case '^': out += "\\(ha"; break;
-      case '~': out += "\\(ti"; break;
-      default: out += c;
+      case '\\':
+        out += "\\e";
+        break;
+      case '-':
+        out += "\\-";
+        break;
+      case '\'':
+        out += "\\(aq";
+        break;
+      case '`':
+        out += "\\(ga";
+        break;
+      case '^':
+        out += "\\(ha";
+        break;
+      case '~':
+        out += "\\(ti";
+        break;
+      default:
+        out += c;
     }
   }
   return out;
@@ -60,7 +77,8 @@ std::string value_text(const OptionRow& row) {
 std::string entry(const OptionRow& row) {
   std::vector<std::string> names;
   for (const std::string& name : row.names) names.push_back(row.positional ? italic(name) : bold(name));
-  return fmt::format(".TP\n{}{}\n{}\n", fmt::join(names, ", "), row.positional ? "" : value_text(row), roff(row.what + "."));
+  return fmt::format(".TP\n{}{}\n{}\n", fmt::join(names, ", "), row.positional ? "" : value_text(row),
+                     roff(row.what + "."));
 }
 
 std::string synopsis(const std::string& program, const CommandRow& command) {
@@ -77,12 +95,14 @@ std::string synopsis(const std::string& program, const CommandRow& command) {
 std::string examples(const CommandRow& command) {
   std::string out = ".PP\n.nf\n";
   std::istringstream lines(command.examples);
-  for (std::string line; std::getline(lines, line);) out += "    " + roff(line.substr(std::min(line.find_first_not_of(' '), line.size()))) + "\n";
+  for (std::string line; std::getline(lines, line);)
+    out += "    " + roff(line.substr(std::min(line.find_first_not_of(' '), line.size()))) + "\n";
   return out + ".fi\n";
 }
 
 std::string command_section(const std::string& program, const CommandRow& command) {
-  std::string out = ".SS " + command.name + "\n" + synopsis(program, command) + ".PP\n" + roff(command.summary + ".") + "\n";
+  std::string out =
+      ".SS " + command.name + "\n" + synopsis(program, command) + ".PP\n" + roff(command.summary + ".") + "\n";
   for (const bool positional : {true, false})
     for (const OptionRow& row : command.options)
       if (row.positional == positional && row.names.back() != "--help") out += entry(row);
@@ -91,18 +111,21 @@ std::string command_section(const std::string& program, const CommandRow& comman
 
 std::string exit_status() {
   std::string out = ".SH EXIT STATUS\n";
-  for (const ExitCodeRow& row : exit_codes) out += fmt::format(".TP\n\\fB{}\\fR\n{}\n", static_cast<int>(row.code), roff(row.meaning) + ".");
+  for (const ExitCodeRow& row : exit_codes)
+    out += fmt::format(".TP\n\\fB{}\\fR\n{}\n", static_cast<int>(row.code), roff(row.meaning) + ".");
   return out;
 }
 
 }  // namespace
 
 std::string manual_page(const OptionTable& table) {
-  std::string out = fmt::format(".TH {} 1 \"\" \"{}\" \"User Commands\"\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n{} {} [{}] [{}]\n", "MAUP",
-                                table.version, table.program, "Lagrangian mechanics from a text model", bold(table.program), italic("command"),
-                                italic("model.lag"), italic("options"));
+  std::string out =
+      fmt::format(".TH {} 1 \"\" \"{}\" \"User Commands\"\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n{} {} [{}] [{}]\n",
+                  "MAUP", table.version, table.program, "Lagrangian mechanics from a text model", bold(table.program),
+                  italic("command"), italic("model.lag"), italic("options"));
   out += ".SH DESCRIPTION\n" + roff(table.summary) +
-         "\n.PP\nStandard output carries data, standard error carries messages. " + bold("-") + " as the model reads standard input.\n";
+         "\n.PP\nStandard output carries data, standard error carries messages. " + bold("-") +
+         " as the model reads standard input.\n";
   out += ".SH OPTIONS\n";
   for (const OptionRow& row : table.options) out += entry(row);
   out += ".SH COMMANDS\n";

@@ -258,8 +258,7 @@ std::string summary(const MechanicalSystem& system, const ModalStudy& study) {
   std::vector<std::vector<std::string>> rows;
   for (std::size_t i = 0; i < study.entries.size(); ++i) {
     const ModalEntry& e = study.entries[i];
-    rows.push_back({fmt::format("{}", i + 1), place_text(system, e, study),
-                    verdict(e.analysis.stability)});
+    rows.push_back({fmt::format("{}", i + 1), place_text(system, e, study), verdict(e.analysis.stability)});
   }
   return out + table(rows, 3);
 }
@@ -268,7 +267,8 @@ std::string summary(const MechanicalSystem& system, const ModalStudy& study) {
 
 std::string modes_text(const MechanicalSystem& system, const ModalStudy& study,
                        const std::vector<std::optional<SymbolicLinearization>>& formulas, const ReadingOrder& order,
-                       const std::vector<std::string>& outputs, const std::vector<std::optional<FloquetResult>>& neighbours) {
+                       const std::vector<std::string>& outputs,
+                       const std::vector<std::optional<FloquetResult>>& neighbours) {
   const std::size_t detailed = formulas.size();
   std::string out = summary(system, study);
   for (std::size_t i = 0; i < study.entries.size() && i < detailed; ++i) {

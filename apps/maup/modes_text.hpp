@@ -12,11 +12,12 @@
 namespace maupertuis::app {
 
 /// What was found, and of the first entries (one for each of `formulas`) the matrices, as far as they fit a line, and
-/// the modes. `outputs`: what is measured, as written. `neighbours`: of the first entries of a driven system, whose coefficients change
-/// with the time, the multipliers that stand in the place of modes.
+/// the modes. `outputs`: what is measured, as written. `neighbours`: of the first entries of a driven system, whose
+/// coefficients change with the time, the multipliers that stand in the place of modes.
 std::string modes_text(const MechanicalSystem& system, const ModalStudy& study,
                        const std::vector<std::optional<SymbolicLinearization>>& formulas, const ReadingOrder& order,
-                       const std::vector<std::string>& outputs, const std::vector<std::optional<FloquetResult>>& neighbours);
+                       const std::vector<std::string>& outputs,
+                       const std::vector<std::optional<FloquetResult>>& neighbours);
 Json modes_document(const MechanicalSystem& system, const ModalStudy& study);
 Json symbolic_json(const SymbolicLinearization& formulas, const ReadingOrder& order);
 std::string regulator_text(const MechanicalSystem& system, const Linearization& linearization,

@@ -19,11 +19,14 @@ std::string place_of_no_number(const Json& value, const std::string& place) {
 }
 
 void tell(const std::string& what, Diagnostics& diagnostics) {
-  diagnostics.error("E0816", {}, fmt::format("{} is no finite number", what), "A quantity grew beyond the range of numbers, or a formula has no value there.",
+  diagnostics.error("E0816", {}, fmt::format("{} is no finite number", what),
+                    "A quantity grew beyond the range of numbers, or a formula has no value there.",
                     "Change start, parameters or the length of the run so that it stays within 1e308.");
 }
 
-bool may_be_open(const std::string& column) { return column.rfind("reaction(", 0) == 0 || column.rfind("error(", 0) == 0; }
+bool may_be_open(const std::string& column) {
+  return column.rfind("reaction(", 0) == 0 || column.rfind("error(", 0) == 0;
+}
 
 }  // namespace
 
@@ -38,7 +41,8 @@ bool check_numbers(const Trajectory& rows, Diagnostics& diagnostics) {
     if (may_be_open(rows.columns[column].name)) continue;
     for (std::size_t row = 0; row < rows.rows(); ++row)
       if (!std::isfinite(rows.at(row, column))) {
-        tell(fmt::format("{} at {} = {}", rows.columns[column].name, rows.independent.name, brief(rows.times[row])), diagnostics);
+        tell(fmt::format("{} at {} = {}", rows.columns[column].name, rows.independent.name, brief(rows.times[row])),
+             diagnostics);
         return false;
       }
   }

@@ -5,8 +5,8 @@
 
 namespace maupertuis::app {
 
-/// A result holds numbers, or says that there is none. NaN or an infinity in it is a failure (E0816), and which one is told:
-/// in a document by its place in it, in rows by column and time. False where one was found.
+/// A result holds numbers, or says that there is none. NaN or an infinity in it is a failure (E0816), and which one is
+/// told: in a document by its place in it, in rows by column and time. False where one was found.
 bool check_numbers(const Json& document, Diagnostics& diagnostics);
 /// Reactions and errors that are not determined are NaN or infinite by their definition, and stay out of this.
 bool check_numbers(const Trajectory& rows, Diagnostics& diagnostics);

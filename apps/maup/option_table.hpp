@@ -12,7 +12,7 @@ struct OptionRow {
   std::string what;
   bool positional = false;
   bool required = false;
-  bool many = false;               // it may stand several times
+  bool many = false;  // it may stand several times
   bool value_optional = false;
 };
 

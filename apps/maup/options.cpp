@@ -36,7 +36,8 @@ template Option* Command::add_option(const std::string&, std::optional<int>&, co
 template Option* Command::add_option(const std::string&, std::optional<std::int64_t>&, const std::string&);
 template Option* Command::add_option(const std::string&, std::optional<double>&, const std::string&);
 
-Option* Command::add_option_function(const std::string& names, std::function<void(const Words&)> take, const std::string& what) {
+Option* Command::add_option_function(const std::string& names, std::function<void(const Words&)> take,
+                                     const std::string& what) {
   return kept(own_.add_option_function<Words>(names, std::move(take), what));
 }
 Option* Command::add_flag(const std::string& names, bool& value, const std::string& what) {

@@ -44,19 +44,21 @@ class Option {
   CLI::Option* own_;
 };
 
-/// A command and its options. Only options.cpp includes the parser behind it (CLI11): its headers take longer to compile
-/// than a command does.
+/// A command and its options. Only options.cpp includes the parser behind it (CLI11): its headers take longer to
+/// compile than a command does.
 class Command {
  public:
   using Words = std::vector<std::string>;
   explicit Command(CLI::App& own) : own_(own) {}
 
-  /// An option whose value goes to `value`, which lives as long as the command; std::optional stays empty without the option.
-  /// `names` are as in "-o,--output"; a name without dashes is that of a positional argument. options.cpp lists the types.
+  /// An option whose value goes to `value`, which lives as long as the command; std::optional stays empty without the
+  /// option. `names` are as in "-o,--output"; a name without dashes is that of a positional argument. options.cpp lists
+  /// the types.
   template <class Value>
   Option* add_option(const std::string& names, Value& value, const std::string& what);
   /// An option whose values are handed to `take`.
-  Option* add_option_function(const std::string& names, std::function<void(const Words&)> take, const std::string& what);
+  Option* add_option_function(const std::string& names, std::function<void(const Words&)> take,
+                              const std::string& what);
   Option* add_flag(const std::string& names, bool& value, const std::string& what);
   Option* add_flag_callback(const std::string& names, std::function<void()> act, const std::string& what);
 
@@ -75,7 +77,8 @@ class Command {
 /// The commands of the program, and the reading of its arguments.
 class CommandParser {
  public:
-  /// What the arguments came to: a command that they name, --help or --version that were answered, a mistake that was told.
+  /// What the arguments came to: a command that they name, --help or --version that were answered, a mistake that was
+  /// told.
   enum class Outcome { Command, Answered, Mistake };
 
   /// `what` and `footer` stand above and below the list of commands, `version` is the answer to --version.
@@ -83,7 +86,8 @@ class CommandParser {
   ~CommandParser();
 
   /// `examples` open the command's --help; `chosen` is called by parse() when the arguments name the command.
-  Command& add(const std::string& name, const std::string& summary, const std::string& examples, std::function<void()> chosen);
+  Command& add(const std::string& name, const std::string& summary, const std::string& examples,
+               std::function<void()> chosen);
   /// What is answered goes to `out`, what is told of a mistake to `err`.
   Outcome parse(int argc, char** argv, std::ostream& out, std::ostream& err);
   /// What --help says, in parts; all but the version.

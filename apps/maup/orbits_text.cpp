@@ -119,7 +119,8 @@ std::string period_text(const FloquetResult& r, const MechanicalSystem& system) 
 
 std::string floquet_text(const FloquetResult& r, const MechanicalSystem& system) {
   const PeriodicMotion& m = r.motion;
-  std::string out = fmt::format("{}: {}\n", system.name, m.rests ? "an equilibrium, whose neighbours are driven" : "a periodic motion");
+  std::string out = fmt::format("{}: {}\n", system.name,
+                                m.rests ? "an equilibrium, whose neighbours are driven" : "a periodic motion");
   out += period_text(r, system);
   out += line("start", state_line(m.start, system));
   if (const std::string turns = turns_text(m, system); !turns.empty()) out += line("advances", turns);
@@ -130,7 +131,11 @@ std::string floquet_text(const FloquetResult& r, const MechanicalSystem& system)
 
 Json floquet_json(const FloquetResult& r, const MechanicalSystem& system) {
   const PeriodicMotion& m = r.motion;
-  Json out = {{"period", m.period}, {"start", state_json(m.start, system)}, {"t", m.start.t}, {"driven", m.driven}, {"rests", m.rests}};
+  Json out = {{"period", m.period},
+              {"start", state_json(m.start, system)},
+              {"t", m.start.t},
+              {"driven", m.driven},
+              {"rests", m.rests}};
   out["turns"] = Json::object();
   for (std::size_t i = 0; i < m.turns.size(); ++i) out["turns"][system.coordinates[i].name] = m.turns[i];
   out["closure"] = m.closure;

@@ -13,13 +13,13 @@ namespace maupertuis::app {
 
 bool unreadable(const Diagnostics& diagnostics) {
   const auto items = diagnostics.items();
-  return std::any_of(items.begin(), items.end(), [](const Diagnostic& d) {
-    return d.code == "E0801" || d.code == "E0802" || d.code == "E0803";
-  });
+  return std::any_of(items.begin(), items.end(),
+                     [](const Diagnostic& d) { return d.code == "E0801" || d.code == "E0802" || d.code == "E0803"; });
 }
 
 ExitCode worse(ExitCode a, ExitCode b) {
-  for (const ExitCode code : {ExitCode::Interrupted, ExitCode::Usage, ExitCode::ModelWrong, ExitCode::ExpectationFailed})
+  for (const ExitCode code :
+       {ExitCode::Interrupted, ExitCode::Usage, ExitCode::ModelWrong, ExitCode::ExpectationFailed})
     if (a == code || b == code) return code;
   return ExitCode::Fine;
 }
@@ -82,7 +82,8 @@ bool write_picture(const std::string& path, const std::string& svg, Diagnostics&
   if (!path.ends_with(".png") && !path.ends_with(".pdf")) return write_result(path, svg, diagnostics);
   const PictureBytes picture = path.ends_with(".png") ? png_of(svg) : pdf_of(svg);
   if (picture.problem.empty()) return write_result(path, picture.bytes, diagnostics);
-  diagnostics.error("E0840", {}, fmt::format("{} cannot be made: {}.", path, picture.problem), {}, "Take .svg, which needs nothing else.");
+  diagnostics.error("E0840", {}, fmt::format("{} cannot be made: {}.", path, picture.problem), {},
+                    "Take .svg, which needs nothing else.");
   return false;
 }
 

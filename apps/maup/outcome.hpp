@@ -14,8 +14,8 @@ bool unreadable(const Diagnostics& diagnostics);
 ExitCode worse(ExitCode a, ExitCode b);
 
 /// Ends a command that prints one document: the diagnostics go to standard error, or into the document under --json.
-/// Returns Usage if the file could not be read, RunFailed if the document holds a NaN or an infinity (E0816), ModelWrong if
-/// there are other errors, else Fine.
+/// Returns Usage if the file could not be read, RunFailed if the document holds a NaN or an infinity (E0816),
+/// ModelWrong if there are other errors, else Fine.
 ExitCode finish(Console& console, Study& study, Json document);
 
 /// What a study found, to be printed or to stand in the document under its kind.

@@ -23,12 +23,18 @@ struct Kind {
 
 Kind kind_of(FileKind kind) {
   switch (kind) {
-    case FileKind::Picture: return {"picture", {".svg", ".png", ".pdf"}};
-    case FileKind::Table: return {"table", {".csv", ".npy", ".json"}};
-    case FileKind::Csv: return {"text table", {".csv"}};
-    case FileKind::Page: return {"page", {".html", ".htm"}};
-    case FileKind::Model: return {"model", {".lag"}};
-    case FileKind::Animation: return {"moving picture", {".mp4", ".gif", ".html", ".htm", ".svg"}};
+    case FileKind::Picture:
+      return {"picture", {".svg", ".png", ".pdf"}};
+    case FileKind::Table:
+      return {"table", {".csv", ".npy", ".json"}};
+    case FileKind::Csv:
+      return {"text table", {".csv"}};
+    case FileKind::Page:
+      return {"page", {".html", ".htm"}};
+    case FileKind::Model:
+      return {"model", {".lag"}};
+    case FileKind::Animation:
+      return {"moving picture", {".mp4", ".gif", ".html", ".htm", ".svg"}};
   }
   return {};
 }
@@ -47,7 +53,8 @@ bool is_same_file(const std::string& a, const std::string& b) {
 std::string help_for(const OutputFile& file, const Kind& kind) {
   const std::string extension = fs::path(file.path).extension().string();
   if (extension == ".h5") return "not supported yet: HDF5. Take .csv, .npy or .json.";
-  if (file.kind == FileKind::Animation && (extension == ".png" || extension == ".pdf")) return "One moment is a picture: add --still 2s.";
+  if (file.kind == FileKind::Animation && (extension == ".png" || extension == ".pdf"))
+    return "One moment is a picture: add --still 2s.";
   if (kind.endings.size() == 1) return fmt::format("Take {}.", kind.endings[0]);
   const std::span<const std::string_view> others(kind.endings.data(), kind.endings.size() - 1);
   return fmt::format("Take an ending {} or {}.", fmt::join(others, ", "), kind.endings.back());
@@ -60,20 +67,26 @@ void check_output_files(std::initializer_list<OutputFile> files, const std::stri
     if (file->path.empty()) continue;
     const Kind kind = kind_of(file->kind);
     if (model != "-" && !is_special(file->path) && is_same_file(file->path, model)) {
-      diagnostics.error("E0812", {}, fmt::format("{} {} is the model that is read.", file->option, file->path), "Writing it would lose the model.",
-                        "Give another name.");
+      diagnostics.error("E0812", {}, fmt::format("{} {} is the model that is read.", file->option, file->path),
+                        "Writing it would lose the model.", "Give another name.");
       continue;
     }
-    const bool known = std::any_of(kind.endings.begin(), kind.endings.end(), [&](std::string_view end) { return std::string_view(file->path).ends_with(end); });
+    const bool known = std::any_of(kind.endings.begin(), kind.endings.end(),
+                                   [&](std::string_view end) { return std::string_view(file->path).ends_with(end); });
     if (!known && !is_special(file->path))
-      diagnostics.error("E0810", {}, fmt::format("{} names no format of a {}.", file->path, kind.name), {}, help_for(*file, kind));
+      diagnostics.error("E0810", {}, fmt::format("{} names no format of a {}.", file->path, kind.name), {},
+                        help_for(*file, kind));
     const std::string extension = fs::path(file->path).extension().string();
     if (extension == ".png" || extension == ".pdf")
       if (const std::string problem = known ? picture_problem() : std::string(); !problem.empty())
-        diagnostics.error("E0840", {}, fmt::format("{} cannot be made: {}.", file->path, problem), {}, "Take .svg, which needs nothing else.");
-    const auto twin = std::find_if(files.begin(), file, [&](const OutputFile& other) { return !other.path.empty() && is_same_file(other.path, file->path); });
+        diagnostics.error("E0840", {}, fmt::format("{} cannot be made: {}.", file->path, problem), {},
+                          "Take .svg, which needs nothing else.");
+    const auto twin = std::find_if(files.begin(), file, [&](const OutputFile& other) {
+      return !other.path.empty() && is_same_file(other.path, file->path);
+    });
     if (twin != file && !is_special(file->path))
-      diagnostics.error("E0809", {}, fmt::format("{} and {} both ask for {}.", twin->option, file->option, file->path), {}, "Give two files.");
+      diagnostics.error("E0809", {}, fmt::format("{} and {} both ask for {}.", twin->option, file->option, file->path),
+                        {}, "Give two files.");
   }
 }
 

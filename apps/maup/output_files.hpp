@@ -7,7 +7,14 @@
 namespace maupertuis::app {
 
 /// What a file that is asked for will hold; its endings say so.
-enum class FileKind { Picture, Table, Csv, Page, Model, Animation };  // .svg, .png, .pdf; .csv, .npy, .json; .csv; .html, .htm; .lag; .mp4, …
+enum class FileKind {
+  Picture,
+  Table,
+  Csv,
+  Page,
+  Model,
+  Animation
+};  // .svg, .png, .pdf; .csv, .npy, .json; .csv; .html, .htm; .lag; .mp4, …
 
 struct OutputFile {
   const char* option;  // that asks for it, as it is written
@@ -15,8 +22,9 @@ struct OutputFile {
   FileKind kind;
 };
 
-/// Before anything is computed: E0810 for an ending of another kind, E0812 for the model that is read, E0809 where two options ask for one file. Devices and
-/// pipes take what they are given. "-" is a file name here; commands that take it for standard output leave it out.
+/// Before anything is computed: E0810 for an ending of another kind, E0812 for the model that is read, E0809 where two
+/// options ask for one file. Devices and pipes take what they are given. "-" is a file name here; commands that take it
+/// for standard output leave it out.
 void check_output_files(std::initializer_list<OutputFile> files, const std::string& model, Diagnostics& diagnostics);
 
 }  // namespace maupertuis::app

@@ -43,11 +43,11 @@ void cannot_open(const std::string& path, int error, Diagnostics& diagnostics) {
 void warn_of_letters(const std::string& path, Diagnostics& diagnostics) {
   const std::string name = std::filesystem::path(path).filename().string(), foreign = foreign_letter(name);
   if (visible(name) != name)
-    diagnostics.warning("W0817", {}, fmt::format("the name of the file is shown as {}", visible(name)), "It holds characters that a terminal carries out instead of showing them.",
-                        "Rename it.");
+    diagnostics.warning("W0817", {}, fmt::format("the name of the file is shown as {}", visible(name)),
+                        "It holds characters that a terminal carries out instead of showing them.", "Rename it.");
   else if (!foreign.empty())
-    diagnostics.warning("W0817", {}, fmt::format("the name of the file mixes two alphabets: {}", foreign), fmt::format("It looks like {}, and is another name.", latin_look(name)),
-                        "Rename it.");
+    diagnostics.warning("W0817", {}, fmt::format("the name of the file mixes two alphabets: {}", foreign),
+                        fmt::format("It looks like {}, and is another name.", latin_look(name)), "Rename it.");
 }
 
 }  // namespace

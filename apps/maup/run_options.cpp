@@ -54,24 +54,29 @@ class Progress {
 }  // namespace
 
 void add_method_options(Command& command, RunOptions& options) {
-  command.add_option("--method", options.method,
-                     "How to step: auto (Taylor's, and the stiff one from where stability limits them), taylor, variational "
-                     "(needs --step), stiff; default: the model's `method`, or auto")
+  command
+      .add_option(
+          "--method", options.method,
+          "How to step: auto (Taylor's, and the stiff one from where stability limits them), taylor, variational "
+          "(needs --step), stiff; default: the model's `method`, or auto")
       ->one_of({"auto", "taylor", "variational", "stiff"})
       ->type_name("METHOD");
   command.add_option("--step", options.step, "The length of the steps of --method variational")->type_name("TIME");
   command.add_option("--order", options.order, "The order of the steps (variational: 2, 4, … 12)")->type_name("NUMBER");
   command.add_option("--tol", options.tolerance, "Relative tolerance of a step (default: rounding level)")
       ->type_name("NUMBER");
-  command.add_option("--backend", options.backend,
-                     "What carries the steps out: auto (machine code where the run is long enough to pay for it), interpreter, compiled")
+  command
+      .add_option("--backend", options.backend,
+                  "What carries the steps out: auto (machine code where the run is long enough to pay for it), "
+                  "interpreter, compiled")
       ->one_of({"auto", "interpreter", "compiled"})
       ->type_name("BACKEND");
   command.add_flag("--no-cache", options.no_cache, "Neither read nor keep machine code of other runs");
 }
 
 void add_errors_option(Command& command, RunOptions& options) {
-  command.add_flag("--no-errors", options.no_errors, "No companion runs: numbers without what is known of their errors");
+  command.add_flag("--no-errors", options.no_errors,
+                   "No companion runs: numbers without what is known of their errors");
 }
 
 void add_span_options(Command& command, RunOptions& options) {
@@ -102,8 +107,10 @@ double tolerance_option(const RunOptions& options, Diagnostics& diagnostics) {
 }
 
 StepMethod method_named(const std::string& word) {
-  static const std::map<std::string, StepMethod> methods{{"auto", StepMethod::Automatic}, {"taylor", StepMethod::Taylor},
-                                                         {"variational", StepMethod::Variational}, {"stiff", StepMethod::Stiff}};
+  static const std::map<std::string, StepMethod> methods{{"auto", StepMethod::Automatic},
+                                                         {"taylor", StepMethod::Taylor},
+                                                         {"variational", StepMethod::Variational},
+                                                         {"stiff", StepMethod::Stiff}};
   const auto method = methods.find(word);
   return method != methods.end() ? method->second : StepMethod::Automatic;
 }
@@ -123,30 +130,34 @@ const Statement* statement_of(const syntax::SyntaxTree* tree) {
 
 }  // namespace
 
-SimulationOptions simulation_options(const RunOptions& options, Diagnostics& diagnostics, const syntax::SyntaxTree* tree) {
+SimulationOptions simulation_options(const RunOptions& options, Diagnostics& diagnostics,
+                                     const syntax::SyntaxTree* tree) {
   SimulationOptions out;
   out.tolerance = tolerance_option(options, diagnostics);
   out.method = method_option(options);
   if (options.step)
     if (const auto step = time_option("--step", *options.step, diagnostics)) out.step = *step;
   if (options.order) out.order = *options.order;
-  out.backend = options.backend == "compiled" ? Backend::Compiled : options.backend == "interpreter" ? Backend::Interpreter : Backend::Automatic;
+  out.backend = options.backend == "compiled"      ? Backend::Compiled
+                : options.backend == "interpreter" ? Backend::Interpreter
+                                                   : Backend::Automatic;
   out.cache = !options.no_cache;
   if (options.no_errors) out.errors = ErrorEstimates::None;
   const auto* written = statement_of<syntax::MethodStatement>(tree);
   const StepMethod method = out.method ? *out.method : method_named(written ? written->word.text : "auto");
   const bool fixed_steps = method == StepMethod::Variational;
   if (options.step && !fixed_steps)
-    diagnostics.error("E0809", {}, "--step belongs to --method variational.", "The other methods choose their steps by the tolerance.",
+    diagnostics.error("E0809", {}, "--step belongs to --method variational.",
+                      "The other methods choose their steps by the tolerance.",
                       "Add --method variational, or use --tol.");
   if (options.order && !fixed_steps && (*options.order < 2 || *options.order > 60 || method == StepMethod::Stiff))
     diagnostics.error("E0809", {}, fmt::format("--order {} is no order of this method.", *options.order),
-                      method == StepMethod::Stiff ? "The stiff method chooses its order from 1 to 5 itself." : "Taylor's steps take orders from 2 to 60.",
+                      method == StepMethod::Stiff ? "The stiff method chooses its order from 1 to 5 itself."
+                                                  : "Taylor's steps take orders from 2 to 60.",
                       "Leave --order out, or use --tol.");
   if (options.duration) out.duration = time_option("--duration", *options.duration, diagnostics);
   if (options.every) out.output_every = time_option("--every", *options.every, diagnostics);
-  if (out.output_every && !(*out.output_every > 0))
-    diagnostics.error("E0809", {}, "--every must be a positive time.");
+  if (out.output_every && !(*out.output_every > 0)) diagnostics.error("E0809", {}, "--every must be a positive time.");
   for (const std::string& text : options.at)
     if (const auto t = time_option("--at", text, diagnostics)) out.at.push_back(*t);
   out.interrupt = &interrupt_flag();
@@ -164,15 +175,16 @@ ExtendedSimulationOptions extended_options(const RunOptions& options, Precision 
   out.tolerance = tolerance_option(options, diagnostics);
   out.method = method_option(options);
   if (options.step)
-    diagnostics.error("E0809", {}, "--step belongs to --method variational.", "Runs in many digits choose their steps by the tolerance.",
-                      "Leave --step out, or use --tol.");
+    diagnostics.error("E0809", {}, "--step belongs to --method variational.",
+                      "Runs in many digits choose their steps by the tolerance.", "Leave --step out, or use --tol.");
   if (options.order && (*options.order < 2 || *options.order > 400))
     diagnostics.error("E0809", {}, fmt::format("--order {} is no order of this method.", *options.order),
                       "In many digits Taylor's steps take orders from 2 to 400.", "Leave --order out, or use --tol.");
   out.order = options.order.value_or(0);
   if (options.duration) out.duration = exact_time_option("--duration", *options.duration, diagnostics);
   if (options.every) out.output_every = exact_time_option("--every", *options.every, diagnostics);
-  if (out.output_every && out.output_every->sign() <= 0) diagnostics.error("E0809", {}, "--every must be a positive time.");
+  if (out.output_every && out.output_every->sign() <= 0)
+    diagnostics.error("E0809", {}, "--every must be a positive time.");
   for (const std::string& text : options.at)
     if (const auto t = exact_time_option("--at", text, diagnostics)) out.at.push_back(*t);
   out.interrupt = &interrupt_flag();
@@ -187,10 +199,12 @@ bool refuse_until(Study& study, const std::string& until) {
   const std::string quoted = until.find(' ') == std::string::npos ? until : "\"" + until + "\"";
   if (parse_exact_time(until))
     refuse_option(study, "--until", until, fmt::format("--until {} is a time, and no condition", quoted),
-                        "A run ends when the equation of --until holds.", fmt::format("Write --duration {} to run that long.", quoted));
+                  "A run ends when the equation of --until holds.",
+                  fmt::format("Write --duration {} to run that long.", quoted));
   else
     refuse_option(study, "--until", until, fmt::format("--until {} is no equation", quoted),
-                        "A run ends when the two sides of it become equal.", fmt::format("Write for example --until \"{} = 0\".", until));
+                  "A run ends when the two sides of it become equal.",
+                  fmt::format("Write for example --until \"{} = 0\".", until));
   return true;
 }
 
@@ -209,7 +223,8 @@ std::optional<SimulationResult> run_model(Study& study, const SimulationOptions&
   return study.motion(with_progress);
 }
 
-std::optional<ExtendedResult> run_model(Study& study, const ExtendedSimulationOptions& options, const Console& console) {
+std::optional<ExtendedResult> run_model(Study& study, const ExtendedSimulationOptions& options,
+                                        const Console& console) {
   Progress progress(console);
   ExtendedSimulationOptions with_progress = options;
   if (console.interactive()) with_progress.progress = [&progress](double fraction) { progress(fraction); };
@@ -223,17 +238,28 @@ ExitCode exit_code(Ending ending) {
 
 const char* ending_name(Ending ending) {
   switch (ending) {
-    case Ending::Finished: return "finished";
-    case Ending::UntilReached: return "until reached";
-    case Ending::UntilNotReached: return "until not reached";
-    case Ending::Interrupted: return "interrupted";
-    case Ending::SingularMass: return "singular mass matrix";
-    case Ending::SingularConstraints: return "singular constraints";
-    case Ending::NoConvergence: return "no convergence";
-    case Ending::Overflow: return "overflow";
-    case Ending::StepUnderflow: return "step underflow";
-    case Ending::Sliding: return "sliding";
-    case Ending::TooManySteps: return "too many steps";
+    case Ending::Finished:
+      return "finished";
+    case Ending::UntilReached:
+      return "until reached";
+    case Ending::UntilNotReached:
+      return "until not reached";
+    case Ending::Interrupted:
+      return "interrupted";
+    case Ending::SingularMass:
+      return "singular mass matrix";
+    case Ending::SingularConstraints:
+      return "singular constraints";
+    case Ending::NoConvergence:
+      return "no convergence";
+    case Ending::Overflow:
+      return "overflow";
+    case Ending::StepUnderflow:
+      return "step underflow";
+    case Ending::Sliding:
+      return "sliding";
+    case Ending::TooManySteps:
+      return "too many steps";
   }
   return "";
 }

@@ -13,8 +13,8 @@ namespace maupertuis::app {
 
 /// How a run is to differ from what the model says; shared by simulate, plot, report and test.
 struct RunOptions {
-  std::optional<std::string> method;           // none: that of the model
-  std::optional<std::string> step;             // as written
+  std::optional<std::string> method;  // none: that of the model
+  std::optional<std::string> step;    // as written
   std::optional<int> order;
   std::optional<double> tolerance;
   std::optional<std::string> duration, every;  // as written
@@ -34,7 +34,8 @@ void add_span_options(Command& command, RunOptions& options);
 
 /// The options in numbers, with the flag of Ctrl-C. A wrong value is a diagnostic (E0809). `tree`: of the model whose
 /// `method` a step or an order without --method belongs to; may be null.
-SimulationOptions simulation_options(const RunOptions& options, Diagnostics& diagnostics, const syntax::SyntaxTree* tree = nullptr);
+SimulationOptions simulation_options(const RunOptions& options, Diagnostics& diagnostics,
+                                     const syntax::SyntaxTree* tree = nullptr);
 
 /// What the statement `precision` says: "double", "quad", "100"; "double" without one.
 std::string precision_of(const syntax::SyntaxTree* tree);

@@ -12,14 +12,15 @@ namespace maupertuis::app {
 using Clock = std::chrono::steady_clock;
 
 const std::vector<std::string>& SectionBudget::names() {
-  static const std::vector<std::string> all{"equations", "motion", "modes",      "orbits",      "paths",
+  static const std::vector<std::string> all{"equations", "motion",      "modes",      "orbits",      "paths",
                                             "conserved", "phase-space", "derivation", "expectations"};
   return all;
 }
 
 SectionBudget::SectionBudget(std::optional<double> seconds, std::vector<std::string> chosen, const Console& console)
     : end_(Clock::time_point::max()), seconds_(seconds), chosen_(std::move(chosen)), console_(console) {
-  if (seconds) end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*seconds));
+  if (seconds)
+    end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(*seconds));
 }
 
 SectionBudget::~SectionBudget() {
@@ -36,7 +37,8 @@ std::optional<double> SectionBudget::begin(std::string_view section) {
   const double left = seconds_ ? std::max(0.0, std::chrono::duration<double>(end_ - Clock::now()).count()) : 0;
   if (console_.interactive() && !console_.json()) {
     drawn_ = true;
-    console_.draw(fmt::format("\r\x1b[K{}{}", section, seconds_ ? fmt::format(", {:.0f} s of {:.0f} s left", left, *seconds_) : ""));
+    console_.draw(fmt::format("\r\x1b[K{}{}", section,
+                              seconds_ ? fmt::format(", {:.0f} s of {:.0f} s left", left, *seconds_) : ""));
   }
   return seconds_ ? std::optional(left / 2) : std::nullopt;
 }
@@ -50,11 +52,13 @@ void SectionBudget::note(std::string_view section, bool came) {
   if (!came && !missed) left_out_.emplace_back(section);
 }
 
-bool SectionBudget::carry_out(std::string_view section, Context& context, const std::function<void(const Interrupt&)>& work) {
+bool SectionBudget::carry_out(std::string_view section, Context& context,
+                              const std::function<void(const Interrupt&)>& work) {
   return wanted(section) && attempt(section, context, work);
 }
 
-bool SectionBudget::attempt(std::string_view section, Context& context, const std::function<void(const Interrupt&)>& work) {
+bool SectionBudget::attempt(std::string_view section, Context& context,
+                            const std::function<void(const Interrupt&)>& work) {
   const Deadline deadline(begin(section));
   const Interrupt interrupt = &deadline.flag();
   bool came = false;
@@ -86,9 +90,13 @@ Diagnostics SectionBudget::warnings() const {
   const double seconds = seconds_.value_or(0);
   for (const std::string& section : left_out_) {
     const bool named = std::find(names().begin(), names().end(), section) != names().end();
-    out.warning("W0813", {}, fmt::format("the section `{}` is left out", section),
-                fmt::format("It did not come in its share of the budget of {} s: no section takes more than half of what is left.", brief(seconds)),
-                fmt::format("Give it more time, --budget {}s{}.", brief(10 * seconds), named ? fmt::format(", or ask for it alone: --sections {}", section) : ""));
+    out.warning(
+        "W0813", {}, fmt::format("the section `{}` is left out", section),
+        fmt::format(
+            "It did not come in its share of the budget of {} s: no section takes more than half of what is left.",
+            brief(seconds)),
+        fmt::format("Give it more time, --budget {}s{}.", brief(10 * seconds),
+                    named ? fmt::format(", or ask for it alone: --sections {}", section) : ""));
   }
   return out;
 }

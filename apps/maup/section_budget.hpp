@@ -13,8 +13,8 @@
 
 namespace maupertuis::app {
 
-/// The time that a page may take, shared among its sections in the order in which they are computed: none takes more than
-/// half of what is left, and one that does not come within it is left out with a warning (W0813).
+/// The time that a page may take, shared among its sections in the order in which they are computed: none takes more
+/// than half of what is left, and one that does not come within it is left out with a warning (W0813).
 class SectionBudget {
  public:
   /// The names that --sections takes, in the order of the page.
@@ -27,8 +27,9 @@ class SectionBudget {
   SectionBudget& operator=(const SectionBudget&) = delete;
 
   bool wanted(std::string_view section) const;
-  /// Does the work of a section that is wanted, which looks at the interrupt it is given, as does all work on `context`.
-  /// False where it is not wanted, or did not come in time: then nothing of it is to be shown. Ctrl-C is passed on as Interrupted.
+  /// Does the work of a section that is wanted, which looks at the interrupt it is given, as does all work on
+  /// `context`. False where it is not wanted, or did not come in time: then nothing of it is to be shown. Ctrl-C is
+  /// passed on as Interrupted.
   bool carry_out(std::string_view section, Context& context, const std::function<void(const Interrupt&)>& work);
   /// The same for what the page cannot be without, whatever is chosen.
   bool attempt(std::string_view section, Context& context, const std::function<void(const Interrupt&)>& work);

@@ -4,18 +4,18 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <csignal>
-#include <cstdlib>
-#include <cstring>
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
-#include <sstream>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
 
 extern char** environ;
 
@@ -25,15 +25,34 @@ namespace {
 constexpr int film_descriptor = 3;  // of ffmpeg: a file in memory
 
 std::vector<std::string> arguments_of(const std::string& ffmpeg, const Video::Options& o) {
-  std::vector<std::string> list{ffmpeg, "-hide_banner", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "bgr0",
-                                "-s", fmt::format("{}x{}", o.width, o.height), "-r", fmt::format("{:.6g}", o.fps), "-i", "pipe:0",
-                                "-fflags", "+bitexact", "-flags:v", "+bitexact", "-map_metadata", "-1"};
+  std::vector<std::string> list{ffmpeg,
+                                "-hide_banner",
+                                "-loglevel",
+                                "error",
+                                "-f",
+                                "rawvideo",
+                                "-pix_fmt",
+                                "bgr0",
+                                "-s",
+                                fmt::format("{}x{}", o.width, o.height),
+                                "-r",
+                                fmt::format("{:.6g}", o.fps),
+                                "-i",
+                                "pipe:0",
+                                "-fflags",
+                                "+bitexact",
+                                "-flags:v",
+                                "+bitexact",
+                                "-map_metadata",
+                                "-1"};
   const auto add = [&](std::initializer_list<const char*> more) { list.insert(list.end(), more.begin(), more.end()); };
   // A picture of few colours: each frame has the palette that it needs, so that none waits for the last.
   if (o.format == Video::Format::Gif)
-    add({"-vf", "split[a][b];[a]palettegen=stats_mode=single:max_colors=96[p];[b][p]paletteuse=new=1:dither=none", "-loop", o.loop ? "0" : "-1", "-f", "gif"});
+    add({"-vf", "split[a][b];[a]palettegen=stats_mode=single:max_colors=96[p];[b][p]paletteuse=new=1:dither=none",
+         "-loop", o.loop ? "0" : "-1", "-f", "gif"});
   else
-    add({"-c:v", "libx264", "-preset", "medium", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-threads", "2", "-f", "mp4"});
+    add({"-c:v", "libx264", "-preset", "medium", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart",
+         "-threads", "2", "-f", "mp4"});
   list.push_back("-y");
   list.push_back(fmt::format("/proc/self/fd/{}", film_descriptor));
   return list;
@@ -43,7 +62,8 @@ std::string content_of(int descriptor) {
   std::string out;
   char block[1 << 16];
   off_t at = 0;
-  for (ssize_t count; (count = pread(descriptor, block, sizeof block, at)) > 0; at += count) out.append(block, static_cast<std::size_t>(count));
+  for (ssize_t count; (count = pread(descriptor, block, sizeof block, at)) > 0; at += count)
+    out.append(block, static_cast<std::size_t>(count));
   return out;
 }
 
@@ -107,7 +127,8 @@ Video::Video(const std::string& ffmpeg, const Options& options) : process_(std::
   sigemptyset(&defaults);
   sigaddset(&defaults, SIGPIPE);
   posix_spawnattr_setsigdefault(&attributes, &defaults);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);  // Ctrl-C is for maup, which ends ffmpeg
+  posix_spawnattr_setflags(&attributes,
+                           POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);  // Ctrl-C is for maup, which ends ffmpeg
   const int error = posix_spawn(&p.id, ffmpeg.c_str(), &files, &attributes, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&files);
   posix_spawnattr_destroy(&attributes);
@@ -140,7 +161,8 @@ Video::Film Video::finish() {
   Process& p = *process_;
   p.close_input();
   int status = -1;
-  while (p.id > 0 && waitpid(p.id, &status, 0) < 0 && errno == EINTR) {}
+  while (p.id > 0 && waitpid(p.id, &status, 0) < 0 && errno == EINTR) {
+  }
   const bool ran = p.id > 0;
   p.id = -1;
   if (!p.problem.empty()) return {{}, p.problem};

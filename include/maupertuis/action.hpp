@@ -17,8 +17,8 @@
 /// (docs/theory/action.md).
 namespace maupertuis {
 
-/// How the parameter s in [0, 1] of a path runs: t = start + (end − start) g(s). Where L is infinite at an end, g has a triple
-/// root there, so that a path y ∝ t^(2/3), as of a brachistochrone, is smooth in s.
+/// How the parameter s in [0, 1] of a path runs: t = start + (end − start) g(s). Where L is infinite at an end, g has a
+/// triple root there, so that a path y ∝ t^(2/3), as of a brachistochrone, is smooth in s.
 enum class Pace { Even, SlowStart, SlowEnd, SlowEnds };
 double pace(Pace which, double s);       // g(s)
 double pace_rate(Pace which, double s);  // dg/ds
@@ -29,12 +29,12 @@ struct Rule;  // the polynomials of an element by their values at its nodes
 
 /// A continuous path of polynomials in s, an element each.
 struct ActionPath {
-  double start = 0, end = 0;   // of the independent variable
+  double start = 0, end = 0;  // of the independent variable
   Pace pace = Pace::Even;
   std::vector<double> breaks;  // [elements + 1] of s, from 0 to 1
   std::size_t degree = 0, coordinates = 0;
   std::shared_ptr<const action::Rule> rule;
-  std::vector<double> nodes;   // [elements × (degree + 1) × n] q at the Gauss-Lobatto points of each element
+  std::vector<double> nodes;  // [elements × (degree + 1) × n] q at the Gauss-Lobatto points of each element
 
   std::size_t elements() const { return breaks.empty() ? 0 : breaks.size() - 1; }
   /// q and q' at a time between the ends.
@@ -49,10 +49,10 @@ struct ConjugatePoint {
 
 /// S on neighbours q + ε ξ of a path.
 struct TestVariation {
-  std::string name;                    // "lowest", "θ: sin(2π τ)"
-  double curvature = 0;                // d²S/dε² at 0, relative to that of ∫ ½ ξ' M ξ' dt
-  std::vector<double> epsilon, change; // S(ε) − S(0), of equal length
-  double slope = 0;                    // dS/dε at 0, relative to Σ |its terms|
+  std::string name;                     // "lowest", "θ: sin(2π τ)"
+  double curvature = 0;                 // d²S/dε² at 0, relative to that of ∫ ½ ξ' M ξ' dt
+  std::vector<double> epsilon, change;  // S(ε) − S(0), of equal length
+  double slope = 0;                     // dS/dε at 0, relative to Σ |its terms|
 };
 
 /// What kind of stationary path it is.
@@ -64,8 +64,8 @@ struct SecondVariation {
   std::size_t nullity = 0;                // independent variations that leave S as it is to second order
   std::vector<ConjugatePoint> conjugate;  // to the start, strictly inside
   std::optional<std::size_t> concavity;   // of ends that are free or closed
-  double nearest = 0;                     // the eigenvalue next to zero lies beyond ± this, relative to ∫ ½ ξ' M ξ' dt
-  std::string reason;                     // why there is no index; empty: there is one
+  double nearest = 0;  // the eigenvalue next to zero lies beyond ± this, relative to ∫ ½ ξ' M ξ' dt
+  std::string reason;  // why there is no index; empty: there is one
   std::vector<TestVariation> variations;
 };
 
@@ -83,14 +83,15 @@ struct MotionCheck {
 struct StationaryPath {
   ActionPath path;
   double action = 0;
-  double action_error = 0;            // the change of S when every element is halved, and a bound on rounding
-  double path_error = 0;              // the change of q then, relative to its size
-  double residual = 0;                // the last correction of Newton's method, relative to the size
-  std::vector<double> multipliers;    // λ of each integral constraint: the equations are those of L + λ G
-  std::vector<double> start_velocity, start_momentum, end_momentum;  // ∂S/∂q at the end is p there; NaN where L is infinite
+  double action_error = 0;          // the change of S when every element is halved, and a bound on rounding
+  double path_error = 0;            // the change of q then, relative to its size
+  double residual = 0;              // the last correction of Newton's method, relative to the size
+  std::vector<double> multipliers;  // λ of each integral constraint: the equations are those of L + λ G
+  std::vector<double> start_velocity, start_momentum,
+      end_momentum;                                // ∂S/∂q at the end is p there; NaN where L is infinite
   std::optional<double> start_energy, end_energy;  // −∂S/∂T is h_E at the end
-  std::vector<int> turns;             // [n] whole turns by which an angle ends beyond what was asked
-  std::string found_from;             // "the straight line"
+  std::vector<int> turns;                          // [n] whole turns by which an angle ends beyond what was asked
+  std::string found_from;                          // "the straight line"
   SecondVariation second;
   MotionCheck check;
 };
@@ -99,22 +100,22 @@ struct StationaryPath {
 struct ActionEnds {
   std::vector<std::optional<double>> from, to;  // [n]
   double start = 0, end = 0;
-  bool closed = false;                          // from and to the same, whatever they are
+  bool closed = false;  // from and to the same, whatever they are
 };
 
 struct ActionOptions {
-  std::size_t paths = 8;                // at most so many are looked for
-  std::size_t turns = 0;                // angles may also end up to so many whole turns further
-  bool variations = true;               // S on neighbours
+  std::size_t paths = 8;   // at most so many are looked for
+  std::size_t turns = 0;   // angles may also end up to so many whole turns further
+  bool variations = true;  // S on neighbours
   const std::atomic<bool>* interrupt = nullptr;
 };
 
 struct PathSearch {
   ActionEnds ends;
-  std::vector<StationaryPath> paths;    // the smallest action first
-  std::size_t starts = 0;               // from so many the search began
-  std::size_t failed = 0;               // of them led to no stationary path
-  std::string bound;                    // within what the search saw everything, or that it is no proof
+  std::vector<StationaryPath> paths;  // the smallest action first
+  std::size_t starts = 0;             // from so many the search began
+  std::size_t failed = 0;             // of them led to no stationary path
+  std::string bound;                  // within what the search saw everything, or that it is no proof
 };
 
 /// The numbers of the model's `path` statement. Precondition: it has one.
@@ -125,32 +126,34 @@ ActionEnds ends_of(const Model& model);
 /// velocities (E1201), ends that are off the constraints (E1202), times in the wrong order (E1203), no path found
 /// (E1204), or rates beyond the range of doubles (E1209), an interruption (E1210, as everywhere below). W1201: the two
 /// counts of the index disagree.
-std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOfMotion& equations, const ActionEnds& ends,
-                                           const ActionOptions& options, Diagnostics& diagnostics);
+std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOfMotion& equations,
+                                           const ActionEnds& ends, const ActionOptions& options,
+                                           Diagnostics& diagnostics);
 
 /// S along a path that is given as formulas of t.
 struct GivenPath {
   double action = 0, action_error = 0;
-  std::vector<double> integrals;        // ∫ G dt of each integral constraint
-  double residual = 0;                  // the largest |d/dt ∂L/∂q' − ∂L/∂q|, relative to the sizes of its terms
-  double residual_at = 0;               // where
-  std::size_t residual_row = 0;         // of which coordinate
-  bool stationary = false;              // the residual vanishes to rounding
+  std::vector<double> integrals;  // ∫ G dt of each integral constraint
+  double residual = 0;            // the largest |d/dt ∂L/∂q' − ∂L/∂q|, relative to the sizes of its terms
+  double residual_at = 0;         // where
+  std::size_t residual_row = 0;   // of which coordinate
+  bool stationary = false;        // the residual vanishes to rounding
   std::vector<TestVariation> variations;
-  ActionPath path;                      // to be drawn
+  ActionPath path;  // to be drawn
   double start = 0, end = 0;
 };
 
 /// `path`: q(t) [n] of numbers, parameters and the independent variable. Nothing, with a diagnostic: it misses the ends
 /// of the model (E1205) or leaves the constraints (E1202), L has no value on it (E1206).
-std::optional<GivenPath> action_of_path(const Model& model, const EquationsOfMotion& equations, std::span<const Expr> path,
-                                        double start, double end, const std::optional<ActionEnds>& ends,
-                                        const ActionOptions& options, Diagnostics& diagnostics);
+std::optional<GivenPath> action_of_path(const Model& model, const EquationsOfMotion& equations,
+                                        std::span<const Expr> path, double start, double end,
+                                        const std::optional<ActionEnds>& ends, const ActionOptions& options,
+                                        Diagnostics& diagnostics);
 
 /// S along the model's own motion.
 struct MotionAction {
-  StationaryPath path;                  // as a path between the ends that the motion reaches
-  Trajectory rows;                      // t, q, S
+  StationaryPath path;  // as a path between the ends that the motion reaches
+  Trajectory rows;      // t, q, S
 };
 
 /// Nothing, with a diagnostic: no run (E1207), or it ends early (E1208), and as for stationary_paths.
@@ -161,7 +164,7 @@ std::optional<MotionAction> action_of_motion(const Model& model, const Equations
 struct PeriodicAction {
   StationaryPath path;
   double period = 0;
-  double abbreviated = 0;               // ∮ p dq
+  double abbreviated = 0;  // ∮ p dq
 };
 
 /// The periodic motion next to the model's start (as `floquet` finds it) as a closed path.
@@ -172,7 +175,8 @@ std::optional<PeriodicAction> action_of_orbit(const Model& model, const Equation
 /// "minimum", "saddle", "degenerate", or "stationary" where there is no index.
 std::string kind_of(const SecondVariation& second);
 
-/// Columns q and q' of a path at 401 times, and the first momentum row; several paths one after the other, told apart by a column `path`.
+/// Columns q and q' of a path at 401 times, and the first momentum row; several paths one after the other, told apart
+/// by a column `path`.
 Trajectory path_rows(const std::vector<const ActionPath*>& paths, const MechanicalSystem& system);
 
 }  // namespace maupertuis

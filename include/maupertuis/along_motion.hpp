@@ -12,9 +12,9 @@ namespace maupertuis {
 /// On what ground a difference vanishes; `constrained`: along the motion of a system with constraints.
 std::string ground_of(const ZeroTest& test, bool constrained);
 
-/// Proofs about functions along the motion. Without constraints q̈ is replaced by −M⁻¹ h as a shared DAG, and the rest is
-/// the zero test's. With constraints nothing is put in: the test looks at points that satisfy the constraints and the
-/// equations with their multipliers, near the start, to 60 digits.
+/// Proofs about functions along the motion. Without constraints q̈ is replaced by −M⁻¹ h as a shared DAG, and the rest
+/// is the zero test's. With constraints nothing is put in: the test looks at points that satisfy the constraints and
+/// the equations with their multipliers, near the start, to 60 digits.
 class AlongMotion {
  public:
   explicit AlongMotion(const EquationsOfMotion& equations);
@@ -26,7 +26,8 @@ class AlongMotion {
   /// e with q̈ put in; lets, inputs and reactions as well.
   Expr put_in(Expr e) const;
   ZeroTest vanishes(Expr e) const;
-  /// At states on which all of `level`, functions of q, q', t, vanish: to 60 digits at random ones near the start, as with constraints.
+  /// At states on which all of `level`, functions of q, q', t, vanish: to 60 digits at random ones near the start, as
+  /// with constraints.
   ZeroTest vanishes_on(Expr e, std::span<const Expr> level) const;
   /// dI/dt along the motion, q̈ put in.
   Expr rate(Expr integral) const;

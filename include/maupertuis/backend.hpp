@@ -10,19 +10,19 @@ namespace maupertuis {
 enum class Backend { Automatic, Interpreter, Compiled };
 
 struct CompileOptions {
-  bool cache = true;               // objects of earlier runs are read, new ones kept: ~/.cache/maupertuis
-  bool long_run = false;           // the code will run long: longer code and more passes pay
-  std::string processor{};         // empty: this one; else by LLVM's name, such as x86-64-v3
+  bool cache = true;        // objects of earlier runs are read, new ones kept: ~/.cache/maupertuis
+  bool long_run = false;    // the code will run long: longer code and more passes pay
+  std::string processor{};  // empty: this one; else by LLVM's name, such as x86-64-v3
 };
 
 /// What this installation has. Opens the module.
 struct BackendStatus {
   bool compiled = false;
-  std::string trouble;             // why there is no compiled code; empty if there is
-  std::string compiler;            // "LLVM 19.1.7"
-  std::string processor;           // "sapphirerapids"
-  std::string module;              // its file
-  std::string cache_folder;        // empty: neither XDG_CACHE_HOME nor HOME is set
+  std::string trouble;       // why there is no compiled code; empty if there is
+  std::string compiler;      // "LLVM 19.1.7"
+  std::string processor;     // "sapphirerapids"
+  std::string module;        // its file
+  std::string cache_folder;  // empty: neither XDG_CACHE_HOME nor HOME is set
   std::size_t cache_files = 0;
   std::uintmax_t cache_bytes = 0;
 };

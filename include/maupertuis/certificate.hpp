@@ -8,14 +8,15 @@
 namespace maupertuis {
 
 struct CertificateCheck {
-  std::string name;        // "forms_agree", "jet_residual", "dalembert", "power_balance", "constraint_rows", "gauge_invariance"
-  std::string statement;   // one sentence: what agreed with what
+  std::string
+      name;  // "forms_agree", "jet_residual", "dalembert", "power_balance", "constraint_rows", "gauge_invariance"
+  std::string statement;  // one sentence: what agreed with what
   Verdict verdict = Verdict::Undecided;
-  bool applies = true;     // (c) without points: false, and the statement says so
+  bool applies = true;  // (c) without points: false, and the statement says so
   int points = 0;
   double error_bound = 1;
-  std::string reason;      // when not Zero
-  std::size_t row = 0;     // the first equation that failed; n: the row of a constraint
+  std::string reason;   // when not Zero
+  std::size_t row = 0;  // the first equation that failed; n: the row of a constraint
 };
 
 /// What was checked of a derivation, by routes that share nothing with it. Passed: every check that applies is Zero.
@@ -25,7 +26,7 @@ struct Certificate {
 };
 
 struct CertifyOptions {
-  bool full = false;       // (e) as well
+  bool full = false;  // (e) as well
   std::uint64_t seed = 0x6d617570;
 };
 

@@ -25,7 +25,8 @@ std::optional<CoordinateMap> read_map(const Model& a, const SourceText& b, const
 
 enum class Sameness {
   Same,  // each motion of one is one of the other
-  Part,  // each motion of B is one of A, but not the other way round: fewer freedoms, or states where only one is defined
+  Part,  // each motion of B is one of A, but not the other way round: fewer freedoms, or states where only one is
+         // defined
   Different,
   Undecided,  // never passes
 };

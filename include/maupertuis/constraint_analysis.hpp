@@ -42,14 +42,14 @@ struct IntegrableCombination {
 struct ConstraintAnalysis {
   std::vector<ConstraintReport> constraints;        // [m]
   std::vector<IntegrableCombination> combinations;  // one for each integrable direction that no single row gives
-  std::size_t rank = 0;                  // of all rows of A
-  std::size_t holonomic_rank = 0;        // of the rows ∂φ/∂q
-  std::size_t integrable_rank = 0;       // what the integrable part of the velocity constraints adds
+  std::size_t rank = 0;                             // of all rows of A
+  std::size_t holonomic_rank = 0;                   // of the rows ∂φ/∂q
+  std::size_t integrable_rank = 0;                  // what the integrable part of the velocity constraints adds
   std::size_t configuration_freedoms = 0, instantaneous_freedoms = 0;
   std::vector<std::size_t> undetermined;  // constraints whose λ the motion does not determine
-  std::size_t start_rank = 0;            // of all rows at the start; less than `rank` where that is singular
-  bool rank_varies = false;              // other ranks than these were found at points that are not the start
-  std::vector<std::size_t> clashing;     // a smallest set that no state satisfies (later than the start); else empty
+  std::size_t start_rank = 0;             // of all rows at the start; less than `rank` where that is singular
+  bool rank_varies = false;               // other ranks than these were found at points that are not the start
+  std::vector<std::size_t> clashing;      // a smallest set that no state satisfies (later than the start); else empty
 
   bool redundant() const { return !undetermined.empty(); }
   bool singular_start() const { return start_rank < rank; }
@@ -63,7 +63,7 @@ struct ConstraintAnalysis {
 ConstraintAnalysis analyse_constraints(const EquationsOfMotion& equations, const MotionState* start = nullptr);
 
 /// What the analysis has to tell a user: redundant, clashing, disguised and singular ones, each once.
-void report_constraints(const ConstraintAnalysis& analysis, const EquationsOfMotion& equations, const MotionState* start,
-                        Diagnostics& diagnostics);
+void report_constraints(const ConstraintAnalysis& analysis, const EquationsOfMotion& equations,
+                        const MotionState* start, Diagnostics& diagnostics);
 
 }  // namespace maupertuis

@@ -21,7 +21,7 @@ class MotionTerms {
 
  private:
   std::unordered_map<Expr, Expr, ExprHash> replacements_;
-  bool twice_ = false;   // definitions hold inputs, or the other way round
+  bool twice_ = false;  // definitions hold inputs, or the other way round
 };
 
 /// The values of all parameters, as symbols bound to SI values; with t = 0.
@@ -64,14 +64,16 @@ class ConstraintManifold {
   /// |A_ij q̇_j| [m + rates].
   std::vector<double> relative_rates(const MotionState& state) const;
 
-  /// Moves the coordinates that are not `fixed` [n] onto φ = 0 by the least kinetic change (Gauss-Newton in the metric M,
-  /// or in the scaled Euclidean one where M is not positive definite, or has more entries than would be worth it). Rows that are not `active` [m] are left out;
-  /// empty: all are in. False, with the best point reached in `state`, where it does not get there.
+  /// Moves the coordinates that are not `fixed` [n] onto φ = 0 by the least kinetic change (Gauss-Newton in the metric
+  /// M, or in the scaled Euclidean one where M is not positive definite, or has more entries than would be worth it).
+  /// Rows that are not `active` [m] are left out; empty: all are in. False, with the best point reached in `state`,
+  /// where it does not get there.
   bool move_positions(MotionState& state, const std::vector<bool>& fixed, const std::vector<bool>& active = {}) const;
   /// The same for the velocities, at a configuration that is on the manifold: dφ/dt = 0, ψ = 0 and the rates.
   bool move_velocities(MotionState& state, const std::vector<bool>& fixed, const std::vector<bool>& active = {}) const;
-  /// Constraints that no positions near `from`, or no velocities there, satisfy together, though all but any one of them
-  /// can be: one is left out after the other as long as the rest still clashes. Precondition: all together do clash.
+  /// Constraints that no positions near `from`, or no velocities there, satisfy together, though all but any one of
+  /// them can be: one is left out after the other as long as the rest still clashes. Precondition: all together do
+  /// clash.
   std::vector<std::size_t> smallest_clash(const MotionState& from) const;
 
  private:

@@ -13,12 +13,12 @@ enum class Severity { Note, Warning, Error };
 
 /// One message to the user about one mistake: what is wrong, where, why in words of physics, and what helps.
 struct Diagnostic {
-  std::string code;            // stable: E0412 (error), W0203 (warning), N0101 (note)
+  std::string code;  // stable: E0412 (error), W0203 (warning), N0101 (note)
   Severity severity = Severity::Error;
-  std::optional<Span> span;    // none: the mistake is not at a place of a text
-  std::string message;         // one line: what is wrong
-  std::string reason;          // one sentence of physics or of the language: why
-  std::string help;            // one sentence: what to write instead
+  std::optional<Span> span;  // none: the mistake is not at a place of a text
+  std::string message;       // one line: what is wrong
+  std::string reason;        // one sentence of physics or of the language: why
+  std::string help;          // one sentence: what to write instead
 };
 
 /// Collects diagnostics in the order of discovery. Passes append and go on; nothing is thrown for a user's mistake.

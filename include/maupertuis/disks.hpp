@@ -9,10 +9,11 @@
 
 /// How far the polynomials of a step can be trusted: every value of the program answers for its own expansion.
 ///
-/// Along a step the coordinates are known polynomials q_p(s). A disk |s| ≤ r in the complex plane is carried through the residual
-/// R(q_p, q̇_p, q̈_p, t + s) and through switch functions and events, whose inputs are polynomials, so that no majorant of the solution is needed.
-/// Each value f has a *reach* δ ≥ |f(s) − f(0)| on the disk and a *tail*: a bound of that part of f which is no polynomial of the kept degree, ∞ where the
-/// disk meets a singularity. By Cauchy's estimate what the step leaves out of f at |s| = x r is at most tail · x^{K+1}/(1 − x), K being the last order kept.
+/// Along a step the coordinates are known polynomials q_p(s). A disk |s| ≤ r in the complex plane is carried through
+/// the residual R(q_p, q̇_p, q̈_p, t + s) and through switch functions and events, whose inputs are polynomials, so that
+/// no majorant of the solution is needed. Each value f has a *reach* δ ≥ |f(s) − f(0)| on the disk and a *tail*: a
+/// bound of that part of f which is no polynomial of the kept degree, ∞ where the disk meets a singularity. By Cauchy's
+/// estimate what the step leaves out of f at |s| = x r is at most tail · x^{K+1}/(1 − x), K being the last order kept.
 ///
 /// docs/design/safe_steps.md has the rules; L. V. Ahlfors, Complex Analysis, §4.2.3 (Cauchy's estimate).
 namespace maupertuis {
@@ -41,8 +42,8 @@ class Disks {
   void set_constants(const double* constants);
   /// A step begins; the rows have to stay until the last evaluate().
   void begin(const SlotCoefficients& coefficients);
-  /// How much is asked of a disk: what a smaller one needs to know of derivatives; what the rules say; and what the coefficients say besides, where
-  /// a larger disk has bounded what they leave out.
+  /// How much is asked of a disk: what a smaller one needs to know of derivatives; what the rules say; and what the
+  /// coefficients say besides, where a larger disk has bounded what they leave out.
   enum class Depth { Derivatives, Rules, Coefficients };
   /// Bounds on |s| ≤ radius. Within a step from large radii to small ones.
   /// Cost: some 20 operations an instruction; 2 an order and stored slot for the coefficients.
@@ -52,8 +53,9 @@ class Disks {
 
   /// Of R_j at the radius evaluated last; rows of constraints follow those of the coordinates.
   double residual_tail(std::size_t j) const;
-  /// What rounding makes of R_j at s = 0, in units of the rounding of 1: each value adds its own size to what its operands hand on, and a derivative
-  /// divides by `length`, over which its operand is known. Cost: some 10 operations an instruction for each length.
+  /// What rounding makes of R_j at s = 0, in units of the rounding of 1: each value adds its own size to what its
+  /// operands hand on, and a derivative divides by `length`, over which its operand is known. Cost: some 10 operations
+  /// an instruction for each length.
   double residual_rounding(std::size_t j, double length);
   /// [slots] of polynomials in t; very large for all else.
   std::span<const int> degrees() const { return degree_; }
@@ -65,7 +67,7 @@ class Disks {
 
  private:
   struct Term {
-    double size = 0;      // |coefficient|
+    double size = 0;  // |coefficient|
     std::uint32_t coefficient = 0, a = 0, b = 0, shift = 0;
   };
   struct Node;
@@ -95,7 +97,9 @@ class Disks {
   Bounds chosen(const Instruction& instruction) const;
   void pair(const Node& node);
   void set(std::uint32_t slot, Bounds bounds);
-  double coefficient(int k, std::uint32_t slot) const { return now_.rows[static_cast<std::size_t>(k) * now_.stride + slot * now_.step]; }
+  double coefficient(int k, std::uint32_t slot) const {
+    return now_.rows[static_cast<std::size_t>(k) * now_.stride + slot * now_.step];
+  }
   double centre(std::uint32_t slot, std::uint32_t shift = 0) const;
   double shifted_reach(const Term& term) const;
   double shifted_tail(const Term& term) const;
@@ -103,30 +107,30 @@ class Disks {
 
   const Program& program_;
   std::vector<Node> nodes_;
-  std::vector<std::uint32_t> needed_;         // nodes that evaluate() carries out, in order
-  std::vector<std::uint32_t> derived_;        // those of them that Depth::Derivatives does
-  bool by_coefficients_ = false;              // the depth of the disk at hand
+  std::vector<std::uint32_t> needed_;                  // nodes that evaluate() carries out, in order
+  std::vector<std::uint32_t> derived_;                 // those of them that Depth::Derivatives does
+  bool by_coefficients_ = false;                       // the depth of the disk at hand
   std::vector<std::int8_t> needs_reach_, needs_tail_;  // [slots]
-  int most_rates_ = 0;                        // up to this shift the reach of coordinates is needed
+  int most_rates_ = 0;                                 // up to this shift the reach of coordinates is needed
   std::vector<Term> terms_;
-  std::vector<int> residual_;                 // node that makes R_j; −1: none
-  std::vector<std::int8_t> has_series_;       // [slots] all known orders are in the rows
-  std::vector<std::uint32_t> alone_;          // slots with a series beyond the stored ones
-  std::vector<int> degree_;                   // [slots] of polynomials in t; very large for all else
-  std::vector<bool> linear_;                  // [slots] in coordinates and polynomials in t
+  std::vector<int> residual_;            // node that makes R_j; −1: none
+  std::vector<std::int8_t> has_series_;  // [slots] all known orders are in the rows
+  std::vector<std::uint32_t> alone_;     // slots with a series beyond the stored ones
+  std::vector<int> degree_;              // [slots] of polynomials in t; very large for all else
+  std::vector<bool> linear_;             // [slots] in coordinates and polynomials in t
   bool residual_has_tails_ = false;
   const double* constants_ = nullptr;
 
   SlotCoefficients now_;
-  double radius_ = 0, previous_ = 0;          // evaluated last and before it, in units of now_.unit
-  std::vector<double> powers_;                // [orders] radius^k
-  std::array<double, 4> passed_on_{};         // by lag + 1: what a tail at the previous radius leaves in the series
-  std::vector<double> reach_, tail_, low_, high_;          // [slots] |f| lies in [low, high] on the disk
-  std::vector<double> reach_before_, tail_before_;         // [slots] at the previous radius
-  std::vector<double> rounding_;                           // [slots]
-  double rounding_length_ = 0;                             // that they belong to; 0: there are none of this step
-  std::vector<double> series_;                             // [slots] Σ_{k≥1} |f_k| r^k
-  std::array<std::vector<double>, 2> rate_reach_;          // [unknowns] of q̇ and q̈
+  double radius_ = 0, previous_ = 0;   // evaluated last and before it, in units of now_.unit
+  std::vector<double> powers_;         // [orders] radius^k
+  std::array<double, 4> passed_on_{};  // by lag + 1: what a tail at the previous radius leaves in the series
+  std::vector<double> reach_, tail_, low_, high_;   // [slots] |f| lies in [low, high] on the disk
+  std::vector<double> reach_before_, tail_before_;  // [slots] at the previous radius
+  std::vector<double> rounding_;                    // [slots]
+  double rounding_length_ = 0;                      // that they belong to; 0: there are none of this step
+  std::vector<double> series_;                      // [slots] Σ_{k≥1} |f_k| r^k
+  std::array<std::vector<double>, 2> rate_reach_;   // [unknowns] of q̇ and q̈
 };
 
 }  // namespace maupertuis

@@ -16,45 +16,48 @@ struct SolidShape {
     std::vector<double> points;
     bool closed = true;
   };
-  std::vector<Outline> faces;            // filled and outlined
+  std::vector<Outline> faces;  // filled and outlined
   std::vector<Outline> lines;
   Role role = Role::Body;
-  bool convex = false;                   // in space: faces turn counter-clockwise seen from outside, and are hidden from behind
-  bool ball = false;                     // in space: the unit ball, outlined where the view touches it; its lines are hidden behind it
+  bool convex = false;  // in space: faces turn counter-clockwise seen from outside, and are hidden from behind
+  bool ball = false;    // in space: the unit ball, outlined where the view touches it; its lines are hidden behind it
 };
 
 /// The drawing of a model as geometry: where every element is at the times of the frames. World axes, metres. What is
-/// decided here (springs, hoops, ellipsoids of inertia, pivots, the ground, the size of bobs) is decided once, for pages and
-/// for frames alike; what is left is the camera.
+/// decided here (springs, hoops, ellipsoids of inertia, pivots, the ground, the size of bobs) is decided once, for
+/// pages and for frames alike; what is left is the camera.
 struct Drawing {
   enum class Kind { Path, Trail, Solid, Arrow, Label };
   struct Element {
     Kind kind = Kind::Path;
-    std::size_t points = 1;              // of a frame; Solid: dimension + 1, its origin and the tips of its axes; Arrow: foot and tip
-    std::vector<double> positions = {};  // [frames × points × dimension], or [points × dimension] where still; NaN: no value
+    std::size_t points =
+        1;  // of a frame; Solid: dimension + 1, its origin and the tips of its axes; Arrow: foot and tip
+    std::vector<double> positions =
+        {};  // [frames × points × dimension], or [points × dimension] where still; NaN: no value
     bool still = false;
-    std::vector<double> masses = {};     // [points] Path: kg, 0 for a point without mass
-    std::vector<double> radii = {};      // [points] Path: m, of the bob where there is mass, of the joint where there is none; 0: no mark
-    std::vector<std::string> names = {}; // [points] Path, Trail: "" where the text has an expression; Arrow: what acts
-    NameParts text = {};                 // Label, Arrow
-    SolidShape shape = {};               // Solid
+    std::vector<double> masses = {};  // [points] Path: kg, 0 for a point without mass
+    std::vector<double> radii =
+        {};  // [points] Path: m, of the bob where there is mass, of the joint where there is none; 0: no mark
+    std::vector<std::string> names = {};  // [points] Path, Trail: "" where the text has an expression; Arrow: what acts
+    NameParts text = {};                  // Label, Arrow
+    SolidShape shape = {};                // Solid
   };
-  int dimension = 2;                     // 2 or 3
-  std::vector<double> times;             // [frames] s, ascending or descending
-  std::vector<Element> elements;         // the first is drawn first, in the plane
-  std::vector<double> gravity;           // [dimension] its direction; empty without gravity
-  bool dimensionless = false;            // no metres, no seconds
-  std::vector<double> follow;            // [frames × dimension] what the camera goes along with; empty: it rests
-  std::vector<double> low, high;         // [dimension] all that ever appears, seen from what is followed
-  double radius = 1;                     // of the ball about the middle that holds it
+  int dimension = 2;              // 2 or 3
+  std::vector<double> times;      // [frames] s, ascending or descending
+  std::vector<Element> elements;  // the first is drawn first, in the plane
+  std::vector<double> gravity;    // [dimension] its direction; empty without gravity
+  bool dimensionless = false;     // no metres, no seconds
+  std::vector<double> follow;     // [frames × dimension] what the camera goes along with; empty: it rests
+  std::vector<double> low, high;  // [dimension] all that ever appears, seen from what is followed
+  double radius = 1;              // of the ball about the middle that holds it
 
   bool empty() const { return elements.empty() || times.empty(); }
 };
 
-/// The drawing of a model at the rows of a run, at most `frames` of them. Where the model has no `draw`, it shows what the
-/// model has: bobs where mass is, rods where a distance is kept, bodies as the ellipsoids of their inertia, springs, dampers.
-/// Nothing where there is neither a point nor a body.
-/// With the equations the forces of `draw reaction rod` too: arrows on the points, the longest a third of the scene.
+/// The drawing of a model at the rows of a run, at most `frames` of them. Where the model has no `draw`, it shows what
+/// the model has: bobs where mass is, rods where a distance is kept, bodies as the ellipsoids of their inertia,
+/// springs, dampers. Nothing where there is neither a point nor a body. With the equations the forces of `draw reaction
+/// rod` too: arrows on the points, the longest a third of the scene.
 std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& trajectory, std::size_t frames = 6000,
                                         const EquationsOfMotion* equations = nullptr);
 
@@ -72,14 +75,14 @@ struct Camera {
 enum class TrailLength { None, Fading, Whole };
 
 struct FrameOptions {
-  double width = 720, height = 480;      // px
-  PlotTheme theme = PlotTheme::Light;    // Light or Dark
+  double width = 720, height = 480;    // px
+  PlotTheme theme = PlotTheme::Light;  // Light or Dark
   Camera camera;
   TrailLength trail = TrailLength::Fading;
-  double trail_time = 3;                 // s, over which a trail fades
-  int trail_pieces = 24;                 // of which a fading trail is made
-  bool furniture = true;                 // scale bar, direction of gravity, axes of space
-  std::string caption;                   // at the top left; empty: none
+  double trail_time = 3;  // s, over which a trail fades
+  int trail_pieces = 24;  // of which a fading trail is made
+  bool furniture = true;  // scale bar, direction of gravity, axes of space
+  std::string caption;    // at the top left; empty: none
 };
 
 /// Px of the world in the picture: fixed for a drawing and a size, so that frames fit each other.
@@ -111,34 +114,35 @@ class View {
 /// One of the inks; `strength` is how far a fill goes from the paper to it, and how opaque a stroke is.
 struct FrameColour {
   enum class Ink { None, Paper, Ink, Muted, Series } ink = Ink::None;
-  std::size_t series = 0;                // 0 … 6
+  std::size_t series = 0;  // 0 … 6
   double strength = 1;
 };
 
 /// One stroke, filled outline, disc or word of a frame, in px. The first is painted first.
 struct FrameItem {
   enum class Kind { Outline, Disc, Text } kind = Kind::Outline;
-  std::vector<double> points = {};       // [n × 2]; Disc, Text: one
+  std::vector<double> points = {};  // [n × 2]; Disc, Text: one
   bool closed = false;
-  double radius = 0;                     // Disc
+  double radius = 0;  // Disc
   FrameColour fill = {}, stroke = {};
-  double width = 0;                      // of the stroke
-  NameParts text = {};                   // Text
-  char align = 'c';                      // l, c, r
-  double depth = 0;                      // nearer things have a larger one
-  std::size_t id = 0;                    // the same thing has the same number in every frame
+  double width = 0;     // of the stroke
+  NameParts text = {};  // Text
+  char align = 'c';     // l, c, r
+  double depth = 0;     // nearer things have a larger one
+  std::size_t id = 0;   // the same thing has the same number in every frame
 };
 
 /// Everything of the model at `elapsed` seconds from the first frame; between frames by cubics.
-std::vector<FrameItem> frame_items(const Drawing& drawing, const View& view, double elapsed, const FrameOptions& options);
+std::vector<FrameItem> frame_items(const Drawing& drawing, const View& view, double elapsed,
+                                   const FrameOptions& options);
 
 /// The same with its furniture, as one picture.
 std::string frame_svg(const Drawing& drawing, double elapsed, const FrameOptions& options);
 
 /// A picture that moves in browsers (SMIL): frames at these elapsed times, shown after these seconds of watching.
 struct Playback {
-  std::vector<double> elapsed;           // [frames]
-  double seconds = 0;                    // of the whole
+  std::vector<double> elapsed;  // [frames]
+  double seconds = 0;           // of the whole
   bool loop = true;
 };
 std::string animated_svg(const Drawing& drawing, const Playback& playback, const FrameOptions& options);

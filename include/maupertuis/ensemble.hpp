@@ -24,12 +24,13 @@ namespace maupertuis {
 
 /// Where the motions begin and how far they go. Nothing is copied: the arrays must live as long as the call.
 struct EnsembleStart {
-  std::span<const double> q, v;        // [trajectories × n]
-  std::span<const double> parameters;  // [trajectories × p], or [p] for all
-  std::span<const double> begin;       // s, [trajectories] or [1]; empty: 0
-  std::span<const double> end;         // s, [trajectories] or [1]; before begin: backwards
-  std::span<const double> times;       // s, ascending: the states wanted on the way, of every trajectory
-  std::span<const double> step_factors{};  // [trajectories] in (0, 1], of the lengths that the tolerance asks for; empty: 1. Not of those that go alone
+  std::span<const double> q, v;            // [trajectories × n]
+  std::span<const double> parameters;      // [trajectories × p], or [p] for all
+  std::span<const double> begin;           // s, [trajectories] or [1]; empty: 0
+  std::span<const double> end;             // s, [trajectories] or [1]; before begin: backwards
+  std::span<const double> times;           // s, ascending: the states wanted on the way, of every trajectory
+  std::span<const double> step_factors{};  // [trajectories] in (0, 1], of the lengths that the tolerance asks for;
+                                           // empty: 1. Not of those that go alone
 };
 
 struct EnsembleOptions {
@@ -40,9 +41,10 @@ struct EnsembleOptions {
   int threads = 0;                               // 0: as many as the machine runs at once
   std::size_t energy_terms = 0;                  // so many first observables add up to an energy that is conserved
   const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
-  /// Automatic: compiled code where as many steps are expected as pay for it; that differs from the interpreter by rounding errors.
+  /// Automatic: compiled code where as many steps are expected as pay for it; that differs from the interpreter by
+  /// rounding errors.
   Backend backend = Backend::Automatic;
-  bool cache = true;                             // of compiled code
+  bool cache = true;  // of compiled code
   /// What expands the motions, instead of a backend. Called once, with the width.
   std::function<std::shared_ptr<const LaneExpansion>(const Kernel&, int width)> expansion;
 };
@@ -53,21 +55,22 @@ struct TrajectoryEnding {
   std::string reason;                    // one sentence for every ending but None
   double t = 0;                          // s, of the state that it ended with
   std::size_t steps = 0;
-  std::optional<std::size_t> event;      // it ended at a root of this event function
-  double energy_drift = 0;               // max |E(t) − E(begin)| / max Σ|terms|, over the samples and the end
-  bool alone = false;                    // by a TaylorStepper of its own
+  std::optional<std::size_t> event;  // it ended at a root of this event function
+  double energy_drift = 0;           // max |E(t) − E(begin)| / max Σ|terms|, over the samples and the end
+  bool alone = false;                // by a TaylorStepper of its own
   bool ok() const { return ending == StepEnding::None; }
 };
 
 struct EnsembleResult {
-  std::vector<TrajectoryEnding> endings;   // [trajectories]
-  std::vector<double> q, v;                // [trajectories × n] at the end
-  std::vector<double> sampled_q, sampled_v;  // [trajectories × times × n]; NaN at times that a trajectory did not come to
+  std::vector<TrajectoryEnding> endings;  // [trajectories]
+  std::vector<double> q, v;               // [trajectories × n] at the end
+  std::vector<double> sampled_q,
+      sampled_v;  // [trajectories × times × n]; NaN at times that a trajectory did not come to
   std::size_t freedoms = 0, times = 0;
-  int order = 0, width = 0;                // width 0: every trajectory alone
-  std::string backend;                     // of the lanes, "interpreter" or "compiled"; empty: every trajectory alone
-  std::string trouble;                     // why compiled code that was asked for is not used
-  std::string cache_trouble;               // it could not be kept for the next run
+  int order = 0, width = 0;   // width 0: every trajectory alone
+  std::string backend;        // of the lanes, "interpreter" or "compiled"; empty: every trajectory alone
+  std::string trouble;        // why compiled code that was asked for is not used
+  std::string cache_trouble;  // it could not be kept for the next run
   double compile_seconds = 0;
 
   std::span<const double> q_of(std::size_t trajectory) const { return {q.data() + trajectory * freedoms, freedoms}; }
@@ -80,16 +83,16 @@ struct EnsembleResult {
   }
 };
 
-/// Advances every trajectory from its begin to its end. Each has steps of its own length, as TaylorStepper chooses them; a
-/// trajectory that is done makes room for the next. Events end a trajectory.
+/// Advances every trajectory from its begin to its end. Each has steps of its own length, as TaylorStepper chooses
+/// them; a trajectory that is done makes room for the next. Events end a trajectory.
 ///
-/// Trajectories go alone, by TaylorStepper, when the kernel does not fit into lanes (fits_lanes), when M₀ comes close to
-/// a singular matrix, when something is not finite, or when steps shrink below the resolution of time: the ending and the state
-/// are then the stepper's own.
+/// Trajectories go alone, by TaylorStepper, when the kernel does not fit into lanes (fits_lanes), when M₀ comes close
+/// to a singular matrix, when something is not finite, or when steps shrink below the resolution of time: the ending
+/// and the state are then the stepper's own.
 ///
-/// With a given backend the result of a trajectory depends neither on the others and their order, nor on the width, nor on the
-/// number of threads, to the bit. (It may differ from TaylorStepper's by rounding errors, since sums are fused and taken in another
-/// order.) Backend::Automatic looks at the first trajectory and at the durations of all.
+/// With a given backend the result of a trajectory depends neither on the others and their order, nor on the width, nor
+/// on the number of threads, to the bit. (It may differ from TaylorStepper's by rounding errors, since sums are fused
+/// and taken in another order.) Backend::Automatic looks at the first trajectory and at the durations of all.
 ///
 /// Preconditions: sizes as the comments of EnsembleStart say; times ascending; every number finite; width as above.
 EnsembleResult advance_ensemble(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptions& options = {});

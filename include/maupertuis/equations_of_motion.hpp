@@ -16,19 +16,19 @@ struct EquationsOfMotion {
   std::shared_ptr<const MechanicalSystem> system;
   ReadingOrder order;
 
-  Expr lagrangian;                   // computational form; may hold TimeDerivative nodes
-  Expr lagrangian_expanded;          // in q, q', u, t alone
-  ExprVector generalized_forces;     // Q [n], in q, q', u, t
-  ExprVector dissipative_terms;      // ∂D/∂q̇ [n]
-  ExprVector residual;               // R [n], computational form with d/dt as an operator; without Aᵀλ
+  Expr lagrangian;                // computational form; may hold TimeDerivative nodes
+  Expr lagrangian_expanded;       // in q, q', u, t alone
+  ExprVector generalized_forces;  // Q [n], in q, q', u, t
+  ExprVector dissipative_terms;   // ∂D/∂q̇ [n]
+  ExprVector residual;            // R [n], computational form with d/dt as an operator; without Aᵀλ
   // With constraints, [m] in the order of system.constraints; empty without.
-  ExprVector multipliers;            // λ, symbols
-  ExprVector constraint_forces;      // Aᵀλ [n], by reverse mode
-  ExprVector constraint_rates;       // dφ/dt or ψ; computational form
+  ExprVector multipliers;               // λ, symbols
+  ExprVector constraint_forces;         // Aᵀλ [n], by reverse mode
+  ExprVector constraint_rates;          // dφ/dt or ψ; computational form
   ExprVector constraint_accelerations;  // d²φ/dt² or dψ/dt = A q̈ − b; computational form
-  ExprVector momenta;                // ∂L/∂q̇ [n], in q, q', u, t
-  Expr energy_function;              // h_E = q̇·∂L/∂q̇ − L
-  Expr power;                        // dh_E/dt along the motion: −∂L/∂t − q̇·∂D/∂q̇ + Q·q̇ + λ·A q̇
+  ExprVector momenta;                   // ∂L/∂q̇ [n], in q, q', u, t
+  Expr energy_function;                 // h_E = q̇·∂L/∂q̇ − L
+  Expr power;  // dh_E/dt along the motion: −∂L/∂t − q̇·∂D/∂q̇ + Q·q̇ + λ·A q̇
 
   /// The same with the symbols of parameter definitions kept (`let I = 1/2 m R^2`); null if the model has none.
   std::shared_ptr<const EquationsOfMotion> written;
@@ -72,21 +72,21 @@ ReadingOrder reading_order(const MechanicalSystem& system);
 
 /// What is conserved at a glance, without a search: cyclic coordinates and the energy function.
 struct ConservedQuantities {
-  std::vector<std::size_t> cyclic;          // coordinates absent from L
+  std::vector<std::size_t> cyclic;             // coordinates absent from L
   std::vector<std::size_t> conserved_momenta;  // cyclic, and Q, ∂D/∂q̇ and Aᵀλ vanish
-  bool energy_conserved = false;            // power ≡ 0, proved
-  bool energy_is_t_plus_v = false;          // h_E ≡ T + V, proved
-  std::string energy_case;                  // one sentence: why h_E is or is not T + V
+  bool energy_conserved = false;               // power ≡ 0, proved
+  bool energy_is_t_plus_v = false;             // h_E ≡ T + V, proved
+  std::string energy_case;                     // one sentence: why h_E is or is not T + V
 };
 ConservedQuantities conserved_quantities(const EquationsOfMotion& equations);
 
 /// One line of the textbook derivation.
 struct DerivationStep {
-  std::string section;   // "Coordinates", "Kinetic energy", "∂L/∂q̇", …
-  std::string rule;      // "chain rule", "definition of L", "Euler-Lagrange"
-  Layout left;           // d/dt ∂L/∂θ1'; empty if the step is a sentence alone
-  Expr right;            // readable; empty if the step is a sentence alone
-  std::string sentence;  // shown instead of, or after, the formula
+  std::string section;                      // "Coordinates", "Kinetic energy", "∂L/∂q̇", …
+  std::string rule;                         // "chain rule", "definition of L", "Euler-Lagrange"
+  Layout left;                              // d/dt ∂L/∂θ1'; empty if the step is a sentence alone
+  Expr right;                               // readable; empty if the step is a sentence alone
+  std::string sentence;                     // shown instead of, or after, the formula
   std::vector<Intermediate> intermediates;  // that `right` uses
 
   /// 0 = right, which is read as right = 0.
@@ -95,28 +95,30 @@ struct DerivationStep {
 
 /// A constraint as two sides whose difference is φ or ψ, term by term as the model has them.
 struct ConstraintEquation {
-  std::string name;      // `rod`; "constraint 2" where it has none
+  std::string name;  // `rod`; "constraint 2" where it has none
   Expr left, right;
 };
 
 struct Derivation {
   std::vector<DerivationStep> steps;
-  std::vector<ReadableForm> equations;   // row i: equations[i].value = 0, or = constraint_forces[i].value
-  std::vector<ReadableForm> constraint_forces;   // (Aᵀλ)[i], collected by multipliers; empty without constraints
+  std::vector<ReadableForm> equations;          // row i: equations[i].value = 0, or = constraint_forces[i].value
+  std::vector<ReadableForm> constraint_forces;  // (Aᵀλ)[i], collected by multipliers; empty without constraints
   std::vector<ConstraintEquation> constraints;
-  std::vector<Intermediate> intermediates;   // the legend: definitions of the model that are used, then named sub-expressions
+  std::vector<Intermediate>
+      intermediates;  // the legend: definitions of the model that are used, then named sub-expressions
 };
 
 /// The equations in readable form (steps left empty), and with the textbook path.
 Derivation readable_derivation(const EquationsOfMotion& equations, bool with_steps);
 
-/// The definitions of the model (`let I = 1/2 m R^2`) whose symbols stand in `roots`, in the order of the text: the legend.
+/// The definitions of the model (`let I = 1/2 m R^2`) whose symbols stand in `roots`, in the order of the text: the
+/// legend.
 std::vector<Intermediate> definitions_used(const MechanicalSystem& system, std::span<const Expr> roots);
 
 /// One block of the equations solved for its accelerations. Coordinates that M does not couple are separate blocks.
 struct SolvedAcceleration {
   std::size_t coordinate = 0;
-  ReadableForm right;            // q̈ = right; an empty handle where the block is too large to be written out
+  ReadableForm right;                     // q̈ = right; an empty handle where the block is too large to be written out
   std::vector<std::size_t> coupled_with;  // the coordinates of its block, itself included
 };
 
@@ -124,10 +126,12 @@ struct SolvedAcceleration {
 /// more than 400 characters; longer or singular blocks are left to the numerical solve. With constraints in terms of λ.
 std::vector<SolvedAcceleration> solved_accelerations(const EquationsOfMotion& equations);
 
-/// λ = (A M⁻¹ Aᵀ)⁻¹ (b + A M⁻¹ h) [m] for at most two constraints on coordinates as in solved_accelerations; else empty.
+/// λ = (A M⁻¹ Aᵀ)⁻¹ (b + A M⁻¹ h) [m] for at most two constraints on coordinates as in solved_accelerations; else
+/// empty.
 std::vector<ReadableForm> solved_multipliers(const EquationsOfMotion& equations);
 
-/// The equations with the multipliers eliminated: Zᵀ(M q̈ + h) = 0 with A Z = 0, a row for each independent acceleration.
+/// The equations with the multipliers eliminated: Zᵀ(M q̈ + h) = 0 with A Z = 0, a row for each independent
+/// acceleration.
 struct EliminatedEquations {
   std::vector<std::size_t> dependent, independent;  // coordinates; the row's own one is independent
   std::vector<ReadableForm> rows;                   // row = 0

@@ -21,15 +21,15 @@ enum class Verdict { Zero, Nonzero, Undecided };
 /// What the zero test found and on what ground (docs/theory/zero_test.md).
 struct ZeroTest {
   Verdict verdict = Verdict::Undecided;
-  int points = 0;                 // random points at which the expression vanished modulo both primes
-  double error_bound = 1;         // probability that a nonzero expression passes; 1: none claimed
-  Bindings witness;               // Nonzero: a real point where interval arithmetic excludes 0 (may be empty)
+  int points = 0;          // random points at which the expression vanished modulo both primes
+  double error_bound = 1;  // probability that a nonzero expression passes; 1: none claimed
+  Bindings witness;        // Nonzero: a real point where interval arithmetic excludes 0 (may be empty)
   double witness_value = 0;
-  std::string reason;             // Undecided: why
+  std::string reason;  // Undecided: why
 };
 
 struct ZeroTestOptions {
-  int points = 3;                 // per prime
+  int points = 3;  // per prime
   std::uint64_t seed = 0x6d617570;
 };
 
@@ -38,11 +38,12 @@ ZeroTest zero_test(Expr e, const ZeroTestOptions& options = {});
 /// All of them at once, with shared evaluation: the first that is not zero decides.
 ZeroTest zero_test(std::span<const Expr> differences, const ZeroTestOptions& options = {});
 
-/// Decides whether the differences vanish where all `relations` = 0 hold: at random real points near `center` (which binds
-/// every symbol), brought onto the relations by Newton's method over the `unknowns` and refined there to 100 digits. Zero
-/// says that at each of `points` points every difference is below 1e-60 of the sizes of its terms: evidence, not a proof, so
-/// that the error bound stays 1. Undecided where no point was found. Symbols that are no unknowns vary by a hundredth.
-/// Precondition: no TimeDerivative nodes. Cost: the symbolic rows of the relations, and some hundred evaluations.
+/// Decides whether the differences vanish where all `relations` = 0 hold: at random real points near `center` (which
+/// binds every symbol), brought onto the relations by Newton's method over the `unknowns` and refined there to 100
+/// digits. Zero says that at each of `points` points every difference is below 1e-60 of the sizes of its terms:
+/// evidence, not a proof, so that the error bound stays 1. Undecided where no point was found. Symbols that are no
+/// unknowns vary by a hundredth. Precondition: no TimeDerivative nodes. Cost: the symbolic rows of the relations, and
+/// some hundred evaluations.
 ZeroTest zero_test_where(std::span<const Expr> differences, std::span<const Expr> relations,
                          std::span<const Expr> unknowns, const Bindings& center, const ZeroTestOptions& options = {});
 

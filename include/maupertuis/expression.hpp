@@ -12,29 +12,49 @@
 
 namespace maupertuis {
 
-/// The kinds of node. kinds.hpp tells their families; one table (symbolic/expression/kind_table.hpp) holds arity and names of
-/// each, and functions.hpp all that passes ask of a function of one argument.
+/// The kinds of node. kinds.hpp tells their families; one table (symbolic/expression/kind_table.hpp) holds arity and
+/// names of each, and functions.hpp all that passes ask of a function of one argument.
 enum class Kind : std::uint8_t {
   // leaves
-  Number,    // exact rational
+  Number,  // exact rational
   Pi,
   Symbol,
   // algebra
-  Sum,       // n-ary; every argument but one Number is a term; a term with a coefficient is a Product
-  Product,   // n-ary; a leading Number coefficient other than 1, then factors; repeated factors are Powers
-  Power,     // base, exponent (any expression; sqrt(x) is x^(1/2), 1/x is x^(-1))
+  Sum,      // n-ary; every argument but one Number is a term; a term with a coefficient is a Product
+  Product,  // n-ary; a leading Number coefficient other than 1, then factors; repeated factors are Powers
+  Power,    // base, exponent (any expression; sqrt(x) is x^(1/2), 1/x is x^(-1))
   // d/dt, kept as an operator of the computational form (docs/design/computational_form.md)
   TimeDerivative,
   // elementary functions of one argument
-  Sin, Cos, Tan, Asin, Acos, Atan, Sinh, Cosh, Tanh, Asinh, Acosh, Atanh, Exp, Log,
+  Sin,
+  Cos,
+  Tan,
+  Asin,
+  Acos,
+  Atan,
+  Sinh,
+  Cosh,
+  Tanh,
+  Asinh,
+  Acosh,
+  Atanh,
+  Exp,
+  Log,
   Erf,       // 2/√π ∫₀ˣ exp(−s²) ds
   LambertW,  // the root w ≥ −1 of w eʷ = x
   // functions with a switch
-  Abs, Sign, Step,             // sign(0) = 0, step(0) = 1
-  Atan2, Min, Max,             // two arguments
-  Piecewise,                   // condition, value, condition, value, ..., else value
+  Abs,
+  Sign,
+  Step,  // sign(0) = 0, step(0) = 1
+  Atan2,
+  Min,
+  Max,        // two arguments
+  Piecewise,  // condition, value, condition, value, ..., else value
   // conditions, only inside Piecewise
-  Less, LessEqual, And, Or,
+  Less,
+  LessEqual,
+  And,
+  Or,
 };
 
 /// What a symbol stands for. Coordinates and inputs depend on time; their derivatives are symbols of higher `order`.
@@ -69,8 +89,8 @@ class Expr {
   NodeId id() const { return id_; }
 
   Kind kind() const;
-  std::size_t size() const;                    // number of arguments
-  Expr operator[](std::size_t index) const;    // argument
+  std::size_t size() const;                  // number of arguments
+  Expr operator[](std::size_t index) const;  // argument
   std::span<const NodeId> argument_ids() const;
 
   bool is(Kind k) const { return kind() == k; }
@@ -84,9 +104,9 @@ class Expr {
   const Rational* number_or_null() const { return is_number() ? &number() : nullptr; }
 
   // Precondition of all: is_symbol().
-  const std::string& name() const;   // without primes: θ for θ''
+  const std::string& name() const;  // without primes: θ for θ''
   Role role() const;
-  int order() const;                 // number of time derivatives: 2 for θ''
+  int order() const;  // number of time derivatives: 2 for θ''
 
   friend bool operator==(const Expr& a, const Expr& b) { return a.id_ == b.id_ && a.context_ == b.context_; }
   friend bool operator!=(const Expr& a, const Expr& b) { return !(a == b); }
@@ -169,8 +189,8 @@ Expr sin(Expr e);
 Expr cos(Expr e);
 Expr apply(Kind function, Expr argument);
 Expr sum_of(std::span<const Expr> terms, Context& context);
-Expr sum_of(std::initializer_list<Expr> terms);       // not empty
-Expr product_of(std::initializer_list<Expr> factors); // not empty
+Expr sum_of(std::initializer_list<Expr> terms);        // not empty
+Expr product_of(std::initializer_list<Expr> factors);  // not empty
 
 /// Splits a factor into base and numeric exponent: x^2 → (x, 2); x → (x, 1); x^y → (x^y, 1).
 struct PowerOf {

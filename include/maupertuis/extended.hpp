@@ -8,30 +8,31 @@
 #include <string>
 #include <vector>
 
-/// Motions in more digits than double has (docs/design/extended_precision.md). Numbers come in exactly, as expressions in a kernel,
-/// and go out as decimal text; no number type has a public face.
+/// Motions in more digits than double has (docs/design/extended_precision.md). Numbers come in exactly, as expressions
+/// in a kernel, and go out as decimal text; no number type has a public face.
 namespace maupertuis {
 
 /// Bits of the mantissa that a run calculates with. Words are 64 bits: the two of a pair differ by one word or more.
 enum class Mantissa { Bits113, Bits192, Bits384, Bits448 };
 
-/// What is to be computed. Every number of it is an expression in a kernel of its own, so that 9.81 is the decimal and π is π.
+/// What is to be computed. Every number of it is an expression in a kernel of its own, so that 9.81 is the decimal and
+/// π is π.
 struct ExtendedProblem {
-  Kernel kernel;                 // of the motion
-  /// Without coordinates and parameters. Its observables are, in this order: the parameters of `kernel` [p], begin, end, the time
-  /// between two rows, q [n] and q̇ [n] at the begin, the times asked for.
+  Kernel kernel;  // of the motion
+  /// Without coordinates and parameters. Its observables are, in this order: the parameters of `kernel` [p], begin,
+  /// end, the time between two rows, q [n] and q̇ [n] at the begin, the times asked for.
   Kernel numbers;
-  std::vector<bool> fixed_q, fixed_v;  // [n] not to be moved when the start is brought onto the constraints
-  std::size_t first_rate = 0, rates = 0;  // observables of `kernel` that q̇ must bring to zero at the start, each followed by its
-                                          // derivatives by q̇: [rates × (1 + n)]
-  std::size_t rows = 0;          // states wanted at begin, begin ± every, …, this many; then one at the end
-  std::size_t times = 0;         // states wanted at the times asked for, in the order of the run
-  bool until = false;            // the first event of the kernel ends the run
+  std::vector<bool> fixed_q, fixed_v;     // [n] not to be moved when the start is brought onto the constraints
+  std::size_t first_rate = 0, rates = 0;  // observables of `kernel` that q̇ must bring to zero at the start, each
+                                          // followed by its derivatives by q̇: [rates × (1 + n)]
+  std::size_t rows = 0;   // states wanted at begin, begin ± every, …, this many; then one at the end
+  std::size_t times = 0;  // states wanted at the times asked for, in the order of the run
+  bool until = false;     // the first event of the kernel ends the run
 };
 
 struct ExtendedOptions {
-  double log2_tolerance = 0;     // of the relative tolerance of a step; 0: rounding level
-  int order = 0;                 // of the polynomial of q̇; 0: from the tolerance
+  double log2_tolerance = 0;  // of the relative tolerance of a step; 0: rounding level
+  int order = 0;              // of the polynomial of q̇; 0: from the tolerance
   std::size_t maximum_steps = 100'000'000;
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(double)> progress;  // told the fraction of the run that is done, now and then
@@ -41,7 +42,7 @@ struct ExtendedOptions {
 struct ExtendedSample {
   bool reached = false;
   std::string t;
-  std::vector<std::string> q, v;         // [n]
+  std::vector<std::string> q, v;  // [n]
   std::vector<std::string> observables;
   std::vector<std::string> multipliers;  // [constraints]; empty text where the equations do not determine λ
 };
@@ -50,8 +51,8 @@ struct ExtendedMotion {
   std::vector<ExtendedSample> rows, at;  // at: [times]
   ExtendedSample final;
   StepEnding ending = StepEnding::None;
-  std::string reason;                    // one sentence for every ending but None
-  bool met = false;                      // an event ended the run
+  std::string reason;  // one sentence for every ending but None
+  bool met = false;    // an event ended the run
   std::size_t steps = 0, switches = 0;
   int order = 0;
 };
@@ -65,13 +66,13 @@ double log2_rounding(Mantissa mantissa);
 
 /// A number as two computations of different accuracy give it.
 struct AgreedNumber {
-  std::string text;      // decimal, `digits` significant digits, rounded; "0" with none where they do not tell it from zero
+  std::string text;  // decimal, `digits` significant digits, rounded; "0" with none where they do not tell it from zero
   int digits = 0;
   std::string difference;  // of the two, as "3e-32"
 };
 
-/// The digits of the finer value that the difference leaves standing: |rough − fine| is at most half a unit of the last one.
-/// Precondition: both are numbers as ExtendedSample holds them.
+/// The digits of the finer value that the difference leaves standing: |rough − fine| is at most half a unit of the last
+/// one. Precondition: both are numbers as ExtendedSample holds them.
 AgreedNumber agreed_number(const std::string& rough, const std::string& fine, int most_digits);
 
 }  // namespace maupertuis

@@ -6,10 +6,11 @@
 
 namespace maupertuis {
 
-/// Bounds of a function's values where its inputs are polynomials in s and |s| ≤ r in the complex plane (docs/design/safe_steps.md):
-/// what points cannot see, a disk that contains them can. Each value f has a *reach* ≥ |f(s) − f(0)|, bounds of its modulus, and a *tail*: the reach of
-/// what is no polynomial of the inputs' degree; ∞ where the disk meets a singularity, or a switch that is not decided on it. By Cauchy's
-/// estimate a polynomial of degree K − 1 leaves out at most tail · x^K/(1 − x) of f at |s| = x r.
+/// Bounds of a function's values where its inputs are polynomials in s and |s| ≤ r in the complex plane
+/// (docs/design/safe_steps.md): what points cannot see, a disk that contains them can. Each value f has a *reach* ≥
+/// |f(s) − f(0)|, bounds of its modulus, and a *tail*: the reach of what is no polynomial of the inputs' degree; ∞
+/// where the disk meets a singularity, or a switch that is not decided on it. By Cauchy's estimate a polynomial of
+/// degree K − 1 leaves out at most tail · x^K/(1 − x) of f at |s| = x r.
 ///
 /// Cost: some 10 operations a term.
 class FunctionDisks {

@@ -8,9 +8,10 @@
 #include <tuple>
 #include <type_traits>
 
-/// The smooth functions of one argument, a row each: all that the passes ask of one. A new function is a Kind, its row here, its
-/// word in the grammar, and the two rules that are kept apart on purpose, so that a wrong row cannot certify itself: its
-/// image in a prime field (symbolic/evaluate/field_numbers) and its series in the certificate (symbolic/evaluate/jet_numbers).
+/// The smooth functions of one argument, a row each: all that the passes ask of one. A new function is a Kind, its row
+/// here, its word in the grammar, and the two rules that are kept apart on purpose, so that a wrong row cannot certify
+/// itself: its image in a prime field (symbolic/evaluate/field_numbers) and its series in the certificate
+/// (symbolic/evaluate/jet_numbers).
 namespace maupertuis {
 
 enum class Parity : std::uint8_t { None, Odd, Even };
@@ -26,17 +27,17 @@ struct FunctionRow {
   bool bare;                       // sin θ, sin² θ: needs no brackets around a name, and carries its exponent
   Parity parity;
   Angles angles;
-  int at, exactly;                 // the number whose value is known: f(at) = exactly
-  std::string_view sleef;          // the stem of SLEEF's name; empty: SLEEF has none, and compiled code calls `value_of`
+  int at, exactly;         // the number whose value is known: f(at) = exactly
+  std::string_view sleef;  // the stem of SLEEF's name; empty: SLEEF has none, and compiled code calls `value_of`
   Expr (*derivative)(Expr x, Expr f);  // f'(x), written with x and with f = f(x)
-  ValueOf value_of;                // f(x) of any real type, by the functions found beside it
+  ValueOf value_of;                    // f(x) of any real type, by the functions found beside it
 };
 
 namespace functions {
 
 template <class ValueOf>
-constexpr FunctionRow<ValueOf> row(Kind kind, std::string_view name, std::string_view latex, std::string_view mathml, bool bare,
-                                   Parity parity, Angles angles, int at, int exactly, std::string_view sleef,
+constexpr FunctionRow<ValueOf> row(Kind kind, std::string_view name, std::string_view latex, std::string_view mathml,
+                                   bool bare, Parity parity, Angles angles, int at, int exactly, std::string_view sleef,
                                    Expr (*derivative)(Expr, Expr), ValueOf value_of) {
   return {kind, name, latex, mathml, bare, parity, angles, at, exactly, sleef, derivative, value_of};
 }
@@ -104,7 +105,8 @@ inline constexpr std::size_t count = std::tuple_size_v<decltype(rows)>;
 template <std::size_t... I>
 constexpr bool in_order(std::index_sequence<I...>) {
   constexpr auto first = static_cast<std::size_t>(Kind::Sin);
-  return ((static_cast<std::size_t>(std::get<I>(rows).kind) == first + I && is_function(std::get<I>(rows).kind)) && ...) &&
+  return ((static_cast<std::size_t>(std::get<I>(rows).kind) == first + I && is_function(std::get<I>(rows).kind)) &&
+          ...) &&
          !is_function(static_cast<Kind>(first + sizeof...(I)));
 }
 static_assert(in_order(std::make_index_sequence<count>()), "a row for every function, in the order of the enumeration");
@@ -112,8 +114,10 @@ static_assert(in_order(std::make_index_sequence<count>()), "a row for every func
 /// f(row) of the row of `kind`. Throws std::logic_error if it is no function.
 template <std::size_t I = 0, class F>
 auto of_row(Kind kind, F&& f) -> decltype(f(std::get<0>(rows))) {
-  if constexpr (I == count) throw unknown_kind(kind, "the table of functions");
-  else return std::get<I>(rows).kind == kind ? f(std::get<I>(rows)) : of_row<I + 1>(kind, f);
+  if constexpr (I == count)
+    throw unknown_kind(kind, "the table of functions");
+  else
+    return std::get<I>(rows).kind == kind ? f(std::get<I>(rows)) : of_row<I + 1>(kind, f);
 }
 
 /// f(x). Real: double, or any type with the functions of <cmath> found beside it.

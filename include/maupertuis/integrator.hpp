@@ -24,8 +24,8 @@
 namespace maupertuis {
 
 struct TaylorOptions {
-  double tolerance = 0;                          // relative, per step; 0: rounding level of double
-  int order = 0;                                 // of the polynomial of q̇; 0: from the tolerance
+  double tolerance = 0;  // relative, per step; 0: rounding level of double
+  int order = 0;         // of the polynomial of q̇; 0: from the tolerance
   std::size_t maximum_steps = 100'000'000;
   const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
   Backend backend = Backend::Automatic;          // what carries out the expansions
@@ -52,22 +52,23 @@ class TaylorStepper {
   int order() const;
   /// Begins a run; integrals and statistics start at zero.
   void start(double t, std::span<const double> q, std::span<const double> v);
-  /// One step towards `bound`, at most up to it; time() == bound exactly when it is reached. Backwards if bound < time().
+  /// One step towards `bound`, at most up to it; time() == bound exactly when it is reached. Backwards if bound <
+  /// time().
   Step step(double bound);
 
   double time() const;
   std::span<const double> q() const;  // [n]
   std::span<const double> v() const;  // [n]
   std::size_t steps() const;
-  std::size_t rejected() const;       // steps so far that were taken back, since the equations did not hold at their ends
-  std::size_t switches() const;       // located crossings so far
+  std::size_t rejected() const;  // steps so far that were taken back, since the equations did not hold at their ends
+  std::size_t switches() const;  // located crossings so far
   const BackendUse& backend() const;
 
   /// Whether t lies in the last step, its ends included.
   bool covers(double t) const;
   /// The motion at a time in the last step, from the step's own polynomial; accelerations and observables by the
-  /// kernel at that point. Also at the start, before any step. Where the forces have no value a and observables are NaN.
-  /// Precondition: covers(t).
+  /// kernel at that point. Also at the start, before any step. Where the forces have no value a and observables are
+  /// NaN. Precondition: covers(t).
   Sample sample(double t) const;
   /// The state alone, from the polynomial: no evaluation of the kernel. q, v: [n].
   void state(double t, std::span<double> q, std::span<double> v) const;
@@ -81,7 +82,8 @@ class TaylorStepper {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The order that a tolerance asks for (20 at rounding level, 12 at 1e-6; docs/theory/taylor.md), and the tolerance at rounding level.
+/// The order that a tolerance asks for (20 at rounding level, 12 at 1e-6; docs/theory/taylor.md), and the tolerance at
+/// rounding level.
 int taylor_order(double tolerance);
 double rounding_tolerance();
 

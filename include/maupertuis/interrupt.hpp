@@ -10,8 +10,9 @@ class Interrupted : public std::exception {
   const char* what() const noexcept override { return "interrupted"; }
 };
 
-/// When long work is to stop: as soon as a flag is set, by Ctrl-C or when its time is over. Steppers look at the flag once a step, everything
-/// else at least a few times a second. What has a part to show returns it; what has none throws Interrupted.
+/// When long work is to stop: as soon as a flag is set, by Ctrl-C or when its time is over. Steppers look at the flag
+/// once a step, everything else at least a few times a second. What has a part to show returns it; what has none throws
+/// Interrupted.
 class Interrupt {
  public:
   /// The flag outlives whatever holds this; null: never.

@@ -64,7 +64,7 @@ struct Invariants {
   /// The first so many are for a reader: independent ones, those with a name, and what their Poisson brackets lead to.
   /// The others are functions of them that no name tells apart.
   std::size_t shown = 0;
-  ExprVector symbols;  // I1, I2, … [integrals]: what relations and brackets are written in
+  ExprVector symbols;                       // I1, I2, … [integrals]: what relations and brackets are written in
   std::vector<IntegralRelation> relations;  // those between shown ones first
   std::vector<PoissonBracket> brackets;
   std::vector<BalanceLaw> balance_laws;

@@ -14,7 +14,7 @@ class SparseGradient {
   explicit SparseGradient(std::span<const Expr> symbols);
 
   struct Entry {
-    std::size_t column = 0;   // the place of the symbol
+    std::size_t column = 0;  // the place of the symbol
     Expr value;
   };
   /// By ascending columns; the same expressions as `gradient` gives. Cost O(nodes of e).
@@ -36,6 +36,6 @@ std::vector<DerivativeEntry> jacobian(std::span<const Expr> rows, std::span<cons
 
 /// The same, or nothing where it has more than `most` entries: told at the price of the first `most`.
 std::optional<std::vector<DerivativeEntry>> sparse_jacobian(std::span<const Expr> rows, std::span<const Expr> symbols,
-                                                          std::size_t most);
+                                                            std::size_t most);
 
 }  // namespace maupertuis

@@ -31,14 +31,14 @@ struct KernelConstraint {
 /// What a kernel is built from. The expressions may hold TimeDerivative nodes, t, numbers, and symbols of the listed
 /// coordinates (orders 0, 1, 2), multipliers and parameters; every other symbol (inputs, lets) is already substituted.
 struct KernelSource {
-  std::vector<Expr> coordinates;  // [n] symbols of order 0
-  std::vector<Expr> parameters;   // [p] symbols of Role::Parameter or Role::Constant
-  std::vector<Expr> residual;     // [n] R(q,q̇,q̈,λ,t) = 0, linear in q̈ and λ; M = ∂R/∂q̈
-  std::vector<Expr> multipliers;  // [m] symbols of the unknown λ, one a constraint
+  std::vector<Expr> coordinates;              // [n] symbols of order 0
+  std::vector<Expr> parameters;               // [p] symbols of Role::Parameter or Role::Constant
+  std::vector<Expr> residual;                 // [n] R(q,q̇,q̈,λ,t) = 0, linear in q̈ and λ; M = ∂R/∂q̈
+  std::vector<Expr> multipliers;              // [m] symbols of the unknown λ, one a constraint
   std::vector<KernelConstraint> constraints;  // [m]
-  std::vector<Expr> observables;  // numbers wanted at points of the motion
-  std::vector<Expr> events;       // functions whose roots are to be located
-  std::vector<Expr> integrands;   // functions whose integrals over time are wanted (work, action)
+  std::vector<Expr> observables;              // numbers wanted at points of the motion
+  std::vector<Expr> events;                   // functions whose roots are to be located
+  std::vector<Expr> integrands;               // functions whose integrals over time are wanted (work, action)
 };
 
 /// A function whose zero changes the formula in force: the argument of abs, sign or step, the difference of the
@@ -90,21 +90,29 @@ struct CompileReport {
 
 enum class KernelStatus {
   Ok,
-  SingularMass,  // M has no reliable inverse here: `singular_coordinate` is a coordinate whose q̈ is not determined
-  Contradiction, // the constraints ask for accelerations that exclude each other: `contradicting_constraint` is one of them
-  NonFinite,     // a value is infinite or undefined
+  SingularMass,   // M has no reliable inverse here: `singular_coordinate` is a coordinate whose q̈ is not determined
+  Contradiction,  // the constraints ask for accelerations that exclude each other: `contradicting_constraint` is one of
+                  // them
+  NonFinite,      // a value is infinite or undefined
 };
 
-/// Of Taylor polynomials c_0 + c_1 τ + … beside each other, coefficient k of column i at first[k · stride + i]: what is to be added to
-/// c_1 and c_1 after τ, Σ_{k≥2} c_k τ^{k−1} and Σ_{k≥2} k c_k τ^{k−1}. Rows and results are read and written in eights.
-using PolynomialIncrements = void(const double* first, std::size_t stride, std::size_t columns, int degree, double tau, double* dq, double* dv);
+/// Of Taylor polynomials c_0 + c_1 τ + … beside each other, coefficient k of column i at first[k · stride + i]: what is
+/// to be added to c_1 and c_1 after τ, Σ_{k≥2} c_k τ^{k−1} and Σ_{k≥2} k c_k τ^{k−1}. Rows and results are read and
+/// written in eights.
+using PolynomialIncrements = void(const double* first, std::size_t stride, std::size_t columns, int degree, double tau,
+                                  double* dq, double* dv);
 PolynomialIncrements polynomial_increments;
 /// Σ_{k≥2} k (k − 1) c_k τ^{k−2} of the same polynomials; written in eights.
-void polynomial_accelerations(const double* first, std::size_t stride, std::size_t columns, int degree, double tau, double* a);
-/// Σ_{k≥1} w_k |c_k| of each column for three rows of weights [3][degree + 1]; sizes: [3][columns], rounded up to eights.
-void polynomial_sizes(const double* first, std::size_t stride, std::size_t columns, int degree, const double* weights, double* sizes);
-/// q += (dq + q̇) τ and q̇ += dv with compensation: q and q̇ are sums hi + lo, pair by pair [count][2]. Results may take the place of what they come from.
-void add_increments(std::size_t count, double tau, const double* dq, const double* dv, const double* q, const double* v, double* q_out, double* v_out);
+void polynomial_accelerations(const double* first, std::size_t stride, std::size_t columns, int degree, double tau,
+                              double* a);
+/// Σ_{k≥1} w_k |c_k| of each column for three rows of weights [3][degree + 1]; sizes: [3][columns], rounded up to
+/// eights.
+void polynomial_sizes(const double* first, std::size_t stride, std::size_t columns, int degree, const double* weights,
+                      double* sizes);
+/// q += (dq + q̇) τ and q̇ += dv with compensation: q and q̇ are sums hi + lo, pair by pair [count][2]. Results may take
+/// the place of what they come from.
+void add_increments(std::size_t count, double tau, const double* dq, const double* dv, const double* q, const double* v,
+                    double* q_out, double* v_out);
 
 /// Everything that a run of a kernel changes. One thread at a time; as many as wanted for one kernel.
 ///
@@ -171,20 +179,24 @@ class KernelWorkspace {
   /// After Contradiction.
   std::size_t contradicting_constraint() const;
 
-  /// From then on `expand` runs machine code: with `long_run` straight-line code for the whole expansion of a small program without constraints, else code for
-  /// one stage; where M₀ is solved along its sparse graph those solutions are code then. Where the program is too large or LLVM is not there, the interpreter goes on,
-  /// and the report says why. Results agree to rounding. Cost: straight-line code about 0.2 s, else some 15 ms and half a millisecond an unknown; from the cache 1 ms.
+  /// From then on `expand` runs machine code: with `long_run` straight-line code for the whole expansion of a small
+  /// program without constraints, else code for one stage; where M₀ is solved along its sparse graph those solutions
+  /// are code then. Where the program is too large or LLVM is not there, the interpreter goes on, and the report says
+  /// why. Results agree to rounding. Cost: straight-line code about 0.2 s, else some 15 ms and half a millisecond an
+  /// unknown; from the cache 1 ms.
   CompileReport compile(const CompileOptions& options = {});
 
-  /// The radius of convergence that the last coefficients of q tell: with v_k = (k + 1) |q_{k+1}| and s_i the largest of v_k h^k for k ≤ 3 and ε |q_0| / h,
-  /// the least of (s_i / v_k)^{1/k} over all coordinates and the last six k, where the last two are taken as they are and the others times 1.25. To
-  /// 5·10⁻⁴/k + 10⁻⁴, k being the one that decides; infinite where all these v_k vanish; not a number where some s_i is 0 (or nearly so): no estimate.
+  /// The radius of convergence that the last coefficients of q tell: with v_k = (k + 1) |q_{k+1}| and s_i the largest
+  /// of v_k h^k for k ≤ 3 and ε |q_0| / h, the least of (s_i / v_k)^{1/k} over all coordinates and the last six k,
+  /// where the last two are taken as they are and the others times 1.25. To 5·10⁻⁴/k + 10⁻⁴, k being the one that
+  /// decides; infinite where all these v_k vanish; not a number where some s_i is 0 (or nearly so): no estimate.
   double radius(double h) const;
   /// polynomial_increments for the coefficients coordinate(k), k ≤ order + 1, until the next `compile`.
   PolynomialIncrements* increments() const;
   /// Doubles from one order of coordinate() to the next.
   std::size_t row_stride() const;
-  /// The program that is run: that of the kernel, with slots numbered anew. Coefficient k of slot s is coordinate(k)[s].
+  /// The program that is run: that of the kernel, with slots numbered anew. Coefficient k of slot s is
+  /// coordinate(k)[s].
   const Program& program() const;
   /// [program().constants] under the parameters and sides of the last expansion.
   const double* constants() const;

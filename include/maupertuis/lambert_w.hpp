@@ -8,7 +8,8 @@ namespace maupertuis {
 double lambert_w(double x);
 
 /// The root of w eʷ = x near `w`, which may not be 0.
-/// Source: F. N. Fritsch, R. E. Shafer, W. P. Crowley, CACM 16 (1973), algorithm 443: a pass makes four times as many digits.
+/// Source: F. N. Fritsch, R. E. Shafer, W. P. Crowley, CACM 16 (1973), algorithm 443: a pass makes four times as many
+/// digits.
 template <class Real>
 Real lambert_w_near(Real w, const Real& x) {
   using std::abs, std::log;
@@ -24,8 +25,8 @@ Real lambert_w_near(Real w, const Real& x) {
   return w;
 }
 
-/// W(x) of a real type of more digits than double. Towards x = −1/e, where W' grows without bound, the value is that of an
-/// argument off by a few units in its last place.
+/// W(x) of a real type of more digits than double. Towards x = −1/e, where W' grows without bound, the value is that of
+/// an argument off by a few units in its last place.
 template <class Real>
 Real lambert_w(const Real& x) {
   using std::abs, std::exp, std::log, std::sqrt;

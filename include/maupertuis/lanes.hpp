@@ -8,7 +8,6 @@
 #include <string>
 #include <string_view>
 #include <vector>
-#include <vector>
 
 /// Several motions of one kernel side by side: a *lane* is one of them, and every number becomes `width` numbers.
 ///
@@ -46,8 +45,8 @@ int best_lane_width();
 /// TaylorStepper.
 bool lanes_pay();
 
-/// Whether motions of the kernel can be carried in lanes: not with constraints, whose rank may change, nor with switches or
-/// events, which end steps at different places.
+/// Whether motions of the kernel can be carried in lanes: not with constraints, whose rank may change, nor with
+/// switches or events, which end steps at different places.
 bool fits_lanes(const Kernel& kernel);
 
 /// The kernel's instructions one after the other, each for all lanes.
@@ -59,7 +58,7 @@ std::shared_ptr<const LaneExpansion> interpreted_lanes(const Kernel& kernel, int
 struct CompiledLanes {
   std::shared_ptr<const LaneExpansion> expansion;  // null: `trouble` says why; take interpreted_lanes
   std::string trouble;
-  std::string cache_trouble;                       // the code could not be kept for the next run
+  std::string cache_trouble;  // the code could not be kept for the next run
   double seconds = 0;
   bool from_cache = false;
 };

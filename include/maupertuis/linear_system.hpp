@@ -8,8 +8,8 @@
 /// Linear systems whose coefficients are expressions: M and what couples its rows.
 namespace maupertuis {
 
-/// x of N x = c for the augmented matrix [N | c], by Gaussian elimination with division: a shared DAG, nothing expanded.
-/// Nothing where N is singular as a function of its symbols. Cost O(n³) nodes and a zero test a pivot.
+/// x of N x = c for the augmented matrix [N | c], by Gaussian elimination with division: a shared DAG, nothing
+/// expanded. Nothing where N is singular as a function of its symbols. Cost O(n³) nodes and a zero test a pivot.
 std::optional<ExprVector> solve_linear(ExprMatrix augmented);
 
 /// Groups of rows that a symmetric matrix couples, directly or through others; each group ascending. Entries must show

@@ -86,9 +86,9 @@ struct EquilibriumSearch {
 /// A configuration of rest, or a motion in which only translations that are symmetries go on, at constant rates.
 struct Equilibrium {
   OperatingPoint point;
-  bool at_rest = true;            // an equilibrium; else a steady motion
-  double residual = 0;            // largest |R_i| divided by the size of its derivatives: rounding level
-  std::size_t family = 0;         // how many further ways it can be moved and stay one, beside translations
+  bool at_rest = true;                    // an equilibrium; else a steady motion
+  double residual = 0;                    // largest |R_i| divided by the size of its derivatives: rounding level
+  std::size_t family = 0;                 // how many further ways it can be moved and stay one, beside translations
   std::vector<std::size_t> family_along;  // the coordinates that change on these ways, ascending
   bool coordinates_fail = false;  // M is singular there on what the constraints leave free: r = 0 of polar coordinates
 };

@@ -8,10 +8,10 @@
 namespace maupertuis {
 
 struct LocusPoint {
-  double parameter = 0;                            // SI
+  double parameter = 0;  // SI
   Equilibrium equilibrium;
   StabilityReport stability;
-  std::vector<std::complex<double>> eigenvalues;   // ascending by real, then imaginary part
+  std::vector<std::complex<double>> eigenvalues;  // ascending by real, then imaginary part
 };
 
 /// Equilibria that belong together, in the order of the parameter.
@@ -27,21 +27,22 @@ struct StabilityChange {
 };
 
 struct Locus {
-  std::size_t parameter = 0;                       // index in MechanicalSystem::parameters
-  std::vector<double> values;                      // SI
-  std::vector<LocusBranch> branches;               // in order of appearance
-  std::vector<StabilityChange> changes;            // ascending by parameter
-  std::vector<Translation> translations;           // of the model's own value
+  std::size_t parameter = 0;              // index in MechanicalSystem::parameters
+  std::vector<double> values;             // SI
+  std::vector<LocusBranch> branches;      // in order of appearance
+  std::vector<StabilityChange> changes;   // ascending by parameter
+  std::vector<Translation> translations;  // of the model's own value
 };
 
-/// Equilibria and steady motions at equally spaced values of a parameter, joined to branches: at each value Newton's method begins at
-/// the points of the value before and at the starts of `find_equilibria`. What one step of the sweep carries further than a third of
-/// a typical size begins a branch of its own. The parameter has its own value again afterwards.
-/// Cost: that of a search, times `steps`. Precondition: steps ≥ 2.
-Locus parameter_locus(PointEquations& equations, const MotionState& start, std::size_t parameter, double from, double to, std::size_t steps);
+/// Equilibria and steady motions at equally spaced values of a parameter, joined to branches: at each value Newton's
+/// method begins at the points of the value before and at the starts of `find_equilibria`. What one step of the sweep
+/// carries further than a third of a typical size begins a branch of its own. The parameter has its own value again
+/// afterwards. Cost: that of a search, times `steps`. Precondition: steps ≥ 2.
+Locus parameter_locus(PointEquations& equations, const MotionState& start, std::size_t parameter, double from,
+                      double to, std::size_t steps);
 
-/// A row for each point: the parameter, the branch, the verdict, coordinates and rates, then real and imaginary parts of the
-/// eigenvalues.
+/// A row for each point: the parameter, the branch, the verdict, coordinates and rates, then real and imaginary parts
+/// of the eigenvalues.
 std::string to_csv(const MechanicalSystem& system, const Locus& locus);
 
 }  // namespace maupertuis

@@ -27,28 +27,28 @@ struct ExprMatrix {
 
 struct Coordinate {
   std::string name;
-  Expr q, velocity, acceleration;   // symbols of order 0, 1, 2
+  Expr q, velocity, acceleration;  // symbols of order 0, 1, 2
   Dimension dimension;
-  std::string kind;                 // "angle", "length", "charge", "number", or "" for a unit of its own
+  std::string kind;  // "angle", "length", "charge", "number", or "" for a unit of its own
   Span span;
 };
 
 struct Parameter {
-  std::string name;                 // for a Constant: how the number stood in the text, e.g. "3 J"
-  Expr symbol;                      // Role::Parameter, or Role::Constant
-  Expr value;                       // in SI base units, exact: a number, perhaps times powers of π
-  double si_value = 0;              // its double
+  std::string name;     // for a Constant: how the number stood in the text, e.g. "3 J"
+  Expr symbol;          // Role::Parameter, or Role::Constant
+  Expr value;           // in SI base units, exact: a number, perhaps times powers of π
+  double si_value = 0;  // its double
   Dimension dimension;
-  std::string unit;                 // as written, "cm"; empty without one
-  double unit_factor = 1;           // its SI value, 0.01
-  bool used = false;                // some other line of the model names it
+  std::string unit;        // as written, "cm"; empty without one
+  double unit_factor = 1;  // its SI value, 0.01
+  bool used = false;       // some other line of the model names it
   Span span;
 };
 
 struct Input {
   std::string name;
-  Expr symbol;                      // Role::Input
-  Expr formula;                     // u(t)
+  Expr symbol;   // Role::Input
+  Expr formula;  // u(t)
   Dimension dimension;
   Span span;
 };
@@ -57,65 +57,65 @@ struct Input {
 /// The expressions of a MechanicalSystem hold no such symbols: see MechanicalSystem::written.
 struct Definition {
   std::string name;
-  Expr symbol;                      // Role::Auxiliary where it stays a symbol in print; else empty
-  Expr value;                       // expanded: no `let` symbols in it; empty for a vector
-  Expr formula;                     // as written, with the symbols of other definitions: the legend; empty for a vector
+  Expr symbol;   // Role::Auxiliary where it stays a symbol in print; else empty
+  Expr value;    // expanded: no `let` symbols in it; empty for a vector
+  Expr formula;  // as written, with the symbols of other definitions: the legend; empty for a vector
   bool used = false;
   Dimension dimension;
   bool is_vector = false;
-  ExprVector components;            // of a vector
+  ExprVector components;  // of a vector
   Span span;
 };
 
 /// A particle (with mass) or a marked point.
 struct Point {
   std::string name;
-  Expr mass;                        // empty handle: no mass
-  ExprVector position;              // [dimension] world axes, metres; shared with the points it is defined from
+  Expr mass;            // empty handle: no mass
+  ExprVector position;  // [dimension] world axes, metres; shared with the points it is defined from
   Span span;
 };
 
 struct Body {
   std::string name;
-  Expr mass;                        // empty handle: rotation only
-  ExprMatrix inertia;               // [3 × 3] about the centre of mass, body axes, or [1 × 1] in 2-D
-  ExprVector position;              // [dimension] of the centre of mass, world axes
-  ExprMatrix rotation;              // [dimension × dimension] body → world
-  ExprVector angular_velocity;      // [3] body axes, or [1] in 2-D, in q, q', t
+  Expr mass;                    // empty handle: rotation only
+  ExprMatrix inertia;           // [3 × 3] about the centre of mass, body axes, or [1 × 1] in 2-D
+  ExprVector position;          // [dimension] of the centre of mass, world axes
+  ExprMatrix rotation;          // [dimension × dimension] body → world
+  ExprVector angular_velocity;  // [3] body axes, or [1] in 2-D, in q, q', t
   ExprVector angular_velocity_world;
   Span span;
 };
 
 struct Frame {
   std::string name;
-  ExprVector origin;                // world axes
-  ExprMatrix rotation;              // frame → world
-  ExprVector angular_velocity;      // [3] or [1], frame axes
+  ExprVector origin;            // world axes
+  ExprMatrix rotation;          // frame → world
+  ExprVector angular_velocity;  // [3] or [1], frame axes
   Span span;
 };
 
 /// A spring or a damper between two places, as it is drawn; what it does stands in V or D.
 struct Link {
   enum class Kind { Spring, Damper } kind = Kind::Spring;
-  std::string from_name, to_name;   // "" where an end is an expression
-  ExprVector from, to;              // world axes, metres
+  std::string from_name, to_name;  // "" where an end is an expression
+  ExprVector from, to;             // world axes, metres
 };
 
 /// One additive part of T, V, U, L or D and where it comes from.
 struct EnergyTerm {
-  Expr value;                       // may hold TimeDerivative nodes
-  std::string origin;               // "particle A", "rotation of body sat", "gravity on A", "spring A - B", "T"
+  Expr value;          // may hold TimeDerivative nodes
+  std::string origin;  // "particle A", "rotation of body sat", "gravity on A", "spring A - B", "T"
   Span span;
 };
 
 /// A force or torque and its virtual work.
 struct AppliedForce {
   enum class Kind { OnPoint, Torque, Generalized } kind = Kind::Generalized;
-  std::string target;               // the point, the body, the coordinate
-  std::string reaction_on;          // torque on B from A: A
-  ExprVector components;            // world axes, N or N m; Generalized: one
-  ExprVector lever;                 // OnPoint: position of the point; Torque: the (relative) world angular velocity
-  std::size_t coordinate = 0;       // Generalized
+  std::string target;          // the point, the body, the coordinate
+  std::string reaction_on;     // torque on B from A: A
+  ExprVector components;       // world axes, N or N m; Generalized: one
+  ExprVector lever;            // OnPoint: position of the point; Torque: the (relative) world angular velocity
+  std::size_t coordinate = 0;  // Generalized
   Span span;
 };
 
@@ -123,30 +123,30 @@ struct AppliedForce {
 /// left − right, in SI units; its force is +Aᵀλ with A = ∂φ/∂q or ∂ψ/∂q̇.
 struct Constraint {
   enum class Level { Position, Velocity } level = Level::Position;  // Velocity: some q' stands in it
-  std::string name;                 // as written; empty if it has none
-  Expr value;                       // φ or ψ; no TimeDerivative nodes
-  Expr multiplier;                  // its λ, Role::Multiplier
-  Expr reaction;                    // symbol, Role::Multiplier: what `reaction(name)` stands for; see `reactions`
-  Dimension dimension;              // of the value
-  std::string body;                 // of the norm constraint that `rotation quaternion` adds: the body; else empty
+  std::string name;                                                 // as written; empty if it has none
+  Expr value;                                                       // φ or ψ; no TimeDerivative nodes
+  Expr multiplier;                                                  // its λ, Role::Multiplier
+  Expr reaction;        // symbol, Role::Multiplier: what `reaction(name)` stands for; see `reactions`
+  Dimension dimension;  // of the value
+  std::string body;     // of the norm constraint that `rotation quaternion` adds: the body; else empty
   Span span;
 };
 
 /// reaction NAME = release PARAMETER: the force that holds the parameter constant.
 struct Release {
   std::string name;
-  std::size_t parameter = 0;        // index in MechanicalSystem::parameters
-  Expr reaction;                    // symbol, Role::Multiplier: what `reaction(name)` stands for
+  std::size_t parameter = 0;  // index in MechanicalSystem::parameters
+  Expr reaction;              // symbol, Role::Multiplier: what `reaction(name)` stands for
   Span span;
 };
 
 /// constraint integral G = value: ∫ G dt over the path from end to end has this value (isoperimetric problems). It
 /// restricts the paths of `maup action` and enters the equations as those of L + λ G with one λ for the whole path.
 struct IntegralConstraint {
-  std::string name;                 // as written; empty if it has none
-  Expr integrand;                   // G in q, q', t
-  Expr value;                       // parameters and numbers only, SI
-  Dimension dimension;              // of the value
+  std::string name;     // as written; empty if it has none
+  Expr integrand;       // G in q, q', t
+  Expr value;           // parameters and numbers only, SI
+  Dimension dimension;  // of the value
   Span span;
 };
 
@@ -162,7 +162,7 @@ struct MechanicalSystem {
   std::shared_ptr<Context> context;
   std::string name, title, source;
   bool dimensionless = false;
-  int space_dimension = 2;          // 2 or 3
+  int space_dimension = 2;  // 2 or 3
 
   /// What stands in the place of t, `independent x : length`: its symbol is context->time(), and q' is dq/dx.
   std::string independent = "t";
@@ -170,24 +170,24 @@ struct MechanicalSystem {
   Dimension lagrangian_dimension = dimensions::energy();  // of any kind where the independent variable is no time
 
   std::vector<Coordinate> coordinates;
-  std::vector<Parameter> parameters;     // in the order of the text; anonymous constants at the end
+  std::vector<Parameter> parameters;  // in the order of the text; anonymous constants at the end
   std::vector<Input> inputs;
   std::vector<Definition> definitions;
   std::vector<Frame> frames;
   std::vector<Point> points;
   std::vector<Body> bodies;
   std::vector<Link> links;
-  ExprVector gravity;                    // [dimension], or empty
+  ExprVector gravity;  // [dimension], or empty
 
-  std::vector<EnergyTerm> kinetic;       // T
-  std::vector<EnergyTerm> potential;     // V
+  std::vector<EnergyTerm> kinetic;                // T
+  std::vector<EnergyTerm> potential;              // V
   std::vector<EnergyTerm> generalized_potential;  // U
-  std::vector<EnergyTerm> dissipation;   // D
+  std::vector<EnergyTerm> dissipation;            // D
   std::vector<EnergyTerm> lagrangian_extra;       // L += …
   std::optional<EnergyTerm> lagrangian_given;     // L = … : then T, V, U are not used for L
   std::vector<EnergyClaim> claims;
   std::vector<AppliedForce> forces;
-  std::vector<Constraint> constraints;   // as written; those of quaternions at the end
+  std::vector<Constraint> constraints;  // as written; those of quaternions at the end
   std::vector<Release> releases;
   std::vector<IntegralConstraint> integral_constraints;
 
@@ -202,7 +202,7 @@ struct MechanicalSystem {
   /// "t = 3 s", "x = 3 m".
   std::string moment(const std::string& number) const;
 
-  Expr kinetic_energy() const;           // Σ kinetic, 0 if none
+  Expr kinetic_energy() const;  // Σ kinetic, 0 if none
   Expr potential_energy() const;
   Expr total_generalized_potential() const;
   Expr dissipation_function() const;
@@ -225,25 +225,25 @@ struct MechanicalSystem {
 
 struct DrawElement {
   syntax::DrawItem::Kind kind{};
-  std::vector<ExprVector> path;     // positions, world axes; Reaction: none
-  std::vector<Expr> sizes;          // metres
-  std::vector<std::string> names;   // of the points of the path, "" where it is an expression; Reaction: of what acts
-  ExprVector direction = {};        // Disc, Hoop: the axis; Ground, Wall: the normal; empty: not written
-  std::string text = {};            // Label: what is written there
+  std::vector<ExprVector> path;    // positions, world axes; Reaction: none
+  std::vector<Expr> sizes;         // metres
+  std::vector<std::string> names;  // of the points of the path, "" where it is an expression; Reaction: of what acts
+  ExprVector direction = {};       // Disc, Hoop: the axis; Ground, Wall: the normal; empty: not written
+  std::string text = {};           // Label: what is written there
 };
 
 /// start sat.ω = (0.01, 2, 0.01) rad/s: a body rate that the velocities must give.
 struct StartRate {
-  Expr rate;                        // in q, q', parameters
+  Expr rate;  // in q, q', parameters
   Expr value;
   Span span;
 };
 
 /// sweep Ω = 0 .. 12 rad/s steps 121: equally spaced values of one parameter.
 struct Sweep {
-  std::size_t parameter = 0;        // index in MechanicalSystem::parameters
-  Expr from, to;                    // SI
-  std::size_t steps = 0;            // values, both ends counted
+  std::size_t parameter = 0;  // index in MechanicalSystem::parameters
+  Expr from, to;              // SI
+  std::size_t steps = 0;      // values, both ends counted
   Span span;
 };
 
@@ -256,35 +256,36 @@ enum class NumberFormat { Double, Quad, Digits100 };
 /// method variational order 4 step 10 ms: what a run takes where it is not told otherwise.
 struct MethodChoice {
   StepMethod method = StepMethod::Automatic;
-  int order = 0;                    // 0: not written
-  Expr step;                        // SI; empty: not written
+  int order = 0;  // 0: not written
+  Expr step;      // SI; empty: not written
 };
 
 /// path from (0, 1) at 0 to (2, free) at 1: between what ends `maup action` looks for stationary paths.
 struct PathEnds {
-  std::vector<Expr> from, to;       // [n] parameters and numbers only, SI; empty handle: that coordinate is free there
-  Expr start, end;                  // of the independent variable, SI; start < end
+  std::vector<Expr> from, to;  // [n] parameters and numbers only, SI; empty handle: that coordinate is free there
+  Expr start, end;             // of the independent variable, SI; start < end
   Span span;
 };
 
 /// A formula that was asked beside the model.
 struct AskedFormula {
-  Expr value;                       // in q, q', q'', t, momenta, multipliers and reactions
+  Expr value;  // in q, q', q'', t, momenta, multipliers and reactions
   Dimension dimension;
   Span span;
 };
 
 /// What to do with a system: where it starts, how long it runs, what is drawn and what is expected.
 struct Experiment {
-  std::vector<StartValue> start;    // unwritten = 0
+  std::vector<StartValue> start;  // unwritten = 0
   std::vector<StartRate> start_rates;
-  std::vector<StartValue> at;       // the point that is asked about; by overrides alone, as `asked`, `section` and `given_path`
+  std::vector<StartValue>
+      at;  // the point that is asked about; by overrides alone, as `asked`, `section` and `given_path`
   bool start_exactly = false;
-  Expr start_time;                  // empty: 0
-  Expr duration;                    // of `run 10 s`; empty if the model has none
-  Expr until;                       // `run until A = B`: A − B; empty if none
-  Expr within;                      // the longest time for `until`
-  Expr output_every;                // empty: chosen by the program
+  Expr start_time;    // empty: 0
+  Expr duration;      // of `run 10 s`; empty if the model has none
+  Expr until;         // `run until A = B`: A − B; empty if none
+  Expr within;        // the longest time for `until`
+  Expr output_every;  // empty: chosen by the program
   std::optional<MethodChoice> method;
   std::optional<NumberFormat> precision;
   std::optional<Sweep> sweep;

@@ -6,8 +6,9 @@
 
 namespace maupertuis {
 
-/// Each coordinate that is no translation against the parameter: drawn through where the equilibrium is stable, dashed where it is unstable,
-/// dotted where the linearization does not decide; the changes are marked. One diagram a coordinate (at most `most`).
+/// Each coordinate that is no translation against the parameter: drawn through where the equilibrium is stable, dashed
+/// where it is unstable, dotted where the linearization does not decide; the changes are marked. One diagram a
+/// coordinate (at most `most`).
 std::vector<Diagram> bifurcation_diagrams(const MechanicalSystem& system, const Locus& locus, std::size_t most = 4);
 
 /// All eigenvalues in the complex plane, a colour for each branch.

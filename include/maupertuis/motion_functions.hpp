@@ -11,15 +11,15 @@ namespace maupertuis {
 ///     balance(q,v,a,λ,t) = M a + h − Aᵀλ = 0,     accelerations(q,v,a,t) = A a − b = 0
 ///     rates(q,v,t) = dφ/dt or ψ = 0,              positions(q,t) = φ = 0
 struct MotionFunctions {
-  std::size_t freedoms = 0, constraints = 0;  // n, m
-  bool holonomic = true;                      // no constraint between velocities
-  DifferentiableKernel balance;               // [n]
-  DifferentiableKernel accelerations;         // [m]
-  DifferentiableKernel balance_by_unknowns;   // the same with derivatives by a and λ alone: M and −Aᵀ
+  std::size_t freedoms = 0, constraints = 0;       // n, m
+  bool holonomic = true;                           // no constraint between velocities
+  DifferentiableKernel balance;                    // [n]
+  DifferentiableKernel accelerations;              // [m]
+  DifferentiableKernel balance_by_unknowns;        // the same with derivatives by a and λ alone: M and −Aᵀ
   DifferentiableKernel accelerations_by_unknowns;  // … A
-  DifferentiableKernel rates;                 // [m]
-  DifferentiableKernel positions;             // [m]; 0 for a constraint between velocities
-  FunctionKernel constraint_scales;           // [2m] Σ |terms| of φ, then of the rates: what their rounding is measured against
+  DifferentiableKernel rates;                      // [m]
+  DifferentiableKernel positions;                  // [m]; 0 for a constraint between velocities
+  FunctionKernel constraint_scales;  // [2m] Σ |terms| of φ, then of the rates: what their rounding is measured against
   FunctionKernel observables, events, integrands;
 
   std::size_t inputs() const { return 3 * freedoms + constraints + 1; }
@@ -32,8 +32,8 @@ struct MotionFunctions {
 /// What Hamilton's principle needs besides: p = ∂L/∂v and ṗ = ∂L/∂q + F + Aᵀλ with F = Q − ∂D/∂v.
 struct VariationalFunctions {
   MotionFunctions motion;
-  DifferentiableKernel momenta;               // [n]
-  DifferentiableKernel forces;                // [n]
+  DifferentiableKernel momenta;  // [n]
+  DifferentiableKernel forces;   // [n]
 };
 
 }  // namespace maupertuis

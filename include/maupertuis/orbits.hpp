@@ -4,7 +4,6 @@
 #include <maupertuis/simulation.hpp>
 #include <maupertuis/tangent.hpp>
 #include <maupertuis/trajectory.hpp>
-#include <maupertuis/trajectory.hpp>
 
 #include <atomic>
 #include <complex>
@@ -30,7 +29,7 @@ enum class OrbitalStability {
   Attracting,  // every multiplier but the trivial ones lies inside the unit circle
   Neutral,     // all of them on it, to what rounding lets see: stable to first order
   Unstable,    // one lies outside
-  Undecided,   // none lies clearly outside, and what the geometry asks of dΦ_T contradicts that all lie inside or on it
+  Undecided,  // none lies clearly outside, and what the geometry asks of dΦ_T contradicts that all lie inside or on it
 };
 
 /// A motion that repeats: Φ_T(x) = x, angles up to whole turns.
@@ -60,23 +59,26 @@ struct FloquetResult {
   /// log |det dΦ_T| and ∫ divergence dt over the period, which must agree (Liouville); nothing for constraints between
   /// velocities.
   std::optional<double> log_determinant, integrated_divergence;
-  /// The relative error of dΦ_T that these checks show (of ω against the sizes of the directions); nothing where there is none of them.
+  /// The relative error of dΦ_T that these checks show (of ω against the sizes of the directions); nothing where there
+  /// is none of them.
   std::optional<double> error;
 };
 
 /// Finds the periodic motion next to the start by Newton's method on Φ_T(x) − x with the derivative of the
 /// tangent equations, T free unless the system is driven, and its multipliers. Where periodic motions come in families,
-/// the nearest. W1402 where the checks show more than rounding. An equilibrium of a driven system is one, with the period of the drive. Nothing, with a diagnostic: no return is found or Newton's method does not converge (E1401), the motion
-/// rests (E1402), an acceleration jumps (E1403), the drive does not repeat with the period, or there is a drive of
-/// unknown period (E1404), a run ends early (E1408).
+/// the nearest. W1402 where the checks show more than rounding. An equilibrium of a driven system is one, with the
+/// period of the drive. Nothing, with a diagnostic: no return is found or Newton's method does not converge (E1401),
+/// the motion rests (E1402), an acceleration jumps (E1403), the drive does not repeat with the period, or there is a
+/// drive of unknown period (E1404), a run ends early (E1408).
 std::optional<FloquetResult> floquet(const Model& model, const EquationsOfMotion& equations,
                                      const FloquetOptions& options, Diagnostics& diagnostics);
 
-/// Equilibria of a driven system. The frequencies of coefficients that are frozen at an instant say nothing of their neighbours: in the place of
-/// modes each entry gets its multipliers over the period of the drive, and the verdict that these give. [entries]; nothing where the drive
-/// does not repeat; empty where the equations do not depend on the time.
-std::vector<std::optional<FloquetResult>> settle_driven(ModalStudy& study, const PointEquations& points, const Model& model,
-                                                        const EquationsOfMotion& equations, const std::atomic<bool>* interrupt);
+/// Equilibria of a driven system. The frequencies of coefficients that are frozen at an instant say nothing of their
+/// neighbours: in the place of modes each entry gets its multipliers over the period of the drive, and the verdict that
+/// these give. [entries]; nothing where the drive does not repeat; empty where the equations do not depend on the time.
+std::vector<std::optional<FloquetResult>> settle_driven(ModalStudy& study, const PointEquations& points,
+                                                        const Model& model, const EquationsOfMotion& equations,
+                                                        const std::atomic<bool>* interrupt);
 
 // --------------------------------------------------------------------------------------------------- Poincaré sections
 

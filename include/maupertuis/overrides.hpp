@@ -9,19 +9,19 @@ namespace maupertuis {
 
 /// What a text beside a model says, and how it is read.
 enum class OverrideKind {
-  Parameters,   // m = 2 kg, l = 1 m: values in the place of the model's; a dimension stays
-  Start,        // θ = 60 deg, θ' = 0: replaces and adds
-  At,           // θ = 0: fills Experiment::at
-  Run,          // 10 s; until P.y = 0 within 60 s: in the place of the model's run
-  Until,        // P.y = 0: the same for a condition alone
-  Within,       // 60 s: the longest time of Until or Run; without one 60 units of the independent variable
-  Sweep,        // Ω = 0 .. 12 rad/s steps 121: in the place of the model's; without a number 121 values
-  Path,         // (0, 1) at 0 to (2, free) at 1: in the place of the model's
-  Section,      // θ1 = 0: fills Experiment::section
-  Formula,      // 1/2 m l^2 θ'^2: one of Experiment::asked, in this order
-  GivenPath,    // x = 4 t + 7, y = 3 t + 5: fills Experiment::given_path
-  GivenFrom,    // 0 s: where that path begins, in the place of where the model's does
-  GivenTo,      // 10 s: where it ends
+  Parameters,  // m = 2 kg, l = 1 m: values in the place of the model's; a dimension stays
+  Start,       // θ = 60 deg, θ' = 0: replaces and adds
+  At,          // θ = 0: fills Experiment::at
+  Run,         // 10 s; until P.y = 0 within 60 s: in the place of the model's run
+  Until,       // P.y = 0: the same for a condition alone
+  Within,      // 60 s: the longest time of Until or Run; without one 60 units of the independent variable
+  Sweep,       // Ω = 0 .. 12 rad/s steps 121: in the place of the model's; without a number 121 values
+  Path,        // (0, 1) at 0 to (2, free) at 1: in the place of the model's
+  Section,     // θ1 = 0: fills Experiment::section
+  Formula,     // 1/2 m l^2 θ'^2: one of Experiment::asked, in this order
+  GivenPath,   // x = 4 t + 7, y = 3 t + 5: fills Experiment::given_path
+  GivenFrom,   // 0 s: where that path begins, in the place of where the model's does
+  GivenTo,     // 10 s: where it ends
 };
 
 /// What an experiment is to do otherwise than its model says, and what is asked of it beside: options of a command
@@ -49,7 +49,7 @@ class ExperimentOverrides {
   std::optional<syntax::Equation> section;
   std::vector<syntax::ExpressionPtr> formulas;
   std::vector<syntax::Assignment> given_path;
-  syntax::ExpressionPtr given_from, given_to;   // null: not said
+  syntax::ExpressionPtr given_from, given_to;  // null: not said
 
  private:
   struct Said {

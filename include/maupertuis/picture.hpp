@@ -5,8 +5,8 @@
 
 namespace maupertuis {
 
-/// Why this machine makes no PNG, PDF and video, as a sentence with what to install; empty where it does. They are made by
-/// librsvg and cairo, which are opened at first use: a program without them makes SVG alone.
+/// Why this machine makes no PNG, PDF and video, as a sentence with what to install; empty where it does. They are made
+/// by librsvg and cairo, which are opened at first use: a program without them makes SVG alone.
 std::string picture_problem();
 
 /// What became of a picture: bytes, or the sentence for the user.
@@ -19,8 +19,8 @@ struct PictureBytes {
 /// Refused beyond `most_pixels`.
 PictureBytes png_of(const std::string& svg, double scale = 2);
 
-/// The same as one page of PDF, as large as the picture (96 px an inch); text stays text, the letters that occur are embedded.
-/// The same picture gives the same bytes.
+/// The same as one page of PDF, as large as the picture (96 px an inch); text stays text, the letters that occur are
+/// embedded. The same picture gives the same bytes.
 PictureBytes pdf_of(const std::string& svg);
 
 /// The size of a picture in px: 0 × 0 where the text is no SVG.

@@ -16,16 +16,18 @@ enum class PlotTheme { Light, Dark, Page };
 enum class PlotAspect { Auto, Free, Equal };
 
 struct PlotOptions {
-  std::vector<std::string> columns;  // what is drawn; empty: every column. One panel for each unit, in order of appearance
-  std::string against;               // the horizontal axis; empty: the time. A column gives a phase portrait
-  std::string title;                 // empty: none
-  bool degrees = false;              // rad, rad/s, … are shown in degrees
+  std::vector<std::string>
+      columns;           // what is drawn; empty: every column. One panel for each unit, in order of appearance
+  std::string against;   // the horizontal axis; empty: the time. A column gives a phase portrait
+  std::string title;     // empty: none
+  bool degrees = false;  // rad, rad/s, … are shown in degrees
   PlotAspect aspect = PlotAspect::Auto;
   PlotTheme theme = PlotTheme::Light;
-  double width = 720;                // px, at least 240
-  double panel_height = 0;           // px of one panel's frame; 0: chosen from the width and the number of panels
-  std::string dots_by;               // dots instead of lines: one colour for each value of this column; empty: lines
-  std::vector<std::pair<double, double>> outline;  // a closed line around what is drawn, in the units of a single panel's axes
+  double width = 720;       // px, at least 240
+  double panel_height = 0;  // px of one panel's frame; 0: chosen from the width and the number of panels
+  std::string dots_by;      // dots instead of lines: one colour for each value of this column; empty: lines
+  std::vector<std::pair<double, double>>
+      outline;  // a closed line around what is drawn, in the units of a single panel's axes
 };
 
 /// The sentence for the user where `options` do not fit `trajectory` (a column that is not there, with a suggestion);
@@ -34,8 +36,8 @@ std::string plot_problem(const Trajectory& trajectory, const PlotOptions& option
 
 /// One SVG picture: series over time or phase portraits, in stacked panels that share the horizontal axis.
 /// Ticks at 1, 2, 5 times a power of ten; a common power, and a common offset where digits would repeat, go to the axis
-/// label. A value that is not finite is a gap. Lines are thinned to what a pixel shows: the size of the picture is bounded,
-/// whatever the number of rows. Never fails on numbers: constant, empty, tiny and huge series give a picture.
+/// label. A value that is not finite is a gap. Lines are thinned to what a pixel shows: the size of the picture is
+/// bounded, whatever the number of rows. Never fails on numbers: constant, empty, tiny and huge series give a picture.
 /// Precondition: plot_problem(trajectory, options) is empty.
 std::string plot_svg(const Trajectory& trajectory, const PlotOptions& options = {});
 
@@ -48,9 +50,9 @@ const std::vector<std::string_view>& plot_palette(bool dark);
 /// A name as it is set in print: θ1' is a θ with one dot and the index 1, B.x is an x with the index B.
 /// Words of several letters (energy) are set upright.
 struct NameParts {
-  std::string base;       // "θ", "x", "energy"
-  std::string index;      // "1", "B", ""
-  int dots = 0;           // time derivatives
+  std::string base;   // "θ", "x", "energy"
+  std::string index;  // "1", "B", ""
+  int dots = 0;       // time derivatives
   bool upright = false;
 };
 NameParts name_parts(std::string_view name);

@@ -27,7 +27,9 @@ class Rational {
   bool is_integer() const;
   int sign() const;
   /// Both parts when they fit 63 bits.
-  struct Small { std::int64_t numerator, denominator; };
+  struct Small {
+    std::int64_t numerator, denominator;
+  };
   std::optional<Small> small() const;
   /// The value when it is an integer of 63 bits.
   std::optional<std::int64_t> as_integer() const;

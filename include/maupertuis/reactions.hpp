@@ -8,9 +8,9 @@ namespace maupertuis {
 
 /// A force as an arrow: at a point, in world axes.
 struct ForceArrow {
-  std::string point;        // its name in the model
-  ExprVector position;      // [dimension] m
-  ExprVector force;         // [dimension] N
+  std::string point;    // its name in the model
+  ExprVector position;  // [dimension] m
+  ExprVector force;     // [dimension] N
 };
 
 /// The force or torque with which a constraint holds, in words and in newtons or newton-metres.
@@ -23,11 +23,11 @@ struct Reaction {
     Released,     // of a parameter that is held: `reaction rod = release l1`
   };
   Kind kind = Kind::Multiplier;
-  std::string name;                // as written, or the label of the constraint
-  Expr symbol;                     // what `reaction(name)` stands for
-  Expr value;                      // in q, q', q'', λ, u, t; empty where the model does not determine it: see `sentence`
-  Dimension dimension;             // of the value
-  std::string sentence;            // sign and meaning
+  std::string name;      // as written, or the label of the constraint
+  Expr symbol;           // what `reaction(name)` stands for
+  Expr value;            // in q, q', q'', λ, u, t; empty where the model does not determine it: see `sentence`
+  Dimension dimension;   // of the value
+  std::string sentence;  // sign and meaning
   std::vector<ForceArrow> arrows;  // where it is known on which points it acts: the force on each of them
 };
 

@@ -8,8 +8,8 @@
 
 namespace maupertuis {
 
-/// Values of the same expressions at many points, in double: they are laid out once. The same numbers as `evaluate` gives.
-/// Precondition: no TimeDerivative nodes.
+/// Values of the same expressions at many points, in double: they are laid out once. The same numbers as `evaluate`
+/// gives. Precondition: no TimeDerivative nodes.
 class RepeatedEvaluation {
  public:
   explicit RepeatedEvaluation(std::span<const Expr> roots);

@@ -24,8 +24,8 @@ namespace maupertuis {
 /// UTF-8; nothing needs escaping. Empty parts do not appear on the page.
 struct ReportContent {
   struct Formula {
-    Layout left, right;                  // left may be empty; a formula without right is a sentence alone
-    std::string rule;                    // "chain rule"
+    Layout left, right;  // left may be empty; a formula without right is a sentence alone
+    std::string rule;    // "chain rule"
     std::string sentence;
   };
   struct Section {
@@ -34,49 +34,49 @@ struct ReportContent {
   };
   struct Parameter {
     Layout symbol;
-    std::string value, unit;             // "60", "cm"
-    std::string si;                      // "0.6 m" where the text has other units
+    std::string value, unit;  // "60", "cm"
+    std::string si;           // "0.6 m" where the text has other units
   };
   struct Coordinate {
     Layout symbol, velocity;
-    std::string name;                    // in the model, where the symbol is shown otherwise: "ball.qw"
-    std::string kind;                    // "angle", "length in m"
-    std::string start, start_velocity;   // "2 rad", "0 rad/s"
+    std::string name;                   // in the model, where the symbol is shown otherwise: "ball.qw"
+    std::string kind;                   // "angle", "length in m"
+    std::string start, start_velocity;  // "2 rad", "0 rad/s"
   };
   struct Check {
     std::string name, statement, verdict;
     bool passed = false, applies = true;
     int points = 0;
-    double error_bound = 1;              // 1: none claimed
+    double error_bound = 1;  // 1: none claimed
   };
   struct Conserved {
     std::string sentence;
     Formula formula;
-    std::string value, drift;            // along the run; empty without one
+    std::string value, drift;  // along the run; empty without one
   };
   struct Message {
     Severity severity = Severity::Warning;
     std::string code, message, reason, help;
-    std::uint32_t line = 0;              // of the model text; 0: none
-    std::string text;                    // that line
+    std::uint32_t line = 0;  // of the model text; 0: none
+    std::string text;        // that line
   };
   struct Picture {
     std::string caption;
-    PlotOptions options;                 // of `trajectory`; the theme is the page's
+    PlotOptions options;  // of `trajectory`; the theme is the page's
   };
 
   struct ModeRow {
-    std::string kind, frequency, hertz, period, damping;   // "oscillation", "5.2 rad/s", …; damping: ζ, or a rate
+    std::string kind, frequency, hertz, period, damping;  // "oscillation", "5.2 rad/s", …; damping: ζ, or a rate
   };
   struct ModeShape {
     std::string caption;
-    std::optional<Drawing> drawing;      // one period, swinging from its turning point
-    std::optional<Diagram> diagram;      // of systems that have no drawing
+    std::optional<Drawing> drawing;  // one period, swinging from its turning point
+    std::optional<Diagram> diagram;  // of systems that have no drawing
   };
   struct ModePoint {
-    std::string name, stability;         // "θ1 = 0, θ2 = π"; the verdict with its reason
+    std::string name, stability;  // "θ1 = 0, θ2 = π"; the verdict with its reason
     bool stable = false;
-    std::vector<Formula> formulas;       // M ξ̈ + …, and the matrices
+    std::vector<Formula> formulas;  // M ξ̈ + …, and the matrices
     std::vector<ModeRow> rows;
     std::vector<ModeShape> shapes;
   };
@@ -85,29 +85,29 @@ struct ReportContent {
     Diagram diagram;
   };
 
-  std::string name, title, source;       // source: the citation
+  std::string name, title, source;  // source: the citation
   std::string file, model_text;
-  std::vector<std::pair<std::string, std::string>> summary;     // "freedoms" → "2"
+  std::vector<std::pair<std::string, std::string>> summary;  // "freedoms" → "2"
   std::vector<Message> messages;
   std::optional<Drawing> drawing;
   std::vector<Coordinate> coordinates;
   std::vector<Parameter> parameters;
-  std::vector<Formula> definitions;      // the legend of lets that stay symbols in print
-  std::vector<Formula> energies;         // T, V, U, D, L
-  std::vector<Formula> equations;        // left = right, with right 0 or Aᵀλ; then the constraints, `sentence` their names
-  std::vector<Formula> intermediates;    // what the names in the equations stand for
+  std::vector<Formula> definitions;  // the legend of lets that stay symbols in print
+  std::vector<Formula> energies;     // T, V, U, D, L
+  std::vector<Formula> equations;  // left = right, with right 0 or Aᵀλ; then the constraints, `sentence` their names
+  std::vector<Formula> intermediates;  // what the names in the equations stand for
   std::vector<Section> derivation;
-  std::vector<Section> phase_space;      // momenta, H, canonical equations, Routhian; `sentence` of a line without formula
+  std::vector<Section> phase_space;  // momenta, H, canonical equations, Routhian; `sentence` of a line without formula
   bool phase_space_certified = false;
   bool certified = false;
   std::vector<Check> certificate;
   std::vector<Conserved> conserved;
   std::vector<std::pair<std::string, std::string>> statistics;
-  std::string ending;                    // the reason where the run ended early
+  std::string ending;  // the reason where the run ended early
   std::vector<ExpectationResult> expectations;
   Trajectory trajectory;
   std::vector<Picture> pictures;
-  std::string mode_search;               // how equilibria were sought
+  std::string mode_search;  // how equilibria were sought
   std::vector<ModePoint> mode_points;
   std::vector<Locus> loci;
 
@@ -115,14 +115,14 @@ struct ReportContent {
   struct Finding {
     std::string title;
     std::vector<std::pair<std::string, std::string>> facts;
-    std::string caption;                 // of the picture; empty: none
+    std::string caption;  // of the picture; empty: none
     Trajectory rows;
     PlotOptions picture;
   };
   std::vector<Finding> orbits;
 
-  std::vector<Finding> paths;            // between the ends of the model on which S is stationary
-  std::string path_search;               // within what they were sought
+  std::vector<Finding> paths;  // between the ends of the model on which S is stationary
+  std::string path_search;     // within what they were sought
   std::vector<Locus> path_pictures;
 };
 
@@ -139,29 +139,30 @@ SimulationOptions report_run(const Model& model, SimulationOptions options);
 
 /// What else a report may show.
 struct ReportParts {
-  const SimulationResult* simulation = nullptr;   // null: no run, no drawing, no plots
-  const Verification* verification = nullptr;     // null: the `expect` lines were not carried out
-  const Invariants* invariants = nullptr;         // null: the energy function and cyclic coordinates alone
-  const ModalStudy* modes = nullptr;              // null: no part on equilibria
-  const Locus* locus = nullptr;                   // of the model's sweep
+  const SimulationResult* simulation = nullptr;  // null: no run, no drawing, no plots
+  const Verification* verification = nullptr;    // null: the `expect` lines were not carried out
+  const Invariants* invariants = nullptr;        // null: the energy function and cyclic coordinates alone
+  const ModalStudy* modes = nullptr;             // null: no part on equilibria
+  const Locus* locus = nullptr;                  // of the model's sweep
   const FloquetResult* floquet = nullptr;
   const SectionResult* section = nullptr;
-  std::string section_what;                       // "section x = 0 rising"
+  std::string section_what;  // "section x = 0 rising"
   const LyapunovResult* lyapunov = nullptr;
-  const PathSearch* paths = nullptr;              // between the ends of the model's `path`
+  const PathSearch* paths = nullptr;  // between the ends of the model's `path`
 };
 
-/// How a section is drawn: q' against q of the coordinate that it leaves free, a colour a motion, with the border of what
-/// the energy allows.
+/// How a section is drawn: q' against q of the coordinate that it leaves free, a colour a motion, with the border of
+/// what the energy allows.
 PlotOptions section_picture(const SectionResult& section, const std::string& what, const MechanicalSystem& system);
 
-/// Carries out the work of a section of the page (its id: "phase-space") or does without: false, and nothing of it is shown.
+/// Carries out the work of a section of the page (its id: "phase-space") or does without: false, and nothing of it is
+/// shown.
 using SectionGuard = std::function<bool(std::string_view section, const std::function<void()>& work)>;
 
 /// Fills a report from the artifacts of one study, each section under the guard. `derivation` with its steps, or empty.
 ReportContent compose_report(const Model& model, const SourceText& source, const EquationsOfMotion& equations,
-                             const Derivation& derivation, const Certificate& certificate, const ReportParts& parts = {},
-                             const SectionGuard& guard = {});
+                             const Derivation& derivation, const Certificate& certificate,
+                             const ReportParts& parts = {}, const SectionGuard& guard = {});
 /// The messages of a page: those of `diagnostics` that are no errors.
 void add_messages(ReportContent& content, const Diagnostics& diagnostics, const SourceText& source);
 

@@ -1,8 +1,9 @@
 #pragma once
 #include <cstdint>
 
-/// Logarithms and powers for step lengths, which need no more than three digits. V: double or a vector of doubles, I: 64-bit integers of
-/// the same number. Of low degree and by Estrin's scheme, since much waits for a step length. Compiled for one instruction set, hence the unnamed namespace.
+/// Logarithms and powers for step lengths, which need no more than three digits. V: double or a vector of doubles, I:
+/// 64-bit integers of the same number. Of low degree and by Estrin's scheme, since much waits for a step length.
+/// Compiled for one instruction set, hence the unnamed namespace.
 namespace maupertuis {
 namespace {
 
@@ -18,7 +19,8 @@ V rough_log2(V x) {
   __builtin_memcpy(&f, &fraction, sizeof f);
   e = e - (0x1p52 + 1023);
   f = f - 1;
-  return (e + (f * 1.4188802113925905 + 0.0006371172847411266)) + (f * f) * (f * 0.15824870276503722 - 0.5771289141576275);
+  return (e + (f * 1.4188802113925905 + 0.0006371172847411266)) +
+         (f * f) * (f * 0.15824870276503722 - 0.5771289141576275);
 }
 
 /// 2^x to 7.5·10⁻⁵ of it between 2⁻¹⁰²⁰ and 2¹⁰²⁰, beyond which it stays.

@@ -14,39 +14,40 @@
 
 namespace maupertuis {
 
-/// What a run tells of its errors (docs/design/certain_digits.md). None: nothing, and no companion runs. States: those of the states, reactions and
-/// probes at the times asked for and at the end. Rows: those of each row of the trajectory too.
+/// What a run tells of its errors (docs/design/certain_digits.md). None: nothing, and no companion runs. States: those
+/// of the states, reactions and probes at the times asked for and at the end. Rows: those of each row of the trajectory
+/// too.
 enum class ErrorEstimates { None, States, Rows };
 
 struct SimulationOptions {
-  std::optional<StepMethod> method;         // nothing: that of the model's `method`, or Automatic
-  double step = 0;                          // s, Variational: the length of its steps; 0: that of the model's `method`
-  int order = 0;                            // 0: that of the model's `method`; else from the tolerance (Taylor), 4 (Variational)
-  double tolerance = 0;                     // relative, per step; 0: rounding level of double (Stiff: 1e-10)
-  std::optional<double> duration;           // s, instead of the model's run; negative: backwards in time
-  std::vector<double> at;                   // s: times at which the state is wanted exactly; beyond the run: it goes on to them
-  std::optional<double> output_every;       // s
-  Backend backend = Backend::Automatic;     // of Taylor's steps
-  bool cache = true;                        // of compiled code, on disk
+  std::optional<StepMethod> method;  // nothing: that of the model's `method`, or Automatic
+  double step = 0;                   // s, Variational: the length of its steps; 0: that of the model's `method`
+  int order = 0;                   // 0: that of the model's `method`; else from the tolerance (Taylor), 4 (Variational)
+  double tolerance = 0;            // relative, per step; 0: rounding level of double (Stiff: 1e-10)
+  std::optional<double> duration;  // s, instead of the model's run; negative: backwards in time
+  std::vector<double> at;          // s: times at which the state is wanted exactly; beyond the run: it goes on to them
+  std::optional<double> output_every;    // s
+  Backend backend = Backend::Automatic;  // of Taylor's steps
+  bool cache = true;                     // of compiled code, on disk
   ErrorEstimates errors = ErrorEstimates::States;
   std::size_t maximum_steps = 100'000'000;
   const std::atomic<bool>* interrupt = nullptr;  // set by Ctrl-C
-  std::function<void(double)> progress;     // told the fraction of the run that is done, now and then
+  std::function<void(double)> progress;          // told the fraction of the run that is done, now and then
 };
 
-/// By how much the numbers of a state may be off, each in the unit of its number: 0 where it is exact, infinite where no digit is
-/// certain, NaN beside a NaN.
+/// By how much the numbers of a state may be off, each in the unit of its number: 0 where it is exact, infinite where
+/// no digit is certain, NaN beside a NaN.
 struct StateErrors {
-  double t = 0;                             // 0 but for a time that was located: the end of `run until`
+  double t = 0;  // 0 but for a time that was located: the end of `run until`
   std::vector<double> q, v, multipliers, reactions;
 };
 
 struct State {
   double t = 0;
-  std::vector<double> q, v, a;              // [n] each; a is NaN where the accelerations have no value
-  std::vector<double> multipliers;          // [constraints] λ; NaN where the equations do not determine it
-  std::vector<double> reactions;            // [SimulationResult::reactions]
-  std::optional<StateErrors> errors{};      // without where nobody asked
+  std::vector<double> q, v, a;          // [n] each; a is NaN where the accelerations have no value
+  std::vector<double> multipliers;      // [constraints] λ; NaN where the equations do not determine it
+  std::vector<double> reactions;        // [SimulationResult::reactions]
+  std::optional<StateErrors> errors{};  // without where nobody asked
 };
 
 enum class Ending {
@@ -56,7 +57,7 @@ enum class Ending {
   Interrupted,
   SingularMass,
   SingularConstraints,
-  NoConvergence,    // the equations of an implicit step were not solved
+  NoConvergence,  // the equations of an implicit step were not solved
   Overflow,
   StepUnderflow,
   Sliding,
@@ -65,35 +66,35 @@ enum class Ending {
 
 struct SimulationStatistics {
   std::size_t steps = 0;
-  std::size_t rejected = 0;                 // steps taken back, since the equations did not hold at their ends
-  double seconds = 0;                       // stepping only
-  double compile_seconds = 0;               // model to kernel, and to machine code
+  std::size_t rejected = 0;    // steps taken back, since the equations did not hold at their ends
+  double seconds = 0;          // stepping only
+  double compile_seconds = 0;  // model to kernel, and to machine code
   int order = 0;
-  std::string backend = "interpreter";      // or compiled
-  std::string method = "taylor";            // of the last step: taylor, variational, stiff
-  double energy_drift = 0;                  // docs/theory: |h_E(t) − h_E(0) − work| / max Σ|terms of h_E|
-  double constraint_residual = 0;           // docs/theory: largest φ, dφ/dt, ψ, each by the sizes of its terms
-  std::size_t switches = 0;                 // located switch crossings
-  std::size_t companions = 0;               // runs beside it that tell its errors
-  double companion_seconds = 0;             // they took, all together
+  std::string backend = "interpreter";  // or compiled
+  std::string method = "taylor";        // of the last step: taylor, variational, stiff
+  double energy_drift = 0;              // docs/theory: |h_E(t) − h_E(0) − work| / max Σ|terms of h_E|
+  double constraint_residual = 0;       // docs/theory: largest φ, dφ/dt, ψ, each by the sizes of its terms
+  std::size_t switches = 0;             // located switch crossings
+  std::size_t companions = 0;           // runs beside it that tell its errors
+  double companion_seconds = 0;         // they took, all together
 };
 
 /// From a time on no digit of some columns of the trajectory is certain: the companions have gone ways of their own.
 struct Uncertainty {
-  std::vector<std::size_t> columns;         // of the state, q and q'; empty: something is certain of each all along the run
-  double from = 0;                          // s: from here on, for all of these
-  bool everything = false;                  // these are all that move
+  std::vector<std::size_t> columns;  // of the state, q and q'; empty: something is certain of each all along the run
+  double from = 0;                   // s: from here on, for all of these
+  bool everything = false;           // these are all that move
 };
 
 struct SimulationResult {
   Trajectory trajectory;
-  std::vector<Trajectory::Column> reactions;            // names and units: columns of the trajectory as well
+  std::vector<Trajectory::Column> reactions;  // names and units: columns of the trajectory as well
   State start, final;
-  std::vector<State> at;                    // in the order asked; q is empty where the run ended before
+  std::vector<State> at;  // in the order asked; q is empty where the run ended before
   SimulationStatistics statistics;
   Uncertainty uncertain;
   Ending ending = Ending::Finished;
-  std::string reason;                       // one sentence for every ending but Finished
+  std::string reason;  // one sentence for every ending but Finished
   bool ok() const { return ending == Ending::Finished || ending == Ending::UntilReached; }
 };
 
@@ -104,31 +105,32 @@ std::vector<Expr> with_reactions(const EquationsOfMotion& equations, std::span<c
 /// A component of the start that the constraints changed.
 struct StartAdjustment {
   std::size_t coordinate = 0;
-  int order = 0;                            // 0: q, 1: q'
-  double from = 0, to = 0;                  // SI
-  bool written = false;                     // the model gave it: moved only because what it gives contradicts itself
+  int order = 0;            // 0: q, 1: q'
+  double from = 0, to = 0;  // SI
+  bool written = false;     // the model gave it: moved only because what it gives contradicts itself
 };
 
 /// Where a run begins.
 struct ConsistentStart {
   MotionState state;
-  std::vector<StartAdjustment> adjustments; // in the order of the coordinates, positions first
-  bool searched = false;                    // the unwritten coordinates were found by a search from several points
+  std::vector<StartAdjustment> adjustments;  // in the order of the coordinates, positions first
+  bool searched = false;                     // the unwritten coordinates were found by a search from several points
 };
 
 /// The start of the model, moved onto the constraints: what is written is kept, the rest moves by the least kinetic
-/// change, positions first, then velocities. Written values move only where they contradict the constraints or each other,
-/// with a warning; `start exactly` makes that an error. Nothing is returned where the constraints cannot be met: then
-/// `diagnostics` names a smallest set of them that clashes.
+/// change, positions first, then velocities. Written values move only where they contradict the constraints or each
+/// other, with a warning; `start exactly` makes that an error. Nothing is returned where the constraints cannot be met:
+/// then `diagnostics` names a smallest set of them that clashes.
 std::optional<ConsistentStart> consistent_start(const Model& model, const EquationsOfMotion& equations,
                                                 Diagnostics& diagnostics);
 
-/// What a ForwardDynamics (forward_dynamics.hpp) of a model is made from. The model's inputs are parameters here, whose values each call
-/// gives instead of their formulas; of an input that L depends on its rates u' and u'' are inputs too, after it. The expressions live as long as the system's context.
+/// What a ForwardDynamics (forward_dynamics.hpp) of a model is made from. The model's inputs are parameters here, whose
+/// values each call gives instead of their formulas; of an input that L depends on its rates u' and u'' are inputs too,
+/// after it. The expressions live as long as the system's context.
 struct DynamicsSource {
   KernelSource kernel;
-  std::vector<double> parameters;           // values in SI units, in the order of kernel.parameters; 0 for inputs
-  std::vector<std::size_t> inputs;          // which of them are inputs, in the order of the model
+  std::vector<double> parameters;   // values in SI units, in the order of kernel.parameters; 0 for inputs
+  std::vector<std::size_t> inputs;  // which of them are inputs, in the order of the model
 };
 DynamicsSource dynamics_source(const EquationsOfMotion& equations);
 
@@ -139,9 +141,10 @@ struct Probe {
   std::vector<std::vector<double>> errors;  // [at][expressions] as in StateErrors; empty without companions
 };
 
-/// Runs the experiment of a model. What was computed is kept whatever the ending. Unless options.errors says no, companion runs tell the
-/// errors: seven in the lanes of vector registers up to 4 unknowns, which take about as long again, else three, each as long as the run itself.
-/// Nothing is returned when the start or the run length is missing or wrong (then `diagnostics` says so).
+/// Runs the experiment of a model. What was computed is kept whatever the ending. Unless options.errors says no,
+/// companion runs tell the errors: seven in the lanes of vector registers up to 4 unknowns, which take about as long
+/// again, else three, each as long as the run itself. Nothing is returned when the start or the run length is missing
+/// or wrong (then `diagnostics` says so).
 std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMotion& equations,
                                          const SimulationOptions& options, Diagnostics& diagnostics,
                                          Probe* probe = nullptr);

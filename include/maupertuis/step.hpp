@@ -8,12 +8,12 @@
 namespace maupertuis {
 
 enum class StepEnding {
-  None,           // go on
+  None,  // go on
   SingularMass,
   SingularConstraints,  // the constraints contradict each other here, or do not determine where the motion goes
-  Overflow,       // a value is infinite or undefined
-  StepUnderflow,  // steps shrink below the resolution of time: a collision, an infinite force
-  Sliding,        // both sides of a switch push back to it
+  Overflow,             // a value is infinite or undefined
+  StepUnderflow,        // steps shrink below the resolution of time: a collision, an infinite force
+  Sliding,              // both sides of a switch push back to it
   TooManySteps,
   Interrupted,
   NoConvergence,  // the equations of an implicit step were not solved, or no step meets the tolerance
@@ -21,7 +21,7 @@ enum class StepEnding {
 
 /// One step, or the reason why there is none: then begin == end and the state is the one reached before.
 struct Step {
-  double begin = 0, end = 0;         // s
+  double begin = 0, end = 0;  // s
   StepEnding ending = StepEnding::None;
   std::string reason;                // one sentence for every ending but None
   std::optional<std::size_t> event;  // the step ended at a root of this event function

@@ -13,17 +13,17 @@ namespace maupertuis {
 bool has_stiff_method();
 
 struct StiffOptions {
-  double tolerance = 1e-10;                      // relative, per step
-  double absolute = 0;                           // in the unit of each coordinate and velocity; 0: 1e-4 · tolerance
+  double tolerance = 1e-10;  // relative, per step
+  double absolute = 0;       // in the unit of each coordinate and velocity; 0: 1e-4 · tolerance
   std::size_t maximum_steps = 100'000'000;
   const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
 };
 
-/// Variable order (1 to 5) and step. Without constraints by CVODE: the unknowns are q and v. With constraints by IDA, on the
-/// index-2 form of Gear, Gupta and Leimkuhler: the unknowns are q, v, λ and μ, the last two without a part in the control of
-/// the error. The derivatives for Newton's iteration are exact. What is given out is projected onto φ = 0 and the velocity
-/// constraints, to rounding, and its a and λ follow from the bordered system. Redundant constraints are left out by pivoting.
-/// Integrals ride along, without a part in the control of the error.
+/// Variable order (1 to 5) and step. Without constraints by CVODE: the unknowns are q and v. With constraints by IDA,
+/// on the index-2 form of Gear, Gupta and Leimkuhler: the unknowns are q, v, λ and μ, the last two without a part in
+/// the control of the error. The derivatives for Newton's iteration are exact. What is given out is projected onto φ =
+/// 0 and the velocity constraints, to rounding, and its a and λ follow from the bordered system. Redundant constraints
+/// are left out by pivoting. Integrals ride along, without a part in the control of the error.
 class StiffStepper {
  public:
   /// Preconditions: has_stiff_method(); parameters.size() == functions' parameters; tolerance > 0.
@@ -33,7 +33,8 @@ class StiffStepper {
 
   int order() const { return 5; }  // the highest
   void start(double t, std::span<const double> q, std::span<const double> v);
-  /// One step towards `bound`, at most up to it; time() == bound exactly when it is reached. Backwards if bound < time().
+  /// One step towards `bound`, at most up to it; time() == bound exactly when it is reached. Backwards if bound <
+  /// time().
   Step step(double bound);
 
   double time() const;

@@ -25,7 +25,8 @@ std::vector<Expr> jump_across(std::span<const Expr> roots, Expr difference);
 class SwitchUses {
  public:
   explicit SwitchUses(std::span<const Expr> roots);
-  /// Of each root what the switch with this g decides: sums without the terms that do not hold it, 0 where nothing does.
+  /// Of each root what the switch with this g decides: sums without the terms that do not hold it, 0 where nothing
+  /// does.
   std::vector<Expr> terms_with(Expr difference) const;
 
  private:
@@ -63,14 +64,15 @@ struct SwitchSample {
 };
 
 /// Points on each switch, by brackets of its sign along lines and bisection to 100 digits; the functions are evaluated
-/// at 1e-20 and 1e-40 beside it. The first samples are those next to the center. A switch of which none was found has no
-/// sample. Cost: some thousand evaluations of the switches in double, four of the functions with 100 digits a sample.
+/// at 1e-20 and 1e-40 beside it. The first samples are those next to the center. A switch of which none was found has
+/// no sample. Cost: some thousand evaluations of the switches in double, four of the functions with 100 digits a
+/// sample.
 std::vector<SwitchSample> sample_switches(std::span<const Expr> functions, std::span<const Expr> switches,
                                           const SwitchSearch& search);
 
 /// Samples one switch after the other of functions that hold many. Of more than 24 the combinations of signs are not
-/// looked for: points are drawn. Cost a switch: one evaluation of the functions in double a sample, four of the branches
-/// in force there with 100 digits.
+/// looked for: points are drawn. Cost a switch: one evaluation of the functions in double a sample, four of the
+/// branches in force there with 100 digits.
 class SwitchSampler {
  public:
   /// Precondition: the search has every symbol of the functions.
@@ -81,7 +83,8 @@ class SwitchSampler {
 
   const std::vector<Expr>& functions() const;
   const SwitchSearch& search() const;
-  /// Precondition: the search has every symbol of g and of the functions `beside`, whose values follow those of the functions.
+  /// Precondition: the search has every symbol of g and of the functions `beside`, whose values follow those of the
+  /// functions.
   std::vector<SwitchSample> sample(Expr g, std::span<const Expr> beside = {}) const;
 
  private:

@@ -11,14 +11,14 @@ namespace maupertuis {
 /// Column names differ from each other and from that of the independent variable, the first column in every format.
 struct Trajectory {
   struct Column {
-    std::string name;   // "θ1", "θ1'", "B.x", "energy"
-    std::string unit;   // SI, "rad", "m/s"; empty for a bare number
+    std::string name;  // "θ1", "θ1'", "B.x", "energy"
+    std::string unit;  // SI, "rad", "m/s"; empty for a bare number
   };
-  Column independent{"t", "s"};              // what `times` are
+  Column independent{"t", "s"};  // what `times` are
   std::vector<Column> columns;
-  std::vector<double> times;                 // [rows] in the order of the run (descending when backwards)
-  std::vector<double> values;                // [rows × columns]
-  std::vector<double> errors;                // [rows × columns] by how much each may be off (uncertainty.hpp); empty: not known
+  std::vector<double> times;   // [rows] in the order of the run (descending when backwards)
+  std::vector<double> values;  // [rows × columns]
+  std::vector<double> errors;  // [rows × columns] by how much each may be off (uncertainty.hpp); empty: not known
   std::map<std::string, std::string> metadata;  // system, version, method, tolerance, …
 
   std::size_t rows() const { return times.size(); }
@@ -27,8 +27,8 @@ struct Trajectory {
   std::optional<std::size_t> column(const std::string& name) const;
 };
 
-/// The trajectory with its errors as further columns, error(θ1) of θ1 in the same unit, after all others. For files; without errors, as it is.
-/// Infinite where no digit is certain.
+/// The trajectory with its errors as further columns, error(θ1) of θ1 in the same unit, after all others. For files;
+/// without errors, as it is. Infinite where no digit is certain.
 Trajectory with_error_columns(const Trajectory& trajectory);
 
 /// The formats that `write_trajectory` knows, by their endings.
@@ -48,14 +48,14 @@ std::string to_csv(const Trajectory& trajectory);
 std::string to_json(const Trajectory& trajectory);
 
 /// A NumPy array of records [rows], format 3.0 (UTF-8): `numpy.load(f)["θ1"]`, `["t"]`. Little-endian doubles, as they
-/// were computed. A field's title carries its unit, `a.dtype.fields["θ1"][2]` is `θ1 [rad]`; titles are left out where the
-/// header would pass the 10,000 characters that numpy.load accepts.
+/// were computed. A field's title carries its unit, `a.dtype.fields["θ1"][2]` is `θ1 [rad]`; titles are left out where
+/// the header would pass the 10,000 characters that numpy.load accepts.
 std::string to_npy(const Trajectory& trajectory);
 
-/// Writes any text or bytes by way of a temporary name in the same folder that is renamed when complete and on the disk:
-/// another program sees the old content or the new, never a part, and a failure leaves the old content.
-/// A link is followed; a device or a pipe is written to as it is. The permissions of an existing file stay.
-/// Returns the sentence for the user, empty on success.
+/// Writes any text or bytes by way of a temporary name in the same folder that is renamed when complete and on the
+/// disk: another program sees the old content or the new, never a part, and a failure leaves the old content. A link is
+/// followed; a device or a pipe is written to as it is. The permissions of an existing file stay. Returns the sentence
+/// for the user, empty on success.
 std::string write_file(const std::string& path, const std::string& content);
 
 }  // namespace maupertuis

@@ -19,8 +19,8 @@ struct Dimension {
   };
   std::array<Exponent, Count> exponents{};
 
-  bool is_one() const;                     // all zero but perhaps the angle
-  bool same_as(const Dimension& other) const;   // equal, the angle left aside
+  bool is_one() const;                         // all zero but perhaps the angle
+  bool same_as(const Dimension& other) const;  // equal, the angle left aside
   Exponent angle() const { return exponents[Angle]; }
 
   friend Dimension operator*(const Dimension& a, const Dimension& b);
@@ -35,18 +35,18 @@ Dimension pow(const Dimension& dimension, std::int64_t numerator, std::int64_t d
 struct Unit {
   Dimension dimension;
   Rational factor = 1;
-  int pi_power = 0;      // deg = π/180 rad, rpm = 2π/60 rad/s
-  bool is_hertz = false; // Hz stands in it to the first power: an angle rate in Hz is an error
+  int pi_power = 0;       // deg = π/180 rad, rpm = 2π/60 rad/s
+  bool is_hertz = false;  // Hz stands in it to the first power: an angle rate in Hz is an error
 };
 
 /// One unit word with or without an SI prefix: "mm", "kg", "deg", "min". Exact names beat prefixes.
 std::optional<Unit> find_unit(std::string_view word);
-/// A word that SI reads in one way and people in another: PS is a petasiemens, and a horsepower in German. Nobody should
-/// find out by a factor of 10^12, so that it is no unit of a model.
+/// A word that SI reads in one way and people in another: PS is a petasiemens, and a horsepower in German. Nobody
+/// should find out by a factor of 10^12, so that it is no unit of a model.
 struct AmbiguousUnit {
   std::string_view word;
-  std::string_view meanings;   // "a petasiemens (1e15 S) or a metric horsepower (735.49875 W)"
-  std::string_view instead;    // "735.49875 W for the horsepower, 1e15 S for the conductance"
+  std::string_view meanings;  // "a petasiemens (1e15 S) or a metric horsepower (735.49875 W)"
+  std::string_view instead;   // "735.49875 W for the horsepower, 1e15 S for the conductance"
 };
 const AmbiguousUnit* find_ambiguous_unit(std::string_view word);
 

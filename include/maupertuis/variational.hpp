@@ -11,27 +11,29 @@
 namespace maupertuis {
 
 struct VariationalOptions {
-  double step = 0;                               // s, > 0; the same for the whole run, but the last step may be shorter
-  int order = 4;                                 // of accuracy: 2, 4, …, 12; an odd number counts as the next even one
+  double step = 0;  // s, > 0; the same for the whole run, but the last step may be shorter
+  int order = 4;    // of accuracy: 2, 4, …, 12; an odd number counts as the next even one
   std::size_t maximum_steps = 100'000'000;
   const std::atomic<bool>* interrupt = nullptr;  // looked at once a step
 };
 
 /// Galerkin variational integrator on Gauss nodes, or on Lobatto nodes when there are constraints. The map from step to
 /// step preserves the symplectic form and the momenta of symmetries to rounding; forces enter by the discrete
-/// principle of Lagrange and d'Alembert; position constraints and the velocity constraints that they imply hold at every
-/// step to rounding. L may depend on q, v and t in any way. Events and integrands are functions of q, v, λ and t.
+/// principle of Lagrange and d'Alembert; position constraints and the velocity constraints that they imply hold at
+/// every step to rounding. L may depend on q, v and t in any way. Events and integrands are functions of q, v, λ and t.
 class VariationalStepper {
  public:
   /// Preconditions: parameters.size() == functions' parameters; options.step > 0; 2 ≤ order ≤ 12;
   /// functions.motion.holonomic.
-  VariationalStepper(const VariationalFunctions& functions, std::span<const double> parameters, const VariationalOptions& options);
+  VariationalStepper(const VariationalFunctions& functions, std::span<const double> parameters,
+                     const VariationalOptions& options);
   ~VariationalStepper();
   VariationalStepper(VariationalStepper&&) noexcept;
 
   int order() const;
   void start(double t, std::span<const double> q, std::span<const double> v);
-  /// One step towards `bound`, at most up to it; time() == bound exactly when it is reached. Backwards if bound < time().
+  /// One step towards `bound`, at most up to it; time() == bound exactly when it is reached. Backwards if bound <
+  /// time().
   Step step(double bound);
 
   double time() const;

@@ -10,32 +10,33 @@ namespace maupertuis {
 /// What became of one `expect` or `claim` line.
 struct ExpectationResult {
   std::uint32_t line = 0;
-  std::string text;         // as written
+  std::string text;  // as written
   bool claim = false;
   bool passed = false;
-  std::string actual;       // what came out, in the unit that the line uses
+  std::string actual;  // what came out, in the unit that the line uses
   std::string expected;
   std::string tolerance;
-  std::string uncertainty;  // of what came out, where its error is known; "no digit is certain"; empty otherwise
+  std::string uncertainty;     // of what came out, where its error is known; "no digit is certain"; empty otherwise
   bool beyond_digits = false;  // the tolerance is smaller than that: more is asked for than is known
-  std::string message;      // one sentence when it failed, or what was proved and on what ground
-  std::string pitfall;      // the known mistake whose signature the difference has; empty if none
+  std::string message;         // one sentence when it failed, or what was proved and on what ground
+  std::string pitfall;         // the known mistake whose signature the difference has; empty if none
 };
 
 struct Verification {
-  std::vector<ExpectationResult> results;   // in the order of the text
+  std::vector<ExpectationResult> results;  // in the order of the text
   std::size_t passed() const;
   std::size_t failed() const { return results.size() - passed(); }
 };
 
 /// What an expectation of a value is worth, where the value may be off by `error` (docs/design/certain_digits.md).
 ///
-/// It holds if |actual − expected| ≤ tolerance. Where error > tolerance more digits are asked for than are known (beyond_digits): then it holds only while
-/// error ≤ 100 tolerance, since stated errors may be a hundred times too large; beyond that a value within the tolerance is luck. An infinite error holds
-/// nothing. A value known to the last bits of double is known as well as can be, whatever the tolerance.
+/// It holds if |actual − expected| ≤ tolerance. Where error > tolerance more digits are asked for than are known
+/// (beyond_digits): then it holds only while error ≤ 100 tolerance, since stated errors may be a hundred times too
+/// large; beyond that a value within the tolerance is luck. An infinite error holds nothing. A value known to the last
+/// bits of double is known as well as can be, whatever the tolerance.
 struct ValueVerdict {
   bool passed = false, beyond_digits = false;
-  bool may_hold = false;    // it does not pass, but the right value may lie within the tolerance all the same
+  bool may_hold = false;  // it does not pass, but the right value may lie within the tolerance all the same
 };
 ValueVerdict value_verdict(double actual, double expected, double tolerance, double error);
 

@@ -12,8 +12,9 @@ struct TurnGain {
   int turns = 0;
 };
 
-/// Angles that enter through sines and cosines of whole multiples alone: a turn of theirs changes nothing but observables such as the
-/// angle itself. Only what the program itself shows counts: a factor that is a parameter is none.
+/// Angles that enter through sines and cosines of whole multiples alone: a turn of theirs changes nothing but
+/// observables such as the angle itself. Only what the program itself shows counts: a factor that is a parameter is
+/// none.
 struct Winding {
   std::vector<bool> coordinates;                   // [n]
   std::vector<std::vector<TurnGain>> observables;  // [observables]

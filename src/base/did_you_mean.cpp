@@ -10,8 +10,10 @@ std::u32string code_points(std::string_view text) {
   std::u32string out;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
-    if ((byte & 0xC0u) == 0x80u && !out.empty()) out.back() = (out.back() << 6) | (byte & 0x3Fu);
-    else out.push_back(byte);
+    if ((byte & 0xC0u) == 0x80u && !out.empty())
+      out.back() = (out.back() << 6) | (byte & 0x3Fu);
+    else
+      out.push_back(byte);
   }
   return out;
 }

@@ -15,13 +15,64 @@ struct LookAlike {
 };
 constexpr LookAlike kLookAlikes[] = {
     // Greek; of the small letters omicron and lunate sigma alone, and the letter yot
-    {0x37F, 'J'}, {0x391, 'A'}, {0x392, 'B'}, {0x395, 'E'}, {0x396, 'Z'}, {0x397, 'H'}, {0x399, 'I'}, {0x39A, 'K'}, {0x39C, 'M'},
-    {0x39D, 'N'}, {0x39F, 'O'}, {0x3A1, 'P'}, {0x3A4, 'T'}, {0x3A5, 'Y'}, {0x3A7, 'X'}, {0x3BF, 'o'}, {0x3F2, 'c'}, {0x3F3, 'j'}, {0x3F9, 'C'},
+    {0x37F, 'J'},
+    {0x391, 'A'},
+    {0x392, 'B'},
+    {0x395, 'E'},
+    {0x396, 'Z'},
+    {0x397, 'H'},
+    {0x399, 'I'},
+    {0x39A, 'K'},
+    {0x39C, 'M'},
+    {0x39D, 'N'},
+    {0x39F, 'O'},
+    {0x3A1, 'P'},
+    {0x3A4, 'T'},
+    {0x3A5, 'Y'},
+    {0x3A7, 'X'},
+    {0x3BF, 'o'},
+    {0x3F2, 'c'},
+    {0x3F3, 'j'},
+    {0x3F9, 'C'},
     // Cyrillic
-    {0x405, 'S'}, {0x406, 'I'}, {0x408, 'J'}, {0x410, 'A'}, {0x412, 'B'}, {0x415, 'E'}, {0x41A, 'K'}, {0x41C, 'M'}, {0x41D, 'H'}, {0x41E, 'O'},
-    {0x420, 'P'}, {0x421, 'C'}, {0x422, 'T'}, {0x423, 'Y'}, {0x425, 'X'}, {0x430, 'a'}, {0x435, 'e'}, {0x43E, 'o'}, {0x440, 'p'}, {0x441, 'c'},
-    {0x443, 'y'}, {0x445, 'x'}, {0x455, 's'}, {0x456, 'i'}, {0x458, 'j'}, {0x474, 'V'}, {0x475, 'v'}, {0x4AE, 'Y'}, {0x4BA, 'h'}, {0x4BB, 'h'},
-    {0x4C0, 'I'}, {0x4CF, 'l'}, {0x501, 'd'}, {0x50C, 'G'}, {0x51A, 'Q'}, {0x51B, 'q'}, {0x51C, 'W'}, {0x51D, 'w'},
+    {0x405, 'S'},
+    {0x406, 'I'},
+    {0x408, 'J'},
+    {0x410, 'A'},
+    {0x412, 'B'},
+    {0x415, 'E'},
+    {0x41A, 'K'},
+    {0x41C, 'M'},
+    {0x41D, 'H'},
+    {0x41E, 'O'},
+    {0x420, 'P'},
+    {0x421, 'C'},
+    {0x422, 'T'},
+    {0x423, 'Y'},
+    {0x425, 'X'},
+    {0x430, 'a'},
+    {0x435, 'e'},
+    {0x43E, 'o'},
+    {0x440, 'p'},
+    {0x441, 'c'},
+    {0x443, 'y'},
+    {0x445, 'x'},
+    {0x455, 's'},
+    {0x456, 'i'},
+    {0x458, 'j'},
+    {0x474, 'V'},
+    {0x475, 'v'},
+    {0x4AE, 'Y'},
+    {0x4BA, 'h'},
+    {0x4BB, 'h'},
+    {0x4C0, 'I'},
+    {0x4CF, 'l'},
+    {0x501, 'd'},
+    {0x50C, 'G'},
+    {0x51A, 'Q'},
+    {0x51B, 'q'},
+    {0x51C, 'W'},
+    {0x51D, 'w'},
 };
 
 struct Character {
@@ -45,7 +96,8 @@ Character character_at(std::string_view text, std::size_t at) {
 
 /// Its Latin twin, or 0.
 char latin_twin(char32_t c) {
-  const auto* found = std::find_if(std::begin(kLookAlikes), std::end(kLookAlikes), [c](const LookAlike& l) { return l.letter == c; });
+  const auto* found =
+      std::find_if(std::begin(kLookAlikes), std::end(kLookAlikes), [c](const LookAlike& l) { return l.letter == c; });
   return found == std::end(kLookAlikes) ? '\0' : found->latin;
 }
 
@@ -62,19 +114,23 @@ std::string latin_look(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
     const Character c = character_at(text, i);
     const char twin = latin_twin(c.value);
-    if (twin) out += twin;
-    else out += text.substr(i, c.length);
+    if (twin)
+      out += twin;
+    else
+      out += text.substr(i, c.length);
     i += c.length;
   }
   return out;
 }
 
 std::string foreign_letter(std::string_view name) {
-  const bool has_latin = std::any_of(name.begin(), name.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); });
+  const bool has_latin =
+      std::any_of(name.begin(), name.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); });
   for (std::size_t i = 0; has_latin && i < name.size();) {
     const Character c = character_at(name, i);
     if (latin_twin(c.value))
-      return fmt::format("`{}` (U+{:04X}) is a {} letter", name.substr(i, c.length), static_cast<std::uint32_t>(c.value), c.value < 0x400 ? "Greek" : "Cyrillic");
+      return fmt::format("`{}` (U+{:04X}) is a {} letter", name.substr(i, c.length),
+                         static_cast<std::uint32_t>(c.value), c.value < 0x400 ? "Greek" : "Cyrillic");
     i += c.length;
   }
   return {};
@@ -85,10 +141,14 @@ std::string visible(std::string_view text) {
   out.reserve(text.size());
   for (std::size_t i = 0; i < text.size();) {
     const Character c = character_at(text, i);
-    if (c.value == 0xFFFD && c.length == 1) out += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[i]));
-    else if (is_control(c.value)) out += fmt::format("\\x{:02x}", static_cast<std::uint32_t>(c.value));
-    else if (turns_direction(c.value)) out += fmt::format("\\u{:04x}", static_cast<std::uint32_t>(c.value));
-    else out += text.substr(i, c.length);
+    if (c.value == 0xFFFD && c.length == 1)
+      out += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[i]));
+    else if (is_control(c.value))
+      out += fmt::format("\\x{:02x}", static_cast<std::uint32_t>(c.value));
+    else if (turns_direction(c.value))
+      out += fmt::format("\\u{:04x}", static_cast<std::uint32_t>(c.value));
+    else
+      out += text.substr(i, c.length);
     i += c.length;
   }
   return out;

@@ -57,8 +57,10 @@ double rounded_quotient(BigInteger n, BigInteger d) {
   if (shift < -1200) return 0.0;
   const long subnormal_floor = -1074;
   long scale = std::max(shift - 54, subnormal_floor - 2);  // quotient has 54 or 55 bits, fewer when subnormal
-  if (scale > 0) d <<= scale;
-  else n <<= -scale;
+  if (scale > 0)
+    d <<= scale;
+  else
+    n <<= -scale;
   BigInteger quotient, remainder;
   divide_qr(n, d, quotient, remainder);
   if (quotient == 0) return 0.0;
@@ -107,9 +109,13 @@ std::optional<Rational> Rational::parse(std::string_view text) {
   bool point = false;
   for (; i < text.size(); ++i) {
     const char c = text[i];
-    if (c >= '0' && c <= '9') { collected += c; scale -= point; }
-    else if (c == '.' && !point) point = true;
-    else break;
+    if (c >= '0' && c <= '9') {
+      collected += c;
+      scale -= point;
+    } else if (c == '.' && !point)
+      point = true;
+    else
+      break;
   }
   if (collected.empty()) return std::nullopt;
   const std::size_t leading = collected.find_first_not_of('0');
@@ -131,8 +137,10 @@ std::optional<Rational> Rational::parse(std::string_view text) {
   } else if (i != text.size()) {
     return std::nullopt;
   }
-  if (scale < 0) denominator *= pow(BigInteger(10), static_cast<unsigned>(-scale));
-  else digits *= pow(BigInteger(10), static_cast<unsigned>(scale));
+  if (scale < 0)
+    denominator *= pow(BigInteger(10), static_cast<unsigned>(-scale));
+  else
+    digits *= pow(BigInteger(10), static_cast<unsigned>(scale));
   BigRational value(digits, denominator);
   return from_big(std::make_shared<const Big>(Big{negative ? BigRational(-value) : value}));
 }
@@ -219,8 +227,8 @@ Rational operator+(const Rational& a, const Rational& b) {
       return r;
     }
   }
-  return Rational::from_big(std::make_shared<const Rational::Big>(
-      Rational::Big{a.promote()->value + b.promote()->value}));
+  return Rational::from_big(
+      std::make_shared<const Rational::Big>(Rational::Big{a.promote()->value + b.promote()->value}));
 }
 
 Rational operator*(const Rational& a, const Rational& b) {
@@ -232,15 +240,14 @@ Rational operator*(const Rational& a, const Rational& b) {
       return r;
     }
   }
-  return Rational::from_big(std::make_shared<const Rational::Big>(
-      Rational::Big{a.promote()->value * b.promote()->value}));
+  return Rational::from_big(
+      std::make_shared<const Rational::Big>(Rational::Big{a.promote()->value * b.promote()->value}));
 }
 
 Rational operator/(const Rational& a, const Rational& b) {
   MAUP_REQUIRE(!b.is_zero());
   if (b.big_) {
-    return Rational::from_big(std::make_shared<const Rational::Big>(
-        Rational::Big{a.promote()->value / b.big_->value}));
+    return Rational::from_big(std::make_shared<const Rational::Big>(Rational::Big{a.promote()->value / b.big_->value}));
   }
   Rational inverse;
   inverse.numerator_ = b.numerator_ < 0 ? -b.denominator_ : b.denominator_;
@@ -286,8 +293,10 @@ std::optional<BigInteger> integer_root(const BigInteger& n, int k) {
   BigInteger low = 1, high = BigInteger(1) << (msb(n) / static_cast<unsigned>(k) + 1);
   while (low < high) {
     const BigInteger middle = (low + high + 1) >> 1;
-    if (pow(middle, static_cast<unsigned>(k)) <= n) low = middle;
-    else high = middle - 1;
+    if (pow(middle, static_cast<unsigned>(k)) <= n)
+      low = middle;
+    else
+      high = middle - 1;
   }
   if (pow(low, static_cast<unsigned>(k)) == n) return low;
   return std::nullopt;

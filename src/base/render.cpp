@@ -15,34 +15,44 @@ struct Paint {
 
 const char* severity_word(Severity severity) {
   switch (severity) {
-    case Severity::Error: return "error";
-    case Severity::Warning: return "warning";
-    case Severity::Note: return "note";
+    case Severity::Error:
+      return "error";
+    case Severity::Warning:
+      return "warning";
+    case Severity::Note:
+      return "note";
   }
   return "";
 }
 
 const char* severity_color(Severity severity) {
   switch (severity) {
-    case Severity::Error: return "\x1b[1;31m";
-    case Severity::Warning: return "\x1b[1;33m";
-    case Severity::Note: return "\x1b[1;36m";
+    case Severity::Error:
+      return "\x1b[1;31m";
+    case Severity::Warning:
+      return "\x1b[1;33m";
+    case Severity::Note:
+      return "\x1b[1;36m";
   }
   return "";
 }
 
 bool starts_character(char byte) { return (static_cast<unsigned char>(byte) & 0xC0u) != 0x80u; }
 
-/// Tabs as one space and what is not shown as one mark, so that the caret stands where it should and a terminal is safe.
+/// Tabs as one space and what is not shown as one mark, so that the caret stands where it should and a terminal is
+/// safe.
 std::string printable(std::string_view text) {
   std::string out;
   for (std::size_t i = 0; i < text.size();) {
     std::size_t end = i + 1;
     while (end < text.size() && !starts_character(text[end])) ++end;
     const std::string_view character = text.substr(i, end - i);
-    if (character == "\t") out += ' ';
-    else if (visible(character) == character && character != "\n") out += character;
-    else out += "\xEF\xBF\xBD";  // the replacement character
+    if (character == "\t")
+      out += ' ';
+    else if (visible(character) == character && character != "\n")
+      out += character;
+    else
+      out += "\xEF\xBF\xBD";  // the replacement character
     i = end;
   }
   return out;
@@ -58,7 +68,10 @@ std::string_view substring(std::string_view text, std::size_t first, std::size_t
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (!starts_character(text[i])) continue;
     if (seen == first) begin = i;
-    if (seen == first + count) { end = i; break; }
+    if (seen == first + count) {
+      end = i;
+      break;
+    }
     ++seen;
   }
   return text.substr(begin, end - begin);
@@ -107,8 +120,9 @@ std::string render(const Diagnostic& d, const SourceTexts& texts, const RenderOp
   out += fmt::format("\n{}{}{}\n", paint.code("\x1b[1m"), visible(d.message), paint.code("\x1b[0m"));
   if (d.span) out += "\n" + source_excerpt(d, source, paint);
   if (!d.reason.empty()) out += "\n" + visible(d.reason) + "\n";
-  if (!d.help.empty()) out += fmt::format("{}{}Help:{} {}\n", d.reason.empty() ? "\n" : "", paint.code("\x1b[32m"),
-                                          paint.code("\x1b[0m"), visible(d.help));
+  if (!d.help.empty())
+    out += fmt::format("{}{}Help:{} {}\n", d.reason.empty() ? "\n" : "", paint.code("\x1b[32m"), paint.code("\x1b[0m"),
+                       visible(d.help));
   return out;
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 using namespace certification;
 
-constexpr std::size_t largest_checked_matrix = 6;   // beyond it M and h are compared on `full` alone: O(n²) of them
+constexpr std::size_t largest_checked_matrix = 6;  // beyond it M and h are compared on `full` alone: O(n²) of them
 constexpr int real_points = 4;
 
 struct RouteText {
@@ -24,7 +24,9 @@ constexpr std::array<RouteText, RouteCount> texts{{
     {"jet_residual", "the equations follow from the action principle along random paths"},
     {"dalembert", "the particles and bodies obey d'Alembert's principle"},
     {"power_balance", "the energy function changes by the power of the forces (blind to gyroscopic terms)"},
-    {"constraint_rows", "the forces of constraint do the virtual work λ δφ, and A q'' − b is the second derivative of φ along random paths"},
+    {"constraint_rows",
+     "the forces of constraint do the virtual work λ δφ, and A q'' − b is the second derivative of φ along random "
+     "paths"},
 }};
 
 /// The verdict over the primes, and over the reals where those leave it open.
@@ -65,11 +67,13 @@ void leave_out(CertificateCheck& check, std::string statement) {
 void explain_dalembert(CertificateCheck& check, const Questions& questions) {
   const MechanicalSystem& system = questions.system;
   if (questions.stretching)
-    return leave_out(check, fmt::format("d'Alembert's principle does not apply: nothing keeps the quaternion of {} at norm 1",
-                                        questions.stretching->name));
+    return leave_out(check,
+                     fmt::format("d'Alembert's principle does not apply: nothing keeps the quaternion of {} at norm 1",
+                                 questions.stretching->name));
   if (!questions.has_matter)
-    return leave_out(check, system.lagrangian_given ? "d'Alembert's principle does not apply: L is given whole"
-                                                    : "d'Alembert's principle does not apply: no particle or body has mass");
+    return leave_out(check, system.lagrangian_given
+                                ? "d'Alembert's principle does not apply: L is given whole"
+                                : "d'Alembert's principle does not apply: no particle or body has mass");
   const auto given = [](const EnergyTerm& term) { return term.origin == "T"; };
   if (std::any_of(system.kinetic.begin(), system.kinetic.end(), given))
     check.statement += "; the part of T that is given enters as it stands";

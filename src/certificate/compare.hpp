@@ -12,9 +12,10 @@ inline std::size_t orders_needed(const evaluation::Tape& tape) {
 
 /// d'Alembert's principle where quaternions turn bodies: along a path of rotations.
 template <class Numbers>
-std::vector<typename Numbers::Value> dalembert_among_rotations(
-    const Questions& questions, const evaluation::Tape& tape, Numbers& numbers,
-    std::vector<typename Numbers::Value> direction, std::vector<Jet<typename Numbers::Value>>& values) {
+std::vector<typename Numbers::Value> dalembert_among_rotations(const Questions& questions, const evaluation::Tape& tape,
+                                                               Numbers& numbers,
+                                                               std::vector<typename Numbers::Value> direction,
+                                                               std::vector<Jet<typename Numbers::Value>>& values) {
   const std::size_t orders = orders_needed(tape);
   RandomPath<Numbers> path(questions, numbers, orders, direction);
   path.keep_to_rotations(questions, direction);
@@ -39,7 +40,8 @@ std::array<std::vector<typename Numbers::Value>, RouteCount> differences(
   if (questions.has_matter && !rotations) out[Dalembert] = dalembert_route(along);
   out[Power] = power_route(along);
   if (!questions.constraints.empty()) out[ConstraintRows] = constraint_route(along);
-  if (questions.has_matter && rotations) out[Dalembert] = dalembert_among_rotations(questions, tape, numbers, direction, values);
+  if (questions.has_matter && rotations)
+    out[Dalembert] = dalembert_among_rotations(questions, tape, numbers, direction, values);
   return out;
 }
 

@@ -16,7 +16,7 @@ using evaluation::mix;
 using Values = std::vector<Jet<FieldNumbers::Value>>;
 
 constexpr int points_per_prime = 3;
-constexpr double node_budget = 1e6;   // bounds the extra points that switches ask for
+constexpr double node_budget = 1e6;  // bounds the extra points that switches ask for
 
 std::vector<FieldNumbers::Value> random_direction(const FieldNumbers& numbers, std::size_t n) {
   std::vector<FieldNumbers::Value> direction;
@@ -63,19 +63,26 @@ bool compare_at_points(const Questions& questions, const evaluation::Tape& tape,
       try {
         if (!mended) {
           seed = mix(seed);
-          if (numbers) numbers->set_seed(seed);
-          else numbers.emplace(primes, hints, seed);
+          if (numbers)
+            numbers->set_seed(seed);
+          else
+            numbers.emplace(primes, hints, seed);
         }
         mended = false;
         const auto difference = differences(questions, tape, *numbers, random_direction(*numbers, n), values);
         bool fails = false;
         for (std::size_t route = 0; route < RouteCount; ++route) {
           RouteResult& r = result.routes[route];
-          if (any_nonzero(difference[route])) fails = r.fails = true;
-          else if (!r.fails) ++r.points;
+          if (any_nonzero(difference[route]))
+            fails = r.fails = true;
+          else if (!r.fails)
+            ++r.points;
         }
         ++found;
-        if (fails) { find_rows(questions, tape, *numbers, result); return true; }
+        if (fails) {
+          find_rows(questions, tape, *numbers, result);
+          return true;
+        }
       } catch (const evaluation::Redraw& redraw) {
         if (redraw.another_prime || (attempt >= 60 && found == 0)) break;
         mended = numbers && mends_left-- > 0 && numbers->mend(redraw);
@@ -96,7 +103,8 @@ RoutesResult compare_over_primes(const Questions& questions, std::uint64_t seed)
   }
   const evaluation::FieldHints hints = evaluation::field_hints(tape);
   evaluation::Complexity size = evaluation::complexity(tape);
-  const int affordable = static_cast<int>(std::max<double>(points_per_prime, node_budget / static_cast<double>(tape.size())));
+  const int affordable =
+      static_cast<int>(std::max<double>(points_per_prime, node_budget / static_cast<double>(tape.size())));
   const int wanted = std::min(evaluation::points_needed(size, points_per_prime), affordable);
   double smallest_group = 1;
   for (int prime = 0; prime < 2 && result.complete; ++prime) {

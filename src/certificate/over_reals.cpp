@@ -18,10 +18,11 @@ using Reals = evaluation::RealNumbers<Real100>;
 /// Real numbers of 100 digits in the role that a prime field has in the other route.
 class HundredDigits : public Reals {
  public:
-  struct Angle { Real100 cosine, sine; };
+  struct Angle {
+    Real100 cosine, sine;
+  };
 
-  explicit HundredDigits(std::uint64_t seed)
-      : Reals([this](Expr e) { return draw(e); }), seed_(seed) {}
+  explicit HundredDigits(std::uint64_t seed) : Reals([this](Expr e) { return draw(e); }), seed_(seed) {}
 
   Real100 random(std::uint64_t key, std::uint64_t second) const {
     const std::uint64_t bits = mix(mix(seed_ ^ mix(key)) ^ second);
@@ -31,10 +32,14 @@ class HundredDigits : public Reals {
   bool is_zero(const Real100& a) const { return a == 0; }
   int sign(Position, const Real100& value) const { return value < 0 ? -1 : 1; }
   Real100 square_root(const Real100& a) const { return sqrt(a); }
-  Angle cos_sin(const Tape&, Position argument, const std::vector<Real100>& v) const { return {cos(v[argument]), sin(v[argument])}; }
+  Angle cos_sin(const Tape&, Position argument, const std::vector<Real100>& v) const {
+    return {cos(v[argument]), sin(v[argument])};
+  }
   Real100 exponential(const Tape&, Position argument, const std::vector<Real100>& v) const { return exp(v[argument]); }
   Real100 logarithm(const Tape&, Position argument, const std::vector<Real100>& v) const { return log(v[argument]); }
-  bool holds(const Tape& tape, Position at, const std::vector<Real100>& v) const { return Reals::holds(tape, at, v).value_or(false); }
+  bool holds(const Tape& tape, Position at, const std::vector<Real100>& v) const {
+    return Reals::holds(tape, at, v).value_or(false);
+  }
 
  private:
   Real100 draw(Expr e) const {

@@ -8,7 +8,9 @@
 namespace maupertuis::certification {
 namespace {
 
-bool starts_with(const std::string& text, std::string_view prefix) { return text.compare(0, prefix.size(), prefix) == 0; }
+bool starts_with(const std::string& text, std::string_view prefix) {
+  return text.compare(0, prefix.size(), prefix) == 0;
+}
 
 bool comes_from_matter(const EnergyTerm& term) {
   for (const std::string_view prefix : {"particle ", "motion of body ", "rotation of body ", "gravity on "})
@@ -76,7 +78,8 @@ void Questions::ask_about_matter() {
     if (p.mass) particles.push_back({ask(p.mass), ask(p.position)});
   for (const Body& b : system.bodies) {
     if (b.mass) particles.push_back({ask(b.mass), ask(b.position)});
-    if (b.inertia.rows > 0) bodies.push_back({ask(b.inertia.entries), ask(b.rotation.entries)});  // else it turns without effort
+    if (b.inertia.rows > 0)
+      bodies.push_back({ask(b.inertia.entries), ask(b.rotation.entries)});  // else it turns without effort
   }
   has_matter = !particles.empty() || !bodies.empty();
   if (!has_matter) return;
@@ -105,8 +108,13 @@ void Questions::ask_about_constraints(const EquationsOfMotion& equations, bool w
   for (std::size_t k = 0; k < system.constraints.size(); ++k) {
     const Constraint& c = system.constraints[k];
     if (const auto four = unit_quaternion(system, c); four && !bodies.empty()) unit_quaternions.push_back(*four);
-    ConstraintQuestion question{c.level, ask(c.value), ask(c.multiplier), ask(equations.constraint_rates[k]),
-                                ask(equations.constraint_accelerations[k]), {}, 0};
+    ConstraintQuestion question{c.level,
+                                ask(c.value),
+                                ask(c.multiplier),
+                                ask(equations.constraint_rates[k]),
+                                ask(equations.constraint_accelerations[k]),
+                                {},
+                                0};
     for (std::size_t j = 0; j < a.columns; ++j) question.row.push_back(ask(a.at(k, j)));
     if (with_matrix) question.bias = ask(b[k]);
     constraints.push_back(std::move(question));
@@ -122,7 +130,7 @@ const Body* Questions::body_without_rotation() const {
   }
   for (const Body& body : system.bodies) {
     const ExprMatrix& r = body.rotation;
-    ExprVector differences;   // R Rᵀ − 1
+    ExprVector differences;  // R Rᵀ − 1
     for (std::size_t i = 0; i < r.rows; ++i)
       for (std::size_t j = 0; j <= i; ++j) {
         ExprVector terms{system.context->number(i == j ? -1 : 0)};

@@ -21,13 +21,13 @@ struct ParticleQuestion {
 };
 struct ConstraintQuestion {
   Constraint::Level level;
-  Root value, multiplier;             // of the model: φ or ψ, λ
-  Root rate, acceleration;            // claimed
-  Roots row;                          // claimed: of A; empty: not asked
-  Root bias = 0;                      // claimed, with `row`
+  Root value, multiplier;   // of the model: φ or ψ, λ
+  Root rate, acceleration;  // claimed
+  Roots row;                // claimed: of A; empty: not asked
+  Root bias = 0;            // claimed, with `row`
 };
 struct BodyQuestion {
-  Roots inertia, rotation;   // by rows
+  Roots inertia, rotation;  // by rows
 };
 
 /// Everything that the checks look at, gathered once so that one evaluation serves them all. Expressions of the model
@@ -44,19 +44,19 @@ struct Questions {
   Roots velocities, accelerations;
   // the same mechanics without T: particles, bodies, and the energies that are given beside them
   bool has_matter = false;
-  const Body* stretching = nullptr;   // a body_without_rotation: then nothing is asked about matter
+  const Body* stretching = nullptr;  // a body_without_rotation: then nothing is asked about matter
   std::vector<ParticleQuestion> particles;
   std::vector<BodyQuestion> bodies;
   Roots gravity;
-  Root given_energies = 0;   // L without what particles, bodies and gravity give
+  Root given_energies = 0;  // L without what particles, bodies and gravity give
 
   // what the derivation claims
   Roots residual, momenta, generalized_forces, dissipative_terms;
   Root energy_function, power;
-  Roots mass_matrix, bias;   // empty: not asked
+  Roots mass_matrix, bias;  // empty: not asked
   std::vector<ConstraintQuestion> constraints;
-  Roots constraint_forces;   // empty without constraints
-  std::vector<std::array<std::size_t, 4>> unit_quaternions;   // coordinates w, x, y, z whose constraint is their norm
+  Roots constraint_forces;                                   // empty without constraints
+  std::vector<std::array<std::size_t, 4>> unit_quaternions;  // coordinates w, x, y, z whose constraint is their norm
 
   /// A body whose rotation matrix is none, since nothing keeps its quaternion at norm 1; null if there is none.
   const Body* body_without_rotation() const;

@@ -10,14 +10,14 @@ enum Route : std::size_t { Action, Dalembert, Power, ConstraintRows, RouteCount 
 
 struct RouteResult {
   bool fails = false;
-  std::size_t row = 0;     // the first equation that fails; n: a constraint's own row
-  int points = 0;          // at which all differences vanished
-  double difference = 0;   // over the reals: of the failing row
+  std::size_t row = 0;    // the first equation that fails; n: a constraint's own row
+  int points = 0;         // at which all differences vanished
+  double difference = 0;  // over the reals: of the failing row
 };
 
 struct RoutesResult {
   std::array<RouteResult, RouteCount> routes;
-  bool complete = true;    // false: not enough points at which everything is defined
+  bool complete = true;  // false: not enough points at which everything is defined
   double error_bound = 1;
 };
 

@@ -31,7 +31,7 @@ struct PathValues {
   JetNumbers<Numbers>& jets;
   const evaluation::Tape& tape;
   const std::vector<Jet<Scalar>>& values;
-  std::vector<Scalar> direction;   // [n]
+  std::vector<Scalar> direction;  // [n]
 
   const Jet<Scalar>& of(Root root) const { return values[tape.roots()[root]]; }
   Scalar zero() const { return jets.base().number(0); }
@@ -60,7 +60,9 @@ auto variation(const P& path, Root function) {
 
 /// c·∂D/∂q̇.
 template <class P>
-auto dissipative_force(const P& path) { return path.of(path.questions.dissipation)(Ramp, 0); }
+auto dissipative_force(const P& path) {
+  return path.of(path.questions.dissipation)(Ramp, 0);
+}
 
 /// The virtual work of the applied forces in the displacement c: F·δr, τ·δθ.
 template <class P>
@@ -96,7 +98,7 @@ auto action_route(const P& path) {
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j)
         sum = path.add(sum, path.multiply(path.direction[i], path.multiply(path.of(ask.mass_matrix[i * n + j])(Base, 0),
-                                                                         path.of(ask.accelerations[j])(Base, 0))));
+                                                                           path.of(ask.accelerations[j])(Base, 0))));
     differences.push_back(path.subtract(sum, claimed));
   }
   return differences;
@@ -131,7 +133,8 @@ auto constraint_route(const P& path) {
     differences.push_back(path.subtract(path.of(c.acceleration)(Base, 0), acceleration));
     if (position) differences.push_back(value(Ramp, 0));
     if (c.row.empty()) continue;
-    differences.push_back(path.subtract(path.dot(c.row, ask.accelerations), path.add(path.of(c.bias)(Base, 0), acceleration)));
+    differences.push_back(
+        path.subtract(path.dot(c.row, ask.accelerations), path.add(path.of(c.bias)(Base, 0), acceleration)));
     from_rows = path.add(from_rows, path.multiply(path.of(c.multiplier)(Base, 0), path.along_direction(c.row)));
   }
   if (!ask.constraints.front().row.empty()) differences.push_back(path.subtract(from_rows, claimed));
@@ -142,8 +145,9 @@ auto constraint_route(const P& path) {
 template <class P>
 auto power_route(const P& path) {
   const Questions& ask = path.questions;
-  const auto outflow = path.subtract(path.dot(ask.velocities, ask.dissipative_terms), path.dot(ask.velocities, ask.generalized_forces));
-  const auto power = path.add(path.of(ask.lagrangian)(Clock, 0), outflow);   // minus what drives h_E
+  const auto outflow =
+      path.subtract(path.dot(ask.velocities, ask.dissipative_terms), path.dot(ask.velocities, ask.generalized_forces));
+  const auto power = path.add(path.of(ask.lagrangian)(Clock, 0), outflow);  // minus what drives h_E
   const auto change = path.add(path.of(ask.energy_function)(Base, 1), power);
   // λ·A q̇, of which dφ/dt and ψ vanish along the motion.
   auto of_constraints = path.zero();
@@ -157,7 +161,7 @@ auto power_route(const P& path) {
 }
 
 template <class P>
-using Matrix = std::vector<Jet<typename P::Scalar>>;   // by rows
+using Matrix = std::vector<Jet<typename P::Scalar>>;  // by rows
 
 template <class P>
 Matrix<P> product(const P& path, const Matrix<P>& a, const Matrix<P>& b, std::size_t n, bool transpose_b) {
@@ -249,7 +253,8 @@ class RandomPath {
   RandomPath(const Questions& questions, Numbers& numbers, std::size_t orders, const std::vector<Scalar>& direction)
       : numbers_(numbers), orders_(orders) {
     const auto& coordinates = questions.system.coordinates;
-    for (std::size_t i = 0; i < coordinates.size(); ++i) tracks_.emplace(coordinates[i].name, Track{track_of(coordinates[i]), direction[i]});
+    for (std::size_t i = 0; i < coordinates.size(); ++i)
+      tracks_.emplace(coordinates[i].name, Track{track_of(coordinates[i]), direction[i]});
   }
 
   /// Moves the quaternions to the unit sphere and the direction into its tangent space.
@@ -294,7 +299,11 @@ class RandomPath {
         if (orders_ > 1) out(Base, 1) = numbers_.number(1);
         out(Clock, 0) = numbers_.number(1);
         break;
-      case Role::Parameter: case Role::Constant: case Role::Multiplier: case Role::Auxiliary: out(Base, 0) = numbers_.symbol(symbol);
+      case Role::Parameter:
+      case Role::Constant:
+      case Role::Multiplier:
+      case Role::Auxiliary:
+        out(Base, 0) = numbers_.symbol(symbol);
     }
     return out;
   }

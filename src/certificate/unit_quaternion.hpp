@@ -7,7 +7,8 @@
 
 namespace maupertuis::certification {
 
-/// p p / |p|²: the square of a quaternion has the square of its norm. Components (w, x, y, z), truncated power series in t.
+/// p p / |p|²: the square of a quaternion has the square of its norm. Components (w, x, y, z), truncated power series
+/// in t.
 template <class Numbers>
 class UnitQuaternion {
  public:

@@ -45,7 +45,8 @@ class Comparer {
       out_.run.reason = "the mapped start does not obey the constraints of " + out_.name_a;
       return out_;
     }
-    if (out_.verdict == Sameness::Different) out_.disagreement = runs_.disagreement(motions_.states_in_branches(differing_));
+    if (out_.verdict == Sameness::Different)
+      out_.disagreement = runs_.disagreement(motions_.states_in_branches(differing_));
     if (options_.run) out_.run = runs_.run();
     doubt_what_runs_contradict();
     return out_;
@@ -158,8 +159,9 @@ class Comparer {
     const auto gap = comparison::domain_gap(a_.system, pull_back_, b_, b_equations_, motions_);
     if (!gap) return;
     out_.verdict = Sameness::Part;
-    out_.reason = fmt::format("{} is defined at {} and {} is not: they agree where both are", gap->of_a ? out_.name_a : out_.name_b,
-                              comparison::describe(gap->state, b_.system), gap->of_a ? out_.name_b : out_.name_a);
+    out_.reason = fmt::format("{} is defined at {} and {} is not: they agree where both are",
+                              gap->of_a ? out_.name_a : out_.name_b, comparison::describe(gap->state, b_.system),
+                              gap->of_a ? out_.name_b : out_.name_a);
   }
 
   EnergyRelation compare_energies() const {

@@ -38,7 +38,8 @@ enum class Defined { Yes, No, Unknown };
 Defined defined(const ExprVector& functions, const Bindings& at) {
   const std::vector<double> values = evaluate(functions, at);
   if (std::any_of(values.begin(), values.end(), [](double x) { return std::isnan(x); })) return Defined::No;
-  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); }) ? Defined::Yes : Defined::Unknown;
+  return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); }) ? Defined::Yes
+                                                                                              : Defined::Unknown;
 }
 
 std::optional<MotionState> consistent(const Bindings& point, const Model& b, const EquationsOfMotion& equations) {

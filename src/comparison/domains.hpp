@@ -10,9 +10,9 @@ struct DomainGap {
   bool of_a = false;  // A is the one that is defined there
 };
 
-/// log x² and 2 log x have one derivative and are two functions. Looks at points on both sides of every border that a root,
-/// a logarithm or an inverse function draws in L, D, Q of A (mapped) or B; only where the map itself is defined, and on
-/// B's constraints.
+/// log x² and 2 log x have one derivative and are two functions. Looks at points on both sides of every border that a
+/// root, a logarithm or an inverse function draws in L, D, Q of A (mapped) or B; only where the map itself is defined,
+/// and on B's constraints.
 std::optional<DomainGap> domain_gap(const MechanicalSystem& a, const PullBack& pull_back, const Model& b,
                                     const EquationsOfMotion& b_equations, const Motions& motions);
 

@@ -126,10 +126,12 @@ ZeroTest Motions::at_points(std::span<const Expr> functions) const {
 std::vector<MotionState> Motions::states_in_branches(std::span<const Expr> functions) const {
   std::vector<MotionState> out;
   if (model_.system.constrained() || states_.empty()) return out;
-  const ExprVector moved = accelerations_ ? substitute(functions, *accelerations_) : ExprVector(functions.begin(), functions.end());
+  const ExprVector moved =
+      accelerations_ ? substitute(functions, *accelerations_) : ExprVector(functions.begin(), functions.end());
   for (const Bindings& point : centers(moved, at(states_.front()))) {
     MotionState state{point.at(model_.system.context->time()), {}, {}};
-    for (const Coordinate& c : model_.system.coordinates) state.q.push_back(point.at(c.q)), state.v.push_back(point.at(c.velocity));
+    for (const Coordinate& c : model_.system.coordinates)
+      state.q.push_back(point.at(c.q)), state.v.push_back(point.at(c.velocity));
     out.push_back(std::move(state));
   }
   return out;
@@ -146,9 +148,12 @@ std::vector<Bindings> Motions::centers(std::span<const Expr> functions, const Bi
   ExprVector switches;
   for (const Expr& g : switches_of(all)) {
     const std::vector<Expr> symbols = symbols_of({&g, 1});
-    const auto moves = [&](Expr s) { return std::find(search.moving.begin(), search.moving.end(), s) != search.moving.end(); };
+    const auto moves = [&](Expr s) {
+      return std::find(search.moving.begin(), search.moving.end(), s) != search.moving.end();
+    };
     const auto knows = [&](Expr s) { return moves(s) || (start.count(s) != 0 && s.role() != Role::Coordinate); };
-    if (std::any_of(symbols.begin(), symbols.end(), moves) && std::all_of(symbols.begin(), symbols.end(), knows)) switches.push_back(g);
+    if (std::any_of(symbols.begin(), symbols.end(), moves) && std::all_of(symbols.begin(), symbols.end(), knows))
+      switches.push_back(g);
   }
   return points_in_branches(switches, search).points;
 }

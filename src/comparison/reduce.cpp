@@ -90,9 +90,9 @@ class Reducer {
         "them.",
         out_.independent.empty()
             ? "The constraints determine every coordinate near the start; the constrained model runs as it is."
-            : fmt::format(
-                  "Near the start {} can be chosen as independent, {} as dependent; the constrained model runs as it is.",
-                  listed(out_.independent), listed(out_.dependent)));
+            : fmt::format("Near the start {} can be chosen as independent, {} as dependent; the constrained model runs "
+                          "as it is.",
+                          listed(out_.independent), listed(out_.dependent)));
   }
 
   /// Positions of new angles, velocities by least squares from the old ones, and what the constraints moved elsewhere.
@@ -130,8 +130,7 @@ class Reducer {
     const auto add = [&](const std::string& name, const Dimension& dimension, double q, double v, bool write_q,
                          bool write_v) {
       if (write_q) out.push_back({name, q, dimension});
-      if (write_v && std::abs(v) > rounding)
-        out.push_back({name + "'", v, dimension / system_.independent_dimension});
+      if (write_v && std::abs(v) > rounding) out.push_back({name + "'", v, dimension / system_.independent_dimension});
     };
     for (Eigen::Index k = 0; k < m; ++k) {
       const Expr q = independent[static_cast<std::size_t>(k)];

@@ -58,7 +58,8 @@ class Rewriter {
     if (const auto* start = std::get_if<StartStatement>(&s.body)) starts(s.span, *start);
     if (const auto* expect = std::get_if<ExpectStatement>(&s.body)) expectation(s.span, *expect);
     if (const auto* draw = std::get_if<DrawStatement>(&s.body)) drawing(s.span, *draw);
-    if (std::holds_alternative<PathStatement>(s.body) && !gone_.empty()) leave_out(s.span);  // its ends are given in other coordinates
+    if (std::holds_alternative<PathStatement>(s.body) && !gone_.empty())
+      leave_out(s.span);  // its ends are given in other coordinates
   }
 
   void leave_out(Span span) {

@@ -63,8 +63,8 @@ class Motion {
 };
 
 /// What stands still has one frame, of the first moment. The force of an arrow is in newtons; metres come at the end.
-void add_frame(Drawing& drawing, std::vector<Outline>& outlines, const std::vector<double>& values, const Motion& motion,
-               std::size_t row, double u) {
+void add_frame(Drawing& drawing, std::vector<Outline>& outlines, const std::vector<double>& values,
+               const Motion& motion, std::size_t row, double u) {
   const bool first = drawing.times.empty();
   drawing.times.push_back(motion.time(row, u));
   std::size_t at = 0;
@@ -100,7 +100,8 @@ std::optional<Drawing> evaluate_drawing(const Model& model, const Trajectory& ru
   if (plan.outlines.empty()) return std::nullopt;
 
   std::vector<Expr> wanted;
-  for (const Outline& outline : plan.outlines) wanted.insert(wanted.end(), outline.values.begin(), outline.values.end());
+  for (const Outline& outline : plan.outlines)
+    wanted.insert(wanted.end(), outline.values.begin(), outline.values.end());
   wanted.insert(wanted.end(), plan.follow.begin(), plan.follow.end());
   wanted = in_terms_of_motion(system, wanted);
 

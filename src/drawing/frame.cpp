@@ -5,7 +5,8 @@
 #include <array>
 #include <cmath>
 
-/// A moment of a drawing as strokes. The script of the page does the same (src/report/page/scene.js); a test compares the two.
+/// A moment of a drawing as strokes. The script of the page does the same (src/report/page/scene.js); a test compares
+/// the two.
 namespace maupertuis {
 namespace {
 
@@ -24,7 +25,8 @@ Outline with_points(const Outline& line, std::size_t count) {
     const double at = static_cast<double>(i * (n - 1)) / static_cast<double>(count - 1);
     const std::size_t k = std::min(static_cast<std::size_t>(at), n - 2);
     for (std::size_t c = 0; c < 3; ++c)
-      out.points.push_back(line.points[3 * k + c] + (at - static_cast<double>(k)) * (line.points[3 * k + 3 + c] - line.points[3 * k + c]));
+      out.points.push_back(line.points[3 * k + c] +
+                           (at - static_cast<double>(k)) * (line.points[3 * k + 3 + c] - line.points[3 * k + c]));
   }
   return out;
 }
@@ -32,7 +34,11 @@ Outline with_points(const Outline& line, std::size_t count) {
 class Painter {
  public:
   Painter(const Drawing& drawing, const View& view, double elapsed, const FrameOptions& options)
-      : drawing_(drawing), view_(view), elapsed_(elapsed), options_(options), centre_(view.centre_at(elapsed)),
+      : drawing_(drawing),
+        view_(view),
+        elapsed_(elapsed),
+        options_(options),
+        centre_(view.centre_at(elapsed)),
         d_(static_cast<std::size_t>(drawing.dimension)) {}
 
   std::vector<FrameItem> paint() {
@@ -48,24 +54,34 @@ class Painter {
       if (!std::all_of(points.begin(), points.end(), [](double x) { return std::isfinite(x); })) continue;
       const std::size_t begin = items_.size();
       switch (e.kind) {
-        case Kind::Path: path(e, points); break;
-        case Kind::Solid: solid(e.shape, points); break;
-        case Kind::Arrow: force(e, points); break;
-        case Kind::Label: label(e, points); break;
-        case Kind::Trail: break;
+        case Kind::Path:
+          path(e, points);
+          break;
+        case Kind::Solid:
+          solid(e.shape, points);
+          break;
+        case Kind::Arrow:
+          force(e, points);
+          break;
+        case Kind::Label:
+          label(e, points);
+          break;
+        case Kind::Trail:
+          break;
       }
       if (e.kind == Kind::Solid && e.shape.role == SolidShape::Role::Ground) lay(begin, -1e300);
       if (e.kind == Kind::Arrow || e.kind == Kind::Label) lay(begin, 1e300);
     }
     for (const Plane& plane : planes_) order(plane);
-    if (d_ == 3) std::stable_sort(items_.begin(), items_.end(), [](const auto& a, const auto& b) { return a.depth < b.depth; });
+    if (d_ == 3)
+      std::stable_sort(items_.begin(), items_.end(), [](const auto& a, const auto& b) { return a.depth < b.depth; });
     return std::move(items_);
   }
 
  private:
   /// A flat thing in space, and where other things are: which lies in front is told by the side on which the eye is.
   struct Plane {
-    std::size_t begin, end;                // its items
+    std::size_t begin, end;  // its items
     double origin[3], normal[3], reach;
   };
   struct Spot {
@@ -147,8 +163,10 @@ void Painter::path(const Drawing::Element& e, const std::vector<double>& points)
     const bool bob = e.masses[p] > 0;
     const double radius = std::max((bob ? 3.5 : 2.6) * view_.unit(), view_.scale() * at[p].size * e.radii[p]);
     const double depth = at[p].near + 1e-3 * drawing_.radius;
-    if (bob) disc(at[p], radius, {Ink::Series, 0}, {Ink::Paper}, depth);
-    else disc(at[p], radius, {Ink::Paper}, {Ink::Ink}, depth);
+    if (bob)
+      disc(at[p], radius, {Ink::Series, 0}, {Ink::Paper}, depth);
+    else
+      disc(at[p], radius, {Ink::Paper}, {Ink::Ink}, depth);
   }
 }
 
@@ -208,7 +226,9 @@ void Painter::solid(const SolidShape& shape, const std::vector<double>& pose) {
       ++id_;
       continue;
     }
-    FrameItem& item = stroke(outline(pose, face), small ? FrameColour{Ink::Paper} : FrameColour{ground ? Ink::Muted : Ink::Ink}, ground ? 1.2 : 1.6, origin.near);
+    FrameItem& item =
+        stroke(outline(pose, face), small ? FrameColour{Ink::Paper} : FrameColour{ground ? Ink::Muted : Ink::Ink},
+               ground ? 1.2 : 1.6, origin.near);
     item.closed = true;
     item.fill = ground ? FrameColour{Ink::Paper} : FrameColour{Ink::Series, 0, tint};
   }
@@ -220,8 +240,10 @@ void Painter::solid(const SolidShape& shape, const std::vector<double>& pose) {
     const FrameColour colour = grid ? FrameColour{Ink::Muted, 0, 0.3} : FrameColour{ground ? Ink::Muted : Ink::Ink};
     stroke(std::move(points), colour, ground ? 1 : plain ? (line.closed ? 2.2 : 1.6) : 1.1, near).closed = line.closed;
   }
-  if (d_ == 3 && !ground && !plain && !shape.convex) note_plane(pose, begin);
-  else if (d_ == 3 && !ground) note(pose.data(), origin.near);
+  if (d_ == 3 && !ground && !plain && !shape.convex)
+    note_plane(pose, begin);
+  else if (d_ == 3 && !ground)
+    note(pose.data(), origin.near);
 }
 
 void Painter::note_plane(const std::vector<double>& pose, std::size_t begin) {
@@ -231,7 +253,8 @@ void Painter::note_plane(const std::vector<double>& pose, std::size_t begin) {
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
     plane.origin[k] = pose[k];
-    plane.normal[k] = (pose[3 + i] - pose[i]) * (pose[6 + j] - pose[j]) - (pose[3 + j] - pose[j]) * (pose[6 + i] - pose[i]);
+    plane.normal[k] =
+        (pose[3 + i] - pose[i]) * (pose[6 + j] - pose[j]) - (pose[3 + j] - pose[j]) * (pose[6 + i] - pose[i]);
     plane.reach = std::hypot(plane.reach, pose[3 + k] - pose[k]);
     towards += plane.normal[k] * (eye[k] - pose[k]);
     length = std::hypot(length, plane.normal[k]);
@@ -248,17 +271,20 @@ void Painter::order(const Plane& plane) {
     double side = 0;
     for (std::size_t k = 0; k < 3; ++k) side += plane.normal[k] * (spot.place[k] - plane.origin[k]);
     if (std::abs(side) < 0.01 * plane.reach) continue;
-    if (spot.trail) under_trail = under_trail || side > 0;
-    else if (side > 0) before = std::min(before, spot.depth);
-    else behind = std::max(behind, spot.depth);
+    if (spot.trail)
+      under_trail = under_trail || side > 0;
+    else if (side > 0)
+      before = std::min(before, spot.depth);
+    else
+      behind = std::max(behind, spot.depth);
   }
   const double step = 1e-6 * drawing_.radius;
   own = std::min(std::max(own, behind + step), before - step);
   for (std::size_t i = plane.begin; i < plane.end; ++i) items_[i].depth = under_trail ? -2e299 : own;
 }
 
-/// The eye sees the unit ball from e = A⁻¹(eye − origin): it touches it where x·e = 1, a circle about e/|e|², and what has
-/// x·e < 1 is behind it.
+/// The eye sees the unit ball from e = A⁻¹(eye − origin): it touches it where x·e = 1, a circle about e/|e|², and what
+/// has x·e < 1 is behind it.
 void Painter::ball(const SolidShape& shape, const std::vector<double>& pose, double depth, double tint) {
   const std::vector<double> eye = view_.eye(centre_);
   std::array<double, 3> a[3], e{};
@@ -279,7 +305,8 @@ void Painter::ball(const SolidShape& shape, const std::vector<double>& pose, dou
   const double r = std::sqrt(1 - 1 / square);
   for (std::size_t i = 0; i < contour; ++i) {
     const double angle = 6.283185307179586 * static_cast<double>(i) / contour;
-    for (std::size_t k = 0; k < 3; ++k) rim.points.push_back(e[k] / square + r * (std::cos(angle) * sides[k] + std::sin(angle) * sides[3 + k]));
+    for (std::size_t k = 0; k < 3; ++k)
+      rim.points.push_back(e[k] / square + r * (std::cos(angle) * sides[k] + std::sin(angle) * sides[3 + k]));
   }
   FrameItem& body = stroke(outline(pose, rim), tint == 1 ? FrameColour{Ink::Paper} : FrameColour{Ink::Ink}, 1.6, depth);
   body.closed = true;
@@ -293,9 +320,12 @@ void Painter::ball(const SolidShape& shape, const std::vector<double>& pose, dou
     std::size_t first = 0;
     while (first < n && !(seen(first + 1) && !seen(first))) ++first;
     Outline half;
-    for (std::size_t i = first + 1; i <= first + n && seen(i); ++i) half.points.insert(half.points.end(), &line.points[i % n * 3], &line.points[i % n * 3] + 3);
-    if (half.points.size() < 6) ++id_;
-    else stroke(outline(pose, with_points(half, 25)), {Ink::Ink, 0, 0.6}, 1, depth);
+    for (std::size_t i = first + 1; i <= first + n && seen(i); ++i)
+      half.points.insert(half.points.end(), &line.points[i % n * 3], &line.points[i % n * 3] + 3);
+    if (half.points.size() < 6)
+      ++id_;
+    else
+      stroke(outline(pose, with_points(half, 25)), {Ink::Ink, 0, 0.6}, 1, depth);
   }
 }
 
@@ -314,22 +344,27 @@ void Painter::trail(const Drawing::Element& e, std::size_t series) {
     return line;
   };
   const bool whole = options_.trail == TrailLength::Whole;
-  if (const std::vector<double> now = drawing::points_at(drawing_, e, elapsed_); std::isfinite(now[0])) note(now.data(), 0, true);
+  if (const std::vector<double> now = drawing::points_at(drawing_, e, elapsed_); std::isfinite(now[0]))
+    note(now.data(), 0, true);
   const int steps = static_cast<int>(std::clamp<std::size_t>(drawing_.times.size(), 2, 1500));
-  if (drawing_.follow.empty()) stroke(drawing::thinned(way(0, duration, steps), 0.7), {Ink::Series, series, whole ? 0.75 : whole_trail}, whole ? 1.4 : 1, -1e299);
+  if (drawing_.follow.empty())
+    stroke(drawing::thinned(way(0, duration, steps), 0.7), {Ink::Series, series, whole ? 0.75 : whole_trail},
+           whole ? 1.4 : 1, -1e299);
   if (whole) return;
   const double from = std::max(0.0, elapsed_ - options_.trail_time);
   const int pieces = options_.trail_pieces;
   for (int k = 0; k < pieces; ++k) {
     const double part = (k + 1.0) / pieces;
-    const std::vector<double> line = way(from + (elapsed_ - from) * k / pieces, from + (elapsed_ - from) * part, std::max(4, 192 / pieces));
+    const std::vector<double> line =
+        way(from + (elapsed_ - from) * k / pieces, from + (elapsed_ - from) * part, std::max(4, 192 / pieces));
     stroke(line, {Ink::Series, series, 0.1 + 0.85 * std::pow(part, 1.5)}, 1.2 + 0.9 * part, -1e298);
   }
 }
 
 void Painter::force(const Drawing::Element& e, const std::vector<double>& points) {
   const View::Placed foot = place(&points[0]), tip = place(&points[d_]);
-  for (FrameItem& item : drawing::arrow({foot.x, foot.y}, {tip.x, tip.y}, {Ink::Series, 1}, 2.2, view_.unit())) add(std::move(item));
+  for (FrameItem& item : drawing::arrow({foot.x, foot.y}, {tip.x, tip.y}, {Ink::Series, 1}, 2.2, view_.unit()))
+    add(std::move(item));
   const double dx = tip.x - foot.x, dy = tip.y - foot.y, length = std::hypot(dx, dy), gap = 14 * view_.unit();
   if (length <= 24 * view_.unit()) return;
   const char align = dy > 0.3 * length ? 'r' : dy < -0.3 * length ? 'l' : 'c';
@@ -344,7 +379,8 @@ void Painter::label(const Drawing::Element& e, const std::vector<double>& points
 
 }  // namespace
 
-std::vector<FrameItem> frame_items(const Drawing& drawing, const View& view, double elapsed, const FrameOptions& options) {
+std::vector<FrameItem> frame_items(const Drawing& drawing, const View& view, double elapsed,
+                                   const FrameOptions& options) {
   return Painter(drawing, view, elapsed, options).paint();
 }
 

@@ -11,12 +11,18 @@ namespace {
 using Ink = FrameColour::Ink;
 
 std::string length_text(double size, bool dimensionless) {
-  struct Unit { double size; const char* name; };
-  static constexpr Unit units[] = {{1e9, "Gm"}, {1e6, "Mm"}, {1e3, "km"}, {1, "m"}, {1e-2, "cm"}, {1e-3, "mm"}, {1e-6, "µm"}, {1e-9, "nm"}};
+  struct Unit {
+    double size;
+    const char* name;
+  };
+  static constexpr Unit units[] = {{1e9, "Gm"},  {1e6, "Mm"},  {1e3, "km"},  {1, "m"},
+                                   {1e-2, "cm"}, {1e-3, "mm"}, {1e-6, "µm"}, {1e-9, "nm"}};
   if (dimensionless) return fmt::format("{:.2g}", size);
-  const Unit* unit = std::find_if(std::begin(units), std::end(units) - 1, [&](const Unit& u) { return size >= 0.999 * u.size; });
+  const Unit* unit =
+      std::find_if(std::begin(units), std::end(units) - 1, [&](const Unit& u) { return size >= 0.999 * u.size; });
   const double number = size / unit->size;
-  return number < 1e5 ? fmt::format("{:g} {}", std::stod(fmt::format("{:.2g}", number)), unit->name) : fmt::format("{:.0e} m", size);
+  return number < 1e5 ? fmt::format("{:g} {}", std::stod(fmt::format("{:.2g}", number)), unit->name)
+                      : fmt::format("{:.0e} m", size);
 }
 
 /// 1, 2 or 5 times a power of ten of metres, about 90 px long.
@@ -31,7 +37,8 @@ void add_scale_bar(std::vector<FrameItem>& out, const Drawing& drawing, const Vi
   bar.stroke = {Ink::Muted};
   bar.width = u;
   out.push_back(std::move(bar));
-  out.push_back(words({length_text(size, drawing.dimensionless), "", 0, true}, end + 7 * u, y - 3 * u, 'l', {Ink::Muted}));
+  out.push_back(
+      words({length_text(size, drawing.dimensionless), "", 0, true}, end + 7 * u, y - 3 * u, 'l', {Ink::Muted}));
 }
 
 void add(std::vector<FrameItem>& out, std::vector<FrameItem> more) {
@@ -48,9 +55,11 @@ void add_gravity(std::vector<FrameItem>& out, const Drawing& drawing, const View
   const View::Placed from = view.project(centre.data(), centre), to = view.project(tip.data(), centre);
   const double dx = to.x - from.x, dy = to.y - from.y, length = std::hypot(dx, dy), u = view.unit();
   if (!(length > 0)) return;
-  const double size = std::min(34.0, 34 * length / (view.scale() * drawing.radius) + 8) * u, x = options.width - 30 * u, y = 26 * u;
+  const double size = std::min(34.0, 34 * length / (view.scale() * drawing.radius) + 8) * u, x = options.width - 30 * u,
+               y = 26 * u;
   add(out, arrow({x, y}, {x + dx / length * size, y + dy / length * size}, {Ink::Muted}, 1.3, u));
-  out.push_back(words({"g", "", 0, false}, x + dx / length * size / 2 - 11 * u * std::abs(dy / length), y + dy / length * size / 2 - 11 * u * std::abs(dx / length), 'c', {Ink::Muted}));
+  out.push_back(words({"g", "", 0, false}, x + dx / length * size / 2 - 11 * u * std::abs(dy / length),
+                      y + dy / length * size / 2 - 11 * u * std::abs(dx / length), 'c', {Ink::Muted}));
 }
 
 void add_axes(std::vector<FrameItem>& out, const Drawing& drawing, const View& view, const FrameOptions& options) {
@@ -62,9 +71,11 @@ void add_axes(std::vector<FrameItem>& out, const Drawing& drawing, const View& v
     std::vector<double> tip = centre;
     tip[k] += 0.05 * drawing.radius;
     const View::Placed at = view.project(tip.data(), centre);
-    const double dx = (at.x - origin.x) / (0.05 * drawing.radius * view.scale()), dy = (at.y - origin.y) / (0.05 * drawing.radius * view.scale());
+    const double dx = (at.x - origin.x) / (0.05 * drawing.radius * view.scale()),
+                 dy = (at.y - origin.y) / (0.05 * drawing.radius * view.scale());
     add(out, arrow({x, y}, {x + 27 * u * dx, y + 27 * u * dy}, {Ink::Muted}, 1.2, u));
-    if (std::hypot(dx, dy) > 0.15) out.push_back(words({names[k], "", 0, false}, x + 36 * u * dx, y + 36 * u * dy, 'c', {Ink::Muted}));
+    if (std::hypot(dx, dy) > 0.15)
+      out.push_back(words({names[k], "", 0, false}, x + 36 * u * dx, y + 36 * u * dy, 'c', {Ink::Muted}));
   }
 }
 
@@ -73,23 +84,34 @@ void add_axes(std::vector<FrameItem>& out, const Drawing& drawing, const View& v
 std::vector<FrameItem> furniture(const Drawing& drawing, const View& view, const FrameOptions& options) {
   std::vector<FrameItem> out;
   if (options.furniture) {
-    if (drawing.dimension == 2) add_scale_bar(out, drawing, view, options);
-    else add_axes(out, drawing, view, options);
+    if (drawing.dimension == 2)
+      add_scale_bar(out, drawing, view, options);
+    else
+      add_axes(out, drawing, view, options);
     add_gravity(out, drawing, view, options);
   }
-  if (!options.caption.empty()) out.push_back(words({options.caption, "", 0, true}, options.width - 16 * view.unit(), options.height - 19 * view.unit(), 'r', {Ink::Muted}));
+  if (!options.caption.empty())
+    out.push_back(words({options.caption, "", 0, true}, options.width - 16 * view.unit(),
+                        options.height - 19 * view.unit(), 'r', {Ink::Muted}));
   return out;
 }
 
-std::vector<FrameItem> arrow(std::array<double, 2> from, std::array<double, 2> to, FrameColour colour, double weight, double unit) {
+std::vector<FrameItem> arrow(std::array<double, 2> from, std::array<double, 2> to, FrameColour colour, double weight,
+                             double unit) {
   const double dx = to[0] - from[0], dy = to[1] - from[1], length = std::hypot(dx, dy);
   if (!(length >= 4 * unit)) return {};
-  const double ux = dx / length, uy = dy / length, long_ = std::min(8 * std::sqrt(weight / 1.3) * unit, 0.6 * length), half = 0.4 * long_;
+  const double ux = dx / length, uy = dy / length, long_ = std::min(8 * std::sqrt(weight / 1.3) * unit, 0.6 * length),
+               half = 0.4 * long_;
   FrameItem shaft, head;
   shaft.points = {from[0], from[1], to[0] - 0.7 * long_ * ux, to[1] - 0.7 * long_ * uy};
   shaft.stroke = colour;
   shaft.width = weight * unit;
-  head.points = {to[0], to[1], to[0] - long_ * ux - half * uy, to[1] - long_ * uy + half * ux, to[0] - long_ * ux + half * uy, to[1] - long_ * uy - half * ux};
+  head.points = {to[0],
+                 to[1],
+                 to[0] - long_ * ux - half * uy,
+                 to[1] - long_ * uy + half * ux,
+                 to[0] - long_ * ux + half * uy,
+                 to[1] - long_ * uy - half * ux};
   head.closed = true;
   head.fill = colour;
   return {shaft, head};

@@ -14,19 +14,26 @@ void append_numbers(std::string& out, const std::vector<double>& numbers, int di
   out += '[';
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (i > 0) out += ',';
-    if (std::isfinite(numbers[i])) fmt::format_to(std::back_inserter(out), "{:.{}g}", numbers[i], digits);
-    else out += "null";
+    if (std::isfinite(numbers[i]))
+      fmt::format_to(std::back_inserter(out), "{:.{}g}", numbers[i], digits);
+    else
+      out += "null";
   }
   out += ']';
 }
 
 std::string_view kind_name(Drawing::Kind kind) {
   switch (kind) {
-    case Drawing::Kind::Path: return "path";
-    case Drawing::Kind::Trail: return "trail";
-    case Drawing::Kind::Solid: return "solid";
-    case Drawing::Kind::Arrow: return "arrow";
-    case Drawing::Kind::Label: return "label";
+    case Drawing::Kind::Path:
+      return "path";
+    case Drawing::Kind::Trail:
+      return "trail";
+    case Drawing::Kind::Solid:
+      return "solid";
+    case Drawing::Kind::Arrow:
+      return "arrow";
+    case Drawing::Kind::Label:
+      return "label";
   }
   return "path";
 }
@@ -35,8 +42,10 @@ std::string_view kind_name(Drawing::Kind kind) {
 std::string quoted(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
-    if (c == '"' || c == '\\' || c == '<' || static_cast<unsigned char>(c) < 0x20) out += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
-    else out += c;
+    if (c == '"' || c == '\\' || c == '<' || static_cast<unsigned char>(c) < 0x20)
+      out += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
+    else
+      out += c;
   }
   return out + '"';
 }
@@ -60,9 +69,11 @@ void append_element(std::string& out, const Drawing::Element& e) {
     append_numbers(out, e.radii, 6);
   }
   if (e.kind == Drawing::Kind::Arrow || e.kind == Drawing::Kind::Label)
-    out += fmt::format(",\"text\":{{\"base\":{},\"index\":{},\"dots\":{},\"upright\":{}}}", quoted(e.text.base), quoted(e.text.index), e.text.dots, e.text.upright);
+    out += fmt::format(",\"text\":{{\"base\":{},\"index\":{},\"dots\":{},\"upright\":{}}}", quoted(e.text.base),
+                       quoted(e.text.index), e.text.dots, e.text.upright);
   if (e.kind == Drawing::Kind::Solid) {
-    out += fmt::format(",\"ground\":{},\"convex\":{},\"ball\":{}", e.shape.role == SolidShape::Role::Ground, e.shape.convex, e.shape.ball);
+    out += fmt::format(",\"ground\":{},\"convex\":{},\"ball\":{}", e.shape.role == SolidShape::Role::Ground,
+                       e.shape.convex, e.shape.ball);
     append_outlines(out, "faces", e.shape.faces);
     append_outlines(out, "lines", e.shape.lines);
   }
@@ -74,16 +85,22 @@ void append_element(std::string& out, const Drawing::Element& e) {
 }  // namespace
 
 std::string drawing_json(const Drawing& drawing) {
-  std::string out = fmt::format("{{\"dimension\":{},\"dimensionless\":{},\"radius\":{:.6g},\"gravity\":", drawing.dimension, drawing.dimensionless, drawing.radius);
+  std::string out =
+      fmt::format("{{\"dimension\":{},\"dimensionless\":{},\"radius\":{:.6g},\"gravity\":", drawing.dimension,
+                  drawing.dimensionless, drawing.radius);
   append_numbers(out, drawing.gravity, 6);
-  for (const auto& [name, list, digits] : {std::tuple{"low", &drawing.low, 6}, {"high", &drawing.high, 6}, {"follow", &drawing.follow, 6}, {"times", &drawing.times, 9}}) {
+  for (const auto& [name, list, digits] : {std::tuple{"low", &drawing.low, 6},
+                                           {"high", &drawing.high, 6},
+                                           {"follow", &drawing.follow, 6},
+                                           {"times", &drawing.times, 9}}) {
     out += fmt::format(",\"{}\":", name);
     append_numbers(out, *list, digits);
   }
   out += ",\"elements\":[";
   for (std::size_t i = 0; i < drawing.elements.size(); ++i) {
     const Drawing::Element& e = drawing.elements[i];
-    MAUP_REQUIRE(e.positions.size() == (e.still ? 1 : drawing.times.size()) * e.points * static_cast<std::size_t>(drawing.dimension));
+    MAUP_REQUIRE(e.positions.size() ==
+                 (e.still ? 1 : drawing.times.size()) * e.points * static_cast<std::size_t>(drawing.dimension));
     if (i) out += ',';
     append_element(out, e);
   }

@@ -11,8 +11,10 @@ std::size_t frame_before(const std::vector<double>& times, double direction, dou
   std::size_t low = 0, high = times.size() - 1;
   while (high - low > 1) {
     const std::size_t middle = (low + high) / 2;
-    if (direction * (times[middle] - times[0]) <= elapsed) low = middle;
-    else high = middle;
+    if (direction * (times[middle] - times[0]) <= elapsed)
+      low = middle;
+    else
+      high = middle;
   }
   return low;
 }
@@ -21,7 +23,8 @@ std::size_t frame_before(const std::vector<double>& times, double direction, dou
 
 double duration_of(const Drawing& drawing) { return std::abs(drawing.times.back() - drawing.times.front()); }
 
-std::vector<double> track_at(const Drawing& drawing, const std::vector<double>& track, std::size_t width, double elapsed) {
+std::vector<double> track_at(const Drawing& drawing, const std::vector<double>& track, std::size_t width,
+                             double elapsed) {
   const std::vector<double>& times = drawing.times;
   const auto frame = [&](std::size_t f) { return track.begin() + static_cast<std::ptrdiff_t>(f * width); };
   if (times.size() == 1) return {frame(0), frame(1)};
@@ -37,7 +40,8 @@ std::vector<double> track_at(const Drawing& drawing, const std::vector<double>& 
     const auto value = [&](std::size_t f) { return track[f * width + k]; };
     const double p = value(i), q = value(i + 1);
     const auto slope = [&](std::size_t f) {
-      return f == 0 || f >= last ? q - p : (value(f + 1) - value(f - 1)) / (direction * (times[f + 1] - times[f - 1])) * h;
+      return f == 0 || f >= last ? q - p
+                                 : (value(f + 1) - value(f - 1)) / (direction * (times[f + 1] - times[f - 1])) * h;
     };
     out[k] = p * (1 + 2 * u) * w * w + q * (3 - 2 * u) * u * u + slope(i) * u * w * w - slope(i + 1) * u * u * w;
   }

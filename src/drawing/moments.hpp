@@ -6,8 +6,10 @@ namespace maupertuis::drawing {
 
 double duration_of(const Drawing& drawing);
 
-/// `width` numbers a frame at an elapsed time: cubics through the frames (Catmull and Rom's, on uneven times), exact at each.
-std::vector<double> track_at(const Drawing& drawing, const std::vector<double>& track, std::size_t width, double elapsed);
+/// `width` numbers a frame at an elapsed time: cubics through the frames (Catmull and Rom's, on uneven times), exact at
+/// each.
+std::vector<double> track_at(const Drawing& drawing, const std::vector<double>& track, std::size_t width,
+                             double elapsed);
 
 /// The positions of one element.
 std::vector<double> points_at(const Drawing& drawing, const Drawing::Element& element, double elapsed);

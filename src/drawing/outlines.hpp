@@ -9,26 +9,34 @@ namespace maupertuis::drawing {
 /// One element and the expressions that place it.
 struct Outline {
   enum class Placement {
-    Direct,      // the expressions are the positions
-    AboutAxis,   // a place and an axis of space: the third axis of a solid of radius `size`
-    Between,     // two places: the first axis reaches from one to the other
-    Along,       // two places: the first axis is a metre towards the other
-    Force,       // a place and a force for each newton of a reaction
+    Direct,     // the expressions are the positions
+    AboutAxis,  // a place and an axis of space: the third axis of a solid of radius `size`
+    Between,    // two places: the first axis reaches from one to the other
+    Along,      // two places: the first axis is a metre towards the other
+    Force,      // a place and a force for each newton of a reaction
   };
   Drawing::Element element;
   std::vector<Expr> values;
   Placement placement = Placement::Direct;
   double size = 1;
   std::optional<std::size_t> reaction = std::nullopt;  // Force: the column of the run with its value
-  enum class Fitting { None, Wheel, Spring, Cup, Plate, Anchor, Pivot } fitting = Fitting::None;  // what the motion decides of its shape
+  enum class Fitting {
+    None,
+    Wheel,
+    Spring,
+    Cup,
+    Plate,
+    Anchor,
+    Pivot
+  } fitting = Fitting::None;  // what the motion decides of its shape
 };
 
 /// What a drawing is made of, before anything is known of the motion but where it began.
 struct Plan {
   std::vector<Outline> outlines;
-  std::vector<Expr> follow;                            // [dimension], or none
+  std::vector<Expr> follow;  // [dimension], or none
   struct Ground {
-    ExprVector place, normal;                          // normal: empty where the model does not say
+    ExprVector place, normal;  // normal: empty where the model does not say
     bool wall = false;
   };
   std::vector<Ground> grounds;
@@ -39,8 +47,9 @@ Plan plan_of(const Model& model, const Bindings& parameters, const EquationsOfMo
 /// Whether these expressions have the same values wherever the system is and whenever: at some random states.
 bool same_everywhere(const MechanicalSystem& system, const std::vector<Expr>& expressions, const Bindings& parameters);
 
-/// What the whole motion decides of what is drawn, once the positions of every frame are there: bounds, sizes of bobs, springs,
-/// dashpots, pivots, ground, arrows.
-void settle(Drawing& drawing, std::vector<Outline>& outlines, const Plan& plan, const MechanicalSystem& system, const Bindings& parameters);
+/// What the whole motion decides of what is drawn, once the positions of every frame are there: bounds, sizes of bobs,
+/// springs, dashpots, pivots, ground, arrows.
+void settle(Drawing& drawing, std::vector<Outline>& outlines, const Plan& plan, const MechanicalSystem& system,
+            const Bindings& parameters);
 
 }  // namespace maupertuis::drawing

@@ -32,7 +32,11 @@ double mass_of(const MechanicalSystem& system, const std::string& name, const Bi
 class Planner {
  public:
   Planner(const Model& model, const Bindings& parameters, const EquationsOfMotion* equations, const Trajectory& run)
-      : model_(model), system_(model.system), parameters_(parameters), equations_(equations), run_(run),
+      : model_(model),
+        system_(model.system),
+        parameters_(parameters),
+        equations_(equations),
+        run_(run),
         dimension_(static_cast<std::size_t>(model.system.space_dimension)) {}
 
   Plan plan() {
@@ -66,16 +70,19 @@ class Planner {
     return nullptr;
   }
 
-  Outline& solid(SolidShape shape, const ExprVector& origin, const ExprMatrix* rotation, const std::vector<std::vector<double>>& axes);
+  Outline& solid(SolidShape shape, const ExprVector& origin, const ExprMatrix* rotation,
+                 const std::vector<std::vector<double>>& axes);
   /// A solid that shows spokes where it turns about its own axis, so that rolling is seen.
-  Outline& round(SolidShape shape, const ExprVector& origin, const ExprMatrix* rotation, const std::vector<std::vector<double>>& axes) {
+  Outline& round(SolidShape shape, const ExprVector& origin, const ExprMatrix* rotation,
+                 const std::vector<std::vector<double>>& axes) {
     Outline& outline = solid(std::move(shape), origin, rotation, axes);
     outline.fitting = Outline::Fitting::Wheel;
     return outline;
   }
   Outline& wheel(const DrawElement& e, bool filled);
   void solid_of_inertia(const Body& body);
-  void link(const ExprVector& from, const ExprVector& to, const std::string& from_name, const std::string& to_name, bool spring);
+  void link(const ExprVector& from, const ExprVector& to, const std::string& from_name, const std::string& to_name,
+            bool spring);
   void arrows(const std::string& name);
   void pivots(const std::vector<ExprVector>& places);
   void pivot(const ExprVector& place) {
@@ -155,7 +162,8 @@ void Planner::solid_of_inertia(const Body& body) {
   if (body.inertia.rows == 0) return;
   const double mass = body.mass ? value_of(system_, body.mass, parameters_) : 0;
   if (dimension_ == 2) {  // I = m r²/2
-    const double moment = value_of(system_, body.inertia.at(0, 0), parameters_), r = mass > 0 ? std::sqrt(2 * std::max(0.0, moment) / mass) : 1;
+    const double moment = value_of(system_, body.inertia.at(0, 0), parameters_),
+                 r = mass > 0 ? std::sqrt(2 * std::max(0.0, moment) / mass) : 1;
     if (r > 0) round(shapes::disc(2), body.position, &body.rotation, {{r, 0}, {0, r}});
     return;
   }
@@ -165,11 +173,13 @@ void Planner::solid_of_inertia(const Body& body) {
   const shapes::Ellipsoid e = shapes::ellipsoid_of_inertia(inertia, mass);
   if (!(*std::max_element(e.semi_axes.begin(), e.semi_axes.end()) > 0)) return;
   std::vector<std::vector<double>> axes;
-  for (std::size_t k = 0; k < 3; ++k) axes.push_back({e.semi_axes[k] * e.axes[k][0], e.semi_axes[k] * e.axes[k][1], e.semi_axes[k] * e.axes[k][2]});
+  for (std::size_t k = 0; k < 3; ++k)
+    axes.push_back({e.semi_axes[k] * e.axes[k][0], e.semi_axes[k] * e.axes[k][1], e.semi_axes[k] * e.axes[k][2]});
   solid(shapes::ball(true), body.position, &body.rotation, axes);
 }
 
-void Planner::link(const ExprVector& from, const ExprVector& to, const std::string& from_name, const std::string& to_name, bool spring) {
+void Planner::link(const ExprVector& from, const ExprVector& to, const std::string& from_name,
+                   const std::string& to_name, bool spring) {
   const auto between = [&](const ExprVector& a, const ExprVector& b, Outline::Fitting fitting) {
     Outline outline;
     outline.element.kind = Kind::Solid;
@@ -185,7 +195,8 @@ void Planner::link(const ExprVector& from, const ExprVector& to, const std::stri
   for (const auto& [place, name] : {std::pair{&from, &from_name}, {&to, &to_name}})
     if (mass_of(system_, *name, parameters_) > 0) path({*place}, {*name}, Kind::Path);
   // Hatched ground across the end that stands still.
-  const bool fixed_from = same_everywhere(system_, from, parameters_), fixed_to = same_everywhere(system_, to, parameters_);
+  const bool fixed_from = same_everywhere(system_, from, parameters_),
+             fixed_to = same_everywhere(system_, to, parameters_);
   if (dimension_ != 2 || fixed_from == fixed_to) return;
   const ExprVector& end = fixed_from ? from : to;
   if (std::find(pivots_.begin(), pivots_.end(), end) != pivots_.end()) return;
@@ -207,14 +218,16 @@ void Planner::link(const ExprVector& from, const ExprVector& to, const std::stri
 void Planner::pivots(const std::vector<ExprVector>& places) {
   if (dimension_ != 2) return;
   for (const ExprVector& place : places) {
-    if (std::find(pivots_.begin(), pivots_.end(), place) != pivots_.end() || !same_everywhere(system_, place, parameters_)) continue;
+    if (std::find(pivots_.begin(), pivots_.end(), place) != pivots_.end() ||
+        !same_everywhere(system_, place, parameters_))
+      continue;
     pivots_.push_back(place);
     pivot(place);
   }
 }
 
-/// The arrows of one reaction. Its value and its force are proportional to one multiplier, so that their ratio depends on
-/// the configuration alone: the run knows the value.
+/// The arrows of one reaction. Its value and its force are proportional to one multiplier, so that their ratio depends
+/// on the configuration alone: the run knows the value.
 void Planner::arrows(const std::string& name) {
   ExprMap once;  // λ = 1 at rest
   for (const Expr& multiplier : equations_->multipliers) once.emplace(multiplier, system_.context->number(1));
@@ -246,44 +259,69 @@ void Planner::add(const DrawElement& e) {
       path(e.path, e.names, Kind::Path);
       pivots(e.path);
       break;
-    case Item::Trail: path(e.path, e.names, Kind::Trail); break;
+    case Item::Trail:
+      path(e.path, e.names, Kind::Trail);
+      break;
     case Item::Reaction:
       if (equations_ && !e.names.empty()) arrows(e.names[0]);
       break;
     case Item::Circle:
-      if (dimension_ == 2) round(shapes::disc(2), e.path[0], rotation, {{size(0), 0}, {0, size(0)}});
-      else solid(shapes::ball(rotation != nullptr), e.path[0], rotation, {{size(0), 0, 0}, {0, size(0), 0}, {0, 0, size(0)}});
+      if (dimension_ == 2)
+        round(shapes::disc(2), e.path[0], rotation, {{size(0), 0}, {0, size(0)}});
+      else
+        solid(shapes::ball(rotation != nullptr), e.path[0], rotation,
+              {{size(0), 0, 0}, {0, size(0), 0}, {0, 0, size(0)}});
       break;
-    case Item::Disc: wheel(e, true); break;
-    case Item::Hoop: wheel(e, false); break;
+    case Item::Disc:
+      wheel(e, true);
+      break;
+    case Item::Hoop:
+      wheel(e, false);
+      break;
     case Item::Box: {
       const double w = size(0) / 2, h = size(1) / 2, d = size(2) / 2;
-      if (dimension_ == 2) solid(shapes::box(2, true), e.path[0], rotation, {{w, 0}, {0, h}});
-      else if (e.sizes.size() > 2) solid(shapes::box(3, false), e.path[0], rotation, {{w, 0, 0}, {0, h, 0}, {0, 0, d}});
-      else if (rotation) solid(shapes::box(3, true), e.path[0], rotation, {{w, 0, 0}, {0, h, 0}, {0, 0, 0.01 * w}});
-      else solid(shapes::box(3, true), e.path[0], nullptr, {{w, 0, 0}, {0, 0, h}, {0, 0.01 * w, 0}});  // upright
+      if (dimension_ == 2)
+        solid(shapes::box(2, true), e.path[0], rotation, {{w, 0}, {0, h}});
+      else if (e.sizes.size() > 2)
+        solid(shapes::box(3, false), e.path[0], rotation, {{w, 0, 0}, {0, h, 0}, {0, 0, d}});
+      else if (rotation)
+        solid(shapes::box(3, true), e.path[0], rotation, {{w, 0, 0}, {0, h, 0}, {0, 0, 0.01 * w}});
+      else
+        solid(shapes::box(3, true), e.path[0], nullptr, {{w, 0, 0}, {0, 0, h}, {0, 0.01 * w, 0}});  // upright
       break;
     }
     case Item::Ellipsoid:
-      if (dimension_ == 2) round(shapes::disc(2), e.path[0], rotation, {{size(0), 0}, {0, size(1)}});
-      else solid(shapes::ball(true), e.path[0], rotation, {{size(0), 0, 0}, {0, size(1), 0}, {0, 0, e.sizes.size() > 2 ? size(2) : size(1)}});
+      if (dimension_ == 2)
+        round(shapes::disc(2), e.path[0], rotation, {{size(0), 0}, {0, size(1)}});
+      else
+        solid(shapes::ball(true), e.path[0], rotation,
+              {{size(0), 0, 0}, {0, size(1), 0}, {0, 0, e.sizes.size() > 2 ? size(2) : size(1)}});
       break;
     case Item::Spring:
-    case Item::Damper: link(e.path[0], e.path[1], e.names[0], e.names[1], e.kind == Item::Spring); break;
+    case Item::Damper:
+      link(e.path[0], e.path[1], e.names[0], e.names[1], e.kind == Item::Spring);
+      break;
     case Item::Pivot:
-      if (dimension_ == 2) pivots_.push_back(e.path[0]), pivot(e.path[0]);
-      else path(e.path, e.names, Kind::Path);
+      if (dimension_ == 2)
+        pivots_.push_back(e.path[0]), pivot(e.path[0]);
+      else
+        path(e.path, e.names, Kind::Path);
       break;
     case Item::Ground:
-    case Item::Wall: plan_.grounds.push_back({e.path[0], e.direction, e.kind == Item::Wall}); break;
+    case Item::Wall:
+      plan_.grounds.push_back({e.path[0], e.direction, e.kind == Item::Wall});
+      break;
     case Item::Label: {
       Drawing::Element& label = path(e.path, e.names, Kind::Label).element;
       label.text = e.text.empty() ? name_parts(e.names[0]) : NameParts{e.text, "", 0, true};
       break;
     }
-    case Item::Follow: plan_.follow = e.path[0]; break;
+    case Item::Follow:
+      plan_.follow = e.path[0];
+      break;
   }
-  if (!plan_.outlines.empty() && plan_.outlines.back().element.kind == Kind::Solid && plan_.outlines.back().element.names.empty() && e.names.size() == 1)
+  if (!plan_.outlines.empty() && plan_.outlines.back().element.kind == Kind::Solid &&
+      plan_.outlines.back().element.names.empty() && e.names.size() == 1)
     plan_.outlines.back().element.names = e.names;
 }
 
@@ -292,7 +330,8 @@ bool Planner::drawn_between(const Link& link) const {
   const auto shows = [&](const DrawElement& e) {
     if (e.kind != Item::Spring && e.kind != Item::Damper && e.kind != Item::Line) return false;
     for (std::size_t i = 0; i + 1 < e.path.size(); ++i)
-      if ((e.path[i] == link.from && e.path[i + 1] == link.to) || (e.path[i] == link.to && e.path[i + 1] == link.from)) return true;
+      if ((e.path[i] == link.from && e.path[i + 1] == link.to) || (e.path[i] == link.to && e.path[i + 1] == link.from))
+        return true;
     return false;
   };
   return std::any_of(model_.experiment.drawing.begin(), model_.experiment.drawing.end(), shows);
@@ -336,8 +375,10 @@ void Planner::add_what_is_there() {
   };
   std::vector<Place> places;
   const ExprVector origin(dimension_, system_.context->number(0));
-  if (const Point* own = system_.find_point("O")) places.push_back({"O", &own->position, false});
-  else places.push_back({"O", &origin, false});
+  if (const Point* own = system_.find_point("O"))
+    places.push_back({"O", &own->position, false});
+  else
+    places.push_back({"O", &origin, false});
   for (const Point& p : system_.points)
     if (p.name != "O") places.push_back({p.name, &p.position, static_cast<bool>(p.mass)});
   for (const Body& b : system_.bodies) places.push_back({b.name, &b.position, static_cast<bool>(b.mass)});
@@ -381,7 +422,8 @@ bool same_everywhere(const MechanicalSystem& system, const std::vector<Expr>& ex
   return true;
 }
 
-Plan plan_of(const Model& model, const Bindings& parameters, const EquationsOfMotion* equations, const Trajectory& run) {
+Plan plan_of(const Model& model, const Bindings& parameters, const EquationsOfMotion* equations,
+             const Trajectory& run) {
   return Planner(model, parameters, equations, run).plan();
 }
 

@@ -16,7 +16,8 @@ using Kind = Drawing::Kind;
 using Fitting = Outline::Fitting;
 using Placement = Outline::Placement;
 
-constexpr double bob_size = 0.024, joint_size = 0.007, pivot_size = 0.042, anchor_size = 0.042, coil_size = 0.02, dashpot_size = 0.018;
+constexpr double bob_size = 0.024, joint_size = 0.007, pivot_size = 0.042, anchor_size = 0.042, coil_size = 0.02,
+                 dashpot_size = 0.018;
 constexpr int spokes_of_a_wheel = 6;
 constexpr double hatching = 0.028, longest_arrow = 1.0 / 3;
 
@@ -28,8 +29,13 @@ double distance(const double* a, const double* b, std::size_t d) {
 
 class Settler {
  public:
-  Settler(Drawing& drawing, std::vector<Outline>& outlines, const Plan& plan, const MechanicalSystem& system, const Bindings& parameters)
-      : drawing_(drawing), outlines_(outlines), plan_(plan), system_(system), parameters_(parameters),
+  Settler(Drawing& drawing, std::vector<Outline>& outlines, const Plan& plan, const MechanicalSystem& system,
+          const Bindings& parameters)
+      : drawing_(drawing),
+        outlines_(outlines),
+        plan_(plan),
+        system_(system),
+        parameters_(parameters),
         d_(static_cast<std::size_t>(drawing.dimension)) {}
 
   void settle() {
@@ -45,7 +51,8 @@ class Settler {
       if (e.kind == Kind::Label) return 4;
       return e.kind == Kind::Trail ? 1 : 2;
     };
-    std::stable_sort(drawing_.elements.begin(), drawing_.elements.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+    std::stable_sort(drawing_.elements.begin(), drawing_.elements.end(),
+                     [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
   }
 
  private:
@@ -119,8 +126,10 @@ void Settler::find_bounds() {
         double force = 0;
         for (std::size_t k = 0; k < d_; ++k) force = std::hypot(force, at[d_ + k]);
         if (std::isfinite(force)) longest_force_ = std::max(longest_force_, force);
-      } else if (o.fitting == Fitting::Pivot) include(at, f);
-      else if (o.element.kind == Kind::Solid && (o.fitting == Fitting::None || o.fitting == Fitting::Wheel)) include_solid(o, f, at);
+      } else if (o.fitting == Fitting::Pivot)
+        include(at, f);
+      else if (o.element.kind == Kind::Solid && (o.fitting == Fitting::None || o.fitting == Fitting::Wheel))
+        include_solid(o, f, at);
       else
         for (std::size_t p = 0; p < width / d_; ++p) include(at + p * d_, f);
     }
@@ -154,14 +163,20 @@ bool Settler::spins(const Drawing::Element& e) const {
 }
 
 void Settler::place(Outline& o) {
-  if (o.placement == Placement::Force) place_arrow(o);
-  else if (o.placement == Placement::AboutAxis) place_axis(o);
-  else if (o.placement != Placement::Direct) place_link(o);
-  else if (o.fitting == Fitting::Pivot) place_pivot(o);
-  else if (o.fitting == Fitting::Wheel && spins(o.element)) shapes::add_spokes(o.element.shape, drawing_.dimension, spokes_of_a_wheel);
+  if (o.placement == Placement::Force)
+    place_arrow(o);
+  else if (o.placement == Placement::AboutAxis)
+    place_axis(o);
+  else if (o.placement != Placement::Direct)
+    place_link(o);
+  else if (o.fitting == Fitting::Pivot)
+    place_pivot(o);
+  else if (o.fitting == Fitting::Wheel && spins(o.element))
+    shapes::add_spokes(o.element.shape, drawing_.dimension, spokes_of_a_wheel);
 }
 
-/// Unit vectors across a direction of space, the same from frame to frame: by the axis of the world that it is never close to.
+/// Unit vectors across a direction of space, the same from frame to frame: by the axis of the world that it is never
+/// close to.
 std::array<double, 6> across(const double* e, std::size_t seed) {
   std::array<double, 3> s{};
   s[seed] = 1;
@@ -208,13 +223,16 @@ void Settler::place_link(Outline& o) {
   } else {
     thick = std::min(dashpot_size * extent_, 0.15 * mean);
     if (longest > 1.7 * shortest) {  // no dashpot reaches that far: its picture stretches
-      o.element.shape = o.fitting == Fitting::Plate ? shapes::plate(drawing_.dimension, 0.45) : shapes::cup(drawing_.dimension, 0.35, 0.7);
+      o.element.shape = o.fitting == Fitting::Plate ? shapes::plate(drawing_.dimension, 0.45)
+                                                    : shapes::cup(drawing_.dimension, 0.35, 0.7);
       first = 0;
     }
     const double end = 0.85 * shortest, rod = longest - end + 0.06 * shortest;
     if (first > 0)
-      o.element.shape = o.fitting == Fitting::Plate ? shapes::plate(drawing_.dimension, rod)
-                                                  : shapes::cup(drawing_.dimension, std::max(0.1 * shortest, shortest - rod - 0.08 * shortest), end);
+      o.element.shape =
+          o.fitting == Fitting::Plate
+              ? shapes::plate(drawing_.dimension, rod)
+              : shapes::cup(drawing_.dimension, std::max(0.1 * shortest, shortest - rod - 0.08 * shortest), end);
   }
   std::vector<double> mean_direction(d_, 0);
   for (std::size_t i = 0; i < along.size(); ++i) mean_direction[i % d_] += along[i];
@@ -230,7 +248,8 @@ void Settler::place_link(Outline& o) {
     }
     const double reach = o.fitting == Fitting::Spring || first == 0 ? lengths[f] : first;
     for (std::size_t k = 0; k < d_; ++k) poses.push_back(a[k] + reach * e[k]);
-    if (d_ == 2) poses.insert(poses.end(), {a[0] - thick * e[1], a[1] + thick * e[0]});
+    if (d_ == 2)
+      poses.insert(poses.end(), {a[0] - thick * e[1], a[1] + thick * e[0]});
     else {
       const auto sides = across(e, seed);
       for (std::size_t s = 0; s < 6; ++s) poses.push_back(a[s % 3] + thick * sides[s]);
@@ -281,7 +300,8 @@ std::pair<double, double> Settler::away_from_wall(const std::vector<double>& dir
   const std::vector<double> n = up();
   const double upwards = direction[0] * n[0] + direction[1] * n[1], aside = direction[0] * n[1] - direction[1] * n[0];
   const double side = std::abs(upwards) >= std::abs(aside) ? std::copysign(1.0, upwards) : std::copysign(1.0, aside);
-  return std::abs(upwards) >= std::abs(aside) ? std::pair{side * n[0], side * n[1]} : std::pair{side * n[1], -side * n[0]};
+  return std::abs(upwards) >= std::abs(aside) ? std::pair{side * n[0], side * n[1]}
+                                              : std::pair{side * n[1], -side * n[0]};
 }
 
 /// Below what stands on it, above what hangs on it.
@@ -289,7 +309,8 @@ void Settler::place_pivot(Outline& o) {
   std::vector<double> n = up();
   if (!drawing_.gravity.empty() && !o.element.positions.empty() && drawing_.follow.empty()) {
     double above = 0;
-    for (std::size_t k = 0; k < 2; ++k) above += n[k] * (o.element.positions[k] - (drawing_.low[k] + drawing_.high[k]) / 2);
+    for (std::size_t k = 0; k < 2; ++k)
+      above += n[k] * (o.element.positions[k] - (drawing_.low[k] + drawing_.high[k]) / 2);
     if (above > 0.05 * extent_)
       for (double& x : n) x = -x;
   }
@@ -317,11 +338,13 @@ void Settler::size_marks() {
     const std::size_t width = e.points * d_, frames = e.positions.size() / width;
     for (std::size_t p = 0; p + 1 < e.points; ++p) {
       double sum = 0;
-      for (std::size_t f = 0; f < frames; ++f) sum += distance(&e.positions[f * width + p * d_], &e.positions[f * width + (p + 1) * d_], d_);
+      for (std::size_t f = 0; f < frames; ++f)
+        sum += distance(&e.positions[f * width + p * d_], &e.positions[f * width + (p + 1) * d_], d_);
       if (const double mean = sum / static_cast<double>(frames); mean > 0) shortest = std::min(shortest, mean);
     }
   }
-  const double largest = std::min(bob_size * extent_, 0.3 * shortest), joint = std::min(joint_size * extent_, 0.12 * shortest);
+  const double largest = std::min(bob_size * extent_, 0.3 * shortest),
+               joint = std::min(joint_size * extent_, 0.12 * shortest);
   for (Outline& o : outlines_) {
     Drawing::Element& e = o.element;
     for (std::size_t p = 0; e.kind == Kind::Path && p < e.points; ++p) {
@@ -351,7 +374,8 @@ void Settler::add_grounds() {
     add_ground(place, normal);
   }
   const std::vector<double> u = up();
-  if (d_ == 3 && plan_.grounds.empty() && !drawing_.gravity.empty() && u[2] > 0.999) add_ground({0, 0, world_low_[2]}, u);
+  if (d_ == 3 && plan_.grounds.empty() && !drawing_.gravity.empty() && u[2] > 0.999)
+    add_ground({0, 0, world_low_[2]}, u);
   double square = 0;
   for (std::size_t k = 0; k < d_; ++k) square += std::pow((drawing_.high[k] - drawing_.low[k]) / 2, 2);
   drawing_.radius = square > 0 ? std::sqrt(square) : 1;
@@ -380,7 +404,8 @@ void Settler::add_ground(std::vector<double> place, std::vector<double> normal) 
     pose.insert(pose.end(), {foot[0] + normal[1], foot[1] - normal[0], foot[0] + normal[0], foot[1] + normal[1]});
     double below[2];  // the place of the ground under the middle of what is seen
     for (std::size_t k = 0; k < 2; ++k) below[k] = foot[k] - 1.2 * hatching * extent_ * normal[k];
-    if (drawing_.follow.empty()) include(foot.data(), 0), include(below, 0);
+    if (drawing_.follow.empty())
+      include(foot.data(), 0), include(below, 0);
     else
       for (std::size_t k = 0; k < 2; ++k)
         if (std::abs(normal[k]) > 0.9) {
@@ -391,7 +416,8 @@ void Settler::add_ground(std::vector<double> place, std::vector<double> normal) 
   } else {
     const auto basis = shapes::basis_about({normal[0], normal[1], normal[2]});
     double reach = 0.2 * extent_;
-    for (std::size_t k = 0; k < 3; ++k) reach = std::max(reach, (1 - std::abs(normal[k])) * 0.55 * (world_high_[k] - world_low_[k]));
+    for (std::size_t k = 0; k < 3; ++k)
+      reach = std::max(reach, (1 - std::abs(normal[k])) * 0.55 * (world_high_[k] - world_low_[k]));
     const int lines = drawing_.follow.empty() ? 8 : static_cast<int>(std::clamp(8 * reach / extent_, 8.0, 120.0));
     o.element.shape = shapes::ground_grid(lines);
     for (std::size_t a = 0; a < 3; ++a)
@@ -403,7 +429,8 @@ void Settler::add_ground(std::vector<double> place, std::vector<double> normal) 
 
 }  // namespace
 
-void settle(Drawing& drawing, std::vector<Outline>& outlines, const Plan& plan, const MechanicalSystem& system, const Bindings& parameters) {
+void settle(Drawing& drawing, std::vector<Outline>& outlines, const Plan& plan, const MechanicalSystem& system,
+            const Bindings& parameters) {
   Settler(drawing, outlines, plan, system, parameters).settle();
 }
 

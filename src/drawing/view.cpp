@@ -8,8 +8,9 @@
 namespace maupertuis {
 namespace {
 
-constexpr double room = 28, strip = 34;   // px of weight 1: about the drawing; on the right for gravity, below for the scale
-constexpr double distance_in_radii = 6;   // of the eye: near things are a little larger
+constexpr double room = 28,
+                 strip = 34;  // px of weight 1: about the drawing; on the right for gravity, below for the scale
+constexpr double distance_in_radii = 6;  // of the eye: near things are a little larger
 
 }  // namespace
 
@@ -30,7 +31,8 @@ View::View(const Drawing& drawing, const FrameOptions& options) : drawing_(drawi
 
 void View::fit_plane(const FrameOptions& options) {
   const bool arrow = !drawing_.gravity.empty() && options.furniture;
-  const double width = options.width - (2 * room + (arrow ? strip : 0)) * unit_, height = options.height - (2 * room + (options.furniture ? 0.6 * strip : 0)) * unit_;
+  const double width = options.width - (2 * room + (arrow ? strip : 0)) * unit_,
+               height = options.height - (2 * room + (options.furniture ? 0.6 * strip : 0)) * unit_;
   const double across = drawing_.high[0] - drawing_.low[0], up = drawing_.high[1] - drawing_.low[1];
   scale_ = std::min(width / (across > 0 ? across : 1e-300), height / (up > 0 ? up : 1e-300));
   if (!(across > 0) && !(up > 0)) scale_ = std::min(width, height) / 2;
@@ -65,7 +67,8 @@ void View::fit_space(const FrameOptions& options) {
   }
   if (!(high[0] - low[0] > 0) && !(high[1] - low[1] > 0)) return;
   const double width = options.width - 2.6 * room * unit_, height = options.height - 2.6 * room * unit_;
-  const double fitted = std::min(width / std::max(high[0] - low[0], 1e-300), height / std::max(high[1] - low[1], 1e-300));
+  const double fitted =
+      std::min(width / std::max(high[0] - low[0], 1e-300), height / std::max(high[1] - low[1], 1e-300));
   scale_ = fitted;
   across_ -= fitted * (low[0] + high[0]) / 2;
   down_ -= fitted * (low[1] + high[1]) / 2;

@@ -7,7 +7,9 @@
 namespace maupertuis {
 namespace {
 
-bool is_pivot(Expr e) { return !e.is_zero() && (e.is_number() || e.is_symbol() || zero_test(e).verdict == Verdict::Nonzero); }
+bool is_pivot(Expr e) {
+  return !e.is_zero() && (e.is_number() || e.is_symbol() || zero_test(e).verdict == Verdict::Nonzero);
+}
 
 /// Brings a row with a nonzero entry in `column` to place `column`; false if there is none.
 bool choose_pivot(ExprMatrix& m, std::size_t column) {

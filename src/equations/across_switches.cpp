@@ -11,7 +11,7 @@ namespace maupertuis {
 namespace {
 
 constexpr std::size_t many_switches = 256;  // from here on each is passed at a few points
-constexpr double at_rest = 1e-30;  // of ġ at 1e-40 beside the switch: it vanishes there
+constexpr double at_rest = 1e-30;           // of ġ at 1e-40 beside the switch: it vanishes there
 
 bool knows(const SwitchSearch& search, Expr e) {
   const std::vector<Expr> symbols = symbols_of({&e, 1});

@@ -72,8 +72,10 @@ Expr of_term(Expr term, Expr z) {
   Expr constant = whole(context, 1), rest = constant;
   std::vector<Expr> moving;
   for (const Expr& factor : factors_of(term)) {
-    if (depends_on(factor, z)) moving.push_back(factor), rest = rest * factor;
-    else constant = constant * factor;
+    if (depends_on(factor, z))
+      moving.push_back(factor), rest = rest * factor;
+    else
+      constant = constant * factor;
   }
   Expr integral;
   if (moving.size() == 1) {

@@ -6,50 +6,63 @@ namespace maupertuis {
 namespace {
 
 constexpr std::array entries{
-    CodeEntry{"E0601", "constraints that cannot stay satisfied",
-              "There is a state at the start that satisfies all constraints, but none shortly after it. Two of them "
-              "prescribe the same coordinate differently, or a loop is driven to where it cannot close. The message "
-              "names a smallest set: without any one of them the others can be satisfied.",
-              "param m = 1 kg, a = 1 m/s^2, b = 2 m/s^2\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = a t^2\n"
-              "constraint x = b t^2\n",
-              "param m = 1 kg, a = 1 m/s^2\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = a t^2\n"},
-    CodeEntry{"W0602", "a redundant constraint",
-              "The row of this constraint in A is a combination of the rows of others at every configuration that the "
-              "constraints allow. The motion is the same without it. How the constraints of the set share their forces is "
-              "not determined by rigid bodies: that is a question of elasticity. Friction that depends on such a force "
-              "is not determined either.",
-              "param m = 1 kg, l = 1 m\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nconstraint x = y\nconstraint y = z\n"
-              "constraint z = x\n",
-              "param m = 1 kg, l = 1 m\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nconstraint x = y\nconstraint y = z\n"},
-    CodeEntry{"W0603", "a velocity constraint that is holonomic in disguise",
-              "By the theorem of Frobenius the velocities that the constraints allow keep the coordinates on a surface, and "
-              "this constraint only says so for the velocities. The equations of motion are right, but the level of the "
-              "positions is lost: rounding may move the motion to another surface, and a wrong start is not noticed.",
-              "param m = 1 kg, R = 20 cm\ncoord x : length, φ : angle\nT = 1/2 m x'^2 + 1/4 m R^2 φ'^2\nconstraint x' = R φ'\n",
-              "param m = 1 kg, R = 20 cm\ncoord x : length, φ : angle\nT = 1/2 m x'^2 + 1/4 m R^2 φ'^2\nconstraint x = R φ\n"},
-    CodeEntry{"W0604", "a singular start",
-              "At the start the rank of A is less than elsewhere on the manifold: a linkage is stretched, two branches of "
-              "its motion meet. The accelerations may not be determined there.",
-              "", ""},
-    CodeEntry{"N0605", "a velocity constraint fixes a coordinate",
-              "x' = 0 keeps x at the value that it starts with. Such a coordinate is a parameter; as a constraint, x = 0 "
-              "holds it at a place and gives the same force.",
-              "param m = 1 kg\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint x' = 0\n",
-              "param m = 1 kg\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = 0\n"},
+    CodeEntry{
+        "E0601", "constraints that cannot stay satisfied",
+        "There is a state at the start that satisfies all constraints, but none shortly after it. Two of them "
+        "prescribe the same coordinate differently, or a loop is driven to where it cannot close. The message "
+        "names a smallest set: without any one of them the others can be satisfied.",
+        "param m = 1 kg, a = 1 m/s^2, b = 2 m/s^2\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = a t^2\n"
+        "constraint x = b t^2\n",
+        "param m = 1 kg, a = 1 m/s^2\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = a t^2\n"},
+    CodeEntry{
+        "W0602", "a redundant constraint",
+        "The row of this constraint in A is a combination of the rows of others at every configuration that the "
+        "constraints allow. The motion is the same without it. How the constraints of the set share their forces is "
+        "not determined by rigid bodies: that is a question of elasticity. Friction that depends on such a force "
+        "is not determined either.",
+        "param m = 1 kg, l = 1 m\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nconstraint x = y\nconstraint "
+        "y = z\n"
+        "constraint z = x\n",
+        "param m = 1 kg, l = 1 m\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\nconstraint x = y\nconstraint "
+        "y = z\n"},
+    CodeEntry{
+        "W0603", "a velocity constraint that is holonomic in disguise",
+        "By the theorem of Frobenius the velocities that the constraints allow keep the coordinates on a surface, and "
+        "this constraint only says so for the velocities. The equations of motion are right, but the level of the "
+        "positions is lost: rounding may move the motion to another surface, and a wrong start is not noticed.",
+        "param m = 1 kg, R = 20 cm\ncoord x : length, φ : angle\nT = 1/2 m x'^2 + 1/4 m R^2 φ'^2\nconstraint x' = R "
+        "φ'\n",
+        "param m = 1 kg, R = 20 cm\ncoord x : length, φ : angle\nT = 1/2 m x'^2 + 1/4 m R^2 φ'^2\nconstraint x = R "
+        "φ\n"},
+    CodeEntry{
+        "W0604", "a singular start",
+        "At the start the rank of A is less than elsewhere on the manifold: a linkage is stretched, two branches of "
+        "its motion meet. The accelerations may not be determined there.",
+        "", ""},
+    CodeEntry{
+        "N0605", "a velocity constraint fixes a coordinate",
+        "x' = 0 keeps x at the value that it starts with. Such a coordinate is a parameter; as a constraint, x = 0 "
+        "holds it at a place and gives the same force.",
+        "param m = 1 kg\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint x' = 0\n",
+        "param m = 1 kg\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = 0\n"},
     CodeEntry{"N0606", "the constraints leave no freedom",
               "As many independent constraints as coordinates prescribe the motion. It does not depend on masses and "
               "forces, which decide only the forces of constraint.",
               "param m = 1 kg, v = 1 m/s\ncoord x : length\nT = 1/2 m x'^2\nconstraint x = v t\n",
               "param m = 1 kg, v = 1 m/s\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint x = v t\n"},
-    CodeEntry{"N0607", "a constraint that is not linear in the velocities",
-              "d'Alembert's principle says what force keeps a constraint that is linear in the velocities. For others the "
-              "usual choice is that of Chetaev: the force is along ∂ψ/∂q'. Such constraints are realised by control rather "
-              "than by contact. They are not classified.",
-              "param m = 1 kg, v = 1 m/s\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint x'^2 + y'^2 = v^2\nstart x' = v\n", ""},
-    CodeEntry{"N0608", "the rank of the constraints varies",
-              "At some of the configurations that were tried the constraints leave more directions free than at the others: "
-              "the manifold has several branches, or singular points.",
-              "", ""},
+    CodeEntry{
+        "N0607", "a constraint that is not linear in the velocities",
+        "d'Alembert's principle says what force keeps a constraint that is linear in the velocities. For others the "
+        "usual choice is that of Chetaev: the force is along ∂ψ/∂q'. Such constraints are realised by control rather "
+        "than by contact. They are not classified.",
+        "param m = 1 kg, v = 1 m/s\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint x'^2 + y'^2 = v^2\nstart "
+        "x' = v\n",
+        ""},
+    CodeEntry{
+        "N0608", "the rank of the constraints varies",
+        "At some of the configurations that were tried the constraints leave more directions free than at the others: "
+        "the manifold has several branches, or singular points.",
+        "", ""},
     CodeEntry{"N0609", "a combination of velocity constraints is integrable",
               "No single one of these constraints can be integrated, but a combination can: the wheels of an axle roll "
               "non-holonomically, and the difference of their angles is still a function of the heading.",

@@ -18,8 +18,7 @@ std::string compare_with_energy(const EquationsOfMotion& equations, bool& equal)
   if (equal && has_generalized_potential)
     return "h_E = T + V: the velocity-dependent part of L is linear in the velocities and does no work.";
   if (equal) return "h_E = T + V: T is a homogeneous quadratic form in the velocities, and V does not depend on them.";
-  if (has_generalized_potential)
-    return "h_E is not T + V: L has a part beside T − V, which enters as q'·∂L/∂q' − L.";
+  if (has_generalized_potential) return "h_E is not T + V: L has a part beside T − V, which enters as q'·∂L/∂q' − L.";
   return "h_E is not T + V: the prescribed motion gives T terms of degree 1 or 0 in the velocities.";
 }
 
@@ -55,20 +54,22 @@ ConservedQuantities conserved_quantities(const EquationsOfMotion& equations) {
   const auto forces = gradient(equations.lagrangian_expanded, q);
 
   ConservedQuantities result;
-  const std::vector<bool> varies = seen_nonzero(forces);   // most do, and forces along a chain share their parts
+  const std::vector<bool> varies = seen_nonzero(forces);  // most do, and forces along a chain share their parts
   for (std::size_t i = 0; i < q.size(); ++i) {
     if (varies[i] || !vanishes(forces[i])) continue;
     result.cyclic.push_back(i);
-    if (vanishes(equations.generalized_forces[i] - equations.dissipative_terms[i]) && free_of_constraints(equations, i) &&
-        !across_switches(system, equations.momenta[i], equations.order).jump)
+    if (vanishes(equations.generalized_forces[i] - equations.dissipative_terms[i]) &&
+        free_of_constraints(equations, i) && !across_switches(system, equations.momenta[i], equations.order).jump)
       result.conserved_momenta.push_back(i);
   }
   const AcrossSwitches energy = across_switches(system, equations.energy_function, equations.order);
   result.energy_conserved = !energy.jump && (vanishes(equations.power) || vanishes(power_on_constraints(equations)));
   if (system.lagrangian_given && system.independent != "t") {
-    result.energy_case = "h_E = q'·∂L/∂q' − L, which is constant where L does not depend on " + system.independent + " (Beltrami).";
+    result.energy_case =
+        "h_E = q'·∂L/∂q' − L, which is constant where L does not depend on " + system.independent + " (Beltrami).";
   } else if (system.lagrangian_given) {
-    result.energy_case = "L was given whole: h_E = q'·∂L/∂q' − L, which is T + V where L = T − V with T quadratic in the velocities.";
+    result.energy_case =
+        "L was given whole: h_E = q'·∂L/∂q' − L, which is T + V where L = T − V with T quadratic in the velocities.";
   } else {
     result.energy_case = compare_with_energy(equations, result.energy_is_t_plus_v);
   }

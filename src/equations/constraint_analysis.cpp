@@ -27,8 +27,12 @@ bool zero(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Zero;
 class Analysis {
  public:
   Analysis(const EquationsOfMotion& equations, const MotionState* start)
-      : equations_(equations), system_(*equations.system), n_(system_.coordinates.size()),
-        m_(system_.constraints.size()), manifold_(equations), start_(start) {
+      : equations_(equations),
+        system_(*equations.system),
+        n_(system_.coordinates.size()),
+        m_(system_.constraints.size()),
+        manifold_(equations),
+        start_(start) {
     for (const Coordinate& c : system_.coordinates) variables_.push_back(c.q), velocities_.push_back(c.velocity);
     variables_.push_back(system_.context->time());
   }
@@ -59,9 +63,8 @@ class Analysis {
     ExprMap at_rest;
     for (const Expr& v : velocities_) at_rest.emplace(v, number(0));
     // Only velocity constraints are classified by their forms; the others enter beside them.
-    const bool needed = std::any_of(system_.constraints.begin(), system_.constraints.end(), [](const Constraint& c) {
-      return c.level == Constraint::Level::Velocity;
-    });
+    const bool needed = std::any_of(system_.constraints.begin(), system_.constraints.end(),
+                                    [](const Constraint& c) { return c.level == Constraint::Level::Velocity; });
     for (std::size_t i = 0; i < m_; ++i) {
       const Expr value = in_terms(system_.constraints[i].value);
       ConstraintReport& report = out_.constraints[i];
@@ -198,7 +201,8 @@ class Analysis {
   /// Each row that adds nothing to the earlier ones, as their combination. What takes part in one has no definite λ.
   void find_dependent_rows() {
     std::vector<bool> undetermined(m_, false);
-    for (const auto& [row, depends_on] : is_large() ? dependent_rows(rows_[best_]) : dependent_rows(dense(rows_[best_]))) {
+    for (const auto& [row, depends_on] :
+         is_large() ? dependent_rows(rows_[best_]) : dependent_rows(dense(rows_[best_]))) {
       out_.constraints[row].redundant = undetermined[row] = true;
       out_.constraints[row].depends_on = depends_on;
       for (const std::size_t k : depends_on) undetermined[k] = true;
@@ -235,12 +239,14 @@ class Analysis {
   static std::vector<std::size_t> part_taking(const Matrix& a, std::size_t row, const std::vector<std::size_t>& of) {
     if (of.empty()) return {};
     Matrix basis(a.cols(), static_cast<Index>(of.size()));
-    for (std::size_t k = 0; k < of.size(); ++k) basis.col(static_cast<Index>(k)) = a.row(static_cast<Index>(of[k])).transpose();
+    for (std::size_t k = 0; k < of.size(); ++k)
+      basis.col(static_cast<Index>(k)) = a.row(static_cast<Index>(of[k])).transpose();
     const Eigen::VectorXd target = a.row(static_cast<Index>(row)).transpose();
     const Eigen::VectorXd weights = least_squares(basis, target);
     std::vector<std::size_t> out;
     for (std::size_t k = 0; k < of.size(); ++k)
-      if (std::abs(weights[static_cast<Index>(k)]) * basis.col(static_cast<Index>(k)).norm() > 1e-7 * target.norm()) out.push_back(of[k]);
+      if (std::abs(weights[static_cast<Index>(k)]) * basis.col(static_cast<Index>(k)).norm() > 1e-7 * target.norm())
+        out.push_back(of[k]);
     return out;
   }
 
@@ -284,11 +290,11 @@ class Analysis {
   std::size_t n_, m_;
   ConstraintManifold manifold_;
   const MotionState* start_;
-  ExprVector variables_, velocities_;  // q and t [n + 1]; q̇ [n]
-  std::vector<OneForm> forms_;         // [m]; without components where ψ is not affine
+  ExprVector variables_, velocities_;         // q and t [n + 1]; q̇ [n]
+  std::vector<OneForm> forms_;                // [m]; without components where ψ is not affine
   std::vector<MotionState> points_, beside_;  // on the constraints, and where they were taken from
-  std::vector<SparseRows> rows_;       // A at the points, scaled
-  std::size_t best_ = 0;               // a point of the largest rank
+  std::vector<SparseRows> rows_;              // A at the points, scaled
+  std::size_t best_ = 0;                      // a point of the largest rank
   ConstraintAnalysis out_;
 };
 
@@ -296,20 +302,28 @@ class Analysis {
 
 const char* word(ConstraintClass constraint_class) {
   switch (constraint_class) {
-    case ConstraintClass::Holonomic: return "holonomic";
-    case ConstraintClass::Nonholonomic: return "nonholonomic";
-    case ConstraintClass::Integrable: return "integrable";
-    case ConstraintClass::Nonlinear: return "nonlinear";
+    case ConstraintClass::Holonomic:
+      return "holonomic";
+    case ConstraintClass::Nonholonomic:
+      return "nonholonomic";
+    case ConstraintClass::Integrable:
+      return "integrable";
+    case ConstraintClass::Nonlinear:
+      return "nonlinear";
   }
   return "";
 }
 
 const char* words(ConstraintClass constraint_class) {
   switch (constraint_class) {
-    case ConstraintClass::Holonomic: return "holonomic";
-    case ConstraintClass::Nonholonomic: return "non-holonomic";
-    case ConstraintClass::Integrable: return "holonomic in disguise";
-    case ConstraintClass::Nonlinear: return "non-linear in the velocities (Chetaev)";
+    case ConstraintClass::Holonomic:
+      return "holonomic";
+    case ConstraintClass::Nonholonomic:
+      return "non-holonomic";
+    case ConstraintClass::Integrable:
+      return "holonomic in disguise";
+    case ConstraintClass::Nonlinear:
+      return "non-linear in the velocities (Chetaev)";
   }
   return "";
 }

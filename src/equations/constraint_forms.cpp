@@ -11,8 +11,10 @@ ConstraintEquation constraint_equation(const EquationsOfMotion& equations, std::
   ExprVector left, right;
   const auto place = [&](Expr term) {
     const ScaledTerm scaled = split_coefficient(term);
-    if (scaled.coefficient.sign() >= 0) left.push_back(term);
-    else right.push_back(-term);
+    if (scaled.coefficient.sign() >= 0)
+      left.push_back(term);
+    else
+      right.push_back(-term);
   };
   const auto place_terms = [&](Expr sum) {
     if (!sum.is(Kind::Sum)) return place(sum);
@@ -21,7 +23,8 @@ ConstraintEquation constraint_equation(const EquationsOfMotion& equations, std::
   // Both sides of the text are sums of their own within left − right.
   if (c.value.is(Kind::Sum))
     for (std::size_t i = 0; i < c.value.size(); ++i) place_terms(c.value[i]);
-  else place(c.value);
+  else
+    place(c.value);
   return {equations.system->constraint_label(index), context.sum(left), context.sum(right)};
 }
 

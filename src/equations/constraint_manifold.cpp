@@ -16,10 +16,10 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using Index = Eigen::Index;
 
-constexpr double rounding = 1e-16;   // below it there is nothing to gain
-constexpr double reached = 1e-11;    // good enough where rounding does not let it come closer
+constexpr double rounding = 1e-16;  // below it there is nothing to gain
+constexpr double reached = 1e-11;   // good enough where rounding does not let it come closer
 constexpr int most_turns = 60;
-constexpr int turns_to_halve = 5;    // the error, of a large system
+constexpr int turns_to_halve = 5;  // the error, of a large system
 
 std::vector<Expr> terms_of(Expr e) {
   if (!e.is(Kind::Sum)) return {e};
@@ -31,8 +31,8 @@ std::vector<Expr> terms_of(Expr e) {
 
 /// Functions f_i with the terms that they are sums of: values and relative sizes at once.
 struct Functions {
-  std::vector<Expr> terms;            // of all functions, one after the other
-  std::vector<std::size_t> first;     // [count + 1]
+  std::vector<Expr> terms;         // of all functions, one after the other
+  std::vector<std::size_t> first;  // [count + 1]
 
   void add(Expr e) {
     if (first.empty()) first.push_back(0);
@@ -40,7 +40,7 @@ struct Functions {
     first.push_back(terms.size());
   }
   std::size_t count() const { return first.empty() ? 0 : first.size() - 1; }
-  std::optional<RepeatedEvaluation> evaluation;   // of the terms, once all are there
+  std::optional<RepeatedEvaluation> evaluation;  // of the terms, once all are there
 };
 
 /// A matrix by the entries that are not 0 as formulas.
@@ -51,7 +51,7 @@ struct Entries {
   void add(std::size_t row, std::size_t column, Expr value) {
     rows.push_back(row), columns.push_back(column), values.push_back(value);
   }
-  std::optional<RepeatedEvaluation> evaluation;   // of the values, once all are there
+  std::optional<RepeatedEvaluation> evaluation;  // of the values, once all are there
 };
 
 /// Beyond this number of entries the matrices of a step are kept sparse.
@@ -85,19 +85,22 @@ struct ConstraintManifold::Impl {
   MotionTerms in_terms;
   Bindings parameters;
   Expr time;
-  std::unordered_map<Expr, std::size_t, ExprHash> places;   // of q, and n later of q̇
-  std::vector<Expr> momenta;          // [n]
+  std::unordered_map<Expr, std::size_t, ExprHash> places;  // of q, and n later of q̇
+  std::vector<Expr> momenta;                               // [n]
   std::vector<Expr> q, v;
-  std::vector<bool> on_positions;     // [m]
-  Functions values, rates;            // [m], [m + further]
-  Entries a, mass;                    // [(m + further) × n], [n × n]
-  bool has_metric = true;             // false: M has too many entries, and `mass` its diagonal alone
+  std::vector<bool> on_positions;  // [m]
+  Functions values, rates;         // [m], [m + further]
+  Entries a, mass;                 // [(m + further) × n], [n × n]
+  bool has_metric = true;          // false: M has too many entries, and `mass` its diagonal alone
 };
 
 ConstraintManifold::Impl::Impl(const EquationsOfMotion& equations, const std::vector<Expr>& further)
-    : n(equations.system->coordinates.size()), m(equations.system->constraints.size()),
-      in_terms(*equations.system), parameters(parameter_bindings(*equations.system)),
-      time(equations.system->context->time()), momenta(equations.momenta) {
+    : n(equations.system->coordinates.size()),
+      m(equations.system->constraints.size()),
+      in_terms(*equations.system),
+      parameters(parameter_bindings(*equations.system)),
+      time(equations.system->context->time()),
+      momenta(equations.momenta) {
   const MechanicalSystem& system = *equations.system;
   for (const Coordinate& c : system.coordinates) q.push_back(c.q), v.push_back(c.velocity);
   const SparseGradient by_q(q), by_v(v);
@@ -129,7 +132,8 @@ ConstraintManifold::Impl::Impl(const EquationsOfMotion& equations, const std::ve
   for (Entries* e : {&a, &mass}) e->evaluation.emplace(e->values);
 }
 
-std::vector<double> ConstraintManifold::Impl::evaluate_at(const MotionState& state, const RepeatedEvaluation& evaluation) const {
+std::vector<double> ConstraintManifold::Impl::evaluate_at(const MotionState& state,
+                                                          const RepeatedEvaluation& evaluation) const {
   return evaluation([&](Expr symbol) {
     if (symbol == time) return state.t;
     if (const auto place = places.find(symbol); place != places.end())
@@ -152,11 +156,13 @@ Sizes ConstraintManifold::Impl::sizes(const Functions& functions, const MotionSt
 }
 
 /// Terms hide in products of sums: what the unknowns themselves contribute counts as well.
-Sizes ConstraintManifold::Impl::sizes(bool positions, const MotionState& state, const std::vector<MatrixEntry>& rows) const {
+Sizes ConstraintManifold::Impl::sizes(bool positions, const MotionState& state,
+                                      const std::vector<MatrixEntry>& rows) const {
   Sizes out = sizes(positions ? values : rates, state);
   const std::vector<double>& x = positions ? state.q : state.v;
   for (const MatrixEntry& e : rows)
-    if (const double size = std::abs(e.value * x[e.column]); std::isfinite(size) && static_cast<Index>(e.row) < out.scale.size())
+    if (const double size = std::abs(e.value * x[e.column]);
+        std::isfinite(size) && static_cast<Index>(e.row) < out.scale.size())
       out.scale[static_cast<Index>(e.row)] += size;
   return out;
 }
@@ -165,7 +171,8 @@ std::vector<MatrixEntry> ConstraintManifold::Impl::numbers(const Entries& entrie
   const std::vector<double> values_here = evaluate_at(state, *entries.evaluation);
   std::vector<MatrixEntry> out;
   out.reserve(values_here.size());
-  for (std::size_t k = 0; k < values_here.size(); ++k) out.push_back({entries.rows[k], entries.columns[k], values_here[k]});
+  for (std::size_t k = 0; k < values_here.size(); ++k)
+    out.push_back({entries.rows[k], entries.columns[k], values_here[k]});
   return out;
 }
 
@@ -191,13 +198,15 @@ Matrix ConstraintManifold::Impl::metric(const MotionState& state) const {
 
 namespace {
 
-/// The smallest δ in the metric g with a δ = −error, in the least squares sense where there is none; over the free columns.
+/// The smallest δ in the metric g with a δ = −error, in the least squares sense where there is none; over the free
+/// columns.
 Vector least_step(const Matrix& a, const Vector& error, const Matrix& g, const std::vector<Index>& free) {
   const Index count = static_cast<Index>(free.size());
   Matrix columns(a.rows(), count), metric(count, count);
   for (Index j = 0; j < count; ++j) {
     columns.col(j) = a.col(free[static_cast<std::size_t>(j)]);
-    for (Index i = 0; i < count; ++i) metric(i, j) = g(free[static_cast<std::size_t>(i)], free[static_cast<std::size_t>(j)]);
+    for (Index i = 0; i < count; ++i)
+      metric(i, j) = g(free[static_cast<std::size_t>(i)], free[static_cast<std::size_t>(j)]);
   }
   const Eigen::LLT<Matrix> cholesky(metric);
   const Matrix scaled = cholesky.matrixL().solve(columns.transpose()).transpose();  // A L⁻ᵀ
@@ -231,15 +240,16 @@ double largest_relative(const Sizes& f, const std::vector<std::size_t>& chosen) 
   return largest;
 }
 
-/// What is left of f_i is below the rounding of the unknowns x together, in the metric: their sizes may hide from f_i, as a
-/// spin of 200 rad/s about one axis does from the rate 0 about another.
+/// What is left of f_i is below the rounding of the unknowns x together, in the metric: their sizes may hide from f_i,
+/// as a spin of 200 rad/s about one axis does from the rate 0 about another.
 bool below_rounding(const Sizes& f, const std::vector<std::size_t>& chosen, const std::vector<MatrixEntry>& a,
                     const Vector& metric_diagonal, const std::vector<double>& x) {
   const Vector lengths = metric_diagonal.cwiseAbs().cwiseSqrt();
   const double size = lengths.cwiseProduct(Eigen::Map<const Vector>(x.data(), lengths.size())).norm();
   Vector rows = Vector::Zero(f.value.size());
   for (const MatrixEntry& e : a)
-    if (static_cast<Index>(e.row) < rows.size()) rows[static_cast<Index>(e.row)] += std::pow(e.value / lengths[static_cast<Index>(e.column)], 2);
+    if (static_cast<Index>(e.row) < rows.size())
+      rows[static_cast<Index>(e.row)] += std::pow(e.value / lengths[static_cast<Index>(e.column)], 2);
   for (const std::size_t i : chosen) {
     const auto k = static_cast<Index>(i);
     if (!(std::abs(f.value[k]) <= std::max(reached * f.scale[k], rounding * std::sqrt(rows[k]) * size))) return false;
@@ -393,10 +403,12 @@ std::vector<double> ConstraintManifold::relative_values(const MotionState& state
 std::vector<double> ConstraintManifold::relative_rates(const MotionState& state) const {
   return relative(impl_->sizes(false, state, impl_->numbers(impl_->a, state)));
 }
-bool ConstraintManifold::move_positions(MotionState& state, const std::vector<bool>& fixed, const std::vector<bool>& active) const {
+bool ConstraintManifold::move_positions(MotionState& state, const std::vector<bool>& fixed,
+                                        const std::vector<bool>& active) const {
   return impl_->move(state, true, fixed, active);
 }
-bool ConstraintManifold::move_velocities(MotionState& state, const std::vector<bool>& fixed, const std::vector<bool>& active) const {
+bool ConstraintManifold::move_velocities(MotionState& state, const std::vector<bool>& fixed,
+                                         const std::vector<bool>& active) const {
   return impl_->move(state, false, fixed, active);
 }
 

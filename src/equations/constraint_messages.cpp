@@ -11,17 +11,25 @@ namespace {
 
 class Messages {
  public:
-  Messages(const ConstraintAnalysis& analysis, const EquationsOfMotion& equations, const MotionState* start, Diagnostics& diagnostics)
-      : analysis_(analysis), equations_(equations), system_(*equations.system), start_(start), diagnostics_(diagnostics) {}
+  Messages(const ConstraintAnalysis& analysis, const EquationsOfMotion& equations, const MotionState* start,
+           Diagnostics& diagnostics)
+      : analysis_(analysis),
+        equations_(equations),
+        system_(*equations.system),
+        start_(start),
+        diagnostics_(diagnostics) {}
 
   void write() {
     if (!analysis_.clashing.empty()) return clash();
     for (std::size_t i = 0; i < analysis_.constraints.size(); ++i) {
       const ConstraintReport& report = analysis_.constraints[i];
       // A velocity constraint that adds nothing has lost nothing either.
-      if (report.redundant) redundant(i, report);
-      else if (report.constraint_class == ConstraintClass::Integrable) disguised(i, report);
-      else if (report.constraint_class == ConstraintClass::Nonlinear) nonlinear(i);
+      if (report.redundant)
+        redundant(i, report);
+      else if (report.constraint_class == ConstraintClass::Integrable)
+        disguised(i, report);
+      else if (report.constraint_class == ConstraintClass::Nonlinear)
+        nonlinear(i);
     }
     for (const IntegrableCombination& found : analysis_.combinations) combination(found);
     of_the_whole();
@@ -63,17 +71,18 @@ class Messages {
   void redundant(std::size_t i, const ConstraintReport& report) {
     if (told_of(span(i))) return;  // written twice
     if (report.depends_on.empty()) {
-      diagnostics_.warning("W0602", span(i), fmt::format("the gradient of {} vanishes wherever it holds", label(i)),
-                           "It has no direction in which a force could keep it, so that its multiplier is not determined.",
-                           "Write it in another form: x = y instead of (x - y)^2 = 0.");
+      diagnostics_.warning(
+          "W0602", span(i), fmt::format("the gradient of {} vanishes wherever it holds", label(i)),
+          "It has no direction in which a force could keep it, so that its multiplier is not determined.",
+          "Write it in another form: x = y instead of (x - y)^2 = 0.");
       return;
     }
     std::vector<std::size_t> all = report.depends_on;
     all.push_back(i);
-    diagnostics_.warning("W0602", span(i),
-                         fmt::format("{} is redundant: it follows from {}", label(i), labels(report.depends_on)),
-                         fmt::format("The motion stays the same, but how {} share the forces is not determined.", labels(all)),
-                         "Leave one of them out where their forces matter.");
+    diagnostics_.warning(
+        "W0602", span(i), fmt::format("{} is redundant: it follows from {}", label(i), labels(report.depends_on)),
+        fmt::format("The motion stays the same, but how {} share the forces is not determined.", labels(all)),
+        "Leave one of them out where their forces matter.");
   }
 
   /// F = 0, or F and its value at the start.
@@ -87,16 +96,19 @@ class Messages {
       value = evaluate(moving, b);
     }
     if (std::abs(value) < 1e-12) return fmt::format("Write `constraint {} = 0` instead.", text(integral.value));
-    if (!std::isfinite(value)) return fmt::format("Write it as `constraint {} = …`, in a form that the start allows.", text(integral.value));
-    return fmt::format("Write `constraint {} = …` instead; the value at the start is {:g} in SI units.", text(integral.value), value);
+    if (!std::isfinite(value))
+      return fmt::format("Write it as `constraint {} = …`, in a form that the start allows.", text(integral.value));
+    return fmt::format("Write `constraint {} = …` instead; the value at the start is {:g} in SI units.",
+                       text(integral.value), value);
   }
 
   void disguised(std::size_t i, const ConstraintReport& report) {
     const std::string name = label(i);
     if (!report.integral.found()) {
-      diagnostics_.warning("W0603", span(i), fmt::format("{} is holonomic in disguise", name),
-                           "It can be integrated to a relation between the coordinates, which the velocities alone do not hold exactly.",
-                           "Write that relation instead.");
+      diagnostics_.warning(
+          "W0603", span(i), fmt::format("{} is holonomic in disguise", name),
+          "It can be integrated to a relation between the coordinates, which the velocities alone do not hold exactly.",
+          "Write that relation instead.");
       return;
     }
     const Expr value = report.integral.value;
@@ -106,18 +118,21 @@ class Messages {
                         fmt::format("Make `{}` a parameter, or give its value as a constraint.", value.name()));
       return;
     }
-    diagnostics_.warning("W0603", span(i), fmt::format("{} is holonomic in disguise: {} = const", name, text(value)),
-                         "Given for the velocities it loses the level of the positions: the constant is whatever the start makes it.",
-                         line_to_write(report.integral));
+    diagnostics_.warning(
+        "W0603", span(i), fmt::format("{} is holonomic in disguise: {} = const", name, text(value)),
+        "Given for the velocities it loses the level of the positions: the constant is whatever the start makes it.",
+        line_to_write(report.integral));
   }
 
   void nonlinear(std::size_t i) {
-    diagnostics_.note("N0607", span(i), fmt::format("{} is not linear in the velocities", label(i)),
-                      "Its force follows Chetaev's rule, ∂ψ/∂q' times λ, which is a choice beyond d'Alembert's principle.", "");
+    diagnostics_.note(
+        "N0607", span(i), fmt::format("{} is not linear in the velocities", label(i)),
+        "Its force follows Chetaev's rule, ∂ψ/∂q' times λ, which is a choice beyond d'Alembert's principle.", "");
   }
 
   void combination(const IntegrableCombination& found) {
-    const std::string which = found.integral.found() ? fmt::format(": {} = const", text(found.integral.value)) : std::string();
+    const std::string which =
+        found.integral.found() ? fmt::format(": {} = const", text(found.integral.value)) : std::string();
     diagnostics_.note("N0609", span(found.constraints.back()),
                       fmt::format("a combination of {} is integrable{}", labels(found.constraints), which),
                       "Each of them alone is non-holonomic, but together they keep the coordinates on a surface.",
@@ -127,13 +142,16 @@ class Messages {
   void of_the_whole() {
     if (analysis_.constraints.empty()) return;
     if (analysis_.singular_start())
-      diagnostics_.warning("W0604", span(0),
-                           fmt::format("the constraints are singular at the start: rank {} instead of {}", analysis_.start_rank, analysis_.rank),
-                           "There they leave more directions free than elsewhere, so that the motion may not be determined.",
-                           "Start from a configuration beside it.");
+      diagnostics_.warning(
+          "W0604", span(0),
+          fmt::format("the constraints are singular at the start: rank {} instead of {}", analysis_.start_rank,
+                      analysis_.rank),
+          "There they leave more directions free than elsewhere, so that the motion may not be determined.",
+          "Start from a configuration beside it.");
     if (analysis_.rank_varies)
-      diagnostics_.note("N0608", span(0), "the rank of the constraints is not the same everywhere",
-                        "At some configurations they leave more directions free; the freedoms are those of general ones.", "");
+      diagnostics_.note(
+          "N0608", span(0), "the rank of the constraints is not the same everywhere",
+          "At some configurations they leave more directions free; the freedoms are those of general ones.", "");
     if (analysis_.instantaneous_freedoms == 0)
       diagnostics_.note("N0606", span(0), "the constraints leave no freedom",
                         "They prescribe the motion alone; masses and forces decide only the forces of constraint.", "");
@@ -148,8 +166,8 @@ class Messages {
 
 }  // namespace
 
-void report_constraints(const ConstraintAnalysis& analysis, const EquationsOfMotion& equations, const MotionState* start,
-                        Diagnostics& diagnostics) {
+void report_constraints(const ConstraintAnalysis& analysis, const EquationsOfMotion& equations,
+                        const MotionState* start, Diagnostics& diagnostics) {
   Messages(analysis, equations, start, diagnostics).write();
 }
 

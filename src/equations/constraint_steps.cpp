@@ -12,7 +12,7 @@
 namespace maupertuis {
 namespace {
 
-constexpr std::size_t longest = 400;   // characters: beyond it a solved form hides more than it shows
+constexpr std::size_t longest = 400;  // characters: beyond it a solved form hides more than it shows
 
 bool on_positions(const Constraint& c) { return c.level == Constraint::Level::Position; }
 
@@ -30,7 +30,8 @@ bool is_short(const ReadableForm& form, const ReadingOrder& order) {
 
 bool depends_on_velocities(Expr e) {
   const std::vector<Expr> symbols = symbols_of({&e, 1});
-  return std::any_of(symbols.begin(), symbols.end(), [](Expr s) { return s.role() == Role::Coordinate && s.order() == 1; });
+  return std::any_of(symbols.begin(), symbols.end(),
+                     [](Expr s) { return s.role() == Role::Coordinate && s.order() == 1; });
 }
 
 void write_eliminated(StepWriter& out) {
@@ -56,8 +57,8 @@ std::string counting_sentence(const MechanicalSystem& system) {
   const std::size_t velocities = all.size() - positions;
   const std::size_t freedoms = n - std::min(n, positions), free = n - std::min(n, all.size());
   if (velocities == 0)
-    return fmt::format("tied by {}: {} − {} = {} if none repeats another.", plural(positions, "constraint"), n, positions,
-                       plural(freedoms, "freedom"));
+    return fmt::format("tied by {}: {} − {} = {} if none repeats another.", plural(positions, "constraint"), n,
+                       positions, plural(freedoms, "freedom"));
   return fmt::format("tied by {} and by {}: {} of the velocities can be chosen freely if none repeats another.",
                      plural(positions, "constraint"), plural(velocities, "constraint") + " on the velocities", free);
 }
@@ -78,12 +79,15 @@ void write_constraints(StepWriter& out) {
       if (a.at(k, i).is_zero()) continue;
       const Coordinate& q = s.coordinates[i];
       chetaev |= !on_positions(c) && depends_on_velocities(a.at(k, i));
-      out.as_is(layouts::partial(name, out.symbol(on_positions(c) ? q.q : q.velocity)),
-                {simplified(a.at(k, i), order), {}, {}}, fmt::format("row of A: the generalized force on {} is this times {}", q.name, symbol_to_plain(c.multiplier)));
+      out.as_is(
+          layouts::partial(name, out.symbol(on_positions(c) ? q.q : q.velocity)),
+          {simplified(a.at(k, i), order), {}, {}},
+          fmt::format("row of A: the generalized force on {} is this times {}", q.name, symbol_to_plain(c.multiplier)));
     }
   }
   if (chetaev)
-    out.sentence("Chetaev's rule", "Not linear in the velocities: by Chetaev's rule the forces of constraint act along ∂ψ/∂q'.");
+    out.sentence("Chetaev's rule",
+                 "Not linear in the velocities: by Chetaev's rule the forces of constraint act along ∂ψ/∂q'.");
 }
 
 void write_constraint_accelerations(StepWriter& out) {
@@ -99,22 +103,24 @@ void write_constraint_accelerations(StepWriter& out) {
     const Expr left = out.context().sum(terms);
     const bool position = on_positions(s.constraints[k]);
     out.formula(lay_out(left, order), b[k],
-                fmt::format("A q'' = b: the {} derivative of {} is zero", position ? "second" : "first", to_plain(name_of(s, k))));
+                fmt::format("A q'' = b: the {} derivative of {} is zero", position ? "second" : "first",
+                            to_plain(name_of(s, k))));
   }
 }
 
 void write_solved_multipliers(StepWriter& out, bool any_left) {
   const ReadingOrder& order = out.equations().order;
   std::vector<ReadableForm> solved = solved_multipliers(out.equations());
-  const bool all_short = !solved.empty() &&
-                         std::all_of(solved.begin(), solved.end(), [&](const ReadableForm& f) { return is_short(f, order); });
+  const bool all_short = !solved.empty() && std::all_of(solved.begin(), solved.end(),
+                                                        [&](const ReadableForm& f) { return is_short(f, order); });
   for (std::size_t k = 0; all_short && k < solved.size(); ++k) {
     const Expr symbol = out.equations().multipliers[k];
     out.as_is(out.symbol(symbol), std::move(solved[k]), "A M⁻¹ Aᵀ λ = b + A M⁻¹ h");
   }
   if (any_left || !all_short)
-    out.sentence("M q'' + h = Aᵀλ, A q'' = b",
-                 "Written out in full this is long; a run solves M q'' + h = Aᵀλ, A q'' = b numerically at every step.");
+    out.sentence(
+        "M q'' + h = Aᵀλ, A q'' = b",
+        "Written out in full this is long; a run solves M q'' + h = Aᵀλ, A q'' = b numerically at every step.");
   write_eliminated(out);
 }
 
@@ -127,8 +133,9 @@ void write_reactions(StepWriter& out, const std::vector<Reaction>& reactions) {
       continue;
     }
     const bool named = r.name.find(' ') == std::string::npos;
-    out.formula(layouts::labelled(named ? fmt::format("reaction({})", r.name) : r.name,
-                                  layouts::indexed(layouts::name("F"), {named ? layouts::name(r.name) : layouts::words(r.name)})),
+    out.formula(layouts::labelled(
+                    named ? fmt::format("reaction({})", r.name) : r.name,
+                    layouts::indexed(layouts::name("F"), {named ? layouts::name(r.name) : layouts::words(r.name)})),
                 r.value, r.sentence);
   }
 }

@@ -60,7 +60,8 @@ std::vector<Intermediate> legend_of(const EquationsOfMotion& equations, const De
 std::vector<ReadableForm> rows_by_shared_parts(const EquationsOfMotion& equations) {
   SharedForm shared = shared_form(equations.residual, equations.order);
   std::vector<ReadableForm> rows;
-  for (std::size_t i = 0; i < shared.rows.size(); ++i) rows.push_back({shared.rows[i], {}, equations.system->coordinates[i].q});
+  for (std::size_t i = 0; i < shared.rows.size(); ++i)
+    rows.push_back({shared.rows[i], {}, equations.system->coordinates[i].q});
   rows.front().intermediates = std::move(shared.intermediates);
   return rows;
 }

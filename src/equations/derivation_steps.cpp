@@ -1,5 +1,5 @@
-#include "equations/constraint_steps.hpp"
 #include "equations/derivation_steps.hpp"
+#include "equations/constraint_steps.hpp"
 #include "equations/step_writer.hpp"
 
 #include <maupertuis/print.hpp>
@@ -23,13 +23,17 @@ void write_coordinates(StepWriter& out) {
   const std::size_t n = out.system().coordinates.size();
   const std::string count = fmt::format("{}: {}", list.empty() ? "none" : list, plural(n, "generalized coordinate"));
   out.sentence("choice of generalized coordinates",
-               out.system().constrained() ? fmt::format("{}, {}", count, counting_sentence(out.system()))
-                                          : fmt::format("{}, no constraints among them, so {}.", count, plural(n, "freedom")));
+               out.system().constrained()
+                   ? fmt::format("{}, {}", count, counting_sentence(out.system()))
+                   : fmt::format("{}, no constraints among them, so {}.", count, plural(n, "freedom")));
 }
 
 /// Positions, then velocities by the chain rule, then speeds squared, of the points that carry mass.
 void write_kinematics(StepWriter& out) {
-  struct Moving { std::string name; const ExprVector* position; };
+  struct Moving {
+    std::string name;
+    const ExprVector* position;
+  };
   std::vector<Moving> moving;
   for (const Point& p : out.system().points)
     if (p.mass) moving.push_back({p.name, &p.position});
@@ -48,14 +52,16 @@ void write_kinematics(StepWriter& out) {
   });
   out.open("Velocities");
   each_component([&](const std::string& name, const char* axis, Expr value) {
-    out.formula(out.component(name, axis, 1), out.context().time_derivative(value), "chain rule: ṙ = Σ ∂r/∂q q' + ∂r/∂t");
+    out.formula(out.component(name, axis, 1), out.context().time_derivative(value),
+                "chain rule: ṙ = Σ ∂r/∂q q' + ∂r/∂t");
   });
   out.open("Speeds");
   for (const Moving& point : moving) {
     ExprVector squares;
     for (const Expr& component : *point.position)
       squares.push_back(pow(out.context().time_derivative(component), Rational(2)));
-    const Layout speed = layouts::labelled("v_" + point.name, layouts::indexed(layouts::name("v"), {layouts::name(point.name)}));
+    const Layout speed =
+        layouts::labelled("v_" + point.name, layouts::indexed(layouts::name("v"), {layouts::name(point.name)}));
     out.formula(layouts::power(speed, layouts::number("2")), out.context().sum(squares),
                 out.system().space_dimension == 2 ? "v² = x'² + y'²" : "v² = x'² + y'² + z'²");
   }
@@ -67,15 +73,16 @@ void write_angular_velocities(StepWriter& out) {
   for (const Body& body : out.system().bodies) {
     const bool planar = body.angular_velocity.size() == 1;
     for (std::size_t i = 0; i < body.angular_velocity.size(); ++i) {
-      out.formula(out.component(body.name, "ω", 0, planar ? "" : axis_names[i]),
-                  body.angular_velocity[i], "rotation of the body, in body axes");
+      out.formula(out.component(body.name, "ω", 0, planar ? "" : axis_names[i]), body.angular_velocity[i],
+                  "rotation of the body, in body axes");
     }
   }
 }
 
 /// T(particle A), in print with what it belongs to below.
 Layout part_of(const std::string& letter, const std::string& what) {
-  return layouts::labelled(fmt::format("{}({})", letter, what), layouts::indexed(layouts::name(letter), {layouts::words(what)}));
+  return layouts::labelled(fmt::format("{}({})", letter, what),
+                           layouts::indexed(layouts::name(letter), {layouts::words(what)}));
 }
 
 Layout generalized_force(const StepWriter& out, const Coordinate& c) {
@@ -91,8 +98,7 @@ void write_energy(StepWriter& out, const char* section, const std::string& lette
   for (const EnergyTerm& term : terms) {
     values.push_back(term.value);
     given &= term.origin == letter;
-    if (terms.size() > 1)
-      out.formula(part_of(letter, term.origin), term.value, term.origin);
+    if (terms.size() > 1) out.formula(part_of(letter, term.origin), term.value, term.origin);
   }
   out.formula(layouts::name(letter), out.context().sum(values), given ? "as given" : rule);
 }
@@ -118,7 +124,8 @@ void write_virtual_work(StepWriter& out) {
   for (const AppliedForce& force : s.forces) {
     if (force.kind == AppliedForce::Kind::Generalized) {
       out.sentence("generalized force given directly",
-                   fmt::format("The force on {} is given per coordinate: its virtual work is Q δ{}.", force.target, force.target));
+                   fmt::format("The force on {} is given per coordinate: its virtual work is Q δ{}.", force.target,
+                               force.target));
       continue;
     }
     const bool torque = force.kind == AppliedForce::Kind::Torque;
@@ -133,14 +140,16 @@ void write_virtual_work(StepWriter& out) {
       if (work.is_zero()) continue;
       const std::string from = force.reaction_on.empty() ? "" : " from " + force.reaction_on;
       const std::string what = fmt::format("{} {}{}", torque ? "torque on" : "force on", force.target, from);
-      out.formula(layouts::labelled(fmt::format("Q_{}({})", c.name, what),
-                                    layouts::indexed(layouts::name("Q"), {out.symbol(c.q), layouts::words(what)})),
-                  work,
-                  torque ? fmt::format("virtual work: τ·∂ω/∂{}'", c.name) : fmt::format("virtual work: F·∂r/∂{}", c.name));
+      out.formula(
+          layouts::labelled(fmt::format("Q_{}({})", c.name, what),
+                            layouts::indexed(layouts::name("Q"), {out.symbol(c.q), layouts::words(what)})),
+          work,
+          torque ? fmt::format("virtual work: τ·∂ω/∂{}'", c.name) : fmt::format("virtual work: F·∂r/∂{}", c.name));
     }
   }
   for (std::size_t i = 0; i < s.coordinates.size(); ++i)
-    out.formula(generalized_force(out, s.coordinates[i]), out.equations().generalized_forces[i], "sum of the virtual works");
+    out.formula(generalized_force(out, s.coordinates[i]), out.equations().generalized_forces[i],
+                "sum of the virtual works");
 }
 
 /// d/dt ∂L/∂q̇ = Σ_j (∂p/∂q̇_j q̈_j + ∂p/∂q_j q̇_j) + ∂p/∂t (+ ∂p/∂u u̇), each chain-rule term on its own.
@@ -168,16 +177,20 @@ ReadableForm total_derivative_terms(const StepWriter& out, Expr momentum) {
 void write_row(StepWriter& out, std::size_t i, const Derivation& derivation) {
   const EquationsOfMotion& eq = out.equations();
   const Coordinate& c = out.system().coordinates[i];
-  const Layout L = layouts::name("L"), D = layouts::name("D"), by_velocity = layouts::partial(L, out.symbol(c.velocity));
+  const Layout L = layouts::name("L"), D = layouts::name("D"),
+               by_velocity = layouts::partial(L, out.symbol(c.velocity));
   out.open("Equation of " + c.name);
-  out.formula(by_velocity, eq.momenta[i],
-              fmt::format("partial derivative, q and {} held fixed: the momentum p_{}", out.system().independent, c.name));
+  out.formula(
+      by_velocity, eq.momenta[i],
+      fmt::format("partial derivative, q and {} held fixed: the momentum p_{}", out.system().independent, c.name));
   const std::string t = out.system().independent, total = t == "t" ? "total time derivative" : "total derivative";
   out.as_is(layouts::rate(by_velocity, out.symbol(out.context().time()), true),
             total_derivative_terms(out, eq.momenta[i]), fmt::format("{}: chain rule through q', q and {}", total, t));
-  out.formula(layouts::partial(L, out.symbol(c.q)), differentiate(eq.lagrangian_expanded, c.q), fmt::format("partial derivative, q' and {} held fixed", t));
+  out.formula(layouts::partial(L, out.symbol(c.q)), differentiate(eq.lagrangian_expanded, c.q),
+              fmt::format("partial derivative, q' and {} held fixed", t));
   if (!eq.dissipative_terms[i].is_zero())
-    out.formula(layouts::partial(D, out.symbol(c.velocity)), eq.dissipative_terms[i], "partial derivative of the dissipation function");
+    out.formula(layouts::partial(D, out.symbol(c.velocity)), eq.dissipative_terms[i],
+                "partial derivative of the dissipation function");
   std::string rule = fmt::format("d/d{} ∂L/∂q' − ∂L/∂q", t);
   if (!eq.dissipative_terms[i].is_zero()) rule += " + ∂D/∂q'";
   rule += eq.generalized_forces[i].is_zero() ? " = " : " = Q";
@@ -187,11 +200,13 @@ void write_row(StepWriter& out, std::size_t i, const Derivation& derivation) {
     return;
   }
   rule += eq.generalized_forces[i].is_zero() ? "Aᵀλ" : " + Aᵀλ";
-  out.as_is(lay_out(derivation.equations[i], eq.order), derivation.constraint_forces[i], "Lagrange with multipliers: " + rule + ", collected and simplified");
+  out.as_is(lay_out(derivation.equations[i], eq.order), derivation.constraint_forces[i],
+            "Lagrange with multipliers: " + rule + ", collected and simplified");
 }
 
 void write_solved(StepWriter& out) {
-  out.open(out.system().constrained() ? "Solved for the accelerations and multipliers" : "Solved for the accelerations");
+  out.open(out.system().constrained() ? "Solved for the accelerations and multipliers"
+                                      : "Solved for the accelerations");
   bool any_left = false;
   constexpr std::size_t longest = 400;  // characters: beyond it the solved form hides more than it shows
   for (SolvedAcceleration& solved : solved_accelerations(out.equations())) {
@@ -205,7 +220,9 @@ void write_solved(StepWriter& out) {
   }
   if (out.system().constrained()) return write_solved_multipliers(out, any_left);
   if (any_left)
-    out.sentence("M q'' + h = 0", "The coupled accelerations are long when written out; a run solves M q'' = −h numerically at every step.");
+    out.sentence(
+        "M q'' + h = 0",
+        "The coupled accelerations are long when written out; a run solves M q'' = −h numerically at every step.");
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ std::set<NodeId> coordinates_in(std::span<const Expr> roots) {
 ExprVector difference(const ExprVector& a, const ExprVector& b) {
   ExprVector out;
   for (std::size_t k = 0; k < a.size(); ++k) {
-    const Expr plain = a[k] - b[k], flat = expand(plain);   // what both places share cancels
+    const Expr plain = a[k] - b[k], flat = expand(plain);  // what both places share cancels
     out.push_back(flat ? flat : plain);
   }
   return out;
@@ -68,8 +68,8 @@ Expr constant_distance(const MechanicalSystem& system, Expr squared, Expr value,
   return sqrt(rest);
 }
 
-std::optional<RodConstraint> between(const MechanicalSystem& system, const Constraint& c, const RodEnd& from, const RodEnd& to,
-                                     const std::set<NodeId>& support) {
+std::optional<RodConstraint> between(const MechanicalSystem& system, const Constraint& c, const RodEnd& from,
+                                     const RodEnd& to, const std::set<NodeId>& support) {
   const ExprVector arm = difference(to.position, from.position);
   const std::set<NodeId> reach = coordinates_in(arm);
   if (!std::includes(reach.begin(), reach.end(), support.begin(), support.end())) return std::nullopt;
@@ -78,7 +78,7 @@ std::optional<RodConstraint> between(const MechanicalSystem& system, const Const
   for (const Expr& component : arm) squares.push_back(pow(component, Rational(2)));
   if (q.size() == 1 && !turns(arm, q[0])) return std::nullopt;
   const Expr squared = system.context->sum(squares);
-  for (const Expr& slope : gradient(squared, others))   // the angle of polar coordinates drops out
+  for (const Expr& slope : gradient(squared, others))  // the angle of polar coordinates drops out
     if (!vanishes(slope)) return std::nullopt;
   const ExprVector of_phi = gradient(c.value, q), of_squared = gradient(squared, q);
   std::size_t pivot = 0;
@@ -99,7 +99,9 @@ std::optional<RodConstraint> find_rod(const MechanicalSystem& system, const Cons
   const std::vector<RodEnd> places = places_of(system);
   std::vector<std::set<NodeId>> reach;
   for (const RodEnd& place : places) reach.push_back(coordinates_in(place.position));
-  struct Pair { std::size_t first, second, reach; };
+  struct Pair {
+    std::size_t first, second, reach;
+  };
   std::vector<Pair> pairs;
   for (std::size_t i = 0; i < places.size(); ++i)
     for (std::size_t j = i + 1; j < places.size(); ++j) {
@@ -111,7 +113,8 @@ std::optional<RodConstraint> find_rod(const MechanicalSystem& system, const Cons
   std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.reach < b.reach; });
   for (const Pair& pair : pairs) {
     const RodEnd &a = places[pair.first], &b = places[pair.second];
-    auto rod = b.fixed ? between(system, constraint, b, a, support) : between(system, constraint, a, b, support);   // from the fixed end
+    auto rod = b.fixed ? between(system, constraint, b, a, support)
+                       : between(system, constraint, a, b, support);  // from the fixed end
     if (rod) return rod;
   }
   return std::nullopt;

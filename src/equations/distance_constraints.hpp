@@ -10,14 +10,14 @@ namespace maupertuis {
 struct RodEnd {
   std::string name;
   ExprVector position;
-  bool fixed = false;   // in space: no coordinate and no time in its position
+  bool fixed = false;  // in space: no coordinate and no time in its position
 };
 
 /// φ is a function of the distance d of two places alone.
 struct RodConstraint {
   RodEnd from, to;
-  Expr distance;        // d; a constant length where φ = k (d² − l²) shows it
-  Expr slope;           // dφ/d(d²)
+  Expr distance;  // d; a constant length where φ = k (d² − l²) shows it
+  Expr slope;     // dφ/d(d²)
 };
 
 /// Nothing if no pair of places has ∇φ parallel to ∇d², proved by the zero test.

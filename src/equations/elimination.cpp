@@ -9,7 +9,7 @@
 namespace maupertuis {
 namespace {
 
-constexpr std::size_t longest_row = 400;   // characters: beyond it elimination hides more than it shows
+constexpr std::size_t longest_row = 400;  // characters: beyond it elimination hides more than it shows
 
 /// 0: a number; 1: parameters alone; 2: depends on the motion.
 int pivot_class(Expr e) {
@@ -22,7 +22,8 @@ int pivot_class(Expr e) {
 /// A brought to a form in which every row has a pivot column of its own, without fractions.
 class RowReduction {
  public:
-  RowReduction(const EquationsOfMotion& equations) : order_(equations.order), a_(constraint_matrix(equations)), b_(constraint_bias(equations)) {
+  RowReduction(const EquationsOfMotion& equations)
+      : order_(equations.order), a_(constraint_matrix(equations)), b_(constraint_bias(equations)) {
     for (std::size_t row = 0; row < a_.rows; ++row) tidy(row);
   }
 
@@ -42,7 +43,9 @@ class RowReduction {
   const std::vector<std::size_t>& pivots() const { return pivots_; }
   Expr pivot(std::size_t row) const { return a_.at(row, pivots_[row]); }
   Expr bias(std::size_t row) const { return b_[row]; }
-  bool is_dependent(std::size_t column) const { return std::find(pivots_.begin(), pivots_.end(), column) != pivots_.end(); }
+  bool is_dependent(std::size_t column) const {
+    return std::find(pivots_.begin(), pivots_.end(), column) != pivots_.end();
+  }
   bool constant_pivots() const {
     for (std::size_t row = 0; row < a_.rows; ++row)
       if (pivot_class(pivot(row)) == 2) return false;
@@ -50,7 +53,8 @@ class RowReduction {
   }
 
  private:
-  /// Entries in their best form, common denominators and a numeric factor of the whole row taken out: zeros become visible.
+  /// Entries in their best form, common denominators and a numeric factor of the whole row taken out: zeros become
+  /// visible.
   void tidy(std::size_t row) {
     for (std::size_t j = 0; j < a_.columns; ++j) a_.at(row, j) = simplified(a_.at(row, j), order_);
     for (const Expr& factor : common_denominators(row)) {
@@ -107,7 +111,7 @@ class RowReduction {
 
   void clear(std::size_t row, std::size_t by, std::size_t column) {
     const Expr p = a_.at(by, column), f = a_.at(row, column);
-    const Expr ratio = pivot_class(p) == 0 ? f / p : Expr();   // a number needs no common denominator
+    const Expr ratio = pivot_class(p) == 0 ? f / p : Expr();  // a number needs no common denominator
     const auto combined = [&](Expr own, Expr other) { return ratio ? own - ratio * other : p * own - f * other; };
     for (std::size_t j = 0; j < a_.columns; ++j) a_.at(row, j) = combined(a_.at(row, j), a_.at(by, j));
     b_[row] = combined(b_[row], b_[by]);
@@ -123,16 +127,18 @@ class RowReduction {
 /// A denominator in it changes with the motion.
 bool has_moving_denominator(Expr e) {
   for (const Expr& node : topological_order({&e, 1}))
-    if (node.is(Kind::Power) && node[1].is_number() && node[1].number().sign() < 0 && pivot_class(node[0]) == 2) return true;
+    if (node.is(Kind::Power) && node[1].is_number() && node[1].number().sign() < 0 && pivot_class(node[0]) == 2)
+      return true;
   return false;
 }
 
-/// A vector of ker A with the component `column` of the independent coordinates alone, its denominators multiplied away.
+/// A vector of ker A with the component `column` of the independent coordinates alone, its denominators multiplied
+/// away.
 ExprVector kernel_vector(const RowReduction& reduction, std::size_t column, const EquationsOfMotion& equations) {
   const ExprMatrix& a = reduction.matrix();
   Context& context = *equations.system->context;
   Expr scale = context.number(1);
-  ExprVector ratios;   // empty: as a fraction of the pivot, which is a factor of the scale
+  ExprVector ratios;  // empty: as a fraction of the pivot, which is a factor of the scale
   for (std::size_t row = 0; row < a.rows; ++row) {
     const Expr ratio = simplified(a.at(row, column) / reduction.pivot(row), equations.order);
     ratios.push_back(has_moving_denominator(ratio) ? Expr() : ratio);
@@ -141,7 +147,8 @@ ExprVector kernel_vector(const RowReduction& reduction, std::size_t column, cons
   ExprVector z(a.columns, context.number(0));
   z[column] = scale;
   for (std::size_t row = 0; row < a.rows; ++row)
-    z[reduction.pivots()[row]] = -(ratios[row] ? scale * ratios[row] : scale / reduction.pivot(row) * a.at(row, column));
+    z[reduction.pivots()[row]] =
+        -(ratios[row] ? scale * ratios[row] : scale / reduction.pivot(row) * a.at(row, column));
   return z;
 }
 
@@ -185,7 +192,8 @@ std::optional<EliminatedEquations> eliminate_multipliers(const EquationsOfMotion
     form.own = system.coordinates[j].q;
     if (!form.intermediates.empty() || to_plain(form, equations.order).size() > longest_row) return std::nullopt;
     // The multipliers cancel: the row is a combination of the equations with Aᵀλ.
-    if (zero_test(form.value - substitute(context.sum(of_balance), replaced)).verdict != Verdict::Zero) return std::nullopt;
+    if (zero_test(form.value - substitute(context.sum(of_balance), replaced)).verdict != Verdict::Zero)
+      return std::nullopt;
     result.independent.push_back(j);
     result.rows.push_back(std::move(form));
   }

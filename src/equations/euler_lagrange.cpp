@@ -21,7 +21,8 @@ Expr explicit_rate(Expr e) {
     if (s.role() == Role::Input) symbols.push_back(s);
   const auto derivatives = gradient(e, symbols);
   ExprVector terms{derivatives.front()};
-  for (std::size_t i = 1; i < symbols.size(); ++i) terms.push_back(derivatives[i] * context.time_derivative(symbols[i]));
+  for (std::size_t i = 1; i < symbols.size(); ++i)
+    terms.push_back(derivatives[i] * context.time_derivative(symbols[i]));
   return context.sum(terms);
 }
 
@@ -33,7 +34,8 @@ Expr dot(const ExprVector& a, const ExprVector& b, Context& context) {
 
 /// λ, Aᵀλ and the derivatives of the constraints. Aᵀλ is the gradient of Σ λφ by q, or of Σ λψ by q̇ (d'Alembert and
 /// Lagrange; Chetaev where ψ is not linear), so that it costs no more than the constraints.
-void add_constraints(EquationsOfMotion& equations, const MechanicalSystem& system, const ExprVector& q, const ExprVector& velocities) {
+void add_constraints(EquationsOfMotion& equations, const MechanicalSystem& system, const ExprVector& q,
+                     const ExprVector& velocities) {
   if (!system.constrained()) return;
   Context& context = *system.context;
   ExprVector on_positions, on_velocities;
@@ -45,7 +47,8 @@ void add_constraints(EquationsOfMotion& equations, const MechanicalSystem& syste
     equations.constraint_rates.push_back(rate);
     equations.constraint_accelerations.push_back(context.time_derivative(rate));
   }
-  const auto by_q = gradient(context.sum(on_positions), q), by_velocity = gradient(context.sum(on_velocities), velocities);
+  const auto by_q = gradient(context.sum(on_positions), q),
+             by_velocity = gradient(context.sum(on_velocities), velocities);
   for (std::size_t i = 0; i < q.size(); ++i) equations.constraint_forces.push_back(by_q[i] + by_velocity[i]);
 }
 
@@ -60,8 +63,10 @@ Expr constraint_power(const MechanicalSystem& system, const ExprVector& velociti
   };
   ExprVector terms;
   for (const Constraint& c : system.constraints) {
-    if (c.level == Constraint::Level::Position) terms.push_back(-(c.multiplier * explicit_rate(c.value)));
-    else terms.push_back(c.multiplier * (work(c.value) - c.value));
+    if (c.level == Constraint::Level::Position)
+      terms.push_back(-(c.multiplier * explicit_rate(c.value)));
+    else
+      terms.push_back(c.multiplier * (work(c.value) - c.value));
   }
   return context.sum(terms);
 }
@@ -75,7 +80,8 @@ ExprVector EquationsOfMotion::balance() const {
   return out;
 }
 
-std::optional<EquationsOfMotion> euler_lagrange(std::shared_ptr<const MechanicalSystem> system, Diagnostics& diagnostics) {
+std::optional<EquationsOfMotion> euler_lagrange(std::shared_ptr<const MechanicalSystem> system,
+                                                Diagnostics& diagnostics) {
   Context& context = *system->context;
   const ExprVector q = symbols_of_order(*system, 0), velocities = symbols_of_order(*system, 1);
 
@@ -124,7 +130,8 @@ ExprMatrix constraint_matrix(const EquationsOfMotion& equations) {
   const MechanicalSystem& system = *equations.system;
   const ExprVector q = symbols_of_order(system, 0), velocities = symbols_of_order(system, 1);
   const SparseGradient by_q(q), by_velocities(velocities);
-  ExprMatrix a{system.constraints.size(), q.size(), ExprVector(system.constraints.size() * q.size(), system.context->number(0))};
+  ExprMatrix a{system.constraints.size(), q.size(),
+               ExprVector(system.constraints.size() * q.size(), system.context->number(0))};
   for (std::size_t k = 0; k < a.rows; ++k) {
     const Constraint& c = system.constraints[k];
     for (const auto& [column, value] : (c.level == Constraint::Level::Position ? by_q : by_velocities)(c.value))

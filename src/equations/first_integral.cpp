@@ -61,7 +61,8 @@ ExprVector candidate_factors(const ExprVector& form, const ExprVector& variables
   for (const std::size_t i : present) add(form[i]);
   for (const std::size_t i : present)
     for (const std::size_t j : present)
-      if (i < j) add(foreign_factors(form[i], variables, variables[i]) * foreign_factors(form[j], variables, variables[j]));
+      if (i < j)
+        add(foreign_factors(form[i], variables, variables[i]) * foreign_factors(form[j], variables, variables[j]));
   for (const std::size_t i : present)
     for (const std::size_t j : present)
       if (i < j) add(form[i] * form[j]);
@@ -80,11 +81,13 @@ Rational common_scale(Expr sum) {
   return divisor == 0 ? Rational(1) : Rational(multiple, divisor);
 }
 
-/// exp F where F has logarithms of the motion: a log x - log y + c z becomes x^a exp(c z)/y. The logarithm of a length is
-/// nothing that a model could say. F itself where the factor of one is a function.
+/// exp F where F has logarithms of the motion: a log x - log y + c z becomes x^a exp(c z)/y. The logarithm of a length
+/// is nothing that a model could say. F itself where the factor of one is a function.
 Expr without_logarithms(Expr sum, const ExprVector& variables) {
   Context& context = sum.context();
-  const auto moves = [&](Expr e) { return std::any_of(variables.begin(), variables.end(), [&](Expr v) { return depends_on(e, v); }); };
+  const auto moves = [&](Expr e) {
+    return std::any_of(variables.begin(), variables.end(), [&](Expr v) { return depends_on(e, v); });
+  };
   Expr rest = context.number(Rational(0)), first;
   std::vector<std::pair<Expr, Expr>> powers;
   for (std::size_t i = 0; i < (sum.is(Kind::Sum) ? sum.size() : 1); ++i) {

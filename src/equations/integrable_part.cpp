@@ -7,9 +7,10 @@
 #include <numeric>
 #include <unordered_map>
 
-/// Frobenius. The directions X_j that all forms send to zero are solved for as X_j = ∂_j + Σ_p x_jp ∂_p, with p over the
-/// pivot variables; their Lie brackets have pivot components alone. Brackets are added until none is new. What the forms
-/// send to zero then is a bundle of surfaces, and a form that is zero on all brackets is a combination of their dF.
+/// Frobenius. The directions X_j that all forms send to zero are solved for as X_j = ∂_j + Σ_p x_jp ∂_p, with p over
+/// the pivot variables; their Lie brackets have pivot components alone. Brackets are added until none is new. What the
+/// forms send to zero then is a bundle of surfaces, and a form that is zero on all brackets is a combination of their
+/// dF.
 namespace maupertuis {
 namespace {
 
@@ -26,7 +27,10 @@ struct Field {
 class Closure {
  public:
   Closure(const std::vector<OneForm>& forms, const ExprVector& variables, const std::vector<Bindings>& points)
-      : forms_(forms), variables_(variables), points_(points), zero_(variables[0].context().number(Rational(0))),
+      : forms_(forms),
+        variables_(variables),
+        points_(points),
+        zero_(variables[0].context().number(Rational(0))),
         one_(variables[0].context().number(Rational(1))) {}
 
   IntegrablePart find() {
@@ -82,7 +86,8 @@ class Closure {
     ExprMatrix m{rows_.size(), count, {}};
     for (const std::size_t i : rows_)
       for (const Expr& a : forms_[i].components) m.entries.push_back(a);
-    const auto pivots = best_ ? reduce_rows(m, count, rows_.size(), *best_) : std::vector<std::pair<std::size_t, std::size_t>>{};
+    const auto pivots =
+        best_ ? reduce_rows(m, count, rows_.size(), *best_) : std::vector<std::pair<std::size_t, std::size_t>>{};
     std::vector<bool> is_pivot(count, false);
     for (const auto& [row, column] : pivots) is_pivot[column] = true, pivots_.push_back(column);
     for (std::size_t j = 0; j < count; ++j) {
@@ -260,12 +265,12 @@ class Closure {
   const ExprVector& variables_;
   const std::vector<Bindings>& points_;
   Expr zero_, one_;
-  const Bindings* best_ = nullptr;        // a point where the forms have their full rank
-  std::vector<std::size_t> rows_;         // independent forms
-  std::vector<std::size_t> pivots_;       // variables that are solved for
+  const Bindings* best_ = nullptr;   // a point where the forms have their full rank
+  std::vector<std::size_t> rows_;    // independent forms
+  std::vector<std::size_t> pivots_;  // variables that are solved for
   std::vector<Field> directions_;
-  std::vector<ExprVector> brackets_;      // independent, beyond the directions
-  std::vector<Matrix> bracket_numbers_;   // [points] their pivot components, a row each
+  std::vector<ExprVector> brackets_;     // independent, beyond the directions
+  std::vector<Matrix> bracket_numbers_;  // [points] their pivot components, a row each
 };
 
 /// Forms and variables that have to do with each other.
@@ -273,7 +278,8 @@ struct Group {
   std::vector<std::size_t> forms, variables;
 };
 
-/// Forms that share no variable, neither as a component nor in one, leave directions that commute: each group is looked at alone.
+/// Forms that share no variable, neither as a component nor in one, leave directions that commute: each group is looked
+/// at alone.
 std::vector<Group> independent_groups(const std::vector<OneForm>& forms, const ExprVector& variables) {
   std::vector<std::size_t> leader(variables.size());
   std::iota(leader.begin(), leader.end(), std::size_t{0});
@@ -315,7 +321,8 @@ void put_back(const IntegrablePart& part, const Group& group, const ExprVector& 
     IntegrablePart::Combination whole;
     for (const std::size_t i : found.forms) whole.forms.push_back(group.forms[i]);
     whole.form.components.assign(variables.size(), zero);
-    for (std::size_t v = 0; v < group.variables.size(); ++v) whole.form.components[group.variables[v]] = found.form.components[v];
+    for (std::size_t v = 0; v < group.variables.size(); ++v)
+      whole.form.components[group.variables[v]] = found.form.components[v];
     out.combinations.push_back(std::move(whole));
   }
 }

@@ -28,12 +28,13 @@ class Sampler {
   std::optional<MotionState> find() {
     MotionState origin{0, std::vector<double>(free_.size(), 0), std::vector<double>(free_.size(), 0)};
     for (std::size_t attempt = 1; attempt <= attempts; ++attempt)
-      if (auto state = consistent(scattered(origin, 2.0 * static_cast<double>(attempt) / attempts), free_)) return state;
+      if (auto state = consistent(scattered(origin, 2.0 * static_cast<double>(attempt) / attempts), free_))
+        return state;
     return std::nullopt;
   }
 
-  /// One coordinate is held where it was put, if that is possible: a singular start draws Newton's method to itself. Points
-  /// there count only where there are no others.
+  /// One coordinate is held where it was put, if that is possible: a singular start draws Newton's method to itself.
+  /// Points there count only where there are no others.
   ManifoldSamples around(const MotionState& start) {
     ManifoldSamples away, at_start;
     for (std::size_t attempt = 0; attempt < attempts && away.states.size() < wanted; ++attempt) {
@@ -89,7 +90,8 @@ class Sampler {
 
 }  // namespace
 
-ManifoldSamples sample_manifold(const ConstraintManifold& manifold, const MechanicalSystem& system, const MotionState* start) {
+ManifoldSamples sample_manifold(const ConstraintManifold& manifold, const MechanicalSystem& system,
+                                const MotionState* start) {
   Sampler sampler(manifold, system);
   const std::optional<MotionState> any = start ? *start : sampler.find();
   ManifoldSamples out;

@@ -12,6 +12,7 @@ struct ManifoldSamples {
 
 /// Near `start`, or near a state that a search finds: on its branch of the manifold. At times shortly after it, so that
 /// what holds at that instant alone is not taken for a rule.
-ManifoldSamples sample_manifold(const ConstraintManifold& manifold, const MechanicalSystem& system, const MotionState* start);
+ManifoldSamples sample_manifold(const ConstraintManifold& manifold, const MechanicalSystem& system,
+                                const MotionState* start);
 
 }  // namespace maupertuis

@@ -19,7 +19,7 @@ bool vanishes(Expr e) { return e.is_zero() || zero_test(e).verdict == Verdict::Z
 struct Tie {
   const MechanicalSystem& system;
   const Constraint& constraint;
-  ExprVector row;                      // [n]
+  ExprVector row;  // [n]
   std::vector<std::size_t> coordinates;
 
   Context& context() const { return *system.context; }
@@ -72,8 +72,9 @@ bool as_tension(const Tie& tie, Reaction& r) {
   for (std::size_t k = 0; k < rod->to.position.size(); ++k) arm.push_back(rod->to.position[k] - rod->from.position[k]);
   r.arrows.push_back({rod->to.name, rod->to.position, scaled(arm, push)});
   if (!rod->from.fixed) r.arrows.push_back({rod->from.name, rod->from.position, scaled(arm, -push)});
-  r.sentence = fmt::format("the tension in {}, positive when it pulls {} and {} together, negative when it pushes them apart",
-                           tie.constraint.name.empty() ? "the connection" : tie.constraint.name, rod->from.name, rod->to.name);
+  r.sentence =
+      fmt::format("the tension in {}, positive when it pulls {} and {} together, negative when it pushes them apart",
+                  tie.constraint.name.empty() ? "the connection" : tie.constraint.name, rod->from.name, rod->to.name);
   return true;
 }
 
@@ -105,7 +106,7 @@ bool as_contact(const Tie& tie, Reaction& r) {
   const auto place = only_place(tie);
   if (!place) return false;
   const ExprVector& position = *place->position;
-  ExprVector direction(position.size(), tie.context().number(0));   // F/λ
+  ExprVector direction(position.size(), tie.context().number(0));  // F/λ
   for (const std::size_t i : tie.coordinates)
     for (std::size_t k = 0; k < position.size(); ++k)
       direction[k] = direction[k] + tie.row[i] * differentiate(position[k], tie.system.coordinates[i].q);
@@ -115,7 +116,7 @@ bool as_contact(const Tie& tie, Reaction& r) {
       work.push_back(direction[k] * differentiate(position[k], tie.system.coordinates[i].q));
     if (!vanishes(tie.context().sum(work))) return false;
   }
-  for (const Body& b : tie.system.bodies)   // a coordinate that also turns a body takes part of the force as a torque
+  for (const Body& b : tie.system.bodies)  // a coordinate that also turns a body takes part of the force as a torque
     for (const std::size_t i : tie.coordinates)
       for (const Expr& entry : b.rotation.entries)
         if (!vanishes(differentiate(entry, tie.system.coordinates[i].q))) return false;
@@ -124,7 +125,8 @@ bool as_contact(const Tie& tie, Reaction& r) {
   r.kind = Reaction::Kind::Contact;
   r.value = tie.constraint.multiplier * sqrt(simplified(tie.context().sum(squares)));
   r.arrows.push_back({*place->name, position, scaled(direction, tie.constraint.multiplier)});
-  r.sentence = fmt::format("the force on {} along the normal of the constraint, positive towards increasing left − right", *place->name);
+  r.sentence = fmt::format(
+      "the force on {} along the normal of the constraint, positive towards increasing left − right", *place->name);
   return true;
 }
 
@@ -143,9 +145,11 @@ void as_multiplier(const Tie& tie, Reaction& r) {
   const Expr slope = tie.row[tie.coordinates[0]];
   const std::string& name = tie.coordinate(0).name;
   if (slope.is_one())
-    r.sentence = fmt::format("the {} on {} that holds the constraint, positive towards increasing {}", what, name, name);
+    r.sentence =
+        fmt::format("the {} on {} that holds the constraint, positive towards increasing {}", what, name, name);
   else if ((-slope).is_one())
-    r.sentence = fmt::format("the {} on {} that holds the constraint, positive towards decreasing {}", what, name, name);
+    r.sentence =
+        fmt::format("the {} on {} that holds the constraint, positive towards decreasing {}", what, name, name);
 }
 
 /// λ |∂φ/∂q| over the coordinates whose generalized force has the unit.
@@ -176,15 +180,19 @@ Reaction reaction_of(const Tie& tie, std::string label) {
   r.dimension = dimension_of_reaction(tie);
   if (!tie.constraint.body.empty()) {
     r.value = tie.constraint.multiplier;
-    r.sentence = fmt::format("no force: the multiplier keeps the four numbers that turn {} on the unit sphere", tie.constraint.body);
+    r.sentence = fmt::format("no force: the multiplier keeps the four numbers that turn {} on the unit sphere",
+                             tie.constraint.body);
     return r;
   }
   if (as_tension(tie, r)) return r;
   if (dimensions::force().same_as(r.dimension) || tie.system.dimensionless)
     if (as_contact(tie, r)) return r;
-  const bool own_unit = tie.system.dimensionless || dimension_of_multiplier(tie.system, tie.constraint).same_as(r.dimension);
-  if (own_unit) as_multiplier(tie, r);
-  else as_generalized(tie, r);
+  const bool own_unit =
+      tie.system.dimensionless || dimension_of_multiplier(tie.system, tie.constraint).same_as(r.dimension);
+  if (own_unit)
+    as_multiplier(tie, r);
+  else
+    as_generalized(tie, r);
   return r;
 }
 
@@ -199,11 +207,13 @@ Reaction reaction_of(const EquationsOfMotion& equations, const Release& release)
   const bool length = parameter.dimension.same_as(dimensions::length()) || system.dimensionless;
   if (!system.dimensionless) r.dimension = dimensions::energy() / parameter.dimension;
   r.value = held.value && length ? -held.value : held.value;
-  r.sentence = !held.value ? held.reason
-               : length    ? fmt::format("the tension that holds {}, positive when it resists an increase of {}, as in a pulled rod",
-                                         parameter.name, parameter.name)
-                           : fmt::format("the {} that holds {}, positive along increasing {}", word_of(r.dimension), parameter.name,
-                                         parameter.name);
+  r.sentence =
+      !held.value ? held.reason
+      : length
+          ? fmt::format("the tension that holds {}, positive when it resists an increase of {}, as in a pulled rod",
+                        parameter.name, parameter.name)
+          : fmt::format("the {} that holds {}, positive along increasing {}", word_of(r.dimension), parameter.name,
+                        parameter.name);
   return r;
 }
 

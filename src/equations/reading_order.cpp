@@ -21,7 +21,10 @@ int rank_of(const std::string& name, const Dimension& d, bool dimensionless) {
 }  // namespace
 
 ReadingOrder reading_order(const MechanicalSystem& system) {
-  struct Named { Expr symbol; int rank; };
+  struct Named {
+    Expr symbol;
+    int rank;
+  };
   std::vector<Named> named;
   for (const Parameter& p : system.parameters)
     named.push_back({p.symbol, rank_of(p.name, p.dimension, system.dimensionless)});

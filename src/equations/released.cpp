@@ -14,7 +14,7 @@ bool stands_in(Expr symbol, Expr e) {
   return std::find(symbols.begin(), symbols.end(), symbol) != symbols.end();
 }
 
-bool is_given(const EnergyTerm& term) { return term.origin.find(' ') == std::string::npos; }   // "T", "V += …"
+bool is_given(const EnergyTerm& term) { return term.origin.find(' ') == std::string::npos; }  // "T", "V += …"
 
 /// Σ a·∂r/∂p
 Expr work(const ExprVector& force, const ExprVector& position, Expr p) {
@@ -27,7 +27,8 @@ Expr work(const ExprVector& force, const ExprVector& position, Expr p) {
 ExprVector turn_by(const ExprMatrix& rotation, Expr p) {
   const auto entry = [&](std::size_t i, std::size_t j) {
     ExprVector terms;
-    for (std::size_t k = 0; k < rotation.columns; ++k) terms.push_back(differentiate(rotation.at(i, k), p) * rotation.at(j, k));
+    for (std::size_t k = 0; k < rotation.columns; ++k)
+      terms.push_back(differentiate(rotation.at(i, k), p) * rotation.at(j, k));
     return p.context().sum(terms);
   };
   if (rotation.rows == 2) return {entry(1, 0)};
@@ -42,7 +43,8 @@ Expr work_of_rotation(const Body& body, Expr p) {
   ExprVector terms;
   for (std::size_t i = 0; i < n; ++i) {
     ExprVector momentum;
-    if (n == 1) momentum.push_back(body.inertia.entries[0] * body.angular_velocity[0]);
+    if (n == 1)
+      momentum.push_back(body.inertia.entries[0] * body.angular_velocity[0]);
     else  // R (I ω), ω in body axes
       for (std::size_t j = 0; j < n; ++j)
         for (std::size_t k = 0; k < n; ++k)
@@ -98,7 +100,7 @@ Expr work_of_forces(const MechanicalSystem& s, Expr p) {
 /// D with a symbol in the place of every d/dt, and what the symbols stand for.
 struct SplitDissipation {
   Expr outer;
-  std::vector<std::pair<Expr, Expr>> rates;   // symbol, the node d/dt u
+  std::vector<std::pair<Expr, Expr>> rates;  // symbol, the node d/dt u
 };
 
 SplitDissipation split_dissipation(Expr dissipation) {
@@ -128,8 +130,9 @@ Expr work_of_damper(Expr dissipation, Expr p) {
 /// Why the force that holds p cannot be known; empty if it can.
 std::string obstacle(const MechanicalSystem& s, const Parameter& parameter) {
   const auto refuse = [&](const char* what) {
-    return fmt::format("{} gives no reaction here: {} holds it, and does not say how it would change if {} changed in time.",
-                       parameter.name, what, parameter.name);
+    return fmt::format(
+        "{} gives no reaction here: {} holds it, and does not say how it would change if {} changed in time.",
+        parameter.name, what, parameter.name);
   };
   const auto holds = [&](const std::vector<EnergyTerm>& terms, bool given_alone) {
     return std::any_of(terms.begin(), terms.end(), [&](const EnergyTerm& term) {
@@ -138,13 +141,15 @@ std::string obstacle(const MechanicalSystem& s, const Parameter& parameter) {
   };
   for (const AppliedForce& force : s.forces)
     if (force.kind == AppliedForce::Kind::Generalized)
-      return fmt::format("{0} gives no reaction here: the force on {1} is given per coordinate, which does not say what work it does "
-                         "when {0} changes.", parameter.name, force.target);
+      return fmt::format(
+          "{0} gives no reaction here: the force on {1} is given per coordinate, which does not say what work it does "
+          "when {0} changes.",
+          parameter.name, force.target);
   if (s.lagrangian_given) return refuse("the given L");
   if (holds(s.kinetic, true)) return refuse("the given T");
   if (holds(s.generalized_potential, false)) return refuse("U");
   if (holds(s.lagrangian_extra, false)) return refuse("what is added to L");
-  for (const EnergyTerm& term : s.dissipation)   // in front of a d/dt it may have stood behind it
+  for (const EnergyTerm& term : s.dissipation)  // in front of a d/dt it may have stood behind it
     if (stands_in(parameter.symbol, split_dissipation(term.value).outer)) return refuse("D");
   return {};
 }
@@ -155,7 +160,8 @@ HoldingForce holding_force(const EquationsOfMotion& equations, const Parameter& 
   const MechanicalSystem& s = *equations.system;
   const Expr p = parameter.symbol;
   if (std::string reason = obstacle(s, parameter); !reason.empty()) return {{}, std::move(reason)};
-  ExprVector terms{work_of_inertia(s, p), differentiate(expand_time_derivatives(s.potential_energy()), p), -work_of_forces(s, p)};
+  ExprVector terms{work_of_inertia(s, p), differentiate(expand_time_derivatives(s.potential_energy()), p),
+                   -work_of_forces(s, p)};
   for (const EnergyTerm& term : s.dissipation) terms.push_back(work_of_damper(term.value, p));
   return {s.context->sum(terms), {}};
 }

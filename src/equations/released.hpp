@@ -5,8 +5,9 @@
 
 namespace maupertuis {
 
-/// The generalized force of constraint that holds a parameter p at its value: the work of inertia less that of all other
-/// forces in the displacement ∂r/∂p. Empty where the model does not say how its energies depend on ṗ; then `reason`.
+/// The generalized force of constraint that holds a parameter p at its value: the work of inertia less that of all
+/// other forces in the displacement ∂r/∂p. Empty where the model does not say how its energies depend on ṗ; then
+/// `reason`.
 struct HoldingForce {
   Expr value;
   std::string reason;

@@ -56,7 +56,7 @@ class LargeBlock {
   }
 
  private:
-  static constexpr std::size_t largest = 6, most_terms = 120, longest = 400;   // rows, terms of a sum, characters
+  static constexpr std::size_t largest = 6, most_terms = 120, longest = 400;  // rows, terms of a sum, characters
 
   /// The determinant of the rows and columns whose bits are set, as many of each; an empty handle where it is long.
   Expr minor(unsigned rows, unsigned columns) {
@@ -164,10 +164,13 @@ std::vector<ReadableForm> solved_multipliers(const EquationsOfMotion& equations)
     const ExprVector column(a.entries.begin() + static_cast<std::ptrdiff_t>(k * a.columns),
                             a.entries.begin() + static_cast<std::ptrdiff_t>((k + 1) * a.columns));
     const ExprVector response = apply_inverse_mass(equations, column);
-    for (std::size_t l = 0; l < a.rows; ++l) g.entries.push_back(simplified(row_times(a, l, response), equations.order));
+    for (std::size_t l = 0; l < a.rows; ++l)
+      g.entries.push_back(simplified(row_times(a, l, response), equations.order));
     c.push_back(b[k] + row_times(a, k, drift));
   }
-  if (a.rows == 1) return vanishes(g.entries[0]) ? std::vector<ReadableForm>{} : std::vector{quotient(c[0], g.entries[0], equations.order)};
+  if (a.rows == 1)
+    return vanishes(g.entries[0]) ? std::vector<ReadableForm>{}
+                                  : std::vector{quotient(c[0], g.entries[0], equations.order)};
   const Expr determinant = g.at(0, 0) * g.at(1, 1) - g.at(0, 1) * g.at(1, 0);
   if (vanishes(determinant)) return {};
   return {quotient(g.at(1, 1) * c[0] - g.at(0, 1) * c[1], determinant, equations.order),

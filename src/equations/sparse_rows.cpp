@@ -9,14 +9,17 @@
 namespace maupertuis {
 namespace {
 
-constexpr double acceptable_pivot = 0.1;   // of the largest entry of a row, where another column leaves less to do
+constexpr double acceptable_pivot = 0.1;  // of the largest entry of a row, where another column leaves less to do
 
-/// Every row is reduced by the pivots before it; what is left of it gives the next pivot, in a column that few later rows
-/// know. What was taken off each row is kept, so that a row of which nothing is left is known as a combination.
+/// Every row is reduced by the pivots before it; what is left of it gives the next pivot, in a column that few later
+/// rows know. What was taken off each row is kept, so that a row of which nothing is left is known as a combination.
 class Elimination {
  public:
   explicit Elimination(const SparseRows& matrix)
-      : matrix_(matrix), later_rows_(matrix.columns, 0), pivot_of_(matrix.columns, none), values_(matrix.columns, 0),
+      : matrix_(matrix),
+        later_rows_(matrix.columns, 0),
+        pivot_of_(matrix.columns, none),
+        values_(matrix.columns, 0),
         present_(matrix.columns, false) {
     for (const SparseRows::Row& row : matrix.rows)
       for (const auto& entry : row) ++later_rows_[entry.first];
@@ -46,9 +49,9 @@ class Elimination {
 
   struct Pivot {
     std::size_t column;
-    double value;                // of the row there
-    SparseRows::Row row;         // reduced
-    SparseRows::Row taken_off;   // given row = this row + Σ factor · earlier reduced rows
+    double value;               // of the row there
+    SparseRows::Row row;        // reduced
+    SparseRows::Row taken_off;  // given row = this row + Σ factor · earlier reduced rows
   };
 
   /// Leaves the reduced row in the work space; the factors by ascending pivots.
@@ -60,7 +63,7 @@ class Elimination {
       waiting_.pop();
       const Pivot& pivot = pivots_[k];
       const double value = values_[pivot.column];
-      if (value == 0) continue;   // waited twice
+      if (value == 0) continue;  // waited twice
       const double factor = value / pivot.value;
       for (const auto& [column, entry] : pivot.row) add(column, -factor * entry);
       values_[pivot.column] = 0;
@@ -90,7 +93,8 @@ class Elimination {
       return std::abs(values_[a]) > std::abs(values_[b]);
     };
     for (const std::size_t column : touched_)
-      if (std::abs(values_[column]) >= acceptable_pivot * largest && (best == none || better(column, best))) best = column;
+      if (std::abs(values_[column]) >= acceptable_pivot * largest && (best == none || better(column, best)))
+        best = column;
     return best;
   }
 
@@ -122,14 +126,14 @@ class Elimination {
   }
 
   const SparseRows& matrix_;
-  std::vector<std::size_t> later_rows_;    // [columns] that know the column
-  std::vector<std::size_t> pivot_of_;      // [columns]
+  std::vector<std::size_t> later_rows_;  // [columns] that know the column
+  std::vector<std::size_t> pivot_of_;    // [columns]
   std::vector<Pivot> pivots_;
   // The row that is reduced.
   std::vector<double> values_;
   std::vector<bool> present_;
   std::vector<std::size_t> touched_;
-  std::priority_queue<std::size_t, std::vector<std::size_t>, std::greater<>> waiting_;   // pivots whose column it has
+  std::priority_queue<std::size_t, std::vector<std::size_t>, std::greater<>> waiting_;  // pivots whose column it has
 };
 
 }  // namespace

@@ -13,7 +13,7 @@ using Vector = Eigen::VectorXd;
 using Index = Eigen::Index;
 using Sparse = Eigen::SparseMatrix<double>;
 
-constexpr double softness = 1e-12;   // ε: rows come with length 1, columns with kinetic energy 1
+constexpr double softness = 1e-12;  // ε: rows come with length 1, columns with kinetic energy 1
 
 bool is_definite(const std::vector<Eigen::Triplet<double>>& entries, Index n) {
   Sparse m(n, n);
@@ -58,7 +58,8 @@ void SparseStep::set_metric(const std::vector<MatrixEntry>& mass) {
   for (const MatrixEntry& e : mass)
     if (place_[e.row] >= 0 && place_[e.column] >= 0) metric_.emplace_back(place_[e.row], place_[e.column], e.value);
   const auto n = static_cast<Index>(free_.size());
-  const bool finite = std::all_of(metric_.begin(), metric_.end(), [](const auto& e) { return std::isfinite(e.value()); });
+  const bool finite =
+      std::all_of(metric_.begin(), metric_.end(), [](const auto& e) { return std::isfinite(e.value()); });
   if (!metric_.empty() && finite && is_definite(metric_, n)) return;
   const Vector diagonal = positive_diagonal(mass, n_);
   metric_.clear();

@@ -28,7 +28,7 @@ class SparseStep {
  private:
   using Entries = std::vector<Eigen::Triplet<double>>;
   std::size_t n_;
-  std::vector<Eigen::Index> free_, place_;   // place_ [n]: among the free ones, −1: held
+  std::vector<Eigen::Index> free_, place_;  // place_ [n]: among the free ones, −1: held
   Eigen::Index rows_ = 0;
   Entries a_, metric_;
 };

@@ -43,9 +43,12 @@ class StepWriter {
 
   Layout symbol(Expr e) const { return lay_out(e, equations_.order); }
   /// A name with dots, or primes where the independent variable is not t.
-  Layout name(const std::string& text, int dots = 0) const { return layouts::name(text, dots, system_.independent != "t"); }
+  Layout name(const std::string& text, int dots = 0) const {
+    return layouts::name(text, dots, system_.independent != "t");
+  }
   /// A quantity of a point or body: plain text puts a dot between the two, print the name below.
-  Layout component(const std::string& owner, const std::string& quantity, int dots = 0, const std::string& axis = {}) const {
+  Layout component(const std::string& owner, const std::string& quantity, int dots = 0,
+                   const std::string& axis = {}) const {
     std::vector<Layout> below{layouts::name(owner)};
     if (!axis.empty()) below.push_back(layouts::name(axis));
     const std::string tail = axis.empty() ? "" : "." + axis;

@@ -18,22 +18,22 @@
 // What depends on one more type than the class: solves, and the factorization of a matrix that is given later.
 #define MAUP_SOLVE(EXTERN, FACTORIZATION, RIGHT) \
   EXTERN template void FACTORIZATION<Eigen::MatrixXd>::_solve_impl<RIGHT, RIGHT>(const RIGHT&, RIGHT&) const;
-#define MAUP_SOLVES(EXTERN, FACTORIZATION)            \
-  MAUP_SOLVE(EXTERN, FACTORIZATION, Eigen::VectorXd)  \
+#define MAUP_SOLVES(EXTERN, FACTORIZATION)           \
+  MAUP_SOLVE(EXTERN, FACTORIZATION, Eigen::VectorXd) \
   MAUP_SOLVE(EXTERN, FACTORIZATION, Eigen::MatrixXd)
-#define MAUP_COMPUTE(EXTERN, FACTORIZATION, ...)       \
-  EXTERN template FACTORIZATION<Eigen::MatrixXd>&      \
-  FACTORIZATION<Eigen::MatrixXd>::compute(const Eigen::EigenBase<Eigen::MatrixXd>& __VA_OPT__(, ) __VA_ARGS__);
-#define MAUP_DENSE(EXTERN)                                            \
-  MAUP_FACTORIZATIONS(EXTERN)                                         \
-  MAUP_SOLVES(EXTERN, Eigen::PartialPivLU)                            \
-  MAUP_SOLVES(EXTERN, Eigen::FullPivLU)                               \
-  MAUP_SOLVES(EXTERN, Eigen::HouseholderQR)                           \
-  MAUP_SOLVES(EXTERN, Eigen::ColPivHouseholderQR)                     \
-  MAUP_SOLVES(EXTERN, Eigen::CompleteOrthogonalDecomposition)         \
-  MAUP_COMPUTE(EXTERN, Eigen::ColPivHouseholderQR)                    \
-  MAUP_COMPUTE(EXTERN, Eigen::LLT)                                    \
-  MAUP_COMPUTE(EXTERN, Eigen::SelfAdjointEigenSolver, int)            \
+#define MAUP_COMPUTE(EXTERN, FACTORIZATION, ...)                                           \
+  EXTERN template FACTORIZATION<Eigen::MatrixXd>& FACTORIZATION<Eigen::MatrixXd>::compute( \
+      const Eigen::EigenBase<Eigen::MatrixXd>& __VA_OPT__(, ) __VA_ARGS__);
+#define MAUP_DENSE(EXTERN)                                    \
+  MAUP_FACTORIZATIONS(EXTERN)                                 \
+  MAUP_SOLVES(EXTERN, Eigen::PartialPivLU)                    \
+  MAUP_SOLVES(EXTERN, Eigen::FullPivLU)                       \
+  MAUP_SOLVES(EXTERN, Eigen::HouseholderQR)                   \
+  MAUP_SOLVES(EXTERN, Eigen::ColPivHouseholderQR)             \
+  MAUP_SOLVES(EXTERN, Eigen::CompleteOrthogonalDecomposition) \
+  MAUP_COMPUTE(EXTERN, Eigen::ColPivHouseholderQR)            \
+  MAUP_COMPUTE(EXTERN, Eigen::LLT)                            \
+  MAUP_COMPUTE(EXTERN, Eigen::SelfAdjointEigenSolver, int)    \
   MAUP_COMPUTE(EXTERN, Eigen::EigenSolver, bool)
 
 #ifndef MAUP_DENSE_INSTANCES

@@ -1,20 +1,22 @@
 #pragma once
 #include <string>
 
-/// The functions of librsvg and cairo that pictures need. They are declared here and looked up at run time, so that neither
-/// their headers are needed to build nor they themselves to start; their binary interface has been stable since librsvg 2.52
-/// and cairo 1.16.
+/// The functions of librsvg and cairo that pictures need. They are declared here and looked up at run time, so that
+/// neither their headers are needed to build nor they themselves to start; their binary interface has been stable since
+/// librsvg 2.52 and cairo 1.16.
 namespace maupertuis::picture {
 
-struct Handle;    // RsvgHandle
-struct Surface;   // cairo_surface_t
-struct Drawer;    // cairo_t
-struct Error;     // GError
-struct Rectangle { double x, y, width, height; };            // RsvgRectangle
+struct Handle;   // RsvgHandle
+struct Surface;  // cairo_surface_t
+struct Drawer;   // cairo_t
+struct Error;    // GError
+struct Rectangle {
+  double x, y, width, height;
+};                                                                                  // RsvgRectangle
 using Writer = int (*)(void* closure, const unsigned char* data, unsigned length);  // cairo_write_func_t, 0: success
 
-inline constexpr int argb32 = 0, rgb24 = 1;                  // cairo_format_t
-inline constexpr int create_date = 5;                        // cairo_pdf_metadata_t
+inline constexpr int argb32 = 0, rgb24 = 1;  // cairo_format_t
+inline constexpr int create_date = 5;        // cairo_pdf_metadata_t
 
 struct Library {
   Handle* (*rsvg_handle_new_from_data)(const unsigned char*, unsigned long, Error**) = nullptr;

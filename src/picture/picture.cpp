@@ -13,7 +13,9 @@ namespace {
 
 using namespace picture;
 
-struct Unref { void operator()(Handle* h) const { library().g_object_unref(h); } };
+struct Unref {
+  void operator()(Handle* h) const { library().g_object_unref(h); }
+};
 struct Destroy {
   void operator()(Surface* s) const { library().cairo_surface_destroy(s); }
   void operator()(Drawer* d) const { library().cairo_destroy(d); }
@@ -26,7 +28,8 @@ constexpr double points_per_px = 0.75;  // of PDF, 72 an inch
 const char* const not_read = "the picture could not be read back";
 
 OwnHandle read(const std::string& svg) {
-  return OwnHandle(library().rsvg_handle_new_from_data(reinterpret_cast<const unsigned char*>(svg.data()), svg.size(), nullptr));
+  return OwnHandle(
+      library().rsvg_handle_new_from_data(reinterpret_cast<const unsigned char*>(svg.data()), svg.size(), nullptr));
 }
 
 PictureSize size_of(Handle* handle) {
@@ -45,7 +48,8 @@ bool draw(Handle* handle, Surface* surface, double width, double height) {
   if (l.cairo_surface_status(surface) != 0) return false;
   const OwnDrawer drawer(l.cairo_create(surface));
   const Rectangle whole{0, 0, width, height};
-  return l.rsvg_handle_render_document(handle, drawer.get(), &whole, nullptr) != 0 && l.cairo_surface_status(surface) == 0;
+  return l.rsvg_handle_render_document(handle, drawer.get(), &whole, nullptr) != 0 &&
+         l.cairo_surface_status(surface) == 0;
 }
 
 }  // namespace
@@ -67,7 +71,8 @@ PictureBytes png_of(const std::string& svg, double scale) {
   const PictureSize size = handle ? size_of(handle.get()) : PictureSize{};
   const double width = std::ceil(scale * size.width), height = std::ceil(scale * size.height);
   if (!(width >= 1 && height >= 1)) return {{}, not_read};
-  if (width * height > most_pixels) return {{}, fmt::format("{:.0f} × {:.0f} pixels are more than a picture may have", width, height)};
+  if (width * height > most_pixels)
+    return {{}, fmt::format("{:.0f} × {:.0f} pixels are more than a picture may have", width, height)};
   const Library& l = library();
   const OwnSurface surface(l.cairo_image_surface_create(argb32, static_cast<int>(width), static_cast<int>(height)));
   PictureBytes result;
@@ -102,9 +107,11 @@ std::vector<std::uint8_t> pixels_of(const std::string& svg, int width, int heigh
   if (!draw(handle.get(), surface.get(), width, height)) return {};
   l.cairo_surface_flush(surface.get());
   const unsigned char* data = l.cairo_image_surface_get_data(surface.get());
-  const auto stride = static_cast<std::size_t>(l.cairo_image_surface_get_stride(surface.get())), row = 4 * static_cast<std::size_t>(width);
+  const auto stride = static_cast<std::size_t>(l.cairo_image_surface_get_stride(surface.get())),
+             row = 4 * static_cast<std::size_t>(width);
   std::vector<std::uint8_t> pixels(row * static_cast<std::size_t>(height));
-  for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) std::memcpy(&pixels[y * row], data + y * stride, row);
+  for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y)
+    std::memcpy(&pixels[y * row], data + y * stride, row);
   return pixels;
 }
 

@@ -10,7 +10,7 @@
 namespace maupertuis {
 namespace {
 
-constexpr double largest = 1e305;   // leaves room for sums and padding
+constexpr double largest = 1e305;  // leaves room for sums and padding
 
 int decade(double value) { return static_cast<int>(std::floor(std::log10(value))); }
 
@@ -101,6 +101,8 @@ void Axis::choose_ticks(const Options& options) {
   }
 }
 
-std::string Axis::offset_label() const { return with_minus(fmt::format("{:.{}g}", offset_, std::max(offset_digits_, 7))); }
+std::string Axis::offset_label() const {
+  return with_minus(fmt::format("{:.{}g}", offset_, std::max(offset_digits_, 7)));
+}
 
 }  // namespace maupertuis

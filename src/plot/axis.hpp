@@ -24,10 +24,10 @@ struct Tick {
 class Axis {
  public:
   struct Options {
-    double length = 100;       // px
-    double tick_distance = 60; // px, at least
-    double padding = 0;        // of the range, at each end
-    bool degrees = false;      // ticks at 15, 30, 45, 90, … where steps are that large
+    double length = 100;        // px
+    double tick_distance = 60;  // px, at least
+    double padding = 0;         // of the range, at each end
+    bool degrees = false;       // ticks at 15, 30, 45, 90, … where steps are that large
   };
   Axis(const Range& range, const Options& options);
   /// The same, with exactly `span` from end to end about the middle of the range.
@@ -38,7 +38,7 @@ class Axis {
   double span() const { return high_ - low_; }
   const std::vector<Tick>& ticks() const { return ticks_; }
   double offset() const { return offset_; }
-  std::string offset_label() const;   // with as many digits as it takes
+  std::string offset_label() const;  // with as many digits as it takes
   int exponent() const { return exponent_; }
 
  private:
@@ -47,8 +47,8 @@ class Axis {
   void choose_ticks(const Options& options);
 
   double offset_ = 0;
-  int offset_digits_ = 0;          // significant ones
-  double low_ = 0, high_ = 1;      // ends, from the offset
+  int offset_digits_ = 0;      // significant ones
+  double low_ = 0, high_ = 1;  // ends, from the offset
   int exponent_ = 0;
   std::vector<Tick> ticks_;
 };

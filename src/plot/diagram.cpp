@@ -27,7 +27,8 @@ class Picture {
     right_ = d_.width - 18;
     across_ = make_across(right_ - left_);
     const std::vector<KeyPlace> keys = key_places();
-    top_ = (d_.title.empty() ? 10 : 38) + (keys.empty() ? 0 : line_height * static_cast<double>(keys.back().row + 1) + 4);
+    top_ =
+        (d_.title.empty() ? 10 : 38) + (keys.empty() ? 0 : line_height * static_cast<double>(keys.back().row + 1) + 4);
   }
 
   std::string svg() const {
@@ -63,7 +64,8 @@ class Picture {
 
   double bottom() const { return top_ + height_; }
   Pixel place(double x, double y) const {
-    return {left_ + (right_ - left_) * across_.position(factor_x() * x), top_ + height_ * (1 - up_.position(factor_y() * y))};
+    return {left_ + (right_ - left_) * across_.position(factor_x() * x),
+            top_ + height_ * (1 - up_.position(factor_y() * y))};
   }
 
   std::string opening() const {
@@ -72,14 +74,19 @@ class Picture {
     std::string size = fmt::format("viewBox=\"0 0 {:.0f} {:.0f}\"", d_.width, height);
     if (!page) size += fmt::format(" width=\"{:.0f}\" height=\"{:.0f}\"", d_.width, height);
     const std::string label = d_.title.empty() ? d_.y_name + " against " + d_.x_name : d_.title;
-    std::string out = fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"maup-plot\" role=\"img\" {} aria-label=\"{}\">\n", size, escape_xml(label));
-    if (!page) out += fmt::format("<style>{}</style>\n<rect class=\"paper\" width=\"100%\" height=\"100%\"/>\n", own_style(d_.theme));
+    std::string out = fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"maup-plot\" role=\"img\" {} aria-label=\"{}\">\n", size,
+        escape_xml(label));
+    if (!page)
+      out += fmt::format("<style>{}</style>\n<rect class=\"paper\" width=\"100%\" height=\"100%\"/>\n",
+                         own_style(d_.theme));
     return out;
   }
 
   std::size_t colours() const { return plot_palette(false).size(); }
   std::string line_attributes(std::size_t series, bool dashed) const {
-    return fmt::format("class=\"curve {}{}", series_attributes(series % colours(), colours()), dashed ? " stroke-dasharray=\"5 4\"" : "");
+    return fmt::format("class=\"curve {}{}", series_attributes(series % colours(), colours()),
+                       dashed ? " stroke-dasharray=\"5 4\"" : "");
   }
 
   struct KeyPlace {
@@ -108,9 +115,13 @@ class Picture {
     const std::vector<KeyPlace> places = key_places();
     for (std::size_t i = 0; i < places.size(); ++i) {
       const Diagram::Key& key = d_.legend[i];
-      const double x = places[i].x, y = top_ - 10 - line_height * static_cast<double>(places.back().row - places[i].row);
-      if (key.dots) out += fmt::format("<circle class=\"dot {} cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\"/>\n", series_attributes(key.series % colours(), colours()), x + 10, y - 4);
-      else out += fmt::format("<path {} d=\"M{:.1f} {:.1f}h20\"/>", line_attributes(key.series, key.dashed), x, y - 4);
+      const double x = places[i].x,
+                   y = top_ - 10 - line_height * static_cast<double>(places.back().row - places[i].row);
+      if (key.dots)
+        out += fmt::format("<circle class=\"dot {} cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\"/>\n",
+                           series_attributes(key.series % colours(), colours()), x + 10, y - 4);
+      else
+        out += fmt::format("<path {} d=\"M{:.1f} {:.1f}h20\"/>", line_attributes(key.series, key.dashed), x, y - 4);
       out += text_element(x + 26, y, "start", label_size, {{key.text}});
     }
     return out;
@@ -125,20 +136,24 @@ class Picture {
     if (d_.x_labels.empty())
       for (const Tick& tick : across_.ticks()) vertical(left_ + (right_ - left_) * tick.position, {{tick.label}});
     else
-      for (const auto& [at, name] : d_.x_labels) vertical(left_ + (right_ - left_) * across_.position(at), name_text(name));
+      for (const auto& [at, name] : d_.x_labels)
+        vertical(left_ + (right_ - left_) * across_.position(at), name_text(name));
     for (const Tick& tick : up_.ticks()) {
       const double y = top_ + height_ * (1 - tick.position);
       grid += fmt::format("M{:.1f} {:.1f}h{:.1f}", left_, y, right_ - left_);
       labels += text_element(left_ - 7, y + 4, "end", tick_size, {{tick.label}}, " class=\"tick\"");
     }
-    std::string out = fmt::format("<path class=\"grid\" d=\"{}\"/>\n<path class=\"axis\" d=\"M{:.1f} {:.1f}v{:.1f}h{:.1f}\"/>\n", grid, left_, top_,
-                                  height_, right_ - left_);
+    std::string out =
+        fmt::format("<path class=\"grid\" d=\"{}\"/>\n<path class=\"axis\" d=\"M{:.1f} {:.1f}v{:.1f}h{:.1f}\"/>\n",
+                    grid, left_, top_, height_, right_ - left_);
     if (d_.zero_line) out += zero_lines();
     out += labels;
     if (!d_.x_name.empty())
-      out += text_element((left_ + right_) / 2, bottom() + 39, "middle", label_size, axis_text({d_.x_name}, d_.degrees_x ? "°" : d_.x_unit, across_));
+      out += text_element((left_ + right_) / 2, bottom() + 39, "middle", label_size,
+                          axis_text({d_.x_name}, d_.degrees_x ? "°" : d_.x_unit, across_));
     const double middle = top_ + height_ / 2;
-    return out + text_element(18, middle, "middle", label_size, axis_text({d_.y_name}, d_.degrees_y ? "°" : d_.y_unit, up_),
+    return out + text_element(18, middle, "middle", label_size,
+                              axis_text({d_.y_name}, d_.degrees_y ? "°" : d_.y_unit, up_),
                               fmt::format(" transform=\"rotate(-90 18 {:.1f})\"", middle));
   }
 
@@ -146,7 +161,8 @@ class Picture {
     const Pixel origin = place(0, 0);
     std::string d;
     if (origin.x > left_ && origin.x < right_) d += fmt::format("M{:.1f} {:.1f}v{:.1f}", origin.x, top_, height_);
-    if (origin.y > top_ && origin.y < bottom()) d += fmt::format("M{:.1f} {:.1f}h{:.1f}", left_, origin.y, right_ - left_);
+    if (origin.y > top_ && origin.y < bottom())
+      d += fmt::format("M{:.1f} {:.1f}h{:.1f}", left_, origin.y, right_ - left_);
     return d.empty() ? d : fmt::format("<path class=\"axis\" d=\"{}\"/>\n", d);
   }
 
@@ -157,7 +173,8 @@ class Picture {
     std::vector<Polyline> lines = split_at_gaps(points);
     std::string out;
     const auto dot = [&](Pixel p, double r) {
-      out += fmt::format("<circle class=\"dot {} cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{}\"/>\n", series_attributes(curve.series % colours(), colours()), p.x, p.y, r);
+      out += fmt::format("<circle class=\"dot {} cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{}\"/>\n",
+                         series_attributes(curve.series % colours(), colours()), p.x, p.y, r);
     };
     if (curve.dots) {
       for (const Polyline& line : lines)
@@ -176,7 +193,9 @@ class Picture {
     if (!std::isfinite(p.x) || !std::isfinite(p.y)) return {};
     const bool right_half = p.x > (left_ + right_) / 2;
     return fmt::format("<circle class=\"axis\" cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"4\"/>\n", p.x, p.y) +
-           (mark.label.empty() ? "" : text_element(p.x + (right_half ? -9 : 9), p.y - 9, right_half ? "end" : "start", tick_size, {{mark.label}}));
+           (mark.label.empty() ? ""
+                               : text_element(p.x + (right_half ? -9 : 9), p.y - 9, right_half ? "end" : "start",
+                                              tick_size, {{mark.label}}));
   }
 
   const Diagram& d_;

@@ -51,9 +51,12 @@ NameParts name_parts(std::string_view name) {
 
 void append(RichText& text, const RichText& more) {
   for (const TextRun& run : more) {
-    const bool joins = !text.empty() && text.back().dots == 0 && text.back().italic == run.italic && text.back().level == run.level;
-    if (joins) text.back().text += run.text;
-    else text.push_back(run);
+    const bool joins =
+        !text.empty() && text.back().dots == 0 && text.back().italic == run.italic && text.back().level == run.level;
+    if (joins)
+      text.back().text += run.text;
+    else
+      text.push_back(run);
   }
 }
 
@@ -119,7 +122,10 @@ struct LetterSize {
 LetterSize letter_size(std::string_view letter) {
   const auto one_of = [&](std::string_view letters) { return letters.find(letter) != std::string_view::npos; };
   const bool tall = one_of("bdfhkltABCDEFGHIJKLMNOPQRSTUVWXYZθϑβδλξζΓΔΘΛΞΠΣΦΨΩ");
-  const double width = one_of("iljtrfI") ? 0.34 : one_of("mwωφψϕ") ? 0.66 : one_of("ABCDEFGHKLMNOPQRTUVWXYZΔΘΛΞΠΣΦΨΩ") ? 0.7 : 0.5;
+  const double width = one_of("iljtrfI")                            ? 0.34
+                       : one_of("mwωφψϕ")                           ? 0.66
+                       : one_of("ABCDEFGHKLMNOPQRTUVWXYZΔΘΛΞΠΣΦΨΩ") ? 0.7
+                                                                    : 0.5;
   return {width, tall ? 0.8 : one_of("φψϕ") ? 0.66 : 0.56};
 }
 
@@ -128,9 +134,10 @@ std::string dots_above(const TextRun& run, double font_size) {
   constexpr double stop = 0.28, slant = 0.09;  // em: advance of a full stop; how far the letter leans at its top
   const LetterSize letter = letter_size(run.text);
   const double row = stop * run.dots, back = 0.5 * (letter.width + row) - slant;
-  return fmt::format("<tspan dx=\"{0:.3g}\" dy=\"{1:.3g}\">{2}</tspan><tspan dx=\"{3:.3g}\" dy=\"{4:.3g}\">\u200b</tspan>",
-                     -back * font_size, -letter.dot_height * font_size, std::string(run.dots, '.'),
-                     (back - row) * font_size, letter.dot_height * font_size);
+  return fmt::format(
+      "<tspan dx=\"{0:.3g}\" dy=\"{1:.3g}\">{2}</tspan><tspan dx=\"{3:.3g}\" dy=\"{4:.3g}\">\u200b</tspan>",
+      -back * font_size, -letter.dot_height * font_size, std::string(run.dots, '.'), (back - row) * font_size,
+      letter.dot_height * font_size);
 }
 
 }  // namespace
@@ -145,7 +152,8 @@ std::string to_svg(const RichText& text, double font_size) {
     if (run.level != 0) attributes += fmt::format(" font-size=\"{:.3g}\"", 0.72 * font_size);
     if (wanted != shift) attributes += fmt::format(" dy=\"{:.3g}\"", wanted - shift);
     shift = wanted;
-    svg += attributes.empty() ? escape_xml(run.text) : fmt::format("<tspan{}>{}</tspan>", attributes, escape_xml(run.text));
+    svg += attributes.empty() ? escape_xml(run.text)
+                              : fmt::format("<tspan{}>{}</tspan>", attributes, escape_xml(run.text));
     if (run.dots > 0) svg += dots_above(run, font_size);
   }
   return svg;
@@ -160,12 +168,18 @@ std::string plain(const RichText& text) {
 std::string escape_xml(std::string_view text) {
   std::string result;
   for (const char c : text) {
-    if (c == '&') result += "&amp;";
-    else if (c == '<') result += "&lt;";
-    else if (c == '>') result += "&gt;";
-    else if (c == '"') result += "&quot;";
-    else if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') result += ' ';
-    else result += c;
+    if (c == '&')
+      result += "&amp;";
+    else if (c == '<')
+      result += "&lt;";
+    else if (c == '>')
+      result += "&gt;";
+    else if (c == '"')
+      result += "&quot;";
+    else if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t')
+      result += ' ';
+    else
+      result += c;
   }
   return result;
 }

@@ -17,8 +17,8 @@ using RichText = std::vector<TextRun>;
 void append(RichText& text, const RichText& more);
 void append(RichText& text, std::string_view upright);
 
-RichText name_text(std::string_view name);        // θ1' as in print
-RichText unit_text(std::string_view unit);        // m^2 with an exponent
+RichText name_text(std::string_view name);  // θ1' as in print
+RichText unit_text(std::string_view unit);  // m^2 with an exponent
 RichText power_of_ten(int exponent);
 /// "θ₁, θ₂", or "θ₁ … θ₈" for many.
 RichText names_text(const std::vector<std::string>& names);

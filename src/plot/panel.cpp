@@ -112,8 +112,10 @@ std::vector<Polyline> thinned(const std::vector<Polyline>& lines, bool over_time
   Ink ink(width, height);
   for (const Polyline& line : lines) {
     const Polyline straight = straighten(over_time ? thin_columns(line, column) : line, tolerance);
-    if (over_time || straight.size() < crowded) result.push_back(straight);
-    else for (auto& part : ink.draw(straight)) result.push_back(std::move(part));
+    if (over_time || straight.size() < crowded)
+      result.push_back(straight);
+    else
+      for (auto& part : ink.draw(straight)) result.push_back(std::move(part));
   }
   return result;
 }
@@ -123,19 +125,23 @@ struct Reach {
   double x, top, bottom;
 };
 
-std::vector<Reach> reaches_of(const Figure& figure, const Panel& panel, const Series& series, const Axis& across, const Axis& up) {
+std::vector<Reach> reaches_of(const Figure& figure, const Panel& panel, const Series& series, const Axis& across,
+                              const Axis& up) {
   std::vector<Reach> out;
   const double low = panel.top + panel.height;
   const auto y = [&](double value) { return panel.top + panel.height * (1 - up.position(value)); };
   for (std::size_t row = 0; row < figure.trajectory.rows(); ++row) {
-    const double value = series.at(figure.trajectory, row), error = series.factor * figure.trajectory.error(row, series.column);
+    const double value = series.at(figure.trajectory, row),
+                 error = series.factor * figure.trajectory.error(row, series.column);
     const double x = figure.left + figure.frame_width() * across.position(figure.horizontal.at(figure.trajectory, row));
     const bool known = std::isfinite(value) && !std::isnan(error);
-    Reach reach{x, known ? std::clamp(y(value + error), panel.top, low) : 0, known ? std::clamp(y(value - error), panel.top, low) : 0};
+    Reach reach{x, known ? std::clamp(y(value + error), panel.top, low) : 0,
+                known ? std::clamp(y(value - error), panel.top, low) : 0};
     constexpr double column = 0.5;  // px; what falls into one is drawn as one
     if (!out.empty() && std::abs(out.back().x - x) < column && known && out.back().bottom > 0)
       out.back() = {out.back().x, std::min(out.back().top, reach.top), std::max(out.back().bottom, reach.bottom)};
-    else out.push_back(reach);
+    else
+      out.push_back(reach);
   }
   return out;
 }
@@ -152,14 +158,16 @@ std::string draw_band(const Figure& figure, const Panel& panel, std::size_t inde
       upper.push_back({reaches[i].x, reaches[i].top});
       lower.push_back({reaches[i].x, reaches[i].bottom});
     }
-    if (upper.empty()) ++i;
+    if (upper.empty())
+      ++i;
     else {
       upper.insert(upper.end(), lower.rbegin(), lower.rend());
       bands.push_back(straighten(upper, 0.04));
     }
   }
   if (bands.empty()) return {};
-  return fmt::format("<path class=\"band {} d=\"{}\"/>\n", series_attributes(index, panel.series.size()), path_data(bands));
+  return fmt::format("<path class=\"band {} d=\"{}\"/>\n", series_attributes(index, panel.series.size()),
+                     path_data(bands));
 }
 
 /// A phase portrait without what is not certain at all, and that alone.
@@ -170,24 +178,28 @@ std::pair<Polyline, Polyline> split_by_certainty(const Figure& figure, const Ser
   out.second = pixels;
   const Pixel gap{std::nan(""), std::nan("")};
   for (std::size_t row = 0; row < rows.rows(); ++row) {
-    const bool lost = std::isinf(rows.error(row, series.column)) || std::isinf(rows.error(row, figure.horizontal.column));
+    const bool lost =
+        std::isinf(rows.error(row, series.column)) || std::isinf(rows.error(row, figure.horizontal.column));
     (lost ? out.first : out.second)[row] = gap;
   }
   return out;
 }
 
-std::string draw_curve(const Figure& figure, const Panel& panel, std::size_t index, const Axis& across, const Axis& up) {
+std::string draw_curve(const Figure& figure, const Panel& panel, std::size_t index, const Axis& across,
+                       const Axis& up) {
   const std::string attributes = series_attributes(index, panel.series.size());
-  const auto [certain, lost] = split_by_certainty(figure, panel.series[index], pixels_of(figure, panel, panel.series[index], across, up));
+  const auto [certain, lost] =
+      split_by_certainty(figure, panel.series[index], pixels_of(figure, panel, panel.series[index], across, up));
   const auto lines = split_at_gaps(certain);
   const bool over_time = figure.horizontal.is_time;
   const auto drawn = thinned(lines, over_time, figure.options.width, figure.height);
   std::size_t points = 0;
   for (const Polyline& line : drawn) points += line.size();
-  std::string svg = fmt::format("<path class=\"curve {}{} d=\"{}\"/>\n", points > 1500 ? "dense " : "", attributes,
-                                path_data(drawn));
+  std::string svg =
+      fmt::format("<path class=\"curve {}{} d=\"{}\"/>\n", points > 1500 ? "dense " : "", attributes, path_data(drawn));
   if (const auto faint = split_at_gaps(lost); !faint.empty())
-    svg += fmt::format("<path class=\"curve lost {} d=\"{}\"/>\n", attributes, path_data(thinned(faint, false, figure.options.width, figure.height)));
+    svg += fmt::format("<path class=\"curve lost {} d=\"{}\"/>\n", attributes,
+                       path_data(thinned(faint, false, figure.options.width, figure.height)));
   const auto dot = [&](Pixel p, double radius) {
     svg += fmt::format("<circle class=\"dot {} cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{}\"/>\n", attributes, p.x, p.y, radius);
   };
@@ -207,8 +219,10 @@ std::map<double, std::vector<std::size_t>> rows_by(const Trajectory& trajectory,
   return out;
 }
 
-/// Lines of no length with round ends: the shortest way to write many dots. Dots on one pixel in one colour are one dot.
-std::string draw_dots(const Figure& figure, const Panel& panel, const Series& series, const Axis& across, const Axis& up) {
+/// Lines of no length with round ends: the shortest way to write many dots. Dots on one pixel in one colour are one
+/// dot.
+std::string draw_dots(const Figure& figure, const Panel& panel, const Series& series, const Axis& across,
+                      const Axis& up) {
   const Polyline pixels = pixels_of(figure, panel, series, across, up);
   const auto groups = rows_by(figure.trajectory, figure.options.dots_by);
   std::string svg;
@@ -219,7 +233,8 @@ std::string draw_dots(const Figure& figure, const Panel& panel, const Series& se
     for (const std::size_t row : rows) {
       const Pixel p = pixels[row];
       if (!std::isfinite(p.x) || !std::isfinite(p.y)) continue;
-      if (drawn.emplace(std::lround(2 * p.x), std::lround(2 * p.y)).second) path += fmt::format("M{:.1f} {:.1f}h0", p.x, p.y);
+      if (drawn.emplace(std::lround(2 * p.x), std::lround(2 * p.y)).second)
+        path += fmt::format("M{:.1f} {:.1f}h0", p.x, p.y);
     }
     svg += fmt::format("<path class=\"dots {} d=\"{}\"/>\n", series_attributes(index++, groups.size()), path);
   }
@@ -250,8 +265,8 @@ std::string draw_frame(const Figure& figure, const Panel& panel, const Axis& acr
     labels += text_element(figure.left - 7, y + 4, "end", tick_size, {{tick.label}}, " class=\"tick\"");
   }
   svg += fmt::format("<path class=\"grid\" d=\"{}\"/>\n", grid);
-  svg += fmt::format("<path class=\"axis\" d=\"M{:.2f} {:.2f}v{:.2f}h{:.2f}\"/>\n", figure.left, panel.top, panel.height,
-                     figure.frame_width());
+  svg += fmt::format("<path class=\"axis\" d=\"M{:.2f} {:.2f}v{:.2f}h{:.2f}\"/>\n", figure.left, panel.top,
+                     panel.height, figure.frame_width());
   return svg + labels;
 }
 
@@ -270,9 +285,11 @@ double legend_height(const Panel& panel, double width) {
 std::string draw_panel(const Figure& figure, const Panel& panel, const Axis& across, const Axis& up, bool lowest) {
   std::string svg = draw_frame(figure, panel, across, up, lowest);
   svg += draw_outline(figure, panel, across, up);
-  for (std::size_t k = 0; k < panel.series.size() && figure.options.dots_by.empty(); ++k) svg += draw_band(figure, panel, k, across, up);
+  for (std::size_t k = 0; k < panel.series.size() && figure.options.dots_by.empty(); ++k)
+    svg += draw_band(figure, panel, k, across, up);
   for (std::size_t k = 0; k < panel.series.size(); ++k)
-    svg += figure.options.dots_by.empty() ? draw_curve(figure, panel, k, across, up) : draw_dots(figure, panel, panel.series[k], across, up);
+    svg += figure.options.dots_by.empty() ? draw_curve(figure, panel, k, across, up)
+                                          : draw_dots(figure, panel, panel.series[k], across, up);
   return svg + draw_vertical_label(panel, up) + draw_legend(panel, figure);
 }
 

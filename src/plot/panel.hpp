@@ -15,7 +15,7 @@ inline constexpr double tick_size = 12, label_size = 14, title_size = 16, line_h
 // One quantity to draw, from a column or from the times.
 struct Series {
   std::string name, unit;
-  double factor = 1;             // shown = factor · value
+  double factor = 1;  // shown = factor · value
   std::size_t column = 0;
   bool is_time = false;
 
@@ -27,7 +27,7 @@ struct Series {
 struct Panel {
   std::string unit;
   std::vector<Series> series;
-  double top = 0, height = 0;    // of the frame
+  double top = 0, height = 0;  // of the frame
   double legend_height = 0;
 };
 

@@ -113,13 +113,16 @@ Axes choose_axes(const Figure& figure, const Range& across, const std::vector<Ra
 std::string opening(const Figure& figure) {
   const double width = figure.options.width, height = figure.height;
   std::string size = fmt::format("viewBox=\"0 0 {:.0f} {:.0f}\"", width, height);
-  if (figure.options.theme != PlotTheme::Page) size += fmt::format(" width=\"{:.0f}\" height=\"{:.0f}\"", width, height);
+  if (figure.options.theme != PlotTheme::Page)
+    size += fmt::format(" width=\"{:.0f}\" height=\"{:.0f}\"", width, height);
   RichText what;
   for (const Panel& panel : figure.panels)
     for (const Series& series : panel.series) append(what, (what.empty() ? "" : ", ") + series.name);
-  const std::string label = figure.options.title.empty() ? plain(what) + " against " + figure.horizontal.name : figure.options.title;
-  std::string svg = fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"maup-plot\" role=\"img\" {} aria-label=\"{}\">\n",
-                                size, escape_xml(label));
+  const std::string label =
+      figure.options.title.empty() ? plain(what) + " against " + figure.horizontal.name : figure.options.title;
+  std::string svg =
+      fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"maup-plot\" role=\"img\" {} aria-label=\"{}\">\n",
+                  size, escape_xml(label));
   if (figure.options.theme != PlotTheme::Page)
     svg += fmt::format("<style>{}</style>\n<rect class=\"paper\" width=\"100%\" height=\"100%\"/>\n",
                        own_style(figure.options.theme));
@@ -150,14 +153,22 @@ std::string plot_svg(const Trajectory& trajectory, const PlotOptions& options) {
   MAUP_REQUIRE(trajectory.values.size() == trajectory.rows() * trajectory.columns.size());
   MAUP_REQUIRE(trajectory.errors.empty() || trajectory.errors.size() == trajectory.values.size());
   MAUP_REQUIRE(options.outline.empty() || (options.columns.size() == 1 && !options.against.empty()));
-  Figure figure{trajectory, options, Series{trajectory.independent.name, trajectory.independent.unit, 1, 0, true}, group_by_unit(trajectory, options), 0, 0, 0, 0};
+  Figure figure{trajectory,
+                options,
+                Series{trajectory.independent.name, trajectory.independent.unit, 1, 0, true},
+                group_by_unit(trajectory, options),
+                0,
+                0,
+                0,
+                0};
   if (!options.against.empty()) figure.horizontal = series_of(trajectory, options.against, options.degrees);
 
   // Ranges come first, then axes; their labels give the margin; with the margin the axes are final.
   Range across = range_of(trajectory, {figure.horizontal});
   std::vector<Range> up;
   for (const Panel& panel : figure.panels) up.push_back(range_of(trajectory, panel.series));
-  for (const auto& [x, y] : options.outline) across.include(figure.horizontal.factor * x), up[0].include(figure.panels[0].series[0].factor * y);
+  for (const auto& [x, y] : options.outline)
+    across.include(figure.horizontal.factor * x), up[0].include(figure.panels[0].series[0].factor * y);
   const double panel_height = chosen_panel_height(figure, up, across);
   Axes axes = choose_axes(figure, across, up, options.width - 90, panel_height);
   arrange(figure, panel_height, widest_label(axes.up));
@@ -169,7 +180,8 @@ std::string plot_svg(const Trajectory& trajectory, const PlotOptions& options) {
     const Panel& panel = figure.panels[i];
     svg += draw_panel(figure, panel, axes.across, axes.up[i], i + 1 == figure.panels.size());
     if (up[i].empty || across.empty)
-      svg += text_element((figure.left + figure.right) / 2, panel.top + panel.height / 2, "middle", label_size, {{"no data"}});
+      svg += text_element((figure.left + figure.right) / 2, panel.top + panel.height / 2, "middle", label_size,
+                          {{"no data"}});
   }
   svg += text_element((figure.left + figure.right) / 2, figure.height - 9, "middle", label_size,
                       axis_text({figure.horizontal.name}, figure.horizontal.unit, axes.across));

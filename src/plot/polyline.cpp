@@ -11,8 +11,10 @@ namespace maupertuis {
 std::vector<Polyline> split_at_gaps(const Polyline& points) {
   std::vector<Polyline> lines(1);
   for (const Pixel& p : points) {
-    if (std::isfinite(p.x) && std::isfinite(p.y)) lines.back().push_back(p);
-    else if (!lines.back().empty()) lines.emplace_back();
+    if (std::isfinite(p.x) && std::isfinite(p.y))
+      lines.back().push_back(p);
+    else if (!lines.back().empty())
+      lines.emplace_back();
   }
   if (lines.back().empty()) lines.pop_back();
   return lines;
@@ -80,7 +82,8 @@ Polyline straighten(const Polyline& line, double tolerance) {
 }
 
 Ink::Ink(double width, double height)
-    : columns_(static_cast<int>(width) + 3), rows_(static_cast<int>(height) + 3),
+    : columns_(static_cast<int>(width) + 3),
+      rows_(static_cast<int>(height) + 3),
       dark_(static_cast<std::size_t>(columns_) * rows_) {}
 
 bool Ink::stroke(Pixel from, Pixel to) {
@@ -115,12 +118,16 @@ namespace {
 
 // A number of hundredths, as short as SVG allows; a separator only where one is needed.
 void append_hundredths(std::string& out, long value, bool first) {
-  if (value < 0) out += '-';
-  else if (!first) out += ' ';
+  if (value < 0)
+    out += '-';
+  else if (!first)
+    out += ' ';
   const long size = std::abs(value), whole = size / 100, part = size % 100;
   if (whole != 0 || part == 0) fmt::format_to(std::back_inserter(out), "{}", whole);
-  if (part != 0 && part % 10 == 0) fmt::format_to(std::back_inserter(out), ".{}", part / 10);
-  else if (part != 0) fmt::format_to(std::back_inserter(out), ".{:02}", part);
+  if (part != 0 && part % 10 == 0)
+    fmt::format_to(std::back_inserter(out), ".{}", part / 10);
+  else if (part != 0)
+    fmt::format_to(std::back_inserter(out), ".{:02}", part);
 }
 
 }  // namespace

@@ -10,8 +10,10 @@ namespace maupertuis {
 namespace {
 
 // Okabe and Ito's colours (2008), the pale ones darkened for thin lines on white paper, all lightened for dark paper.
-const std::vector<std::string_view> light_palette{"#0072b2", "#d55e00", "#009e73", "#b5528f", "#c98700", "#3a9bd4", "#5b5b5b"};
-const std::vector<std::string_view> dark_palette{"#5ab4ec", "#ff8c42", "#2fc99a", "#e39ac6", "#f0b93a", "#9ed5f7", "#c4c4c4"};
+const std::vector<std::string_view> light_palette{"#0072b2", "#d55e00", "#009e73", "#b5528f",
+                                                  "#c98700", "#3a9bd4", "#5b5b5b"};
+const std::vector<std::string_view> dark_palette{"#5ab4ec", "#ff8c42", "#2fc99a", "#e39ac6",
+                                                 "#f0b93a", "#9ed5f7", "#c4c4c4"};
 
 struct Colours {
   std::string paper, ink, muted, grid;
@@ -26,8 +28,11 @@ Colours colours_of(PlotTheme theme) {
   }
   const bool dark = theme == PlotTheme::Dark;
   const auto& palette = plot_palette(dark);
-  return {dark ? "#16181d" : "#ffffff", dark ? "#e6e6e6" : "#1c1c1c", dark ? "#a3a7ae" : "#5c5c5c",
-          dark ? "#2d3138" : "#e4e4e4", {palette.begin(), palette.end()}};
+  return {dark ? "#16181d" : "#ffffff",
+          dark ? "#e6e6e6" : "#1c1c1c",
+          dark ? "#a3a7ae" : "#5c5c5c",
+          dark ? "#2d3138" : "#e4e4e4",
+          {palette.begin(), palette.end()}};
 }
 
 std::string rules(PlotTheme theme, std::string_view scope) {
@@ -36,12 +41,14 @@ std::string rules(PlotTheme theme, std::string_view scope) {
       "{0} text{{font-family:{1};fill:{2}}}{0} .paper{{fill:{3}}}{0} .tick{{fill:{4}}}"
       "{0} .grid{{stroke:{5};stroke-width:1;fill:none}}{0} .axis{{stroke:{4};stroke-width:1;fill:none}}"
       "{0} .curve{{fill:none;stroke-width:1.4;stroke-linejoin:round;stroke-linecap:round}}"
-      "{0} .dots{{fill:none;stroke-width:1.7;stroke-linecap:round}}{0} .outline{{fill:none;stroke:{4};stroke-width:1;stroke-dasharray:4 3}}"
+      "{0} .dots{{fill:none;stroke-width:1.7;stroke-linecap:round}}{0} "
+      ".outline{{fill:none;stroke:{4};stroke-width:1;stroke-dasharray:4 3}}"
       "{0} .band{{stroke:none;fill-opacity:.2}}{0} .band.many{{fill:currentColor}}{0} .lost{{stroke-opacity:.3}}"
       "{0} .dense{{stroke-width:.8}}{0} .dot{{stroke:none}}{0} .dot.many{{fill:currentColor}}",
       scope, serif_faces, c.ink, c.paper, c.muted, c.grid);
   for (std::size_t i = 0; i < c.series.size(); ++i)
-    css += fmt::format("{0} .s{1}{{stroke:{2}}}{0} .dot.s{1},{0} .band.s{1}{{fill:{2}}}{0} .band{{stroke:none}}", scope, i + 1, c.series[i]);
+    css += fmt::format("{0} .s{1}{{stroke:{2}}}{0} .dot.s{1},{0} .band.s{1}{{fill:{2}}}{0} .band{{stroke:none}}", scope,
+                       i + 1, c.series[i]);
   return css;
 }
 

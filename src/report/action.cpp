@@ -29,7 +29,8 @@ std::string counts_text(const SecondVariation& s) {
 std::string conjugate_text(const SecondVariation& s, const MechanicalSystem& system) {
   std::string out;
   for (const ConjugatePoint& c : s.conjugate)
-    out += fmt::format("{}{} = {}{}", out.empty() ? "" : ", ", system.independent, with_unit(c.t, system.independent_unit(), 7),
+    out += fmt::format("{}{} = {}{}", out.empty() ? "" : ", ", system.independent,
+                       with_unit(c.t, system.independent_unit(), 7),
                        c.multiplicity > 1 ? fmt::format(" ({} times)", c.multiplicity) : "");
   return out.empty() ? "none inside" : out;
 }
@@ -39,7 +40,8 @@ ReportContent::Finding finding(const StationaryPath& p, std::size_t number, cons
   const auto add = [&out](const char* name, std::string value) {
     if (!value.empty()) out.facts.emplace_back(name, std::move(value));
   };
-  const std::string unit = system.dimensionless ? "" : to_string(system.lagrangian_dimension * system.independent_dimension);
+  const std::string unit =
+      system.dimensionless ? "" : to_string(system.lagrangian_dimension * system.independent_dimension);
   add("S", with_unit(p.action, unit, 12));
   add("kind", kind_text(p.second));
   add("conjugate points", conjugate_text(p.second, system));

@@ -1,7 +1,7 @@
-#include "report/motion_parts.hpp"
-#include "report/mode_parts.hpp"
-#include "report/notation.hpp"
 #include "report/action.hpp"
+#include "report/mode_parts.hpp"
+#include "report/motion_parts.hpp"
+#include "report/notation.hpp"
 #include "report/orbits.hpp"
 
 #include <maupertuis/constraint_analysis.hpp>
@@ -24,22 +24,27 @@ std::string unit_of(const MechanicalSystem& system, const Dimension& dimension) 
 }
 
 /// A start in the unit that the text gives it in.
-std::string start_text(const Model& model, std::size_t coordinate, int order, double value, const std::string& si_unit) {
+std::string start_text(const Model& model, std::size_t coordinate, int order, double value,
+                       const std::string& si_unit) {
   for (const StartValue& s : model.experiment.start)
-    if (s.coordinate == coordinate && s.order == order && !s.unit.empty()) return quantity(value / s.unit_factor, s.unit);
+    if (s.coordinate == coordinate && s.order == order && !s.unit.empty())
+      return quantity(value / s.unit_factor, s.unit);
   return quantity(value, si_unit);
 }
 
-ReportContent::Coordinate coordinate_row(const Model& model, const EquationsOfMotion& equations, std::size_t i, const SimulationResult* run) {
+ReportContent::Coordinate coordinate_row(const Model& model, const EquationsOfMotion& equations, std::size_t i,
+                                         const SimulationResult* run) {
   const MechanicalSystem& system = *equations.system;
   const Coordinate& c = system.coordinates[i];
   const std::string unit = unit_of(system, c.dimension);
-  ReportContent::Coordinate row{lay_out(c.q, equations.order), lay_out(c.velocity, equations.order), "", c.kind, "", ""};
+  ReportContent::Coordinate row{
+      lay_out(c.q, equations.order), lay_out(c.velocity, equations.order), "", c.kind, "", ""};
   if (c.name.find('.') != std::string::npos) row.name = c.name;
   if (row.kind.empty() || row.kind == "number") row.kind = unit.empty() || unit == "1" ? "number" : "in " + unit;
   if (!run || run->start.q.size() <= i) return row;
   row.start = start_text(model, i, 0, run->start.q[i], unit);
-  row.start_velocity = start_text(model, i, 1, run->start.v[i], unit_of(system, c.dimension / system.independent_dimension));
+  row.start_velocity =
+      start_text(model, i, 1, run->start.v[i], unit_of(system, c.dimension / system.independent_dimension));
   return row;
 }
 
@@ -57,7 +62,9 @@ ReportContent::Parameter parameter_row(const EquationsOfMotion& equations, const
 /// Freedoms, and what each constraint is, near where the run begins.
 void add_freedoms(ReportContent& content, const EquationsOfMotion& equations, const SimulationResult* run) {
   const MechanicalSystem& system = *equations.system;
-  const auto add = [&](std::string name, std::string value) { content.summary.emplace_back(std::move(name), std::move(value)); };
+  const auto add = [&](std::string name, std::string value) {
+    content.summary.emplace_back(std::move(name), std::move(value));
+  };
   if (!system.constrained()) return add("freedoms", fmt::format("{}", system.coordinates.size()));
   MotionState start;
   if (run) start = {run->start.t, run->start.q, run->start.v};
@@ -67,8 +74,9 @@ void add_freedoms(ReportContent& content, const EquationsOfMotion& equations, co
     add("instantaneous freedoms", fmt::format("{}", analysis.instantaneous_freedoms));
   for (std::size_t i = 0; i < analysis.constraints.size(); ++i) {
     const ConstraintReport& c = analysis.constraints[i];
-    add(system.constraint_label(i), fmt::format("{}, {}{}", words(c.constraint_class), c.scleronomic ? "scleronomic" : "rheonomic",
-                                                c.redundant ? ", redundant" : ""));
+    add(system.constraint_label(i),
+        fmt::format("{}, {}{}", words(c.constraint_class), c.scleronomic ? "scleronomic" : "rheonomic",
+                    c.redundant ? ", redundant" : ""));
   }
 }
 
@@ -87,14 +95,17 @@ void add_model(ReportContent& content, const Model& model, const SourceText& sou
     if (parameter.symbol.role() == Role::Parameter) content.parameters.push_back(parameter_row(equations, parameter));
   for (const Definition& definition : system.definitions)
     if (definition.symbol)
-      content.definitions.push_back({lay_out(definition.symbol, equations.order), lay_out(definition.value, equations.order), "", ""});
+      content.definitions.push_back(
+          {lay_out(definition.symbol, equations.order), lay_out(definition.value, equations.order), "", ""});
   for (const Input& input : system.inputs)
-    content.definitions.push_back({lay_out(input.symbol, equations.order), lay_out(input.formula, equations.order), "", ""});
+    content.definitions.push_back(
+        {lay_out(input.symbol, equations.order), lay_out(input.formula, equations.order), "", ""});
 }
 
 std::vector<Formula> intermediate_rows(const std::vector<Intermediate>& intermediates, const ReadingOrder& order) {
   std::vector<Formula> rows;
-  for (const Intermediate& i : intermediates) rows.push_back({lay_out(i.symbol, order), lay_out(i.value, order), "", ""});
+  for (const Intermediate& i : intermediates)
+    rows.push_back({lay_out(i.symbol, order), lay_out(i.value, order), "", ""});
   return rows;
 }
 
@@ -102,7 +113,8 @@ void add_equations(ReportContent& content, const Derivation& derivation, const R
   for (std::size_t i = 0; i < derivation.equations.size(); ++i) {
     const bool constrained = !derivation.constraint_forces.empty();
     content.equations.push_back({lay_out(derivation.equations[i], order),
-                                 constrained ? lay_out(derivation.constraint_forces[i], order) : layouts::number("0"), "", ""});
+                                 constrained ? lay_out(derivation.constraint_forces[i], order) : layouts::number("0"),
+                                 "", ""});
   }
   for (const ConstraintEquation& c : derivation.constraints)
     content.equations.push_back({lay_out(c.left, order), lay_out(c.right, order), "", c.name});
@@ -110,7 +122,8 @@ void add_equations(ReportContent& content, const Derivation& derivation, const R
   static constexpr std::array<std::string_view, 5> energies{"T", "V", "U", "D", "L"};
   for (const auto name : energies)
     for (const DerivationStep& step : derivation.steps)
-      if (step.right && to_plain(step.left) == name) content.energies.push_back({step.left, lay_out(step.right, order), "", ""});
+      if (step.right && to_plain(step.left) == name)
+        content.energies.push_back({step.left, lay_out(step.right, order), "", ""});
 }
 
 std::vector<ReportContent::Section> sections_of(const std::vector<DerivationStep>& steps, const ReadingOrder& order) {
@@ -119,8 +132,10 @@ std::vector<ReportContent::Section> sections_of(const std::vector<DerivationStep
     if (sections.empty() || sections.back().title != step.section) sections.push_back({step.section, {}});
     auto& lines = sections.back().lines;
     Formula line{step.left, {}, step.rule, step.sentence};
-    if (step.right) line.right = lay_out(step.right, order);
-    else line.left = {};
+    if (step.right)
+      line.right = lay_out(step.right, order);
+    else
+      line.left = {};
     // An equation reads `… = 0`, not `0 = …`.
     if (step.is_equation()) std::swap(line.left, line.right);
     lines.push_back(line);
@@ -136,7 +151,8 @@ void add_phase_space(ReportContent& content, const EquationsOfMotion& equations)
   const Hamiltonian h = hamiltonian(equations);
   const auto r = routhian(equations, h);
   content.phase_space = sections_of(phase_space_lines(h, r ? &*r : nullptr, equations), h.order);
-  content.phase_space_certified = h.value && certify(h, equations).passed() && (!r || !r->value || certify(*r, h, equations).passed());
+  content.phase_space_certified =
+      h.value && certify(h, equations).passed() && (!r || !r->value || certify(*r, h, equations).passed());
 }
 
 std::string_view verdict_word(Verdict verdict) {
@@ -183,9 +199,13 @@ ReportContent compose_report(const Model& model, const SourceText& source, const
   section("derivation", [&] { content.derivation = sections_of(derivation.steps, equations.order); });
   section("phase-space", [&] { add_phase_space(content, equations); });
   add_certificate(content, certificate);
-  section("conserved", [&] { add_conserved(content, equations, conserved_quantities(equations), parts.simulation, parts.invariants); });
+  section("conserved", [&] {
+    add_conserved(content, equations, conserved_quantities(equations), parts.simulation, parts.invariants);
+  });
   if (parts.simulation)
-    section("motion", [&] { add_motion(content, model, equations, conserved_quantities(equations).energy_conserved, *parts.simulation); });
+    section("motion", [&] {
+      add_motion(content, model, equations, conserved_quantities(equations).energy_conserved, *parts.simulation);
+    });
   section("modes", [&] {
     if (parts.modes) add_modes(content, model, equations, *parts.modes);
     if (parts.locus) add_loci(content, model.system, *parts.locus);

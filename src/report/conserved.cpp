@@ -50,14 +50,17 @@ ReportContent::Formula formula(Layout left, Expr right, const ReadingOrder& orde
   return {std::move(left), lay_out(form.value, order), "", ""};
 }
 
-void add_momentum(ReportContent& content, const EquationsOfMotion& equations, std::size_t i, const SimulationResult* run) {
+void add_momentum(ReportContent& content, const EquationsOfMotion& equations, std::size_t i,
+                  const SimulationResult* run) {
   const MechanicalSystem& system = *equations.system;
   const Coordinate& c = system.coordinates[i];
   ReportContent::Conserved quantity_row;
   quantity_row.sentence = fmt::format("{} is cyclic, and nothing acts on it: its momentum is conserved.", c.name);
-  quantity_row.formula = formula(layouts::indexed(layouts::name("p"), {lay_out(c.q, equations.order)}), equations.shown().momenta[i], equations.order);
+  quantity_row.formula = formula(layouts::indexed(layouts::name("p"), {lay_out(c.q, equations.order)}),
+                                 equations.shown().momenta[i], equations.order);
   if (run) {
-    const std::string unit = system.dimensionless ? "" : to_string(system.lagrangian_dimension * system.independent_dimension / c.dimension);
+    const std::string unit =
+        system.dimensionless ? "" : to_string(system.lagrangian_dimension * system.independent_dimension / c.dimension);
     add_values_along_run(quantity_row, equations, equations.momenta[i], unit, run->trajectory);
   }
   content.conserved.push_back(std::move(quantity_row));
@@ -69,7 +72,9 @@ void add_energy(ReportContent& content, const EquationsOfMotion& equations, cons
   row.sentence = conserved.energy_case;
   if (!conserved.energy_conserved) {
     row.sentence += " It is not conserved; along the motion it changes at the rate";
-    row.formula = formula(layouts::rate(layouts::name("h_E"), lay_out(equations.system->context->time(), equations.order), true), equations.shown().power, equations.order);
+    row.formula =
+        formula(layouts::rate(layouts::name("h_E"), lay_out(equations.system->context->time(), equations.order), true),
+                equations.shown().power, equations.order);
     content.conserved.push_back(std::move(row));
     return;
   }
@@ -86,10 +91,11 @@ void add_energy(ReportContent& content, const EquationsOfMotion& equations, cons
 
 }  // namespace
 
-void add_values_along_run(ReportContent::Conserved& row, const EquationsOfMotion& equations, Expr function, const std::string& unit,
-                          const Trajectory& run) {
+void add_values_along_run(ReportContent::Conserved& row, const EquationsOfMotion& equations, Expr function,
+                          const std::string& unit, const Trajectory& run) {
   const auto values = along_run(equations, function, run);
-  if (values.empty() || !std::isfinite(values[0])) return;  // the run ended where it began, in a state that has no such value
+  if (values.empty() || !std::isfinite(values[0]))
+    return;  // the run ended where it began, in a state that has no such value
   row.value = quantity(values[0], unit, 10);
   row.drift = drift_of(values, unit);
 }

@@ -9,13 +9,15 @@ namespace {
 
 // The browser itself enforces that the page asks nobody for anything.
 constexpr std::string_view policy =
-    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'";
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
+    "form-action 'none'";
 
 std::string colours(bool dark) {
-  std::string css = dark ? "color-scheme:dark;--paper:#14161a;--figure:#1a1d22;--ink:#e8e5de;--muted:#a09c93;--grid:#2c3037;"
-                           "--rule:#353a42;--accent:#7cc0ee;--good:#6cc98a;--warn:#e0a040;--bad:#ff8a80;"
-                         : "color-scheme:light;--paper:#fffdf8;--figure:#ffffff;--ink:#1d1b18;--muted:#69635a;--grid:#e8e3d8;"
-                           "--rule:#dad4c6;--accent:#0b5a8a;--good:#23703a;--warn:#b06a00;--bad:#b3261e;";
+  std::string css =
+      dark ? "color-scheme:dark;--paper:#14161a;--figure:#1a1d22;--ink:#e8e5de;--muted:#a09c93;--grid:#2c3037;"
+             "--rule:#353a42;--accent:#7cc0ee;--good:#6cc98a;--warn:#e0a040;--bad:#ff8a80;"
+           : "color-scheme:light;--paper:#fffdf8;--figure:#ffffff;--ink:#1d1b18;--muted:#69635a;--grid:#e8e3d8;"
+             "--rule:#dad4c6;--accent:#0b5a8a;--good:#23703a;--warn:#b06a00;--bad:#b3261e;";
   const auto& palette = plot_palette(dark);
   for (std::size_t i = 0; i < palette.size(); ++i) css += fmt::format("--series-{}:{};", i + 1, palette[i]);
   return css;
@@ -35,14 +37,16 @@ std::string facts_line(const ReportContent& content) {
   for (const auto& [name, value] : content.summary)
     if (name == "freedoms") add(fmt::format("{} {}", value, value == "1" ? "freedom" : "freedoms"));
   if (!content.certificate.empty())
-    add(content.certified ? "<span class=\"good\">✓ certified equations</span>" : "<span class=\"bad\">✗ not certified</span>");
+    add(content.certified ? "<span class=\"good\">✓ certified equations</span>"
+                          : "<span class=\"bad\">✗ not certified</span>");
   for (const auto& [name, value] : content.statistics)
     if (name == "energy drift") add("energy drift " + number_html(value));
   return line.empty() ? line : fmt::format("<p class=\"facts\">{}</p>\n", line);
 }
 
 std::string header(const ReportContent& content) {
-  std::string html = fmt::format("<header>\n<h1>{}</h1>\n", escape_html(content.title.empty() ? content.name : content.title));
+  std::string html =
+      fmt::format("<header>\n<h1>{}</h1>\n", escape_html(content.title.empty() ? content.name : content.title));
   if (!content.source.empty()) html += fmt::format("<p class=\"citation\">{}</p>\n", escape_html(content.source));
   return html + facts_line(content);
 }
@@ -85,7 +89,8 @@ std::string report_html(const ReportContent& content) {
   };
   std::string navigation, body;
   for (const Part& part : parts) {
-    if (!part.id.empty() && !part.html.empty()) navigation += fmt::format("<a href=\"#{}\">{}</a>\n", part.id, part.title);
+    if (!part.id.empty() && !part.html.empty())
+      navigation += fmt::format("<a href=\"#{}\">{}</a>\n", part.id, part.title);
     body += part.html;
   }
   const std::string title = escape_html(content.title.empty() ? content.name : content.title);
@@ -94,7 +99,8 @@ std::string report_html(const ReportContent& content) {
   page += fmt::format("<nav aria-label=\"Contents\">\n{}</nav>\n</header>\n<main>\n{}</main>\n", navigation, body);
   page += "<footer>Made by Maupertuis. Equations in MathML; everything on this page is contained in it.</footer>\n";
   page += fmt::format("<script>\n{}</script>\n", page_script);
-  const bool moves = body.find("<figure id=\"animation\"") != std::string::npos || body.find("<figure class=\"mode\"") != std::string::npos;
+  const bool moves = body.find("<figure id=\"animation\"") != std::string::npos ||
+                     body.find("<figure class=\"mode\"") != std::string::npos;
   if (moves) page += fmt::format("<script>\n{}</script>\n", animation_script);
   return page + "</body>\n</html>\n";
 }

@@ -75,7 +75,8 @@ void add_invariants(ReportContent& content, const EquationsOfMotion& equations, 
     content.conserved.push_back(std::move(row));
   }
   const auto is_hidden = [&](Expr node) {
-    return std::find(found.symbols.begin() + static_cast<std::ptrdiff_t>(found.shown), found.symbols.end(), node) != found.symbols.end();
+    return std::find(found.symbols.begin() + static_cast<std::ptrdiff_t>(found.shown), found.symbols.end(), node) !=
+           found.symbols.end();
   };
   for (const IntegralRelation& relation : found.relations) {
     const auto nodes = topological_order({&relation.value.value, 1});

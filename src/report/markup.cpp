@@ -11,12 +11,18 @@ namespace maupertuis {
 std::string escape_html(std::string_view text) {
   std::string result;
   for (const char c : text) {
-    if (c == '&') result += "&amp;";
-    else if (c == '<') result += "&lt;";
-    else if (c == '>') result += "&gt;";
-    else if (c == '"') result += "&quot;";
-    else if (c == '\0') result += "\uFFFD";
-    else result += c;
+    if (c == '&')
+      result += "&amp;";
+    else if (c == '<')
+      result += "&lt;";
+    else if (c == '>')
+      result += "&gt;";
+    else if (c == '"')
+      result += "&quot;";
+    else if (c == '\0')
+      result += "\uFFFD";
+    else
+      result += c;
   }
   return result;
 }
@@ -46,20 +52,23 @@ std::string number_html(std::string_view number) {
   if (!mantissa.empty() && mantissa[0] == '-' && mantissa.size() > 1) mantissa.replace(0, 1, "−");
   if (plain) return mantissa;
   std::size_t end = e + 1;
-  while (end < number.size() && (number[end] == '-' || number[end] == '+' || (number[end] >= '0' && number[end] <= '9'))) ++end;
+  while (end < number.size() &&
+         (number[end] == '-' || number[end] == '+' || (number[end] >= '0' && number[end] <= '9')))
+    ++end;
   int exponent = 0;
   for (const char c : number.substr(e + 1, end - e - 1))
     if (c >= '0' && c <= '9') exponent = 10 * exponent + (c - '0');
   const std::string factor = mantissa == "1" ? "" : mantissa + " × ";
-  return fmt::format("{}10<sup>{}{}</sup>{}", factor, number[e + 1] == '-' ? "−" : "", exponent, unit_html(number.substr(end)));
+  return fmt::format("{}10<sup>{}{}</sup>{}", factor, number[e + 1] == '-' ? "−" : "", exponent,
+                     unit_html(number.substr(end)));
 }
 
 // ------------------------------------------------------------------------------------------------------ mathematics
 
 namespace {
 
-constexpr double one_line = 34;      // em that fit into a line of the page
-constexpr double surely_fits = 18;   // … of a narrow window
+constexpr double one_line = 34;     // em that fit into a line of the page
+constexpr double surely_fits = 18;  // … of a narrow window
 
 Layout with_sign(const Layout& left, const Layout& right) {
   if (left.empty()) return right;
@@ -80,7 +89,8 @@ std::string inline_math(const Layout& formula) {
 
 std::string display_math(const Layout& left, const Layout& right) {
   const double whole = width(left) + width(right);
-  const std::vector<Layout> parts = whole <= surely_fits ? std::vector<Layout>{with_sign(left, right)} : pieces(left, right, one_line);
+  const std::vector<Layout> parts =
+      whole <= surely_fits ? std::vector<Layout>{with_sign(left, right)} : pieces(left, right, one_line);
   std::string html;
   for (const Layout& piece : parts)
     html += fmt::format("{}<math displaystyle=\"true\">{}</math>", html.empty() ? "" : "<wbr>", to_mathml(piece));
@@ -139,10 +149,12 @@ std::string sentence_html(std::string_view sentence) {
 namespace {
 
 constexpr std::array statement_words{
-    "system", "source", "dimensionless", "param", "coord", "let", "input", "frame", "point", "body", "gravity", "spring",
-    "damper", "torsion", "force", "torque", "friction", "constraint", "reaction", "contact", "impact", "event", "start", "run",
-    "output", "sweep", "draw", "independent", "path", "field", "density", "expect", "claim", "kinetic", "potential",
-    "lagrangian", "dissipation", "T", "V", "U", "L", "D"};
+    "system",   "source",     "dimensionless", "param",       "coord",       "let",     "input",   "frame",
+    "point",    "body",       "gravity",       "spring",      "damper",      "torsion", "force",   "torque",
+    "friction", "constraint", "reaction",      "contact",     "impact",      "event",   "start",   "run",
+    "output",   "sweep",      "draw",          "independent", "path",        "field",   "density", "expect",
+    "claim",    "kinetic",    "potential",     "lagrangian",  "dissipation", "T",       "V",       "U",
+    "L",        "D"};
 
 // Where a comment begins: a # that stands in no quotation.
 std::size_t comment_start(std::string_view line) {
@@ -158,10 +170,13 @@ std::string line_html(std::string_view line) {
   const std::size_t comment = comment_start(line);
   const std::string_view statement = line.substr(0, comment);
   const std::size_t word = std::min(statement.find_first_of(" \t"), statement.size());
-  const bool known = std::find(statement_words.begin(), statement_words.end(), statement.substr(0, word)) != statement_words.end();
-  std::string html = known ? fmt::format("<span class=\"word\">{}</span>", statement.substr(0, word)) : escape_html(statement.substr(0, word));
+  const bool known =
+      std::find(statement_words.begin(), statement_words.end(), statement.substr(0, word)) != statement_words.end();
+  std::string html = known ? fmt::format("<span class=\"word\">{}</span>", statement.substr(0, word))
+                           : escape_html(statement.substr(0, word));
   html += escape_html(statement.substr(word));
-  if (comment < line.size()) html += fmt::format("<span class=\"comment\">{}</span>", escape_html(line.substr(comment)));
+  if (comment < line.size())
+    html += fmt::format("<span class=\"comment\">{}</span>", escape_html(line.substr(comment)));
   return html;
 }
 

@@ -18,7 +18,8 @@ using Formula = ReportContent::Formula;
 constexpr std::size_t most_points = 4, most_shapes = 6, widest_matrix = 5, frames_of_a_mode = 60;
 constexpr double turn = 6.283185307179586;
 
-// ---------------------------------------------------------------------------------------------------------------- formulas
+// ----------------------------------------------------------------------------------------------------------------
+// formulas
 
 Layout number_layout(double x) {
   Layout out = layouts::number(short_number(std::abs(x), 4));
@@ -35,7 +36,9 @@ Layout matrix_layout(std::size_t rows, std::size_t columns, Entry&& entry) {
 }
 
 /// M ξ̈, C ξ̇, K ξ
-Layout term(const char* matrix, int dots) { return layouts::product({layouts::bold(matrix), layouts::name("ξ", dots)}); }
+Layout term(const char* matrix, int dots) {
+  return layouts::product({layouts::bold(matrix), layouts::name("ξ", dots)});
+}
 
 struct Shown {
   bool velocity = false, position = false, input = false;
@@ -61,12 +64,19 @@ std::vector<Formula> formulas_of(const SymbolicLinearization& s, const ReadingOr
   for (const auto& [left, right] : s.equilibrium) out.push_back({lay_out(left, order), lay_out(right, order), "", ""});
   const Shown shown{any(s.damping), any(s.stiffness), any(s.input)};
   out.push_back(balance(shown));
-  const std::tuple<const char*, const ExprMatrix*, bool> all[] = {
-      {"M", &s.mass, true}, {"C", &s.damping, shown.velocity}, {"K", &s.stiffness, shown.position}, {"B", &s.input, shown.input}};
+  const std::tuple<const char*, const ExprMatrix*, bool> all[] = {{"M", &s.mass, true},
+                                                                  {"C", &s.damping, shown.velocity},
+                                                                  {"K", &s.stiffness, shown.position},
+                                                                  {"B", &s.input, shown.input}};
   for (const auto& [name, matrix, is_shown] : all)
     if (is_shown)
-      out.push_back({layouts::bold(name), matrix_layout(matrix->rows, matrix->columns, [&, m = matrix](std::size_t i, std::size_t j) { return lay_out(m->at(i, j), order); }), "", ""});
-  if (s.square) out.push_back({layouts::power(layouts::name("ω"), layouts::number("2")), lay_out(s.square, order), "", ""});
+      out.push_back(
+          {layouts::bold(name),
+           matrix_layout(matrix->rows, matrix->columns,
+                         [&, m = matrix](std::size_t i, std::size_t j) { return lay_out(m->at(i, j), order); }),
+           "", ""});
+  if (s.square)
+    out.push_back({layouts::power(layouts::name("ω"), layouts::number("2")), lay_out(s.square, order), "", ""});
   return out;
 }
 
@@ -80,25 +90,37 @@ std::vector<Formula> formulas_of(const Linearization& l) {
   const RealMatrix c = sum(l.damping, l.gyroscopic), k = sum(l.stiffness, l.circulatory);
   const Shown shown{any(c), any(k), any(l.input)};
   std::vector<Formula> out{balance(shown)};
-  const std::tuple<const char*, const RealMatrix*, bool> all[] = {{"M", &l.mass, true}, {"C", &c, shown.velocity}, {"K", &k, shown.position}, {"B", &l.input, shown.input}};
+  const std::tuple<const char*, const RealMatrix*, bool> all[] = {
+      {"M", &l.mass, true}, {"C", &c, shown.velocity}, {"K", &k, shown.position}, {"B", &l.input, shown.input}};
   for (const auto& [name, matrix, is_shown] : all)
     if (is_shown)
-      out.push_back({layouts::bold(name), matrix_layout(matrix->rows, matrix->columns, [m = matrix](std::size_t i, std::size_t j) { return number_layout(m->at(i, j)); }), "", ""});
+      out.push_back({layouts::bold(name),
+                     matrix_layout(matrix->rows, matrix->columns,
+                                   [m = matrix](std::size_t i, std::size_t j) { return number_layout(m->at(i, j)); }),
+                     "", ""});
   return out;
 }
 
-// ------------------------------------------------------------------------------------------------------------------ modes
+// ------------------------------------------------------------------------------------------------------------------
+// modes
 
 ReportContent::ModeRow row_of(const MechanicalSystem& system, const Mode& m) {
-  const std::string rate = system.dimensionless ? "" : "rad/s", hertz = system.dimensionless ? "" : "Hz", second = system.dimensionless ? "" : "s";
-  const std::string fold = m.multiplicity > 1 && m.kind != Mode::Kind::Zero ? fmt::format(", {}-fold", m.multiplicity) : "";
+  const std::string rate = system.dimensionless ? "" : "rad/s", hertz = system.dimensionless ? "" : "Hz",
+                    second = system.dimensionless ? "" : "s";
+  const std::string fold =
+      m.multiplicity > 1 && m.kind != Mode::Kind::Zero ? fmt::format(", {}-fold", m.multiplicity) : "";
   switch (m.kind) {
-    case Mode::Kind::Zero: return {m.cause.empty() ? "zero mode" : "zero mode: " + m.cause, "0", "0", "", ""};
-    case Mode::Kind::Decay: return {"decay" + fold, "", "", "", "rate " + quantity(m.eigenvalue.real(), system.dimensionless ? "" : "1/s")};
-    case Mode::Kind::Growth: return {"growth" + fold, "", "", "", "rate " + quantity(m.eigenvalue.real(), system.dimensionless ? "" : "1/s")};
-    case Mode::Kind::Oscillation: break;
+    case Mode::Kind::Zero:
+      return {m.cause.empty() ? "zero mode" : "zero mode: " + m.cause, "0", "0", "", ""};
+    case Mode::Kind::Decay:
+      return {"decay" + fold, "", "", "", "rate " + quantity(m.eigenvalue.real(), system.dimensionless ? "" : "1/s")};
+    case Mode::Kind::Growth:
+      return {"growth" + fold, "", "", "", "rate " + quantity(m.eigenvalue.real(), system.dimensionless ? "" : "1/s")};
+    case Mode::Kind::Oscillation:
+      break;
   }
-  return {"oscillation" + fold, quantity(m.frequency(), rate, 7), quantity(m.frequency() / turn, hertz, 7), quantity(turn / m.frequency(), second, 5),
+  return {"oscillation" + fold, quantity(m.frequency(), rate, 7), quantity(m.frequency() / turn, hertz, 7),
+          quantity(turn / m.frequency(), second, 5),
           m.eigenvalue.real() == 0 ? "" : "ζ = " + short_number(m.damping_ratio(), 4)};
 }
 
@@ -130,7 +152,8 @@ Drawing thinned(const Drawing& d) {
   const auto keep = [&](const std::vector<double>& list, std::size_t width) {
     std::vector<double> kept;
     for (std::size_t f = 0; f < d.times.size() && width > 0; f += stride)
-      kept.insert(kept.end(), list.begin() + static_cast<std::ptrdiff_t>(f * width), list.begin() + static_cast<std::ptrdiff_t>((f + 1) * width));
+      kept.insert(kept.end(), list.begin() + static_cast<std::ptrdiff_t>(f * width),
+                  list.begin() + static_cast<std::ptrdiff_t>((f + 1) * width));
     return kept;
   };
   out.times = keep(d.times, 1);
@@ -184,7 +207,8 @@ void add_shapes(ReportContent::ModePoint& out, const Model& model, const ModalEn
   for (std::size_t k = 0; k < entry.analysis.modes.size() && out.shapes.size() < most_shapes; ++k) {
     const Mode& m = entry.analysis.modes[k];
     if (m.kind != Mode::Kind::Oscillation) continue;
-    ReportContent::ModeShape shape{fmt::format("Mode {}: ω = {}", k + 1, out.rows[k].frequency), std::nullopt, std::nullopt};
+    ReportContent::ModeShape shape{fmt::format("Mode {}: ω = {}", k + 1, out.rows[k].frequency), std::nullopt,
+                                   std::nullopt};
     if (entry.equilibrium.at_rest) shape.drawing = drawing_of(model, entry.equilibrium.point, m);
     if (!shape.drawing) shape.diagram = shape_diagram(model.system, m);
     out.shapes.push_back(std::move(shape));
@@ -193,9 +217,11 @@ void add_shapes(ReportContent::ModePoint& out, const Model& model, const ModalEn
 
 }  // namespace
 
-void add_modes(ReportContent& content, const Model& model, const EquationsOfMotion& equations, const ModalStudy& study) {
+void add_modes(ReportContent& content, const Model& model, const EquationsOfMotion& equations,
+               const ModalStudy& study) {
   const MechanicalSystem& system = model.system;
-  content.mode_search = fmt::format("Found by Newton's method from {} points; nothing says that there are no others.", study.starts);
+  content.mode_search =
+      fmt::format("Found by Newton's method from {} points; nothing says that there are no others.", study.starts);
   for (std::size_t p = 0; p < study.entries.size() && p < most_points; ++p) {
     const ModalEntry& entry = study.entries[p];
     const StabilityReport& s = entry.analysis.stability;
@@ -205,7 +231,9 @@ void add_modes(ReportContent& content, const Model& model, const EquationsOfMoti
     point.stability = fmt::format("{}: {}", stability_word(s.verdict), s.reason);
     point.stable = s.verdict == Stability::Energetic || s.verdict == Stability::Asymptotic;
     if (!entry.analysis.modes.empty()) {  // frozen coefficients of a driven system are not shown
-      const auto symbolic = entry.side.empty() ? symbolic_linearization(equations, entry.linearization, study.translations) : std::nullopt;
+      const auto symbolic = entry.side.empty()
+                                ? symbolic_linearization(equations, entry.linearization, study.translations)
+                                : std::nullopt;
       point.formulas = symbolic ? formulas_of(*symbolic, equations.order) : formulas_of(entry.linearization);
     }
     for (const Mode& m : entry.analysis.modes) point.rows.push_back(row_of(system, m));

@@ -28,10 +28,15 @@ void add_branch(Diagram& diagram, const LocusBranch& branch, std::size_t i) {
   const auto& points = branch.points;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Line line = line_of(points[k].stability.verdict);
-    const bool jump = k > 0 && diagram.degrees_y && std::abs(coordinate_at(points[k], i) - coordinate_at(points[k - 1], i)) > half_turn;
+    const bool jump = k > 0 && diagram.degrees_y &&
+                      std::abs(coordinate_at(points[k], i) - coordinate_at(points[k - 1], i)) > half_turn;
     const bool begins = k == 0 || jump || line != line_of(points[k - 1].stability.verdict);
     if (begins) {
-      diagram.curves.push_back({{}, {}, line == Line::Unstable ? std::size_t{1} : std::size_t{0}, line == Line::Unstable, line == Line::Undecided});
+      diagram.curves.push_back({{},
+                                {},
+                                line == Line::Unstable ? std::size_t{1} : std::size_t{0},
+                                line == Line::Unstable,
+                                line == Line::Undecided});
       if (k > 0 && !jump) {
         diagram.curves.back().x.push_back(points[k - 1].parameter);
         diagram.curves.back().y.push_back(coordinate_at(points[k - 1], i));
@@ -54,7 +59,10 @@ void add_marks(Diagram& diagram, const MechanicalSystem& system, const Locus& lo
     const bool told = std::any_of(diagram.marks.begin(), diagram.marks.end(), [&](const Diagram::Mark& m) {
       return std::abs(m.x - change.parameter) <= 1e-9 * std::abs(m.x) && std::abs(m.y - y) <= 1e-9;
     });
-    if (!told) diagram.marks.push_back({change.parameter, y, fmt::format("{} = {:.6g}{}{}", p.name, change.parameter, unit.empty() ? "" : " ", unit)});
+    if (!told)
+      diagram.marks.push_back(
+          {change.parameter, y,
+           fmt::format("{} = {:.6g}{}{}", p.name, change.parameter, unit.empty() ? "" : " ", unit)});
   }
 }
 
@@ -73,7 +81,9 @@ std::vector<Diagram> bifurcation_diagrams(const MechanicalSystem& system, const 
   const Parameter& p = system.parameters[locus.parameter];
   for (std::size_t i = 0; i < system.coordinates.size() && out.size() < most; ++i) {
     const Coordinate& c = system.coordinates[i];
-    if (std::any_of(locus.translations.begin(), locus.translations.end(), [&](const Translation& t) { return t.pivot == i; })) continue;
+    if (std::any_of(locus.translations.begin(), locus.translations.end(),
+                    [&](const Translation& t) { return t.pivot == i; }))
+      continue;
     Diagram d;
     d.x_name = p.name;
     d.x_unit = unit_text(system, p.dimension);

@@ -10,10 +10,11 @@ void add_conserved(ReportContent& content, const EquationsOfMotion& equations, c
                    const SimulationResult* run, const Invariants* invariants);
 
 /// The integrals that a search found, with values and drift along a run, and what holds between them.
-void add_invariants(ReportContent& content, const EquationsOfMotion& equations, const Invariants& found, const SimulationResult* run);
+void add_invariants(ReportContent& content, const EquationsOfMotion& equations, const Invariants& found,
+                    const SimulationResult* run);
 /// The value of a function of q, q', t at the start of a run, and its largest change by its largest value.
-void add_values_along_run(ReportContent::Conserved& row, const EquationsOfMotion& equations, Expr function, const std::string& unit,
-                          const Trajectory& run);
+void add_values_along_run(ReportContent::Conserved& row, const EquationsOfMotion& equations, Expr function,
+                          const std::string& unit, const Trajectory& run);
 
 /// Drawing, statistics and plots.
 void add_motion(ReportContent& content, const Model& model, const EquationsOfMotion& equations, bool energy_conserved,

@@ -72,12 +72,11 @@ Finding exponents(const LyapunovResult& r, const MechanicalSystem& system) {
   Finding out{"Lyapunov exponents", {}, "the averages up to t", lyapunov_rows(r, system), {}};
   const std::string unit = system.dimensionless ? "" : " 1/s";
   for (std::size_t j = 0; j < r.exponents.size(); ++j)
-    out.facts.emplace_back(
-        fmt::format("λ{}", j + 1),
-        fmt::format("{} ± {}{}", short_number(r.exponents[j], 4), short_number(r.errors[j], 2), unit));
+    out.facts.emplace_back(fmt::format("λ{}", j + 1), fmt::format("{} ± {}{}", short_number(r.exponents[j], 4),
+                                                                  short_number(r.errors[j], 2), unit));
   if (r.expected_sum)
-    out.facts.emplace_back("sum; mean divergence", fmt::format("{}; {}{}", short_number(r.sum, 3),
-                                                               short_number(*r.expected_sum, 3), unit));
+    out.facts.emplace_back("sum; mean divergence",
+                           fmt::format("{}; {}{}", short_number(r.sum, 3), short_number(*r.expected_sum, 3), unit));
   if (r.kaplan_yorke) out.facts.emplace_back("Kaplan-Yorke dimension", short_number(*r.kaplan_yorke, 4));
   return out;
 }

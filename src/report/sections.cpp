@@ -24,14 +24,13 @@ std::string facts_list(const std::vector<std::pair<std::string, std::string>>& f
 
 std::string table(std::string_view head, const std::string& rows, std::string_view more = {}) {
   if (rows.empty()) return {};
-  return fmt::format("<div class=\"scroll\"><table{}>\n<thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody></table></div>\n", more,
-                     head, rows);
+  return fmt::format("<div class=\"scroll\"><table{}>\n<thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody></table></div>\n",
+                     more, head, rows);
 }
 
 std::string formula_block(const ReportContent::Formula& formula) {
   std::string html;
-  if (!formula.right.empty() || !formula.left.empty())
-    html += display_math(formula.left, formula.right);
+  if (!formula.right.empty() || !formula.left.empty()) html += display_math(formula.left, formula.right);
   if (!formula.sentence.empty()) html += fmt::format("<p class=\"sentence\">{}</p>", sentence_html(formula.sentence));
   return html;
 }
@@ -86,7 +85,8 @@ std::string drawing_section(const ReportContent& content) {
 <script type="application/json" id="drawing-data">{}</script>
 )",
                      escape_html(content.title), escape_html(content.title),
-                     spatial ? ", dragging turns the view, a double click turns it back" : "", drawing_json(*content.drawing));
+                     spatial ? ", dragging turns the view, a double click turns it back" : "",
+                     drawing_json(*content.drawing));
 }
 
 std::string equations_section(const ReportContent& content) {
@@ -102,7 +102,8 @@ std::string equations_section(const ReportContent& content) {
   for (const auto& intermediate : content.intermediates)
     html += fmt::format("<div class=\"where\">{}</div>\n", formula_block(intermediate));
   if (!content.energies.empty()) html += "<h3>Energies</h3>\n";
-  for (const auto& energy : content.energies) html += fmt::format("<div class=\"where\">{}</div>\n", formula_block(energy));
+  for (const auto& energy : content.energies)
+    html += fmt::format("<div class=\"where\">{}</div>\n", formula_block(energy));
   return section("equations", "Equations of motion", html);
 }
 
@@ -120,8 +121,9 @@ std::string coordinates_table(const ReportContent& content) {
                           number_html(c.start_velocity));
     rows += "</tr>\n";
   }
-  return table(started ? "<th>coordinate</th><th>kind</th><th>start</th><th>velocity</th>" : "<th>coordinate</th><th>kind</th>",
-               rows);
+  return table(
+      started ? "<th>coordinate</th><th>kind</th><th>start</th><th>velocity</th>" : "<th>coordinate</th><th>kind</th>",
+      rows);
 }
 
 std::string parameters_table(const ReportContent& content) {
@@ -129,8 +131,8 @@ std::string parameters_table(const ReportContent& content) {
   for (const auto& p : content.parameters) converted = converted || !p.si.empty();
   std::string rows;
   for (const auto& p : content.parameters)
-    rows += fmt::format("<tr><td>{}</td><td class=\"number\">{}</td><td class=\"unit\">{}</td>{}</tr>\n", inline_math(p.symbol),
-                        number_html(p.value), unit_html(p.unit),
+    rows += fmt::format("<tr><td>{}</td><td class=\"number\">{}</td><td class=\"unit\">{}</td>{}</tr>\n",
+                        inline_math(p.symbol), number_html(p.value), unit_html(p.unit),
                         converted ? fmt::format("<td class=\"muted\">{}</td>", number_html(p.si)) : "");
   return table(fmt::format("<th>parameter</th><th>value</th><th>unit</th>{}", converted ? "<th>in SI</th>" : ""), rows);
 }
@@ -158,14 +160,19 @@ std::string derivation_section(const ReportContent& content) {
   std::string html;
   for (const auto& part : content.derivation) {
     html += fmt::format("<details{}><summary>{}<span class=\"muted\">{}</span></summary>\n", lines <= 24 ? " open" : "",
-                        sentence_html(part.title), part.lines.size() == 1 ? "1 line" : fmt::format("{} lines", part.lines.size()));
+                        sentence_html(part.title),
+                        part.lines.size() == 1 ? "1 line" : fmt::format("{} lines", part.lines.size()));
     for (const auto& line : part.lines)
-      html += fmt::format("<div class=\"step\">{}<div class=\"rule\">{}</div></div>\n", formula_block(line), sentence_html(line.rule));
+      html += fmt::format("<div class=\"step\">{}<div class=\"rule\">{}</div></div>\n", formula_block(line),
+                          sentence_html(line.rule));
     html += "</details>\n";
   }
   if (html.empty()) return {};
-  return section("derivation", "Derivation", fmt::format("<p class=\"hint\"><button id=\"all-steps\" class=\"link\" type=\"button\">{}</button></p>\n",
-                                                         lines <= 24 ? "close all" : "open all") + html);
+  return section(
+      "derivation", "Derivation",
+      fmt::format("<p class=\"hint\"><button id=\"all-steps\" class=\"link\" type=\"button\">{}</button></p>\n",
+                  lines <= 24 ? "close all" : "open all") +
+          html);
 }
 
 std::string phase_space_section(const ReportContent& content) {
@@ -173,12 +180,15 @@ std::string phase_space_section(const ReportContent& content) {
   for (const auto& part : content.phase_space) {
     html += fmt::format("<h3>{}</h3>\n", sentence_html(part.title));
     for (const auto& line : part.lines) {
-      if (line.right.empty()) html += fmt::format("<p>{}</p>\n", sentence_html(line.sentence));
-      else html += fmt::format("<div class=\"where\">{}</div>\n", formula_block(line));
+      if (line.right.empty())
+        html += fmt::format("<p>{}</p>\n", sentence_html(line.sentence));
+      else
+        html += fmt::format("<div class=\"where\">{}</div>\n", formula_block(line));
     }
   }
   if (html.empty()) return {};
-  if (content.phase_space_certified) html += "<p class=\"hint\">Each of these was proved against Lagrange's equations.</p>\n";
+  if (content.phase_space_certified)
+    html += "<p class=\"hint\">Each of these was proved against Lagrange's equations.</p>\n";
   return section("phase-space", "Phase space", html);
 }
 
@@ -190,21 +200,24 @@ std::string certificate_section(const ReportContent& content) {
                         check.applies ? bound_html(check.error_bound) : "—",
                         verdict_html(check.applies, check.passed, check.verdict));
   if (rows.empty()) return {};
-  const std::string sentence = content.certified
-                                   ? "<p>Every line above was checked by routes that share nothing with the derivation.</p>\n"
-                                   : "<p class=\"bad\">This derivation did not pass all checks: do not rely on it.</p>\n";
+  const std::string sentence =
+      content.certified ? "<p>Every line above was checked by routes that share nothing with the derivation.</p>\n"
+                        : "<p class=\"bad\">This derivation did not pass all checks: do not rely on it.</p>\n";
   return section("certificate", "Certificate",
-                 sentence + table("<th>what agrees</th><th>points</th><th>error bound</th><th>verdict</th>", rows, " class=\"wide\""));
+                 sentence + table("<th>what agrees</th><th>points</th><th>error bound</th><th>verdict</th>", rows,
+                                  " class=\"wide\""));
 }
 
 std::string conserved_section(const ReportContent& content) {
   std::string html;
   for (const auto& quantity : content.conserved) {
     html += "<div>" + (quantity.sentence.empty() ? "" : fmt::format("<p>{}</p>", sentence_html(quantity.sentence)));
-    if (!quantity.formula.right.empty()) html += fmt::format("<div class=\"where\">{}</div>", formula_block(quantity.formula));
+    if (!quantity.formula.right.empty())
+      html += fmt::format("<div class=\"where\">{}</div>", formula_block(quantity.formula));
     if (!quantity.value.empty())
-      html += fmt::format("<p class=\"muted where\">{} at the start{}</p>", number_html(quantity.value),
-                          quantity.drift.empty() ? "" : ", relative drift along the run " + number_html(quantity.drift));
+      html +=
+          fmt::format("<p class=\"muted where\">{} at the start{}</p>", number_html(quantity.value),
+                      quantity.drift.empty() ? "" : ", relative drift along the run " + number_html(quantity.drift));
     html += "</div>\n";
   }
   return section("conserved", "Conserved quantities", html);
@@ -212,7 +225,8 @@ std::string conserved_section(const ReportContent& content) {
 
 std::string motion_section(const ReportContent& content) {
   std::string html;
-  if (!content.ending.empty()) html += fmt::format("<div class=\"message\"><p>{}</p></div>\n", sentence_html(content.ending));
+  if (!content.ending.empty())
+    html += fmt::format("<div class=\"message\"><p>{}</p></div>\n", sentence_html(content.ending));
   html += facts_list(content.statistics);
   std::string plots;
   for (const auto& picture : content.pictures) {
@@ -243,7 +257,8 @@ std::string diagrams_html(const std::vector<ReportContent::Locus>& diagrams) {
   for (const auto& [caption, diagram] : diagrams) {
     Diagram d = diagram;
     d.theme = PlotTheme::Page;
-    figures += fmt::format("<figure>\n{}<figcaption>{}</figcaption></figure>\n", diagram_svg(d), sentence_html(caption));
+    figures +=
+        fmt::format("<figure>\n{}<figcaption>{}</figcaption></figure>\n", diagram_svg(d), sentence_html(caption));
   }
   return figures.empty() ? figures : "<div class=\"plots\">\n" + figures + "</div>\n";
 }
@@ -260,10 +275,12 @@ std::string paths_section(const ReportContent& content) {
 std::string expectations_section(const ReportContent& content) {
   std::string rows;
   for (const auto& result : content.expectations)
-    rows += fmt::format("<tr><td><code>{}</code>{}</td><td>{}</td><td>{}</td></tr>\n", escape_html(result.text),
-                        result.passed || result.message.empty() ? "" : "<br>" + sentence_html(result.message),
-                        number_html(result.actual), verdict_html(true, result.passed, result.passed ? "passed" : "failed"));
-  return section("expectations", "Expectations", table("<th>line of the model</th><th>came out</th><th></th>", rows, " class=\"wide\""));
+    rows +=
+        fmt::format("<tr><td><code>{}</code>{}</td><td>{}</td><td>{}</td></tr>\n", escape_html(result.text),
+                    result.passed || result.message.empty() ? "" : "<br>" + sentence_html(result.message),
+                    number_html(result.actual), verdict_html(true, result.passed, result.passed ? "passed" : "failed"));
+  return section("expectations", "Expectations",
+                 table("<th>line of the model</th><th>came out</th><th></th>", rows, " class=\"wide\""));
 }
 
 }  // namespace maupertuis

@@ -7,9 +7,12 @@
 namespace maupertuis {
 
 std::string ground_of(const ZeroTest& test, bool constrained) {
-  if (test.points == 0 && test.error_bound == 0) return "proved term by term: the difference of the two sides is 0 as it is written";
-  if (constrained && test.error_bound == 1) return fmt::format("vanishes to 60 digits at {} points of the constraints", test.points);
-  if (test.error_bound < 1) return fmt::format("proved at {} random points, error bound {:.1e}", test.points, test.error_bound);
+  if (test.points == 0 && test.error_bound == 0)
+    return "proved term by term: the difference of the two sides is 0 as it is written";
+  if (constrained && test.error_bound == 1)
+    return fmt::format("vanishes to 60 digits at {} points of the constraints", test.points);
+  if (test.error_bound < 1)
+    return fmt::format("proved at {} random points, error bound {:.1e}", test.points, test.error_bound);
   return test.reason.empty() ? fmt::format("vanishes at {} random points", test.points) : test.reason;
 }
 
@@ -36,7 +39,8 @@ ZeroTest AlongMotion::vanishes(Expr e) const {
   const Expr plain = put_in(e);
   if (!constrained() || plain.is_zero()) return zero_test(plain);
   ExprVector unknowns = equations_.multipliers;
-  for (const Coordinate& c : equations_.system->coordinates) unknowns.insert(unknowns.end(), {c.q, c.velocity, c.acceleration});
+  for (const Coordinate& c : equations_.system->coordinates)
+    unknowns.insert(unknowns.end(), {c.q, c.velocity, c.acceleration});
   return zero_test_where({&plain, 1}, relations(), unknowns, center());
 }
 

@@ -6,20 +6,23 @@ namespace maupertuis {
 namespace {
 
 constexpr std::array entries{
-    CodeEntry{"E0701", "the run has no length",
-              "A run needs an end: a `run` statement in the model, --duration on the command line, or times asked for "
-              "with --at. `run 10 s` runs for ten seconds; `run until P.y = 0 within 60 s` stops when the condition is met.",
-              "", ""},
-    CodeEntry{"E0702", "a start value is not a finite number",
-              "The initial state is computed from the parameters. A division by zero or a root of a negative number in a "
-              "start value leaves no state to begin from.",
-              "", ""},
+    CodeEntry{
+        "E0701", "the run has no length",
+        "A run needs an end: a `run` statement in the model, --duration on the command line, or times asked for "
+        "with --at. `run 10 s` runs for ten seconds; `run until P.y = 0 within 60 s` stops when the condition is met.",
+        "", ""},
+    CodeEntry{
+        "E0702", "a start value is not a finite number",
+        "The initial state is computed from the parameters. A division by zero or a root of a negative number in a "
+        "start value leaves no state to begin from.",
+        "", ""},
     CodeEntry{"E0703", "the length of the run is not a finite number",
               "The duration of a run is computed from the parameters; here it is infinite or undefined.", "", ""},
-    CodeEntry{"E0704", "the output interval is not a positive time",
-              "`output every 10 ms` sets the time between two rows of the trajectory. It must be positive; the direction "
-              "of time follows from the run.",
-              "", ""},
+    CodeEntry{
+        "E0704", "the output interval is not a positive time",
+        "`output every 10 ms` sets the time between two rows of the trajectory. It must be positive; the direction "
+        "of time follows from the run.",
+        "", ""},
     CodeEntry{"E0705", "the trajectory would be too large",
               "The trajectory is kept in memory until it is written. With more than twenty million rows it would not "
               "fit; choose a longer interval between rows. The steps of the integrator are not affected.",
@@ -28,17 +31,19 @@ constexpr std::array entries{
               "A run goes one way from its start: forwards, or backwards with a negative duration. States on the other "
               "side of the start need a run of their own.",
               "", ""},
-    CodeEntry{"E0707", "the start violates a constraint",
-              "`start exactly` keeps every written value as it stands. Here the written values do not lie on the "
-              "constraints, whatever the others are. Without `exactly` they are moved by the least kinetic change, with a "
-              "warning.",
-              "", ""},
-    CodeEntry{"E0708", "the constraints cannot be met",
-              "From the start, and from several other configurations, no configuration was found on which all "
-              "constraints hold: a loop that cannot close, or constraints that contradict each other. The message names a "
-              "smallest set of them that clashes. The search is local: a start near a configuration that you know to "
-              "be possible helps it.",
-              "", ""},
+    CodeEntry{
+        "E0707", "the start violates a constraint",
+        "`start exactly` keeps every written value as it stands. Here the written values do not lie on the "
+        "constraints, whatever the others are. Without `exactly` they are moved by the least kinetic change, with a "
+        "warning.",
+        "", ""},
+    CodeEntry{
+        "E0708", "the constraints cannot be met",
+        "From the start, and from several other configurations, no configuration was found on which all "
+        "constraints hold: a loop that cannot close, or constraints that contradict each other. The message names a "
+        "smallest set of them that clashes. The search is local: a start near a configuration that you know to "
+        "be possible helps it.",
+        "", ""},
     CodeEntry{"E0709", "no velocities satisfy the constraints",
               "At the configuration of the start the constraints on the velocities contradict each other or the rates "
               "that the start asks for.",
@@ -48,42 +53,51 @@ constexpr std::array entries{
               "others can make them hold. They were moved by the least kinetic change. `start exactly` makes this an "
               "error.",
               "", ""},
-    CodeEntry{"W0703", "the run was carried out without compiled code",
-              "--backend compiled asks for machine code, which the module with LLVM makes. It may be missing, belong to "
-              "another build, or not do this: a very large model, or a method other than "
-              "Taylor's. The results of the interpreter are the same to rounding, they only take longer.",
-              "", ""},
-    CodeEntry{"N0704", "compiled code would have paid for this run, and is not here",
-              "A run of many steps takes machine code from the module with LLVM where it can. This installation has none "
-              "that works; the interpreter carried the run out, with the same results to rounding.",
-              "", ""},
-    CodeEntry{"W0705", "the compiled code could not be kept for the next run",
-              "Machine code is kept in $XDG_CACHE_HOME/maupertuis or ~/.cache/maupertuis, so that the next run of the same "
-              "model begins at once. The folder cannot be written; or it belongs to another user, or others can write to it, who could have put in code that "
-              "would run as you: then it is neither written nor read. The run itself is not affected.",
-              "", ""},
-    CodeEntry{"N0702", "the stiff method took over",
-              "Where a fast, strongly damped motion has died out, an explicit method still has to follow its time scale. "
-              "The default method sees that its steps are far shorter than the times in which the velocities change and "
-              "goes on with backward differentiation formulas. They keep a tolerance (1e-10, or --tol), not rounding "
-              "level. --method taylor forbids the change, --method stiff uses it from the start.",
-              "", ""},
-    CodeEntry{"N0701", "the start was found by a search",
-              "The coordinates that the start does not give have no solution near zero, so that one was searched for from "
-              "several points. A mechanism can often be assembled in more than one way: give more start values to choose.",
-              "", ""},
+    CodeEntry{
+        "W0703", "the run was carried out without compiled code",
+        "--backend compiled asks for machine code, which the module with LLVM makes. It may be missing, belong to "
+        "another build, or not do this: a very large model, or a method other than "
+        "Taylor's. The results of the interpreter are the same to rounding, they only take longer.",
+        "", ""},
+    CodeEntry{
+        "N0704", "compiled code would have paid for this run, and is not here",
+        "A run of many steps takes machine code from the module with LLVM where it can. This installation has none "
+        "that works; the interpreter carried the run out, with the same results to rounding.",
+        "", ""},
+    CodeEntry{
+        "W0705", "the compiled code could not be kept for the next run",
+        "Machine code is kept in $XDG_CACHE_HOME/maupertuis or ~/.cache/maupertuis, so that the next run of the same "
+        "model begins at once. The folder cannot be written; or it belongs to another user, or others can write to it, "
+        "who could have put in code that "
+        "would run as you: then it is neither written nor read. The run itself is not affected.",
+        "", ""},
+    CodeEntry{
+        "N0702", "the stiff method took over",
+        "Where a fast, strongly damped motion has died out, an explicit method still has to follow its time scale. "
+        "The default method sees that its steps are far shorter than the times in which the velocities change and "
+        "goes on with backward differentiation formulas. They keep a tolerance (1e-10, or --tol), not rounding "
+        "level. --method taylor forbids the change, --method stiff uses it from the start.",
+        "", ""},
+    CodeEntry{
+        "N0701", "the start was found by a search",
+        "The coordinates that the start does not give have no solution near zero, so that one was searched for from "
+        "several points. A mechanism can often be assembled in more than one way: give more start values to choose.",
+        "", ""},
     CodeEntry{"E0720", "the variational method does not take constraints between velocities",
-              "A constraint between velocities that no constraint between positions implies follows d'Alembert's principle, not "
+              "A constraint between velocities that no constraint between positions implies follows d'Alembert's "
+              "principle, not "
               "Hamilton's: variations obey other conditions than motions do. The default method takes it.",
               "", ""},
     CodeEntry{"E0721", "the variational method needs the length of its step",
-              "The steps of a variational integrator are all alike, which is why it keeps momenta and the symplectic form; its "
+              "The steps of a variational integrator are all alike, which is why it keeps momenta and the symplectic "
+              "form; its "
               "length is given with --step.",
               "", ""},
-    CodeEntry{"E0722", "there is no variational step of this order",
-              "Steps on s Gauss nodes have order 2s, on s Lobatto nodes 2s - 2 (under constraints). Orders from 2 to 12 are "
-              "offered; an odd number counts as the next even one.",
-              "", ""},
+    CodeEntry{
+        "E0722", "there is no variational step of this order",
+        "Steps on s Gauss nodes have order 2s, on s Lobatto nodes 2s - 2 (under constraints). Orders from 2 to 12 are "
+        "offered; an odd number counts as the next even one.",
+        "", ""},
     CodeEntry{"E0723", "this build has no stiff method",
               "The stiff method is CVODE of the library SUNDIALS, which is optional when maup is built.", "", ""},
     CodeEntry{"E0724", "the tolerance of the stiff method is no number between 0 and 1",
@@ -91,11 +105,13 @@ constexpr std::array entries{
               "tolerance.",
               "", ""},
     CodeEntry{"E0725", "this method calculates in double alone",
-              "--precision quad and --precision 100 run Taylor's method, whose order grows with the number of digits. The stiff and the "
+              "--precision quad and --precision 100 run Taylor's method, whose order grows with the number of digits. "
+              "The stiff and the "
               "variational method have bounded orders.",
               "", ""},
     CodeEntry{"E0726", "a run cannot end with a force that the model does not determine",
-              "Where constraints depend on each other, or coordinates have removed one, its force is not unique.", "", ""},
+              "Where constraints depend on each other, or coordinates have removed one, its force is not unique.", "",
+              ""},
 };
 
 }  // namespace

@@ -14,17 +14,20 @@
 namespace maupertuis {
 namespace {
 
-constexpr std::uint64_t seed = 1744;  // the year of the principle; with the number of a companion: equal runs have equal companions
+constexpr std::uint64_t seed =
+    1744;  // the year of the principle; with the number of a companion: equal runs have equal companions
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-/// Adds its differences up, so that long trajectories are held once. Where the run itself has no number there is no difference.
+/// Adds its differences up, so that long trajectories are held once. Where the run itself has no number there is no
+/// difference.
 void take_in(Companions& to, CompanionRun run, const CompanionPlan& plan) {
   const std::size_t columns = plan.columns();
   to.squares.resize(plan.grid.size() * columns);
   for (std::size_t g = 0; g < plan.grid.size(); ++g)
     for (std::size_t c = 0; c < columns; ++c) {
       const double value = plan.result.trajectory.at(plan.grid[g], c), off = run.rows[g * columns + c] - value;
-      if (std::isfinite(value)) to.squares[g * columns + c] += std::isfinite(off) ? off * off : std::numeric_limits<double>::infinity();
+      if (std::isfinite(value))
+        to.squares[g * columns + c] += std::isfinite(off) ? off * off : std::numeric_limits<double>::infinity();
     }
   run.rows = {};
   to.runs.push_back(std::move(run));
@@ -36,7 +39,8 @@ std::vector<std::size_t> order_of_requests(const CompanionPlan& plan) {
   std::vector<std::size_t> out(at.size());
   std::iota(out.begin(), out.end(), std::size_t{0});
   const bool backwards = plan.run.end < plan.run.begin;
-  std::stable_sort(out.begin(), out.end(), [&](std::size_t a, std::size_t b) { return backwards ? at[a] > at[b] : at[a] < at[b]; });
+  std::stable_sort(out.begin(), out.end(),
+                   [&](std::size_t a, std::size_t b) { return backwards ? at[a] > at[b] : at[a] < at[b]; });
   return out;
 }
 
@@ -50,7 +54,8 @@ Companions interrupted() {
 
 class Recorder {
  public:
-  Recorder(const CompanionPlan& plan, Method& method) : plan_(plan), method_(method), requests_(order_of_requests(plan)) {
+  Recorder(const CompanionPlan& plan, Method& method)
+      : plan_(plan), method_(method), requests_(order_of_requests(plan)) {
     out_.at.resize(plan.options.at.size());
   }
 
@@ -80,8 +85,10 @@ class Recorder {
   }
 
   void cover() {
-    for (; next_row_ < plan_.grid.size() && method_.covers(plan_.time(next_row_)); ++next_row_) add_row(plan_.time(next_row_));
-    for (; next_request_ < requests_.size() && method_.covers(plan_.options.at[requests_[next_request_]]); ++next_request_)
+    for (; next_row_ < plan_.grid.size() && method_.covers(plan_.time(next_row_)); ++next_row_)
+      add_row(plan_.time(next_row_));
+    for (; next_request_ < requests_.size() && method_.covers(plan_.options.at[requests_[next_request_]]);
+         ++next_request_)
       out_.at[requests_[next_request_]] = sample(plan_.options.at[requests_[next_request_]]);
   }
 
@@ -104,8 +111,8 @@ std::size_t most_steps(const CompanionPlan& plan) {
   return steps < most / 8 ? 8 * steps + 1000 : most;
 }
 
-/// Of tolerances that the user chose a smaller one: its own error must not hide that of the run. At rounding level nothing is smaller; there the order
-/// alone makes other steps.
+/// Of tolerances that the user chose a smaller one: its own error must not hide that of the run. At rounding level
+/// nothing is smaller; there the order alone makes other steps.
 TaylorOptions taylor_options(const CompanionPlan& plan, int companion) {
   TaylorOptions out;
   out.tolerance = std::max(rounding_tolerance(), plan.options.tolerance / (20 * (companion + 1)));
@@ -138,16 +145,18 @@ std::unique_ptr<Method> finer_variational(const CompanionPlan& plan, const Wante
   return variational_method(plan.equations, wanted, out, told_by_the_run);
 }
 
-Companions one_after_the_other(const CompanionPlan& plan, const WantedFunctions& wanted, const RoundedNumbers& numbers) {
+Companions one_after_the_other(const CompanionPlan& plan, const WantedFunctions& wanted,
+                               const RoundedNumbers& numbers) {
   const std::string& name = plan.result.statistics.method;
   const bool taylor = name == "taylor";
   Companions out;
   for (int k = 0; k < (taylor ? 3 : 2); ++k) {
     RoundedNumbers::Draw draw = numbers.draw(seed + static_cast<std::uint64_t>(k));
     if (!taylor) draw.q = plan.run.q, draw.v = plan.run.v;  // rounding is nothing beside their tolerances
-    const std::unique_ptr<Method> method = taylor            ? method_of(TaylorStepper(numbers.kernel(), draw.parameters, taylor_options(plan, k)))
-                                           : name == "stiff" ? finer_stiff(plan, wanted, k)
-                                                             : finer_variational(plan, wanted, k);
+    const std::unique_ptr<Method> method =
+        taylor            ? method_of(TaylorStepper(numbers.kernel(), draw.parameters, taylor_options(plan, k)))
+        : name == "stiff" ? finer_stiff(plan, wanted, k)
+                          : finer_variational(plan, wanted, k);
     auto run = Recorder(plan, *method).record(draw);
     if (!run) return interrupted();
     take_in(out, std::move(*run), plan);
@@ -168,10 +177,13 @@ bool fit_side_by_side(const CompanionPlan& plan, const Kernel& kernel) {
 
 class SideBySide {
  public:
-  SideBySide(const CompanionPlan& plan, const RoundedNumbers& numbers) : plan_(plan), kernel_(numbers.kernel()), point_(kernel_, 1) {
+  SideBySide(const CompanionPlan& plan, const RoundedNumbers& numbers)
+      : plan_(plan), kernel_(numbers.kernel()), point_(kernel_, 1) {
     for (std::size_t k = 0; k < in_a_register; ++k) {
       draws_.push_back(numbers.draw(seed + k));
-      const auto append = [](std::vector<double>& to, const std::vector<double>& from) { to.insert(to.end(), from.begin(), from.end()); };
+      const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
+        to.insert(to.end(), from.begin(), from.end());
+      };
       append(q_, draws_[k].q), append(v_, draws_[k].v), append(parameters_, draws_[k].parameters);
       factors_.push_back(1 - static_cast<double>(k) / 32);
     }
@@ -198,9 +210,11 @@ class SideBySide {
     options.backend = plan_.options.backend;
     options.cache = plan_.options.cache;
     const EnsembleResult found = advance_ensemble(kernel_, start, options);
-    if (std::any_of(found.endings.begin(), found.endings.end(), [](const TrajectoryEnding& e) { return e.ending == StepEnding::Interrupted; }))
+    if (std::any_of(found.endings.begin(), found.endings.end(),
+                    [](const TrajectoryEnding& e) { return e.ending == StepEnding::Interrupted; }))
       return interrupted();
-    if (std::any_of(found.endings.begin(), found.endings.end(), [](const TrajectoryEnding& e) { return e.alone; })) return std::nullopt;
+    if (std::any_of(found.endings.begin(), found.endings.end(), [](const TrajectoryEnding& e) { return e.alone; }))
+      return std::nullopt;
     Companions out;
     out.factor = 3;
     out.running_maximum = false;
@@ -219,7 +233,8 @@ class SideBySide {
         append_row(out.rows, sample(t, found.q_of(k, i), found.v_of(k, i)), plan_.observables);
         continue;
       }
-      for (const auto part : {found.q_of(k, i), found.v_of(k, i)}) out.rows.insert(out.rows.end(), part.begin(), part.end());
+      for (const auto part : {found.q_of(k, i), found.v_of(k, i)})
+        out.rows.insert(out.rows.end(), part.begin(), part.end());
     }
     for (std::size_t r = 0; r < plan_.options.at.size(); ++r) {
       const double t = plan_.options.at[r];
@@ -240,7 +255,8 @@ class SideBySide {
     out.q.assign(q.begin(), q.end());
     out.v.assign(v.begin(), v.end());
     const bool known = std::isfinite(q[0]) && point_.evaluate(t, q, v) == KernelStatus::Ok;
-    for (std::size_t i = 0; i < kernel_.observables(); ++i) out.observables.push_back(known ? point_.observable(i) : nothing);
+    for (std::size_t i = 0; i < kernel_.observables(); ++i)
+      out.observables.push_back(known ? point_.observable(i) : nothing);
     return out;
   }
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-/// Runs of the same motion beside the one that counts: other orders, other steps, numbers rounded the other way. What they differ by tells
-/// how much of a result is known (docs/design/certain_digits.md).
+/// Runs of the same motion beside the one that counts: other orders, other steps, numbers rounded the other way. What
+/// they differ by tells how much of a result is known (docs/design/certain_digits.md).
 namespace maupertuis {
 
 /// What a companion is to follow: the run, and where it is looked at.
@@ -27,21 +27,23 @@ struct CompanionPlan {
 
 /// What one companion left.
 struct CompanionRun {
-  std::vector<double> rows;        // [grid × columns]; NaN at times that it did not come to; empty once they are added up
-  std::vector<Sample> at;          // [options.at]; q is empty where it did not come to
-  std::optional<Sample> final;     // at the end of the run that counts, or where it met the condition of `run until` itself
+  std::vector<double> rows;  // [grid × columns]; NaN at times that it did not come to; empty once they are added up
+  std::vector<Sample> at;    // [options.at]; q is empty where it did not come to
+  std::optional<Sample>
+      final;  // at the end of the run that counts, or where it met the condition of `run until` itself
 };
 
 struct Companions {
   std::vector<CompanionRun> runs;
-  std::vector<double> squares;     // [grid × columns] of the differences, of all runs; infinite where one had no value
-  double factor = 3;               // the error is so many times the root of the mean square of the differences
-  bool running_maximum = true;     // and the largest of these so far
+  std::vector<double> squares;  // [grid × columns] of the differences, of all runs; infinite where one had no value
+  double factor = 3;            // the error is so many times the root of the mean square of the differences
+  bool running_maximum = true;  // and the largest of these so far
   bool interrupted = false;
 };
 
-/// Up to 4 unknowns, and where the kernel fits into lanes, seven side by side; else three, one after the other; of the stiff and the variational method two,
-/// with tolerances or steps several times smaller. Cost: seven in lanes about that of the run; else that of the run each, two to three times that for finer steps.
+/// Up to 4 unknowns, and where the kernel fits into lanes, seven side by side; else three, one after the other; of the
+/// stiff and the variational method two, with tolerances or steps several times smaller. Cost: seven in lanes about
+/// that of the run; else that of the run each, two to three times that for finer steps.
 Companions run_companions(const CompanionPlan& plan, const WantedFunctions& wanted, const RoundedNumbers& numbers);
 
 }  // namespace maupertuis

@@ -28,8 +28,12 @@ std::string change_text(double from, double to) {
 class Start {
  public:
   Start(const Model& model, const EquationsOfMotion& equations, Diagnostics& diagnostics)
-      : model_(model), system_(model.system), equations_(equations), diagnostics_(diagnostics),
-        bindings_(parameter_bindings(model.system)), n_(model.system.coordinates.size()) {}
+      : model_(model),
+        system_(model.system),
+        equations_(equations),
+        diagnostics_(diagnostics),
+        bindings_(parameter_bindings(model.system)),
+        n_(model.system.coordinates.size()) {}
 
   std::optional<ConsistentStart> find() {
     if (!read()) return std::nullopt;
@@ -140,9 +144,10 @@ class Start {
   bool refuse_written(const ConstraintManifold& manifold) {
     const auto off = manifold.relative_values(written_state_);
     const auto worst = static_cast<std::size_t>(std::max_element(off.begin(), off.end()) - off.begin());
-    diagnostics_.error("E0707", span(), fmt::format("the start violates {}", system_.constraint_label(worst)),
-                       "`start exactly` keeps the written values, and no choice of the others satisfies the constraints.",
-                       "Correct the values, give fewer of them, or leave out `exactly`.");
+    diagnostics_.error(
+        "E0707", span(), fmt::format("the start violates {}", system_.constraint_label(worst)),
+        "`start exactly` keeps the written values, and no choice of the others satisfies the constraints.",
+        "Correct the values, give fewer of them, or leave out `exactly`.");
     return false;
   }
 
@@ -151,7 +156,8 @@ class Start {
     trial.v.assign(n_, 0);
     const std::vector<std::size_t> clash = manifold.smallest_clash(trial);
     const std::string names = labels(clash);
-    const std::optional<Span> place = clash.empty() ? std::nullopt : std::optional(system_.constraints[clash.back()].span);
+    const std::optional<Span> place =
+        clash.empty() ? std::nullopt : std::optional(system_.constraints[clash.back()].span);
     diagnostics_.error("E0708", place, fmt::format("no configuration satisfies {}", names),
                        "These constraints exclude each other from where the motion starts: the loop cannot close.",
                        "Check the lengths in them, or start nearer to a configuration that is possible.");
@@ -167,9 +173,10 @@ class Start {
     const bool is_rate = worst >= manifold.constraints();
     const std::string label = is_rate ? "the angular velocity of the start" : system_.constraint_label(worst);
     if (model_.experiment.start_exactly) {
-      diagnostics_.error("E0707", span(), fmt::format("the velocities of the start violate {}", label),
-                         "`start exactly` keeps the written values, and no choice of the others satisfies the constraints.",
-                         "Correct the values, give fewer of them, or leave out `exactly`.");
+      diagnostics_.error(
+          "E0707", span(), fmt::format("the velocities of the start violate {}", label),
+          "`start exactly` keeps the written values, and no choice of the others satisfies the constraints.",
+          "Correct the values, give fewer of them, or leave out `exactly`.");
       return false;
     }
     if (move(manifold, nothing())) return true;
@@ -196,7 +203,8 @@ class Start {
                    const std::vector<bool>& written, int order) {
     for (std::size_t i = 0; i < now.size(); ++i) {
       const double change = std::abs(now[i] - before[i]);
-      if (change > (written[i] ? rounding_of_digits * std::abs(before[i]) : 0)) out.push_back({i, order, before[i], now[i], written[i]});
+      if (change > (written[i] ? rounding_of_digits * std::abs(before[i]) : 0))
+        out.push_back({i, order, before[i], now[i], written[i]});
     }
   }
 
@@ -207,13 +215,15 @@ class Start {
         moved += fmt::format("{}{}{} {}", moved.empty() ? "" : ", ", system_.coordinates[a.coordinate].name,
                              a.order == 0 ? "" : "'", change_text(a.from, a.to));
     if (!moved.empty())
-      diagnostics_.warning("W0701", span(), fmt::format("the start was moved onto the constraints: {} (SI units)", moved),
+      diagnostics_.warning("W0701", span(),
+                           fmt::format("the start was moved onto the constraints: {} (SI units)", moved),
                            "The written values contradict the constraints, so that the least kinetic change was made.",
                            "Correct the values, or give fewer of them.");
     else if (out.searched)
-      diagnostics_.note("N0701", span(), "the start was found by a search",
-                        "There is no solution near zero for the coordinates that the start does not give; others may exist.",
-                        "Give more start values to choose how the system is assembled.");
+      diagnostics_.note(
+          "N0701", span(), "the start was found by a search",
+          "There is no solution near zero for the coordinates that the start does not give; others may exist.",
+          "Give more start values to choose how the system is assembled.");
   }
 
   const Model& model_;

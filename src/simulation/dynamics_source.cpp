@@ -11,7 +11,8 @@ namespace {
 
 bool holds_inputs(Expr root) {
   const auto order = topological_order({&root, 1});
-  return std::any_of(order.begin(), order.end(), [](const Expr& e) { return e.is_symbol() && e.role() == Role::Input; });
+  return std::any_of(order.begin(), order.end(),
+                     [](const Expr& e) { return e.is_symbol() && e.role() == Role::Input; });
 }
 
 /// Definitions as expressions; inputs stay symbols.

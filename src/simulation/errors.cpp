@@ -8,7 +8,7 @@ namespace maupertuis {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t usual_rows = 400;   // that are compared where no row is to have its errors
+constexpr std::size_t usual_rows = 400;  // that are compared where no row is to have its errors
 /// Of the largest value of a column: an error above it leaves no digit, and grows no further than the motion reaches.
 constexpr double saturated = 0.5;
 /// Of the largest value among columns of one unit: what is smaller is rounding noise about zero, not a motion.
@@ -21,8 +21,13 @@ double with_rounding(double error, double value) {
 
 class Teller {
  public:
-  Teller(SimulationResult& result, const CompanionPlan& plan, const Companions& companions, const RoundedNumbers& numbers)
-      : result_(result), plan_(plan), companions_(companions), numbers_(numbers), n_(plan.run.q.size()),
+  Teller(SimulationResult& result, const CompanionPlan& plan, const Companions& companions,
+         const RoundedNumbers& numbers)
+      : result_(result),
+        plan_(plan),
+        companions_(companions),
+        numbers_(numbers),
+        n_(plan.run.q.size()),
         columns_(plan.columns()) {
     find_rows();
     find_loss();
@@ -30,10 +35,12 @@ class Teller {
 
   void tell(Probe* probe) {
     for (std::size_t i = 0; i < result_.at.size(); ++i)
-      if (!result_.at[i].q.empty()) tell_state(result_.at[i], [i](const CompanionRun& run) { return sample_or_null(run.at[i]); });
+      if (!result_.at[i].q.empty())
+        tell_state(result_.at[i], [i](const CompanionRun& run) { return sample_or_null(run.at[i]); });
     tell_state(result_.final, [](const CompanionRun& run) { return run.final ? &*run.final : nullptr; });
     if (result_.ending == Ending::UntilReached)
-      result_.final.errors->t = error_of(result_.final.t, [](const CompanionRun& run) { return run.final ? run.final->t : infinity; });
+      result_.final.errors->t =
+          error_of(result_.final.t, [](const CompanionRun& run) { return run.final ? run.final->t : infinity; });
     if (plan_.whole_rows) tell_rows();
     if (probe) tell_probe(*probe);
   }
@@ -64,7 +71,8 @@ class Teller {
   void find_rows() {
     for (std::size_t g = 0; g < plan_.grid.size(); ++g)
       for (std::size_t c = 0; c < columns_; ++c) {
-        double e = companions_.factor * std::sqrt(companions_.squares[g * columns_ + c] / static_cast<double>(companions_.runs.size()));
+        double e = companions_.factor *
+                   std::sqrt(companions_.squares[g * columns_ + c] / static_cast<double>(companions_.runs.size()));
         if (g == 0 && plan_.time(0) == plan_.run.begin && is_given(c)) e = 0;
         if (companions_.running_maximum && g > 0) e = std::max(e, errors_[(g - 1) * columns_ + c]);
         errors_.push_back(e);
@@ -105,7 +113,8 @@ class Teller {
     result_.uncertain.everything = everything && !result_.uncertain.columns.empty();
   }
 
-  /// The first row that is lost and from which on most are: companions that go ways of their own come near each other by chance now and then.
+  /// The first row that is lost and from which on most are: companions that go ways of their own come near each other
+  /// by chance now and then.
   std::size_t first_lost(std::size_t column, double size, double of_unit) const {
     constexpr double most = 0.75;
     const std::size_t rows = plan_.grid.size();
@@ -117,7 +126,9 @@ class Teller {
     return first;
   }
 
-  static bool is_lost(double error, double size, double of_unit) { return error > 0 && error >= saturated * size && error >= noise * of_unit; }
+  static bool is_lost(double error, double size, double of_unit) {
+    return error > 0 && error >= saturated * size && error >= noise * of_unit;
+  }
 
   void note_loss(std::size_t column) {
     Uncertainty& uncertain = result_.uncertain;
@@ -126,7 +137,9 @@ class Teller {
   }
 
   bool is_later(double t, double than) const { return plan_.run.end < plan_.run.begin ? t < than : t > than; }
-  bool is_lost_at(std::size_t column, double t) const { return lost_from_[column] < infinity && !is_later(lost_from_[column], t); }
+  bool is_lost_at(std::size_t column, double t) const {
+    return lost_from_[column] < infinity && !is_later(lost_from_[column], t);
+  }
   bool everything_lost_at(double t) const {
     return result_.uncertain.everything && !is_later(result_.uncertain.from, t);
   }
@@ -135,7 +148,8 @@ class Teller {
   double before(std::size_t column, double t) const {
     double out = 0;
     if (!companions_.running_maximum) return out;
-    for (std::size_t g = 0; g < plan_.grid.size() && !is_later(plan_.time(g), t); ++g) out = errors_[g * columns_ + column];
+    for (std::size_t g = 0; g < plan_.grid.size() && !is_later(plan_.time(g), t); ++g)
+      out = errors_[g * columns_ + column];
     return out;
   }
 
@@ -162,7 +176,8 @@ class Teller {
         return sample && i < sample->multipliers.size() ? sample->multipliers[i] : infinity;
       }));
     const std::size_t first = plan_.observables.energy_terms + plan_.observables.points;
-    for (std::size_t i = 0; i < state.reactions.size(); ++i) out.reactions.push_back(observable_error(state.reactions[i], first + i, state.t, sample_of));
+    for (std::size_t i = 0; i < state.reactions.size(); ++i)
+      out.reactions.push_back(observable_error(state.reactions[i], first + i, state.t, sample_of));
     state.errors = std::move(out);
   }
 
@@ -215,8 +230,8 @@ class Teller {
   const Companions& companions_;
   const RoundedNumbers& numbers_;
   std::size_t n_, columns_;
-  std::vector<double> errors_;          // [grid × columns]
-  std::vector<double> lost_from_;       // [2n] s; infinite: it is not
+  std::vector<double> errors_;     // [grid × columns]
+  std::vector<double> lost_from_;  // [2n] s; infinite: it is not
 };
 
 }  // namespace
@@ -231,7 +246,8 @@ std::vector<std::size_t> comparison_grid(const Trajectory& rows, const RunPlan& 
   return out;
 }
 
-void tell_errors(SimulationResult& result, Probe* probe, const CompanionPlan& plan, const Companions& companions, const RoundedNumbers& numbers) {
+void tell_errors(SimulationResult& result, Probe* probe, const CompanionPlan& plan, const Companions& companions,
+                 const RoundedNumbers& numbers) {
   Teller(result, plan, companions, numbers).tell(probe);
 }
 

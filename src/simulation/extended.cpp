@@ -3,12 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <random>
 
-/// A run in many digits: the exact plan, the run, a companion of other order and other last bits, the check run with a wider mantissa, and what all agree on.
+/// A run in many digits: the exact plan, the run, a companion of other order and other last bits, the check run with a
+/// wider mantissa, and what all agree on.
 namespace maupertuis {
 namespace {
 
@@ -23,25 +24,31 @@ struct Level {
 };
 
 Level level_of(Precision precision) {
-  if (precision == Precision::Quad) return {Mantissa::Bits113, Mantissa::Bits192, 113, 192, 33, log2_rounding(Mantissa::Bits113)};
+  if (precision == Precision::Quad)
+    return {Mantissa::Bits113, Mantissa::Bits192, 113, 192, 33, log2_rounding(Mantissa::Bits113)};
   return {Mantissa::Bits384, Mantissa::Bits448, 384, 448, 100, -105 * std::log2(10.0)};
 }
 
 bool has_method(const Model& model, const ExtendedSimulationOptions& options, Diagnostics& diagnostics) {
   const StepMethod method = options.method.value_or(model.experiment.method.value_or(MethodChoice{}).method);
   if (method == StepMethod::Automatic || method == StepMethod::Taylor) return true;
-  diagnostics.error("E0725", std::nullopt,
-                    fmt::format("the {} method calculates in double alone", method == StepMethod::Stiff ? "stiff" : "variational"),
-                    "Its order is bounded, so that a hundred digits would cost more steps than anyone can wait for.",
-                    "Take --method taylor, or leave it out.");
+  diagnostics.error(
+      "E0725", std::nullopt,
+      fmt::format("the {} method calculates in double alone", method == StepMethod::Stiff ? "stiff" : "variational"),
+      "Its order is bounded, so that a hundred digits would cost more steps than anyone can wait for.",
+      "Take --method taylor, or leave it out.");
   return false;
 }
 
 class ExtendedRun {
  public:
-  ExtendedRun(const Model& model, const EquationsOfMotion& equations, const ExtendedSimulationOptions& options, ExtendedPlan plan,
-              const Observables& observables)
-      : model_(model), system_(*equations.system), options_(options), plan_(std::move(plan)), observables_(observables),
+  ExtendedRun(const Model& model, const EquationsOfMotion& equations, const ExtendedSimulationOptions& options,
+              ExtendedPlan plan, const Observables& observables)
+      : model_(model),
+        system_(*equations.system),
+        options_(options),
+        plan_(std::move(plan)),
+        observables_(observables),
         level_(level_of(options.precision)) {
     settings_.log2_tolerance = options.tolerance > 0 ? std::log2(options.tolerance) : level_.log2_tolerance;
     settings_.log2_tolerance = std::max(settings_.log2_tolerance, log2_rounding(level_.mantissa));
@@ -56,7 +63,9 @@ class ExtendedRun {
     auto begin = Clock::now();
     if (options_.progress) settings_.progress = [this](double fraction) { options_.progress(0.28 * fraction); };
     const ExtendedMotion rough = run_extended(plan_.problem, level_.mantissa, settings_);
-    out_.statistics = {rough.steps, 0, rough.switches, rough.order, 0, level_.bits, level_.check_bits, seconds_since(begin), 0, 0, 0, 0};
+    out_.statistics = {
+        rough.steps, 0, rough.switches, rough.order, 0, level_.bits, level_.check_bits, seconds_since(begin), 0, 0,
+        0,           0};
     tell_ending(rough);
     out_.at.resize(options_.at.size());
     if (out_.ending == Ending::Interrupted || !rough.final.reached) return std::move(out_);
@@ -126,7 +135,8 @@ class ExtendedRun {
     if (!motion.final.t.empty()) out_.reached = Rational::parse(motion.final.t)->to_double();
     if (motion.ending != StepEnding::None || !plan_.problem.until) return;
     out_.ending = motion.met ? Ending::UntilReached : Ending::UntilNotReached;
-    out_.reason = motion.met ? "the condition of `run until` was met" : "the condition of `run until` was not met within the time given";
+    out_.reason = motion.met ? "the condition of `run until` was met"
+                             : "the condition of `run until` was not met within the time given";
   }
 
   void compare(const ExtendedMotion& rough, const ExtendedMotion& companion, const ExtendedMotion& fine) {
@@ -148,18 +158,22 @@ class ExtendedRun {
     const ExtendedSample &rough, &companion, &fine;
   };
 
-  /// The digits of `fine` that neither of the others contradicts. A companion that did not come so far contradicts them all.
+  /// The digits of `fine` that neither of the others contradicts. A companion that did not come so far contradicts them
+  /// all.
   AgreedNumber agreed(const std::string& rough, const std::string& companion, const std::string& fine) const {
     if (rough.empty() || fine.empty()) return {};
     if (companion.empty()) return {"0", 0, "more than can be told: one of them did not come so far"};
-    const AgreedNumber first = agreed_number(rough, fine, level_.digits), second = agreed_number(companion, fine, level_.digits);
+    const AgreedNumber first = agreed_number(rough, fine, level_.digits),
+                       second = agreed_number(companion, fine, level_.digits);
     return first.digits <= second.digits ? first : second;
   }
 
-  std::vector<AgreedNumber> agreed(const Samples& s, const std::vector<std::string> ExtendedSample::*values, std::size_t first, std::size_t count) const {
+  std::vector<AgreedNumber> agreed(const Samples& s, const std::vector<std::string> ExtendedSample::*values,
+                                   std::size_t first, std::size_t count) const {
     std::vector<AgreedNumber> out;
     for (std::size_t i = first; i < first + count; ++i)
-      out.push_back(agreed((s.rough.*values)[i], s.companion.reached ? (s.companion.*values)[i] : std::string(), (s.fine.*values)[i]));
+      out.push_back(agreed((s.rough.*values)[i], s.companion.reached ? (s.companion.*values)[i] : std::string(),
+                           (s.fine.*values)[i]));
     return out;
   }
 
@@ -175,7 +189,8 @@ class ExtendedRun {
     out.points = agreed(s, &ExtendedSample::observables, 1, plan_.points);
     out.reactions = agreed(s, &ExtendedSample::observables, 1 + plan_.points, plan_.reactions);
     for (const Observables::Dependence& d : observables_.dependences)
-      if (s.rough.multipliers[d.constraint].empty()) out.reactions[d.observable - observables_.energy_terms - plan_.points] = {};
+      if (s.rough.multipliers[d.constraint].empty())
+        out.reactions[d.observable - observables_.energy_terms - plan_.points] = {};
     return out;
   }
 
@@ -213,7 +228,9 @@ std::optional<ExtendedResult> simulate_extended(const Model& model, const Equati
   const auto plan = plan_run(model, equations, rough, diagnostics);
   if (!plan || !requests_lie_ahead(model.system, *plan, rough, diagnostics)) return std::nullopt;
   const Observables observables = collect_observables(equations, nullptr);
-  return ExtendedRun(model, equations, options, plan_extended(model, equations, options, *plan, observables), observables).carry_out();
+  return ExtendedRun(model, equations, options, plan_extended(model, equations, options, *plan, observables),
+                     observables)
+      .carry_out();
 }
 
 namespace {
@@ -228,7 +245,9 @@ std::string quoted(const std::string& name) {
 }  // namespace
 
 std::string to_csv(const ExtendedResult& result) {
-  const auto heading = [](const Trajectory::Column& c) { return quoted(c.unit.empty() ? c.name : c.name + " [" + c.unit + "]"); };
+  const auto heading = [](const Trajectory::Column& c) {
+    return quoted(c.unit.empty() ? c.name : c.name + " [" + c.unit + "]");
+  };
   std::string out = heading(result.independent);
   for (const Trajectory::Column& c : result.columns) out += "," + heading(c);
   out += "\r\n";

@@ -14,8 +14,14 @@ namespace {
 
 class ExactPlanner {
  public:
-  ExactPlanner(const Model& model, const EquationsOfMotion& equations, const ExtendedSimulationOptions& options, const RunPlan& plan)
-      : model_(model), system_(model.system), equations_(equations), options_(options), plan_(plan), context_(*model.system.context) {
+  ExactPlanner(const Model& model, const EquationsOfMotion& equations, const ExtendedSimulationOptions& options,
+               const RunPlan& plan)
+      : model_(model),
+        system_(model.system),
+        equations_(equations),
+        options_(options),
+        plan_(plan),
+        context_(*model.system.context) {
     for (const Parameter& p : system_.parameters) values_[p.symbol] = p.value;
     values_[context_.time()] = number(0);
   }
@@ -63,9 +69,12 @@ class ExactPlanner {
     const Experiment& experiment = model_.experiment;
     const Expr begin = experiment.start_time ? value_of(experiment.start_time) : number(0);
     Expr length = number(0);
-    if (options_.duration) length = number(*options_.duration);
-    else if (experiment.until) length = experiment.within ? value_of(experiment.within) : number(0);
-    else if (experiment.duration) length = value_of(experiment.duration);
+    if (options_.duration)
+      length = number(*options_.duration);
+    else if (experiment.until)
+      length = experiment.within ? value_of(experiment.within) : number(0);
+    else if (experiment.duration)
+      length = value_of(experiment.duration);
     Expr end = begin + length;
     const bool backwards = plan_.end < plan_.begin;
     out_.order_of_times.resize(options_.at.size());
@@ -80,8 +89,10 @@ class ExactPlanner {
       if (backwards ? wanted < there : wanted > there) end = number(last);
     }
     Expr every = number(0);
-    if (options_.output_every) every = number(*options_.output_every);
-    else if (experiment.output_every) every = value_of(experiment.output_every);
+    if (options_.output_every)
+      every = number(*options_.output_every);
+    else if (experiment.output_every)
+      every = value_of(experiment.output_every);
     if (every.is_zero()) every = (plan_.end < plan_.begin ? begin - end : end - begin) / number(1000);
     if (options_.rows) {
       const double count = std::abs(plan_.end - plan_.begin) / evaluate(every, {});
@@ -100,7 +111,8 @@ class ExactPlanner {
     std::vector<bool> fixed_q(n, false), fixed_v(n, false);
     const auto [contradicted_q, contradicted_v] = contradictions();
     for (const StartValue& start : model_.experiment.start) {
-      if (start.span == system_.coordinates[start.coordinate].span && system_.constrained()) continue;  // a guess for a quaternion
+      if (start.span == system_.coordinates[start.coordinate].span && system_.constrained())
+        continue;  // a guess for a quaternion
       if (start.order == 0 && contradicted_q) continue;
       (start.order == 0 ? q : v)[start.coordinate] = value_of(start.value);
       (start.order == 0 ? fixed_q : fixed_v)[start.coordinate] = start.order == 0 || !contradicted_v;
@@ -139,8 +151,9 @@ Kernel kernel_of_numbers(const std::vector<Expr>& numbers) {
   return build_kernel(source);
 }
 
-ExtendedPlan plan_extended(const Model& model, const EquationsOfMotion& equations, const ExtendedSimulationOptions& options,
-                           const RunPlan& plan, const Observables& observables) {
+ExtendedPlan plan_extended(const Model& model, const EquationsOfMotion& equations,
+                           const ExtendedSimulationOptions& options, const RunPlan& plan,
+                           const Observables& observables) {
   return ExactPlanner(model, equations, options, plan).find(observables);
 }
 

@@ -9,14 +9,15 @@ namespace maupertuis {
 /// The exact counterpart of a plan: what run_extended needs, and where its observables are.
 struct ExtendedPlan {
   ExtendedProblem problem;
-  std::vector<Expr> numbers;              // the observables of problem.numbers
-  std::size_t end_index = 0;              // of the end among them
+  std::vector<Expr> numbers;                // the observables of problem.numbers
+  std::size_t end_index = 0;                // of the end among them
   std::vector<std::size_t> order_of_times;  // problem time → index in options.at
-  std::size_t points = 0, reactions = 0;  // observables: energy, points, reactions
+  std::size_t points = 0, reactions = 0;    // observables: energy, points, reactions
 };
 
-ExtendedPlan plan_extended(const Model& model, const EquationsOfMotion& equations, const ExtendedSimulationOptions& options,
-                           const RunPlan& plan, const Observables& observables);
+ExtendedPlan plan_extended(const Model& model, const EquationsOfMotion& equations,
+                           const ExtendedSimulationOptions& options, const RunPlan& plan,
+                           const Observables& observables);
 
 /// The kernel of constants.
 Kernel kernel_of_numbers(const std::vector<Expr>& numbers);

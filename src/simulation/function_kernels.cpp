@@ -27,13 +27,17 @@ class Lowering {
   }
 
   FunctionKernel function(std::span<const Expr> expressions) const { return build_function(source(expressions)); }
-  DifferentiableKernel differentiable(std::span<const Expr> expressions) const { return build_differentiable(source(expressions)); }
+  DifferentiableKernel differentiable(std::span<const Expr> expressions) const {
+    return build_differentiable(source(expressions));
+  }
   /// With derivatives by a and λ alone.
   DifferentiableKernel by_unknowns(std::span<const Expr> expressions) const {
     return build_differentiable(source(expressions), 2 * velocities_.size(), inputs_.size() - 1);
   }
   const ExprVector& velocities() const { return velocities_; }
-  ExprVector positions() const { return {inputs_.begin(), inputs_.begin() + static_cast<std::ptrdiff_t>(velocities_.size())}; }
+  ExprVector positions() const {
+    return {inputs_.begin(), inputs_.begin() + static_cast<std::ptrdiff_t>(velocities_.size())};
+  }
 
  private:
   FunctionSource source(std::span<const Expr> expressions) const {
@@ -49,11 +53,13 @@ Expr size_of_terms(Expr e) {
   ExprVector sizes;
   if (e.is(Kind::Sum))
     for (std::size_t i = 0; i < e.size(); ++i) sizes.push_back(apply(Kind::Abs, e[i]));
-  else sizes.push_back(apply(Kind::Abs, e));
+  else
+    sizes.push_back(apply(Kind::Abs, e));
   return e.context().sum(sizes);
 }
 
-MotionFunctions lower_motion(const Lowering& lowering, const EquationsOfMotion& equations, const WantedFunctions& wanted) {
+MotionFunctions lower_motion(const Lowering& lowering, const EquationsOfMotion& equations,
+                             const WantedFunctions& wanted) {
   const MechanicalSystem& system = *equations.system;
   MotionFunctions out;
   out.freedoms = system.coordinates.size();
@@ -83,7 +89,8 @@ MotionFunctions lower_motion(const Lowering& lowering, const EquationsOfMotion& 
 /// Whether the constraint holds a coordinate that has no kinetic energy of its own.
 bool holds_massless(const EquationsOfMotion& equations, const Constraint& c) {
   for (std::size_t i = 0; i < equations.momenta.size(); ++i)
-    if (equations.momenta[i].is_zero() && !differentiate(c.value, equations.system->coordinates[i].q).is_zero()) return true;
+    if (equations.momenta[i].is_zero() && !differentiate(c.value, equations.system->coordinates[i].q).is_zero())
+      return true;
   return false;
 }
 

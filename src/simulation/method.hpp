@@ -48,16 +48,20 @@ class MethodOf final : public Method {
   const Sample& step_start() const override { return stepper_.step_start(); }
   std::size_t steps() const override { return stepper_.steps(); }
   std::size_t rejected() const override {
-    if constexpr (requires { stepper_.rejected(); }) return stepper_.rejected();
-    else return 0;
+    if constexpr (requires { stepper_.rejected(); })
+      return stepper_.rejected();
+    else
+      return 0;
   }
   std::size_t switches() const override { return stepper_.switches(); }
   double constraint_residual() const override { return stepper_.constraint_residual(); }
   /// Other methods than Taylor's are interpreted.
   BackendUse backend() const override {
     BackendUse use;
-    if constexpr (requires { stepper_.backend(); }) use = stepper_.backend();
-    else use.trouble = "Only Taylor's steps are compiled.";
+    if constexpr (requires { stepper_.backend(); })
+      use = stepper_.backend();
+    else
+      use.trouble = "Only Taylor's steps are compiled.";
     return use;
   }
 

@@ -21,7 +21,8 @@ SimulationOptions with_method_of(const Model& model, SimulationOptions options) 
   if (options.method.value_or(choice.method) == choice.method) {
     if (options.order == 0) options.order = choice.order;
     if (options.step == 0 && choice.step)
-      options.step = evaluate(in_terms_of_motion(model.system, {&choice.step, 1}).front(), parameter_bindings(model.system));
+      options.step =
+          evaluate(in_terms_of_motion(model.system, {&choice.step, 1}).front(), parameter_bindings(model.system));
   }
   options.method = options.method.value_or(choice.method);
   return options;
@@ -31,37 +32,43 @@ std::unique_ptr<Method> variational_method(const EquationsOfMotion& equations, c
                                            const VariationalOptions& options, Diagnostics& diagnostics) {
   const bool has_step = options.step > 0 && std::isfinite(options.step);
   if (const Constraint* velocities = between_velocities(*equations.system)) {
-    diagnostics.error("E0720", velocities->span, "the variational method does not take this constraint between velocities",
-                      "Such a constraint follows the principle of d'Alembert and Lagrange, which is no variational principle: "
-                      "there is no symplectic form that a step could preserve.",
-                      "Use the default method; it keeps the constraint to rounding.");
+    diagnostics.error(
+        "E0720", velocities->span, "the variational method does not take this constraint between velocities",
+        "Such a constraint follows the principle of d'Alembert and Lagrange, which is no variational principle: "
+        "there is no symplectic form that a step could preserve.",
+        "Use the default method; it keeps the constraint to rounding.");
   }
   if (!has_step) {
-    diagnostics.error("E0721", std::nullopt, "the variational method needs the length of its step",
-                      "Its conservation laws hold because all steps are alike; a step that a tolerance changes would lose them.",
-                      "Give a positive time, some twentieth of the shortest period: --step 10ms.");
+    diagnostics.error(
+        "E0721", std::nullopt, "the variational method needs the length of its step",
+        "Its conservation laws hold because all steps are alike; a step that a tolerance changes would lose them.",
+        "Give a positive time, some twentieth of the shortest period: --step 10ms.");
   }
   if (options.order < 2 || options.order > 12) {
-    diagnostics.error("E0722", std::nullopt, fmt::format("there is no variational step of order {}", options.order),
-                      "The orders of steps on Gauss and Lobatto nodes are even; beyond 12 rounding is all that is left.",
-                      "Choose an order from 2 to 12.");
+    diagnostics.error(
+        "E0722", std::nullopt, fmt::format("there is no variational step of order {}", options.order),
+        "The orders of steps on Gauss and Lobatto nodes are even; beyond 12 rounding is all that is left.",
+        "Choose an order from 2 to 12.");
   }
   if (diagnostics.has_errors()) return nullptr;
-  return method_of(VariationalStepper(variational_functions(equations, wanted), parameter_values(*equations.system), options));
+  return method_of(
+      VariationalStepper(variational_functions(equations, wanted), parameter_values(*equations.system), options));
 }
 
 std::unique_ptr<Method> stiff_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
                                      const StiffOptions& options, Diagnostics& diagnostics) {
   if (!has_stiff_method()) {
     diagnostics.error("E0723", std::nullopt, "this build of maup has no stiff method",
-                      "Its backward differentiation formulas are those of the library SUNDIALS, which was not there when maup was built.",
+                      "Its backward differentiation formulas are those of the library SUNDIALS, which was not there "
+                      "when maup was built.",
                       "Install SUNDIALS 6 and build again, or use the default method with more patience.");
     return nullptr;
   }
   if (!(options.tolerance > 0 && options.tolerance < 1)) {
-    diagnostics.error("E0724", std::nullopt, fmt::format("{:g} is no relative tolerance", options.tolerance),
-                      "The error of a step is compared with the size of each coordinate and velocity times the tolerance.",
-                      "Choose a number between 0 and 1, such as 1e-10.");
+    diagnostics.error(
+        "E0724", std::nullopt, fmt::format("{:g} is no relative tolerance", options.tolerance),
+        "The error of a step is compared with the size of each coordinate and velocity times the tolerance.",
+        "Choose a number between 0 and 1, such as 1e-10.");
     return nullptr;
   }
   return method_of(StiffStepper(motion_functions(equations, wanted), parameter_values(*equations.system), options));

@@ -12,8 +12,8 @@
 /// The methods beside Taylor's, from the equations of a system.
 namespace maupertuis {
 
-/// The options with a method: where none is asked for that of the model's `method`, or Automatic. Its step and order go with it
-/// wherever they are not asked for either and the method is the same.
+/// The options with a method: where none is asked for that of the model's `method`, or Automatic. Its step and order go
+/// with it wherever they are not asked for either and the method is the same.
 SimulationOptions with_method_of(const Model& model, SimulationOptions options);
 
 /// Nothing, with a diagnostic, for constraints between velocities (E0720), without a positive step (E0721), and for an
@@ -21,7 +21,8 @@ SimulationOptions with_method_of(const Model& model, SimulationOptions options);
 std::unique_ptr<Method> variational_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
                                            const VariationalOptions& options, Diagnostics& diagnostics);
 
-/// Nothing, with a diagnostic, in a build without SUNDIALS (E0723) and for a tolerance that is no positive number (E0724).
+/// Nothing, with a diagnostic, in a build without SUNDIALS (E0723) and for a tolerance that is no positive number
+/// (E0724).
 std::unique_ptr<Method> stiff_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
                                      const StiffOptions& options, Diagnostics& diagnostics);
 

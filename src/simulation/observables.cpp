@@ -21,7 +21,8 @@ void add_reactions(Observables& out, const EquationsOfMotion& equations) {
   };
   for (const Constraint& c : system.constraints)
     if (c.name.empty() && c.body.empty())
-      add(c.multiplier.name(), (c.level == Constraint::Level::Position ? energy : energy / system.independent_dimension) / c.dimension,
+      add(c.multiplier.name(),
+          (c.level == Constraint::Level::Position ? energy : energy / system.independent_dimension) / c.dimension,
           c.multiplier);
   const bool named = !system.releases.empty() || std::any_of(system.constraints.begin(), system.constraints.end(),
                                                              [](const Constraint& c) { return !c.name.empty(); });
@@ -39,7 +40,8 @@ void find_dependences(Observables& out, const EquationsOfMotion& equations) {
   for (std::size_t i = out.energy_terms + out.points; i < out.expressions.size(); ++i)
     for (const Expr& symbol : symbols_of({&out.expressions[i], 1})) {
       const auto found = std::find(multipliers.begin(), multipliers.end(), symbol);
-      if (found != multipliers.end()) out.dependences.push_back({i, static_cast<std::size_t>(found - multipliers.begin())});
+      if (found != multipliers.end())
+        out.dependences.push_back({i, static_cast<std::size_t>(found - multipliers.begin())});
     }
 }
 
@@ -73,14 +75,16 @@ void append_row(std::vector<double>& values, const Sample& sample, const Observa
 
 void leave_out_undetermined(Sample& sample, const Observables& observables) {
   for (const Observables::Dependence& d : observables.dependences)
-    if (std::isnan(sample.multipliers[d.constraint])) sample.observables[d.observable] = std::numeric_limits<double>::quiet_NaN();
+    if (std::isnan(sample.multipliers[d.constraint]))
+      sample.observables[d.observable] = std::numeric_limits<double>::quiet_NaN();
 }
 
-void name_trajectory_columns(const MechanicalSystem& system, const Observables& observables, std::vector<Trajectory::Column>& columns,
-                             std::vector<Trajectory::Column>& reactions) {
+void name_trajectory_columns(const MechanicalSystem& system, const Observables& observables,
+                             std::vector<Trajectory::Column>& columns, std::vector<Trajectory::Column>& reactions) {
   const auto unit = [&](const Dimension& d) { return system.dimensionless ? std::string() : to_string(d); };
   for (const Coordinate& c : system.coordinates) columns.push_back({c.name, unit(c.dimension)});
-  for (const Coordinate& c : system.coordinates) columns.push_back({c.name + "'", unit(c.dimension / system.independent_dimension)});
+  for (const Coordinate& c : system.coordinates)
+    columns.push_back({c.name + "'", unit(c.dimension / system.independent_dimension)});
   for (const Point& p : system.points)
     for (std::size_t axis = 0; axis < p.position.size(); ++axis)
       columns.push_back({p.name + "." + "xyz"[axis], unit(dimensions::length())});

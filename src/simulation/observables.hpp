@@ -7,8 +7,8 @@
 
 namespace maupertuis {
 
-/// What a run evaluates besides the motion, in this order: the terms of h_E, the positions of the points, the reactions of
-/// named constraints and releases (λ of constraints without a name), the probes.
+/// What a run evaluates besides the motion, in this order: the terms of h_E, the positions of the points, the reactions
+/// of named constraints and releases (λ of constraints without a name), the probes.
 struct Observables {
   struct Named {
     std::string name;
@@ -34,7 +34,7 @@ void append_row(std::vector<double>& values, const Sample& sample, const Observa
 void leave_out_undetermined(Sample& sample, const Observables& observables);
 
 /// The columns of a trajectory after t: q, q', the points, the reactions (also on their own), the energy.
-void name_trajectory_columns(const MechanicalSystem& system, const Observables& observables, std::vector<Trajectory::Column>& columns,
-                             std::vector<Trajectory::Column>& reactions);
+void name_trajectory_columns(const MechanicalSystem& system, const Observables& observables,
+                             std::vector<Trajectory::Column>& columns, std::vector<Trajectory::Column>& reactions);
 
 }  // namespace maupertuis

@@ -9,8 +9,10 @@ std::vector<Expr> with_reactions(const EquationsOfMotion& equations, std::span<c
   const MechanicalSystem& system = *equations.system;
   const std::vector<Expr> symbols = symbols_of(expressions);
   const auto stands = [&](Expr symbol) { return std::find(symbols.begin(), symbols.end(), symbol) != symbols.end(); };
-  const bool any = std::any_of(system.constraints.begin(), system.constraints.end(), [&](const Constraint& c) { return stands(c.reaction); }) ||
-                   std::any_of(system.releases.begin(), system.releases.end(), [&](const Release& r) { return stands(r.reaction); });
+  const bool any =
+      std::any_of(system.constraints.begin(), system.constraints.end(),
+                  [&](const Constraint& c) { return stands(c.reaction); }) ||
+      std::any_of(system.releases.begin(), system.releases.end(), [&](const Release& r) { return stands(r.reaction); });
   if (!any) return {expressions.begin(), expressions.end()};
   ExprMap values;
   for (const Reaction& r : reactions(equations))

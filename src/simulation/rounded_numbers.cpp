@@ -28,7 +28,8 @@ std::vector<Expr> rounded_literals(const std::vector<Expr>& roots) {
     if (e.is(Kind::Power)) exponents.insert(e[1].id());
   std::vector<Expr> out;
   for (const Expr& e : nodes)
-    if ((e.is(Kind::Pi) || (e.is_number() && is_rounded(e, e.number().to_double()))) && !exponents.count(e.id())) out.push_back(e);
+    if ((e.is(Kind::Pi) || (e.is_number() && is_rounded(e, e.number().to_double()))) && !exponents.count(e.id()))
+      out.push_back(e);
   return out;
 }
 
@@ -47,12 +48,14 @@ class Nudge {
 
 }  // namespace
 
-RoundedNumbers::RoundedNumbers(const Model& model, const EquationsOfMotion& equations, const RunPlan& plan, const WantedFunctions& wanted) {
+RoundedNumbers::RoundedNumbers(const Model& model, const EquationsOfMotion& equations, const RunPlan& plan,
+                               const WantedFunctions& wanted) {
   for (const Parameter& p : equations.system->parameters) {
     parameters_.push_back({p.si_value, is_rounded(p.value, p.si_value)});
     symbols_.push_back(p.symbol);
   }
-  KernelSource source = motion_source(equations, {wanted.observables, plan.until ? wanted.events : std::vector<Expr>{}, {}});
+  KernelSource source =
+      motion_source(equations, {wanted.observables, plan.until ? wanted.events : std::vector<Expr>{}, {}});
   take_literals(source);
   kernel_ = build_kernel(source);
   take_start(model, plan);
@@ -65,7 +68,8 @@ void RoundedNumbers::take_literals(KernelSource& source) {
   ExprMap symbols;
   for (const Expr& literal : rounded_literals(roots)) {
     const bool pi = literal.is(Kind::Pi);
-    const Expr symbol = literal.context().symbol("literal " + (pi ? "π" : literal.number().to_string()), Role::Parameter);
+    const Expr symbol =
+        literal.context().symbol("literal " + (pi ? "π" : literal.number().to_string()), Role::Parameter);
     symbols.emplace(literal, symbol);
     source.parameters.push_back(symbol);
     parameters_.push_back({pi ? 3.14159265358979323846 : literal.number().to_double(), true});

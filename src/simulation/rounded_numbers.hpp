@@ -9,13 +9,15 @@
 
 namespace maupertuis {
 
-/// The numbers of a motion and which of them double does not hold exactly: parameters, start values, and literals of the formulas (9.81, 1/3, π),
-/// which are parameters of a kernel of their own. A companion run takes each of those one unit in the last place higher or lower, at random: so the motion shows
-/// what its numbers were rounded by. 1/2 and 2 are exact and stay.
+/// The numbers of a motion and which of them double does not hold exactly: parameters, start values, and literals of
+/// the formulas (9.81, 1/3, π), which are parameters of a kernel of their own. A companion run takes each of those one
+/// unit in the last place higher or lower, at random: so the motion shows what its numbers were rounded by. 1/2 and 2
+/// are exact and stay.
 class RoundedNumbers {
  public:
   /// The kernel has neither integrands nor, unless the run ends at one, events. Cost: that of build_kernel.
-  RoundedNumbers(const Model& model, const EquationsOfMotion& equations, const RunPlan& plan, const WantedFunctions& wanted);
+  RoundedNumbers(const Model& model, const EquationsOfMotion& equations, const RunPlan& plan,
+                 const WantedFunctions& wanted);
 
   const Kernel& kernel() const { return kernel_; }
 
@@ -43,9 +45,9 @@ class RoundedNumbers {
   void take_literals(KernelSource& source);
   void take_start(const Model& model, const RunPlan& plan);
 
-  std::vector<Value> parameters_;       // [parameters of the system + literals]
-  std::vector<Expr> symbols_;           // of those of the system
-  std::vector<StartNumber> q_, v_;      // [n]
+  std::vector<Value> parameters_;   // [parameters of the system + literals]
+  std::vector<Expr> symbols_;       // of those of the system
+  std::vector<StartNumber> q_, v_;  // [n]
   Kernel kernel_{nullptr};
 };
 

@@ -11,13 +11,18 @@
 namespace maupertuis {
 namespace {
 
-constexpr int default_rows = 1000;         // intervals of the output when the model names none
-constexpr double most_rows = 20'000'000;   // beyond it the trajectory would not fit in memory
+constexpr int default_rows = 1000;        // intervals of the output when the model names none
+constexpr double most_rows = 20'000'000;  // beyond it the trajectory would not fit in memory
 
 class Planner {
  public:
-  Planner(const Model& model, const EquationsOfMotion& equations, const SimulationOptions& options, Diagnostics& diagnostics)
-      : model_(model), equations_(equations), options_(options), diagnostics_(diagnostics), bindings_(parameter_bindings(model.system)) {}
+  Planner(const Model& model, const EquationsOfMotion& equations, const SimulationOptions& options,
+          Diagnostics& diagnostics)
+      : model_(model),
+        equations_(equations),
+        options_(options),
+        diagnostics_(diagnostics),
+        bindings_(parameter_bindings(model.system)) {}
 
   std::optional<RunPlan> plan() {
     if (!plan_start() || !plan_length() || !plan_output()) return std::nullopt;
@@ -68,8 +73,10 @@ class Planner {
     const std::vector<Expr> symbols = symbols_of({&plan_.condition, 1});
     for (const Reaction& r : reactions(equations_)) {
       if (r.value || std::find(symbols.begin(), symbols.end(), r.symbol) == symbols.end()) continue;
-      diagnostics_.error("E0726", std::nullopt, fmt::format("the model does not determine the force of `{}`, with which the run is to end", r.name), r.sentence,
-                         "End the run with a condition on coordinates, velocities or determined forces.");
+      diagnostics_.error(
+          "E0726", std::nullopt,
+          fmt::format("the model does not determine the force of `{}`, with which the run is to end", r.name),
+          r.sentence, "End the run with a condition on coordinates, velocities or determined forces.");
       return false;
     }
     return true;
@@ -87,22 +94,25 @@ class Planner {
     if (every == 0) every = length / default_rows;
     if (!(every > 0) && length > 0) {
       diagnostics_.error("E0704", std::nullopt, "the output interval is not a positive time",
-                         "Rows of the trajectory follow one another in time.", "Write a line such as `output every 10 ms`.");
+                         "Rows of the trajectory follow one another in time.",
+                         "Write a line such as `output every 10 ms`.");
       return false;
     }
     if (length > 0 && length / every > most_rows) {
-      diagnostics_.error("E0705", std::nullopt,
-                         fmt::format("this run would write {:.3g} rows", length / every),
+      diagnostics_.error("E0705", std::nullopt, fmt::format("this run would write {:.3g} rows", length / every),
                          "The whole trajectory is kept in memory until it is written.",
                          "Choose a longer `output every`, or a shorter run.");
       return false;
     }
     const double direction = plan_.end < plan_.begin ? -1 : 1;
     const auto rows = length > 0 ? static_cast<std::size_t>(std::floor(length / every * (1 + 1e-12))) : 0;
-    for (std::size_t i = 0; i <= rows; ++i) plan_.output_times.push_back(plan_.begin + direction * every * static_cast<double>(i));
+    for (std::size_t i = 0; i <= rows; ++i)
+      plan_.output_times.push_back(plan_.begin + direction * every * static_cast<double>(i));
     double& last = plan_.output_times.back();
-    if (std::abs(last - plan_.end) <= 1e-9 * every) last = plan_.end;
-    else plan_.output_times.push_back(plan_.end);
+    if (std::abs(last - plan_.end) <= 1e-9 * every)
+      last = plan_.end;
+    else
+      plan_.output_times.push_back(plan_.end);
     return true;
   }
 
@@ -116,19 +126,22 @@ class Planner {
 
 }  // namespace
 
-std::optional<RunPlan> plan_run(const Model& model, const EquationsOfMotion& equations, const SimulationOptions& options,
-                                Diagnostics& diagnostics) {
+std::optional<RunPlan> plan_run(const Model& model, const EquationsOfMotion& equations,
+                                const SimulationOptions& options, Diagnostics& diagnostics) {
   return Planner(model, equations, options, diagnostics).plan();
 }
 
-bool requests_lie_ahead(const MechanicalSystem& system, const RunPlan& plan, const SimulationOptions& options, Diagnostics& diagnostics) {
+bool requests_lie_ahead(const MechanicalSystem& system, const RunPlan& plan, const SimulationOptions& options,
+                        Diagnostics& diagnostics) {
   for (const double t : options.at) {
     const bool ahead = plan.end >= plan.begin ? t >= plan.begin : t <= plan.begin;
     if (ahead && std::isfinite(t)) continue;
     const std::string unit = system.independent_unit().empty() ? "" : " " + system.independent_unit();
-    diagnostics.error("E0706", std::nullopt, fmt::format("the state at {} is not on the way of this run", system.moment(fmt::format("{:g}", t))),
-                      fmt::format("The run goes from {:g}{} to {:g}{}.", plan.begin, unit, plan.end, unit),
-                      "Ask for times after the start, or run backwards with a negative duration.");
+    diagnostics.error(
+        "E0706", std::nullopt,
+        fmt::format("the state at {} is not on the way of this run", system.moment(fmt::format("{:g}", t))),
+        fmt::format("The run goes from {:g}{} to {:g}{}.", plan.begin, unit, plan.end, unit),
+        "Ask for times after the start, or run backwards with a negative duration.");
     return false;
   }
   return true;

@@ -8,18 +8,19 @@ namespace maupertuis {
 
 /// Everything about a run that is known before its first step: numbers only, checked.
 struct RunPlan {
-  double begin = 0, end = 0;        // s; end < begin: backwards
-  bool until = false;               // stop at the event; not meeting it by `end` is a failure
-  Expr condition;                   // the event: a function along the motion, forces of constraints written out
-  std::vector<double> q, v;         // [n]
-  std::vector<double> output_times; // in the order of the run, begin and end included
+  double begin = 0, end = 0;         // s; end < begin: backwards
+  bool until = false;                // stop at the event; not meeting it by `end` is a failure
+  Expr condition;                    // the event: a function along the motion, forces of constraints written out
+  std::vector<double> q, v;          // [n]
+  std::vector<double> output_times;  // in the order of the run, begin and end included
 };
 
 /// Nothing, with a diagnostic, when the run has no length or a number is not finite.
-std::optional<RunPlan> plan_run(const Model& model, const EquationsOfMotion& equations, const SimulationOptions& options,
-                                Diagnostics& diagnostics);
+std::optional<RunPlan> plan_run(const Model& model, const EquationsOfMotion& equations,
+                                const SimulationOptions& options, Diagnostics& diagnostics);
 
 /// Whether the times asked for lie on the way of the run; E0706 if not.
-bool requests_lie_ahead(const MechanicalSystem& system, const RunPlan& plan, const SimulationOptions& options, Diagnostics& diagnostics);
+bool requests_lie_ahead(const MechanicalSystem& system, const RunPlan& plan, const SimulationOptions& options,
+                        Diagnostics& diagnostics);
 
 }  // namespace maupertuis

@@ -20,8 +20,8 @@
 #include <cmath>
 #include <numeric>
 
-/// One run, in named stages: plan (numbers), kernel (program), steps, measures, companions (errors). The observables of the kernel are, in
-/// this order: the terms of h_E, the positions of the points, the reactions, the probes.
+/// One run, in named stages: plan (numbers), kernel (program), steps, measures, companions (errors). The observables of
+/// the kernel are, in this order: the terms of h_E, the positions of the points, the reactions, the probes.
 namespace maupertuis {
 namespace {
 
@@ -85,7 +85,8 @@ class EnergyBalance {
       scale += std::abs(sample.observables[i]);
     }
     overflows_ = overflows_ || std::isinf(scale);
-    if (!std::isfinite(energy)) return;  // a point at which the formula has no value, though the motion passes it; or the ending tells
+    if (!std::isfinite(energy))
+      return;  // a point at which the formula has no value, though the motion passes it; or the ending tells
     if (!begun_) first_ = energy;
     begun_ = true;
     largest_scale_ = std::max(largest_scale_, scale);
@@ -98,7 +99,8 @@ class EnergyBalance {
   }
 
   double energy_of(const Sample& sample) const {
-    return std::accumulate(sample.observables.begin(), sample.observables.begin() + static_cast<std::ptrdiff_t>(terms_), 0.0);
+    return std::accumulate(sample.observables.begin(), sample.observables.begin() + static_cast<std::ptrdiff_t>(terms_),
+                           0.0);
   }
   double drift() const { return largest_scale_ > 0 ? largest_error_ / largest_scale_ : 0; }
   /// Nothing is known of it: a term was infinite, or it had no value at any state.
@@ -119,8 +121,15 @@ class Run {
   /// `stiff` makes the method that takes over where stability limits the steps; it may be empty.
   Run(const Model& model, const SimulationOptions& options, const RunPlan& plan, const Observables& observables,
       std::unique_ptr<Method> method, std::function<std::unique_ptr<Method>()> stiff, Probe* probe, bool energy_jumps)
-      : model_(model), options_(options), plan_(plan), observables_(observables), probe_(probe),
-        method_(std::move(method)), stiff_(std::move(stiff)), energy_jumps_(energy_jumps), balance_(observables.energy_terms) {
+      : model_(model),
+        options_(options),
+        plan_(plan),
+        observables_(observables),
+        probe_(probe),
+        method_(std::move(method)),
+        stiff_(std::move(stiff)),
+        energy_jumps_(energy_jumps),
+        balance_(observables.energy_terms) {
     result_.statistics.method = word_of(*options.method);
     result_.trajectory.independent = {model.system.independent, model.system.independent_unit()};
     name_trajectory_columns(model.system, observables, result_.trajectory.columns, result_.reactions);
@@ -180,7 +189,8 @@ class Run {
     }
     if (step.event && plan_.until) {
       result_.ending = Ending::UntilReached;
-      result_.reason = "the condition of `run until` was met at " + model_.system.moment(fmt::format("{:.17g}", method_->time()));
+      result_.reason =
+          "the condition of `run until` was met at " + model_.system.moment(fmt::format("{:.17g}", method_->time()));
       record_covered();
       return false;
     }
@@ -234,9 +244,11 @@ class Run {
   }
 
   State state_of(const Sample& sample) const {
-    const auto reactions = sample.observables.begin() + static_cast<std::ptrdiff_t>(observables_.energy_terms + observables_.points);
-    return {sample.t, sample.q, sample.v, sample.a, sample.multipliers,
-            {reactions, reactions + static_cast<std::ptrdiff_t>(observables_.reactions.size())}};
+    const auto reactions =
+        sample.observables.begin() + static_cast<std::ptrdiff_t>(observables_.energy_terms + observables_.points);
+    return {sample.t,           sample.q,
+            sample.v,           sample.a,
+            sample.multipliers, {reactions, reactions + static_cast<std::ptrdiff_t>(observables_.reactions.size())}};
   }
 
   void finish() {
@@ -247,12 +259,13 @@ class Run {
     result_.at.assign(answers_.begin(), answers_.end());
     if (result_.ending == Ending::Finished && plan_.until) {
       result_.ending = Ending::UntilNotReached;
-      result_.reason = fmt::format("the condition of `run until` was not met within {:g}{}", std::abs(plan_.end - plan_.begin),
-                                   with_blank(model_.system.independent_unit()));
+      result_.reason = fmt::format("the condition of `run until` was not met within {:g}{}",
+                                   std::abs(plan_.end - plan_.begin), with_blank(model_.system.independent_unit()));
     }
     if (result_.ok() && balance_.is_lost()) {
       result_.ending = Ending::Overflow;
-      result_.reason = "The energy is infinite or has no value along this motion, so that nothing tells whether it is right.";
+      result_.reason =
+          "The energy is infinite or has no value along this motion, so that nothing tells whether it is right.";
     }
     result_.statistics.steps = steps_before_ + method_->steps();
     result_.statistics.rejected = rejected_before_ + method_->rejected();
@@ -285,32 +298,45 @@ std::string title_of(const std::string& method) {
   return method == "taylor" ? "Taylor" : method == "stiff" ? "stiff (backward differentiation)" : "variational";
 }
 
-void note_stiffness(const SimulationResult& result, const MechanicalSystem& system, double tolerance, Diagnostics& diagnostics) {
-  diagnostics.note("N0702", std::nullopt, "the stiff method took over",
-                   fmt::format("Fast, strongly damped parts of the motion had died out, and yet limited Taylor's steps; "
-                               "the backward differentiation formulas went on with a tolerance of {:g} to {}.",
-                               tolerance, system.moment(fmt::format("{:g}", result.final.t))),
-                   "Use --method taylor to keep Taylor's steps, or --tol for another tolerance.");
+void note_stiffness(const SimulationResult& result, const MechanicalSystem& system, double tolerance,
+                    Diagnostics& diagnostics) {
+  diagnostics.note(
+      "N0702", std::nullopt, "the stiff method took over",
+      fmt::format("Fast, strongly damped parts of the motion had died out, and yet limited Taylor's steps; "
+                  "the backward differentiation formulas went on with a tolerance of {:g} to {}.",
+                  tolerance, system.moment(fmt::format("{:g}", result.final.t))),
+      "Use --method taylor to keep Taylor's steps, or --tol for another tolerance.");
 }
 
 /// What the run had to do without. In automatic runs a program that is not compiled is nothing to be told.
 void warn_of_backend(const BackendUse& use, Backend wanted, Diagnostics& diagnostics) {
-  const char* const help = "`maup doctor` tells what this installation has; --backend interpreter leaves the message out.";
+  const char* const help =
+      "`maup doctor` tells what this installation has; --backend interpreter leaves the message out.";
   if (wanted == Backend::Compiled && !use.compiled)
     diagnostics.warning("W0703", std::nullopt, "the run was carried out without compiled code", use.trouble, help);
   if (wanted == Backend::Automatic && !use.compiled && !use.trouble.empty() && !backend_status().compiled)
-    diagnostics.note("N0704", std::nullopt, "compiled code would have paid for this run, and is not here", use.trouble, help);
+    diagnostics.note("N0704", std::nullopt, "compiled code would have paid for this run, and is not here", use.trouble,
+                     help);
   if (!use.cache_trouble.empty())
-    diagnostics.warning("W0705", std::nullopt, "the compiled code could not be kept for the next run", use.cache_trouble,
-                        "Make the folder yours and writable by you alone (chmod 700), name another by XDG_CACHE_HOME, or give --no-cache.");
+    diagnostics.warning("W0705", std::nullopt, "the compiled code could not be kept for the next run",
+                        use.cache_trouble,
+                        "Make the folder yours and writable by you alone (chmod 700), name another by XDG_CACHE_HOME, "
+                        "or give --no-cache.");
 }
 
 /// The errors, as companion runs tell them.
-void add_errors(SimulationResult& result, Probe* probe, const Model& model, const EquationsOfMotion& equations, const SimulationOptions& options,
-                const RunPlan& plan, const Observables& observables, const WantedFunctions& wanted) {
+void add_errors(SimulationResult& result, Probe* probe, const Model& model, const EquationsOfMotion& equations,
+                const SimulationOptions& options, const RunPlan& plan, const Observables& observables,
+                const WantedFunctions& wanted) {
   const auto begin = Clock::now();
   const RoundedNumbers numbers(model, equations, plan, wanted);
-  const CompanionPlan companion_plan{model, equations, options, plan, observables, result, comparison_grid(result.trajectory, plan, options.errors),
+  const CompanionPlan companion_plan{model,
+                                     equations,
+                                     options,
+                                     plan,
+                                     observables,
+                                     result,
+                                     comparison_grid(result.trajectory, plan, options.errors),
                                      options.errors == ErrorEstimates::Rows};
   const Companions companions = run_companions(companion_plan, wanted, numbers);
   if (companions.interrupted) {
@@ -341,7 +367,8 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   std::function<std::unique_ptr<Method>()> stiff;
   if (options.method == StepMethod::Automatic && has_stiff_method())
     stiff = [&] { return stiff_method(equations, wanted, options, diagnostics); };
-  const bool energy_jumps = across_switches(*equations.system, equations.energy_function, equations.order).jump.has_value();
+  const bool energy_jumps =
+      across_switches(*equations.system, equations.energy_function, equations.order).jump.has_value();
   Run run(model, options, *plan, observables, std::move(method), std::move(stiff), probe, energy_jumps);
   const double compile_seconds = seconds_since(begin);
 
@@ -349,11 +376,13 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   if (options.errors != ErrorEstimates::None && result.ending != Ending::Interrupted)
     add_errors(result, probe, model, equations, options, *plan, observables, wanted);
   if (run.turned_stiff()) note_stiffness(result, model.system, stiff_tolerance(options), diagnostics);
-  if (options.method == StepMethod::Automatic || options.method == StepMethod::Taylor || options.backend == Backend::Compiled)
+  if (options.method == StepMethod::Automatic || options.method == StepMethod::Taylor ||
+      options.backend == Backend::Compiled)
     warn_of_backend(run.backend(), options.backend, diagnostics);
   result.statistics.compile_seconds += compile_seconds;
   result.trajectory.metadata["system"] = model.system.name;
-  result.trajectory.metadata["method"] = fmt::format("{}, order {}", title_of(result.statistics.method), result.statistics.order);
+  result.trajectory.metadata["method"] =
+      fmt::format("{}, order {}", title_of(result.statistics.method), result.statistics.order);
   return result;
 }
 

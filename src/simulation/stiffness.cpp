@@ -6,10 +6,11 @@
 namespace maupertuis {
 namespace {
 
-constexpr std::size_t window = 400;      // steps
-constexpr double far_shorter = 0.02;     // a step that accuracy limits is longer than the time scale of the motion
-constexpr double many = 20'000;          // steps: fewer than these cost less than a change of the method
-constexpr double steady = 0.5;           // of the length that steps had when half as many were made: those that stability limits keep theirs
+constexpr std::size_t window = 400;   // steps
+constexpr double far_shorter = 0.02;  // a step that accuracy limits is longer than the time scale of the motion
+constexpr double many = 20'000;       // steps: fewer than these cost less than a change of the method
+constexpr double steady =
+    0.5;  // of the length that steps had when half as many were made: those that stability limits keep theirs
 
 }  // namespace
 

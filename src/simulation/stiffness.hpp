@@ -6,8 +6,9 @@
 
 namespace maupertuis {
 
-/// Sees when steps are limited by stability: they stay far shorter than the times in which the velocities change, because
-/// of motions that have died out. Steps that go on shrinking come to a point where no method passes. Judged over windows of some hundred steps, and only where many more steps are to come.
+/// Sees when steps are limited by stability: they stay far shorter than the times in which the velocities change,
+/// because of motions that have died out. Steps that go on shrinking come to a point where no method passes. Judged
+/// over windows of some hundred steps, and only where many more steps are to come.
 class StiffnessWatch {
  public:
   /// Precondition: `start` is the motion at the beginning of `step`.

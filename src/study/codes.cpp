@@ -5,7 +5,8 @@ namespace {
 
 constexpr CodeEntry entries[] = {
     {"E0245", "a study of motions in time for a model without it",
-     "Equilibria, frequencies, periods and exponents belong to motions in time. Where another variable stands in its place there are "
+     "Equilibria, frequencies, periods and exponents belong to motions in time. Where another variable stands in its "
+     "place there are "
      "equations (`maup derive`), their solutions from a start (`maup simulate`) and between two ends (`maup action`).",
      "", ""},
     {"E0690", "a derivation failed its certificate",

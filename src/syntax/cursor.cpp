@@ -34,11 +34,12 @@ const Token& ExpressionParser::expect(std::string_view sign_or_word, std::string
 
 // 9,81: a comma between digits, without blanks, where no list of numbers can stand.
 void ExpressionParser::refuse_decimal_comma() {
-  const bool comma = peek().is(",") && peek().attached && previous().kind == Token::Kind::Number && peek(1).kind == Token::Kind::Number &&
-                     peek(1).attached;
+  const bool comma = peek().is(",") && peek().attached && previous().kind == Token::Kind::Number &&
+                     peek(1).kind == Token::Kind::Number && peek(1).attached;
   if (!comma) return;
   const Span span = cover(previous().span, peek(1).span);
-  fail("E0105", span, fmt::format("`{}` is not a number", text_of(span)), "Numbers are written with a decimal point; a comma separates.",
+  fail("E0105", span, fmt::format("`{}` is not a number", text_of(span)),
+       "Numbers are written with a decimal point; a comma separates.",
        fmt::format("Write {}.{}.", previous().text, peek(1).text));
 }
 
@@ -49,17 +50,23 @@ void ExpressionParser::expect_end() {
   std::string help;
   if (token.is("[")) help = "A unit in square brackets stands directly after a number or a vector of numbers: 3 [J].";
   if (token.is("=")) help = "A statement has one `=`.";
-  if (token.is("<") || token.is(">") || token.is("<=") || token.is(">=")) help = "Comparisons stand in piecewise( ) and contact.";
+  if (token.is("<") || token.is(">") || token.is("<=") || token.is(">="))
+    help = "Comparisons stand in piecewise( ) and contact.";
   if (token.line_start) help = "A continued line goes on where the line before ended; a new statement is not indented.";
   fail("E0111", token.span, fmt::format("the statement should end before {}", describe(token)), "", std::move(help));
 }
 
 std::string ExpressionParser::describe(const Token& token) {
   switch (token.kind) {
-    case Token::Kind::End: return "the end of the statement";
-    case Token::Kind::Number: return fmt::format("the number {}", token.text);
-    case Token::Kind::String: return "a text in quotes";
-    case Token::Kind::Name: case Token::Kind::Sign: break;
+    case Token::Kind::End:
+      return "the end of the statement";
+    case Token::Kind::Number:
+      return fmt::format("the number {}", token.text);
+    case Token::Kind::String:
+      return "a text in quotes";
+    case Token::Kind::Name:
+    case Token::Kind::Sign:
+      break;
   }
   if (token.kind == Token::Kind::Name && is_clause_word(token.text)) return fmt::format("the word `{}`", token.text);
   return fmt::format("`{}`", token.text);
@@ -76,7 +83,8 @@ void ExpressionParser::fail_expected(std::string_view what, std::string help) {
 }
 
 void ExpressionParser::warn(std::string code, Span span, std::string message, std::string reason, std::string help) {
-  warnings_.push_back({std::move(code), Severity::Warning, span, std::move(message), std::move(reason), std::move(help)});
+  warnings_.push_back(
+      {std::move(code), Severity::Warning, span, std::move(message), std::move(reason), std::move(help)});
 }
 
 void ExpressionParser::flush_warnings() {
@@ -91,15 +99,16 @@ Name ExpressionParser::new_name(std::string_view what) {
   const bool time = token.is("t") && context_.declarations.independent() == "t";
   if (function || is_clause_word(token.text) || time || token.is("pi")) {
     fail("E0112", token.span, fmt::format("`{}` cannot be a name", token.text),
-         function          ? "It is a function of the language."
-         : time            ? "It is the time."
-         : token.is("pi")  ? "It is the number π."
-                           : "It is a word of the language that separates the parts of a statement.",
+         function         ? "It is a function of the language."
+         : time           ? "It is the time."
+         : token.is("pi") ? "It is the number π."
+                          : "It is a word of the language that separates the parts of a statement.",
          fmt::format("Choose another name, for example {}1 or {}_0.", token.text, token.text));
   }
   if (peek(1).is("'")) {
     fail("E0111", cover(token.span, peek(1).span), fmt::format("`{}'` cannot be declared", token.text),
-         "A prime is the time derivative of a name that is declared elsewhere.", fmt::format("Declare {}.", token.text));
+         "A prime is the time derivative of a name that is declared elsewhere.",
+         fmt::format("Declare {}.", token.text));
   }
   next();
   return {std::string(token.text), token.span};

@@ -36,11 +36,11 @@ void scan(const TokenList& list, const StatementTokens& statement, std::vector<D
   if (first.is("param")) return scan_list(list, statement, Kind::Parameter, found);
   if (first.is("coord")) return scan_list(list, statement, Kind::Coordinate, found);
   if (first.is("let")) return scan_list(list, statement, Kind::Definition, found);
-  const Kind kind = first.is("input")                                             ? Kind::Input
-                    : first.is("frame") || first.is("point") || first.is("body")  ? Kind::Place
-                    : first.is("field")                                           ? Kind::Field
-                    : first.is("independent")                                     ? Kind::Parameter
-                                                                                  : Kind::None;
+  const Kind kind = first.is("input")                                            ? Kind::Input
+                    : first.is("frame") || first.is("point") || first.is("body") ? Kind::Place
+                    : first.is("field")                                          ? Kind::Field
+                    : first.is("independent")                                    ? Kind::Parameter
+                                                                                 : Kind::None;
   if (kind == Kind::None || statement.begin + 1 >= statement.end) return;
   const auto add = [&](std::size_t i) {
     if (i < statement.end && list.tokens[i].kind == Token::Kind::Name) found.push_back({name_of(list.tokens[i]), kind});
@@ -89,7 +89,8 @@ std::vector<Name> Declarations::of(const TokenList& list, const StatementTokens&
   if (reaction || first.is("constraint") || first.is("contact")) {  // names that stand in no formula
     std::size_t at = statement.begin + 1;
     while (!reaction && at < statement.end && !list.tokens[at - 1].is("name")) ++at;
-    if (at < statement.end && list.tokens[at].kind == Token::Kind::Name) found.push_back({name_of(list.tokens[at]), Kind::None});
+    if (at < statement.end && list.tokens[at].kind == Token::Kind::Name)
+      found.push_back({name_of(list.tokens[at]), Kind::None});
   }
   std::vector<Name> names;
   for (Declared& declared : found) names.push_back(std::move(declared.name));

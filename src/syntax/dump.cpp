@@ -9,20 +9,24 @@ namespace {
 
 using Kind = Expression::Kind;
 
-constexpr std::string_view kOperators[] = {"+", "-", "*", "juxtaposed", "/", "·", "×", "^", "-", "<", "<=", ">", ">=", "and", "or"};
-constexpr std::string_view kKinds[] = {"number", "quantity", "name",   "member",          "call",
+constexpr std::string_view kOperators[] = {"+", "-", "*",  "juxtaposed", "/",  "·",   "×", "^",
+                                           "-", "<", "<=", ">",          ">=", "and", "or"};
+constexpr std::string_view kKinds[] = {"number", "quantity", "name",  "member",          "call",
                                        "vector", "binary",   "unary", "time derivative", "piecewise"};
-constexpr std::string_view kRotations[] = {"angle", "axis and angle", "euler", "roll, pitch, yaw", "quaternion", "quaternion coordinates"};
-constexpr std::string_view kShapes[] = {"line", "trail", "box", "circle", "spring", "reaction", "disc", "hoop", "ellipsoid", "damper",
-                                         "pivot", "ground", "wall", "label", "follow"};
+constexpr std::string_view kRotations[] = {"angle",      "axis and angle",        "euler", "roll, pitch, yaw",
+                                           "quaternion", "quaternion coordinates"};
+constexpr std::string_view kShapes[] = {"line",      "trail",  "box",   "circle", "spring", "reaction", "disc",  "hoop",
+                                        "ellipsoid", "damper", "pivot", "ground", "wall",   "label",    "follow"};
 constexpr std::string_view kInertias[] = {"none", "scalar", "diagonal", "full"};
 
 std::string unit_text(const UnitExpression& unit) {
   std::string text;
   for (const UnitExpression::Factor& factor : unit.factors) {
     text += fmt::format(" {}", factor.word);
-    if (factor.exponent_denominator != 1) text += fmt::format("^({}/{})", factor.exponent_numerator, factor.exponent_denominator);
-    else if (factor.exponent_numerator != 1) text += fmt::format("^{}", factor.exponent_numerator);
+    if (factor.exponent_denominator != 1)
+      text += fmt::format("^({}/{})", factor.exponent_numerator, factor.exponent_denominator);
+    else if (factor.exponent_numerator != 1)
+      text += fmt::format("^{}", factor.exponent_numerator);
   }
   return text.empty() ? " 1" : text;
 }
@@ -49,8 +53,12 @@ class Dumper {
   void operator()(const InputStatement& s) {
     head("input", s.name.text), word("unit", s.unit ? unit_text(*s.unit) : ""), child("value", s.value);
   }
-  void operator()(const FrameStatement& s) { head("frame", s.name.text), child("at", s.at), rotation(s.rotation), name("in", s.in); }
-  void operator()(const PointStatement& s) { head("point", s.name.text), child("mass", s.mass), child("at", s.at), name("in", s.in); }
+  void operator()(const FrameStatement& s) {
+    head("frame", s.name.text), child("at", s.at), rotation(s.rotation), name("in", s.in);
+  }
+  void operator()(const PointStatement& s) {
+    head("point", s.name.text), child("mass", s.mass), child("at", s.at), name("in", s.in);
+  }
   void operator()(const BodyStatement& s) {
     head("body", s.name.text), child("mass", s.mass);
     children(fmt::format("inertia {}", kInertias[static_cast<int>(s.inertia_kind)]), s.inertia);
@@ -58,7 +66,8 @@ class Dumper {
   }
   void operator()(const GravityStatement& s) { head("gravity"), child("vector", s.vector); }
   void operator()(const SpringStatement& s) {
-    head("spring"), child("from", s.from), child("to", s.to), child("stiffness", s.stiffness), child("length", s.length);
+    head("spring"), child("from", s.from), child("to", s.to), child("stiffness", s.stiffness),
+        child("length", s.length);
   }
   void operator()(const DamperStatement& s) {
     head("damper"), child("from", s.from), child("to", s.to), child("coefficient", s.coefficient);
@@ -67,17 +76,20 @@ class Dumper {
     head("torsion spring", s.coordinate.text), child("stiffness", s.stiffness), child("rest", s.rest);
   }
   void operator()(const EnergyStatement& s) {
-    head("energy", fmt::format("{}{}", "TVULD"[static_cast<int>(s.which)], s.adds ? " +=" : "")), child("value", s.value);
+    head("energy", fmt::format("{}{}", "TVULD"[static_cast<int>(s.which)], s.adds ? " +=" : "")),
+        child("value", s.value);
   }
   void operator()(const ForceStatement& s) {
     constexpr std::string_view targets[] = {"force on", "torque on", "force along"};
-    head(targets[static_cast<int>(s.target)], s.on.text), name("from", s.from), name("in", s.in), child("value", s.value);
+    head(targets[static_cast<int>(s.target)], s.on.text), name("from", s.from), name("in", s.in),
+        child("value", s.value);
   }
   void operator()(const StartStatement& s) {
     head("start", s.exactly ? "exactly" : ""), child("at", s.at), assignments(s.items);
   }
   void operator()(const RunStatement& s) {
-    head("run"), child("duration", s.duration), child("until", s.until_left), child("equals", s.until_right), child("within", s.within);
+    head("run"), child("duration", s.duration), child("until", s.until_left), child("equals", s.until_right),
+        child("within", s.within);
   }
   void operator()(const OutputStatement& s) { head("output"), child("every", s.every); }
   void operator()(const MethodStatement& s) {
@@ -89,7 +101,8 @@ class Dumper {
     for (const DrawItem& item : s.items) {
       word(kShapes[static_cast<int>(item.kind)], "");
       ++depth_;
-      children("path", item.path), children("sizes", item.sizes), child("direction", item.direction), word("text", item.text);
+      children("path", item.path), children("sizes", item.sizes), child("direction", item.direction),
+          word("text", item.text);
       --depth_;
     }
   }
@@ -183,7 +196,8 @@ class Dumper {
   }
   void operator()(const expectation::Error& x) { head(expectation_, "error"), word("name", x.code.text); }
   void operator()(const ConstraintStatement& s) {
-    head(s.integral ? "integral constraint" : "constraint", s.name ? s.name->text : ""), child("left", s.left), child("right", s.right);
+    head(s.integral ? "integral constraint" : "constraint", s.name ? s.name->text : ""), child("left", s.left),
+        child("right", s.right);
   }
   void operator()(const SweepStatement& s) {
     head("sweep"), child("variable", s.variable), child("from", s.from), child("to", s.to), child("steps", s.steps);
@@ -206,7 +220,9 @@ class Dumper {
   }
 
  private:
-  void head(std::string_view kind, std::string_view what = {}) { text += what.empty() ? fmt::format("{}\n", kind) : fmt::format("{} {}\n", kind, what); }
+  void head(std::string_view kind, std::string_view what = {}) {
+    text += what.empty() ? fmt::format("{}\n", kind) : fmt::format("{} {}\n", kind, what);
+  }
 
   void word(std::string_view label, std::string_view what) {
     if (what.empty() && depth_ == 1 && label != "line" && label != "trail") return;
@@ -263,7 +279,7 @@ class Dumper {
   }
 
   std::size_t depth_ = 1;
-  std::string_view expectation_;   // "expect" or "claim"
+  std::string_view expectation_;  // "expect" or "claim"
 };
 
 }  // namespace

@@ -63,7 +63,9 @@ StatementBody StatementParser::method_statement() {
   method.word = used_name("auto, taylor, variational or stiff");
   if (accept("order")) {
     const auto order = whole_number();
-    if (!order || *order < 1) fail_expected("the order of the steps, a whole number", "Write for example method variational order 4 step 10 ms.");
+    if (!order || *order < 1)
+      fail_expected("the order of the steps, a whole number",
+                    "Write for example method variational order 4 step 10 ms.");
     method.order = *order;
   }
   if (accept("step")) method.step = quantity();
@@ -114,10 +116,11 @@ namespace {
 
 using Shape = DrawItem::Kind;
 constexpr std::pair<std::string_view, Shape> shapes[] = {
-    {"reaction", Shape::Reaction}, {"trail", Shape::Trail}, {"box", Shape::Box}, {"circle", Shape::Circle},
-    {"disc", Shape::Disc}, {"hoop", Shape::Hoop}, {"ellipsoid", Shape::Ellipsoid}, {"spring", Shape::Spring},
-    {"damper", Shape::Damper}, {"pivot", Shape::Pivot}, {"ground", Shape::Ground}, {"wall", Shape::Wall},
-    {"label", Shape::Label}, {"follow", Shape::Follow}};
+    {"reaction", Shape::Reaction},   {"trail", Shape::Trail},   {"box", Shape::Box},
+    {"circle", Shape::Circle},       {"disc", Shape::Disc},     {"hoop", Shape::Hoop},
+    {"ellipsoid", Shape::Ellipsoid}, {"spring", Shape::Spring}, {"damper", Shape::Damper},
+    {"pivot", Shape::Pivot},         {"ground", Shape::Ground}, {"wall", Shape::Wall},
+    {"label", Shape::Label},         {"follow", Shape::Follow}};
 
 }  // namespace
 
@@ -126,7 +129,8 @@ void StatementParser::draw_line(DrawItem& item) {
   item.path = {operand("a point")};
   while (accept("-")) item.path.push_back(operand("a point after `-`"));
   if (item.path.size() < 2)
-    fail_expected("`-` and another point", "Draw a line A - B, trail A, box A 1 m by 1 m, circle A 1 m or spring A - B.");
+    fail_expected("`-` and another point",
+                  "Draw a line A - B, trail A, box A 1 m by 1 m, circle A 1 m or spring A - B.");
   if (item.kind != Shape::Line && item.path.size() > 2)
     fail("E0111", item.path[2]->span, item.kind == Shape::Spring ? "a spring has two ends" : "a damper has two ends");
 }
@@ -136,10 +140,12 @@ void StatementParser::draw_solid(DrawItem& item) {
   const bool has_sides = item.kind == Shape::Box || item.kind == Shape::Ellipsoid;
   item.path = {operand("a point, a body or a frame")};
   item.sizes = {quantity()};
-  if (has_sides && !accept("by")) fail_expected("`by` and the height of it", "Write for example box cart 0.4 m by 0.2 m.");
+  if (has_sides && !accept("by"))
+    fail_expected("`by` and the height of it", "Write for example box cart 0.4 m by 0.2 m.");
   if (has_sides) item.sizes.push_back(quantity());
   if (has_sides && accept("by")) item.sizes.push_back(quantity());
-  if ((item.kind == Shape::Disc || item.kind == Shape::Hoop) && accept("axis")) item.direction = operand("the axis, a vector");
+  if ((item.kind == Shape::Disc || item.kind == Shape::Hoop) && accept("axis"))
+    item.direction = operand("the axis, a vector");
 }
 
 DrawItem StatementParser::draw_item() {
@@ -152,18 +158,25 @@ DrawItem StatementParser::draw_item() {
         break;
       }
   switch (item.kind) {
-    case Shape::Reaction: item.path = {bare_reaction(previous())}; break;
+    case Shape::Reaction:
+      item.path = {bare_reaction(previous())};
+      break;
     case Shape::Line:
     case Shape::Spring:
-    case Shape::Damper: draw_line(item); break;
+    case Shape::Damper:
+      draw_line(item);
+      break;
     case Shape::Box:
     case Shape::Circle:
     case Shape::Disc:
     case Shape::Hoop:
-    case Shape::Ellipsoid: draw_solid(item); break;
+    case Shape::Ellipsoid:
+      draw_solid(item);
+      break;
     case Shape::Ground:
     case Shape::Wall:
-      if (!accept("at")) fail_expected("`at` and a place on it", "Write for example ground at (0, -R) or wall at (0, 0) normal (1, 0).");
+      if (!accept("at"))
+        fail_expected("`at` and a place on it", "Write for example ground at (0, -R) or wall at (0, 0) normal (1, 0).");
       item.path = {operand("a place after `at`")};
       if (accept("normal")) item.direction = operand("the normal, a vector");
       break;
@@ -173,7 +186,9 @@ DrawItem StatementParser::draw_item() {
       break;
     case Shape::Trail:
     case Shape::Pivot:
-    case Shape::Follow: item.path = {operand("a point")}; break;
+    case Shape::Follow:
+      item.path = {operand("a point")};
+      break;
   }
   item.span = cover(first, previous().span);
   return item;

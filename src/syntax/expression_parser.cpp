@@ -29,9 +29,10 @@ bool is_not_a_number(std::string_view word) {
 
 // A number however it is written: no name stands in it but pi.
 bool ExpressionParser::is_constant(const Expression& e) {
-  const bool number = e.kind == Kind::Number || e.kind == Kind::Binary || e.kind == Kind::Unary || e.kind == Kind::Call ||
-                      (e.kind == Kind::Name && e.text == "pi" && e.primes == 0);
-  return number && std::all_of(e.arguments.begin(), e.arguments.end(), [](const ExpressionPtr& a) { return is_constant(*a); });
+  const bool number = e.kind == Kind::Number || e.kind == Kind::Binary || e.kind == Kind::Unary ||
+                      e.kind == Kind::Call || (e.kind == Kind::Name && e.text == "pi" && e.primes == 0);
+  return number &&
+         std::all_of(e.arguments.begin(), e.arguments.end(), [](const ExpressionPtr& a) { return is_constant(*a); });
 }
 
 std::optional<Operator> ExpressionParser::product_operator(const Token& token) {
@@ -46,7 +47,8 @@ ExpressionParser::Nesting::Nesting(ExpressionParser& p) : parser(p) {
   if (++parser.nesting_ <= kDeepestNesting) return;
   --parser.nesting_;
   parser.fail("E0108", parser.peek().span, "the formula is nested too deeply",
-              fmt::format("Brackets, signs and exponents may be nested {} deep.", kDeepestNesting), "Name its parts with `let`.");
+              fmt::format("Brackets, signs and exponents may be nested {} deep.", kDeepestNesting),
+              "Name its parts with `let`.");
 }
 
 // ------------------------------------------------------------------------------------------------- building nodes
@@ -65,7 +67,8 @@ ExpressionParser::Node ExpressionParser::finish(Node node) {
   for (const ExpressionPtr& argument : node->arguments) node->depth = std::max(node->depth, argument->depth + 1);
   if (node->depth > kDeepestTree) {
     fail("E0108", node->span, "the formula is too long",
-         fmt::format("A formula may have {} operations in a row.", kDeepestTree), "Name its parts with `let`, or add to an energy with `+=`.");
+         fmt::format("A formula may have {} operations in a row.", kDeepestTree),
+         "Name its parts with `let`, or add to an energy with `+=`.");
   }
   return node;
 }
@@ -147,7 +150,8 @@ ExpressionParser::Node ExpressionParser::postfix() {
     const Token& token = peek();
     if (token.is(".")) {
       next();
-      if (node->kind == Kind::Number) fail("E0105", cover(node->span, token.span), "a decimal point stands between digits");
+      if (node->kind == Kind::Number)
+        fail("E0105", cover(node->span, token.span), "a decimal point stands between digits");
       const Name member = used_name("a component or field after `.`");
       node = make(Kind::Member, cover(node->span, member.span), {node});
       node->text = member.text;
@@ -156,7 +160,8 @@ ExpressionParser::Node ExpressionParser::postfix() {
       next();
       const bool named = (node->kind == Kind::Name || node->kind == Kind::Member) && !node->bracketed;
       if (!named && !node->bracketed && node->kind != Kind::TimeDerivative && node->kind != Kind::Vector) {
-        fail("E0125", token.span, fmt::format("`{}` has no time derivative that could be written with '", text_of(*node)),
+        fail("E0125", token.span,
+             fmt::format("`{}` has no time derivative that could be written with '", text_of(*node)),
              "The prime belongs to a name, a field of a point or body, or a bracket.",
              fmt::format("Write ({})' or dot({}).", text_of(*node), text_of(*node)));
       }
@@ -190,7 +195,8 @@ ExpressionParser::Node ExpressionParser::number() {
   node->text = token.text;
   if (peek().is("[")) node = with_bracketed_unit(std::move(node));
   if (peek().kind == Token::Kind::Number) {
-    fail("E0123", cover(token.span, peek().span), "two numbers stand side by side", "A product of numbers needs a sign between them.",
+    fail("E0123", cover(token.span, peek().span), "two numbers stand side by side",
+         "A product of numbers needs a sign between them.",
          fmt::format("Write {} * {}, or {}{} if it is one number.", token.text, peek().text, token.text, peek().text));
   }
   return node;
@@ -221,7 +227,8 @@ ExpressionParser::Node ExpressionParser::name() {
   if (peek().is("[") && token.is("pi")) return with_bracketed_unit(std::move(node));
   if (peek().is("[")) {
     fail("E0119", peek().span, fmt::format("a unit in square brackets cannot follow `{}`", token.text),
-         "A name has its unit from its declaration; in formulas only numbers are given units.", "Write the unit after a number: 3 [J].");
+         "A name has its unit from its declaration; in formulas only numbers are given units.",
+         "Write the unit after a number: 3 [J].");
   }
   return node;
 }
@@ -232,7 +239,8 @@ bool ExpressionParser::is_momentum(std::string_view name) const {
   if (cut == std::string::npos) return false;
   const Declarations::Kind kind = context_.declarations.kind(name.substr(cut + 1));
   const std::string_view head = name.substr(0, cut);
-  return (head == "p" || head == "P" || head == "momentum") && (kind == Declarations::Kind::Coordinate || kind == Declarations::Kind::Angle);
+  return (head == "p" || head == "P" || head == "momentum") &&
+         (kind == Declarations::Kind::Coordinate || kind == Declarations::Kind::Angle);
 }
 
 // A name before a bracket is a factor, θ(t) is a habit, and anything else is a function that does not exist.
@@ -242,13 +250,16 @@ void ExpressionParser::check_application(const Token& name) {
   const Declared kind = context_.declarations.kind(name.text);
   const std::string& independent = context_.declarations.independent();
   const bool of_time = peek(1).is(independent) && peek(2).is(")");
-  if (of_time && (kind == Declared::Coordinate || kind == Declared::Angle || kind == Declared::Field || kind == Declared::Input)) {
+  if (of_time &&
+      (kind == Declared::Coordinate || kind == Declared::Angle || kind == Declared::Field || kind == Declared::Input)) {
     const bool time = independent == "t";
     fail("E0121", cover(name.span, peek(2).span),
          fmt::format("`{0}({1})` would be {0} times {2}", name.text, independent, time ? "the time" : independent),
-         fmt::format("{} depends on {} by itself.", name.text, time ? "time" : independent), fmt::format("Write {}.", name.text));
+         fmt::format("{} depends on {} by itself.", name.text, time ? "time" : independent),
+         fmt::format("Write {}.", name.text));
   }
-  if (name.is("dt") && previous().is("dt") && context_.list.tokens[index_ - 2].is("/")) return;  // d/dt (…): `system` tells it
+  if (name.is("dt") && previous().is("dt") && context_.list.tokens[index_ - 2].is("/"))
+    return;  // d/dt (…): `system` tells it
   if (kind != Declared::None || is_predefined(name.text) || energy_of(name.text) || is_momentum(name.text)) return;
   unknown_before_bracket(name);
 }
@@ -258,14 +269,17 @@ void ExpressionParser::unknown_before_bracket(const Token& name) {
   const std::string bracket = text_to_closing_bracket();
   const std::string message = fmt::format("`{}` is neither a function nor a name of this model", name.text);
   if (const std::string_view formula = formula_of_habit(name.text); !formula.empty()) {
-    fail("E0122", name.span, message, "The language has one spelling for each function.", fmt::format("Write {}.", formula));
+    fail("E0122", name.span, message, "The language has one spelling for each function.",
+         fmt::format("Write {}.", formula));
   }
   if (const std::string_view function = function_of_habit(name.text); !function.empty()) {
-    fail("E0122", name.span, message, "The language has one spelling for each function.", fmt::format("Write {}{}.", function, bracket));
+    fail("E0122", name.span, message, "The language has one spelling for each function.",
+         fmt::format("Write {}{}.", function, bracket));
   }
   if (const Spelling right = right_spelling(name.text, context_.declarations.names()); !right.text.empty()) {
     const bool applied = find_function(right.text.substr(right.text.rfind(' ') + 1)) != nullptr;
-    fail("E0122", name.span, message, right.reason, fmt::format("Write {}{}{}.", right.text, applied ? "" : " ", bracket));
+    fail("E0122", name.span, message, right.reason,
+         fmt::format("Write {}{}{}.", right.text, applied ? "" : " ", bracket));
   }
   std::vector<std::string> candidates;
   for (const Function& function : functions()) candidates.emplace_back(function.name);
@@ -290,7 +304,9 @@ std::string ExpressionParser::text_to_closing_bracket() const {
 ExpressionParser::Node ExpressionParser::bracket(bool of_quantities) {
   const Nesting nesting(*this);
   const Token& open = next();
-  if (peek().is(")")) fail("E0126", cover(open.span, peek().span), "these brackets are empty", "", "Write a formula or a vector in them.");
+  if (peek().is(")"))
+    fail("E0126", cover(open.span, peek().span), "these brackets are empty", "",
+         "Write a formula or a vector in them.");
   std::vector<Node> parts;
   do parts.push_back(of_quantities ? quantity() : in_condition_ ? disjunction() : sum());
   while (accept(","));
@@ -304,8 +320,8 @@ ExpressionParser::Node ExpressionParser::bracket(bool of_quantities) {
     return peek().is("[") && is_constant(*node) ? with_bracketed_unit(std::move(node)) : node;
   }
   if (parts.size() > 3) {
-    fail("E0126", span, fmt::format("this vector has {} components", parts.size()), "A model is two- or three-dimensional.",
-         "Write (a, b) or (a, b, c).");
+    fail("E0126", span, fmt::format("this vector has {} components", parts.size()),
+         "A model is two- or three-dimensional.", "Write (a, b) or (a, b, c).");
   }
   Node vector = make(Kind::Vector, span);
   vector->arguments.assign(parts.begin(), parts.end());

@@ -47,7 +47,8 @@ class ExpressionParser {
   static std::string describe(const Token& token);
   static std::optional<Operator> product_operator(const Token& token);
   static bool is_constant(const Expression& e);
-  [[noreturn]] void fail(std::string code, Span span, std::string message, std::string reason = {}, std::string help = {});
+  [[noreturn]] void fail(std::string code, Span span, std::string message, std::string reason = {},
+                         std::string help = {});
   [[noreturn]] void fail_expected(std::string_view what, std::string help = {});
   void warn(std::string code, Span span, std::string message, std::string reason, std::string help);
   void flush_warnings();

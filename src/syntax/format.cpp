@@ -17,16 +17,17 @@ constexpr std::size_t kWidth = 100;
 constexpr std::string_view kIndent = "    ";
 
 struct Line {
-  std::uint32_t place = 0;     // offset in the source, for the order of comments and lines
+  std::uint32_t place = 0;  // offset in the source, for the order of comments and lines
   std::string text;
   std::string comment;
-  bool continues = false;      // belongs to the statement of the line before
+  bool continues = false;  // belongs to the statement of the line before
 };
 
 // A comma or a sum is a good place to break, unless the next line would begin like a statement.
 bool may_break_before(std::span<const Token> tokens, std::size_t i) {
   if (tokens[i].kind == Token::Kind::Name && is_statement_word(tokens[i].text)) return false;
-  const bool binary = (tokens[i].is("+") || tokens[i].is("-")) && blank_before(tokens, i) && i + 1 < tokens.size() && blank_before(tokens, i + 1);
+  const bool binary = (tokens[i].is("+") || tokens[i].is("-")) && blank_before(tokens, i) && i + 1 < tokens.size() &&
+                      blank_before(tokens, i + 1);
   return tokens[i - 1].is(",") || binary;
 }
 
@@ -124,8 +125,10 @@ class Layout {
     int breaks = 0;
     for (std::size_t i = end; i > begin; --i) {
       const char c = source_[i - 1];
-      if (c == '\n') ++breaks;
-      else if (c != ' ' && c != '\t' && c != '\r') break;
+      if (c == '\n')
+        ++breaks;
+      else if (c != ' ' && c != '\t' && c != '\r')
+        break;
     }
     return breaks > 1;
   }
@@ -135,7 +138,8 @@ class Layout {
     for (std::size_t i = 0; i < lines_.size();) {
       std::size_t end = i, widest = 0;
       for (; end < lines_.size() && !lines_[end].comment.empty(); ++end) {
-        const bool apart = end > i && !lines_[end].continues && blank_line_between(lines_[end - 1].place, lines_[end].place);
+        const bool apart =
+            end > i && !lines_[end].continues && blank_line_between(lines_[end - 1].place, lines_[end].place);
         if (apart) break;
         widest = std::max(widest, length_in_characters(lines_[end].text));
       }

@@ -39,7 +39,8 @@ std::string ExpressionParser::function_exponent(const Token& function, Node& exp
   const Token& sign = next();
   const Function& entry = *find_function(function.text);
   if (!entry.bare) {
-    fail("E0113", cover(function.span, sign.span), fmt::format("`{}` takes no exponent before its argument", function.text), "",
+    fail("E0113", cover(function.span, sign.span),
+         fmt::format("`{}` takes no exponent before its argument", function.text), "",
          fmt::format("Write {}(…)^2.", function.text));
   }
   if (peek().is("-")) {
@@ -50,7 +51,8 @@ std::string ExpressionParser::function_exponent(const Token& function, Node& exp
   }
   const Token& number = peek();
   if (number.kind != Token::Kind::Number || number.text.find_first_not_of("0123456789") != std::string_view::npos) {
-    fail("E0115", cover(function.span, number.span), fmt::format("only a whole number may stand in `{}^…`", function.text), "",
+    fail("E0115", cover(function.span, number.span),
+         fmt::format("only a whole number may stand in `{}^…`", function.text), "",
          fmt::format("Write {}(…)^… for any other power.", function.text));
   }
   next();
@@ -63,21 +65,26 @@ std::string ExpressionParser::function_exponent(const Token& function, Node& exp
 ExpressionParser::Node ExpressionParser::bare_argument(const Token& function, const Node& exponent) {
   const std::string head = exponent ? fmt::format("{}^{}", function.text, exponent->text) : std::string(function.text);
   const Token& first = peek();
-  const bool numbered = first.kind == Token::Kind::Number && peek(1).kind == Token::Kind::Name && !is_clause_word(peek(1).text) &&
-                        !find_function(peek(1).text);
+  const bool numbered = first.kind == Token::Kind::Number && peek(1).kind == Token::Kind::Name &&
+                        !is_clause_word(peek(1).text) && !find_function(peek(1).text);
   if (first.is("-")) {
     const std::string after(peek(1).text);
-    fail("E0113", cover(function.span, peek(1).span), fmt::format("`{}` without brackets cannot take a sign", function.text),
+    fail("E0113", cover(function.span, peek(1).span),
+         fmt::format("`{}` without brackets cannot take a sign", function.text),
          fmt::format("Without brackets {} takes one name.", function.text), fmt::format("Write {}(-{}).", head, after));
   }
   if (first.kind == Token::Kind::Number && !(numbered && peek(1).attached)) {
     fail("E0113", cover(function.span, first.span), fmt::format("what `{}` applies to is not clear", function.text),
-         fmt::format("Without brackets {} takes one name, optionally with a number attached: {} 2θ.", function.text, function.text),
-         numbered ? fmt::format("Write {}({} {}).", head, first.text, peek(1).text) : fmt::format("Write {}({} …).", head, first.text));
+         fmt::format("Without brackets {} takes one name, optionally with a number attached: {} 2θ.", function.text,
+                     function.text),
+         numbered ? fmt::format("Write {}({} {}).", head, first.text, peek(1).text)
+                  : fmt::format("Write {}({} …).", head, first.text));
   }
   if (first.kind == Token::Kind::Name && find_function(first.text)) {
-    fail("E0113", cover(function.span, first.span), fmt::format("`{}` without brackets cannot take another function", function.text),
-         fmt::format("Without brackets {} takes one name.", function.text), fmt::format("Write {}({} …).", head, first.text));
+    fail("E0113", cover(function.span, first.span),
+         fmt::format("`{}` without brackets cannot take another function", function.text),
+         fmt::format("Without brackets {} takes one name.", function.text),
+         fmt::format("Write {}({} …).", head, first.text));
   }
   if (!numbered && (first.kind != Token::Kind::Name || is_clause_word(first.text))) {
     fail_expected(fmt::format("the argument of `{}`", function.text));
@@ -94,7 +101,8 @@ ExpressionParser::Node ExpressionParser::bare_argument(const Token& function, co
     const Token& power = peek(1);
     fail("E0114", cover(function.span, power.span), fmt::format("`{} {}^{}` has two meanings", head, shown, power.text),
          fmt::format("It is not clear whether {} or {} is raised.", shown, function.text),
-         fmt::format("Write {}^{} {} or {}({}^{}).", function.text, power.text, shown, function.text, shown, power.text));
+         fmt::format("Write {}^{} {} or {}({}^{}).", function.text, power.text, shown, function.text, shown,
+                     power.text));
   }
   Node node = make(Kind::Call, cover(function.span, argument->span), {argument});
   node->text = function.text;
@@ -120,7 +128,8 @@ ExpressionParser::Node ExpressionParser::arguments_of(const Token& name, const F
     const std::string wanted = function.least == function.most ? fmt::format("{}", function.least)
                                : function.most == 0            ? fmt::format("at least {}", function.least)
                                                                : fmt::format("{} or {}", function.least, function.most);
-    fail("E0116", cover(open.span, span), fmt::format("`{}` takes {} argument{}, not {}", name.text, wanted, wanted == "1" ? "" : "s", count));
+    fail("E0116", cover(open.span, span),
+         fmt::format("`{}` takes {} argument{}, not {}", name.text, wanted, wanted == "1" ? "" : "s", count));
   }
   if (name.is("dot") && count == 1) {
     Node operand = arguments.front();
@@ -169,7 +178,8 @@ ExpressionParser::Node ExpressionParser::piecewise(const Token& name) {
     if (!peek().is(",")) fail_expected("`,` and `else : …`", "The last case of piecewise is `else : …`.");
     next();
   }
-  if (arguments.empty()) fail("E0116", name.span, "`piecewise` has no condition", "", "Write piecewise(x < 0 : a, else : b).");
+  if (arguments.empty())
+    fail("E0116", name.span, "`piecewise` has no condition", "", "Write piecewise(x < 0 : a, else : b).");
   expect(":", "`else`");
   arguments.push_back(sum());
   in_condition_ = outer;
@@ -186,7 +196,9 @@ ExpressionParser::Node ExpressionParser::condition() {
   Node node = disjunction();
   in_condition_ = outer;
   const bool decides = node->kind == Kind::Binary && node->op >= Operator::Less;
-  if (!decides) fail("E0128", node->span, fmt::format("`{}` is not a condition", text_of(*node)), "", "Conditions use < <= > >= and or.");
+  if (!decides)
+    fail("E0128", node->span, fmt::format("`{}` is not a condition", text_of(*node)), "",
+         "Conditions use < <= > >= and or.");
   return node;
 }
 

@@ -26,7 +26,8 @@ StatementBody StatementParser::contact_statement() {
     } else if (accept("restitution") || accept("friction") || accept("static") || accept("slip")) {
       statement.expressions.push_back(quantity());
     } else {
-      missing_clause("restitution, friction, static, slip or name", "contact", "contact y >= 0 restitution e friction μ slip x' name floor");
+      missing_clause("restitution, friction, static, slip or name", "contact",
+                     "contact y >= 0 restitution e friction μ slip x' name floor");
     }
   }
   return statement;
@@ -43,7 +44,8 @@ StatementBody StatementParser::friction_statement() {
       missing_clause("coefficient, static, normal or limit", "friction", "friction x coefficient μ normal m g");
     }
   }
-  if (statement.expressions.size() < 2) missing_clause("coefficient", "friction", "friction x coefficient μ normal m g");
+  if (statement.expressions.size() < 2)
+    missing_clause("coefficient", "friction", "friction x coefficient μ normal m g");
   return statement;
 }
 
@@ -87,8 +89,10 @@ StatementBody StatementParser::field_statement() {
   while (accept(","));
   expect(")", "the independent variables");
   expect(":", "the field");
-  if (peek().is("[")) bracketed_unit();
-  else if (!accept("angle") && !accept("length") && !accept("charge") && !accept("number")) fail_expected("angle, length, charge, number or a unit in brackets");
+  if (peek().is("["))
+    bracketed_unit();
+  else if (!accept("angle") && !accept("length") && !accept("charge") && !accept("number"))
+    fail_expected("angle, length, charge, number or a unit in brackets");
   if (accept("on")) {
     do {
       statement.expressions.push_back(variable());

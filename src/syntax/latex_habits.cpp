@@ -58,7 +58,8 @@ LatexCommand dotted(std::string_view text, std::string_view command, int order) 
   while (at < text.size() && text[at] == ' ') ++at;
   const std::string_view rest = text.substr(at);
   std::string_view of = group_at(rest);
-  if (of.empty() && !rest.empty()) of = rest[0] == '\\' ? command_at(rest) : rest.substr(0, is_ascii_letter(rest[0]) ? 1 : 0);
+  if (of.empty() && !rest.empty())
+    of = rest[0] == '\\' ? command_at(rest) : rest.substr(0, is_ascii_letter(rest[0]) ? 1 : 0);
   const std::string name = without_commands(of);
   LatexCommand out;
   out.length = at + of.size();
@@ -80,7 +81,8 @@ LatexCommand quotient(std::string_view text, std::string_view command) {
   const std::string_view below = group_at(text.substr(command.size() + above.size()));
   if (above.empty() || below.empty()) return {command.size(), "Write a quotient with `/`: (a + b)/(c d).", {}};
   return {command.size() + above.size() + below.size(),
-          fmt::format("Write {}/{}.", operand_of(above), operand_of(below)), {}};
+          fmt::format("Write {}/{}.", operand_of(above), operand_of(below)),
+          {}};
 }
 
 }  // namespace
@@ -91,14 +93,18 @@ LatexCommand latex_command(std::string_view text) {
   if (word == "dot") return dotted(text, command, 1);
   if (word == "ddot") return dotted(text, command, 2);
   if (word == "frac" || word == "dfrac" || word == "tfrac") return quotient(text, command);
-  if (word == "cdot" || word == "times") return {command.size(), "Leave a blank between the factors, or write *.", {{Token::Kind::Sign, "*"}}};
+  if (word == "cdot" || word == "times")
+    return {command.size(), "Leave a blank between the factors, or write *.", {{Token::Kind::Sign, "*"}}};
   if (word == "sqrt") return {command.size(), "Write sqrt(x).", {}};
   if (word == "left" || word == "right") return {command.size(), "Leave it out: brackets are plain.", {}};
   if (const std::string letter = letter_of(word); !letter.empty()) {
     const bool plain = word.substr(0, 3) != "var";
-    return {command.size(), plain ? fmt::format("Write {} or {}.", letter, word) : fmt::format("Write {}.", letter), {{Token::Kind::Name, letter}}};
+    return {command.size(),
+            plain ? fmt::format("Write {} or {}.", letter, word) : fmt::format("Write {}.", letter),
+            {{Token::Kind::Name, letter}}};
   }
-  if (find_function(word)) return {command.size(), fmt::format("Write {}.", word), {{Token::Kind::Name, std::string(word)}}};
+  if (find_function(word))
+    return {command.size(), fmt::format("Write {}.", word), {{Token::Kind::Name, std::string(word)}}};
   if (const std::string_view function = function_of_habit(word); !function.empty())
     return {command.size(), fmt::format("Write {}.", function), {{Token::Kind::Name, std::string(function)}}};
   return {command.size(), "Formulas are plain text: θ, sin θ, x^2, a/b.", {}};

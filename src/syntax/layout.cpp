@@ -22,15 +22,16 @@ bool is_bare_function(const Token& token) {
 }
 
 bool ends_operand(const Token& token) {
-  return token.kind == Token::Kind::Number || token.kind == Token::Kind::String || token.is(")") || token.is("]") || token.is("'") ||
-         (token.kind == Token::Kind::Name && !is_clause_word(token.text));
+  return token.kind == Token::Kind::Number || token.kind == Token::Kind::String || token.is(")") || token.is("]") ||
+         token.is("'") || (token.kind == Token::Kind::Name && !is_clause_word(token.text));
 }
 
 // A sign before an operand: at the start, after an operator, and after a word that begins a formula.
 bool is_unary(std::span<const Token> tokens, std::size_t i) {
   if (!tokens[i].is("-") && !tokens[i].is("+")) return false;
   if (i == 0 || !ends_operand(tokens[i - 1])) return true;
-  const bool first_word = i == 1 && tokens[0].kind == Token::Kind::Name && is_statement_word(tokens[0].text) && !energy_of(tokens[0].text);
+  const bool first_word =
+      i == 1 && tokens[0].kind == Token::Kind::Name && is_statement_word(tokens[0].text) && !energy_of(tokens[0].text);
   constexpr std::array openings = {"conserved"sv, "equation"sv, "integral"sv};
   const bool opening = i == 2 && (tokens[0].is("expect") || tokens[0].is("claim") || tokens[0].is("constraint")) &&
                        std::find(openings.begin(), openings.end(), tokens[1].text) != openings.end();
@@ -60,7 +61,8 @@ bool blank_before(std::span<const Token> tokens, std::size_t i) {
   constexpr std::array closing = {")"sv, "]"sv, ","sv, "'"sv};
   const Token& before = tokens[i - 1];
   const Token& token = tokens[i];
-  if (one_of(token, tight) || one_of(before, tight) || one_of(token, closing) || before.is("(") || before.is("[")) return false;
+  if (one_of(token, tight) || one_of(before, tight) || one_of(token, closing) || before.is("(") || before.is("["))
+    return false;
   if (is_unary(tokens, i - 1)) return false;
   if (token.is("(")) return !opens_arguments(tokens, i);
   const bool number_of_argument = i >= 2 && before.kind == Token::Kind::Number && token.kind == Token::Kind::Name &&

@@ -19,7 +19,7 @@ using namespace std::string_view_literals;
 
 constexpr std::size_t kMostTokens = 1'000'000;
 constexpr std::size_t kMostMessages = 100;
-constexpr std::size_t kLongestWord = 200;      // bytes of a name or number
+constexpr std::size_t kLongestWord = 200;  // bytes of a name or number
 constexpr int kMostNestedRoots = 100;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -57,25 +57,31 @@ struct Spelling {
 };
 // Longest first where one begins another. An empty canonical spelling: see complain_about_sign.
 constexpr std::array kSigns = {
-    Spelling{"+/-", "±"}, Spelling{"**", ""},  Spelling{":=", ""},  Spelling{"//", ""},  Spelling{"==", ""},  Spelling{"!=", ""},
-    Spelling{"..", ".."}, Spelling{"+=", "+="}, Spelling{"<=", "<="}, Spelling{">=", ">="}, Spelling{"≤", "<="},
-    Spelling{"≥", ">="},  Spelling{"−", "-"},  Spelling{"+", "+"},  Spelling{"-", "-"},  Spelling{"*", "*"},
-    Spelling{"/", "/"},   Spelling{"^", "^"},  Spelling{"(", "("},  Spelling{")", ")"},  Spelling{"[", "["},
-    Spelling{"]", "]"},   Spelling{",", ","},  Spelling{":", ":"},  Spelling{"=", "="},  Spelling{"<", "<"},
-    Spelling{">", ">"},   Spelling{"'", "'"},  Spelling{"′", "'"},  Spelling{"’", "'"},  Spelling{".", "."},
-    Spelling{"±", "±"},   Spelling{"·", "·"},  Spelling{"⋅", "·"},  Spelling{"\u0387", "·"}, Spelling{"×", "×"},
-    Spelling{"∙", "·"},   Spelling{"∗", "*"},  Spelling{"÷", "/"},  Spelling{"∕", "/"},  Spelling{"´", "'"},
-    Spelling{"ʹ", "'"},   Spelling{"‘", "'"},
+    Spelling{"+/-", "±"}, Spelling{"**", ""},   Spelling{":=", ""},   Spelling{"//", ""},   Spelling{"==", ""},
+    Spelling{"!=", ""},   Spelling{"..", ".."}, Spelling{"+=", "+="}, Spelling{"<=", "<="}, Spelling{">=", ">="},
+    Spelling{"≤", "<="},  Spelling{"≥", ">="},  Spelling{"−", "-"},   Spelling{"+", "+"},   Spelling{"-", "-"},
+    Spelling{"*", "*"},   Spelling{"/", "/"},   Spelling{"^", "^"},   Spelling{"(", "("},   Spelling{")", ")"},
+    Spelling{"[", "["},   Spelling{"]", "]"},   Spelling{",", ","},   Spelling{":", ":"},   Spelling{"=", "="},
+    Spelling{"<", "<"},   Spelling{">", ">"},   Spelling{"'", "'"},   Spelling{"′", "'"},   Spelling{"’", "'"},
+    Spelling{".", "."},   Spelling{"±", "±"},   Spelling{"·", "·"},   Spelling{"⋅", "·"},   Spelling{"\u0387", "·"},
+    Spelling{"×", "×"},   Spelling{"∙", "·"},   Spelling{"∗", "*"},   Spelling{"÷", "/"},   Spelling{"∕", "/"},
+    Spelling{"´", "'"},   Spelling{"ʹ", "'"},   Spelling{"‘", "'"},
 };
 
 // The mark that ends a text which begins with this one; empty for other characters.
 constexpr std::string_view closing_mark(char32_t opening) {
   switch (opening) {
-    case U'"': return "\"";
-    case U'“': case U'”': return "”";
-    case U'„': return "“";
-    case U'«': return "»";
-    default: return {};
+    case U'"':
+      return "\"";
+    case U'“':
+    case U'”':
+      return "”";
+    case U'„':
+      return "“";
+    case U'«':
+      return "»";
+    default:
+      return {};
   }
 }
 
@@ -98,7 +104,8 @@ constexpr std::array kAdvice = {
     Advice{"—", "`—` is a dash, not a minus sign", "Type `-`."},
     Advice{"&", "`&` is not a sign of the language", "Conditions are joined by `and`."},
     Advice{"|", "`|` is not a sign of the language", "The absolute value is abs(x), the norm of a vector norm(u)."},
-    Advice{"∂", "`∂` is not a sign of the language", "Derivatives of fields are written u_x, u_xx; those of L the tool takes itself."},
+    Advice{"∂", "`∂` is not a sign of the language",
+           "Derivatives of fields are written u_x, u_xx; those of L the tool takes itself."},
 };
 
 class Lexer {
@@ -126,7 +133,8 @@ class Lexer {
       } else if (c.value == '#') {
         read_comment();
         continue;
-      } else if (!is_blank(c.value) && !(c.value == '\r' && position_ + 1 < text_.size() && text_[position_ + 1] == '\n')) {
+      } else if (!is_blank(c.value) &&
+                 !(c.value == '\r' && position_ + 1 < text_.size() && text_[position_ + 1] == '\n')) {
         return true;
       }
       position_ += c.length;
@@ -219,9 +227,11 @@ class Lexer {
       return malformed(begin, "A number stands directly before the fraction: write 2.5 or (2 + 1/2).");
     }
     const bool function = before && before->kind == Token::Kind::Name && find_function(before->text);
-    const bool ends_operand = before && !function && !is_clause_word(before->text) &&
-                              (before->kind != Token::Kind::Sign || before->is(")") || before->is("]") || before->is("'"));
-    const bool after_operator = before && (before->is("*") || before->is("/") || before->is("^") || before->is("·") || before->is("×"));
+    const bool ends_operand =
+        before && !function && !is_clause_word(before->text) &&
+        (before->kind != Token::Kind::Sign || before->is(")") || before->is("]") || before->is("'"));
+    const bool after_operator =
+        before && (before->is("*") || before->is("/") || before->is("^") || before->is("·") || before->is("×"));
     const auto next = position_ < text_.size() ? decode(text_, position_)->value : U' ';
     const bool powered = next == '^' || superscript_sign_or_digit(next);
     const bool brackets = ends_operand || after_operator || powered;
@@ -243,8 +253,8 @@ class Lexer {
       position_ += c.length;
     }
     const bool sign = !is_digit(exponent.front());
-    if (!std::all_of(exponent.begin() + (sign ? 1 : 0), exponent.end(), is_digit) || exponent.size() == (sign ? 1u : 0u) ||
-        exponent.size() > 6) {
+    if (!std::all_of(exponent.begin() + (sign ? 1 : 0), exponent.end(), is_digit) ||
+        exponent.size() == (sign ? 1u : 0u) || exponent.size() > 6) {
       return malformed(begin, "A raised exponent is a whole number: x², x⁻¹.");
     }
     emit(Token::Kind::Sign, "^", begin);
@@ -263,7 +273,8 @@ class Lexer {
     const std::size_t end = text_.find(closing, begin + opening);
     if (attached || end >= line_end) {
       position_ = begin + opening;
-      complain("E0104", begin, inner_quote ? "a quotation mark stands inside a text" : "this text has no closing quotation mark",
+      complain("E0104", begin,
+               inner_quote ? "a quotation mark stands inside a text" : "this text has no closing quotation mark",
                "A text stands between two \" on one line.",
                typed_as_prime ? "For a second time derivative type two primes: θ''."
                : inner_quote  ? "Use ' or “ ” inside the text."
@@ -305,19 +316,24 @@ class Lexer {
     const std::size_t begin = position_;
     const LatexCommand command = latex_command(text_.substr(begin));
     position_ += command.length;
-    complain("E0104", begin, fmt::format("`{}` is a command of LaTeX", text_.substr(begin, command.length)), "A model is plain text.", command.help);
+    complain("E0104", begin, fmt::format("`{}` is a command of LaTeX", text_.substr(begin, command.length)),
+             "A model is plain text.", command.help);
     if (command.tokens.empty()) return emit_unreadable(begin);
-    for (std::size_t i = 0; i < command.tokens.size(); ++i) emit(command.tokens[i].kind, command.tokens[i].text, begin, i > 0);
+    for (std::size_t i = 0; i < command.tokens.size(); ++i)
+      emit(command.tokens[i].kind, command.tokens[i].text, begin, i > 0);
   }
 
   // What stands around `**`, with the right sign: x^2.
   std::string power_here() const {
-    const auto is_word = [](char c) { return is_digit(c) || c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c & 0x80); };
+    const auto is_word = [](char c) {
+      return is_digit(c) || c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c & 0x80);
+    };
     std::size_t next = position_;
     while (next < text_.size() && text_[next] == ' ') ++next;
     std::size_t end = next;
     while (end < text_.size() && is_word(text_[end])) ++end;
-    const bool base = line_continues() && (list_.tokens.back().kind == Token::Kind::Name || list_.tokens.back().kind == Token::Kind::Number);
+    const bool base = line_continues() && (list_.tokens.back().kind == Token::Kind::Name ||
+                                           list_.tokens.back().kind == Token::Kind::Number);
     if (!base || end == next || end - next > kLongestWord) return "x^2";
     return fmt::format("{}^{}", list_.tokens.back().text, text_.substr(next, end - next));
   }
@@ -333,7 +349,8 @@ class Lexer {
     if (position_ < text_.size() && (text_[position_] == 'C' || text_[position_] == 'F')) {
       ++position_;
       complain("E0104", begin, fmt::format("{} is not a unit of the language", text_.substr(begin, position_ - begin)),
-               "Its zero is not the zero of temperature, so that it cannot stand in products.", "Write temperatures in K.");
+               "Its zero is not the zero of temperature, so that it cannot stand in products.",
+               "Write temperatures in K.");
       return emit_unreadable(begin);
     }
     emit(Token::Kind::Name, "deg", begin);
@@ -347,25 +364,31 @@ class Lexer {
 
   void read_sign(CodePoint c) {
     const std::size_t begin = position_;
-    const auto sign = std::find_if(kSigns.begin(), kSigns.end(), [&](const Spelling& s) { return starts_with(s.written); });
+    const auto sign =
+        std::find_if(kSigns.begin(), kSigns.end(), [&](const Spelling& s) { return starts_with(s.written); });
     if (sign != kSigns.end() && !sign->canonical.empty()) {
       position_ += sign->written.size();
       return emit(Token::Kind::Sign, std::string(sign->canonical), begin);
     }
     position_ += sign != kSigns.end() ? sign->written.size() : c.length;
     complain_about_sign(begin);
-    if (text_.substr(begin, 2) == "//" || (text_[begin] == '%' && !line_continues())) position_ = std::min(text_.find('\n', begin), text_.size());
+    if (text_.substr(begin, 2) == "//" || (text_[begin] == '%' && !line_continues()))
+      position_ = std::min(text_.find('\n', begin), text_.size());
     emit_unreadable(begin);
   }
 
   void complain_about_sign(std::size_t begin) {
     const std::string_view written = text_.substr(begin, position_ - begin);
-    const bool repeated = !list_.tokens.empty() && list_.tokens.back().unreadable() && list_.tokens.back().span.end == begin;
+    const bool repeated =
+        !list_.tokens.empty() && list_.tokens.back().unreadable() && list_.tokens.back().span.end == begin;
     if (repeated) return;
     if (written == "**")
-      return complain("E0104", begin, "`**` is not a sign of the language", "", fmt::format("Write {}: a power has the sign `^`.", power_here()));
-    if (written == ";" && at_line_end()) return complain("E0104", begin, "`;` ends no statement", "", "Leave it out: one statement a line.");
-    const auto advice = std::find_if(kAdvice.begin(), kAdvice.end(), [&](const Advice& a) { return a.written == written; });
+      return complain("E0104", begin, "`**` is not a sign of the language", "",
+                      fmt::format("Write {}: a power has the sign `^`.", power_here()));
+    if (written == ";" && at_line_end())
+      return complain("E0104", begin, "`;` ends no statement", "", "Leave it out: one statement a line.");
+    const auto advice =
+        std::find_if(kAdvice.begin(), kAdvice.end(), [&](const Advice& a) { return a.written == written; });
     if (advice != kAdvice.end()) {
       complain("E0104", begin, std::string(advice->message), "", std::string(advice->help));
       return;
@@ -374,8 +397,9 @@ class Lexer {
     const bool visible = c > 0x20 && c != 0x7F && !(c >= 0x80 && c < 0xA0) && !(c >= 0x200B && c <= 0x200F) &&
                          !(c >= 0x2028 && c <= 0x202E) && c != 0xFEFF && !is_combining_mark(c);
     const std::string code = fmt::format("U+{:04X}", static_cast<std::uint32_t>(c));
-    complain("E0104", begin, visible ? fmt::format("unexpected character `{}` ({})", written, code)
-                                     : fmt::format("unexpected invisible character ({})", code),
+    complain("E0104", begin,
+             visible ? fmt::format("unexpected character `{}` ({})", written, code)
+                     : fmt::format("unexpected invisible character ({})", code),
              "It has no meaning in the model language.", "Remove it.");
   }
 
@@ -413,7 +437,8 @@ class Lexer {
 
   void complain(std::string code, std::size_t begin, std::string message, std::string reason, std::string help) {
     if (++messages_ > kMostMessages) return;
-    diagnostics_.error(std::move(code), span_from(begin, position_), std::move(message), std::move(reason), std::move(help));
+    diagnostics_.error(std::move(code), span_from(begin, position_), std::move(message), std::move(reason),
+                       std::move(help));
   }
 
   void malformed(std::size_t begin, std::string reason) {

@@ -16,6 +16,7 @@ bool check_text(const SourceText& source, Diagnostics& diagnostics);
 std::optional<TokenList> lex(const SourceText& source, Diagnostics& diagnostics);
 
 /// Groups tokens into statements: one a line, continued by an open bracket or an indented next line (E0106, E0107).
-std::vector<StatementTokens> split_statements(const TokenList& list, const SourceText& source, Diagnostics& diagnostics);
+std::vector<StatementTokens> split_statements(const TokenList& list, const SourceText& source,
+                                              Diagnostics& diagnostics);
 
 }  // namespace maupertuis::syntax

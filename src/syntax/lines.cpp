@@ -54,10 +54,11 @@ class Splitter {
 
   void complain_about_indent(std::size_t i) {
     const Span first = tokens_[statements_.back().begin].span;
-    diagnostics_.error("E0107", tokens_[i].span,
-                       fmt::format("this indented line begins with the statement word `{}`", tokens_[i].text),
-                       fmt::format("An indented line continues the statement of line {}.", source_.locate(first.begin).line),
-                       "Remove the indentation if it is a statement of its own.");
+    diagnostics_.error(
+        "E0107", tokens_[i].span,
+        fmt::format("this indented line begins with the statement word `{}`", tokens_[i].text),
+        fmt::format("An indented line continues the statement of line {}.", source_.locate(first.begin).line),
+        "Remove the indentation if it is a statement of its own.");
   }
 
   void track_brackets(std::size_t i) {
@@ -69,8 +70,9 @@ class Splitter {
     if (statements_.back().broken) return;
     statements_.back().broken = true;
     diagnostics_.error("E0106", token.span, fmt::format("this `{}` closes no bracket", token.text),
-                       open_.empty() ? "No bracket is open here."
-                                     : fmt::format("The bracket that is open here is `{}`.", tokens_[open_.back()].text),
+                       open_.empty()
+                           ? "No bracket is open here."
+                           : fmt::format("The bracket that is open here is `{}`.", tokens_[open_.back()].text),
                        "Remove it, or write the opening bracket.");
   }
 
@@ -102,7 +104,8 @@ class Splitter {
 
 }  // namespace
 
-std::vector<StatementTokens> split_statements(const TokenList& list, const SourceText& source, Diagnostics& diagnostics) {
+std::vector<StatementTokens> split_statements(const TokenList& list, const SourceText& source,
+                                              Diagnostics& diagnostics) {
   return Splitter(list, source, diagnostics).run();
 }
 

@@ -19,13 +19,17 @@ class LetterLint {
     const std::string foreign = foreign_letter(name.text);
     if (foreign.empty() || !is_new) return;
     diagnostics_.warning("W0107", name.span, fmt::format("`{}` mixes two alphabets: {}", name.text, foreign),
-                         fmt::format("It looks like `{}`, and is another name.", latin_look(name.text)), "Write it with Latin letters.");
+                         fmt::format("It looks like `{}`, and is another name.", latin_look(name.text)),
+                         "Write it with Latin letters.");
   }
 
  private:
   void twins(const Name& first, const Name& name) {
-    diagnostics_.warning("W0106", name.span, fmt::format("`{}` looks like another name, that of line {}", name.text, source_.locate(first.span.begin).line),
-                         "Their letters are of different alphabets: nobody who reads the model can tell them apart.", "Rename one of them.");
+    diagnostics_.warning(
+        "W0106", name.span,
+        fmt::format("`{}` looks like another name, that of line {}", name.text, source_.locate(first.span.begin).line),
+        "Their letters are of different alphabets: nobody who reads the model can tell them apart.",
+        "Rename one of them.");
   }
 
   const SourceText& source_;
@@ -35,7 +39,8 @@ class LetterLint {
 
 }  // namespace
 
-void lint_letters(const TokenList& list, const std::vector<StatementTokens>& statements, const SourceText& source, Diagnostics& diagnostics) {
+void lint_letters(const TokenList& list, const std::vector<StatementTokens>& statements, const SourceText& source,
+                  Diagnostics& diagnostics) {
   LetterLint lint(source, diagnostics);
   for (const StatementTokens& statement : statements)
     for (const Name& name : Declarations::of(list, statement)) lint.look_at(name);

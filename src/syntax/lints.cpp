@@ -13,12 +13,12 @@ bool is_binary(const Expression& e, Operator op) { return e.kind == Kind::Binary
 // The factor that stands last in an expression that is written without brackets.
 const Expression& last_factor(const Expression& e) {
   const Expression* last = &e;
-  while (!last->bracketed && ((last->kind == Kind::Binary && last->op != Operator::Power) || last->kind == Kind::Unary)) {
+  while (!last->bracketed &&
+         ((last->kind == Kind::Binary && last->op != Operator::Power) || last->kind == Kind::Unary)) {
     last = last->arguments.back().get();
   }
   return *last;
 }
-
 
 // cos θ or cos^2 θ; null if it is something else.
 const Expression* bare_call(const Expression& e) {
@@ -27,8 +27,9 @@ const Expression* bare_call(const Expression& e) {
 }
 
 bool is_plain_factor(const Expression& e) {
-  return !e.bracketed && (e.kind == Kind::Name || e.kind == Kind::Member ||
-                          (is_binary(e, Operator::Power) && !e.arguments[0]->bracketed && e.arguments[0]->kind == Kind::Name));
+  return !e.bracketed &&
+         (e.kind == Kind::Name || e.kind == Kind::Member ||
+          (is_binary(e, Operator::Power) && !e.arguments[0]->bracketed && e.arguments[0]->kind == Kind::Name));
 }
 
 }  // namespace
@@ -43,8 +44,8 @@ void ExpressionParser::lint_product(const Expression& left, Operator op, const E
     const Span span = cover(numerator.span, right.span);
     warn("W0101", span, fmt::format("`{}` multiplies by {}", text_of(span), text_of(right)),
          "Products without a sign bind as division does, from left to right.",
-         fmt::format("Write {}/({} {}) if {} belongs to the denominator, else put {} before the slash.", text_of(numerator),
-                     text_of(before), text_of(right), text_of(right), text_of(right)));
+         fmt::format("Write {}/({} {}) if {} belongs to the denominator, else put {} before the slash.",
+                     text_of(numerator), text_of(before), text_of(right), text_of(right), text_of(right)));
   }
   const Expression* function = bare_call(before);
   if (op == Operator::Divide && function && right.kind == Kind::Number) {
@@ -52,12 +53,14 @@ void ExpressionParser::lint_product(const Expression& left, Operator op, const E
     const std::string argument = text_of(*function->arguments[0]);
     warn("W0102", span, fmt::format("`{}` divides the value of {}, not its argument", text_of(span), function->text),
          fmt::format("Without brackets {} takes {} alone.", function->text, argument),
-         fmt::format("Write {0}({1}/{2}) for the {0} of {1}/{2}, or 1/{2} {3}.", function->text, argument, text_of(right), text_of(before)));
+         fmt::format("Write {0}({1}/{2}) for the {0} of {1}/{2}, or 1/{2} {3}.", function->text, argument,
+                     text_of(right), text_of(before)));
   }
   if (op == Operator::Juxtapose && function && context_.declarations.dimensionless() && right.kind == Kind::Name &&
       right.text == context_.declarations.independent()) {
     const Span span = cover(before.span, right.span);
-    warn("W0104", span, fmt::format("`{}` multiplies by {}", text_of(span), right.text == "t" ? "the time" : right.text),
+    warn("W0104", span,
+         fmt::format("`{}` multiplies by {}", text_of(span), right.text == "t" ? "the time" : right.text),
          fmt::format("Without brackets {} takes {} alone.", function->text, text_of(*function->arguments[0])),
          fmt::format("Write {}({} {}).", function->text, text_of(*function->arguments[0]), right.text));
   }

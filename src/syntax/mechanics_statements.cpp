@@ -7,12 +7,15 @@ namespace maupertuis::syntax {
 
 void StatementParser::missing_clause(std::string_view clause, std::string_view statement, std::string_view example) {
   if (!at_end()) fail_expected(fmt::format("`{}`", clause), fmt::format("Write for example {}.", example));
-  fail("E0127", statement_span(), fmt::format("this {} has no `{}`", statement, clause), "", fmt::format("Write for example {}.", example));
+  fail("E0127", statement_span(), fmt::format("this {} has no `{}`", statement, clause), "",
+       fmt::format("Write for example {}.", example));
 }
 
 // The quantity after a clause word that has been read; each clause stands once.
 ExpressionPtr StatementParser::clause_quantity(std::string_view clause, const ExpressionPtr& already) {
-  if (already) fail("E0127", previous().span, fmt::format("`{}` is given twice", clause), "Each part of a statement stands once.", "Remove one of them.");
+  if (already)
+    fail("E0127", previous().span, fmt::format("`{}` is given twice", clause), "Each part of a statement stands once.",
+         "Remove one of them.");
   return quantity();
 }
 
@@ -26,7 +29,8 @@ std::vector<ExpressionPtr> StatementParser::bracketed_values(std::size_t count, 
   if (!peek().is(")")) fail_expected("`,` or `)`");
   const Span span = cover(open, next().span);
   if (values.size() != count) {
-    fail("E0116", span, fmt::format("here stand {} values, not {}", count, values.size()), "", fmt::format("Write {}.", form));
+    fail("E0116", span, fmt::format("here stand {} values, not {}", count, values.size()), "",
+         fmt::format("Write {}.", form));
   }
   return with_unit_after(std::move(values));
 }
@@ -46,8 +50,8 @@ Rotation StatementParser::rotation() {
     rotation.kind = Rotation::Kind::Euler;
     const Token& sequence = peek();
     const bool axes = sequence.kind == Token::Kind::Name && sequence.text.size() == 3 &&
-                      sequence.text.find_first_not_of("xyz") == std::string_view::npos && sequence.text[0] != sequence.text[1] &&
-                      sequence.text[1] != sequence.text[2];
+                      sequence.text.find_first_not_of("xyz") == std::string_view::npos &&
+                      sequence.text[0] != sequence.text[1] && sequence.text[1] != sequence.text[2];
     if (!axes) fail_expected("the axes of three rotations, such as zxz", "No axis follows itself: zxz, zyx, zyz, …");
     rotation.sequence = sequence.text;
     rotation.sequence_span = next().span;
@@ -68,7 +72,9 @@ Rotation StatementParser::rotation() {
 
 // After the word `inertia`.
 void StatementParser::inertia(BodyStatement& body) {
-  if (body.inertia_kind != BodyStatement::Inertia::None) fail("E0127", previous().span, "`inertia` is given twice", "Each part of a statement stands once.", "Remove one of them.");
+  if (body.inertia_kind != BodyStatement::Inertia::None)
+    fail("E0127", previous().span, "`inertia` is given twice", "Each part of a statement stands once.",
+         "Remove one of them.");
   const Span first = peek().span;
   if (peek().is("diag") && peek(1).is("(")) {
     next();
@@ -90,10 +96,14 @@ StatementBody StatementParser::frame_statement() {
   FrameStatement frame;
   frame.name = new_name("the name of a frame");
   while (!at_end()) {
-    if (accept("at")) frame.at = clause_quantity("at", frame.at);
-    else if (accept("rotation")) frame.rotation = rotation();
-    else if (accept("in")) frame.in = used_name("the name of a frame");
-    else missing_clause("at, rotation or in", "frame", "frame F at (x, y) rotation angle θ");
+    if (accept("at"))
+      frame.at = clause_quantity("at", frame.at);
+    else if (accept("rotation"))
+      frame.rotation = rotation();
+    else if (accept("in"))
+      frame.in = used_name("the name of a frame");
+    else
+      missing_clause("at, rotation or in", "frame", "frame F at (x, y) rotation angle θ");
   }
   if (!frame.at && !frame.rotation) missing_clause("at", "frame", "frame F at (x, y) rotation angle θ");
   return frame;
@@ -104,10 +114,14 @@ StatementBody StatementParser::point_statement() {
   PointStatement point;
   point.name = new_name("the name of a point");
   while (!at_end()) {
-    if (accept("mass")) point.mass = clause_quantity("mass", point.mass);
-    else if (accept("at")) point.at = clause_quantity("at", point.at);
-    else if (accept("in")) point.in = used_name("the name of a frame");
-    else missing_clause("mass, at or in", "point", "point P mass m at (x, y)");
+    if (accept("mass"))
+      point.mass = clause_quantity("mass", point.mass);
+    else if (accept("at"))
+      point.at = clause_quantity("at", point.at);
+    else if (accept("in"))
+      point.in = used_name("the name of a frame");
+    else
+      missing_clause("mass, at or in", "point", "point P mass m at (x, y)");
   }
   if (!point.at) missing_clause("at", "point", "point P mass m at (x, y)");
   return point;
@@ -118,12 +132,18 @@ StatementBody StatementParser::body_statement() {
   BodyStatement body;
   body.name = new_name("the name of a body");
   while (!at_end()) {
-    if (accept("mass")) body.mass = clause_quantity("mass", body.mass);
-    else if (accept("inertia")) inertia(body);
-    else if (accept("at")) body.at = clause_quantity("at", body.at);
-    else if (accept("rotation")) body.rotation = rotation();
-    else if (accept("in")) body.in = used_name("the name of a frame");
-    else missing_clause("mass, inertia, at, rotation or in", "body", "body B mass m inertia I at (x, y) rotation angle θ");
+    if (accept("mass"))
+      body.mass = clause_quantity("mass", body.mass);
+    else if (accept("inertia"))
+      inertia(body);
+    else if (accept("at"))
+      body.at = clause_quantity("at", body.at);
+    else if (accept("rotation"))
+      body.rotation = rotation();
+    else if (accept("in"))
+      body.in = used_name("the name of a frame");
+    else
+      missing_clause("mass, inertia, at, rotation or in", "body", "body B mass m inertia I at (x, y) rotation angle θ");
   }
   return body;
 }
@@ -140,9 +160,12 @@ StatementBody StatementParser::spring_statement() {
   expect("-", "the first end of the spring");
   spring.to = operand("a point");
   while (!at_end()) {
-    if (accept("stiffness")) spring.stiffness = clause_quantity("stiffness", spring.stiffness);
-    else if (accept("length")) spring.length = clause_quantity("length", spring.length);
-    else missing_clause("stiffness or length", "spring", "spring A - B stiffness k length l0");
+    if (accept("stiffness"))
+      spring.stiffness = clause_quantity("stiffness", spring.stiffness);
+    else if (accept("length"))
+      spring.length = clause_quantity("length", spring.length);
+    else
+      missing_clause("stiffness or length", "spring", "spring A - B stiffness k length l0");
   }
   if (!spring.stiffness) missing_clause("stiffness", "spring", "spring A - B stiffness k length l0");
   return spring;
@@ -167,9 +190,12 @@ StatementBody StatementParser::torsion_statement() {
   TorsionSpringStatement spring;
   spring.coordinate = used_name("the name of a coordinate");
   while (!at_end()) {
-    if (accept("stiffness")) spring.stiffness = clause_quantity("stiffness", spring.stiffness);
-    else if (accept("rest")) spring.rest = clause_quantity("rest", spring.rest);
-    else missing_clause("stiffness or rest", "torsion spring", "torsion spring θ stiffness k rest θ0");
+    if (accept("stiffness"))
+      spring.stiffness = clause_quantity("stiffness", spring.stiffness);
+    else if (accept("rest"))
+      spring.rest = clause_quantity("rest", spring.rest);
+    else
+      missing_clause("stiffness or rest", "torsion spring", "torsion spring θ stiffness k rest θ0");
   }
   if (!spring.stiffness) missing_clause("stiffness", "torsion spring", "torsion spring θ stiffness k rest θ0");
   return spring;
@@ -196,7 +222,8 @@ StatementBody StatementParser::torque_statement() {
   ForceStatement torque;
   torque.target = ForceStatement::Target::TorqueOnBody;
   if (!accept("on")) {
-    fail("E0111", cover(word.span, peek().span), fmt::format("expected `on` and a body after `torque`, found {}", describe(peek())),
+    fail("E0111", cover(word.span, peek().span),
+         fmt::format("expected `on` and a body after `torque`, found {}", describe(peek())),
          "A generalized force along a coordinate is written with `force`, also for an angle.",
          "Write torque on B = …, or force θ = ….");
   }

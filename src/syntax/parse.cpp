@@ -36,8 +36,8 @@ SyntaxTree parse(const SourceText& source, Diagnostics& diagnostics) {
   tree.comments = std::move(list->comments);
   const std::vector<StatementTokens> statements = split_statements(*list, source, diagnostics);
   if (statements.empty()) {
-    diagnostics.error("E0109", std::nullopt, fmt::format("{} has no statement", source.name()), "A model needs coordinates and energies.",
-                      "`maup new pendulum` writes a model to start from.");
+    diagnostics.error("E0109", std::nullopt, fmt::format("{} has no statement", source.name()),
+                      "A model needs coordinates and energies.", "`maup new pendulum` writes a model to start from.");
     return tree;
   }
   tree.declarations = std::make_shared<const Declarations>(*list, statements);

@@ -43,7 +43,8 @@ Token sign(std::string_view text, Span span) {
 
 void rewrite(Tokens tokens, std::vector<Token>& result) {
   for (std::size_t i = 0; i < tokens.size(); ++i) {
-    const bool dot = tokens[i].kind == Token::Kind::Name && tokens[i].is("dot") && i + 1 < tokens.size() && tokens[i + 1].is("(");
+    const bool dot =
+        tokens[i].kind == Token::Kind::Name && tokens[i].is("dot") && i + 1 < tokens.size() && tokens[i + 1].is("(");
     bool comma = false;
     const std::size_t close = dot ? closing(tokens, i + 1, &comma) : tokens.size();
     if (!dot || comma || close == tokens.size()) {

@@ -17,38 +17,62 @@ Level level_of(const Expression& e) {
   if (e.kind == Kind::Call && e.bare) return Level::Power;
   if (e.kind != Kind::Binary) return Level::Postfix;
   switch (e.op) {
-    case Operator::Or: return Level::Disjunction;
-    case Operator::And: return Level::Conjunction;
+    case Operator::Or:
+      return Level::Disjunction;
+    case Operator::And:
+      return Level::Conjunction;
     case Operator::Add:
-    case Operator::Subtract: return Level::Sum;
-    case Operator::Power: return Level::Power;
+    case Operator::Subtract:
+      return Level::Sum;
+    case Operator::Power:
+      return Level::Power;
     case Operator::Less:
     case Operator::LessEqual:
     case Operator::Greater:
-    case Operator::GreaterEqual: return Level::Comparison;
-    case Operator::Multiply: case Operator::Juxtapose: case Operator::Divide: case Operator::Dot: case Operator::Cross:
-    case Operator::Negate: break;
+    case Operator::GreaterEqual:
+      return Level::Comparison;
+    case Operator::Multiply:
+    case Operator::Juxtapose:
+    case Operator::Divide:
+    case Operator::Dot:
+    case Operator::Cross:
+    case Operator::Negate:
+      break;
   }
   return Level::Product;
 }
 
 std::string_view sign_of(Operator op) {
   switch (op) {
-    case Operator::Add: return "+";
+    case Operator::Add:
+      return "+";
     case Operator::Subtract:
-    case Operator::Negate: return "-";
-    case Operator::Multiply: return "*";
-    case Operator::Juxtapose: return "";
-    case Operator::Divide: return "/";
-    case Operator::Dot: return "·";
-    case Operator::Cross: return "×";
-    case Operator::Power: return "^";
-    case Operator::Less: return "<";
-    case Operator::LessEqual: return "<=";
-    case Operator::Greater: return ">";
-    case Operator::GreaterEqual: return ">=";
-    case Operator::And: return "and";
-    case Operator::Or: return "or";
+    case Operator::Negate:
+      return "-";
+    case Operator::Multiply:
+      return "*";
+    case Operator::Juxtapose:
+      return "";
+    case Operator::Divide:
+      return "/";
+    case Operator::Dot:
+      return "·";
+    case Operator::Cross:
+      return "×";
+    case Operator::Power:
+      return "^";
+    case Operator::Less:
+      return "<";
+    case Operator::LessEqual:
+      return "<=";
+    case Operator::Greater:
+      return ">";
+    case Operator::GreaterEqual:
+      return ">=";
+    case Operator::And:
+      return "and";
+    case Operator::Or:
+      return "or";
   }
   return "";
 }
@@ -80,16 +104,26 @@ class Printer {
 
   void body(const Expression& e) {
     switch (e.kind) {
-      case Kind::Number: return put(Token::Kind::Number, e.text);
-      case Kind::Quantity: return quantity(e);
-      case Kind::Name: return name(e.text), primes(e.primes);
-      case Kind::Member: return print(*e.arguments[0], Level::Postfix), sign("."), name(e.text), primes(e.primes);
-      case Kind::Call: return call(e, nullptr);
-      case Kind::Vector: return list(e.arguments);
-      case Kind::Binary: return binary(e);
-      case Kind::Unary: return sign("-"), print(*e.arguments[0], Level::Product);
-      case Kind::TimeDerivative: return derivative(e);
-      case Kind::Piecewise: return piecewise(e);
+      case Kind::Number:
+        return put(Token::Kind::Number, e.text);
+      case Kind::Quantity:
+        return quantity(e);
+      case Kind::Name:
+        return name(e.text), primes(e.primes);
+      case Kind::Member:
+        return print(*e.arguments[0], Level::Postfix), sign("."), name(e.text), primes(e.primes);
+      case Kind::Call:
+        return call(e, nullptr);
+      case Kind::Vector:
+        return list(e.arguments);
+      case Kind::Binary:
+        return binary(e);
+      case Kind::Unary:
+        return sign("-"), print(*e.arguments[0], Level::Product);
+      case Kind::TimeDerivative:
+        return derivative(e);
+      case Kind::Piecewise:
+        return piecewise(e);
     }
   }
 
@@ -131,8 +165,10 @@ class Printer {
   void call(const Expression& e, const Expression* exponent) {
     name(e.text);
     if (exponent) sign("^"), put(Token::Kind::Number, exponent->text);
-    if (e.bare) print(*e.arguments[0], Level::Product);
-    else list(e.arguments);
+    if (e.bare)
+      print(*e.arguments[0], Level::Product);
+    else
+      list(e.arguments);
   }
 
   void derivative(const Expression& e) {
@@ -165,8 +201,10 @@ class Printer {
     if (e.op == Operator::Power) return power(left, right);
     const Level level = level_of_operator(e);
     print(left, level == Level::Comparison ? Level::Sum : level);
-    if (e.op == Operator::And || e.op == Operator::Or) name(sign_of(e.op));
-    else if (e.op != Operator::Juxtapose) sign(sign_of(e.op));
+    if (e.op == Operator::And || e.op == Operator::Or)
+      name(sign_of(e.op));
+    else if (e.op != Operator::Juxtapose)
+      sign(sign_of(e.op));
     const auto tighter = static_cast<Level>(static_cast<int>(level) + 1);
     // `x 2` would be read, but with a warning, and `2 3` not at all.
     const bool number = e.op == Operator::Juxtapose && begins_with_number(right);
@@ -194,13 +232,16 @@ class Printer {
   }
 
   void power(const Expression& base, const Expression& exponent) {
-    const bool whole = exponent.kind == Kind::Number && !exponent.bracketed && exponent.text.find_first_not_of("0123456789") == std::string::npos;
-    if (base.kind == Kind::Call && base.bare && !base.bracketed && whole && base.text != "reaction" && base.text != "multiplier") {
+    const bool whole = exponent.kind == Kind::Number && !exponent.bracketed &&
+                       exponent.text.find_first_not_of("0123456789") == std::string::npos;
+    if (base.kind == Kind::Call && base.bare && !base.bracketed && whole && base.text != "reaction" &&
+        base.text != "multiplier") {
       return call(base, &exponent);
     }
     print(base, Level::Postfix);
     sign("^");
-    const bool negative = exponent.kind == Kind::Unary && !exponent.bracketed && level_of(*exponent.arguments[0]) >= Level::Power;
+    const bool negative =
+        exponent.kind == Kind::Unary && !exponent.bracketed && level_of(*exponent.arguments[0]) >= Level::Power;
     if (negative) sign("-");
     print(negative ? *exponent.arguments[0] : exponent, Level::Power);
   }

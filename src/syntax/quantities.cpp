@@ -22,7 +22,8 @@ bool is_unit_word(const Token& token, const Token& after, const Token& third) {
   const bool seconds = token.is("sec") && (ends(after) || (after.is("^") && ends(third)));  // `system` says: write s
   const Function* function = find_function(token.text);
   if (function && function->bare && !seconds) return false;  // 2 cos θ; but min is a unit too
-  return token.kind == Token::Kind::Name && !is_clause_word(token.text) && !token.is("pi") && !after.is("'") && !after.is(".");
+  return token.kind == Token::Kind::Name && !is_clause_word(token.text) && !token.is("pi") && !after.is("'") &&
+         !after.is(".");
 }
 
 bool is_pi(const Token& token) { return token.kind == Token::Kind::Name && token.is("pi"); }
@@ -118,8 +119,9 @@ ExpressionParser::Node ExpressionParser::quantity_or_null() {
     auto unit = units();
     if (!unit || !ends_quantity(peek())) return nullptr;
     if (ambiguous_slash_) {
-      const bool all_names = std::all_of(unit->factors.begin(), unit->factors.end(),
-                                         [&](const auto& factor) { return context_.declarations.contains(factor.word); });
+      const bool all_names = std::all_of(unit->factors.begin(), unit->factors.end(), [&](const auto& factor) {
+        return context_.declarations.contains(factor.word);
+      });
       if (all_names) return nullptr;
       refuse_ambiguous_slash();
     }
@@ -134,12 +136,14 @@ ExpressionParser::Node ExpressionParser::quantity_or_null() {
 void ExpressionParser::refuse_ambiguous_slash() {
   fail("E0118", *ambiguous_slash_, fmt::format("`{}` has two meanings", text_of(*ambiguous_slash_)),
        "It is not clear whether the second unit belongs to the denominator.",
-       fmt::format("Write /({}) if both belong below the slash, else put the second one before it.", text_of(*ambiguous_slash_)));
+       fmt::format("Write /({}) if both belong below the slash, else put the second one before it.",
+                   text_of(*ambiguous_slash_)));
 }
 
 bool ExpressionParser::ends_quantity(const Token& token) const {
   if (token.kind == Token::Kind::End || (token.kind == Token::Kind::Name && is_clause_word(token.text))) return true;
-  return token.is(",") || token.is(")") || token.is("=") || token.is("±") || token.is("..") || token.is(":") || token.is("<=") || token.is(">=");
+  return token.is(",") || token.is(")") || token.is("=") || token.is("±") || token.is("..") || token.is(":") ||
+         token.is("<=") || token.is(">=");
 }
 
 UnitExpression ExpressionParser::bracketed_unit() {
@@ -151,12 +155,12 @@ UnitExpression ExpressionParser::bracketed_unit() {
   } else if (auto read = units()) {
     unit = std::move(*read);
   } else {
-    fail("E0119", peek().span, fmt::format("expected a unit, found {}", describe(peek())), "Square brackets hold a unit.",
-         "Write for example [N], [kg m^2/s], [1/s] or [1].");
+    fail("E0119", peek().span, fmt::format("expected a unit, found {}", describe(peek())),
+         "Square brackets hold a unit.", "Write for example [N], [kg m^2/s], [1/s] or [1].");
   }
   if (!peek().is("]")) {
-    fail("E0119", peek().span, fmt::format("expected `]` after the unit, found {}", describe(peek())), "Square brackets hold a unit.",
-         "Write for example [N], [kg m^2/s], [1/s] or [1].");
+    fail("E0119", peek().span, fmt::format("expected `]` after the unit, found {}", describe(peek())),
+         "Square brackets hold a unit.", "Write for example [N], [kg m^2/s], [1/s] or [1].");
   }
   if (ambiguous_slash_) refuse_ambiguous_slash();
   unit.span = cover(open, next().span);
@@ -216,7 +220,8 @@ bool ExpressionParser::unit_factor(UnitExpression& unit, int sign) {
 bool ExpressionParser::unit_exponent(UnitExpression::Factor& factor) {
   const auto whole = [&](int& value) {
     const Token& token = peek();
-    if (token.kind != Token::Kind::Number || token.text.size() > 2 || token.text.find_first_not_of("0123456789") != std::string_view::npos) {
+    if (token.kind != Token::Kind::Number || token.text.size() > 2 ||
+        token.text.find_first_not_of("0123456789") != std::string_view::npos) {
       return false;
     }
     next();

@@ -33,9 +33,12 @@ std::string derivative(const Names& names, std::string_view before, std::string_
   if (before.empty() || before == "d") {
     count += before == "d";
     if (!after.empty() && after.front() == '_') after.remove_prefix(1);
-    return names_something(names, after) ? normalize_name(std::string(after)) + std::string(static_cast<std::size_t>(count), '\'') : "";
+    return names_something(names, after)
+               ? normalize_name(std::string(after)) + std::string(static_cast<std::size_t>(count), '\'')
+               : "";
   }
-  if (!after.empty() && after.front() != '_' && after.find_first_not_of("0123456789") != std::string_view::npos) return "";
+  if (!after.empty() && after.front() != '_' && after.find_first_not_of("0123456789") != std::string_view::npos)
+    return "";
   std::string name = known(before);
   if (name.empty() && before.back() == 'd') name = known(before.substr(0, before.size() - 1)), ++count;
   return name.empty() ? "" : name + std::string(static_cast<std::size_t>(count), '\'');
@@ -95,7 +98,8 @@ std::string function_run_together(const Names& names, std::string_view word) {
     const std::string factors = at == 0 ? "" : names_apart(names, word.substr(0, at));
     if (at > 0 && factors.empty()) continue;
     const std::string_view after = word.substr(at + best->name.size());
-    const std::string applied = after.empty() ? (at > 0 ? std::string(best->name) : "") : applied_to(names, *best, after);
+    const std::string applied =
+        after.empty() ? (at > 0 ? std::string(best->name) : "") : applied_to(names, *best, after);
     if (!applied.empty()) return factors.empty() ? applied : factors + " " + applied;
   }
   return "";
@@ -110,9 +114,11 @@ Spelling right_spelling(std::string_view word, std::span<const std::string> list
   if (std::string text = derivative_in_words(names, word); !text.empty())
     return {std::move(text), "A derivative by the time is written with a prime."};
   if (std::string text = function_run_together(names, word); !text.empty())
-    return {std::move(text), "Letters without a blank between them are one name; a function and its argument stand apart."};
+    return {std::move(text),
+            "Letters without a blank between them are one name; a function and its argument stand apart."};
   if (std::string text = names_apart(names, word); !text.empty())
-    return {std::move(text), "Letters without a blank between them are one name; the factors of a product stand apart."};
+    return {std::move(text),
+            "Letters without a blank between them are one name; the factors of a product stand apart."};
   return {};
 }
 

@@ -11,28 +11,50 @@ namespace maupertuis::syntax {
 std::span<const StatementParser::Entry> StatementParser::table() {
   using P = StatementParser;
   static constexpr Entry entries[] = {
-      {"system", &P::system_statement},       {"source", &P::source_statement},
-      {"dimensionless", &P::dimensionless_statement}, {"param", &P::param_statement},
-      {"coord", &P::coord_statement},         {"let", &P::let_statement},
-      {"input", &P::input_statement},         {"frame", &P::frame_statement},
-      {"point", &P::point_statement},         {"body", &P::body_statement},
-      {"gravity", &P::gravity_statement},     {"spring", &P::spring_statement},
-      {"damper", &P::damper_statement},       {"torsion", &P::torsion_statement},
-      {"force", &P::force_statement},         {"torque", &P::torque_statement},
-      {"reaction", &P::reaction_statement},   {"start", &P::start_statement},
-      {"run", &P::run_statement},             {"output", &P::output_statement},
-      {"draw", &P::draw_statement},           {"expect", &P::expect_statement},
-      {"method", &P::method_statement},       {"precision", &P::precision_statement},
-      {"claim", &P::claim_statement},         {"constraint", &P::constraint_statement},
-      {"contact", &P::contact_statement},     {"friction", &P::friction_statement},
-      {"event", &P::event_statement},         {"impact", &P::impact_statement},
-      {"sweep", &P::sweep_statement},         {"independent", &P::independent_statement},
-      {"path", &P::path_statement},           {"field", &P::field_statement},
-      {"density", &P::density_statement},     {"T", &P::energy_statement},
-      {"V", &P::energy_statement},            {"U", &P::energy_statement},
-      {"L", &P::energy_statement},            {"D", &P::energy_statement},
-      {"kinetic", &P::energy_statement},      {"potential", &P::energy_statement},
-      {"generalized_potential", &P::energy_statement}, {"lagrangian", &P::energy_statement},
+      {"system", &P::system_statement},
+      {"source", &P::source_statement},
+      {"dimensionless", &P::dimensionless_statement},
+      {"param", &P::param_statement},
+      {"coord", &P::coord_statement},
+      {"let", &P::let_statement},
+      {"input", &P::input_statement},
+      {"frame", &P::frame_statement},
+      {"point", &P::point_statement},
+      {"body", &P::body_statement},
+      {"gravity", &P::gravity_statement},
+      {"spring", &P::spring_statement},
+      {"damper", &P::damper_statement},
+      {"torsion", &P::torsion_statement},
+      {"force", &P::force_statement},
+      {"torque", &P::torque_statement},
+      {"reaction", &P::reaction_statement},
+      {"start", &P::start_statement},
+      {"run", &P::run_statement},
+      {"output", &P::output_statement},
+      {"draw", &P::draw_statement},
+      {"expect", &P::expect_statement},
+      {"method", &P::method_statement},
+      {"precision", &P::precision_statement},
+      {"claim", &P::claim_statement},
+      {"constraint", &P::constraint_statement},
+      {"contact", &P::contact_statement},
+      {"friction", &P::friction_statement},
+      {"event", &P::event_statement},
+      {"impact", &P::impact_statement},
+      {"sweep", &P::sweep_statement},
+      {"independent", &P::independent_statement},
+      {"path", &P::path_statement},
+      {"field", &P::field_statement},
+      {"density", &P::density_statement},
+      {"T", &P::energy_statement},
+      {"V", &P::energy_statement},
+      {"U", &P::energy_statement},
+      {"L", &P::energy_statement},
+      {"D", &P::energy_statement},
+      {"kinetic", &P::energy_statement},
+      {"potential", &P::energy_statement},
+      {"generalized_potential", &P::energy_statement},
+      {"lagrangian", &P::energy_statement},
       {"dissipation", &P::energy_statement},
   };
   return entries;
@@ -40,8 +62,9 @@ std::span<const StatementParser::Entry> StatementParser::table() {
 
 std::vector<Statement> StatementParser::run() {
   const Token& word = peek();
-  const auto entry = std::find_if(table().begin(), table().end(),
-                                  [&](const Entry& e) { return word.kind == Token::Kind::Name && e.word == word.text; });
+  const auto entry = std::find_if(table().begin(), table().end(), [&](const Entry& e) {
+    return word.kind == Token::Kind::Name && e.word == word.text;
+  });
   if (entry == table().end()) unknown_statement();
   std::vector<Statement> statements;
   const std::size_t first = index_;
@@ -68,29 +91,32 @@ Span StatementParser::statement_span() const {
 void StatementParser::unknown_statement() {
   const Token& word = peek();
   if (word.kind != Token::Kind::Name) {
-    fail("E0110", word.span, fmt::format("a statement cannot begin with {}", describe(word)), "Every statement begins with its word.",
-         "A continued line must be indented, or a bracket be open.");
+    fail("E0110", word.span, fmt::format("a statement cannot begin with {}", describe(word)),
+         "Every statement begins with its word.", "A continued line must be indented, or a bracket be open.");
   }
   std::size_t i = index_ + 1;
   while (i < end_ && context_.list.tokens[i].is("'")) ++i;
   const bool equation = i < end_ && (context_.list.tokens[i].is("=") || context_.list.tokens[i].is("+="));
   const std::vector<std::string> words = as_strings(statement_words());
   std::string lower(word.text);
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   std::string near = is_statement_word(lower) ? lower : did_you_mean(word.text, words);
   if (near.size() == 1 || (equation && !energy_of(near))) near.clear();
   std::string help;
   if (!near.empty()) {
     help = fmt::format("Did you mean `{}`?", near);
   } else if (equation) {
-    help = fmt::format("A definition is `let {0} = …`, a parameter `param {0} = …`, an initial value `start {0} = …`.", word.text);
+    help = fmt::format("A definition is `let {0} = …`, a parameter `param {0} = …`, an initial value `start {0} = …`.",
+                       word.text);
   } else {
     help = "Statements begin with param, coord, let, point, T, V, force, start, run, …; a continued line is indented.";
   }
   fail("E0110", word.span, fmt::format("`{}` does not begin a statement", word.text), "", std::move(help));
 }
 
-// After a mistake in the item that begins at `first`: to the comma before the next `name =` or `name :`, outside brackets.
+// After a mistake in the item that begins at `first`: to the comma before the next `name =` or `name :`, outside
+// brackets.
 void StatementParser::skip_item(std::size_t first) {
   int depth = 0;
   for (std::size_t i = first; i < index_ && i < end_; ++i) {
@@ -100,7 +126,8 @@ void StatementParser::skip_item(std::size_t first) {
   for (; !at_end(); next()) {
     if (peek().is("(") || peek().is("[")) ++depth;
     if (peek().is(")") || peek().is("]")) --depth;
-    const bool item = peek(1).kind == Token::Kind::Name && (peek(2).is("=") || peek(2).is(":") || peek(2).is("'") || peek(2).is(","));
+    const bool item =
+        peek(1).kind == Token::Kind::Name && (peek(2).is("=") || peek(2).is(":") || peek(2).is("'") || peek(2).is(","));
     if (depth == 0 && peek().is(",") && item) return;
   }
 }
@@ -165,9 +192,12 @@ void StatementParser::kind_of(const Name& name, const char* what, Name& kind, st
   if (!word.is("angle") && !word.is("length") && !word.is("charge") && !word.is("number")) {
     const std::vector<std::string> kinds = {"angle", "length", "charge", "number"};
     const std::string near = word.kind == Token::Kind::Name ? did_you_mean(word.text, kinds) : "";
-    fail("E0129", word.span, fmt::format("expected the kind of {} {}, found {}", *what == 'i' ? "an" : "a", what, describe(word)),
-         fmt::format("{} {} is an angle, a length, a charge, a number, or has a unit in brackets.", *what == 'i' ? "An" : "A", what),
-         !near.empty() ? fmt::format("Did you mean `{}`?", near) : fmt::format("Write for example {0} : length, or {0} : [m].", name.text));
+    fail("E0129", word.span,
+         fmt::format("expected the kind of {} {}, found {}", *what == 'i' ? "an" : "a", what, describe(word)),
+         fmt::format("{} {} is an angle, a length, a charge, a number, or has a unit in brackets.",
+                     *what == 'i' ? "An" : "A", what),
+         !near.empty() ? fmt::format("Did you mean `{}`?", near)
+                       : fmt::format("Write for example {0} : length, or {0} : [m].", name.text));
   }
   kind = {std::string(next().text), word.span};
 }

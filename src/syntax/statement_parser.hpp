@@ -6,7 +6,8 @@ namespace maupertuis::syntax {
 /// Reads one statement. Throws Abandoned after a mistake was reported.
 class StatementParser : private ExpressionParser {
  public:
-  StatementParser(const ParseContext& context, const StatementTokens& statement) : ExpressionParser(context, statement) {}
+  StatementParser(const ParseContext& context, const StatementTokens& statement)
+      : ExpressionParser(context, statement) {}
 
   /// One statement; `system x "…" source "…"` is two.
   std::vector<Statement> run();

@@ -16,7 +16,7 @@ struct Token {
   bool attached = false;    // no blank between the token before and this one
   bool line_start = false;  // first of its line
   Span span;
-  std::string_view text;    // points into the source or into TokenList::spellings
+  std::string_view text;  // points into the source or into TokenList::spellings
 
   bool is(std::string_view sign_or_word) const {
     return (kind == Kind::Sign || kind == Kind::Name) && text == sign_or_word;
@@ -35,7 +35,7 @@ struct StatementTokens {
 struct TokenList {
   std::vector<Token> tokens;
   std::vector<Comment> comments;
-  std::deque<std::string> spellings;      // of tokens that differ from the source
+  std::deque<std::string> spellings;  // of tokens that differ from the source
 };
 
 }  // namespace maupertuis::syntax

@@ -18,12 +18,11 @@ struct Range {
 };
 // Letters of the alphabets in which names are written; the signs × ÷ and the like among them are left out.
 constexpr Range kLetters[] = {
-    {'A', 'Z'},         {'a', 'z'},         {0xAA, 0xAA},       {0xB5, 0xB5},       {0xC0, 0xD6},
-    {0xD8, 0xF6},       {0xF8, 0x2AF},      {0x370, 0x373},     {0x376, 0x377},     {0x37B, 0x37D},
-    {0x37F, 0x37F},     {0x386, 0x386},     {0x388, 0x3FF},     {0x400, 0x481},     {0x48A, 0x52F},
-    {0x531, 0x556},     {0x561, 0x587},     {0x5D0, 0x5EA},     {0x620, 0x64A},     {0x1E00, 0x1FFF},
-    {0x210B, 0x210B},   {0x210F, 0x2113},   {0x2126, 0x2126},   {0x212A, 0x212C},   {0x2130, 0x2131},
-    {0x2133, 0x2133},   {0x2206, 0x2206},   {0x3041, 0x30FF},   {0x4E00, 0x9FFF},   {0xAC00, 0xD7A3},
+    {'A', 'Z'},       {'a', 'z'},       {0xAA, 0xAA},     {0xB5, 0xB5},     {0xC0, 0xD6},     {0xD8, 0xF6},
+    {0xF8, 0x2AF},    {0x370, 0x373},   {0x376, 0x377},   {0x37B, 0x37D},   {0x37F, 0x37F},   {0x386, 0x386},
+    {0x388, 0x3FF},   {0x400, 0x481},   {0x48A, 0x52F},   {0x531, 0x556},   {0x561, 0x587},   {0x5D0, 0x5EA},
+    {0x620, 0x64A},   {0x1E00, 0x1FFF}, {0x210B, 0x210B}, {0x210F, 0x2113}, {0x2126, 0x2126}, {0x212A, 0x212C},
+    {0x2130, 0x2131}, {0x2133, 0x2133}, {0x2206, 0x2206}, {0x3041, 0x30FF}, {0x4E00, 0x9FFF}, {0xAC00, 0xD7A3},
 };
 
 bool is_continuation(unsigned char byte) { return (byte & 0xC0) == 0x80; }
@@ -66,7 +65,8 @@ bool is_letter(char32_t c) {
 }
 
 bool is_blank(char32_t c) {
-  return c == ' ' || c == '\t' || c == 0xA0 || (c >= 0x2000 && c <= 0x200A) || c == 0x202F || c == 0x205F || c == 0x3000;
+  return c == ' ' || c == '\t' || c == 0xA0 || (c >= 0x2000 && c <= 0x200A) || c == 0x202F || c == 0x205F ||
+         c == 0x3000;
 }
 
 bool is_combining_mark(char32_t c) { return (c >= 0x300 && c <= 0x36F) || c == 0x20DB || c == 0x20DC || c == 0x20D7; }
@@ -78,21 +78,30 @@ std::optional<int> subscript_digit(char32_t c) {
 
 std::optional<char> superscript_sign_or_digit(char32_t c) {
   switch (c) {
-    case 0xB9: return '1';
-    case 0xB2: return '2';
-    case 0xB3: return '3';
-    case 0x207A: return '+';
-    case 0x207B: return '-';
-    default: break;
+    case 0xB9:
+      return '1';
+    case 0xB2:
+      return '2';
+    case 0xB3:
+      return '3';
+    case 0x207A:
+      return '+';
+    case 0x207B:
+      return '-';
+    default:
+      break;
   }
   if (c == 0x2070 || (c >= 0x2074 && c <= 0x2079)) return static_cast<char>('0' + (c - 0x2070));
   return std::nullopt;
 }
 
 std::optional<char32_t> compose(char32_t letter, char32_t mark) {
-  const auto* found = std::lower_bound(std::begin(kCompositions), std::end(kCompositions), Composition{
-      static_cast<std::uint16_t>(std::min<char32_t>(letter, 0xFFFF)), static_cast<std::uint16_t>(std::min<char32_t>(mark, 0xFFFF)), 0},
-      [](const Composition& a, const Composition& b) { return a.letter != b.letter ? a.letter < b.letter : a.mark < b.mark; });
+  const auto* found = std::lower_bound(std::begin(kCompositions), std::end(kCompositions),
+                                       Composition{static_cast<std::uint16_t>(std::min<char32_t>(letter, 0xFFFF)),
+                                                   static_cast<std::uint16_t>(std::min<char32_t>(mark, 0xFFFF)), 0},
+                                       [](const Composition& a, const Composition& b) {
+                                         return a.letter != b.letter ? a.letter < b.letter : a.mark < b.mark;
+                                       });
   if (found == std::end(kCompositions) || found->letter != letter || found->mark != mark) return std::nullopt;
   return found->composed;
 }
@@ -107,23 +116,35 @@ std::optional<Dotted> decompose_dots(char32_t c) {
 
 int dots_of_mark(char32_t mark) {
   switch (mark) {
-    case 0x307: return 1;
-    case 0x308: return 2;
-    case 0x20DB: return 3;
-    case 0x20DC: return 4;
-    default: return 0;
+    case 0x307:
+      return 1;
+    case 0x308:
+      return 2;
+    case 0x20DB:
+      return 3;
+    case 0x20DC:
+      return 4;
+    default:
+      return 0;
   }
 }
 
 char32_t canonical_letter(char32_t c) {
   switch (c) {
-    case 0xB5: return 0x3BC;    // micro sign
-    case 0x3D5: return 0x3C6;   // phi symbol
-    case 0x2126: return 0x3A9;  // ohm sign
-    case 0x212A: return 'K';    // kelvin sign
-    case 0x212B: return 0xC5;   // ångström sign
-    case 0x2206: return 0x394;  // increment
-    default: return c;
+    case 0xB5:
+      return 0x3BC;  // micro sign
+    case 0x3D5:
+      return 0x3C6;  // phi symbol
+    case 0x2126:
+      return 0x3A9;  // ohm sign
+    case 0x212A:
+      return 'K';  // kelvin sign
+    case 0x212B:
+      return 0xC5;  // ångström sign
+    case 0x2206:
+      return 0x394;  // increment
+    default:
+      return c;
   }
 }
 

@@ -20,8 +20,8 @@ void append_utf8(std::string& text, char32_t c);
 std::size_t length_in_characters(std::string_view text);
 
 bool is_letter(char32_t c);
-bool is_blank(char32_t c);              // blanks, tabs, and the spaces that come with copies from a typeset page
-bool is_combining_mark(char32_t c);     // U+0300 … U+036F, and the three and four dots above
+bool is_blank(char32_t c);           // blanks, tabs, and the spaces that come with copies from a typeset page
+bool is_combining_mark(char32_t c);  // U+0300 … U+036F, and the three and four dots above
 std::optional<int> subscript_digit(char32_t c);
 std::optional<char> superscript_sign_or_digit(char32_t c);  // '0' … '9', '-', '+'
 
@@ -33,7 +33,7 @@ struct Dotted {
   int dots;
 };
 std::optional<Dotted> decompose_dots(char32_t c);
-int dots_of_mark(char32_t mark);        // ̇ 1, ̈ 2, ⃛ 3, ⃜ 4, else 0
+int dots_of_mark(char32_t mark);  // ̇ 1, ̈ 2, ⃛ 3, ⃜ 4, else 0
 /// One character for those that look and mean the same: µ → μ, ϕ → φ, Ω (ohm) → Ω, Å (ångström) → Å.
 char32_t canonical_letter(char32_t c);
 

@@ -9,7 +9,8 @@ namespace maupertuis::syntax {
 StatementBody StatementParser::constraint_statement() {
   next();
   ConstraintStatement constraint;
-  constraint.integral = peek().is("integral") && !peek(1).is("=") && !context_.declarations.contains("integral") && accept("integral");
+  constraint.integral =
+      peek().is("integral") && !peek(1).is("=") && !context_.declarations.contains("integral") && accept("integral");
   constraint.left = formula();
   expect("=", "the left side of the constraint");
   constraint.right = quantity();
@@ -101,14 +102,16 @@ std::vector<ExpressionPtr> StatementParser::components() {
 
 // The unit that follows their bracket is that of all: (1, 2) m.
 std::vector<ExpressionPtr> StatementParser::with_unit_after(std::vector<ExpressionPtr> out) {
-  const bool reciprocal = peek().is("/") || (peek().kind == Token::Kind::Number && peek().text == "1" && peek(1).is("/"));
+  const bool reciprocal =
+      peek().is("/") || (peek().kind == Token::Kind::Number && peek().text == "1" && peek(1).is("/"));
   if (!reciprocal && (peek().kind != Token::Kind::Name || is_clause_word(peek().text))) return out;
   const auto unit = units();
   if (!unit) fail_expected("a unit after the bracket");
   for (ExpressionPtr& value : out) {
     if (!value) continue;
     if (!is_constant(*value))
-      fail("E0111", value->span, fmt::format("expected a number, since a unit follows the bracket, found `{}`", text_of(*value)),
+      fail("E0111", value->span,
+           fmt::format("expected a number, since a unit follows the bracket, found `{}`", text_of(*value)),
            "A unit after a bracket is that of all its numbers.", "Write the unit, or none, at each of them.");
     auto quantity = std::make_shared<Expression>();
     quantity->kind = Expression::Kind::Quantity;
@@ -121,7 +124,8 @@ std::vector<ExpressionPtr> StatementParser::with_unit_after(std::vector<Expressi
   return out;
 }
 
-// action = 3 J s ± 1e-9,   action of path 2 = 3 J s ± 1e-9,   action of (4 t + 7, 3 t) from 0 s to 10 s = 435 J s ± 1e-9
+// action = 3 J s ± 1e-9,   action of path 2 = 3 J s ± 1e-9,   action of (4 t + 7, 3 t) from 0 s to 10 s = 435 J s ±
+// 1e-9
 expectation::Kind StatementParser::expect_action() {
   next();
   const auto right_side = [&] {
@@ -167,7 +171,9 @@ expectation::Kind StatementParser::expect_index() {
 int StatementParser::path_number() {
   const Token& count = peek();
   const auto number = whole_number();
-  if (!number || *number < 1) fail("E0111", count.span, "expected which of the paths is meant: 1, 2, …", "The one with the smallest action is the first.");
+  if (!number || *number < 1)
+    fail("E0111", count.span, "expected which of the paths is meant: 1, 2, …",
+         "The one with the smallest action is the first.");
   return *number;
 }
 

@@ -42,8 +42,9 @@ void WordLetters::add_mark(Letter& letter, char32_t mark) {
 int WordLetters::take_dots() {
   Letter& first = letters_.front();
   const bool greek = first.base >= 0x370 && first.base < 0x400;
-  const bool suffix = letters_.size() == 1 || letters_[1].base == '_' ||
-                      std::all_of(letters_.begin() + 1, letters_.end(), [](const Letter& l) { return is_digit(l.base); });
+  const bool suffix =
+      letters_.size() == 1 || letters_[1].base == '_' ||
+      std::all_of(letters_.begin() + 1, letters_.end(), [](const Letter& l) { return is_digit(l.base); });
   if (first.dots > 0 && (greek || suffix || first.dots != 2)) return std::exchange(first.dots, 0);
   Letter& last = letters_.back();
   if (last.dots > 0 && is_digit(last.base)) return std::exchange(last.dots, 0);

@@ -11,42 +11,104 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr std::array kStatementWords = {
-    "system"sv,  "source"sv,     "dimensionless"sv, "param"sv,       "coord"sv,   "let"sv,      "input"sv,
-    "frame"sv,   "point"sv,      "body"sv,          "gravity"sv,     "spring"sv,  "damper"sv,   "torsion"sv,
-    "T"sv,       "V"sv,          "U"sv,             "L"sv,           "D"sv,       "kinetic"sv,  "potential"sv,
-    "generalized_potential"sv,   "lagrangian"sv,    "dissipation"sv, "force"sv,   "torque"sv,   "friction"sv,
-    "constraint"sv, "reaction"sv, "contact"sv,      "impact"sv,      "event"sv,   "start"sv,    "run"sv,
-    "output"sv,  "method"sv,     "precision"sv,     "sweep"sv,       "draw"sv,          "independent"sv, "path"sv,    "field"sv,    "density"sv,
-    "expect"sv,  "claim"sv,
+    "system"sv,
+    "source"sv,
+    "dimensionless"sv,
+    "param"sv,
+    "coord"sv,
+    "let"sv,
+    "input"sv,
+    "frame"sv,
+    "point"sv,
+    "body"sv,
+    "gravity"sv,
+    "spring"sv,
+    "damper"sv,
+    "torsion"sv,
+    "T"sv,
+    "V"sv,
+    "U"sv,
+    "L"sv,
+    "D"sv,
+    "kinetic"sv,
+    "potential"sv,
+    "generalized_potential"sv,
+    "lagrangian"sv,
+    "dissipation"sv,
+    "force"sv,
+    "torque"sv,
+    "friction"sv,
+    "constraint"sv,
+    "reaction"sv,
+    "contact"sv,
+    "impact"sv,
+    "event"sv,
+    "start"sv,
+    "run"sv,
+    "output"sv,
+    "method"sv,
+    "precision"sv,
+    "sweep"sv,
+    "draw"sv,
+    "independent"sv,
+    "path"sv,
+    "field"sv,
+    "density"sv,
+    "expect"sv,
+    "claim"sv,
 };
 
 constexpr std::array kClauseWords = {
-    "name"sv,     "at"sv,     "in"sv,       "mass"sv,     "length"sv, "stiffness"sv, "coefficient"sv, "inertia"sv,
-    "rotation"sv, "restitution"sv, "friction"sv, "static"sv, "slip"sv, "normal"sv,   "limit"sv,       "when"sv,
-    "rising"sv,   "falling"sv, "within"sv,  "rel"sv,      "on"sv,     "from"sv,      "to"sv,          "by"sv,
-    "steps"sv,    "cells"sv,  "boundary"sv, "rest"sv,     "angle"sv,  "axis"sv,      "until"sv,       "every"sv,
-    "exactly"sv,  "is"sv,     "not"sv,      "and"sv,      "or"sv,     "else"sv,
-    "where"sv,
+    "name"sv,     "at"sv,          "in"sv,       "mass"sv,   "length"sv, "stiffness"sv, "coefficient"sv, "inertia"sv,
+    "rotation"sv, "restitution"sv, "friction"sv, "static"sv, "slip"sv,   "normal"sv,    "limit"sv,       "when"sv,
+    "rising"sv,   "falling"sv,     "within"sv,   "rel"sv,    "on"sv,     "from"sv,      "to"sv,          "by"sv,
+    "steps"sv,    "cells"sv,       "boundary"sv, "rest"sv,   "angle"sv,  "axis"sv,      "until"sv,       "every"sv,
+    "exactly"sv,  "is"sv,          "not"sv,      "and"sv,    "or"sv,     "else"sv,      "where"sv,
 };
 
 constexpr Function kFunctions[] = {
-    {"sin", 1, 1, true},   {"cos", 1, 1, true},   {"tan", 1, 1, true},   {"sec", 1, 1, true},  {"csc", 1, 1, true},
-    {"cot", 1, 1, true},   {"sinh", 1, 1, true},  {"cosh", 1, 1, true},  {"tanh", 1, 1, true}, {"sech", 1, 1, true},
-    {"asin"},              {"acos"},              {"atan"},              {"atan2", 2, 2},      {"asinh"},
-    {"acosh"},             {"atanh"},             {"exp"},               {"log"},               {"erf"},
-    {"lambert_w"},         {"sqrt"},
-    {"abs"},               {"sign"},              {"min", 2, 0},         {"max", 2, 0},        {"step"},
-    {"piecewise", 1, 0},   {"dot", 1, 2},         {"cross", 2, 2},       {"norm"},             {"multiplier"},
+    {"sin", 1, 1, true},
+    {"cos", 1, 1, true},
+    {"tan", 1, 1, true},
+    {"sec", 1, 1, true},
+    {"csc", 1, 1, true},
+    {"cot", 1, 1, true},
+    {"sinh", 1, 1, true},
+    {"cosh", 1, 1, true},
+    {"tanh", 1, 1, true},
+    {"sech", 1, 1, true},
+    {"asin"},
+    {"acos"},
+    {"atan"},
+    {"atan2", 2, 2},
+    {"asinh"},
+    {"acosh"},
+    {"atanh"},
+    {"exp"},
+    {"log"},
+    {"erf"},
+    {"lambert_w"},
+    {"sqrt"},
+    {"abs"},
+    {"sign"},
+    {"min", 2, 0},
+    {"max", 2, 0},
+    {"step"},
+    {"piecewise", 1, 0},
+    {"dot", 1, 2},
+    {"cross", 2, 2},
+    {"norm"},
+    {"multiplier"},
     {"reaction"},
 };
 
 constexpr std::array<std::pair<std::string_view, std::string_view>, 35> kGreek = {{
-    {"alpha", "α"}, {"beta", "β"},   {"gamma", "γ"}, {"delta", "δ"},   {"epsilon", "ε"}, {"zeta", "ζ"},
-    {"eta", "η"},   {"theta", "θ"},  {"iota", "ι"},  {"kappa", "κ"},   {"lambda", "λ"},  {"mu", "μ"},
-    {"nu", "ν"},    {"xi", "ξ"},     {"omicron", "ο"}, {"pi", "π"},    {"rho", "ρ"},     {"sigma", "σ"},
-    {"tau", "τ"},   {"upsilon", "υ"}, {"phi", "φ"},  {"chi", "χ"},     {"psi", "ψ"},     {"omega", "ω"},
-    {"Gamma", "Γ"}, {"Delta", "Δ"},  {"Theta", "Θ"}, {"Lambda", "Λ"},  {"Xi", "Ξ"},      {"Pi", "Π"},
-    {"Sigma", "Σ"}, {"Upsilon", "Υ"}, {"Phi", "Φ"},  {"Psi", "Ψ"},     {"Omega", "Ω"},
+    {"alpha", "α"}, {"beta", "β"},    {"gamma", "γ"},   {"delta", "δ"},  {"epsilon", "ε"}, {"zeta", "ζ"},
+    {"eta", "η"},   {"theta", "θ"},   {"iota", "ι"},    {"kappa", "κ"},  {"lambda", "λ"},  {"mu", "μ"},
+    {"nu", "ν"},    {"xi", "ξ"},      {"omicron", "ο"}, {"pi", "π"},     {"rho", "ρ"},     {"sigma", "σ"},
+    {"tau", "τ"},   {"upsilon", "υ"}, {"phi", "φ"},     {"chi", "χ"},    {"psi", "ψ"},     {"omega", "ω"},
+    {"Gamma", "Γ"}, {"Delta", "Δ"},   {"Theta", "Θ"},   {"Lambda", "Λ"}, {"Xi", "Ξ"},      {"Pi", "Π"},
+    {"Sigma", "Σ"}, {"Upsilon", "Υ"}, {"Phi", "Φ"},     {"Psi", "Ψ"},    {"Omega", "Ω"},
 }};
 
 bool all_digits(std::string_view text) {
@@ -78,19 +140,64 @@ using Pair = std::pair<std::string_view, std::string_view>;
 
 // Functions of textbooks and of other languages.
 constexpr Pair kFunctionHabits[] = {
-    {"ln", "log"},        {"Log", "log"},       {"Ln", "log"},        {"Exp", "exp"},       {"Sqrt", "sqrt"},     {"root", "sqrt"},
-    {"Abs", "abs"},       {"fabs", "abs"},      {"sgn", "sign"},      {"Sign", "sign"},     {"signum", "sign"},   {"sine", "sin"},
-    {"cosine", "cos"},    {"tangent", "tan"},   {"Sin", "sin"},       {"Cos", "cos"},       {"Tan", "tan"},       {"SIN", "sin"},
-    {"COS", "cos"},       {"TAN", "tan"},       {"tg", "tan"},        {"ctg", "cot"},       {"cotan", "cot"},     {"cosec", "csc"},
-    {"arcsin", "asin"},   {"arccos", "acos"},   {"arctan", "atan"},   {"arctg", "atan"},    {"arctan2", "atan2"}, {"Arcsin", "asin"},
-    {"Arccos", "acos"},   {"Arctan", "atan"},   {"arsinh", "asinh"},  {"arcosh", "acosh"},  {"artanh", "atanh"},  {"arcsinh", "asinh"},
-    {"arccosh", "acosh"}, {"arctanh", "atanh"}, {"sh", "sinh"},       {"ch", "cosh"},       {"th", "tanh"},
-    {"heaviside", "step"}, {"Heaviside", "step"}, {"lambertw", "lambert_w"}, {"LambertW", "lambert_w"},
+    {"ln", "log"},
+    {"Log", "log"},
+    {"Ln", "log"},
+    {"Exp", "exp"},
+    {"Sqrt", "sqrt"},
+    {"root", "sqrt"},
+    {"Abs", "abs"},
+    {"fabs", "abs"},
+    {"sgn", "sign"},
+    {"Sign", "sign"},
+    {"signum", "sign"},
+    {"sine", "sin"},
+    {"cosine", "cos"},
+    {"tangent", "tan"},
+    {"Sin", "sin"},
+    {"Cos", "cos"},
+    {"Tan", "tan"},
+    {"SIN", "sin"},
+    {"COS", "cos"},
+    {"TAN", "tan"},
+    {"tg", "tan"},
+    {"ctg", "cot"},
+    {"cotan", "cot"},
+    {"cosec", "csc"},
+    {"arcsin", "asin"},
+    {"arccos", "acos"},
+    {"arctan", "atan"},
+    {"arctg", "atan"},
+    {"arctan2", "atan2"},
+    {"Arcsin", "asin"},
+    {"Arccos", "acos"},
+    {"Arctan", "atan"},
+    {"arsinh", "asinh"},
+    {"arcosh", "acosh"},
+    {"artanh", "atanh"},
+    {"arcsinh", "asinh"},
+    {"arccosh", "acosh"},
+    {"arctanh", "atanh"},
+    {"sh", "sinh"},
+    {"ch", "cosh"},
+    {"th", "tanh"},
+    {"heaviside", "step"},
+    {"Heaviside", "step"},
+    {"lambertw", "lambert_w"},
+    {"LambertW", "lambert_w"},
 };
 constexpr Pair kFormulaHabits[] = {
-    {"log10", "log(x)/log(10)"}, {"lg", "log(x)/log(10)"}, {"log2", "log(x)/log(2)"}, {"pow", "x^2 for pow(x, 2)"},
-    {"sqr", "x^2"},              {"square", "x^2"},        {"cbrt", "x^(1/3)"},       {"csch", "1/sinh(x)"},
-    {"coth", "1/tanh(x)"},       {"if", "piecewise(x < 0 : a, else : b)"},            {"vec", "the components in brackets: (a, b)"},
+    {"log10", "log(x)/log(10)"},
+    {"lg", "log(x)/log(10)"},
+    {"log2", "log(x)/log(2)"},
+    {"pow", "x^2 for pow(x, 2)"},
+    {"sqr", "x^2"},
+    {"square", "x^2"},
+    {"cbrt", "x^(1/3)"},
+    {"csch", "1/sinh(x)"},
+    {"coth", "1/tanh(x)"},
+    {"if", "piecewise(x < 0 : a, else : b)"},
+    {"vec", "the components in brackets: (a, b)"},
 };
 
 std::string_view find_in(std::span<const Pair> pairs, std::string_view word) {
@@ -116,7 +223,8 @@ bool is_clause_word(std::string_view word) {
 }
 
 const Function* find_function(std::string_view word) {
-  const auto found = std::find_if(std::begin(kFunctions), std::end(kFunctions), [&](const Function& f) { return f.name == word; });
+  const auto found =
+      std::find_if(std::begin(kFunctions), std::end(kFunctions), [&](const Function& f) { return f.name == word; });
   return found == std::end(kFunctions) ? nullptr : &*found;
 }
 
@@ -145,7 +253,8 @@ std::string normalize_name(std::string name) {
   const std::string_view letter = greek_letter(std::string_view(name).substr(0, stem_length));
   if (letter.empty()) return name;
   std::string_view tail = std::string_view(name).substr(stem_length);
-  if (!tail.empty() && tail.front() != '_' && !all_digits(tail.substr(0, std::min(tail.find('_'), tail.size())))) return name;
+  if (!tail.empty() && tail.front() != '_' && !all_digits(tail.substr(0, std::min(tail.find('_'), tail.size()))))
+    return name;
   if (tail.empty() && letter == "π") return "pi";
   if (tail.size() > 1 && tail.front() == '_' && all_digits(tail.substr(1))) tail.remove_prefix(1);
   return std::string(letter) + std::string(tail);

@@ -255,7 +255,8 @@ Value time_derivative(Elaboration& e, Value v, int times, const Expression& x) {
   for (const Expr& part : v.parts) moves = moves || e.context.depends_on_time(part.id());
   if (!moves) {
     const std::string text(e.texts.slice(x.span));
-    e.diagnostics.error("E0217", x.span, fmt::format("`{}` does not change {}", text.substr(0, text.find('\'')), in_words(e, "in time")),
+    e.diagnostics.error("E0217", x.span,
+                        fmt::format("`{}` does not change {}", text.substr(0, text.find('\'')), in_words(e, "in time")),
                         "The derivative of a constant is zero.",
                         "Leave the term out, or take the derivative of a coordinate.");
     return Value::poison();

@@ -29,7 +29,8 @@ constexpr CodeEntry kEntries[] = {
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m x'^2\nT = 1/2 m y'^2\n",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m x'^2\nT += 1/2 m y'^2\n"},
     {"E0208", "something is given twice",
-     "Gravity, run, output, sweep, path, the independent variable, the source and the start of each variable are given once.",
+     "Gravity, run, output, sweep, path, the independent variable, the source and the start of each variable are given "
+     "once.",
      "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nrun 1 s\nrun 2 s\n",
      "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nrun 2 s\n"},
     {"E0209", "a formula where a quantity is needed",
@@ -123,63 +124,85 @@ constexpr CodeEntry kEntries[] = {
      "param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\nexpect routhian of m = -p_x^2/(2 m)\n",
      "param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\nexpect routhian of x = -p_x^2/(2 m)\n"},
     {"E0238", "no word for the stability of an equilibrium",
-     "`expect equilibrium at θ = 0 is stable` is checked by the energy (a strict minimum) and by the eigenvalues; `unstable` needs an eigenvalue with a "
+     "`expect equilibrium at θ = 0 is stable` is checked by the energy (a strict minimum) and by the eigenvalues; "
+     "`unstable` needs an eigenvalue with a "
      "positive real part; `undecided` says that the linearization does not decide.",
-     "dimensionless\ncoord θ : angle\nL = 1/2 θ'^2\nexpect equilibrium at θ = 0 is good", "dimensionless\ncoord θ : angle\nL = 1/2 θ'^2\nexpect equilibrium at θ = 0 is stable"},
+     "dimensionless\ncoord θ : angle\nL = 1/2 θ'^2\nexpect equilibrium at θ = 0 is good",
+     "dimensionless\ncoord θ : angle\nL = 1/2 θ'^2\nexpect equilibrium at θ = 0 is stable"},
     {"E0239", "a sweep of something that is no parameter, or of no values",
      "`sweep NAME = FROM .. TO steps N` goes through N equally spaced values of one parameter, both ends counted.",
      "dimensionless\nparam k = 1\ncoord x : number\nL = 1/2 x'^2 - 1/2 k x^2\nsweep x = 0 .. 1 steps 11",
      "dimensionless\nparam k = 1\ncoord x : number\nL = 1/2 x'^2 - 1/2 k x^2\nsweep k = 0 .. 1 steps 11"},
     {"E0240", "mechanics without the time",
-     "`independent x : length` puts a length in the place of the time: q' is dq/dx, and the action is the integral of L dx, whatever "
-     "the dimension of L. Masses, gravity, springs, forces and energies belong to motions in time, so that such a model gives its L alone.",
+     "`independent x : length` puts a length in the place of the time: q' is dq/dx, and the action is the integral of "
+     "L dx, whatever "
+     "the dimension of L. Masses, gravity, springs, forces and energies belong to motions in time, so that such a "
+     "model gives its L alone.",
      "independent x : length\ncoord y : length\nparam m = 1 kg\nT = 1/2 m y'^2\n",
      "independent x : length\ncoord y : length\nL = sqrt(1 + y'^2)\n"},
     {"E0241", "a path with too few or too many values",
-     "`path from (0, 1) at 0 to (2, free) at 1` and `expect action of (…)` give every coordinate its value, in the order of their declaration; "
-     "`maup action --path \"x = 4 t, y = 3 t\"` names them. `free` stands at an end where a coordinate may have any value.",
+     "`path from (0, 1) at 0 to (2, free) at 1` and `expect action of (…)` give every coordinate its value, in the "
+     "order of their declaration; "
+     "`maup action --path \"x = 4 t, y = 3 t\"` names them. `free` stands at an end where a coordinate may have any "
+     "value.",
      "dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2)\npath from (0, 0) at 0 to 1 at 1\n",
      "dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2)\npath from (0, 0) at 0 to (1, free) at 1\n"},
-    {"E0242", "a path that ends before it begins",
-     "An action is an integral from an earlier time to a later one.",
+    {"E0242", "a path that ends before it begins", "An action is an integral from an earlier time to a later one.",
      "dimensionless\ncoord x : number\nL = 1/2 x'^2\npath from 0 at 1 to 1 at 0\n",
      "dimensionless\ncoord x : number\nL = 1/2 x'^2\npath from 1 at 0 to 0 at 1\n"},
     {"E0243", "a path without ends",
-     "`expect action`, `expect index` and `expect path` are about the stationary path between the ends that `path from … to …` gives; the "
-     "action of a path that is given as a formula needs them as well, or its own: `expect action of (2 t) from 0 to 1 = 2`.",
+     "`expect action`, `expect index` and `expect path` are about the stationary path between the ends that `path from "
+     "… to …` gives; the "
+     "action of a path that is given as a formula needs them as well, or its own: `expect action of (2 t) from 0 to 1 "
+     "= 2`.",
      "dimensionless\ncoord x : number\nL = 1/2 x'^2\nexpect action = 1/2 ± 1e-9\n",
      "dimensionless\ncoord x : number\nL = 1/2 x'^2\npath from 0 at 0 to 1 at 1\nexpect action = 1/2 ± 1e-9\n"},
     {"E0244", "a motion where an integral of the path is held",
-     "`constraint integral G = value` restricts whole paths: their equations are those of L + λ G with one λ for the whole path, which only the "
-     "two ends and the value of the integral determine. `maup action` finds the path and λ; there is no motion from a start.",
-     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nconstraint integral x = 1\npath from 0 at 0 to 0 at 1\nexpect x at 1 = 0 ± 1e-9\n",
-     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nconstraint integral x = 1\npath from 0 at 0 to 0 at 1\nexpect path x at 1/2 = 3/2 ± 1e-9\n"},
+     "`constraint integral G = value` restricts whole paths: their equations are those of L + λ G with one λ for the "
+     "whole path, which only the "
+     "two ends and the value of the integral determine. `maup action` finds the path and λ; there is no motion from a "
+     "start.",
+     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nconstraint integral x = 1\npath from 0 at 0 to 0 at 1\nexpect x "
+     "at 1 = 0 ± 1e-9\n",
+     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nconstraint integral x = 1\npath from 0 at 0 to 0 at 1\nexpect "
+     "path x at 1/2 = 3/2 ± 1e-9\n"},
     {"E0246", "an end of the run that the model does not have",
-     "`expect until at T` and `expect EXPR at until` are about the moment at which the condition of `run until A = B within T` is met.",
+     "`expect until at T` and `expect EXPR at until` are about the moment at which the condition of `run until A = B "
+     "within T` is met.",
      "dimensionless\ncoord x : number\nL = 1/2 x'^2\nrun 1\nexpect until at 1 ± 1e-9\n",
-     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nstart x' = 1\nrun until x = 1 within 2\nexpect until at 1 ± 1e-9\n"},
+     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nstart x' = 1\nrun until x = 1 within 2\nexpect until at 1 ± "
+     "1e-9\n"},
     {"E0247", "a matrix that does not fit the model",
-     "Rows and columns of M, C, G, K and N belong to coordinates, those of A to coordinates and velocities, the columns of B to inputs; `in (…)` names "
+     "Rows and columns of M, C, G, K and N belong to coordinates, those of A to coordinates and velocities, the "
+     "columns of B to inputs; `in (…)` names "
      "the rows that are meant and `by (…)` the columns. A row is a bracket: ((1, 2), (3, 4)).",
      "dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2)\nexpect M at x = 0 : ((1)) ± 1e-9\n",
      "dimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2)\nexpect M at x = 0 : ((1, 0), (0, 1)) ± 1e-9\n"},
     {"E0248", "a critical value of something that is no parameter",
-     "`expect stable for Ω < 5.72 rad/s ± 1e-2 at θ = 0` says at which value of a parameter the stability of an equilibrium changes.",
+     "`expect stable for Ω < 5.72 rad/s ± 1e-2 at θ = 0` says at which value of a parameter the stability of an "
+     "equilibrium changes.",
      "dimensionless\nparam k = 1\ncoord x : number\nL = 1/2 x'^2 - 1/2 k x^2\nexpect stable for x > 0 ± 1e-9\n",
      "dimensionless\nparam k = 1\ncoord x : number\nL = 1/2 x'^2 - 1/2 k x^2\nexpect stable for k > 0 ± 1e-9\n"},
     {"E0249", "a step or an order that a method chooses itself",
-     "Taylor's and the stiff method choose the lengths of their steps by the tolerance, the stiff one also its order. The variational method has steps "
+     "Taylor's and the stiff method choose the lengths of their steps by the tolerance, the stiff one also its order. "
+     "The variational method has steps "
      "that are all alike: `method variational order 4 step 10 ms`.",
-     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nmethod stiff step 1\n", "dimensionless\ncoord x : number\nL = 1/2 x'^2\nmethod variational step 1\n"},
+     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nmethod stiff step 1\n",
+     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nmethod variational step 1\n"},
     {"E0250", "a tolerance beside the rate of a steady motion",
-     "What has a tolerance is solved for, beginning at the value that is given; the rate of a steady motion, or its momentum, is what chooses among a "
+     "What has a tolerance is solved for, beginning at the value that is given; the rate of a steady motion, or its "
+     "momentum, is what chooses among a "
      "family of them. So the rate is given, and the coordinates that belong to it are found.",
-     "dimensionless\ncoord r, φ : number\nL = 1/2 (r'^2 + r^2 φ'^2) + 1/r\nstart r = 1\nexpect equilibrium at r = 1, φ' = 1 ± 1e-9\n",
-     "dimensionless\ncoord r, φ : number\nL = 1/2 (r'^2 + r^2 φ'^2) + 1/r\nstart r = 1\nexpect equilibrium at r = 1 ± 1e-9, φ' = 1\n"},
+     "dimensionless\ncoord r, φ : number\nL = 1/2 (r'^2 + r^2 φ'^2) + 1/r\nstart r = 1\nexpect equilibrium at r = 1, "
+     "φ' = 1 ± 1e-9\n",
+     "dimensionless\ncoord r, φ : number\nL = 1/2 (r'^2 + r^2 φ'^2) + 1/r\nstart r = 1\nexpect equilibrium at r = 1 ± "
+     "1e-9, φ' = 1\n"},
     {"E0251", "no method, or no precision, of this name",
-     "`method` says how the runs of a model step: auto, taylor, variational or stiff. `precision` says with how many digits `maup simulate` and "
+     "`method` says how the runs of a model step: auto, taylor, variational or stiff. `precision` says with how many "
+     "digits `maup simulate` and "
      "`maup test` calculate: double (16), quad (33) or 100.",
-     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nmethod euler\n", "dimensionless\ncoord x : number\nL = 1/2 x'^2\nmethod stiff\n"},
+     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nmethod euler\n",
+     "dimensionless\ncoord x : number\nL = 1/2 x'^2\nmethod stiff\n"},
     // ----------------------------------------------------------------------------------------------------------- units
     {"E0301", "a unit is not known",
      "Units are SI base and derived units with the SI prefixes, and common ones without: min, h, deg, rev, rpm, bar, "
@@ -231,7 +254,8 @@ constexpr CodeEntry kEntries[] = {
      "coord θ : angle\nparam I = 1 kg m^2\nT = 1/2 I θ'^2\nstart θ = 60\n",
      "coord θ : angle\nparam I = 1 kg m^2\nT = 1/2 I θ'^2\nstart θ = 60 deg\n"},
     {"E0313", "a unit word with two meanings",
-     "By the rules of SI PS is a petasiemens, and to many a horsepower; Gs is a gigasecond, and a gauss. A model that takes the wrong "
+     "By the rules of SI PS is a petasiemens, and to many a horsepower; Gs is a gigasecond, and a gauss. A model that "
+     "takes the wrong "
      "one is off by many powers of ten, so that neither is taken silently.",
      "coord x : length\nparam m = 1 kg, v = 1 m/s, P = 1 PS\nT = 1/2 m x'^2\nforce x = P/v\n",
      "coord x : length\nparam m = 1 kg, v = 1 m/s, P = 735.49875 W\nT = 1/2 m x'^2\nforce x = P/v\n"},
@@ -376,9 +400,12 @@ constexpr CodeEntry kEntries[] = {
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m x'^2\nconstraint y = 2 x\n",
      "coord x, y : length\nparam m = 1 kg\nT = 1/2 m (x'^2 + y'^2)\nconstraint y = 2 x\n"},
     {"E0430", "an energy that jumps at a switch",
-     "Where V jumps by ΔV a motion gains or loses ΔV of kinetic energy at once: an impulse. Where T jumps the momentum, not "
-     "the velocity, goes on. Lagrange's equations on the two sides know nothing of either, so that the run would be wrong "
-     "without a word. T, V, U and L have to be continuous at each switch of abs, sign, step, min, max and piecewise; kinks "
+     "Where V jumps by ΔV a motion gains or loses ΔV of kinetic energy at once: an impulse. Where T jumps the "
+     "momentum, not "
+     "the velocity, goes on. Lagrange's equations on the two sides know nothing of either, so that the run would be "
+     "wrong "
+     "without a word. T, V, U and L have to be continuous at each switch of abs, sign, step, min, max and piecewise; "
+     "kinks "
      "are fine, and so are forces that jump, also as a V that jumps in time alone. D has to be continuous in the "
      "velocities. That it is continuous is looked for at points of each switch, found by root finding.",
      "coord x : length\nparam m = 1 kg\nT = 1/2 m x'^2\nV = 2 [J] step(x - 1 [m])\n",

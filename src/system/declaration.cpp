@@ -108,10 +108,9 @@ void SymbolTable::add(Kind kind, const syntax::Name& name, const syntax::Stateme
     return;
   }
   const Declaration& first = declarations_[found->second];
-  diagnostics_.error(
-      "E0202", name.span, fmt::format("`{}` is declared twice", name.text),
-      fmt::format("It is already a {} in line {}.", word_of(first.kind), texts_.locate(first.span).line),
-      "Give one of them another name.");
+  diagnostics_.error("E0202", name.span, fmt::format("`{}` is declared twice", name.text),
+                     fmt::format("It is already a {} in line {}.", word_of(first.kind), texts_.locate(first.span).line),
+                     "Give one of them another name.");
 }
 
 Declaration* SymbolTable::find(const std::string& name) {

@@ -10,7 +10,19 @@ namespace maupertuis::elaboration {
 /// One name of the model and what is known of it. The five energies are declarations as well, since T and V may stand
 /// in formulas.
 struct Declaration {
-  enum class Kind { Parameter, Coordinate, Definition, Input, Frame, Point, Body, Constraint, Reaction, Independent, Energy };
+  enum class Kind {
+    Parameter,
+    Coordinate,
+    Definition,
+    Input,
+    Frame,
+    Point,
+    Body,
+    Constraint,
+    Reaction,
+    Independent,
+    Energy
+  };
   Kind kind = Kind::Parameter;
   std::string name;
   Span span;

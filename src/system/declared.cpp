@@ -16,14 +16,15 @@ using syntax::Expression;
 bool is_quantity(const Expression& x) {
   using Form = Expression::Kind;
   if (x.kind == Form::Name) return x.text == "pi" && x.primes == 0;
-  const bool calculated = x.kind == Form::Unary || x.kind == Form::Vector || x.kind == Form::Binary || x.kind == Form::Call;
+  const bool calculated =
+      x.kind == Form::Unary || x.kind == Form::Vector || x.kind == Form::Binary || x.kind == Form::Call;
   if (x.kind != Form::Number && x.kind != Form::Quantity && !calculated) return false;
   return std::all_of(x.arguments.begin(), x.arguments.end(), [](const auto& a) { return is_quantity(*a); });
 }
 
 struct WrittenUnit {
   std::string text;
-  double factor = 1;   // in SI
+  double factor = 1;  // in SI
 };
 
 /// Words after a number that are names and no units: 1/3 m l^2.
@@ -35,12 +36,14 @@ bool names_stand_in(Elaboration& e, const Expression& x) {
 }
 
 void quantities_in(const Expression& x, std::vector<const Expression*>& out) {
-  if (x.kind == Expression::Kind::Quantity) out.push_back(&x);
+  if (x.kind == Expression::Kind::Quantity)
+    out.push_back(&x);
   else
     for (const auto& a : x.arguments) quantities_in(*a, out);
 }
 
-/// Of a quantity that was read without a mistake. Of 10 pi [rad/s] it is rad/s; of a calculation with several units that of SI.
+/// Of a quantity that was read without a mistake. Of 10 pi [rad/s] it is rad/s; of a calculation with several units
+/// that of SI.
 WrittenUnit unit_of_quantity(Elaboration& e, const Expression& x, const Dimension& dimension) {
   std::vector<const Expression*> quantities;
   quantities_in(x, quantities);
@@ -49,7 +52,8 @@ WrittenUnit unit_of_quantity(Elaboration& e, const Expression& x, const Dimensio
   if (quantities.size() > 1 && !vector) return {to_string(dimension), 1};
   const std::optional<Unit> unit = unit_of(e, *quantities.front()->unit);
   if (!unit || !unit->dimension.same_as(dimension)) return {to_string(dimension), 1};
-  return {written_unit(e.texts, *quantities.front()->unit), maupertuis::evaluate(factor_of(e.context, *unit), Bindings{})};
+  return {written_unit(e.texts, *quantities.front()->unit),
+          maupertuis::evaluate(factor_of(e.context, *unit), Bindings{})};
 }
 
 Expr add_parameter(Elaboration& e, const Declaration& d, const std::string& name, Expr value,

@@ -20,7 +20,8 @@ class Dump {
     line("system {}{}", system_.name.empty() ? "(unnamed)" : system_.name,
          system_.title.empty() ? "" : " \"" + system_.title + "\"");
     line("space {}{}", system_.space_dimension, system_.dimensionless ? ", dimensionless" : "");
-    if (system_.independent != "t") line("independent {} [{}]", system_.independent, to_string(system_.independent_dimension));
+    if (system_.independent != "t")
+      line("independent {} [{}]", system_.independent, to_string(system_.independent_dimension));
     for (const Coordinate& c : system_.coordinates)
       line("coordinate {} : {} [{}]", c.name, c.kind.empty() ? "unit" : c.kind, to_string(c.dimension));
     for (const Parameter& p : system_.parameters)
@@ -57,7 +58,8 @@ class Dump {
            c.level == Constraint::Level::Position ? "position" : "velocity",
            c.body.empty() ? c.name : "norm of " + c.body, show(c.value), to_string(c.dimension), show(c.multiplier));
     for (const IntegralConstraint& c : system_.integral_constraints)
-      line("integral constraint {}: ∫ {} d{} = {} [{}]", c.name, show(c.integrand), system_.independent, show(c.value), to_string(c.dimension));
+      line("integral constraint {}: ∫ {} d{} = {} [{}]", c.name, show(c.integrand), system_.independent, show(c.value),
+           to_string(c.dimension));
     return out_;
   }
 

@@ -36,8 +36,8 @@ struct Elaboration {
   std::unordered_set<std::string> unknown_names;  // told already
   bool dimension_clash = false;                   // told already
   bool dimensionless = false;
-  bool independent_is_time = true;                // else L has any dimension, and there are no masses and forces
-  bool lagrangian_settled = false;                // its first part has said what dimension that is
+  bool independent_is_time = true;     // else L has any dimension, and there are no masses and forces
+  bool lagrangian_settled = false;     // its first part has said what dimension that is
   std::optional<Span> dimension_from;  // the first vector: its length is the dimension of space
 
   Elaboration(const syntax::SyntaxTree& tree, const SourceTexts& texts, const ExperimentOverrides& overrides,
@@ -190,7 +190,8 @@ void elaborate_drawing(Elaboration& e, const syntax::DrawStatement& s);
 
 /// The name of what stands in the place of t; before any expression is made.
 void name_independent(Elaboration& e);
-/// Its dimension; after the coordinates. False, and E0240, where a model without the time has masses, forces or energies.
+/// Its dimension; after the coordinates. False, and E0240, where a model without the time has masses, forces or
+/// energies.
 bool elaborate_independent(Elaboration& e);
 /// A text with the name of the independent variable in the place of `time` or `the time`: "the start x".
 std::string in_words(const Elaboration& e, std::string text);

@@ -54,10 +54,13 @@ void gravity(Elaboration& e, const syntax::GravityStatement& g, Span span) {
 }
 
 /// The way from one end to the other; the link is kept, to be drawn.
-std::optional<ExprVector> between(Elaboration& e, Link::Kind kind, const syntax::Expression& from, const syntax::Expression& to) {
+std::optional<ExprVector> between(Elaboration& e, Link::Kind kind, const syntax::Expression& from,
+                                  const syntax::Expression& to) {
   const Value a = position_of(e, from, nullptr), b = position_of(e, to, nullptr);
   if (a.poisoned || b.poisoned) return std::nullopt;
-  const auto name = [](const syntax::Expression& x) { return x.kind == syntax::Expression::Kind::Name ? x.text : std::string(); };
+  const auto name = [](const syntax::Expression& x) {
+    return x.kind == syntax::Expression::Kind::Name ? x.text : std::string();
+  };
   e.system().links.push_back({kind, name(from), name(to), a.parts, b.parts});
   return vector_sum(b.parts, scaled(e.number(-1), a.parts));
 }
@@ -149,7 +152,8 @@ Value lagrangian_of_any_dimension(Elaboration& e, const syntax::Expression& x, c
 std::optional<Expr> given_value(Elaboration& e, const EnergyStatement& s) {
   const std::string name = fmt::format("the {}", name_of_energy(s.which));
   const bool any = s.which == Which::L && !e.independent_is_time;
-  const Value v = any ? lagrangian_of_any_dimension(e, *s.value, name) : scalar_of(e, *s.value, dimension_of(s.which), name);
+  const Value v =
+      any ? lagrangian_of_any_dimension(e, *s.value, name) : scalar_of(e, *s.value, dimension_of(s.which), name);
   if (v.poisoned || refuse_acceleration(e, v, *s.value, name)) return std::nullopt;
   if (s.which != Which::V || v.order < 1) return v.scalar();
   e.diagnostics.error("E0405", culprit_of_order(e, *s.value, 1), "a velocity stands in the potential energy V",
@@ -242,8 +246,9 @@ void elaborate_energy(Elaboration& e, Which which, Declaration& d) {
   }
   d.done = true;
   d.value = poisoned ? Value::poison()
-                     : Value::of(total(e.system(), which), which == Which::L ? e.system().lagrangian_dimension : e.dimension(dimension_of(which)),
-                               order_of(which));
+                     : Value::of(total(e.system(), which),
+                                 which == Which::L ? e.system().lagrangian_dimension : e.dimension(dimension_of(which)),
+                                 order_of(which));
 }
 
 }  // namespace maupertuis::elaboration

@@ -109,7 +109,7 @@ void note_written_unit(Elaboration& e, StartValue& s, const Expression& value, c
   while (x->kind == Expression::Kind::Unary) x = x->arguments[0].get();
   if (x->kind != Expression::Kind::Quantity || !x->unit || x->unit->factors.empty() || !all_units(*x->unit)) return;
   const std::optional<Unit> unit = unit_of(e, *x->unit);
-  if (!unit || !unit->dimension.same_as(expected)) return;   // its words are names of the model
+  if (!unit || !unit->dimension.same_as(expected)) return;  // its words are names of the model
   s.unit = written_unit(e.texts, *x->unit);
   s.unit_factor = maupertuis::evaluate(factor_of(e.context, *unit), Bindings{});
 }
@@ -214,8 +214,10 @@ void output(Elaboration& e, const syntax::OutputStatement& s) {
 }
 
 /// How the runs of this model step, where the command line says nothing.
-const std::pair<const char*, StepMethod> kMethods[] = {{"auto", StepMethod::Automatic}, {"taylor", StepMethod::Taylor},
-                                                       {"variational", StepMethod::Variational}, {"stiff", StepMethod::Stiff}};
+const std::pair<const char*, StepMethod> kMethods[] = {{"auto", StepMethod::Automatic},
+                                                       {"taylor", StepMethod::Taylor},
+                                                       {"variational", StepMethod::Variational},
+                                                       {"stiff", StepMethod::Stiff}};
 
 /// The parameter that a sweep names; null, and a message, if it is none.
 const Parameter* swept_parameter(Elaboration& e, const Expression& x) {
@@ -241,7 +243,8 @@ void sweep(Elaboration& e, const syntax::SweepStatement& s, Span span) {
   const Parameter* parameter = swept_parameter(e, *s.variable);
   if (!parameter) return;
   const std::string what = fmt::format("`{}`", parameter->name);
-  const Value from = constant_of(e, *s.from, parameter->dimension, what), to = constant_of(e, *s.to, parameter->dimension, what);
+  const Value from = constant_of(e, *s.from, parameter->dimension, what),
+              to = constant_of(e, *s.to, parameter->dimension, what);
   constexpr double usual_count = 121;
   const Value steps =
       s.steps ? constant_of(e, *s.steps, Dimension{}, "the number of values of a sweep") : Value::poison();
@@ -249,18 +252,20 @@ void sweep(Elaboration& e, const syntax::SweepStatement& s, Span span) {
   const double count = s.steps ? constant_value(e, steps.scalar()).value_or(0) : usual_count;
   constexpr double most = 1e6;
   if (!(count >= 2 && count <= most && count == std::floor(count))) {
-    e.diagnostics.error("E0239", s.steps->span, "a sweep has a whole number of values, at least 2 and at most a million",
+    e.diagnostics.error("E0239", s.steps->span,
+                        "a sweep has a whole number of values, at least 2 and at most a million",
                         "Both ends are counted: `steps 121` from 0 to 12 is a tenth apart.", "");
     return;
   }
-  e.experiment().sweep = Sweep{static_cast<std::size_t>(parameter - e.system().parameters.data()), from.scalar(), to.scalar(),
-                               static_cast<std::size_t>(count), span};
+  e.experiment().sweep = Sweep{static_cast<std::size_t>(parameter - e.system().parameters.data()), from.scalar(),
+                               to.scalar(), static_cast<std::size_t>(count), span};
 }
 
 }  // namespace
 
 void elaborate_method(Elaboration& e, const syntax::MethodStatement& s) {
-  const auto* known = std::find_if(std::begin(kMethods), std::end(kMethods), [&](const auto& m) { return s.word.text == m.first; });
+  const auto* known =
+      std::find_if(std::begin(kMethods), std::end(kMethods), [&](const auto& m) { return s.word.text == m.first; });
   if (known == std::end(kMethods)) {
     e.diagnostics.error("E0251", s.word.span, fmt::format("`{}` is no method", s.word.text),
                         "A method makes the steps of a run.", "Write auto, taylor, variational or stiff.");
@@ -289,9 +294,12 @@ void elaborate_method(Elaboration& e, const syntax::MethodStatement& s) {
 
 void elaborate_precision(Elaboration& e, const syntax::PrecisionStatement& s) {
   const std::string& word = s.word.text;
-  if (word == "double") e.experiment().precision = NumberFormat::Double;
-  else if (word == "quad") e.experiment().precision = NumberFormat::Quad;
-  else if (word == "100") e.experiment().precision = NumberFormat::Digits100;
+  if (word == "double")
+    e.experiment().precision = NumberFormat::Double;
+  else if (word == "quad")
+    e.experiment().precision = NumberFormat::Quad;
+  else if (word == "100")
+    e.experiment().precision = NumberFormat::Digits100;
   else
     e.diagnostics.error("E0251", s.word.span, fmt::format("`{}` is no precision", word),
                         "It says how many digits a run calculates with.",

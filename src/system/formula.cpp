@@ -56,8 +56,15 @@ Value binary(Elaboration& e, const Expression& x, const Place& place) {
       return a.is_vector && b.is_vector ? cross_product(e, a, b, x) : multiply(e, a, b, x);
     case Operator::Power:
       return power(e, a, b, x);
-    case Operator::Add: case Operator::Subtract: case Operator::Negate: case Operator::Less: case Operator::LessEqual:
-    case Operator::Greater: case Operator::GreaterEqual: case Operator::And: case Operator::Or:
+    case Operator::Add:
+    case Operator::Subtract:
+    case Operator::Negate:
+    case Operator::Less:
+    case Operator::LessEqual:
+    case Operator::Greater:
+    case Operator::GreaterEqual:
+    case Operator::And:
+    case Operator::Or:
       break;
   }
   e.diagnostics.error("E0221", x.span, "a comparison stands where a formula is needed",
@@ -99,8 +106,15 @@ Value condition(Elaboration& e, const Expression& x, const Place& place) {
       return make(maupertuis::Kind::And, l, r);
     case Operator::Or:
       return make(maupertuis::Kind::Or, l, r);
-    case Operator::Add: case Operator::Subtract: case Operator::Multiply: case Operator::Juxtapose: case Operator::Divide:
-    case Operator::Dot: case Operator::Cross: case Operator::Power: case Operator::Negate:
+    case Operator::Add:
+    case Operator::Subtract:
+    case Operator::Multiply:
+    case Operator::Juxtapose:
+    case Operator::Divide:
+    case Operator::Dot:
+    case Operator::Cross:
+    case Operator::Power:
+    case Operator::Negate:
       break;
   }
   e.diagnostics.error("E0221", x.span, "this is no condition",

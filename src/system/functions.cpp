@@ -25,11 +25,13 @@ struct Function {
 };
 
 /// Words for the reciprocal of a function.
-constexpr std::pair<std::string_view, K> kReciprocals[] = {{"sec", K::Cos}, {"csc", K::Sin}, {"cot", K::Tan}, {"sech", K::Cosh}};
+constexpr std::pair<std::string_view, K> kReciprocals[] = {
+    {"sec", K::Cos}, {"csc", K::Sin}, {"cot", K::Tan}, {"sech", K::Cosh}};
 
 std::optional<Function> find_function(std::string_view name) {
   std::optional<Function> found;
-  const auto reciprocal = std::find_if(std::begin(kReciprocals), std::end(kReciprocals), [&](const auto& r) { return r.first == name; });
+  const auto reciprocal =
+      std::find_if(std::begin(kReciprocals), std::end(kReciprocals), [&](const auto& r) { return r.first == name; });
   const bool inverted = reciprocal != std::end(kReciprocals);
   const auto look = [&](const auto& row) {
     if (inverted ? row.kind == reciprocal->second : row.name == name) found = Function{row.kind, row.angles, inverted};

@@ -15,18 +15,23 @@ using syntax::Expression;
 using syntax::Operator;
 
 bool is_free_word(Elaboration& e, const Expression& x) {
-  if (x.kind != Expression::Kind::Name || x.primes != 0 || x.text == "pi" || x.text == e.system().independent) return false;
+  if (x.kind != Expression::Kind::Name || x.primes != 0 || x.text == "pi" || x.text == e.system().independent)
+    return false;
   return !e.table.find(x.text) && !e.table.is_lost(x.text);
 }
 
-bool is_plain_binary(const Expression& x, Operator op) { return x.kind == Expression::Kind::Binary && x.op == op && !x.bracketed; }
+bool is_plain_binary(const Expression& x, Operator op) {
+  return x.kind == Expression::Kind::Binary && x.op == op && !x.bracketed;
+}
 
 /// Without the brackets that it may stand in.
 Span operands(const Expression& x) { return cover(x.arguments[0]->span, x.arguments[1]->span); }
 
 bool joins(const Expression& x, Operator op) { return x.kind == Expression::Kind::Binary && x.op == op; }
 
-bool is_plain_product(const Expression& x) { return is_plain_binary(x, Operator::Juxtapose) || is_plain_binary(x, Operator::Multiply); }
+bool is_plain_product(const Expression& x) {
+  return is_plain_binary(x, Operator::Juxtapose) || is_plain_binary(x, Operator::Multiply);
+}
 
 std::string text_inside(Elaboration& e, const Expression& x) {
   std::string text(e.texts.slice(x.span));
@@ -44,7 +49,8 @@ bool exponential(Elaboration& e, const Expression& x) {
 
 /// The order of d, d^2, dt, dt^2; 0 where it is something else.
 int order_of_word(Elaboration& e, const Expression& x, const char* word) {
-  const bool square = is_plain_binary(x, Operator::Power) && x.arguments[1]->kind == Expression::Kind::Number && x.arguments[1]->text == "2";
+  const bool square = is_plain_binary(x, Operator::Power) && x.arguments[1]->kind == Expression::Kind::Number &&
+                      x.arguments[1]->text == "2";
   const Expression& name = square ? *x.arguments[0] : x;
   return is_free_word(e, name) && name.text == word ? (square ? 2 : 1) : 0;
 }
@@ -55,7 +61,8 @@ const Expression& factor_at_end(const Expression& x) { return is_plain_product(x
 void tell_derivative(Elaboration& e, Span span, const Expression& of, int order) {
   const bool named = (of.kind == Expression::Kind::Name || of.kind == Expression::Kind::Member) && !of.bracketed;
   const std::string primes(static_cast<std::size_t>(order), '\'');
-  const std::string text = of.bracketed || named ? std::string(e.texts.slice(of.span)) : fmt::format("({})", e.texts.slice(of.span));
+  const std::string text =
+      of.bracketed || named ? std::string(e.texts.slice(of.span)) : fmt::format("({})", e.texts.slice(of.span));
   e.diagnostics.error("E0201", span, fmt::format("`{}` is no derivative here", e.texts.slice(span)),
                       "A derivative by the time is written with a prime; d and dt would be names.",
                       fmt::format("Write {}{}.", text, primes));
@@ -107,8 +114,10 @@ bool is_written_number(const Expression& x) {
 
 /// kg, s^2, (kg K): nothing but words of units. `free` counts those that are no names of the model.
 bool is_written_unit(Elaboration& e, const Expression& x, int& free) {
-  if (is_plain_binary(x, Operator::Power)) return x.arguments[1]->kind == Expression::Kind::Number && is_written_unit(e, *x.arguments[0], free);
-  if (x.kind == Expression::Kind::Binary && (x.op == Operator::Juxtapose || x.op == Operator::Multiply || x.op == Operator::Divide))
+  if (is_plain_binary(x, Operator::Power))
+    return x.arguments[1]->kind == Expression::Kind::Number && is_written_unit(e, *x.arguments[0], free);
+  if (x.kind == Expression::Kind::Binary &&
+      (x.op == Operator::Juxtapose || x.op == Operator::Multiply || x.op == Operator::Divide))
     return is_written_unit(e, *x.arguments[0], free) && is_written_unit(e, *x.arguments[1], free);
   if (x.kind != Expression::Kind::Name || x.primes != 0 || !find_unit(x.text)) return false;
   free += is_free_word(e, x);
@@ -131,7 +140,8 @@ bool number_with_unit(Elaboration& e, const Expression& x) {
   const Span whole = operands(x);
   std::string unit(e.texts.slice({left->span.end, whole.end, whole.source}));
   unit.erase(0, unit.find_first_not_of(" *·"));
-  e.diagnostics.error("E0312", whole, fmt::format("`{}` stands in a formula without brackets around its unit", e.texts.slice(whole)),
+  e.diagnostics.error("E0312", whole,
+                      fmt::format("`{}` stands in a formula without brackets around its unit", e.texts.slice(whole)),
                       "In a formula a unit stands in square brackets, so that it cannot be taken for a name.",
                       fmt::format("Write {} [{}].", number, unit));
   return true;

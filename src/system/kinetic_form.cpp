@@ -6,21 +6,22 @@
 #include <set>
 #include <unordered_map>
 
-/// The second derivatives of L by the velocities, as a quadratic form over the nodes of L. It begins sparse: a square of
-/// a velocity component has one entry. Two kinds of variables leave it, from the root of L down:
+/// The second derivatives of L by the velocities, as a quadratic form over the nodes of L. It begins sparse: a square
+/// of a velocity component has one entry. Two kinds of variables leave it, from the root of L down:
 ///
 ///     a node x = f(a, b, …)    is replaced by its tangent, dx = f_a da + f_b db + …
 ///     a velocity that no node holds any more    is minimized over: a step of Cholesky's factorization
 ///
-/// M is positive definite where every pivot of the second kind is positive. Of a chain of points the tip goes first: its
-/// velocity is that of its neighbour and one angle rate, the rate is minimized over, and the form has moved to the neighbour.
+/// M is positive definite where every pivot of the second kind is positive. Of a chain of points the tip goes first:
+/// its velocity is that of its neighbour and one angle rate, the rate is minimized over, and the form has moved to the
+/// neighbour.
 namespace maupertuis::lint_rules {
 namespace {
 
-constexpr double smallest_pivot = 1e-9;      // of the terms that it is the sum of
-constexpr std::size_t most_factors = 8;      // of a product that depend on velocities
-constexpr std::size_t few_neighbours = 10;   // of a rate that is minimized over as soon as it is free
-constexpr double most_updates = 2e7;         // of entries of the form: then M is as well looked at itself
+constexpr double smallest_pivot = 1e-9;     // of the terms that it is the sum of
+constexpr std::size_t most_factors = 8;     // of a product that depend on velocities
+constexpr std::size_t few_neighbours = 10;  // of a rate that is minimized over as soon as it is free
+constexpr double most_updates = 2e7;        // of entries of the form: then M is as well looked at itself
 
 using Place = std::uint32_t;
 
@@ -40,7 +41,7 @@ class KineticForm {
     for (Place k = 0; k < count; ++k) places_.emplace(nodes_[k].id(), k);
     for (const Expr& v : s.velocities) {
       const auto place = places_.find(v.id());
-      if (place == places_.end()) return;      // L does not know it: M is singular
+      if (place == places_.end()) return;  // L does not know it: M is singular
       moves_[place->second] = true;
     }
     complete_ = gather();
@@ -51,10 +52,13 @@ class KineticForm {
     for (Place k = 0; k < nodes_.size(); ++k)
       if (moves_[k] && uses_[k] == 0) get_ready(k);
     while (!ready_nodes_.empty() || !ready_rates_.empty()) {
-      const bool rate = !ready_rates_.empty() && (ready_nodes_.empty() || ready_rates_.begin()->first <= few_neighbours);
+      const bool rate =
+          !ready_rates_.empty() && (ready_nodes_.empty() || ready_rates_.begin()->first <= few_neighbours);
       const Place k = rate ? ready_rates_.begin()->second : *ready_nodes_.rbegin();
-      if (rate) ready_rates_.erase(ready_rates_.begin());
-      else ready_nodes_.erase(k);
+      if (rate)
+        ready_rates_.erase(ready_rates_.begin());
+      else
+        ready_nodes_.erase(k);
       if (rate && !minimize(k)) return false;
       if (!rate) replace(k);
       if (updates_ > most_updates) return false;
@@ -85,7 +89,9 @@ class KineticForm {
     if (moving.empty()) return true;
     moves_[k] = true;
     for (const std::size_t i : moving) {
-      const double slope = node.is(Kind::Sum) ? 1 : node.is(Kind::Product) ? product_without(node, i, i) : power_slope(node);
+      const double slope = node.is(Kind::Sum)       ? 1
+                           : node.is(Kind::Product) ? product_without(node, i, i)
+                                                    : power_slope(node);
       if (!std::isfinite(slope)) return false;
       inputs_[k].push_back({place(node, i), slope});
       ++uses_[place(node, i)];
@@ -129,7 +135,8 @@ class KineticForm {
   void replace(Place k) {
     for (const auto& [j, h] : rows_[k])
       for (const Slope& in : inputs_[k]) {
-        if (j != k) add(in.place, j, (j == in.place ? 2 : 1) * in.value * h);
+        if (j != k)
+          add(in.place, j, (j == in.place ? 2 : 1) * in.value * h);
         else
           for (const Slope& other : inputs_[k])
             if (other.place <= in.place) add(in.place, other.place, in.value * other.value * h);
@@ -174,8 +181,10 @@ class KineticForm {
   }
 
   void get_ready(Place k) {
-    if (inputs_[k].empty()) ready_rates_.emplace(rows_[k].size(), k);
-    else ready_nodes_.insert(k);
+    if (inputs_[k].empty())
+      ready_rates_.emplace(rows_[k].size(), k);
+    else
+      ready_nodes_.insert(k);
   }
 
   void moved_in_line(Place k, std::size_t before) {
@@ -185,13 +194,13 @@ class KineticForm {
   std::vector<Expr> nodes_;
   std::unordered_map<NodeId, Place> places_;
   std::vector<double> values_, adjoints_;
-  std::vector<bool> moves_;                                  // depends on a velocity
-  std::vector<std::vector<Slope>> inputs_;                   // empty: a velocity
-  std::vector<std::size_t> uses_;                            // nodes not yet replaced that hold it
-  std::vector<std::unordered_map<Place, double>> rows_;      // of the form, symmetric
-  std::vector<double> sizes_;                                // Σ |terms| of a diagonal entry
-  std::set<Place> ready_nodes_;                              // the newest first: what stands at the tip of a chain
-  std::set<std::pair<std::size_t, Place>> ready_rates_;      // by their entries in the form, few first
+  std::vector<bool> moves_;                              // depends on a velocity
+  std::vector<std::vector<Slope>> inputs_;               // empty: a velocity
+  std::vector<std::size_t> uses_;                        // nodes not yet replaced that hold it
+  std::vector<std::unordered_map<Place, double>> rows_;  // of the form, symmetric
+  std::vector<double> sizes_;                            // Σ |terms| of a diagonal entry
+  std::set<Place> ready_nodes_;                          // the newest first: what stands at the tip of a chain
+  std::set<std::pair<std::size_t, Place>> ready_rates_;  // by their entries in the form, few first
   double updates_ = 0;
   bool complete_ = false;
 };

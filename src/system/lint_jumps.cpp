@@ -62,7 +62,7 @@ class Continuity {
       if (b.mass) all.push_back({b.position, fmt::format("the position of {}", b.name), b.span});
       all.push_back({b.rotation.entries, fmt::format("the orientation of {}", b.name), b.span});
     }
-    ExprVector together;   // what stands below many positions is walked once
+    ExprVector together;  // what stands below many positions is walked once
     for (const Placed& x : all) together.insert(together.end(), x.components.begin(), x.components.end());
     together = moving(together);
     const auto switched = above_switches(together);
@@ -160,7 +160,8 @@ class Continuity {
     std::unordered_set<NodeId> out;
     for (const Expr& node : topological_order(roots)) {
       const auto arguments = node.argument_ids();
-      if (has_switch(node.kind()) || std::any_of(arguments.begin(), arguments.end(), [&](NodeId id) { return out.count(id) != 0; }))
+      if (has_switch(node.kind()) ||
+          std::any_of(arguments.begin(), arguments.end(), [&](NodeId id) { return out.count(id) != 0; }))
         out.insert(node.id());
     }
     return out;
@@ -174,7 +175,8 @@ class Continuity {
     ExprVector out;
     for (const Expr& g : switches_of(functions)) {
       const std::vector<Expr> symbols = symbols_of({&g, 1});
-      if (std::any_of(symbols.begin(), symbols.end(), [&](Expr e) { return search_.center.count(e) != 0; })) out.push_back(g);
+      if (std::any_of(symbols.begin(), symbols.end(), [&](Expr e) { return search_.center.count(e) != 0; }))
+        out.push_back(g);
     }
     return out;
   }
@@ -213,7 +215,8 @@ class Continuity {
     }
   }
 
-  /// Keeps what was prepared for the switch before where both stand in the same terms, as the pieces of one function do.
+  /// Keeps what was prepared for the switch before where both stand in the same terms, as the pieces of one function
+  /// do.
   void decide(const ExprVector& terms, std::optional<Decided>& decided) const {
     ExprVector values;
     std::vector<std::size_t> rows;
@@ -263,9 +266,12 @@ class Continuity {
     Slopes out{std::vector<double>(n, 0.0), 0, false};
     for (std::size_t k = 0; k < d.size(); ++k) {
       const std::size_t row = formulas.rows[k];
-      if (row < n) out.by_position[row] = d[k], out.rate += d[k] * at.at(s_.velocities[row]);
-      else if (row < 2 * n) out.has_velocity |= d[k] != 0;
-      else out.rate += d[k];
+      if (row < n)
+        out.by_position[row] = d[k], out.rate += d[k] * at.at(s_.velocities[row]);
+      else if (row < 2 * n)
+        out.has_velocity |= d[k] != 0;
+      else
+        out.rate += d[k];
     }
     return out;
   }
@@ -306,7 +312,8 @@ class Continuity {
     const bool same = std::all_of(found.begin(), found.end(), [&](const SwitchSample& y) {
       return std::abs(std::abs(y.jump[column]) - jump) <= 1e-9 * jump;
     });
-    const std::string what = part.term->origin.size() == 1 ? part.letter : fmt::format("the energy of {}", part.term->origin);
+    const std::string what =
+        part.term->origin.size() == 1 ? part.letter : fmt::format("the energy of {}", part.term->origin);
     const Dimension power = s_.system.lagrangian_dimension / s_.system.independent_dimension;
     const std::string amount = with_unit(jump, *part.letter == 'D' ? power : s_.system.lagrangian_dimension);
     const ExprVector concerned{same ? g : g + part.value};
@@ -315,9 +322,11 @@ class Continuity {
         "E0430", part.term->span,
         same || example == where ? fmt::format("{} jumps by {} where {}", what, amount, where)
                                  : fmt::format("{} jumps where {}: by {} at {}", what, where, amount, example),
-        *part.letter == 'D' ? "Its derivative by the velocity is a force without bound there, which the equations of motion do not contain."
-                            : "A jump gives an impulse, a force without bound for no time, which the equations of motion do not "
-                              "contain: a motion would pass it as if nothing were there.",
+        *part.letter == 'D'
+            ? "Its derivative by the velocity is a force without bound there, which the equations of motion do not "
+              "contain."
+            : "A jump gives an impulse, a force without bound for no time, which the equations of motion do not "
+              "contain: a motion would pass it as if nothing were there.",
         "Let the pieces meet there, or give the step a width: 1/2 (1 + tanh(u/d)) for step(u). Forces may jump.");
   }
 
@@ -333,9 +342,11 @@ class Continuity {
     s_.diagnostics.error(
         "E0432", part == parts.end() ? parts.front().term->span : part->term->span,
         fmt::format("the momentum ∂L/∂{}' jumps by {} where {}", c.name,
-                    with_unit(std::abs(x.jump[i + 1]), s_.system.lagrangian_dimension * s_.system.independent_dimension / c.dimension),
+                    with_unit(std::abs(x.jump[i + 1]),
+                              s_.system.lagrangian_dimension * s_.system.independent_dimension / c.dimension),
                     place(g, state({g}, x.at))),
-        "A momentum changes by forces alone: it is the velocity that would have to jump, which the equations of motion do not contain.",
+        "A momentum changes by forces alone: it is the velocity that would have to jump, which the equations of motion "
+        "do not contain.",
         "Let ∂L/∂q' pass the switch without a jump, for example sqrt(v^2 + d^2) for abs(v).");
   }
 

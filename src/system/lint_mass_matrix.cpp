@@ -160,9 +160,10 @@ bool is_mechanics(const Subject& s) { return s.system.independent == "t"; }
 void report_massless(Subject& s, std::size_t coordinate) {
   const Coordinate& c = s.system.coordinates[coordinate];
   if (!is_mechanics(s)) {
-    s.diagnostics.error("E0407", c.span, fmt::format("the integrand is not curved in `{}'`", c.name),
-                        fmt::format("∂²L/∂{0}'² vanishes, so that the Euler-Lagrange equation does not give {0}''.", c.name),
-                        "Check the derivatives in L, or remove the coordinate.");
+    s.diagnostics.error(
+        "E0407", c.span, fmt::format("the integrand is not curved in `{}'`", c.name),
+        fmt::format("∂²L/∂{0}'² vanishes, so that the Euler-Lagrange equation does not give {0}''.", c.name),
+        "Check the derivatives in L, or remove the coordinate.");
     return;
   }
   const bool from_masses = kinetic_energy_of_masses_alone(s.system);
@@ -197,7 +198,9 @@ void report_combination(Subject& s, const Row& v) {
     if (v[i] != 0) last = i;
   const Coordinate& c = s.system.coordinates[last];
   const std::string change = combination(s, v, v[last]), known = known_combinations(s, v, last);
-  const std::string only = known.empty() ? "" : fmt::format(" Only {} matter{}.", known, known.find(" and ") == std::string::npos ? "s" : "");
+  const std::string only =
+      known.empty() ? ""
+                    : fmt::format(" Only {} matter{}.", known, known.find(" and ") == std::string::npos ? "s" : "");
   if (kinetic_energy_of_masses_alone(s.system)) {
     s.diagnostics.error(
         "E0417", c.span, fmt::format("the masses cannot tell {} apart", names(s, v)),
@@ -207,10 +210,13 @@ void report_combination(Subject& s, const Row& v) {
     return;
   }
   if (!is_mechanics(s)) {
-    s.diagnostics.error("E0408", c.span, fmt::format("the integrand is not curved where {} change together", names(s, v)),
-                        fmt::format("Changing {} leaves ∂L/∂q' as it is: the Euler-Lagrange equations do not determine the second derivatives.", change),
-                        "An integrand of degree 1 in all velocities does not say how fast its path is run through: make one of "
-                        "the coordinates the independent variable.");
+    s.diagnostics.error(
+        "E0408", c.span, fmt::format("the integrand is not curved where {} change together", names(s, v)),
+        fmt::format(
+            "Changing {} leaves ∂L/∂q' as it is: the Euler-Lagrange equations do not determine the second derivatives.",
+            change),
+        "An integrand of degree 1 in all velocities does not say how fast its path is run through: make one of "
+        "the coordinates the independent variable.");
     return;
   }
   s.diagnostics.error(

@@ -11,7 +11,8 @@ bool is_taken(const MechanicalSystem& system, const std::string& name) {
     return std::any_of(list.begin(), list.end(), [&](const auto& item) { return item.name == name; });
   };
   return has(system.coordinates) || has(system.parameters) || has(system.inputs) || has(system.definitions) ||
-         has(system.frames) || has(system.points) || has(system.bodies) || has(system.constraints) || has(system.releases);
+         has(system.frames) || has(system.points) || has(system.bodies) || has(system.constraints) ||
+         has(system.releases);
 }
 
 }  // namespace

@@ -122,7 +122,8 @@ std::optional<Value> momentum(Elaboration& e, const std::string& name) {
   return std::nullopt;
 }
 
-/// λ_rod as derivations print it, where multiplier(rod) may stand. A multiplier never has the name of something declared.
+/// λ_rod as derivations print it, where multiplier(rod) may stand. A multiplier never has the name of something
+/// declared.
 std::optional<Value> multiplier(Elaboration& e, const std::string& name) {
   for (const Constraint& c : e.system().constraints)
     if (c.multiplier && c.multiplier.name() == name) return value_of_multiplier(e, c);
@@ -135,15 +136,17 @@ bool is_silent(Elaboration& e, const std::string& text) { return e.table.is_lost
 /// Where another variable stands in its place, t is a name like any other.
 void unknown_time(Elaboration& e, Span span) {
   const std::string& x = e.system().independent;
-  e.diagnostics.error("E0201", span, "`t` is not declared",
-                      fmt::format("The independent variable of this model is {}: it stands in the place of the time.", x),
-                      fmt::format("Write {}, or declare t.", x));
+  e.diagnostics.error(
+      "E0201", span, "`t` is not declared",
+      fmt::format("The independent variable of this model is {}: it stands in the place of the time.", x),
+      fmt::format("Write {}, or declare t.", x));
 }
 
 /// A declared name that looks as this one does, in letters of another alphabet; empty if there is none.
 std::string twin_of(const std::string& text, const std::vector<std::string>& names) {
   const std::string look = latin_look(text);
-  const auto twin = std::find_if(names.begin(), names.end(), [&](const std::string& name) { return latin_look(name) == look; });
+  const auto twin =
+      std::find_if(names.begin(), names.end(), [&](const std::string& name) { return latin_look(name) == look; });
   return twin == names.end() ? std::string() : *twin;
 }
 
@@ -157,12 +160,15 @@ void unknown_name(Elaboration& e, const std::string& text, Span span) {
   if (names.size() > 2000) names.resize(2000);
   if (const std::string twin = twin_of(text, names); !twin.empty()) {
     const std::string foreign = foreign_letter(twin).empty() ? foreign_letter(text) : foreign_letter(twin);
-    e.diagnostics.error("E0201", span, fmt::format("`{}` is not declared; a name that looks the same is", text),
-                        foreign.empty() ? "Its letters are of another alphabet." : fmt::format("In one of the two {}.", foreign), "Type both with the same letters.");
+    e.diagnostics.error(
+        "E0201", span, fmt::format("`{}` is not declared; a name that looks the same is", text),
+        foreign.empty() ? "Its letters are of another alphabet." : fmt::format("In one of the two {}.", foreign),
+        "Type both with the same letters.");
     return;
   }
   if (const syntax::Spelling right = syntax::right_spelling(text, names); !right.text.empty()) {
-    e.diagnostics.error("E0201", span, fmt::format("`{}` is not declared", text), right.reason, fmt::format("Write {}.", right.text));
+    e.diagnostics.error("E0201", span, fmt::format("`{}` is not declared", text), right.reason,
+                        fmt::format("Write {}.", right.text));
     return;
   }
   const std::string near = did_you_mean(text, names);

@@ -99,10 +99,9 @@ Expr anonymous_constant(Elaboration& e, const std::string& name, Expr value, con
 Value value_of_number(Elaboration& e, const Expression& x) {
   const std::optional<Rational> r = Rational::parse(x.text);
   if (!r || !std::isfinite(r->to_double()) || (r->to_double() == 0 && !r->is_zero())) {
-    e.diagnostics.error("E0218", x.span,
-                        fmt::format("the number {} is beyond the range of computation", x.text.substr(0, 40)),
-                        "Numbers lie between 1e-308 and 1e308 in size.",
-                        "Choose units in which it is of moderate size.");
+    e.diagnostics.error(
+        "E0218", x.span, fmt::format("the number {} is beyond the range of computation", x.text.substr(0, 40)),
+        "Numbers lie between 1e-308 and 1e308 in size.", "Choose units in which it is of moderate size.");
     return Value::poison();
   }
   Value v = Value::of(e.number(*r), Dimension{});
@@ -156,7 +155,9 @@ Value value_of_quantity(Elaboration& e, const Expression& x, const Place& place)
     const Expr si = part * factor;
     // A component of a vector is named by its own value: (3, 4) [N] is 3 N and 4 N.
     const bool named = constant && (v.is_vector ? part.is_number() && !part.is_zero() : is_positive_number(part));
-    const std::string number = !named ? "" : v.is_vector ? part.number().to_string() : written_number(e, *x.arguments[0]);
+    const std::string number = !named        ? ""
+                               : v.is_vector ? part.number().to_string()
+                                             : written_number(e, *x.arguments[0]);
     part = named ? anonymous_constant(e, fmt::format("{} {}", number, written), si, *unit, written, x.span) : si;
   }
   if (v.is_vector && place.frame) v.parts = rotate(place.frame->rotation, v.parts);

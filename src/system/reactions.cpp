@@ -50,7 +50,8 @@ Dimension dimension_of_reaction(Elaboration& e, const Constraint& c) {
 Declaration* find_named(Elaboration& e, const syntax::Name& name) {
   Declaration* d = e.table.find(name.text);
   if (!d && e.table.is_lost(name.text)) return nullptr;
-  const auto* held = d && d->kind == Kind::Constraint ? std::get_if<syntax::ConstraintStatement>(&d->statement->body) : nullptr;
+  const auto* held =
+      d && d->kind == Kind::Constraint ? std::get_if<syntax::ConstraintStatement>(&d->statement->body) : nullptr;
   if (held && held->integral) {
     e.diagnostics.error("E0226", name.span, fmt::format("`{}` holds an integral and exerts no force", name.text),
                         "Its multiplier is one number of a whole path, which `maup action` finds.", "");

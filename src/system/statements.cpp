@@ -19,8 +19,7 @@ void once(Elaboration& e, std::optional<Span>& first, Span span, const char* wha
     return;
   }
   e.diagnostics.error("E0208", span, fmt::format("{} is given twice", what),
-                      fmt::format("It is already given in line {}.", e.texts.locate(*first).line),
-                      "Keep one of them.");
+                      fmt::format("It is already given in line {}.", e.texts.locate(*first).line), "Keep one of them.");
 }
 
 }  // namespace

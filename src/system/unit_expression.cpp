@@ -7,11 +7,12 @@ namespace {
 
 /// Words for units that the language has as letters.
 constexpr std::pair<std::string_view, std::string_view> kUnitWords[] = {
-    {"sec", "s"},       {"second", "s"},  {"seconds", "s"}, {"meter", "m"},   {"meters", "m"},  {"metre", "m"},    {"metres", "m"},
-    {"kilogram", "kg"}, {"gram", "g"},    {"grams", "g"},   {"newton", "N"},  {"Newton", "N"},  {"joule", "J"},    {"Joule", "J"},
-    {"watt", "W"},      {"Watt", "W"},    {"volt", "V"},    {"Volt", "V"},    {"ampere", "A"},  {"radian", "rad"}, {"radians", "rad"},
-    {"degrees", "deg"}, {"hz", "Hz"},     {"Kg", "kg"},     {"KG", "kg"},     {"Rad", "rad"},   {"hours", "h"},    {"minutes", "min"},
-    {"ms2", "m/s^2"},   {"msec", "ms"},   {"Ohm", "ohm"},   {"mps", "m/s"},   {"rads", "rad"},
+    {"sec", "s"},    {"second", "s"},    {"seconds", "s"},   {"meter", "m"},     {"meters", "m"},  {"metre", "m"},
+    {"metres", "m"}, {"kilogram", "kg"}, {"gram", "g"},      {"grams", "g"},     {"newton", "N"},  {"Newton", "N"},
+    {"joule", "J"},  {"Joule", "J"},     {"watt", "W"},      {"Watt", "W"},      {"volt", "V"},    {"Volt", "V"},
+    {"ampere", "A"}, {"radian", "rad"},  {"radians", "rad"}, {"degrees", "deg"}, {"hz", "Hz"},     {"Kg", "kg"},
+    {"KG", "kg"},    {"Rad", "rad"},     {"hours", "h"},     {"minutes", "min"}, {"ms2", "m/s^2"}, {"msec", "ms"},
+    {"Ohm", "ohm"},  {"mps", "m/s"},     {"rads", "rad"},
 };
 
 /// `N m` for Nm: two or three units without a blank between them; empty if it is not made of them.

@@ -7,7 +7,6 @@
 namespace maupertuis::elaboration {
 namespace {
 
-
 // -------------------------------------------------------------------------------------------- independent variable
 
 const syntax::IndependentStatement* find_independent(const Elaboration& e) {
@@ -28,7 +27,8 @@ std::string word_of_mechanics(const syntax::Statement& s) {
   if (std::get_if<syntax::ForceStatement>(&s.body)) return "force";
   if (std::get_if<syntax::ReactionStatement>(&s.body)) return "reaction";
   if (const auto* energy = std::get_if<syntax::EnergyStatement>(&s.body))
-    if (energy->which != syntax::EnergyStatement::Which::L) return std::string(1, "TVULD"[static_cast<int>(energy->which)]);
+    if (energy->which != syntax::EnergyStatement::Which::L)
+      return std::string(1, "TVULD"[static_cast<int>(energy->which)]);
   return {};
 }
 
@@ -39,11 +39,13 @@ bool allows_mechanics(Elaboration& e) {
     const std::string word = word_of_mechanics(s);
     if (word.empty()) continue;
     const std::string& x = e.system().independent;
-    e.diagnostics.error("E0240", s.span, fmt::format("`{}` stands in a model whose independent variable is {}", word, x),
-                        fmt::format("Masses, forces and energies belong to motions in time; here {} stands in its place, "
-                                    "which is no time.",
-                                    x),
-                        fmt::format("Give the integrand of the action as `L = …`, or write `independent {} : [s]` if it is a time.", x));
+    e.diagnostics.error(
+        "E0240", s.span, fmt::format("`{}` stands in a model whose independent variable is {}", word, x),
+        fmt::format("Masses, forces and energies belong to motions in time; here {} stands in its place, "
+                    "which is no time.",
+                    x),
+        fmt::format("Give the integrand of the action as `L = …`, or write `independent {} : [s]` if it is a time.",
+                    x));
     return false;
   }
   return true;
@@ -113,7 +115,8 @@ bool check_count(Elaboration& e, std::size_t count, Span span, const char* what)
   const std::size_t n = e.system().coordinates.size();
   if (count == n) return true;
   e.diagnostics.error("E0241", span,
-                      fmt::format("{} has {} value{}, and the model {} coordinate{}", what, count, count == 1 ? "" : "s", n, n == 1 ? "" : "s"),
+                      fmt::format("{} has {} value{}, and the model {} coordinate{}", what, count,
+                                  count == 1 ? "" : "s", n, n == 1 ? "" : "s"),
                       fmt::format("A path gives every coordinate its value, in the order of their declaration: {}.",
                                   names_of_coordinates(e.system())),
                       "Write `free` at the end of a path where a coordinate may have any value.");
@@ -179,10 +182,12 @@ void elaborate_integral_constraint(Elaboration& e, const syntax::ConstraintState
                           : constant_of(e, *s.right, expected, "the integral of the left side");
   if (!integrand.poisoned && integrand.order < 0) {
     e.diagnostics.error("E0423", span, "this constraint contains no coordinate",
-                        "Its integral is the same for every path.", "Write an integrand of coordinates or their derivatives.");
+                        "Its integral is the same for every path.",
+                        "Write an integrand of coordinates or their derivatives.");
     return;
   }
-  if (integrand.poisoned || value.poisoned || refuse_acceleration(e, integrand, *s.left, "an integral constraint")) return;
+  if (integrand.poisoned || value.poisoned || refuse_acceleration(e, integrand, *s.left, "an integral constraint"))
+    return;
   IntegralConstraint c;
   c.name = s.name ? s.name->text : "";
   c.integrand = integrand.scalar();

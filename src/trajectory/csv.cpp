@@ -23,8 +23,10 @@ std::string heading(const Trajectory::Column& column) {
 }
 
 void append_number(std::string& out, double value) {
-  if (std::isfinite(value)) fmt::format_to(std::back_inserter(out), "{:.17g}", value);
-  else out += std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
+  if (std::isfinite(value))
+    fmt::format_to(std::back_inserter(out), "{:.17g}", value);
+  else
+    out += std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
 }
 
 }  // namespace

@@ -12,18 +12,25 @@ namespace {
 std::string quoted(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
-    if (c == '"' || c == '\\') (result += '\\') += c;
-    else if (c == '\n') result += "\\n";
-    else if (static_cast<unsigned char>(c) < 0x20) result += fmt::format("\\u{:04x}", static_cast<int>(c));
-    else result += c;
+    if (c == '"' || c == '\\')
+      (result += '\\') += c;
+    else if (c == '\n')
+      result += "\\n";
+    else if (static_cast<unsigned char>(c) < 0x20)
+      result += fmt::format("\\u{:04x}", static_cast<int>(c));
+    else
+      result += c;
   }
   return result + '"';
 }
 
 void append_number(std::string& out, double value) {
-  if (!std::isfinite(value)) out += "null";
-  else if (value == 0) out += std::signbit(value) ? "-0.0" : "0";  // "-0" would be read as the integer 0
-  else fmt::format_to(std::back_inserter(out), "{:.17g}", value);
+  if (!std::isfinite(value))
+    out += "null";
+  else if (value == 0)
+    out += std::signbit(value) ? "-0.0" : "0";  // "-0" would be read as the integer 0
+  else
+    fmt::format_to(std::back_inserter(out), "{:.17g}", value);
 }
 
 }  // namespace
@@ -35,7 +42,9 @@ std::string to_json(const Trajectory& trajectory) {
     out += fmt::format("{}{}: {}", separator, quoted(key), quoted(value));
     separator = ", ";
   }
-  const auto column_text = [](const Trajectory::Column& c) { return fmt::format("{{\"name\": {}, \"unit\": {}}}", quoted(c.name), quoted(c.unit)); };
+  const auto column_text = [](const Trajectory::Column& c) {
+    return fmt::format("{{\"name\": {}, \"unit\": {}}}", quoted(c.name), quoted(c.unit));
+  };
   out += "},\n\"columns\": [" + column_text(trajectory.independent);
   for (const auto& column : trajectory.columns) out += ", " + column_text(column);
   out += "],\n\"rows\": [";

@@ -39,10 +39,13 @@ Cut cut(double value, int place) {
   constexpr int smallest = -5, largest = 15;  // beyond, a power of ten reads better
   const int leading = value == 0 ? place - 1 : leading_exponent(std::abs(value));
   const int first = std::max(place, leading);
-  return place <= 0 && first >= smallest && first <= largest ? in_fixed_notation(value, place) : in_powers_of_ten(value, leading, place);
+  return place <= 0 && first >= smallest && first <= largest ? in_fixed_notation(value, place)
+                                                             : in_powers_of_ten(value, leading, place);
 }
 
-double read(const std::string& digits, int exponent) { return std::strtod(fmt::format("{}e{}", digits, exponent).c_str(), nullptr); }
+double read(const std::string& digits, int exponent) {
+  return std::strtod(fmt::format("{}e{}", digits, exponent).c_str(), nullptr);
+}
 
 }  // namespace
 
@@ -55,7 +58,8 @@ std::string with_uncertainty(double value, double error) {
     const double off = error + std::abs(read(shown.digits, shown.exponent) - value);
     const double units = std::max(1.0, std::ceil(off / read("1", place) * (1 - 1e-9)));
     if (units > 9) continue;  // it takes two digits: the next place does with one
-    return fmt::format("{}({:.0f}){}", shown.digits, units, shown.exponent == 0 ? "" : fmt::format("e{}", shown.exponent));
+    return fmt::format("{}({:.0f}){}", shown.digits, units,
+                       shown.exponent == 0 ? "" : fmt::format("e{}", shown.exponent));
   }
 }
 

@@ -18,7 +18,7 @@ namespace maupertuis {
 namespace {
 
 struct Target {
-  std::string path;      // where the file is, links followed
+  std::string path;  // where the file is, links followed
   std::string folder;
   bool exists = false;
   struct stat status {};
@@ -39,17 +39,26 @@ Target resolve(const std::string& path) {
 // The reason in words of someone who saves a file.
 std::string reason_of(int error, const Target& target) {
   switch (error) {
-    case ENOENT: return fmt::format("there is no folder {}", target.folder);
-    case ENOTDIR: return fmt::format("{} is not a folder", target.folder);
-    case EISDIR: return "it is a folder";
+    case ENOENT:
+      return fmt::format("there is no folder {}", target.folder);
+    case ENOTDIR:
+      return fmt::format("{} is not a folder", target.folder);
+    case EISDIR:
+      return "it is a folder";
     case EACCES:
-    case EPERM: return fmt::format("no permission to write in the folder {}", target.folder);
-    case EROFS: return "the disk is read-only";
+    case EPERM:
+      return fmt::format("no permission to write in the folder {}", target.folder);
+    case EROFS:
+      return "the disk is read-only";
     case ENOSPC:
-    case EDQUOT: return "the disk is full";
-    case EFBIG: return "the file would be larger than allowed";
-    case ENAMETOOLONG: return "the name is too long";
-    default: return std::strerror(error);
+    case EDQUOT:
+      return "the disk is full";
+    case EFBIG:
+      return "the file would be larger than allowed";
+    case ENAMETOOLONG:
+      return "the name is too long";
+    default:
+      return std::strerror(error);
   }
 }
 
@@ -114,8 +123,10 @@ int replace(const Target& target, const std::string& content) {
   if (error == 0 && ::fsync(descriptor) != 0 && errno != EINVAL) error = errno;
   if (::close(descriptor) != 0 && error == 0) error = errno;
   if (error == 0 && ::rename(name.c_str(), target.path.c_str()) != 0) error = errno;
-  if (error != 0) ::unlink(name.c_str());
-  else sync_folder(target.folder);
+  if (error != 0)
+    ::unlink(name.c_str());
+  else
+    sync_folder(target.folder);
   return error;
 }
 

@@ -93,8 +93,9 @@ std::string factor(std::string_view unit, int numerator, int denominator) {
 std::string in_base_units(Dimension dimension) {
   if (!dimension.is_one()) dimension.exponents[Dimension::Angle] = {};
   constexpr std::pair<Dimension::Base, std::string_view> order[] = {
-      {Dimension::Mass, "kg"}, {Dimension::Length, "m"}, {Dimension::Current, "A"}, {Dimension::Temperature, "K"}, {Dimension::Amount, "mol"},
-      {Dimension::Luminosity, "cd"}, {Dimension::Angle, "rad"}, {Dimension::Time, "s"}};
+      {Dimension::Mass, "kg"},       {Dimension::Length, "m"},   {Dimension::Current, "A"},
+      {Dimension::Temperature, "K"}, {Dimension::Amount, "mol"}, {Dimension::Luminosity, "cd"},
+      {Dimension::Angle, "rad"},     {Dimension::Time, "s"}};
   std::string above, below;
   int factors_below = 0;
   for (const auto& [base, unit] : order) {

@@ -32,7 +32,8 @@ Unit unit_of(const UnitEntry& entry) {
 
 // Words that look alike: the micro sign and μ, the ohm sign and Ω, the ångström sign and Å.
 std::string canonical(std::string_view word) {
-  constexpr std::pair<std::string_view, std::string_view> alike[] = {{"\u00B5", "μ"}, {"\u2126", "Ω"}, {"\u212B", "\u00C5"}};
+  constexpr std::pair<std::string_view, std::string_view> alike[] = {
+      {"\u00B5", "μ"}, {"\u2126", "Ω"}, {"\u212B", "\u00C5"}};
   std::string result(word);
   for (const auto& [from, to] : alike) {
     const std::size_t at = result.find(from);
@@ -43,7 +44,8 @@ std::string canonical(std::string_view word) {
 
 const UnitEntry* find_entry(std::string_view word) {
   const auto table = unit_table();
-  const auto found = std::find_if(table.begin(), table.end(), [&](const UnitEntry& entry) { return entry.word == word; });
+  const auto found =
+      std::find_if(table.begin(), table.end(), [&](const UnitEntry& entry) { return entry.word == word; });
   return found == table.end() ? nullptr : &*found;
 }
 
@@ -65,7 +67,8 @@ std::optional<Unit> find_unit(std::string_view written) {
 
 const AmbiguousUnit* find_ambiguous_unit(std::string_view word) {
   const auto table = ambiguous_units();
-  const auto found = std::find_if(table.begin(), table.end(), [&](const AmbiguousUnit& unit) { return unit.word == word; });
+  const auto found =
+      std::find_if(table.begin(), table.end(), [&](const AmbiguousUnit& unit) { return unit.word == word; });
   return found == table.end() ? nullptr : &*found;
 }
 

@@ -12,14 +12,14 @@ namespace maupertuis {
 struct UnitEntry {
   std::string_view word;
   std::array<std::int8_t, 8> exponents;
-  std::string_view factor;   // "a" or "a/b", a and b decimal numbers
+  std::string_view factor;  // "a" or "a/b", a and b decimal numbers
   int pi_power = 0;
-  bool prefixes = false;     // an SI unit: takes SI prefixes
+  bool prefixes = false;  // an SI unit: takes SI prefixes
 };
 
 struct PrefixEntry {
   std::string_view word;
-  int power;                 // of ten
+  int power;  // of ten
 };
 
 std::span<const AmbiguousUnit> ambiguous_units();

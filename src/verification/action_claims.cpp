@@ -40,7 +40,9 @@ const StationaryPath* ActionClaims::path(int number, ExpectationResult& result) 
   }
   const std::size_t wanted = number > 0 ? static_cast<std::size_t>(number) : 1;
   if (found_ && wanted <= found_->paths.size()) return &found_->paths[wanted - 1];
-  result.actual = found_ ? fmt::format("{} stationary path{}", found_->paths.size(), found_->paths.size() == 1 ? "" : "s") : "no stationary path";
+  result.actual = found_
+                      ? fmt::format("{} stationary path{}", found_->paths.size(), found_->paths.size() == 1 ? "" : "s")
+                      : "no stationary path";
   result.message = found_ ? "There is no such path; " + found_->bound : trouble_;
   return nullptr;
 }

@@ -4,8 +4,9 @@
 
 namespace maupertuis {
 
-/// `expect action`, `expect action of (…)`, `expect index` and `expect path … at`: about the stationary path with the smallest action
-/// between the ends of the model, about number 2 by the action, or about a path that is given. The search is done at first use, for all lines of a model.
+/// `expect action`, `expect action of (…)`, `expect index` and `expect path … at`: about the stationary path with the
+/// smallest action between the ends of the model, about number 2 by the action, or about a path that is given. The
+/// search is done at first use, for all lines of a model.
 class ActionClaims {
  public:
   ActionClaims(const Model& model, const EquationsOfMotion& equations, const std::atomic<bool>* interrupt)
@@ -23,7 +24,8 @@ class ActionClaims {
   const StationaryPath* path(int number, ExpectationResult& result);
   /// "; of 3 paths, number 2 by the action"
   std::string among_others(int number) const;
-  void judge(const expectation::Number& expected, double actual, const std::string& ground, ExpectationResult& result) const;
+  void judge(const expectation::Number& expected, double actual, const std::string& ground,
+             ExpectationResult& result) const;
 
   const Model& model_;
   const EquationsOfMotion& equations_;

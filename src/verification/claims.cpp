@@ -28,7 +28,8 @@ bool proportional(Expr a, Expr b) {
 bool follows_from(Expr difference, const EquationsOfMotion& equations, const ExprVector& residual) {
   if (has_acceleration(difference)) {
     ExprVector balance = residual;
-    for (std::size_t i = 0; i < equations.constraint_forces.size(); ++i) balance[i] = balance[i] - equations.constraint_forces[i];
+    for (std::size_t i = 0; i < equations.constraint_forces.size(); ++i)
+      balance[i] = balance[i] - equations.constraint_forces[i];
     const AlongMotion mistaken(equations, balance);
     return mistaken.solvable() && mistaken.vanishes(difference).verdict == Verdict::Zero;
   }

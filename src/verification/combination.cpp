@@ -13,12 +13,14 @@ std::optional<Rational> simple_fraction(double x) {
   constexpr int largest_denominator = 12;
   constexpr double near = 1e-7;
   for (int q = 1; q <= largest_denominator; ++q)
-    if (const double p = std::round(x * q); std::abs(x * q - p) < near * q && std::abs(p) < 1000) return Rational(static_cast<int>(p), q);
+    if (const double p = std::round(x * q); std::abs(x * q - p) < near * q && std::abs(p) < 1000)
+      return Rational(static_cast<int>(p), q);
   return std::nullopt;
 }
 
 /// Solves Aᵀ A x = Aᵀ b by elimination with pivots; nothing where columns depend on each other.
-std::optional<std::vector<double>> least_squares(const std::vector<std::vector<double>>& a, const std::vector<double>& b) {
+std::optional<std::vector<double>> least_squares(const std::vector<std::vector<double>>& a,
+                                                 const std::vector<double>& b) {
   const std::size_t n = a.front().size();
   std::vector<std::vector<double>> m(n, std::vector<double>(n + 1, 0.0));
   for (std::size_t r = 0; r < a.size(); ++r)
@@ -45,7 +47,9 @@ std::optional<std::vector<double>> least_squares(const std::vector<std::vector<d
 
 }  // namespace
 
-Expr RandomStates::settled(Expr e) const { return expand_time_derivatives(in_terms_of_motion(system_, {&e, 1}).front()); }
+Expr RandomStates::settled(Expr e) const {
+  return expand_time_derivatives(in_terms_of_motion(system_, {&e, 1}).front());
+}
 
 /// [rows × roots]; states at which something has no value are left out, after some tries all of them.
 std::vector<std::vector<double>> RandomStates::values(const std::vector<Expr>& roots, std::size_t rows) {

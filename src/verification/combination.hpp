@@ -25,7 +25,7 @@ class RandomStates {
   std::vector<std::vector<double>> values(const std::vector<Expr>& roots, std::size_t rows);
 
   const MechanicalSystem& system_;
-  std::mt19937_64 random_{20 * 7 * 1788};   // Mécanique analytique; any other would do
+  std::mt19937_64 random_{20 * 7 * 1788};  // Mécanique analytique; any other would do
 };
 
 }  // namespace maupertuis

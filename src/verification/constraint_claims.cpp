@@ -18,7 +18,8 @@ void decide_freedoms(double expected, const ConstraintAnalysis& found, Expectati
     result.message += fmt::format(" Those of the velocities at an instant are {}.", found.instantaneous_freedoms);
 }
 
-void decide_class(const expectation::ConstraintClass& e, const MechanicalSystem& system, const ConstraintAnalysis& found, ExpectationResult& result) {
+void decide_class(const expectation::ConstraintClass& e, const MechanicalSystem& system,
+                  const ConstraintAnalysis& found, ExpectationResult& result) {
   result.expected = e.word;
   const Constraint* constraint = system.find_constraint(e.constraint);
   if (!constraint || !found.clashing.empty()) {
@@ -34,10 +35,16 @@ void decide_class(const expectation::ConstraintClass& e, const MechanicalSystem&
   }
   result.actual = words(is);
   result.passed = e.word == word(is) || (e.word == "holonomic" && is == ConstraintClass::Integrable);
-  if (is == ConstraintClass::Nonlinear) result.message = "Constraints that are not linear in the velocities are not classified.";
-  else if (!result.passed && is == ConstraintClass::Holonomic) result.message = "It relates the coordinates themselves.";
-  else if (!result.passed && is == ConstraintClass::Integrable) result.message = "Frobenius: it keeps the coordinates on a surface.";
-  else if (!result.passed) result.message = "Frobenius: moving to and fro with the velocities that the constraints allow breaks every F(q, t) = const that it could mean.";
+  if (is == ConstraintClass::Nonlinear)
+    result.message = "Constraints that are not linear in the velocities are not classified.";
+  else if (!result.passed && is == ConstraintClass::Holonomic)
+    result.message = "It relates the coordinates themselves.";
+  else if (!result.passed && is == ConstraintClass::Integrable)
+    result.message = "Frobenius: it keeps the coordinates on a surface.";
+  else if (!result.passed)
+    result.message =
+        "Frobenius: moving to and fro with the velocities that the constraints allow breaks every F(q, t) = const that "
+        "it could mean.";
 }
 
 }  // namespace maupertuis

@@ -34,7 +34,8 @@ class Critical {
     result.expected = sentence(value_);
     result.tolerance = tolerance_text(e_.critical.tolerance, e_.critical.unit, system_);
     const bool inside = holds(tolerance_), outside = holds(-tolerance_);
-    const std::optional<double> change = inside == outside ? change_elsewhere(inside) : std::optional(bisected(tolerance_, -tolerance_));
+    const std::optional<double> change =
+        inside == outside ? change_elsewhere(inside) : std::optional(bisected(tolerance_, -tolerance_));
     if (!change) {
       result.actual = inside ? fmt::format("{} on both sides", word()) : fmt::format("not {} on either side", word());
       result.message = fmt::format("Looked at {} … {}.", shown(-reach_), shown(reach_));
@@ -51,7 +52,8 @@ class Critical {
         return;
       }
     result.passed = true;
-    result.message = fmt::format("changes at {}; the same verdict at {} values as far as {}", shown(*change), samples, shown(reach_));
+    result.message = fmt::format("changes at {}; the same verdict at {} values as far as {}", shown(*change), samples,
+                                 shown(reach_));
   }
 
  private:
@@ -105,7 +107,9 @@ class Critical {
   std::string number(double value) const {
     return fmt::format("{:.10g}{}", value / e_.critical.unit.factor, unit_after(e_.critical.unit));
   }
-  std::string shown(double distance) const { return fmt::format("{} = {}", system_.parameters[e_.parameter].name, number(value_ + sign_ * distance)); }
+  std::string shown(double distance) const {
+    return fmt::format("{} = {}", system_.parameters[e_.parameter].name, number(value_ + sign_ * distance));
+  }
   std::string sentence(double critical) const {
     return fmt::format("{} for {} {} {}", word(), system_.parameters[e_.parameter].name, e_.above ? ">" : "<",
                        number(critical));

@@ -16,7 +16,8 @@ NumberFormat format_of(const Model& model) { return model.experiment.precision.v
 bool ExtendedClaims::takes(const expectation::ValueAt& e) const {
   if (format_of(model_) == NumberFormat::Double) return false;
   const auto& coordinates = model_.system.coordinates;
-  return std::any_of(coordinates.begin(), coordinates.end(), [&](const Coordinate& c) { return c.q == e.subject || c.velocity == e.subject; });
+  return std::any_of(coordinates.begin(), coordinates.end(),
+                     [&](const Coordinate& c) { return c.q == e.subject || c.velocity == e.subject; });
 }
 
 /// As written where it is a number: 0.1 is a tenth. What π or a root stands in is known to 16 digits.
@@ -31,15 +32,17 @@ void ExtendedClaims::decide(const std::vector<Line>& lines, std::vector<Expectat
                             Diagnostics& diagnostics) const {
   ExtendedSimulationOptions options;
   options.precision = format_of(model_) == NumberFormat::Quad ? Precision::Quad : Precision::Digits100;
-  options.duration = Rational(0);   // as far as the times asked for
+  options.duration = Rational(0);  // as far as the times asked for
   options.interrupt = interrupt_;
   for (const Line& line : lines)
     options.at.push_back(exact(line.expectation->time ? line.expectation->time : model_.experiment.start_time));
   const auto run = simulate_extended(model_, equations_, options, diagnostics);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     ExpectationResult& result = results[lines[i].index];
-    if (!run) result.message = "The run could not start.";
-    else judge(*lines[i].expectation, run->at[i], run->reason, result);
+    if (!run)
+      result.message = "The run could not start.";
+    else
+      judge(*lines[i].expectation, run->at[i], run->reason, result);
   }
 }
 
@@ -67,7 +70,8 @@ void ExtendedClaims::judge(const expectation::ValueAt& e, const ExtendedState& s
   result.expected = fmt::format("{:.17g}{}", expected.to_double() / unit.factor, unit_after(unit));
   result.tolerance = tolerance_text(tolerance, unit, model_.system);
   if (!actual || !difference || allowed < *difference) {
-    result.message = fmt::format("Two runs of different accuracy differ by {}, more than the tolerance.", number.difference);
+    result.message =
+        fmt::format("Two runs of different accuracy differ by {}, more than the tolerance.", number.difference);
     return;
   }
   const Rational error = abs(*actual - expected);

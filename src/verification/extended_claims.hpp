@@ -6,12 +6,13 @@
 
 namespace maupertuis {
 
-/// Expectations of a model with `precision quad` or `precision 100` that all digits can decide: coordinates and velocities at times.
+/// Expectations of a model with `precision quad` or `precision 100` that all digits can decide: coordinates and
+/// velocities at times.
 class ExtendedClaims {
  public:
   struct Line {
     const expectation::ValueAt* expectation;
-    std::size_t index;                // of its result
+    std::size_t index;  // of its result
   };
 
   ExtendedClaims(const Model& model, const EquationsOfMotion& equations, const std::atomic<bool>* interrupt)
@@ -22,7 +23,8 @@ class ExtendedClaims {
   void decide(const std::vector<Line>& lines, std::vector<ExpectationResult>& results, Diagnostics& diagnostics) const;
 
  private:
-  void judge(const expectation::ValueAt& expectation, const ExtendedState& state, const std::string& reason, ExpectationResult& result) const;
+  void judge(const expectation::ValueAt& expectation, const ExtendedState& state, const std::string& reason,
+             ExpectationResult& result) const;
   const AgreedNumber& value_in(const ExtendedState& state, Expr subject) const;
   Rational exact(Expr e) const;
 

@@ -28,7 +28,8 @@ namespace {
 
 std::string complex_text(Complex z, const expectation::DisplayUnit& unit) {
   const Complex shown = z / unit.factor;
-  return z.imag() == 0 ? fmt::format("{:.17g}", shown.real()) : fmt::format("({:.17g}, {:.17g})", shown.real(), shown.imag());
+  return z.imag() == 0 ? fmt::format("{:.17g}", shown.real())
+                       : fmt::format("({:.17g}, {:.17g})", shown.real(), shown.imag());
 }
 
 /// Lower halves of pairs are left out.
@@ -102,7 +103,9 @@ void judge_spectrum(const expectation::Spectrum& e, const MechanicalSystem& syst
   result.expected = spectrum_text(expected, e.unit);
   result.tolerance = tolerance_text(e.tolerance, e.unit, system);
   if (actual.size() != expected.size()) {
-    result.message = fmt::format("{} values are expected, a complex one for itself and its conjugate, and there are {}.", expected.size(), actual.size());
+    result.message =
+        fmt::format("{} values are expected, a complex one for itself and its conjugate, and there are {}.",
+                    expected.size(), actual.size());
     return;
   }
   const std::vector<std::size_t> partner = partners(actual, expected);

@@ -10,8 +10,8 @@ namespace maupertuis {
 /// What an expression of parameters is, in SI; `otherwise` for an empty handle.
 double number_of(const MechanicalSystem& system, Expr e, double otherwise = 0);
 
-/// The largest difference that passes where `size` is expected: the tolerance, or that part of |size|. Without a tolerance
-/// the digits as written count: 1e-9 of the size.
+/// The largest difference that passes where `size` is expected: the tolerance, or that part of |size|. Without a
+/// tolerance the digits as written count: 1e-9 of the size.
 double allowed_difference(const expectation::Tolerance& tolerance, const MechanicalSystem& system, double size);
 
 /// "rel 1e-09", "± 1e-09 rad": what is shown beside the expected value.

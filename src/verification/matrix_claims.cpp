@@ -18,12 +18,18 @@ std::string name_of(const expectation::MatrixVariable& v, const MechanicalSystem
 
 const RealMatrix& matrix_of(char letter, const Linearization& l) {
   switch (letter) {
-    case 'A': return l.a;
-    case 'B': return l.b;
-    case 'C': return l.damping;
-    case 'G': return l.gyroscopic;
-    case 'K': return l.stiffness;
-    default: return l.circulatory;
+    case 'A':
+      return l.a;
+    case 'B':
+      return l.b;
+    case 'C':
+      return l.damping;
+    case 'G':
+      return l.gyroscopic;
+    case 'K':
+      return l.stiffness;
+    default:
+      return l.circulatory;
   }
 }
 
@@ -39,13 +45,15 @@ std::optional<std::size_t> place_of(const expectation::MatrixVariable& v, const 
 std::string independent_names(const Linearization& l, const MechanicalSystem& system) {
   std::string out;
   for (const std::size_t i : l.independent) out += (out.empty() ? "" : ", ") + system.coordinates[i].name;
-  for (const std::size_t i : l.independent_velocities) out += (out.empty() ? "" : ", ") + system.coordinates[i].name + "'";
+  for (const std::size_t i : l.independent_velocities)
+    out += (out.empty() ? "" : ", ") + system.coordinates[i].name + "'";
   return out;
 }
 
 }  // namespace
 
-void decide_mass_matrix(const expectation::Matrix& e, const EquationsOfMotion& equations, const MotionState& start, ExpectationResult& result) {
+void decide_mass_matrix(const expectation::Matrix& e, const EquationsOfMotion& equations, const MotionState& start,
+                        ExpectationResult& result) {
   const MechanicalSystem& system = *equations.system;
   const ExprMatrix m = mass_matrix(equations);
   Bindings at = parameter_bindings(system);
@@ -67,12 +75,14 @@ void decide_mass_matrix(const expectation::Matrix& e, const EquationsOfMotion& e
   judge_entries(e, system, actual, result);
 }
 
-void decide_linearization(const expectation::Matrix& e, const MechanicalSystem& system, const Linearization& l, ExpectationResult& result) {
+void decide_linearization(const expectation::Matrix& e, const MechanicalSystem& system, const Linearization& l,
+                          ExpectationResult& result) {
   const char letter = e.letter;
   result.expected = fmt::format("{} as written", letter);
   if (letter != 'A' && letter != 'B' && !l.second_order()) {
     result.actual = "not defined";
-    result.message = fmt::format("Constraints between velocities leave no second-order form, and no {}; A and B there are.", letter);
+    result.message =
+        fmt::format("Constraints between velocities leave no second-order form, and no {}; A and B there are.", letter);
     return;
   }
   const RealMatrix& matrix = matrix_of(letter, l);
@@ -82,7 +92,8 @@ void decide_linearization(const expectation::Matrix& e, const MechanicalSystem& 
       const auto i = place_of(row, l), j = place_of(column, l);
       if (!i || !j) {
         result.actual = "not defined";
-        result.message = fmt::format("{} depends on the others here; independent are {}.", name_of(i ? column : row, system), independent_names(l, system));
+        result.message = fmt::format("{} depends on the others here; independent are {}.",
+                                     name_of(i ? column : row, system), independent_names(l, system));
         return;
       }
       actual.push_back(matrix.at(*i, *j));

@@ -6,8 +6,9 @@
 
 namespace maupertuis {
 
-/// expect multipliers, expect trace, expect period: of the periodic motion next to the model's start, as `maup orbits --floquet`
-/// finds it; `over` gives a period, or nearly one, which is looked for otherwise. One search for each such time.
+/// expect multipliers, expect trace, expect period: of the periodic motion next to the model's start, as `maup orbits
+/// --floquet` finds it; `over` gives a period, or nearly one, which is looked for otherwise. One search for each such
+/// time.
 class OrbitClaims {
  public:
   OrbitClaims(const Model& model, const EquationsOfMotion& equations, const std::atomic<bool>* interrupt)
@@ -28,7 +29,7 @@ class OrbitClaims {
   const Model& model_;
   const EquationsOfMotion& equations_;
   const std::atomic<bool>* interrupt_;
-  std::map<double, Answer> answers_;   // by the period that was given; 0: none
+  std::map<double, Answer> answers_;  // by the period that was given; 0: none
 };
 
 }  // namespace maupertuis

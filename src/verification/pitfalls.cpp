@@ -22,19 +22,23 @@ class MistakenDerivations {
   std::vector<Pitfall> all() {
     const auto& d = equations_.dissipative_terms;
     const auto& forces = equations_.generalized_forces;
-    const std::vector<TermOrigin> of_kinetic{TermOrigin::Inertia, TermOrigin::Coupling, TermOrigin::Velocity, TermOrigin::PrescribedMotion};
-    add("the term ∂T/∂q is missing: T depends on the coordinates as well as on the velocities", without(gradient(kinetic_, q_), +1),
-        {TermOrigin::Velocity, TermOrigin::PrescribedMotion});
-    add("a part of the total time derivative is missing: d/dt ∂L/∂q' acts through q as well as through q'", without(transport(), -1),
-        {TermOrigin::Velocity});
+    const std::vector<TermOrigin> of_kinetic{TermOrigin::Inertia, TermOrigin::Coupling, TermOrigin::Velocity,
+                                             TermOrigin::PrescribedMotion};
+    add("the term ∂T/∂q is missing: T depends on the coordinates as well as on the velocities",
+        without(gradient(kinetic_, q_), +1), {TermOrigin::Velocity, TermOrigin::PrescribedMotion});
+    add("a part of the total time derivative is missing: d/dt ∂L/∂q' acts through q as well as through q'",
+        without(transport(), -1), {TermOrigin::Velocity});
     add("V has the wrong sign: L is T − V", lagrangian_with(kinetic_, -potential_), {TermOrigin::Potential});
-    add("T has no factor ½: the kinetic energy of a particle is ½ m v²", lagrangian_with(kinetic_ * Rational(2), potential_), of_kinetic);
+    add("T has no factor ½: the kinetic energy of a particle is ½ m v²",
+        lagrangian_with(kinetic_ * Rational(2), potential_), of_kinetic);
     add("T has a factor ½ too many", lagrangian_with(kinetic_ / Rational(2), potential_), of_kinetic);
-    add("V has a factor 2 too many: the energy of a spring is ½ k x²", lagrangian_with(kinetic_, potential_ * Rational(2)), {TermOrigin::Potential});
+    add("V has a factor 2 too many: the energy of a spring is ½ k x²",
+        lagrangian_with(kinetic_, potential_ * Rational(2)), {TermOrigin::Potential});
     add("V has a factor ½ too many", lagrangian_with(kinetic_, potential_ / Rational(2)), {TermOrigin::Potential});
     if (any(d)) {
       add("the dissipation was left out: +∂D/∂q' belongs to the left side", without(d, -1), {TermOrigin::Dissipation});
-      add("the dissipation has the wrong sign: it enters as +∂D/∂q' on the left side", without(d, -2), {TermOrigin::Dissipation});
+      add("the dissipation has the wrong sign: it enters as +∂D/∂q' on the left side", without(d, -2),
+          {TermOrigin::Dissipation});
       add("D has no factor ½: linear damping c is D = ½ c q'²", without(d, +1), {TermOrigin::Dissipation});
       add("D has a factor ½ too many", without(halves(d), -1), {TermOrigin::Dissipation});
     }
@@ -42,7 +46,8 @@ class MistakenDerivations {
       add("a force was left out: Q belongs to the right side", without(forces, +1), {TermOrigin::Force});
       add("a force has the wrong sign: Q stands on the right side", without(forces, +2), {TermOrigin::Force});
     }
-    add("a velocity was written as its coordinate: v² of a pendulum is (l θ')², not (l θ)²", coordinates_for_velocities());
+    add("a velocity was written as its coordinate: v² of a pendulum is (l θ')², not (l θ)²",
+        coordinates_for_velocities());
     for (const Coordinate& c : system_.coordinates) add_momentum_put_into_lagrangian(c);
     return std::move(pitfalls_);
   }
@@ -118,7 +123,8 @@ class MistakenDerivations {
     for (Expr& row : residual) row = substitute(expand_time_derivatives(row), {{p, momentum}});
     residual[index] = equations_.residual[index];
     add("the conserved momentum of " + cyclic.name +
-            " was put into L before the derivatives were taken: that changes the sign of its effective potential (the Routhian does it right)",
+            " was put into L before the derivatives were taken: that changes the sign of its effective potential (the "
+            "Routhian does it right)",
         std::move(residual));
   }
 

@@ -8,8 +8,8 @@ namespace maupertuis {
 
 /// Equations that a known mistake would give, to compare a false claim with.
 struct Pitfall {
-  std::string sentence;   // "the term ∂T/∂q is missing: T depends on the coordinates as well"
-  ExprVector residual;    // [n] may be free of q̈
+  std::string sentence;           // "the term ∂T/∂q is missing: T depends on the coordinates as well"
+  ExprVector residual;            // [n] may be free of q̈
   std::vector<TermOrigin> about;  // the terms that it changes; empty: any
 };
 

@@ -29,17 +29,19 @@ struct Finding {
   RowFactor of;
   std::string difference, sentence;
   std::vector<TermOrigin> origins;
-  std::size_t cost = 0;        // terms that differ, with a little for a factor that is no number: the smaller one is believed
+  std::size_t cost = 0;  // terms that differ, with a little for a factor that is no number: the smaller one is believed
 };
 
 class Resembler {
  public:
   Resembler(Expr difference, const EquationsOfMotion& equations)
-      : equations_(equations), system_(*equations.system), states_(equations),
+      : equations_(equations),
+        system_(*equations.system),
+        states_(equations),
         claim_(expand_time_derivatives(with_reactions(equations, {&difference, 1}).front())) {}
 
   std::optional<Resemblance> find() {
-    constexpr std::size_t most_coordinates = 10;   // beyond, no row is read term by term
+    constexpr std::size_t most_coordinates = 10;  // beyond, no row is read term by term
     if (system_.coordinates.size() > most_coordinates || !linear_in_accelerations()) return std::nullopt;
     mass_ = mass_matrix(equations_);
     std::optional<Finding> best;
@@ -48,7 +50,8 @@ class Resembler {
       const std::vector<RowTerm>& terms = terms_of(row);
       if (terms.empty()) continue;
       for (const Expr& factor : factors(row))
-        if (auto found = explain({row, factor}, terms); found && (!best || found->cost < best->cost)) best = std::move(found);
+        if (auto found = explain({row, factor}, terms); found && (!best || found->cost < best->cost))
+          best = std::move(found);
     }
     if (!best) best = unexplained();
     return best ? std::optional(told(*best)) : std::nullopt;
@@ -77,7 +80,8 @@ class Resembler {
     return std::all_of(slopes_.begin(), slopes_.end(), [](const Expr& e) { return e.is_zero(); });
   }
 
-  /// A row whose accelerations do not meet those of the claim is not what it resembles; without any, small systems have few rows.
+  /// A row whose accelerations do not meet those of the claim is not what it resembles; without any, small systems have
+  /// few rows.
   bool worth_a_look(std::size_t row) const {
     constexpr std::size_t few = 6;
     if (no_accelerations()) return system_.coordinates.size() <= few;
@@ -102,7 +106,9 @@ class Resembler {
 
   static bool constant_in_motion(Expr e) {
     for (const Expr& s : symbols_of({&e, 1}))
-      if (s.role() == Role::Coordinate || s.role() == Role::Time || s.role() == Role::Input || s.role() == Role::Multiplier) return false;
+      if (s.role() == Role::Coordinate || s.role() == Role::Time || s.role() == Role::Input ||
+          s.role() == Role::Multiplier)
+        return false;
     return true;
   }
 
@@ -112,10 +118,13 @@ class Resembler {
     if (constant_in_motion(ratio)) return ratio;
     const Expr plain = states_.settled(a / b);
     for (const Expr& s : symbols_of({&plain, 1}))
-      if ((s.role() == Role::Coordinate || s.role() == Role::Time || s.role() == Role::Multiplier) && !vanishes(differentiate(plain, s))) return std::nullopt;
-    ExprMap somewhere;   // it is the same everywhere: where sines and cosines are known numbers
+      if ((s.role() == Role::Coordinate || s.role() == Role::Time || s.role() == Role::Multiplier) &&
+          !vanishes(differentiate(plain, s)))
+        return std::nullopt;
+    ExprMap somewhere;  // it is the same everywhere: where sines and cosines are known numbers
     for (const Expr& s : symbols_of({&plain, 1}))
-      if (s.role() == Role::Coordinate || s.role() == Role::Time || s.role() == Role::Multiplier) somewhere.emplace(s, one());
+      if (s.role() == Role::Coordinate || s.role() == Role::Time || s.role() == Role::Multiplier)
+        somewhere.emplace(s, one());
     return readable(substitute(plain, somewhere), equations_.order).value;
   }
 
@@ -128,7 +137,8 @@ class Resembler {
       out.push_back(factor);
     };
     for (std::size_t j = 0; j < slopes_.size(); ++j)
-      if (!slopes_[j].is_zero() && !mass_.at(row, j).is_zero()) add(readable(slopes_[j] / mass_.at(row, j), equations_.order).value);
+      if (!slopes_[j].is_zero() && !mass_.at(row, j).is_zero())
+        add(readable(slopes_[j] / mass_.at(row, j), equations_.order).value);
     Expr resting = zero();
     for (const RowTerm& t : terms_of(row))
       if (t.origin == TermOrigin::Potential) resting = resting + t.value;
@@ -268,14 +278,22 @@ class Resembler {
 
   std::string name_of(const RowTerm& t) const {
     switch (t.origin) {
-      case TermOrigin::Inertia: return "the inertia";
-      case TermOrigin::Coupling: return fmt::format("the coupling with {}", system_.coordinates[t.of].name);
-      case TermOrigin::Velocity: return "a term with velocities";
-      case TermOrigin::PrescribedMotion: return "the term from the prescribed motion";
-      case TermOrigin::Potential: return "a force of the potential";
-      case TermOrigin::Dissipation: return "the dissipation";
-      case TermOrigin::Force: return "a generalized force";
-      case TermOrigin::Constraint: return fmt::format("the force of the constraint {}", system_.constraint_label(t.of));
+      case TermOrigin::Inertia:
+        return "the inertia";
+      case TermOrigin::Coupling:
+        return fmt::format("the coupling with {}", system_.coordinates[t.of].name);
+      case TermOrigin::Velocity:
+        return "a term with velocities";
+      case TermOrigin::PrescribedMotion:
+        return "the term from the prescribed motion";
+      case TermOrigin::Potential:
+        return "a force of the potential";
+      case TermOrigin::Dissipation:
+        return "the dissipation";
+      case TermOrigin::Force:
+        return "a generalized force";
+      case TermOrigin::Constraint:
+        return fmt::format("the force of the constraint {}", system_.constraint_label(t.of));
     }
     return "";
   }
@@ -283,37 +301,51 @@ class Resembler {
   std::string where_from(const RowTerm& t, std::size_t row) const {
     const std::string& q = system_.coordinates[row].name;
     switch (t.origin) {
-      case TermOrigin::Inertia: return fmt::format("M has it before {}''", q);
-      case TermOrigin::Coupling: return "M is not diagonal";
-      case TermOrigin::Velocity: return fmt::format("d/dt ∂L/∂{0}' − ∂L/∂{0} gives it", q);
-      case TermOrigin::PrescribedMotion: return "T has a part without velocities";
-      case TermOrigin::Potential: return fmt::format("it is in ∂V/∂{}", q);
-      case TermOrigin::Dissipation: return fmt::format("+∂D/∂{}' belongs to the left side", q);
-      case TermOrigin::Force: return "Q belongs to the right side";
-      case TermOrigin::Constraint: return "+Aᵀλ belongs to the right side";
+      case TermOrigin::Inertia:
+        return fmt::format("M has it before {}''", q);
+      case TermOrigin::Coupling:
+        return "M is not diagonal";
+      case TermOrigin::Velocity:
+        return fmt::format("d/dt ∂L/∂{0}' − ∂L/∂{0} gives it", q);
+      case TermOrigin::PrescribedMotion:
+        return "T has a part without velocities";
+      case TermOrigin::Potential:
+        return fmt::format("it is in ∂V/∂{}", q);
+      case TermOrigin::Dissipation:
+        return fmt::format("+∂D/∂{}' belongs to the left side", q);
+      case TermOrigin::Force:
+        return "Q belongs to the right side";
+      case TermOrigin::Constraint:
+        return "+Aᵀλ belongs to the right side";
     }
     return "";
   }
 
   void tell(Finding& out, const std::vector<std::pair<RowTerm, Rational>>& changed) const {
-    std::map<std::string, std::vector<std::pair<RowTerm, Rational>>> by_kind;   // in the order: missing, wrong factor, wrong sign
+    std::map<std::string, std::vector<std::pair<RowTerm, Rational>>>
+        by_kind;  // in the order: missing, wrong factor, wrong sign
     for (const auto& c : changed)
-      by_kind[c.second.is_zero() ? "missing" : c.second == Rational(-1) ? "wrong sign" : "wrong factor " + c.second.to_string()].push_back(c);
+      by_kind[c.second.is_zero()         ? "missing"
+              : c.second == Rational(-1) ? "wrong sign"
+                                         : "wrong factor " + c.second.to_string()]
+          .push_back(c);
     for (const auto& [kind, list] : by_kind) {
       std::vector<Expr> values;
       for (const auto& [term, number] : list) values.push_back(term.value);
       const Expr sum = system_.context->sum(values);
       const std::string shown = text(sum, out.of.row);
-      out.difference += (out.difference.empty() ? "" : "; ") +
-                        (kind.find("factor") == std::string::npos
-                             ? fmt::format("{}: {}", kind, shown)
-                             : fmt::format("{} stands in the place of {}", text(list.front().second * sum, out.of.row), shown));
+      out.difference +=
+          (out.difference.empty() ? "" : "; ") +
+          (kind.find("factor") == std::string::npos
+               ? fmt::format("{}: {}", kind, shown)
+               : fmt::format("{} stands in the place of {}", text(list.front().second * sum, out.of.row), shown));
       for (const auto& [term, number] : list) {
         if (std::find(out.origins.begin(), out.origins.end(), term.origin) != out.origins.end()) continue;
         out.origins.push_back(term.origin);
         const std::string what = number.is_zero() ? name_of(term) + " is missing"
-                                 : number == Rational(-1) ? name_of(term) + " has the wrong sign"
-                                                          : fmt::format("{} has a factor {} too many", name_of(term), number.to_string());
+                                 : number == Rational(-1)
+                                     ? name_of(term) + " has the wrong sign"
+                                     : fmt::format("{} has a factor {} too many", name_of(term), number.to_string());
         out.sentence += fmt::format("{}{}: {}", out.sentence.empty() ? "" : "; ", what, where_from(term, out.of.row));
       }
     }
@@ -324,8 +356,11 @@ class Resembler {
     const Coordinate& c = system_.coordinates[found.of.row];
     const std::string factor = text(found.of.factor, found.of.row);
     const bool plain = found.of.factor.is_one() || (-found.of.factor).is_one();
-    const std::string times = plain ? "" : factor.size() > longest ? ", times a factor" : fmt::format(", times {}", factor);
-    return {fmt::format("It resembles the equation for {}{}; {}.", c.name, times, found.difference), found.sentence, found.origins};
+    const std::string times = plain                     ? ""
+                              : factor.size() > longest ? ", times a factor"
+                                                        : fmt::format(", times {}", factor);
+    return {fmt::format("It resembles the equation for {}{}; {}.", c.name, times, found.difference), found.sentence,
+            found.origins};
   }
 
   const EquationsOfMotion& equations_;
@@ -333,7 +368,7 @@ class Resembler {
   RandomStates states_;
   Expr claim_;
   ExprMatrix mass_;
-  std::vector<Expr> slopes_;   // ∂F/∂q̈
+  std::vector<Expr> slopes_;  // ∂F/∂q̈
   std::map<std::size_t, std::vector<RowTerm>> terms_;
 };
 

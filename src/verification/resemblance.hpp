@@ -10,9 +10,9 @@ namespace maupertuis {
 /// The derived equation that a false claim resembles, and by what the claim differs from it, with the accelerations
 /// left in.
 struct Resemblance {
-  std::string text;                  // "It is the equation for θ1, times 1/(m l^2), but for this: missing: c x'"
-  std::string sentence;              // the mistake in words of physics; empty: unknown
-  std::vector<TermOrigin> origins;   // of the terms that differ; empty: unknown
+  std::string text;                 // "It is the equation for θ1, times 1/(m l^2), but for this: missing: c x'"
+  std::string sentence;             // the mistake in words of physics; empty: unknown
+  std::vector<TermOrigin> origins;  // of the terms that differ; empty: unknown
 };
 
 /// `difference`: left side − right side of a claim that does not follow from the equations. Nothing where it resembles

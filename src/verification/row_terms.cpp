@@ -14,13 +14,15 @@ class RowReader {
 
   std::vector<RowTerm> read() {
     for (std::size_t j = 0; j < system_.coordinates.size(); ++j)
-      add(j == row_ ? TermOrigin::Inertia : TermOrigin::Coupling, mass_.at(row_, j) * system_.coordinates[j].acceleration, j);
+      add(j == row_ ? TermOrigin::Inertia : TermOrigin::Coupling,
+          mass_.at(row_, j) * system_.coordinates[j].acceleration, j);
     add_what_l_gives();
     add(TermOrigin::Dissipation, equations_.dissipative_terms[row_]);
     add(TermOrigin::Force, -equations_.generalized_forces[row_]);
     for (std::size_t k = 0; k < equations_.multipliers.size(); ++k) {
       const Expr multiplier = equations_.multipliers[k];
-      add(TermOrigin::Constraint, -differentiate(expand_time_derivatives(equations_.constraint_forces[row_]), multiplier) * multiplier, k);
+      add(TermOrigin::Constraint,
+          -differentiate(expand_time_derivatives(equations_.constraint_forces[row_]), multiplier) * multiplier, k);
     }
     return too_long_ ? std::vector<RowTerm>() : std::move(terms_);
   }
@@ -28,7 +30,8 @@ class RowReader {
  private:
   /// d/dt ∂L/∂q̇ − ∂L/∂q without its accelerations, by what it depends on and where it comes from.
   void add_what_l_gives() {
-    const Expr own = equations_.residual[row_] - equations_.dissipative_terms[row_] + equations_.generalized_forces[row_];
+    const Expr own =
+        equations_.residual[row_] - equations_.dissipative_terms[row_] + equations_.generalized_forces[row_];
     const Expr rest = substitute(expand_time_derivatives(own), zeros(2));
     if (mass_depends_on_velocities()) return add(TermOrigin::Velocity, rest);
     const Expr at_rest = substitute(rest, zeros(1));
@@ -61,10 +64,12 @@ class RowReader {
     ExprMap written_out;
     for (const Intermediate& i : form.intermediates) written_out.emplace(i.symbol, substitute(i.value, written_out));
     const Expr expanded = expand(substitute(form.value, written_out), kMostRowTerms);
-    if (!expanded) too_long_ = true;
+    if (!expanded)
+      too_long_ = true;
     else if (expanded.is(Kind::Sum))
       for (std::size_t k = 0; k < expanded.size(); ++k) terms_.push_back({origin, expanded[k], of});
-    else if (!expanded.is_zero()) terms_.push_back({origin, expanded, of});
+    else if (!expanded.is_zero())
+      terms_.push_back({origin, expanded, of});
     too_long_ = too_long_ || terms_.size() > kMostRowTerms;
   }
 

@@ -20,8 +20,8 @@ enum class TermOrigin {
 /// One term of the left side of R_i − (Aᵀλ)_i = 0, with q̈ left in.
 struct RowTerm {
   TermOrigin origin = TermOrigin::Inertia;
-  Expr value;               // no sum
-  std::size_t of = 0;       // Coupling: the coordinate; Constraint: which
+  Expr value;          // no sum
+  std::size_t of = 0;  // Coupling: the coordinate; Constraint: which
 };
 
 /// The terms of the equation of a coordinate, as a reader would write them, products distributed. `mass` is M.

@@ -9,7 +9,8 @@ namespace {
 
 class Slips {
  public:
-  Slips(Expr term, const EquationsOfMotion& equations) : term_(term), equations_(equations), context_(*equations.system->context) {}
+  Slips(Expr term, const EquationsOfMotion& equations)
+      : term_(term), equations_(equations), context_(*equations.system->context) {}
 
   std::vector<TermVariant> all() {
     for (const Expr& node : topological_order({&term_, 1}))
@@ -36,7 +37,8 @@ class Slips {
     const Expr small = node.is(Kind::Cos) ? context_.number(Rational(1)) : argument;
     add(substitute(term_, {{node, small}}),
         fmt::format("{} is written as {}, which holds for small angles only", text(node), text(small)));
-    for (const Rational& factor : {Rational(2), Rational(1, 2)}) replace(node, function(node.kind(), factor * argument));
+    for (const Rational& factor : {Rational(2), Rational(1, 2)})
+      replace(node, function(node.kind(), factor * argument));
     for (const Expr& s : symbols_of({&argument, 1}))  // θ1 + θ2 for θ1 − θ2
       if (s.role() == Role::Coordinate) replace(node, function(node.kind(), substitute(argument, {{s, -s}})));
     add(term_ / node, fmt::format("a factor {} is missing", text(node)));
@@ -66,7 +68,8 @@ class Slips {
       if (other.q == c.q) continue;
       if (stands(c.velocity)) {
         replace(c.velocity, other.velocity);
-        add(term_ * other.velocity / c.velocity, fmt::format("one {} stands in the place of {}", text(other.velocity), text(c.velocity)));
+        add(term_ * other.velocity / c.velocity,
+            fmt::format("one {} stands in the place of {}", text(other.velocity), text(c.velocity)));
       }
       if (stands(c.acceleration)) replace(c.acceleration, other.acceleration);
       if (stands(c.q)) replace(c.q, other.q);
@@ -81,6 +84,8 @@ class Slips {
 
 }  // namespace
 
-std::vector<TermVariant> term_variants(Expr term, const EquationsOfMotion& equations) { return Slips(term, equations).all(); }
+std::vector<TermVariant> term_variants(Expr term, const EquationsOfMotion& equations) {
+  return Slips(term, equations).all();
+}
 
 }  // namespace maupertuis

@@ -4,7 +4,8 @@
 
 namespace maupertuis {
 
-std::optional<Verification> verify_errors(const syntax::SyntaxTree& tree, const SourceText& source, const Diagnostics& found) {
+std::optional<Verification> verify_errors(const syntax::SyntaxTree& tree, const SourceText& source,
+                                          const Diagnostics& found) {
   Verification verification;
   for (const syntax::Statement& statement : tree.statements) {
     const auto* expect = std::get_if<syntax::ExpectStatement>(&statement.body);
@@ -15,7 +16,8 @@ std::optional<Verification> verify_errors(const syntax::SyntaxTree& tree, const 
     result.line = source.locate(statement.span.begin).line;
     result.text = std::string(source.slice(statement.span));
     result.expected = code;
-    result.passed = std::any_of(found.items().begin(), found.items().end(), [&](const Diagnostic& d) { return d.code == code; });
+    result.passed =
+        std::any_of(found.items().begin(), found.items().end(), [&](const Diagnostic& d) { return d.code == code; });
     for (const Diagnostic& d : found.items()) result.actual += (result.actual.empty() ? "" : ", ") + d.code;
     if (result.actual.empty()) result.actual = "no error";
     if (!result.passed) result.message = "The model does not give this error.";

@@ -15,7 +15,9 @@ std::string gallery(const std::string& name) { return std::string(PROJECT_DIR) +
 
 /// L = ½ x'² − ½ x², from 0.4 at 0 to −1.1 at T.
 std::string oscillator(const std::string& duration) {
-  return "system oscillator\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\npath from 0.4 at 0 to -1.1 at " + duration + "\n";
+  return "system oscillator\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\npath from 0.4 at 0 to -1.1 "
+         "at " +
+         duration + "\n";
 }
 
 double classical_action(double duration) {
@@ -38,7 +40,8 @@ TEST_CASE("action of the oscillator: its value, its index beyond each half perio
     CHECK(paths[0]["by_inertia"] == index);
     CHECK(paths[0]["by_fields"] == index);
     REQUIRE(paths[0]["conjugate_points"].size() == static_cast<std::size_t>(index));
-    for (int k = 0; k < index; ++k) CHECK(std::abs(paths[0]["conjugate_points"][k]["t"].get<double>() - (k + 1) * pi) < 1e-9);
+    for (int k = 0; k < index; ++k)
+      CHECK(std::abs(paths[0]["conjugate_points"][k]["t"].get<double>() - (k + 1) * pi) < 1e-9);
     CHECK(paths[0]["check"]["done"] == true);
     CHECK(paths[0]["check"]["missed"].get<double>() < 1e-10);
   }
@@ -61,7 +64,9 @@ TEST_CASE("the JSON of action: ends by name, momenta and energies at them") {
   CHECK(std::abs(path["start_momentum"]["x"].get<double>() - (-1.1 - 0.4 * c) / s) < 1e-11);
   const double velocity = (-1.1 * c - 0.4) / s;
   CHECK(std::abs(path["end_energy"].get<double>() - (velocity * velocity + 1.21) / 2) < 1e-11);
-  for (const char* key : {"action_error", "path_error", "residual", "kind", "nullity", "found_from", "multipliers", "variations"}) CHECK(path.contains(key));
+  for (const char* key :
+       {"action_error", "path_error", "residual", "kind", "nullity", "found_from", "multipliers", "variations"})
+    CHECK(path.contains(key));
 }
 
 TEST_CASE("two films between two rings, the smaller area first; places are told in x") {
@@ -85,21 +90,24 @@ TEST_CASE("the chain of a given length: the multiplier is the height of the cate
   CHECK(path["index"] == 0);
   // y = a cosh(x/a) + c solves the equations of (w y + λ) sqrt(1 + y'²) where λ = −w c.
   const Outcome told = maup({"action", gallery("hanging_chain")});
-  CHECK(contains(told.out, "λ_length_of_chain = " ));
+  CHECK(contains(told.out, "λ_length_of_chain = "));
   const double expected = 20 * 0.6 * std::cosh(1 / 0.6);
   CHECK(std::abs(path["multipliers"][0].get<double>() - expected) < 1e-9);
 }
 
 TEST_CASE("a path that is given: its action, whether it is stationary, and where it misses the ends") {
   const std::string free = "system free\ndimensionless\nparam m = 3\ncoord x, y : number\nT = 1/2 m (x'^2 + y'^2)\n";
-  const Outcome straight = maup({"action", "-", "--path", "x = 4 t + 7, y = 3 t + 5", "--from", "0", "--to", "10"}, free);
+  const Outcome straight =
+      maup({"action", "-", "--path", "x = 4 t + 7, y = 3 t + 5", "--from", "0", "--to", "10"}, free);
   CHECK_MESSAGE(straight.code == 0, straight.err);
   CHECK(contains(straight.out, "stationary          yes"));
   CHECK(std::abs(std::stod(straight.out.substr(straight.out.find(" S ") + 3)) - 375) < 1e-10);
-  const Outcome bent = maup({"action", "-", "--path", "x = 4 t + 7 + t (t - 10), y = 3 t + 5", "--from", "0", "--to", "10"}, free);
+  const Outcome bent =
+      maup({"action", "-", "--path", "x = 4 t + 7 + t (t - 10), y = 3 t + 5", "--from", "0", "--to", "10"}, free);
   CHECK(bent.code == 0);
   CHECK(contains(bent.out, "stationary          no"));
-  const Outcome off = maup({"action", "-", "--path", "x = 4 t + 8, y = 3 t + 5"}, free + "path from (7, 5) at 0 to (47, 35) at 10\n");
+  const Outcome off =
+      maup({"action", "-", "--path", "x = 4 t + 8, y = 3 t + 5"}, free + "path from (7, 5) at 0 to (47, 35) at 10\n");
   CHECK(off.code == 3);
   CHECK(contains(off.err, "E1205"));
   CHECK(off.out.empty());
@@ -109,7 +117,9 @@ TEST_CASE("a path that is given: its action, whether it is stationary, and where
 }
 
 TEST_CASE("ends that no path reaches, ends of the wrong kind, no ends") {
-  const Outcome conjugate = maup({"action", "-"}, "system o\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\npath from 0.4 at 0 to 0.7 at pi\n");
+  const Outcome conjugate =
+      maup({"action", "-"},
+           "system o\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\npath from 0.4 at 0 to 0.7 at pi\n");
   CHECK(conjugate.code == 3);
   CHECK(contains(conjugate.err, "E1204"));
   CHECK(conjugate.out.empty());
@@ -145,7 +155,8 @@ TEST_CASE("models without a principle of stationary action are refused with the 
   CHECK(damped.code != 0);
   CHECK(contains(damped.err, "E1201"));
   CHECK(contains(damped.err, "no Lagrangian gives"));
-  const Outcome rolling = maup({"action", gallery("rolling_disk"), "--ends", "(0, 0, 0, 0) at 0 s to (1 m, 0, 0, 0) at 1 s"});
+  const Outcome rolling =
+      maup({"action", gallery("rolling_disk"), "--ends", "(0, 0, 0, 0) at 0 s to (1 m, 0, 0, 0) at 1 s"});
   CHECK(rolling.code != 0);
   CHECK(contains(rolling.err, "E1201"));
   CHECK(contains(rolling.err, "between velocities"));

@@ -32,7 +32,11 @@ unsigned big_endian(const std::string& bytes, std::size_t at) {
 
 /// What ffprobe counts in a film: "width,height,frames".
 std::string probed(const std::string& file) {
-  return shell("ffprobe -v error -count_frames -select_streams v:0 -show_entries stream=width,height,nb_read_frames -of csv=p=0 " + file).out;
+  return shell(
+             "ffprobe -v error -count_frames -select_streams v:0 -show_entries stream=width,height,nb_read_frames -of "
+             "csv=p=0 " +
+             file)
+      .out;
 }
 
 nlohmann::json document(const Outcome& outcome) { return nlohmann::json::parse(outcome.out); }
@@ -86,12 +90,14 @@ TEST_CASE("a page needs nothing else") {
   CHECK(contains(page, "Rolling wheel"));
   CHECK(contains(page, "function animate(figure, scene)"));
   CHECK(contains(page, "default-src 'none'"));
-  for (const char* outside : {"https://", "<script src", "<link rel=\"stylesheet\""}) CHECK_FALSE(contains(page, outside));
+  for (const char* outside : {"https://", "<script src", "<link rel=\"stylesheet\""})
+    CHECK_FALSE(contains(page, outside));
 }
 
 TEST_CASE("one moment as SVG, PNG and PDF") {
   const Folder folder;
-  const std::string model = folder.write("wheel.lag", wheel), svg = folder.path("m.svg"), png = folder.path("m.png"), pdf = folder.path("m.pdf");
+  const std::string model = folder.write("wheel.lag", wheel), svg = folder.path("m.svg"), png = folder.path("m.png"),
+                    pdf = folder.path("m.pdf");
   REQUIRE(maup({"animate", model, "--still", "1s", "--size", "400x300", "-o", svg}).code == 0);
   CHECK(contains(read(svg), "t = 1.0"));
   CHECK_FALSE(contains(read(svg), "<animate"));
@@ -105,7 +111,8 @@ TEST_CASE("one moment as SVG, PNG and PDF") {
 
 TEST_CASE("plots as PNG and PDF: sizes, letters, and the same bytes again") {
   const Folder folder;
-  const std::string model = folder.write("pendulum.lag", pendulum), png = folder.path("p.png"), pdf = folder.path("p.pdf");
+  const std::string model = folder.write("pendulum.lag", pendulum), png = folder.path("p.png"),
+                    pdf = folder.path("p.pdf");
   REQUIRE(maup({"plot", model, "--y", "θ", "-o", png}).code == 0);
   CHECK(read(png).substr(1, 3) == "PNG");
   CHECK(big_endian(read(png), 16) == 1440);
@@ -131,7 +138,10 @@ TEST_CASE("plots as PNG and PDF: sizes, letters, and the same bytes again") {
 
 TEST_CASE("what cannot be had is said, and nothing is written") {
   const Folder folder;
-  const std::string model = folder.write("wheel.lag", wheel), bare = folder.write("bare.lag", "system bare\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\nstart x = 1\nrun 1\n");
+  const std::string
+      model = folder.write("wheel.lag", wheel),
+      bare = folder.write(
+          "bare.lag", "system bare\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 x^2\nstart x = 1\nrun 1\n");
   const auto refused = [&](std::vector<std::string> options, const std::string& code, const std::string& words) {
     options.insert(options.begin(), {"animate", model});
     const Outcome outcome = maup(options);
@@ -165,7 +175,9 @@ TEST_CASE("what cannot be had is said, and nothing is written") {
 
 TEST_CASE("an ffmpeg that fails is quoted, and leaves nothing behind") {
   const Folder folder;
-  const std::string model = folder.write("wheel.lag", wheel), program = folder.write("ffmpeg", "#!/bin/sh\nhead -c 1000 >/dev/null\necho no such codec >&2\nexit 1\n");
+  const std::string model = folder.write("wheel.lag", wheel),
+                    program =
+                        folder.write("ffmpeg", "#!/bin/sh\nhead -c 1000 >/dev/null\necho no such codec >&2\nexit 1\n");
   std::filesystem::permissions(program, std::filesystem::perms::owner_all);
   const std::string where = program.substr(0, program.rfind('/'));
   const Outcome outcome = shell("PATH=" + where + ":$PATH $MAUP animate " + model + " -o " + folder.path("a.mp4"));
@@ -179,7 +191,8 @@ TEST_CASE("Ctrl-C ends a film within a second, and leaves no part of it") {
   if (!has_program("ffmpeg")) return;
   const Folder folder;
   const std::string model = folder.write("wheel.lag", wheel);
-  const Outcome outcome = shell("timeout --signal=INT 1.5 $MAUP animate " + model + " -o " + folder.path("a.mp4") + " --size 1920x1080 --speed 0.01; echo code $?");
+  const Outcome outcome = shell("timeout --signal=INT 1.5 $MAUP animate " + model + " -o " + folder.path("a.mp4") +
+                                " --size 1920x1080 --speed 0.01; echo code $?");
   CHECK(outcome.seconds < 8);
   CHECK(contains(outcome.err, "was not written"));
   CHECK((contains(outcome.out, "code 124") || contains(outcome.out, "code 130")));

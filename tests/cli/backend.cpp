@@ -20,7 +20,8 @@ struct Run {
 /// With a cache folder of its own; `environment`: assignments of the shell.
 Run simulate(const Folder& folder, const std::string& options, const std::string& environment = {}) {
   const std::string model = folder.write("p.lag", pendulum);
-  const Outcome outcome = shell("XDG_CACHE_HOME=" + folder.path("cache") + " " + environment + " $MAUP simulate " + model + " --json " + options);
+  const Outcome outcome = shell("XDG_CACHE_HOME=" + folder.path("cache") + " " + environment + " $MAUP simulate " +
+                                model + " --json " + options);
   Run run{outcome.code, json_of(outcome), {}};
   for (const Json& d : run.document.at("diagnostics")) run.codes.push_back(d.at("code"));
   return run;
@@ -31,7 +32,9 @@ double angle_of(const Run& run) { return run.document.at("final").at("state").at
 
 }  // namespace
 
-TEST_CASE("compiled and interpreted runs agree to rounding; the second compiled run is the first to the bit, from the cache") {
+TEST_CASE(
+    "compiled and interpreted runs agree to rounding; the second compiled run is the first to the bit, from the "
+    "cache") {
   const Folder folder;
   const Run interpreted = simulate(folder, "--backend interpreter");
   CHECK(interpreted.code == 0);
@@ -81,8 +84,8 @@ TEST_CASE("a cache that cannot be written: the run is as it would be, with one w
 TEST_CASE("a device that is full: the run is as it would be, with one warning, and nothing is left behind") {
   if (!has_compiled_code()) return;
   const Folder folder;
-  const std::string command = "XDG_CACHE_HOME=" + folder.path("cache") + " $MAUP simulate " + folder.write("p.lag", pendulum) +
-                              " --json --backend compiled";
+  const std::string command = "XDG_CACHE_HOME=" + folder.path("cache") + " $MAUP simulate " +
+                              folder.write("p.lag", pendulum) + " --json --backend compiled";
   // No file may grow, as where no space is left; the pipe may.
   const Outcome outcome = shell("(trap '' XFSZ; ulimit -f 0; " + command + ") | cat");
   const Json document = json_of(outcome);
@@ -119,8 +122,9 @@ TEST_CASE("processors without AVX-512, and without AVX2: both backends agree wit
     const char *set, *instructions, *processor;
     bool holds_back;  // where this processor has no more, code is for the processor itself, whatever it is called
   };
-  for (const Level& level : {Level{"avx2", "AVX2", "for x86-64-v3)", widest == "AVX-512"},
-                             Level{"none", "none that are used", "for x86-64)", widest == "AVX-512" || widest == "AVX2"}}) {
+  for (const Level& level :
+       {Level{"avx2", "AVX2", "for x86-64-v3)", widest == "AVX-512"},
+        Level{"none", "none that are used", "for x86-64)", widest == "AVX-512" || widest == "AVX2"}}) {
     CAPTURE(level.set);
     const std::string environment = std::string("MAUPERTUIS_INSTRUCTIONS=") + level.set;
     const Json doctor = json_of(shell(environment + " $MAUP doctor --json"));
@@ -147,21 +151,27 @@ const char* const double_pendulum =
     "start a = 60 deg, b = 20 deg\n"
     "run 1 s\n";
 
-TEST_CASE("other processors, emulated: no instruction that they lack, whatever LLVM calls them, and the same motion to rounding") {
+TEST_CASE(
+    "other processors, emulated: no instruction that they lack, whatever LLVM calls them, and the same motion to "
+    "rounding") {
   if (shell("command -v qemu-x86_64").code != 0) {
     MESSAGE("skipped: qemu-user is not installed");
     return;
   }
   const Folder folder;
   const std::string model = folder.write("d.lag", double_pendulum);
-  const auto angle = [](const Outcome& outcome) { return json_of(outcome).at("final").at("state").at("b").get<double>(); };
+  const auto angle = [](const Outcome& outcome) {
+    return json_of(outcome).at("final").at("state").at("b").get<double>();
+  };
   const double expected = angle(maup({"simulate", model, "--json", "--backend", "interpreter"}));
   struct Processor {
     const char *emulated, *instructions, *name;
   };
-  for (const Processor& p : {Processor{"EPYC-Milan", "AVX2", "for znver3)"}, {"Haswell", "AVX2", "for haswell)"},
-                             {"Skylake-Server", "AVX2", "for skylake-avx512)"},  // the emulator lacks what the name promises
-                             {"Nehalem", "none that are used", "for nehalem)"}}) {
+  for (const Processor& p :
+       {Processor{"EPYC-Milan", "AVX2", "for znver3)"},
+        {"Haswell", "AVX2", "for haswell)"},
+        {"Skylake-Server", "AVX2", "for skylake-avx512)"},  // the emulator lacks what the name promises
+        {"Nehalem", "none that are used", "for nehalem)"}}) {
     CAPTURE(p.emulated);
     const std::string program = std::string("qemu-x86_64 -cpu ") + p.emulated + " $MAUP ";
     const Json doctor = json_of(shell(program + "doctor --json"));

@@ -51,7 +51,8 @@ TEST_CASE("texts that are no model") {
 }
 
 TEST_CASE("depth") {
-  refuses("100,000 brackets", "system s\nlet a = " + std::string(100'000, '(') + "1" + std::string(100'000, ')') + "\n");
+  refuses("100,000 brackets",
+          "system s\nlet a = " + std::string(100'000, '(') + "1" + std::string(100'000, ')') + "\n");
   refuses("100,000 open brackets", "system s\nlet a = " + std::string(100'000, '(') + "\n");
   refuses("100,000 minus signs", "system s\ncoord x : length\nlet a = " + std::string(100'000, '-') + "1\nT = a\n");
   refuses("100,000 powers", "system s\nlet a = " + repeated("2^", 100'000) + "2\n");

@@ -10,7 +10,8 @@ using namespace cli_test;
 namespace {
 
 const std::string oscillator =
-    "system o\nparam m = 0.3 kg, k = 1.1 N/m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = 1/2 k (x^2 + y^2)\nstart x = 0.1 m\nrun 7 s\n";
+    "system o\nparam m = 0.3 kg, k = 1.1 N/m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = 1/2 k (x^2 + "
+    "y^2)\nstart x = 0.1 m\nrun 7 s\n";
 const std::string chaotic =
     "system d\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord a, b : angle\npoint A mass m at l (sin a, -cos a)\n"
     "point B mass m at A + l (sin b, -cos b)\ngravity (0, -g)\nstart a = 120 deg, b = -10 deg\n";
@@ -41,7 +42,8 @@ TEST_CASE("simulate --json and -o --errors carry the errors") {
   const Json json = json_of(maup({"simulate", model, "--json", "--errors", "-o", csv}));
   const Json& errors = json.at("final").at("errors");
   const double x = errors.at("x");
-  const double off = json.at("final").at("state").at("x").get<double>() - static_cast<double>(0.1L * std::cos(7 * std::sqrt(1.1L / 0.3L)));
+  const double off = json.at("final").at("state").at("x").get<double>() -
+                     static_cast<double>(0.1L * std::cos(7 * std::sqrt(1.1L / 0.3L)));
   CHECK(std::abs(off) <= x + 1e-17);
   CHECK(x < 1e-14);
   CHECK(errors.at("y") == 0);
@@ -49,8 +51,10 @@ TEST_CASE("simulate --json and -o --errors carry the errors") {
   CHECK(json.at("uncertain").is_null());
   CHECK(json.at("statistics").at("companions") == 7);
   const std::string rows = read(csv);
-  CHECK(rows.rfind("t [s],x [m],y [m],x' [m/s],y' [m/s],energy [J],error(x) [m],error(y) [m],error(x') [m/s],error(y') [m/s],error(energy) [J]\r\n"
-                   "0,0.10000000000000001,0,0,0,", 0) == 0);
+  CHECK(rows.rfind("t [s],x [m],y [m],x' [m/s],y' [m/s],energy [J],error(x) [m],error(y) [m],error(x') [m/s],error(y') "
+                   "[m/s],error(energy) [J]\r\n"
+                   "0,0.10000000000000001,0,0,0,",
+                   0) == 0);
   CHECK_FALSE(json_of(maup({"simulate", model, "--json", "--no-errors"})).at("final").contains("errors"));
   CHECK(maup({"simulate", model, "--errors"}).code == 2);
   CHECK(maup({"simulate", model, "--errors", "--no-errors", "-o", csv}).code == 2);
@@ -73,7 +77,9 @@ TEST_CASE("a chaotic run says from when on nothing is certain, and no digit is p
 }
 
 TEST_CASE("run until: the located time has an error") {
-  const std::string fall = "system f\nparam m = 1 kg, g = 9.81 m/s^2\ncoord y : length\nT = 1/2 m y'^2\nV = m g y\nstart y = 100 m\nrun until y = 0 within 60 s\n";
+  const std::string fall =
+      "system f\nparam m = 1 kg, g = 9.81 m/s^2\ncoord y : length\nT = 1/2 m y'^2\nV = m g y\nstart y = 100 m\nrun "
+      "until y = 0 within 60 s\n";
   const Outcome text = maup({"simulate", "-"}, fall);
   CHECK(contains(text.out, "t = 4.5152364098573"));
   CHECK(contains(text.out, ") s\n"));
@@ -84,15 +90,18 @@ TEST_CASE("run until: the located time has an error") {
 
 TEST_CASE("test says when an expectation asks for more digits than are known") {
   const Folder folder;
-  const std::string known = folder.write("known.lag", chaotic + "run 20 s\nexpect b at 20 s = -5.0034073 rad ± 1e-6 rad\n");
+  const std::string known =
+      folder.write("known.lag", chaotic + "run 20 s\nexpect b at 20 s = -5.0034073 rad ± 1e-6 rad\n");
   const Outcome clean = maup({"test", known});
   CHECK(clean.code == 0);
   CHECK_FALSE(contains(clean.out, "digits"));
-  // The value of this very run, at a time at which some six digits are known, with a tolerance a thousand times below that.
+  // The value of this very run, at a time at which some six digits are known, with a tolerance a thousand times below
+  // that.
   const Json run = json_of(maup({"simulate", "-", "--json"}, chaotic + "run 20 s\n"));
   const double b = run.at("final").at("state").at("b"), error = run.at("final").at("errors").at("b");
   const auto asks = [&](double value, double tolerance) {
-    return maup({"test", "-"}, chaotic + "run 20 s\nexpect b at 20 s = " + std::to_string(value) + " rad ± " + Json(tolerance).dump() + " rad\n");
+    return maup({"test", "-"}, chaotic + "run 20 s\nexpect b at 20 s = " + std::to_string(value) + " rad ± " +
+                                   Json(tolerance).dump() + " rad\n");
   };
   const double rounded = std::stod(std::to_string(b));
   const double off = std::abs(rounded - b);

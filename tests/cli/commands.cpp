@@ -8,7 +8,8 @@
 using namespace cli_test;
 
 TEST_CASE("--help of each command opens with three examples that name it") {
-  for (const std::string command : {"check", "derive", "simulate", "test", "plot", "report", "fmt", "new", "explain", "doctor"}) {
+  for (const std::string command :
+       {"check", "derive", "simulate", "test", "plot", "report", "fmt", "new", "explain", "doctor"}) {
     CAPTURE(command);
     const Outcome outcome = maup({command, "--help"});
     CHECK(outcome.code == 0);
@@ -73,7 +74,8 @@ TEST_CASE("explain") {
 }
 
 TEST_CASE("fmt is idempotent and keeps comments") {
-  const std::string text = "system s   # why\nparam m=1 kg,k = 4 N/m\ncoord x:length\nT = 1/2 m dot(x)^2   # kinetic\nV=1/2 k x²\n";
+  const std::string text =
+      "system s   # why\nparam m=1 kg,k = 4 N/m\ncoord x:length\nT = 1/2 m dot(x)^2   # kinetic\nV=1/2 k x²\n";
   const Outcome once = maup({"fmt", "-"}, text);
   REQUIRE(once.code == 0);
   CHECK(contains(once.out, "# why"));

@@ -65,7 +65,8 @@ TEST_CASE("the textbook path names φ, A, λ and the reaction") {
   CHECK(contains(outcome.out, "2 − 1 = 1 freedom"));
   CHECK(contains(outcome.out, "∂φ_rod/∂x = 2 x"));
   CHECK(contains(outcome.out, "2 x x'' + 2 y y'' = -2 x'^2 - 2 y'^2"));
-  CHECK(contains(outcome.out, "reaction(rod) = -2 l λ_rod    (the tension in rod, positive when it pulls O and P together"));
+  CHECK(contains(outcome.out,
+                 "reaction(rod) = -2 l λ_rod    (the tension in rod, positive when it pulls O and P together"));
   CHECK(contains(outcome.out, "constraint_rows"));
 }
 
@@ -74,12 +75,15 @@ TEST_CASE("LaTeX compiles and MathML is well-formed, with multipliers") {
   folder.write("pendulum.lag", rod_pendulum);
   folder.write("disk.lag", rolling_disk);
   for (const std::string model : {"pendulum", "disk"})
-    for (const std::string options : {"", "--form matrix", "--form residual", "--form solved", "--eliminate", "--steps"}) {
+    for (const std::string options :
+         {"", "--form matrix", "--form residual", "--form solved", "--eliminate", "--steps"}) {
       CAPTURE(model);
       CAPTURE(options);
       const std::string derive = "cd " + folder.path("") + " && \"$MAUP\" derive " + model + ".lag " + options;
-      const Outcome latex = shell(derive + " --latex >e.tex && timeout 60 pdflatex -interaction=nonstopmode -halt-on-error e.tex "
-                                           ">e.out 2>&1 || { grep -A3 '^!' e.out; exit 1; }");
+      const Outcome latex =
+          shell(derive +
+                " --latex >e.tex && timeout 60 pdflatex -interaction=nonstopmode -halt-on-error e.tex "
+                ">e.out 2>&1 || { grep -A3 '^!' e.out; exit 1; }");
       CHECK_MESSAGE(latex.code == 0, latex.out, latex.err);
       const Outcome mathml = shell(derive + " --mathml | xmllint --noout -");
       CHECK_MESSAGE(mathml.code == 0, mathml.err);

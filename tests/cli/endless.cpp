@@ -1,4 +1,5 @@
-// Motions that no method can follow to their end: the run ends with the reason, the time and the state, in a bounded time.
+// Motions that no method can follow to their end: the run ends with the reason, the time and the state, in a bounded
+// time.
 #include "json.hpp"
 
 #include <doctest/doctest.h>
@@ -22,7 +23,8 @@ const Endless endless[] = {
     {"a force that oscillates without end near a point", "force x = sin(1/(x - 1))\nstart x' = 2\nrun 3\n", 0.45, 0.7},
     {"a force that oscillates without end near a time", "force x = sin(1/(t - 2))/(t - 2)\nrun 3\n", 1.9, 2.1},
     {"a switch that chatters: both sides push back", "force x = -sign(x + x')\nstart x = 1\nrun 20\n", 0.1, 20},
-    {"switches that come ever faster: dry friction and a constant push back", "force x = -sign(x) - 0.5 sign(x')\nstart x = 1\nrun 20\n", 1, 20},
+    {"switches that come ever faster: dry friction and a constant push back",
+     "force x = -sign(x) - 0.5 sign(x')\nstart x = 1\nrun 20\n", 1, 20},
     {"a square wave without end near a time", "force x = sign(sin(1/(t - 2)))\nrun 3\n", 1.9, 2.1},
     {"steps below the spacing of t", "V = 1e12 x^2\nstart at 1e12\nstart x = 1\nrun 10\n", 1e12 - 1, 1e12 + 11},
     {"an energy beyond the range of double", "V = 1/2 x^2 + exp(700) exp(700 + 0 x)\nstart x' = 1\nrun 3\n", 3, 3},
@@ -35,23 +37,30 @@ TEST_CASE("a run that cannot go on says why and where, soon") {
   for (const Endless& e : endless) {
     const std::string name = e.name;
     const Folder folder;
-    const Outcome run = shell("timeout 10 \"$MAUP\" simulate " + folder.write("endless.lag", head + e.text) + " --json");
+    const Outcome run =
+        shell("timeout 10 \"$MAUP\" simulate " + folder.write("endless.lag", head + e.text) + " --json");
     const auto document = nlohmann::json::parse(run.out, nullptr, false);
     std::string trouble;
-    if (run.code == 124 || run.code == 130) trouble = "no end within 10 s";
-    else if (run.code != 3 || document.is_discarded() || document["ended"].value("reason", "").empty()) trouble = "exit " + std::to_string(run.code) + " without a reason";
-    else if (!document["final"]["state"]["x"].is_number() || !document["final"]["state"]["x'"].is_number()) trouble = "no state";
-    else if (const double t = document["final"]["t"]; !(t >= e.earliest && t <= e.latest)) trouble = "it ends at t = " + std::to_string(t);
+    if (run.code == 124 || run.code == 130)
+      trouble = "no end within 10 s";
+    else if (run.code != 3 || document.is_discarded() || document["ended"].value("reason", "").empty())
+      trouble = "exit " + std::to_string(run.code) + " without a reason";
+    else if (!document["final"]["state"]["x"].is_number() || !document["final"]["state"]["x'"].is_number())
+      trouble = "no state";
+    else if (const double t = document["final"]["t"]; !(t >= e.earliest && t <= e.latest))
+      trouble = "it ends at t = " + std::to_string(t);
     CHECK_MESSAGE(trouble.empty(), name << ": " << trouble << " " << run.err);
   }
 }
 
 TEST_CASE("a long chaotic run is not taken for one whose steps go on shrinking") {
   const Folder folder;
-  const std::string text = "system d\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord a, b : angle\npoint A mass m at l (sin a, -cos a)\n"
-                           "point B mass m at A + l (sin b, -cos b)\ngravity (0, -g)\nstart a = 120 deg, b = -10 deg\nrun 2000000 s\n";
+  const std::string text =
+      "system d\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord a, b : angle\npoint A mass m at l (sin a, -cos a)\n"
+      "point B mass m at A + l (sin b, -cos b)\ngravity (0, -g)\nstart a = 120 deg, b = -10 deg\nrun 2000000 s\n";
   // The looks are at 4096, 8192, … steps; 3 s carry it past a million, and Ctrl-C ends it.
-  const Outcome run = shell("timeout --signal=INT 3 \"$MAUP\" simulate " + folder.write("long.lag", text) + " --no-errors --json --backend interpreter");
+  const Outcome run = shell("timeout --signal=INT 3 \"$MAUP\" simulate " + folder.write("long.lag", text) +
+                            " --no-errors --json --backend interpreter");
   const auto document = nlohmann::json::parse(run.out, nullptr, false);
   REQUIRE_FALSE(document.is_discarded());
   CHECK(document["ended"].value("reason", "").find("interrupted") != std::string::npos);

@@ -14,7 +14,8 @@ TEST_CASE("each model has a picture below 60 kB and a line in the gallery, and n
   std::size_t models = 0, pictures = 0;
   for (const auto& entry : fs::directory_iterator(project / "models")) {
     if (entry.path().extension() != ".lag") continue;
-    const std::string name = entry.path().stem().string(), picture = (project / "docs/gallery" / (name + ".svg")).string();
+    const std::string name = entry.path().stem().string(),
+                      picture = (project / "docs/gallery" / (name + ".svg")).string();
     CAPTURE(name);
     ++models;
     REQUIRE(fs::exists(picture));
@@ -24,7 +25,8 @@ TEST_CASE("each model has a picture below 60 kB and a line in the gallery, and n
     CHECK(contains(page, "](" + name + ".svg)"));
     CHECK(contains(page, "../../models/" + name + ".lag"));
   }
-  for (const auto& entry : fs::directory_iterator(project / "docs/gallery")) pictures += entry.path().extension() == ".svg";
+  for (const auto& entry : fs::directory_iterator(project / "docs/gallery"))
+    pictures += entry.path().extension() == ".svg";
   CHECK(pictures == models);
 }
 
@@ -42,7 +44,8 @@ TEST_CASE("pictures are those that the program draws today") {
 TEST_CASE("the README shows four of them") {
   const std::string readme = read(std::string(PROJECT_DIR) + "/README.md");
   std::size_t shown = 0;
-  for (std::size_t at = readme.find("docs/gallery/"); at != std::string::npos; at = readme.find("docs/gallery/", at + 1)) {
+  for (std::size_t at = readme.find("docs/gallery/"); at != std::string::npos;
+       at = readme.find("docs/gallery/", at + 1)) {
     const std::string name = readme.substr(at, readme.find_first_of("\") ", at) - at);
     if (!name.ends_with(".svg")) continue;
     ++shown;

@@ -21,10 +21,14 @@ std::vector<Step> steps_of(const std::string& page) {
   std::istringstream lines(page);
   bool inside = false;
   for (std::string line; std::getline(lines, line);) {
-    if (line.rfind("```", 0) == 0) inside = !inside && line == "```";
-    else if (inside && line.rfind("$ ", 0) == 0) steps.push_back({line.substr(2), {}});
-    else if (inside && !steps.empty() && !line.empty()) steps.back().shown.push_back(line);
-    if (line.rfind("```", 0) == 0 && !inside) steps.push_back({"true", {}});  // what a block without a command shows belongs to none
+    if (line.rfind("```", 0) == 0)
+      inside = !inside && line == "```";
+    else if (inside && line.rfind("$ ", 0) == 0)
+      steps.push_back({line.substr(2), {}});
+    else if (inside && !steps.empty() && !line.empty())
+      steps.back().shown.push_back(line);
+    if (line.rfind("```", 0) == 0 && !inside)
+      steps.push_back({"true", {}});  // what a block without a command shows belongs to none
   }
   return steps;
 }
@@ -57,5 +61,6 @@ TEST_CASE("getting started works with the program alone, and shows what it shows
   }
   CHECK(commands >= 11);
   CHECK(lines >= 30);
-  for (const char* written : {"pendulum.lag", "motion.csv", "motion.svg", "angle.svg", "pendulum.html", "pendulum.svg"}) CHECK(fs::exists(work + "/" + written));
+  for (const char* written : {"pendulum.lag", "motion.csv", "motion.svg", "angle.svg", "pendulum.html", "pendulum.svg"})
+    CHECK(fs::exists(work + "/" + written));
 }

@@ -1,4 +1,5 @@
-// Escape bytes, characters that turn the direction of writing, and letters that look alike: shown as what they are, and warned of.
+// Escape bytes, characters that turn the direction of writing, and letters that look alike: shown as what they are, and
+// warned of.
 #include "json.hpp"
 
 #include <doctest/doctest.h>
@@ -7,7 +8,8 @@ using namespace cli_test;
 
 namespace {
 
-const char* const commands[] = {"check", "derive", "simulate", "test", "invariants", "hamiltonian", "modes", "orbits", "action", "plot", "report", "reduce", "fmt"};
+const char* const commands[] = {"check",  "derive", "simulate", "test",   "invariants", "hamiltonian", "modes",
+                                "orbits", "action", "plot",     "report", "reduce",     "fmt"};
 
 bool is_safe(const std::string& text) {
   for (const char c : text)
@@ -19,7 +21,10 @@ bool is_safe(const std::string& text) {
 
 TEST_CASE("a file name reaches no terminal as it is") {
   const Folder folder;
-  const std::string name = "a\x1b[31m\xc2\x9b" "b\u202e.lag", model = folder.write(name, pendulum);
+  const std::string name =
+                        "a\x1b[31m\xc2\x9b"
+                        "b\u202e.lag",
+                    model = folder.write(name, pendulum);
   for (const char* command : commands) {
     CAPTURE(command);
     for (const std::string& path : {model, folder.path("none" + name)}) {
@@ -37,7 +42,8 @@ TEST_CASE("a file name reaches no terminal as it is") {
 }
 
 TEST_CASE("a comment or a title that turns the direction of writing is warned of, and shown as it is") {
-  const std::string text = "system p \"title \u202e\"\ndimensionless\ncoord x : number # \u2066 comment\nT = 1/2 x'^2\nV = x^2\n";
+  const std::string text =
+      "system p \"title \u202e\"\ndimensionless\ncoord x : number # \u2066 comment\nT = 1/2 x'^2\nV = x^2\n";
   const Outcome check = maup({"check", "-"}, text);
   CHECK(check.code == 0);
   CHECK(contains(check.err, "W0108"));
@@ -76,7 +82,8 @@ TEST_CASE("names that look alike, and names of two alphabets") {
 
 TEST_CASE("a dumb terminal is given no colour and no line that is drawn over") {
   const Folder folder;
-  const std::string model = folder.write("wrong.lag", std::string(pendulum) + "V = q\n"), slow = folder.write("slow.lag", pendulum);
+  const std::string model = folder.write("wrong.lag", std::string(pendulum) + "V = q\n"),
+                    slow = folder.write("slow.lag", pendulum);
   const auto in_terminal = [&](const std::string& term, const std::string& arguments) {
     return shell("script -qec \"TERM=" + term + " '$MAUP' " + arguments + "\" /dev/null </dev/null").out;
   };

@@ -3,11 +3,11 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
-#include <csignal>
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <algorithm>
+#include <csignal>
 
 using namespace cli_test;
 
@@ -47,7 +47,8 @@ TEST_CASE("every command ends soon after the signal") {
       {"simulate", model, "--duration", "100000000s", "--precision", "quad"},
       {"simulate", model, "--duration", "100000000s", "--method", "variational", "--step", "1ms"},
       {"plot", model, "--duration", "100000000s", "--every", "1000s", "-o", folder.path("motion.svg")},
-      {"report", model, "--duration", "100000000s", "--every", "1000s", "--budget", "none", "-o", folder.path("page.html")},
+      {"report", model, "--duration", "100000000s", "--every", "1000s", "--budget", "none", "-o",
+       folder.path("page.html")},
       {"report", links, "--budget", "none", "-o", folder.path("page.html")},
       {"test", model, rich},
       {"invariants", links},
@@ -72,7 +73,8 @@ TEST_CASE("every command ends soon after the signal") {
 
 TEST_CASE("what was found until then is printed and called partial") {
   const Folder folder;
-  const Outcome section = interrupted({"orbits", henon, "--section", "x = 0 rising", "--crossings", "1000000000", "--json"}, SIGINT, moment);
+  const Outcome section = interrupted(
+      {"orbits", henon, "--section", "x = 0 rising", "--crossings", "1000000000", "--json"}, SIGINT, moment);
   check_end(section);
   const auto document = nlohmann::json::parse(section.out, nullptr, false);
   REQUIRE_FALSE(document.is_discarded());
@@ -81,14 +83,16 @@ TEST_CASE("what was found until then is printed and called partial") {
   CHECK(document["section"]["crossings"].size() > 0);
 
   const std::string fine = folder.write("fine.lag", std::string(pendulum) + "expect freedoms = 1\n"),
-                    endless = folder.write("endless.lag", std::string(pendulum) + "expect θ at 100000000 s = 1 rad ± 1\n");
+                    endless =
+                        folder.write("endless.lag", std::string(pendulum) + "expect θ at 100000000 s = 1 rad ± 1\n");
   const Outcome test = interrupted({"test", fine, endless, fine}, SIGTERM, moment);
   check_end(test);
   CHECK(contains(test.out, "fine.lag: 1 of 1 expectations hold"));
   CHECK(contains(test.err, "1 of 3 models were tested."));
 
   const std::string rows = folder.path("motion.csv");
-  const Outcome run = interrupted({"simulate", fine, "--duration", "100000000s", "--every", "1000s", "-o", rows}, SIGINT, moment);
+  const Outcome run =
+      interrupted({"simulate", fine, "--duration", "100000000s", "--every", "1000s", "-o", rows}, SIGINT, moment);
   check_end(run);
   CHECK(contains(run.out, "θ = "));
   const std::string text = read(rows);
@@ -98,7 +102,8 @@ TEST_CASE("what was found until then is printed and called partial") {
 
 TEST_CASE("pipes that nobody reads or writes hold no command up") {
   const Folder folder;
-  const std::string model = folder.write("pendulum.lag", pendulum), in = folder.path("model.lag"), out = folder.path("rows.csv"), page = folder.path("page.html");
+  const std::string model = folder.write("pendulum.lag", pendulum), in = folder.path("model.lag"),
+                    out = folder.path("rows.csv"), page = folder.path("page.html");
   for (const std::string& name : {in, out, page}) REQUIRE(::mkfifo(name.c_str(), 0600) == 0);
   const int writer = ::open(in.c_str(), O_RDWR);  // so that opening it for reading does not wait, and reading does
   for (const char* command : {"check", "derive", "simulate", "fmt", "test", "report"}) {
@@ -114,7 +119,8 @@ TEST_CASE("pipes that nobody reads or writes hold no command up") {
 TEST_CASE("a file that a killed run left beside its output goes with the next one") {
   const Folder folder;
   const std::string model = folder.write("pendulum.lag", pendulum), rows = folder.path("motion.csv");
-  const std::string gone = folder.write("motion.csv.partial-999999999-0", "half a"), alive = folder.write("motion.csv.partial-" + std::to_string(::getpid()) + "-0", "half a");
+  const std::string gone = folder.write("motion.csv.partial-999999999-0", "half a"),
+                    alive = folder.write("motion.csv.partial-" + std::to_string(::getpid()) + "-0", "half a");
   CHECK(maup({"simulate", model, "-o", rows}).code == 0);
   CHECK(::access(gone.c_str(), F_OK) != 0);
   CHECK(::access(alive.c_str(), F_OK) == 0);

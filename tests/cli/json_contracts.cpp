@@ -61,7 +61,8 @@ TEST_CASE("derive --json") {
 
 TEST_CASE("simulate --json agrees with the closed form") {
   // Harmonic oscillator, ω = 2 rad/s: x = cos 2t.
-  const std::string model = "system o\nparam m = 1 kg, k = 4 N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\nstart x = 1 m\nrun 3 s\n";
+  const std::string model =
+      "system o\nparam m = 1 kg, k = 4 N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\nstart x = 1 m\nrun 3 s\n";
   const Json json = document({"simulate", "-", "--json", "--at", "500ms,2 s"}, model);
   CHECK(json.at("final").at("t") == 3.0);
   CHECK(std::abs(json.at("final").at("state").at("x").get<double>() - std::cos(6.0)) < 1e-14);
@@ -82,21 +83,24 @@ TEST_CASE("simulate --json agrees with the closed form") {
   const Json back = document({"simulate", "-", "--json", "--duration", "-3 s"}, model);
   CHECK(back.at("final").at("t") == -3.0);
   CHECK(std::abs(back.at("final").at("state").at("x").get<double>() - std::cos(6.0)) < 1e-14);
-  const Json changed = document({"simulate", "-", "--json", "--set", "k=1 N/m", "--start", "x=2m", "--duration", "1"}, model);
+  const Json changed =
+      document({"simulate", "-", "--json", "--set", "k=1 N/m", "--start", "x=2m", "--duration", "1"}, model);
   CHECK(std::abs(changed.at("final").at("state").at("x").get<double>() - 2 * std::cos(1.0)) < 1e-14);
   const Json until = document({"simulate", "-", "--json", "--until", "x = 0", "--within", "5 s"}, model);
   CHECK(std::abs(until.at("final").at("t").get<double>() - std::acos(-1.0) / 4) < 1e-14);
 }
 
 TEST_CASE("test --json") {
-  const Json json = document({"test", "-", "--json"}, std::string(pendulum) + "expect freedoms = 1\nexpect freedoms = 2\n", 4);
+  const Json json =
+      document({"test", "-", "--json"}, std::string(pendulum) + "expect freedoms = 1\nexpect freedoms = 2\n", 4);
   CHECK(json.at("passed") == 1);
   CHECK(json.at("failed") == 1);
   REQUIRE(json.at("expectations").size() == 2);
   CHECK(json.at("expectations").at(0).at("line") == 8);
   CHECK(json.at("expectations").at(0).at("passed") == true);
   CHECK(json.at("expectations").at(1).at("passed") == false);
-  for (const char* key : {"text", "actual", "expected", "tolerance"}) CHECK(json.at("expectations").at(1).contains(key));
+  for (const char* key : {"text", "actual", "expected", "tolerance"})
+    CHECK(json.at("expectations").at(1).contains(key));
 }
 
 TEST_CASE("every command speaks JSON, and a failure is a document too") {

@@ -58,8 +58,10 @@ TEST_CASE("an unknown word in the environment") {
 TEST_CASE("numbers that are none are a failure") {
   const Folder folder;
   // The observable √x has no value once x < 0; the energy of the second overflows.
-  const std::string root = folder.write("root.lag", "system root\ndimensionless\ncoord x : number\nlet r = sqrt(x)\nT = 1/2 x'^2\nV = x\nstart x = 1\n"
-                                                    "point P at (r, 0)\nrun 3\n");
+  const std::string root =
+      folder.write("root.lag",
+                   "system root\ndimensionless\ncoord x : number\nlet r = sqrt(x)\nT = 1/2 x'^2\nV = x\nstart x = 1\n"
+                   "point P at (r, 0)\nrun 3\n");
   const Outcome rows = maup({"simulate", root, "-o", folder.path("rows.csv")});
   CHECK(rows.code == 3);
   CHECK(contains(rows.err, "E0816"));
@@ -74,11 +76,13 @@ TEST_CASE("hamiltonian --json defines every name that it uses") {
   const Folder folder;
   std::string chain = "system chain\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\n", last;
   for (const char* n : {"1", "2", "3", "4", "5"}) {
-    chain += std::string("coord a") + n + " : angle\npoint P" + n + " mass m at " + last + "l (sin a" + n + ", -cos a" + n + ")\n";
+    chain += std::string("coord a") + n + " : angle\npoint P" + n + " mass m at " + last + "l (sin a" + n + ", -cos a" +
+             n + ")\n";
     last = std::string("P") + n + " + ";
   }
   chain += "gravity (0, -g)\n";
-  const Outcome told = maup({"hamiltonian", folder.write("chain.lag", chain), "--bracket", "a1'^2 + a2'^2", "p_a1 p_a2^3", "--json"});
+  const Outcome told =
+      maup({"hamiltonian", folder.write("chain.lag", chain), "--bracket", "a1'^2 + a2'^2", "p_a1 p_a2^3", "--json"});
   REQUIRE(told.code == 0);
   const auto document = nlohmann::json::parse(told.out);
   std::set<std::string> implicit;
@@ -97,7 +101,8 @@ TEST_CASE("hamiltonian --json defines every name that it uses") {
     if (value.is_object() && value.contains("plain") && value.contains("intermediates")) {
       std::set<std::string> defined;
       std::string used = value["plain"];
-      for (const auto& i : value["intermediates"]) defined.insert(i["name"].get<std::string>()), used += " " + i["plain"].get<std::string>();
+      for (const auto& i : value["intermediates"])
+        defined.insert(i["name"].get<std::string>()), used += " " + i["plain"].get<std::string>();
       for (std::size_t at = used.find('k'); at != std::string::npos; at = used.find('k', at + 1)) {
         std::size_t end = at + 1;
         while (end < used.size() && used[end] >= '0' && used[end] <= '9') ++end;
@@ -112,9 +117,10 @@ TEST_CASE("hamiltonian --json defines every name that it uses") {
 
 TEST_CASE("2: a file that cannot be read, by every command") {
   const Folder folder;
-  const std::string missing = folder.path("none.lag"), there = folder.write("pendulum.lag", std::string(pendulum) + "expect freedoms = 1\n");
-  for (const char* command :
-       {"check", "derive", "simulate", "test", "invariants", "hamiltonian", "modes", "orbits", "action", "plot", "report", "reduce", "fmt"})
+  const std::string missing = folder.path("none.lag"),
+                    there = folder.write("pendulum.lag", std::string(pendulum) + "expect freedoms = 1\n");
+  for (const char* command : {"check", "derive", "simulate", "test", "invariants", "hamiltonian", "modes", "orbits",
+                              "action", "plot", "report", "reduce", "fmt"})
     for (const std::string& path : {missing, folder.path("."), folder.path("none\x1b.lag")}) {
       CAPTURE(command);
       std::vector<std::string> line{command, path};
@@ -152,8 +158,10 @@ TEST_CASE("a mistake in an option is shown in what the option said, not in a lin
     CAPTURE(line[2]);
     const Outcome outcome = maup(line);
     CHECK(outcome.code != 0);
-    CHECK_MESSAGE(contains(outcome.err, "- " + line[line.size() - (line[2] == "--bracket" ? 3 : 2)] + ":1:"), outcome.err);
-    for (const char* own : {"run until", "path from", "sweep m", "expect "}) CHECK_FALSE(contains(outcome.err, std::string("| ") + own));
+    CHECK_MESSAGE(contains(outcome.err, "- " + line[line.size() - (line[2] == "--bracket" ? 3 : 2)] + ":1:"),
+                  outcome.err);
+    for (const char* own : {"run until", "path from", "sweep m", "expect "})
+      CHECK_FALSE(contains(outcome.err, std::string("| ") + own));
     std::vector<std::string> json = line;
     json.push_back("--json");
     const auto document = nlohmann::json::parse(maup(json).out);

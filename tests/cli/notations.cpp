@@ -26,9 +26,10 @@ TEST_CASE("LaTeX compiles, in every form") {
     for (const std::string options : {"", "--form matrix", "--steps"}) {
       CAPTURE(model);
       CAPTURE(options);
-      const Outcome outcome = shell("\"$MAUP\" derive " + model_path(model) + " --latex " + options + " >" + folder.path("e.tex") +
-                                    " && cd " + folder.path("") +
-                                    " && timeout 60 pdflatex -interaction=nonstopmode -halt-on-error e.tex >e.out 2>&1 || { grep -A3 '^!' e.out; exit 1; }");
+      const Outcome outcome = shell("\"$MAUP\" derive " + model_path(model) + " --latex " + options + " >" +
+                                    folder.path("e.tex") + " && cd " + folder.path("") +
+                                    " && timeout 60 pdflatex -interaction=nonstopmode -halt-on-error e.tex >e.out 2>&1 "
+                                    "|| { grep -A3 '^!' e.out; exit 1; }");
       CHECK_MESSAGE(outcome.code == 0, outcome.out, outcome.err);
       CHECK(contains(read(folder.path("e.pdf")).substr(0, 5), "%PDF"));
     }
@@ -39,7 +40,8 @@ TEST_CASE("MathML is well-formed") {
     for (const std::string options : {"", "--form matrix", "--form residual", "--steps"}) {
       CAPTURE(model);
       CAPTURE(options);
-      const Outcome outcome = shell("\"$MAUP\" derive " + model_path(model) + " --mathml " + options + " | xmllint --noout -");
+      const Outcome outcome =
+          shell("\"$MAUP\" derive " + model_path(model) + " --mathml " + options + " | xmllint --noout -");
       CHECK_MESSAGE(outcome.code == 0, outcome.err);
     }
 }
@@ -57,27 +59,34 @@ TEST_CASE("a plain equation is accepted as a claim about the same system") {
 }
 
 TEST_CASE("what is equal as it is written is not proved at 0 random points") {
-  const Outcome outcome = maup({"test", "-", "--json"}, std::string(pendulum) + "expect conserved 1/2 m l^2 θ'^2 - m g l cos θ\nexpect bracket (θ, p_θ) = 1\n");
+  const Outcome outcome =
+      maup({"test", "-", "--json"},
+           std::string(pendulum) + "expect conserved 1/2 m l^2 θ'^2 - m g l cos θ\nexpect bracket (θ, p_θ) = 1\n");
   CHECK_MESSAGE(outcome.code == 0, outcome.out, outcome.err);
   CHECK(contains(outcome.out, "proved term by term"));
   CHECK(!contains(outcome.out, " 0 random points"));
 }
 
 TEST_CASE("check shows quantities as the text has them, and torques in N m") {
-  const std::string model = "system motor\nparam J = 20 g cm^2, τ = 0.1 N m, k = 3 N m/rad\ncoord θ : angle\nT = 1/2 J θ'^2\nV = 1/2 k θ^2\n"
-                            "force θ = τ\nconstraint θ = 0.25 name hold\nstart θ = 0.25 rad, θ' = 0 rpm\n";
+  const std::string model =
+      "system motor\nparam J = 20 g cm^2, τ = 0.1 N m, k = 3 N m/rad\ncoord θ : angle\nT = 1/2 J θ'^2\nV = 1/2 k θ^2\n"
+      "force θ = τ\nconstraint θ = 0.25 name hold\nstart θ = 0.25 rad, θ' = 0 rpm\n";
   const Outcome outcome = maup({"check", "-"}, model);
-  for (const char* part : {"J = 20 g cm^2", "τ = 0.1 N m", "k = 3 N m/rad", "θ = 0.25 rad", "θ' = 0 rpm"}) CHECK_MESSAGE(contains(outcome.out, part), part, outcome.out);
+  for (const char* part : {"J = 20 g cm^2", "τ = 0.1 N m", "k = 3 N m/rad", "θ = 0.25 rad", "θ' = 0 rpm"})
+    CHECK_MESSAGE(contains(outcome.out, part), part, outcome.out);
   CHECK(contains(maup({"check", "-"}, pendulum).out, "θ = 60 deg"));
   CHECK(contains(maup({"derive", "-", "--json"}, model).out, "\"unit\": \"N m\""));
 }
 
 TEST_CASE("multipliers are read as they are printed") {
-  const std::string rod = "system rod\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = m g y\nconstraint x^2 + y^2 = l^2";
+  const std::string rod =
+      "system rod\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = m g "
+      "y\nconstraint x^2 + y^2 = l^2";
   CHECK(maup({"test", "-"}, rod + " name rod\nexpect equation m x'' = 2 x λ_rod\n").code == 0);
   CHECK(maup({"test", "-"}, rod + "\nexpect equation m x'' = 2 x λ\n").code == 0);
   CHECK(maup({"test", "-"}, rod + " name rod\nexpect equation m x'' = 3 x λ_rod\n").code == 4);
-  CHECK(contains(maup({"check", "-"}, rod + " name rod\nV += λ_rod\n").err, "E0201"));   // of the motion, not of the model
+  CHECK(
+      contains(maup({"check", "-"}, rod + " name rod\nV += λ_rod\n").err, "E0201"));  // of the motion, not of the model
 }
 
 TEST_CASE("every stage can be printed") {
@@ -91,7 +100,8 @@ TEST_CASE("every stage can be printed") {
 
 TEST_CASE("--steps names a rule on each line of the textbook path") {
   const Outcome outcome = maup({"derive", "-", "--steps"}, pendulum);
-  for (const char* part : {"Coordinates", "chain rule", "∂L/∂θ'", "d/dt", "Euler-Lagrange", "m l^2 θ'' + m g l sin θ = 0", "Certificate: passed"}) {
+  for (const char* part : {"Coordinates", "chain rule", "∂L/∂θ'", "d/dt", "Euler-Lagrange",
+                           "m l^2 θ'' + m g l sin θ = 0", "Certificate: passed"}) {
     CAPTURE(part);
     CHECK(contains(outcome.out, part));
   }

@@ -12,7 +12,8 @@ using namespace cli_test;
 namespace {
 
 const std::string kDouble =
-    "system double_pendulum\nparam m1 = 1 kg, m2 = 1 kg, l1 = 1 m, l2 = 1 m, g = 9.81 m/s^2, Ω = 1 rad/s\ncoord θ1, θ2 : angle\n"
+    "system double_pendulum\nparam m1 = 1 kg, m2 = 1 kg, l1 = 1 m, l2 = 1 m, g = 9.81 m/s^2, Ω = 1 rad/s\ncoord θ1, θ2 "
+    ": angle\n"
     "point A mass m1 at l1 (sin θ1, -cos θ1)\npoint B mass m2 at A + l2 (sin θ2, -cos θ2)\ngravity (0, -g)\n"
     "start θ1 = 0.3 rad, θ2 = 0.1 rad\nrun 0.2 s\n";
 
@@ -50,13 +51,22 @@ TEST_CASE("a mistake in an option is shown in the option, with carets below it, 
            Wrong{{"simulate", "-", "--set", "l1=2m", "--set", "g=1 N"}, "--set", "g=1 N", "  ^^^", "force"},
            Wrong{{"simulate", "-", "--start", "θ1=2 s"}, "--start", "θ1=2 s", "   ^^^", "time"},
            Wrong{{"modes", "-", "--at", "θ9=0"}, "--at", "θ9=0", "^^", "not declared"},
-           Wrong{{"modes", "-", "--sweep", "Ω = 0 .. 12 rad steps 3"}, "--sweep", "Ω = 0 .. 12 rad steps 3", "", "rad/s"},
+           Wrong{
+               {"modes", "-", "--sweep", "Ω = 0 .. 12 rad steps 3"}, "--sweep", "Ω = 0 .. 12 rad steps 3", "", "rad/s"},
            Wrong{{"modes", "-", "--at", "θ1=0", "--Q", "1, x, 3, 4"}, "--Q", "1, x, 3, 4", "   ^", "no number"},
            Wrong{{"plot", "-", "--y", "θ1 - θ3"}, "--y", "θ1 - θ3", "     ^^", "Did you mean"},
            Wrong{{"plot", "-", "--y", "θ1 - l1"}, "--y", "θ1 - l1", "     ^^", "angle"},
-           Wrong{{"simulate", "-", "--columns", "θ1, cos θ1 - t", "-o", "/dev/null"}, "--columns", "cos θ1 - t", "         ^", "time"},
+           Wrong{{"simulate", "-", "--columns", "θ1, cos θ1 - t", "-o", "/dev/null"},
+                 "--columns",
+                 "cos θ1 - t",
+                 "         ^",
+                 "time"},
            Wrong{{"hamiltonian", "-", "--bracket", "θ1", "p_θ9"}, "--bracket", "p_θ9", "^^^^", "not declared"},
-           Wrong{{"action", "-", "--path", "θ1 = t, θ2 = 3 m", "--from", "0s", "--to", "1s"}, "--path", "θ1 = t, θ2 = 3 m", "     ^", "along the path"},
+           Wrong{{"action", "-", "--path", "θ1 = t, θ2 = 3 m", "--from", "0s", "--to", "1s"},
+                 "--path",
+                 "θ1 = t, θ2 = 3 m",
+                 "     ^",
+                 "along the path"},
        }) {
     std::string command;
     for (const std::string& a : w.arguments) command += a + " ";
@@ -91,7 +101,9 @@ TEST_CASE("--until takes the place of the model's own run") {
 TEST_CASE("formulas are columns of a trajectory, with units, and the rows are what they say") {
   const Folder folder;
   const std::string file = folder.path("m.csv");
-  const Outcome outcome = maup({"simulate", "-", "-o", file, "--columns", "θ1 - θ2, θ1, θ2, max(θ1, θ2), 1/2 m1 (l1 θ1')^2, θ1'', energy, θ1'"}, kDouble);
+  const Outcome outcome = maup(
+      {"simulate", "-", "-o", file, "--columns", "θ1 - θ2, θ1, θ2, max(θ1, θ2), 1/2 m1 (l1 θ1')^2, θ1'', energy, θ1'"},
+      kDouble);
   REQUIRE_MESSAGE(outcome.code == 0, outcome.err);
   const std::string csv = read(file);
   CHECK(contains(csv, "θ1 - θ2 [rad],θ1 [rad],θ2 [rad],\"max(θ1, θ2) [rad]\",1/2 m1 (l1 θ1')^2 [J]"));
@@ -105,7 +117,8 @@ TEST_CASE("formulas are columns of a trajectory, with units, and the rows are wh
   }
   // θ1'' is the slope of θ1'.
   const std::size_t k = rows.size() / 2;
-  CHECK(rows[k][6] == doctest::Approx((rows[k + 1][8] - rows[k - 1][8]) / (rows[k + 1][0] - rows[k - 1][0])).epsilon(1e-2));
+  CHECK(rows[k][6] ==
+        doctest::Approx((rows[k + 1][8] - rows[k - 1][8]) / (rows[k + 1][0] - rows[k - 1][0])).epsilon(1e-2));
 }
 
 TEST_CASE("formulas on both axes of a picture; with errors of their own") {
@@ -120,11 +133,14 @@ TEST_CASE("formulas on both axes of a picture; with errors of their own") {
 }
 
 TEST_CASE("forces of constraints in formulas") {
-  const std::string rod = "system rod\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\ngravity (0, -g)\n"
-                          "constraint x^2 + y^2 = l^2 name rod\nstart x = 0.6 m, y = -0.8 m\nrun 0.5 s\n";
+  const std::string rod =
+      "system rod\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\ngravity (0, "
+      "-g)\n"
+      "constraint x^2 + y^2 = l^2 name rod\nstart x = 0.6 m, y = -0.8 m\nrun 0.5 s\n";
   const Folder folder;
   const std::string file = folder.path("m.csv");
-  const Outcome outcome = maup({"simulate", "-", "-o", file, "--columns", "reaction(rod), 2 reaction(rod)/(m g), multiplier(rod)"}, rod);
+  const Outcome outcome =
+      maup({"simulate", "-", "-o", file, "--columns", "reaction(rod), 2 reaction(rod)/(m g), multiplier(rod)"}, rod);
   REQUIRE_MESSAGE(outcome.code == 0, outcome.err);
   for (const auto& row : numbers(read(file))) CHECK(row[2] == doctest::Approx(2 * row[1] / 9.81));
 }

@@ -9,12 +9,26 @@ using namespace cli_test;
 
 namespace {
 
-const char* const bead = "system bead\ndimensionless\nparam Ω = 2\ncoord x : number\ncoord y : number\nT = 1/2 (x'^2 + y'^2)\nV = x^2 + y^2\nconstraint y = x\nstart x = 1, y = 1\nrun 1\n";
+const char* const bead =
+    "system bead\ndimensionless\nparam Ω = 2\ncoord x : number\ncoord y : number\nT = 1/2 (x'^2 + y'^2)\nV = x^2 + "
+    "y^2\nconstraint y = x\nstart x = 1, y = 1\nrun 1\n";
 
 /// Every option of a command that writes a file.
-const std::vector<std::vector<std::string>> writers{
-    {"simulate", "-o"}, {"simulate", "--plot"}, {"plot", "-o"}, {"report", "-o"}, {"animate", "-o"}, {"animate", "--still", "1s", "-o"}, {"reduce", "-o"}, {"action", "--motion", "-o"}, {"action", "--motion", "--plot"},
-    {"hamiltonian", "--integrate", "-o"}, {"orbits", "--lyapunov", "-o"}, {"orbits", "--lyapunov", "--plot"}, {"modes", "--plot"}, {"modes", "--roots"}, {"modes", "--csv"}};
+const std::vector<std::vector<std::string>> writers{{"simulate", "-o"},
+                                                    {"simulate", "--plot"},
+                                                    {"plot", "-o"},
+                                                    {"report", "-o"},
+                                                    {"animate", "-o"},
+                                                    {"animate", "--still", "1s", "-o"},
+                                                    {"reduce", "-o"},
+                                                    {"action", "--motion", "-o"},
+                                                    {"action", "--motion", "--plot"},
+                                                    {"hamiltonian", "--integrate", "-o"},
+                                                    {"orbits", "--lyapunov", "-o"},
+                                                    {"orbits", "--lyapunov", "--plot"},
+                                                    {"modes", "--plot"},
+                                                    {"modes", "--roots"},
+                                                    {"modes", "--csv"}};
 
 Outcome write(std::vector<std::string> command, const std::string& model, const std::string& file) {
   command.insert(command.begin() + 1, model);
@@ -26,7 +40,8 @@ Outcome write(std::vector<std::string> command, const std::string& model, const 
 
 TEST_CASE("the model is never written over, under whatever name") {
   const Folder folder;
-  const std::string model = folder.write("bead.lag", bead), link = folder.path("link.lag"), twin = folder.path("twin.csv");
+  const std::string model = folder.write("bead.lag", bead), link = folder.path("link.lag"),
+                    twin = folder.path("twin.csv");
   std::filesystem::create_symlink(model, link);
   std::filesystem::create_hard_link(model, twin);
   for (const auto& writer : writers)
@@ -57,7 +72,8 @@ TEST_CASE("a name of another kind is refused before anything is computed") {
 TEST_CASE("two options that ask for one file; devices take what they are given") {
   const Folder folder;
   const std::string model = folder.write("bead.lag", bead);
-  const Outcome outcome = maup({"action", model, "--motion", "--plot", folder.path("p.svg"), "--plot-paths", folder.path("p.svg")});
+  const Outcome outcome =
+      maup({"action", model, "--motion", "--plot", folder.path("p.svg"), "--plot-paths", folder.path("p.svg")});
   CHECK(outcome.code == 2);
   CHECK(contains(outcome.err, "both ask for"));
   CHECK(maup({"report", model, "-o", "/dev/null"}).code == 0);

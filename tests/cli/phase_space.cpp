@@ -56,16 +56,18 @@ TEST_CASE("hamiltonian --integrate gives the motion of simulate") {
   const Json canonical = json_of(told)["integration"];
   CHECK(canonical["difference"].get<double>() < 1e-13);
   const Json run = json_of(maup({"simulate", model, "--json"}))["final"];
-  CHECK(canonical["final"]["state"]["r"].get<double>() == doctest::Approx(run["state"]["r"].get<double>()).epsilon(1e-13));
+  CHECK(canonical["final"]["state"]["r"].get<double>() ==
+        doctest::Approx(run["state"]["r"].get<double>()).epsilon(1e-13));
   CHECK(canonical["final"]["state"]["p_φ"].get<double>() == doctest::Approx(2.0).epsilon(1e-14));
   CHECK(contains(read(rows), "t [s],r [m],φ [rad],p_r [kg m/s]"));
 }
 
 TEST_CASE("a singular Legendre transform is a warning with its constraints, and no canonical motion") {
   const Folder folder;
-  const std::string model = folder.write("sat.lag", "param I1 = 1 kg m^2, I2 = 2 kg m^2, I3 = 3 kg m^2\n"
-                                                    "body sat inertia diag(I1, I2, I3) rotation quaternion\n"
-                                                    "start sat.ω = (0.1, 2, 0.1) rad/s\nrun 1 s\n");
+  const std::string model = folder.write("sat.lag",
+                                         "param I1 = 1 kg m^2, I2 = 2 kg m^2, I3 = 3 kg m^2\n"
+                                         "body sat inertia diag(I1, I2, I3) rotation quaternion\n"
+                                         "start sat.ω = (0.1, 2, 0.1) rad/s\nrun 1 s\n");
   const Outcome told = maup({"hamiltonian", model});
   CHECK(told.code == 0);
   CHECK(contains(told.err, "W1101"));
@@ -96,19 +98,22 @@ TEST_CASE("LaTeX and MathML of phase space") {
 
 TEST_CASE("expectations about phase space: proved, refuted, and told what it is instead") {
   const Folder folder;
-  const Outcome good = maup({"test", folder.write("good.lag", kepler + "expect hamiltonian = p_r^2/(2 m) + p_φ^2/(2 m r^2) - k/r\n"
-                                                                      "expect routhian of φ = 1/2 m r'^2 - p_φ^2/(2 m r^2) + k/r\n"
-                                                                      "expect bracket (r p_r, p_φ^2) = 0\n"
-                                                                      "expect p_φ at 3 s = 2 kg m^2/s rel 1e-13\n")});
+  const Outcome good =
+      maup({"test", folder.write("good.lag", kepler + "expect hamiltonian = p_r^2/(2 m) + p_φ^2/(2 m r^2) - k/r\n"
+                                                      "expect routhian of φ = 1/2 m r'^2 - p_φ^2/(2 m r^2) + k/r\n"
+                                                      "expect bracket (r p_r, p_φ^2) = 0\n"
+                                                      "expect p_φ at 3 s = 2 kg m^2/s rel 1e-13\n")});
   CHECK_MESSAGE(good.code == 0, good.out);
-  const Outcome bad = maup({"test", folder.write("bad.lag", kepler + "expect hamiltonian = p_r^2/(2 m) + p_φ^2/(m r^2) - k/r\n")});
+  const Outcome bad =
+      maup({"test", folder.write("bad.lag", kepler + "expect hamiltonian = p_r^2/(2 m) + p_φ^2/(m r^2) - k/r\n")});
   CHECK(bad.code == 4);
   CHECK(contains(bad.out, "The hamiltonian is (p_r^2 + p_φ^2/r^2)/(2 m) - k/r"));
 }
 
 TEST_CASE("a momentum before a bracket is a factor") {
   const Folder folder;
-  const Outcome told = maup({"hamiltonian", folder.write("kepler.lag", kepler), "--bracket", "r", "p_r (r + r)", "--json"});
+  const Outcome told =
+      maup({"hamiltonian", folder.write("kepler.lag", kepler), "--bracket", "r", "p_r (r + r)", "--json"});
   REQUIRE_MESSAGE(told.code == 0, told.err);
   CHECK(json_of(told)["brackets"][0]["plain"] == "2 r");
 }
@@ -121,7 +126,8 @@ TEST_CASE("a Lagrangian whose mass matrix is singular has primary constraints, a
   CHECK(contains(both.out, "p_x - y = 0"));
   CHECK(contains(both.out, "p_y = 0"));
   CHECK(contains(both.out, "H = 1/2 x^2 + 1/2 y^2"));
-  const std::string mixed = "dimensionless\nparam m = 1\ncoord x, y : number\nL = 1/2 m (x' - y)^2 - 1/2 x^2\nstart x = 1\nrun 1\n";
+  const std::string mixed =
+      "dimensionless\nparam m = 1\ncoord x, y : number\nL = 1/2 m (x' - y)^2 - 1/2 x^2\nstart x = 1\nrun 1\n";
   const Outcome one = maup({"hamiltonian", "-"}, mixed);
   CHECK_MESSAGE(one.code == 0, one.err);
   CHECK(contains(one.out, "p_y = 0"));

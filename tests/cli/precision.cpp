@@ -11,8 +11,10 @@ const std::string oscillator =
     "system o\nparam m = 1 kg, k = 1 N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\nstart x = 1 m\nrun 2 s\n";
 
 // cos 2 and cos 0.1, summed in Python's decimals.
-const std::string cos2 = "-0.416146836547142386997568229500762189766000771075544890755149973781964936124079169074531777860169140";
-const std::string cos01 = "0.99500416527802576609556198780387029483857622541508403595935274468526591021824046652966361852826";
+const std::string cos2 =
+    "-0.416146836547142386997568229500762189766000771075544890755149973781964936124079169074531777860169140";
+const std::string cos01 =
+    "0.99500416527802576609556198780387029483857622541508403595935274468526591021824046652966361852826";
 
 }  // namespace
 
@@ -92,11 +94,13 @@ TEST_CASE("simulate --precision: what is not possible") {
 
 TEST_CASE("simulate --precision: a collision, and Ctrl-C") {
   const Folder folder;
-  const std::string fall = folder.write("fall.lag", "system fall\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = -1/x\nstart x = 1\nrun 3\n");
+  const std::string fall = folder.write(
+      "fall.lag", "system fall\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = -1/x\nstart x = 1\nrun 3\n");
   const Outcome collision = maup({"simulate", fall, "--precision", "quad"});
   CHECK(collision.code == 3);
   CHECK(contains(collision.err, "collision"));
   const std::string model = folder.write("o.lag", oscillator);
-  const Outcome stopped = shell("timeout -s INT 1 \"$MAUP\" simulate " + model + " --precision 100 --duration 1e7s; exit $?");
+  const Outcome stopped =
+      shell("timeout -s INT 1 \"$MAUP\" simulate " + model + " --precision 100 --duration 1e7s; exit $?");
   CHECK(contains(stopped.err, "interrupted"));
 }

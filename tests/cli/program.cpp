@@ -26,7 +26,8 @@ std::string quoted(const std::string& word) {
 
 Folder::Folder() {
   static std::atomic<int> count{0};
-  path_ = std::filesystem::temp_directory_path() / ("maup_cli_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
+  path_ = std::filesystem::temp_directory_path() /
+          ("maup_cli_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
   std::filesystem::create_directories(path_);
 }
 
@@ -58,9 +59,8 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 
 Outcome shell(const std::string& command) {
   const Folder folder;
-  const std::string script =
-      "MAUP=" + quoted(MAUP_PROGRAM) + "; ulimit -v 2000000; { " + command + "\n} >" + quoted(folder.path("out")) + " 2>" +
-      quoted(folder.path("err"));
+  const std::string script = "MAUP=" + quoted(MAUP_PROGRAM) + "; ulimit -v 2000000; { " + command + "\n} >" +
+                             quoted(folder.path("out")) + " 2>" + quoted(folder.path("err"));
   const auto begin = std::chrono::steady_clock::now();
   const int status = std::system(script.c_str());
   Outcome outcome;
@@ -74,13 +74,15 @@ Outcome shell(const std::string& command) {
 namespace {
 
 /// The program with its streams in files; the number of the process.
-pid_t start(const std::vector<std::string>& arguments, const std::string& in, const std::string& out, const std::string& err) {
+pid_t start(const std::vector<std::string>& arguments, const std::string& in, const std::string& out,
+            const std::string& err) {
   const pid_t process = ::fork();
   if (process != 0) return process;
   std::vector<char*> words{const_cast<char*>(MAUP_PROGRAM)};
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
-  const bool ready = std::freopen(in.c_str(), "r", stdin) && std::freopen(out.c_str(), "w", stdout) && std::freopen(err.c_str(), "w", stderr);
+  const bool ready = std::freopen(in.c_str(), "r", stdin) && std::freopen(out.c_str(), "w", stdout) &&
+                     std::freopen(err.c_str(), "w", stderr);
   if (ready) ::execv(MAUP_PROGRAM, words.data());
   ::_exit(127);
 }

@@ -16,9 +16,11 @@ Outcome maup(const std::vector<std::string>& arguments, const std::string& input
 /// Runs any shell command line; $MAUP is the program.
 Outcome shell(const std::string& command);
 
-/// Starts maup with these arguments, sends the signal once it has computed for some time or waits for a pipe, and waits for its end.
-/// `after`: in seconds of the processor, whatever else runs on it. `seconds`: from the signal to the end. `input`: the file on standard input.
-Outcome interrupted(const std::vector<std::string>& arguments, int signal, double after, const std::string& input = "/dev/null");
+/// Starts maup with these arguments, sends the signal once it has computed for some time or waits for a pipe, and waits
+/// for its end. `after`: in seconds of the processor, whatever else runs on it. `seconds`: from the signal to the end.
+/// `input`: the file on standard input.
+Outcome interrupted(const std::vector<std::string>& arguments, int signal, double after,
+                    const std::string& input = "/dev/null");
 
 /// A directory of its own, removed at the end.
 class Folder {

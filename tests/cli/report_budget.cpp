@@ -19,7 +19,9 @@ std::string chain(int links) {
   return text + "gravity (0, -g)\nstart a1 = 60 deg\nrun 10 s\n";
 }
 
-bool has(const nlohmann::json& list, const std::string& name) { return std::find(list.begin(), list.end(), name) != list.end(); }
+bool has(const nlohmann::json& list, const std::string& name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
 
 }  // namespace
 
@@ -43,7 +45,8 @@ TEST_CASE("a chain of 20 links: what does not come in time is left out, with a w
 
 TEST_CASE("a small model has all of its sections, and those that are chosen alone") {
   const Folder folder;
-  const std::string model = folder.write("pendulum.lag", std::string(pendulum) + "expect freedoms = 1\n"), page = folder.path("page.html");
+  const std::string model = folder.write("pendulum.lag", std::string(pendulum) + "expect freedoms = 1\n"),
+                    page = folder.path("page.html");
   const Outcome whole = maup({"report", model, "-o", page, "--budget", "none", "--json"});
   REQUIRE(whole.code == 0);
   const auto document = nlohmann::json::parse(whole.out);
@@ -55,7 +58,8 @@ TEST_CASE("a small model has all of its sections, and those that are chosen alon
     CHECK(contains(whole_page, std::string("<section id=\"") + name + "\""));
     const Outcome alone = maup({"report", model, "-o", page, "--sections", name, "--json"});
     CHECK(alone.code == 0);
-    for (const char* other : {"equations", "motion", "modes", "conserved", "phase-space", "derivation", "expectations"}) {
+    for (const char* other :
+         {"equations", "motion", "modes", "conserved", "phase-space", "derivation", "expectations"}) {
       CAPTURE(other);
       CHECK(contains(read(page), std::string("<section id=\"") + other + "\"") == (std::string(name) == other));
     }
@@ -84,7 +88,8 @@ TEST_CASE("a budget too short for a certificate leaves no page; a run is shown a
   CHECK(contains(none.err, "E0814"));
   CHECK(folder.names() == std::vector<std::string>{"chain.lag"});
   const std::string one = folder.write("pendulum.lag", pendulum);
-  const Outcome cut = maup({"report", one, "-o", page, "--sections", "motion", "--duration", "100000000s", "--every", "1000s", "--budget", "6s"});
+  const Outcome cut = maup({"report", one, "-o", page, "--sections", "motion", "--duration", "100000000s", "--every",
+                            "1000s", "--budget", "6s"});
   CHECK(cut.code == 0);
   CHECK(contains(cut.err, "The run ended early: its share of the budget of 6s was used up"));
   CHECK(contains(read(page), "was used up"));

@@ -1,4 +1,5 @@
-// What shells and `man` read is made from the tables of options: it names what --help names, and works in the shells themselves.
+// What shells and `man` read is made from the tables of options: it names what --help names, and works in the shells
+// themselves.
 #include "program.hpp"
 
 #include <doctest/doctest.h>
@@ -26,8 +27,10 @@ std::vector<std::string> commands() {
   bool inside = false;
   for (const std::string& line : lines_of(maup({"--help"}).out)) {
     std::smatch match;
-    if (line.rfind("  ", 0) != 0) inside = line == "Subcommands:" || line == "Commands:";
-    else if (inside && std::regex_match(line, match, row)) out.push_back(match[1]);
+    if (line.rfind("  ", 0) != 0)
+      inside = line == "Subcommands:" || line == "Commands:";
+    else if (inside && std::regex_match(line, match, row))
+      out.push_back(match[1]);
   }
   return out;
 }
@@ -83,7 +86,8 @@ using Set = std::set<std::string>;
 }  // namespace
 
 TEST_CASE("completions and the manual page name every command and every option of --help") {
-  const std::string zsh = maup({"completions", "zsh"}).out, fish = maup({"completions", "fish"}).out, page = maup({"manual"}).out;
+  const std::string zsh = maup({"completions", "zsh"}).out, fish = maup({"completions", "fish"}).out,
+                    page = maup({"manual"}).out;
   const auto all = commands();
   REQUIRE(all.size() >= 18);
   const Folder folder;
@@ -136,7 +140,10 @@ TEST_CASE("zsh and fish read their completions, and fish offers what bash offers
   }
   if (has_program("fish")) {
     CHECK(shell(prefix + "$MAUP completions fish > maup.fish && fish --no-execute maup.fish").code == 0);
-    const auto fish = [&](const std::string& line) { return shell(prefix + "fish -c 'source maup.fish; complete -C \"" + line + "\"' | cut -f1 | sort | tr '\\n' ' '").out; };
+    const auto fish = [&](const std::string& line) {
+      return shell(prefix + "fish -c 'source maup.fish; complete -C \"" + line + "\"' | cut -f1 | sort | tr '\\n' ' '")
+          .out;
+    };
     CHECK(fish("maup si") == "simulate ");
     CHECK(fish("maup simulate --method ") == "auto stiff taylor variational ");
     CHECK(fish("maup check ar") == "arm.lag ");
@@ -144,7 +151,9 @@ TEST_CASE("zsh and fish read their completions, and fish offers what bash offers
   }
 }
 
-TEST_CASE("the manual page: no mistake of its markup, the exit codes of the manual, every variable of the environment that is read") {
+TEST_CASE(
+    "the manual page: no mistake of its markup, the exit codes of the manual, every variable of the environment that "
+    "is read") {
   const Folder folder;
   const std::string page = maup({"manual"}).out;
   const std::string path = folder.write("maup.1", page);
@@ -152,7 +161,8 @@ TEST_CASE("the manual page: no mistake of its markup, the exit codes of the manu
     const Outcome lint = shell("mandoc -T lint -W warning " + path + " | grep -v 'missing date'");
     CHECK_MESSAGE(lint.out.empty(), lint.out);
     const Outcome shown = shell("mandoc -T utf8 " + path + " | col -b");
-    for (const char* part : {"--duration", "θ'=1 rad/s", "maup new pendulum", "EXIT STATUS", "NO_COLOR"}) CHECK_MESSAGE(contains(shown.out, part), part);
+    for (const char* part : {"--duration", "θ'=1 rad/s", "maup new pendulum", "EXIT STATUS", "NO_COLOR"})
+      CHECK_MESSAGE(contains(shown.out, part), part);
   }
   // | 3 | the run failed: … |
   const std::string manual = read(std::string(PROJECT_DIR) + "/docs/manual/command_line.md");
@@ -163,7 +173,8 @@ TEST_CASE("the manual page: no mistake of its markup, the exit codes of the manu
     CHECK_MESSAGE(contains(page, ".TP\n\\fB" + (*it)[1].str() + "\\fR\n" + text + ".\n"), text);
   }
   CHECK(rows == 7);
-  const Outcome variables = shell("cd " PROJECT_DIR " && grep -rhoE 'getenv\\(\"[A-Z_]+' src apps include | sed 's/.*\"//' | sort -u");
+  const Outcome variables =
+      shell("cd " PROJECT_DIR " && grep -rhoE 'getenv\\(\"[A-Z_]+' src apps include | sed 's/.*\"//' | sort -u");
   CHECK(lines_of(variables.out).size() >= 5);
   for (const std::string& name : lines_of(variables.out)) CHECK_MESSAGE(contains(page, "\n.B " + name + "\n"), name);
 }
@@ -182,10 +193,12 @@ TEST_CASE("file managers know models: the type, what opens them, icons") {
     CHECK_MESSAGE((outcome.code == 0 && outcome.out.empty()), outcome.out);
   }
   if (has_program("update-mime-database")) {
-    CHECK(shell("mkdir -p " + folder.path("mime/packages") + " && cp " + top + "/packaging/maupertuis.xml " + folder.path("mime/packages") +
-                " && update-mime-database " + folder.path("mime")).code == 0);
+    CHECK(shell("mkdir -p " + folder.path("mime/packages") + " && cp " + top + "/packaging/maupertuis.xml " +
+                folder.path("mime/packages") + " && update-mime-database " + folder.path("mime"))
+              .code == 0);
     CHECK(contains(read(folder.path("mime/globs2")), "text/x-maupertuis:*.lag"));
   }
-  for (const char* icon : {"maupertuis", "text-x-maupertuis"}) CHECK(shell("xmllint --noout " + top + "/packaging/" + icon + ".svg").code == 0);
+  for (const char* icon : {"maupertuis", "text-x-maupertuis"})
+    CHECK(shell("xmllint --noout " + top + "/packaging/" + icon + ".svg").code == 0);
   CHECK(shell("sh -n " + packaging + "show_model").code == 0);
 }

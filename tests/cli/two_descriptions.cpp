@@ -145,14 +145,17 @@ TEST_CASE("compare: 5 for evidence without a proof, 4 where only one is defined"
   CHECK(json.at("verdict") == "evidence");
   CHECK(json.at("ok") == false);
   const std::string head = "system s\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nstart x = 1\nrun 0.5\n";
-  const Outcome domain = maup({"compare", folder.write("both.lag", head + "V = log(x^2)\n"), folder.write("right.lag", head + "V = 2 log(x)\n")});
+  const Outcome domain = maup({"compare", folder.write("both.lag", head + "V = log(x^2)\n"),
+                               folder.write("right.lag", head + "V = 2 log(x)\n")});
   CHECK(domain.code == 4);
   CHECK(contains(domain.out, "they agree where both are"));
 }
 
 TEST_CASE("energies that jump are refused before anything is derived or run") {
   const Folder folder;
-  const std::string model = folder.write("step.lag", "system s\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 0.4 step(x - 1)\nstart x' = 1\nrun 3\n");
+  const std::string model = folder.write(
+      "step.lag",
+      "system s\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 0.4 step(x - 1)\nstart x' = 1\nrun 3\n");
   for (const char* command : {"check", "derive", "simulate"}) {
     const Outcome outcome = maup({command, model});
     CHECK(outcome.code == 1);

@@ -83,8 +83,10 @@ TEST_CASE("frequencies and periods are those of motions in time") {
 
 TEST_CASE("reduce leaves out a path whose coordinates go, and says so") {
   const Outcome told = maup({"reduce", "-"},
-                            "system p\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\ngravity (0, -g)\n"
-                            "constraint x^2 + y^2 = l^2\nstart x = 0.6 m, y = -0.8 m\nrun 1 s\npath from (0.6 m, -0.8 m) at 0 s to (-0.6 m, -0.8 m) at 1 s\n"
+                            "system p\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at "
+                            "(x, y)\ngravity (0, -g)\n"
+                            "constraint x^2 + y^2 = l^2\nstart x = 0.6 m, y = -0.8 m\nrun 1 s\npath from (0.6 m, -0.8 "
+                            "m) at 0 s to (-0.6 m, -0.8 m) at 1 s\n"
                             "expect action = 1 J s ± 1e-9\n");
   CHECK_MESSAGE(told.code == 0, told.err);
   CHECK(!contains(told.out, "path from"));

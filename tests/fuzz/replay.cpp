@@ -1,5 +1,6 @@
-// replay FILE|FOLDER...: feeds stored texts to the fuzz target, one after another, without libFuzzer: what the fuzzer once found stays found.
-// A text that ends the program, or takes longer than ten seconds, is named.
+// replay FILE|FOLDER...: feeds stored texts to the fuzz target, one after another, without libFuzzer: what the fuzzer
+// once found stays found. A text that ends the program, or takes longer than ten seconds, is named.
+#include <unistd.h>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
@@ -8,7 +9,6 @@
 #include <fstream>
 #include <iterator>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

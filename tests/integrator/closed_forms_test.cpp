@@ -52,7 +52,9 @@ TEST_CASE("double pendulum from points: reference values of an independent integ
   Mechanics m;
   build_double_pendulum(m);
   auto stepper = m.stepper();
-  struct Reference { double t, a, b, tolerance; };
+  struct Reference {
+    double t, a, b, tolerance;
+  };
   for (const auto& [t, a, b, tolerance] : {Reference{1, -0.08386042040500097, -1.313096450613925, 1e-13},
                                            Reference{2, -2.922032235907541, 0.11738517220261478, 1e-13},
                                            Reference{5, 8.191078459414503, 0.0150169205862499, 5e-12},

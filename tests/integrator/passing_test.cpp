@@ -37,15 +37,21 @@ TEST_CASE("a removable singularity is passed, and the energy holds") {
   CHECK(end.v * end.v / 2 - std::sin(end.x) / end.x == doctest::Approx(-std::sin(2.0) / 2).epsilon(1e-12));
   const Fall from_there = fall(0, 0.3, 20, well);
   REQUIRE(from_there.ending == StepEnding::None);
-  CHECK(from_there.v * from_there.v / 2 - std::sin(from_there.x) / from_there.x == doctest::Approx(0.045 - 1).epsilon(1e-12));
+  CHECK(from_there.v * from_there.v / 2 - std::sin(from_there.x) / from_there.x ==
+        doctest::Approx(0.045 - 1).epsilon(1e-12));
 }
 
 TEST_CASE("true singularities end the motion") {
-  const auto attraction = [](Expr x) { return apply(Kind::Log, pow(x, Rational(2))); };  // reached with infinite velocity
+  const auto attraction = [](Expr x) {
+    return apply(Kind::Log, pow(x, Rational(2)));
+  };  // reached with infinite velocity
   CHECK(fall(1, 0, 10, attraction).ending != StepEnding::None);
   const auto charge = [](Expr x) { return -pow(pow(x, Rational(2)), Rational(-1, 2)); };
   CHECK(fall(1, 0.5, 10, charge).ending != StepEnding::None);
-  const auto cusp = [](Expr x) { return pow(pow(x, Rational(2)), Rational(1, 2)) * Rational(2); };  // the force jumps by 4
+  const auto cusp = [](Expr x) {
+    return pow(pow(x, Rational(2)), Rational(1, 2)) * Rational(2);
+  };  // the force jumps by 4
   const Fall end = fall(1, 0, 10, cusp);
-  if (end.ending == StepEnding::None) CHECK(end.v * end.v / 2 + 2 * std::abs(end.x) == doctest::Approx(2).epsilon(1e-12));
+  if (end.ending == StepEnding::None)
+    CHECK(end.v * end.v / 2 + 2 * std::abs(end.x) == doctest::Approx(2).epsilon(1e-12));
 }

@@ -67,7 +67,8 @@ TEST_CASE("a larger tolerance takes fewer steps") {
   for (const double finer : {1e-16, 1e-14, 1e-12, 1e-10}) {
     CAPTURE(finer);
     for (const double larger : {10 * finer, 100 * finer, 1000 * finer}) {
-      CHECK(static_cast<double>(steps(build_double_pendulum, larger)) <= 1.08 * static_cast<double>(steps(build_double_pendulum, finer)));
+      CHECK(static_cast<double>(steps(build_double_pendulum, larger)) <=
+            1.08 * static_cast<double>(steps(build_double_pendulum, finer)));
       CHECK(static_cast<double>(steps(kepler, larger)) <= 1.08 * static_cast<double>(steps(kepler, finer)));
     }
     CHECK(steps(build_double_pendulum, 1e6 * finer) < steps(build_double_pendulum, finer));

@@ -62,11 +62,18 @@ TEST_CASE("every kind of switch: the same bouncing written in five ways") {
     const Expr one = c.number(1), zero = c.number(0);
     const auto call = [&](Kind kind, std::vector<Expr> a) { return c.function(kind, a); };
     switch (way) {
-      case 0: return -apply(Kind::Sign, x);
-      case 1: return one - Rational(2) * apply(Kind::Step, x);
-      case 2: return call(Kind::Piecewise, {call(Kind::Less, {x, zero}), one, -one});
-      case 3: return call(Kind::Piecewise, {call(Kind::And, {call(Kind::LessEqual, {zero, x}), call(Kind::Less, {x, c.number(9)})}), -one, one});
-      default: return -x / apply(Kind::Abs, x);
+      case 0:
+        return -apply(Kind::Sign, x);
+      case 1:
+        return one - Rational(2) * apply(Kind::Step, x);
+      case 2:
+        return call(Kind::Piecewise, {call(Kind::Less, {x, zero}), one, -one});
+      case 3:
+        return call(
+            Kind::Piecewise,
+            {call(Kind::And, {call(Kind::LessEqual, {zero, x}), call(Kind::Less, {x, c.number(9)})}), -one, one});
+      default:
+        return -x / apply(Kind::Abs, x);
     }
   };
   for (int way = 0; way < 4; ++way) {
@@ -194,6 +201,7 @@ TEST_CASE("an event that is never zero does not end the run; a double root does"
     const Step step = advance(stepper, 30);
     const bool touches = level == Rational(1);
     CHECK(step.event.has_value() == touches);
-    CHECK(std::abs(stepper.time() - (touches ? std::acos(-1.0) : 30)) < 3e-8);  // a double root is known to half of the digits
+    CHECK(std::abs(stepper.time() - (touches ? std::acos(-1.0) : 30)) <
+          3e-8);  // a double root is known to half of the digits
   }
 }

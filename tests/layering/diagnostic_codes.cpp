@@ -11,9 +11,7 @@ namespace {
 /// Code → the first place that names it.
 using Places = std::map<std::string, std::string>;
 
-bool is_catalogue(const source_tree::File& file) {
-  return std::filesystem::path(file.path).filename() == "codes.cpp";
-}
+bool is_catalogue(const source_tree::File& file) { return std::filesystem::path(file.path).filename() == "codes.cpp"; }
 
 /// An entry opens an initializer: {"E0101", "title", …}.
 Places entries() {

@@ -12,7 +12,8 @@ namespace fs = std::filesystem;
 std::vector<source_tree::File> pages() {
   const fs::path root = PROJECT_DIR;
   std::vector<source_tree::File> out;
-  for (const char* page : {"ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"}) out.push_back(source_tree::read(root / page));
+  for (const char* page : {"ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"})
+    out.push_back(source_tree::read(root / page));
   for (const char* folder : {"docs", "src", "apps", "tests", "models"})
     for (const auto& entry : fs::recursive_directory_iterator(root / folder))
       if (entry.path().extension() == ".md") out.push_back(source_tree::read(entry.path()));
@@ -22,8 +23,8 @@ std::vector<source_tree::File> pages() {
 /// A page may leave out where its subject begins, and the ending of a source.
 bool is_there(const std::string& name, const source_tree::File& page) {
   const fs::path root = PROJECT_DIR, own = root / fs::path(page.path).parent_path();
-  for (const fs::path& base : {root, root / "src", root / "src/kernel", root / "src/symbolic", root / "tests", root / "apps/maup",
-                               root / "include", root / "include/maupertuis", own})
+  for (const fs::path& base : {root, root / "src", root / "src/kernel", root / "src/symbolic", root / "tests",
+                               root / "apps/maup", root / "include", root / "include/maupertuis", own})
     for (const char* ending : {"", ".cpp", ".hpp"})
       if (fs::exists(base / (name + ending))) return true;
   return false;
@@ -57,7 +58,8 @@ TEST_CASE("folders and files that a page names exist") {
 
 TEST_CASE("ARCHITECTURE.md names every folder of the tests") {
   std::string text;
-  for (const std::string& line : source_tree::read(fs::path(PROJECT_DIR) / "ARCHITECTURE.md").lines) text += line + "\n";
+  for (const std::string& line : source_tree::read(fs::path(PROJECT_DIR) / "ARCHITECTURE.md").lines)
+    text += line + "\n";
   for (const auto& entry : fs::directory_iterator(fs::path(PROJECT_DIR) / "tests"))
     if (entry.is_directory()) {
       const std::string name = "`" + entry.path().filename().string() + "/`";

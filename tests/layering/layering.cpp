@@ -34,10 +34,12 @@ Table table_of_architecture() {
   return table;
 }
 
-/// Lines `maup_module(module LINKS uses)` of src/CMakeLists.txt, and `maup_plugin` for what the program opens at run time.
+/// Lines `maup_module(module LINKS uses)` of src/CMakeLists.txt, and `maup_plugin` for what the program opens at run
+/// time.
 std::map<std::string, Names> table_of_build() {
   std::map<std::string, Names> table;
-  const std::regex call(R"(maup_(?:module|plugin)\(([a-z_/]+)(?: LINKS ([a-z_/ ]+?))?(?: (?:PRIVATE_LINKS|ALONE|BATCH) [^)]*)?\).*)");
+  const std::regex call(
+      R"(maup_(?:module|plugin)\(([a-z_/]+)(?: LINKS ([a-z_/ ]+?))?(?: (?:PRIVATE_LINKS|ALONE|BATCH) [^)]*)?\).*)");
   for (const std::string& line : source_tree::read(std::string(PROJECT_DIR) + "/src/CMakeLists.txt").lines)
     if (std::smatch m; std::regex_match(line, m, call)) table[m[1]] = words(m[2]);
   return table;
@@ -59,10 +61,10 @@ Names reach(const std::string& module, const Table& table) {
 
 /// Readers of private headers from outside the family, each with its reason in ARCHITECTURE.md.
 const std::set<std::pair<std::string, std::string>> confidants{{"certificate", "symbolic/evaluate"},
-                                                                   {"analysis/invariants", "symbolic/evaluate"},
-                                                                   {"integrator/extended", "kernel/extended"},
-                                                                   {"integrator/taylor", "kernel/disks"},
-                                                                   {"integrator/extended", "kernel/disks"}};
+                                                               {"analysis/invariants", "symbolic/evaluate"},
+                                                               {"integrator/extended", "kernel/extended"},
+                                                               {"integrator/taylor", "kernel/disks"},
+                                                               {"integrator/extended", "kernel/disks"}};
 
 std::string top_folder(const std::string& module) { return module.substr(0, module.find('/')); }
 
@@ -92,11 +94,14 @@ std::vector<std::string> violations(const source_tree::File& file, const std::st
     const std::string place = file.path + ":" + std::to_string(i + 1) + ": ";
     if (included.rfind("maupertuis/", 0) == 0) {
       const std::string owner = module_of_header(included.substr(11), table);
-      if (owner.empty()) found.push_back(place + included + " stands in no line of the table in ARCHITECTURE.md");
-      else if (!allowed.count(owner)) found.push_back(place + module + " may not use " + owner + " (" + included + ")");
+      if (owner.empty())
+        found.push_back(place + included + " stands in no line of the table in ARCHITECTURE.md");
+      else if (!allowed.count(owner))
+        found.push_back(place + module + " may not use " + owner + " (" + included + ")");
     } else if (const std::string owner = module_of_path(included, table); !owner.empty() && owner != module) {
       // Private headers stay within a family (kernel/series may read kernel/program's) and below in the table.
-      const bool close = top_folder(owner) == top_folder(module) || confidants.count({module, owner}) || owner == "linear_algebra";
+      const bool close =
+          top_folder(owner) == top_folder(module) || confidants.count({module, owner}) || owner == "linear_algebra";
       if (!allowed.count(owner) || !close)
         found.push_back(place + module + " may not read the private header " + included);
     }
@@ -108,8 +113,9 @@ std::vector<std::string> violations_below(const std::string& folder, const Table
   std::vector<std::string> found;
   for (const source_tree::File& file : source_tree::sources({folder})) {
     const bool is_public = folder == "include";
-    const std::string module = is_public ? module_of_header(file.path.substr(std::string("include/maupertuis/").size()), table)
-                                         : module_of_path(file.path.substr(std::string("src/").size()), table);
+    const std::string module =
+        is_public ? module_of_header(file.path.substr(std::string("include/maupertuis/").size()), table)
+                  : module_of_path(file.path.substr(std::string("src/").size()), table);
     if (module.empty()) {
       found.push_back(file.path + ":1: belongs to no module of the table in ARCHITECTURE.md");
       continue;
@@ -151,7 +157,8 @@ TEST_CASE("a forbidden include is seen") {
   CHECK(violations(upwards, "base", table)[0].rfind("src/base/x.cpp:2: base may not use simulation", 0) == 0);
   const source_tree::File sideways{"src/kernel/series/x.cpp", {"#include \"system/elaboration.hpp\""}};
   CHECK(violations(sideways, "kernel/series", table).size() == 1);
-  const source_tree::File own{"src/kernel/series/x.cpp", {"#include \"kernel/series/x.hpp\"", "#include \"kernel/program/y.hpp\""}};
+  const source_tree::File own{"src/kernel/series/x.cpp",
+                              {"#include \"kernel/series/x.hpp\"", "#include \"kernel/program/y.hpp\""}};
   CHECK(violations(own, "kernel/series", table).empty());
 }
 
@@ -179,7 +186,8 @@ TEST_CASE("what is dear to compile is included in few places") {
     std::string headers;
     std::set<std::string> readers;  // files, or folders with a slash at the end
   };
-  // Sources may store and multiply matrices as they like; factorizations are compiled once. The kernels' matrices are views of their own.
+  // Sources may store and multiply matrices as they like; factorizations are compiled once. The kernels' matrices are
+  // views of their own.
   const std::vector<Library> libraries{
       {R"re(eigen3/Eigen/(Dense|LU|QR|SVD|Cholesky|Eigenvalues))re", {"src/linear_algebra/", "src/kernel/dense/"}},
       {R"re(CLI/.*)re", {"apps/maup/options.cpp", "apps/maup/option_table.cpp"}},
@@ -193,8 +201,10 @@ TEST_CASE("what is dear to compile is included in few places") {
         if (!std::regex_match(file.lines[i], include)) continue;
         const bool allowed = std::any_of(library.readers.begin(), library.readers.end(),
                                          [&](const std::string& reader) { return file.path.rfind(reader, 0) == 0; });
-        if (allowed) ++inside;
-        else FAIL_CHECK(file.path << ":" << i + 1 << ": " << file.lines[i]);
+        if (allowed)
+          ++inside;
+        else
+          FAIL_CHECK(file.path << ":" << i + 1 << ": " << file.lines[i]);
       }
     CHECK(inside > 0);
   }
@@ -206,8 +216,10 @@ TEST_CASE("LLVM is included in one folder") {
   for (const source_tree::File& file : source_tree::sources({"src", "include", "apps"}))
     for (std::size_t i = 0; i < file.lines.size(); ++i) {
       if (!std::regex_match(file.lines[i], include)) continue;
-      if (file.path.rfind("src/kernel/llvm/", 0) == 0) ++inside;
-      else FAIL_CHECK(file.path << ":" << i + 1 << ": " << file.lines[i]);
+      if (file.path.rfind("src/kernel/llvm/", 0) == 0)
+        ++inside;
+      else
+        FAIL_CHECK(file.path << ":" << i + 1 << ": " << file.lines[i]);
     }
   CHECK(inside > 0);
 }
@@ -220,8 +232,8 @@ TEST_CASE("public headers stay light, and the core compiles for a browser") {
   for (const source_tree::File& file : source_tree::sources({"src", "include"})) {
     const bool header = file.path.rfind("include/", 0) == 0;
     for (std::size_t i = 0; i < file.lines.size(); ++i) {
-      const bool wrong = std::regex_match(file.lines[i], not_in_core) ||
-                         (header && std::regex_match(file.lines[i], not_in_headers));
+      const bool wrong =
+          std::regex_match(file.lines[i], not_in_core) || (header && std::regex_match(file.lines[i], not_in_headers));
       if (wrong) FAIL_CHECK(file.path << ":" << i + 1 << ": " << file.lines[i]);
     }
   }

@@ -138,15 +138,18 @@ TEST_CASE("the total time derivative is the derivative of the series along a pat
   rc::holds("total_time_derivative", [](const Recipe& recipe) {
     World w;
     const Expr e = build(recipe, w.leaves, Functions::WithSwitches);
-    const auto jets = field_jets({e, total_time_derivative(e), w.c.time_derivative(e)}, [&](const FieldNumbers& n, Expr s) {
-      FieldJet out = plain(n, s);
-      if (s == w.t) out(0, 1) = n.number(1);
-      if (s.role() != Role::Coordinate) return out;
-      const auto next = [&](int order) { return n.symbol(s.context().symbol(s.name(), Role::Coordinate, s.order() + order)); };
-      out(0, 1) = next(1);
-      out(0, 2) = n.multiply(next(2), n.number(Rational(1, 2)));
-      return out;
-    });
+    const auto jets =
+        field_jets({e, total_time_derivative(e), w.c.time_derivative(e)}, [&](const FieldNumbers& n, Expr s) {
+          FieldJet out = plain(n, s);
+          if (s == w.t) out(0, 1) = n.number(1);
+          if (s.role() != Role::Coordinate) return out;
+          const auto next = [&](int order) {
+            return n.symbol(s.context().symbol(s.name(), Role::Coordinate, s.order() + order));
+          };
+          out(0, 1) = next(1);
+          out(0, 2) = n.multiply(next(2), n.number(Rational(1, 2)));
+          return out;
+        });
     if (!jets) return;
     RC_ASSERT((*jets)[0](0, 1) == (*jets)[1](0, 0));
     RC_ASSERT((*jets)[2](0, 0) == (*jets)[1](0, 0));

@@ -23,7 +23,8 @@ inline Expr function_of_table(std::size_t row, Expr e) {
   const auto kind = static_cast<Kind>(static_cast<std::size_t>(Kind::Sin) + row);
   const Expr above_two = pow(e, Rational(2)) + Rational(2);
   if (kind == Kind::Acosh || kind == Kind::Log || kind == Kind::LambertW) return apply(kind, above_two);
-  if (kind == Kind::Asin || kind == Kind::Acos || kind == Kind::Atanh || kind == Kind::Tan) return apply(kind, e / above_two);
+  if (kind == Kind::Asin || kind == Kind::Acos || kind == Kind::Atanh || kind == Kind::Tan)
+    return apply(kind, e / above_two);
   if (kind == Kind::Exp || kind == Kind::Sinh || kind == Kind::Cosh) return apply(kind, sin(e));
   return apply(kind, e);
 }
@@ -35,14 +36,22 @@ inline Expr switch_of(std::uint32_t choice, Expr a, Expr b) {
   const auto where = [&](Expr condition) { return c.function(Kind::Piecewise, std::array{condition, a, b * b}); };
   const Expr less = of_two(Kind::Less, a, b);
   switch (choice) {
-    case 0: return apply(Kind::Abs, a);
-    case 1: return a * apply(Kind::Sign, b);
-    case 2: return a * apply(Kind::Step, b);
-    case 3: return of_two(Kind::Max, a, b);
-    case 4: return of_two(Kind::Min, a, b);
-    case 5: return where(less);
-    case 6: return where(of_two(Kind::And, less, of_two(Kind::LessEqual, b, Rational(2) * a + Rational(1))));
-    default: return where(of_two(Kind::Or, less, of_two(Kind::LessEqual, b, Rational(3) * a - Rational(1))));
+    case 0:
+      return apply(Kind::Abs, a);
+    case 1:
+      return a * apply(Kind::Sign, b);
+    case 2:
+      return a * apply(Kind::Step, b);
+    case 3:
+      return of_two(Kind::Max, a, b);
+    case 4:
+      return of_two(Kind::Min, a, b);
+    case 5:
+      return where(less);
+    case 6:
+      return where(of_two(Kind::And, less, of_two(Kind::LessEqual, b, Rational(2) * a + Rational(1))));
+    default:
+      return where(of_two(Kind::Or, less, of_two(Kind::LessEqual, b, Rational(3) * a - Rational(1))));
   }
 }
 
@@ -62,17 +71,29 @@ inline Expr made_by(std::uint32_t step, const std::vector<Expr>& made, Functions
   if (choice >= smooth) return switch_of(choice - smooth, a, b);
   if (choice >= polynomials + composites) return function_of_table(choice - polynomials - composites, a);
   switch (choice) {
-    case 0: return a + b;
-    case 1: return a - b;
-    case 2: case 3: return a * b;
-    case 4: return pow(a, Rational(2));
-    case 5: return Rational(static_cast<int>(step / 4096 % 7) - 3, 1 + static_cast<int>(step / 64 % 4)) * a;
-    case 6: return sin(a - b);
-    case 7: return cos(Rational(2) * a + b);
-    case 8: return a / positive;
-    case 9: return a * pow(positive, Rational(-3, 2));
-    case 10: return sin(a + c.pi() * Rational(1, 5)) * sqrt(positive);
-    default: return c.function(Kind::Atan2, std::array{a, positive});
+    case 0:
+      return a + b;
+    case 1:
+      return a - b;
+    case 2:
+    case 3:
+      return a * b;
+    case 4:
+      return pow(a, Rational(2));
+    case 5:
+      return Rational(static_cast<int>(step / 4096 % 7) - 3, 1 + static_cast<int>(step / 64 % 4)) * a;
+    case 6:
+      return sin(a - b);
+    case 7:
+      return cos(Rational(2) * a + b);
+    case 8:
+      return a / positive;
+    case 9:
+      return a * pow(positive, Rational(-3, 2));
+    case 10:
+      return sin(a + c.pi() * Rational(1, 5)) * sqrt(positive);
+    default:
+      return c.function(Kind::Atan2, std::array{a, positive});
   }
 }
 
@@ -95,8 +116,10 @@ namespace rc {
 template <>
 struct Arbitrary<maupertuis::property::Recipe> {
   static Gen<maupertuis::property::Recipe> arbitrary() {
-    auto steps = gen::resize(10, gen::container<std::vector<std::uint32_t>>(gen::resize(100, gen::inRange<std::uint32_t>(0, 1u << 22))));
-    return gen::map(std::move(steps), [](std::vector<std::uint32_t> s) { return maupertuis::property::Recipe{std::move(s)}; });
+    auto steps = gen::resize(
+        10, gen::container<std::vector<std::uint32_t>>(gen::resize(100, gen::inRange<std::uint32_t>(0, 1u << 22))));
+    return gen::map(std::move(steps),
+                    [](std::vector<std::uint32_t> s) { return maupertuis::property::Recipe{std::move(s)}; });
   }
 };
 

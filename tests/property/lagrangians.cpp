@@ -78,7 +78,8 @@ TEST_CASE("Lagrange's equations keep their form under point transformations") {
     const Expr lagrangian = build(recipe, s.leaves, Functions::Polynomial);
     // q = F(q, t), the new coordinates called by the old names.
     const std::vector<Expr> positions(s.leaves.begin(), s.leaves.begin() + 4);
-    const std::vector<Expr> f{build(first, positions, Functions::Polynomial), build(second, positions, Functions::Polynomial)};
+    const std::vector<Expr> f{build(first, positions, Functions::Polynomial),
+                              build(second, positions, Functions::Polynomial)};
     ExprMap moved;
     for (std::size_t i = 0; i < 2; ++i) {
       const Coordinate& q = s.system->coordinates[i];

@@ -65,16 +65,22 @@ void check_belonging(const ActionCommand& o, Diagnostics& diagnostics) {
 }
 
 void check_usage(const ActionCommand& o, Diagnostics& diagnostics) {
-  for (const auto& [name, value] : {std::pair("--from", &o.from), std::pair("--to", &o.to), std::pair("--period", &o.period)})
+  for (const auto& [name, value] :
+       {std::pair("--from", &o.from), std::pair("--to", &o.to), std::pair("--period", &o.period)})
     if (*value && !parse_time(**value))
-      diagnostics.error("E0809", {}, fmt::format("{} \"{}\" is no time.", name, **value), {},
-                        "Write a number with a unit of time, such as 3s; a bare number is in SI units of the independent variable.");
+      diagnostics.error(
+          "E0809", {}, fmt::format("{} \"{}\" is no time.", name, **value), {},
+          "Write a number with a unit of time, such as 3s; a bare number is in SI units of the independent variable.");
   if (o.periodic + o.motion + !o.path.empty() > 1)
-    diagnostics.error("E0809", {}, "maup action looks at one thing at a time.", {}, "Give one of --path, --motion and --periodic.");
+    diagnostics.error("E0809", {}, "maup action looks at one thing at a time.", {},
+                      "Give one of --path, --motion and --periodic.");
   else
     check_belonging(o, diagnostics);
   check_counts(o, diagnostics);
-  check_output_files({{"-o", o.output, FileKind::Table}, {"--plot", o.plot, FileKind::Picture}, {"--plot-paths", o.plot_paths, FileKind::Picture}}, o.model.path, diagnostics);
+  check_output_files({{"-o", o.output, FileKind::Table},
+                      {"--plot", o.plot, FileKind::Picture},
+                      {"--plot-paths", o.plot_paths, FileKind::Picture}},
+                     o.model.path, diagnostics);
 }
 
 /// Without ends in the model or on the command line it is the motion that is looked at.
@@ -96,7 +102,8 @@ ActionOptions options_of(const ActionCommand& o) {
   return out;
 }
 
-// --------------------------------------------------------------------------------------------------------- a given path
+// --------------------------------------------------------------------------------------------------------- a given
+// path
 
 /// Says the formulas of --path and their ends beside the model.
 void put_in_path(const ActionCommand& o, Study& study) {
@@ -121,7 +128,9 @@ void check_ends(const ActionCommand& o, Study& study) {
 std::optional<ActionFindings> find_given(const ActionCommand& o, Study& study) {
   const Model& model = *study.model();
   const PathFormulas& given = *model.experiment.given_path;
-  const auto number = [&](Expr x) { return evaluate(in_terms_of_motion(model.system, {&x, 1}).front(), parameter_bindings(model.system)); };
+  const auto number = [&](Expr x) {
+    return evaluate(in_terms_of_motion(model.system, {&x, 1}).front(), parameter_bindings(model.system));
+  };
   std::optional<ActionEnds> ends;
   if (model.experiment.path && !given.from) ends = ends_of(model);
   const double start = given.from ? number(given.from) : ends->start, end = given.to ? number(given.to) : ends->end;
@@ -136,7 +145,8 @@ std::optional<ActionFindings> find_given(const ActionCommand& o, Study& study) {
   return out;
 }
 
-// ------------------------------------------------------------------------------------------------------- the other ways
+// ------------------------------------------------------------------------------------------------------- the other
+// ways
 
 std::optional<ActionFindings> find_motion(const ActionCommand& o, Study& study) {
   const auto found = action_of_motion(*study.model(), *study.equations(), options_of(o), study.diagnostics());
@@ -221,13 +231,18 @@ void add_action(CommandLine& line) {
                               "  maup action pendulum.lag --motion --plot neighbours.svg\n",
                               [options](Console& console) { return study_action(*options, console); });
   add_model_options(command, options->model);
-  command.add_option("--ends", options->ends, "Ends of the path instead of the model's: \"(0, 1) at 0 to (2, free) at 1\"")->type_name("ENDS");
+  command
+      .add_option("--ends", options->ends, "Ends of the path instead of the model's: \"(0, 1) at 0 to (2, free) at 1\"")
+      ->type_name("ENDS");
   command.add_option("--paths", options->paths, "At most so many stationary paths (default: 8)")->type_name("N");
-  command.add_option("--turns", options->turns, "Angles may end up to so many whole turns further, too (default: 0)")->type_name("N");
+  command.add_option("--turns", options->turns, "Angles may end up to so many whole turns further, too (default: 0)")
+      ->type_name("N");
   command.add_option("--path", options->path, "S along formulas: \"x = 4 t + 7, y = 3 t + 5\"")->type_name("FORMULAS");
-  command.add_option("--from", options->from, "Where the formulas begin (default: as the model's path)")->type_name("TIME");
+  command.add_option("--from", options->from, "Where the formulas begin (default: as the model's path)")
+      ->type_name("TIME");
   command.add_option("--to", options->to, "Where they end")->type_name("TIME");
-  command.add_flag("--motion", options->motion, "Along the model's own motion: what happens without a path in the model");
+  command.add_flag("--motion", options->motion,
+                   "Along the model's own motion: what happens without a path in the model");
   command.add_flag("--periodic", options->periodic, "The periodic motion next to the model's start, as a closed path");
   command.add_option("--period", options->period, "Of it, or near it")->type_name("TIME");
   command.add_option("--plot", options->plot, "S of neighbouring paths: .svg")->type_name("FILE");

@@ -18,7 +18,8 @@
 namespace maupertuis::app {
 namespace {
 
-constexpr double most_frames_of_svg = 1500, most_frames = 20'000, smallest_side = 16, largest_side = 4096, most_fps = 120;
+constexpr double most_frames_of_svg = 1500, most_frames = 20'000, smallest_side = 16, largest_side = 4096,
+                 most_fps = 120;
 
 struct AnimateOptions {
   ModelOptions model;
@@ -33,7 +34,7 @@ struct Film {
   FrameOptions picture;
   bool height_given = false;
   double fps = 30, speed = 1;
-  std::vector<double> elapsed;     // of the frames, s from the start of the run
+  std::vector<double> elapsed;  // of the frames, s from the start of the run
   double seconds() const { return static_cast<double>(elapsed.size() > 1 ? elapsed.size() - 1 : 1) / fps; }
 };
 
@@ -55,8 +56,10 @@ void read_size(const AnimateOptions& o, Film& film, Diagnostics& diagnostics) {
   const bool alone = o.size.find_first_not_of("0123456789") == std::string::npos;
   const auto good = [](unsigned side) { return side >= smallest_side && side <= largest_side; };
   if ((count != 2 && !(count == 1 && alone)) || !good(width) || (count == 2 && !good(height)))
-    return wrong_option(diagnostics, fmt::format("--size {} is no size of a picture.", o.size),
-                        fmt::format("Write WIDTHxHEIGHT in pixels, such as 640x360, each from {} to {}; or the width alone.", smallest_side, largest_side));
+    return wrong_option(
+        diagnostics, fmt::format("--size {} is no size of a picture.", o.size),
+        fmt::format("Write WIDTHxHEIGHT in pixels, such as 640x360, each from {} to {}; or the width alone.",
+                    smallest_side, largest_side));
   film.picture.width = width;
   film.picture.height = height;
   film.height_given = count == 2;
@@ -66,8 +69,10 @@ void read_view(const AnimateOptions& o, Film& film, Diagnostics& diagnostics) {
   if (o.view.empty()) return;
   double azimuth = 0, elevation = 0;
   char rest = 0;
-  if (std::sscanf(o.view.c_str(), "%lf,%lf%c", &azimuth, &elevation, &rest) != 2 || !std::isfinite(azimuth) || !(std::abs(elevation) <= 90))
-    return wrong_option(diagnostics, fmt::format("--view {} is no direction.", o.view), "Write azimuth and elevation of the eye in degrees, such as -50,20.");
+  if (std::sscanf(o.view.c_str(), "%lf,%lf%c", &azimuth, &elevation, &rest) != 2 || !std::isfinite(azimuth) ||
+      !(std::abs(elevation) <= 90))
+    return wrong_option(diagnostics, fmt::format("--view {} is no direction.", o.view),
+                        "Write azimuth and elevation of the eye in degrees, such as -50,20.");
   constexpr double degree = 3.14159265358979323846 / 180;
   film.picture.camera.azimuth = azimuth * degree;
   film.picture.camera.elevation = elevation * degree;
@@ -79,17 +84,25 @@ Film read_options(const AnimateOptions& o, Diagnostics& diagnostics) {
   read_view(o, film, diagnostics);
   film.picture.theme = o.dark ? PlotTheme::Dark : PlotTheme::Light;
   film.picture.furniture = !o.plain;
-  film.picture.trail = o.trail == "none" ? TrailLength::None : o.trail == "whole" ? TrailLength::Whole : TrailLength::Fading;
+  film.picture.trail = o.trail == "none"    ? TrailLength::None
+                       : o.trail == "whole" ? TrailLength::Whole
+                                            : TrailLength::Fading;
   film.fps = o.fps;
   if (o.fps == 0) film.fps = ending_of(o) == ".mp4" ? 30 : ending_of(o) == ".gif" ? 20 : 12;
-  if (!(film.fps > 0) || film.fps > most_fps) wrong_option(diagnostics, fmt::format("--fps {:g} is no rate of frames.", o.fps), fmt::format("Write a number up to {:g}.", most_fps));
-  if (o.speed < 0 || !std::isfinite(o.speed)) wrong_option(diagnostics, fmt::format("--speed {:g} is no speed.", o.speed), "Write how many seconds of motion a second of the film shows, such as 0.5.");
-  if (!o.view.empty() && ending_of(o) == ".html") wrong_option(diagnostics, "--view is not for pages.", "On a page the reader turns the drawing.");
+  if (!(film.fps > 0) || film.fps > most_fps)
+    wrong_option(diagnostics, fmt::format("--fps {:g} is no rate of frames.", o.fps),
+                 fmt::format("Write a number up to {:g}.", most_fps));
+  if (o.speed < 0 || !std::isfinite(o.speed))
+    wrong_option(diagnostics, fmt::format("--speed {:g} is no speed.", o.speed),
+                 "Write how many seconds of motion a second of the film shows, such as 0.5.");
+  if (!o.view.empty() && ending_of(o) == ".html")
+    wrong_option(diagnostics, "--view is not for pages.", "On a page the reader turns the drawing.");
   return film;
 }
 
 /// A time of the motion as seconds since its first moment; `otherwise` where it is not given.
-double moment(const char* option, const std::string& text, const Drawing& drawing, double otherwise, Diagnostics& diagnostics) {
+double moment(const char* option, const std::string& text, const Drawing& drawing, double otherwise,
+              Diagnostics& diagnostics) {
   if (text.empty()) return otherwise;
   const std::optional<Rational> t = parse_exact_time(text);
   const double first = drawing.times.front(), last = drawing.times.back();
@@ -109,15 +122,19 @@ double pleasant_speed(double duration) {
 void choose_frames(const AnimateOptions& o, const Drawing& drawing, Film& film, Diagnostics& diagnostics) {
   const double duration = std::abs(drawing.times.back() - drawing.times.front());
   if (!film.height_given) film.picture.height = fitting_height(drawing, film.picture.width);
-  const double from = moment("--from", o.from, drawing, 0, diagnostics), to = moment("--to", o.to, drawing, duration, diagnostics);
-  if (!(from < to) && duration > 0 && !diagnostics.has_errors()) wrong_option(diagnostics, "--from is not before --to.", "Give the earlier time to --from.");
+  const double from = moment("--from", o.from, drawing, 0, diagnostics),
+               to = moment("--to", o.to, drawing, duration, diagnostics);
+  if (!(from < to) && duration > 0 && !diagnostics.has_errors())
+    wrong_option(diagnostics, "--from is not before --to.", "Give the earlier time to --from.");
   film.speed = o.speed > 0 ? o.speed : pleasant_speed(to - from);
   film.picture.trail_time = 3 * film.speed;
   const double count = std::floor((to - from) / film.speed * film.fps * (1 + 1e-12)) + 1;
   const double most = ending_of(o) == ".svg" ? most_frames_of_svg : most_frames;
   if (count > most) {
-    diagnostics.error("E0842", {}, fmt::format("{} would have {:.0f} frames.", o.output, count), fmt::format("More than {:.0f} are not made of this kind.", most),
-                      "Show less of the motion (--from, --to), show it faster (--speed), or with fewer frames a second (--fps).");
+    diagnostics.error(
+        "E0842", {}, fmt::format("{} would have {:.0f} frames.", o.output, count),
+        fmt::format("More than {:.0f} are not made of this kind.", most),
+        "Show less of the motion (--from, --to), show it faster (--speed), or with fewer frames a second (--fps).");
     return;
   }
   for (double i = 0; i < count; ++i) film.elapsed.push_back(std::min(to, from + i * film.speed / film.fps));
@@ -131,9 +148,11 @@ std::string caption(const Drawing& drawing, double elapsed, double step, const F
   const double longest = std::max(std::abs(first), std::abs(drawing.times.back()));
   std::size_t unit = 0;
   double factor = 1;
-  for (; !drawing.dimensionless && longest > 0 && longest * factor < 1 && unit + 1 < std::size(units); ++unit) factor *= 1000;
+  for (; !drawing.dimensionless && longest > 0 && longest * factor < 1 && unit + 1 < std::size(units); ++unit)
+    factor *= 1000;
   const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(step > 0 ? step * factor : 1))), 0, 9);
-  return fmt::format("t = {:.{}f}{}{}", t * factor, digits, drawing.dimensionless ? "" : " ", drawing.dimensionless ? "" : units[unit]);
+  return fmt::format("t = {:.{}f}{}{}", t * factor, digits, drawing.dimensionless ? "" : " ",
+                     drawing.dimensionless ? "" : units[unit]);
 }
 
 std::string still_svg(const AnimateOptions& o, const Drawing& drawing, Film& film, Diagnostics& diagnostics) {
@@ -147,7 +166,8 @@ std::string still_svg(const AnimateOptions& o, const Drawing& drawing, Film& fil
 }
 
 /// Draws and encodes frame by frame; empty where it was interrupted or failed, and the diagnostics say why.
-std::string video_of(const AnimateOptions& o, const Drawing& drawing, Film& film, const Console& console, Diagnostics& diagnostics) {
+std::string video_of(const AnimateOptions& o, const Drawing& drawing, Film& film, const Console& console,
+                     Diagnostics& diagnostics) {
   Video::Options options;
   options.format = ending_of(o) == ".gif" ? Video::Format::Gif : Video::Format::Mp4;
   options.width = 2 * static_cast<int>(std::lround(film.picture.width / 2));
@@ -162,13 +182,15 @@ std::string video_of(const AnimateOptions& o, const Drawing& drawing, Film& film
     if (interrupt_flag().load()) return {};
     film.picture.caption = caption(drawing, film.elapsed[i], film.speed / film.fps / 2, film.picture);
     if (!video.add(pixels_of(frame_svg(drawing, film.elapsed[i], film.picture), options.width, options.height))) break;
-    if (console.interactive() && !console.json() && i % tenth == 0) console.say(fmt::format("\r\x1b[K{} of {} frames", i + 1, film.elapsed.size()));
+    if (console.interactive() && !console.json() && i % tenth == 0)
+      console.say(fmt::format("\r\x1b[K{} of {} frames", i + 1, film.elapsed.size()));
   }
   if (console.interactive() && !console.json()) console.say("\r\x1b[K");
   if (interrupt_flag().load()) return {};  // the film in the making goes with `video`
   const Video::Film made = video.finish();
   if (!made.problem.empty())
-    diagnostics.error("E0841", {}, fmt::format("ffmpeg did not make {}.", o.output), fmt::format("It says: {}.", made.problem), "An .html or .svg needs no ffmpeg.");
+    diagnostics.error("E0841", {}, fmt::format("ffmpeg did not make {}.", o.output),
+                      fmt::format("It says: {}.", made.problem), "An .html or .svg needs no ffmpeg.");
   return made.bytes;
 }
 
@@ -177,12 +199,15 @@ void check_tools(const AnimateOptions& o, Diagnostics& diagnostics) {
   const std::string ending = ending_of(o);
   if (!o.still.empty() || (ending != ".mp4" && ending != ".gif")) return;
   if (find_ffmpeg().empty())
-    diagnostics.error("E0841", {}, fmt::format("{} needs ffmpeg, which is in no folder of PATH.", o.output), {}, "On Debian, `apt install ffmpeg` brings it. An .html or .svg needs nothing.");
+    diagnostics.error("E0841", {}, fmt::format("{} needs ffmpeg, which is in no folder of PATH.", o.output), {},
+                      "On Debian, `apt install ffmpeg` brings it. An .html or .svg needs nothing.");
   else if (const std::string problem = picture_problem(); !problem.empty())
-    diagnostics.error("E0840", {}, fmt::format("{} cannot be made: {}.", o.output, problem), {}, "Take .html or .svg, which need nothing else.");
+    diagnostics.error("E0840", {}, fmt::format("{} cannot be made: {}.", o.output, problem), {},
+                      "Take .html or .svg, which need nothing else.");
 }
 
-std::optional<Drawing> drawing_of(Study& study, const SimulationOptions& settings, Console& console, std::optional<SimulationResult>& result) {
+std::optional<Drawing> drawing_of(Study& study, const SimulationOptions& settings, Console& console,
+                                  std::optional<SimulationResult>& result) {
   if (study.wrong() || !study.model() || !study.equations()) return {};
   SimulationOptions run = report_run(*study.model(), settings);
   run.errors = ErrorEstimates::None;
@@ -190,7 +215,8 @@ std::optional<Drawing> drawing_of(Study& study, const SimulationOptions& setting
   if (!result) return {};
   std::optional<Drawing> drawing = evaluate_drawing(*study.model(), result->trajectory, 12'000, study.equations());
   if (!drawing)
-    study.diagnostics().error("E0843", {}, fmt::format("{} has nothing to draw.", study.model()->system.name), "A drawing shows points, bodies, springs and what `draw` names; this model has none.",
+    study.diagnostics().error("E0843", {}, fmt::format("{} has nothing to draw.", study.model()->system.name),
+                              "A drawing shows points, bodies, springs and what `draw` names; this model has none.",
                               "Mark a point, `point P at (x, y)`, or plot the coordinates: maup plot.");
   return drawing;
 }
@@ -202,7 +228,8 @@ ExitCode animate(AnimateOptions o, Console& console) {
   const SimulationOptions settings = simulation_options(o.run, study.diagnostics(), study.tree());
   Diagnostics& diagnostics = study.diagnostics();
   read_options(o, diagnostics);  // for what is wrong with them, before anything is computed
-  check_output_files({{"-o", o.output, o.still.empty() ? FileKind::Animation : FileKind::Picture}}, o.model.path, diagnostics);
+  check_output_files({{"-o", o.output, o.still.empty() ? FileKind::Animation : FileKind::Picture}}, o.model.path,
+                     diagnostics);
   check_tools(o, diagnostics);
   if (readable_model && study.wrong()) return finish_usage(console, study, "animate");
   put_in_run(o.run, study);
@@ -214,13 +241,18 @@ ExitCode animate(AnimateOptions o, Console& console) {
   Film film = read_options(o, diagnostics);
   std::string bytes;
   const bool page = o.still.empty() && (ending_of(o) == ".html" || ending_of(o) == ".htm");
-  const std::string ending = ending_of(o), title = study.model()->system.title.empty() ? study.model()->system.name : study.model()->system.title;
-  if (!o.still.empty()) bytes = still_svg(o, *drawing, film, diagnostics);
-  else if (!page) choose_frames(o, *drawing, film, diagnostics);
+  const std::string ending = ending_of(o), title = study.model()->system.title.empty() ? study.model()->system.name
+                                                                                       : study.model()->system.title;
+  if (!o.still.empty())
+    bytes = still_svg(o, *drawing, film, diagnostics);
+  else if (!page)
+    choose_frames(o, *drawing, film, diagnostics);
   if (study.wrong()) return finish_usage(console, study, "animate");
   if (o.still.empty()) {
-    if (page) bytes = animation_html(*drawing, title);
-    else if (ending == ".mp4" || ending == ".gif") bytes = video_of(o, *drawing, film, console, diagnostics);
+    if (page)
+      bytes = animation_html(*drawing, title);
+    else if (ending == ".mp4" || ending == ".gif")
+      bytes = video_of(o, *drawing, film, console, diagnostics);
     else {
       film.picture.trail_pieces = 4;
       bytes = animated_svg(*drawing, {film.elapsed, film.seconds(), !o.once}, film.picture);
@@ -231,19 +263,22 @@ ExitCode animate(AnimateOptions o, Console& console) {
     finish(console, study, document);
     return ExitCode::Interrupted;
   }
-  if (!study.wrong()) o.still.empty() ? write_result(o.output, bytes, diagnostics) : write_picture(o.output, bytes, diagnostics);
+  if (!study.wrong())
+    o.still.empty() ? write_result(o.output, bytes, diagnostics) : write_picture(o.output, bytes, diagnostics);
   document["file"] = o.output;
   if (!page) {
     document["frames"] = film.elapsed.size();
     document["width"] = film.picture.width;
     document["height"] = film.picture.height;
   }
-  if (o.still.empty() && !page) document["fps"] = film.fps, document["speed"] = film.speed, document["seconds"] = film.seconds();
+  if (o.still.empty() && !page)
+    document["fps"] = film.fps, document["speed"] = film.speed, document["seconds"] = film.seconds();
   const bool written = !study.wrong();
   if (written && !console.json())
     console.say(page ? fmt::format("Wrote {} ({} kB). Open it in any browser.\n", o.output, (bytes.size() + 999) / 1000)
-                : o.still.empty() ? fmt::format("Wrote {} ({} frames, {:.3g} s, {} kB).\n", o.output, film.elapsed.size(), film.seconds(), (bytes.size() + 999) / 1000)
-                                : fmt::format("Wrote {}.\n", o.output));
+                : o.still.empty() ? fmt::format("Wrote {} ({} frames, {:.3g} s, {} kB).\n", o.output,
+                                                film.elapsed.size(), film.seconds(), (bytes.size() + 999) / 1000)
+                                  : fmt::format("Wrote {}.\n", o.output));
   if (!result->ok() && !console.json()) console.say(fmt::format("The run ended early: {}\n", result->reason));
   finish(console, study, document);
   return written ? exit_code(result->ending) : ExitCode::RunFailed;
@@ -253,25 +288,37 @@ ExitCode animate(AnimateOptions o, Console& console) {
 
 void add_animate(CommandLine& line) {
   const auto options = std::make_shared<AnimateOptions>();
-  Command& command = line.add("animate", "The drawing in motion: MP4, GIF, a page, an animated SVG; or one moment of it",
-                               "  maup animate pendulum.lag -o pendulum.mp4\n"
-                               "  maup animate top.lag -o top.gif --size 480x360 --to 4s --speed 0.5\n"
-                               "  maup animate pendulum.lag --still 2s -o figure.pdf\n",
-                               [options](Console& console) { return animate(*options, console); });
+  Command& command =
+      line.add("animate", "The drawing in motion: MP4, GIF, a page, an animated SVG; or one moment of it",
+               "  maup animate pendulum.lag -o pendulum.mp4\n"
+               "  maup animate top.lag -o top.gif --size 480x360 --to 4s --speed 0.5\n"
+               "  maup animate pendulum.lag --still 2s -o figure.pdf\n",
+               [options](Console& console) { return animate(*options, console); });
   add_model_options(command, options->model);
   add_span_options(command, options->run);
   add_method_options(command, options->run);
-  command.add_option("-o,--output", options->output, "What to write (default: SYSTEM.html); the ending names the format")->type_name("FILE.mp4|gif|html|svg");
+  command
+      .add_option("-o,--output", options->output, "What to write (default: SYSTEM.html); the ending names the format")
+      ->type_name("FILE.mp4|gif|html|svg");
   command.add_option("--still", options->still, "One moment instead, as .svg, .png or .pdf")->type_name("TIME");
-  command.add_option("--size", options->size, "In pixels (default: 720 wide, as high as suits the drawing)")->type_name("WIDTHxHEIGHT");
-  command.add_option("--fps", options->fps, "Frames a second (default: 30 in MP4, 20 in GIF, 12 in SVG)")->type_name("NUMBER");
-  command.add_option("--speed", options->speed, "Seconds of motion that a second shows (default: 1, or a power of ten)")->type_name("NUMBER");
+  command.add_option("--size", options->size, "In pixels (default: 720 wide, as high as suits the drawing)")
+      ->type_name("WIDTHxHEIGHT");
+  command.add_option("--fps", options->fps, "Frames a second (default: 30 in MP4, 20 in GIF, 12 in SVG)")
+      ->type_name("NUMBER");
+  command
+      .add_option("--speed", options->speed, "Seconds of motion that a second shows (default: 1, or a power of ten)")
+      ->type_name("NUMBER");
   command.add_option("--from", options->from, "From this time of the motion on")->type_name("TIME");
   command.add_option("--to", options->to, "Up to this time")->type_name("TIME");
   command.add_flag("--once", options->once, "Plays once; GIF and SVG begin anew otherwise");
-  command.add_flag_callback("--loop", [options] { options->once = false; }, "Begins anew at the end (the default of GIF and SVG)");
-  command.add_option("--trail", options->trail, "What points leave behind")->one_of({"fading", "whole", "none"})->type_name("fading|whole|none");
-  command.add_option("--view", options->view, "From where a drawing in space is seen, in degrees (default: -51.6,18.3)")->type_name("AZIMUTH,ELEVATION");
+  command.add_flag_callback(
+      "--loop", [options] { options->once = false; }, "Begins anew at the end (the default of GIF and SVG)");
+  command.add_option("--trail", options->trail, "What points leave behind")
+      ->one_of({"fading", "whole", "none"})
+      ->type_name("fading|whole|none");
+  command
+      .add_option("--view", options->view, "From where a drawing in space is seen, in degrees (default: -51.6,18.3)")
+      ->type_name("AZIMUTH,ELEVATION");
   command.add_flag("--dark", options->dark, "Light on dark");
   command.add_flag("--plain", options->plain, "Without scale, axes, direction of gravity and time");
 }

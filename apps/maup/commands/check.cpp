@@ -28,13 +28,16 @@ std::string start_text(const StartValue& start, const MechanicalSystem& system) 
   const std::string name = c.name + std::string(static_cast<std::size_t>(start.order), '\'');
   if (system.dimensionless) return fmt::format("{} = {}", name, brief(value));
   if (!start.unit.empty()) return fmt::format("{} = {} {}", name, brief(value / start.unit_factor), start.unit);
-  return fmt::format("{} = {}", name, with_unit(brief(value), start.order ? c.dimension / system.independent_dimension : c.dimension));
+  return fmt::format("{} = {}", name,
+                     with_unit(brief(value), start.order ? c.dimension / system.independent_dimension : c.dimension));
 }
 
-/// A torque of 0.1 N m is no energy of 0.1 J: the unit of the text where the value is one number of it, else that of SI.
+/// A torque of 0.1 N m is no energy of 0.1 J: the unit of the text where the value is one number of it, else that of
+/// SI.
 std::string parameter_text(const Parameter& p, const MechanicalSystem& system) {
   const double factor = p.unit_factor;
-  return p.unit.empty() || system.dimensionless ? with_unit(brief(p.si_value), p.dimension) : brief(p.si_value / factor) + " " + p.unit;
+  return p.unit.empty() || system.dimensionless ? with_unit(brief(p.si_value), p.dimension)
+                                                : brief(p.si_value / factor) + " " + p.unit;
 }
 
 double value_of(Expr e, const MechanicalSystem& system) {
@@ -45,9 +48,10 @@ double value_of(Expr e, const MechanicalSystem& system) {
 std::string end_text(const std::vector<Expr>& configuration, Expr at, const MechanicalSystem& system) {
   std::vector<std::string> values;
   for (std::size_t i = 0; i < configuration.size(); ++i)
-    values.push_back(!configuration[i]      ? "free"
-                     : system.dimensionless ? brief(value_of(configuration[i], system))
-                                            : with_unit(brief(value_of(configuration[i], system)), system.coordinates[i].dimension));
+    values.push_back(!configuration[i] ? "free"
+                     : system.dimensionless
+                         ? brief(value_of(configuration[i], system))
+                         : with_unit(brief(value_of(configuration[i], system)), system.coordinates[i].dimension));
   return fmt::format("({}) at {}", joined(values), system.moment(brief(value_of(at, system))));
 }
 
@@ -59,7 +63,8 @@ std::string path_text(const PathEnds& path, const MechanicalSystem& system) {
 std::string held_text(const IntegralConstraint& held, const EquationsOfMotion& equations) {
   const MechanicalSystem& system = *equations.system;
   const std::string value = brief(value_of(held.value, system));
-  return fmt::format("{}∫ {} d{} = {}", held.name.empty() ? "" : held.name + ": ", to_plain(held.integrand, equations.order), system.independent,
+  return fmt::format("{}∫ {} d{} = {}", held.name.empty() ? "" : held.name + ": ",
+                     to_plain(held.integrand, equations.order), system.independent,
                      system.dimensionless ? value : with_unit(value, held.dimension));
 }
 
@@ -89,7 +94,8 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
   const auto energy = [&line](const char* head, const std::vector<EnergyTerm>& terms) {
     std::vector<std::string> origins;
     for (const EnergyTerm& term : terms) origins.push_back(term.origin);
-    if (origins.size() > 8) origins = {fmt::format("{} terms, from {} to {}", terms.size(), origins.front(), origins.back())};
+    if (origins.size() > 8)
+      origins = {fmt::format("{} terms, from {} to {}", terms.size(), origins.front(), origins.back())};
     line(head, joined(origins));
   };
 
@@ -103,8 +109,7 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
   summarise_constraints(equations, findings.analysis, line);
   words.clear();
   for (const Parameter& p : system.parameters)
-    if (p.symbol.role() == Role::Parameter)
-      words.push_back(fmt::format("{} = {}", p.name, parameter_text(p, system)));
+    if (p.symbol.role() == Role::Parameter) words.push_back(fmt::format("{} = {}", p.name, parameter_text(p, system)));
   if (words.size() > 12) words = {fmt::format("{} of them", words.size())};
   line("parameters", joined(words));
   words.clear();
@@ -128,8 +133,7 @@ std::string summary(const Model& model, const EquationsOfMotion& equations, cons
   line("start", joined(words));
   if (model.experiment.path) line("path", path_text(*model.experiment.path, system));
   words.clear();
-  for (const IntegralConstraint& held : system.integral_constraints)
-    words.push_back(held_text(held, equations));
+  for (const IntegralConstraint& held : system.integral_constraints) words.push_back(held_text(held, equations));
   line("integrals held", joined(words));
   if (findings.start) line("consistent start", moved_start(system, *findings.start));
   if (!model.experiment.expectations.empty())

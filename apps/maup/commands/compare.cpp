@@ -187,7 +187,8 @@ ExitCode compare_models(const CompareOptions& options, Console& console) {
   if (of_map.has_errors()) return end(json_document("compare"), ExitCode::Usage);
   const bool readable = !unreadable(a.diagnostics()) && !unreadable(b.diagnostics());
   const EquationsOfMotion* a_equations = a.equations();
-  if (!b.equations() || !a_equations || a.refuse_held_integrals() || b.refuse_held_integrals() || !a.certificate() || !b.certificate())
+  if (!b.equations() || !a_equations || a.refuse_held_integrals() || b.refuse_held_integrals() || !a.certificate() ||
+      !b.certificate())
     return end(json_document("compare"), readable ? ExitCode::ModelWrong : ExitCode::Usage);
 
   const InterruptScope of_a = a.interruptible(), of_b = b.interruptible();
@@ -202,10 +203,9 @@ ExitCode compare_models(const CompareOptions& options, Console& console) {
   const Comparison result = compare(*a.model(), *a_equations, *map, *b_equations, how, of_map);
   if (of_map.has_errors()) return end(json_document("compare"), ExitCode::ModelWrong);
   if (!console.json()) console.print(text_of(result, *a.model(), *map));
-  return end(to_json(result, *a.model(), *map),
-             result.proved()                    ? ExitCode::Fine
-             : result.verdict == Sameness::Same ? ExitCode::NotProved
-                                                : ExitCode::ExpectationFailed);
+  return end(to_json(result, *a.model(), *map), result.proved()                    ? ExitCode::Fine
+                                                : result.verdict == Sameness::Same ? ExitCode::NotProved
+                                                                                   : ExitCode::ExpectationFailed);
 }
 
 }  // namespace

@@ -42,11 +42,12 @@ ExitCode completions_of(const std::string& shell, const OptionTable& table, Cons
 
 void add_completions(CommandLine& line) {
   const auto shell = std::make_shared<std::string>();
-  Command& command = line.add("completions", "What makes Tab complete commands and options in a shell",
-                               "  source <(maup completions bash)        # for this session; in ~/.bashrc for all\n"
-                               "  maup completions zsh > ~/.zfunc/_maup  # a folder of fpath\n"
-                               "  maup completions fish > ~/.config/fish/completions/maup.fish\n",
-                               [&line, shell](Console& console) { return completions_of(*shell, with_known_words(line.table()), console); });
+  Command& command = line.add(
+      "completions", "What makes Tab complete commands and options in a shell",
+      "  source <(maup completions bash)        # for this session; in ~/.bashrc for all\n"
+      "  maup completions zsh > ~/.zfunc/_maup  # a folder of fpath\n"
+      "  maup completions fish > ~/.config/fish/completions/maup.fish\n",
+      [&line, shell](Console& console) { return completions_of(*shell, with_known_words(line.table()), console); });
   command.add_option("SHELL", *shell, "bash, zsh or fish")->required()->one_of({"bash", "zsh", "fish"});
 }
 

@@ -33,7 +33,8 @@ struct DeriveOptions {
 Json equations_json(const EquationForm& form, const ReadingOrder& order) {
   Json list = Json::array();
   for (const EquationLine& line : form.lines)
-    list.push_back({{"coordinate", line.coordinate}, {"plain", plain_text(shown_line(line, order))},
+    list.push_back({{"coordinate", line.coordinate},
+                    {"plain", plain_text(shown_line(line, order))},
                     {"latex", latex_text(shown_line(line, order))}});
   return list;
 }
@@ -58,7 +59,8 @@ void add_constraints(Json& document, Study& study) {
   for (std::size_t k = 0; k < written.size(); ++k) {
     const bool position = equations.system->constraints[k].level == Constraint::Level::Position;
     document["constraints"].push_back(
-        {{"name", written[k].name}, {"level", position ? "position" : "velocity"},
+        {{"name", written[k].name},
+         {"level", position ? "position" : "velocity"},
          {"class", word(analysis.constraints[k].constraint_class)},
          {"plain", to_plain(written[k].left, order) + " = " + to_plain(written[k].right, order)},
          {"latex", to_latex(written[k].left, order) + " = " + to_latex(written[k].right, order)}});
@@ -79,8 +81,10 @@ Json reactions_json(const EquationsOfMotion& equations) {
   for (const Reaction& r : reactions(equations)) {
     Json arrows = Json::array();
     for (const ForceArrow& arrow : r.arrows) arrows.push_back(arrow.point);
-    list.push_back({{"name", r.name}, {"plain", r.value ? Json(readable_text(r.value, equations.order)) : Json()},
-                    {"unit", equations.system->dimensionless ? std::string("1") : to_string(r.dimension)}, {"meaning", r.sentence},
+    list.push_back({{"name", r.name},
+                    {"plain", r.value ? Json(readable_text(r.value, equations.order)) : Json()},
+                    {"unit", equations.system->dimensionless ? std::string("1") : to_string(r.dimension)},
+                    {"meaning", r.sentence},
                     {"acts_on", std::move(arrows)}});
   }
   return list;
@@ -110,8 +114,10 @@ Json document_of(const DeriveOptions& options, Study& study, const EquationForm&
   for (const Intermediate& i : form.intermediates)
     document["intermediates"].push_back({{"name", to_plain(i.symbol, order)}, {"plain", to_plain(i.value, order)}});
   const bool entry_by_entry = options.form == "matrix" || !couples_too_much_to_read(*equations);
-  if (entry_by_entry) add_mass_matrix(document, *equations);
-  else document["left_out"] = Json::array({"mass_matrix", "momenta", "energy", "power"});
+  if (entry_by_entry)
+    add_mass_matrix(document, *equations);
+  else
+    document["left_out"] = Json::array({"mass_matrix", "momenta", "energy", "power"});
   if (equations->system->constrained()) add_constraints(document, study);
   if (Json list = reactions_json(*equations); !list.empty()) document["reactions"] = std::move(list);
   if (entry_by_entry) {
@@ -122,7 +128,8 @@ Json document_of(const DeriveOptions& options, Study& study, const EquationForm&
   }
   const ConservedQuantities conserved = conserved_quantities(*equations);
   Json names = Json::array();
-  for (const std::size_t i : conserved.conserved_momenta) names.push_back("p_" + equations->system->coordinates[i].name);
+  for (const std::size_t i : conserved.conserved_momenta)
+    names.push_back("p_" + equations->system->coordinates[i].name);
   if (conserved.energy_conserved) names.push_back("energy");
   document["conserved"] = std::move(names);
   document["energy_is_t_plus_v"] = conserved.energy_is_t_plus_v;
@@ -143,7 +150,8 @@ std::string in_notation(const DeriveOptions& options, Notation notation, Study& 
     lines.push_back(std::move(line));
   };
   for (const auto* part : {&form.lines, &form.constraints})
-    for (const EquationLine& line : *part) add(notation == Notation::Plain ? language_line(line, order) : shown_line(line, order));
+    for (const EquationLine& line : *part)
+      add(notation == Notation::Plain ? language_line(line, order) : shown_line(line, order));
   for (const Intermediate& i : form.intermediates) add(definition_line(i, *equations.system, order));
   if (notation == Notation::Plain) return document(lines, notation);
   for (FormulaLine& line : symbol_legend(*equations.system, order)) add(std::move(line));
@@ -172,10 +180,14 @@ ExitCode derive(const DeriveOptions& options, Console& console) {
 
   if (console.json()) return finish(console, study, document_of(options, study, form, certificate));
   if (certificate) {
-    if (options.latex) console.print(in_notation(options, Notation::Latex, study, form));
-    else if (options.mathml) console.print(in_notation(options, Notation::Mathml, study, form));
-    else if (options.plain) console.print(in_notation(options, Notation::Plain, study, form));
-    else console.print(lecture(study, form, *certificate, options.steps));
+    if (options.latex)
+      console.print(in_notation(options, Notation::Latex, study, form));
+    else if (options.mathml)
+      console.print(in_notation(options, Notation::Mathml, study, form));
+    else if (options.plain)
+      console.print(in_notation(options, Notation::Plain, study, form));
+    else
+      console.print(lecture(study, form, *certificate, options.steps));
   }
   return finish(console, study, {});
 }
@@ -192,11 +204,14 @@ void add_derive(CommandLine& line) {
   add_model_options(command, options->model);
   command.add_flag("--steps", options->steps, "The textbook derivation, line by line, each with its rule");
   Option* form = command
-      .add_option("--form", options->form,
-                  "standard: R = Aᵀλ; solved: q'' = …, λ = …; matrix: M, h, A and b of M q'' + h = Aᵀλ, A q'' = b; residual: R")
-      ->one_of({"standard", "solved", "matrix", "residual"})
-      ->type_name("FORM");
-  command.add_flag("--eliminate", options->eliminate, "The equations without multipliers: combinations in which Aᵀλ cancels")
+                     .add_option("--form", options->form,
+                                 "standard: R = Aᵀλ; solved: q'' = …, λ = …; matrix: M, h, A and b of M q'' + h = Aᵀλ, "
+                                 "A q'' = b; residual: R")
+                     ->one_of({"standard", "solved", "matrix", "residual"})
+                     ->type_name("FORM");
+  command
+      .add_flag("--eliminate", options->eliminate,
+                "The equations without multipliers: combinations in which Aᵀλ cancels")
       ->excludes(form);
   const auto latex = command.add_flag("--latex", options->latex, "A LaTeX document of the equations");
   const auto mathml = command.add_flag("--mathml", options->mathml, "MathML")->excludes(latex);

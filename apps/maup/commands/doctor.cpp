@@ -22,29 +22,38 @@ struct Finding {
 };
 
 std::string vector_instructions() {
-  return has_instruction_set(InstructionSet::Avx512) ? "AVX-512" : has_instruction_set(InstructionSet::Avx2) ? "AVX2" : "none that are used";
+  return has_instruction_set(InstructionSet::Avx512) ? "AVX-512"
+         : has_instruction_set(InstructionSet::Avx2) ? "AVX2"
+                                                     : "none that are used";
 }
 
 /// What matters when a result or a speed is questioned.
 std::vector<Finding> examine() {
   const BackendStatus backend = backend_status();
-  const std::string cache = backend.cache_folder.empty() ? "none: neither XDG_CACHE_HOME nor HOME is set"
-                                                         : fmt::format("{}, {} objects, {:.1f} MB", backend.cache_folder, backend.cache_files,
-                                                                       1e-6 * static_cast<double>(backend.cache_bytes));
+  const std::string cache = backend.cache_folder.empty()
+                                ? "none: neither XDG_CACHE_HOME nor HOME is set"
+                                : fmt::format("{}, {} objects, {:.1f} MB", backend.cache_folder, backend.cache_files,
+                                              1e-6 * static_cast<double>(backend.cache_bytes));
   return {
       {"version", MAUPERTUIS_VERSION},
       {"compiler", __VERSION__},
-      {"arithmetic", FLT_EVAL_METHOD == 0 ? "IEEE double, no excess precision" : "excess precision: results may differ"},
+      {"arithmetic",
+       FLT_EVAL_METHOD == 0 ? "IEEE double, no excess precision" : "excess precision: results may differ"},
       {"processors", std::to_string(std::thread::hardware_concurrency())},
-      {"backends", backend.compiled ? fmt::format("interpreter, compiled ({} for {})", backend.compiler, backend.processor) : "interpreter"},
+      {"backends", backend.compiled
+                       ? fmt::format("interpreter, compiled ({} for {})", backend.compiler, backend.processor)
+                       : "interpreter"},
       {"compiled code", backend.compiled ? "works" : backend.trouble},
       {"vector instructions", vector_instructions()},
       {"cache", cache},
-      {"integrators", has_stiff_method() ? "taylor, variational, stiff (SUNDIALS)" : "taylor, variational; stiff needs SUNDIALS"},
+      {"integrators",
+       has_stiff_method() ? "taylor, variational, stiff (SUNDIALS)" : "taylor, variational; stiff needs SUNDIALS"},
       {"regulator", has_lapack() ? "LAPACK" : "needs LAPACK"},
       {"trajectory formats", "csv, npy, json"},
       {"pictures", picture_problem().empty() ? "svg, png, pdf" : "svg; png and pdf need librsvg2-2"},
-      {"films", picture_problem().empty() && !find_ffmpeg().empty() ? "html, svg, mp4, gif" : "html, svg; mp4 and gif need ffmpeg and librsvg2-2"},
+      {"films", picture_problem().empty() && !find_ffmpeg().empty()
+                    ? "html, svg, mp4, gif"
+                    : "html, svg; mp4 and gif need ffmpeg and librsvg2-2"},
       {"not in this version", "contacts, friction, events, fields, sweeps, HDF5"},
   };
 }

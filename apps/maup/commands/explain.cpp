@@ -8,7 +8,10 @@ namespace maupertuis::app {
 namespace {
 
 Json entry_json(const CodeEntry& entry) {
-  return {{"code", entry.code}, {"title", entry.title}, {"explanation", entry.explanation}, {"wrong", entry.wrong},
+  return {{"code", entry.code},
+          {"title", entry.title},
+          {"explanation", entry.explanation},
+          {"wrong", entry.wrong},
           {"right", entry.right}};
 }
 

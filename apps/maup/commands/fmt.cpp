@@ -21,7 +21,8 @@ ExitCode format_one(const std::string& path, const FmtOptions& options, Console&
   if (tree && !study.wrong()) text = syntax::format(*tree, study.source());
   const bool changed = !study.wrong() && text != study.source().text();
   if (!study.wrong() && options.in_place && changed) write_result(path, text, study.diagnostics());
-  files.push_back({{"file", study.source().name()}, {"changed", changed},
+  files.push_back({{"file", study.source().name()},
+                   {"changed", changed},
                    {"diagnostics", to_json(study.diagnostics(), study.source())}});
   if (!console.json()) {
     console.show(study.diagnostics(), study.source());

@@ -103,8 +103,8 @@ std::string motion_text(const CanonicalMotion& motion, const SimulationResult& r
   out += fmt::format("  {} steps of order {}; Lagrange's equations took {}\n", motion.steps, motion.order,
                      run.statistics.steps);
   return out + (motion.difference > 0
-                    ? fmt::format("  the two motions differ by {} of its size in {}, at {}\n",
-                                  brief(motion.difference), motion.difference_name, system.moment(brief(motion.difference_time)))
+                    ? fmt::format("  the two motions differ by {} of its size in {}, at {}\n", brief(motion.difference),
+                                  motion.difference_name, system.moment(brief(motion.difference_time)))
                     : std::string("  the two motions agree to the last digit\n"));
 }
 
@@ -136,7 +136,8 @@ ExitCode integrate(const HamiltonianOptions& options, const PhaseSpace& found, S
   document["integration"] = motion_json(*motion);
   if (!console.json()) console.print(motion_text(*motion, *run, study.model()->system));
   if (!motion->ending.empty() && !console.json())
-    console.say(fmt::format("The canonical run ended at {}: {}\n", study.model()->system.moment(exact(motion->final_time)), motion->ending));
+    console.say(fmt::format("The canonical run ended at {}: {}\n",
+                            study.model()->system.moment(exact(motion->final_time)), motion->ending));
   return motion->ending.empty() ? exit_code(run->ending) : ExitCode::RunFailed;
 }
 

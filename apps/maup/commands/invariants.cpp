@@ -2,7 +2,6 @@
 #include "invariants_text.hpp"
 #include "outcome.hpp"
 
-
 namespace maupertuis::app {
 namespace {
 

@@ -31,8 +31,9 @@ void add_later_commands(CommandLine& line) {
       {"studio", "the interactive browser page"},
   };
   for (const auto& [name, what] : commands) {
-    Command& command = line.add(name, fmt::format("Not supported yet: {}", what), "  (none yet)\n",
-                                [name = std::string(name)](Console& console) { return not_supported_yet(name, console); });
+    Command& command =
+        line.add(name, fmt::format("Not supported yet: {}", what), "  (none yet)\n",
+                 [name = std::string(name)](Console& console) { return not_supported_yet(name, console); });
     command.allow_extras();
     command.group("Commands of later versions");
   }

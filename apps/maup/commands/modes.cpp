@@ -103,7 +103,8 @@ std::optional<RealMatrix> weights(const char* option, const std::string& text, s
       ++at;
     } else {
       const std::size_t begin = static_cast<std::size_t>(at - text.c_str());
-      return wrong(fmt::format("{} {}: here stands no number", option, text), begin, std::min(text.find_first_of(" ,;", begin), text.size()));
+      return wrong(fmt::format("{} {}: here stands no number", option, text), begin,
+                   std::min(text.find_first_of(" ,;", begin), text.size()));
     }
   }
   RealMatrix out{rows.size(), rows[0].size(), {}};
@@ -114,7 +115,8 @@ std::optional<RealMatrix> weights(const char* option, const std::string& text, s
     return out;
   }
   for (const auto& row : rows) {
-    if (row.size() != out.columns) return wrong(fmt::format("{} {}: its rows are of different lengths", option, text), 0, text.size());
+    if (row.size() != out.columns)
+      return wrong(fmt::format("{} {}: its rows are of different lengths", option, text), 0, text.size());
     out.entries.insert(out.entries.end(), row.begin(), row.end());
   }
   return out;
@@ -188,12 +190,14 @@ ExitCode points(const ModesOptions& options, Study& study, const PointEquations&
   for (std::size_t i = 0; i < result->entries.size() && i < detailed; ++i) {
     const bool settled = result->starts > 0 || !options.at.empty();
     formulas.push_back(
-        settled && result->entries[i].side.empty() ? symbolic_linearization(*study.equations(), result->entries[i].linearization, result->translations)
-                : std::nullopt);
+        settled && result->entries[i].side.empty()
+            ? symbolic_linearization(*study.equations(), result->entries[i].linearization, result->translations)
+            : std::nullopt);
     document["points"][i]["formulas"] =
         formulas.back() ? symbolic_json(*formulas.back(), study.equations()->order) : Json(nullptr);
   }
-  if (!console.json()) console.print(modes_text(system, *result, formulas, study.equations()->order, options.outputs, neighbours));
+  if (!console.json())
+    console.print(modes_text(system, *result, formulas, study.equations()->order, options.outputs, neighbours));
   if (options.q.empty()) return finish(console, study, document);
   const auto regulator = regulator_of(options, *result, study);
   if (regulator) document["regulator"] = regulator_json(*regulator);
@@ -236,7 +240,9 @@ bool check_usage(const ModesOptions& o, Diagnostics& diagnostics) {
         "It follows all equilibria along a parameter; these options look at single points.", "Leave one of them out.");
     return false;
   }
-  check_output_files({{"--plot", o.plot, FileKind::Picture}, {"--roots", o.roots, FileKind::Picture}, {"--csv", o.csv, FileKind::Csv}}, o.model.path, diagnostics);
+  check_output_files(
+      {{"--plot", o.plot, FileKind::Picture}, {"--roots", o.roots, FileKind::Picture}, {"--csv", o.csv, FileKind::Csv}},
+      o.model.path, diagnostics);
   if (diagnostics.has_errors()) return false;
   if (!o.orbit || (o.at.empty() && !o.locus() && o.q.empty() && o.outputs.empty())) return true;
   diagnostics.error("E0809", {}, "--orbit has neither --at, --sweep, --y nor a regulator beside it.",

@@ -48,8 +48,10 @@ ExitCode finish_new(ExitCode code, const std::string& path, const Diagnostics& d
 ExitCode list_starters(Console& console) {
   Json document = json_document("new");
   document["starters"] = starter_names();
-  if (console.json()) console.print_document(document);
-  else console.print(fmt::format("{}\n", fmt::join(starter_names(), "\n")));
+  if (console.json())
+    console.print_document(document);
+  else
+    console.print(fmt::format("{}\n", fmt::join(starter_names(), "\n")));
   return ExitCode::Fine;
 }
 
@@ -96,7 +98,8 @@ void add_new(CommandLine& line) {
                               "  maup new --list\n",
                               [options](Console& console) { return write_starter(*options, console); });
   command.add_option("NAME", options->name, "Which starter");
-  command.add_option("-o,--output", options->output, "The file to write (NAME.lag by default), or - for standard output");
+  command.add_option("-o,--output", options->output,
+                     "The file to write (NAME.lag by default), or - for standard output");
   command.add_option("--links", options->links, "Number of links of the chain")->between(1, 10000);
   command.add_flag("--force", options->force, "Overwrite a file that exists");
   command.add_flag("--list", options->list, "Name the starters");

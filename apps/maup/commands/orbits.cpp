@@ -33,7 +33,8 @@ void check_usage(const Options& o, Diagnostics& diagnostics) {
   if (o.orbits.floquet + o.orbits.lyapunov + o.orbits.has_section() != 1)
     diagnostics.error("E0809", {}, "maup orbits does one thing at a time.", {},
                       "Give --floquet, --section \"x = 0 rising\", --strobe 2s or --lyapunov.");
-  check_output_files({{"-o", o.output, FileKind::Table}, {"--plot", o.plot, FileKind::Picture}}, o.model.path, diagnostics);
+  check_output_files({{"-o", o.output, FileKind::Table}, {"--plot", o.plot, FileKind::Picture}}, o.model.path,
+                     diagnostics);
   if (o.orbits.floquet && (!o.plot.empty() || !o.output.empty()))
     diagnostics.error("E0809", {}, "--floquet has no table and no picture.", {},
                       "Leave --plot and -o out, or take --json.");
@@ -90,12 +91,12 @@ ExitCode study_orbits(const Options& o, Console& console) {
 
 void add_orbits(CommandLine& line) {
   const auto options = std::make_shared<Options>();
-  Command& command = line.add(
-      "orbits", "Periodic motions with their Floquet multipliers, Poincaré sections, Lyapunov exponents",
-      "  maup orbits pendulum.lag --floquet\n"
-      "  maup orbits henon_heiles.lag --section \"x = 0 rising\" --starts 24 --plot section.svg\n"
-      "  maup orbits double_pendulum.lag --lyapunov --duration 500s --plot exponents.svg\n",
-      [options](Console& console) { return study_orbits(*options, console); });
+  Command& command =
+      line.add("orbits", "Periodic motions with their Floquet multipliers, Poincaré sections, Lyapunov exponents",
+               "  maup orbits pendulum.lag --floquet\n"
+               "  maup orbits henon_heiles.lag --section \"x = 0 rising\" --starts 24 --plot section.svg\n"
+               "  maup orbits double_pendulum.lag --lyapunov --duration 500s --plot exponents.svg\n",
+               [options](Console& console) { return study_orbits(*options, console); });
   add_model_options(command, options->model);
   add_orbits_options(command, options->orbits);
   command.add_option("--duration", options->duration, "How long to average exponents (default: the model's run)")

@@ -15,7 +15,7 @@ struct PlotCommandOptions {
   ModelOptions model;
   RunOptions run;
   PlotOptions picture;
-  std::vector<std::string> y, x;   // lists of columns, as written
+  std::vector<std::string> y, x;  // lists of columns, as written
   std::string output = "-";
 };
 
@@ -27,7 +27,8 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
   const AskedColumns y("--y", options.y, study), x("--x", options.x, study);
   SimulationOptions settings = simulation_options(options.run, study.diagnostics(), study.tree());
   if (settings.errors != ErrorEstimates::None) settings.errors = ErrorEstimates::Rows;
-  if (options.output != "-") check_output_files({{"-o", options.output, FileKind::Picture}}, options.model.path, study.diagnostics());
+  if (options.output != "-")
+    check_output_files({{"-o", options.output, FileKind::Picture}}, options.model.path, study.diagnostics());
   if (readable_model && study.wrong()) {
     finish(console, study, document);
     return ExitCode::Usage;
@@ -53,9 +54,12 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
   }
   check_numbers(result->trajectory, study.diagnostics());
   const std::string svg = plot_svg(result->trajectory, picture);
-  if (options.output != "-") write_picture(options.output, svg, study.diagnostics());
-  else if (console.json()) document["svg"] = svg;
-  else console.print(svg);
+  if (options.output != "-")
+    write_picture(options.output, svg, study.diagnostics());
+  else if (console.json())
+    document["svg"] = svg;
+  else
+    console.print(svg);
   const bool written = !study.wrong();
   if (!result->ok()) console.say(fmt::format("The run ended early: {}\n", result->reason));
   finish(console, study, document);
@@ -67,17 +71,20 @@ ExitCode plot_model(const PlotCommandOptions& options, Console& console) {
 void add_plot(CommandLine& line) {
   const auto options = std::make_shared<PlotCommandOptions>();
   Command& command = line.add("plot", "The motion as a picture: SVG, PNG or PDF",
-                               "  maup plot pendulum.lag -o pendulum.svg\n"
-                               "  maup plot pendulum.lag --y θ --degrees -o angle.pdf\n"
-                               "  maup plot pendulum.lag --x θ --y \"θ'\" -o phase.svg\n",
-                               [options](Console& console) { return plot_model(*options, console); });
+                              "  maup plot pendulum.lag -o pendulum.svg\n"
+                              "  maup plot pendulum.lag --y θ --degrees -o angle.pdf\n"
+                              "  maup plot pendulum.lag --x θ --y \"θ'\" -o phase.svg\n",
+                              [options](Console& console) { return plot_model(*options, console); });
   add_model_options(command, options->model);
   add_span_options(command, options->run);
   add_method_options(command, options->run);
   add_errors_option(command, options->run);
   PlotOptions& picture = options->picture;
-  command.add_option("-o,--output", options->output, "The picture (default: standard output)")->type_name("FILE.svg|png|pdf");
-  command.add_option("--y", options->y, "What to draw: columns and formulas, e.g. \"θ, θ1 - θ2, 1/2 m l^2 θ'^2\" (default: every column)")
+  command.add_option("-o,--output", options->output, "The picture (default: standard output)")
+      ->type_name("FILE.svg|png|pdf");
+  command
+      .add_option("--y", options->y,
+                  "What to draw: columns and formulas, e.g. \"θ, θ1 - θ2, 1/2 m l^2 θ'^2\" (default: every column)")
       ->allow_extra_args(false)
       ->type_name("FORMULA,...");
   command.add_option("--x", options->x, "Against what (default: time); a column or formula gives a phase portrait")
@@ -85,7 +92,8 @@ void add_plot(CommandLine& line) {
       ->type_name("FORMULA");
   command.add_option("--title", picture.title, "Title (default: that of the system)");
   command.add_flag("--degrees", picture.degrees, "Angles in degrees");
-  command.add_flag_callback("--dark", [&picture] { picture.theme = PlotTheme::Dark; }, "Light on dark");
+  command.add_flag_callback(
+      "--dark", [&picture] { picture.theme = PlotTheme::Dark; }, "Light on dark");
 }
 
 }  // namespace maupertuis::app

@@ -22,7 +22,8 @@ std::string account(const Reduction& r) {
   std::string out;
   for (const std::string& step : r.steps) out += fmt::format("  {}\n", step);
   if (!r.proof) return out;
-  out += fmt::format("  the same motion{}: {}\n", r.proof->proved() ? "" : ", by evidence and not proved", ground_text(*r.proof));
+  out += fmt::format("  the same motion{}: {}\n", r.proof->proved() ? "" : ", by evidence and not proved",
+                     ground_text(*r.proof));
   if (r.proof->run.ran)
     out += fmt::format("  run of both for {} s: they differ by {:.2g}\n", brief(r.proof->run.duration),
                        r.proof->run.difference);
@@ -75,7 +76,8 @@ void add_reduce(CommandLine& line) {
                               "  maup reduce planetary_gear.lag --json\n",
                               [options](Console& console) { return reduce_model(*options, console); });
   command.add_option("MODEL", options->path, "The model file (.lag), or - for standard input")->required();
-  command.add_option("-o,--output", options->output, "Write the reduced model to this file (.lag), or - for standard output");
+  command.add_option("-o,--output", options->output,
+                     "Write the reduced model to this file (.lag), or - for standard output");
 }
 
 }  // namespace maupertuis::app

@@ -59,10 +59,17 @@ bool is_about_paths_alone(const Model& model) {
 /// One page under construction.
 class Page {
  public:
-  Page(const ReportOptions& options, Study& study, SectionBudget& budget, const SimulationOptions& settings, const Console& console)
-      : options_(options), study_(study), budget_(budget), settings_(settings), console_(console), context_(*study.model()->system.context) {}
+  Page(const ReportOptions& options, Study& study, SectionBudget& budget, const SimulationOptions& settings,
+       const Console& console)
+      : options_(options),
+        study_(study),
+        budget_(budget),
+        settings_(settings),
+        console_(console),
+        context_(*study.model()->system.context) {}
 
-  /// What every section stands on. Without it there is no page; the diagnostics say why. False where it did not come in time (E0814).
+  /// What every section stands on. Without it there is no page; the diagnostics say why. False where it did not come in
+  /// time (E0814).
   bool certify() {
     if (budget_.wanted("equations") || budget_.wanted("derivation")) derive();
     const bool came = budget_.attempt("certificate", context_, [&](const Interrupt& interrupt) {
@@ -71,8 +78,8 @@ class Page {
     });
     study_.set_interrupt(&interrupt_flag());
     if (came) return true;
-    study_.diagnostics().error("E0814", {}, "the budget was used up before the equations were certified", "Nothing is shown that is not.",
-                               "Give the page more time, such as --budget 10min.");
+    study_.diagnostics().error("E0814", {}, "the budget was used up before the equations were certified",
+                               "Nothing is shown that is not.", "Give the page more time, such as --budget 10min.");
     return false;
   }
 
@@ -96,7 +103,8 @@ class Page {
     if (study_.wrong()) return false;
     budget_.carry_out("expectations", context_, [&](const Interrupt& interrupt) { verify_model(interrupt); });
     budget_.carry_out("conserved", context_, [&](const Interrupt&) { find_conserved(); });
-    if (moves_in_time(model().system)) budget_.carry_out("modes", context_, [&](const Interrupt& interrupt) { find_modes(interrupt); });
+    if (moves_in_time(model().system))
+      budget_.carry_out("modes", context_, [&](const Interrupt& interrupt) { find_modes(interrupt); });
     return true;
   }
 
@@ -104,8 +112,9 @@ class Page {
     const Derivation none;
     const bool readable = budget_.wanted("equations") || budget_.wanted("derivation");
     const Derivation* derivation = readable && derived_ ? study_.derivation(true) : &none;
-    ReportContent content = compose_report(model(), study_.source(), equations(), *derivation, *study_.certificate(), found_.parts(),
-                                           [&](std::string_view name, const std::function<void()>& work) { return compose(name, work); });
+    ReportContent content =
+        compose_report(model(), study_.source(), equations(), *derivation, *study_.certificate(), found_.parts(),
+                       [&](std::string_view name, const std::function<void()>& work) { return compose(name, work); });
     study_.diagnostics().append(budget_.warnings());
     add_messages(content, study_.diagnostics(), study_.source());
     return report_html(content);
@@ -119,7 +128,8 @@ class Page {
 
   bool compose(std::string_view name, const std::function<void()>& work) {
     const auto under_interrupt = [&](const Interrupt&) { work(); };
-    return name == "model" ? budget_.attempt(name, context_, under_interrupt) : budget_.carry_out(name, context_, under_interrupt);
+    return name == "model" ? budget_.attempt(name, context_, under_interrupt)
+                           : budget_.carry_out(name, context_, under_interrupt);
   }
 
   /// Before the certificate, so that it vouches for the readable form too.
@@ -205,8 +215,11 @@ class Page {
     if (found) settle_driven(*found, at_points, model(), equations(), interrupt);
     interrupt.throw_if_asked();
     if (const auto& sweep = model().experiment.sweep) {
-      const auto value = [&](Expr e) { return evaluate(in_terms_of_motion(model().system, {&e, 1}).front(), parameter_bindings(model().system)); };
-      found_.locus = parameter_locus(at_points, start->state, sweep->parameter, value(sweep->from), value(sweep->to), sweep->steps);
+      const auto value = [&](Expr e) {
+        return evaluate(in_terms_of_motion(model().system, {&e, 1}).front(), parameter_bindings(model().system));
+      };
+      found_.locus = parameter_locus(at_points, start->state, sweep->parameter, value(sweep->from), value(sweep->to),
+                                     sweep->steps);
     }
     found_.modes = std::move(found);
   }
@@ -226,7 +239,8 @@ std::optional<double> budget_seconds(const std::string& text, Diagnostics& diagn
   if (text == "none") return std::nullopt;
   const auto seconds = parse_time(text);
   if (!seconds || !(*seconds > 0) || *seconds > 1e8)
-    diagnostics.error("E0809", {}, fmt::format("--budget \"{}\" is no length of time.", text), {}, "Write a positive time such as 20s or \"2 min\", or none.");
+    diagnostics.error("E0809", {}, fmt::format("--budget \"{}\" is no length of time.", text), {},
+                      "Write a positive time such as 20s or \"2 min\", or none.");
   return seconds;
 }
 
@@ -235,16 +249,20 @@ void check_sections(const std::vector<std::string>& chosen, Diagnostics& diagnos
   for (const std::string& name : chosen) {
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
     const std::string near = did_you_mean(name, names);
-    diagnostics.error("E0809", {}, fmt::format("--sections: a report has no section `{}`.", name), {},
-                      near.empty() ? fmt::format("It has {}.", fmt::join(names, ", ")) : fmt::format("Did you mean {}?", near));
+    diagnostics.error(
+        "E0809", {}, fmt::format("--sections: a report has no section `{}`.", name), {},
+        near.empty() ? fmt::format("It has {}.", fmt::join(names, ", ")) : fmt::format("Did you mean {}?", near));
   }
 }
 
-ExitCode write_page(const std::string& page, Page& built, const ReportOptions& options, Study& study, Json& document, Console& console) {
+ExitCode write_page(const std::string& page, Page& built, const ReportOptions& options, Study& study, Json& document,
+                    Console& console) {
   const std::string& name = study.model()->system.name;  // empty without a line `system`
   const std::string path = options.output.empty() ? (name.empty() ? "report" : name) + ".html" : options.output;
-  if (path == "-") console.print(page);
-  else write_result(path, page, study.diagnostics());
+  if (path == "-")
+    console.print(page);
+  else
+    write_result(path, page, study.diagnostics());
   document["file"] = path;
   document["bytes"] = page.size();
   const bool written = !study.wrong();
@@ -265,7 +283,8 @@ ExitCode report(const ReportOptions& options, Console& console) {
   check_orbits_options(options.orbits, study.diagnostics());
   check_sections(options.sections, study.diagnostics());
   const auto seconds = budget_seconds(options.budget, study.diagnostics());
-  if (options.output != "-") check_output_files({{"-o", options.output, FileKind::Page}}, options.model.path, study.diagnostics());
+  if (options.output != "-")
+    check_output_files({{"-o", options.output, FileKind::Page}}, options.model.path, study.diagnostics());
   if (readable_model && study.wrong()) return finish_usage(console, study, "report");
   put_in_run(options.run, study);
   put_in_section(options.orbits, study);
@@ -289,10 +308,10 @@ ExitCode report(const ReportOptions& options, Console& console) {
 void add_report(CommandLine& line) {
   const auto options = std::make_shared<ReportOptions>();
   Command& command = line.add("report", "The whole study on one page that needs no network",
-                               "  maup report pendulum.lag               # writes pendulum.html\n"
-                               "  maup report chain.lag --budget 2min -o study.html\n"
-                               "  maup report pendulum.lag --sections equations,motion --duration 60s\n",
-                               [options](Console& console) { return report(*options, console); });
+                              "  maup report pendulum.lag               # writes pendulum.html\n"
+                              "  maup report chain.lag --budget 2min -o study.html\n"
+                              "  maup report pendulum.lag --sections equations,motion --duration 60s\n",
+                              [options](Console& console) { return report(*options, console); });
   add_model_options(command, options->model);
   add_span_options(command, options->run);
   add_method_options(command, options->run);
@@ -301,11 +320,17 @@ void add_report(CommandLine& line) {
       ->type_name("FILE.html");
   add_orbits_options(command, options->orbits);
   command.add_flag("--no-run", options->without_run, "Equations alone: no motion, no pictures");
-  command.add_option("--sections", options->sections, fmt::format("These alone, beside the model and the certificate: {}", fmt::join(SectionBudget::names(), ", ")))
+  command
+      .add_option(
+          "--sections", options->sections,
+          fmt::format("These alone, beside the model and the certificate: {}", fmt::join(SectionBudget::names(), ", ")))
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAME,...");
-  command.add_option("--budget", options->budget, "The time that the page may take (default 20s), or none; sections that do not come in it are left out")
+  command
+      .add_option(
+          "--budget", options->budget,
+          "The time that the page may take (default 20s), or none; sections that do not come in it are left out")
       ->type_name("TIME");
 }
 

@@ -1,7 +1,7 @@
 #include "columns.hpp"
 #include "extended_text.hpp"
-#include "outcome.hpp"
 #include "numbers.hpp"
+#include "outcome.hpp"
 #include "output_files.hpp"
 #include "quantity.hpp"
 #include "run_options.hpp"
@@ -20,21 +20,25 @@ struct SimulateOptions {
   ModelOptions model;
   RunOptions run;
   std::string output, plot;
-  std::vector<std::string> columns;       // lists, as written; none: every column
-  std::optional<std::string> precision;   // none: that of the model
+  std::vector<std::string> columns;      // lists, as written; none: every column
+  std::optional<std::string> precision;  // none: that of the model
   bool errors = false;
 };
 
 /// Before the run: a wrong ending must not cost an hour of computing.
 void check_endings(const SimulateOptions& options, Diagnostics& diagnostics) {
   if (options.errors && (options.run.no_errors || options.output.empty()))
-    diagnostics.error("E0809", {}, options.run.no_errors ? "--errors and --no-errors exclude each other." : "--errors is about the file of -o, and there is none.",
-                      "It writes the errors of each row beside it; those of the states that are printed stand there anyway.",
-                      options.run.no_errors ? "Leave one of them out." : "Add -o motion.csv, or leave --errors out.");
+    diagnostics.error(
+        "E0809", {},
+        options.run.no_errors ? "--errors and --no-errors exclude each other."
+                              : "--errors is about the file of -o, and there is none.",
+        "It writes the errors of each row beside it; those of the states that are printed stand there anyway.",
+        options.run.no_errors ? "Leave one of them out." : "Add -o motion.csv, or leave --errors out.");
   if (!options.columns.empty() && options.output.empty() && options.plot.empty())
-    diagnostics.error("E0809", {}, "--columns is about the files of -o and --plot, and there is none.", "It chooses what stands in them.",
-                      "Add -o motion.csv or --plot motion.svg.");
-  check_output_files({{"-o", options.output, FileKind::Table}, {"--plot", options.plot, FileKind::Picture}}, options.model.path, diagnostics);
+    diagnostics.error("E0809", {}, "--columns is about the files of -o and --plot, and there is none.",
+                      "It chooses what stands in them.", "Add -o motion.csv or --plot motion.svg.");
+  check_output_files({{"-o", options.output, FileKind::Table}, {"--plot", options.plot, FileKind::Picture}},
+                     options.model.path, diagnostics);
 }
 
 /// A λ that the equations do not determine is null.
@@ -51,7 +55,8 @@ Json errors_json(const State& state, const SimulationResult& result, const Mecha
   }
   for (std::size_t i = 0; i < errors.multipliers.size(); ++i)
     out[system.constraints[i].multiplier.name()] = number_or_null(errors.multipliers[i]);
-  for (std::size_t i = 0; i < errors.reactions.size(); ++i) out[result.reactions[i].name] = number_or_null(errors.reactions[i]);
+  for (std::size_t i = 0; i < errors.reactions.size(); ++i)
+    out[result.reactions[i].name] = number_or_null(errors.reactions[i]);
   return out;
 }
 
@@ -64,8 +69,12 @@ Json state_json(const State& state, const SimulationResult& result, const Mechan
   Json multipliers = Json::object(), reactions = Json::object();
   for (std::size_t i = 0; i < state.multipliers.size(); ++i)
     multipliers[system.constraints[i].multiplier.name()] = number_or_null(state.multipliers[i]);
-  for (std::size_t i = 0; i < state.reactions.size(); ++i) reactions[result.reactions[i].name] = number_or_null(state.reactions[i]);
-  Json out = {{"t", state.t}, {"state", std::move(values)}, {"multipliers", std::move(multipliers)}, {"reactions", std::move(reactions)}};
+  for (std::size_t i = 0; i < state.reactions.size(); ++i)
+    reactions[result.reactions[i].name] = number_or_null(state.reactions[i]);
+  Json out = {{"t", state.t},
+              {"state", std::move(values)},
+              {"multipliers", std::move(multipliers)},
+              {"reactions", std::move(reactions)}};
   if (state.errors) out["errors"] = errors_json(state, result, system);
   return out;
 }
@@ -84,14 +93,24 @@ Json document_of(const SimulationResult& result, const MechanicalSystem& system)
   document["at"] = Json::array();
   for (const State& state : result.at) document["at"].push_back(state_json(state, result, system));
   const SimulationStatistics& s = result.statistics;
-  document["statistics"] = {{"steps", s.steps}, {"rejected", s.rejected}, {"seconds", s.seconds}, {"compile_seconds", s.compile_seconds},
-                            {"order", s.order}, {"method", s.method}, {"backend", s.backend}, {"energy_drift", s.energy_drift},
-                            {"constraint_residual", s.constraint_residual}, {"switches", s.switches},
-                            {"rows", result.trajectory.rows()}, {"companions", s.companions}, {"companion_seconds", s.companion_seconds}};
+  document["statistics"] = {{"steps", s.steps},
+                            {"rejected", s.rejected},
+                            {"seconds", s.seconds},
+                            {"compile_seconds", s.compile_seconds},
+                            {"order", s.order},
+                            {"method", s.method},
+                            {"backend", s.backend},
+                            {"energy_drift", s.energy_drift},
+                            {"constraint_residual", s.constraint_residual},
+                            {"switches", s.switches},
+                            {"rows", result.trajectory.rows()},
+                            {"companions", s.companions},
+                            {"companion_seconds", s.companion_seconds}};
   document["uncertain"] = uncertain_json(result);
   document["events"] = Json::array();
   document["ended"] = {{"reason", result.reason.empty() ? ending_name(result.ending) : result.reason},
-                       {"kind", ending_name(result.ending)}, {"ok", result.ok()}};
+                       {"kind", ending_name(result.ending)},
+                       {"ok", result.ok()}};
   return document;
 }
 
@@ -107,19 +126,25 @@ std::string state_text(const State& state, const SimulationResult& result, const
   if (state.q.empty()) return system.moment(exact(state.t)) + "\n  not reached\n";
   const auto& errors = state.errors;
   const bool located = errors && errors->t != 0;
-  std::string out = system.moment(!located ? exact(state.t) : std::isinf(errors->t) ? "?" : with_uncertainty(state.t, errors->t)) + "\n";
+  std::string out = system.moment(!located                ? exact(state.t)
+                                  : std::isinf(errors->t) ? "?"
+                                                          : with_uncertainty(state.t, errors->t)) +
+                    "\n";
   const auto line = [&](const std::string& name, double value, double error, const std::string& unit) {
     out += fmt::format("  {} = {}\n", name, number_text(value, errors, error, unit));
   };
   for (std::size_t i = 0; i < state.q.size(); ++i) {
     const Coordinate& c = system.coordinates[i];
     line(c.name, state.q[i], errors ? errors->q[i] : 0, system.dimensionless ? "" : to_string(c.dimension));
-    line(c.name + "'", state.v[i], errors ? errors->v[i] : 0, system.dimensionless ? "" : to_string(c.dimension / system.independent_dimension));
+    line(c.name + "'", state.v[i], errors ? errors->v[i] : 0,
+         system.dimensionless ? "" : to_string(c.dimension / system.independent_dimension));
   }
   for (std::size_t i = 0; i < state.reactions.size(); ++i) {
     const Trajectory::Column& column = result.reactions[i];
-    if (std::isnan(state.reactions[i])) out += fmt::format("  {}: not determined\n", column.name);
-    else line(column.name, state.reactions[i], errors ? errors->reactions[i] : 0, column.unit);
+    if (std::isnan(state.reactions[i]))
+      out += fmt::format("  {}: not determined\n", column.name);
+    else
+      line(column.name, state.reactions[i], errors ? errors->reactions[i] : 0, column.unit);
   }
   return out;
 }
@@ -129,7 +154,8 @@ std::string uncertain_text(const SimulationResult& result, const MechanicalSyste
   const Uncertainty& uncertain = result.uncertain;
   if (uncertain.columns.empty()) return {};
   std::string names;
-  for (const std::size_t column : uncertain.columns) names += (names.empty() ? "" : ", ") + result.trajectory.columns[column].name;
+  for (const std::size_t column : uncertain.columns)
+    names += (names.empty() ? "" : ", ") + result.trajectory.columns[column].name;
   const std::string from = system.moment(brief(uncertain.from));
   return uncertain.everything ? fmt::format("From {} on nothing is certain of this motion.\n", from)
                               : fmt::format("From {} on no digit is certain of {}.\n", from, names);
@@ -140,21 +166,28 @@ std::string text_of(const SimulationResult& result, const MechanicalSystem& syst
   for (const State& state : result.at) out += state_text(state, result, system);
   if (result.at.empty() || result.at.back().t != result.final.t) out += state_text(result.final, result, system);
   const SimulationStatistics& s = result.statistics;
-  const std::string method = s.method == "taylor" ? fmt::format("of order {}", s.order)
-                             : s.method == "stiff" ? "of the stiff method" : fmt::format("of the variational method, order {},", s.order);
-  const std::string residual = system.constrained() ? fmt::format("; constraint residual {}", brief(s.constraint_residual)) : "";
-  const std::string companions = s.companions > 0 ? fmt::format("; errors from {} companions in {} s", s.companions, brief(s.companion_seconds)) : "";
+  const std::string method = s.method == "taylor"  ? fmt::format("of order {}", s.order)
+                             : s.method == "stiff" ? "of the stiff method"
+                                                   : fmt::format("of the variational method, order {},", s.order);
+  const std::string residual =
+      system.constrained() ? fmt::format("; constraint residual {}", brief(s.constraint_residual)) : "";
+  const std::string companions =
+      s.companions > 0 ? fmt::format("; errors from {} companions in {} s", s.companions, brief(s.companion_seconds))
+                       : "";
   return out + uncertain_text(result, system) +
-         fmt::format("{} steps {} in {} s ({}, ready in {} s); energy drift {}{}{}\n", s.steps, method, brief(s.seconds), s.backend,
-                     brief(s.compile_seconds), brief(s.energy_drift), residual, companions);
+         fmt::format("{} steps {} in {} s ({}, ready in {} s); energy drift {}{}{}\n", s.steps, method,
+                     brief(s.seconds), s.backend, brief(s.compile_seconds), brief(s.energy_drift), residual,
+                     companions);
 }
 
 /// What was computed is written whatever the ending.
-void write_files(const SimulateOptions& options, const AskedColumns& columns, const SimulationResult& result, Study& study) {
+void write_files(const SimulateOptions& options, const AskedColumns& columns, const SimulationResult& result,
+                 Study& study) {
   Diagnostics& diagnostics = study.diagnostics();
   const auto rows = columns.empty() ? result.trajectory : columns.chosen_from(result.trajectory, study);
   if (!rows) return;
-  if (!options.output.empty()) write_rows(options.output, options.errors ? with_error_columns(*rows) : *rows, diagnostics);
+  if (!options.output.empty())
+    write_rows(options.output, options.errors ? with_error_columns(*rows) : *rows, diagnostics);
   if (options.output.empty()) check_numbers(result.trajectory, diagnostics);
   if (!options.plot.empty()) {
     PlotOptions picture;
@@ -193,17 +226,20 @@ ExitCode simulate_model(const SimulateOptions& options, Study& study, Console& c
 /// Pictures and binary trajectories hold doubles; the digits that are printed are the errors.
 void check_extended_files(const SimulateOptions& options, Diagnostics& diagnostics) {
   if (options.errors || options.run.no_errors)
-    diagnostics.error("E0809", {}, fmt::format("{} belongs to runs in double.", options.errors ? "--errors" : "--no-errors"),
-                      "In many digits those are written of which several runs agree: their number tells the error.", "Leave it out.");
+    diagnostics.error(
+        "E0809", {}, fmt::format("{} belongs to runs in double.", options.errors ? "--errors" : "--no-errors"),
+        "In many digits those are written of which several runs agree: their number tells the error.", "Leave it out.");
   if (!options.columns.empty())
     diagnostics.error("E0809", {}, "--columns belongs to runs in double.", "In many digits every column is written.",
                       "Leave it out, or give --precision double.");
   if (!options.plot.empty())
-    diagnostics.error("E0809", {}, "--plot draws what double computes.", "A picture shows no more digits.", "Give --precision double for it.");
+    diagnostics.error("E0809", {}, "--plot draws what double computes.", "A picture shows no more digits.",
+                      "Give --precision double for it.");
   check_output_files({{"-o", options.output, FileKind::Csv}}, options.model.path, diagnostics);
 }
 
-ExitCode simulate_extended_model(const SimulateOptions& options, const std::string& digits, Study& study, Console& console) {
+ExitCode simulate_extended_model(const SimulateOptions& options, const std::string& digits, Study& study,
+                                 Console& console) {
   const bool readable_model = !study.wrong();
   check_extended_files(options, study.diagnostics());
   const Precision precision = digits == "quad" ? Precision::Quad : Precision::Digits100;
@@ -233,7 +269,8 @@ ExitCode simulate_extended_model(const SimulateOptions& options, const std::stri
 ExitCode simulate_in_any_precision(const SimulateOptions& options, Console& console) {
   Study study = open_study(options.model);
   const std::string digits = options.precision ? *options.precision : precision_of(study.tree());
-  return digits == "quad" || digits == "100" ? simulate_extended_model(options, digits, study, console) : simulate_model(options, study, console);
+  return digits == "quad" || digits == "100" ? simulate_extended_model(options, digits, study, console)
+                                             : simulate_model(options, study, console);
 }
 
 }  // namespace
@@ -250,12 +287,18 @@ void add_simulate(CommandLine& line) {
   add_method_options(command, options->run);
   add_errors_option(command, options->run);
   command.add_flag("--errors", options->errors, "Columns error(θ), … of the errors of each row in the file of -o");
-  command.add_option("--precision", options->precision, "double, quad (113 bits) or 100 (decimal digits): as many digits as two runs agree on; default: the model's `precision`, or double")
+  command
+      .add_option("--precision", options->precision,
+                  "double, quad (113 bits) or 100 (decimal digits): as many digits as two runs agree on; default: the "
+                  "model's `precision`, or double")
       ->one_of({"double", "quad", "100"})
       ->type_name("DIGITS");
   command.add_option("-o,--output", options->output, "The trajectory: .csv, .npy or .json")->type_name("FILE");
   command.add_option("--plot", options->plot, "Its time series as a picture: .svg")->type_name("FILE");
-  command.add_option("--columns", options->columns, "What stands in these files: columns and formulas, e.g. \"θ1 - θ2, B.x, energy\" (default: every column)")
+  command
+      .add_option(
+          "--columns", options->columns,
+          "What stands in these files: columns and formulas, e.g. \"θ1 - θ2, B.x, energy\" (default: every column)")
       ->allow_extra_args(false)
       ->type_name("FORMULA,...");
 }

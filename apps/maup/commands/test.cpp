@@ -21,21 +21,33 @@ struct FileOutcome {
 
 std::string text_of(const ExpectationResult& r, const std::string& file) {
   if (r.passed && !r.beyond_digits) return {};
-  std::string out = fmt::format("{}:{}: {} {}\n", file, r.line, r.text, r.passed ? "holds, but asks for more digits than are known" : "fails");
+  std::string out = fmt::format("{}:{}: {} {}\n", file, r.line, r.text,
+                                r.passed ? "holds, but asks for more digits than are known" : "fails");
   const auto and_then = [](const std::string& text) { return text.empty() ? text : " " + text; };
   if (!r.actual.empty())
-    out += fmt::format("    found     {}{}\n    expected  {}{}\n", r.actual, and_then(r.beyond_digits ? r.uncertainty : ""), r.expected, and_then(r.tolerance));
+    out += fmt::format("    found     {}{}\n    expected  {}{}\n", r.actual,
+                       and_then(r.beyond_digits ? r.uncertainty : ""), r.expected, and_then(r.tolerance));
   if (!r.message.empty()) out += fmt::format("    {}\n", r.message);
   if (!r.pitfall.empty()) out += fmt::format("    {}\n", r.pitfall);
   return out;
 }
 
 Json to_json(const ExpectationResult& r, const std::string& file) {
-  return {{"file", file}, {"line", r.line}, {"text", r.text}, {"passed", r.passed}, {"actual", r.actual},
-          {"expected", r.expected}, {"tolerance", r.tolerance}, {"uncertainty", r.uncertainty}, {"beyond_digits", r.beyond_digits}, {"message", r.message}, {"pitfall", r.pitfall}};
+  return {{"file", file},
+          {"line", r.line},
+          {"text", r.text},
+          {"passed", r.passed},
+          {"actual", r.actual},
+          {"expected", r.expected},
+          {"tolerance", r.tolerance},
+          {"uncertainty", r.uncertainty},
+          {"beyond_digits", r.beyond_digits},
+          {"message", r.message},
+          {"pitfall", r.pitfall}};
 }
 
-/// What was decided before an interrupt came does not tell what the whole run would have: nothing is said of such a model.
+/// What was decided before an interrupt came does not tell what the whole run would have: nothing is said of such a
+/// model.
 std::optional<Verification> verify_whole(Study& study, const SimulationOptions& settings) {
   auto verification = study.verification(settings);
   Interrupt(settings.interrupt).throw_if_asked();
@@ -53,7 +65,8 @@ FileOutcome test_file(const std::string& path, const SimulationOptions& settings
   }
   // Errors that the model expects are no errors of the test.
   const bool expected_errors = verification && !study.equations();
-  if (study.wrong() && !expected_errors) outcome.code = unreadable(study.diagnostics()) ? ExitCode::Usage : ExitCode::ModelWrong;
+  if (study.wrong() && !expected_errors)
+    outcome.code = unreadable(study.diagnostics()) ? ExitCode::Usage : ExitCode::ModelWrong;
 
   for (const ExpectationResult& r : outcome.results) {
     document["expectations"].push_back(to_json(r, file));
@@ -103,12 +116,14 @@ ExitCode test_models(const TestOptions& options, Console& console) {
   } catch (const Interrupted&) {
     code = ExitCode::Interrupted;
     document["interrupted"] = true;
-    if (!console.json() && options.paths.size() > 1) console.say(fmt::format("{} of {} models were tested.\n", tested, options.paths.size()));
+    if (!console.json() && options.paths.size() > 1)
+      console.say(fmt::format("{} of {} models were tested.\n", tested, options.paths.size()));
   }
   document["passed"] = passed;
   document["failed"] = failed;
   document["ok"] = code == ExitCode::Fine;
-  if (console.json()) console.print_document(document);
+  if (console.json())
+    console.print_document(document);
   else if (options.paths.size() > 1)
     console.print(fmt::format("{} models: {} expectations hold, {} fail{}\n", tested, passed, failed,
                               wrong ? fmt::format(", {} models are wrong or could not be read", wrong) : ""));

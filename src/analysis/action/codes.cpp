@@ -47,8 +47,10 @@ constexpr CodeEntry entries[] = {
      "there is.",
      "", ""},
     {"W1202", "paths through a kink of L may be missing",
-     "At abs, min, max and piecewise the derivatives of L may jump. A path that passes such a place is stationary where each side is and its momentum "
-     "goes on. Newton's method, which finds the paths, needs second derivatives and may miss some of them; and the second variation "
+     "At abs, min, max and piecewise the derivatives of L may jump. A path that passes such a place is stationary "
+     "where each side is and its momentum "
+     "goes on. Newton's method, which finds the paths, needs second derivatives and may miss some of them; and the "
+     "second variation "
      "has a part at each passage that is not counted, so that no Morse index is given for such a path.",
      "V = F abs(x)", "V = F sqrt(x^2 + d^2)"},
     {"W1201", "two counts of a Morse index disagree",

@@ -29,8 +29,8 @@ void momentum_at(Functional& functional, const Trial& trial, const MotionState& 
            trial.multipliers.dot(density.integrals);
 }
 
-/// The count of Jacobi fields against that of the discretized second variation. Where the end itself is conjugate, what one of
-/// them sees inside the other may see at the end.
+/// The count of Jacobi fields against that of the discretized second variation. Where the end itself is conjugate, what
+/// one of them sees inside the other may see at the end.
 void combine(const Inertia& inertia, const FieldStudy& fields, bool only_fixed, SecondVariation& out) {
   out.by_inertia = inertia.negative;
   out.nullity = inertia.nullity;
@@ -46,24 +46,28 @@ void combine(const Inertia& inertia, const FieldStudy& fields, bool only_fixed, 
     return;
   }
   out.by_fields = fields.count() + fields.concavity.value_or(0);
-  if (*out.by_fields == *out.by_inertia) out.index = out.by_inertia;
-  else out.reason = fmt::format("The two counts of the index disagree: {} by inertia, {} by Jacobi fields.", *out.by_inertia, *out.by_fields);
+  if (*out.by_fields == *out.by_inertia)
+    out.index = out.by_inertia;
+  else
+    out.reason = fmt::format("The two counts of the index disagree: {} by inertia, {} by Jacobi fields.",
+                             *out.by_inertia, *out.by_fields);
 }
 
 void fill_second(Problem& problem, const Refined& refined, const FixedEnds& fixed, const Vector& least,
                  const SingularEnds& singular, const ActionOptions& options, StationaryPath& out) {
   const Trial& trial = refined.coarse;
   if (!convex_along(problem.functional, trial)) {
-    out.second.reason = "M = ∂²L/∂q'∂q' is not positive definite along the path: neighbours that oscillate fast lower the action "
-                        "without end, and there is no Morse index.";
+    out.second.reason =
+        "M = ∂²L/∂q'∂q' is not positive definite along the path: neighbours that oscillate fast lower the action "
+        "without end, and there is no Morse index.";
     return;
   }
   const Inertia inertia = inertia_of(problem.functional, trial, fixed, least);
   const auto weighted = weighted_equations(problem.equations, trial.multipliers);
   FieldStudy fields;
   if (weighted)
-    fields = jacobi_fields(problem.functional, *weighted, problem.equations.lagrangian_expanded, trial, fixed, singular.start,
-                           singular.end, least, options.interrupt);
+    fields = jacobi_fields(problem.functional, *weighted, problem.equations.lagrangian_expanded, trial, fixed,
+                           singular.start, singular.end, least, options.interrupt);
   else
     fields.reason = fields.check.reason = "The equations of L + λ G could not be made.";
   const auto all = [](const std::vector<bool>& b) { return std::find(b.begin(), b.end(), false) == b.end(); };
@@ -73,9 +77,10 @@ void fill_second(Problem& problem, const Refined& refined, const FixedEnds& fixe
 
 std::string no_index_at(const KinkPassed& kink, const Problem& problem) {
   const std::string where = switch_text(kink.difference, problem.equations.order);
-  return fmt::format("The path passes a kink of L{} near {}, where the second variation has a part that the counts do not know: "
-                     "there is no index.",
-                     where.empty() ? "" : ", " + where + ",", place(kink.t, problem.model.system));
+  return fmt::format(
+      "The path passes a kink of L{} near {}, where the second variation has a part that the counts do not know: "
+      "there is no index.",
+      where.empty() ? "" : ", " + where + ",", place(kink.t, problem.model.system));
 }
 
 }  // namespace

@@ -18,9 +18,9 @@ std::vector<bool> fixed_at(const Trial& trial, const FixedEnds& fixed, Index nod
 
 /// One node at work: constraints in units of the scale, on its free components.
 struct Node {
-  Matrix rows;         // [r × n] A S, without fixed components
-  Vector values;       // [r]
-  Matrix unit_rows;    // of fixed components
+  Matrix rows;       // [r × n] A S, without fixed components
+  Vector values;     // [r]
+  Matrix unit_rows;  // of fixed components
 
   Node(Functional& functional, const Trial& trial, const std::vector<bool>& fixed, const Vector& scale, Index k) {
     const Index n = trial.q.rows();
@@ -89,7 +89,8 @@ Directions directions_of(Functional& functional, const Trial& trial, const Fixed
       out.normal.segment(k * n, n) = size.cwiseProduct(step);
       out.off = std::max(out.off, step.lpNorm<Eigen::Infinity>());
       Vector pull = size.cwiseProduct(gradient.segment(k * n, n));
-      for (Index i = 0; i < node.unit_rows.rows(); ++i) pull -= node.unit_rows.row(i).transpose() * node.unit_rows.row(i).dot(pull);
+      for (Index i = 0; i < node.unit_rows.rows(); ++i)
+        pull -= node.unit_rows.row(i).transpose() * node.unit_rows.row(i).dot(pull);
       Eigen::CompleteOrthogonalDecomposition<Matrix> columns(node.rows.transpose());
       columns.setThreshold(least_rank_pivot);
       mu = -columns.solve(pull);
@@ -114,7 +115,8 @@ Vector with_reactions(Functional& functional, const Trial& trial, const Directio
 Matrix reduced_element(const Trial& trial, const Matrix& hessian, const Directions& directions, Index e) {
   const Index n = trial.q.rows(), p = trial.mesh.rule->degree;
   std::vector<Index> offset{0};
-  for (Index j = 0; j <= p; ++j) offset.push_back(offset.back() + directions.basis[static_cast<std::size_t>(trial.mesh.node(e, j))].cols());
+  for (Index j = 0; j <= p; ++j)
+    offset.push_back(offset.back() + directions.basis[static_cast<std::size_t>(trial.mesh.node(e, j))].cols());
   Matrix out(offset.back(), offset.back());
   for (Index j = 0; j <= p; ++j)
     for (Index l = 0; l <= p; ++l) {
@@ -133,7 +135,8 @@ Matrix node_curvature(Functional& functional, const Trial& trial, const Directio
   return z.transpose() * functional.constraint_curvature(trial.mesh.time(k), trial.q.col(k), directions.mu[at]) * z;
 }
 
-Sparse reduced_matrix(Functional& functional, const Trial& trial, const Assembly& assembly, const Directions& directions) {
+Sparse reduced_matrix(Functional& functional, const Trial& trial, const Assembly& assembly,
+                      const Directions& directions) {
   std::vector<Eigen::Triplet<double>> entries;
   const Index p = trial.mesh.rule->degree, size = directions.size(), k = functional.integrals();
   const auto add = [&](Index row, Index column, double value) {
@@ -147,7 +150,8 @@ Sparse reduced_matrix(Functional& functional, const Trial& trial, const Assembly
       for (Index i = directions.first[node]; i < directions.first[node + 1]; ++i) places.push_back(i);
     }
     for (Index a = 0; a < block.rows(); ++a)
-      for (Index b = 0; b < block.cols(); ++b) add(places[static_cast<std::size_t>(a)], places[static_cast<std::size_t>(b)], block(a, b));
+      for (Index b = 0; b < block.cols(); ++b)
+        add(places[static_cast<std::size_t>(a)], places[static_cast<std::size_t>(b)], block(a, b));
   }
   for (Index node = 0; node < directions.nodes() && functional.constraints() > 0; ++node) {
     const Matrix block = node_curvature(functional, trial, directions, node);

@@ -38,9 +38,10 @@ Vector with_reactions(Functional& functional, const Trial& trial, const Directio
 /// An orthonormal basis (columns) of what the rows leave free; dependent rows are no obstacle.
 Matrix null_basis(const Matrix& rows, Index n);
 
-/// Element matrices with the curvature of φ, on the directions: entry by entry. `with_integrals` adds the rows and columns of
-/// the integral constraints at the end.
-Sparse reduced_matrix(Functional& functional, const Trial& trial, const Assembly& assembly, const Directions& directions);
+/// Element matrices with the curvature of φ, on the directions: entry by entry. `with_integrals` adds the rows and
+/// columns of the integral constraints at the end.
+Sparse reduced_matrix(Functional& functional, const Trial& trial, const Assembly& assembly,
+                      const Directions& directions);
 /// The blocks of one element [Σ d]²; `hessian` one of Assembly's. Nodes that two elements share are shared by the sum.
 Matrix reduced_element(const Trial& trial, const Matrix& hessian, const Directions& directions, Index element);
 /// Zᵀ Σ μ ∂²φ Z of a node.

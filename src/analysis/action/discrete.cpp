@@ -28,8 +28,10 @@ Mesh even_mesh(std::shared_ptr<const Rule> rule, double start, double end, Index
 
 Place place_of(const Mesh& mesh, Index e, Index g) {
   const Rule& rule = mesh.rule_of(e);
-  const double s = mesh.parameter(e, rule.points[g]), rate = mesh.rate(s), h = mesh.lengths[static_cast<std::size_t>(e)];
-  return {mesh.t(s), h / 2 * rule.weights[g] * rate, rule.value.row(g).transpose(), rule.slope.row(g).transpose() * (2 / (h * rate))};
+  const double s = mesh.parameter(e, rule.points[g]), rate = mesh.rate(s),
+               h = mesh.lengths[static_cast<std::size_t>(e)];
+  return {mesh.t(s), h / 2 * rule.weights[g] * rate, rule.value.row(g).transpose(),
+          rule.slope.row(g).transpose() * (2 / (h * rate))};
 }
 
 Matrix Trial::element(Index e) const {
@@ -62,9 +64,12 @@ Trial halved(const Trial& from, const std::vector<bool>& which) {
         continue;
       }
       Matrix piece(values.rows(), p + 1);
-      for (Index j = 0; j <= p; ++j) piece.col(j) = values * from.mesh.rule_of(e).value_at(rule.nodes[j] / 2 + (part == 0 ? -0.5 : 0.5));
-      if (part == 0) piece.col(0) = values.col(0);
-      else piece.col(p) = values.col(p);
+      for (Index j = 0; j <= p; ++j)
+        piece.col(j) = values * from.mesh.rule_of(e).value_at(rule.nodes[j] / 2 + (part == 0 ? -0.5 : 0.5));
+      if (part == 0)
+        piece.col(0) = values.col(0);
+      else
+        piece.col(p) = values.col(p);
       pieces.push_back(std::move(piece));
     }
   }
@@ -104,7 +109,8 @@ Vector norm_of(const Matrix& mass) {
 /// product of matrices.
 class BlockSum {
  public:
-  BlockSum(Index n, Index nodes, Index terms) : n_(n), nodes_(nodes), blocks_(n * n, terms), pairs_(terms, nodes * nodes) {}
+  BlockSum(Index n, Index nodes, Index terms)
+      : n_(n), nodes_(nodes), blocks_(n * n, terms), pairs_(terms, nodes * nodes) {}
 
   void add(const Matrix& block, const Vector& a, const Vector& b, double weight) {
     blocks_.col(next_) = block.reshaped();
@@ -137,7 +143,8 @@ struct Assembler {
     const Vector anchor = nodes.col(trial.mesh.rule_of(e).anchor);
     const Matrix apart = nodes.colwise() - anchor;  // so that a path far from 0 has slopes as exact as one near it
     const Index n = nodes.rows(), count = order == 2 ? rule.points.size() : 0;
-    BlockSum hessian(n, rule.degree + 1, 4 * count), kinetic(n, rule.degree + 1, count), displacement(n, rule.degree + 1, count);
+    BlockSum hessian(n, rule.degree + 1, 4 * count), kinetic(n, rule.degree + 1, count),
+        displacement(n, rule.degree + 1, count);
     for (Index g = 0; g < rule.points.size(); ++g) {
       const auto [t, w, phi, dphi] = place_of(trial.mesh, e, g);
       const Vector q = anchor + apart * phi, v = apart * dphi;
@@ -167,7 +174,8 @@ struct Assembler {
     }
   }
 
-  void add_hessian(BlockSum& hessian, BlockSum& kinetic, BlockSum& displacement, const Vector& phi, const Vector& dphi, double w) {
+  void add_hessian(BlockSum& hessian, BlockSum& kinetic, BlockSum& displacement, const Vector& phi, const Vector& dphi,
+                   double w) {
     const Index n = functional.freedoms();
     const Matrix qv = density.hessian.topRightCorner(n, n), vv = density.hessian.bottomRightCorner(n, n);
     hessian.add(density.hessian.topLeftCorner(n, n), phi, phi, w);
@@ -218,10 +226,14 @@ namespace maupertuis {
 double pace(Pace which, double s) {
   const double left = 1 - s;
   switch (which) {
-    case Pace::Even: return s;
-    case Pace::SlowStart: return s * s * s;
-    case Pace::SlowEnd: return 1 - left * left * left;
-    case Pace::SlowEnds: return s * s * s * (10 - 15 * s + 6 * s * s);
+    case Pace::Even:
+      return s;
+    case Pace::SlowStart:
+      return s * s * s;
+    case Pace::SlowEnd:
+      return 1 - left * left * left;
+    case Pace::SlowEnds:
+      return s * s * s * (10 - 15 * s + 6 * s * s);
   }
   return s;
 }
@@ -229,10 +241,14 @@ double pace(Pace which, double s) {
 double pace_rate(Pace which, double s) {
   const double left = 1 - s;
   switch (which) {
-    case Pace::Even: return 1;
-    case Pace::SlowStart: return 3 * s * s;
-    case Pace::SlowEnd: return 3 * left * left;
-    case Pace::SlowEnds: return 30 * s * s * left * left;
+    case Pace::Even:
+      return 1;
+    case Pace::SlowStart:
+      return 3 * s * s;
+    case Pace::SlowEnd:
+      return 3 * left * left;
+    case Pace::SlowEnds:
+      return 30 * s * s * left * left;
   }
   return 1;
 }
@@ -263,7 +279,8 @@ MotionState ActionPath::at(double t) const {
   const action::Rule& polynomials = action::element_rule(*rule, pace, e, elements());
   const double xi = std::clamp(2 * (s - breaks[e]) / h - 1, -1.0, 1.0);
   const auto n = static_cast<Index>(coordinates);
-  const Eigen::Map<const action::Matrix> values(nodes.data() + e * (degree + 1) * coordinates, n, polynomials.degree + 1);
+  const Eigen::Map<const action::Matrix> values(nodes.data() + e * (degree + 1) * coordinates, n,
+                                                polynomials.degree + 1);
   const action::Vector q = values * polynomials.value_at(xi), v = values * polynomials.slope_at(xi) * (2 / (h * rate));
   return {t, {q.data(), q.data() + n}, {v.data(), v.data() + n}};
 }

@@ -13,7 +13,7 @@ const Rule& element_rule(const Rule& rule, Pace pace, std::size_t element, std::
 /// Elements in the parameter s of a path.
 struct Mesh {
   std::shared_ptr<const Rule> rule;
-  double start = 0, whole = 0;          // t = start + whole · g(s)
+  double start = 0, whole = 0;  // t = start + whole · g(s)
   Pace pace = Pace::Even;
   bool closed = false;                  // the last node is the first one
   std::vector<double> begins, lengths;  // [elements] of s
@@ -29,7 +29,9 @@ struct Mesh {
   double rate(double s) const { return whole * pace_rate(pace, s); }
   double time(Index node) const;
   /// The polynomials of an element: flat next to an end at which the path runs slowly.
-  const Rule& rule_of(Index element) const { return element_rule(*rule, pace, static_cast<std::size_t>(element), lengths.size()); }
+  const Rule& rule_of(Index element) const {
+    return element_rule(*rule, pace, static_cast<std::size_t>(element), lengths.size());
+  }
   /// s of a point ξ of an element.
   double parameter(Index element, double xi) const {
     return begins[static_cast<std::size_t>(element)] + lengths[static_cast<std::size_t>(element)] * (1 + xi) / 2;
@@ -64,13 +66,14 @@ Place place_of(const Mesh& mesh, Index element, Index point);
 /// S and its derivatives by the nodes.
 struct Assembly {
   bool finite = true;
-  double action = 0, action_size = 0;    // Σ L, Σ |L|
-  Vector integrals;                      // [k]
-  Vector gradient;                       // [n nodes] of S + Σ λ ∫ G
-  Matrix integral_gradients;             // [n nodes × k]
-  std::vector<Matrix> hessians;          // [elements] each [n (degree + 1)]², node by node
-  std::vector<Matrix> kinetic;           // order 2: the same for ∫ ξ' |M| ξ' dt: by what eigenvalues are measured
-  std::vector<Matrix> displacement;      // order 2: the same for ∫ ξ |M| ξ dt/T², T the whole: what a translation, which has no ξ', is measured by
+  double action = 0, action_size = 0;  // Σ L, Σ |L|
+  Vector integrals;                    // [k]
+  Vector gradient;                     // [n nodes] of S + Σ λ ∫ G
+  Matrix integral_gradients;           // [n nodes × k]
+  std::vector<Matrix> hessians;        // [elements] each [n (degree + 1)]², node by node
+  std::vector<Matrix> kinetic;         // order 2: the same for ∫ ξ' |M| ξ' dt: by what eigenvalues are measured
+  std::vector<Matrix> displacement;  // order 2: the same for ∫ ξ |M| ξ dt/T², T the whole: what a translation, which
+                                     // has no ξ', is measured by
 };
 
 /// order as of Functional::evaluate.

@@ -12,21 +12,21 @@
 #include <functional>
 #include <numeric>
 
-/// The neighbours that leave the beginning together are a Lagrangian frame (Q, P), Q = 0 there; a conjugate point is where
-/// Q loses rank. On a stretch [t_k, t] without conjugate points of its own, with the transfer (A B; C D),
+/// The neighbours that leave the beginning together are a Lagrangian frame (Q, P), Q = 0 there; a conjugate point is
+/// where Q loses rank. On a stretch [t_k, t] without conjugate points of its own, with the transfer (A B; C D),
 ///
 ///     Q(t) = A Q_k + B P_k = B (U(t) Q_k + P_k),   U = B⁻¹A symmetric, U → +∞ at t_k, dU/dt = −B⁻¹ H_pp B⁻ᵀ < 0,
 ///
-/// so that Q loses rank where G(t) = Qₖᵀ U(t) Qₖ + Qₖᵀ Pₖ has a zero eigenvalue. These fall from +∞ and never come back:
-/// the number of negative ones at the end of the stretch is the number of conjugate points in it, with multiplicity, also
-/// where det Q only touches zero; and each is the single root of a monotone function.
+/// so that Q loses rank where G(t) = Qₖᵀ U(t) Qₖ + Qₖᵀ Pₖ has a zero eigenvalue. These fall from +∞ and never come
+/// back: the number of negative ones at the end of the stretch is the number of conjugate points in it, with
+/// multiplicity, also where det Q only touches zero; and each is the single root of a monotone function.
 namespace maupertuis::action {
 namespace {
 
-constexpr double on_end = 1e-8;          // a singular value of the frame: the end itself is conjugate
-constexpr double too_near_end = 1e-5;    // a frame that stretches should not begin with
-constexpr double longest_turn = 0.8;     // of B M / t against 1: certainly no conjugate point within
-constexpr double same_place = 1e-9;      // of the whole: roots that are one, with multiplicity
+constexpr double on_end = 1e-8;        // a singular value of the frame: the end itself is conjugate
+constexpr double too_near_end = 1e-5;  // a frame that stretches should not begin with
+constexpr double longest_turn = 0.8;   // of B M / t against 1: certainly no conjugate point within
+constexpr double same_place = 1e-9;    // of the whole: roots that are one, with multiplicity
 constexpr std::size_t most_stretches = 4000;
 
 Matrix inverse_times(const Matrix& a, const Matrix& b) { return a.partialPivLu().solve(b); }
@@ -34,10 +34,15 @@ Matrix inverse_times(const Matrix& a, const Matrix& b) { return a.partialPivLu()
 /// The path as states, and neighbours in coordinates in which the symplectic form is the standard one.
 class Neighbours {
  public:
-  Neighbours(Functional& functional, const EquationsOfMotion& weighted, const Trial& trial, bool backward, double stretch,
-             const std::atomic<bool>* interrupt)
-      : functional_(functional), trial_(trial), path_(to_path(trial)), n_(functional.freedoms()), k_(functional.integrals()),
-        sign_(backward ? -1 : 1), flow_(weighted, {0, 100'000, interrupt}) {
+  Neighbours(Functional& functional, const EquationsOfMotion& weighted, const Trial& trial, bool backward,
+             double stretch, const std::atomic<bool>* interrupt)
+      : functional_(functional),
+        trial_(trial),
+        path_(to_path(trial)),
+        n_(functional.freedoms()),
+        k_(functional.integrals()),
+        sign_(backward ? -1 : 1),
+        flow_(weighted, {0, 100'000, interrupt}) {
     set_scale(stretch);
   }
 
@@ -94,7 +99,7 @@ class Neighbours {
   struct Carried {
     Matrix transfer;  // [2d × 2d]
     MotionState end;
-    Matrix basis;     // with which the next stretch begins: that of the path's own state
+    Matrix basis;  // with which the next stretch begins: that of the path's own state
     std::string stopped;
   };
   Carried carry(const MotionState& from, const Matrix& z, double to) {
@@ -168,10 +173,16 @@ class Study {
  public:
   Study(Functional& functional, const EquationsOfMotion& weighted, Expr lagrangian, const Trial& trial,
         const FixedEnds& fixed, const Vector& least, std::vector<double> breaks, const std::atomic<bool>* interrupt)
-      : functional_(functional), trial_(trial), fixed_(fixed), breaks_(std::move(breaks)),
-        backward_(breaks_.back() < breaks_.front()), whole_(std::abs(breaks_.back() - breaks_.front())),
-        neighbours_(functional, weighted, trial, backward_, whole_ / static_cast<double>(breaks_.size() - 1), interrupt),
-        action_(weighted, lagrangian), size_(even_scale(trial, least).col(0)) {}
+      : functional_(functional),
+        trial_(trial),
+        fixed_(fixed),
+        breaks_(std::move(breaks)),
+        backward_(breaks_.back() < breaks_.front()),
+        whole_(std::abs(breaks_.back() - breaks_.front())),
+        neighbours_(functional, weighted, trial, backward_, whole_ / static_cast<double>(breaks_.size() - 1),
+                    interrupt),
+        action_(weighted, lagrangian),
+        size_(even_scale(trial, least).col(0)) {}
 
   FieldStudy run() {
     MotionState from = neighbours_.state(breaks_.front());
@@ -182,7 +193,8 @@ class Study {
     total_ = Matrix::Identity(2 * d, 2 * d);
     std::size_t next = 1;
     while (next < breaks_.size()) {
-      if (++out_.check.stretches > most_stretches || d == 0) return fail(d == 0 ? "Nothing can move." : "The path takes too many stretches.");
+      if (++out_.check.stretches > most_stretches || d == 0)
+        return fail(d == 0 ? "Nothing can move." : "The path takes too many stretches.");
       const auto reached = stretch(from, breaks_[next]);
       if (!reached) return std::move(out_);
       if (*reached == breaks_[next] || near_conjugate_) ++next;  // a break next to a conjugate point is passed over
@@ -205,7 +217,8 @@ class Study {
       const auto carried = neighbours_.carry(from, basis_, to);
       if (!carried.stopped.empty()) return fail(carried.stopped), std::nullopt;
       const double half = from.t + (to - from.t) / 2;
-      if (!carried.transfer.allFinite() || !neighbours_.short_enough(carried.transfer, from, basis_, std::abs(to - from.t))) {
+      if (!carried.transfer.allFinite() ||
+          !neighbours_.short_enough(carried.transfer, from, basis_, std::abs(to - from.t))) {
         if (half == from.t || half == to) break;
         near_conjugate_ = false;
         to = half;
@@ -297,17 +310,23 @@ class Study {
   void compare(const MotionState& from, const MotionState& end) {
     const MotionState on_path = neighbours_.state(end.t);
     for (Index i = 0; i < size_.size(); ++i)
-      out_.check.missed = std::max(out_.check.missed, std::abs(end.q[static_cast<std::size_t>(i)] - on_path.q[static_cast<std::size_t>(i)]) / size_[i]);
-    if (const auto part = action_.over(from, end.t)) out_.check.action += backward_ ? -*part : *part;
-    else out_.check.reason = "The motion ends on the way.";
+      out_.check.missed =
+          std::max(out_.check.missed,
+                   std::abs(end.q[static_cast<std::size_t>(i)] - on_path.q[static_cast<std::size_t>(i)]) / size_[i]);
+    if (const auto part = action_.over(from, end.t))
+      out_.check.action += backward_ ? -*part : *part;
+    else
+      out_.check.reason = "The motion ends on the way.";
   }
 
   void finish() {
-    std::sort(out_.inside.begin(), out_.inside.end(), [](const ConjugatePoint& a, const ConjugatePoint& b) { return a.t < b.t; });
+    std::sort(out_.inside.begin(), out_.inside.end(),
+              [](const ConjugatePoint& a, const ConjugatePoint& b) { return a.t < b.t; });
     out_.check.done = out_.check.reason.empty();
     out_.check.from = std::min(breaks_.front(), breaks_.back());
     out_.check.to = std::max(breaks_.front(), breaks_.back());
-    const bool all_fixed = !trial_.mesh.closed && std::all_of(fixed_.from.begin(), fixed_.from.end(), [](bool b) { return b; }) &&
+    const bool all_fixed = !trial_.mesh.closed &&
+                           std::all_of(fixed_.from.begin(), fixed_.from.end(), [](bool b) { return b; }) &&
                            std::all_of(fixed_.to.begin(), fixed_.to.end(), [](bool b) { return b; });
     if (!all_fixed && out_.at_end == 0) out_.concavity = concavity();
   }
@@ -341,7 +360,8 @@ class Study {
       w.topRows(d - k).setIdentity();
       w.middleRows(d, d - k) = last_tangent.transpose() * first_tangent_;
     } else {
-      const Matrix first = free_directions(first_tangent_, fixed_.from), last = free_directions(last_tangent, fixed_.to);
+      const Matrix first = free_directions(first_tangent_, fixed_.from),
+                   last = free_directions(last_tangent, fixed_.to);
       w = Matrix::Zero(2 * d, first.cols() + last.cols());
       w.topLeftCorner(d, first.cols()) = first;
       w.bottomRightCorner(d, last.cols()) = last;

@@ -143,7 +143,8 @@ void Functional::build_constraints(const EquationsOfMotion& equations) {
   prepare(curvature_, source);
 }
 
-void Functional::evaluate(double t, const double* q, const double* v, const Vector& multipliers, int order, Density& out) {
+void Functional::evaluate(double t, const double* q, const double* v, const Vector& multipliers, int order,
+                          Density& out) {
   std::copy_n(q, n_, in_.begin());
   std::copy_n(v, n_, in_.begin() + n_);
   in_[static_cast<std::size_t>(2 * n_)] = t;

@@ -16,10 +16,10 @@ using Index = Eigen::Index;
 /// What stands below the integral at a point: F = L + Σ λ_k G_k, and each G_k. Derivatives are by (q, q').
 struct Density {
   double lagrangian = 0;
-  Vector integrals;             // [k] G
-  Vector gradient;              // [2n] of F
-  Matrix integral_gradients;    // [2n × k]
-  Matrix hessian;               // [2n × 2n] of F
+  Vector integrals;           // [k] G
+  Vector gradient;            // [2n] of F
+  Matrix integral_gradients;  // [2n × k]
+  Matrix hessian;             // [2n × 2n] of F
   bool finite = true;
 };
 
@@ -87,7 +87,7 @@ class Functional {
   Vector wanted_;
   std::vector<double> parameters_, in_, constraint_in_;
   Order density_[3], sizes_, positions_, curvature_;
-  std::vector<std::pair<Index, Index>> entries_;                 // of the Hessian, upper triangle
+  std::vector<std::pair<Index, Index>> entries_;  // of the Hessian, upper triangle
   Density density_here_;
   std::vector<std::pair<Index, Index>> position_entries_, curvature_entries_;
 };

@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
-/// S along formulas q(t): Gauss's rule on pieces that are halved until the halves say the same; next to an end where L is
-/// infinite they are halved on and on.
+/// S along formulas q(t): Gauss's rule on pieces that are halved until the halves say the same; next to an end where L
+/// is infinite they are halved on and on.
 namespace maupertuis {
 namespace {
 
@@ -64,7 +64,8 @@ struct Sums {
 
 class Integrator {
  public:
-  Integrator(Problem& problem, Formulas& formulas) : problem_(problem), formulas_(formulas), none_(Vector::Zero(problem.functional.integrals())) {}
+  Integrator(Problem& problem, Formulas& formulas)
+      : problem_(problem), formulas_(formulas), none_(Vector::Zero(problem.functional.integrals())) {}
 
   Sums over(double from, double to) {
     const Rule& rule = *problem_.rule;
@@ -115,7 +116,8 @@ class Integrator {
       error += difference + rounding(from, middle) + rounding(middle, to);
       return true;
     }
-    return add(from, middle, left, size, depth - 1, total, error) && add(middle, to, right, size, depth - 1, total, error);
+    return add(from, middle, left, size, depth - 1, total, error) &&
+           add(middle, to, right, size, depth - 1, total, error);
   }
 
  private:
@@ -134,7 +136,8 @@ class Residual {
     ExprVector q, rows;
     for (const Coordinate& c : system.coordinates) q.push_back(c.q);
     const auto add = [&](Expr density) {
-      for (const Expr& e : expand_time_derivatives(in_terms_of_motion(system, variational_residual(density, q)))) rows.push_back(e);
+      for (const Expr& e : expand_time_derivatives(in_terms_of_motion(system, variational_residual(density, q))))
+        rows.push_back(e);
     };
     add(problem.equations.lagrangian_expanded);
     for (const IntegralConstraint& c : system.integral_constraints) add(c.integrand);
@@ -211,7 +214,8 @@ void look_at_equations(Problem& problem, Formulas& formulas, GivenPath& out) {
   }
   if (rows.empty()) return;
   const Vector lambda = best_multipliers(rows, k);
-  for (const Matrix& s : sizes) largest_size = std::max(largest_size, (s.col(0) + s.rightCols(k) * lambda.cwiseAbs()).maxCoeff());
+  for (const Matrix& s : sizes)
+    largest_size = std::max(largest_size, (s.col(0) + s.rightCols(k) * lambda.cwiseAbs()).maxCoeff());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Vector left = rows[i].col(0) + rows[i].rightCols(k) * lambda;
     Index row = 0;
@@ -228,7 +232,10 @@ void look_at_equations(Problem& problem, Formulas& formulas, GivenPath& out) {
 /// The path on a mesh: to be drawn, and for its neighbours.
 Trial trial_of(const Problem& problem, Formulas& formulas, double start, double end) {
   constexpr Index elements = 24;
-  Trial out{even_mesh(problem.rule, start, end, elements), {}, Vector::Zero(problem.functional.integrals()), Vector::Zero(problem.n())};
+  Trial out{even_mesh(problem.rule, start, end, elements),
+            {},
+            Vector::Zero(problem.functional.integrals()),
+            Vector::Zero(problem.n())};
   out.q.resize(problem.n(), out.mesh.nodes());
   for (Index k = 0; k < out.mesh.nodes(); ++k) {
     formulas.at(out.mesh.time(k));
@@ -237,13 +244,16 @@ Trial trial_of(const Problem& problem, Formulas& formulas, double start, double 
   return out;
 }
 
-bool meets_ends(const Problem& problem, Formulas& formulas, double start, double end, const ActionEnds& ends, Diagnostics& diagnostics) {
+bool meets_ends(const Problem& problem, Formulas& formulas, double start, double end, const ActionEnds& ends,
+                Diagnostics& diagnostics) {
   const MechanicalSystem& system = problem.model.system;
   const auto span = problem.model.experiment.path ? std::optional(problem.model.experiment.path->span) : std::nullopt;
   const auto refuse = [&](const std::string& what, double given, double wanted) {
-    diagnostics.error("E1205", span, fmt::format("the path misses its {}: {:.9g} instead of {:.9g}, by {:.3g}", what, given, wanted, given - wanted),
-                      "Paths are compared between the same ends; one that begins or ends elsewhere is no neighbour of the others.",
-                      "Change the formula, or the ends (`path from …`, --ends).");
+    diagnostics.error(
+        "E1205", span,
+        fmt::format("the path misses its {}: {:.9g} instead of {:.9g}, by {:.3g}", what, given, wanted, given - wanted),
+        "Paths are compared between the same ends; one that begins or ends elsewhere is no neighbour of the others.",
+        "Change the formula, or the ends (`path from …`, --ends).");
     return false;
   };
   const double whole = std::abs(ends.end - ends.start);
@@ -256,7 +266,8 @@ bool meets_ends(const Problem& problem, Formulas& formulas, double start, double
       if (!wanted[i]) continue;
       const double size = std::max(std::abs(*wanted[i]), problem.typical[static_cast<Index>(i)]);
       if (!(std::abs(formulas.q()[i] - *wanted[i]) <= 1e-9 * size))
-        return refuse(fmt::format("{} in {}", first ? "beginning" : "end", system.coordinates[i].name), formulas.q()[i], *wanted[i]);
+        return refuse(fmt::format("{} in {}", first ? "beginning" : "end", system.coordinates[i].name), formulas.q()[i],
+                      *wanted[i]);
     }
   }
   return true;
@@ -268,12 +279,14 @@ bool keeps_constraints(Problem& problem, Formulas& formulas, double start, doubl
   for (int k = 0; k <= 32; ++k) {
     const double t = start + (end - start) * k / 32;
     formulas.at(t);
-    MotionState s{t, {formulas.q(), formulas.q() + problem.n()}, std::vector<double>(static_cast<std::size_t>(problem.n()))};
+    MotionState s{
+        t, {formulas.q(), formulas.q() + problem.n()}, std::vector<double>(static_cast<std::size_t>(problem.n()))};
     const auto off = manifold.relative_values(s);
     for (std::size_t i = 0; i < off.size(); ++i) {
       if (off[i] < 1e-9) continue;
-      diagnostics.error("E1202", {}, fmt::format("the path leaves {} at {}, by {:.3g} of the size of its terms", problem.model.system.constraint_label(i),
-                                                 place(t, problem.model.system), off[i]),
+      diagnostics.error("E1202", {},
+                        fmt::format("the path leaves {} at {}, by {:.3g} of the size of its terms",
+                                    problem.model.system.constraint_label(i), place(t, problem.model.system), off[i]),
                         "Every point of a path has to satisfy the constraints.", "Give a path that keeps to them.");
       return false;
     }
@@ -283,14 +296,18 @@ bool keeps_constraints(Problem& problem, Formulas& formulas, double start, doubl
 
 }  // namespace
 
-std::optional<GivenPath> action_of_path(const Model& model, const EquationsOfMotion& equations, std::span<const Expr> path,
-                                        double start, double end, const std::optional<ActionEnds>& ends,
-                                        const ActionOptions& options, Diagnostics& diagnostics) {
+std::optional<GivenPath> action_of_path(const Model& model, const EquationsOfMotion& equations,
+                                        std::span<const Expr> path, double start, double end,
+                                        const std::optional<ActionEnds>& ends, const ActionOptions& options,
+                                        Diagnostics& diagnostics) {
   if (!has_action(equations, diagnostics)) return std::nullopt;
   Problem problem(model, equations);
   if (!(start < end) || !std::isfinite(end - start)) {
-    diagnostics.error("E1203", {}, fmt::format("the path ends at {}, not after its start at {}", place(end, model.system), place(start, model.system)),
-                      "The action is an integral from the earlier end to the later one.", "Give the earlier end first.");
+    diagnostics.error("E1203", {},
+                      fmt::format("the path ends at {}, not after its start at {}", place(end, model.system),
+                                  place(start, model.system)),
+                      "The action is an integral from the earlier end to the later one.",
+                      "Give the earlier end first.");
     return std::nullopt;
   }
   Formulas formulas(model.system, path);
@@ -303,8 +320,8 @@ std::optional<GivenPath> action_of_path(const Model& model, const EquationsOfMot
   const Sums whole = integrator.over(start, end);
   Vector total = Vector::Zero(1 + problem.functional.integrals());
   if (!whole.finite || !integrator.add(start, end, whole, whole.size, deepest, total, out.action_error)) {
-    diagnostics.error("E1206", {}, "L has no finite value along the path", "The integral of L is taken at points inside of the path.",
-                      "Give a path on which L is defined.");
+    diagnostics.error("E1206", {}, "L has no finite value along the path",
+                      "The integral of L is taken at points inside of the path.", "Give a path on which L is defined.");
     return std::nullopt;
   }
   out.action = total[0];
@@ -315,7 +332,8 @@ std::optional<GivenPath> action_of_path(const Model& model, const EquationsOfMot
   out.path = to_path(trial);
   const auto n = static_cast<std::size_t>(problem.n());
   if (options.variations)
-    out.variations = test_variations(problem, trial, {std::vector<bool>(n, true), std::vector<bool>(n, true)}, problem.least(nullptr));
+    out.variations = test_variations(problem, trial, {std::vector<bool>(n, true), std::vector<bool>(n, true)},
+                                     problem.least(nullptr));
   return out;
 }
 

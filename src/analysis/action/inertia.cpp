@@ -25,8 +25,8 @@ Pivot eliminate(const Matrix& block, const Matrix& right) {
           eigen.eigenvectors() * (values.cwiseInverse().asDiagonal() * (eigen.eigenvectors().transpose() * right))};
 }
 
-/// The same inertia (Sylvester) with every unknown in a unit of its own: where a coordinate's sizes are far below those of another, its
-/// zeros would be lost in the rounding of that one.
+/// The same inertia (Sylvester) with every unknown in a unit of its own: where a coordinate's sizes are far below those
+/// of another, its zeros would be lost in the rounding of that one.
 Matrix in_own_units(const Matrix& all) {
   Vector unit(all.rows());
   for (Index i = 0; i < all.rows(); ++i) {
@@ -57,7 +57,9 @@ Index negatives_of(const Matrix& given, Index border) {
 class Counter {
  public:
   Counter(Functional& functional, const Trial& trial, const FixedEnds& fixed, const Matrix& scale)
-      : trial_(trial), k_(functional.integrals()), a_(assemble(functional, trial, 2)),
+      : trial_(trial),
+        k_(functional.integrals()),
+        a_(assemble(functional, trial, 2)),
         directions_(directions_of(functional, trial, fixed, scale, a_.gradient)) {
     for (Index c = 0; c < k_; ++c) columns_.push_back(directions_.reduce(a_.integral_gradients.col(c)));
     for (Index e = 0; e < trial.mesh.elements(); ++e) {
@@ -80,7 +82,9 @@ class Counter {
   }
 
  private:
-  Index width(Index e, Index j) const { return directions_.basis[static_cast<std::size_t>(trial_.mesh.node(e, j))].cols(); }
+  Index width(Index e, Index j) const {
+    return directions_.basis[static_cast<std::size_t>(trial_.mesh.node(e, j))].cols();
+  }
 
   /// Each node's own curvature once: the first node of an element is left to the one before, if there is one.
   void add_curvature(Functional& functional, Index e) {
@@ -88,7 +92,9 @@ class Counter {
     for (Index j = 0; j <= trial_.mesh.rule->degree; ++j) {
       const Index d = width(e, j);
       const bool mine = j > 0 || (e == 0 && !trial_.mesh.closed);
-      if (mine) hessians_.back().block(offset, offset, d, d) += node_curvature(functional, trial_, directions_, trial_.mesh.node(e, j));
+      if (mine)
+        hessians_.back().block(offset, offset, d, d) +=
+            node_curvature(functional, trial_, directions_, trial_.mesh.node(e, j));
       offset += d;
     }
   }
@@ -104,7 +110,8 @@ class Counter {
   Index add_element(Index e, double shift, Matrix& rest) const {
     const auto at = static_cast<std::size_t>(e);
     const Matrix all = hessians_[at] - shift * norms_[at];
-    const Index p = trial_.mesh.rule->degree, left = width(e, 0), right = width(e, p), inner = all.rows() - left - right;
+    const Index p = trial_.mesh.rule->degree, left = width(e, 0), right = width(e, p),
+                inner = all.rows() - left - right;
     // Outer: the left break, the right break, the integral constraints.
     const Index outer = left + right + k_;
     Matrix coupling(inner, outer), own = Matrix::Zero(outer, outer);
@@ -186,7 +193,8 @@ bool convex_along(Functional& functional, const Trial& trial) {
       if (!density.finite) return false;
       functional.constraints_at(at.t, q, values, rows);
       const Matrix mass = density.hessian.bottomRightCorner(n, n);
-      const Vector size = mass.diagonal().cwiseAbs().cwiseMax(1e-12 * mass.diagonal().cwiseAbs().maxCoeff()).cwiseSqrt().cwiseInverse();
+      const Vector size =
+          mass.diagonal().cwiseAbs().cwiseMax(1e-12 * mass.diagonal().cwiseAbs().maxCoeff()).cwiseSqrt().cwiseInverse();
       const Matrix z = null_basis(rows * size.asDiagonal(), n);
       const Matrix reduced = z.transpose() * (size.asDiagonal() * mass * size.asDiagonal()) * z;
       if (reduced.rows() == 0) continue;

@@ -39,7 +39,8 @@ std::vector<Expr> kinks_of(const EquationsOfMotion& equations) {
   return out;
 }
 
-std::optional<KinkPassed> kink_passed(const ActionPath& path, const std::vector<Expr>& kinks, const MechanicalSystem& system) {
+std::optional<KinkPassed> kink_passed(const ActionPath& path, const std::vector<Expr>& kinks,
+                                      const MechanicalSystem& system) {
   const int looks = looks_an_element * static_cast<int>(path.elements());
   std::vector<std::vector<double>> along(kinks.size());
   const auto time_of = [&](int k) { return path.start + (path.end - path.start) * k / looks; };
@@ -57,7 +58,8 @@ std::optional<KinkPassed> kink_passed(const ActionPath& path, const std::vector<
     double largest = 0;
     for (const double g : along[j]) largest = std::max(largest, std::abs(g));
     for (int k = 0; k <= looks; ++k) {
-      const double here = along[j][static_cast<std::size_t>(k)], before = along[j][static_cast<std::size_t>(std::max(0, k - 1))];
+      const double here = along[j][static_cast<std::size_t>(k)],
+                   before = along[j][static_cast<std::size_t>(std::max(0, k - 1))];
       const bool passed = std::abs(here) <= touches * largest || here * before < 0;
       if (passed && (!first || time_of(k) < first->t)) first = KinkPassed{time_of(k), kinks[j]};
       if (passed) break;

@@ -5,8 +5,8 @@
 
 namespace maupertuis::action {
 
-/// The switches at which a first derivative of L jumps (kinks). There the second variation has a part of its own, Δ(∂L/∂g)
-/// (∇g·ξ)²/|ġ| at each passage, which none of the counts knows.
+/// The switches at which a first derivative of L jumps (kinks). There the second variation has a part of its own,
+/// Δ(∂L/∂g) (∇g·ξ)²/|ġ| at each passage, which none of the counts knows.
 std::vector<Expr> kinks_of(const EquationsOfMotion& equations);
 
 /// A kink that the path passes or touches.
@@ -14,6 +14,7 @@ struct KinkPassed {
   double t = 0;
   Expr difference;
 };
-std::optional<KinkPassed> kink_passed(const ActionPath& path, const std::vector<Expr>& kinks, const MechanicalSystem& system);
+std::optional<KinkPassed> kink_passed(const ActionPath& path, const std::vector<Expr>& kinks,
+                                      const MechanicalSystem& system);
 
 }  // namespace maupertuis::action

@@ -24,7 +24,8 @@ std::optional<double> length_of_run(const Problem& problem, Diagnostics& diagnos
   const double length = written ? problem.number(written) : 0;
   if (written && length > 0 && std::isfinite(length)) return length;
   diagnostics.error("E1207", {}, "there is no path: neither ends nor a run",
-                    "The action belongs to a path: between two configurations, along formulas, or along a motion of a certain length.",
+                    "The action belongs to a path: between two configurations, along formulas, or along a motion of a "
+                    "certain length.",
                     "Write `path from (…) at 0 to (…) at 1` or `run 10 s` into the model, or give --ends or --path.");
   return std::nullopt;
 }
@@ -39,12 +40,14 @@ std::optional<Trial> follow(Problem& problem, const MotionState& start, double d
   for (stepper.start(start.t, start.q, start.v); stepper.time() != end; ++steps)
     if (const Step step = stepper.step(end); step.ending != StepEnding::None) {
       if (interrupted(options, diagnostics)) return std::nullopt;
-      diagnostics.error("E1208", {}, fmt::format("the motion ends at {}", place(step.begin, problem.model.system)), step.reason,
-                        "Choose another start, or a shorter run.");
+      diagnostics.error("E1208", {}, fmt::format("the motion ends at {}", place(step.begin, problem.model.system)),
+                        step.reason, "Choose another start, or a shorter run.");
       return std::nullopt;
     }
-  Trial out{even_mesh(problem.rule, start.t, end, std::clamp<Index>(static_cast<Index>(2 * steps), 6, 400)), {},
-            Vector::Zero(problem.functional.integrals()), Vector::Zero(problem.n())};
+  Trial out{even_mesh(problem.rule, start.t, end, std::clamp<Index>(static_cast<Index>(2 * steps), 6, 400)),
+            {},
+            Vector::Zero(problem.functional.integrals()),
+            Vector::Zero(problem.n())};
   out.q.resize(problem.n(), out.mesh.nodes());
   std::vector<double> q(start.q), v(start.v);
   out.q.col(0) = Eigen::Map<const Vector>(q.data(), problem.n());
@@ -116,8 +119,8 @@ Trajectory rows_of(Problem& problem, const Trial& trial) {
 
 }  // namespace
 
-std::optional<MotionAction> action_of_motion(const Model& model, const EquationsOfMotion& equations, const ActionOptions& options,
-                                             Diagnostics& diagnostics) {
+std::optional<MotionAction> action_of_motion(const Model& model, const EquationsOfMotion& equations,
+                                             const ActionOptions& options, Diagnostics& diagnostics) {
   if (!has_action(equations, diagnostics)) return std::nullopt;
   Problem problem(model, equations);
   const auto length = length_of_run(problem, diagnostics);
@@ -134,8 +137,9 @@ std::optional<MotionAction> action_of_motion(const Model& model, const Equations
   return out;
 }
 
-std::optional<PeriodicAction> action_of_orbit(const Model& model, const EquationsOfMotion& equations, std::optional<double> period,
-                                              const ActionOptions& options, Diagnostics& diagnostics) {
+std::optional<PeriodicAction> action_of_orbit(const Model& model, const EquationsOfMotion& equations,
+                                              std::optional<double> period, const ActionOptions& options,
+                                              Diagnostics& diagnostics) {
   if (!has_action(equations, diagnostics)) return std::nullopt;
   const auto found = floquet(model, equations, {period, options.interrupt}, diagnostics);
   if (!found) return std::nullopt;
@@ -153,7 +157,8 @@ std::optional<PeriodicAction> action_of_orbit(const Model& model, const Equation
   if (!trial) return std::nullopt;
   trial->mesh.closed = true;
   trial->advance = Vector::Zero(problem.n());
-  for (Index i = 0; i < problem.n(); ++i) trial->advance[i] = found->motion.turns[static_cast<std::size_t>(i)] * 6.283185307179586476925;
+  for (Index i = 0; i < problem.n(); ++i)
+    trial->advance[i] = found->motion.turns[static_cast<std::size_t>(i)] * 6.283185307179586476925;
   trial->q.conservativeResize(Eigen::NoChange, trial->mesh.nodes());
   ActionEnds ends = ends_of_trial(*trial);
   ends.closed = true;
@@ -176,10 +181,12 @@ Trajectory path_rows(const std::vector<const ActionPath*>& paths, const Mechanic
   };
   if (paths.size() > 1) out.columns.push_back({"path", ""});
   for (const Coordinate& c : system.coordinates) out.columns.push_back({c.name, unit(c.dimension)});
-  for (const Coordinate& c : system.coordinates) out.columns.push_back({c.name + "'", unit(c.dimension / system.independent_dimension)});
+  for (const Coordinate& c : system.coordinates)
+    out.columns.push_back({c.name + "'", unit(c.dimension / system.independent_dimension)});
   for (std::size_t p = 0; p < paths.size(); ++p)
     for (int k = 0; k <= rows_of_motion; ++k) {
-      const double t = k == rows_of_motion ? paths[p]->end : paths[p]->start + (paths[p]->end - paths[p]->start) * k / rows_of_motion;
+      const double t = k == rows_of_motion ? paths[p]->end
+                                           : paths[p]->start + (paths[p]->end - paths[p]->start) * k / rows_of_motion;
       const MotionState s = paths[p]->at(t);
       out.times.push_back(t);
       if (paths.size() > 1) out.values.push_back(static_cast<double>(p + 1));

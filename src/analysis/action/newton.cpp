@@ -11,9 +11,10 @@ namespace {
 constexpr double converged_to = 1e-12;   // of a correction: the next one would be at rounding
 constexpr double rounding_level = 1e-9;  // a correction that does not shrink any more, below which it is rounding
 constexpr double balanced = 2e-14;       // of the gradient against its terms: nothing is left but rounding
-constexpr double shift = 1e-12;          // of the kinetic norm: a direction in which S does not change gets no step from rounding alone
+constexpr double shift =
+    1e-12;  // of the kinetic norm: a direction in which S does not change gets no step from rounding alone
 constexpr double least_damping = 1e-4;
-constexpr double longest_step = 3;       // in units of the scale
+constexpr double longest_step = 3;  // in units of the scale
 
 struct Iteration {
   Functional& functional;
@@ -55,10 +56,12 @@ struct Iteration {
       for (Index j = 0; j <= p; ++j)
         for (Index l = 0; l <= p; ++l)
           out.segment(trial.mesh.node(e, j) * n, n) +=
-              a.hessians[static_cast<std::size_t>(e)].block(j * n, l * n, n, n) * x.segment(trial.mesh.node(e, l) * n, n);
+              a.hessians[static_cast<std::size_t>(e)].block(j * n, l * n, n, n) *
+              x.segment(trial.mesh.node(e, l) * n, n);
     for (Index node = 0; node < trial.mesh.nodes(); ++node)
       out.segment(node * n, n) += functional.constraint_curvature(trial.mesh.time(node), trial.q.col(node),
-                                                                  directions.mu[static_cast<std::size_t>(node)]) * x.segment(node * n, n);
+                                                                  directions.mu[static_cast<std::size_t>(node)]) *
+                                  x.segment(node * n, n);
     return out;
   }
 
@@ -67,7 +70,8 @@ struct Iteration {
     Vector all(right.size() + k());
     all << right, functional.wanted() - integrals;
     imbalance = 0;
-    for (Index i = 0; i < all.size(); ++i) imbalance = std::max(imbalance, std::abs(all[i]) / std::max(row_sizes[i], 1e-300));
+    for (Index i = 0; i < all.size(); ++i)
+      imbalance = std::max(imbalance, std::abs(all[i]) / std::max(row_sizes[i], 1e-300));
     const Vector out = all.size() > 0 ? Vector(lu.solve(all)) : all;
     if (!out.allFinite()) return false;
     reduced = out.head(right.size());

@@ -37,17 +37,20 @@ bool has_action(const EquationsOfMotion& equations, Diagnostics& diagnostics) {
   const MechanicalSystem& system = *equations.system;
   for (std::size_t i = 0; i < system.constraints.size(); ++i) {
     if (system.constraints[i].level == Constraint::Level::Position) continue;
-    diagnostics.error("E1201", system.constraints[i].span,
-                      fmt::format("{} holds between velocities: its motions make no action stationary", system.constraint_label(i)),
-                      "Constraints between velocities follow d'Alembert's principle; their motions are not the stationary paths of "
-                      "∫ L dt among the paths that obey them.",
-                      "Write it between coordinates if it can be integrated (`maup check` says whether it is holonomic in disguise).");
+    diagnostics.error(
+        "E1201", system.constraints[i].span,
+        fmt::format("{} holds between velocities: its motions make no action stationary", system.constraint_label(i)),
+        "Constraints between velocities follow d'Alembert's principle; their motions are not the stationary paths of "
+        "∫ L dt among the paths that obey them.",
+        "Write it between coordinates if it can be integrated (`maup check` says whether it is holonomic in "
+        "disguise).");
     return false;
   }
   if (vanish(equations.generalized_forces) && vanish(equations.dissipative_terms)) return true;
-  diagnostics.error("E1201", span_of_force(system), "forces and dissipation act that no Lagrangian gives",
-                    "With Q or D the motion is no stationary path of ∫ L dt: there is no principle of stationary action for it.",
-                    "Write a force that has a potential as `V = …`; leave the others out.");
+  diagnostics.error(
+      "E1201", span_of_force(system), "forces and dissipation act that no Lagrangian gives",
+      "With Q or D the motion is no stationary path of ∫ L dt: there is no principle of stationary action for it.",
+      "Write a force that has a potential as `V = …`; leave the others out.");
   return false;
 }
 
@@ -59,7 +62,12 @@ bool interrupted(const ActionOptions& options, Diagnostics& diagnostics) {
 }
 
 Problem::Problem(const Model& m, const EquationsOfMotion& e)
-    : model(m), equations(e), functional(e), rule(std::make_shared<const Rule>(degree)), kinks(kinks_of(e)), typical(Vector::Ones(functional.freedoms())) {
+    : model(m),
+      equations(e),
+      functional(e),
+      rule(std::make_shared<const Rule>(degree)),
+      kinks(kinks_of(e)),
+      typical(Vector::Ones(functional.freedoms())) {
   const MechanicalSystem& system = *e.system;
   for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
     const Coordinate& c = system.coordinates[i];
@@ -80,8 +88,10 @@ Vector Problem::least(const ActionEnds* ends) const {
   if (!ends || ends->closed) return out;
   for (Index i = 0; i < out.size(); ++i) {
     const auto &a = ends->from[static_cast<std::size_t>(i)], &b = ends->to[static_cast<std::size_t>(i)];
-    if (a && b && *a != *b) out[i] = std::abs(*b - *a);
-    else if (a && *a != 0) out[i] = std::min(out[i], std::max(1e-3 * std::abs(*a), 1e-6 * out[i]));
+    if (a && b && *a != *b)
+      out[i] = std::abs(*b - *a);
+    else if (a && *a != 0)
+      out[i] = std::min(out[i], std::max(1e-3 * std::abs(*a), 1e-6 * out[i]));
   }
   return out;
 }
@@ -111,7 +121,8 @@ SingularEnds Problem::singular_ends(const ActionEnds& ends) {
   const auto infinite = [&](const std::vector<std::optional<double>>& at, double t) {
     Vector q(n()), v(n());
     for (Index i = 0; i < n(); ++i) {
-      const auto &value = at[static_cast<std::size_t>(i)], &a = ends.from[static_cast<std::size_t>(i)], &b = ends.to[static_cast<std::size_t>(i)];
+      const auto &value = at[static_cast<std::size_t>(i)], &a = ends.from[static_cast<std::size_t>(i)],
+                 &b = ends.to[static_cast<std::size_t>(i)];
       if (!value) return false;
       q[i] = *value;
       v[i] = a && b ? (*b - *a) / (ends.end - ends.start) : 0.0;
@@ -152,7 +163,8 @@ bool move_onto_constraints(Functional& functional, Trial& trial, const FixedEnds
   for (int turn = 0; turn < 60; ++turn) {
     const Directions d = directions_of(functional, trial, fixed, scale, nothing);
     if (!d.normal.allFinite()) return false;
-    trial.q += std::min(1.0, 1 / std::max(d.off, 1e-300)) * Eigen::Map<const Matrix>(d.normal.data(), trial.q.rows(), trial.q.cols());
+    trial.q += std::min(1.0, 1 / std::max(d.off, 1e-300)) *
+               Eigen::Map<const Matrix>(d.normal.data(), trial.q.rows(), trial.q.cols());
     if (d.off < 1e-10) return true;
     if (turn > 30 && d.off > before) return false;
     before = d.off;

@@ -24,7 +24,7 @@ struct Problem {
   Functional functional;
   std::shared_ptr<const Rule> rule;
   std::vector<Expr> kinks;  // of L: what no count of the index knows
-  Vector typical;  // [n] how large coordinates are, before a path is known
+  Vector typical;           // [n] how large coordinates are, before a path is known
 
   Index n() const { return functional.freedoms(); }
   double number(Expr e) const;
@@ -49,6 +49,7 @@ bool move_onto_constraints(Functional& functional, Trial& trial, const FixedEnds
 StationaryPath describe(Problem& problem, const Refined& refined, const ActionEnds& ends, const SingularEnds& singular,
                         const ActionOptions& options, Diagnostics& diagnostics);
 /// S on neighbours of a path; ends that are fixed stay.
-std::vector<TestVariation> test_variations(Problem& problem, const Trial& trial, const FixedEnds& fixed, const Vector& least);
+std::vector<TestVariation> test_variations(Problem& problem, const Trial& trial, const FixedEnds& fixed,
+                                           const Vector& least);
 
 }  // namespace maupertuis::action

@@ -7,7 +7,7 @@
 namespace maupertuis::action {
 namespace {
 
-constexpr double resolved = 1e-12;  // of the last coefficients, relative to the size of the coordinate
+constexpr double resolved = 1e-12;    // of the last coefficients, relative to the size of the coordinate
 constexpr double worst_error = 1e-6;  // of Σ |L|: a path that finer elements change by more is none
 constexpr int most_rounds = 12;
 constexpr Index most_elements = 400;
@@ -24,7 +24,8 @@ double tail(const Trial& trial, Index e, const Matrix& scale) {
 
 class Refiner {
  public:
-  Refiner(Functional& functional, Trial trial, const FixedEnds& fixed, const Vector& least, const NewtonOptions& options)
+  Refiner(Functional& functional, Trial trial, const FixedEnds& fixed, const Vector& least,
+          const NewtonOptions& options)
       : functional_(functional), trial_(std::move(trial)), fixed_(fixed), least_(least), options_(options) {}
 
   std::optional<Refined> run() {

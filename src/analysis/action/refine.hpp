@@ -18,9 +18,9 @@ struct SingularEnds {
   Pace pace() const { return start ? (end ? Pace::SlowEnds : Pace::SlowStart) : end ? Pace::SlowEnd : Pace::Even; }
 };
 
-/// Halves the elements whose polynomials have not converged, and solves again, until all have. Nothing where Newton's method
-/// fails on a finer mesh: then there was no path, only one of the coarse equations.
-/// `least` [n]: sizes below which a coordinate is not resolved further.
+/// Halves the elements whose polynomials have not converged, and solves again, until all have. Nothing where Newton's
+/// method fails on a finer mesh: then there was no path, only one of the coarse equations. `least` [n]: sizes below
+/// which a coordinate is not resolved further.
 std::optional<Refined> refine(Functional& functional, Trial trial, const FixedEnds& fixed, const Vector& least,
                               const NewtonOptions& options);
 

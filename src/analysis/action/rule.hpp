@@ -5,8 +5,8 @@
 
 namespace maupertuis::action {
 
-/// Whether the polynomials of an element have the derivative 0 at an end, as a path in s has where it runs slowly: there
-/// L is infinite at the end, and a slope would carry Newton's method across it.
+/// Whether the polynomials of an element have the derivative 0 at an end, as a path in s has where it runs slowly:
+/// there L is infinite at the end, and a slope would carry Newton's method across it.
 enum class Flat { Nowhere, AtBegin, AtEnd };
 
 /// Polynomials of one degree on [−1, 1] by their values at the Gauss-Lobatto nodes, and Gauss's points at which the
@@ -16,11 +16,11 @@ struct Rule {
 
   Index degree;
   Index anchor = 0;  // the node at the end where L may be infinite: values near there are told as differences from it
-  Vector nodes;           // [p + 1]
-  Vector points, weights; // [p + 2] Gauss-Legendre
-  Matrix value, slope;    // [p + 2 × p + 1] nodes → values, derivatives at the points
-  Matrix node_slope;      // [p + 1 × p + 1] nodes → derivatives at the nodes
-  Matrix legendre;        // [p + 1 × p + 1] nodes → coefficients of Legendre polynomials
+  Vector nodes;      // [p + 1]
+  Vector points, weights;  // [p + 2] Gauss-Legendre
+  Matrix value, slope;     // [p + 2 × p + 1] nodes → values, derivatives at the points
+  Matrix node_slope;       // [p + 1 × p + 1] nodes → derivatives at the nodes
+  Matrix legendre;         // [p + 1 × p + 1] nodes → coefficients of Legendre polynomials
 
   /// Weights of the nodes for the value (derivative) at ξ.
   Vector value_at(double xi) const;

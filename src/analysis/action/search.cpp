@@ -20,7 +20,8 @@ constexpr double same_path = 1e-6;  // of the size of the coordinates
 constexpr int looks = 33;           // places at which paths are compared
 /// What a search may cost: iterations of Newton's method times their work, about the number of operations.
 constexpr double budget = 2e9;
-constexpr std::size_t starts_at_infinity = 3;  // where L is infinite at an end: what the first do not reach the others do not
+constexpr std::size_t starts_at_infinity =
+    3;  // where L is infinite at an end: what the first do not reach the others do not
 
 bool same(const Trial& a, const Trial& b, const Vector& least) {
   const ActionPath p = to_path(a), q = to_path(b);
@@ -40,8 +41,11 @@ bool check_ends(Problem& problem, const ActionEnds& ends, Diagnostics& diagnosti
   const MechanicalSystem& system = problem.model.system;
   const auto span = problem.model.experiment.path ? std::optional(problem.model.experiment.path->span) : std::nullopt;
   if (!(ends.start < ends.end) || !std::isfinite(ends.end - ends.start)) {
-    diagnostics.error("E1203", span, fmt::format("the path ends at {}, not after its start at {}", place(ends.end, system), place(ends.start, system)),
-                      "The action is an integral from the earlier end to the later one.", "Write the earlier end first.");
+    diagnostics.error("E1203", span,
+                      fmt::format("the path ends at {}, not after its start at {}", place(ends.end, system),
+                                  place(ends.start, system)),
+                      "The action is an integral from the earlier end to the later one.",
+                      "Write the earlier end first.");
     return false;
   }
   if (!system.constrained()) return true;
@@ -54,11 +58,12 @@ bool check_ends(Problem& problem, const ActionEnds& ends, Diagnostics& diagnosti
     const std::vector<double> off = manifold.relative_values(s);
     for (std::size_t i = 0; i < off.size(); ++i) {
       if (off[i] < 1e-9) continue;
-      diagnostics.error("E1202", span,
-                        fmt::format("the {} of the path is off {}, by {:.3g} of the size of its terms", first ? "beginning" : "end",
-                                    system.constraint_label(i), off[i]),
-                        "Every point of a path has to satisfy the constraints, its ends included.",
-                        "Move the end onto the constraint, or leave a component `free` that the constraint then fixes.");
+      diagnostics.error(
+          "E1202", span,
+          fmt::format("the {} of the path is off {}, by {:.3g} of the size of its terms", first ? "beginning" : "end",
+                      system.constraint_label(i), off[i]),
+          "Every point of a path has to satisfy the constraints, its ends included.",
+          "Move the end onto the constraint, or leave a component `free` that the constraint then fixes.");
       return false;
     }
   }
@@ -68,14 +73,20 @@ bool check_ends(Problem& problem, const ActionEnds& ends, Diagnostics& diagnosti
 class Search {
  public:
   Search(Problem& problem, const ActionEnds& ends, const ActionOptions& options)
-      : problem_(problem), ends_(ends), options_(options), fixed_(fixed_of(ends)), least_(problem.least(&ends)),
+      : problem_(problem),
+        ends_(ends),
+        options_(options),
+        fixed_(fixed_of(ends)),
+        least_(problem.least(&ends)),
         singular_(problem.singular_ends(ends)) {}
 
   void run() {
     const bool one = problem_.n() == 1 && ends_.from[0] && ends_.to[0] && problem_.functional.constraints() == 0 &&
                      problem_.functional.integrals() == 0 && !singular_.any();
-    if (one) from_shots();
-    else from_bent_lines();
+    if (one)
+      from_shots();
+    else
+      from_bent_lines();
     if (found_.empty()) by_continuation();
   }
 
@@ -95,7 +106,8 @@ class Search {
     if (!move_onto_constraints(problem_.functional, trial, fixed_, even_scale(trial, least_))) return count_failure();
     guess_multipliers(trial);
     const NewtonOptions newton{40, options_.interrupt};
-    const NewtonResult first = solve_stationarity(problem_.functional, trial, fixed_, path_scale(trial, least_), newton);
+    const NewtonResult first =
+        solve_stationarity(problem_.functional, trial, fixed_, path_scale(trial, least_), newton);
     const auto d = static_cast<double>(problem_.n());
     work_ += first.iterations * static_cast<double>(trial.q.cols()) * (400 + 40 * d * d * d + 60 * d * d);
     if (!first.converged) return count_failure();
@@ -118,18 +130,22 @@ class Search {
   }
 
   bool known(const Trial& trial) const {
-    return std::any_of(found_.begin(), found_.end(), [&](const auto& f) { return same(f.first.coarse, trial, least_); });
+    return std::any_of(found_.begin(), found_.end(),
+                       [&](const auto& f) { return same(f.first.coarse, trial, least_); });
   }
 
   void from_bent_lines() {
     std::size_t tried = 0;
     const auto all = starts_between(problem_, ends_);
     for (const Start& s : all) {
-      if (stopped() || found_.size() >= options_.paths || work_ > budget || (singular_.any() && tried == starts_at_infinity)) break;
+      if (stopped() || found_.size() >= options_.paths || work_ > budget ||
+          (singular_.any() && tried == starts_at_infinity))
+        break;
       attempt(s.trial, s.name);
       ++tried;
     }
-    bound_ = fmt::format("Newton's method began from {} of {} lines, straight and bent; others may exist.", tried, all.size());
+    bound_ = fmt::format("Newton's method began from {} of {} lines, straight and bent; others may exist.", tried,
+                         all.size());
   }
 
   void from_shots() {
@@ -138,8 +154,9 @@ class Search {
     for (const Trial& t : shots.arrivals)
       if (!stopped()) attempt(t, "a shot");
     const MechanicalSystem& system = problem_.model.system;
-    bound_ = fmt::format("{} shots with |{}'({:g})| up to {:.4g} tell apart no more than these; faster paths may exist.", shots.count,
-                         system.coordinates[0].name, ends_.start, shots.fastest);
+    bound_ =
+        fmt::format("{} shots with |{}'({:g})| up to {:.4g} tell apart no more than these; faster paths may exist.",
+                    shots.count, system.coordinates[0].name, ends_.start, shots.fastest);
   }
 
   /// From a short duration, where the line is nearly stationary, to the whole one.
@@ -153,7 +170,8 @@ class Search {
       Trial next = trial;
       next.mesh.whole = part * whole;
       if (move_onto_constraints(problem_.functional, next, fixed_, even_scale(next, least_)) &&
-          solve_stationarity(problem_.functional, next, fixed_, path_scale(next, least_), {25, options_.interrupt}).converged) {
+          solve_stationarity(problem_.functional, next, fixed_, path_scale(next, least_), {25, options_.interrupt})
+              .converged) {
         trial = next;
         any = true;
         if (part == 1) break;
@@ -165,8 +183,10 @@ class Search {
       }
       part = std::min(1.0, part + step);
     }
-    if (trial.mesh.whole == whole) attempt(trial, "continuation from a short duration");
-    else reached_ = any ? part : 0;
+    if (trial.mesh.whole == whole)
+      attempt(trial, "continuation from a short duration");
+    else
+      reached_ = any ? part : 0;
   }
 
   Problem& problem_;
@@ -224,28 +244,36 @@ void refuse_no_path(const Search& search, Problem& problem, const ActionEnds& en
   if (const auto speed = speed_beyond_numbers(problem, ends))
     return refuse_beyond_numbers(*speed, problem, ends, diagnostics);
   const auto span = problem.model.experiment.path ? std::optional(problem.model.experiment.path->span) : std::nullopt;
-  std::string reason = fmt::format("Newton's method on the stationarity of S began from {} lines between the ends and found no path.", search.starts_);
+  std::string reason =
+      fmt::format("Newton's method on the stationarity of S began from {} lines between the ends and found no path.",
+                  search.starts_);
   if (search.reached_ > 0 && search.reached_ < 1)
-    reason += fmt::format(" From the path of a short duration it could be followed to {:.3g} of this one.", search.reached_);
-  if (search.singular().any())
-    reason += " L is infinite at an end: an end just beside it may be reached.";
-  diagnostics.error("E1204", span, fmt::format("no stationary path from {} to {} was found", place(ends.start, problem.model.system), place(ends.end, problem.model.system)),
+    reason +=
+        fmt::format(" From the path of a short duration it could be followed to {:.3g} of this one.", search.reached_);
+  if (search.singular().any()) reason += " L is infinite at an end: an end just beside it may be reached.";
+  diagnostics.error("E1204", span,
+                    fmt::format("no stationary path from {} to {} was found", place(ends.start, problem.model.system),
+                                place(ends.end, problem.model.system)),
                     reason,
-                    "The end may not be reachable: beyond what the energy or the constraints allow, where L has no value, or conjugate to "
+                    "The end may not be reachable: beyond what the energy or the constraints allow, where L has no "
+                    "value, or conjugate to "
                     "the start, as after half a period of a harmonic oscillator. Try other ends, or another duration.");
 }
 
 void warn_of_kinks(const Problem& problem, Diagnostics& diagnostics) {
   if (problem.kinks.empty()) return;
   const std::string where = switch_text(problem.kinks.front(), problem.equations.order);
-  diagnostics.warning("W1202", {}, fmt::format("L has a kink{}: paths through it may be missing", where.empty() ? "" : " where " + where),
-                      "The search follows L by its derivatives, which jump there, so that it does not reach all paths that pass the "
-                      "kink: one of a smaller action may be among them.",
-                      "A smooth function, as sqrt(x^2 + d^2) for abs(x), has all its paths found as others have.");
+  diagnostics.warning(
+      "W1202", {},
+      fmt::format("L has a kink{}: paths through it may be missing", where.empty() ? "" : " where " + where),
+      "The search follows L by its derivatives, which jump there, so that it does not reach all paths that pass the "
+      "kink: one of a smaller action may be among them.",
+      "A smooth function, as sqrt(x^2 + d^2) for abs(x), has all its paths found as others have.");
 }
 
 /// The same ends with each angle that is fixed at both some whole turns further.
-std::vector<std::pair<ActionEnds, std::vector<int>>> with_turns(const ActionEnds& ends, const MechanicalSystem& system, std::size_t turns) {
+std::vector<std::pair<ActionEnds, std::vector<int>>> with_turns(const ActionEnds& ends, const MechanicalSystem& system,
+                                                                std::size_t turns) {
   std::vector<std::pair<ActionEnds, std::vector<int>>> out{{ends, std::vector<int>(ends.to.size(), 0)}};
   for (std::size_t i = 0; i < ends.to.size(); ++i) {
     if (system.coordinates[i].kind != "angle" || !ends.to[i]) continue;
@@ -262,8 +290,9 @@ std::vector<std::pair<ActionEnds, std::vector<int>>> with_turns(const ActionEnds
 
 }  // namespace
 
-std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOfMotion& equations, const ActionEnds& ends,
-                                           const ActionOptions& options, Diagnostics& diagnostics) {
+std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOfMotion& equations,
+                                           const ActionEnds& ends, const ActionOptions& options,
+                                           Diagnostics& diagnostics) {
   if (!has_action(equations, diagnostics)) return std::nullopt;
   Problem problem(model, equations);
   if (!check_ends(problem, ends, diagnostics)) return std::nullopt;
@@ -280,9 +309,11 @@ std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOf
       refuse_no_path(search, problem, ends, diagnostics);
       return std::nullopt;
     }
-    std::sort(search.found_.begin(), search.found_.end(), [](const auto& a, const auto& b) { return a.first.action < b.first.action; });
+    std::sort(search.found_.begin(), search.found_.end(),
+              [](const auto& a, const auto& b) { return a.first.action < b.first.action; });
     if (search.found_.size() > options.paths) {
-      out.bound = fmt::format("{} paths were found, of which the {} with the smallest action are shown.", search.found_.size(), options.paths);
+      out.bound = fmt::format("{} paths were found, of which the {} with the smallest action are shown.",
+                              search.found_.size(), options.paths);
       search.found_.resize(options.paths);
     }
     for (const auto& [refined, name] : search.found_) {
@@ -296,7 +327,8 @@ std::optional<PathSearch> stationary_paths(const Model& model, const EquationsOf
     refuse_no_path(Search(problem, ends, options), problem, ends, diagnostics);
     return std::nullopt;
   }
-  std::stable_sort(out.paths.begin(), out.paths.end(), [](const auto& a, const auto& b) { return a.action < b.action; });
+  std::stable_sort(out.paths.begin(), out.paths.end(),
+                   [](const auto& a, const auto& b) { return a.action < b.action; });
   warn_of_kinks(problem, diagnostics);
   return out;
 }

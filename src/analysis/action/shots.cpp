@@ -12,8 +12,10 @@ namespace {
 
 constexpr int even_shots = 401;
 constexpr std::size_t most_shots = 3000;
-constexpr double coarse = 0.25;  // of the typical size: neighbouring shots that arrive further apart have one between them
-constexpr double far = 4;        // of their distance: neighbours that arrive on one side and further off have none between them
+constexpr double coarse =
+    0.25;  // of the typical size: neighbouring shots that arrive further apart have one between them
+constexpr double far =
+    4;  // of their distance: neighbours that arrive on one side and further off have none between them
 constexpr int most_halvings = 12;
 constexpr double near_zero_of_root = 1e-10;
 
@@ -25,8 +27,13 @@ struct Shot {
 class Shooter {
  public:
   Shooter(Problem& problem, const ActionEnds& ends, const std::atomic<bool>* interrupt)
-      : problem_(problem), ends_(ends), from_(*ends.from[0]), to_(*ends.to[0]), kernel_(build_kernel(motion_source(problem.equations))),
-        stepper_(kernel_, parameter_values(*problem.equations.system), {.maximum_steps = 20'000, .interrupt = interrupt}) {}
+      : problem_(problem),
+        ends_(ends),
+        from_(*ends.from[0]),
+        to_(*ends.to[0]),
+        kernel_(build_kernel(motion_source(problem.equations))),
+        stepper_(kernel_, parameter_values(*problem.equations.system),
+                 {.maximum_steps = 20'000, .interrupt = interrupt}) {}
 
   Shots run() {
     out_.fastest = fastest();
@@ -86,8 +93,11 @@ class Shooter {
     stepper_.start(ends_.start, {&from_, 1}, {&speed, 1});
     std::size_t steps = 0;
     while (stepper_.time() != ends_.end && stepper_.step(ends_.end).ending == StepEnding::None) ++steps;
-    Trial out{even_mesh(problem_.rule, ends_.start, ends_.end, std::clamp<Index>(static_cast<Index>(steps), 4, 80), false), {},
-              Vector::Zero(0), Vector::Zero(1)};
+    Trial out{
+        even_mesh(problem_.rule, ends_.start, ends_.end, std::clamp<Index>(static_cast<Index>(steps), 4, 80), false),
+        {},
+        Vector::Zero(0),
+        Vector::Zero(1)};
     out.q = Matrix::Constant(1, out.mesh.nodes(), from_);
     stepper_.start(ends_.start, {&from_, 1}, {&speed, 1});
     Index k = 1;

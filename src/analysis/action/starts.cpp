@@ -13,14 +13,17 @@ namespace {
 constexpr int bend_waves = 3, random_waves = 4, random_starts = 24;
 
 /// Where a free component begins: as the other end, or as the model starts.
-Vector end_value(const Problem& problem, const std::vector<std::optional<double>>& at, const std::vector<std::optional<double>>& other) {
+Vector end_value(const Problem& problem, const std::vector<std::optional<double>>& at,
+                 const std::vector<std::optional<double>>& other) {
   Vector out = Vector::Zero(problem.n());
   for (const StartValue& s : problem.model.experiment.start)
     if (s.order == 0) out[static_cast<Index>(s.coordinate)] = problem.number(s.value);
   for (Index i = 0; i < out.size(); ++i) {
     const auto k = static_cast<std::size_t>(i);
-    if (at[k]) out[i] = *at[k];
-    else if (other[k]) out[i] = *other[k];
+    if (at[k])
+      out[i] = *at[k];
+    else if (other[k])
+      out[i] = *other[k];
   }
   return out;
 }
@@ -37,21 +40,27 @@ std::vector<Start> starts_between(Problem& problem, const ActionEnds& ends) {
   const Vector size = reach(problem, from, to);
   const SingularEnds singular = problem.singular_ends(ends);
   const auto line_on = [&](const Mesh& mesh) {
-    Trial out{mesh, Matrix(problem.n(), mesh.nodes()), Vector::Zero(problem.functional.integrals()), Vector::Zero(problem.n())};
+    Trial out{mesh, Matrix(problem.n(), mesh.nodes()), Vector::Zero(problem.functional.integrals()),
+              Vector::Zero(problem.n())};
     for (Index k = 0; k < mesh.nodes(); ++k) {
       // Next to an end where L is infinite paths are steep: as t^(2/3), which is as good a guess as any.
       const double part = (mesh.time(k) - ends.start) / (ends.end - ends.start);
-      out.q.col(k) = from + (to - from) * (singular.start ? std::cbrt(part * part) : singular.end ? 1 - std::cbrt((1 - part) * (1 - part)) : part);
+      out.q.col(k) = from + (to - from) * (singular.start ? std::cbrt(part * part)
+                                           : singular.end ? 1 - std::cbrt((1 - part) * (1 - part))
+                                                          : part);
     }
     out.q.col(mesh.nodes() - 1) = to;
     return out;
   };
   const Trial rough = line_on(even_mesh(problem.rule, ends.start, ends.end, 2, false, singular.pace()));
-  const Trial line = line_on(even_mesh(problem.rule, ends.start, ends.end, problem.first_elements(rough), false, singular.pace()));
+  const Trial line =
+      line_on(even_mesh(problem.rule, ends.start, ends.end, problem.first_elements(rough), false, singular.pace()));
   std::vector<Start> out{{"the straight line", line}};
   const auto bend = [&](Trial& trial, Index i, int k, double by) {
     for (Index node = 1; node + 1 < trial.q.cols(); ++node)
-      trial.q(i, node) += by * size[i] * std::sin(k * std::numbers::pi * (trial.mesh.time(node) - ends.start) / (ends.end - ends.start));
+      trial.q(i, node) +=
+          by * size[i] *
+          std::sin(k * std::numbers::pi * (trial.mesh.time(node) - ends.start) / (ends.end - ends.start));
   };
   for (int k = 1; k <= bend_waves; ++k)
     for (const double by : {0.5, -0.5, 1.5, -1.5})

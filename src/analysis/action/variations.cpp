@@ -7,14 +7,14 @@
 #include <cmath>
 #include <numbers>
 
-/// The first variation, to be seen: S on q + ε ξ for sines of each coordinate and for the shape that lowers S most, or raises it
-/// least. S(ε) − S(0) is a parabola without a slope where the path is stationary.
+/// The first variation, to be seen: S on q + ε ξ for sines of each coordinate and for the shape that lowers S most, or
+/// raises it least. S(ε) − S(0) is a parabola without a slope where the path is stationary.
 namespace maupertuis::action {
 namespace {
 
-constexpr int waves = 6;            // of each coordinate, among which the lowest shape is sought
+constexpr int waves = 6;  // of each coordinate, among which the lowest shape is sought
 constexpr std::size_t most_shown = 5;
-constexpr int half_count = 20;      // values of ε on each side
+constexpr int half_count = 20;  // values of ε on each side
 constexpr double largest_epsilon = 0.2;
 
 struct Shape {
@@ -50,7 +50,10 @@ std::vector<std::pair<std::string, std::vector<double>>> waves_of(const Trial& t
 class Neighbourhood {
  public:
   Neighbourhood(Problem& problem, const Trial& trial, const FixedEnds& fixed, const Vector& least)
-      : problem_(problem), trial_(trial), fixed_(fixed), scale_(even_scale(trial, least)),
+      : problem_(problem),
+        trial_(trial),
+        fixed_(fixed),
+        scale_(even_scale(trial, least)),
         a_(assemble(problem.functional, trial, 2)),
         directions_(directions_of(problem.functional, trial, fixed, scale_, a_.gradient)) {
     gradient_ = action::with_reactions(problem.functional, trial, directions_, a_.gradient);
@@ -68,7 +71,8 @@ class Neighbourhood {
         Matrix xi = Matrix::Zero(trial_.q.rows(), trial_.q.cols());
         xi.row(i) = scale_(i, 0) * Eigen::Map<const Vector>(values.data(), trial_.q.cols()).transpose();
         allow(xi);
-        if (xi.cwiseQuotient(scale_).norm() > 1e-6) out.push_back({system.coordinates[at].name + ": " + name, std::move(xi)});
+        if (xi.cwiseQuotient(scale_).norm() > 1e-6)
+          out.push_back({system.coordinates[at].name + ": " + name, std::move(xi)});
       }
     }
     return out;
@@ -79,7 +83,8 @@ class Neighbourhood {
     if (shapes.empty()) return std::nullopt;
     const auto count = static_cast<Index>(shapes.size());
     Matrix x(trial_.q.size(), count);
-    for (Index i = 0; i < count; ++i) x.col(i) = Eigen::Map<const Vector>(shapes[static_cast<std::size_t>(i)].xi.data(), x.rows());
+    for (Index i = 0; i < count; ++i)
+      x.col(i) = Eigen::Map<const Vector>(shapes[static_cast<std::size_t>(i)].xi.data(), x.rows());
     if (problem_.functional.integrals() > 0) x = x * null_basis(a_.integral_gradients.transpose() * x, count);
     if (x.cols() == 0) return std::nullopt;
     Matrix h = x.transpose() * times(a_.hessians, x, true), k = x.transpose() * times(a_.kinetic, x, false);
@@ -87,7 +92,8 @@ class Neighbourhood {
     const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> eigen((h + h.transpose()) / 2, (k + k.transpose()) / 2);
     if (eigen.info() != Eigen::Success) return std::nullopt;
     Vector best = x * eigen.eigenvectors().col(0);
-    const double size = best.cwiseQuotient(Eigen::Map<const Vector>(scale_.data(), scale_.size())).lpNorm<Eigen::Infinity>();
+    const double size =
+        best.cwiseQuotient(Eigen::Map<const Vector>(scale_.data(), scale_.size())).lpNorm<Eigen::Infinity>();
     best /= best.dot(x.col(0)) < 0 ? -size : size;
     return Shape{"lowest", Eigen::Map<const Matrix>(best.data(), trial_.q.rows(), trial_.q.cols())};
   }
@@ -118,7 +124,8 @@ class Neighbourhood {
   void allow(Matrix& xi) const {
     for (Index k = 0; k < xi.cols(); ++k) {
       const Matrix& z = directions_.basis[static_cast<std::size_t>(k)];
-      xi.col(k) = z.cols() == 0 ? Vector(Vector::Zero(xi.rows())) : Vector(z * z.householderQr().solve(Vector(xi.col(k))));
+      xi.col(k) =
+          z.cols() == 0 ? Vector(Vector::Zero(xi.rows())) : Vector(z * z.householderQr().solve(Vector(xi.col(k))));
     }
   }
 
@@ -133,8 +140,10 @@ class Neighbourhood {
     }
     if (!with_curvature || problem_.functional.constraints() == 0) return out;
     for (Index k = 0; k < trial_.mesh.nodes(); ++k)
-      out.middleRows(k * n, n) += problem_.functional.constraint_curvature(trial_.mesh.time(k), trial_.q.col(k),
-                                                                          directions_.mu[static_cast<std::size_t>(k)]) * x.middleRows(k * n, n);
+      out.middleRows(k * n, n) +=
+          problem_.functional.constraint_curvature(trial_.mesh.time(k), trial_.q.col(k),
+                                                   directions_.mu[static_cast<std::size_t>(k)]) *
+          x.middleRows(k * n, n);
     return out;
   }
 
@@ -176,14 +185,16 @@ class Neighbourhood {
 
 }  // namespace
 
-std::vector<TestVariation> test_variations(Problem& problem, const Trial& trial, const FixedEnds& fixed, const Vector& least) {
+std::vector<TestVariation> test_variations(Problem& problem, const Trial& trial, const FixedEnds& fixed,
+                                           const Vector& least) {
   Neighbourhood near(problem, trial, fixed, least);
   if (!near.usable()) return {};
   const std::vector<Shape> shapes = near.shapes();
   std::vector<TestVariation> out;
   if (const auto lowest = near.lowest(shapes)) out.push_back(near.vary(*lowest));
   // The slowest waves of each coordinate, as many as a reader wants to see.
-  const std::size_t each = std::max<std::size_t>(1, (most_shown - 1) / static_cast<std::size_t>(std::max<Index>(1, problem.n())));
+  const std::size_t each =
+      std::max<std::size_t>(1, (most_shown - 1) / static_cast<std::size_t>(std::max<Index>(1, problem.n())));
   std::string before;
   std::size_t of_this = 0;
   for (const Shape& s : shapes) {

@@ -46,8 +46,10 @@ std::optional<EquationsOfMotion> weighted_equations(const EquationsOfMotion& equ
     system->constraints.push_back(rate_constraint(context, "integral_so_far_" + number, so_far.velocity - c.integrand));
   }
   EnergyTerm term{added, "integral constraints", {}};
-  if (system->lagrangian_given) system->lagrangian_given->value = system->lagrangian_given->value + added;
-  else system->lagrangian_extra.push_back(term);
+  if (system->lagrangian_given)
+    system->lagrangian_given->value = system->lagrangian_given->value + added;
+  else
+    system->lagrangian_extra.push_back(term);
   system->integral_constraints.clear();
   Diagnostics unheard;
   return euler_lagrange(std::move(system), unheard);

@@ -7,7 +7,8 @@ namespace {
 
 class CanonicalSource {
  public:
-  CanonicalSource(const Hamiltonian& h, const EquationsOfMotion& equations) : h_(h), equations_(equations), context_(*h.system->context) {
+  CanonicalSource(const Hamiltonian& h, const EquationsOfMotion& equations)
+      : h_(h), equations_(equations), context_(*h.system->context) {
     for (const Coordinate& c : h.system->coordinates) add_state(c.q, c.name);
     for (std::size_t i = 0; i < h.momenta.size(); ++i) add_state(h.momenta[i], momentum_name(*h.system, i));
     for (const Parameter& p : h.system->parameters) source_.parameters.push_back(p.symbol);

@@ -53,10 +53,10 @@ class Momenta {
   std::vector<double> input_;
 };
 
-/// Constraints whose rows of A are no combination of those before them, at the start. In phase space a redundant one would
-/// not show as a row that depends on others: the row of d/dt dφ/dt = 0 in (q̇, ṗ) has the derivatives of A in it.
+/// Constraints whose rows of A are no combination of those before them, at the start. In phase space a redundant one
+/// would not show as a row that depends on others: the row of d/dt dφ/dt = 0 in (q̇, ṗ) has the derivatives of A in it.
 std::vector<std::size_t> independent_constraints(const EquationsOfMotion& equations, const State& start) {
-  constexpr double least_part = 1e-9;   // of a row, that is not a combination of others
+  constexpr double least_part = 1e-9;  // of a row, that is not a combination of others
   if (!equations.system->constrained()) return {};
   const ConstraintManifold manifold(equations);
   const MotionState state{start.t, start.q, start.v};
@@ -84,7 +84,9 @@ std::vector<std::size_t> independent_constraints(const EquationsOfMotion& equati
 
 TaylorOptions taylor_options(const SimulationOptions& options) {
   TaylorOptions out;
-  out.tolerance = !options.method || *options.method == StepMethod::Taylor || *options.method == StepMethod::Automatic ? options.tolerance : 0;
+  out.tolerance = !options.method || *options.method == StepMethod::Taylor || *options.method == StepMethod::Automatic
+                      ? options.tolerance
+                      : 0;
   out.maximum_steps = options.maximum_steps;
   out.interrupt = options.interrupt;
   out.backend = options.backend;
@@ -103,14 +105,16 @@ void name_columns(const Hamiltonian& h, Trajectory& trajectory) {
     trajectory.columns.push_back({name, unit == "1" ? "" : unit});
   };
   for (const Coordinate& c : h.system->coordinates) column(c.name, c.dimension);
-  for (std::size_t i = 0; i < h.momenta.size(); ++i) column(momentum_name(*h.system, i), dimension_of_momentum(*h.system, h.system->coordinates[i]));
+  for (std::size_t i = 0; i < h.momenta.size(); ++i)
+    column(momentum_name(*h.system, i), dimension_of_momentum(*h.system, h.system->coordinates[i]));
   column("H", h.system->lagrangian_dimension);
 }
 
 /// The largest difference from the run, each column against the largest value among those of its dimension.
 class Differences {
  public:
-  explicit Differences(const Hamiltonian& h) : h_(h), largest_(2 * h.momenta.size(), 0), size_(largest_), time_(largest_) {}
+  explicit Differences(const Hamiltonian& h)
+      : h_(h), largest_(2 * h.momenta.size(), 0), size_(largest_), time_(largest_) {}
 
   void add(double t, const std::vector<double>& canonical, const std::vector<double>& lagrangian) {
     for (std::size_t i = 0; i < largest_.size(); ++i) {
@@ -143,7 +147,8 @@ class Differences {
  private:
   Dimension unit(std::size_t i) const {
     const std::size_t n = h_.momenta.size();
-    return i < n ? h_.system->coordinates[i].dimension : dimension_of_momentum(*h_.system, h_.system->coordinates[i - n]);
+    return i < n ? h_.system->coordinates[i].dimension
+                 : dimension_of_momentum(*h_.system, h_.system->coordinates[i - n]);
   }
 
   const Hamiltonian& h_;
@@ -171,7 +176,8 @@ std::optional<CanonicalMotion> canonical_motion(const Hamiltonian& h, const Equa
   const std::vector<double> p = momenta.at(run.start.t, run.start.q.data(), run.start.v.data());
   state.insert(state.end(), p.begin(), p.end());
 
-  TaylorStepper stepper(canonical_kernel(h, equations, independent_constraints(equations, run.start)), values_of(*h.system), taylor_options(options));
+  TaylorStepper stepper(canonical_kernel(h, equations, independent_constraints(equations, run.start)),
+                        values_of(*h.system), taylor_options(options));
   stepper.start(run.start.t, std::vector<double>(2 * n, 0), state);
   CanonicalMotion out;
   out.order = stepper.order();
@@ -200,7 +206,8 @@ std::optional<CanonicalMotion> canonical_motion(const Hamiltonian& h, const Equa
       differences.has_terms(i, size);
     }
   };
-  for (std::size_t k = 0; k < times.size(); ++k) note_terms(run.trajectory.values.data() + k * run.trajectory.columns.size() + n);
+  for (std::size_t k = 0; k < times.size(); ++k)
+    note_terms(run.trajectory.values.data() + k * run.trajectory.columns.size() + n);
   record();
   while (stepper.time() != run.final.t) {
     const Step step = stepper.step(run.final.t);

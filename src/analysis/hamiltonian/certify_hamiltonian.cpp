@@ -83,7 +83,8 @@ void check_singular(const Hamiltonian& h, const EquationsOfMotion& shown, Proofs
   for (const LegendreBlock& block : h.legendre.blocks)
     for (const Expr& c : block.primary_constraints) constraints.push_back(substitute(c, momenta));
   proofs.add("primary_constraints", "the primary constraints vanish at p = ∂L/∂q'", constraints);
-  proofs.add("hamiltonian", "H at p = ∂L/∂q' is the energy function", {substitute(h.value, momenta) - shown.energy_function});
+  proofs.add("hamiltonian", "H at p = ∂L/∂q' is the energy function",
+             {substitute(h.value, momenta) - shown.energy_function});
 }
 
 }  // namespace

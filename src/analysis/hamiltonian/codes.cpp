@@ -6,28 +6,35 @@ namespace maupertuis {
 namespace {
 
 constexpr std::array entries{
-    CodeEntry{"W1101", "a singular Legendre transform",
-              "p = ∂L/∂q' cannot be solved for every velocity, since M = ∂²L/∂q'∂q' has no inverse: a coordinate without kinetic energy, "
-              "the four components of a quaternion, a Lagrangian that is linear in a velocity. The momenta then obey primary "
-              "constraints, and H is determined on them alone. Lagrange's equations are right as they are; leaving out the "
-              "coordinate that carries no inertia, or using angles instead of a quaternion, gives a regular transform.",
-              "param I = 1 kg m^2\nbody ball inertia diag(I, I, I) rotation quaternion\n",
-              "param I = 1 kg m^2\ncoord φ, θ, ψ : angle\nbody ball inertia diag(I, I, I) rotation euler zxz (φ, θ, ψ)\n"},
+    CodeEntry{
+        "W1101", "a singular Legendre transform",
+        "p = ∂L/∂q' cannot be solved for every velocity, since M = ∂²L/∂q'∂q' has no inverse: a coordinate without "
+        "kinetic energy, "
+        "the four components of a quaternion, a Lagrangian that is linear in a velocity. The momenta then obey primary "
+        "constraints, and H is determined on them alone. Lagrange's equations are right as they are; leaving out the "
+        "coordinate that carries no inertia, or using angles instead of a quaternion, gives a regular transform.",
+        "param I = 1 kg m^2\nbody ball inertia diag(I, I, I) rotation quaternion\n",
+        "param I = 1 kg m^2\ncoord φ, θ, ψ : angle\nbody ball inertia diag(I, I, I) rotation euler zxz (φ, θ, ψ)\n"},
     CodeEntry{"E1102", "canonical equations that cannot be integrated",
-              "Hamilton's equations need every velocity as a function of the momenta. Where the Legendre transform is singular or has "
+              "Hamilton's equations need every velocity as a function of the momenta. Where the Legendre transform is "
+              "singular or has "
               "no closed form there is no such function; `maup simulate` integrates Lagrange's equations instead.",
               "", ""},
     CodeEntry{"W1103", "velocities that are not written in terms of the momenta",
-              "L is not quadratic in the velocities, and p = ∂L/∂q' was not solved: only quadratic Lagrangians and those with one square root of a "
-              "quadratic form, as of the relativistic particle, are; or more than 16 coordinates are coupled. The momenta are right; H is the "
+              "L is not quadratic in the velocities, and p = ∂L/∂q' was not solved: only quadratic Lagrangians and "
+              "those with one square root of a "
+              "quadratic form, as of the relativistic particle, are; or more than 16 coordinates are coupled. The "
+              "momenta are right; H is the "
               "energy function h_E at the velocities that belong to p.",
               "", ""},
     CodeEntry{"E1104", "a bracket that cannot be formed",
-              "A Poisson bracket differentiates functions of q, p and t. A velocity stands for ∂H/∂p, which is not known where the Legendre "
+              "A Poisson bracket differentiates functions of q, p and t. A velocity stands for ∂H/∂p, which is not "
+              "known where the Legendre "
               "transform is singular or has no closed form; accelerations have no place in phase space.",
               "", ""},
     CodeEntry{"E1105", "no such coordinate for a Routhian",
-              "--routhian takes the names of coordinates of the model, separated by commas: those whose velocities are replaced by their momenta.",
+              "--routhian takes the names of coordinates of the model, separated by commas: those whose velocities are "
+              "replaced by their momenta.",
               "maup hamiltonian top.lag --routhian p_φ", "maup hamiltonian top.lag --routhian φ"},
 };
 

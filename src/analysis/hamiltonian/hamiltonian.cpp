@@ -24,7 +24,8 @@ bool has_velocities(Expr e) {
 /// What a reader is shown of the canonical equations.
 class CanonicalWriter {
  public:
-  CanonicalWriter(Hamiltonian& out, const EquationsOfMotion& shown) : out_(out), shown_(shown), context_(*shown.system->context) {}
+  CanonicalWriter(Hamiltonian& out, const EquationsOfMotion& shown)
+      : out_(out), shown_(shown), context_(*shown.system->context) {}
 
   void write() {
     for (std::size_t i = 0; i < shown_.system->coordinates.size(); ++i) out_.velocities.push_back(velocity(i));
@@ -48,7 +49,8 @@ class CanonicalWriter {
   Expr energy_for(std::size_t i) const {
     if (out_.legendre.readable.value) return out_.legendre.readable.value;
     for (const LegendreBlock& block : out_.legendre.blocks)
-      if (block.energy_is_readable && std::find(block.coordinates.begin(), block.coordinates.end(), i) != block.coordinates.end())
+      if (block.energy_is_readable &&
+          std::find(block.coordinates.begin(), block.coordinates.end(), i) != block.coordinates.end())
         return block.energy;
     return {};
   }
@@ -56,8 +58,8 @@ class CanonicalWriter {
   CanonicalEquation force(std::size_t i) const {
     const Expr left = momentum_rate_symbol(*out_.system, i);
     const Expr applied = expand_time_derivatives(shown_.generalized_forces[i] - shown_.dissipative_terms[i]);
-    const Expr of_constraints = shown_.constraint_forces.empty() ? context_.number(0)
-                                                                 : expand_time_derivatives(shown_.constraint_forces[i]);
+    const Expr of_constraints =
+        shown_.constraint_forces.empty() ? context_.number(0) : expand_time_derivatives(shown_.constraint_forces[i]);
     const auto total = [&](Expr gradient, Expr forces) {
       const Expr parts[] = {gradient, forces, tidy(of_constraints, out_.order)};
       return flat_sum(parts, context_);
@@ -70,8 +72,9 @@ class CanonicalWriter {
     const Expr candidates[] = {tidy(plain, out_.order), plain, negative(slope(h, q, out_.order))};
     const Expr put_in = tidy(substitute(applied, explicit_velocities_), out_.order);
     const Expr pure = total(shortest(candidates, out_.order), put_in);
-    if (has_velocities(pure)) return equation;   // a constraint that is not linear in the velocities
-    if (length_of(pure, out_.order) <= std::max(comfortable, 4 * length_of(mixed, out_.order) / 3)) equation = {left, {pure, {}, {}}, false};
+    if (has_velocities(pure)) return equation;  // a constraint that is not linear in the velocities
+    if (length_of(pure, out_.order) <= std::max(comfortable, 4 * length_of(mixed, out_.order) / 3))
+      equation = {left, {pure, {}, {}}, false};
     return equation;
   }
 
@@ -99,7 +102,8 @@ ExprVector canonical_flow(const Hamiltonian& h, const EquationsOfMotion& shown) 
 void add_legend(Hamiltonian& h, const EquationsOfMotion& shown) {
   ExprVector roots = shown.momenta;
   roots.push_back(shown.lagrangian_expanded);
-  for (const auto* list : {&shown.generalized_forces, &shown.dissipative_terms}) roots.insert(roots.end(), list->begin(), list->end());
+  for (const auto* list : {&shown.generalized_forces, &shown.dissipative_terms})
+    roots.insert(roots.end(), list->begin(), list->end());
   h.legend = definitions_used(*shown.system, roots);
 }
 
@@ -145,7 +149,8 @@ std::optional<ReadableForm> poisson_bracket(Expr a, Expr b, const Hamiltonian& h
   const ExprVector b_q = gradient(both[1], positions), b_p = gradient(both[1], h.momenta);
   for (std::size_t i = 0; i < positions.size(); ++i) terms.push_back(a_q[i] * b_p[i] - a_p[i] * b_q[i]);
   const Expr value = h.system->context->sum(terms);
-  if (value.is_zero() || zero_test(value).verdict == Verdict::Zero) return ReadableForm{h.system->context->number(0), {}, {}};
+  if (value.is_zero() || zero_test(value).verdict == Verdict::Zero)
+    return ReadableForm{h.system->context->number(0), {}, {}};
   ReadableForm form = readable(value, h.order);
   if (form.intermediates.empty()) form.value = tidy(value, h.order);
   return form;

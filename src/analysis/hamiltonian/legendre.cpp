@@ -105,7 +105,8 @@ class Transform {
     } else if (!quadratic || rows.size() > largest_eliminated) {
       block.kind = LegendreKind::Unsolved;
     } else {
-      for (const std::size_t i : rows) block.shift.push_back(tidy(substitute(momenta_[i], at_rest(own)), problem_.order));
+      for (const std::size_t i : rows)
+        block.shift.push_back(tidy(substitute(momenta_[i], at_rest(own)), problem_.order));
       transform_quadratic(block, problem_);
     }
     ++blocks_;
@@ -135,7 +136,7 @@ class Transform {
   ExprVector velocities_, momenta_;
   ExprMatrix mass_;
   std::size_t blocks_ = 0;
-  std::unordered_map<std::size_t, Expr> roots_;   // by block: √w, which belongs to the block's energy
+  std::unordered_map<std::size_t, Expr> roots_;  // by block: √w, which belongs to the block's energy
 };
 
 }  // namespace

@@ -24,12 +24,13 @@ void transform_quadratic(LegendreBlock& block, const LegendreProblem& problem);
 ///
 /// Where a₀ = 0 the equations do not depend on how the path is run through: 2Π = c² is a primary constraint, H = 0.
 struct RootLagrangian {
-  Expr root, coefficient;   // √w as it stands in L, and c
-  Expr at_rest;             // a₀
-  ExprMatrix metric;        // G
-  ExprVector shift;         // b
+  Expr root, coefficient;  // √w as it stands in L, and c
+  Expr at_rest;            // a₀
+  ExprMatrix metric;       // G
+  ExprVector shift;        // b
 };
-std::optional<RootLagrangian> root_lagrangian(const LegendreProblem& problem, const std::vector<std::size_t>& coordinates);
+std::optional<RootLagrangian> root_lagrangian(const LegendreProblem& problem,
+                                              const std::vector<std::size_t>& coordinates);
 void transform_root(LegendreBlock& block, const RootLagrangian& root, const LegendreProblem& problem);
 
 /// Whether e vanishes identically: proved, or not found to be anything else.

@@ -21,11 +21,11 @@ std::string names_of(const std::vector<std::size_t>& coordinates, const Mechanic
 
 class Lines {
  public:
-  Lines(const Hamiltonian& h, const EquationsOfMotion& equations) : h_(h), equations_(equations), shown_(equations.shown()) {}
+  Lines(const Hamiltonian& h, const EquationsOfMotion& equations)
+      : h_(h), equations_(equations), shown_(equations.shown()) {}
 
   std::vector<DerivationStep> write(const Routhian* routhian) {
-    for (std::size_t i = 0; i < h_.momenta.size(); ++i)
-      formula("Momenta", "p = ∂L/∂q'", h_.momenta[i], momentum(i));
+    for (std::size_t i = 0; i < h_.momenta.size(); ++i) formula("Momenta", "p = ∂L/∂q'", h_.momenta[i], momentum(i));
     primary_constraints();
     hamiltonian();
     canonical_equations();
@@ -40,7 +40,9 @@ class Lines {
   void formula(const std::string& section, const std::string& rule, Expr left, const ReadableForm& right) {
     formula(section, rule, lay_out(left, h_.order), right);
   }
-  void sentence(const std::string& section, std::string text) { lines_.push_back({section, {}, {}, {}, std::move(text), {}}); }
+  void sentence(const std::string& section, std::string text) {
+    lines_.push_back({section, {}, {}, {}, std::move(text), {}});
+  }
 
   /// The shortest of the readable form and Σ M_ij q_j' + b_i with each coefficient in brackets.
   ReadableForm momentum(std::size_t i) const {
@@ -48,7 +50,8 @@ class Lines {
     if (!form.intermediates.empty()) return form;
     ExprVector velocities, terms;
     ExprMap at_rest;
-    for (const Coordinate& c : h_.system->coordinates) velocities.push_back(c.velocity), at_rest.emplace(c.velocity, c.q.context().number(0));
+    for (const Coordinate& c : h_.system->coordinates)
+      velocities.push_back(c.velocity), at_rest.emplace(c.velocity, c.q.context().number(0));
     const ExprVector coefficients = gradient(h_.momentum_values[i], velocities);
     for (std::size_t j = 0; j < velocities.size(); ++j) {
       if (has_velocity(coefficients[j])) return form;
@@ -62,7 +65,8 @@ class Lines {
 
   bool has_velocity(Expr e) const {
     const ExprVector symbols = symbols_of({&e, 1});
-    return std::any_of(symbols.begin(), symbols.end(), [](Expr s) { return s.role() == Role::Coordinate && s.order() == 1; });
+    return std::any_of(symbols.begin(), symbols.end(),
+                       [](Expr s) { return s.role() == Role::Coordinate && s.order() == 1; });
   }
 
   void primary_constraints() {
@@ -70,9 +74,12 @@ class Lines {
       for (const Expr& c : block.primary_constraints)
         formula("Primary constraints", "follows from p = ∂L/∂q'", layouts::number("0"), ReadableForm{c, {}, {}});
       if (block.kind == LegendreKind::Singular && !block.primary_constraints.empty())
-        sentence("Primary constraints", fmt::format("The momenta do not determine every velocity of {}; H stands for its values on these constraints, and "
-                                                    "H plus any multiples of them gives the same motion.",
-                                                    names_of(block.coordinates, *h_.system)));
+        sentence(
+            "Primary constraints",
+            fmt::format(
+                "The momenta do not determine every velocity of {}; H stands for its values on these constraints, and "
+                "H plus any multiples of them gives the same motion.",
+                names_of(block.coordinates, *h_.system)));
     }
   }
 
@@ -80,7 +87,8 @@ class Lines {
   Expr with_velocities() const {
     ExprVector parts{h_.legendre.at_rest};
     for (const LegendreBlock& block : h_.legendre.blocks) {
-      if (block.energy_is_readable) parts.push_back(block.energy);
+      if (block.energy_is_readable)
+        parts.push_back(block.energy);
       else
         for (std::size_t i = 0; i < block.coordinates.size(); ++i) {
           const std::size_t k = block.coordinates[i];
@@ -103,11 +111,15 @@ class Lines {
       formula(section, "H = p·q' − L", layouts::name("H"), ReadableForm{with_velocities(), {}, {}});
       for (const LegendreBlock& block : h_.legendre.blocks)
         if (!block.energy_is_readable && block.kind == LegendreKind::Singular)
-          sentence(section, fmt::format("The velocities of {} stand for any solution of M q' = p − b, the lines of the momenta: H is the same for all of them where "
-                                        "the primary constraints hold.", names_of(block.coordinates, *h_.system)));
+          sentence(section, fmt::format("The velocities of {} stand for any solution of M q' = p − b, the lines of the "
+                                        "momenta: H is the same for all of them where "
+                                        "the primary constraints hold.",
+                                        names_of(block.coordinates, *h_.system)));
         else if (!block.energy_is_readable)
-          sentence(section, fmt::format("The velocities of {} stand for the solution of M q' = p − b, the lines of the momenta: H is ½ (p − b)ᵀ M⁻¹ (p − b) + V, "
-                                        "and M⁻¹ is too long to be written out.", names_of(block.coordinates, *h_.system)));
+          sentence(section, fmt::format("The velocities of {} stand for the solution of M q' = p − b, the lines of the "
+                                        "momenta: H is ½ (p − b)ᵀ M⁻¹ (p − b) + V, "
+                                        "and M⁻¹ is too long to be written out.",
+                                        names_of(block.coordinates, *h_.system)));
     }
     energy(section);
   }
@@ -121,7 +133,9 @@ class Lines {
     if (conserved.energy_conserved) names += ", H";
     if (!text.empty()) sentence(section, text);
     if (!conserved.energy_conserved)
-      formula(section, "along the motion", layouts::rate(layouts::name("H"), lay_out(h_.system->context->time(), h_.order)), ReadableForm{tidy(shown_.power, h_.order), {}, {}});
+      formula(section, "along the motion",
+              layouts::rate(layouts::name("H"), lay_out(h_.system->context->time(), h_.order)),
+              ReadableForm{tidy(shown_.power, h_.order), {}, {}});
     sentence(section, names.empty() ? "Neither H nor a momentum is conserved." : "Conserved: " + names.substr(2) + ".");
   }
 
@@ -131,7 +145,8 @@ class Lines {
     for (std::size_t i = 0; i < h_.velocities.size(); ++i)
       if (h_.velocities[i].right.value) formula(section, "q' = ∂H/∂p", h_.velocities[i].left, h_.velocities[i].right);
     for (const CanonicalEquation& e : h_.forces) {
-      formula(section, e.has_velocities ? "p' = ∂L/∂q + forces, which is −∂H/∂q + forces" : "p' = −∂H/∂q + forces", e.left, e.right);
+      formula(section, e.has_velocities ? "p' = ∂L/∂q + forces, which is −∂H/∂q + forces" : "p' = −∂H/∂q + forces",
+              e.left, e.right);
       has_velocities |= e.has_velocities;
     }
     if (has_velocities && h_.regular()) sentence(section, "Velocities on the right stand for ∂H/∂p.");
@@ -145,14 +160,18 @@ class Lines {
   void routh(const Routhian& r) {
     const std::string section = "Routhian without " + names_of(r.replaced, *h_.system);
     formula(section, "R = L − Σ p q'", layouts::name("R"), r.readable);
-    if (r.rest.empty()) sentence(section, "No other coordinate is left: the motion is known once its momenta are.");
-    else if (r.conserved) formula(section, "−R at rest", layouts::name("V_eff"), r.effective_potential);
+    if (r.rest.empty())
+      sentence(section, "No other coordinate is left: the motion is known once its momenta are.");
+    else if (r.conserved)
+      formula(section, "−R at rest", layouts::name("V_eff"), r.effective_potential);
     for (const CanonicalEquation& e : r.velocities) formula(section, "q' = −∂R/∂p", e.left, e.right);
     for (const ReadableForm& row : r.equations) formula(section, "Routh, p constant", layouts::number("0"), row);
     if (r.conserved && !r.rest.empty() && r.equations.empty())
       sentence(section, "Its equations of motion would fill more than some lines.");
     if (!r.conserved)
-      sentence(section, "These momenta are not all conserved: p' = ∂R/∂q + forces goes with the equations of the other coordinates.");
+      sentence(
+          section,
+          "These momenta are not all conserved: p' = ∂R/∂q + forces goes with the equations of the other coordinates.");
   }
 
   const Hamiltonian& h_;
@@ -163,7 +182,8 @@ class Lines {
 
 }  // namespace
 
-std::vector<DerivationStep> phase_space_lines(const Hamiltonian& h, const Routhian* routhian, const EquationsOfMotion& equations) {
+std::vector<DerivationStep> phase_space_lines(const Hamiltonian& h, const Routhian* routhian,
+                                              const EquationsOfMotion& equations) {
   return Lines(h, equations).write(routhian);
 }
 
@@ -172,15 +192,20 @@ void report_legendre(const Hamiltonian& h, Diagnostics& diagnostics) {
     const std::string names = names_of(block.coordinates, *h.system);
     if (block.kind == LegendreKind::Singular)
       diagnostics.warning("W1101", std::nullopt, fmt::format("the Legendre transform of {} is singular", names),
-                          "M = ∂²L/∂q'∂q' has no inverse here, so that p = ∂L/∂q' cannot be solved for every velocity: the momenta obey primary constraints.",
-                          h.system->constrained() ? "Lagrange's equations with their multipliers need no inverse: `maup derive` and `maup simulate` are unaffected."
-                                                  : "Lagrange's equations hold as well, but do not determine every acceleration: `maup simulate` has no motion to follow.");
+                          "M = ∂²L/∂q'∂q' has no inverse here, so that p = ∂L/∂q' cannot be solved for every velocity: "
+                          "the momenta obey primary constraints.",
+                          h.system->constrained() ? "Lagrange's equations with their multipliers need no inverse: "
+                                                    "`maup derive` and `maup simulate` are unaffected."
+                                                  : "Lagrange's equations hold as well, but do not determine every "
+                                                    "acceleration: `maup simulate` has no motion to follow.");
     if (block.kind == LegendreKind::Unsolved)
-      diagnostics.warning("W1103", std::nullopt, fmt::format("the velocities of {} are not written in terms of the momenta", names),
-                          block.coordinates.size() > largest_eliminated
-                              ? fmt::format("More than {} coordinates are coupled.", largest_eliminated)
-                              : std::string("L is neither quadratic in them nor has it the one square root of a relativistic particle."),
-                          "The momenta are right; H is the energy function of `maup derive` at the velocities that belong to them.");
+      diagnostics.warning(
+          "W1103", std::nullopt, fmt::format("the velocities of {} are not written in terms of the momenta", names),
+          block.coordinates.size() > largest_eliminated
+              ? fmt::format("More than {} coordinates are coupled.", largest_eliminated)
+              : std::string(
+                    "L is neither quadratic in them nor has it the one square root of a relativistic particle."),
+          "The momenta are right; H is the energy function of `maup derive` at the velocities that belong to them.");
   }
 }
 

@@ -34,13 +34,16 @@ void Proofs::add(std::string name, std::string statement, std::vector<Expr> diff
   if (test.verdict == Verdict::Undecided) {
     const std::string open = test.reason;
     test = at_points(plain);
-    if (test.verdict == Verdict::Undecided) test.reason = open;
-    else check.statement += fmt::format(", to 60 digits at {} points, not proved", test.points);
+    if (test.verdict == Verdict::Undecided)
+      test.reason = open;
+    else
+      check.statement += fmt::format(", to 60 digits at {} points, not proved", test.points);
   }
   check.verdict = test.verdict;
   check.points = test.points;
   check.error_bound = test.error_bound;
-  check.reason = test.verdict == Verdict::Nonzero && test.reason.empty() ? "the two sides differ at a random point" : test.reason;
+  check.reason =
+      test.verdict == Verdict::Nonzero && test.reason.empty() ? "the two sides differ at a random point" : test.reason;
   certificate_.checks.push_back(std::move(check));
 }
 

@@ -3,11 +3,13 @@
 
 namespace maupertuis::phase_space {
 
-/// Zero tests that become a certificate. Definitions are put in first. Differences with roots of velocities in them, which
-/// the prime fields may leave open, are evaluated at points near the values of the model's parameters to 60 digits.
+/// Zero tests that become a certificate. Definitions are put in first. Differences with roots of velocities in them,
+/// which the prime fields may leave open, are evaluated at points near the values of the model's parameters to 60
+/// digits.
 class Proofs {
  public:
-  Proofs(const Hamiltonian& hamiltonian, const EquationsOfMotion& equations) : hamiltonian_(hamiltonian), equations_(equations) {}
+  Proofs(const Hamiltonian& hamiltonian, const EquationsOfMotion& equations)
+      : hamiltonian_(hamiltonian), equations_(equations) {}
   /// That all `differences` vanish identically.
   void add(std::string name, std::string statement, std::vector<Expr> differences);
   Certificate take() { return std::move(certificate_); }

@@ -11,8 +11,8 @@
 namespace maupertuis::phase_space {
 namespace {
 
-constexpr std::size_t largest_written = 3;     // coordinates of a group whose M⁻¹ is tried in symbols
-constexpr std::size_t longest_energy = 240;    // letters
+constexpr std::size_t largest_written = 3;   // coordinates of a group whose M⁻¹ is tried in symbols
+constexpr std::size_t longest_energy = 240;  // letters
 
 /// π²/2D, without fractions inside the square.
 Expr square_over(Expr pi, Expr d, const ReadingOrder& order) {
@@ -24,7 +24,8 @@ Expr square_over(Expr pi, Expr d, const ReadingOrder& order) {
 }
 
 /// M = L D Lᵀ in the given order: Σ (L⁻¹π)²/2D. Empty where a pivot vanishes or an entry gets too long.
-Expr completed_squares(ExprMatrix m, ExprVector pi, const std::vector<std::size_t>& sequence, const ReadingOrder& order) {
+Expr completed_squares(ExprMatrix m, ExprVector pi, const std::vector<std::size_t>& sequence,
+                       const ReadingOrder& order) {
   Context& context = pi.front().context();
   ExprVector terms;
   const auto simplify = [&](Expr e) {
@@ -56,8 +57,8 @@ Expr cramer(const ExprMatrix& m, const ExprVector& pi, const ReadingOrder& order
   return over(Rational(1, 2) * tidy(top, order), determinant);
 }
 
-/// Three angles of a body whose kinetic energy is ½ Σ I_k ω_k², ω = W q̇: with the angular momenta W⁻ᵀπ about its own axes
-/// H = Σ (W⁻ᵀπ)_k²/2I_k. Empty where M is another matrix.
+/// Three angles of a body whose kinetic energy is ½ Σ I_k ω_k², ω = W q̇: with the angular momenta W⁻ᵀπ about its own
+/// axes H = Σ (W⁻ᵀπ)_k²/2I_k. Empty where M is another matrix.
 Expr by_body_axes(const LegendreBlock& block, const ExprVector& pi, const Body& body, const LegendreProblem& problem) {
   const std::size_t n = 3;
   if (pi.size() != n || body.inertia.rows != n || body.angular_velocity.size() != n) return {};
@@ -92,8 +93,9 @@ Expr shortest_energy(const LegendreBlock& block, const ExprVector& pi, const Leg
     const Expr squares = by_body_axes(block, pi, body, problem);
     if (!squares) continue;
     const ExprMatrix& inertia = body.inertia;
-    const bool asymmetric = inertia.at(0, 0) != inertia.at(1, 1) && inertia.at(1, 1) != inertia.at(2, 2) && inertia.at(2, 2) != inertia.at(0, 0);
-    if (asymmetric) return squares;   // eliminating in some order gives nothing shorter
+    const bool asymmetric = inertia.at(0, 0) != inertia.at(1, 1) && inertia.at(1, 1) != inertia.at(2, 2) &&
+                            inertia.at(2, 2) != inertia.at(0, 0);
+    if (asymmetric) return squares;  // eliminating in some order gives nothing shorter
     candidates.push_back(squares);
   }
   std::vector<std::size_t> sequence(pi.size());
@@ -122,13 +124,14 @@ Expr half_product(const ExprVector& pi, const ExprVector& velocities) {
 /// Rows of M that are no combination of those before them.
 std::vector<std::size_t> independent_rows(const ExprMatrix& m) {
   std::vector<std::size_t> kept;
-  std::vector<std::pair<std::size_t, ExprVector>> echelon;   // pivot column, row
+  std::vector<std::pair<std::size_t, ExprVector>> echelon;  // pivot column, row
   for (std::size_t i = 0; i < m.rows; ++i) {
     ExprVector row(m.entries.begin() + static_cast<std::ptrdiff_t>(i * m.columns),
                    m.entries.begin() + static_cast<std::ptrdiff_t>((i + 1) * m.columns));
     for (const auto& [column, pivot] : echelon) {
       const Expr factor = row[column] / pivot[column];
-      for (std::size_t j = 0; j < row.size(); ++j) row[j] = j == column ? m.entries[0].context().number(0) : row[j] - factor * pivot[j];
+      for (std::size_t j = 0; j < row.size(); ++j)
+        row[j] = j == column ? m.entries[0].context().number(0) : row[j] - factor * pivot[j];
     }
     const auto entry = std::find_if(row.begin(), row.end(), [](Expr e) { return !vanishes(e); });
     if (entry == row.end()) continue;
@@ -138,8 +141,10 @@ std::vector<std::size_t> independent_rows(const ExprMatrix& m) {
   return kept;
 }
 
-/// M n = 0 for the gradient n of a holonomic constraint: n·π is the shortest primary constraint, q·p = 0 of a quaternion.
-Expr null_vector_constraint(const LegendreBlock& block, const ExprVector& pi, const Constraint& c, const LegendreProblem& problem) {
+/// M n = 0 for the gradient n of a holonomic constraint: n·π is the shortest primary constraint, q·p = 0 of a
+/// quaternion.
+Expr null_vector_constraint(const LegendreBlock& block, const ExprVector& pi, const Constraint& c,
+                            const LegendreProblem& problem) {
   if (c.level != Constraint::Level::Position) return {};
   ExprVector positions;
   for (const std::size_t i : block.coordinates) positions.push_back(problem.system.coordinates[i].q);
@@ -178,8 +183,9 @@ Expr without_factor(Expr e) {
   }
   if (!rest.is(Kind::Sum)) return rest;
   Rational first = split_coefficient(rest[0]).coefficient;
-  for (std::size_t i = 0; i < rest.size(); ++i)   // a momentum alone is positive: p_x − q B y
-    if (const ScaledTerm term = split_coefficient(rest[i]); term.rest.is_symbol() && is_integral(term.rest.name())) first = term.coefficient;
+  for (std::size_t i = 0; i < rest.size(); ++i)  // a momentum alone is positive: p_x − q B y
+    if (const ScaledTerm term = split_coefficient(rest[i]); term.rest.is_symbol() && is_integral(term.rest.name()))
+      first = term.coefficient;
   ExprVector terms;
   for (std::size_t i = 0; i < rest.size(); ++i) {
     if (abs(split_coefficient(rest[i]).coefficient) != abs(first)) return rest;
@@ -207,7 +213,8 @@ void transform_singular(LegendreBlock& block, const ExprVector& pi, const Legend
 
   for (const Constraint& c : problem.system.constraints)
     if (block.primary_constraints.size() + kept.size() < block.coordinates.size())
-      if (const Expr value = null_vector_constraint(block, pi, c, problem)) block.primary_constraints.push_back(without_factor(value));
+      if (const Expr value = null_vector_constraint(block, pi, c, problem))
+        block.primary_constraints.push_back(without_factor(value));
   if (block.primary_constraints.size() + kept.size() == block.coordinates.size()) return;
   block.primary_constraints.clear();
   for (std::size_t k = 0; k < block.coordinates.size(); ++k) {

@@ -8,7 +8,7 @@
 namespace maupertuis::phase_space {
 namespace {
 
-constexpr std::size_t longest_printed = 3000;   // nodes of the tree
+constexpr std::size_t longest_printed = 3000;  // nodes of the tree
 
 /// Nodes of the tree that the printers would walk, counted on the graph.
 std::size_t tree_size(Expr e) {
@@ -41,7 +41,8 @@ std::size_t inner_fractions(const std::string& text) {
   int depth = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     depth += text[i] == '(' ? 1 : text[i] == ')' ? -1 : 0;
-    const bool of_numbers = i > 0 && text[i - 1] >= '0' && text[i - 1] <= '9' && i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
+    const bool of_numbers = i > 0 && text[i - 1] >= '0' && text[i - 1] <= '9' && i + 1 < text.size() &&
+                            text[i + 1] >= '0' && text[i + 1] <= '9';
     if (text[i] == '/' && depth > 0 && !of_numbers) ++count;
   }
   return count;
@@ -83,8 +84,10 @@ Expr tidy(Expr e, const ReadingOrder& order) {
 Expr flat_sum(std::span<const Expr> parts, Context& context) {
   std::vector<Expr> terms;
   for (const Expr& part : parts) {
-    if (!part.is(Kind::Sum)) terms.push_back(part);
-    else for (std::size_t i = 0; i < part.size(); ++i) terms.push_back(part[i]);
+    if (!part.is(Kind::Sum))
+      terms.push_back(part);
+    else
+      for (std::size_t i = 0; i < part.size(); ++i) terms.push_back(part[i]);
   }
   return context.sum(terms);
 }
@@ -111,14 +114,17 @@ Cleared cleared(Expr e, const ReadingOrder& order) {
   Context& context = e.context();
   const Expr form = tidy(e, order);
   const std::vector<Expr> terms = terms_of(form);
-  std::vector<std::pair<Expr, Rational>> bars;   // the least common multiple of what stands below the terms
+  std::vector<std::pair<Expr, Rational>> bars;  // the least common multiple of what stands below the terms
   for (const Expr& term : terms)
     for (const Expr& factor : factors_of(term)) {
       if (!is_below_the_bar(factor)) continue;
       const Rational power = -factor[1].number();
-      const auto known = std::find_if(bars.begin(), bars.end(), [&](const auto& bar) { return bar.first == factor[0]; });
-      if (known == bars.end()) bars.emplace_back(factor[0], power);
-      else known->second = std::max(known->second, power);
+      const auto known =
+          std::find_if(bars.begin(), bars.end(), [&](const auto& bar) { return bar.first == factor[0]; });
+      if (known == bars.end())
+        bars.emplace_back(factor[0], power);
+      else
+        known->second = std::max(known->second, power);
     }
   Expr denominator = context.number(1);
   for (const auto& [bar, power] : bars) denominator = denominator * pow(bar, power);
@@ -136,7 +142,9 @@ Expr slope(Expr e, Expr symbol, const ReadingOrder& order) {
   for (const Expr& term : terms_of(e)) {
     Expr square;
     for (const Expr& factor : factors_of(term))
-      if (factor.is(Kind::Power) && factor[0].is(Kind::Sum) && factor[1].is_number() && factor[1].number() == Rational(2)) square = factor;
+      if (factor.is(Kind::Power) && factor[0].is(Kind::Sum) && factor[1].is_number() &&
+          factor[1].number() == Rational(2))
+        square = factor;
     if (!square) {
       parts.push_back(tidy(differentiate(term, symbol), order));
       continue;

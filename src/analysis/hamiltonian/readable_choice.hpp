@@ -8,7 +8,8 @@
 /// The choice between equal forms of a Hamiltonian. Unlike `readable`, nothing here multiplies a completed square out.
 namespace maupertuis::phase_space {
 
-/// Letters of the plain text, and some more for every fraction inside brackets; `unreadable` where there would be more than some thousand names, of which nothing is printed.
+/// Letters of the plain text, and some more for every fraction inside brackets; `unreadable` where there would be more
+/// than some thousand names, of which nothing is printed.
 std::size_t length_of(Expr e, const ReadingOrder& order);
 constexpr std::size_t unreadable = ~std::size_t{0};
 

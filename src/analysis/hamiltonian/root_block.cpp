@@ -55,7 +55,8 @@ Expr kinetic_part(const RootLagrangian& root, const ExprVector& pi, const Readin
 
 }  // namespace
 
-std::optional<RootLagrangian> root_lagrangian(const LegendreProblem& problem, const std::vector<std::size_t>& coordinates) {
+std::optional<RootLagrangian> root_lagrangian(const LegendreProblem& problem,
+                                              const std::vector<std::size_t>& coordinates) {
   Context& context = *problem.system.context;
   const ExprVector velocities = velocities_of(problem, coordinates);
   RootLagrangian out;
@@ -111,7 +112,8 @@ void transform_root(LegendreBlock& block, const RootLagrangian& root, const Lege
     return;
   }
   block.kind = LegendreKind::Root;
-  const Expr candidates[] = {context.number(1) + kinetic_part(root, pi, order), tidy(context.number(1) - 2 * square / pow(c, 2), order)};
+  const Expr candidates[] = {context.number(1) + kinetic_part(root, pi, order),
+                             tidy(context.number(1) - 2 * square / pow(c, 2), order)};
   const Expr inside = shortest(candidates, order);
   block.energy = -c * sqrt(root.at_rest) * sqrt(inside);
   block.energy_is_readable = true;

@@ -11,15 +11,19 @@ using namespace phase_space;
 
 namespace {
 
-constexpr std::size_t longest_routhian = 300, longest_row = 300;   // letters
-constexpr std::size_t longest_raw_row = 2500;   // of a row before it is made readable: beyond it that takes seconds, in vain
+constexpr std::size_t longest_routhian = 300, longest_row = 300;  // letters
+constexpr std::size_t longest_raw_row =
+    2500;  // of a row before it is made readable: beyond it that takes seconds, in vain
 
-bool contains(const std::vector<std::size_t>& list, std::size_t i) { return std::find(list.begin(), list.end(), i) != list.end(); }
+bool contains(const std::vector<std::size_t>& list, std::size_t i) {
+  return std::find(list.begin(), list.end(), i) != list.end();
+}
 
 /// Routh's equations of the coordinates that stay, with the replaced momenta constant.
 class ReducedEquations {
  public:
-  ReducedEquations(const Routhian& r, const Hamiltonian& h, const EquationsOfMotion& shown) : r_(r), h_(h), shown_(shown) {
+  ReducedEquations(const Routhian& r, const Hamiltonian& h, const EquationsOfMotion& shown)
+      : r_(r), h_(h), shown_(shown) {
     for (const std::size_t i : r.replaced) {
       constant_.emplace(momentum_rate_symbol(*h.system, i), r.value.context().number(0));
       put_in_.emplace(h.system->coordinates[i].velocity, -differentiate(r.value, h.momenta[i]));
@@ -66,7 +70,8 @@ void write(Routhian& r, const Hamiltonian& h, const EquationsOfMotion& shown) {
   for (const Expr& row : rows)
     if (length_of(row, r.order) > longest_raw_row) return;
   r.equations = readable_equations(rows, order);
-  for (std::size_t k = 0; k < rows.size(); ++k) {   // the force of the effective potential, in which its squares stay factors
+  for (std::size_t k = 0; k < rows.size();
+       ++k) {  // the force of the effective potential, in which its squares stay factors
     const Expr q = order.coordinates[k], rest = rows[k] - differentiate(r.effective_potential.value, q);
     const ReadableForm inertia = readable_equations({&rest, 1}, order).front();
     if (!inertia.intermediates.empty() || !r.equations[k].intermediates.empty()) continue;
@@ -91,7 +96,8 @@ std::optional<Routhian> routhian(const EquationsOfMotion& equations, const Hamil
   r.replaced = coordinates ? *coordinates : conserved;
   if (r.replaced.empty()) return std::nullopt;
   std::sort(r.replaced.begin(), r.replaced.end());
-  r.conserved = std::all_of(r.replaced.begin(), r.replaced.end(), [&](std::size_t i) { return contains(conserved, i); });
+  r.conserved =
+      std::all_of(r.replaced.begin(), r.replaced.end(), [&](std::size_t i) { return contains(conserved, i); });
   for (std::size_t i = 0; i < h.momenta.size(); ++i)
     if (!contains(r.replaced, i)) r.rest.push_back(i);
   r.order = h.order;
@@ -120,10 +126,12 @@ Certificate certify(const Routhian& r, const Hamiltonian& h, const EquationsOfMo
     const Expr v = h.system->coordinates[i].velocity;
     compare(differentiate(r.value, v), differentiate(shown.lagrangian_expanded, v));
   }
-  for (const std::size_t i : r.replaced) compare(-differentiate(r.value, h.momenta[i]), h.system->coordinates[i].velocity);
-  proofs.add("routhian", "with p = ∂L/∂q' put in, R is L − Σ p q', ∂R/∂q is ∂L/∂q, ∂R/∂q' is ∂L/∂q', and ∂R/∂p is −q'", differences);
+  for (const std::size_t i : r.replaced)
+    compare(-differentiate(r.value, h.momenta[i]), h.system->coordinates[i].velocity);
+  proofs.add("routhian", "with p = ∂L/∂q' put in, R is L − Σ p q', ∂R/∂q is ∂L/∂q, ∂R/∂q' is ∂L/∂q', and ∂R/∂p is −q'",
+             differences);
 
-  if (!r.equations.empty()) {   // Lagrange's row is Routh's plus what a change of p would add
+  if (!r.equations.empty()) {  // Lagrange's row is Routh's plus what a change of p would add
     const ExprVector balance = expand_time_derivatives(shown.balance());
     ExprVector rows;
     for (std::size_t k = 0; k < r.rest.size(); ++k) {

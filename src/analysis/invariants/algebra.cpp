@@ -177,15 +177,16 @@ class AlgebraWriter {
       }
   }
 
-  // ------------------------------------------------------------------------------------------ what the algebra asks for
+  // ------------------------------------------------------------------------------------------ what the algebra asks
+  // for
 
   bool holds(Expr value, std::size_t integral) const {
     const auto nodes = topological_order({&value, 1});
     return std::find(nodes.begin(), nodes.end(), result_.symbols[integral]) != nodes.end();
   }
 
-  /// Integrals that stand in a bracket of two shown ones are shown too: I5 of {I1, I3} = I5. They change places with those
-  /// that stay behind, and numbers follow the places.
+  /// Integrals that stand in a bracket of two shown ones are shown too: I5 of {I1, I3} = I5. They change places with
+  /// those that stay behind, and numbers follow the places.
   void show_what_brackets_lead_to() {
     std::vector<bool> is_shown(values_.size(), false);
     std::fill(is_shown.begin(), is_shown.begin() + static_cast<std::ptrdiff_t>(result_.shown), true);
@@ -221,9 +222,10 @@ class AlgebraWriter {
       std::swap(b.first, b.second);
       if (b.value.value) b.value.value = -b.value.value;
     }
-    std::stable_sort(result_.brackets.begin(), result_.brackets.end(), [](const PoissonBracket& a, const PoissonBracket& b) {
-      return std::pair(a.first, a.second) < std::pair(b.first, b.second);
-    });
+    std::stable_sort(result_.brackets.begin(), result_.brackets.end(),
+                     [](const PoissonBracket& a, const PoissonBracket& b) {
+                       return std::pair(a.first, a.second) < std::pair(b.first, b.second);
+                     });
     for (std::size_t k = 0; k < order.size(); ++k) values_[k] = result_.integrals[k].value;
   }
 

@@ -258,11 +258,12 @@ bool is_angle(const Ansatz& a, const Monomial& q) {
   });
 }
 
-/// Of two coordinates of which one or both are angles: products of powers of the one and of sines and cosines of half the
-/// other, up to the third. In them the integral of the swinging Atwood machine is a polynomial.
+/// Of two coordinates of which one or both are angles: products of powers of the one and of sines and cosines of half
+/// the other, up to the third. In them the integral of the swinging Atwood machine is a polynomial.
 Basis half_angle_basis(Ansatz& a, const MotionRows& rows, int degree, int parity, std::uint64_t seed) {
   constexpr int highest = 3;
-  if (a.atoms.coordinates.size() != 2 || a.explicit_time || rows.constraint.rows > 0 || !a.directions.empty()) return {};
+  if (a.atoms.coordinates.size() != 2 || a.explicit_time || rows.constraint.rows > 0 || !a.directions.empty())
+    return {};
   Monomials functions{Monomial{}};
   bool any = false;
   const Monomials coordinates = a.atoms.coordinates;
@@ -276,11 +277,14 @@ Basis half_angle_basis(Ansatz& a, const MotionRows& rows, int degree, int parity
     functions = products(functions, list);
   }
   if (!any) return {};
-  Basis basis{polynomial(a, std::vector<Monomials>(static_cast<std::size_t>(degree) / 2 + 1, with_one(rows, a.generators, functions, seed)),
+  Basis basis{polynomial(a,
+                         std::vector<Monomials>(static_cast<std::size_t>(degree) / 2 + 1,
+                                                with_one(rows, a.generators, functions, seed)),
                          {Monomial{}}, degree, parity),
               {}};
   basis.description = fmt::format(
-      "polynomials {}of degree {} in the velocities, coefficients from sines and cosines of half the angles and powers of coordinates up to "
+      "polynomials {}of degree {} in the velocities, coefficients from sines and cosines of half the angles and powers "
+      "of coordinates up to "
       "degree {}: {} functions",
       parity < 0   ? ""
       : parity % 2 ? "odd "
@@ -319,7 +323,8 @@ PolynomialBases polynomial_bases(Ansatz& a, const MotionRows& rows, int degree, 
     if (Basis relative = relative_basis(a, rows, degree, seed + 2); !relative.monomials.empty())
       out.bases.insert(out.bases.begin(), std::move(relative));
     for (const int parity : parities)
-      if (Basis half = half_angle_basis(a, rows, degree, parity, seed + 3); !half.monomials.empty() && half.monomials.size() <= largest)
+      if (Basis half = half_angle_basis(a, rows, degree, parity, seed + 3);
+          !half.monomials.empty() && half.monomials.size() <= largest)
         out.bases.push_back(std::move(half));
     return out;
   }

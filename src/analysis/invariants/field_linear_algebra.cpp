@@ -85,7 +85,8 @@ std::optional<Rational> rational_of(Value value, const PrimeField& field) {
   const auto bound = static_cast<std::int64_t>(std::sqrt(static_cast<double>(p) / 2));
   std::int64_t r0 = p, r1 = static_cast<std::int64_t>(field.residue(value)), t0 = 0, t1 = 1;
   for (;;) {
-    if (r1 <= bound && std::abs(t1) <= bound && std::abs(t1) <= likely / std::max<std::int64_t>(1, r1)) return Rational(r1, t1);
+    if (r1 <= bound && std::abs(t1) <= bound && std::abs(t1) <= likely / std::max<std::int64_t>(1, r1))
+      return Rational(r1, t1);
     if (r1 == 0 || std::abs(t1) > bound) return std::nullopt;
     const std::int64_t quotient = r0 / r1;
     r0 -= quotient * r1;

@@ -68,7 +68,9 @@ std::optional<Naming> Namer::of_time(const Fit& fit, Expr integral) const {
   }
   const bool energy = energy_is_t_plus_v_ && fit.only({Constant::TimeShift});
   const std::string& t = equations_.system->independent;
-  return Naming{t != "t" ? "Beltrami's integral" : energy ? "energy" : "Jacobi integral",
+  return Naming{t != "t" ? "Beltrami's integral"
+                : energy ? "energy"
+                         : "Jacobi integral",
                 "translation in " + (t == "t" ? "time" : t) + (with.empty() ? "" : " with " + joined_with_and(with)),
                 -integral / shift->value, EnergyRank};
 }

@@ -51,7 +51,8 @@ class Search {
     if (!result.sampled) return result;
     std::vector<std::size_t> all(basis_.monomials.size());
     std::iota(all.begin(), all.end(), 0u);
-    std::vector<NullVector> vectors = null_vectors(matrix(all, of_rates_, samples_.size()), field_, interrupt_of(generators_.context()));
+    std::vector<NullVector> vectors =
+        null_vectors(matrix(all, of_rates_, samples_.size()), field_, interrupt_of(generators_.context()));
     std::stable_sort(vectors.begin(), vectors.end(),
                      [](const NullVector& a, const NullVector& b) { return a.columns.size() < b.columns.size(); });
     if (of_rates_) vectors = new_functions(vectors);

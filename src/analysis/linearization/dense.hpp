@@ -9,7 +9,8 @@
 /// Factorizations of dense matrices, each compiled once.
 namespace maupertuis {
 
-/// The x of least norm among those with the smallest |a x − b|, and the rank of a; pivots below `threshold` of the largest are zero.
+/// The x of least norm among those with the smallest |a x − b|, and the rank of a; pivots below `threshold` of the
+/// largest are zero.
 struct LeastSquares {
   Matrix x;
   Index rank = 0;
@@ -19,7 +20,8 @@ LeastSquares least_squares(const Matrix& a, const Matrix& b, double threshold);
 /// Columns that span the range of a, found by the largest pivots; as many as the rank.
 std::vector<std::size_t> pivot_columns(const Matrix& a, double threshold);
 
-/// An orthonormal basis whose first `kernel` columns span the kernel of a: rank-revealing QR of aᵀ, pivots below `tolerance` are zero.
+/// An orthonormal basis whose first `kernel` columns span the kernel of a: rank-revealing QR of aᵀ, pivots below
+/// `tolerance` are zero.
 struct KernelFirst {
   Index kernel = 0;
   Matrix basis;
@@ -50,7 +52,8 @@ struct GeneralEigen {
 };
 GeneralEigen general_eigen(const Matrix& a);
 
-/// Powers of two that bring the entries of a near 1, rows · a · columns (Ruiz 2001): ranks and least steps do not depend on units then.
+/// Powers of two that bring the entries of a near 1, rows · a · columns (Ruiz 2001): ranks and least steps do not
+/// depend on units then.
 struct Equilibration {
   Vector rows, columns;
   explicit Equilibration(const Matrix& a);

@@ -15,7 +15,7 @@ Vector error_bounds(const GeneralEigen& system, double norm) {
   Vector out(system.values.size());
   for (Index i = 0; i < out.size(); ++i) {
     const double condition = system.left.row(i).norm() * system.vectors.col(i).norm();
-    const double defective = std::sqrt(epsilon) * norm;   // eigenvectors that coincide: a double root
+    const double defective = std::sqrt(epsilon) * norm;  // eigenvectors that coincide: a double root
     out[i] = std::isfinite(condition) ? epsilon * static_cast<double>(out.size()) * norm * condition : defective;
   }
   return out;
@@ -41,7 +41,7 @@ EigenSystem eigen_system(const Matrix& a) {
   out.kernel = Matrix(n, 0);
   if (n == 0) return out;
   const double norm = a.norm(), tolerance = 64 * static_cast<double>(n) * epsilon * norm;
-  Matrix t = a, q = Matrix::Identity(n, n);   // t = qᵀ a q, zero below the diagonal in its first columns
+  Matrix t = a, q = Matrix::Identity(n, n);  // t = qᵀ a q, zero below the diagonal in its first columns
   Index zeros = 0;
   for (int stage = 0; zeros < n; ++stage) {
     const KernelFirst split = kernel_first(t.bottomRightCorner(n - zeros, n - zeros), tolerance);

@@ -13,9 +13,9 @@ namespace maupertuis {
 namespace {
 
 constexpr double turn = 6.283185307179586, pi = 3.141592653589793;
-constexpr double same = 1e-6;             // of typical sizes: closer points are one
-constexpr double box = 10;                // of typical sizes: equilibria further from the start are not meant
-constexpr double straight_snap = 1e-7;    // a coordinate so near to a plain value is tried there
+constexpr double same = 1e-6;           // of typical sizes: closer points are one
+constexpr double box = 10;              // of typical sizes: equilibria further from the start are not meant
+constexpr double straight_snap = 1e-7;  // a coordinate so near to a plain value is tried there
 
 double wrapped(double angle) {
   const double x = std::remainder(angle, turn);
@@ -25,8 +25,12 @@ double wrapped(double angle) {
 class Search {
  public:
   Search(const PointEquations& equations, const EquilibriumSearch& search)
-      : equations_(equations), e_(equations.impl()), search_(search), sizes_(typical_sizes(equations.system(), search.start)),
-        translations_(equations.translations(preferred())), families_(e_, sizes_) {}
+      : equations_(equations),
+        e_(equations.impl()),
+        search_(search),
+        sizes_(typical_sizes(equations.system(), search.start)),
+        translations_(equations.translations(preferred())),
+        families_(e_, sizes_) {}
 
   EquilibriumSearchResult all() {
     EquilibriumSearchResult result;
@@ -52,7 +56,8 @@ class Search {
   // Rates that are given decide which coordinate stands for a translation; then those that move at the start.
   std::vector<bool> preferred() const {
     std::vector<bool> out(e_.n, false);
-    for (std::size_t i = 0; i < e_.n; ++i) out[i] = !search_.fixed.v.empty() ? search_.fixed.v[i] : search_.start.v[i] != 0;
+    for (std::size_t i = 0; i < e_.n; ++i)
+      out[i] = !search_.fixed.v.empty() ? search_.fixed.v[i] : search_.start.v[i] != 0;
     return out;
   }
 
@@ -66,7 +71,9 @@ class Search {
   bool may_move() const {
     if (search_.fixed.any() && !translations_.empty()) return true;
     for (std::size_t k = 0; k < translations_.size(); ++k)
-      if (!translations_[k].conserved || rate_is_held(k) || std::abs(search_.start.v[translations_[k].pivot]) > 0 || moves_along(k)) return true;
+      if (!translations_[k].conserved || rate_is_held(k) || std::abs(search_.start.v[translations_[k].pivot]) > 0 ||
+          moves_along(k))
+        return true;
     return false;
   }
   bool moves_along(std::size_t k) const {
@@ -77,8 +84,8 @@ class Search {
   bool rate_is_held(std::size_t k) const { return !search_.fixed.v.empty() && search_.fixed.v[translations_[k].pivot]; }
 
   OperatingPoint model_start() const {
-    OperatingPoint point{search_.start.t, search_.start.q, search_.start.v, std::vector<double>(e_.n), std::vector<double>(e_.m),
-                         equations_.inputs_at(search_.start.t)};
+    OperatingPoint point{search_.start.t,           search_.start.q,           search_.start.v,
+                         std::vector<double>(e_.n), std::vector<double>(e_.m), equations_.inputs_at(search_.start.t)};
     return point;
   }
 
@@ -128,7 +135,9 @@ class Search {
   /// The same points in every run: angles anywhere, lengths about their typical size, most of them positive.
   void add_scattered(std::vector<OperatingPoint>& out, const OperatingPoint& first) const {
     std::mt19937_64 random(1744);
-    const auto uniform = [&](double low, double high) { return low + (high - low) * std::generate_canonical<double, 53>(random); };
+    const auto uniform = [&](double low, double high) {
+      return low + (high - low) * std::generate_canonical<double, 53>(random);
+    };
     const std::size_t count = count_of_starts();
     for (std::size_t s = 0; s < count; ++s) {
       OperatingPoint point = first;
@@ -151,7 +160,8 @@ class Search {
       const Vector p = e_.value(e_.momenta, model_start());
       for (std::size_t k = 0; k < translations_.size(); ++k) {
         held_unknowns.rates[k] = rate_is_held(k);
-        if (translations_[k].conserved && !search_.fixed.any()) momenta[k] = to_eigen(translations_[k].direction).dot(p);
+        if (translations_[k].conserved && !search_.fixed.any())
+          momenta[k] = to_eigen(translations_[k].direction).dot(p);
       }
     }
     return SteadyState(e_, translations_, held_unknowns, momenta, sizes_);
@@ -219,7 +229,8 @@ class Search {
     return out;
   }
 
-  // ---------------------------------------------------------------------------------------------- what is shown, and where
+  // ---------------------------------------------------------------------------------------------- what is shown, and
+  // where
 
   /// Newton's method may end anywhere, and a potential that repeats in a length has equilibria without end. A person
   /// means those about the start.
@@ -256,8 +267,9 @@ class Search {
     std::size_t nearest = 0;
     for (std::size_t i = 1; i < found.size() && found[i].at_rest == found[0].at_rest; ++i)
       if (displacement(found[i]) < displacement(found[nearest]) - same) nearest = i;
-    if (nearest > 0) std::rotate(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(nearest),
-                                 found.begin() + static_cast<std::ptrdiff_t>(nearest) + 1);
+    if (nearest > 0)
+      std::rotate(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(nearest),
+                  found.begin() + static_cast<std::ptrdiff_t>(nearest) + 1);
   }
 
   bool before(const Equilibrium& x, const Equilibrium& y) const {
@@ -274,7 +286,7 @@ class Search {
   const EquilibriumSearch& search_;
   std::vector<double> sizes_;
   std::vector<Translation> translations_;
-  std::vector<Equilibrium> found_;   // those that stand alone
+  std::vector<Equilibrium> found_;  // those that stand alone
   Families families_;
 };
 

@@ -9,7 +9,7 @@ namespace maupertuis {
 namespace {
 
 constexpr int turns_from_nearby = 8;  // Newton's method begins a tenth of a typical size away, or is not on the family
-constexpr int most_tried = 3;   // members of one family that a new one is linked with, the nearest first
+constexpr int most_tried = 3;         // members of one family that a new one is linked with, the nearest first
 
 double along(const PointEquations::Impl& e, std::size_t i, double from, double to) {
   return e.is_periodic[i] ? std::remainder(to - from, 2 * std::acos(-1.0)) : to - from;
@@ -43,12 +43,13 @@ double distance(const PointEquations::Impl& e, const std::vector<double>& sizes,
 }
 
 bool Families::linked(const Equilibrium& x, const Equilibrium& y, const SteadyState& system) const {
-  constexpr double same = 1e-6, longest = 0.1;   // of typical sizes
+  constexpr double same = 1e-6, longest = 0.1;  // of typical sizes
   OperatingPoint at = x.point;
   double left = distance(e_, sizes_, at, y.point);
   const double step = std::min(left / 4, longest);
   for (int turns = static_cast<int>(4 * left / std::max(step, same)); left > std::max(step, same); --turns) {
-    const auto next = turns > 0 ? system.solve(between(e_, at, y.point, step / left), false, turns_from_nearby) : std::nullopt;
+    const auto next =
+        turns > 0 ? system.solve(between(e_, at, y.point, step / left), false, turns_from_nearby) : std::nullopt;
     if (!next || distance(e_, sizes_, at, next->point) > 2 * step) return false;
     const double now = distance(e_, sizes_, next->point, y.point);
     if (!(now < left)) return false;
@@ -68,11 +69,12 @@ void Families::add(Equilibrium candidate, const SteadyState& system) {
   for (std::size_t i = 0; i < members_.size(); ++i)
     if (members_[i].at_rest == candidate.at_rest && members_[i].family == candidate.family) near.push_back(i);
   std::sort(near.begin(), near.end(), [&](std::size_t i, std::size_t j) {
-    return distance(e_, sizes_, members_[i].point, candidate.point) < distance(e_, sizes_, members_[j].point, candidate.point);
+    return distance(e_, sizes_, members_[i].point, candidate.point) <
+           distance(e_, sizes_, members_[j].point, candidate.point);
   });
   const std::size_t own = members_.size();
   above_.push_back(own);
-  std::map<std::size_t, int> tried;   // of each family
+  std::map<std::size_t, int> tried;  // of each family
   for (const std::size_t i : near)
     if (leader(i) != leader(own) && ++tried[leader(i)] <= most_tried && linked(members_[i], candidate, system))
       above_[leader(own)] = leader(i);
@@ -80,13 +82,13 @@ void Families::add(Equilibrium candidate, const SteadyState& system) {
 }
 
 std::vector<Equilibrium> Families::representatives(const OperatingPoint& start) const {
-  std::vector<std::size_t> chosen(members_.size(), members_.size());   // [leaders]
-  std::vector<std::vector<std::size_t>> directions(members_.size());   // [leaders] coordinates
+  std::vector<std::size_t> chosen(members_.size(), members_.size());  // [leaders]
+  std::vector<std::vector<std::size_t>> directions(members_.size());  // [leaders] coordinates
   for (std::size_t i = 0; i < members_.size(); ++i) {
     const std::size_t family = leader(i);
     unite(directions[family], members_[i].family_along);
-    if (chosen[family] == members_.size() || distance(e_, sizes_, members_[i].point, start) <
-                                                 distance(e_, sizes_, members_[chosen[family]].point, start))
+    if (chosen[family] == members_.size() ||
+        distance(e_, sizes_, members_[i].point, start) < distance(e_, sizes_, members_[chosen[family]].point, start))
       chosen[family] = i;
   }
   std::vector<Equilibrium> out;

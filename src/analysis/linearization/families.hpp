@@ -22,7 +22,8 @@ double distance(const PointEquations::Impl& equations, const std::vector<double>
 /// listed twice, never is one hidden.
 class Families {
  public:
-  Families(const PointEquations::Impl& equations, std::vector<double> sizes) : e_(equations), sizes_(std::move(sizes)) {}
+  Families(const PointEquations::Impl& equations, std::vector<double> sizes)
+      : e_(equations), sizes_(std::move(sizes)) {}
 
   /// `candidate` was found as a solution of `system` and has candidate.family > 0.
   void add(Equilibrium candidate, const SteadyState& system);
@@ -36,7 +37,7 @@ class Families {
   const PointEquations::Impl& e_;
   std::vector<double> sizes_;
   std::vector<Equilibrium> members_;
-  std::vector<std::size_t> above_;   // [members] towards the leader of the family, itself for the leader
+  std::vector<std::size_t> above_;  // [members] towards the leader of the family, itself for the leader
 };
 
 }  // namespace maupertuis

@@ -18,8 +18,8 @@ namespace maupertuis {
 namespace {
 
 constexpr double on_switch = 1e-7;  // of the change of g over typical sizes
-constexpr double aside = 1e-5;      // of typical sizes: far enough to tell the sides, near enough to stay beside the point
-constexpr double same = 1e-9;       // relative
+constexpr double aside = 1e-5;  // of typical sizes: far enough to tell the sides, near enough to stay beside the point
+constexpr double same = 1e-9;   // relative
 constexpr std::size_t most_switches = 3;
 constexpr int directions = 32;
 
@@ -31,7 +31,8 @@ struct Place {
 
 Place place_of(const PointEquations::Impl& e, const OperatingPoint& point, const std::vector<double>& sizes) {
   Place out;
-  for (std::size_t i = 0; i < e.system->parameters.size(); ++i) out.at[e.system->parameters[i].symbol] = e.parameters[i];
+  for (std::size_t i = 0; i < e.system->parameters.size(); ++i)
+    out.at[e.system->parameters[i].symbol] = e.parameters[i];
   for (std::size_t i = 0; i < e.n; ++i) {
     const Coordinate& c = e.system->coordinates[i];
     out.at[c.q] = point.q[i], out.at[c.velocity] = point.v[i], out.at[c.acceleration] = 0;
@@ -77,12 +78,14 @@ std::vector<std::vector<bool>> sides_that_meet(const ExprVector& switches, const
 }
 
 /// The system with the formulas of one side.
-std::shared_ptr<const MechanicalSystem> system_on(const MechanicalSystem& system, const ExprVector& switches, const std::vector<bool>& above) {
+std::shared_ptr<const MechanicalSystem> system_on(const MechanicalSystem& system, const ExprVector& switches,
+                                                  const std::vector<bool>& above) {
   auto out = std::make_shared<MechanicalSystem>(system);
   const auto put = [&](Expr& e) {
     for (std::size_t k = 0; k < switches.size() && e; ++k) e = on_side({&e, 1}, switches[k], above[k]).front();
   };
-  for (auto* terms : {&out->kinetic, &out->potential, &out->generalized_potential, &out->dissipation, &out->lagrangian_extra})
+  for (auto* terms :
+       {&out->kinetic, &out->potential, &out->generalized_potential, &out->dissipation, &out->lagrangian_extra})
     for (EnergyTerm& t : *terms) put(t.value);
   if (out->lagrangian_given) put(out->lagrangian_given->value);
   for (AppliedForce& f : out->forces)
@@ -94,7 +97,8 @@ std::shared_ptr<const MechanicalSystem> system_on(const MechanicalSystem& system
 std::string where_text(const ExprVector& switches, const std::vector<bool>& above, const ReadingOrder& order) {
   std::string out;
   for (std::size_t k = 0; k < switches.size(); ++k)
-    if (const std::string text = side_text(switches[k], above[k], order); !text.empty()) out += (out.empty() ? "" : ", ") + text;
+    if (const std::string text = side_text(switches[k], above[k], order); !text.empty())
+      out += (out.empty() ? "" : ", ") + text;
   return out;
 }
 
@@ -110,7 +114,8 @@ bool equal(const RealMatrix& a, const RealMatrix& b) {
 
 }  // namespace
 
-std::vector<OneSide> sides_at(const PointEquations& equations, const Equilibrium& x, const std::vector<Translation>& translations) {
+std::vector<OneSide> sides_at(const PointEquations& equations, const Equilibrium& x,
+                              const std::vector<Translation>& translations) {
   const PointEquations::Impl& e = equations.impl();
   const std::vector<double> sizes = typical_sizes(*e.system, {});
   const Place place = place_of(e, x.point, sizes);

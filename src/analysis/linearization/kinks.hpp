@@ -15,6 +15,7 @@ struct OneSide {
 
 /// The sides of a point at which the equations, or their first derivatives, are not those of its other side: a kink of
 /// the potential, dry friction at rest. Empty where all sides agree, or no switch passes through the point.
-std::vector<OneSide> sides_at(const PointEquations& equations, const Equilibrium& x, const std::vector<Translation>& translations);
+std::vector<OneSide> sides_at(const PointEquations& equations, const Equilibrium& x,
+                              const std::vector<Translation>& translations);
 
 }  // namespace maupertuis

@@ -12,7 +12,7 @@ namespace maupertuis {
 namespace {
 
 constexpr double turn = 6.283185307179586;
-constexpr double longest_step = 1.0 / 3;   // of typical sizes
+constexpr double longest_step = 1.0 / 3;  // of typical sizes
 
 class Tracer {
  public:
@@ -71,12 +71,15 @@ class Tracer {
     std::vector<Pair> pairs;
     for (const std::size_t b : open_)
       for (std::size_t p = 0; p < points.size(); ++p)
-        if (const double d = distance(locus_.branches[b].points.back().equilibrium, points[p].equilibrium); d <= longest_step) pairs.push_back({d, b, p});
+        if (const double d = distance(locus_.branches[b].points.back().equilibrium, points[p].equilibrium);
+            d <= longest_step)
+          pairs.push_back({d, b, p});
     std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& x, const Pair& y) { return x.distance < y.distance; });
     std::vector<std::size_t> still_open;
     std::vector<bool> placed(points.size(), false);
     for (const Pair& pair : pairs) {
-      if (placed[pair.point] || std::find(still_open.begin(), still_open.end(), pair.branch) != still_open.end()) continue;
+      if (placed[pair.point] || std::find(still_open.begin(), still_open.end(), pair.branch) != still_open.end())
+        continue;
       placed[pair.point] = true;
       locus_.branches[pair.branch].points.push_back(points[pair.point]);
       still_open.push_back(pair.branch);
@@ -90,7 +93,8 @@ class Tracer {
     open_ = std::move(still_open);
   }
 
-  // ---------------------------------------------------------------------------------------------------- changes of verdict
+  // ---------------------------------------------------------------------------------------------------- changes of
+  // verdict
 
   /// The equilibrium of a branch near a guess, at any value of the parameter.
   std::optional<LocusPoint> follow(double value, const Equilibrium& guess) {
@@ -99,7 +103,8 @@ class Tracer {
     search.start = {guess.point.t, guess.point.q, start_.v};
     search.steady = !guess.at_rest;
     for (const Equilibrium& x : equilibrium_near(equations_, search))
-      if (x.at_rest == guess.at_rest && !x.coordinates_fail && distance(x, guess) <= longest_step) return judged(value, x);
+      if (x.at_rest == guess.at_rest && !x.coordinates_fail && distance(x, guess) <= longest_step)
+        return judged(value, x);
     return std::nullopt;
   }
 
@@ -109,7 +114,8 @@ class Tracer {
       for (std::size_t i = 1; i < points.size(); ++i)
         if (points[i].stability.verdict != points[i - 1].stability.verdict) bisect(b, points[i - 1], points[i]);
     }
-    std::stable_sort(locus_.changes.begin(), locus_.changes.end(), [](const auto& x, const auto& y) { return x.parameter < y.parameter; });
+    std::stable_sort(locus_.changes.begin(), locus_.changes.end(),
+                     [](const auto& x, const auto& y) { return x.parameter < y.parameter; });
   }
 
   /// A value of the sweep can stand on the change itself, with a verdict of its own: the ends decide.
@@ -147,7 +153,8 @@ class Tracer {
   void attach(std::size_t b, const StabilityChange& change, const LocusPoint& end, bool front) {
     const LocusPoint* parent = nullptr;
     for (const LocusPoint& p : locus_.branches[change.branch].points)
-      if (!parent || std::abs(p.parameter - change.parameter) < std::abs(parent->parameter - change.parameter)) parent = &p;
+      if (!parent || std::abs(p.parameter - change.parameter) < std::abs(parent->parameter - change.parameter))
+        parent = &p;
     if (!parent || distance(parent->equilibrium, end.equilibrium) > 2 * longest_step) return;
     auto point = follow(change.parameter, parent->equilibrium);
     if (!point) return;
@@ -160,13 +167,14 @@ class Tracer {
   const MotionState& start_;
   std::size_t parameter_;
   std::vector<double> sizes_;
-  std::vector<std::size_t> open_;   // branches that have a point at the last value
+  std::vector<std::size_t> open_;  // branches that have a point at the last value
   Locus locus_;
 };
 
 }  // namespace
 
-Locus parameter_locus(PointEquations& equations, const MotionState& start, std::size_t parameter, double from, double to, std::size_t steps) {
+Locus parameter_locus(PointEquations& equations, const MotionState& start, std::size_t parameter, double from,
+                      double to, std::size_t steps) {
   const double own = equations.parameter(parameter);
   Locus out = Tracer(equations, start, parameter).trace(from, to, steps);
   equations.set_parameter(parameter, own);
@@ -181,7 +189,8 @@ std::string to_csv(const MechanicalSystem& system, const Locus& locus) {
   const Parameter& p = system.parameters[locus.parameter];
   std::string out = p.name + unit(p.dimension) + ",branch,verdict";
   for (const Coordinate& c : system.coordinates) out += fmt::format(",{}{}", c.name, unit(c.dimension));
-  for (const Coordinate& c : system.coordinates) out += fmt::format(",{}'{}", c.name, unit(c.dimension / system.independent_dimension));
+  for (const Coordinate& c : system.coordinates)
+    out += fmt::format(",{}'{}", c.name, unit(c.dimension / system.independent_dimension));
   std::size_t eigenvalues = 0;
   for (const LocusBranch& b : locus.branches)
     for (const LocusPoint& x : b.points) eigenvalues = std::max(eigenvalues, x.eigenvalues.size());
@@ -193,7 +202,9 @@ std::string to_csv(const MechanicalSystem& system, const Locus& locus) {
       for (const auto* list : {&x.equilibrium.point.q, &x.equilibrium.point.v})
         for (const double value : *list) out += fmt::format(",{:.17g}", value);
       for (std::size_t i = 0; i < eigenvalues; ++i)
-        out += i < x.eigenvalues.size() ? fmt::format(",{:.17g},{:.17g}", x.eigenvalues[i].real(), x.eigenvalues[i].imag()) : ",nan,nan";
+        out += i < x.eigenvalues.size()
+                   ? fmt::format(",{:.17g},{:.17g}", x.eigenvalues[i].real(), x.eigenvalues[i].imag())
+                   : ",nan,nan";
       out += "\r\n";
     }
   return out;

@@ -22,7 +22,9 @@ inline Matrix to_eigen(const RealMatrix& m) {
   return Eigen::Map<const ByRows>(m.entries.data(), static_cast<Index>(m.rows), static_cast<Index>(m.columns));
 }
 
-inline Vector to_eigen(const std::vector<double>& x) { return Eigen::Map<const Vector>(x.data(), static_cast<Index>(x.size())); }
+inline Vector to_eigen(const std::vector<double>& x) {
+  return Eigen::Map<const Vector>(x.data(), static_cast<Index>(x.size()));
+}
 inline std::vector<double> to_list(const Vector& x) { return {x.data(), x.data() + x.size()}; }
 
 }  // namespace maupertuis

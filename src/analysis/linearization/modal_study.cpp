@@ -11,14 +11,16 @@
 namespace maupertuis {
 namespace {
 
-constexpr double meant = 1e-4;     // of typical sizes: a given value is rounded by no more
+constexpr double meant = 1e-4;  // of typical sizes: a given value is rounded by no more
 constexpr double pi = 3.141592653589793;
 
-void refuse_singular(const MechanicalSystem& system, std::size_t coordinate, const std::string& where, Diagnostics& diagnostics) {
-  diagnostics.error("E1304", system.coordinates[coordinate].span, fmt::format("the mass matrix is singular {}", where),
-                    fmt::format("Some motion of {} has no inertia there, so that the equations do not determine its acceleration.",
-                                system.coordinates[coordinate].name),
-                    "Coordinates fail at such places, as polar ones do at r = 0: describe the system by others near there.");
+void refuse_singular(const MechanicalSystem& system, std::size_t coordinate, const std::string& where,
+                     Diagnostics& diagnostics) {
+  diagnostics.error(
+      "E1304", system.coordinates[coordinate].span, fmt::format("the mass matrix is singular {}", where),
+      fmt::format("Some motion of {} has no inertia there, so that the equations do not determine its acceleration.",
+                  system.coordinates[coordinate].name),
+      "Coordinates fail at such places, as polar ones do at r = 0: describe the system by others near there.");
 }
 
 /// Linearizes what was found; the points at which coordinates fail stand apart.
@@ -31,7 +33,8 @@ void add_entry(ModalStudy& study, const PointEquations& equations, const Equilib
   study.entries.push_back(std::move(entry));
 }
 
-ModalStudy analysed(const PointEquations& equations, std::vector<Equilibrium> found, std::vector<Translation> translations) {
+ModalStudy analysed(const PointEquations& equations, std::vector<Equilibrium> found,
+                    std::vector<Translation> translations) {
   ModalStudy study;
   study.translations = std::move(translations);
   for (Equilibrium& x : found) {
@@ -42,31 +45,38 @@ ModalStudy analysed(const PointEquations& equations, std::vector<Equilibrium> fo
     const std::vector<OneSide> sides = sides_at(equations, x, study.translations);
     if (sides.empty()) add_entry(study, equations, x, {});
     for (const OneSide& side : sides) {
-      if (side.residual <= balanced) add_entry(study, side.equations, x, side.where);
-      else study.kinks.push_back({x, side.where});
+      if (side.residual <= balanced)
+        add_entry(study, side.equations, x, side.where);
+      else
+        study.kinks.push_back({x, side.where});
     }
   }
   return study;
 }
 
 /// E1307: all that was found is on kinks, and balances on no side of them.
-bool refuse_kinks_alone(const PointEquations& equations, const ModalStudy& study, std::optional<Span> place, Diagnostics& diagnostics) {
+bool refuse_kinks_alone(const PointEquations& equations, const ModalStudy& study, std::optional<Span> place,
+                        Diagnostics& diagnostics) {
   if (!study.entries.empty() || study.kinks.empty()) return false;
-  diagnostics.error("E1307", place,
-                    fmt::format("{} is on a kink", point_text(equations.system(), study.kinks.front().equilibrium, study.translations)),
-                    "Beside it forces are left over on every side, however small the distance: there is no linearization and no frequency.",
-                    "A smooth function, as sqrt(x^2 + d^2) for abs(x), has one; `maup simulate` runs the model as it is.");
+  diagnostics.error(
+      "E1307", place,
+      fmt::format("{} is on a kink",
+                  point_text(equations.system(), study.kinks.front().equilibrium, study.translations)),
+      "Beside it forces are left over on every side, however small the distance: there is no linearization and no "
+      "frequency.",
+      "A smooth function, as sqrt(x^2 + d^2) for abs(x), has one; `maup simulate` runs the model as it is.");
   return true;
 }
 
 void tell_of_kinks(const PointEquations& equations, const ModalStudy& study, Diagnostics& diagnostics) {
   for (const Kink& k : study.kinks)
-    diagnostics.warning("W1302", std::nullopt,
-                        fmt::format("no linearization at {}{}", point_text(equations.system(), k.equilibrium, study.translations),
-                                    k.side.empty() ? "" : " on the side " + k.side),
-                        "The point is on a kink, and beside it forces are left over: they push back or away, however small the "
-                        "distance, so that there is no frequency.",
-                        "A smooth function, as sqrt(x^2 + d^2) for abs(x), has one; `maup simulate` runs the model as it is.");
+    diagnostics.warning(
+        "W1302", std::nullopt,
+        fmt::format("no linearization at {}{}", point_text(equations.system(), k.equilibrium, study.translations),
+                    k.side.empty() ? "" : " on the side " + k.side),
+        "The point is on a kink, and beside it forces are left over: they push back or away, however small the "
+        "distance, so that there is no frequency.",
+        "A smooth function, as sqrt(x^2 + d^2) for abs(x), has one; `maup simulate` runs the model as it is.");
 }
 
 void warn_of_failing(const PointEquations& equations, const ModalStudy& study, Diagnostics& diagnostics) {
@@ -79,22 +89,26 @@ void warn_of_failing(const PointEquations& equations, const ModalStudy& study, D
 
 void refuse_none(const PointEquations& equations, std::size_t starts, Diagnostics& diagnostics) {
   if (!equations.autonomous())
-    diagnostics.error("E1303", std::nullopt, "the equations depend on the time, and no configuration is at rest at all times",
-                      "An equilibrium is a state in which all forces stay balanced; a drive that changes with time moves it.",
-                      "Declare the drive as `input u : [N] = …`: it is held at its value at the start; or take a point of the "
-                      "motion: --at 3s.");
+    diagnostics.error(
+        "E1303", std::nullopt, "the equations depend on the time, and no configuration is at rest at all times",
+        "An equilibrium is a state in which all forces stay balanced; a drive that changes with time moves it.",
+        "Declare the drive as `input u : [N] = …`: it is held at its value at the start; or take a point of the "
+        "motion: --at 3s.");
   else
-    diagnostics.error("E1301", std::nullopt, "no equilibrium and no steady motion was found",
-                      fmt::format("Newton's method began from {} points, and nowhere do the forces vanish together.", starts),
-                      "Look at the model for a force that nothing balances; --at \"θ=1\" begins at a point of your own, "
-                      "--at 3s takes a point of the motion.");
+    diagnostics.error(
+        "E1301", std::nullopt, "no equilibrium and no steady motion was found",
+        fmt::format("Newton's method began from {} points, and nowhere do the forces vanish together.", starts),
+        "Look at the model for a force that nothing balances; --at \"θ=1\" begins at a point of your own, "
+        "--at 3s takes a point of the motion.");
 }
 
 /// Coordinates and rates that were given, over those of the start.
-EquilibriumSearch question(const PointEquations& equations, const MotionState& start, const std::vector<StartValue>& at) {
+EquilibriumSearch question(const PointEquations& equations, const MotionState& start,
+                           const std::vector<StartValue>& at) {
   const MechanicalSystem& system = equations.system();
   Bindings bindings = parameter_bindings(system);
-  for (std::size_t i = 0; i < system.parameters.size(); ++i) bindings[system.parameters[i].symbol] = equations.parameter(i);
+  for (std::size_t i = 0; i < system.parameters.size(); ++i)
+    bindings[system.parameters[i].symbol] = equations.parameter(i);
   EquilibriumSearch search;
   search.start = start;
   search.fixed.q.assign(start.q.size(), false);
@@ -123,7 +137,8 @@ double distance(const EquilibriumSearch& asked, const OperatingPoint& point, con
 }
 
 /// With what was given kept; then, where that balances only nearly, with the coordinates free to move a little.
-std::vector<Equilibrium> answer(const PointEquations& equations, const EquilibriumSearch& asked, std::optional<Equilibrium>& nearest) {
+std::vector<Equilibrium> answer(const PointEquations& equations, const EquilibriumSearch& asked,
+                                std::optional<Equilibrium>& nearest) {
   std::vector<Equilibrium> found = equilibrium_near(equations, asked);
   if (found.empty()) {
     EquilibriumSearch loose = asked;
@@ -137,7 +152,8 @@ std::vector<Equilibrium> answer(const PointEquations& equations, const Equilibri
 
 }  // namespace
 
-std::optional<ModalStudy> modal_study(const PointEquations& equations, const MotionState& start, Diagnostics& diagnostics) {
+std::optional<ModalStudy> modal_study(const PointEquations& equations, const MotionState& start,
+                                      Diagnostics& diagnostics) {
   EquilibriumSearch search;
   search.start = start;
   EquilibriumSearchResult result = find_equilibria(equations, search);
@@ -164,15 +180,17 @@ std::optional<ModalStudy> modal_study_at(const PointEquations& equations, const 
   const std::vector<Translation> translations = equations.translations(preferred);
   if (found.empty()) {
     diagnostics.error("E1302", place, "the system neither rests nor moves steadily there",
-                      nearest ? fmt::format("The forces do not balance; Newton's method from there ends at {}.",
-                                            point_text(equations.system(), *nearest, translations))
-                              : "The forces do not balance, and Newton's method from there finds no place where they do.",
+                      nearest
+                          ? fmt::format("The forces do not balance; Newton's method from there ends at {}.",
+                                        point_text(equations.system(), *nearest, translations))
+                          : "The forces do not balance, and Newton's method from there finds no place where they do.",
                       "`maup modes` without --at searches for all equilibria.");
     return std::nullopt;
   }
   if (found.front().coordinates_fail) {
     const std::size_t culprit = linearize(equations, found.front().point).singular_coordinate;
-    refuse_singular(equations.system(), culprit, "at " + point_text(equations.system(), found.front(), translations), diagnostics);
+    refuse_singular(equations.system(), culprit, "at " + point_text(equations.system(), found.front(), translations),
+                    diagnostics);
     return std::nullopt;
   }
   ModalStudy study = analysed(equations, {found.front()}, translations);
@@ -181,7 +199,8 @@ std::optional<ModalStudy> modal_study_at(const PointEquations& equations, const 
   return study;
 }
 
-std::optional<ModalStudy> modal_study_of(const PointEquations& equations, const MotionState& state, Diagnostics& diagnostics) {
+std::optional<ModalStudy> modal_study_of(const PointEquations& equations, const MotionState& state,
+                                         Diagnostics& diagnostics) {
   const std::optional<OperatingPoint> point = operating_point(equations, state);
   if (!point) {
     refuse_singular(equations.system(), 0, fmt::format("at t = {:g} s", state.t), diagnostics);
@@ -195,14 +214,19 @@ std::optional<ModalStudy> modal_study_of(const PointEquations& equations, const 
   return study;
 }
 
-// ------------------------------------------------------------------------------------------------------------------ words
+// ------------------------------------------------------------------------------------------------------------------
+// words
 
 std::string_view stability_word(Stability verdict) {
   switch (verdict) {
-    case Stability::Energetic: return "stable";
-    case Stability::Asymptotic: return "asymptotically stable";
-    case Stability::Unstable: return "unstable";
-    case Stability::Undecided: return "not decided by the linearization";
+    case Stability::Energetic:
+      return "stable";
+    case Stability::Asymptotic:
+      return "asymptotically stable";
+    case Stability::Unstable:
+      return "unstable";
+    case Stability::Undecided:
+      return "not decided by the linearization";
   }
   return "";
 }
@@ -211,14 +235,16 @@ std::string value_text(const MechanicalSystem& system, double value, const Dimen
   if (angle)
     for (const int part : {1, 2, 3, 4, 6, 12}) {
       const double count = value * part / pi;
-      if (std::abs(count - std::round(count)) > 1e-12 * std::max(1.0, std::abs(count)) || std::abs(count) > 24) continue;
+      if (std::abs(count - std::round(count)) > 1e-12 * std::max(1.0, std::abs(count)) || std::abs(count) > 24)
+        continue;
       const int k = static_cast<int>(std::round(count));
       if (k == 0) return "0";
       const std::string sign = k < 0 ? "-" : "", times = std::abs(k) == 1 ? "" : std::to_string(std::abs(k));
       return sign + times + "π" + (part == 1 ? "" : "/" + std::to_string(part));
     }
   const std::string unit = system.dimensionless ? "" : to_string(dimension);
-  return fmt::format("{:.9g}{}{}", value, unit.empty() || unit == "1" || value == 0 ? "" : " ", value == 0 || unit == "1" ? "" : unit);
+  return fmt::format("{:.9g}{}{}", value, unit.empty() || unit == "1" || value == 0 ? "" : " ",
+                     value == 0 || unit == "1" ? "" : unit);
 }
 
 namespace {
@@ -232,7 +258,8 @@ std::string short_point_text(const MechanicalSystem& system, const Equilibrium& 
   const std::size_t n = system.coordinates.size();
   std::size_t equal = 1;
   while (equal < n && text(equal) == text(0)) ++equal;
-  if (equal == n) return fmt::format("{} … {} = {}", system.coordinates[0].name, system.coordinates[n - 1].name, text(0));
+  if (equal == n)
+    return fmt::format("{} … {} = {}", system.coordinates[0].name, system.coordinates[n - 1].name, text(0));
   std::string out;
   constexpr std::size_t first = 6;
   for (std::size_t i = 0; i < first; ++i) out += fmt::format("{} = {}, ", system.coordinates[i].name, text(i));
@@ -241,7 +268,8 @@ std::string short_point_text(const MechanicalSystem& system, const Equilibrium& 
 
 }  // namespace
 
-std::string point_text(const MechanicalSystem& system, const Equilibrium& equilibrium, const std::vector<Translation>& translations) {
+std::string point_text(const MechanicalSystem& system, const Equilibrium& equilibrium,
+                       const std::vector<Translation>& translations) {
   const auto is_pivot = [&](std::size_t i) {
     return std::any_of(translations.begin(), translations.end(), [&](const Translation& t) { return t.pivot == i; });
   };
@@ -251,9 +279,11 @@ std::string point_text(const MechanicalSystem& system, const Equilibrium& equili
   for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
     const Coordinate& c = system.coordinates[i];
     if (!is_pivot(i))
-      positions += fmt::format("{}{} = {}", positions.empty() ? "" : ", ", c.name, value_text(system, equilibrium.point.q[i], c.dimension, c.kind == "angle"));
+      positions += fmt::format("{}{} = {}", positions.empty() ? "" : ", ", c.name,
+                               value_text(system, equilibrium.point.q[i], c.dimension, c.kind == "angle"));
     if (equilibrium.point.v[i] != 0)
-      rates += fmt::format("{}{}' = {}", rates.empty() ? "" : ", ", c.name, value_text(system, equilibrium.point.v[i], c.dimension / system.independent_dimension));
+      rates += fmt::format("{}{}' = {}", rates.empty() ? "" : ", ", c.name,
+                           value_text(system, equilibrium.point.v[i], c.dimension / system.independent_dimension));
   }
   if (positions.empty() && rates.empty()) return "rest anywhere";
   return positions + (positions.empty() || rates.empty() ? "" : "; ") + rates;

@@ -28,15 +28,22 @@ Mode mode(Mode::Kind kind, Complex eigenvalue, double error) {
 
 class Analysis {
  public:
-  Analysis(const PointEquations& equations, const Linearization& linearization, const std::vector<Translation>& translations,
-           const Equilibrium* equilibrium)
-      : equations_(equations), l_(linearization), translations_(translations), equilibrium_(equilibrium),
-        form_(mass_normal_form(linearization, translations)), mass_(equations.impl().at(equations.impl().balance, l_.point).by_a) {}
+  Analysis(const PointEquations& equations, const Linearization& linearization,
+           const std::vector<Translation>& translations, const Equilibrium* equilibrium)
+      : equations_(equations),
+        l_(linearization),
+        translations_(translations),
+        equilibrium_(equilibrium),
+        form_(mass_normal_form(linearization, translations)),
+        mass_(equations.impl().at(equations.impl().balance, l_.point).by_a) {}
 
   ModalAnalysis carry_out() {
-    if (form_.valid && form_.symmetric) symmetric_modes();
-    else if (form_.valid) quadratic_modes();
-    else state_modes();
+    if (form_.valid && form_.symmetric)
+      symmetric_modes();
+    else if (form_.valid)
+      quadratic_modes();
+    else
+      state_modes();
     finish();
     return std::move(out_);
   }
@@ -55,8 +62,10 @@ class Analysis {
         continue;
       }
       const double root = std::sqrt(std::abs(squares[i]));
-      out_.residual = std::max(out_.residual, (form_.k * vectors.col(i) - squares[i] * vectors.col(i)).norm() / form_.k.norm());
-      if (squares[i] > 0) add(mode(Mode::Kind::Oscillation, {0, root}, error / (2 * root)), shape);
+      out_.residual =
+          std::max(out_.residual, (form_.k * vectors.col(i) - squares[i] * vectors.col(i)).norm() / form_.k.norm());
+      if (squares[i] > 0)
+        add(mode(Mode::Kind::Oscillation, {0, root}, error / (2 * root)), shape);
       else {
         add(mode(Mode::Kind::Growth, {root, 0}, error / (2 * root)), shape);
         add(mode(Mode::Kind::Decay, {-root, 0}, error / (2 * root)), shape);
@@ -79,8 +88,11 @@ class Analysis {
     for (Index i = 0; i < system.values.size(); ++i) {
       const ComplexVector y = system.vectors.col(i).head(f);
       const Complex z = system.values[i];
-      const ComplexVector left = z * z * y + z * (form_.c / s).cast<Complex>() * y + (form_.k / (s * s)).cast<Complex>() * y;
-      out_.residual = std::max(out_.residual, left.norm() / y.norm() / (std::norm(z) + std::abs(z) * form_.c.norm() / s + form_.k.norm() / (s * s)));
+      const ComplexVector left =
+          z * z * y + z * (form_.c / s).cast<Complex>() * y + (form_.k / (s * s)).cast<Complex>() * y;
+      out_.residual =
+          std::max(out_.residual, left.norm() / y.norm() /
+                                      (std::norm(z) + std::abs(z) * form_.c.norm() / s + form_.k.norm() / (s * s)));
       add_pair(s * z, s * system.errors[i], to_coordinates(y));
     }
     add_zeros(system.kernel.topRows(f), system.zeros, system.chained);
@@ -131,10 +143,14 @@ class Analysis {
   void add_pair(Complex value, double error, const ComplexVector& shape) {
     if (value.imag() < 0) return;
     if (equations_.energy_never_grows() && negligible_damping() && std::abs(value.real()) <= error) value.real(0);
-    const auto kind = value.imag() > 0 ? Mode::Kind::Oscillation : value.real() > 0 ? Mode::Kind::Growth : Mode::Kind::Decay;
+    const auto kind = value.imag() > 0   ? Mode::Kind::Oscillation
+                      : value.real() > 0 ? Mode::Kind::Growth
+                                         : Mode::Kind::Decay;
     add(mode(kind, value, error), shape);
   }
-  bool negligible_damping() const { return l_.second_order() && negligible(to_eigen(l_.damping), to_eigen(l_.gyroscopic)); }
+  bool negligible_damping() const {
+    return l_.second_order() && negligible(to_eigen(l_.damping), to_eigen(l_.gyroscopic));
+  }
 
   void add(Mode mode, ComplexVector shape) {
     mode.shape = normalised(std::move(shape));
@@ -152,7 +168,7 @@ class Analysis {
     const double modal_mass = (shape.adjoint() * mass_.cast<Complex>() * shape)(0).real();
     shape /= modal_mass > 0 ? std::sqrt(modal_mass) : std::abs(shape[at]);
     const double size = shape.cwiseAbs().cwiseProduct(weight).maxCoeff();
-    for (Index i = 0; i < shape.size(); ++i) {   // no minus signs from rounding
+    for (Index i = 0; i < shape.size(); ++i) {  // no minus signs from rounding
       if (std::abs(shape[i].imag()) * weight[i] < 1e-13 * size) shape[i].imag(0);
       if (std::abs(shape[i].real()) * weight[i] < 1e-13 * size) shape[i].real(0);
     }
@@ -177,7 +193,8 @@ class Analysis {
       shapes.col(static_cast<Index>(explained)) = direction;
       causes[explained++] = "translation along " + name_of(t);
     }
-    if (explained > 0 && explained < static_cast<std::size_t>(d)) complete(shapes, kernel, static_cast<Index>(explained));
+    if (explained > 0 && explained < static_cast<std::size_t>(d))
+      complete(shapes, kernel, static_cast<Index>(explained));
     std::size_t left = zeros;
     for (Index k = 0; k < d; ++k) {
       Mode zero = mode(Mode::Kind::Zero, 0, 0);
@@ -217,8 +234,10 @@ class Analysis {
 
   void finish() {
     for (const Mode& m : out_.modes) {
-      if (m.kind == Mode::Kind::Zero) out_.eigenvalues.insert(out_.eigenvalues.end(), m.zeros, 0.0);
-      else out_.eigenvalues.push_back(m.eigenvalue);
+      if (m.kind == Mode::Kind::Zero)
+        out_.eigenvalues.insert(out_.eigenvalues.end(), m.zeros, 0.0);
+      else
+        out_.eigenvalues.push_back(m.eigenvalue);
       if (m.kind == Mode::Kind::Oscillation) out_.eigenvalues.push_back(std::conj(m.eigenvalue));
     }
     std::sort(out_.eigenvalues.begin(), out_.eigenvalues.end(), [](const Complex& x, const Complex& y) {
@@ -231,9 +250,10 @@ class Analysis {
       return x.eigenvalue.real() > y.eigenvalue.real();
     });
     for (Mode& m : out_.modes)
-      m.multiplicity = static_cast<std::size_t>(std::count_if(out_.modes.begin(), out_.modes.end(), [&](const Mode& other) {
-        return std::abs(m.eigenvalue - other.eigenvalue) <= m.error + other.error;
-      }));
+      m.multiplicity =
+          static_cast<std::size_t>(std::count_if(out_.modes.begin(), out_.modes.end(), [&](const Mode& other) {
+            return std::abs(m.eigenvalue - other.eigenvalue) <= m.error + other.error;
+          }));
     out_.stability = judge_stability(equations_, l_, form_, translations_, out_, equilibrium_);
   }
 
@@ -255,7 +275,8 @@ MassNormalForm mass_normal_form(const Linearization& l, const std::vector<Transl
   const std::optional<Cholesky> factor = cholesky(mass);
   if (!factor) return out;
   const auto both_sides = [&](const Matrix& m) { return Matrix(factor->inverse * m * factor->inverse.transpose()); };
-  const Matrix damping = to_eigen(l.damping), gyroscopic = to_eigen(l.gyroscopic), circulatory = to_eigen(l.circulatory);
+  const Matrix damping = to_eigen(l.damping), gyroscopic = to_eigen(l.gyroscopic),
+               circulatory = to_eigen(l.circulatory);
   out.k = both_sides(to_eigen(l.stiffness) + circulatory);
   out.c = both_sides(damping + gyroscopic);
   const double rate = std::sqrt(out.k.norm());

@@ -5,9 +5,10 @@
 #ifdef MAUPERTUIS_LAPACK
 
 // LAPACK's own interface; the last two arguments are the lengths of the two strings, as gfortran passes them.
-extern "C" void dgees_(const char* vectors, const char* sort, int (*select)(const double*, const double*), const int* n, double* a,
-                       const int* rows, int* selected, double* real, double* imaginary, double* basis, const int* basis_rows,
-                       double* work, const int* work_size, int* flags, int* info, std::size_t, std::size_t);
+extern "C" void dgees_(const char* vectors, const char* sort, int (*select)(const double*, const double*), const int* n,
+                       double* a, const int* rows, int* selected, double* real, double* imaginary, double* basis,
+                       const int* basis_rows, double* work, const int* work_size, int* flags, int* info, std::size_t,
+                       std::size_t);
 
 namespace maupertuis {
 namespace {
@@ -23,8 +24,8 @@ std::optional<Matrix> stable_subspace(const Matrix& matrix) {
   int selected = 0, info = 0, work_size = -1;
   double wanted = 0;
   const auto call = [&](double* work) {
-    dgees_("V", "S", in_left_half_plane, &n, a.data(), &n, &selected, real.data(), imaginary.data(), basis.data(), &n, work,
-           &work_size, flags.data(), &info, 1, 1);
+    dgees_("V", "S", in_left_half_plane, &n, a.data(), &n, &selected, real.data(), imaginary.data(), basis.data(), &n,
+           work, &work_size, flags.data(), &info, 1, 1);
   };
   call(&wanted);  // asks for the size of the workspace
   work_size = static_cast<int>(wanted);

@@ -29,7 +29,7 @@ struct PointEquations::Impl {
 
   std::shared_ptr<const MechanicalSystem> system;
   ExprVector balance_rows, measured;  // as expressions: for what a kernel cannot tell
-  std::size_t n, m, k, holonomic;  // holonomic: how many of the m are of positions
+  std::size_t n, m, k, holonomic;     // holonomic: how many of the m are of positions
   std::vector<double> parameters;
   std::vector<std::size_t> position_rows;                       // which constraints those are
   Rows balance, positions, velocities, accelerations, momenta;  // [n], [holonomic], [m - holonomic], [m], [n]

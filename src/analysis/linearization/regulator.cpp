@@ -13,25 +13,34 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double unreached = 1e-10;       // of pivots: a mode that the inputs do not move
-constexpr double promised = 1e-9;         // of the residual of the Riccati equation
+constexpr double unreached = 1e-10;  // of pivots: a mode that the inputs do not move
+constexpr double promised = 1e-9;    // of the residual of the Riccati equation
 
 bool symmetric(const Matrix& m) { return (m - m.transpose()).norm() <= 1e-12 * m.norm(); }
 Vector spectrum(const Matrix& m) { return symmetric_eigen(m).values; }
 
 std::string eigenvalue_text(Complex z) {
-  return z.imag() == 0 ? fmt::format("{:.4g} /s", z.real()) : fmt::format("{:.4g} ± {:.4g} i rad/s", z.real(), std::abs(z.imag()));
+  return z.imag() == 0 ? fmt::format("{:.4g} /s", z.real())
+                       : fmt::format("{:.4g} ± {:.4g} i rad/s", z.real(), std::abs(z.imag()));
 }
 
 bool check_weights(const Matrix& q, const Matrix& r, Index states, Index inputs, Diagnostics& diagnostics) {
   const auto refuse = [&](const std::string& what, const std::string& why) {
-    diagnostics.error("E1311", std::nullopt, what, why, fmt::format("There are {} states and {} inputs; a list of numbers is a diagonal.", states, inputs));
+    diagnostics.error(
+        "E1311", std::nullopt, what, why,
+        fmt::format("There are {} states and {} inputs; a list of numbers is a diagonal.", states, inputs));
     return false;
   };
-  if (q.rows() != states || q.cols() != states) return refuse(fmt::format("Q is {} × {}, not {} × {}", q.rows(), q.cols(), states, states), "It weighs the states.");
-  if (r.rows() != inputs || r.cols() != inputs) return refuse(fmt::format("R is {} × {}, not {} × {}", r.rows(), r.cols(), inputs, inputs), "It weighs the inputs.");
-  if (!symmetric(q) || spectrum(q).minCoeff() < -1e-12 * q.norm()) return refuse("Q is not symmetric and nonnegative", "A negative weight would reward errors.");
-  if (!symmetric(r) || !(spectrum(r).minCoeff() > 0)) return refuse("R is not symmetric and positive", "An input without a price would be unbounded.");
+  if (q.rows() != states || q.cols() != states)
+    return refuse(fmt::format("Q is {} × {}, not {} × {}", q.rows(), q.cols(), states, states),
+                  "It weighs the states.");
+  if (r.rows() != inputs || r.cols() != inputs)
+    return refuse(fmt::format("R is {} × {}, not {} × {}", r.rows(), r.cols(), inputs, inputs),
+                  "It weighs the inputs.");
+  if (!symmetric(q) || spectrum(q).minCoeff() < -1e-12 * q.norm())
+    return refuse("Q is not symmetric and nonnegative", "A negative weight would reward errors.");
+  if (!symmetric(r) || !(spectrum(r).minCoeff() > 0))
+    return refuse("R is not symmetric and positive", "An input without a price would be unbounded.");
   return true;
 }
 
@@ -53,14 +62,17 @@ bool check_reach(const Matrix& a, const Matrix& b, const Matrix& q, Diagnostics&
   for (const Complex& z : values) {
     if (z.real() < -margin) continue;
     if (!reaches(a, b, z)) {
-      diagnostics.error("E1312", std::nullopt, fmt::format("the inputs do not reach the mode with the eigenvalue {}", eigenvalue_text(z)),
+      diagnostics.error("E1312", std::nullopt,
+                        fmt::format("the inputs do not reach the mode with the eigenvalue {}", eigenvalue_text(z)),
                         "It does not decay by itself, and no feedback can make it: the system is not stabilizable.",
                         "Give the system an input that acts on this motion, or take away the coordinate.");
       return false;
     }
     if (std::abs(z.real()) <= margin && !reaches(a.transpose(), q, z)) {
-      diagnostics.error("E1313", std::nullopt, fmt::format("Q does not see the mode with the eigenvalue {}", eigenvalue_text(z)),
-                        "It costs nothing and does not decay, so that the best regulator leaves it as it is: the closed loop is not stable.",
+      diagnostics.error("E1313", std::nullopt,
+                        fmt::format("Q does not see the mode with the eigenvalue {}", eigenvalue_text(z)),
+                        "It costs nothing and does not decay, so that the best regulator leaves it as it is: the "
+                        "closed loop is not stable.",
                         "Give its coordinates or velocities a weight.");
       return false;
     }
@@ -86,26 +98,28 @@ bool has_lapack() {
 #endif
 }
 
-std::optional<Regulator> linear_quadratic_regulator(const Linearization& l, const RealMatrix& weights, const RealMatrix& prices,
-                                                    Diagnostics& diagnostics) {
+std::optional<Regulator> linear_quadratic_regulator(const Linearization& l, const RealMatrix& weights,
+                                                    const RealMatrix& prices, Diagnostics& diagnostics) {
   const Matrix q = to_eigen(weights), r = to_eigen(prices);
   Matrix a = to_eigen(l.a), b = to_eigen(l.b);
   if (b.cols() == 0) {
-    diagnostics.error("E1310", std::nullopt, "the model has no inputs to regulate with", "A regulator moves inputs, u = u₀ − F x.",
+    diagnostics.error("E1310", std::nullopt, "the model has no inputs to regulate with",
+                      "A regulator moves inputs, u = u₀ − F x.",
                       "Declare one: `input u : [N] = 0`, and use it in a force.");
     return std::nullopt;
   }
   if (!has_lapack()) {
-    diagnostics.error("E1315", std::nullopt, "this build has no LAPACK, which the regulator needs", "", "`maup doctor` tells what this installation can do.");
+    diagnostics.error("E1315", std::nullopt, "this build has no LAPACK, which the regulator needs", "",
+                      "`maup doctor` tells what this installation can do.");
     return std::nullopt;
   }
   if (!check_weights(q, r, a.rows(), b.cols(), diagnostics) || !check_reach(a, b, q, diagnostics)) return std::nullopt;
 
   const Index s = a.rows();
   const Vector units = units_of_states(a, q);
-  const Matrix an = units.cwiseInverse().asDiagonal() * a * units.asDiagonal(), bn = units.cwiseInverse().asDiagonal() * b,
-               qn = units.asDiagonal() * q * units.asDiagonal();
-  const Cholesky price = *cholesky(r);   // positive: checked
+  const Matrix an = units.cwiseInverse().asDiagonal() * a * units.asDiagonal(),
+               bn = units.cwiseInverse().asDiagonal() * b, qn = units.asDiagonal() * q * units.asDiagonal();
+  const Cholesky price = *cholesky(r);  // positive: checked
   const Matrix inverse_r = price.inverse.transpose() * price.inverse;
   const Matrix g = bn * inverse_r * bn.transpose();
   Matrix hamiltonian(2 * s, 2 * s);
@@ -114,16 +128,19 @@ std::optional<Regulator> linear_quadratic_regulator(const Linearization& l, cons
   hamiltonian.bottomLeftCorner(s, s) = -qn;
   hamiltonian.bottomRightCorner(s, s) = -an.transpose();
   const auto refuse = [&](const std::string& why) {
-    diagnostics.error("E1314", std::nullopt, "the Riccati equation was not solved", why, "Try weights of more even size.");
+    diagnostics.error("E1314", std::nullopt, "the Riccati equation was not solved", why,
+                      "Try weights of more even size.");
     return std::nullopt;
   };
   const std::optional<Matrix> basis = stable_subspace(hamiltonian);
   if (!basis) return refuse("The stable eigenvalues of the Hamiltonian matrix do not stand apart from the others.");
-  const Matrix solved = least_squares(basis->topRows(s).transpose(), basis->bottomRows(s).transpose(), 1e-15).x.transpose();
+  const Matrix solved =
+      least_squares(basis->topRows(s).transpose(), basis->bottomRows(s).transpose(), 1e-15).x.transpose();
   const Matrix p = (solved + solved.transpose()) / 2;
   const Matrix terms[] = {an.transpose() * p + p * an, p * g * p, qn};
   Regulator out;
-  out.residual = (terms[0] - terms[1] + terms[2]).norm() / (2 * (an.transpose() * p).norm() + terms[1].norm() + terms[2].norm());
+  out.residual =
+      (terms[0] - terms[1] + terms[2]).norm() / (2 * (an.transpose() * p).norm() + terms[1].norm() + terms[2].norm());
   if (!(out.residual <= promised)) return refuse(fmt::format("Its relative residual is {:.1e}.", out.residual));
   const Matrix cost = units.cwiseInverse().asDiagonal() * p * units.cwiseInverse().asDiagonal();
   const Matrix gain = inverse_r * b.transpose() * cost;

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-/// The Hessian of the effective potential, in y: along translations that are symmetries nothing is at stake, and where their
-/// momenta are kept, δp = ẏ_s + Ĉ_sr y_r = 0 turns the rates ẏ_s into positions:
+/// The Hessian of the effective potential, in y: along translations that are symmetries nothing is at stake, and where
+/// their momenta are kept, δp = ẏ_s + Ĉ_sr y_r = 0 turns the rates ẏ_s into positions:
 ///     K_eff = K̂_rr − Ĉ_rs Ĉ_sr
 Matrix effective_stiffness(const MassNormalForm& form, bool keeps_momenta) {
   const Index f = form.k.rows(), s = form.translations.cols();
@@ -47,14 +47,17 @@ struct Verdicts {
     return to_list(symmetric_eigen((k + k.transpose()) / 2).values);
   }
 
-  double hessian_tolerance() const { return 16 * static_cast<double>(form.k.rows()) * epsilon * (form.k.norm() + form.c.squaredNorm()); }
+  double hessian_tolerance() const {
+    return 16 * static_cast<double>(form.k.rows()) * epsilon * (form.k.norm() + form.c.squaredNorm());
+  }
 
   std::size_t zeros() const {
     std::size_t out = 0;
     for (const Mode& m : modes.modes) out += m.zeros;
     return out;
   }
-  /// A translation is a zero eigenvalue; a conserved one a second, the change of its momentum. So is each further way to move.
+  /// A translation is a zero eigenvalue; a conserved one a second, the change of its momentum. So is each further way
+  /// to move.
   std::size_t explained_zeros() const {
     std::size_t out = translations.size() + equilibrium.family;
     for (const Translation& t : translations) out += t.conserved;
@@ -68,11 +71,11 @@ std::string_view up_to_translations(const std::vector<Translation>& translations
 
 }  // namespace
 
-StabilityReport judge_stability(const PointEquations& equations, const Linearization& linearization, const MassNormalForm& form,
-                                const std::vector<Translation>& translations, const ModalAnalysis& modes,
-                                const Equilibrium* equilibrium) {
+StabilityReport judge_stability(const PointEquations& equations, const Linearization& linearization,
+                                const MassNormalForm& form, const std::vector<Translation>& translations,
+                                const ModalAnalysis& modes, const Equilibrium* equilibrium) {
   StabilityReport out;
-  double margin = 0, decay = HUGE_VAL;   // largest growth beyond its error; smallest decay beyond its error
+  double margin = 0, decay = HUGE_VAL;  // largest growth beyond its error; smallest decay beyond its error
   for (const Mode& m : modes.modes) {
     if (m.kind == Mode::Kind::Zero) continue;
     out.growth_rate = std::max(out.growth_rate, m.eigenvalue.real());
@@ -80,7 +83,8 @@ StabilityReport judge_stability(const PointEquations& equations, const Lineariza
     decay = std::min(decay, -m.eigenvalue.real() - 4 * m.error);
   }
   if (!equilibrium) {
-    out.reason = "a point of a motion is no state of rest: these are the eigenvalues of the coefficients at that instant";
+    out.reason =
+        "a point of a motion is no state of rest: these are the eigenvalues of the coefficients at that instant";
     return out;
   }
   if (!equations.autonomous()) {
@@ -93,20 +97,24 @@ StabilityReport judge_stability(const PointEquations& equations, const Lineariza
   const bool has_hessian = !out.hessian.empty();
   const double tolerance = has_hessian ? v.hessian_tolerance() : 0;
   const bool strict_minimum = has_hessian ? out.hessian.front() > tolerance
-                                          : form.valid && form.potential && equations.energy_never_grows() && v.all_conserved() &&
-                                                form.translations.cols() == form.k.rows();
+                                          : form.valid && form.potential && equations.energy_never_grows() &&
+                                                v.all_conserved() && form.translations.cols() == form.k.rows();
   const std::string_view potential = equilibrium->at_rest && translations.empty() ? "potential" : "effective potential";
   if (margin > 0) {
     out.verdict = Stability::Unstable;
     out.reason = "an eigenvalue has a positive real part";
   } else if (decay > 0 && decay < HUGE_VAL && v.zeros() <= v.explained_zeros()) {
     out.verdict = Stability::Asymptotic;
-    out.reason = fmt::format("all {}eigenvalues have negative real parts{}", v.zeros() > 0 ? "other " : "", up_to_translations(translations));
+    out.reason = fmt::format("all {}eigenvalues have negative real parts{}", v.zeros() > 0 ? "other " : "",
+                             up_to_translations(translations));
   } else if (strict_minimum) {
     out.verdict = Stability::Energetic;
-    out.reason = has_hessian ? fmt::format("the Hessian of the {} is positive definite", potential) : "only translations are left";
+    out.reason = has_hessian ? fmt::format("the Hessian of the {} is positive definite", potential)
+                             : "only translations are left";
   } else if (has_hessian && out.hessian.front() < -tolerance) {
-    out.reason = fmt::format("no eigenvalue has a positive real part, but the Hessian of the {} is not positive: gyroscopic forces hold it", potential);
+    out.reason = fmt::format(
+        "no eigenvalue has a positive real part, but the Hessian of the {} is not positive: gyroscopic forces hold it",
+        potential);
   } else if (has_hessian || v.zeros() > v.explained_zeros()) {
     out.reason = "an eigenvalue vanishes that no symmetry explains: terms of higher order decide";
   } else {

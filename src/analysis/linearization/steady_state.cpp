@@ -10,7 +10,7 @@
 namespace maupertuis {
 namespace {
 
-constexpr double arrived = 1e-9;         // of what is left, by the sizes of coordinates
+constexpr double arrived = 1e-9;  // of what is left, by the sizes of coordinates
 constexpr double rank_threshold = 1e-11;
 constexpr double rounding_of_work = 1e-14;
 
@@ -31,7 +31,8 @@ SteadyState::SteadyState(PointEquations::Impl& equations, const std::vector<Tran
 }
 
 SteadyState::System SteadyState::system_at(const OperatingPoint& point) const {
-  const auto q = static_cast<Index>(free_q_.size()), c = static_cast<Index>(free_rates_.size()), m = static_cast<Index>(e_.m);
+  const auto q = static_cast<Index>(free_q_.size()), c = static_cast<Index>(free_rates_.size()),
+             m = static_cast<Index>(e_.m);
   const RowsAtPoint balance = e_.at(e_.balance, point), positions = e_.at(e_.positions, point),
                     velocities = e_.at(e_.velocities, point), momenta = e_.at(e_.momenta, point);
   const auto kept = static_cast<Index>(kept_momenta_.size());
@@ -41,7 +42,8 @@ SteadyState::System SteadyState::system_at(const OperatingPoint& point) const {
   for (const RowsAtPoint* part : {&balance, &positions, &velocities}) {
     const Index count = part->value.size();
     out.f.segment(row, count) = part->value;
-    for (Index j = 0; j < q; ++j) out.j.block(row, j, count, 1) = part->by_q.col(static_cast<Index>(free_q_[static_cast<std::size_t>(j)]));
+    for (Index j = 0; j < q; ++j)
+      out.j.block(row, j, count, 1) = part->by_q.col(static_cast<Index>(free_q_[static_cast<std::size_t>(j)]));
     out.j.block(row, q, count, c) = part->by_v * by_rates_;
     out.j.block(row, q + c, count, m) = part->by_multipliers;
     row += count;
@@ -49,7 +51,8 @@ SteadyState::System SteadyState::system_at(const OperatingPoint& point) const {
   for (const std::size_t k : kept_momenta_) {
     const Vector d = to_eigen(translations_[k].direction);
     out.f[row] = d.dot(momenta.value) - momenta_[k];
-    for (Index j = 0; j < q; ++j) out.j(row, j) = d.dot(momenta.by_q.col(static_cast<Index>(free_q_[static_cast<std::size_t>(j)])));
+    for (Index j = 0; j < q; ++j)
+      out.j(row, j) = d.dot(momenta.by_q.col(static_cast<Index>(free_q_[static_cast<std::size_t>(j)])));
     out.j.block(row, q, 1, c) = d.transpose() * momenta.by_v * by_rates_;
     ++row;
   }
@@ -90,18 +93,20 @@ void SteadyState::fit_multipliers(OperatingPoint& point) const {
 double SteadyState::scale_of(const System& s, const Vector& z, Index row) const {
   double scale = 0;
   for (Index j = 0; j < s.j.cols(); ++j) {
-    const double typical = static_cast<std::size_t>(j) < free_q_.size() ? sizes_[free_q_[static_cast<std::size_t>(j)]] : 0.0;
+    const double typical =
+        static_cast<std::size_t>(j) < free_q_.size() ? sizes_[free_q_[static_cast<std::size_t>(j)]] : 0.0;
     scale = std::max(scale, std::abs(s.j(row, j)) * std::max(std::abs(z[j]), typical));
   }
   return scale;
 }
 
-/// The largest row, divided by its scale: a relative error of positions. The first n rows are forces, and forces times typical sizes are
-/// works, which compare: a force that no unknown changes (one sideways on a bicycle that runs upright) is rounding of the others.
-/// Of the largest force over a typical size: work below rounding of it is none.
+/// The largest row, divided by its scale: a relative error of positions. The first n rows are forces, and forces times
+/// typical sizes are works, which compare: a force that no unknown changes (one sideways on a bicycle that runs
+/// upright) is rounding of the others. Of the largest force over a typical size: work below rounding of it is none.
 double SteadyState::largest_work(const System& s, const Vector& z) const {
   double work = 0;
-  for (Index i = 0; i < static_cast<Index>(e_.n); ++i) work = std::max(work, scale_of(s, z, i) * sizes_[static_cast<std::size_t>(i)]);
+  for (Index i = 0; i < static_cast<Index>(e_.n); ++i)
+    work = std::max(work, scale_of(s, z, i) * sizes_[static_cast<std::size_t>(i)]);
   return work;
 }
 
@@ -111,7 +116,9 @@ double SteadyState::scaled(const System& s, const Vector& z) const {
   const double work = largest_work(s, z);
   double largest = 0;
   for (Index i = 0; i < s.f.size(); ++i) {
-    if (s.f[i] == 0 || (i < forces && std::abs(s.f[i]) * sizes_[static_cast<std::size_t>(i)] <= rounding_of_work * work)) continue;
+    if (s.f[i] == 0 ||
+        (i < forces && std::abs(s.f[i]) * sizes_[static_cast<std::size_t>(i)] <= rounding_of_work * work))
+      continue;
     const double scale = scale_of(s, z, i);
     largest = std::max(largest, scale > 0 ? std::abs(s.f[i]) / scale : HUGE_VAL);
   }
@@ -126,7 +133,8 @@ double SteadyState::residual_at(OperatingPoint& point) const {
 /// How long a move of the unknowns is, in typical sizes; multipliers do not count.
 double SteadyState::length(const Vector& move, const Vector& z) const {
   double out = 0;
-  for (std::size_t i = 0; i < free_q_.size(); ++i) out = std::max(out, std::abs(move[static_cast<Index>(i)]) / sizes_[free_q_[i]]);
+  for (std::size_t i = 0; i < free_q_.size(); ++i)
+    out = std::max(out, std::abs(move[static_cast<Index>(i)]) / sizes_[free_q_[i]]);
   for (std::size_t i = 0; i < free_rates_.size(); ++i) {
     const auto at = static_cast<Index>(free_q_.size() + i);
     out = std::max(out, std::abs(move[at]) / std::max(1.0, std::abs(z[at])));
@@ -147,10 +155,11 @@ Matrix SteadyState::without_rounding(const System& s, const Vector& z) const {
   return out;
 }
 
-/// Orthonormal moves of positions and rates [rows × ways] along which the derivatives vanish, with the multipliers that go
-/// with them: each as unknowns in the units of `by`.
+/// Orthonormal moves of positions and rates [rows × ways] along which the derivatives vanish, with the multipliers that
+/// go with them: each as unknowns in the units of `by`.
 Matrix SteadyState::soft_ways(const Matrix& derivatives, const Equilibration& by) const {
-  constexpr double soft = 1e-7, moves = 1e-4;   // of the equilibrated derivatives; squared, against changes of multipliers alone
+  constexpr double soft = 1e-7,
+                   moves = 1e-4;  // of the equilibrated derivatives; squared, against changes of multipliers alone
   const Matrix j = by.of(derivatives);
   const KernelFirst split = kernel_first(j, soft * std::max(1.0, j.norm()));
   const Matrix kernel = split.basis.leftCols(split.kernel);
@@ -170,12 +179,12 @@ Matrix SteadyState::soft_ways(const Matrix& derivatives, const Equilibration& by
 /// gone along each of its directions, and Newton's method asked where the next solution is. It projects on the family,
 /// and its projections have as many dimensions as the family.
 void SteadyState::find_family(Solution& solution, const System& s, const Vector& z) const {
-  constexpr double step = 1e-3, followed = 0.25, felt = 1e-3;   // followed: squared
+  constexpr double step = 1e-3, followed = 0.25, felt = 1e-3;  // followed: squared
   const Matrix derivatives = without_rounding(s, z);
   const Equilibration by(derivatives);
   const Matrix ways = soft_ways(derivatives, by);
   const auto moving = static_cast<Index>(free_q_.size() + free_rates_.size());
-  Matrix gone = Matrix::Zero(moving, ways.cols());   // by the length of the way
+  Matrix gone = Matrix::Zero(moving, ways.cols());  // by the length of the way
   for (Index k = 0; k < ways.cols(); ++k) {
     const Vector whole = by.columns.cwiseProduct(ways.col(k));
     const double part = step / length(whole, z);
@@ -186,7 +195,7 @@ void SteadyState::find_family(Solution& solution, const System& s, const Vector&
     // Multipliers that constraints leave open are fitted anew at each point: they say nothing about the way.
     if (there) gone.col(k) = (unknowns(there->point) - z).head(moving).cwiseQuotient(by.columns.head(moving)) / part;
   }
-  if (gone.isZero(0)) return;   // no way at all, or none that was followed
+  if (gone.isZero(0)) return;  // no way at all, or none that was followed
   const SymmetricEigen projections = symmetric_eigen(gone.transpose() * gone);
   std::vector<bool> moves(e_.n, false);
   for (Index k = 0; k < projections.values.size(); ++k) {

@@ -6,14 +6,14 @@
 
 namespace maupertuis {
 
-/// The equations of rest and of steady motion, R(q, D c, 0, λ) = 0 with the constraints, in the unknowns (q, c, λ): q as far
-/// as it is not held, c the rates of the translations D as far as they are not held. Momenta of conserved translations
-/// whose rate is free keep given values.
+/// The equations of rest and of steady motion, R(q, D c, 0, λ) = 0 with the constraints, in the unknowns (q, c, λ): q
+/// as far as it is not held, c the rates of the translations D as far as they are not held. Momenta of conserved
+/// translations whose rate is free keep given values.
 class SteadyState {
  public:
   struct Held {
-    std::vector<bool> q;            // [n] coordinates that stay
-    std::vector<bool> rates;        // [translations] rates that stay
+    std::vector<bool> q;      // [n] coordinates that stay
+    std::vector<bool> rates;  // [translations] rates that stay
   };
   /// `momenta`: [translations] d·p to keep; NaN: none.
   SteadyState(PointEquations::Impl& equations, const std::vector<Translation>& translations, Held held,
@@ -21,9 +21,9 @@ class SteadyState {
 
   struct Solution {
     OperatingPoint point;
-    double residual = 0;            // largest row, divided by its derivatives times typical sizes
-    std::size_t family = 0;         // ways to move on and stay a solution
-    std::vector<std::size_t> along; // the coordinates that change on them, ascending
+    double residual = 0;             // largest row, divided by its derivatives times typical sizes
+    std::size_t family = 0;          // ways to move on and stay a solution
+    std::vector<std::size_t> along;  // the coordinates that change on them, ascending
   };
   /// From the positions and velocities of `from`; nothing where the iteration does not arrive within so many turns.
   std::optional<Solution> solve(const OperatingPoint& from, bool with_family = true, int turns = 80) const;
@@ -32,8 +32,8 @@ class SteadyState {
 
  private:
   struct System {
-    Vector f;                       // rows
-    Matrix j;                       // by the unknowns
+    Vector f;  // rows
+    Matrix j;  // by the unknowns
   };
   System system_at(const OperatingPoint& point) const;
   Vector unknowns(const OperatingPoint& point) const;
@@ -51,7 +51,7 @@ class SteadyState {
   const std::vector<Translation>& translations_;
   std::vector<std::size_t> free_q_, free_rates_, kept_momenta_;
   std::vector<double> momenta_, sizes_;
-  Matrix by_rates_;                 // [n × free rates]
+  Matrix by_rates_;  // [n × free rates]
 };
 
 }  // namespace maupertuis

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-/// From what is known of the coordinates to what follows: plain values, then linear equations, then cos θ beside a factor sin θ.
+/// From what is known of the coordinates to what follows: plain values, then linear equations, then cos θ beside a
+/// factor sin θ.
 namespace maupertuis {
 namespace {
 
@@ -14,12 +15,18 @@ constexpr double pi = 3.141592653589793, digits = 1e-9;
 
 class Formulas {
  public:
-  Formulas(const EquationsOfMotion& equations, const Linearization& numbers, const std::vector<Translation>& translations)
-      : equations_(equations.shown()), system_(*equations_.system), context_(*system_.context), numbers_(numbers),
-        translations_(translations), bindings_(parameter_bindings(system_)) {
+  Formulas(const EquationsOfMotion& equations, const Linearization& numbers,
+           const std::vector<Translation>& translations)
+      : equations_(equations.shown()),
+        system_(*equations_.system),
+        context_(*system_.context),
+        numbers_(numbers),
+        translations_(translations),
+        bindings_(parameter_bindings(system_)) {
     for (const Definition& d : system_.definitions)
       if (d.symbol) bindings_[d.symbol] = evaluate(d.value, parameter_bindings(system_));
-    for (std::size_t i = 0; i < system_.inputs.size(); ++i) bindings_[system_.inputs[i].symbol] = numbers.point.inputs[i];
+    for (std::size_t i = 0; i < system_.inputs.size(); ++i)
+      bindings_[system_.inputs[i].symbol] = numbers.point.inputs[i];
   }
 
   std::optional<SymbolicLinearization> find() {
@@ -33,7 +40,8 @@ class Formulas {
   }
 
  private:
-  /// An angle that is a part of π for these values of the parameters need not be one for all: then the equations decide.
+  /// An angle that is a part of π for these values of the parameters need not be one for all: then the equations
+  /// decide.
   bool solved(bool parts_of_pi) {
     known_.clear();
     shown_.clear();
@@ -45,7 +53,8 @@ class Formulas {
 
   bool at_rest() const {
     const auto zero = [](double x) { return x == 0; };
-    return std::all_of(numbers_.point.v.begin(), numbers_.point.v.end(), zero) && std::all_of(numbers_.point.a.begin(), numbers_.point.a.end(), zero);
+    return std::all_of(numbers_.point.v.begin(), numbers_.point.v.end(), zero) &&
+           std::all_of(numbers_.point.a.begin(), numbers_.point.a.end(), zero);
   }
 
   /// Inputs are held: their rates vanish.
@@ -87,7 +96,9 @@ class Formulas {
 
   double number(Expr e) const { return evaluate(e, bindings_); }
   bool is_known(std::size_t i) const { return done_[i]; }
-  bool all_known() const { return std::all_of(done_.begin(), done_.end(), [](bool b) { return b; }); }
+  bool all_known() const {
+    return std::all_of(done_.begin(), done_.end(), [](bool b) { return b; });
+  }
 
   /// 0, parts of π, and coordinates along translations, of which nothing depends.
   void recognise(bool parts_of_pi) {
@@ -95,8 +106,10 @@ class Formulas {
     for (std::size_t i = 0; i < done_.size(); ++i) {
       const Coordinate& c = system_.coordinates[i];
       const double value = numbers_.point.q[i], part = 12 * value / pi;
-      const bool moved = std::any_of(translations_.begin(), translations_.end(), [&](const Translation& t) { return t.pivot == i; });
-      if (moved || value == 0) put(i, context_.number(0));
+      const bool moved =
+          std::any_of(translations_.begin(), translations_.end(), [&](const Translation& t) { return t.pivot == i; });
+      if (moved || value == 0)
+        put(i, context_.number(0));
       else if (parts_of_pi && c.kind == "angle" && std::abs(part - std::round(part)) < digits)
         put(i, context_.pi() * Rational(static_cast<long>(std::lround(part)), 12));
     }
@@ -131,10 +144,12 @@ class Formulas {
   bool solve_row(std::size_t i, Expr force) {
     if (!only_unknown(force, i)) return false;
     const Expr q = system_.coordinates[i].q, slope = differentiate(force, q);
-    if (zero_test(differentiate(slope, q)).verdict != Verdict::Zero || zero_test(slope).verdict != Verdict::Nonzero) return false;
+    if (zero_test(differentiate(slope, q)).verdict != Verdict::Zero || zero_test(slope).verdict != Verdict::Nonzero)
+      return false;
     const ExprMap origin{{q, context_.number(0)}};
     const Expr value = readable(-substitute(force, origin) / substitute(slope, origin), equations_.order).value;
-    if (!(std::abs(number(value) - numbers_.point.q[i]) <= digits * std::max(std::abs(numbers_.point.q[i]), 1e-300))) return false;
+    if (!(std::abs(number(value) - numbers_.point.q[i]) <= digits * std::max(std::abs(numbers_.point.q[i]), 1e-300)))
+      return false;
     put(i, value);
     shown_.emplace_back(q, ReadableForm{value, {}, {}});
     return true;
@@ -151,7 +166,8 @@ class Formulas {
 
   void solve_cosine(std::size_t i, Expr force) {
     const Expr θ = system_.coordinates[i].q;
-    const Expr s = context_.symbol("sine of " + system_.coordinates[i].name, Role::Auxiliary), c = context_.symbol("cosine of " + system_.coordinates[i].name, Role::Auxiliary);
+    const Expr s = context_.symbol("sine of " + system_.coordinates[i].name, Role::Auxiliary),
+               c = context_.symbol("cosine of " + system_.coordinates[i].name, Role::Auxiliary);
     const Expr plain = substitute(force, {{sin(θ), s}, {cos(θ), c}});
     for (const Expr& symbol : symbols_of({&plain, 1}))
       if (symbol == θ) return;  // θ stands elsewhere, as in sin 2θ
@@ -192,17 +208,20 @@ class Formulas {
 
   SymbolicLinearization matrices() const {
     ExprVector q, v, a, u;
-    for (const Coordinate& c : system_.coordinates) q.push_back(c.q), v.push_back(c.velocity), a.push_back(c.acceleration);
+    for (const Coordinate& c : system_.coordinates)
+      q.push_back(c.q), v.push_back(c.velocity), a.push_back(c.acceleration);
     for (const Input& x : system_.inputs) u.push_back(x.symbol);
     SymbolicLinearization out{shown_, derivative(a, 1), derivative(v, 1), derivative(q, 1), derivative(u, -1), {}};
-    if (q.size() == 1 && out.damping.at(0, 0).is_zero()) out.square = readable(out.stiffness.at(0, 0) / out.mass.at(0, 0), equations_.order).value;
+    if (q.size() == 1 && out.damping.at(0, 0).is_zero())
+      out.square = readable(out.stiffness.at(0, 0) / out.mass.at(0, 0), equations_.order).value;
     return out;
   }
 
   ExprMatrix derivative(const ExprVector& by, int sign) const {
     ExprMatrix out{residual_.size(), by.size(), {}};
     for (const Expr& row : residual_)
-      for (const Expr& entry : at_rest(gradient(row, by))) out.entries.push_back(readable(sign < 0 ? -entry : entry, equations_.order).value);
+      for (const Expr& entry : at_rest(gradient(row, by)))
+        out.entries.push_back(readable(sign < 0 ? -entry : entry, equations_.order).value);
     return out;
   }
 
@@ -238,7 +257,8 @@ class Formulas {
 
 }  // namespace
 
-std::optional<SymbolicLinearization> symbolic_linearization(const EquationsOfMotion& equations, const Linearization& numbers,
+std::optional<SymbolicLinearization> symbolic_linearization(const EquationsOfMotion& equations,
+                                                            const Linearization& numbers,
                                                             const std::vector<Translation>& translations) {
   if (!numbers.second_order()) return std::nullopt;
   return Formulas(equations, numbers, translations).find();

@@ -11,7 +11,8 @@ namespace {
 constexpr int samples = 3, attempts = 40;
 constexpr double small = 1e-9;
 
-/// Rows at one random point, each divided by its length, columns by typical sizes; no rows where one has no value there.
+/// Rows at one random point, each divided by its length, columns by typical sizes; no rows where one has no value
+/// there.
 Matrix sampled_rows(PointEquations::Impl& e, const Vector& sizes, std::uint64_t seed) {
   const OperatingPoint point = random_point(e, seed);
   std::vector<Vector> rows;
@@ -49,8 +50,8 @@ Matrix common_null_space(PointEquations::Impl& e, const Vector& sizes) {
   return split.basis.leftCols(split.kernel);
 }
 
-/// The basis in reduced echelon form by rows of coordinates: column k is 1 at its pivot, 0 at the others. Pivots are the
-/// largest entries among preferred coordinates, then among all.
+/// The basis in reduced echelon form by rows of coordinates: column k is 1 at its pivot, 0 at the others. Pivots are
+/// the largest entries among preferred coordinates, then among all.
 std::vector<std::size_t> reduce_to_pivots(Matrix& basis, const std::vector<bool>& preferred) {
   std::vector<std::size_t> pivots;
   for (Index k = 0; k < basis.cols(); ++k) {
@@ -86,8 +87,8 @@ void clean(Matrix& basis) {
   }
 }
 
-/// d·R vanishes in every uniform motion along the translations: no force acts along d. What constraints of velocities do
-/// there counts as a force.
+/// d·R vanishes in every uniform motion along the translations: no force acts along d. What constraints of velocities
+/// do there counts as a force.
 bool is_conserved(PointEquations::Impl& e, const Vector& direction) {
   for (int s = 0; s < samples; ++s) {
     OperatingPoint point = random_point(e, 577 + static_cast<std::uint64_t>(s));

@@ -288,7 +288,8 @@ class Closer {
     out_.motion.closure = closure;
     out_.motion.moved = gap(first_, out_.motion.start).norm();
     out_.flow = flow_at(out_.motion.start);
-    if (out_.motion.driven) out_.motion.rests = survey(system_, motion_, out_.motion.start, *period_, options_.interrupt).rests;
+    if (out_.motion.driven)
+      out_.motion.rests = survey(system_, motion_, out_.motion.start, *period_, options_.interrupt).rests;
     return out_.motion.driven || turning(out_.motion.start).cwiseAbs().maxCoeff() > 1e-6 || refuse_rest();
   }
 

@@ -60,20 +60,26 @@ constexpr CodeEntry entries[] = {
      "which neighbours part.",
      "", ""},
     {"E1411", "a time of the averages is out of proportion",
-     "Lyapunov exponents are averages over the run, which begin after the transient and are taken in intervals. An interval longer than the run, or one that "
-     "cuts it into more than a million, and a transient of more than 10^8 steps have no sense; left out, both are chosen.",
+     "Lyapunov exponents are averages over the run, which begin after the transient and are taken in intervals. An "
+     "interval longer than the run, or one that "
+     "cuts it into more than a million, and a transient of more than 10^8 steps have no sense; left out, both are "
+     "chosen.",
      "maup orbits model.lag --lyapunov --interval 1e-300s", "maup orbits model.lag --lyapunov"},
     {"E1412", "more exponents than directions",
-     "A system of n freedoms has 2 n exponents: one for each direction in which a neighbour can lie, in positions and velocities.",
+     "A system of n freedoms has 2 n exponents: one for each direction in which a neighbour can lie, in positions and "
+     "velocities.",
      "maup orbits pendulum.lag --lyapunov --exponents 7", "maup orbits pendulum.lag --lyapunov --exponents 2"},
     {"W1401", "Lyapunov exponents that do not add up",
      "The exponents add up to the mean rate at which the flow changes volumes: zero without dissipation, minus the "
      "damping rates else. If they "
-     "do not, the neighbours of this motion were not carried to rounding; each exponent may be wrong by as much, and its error says so.",
+     "do not, the neighbours of this motion were not carried to rounding; each exponent may be wrong by as much, and "
+     "its error says so.",
      "", ""},
     {"W1402", "multipliers that the geometry contradicts",
-     "Without forces and damping the derivative of the return map preserves the symplectic form; else its determinant is the exponential of the "
-     "divergence, integrated over the period. Where it misses them by more than rounding its eigenvalues are no better, and those near the unit circle "
+     "Without forces and damping the derivative of the return map preserves the symplectic form; else its determinant "
+     "is the exponential of the "
+     "divergence, integrated over the period. Where it misses them by more than rounding its eigenvalues are no "
+     "better, and those near the unit circle "
      "may lie on either side of it.",
      "", ""},
 };

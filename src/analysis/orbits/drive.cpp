@@ -39,7 +39,8 @@ std::optional<std::vector<double>> frequencies(const EquationsOfMotion& equation
 /// The state, and one beside it: on the motion itself the force may vanish at all times, as it does at an equilibrium.
 std::array<MotionState, 2> places_at(const MotionState& state, const std::vector<double>& sizes) {
   MotionState beside = state;
-  for (std::size_t i = 0; i < state.q.size(); ++i) beside.q[i] += 0.1 * sizes[i], beside.v[i] += 0.1 * sizes[state.q.size() + i];
+  for (std::size_t i = 0; i < state.q.size(); ++i)
+    beside.q[i] += 0.1 * sizes[i], beside.v[i] += 0.1 * sizes[state.q.size() + i];
   return {state, beside};
 }
 

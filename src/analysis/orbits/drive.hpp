@@ -17,8 +17,8 @@ bool depends_on_time(const EquationsOfMotion& equations);
 /// have one. s
 std::optional<double> period_of_drive(const EquationsOfMotion& equations);
 
-/// Whether the accelerations at the states of a motion and beside them are the same when t is later by `period`, and when
-/// coordinate i is larger by 2π: to rounding.
+/// Whether the accelerations at the states of a motion and beside them are the same when t is later by `period`, and
+/// when coordinate i is larger by 2π: to rounding.
 bool repeats_in_time(const MotionKernel& motion, const Survey& seen, double period);
 bool repeats_in_angle(const MotionKernel& motion, const Survey& seen, std::size_t coordinate);
 

@@ -24,14 +24,16 @@ StabilityReport report_of(const FloquetResult& neighbours) {
 
 }  // namespace
 
-std::vector<std::optional<FloquetResult>> settle_driven(ModalStudy& study, const PointEquations& points, const Model& model,
-                                                        const EquationsOfMotion& equations, const std::atomic<bool>* interrupt) {
+std::vector<std::optional<FloquetResult>> settle_driven(ModalStudy& study, const PointEquations& points,
+                                                        const Model& model, const EquationsOfMotion& equations,
+                                                        const std::atomic<bool>* interrupt) {
   std::vector<std::optional<FloquetResult>> out;
   if (points.autonomous()) return out;
   for (ModalEntry& entry : study.entries) {
     const OperatingPoint& at = entry.equilibrium.point;
     Diagnostics unheard;  // a drive without a period is no mistake here: the entry stays undecided
-    std::optional<FloquetResult> found = floquet(model, equations, {std::nullopt, interrupt, MotionState{at.t, at.q, at.v}}, unheard);
+    std::optional<FloquetResult> found =
+        floquet(model, equations, {std::nullopt, interrupt, MotionState{at.t, at.q, at.v}}, unheard);
     entry.analysis.modes.clear();
     entry.analysis.eigenvalues.clear();
     if (found && !found->motion.rests) found.reset();

@@ -31,7 +31,7 @@ constexpr double least_intervals = 40;
 /// largest is 1e-10 of the smallest then.
 constexpr double most_parting = 14;
 constexpr int most_halvings = 40;
-constexpr double most_intervals = 1e6;        // each keeps the logarithms of its directions
+constexpr double most_intervals = 1e6;  // each keeps the logarithms of its directions
 constexpr double most_steps_of_transient = 1e8;
 
 class LyapunovRun {
@@ -80,18 +80,22 @@ class LyapunovRun {
 
   bool check_interval(double duration) {
     if (options_.interval == 0) return true;
-    if (!(options_.interval > 0 && std::isfinite(options_.interval))) return orbits::refuse_no_time("the interval", diagnostics_);
+    if (!(options_.interval > 0 && std::isfinite(options_.interval)))
+      return orbits::refuse_no_time("the interval", diagnostics_);
     if (options_.interval <= duration && duration / options_.interval <= most_intervals) return true;
-    diagnostics_.error("E1411", {}, fmt::format("intervals of {:.6g} s do not divide a run of {:.6g} s", options_.interval, duration),
-                       fmt::format("Directions are made orthonormal again after each interval: at least one, at most {:.0f} of them.", most_intervals),
-                       "Leave --interval out, or take one between.");
+    diagnostics_.error(
+        "E1411", {}, fmt::format("intervals of {:.6g} s do not divide a run of {:.6g} s", options_.interval, duration),
+        fmt::format("Directions are made orthonormal again after each interval: at least one, at most {:.0f} of them.",
+                    most_intervals),
+        "Leave --interval out, or take one between.");
     return false;
   }
 
   bool check_transient(double step) {
     if (transient_ / step <= most_steps_of_transient) return true;
     diagnostics_.error("E1411", {}, fmt::format("a transient of {:.6g} s never ends", transient_),
-                       fmt::format("One step of this motion is about {:.2g} s long: it would take {:.1g} of them.", step, transient_ / step),
+                       fmt::format("One step of this motion is about {:.2g} s long: it would take {:.1g} of them.",
+                                   step, transient_ / step),
                        "Take a shorter one: the average begins after it.");
     return false;
   }
@@ -107,7 +111,8 @@ class LyapunovRun {
     out_.dimension = static_cast<std::size_t>(d);
     if (static_cast<Index>(options_.exponents) > d) {
       diagnostics_.error("E1412", {}, fmt::format("this motion has {} exponents, not {}", d, options_.exponents),
-                         "Each direction of a neighbour, in positions and velocities, has one.", fmt::format("Ask for at most {}, or for all: leave --exponents out.", d));
+                         "Each direction of a neighbour, in positions and velocities, has one.",
+                         fmt::format("Ask for at most {}, or for all: leave --exponents out.", d));
       return false;
     }
     if (k == 0) {

@@ -174,7 +174,8 @@ std::optional<Grid> fitted(const Plane& plane, const MotionState& near, const st
   return std::nullopt;
 }
 
-std::vector<MotionState> spread(const Plane& plane, const Grid& grid, std::size_t count, const std::atomic<bool>* interrupt) {
+std::vector<MotionState> spread(const Plane& plane, const Grid& grid, std::size_t count,
+                                const std::atomic<bool>* interrupt) {
   constexpr double plastic = 1.32471795724474602596;  // x³ = x + 1
   std::vector<MotionState> out;
   for (std::size_t k = 1; out.size() < count && k < 400 * count; ++k) {
@@ -234,7 +235,8 @@ std::optional<SectionPlane> spread_starts(const EquationsOfMotion& equations, co
     return std::nullopt;
   };
   if (options.starts > most_starts)
-    return refuse(fmt::format("{} of them were asked for; no picture shows more than {}.", options.starts, most_starts), "Take fewer.");
+    return refuse(fmt::format("{} of them were asked for; no picture shows more than {}.", options.starts, most_starts),
+                  "Take fewer.");
   if (plane.by_velocity())
     return refuse("A velocity stands in the section: then it does not fix a coordinate.",
                   "Take a section by positions, such as \"x = 0 rising\", or one start.");

@@ -28,7 +28,8 @@ Range range_of(const std::vector<MotionState>& states, std::size_t i) {
   return out;
 }
 
-/// Neighbours of an equilibrium are as large as one likes: what stirs there is rounding of the place, and sizes made of it would measure nothing.
+/// Neighbours of an equilibrium are as large as one likes: what stirs there is rounding of the place, and sizes made of
+/// it would measure nothing.
 bool is_rest(const Range& r, double duration) {
   const double place = size_at_rest(r.low);
   return r.high - r.low <= rounding_of_rest * place && r.speed * duration <= rounding_of_rest * place;

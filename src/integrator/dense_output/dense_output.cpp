@@ -29,9 +29,11 @@ void DenseOutput::copy(const double* first, std::size_t stride) {
   for (int k = 0; k <= degree_; ++k)
     if (stride >= row)  // rows of a workspace end with whole vectors
       for (std::size_t i = 0; i < row; i += 8)
-        std::memcpy(coefficients_.data() + static_cast<std::size_t>(k) * row + i, first + static_cast<std::size_t>(k) * stride + i, 8 * sizeof(double));
+        std::memcpy(coefficients_.data() + static_cast<std::size_t>(k) * row + i,
+                    first + static_cast<std::size_t>(k) * stride + i, 8 * sizeof(double));
     else
-      std::copy_n(first + static_cast<std::size_t>(k) * stride, freedoms_, coefficients_.data() + static_cast<std::size_t>(k) * row);
+      std::copy_n(first + static_cast<std::size_t>(k) * stride, freedoms_,
+                  coefficients_.data() + static_cast<std::size_t>(k) * row);
   refer_to(coefficients_.data(), padded(freedoms_));
 }
 

@@ -46,8 +46,8 @@ class DenseOutput {
   /// [n] q̈ after τ, until the next call of this or advance().
   std::span<const double> accelerations(double tau) const;
 
-  std::vector<Compensated> q, v;        // [n] at τ = 0
-  std::vector<Compensated> integrals;   // [m] at τ = 0
+  std::vector<Compensated> q, v;       // [n] at τ = 0
+  std::vector<Compensated> integrals;  // [m] at τ = 0
 
  private:
   std::size_t freedoms_ = 0;
@@ -55,8 +55,8 @@ class DenseOutput {
   const double* first_ = nullptr;
   std::size_t stride_ = 0;
   PolynomialIncrements* add_up_ = polynomial_increments;
-  std::vector<double> coefficients_;    // [degree + 1][n] of q, where they are copied
-  std::vector<double> integrands_;      // [degree + 1][m]
+  std::vector<double> coefficients_;        // [degree + 1][n] of q, where they are copied
+  std::vector<double> integrands_;          // [degree + 1][m]
   mutable std::vector<double> increments_;  // of q and q̇
 };
 

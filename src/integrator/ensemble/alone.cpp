@@ -8,7 +8,9 @@
 
 namespace maupertuis::ensemble {
 
-double Job::begin(std::size_t i) const { return start.begin.empty() ? 0 : start.begin[start.begin.size() == 1 ? 0 : i]; }
+double Job::begin(std::size_t i) const {
+  return start.begin.empty() ? 0 : start.begin[start.begin.size() == 1 ? 0 : i];
+}
 double Job::end(std::size_t i) const { return start.end[start.end.size() == 1 ? 0 : i]; }
 
 std::span<const double> Job::parameters(std::size_t i) const {
@@ -21,9 +23,12 @@ std::size_t Job::take() {
   return std::min(next.fetch_add(1, std::memory_order_relaxed), trajectories);
 }
 
-OutputTimes::OutputTimes(std::span<const double> times, double begin, double end) : times_(times), direction_(end < begin ? -1 : 1) {
-  const auto low = static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), std::min(begin, end)) - times.begin());
-  const auto high = static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), std::max(begin, end)) - times.begin());
+OutputTimes::OutputTimes(std::span<const double> times, double begin, double end)
+    : times_(times), direction_(end < begin ? -1 : 1) {
+  const auto low =
+      static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), std::min(begin, end)) - times.begin());
+  const auto high =
+      static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), std::max(begin, end)) - times.begin());
   left_ = high - low;
   next_ = direction_ > 0 ? low : high - 1;  // not looked at where none is left
 }
@@ -54,7 +59,8 @@ void run_alone(Job& job, std::size_t trajectory) {
   // What a lane has written before it was given up does not count.
   const std::size_t samples = job.result.times * n;
   for (auto* values : {&job.result.sampled_q, &job.result.sampled_v})
-    std::fill_n(values->begin() + static_cast<std::ptrdiff_t>(trajectory * samples), samples, std::numeric_limits<double>::quiet_NaN());
+    std::fill_n(values->begin() + static_cast<std::ptrdiff_t>(trajectory * samples), samples,
+                std::numeric_limits<double>::quiet_NaN());
   OutputTimes times(job.start.times, begin, end);
   EnergyDrift drift;
   const auto energy_at = [&](double t) {

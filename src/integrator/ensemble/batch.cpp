@@ -20,12 +20,12 @@ LaneSteps best_steps() {
 }
 
 struct AlignedDelete {
-  void operator()(double* data) const { ::operator delete(data, std::align_val_t{64}); }
+  void operator()(double* data) const { ::operator delete (data, std::align_val_t{64}); }
 };
 using AlignedArray = std::unique_ptr<double[], AlignedDelete>;
 
 AlignedArray aligned(std::size_t size) {
-  AlignedArray array(static_cast<double*>(::operator new(size * sizeof(double), std::align_val_t{64})));
+  AlignedArray array(static_cast<double*>(::operator new (size * sizeof(double), std::align_val_t{64})));
   std::fill_n(array.get(), size, 0.0);
   return array;
 }
@@ -80,26 +80,35 @@ class Batch {
   LaneSafety safety_;
   std::unique_ptr<KernelWorkspace> point_;  // energies
   std::vector<Lane> lanes_;
-  std::vector<taylor::Turns> turns_;            // [lanes]
+  std::vector<taylor::Turns> turns_;  // [lanes]
   std::vector<double> energy_, leading_;
-  std::vector<double> chosen_;                  // [lanes] lengths that the control chose
-  std::vector<Compensated> position_;           // [n] of one lane
+  std::vector<double> chosen_;           // [lanes] lengths that the control chose
+  std::vector<Compensated> position_;    // [n] of one lane
   std::vector<double> whole_, inverse_;  // see LaneArrays
   AlignedArray memory_;
   std::size_t used_ = 0;
   LaneArrays arrays_{};
   double *end_, *fresh_, *next_, *factor_;
   std::size_t active_ = 0;
-  std::size_t rounds_ = 0;                      // steps of all lanes so far
-  std::size_t last_round_ = 0;                  // in which no lane has used up its steps
-  bool any_fresh_ = false;                      // a lane has no length yet
+  std::size_t rounds_ = 0;      // steps of all lanes so far
+  std::size_t last_round_ = 0;  // in which no lane has used up its steps
+  bool any_fresh_ = false;      // a lane has no length yet
   bool shared_parameters_, exhausted_ = false;
 };
 
 Batch::Batch(Job& job)
-    : job_(job), arithmetic_(best_steps()), n_(job.freedoms), width_(static_cast<std::size_t>(job.expansion->width())),
-      work_(job.kernel, job.control.order, job.expansion), safety_(job, work_), lanes_(width_), turns_(width_, taylor::Turns(job.kernel)),
-      energy_(job.options.energy_terms), leading_(n_), chosen_(width_), position_(n_),
+    : job_(job),
+      arithmetic_(best_steps()),
+      n_(job.freedoms),
+      width_(static_cast<std::size_t>(job.expansion->width())),
+      work_(job.kernel, job.control.order, job.expansion),
+      safety_(job, work_),
+      lanes_(width_),
+      turns_(width_, taylor::Turns(job.kernel)),
+      energy_(job.options.energy_terms),
+      leading_(n_),
+      chosen_(width_),
+      position_(n_),
       memory_(aligned((8 * n_ + 11) * width_)) {
   if (job.options.energy_terms > 0) point_ = std::make_unique<KernelWorkspace>(job.kernel, 1);
   arrays_.width = width_;
@@ -141,8 +150,10 @@ void Batch::run() {
 void Batch::refill(std::size_t lane) {
   while (!exhausted_ && !lanes_[lane].active) {
     const std::size_t trajectory = job_.take();
-    if (trajectory == job_.trajectories) exhausted_ = true;
-    else begin(lane, trajectory);
+    if (trajectory == job_.trajectories)
+      exhausted_ = true;
+    else
+      begin(lane, trajectory);
   }
 }
 
@@ -199,7 +210,8 @@ void Batch::interrupt() {
   for (std::size_t lane = 0; lane < width_; ++lane)
     if (lanes_[lane].active) finish(lane, StepEnding::Interrupted, "The run was interrupted.");
   // Those that are left end where they begin.
-  for (std::size_t trajectory = job_.take(); trajectory != job_.trajectories; trajectory = job_.take()) run_alone(job_, trajectory);
+  for (std::size_t trajectory = job_.take(); trajectory != job_.trajectories; trajectory = job_.take())
+    run_alone(job_, trajectory);
 }
 
 /// As TaylorStepper: angles stay within a turn, so that what is rounded does not grow with the number of turns.
@@ -245,16 +257,23 @@ void Batch::check_ends() {
   if (refilled) expand();
 }
 
-/// Lengths that no value of the program forbids, as TaylorStepper has them. The control goes on from what it chose itself.
+/// Lengths that no value of the program forbids, as TaylorStepper has them. The control goes on from what it chose
+/// itself.
 void Batch::keep_lengths_safe() {
   std::copy_n(arrays_.length, width_, chosen_.begin());
-  const auto left = [this](std::size_t lane) { return std::abs((end_[lane] - arrays_.t_high[lane]) - arrays_.t_low[lane]); };
-  const auto makes_step = [&](std::size_t lane) { return lanes_[lane].active && left(lane) > 0 && arrays_.length[lane] > 0; };
-  for (std::size_t lane = 0; lane < width_; ++lane) arrays_.radius[lane] = makes_step(lane) ? safety_.radius(arrays_.length[lane], left(lane)) : 0.0;
+  const auto left = [this](std::size_t lane) {
+    return std::abs((end_[lane] - arrays_.t_high[lane]) - arrays_.t_low[lane]);
+  };
+  const auto makes_step = [&](std::size_t lane) {
+    return lanes_[lane].active && left(lane) > 0 && arrays_.length[lane] > 0;
+  };
+  for (std::size_t lane = 0; lane < width_; ++lane)
+    arrays_.radius[lane] = makes_step(lane) ? safety_.radius(arrays_.length[lane], left(lane)) : 0.0;
   arithmetic_.find_sizes(arrays_);
   for (std::size_t lane = 0; lane < width_; ++lane) {
     if (!makes_step(lane)) continue;
-    arrays_.length[lane] = safety_.within(lane, arrays_.t_high[lane], arrays_.length[lane], left(lane), arrays_.sizes + lane);
+    arrays_.length[lane] =
+        safety_.within(lane, arrays_.t_high[lane], arrays_.length[lane], left(lane), arrays_.sizes + lane);
   }
 }
 
@@ -287,11 +306,13 @@ void Batch::look() {
 
 /// Decides whether the lane may make its step, and takes from it what is wanted on the way.
 void Batch::look_at(std::size_t lane) {
-  if (steps(lane) >= job_.options.maximum_steps) return finish(lane, StepEnding::TooManySteps, "The run used up its steps.");
+  if (steps(lane) >= job_.options.maximum_steps)
+    return finish(lane, StepEnding::TooManySteps, "The run used up its steps.");
   // Comparisons with NaN are false.
   if (!(arrays_.quality[lane] > arrays_.least_quality) || arrays_.shrinks[lane] != 0) return go_alone(lane);
   if (!std::isfinite(arrays_.length[lane])) arrays_.length[lane] = 0, any_fresh_ = true;
-  const double reached = arrays_.reaches[lane] != 0 ? end_[lane] : arrays_.t_high[lane] + (arrays_.t_low[lane] + arrays_.step[lane]);
+  const double reached =
+      arrays_.reaches[lane] != 0 ? end_[lane] : arrays_.t_high[lane] + (arrays_.t_low[lane] + arrays_.step[lane]);
   sample(lane, reached);
 }
 
@@ -308,7 +329,8 @@ void Batch::sample(std::size_t lane, double reached) {
   Lane& l = lanes_[lane];
   l.times.up_to(reached, [&](std::size_t index, double t) {
     const std::size_t to = (l.trajectory * job_.result.times + index) * n_;
-    const std::span<double> q = std::span(job_.result.sampled_q).subspan(to, n_), v = std::span(job_.result.sampled_v).subspan(to, n_);
+    const std::span<double> q = std::span(job_.result.sampled_q).subspan(to, n_),
+                            v = std::span(job_.result.sampled_v).subspan(to, n_);
     state_after(lane, (t - arrays_.t_high[lane]) - arrays_.t_low[lane], position_, v);
     for (std::size_t i = 0; i < n_; ++i) q[i] = turns_[lane].unwound(i, position_[i]);
     note_energy(lane, t, position_, v);
@@ -348,13 +370,16 @@ void Batch::note_energy(std::size_t lane, double t, std::span<const Compensated>
 void Batch::finish_if_it_holds(std::size_t lane) {
   std::vector<double> v(n_);
   for (std::size_t i = 0; i < n_; ++i) leading_[i] = arrays_.q_high[at(i, lane)], v[i] = arrays_.v_high[at(i, lane)];
-  if (safety_.holds_at(lane, arrays_.t_high[lane], leading_, v)) finish(lane, StepEnding::None, {});
-  else go_alone(lane);
+  if (safety_.holds_at(lane, arrays_.t_high[lane], leading_, v))
+    finish(lane, StepEnding::None, {});
+  else
+    go_alone(lane);
 }
 
 void Batch::finish(std::size_t lane, StepEnding reason, std::string sentence) {
   Lane& l = lanes_[lane];
-  const std::span<double> q = std::span(job_.result.q).subspan(l.trajectory * n_, n_), v = std::span(job_.result.v).subspan(l.trajectory * n_, n_);
+  const std::span<double> q = std::span(job_.result.q).subspan(l.trajectory * n_, n_),
+                          v = std::span(job_.result.v).subspan(l.trajectory * n_, n_);
   for (std::size_t i = 0; i < n_; ++i) {
     position_[i] = {arrays_.q_high[at(i, lane)], arrays_.q_low[at(i, lane)]};
     q[i] = turns_[lane].unwound(i, position_[i]), v[i] = arrays_.v_high[at(i, lane)];

@@ -19,14 +19,16 @@ struct Job {
   std::size_t trajectories, freedoms;
   EnsembleResult& result;
   std::atomic<std::size_t> next{0};
-  std::atomic<bool> failed{false};                 // a thread threw: the others stop
+  std::atomic<bool> failed{false};  // a thread threw: the others stop
 
   double begin(std::size_t trajectory) const;
   double end(std::size_t trajectory) const;
   std::span<const double> q(std::size_t trajectory) const { return start.q.subspan(trajectory * freedoms, freedoms); }
   std::span<const double> v(std::size_t trajectory) const { return start.v.subspan(trajectory * freedoms, freedoms); }
   std::span<const double> parameters(std::size_t trajectory) const;
-  double step_factor(std::size_t trajectory) const { return start.step_factors.empty() ? 1 : start.step_factors[trajectory]; }
+  double step_factor(std::size_t trajectory) const {
+    return start.step_factors.empty() ? 1 : start.step_factors[trajectory];
+  }
   bool interrupted() const { return options.interrupt && options.interrupt->load(std::memory_order_relaxed); }
   /// The number of a trajectory that nobody has taken; `trajectories` when there is none.
   std::size_t take();
@@ -40,7 +42,8 @@ class OutputTimes {
   /// Calls f(index, time) for those up to `reached`, each once.
   template <class F>
   void up_to(double reached, F&& f) {
-    for (; left_ > 0 && (reached - times_[next_]) * direction_ >= 0; next_ += static_cast<std::size_t>(direction_), --left_)
+    for (; left_ > 0 && (reached - times_[next_]) * direction_ >= 0;
+         next_ += static_cast<std::size_t>(direction_), --left_)
       f(next_, times_[next_]);
   }
   /// The next one, or infinity.

@@ -27,7 +27,8 @@ void check(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptio
   MAUP_REQUIRE(options.width >= 0 && options.width <= 16 && (options.width & (options.width - 1)) == 0);
 }
 
-/// Steps of all trajectories together, if all were as long as the first one of the first trajectory. Zero where it has none.
+/// Steps of all trajectories together, if all were as long as the first one of the first trajectory. Zero where it has
+/// none.
 double expected_steps(const Kernel& kernel, const EnsembleStart& start, const taylor::StepControl& control) {
   const std::size_t n = kernel.freedoms(), count = start.q.size() / n;
   if (count == 0) return 0;
@@ -37,21 +38,26 @@ double expected_steps(const Kernel& kernel, const EnsembleStart& start, const ta
   if (work.expand(begin, start.q.first(n), start.v.first(n)) != KernelStatus::Ok) return 0;
   double duration = 0;
   for (std::size_t i = 0; i < count; ++i)
-    duration += std::abs(start.end[start.end.size() == 1 ? 0 : i] - (start.begin.empty() ? 0 : start.begin[start.begin.size() == 1 ? 0 : i]));
+    duration += std::abs(start.end[start.end.size() == 1 ? 0 : i] -
+                         (start.begin.empty() ? 0 : start.begin[start.begin.size() == 1 ? 0 : i]));
   return duration / taylor::step_size(work, n, control, 0);
 }
 
-/// The steps that pay for a compilation: it takes some tenths of a second, and saves some tenths of a microsecond a step.
+/// The steps that pay for a compilation: it takes some tenths of a second, and saves some tenths of a microsecond a
+/// step.
 constexpr double enough_steps = 500'000;
 
-/// Decided by the work that is expected, not by the clock nor by what the cache holds, so that equal calls give equal results.
-bool wants_code(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptions& options, const taylor::StepControl& control) {
+/// Decided by the work that is expected, not by the clock nor by what the cache holds, so that equal calls give equal
+/// results.
+bool wants_code(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptions& options,
+                const taylor::StepControl& control) {
   if (options.backend != Backend::Automatic) return options.backend == Backend::Compiled;
   return expected_steps(kernel, start, control) >= enough_steps;
 }
 
 /// The expansion, with what there is to say of it. None: every trajectory goes alone.
-CompiledLanes lanes_for(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptions& options, const taylor::StepControl& control) {
+CompiledLanes lanes_for(const Kernel& kernel, const EnsembleStart& start, const EnsembleOptions& options,
+                        const taylor::StepControl& control) {
   CompiledLanes out;
   if (!fits_lanes(kernel)) return out;
   const int width = options.width > 0 ? options.width : best_lane_width();
@@ -63,7 +69,8 @@ CompiledLanes lanes_for(const Kernel& kernel, const EnsembleStart& start, const 
   if (wants_code(kernel, start, options, control))
     out = compiled_lanes(kernel, width, {.cache = options.cache, .long_run = true, .processor = {}});
   // The interpreter decodes each instruction once for all lanes, so that two registers side by side pay.
-  if (!out.expansion) out.expansion = interpreted_lanes(kernel, options.width > 0 ? options.width : std::min(16, 2 * width));
+  if (!out.expansion)
+    out.expansion = interpreted_lanes(kernel, options.width > 0 ? options.width : std::min(16, 2 * width));
   return out;
 }
 
@@ -75,7 +82,8 @@ EnsembleResult empty_result(const Job& job, std::size_t times) {
   result.order = job.control.order;
   result.endings.resize(job.trajectories);
   for (auto* values : {&result.q, &result.v}) values->resize(job.trajectories * job.freedoms);
-  for (auto* values : {&result.sampled_q, &result.sampled_v}) values->assign(job.trajectories * times * job.freedoms, nothing);
+  for (auto* values : {&result.sampled_q, &result.sampled_v})
+    values->assign(job.trajectories * times * job.freedoms, nothing);
   if (job.expansion) {
     result.width = job.expansion->width();
     result.backend = job.expansion->backend();
@@ -124,8 +132,14 @@ EnsembleResult advance_ensemble(const Kernel& kernel, const EnsembleStart& start
   EnsembleResult result;
   const taylor::StepControl control = taylor::step_control(options.tolerance, options.order);
   const CompiledLanes lanes = lanes_for(kernel, start, options, control);
-  Job job{.kernel = kernel, .start = start, .options = options, .control = control, .expansion = lanes.expansion,
-          .trajectories = start.q.size() / kernel.freedoms(), .freedoms = kernel.freedoms(), .result = result};
+  Job job{.kernel = kernel,
+          .start = start,
+          .options = options,
+          .control = control,
+          .expansion = lanes.expansion,
+          .trajectories = start.q.size() / kernel.freedoms(),
+          .freedoms = kernel.freedoms(),
+          .result = result};
   result = empty_result(job, start.times.size());
   result.trouble = lanes.trouble;
   result.cache_trouble = lanes.cache_trouble;

@@ -6,12 +6,22 @@
 namespace maupertuis::ensemble {
 
 LaneSafety::LaneSafety(const Job& job, const LaneWorkspace& work)
-    : work_(work), n_(job.freedoms), width_(static_cast<std::size_t>(work.width())), order_(job.control.order), parameters_(width_), point_(job.kernel, 1), point_disks_(point_.program()) {
+    : work_(work),
+      n_(job.freedoms),
+      width_(static_cast<std::size_t>(work.width())),
+      order_(job.control.order),
+      parameters_(width_),
+      point_(job.kernel, 1),
+      point_disks_(point_.program()) {
   const double tolerance = taylor::safe_tolerance(job.options.tolerance);
   const auto known = taylor::SafeLength::shared_by_motions(job.kernel.program(), order_, tolerance);
   lanes_.reserve(width_);
   for (std::size_t lane = 0; lane < width_; ++lane)
-    lanes_.push_back({taylor::SafeLength(job.kernel.program(), order_, tolerance, known), taylor::EndCheck(n_, job.options.tolerance), std::vector<double>(n_), {}, 0});
+    lanes_.push_back({taylor::SafeLength(job.kernel.program(), order_, tolerance, known),
+                      taylor::EndCheck(n_, job.options.tolerance),
+                      std::vector<double>(n_),
+                      {},
+                      0});
 }
 
 /// The kernel at one point of a lane's motion.
@@ -34,10 +44,13 @@ void LaneSafety::begin(std::size_t lane, std::span<const double> parameters) {
 
 void LaneSafety::take_state(std::size_t lane, std::vector<double>& q, std::vector<double>& v) const {
   q.resize(n_), v.resize(n_);
-  for (std::size_t i = 0; i < n_; ++i) q[i] = work_.coordinate(0)[i * width_ + lane], v[i] = work_.coordinate(1)[i * width_ + lane];
+  for (std::size_t i = 0; i < n_; ++i)
+    q[i] = work_.coordinate(0)[i * width_ + lane], v[i] = work_.coordinate(1)[i * width_ + lane];
 }
 
-double LaneSafety::radius(double wanted, double left) const { return lanes_.front().safe.disk_radius(std::min(wanted, left)); }
+double LaneSafety::radius(double wanted, double left) const {
+  return lanes_.front().safe.disk_radius(std::min(wanted, left));
+}
 
 double LaneSafety::within(std::size_t lane, double t, double wanted, double left, const double* sizes) {
   Lane& l = lanes_[lane];
@@ -72,11 +85,14 @@ bool LaneSafety::holds_at(std::size_t lane, double t, std::span<const double> q,
   if (l.tau == 0) return true;
   KernelWorkspace& point = point_of(lane);
   if (point.evaluate(t, q, v) != KernelStatus::Ok) return false;
-  return l.end.agrees(l.expected, point.coordinate(2), 1, l.tau) || holds_but_for_rounding(lane, point.coordinate(2), 1, t, q, v);
+  return l.end.agrees(l.expected, point.coordinate(2), 1, l.tau) ||
+         holds_but_for_rounding(lane, point.coordinate(2), 1, t, q, v);
 }
 
-bool LaneSafety::holds_but_for_rounding(std::size_t lane, const double* half_by_equations, std::size_t step, double t, std::span<const double> q, std::span<const double> v) {
-  return taylor::agrees_but_for_rounding(lanes_[lane].end, lanes_[lane].expected, half_by_equations, step, point_of(lane), t, q, v, lanes_[lane].tau, point_disks_);
+bool LaneSafety::holds_but_for_rounding(std::size_t lane, const double* half_by_equations, std::size_t step, double t,
+                                        std::span<const double> q, std::span<const double> v) {
+  return taylor::agrees_but_for_rounding(lanes_[lane].end, lanes_[lane].expected, half_by_equations, step,
+                                         point_of(lane), t, q, v, lanes_[lane].tau, point_disks_);
 }
 
 }  // namespace maupertuis::ensemble

@@ -7,8 +7,8 @@
 #include <immintrin.h>
 #endif
 
-/// See lane_steps.hpp. Nothing inline of the standard library is called here: a linker keeps one copy of an inline function,
-/// and that must not be one with instructions that the processor lacks.
+/// See lane_steps.hpp. Nothing inline of the standard library is called here: a linker keeps one copy of an inline
+/// function, and that must not be one with instructions that the processor lacks.
 namespace maupertuis::ensemble {
 namespace {
 
@@ -43,7 +43,8 @@ inline V fused(V a, V b, V c) {
   if constexpr (sizeof(V) == 32) return _mm256_fmadd_pd(a, b, c);
   if constexpr (sizeof(V) == 16) return _mm_fmadd_pd(a, b, c);
 #endif
-  for (std::size_t lane = 0; lane < sizeof(V) / sizeof(double); ++lane) c[lane] = __builtin_fma(a[lane], b[lane], c[lane]);
+  for (std::size_t lane = 0; lane < sizeof(V) / sizeof(double); ++lane)
+    c[lane] = __builtin_fma(a[lane], b[lane], c[lane]);
   return c;
 }
 
@@ -73,13 +74,15 @@ class Steps {
     const auto long_enough = (length > 2 * epsilon * absolute(get(a_.t_high))) & (length >= V{} + 1e-290);
     put(a_.shrinks, long_enough ? V{} : V{} + 1);
     // A requested time is looked for within two steps: what rounding decides is decided where it is sampled.
-    const auto passes_by = within & long_enough & (get(a_.quality) > a_.least_quality) & (absolute(get(a_.next) - get(a_.t_high)) > 2 * length);
+    const auto passes_by = within & long_enough & (get(a_.quality) > a_.least_quality) &
+                           (absolute(get(a_.next) - get(a_.t_high)) > 2 * length);
     return vanishes_somewhere(passes_by ? V{} + 1 : V{});
   }
 
   bool exceed(double limit) const {
     V all_within = V{} + 1;
-    for (std::size_t i = 0; i < a_.freedoms; ++i) all_within = absolute(get(a_.q_high + i * a_.width)) > limit ? V{} : all_within;
+    for (std::size_t i = 0; i < a_.freedoms; ++i)
+      all_within = absolute(get(a_.q_high + i * a_.width)) > limit ? V{} : all_within;
     return vanishes_somewhere(all_within);
   }
 

@@ -37,8 +37,11 @@ template <class T>
 class Motion {
  public:
   Motion(const ExtendedProblem& problem, const ExtendedOptions& options)
-      : problem_(problem), options_(options), numbers_(problem),
-        stepper_(problem.kernel, numbers_.parameters, options, options.log2_tolerance != 0 ? options.log2_tolerance : log2_size(epsilon<T>())) {}
+      : problem_(problem),
+        options_(options),
+        numbers_(problem),
+        stepper_(problem.kernel, numbers_.parameters, options,
+                 options.log2_tolerance != 0 ? options.log2_tolerance : log2_size(epsilon<T>())) {}
 
   ExtendedMotion carry_out() {
     out_.order = stepper_.order();

@@ -14,20 +14,28 @@ using extended::Real;
 
 ExtendedMotion run_extended(const ExtendedProblem& problem, Mantissa mantissa, const ExtendedOptions& options) {
   switch (mantissa) {
-    case Mantissa::Bits113: return extended::run_motion<Real<113>>(problem, options);
-    case Mantissa::Bits192: return extended::run_motion<Real<192>>(problem, options);
-    case Mantissa::Bits384: return extended::run_motion<Real<384>>(problem, options);
-    case Mantissa::Bits448: break;
+    case Mantissa::Bits113:
+      return extended::run_motion<Real<113>>(problem, options);
+    case Mantissa::Bits192:
+      return extended::run_motion<Real<192>>(problem, options);
+    case Mantissa::Bits384:
+      return extended::run_motion<Real<384>>(problem, options);
+    case Mantissa::Bits448:
+      break;
   }
   return extended::run_motion<Real<448>>(problem, options);
 }
 
 double log2_rounding(Mantissa mantissa) {
   switch (mantissa) {
-    case Mantissa::Bits113: return -112;
-    case Mantissa::Bits192: return -191;
-    case Mantissa::Bits384: return -383;
-    case Mantissa::Bits448: break;
+    case Mantissa::Bits113:
+      return -112;
+    case Mantissa::Bits192:
+      return -191;
+    case Mantissa::Bits384:
+      return -383;
+    case Mantissa::Bits448:
+      break;
   }
   return -447;
 }
@@ -44,7 +52,8 @@ std::string plain(const std::string& scientific) {
   std::string digits;
   for (const char c : scientific.substr(0, e))
     if (c >= '0' && c <= '9') digits += c;
-  if (exponent < -5 || exponent >= static_cast<int>(digits.size())) return fmt::format("{}e{}", scientific.substr(0, e), exponent);
+  if (exponent < -5 || exponent >= static_cast<int>(digits.size()))
+    return fmt::format("{}e{}", scientific.substr(0, e), exponent);
   if (exponent < 0) digits.insert(0, static_cast<std::size_t>(-exponent), '0');
   const auto point = static_cast<std::size_t>(std::max(exponent, 0)) + 1;
   if (point < digits.size()) digits.insert(point, ".");
@@ -77,7 +86,8 @@ AgreedNumber agreed_number(const std::string& rough, const std::string& fine, in
   if (difference != 0) {
     const std::string leading = value.str(1, std::ios_base::scientific);
     const int exponent = std::stoi(leading.substr(leading.find('e') + 1));
-    digits = std::min(digits, static_cast<int>(std::floor(exponent + 1 - (1 + extended::log2_size(difference)) * std::log10(2.0))));
+    digits = std::min(
+        digits, static_cast<int>(std::floor(exponent + 1 - (1 + extended::log2_size(difference)) * std::log10(2.0))));
   }
   if (digits < 1) return {"0", 0, out.difference};
   out.digits = digits;

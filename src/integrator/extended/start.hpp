@@ -5,12 +5,13 @@
 
 namespace maupertuis::extended {
 
-/// Brings a start that is on the constraints to rounding of double onto them to rounding of T: what is fixed is kept, the rest makes the
-/// smallest change, of positions in the metric of the diagonal of M, of velocities in that of M.
+/// Brings a start that is on the constraints to rounding of double onto them to rounding of T: what is fixed is kept,
+/// the rest makes the smallest change, of positions in the metric of the diagonal of M, of velocities in that of M.
 template <class T>
 class Start {
  public:
-  Start(Workspace<T>& work, const ExtendedProblem& problem) : work_(work), problem_(problem), n_(problem.kernel.freedoms()) {}
+  Start(Workspace<T>& work, const ExtendedProblem& problem)
+      : work_(work), problem_(problem), n_(problem.kernel.freedoms()) {}
 
   void improve(const T& t, std::vector<T>& q, std::vector<T>& v) {
     for (const bool positions : {true, false})

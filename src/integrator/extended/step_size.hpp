@@ -5,17 +5,19 @@
 #include <cmath>
 #include <limits>
 
-/// The step control of integrator/taylor/step_size.cpp, in logarithms of base 2: coefficients of order 100 leave the range of double.
+/// The step control of integrator/taylor/step_size.cpp, in logarithms of base 2: coefficients of order 100 leave the
+/// range of double.
 namespace maupertuis::extended {
 
 struct StepControl {
-  int order = 40;            // of the polynomial of q̇
-  double log2_factor = -3;   // of the estimated radius of convergence
+  int order = 40;           // of the polynomial of q̇
+  double log2_factor = -3;  // of the estimated radius of convergence
 };
 
 inline StepControl step_control(double log2_tolerance, int order) {
   StepControl control;
-  control.order = order > 0 ? std::max(order, 2) : std::max(2, static_cast<int>(std::ceil(-0.5 * log2_tolerance * std::log(2.0) + 1)));
+  control.order = order > 0 ? std::max(order, 2)
+                            : std::max(2, static_cast<int>(std::ceil(-0.5 * log2_tolerance * std::log(2.0) + 1)));
   control.log2_factor = log2_tolerance / control.order;
   return control;
 }
@@ -74,10 +76,11 @@ class StepSize {
   double factor_;
 };
 
-/// log₂ of a length up to log₂ h, so short that the series of the multipliers converge: step_within_multipliers of integrator/taylor, its constants in
-/// units of the digits of T.
+/// log₂ of a length up to log₂ h, so short that the series of the multipliers converge: step_within_multipliers of
+/// integrator/taylor, its constants in units of the digits of T.
 template <class T>
-double within_multipliers(const Workspace<T>& work, std::size_t freedoms, std::size_t constraints, int order, double h) {
+double within_multipliers(const Workspace<T>& work, std::size_t freedoms, std::size_t constraints, int order,
+                          double h) {
   const double converged = 0.4 * log2_size(epsilon<T>());
   const double silent = 0.9 * log2_size(epsilon<T>());
   constexpr int most_cuts = 200;
@@ -85,7 +88,8 @@ double within_multipliers(const Workspace<T>& work, std::size_t freedoms, std::s
   const auto largest = [&](std::size_t j, int begin, int end, double length) {
     double size = -std::numeric_limits<double>::infinity();
     for (int k = begin; k < end; ++k)
-      size = std::max(size, std::log2((k + 1.0) * (k + 2.0)) + log2_size(work.coordinate(k + 2)[freedoms + j]) + k * length);
+      size = std::max(size,
+                      std::log2((k + 1.0) * (k + 2.0)) + log2_size(work.coordinate(k + 2)[freedoms + j]) + k * length);
     return size;
   };
   const auto first = [&](std::size_t j, double length) { return largest(j, 0, std::min(4, order), length); };

@@ -12,7 +12,8 @@
 namespace maupertuis::extended {
 
 /// TaylorStepper over T (docs/design/taylor_step.md): expand, project onto the constraints, decide the sides of switch
-/// functions that begin at a zero, choose a length, shorten it to the first crossing, advance, and look whether the equations hold at the end.
+/// functions that begin at a zero, choose a length, shorten it to the first crossing, advance, and look whether the
+/// equations hold at the end.
 template <class T>
 class Stepper {
  public:
@@ -39,7 +40,7 @@ class Stepper {
  private:
   using Polynomial = taylor::ScaledPolynomialOf<T>;
   struct Crossing {
-    T x = T(1);                          // fraction of the step
+    T x = T(1);  // fraction of the step
     bool found = false;
     std::vector<std::size_t> roots;      // switches, then the event
     std::vector<taylor::Watched> after;  // the same, as the step leaves them
@@ -74,19 +75,19 @@ class Stepper {
   std::size_t n_;
   T t_, begin_;
   std::vector<T> q_, v_, q_begin_, v_begin_;
-  std::vector<T> polynomial_;            // [order + 2][n] of the last step
+  std::vector<T> polynomial_;                                 // [order + 2][n] of the last step
   double length_ = std::numeric_limits<double>::quiet_NaN();  // log₂ of the last length that the control chose
-  double restraint_ = 0;                 // log₂ of what the lengths are multiplied by
+  double restraint_ = 0;                                      // log₂ of what the lengths are multiplied by
   bool first_ = true;
   std::size_t steps_ = 0, switches_ = 0;
-  std::size_t rejected_ = 0;             // steps that were taken back
+  std::size_t rejected_ = 0;  // steps that were taken back
   std::vector<taylor::Watched> switch_state_, event_state_;
   taylor::SafeLength safe_;
   ScaledRows<T> rows_;
   std::vector<double> rough_constants_;
-  std::vector<double> rates_;            // [n] largest |q̇| and h |q̈| so far
+  std::vector<double> rates_;  // [n] largest |q̇| and h |q̈| so far
   std::optional<taylor::RootSearchOf<T>> roots_;
-  int stuck_ = 0;                        // crossings in a row that did not move time
+  int stuck_ = 0;  // crossings in a row that did not move time
 };
 
 }  // namespace maupertuis::extended

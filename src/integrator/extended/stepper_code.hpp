@@ -6,10 +6,18 @@
 namespace maupertuis::extended {
 
 template <class T>
-Stepper<T>::Stepper(const Kernel& kernel, std::span<const T> parameters, const ExtendedOptions& options, double log2_tolerance)
-    : kernel_(kernel), options_(options), log2_tolerance_(log2_tolerance), control_(step_control(log2_tolerance, options.order)),
-      work_(kernel, control_.order), probe_(kernel, 1), n_(kernel.freedoms()), switch_state_(kernel.switches().size()),
-      event_state_(kernel.events()), safe_(work_.program(), control_.order, 1e4 * std::exp2(log2_tolerance)) {
+Stepper<T>::Stepper(const Kernel& kernel, std::span<const T> parameters, const ExtendedOptions& options,
+                    double log2_tolerance)
+    : kernel_(kernel),
+      options_(options),
+      log2_tolerance_(log2_tolerance),
+      control_(step_control(log2_tolerance, options.order)),
+      work_(kernel, control_.order),
+      probe_(kernel, 1),
+      n_(kernel.freedoms()),
+      switch_state_(kernel.switches().size()),
+      event_state_(kernel.events()),
+      safe_(work_.program(), control_.order, 1e4 * std::exp2(log2_tolerance)) {
   if (watches()) {
     std::vector<Slot> slots = work_.program().switch_slots;
     slots.insert(slots.end(), work_.program().events.begin(), work_.program().events.end());
@@ -42,8 +50,9 @@ void Stepper<T>::start(const T& t, std::vector<T> q, std::vector<T> v) {
 template <class T>
 typename Stepper<T>::Outcome Stepper<T>::failure(KernelStatus status) const {
   if (status == KernelStatus::SingularMass)
-    return {StepEnding::SingularMass, "The mass matrix is singular here: the equations do not determine the acceleration of " +
-                                          kernel_.coordinate_name(work_.singular_coordinate()) + "."};
+    return {StepEnding::SingularMass,
+            "The mass matrix is singular here: the equations do not determine the acceleration of " +
+                kernel_.coordinate_name(work_.singular_coordinate()) + "."};
   if (status == KernelStatus::Contradiction)
     return {StepEnding::SingularConstraints, "The constraints are singular here: what " +
                                                  kernel_.constraint_name(work_.contradicting_constraint()) +
@@ -77,12 +86,14 @@ T Stepper<T>::constraint_error() const {
     relative(work_.constraint_value(j), place + h * rate);
     // A rate that moves φ by less than its rounding within the step does not count.
     const T unseen = h > 0 ? T(64 * epsilon<T>() * place / h) : T(0);
-    if (abs(work_.constraint_rate(j)) > unseen) relative(work_.constraint_rate(j), work_.constraint_rate_scale(j) + rate);
+    if (abs(work_.constraint_rate(j)) > unseen)
+      relative(work_.constraint_rate(j), work_.constraint_rate_scale(j) + rate);
   }
   return largest;
 }
 
-/// Brings q and q̇ back to the constraints, by the factors of the expansion; the motion is expanded anew while that helps.
+/// Brings q and q̇ back to the constraints, by the factors of the expansion; the motion is expanded anew while that
+/// helps.
 template <class T>
 std::optional<typename Stepper<T>::Outcome> Stepper<T>::project() {
   const T rounding = 64 * epsilon<T>(), allowed = epsilon_to<T>(0.45);
@@ -123,8 +134,8 @@ void Stepper<T>::set_sides(Workspace<T>& work) const {
   work.set_branches(sides);
 }
 
-/// Signs of the switch functions at the start, zeros left open: enough for the values there. A function within another comes before it; forces
-/// may have no value until all sides are right.
+/// Signs of the switch functions at the start, zeros left open: enough for the values there. A function within another
+/// comes before it; forces may have no value until all sides are right.
 template <class T>
 void Stepper<T>::choose_first_sides() {
   bool changed = !switch_state_.empty();
@@ -159,11 +170,15 @@ std::optional<typename Stepper<T>::Outcome> Stepper<T>::decide_sides(const T& bo
     return judged_length(bound);
   });
   switch (chooser.decide(judged_length(bound))) {
-    case Chooser::Outcome::Decided: return std::nullopt;
-    case Chooser::Outcome::Failed: return failure(KernelStatus::NonFinite);
-    case Chooser::Outcome::Sliding: break;
+    case Chooser::Outcome::Decided:
+      return std::nullopt;
+    case Chooser::Outcome::Failed:
+      return failure(KernelStatus::NonFinite);
+    case Chooser::Outcome::Sliding:
+      break;
   }
-  return Outcome{StepEnding::Sliding, "Both sides of a switch push the motion back to it, so that it would slide along the switch."};
+  return Outcome{StepEnding::Sliding,
+                 "Both sides of a switch push the motion back to it, so that it would slide along the switch."};
 }
 
 /// See TaylorStepper::Impl::begins_past_root.
@@ -203,7 +218,8 @@ typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) {
     if (is_switch && watched.side == 0) continue;  // it vanishes along the motion
     if (!is_switch && begins_past_root(i - count, h, watched)) note(first, T(0), i, together);
     const T until = std::min(T(1), T(first.x * (1 + together) + together));
-    const auto root = roots_->first(is_switch ? work_.program().switch_slots[i] : work_.program().events[i - count], watched, until, !is_switch, is_switch);
+    const auto root = roots_->first(is_switch ? work_.program().switch_slots[i] : work_.program().events[i - count],
+                                    watched, until, !is_switch, is_switch);
     if (root) note(first, root->x, i, together);
   }
   // A step of no length leaves the others where they were.
@@ -219,7 +235,8 @@ typename Stepper<T>::Crossing Stepper<T>::first_crossing(const T& h) {
 template <class T>
 void Stepper<T>::leave(const Crossing& crossing) {
   const std::size_t count = switch_state_.size();
-  for (std::size_t i = 0; i < crossing.after.size(); ++i) (i < count ? switch_state_[i] : event_state_[i - count]) = crossing.after[i];
+  for (std::size_t i = 0; i < crossing.after.size(); ++i)
+    (i < count ? switch_state_[i] : event_state_[i - count]) = crossing.after[i];
   for (const std::size_t i : crossing.roots) switches_ += i < count;
 }
 
@@ -228,7 +245,8 @@ template <class T>
 std::optional<typename Stepper<T>::Outcome> Stepper<T>::advance(const T& bound, const T& h, bool reaches) {
   const Crossing crossing = first_crossing(h);
   if (crossing.found && stuck_ >= 100)
-    return Outcome{StepEnding::Sliding, "Switches follow each other in no time: the motion has come to slide along a switch."};
+    return Outcome{StepEnding::Sliding,
+                   "Switches follow each other in no time: the motion has come to slide along a switch."};
   const T tau = h * crossing.x;
   state_after(tau, q_, v_);
   t_ = reaches && !crossing.found ? bound : T(begin_ + tau);
@@ -237,7 +255,9 @@ std::optional<typename Stepper<T>::Outcome> Stepper<T>::advance(const T& bound, 
   leave(crossing);
   first_ = false;
   ++steps_;
-  return Outcome{StepEnding::None, {}, std::any_of(crossing.roots.begin(), crossing.roots.end(), [&](std::size_t i) { return i >= switch_state_.size(); })};
+  return Outcome{StepEnding::None, {}, std::any_of(crossing.roots.begin(), crossing.roots.end(), [&](std::size_t i) {
+                   return i >= switch_state_.size();
+                 })};
 }
 
 /// The end of a step as a check: see integrator/taylor/end_check.hpp. The mode is that of the step.
@@ -250,7 +270,8 @@ bool Stepper<T>::equations_hold(const T& tau) {
   bool good = true;
   for (std::size_t i = 0; i < n_; ++i) {
     T by_polynomial = T(0);
-    for (int k = control_.order + 1; k >= 2; --k) by_polynomial = by_polynomial * tau + T(k * (k - 1)) * polynomial_[static_cast<std::size_t>(k) * n_ + i];
+    for (int k = control_.order + 1; k >= 2; --k)
+      by_polynomial = by_polynomial * tau + T(k * (k - 1)) * polynomial_[static_cast<std::size_t>(k) * n_ + i];
     here[i] = probe_.acceleration(i);
     off[i] = abs(by_polynomial - here[i]);
     good = good && off[i] <= allowed * std::max({T(T(rates_[i]) / abs(tau)), T(abs(here[i])), T(1e-40)});
@@ -260,14 +281,16 @@ bool Stepper<T>::equations_hold(const T& tau) {
   take_rough_constants();
   safe_.disks().begin(rows_.of(probe_.coordinate(0), probe_.row_stride(), 1, 0));
   safe_.set_constants(rough_constants_.data());
-  const std::vector<double> of_values = taylor::acceleration_roundings(taylor::bordered_matrix(probe_, n_, kernel_.constraints()), n_, kernel_.constraints(),
-                                                                       safe_.disks(), static_cast<double>(abs(tau)), 1.0);
+  const std::vector<double> of_values =
+      taylor::acceleration_roundings(taylor::bordered_matrix(probe_, n_, kernel_.constraints()), n_,
+                                     kernel_.constraints(), safe_.disks(), static_cast<double>(abs(tau)), 1.0);
   std::vector<T> q = q_, v = v_;
   for (std::size_t i = 0; i < n_; ++i) q[i] *= 1 + (i % 2 == 0 ? 1 : -1) * epsilon<T>(), v[i] *= 1 + epsilon<T>();
   if (probe_.evaluate(T(t_ * (1 + epsilon<T>())), q, v) != KernelStatus::Ok) return false;
   for (std::size_t i = 0; i < n_; ++i) {
     const T rounding = 64 * (abs(probe_.acceleration(i) - here[i]) + epsilon<T>() * (abs(here[i]) + T(of_values[i])));
-    if (!(off[i] <= allowed * std::max({T(T(rates_[i]) / abs(tau)), T(abs(here[i])), T(1e-40)}) + rounding)) return false;
+    if (!(off[i] <= allowed * std::max({T(T(rates_[i]) / abs(tau)), T(abs(here[i])), T(1e-40)}) + rounding))
+      return false;
   }
   return true;
 }
@@ -275,7 +298,8 @@ bool Stepper<T>::equations_hold(const T& tau) {
 template <class T>
 void Stepper<T>::take_rough_constants() {
   rough_constants_.clear();
-  for (std::size_t i = 0; i < work_.program().constants.size(); ++i) rough_constants_.push_back(static_cast<double>(work_.constants()[i]));
+  for (std::size_t i = 0; i < work_.program().constants.size(); ++i)
+    rough_constants_.push_back(static_cast<double>(work_.constants()[i]));
 }
 
 /// log₂ of a length that every value of the program allows.
@@ -283,13 +307,15 @@ template <class T>
 double Stepper<T>::safe_length(double log2_wanted, double log2_left) {
   const double log2_most = std::min(log2_wanted, log2_left), most = std::exp2(log2_most);
   for (std::size_t i = 0; i < n_; ++i)
-    rates_[i] = std::max({rates_[i], std::abs(static_cast<double>(v_[i])), most * std::abs(static_cast<double>(work_.acceleration(i)))});
+    rates_[i] = std::max(
+        {rates_[i], std::abs(static_cast<double>(v_[i])), most * std::abs(static_cast<double>(work_.acceleration(i)))});
   if (!safe_.is_needed() || !std::isfinite(log2_most) || most == 0) return log2_wanted;
   if (safe_.wants_momenta(rates_)) safe_.set_momenta(rates_, work_);
   take_rough_constants();
   safe_.set_constants(rough_constants_.data());
-  const double safe = safe_.within(rows_.of(work_.coordinate(0), work_.row_stride(), control_.order, static_cast<int>(std::floor(log2_most))),
-                                   static_cast<double>(t_), std::exp2(log2_wanted), std::exp2(log2_left));
+  const double safe = safe_.within(
+      rows_.of(work_.coordinate(0), work_.row_stride(), control_.order, static_cast<int>(std::floor(log2_most))),
+      static_cast<double>(t_), std::exp2(log2_wanted), std::exp2(log2_left));
   return safe >= std::exp2(log2_wanted) ? log2_wanted : std::log2(safe);
 }
 
@@ -300,7 +326,8 @@ void Stepper<T>::keep_polynomial() {
   q_begin_ = q_;
   v_begin_ = v_;
   for (int k = 0; k <= control_.order + 1; ++k)
-    std::copy_n(work_.coordinate(k), n_, polynomial_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(k) * n_));
+    std::copy_n(work_.coordinate(k), n_,
+                polynomial_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(k) * n_));
 }
 
 /// Horner's rule for the increments alone: they are small against q and q̇.
@@ -322,7 +349,8 @@ void Stepper<T>::state_after(const T& tau, std::vector<T>& q, std::vector<T>& v)
 template <class T>
 typename Stepper<T>::Outcome Stepper<T>::step(const T& bound) {
   if (t_ == bound) return {};
-  if (options_.interrupt && options_.interrupt->load(std::memory_order_relaxed)) return {StepEnding::Interrupted, "The run was interrupted."};
+  if (options_.interrupt && options_.interrupt->load(std::memory_order_relaxed))
+    return {StepEnding::Interrupted, "The run was interrupted."};
   if (steps_ >= options_.maximum_steps) return {StepEnding::TooManySteps, "The run used up its steps."};
   if (const auto stopped = expand(bound)) return *stopped;
   const T left = bound - t_;
@@ -334,7 +362,8 @@ typename Stepper<T>::Outcome Stepper<T>::step(const T& bound) {
   keep_polynomial();
   for (;; chosen = std::min(chosen, log2_size(left)) - 1) {
     if (!(chosen > 1 + log2_size(epsilon<T>()) + log2_size(t_)) || chosen < -100'000)
-      return {StepEnding::StepUnderflow, "The steps shrink below the resolution of time: a force grows without bound, as in a collision."};
+      return {StepEnding::StepUnderflow,
+              "The steps shrink below the resolution of time: a force grows without bound, as in a collision."};
     const bool reaches = chosen >= log2_size(left);
     const T h = reaches ? left : left > 0 ? exp2_of<T>(chosen) : T(-exp2_of<T>(chosen));
     if (const auto outcome = advance(bound, h, reaches)) return *outcome;
@@ -359,7 +388,8 @@ ExtendedSample Stepper<T>::sample(const T& t) {
   out.reached = true;
   out.t = text_of(t);
   for (std::size_t i = 0; i < n_; ++i) out.q.push_back(text_of(q[i])), out.v.push_back(text_of(v[i]));
-  for (std::size_t i = 0; i < kernel_.observables(); ++i) out.observables.push_back(ok ? text_of(probe_.observable(i)) : std::string());
+  for (std::size_t i = 0; i < kernel_.observables(); ++i)
+    out.observables.push_back(ok ? text_of(probe_.observable(i)) : std::string());
   for (std::size_t i = 0; i < kernel_.constraints(); ++i)
     out.multipliers.push_back(ok && probe_.multiplier_is_determined(i) ? text_of(probe_.multiplier(i)) : std::string());
   return out;

@@ -5,7 +5,9 @@
 namespace maupertuis {
 
 LinearizedRows::LinearizedRows(const DifferentiableKernel& kernel, std::span<const double> parameters)
-    : kernel_(kernel), values_work_(kernel.values), all_work_(kernel.values_and_entries),
+    : kernel_(kernel),
+      values_work_(kernel.values),
+      all_work_(kernel.values_and_entries),
       out_(kernel.values_and_entries.outputs()) {
   values_work_.set_parameters(parameters);
   all_work_.set_parameters(parameters);
@@ -25,7 +27,8 @@ void LinearizedRows::block(std::size_t first, Eigen::Ref<Eigen::MatrixXd> block)
   for (std::size_t k = 0; k < kernel_.entries.size(); ++k) {
     const JacobianEntry& entry = kernel_.entries[k];
     if (entry.column < first || entry.column >= first + columns) continue;
-    block(static_cast<Eigen::Index>(entry.row), static_cast<Eigen::Index>(entry.column - first)) = out_[kernel_.size() + k];
+    block(static_cast<Eigen::Index>(entry.row), static_cast<Eigen::Index>(entry.column - first)) =
+        out_[kernel_.size() + k];
   }
 }
 

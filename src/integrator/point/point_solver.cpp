@@ -19,13 +19,21 @@ Index index(std::size_t i) { return static_cast<Index>(i); }
 }  // namespace
 
 PointSolver::PointSolver(const MotionFunctions& functions, std::span<const double> parameters)
-    : functions_(functions), balance_(functions.balance_by_unknowns, parameters),
-      accelerations_(functions.accelerations_by_unknowns, parameters), full_balance_(functions.balance, parameters),
+    : functions_(functions),
+      balance_(functions.balance_by_unknowns, parameters),
+      accelerations_(functions.accelerations_by_unknowns, parameters),
+      full_balance_(functions.balance, parameters),
       full_accelerations_(functions.accelerations, parameters),
-      rates_(functions.rates, parameters), positions_(functions.positions, parameters),
-      scales_work_(functions.constraint_scales), n_(functions.freedoms),
-      m_(functions.constraints), point_(functions.inputs()), scales_(2 * functions.constraints), mass_(n_, n_),
-      to_forces_(n_, m_), a_matrix_(m_, n_) {
+      rates_(functions.rates, parameters),
+      positions_(functions.positions, parameters),
+      scales_work_(functions.constraint_scales),
+      n_(functions.freedoms),
+      m_(functions.constraints),
+      point_(functions.inputs()),
+      scales_(2 * functions.constraints),
+      mass_(n_, n_),
+      to_forces_(n_, m_),
+      a_matrix_(m_, n_) {
   scales_work_.set_parameters(parameters);
 }
 
@@ -141,7 +149,8 @@ bool PointSolver::move_onto(LinearizedRows& rows, std::span<double> changed, std
     const VectorXd move = unscaled(right).head(index(n_));
     const double size = move.cwiseQuotient(scale_.head(index(n_))).norm();
     if (!std::isfinite(size)) return false;
-    // The constraints are met to rounding when the corrections no longer shrink; while they are large, that is a failure.
+    // The constraints are met to rounding when the corrections no longer shrink; while they are large, that is a
+    // failure.
     const Eigen::Map<const VectorXd> now(changed.data(), index(n_));
     const double rounding = 1e-10 * now.cwiseQuotient(scale_.head(index(n_))).norm();
     if (size == 0 || size >= 0.5 * last) return size <= std::max(1e-3 * first_move, rounding);
@@ -159,8 +168,8 @@ bool PointSolver::project(double t, std::span<double> q, std::span<double> v) {
   return move_onto(positions_, q, 0) && move_onto(rates_, v, functions_.v_at(0));
 }
 
-/// |A| |q̇| over the step, by Cauchy and Schwarz in the metric of the diagonal of M; coordinates without inertia count by
-/// themselves.
+/// |A| |q̇| over the step, by Cauchy and Schwarz in the metric of the diagonal of M; coordinates without inertia count
+/// by themselves.
 double PointSolver::constraint_residual(double h) {
   double largest = 0;
   if (m_ == 0) return largest;
@@ -172,11 +181,14 @@ double PointSolver::constraint_residual(double h) {
     for (std::size_t i = 0; i < n_; ++i) {
       const double a = a_matrix_(index(k), index(i)), mass = mass_(index(i), index(i));
       const double speed = std::abs(point_[functions_.v_at(i)]) + std::abs(h * point_[functions_.a_at(i)]);
-      if (mass > 0) motion += mass * speed * speed, gradient += a * a / mass;
-      else rest += std::abs(a) * speed;
+      if (mass > 0)
+        motion += mass * speed * speed, gradient += a * a / mass;
+      else
+        rest += std::abs(a) * speed;
     }
     const double rate = std::sqrt(motion * gradient) + rest;
-    largest = std::max({largest, ratio(phi[k], scales_[k] + std::abs(h) * rate), ratio(rates[k], scales_[m_ + k] + rate)});
+    largest =
+        std::max({largest, ratio(phi[k], scales_[k] + std::abs(h) * rate), ratio(rates[k], scales_[m_ + k] + rate)});
   }
   return largest;
 }

@@ -44,7 +44,9 @@ class PointSolver {
   void forget_rows() { rows_chosen_ = false; }
   PointStatus solve(double t, std::span<const double> q, std::span<const double> v);
   std::span<const double> a() const { return {&point_[functions_.a_at(0)], functions_.freedoms}; }
-  std::span<const double> lambda() const { return {&point_[functions_.a_at(0)] + functions_.freedoms, functions_.constraints}; }
+  std::span<const double> lambda() const {
+    return {&point_[functions_.a_at(0)] + functions_.freedoms, functions_.constraints};
+  }
   /// Whether the equations determine λ_k: no dependence between rows of A involves row k.
   bool determined(std::size_t k) const { return determined_[k]; }
   /// The point (q, v, a, λ, t) of the last solve, for other kernels.
@@ -57,7 +59,8 @@ class PointSolver {
   /// Moves (q, v) by the least kinetic change onto φ = 0, then rates = 0, to rounding. False if it does not converge.
   /// Costs one solve, and nothing without constraints.
   bool project(double t, std::span<double> q, std::span<double> v);
-  /// After solve: the largest of φ and the rates, each by the sizes of its terms and by what a motion over h does to it.
+  /// After solve: the largest of φ and the rates, each by the sizes of its terms and by what a motion over h does to
+  /// it.
   double constraint_residual(double h);
   /// Takes out of (dq, dv) what is normal to the constraints at the point of the last solve.
   void make_tangent(std::span<double> dq, std::span<double> dv);
@@ -71,18 +74,18 @@ class PointSolver {
   Eigen::VectorXd unscaled(const Eigen::VectorXd& right) const;
 
   MotionFunctions functions_;
-  LinearizedRows balance_, accelerations_;        // with derivatives by a and λ
+  LinearizedRows balance_, accelerations_;            // with derivatives by a and λ
   LinearizedRows full_balance_, full_accelerations_;  // … by q and v too
   LinearizedRows rates_, positions_;
   FunctionWorkspace scales_work_;
   std::size_t n_, m_;
   std::vector<double> point_;
-  std::vector<double> scales_;      // [2m]
+  std::vector<double> scales_;  // [2m]
   bool rows_chosen_ = false;
-  std::vector<std::size_t> rows_;   // independent constraints
-  std::vector<bool> determined_;    // [m]
+  std::vector<std::size_t> rows_;  // independent constraints
+  std::vector<bool> determined_;   // [m]
   Eigen::MatrixXd mass_, to_forces_, a_matrix_, bordered_;
-  Eigen::VectorXd scale_;           // [n + rows]
+  Eigen::VectorXd scale_;  // [n + rows]
   Eigen::PartialPivLU<Eigen::MatrixXd> factored_;
 };
 

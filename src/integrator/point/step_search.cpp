@@ -9,7 +9,8 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr int most_pieces = 1500;
 constexpr double shortest = 0x1p-30;
-/// What interpolation at ten Chebyshev points adds to the best polynomial: 1 + Lebesgue's constant, and the rest of the series.
+/// What interpolation at ten Chebyshev points adds to the best polynomial: 1 + Lebesgue's constant, and the rest of the
+/// series.
 constexpr double of_interpolation = 4.0;
 
 template <std::size_t N>
@@ -43,8 +44,8 @@ double value(const Path& c, double x) {
   return sum;
 }
 
-/// Newton's divided differences, multiplied out. What rounding leaves of coefficients that vanish is taken out: on a large disk it would
-/// count.
+/// Newton's divided differences, multiplied out. What rounding leaves of coefficients that vanish is taken out: on a
+/// large disk it would count.
 Path coefficients(Path values) {
   const auto& x = StepSearch::path_nodes();
   const std::size_t n = values.size();
@@ -79,8 +80,14 @@ const std::array<double, StepSearch::path_points>& StepSearch::path_nodes() {
 }
 
 StepSearch::StepSearch(const FunctionKernel& function, std::span<const double> parameters)
-    : function_(function), work_(function), disks_(function, parameters), path_(function.inputs()), point_(function.inputs()),
-      reach_(function.inputs()), values_(function.outputs()), tails_(function.outputs()) {
+    : function_(function),
+      work_(function),
+      disks_(function, parameters),
+      path_(function.inputs()),
+      point_(function.inputs()),
+      reach_(function.inputs()),
+      values_(function.outputs()),
+      tails_(function.outputs()) {
   work_.set_parameters(parameters);
 }
 

@@ -10,9 +10,10 @@ namespace maupertuis {
 
 /// What a function does everywhere along a step, not only at the points that a method looks at.
 ///
-/// The inputs are polynomials in x ∈ [−1, 1], the step. It is cut into pieces until on each the function is a polynomial of degree 9, up to a
-/// bound that follows from a disk around the piece (FunctionDisks); the ten values on each piece are then all there is to know.
-/// A piece shorter than 2^-30 of the step is not cut again: a switch lies in it.
+/// The inputs are polynomials in x ∈ [−1, 1], the step. It is cut into pieces until on each the function is a
+/// polynomial of degree 9, up to a bound that follows from a disk around the piece (FunctionDisks); the ten values on
+/// each piece are then all there is to know. A piece shorter than 2^-30 of the step is not cut again: a switch lies in
+/// it.
 class StepSearch {
  public:
   static constexpr std::size_t path_points = 7, piece_points = 10;

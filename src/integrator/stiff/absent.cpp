@@ -26,7 +26,9 @@ double StiffStepper::constraint_residual() const { return 0; }
 bool StiffStepper::covers(double) const { return false; }
 Sample StiffStepper::sample(double) const { return {}; }
 void StiffStepper::state(double, std::span<double>, std::span<double>) const {}
-const Sample& StiffStepper::step_start() const { throw std::logic_error("this build has no stiff method; please report"); }
+const Sample& StiffStepper::step_start() const {
+  throw std::logic_error("this build has no stiff method; please report");
+}
 
 }  // namespace maupertuis
 #endif

@@ -19,11 +19,16 @@ Failure failure_of(int flag) {
     case CV_UNREC_RHSFUNC_ERR:
     case CV_RTFUNC_FAIL:
     case CV_LSETUP_FAIL:
-    case CV_ILL_INPUT: return Failure::Value;
-    case CV_TOO_MUCH_ACC: return Failure::Accuracy;
-    case CV_ERR_FAILURE: return Failure::ErrorTest;
-    case CV_CONV_FAILURE: return Failure::Convergence;
-    default: throw std::logic_error(fmt::format("the stiff method failed with code {} of CVODE; please report", flag));
+    case CV_ILL_INPUT:
+      return Failure::Value;
+    case CV_TOO_MUCH_ACC:
+      return Failure::Accuracy;
+    case CV_ERR_FAILURE:
+      return Failure::ErrorTest;
+    case CV_CONV_FAILURE:
+      return Failure::Convergence;
+    default:
+      throw std::logic_error(fmt::format("the stiff method failed with code {} of CVODE; please report", flag));
   }
 }
 
@@ -53,7 +58,9 @@ class CvodeFormula final : public Formula {
 };
 
 CvodeFormula::CvodeFormula(Motion& motion)
-    : motion_(motion), state_(motion.states(), context_), linear_(state_, context_),
+    : motion_(motion),
+      state_(motion.states(), context_),
+      linear_(state_, context_),
       memory_(require_memory(CVodeCreate(CV_BDF, context_))) {
   CVodeSetErrHandlerFn(memory_, say_nothing, nullptr);
   require_success(CVodeInit(memory_, rates, 0, state_));
@@ -119,7 +126,8 @@ Advance CvodeFormula::advance(double bound, std::span<double> y) {
   if (flag == CV_ROOT_RETURN) {
     std::vector<int> found(motion_.functions.events.outputs());
     CVodeGetRootInfo(memory_, found.data());
-    out.event = static_cast<std::size_t>(std::find_if(found.begin(), found.end(), [](int f) { return f != 0; }) - found.begin());
+    out.event = static_cast<std::size_t>(std::find_if(found.begin(), found.end(), [](int f) { return f != 0; }) -
+                                         found.begin());
   }
   return out;
 }

@@ -7,15 +7,20 @@
 namespace maupertuis::stiff {
 namespace {
 
-constexpr double unseen_errors = 10;   // of a step: what the unseen part of forces may do
-constexpr double newton = 0.4;         // of h, the factor of the rates in Newton's matrix at high order
+constexpr double unseen_errors = 10;  // of a step: what the unseen part of forces may do
+constexpr double newton = 0.4;        // of h, the factor of the rates in Newton's matrix at high order
 constexpr double pi = 3.14159265358979323846;
 
 }  // namespace
 
 ForceCheck::ForceCheck(Motion& motion)
-    : motion_(motion), search_(motion.functions.balance.values, motion.parameters), inputs_(motion.functions.inputs()),
-      path_(StepSearch::path_points * inputs_), state_(motion.states()), fitted_(motion.freedoms()), rest_(motion.freedoms()) {}
+    : motion_(motion),
+      search_(motion.functions.balance.values, motion.parameters),
+      inputs_(motion.functions.inputs()),
+      path_(StepSearch::path_points * inputs_),
+      state_(motion.states()),
+      fitted_(motion.freedoms()),
+      rest_(motion.freedoms()) {}
 
 bool ForceCheck::sees_all(const Formula& formula, double begin, double end, std::span<const double> y) {
   if (!motion_.solve(end, y)) return true;  // the next step tells

@@ -8,10 +8,10 @@
 
 namespace maupertuis::stiff {
 
-/// Backward differentiation looks at forces at the ends of steps alone: what rises and dies between them it does not know of. This
-/// check follows the forces along the formula's own polynomials of q and v, everywhere (StepSearch), with a and λ as they are at the
-/// end. What of them is no polynomial of the formula's order may change v, through Newton's matrix of the step, by ten times the error
-/// that a step may make, not by more.
+/// Backward differentiation looks at forces at the ends of steps alone: what rises and dies between them it does not
+/// know of. This check follows the forces along the formula's own polynomials of q and v, everywhere (StepSearch), with
+/// a and λ as they are at the end. What of them is no polynomial of the formula's order may change v, through Newton's
+/// matrix of the step, by ten times the error that a step may make, not by more.
 class ForceCheck {
  public:
   explicit ForceCheck(Motion& motion);

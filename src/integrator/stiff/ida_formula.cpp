@@ -22,13 +22,18 @@ Failure failure_of(int flag) {
     case IDA_QRHS_FAIL:
     case IDA_FIRST_QRHS_ERR:
     case IDA_REP_QRHS_ERR:
-    case IDA_ILL_INPUT: return Failure::Value;
-    case IDA_TOO_MUCH_ACC: return Failure::Accuracy;
-    case IDA_ERR_FAIL: return Failure::ErrorTest;
+    case IDA_ILL_INPUT:
+      return Failure::Value;
+    case IDA_TOO_MUCH_ACC:
+      return Failure::Accuracy;
+    case IDA_ERR_FAIL:
+      return Failure::ErrorTest;
     case IDA_CONV_FAIL:
     case IDA_LSETUP_FAIL:
-    case IDA_LSOLVE_FAIL: return Failure::Convergence;
-    default: throw std::logic_error(fmt::format("the stiff method failed with code {} of IDA; please report", flag));
+    case IDA_LSOLVE_FAIL:
+      return Failure::Convergence;
+    default:
+      throw std::logic_error(fmt::format("the stiff method failed with code {} of IDA; please report", flag));
   }
 }
 
@@ -46,7 +51,8 @@ class IdaFormula final : public Formula {
  private:
   // Called by IDA with `this` as user data; 0: done, 1: try a shorter step.
   static int residual(double t, N_Vector y, N_Vector rate, N_Vector out, void* self);
-  static int jacobian(double t, double c, N_Vector y, N_Vector rate, N_Vector, SUNMatrix out, void* self, N_Vector, N_Vector, N_Vector);
+  static int jacobian(double t, double c, N_Vector y, N_Vector rate, N_Vector, SUNMatrix out, void* self, N_Vector,
+                      N_Vector, N_Vector);
   static int weights(N_Vector y, N_Vector weight, void* self);
   static int roots(double t, N_Vector y, N_Vector, double* out, void* self);
   static int integrands(double t, N_Vector y, N_Vector, N_Vector out, void* self);
@@ -66,9 +72,15 @@ class IdaFormula final : public Formula {
 };
 
 IdaFormula::IdaFormula(Motion& motion)
-    : motion_(motion), system_(motion), state_(system_.size(), context_), rate_(system_.size(), context_),
-      differential_(system_.size(), context_), integrals_(integrals(), context_), weight_(system_.size(), context_),
-      linear_(state_, context_), memory_(require_memory(IDACreate(context_))) {
+    : motion_(motion),
+      system_(motion),
+      state_(system_.size(), context_),
+      rate_(system_.size(), context_),
+      differential_(system_.size(), context_),
+      integrals_(integrals(), context_),
+      weight_(system_.size(), context_),
+      linear_(state_, context_),
+      memory_(require_memory(IDACreate(context_))) {
   IDASetErrHandlerFn(memory_, say_nothing, nullptr);
   require_success(IDAInit(memory_, residual, 0, state_, rate_));
   require_success(IDASetUserData(memory_, this));
@@ -80,8 +92,8 @@ IdaFormula::IdaFormula(Motion& motion)
   std::fill(kinds.begin(), kinds.end(), 1.0);
   require_success(IDASetId(memory_, differential_));
   require_success(IDASetSuppressAlg(memory_, SUNTRUE));
-  // What Newton's iteration leaves of the constraints returns as noise of v / step: a third of the tolerance, IDA's own choice,
-  // doubles the number of steps.
+  // What Newton's iteration leaves of the constraints returns as noise of v / step: a third of the tolerance, IDA's own
+  // choice, doubles the number of steps.
   require_success(IDASetNonlinConvCoef(memory_, 0.03));
   require_success(IDASetMaxErrTestFails(memory_, 30));  // the first step is a guess
   require_success(IDASetMaxConvFails(memory_, 30));
@@ -99,8 +111,8 @@ int IdaFormula::residual(double t, N_Vector y, N_Vector rate, N_Vector out, void
   return finite ? 0 : 1;
 }
 
-int IdaFormula::jacobian(double t, double c, N_Vector y, N_Vector rate, N_Vector, SUNMatrix out, void* self, N_Vector, N_Vector,
-                         N_Vector) {
+int IdaFormula::jacobian(double t, double c, N_Vector y, N_Vector rate, N_Vector, SUNMatrix out, void* self, N_Vector,
+                         N_Vector, N_Vector) {
   IdaFormula& formula = *static_cast<IdaFormula*>(self);
   const auto size = SUNDenseMatrix_Rows(out);
   Eigen::Map<Eigen::MatrixXd> matrix(SUNDenseMatrix_Data(out), size, size);
@@ -143,8 +155,8 @@ void IdaFormula::restart(double t, std::span<const double> y) {
   first_step_ = guess_first_step();
 }
 
-/// A tenth of the time in which q bends away from its tangent by what a step may err. IDA's own guess looks at the rates of
-/// the velocities too, and those of a system at rest make it start with steps that change nothing.
+/// A tenth of the time in which q bends away from its tangent by what a step may err. IDA's own guess looks at the
+/// rates of the velocities too, and those of a system at rest make it start with steps that change nothing.
 double IdaFormula::guess_first_step() {
   const auto weight = values(weight_), rate = values(rate_);
   motion_.weigh(values(state_), weight);
@@ -170,14 +182,15 @@ Advance IdaFormula::advance(double bound, std::span<double> y) {
   if (flag == IDA_ROOT_RETURN) {
     std::vector<int> found(motion_.functions.events.outputs());
     IDAGetRootInfo(memory_, found.data());
-    out.event = static_cast<std::size_t>(std::find_if(found.begin(), found.end(), [](int f) { return f != 0; }) - found.begin());
+    out.event = static_cast<std::size_t>(std::find_if(found.begin(), found.end(), [](int f) { return f != 0; }) -
+                                         found.begin());
   }
   return settle(out, y);
 }
 
-/// Projects what is given out. The history stays as it is: its constraints are solved in every step, so that it does not drift,
-/// and the projection moves it by less than a step may err. Where it would move it by more, or onto other rows of the
-/// constraints, the history ends.
+/// Projects what is given out. The history stays as it is: its constraints are solved in every step, so that it does
+/// not drift, and the projection moves it by less than a step may err. Where it would move it by more, or onto other
+/// rows of the constraints, the history ends.
 Advance IdaFormula::settle(Advance out, std::span<double> y) {
   interpolate(out.reached, y);
   const std::vector<double> solved(y.begin(), y.end());
@@ -188,7 +201,8 @@ Advance IdaFormula::settle(Advance out, std::span<double> y) {
   const auto weight = values(weight_);
   require_success(IDAGetErrWeights(memory_, weight_));
   double move = 0;
-  for (std::size_t i = 0; i < 2 * motion_.freedoms(); ++i) move = std::max(move, std::abs((y[i] - solved[i]) * weight[i]));
+  for (std::size_t i = 0; i < 2 * motion_.freedoms(); ++i)
+    move = std::max(move, std::abs((y[i] - solved[i]) * weight[i]));
   out.history_ends = move > 1 || motion_.at_point.rows() != rows_;
   return out;
 }

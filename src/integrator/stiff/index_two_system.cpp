@@ -14,11 +14,17 @@ Index index(std::size_t i) { return static_cast<Index>(i); }
 }  // namespace
 
 IndexTwoSystem::IndexTwoSystem(const Motion& motion)
-    : functions_(motion.functions), n_(functions_.freedoms), m_(functions_.constraints),
-      balance_(functions_.balance, motion.parameters), rates_(functions_.rates, motion.parameters),
+    : functions_(motion.functions),
+      n_(functions_.freedoms),
+      m_(functions_.constraints),
+      balance_(functions_.balance, motion.parameters),
+      rates_(functions_.rates, motion.parameters),
       positions_(functions_.positions, motion.parameters),
-      accelerations_(functions_.accelerations_by_unknowns, motion.parameters), velocity_row_(m_), position_row_(m_),
-      point_(functions_.inputs()), a_(m_, n_) {}
+      accelerations_(functions_.accelerations_by_unknowns, motion.parameters),
+      velocity_row_(m_),
+      position_row_(m_),
+      point_(functions_.inputs()),
+      a_(m_, n_) {}
 
 void IndexTwoSystem::set_rows(std::span<const std::size_t> rows) {
   velocity_row_.assign(m_, false);
@@ -36,7 +42,8 @@ void IndexTwoSystem::set_point(double t, std::span<const double> y, std::span<co
   point_.back() = t;
 }
 
-bool IndexTwoSystem::residual(double t, std::span<const double> y, std::span<const double> rate, std::span<double> out) {
+bool IndexTwoSystem::residual(double t, std::span<const double> y, std::span<const double> rate,
+                              std::span<double> out) {
   set_point(t, y, rate);
   const auto lambda = y.subspan(2 * n_, m_), mu = y.subspan(2 * n_ + m_, m_);
   accelerations_.linearize(point_);

@@ -7,7 +7,8 @@ namespace maupertuis::stiff {
 ///
 ///     q̇ − v − Aᵀμ = 0,   M v̇ + h − Aᵀλ = 0,   dφ/dt or ψ = 0,   φ = 0
 ///
-/// For a constraint between velocities the last row is μ = 0; for redundant constraints the last two are λ = 0 and μ = 0.
+/// For a constraint between velocities the last row is μ = 0; for redundant constraints the last two are λ = 0 and μ =
+/// 0.
 class IndexTwoSystem {
  public:
   explicit IndexTwoSystem(const Motion& motion);
@@ -18,7 +19,8 @@ class IndexTwoSystem {
   /// False where a value is infinite or undefined.
   bool residual(double t, std::span<const double> y, std::span<const double> rate, std::span<double> out);
   /// c ∂F/∂ẏ + ∂F/∂y
-  bool jacobian(double t, double c, std::span<const double> y, std::span<const double> rate, Eigen::Ref<Eigen::MatrixXd> out);
+  bool jacobian(double t, double c, std::span<const double> y, std::span<const double> rate,
+                Eigen::Ref<Eigen::MatrixXd> out);
 
  private:
   /// (q, v, a = v̇, λ, t)
@@ -27,7 +29,7 @@ class IndexTwoSystem {
   const MotionFunctions& functions_;
   std::size_t n_, m_;
   LinearizedRows balance_, rates_, positions_, accelerations_;  // the last for A alone
-  std::vector<bool> velocity_row_, position_row_;              // [m] whether λ and μ of a row are unknowns
+  std::vector<bool> velocity_row_, position_row_;               // [m] whether λ and μ of a row are unknowns
   std::vector<double> point_;
   Eigen::MatrixXd a_, block_, moved_;
 };

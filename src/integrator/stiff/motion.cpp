@@ -6,7 +6,11 @@
 namespace maupertuis::stiff {
 
 Motion::Motion(const MotionFunctions& f, std::span<const double> values, const StiffOptions& o)
-    : functions(f), options(o), parameters(values.begin(), values.end()), at_point(f, values), events_(f.events),
+    : functions(f),
+      options(o),
+      parameters(values.begin(), values.end()),
+      at_point(f, values),
+      events_(f.events),
       integrands_(f.integrands) {
   events_.set_parameters(values);
   integrands_.set_parameters(values);

@@ -16,19 +16,24 @@ class Motion {
   std::size_t freedoms() const { return functions.freedoms; }
   std::size_t states() const { return 2 * functions.freedoms + functions.integrands.outputs(); }
   std::span<const double> q_of(std::span<const double> y) const { return y.first(functions.freedoms); }
-  std::span<const double> v_of(std::span<const double> y) const { return y.subspan(functions.freedoms, functions.freedoms); }
+  std::span<const double> v_of(std::span<const double> y) const {
+    return y.subspan(functions.freedoms, functions.freedoms);
+  }
 
   /// Accelerations and multipliers at y; the status is kept for the reason of a failure.
   bool solve(double t, std::span<const double> y);
   /// Puts (q, v) onto the constraints, to rounding.
-  bool project(double t, std::span<double> y) { return at_point.project(t, y.first(freedoms()), y.subspan(freedoms(), freedoms())); }
+  bool project(double t, std::span<double> y) {
+    return at_point.project(t, y.first(freedoms()), y.subspan(freedoms(), freedoms()));
+  }
   /// At the point of the last solve.
   void integrand_values(std::span<double> out) { integrands_.evaluate(at_point.point(), out); }
   void event_values(std::span<double> out) { events_.evaluate(at_point.point(), out); }
 
   void forget_sizes() { sizes_.assign(2 * freedoms(), 0); }
-  /// The reciprocals of the errors that a step may make. Each coordinate and velocity is measured against its own size, which
-  /// it keeps for a while when it passes through zero; whatever follows v in y has no part in the control of the error.
+  /// The reciprocals of the errors that a step may make. Each coordinate and velocity is measured against its own size,
+  /// which it keeps for a while when it passes through zero; whatever follows v in y has no part in the control of the
+  /// error.
   bool weigh(std::span<const double> y, std::span<double> weights);
   /// What a step may err in velocity i.
   double velocity_error(std::size_t i) const { return options.tolerance * sizes_[freedoms() + i] + options.absolute; }

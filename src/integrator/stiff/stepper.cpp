@@ -20,8 +20,12 @@ bool has_stiff_method() { return true; }
 /// States are q [n], v [n], integrals [w].
 struct StiffStepper::Impl {
   Impl(const MotionFunctions& functions, std::span<const double> parameters, const StiffOptions& options)
-      : n(functions.freedoms), motion(functions, parameters, options), observables(functions.observables),
-        formula(functions.constraints > 0 ? stiff::index_two(motion) : stiff::explicit_rates(motion)), check(motion), now(motion.states()) {
+      : n(functions.freedoms),
+        motion(functions, parameters, options),
+        observables(functions.observables),
+        formula(functions.constraints > 0 ? stiff::index_two(motion) : stiff::explicit_rates(motion)),
+        check(motion),
+        now(motion.states()) {
     observables.set_parameters(parameters);
   }
 
@@ -56,8 +60,8 @@ struct StiffStepper::Impl {
   double t_window = 0;              // a thousand steps ago, at
   std::size_t attempts_window = 0;  // so many steps and rejections
   std::size_t steps = 0, rejected = 0;
-  double longest = 0;               // of the next step, while the one before was taken back; 0: no limit
-  double residual = 0;              // of the constraints, the largest so far
+  double longest = 0;   // of the next step, while the one before was taken back; 0: no limit
+  double residual = 0;  // of the constraints, the largest so far
   mutable Sample start_sample;
 };
 
@@ -96,11 +100,14 @@ Step StiffStepper::Impl::step(double bound) {
   Step result;
   result.begin = t;
   // Nothing happens between two neighbouring numbers.
-  const bool close = std::abs(bound - t) <= 4 * std::numeric_limits<double>::epsilon() * (std::abs(t) + std::abs(bound));
+  const bool close =
+      std::abs(bound - t) <= 4 * std::numeric_limits<double>::epsilon() * (std::abs(t) + std::abs(bound));
   stiff::Advance reached;
   std::vector<double> next = now;
-  if (close) reached.reached = bound, reached.history_ends = true;
-  else if (const auto end = advance(bound, next, reached)) return *end;
+  if (close)
+    reached.reached = bound, reached.history_ends = true;
+  else if (const auto end = advance(bound, next, reached))
+    return *end;
   const bool drifted = reached.drifted;
   t_before = t;
   before.swap(now);
@@ -114,14 +121,16 @@ Step StiffStepper::Impl::step(double bound) {
     residual = std::max(residual, motion.at_point.constraint_residual(t - t_before));
   if (stands_still(bound)) {
     result.ending = StepEnding::StepUnderflow;
-    result.reason = fmt::format("time stands still at t = {:.17g} s, so short have the steps become: a collision, an infinite force, or a "
-                                "switch with forces that push back to it from both sides, as dry friction at rest does", t);
+    result.reason = fmt::format(
+        "time stands still at t = {:.17g} s, so short have the steps become: a collision, an infinite force, or a "
+        "switch with forces that push back to it from both sides, as dry friction at rest does",
+        t);
   }
   return result;
 }
 
-/// One step of the formula in which no force acted unseen: others are taken back, and begun anew at a quarter of their length. A step
-/// that was accepted allows the next one twice its limit.
+/// One step of the formula in which no force acted unseen: others are taken back, and begun anew at a quarter of their
+/// length. A step that was accepted allows the next one twice its limit.
 std::optional<Step> StiffStepper::Impl::advance(double bound, std::vector<double>& next, stiff::Advance& reached) {
   while (true) {
     reached = formula->advance(bound, next);
@@ -146,8 +155,8 @@ std::optional<Step> StiffStepper::Impl::advance(double bound, std::vector<double
   return std::nullopt;
 }
 
-/// Over a jump of the forces, which lies within the resolution of time: what it gives there is rounding. Where one follows another without
-/// end, time stands still.
+/// Over a jump of the forces, which lies within the resolution of time: what it gives there is rounding. Where one
+/// follows another without end, time stands still.
 void StiffStepper::Impl::drift(double h, std::vector<double>& next, stiff::Advance& reached) {
   for (std::size_t i = 0; i < n; ++i) next[i] += h * now[n + i];
   reached = {};
@@ -166,7 +175,8 @@ void StiffStepper::Impl::bound_steps(double length) {
   formula->limit(length);
 }
 
-/// A thousand steps, those taken back counted, that make less than a billionth of the way: the rest would take longer than anyone waits.
+/// A thousand steps, those taken back counted, that make less than a billionth of the way: the rest would take longer
+/// than anyone waits.
 bool StiffStepper::Impl::stands_still(double bound) {
   constexpr std::size_t window = 1000;
   if (steps + rejected < attempts_window + window) return false;
@@ -200,7 +210,8 @@ Sample StiffStepper::Impl::sample(double time) const {
   return out;
 }
 
-StiffStepper::StiffStepper(const MotionFunctions& functions, std::span<const double> parameters, const StiffOptions& options)
+StiffStepper::StiffStepper(const MotionFunctions& functions, std::span<const double> parameters,
+                           const StiffOptions& options)
     : impl_((MAUP_REQUIRE(options.tolerance > 0), std::make_unique<Impl>(functions, parameters, options))) {}
 StiffStepper::~StiffStepper() = default;
 StiffStepper::StiffStepper(StiffStepper&&) noexcept = default;
@@ -230,7 +241,8 @@ void StiffStepper::state(double t, std::span<double> q, std::span<double> v) con
   std::vector<double> y(impl_->now.size());
   impl_->state_at(t, y);
   std::copy(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(impl_->n), q.begin());
-  std::copy(y.begin() + static_cast<std::ptrdiff_t>(impl_->n), y.begin() + static_cast<std::ptrdiff_t>(2 * impl_->n), v.begin());
+  std::copy(y.begin() + static_cast<std::ptrdiff_t>(impl_->n), y.begin() + static_cast<std::ptrdiff_t>(2 * impl_->n),
+            v.begin());
 }
 
 const Sample& StiffStepper::step_start() const { return impl_->start_sample = impl_->sample(impl_->t_before); }

@@ -38,7 +38,8 @@ class Context {
 /// A vector of SUNDIALS, with its own numbers or over those of somebody else.
 class Vector {
  public:
-  Vector(std::size_t size, SUNContext context) : vector_(require_memory(N_VNew_Serial(static_cast<sunindextype>(size), context))) {
+  Vector(std::size_t size, SUNContext context)
+      : vector_(require_memory(N_VNew_Serial(static_cast<sunindextype>(size), context))) {
     N_VConst(0, vector_);
   }
   Vector(std::span<double> over, SUNContext context)

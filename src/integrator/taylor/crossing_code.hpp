@@ -113,7 +113,8 @@ class Search {
 }  // namespace crossings
 
 template <class T>
-std::optional<T> first_crossing(std::span<const T> p, int side, const std::type_identity_t<T>& unit, const std::type_identity_t<T>& scale) {
+std::optional<T> first_crossing(std::span<const T> p, int side, const std::type_identity_t<T>& unit,
+                                const std::type_identity_t<T>& scale) {
   using std::abs;
   while (p.size() > 1 && p.back() == 0) p = p.first(p.size() - 1);
   if (p.empty()) return std::nullopt;

@@ -16,45 +16,53 @@ constexpr double rest = 1e-40;
 
 double safe_tolerance(double tolerance) { return 1e4 * epsilon + 10 * (tolerance > epsilon ? tolerance : 0); }
 
-EndCheck::EndCheck(std::size_t freedoms, double tolerance) : allowed_(std::max(1e-12, 10 * tolerance)), rates_(freedoms, 0.0) {}
+EndCheck::EndCheck(std::size_t freedoms, double tolerance)
+    : allowed_(std::max(1e-12, 10 * tolerance)), rates_(freedoms, 0.0) {}
 
 void EndCheck::forget() { std::fill(rates_.begin(), rates_.end(), 0.0); }
 
 void EndCheck::note_rates(const double* v, const double* half_a, std::size_t step, double h) {
-  for (std::size_t i = 0; i < rates_.size(); ++i) rates_[i] = std::max({rates_[i], std::abs(v[i * step]), h * std::abs(2 * half_a[i * step])});
+  for (std::size_t i = 0; i < rates_.size(); ++i)
+    rates_[i] = std::max({rates_[i], std::abs(v[i * step]), h * std::abs(2 * half_a[i * step])});
 }
 
-bool EndCheck::agrees(std::span<const double> by_polynomial, const double* half_by_equations, std::size_t step, double h) const {
+bool EndCheck::agrees(std::span<const double> by_polynomial, const double* half_by_equations, std::size_t step,
+                      double h) const {
   bool good = true;
   for (std::size_t i = 0; i < rates_.size(); ++i) {
     const double a = 2 * half_by_equations[i * step];
-    good = good && std::abs(h) * std::abs(by_polynomial[i] - a) <= allowed_ * std::max({rates_[i], std::abs(h * a), rest});
+    good =
+        good && std::abs(h) * std::abs(by_polynomial[i] - a) <= allowed_ * std::max({rates_[i], std::abs(h * a), rest});
   }
   return good;
 }
 
-bool EndCheck::agrees_on_the_whole(std::span<const double> by_polynomial, const double* half_by_equations, double h) const {
+bool EndCheck::agrees_on_the_whole(std::span<const double> by_polynomial, const double* half_by_equations,
+                                   double h) const {
   double largest = rest;
-  for (std::size_t i = 0; i < rates_.size(); ++i) largest = std::max({largest, rates_[i], std::abs(2 * h * half_by_equations[i])});
+  for (std::size_t i = 0; i < rates_.size(); ++i)
+    largest = std::max({largest, rates_[i], std::abs(2 * h * half_by_equations[i])});
   for (std::size_t i = 0; i < rates_.size(); ++i)
     if (!(std::abs(h) * std::abs(by_polynomial[i] - 2 * half_by_equations[i]) <= allowed_ * largest)) return false;
   return true;
 }
 
-bool EndCheck::agrees_but_for_rounding(std::span<const double> by_polynomial, std::span<const double> by_equations, std::span<const double> rounding_of,
-                                       double h) const {
+bool EndCheck::agrees_but_for_rounding(std::span<const double> by_polynomial, std::span<const double> by_equations,
+                                       std::span<const double> rounding_of, double h) const {
   constexpr double roundings = 64;
   for (std::size_t i = 0; i < rates_.size(); ++i) {
     const double rounding = roundings * (rounding_of[i] + epsilon * std::abs(by_equations[i]));
-    if (!(std::abs(by_polynomial[i] - by_equations[i]) <= allowed_ * std::max({rates_[i] / std::abs(h), std::abs(by_equations[i]), rest}) + rounding)) return false;
+    if (!(std::abs(by_polynomial[i] - by_equations[i]) <=
+          allowed_ * std::max({rates_[i] / std::abs(h), std::abs(by_equations[i]), rest}) + rounding))
+      return false;
   }
   return true;
 }
 
 namespace {
 
-/// Gauss and Jordan with partial pivoting: B becomes its inverse, [n × n]. Rows that depend on others, as those of redundant constraints do, become zero with
-/// the unknowns that they leave open.
+/// Gauss and Jordan with partial pivoting: B becomes its inverse, [n × n]. Rows that depend on others, as those of
+/// redundant constraints do, become zero with the unknowns that they leave open.
 bool invert(std::vector<double>& b, std::size_t n) {
   constexpr double dependent = 1e-10;  // of the largest entry of its column
   std::vector<double> largest(n, 0.0);
@@ -88,17 +96,21 @@ bool invert(std::vector<double>& b, std::size_t n) {
 
 }  // namespace
 
-std::vector<double> acceleration_roundings(std::vector<double> b, std::size_t n, std::size_t m, Disks& disks, double length, double unit) {
+std::vector<double> acceleration_roundings(std::vector<double> b, std::size_t n, std::size_t m, Disks& disks,
+                                           double length, double unit) {
   const std::size_t unknowns = n + m;
   std::vector<double> result(n, 0.0);
   if (b.empty() || !invert(b, unknowns)) return result;
   for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < unknowns; ++j) result[i] += unit * std::abs(b[i * unknowns + j]) * disks.residual_rounding(j, length);
+    for (std::size_t j = 0; j < unknowns; ++j)
+      result[i] += unit * std::abs(b[i * unknowns + j]) * disks.residual_rounding(j, length);
   return result;
 }
 
-/// What a change of the state by rounding does to q̈ is asked first: mostly it is enough. Then q̈ at the state, and what rounding of the formula's values makes of it.
-bool agrees_but_for_rounding(const EndCheck& check, std::span<const double> by_polynomial, const double* half_by_equations, std::size_t step, KernelWorkspace& point, double t,
+/// What a change of the state by rounding does to q̈ is asked first: mostly it is enough. Then q̈ at the state, and what
+/// rounding of the formula's values makes of it.
+bool agrees_but_for_rounding(const EndCheck& check, std::span<const double> by_polynomial,
+                             const double* half_by_equations, std::size_t step, KernelWorkspace& point, double t,
                              std::span<const double> q, std::span<const double> v, double h, Disks& disks) {
   const std::size_t n = q.size(), m = point.program().unknowns - n;
   std::vector<double> here(n), position(n), velocity(n), by_state(n);
@@ -118,7 +130,9 @@ bool agrees_but_for_rounding(const EndCheck& check, std::span<const double> by_p
   disks.set_constants(point.constants());
   disks.begin({point.coordinate(0), point.row_stride(), 1});
   for (std::size_t i = 0; i < n; ++i) here[i] = point.acceleration(i);
-  return check.agrees_but_for_rounding(by_polynomial, here, add_change(acceleration_roundings(bordered_matrix(point, n, m), n, m, disks, std::abs(h), epsilon)), h);
+  return check.agrees_but_for_rounding(
+      by_polynomial, here,
+      add_change(acceleration_roundings(bordered_matrix(point, n, m), n, m, disks, std::abs(h), epsilon)), h);
 }
 
 }  // namespace maupertuis::taylor

@@ -22,7 +22,8 @@ double upper_end(int key) {
 
 std::size_t place_of(int key) { return static_cast<unsigned>(key) % bin_count; }
 
-/// Of a limit beyond the size that was met, by the generosity of the bin: 2 beyond the largest of all coordinates, below beyond its own.
+/// Of a limit beyond the size that was met, by the generosity of the bin: 2 beyond the largest of all coordinates,
+/// below beyond its own.
 constexpr double widenings[] = {1.8, 6, 3}, widening_anew = 1.1;
 constexpr int beyond_all = 2;
 constexpr double observed_margin = 0.1;  // of its own size
@@ -34,8 +35,15 @@ constexpr unsigned patience = 8;
 }  // namespace
 
 KnownLengths::KnownLengths(const Program& program, std::span<const int> degrees, double ratio, bool for_several)
-    : envelope_(program, degrees), unknowns_(program.unknowns), residuals_(program.residual.size()), constant_count_(program.constants.size()),
-      padded_((program.unknowns + 7) / 8 * 8), ratio_(ratio), for_several_(for_several), bins_(bin_count), sizes_(3 * padded_) {}
+    : envelope_(program, degrees),
+      unknowns_(program.unknowns),
+      residuals_(program.residual.size()),
+      constant_count_(program.constants.size()),
+      padded_((program.unknowns + 7) / 8 * 8),
+      ratio_(ratio),
+      for_several_(for_several),
+      bins_(bin_count),
+      sizes_(3 * padded_) {}
 
 bool KnownLengths::belongs_to(const double* constants) const {
   constexpr double rounding = 1e-9;  // bounds are no sharper than this
@@ -67,8 +75,12 @@ KnownLengths::Bin& KnownLengths::bin_of(double radius) {
 /// The radius of a bin is its upper end. It begins with the limits of a neighbour.
 void KnownLengths::begin(Bin& bin, int key) const {
   const std::size_t orders = static_cast<std::size_t>(now_.order) + 2, observed = envelope_.observed().size();
-  bin = {.key = key, .radius = upper_end(key), .weights = std::vector<double>(3 * orders),
-         .limits = std::vector<double>(4 * padded_), .least = std::vector<double>(observed), .most = std::vector<double>(observed),
+  bin = {.key = key,
+         .radius = upper_end(key),
+         .weights = std::vector<double>(3 * orders),
+         .limits = std::vector<double>(4 * padded_),
+         .least = std::vector<double>(observed),
+         .most = std::vector<double>(observed),
          .needed = std::vector<double>(residuals_)};
   double power = 1;  // r^{k−1}
   for (std::size_t k = 1; k < orders; ++k, power *= bin.radius) {
@@ -86,7 +98,8 @@ void KnownLengths::begin(Bin& bin, int key) const {
   }
 }
 
-KnownLengths::Answer KnownLengths::ask(const SlotCoefficients& coefficients, double time, double h, std::span<const double> allowed, const double* sizes) {
+KnownLengths::Answer KnownLengths::ask(const SlotCoefficients& coefficients, double time, double h,
+                                       std::span<const double> allowed, const double* sizes) {
   now_ = coefficients;
   given_ = sizes;
   has_sizes_ = false;
@@ -112,7 +125,8 @@ bool KnownLengths::meets(const Bin& bin, std::span<const double> allowed) const 
 
 void KnownLengths::find_sizes() {
   if (std::exchange(has_sizes_, true)) return;
-  if (!given_) return polynomial_sizes(now_.rows, now_.stride, unknowns_, now_.order + 1, bin_->weights.data(), sizes_.data());
+  if (!given_)
+    return polynomial_sizes(now_.rows, now_.stride, unknowns_, now_.order + 1, bin_->weights.data(), sizes_.data());
   for (std::size_t row = 0; row < 3; ++row)
     for (std::size_t i = 0; i < unknowns_; ++i) sizes_[row * padded_ + i] = given_[(row * unknowns_ + i) * now_.step];
 }
@@ -122,7 +136,8 @@ void KnownLengths::bound(Limits limits) {
   find_sizes();
   widen(bin, bin.has_limits ? limits : std::max(limits, Limits::Anew));
   const auto row = [&](std::size_t i) { return std::span(bin.limits).subspan(i * padded_, unknowns_); };
-  envelope_.evaluate(constants_.data(), {row(0), row(1), row(2), row(3), bin.least, bin.most, bin.time}, bin.radius, now_.order);
+  envelope_.evaluate(constants_.data(), {row(0), row(1), row(2), row(3), bin.least, bin.most, bin.time}, bin.radius,
+                     now_.order);
 }
 
 bool KnownLengths::accept(std::span<const double> allowed, std::span<const double> by_rounding) {
@@ -151,13 +166,16 @@ bool KnownLengths::is_within(const Bin& bin) const {
     for (std::size_t row = 0; row < 3; ++row) within &= size[row * padded_ + i] <= limit[(row + 1) * padded_ + i];
   }
   const std::span<const Slot> observed = envelope_.observed();
-  for (std::size_t i = 0; i < observed.size(); ++i) within &= bin.least[i] <= centre(observed[i]) && centre(observed[i]) <= bin.most[i];
+  for (std::size_t i = 0; i < observed.size(); ++i)
+    within &= bin.least[i] <= centre(observed[i]) && centre(observed[i]) <= bin.most[i];
   return within;
 }
 
 void KnownLengths::widen(Bin& bin, Limits limits) const {
   const bool anew = limits != Limits::Widened;
-  const double widened = limits == Limits::Widened ? widenings[bin.generosity] : limits == Limits::Anew ? widening_anew : 1.0;
+  const double widened = limits == Limits::Widened ? widenings[bin.generosity]
+                         : limits == Limits::Anew  ? widening_anew
+                                                   : 1.0;
   const double margin = limits == Limits::Exact ? 0.0 : observed_margin;
   const auto raise = [&](double& limit, double size) {
     if (anew || !(size <= limit)) limit = widened * size;
@@ -166,11 +184,14 @@ void KnownLengths::widen(Bin& bin, Limits limits) const {
   raise(bin.time, envelope_.needs_time() ? time_ : no_limit);
   for (std::size_t i = 0; i < unknowns_; ++i) {
     const double size = std::abs(centre(i));
-    raise(bin.limits[i], envelope_.needs_centre(i) ? size : size < small_angle ? (widened > 1 ? 2 * size : size) : no_limit);
+    raise(bin.limits[i], envelope_.needs_centre(i) ? size
+                         : size < small_angle      ? (widened > 1 ? 2 * size : size)
+                                                   : no_limit);
   }
   for (std::size_t row = 0; row < 3; ++row) {
     const double* const size = sizes_.data() + row * padded_;
-    const double largest = limits == Limits::Widened && bin.generosity == beyond_all ? *std::max_element(size, size + unknowns_) : 0.0;
+    const double largest =
+        limits == Limits::Widened && bin.generosity == beyond_all ? *std::max_element(size, size + unknowns_) : 0.0;
     for (std::size_t i = 0; i < unknowns_; ++i) raise(bin.limits[(row + 1) * padded_ + i], std::max(size[i], largest));
   }
   const std::span<const Slot> observed = envelope_.observed();

@@ -24,18 +24,22 @@ struct RootOf {
 
 /// Roots of functions along a step whose motion is a known polynomial.
 ///
-/// A function may vary faster than the motion: then it is followed in pieces, each as long as its own disk allows, without shortening the step:
+/// A function may vary faster than the motion: then it is followed in pieces, each as long as its own disk allows,
+/// without shortening the step:
 ///
-///     0 ├──────┼────┼──┼·┤ gap ├·┼──┼────┼─────────┤ h        pieces become short on both sides of a point where the function is not
-///                        pole                                  analytic; what is left of it is a gap of the size of rounding
+///     0 ├──────┼────┼──┼·┤ gap ├·┼──┼────┼─────────┤ h        pieces become short on both sides of a point where the
+///     function is not
+///                        pole                                  analytic; what is left of it is a gap of the size of
+///                        rounding
 ///
-/// In a piece the function is a polynomial with a remainder; all its roots are found by Bernstein coefficients, never by sampling, and each is
-/// refined on the function itself.
+/// In a piece the function is a polynomial with a remainder; all its roots are found by Bernstein coefficients, never
+/// by sampling, and each is refined on the function itself.
 template <class T>
 class RootSearchOf {
  public:
   /// The program must outlive this.
-  RootSearchOf(const Program& program, int order, std::span<const Slot> slots) : retrace_(program, order, slots), disks_(program, slots) {}
+  RootSearchOf(const Program& program, int order, std::span<const Slot> slots)
+      : retrace_(program, order, slots), disks_(program, slots) {}
 
   /// [program.constants], under the sides in force.
   void set_constants(const T* constants, const double* rough) {
@@ -55,10 +59,12 @@ class RootSearchOf {
     const T& t = time.hi;
     // Below it two times are the same, or nearly so.
     using std::abs;
-    resolution_ = std::max(T(64 * std::numeric_limits<T>::epsilon()), T(4 * std::numeric_limits<T>::epsilon() * abs(t) / abs(h)));
+    resolution_ =
+        std::max(T(64 * std::numeric_limits<T>::epsilon()), T(4 * std::numeric_limits<T>::epsilon() * abs(t) / abs(h)));
   }
 
-  /// The first root in (0, until]; `watched` begins as the step does and ends as the search does: with the side that the function has there.
+  /// The first root in (0, until]; `watched` begins as the step does and ends as the search does: with the side that
+  /// the function has there.
   std::optional<RootOf<T>> first(Slot slot, Watched& watched, const T& until, bool wants_touching, bool wants_jumps);
 
  private:
@@ -75,8 +81,8 @@ class RootSearchOf {
   T at_a_time(const T& x) const;
   T refined(Slot slot, const Piece& piece, const T& begin, const T& root);
   struct Gap {
-    T end;                             // where the function is analytic again
-    std::int8_t side;                  // that it has there; 0: it has no value any more
+    T end;             // where the function is analytic again
+    std::int8_t side;  // that it has there; 0: it has no value any more
     std::optional<RootOf<T>> root;
   };
   Gap gap(Slot slot, const T& x, const T& until, std::int8_t side);
@@ -90,7 +96,8 @@ class RootSearchOf {
 
 using RootSearch = RootSearchOf<double>;
 
-/// Where side · p, which does not go below its rounding error, comes down to it after having been clear of it; nothing if it does not.
+/// Where side · p, which does not go below its rounding error, comes down to it after having been clear of it; nothing
+/// if it does not.
 template <class T>
 std::optional<T> touching(const ScaledPolynomialOf<T>& polynomial, std::int8_t side);
 

@@ -22,7 +22,9 @@ class Search {
     const T middle = T(0.5) * (low + high);
     if (*most <= 8 * error || high - low < T(1e-14)) {
       const T lowest = bottom(middle);
-      return clear_ && side_ * crossings::value(std::span<const T>(polynomial_.p), lowest) <= error ? std::optional<T>(lowest) : std::nullopt;
+      return clear_ && side_ * crossings::value(std::span<const T>(polynomial_.p), lowest) <= error
+                 ? std::optional<T>(lowest)
+                 : std::nullopt;
     }
     std::vector<T> right = crossings::split(b);
     if (const auto left = in(low, middle, std::move(b))) return left;
@@ -93,7 +95,8 @@ typename RootSearchOf<T>::Piece RootSearchOf<T>::piece(Slot slot, const T& x, co
   const T unit = watching::unit<T>();
   const T scale = retrace_.scale(slot);
   const auto polynomial_over = [&](double part) {  // of `most`
-    return watching::scaled<T>(std::min(last, known), T(h_ * most * T(part)), scale, [&](int k) { return retrace_.row(k)[slot]; });
+    return watching::scaled<T>(std::min(last, known), T(h_ * most * T(part)), scale,
+                               [&](int k) { return retrace_.row(k)[slot]; });
   };
   constexpr double most_of_radius = 0.45, least_of_radius = 0.02;
   double best = 0;
@@ -104,7 +107,8 @@ typename RootSearchOf<T>::Piece RootSearchOf<T>::piece(Slot slot, const T& x, co
     disks_.evaluate(radius);
     const double tail = disks_.tail(slot);
     if (!(tail < std::numeric_limits<double>::infinity())) continue;
-    for (double part = std::min(1.0, most_of_radius * radius / length); part > best && part * length > least_of_radius * radius; part *= 0.75) {
+    for (double part = std::min(1.0, most_of_radius * radius / length);
+         part > best && part * length > least_of_radius * radius; part *= 0.75) {
       const double ratio = part * length / radius;
       const T left_out = tail == 0 ? T(0) : T(tail) * T(std::pow(ratio, known + 1) / (1 - ratio));
       const auto polynomial = polynomial_over(part);
@@ -122,8 +126,8 @@ typename RootSearchOf<T>::Piece RootSearchOf<T>::piece(Slot slot, const T& x, co
   return result;
 }
 
-/// Times are rounded, the parts of a step are not: a function of t is looked at where t + h x is a number of the type, so that its root is known
-/// better than t is. Steps of a few roundings of t have no such places.
+/// Times are rounded, the parts of a step are not: a function of t is looked at where t + h x is a number of the type,
+/// so that its root is known better than t is. Steps of a few roundings of t have no such places.
 template <class T>
 T RootSearchOf<T>::at_a_time(const T& x) const {
   using std::abs;
@@ -160,7 +164,10 @@ typename RootSearchOf<T>::Gap RootSearchOf<T>::gap(Slot slot, const T& x, const 
   for (;; beyond *= 2) {
     if (x + beyond >= until) break;
     const Piece there = piece(slot, T(x + beyond), std::min(beyond, T(until - x - beyond)));
-    if (there.width > 0) { result.end = x + beyond; break; }
+    if (there.width > 0) {
+      result.end = x + beyond;
+      break;
+    }
   }
   result.side = sign_at(result.end);
   if (side == 0 || result.side == 0 || result.side == side) return result;
@@ -180,7 +187,8 @@ typename RootSearchOf<T>::Gap RootSearchOf<T>::gap(Slot slot, const T& x, const 
 }
 
 template <class T>
-std::optional<RootOf<T>> RootSearchOf<T>::first(Slot slot, Watched& watched, const T& until, bool wants_touching, bool wants_jumps) {
+std::optional<RootOf<T>> RootSearchOf<T>::first(Slot slot, Watched& watched, const T& until, bool wants_touching,
+                                                bool wants_jumps) {
   T x = T(0);
   while (x < until) {
     const Piece now = piece(slot, x, T(until - x));
@@ -192,7 +200,8 @@ std::optional<RootOf<T>> RootSearchOf<T>::first(Slot slot, Watched& watched, con
       x = beyond.end;
       continue;
     }
-    if (watched.side == 0) watched.side = watched.at_zero ? now.polynomial.direction() : watching::sign(now.polynomial.p[0]);
+    if (watched.side == 0)
+      watched.side = watched.at_zero ? now.polynomial.direction() : watching::sign(now.polynomial.p[0]);
     const auto root = crossing(now.polynomial, watched);
     watched.at_zero = false;  // the step goes on from it, wherever it ends
     if (wants_touching) {

@@ -31,8 +31,11 @@ double rounded_down(double h) {
   return std::ldexp(std::floor(mantissa * 256) / 256, exponent);
 }
 
-/// The ratio of a disk's radius to the length of a step with which x^p is far below the tolerance: 5.8 at order 20 and rounding level.
-double usual_ratio(int order, double tolerance) { return std::clamp(std::pow(4e3 / tolerance, 1.0 / order), 2.0, 16.0); }
+/// The ratio of a disk's radius to the length of a step with which x^p is far below the tolerance: 5.8 at order 20 and
+/// rounding level.
+double usual_ratio(int order, double tolerance) {
+  return std::clamp(std::pow(4e3 / tolerance, 1.0 / order), 2.0, 16.0);
+}
 
 /// The largest ratio that is asked about: 8, or √2 beyond the usual one at least. Smaller ones are √2 apart.
 double largest_ratio(double usual) {
@@ -44,8 +47,15 @@ double largest_ratio(double usual) {
 }  // namespace
 
 SafeLength::SafeLength(const Program& program, int order, double tolerance, std::shared_ptr<KnownLengths> shared)
-    : disks_(program), usual_ratio_(usual_ratio(order, tolerance)), own_(program, disks_.degrees(), usual_ratio_, shared != nullptr), shared_(std::move(shared)),
-      allowed_(disks_.residuals()), tolerance_(tolerance), order_(order), largest_ratio_(largest_ratio(usual_ratio_)), ratio_(largest_ratio_ / from_disk_to_disk) {}
+    : disks_(program),
+      usual_ratio_(usual_ratio(order, tolerance)),
+      own_(program, disks_.degrees(), usual_ratio_, shared != nullptr),
+      shared_(std::move(shared)),
+      allowed_(disks_.residuals()),
+      tolerance_(tolerance),
+      order_(order),
+      largest_ratio_(largest_ratio(usual_ratio_)),
+      ratio_(largest_ratio_ / from_disk_to_disk) {}
 
 std::shared_ptr<KnownLengths> SafeLength::shared_by_motions(const Program& program, int order, double tolerance) {
   return std::make_shared<KnownLengths>(program, Disks(program).degrees(), usual_ratio(order, tolerance), true);
@@ -75,7 +85,7 @@ void SafeLength::allow() {
 }
 
 bool SafeLength::wants_momenta(std::span<const double> rates) {
-  constexpr std::size_t most = 300;     // unknowns: M costs n²
+  constexpr std::size_t most = 300;  // unknowns: M costs n²
   constexpr std::size_t usual = 16;
   constexpr double grown = 3;
   if (rates.size() > most) return false;
@@ -107,7 +117,8 @@ bool SafeLength::passes(double h) {
   const double left_out = whole_power(x, order_) / (1 - x);
   for (std::size_t j = 0; j < disks_.residuals(); ++j) {
     const double tail = left_out * disks_.residual_tail(j);
-    if (!(h * tail <= tolerance_ * momentum(j)) && !(tail <= tolerance_ * disks_.residual_rounding(j, radius_))) return false;
+    if (!(h * tail <= tolerance_ * momentum(j)) && !(tail <= tolerance_ * disks_.residual_rounding(j, radius_)))
+      return false;
   }
   return true;
 }
@@ -118,7 +129,8 @@ bool SafeLength::passes_on(double radius, double h, Disks::Depth depth) {
   return passes(h);
 }
 
-/// The largest h that the tails at this radius allow; by logarithms, since with a hundred digits quotients leave the range of double.
+/// The largest h that the tails at this radius allow; by logarithms, since with a hundred digits quotients leave the
+/// range of double.
 double SafeLength::allowed() {
   double log2_x = std::log2(most_of_radius);
   for (std::size_t j = 0; j < disks_.residuals(); ++j) {
@@ -133,7 +145,8 @@ double SafeLength::allowed() {
   return std::exp2(log2_x) * radius_;
 }
 
-/// Whether the coefficients allow h on any of the disks from the largest radius on. This and the bound of the step alone decide; all else is a short cut to them.
+/// Whether the coefficients allow h on any of the disks from the largest radius on. This and the bound of the step
+/// alone decide; all else is a short cut to them.
 bool SafeLength::passes_somewhere(const SlotCoefficients& coefficients, double h) {
   disks_.begin(coefficients);
   for (double ratio = largest_ratio_; most_of_radius * ratio > 0.999; ratio /= from_disk_to_disk)
@@ -144,7 +157,8 @@ bool SafeLength::passes_somewhere(const SlotCoefficients& coefficients, double h
 /// The largest length that is allowed, from large disks to small ones, until no smaller one can allow more.
 double SafeLength::search(const SlotCoefficients& coefficients, double most) {
   disks_.begin(coefficients);
-  double radius = best_radius_ > 0 ? std::min(largest_ratio_ * most, 4 * best_radius_) : largest_ratio_ * most, best = 0;
+  double radius = best_radius_ > 0 ? std::min(largest_ratio_ * most, 4 * best_radius_) : largest_ratio_ * most,
+         best = 0;
   for (int i = 0; i < most_disks && most_of_radius * radius > best; ++i, radius /= from_disk_to_disk) {
     radius_ = radius;
     disks_.evaluate(radius);
@@ -180,16 +194,19 @@ bool SafeLength::is_known(const SlotCoefficients& coefficients, double time, dou
 std::span<const double> SafeLength::allowed_by_rounding(const SlotCoefficients& coefficients) {
   disks_.begin(coefficients);
   allowed_by_rounding_.resize(allowed_.size());
-  for (std::size_t j = 0; j < allowed_.size(); ++j) allowed_by_rounding_[j] = known().length() * tolerance_ * disks_.residual_rounding(j, known().radius());
+  for (std::size_t j = 0; j < allowed_.size(); ++j)
+    allowed_by_rounding_[j] = known().length() * tolerance_ * disks_.residual_rounding(j, known().radius());
   return allowed_by_rounding_;
 }
 
-double SafeLength::within(const SlotCoefficients& coefficients, double time, double wanted, double most, const double* sizes) {
+double SafeLength::within(const SlotCoefficients& coefficients, double time, double wanted, double most,
+                          const double* sizes) {
   if (!is_needed()) return wanted;
   const double h = std::min(wanted, most);
   if (!(h > 0)) return wanted;
   if (is_known(coefficients, time, h, sizes)) return wanted;
-  // What was right in the last step is asked first: the whole length by the rules, or with the coefficients where those have to help.
+  // What was right in the last step is asked first: the whole length by the rules, or with the coefficients where those
+  // have to help.
   using enum Disks::Depth;
   disks_.begin(coefficients);
   const double radius = ratio_ * h;
@@ -199,7 +216,8 @@ double SafeLength::within(const SlotCoefficients& coefficients, double time, dou
     if (passes_on(radius, h, Rules)) return needs_coefficients_ = false, wanted;
     disks_.begin(coefficients);
   }
-  if (passes_on(from_disk_to_disk * radius, h, Coefficients) || passes_on(radius, h, Coefficients)) return needs_coefficients_ = true, wanted;
+  if (passes_on(from_disk_to_disk * radius, h, Coefficients) || passes_on(radius, h, Coefficients))
+    return needs_coefficients_ = true, wanted;
   if (passes_somewhere(coefficients, h)) return wanted;
   if (is_safe_alone(coefficients)) return wanted;
   return rounded_down(search(coefficients, h));

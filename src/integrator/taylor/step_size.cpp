@@ -9,26 +9,27 @@
 #include <limits>
 
 /// À. Jorba, M. Zou, A software package for the numerical integration of ODEs by means of high-order Taylor methods,
-/// Experimental Mathematics 14 (2005): the last two coefficients estimate the radius of convergence ρ, and h near ρ/e² with
-/// p = ⌈−½ ln ε + 1⌉ costs least.
+/// Experimental Mathematics 14 (2005): the last two coefficients estimate the radius of convergence ρ, and h near ρ/e²
+/// with p = ⌈−½ ln ε + 1⌉ costs least.
 ///
 /// Two differences. Each coordinate is measured against its own size, so that units do not matter (a charge of 10⁻⁹ C
 /// beside an angle of 1 rad). Its size is the largest of the first terms of its velocity over a step, so that it does
-/// not vanish where the velocity passes through zero. And h/ρ follows from ε alone, the order from both: with the order first,
-/// a larger ε would take more steps wherever the rounded order falls.
+/// not vanish where the velocity passes through zero. And h/ρ follows from ε alone, the order from both: with the order
+/// first, a larger ε would take more steps wherever the rounded order falls.
 namespace maupertuis {
 
 double rounding_tolerance() { return std::numeric_limits<double>::epsilon(); }
 
 namespace {
 
-/// At h = ρ (ε/e⁴)^{1/p} the last term kept is ε/55 times the size. The terms left out have one sign along a motion: at h = ρ ε^{1/p} the
-/// energy of a double pendulum grew by 4e-18 a step.
+/// At h = ρ (ε/e⁴)^{1/p} the last term kept is ε/55 times the size. The terms left out have one sign along a motion: at
+/// h = ρ ε^{1/p} the energy of a double pendulum grew by 4e-18 a step.
 double log_of_last_term(double tolerance) { return std::log(std::max(tolerance, rounding_tolerance())) - 4; }
 
 constexpr int order_at_rounding = 20;
 
-/// ln(h/ρ): −2 at rounding level, where the order is 20; near there the cost is flat. A tolerance 100 times as large takes a step 1.1 times as long.
+/// ln(h/ρ): −2 at rounding level, where the order is 20; near there the cost is flat. A tolerance 100 times as large
+/// takes a step 1.1 times as long.
 double log_of_factor(double tolerance) {
   constexpr double growth = 0.02;
   const double finest = log_of_last_term(0);
@@ -40,8 +41,10 @@ double log_of_factor(double tolerance) {
 int taylor_order(double tolerance) {
   constexpr double rounding = 1e-9;
   // Disks allow (their tolerance)^{1/(p + 1)} of a radius: no less than at rounding level.
-  const double by_disks = (order_at_rounding + 1) * std::log(taylor::safe_tolerance(tolerance)) / std::log(taylor::safe_tolerance(0)) - 1;
-  return std::max(2, static_cast<int>(std::ceil(std::max(by_disks, log_of_last_term(tolerance) / log_of_factor(tolerance)) - rounding)));
+  const double by_disks =
+      (order_at_rounding + 1) * std::log(taylor::safe_tolerance(tolerance)) / std::log(taylor::safe_tolerance(0)) - 1;
+  return std::max(2, static_cast<int>(std::ceil(
+                         std::max(by_disks, log_of_last_term(tolerance) / log_of_factor(tolerance)) - rounding)));
 }
 
 namespace taylor {
@@ -75,8 +78,9 @@ double size_of(const KernelWorkspace& work, std::size_t i, int order, double h) 
   return std::max({size, rounding_tolerance() * std::abs(work.coordinate(0)[i]) / h, rest});
 }
 
-/// KernelWorkspace::radius where a coordinate begins to move late: min of (size / |v_k|)^(1/k) over the coordinates and the last two k; earlier k
-/// speak up only where these are silent, since a motion with a symmetry (a pendulum let go at 90°) has coefficients 4 or more orders apart, so that the last two may vanish.
+/// KernelWorkspace::radius where a coordinate begins to move late: min of (size / |v_k|)^(1/k) over the coordinates and
+/// the last two k; earlier k speak up only where these are silent, since a motion with a symmetry (a pendulum let go at
+/// 90°) has coefficients 4 or more orders apart, so that the last two may vanish.
 double radius_of_late(const KernelWorkspace& work, std::size_t freedoms, int order, double h) {
   double least = infinity;
   for (std::size_t i = 0; i < freedoms; ++i) {
@@ -100,15 +104,17 @@ double first_guess(const KernelWorkspace& work, std::size_t freedoms, int order)
     for (int j = std::min({3, order - 2, k - 1}); j >= 0; --j) {
       double largest = 0;
       for (std::size_t i = 0; i < freedoms; ++i)
-        if (const double early = velocity(work, i, j); early > rest) largest = std::max(largest, velocity(work, i, k) / early);
+        if (const double early = velocity(work, i, j); early > rest)
+          largest = std::max(largest, velocity(work, i, k) / early);
       growth = std::max(growth, std::pow(largest, 1.0 / (k - j)));
     }
   return growth > 0 ? 1 / growth : 1;
 }
 
-/// Whether a λ of this size changes a velocity in the course of a step by more than its rounding. Beside forces that need no
-/// constraint λ is 0, and what stands there instead is rounding of them.
-bool is_felt(const KernelWorkspace& work, std::size_t freedoms, std::size_t constraint, int order, double multiplier, double h) {
+/// Whether a λ of this size changes a velocity in the course of a step by more than its rounding. Beside forces that
+/// need no constraint λ is 0, and what stands there instead is rounding of them.
+bool is_felt(const KernelWorkspace& work, std::size_t freedoms, std::size_t constraint, int order, double multiplier,
+             double h) {
   bool moves_mass = false;
   for (std::size_t i = 0; i < freedoms; ++i) {
     const double mass = work.mass(i, i), force = std::abs(multiplier * work.constraint_matrix(constraint, i));
@@ -119,8 +125,9 @@ bool is_felt(const KernelWorkspace& work, std::size_t freedoms, std::size_t cons
   return !moves_mass;
 }
 
-/// The nearest number of 12 bits (T. J. Dekker, 1971). Its square and fourth power, which sum up the polynomials, are exact then; rounded they would err
-/// the same way in all steps of an oscillator, which are equal, and its energy would drift with the time instead of its root.
+/// The nearest number of 12 bits (T. J. Dekker, 1971). Its square and fourth power, which sum up the polynomials, are
+/// exact then; rounded they would err the same way in all steps of an oscillator, which are equal, and its energy would
+/// drift with the time instead of its root.
 double with_few_bits(double h) {
   constexpr double splitter = 0x1p41 + 1, largest = 0x1p960;
   const double part = splitter * h;
@@ -159,7 +166,9 @@ double step_within_multipliers(const KernelWorkspace& work, std::size_t freedoms
     return size;
   };
   const auto first = [&](std::size_t j, double length) { return largest(j, 0, std::min(4, control.order), length); };
-  const auto last = [&](std::size_t j, double length) { return largest(j, std::max(0, control.order - 4), control.order, length); };
+  const auto last = [&](std::size_t j, double length) {
+    return largest(j, std::max(0, control.order - 4), control.order, length);
+  };
   double scale = 0, least = h;
   for (std::size_t j = 0; j < constraints; ++j) scale = std::max(scale, first(j, h));
   for (std::size_t j = 0; j < constraints; ++j) {

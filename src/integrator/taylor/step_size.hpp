@@ -6,8 +6,8 @@
 namespace maupertuis::taylor {
 
 struct StepControl {
-  int order = 20;       // of the polynomial of q̇
-  double factor = 0.13; // of the estimated radius of convergence
+  int order = 20;        // of the polynomial of q̇
+  double factor = 0.13;  // of the estimated radius of convergence
 };
 
 /// Order and safety factor that a tolerance asks for; an order of 0 follows from the tolerance.
@@ -17,8 +17,9 @@ StepControl step_control(double tolerance, int order);
 /// `previous`: an earlier step length, or 0 if there is none.
 double step_size(const KernelWorkspace& work, std::size_t freedoms, const StepControl& control, double previous);
 
-/// At most h (finite), and so short that the series of the multipliers converge. Next to a singular configuration λ may have a
-/// pole where q has none; beyond it the coefficients of q are nothing but what is left of those of λ by cancellation.
+/// At most h (finite), and so short that the series of the multipliers converge. Next to a singular configuration λ may
+/// have a pole where q has none; beyond it the coefficients of q are nothing but what is left of those of λ by
+/// cancellation.
 double step_within_multipliers(const KernelWorkspace& work, std::size_t freedoms, std::size_t constraints,
                                const StepControl& control, double h);
 

@@ -21,16 +21,16 @@ struct ScalarOf<KernelWorkspace> {
 
 /// A function along the motion whose sign changes are to be seen: a switch function or an event.
 struct Watched {
-  std::int8_t side = 0;     // sign before the next crossing; 0: vanishes identically (switch), not known (event)
-  bool at_zero = false;     // the step begins at a zero that was located
+  std::int8_t side = 0;  // sign before the next crossing; 0: vanishes identically (switch), not known (event)
+  bool at_zero = false;  // the step begins at a zero that was located
 };
 
 /// The polynomial of a watched function over a step of length h, in x = τ/h.
 template <class T>
 struct ScaledPolynomialOf {
   std::vector<T> p;
-  T scale = T(0);           // sizes of the terms of p_0
-  T reach = T(0);           // scale + Σ_{k≥1} |p_k|
+  T scale = T(0);  // sizes of the terms of p_0
+  T reach = T(0);  // scale + Σ_{k≥1} |p_k|
 
   /// Index of the first coefficient after p_0 that is told from zero; 0 if there is none.
   std::size_t leading() const;
@@ -41,8 +41,8 @@ struct ScaledPolynomialOf {
 
 using ScaledPolynomial = ScaledPolynomialOf<double>;
 
-/// The same over a part of the step so short that its first terms outweigh the others: else those that come first in time are lost among the
-/// sizes of those that grow fastest.
+/// The same over a part of the step so short that its first terms outweigh the others: else those that come first in
+/// time are lost among the sizes of those that grow fastest.
 template <class T>
 ScaledPolynomialOf<T> judged(ScaledPolynomialOf<T> polynomial);
 

@@ -10,11 +10,15 @@ namespace maupertuis::taylor {
 namespace watching {
 
 template <class T>
-std::int8_t sign(const T& x) { return static_cast<std::int8_t>((x > 0) - (x < 0)); }
+std::int8_t sign(const T& x) {
+  return static_cast<std::int8_t>((x > 0) - (x < 0));
+}
 
 /// Roundings that a coefficient has gone through are some tens; its tolerance is counted in those.
 template <class T>
-T unit() { return 16 * std::numeric_limits<T>::epsilon(); }
+T unit() {
+  return 16 * std::numeric_limits<T>::epsilon();
+}
 
 template <class T, class Coefficient>
 ScaledPolynomialOf<T> scaled(int degree, const T& h, const T& scale, Coefficient&& coefficient) {
@@ -69,7 +73,8 @@ ScaledPolynomialOf<T> judged(ScaledPolynomialOf<T> polynomial) {
 
 template <class Work, class T>
 ScaledPolynomialOf<T> switch_polynomial(const Work& work, std::size_t index, const std::type_identity_t<T>& h) {
-  return watching::scaled<T>(work.order() + 1, h, work.switch_scale(index), [&](int k) { return work.switch_function(index, k); });
+  return watching::scaled<T>(work.order() + 1, h, work.switch_scale(index),
+                             [&](int k) { return work.switch_function(index, k); });
 }
 
 template <class Work, class T>

@@ -36,7 +36,9 @@ bool Turns::wind(std::size_t i, Compensated& q) {
   return true;
 }
 
-double Turns::unwound(std::size_t i, const Compensated& q) const { return counts_[i] == 0 ? q.hi : turned(q, counts_[i]).hi; }
+double Turns::unwound(std::size_t i, const Compensated& q) const {
+  return counts_[i] == 0 ? q.hi : turned(q, counts_[i]).hi;
+}
 
 void Turns::add_to(std::span<double> observables) const {
   for (std::size_t k = 0; k < observables.size(); ++k) {

@@ -8,8 +8,9 @@
 
 namespace maupertuis::taylor {
 
-/// Whole turns that angles were wound back by. The rounding error of an angle grows with its size, and would with the forces that it
-/// gives: after 10⁶ steps of a double pendulum that has turned over a hundred times, the energy error is 50 times that of angles kept within a turn.
+/// Whole turns that angles were wound back by. The rounding error of an angle grows with its size, and would with the
+/// forces that it gives: after 10⁶ steps of a double pendulum that has turned over a hundred times, the energy error is
+/// 50 times that of angles kept within a turn.
 class Turns {
  public:
   /// 2π; angles beyond it are brought back.
@@ -30,8 +31,8 @@ class Turns {
   void add_to(std::span<double> observables) const;
 
  private:
-  const Winding* winding_;       // of a kernel that lives as long
-  std::vector<double> counts_;   // [n]
+  const Winding* winding_;      // of a kernel that lives as long
+  std::vector<double> counts_;  // [n]
   std::size_t changes_ = 0;
 };
 

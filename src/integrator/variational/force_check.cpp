@@ -6,10 +6,11 @@
 namespace maupertuis::variational {
 namespace {
 
-constexpr double of_variation = 0.25;     // more of it than smooth forces leave to the nodes
-constexpr double of_switched = 1.5;       // more of it than one switch leaves to them
-constexpr double of_spread = 4;           // variation within a step, in terms of that between its nodes and ends
-constexpr double of_momentum = 1e-9, at_rest = 1e-20;  // changes of momentum that do not count; the latter of a velocity
+constexpr double of_variation = 0.25;  // more of it than smooth forces leave to the nodes
+constexpr double of_switched = 1.5;    // more of it than one switch leaves to them
+constexpr double of_spread = 4;        // variation within a step, in terms of that between its nodes and ends
+constexpr double of_momentum = 1e-9,
+                 at_rest = 1e-20;  // changes of momentum that do not count; the latter of a velocity
 
 /// Of the mean of |f|: what s nodes may miss of a smooth force in a coarse step.
 double accuracy_of(std::size_t s) { return 0.5 * std::pow(10.0, -static_cast<double>(s)); }
@@ -17,8 +18,14 @@ double accuracy_of(std::size_t s) { return 0.5 * std::pow(10.0, -static_cast<dou
 }  // namespace
 
 ForceCheck::ForceCheck(const VariationalFunctions& functions, std::span<const double> parameters)
-    : search_(functions.forces.values, parameters), n_(functions.motion.freedoms), inputs_(functions.motion.inputs()),
-      path_(StepSearch::path_points * inputs_), inertia_(n_), momentum_(n_), by_nodes_(n_), spread_(n_) {}
+    : search_(functions.forces.values, parameters),
+      n_(functions.motion.freedoms),
+      inputs_(functions.motion.inputs()),
+      path_(StepSearch::path_points * inputs_),
+      inertia_(n_),
+      momentum_(n_),
+      by_nodes_(n_),
+      spread_(n_) {}
 
 void ForceCheck::start(std::span<const double> inertia) {
   inertia_.assign(inertia.begin(), inertia.end());
@@ -33,7 +40,8 @@ void ForceCheck::follow(StageSolver& solver, double t, double h) {
     const double part = 0.5 * (1 + x[j]);
     double* const out = &path_[j * inputs_];
     std::copy(first.begin(), first.end(), out);
-    for (std::size_t i = 0; i < n_; ++i) out[i] = solver.position_at(part, i), out[n_ + i] = solver.velocity_at(part, i);
+    for (std::size_t i = 0; i < n_; ++i)
+      out[i] = solver.position_at(part, i), out[n_ + i] = solver.velocity_at(part, i);
     out[inputs_ - 1] = t + part * h;
   }
   search_.set_path(path_);
@@ -48,8 +56,10 @@ void ForceCheck::look_at_nodes(const Tableau& tableau) {
   }
   for (std::size_t i = 0; i < n_; ++i) {
     by_nodes_[i] = spread_[i] = 0;
-    for (std::size_t j = 0; j < tableau.stages; ++j) by_nodes_[i] += static_cast<double>(tableau.b[j]) * values[(j + 2) * n_ + i];
-    for (std::size_t k = 0; k < positions.size(); ++k) spread_[i] = std::max(spread_[i], std::abs(values[k * n_ + i] - by_nodes_[i]));
+    for (std::size_t j = 0; j < tableau.stages; ++j)
+      by_nodes_[i] += static_cast<double>(tableau.b[j]) * values[(j + 2) * n_ + i];
+    for (std::size_t k = 0; k < positions.size(); ++k)
+      spread_[i] = std::max(spread_[i], std::abs(values[k * n_ + i] - by_nodes_[i]));
   }
 }
 
@@ -58,7 +68,9 @@ Sight ForceCheck::look(StageSolver& solver, double t, double h, std::span<const 
   follow(solver, t, h);
   look_at_nodes(solver.tableau());
   const double accuracy = accuracy_of(solver.tableau().stages);
-  const auto least = [&](std::size_t i) { return std::max(of_momentum * momentum_[i], at_rest * inertia_[i]) / std::abs(h); };
+  const auto least = [&](std::size_t i) {
+    return std::max(of_momentum * momentum_[i], at_rest * inertia_[i]) / std::abs(h);
+  };
   const auto small = [&](std::span<const double> tails) {
     for (std::size_t i = 0; i < n_; ++i)
       if (!(tails[i] <= 0.1 * std::max(accuracy * (std::abs(by_nodes_[i]) + spread_[i]), least(i)))) return false;
@@ -86,7 +98,8 @@ ForceCheck::Means ForceCheck::means(std::size_t i) const {
     out.force += weights_[k] * values_[k * n_ + i];
     out.size += weights_[k] * std::abs(values_[k * n_ + i]);
   }
-  for (std::size_t k = 0; k < weights_.size(); ++k) out.variation += weights_[k] * std::abs(values_[k * n_ + i] - out.force);
+  for (std::size_t k = 0; k < weights_.size(); ++k)
+    out.variation += weights_[k] * std::abs(values_[k * n_ + i] - out.force);
   return out;
 }
 
@@ -94,7 +107,8 @@ bool ForceCheck::is_seen(std::size_t i, double least, bool switched, double accu
   const Means mean = means(i);
   const double harmless = std::max(accuracy * mean.size, least);
   if (!(mean.variation <= std::max(of_spread * spread_[i], harmless))) return false;
-  return std::abs(mean.force - by_nodes_[i]) <= std::max((switched ? of_switched : of_variation) * mean.variation, harmless);
+  return std::abs(mean.force - by_nodes_[i]) <=
+         std::max((switched ? of_switched : of_variation) * mean.variation, harmless);
 }
 
 }  // namespace maupertuis::variational

@@ -10,10 +10,11 @@ namespace maupertuis::variational {
 /// NotAll: a force acts between the nodes that they do not tell of.
 enum class Sight { All, NotAll, NonFinite };
 
-/// A variational step looks at forces at its nodes alone, and all steps are alike: what lies between the nodes is not found by shorter
-/// ones. This check follows ∂L/∂q + F along the polynomials of a step, everywhere (StepSearch), and compares its mean with the mean that
-/// the nodes give. They may differ as smooth forces make them differ in coarse steps, and where a switch lies in the step. A force that
-/// the nodes missed makes them differ by most of what it is; or its variation is more than what nodes and ends tell of.
+/// A variational step looks at forces at its nodes alone, and all steps are alike: what lies between the nodes is not
+/// found by shorter ones. This check follows ∂L/∂q + F along the polynomials of a step, everywhere (StepSearch), and
+/// compares its mean with the mean that the nodes give. They may differ as smooth forces make them differ in coarse
+/// steps, and where a switch lies in the step. A force that the nodes missed makes them differ by most of what it is;
+/// or its variation is more than what nodes and ends tell of.
 class ForceCheck {
  public:
   ForceCheck(const VariationalFunctions& functions, std::span<const double> parameters);
@@ -34,9 +35,10 @@ class ForceCheck {
   StepSearch search_;
   std::size_t n_, inputs_;
   std::vector<double> path_;
-  std::vector<double> inertia_, momentum_;       // [n]; the largest so far
-  std::vector<double> by_nodes_, spread_;        // [n] the mean that the nodes give; how far values there and at the ends are from it
-  std::vector<double> weights_, values_;         // [found], [found × n]
+  std::vector<double> inertia_, momentum_;  // [n]; the largest so far
+  std::vector<double> by_nodes_,
+      spread_;  // [n] the mean that the nodes give; how far values there and at the ends are from it
+  std::vector<double> weights_, values_;  // [found], [found × n]
 };
 
 }  // namespace maupertuis::variational

@@ -24,10 +24,17 @@ void equilibrate(MatrixXd& m, VectorXd& rows, VectorXd& columns) {
 }
 
 StageSolver::StageSolver(const VariationalFunctions& functions, std::span<const double> parameters, Tableau tableau)
-    : functions_(functions), momenta_(functions.momenta, parameters), forces_(functions.forces, parameters),
-      positions_(functions.motion.positions, parameters), rates_(functions.motion.rates, parameters),
-      tableau_(std::move(tableau)), n_(functions.motion.freedoms), m_(functions.motion.constraints),
-      s_(tableau_.stages), point_(functions.motion.inputs()), point_end_(point_.size()) {
+    : functions_(functions),
+      momenta_(functions.momenta, parameters),
+      forces_(functions.forces, parameters),
+      positions_(functions.motion.positions, parameters),
+      rates_(functions.motion.rates, parameters),
+      tableau_(std::move(tableau)),
+      n_(functions.motion.freedoms),
+      m_(functions.motion.constraints),
+      s_(tableau_.stages),
+      point_(functions.motion.inputs()),
+      point_end_(point_.size()) {
   for (MatrixXd* matrix : {&positions_at_, &velocities_, &forces_at_}) matrix->setZero(index(n_), index(s_));
   nodes_.resize(s_);
   q_begin_.resize(n_);
@@ -42,7 +49,8 @@ void StageSolver::set_rows(const std::vector<std::size_t>& rows) {
   have_factors_ = false;
 }
 
-void StageSolver::guess(double h, std::span<const double> v, std::span<const double> a, std::span<const double> lambda) {
+void StageSolver::guess(double h, std::span<const double> v, std::span<const double> a,
+                        std::span<const double> lambda) {
   for (std::size_t j = 0; j < s_; ++j) {
     for (std::size_t i = 0; i < n_; ++i)
       velocities_(index(i), index(j)) = v[i] + static_cast<double>(tableau_.c[j]) * h * a[i];
@@ -74,8 +82,7 @@ void StageSolver::place_nodes() {
   for (std::size_t i = 0; i < s_; ++i)
     for (std::size_t k = 0; k < n_; ++k) {
       long double sum = begin_->q[k].lo;
-      for (std::size_t j = 0; j < s_; ++j)
-        sum += h_ * tableau_.at(tableau_.a, i, j) * velocities_(index(k), index(j));
+      for (std::size_t j = 0; j < s_; ++j) sum += h_ * tableau_.at(tableau_.a, i, j) * velocities_(index(k), index(j));
       positions_at_(index(k), index(i)) = static_cast<double>(begin_->q[k].hi + sum);
     }
 }
@@ -98,7 +105,8 @@ bool StageSolver::residual() {
   for (std::size_t i = 0; i < s_; ++i)
     for (std::size_t k = 0; k < n_; ++k) {
       long double sum = begin_->p[k].lo;
-      for (std::size_t j = 0; j < s_; ++j) sum += h_ * tableau_.at(tableau_.dual, i, j) * forces_at_(index(k), index(j));
+      for (std::size_t j = 0; j < s_; ++j)
+        sum += h_ * tableau_.at(tableau_.dual, i, j) * forces_at_(index(k), index(j));
       const long double gained = static_cast<long double>(momenta_at(index(k), index(i))) - begin_->p[k].hi;
       residual_[index(i * n_ + k)] = static_cast<double>(gained - sum);
     }
@@ -140,8 +148,12 @@ bool StageSolver::jacobian() {
   if (!linearize_nodes()) return false;
   const Index n = index(n_), r = index(rows_.size()), first_row = index(s_) * n;
   MatrixXd j = MatrixXd::Zero(index(unknowns()), index(unknowns()));
-  const auto a = [&](std::size_t row, std::size_t column) { return static_cast<double>(tableau_.at(tableau_.a, row, column)); };
-  const auto dual = [&](std::size_t row, std::size_t column) { return static_cast<double>(tableau_.at(tableau_.dual, row, column)); };
+  const auto a = [&](std::size_t row, std::size_t column) {
+    return static_cast<double>(tableau_.at(tableau_.a, row, column));
+  };
+  const auto dual = [&](std::size_t row, std::size_t column) {
+    return static_cast<double>(tableau_.at(tableau_.dual, row, column));
+  };
   for (std::size_t i = 0; i < s_; ++i)
     for (std::size_t k = 0; k < s_; ++k) {
       auto block = j.block(index(i) * n, index(k) * n, n, n);
@@ -170,7 +182,8 @@ StageSolver::Correction StageSolver::apply(const VectorXd& change) {
     if (constrained() && i + 1 < s_) multipliers_.col(column) -= change.segment(index(s_) * n + column * r, r) / h_;
     out.size = std::max(out.size, weights_.cwiseProduct(step).norm());
     out.speed = std::max(out.speed, weights_.cwiseProduct(velocities_.col(column)).norm());
-    out.resolution = std::max(out.resolution, weights_.cwiseProduct(positions_at_.col(column)).norm() * epsilon / std::abs(h_));
+    out.resolution =
+        std::max(out.resolution, weights_.cwiseProduct(positions_at_.col(column)).norm() * epsilon / std::abs(h_));
   }
   return out;
 }
@@ -189,7 +202,8 @@ StageStatus StageSolver::iterate() {
     // Corrections that no longer shrink are rounding if they are small; the next one is foreseen from the last two.
     const bool small = made.size <= 1e-11 * made.speed + 1e3 * made.resolution;
     const double next = last < infinity ? made.size * made.size / last : made.size;
-    if (made.size == 0 || (small && made.size >= 0.8 * last) || next <= 0.01 * epsilon * made.speed) return StageStatus::Ok;
+    if (made.size == 0 || (small && made.size >= 0.8 * last) || next <= 0.01 * epsilon * made.speed)
+      return StageStatus::Ok;
     const bool too_slow = !small && made.size > 0.5 * last;
     if (too_slow && (place_nodes(), !jacobian())) return StageStatus::NonFinite;
     last = too_slow ? infinity : made.size;

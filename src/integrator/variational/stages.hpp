@@ -40,7 +40,8 @@ class StageSolver {
   void set_rows(const std::vector<std::size_t>& rows);
   /// What the iteration begins from: V_i = v + c_i h a, Λ_i = λ.
   void guess(double h, std::span<const double> v, std::span<const double> a, std::span<const double> lambda);
-  /// The same from the last step solved, of length h_last: its polynomials carried on to [begin, begin + length]·h_last.
+  /// The same from the last step solved, of length h_last: its polynomials carried on to [begin, begin +
+  /// length]·h_last.
   void extrapolate(const StageSolver& last, long double begin, long double length);
   StageStatus solve(const Phase& begin, double h, double end_time, Phase& end);
   /// p = ∂L/∂v; where rows are given, v is on the constraints.
@@ -90,7 +91,7 @@ class StageSolver {
   std::vector<std::size_t> rows_;
   std::vector<double> point_, point_end_;
 
-  const Phase* begin_ = nullptr;                           // while a step is being solved
+  const Phase* begin_ = nullptr;  // while a step is being solved
   double t_begin_ = 0, h_ = 0, factored_h_ = 0;
   Eigen::MatrixXd positions_at_, velocities_, forces_at_;  // [n × s]
   Eigen::MatrixXd multipliers_;                            // [rows × s]

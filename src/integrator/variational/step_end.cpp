@@ -37,8 +37,8 @@ StageStatus StageSolver::finish(double end_time, Phase& end) {
   return status;
 }
 
-/// v₁ from p₁ = ∂L/∂v(q₁,v₁), by Newton. Under constraints p₁ still lacks the impulse of the last multiplier, which is what
-/// makes φ̇(q₁,v₁) = 0: it is an unknown beside v₁.
+/// v₁ from p₁ = ∂L/∂v(q₁,v₁), by Newton. Under constraints p₁ still lacks the impulse of the last multiplier, which is
+/// what makes φ̇(q₁,v₁) = 0: it is an unknown beside v₁.
 StageStatus StageSolver::end_velocity(Phase& end) {
   const Index n = index(n_), r = index(rows_.size());
   std::vector<double>& x = point_end_;
@@ -89,8 +89,8 @@ MatrixXd StageSolver::normals_at(std::span<const double> point) {
 }
 
 /// ∂L/∂v − p₁ − Aᵀ impulse = 0 and φ̇ = 0, with their derivatives by v and the impulse.
-bool StageSolver::legendre_equations(std::span<const double> point, const Phase& end, const MatrixXd& normals, const VectorXd& impulse,
-                                     MatrixXd& matrix, VectorXd& right) {
+bool StageSolver::legendre_equations(std::span<const double> point, const Phase& end, const MatrixXd& normals,
+                                     const VectorXd& impulse, MatrixXd& matrix, VectorXd& right) {
   const Index n = index(n_), r = index(rows_.size());
   momenta_.linearize(point);
   if (!momenta_.finite()) return false;

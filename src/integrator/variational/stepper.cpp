@@ -28,9 +28,16 @@ variational::Tableau tableau_for(int order, bool constrained) {
 
 struct VariationalStepper::Impl {
   Impl(const VariationalFunctions& f, std::span<const double> parameters, const VariationalOptions& o)
-      : functions(f.motion), options(o), n(f.motion.freedoms), at_point(f.motion, parameters),
-        solver(f, parameters, tableau_for(o.order, f.motion.constraints > 0)), partial(solver), check(f, parameters),
-        observables(f.motion.observables), events(f.motion.events), integrands(f.motion.integrands) {
+      : functions(f.motion),
+        options(o),
+        n(f.motion.freedoms),
+        at_point(f.motion, parameters),
+        solver(f, parameters, tableau_for(o.order, f.motion.constraints > 0)),
+        partial(solver),
+        check(f, parameters),
+        observables(f.motion.observables),
+        events(f.motion.events),
+        integrands(f.motion.integrands) {
     for (FunctionWorkspace* work : {&observables, &events, &integrands}) work->set_parameters(parameters);
     event_values.resize(functions.events.outputs());
     integrals.resize(functions.integrands.outputs());
@@ -62,14 +69,14 @@ struct VariationalStepper::Impl {
   mutable FunctionWorkspace observables, events, integrands;
   mutable std::vector<double> event_values;
 
-  Phase before, now;            // the ends of the last step
+  Phase before, now;  // the ends of the last step
   std::vector<double> q_now, p_now;
   std::vector<Compensated> integrals, integrals_before;
-  double t_start = 0, h = 0;    // of the run; the last step
+  double t_start = 0, h = 0;  // of the run; the last step
   std::size_t steps = 0, counted = 0;
-  double residual = 0;          // of the constraints, the largest so far
+  double residual = 0;  // of the constraints, the largest so far
   PointStatus first_status = PointStatus::Ok;
-  bool first = true;            // the last step does not tell where the next one begins to iterate
+  bool first = true;  // the last step does not tell where the next one begins to iterate
   mutable Sample start_sample;
 };
 
@@ -84,14 +91,19 @@ std::vector<double> leading(const std::vector<Compensated>& values) {
 std::string reason_of(StageStatus status, double t, double h) {
   switch (status) {
     case StageStatus::Singular:
-      return fmt::format("the discrete equations of motion have no unique solution after t = {:.17g} s: the mass matrix is "
-                         "singular there on the motions that the constraints allow", t);
+      return fmt::format(
+          "the discrete equations of motion have no unique solution after t = {:.17g} s: the mass matrix is "
+          "singular there on the motions that the constraints allow",
+          t);
     case StageStatus::NonFinite:
       return fmt::format("a value is infinite or undefined on the step from t = {:.17g} s to {:.17g} s", t, t + h);
     case StageStatus::NoConvergence:
-      return fmt::format("Newton's iteration does not solve the discrete equations of motion on the step from t = {:.17g} s to "
-                         "{:.17g} s: the step is too long there, a switch lies in it, or no motion obeys the constraints", t, t + h);
-    case StageStatus::Ok: break;
+      return fmt::format(
+          "Newton's iteration does not solve the discrete equations of motion on the step from t = {:.17g} s to "
+          "{:.17g} s: the step is too long there, a switch lies in it, or no motion obeys the constraints",
+          t, t + h);
+    case StageStatus::Ok:
+      break;
   }
   return {};
 }
@@ -126,7 +138,8 @@ void VariationalStepper::Impl::start(double t, std::span<const double> q, std::s
   if (first_status == PointStatus::Ok) {
     const Eigen::VectorXd mobility = at_point.mobility().diagonal();
     std::vector<double> inertia(n);
-    for (std::size_t i = 0; i < n; ++i) inertia[i] = mobility[static_cast<Eigen::Index>(i)] > 0 ? 1 / mobility[static_cast<Eigen::Index>(i)] : 0;
+    for (std::size_t i = 0; i < n; ++i)
+      inertia[i] = mobility[static_cast<Eigen::Index>(i)] > 0 ? 1 / mobility[static_cast<Eigen::Index>(i)] : 0;
     check.start(inertia);
   }
   solver.set_rows(at_point.rows());
@@ -137,8 +150,10 @@ Step VariationalStepper::Impl::step(double bound) {
   if (options.interrupt && *options.interrupt) return ended(StepEnding::Interrupted, "the run was interrupted");
   if (steps >= options.maximum_steps)
     return ended(StepEnding::TooManySteps, fmt::format("the run reached its limit of {} steps", options.maximum_steps));
-  if (first_status == PointStatus::Singular) return ended(StepEnding::SingularMass, reason_of(StageStatus::Singular, now.t, 0));
-  if (first_status == PointStatus::NonFinite) return ended(StepEnding::Overflow, reason_of(StageStatus::NonFinite, now.t, 0));
+  if (first_status == PointStatus::Singular)
+    return ended(StepEnding::SingularMass, reason_of(StageStatus::Singular, now.t, 0));
+  if (first_status == PointStatus::NonFinite)
+    return ended(StepEnding::Overflow, reason_of(StageStatus::NonFinite, now.t, 0));
 
   // Times are counted from the start, so that their rounding does not add up.
   const double direction = bound < now.t ? -1 : 1, length = direction * options.step;
@@ -149,17 +164,21 @@ Step VariationalStepper::Impl::step(double bound) {
   // A step of the common length is exactly of that length: the same map from step to step.
   const double this_h = std::abs(next - length) <= 1e-9 * options.step ? length : next;
 
-  if (first) solver.guess(this_h, now.v, at_point.a(), at_point.lambda());
-  else solver.extrapolate(solver, 1, this_h / h);
+  if (first)
+    solver.guess(this_h, now.v, at_point.a(), at_point.lambda());
+  else
+    solver.extrapolate(solver, 1, this_h / h);
   Phase end;
   const StageStatus status = solver.solve(now, this_h, end_time, end);
   if (status != StageStatus::Ok) return ended(ending_of(status), reason_of(status, now.t, this_h));
   const variational::Sight sight = check.look(solver, now.t, this_h, leading(end.p));
-  if (sight == variational::Sight::NonFinite) return ended(StepEnding::Overflow, reason_of(StageStatus::NonFinite, now.t, this_h));
+  if (sight == variational::Sight::NonFinite)
+    return ended(StepEnding::Overflow, reason_of(StageStatus::NonFinite, now.t, this_h));
   if (sight == variational::Sight::NotAll)
-    return ended(StepEnding::NoConvergence,
-                 fmt::format("a force acts between the nodes of the step from t = {:.17g} s to {:.17g} s that they do not see: the step is too "
-                             "long there", now.t, now.t + this_h));
+    return ended(StepEnding::NoConvergence, fmt::format("a force acts between the nodes of the step from t = {:.17g} s "
+                                                        "to {:.17g} s that they do not see: the step is too "
+                                                        "long there",
+                                                        now.t, now.t + this_h));
 
   before = std::move(now);
   now = std::move(end);
@@ -204,8 +223,8 @@ double VariationalStepper::Impl::refine(std::size_t i, double low, double high, 
   }
 }
 
-/// The first root of an event function in the step, seen by its signs at a few times. A zero at the very beginning does not
-/// count.
+/// The first root of an event function in the step, seen by its signs at a few times. A zero at the very beginning does
+/// not count.
 std::optional<VariationalStepper::Impl::Root> VariationalStepper::Impl::first_root() const {
   constexpr int parts = 4;
   std::vector<double> last(event_values.size());
@@ -287,7 +306,9 @@ VariationalStepper::~VariationalStepper() = default;
 VariationalStepper::VariationalStepper(VariationalStepper&&) noexcept = default;
 
 int VariationalStepper::order() const { return 2 * ((impl_->options.order + 1) / 2); }
-void VariationalStepper::start(double t, std::span<const double> q, std::span<const double> v) { impl_->start(t, q, v); }
+void VariationalStepper::start(double t, std::span<const double> q, std::span<const double> v) {
+  impl_->start(t, q, v);
+}
 Step VariationalStepper::step(double bound) { return impl_->step(bound); }
 double VariationalStepper::time() const { return impl_->now.t; }
 std::span<const double> VariationalStepper::q() const { return impl_->q_now; }

@@ -13,7 +13,8 @@ using Real = long double;
 std::pair<Real, Real> legendre(std::size_t k, Real x) {
   Real before = 1, now = x;
   if (k == 0) return {1, 0};
-  for (std::size_t i = 2; i <= k; ++i) before = std::exchange(now, ((2 * Real(i) - 1) * x * now - (Real(i) - 1) * before) / Real(i));
+  for (std::size_t i = 2; i <= k; ++i)
+    before = std::exchange(now, ((2 * Real(i) - 1) * x * now - (Real(i) - 1) * before) / Real(i));
   return {now, Real(k) * (x * now - before) / (x * x - 1)};
 }
 

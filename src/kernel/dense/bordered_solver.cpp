@@ -2,10 +2,10 @@
 
 #include "kernel/dense/linear_solver.hpp"
 
-#include <eigen3/Eigen/LU>
-#include <eigen3/Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <eigen3/Eigen/LU>
+#include <eigen3/Eigen/QR>
 #include <vector>
 
 namespace maupertuis::dense {
@@ -44,12 +44,12 @@ struct BorderedSolver::Impl {
   std::size_t undetermined_coordinate();
 
   std::size_t n, m, size;
-  LinearSolver plain;                    // without constraints
-  std::vector<double> entries;           // [size × size], equilibrated by factor()
-  std::vector<double> as_given;          // [size × size]
-  std::vector<double> scale;             // [size]
-  std::vector<bool> kept, determined;    // [m]
-  std::vector<Index> rows;               // of the factored system, when rows were dropped
+  LinearSolver plain;                  // without constraints
+  std::vector<double> entries;         // [size × size], equilibrated by factor()
+  std::vector<double> as_given;        // [size × size]
+  std::vector<double> scale;           // [size]
+  std::vector<bool> kept, determined;  // [m]
+  std::vector<Index> rows;             // of the factored system, when rows were dropped
   bool whole = true;
   Eigen::PartialPivLU<Matrix> lu;
   mutable Vector scratch;
@@ -146,8 +146,9 @@ void BorderedSolver::Impl::find_dependences(const Eigen::ColPivHouseholderQR<Eig
   if (dropped == 0) return;
   const auto r = qr.matrixR();
   const auto& place = qr.colsPermutation().indices();
-  const Eigen::MatrixXd shares = r.topLeftCorner(rank, rank).template triangularView<Eigen::Upper>().solve(
-      Eigen::MatrixXd(r.block(0, rank, rank, dropped)));
+  const Eigen::MatrixXd shares = r.topLeftCorner(rank, rank)
+                                     .template triangularView<Eigen::Upper>()
+                                     .solve(Eigen::MatrixXd(r.block(0, rank, rank, dropped)));
   for (Index d = 0; d < dropped; ++d) {
     determined[static_cast<std::size_t>(place[rank + d])] = false;
     for (Index i = 0; i < rank; ++i)

@@ -1,8 +1,8 @@
 #include "kernel/dense/linear_solver.hpp"
 
+#include <cmath>
 #include <eigen3/Eigen/Cholesky>
 #include <eigen3/Eigen/LU>
-#include <cmath>
 #include <limits>
 #include <vector>
 

@@ -32,8 +32,10 @@ void Envelope::find_needs() {
       for (std::uint32_t t = i.first_term; is_sum && t < i.last_term; ++t) {
         const Term& term = program_.terms[t];
         const bool is_product = i.op == Op::Products && t >= i.first_product;
-        if (is_product) needs_size_[term.a] = needs_size_[term.b] = 1, want(term.b, rates);
-        else if (term.shift == 0 && needs_size_[i.out]) needs_size_[term.a] = 1;
+        if (is_product)
+          needs_size_[term.a] = needs_size_[term.b] = 1, want(term.b, rates);
+        else if (term.shift == 0 && needs_size_[i.out])
+          needs_size_[term.a] = 1;
         want(term.a, rates + static_cast<int>(term.shift));
       }
       for (const Slot slot : {i.a, i.b}) {
@@ -92,16 +94,25 @@ Envelope::Value Envelope::evaluate(const Instruction& i, const double* constants
     case Op::One:
     case Op::Time:
     case Op::Coordinate:
-    case Op::Companion: break;
+    case Op::Companion:
+      break;
     case Op::Linear:
-    case Op::Products: return sum(i, constants);
-    case Op::Square: return product(i.a, i.a);
-    case Op::Quotient: return quotient(i);
-    case Op::SquareRoot: return power(values_[i.a], 0.5);
-    case Op::Power: return power(values_[i.a], constants[i.constant]);
-    case Op::SinCos: return circular(values_[i.a], false);
-    case Op::SinhCosh: return circular(values_[i.a], true);
-    case Op::Function: return function(i);
+    case Op::Products:
+      return sum(i, constants);
+    case Op::Square:
+      return product(i.a, i.a);
+    case Op::Quotient:
+      return quotient(i);
+    case Op::SquareRoot:
+      return power(values_[i.a], 0.5);
+    case Op::Power:
+      return power(values_[i.a], constants[i.constant]);
+    case Op::SinCos:
+      return circular(values_[i.a], false);
+    case Op::SinhCosh:
+      return circular(values_[i.a], true);
+    case Op::Function:
+      return function(i);
     case Op::Derivative: {
       const Value& a = values_[i.a];
       return {a.high[1],

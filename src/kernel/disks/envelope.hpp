@@ -44,8 +44,8 @@ class Envelope {
   static constexpr double infinity = std::numeric_limits<double>::infinity();
   /// What no rule bounds is infinite.
   struct Value {
-    double centre = infinity, reach = infinity;                                         // |f(0)|, |f(s) − f(0)|
-    double low = 0;                                                                     // ≤ |f|
+    double centre = infinity, reach = infinity;  // |f(0)|, |f(s) − f(0)|
+    double low = 0;                              // ≤ |f|
     /// ≥ |f|, |ḟ|, |f̈|, and of what of them is no polynomial
     double high[3] = {infinity, infinity, infinity}, tail[3] = {infinity, infinity, infinity};
   };
@@ -63,13 +63,13 @@ class Envelope {
   Value function(const Instruction& instruction) const;
 
   const Program& program_;
-  std::vector<int> degrees_;              // [slots]
-  std::vector<std::int8_t> needs_size_;   // [slots]
-  std::vector<std::int8_t> rates_;        // [slots] up to which derivative the bounds of a slot are wanted
-  std::vector<Value> values_;             // [slots]
+  std::vector<int> degrees_;             // [slots]
+  std::vector<std::int8_t> needs_size_;  // [slots]
+  std::vector<std::int8_t> rates_;       // [slots] up to which derivative the bounds of a slot are wanted
+  std::vector<Value> values_;            // [slots]
   std::vector<Slot> observed_;
-  std::vector<int> place_;                // [slots] among the observed ones; −1: none
-  MotionSizes sizes_;                     // of the evaluation at hand
+  std::vector<int> place_;  // [slots] among the observed ones; −1: none
+  MotionSizes sizes_;       // of the evaluation at hand
   int order_ = 0;
 };
 

@@ -63,12 +63,15 @@ class Retrace {
         const Instruction& i = program_.instructions[*at];
         if (taken[*at] || !(wanted[i.out] || (i.second != no_slot && wanted[i.second]))) continue;
         taken[*at] = changed = true;
-        for (const Slot slot : {i.a, i.b}) if (slot != no_slot) wanted[slot] = true;
+        for (const Slot slot : {i.a, i.b})
+          if (slot != no_slot) wanted[slot] = true;
         for (std::uint32_t t = i.first_term; t < i.last_term; ++t)
-          for (const Slot slot : {program_.terms[t].a, program_.terms[t].b}) if (slot != no_slot) wanted[slot] = true;
+          for (const Slot slot : {program_.terms[t].a, program_.terms[t].b})
+            if (slot != no_slot) wanted[slot] = true;
       }
     }
-    for (const std::uint32_t index : all) if (taken[index]) needed_.push_back(index);
+    for (const std::uint32_t index : all)
+      if (taken[index]) needed_.push_back(index);
   }
 
   void run(const T& s, int stages) {
@@ -98,10 +101,10 @@ class Retrace {
   const Program& program_;
   int order_;
   reference::MemoryOf<T> memory_;
-  std::vector<T> polynomials_;               // [order + 2][unknowns]
+  std::vector<T> polynomials_;  // [order + 2][unknowns]
   T t_ = T(0), rest_ = T(0);
-  std::vector<std::uint32_t> needed_;        // instructions, in order
-  std::vector<const Instruction*> producer_; // [slots]
+  std::vector<std::uint32_t> needed_;         // instructions, in order
+  std::vector<const Instruction*> producer_;  // [slots]
 };
 
 }  // namespace maupertuis

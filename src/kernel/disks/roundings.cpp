@@ -38,7 +38,8 @@ double Disks::rounding_of(const Node& node) const {
     case Op::One:
     case Op::Time:
     case Op::Coordinate:
-    case Op::Companion: return 0;
+    case Op::Companion:
+      return 0;
     case Op::Linear:
     case Op::Products:
       for (std::uint32_t t = i.first_term; t < i.last_term; ++t) {
@@ -50,18 +51,24 @@ double Disks::rounding_of(const Node& node) const {
                                       : rounding_of_derivative(term.a, term.shift));
       }
       return sum;
-    case Op::Square: return 2 * size(i.a) * rounding_[i.a];
-    case Op::Quotient: return (rounding_[i.a] + size(i.out) * rounding_[i.b]) / size(i.b);
-    case Op::SquareRoot: return size(i.a) > 0 ? 0.5 * rounding_[i.a] / size(i.out) : 0;
-    case Op::Power: return size(i.a) > 0 ? std::abs(node.exponent) * size(i.out) / size(i.a) * rounding_[i.a] : 0;
+    case Op::Square:
+      return 2 * size(i.a) * rounding_[i.a];
+    case Op::Quotient:
+      return (rounding_[i.a] + size(i.out) * rounding_[i.b]) / size(i.b);
+    case Op::SquareRoot:
+      return size(i.a) > 0 ? 0.5 * rounding_[i.a] / size(i.out) : 0;
+    case Op::Power:
+      return size(i.a) > 0 ? std::abs(node.exponent) * size(i.out) / size(i.a) * rounding_[i.a] : 0;
     case Op::SinCos:
-    case Op::SinhCosh: return 0;  // by the caller
+    case Op::SinhCosh:
+      return 0;  // by the caller
     case Op::Function:
       // dy = Σ c w du
       for (std::uint32_t t = i.first_term; t < i.last_term; ++t)
         sum += terms_[t].size * size(terms_[t].a) * rounding_[terms_[t].b];
       return sum;
-    case Op::Derivative: return rounding_of_derivative(i.a, 1);
+    case Op::Derivative:
+      return rounding_of_derivative(i.a, 1);
     case Op::Select: {
       std::uint32_t t = i.first_term;
       while (t + 1 < i.last_term && constants_[terms_[t].coefficient] == 0) ++t;

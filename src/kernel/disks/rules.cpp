@@ -27,25 +27,33 @@ void Disks::evaluate(const Node& node) {
     case Op::One:
     case Op::Time:
     case Op::Coordinate:
-    case Op::Companion: return;
+    case Op::Companion:
+      return;
     case Op::Linear:
-    case Op::Products: return set(i.out, sum(node));
+    case Op::Products:
+      return set(i.out, sum(node));
     case Op::Square: {
       Bounds b = product(i.a, i.a);
       if (degree_[i.out] < now_.order) b.tail = 0;
       return set(i.out, b);
     }
-    case Op::Quotient: return set(i.out, quotient(node));
-    case Op::SquareRoot: return set(i.out, power(i.a, 0.5, centre(i.out)));
-    case Op::Power: return set(i.out, power(i.a, node.exponent, centre(i.out)));
+    case Op::Quotient:
+      return set(i.out, quotient(node));
+    case Op::SquareRoot:
+      return set(i.out, power(i.a, 0.5, centre(i.out)));
+    case Op::Power:
+      return set(i.out, power(i.a, node.exponent, centre(i.out)));
     case Op::SinCos:
-    case Op::SinhCosh: return pair(node);
-    case Op::Function: return set(i.out, function(node));
+    case Op::SinhCosh:
+      return pair(node);
+    case Op::Function:
+      return set(i.out, function(node));
     case Op::Derivative: {
       const Term term{1, 0, i.a, no_slot, 1};
       return set(i.out, {shifted_reach(term), shifted_tail(term), 0, infinity});
     }
-    case Op::Select: return set(i.out, chosen(i));
+    case Op::Select:
+      return set(i.out, chosen(i));
   }
   throw std::logic_error("disks met an operation that they do not know; please report");
 }
@@ -124,8 +132,10 @@ double Disks::tail_of_sum(const Instruction& i) const {
     const Term& term = terms_[t];
     if (term.size == 0) continue;
     const bool is_product = i.op == Op::Products && t >= i.first_product;
-    if (!is_product) tail += term.size * shifted_tail(term);
-    else if (degree_[term.a] + degree_[term.b] >= now_.order) tail += term.size * product(term.a, term.b).tail;
+    if (!is_product)
+      tail += term.size * shifted_tail(term);
+    else if (degree_[term.a] + degree_[term.b] >= now_.order)
+      tail += term.size * product(term.a, term.b).tail;
   }
   return tail;
 }

@@ -103,18 +103,18 @@ struct ForwardDynamics::Impl {
   std::vector<std::int8_t> sides;
   bool stale = true;
   std::vector<double> constants;
-  std::vector<bool> live;                      // [constants] that follow from inputs
-  std::vector<std::uint32_t> live_order;       // their indices
-  bool has_plan = false;                       // for M₀
-  Pivots pivots;                               // of it; none: a full matrix
-  dynamics::WrittenDynamics written;           // forces, then accelerations where there is a plan
-  std::vector<straight::Evaluator> evaluators; // [lines]
-  std::vector<double> numbers;                 // [written.numbers]
-  std::vector<std::uint32_t> live_numbers;     // those that follow from inputs
-  std::vector<bool> behind;                    // [lines] whose evaluator does not know the numbers yet
+  std::vector<bool> live;                       // [constants] that follow from inputs
+  std::vector<std::uint32_t> live_order;        // their indices
+  bool has_plan = false;                        // for M₀
+  Pivots pivots;                                // of it; none: a full matrix
+  dynamics::WrittenDynamics written;            // forces, then accelerations where there is a plan
+  std::vector<straight::Evaluator> evaluators;  // [lines]
+  std::vector<double> numbers;                  // [written.numbers]
+  std::vector<std::uint32_t> live_numbers;      // those that follow from inputs
+  std::vector<bool> behind;                     // [lines] whose evaluator does not know the numbers yet
   straight::Code code;
   CompileReport report;
-  std::vector<double> rest, scratch;           // [unknowns] zeros; of the code
+  std::vector<double> rest, scratch;  // [unknowns] zeros; of the code
   double operands[64] = {};
 };
 
@@ -143,10 +143,12 @@ double ForwardDynamics::Impl::constant(std::size_t i) {
 
 double ForwardDynamics::Impl::number(const dynamics::NumberSource& source) const {
   switch (source.what) {
-    case dynamics::NumberSource::OfConstant: return constants[source.index];
+    case dynamics::NumberSource::OfConstant:
+      return constants[source.index];
     case dynamics::NumberSource::OfChoice:
       return sparse::constant_factor(system->edges[source.index], program, constants.data());
-    case dynamics::NumberSource::OfPivot: break;
+    case dynamics::NumberSource::OfPivot:
+      break;
   }
   return (*pivots)[source.index].size;
 }
@@ -219,9 +221,12 @@ bool ForwardDynamics::Impl::pays() const {
 
 void ForwardDynamics::Impl::compile() {
   if (code) return;
-  if (program.unknowns != n) report = {.trouble = "the accelerations of systems with constraints are not compiled"};
-  else if (!has_plan) report = {.trouble = "no order of elimination holds at all of the sampled states"};
-  else std::tie(code, report) = straight::compile(written.lines, {.cache = options.cache});
+  if (program.unknowns != n)
+    report = {.trouble = "the accelerations of systems with constraints are not compiled"};
+  else if (!has_plan)
+    report = {.trouble = "no order of elimination holds at all of the sampled states"};
+  else
+    std::tie(code, report) = straight::compile(written.lines, {.cache = options.cache});
   for (const straight::StraightLine& line : written.lines)
     scratch.resize(std::max(scratch.size(), straight::scratch_size(line)));
 }

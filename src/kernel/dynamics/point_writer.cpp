@@ -16,7 +16,11 @@ Value Numbers::number(straight::Builder& to, NumberSource source) {
 }
 
 PointWriter::PointWriter(straight::Builder& to, Numbers& numbers, const Program& program, bool with_accelerations)
-    : to_(to), numbers_(numbers), program_(program), orders_(1 - program.first_stage), zero_(to.literal(0)),
+    : to_(to),
+      numbers_(numbers),
+      program_(program),
+      orders_(1 - program.first_stage),
+      zero_(to.literal(0)),
       value_(program.slots, std::vector<Value>(static_cast<std::size_t>(orders_), zero_)) {
   if (program.one != no_slot) put(program.one, 0, to.literal(1));
   if (program.time != no_slot) put(program.time, 0, to.given(TimeArray, 0)), put(program.time, 1, to.literal(1));
@@ -37,21 +41,34 @@ void PointWriter::write(const Run& run, int order) {
 void PointWriter::write(const Instruction& i, int k) {
   switch (i.op) {
     case Op::Linear:
-    case Op::Products: return put(i.out, k, sum(i, k));
+    case Op::Products:
+      return put(i.out, k, sum(i, k));
     case Op::Square: {
       Terms terms;
       for (int j = 0; j <= k; ++j) product(terms, {}, i.a, j, i.a, k - j);
       return put(i.out, k, to_.sum(std::move(terms)));
     }
-    case Op::Quotient: return put(i.out, k, quotient(i, k));
-    case Op::SquareRoot: return put(i.out, k, k == 0 ? to_.root(at(i.a)) : root(i, k));
-    case Op::Power: return put(i.out, k, power(i, k));
-    case Op::SinCos: return pair(i, k, -1);
-    case Op::SinhCosh: return pair(i, k, 1);
-    case Op::Function: return put(i.out, k, function(i, k));
-    case Op::Derivative: return put(i.out, k, to_.product(k + 1, at(i.a, k + 1)));
-    case Op::Select: return put(i.out, k, select(i, k));
-    case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: return;
+    case Op::Quotient:
+      return put(i.out, k, quotient(i, k));
+    case Op::SquareRoot:
+      return put(i.out, k, k == 0 ? to_.root(at(i.a)) : root(i, k));
+    case Op::Power:
+      return put(i.out, k, power(i, k));
+    case Op::SinCos:
+      return pair(i, k, -1);
+    case Op::SinhCosh:
+      return pair(i, k, 1);
+    case Op::Function:
+      return put(i.out, k, function(i, k));
+    case Op::Derivative:
+      return put(i.out, k, to_.product(k + 1, at(i.a, k + 1)));
+    case Op::Select:
+      return put(i.out, k, select(i, k));
+    case Op::One:
+    case Op::Time:
+    case Op::Coordinate:
+    case Op::Companion:
+      return;
   }
   throw unknown_op(i.op, "a point of a program");
 }
@@ -63,8 +80,10 @@ void PointWriter::product(Terms& terms, Term term, Slot a, int i, Slot b, int j)
   const auto same = std::find_if(terms.begin(), terms.end(), [&](const Term& t) {
     return t.a == term.a && std::minmax(t.b, t.c) == std::minmax(x, y);
   });
-  if (same != terms.end()) same->factor += term.factor;
-  else terms.push_back({term.factor, term.a, x, y});
+  if (same != terms.end())
+    same->factor += term.factor;
+  else
+    terms.push_back({term.factor, term.a, x, y});
 }
 
 Value PointWriter::sum(const Instruction& i, int k) {

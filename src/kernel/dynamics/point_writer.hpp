@@ -22,7 +22,7 @@ enum Array : std::uint32_t {
 /// What a number of NumberArray is; all follow from parameters and the sides of switches.
 struct NumberSource {
   enum What : std::uint8_t { OfConstant, OfChoice, OfPivot } what;
-  std::uint32_t index;          // of the constant, of the edge, or of the pivot, whose usual size it is
+  std::uint32_t index;  // of the constant, of the edge, or of the pivot, whose usual size it is
 };
 
 /// Numbers that several lines share.

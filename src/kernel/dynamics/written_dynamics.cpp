@@ -44,8 +44,10 @@ class MatrixWriter {
     if (is_wide_) tangents_.resize(system_.size, straight::none);
     columns_.assign(is_wide_ ? 0 : system_.size, std::vector<Value>(n_, to_.literal(0)));
     for (std::uint32_t j = 0; j < n_; ++j) {
-      if (is_wide_) tangents_[j] = to_.unit(j);
-      else columns_[j][j] = to_.literal(1);
+      if (is_wide_)
+        tangents_[j] = to_.unit(j);
+      else
+        columns_[j][j] = to_.literal(1);
     }
     for (const std::uint32_t row : system_.rows_of_slots)
       if (column_[row] != straight::none) tangent(row);
@@ -70,7 +72,8 @@ class MatrixWriter {
 
   void tangent(std::uint32_t row) {
     const std::uint32_t out = column_[row];
-    if (is_wide_) tangents_[out] = to_.wide(wide_terms(row));
+    if (is_wide_)
+      tangents_[out] = to_.wide(wide_terms(row));
     else
       for (std::uint32_t j = 0; j < n_; ++j) columns_[out][j] = to_.sum(terms(row, j));
   }

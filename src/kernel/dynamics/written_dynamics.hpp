@@ -6,8 +6,8 @@
 namespace maupertuis::dynamics {
 
 struct WrittenDynamics {
-  std::vector<straight::StraightLine> lines;   // R of any q̈; and q̈, where there is a plan
-  std::vector<NumberSource> numbers;           // of NumberArray
+  std::vector<straight::StraightLine> lines;  // R of any q̈; and q̈, where there is a plan
+  std::vector<NumberSource> numbers;          // of NumberArray
 };
 
 /// How M₀ is solved: by these pivots, or by a full L D Lᵀ where they are null. Null both: not at all.

@@ -32,9 +32,9 @@ class LinearSolver {
   void swap_columns(std::size_t a, std::size_t b);
 
   std::size_t n_ = 0, rank_ = 0;
-  std::vector<T> m_;                        // [n × n] L below the diagonal, U above
-  std::vector<int> scale_;                  // [n] exponents of two
-  std::vector<std::size_t> row_, column_;   // [n] what stands where
+  std::vector<T> m_;                       // [n × n] L below the diagonal, U above
+  std::vector<int> scale_;                 // [n] exponents of two
+  std::vector<std::size_t> row_, column_;  // [n] what stands where
   double ratio_ = 1;
 };
 

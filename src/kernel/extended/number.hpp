@@ -32,14 +32,20 @@ T exp2_of(double x) {
 }
 
 template <class T>
-T epsilon() { return std::numeric_limits<T>::epsilon(); }
+T epsilon() {
+  return std::numeric_limits<T>::epsilon();
+}
 
 /// A power of the rounding unit, as thresholds between rounding and what is meant are.
 template <class T>
-T epsilon_to(double power) { return exp2_of<T>(power * (1 - std::numeric_limits<T>::digits)); }
+T epsilon_to(double power) {
+  return exp2_of<T>(power * (1 - std::numeric_limits<T>::digits));
+}
 
 template <class T>
-bool is_finite(const T& x) { return (boost::multiprecision::isfinite)(x); }
+bool is_finite(const T& x) {
+  return (boost::multiprecision::isfinite)(x);
+}
 
 }  // namespace maupertuis::extended
 

@@ -77,15 +77,15 @@ class Workspace {
   reference::MemoryOf<T> memory_;
   std::vector<T> parameters_;
   std::vector<std::int8_t> sides_;
-  bool stale_ = true;                       // constants to be computed
-  std::size_t unknowns_;                    // n + m
-  std::vector<T> bordered_;                 // [(n + m) × (n + m)] ∂R/∂(q̈, λ) at order 0
-  std::vector<T> unknown_;                  // [n + m]
-  std::vector<T> direction_;                // [slots] tangents
+  bool stale_ = true;         // constants to be computed
+  std::size_t unknowns_;      // n + m
+  std::vector<T> bordered_;   // [(n + m) × (n + m)] ∂R/∂(q̈, λ) at order 0
+  std::vector<T> unknown_;    // [n + m]
+  std::vector<T> direction_;  // [slots] tangents
   LinearSolver<T> solver_;
-  std::vector<bool> determined_;            // [m]
+  std::vector<bool> determined_;               // [m]
   std::vector<sparse::Edge> edges_, of_mass_;  // that tangents go through: for corrections, for M₀
-  std::vector<const Instruction*> producer_;  // [slots]
+  std::vector<const Instruction*> producer_;   // [slots]
   std::size_t singular_ = 0, contradicting_ = 0;
   int last_stage_ = 0;
 };

@@ -44,13 +44,23 @@ class FunctionWriter {
 
   Value write(Expr e) {
     switch (family_of(e.kind())) {
-      case Family::Leaf: return leaf(e);
-      case Family::Algebra: return e.is(Kind::Sum) ? sum(e) : e.is(Kind::Product) ? product(e) : power(e[0], e[1]);
-      case Family::Function: case Family::Switch: return to_.call(e.kind(), at(e[0]));
-      case Family::Angle: case Family::Extremum: case Family::Comparison: return to_.call(e.kind(), at(e[0]), at(e[1]));
-      case Family::Logic: return chain(e);
-      case Family::Piecewise: return piecewise(e);
-      case Family::TimeDerivative: break;
+      case Family::Leaf:
+        return leaf(e);
+      case Family::Algebra:
+        return e.is(Kind::Sum) ? sum(e) : e.is(Kind::Product) ? product(e) : power(e[0], e[1]);
+      case Family::Function:
+      case Family::Switch:
+        return to_.call(e.kind(), at(e[0]));
+      case Family::Angle:
+      case Family::Extremum:
+      case Family::Comparison:
+        return to_.call(e.kind(), at(e[0]), at(e[1]));
+      case Family::Logic:
+        return chain(e);
+      case Family::Piecewise:
+        return piecewise(e);
+      case Family::TimeDerivative:
+        break;
     }
     throw unknown_kind(e.kind(), "a function kernel");
   }
@@ -79,8 +89,10 @@ class FunctionWriter {
     std::vector<Value> factors;
     for (std::size_t i = 0; i < e.size(); ++i) {
       if (negative_exponent(e[i])) return {1, at(e)};
-      if (const Rational* const value = e[i].number_or_null()) out.factor *= value->to_double();
-      else factors.push_back(at(e[i]));
+      if (const Rational* const value = e[i].number_or_null())
+        out.factor *= value->to_double();
+      else
+        factors.push_back(at(e[i]));
     }
     if (factors.size() > 3) return {1, at(e)};
     factors.resize(3, none);
@@ -91,8 +103,10 @@ class FunctionWriter {
   Value product(Expr e) {
     std::vector<Value> above, below;
     for (std::size_t i = 0; i < e.size(); ++i) {
-      if (const Rational* const exponent = negative_exponent(e[i])) below.push_back(power(e[i][0], -*exponent));
-      else above.push_back(at(e[i]));
+      if (const Rational* const exponent = negative_exponent(e[i]))
+        below.push_back(power(e[i][0], -*exponent));
+      else
+        above.push_back(at(e[i]));
     }
     return multiply(above, below.empty() ? none : multiply(below));
   }

@@ -116,7 +116,10 @@ Bounds call(Kind kind, const Bounds& x, const Bounds& y, double centre) {
   if (kind == Kind::Power) return y.reach > 0 ? undecided(centre) : power(x, y.centre, centre);
   const auto decides = [](double distance, double reach) { return std::abs(distance) > reach || reach == 0; };
   const double both = x.reach + y.reach, difference = x.centre - y.centre;
-  const auto with_centre = [centre](Bounds b) { b.centre = centre; return b; };
+  const auto with_centre = [centre](Bounds b) {
+    b.centre = centre;
+    return b;
+  };
   if (kind == Kind::Abs) return decides(x.centre, x.reach) ? with_centre(x) : undecided(centre);
   if (kind == Kind::Sign || kind == Kind::Step)
     return decides(x.centre, x.reach) ? constant(centre) : undecided(centre);
@@ -139,8 +142,11 @@ straight::StraightLine with_every_value(straight::StraightLine line) {
 
 struct FunctionDisks::Impl {
   Impl(const FunctionKernel& k, std::span<const double> parameters)
-      : kernel(k), line(kernel.program().line), every_value(with_every_value(line), seldom_arrays),
-        centre(line.nodes.size()), bounds(line.nodes.size()) {
+      : kernel(k),
+        line(kernel.program().line),
+        every_value(with_every_value(line), seldom_arrays),
+        centre(line.nodes.size()),
+        bounds(line.nodes.size()) {
     every_value.set(unused, parameters.data(), unused);
   }
 
@@ -165,14 +171,18 @@ struct FunctionDisks::Impl {
   Bounds result(Value v, std::span<const double> reach) const {
     const Node& node = line.nodes[v];
     switch (node.what) {
-      case Node::Literal: return constant(centre[v]);
+      case Node::Literal:
+        return constant(centre[v]);
       case Node::Given: {
         const double d = node.array == InputArray ? reach[node.index] : 0, c = std::abs(centre[v]);
         return {centre[v], d, 0, away(c - d), c + d};
       }
-      case Node::Sum: return sum_of(node);
-      case Node::Root: return power(at(node.a), 0.5, centre[v]);
-      case Node::Call: return call(node.function, at(node.a), at(node.b), centre[v]);
+      case Node::Sum:
+        return sum_of(node);
+      case Node::Root:
+        return power(at(node.a), 0.5, centre[v]);
+      case Node::Call:
+        return call(node.function, at(node.a), at(node.b), centre[v]);
       case Node::Chosen:
         return at(node.a).reach > 0 ? undecided(centre[v]) : centre[node.a] != 0 ? at(node.b) : at(node.c);
       case Node::Magnitudes:
@@ -182,7 +192,9 @@ struct FunctionDisks::Impl {
       case Node::Cosine:
       case Node::Unit:
       case Node::Wide:
-      case Node::Lane: case Node::Gather: break;
+      case Node::Lane:
+      case Node::Gather:
+        break;
     }
     throw std::logic_error("a disk met a node that has no bounds; please report");
   }
@@ -191,8 +203,8 @@ struct FunctionDisks::Impl {
   FunctionKernel kernel;
   const straight::StraightLine& line;
   straight::Evaluator every_value;
-  std::vector<double> centre;      // [nodes]
-  std::vector<Bounds> bounds;      // [nodes]
+  std::vector<double> centre;  // [nodes]
+  std::vector<Bounds> bounds;  // [nodes]
 };
 
 FunctionDisks::FunctionDisks(const FunctionKernel& kernel, std::span<const double> parameters)

@@ -18,8 +18,8 @@ struct FunctionProgram {
   straight::StraightLine line;
   straight::Evaluation evaluation{straight::StraightLine()};
   std::size_t inputs = 0, parameters = 0;
-  std::vector<bool> used;                     // [inputs]
-  std::size_t size = 0;                       // nodes that a call makes
+  std::vector<bool> used;  // [inputs]
+  std::size_t size = 0;    // nodes that a call makes
 };
 
 }  // namespace maupertuis

@@ -1,7 +1,7 @@
-#include "kernel/reference/elementary.hpp"
 #include "kernel/lanes/lanes.hpp"
 #include "kernel/lanes/plan.hpp"
 #include "kernel/program/processor.hpp"
+#include "kernel/reference/elementary.hpp"
 
 #include <maupertuis/lanes.hpp>
 #include <maupertuis/require.hpp>
@@ -24,9 +24,13 @@ bool processor_has(InstructionSet set) {
 
 lanes::Expanders expanders(InstructionSet set) {
   switch (set) {
-    case InstructionSet::Avx2: return lanes::avx2_expanders();
-    case InstructionSet::Avx512: return lanes::avx512_expanders();
-    case InstructionSet::Best: case InstructionSet::Baseline: break;
+    case InstructionSet::Avx2:
+      return lanes::avx2_expanders();
+    case InstructionSet::Avx512:
+      return lanes::avx512_expanders();
+    case InstructionSet::Best:
+    case InstructionSet::Baseline:
+      break;
   }
   return lanes::baseline_expanders();
 }
@@ -71,9 +75,13 @@ bool has_instruction_set(InstructionSet set) {
 
 int best_lane_width() {
   switch (best_instruction_set()) {
-    case InstructionSet::Avx512: return 8;
-    case InstructionSet::Avx2: return 4;
-    case InstructionSet::Best: case InstructionSet::Baseline: break;
+    case InstructionSet::Avx512:
+      return 8;
+    case InstructionSet::Avx2:
+      return 4;
+    case InstructionSet::Best:
+    case InstructionSet::Baseline:
+      break;
   }
   return 2;
 }

@@ -1,5 +1,5 @@
-#include "kernel/machine_code/backend.hpp"
 #include "kernel/lanes/lanes.hpp"
+#include "kernel/machine_code/backend.hpp"
 
 #include <maupertuis/lanes.hpp>
 #include <maupertuis/require.hpp>

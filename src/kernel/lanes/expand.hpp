@@ -1,7 +1,7 @@
 #pragma once
-#include "kernel/series/sine_cosine.hpp"
 #include "kernel/lanes/plan.hpp"
 #include "kernel/lanes/recurrences.hpp"
+#include "kernel/series/sine_cosine.hpp"
 
 /// The structured Taylor step of docs/design/kernel_program.md for W lanes: the stages of KernelWorkspace without
 /// constraints. Each file that includes this is compiled for one instruction set (see vector.hpp for what that asks).
@@ -76,19 +76,33 @@ class Machine {
     k_ = order;
     row_ = rows_ + order * step_;
     switch (run.op) {
-      case Op::Linear: return each(run, [this](const Instruction& i) { linear_part(i).store(at(i.out)); });
+      case Op::Linear:
+        return each(run, [this](const Instruction& i) { linear_part(i).store(at(i.out)); });
       case Op::Products:
         return each(run, [this](const Instruction& i) { (linear_part(i) + products(i)).store(at(i.out)); });
-      case Op::Square: return each(run, [this](const Instruction& i) { square(series(i.a), k_).store(at(i.out)); });
-      case Op::Quotient: return each(run, [this](const Instruction& i) { quotient_of(i).store(at(i.out)); });
-      case Op::SquareRoot: return each(run, [this](const Instruction& i) { square_root_of(i).store(at(i.out)); });
-      case Op::Power: return each(run, [this](const Instruction& i) { power_of(i).store(at(i.out)); });
-      case Op::SinCos: return each(run, [this](const Instruction& i) { sincos(i); });
-      case Op::SinhCosh: return each(run, [this](const Instruction& i) { sinhcosh(i); });
-      case Op::Function: return each(run, [this](const Instruction& i) { function(i).store(at(i.out)); });
-      case Op::Derivative: return each(run, [this](const Instruction& i) { derivative(i).store(at(i.out)); });
-      case Op::Select: return each(run, [this](const Instruction& i) { chosen(i).store(at(i.out)); });
-      case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: return;
+      case Op::Square:
+        return each(run, [this](const Instruction& i) { square(series(i.a), k_).store(at(i.out)); });
+      case Op::Quotient:
+        return each(run, [this](const Instruction& i) { quotient_of(i).store(at(i.out)); });
+      case Op::SquareRoot:
+        return each(run, [this](const Instruction& i) { square_root_of(i).store(at(i.out)); });
+      case Op::Power:
+        return each(run, [this](const Instruction& i) { power_of(i).store(at(i.out)); });
+      case Op::SinCos:
+        return each(run, [this](const Instruction& i) { sincos(i); });
+      case Op::SinhCosh:
+        return each(run, [this](const Instruction& i) { sinhcosh(i); });
+      case Op::Function:
+        return each(run, [this](const Instruction& i) { function(i).store(at(i.out)); });
+      case Op::Derivative:
+        return each(run, [this](const Instruction& i) { derivative(i).store(at(i.out)); });
+      case Op::Select:
+        return each(run, [this](const Instruction& i) { chosen(i).store(at(i.out)); });
+      case Op::One:
+      case Op::Time:
+      case Op::Coordinate:
+      case Op::Companion:
+        return;
     }
   }
 
@@ -192,17 +206,28 @@ class Machine {
   V factor_value(const sparse::Edge& f) const {
     using sparse::Rule;
     switch (f.rule) {
-      case Rule::Coefficient: return constant(f.index);
-      case Rule::Scaled: return constant(f.index) * initial(f.x);
-      case Rule::Double: return initial(f.x) + initial(f.x);
-      case Rule::Reciprocal: return V::all(1) / initial(f.x);
-      case Rule::Ratio: return -initial(f.y) / initial(f.x);
-      case Rule::HalfReciprocal: return V::all(0.5) / initial(f.x);
-      case Rule::PowerSlope: return constant(f.index) * initial(f.y) / initial(f.x);
-      case Rule::Value: return initial(f.x);
-      case Rule::Negative: return -initial(f.x);
-      case Rule::Choice: return in_force(f);
-      case Rule::One: break;
+      case Rule::Coefficient:
+        return constant(f.index);
+      case Rule::Scaled:
+        return constant(f.index) * initial(f.x);
+      case Rule::Double:
+        return initial(f.x) + initial(f.x);
+      case Rule::Reciprocal:
+        return V::all(1) / initial(f.x);
+      case Rule::Ratio:
+        return -initial(f.y) / initial(f.x);
+      case Rule::HalfReciprocal:
+        return V::all(0.5) / initial(f.x);
+      case Rule::PowerSlope:
+        return constant(f.index) * initial(f.y) / initial(f.x);
+      case Rule::Value:
+        return initial(f.x);
+      case Rule::Negative:
+        return -initial(f.x);
+      case Rule::Choice:
+        return in_force(f);
+      case Rule::One:
+        break;
     }
     return V::all(1);
   }

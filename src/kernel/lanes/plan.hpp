@@ -72,9 +72,9 @@ class Plan {
   };
 
   const Program& program_;
-  std::vector<Moves> moves_;            // [slots]
+  std::vector<Moves> moves_;  // [slots]
   std::uint32_t tangents_ = 0;
-  std::vector<sparse::Edge> factors_;   // edges whose factors are computed
+  std::vector<sparse::Edge> factors_;  // edges whose factors are computed
   std::vector<Pair> pairs_;
   std::vector<Combination> combinations_;
   std::vector<MassEntry> mass_;

@@ -90,8 +90,7 @@ inline Vec<W> square_root(Series<W> u, Series<W> y, int k) {
 template <int W>
 inline Vec<W> power(Series<W> u, Series<W> y, const Vec<W>& p, int k) {
   Vec<W> sum = Vec<W>::all(0);
-  for (int j = 1; j <= k; ++j)
-    sum = fma(p * static_cast<double>(j) - static_cast<double>(k - j), u[j] * y[k - j], sum);
+  for (int j = 1; j <= k; ++j) sum = fma(p * static_cast<double>(j) - static_cast<double>(k - j), u[j] * y[k - j], sum);
   return sum / (u[0] * static_cast<double>(k));
 }
 

@@ -1,5 +1,5 @@
-#include "kernel/reference/elementary.hpp"
 #include "kernel/lanes/lanes.hpp"
+#include "kernel/reference/elementary.hpp"
 
 #include <maupertuis/lanes.hpp>
 #include <maupertuis/require.hpp>
@@ -15,8 +15,14 @@ void evaluate_constants(const Program& program, std::span<const double> paramete
   for (std::size_t i = 0; i < program.constants.size(); ++i) {
     const Constant& constant = program.constants[i];
     double& value = constants[i * width];
-    if (constant.kind == Kind::Number) { value = constant.value; continue; }
-    if (constant.kind == Kind::Symbol) { value = parameters[constant.index]; continue; }
+    if (constant.kind == Kind::Number) {
+      value = constant.value;
+      continue;
+    }
+    if (constant.kind == Kind::Symbol) {
+      value = parameters[constant.index];
+      continue;
+    }
     operands.clear();
     for (std::uint32_t k = 0; k < constant.arguments; ++k)
       operands.push_back(constants[program.constant_arguments[constant.first_argument + k] * width]);
@@ -50,10 +56,17 @@ static std::size_t orders_of(const Program& program, int order) {
 
 struct LaneWorkspace::Impl {
   Impl(const Kernel& k, int p, std::shared_ptr<const LaneExpansion> e)
-      : kernel(k), program(k.program()), expansion(std::move(e)), order(p),
-        width(static_cast<std::size_t>(expansion->width())), row(lanes::row_stride(program) * width),
-        rows(lanes::orders_of(program, p) * row), constants((program.constants.size() + 1) * width), quality(width),
-        scratch(lanes::scratch_size(program) * width), unused_time(width) {
+      : kernel(k),
+        program(k.program()),
+        expansion(std::move(e)),
+        order(p),
+        width(static_cast<std::size_t>(expansion->width())),
+        row(lanes::row_stride(program) * width),
+        rows(lanes::orders_of(program, p) * row),
+        constants((program.constants.size() + 1) * width),
+        quality(width),
+        scratch(lanes::scratch_size(program) * width),
+        unused_time(width) {
     for (std::size_t lane = 0; lane < width; ++lane) {
       if (program.one != no_slot) rows.data()[program.one * width + lane] = 1;
       if (program.time != no_slot && lanes::orders_of(program, p) > 1)

@@ -1,6 +1,6 @@
-#include "kernel/machine_code/request.hpp"
 #include "kernel/llvm/emission.hpp"
 #include "kernel/llvm/emitters.hpp"
+#include "kernel/machine_code/request.hpp"
 
 #include <maupertuis/functions.hpp>
 
@@ -24,10 +24,14 @@ std::string sleef_name(Kind function) {
 /// Of the processor whose registers hold `width` doubles: "avx512f".
 const char* flavour(int width, bool fma) {
   switch (width) {
-    case 1: return fma ? "purecfma" : "purec";
-    case 2: return fma ? "avx2128" : "sse2";
-    case 4: return fma ? "avx2" : "avx";
-    default: return "avx512f";
+    case 1:
+      return fma ? "purecfma" : "purec";
+    case 2:
+      return fma ? "avx2128" : "sse2";
+    case 4:
+      return fma ? "avx2" : "avx";
+    default:
+      return "avx512f";
   }
 }
 

@@ -23,7 +23,7 @@ class Emission {
   Emission(llvm::TargetMachine& machine, const Features& features);
 
   // -------------------------------------------------------------------------------------------------- types, functions
-  llvm::Type* real(int width);                   // double, or <width x double>
+  llvm::Type* real(int width);  // double, or <width x double>
   llvm::Type* pointer() { return b.getPtrTy(); }
   llvm::Type* integer() { return b.getInt64Ty(); }
   /// Opens a function: exported under its name, or private to the module (never inlined) where `exported` is false. Its

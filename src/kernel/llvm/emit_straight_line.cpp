@@ -61,20 +61,33 @@ class Timing {
   int ready(const Node& node) const {
     const int operands = std::max({at(node.a), at(node.b), at(node.c)});
     switch (node.what) {
-      case Node::Literal: case Node::Given: case Node::Unit: return 0;
+      case Node::Literal:
+      case Node::Given:
+      case Node::Unit:
+        return 0;
       case Node::Sum:
         if (node.b != straight::none) return std::max(sum(node), operands) + division;
         return node.a == straight::none ? sum(node) : std::max(sum(node), at(node.a)) + multiplication;
-      case Node::Wide: case Node::Magnitudes: return chain(node, node.last);
-      case Node::Angles: case Node::Gather: {
+      case Node::Wide:
+      case Node::Magnitudes:
+        return chain(node, node.last);
+      case Node::Angles:
+      case Node::Gather: {
         int out = node.what == Node::Angles ? angles : addition;
         for (std::uint32_t i = node.first; i < node.last; ++i)
           out = std::max(out, at(line_.operands[i]) + (node.what == Node::Angles ? angles : addition));
         return out;
       }
-      case Node::Root: return operands + root;
-      case Node::Call: return operands + angles;
-      case Node::Larger: case Node::Chosen: case Node::Sine: case Node::Cosine: case Node::Lane: break;
+      case Node::Root:
+        return operands + root;
+      case Node::Call:
+        return operands + angles;
+      case Node::Larger:
+      case Node::Chosen:
+      case Node::Sine:
+      case Node::Cosine:
+      case Node::Lane:
+        break;
     }
     return operands + addition;
   }
@@ -151,8 +164,10 @@ class LineEmitter {
       checks_in_[piece].push_back(&check);
     }
     for (const auto& store : line_.stores) {
-      if (line_.guarded) use(store.value, pieces_ - 1);
-      else stores_of_[holder(store.value)].push_back(&store);
+      if (line_.guarded)
+        use(store.value, pieces_ - 1);
+      else
+        stores_of_[holder(store.value)].push_back(&store);
     }
     for (const straight::Value v : line_.finite) finite_in_[piece_of(v)].push_back(v);
   }
@@ -171,8 +186,10 @@ class LineEmitter {
       close_guarded();
     } else {
       leave_verdict();
-      if (line_.guarded) b_.CreateRet(b_.getInt8(0));
-      else out_.end_function();
+      if (line_.guarded)
+        b_.CreateRet(b_.getInt8(0));
+      else
+        out_.end_function();
     }
     return f;
   }
@@ -209,8 +226,10 @@ class LineEmitter {
     for (unsigned i = 0; i <= line_.arrays; ++i) arguments.push_back(whole->getArg(i));
     Value* result = nullptr;
     for (llvm::Function* const f : functions) result = b_.CreateCall(f, arguments);
-    if (line_.guarded) b_.CreateRet(result);
-    else out_.end_function();
+    if (line_.guarded)
+      b_.CreateRet(result);
+    else
+      out_.end_function();
   }
 
   /// See straight::sound. So far, if later pieces have more to say.
@@ -278,13 +297,26 @@ class LineEmitter {
     if (values_[v]) return values_[v];
     const Node& node = line_.nodes[v];
     switch (node.what) {
-      case Node::Literal: return values_[v] = number(node.literal);
-      case Node::Given: return given(v);
-      case Node::Lane: return values_[v] = lane(node);
+      case Node::Literal:
+        return values_[v] = number(node.literal);
+      case Node::Given:
+        return given(v);
+      case Node::Lane:
+        return values_[v] = lane(node);
       case Node::Unit:
         return values_[v] = b_.CreateInsertElement(out_.number(0, type_of(v)), number(1), std::uint64_t{node.index});
-      case Node::Sum: case Node::Magnitudes: case Node::Larger: case Node::Chosen: case Node::Angles: case Node::Sine:
-      case Node::Cosine: case Node::Root: case Node::Call: case Node::Wide: case Node::Gather: break;
+      case Node::Sum:
+      case Node::Magnitudes:
+      case Node::Larger:
+      case Node::Chosen:
+      case Node::Angles:
+      case Node::Sine:
+      case Node::Cosine:
+      case Node::Root:
+      case Node::Call:
+      case Node::Wide:
+      case Node::Gather:
+        break;
     }
     if (place_[v] == 0) throw std::logic_error("a number is read before it is there; please report");
     return values_[v] = fetch(type_of(v), line_.arrays, place_[v]);
@@ -310,20 +342,32 @@ class LineEmitter {
   void define(straight::Value v) {
     const Node& node = line_.nodes[v];
     switch (node.what) {
-      case Node::Sum: return keep(v, scaled(node, sum(node, type_of(v)), type_of(v)));
-      case Node::Magnitudes: return keep(v, magnitudes(node, type_of(v)));
+      case Node::Sum:
+        return keep(v, scaled(node, sum(node, type_of(v)), type_of(v)));
+      case Node::Magnitudes:
+        return keep(v, magnitudes(node, type_of(v)));
       case Node::Larger:
         return keep(v, larger(out_.absolute(as(type_of(v), node.a)), out_.absolute(as(type_of(v), node.b))));
       case Node::Chosen:
         return keep(v, b_.CreateSelect(b_.CreateFCmpUNE(get(node.a), number(0)), get(node.b), get(node.c)));
-      case Node::Angles: return angles(v);
-      case Node::Root: return keep(v, out_.square_root(get(node.a)));
+      case Node::Angles:
+        return angles(v);
+      case Node::Root:
+        return keep(v, out_.square_root(get(node.a)));
       case Node::Call:
         return keep(v, out_.elementary(node.function, get(node.a), node.b == straight::none ? nullptr : get(node.b)));
-      case Node::Wide: return keep(v, wide(node, type_of(v)));
-      case Node::Gather: return keep(v, gathered(node, type_of(v)));
-      case Node::Sine: case Node::Cosine: return;   // they come with their angles
-      case Node::Literal: case Node::Given: case Node::Lane: case Node::Unit: return;
+      case Node::Wide:
+        return keep(v, wide(node, type_of(v)));
+      case Node::Gather:
+        return keep(v, gathered(node, type_of(v)));
+      case Node::Sine:
+      case Node::Cosine:
+        return;  // they come with their angles
+      case Node::Literal:
+      case Node::Given:
+      case Node::Lane:
+      case Node::Unit:
+        return;
     }
   }
 
@@ -367,8 +411,10 @@ class LineEmitter {
     factors.pop_back();
     Value* head = nullptr;
     for (Value* const x : factors) head = head ? out_.multiply(head, x) : x;
-    if (std::abs(factor) != 1) head = head ? out_.multiply(head, out_.number(factor, type)) : out_.number(factor, type);
-    else if (factor < 0) head = head ? out_.negate(head) : out_.number(-1, type);
+    if (std::abs(factor) != 1)
+      head = head ? out_.multiply(head, out_.number(factor, type)) : out_.number(factor, type);
+    else if (factor < 0)
+      head = head ? out_.negate(head) : out_.number(-1, type);
     return {head, last};
   }
 
@@ -380,9 +426,12 @@ class LineEmitter {
       if (in_two && i + 1 == node.last) apart = std::exchange(out, nullptr);
       const auto [head, last] = halves(t, type, false);
       const bool sign = t.b == straight::none && t.factor == -1;
-      if (!out) out = !head ? last : sign ? out_.negate(last) : out_.multiply(head, last);
-      else if (!head) out = out_.add(out, last);
-      else out = sign ? out_.subtract(out, last) : out_.fma(head, last, out);
+      if (!out)
+        out = !head ? last : sign ? out_.negate(last) : out_.multiply(head, last);
+      else if (!head)
+        out = out_.add(out, last);
+      else
+        out = sign ? out_.subtract(out, last) : out_.fma(head, last, out);
     }
     return apart ? out_.add(apart, out) : out;
   }
@@ -457,13 +506,13 @@ class LineEmitter {
   bool is_one_function_;
   llvm::Type* real_;
   std::size_t pieces_ = 0, piece_ = 0;
-  std::vector<std::size_t> piece_of_;  // [nodes]
-  std::vector<std::int64_t> place_;    // [nodes] in scratch; 0: none
+  std::vector<std::size_t> piece_of_;                                // [nodes]
+  std::vector<std::int64_t> place_;                                  // [nodes] in scratch; 0: none
   std::vector<std::vector<const straight::PivotCheck*>> checks_in_;  // [pieces]
   std::vector<std::vector<const straight::Store*>> stores_of_;       // [nodes] of it or of its lanes
   std::vector<std::vector<straight::Value>> finite_in_;
   std::vector<Value*> arrays_;
-  std::vector<Value*> values_;         // [nodes] of this piece
+  std::vector<Value*> values_;  // [nodes] of this piece
 };
 
 }  // namespace

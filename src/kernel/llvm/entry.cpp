@@ -21,10 +21,14 @@ using Clock = std::chrono::steady_clock;
 
 void emit(Emission& out, const Request& request) {
   switch (request.emitter) {
-    case Emitter::SelfTest: return emit_self_test(out, request);
-    case Emitter::Lanes: return emit_lanes(out, request);
-    case Emitter::StraightLines: return emit_straight_lines(out, request);
-    case Emitter::Packed: return emit_packed(out, request);
+    case Emitter::SelfTest:
+      return emit_self_test(out, request);
+    case Emitter::Lanes:
+      return emit_lanes(out, request);
+    case Emitter::StraightLines:
+      return emit_straight_lines(out, request);
+    case Emitter::Packed:
+      return emit_packed(out, request);
   }
   throw Declined("a kind of code that this module does not emit");
 }

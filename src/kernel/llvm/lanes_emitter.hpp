@@ -45,7 +45,7 @@ class LanesEmitter {
   bool has_order(int ahead) const { return !is_known() || known(ahead) >= 0; }
   bool is_order_zero(int ahead) const { return is_known() && known(ahead) == 0; }
   bool is_odd(int ahead) const { return ((is_known() ? known(ahead) : parity_ + ahead) & 1) != 0; }
-  Value* row(int ahead);           // address of the row of that order
+  Value* row(int ahead);  // address of the row of that order
   /// Of the table of orders: m, 1/m and what rounding took from it, and of m (m + 1) the same.
   enum class OrderColumn : std::uint8_t { Order, Reciprocal, Lack, Pair, PairReciprocal, PairLack };
   static constexpr int bytes_of_order = 64;
@@ -53,8 +53,8 @@ class LanesEmitter {
   void refuse_more_orders();
   int most_ahead() const;
   Value* order(int ahead, OrderColumn column = OrderColumn::Order);  // in all lanes
-  Value* index(int ahead);         // m, 64-bit integer
-  Value* half(int ahead);          // ⌊m / 2⌋
+  Value* index(int ahead);                                           // m, 64-bit integer
+  Value* half(int ahead);                                            // ⌊m / 2⌋
   Value* over_order(Value* x, int ahead) {
     return over(x, ahead, OrderColumn::Order, OrderColumn::Reciprocal, OrderColumn::Lack);
   }
@@ -67,7 +67,7 @@ class LanesEmitter {
 
   // ------------------------------------------------------------------------------------------------------------ values
   struct Coefficient {
-    Value* value = nullptr;        // null: it is `unit`, +1 or −1
+    Value* value = nullptr;  // null: it is `unit`, +1 or −1
     int unit = 0;
   };
   Coefficient coefficient(ConstantId id);
@@ -76,7 +76,7 @@ class LanesEmitter {
   Value* number(double x) { return out_.number(x, real_); }
   Value* slot_at(Value* row, Slot slot) { return out_.at(row, static_cast<std::int64_t>(slot) * bytes_); }
   Value* load(Value* row, Slot slot) { return out_.load(real_, slot_at(row, slot)); }
-  Value* first(Slot slot);         // coefficient of order 0, nonzero or not
+  Value* first(Slot slot);  // coefficient of order 0, nonzero or not
   int ahead_of(Slot slot) const { return 2 - program_.lags[slot]; }
   /// A coefficient that is final or of this stage; null: it is zero.
   Value* read(Slot slot, int ahead);
@@ -102,11 +102,11 @@ class LanesEmitter {
     Value *first = nullptr, *second = nullptr;  // chains of additions; null: zero
   };
   struct Accumulator {
-    int ahead;                     // its order counts from the stage
+    int ahead;  // its order counts from the stage
     std::vector<Piece> pieces;
-    Value* sum = nullptr;          // the interior of this stage; null: zero
-    Sum next, after;               // of the next, and of the one after that but for the pair of order 2
-    bool begun = false;            // … was found with those of the stage that ends
+    Value* sum = nullptr;  // the interior of this stage; null: zero
+    Sum next, after;       // of the next, and of the one after that but for the pair of order 2
+    bool begun = false;    // … was found with those of the stage that ends
   };
   /// Terms of an instruction that share a coefficient share an accumulator.
   struct Group {
@@ -122,7 +122,7 @@ class LanesEmitter {
   bool prepares_two() const;
   void interiors_of(const std::vector<std::uint32_t>& group, bool two);
   void finish(const std::vector<std::uint32_t>& group);
-  struct Row;                      // an order
+  struct Row;  // an order
   Row row_at(Value* order);
   /// Adds the pairs of two rows to the sums of a group, of the next stage or of the one after it.
   using AddRows = std::function<void(Row& low, Row& high, bool after)>;
@@ -175,7 +175,7 @@ class LanesEmitter {
   lanes::Plan plan_;
   lanes::PlanView view_;
   int width_;
-  std::int64_t bytes_;             // of one number of all lanes
+  std::int64_t bytes_;  // of one number of all lanes
   std::int64_t row_bytes_;
   std::size_t n_;
   llvm::Type* real_;
@@ -183,22 +183,22 @@ class LanesEmitter {
   llvm::BasicBlock* done_ = nullptr;
   Value *rows_ = nullptr, *constants_ = nullptr, *quality_ = nullptr, *scratch_ = nullptr, *stages_ = nullptr;
 
-  std::optional<int> known_stage_; // else `stage_`, of known parity
-  Value* stage_ = nullptr;         // 64-bit integer
+  std::optional<int> known_stage_;  // else `stage_`, of known parity
+  Value* stage_ = nullptr;          // 64-bit integer
   Value* stage_row_ = nullptr;
   Value *orders_ = nullptr, *stage_orders_ = nullptr;  // the table, and its line of the stage
   int parity_ = 0;
 
   enum class State : std::uint8_t { Unknown, Zero, Known };
-  std::vector<State> state_;       // [slots] at the order of this stage
-  std::vector<Value*> now_;        // [slots]
-  std::vector<Value*> rates_;      // [slots] m y_m of integrals, which is there before y_m; null: not known
+  std::vector<State> state_;              // [slots] at the order of this stage
+  std::vector<Value*> now_;               // [slots]
+  std::vector<Value*> rates_;             // [slots] m y_m of integrals, which is there before y_m; null: not known
   std::vector<bool> stored_, corrected_;  // [slots]
 
   std::vector<Accumulator> accumulators_;
-  std::vector<std::vector<Group>> groups_;  // [instructions]
-  std::vector<Value*> acceleration_;        // [n]
-  std::vector<Value*> tangents_;            // at stage 0
+  std::vector<std::vector<Group>> groups_;              // [instructions]
+  std::vector<Value*> acceleration_;                    // [n]
+  std::vector<Value*> tangents_;                        // at stage 0
   std::size_t matrix_at_, pivots_at_, reciprocals_at_;  // in scratch
 };
 

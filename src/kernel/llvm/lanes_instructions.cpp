@@ -9,18 +9,32 @@ using llvm::Value;
 void LanesEmitter::instruction(std::uint32_t index) {
   const Instruction& i = program_.instructions[index];
   switch (i.op) {
-    case Op::Linear: return define(i.out, linear_part(i));
-    case Op::Products: return define(i.out, products(index, linear_part(i)));
-    case Op::Square: return define(i.out, square(index));
-    case Op::Quotient: return define(i.out, quotient(index));
-    case Op::SquareRoot: return define(i.out, square_root(index));
-    case Op::Power: return define(i.out, power(index));
+    case Op::Linear:
+      return define(i.out, linear_part(i));
+    case Op::Products:
+      return define(i.out, products(index, linear_part(i)));
+    case Op::Square:
+      return define(i.out, square(index));
+    case Op::Quotient:
+      return define(i.out, quotient(index));
+    case Op::SquareRoot:
+      return define(i.out, square_root(index));
+    case Op::Power:
+      return define(i.out, power(index));
     case Op::SinCos:
-    case Op::SinhCosh: return pair(index);
-    case Op::Function: return define(i.out, function(index));
-    case Op::Derivative: return define(i.out, derivative(i));
-    case Op::Select: return define(i.out, select(i));
-    case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: return;
+    case Op::SinhCosh:
+      return pair(index);
+    case Op::Function:
+      return define(i.out, function(index));
+    case Op::Derivative:
+      return define(i.out, derivative(i));
+    case Op::Select:
+      return define(i.out, select(i));
+    case Op::One:
+    case Op::Time:
+    case Op::Coordinate:
+    case Op::Companion:
+      return;
   }
   throw unknown_op(i.op, "the code of lanes");
 }
@@ -198,9 +212,7 @@ Value* LanesEmitter::function(std::uint32_t index) {
   return products(index, nullptr);
 }
 
-Value* LanesEmitter::derivative(const Instruction& i) {
-  return derivative_of(i.a, ahead_of(i.out), 1);
-}
+Value* LanesEmitter::derivative(const Instruction& i) { return derivative_of(i.a, ahead_of(i.out), 1); }
 
 Value* LanesEmitter::select(const Instruction& i) {
   const int m = ahead_of(i.out);

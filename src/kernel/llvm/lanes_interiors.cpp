@@ -33,8 +33,10 @@ void LanesEmitter::group_terms(const Instruction& i, std::uint32_t first, std::u
     const auto same = std::find_if(groups.begin(), groups.end(), [&](const Group& g) {
       return unit ? g.coefficient.unit == 1 : g.coefficient.unit == 0 && g.id == term.coefficient;
     });
-    if (same != groups.end()) accumulators_[same->accumulator].pieces.push_back(piece);
-    else groups.push_back({{nullptr, unit ? 1 : 0}, term.coefficient, add_accumulator(2 - i.lag, {piece})});
+    if (same != groups.end())
+      accumulators_[same->accumulator].pieces.push_back(piece);
+    else
+      groups.push_back({{nullptr, unit ? 1 : 0}, term.coefficient, add_accumulator(2 - i.lag, {piece})});
   }
 }
 
@@ -46,19 +48,38 @@ void LanesEmitter::plan_accumulators() {
       auto& groups = groups_[index];
       const auto one = [&](Piece piece) { groups.push_back({{nullptr, 1}, 0, add_accumulator(2 - i.lag, {piece})}); };
       switch (i.op) {
-        case Op::Products: group_terms(i, i.first_product, i.last_term, Shape::Product, groups); break;
-        case Op::Function: group_terms(i, i.first_term, i.last_term, Shape::Weighted, groups); break;
-        case Op::Square: one({Shape::Square, i.a, i.a}); break;
-        case Op::SquareRoot: one({Shape::Square, i.out, i.out}); break;
-        case Op::Quotient: one({Shape::Product, i.b, i.out}); break;
-        case Op::Power: one({Shape::Power, i.a, i.out, false, i.constant}); break;
+        case Op::Products:
+          group_terms(i, i.first_product, i.last_term, Shape::Product, groups);
+          break;
+        case Op::Function:
+          group_terms(i, i.first_term, i.last_term, Shape::Weighted, groups);
+          break;
+        case Op::Square:
+          one({Shape::Square, i.a, i.a});
+          break;
+        case Op::SquareRoot:
+          one({Shape::Square, i.out, i.out});
+          break;
+        case Op::Quotient:
+          one({Shape::Product, i.b, i.out});
+          break;
+        case Op::Power:
+          one({Shape::Power, i.a, i.out, false, i.constant});
+          break;
         case Op::SinCos:
         case Op::SinhCosh:
           one({Shape::Weighted, i.a, i.second});
           one({Shape::Weighted, i.a, i.out, i.op == Op::SinCos});
           break;
-        case Op::Linear: case Op::Derivative: case Op::Select: break;   // without sums over orders
-        case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: break;
+        case Op::Linear:
+        case Op::Derivative:
+        case Op::Select:
+          break;  // without sums over orders
+        case Op::One:
+        case Op::Time:
+        case Op::Coordinate:
+        case Op::Companion:
+          break;
       }
     }
 }
@@ -67,7 +88,7 @@ void LanesEmitter::plan_accumulators() {
 
 /// The coefficients of an order, and what of them was loaded.
 struct LanesEmitter::Row {
-  Value *address, *number;         // the order in every lane
+  Value *address, *number;  // the order in every lane
   std::map<Slot, Value*> loaded, weighted;
 };
 
@@ -127,8 +148,10 @@ Value* LanesEmitter::newest(const Piece& piece, int last, Value* sum) {
   Value *a = load(first_row, piece.a), *b = load(first_row, piece.b);
   Value *last_a = middle ? nullptr : latest(piece.a, last), *const last_b = middle ? b : latest(piece.b, last);
   switch (piece.shape) {
-    case Shape::Square: return plus(sum, middle ? out_.multiply(a, number(0.5)) : a, last_b);
-    case Shape::Product: break;
+    case Shape::Square:
+      return plus(sum, middle ? out_.multiply(a, number(0.5)) : a, last_b);
+    case Shape::Product:
+      break;
     case Shape::Weighted:
       if (last_a) last_a = out_.multiply(last_a, order(last));
       break;
@@ -160,8 +183,10 @@ void LanesEmitter::prepare_next() {
     auto last = first;
     while (last != list.end() && last - first < most_side_by_side && accumulators_[*last].ahead == ahead) ++last;
     const std::vector<std::uint32_t> group(first, last);
-    if (accumulators_[*first].begun) finish(group);
-    else interiors_of(group, prepares_two() && (!is_known() || known(ahead + 2) >= least_order_of_two));
+    if (accumulators_[*first].begun)
+      finish(group);
+    else
+      interiors_of(group, prepares_two() && (!is_known() || known(ahead + 2) >= least_order_of_two));
     first = last;
   }
 }
@@ -274,8 +299,10 @@ void LanesEmitter::load_lows(const std::vector<std::uint32_t>& group, Row& row) 
   Row kept{row.address, row.number, {}, {}};
   for (const std::uint32_t k : group)
     for (const Piece& piece : accumulators_[k].pieces) {
-      if (piece.shape == Shape::Weighted) kept.weighted[piece.a] = weighted(piece, row, row);
-      else kept.loaded[piece.a] = loaded(row, piece.a);
+      if (piece.shape == Shape::Weighted)
+        kept.weighted[piece.a] = weighted(piece, row, row);
+      else
+        kept.loaded[piece.a] = loaded(row, piece.a);
       if (piece.shape != Shape::Square) kept.loaded[piece.b] = loaded(row, piece.b);
     }
   row = std::move(kept);

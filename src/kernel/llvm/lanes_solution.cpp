@@ -17,7 +17,9 @@ void LanesEmitter::find_stored() {
   corrected_.assign(program_.slots, false);
   for (std::size_t i = 0; i < view_.corrections_end[2]; ++i) corrected_[view_.corrections[i].slot] = true;
   for (Slot slot = 0; slot < program_.stored_end[2]; ++slot) stored_[slot] = true;
-  const auto store = [&](Slot slot) { if (slot != no_slot) stored_[slot] = true; };
+  const auto store = [&](Slot slot) {
+    if (slot != no_slot) stored_[slot] = true;
+  };
   for (const Run& run : program_.runs[Dynamics])
     for (std::uint32_t index = run.first; index < run.last; ++index) {
       const Instruction& i = program_.instructions[index];
@@ -26,8 +28,10 @@ void LanesEmitter::find_stored() {
       if (i.op == Op::Derivative && ahead_of(i.a) != ahead_of(i.out) + 1) store(i.a);
       for (std::uint32_t t = i.first_term; t < i.last_term; ++t) {
         const Term& term = program_.terms[t];
-        if (term.b != no_slot) store(term.a), store(term.b);
-        else if (ahead_of(term.a) != ahead_of(i.out) + static_cast<int>(term.shift)) store(term.a);
+        if (term.b != no_slot)
+          store(term.a), store(term.b);
+        else if (ahead_of(term.a) != ahead_of(i.out) + static_cast<int>(term.shift))
+          store(term.a);
       }
     }
 }
@@ -37,17 +41,28 @@ void LanesEmitter::find_stored() {
 Value* LanesEmitter::factor_value(const sparse::Edge& f) {
   using sparse::Rule;
   switch (f.rule) {
-    case Rule::Coefficient: return constant(f.index);
-    case Rule::Scaled: return scaled(coefficient(f.index), first(f.x));
-    case Rule::Double: return out_.add(first(f.x), first(f.x));
-    case Rule::Reciprocal: return out_.divide(number(1), first(f.x));
-    case Rule::Ratio: return out_.divide(out_.negate(first(f.y)), first(f.x));
-    case Rule::HalfReciprocal: return out_.divide(number(0.5), first(f.x));
-    case Rule::PowerSlope: return out_.divide(out_.multiply(constant(f.index), first(f.y)), first(f.x));
-    case Rule::Value: return first(f.x);
-    case Rule::Negative: return out_.negate(first(f.x));
-    case Rule::Choice: return in_force(f);
-    case Rule::One: break;
+    case Rule::Coefficient:
+      return constant(f.index);
+    case Rule::Scaled:
+      return scaled(coefficient(f.index), first(f.x));
+    case Rule::Double:
+      return out_.add(first(f.x), first(f.x));
+    case Rule::Reciprocal:
+      return out_.divide(number(1), first(f.x));
+    case Rule::Ratio:
+      return out_.divide(out_.negate(first(f.y)), first(f.x));
+    case Rule::HalfReciprocal:
+      return out_.divide(number(0.5), first(f.x));
+    case Rule::PowerSlope:
+      return out_.divide(out_.multiply(constant(f.index), first(f.y)), first(f.x));
+    case Rule::Value:
+      return first(f.x);
+    case Rule::Negative:
+      return out_.negate(first(f.x));
+    case Rule::Choice:
+      return in_force(f);
+    case Rule::One:
+      break;
   }
   return number(1);
 }
@@ -80,7 +95,8 @@ void LanesEmitter::find_tangents() {
     Value* sum = nullptr;
     for (std::uint32_t k = c.first; k < c.last; ++k) {
       const lanes::Pair& pair = view_.pairs[k];
-      if (!c.chooses) sum = product(sum, pair);
+      if (!c.chooses)
+        sum = product(sum, pair);
       else
         sum = out_.b.CreateSelect(out_.b.CreateFCmpUNE(factors[pair.factor], number(0)), tangents_[pair.tangent],
                                   or_zero(sum));
@@ -192,7 +208,8 @@ void LanesEmitter::invert(const std::vector<Value*>& m) {
 void LanesEmitter::solve() {
   acceleration_.assign(n_, nullptr);
   if (n_ == 0) return;
-  if (n_ > most_by_inverse) solve_by_factors();
+  if (n_ > most_by_inverse)
+    solve_by_factors();
   else
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t j = 0; j < n_; ++j)
@@ -242,8 +259,10 @@ void LanesEmitter::correct_lag(std::size_t begin, std::size_t end, const std::ve
     Value* sum = read(c.slot, ahead_of(c.slot));
     for (std::uint32_t t = c.first; t < c.last; ++t) {
       const lanes::CorrectionTerm& term = view_.correction_terms[t];
-      if (term.tangent == 0) sum = plus(sum, direction[term.direction]);
-      else sum = plus(sum, out_.load(real_, scratch(term.tangent)), direction[term.direction]);
+      if (term.tangent == 0)
+        sum = plus(sum, direction[term.direction]);
+      else
+        sum = plus(sum, out_.load(real_, scratch(term.tangent)), direction[term.direction]);
     }
     now_[c.slot] = or_zero(sum);
     out_.store(now_[c.slot], slot_at(row(ahead_of(c.slot)), c.slot));

@@ -11,7 +11,10 @@ using packed::lanes;
 using packed::rolled_group;
 
 RolledEmitter::RolledEmitter(Emission& out, const packed::PackedProgram& program, std::size_t stride)
-    : out_(out), p_(program), program_(program.program), row_bytes_(8 * static_cast<std::int64_t>(stride)),
+    : out_(out),
+      p_(program),
+      program_(program.program),
+      row_bytes_(8 * static_cast<std::int64_t>(stride)),
       vector_(out.real(static_cast<int>(lanes))) {
   find_convolutions();
   find_passing(false);

@@ -41,7 +41,7 @@ class RolledEmitter {
 
   /// How far the operands of a convolution are ahead of it: lag − lag of a, lag − lag of b. Loops over convolutions are
   /// of one class.
-  using Class = std::array<int, 3>;    // lag, and the two differences
+  using Class = std::array<int, 3>;  // lag, and the two differences
   /// A value in a register, and when it was made.
   struct Recent {
     Value* value;
@@ -50,10 +50,10 @@ class RolledEmitter {
 
   // --------------------------------------------------------------------------------------- stages (rolled_emitter.cpp)
   void find_convolutions();
-  Value* field(std::size_t offset);                 // of the arguments, an address
+  Value* field(std::size_t offset);  // of the arguments, an address
   /// a function of CompiledArguments* and these
   void open(const char* name, const std::vector<llvm::Type*>& others, llvm::Type* result = nullptr);
-  void open_stage(const char* name);                // … the stage
+  void open_stage(const char* name);  // … the stage
   void set_stage(Value* stage);
   void stage();
   void run_packs();
@@ -125,8 +125,9 @@ class RolledEmitter {
   void renew_blocks();
   void renew_copies();
   void renew(const Block& block);
-  void each_convolution(const std::function<void(const Class&, Value* a, Value* b, Value* sums)>& body,
-                        const std::function<bool(const Class&)>& takes_part = [](const Class&) { return true; });
+  void each_convolution(
+      const std::function<void(const Class&, Value* a, Value* b, Value* sums)>& body,
+      const std::function<bool(const Class&)>& takes_part = [](const Class&) { return true; });
   void loop_over(const Class& key, const std::vector<std::size_t>& members, Value* first, Value* end,
                  const std::function<void(const Class&, Value* a, Value* b, Value* sums)>& body);
   llvm::GlobalVariable* offsets(const std::vector<std::size_t>& members);
@@ -198,14 +199,14 @@ class RolledEmitter {
   const packed::PackedProgram& p_;
   const Program& program_;
   std::int64_t row_bytes_;
-  llvm::Type* vector_;                 // of packed::lanes doubles
-  std::vector<std::size_t> sums_of_;   // [convolutions] places
+  llvm::Type* vector_;                // of packed::lanes doubles
+  std::vector<std::size_t> sums_of_;  // [convolutions] places
   std::map<Class, std::vector<std::size_t>> classes_;
-  std::vector<std::size_t> phase_;     // [convolutions] of `later`; else 0
+  std::vector<std::size_t> phase_;  // [convolutions] of `later`; else 0
 
   Value *arguments_ = nullptr, *rows_ = nullptr, *coefficients_ = nullptr, *sums_ = nullptr, *stage_ = nullptr;
-  std::optional<int> written_;          // the stage, if it is known when the code is made
-  std::vector<Value*> rows_of_stage_;   // from its own on, as many as functions of t alone are ahead
+  std::optional<int> written_;         // the stage, if it is known when the code is made
+  std::vector<Value*> rows_of_stage_;  // from its own on, as many as functions of t alone are ahead
   std::array<Value*, packed::rolled_group> sums_of_stage_{};  // by phase
   /// (k + 1)(k + 2), 1 over it, and what rounding took from that
   Value *divisor_ = nullptr, *reciprocal_ = nullptr, *lack_ = nullptr;
@@ -217,34 +218,34 @@ class RolledEmitter {
     Value *sum, *carry;
   };
 
-  std::map<Slot, Recent> recent_;      // by first slot
-  std::map<Slot, Value*> final_;       // what a solution has corrected, by first slot or cell
-  std::map<Slot, Value*> kept_;        // the same of the stage before, if it is still in registers
+  std::map<Slot, Recent> recent_;  // by first slot
+  std::map<Slot, Value*> final_;   // what a solution has corrected, by first slot or cell
+  std::map<Slot, Value*> kept_;    // the same of the stage before, if it is still in registers
   Scan scan_{no_slot, 0, nullptr, nullptr};
-  std::vector<bool> passing_;          // [slots / 8] vectors that are read in the stage that makes them alone
-  Value* passing_row_ = nullptr;       // where these stand; null where the rows are not those of orders
+  std::vector<bool> passing_;     // [slots / 8] vectors that are read in the stage that makes them alone
+  Value* passing_row_ = nullptr;  // where these stand; null where the rows are not those of orders
   struct Strand {
     Slot out;
     Value* sum;
   };
-  std::vector<Strand> strands_;        // of a running sum in eight parts, in its order, before it is ended
+  std::vector<Strand> strands_;  // of a running sum in eight parts, in its order, before it is ended
   std::size_t time_ = 0;
   /// Of `later`: where sums for later stages stand.
   struct Filling {
     std::vector<std::map<Class, std::vector<std::size_t>>> slots;  // convolutions
-    std::vector<std::size_t> last, turn;  // [slots] the last convolution; deferred corrections that come before
+    std::vector<std::size_t> last, turn;         // [slots] the last convolution; deferred corrections that come before
     std::size_t gaps = 0, passed = 0, next = 0;  // places between packs, those behind us; the next slot
-    std::size_t read = 0;                 // convolutions whose sums the stage has read
+    std::size_t read = 0;                        // convolutions whose sums the stage has read
   };
   std::optional<Filling> filling_;
-  Value* has_next_ = nullptr;             // whether another stage follows
+  Value* has_next_ = nullptr;  // whether another stage follows
   /// Of `later`: corrections of the stage before that stand between the packs of a stage, and with what they are
   /// written.
   struct Deferred {
-    std::vector<bool> now;                // [packs] whose tangents a stage finds at its end
-    std::vector<std::size_t> packs;       // the others, in order
-    std::vector<std::size_t> turn_of;     // [vectors] how many of them have to be there before it is final
-    std::vector<int> lag;                 // [vectors] as corrected_lags()
+    std::vector<bool> now;             // [packs] whose tangents a stage finds at its end
+    std::vector<std::size_t> packs;    // the others, in order
+    std::vector<std::size_t> turn_of;  // [vectors] how many of them have to be there before it is final
+    std::vector<int> lag;              // [vectors] as corrected_lags()
     std::size_t done = 0;
     Value* tangent_row = nullptr;
 

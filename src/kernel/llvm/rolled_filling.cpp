@@ -52,7 +52,7 @@ void RolledEmitter::fill_next() {
   llvm::Function* const function = b.GetInsertBlock()->getParent();
   const auto block = [&] { return llvm::BasicBlock::Create(out_.context, "", function); };
   llvm::BasicBlock* const needed = block();
-  llvm::BasicBlock* const alone = block(), *const grouped = block(), *const begins = block(), *const done = block();
+  llvm::BasicBlock *const alone = block(), *const grouped = block(), *const begins = block(), *const done = block();
   Value* const position =
       b.CreateAnd(b.CreateSub(stage_, b.getInt64(static_cast<std::uint64_t>(phase))), b.getInt64(rolled_group - 1));
   b.CreateCondBr(has_next_, needed, done);

@@ -14,16 +14,26 @@ void RolledEmitter::pack(std::size_t index) {
   const Pack& pack = p_.packs[index];
   ++time_;
   switch (pack.kind) {
-    case Pack::Sum: return keep(pack, products(index, columns(pack)));
-    case Pack::Scan: return keep(pack, carried(pack, running_sum(columns(pack), false), row(ahead_of(pack))));
-    case Pack::ScanDown: return keep(pack, carried(pack, running_sum(columns(pack), true), row(ahead_of(pack))));
-    case Pack::Strand: return strand(pack, columns(pack));
-    case Pack::Join: return join(pack, false, row(ahead_of(pack)));
-    case Pack::JoinDown: return join(pack, true, row(ahead_of(pack)));
-    case Pack::Integral: return integral(index);
-    case Pack::Quotient: return quotient(index);
-    case Pack::SquareRoot: return square_root(index);
-    case Pack::Scalar: return call_rule(pack.instruction, ahead_of(pack));
+    case Pack::Sum:
+      return keep(pack, products(index, columns(pack)));
+    case Pack::Scan:
+      return keep(pack, carried(pack, running_sum(columns(pack), false), row(ahead_of(pack))));
+    case Pack::ScanDown:
+      return keep(pack, carried(pack, running_sum(columns(pack), true), row(ahead_of(pack))));
+    case Pack::Strand:
+      return strand(pack, columns(pack));
+    case Pack::Join:
+      return join(pack, false, row(ahead_of(pack)));
+    case Pack::JoinDown:
+      return join(pack, true, row(ahead_of(pack)));
+    case Pack::Integral:
+      return integral(index);
+    case Pack::Quotient:
+      return quotient(index);
+    case Pack::SquareRoot:
+      return square_root(index);
+    case Pack::Scalar:
+      return call_rule(pack.instruction, ahead_of(pack));
   }
 }
 

@@ -34,8 +34,10 @@ void RolledEmitter::solve_by(Value* inverse, Value* tangent_row) {
     recent_[slot] = {accelerations[v], time_};
   }
   gap();
-  if (deferred_) correct_now(tangent_row);
-  else correct(tangent_row);
+  if (deferred_)
+    correct_now(tangent_row);
+  else
+    correct(tangent_row);
 }
 
 /// −M₀⁻¹ R_k, a vector in several sums, since products of one wait for each other.
@@ -163,8 +165,10 @@ std::vector<bool> RolledEmitter::needed_for_corrections(const std::vector<int>& 
       const Column& column = p_.columns[c];
       if (!column.passes_tangent) continue;
       for (Slot k = 0; k < lanes; ++k)
-        need(column.kind == Column::Broadcast ? column.source : column.kind == Column::Contiguous ? column.source + k
-             : column.kind == Column::Reversed ? column.source - k : column.sources[k]);
+        need(column.kind == Column::Broadcast    ? column.source
+             : column.kind == Column::Contiguous ? column.source + k
+             : column.kind == Column::Reversed   ? column.source - k
+                                                 : column.sources[k]);
     }
     for (std::uint32_t k = pack.first_product; k < pack.last_product; ++k)
       need_block(pack, p_.products[k].a), need_block(pack, p_.products[k].b);

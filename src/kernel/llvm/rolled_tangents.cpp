@@ -23,12 +23,18 @@ void RolledEmitter::tangents() {
 void RolledEmitter::tangent(const Pack& pack, Value* row) {
   auto& b = out_.b;
   switch (pack.kind) {
-    case Pack::Sum: return keep(pack, tangent_products(pack, row, tangent_columns(pack, row)), row);
-    case Pack::Scan: return keep(pack, carried(pack, running_sum(tangent_columns(pack, row), false), row), row);
-    case Pack::ScanDown: return keep(pack, carried(pack, running_sum(tangent_columns(pack, row), true), row), row);
-    case Pack::Strand: return strand(pack, tangent_columns(pack, row));
-    case Pack::Join: return join(pack, false, row);
-    case Pack::JoinDown: return join(pack, true, row);
+    case Pack::Sum:
+      return keep(pack, tangent_products(pack, row, tangent_columns(pack, row)), row);
+    case Pack::Scan:
+      return keep(pack, carried(pack, running_sum(tangent_columns(pack, row), false), row), row);
+    case Pack::ScanDown:
+      return keep(pack, carried(pack, running_sum(tangent_columns(pack, row), true), row), row);
+    case Pack::Strand:
+      return strand(pack, tangent_columns(pack, row));
+    case Pack::Join:
+      return join(pack, false, row);
+    case Pack::JoinDown:
+      return join(pack, true, row);
     case Pack::Integral: {
       Value* const factor = plus_scaled(nullptr, pack.coefficients, at_point(pack.b));
       Value* const u = change(pack, pack.a, row);
@@ -44,7 +50,8 @@ void RolledEmitter::tangent(const Pack& pack, Value* row) {
       Value *const u = change(pack, pack.a, row), *const y = at_point(pack.y);
       return keep(pack, u ? out_.divide(u, out_.add(y, y)) : llvm::Constant::getNullValue(vector_), row);
     }
-    case Pack::Scalar: break;
+    case Pack::Scalar:
+      break;
   }
   Value* const context = b.CreateLoad(out_.pointer(), at(arguments_, offsetof(packed::CompiledArguments, context)));
   Value* const rule = b.CreateLoad(out_.pointer(), at(arguments_, offsetof(packed::CompiledArguments, tangent)));

@@ -41,7 +41,9 @@ void* sleef_function(const std::string& name) {
 }
 
 template <std::size_t I>
-double row_value(double x) { return std::get<I>(functions::rows).value_of(x); }
+double row_value(double x) {
+  return std::get<I>(functions::rows).value_of(x);
+}
 
 /// Of the table of functions, by name.
 template <std::size_t... I>

@@ -37,9 +37,9 @@ std::string processor_identity();
 struct Compiled {
   std::shared_ptr<const LoadedObject> code;  // null: `trouble` says why; the next backend has to do
   std::string trouble;
-  std::string cache_trouble;                 // the code is there, but could not be kept for the next run
+  std::string cache_trouble;  // the code is there, but could not be kept for the next run
   bool from_cache = false;
-  double seconds = 0;                        // all together
+  double seconds = 0;  // all together
   double emit_seconds = 0, compile_seconds = 0;
   std::size_t instructions = 0, object_bytes = 0;
 };

@@ -67,8 +67,10 @@ void Digester::mix(std::uint64_t first, std::uint64_t second) {
 }
 
 void Digester::add(std::uint64_t word) {
-  if (count_++ % 2 == 0) pending_ = word;
-  else mix(pending_, word);
+  if (count_++ % 2 == 0)
+    pending_ = word;
+  else
+    mix(pending_, word);
 }
 
 void Digester::add_double(double value) {

@@ -1,5 +1,8 @@
 #include "kernel/machine_code/object_cache.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
@@ -7,9 +10,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <utility>
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace maupertuis::machine_code {
 namespace {
@@ -93,8 +93,10 @@ std::string why_not_private(const struct stat& status, const std::string& name) 
 Descriptor open_private(const fs::path& folder, std::string& trouble) {
   Descriptor out(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
   struct stat status {};
-  if (!out || fstat(out.number(), &status) != 0) trouble = folder.string() + " cannot be used: " + std::strerror(errno);
-  else trouble = why_not_private(status, folder.string());
+  if (!out || fstat(out.number(), &status) != 0)
+    trouble = folder.string() + " cannot be used: " + std::strerror(errno);
+  else
+    trouble = why_not_private(status, folder.string());
   return Descriptor(trouble.empty() ? dup(out.number()) : -1);
 }
 

@@ -13,9 +13,9 @@ inline constexpr const char* program_function_prefix = "maup_";
 enum class Emitter : std::uint32_t {
   /// source: none. `self_test`: void(const double* x, double* y), y_i = √(sin²x_i + x_i cos²x_i), [width] each
   SelfTest = 0,
-  Packed = 1,    // source: packed::PackedProgram. `expand`: packed::CompiledExpand; or `stage` and `ahead`:
-                 // packed::CompiledStage, `tangents`: packed::CompiledTangents
-  Lanes = 2,     // source: Program. `expand`: lanes::Expand
+  Packed = 1,         // source: packed::PackedProgram. `expand`: packed::CompiledExpand; or `stage` and `ahead`:
+                      // packed::CompiledStage, `tangents`: packed::CompiledTangents
+  Lanes = 2,          // source: Program. `expand`: lanes::Expand
   StraightLines = 3,  // source: std::vector<straight::StraightLine>. `line0`, `line1`, …: see straight::Code
 };
 
@@ -34,7 +34,7 @@ struct Request {
 struct Reply {
   const char* object = nullptr;  // relocatable ELF object; null: not compiled, see `trouble`
   std::size_t size = 0;
-  const char* trouble = "";      // one sentence
+  const char* trouble = "";  // one sentence
   double emit_seconds = 0, compile_seconds = 0;
   std::size_t instructions = 0;  // of the intermediate representation
 };

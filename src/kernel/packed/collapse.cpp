@@ -102,9 +102,7 @@ class Collapse {
     return program_.constants[id].kind == Kind::Number && program_.constants[id].value == 1;
   }
 
-  ConstantId multiply(ConstantId x, ConstantId y) {
-    return is_one(x) ? y : is_one(y) ? x : apply(Kind::Product, x, y);
-  }
+  ConstantId multiply(ConstantId x, ConstantId y) { return is_one(x) ? y : is_one(y) ? x : apply(Kind::Product, x, y); }
 
   ConstantId apply(Kind kind, ConstantId x, ConstantId y) {
     const auto [place, fresh] = made_.try_emplace({kind, x, y}, 0);
@@ -118,7 +116,9 @@ class Collapse {
   /// What is read besides by the operands of steps.
   std::vector<bool> read_elsewhere() const {
     std::vector<bool> read(program_.slots, false);
-    const auto reads = [&](Slot slot) { if (slot != no_slot) read[slot] = true; };
+    const auto reads = [&](Slot slot) {
+      if (slot != no_slot) read[slot] = true;
+    };
     for (const auto* slots : {&program_.residual, &program_.constraint_values, &program_.constraint_rates,
                               &program_.switch_slots, &program_.events, &program_.observables, &program_.integrands})
       for (const Slot slot : *slots) reads(slot);
@@ -153,7 +153,7 @@ class Collapse {
   Program& program_;
   std::vector<Step>& steps_;
   std::size_t longest_;
-  std::vector<const Step*> sum_of_;     // [slots]
+  std::vector<const Step*> sum_of_;  // [slots]
   std::map<std::tuple<Kind, ConstantId, ConstantId>, ConstantId> made_;
 };
 

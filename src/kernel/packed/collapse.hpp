@@ -3,8 +3,9 @@
 
 #include <vector>
 
-/// What is done to the sums of a program before its instructions become packs. d/dt becomes a shift of an index. Running
-/// sums s_i = s_{i−1} + x_i are found, along a chain for instance. Other sums are written out in the sums that read them,
+/// What is done to the sums of a program before its instructions become packs. d/dt becomes a shift of an index.
+/// Running sums s_i = s_{i−1} + x_i are found, along a chain for instance. Other sums are written out in the sums that
+/// read them,
 ///
 ///     s = a + b,  t = s + c,  u = s − d      →      t = a + b + c,  u = a + b − d
 ///
@@ -14,10 +15,10 @@ namespace maupertuis::packed {
 /// An instruction with terms of its own.
 struct Step {
   Instruction head;
-  std::vector<Term> linear, products;   // Function: its differential is in `products`; Select: its choices in `linear`
+  std::vector<Term> linear, products;  // Function: its differential is in `products`; Select: its choices in `linear`
   /// number of the running sum that it belongs to; its first linear term is the sum before, or for the
   int chain = -1;
-                                        // first member the leaf 1 times 0
+  // first member the leaf 1 times 0
 };
 
 /// The instructions of section Dynamics, in order.

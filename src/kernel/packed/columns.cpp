@@ -100,7 +100,9 @@ std::vector<ReadColumn> columns_by_place(const Sums& sums) {
                              : is_range(sums, t)    ? Column::Contiguous
                              : is_reversed(sums, t) ? Column::Reversed
                                                     : Column::Gather,
-                     .shift = static_cast<std::uint8_t>(sums[0][t].shift), .source = sums[0][t].a}, {}};
+                     .shift = static_cast<std::uint8_t>(sums[0][t].shift),
+                     .source = sums[0][t].a},
+                    {}};
     read.column.sources.fill(sums[0][t].a);
     for (std::size_t lane = 0; lane < sums.size(); ++lane) {
       read.column.sources[lane] = sums[lane][t].a;
@@ -159,8 +161,10 @@ std::vector<ReadColumn> aligned_columns_of(const Program& program, const Sums& u
   std::map<TermKind, std::size_t> longest;
   for (std::size_t lane = 0; lane < sums.size(); ++lane) {
     for (const Term& term : unordered[lane]) {
-      if (term.a == program.one) has_one = true, of_one.coefficients[lane] = term.coefficient;
-      else sums[lane].push_back(term);
+      if (term.a == program.one)
+        has_one = true, of_one.coefficients[lane] = term.coefficient;
+      else
+        sums[lane].push_back(term);
     }
     std::stable_sort(sums[lane].begin(), sums[lane].end(), [&](const Term& x, const Term& y) {
       return std::pair(kind_of(program, x), x.a) < std::pair(kind_of(program, y), y.a);

@@ -5,7 +5,7 @@ namespace maupertuis::packed {
 
 struct ReadColumn {
   Column column;
-  std::vector<ConstantId> coefficients; // of its lanes
+  std::vector<ConstantId> coefficients;  // of its lanes
 };
 
 /// The linear terms of each lane, with slots of `program`.

@@ -6,10 +6,16 @@
 
 namespace maupertuis::packed {
 
-namespace baseline { extern const Engine engine; }
+namespace baseline {
+extern const Engine engine;
+}
 #ifdef MAUPERTUIS_X86_64
-namespace avx2 { extern const Engine engine; }
-namespace avx512 { extern const Engine engine; }
+namespace avx2 {
+extern const Engine engine;
+}
+namespace avx512 {
+extern const Engine engine;
+}
 #endif
 
 const Engine& engine() {

@@ -14,7 +14,7 @@ namespace maupertuis::packed {
 /// What a pack cannot do: one instruction by the reference rules.
 struct ScalarRules {
   void* context = nullptr;
-  void (*value)(void* context, std::uint32_t instruction, int order) = nullptr;      // of its result at that order
+  void (*value)(void* context, std::uint32_t instruction, int order) = nullptr;           // of its result at that order
   void (*tangent)(void* context, std::uint32_t instruction, double* tangents) = nullptr;  // [slots], one direction
 };
 
@@ -26,10 +26,10 @@ struct Reciprocal {
 /// What a pack needs to know of order k.
 struct Order {
   double* row = nullptr;
-  std::ptrdiff_t offset = 0;            // of the row from that of order 0
+  std::ptrdiff_t offset = 0;              // of the row from that of order 0
   std::array<double, 3> shift_factors{};  // 1, k + 1, (k + 1)(k + 2)
-  Reciprocal reciprocal;                // of k; of 0: none
-  int number = 0;                       // k
+  Reciprocal reciprocal;                  // of k; of 0: none
+  int number = 0;                         // k
 };
 std::vector<Order> orders_of(double* rows, std::size_t stride, int count);
 
@@ -43,30 +43,30 @@ struct Tables {
   const ProductTerm* products = nullptr;
   const Convolution* convolutions = nullptr;
   std::size_t convolution_count = 0;
-  double* sums = nullptr;                // [convolutions][rolled_group][lanes], aligned to 64 bytes
+  double* sums = nullptr;  // [convolutions][rolled_group][lanes], aligned to 64 bytes
   const std::uint32_t* functions = nullptr;
   const double* coefficients = nullptr;  // values of PackedProgram::coefficients
   double* rows = nullptr;                // [orders][stride], aligned to 64 bytes
   std::size_t stride = 0;                // a multiple of 8
   std::size_t unknowns = 0;
-  const Order* orders = nullptr;         // [orders] of these rows
+  const Order* orders = nullptr;  // [orders] of these rows
   ScalarRules scalar;
 };
 
 /// Tangents of order 0 in each direction q̈_d: ∂slot/∂q^(lag).
 struct TangentMatrix {
-  const double* values = nullptr;        // [directions][stride], aligned to 64 bytes
+  const double* values = nullptr;  // [directions][stride], aligned to 64 bytes
   std::size_t stride = 0, directions = 0;
-  Slot first = 0;                        // of the slots that are corrected: those of lag 0 …
-  std::array<Slot, 3> end{};             // … and where those of lag 0, 1, 2 end; all multiples of 8
+  Slot first = 0;             // of the slots that are corrected: those of lag 0 …
+  std::array<Slot, 3> end{};  // … and where those of lag 0, 1, 2 end; all multiples of 8
 };
 
 /// For 1 to 16 unknowns by −M₀⁻¹, as Engine::negative_inverse() wrote it.
 struct InverseSolution {
   const double* inverse = nullptr;
-  const Slot* residual = nullptr;        // [directions]
-  bool side_by_side = false;             // residual[i] = residual[0] + i
-  TangentMatrix tangents;                // in the direction of each unknown
+  const Slot* residual = nullptr;  // [directions]
+  bool side_by_side = false;       // residual[i] = residual[0] + i
+  TangentMatrix tangents;          // in the direction of each unknown
   // Many coefficients follow one acceleration alone, as sines follow their angle. [vectors of corrected slots]: v, if
   // lane i of such a vector follows the unknown 8 v + i and no other, whatever i is; −1: it follows several.
   const std::int8_t* own = nullptr;

@@ -5,8 +5,8 @@
 //                             │   │   ├──── final after stage s ────┤   │   │
 //                             └───┴── b is newer than that    a is ──┴───┘
 //
-// The middle is summed here; the ends, r + 1 terms on each side or fewer where an operand is known earlier, are what the
-// stage itself adds.
+// The middle is summed here; the ends, r + 1 terms on each side or fewer where an operand is known earlier, are what
+// the stage itself adds.
 namespace maupertuis::packed::MAUP_ENGINE {
 namespace {
 

@@ -1,7 +1,7 @@
 // No include guard: each engine_*.cpp compiles this once, for its own instruction set, in a namespace of its own.
 #include <maupertuis/rough_powers.hpp>
-#include "kernel/series/sine_cosine.hpp"
 #include "kernel/packed/engine.hpp"
+#include "kernel/series/sine_cosine.hpp"
 
 #include "kernel/packed/engine_vectors.hpp"
 

@@ -32,11 +32,11 @@ inline Vector long_convolution(const double* a, const double* b, int n, std::ptr
 
 using WrittenOut = Vector (*)(const double*, const double*, std::ptrdiff_t);
 const WrittenOut convolutions[] = {convolution_of<0>,  convolution_of<1>,  convolution_of<2>,  convolution_of<3>,
-                                    convolution_of<4>,  convolution_of<5>,  convolution_of<6>,  convolution_of<7>,
-                                    convolution_of<8>,  convolution_of<9>,  convolution_of<10>, convolution_of<11>,
-                                    convolution_of<12>, convolution_of<13>, convolution_of<14>, convolution_of<15>,
-                                    convolution_of<16>, convolution_of<17>, convolution_of<18>, convolution_of<19>,
-                                    convolution_of<20>, convolution_of<21>, convolution_of<22>, convolution_of<23>};
+                                   convolution_of<4>,  convolution_of<5>,  convolution_of<6>,  convolution_of<7>,
+                                   convolution_of<8>,  convolution_of<9>,  convolution_of<10>, convolution_of<11>,
+                                   convolution_of<12>, convolution_of<13>, convolution_of<14>, convolution_of<15>,
+                                   convolution_of<16>, convolution_of<17>, convolution_of<18>, convolution_of<19>,
+                                   convolution_of<20>, convolution_of<21>, convolution_of<22>, convolution_of<23>};
 constexpr int most_written_out = 23;
 
 /// Σ_{j=0..n} a_j b_{n−j}

@@ -104,7 +104,9 @@ using Invert = bool (*)(const double* m, double* inverse);
 
 /// By the number of unknowns less 1.
 template <std::size_t... N>
-constexpr std::array<Invert, most_inverted> inversions(std::index_sequence<N...>) { return {invert<N + 1>...}; }
+constexpr std::array<Invert, most_inverted> inversions(std::index_sequence<N...>) {
+  return {invert<N + 1>...};
+}
 
 bool negative_inverse(const double* matrix, std::size_t n, double* inverse) {
   static constexpr auto invert_of = inversions(std::make_index_sequence<most_inverted>());
@@ -150,9 +152,12 @@ bool solve_by_inverse(const double* inverse, std::size_t stride, const double* r
       i += V * lanes;
     };
     const std::size_t left = (stride - i) / lanes;
-    if (left >= 4) block.template operator()<4>();
-    else if (left >= 2) block.template operator()<2>();
-    else block.template operator()<1>();
+    if (left >= 4)
+      block.template operator()<4>();
+    else if (left >= 2)
+      block.template operator()<2>();
+    else
+      block.template operator()<1>();
   }
   return finite;
 }
@@ -321,7 +326,8 @@ template <std::size_t N>
   constexpr std::size_t vectors = (N + lanes - 1) / lanes;
   const double* const residual = s.order_of(2).row;
   Vector weights[N], accelerations[vectors];
-  if (in.side_by_side) load_weights(residual + in.residual[0], weights);
+  if (in.side_by_side)
+    load_weights(residual + in.residual[0], weights);
   else
 #pragma GCC unroll 16
     for (std::size_t d = 0; d < N; ++d) weights[d] = all(residual[in.residual[d]]);

@@ -9,14 +9,19 @@ void sine_cosine_of(const double* x, double* out) {
 }
 
 void sine_cosine(const double* x, double* out, int count) {
-  return count <= 1 ? sine_cosine_of<1>(x, out) : count <= 2 ? sine_cosine_of<2>(x, out)
-         : count <= 4 ? sine_cosine_of<4>(x, out) : sine_cosine_of<8>(x, out);
+  return count <= 1   ? sine_cosine_of<1>(x, out)
+         : count <= 2 ? sine_cosine_of<2>(x, out)
+         : count <= 4 ? sine_cosine_of<4>(x, out)
+                      : sine_cosine_of<8>(x, out);
 }
 
 /// What packs of a stage have in common.
 struct Stage {
   Stage(const Tables& tables, int number)
-      : t(tables), stage(number), by_sums(has_sums_ahead(number)), position((number - 1) % rolled_group),
+      : t(tables),
+        stage(number),
+        by_sums(has_sums_ahead(number)),
+        position((number - 1) % rolled_group),
         newest(tables.orders + (number + 2)) {}
 
   /// Of slots of that lag; not below 0.
@@ -27,9 +32,9 @@ struct Stage {
 
   const Tables& t;
   int stage;
-  bool by_sums;                          // that were made ahead
-  int position;                          // of this stage among the four of a sum
-  const Order* newest;                   // of lag 0
+  bool by_sums;         // that were made ahead
+  int position;         // of this stage among the four of a sum
+  const Order* newest;  // of lag 0
 };
 
 // ------------------------------------------------------------------------------------------------------------- copies
@@ -67,10 +72,14 @@ inline void bring(const Stage& s, const Pack& pack, std::uint32_t index) {
   const Column* const columns = t.columns + run.first;
   const std::size_t count = run.last - run.first;
   switch (run.kind) {
-    case Column::Broadcast: return columns_of_kind<Column::Broadcast>(columns, count, coefficients, from);
-    case Column::Contiguous: return columns_of_kind<Column::Contiguous>(columns, count, coefficients, from);
-    case Column::Reversed: return columns_of_kind<Column::Reversed>(columns, count, coefficients, from);
-    case Column::Gather: break;
+    case Column::Broadcast:
+      return columns_of_kind<Column::Broadcast>(columns, count, coefficients, from);
+    case Column::Contiguous:
+      return columns_of_kind<Column::Contiguous>(columns, count, coefficients, from);
+    case Column::Reversed:
+      return columns_of_kind<Column::Reversed>(columns, count, coefficients, from);
+    case Column::Gather:
+      break;
   }
   return columns_of_kind<Column::Gather>(columns, count, coefficients, from);
 }
@@ -208,8 +217,10 @@ inline void save_integral(const Stage& s, const Pack& pack, const Order& order, 
 const Pack* run_integral(const Stage& s, const Pack* pack) {
   const Order& order = s.order_of(pack->lag);
   bring(s, *pack, pack->a);
-  if (order.number == 0) functions(s.t, *pack);
-  else save_integral(s, *pack, order, without_first(s, s.t.convolutions[pack->first_convolution], order.number));
+  if (order.number == 0)
+    functions(s.t, *pack);
+  else
+    save_integral(s, *pack, order, without_first(s, s.t.convolutions[pack->first_convolution], order.number));
   return pack;
 }
 
@@ -250,9 +261,18 @@ const Pack* run_scalar(const Stage& s, const Pack* pack) {
 }
 
 /// By Pack::Kind, joins being done with their strands; from stage 1 on by Pack::Way as well, where there are sums.
-constexpr RunPack run_of[] = {run_sum,        run_scan<running_sum>, run_scan<running_sum_down>, run_strands,
-                              nullptr,        nullptr,               run_integral,               run_quotient,
-                              run_square_root, run_scalar,           run_neighbours,             run_products,
+constexpr RunPack run_of[] = {run_sum,
+                              run_scan<running_sum>,
+                              run_scan<running_sum_down>,
+                              run_strands,
+                              nullptr,
+                              nullptr,
+                              run_integral,
+                              run_quotient,
+                              run_square_root,
+                              run_scalar,
+                              run_neighbours,
+                              run_products,
                               run_integral_by_sum};
 
 /// Up to stage 0.

@@ -14,15 +14,33 @@ class Tangents {
     for (std::size_t i = 0; i < t_.pack_count; ++i) {
       const Pack& pack = t_.packs[i];
       switch (pack.kind) {
-        case Pack::Sum: sum(pack); break;
-        case Pack::Scan: scan(pack, running_sum); break;
-        case Pack::ScanDown: scan(pack, running_sum_down); break;
-        case Pack::Strand: strand(pack); break;
-        case Pack::Join: join(pack, before_lanes); break;
-        case Pack::JoinDown: join(pack, before_lanes_down); break;
-        case Pack::Integral: linear(pack, load(t_.coefficients + pack.coefficients) * value_of(pack.b), all(0)); break;
-        case Pack::Quotient: quotient(pack); break;
-        case Pack::SquareRoot: linear(pack, all(0.5) / value_of(pack.y), all(0)); break;
+        case Pack::Sum:
+          sum(pack);
+          break;
+        case Pack::Scan:
+          scan(pack, running_sum);
+          break;
+        case Pack::ScanDown:
+          scan(pack, running_sum_down);
+          break;
+        case Pack::Strand:
+          strand(pack);
+          break;
+        case Pack::Join:
+          join(pack, before_lanes);
+          break;
+        case Pack::JoinDown:
+          join(pack, before_lanes_down);
+          break;
+        case Pack::Integral:
+          linear(pack, load(t_.coefficients + pack.coefficients) * value_of(pack.b), all(0));
+          break;
+        case Pack::Quotient:
+          quotient(pack);
+          break;
+        case Pack::SquareRoot:
+          linear(pack, all(0.5) / value_of(pack.y), all(0));
+          break;
         case Pack::Scalar:
           for (int d = 0; d < W; ++d) t_.scalar.tangent(t_.scalar.context, pack.instruction, row(d));
           break;
@@ -65,7 +83,9 @@ class Tangents {
 
   /// Calls for those that are rare, which would take registers.
   template <Column::Kind kind>
-  [[gnu::noinline]] void add_rare_columns(const ColumnRun& run, Vector* sums) const { add_columns<kind>(run, sums); }
+  [[gnu::noinline]] void add_rare_columns(const ColumnRun& run, Vector* sums) const {
+    add_columns<kind>(run, sums);
+  }
 
   template <Column::Kind kind>
   void add_columns(const ColumnRun& run, Vector* sums) const {
@@ -82,10 +102,18 @@ class Tangents {
       const ColumnRun& run = t_.runs[r];
       if (!run.passes_tangent) continue;
       switch (run.kind) {
-        case Column::Broadcast: add_columns<Column::Broadcast>(run, sums); break;
-        case Column::Contiguous: add_columns<Column::Contiguous>(run, sums); break;
-        case Column::Reversed: add_rare_columns<Column::Reversed>(run, sums); break;
-        case Column::Gather: add_rare_columns<Column::Gather>(run, sums); break;
+        case Column::Broadcast:
+          add_columns<Column::Broadcast>(run, sums);
+          break;
+        case Column::Contiguous:
+          add_columns<Column::Contiguous>(run, sums);
+          break;
+        case Column::Reversed:
+          add_rare_columns<Column::Reversed>(run, sums);
+          break;
+        case Column::Gather:
+          add_rare_columns<Column::Gather>(run, sums);
+          break;
       }
     }
   }
@@ -147,10 +175,14 @@ void tangents(const Tables& tables, double* values, std::size_t stride, std::siz
       Tangents<W>(tables, values, stride).run();
       values += W * stride, directions -= W;
     };
-    if (directions >= 8) block.template operator()<8>();
-    else if (directions >= 4) block.template operator()<4>();
-    else if (directions >= 2) block.template operator()<2>();
-    else block.template operator()<1>();
+    if (directions >= 8)
+      block.template operator()<8>();
+    else if (directions >= 4)
+      block.template operator()<4>();
+    else if (directions >= 2)
+      block.template operator()<2>();
+    else
+      block.template operator()<1>();
   }
 }
 

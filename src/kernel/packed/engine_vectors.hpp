@@ -20,11 +20,14 @@ inline Places places_of(const Block& block) { return *reinterpret_cast<const Una
 /// What a column of one kind reads.
 template <Column::Kind kind>
 inline Vector column_values(const double* from, const Column& column) {
-  if constexpr (kind == Column::Broadcast) return all(from[column.source]);
-  else if constexpr (kind == Column::Contiguous) return load(from + column.source);
+  if constexpr (kind == Column::Broadcast)
+    return all(from[column.source]);
+  else if constexpr (kind == Column::Contiguous)
+    return load(from + column.source);
   else if constexpr (kind == Column::Reversed)
     return __builtin_shuffle(load(from + column.source - (lanes - 1)), Places{7, 6, 5, 4, 3, 2, 1, 0});
-  else return gather(from, column.sources.data());
+  else
+    return gather(from, column.sources.data());
 }
 
 /// Σ_i term(i), in sums that do not wait for each other.
@@ -84,7 +87,8 @@ inline Vector before_lanes_down(Vector v) {
 /// What a running sum adds to.
 inline Vector carry_of(Slot carry, const double* row) { return carry == no_slot ? all(0) : all(row[carry]); }
 
-/// Of a running sum in eight parts (Pack::Join): all its vectors add what the lanes before each came to in the last one.
+/// Of a running sum in eight parts (Pack::Join): all its vectors add what the lanes before each came to in the last
+/// one.
 inline void join_strands(const Pack& pack, Vector last, double* row, Vector (*before)(Vector)) {
   const Vector missing = before(last) + carry_of(pack.carry, row);
   for (double* strand = row + pack.out; strand != row + pack.out + pack.strands * lanes; strand += lanes)

@@ -47,7 +47,8 @@ class Grouping {
     while (raise_levels() && turn < patience) ++turn;
     if (turn == patience) {  // running sums that wait for each other
       for (Step& s : steps_) s.chain = -1;
-      while (raise_levels()) {}
+      while (raise_levels()) {
+      }
     }
     std::vector<bool> read(in_.slots, false);
     for (const Step& s : steps_) for_operands(s, [&](Slot slot, int) { read[slot] = true; });
@@ -79,13 +80,17 @@ class Grouping {
     return changed;
   }
 
-  void store(Slot slot) { if (slot != no_slot) stored_[slot] = true; }
+  void store(Slot slot) {
+    if (slot != no_slot) stored_[slot] = true;
+  }
 
   /// As in the schedule of the program, for what is left after sums were written out.
   void find_stored() {
     stored_.assign(in_.slots, false);
     for (const Step& s : steps_) {
-      for_operands(s, [&](Slot slot, int shift) { if (lag(slot) + shift != s.head.lag) store(slot); });
+      for_operands(s, [&](Slot slot, int shift) {
+        if (lag(slot) + shift != s.head.lag) store(slot);
+      });
       for (const Term& term : s.products) store(term.a), store(term.b);
       if (s.head.op == Op::Linear || s.head.op == Op::Select) continue;
       if (s.head.op != Op::Products) store(s.head.a), store(s.head.b), store(s.head.out), store(s.head.second);
@@ -102,8 +107,10 @@ class Grouping {
                               &in_.constraint_rates})
       for (const Slot slot : *slots) store(slot);
     std::map<int, bool> of_chain;  // all members or none
-    for (const Step& s : steps_) if (s.chain >= 0 && stored_[s.head.out]) of_chain[s.chain] = true;
-    for (const Step& s : steps_) if (s.chain >= 0 && of_chain[s.chain]) store(s.head.out);
+    for (const Step& s : steps_)
+      if (s.chain >= 0 && stored_[s.head.out]) of_chain[s.chain] = true;
+    for (const Step& s : steps_)
+      if (s.chain >= 0 && of_chain[s.chain]) store(s.head.out);
   }
 
   // --------------------------------------------------------------------------------------------------------- groups
@@ -155,7 +162,9 @@ class Grouping {
         for (std::size_t t = 1; t < s.linear.size(); ++t)
           if (home == none) home = home_[s.linear[t].a];
       } else {
-        for_operands(s, [&](Slot slot, int) { if (home == none) home = home_[slot]; });
+        for_operands(s, [&](Slot slot, int) {
+          if (home == none) home = home_[slot];
+        });
       }
       home_[s.head.out] = home;
       if (s.head.second != no_slot) home_[s.head.second] = home;
@@ -201,11 +210,25 @@ class Grouping {
 
   bool can_pack(const Step& s) const {
     switch (s.head.op) {
-      case Op::Linear: case Op::Products: case Op::Square: case Op::SinCos: case Op::SinhCosh:
-      case Op::Quotient: case Op::SquareRoot: return true;
-      case Op::Function: return s.products.size() == 1 && s.head.b == no_slot;
-      case Op::Power: case Op::Derivative: case Op::Select: return false;
-      case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: return false;
+      case Op::Linear:
+      case Op::Products:
+      case Op::Square:
+      case Op::SinCos:
+      case Op::SinhCosh:
+      case Op::Quotient:
+      case Op::SquareRoot:
+        return true;
+      case Op::Function:
+        return s.products.size() == 1 && s.head.b == no_slot;
+      case Op::Power:
+      case Op::Derivative:
+      case Op::Select:
+        return false;
+      case Op::One:
+      case Op::Time:
+      case Op::Coordinate:
+      case Op::Companion:
+        return false;
     }
     throw unknown_op(s.head.op, "the grouping of packs");
   }
@@ -234,7 +257,7 @@ class Grouping {
     for (Group& group : groups_) {
       if (step(group.steps[0]).chain < 0)
         std::stable_sort(group.steps.begin(), group.steps.end(),
-                       [&](std::size_t x, std::size_t y) { return first_operand(x) < first_operand(y); });
+                         [&](std::size_t x, std::size_t y) { return first_operand(x) < first_operand(y); });
       for (const std::size_t i : group.steps) place_[steps_[i].head.out] = next++;
       for (const std::size_t i : group.steps)
         if (steps_[i].head.second != no_slot) place_[steps_[i].head.second] = next++;
@@ -293,7 +316,10 @@ class Grouping {
   void rank_consumers() {
     rank_.assign(in_.slots, none);
     std::size_t next = 0;
-    const auto rank = [&](Slot slot) { if (slot != no_slot && rank_[slot] == none) rank_[slot] = next; ++next; };
+    const auto rank = [&](Slot slot) {
+      if (slot != no_slot && rank_[slot] == none) rank_[slot] = next;
+      ++next;
+    };
     for (const Group& group : groups_) {
       const Step& shape = step(group.steps[0]);
       for (std::size_t t = 0; t < shape.products.size(); ++t)
@@ -312,13 +338,13 @@ class Grouping {
 
   const Program& in_;
   std::vector<Step>& steps_;
-  std::vector<std::size_t> producer_;   // [slots]
-  std::vector<int> level_;              // [steps]
-  std::vector<bool> stored_;            // [slots]
+  std::vector<std::size_t> producer_;  // [slots]
+  std::vector<int> level_;             // [steps]
+  std::vector<bool> stored_;           // [slots]
   std::vector<Group> groups_;
-  std::vector<Piece> piece_;            // [steps] of running sums
+  std::vector<Piece> piece_;  // [steps] of running sums
   const LaneOrder& order_;
-  std::vector<std::size_t> home_;       // [slots]
+  std::vector<std::size_t> home_;          // [slots]
   std::vector<std::size_t> place_, rank_;  // [slots]
 };
 

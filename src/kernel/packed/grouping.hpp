@@ -8,12 +8,12 @@ namespace maupertuis::packed {
 
 /// Instructions of one shape and level: none waits for another.
 struct Group {
-  std::vector<std::size_t> steps;       // in the order of lanes
+  std::vector<std::size_t> steps;  // in the order of lanes
   int level = 0;
   bool stored = false;
-  bool packs = false;                   // worth vectors
-  bool down = false;                    // a running sum from the last lane to the first
-  bool in_strands = false;              // a running sum in eight parts, a lane each
+  bool packs = false;       // worth vectors
+  bool down = false;        // a running sum from the last lane to the first
+  bool in_strands = false;  // a running sum in eight parts, a lane each
   /// lanes before the first step that stay empty, so that operands stand in the same lanes
   std::size_t front = 0;
 };

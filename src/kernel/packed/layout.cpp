@@ -55,7 +55,6 @@ class Packs {
   }
 
  private:
-
   void scalar(std::size_t i, int level) {
     out_.packs.push_back({.kind = Pack::Scalar,
                           .lag = step(i).head.lag,
@@ -111,9 +110,13 @@ class Packs {
     Pack pack = pack_of(members, group, front);
     if (shape.chain >= 0) return scan(pack, members, group, front);
     switch (shape.head.op) {
-      case Op::SinCos: return pairs(pack, members, group, -1);
-      case Op::SinhCosh: return pairs(pack, members, group, 1);
-      case Op::Function: function(pack, members); break;
+      case Op::SinCos:
+        return pairs(pack, members, group, -1);
+      case Op::SinhCosh:
+        return pairs(pack, members, group, 1);
+      case Op::Function:
+        function(pack, members);
+        break;
       case Op::Quotient:
         pack.kind = Pack::Quotient;
         pack.a = heads(members, &Instruction::a), pack.b = heads(members, &Instruction::b, true),
@@ -123,16 +126,26 @@ class Packs {
         pack.kind = Pack::SquareRoot;
         pack.a = heads(members, &Instruction::a, true), pack.y = heads(members, &Instruction::out);
         break;
-      case Op::Linear: case Op::Products: case Op::Square: sum(pack, members); break;
-      case Op::Power: case Op::Derivative: case Op::Select:
-      case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: throw unknown_op(shape.head.op, "a pack");
+      case Op::Linear:
+      case Op::Products:
+      case Op::Square:
+        sum(pack, members);
+        break;
+      case Op::Power:
+      case Op::Derivative:
+      case Op::Select:
+      case Op::One:
+      case Op::Time:
+      case Op::Coordinate:
+      case Op::Companion:
+        throw unknown_op(shape.head.op, "a pack");
     }
     out_.packs.push_back(pack);
   }
 
   /// `filled`: lanes that are not in use repeat the first, since 0/0 would not be a number, and what reads vectors with
   /// holes reads them too.
-  std::uint32_t heads(Members members, Slot Instruction::* operand, bool filled = false) {
+  std::uint32_t heads(Members members, Slot Instruction::*operand, bool filled = false) {
     std::vector<Slot> slots;
     for (const std::size_t i : members) slots.push_back(out_.number[step(i).head.*operand]);
     return block(slots, false, holes_ && filled && slots.size() < lanes);
@@ -210,8 +223,11 @@ class Packs {
     for (ReadColumn& read : found) {
       const auto at = static_cast<std::uint32_t>(out_.columns.size());
       if (at == pack.first_column || key(read.column) != key(out_.columns.back()))
-        out_.runs.push_back({.kind = read.column.kind, .shift = read.column.shift,
-                             .passes_tangent = passes_tangent(read.column, pack.lag), .first = at, .last = at,
+        out_.runs.push_back({.kind = read.column.kind,
+                             .shift = read.column.shift,
+                             .passes_tangent = passes_tangent(read.column, pack.lag),
+                             .first = at,
+                             .last = at,
                              .source = read.column.source,
                              .coefficients = static_cast<std::uint32_t>(out_.coefficients.size()),
                              .neighbours = read.column.kind == Column::Broadcast});
@@ -278,11 +294,22 @@ class Packs {
         for (std::uint32_t i = pack.first_product; i < pack.last_product; ++i)
           convolution(pack, out_.products[i].a, false, out_.products[i].b, false);
         break;
-      case Pack::Integral: convolution(pack, pack.a, false, pack.b, true); break;
-      case Pack::Quotient: convolution(pack, pack.b, false, pack.y, true); break;
-      case Pack::SquareRoot: convolution(pack, pack.y, true, pack.y, true); break;
-      case Pack::Scan: case Pack::ScanDown: case Pack::Strand: case Pack::Join: case Pack::JoinDown:
-      case Pack::Scalar: break;
+      case Pack::Integral:
+        convolution(pack, pack.a, false, pack.b, true);
+        break;
+      case Pack::Quotient:
+        convolution(pack, pack.b, false, pack.y, true);
+        break;
+      case Pack::SquareRoot:
+        convolution(pack, pack.y, true, pack.y, true);
+        break;
+      case Pack::Scan:
+      case Pack::ScanDown:
+      case Pack::Strand:
+      case Pack::Join:
+      case Pack::JoinDown:
+      case Pack::Scalar:
+        break;
     }
     pack.last_convolution = static_cast<std::uint32_t>(out_.convolutions.size());
     pack.way = way_of(pack);
@@ -311,11 +338,13 @@ class Packs {
     c.first_a = out_.blocks[a].first, c.first_b = out_.blocks[b].first;
     c.lacks_newest_a = lacks_newest(a, finds_a), c.lacks_newest_b = lacks_newest(b, finds_b);
     const auto is_copied = [&](std::uint32_t block) {  // by an earlier one of the pack
-      return std::any_of(out_.convolutions.begin() + pack.first_convolution, out_.convolutions.end(),
-                         [&](const Convolution& x) { return (x.a == block && x.copies_a) || (x.b == block && x.copies_b); });
+      return std::any_of(
+          out_.convolutions.begin() + pack.first_convolution, out_.convolutions.end(),
+          [&](const Convolution& x) { return (x.a == block && x.copies_a) || (x.b == block && x.copies_b); });
     };
     c.copies_a = !c.lacks_newest_a && !out_.blocks[a].direct && ahead(a) <= 0 && !is_copied(a);
-    c.copies_b = !c.lacks_newest_b && !out_.blocks[b].direct && ahead(b) <= 0 && !is_copied(b) && !(a == b && c.copies_a);
+    c.copies_b =
+        !c.lacks_newest_b && !out_.blocks[b].direct && ahead(b) <= 0 && !is_copied(b) && !(a == b && c.copies_a);
     out_.convolutions.push_back(c);
   }
 
@@ -348,7 +377,10 @@ class Packs {
                                                                      : 0},
                                                     static_cast<std::uint32_t>(out_.blocks.size()));
     if (!fresh) return place->second;
-    Block result{.first = slots[0], .direct = range, .weighted = weighted, .lag = out_.program.lags[slots[0]],
+    Block result{.first = slots[0],
+                 .direct = range,
+                 .weighted = weighted,
+                 .lag = out_.program.lags[slots[0]],
                  .width = static_cast<std::uint32_t>(slots.size())};
     result.slots.fill(slots[0]);
     std::copy(slots.begin(), slots.end(), result.slots.begin());
@@ -390,7 +422,7 @@ class Packs {
   PackedProgram out_;
   const std::vector<Step>& steps_;
   const std::vector<Group>& groups_;
-  std::vector<std::uint32_t> index_;    // [steps] of their instructions
+  std::vector<std::uint32_t> index_;  // [steps] of their instructions
   std::map<std::pair<std::vector<Slot>, int>, std::uint32_t> blocks_;
   std::map<int, ConstantId> literals_;
   ConstantId zero_ = 0;

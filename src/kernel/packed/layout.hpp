@@ -18,13 +18,13 @@ inline std::size_t padded(std::size_t count) { return (count + lanes - 1) / lane
 /// The coefficients of up to 8 operands at all orders, side by side in a row. A *direct* block is a range of slots; any
 /// other keeps copies in cells of its own behind the slots, renewed when the coefficients of an order are final.
 struct Block {
-  Slot first = 0;                       // of the range, or of the cells of its own
+  Slot first = 0;  // of the range, or of the cells of its own
   bool direct = true;
-  bool weighted = false;                // holds k u_k instead of u_k
+  bool weighted = false;  // holds k u_k instead of u_k
   std::int8_t lag = 0;
   std::uint32_t width = 0;
-  std::array<Slot, lanes> slots{};      // what is copied
-  bool is_range = false;                // … is side by side
+  std::array<Slot, lanes> slots{};  // what is copied
+  bool is_range = false;            // … is side by side
   /// … lies in two vectors of a row: where these begin, and of each lane its place in them, 0 … 15.
   bool in_two_vectors = false;
   std::array<Slot, 2> vectors{};
@@ -35,10 +35,10 @@ struct Block {
 struct Column {
   enum Kind : std::uint8_t { Broadcast, Contiguous, Reversed, Gather } kind = Broadcast;
   std::uint8_t shift = 0;
-  bool passes_tangent = false;          // lag of the operand + shift = lag of the pack
-  Slot source = 0;                      // Broadcast, Contiguous, Reversed: of the first lane
-  std::array<Slot, lanes> sources{};    // Gather
-  std::uint32_t coefficients = 0;       // in PackedProgram::coefficients, `lanes` of them
+  bool passes_tangent = false;        // lag of the operand + shift = lag of the pack
+  Slot source = 0;                    // Broadcast, Contiguous, Reversed: of the first lane
+  std::array<Slot, lanes> sources{};  // Gather
+  std::uint32_t coefficients = 0;     // in PackedProgram::coefficients, `lanes` of them
 };
 
 /// Neighbouring columns of a pack that are read alike; their coefficients lie side by side.
@@ -46,30 +46,30 @@ struct ColumnRun {
   Column::Kind kind = Column::Broadcast;
   std::uint8_t shift = 0;
   bool passes_tangent = false;
-  std::uint32_t first = 0, last = 0;    // columns
-  Slot source = 0;                      // of the first one, as its coefficients
+  std::uint32_t first = 0, last = 0;  // columns
+  Slot source = 0;                    // of the first one, as its coefficients
   std::uint32_t coefficients = 0;
-  bool neighbours = false;              // Broadcast: of slots side by side
+  bool neighbours = false;  // Broadcast: of slots side by side
 };
 
 /// Coefficient of the lane · a · b.
 struct ProductTerm {
-  std::uint32_t a = 0, b = 0;           // blocks
+  std::uint32_t a = 0, b = 0;  // blocks
   std::uint32_t coefficients = 0;
 };
 
 /// Σ_j a_j b_{m−j} of a pack of lag ℓ, which finds m = k + 2 − ℓ at stage k. The engine and rolled code make these sums
 /// for several stages at once (`engine_ahead.hpp`), of all that is final, and leave what is newer to the stages.
 struct Convolution {
-  std::uint32_t a = 0, b = 0;           // blocks
-  std::int8_t lag = 0;                  // ℓ
-  std::int8_t a_ahead = 0, b_ahead = 0; // ℓ − lag of the operand: by so many orders it is known earlier
-  bool goes_ahead = false;              // both are 0 … ℓ; functions of t alone may be known earlier still
+  std::uint32_t a = 0, b = 0;            // blocks
+  std::int8_t lag = 0;                   // ℓ
+  std::int8_t a_ahead = 0, b_ahead = 0;  // ℓ − lag of the operand: by so many orders it is known earlier
+  bool goes_ahead = false;               // both are 0 … ℓ; functions of t alone may be known earlier still
   /// No a_m b_0, or no a_0 b_m: a stage finds that operand itself, or it is of coordinates, which count as 0.
   bool lacks_newest_a = false, lacks_newest_b = false;
   bool copies_a = false, copies_b = false;  // a stage has to copy the newest first, as it is not final
-  Slot first_a = 0, first_b = 0;        // cells of the operands
-  std::uint32_t number = 0;             // of all
+  Slot first_a = 0, first_b = 0;            // cells of the operands
+  std::uint32_t number = 0;                 // of all
 };
 
 /// Up to eight results side by side.
@@ -107,41 +107,41 @@ struct Pack {
     Products,                 // where sums are made ahead: products by these
     IntegralBySum,
   };
-  std::uint8_t way = Scalar;            // Kind or Way
+  std::uint8_t way = Scalar;  // Kind or Way
   std::int8_t lag = 0;
   std::int8_t level = 0;
-  std::uint32_t width = 0;              // lanes in use
-  Slot out = 0;                         // first of `lanes` slots, beginning at a multiple of it (not for Scalar)
+  std::uint32_t width = 0;  // lanes in use
+  Slot out = 0;             // first of `lanes` slots, beginning at a multiple of it (not for Scalar)
   std::uint32_t first_column = 0, last_column = 0, first_product = 0, last_product = 0;  // Sum
-  std::uint32_t first_run = 0, last_run = 0;  // Sum and Scan: the columns, run by run
-  std::uint32_t first_later_run = 0;    // from stage 1 on: without what the number 1 gives
+  std::uint32_t first_run = 0, last_run = 0;                  // Sum and Scan: the columns, run by run
+  std::uint32_t first_later_run = 0;                          // from stage 1 on: without what the number 1 gives
   std::uint32_t first_convolution = 0, last_convolution = 0;  // of a Sum one a product
   /// Sum: the same columns by their place in the sums, for compiled code
   std::uint32_t first_aligned = 0, last_aligned = 0;
   /// Integral: u (weighted), w; Quotient: a, b, y; SquareRoot: u, –, y
   std::uint32_t a = no_block, b = no_block, y = no_block;
-  std::uint32_t coefficients = 0;       // Integral: c
-  Slot carry = no_slot;                 // Scan: what the first lane adds to; Strand, Join: see there; no_slot: nothing
-  std::uint32_t strands = 0;            // Join: their number; `out` is the lowest of their vectors
-  Slot last_strand = no_slot;           // Join: vector of the last one
-  Slot pairs = no_block;                // Integral of sines: the first of their cosines
-  std::uint32_t instruction = 0;        // of the first lane; those of the others follow
+  std::uint32_t coefficients = 0;  // Integral: c
+  Slot carry = no_slot;            // Scan: what the first lane adds to; Strand, Join: see there; no_slot: nothing
+  std::uint32_t strands = 0;       // Join: their number; `out` is the lowest of their vectors
+  Slot last_strand = no_slot;      // Join: vector of the last one
+  Slot pairs = no_block;           // Integral of sines: the first of their cosines
+  std::uint32_t instruction = 0;   // of the first lane; those of the others follow
   std::uint32_t first_function = 0, last_function = 0;  // Integral: what gives order 0, in PackedProgram::functions
 };
 
 struct PackedProgram {
-  Program program;                      // renumbered, with slots between packs that nothing uses
+  Program program;  // renumbered, with slots between packs that nothing uses
   /// [slots of the program as it was] where they went; no_slot: written out in the sums that read them
   std::vector<Slot> number;
-  std::size_t cells = 0;                // slots and cells of blocks: doubles of a row
-  std::vector<Pack> packs;              // section Dynamics, in order of execution
+  std::size_t cells = 0;    // slots and cells of blocks: doubles of a row
+  std::vector<Pack> packs;  // section Dynamics, in order of execution
   std::vector<Block> blocks;
   std::vector<Column> columns;
   std::vector<ColumnRun> runs;
   std::vector<ProductTerm> products;
   std::vector<Convolution> convolutions;
-  std::vector<std::uint32_t> functions; // indices of instructions
-  std::vector<ConstantId> coefficients; // of lanes that are not in use: the constant 0
+  std::vector<std::uint32_t> functions;  // indices of instructions
+  std::vector<ConstantId> coefficients;  // of lanes that are not in use: the constant 0
 
   /// Weighted, and not side by side where they stand: what a solution gives for them may be put into the block's cells
   /// at once.

@@ -22,7 +22,8 @@ class SlotNumbers {
     };
     for (int l = 0; l <= 2; ++l) {
       next = padded(next);
-      for (const Group& group : groups_) if (is_corrected(group, l)) number(group, next);
+      for (const Group& group : groups_)
+        if (is_corrected(group, l)) number(group, next);
       out_.stored_end[static_cast<std::size_t>(l)] = static_cast<Slot>(next);
     }
     for (const Group& group : groups_) number(group, next);
@@ -54,7 +55,7 @@ class SlotNumbers {
   void number(const Group& group, std::size_t& next) {
     if (out_.number[step(group.steps[0]).head.out] != no_slot) return;
     if (group.packs) next = padded(next) + group.front;
-    const auto outs = [&](Slot Instruction::* result) {
+    const auto outs = [&](Slot Instruction::*result) {
       for (const std::size_t i : group.steps)
         if (const Slot slot = steps_[i].head.*result; slot != no_slot) out_.number[slot] = static_cast<Slot>(next++);
     };
@@ -106,8 +107,10 @@ class Renumbering {
     };
     for (const Group& group : groups_) {
       std::vector<std::size_t> in_order = group.steps;
-      if (group.in_strands) std::sort(in_order.begin(), in_order.end());
-      else if (group.down) std::reverse(in_order.begin(), in_order.end());
+      if (group.in_strands)
+        std::sort(in_order.begin(), in_order.end());
+      else if (group.down)
+        std::reverse(in_order.begin(), in_order.end());
       for (const std::size_t i : in_order) {
         const auto index = static_cast<std::uint32_t>(program_.instructions.size());
         index_[i] = index;

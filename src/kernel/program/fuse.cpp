@@ -34,8 +34,10 @@ class Fusion {
       if (!is_sum(node)) continue;
       merged_.clear();
       for (const Term& term : node.terms) {
-        if (term.b == no_node) add_linear(term, true);
-        else merged_.push_back(term);
+        if (term.b == no_node)
+          add_linear(term, true);
+        else
+          merged_.push_back(term);
       }
       std::stable_partition(merged_.begin(), merged_.end(), [](const Term& term) { return term.b == no_node; });
       const bool has_products = !merged_.empty() && merged_.back().b != no_node;

@@ -190,9 +190,7 @@ NodeIndex Graph::function(Kind f, NodeIndex a, NodeIndex b, std::vector<Term> di
   return intern({.op = Op::Function, .function = f, .a = a, .b = b, .terms = std::move(differential)});
 }
 
-NodeIndex Graph::select(std::vector<Term> choices) {
-  return intern({.op = Op::Select, .terms = std::move(choices)});
-}
+NodeIndex Graph::select(std::vector<Term> choices) { return intern({.op = Op::Select, .terms = std::move(choices)}); }
 
 NodeIndex Graph::node_of(Scaled value) {
   if (value.is_constant()) value.node = leaf(Op::One);

@@ -25,10 +25,10 @@ struct Scaled {
 struct Node {
   Op op = Op::One;
   Kind function = Kind::Exp;
-  ConstantId constant = 0;      // exponent; Coordinate: its index
+  ConstantId constant = 0;  // exponent; Coordinate: its index
   NodeIndex a = no_node, b = no_node;
-  std::vector<Term> terms{};    // slots are node indices here
-  int level = 0;                // number of d/dt above the leaves; only orders the factors of products
+  std::vector<Term> terms{};  // slots are node indices here
+  int level = 0;              // number of d/dt above the leaves; only orders the factors of products
 };
 
 struct KeyHash {

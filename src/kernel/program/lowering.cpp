@@ -43,15 +43,25 @@ Scaled Lowering::lower_node(Expr e) {
   for (std::size_t i = 0; i < e.size(); ++i) all_constant &= of(e[i]).is_constant();
   if (all_constant) return constant_function(e);
   switch (family_of(e.kind())) {
-    case Family::Algebra: return e.is(Kind::Sum) ? sum(e) : e.is(Kind::Product) ? product(e) : power(e);
-    case Family::TimeDerivative: return time_derivative(of(e[0]));
-    case Family::Function: return function(e.kind(), of(e[0]));
-    case Family::Angle: return atan2(of(e[0]), of(e[1]));
-    case Family::Switch: return with_switch(e);
-    case Family::Extremum: return extremum(e);
-    case Family::Comparison: return condition(e);
-    case Family::Piecewise: return piecewise(e);
-    case Family::Leaf: case Family::Logic: break;   // Pi and conditions of conditions are constants
+    case Family::Algebra:
+      return e.is(Kind::Sum) ? sum(e) : e.is(Kind::Product) ? product(e) : power(e);
+    case Family::TimeDerivative:
+      return time_derivative(of(e[0]));
+    case Family::Function:
+      return function(e.kind(), of(e[0]));
+    case Family::Angle:
+      return atan2(of(e[0]), of(e[1]));
+    case Family::Switch:
+      return with_switch(e);
+    case Family::Extremum:
+      return extremum(e);
+    case Family::Comparison:
+      return condition(e);
+    case Family::Piecewise:
+      return piecewise(e);
+    case Family::Leaf:
+    case Family::Logic:
+      break;  // Pi and conditions of conditions are constants
   }
   throw unknown_kind(e.kind(), "the kernel");
 }
@@ -215,11 +225,11 @@ Scaled Lowering::lower_rule(Expr rule, Expr x, NodeIndex u, Expr f, NodeIndex y)
 Scaled Lowering::atan2(Scaled y, Scaled x) {
   const ConstantId one = graph.constants.literal(1), minus_one = graph.constants.literal(-1);
   const NodeIndex up = graph.node_of(y), right = graph.node_of(x);
-  const NodeIndex square = graph.node_of(
-      graph.linear({{one, graph.unary(Op::Square, up)}, {one, graph.unary(Op::Square, right)}}));
-  return graph.scaled(graph.function(Kind::Atan2, up, right,
-                                     {{one, graph.quotient(right, square), up},
-                                      {minus_one, graph.quotient(up, square), right}}));
+  const NodeIndex square =
+      graph.node_of(graph.linear({{one, graph.unary(Op::Square, up)}, {one, graph.unary(Op::Square, right)}}));
+  return graph.scaled(
+      graph.function(Kind::Atan2, up, right,
+                     {{one, graph.quotient(right, square), up}, {minus_one, graph.quotient(up, square), right}}));
 }
 
 }  // namespace maupertuis::lowering

@@ -18,8 +18,8 @@ ConstantId Lowering::side(Scaled function, SwitchFunction meaning) {
   ConstantPool& pool = graph.constants;
   // The factor is left out of the switch function, so that x, −x and 2x switch as one.
   const Rational* factor = pool.literal_or_null(function.coefficient);
-  const ConstantId sign = factor ? pool.literal(factor->sign())
-                                 : pool.apply(Kind::Sign, std::array{function.coefficient});
+  const ConstantId sign =
+      factor ? pool.literal(factor->sign()) : pool.apply(Kind::Sign, std::array{function.coefficient});
   if (function.is_constant()) return sign;
   const auto [place, fresh] = switch_of_node_.try_emplace(function.node, static_cast<std::uint32_t>(switches.size()));
   if (fresh) {

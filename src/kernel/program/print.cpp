@@ -8,21 +8,36 @@ namespace maupertuis {
 
 std::string_view op_name(Op op) {
   switch (op) {
-    case Op::One: return "one";
-    case Op::Time: return "time";
-    case Op::Coordinate: return "coordinate";
-    case Op::Companion: return "companion";
-    case Op::Linear: return "linear";
-    case Op::Products: return "products";
-    case Op::Square: return "square";
-    case Op::Quotient: return "quotient";
-    case Op::SquareRoot: return "sqrt";
-    case Op::Power: return "power";
-    case Op::SinCos: return "sincos";
-    case Op::SinhCosh: return "sinhcosh";
-    case Op::Function: return "function";
-    case Op::Derivative: return "d/dt";
-    case Op::Select: return "select";
+    case Op::One:
+      return "one";
+    case Op::Time:
+      return "time";
+    case Op::Coordinate:
+      return "coordinate";
+    case Op::Companion:
+      return "companion";
+    case Op::Linear:
+      return "linear";
+    case Op::Products:
+      return "products";
+    case Op::Square:
+      return "square";
+    case Op::Quotient:
+      return "quotient";
+    case Op::SquareRoot:
+      return "sqrt";
+    case Op::Power:
+      return "power";
+    case Op::SinCos:
+      return "sincos";
+    case Op::SinhCosh:
+      return "sinhcosh";
+    case Op::Function:
+      return "function";
+    case Op::Derivative:
+      return "d/dt";
+    case Op::Select:
+      return "select";
   }
   return "unknown";
 }
@@ -46,9 +61,9 @@ class Printer {
   explicit Printer(const Program& program) : program_(program) {}
 
   std::string run() {
-    out_ += fmt::format("program: {} freedoms, {} parameters, {} slots, {} constants, {} instructions\n",
-                        program_.freedoms, program_.parameters, program_.slots, program_.constants.size(),
-                        program_.instructions.size());
+    out_ +=
+        fmt::format("program: {} freedoms, {} parameters, {} slots, {} constants, {} instructions\n", program_.freedoms,
+                    program_.parameters, program_.slots, program_.constants.size(), program_.instructions.size());
     out_ += "\nconstants\n";
     for (ConstantId id = 0; id < program_.constants.size(); ++id) constant_line(id);
     out_ += "\nslots\n";
@@ -76,8 +91,10 @@ class Printer {
   void constant_line(ConstantId id) {
     const Constant& constant = program_.constants[id];
     std::string text;
-    if (constant.kind == Kind::Number) text = fmt::format("{}", constant.value);
-    else if (constant.kind == Kind::Symbol) text = program_.parameter_names[constant.index];
+    if (constant.kind == Kind::Number)
+      text = fmt::format("{}", constant.value);
+    else if (constant.kind == Kind::Symbol)
+      text = program_.parameter_names[constant.index];
     else if (constant.kind == Kind::Sign && constant.arguments == 0)
       text = fmt::format("side of switch {}", constant.index);
     else {

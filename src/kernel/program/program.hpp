@@ -26,22 +26,22 @@ inline constexpr Slot no_slot = ~Slot{0};
 
 enum class Op : std::uint8_t {
   // leaves: set by the workspace
-  One,           // 1, 0, 0, …
-  Time,          // t, 1, 0, …
+  One,   // 1, 0, 0, …
+  Time,  // t, 1, 0, …
   Coordinate,
-  Companion,     // the second result of SinCos, SinhCosh
+  Companion,  // the second result of SinCos, SinhCosh
   // instructions
-  Linear,        // Σ c dʳa/dtʳ
-  Products,      // Σ c dʳa/dtʳ + Σ c a b
-  Square,        // a²
-  Quotient,      // a / b
-  SquareRoot,    // √a
-  Power,         // a^c
-  SinCos,        // sin a, cos a
-  SinhCosh,      // sinh a, cosh a
-  Function,      // y = f(a…), dy = Σ c w du: every other elementary function, its differential given by slots
-  Derivative,    // d/dt a
-  Select,        // the first operand whose condition (a constant) holds
+  Linear,      // Σ c dʳa/dtʳ
+  Products,    // Σ c dʳa/dtʳ + Σ c a b
+  Square,      // a²
+  Quotient,    // a / b
+  SquareRoot,  // √a
+  Power,       // a^c
+  SinCos,      // sin a, cos a
+  SinhCosh,    // sinh a, cosh a
+  Function,    // y = f(a…), dy = Σ c w du: every other elementary function, its differential given by slots
+  Derivative,  // d/dt a
+  Select,      // the first operand whose condition (a constant) holds
 };
 
 /// c · dʳa/dtʳ with r = shift, c · a · b, or of a Function's differential c · w du (a = w, b = u), or of a Select (c:
@@ -56,12 +56,12 @@ struct Term {
 
 struct Instruction {
   Op op;
-  Kind function = Kind::Exp;   // Op::Function: which
+  Kind function = Kind::Exp;  // Op::Function: which
   std::int8_t lag = 0;
   Slot out = no_slot;
-  Slot second = no_slot;       // SinCos, SinhCosh: where the second result goes
+  Slot second = no_slot;  // SinCos, SinhCosh: where the second result goes
   Slot a = no_slot, b = no_slot;
-  ConstantId constant = 0;     // Op::Power: the exponent
+  ConstantId constant = 0;                                         // Op::Power: the exponent
   std::uint32_t first_term = 0, first_product = 0, last_term = 0;  // linear terms, then products, in Program::terms
 };
 
@@ -69,8 +69,8 @@ struct Instruction {
 /// arguments is the side of the switch function `index`.
 struct Constant {
   Kind kind = Kind::Number;
-  double value = 0;                          // Number
-  std::uint32_t index = 0;                   // Number: literal; Symbol: parameter; Sign without arguments: switch
+  double value = 0;         // Number
+  std::uint32_t index = 0;  // Number: literal; Symbol: parameter; Sign without arguments: switch
   std::uint32_t first_argument = 0, arguments = 0;  // in Program::constant_arguments
 };
 
@@ -104,16 +104,16 @@ struct Program {
   std::vector<std::int8_t> lags;          // [slots]; below 0 only where q has no influence
   std::vector<std::int8_t> tangent_lags;  // [slots]; `unmoved` where q has no influence
   static constexpr std::int8_t unmoved = -128;
-  Slot one = no_slot, time = no_slot;     // no_slot: not used
-  int first_stage = -2;                   // −2, or less when functions of t alone are differentiated
+  Slot one = no_slot, time = no_slot;  // no_slot: not used
+  int first_stage = -2;                // −2, or less when functions of t alone are differentiated
 
   /// Unknowns of each stage: the accelerations, then the multipliers. A multiplier is the second derivative of a
   /// coordinate of its own that stands nowhere else, so that it is found, corrected and differentiated like a q̈.
   std::size_t freedoms = 0, unknowns = 0, parameters = 0;
-  std::vector<Slot> residual;             // [unknowns] R, then −A q̈ + b of the constraints
-  std::vector<Slot> constraint_values;    // [m]; no_slot: level 1
-  std::vector<Slot> constraint_rates;     // [m]
-  std::vector<Slot> switch_slots;         // [switches]
+  std::vector<Slot> residual;           // [unknowns] R, then −A q̈ + b of the constraints
+  std::vector<Slot> constraint_values;  // [m]; no_slot: level 1
+  std::vector<Slot> constraint_rates;   // [m]
+  std::vector<Slot> switch_slots;       // [switches]
   std::vector<Slot> events, observables, integrands;
 
   Winding winding;

@@ -58,14 +58,16 @@ class Collection {
       return expand({value.coefficient, node.a}, shift + 1, parts);
     if (node.op != Op::Linear) {
       const auto same = part(parts, value.node, shift);
-      if (same != parts.end()) same->coefficient = graph_.constants.add(same->coefficient, value.coefficient);
-      else if (node.op != Op::One || shift == 0) parts.push_back({value.coefficient, value.node, no_node, shift});
+      if (same != parts.end())
+        same->coefficient = graph_.constants.add(same->coefficient, value.coefficient);
+      else if (node.op != Op::One || shift == 0)
+        parts.push_back({value.coefficient, value.node, no_node, shift});
       return parts.size() <= most_parts;
     }
     const std::vector<Term> terms = node.terms;
     return terms.size() <= most_parts && std::all_of(terms.begin(), terms.end(), [&](const Term& t) {
-      return expand({graph_.constants.multiply(value.coefficient, t.coefficient), t.a}, shift, parts);
-    });
+             return expand({graph_.constants.multiply(value.coefficient, t.coefficient), t.a}, shift, parts);
+           });
   }
 
   bool join(const Product& cosine, const Product& sine, std::vector<Term>& added) {

@@ -128,7 +128,9 @@ class Scheduler {
   /// Later orders, later sections or higher lags read these: their coefficients must be right after the solve.
   void find_stored() {
     stored_.assign(graph_.nodes.size(), false);
-    const auto store = [&](NodeIndex node) { if (node != no_node) stored_[node] = true; };
+    const auto store = [&](NodeIndex node) {
+      if (node != no_node) stored_[node] = true;
+    };
     for (std::size_t i = 0; i < graph_.nodes.size(); ++i) {
       const Node& node = graph_.nodes[i];
       if (section_[i] == dead) continue;
@@ -161,7 +163,9 @@ class Scheduler {
     Slot next = 0;
     for (NodeIndex i = 0; i < graph_.nodes.size(); ++i)
       if (graph_.nodes[i].op == Op::Coordinate) slot_[i] = next++;
-    const auto place = [&](NodeIndex i) { if (slot_[i] == no_slot) slot_[i] = next++; };
+    const auto place = [&](NodeIndex i) {
+      if (slot_[i] == no_slot) slot_[i] = next++;
+    };
     const auto is_corrected = [&](NodeIndex i, int lag) {
       return stored_[i] && section_[i] == Dynamics && moved_[i] && lag_[i] == lag;
     };
@@ -171,7 +175,9 @@ class Scheduler {
     };
     for (int lag = 0; lag <= 2; ++lag) {
       for (const NodeIndex i : order_)
-        with_companion(i, [&](NodeIndex node) { if (is_corrected(node, lag)) place(node); });
+        with_companion(i, [&](NodeIndex node) {
+          if (is_corrected(node, lag)) place(node);
+        });
       program_.stored_end[static_cast<std::size_t>(lag)] = next;
     }
     for (const NodeIndex i : order_) with_companion(i, place);
@@ -195,8 +201,12 @@ class Scheduler {
 
   Instruction instruction(NodeIndex index) {
     const Node& node = graph_.nodes[index];
-    Instruction result{.op = node.op, .function = node.function, .lag = static_cast<std::int8_t>(lag_[index]),
-                       .out = slot_[index], .a = slot_or_none(node.a), .b = slot_or_none(node.b),
+    Instruction result{.op = node.op,
+                       .function = node.function,
+                       .lag = static_cast<std::int8_t>(lag_[index]),
+                       .out = slot_[index],
+                       .a = slot_or_none(node.a),
+                       .b = slot_or_none(node.b),
                        .constant = node.constant};
     if (node.op == Op::SinCos || node.op == Op::SinhCosh) result.second = slot_[companion(index)];
     result.first_term = result.first_product = static_cast<std::uint32_t>(program_.terms.size());

@@ -36,8 +36,12 @@ class Windings {
  private:
   void pass(const Instruction& i) {
     switch (i.op) {
-      case Op::SinCos: case Op::Derivative: return;
-      case Op::Linear: case Op::Products: return sum(i);
+      case Op::SinCos:
+      case Op::Derivative:
+        return;
+      case Op::Linear:
+      case Op::Products:
+        return sum(i);
       case Op::One:
       case Op::Time:
       case Op::Coordinate:
@@ -45,7 +49,11 @@ class Windings {
       case Op::Square:
       case Op::Quotient:
       case Op::SquareRoot:
-      case Op::Power: case Op::SinhCosh: case Op::Function: case Op::Select: break;
+      case Op::Power:
+      case Op::SinhCosh:
+      case Op::Function:
+      case Op::Select:
+        break;
     }
     for (const Slot operand : {i.a, i.b})
       if (operand != no_slot) refuse(operand);
@@ -67,8 +75,10 @@ class Windings {
     for (const TurnGain& gain : gains_[term.a]) {
       const auto same =
           std::find_if(to.begin(), to.end(), [&](const TurnGain& g) { return g.coordinate == gain.coordinate; });
-      if (same == to.end()) to.push_back({gain.coordinate, *factor * gain.turns});
-      else same->turns += *factor * gain.turns;
+      if (same == to.end())
+        to.push_back({gain.coordinate, *factor * gain.turns});
+      else
+        same->turns += *factor * gain.turns;
     }
     if (std::any_of(to.begin(), to.end(), [](const TurnGain& g) { return std::abs(g.turns) > most_turns; }))
       refuse(term.a);

@@ -9,7 +9,9 @@ namespace maupertuis::reference {
 namespace on_constants {
 
 template <class T>
-T sign(const T& x) { return T((x > 0) - (x < 0)); }
+T sign(const T& x) {
+  return T((x > 0) - (x < 0));
+}
 
 template <class T>
 T power(const T& base, const T& exponent) {
@@ -42,13 +44,15 @@ T product(std::span<const T> operands) {
 
 template <class T>
 bool all(std::span<const T> operands) {
-  for (const T& x : operands) if (x == 0) return false;
+  for (const T& x : operands)
+    if (x == 0) return false;
   return true;
 }
 
 template <class T>
 bool any(std::span<const T> operands) {
-  for (const T& x : operands) if (x != 0) return true;
+  for (const T& x : operands)
+    if (x != 0) return true;
   return false;
 }
 
@@ -79,7 +83,7 @@ T constant_operation(Kind kind, std::span<const T> operands) {
   if (kind == Kind::And) return T(all(operands));
   if (kind == Kind::Or) return T(any(operands));
   if (kind == Kind::Piecewise) return piecewise(operands);
-  return elementary(kind, operands[0], operands.size() > 1 ? operands[1] : T(0));   // throws on others
+  return elementary(kind, operands[0], operands.size() > 1 ? operands[1] : T(0));  // throws on others
 }
 
 }  // namespace maupertuis::reference

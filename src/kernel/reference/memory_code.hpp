@@ -13,16 +13,22 @@ inline std::size_t padded(std::size_t slots) {
 
 template <class T>
 MemoryOf<T>::MemoryOf(const Program& p, int orders, std::size_t cells)
-    : program(p), stride(padded(cells)), constants(p.constants.size()), coefficients(p.terms.size()),
-      linear(p.terms.size()), rows(static_cast<std::size_t>(orders) * stride, T(0)) {
+    : program(p),
+      stride(padded(cells)),
+      constants(p.constants.size()),
+      coefficients(p.terms.size()),
+      linear(p.terms.size()),
+      rows(static_cast<std::size_t>(orders) * stride, T(0)) {
   for (int k = 0; k < orders; ++k)
     shift_factors.insert(shift_factors.end(), {T(1), T(k + 1.0), T((k + 1.0) * (k + 2.0))});
 }
 
 template <class T>
 T literal(const Program& program, const Constant& constant) {
-  if constexpr (std::is_same_v<T, double>) return constant.value;
-  else return Exactly<T>::from(program.literals[constant.index]);
+  if constexpr (std::is_same_v<T, double>)
+    return constant.value;
+  else
+    return Exactly<T>::from(program.literals[constant.index]);
 }
 
 template <class T>
@@ -44,9 +50,18 @@ void compute_constants(MemoryOf<T>& memory, std::span<const std::type_identity_t
   for (std::size_t i = 0; i < program.constants.size(); ++i) {
     const Constant& constant = program.constants[i];
     T& value = memory.constants[i];
-    if (constant.kind == Kind::Number) { value = literal<T>(program, constant); continue; }
-    if (constant.kind == Kind::Symbol) { value = parameters[constant.index]; continue; }
-    if (constant.kind == Kind::Sign && constant.arguments == 0) { value = T(sides[constant.index]); continue; }
+    if (constant.kind == Kind::Number) {
+      value = literal<T>(program, constant);
+      continue;
+    }
+    if (constant.kind == Kind::Symbol) {
+      value = parameters[constant.index];
+      continue;
+    }
+    if (constant.kind == Kind::Sign && constant.arguments == 0) {
+      value = T(sides[constant.index]);
+      continue;
+    }
     operands.clear();
     for (std::uint32_t k = 0; k < constant.arguments; ++k)
       operands.push_back(memory.constants[program.constant_arguments[constant.first_argument + k]]);

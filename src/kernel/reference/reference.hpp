@@ -1,6 +1,6 @@
 #pragma once
-#include "kernel/series/rules.hpp"
 #include "kernel/program/program.hpp"
+#include "kernel/series/rules.hpp"
 #include "kernel/sparse/tangent_graph.hpp"
 
 #include <boost/align/aligned_allocator.hpp>
@@ -37,11 +37,11 @@ struct MemoryOf {
 
   const Program& program;
   std::size_t stride;
-  std::vector<T> constants;          // [constants]
-  std::vector<T> coefficients;       // [terms], from the constants
+  std::vector<T> constants;             // [constants]
+  std::vector<T> coefficients;          // [terms], from the constants
   std::vector<LinearTermOf<T>> linear;  // [terms], the same made ready
-  std::vector<T> shift_factors;      // [orders × 3]: 1, k + 1, (k + 1)(k + 2)
-  Aligned<T> rows;                   // [orders × stride]: coefficient k of slot s at [k · stride + s]
+  std::vector<T> shift_factors;         // [orders × 3]: 1, k + 1, (k + 1)(k + 2)
+  Aligned<T> rows;                      // [orders × stride]: coefficient k of slot s at [k · stride + s]
 };
 
 using Memory = MemoryOf<double>;

@@ -11,25 +11,44 @@ template <class T>
 class RunAtOrder {
  public:
   RunAtOrder(MemoryOf<T>& memory, int order)
-      : memory_(memory), k_(order), row_(memory.row(order)), instructions_(memory.program.instructions.data()),
-        terms_(memory.program.terms.data()), linear_(memory.linear.data()),
-        factors_(memory.shift_factors.data() + 3 * order), pairing_(order, memory.stride) {}
+      : memory_(memory),
+        k_(order),
+        row_(memory.row(order)),
+        instructions_(memory.program.instructions.data()),
+        terms_(memory.program.terms.data()),
+        linear_(memory.linear.data()),
+        factors_(memory.shift_factors.data() + 3 * order),
+        pairing_(order, memory.stride) {}
 
   void operator()(const Run& run) {
     switch (run.op) {
-      case Op::Linear: return each(run, [this](const Instruction& i) { row_[i.out] = linear_part(i); });
-      case Op::Products: return each(run, [this](const Instruction& i) { row_[i.out] = linear_part(i) + products(i); });
+      case Op::Linear:
+        return each(run, [this](const Instruction& i) { row_[i.out] = linear_part(i); });
+      case Op::Products:
+        return each(run, [this](const Instruction& i) { row_[i.out] = linear_part(i) + products(i); });
       case Op::Square:
         return each(run, [this](const Instruction& i) { row_[i.out] = series::square(column(i.a), k_); });
-      case Op::Quotient: return each(run, [this](const Instruction& i) { quotient(i); });
-      case Op::SquareRoot: return each(run, [this](const Instruction& i) { square_root(i); });
-      case Op::Power: return each(run, [this](const Instruction& i) { power(i); });
-      case Op::SinCos: return each(run, [this](const Instruction& i) { sincos(i); });
-      case Op::SinhCosh: return each(run, [this](const Instruction& i) { sinhcosh(i); });
-      case Op::Function: return each(run, [this](const Instruction& i) { function(i); });
-      case Op::Derivative: return each(run, [this](const Instruction& i) { derivative(i); });
-      case Op::Select: return each(run, [this](const Instruction& i) { select(i); });
-      case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: return;
+      case Op::Quotient:
+        return each(run, [this](const Instruction& i) { quotient(i); });
+      case Op::SquareRoot:
+        return each(run, [this](const Instruction& i) { square_root(i); });
+      case Op::Power:
+        return each(run, [this](const Instruction& i) { power(i); });
+      case Op::SinCos:
+        return each(run, [this](const Instruction& i) { sincos(i); });
+      case Op::SinhCosh:
+        return each(run, [this](const Instruction& i) { sinhcosh(i); });
+      case Op::Function:
+        return each(run, [this](const Instruction& i) { function(i); });
+      case Op::Derivative:
+        return each(run, [this](const Instruction& i) { derivative(i); });
+      case Op::Select:
+        return each(run, [this](const Instruction& i) { select(i); });
+      case Op::One:
+      case Op::Time:
+      case Op::Coordinate:
+      case Op::Companion:
+        return;
     }
     throw unknown_op(run.op, "the interpreter");
   }

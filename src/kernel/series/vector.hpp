@@ -85,16 +85,16 @@ struct Vec {
   }
 };
 
-#define MAUP_VECTOR_OPERATOR(op)                                        \
-  template <int W>                                                      \
-  inline Vec<W> operator op(Vec<W> a, const Vec<W>& b) {                \
+#define MAUP_VECTOR_OPERATOR(op)                                                \
+  template <int W>                                                              \
+  inline Vec<W> operator op(Vec<W> a, const Vec<W>& b) {                        \
     for (int i = 0; i < Vec<W>::parts; ++i) a.part[i] = a.part[i] op b.part[i]; \
-    return a;                                                           \
-  }                                                                     \
-  template <int W>                                                      \
-  inline Vec<W> operator op(Vec<W> a, double b) {                       \
-    for (int i = 0; i < Vec<W>::parts; ++i) a.part[i] = a.part[i] op b; \
-    return a;                                                           \
+    return a;                                                                   \
+  }                                                                             \
+  template <int W>                                                              \
+  inline Vec<W> operator op(Vec<W> a, double b) {                               \
+    for (int i = 0; i < Vec<W>::parts; ++i) a.part[i] = a.part[i] op b;         \
+    return a;                                                                   \
   }
 MAUP_VECTOR_OPERATOR(+)
 MAUP_VECTOR_OPERATOR(-)

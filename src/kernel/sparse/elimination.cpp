@@ -259,7 +259,10 @@ class Elimination {
     Values inverse{};
     for (const Cell& c : cells) {
       std::erase(columns_[c.column], row);
-      if (c.column != column) { pivot.columns.push_back(c.column); continue; }
+      if (c.column != column) {
+        pivot.columns.push_back(c.column);
+        continue;
+      }
       for (std::size_t s = 0; s < most_states; ++s) inverse[s] = 1 / c.values[s];
       pivot.size = size(c.values) / (row_scale_[row] * column_scale_[column]);
     }
@@ -275,7 +278,10 @@ class Elimination {
     std::erase(members_[group_of_row_[row]], row);
     if (own_column_[row] == column) return;
     for (std::uint32_t& other : own_column_)
-      if (other == column) { other = own_column_[row]; break; }
+      if (other == column) {
+        other = own_column_[row];
+        break;
+      }
     own_column_[row] = column;
   }
 
@@ -291,7 +297,7 @@ class Elimination {
   }
 
   EliminationOptions options_;
-  std::vector<std::uint32_t> own_column_;            // [rows]
+  std::vector<std::uint32_t> own_column_;  // [rows]
   std::vector<std::vector<Cell>> rows_;
   std::vector<std::vector<std::uint32_t>> columns_;  // the rows that have an entry there
   std::vector<double> row_scale_, column_scale_;
@@ -302,7 +308,7 @@ class Elimination {
   std::array<bool, most_states> in_use_;             // states by which pivots are judged
   std::vector<std::uint32_t> open_;                  // groups
   std::uint32_t round_ = 0, next_round_ = 0;
-  std::uint32_t part_ = 0;                           // that is being eliminated; see Pivot
+  std::uint32_t part_ = 0;  // that is being eliminated; see Pivot
   bool between_parts_ = false;
   std::vector<Pivot> pivots_;
 };

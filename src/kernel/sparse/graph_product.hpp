@@ -27,24 +27,24 @@ class GraphProduct {
 
  private:
   struct Row {
-    std::uint32_t column;         // whose unknown it gives; none: b
-    std::uint32_t residual;       // index in b
-    std::uint32_t first, last;    // in row_entries_
+    std::uint32_t column;       // whose unknown it gives; none: b
+    std::uint32_t residual;     // index in b
+    std::uint32_t first, last;  // in row_entries_
   };
   struct RowEntry {
     std::uint32_t entry, column;
   };
   struct WithError {
-    double value, error;          // and a bound of its rounding error
+    double value, error;  // and a bound of its rounding error
   };
 
   std::size_t unknowns_;
   std::vector<BlockRow> block_rows_;
   std::vector<BlockTerm> terms_;
-  std::vector<double> block_;     // [columns + unknowns][8]
+  std::vector<double> block_;  // [columns + unknowns][8]
   std::vector<Row> rows_;
   std::vector<RowEntry> row_entries_;
-  std::vector<WithError> z_;      // [columns]
+  std::vector<WithError> z_;  // [columns]
 };
 
 }  // namespace maupertuis::sparse

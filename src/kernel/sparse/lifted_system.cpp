@@ -74,7 +74,10 @@ class Lift {
       if (!is_free && !is_coordinate(slot)) system_.minus_one.push_back(entry(row_[slot], column_[slot]));
     }
     for (const Slot slot : program_.residual) {
-      if (column_[slot] == none) { system_.row_of_residual.push_back(row_[slot]); continue; }
+      if (column_[slot] == none) {
+        system_.row_of_residual.push_back(row_[slot]);
+        continue;
+      }
       system_.row_of_residual.push_back(rows_);
       system_.plus_one.push_back(entry(rows_++, column_[slot]));
     }
@@ -119,7 +122,7 @@ class Lift {
   }
 
   const Program& program_;
-  const std::vector<bool>& stored_;          // [slots]
+  const std::vector<bool>& stored_;  // [slots]
   std::vector<Edge> edges_;
   std::vector<std::uint32_t> row_, column_;  // [slots]
   std::vector<bool> moves_, needed_;         // [slots]

@@ -52,16 +52,16 @@ class Assembly {
   struct Multiple {
     Slot slot;
     std::uint32_t entry;
-    double factor, base;                   // base: of the first for its entry: what it is added to
+    double factor, base;  // base: of the first for its entry: what it is added to
   };
 
   const Program& program_;
   std::vector<Edge> constant_, others_;
   std::vector<std::uint32_t> entry_of_constant_, entry_of_other_;
-  std::vector<Multiple> first_, more_;     // factor · value of a slot: of each entry the first, and others
+  std::vector<Multiple> first_, more_;  // factor · value of a slot: of each entry the first, and others
   std::vector<Edge> edges_of_first_, edges_of_more_;
-  std::vector<double> minus_and_plus_;     // [entries]
-  std::vector<double> base_;               // [entries] what does not change along a motion
+  std::vector<double> minus_and_plus_;          // [entries]
+  std::vector<double> base_;                    // [entries] what does not change along a motion
   std::vector<std::uint32_t> of_others_alone_;  // entries without multiples
   const double* constants_ = nullptr;
 };

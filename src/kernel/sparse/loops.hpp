@@ -9,16 +9,16 @@ namespace maupertuis::sparse {
 /// x_target = scale · x_target + Σ factor · x_operand, of operands that are known before.
 struct SweepSum {
   std::uint32_t target, pivot;
-  std::uint32_t first, last;     // products; those of all sums follow each other
-  bool starts;                   // at a value that is there; else at 0
-  bool negates;                  // forward: the pivot is −1
+  std::uint32_t first, last;  // products; those of all sums follow each other
+  bool starts;                // at a value that is there; else at 0
+  bool negates;               // forward: the pivot is −1
 };
 
 /// Sums of one shape one after the other, or of a recurrence (LoopSweep) so many sides and a joint for each link. The
 /// last product of a joint has the factor from joint to joint.
 struct SweepRun {
-  std::uint32_t first, last;     // sums
-  std::uint32_t sides;           // 0: none is a recurrence
+  std::uint32_t first, last;  // sums
+  std::uint32_t sides;        // 0: none is a recurrence
 };
 inline constexpr std::size_t most_sides = 4;
 
@@ -31,12 +31,12 @@ struct SweepTables {
 
 /// An entry of L or U, or a pivot.
 struct FactorSum {
-  std::uint32_t target;          // in the factors
-  std::uint32_t entry;           // it starts from
-  std::uint32_t pivot;           // Pivot: its number; Upper: it is divided by
+  std::uint32_t target;  // in the factors
+  std::uint32_t entry;   // it starts from
+  std::uint32_t pivot;   // Pivot: its number; Upper: it is divided by
 };
 struct FactorProduct {
-  std::uint32_t lower, upper;    // in the factors
+  std::uint32_t lower, upper;  // in the factors
 };
 struct FactorRun {
   enum Kind : std::uint8_t { Pivot, Lower, Upper } kind;
@@ -54,7 +54,7 @@ struct FactorTables {
 /// Rows of a product along the tangent graph, for 8 directions at once.
 struct BlockRow {
   std::uint32_t target;
-  std::uint32_t first, last;     // its terms
+  std::uint32_t first, last;  // its terms
 };
 struct BlockTerm {
   std::uint32_t entry, operand;

@@ -95,20 +95,28 @@ void factor_run(const FactorTables& t, const FactorRun& run) {
 template <bool Divides>
 void factor_run(const FactorTables& t, const FactorRun& run) {
   switch (run.products) {
-    case 0: return factor_run<0, Divides>(t, run);
-    case 1: return factor_run<1, Divides>(t, run);
-    case 2: return factor_run<2, Divides>(t, run);
-    case 3: return factor_run<3, Divides>(t, run);
-    default: return factor_run<-1, Divides>(t, run);
+    case 0:
+      return factor_run<0, Divides>(t, run);
+    case 1:
+      return factor_run<1, Divides>(t, run);
+    case 2:
+      return factor_run<2, Divides>(t, run);
+    case 3:
+      return factor_run<3, Divides>(t, run);
+    default:
+      return factor_run<-1, Divides>(t, run);
   }
 }
 
 double factor(const FactorTables& t) {
   double least = 1;
   for (const FactorRun* run = t.runs; run != t.last_run; ++run) {
-    if (run->kind == FactorRun::Pivot) pivot_run(t, *run, least);
-    else if (run->kind == FactorRun::Lower) factor_run<false>(t, *run);
-    else factor_run<true>(t, *run);
+    if (run->kind == FactorRun::Pivot)
+      pivot_run(t, *run, least);
+    else if (run->kind == FactorRun::Lower)
+      factor_run<false>(t, *run);
+    else
+      factor_run<true>(t, *run);
   }
   return least;
 }

@@ -124,8 +124,10 @@ Strip strip_of(const Program& program) {
   for (std::uint32_t l = 0; l < levels.size(); ++l)
     for (const std::uint32_t coordinate : levels[l]) out.level[coordinate] = l;
   for (std::size_t turn = 0; turn <= cut.length; ++turn) {
-    if (are_alike(levels, cut, turn)) add_turn(levels, cut, turn, out);
-    else if (turn < cut.length) return {};
+    if (are_alike(levels, cut, turn))
+      add_turn(levels, cut, turn, out);
+    else if (turn < cut.length)
+      return {};
   }
   out.whole = out.order.size();
   std::vector<bool> placed(program.unknowns, false);

@@ -27,7 +27,7 @@ struct Strip {
   std::size_t levels = 0;
   /// of coordinates: turn by turn, a lane for each part, then the separators, then what lies at the ends
   std::vector<std::uint32_t> order;
-  std::size_t whole = 0;                          // of `order`: those that stand in eights
+  std::size_t whole = 0;  // of `order`: those that stand in eights
 
   /// Whether an elimination that begins there meets the last level first.
   bool ends_at(std::uint32_t coordinate) const { return 2 * level[coordinate] > levels; }

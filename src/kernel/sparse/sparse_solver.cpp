@@ -173,8 +173,10 @@ class SparseBuilder {
       const Pivot& pivot = pivots_[p];
       Work own = work_of(FactorRun::Pivot, pivot.row, pivot.column, p);
       pivot_level[p] = is_minus_one_[p] ? 0 : own.level + 1;
-      if (is_minus_one_[p]) s_.inverse_[p] = -1;
-      else work.push_back(std::move(own));
+      if (is_minus_one_[p])
+        s_.inverse_[p] = -1;
+      else
+        work.push_back(std::move(own));
       for (const std::uint32_t row : pivot.rows) add_factor(work, FactorRun::Lower, row, pivot.column, p, 0);
       for (const std::uint32_t column : pivot.columns)
         add_factor(work, FactorRun::Upper, pivot.row, column, p, pivot_level[p]);
@@ -263,7 +265,7 @@ class SparseBuilder {
   std::vector<bool> is_minus_one_;  // [pivots]
   std::unordered_map<std::uint64_t, std::uint32_t> entry_at_, factor_at_;
   std::unordered_map<std::uint64_t, std::vector<FactorProduct>> products_;  // of places that are still to be found
-  std::vector<std::uint32_t> factor_level_;  // [factors]
+  std::vector<std::uint32_t> factor_level_;                                 // [factors]
   std::uint32_t next_factor_ = 0;
 };
 

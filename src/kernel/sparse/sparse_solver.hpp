@@ -103,15 +103,15 @@ class SparseSolver {
   std::vector<FactorRun> factor_runs_;
   std::vector<FactorSum> sums_;
   std::vector<FactorProduct> products_;
-  std::vector<double> factors_;                  // L, then U divided by the pivots, in the order of the solution
-  std::vector<double> literal_factor_;           // [factors] of those that are the same number at every point; else NaN
-  std::vector<double> inverse_;                  // [pivots]
-  std::vector<double> usual_size_;               // [pivots] the largest at the sampled states
+  std::vector<double> factors_;         // L, then U divided by the pivots, in the order of the solution
+  std::vector<double> literal_factor_;  // [factors] of those that are the same number at every point; else NaN
+  std::vector<double> inverse_;         // [pivots]
+  std::vector<double> usual_size_;      // [pivots] the largest at the sampled states
   // Parts, see Pivot; and orders in which they are alike.
   std::uint32_t parts_ = 0;
   std::vector<std::uint32_t> part_of_pivot_, column_of_pivot_, part_of_cell_, part_of_factor_;
-  std::vector<std::uint64_t> place_of_sum_;      // [sums] row and column
-  std::vector<double> entries_;                  // [entries + 1] the last one 0
+  std::vector<std::uint64_t> place_of_sum_;  // [sums] row and column
+  std::vector<double> entries_;              // [entries + 1] the last one 0
   std::size_t factor_products_ = 0, forward_depth_ = 0, backward_depth_ = 0;
 };
 

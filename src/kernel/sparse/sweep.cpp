@@ -81,7 +81,9 @@ class SweepOrder {
     if (sides.empty() || sides.size() > most_sides || link.of_joint.size() != sides.size()) return false;
     if (!sums_[link.joint].starts || (before && before->sides.size() != sides.size())) return false;
     const bool start = sums_[before ? before->sides[0] : sides[0]].starts;
-    const auto is_side = [&](std::uint32_t i) { return sums_[i].last - sums_[i].first == 2 && sums_[i].starts == start; };
+    const auto is_side = [&](std::uint32_t i) {
+      return sums_[i].last - sums_[i].first == 2 && sums_[i].starts == start;
+    };
     if (!std::all_of(sides.begin(), sides.end(), is_side)) return false;
     const std::uint32_t joint_before = before ? sums_[before->joint].target : operands_[sums_[sides[0]].first + 1];
     for (std::size_t j = 0; j < sides.size(); ++j) {

@@ -36,7 +36,7 @@ class LoopSweep {
   std::vector<SweepRun> runs_;
   std::vector<SweepSum> sums_;
   std::vector<std::uint32_t> operand_, source_, sum_of_product_;  // [products] source: place as the sums had it
-  std::vector<double> scale_, factors_;          // [sums], [products] with their signs
+  std::vector<double> scale_, factors_;                           // [sums], [products] with their signs
 };
 
 }  // namespace maupertuis::sparse

@@ -15,19 +15,32 @@ class Collector {
     lag_ = i.lag;
     switch (i.op) {
       case Op::Linear:
-      case Op::Products: return terms(i);
-      case Op::Square: return add({Rule::Double, i.out, i.a, 0, i.a});
+      case Op::Products:
+        return terms(i);
+      case Op::Square:
+        return add({Rule::Double, i.out, i.a, 0, i.a});
       case Op::Quotient:
         add({Rule::Reciprocal, i.out, i.a, 0, i.b});
         return add({Rule::Ratio, i.out, i.b, 0, i.b, i.out});
-      case Op::SquareRoot: return add({Rule::HalfReciprocal, i.out, i.a, 0, i.out});
-      case Op::Power: return add({Rule::PowerSlope, i.out, i.a, i.constant, i.a, i.out});
-      case Op::SinCos: return pair(i, Rule::Negative);
-      case Op::SinhCosh: return pair(i, Rule::Value);
-      case Op::Function: return differential(i);
-      case Op::Derivative: return add({Rule::One, i.out, i.a}, 1);
-      case Op::Select: return select(i);
-      case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: return;
+      case Op::SquareRoot:
+        return add({Rule::HalfReciprocal, i.out, i.a, 0, i.out});
+      case Op::Power:
+        return add({Rule::PowerSlope, i.out, i.a, i.constant, i.a, i.out});
+      case Op::SinCos:
+        return pair(i, Rule::Negative);
+      case Op::SinhCosh:
+        return pair(i, Rule::Value);
+      case Op::Function:
+        return differential(i);
+      case Op::Derivative:
+        return add({Rule::One, i.out, i.a}, 1);
+      case Op::Select:
+        return select(i);
+      case Op::One:
+      case Op::Time:
+      case Op::Coordinate:
+      case Op::Companion:
+        return;
     }
     throw unknown_op(i.op, "the graph of tangents");
   }
@@ -42,7 +55,10 @@ class Collector {
   void terms(const Instruction& i) {
     for (std::uint32_t t = i.first_term; t < i.last_term; ++t) {
       const Term& term = program_.terms[t];
-      if (term.b == no_slot) { add({Rule::Coefficient, i.out, term.a, term.coefficient}, term.shift); continue; }
+      if (term.b == no_slot) {
+        add({Rule::Coefficient, i.out, term.a, term.coefficient}, term.shift);
+        continue;
+      }
       add({Rule::Scaled, i.out, term.a, term.coefficient, term.b});
       add({Rule::Scaled, i.out, term.b, term.coefficient, term.a});
     }

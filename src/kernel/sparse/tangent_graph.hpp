@@ -26,8 +26,8 @@ enum class Rule : std::uint8_t {
 struct Edge {
   Rule rule = Rule::One;
   Slot out = no_slot, operand = no_slot;
-  std::uint32_t index = 0;              // of the constant c or p; Choice: of the term
-  Slot x = no_slot, y = no_slot;        // Choice: first and last term
+  std::uint32_t index = 0;        // of the constant c or p; Choice: of the term
+  Slot x = no_slot, y = no_slot;  // Choice: first and last term
 };
 
 /// Every edge of section Dynamics, in the order of the instructions; those of one result stand together.
@@ -61,15 +61,26 @@ T constant_factor(const Edge& edge, const Program& program, const T* constants) 
 template <class T>
 T factor_at(const Edge& edge, const T* constants, const T* now) {
   switch (edge.rule) {
-    case Rule::Scaled: return constants[edge.index] * now[edge.x];
-    case Rule::Value: return now[edge.x];
-    case Rule::Negative: return -now[edge.x];
-    case Rule::Double: return 2 * now[edge.x];
-    case Rule::Reciprocal: return 1 / now[edge.x];
-    case Rule::HalfReciprocal: return T(0.5) / now[edge.x];
-    case Rule::Ratio: return -now[edge.y] / now[edge.x];
-    case Rule::PowerSlope: return constants[edge.index] * now[edge.y] / now[edge.x];
-    case Rule::One: case Rule::Coefficient: case Rule::Choice: break;   // see constant_factor
+    case Rule::Scaled:
+      return constants[edge.index] * now[edge.x];
+    case Rule::Value:
+      return now[edge.x];
+    case Rule::Negative:
+      return -now[edge.x];
+    case Rule::Double:
+      return 2 * now[edge.x];
+    case Rule::Reciprocal:
+      return 1 / now[edge.x];
+    case Rule::HalfReciprocal:
+      return T(0.5) / now[edge.x];
+    case Rule::Ratio:
+      return -now[edge.y] / now[edge.x];
+    case Rule::PowerSlope:
+      return constants[edge.index] * now[edge.y] / now[edge.x];
+    case Rule::One:
+    case Rule::Coefficient:
+    case Rule::Choice:
+      break;  // see constant_factor
   }
   return T(0);
 }

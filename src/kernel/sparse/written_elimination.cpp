@@ -68,9 +68,9 @@ class Writer {
 
   Builder& to_;
   const WrittenSystem& w_;
-  std::unordered_map<std::uint64_t, std::vector<Term>> matrix_;  // places that are still to be found
-  std::vector<std::vector<Term>> side_;                          // [rows] b
-  std::vector<Value> y_;                                         // [pivots]
+  std::unordered_map<std::uint64_t, std::vector<Term>> matrix_;      // places that are still to be found
+  std::vector<std::vector<Term>> side_;                              // [rows] b
+  std::vector<Value> y_;                                             // [pivots]
   std::vector<std::vector<std::pair<std::uint32_t, Value>>> upper_;  // [pivots] of its row, divided by it
 };
 

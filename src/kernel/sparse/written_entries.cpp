@@ -30,17 +30,28 @@ Term EntryWriter::term(Builder& to, std::uint32_t i) const {
   const auto y = [&] { return sources_.value(to, edge.y); };
   const auto constant = [&] { return sources_.constant(to, edge.index); };
   switch (edge.rule) {
-    case Rule::One: return {1};
-    case Rule::Coefficient: return {1, constant()};
-    case Rule::Scaled: return {1, constant(), x()};
-    case Rule::Value: return {1, x()};
-    case Rule::Negative: return {-1, x()};
-    case Rule::Double: return {2, x()};
-    case Rule::Reciprocal: return {1, to.reciprocal(x())};
-    case Rule::HalfReciprocal: return {0.5, to.reciprocal(x())};
-    case Rule::Ratio: return {-1, y(), to.reciprocal(x())};
-    case Rule::PowerSlope: return {1, constant(), y(), to.reciprocal(x())};
-    case Rule::Choice: return {1, sources_.choice(to, i)};
+    case Rule::One:
+      return {1};
+    case Rule::Coefficient:
+      return {1, constant()};
+    case Rule::Scaled:
+      return {1, constant(), x()};
+    case Rule::Value:
+      return {1, x()};
+    case Rule::Negative:
+      return {-1, x()};
+    case Rule::Double:
+      return {2, x()};
+    case Rule::Reciprocal:
+      return {1, to.reciprocal(x())};
+    case Rule::HalfReciprocal:
+      return {0.5, to.reciprocal(x())};
+    case Rule::Ratio:
+      return {-1, y(), to.reciprocal(x())};
+    case Rule::PowerSlope:
+      return {1, constant(), y(), to.reciprocal(x())};
+    case Rule::Choice:
+      return {1, sources_.choice(to, i)};
   }
   return {0};
 }

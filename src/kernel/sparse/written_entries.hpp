@@ -26,8 +26,8 @@ class EntryWriter {
 
   const LiftedSystem& system_;
   EntrySources sources_;
-  std::vector<double> number_;                           // [entries] what enters as −1 or 1
-  std::vector<std::vector<std::uint32_t>> edges_;        // [entries]
+  std::vector<double> number_;                     // [entries] what enters as −1 or 1
+  std::vector<std::vector<std::uint32_t>> edges_;  // [entries]
 };
 
 }  // namespace maupertuis::sparse

@@ -16,8 +16,13 @@ class FactorWriter {
  public:
   /// Without `least_share` nothing is stored and no pivot checked.
   FactorWriter(const SparseSolver& solver, Builder& to, const EntryWriter& entry, std::optional<double> least_share)
-      : s_(solver), to_(to), entry_(entry), least_share_(least_share), factor_(s_.factors_.size(), straight::none),
-        inverse_(s_.inverse_.size(), to.literal(-1)), partial_(s_.sums_.size()) {
+      : s_(solver),
+        to_(to),
+        entry_(entry),
+        least_share_(least_share),
+        factor_(s_.factors_.size(), straight::none),
+        inverse_(s_.inverse_.size(), to.literal(-1)),
+        partial_(s_.sums_.size()) {
     for (std::size_t i = 0; i < factor_.size(); ++i)
       if (!std::isnan(s_.literal_factor_[i])) factor_[i] = to.literal(s_.literal_factor_[i]);
   }
@@ -96,8 +101,8 @@ class FactorWriter {
   Builder& to_;
   const EntryWriter& entry_;
   std::optional<double> least_share_;
-  std::vector<Value> factor_, inverse_;       // [factors], [pivots]
-  std::vector<std::vector<Value>> partial_;   // [sums] of parts
+  std::vector<Value> factor_, inverse_;      // [factors], [pivots]
+  std::vector<std::vector<Value>> partial_;  // [sums] of parts
 };
 
 WrittenFactors SparseSolver::write_factors(Builder& to, const EntryWriter& entry,

@@ -101,8 +101,8 @@ class SolveWriter {
   const SparseSolver& s_;
   Builder& to_;
   const WrittenFactors& factors_;
-  std::vector<std::vector<Value>> x_;         // [right sides][cells]
-  std::vector<std::vector<Value>> partial_;   // [cells] sums of parts, of one right side
+  std::vector<std::vector<Value>> x_;        // [right sides][cells]
+  std::vector<std::vector<Value>> partial_;  // [cells] sums of parts, of one right side
 };
 
 void SparseSolver::write_solutions(Builder& to, const WrittenFactors& factors, std::uint32_t right,

@@ -76,15 +76,19 @@ std::vector<Term> Builder::folded(const std::vector<Term>& terms) const {
     std::vector<Value> rest;
     for (const Value v : {term.a, term.b, term.c}) {
       if (v == none) continue;
-      if (is_literal(v)) t.factor *= literal_of(v);
-      else rest.push_back(v);
+      if (is_literal(v))
+        t.factor *= literal_of(v);
+      else
+        rest.push_back(v);
     }
     // What is known last is multiplied last.
     std::stable_sort(rest.begin(), rest.end(), [&](Value x, Value y) { return depth_[x] < depth_[y]; });
     rest.resize(3, none);
     t.a = rest[0], t.b = rest[1], t.c = rest[2];
-    if (t.a == none) constant += t.factor;
-    else if (t.factor != 0) out.push_back(t);
+    if (t.a == none)
+      constant += t.factor;
+    else if (t.factor != 0)
+      out.push_back(t);
   }
   if (constant != 0) out.push_back({constant});
   return out;
@@ -171,11 +175,8 @@ Value Builder::gather(const std::vector<Value>& lanes) {
 Value Builder::wide_given(std::uint32_t array, std::uint32_t first, std::uint32_t width) {
   const auto [found, fresh] = once_.try_emplace({Node::Given, array, std::uint64_t{width} << 32 | first}, next());
   if (!fresh) return found->second;
-  return add({.what = Node::Given,
-              .wide = true,
-              .width = static_cast<std::uint8_t>(width),
-              .array = array,
-              .index = first});
+  return add(
+      {.what = Node::Given, .wide = true, .width = static_cast<std::uint8_t>(width), .array = array, .index = first});
 }
 
 Value Builder::copy(Node node, std::vector<Term> terms, const std::vector<Value>& operands) {
@@ -193,8 +194,7 @@ std::vector<bool> Builder::needed() const {
   for (const PivotCheck& check : line_.checks) out[check.pivot] = out[check.size] = true;
   for (const Value v : line_.finite) out[v] = true;
   for (std::size_t i = out.size(); i-- > 0;)
-    if (out[i])
-      for_operands(line_, line_.nodes[i], [&](Value operand) { out[operand] = true; });
+    if (out[i]) for_operands(line_, line_.nodes[i], [&](Value operand) { out[operand] = true; });
   return out;
 }
 
@@ -226,9 +226,14 @@ StraightLine Builder::finish(std::uint32_t arrays, std::uint32_t wide, Value anc
   const auto visit = [&](Value root) {
     for (open.push_back(root); !open.empty();) {
       const Value v = open.back();
-      if (number[v] != none) { open.pop_back(); continue; }
+      if (number[v] != none) {
+        open.pop_back();
+        continue;
+      }
       const std::size_t before = open.size();
-      for_operands(line_, line_.nodes[v], [&](Value operand) { if (number[operand] == none) open.push_back(operand); });
+      for_operands(line_, line_.nodes[v], [&](Value operand) {
+        if (number[operand] == none) open.push_back(operand);
+      });
       if (open.size() > before) continue;
       number[v] = static_cast<Value>(order.size());
       order.push_back(v);
@@ -254,7 +259,10 @@ StraightLine Builder::finish(std::uint32_t arrays, std::uint32_t wide, Value anc
     const bool listed = lists_operands(node);
     node.first = static_cast<std::uint32_t>(listed ? out.operands.size() : out.terms.size());
     for (std::uint32_t i = first; i < last; ++i) {
-      if (listed) { out.operands.push_back(renumber(line_.operands[i])); continue; }
+      if (listed) {
+        out.operands.push_back(renumber(line_.operands[i]));
+        continue;
+      }
       const Term& t = line_.terms[i];
       out.terms.push_back({t.factor, renumber(t.a), renumber(t.b), renumber(t.c)});
     }

@@ -20,8 +20,8 @@ struct CellTerm {
 /// Sums that do not wait for each other, of as many terms each: (Σ f a + Σ f a b + Σ f a b c) · times / over. Results
 /// and terms follow each other.
 struct SumRun {
-  std::uint32_t linear, products, triples;           // terms of each sum
-  std::uint32_t count;                               // sums
+  std::uint32_t linear, products, triples;  // terms of each sum
+  std::uint32_t count;                      // sums
   Cell out;
   std::uint32_t first_linear, first_product, first_triple;
   /// where `times` and `over` of each stand; none where neither is there
@@ -32,7 +32,7 @@ inline constexpr std::uint32_t no_scale = ~std::uint32_t{0};
 /// Wide sums: Σ f a · (8 numbers from b on).
 struct WideRun {
   std::uint32_t terms, count;
-  Cell out;                                          // 8 cells each
+  Cell out;  // 8 cells each
   std::uint32_t first_term;
 };
 
@@ -57,12 +57,12 @@ struct EvaluationStep {
 struct EvaluationTables {
   const SumRun* sums;
   const WideRun* wides;
-  const SizeRun* sizes;                              // Magnitudes, Larger
+  const SizeRun* sizes;  // Magnitudes, Larger
   const AngleStep* angles;
   const CellTerm *linear, *products, *triples, *wide_terms, *size_terms;
-  const Cell* scales;                                // `times` and `over` in turn
-  double* cells;                                     // aligned to 64 bytes
-  void* context;                                     // of `other`
+  const Cell* scales;  // `times` and `over` in turn
+  double* cells;       // aligned to 64 bytes
+  void* context;       // of `other`
   void (*other)(void* context, std::uint32_t index);
 };
 

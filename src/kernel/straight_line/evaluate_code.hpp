@@ -32,10 +32,14 @@ void sums(const EvaluationTables& t, const SumRun& run) {
 template <int Linear>
 void sums_of(const EvaluationTables& t, const SumRun& run) {
   switch (run.products) {
-    case 0: return sums<Linear, 0>(t, run);
-    case 1: return sums<Linear, 1>(t, run);
-    case 2: return sums<Linear, 2>(t, run);
-    default: return sums<Linear, -1>(t, run);
+    case 0:
+      return sums<Linear, 0>(t, run);
+    case 1:
+      return sums<Linear, 1>(t, run);
+    case 2:
+      return sums<Linear, 2>(t, run);
+    default:
+      return sums<Linear, -1>(t, run);
   }
 }
 
@@ -45,11 +49,16 @@ void sums(const EvaluationTables& t, const SumRun& run) {
     return run.triples == 1 ? sums<0, 0, 1>(t, run) : sums<0, 0, 2>(t, run);
   }
   switch (run.linear) {
-    case 0: return sums_of<0>(t, run);
-    case 1: return sums_of<1>(t, run);
-    case 2: return sums_of<2>(t, run);
-    case 3: return sums_of<3>(t, run);
-    default: return sums_of<-1>(t, run);
+    case 0:
+      return sums_of<0>(t, run);
+    case 1:
+      return sums_of<1>(t, run);
+    case 2:
+      return sums_of<2>(t, run);
+    case 3:
+      return sums_of<3>(t, run);
+    default:
+      return sums_of<-1>(t, run);
   }
 }
 
@@ -94,12 +103,23 @@ void sines(const EvaluationTables& t, const AngleStep& step) {
 
 void evaluate(const EvaluationTables& t, const EvaluationStep* step, const EvaluationStep* last) {
   for (; step != last; ++step) switch (step->kind) {
-      case EvaluationStep::Sums: sums(t, t.sums[step->index]); break;
-      case EvaluationStep::Wides: wides(t, t.wides[step->index]); break;
-      case EvaluationStep::Magnitudes: magnitudes(t, t.sizes[step->index]); break;
-      case EvaluationStep::Larger: larger(t, t.sizes[step->index]); break;
-      case EvaluationStep::Angles: sines(t, t.angles[step->index]); break;
-      case EvaluationStep::Other: t.other(t.context, step->index);
+      case EvaluationStep::Sums:
+        sums(t, t.sums[step->index]);
+        break;
+      case EvaluationStep::Wides:
+        wides(t, t.wides[step->index]);
+        break;
+      case EvaluationStep::Magnitudes:
+        magnitudes(t, t.sizes[step->index]);
+        break;
+      case EvaluationStep::Larger:
+        larger(t, t.sizes[step->index]);
+        break;
+      case EvaluationStep::Angles:
+        sines(t, t.angles[step->index]);
+        break;
+      case EvaluationStep::Other:
+        t.other(t.context, step->index);
     }
 }
 

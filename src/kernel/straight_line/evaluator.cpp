@@ -162,11 +162,19 @@ class EvaluationLayout {
 
   void write(std::span<const Value> run) {
     switch (node(run[0]).what) {
-      case Node::Sum: return write_sums(run);
-      case Node::Wide: return write_wides(run);
-      case Node::Angles: return write_angles(run);
-      case Node::Magnitudes: case Node::Larger: return write_sizes(run);
-      case Node::Chosen: case Node::Root: case Node::Call: return write_others(run);
+      case Node::Sum:
+        return write_sums(run);
+      case Node::Wide:
+        return write_wides(run);
+      case Node::Angles:
+        return write_angles(run);
+      case Node::Magnitudes:
+      case Node::Larger:
+        return write_sizes(run);
+      case Node::Chosen:
+      case Node::Root:
+      case Node::Call:
+        return write_others(run);
       case Node::Literal:
       case Node::Given:
       case Node::Sine:
@@ -184,7 +192,9 @@ class EvaluationLayout {
     out_.steps_.push_back({kind, static_cast<std::uint32_t>(items.size() - 1)});
   }
   template <class Items>
-  static std::uint32_t size(const Items& items) { return static_cast<std::uint32_t>(items.size()); }
+  static std::uint32_t size(const Items& items) {
+    return static_cast<std::uint32_t>(items.size());
+  }
 
   CellTerm term(std::uint32_t t) const {
     const Term& term = line_.terms[t];
@@ -252,10 +262,10 @@ class EvaluationLayout {
 
   const StraightLine& line_;
   Evaluation& out_;
-  std::vector<Cell> cell_;             // [nodes]
-  std::vector<std::uint32_t> level_;   // [nodes] how many others it waits for, one after the other
-  std::vector<bool> changes_;          // [nodes] whether it follows from more than the seldom arrays
-  std::vector<bool> is_seldom_;        // [arrays]
+  std::vector<Cell> cell_;            // [nodes]
+  std::vector<std::uint32_t> level_;  // [nodes] how many others it waits for, one after the other
+  std::vector<bool> changes_;         // [nodes] whether it follows from more than the seldom arrays
+  std::vector<bool> is_seldom_;       // [arrays]
 };
 
 Evaluation::Evaluation(const StraightLine& line, std::span<const std::uint32_t> seldom) {

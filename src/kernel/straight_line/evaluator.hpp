@@ -49,7 +49,7 @@ class Evaluation {
   bool is_sound(const double* cells) const;
 
   std::vector<EvaluationStep> steps_;
-  std::size_t changing_ = 0;                 // the first step that does not follow from seldom arrays alone
+  std::size_t changing_ = 0;  // the first step that does not follow from seldom arrays alone
   std::vector<SumRun> sums_;
   std::vector<WideRun> wides_;
   std::vector<SizeRun> sizes_;

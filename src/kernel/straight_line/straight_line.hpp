@@ -30,16 +30,16 @@ struct Node {
     Angles,      // sines and cosines of `operands` together (no number by itself)
     Sine,        // of operand `index` of the node a
     Cosine,
-    Root,        // √a
-    Call,        // function(a) or function(a, b): elementary functions, Power, Atan2
-    Unit,        // wide: 1 in lane `index`, else 0
-    Wide,        // wide: Σ terms; in each the last factor is wide, the others are not
-    Lane,        // number `index` of the wide node a
-    Gather,      // wide: `operands`, a lane each
+    Root,    // √a
+    Call,    // function(a) or function(a, b): elementary functions, Power, Atan2
+    Unit,    // wide: 1 in lane `index`, else 0
+    Wide,    // wide: Σ terms; in each the last factor is wide, the others are not
+    Lane,    // number `index` of the wide node a
+    Gather,  // wide: `operands`, a lane each
   } what = Literal;
-  bool wide = false;         // Given: numbers that follow each other; Sum, Magnitudes, Larger, Root: lane by lane
-  std::uint8_t width = 0;    // numbers of a wide node; 0: as many as StraightLine::wide
-  std::uint8_t part = 0;     // 0: of none, see widen()
+  bool wide = false;       // Given: numbers that follow each other; Sum, Magnitudes, Larger, Root: lane by lane
+  std::uint8_t width = 0;  // numbers of a wide node; 0: as many as StraightLine::wide
+  std::uint8_t part = 0;   // 0: of none, see widen()
   Kind function = Kind::Exp;
   Value a = none, b = none, c = none;
   std::uint32_t array = 0, index = 0;
@@ -48,7 +48,7 @@ struct Node {
 };
 
 struct Store {
-  Value value;                     // wide: to places that follow each other
+  Value value;  // wide: to places that follow each other
   std::uint32_t array, index;
 };
 
@@ -76,9 +76,9 @@ struct StraightLine {
   std::vector<Value> operands;
   std::vector<Store> stores;
   std::vector<PivotCheck> checks;
-  std::vector<Value> finite;       // what must be neither infinite nor undefined
-  std::uint32_t arrays = 0;        // that `Given` and `stores` refer to
-  std::uint32_t wide = 1;          // numbers of a wide value that has no width of its own
+  std::vector<Value> finite;  // what must be neither infinite nor undefined
+  std::uint32_t arrays = 0;   // that `Given` and `stores` refer to
+  std::uint32_t wide = 1;     // numbers of a wide value that has no width of its own
   /// stores come last, and only where all went well: results may go where arguments stood
   bool guarded = false;
 
@@ -92,7 +92,10 @@ void for_operands(const StraightLine& line, const Node& node, F&& f) {
   for (const Value v : {node.a, node.b, node.c})
     if (v != none) f(v);
   for (std::uint32_t i = node.first; i < node.last; ++i) {
-    if (lists_operands(node)) { f(line.operands[i]); continue; }
+    if (lists_operands(node)) {
+      f(line.operands[i]);
+      continue;
+    }
     for (const Value v : {line.terms[i].a, line.terms[i].b, line.terms[i].c})
       if (v != none) f(v);
   }

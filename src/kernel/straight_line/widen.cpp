@@ -98,7 +98,10 @@ class Widening {
   bool make(Value root) {
     for (Lanes stack{root}; !stack.empty();) {
       const Value v = members(stack.back()).front();
-      if (made_[v] != none) { stack.pop_back(); continue; }
+      if (made_[v] != none) {
+        stack.pop_back();
+        continue;
+      }
       const std::size_t before = stack.size();
       for (const Value member : members(v))
         for_operands(line_, node(member), [&](Value w) {
@@ -132,7 +135,10 @@ class Widening {
     std::vector<Term> terms;
     Lanes operands;
     for (std::uint32_t i = n.first; i < n.last; ++i) {
-      if (lists_operands(n)) { operands.push_back(single(line_.operands[i])); continue; }
+      if (lists_operands(n)) {
+        operands.push_back(single(line_.operands[i]));
+        continue;
+      }
       const Term& t = line_.terms[i];
       terms.push_back({t.factor, single(t.a), single(t.b), single(t.c)});
     }
@@ -181,8 +187,10 @@ class Widening {
   std::vector<std::uint32_t> indices_of(const Lanes& lanes) const {
     std::vector<std::uint32_t> out;
     for (const Value v : lanes)
-      if (v == none || node(v).what != Node::Given || node(v).array != node(lanes[0]).array) return {};
-      else out.push_back(node(v).index);
+      if (v == none || node(v).what != Node::Given || node(v).array != node(lanes[0]).array)
+        return {};
+      else
+        out.push_back(node(v).index);
     return out;
   }
 
@@ -222,8 +230,10 @@ class Widening {
     for (const Store& store : line_.stores) {
       const auto free = written_.find(store.array);
       if (free != written_.end() && !free->second->is_placed(store.index)) continue;
-      if (node(store.value).part != 0) of_lanes[members(store.value).front()].push_back(&store);
-      else to_.store(single(store.value), store.array, place_of(written_, store.array, store.index));
+      if (node(store.value).part != 0)
+        of_lanes[members(store.value).front()].push_back(&store);
+      else
+        to_.store(single(store.value), store.array, place_of(written_, store.array, store.index));
     }
     for (const auto& [first, stores] : of_lanes) store_lanes(first, stores);
   }
@@ -248,8 +258,10 @@ class Widening {
   void check() {
     for (const PivotCheck& check : line_.checks) {
       const bool is_wide = node(check.pivot).part != 0 && node(check.size).part == node(check.pivot).part;
-      if (!is_wide) to_.check({single(check.pivot), single(check.size), check.share});
-      else if (node(check.pivot).part == 1) to_.check({made_[check.pivot], made_[check.size], check.share});
+      if (!is_wide)
+        to_.check({single(check.pivot), single(check.size), check.share});
+      else if (node(check.pivot).part == 1)
+        to_.check({made_[check.pivot], made_[check.size], check.share});
     }
     for (const Value v : line_.finite) to_.require_finite(single(v));
   }
@@ -257,9 +269,9 @@ class Widening {
   const StraightLine& line_;
   const Rearranged &read_, &written_;
   Builder to_;
-  std::vector<Lanes> parts_;                   // [parts] nodes
-  std::vector<std::uint32_t> place_in_part_;   // [nodes]
-  std::vector<Value> made_;                    // [nodes] in the new line; of a part: at the first part's node
+  std::vector<Lanes> parts_;                  // [parts] nodes
+  std::vector<std::uint32_t> place_in_part_;  // [nodes]
+  std::vector<Value> made_;                   // [nodes] in the new line; of a part: at the first part's node
   std::vector<bool> open_;
   std::map<Value, Value> lanes_;
   std::map<Lanes, Value> gathered_;

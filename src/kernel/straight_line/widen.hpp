@@ -31,9 +31,10 @@ using Rearranged = std::map<std::uint32_t, Places*>;
 ///     part 1:  x1 = a1 b1         part 2:  x2 = a2 b2               (x1 x2) = (a1 a2) (b1 b2)
 ///              y1 = x1 + c                 y2 = x2 + c      →       (y1 y2) = (x1 x2) + (c c)
 ///
-/// Parts are alike if their sums follow each other with the same terms, as far as these are of the part itself. What they
-/// read besides is the same for all, or is gathered from wherever it stands. Nothing comes back where parts are not
-/// alike, or wait for each other. Stores to numbers of `written` that have no place are left out: nobody reads them.
+/// Parts are alike if their sums follow each other with the same terms, as far as these are of the part itself. What
+/// they read besides is the same for all, or is gathered from wherever it stands. Nothing comes back where parts are
+/// not alike, or wait for each other. Stores to numbers of `written` that have no place are left out: nobody reads
+/// them.
 std::optional<StraightLine> widen(const StraightLine& line, const Rearranged& read, const Rearranged& written);
 
 /// `line` for `lanes` right sides at once: its numbers of the arrays `read` and `written` stand for `lanes` numbers

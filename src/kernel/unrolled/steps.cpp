@@ -25,8 +25,7 @@ Value Unrolling::coefficients(std::uint32_t first, std::size_t count) {
   std::vector<Value> lanes;
   for (std::uint32_t i = 0; i < width_of(count); ++i) {
     lanes.push_back(constant(packed_.coefficients[first + i]));
-    if (!to_.is_literal(lanes.back()))
-      return to_.wide_given(Coefficients, first, width_of(count));
+    if (!to_.is_literal(lanes.back())) return to_.wide_given(Coefficients, first, width_of(count));
   }
   return to_.gather(lanes);
 }
@@ -39,7 +38,8 @@ void Unrolling::add(Step step) {
 void Unrolling::add_steps(const Pack& pack) {
   Step step{.lag = pack.lag, .out = range(pack.out, pack.width)};
   switch (pack.kind) {
-    case Pack::Sum: return add_sum(pack, std::move(step));
+    case Pack::Sum:
+      return add_sum(pack, std::move(step));
     case Pack::Integral:
       step.kind = Step::Integral;
       step.products = {{slots_of(pack.a), slots_of(pack.b), coefficients(pack.coefficients, pack.width)}};
@@ -54,9 +54,15 @@ void Unrolling::add_steps(const Pack& pack) {
       step.kind = Step::Root;
       step.products = {{slots_of(pack.a), {}, none}};
       return add(std::move(step));
-    case Pack::Scalar: return add_instruction(p_.instructions[pack.instruction]);
+    case Pack::Scalar:
+      return add_instruction(p_.instructions[pack.instruction]);
     // of large systems alone, which are not unrolled
-    case Pack::Scan: case Pack::ScanDown: case Pack::Strand: case Pack::Join: case Pack::JoinDown: return;
+    case Pack::Scan:
+    case Pack::ScanDown:
+    case Pack::Strand:
+    case Pack::Join:
+    case Pack::JoinDown:
+      return;
   }
 }
 
@@ -78,26 +84,45 @@ void Unrolling::add_instruction(const Instruction& i) {
   Step step{.lag = i.lag, .out = {i.out}};
   const Value one = to_.literal(1);
   switch (i.op) {
-    case Op::Linear: case Op::Products: case Op::Function:
+    case Op::Linear:
+    case Op::Products:
+    case Op::Function:
       for (std::uint32_t t = i.first_term; t < i.last_term; ++t) {
         const auto& [coefficient, a, b, shift] = p_.terms[t];
-        if (b == no_slot) step.columns.push_back({{a}, static_cast<int>(shift), constant(coefficient)});
-        else if (i.op == Op::Function) step.products.push_back({{b}, {a}, constant(coefficient)});
-        else step.products.push_back({{a}, {b}, constant(coefficient)});
+        if (b == no_slot)
+          step.columns.push_back({{a}, static_cast<int>(shift), constant(coefficient)});
+        else if (i.op == Op::Function)
+          step.products.push_back({{b}, {a}, constant(coefficient)});
+        else
+          step.products.push_back({{a}, {b}, constant(coefficient)});
       }
       if (i.op == Op::Function)
         step.kind = Step::Integral, step.functions = {static_cast<std::uint32_t>(&i - p_.instructions.data())};
       return add(std::move(step));
-    case Op::Square: step.products = {{{i.a}, {i.a}, one}}; return add(std::move(step));
-    case Op::Derivative: step.columns = {{{i.a}, 1, one}}; return add(std::move(step));
-    case Op::Quotient: step.kind = Step::Quotient, step.products = {{{i.a}, {i.b}, none}}; return add(std::move(step));
-    case Op::SquareRoot: step.kind = Step::Root, step.products = {{{i.a}, {}, none}}; return add(std::move(step));
+    case Op::Square:
+      step.products = {{{i.a}, {i.a}, one}};
+      return add(std::move(step));
+    case Op::Derivative:
+      step.columns = {{{i.a}, 1, one}};
+      return add(std::move(step));
+    case Op::Quotient:
+      step.kind = Step::Quotient, step.products = {{{i.a}, {i.b}, none}};
+      return add(std::move(step));
+    case Op::SquareRoot:
+      step.kind = Step::Root, step.products = {{{i.a}, {}, none}};
+      return add(std::move(step));
     case Op::Power:
       step.kind = Step::Power, step.products = {{{i.a}, {}, constant(i.constant)}};
       return add(std::move(step));
     // leaves, pairs, which are packs always, and what is not unrolled
-    case Op::SinCos: case Op::SinhCosh:
-    case Op::One: case Op::Time: case Op::Coordinate: case Op::Companion: case Op::Select: return;
+    case Op::SinCos:
+    case Op::SinhCosh:
+    case Op::One:
+    case Op::Time:
+    case Op::Coordinate:
+    case Op::Companion:
+    case Op::Select:
+      return;
   }
 }
 

@@ -36,20 +36,20 @@ struct Expansion {
   Kernel kernel;
   sparse::Strip strip;
   packed::PackedProgram packed;
-  const Program& program;                  // of `packed`
+  const Program& program;  // of `packed`
   int order, orders;
   Memory memory;
   const packed::Engine& engine = packed::engine();
   packed::Tables tables;
-  std::vector<packed::Order> of_orders;    // those below 0, which nothing reads, then [orders]
-  Doubles lane_coefficients;    // [packed.coefficients]
-  Doubles sums;                 // [convolutions × rolled_group × 8] of products, made for stages that follow
+  std::vector<packed::Order> of_orders;  // those below 0, which nothing reads, then [orders]
+  Doubles lane_coefficients;             // [packed.coefficients]
+  Doubles sums;                          // [convolutions × rolled_group × 8] of products, made for stages that follow
   std::map<std::uint32_t, std::vector<sparse::Edge>> edges_of_scalars;  // of instructions that stand alone
-  std::vector<const Instruction*> producer;  // [slots]
+  std::vector<const Instruction*> producer;                             // [slots]
   std::vector<double> parameters;
   std::vector<std::int8_t> sides;
-  bool stale = true;                       // constants to be computed
-  std::size_t unknowns;                    // n + m
+  bool stale = true;     // constants to be computed
+  std::size_t unknowns;  // n + m
   int last_stage = 0;
 
  private:

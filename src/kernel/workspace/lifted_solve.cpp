@@ -1,8 +1,8 @@
 #include "kernel/workspace/lifted_solve.hpp"
 
-#include "kernel/reference/sampled_states.hpp"
 #include "kernel/packed/code.hpp"
 #include "kernel/packed/engine.hpp"
+#include "kernel/reference/sampled_states.hpp"
 #include "kernel/straight_line/widen.hpp"
 
 #include <algorithm>
@@ -253,8 +253,10 @@ void LiftedSolve::run_solve(std::span<const double> b, double* x) {
 }
 
 const double* LiftedSolve::solve_row(const double* row) {
-  if (code_) code_(0, solver_->factors(), solver_->inverse_pivots(), row, cells_.data(), scratch_.data());
-  else solver_->solve(row, places_, cells_.data());
+  if (code_)
+    code_(0, solver_->factors(), solver_->inverse_pivots(), row, cells_.data(), scratch_.data());
+  else
+    solver_->solve(row, places_, cells_.data());
   return cells_.data();
 }
 

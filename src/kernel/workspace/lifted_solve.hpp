@@ -1,6 +1,6 @@
 #pragma once
-#include "kernel/reference/reference.hpp"
 #include "kernel/packed/layout.hpp"
+#include "kernel/reference/reference.hpp"
 #include "kernel/sparse/graph_product.hpp"
 #include "kernel/sparse/parts.hpp"
 #include "kernel/sparse/sparse_solver.hpp"
@@ -14,12 +14,12 @@ using reference::Doubles;
 using reference::Memory;
 
 /// M₀ x = b for systems so large that a full M₀ costs more. M₀ of a chain is full, but it is what is left of a sparse
-/// matrix when the points between q̈ and the residual are eliminated: that larger system (sparse::LiftedSystem) is solved in
-/// place of M₀, at a cost that grows as the number of links.
+/// matrix when the points between q̈ and the residual are eliminated: that larger system (sparse::LiftedSystem) is
+/// solved in place of M₀, at a cost that grows as the number of links.
 ///
-/// Its pivots are chosen once, and may become small where the motion goes. So the first solution of each step is put into
-/// the equations again. What it leaves of b decides: the step is solved here, perhaps with a correction of each solution;
-/// or by the full matrix, which alone tells what is singular.
+/// Its pivots are chosen once, and may become small where the motion goes. So the first solution of each step is put
+/// into the equations again. What it leaves of b decides: the step is solved here, perhaps with a correction of each
+/// solution; or by the full matrix, which alone tells what is singular.
 class LiftedSolve {
  public:
   /// `program`: as it was before it was packed; `strip`: by which it was.
@@ -88,24 +88,24 @@ class LiftedSolve {
 
   const Program& program_;
   const sparse::Strip& strip_;
-  std::size_t stored_;                           // cells that tangents() gives
+  std::size_t stored_;  // cells that tangents() gives
   std::optional<sparse::LiftedSystem> system_;
   std::optional<sparse::Assembly> assembly_;
   std::optional<sparse::GraphProduct> product_;
   std::optional<sparse::SparseSolver> solver_;
-  std::vector<std::uint32_t> places_;            // [unknowns] of the residual in a row
-  std::vector<std::uint32_t> cell_of_column_;    // [columns] slots of the packed program, then cells of their own
-  AllWanted copies_;                             // of q̈ in the cells of blocks
-  std::vector<Slot> number_;                     // [slots] in a row of the packed program
-  std::vector<double> entries_;                  // [entries]
-  bool has_entries_ = false;                     // of this point
-  std::vector<double> residual_;                 // [unknowns] b − M₀ x
-  Doubles cells_, change_;                       // [stride + columns]
-  Doubles row_;                                  // [stride] b, where code reads it
+  std::vector<std::uint32_t> places_;          // [unknowns] of the residual in a row
+  std::vector<std::uint32_t> cell_of_column_;  // [columns] slots of the packed program, then cells of their own
+  AllWanted copies_;                           // of q̈ in the cells of blocks
+  std::vector<Slot> number_;                   // [slots] in a row of the packed program
+  std::vector<double> entries_;                // [entries]
+  bool has_entries_ = false;                   // of this point
+  std::vector<double> residual_;               // [unknowns] b − M₀ x
+  Doubles cells_, change_;                     // [stride + columns]
+  Doubles row_;                                // [stride] b, where code reads it
   double least_pivot_ = 1;
-  bool refines_ = false;                         // each solution of this step
+  bool refines_ = false;  // each solution of this step
   int failures_ = 0;
-  std::optional<CompileOptions> options_;        // of the code that is wanted
+  std::optional<CompileOptions> options_;  // of the code that is wanted
   std::optional<CompileReport> report_;
   /// of the solver's solve(), then of what is named here, where it is not 0
   straight::Code code_;
@@ -113,7 +113,7 @@ class LiftedSolve {
   /// of negative_inverse(), [eights of columns]: eights of rows that are found there, but not the other way round
   std::vector<std::vector<std::size_t>> mirrored_;
   bool in_parts_ = false, parts_failed_ = false;
-  std::vector<double> scratch_;                  // of the code
+  std::vector<double> scratch_;  // of the code
 };
 
 }  // namespace maupertuis::workspace

@@ -101,8 +101,10 @@ KernelStatus StageSolver::solve_and_look(int stage) {
 
 /// unknown → its solution.
 void StageSolver::solve_factored() {
-  if (by_lifting_) lifted_->solve(unknown_);
-  else solver_->solve(unknown_);
+  if (by_lifting_)
+    lifted_->solve(unknown_);
+  else
+    solver_->solve(unknown_);
 }
 
 /// unknown = q̈_k.
@@ -182,7 +184,8 @@ bool StageSolver::solve_twice_by_inverse(int stage) {
 void StageSolver::add_residual(int stage) {
   const double* const row = x_.memory.row(stage);
   const auto [first, last] = residual_vectors_;
-  if (first != last) x_.engine.add(tangent_.data() + first, row + first, 1, last - first);
+  if (first != last)
+    x_.engine.add(tangent_.data() + first, row + first, 1, last - first);
   else
     for (const Slot slot : x_.program.residual) tangent_[slot] += row[slot];
 }

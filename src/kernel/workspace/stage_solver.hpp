@@ -108,32 +108,32 @@ class StageSolver {
   bool alone_ = false;
   std::size_t singular_ = 0, contradicting_ = 0;
 
-  Doubles solution_;          // q̈_k and λ_k, padded
-  std::span<double> unknown_;            // [n + m] of it: −R_k, then q̈_k and λ_k
-  Doubles rough_;             // a solution that is being corrected, padded
+  Doubles solution_;           // q̈_k and λ_k, padded
+  std::span<double> unknown_;  // [n + m] of it: −R_k, then q̈_k and λ_k
+  Doubles rough_;              // a solution that is being corrected, padded
   /// tangents in the direction by which a first solution was wrong, to be taken off again; null: none
   const double* excess_ = nullptr;
   std::pair<Slot, Slot> residual_vectors_;  // see find_residual_vectors()
 
-  Doubles tangent_;           // by_matrix: ∂slot/∂q^(lag) for each unknown [n + m × stride], else for one direction
-  packed::TangentMatrix tangents_;       // by_matrix: the engine's view of it
-  bool has_direction_ = false;           // it is that of q̈_k, if `excess_` is taken from it
+  Doubles tangent_;  // by_matrix: ∂slot/∂q^(lag) for each unknown [n + m × stride], else for one direction
+  packed::TangentMatrix tangents_;  // by_matrix: the engine's view of it
+  bool has_direction_ = false;      // it is that of q̈_k, if `excess_` is taken from it
 
-  std::vector<double> bordered_;         // [(n + m) × (n + m)] ∂R/∂(q̈, λ) at order 0; empty until it is asked for
-  bool has_full_ = false;                // it is that of this point
-  std::vector<double> block_tangent_;    // [slots × 8]
-  std::vector<sparse::Edge> of_mass_;    // through which M₀ goes
-  bool mass_in_eights_ = false;          // see has_mass_in_eights()
+  std::vector<double> bordered_;       // [(n + m) × (n + m)] ∂R/∂(q̈, λ) at order 0; empty until it is asked for
+  bool has_full_ = false;              // it is that of this point
+  std::vector<double> block_tangent_;  // [slots × 8]
+  std::vector<sparse::Edge> of_mass_;  // through which M₀ goes
+  bool mass_in_eights_ = false;        // see has_mass_in_eights()
   std::optional<bool> symmetric_pattern_;  // of M₀, once it was asked for
   std::optional<dense::BorderedSolver> solver_;
 
-  Doubles inverse_;           // −M⁻¹, padded rows and columns
-  Doubles answers_;           // scratch of Engine::run_stages_by_inverse
-  std::vector<std::int8_t> own_;         // see packed::InverseSolution
+  Doubles inverse_;               // −M⁻¹, padded rows and columns
+  Doubles answers_;               // scratch of Engine::run_stages_by_inverse
+  std::vector<std::int8_t> own_;  // see packed::InverseSolution
   bool residual_side_by_side_ = false;
-  Doubles probe_;             // [stride] the right side of inverts()
-  Doubles largest_rest_;      // [stride] that a solution for it may leave; what is no residual may be anything
-  bool has_probe_ = false;               // for these parameters
+  Doubles probe_;           // [stride] the right side of inverts()
+  Doubles largest_rest_;    // [stride] that a solution for it may leave; what is no residual may be anything
+  bool has_probe_ = false;  // for these parameters
 
   std::optional<LiftedSolve> lifted_;
 };

@@ -127,8 +127,10 @@ void KernelWorkspace::Impl::run_stage(int stage) {
 /// What no stage follows needs no copies.
 void KernelWorkspace::Impl::renew_blocks(int stage, int stages) {
   if (stage + 1 >= stages) return;
-  if (in_code.code.stage) in_code.code.ahead(&in_code.arguments, stage);
-  else expansion.engine.renew_blocks(expansion.tables, stage);
+  if (in_code.code.stage)
+    in_code.code.ahead(&in_code.arguments, stage);
+  else
+    expansion.engine.renew_blocks(expansion.tables, stage);
 }
 
 /// What follows the solution of a stage.

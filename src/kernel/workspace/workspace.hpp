@@ -25,7 +25,7 @@ struct KernelWorkspace::Impl {
   workspace::ExpansionInCode in_code;
   workspace::StageSolver solver;
   reference::PointSection at_point;
-  bool corrects_points;              // something that is read at a point alone depends on q̈
+  bool corrects_points;  // something that is read at a point alone depends on q̈
 };
 
 }  // namespace maupertuis

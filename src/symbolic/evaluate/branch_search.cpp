@@ -64,7 +64,8 @@ Bindings BranchSearch::draw() {
       const std::vector<double>& tried = tried_[static_cast<std::size_t>(known - moving_.begin())];
       out[symbol] = tried[static_cast<std::size_t>(pick * static_cast<double>(tried.size()))] * (1 + 0.3 * u);
     } else {
-      out[symbol] = way < 0.8 ? own + 0.3 * u * (own != 0 ? std::abs(own) : 1) : std::copysign(std::pow(10, 4 * pick - 2), u);
+      out[symbol] =
+          way < 0.8 ? own + 0.3 * u * (own != 0 ? std::abs(own) : 1) : std::copysign(std::pow(10, 4 * pick - 2), u);
     }
   }
   return out;

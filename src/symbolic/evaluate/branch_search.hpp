@@ -17,7 +17,7 @@ class BranchSearch {
  public:
   BranchSearch(std::span<const Expr> functions, const SwitchSearch& search);
 
-  const std::vector<Expr>& moving() const { return moving_; }              // those that the functions know
+  const std::vector<Expr>& moving() const { return moving_; }  // those that the functions know
   const std::vector<double>& values_to_try(std::size_t symbol) const { return tried_[symbol]; }
 
   /// All that may move at random: near the center, near a value to try, at any size.

@@ -8,7 +8,7 @@ namespace maupertuis::evaluation {
 namespace {
 
 struct Fraction {
-  double up = 0, down = 0;   // degrees
+  double up = 0, down = 0;  // degrees
   double height = 0;
 };
 
@@ -42,7 +42,8 @@ Fraction derivative(const Fraction& f) { return {f.up + f.down, 2 * f.down, 2 * 
 double bits(const Rational& value) {
   const auto parts = value.small();
   if (!parts) return 4.0 * static_cast<double>(value.numerator_string().size() + value.denominator_string().size());
-  return std::log2(1.0 + std::abs(static_cast<double>(parts->numerator))) + std::log2(static_cast<double>(parts->denominator));
+  return std::log2(1.0 + std::abs(static_cast<double>(parts->numerator))) +
+         std::log2(static_cast<double>(parts->denominator));
 }
 
 /// e^(i·argument) as a monomial of the basis: the sum of the absolute values of its coefficients over a common
@@ -51,7 +52,10 @@ double angle_degree(const Tape& tape, Position argument) {
   double degree = 0, denominator = 1;
   const auto add = [&](Position at) {
     const auto c = term_view(tape, at).coefficient.small();
-    if (!c) { degree = 1e30; return; }
+    if (!c) {
+      degree = 1e30;
+      return;
+    }
     degree += std::abs(static_cast<double>(c->numerator)) / static_cast<double>(c->denominator);
     denominator = std::max(denominator, static_cast<double>(c->denominator));
   };
@@ -64,8 +68,8 @@ double angle_degree(const Tape& tape, Position argument) {
 }
 
 constexpr int largest_number_of_points = 4096;
-constexpr double largest_degree = 1099511627776.0;   // 2^40
-constexpr double log2_of_primes = 33;                 // random_prime_triple draws from more than 2^33
+constexpr double largest_degree = 1099511627776.0;  // 2^40
+constexpr double log2_of_primes = 33;               // random_prime_triple draws from more than 2^33
 
 }  // namespace
 
@@ -80,7 +84,7 @@ double error_bound(const Complexity& c, int points, double smallest_group) {
   const double sheets = std::pow(4.0, c.radicals);
   const double hit = std::min(1.0, (2 * c.degree + 1) * sheets / smallest_group);
   double at_points = std::pow(hit, points);
-  if (c.switches > 0) {   // the sign combination that differs, with probability 2^-switches a point, must be drawn too
+  if (c.switches > 0) {  // the sign combination that differs, with probability 2^-switches a point, must be drawn too
     const double seen = std::pow(0.5, std::min(c.switches, 60));
     at_points = std::pow(1 - seen * (1 - hit), points);
   }
@@ -96,8 +100,13 @@ Complexity complexity(const Tape& tape) {
   for (Position at = 0; at < tape.size(); ++at) {
     const auto arguments = tape.arguments(at);
     switch (tape.kind(at)) {
-      case Kind::Number: f[at].height = bits(tape.expression(at).number()); break;
-      case Kind::Sum: case Kind::Min: case Kind::Max: case Kind::Piecewise:
+      case Kind::Number:
+        f[at].height = bits(tape.expression(at).number());
+        break;
+      case Kind::Sum:
+      case Kind::Min:
+      case Kind::Max:
+      case Kind::Piecewise:
         terms.clear();
         for (const Position a : arguments) terms.push_back(f[a]);
         f[at] = sum(terms);
@@ -119,26 +128,55 @@ Complexity complexity(const Tape& tape) {
         if (!exponent.number().is_integer() && bases_of_roots.insert(arguments[0]).second) ++result.radicals;
         break;
       }
-      case Kind::Sin: case Kind::Cos: case Kind::Tan: case Kind::Sinh: case Kind::Cosh: case Kind::Tanh: case Kind::Exp: {
+      case Kind::Sin:
+      case Kind::Cos:
+      case Kind::Tan:
+      case Kind::Sinh:
+      case Kind::Cosh:
+      case Kind::Tanh:
+      case Kind::Exp: {
         // A Laurent monomial of the group elements: `error_bound` counts exponents of both signs.
         const bool quotient = tape.kind(at) == Kind::Tan || tape.kind(at) == Kind::Tanh;
         const double d = angle_degree(tape, arguments[0]);
         f[at] = {d, quotient ? d : 0, 1};
         break;
       }
-      case Kind::Asin: case Kind::Acos: case Kind::Atan: case Kind::Atan2: case Kind::Acosh:
+      case Kind::Asin:
+      case Kind::Acos:
+      case Kind::Atan:
+      case Kind::Atan2:
+      case Kind::Acosh:
         ++result.radicals;
         f[at] = {1, 0, 0};
         break;
       // A random number of its own.
-      case Kind::Pi: case Kind::Symbol: case Kind::Log: case Kind::Asinh: case Kind::Atanh: case Kind::Erf: case Kind::LambertW:
+      case Kind::Pi:
+      case Kind::Symbol:
+      case Kind::Log:
+      case Kind::Asinh:
+      case Kind::Atanh:
+      case Kind::Erf:
+      case Kind::LambertW:
         f[at] = {1, 0, 0};
         break;
-      case Kind::TimeDerivative: f[at] = derivative(f[arguments[0]]); break;
-      case Kind::Abs: ++result.switches; f[at] = f[arguments[0]]; break;
-      case Kind::Sign: case Kind::Step: ++result.switches; break;
-      case Kind::Less: case Kind::LessEqual: ++result.switches; break;
-      case Kind::And: case Kind::Or: break;   // their comparisons count
+      case Kind::TimeDerivative:
+        f[at] = derivative(f[arguments[0]]);
+        break;
+      case Kind::Abs:
+        ++result.switches;
+        f[at] = f[arguments[0]];
+        break;
+      case Kind::Sign:
+      case Kind::Step:
+        ++result.switches;
+        break;
+      case Kind::Less:
+      case Kind::LessEqual:
+        ++result.switches;
+        break;
+      case Kind::And:
+      case Kind::Or:
+        break;  // their comparisons count
     }
   }
   for (const Position root : tape.roots()) {

@@ -5,11 +5,11 @@ namespace maupertuis::evaluation {
 
 /// A bound of the degree of a tape's roots as rational functions of their atoms, and of the bits of their coefficients.
 struct Complexity {
-  double degree = 0;       // of numerator and denominator over a common denominator
-  double height = 0;       // bits
-  int radicals = 0;        // distinct roots: the image is a cover of 2^radicals sheets
-  int switches = 0;        // distinct signs asked for
-  bool claimable = true;   // false: symbolic exponents of several bases, whose images are not proved independent
+  double degree = 0;      // of numerator and denominator over a common denominator
+  double height = 0;      // bits
+  int radicals = 0;       // distinct roots: the image is a cover of 2^radicals sheets
+  int switches = 0;       // distinct signs asked for
+  bool claimable = true;  // false: symbolic exponents of several bases, whose images are not proved independent
 };
 Complexity complexity(const Tape& tape);
 

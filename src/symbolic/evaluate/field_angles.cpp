@@ -6,7 +6,12 @@
 namespace maupertuis::evaluation {
 namespace {
 
-enum : std::uint64_t { key_turn = 0x7475726e, key_angle = 0x616e67, key_generator = 0x67656e, key_direction = 0x646972 };
+enum : std::uint64_t {
+  key_turn = 0x7475726e,
+  key_angle = 0x616e67,
+  key_generator = 0x67656e,
+  key_direction = 0x646972
+};
 
 // Beyond it hardly any prime agrees with the reals in every sign; then only the group relations hold.
 constexpr std::uint64_t largest_ordered_root = 48;
@@ -35,8 +40,7 @@ FieldNumbers::Angle FieldNumbers::turned(Angle a, std::uint64_t times) const {
 FieldNumbers::Angle FieldNumbers::random_direction(std::uint64_t key) const {
   const Value tau = random(key_direction, key), square = field_.multiply(tau, tau);
   const Value scale = field_.inverse(field_.add(field_.one(), square));
-  return {field_.multiply(field_.subtract(field_.one(), square), scale),
-          field_.multiply(field_.add(tau, tau), scale)};
+  return {field_.multiply(field_.subtract(field_.one(), square), scale), field_.multiply(field_.add(tau, tau), scale)};
 }
 
 void FieldNumbers::choose_generators() {
@@ -53,7 +57,7 @@ void FieldNumbers::choose_right_angles() {
   const std::uint64_t m = primes_.m, wanted = hints_.m_used;
   root_ = {field_.one(), 0};
   if (wanted == 0) return;
-  const auto agrees = [&](Angle step) {   // step: rotation by 2π/wanted
+  const auto agrees = [&](Angle step) {  // step: rotation by 2π/wanted
     if (wanted > largest_ordered_root) return true;
     Angle a = step;
     for (std::uint64_t j = 1; 4 * j <= wanted; ++j, a = turned(a, step))
@@ -63,7 +67,7 @@ void FieldNumbers::choose_right_angles() {
   for (std::uint64_t attempt = 1; attempt < 64; ++attempt) {
     const Angle candidate = turned(random_direction(attempt), primes_.r);
     const Angle step = turned(candidate, m / wanted);
-    bool primitive = true;                // no smaller power of step is 1
+    bool primitive = true;  // no smaller power of step is 1
     for (std::uint64_t d = 2; d <= wanted; ++d) {
       if (wanted % d != 0) continue;
       const Angle power = turned(step, wanted / d);
@@ -71,8 +75,11 @@ void FieldNumbers::choose_right_angles() {
     }
     if (!primitive) continue;
     for (std::uint64_t k = 1; k < wanted; ++k)
-      if (std::gcd(k, wanted) == 1 && agrees(turned(step, k))) { root_ = turned(step, k); return; }
-    break;                                // all primitive roots are powers of this one: none agrees modulo this p
+      if (std::gcd(k, wanted) == 1 && agrees(turned(step, k))) {
+        root_ = turned(step, k);
+        return;
+      }
+    break;  // all primitive roots are powers of this one: none agrees modulo this p
   }
   throw Redraw{true};
 }
@@ -83,7 +90,7 @@ void FieldNumbers::rotate(const Tape& tape, Position at, const std::vector<Value
     for (const Position term : tape.arguments(at)) rotate(tape, term, values, angle);
     return;
   }
-  if (tape.kind(at) == Kind::Number) {    // sin(x + 1): one is a basis element too
+  if (tape.kind(at) == Kind::Number) {  // sin(x + 1): one is a basis element too
     const Angle unit = turned(turn_, mix(mix(seed_ ^ key_turn) ^ field_.one()) % primes_.r);
     angle = turned(angle, turned(unit, residue_of(tape.expression(at).number(), turns_)));
     return;

@@ -18,7 +18,8 @@ void note_multiple_of_pi(const Tape& tape, Position at, FieldHints& hints) {
   const TermView term = term_view(tape, at);
   const auto c = term.coefficient.small();
   if (tape.kind(term.rest) != Kind::Pi || !c || c->denominator > 4096) return;
-  const std::uint64_t used = std::lcm(std::max<std::uint64_t>(hints.m_used, 2), 2 * static_cast<std::uint64_t>(c->denominator));
+  const std::uint64_t used =
+      std::lcm(std::max<std::uint64_t>(hints.m_used, 2), 2 * static_cast<std::uint64_t>(c->denominator));
   if (std::lcm(used, std::uint64_t{840}) > largest_multiple) return;
   hints.m_used = used;
   hints.m = std::lcm(used, std::uint64_t{840});
@@ -48,15 +49,15 @@ std::vector<std::int8_t> definite_signs(const Tape& tape) {
   std::vector<Range> values;
   run(tape, numbers, values);
   std::vector<std::int8_t> signs(tape.size(), 0);
-  for (Position at = 0; at < tape.size(); ++at)
-    signs[at] = values[at].low >= 0 ? 1 : values[at].high <= 0 ? -1 : 0;
+  for (Position at = 0; at < tape.size(); ++at) signs[at] = values[at].low >= 0 ? 1 : values[at].high <= 0 ? -1 : 0;
   return signs;
 }
 
-/// For each node that asks for a sign, the symbol below it that was met last: by the smallest number of earlier such nodes.
+/// For each node that asks for a sign, the symbol below it that was met last: by the smallest number of earlier such
+/// nodes.
 void find_free_symbols(const Tape& tape, const std::vector<Position>& askers, FieldHints& hints) {
   constexpr Position none = ~Position{0};
-  std::vector<Position> rank(tape.size(), none);       // of a node below an asker: the first asker above it
+  std::vector<Position> rank(tape.size(), none);  // of a node below an asker: the first asker above it
   for (Position k = 0; k < askers.size(); ++k) {
     std::vector<Position> open{tape.argument(askers[k], 0)};
     while (!open.empty()) {
@@ -67,7 +68,7 @@ void find_free_symbols(const Tape& tape, const std::vector<Position>& askers, Fi
       for (const Position argument : tape.arguments(node)) open.push_back(argument);
     }
   }
-  std::vector<Position> latest(tape.size(), none);     // the symbol of highest rank below a node
+  std::vector<Position> latest(tape.size(), none);  // the symbol of highest rank below a node
   for (Position at = 0; at < tape.size(); ++at) {
     if (rank[at] == none) continue;
     if (tape.kind(at) == Kind::Symbol) latest[at] = at;
@@ -84,14 +85,17 @@ void find_free_symbols(const Tape& tape, const std::vector<Position>& askers, Fi
 
 }  // namespace
 
-int mends_allowed(const Tape& tape) { return static_cast<int>(std::min<std::size_t>(4000, 20'000'000 / (tape.size() + 1))); }
+int mends_allowed(const Tape& tape) {
+  return static_cast<int>(std::min<std::size_t>(4000, 20'000'000 / (tape.size() + 1)));
+}
 
 FieldHints field_hints(const Tape& tape) {
   FieldHints hints;
   std::vector<Position> askers;
   for (Position at = 0; at < tape.size(); ++at) {
     const Kind kind = tape.kind(at);
-    if (kind == Kind::Sin || kind == Kind::Cos || kind == Kind::Tan) note_multiple_of_pi(tape, tape.argument(at, 0), hints);
+    if (kind == Kind::Sin || kind == Kind::Cos || kind == Kind::Tan)
+      note_multiple_of_pi(tape, tape.argument(at, 0), hints);
     if (!asks_sign(tape, at)) continue;
     askers.push_back(at);
     const Expr argument = tape.expression(tape.argument(at, 0));

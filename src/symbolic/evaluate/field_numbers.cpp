@@ -9,7 +9,10 @@ namespace {
 
 // Keys of the random choices, one a purpose.
 enum : std::uint64_t {
-  key_symbol = 0x73796d, key_exponent = 0x657870, key_log = 0x6c6f67, key_pi = 0x7069,
+  key_symbol = 0x73796d,
+  key_exponent = 0x657870,
+  key_log = 0x6c6f67,
+  key_pi = 0x7069,
 };
 
 }  // namespace
@@ -91,7 +94,8 @@ std::uint64_t FieldNumbers::residue_of(const Rational& c, const PrimeField& grou
 std::uint64_t FieldNumbers::exponent_of(const Rational& c) const { return residue_of(c, exponents_); }
 
 /// What a term c·rest is the multiple of, as a number that names it: its value divided by c.
-FieldNumbers::Value FieldNumbers::term_key(const Tape& tape, const TermView& term, const std::vector<Value>& values) const {
+FieldNumbers::Value FieldNumbers::term_key(const Tape& tape, const TermView& term,
+                                           const std::vector<Value>& values) const {
   const Value value = values[term.rest];
   const bool rest_holds_coefficient = !term.coefficient.is_one() && tape.kind(term.rest) == Kind::Product &&
                                       tape.kind(tape.argument(term.rest, 0)) == Kind::Number &&
@@ -129,7 +133,8 @@ FieldNumbers::Value FieldNumbers::power(const Tape& tape, Position at, const std
 // ------------------------------------------------------------------------------------------------- exp and log
 
 /// A positive u with exp(rest) = u, where rest is a function that inverts exp; nothing for all others.
-std::optional<FieldNumbers::Value> FieldNumbers::exponential_of_inverse(const Tape& tape, Position rest, const std::vector<Value>& values) const {
+std::optional<FieldNumbers::Value> FieldNumbers::exponential_of_inverse(const Tape& tape, Position rest,
+                                                                        const std::vector<Value>& values) const {
   const Kind kind = tape.kind(rest);
   if (!is_function(kind)) return std::nullopt;
   const Value x = values[tape.argument(rest, 0)], one = field_.one();
@@ -142,7 +147,8 @@ std::optional<FieldNumbers::Value> FieldNumbers::exponential_of_inverse(const Ta
 }
 
 /// Multiplies by exp of one term c·rest. Where rest holds a logarithm, exp(c·s·log u) = u^(c·s).
-void FieldNumbers::multiply_exponential(const Tape& tape, Position at, const std::vector<Value>& values, Value& product) {
+void FieldNumbers::multiply_exponential(const Tape& tape, Position at, const std::vector<Value>& values,
+                                        Value& product) {
   if (tape.kind(at) == Kind::Sum) {
     for (const Position term : tape.arguments(at)) multiply_exponential(tape, term, values, product);
     return;
@@ -196,7 +202,8 @@ FieldNumbers::Value FieldNumbers::absolute_logarithm(const Tape& tape, Position 
   if (kind == Kind::Number) return logarithm_of_number(tape.expression(at).number());
   if (kind == Kind::Exp) return values[argument(0)];
   if (kind == Kind::Abs) return absolute_logarithm(tape, argument(0), values);
-  if (kind == Kind::LambertW) return field_.subtract(absolute_logarithm(tape, argument(0), values), values[at]);  // w = x e^(−w)
+  if (kind == Kind::LambertW)
+    return field_.subtract(absolute_logarithm(tape, argument(0), values), values[at]);  // w = x e^(−w)
   if (kind == Kind::Power) return field_.multiply(values[argument(1)], absolute_logarithm(tape, argument(0), values));
   if (kind == Kind::Product) {
     Value sum = 0;
@@ -234,8 +241,8 @@ bool FieldNumbers::holds(const Tape& tape, Position condition, const std::vector
   return sign > 0;
 }
 
-/// A random number that depends on the value of the argument alone, with the parity of the function: the image of a function
-/// of which no more is known.
+/// A random number that depends on the value of the argument alone, with the parity of the function: the image of a
+/// function of which no more is known.
 FieldNumbers::Value FieldNumbers::opaque(Kind kind, Value x) const {
   const Parity parity = functions::of_row(kind, [](const auto& row) { return row.parity; });
   const bool flip = parity != Parity::None && field_.character(x) < 0;
@@ -257,38 +264,69 @@ FieldNumbers::Value FieldNumbers::function(const Tape& tape, Position at, const 
     return field_.character(field_.subtract(b, a)) > 0 ? std::pair{a, b} : std::pair{b, a};
   };
   switch (tape.kind(at)) {
-    case Kind::Power: return power(tape, at, values);
-    case Kind::Sin: return cos_sin(tape, argument, values).sine;
-    case Kind::Cos: return cos_sin(tape, argument, values).cosine;
+    case Kind::Power:
+      return power(tape, at, values);
+    case Kind::Sin:
+      return cos_sin(tape, argument, values).sine;
+    case Kind::Cos:
+      return cos_sin(tape, argument, values).cosine;
     case Kind::Tan: {
       const Angle a = cos_sin(tape, argument, values);
       return field_.multiply(a.sine, inverse(a.cosine));
     }
-    case Kind::Asin: case Kind::Acos: case Kind::Atan: case Kind::Atan2: return angle_of(direction(tape, at, values));
-    case Kind::Exp: return exponential(tape, argument, values);
-    case Kind::Sinh: case Kind::Cosh: case Kind::Tanh: {
+    case Kind::Asin:
+    case Kind::Acos:
+    case Kind::Atan:
+    case Kind::Atan2:
+      return angle_of(direction(tape, at, values));
+    case Kind::Exp:
+      return exponential(tape, argument, values);
+    case Kind::Sinh:
+    case Kind::Cosh:
+    case Kind::Tanh: {
       const Value e = exponential(tape, argument, values), f = inverse(e);
       const Value sinh = half(field_.subtract(e, f)), cosh = half(field_.add(e, f));
       if (tape.kind(at) == Kind::Tanh) return field_.multiply(sinh, inverse(cosh));
       return tape.kind(at) == Kind::Sinh ? sinh : cosh;
     }
-    case Kind::Log: return logarithm(tape, argument, values);
+    case Kind::Log:
+      return logarithm(tape, argument, values);
     // The logarithms of exp of these nodes; and a function that no algebra ties to others.
-    case Kind::Asinh: case Kind::Acosh: case Kind::Atanh: case Kind::Erf: return opaque(tape.kind(at), values[argument]);
-    case Kind::LambertW: return lambert_w(values[argument]);
-    case Kind::Abs: return sign(argument, values[argument]) < 0 ? field_.negate(values[argument]) : values[argument];
-    case Kind::Sign: return number(sign(argument, values[argument]));
-    case Kind::Step: return number(sign(argument, values[argument]) > 0 ? 1 : 0);
-    case Kind::Min: return smaller().first;
-    case Kind::Max: return smaller().second;
+    case Kind::Asinh:
+    case Kind::Acosh:
+    case Kind::Atanh:
+    case Kind::Erf:
+      return opaque(tape.kind(at), values[argument]);
+    case Kind::LambertW:
+      return lambert_w(values[argument]);
+    case Kind::Abs:
+      return sign(argument, values[argument]) < 0 ? field_.negate(values[argument]) : values[argument];
+    case Kind::Sign:
+      return number(sign(argument, values[argument]));
+    case Kind::Step:
+      return number(sign(argument, values[argument]) > 0 ? 1 : 0);
+    case Kind::Min:
+      return smaller().first;
+    case Kind::Max:
+      return smaller().second;
     case Kind::Piecewise: {
       const auto arguments = tape.arguments(at);
       for (std::size_t i = 0; i + 1 < arguments.size(); i += 2)
         if (holds(tape, arguments[i], values)) return values[arguments[i + 1]];
       return values[arguments.back()];
     }
-    case Kind::Less: case Kind::LessEqual: case Kind::And: case Kind::Or: return 0;   // asked by `holds`
-    case Kind::Number: case Kind::Pi: case Kind::Symbol: case Kind::Sum: case Kind::Product: case Kind::TimeDerivative: break;
+    case Kind::Less:
+    case Kind::LessEqual:
+    case Kind::And:
+    case Kind::Or:
+      return 0;  // asked by `holds`
+    case Kind::Number:
+    case Kind::Pi:
+    case Kind::Symbol:
+    case Kind::Sum:
+    case Kind::Product:
+    case Kind::TimeDerivative:
+      break;
   }
   throw unknown_kind(tape.kind(at), "an evaluation over a prime field");
 }

@@ -10,17 +10,18 @@ namespace maupertuis::evaluation {
 
 /// Thrown where a random point is of no use: a denominator vanishes, a radicand is no square. Draw another.
 struct Redraw {
-  bool another_prime = false;   // a constant is to blame: another point does not help
-  Position at = ~Position{0};   // the node whose argument has the wrong sign
+  bool another_prime = false;  // a constant is to blame: another point does not help
+  Position at = ~Position{0};  // the node whose argument has the wrong sign
 };
 
 /// What an evaluation over a prime field must know of an expression beside its nodes.
 struct FieldHints {
-  std::uint64_t m_used = 0;                  // lcm of 2·denominator over the multiples of π in angles; 0: none
-  std::uint64_t m = 840;                     // lcm of that and 840
-  std::vector<std::int8_t> sign;             // [tape] +1, −1 where the value has this sign at all real points, else 0
-  std::unordered_set<NodeId> positive;       // symbols under a root or a logarithm: drawn positive
-  std::unordered_map<Position, NodeId> free; // of a node with a sign to meet: the symbol that fewest earlier such nodes see
+  std::uint64_t m_used = 0;             // lcm of 2·denominator over the multiples of π in angles; 0: none
+  std::uint64_t m = 840;                // lcm of that and 840
+  std::vector<std::int8_t> sign;        // [tape] +1, −1 where the value has this sign at all real points, else 0
+  std::unordered_set<NodeId> positive;  // symbols under a root or a logarithm: drawn positive
+  std::unordered_map<Position, NodeId>
+      free;  // of a node with a sign to meet: the symbol that fewest earlier such nodes see
 };
 FieldHints field_hints(const Tape& tape);
 /// How many roots may be mended before a search for points is given up: bounded work for a hopeless one.
@@ -41,7 +42,9 @@ int mends_allowed(const Tape& tape);
 class FieldNumbers {
  public:
   using Value = PrimeField::Value;
-  struct Angle { Value cosine, sine; };
+  struct Angle {
+    Value cosine, sine;
+  };
 
   FieldNumbers(const PrimeTriple& primes, const FieldHints& hints, std::uint64_t seed);
 
@@ -53,7 +56,10 @@ class FieldNumbers {
   /// draws each and not 2^roots. False where no symbol stands below the root.
   bool mend(const Redraw& redraw);
   /// To be told where a kind of numbers derived from this one gives a symbol another value within one point.
-  void symbols_changed() { angles_.clear(); units_.clear(); }
+  void symbols_changed() {
+    angles_.clear();
+    units_.clear();
+  }
 
   Value number(const Rational& value) const { return field_.from(value); }
   Value pi() const;
@@ -101,15 +107,15 @@ class FieldNumbers {
   void choose_generators();
   void choose_right_angles();
 
-  PrimeField field_, exponents_, turns_;     // modulo p, q, r
+  PrimeField field_, exponents_, turns_;  // modulo p, q, r
   PrimeTriple primes_;
   const FieldHints& hints_;
   std::uint64_t seed_;
-  Value generator_ = 0;                      // of the positive numbers
-  Angle turn_{};                             // of the rotations of order r
-  Angle root_{};                             // rotation by 2π/m
+  Value generator_ = 0;  // of the positive numbers
+  Angle turn_{};         // of the rotations of order r
+  Angle root_{};         // rotation by 2π/m
   std::unordered_map<NodeId, std::uint64_t> drawn_again_;
-  std::unordered_map<Position, Angle> angles_, units_;   // of arguments and of their basis elements, at this point
+  std::unordered_map<Position, Angle> angles_, units_;  // of arguments and of their basis elements, at this point
 };
 
 }  // namespace maupertuis::evaluation

@@ -92,44 +92,74 @@ class JetNumbers {
     const auto square = [&] { return multiply(x, x); };
     const auto leading = [&] { return base_.function(tape, at, leading_); };
     switch (tape.kind(at)) {
-      case Kind::TimeDerivative: return derivative(x);
-      case Kind::Power: return power(tape, at, values);
-      case Kind::Sin: return cos_sin(tape, argument, x).second;
-      case Kind::Cos: return cos_sin(tape, argument, x).first;
+      case Kind::TimeDerivative:
+        return derivative(x);
+      case Kind::Power:
+        return power(tape, at, values);
+      case Kind::Sin:
+        return cos_sin(tape, argument, x).second;
+      case Kind::Cos:
+        return cos_sin(tape, argument, x).first;
       case Kind::Tan: {
         const auto [cosine, sine] = cos_sin(tape, argument, x);
         return multiply(sine, inverse(cosine));
       }
-      case Kind::Exp: return exponential(leading(), x);
-      case Kind::Sinh: case Kind::Cosh: case Kind::Tanh: {
+      case Kind::Exp:
+        return exponential(leading(), x);
+      case Kind::Sinh:
+      case Kind::Cosh:
+      case Kind::Tanh: {
         const Value e = exponential(base_.exponential(tape, argument, leading_), x), f = inverse(e);
         const Scalar half = base_.number(Rational(1, 2));
         const Value sinh = scale(subtract(e, f), half), cosh = scale(add(e, f), half);
         if (tape.kind(at) == Kind::Tanh) return multiply(sinh, inverse(cosh));
         return tape.kind(at) == Kind::Sinh ? sinh : cosh;
       }
-      case Kind::Log: return integral(leading(), inverse(x), x);
-      case Kind::Atan: return integral(leading(), inverse(add(one(), square())), x);
-      case Kind::Atanh: return integral(leading(), inverse(subtract(one(), square())), x);
-      case Kind::Asin: return integral(leading(), inverse_root(subtract(one(), square())), x);
-      case Kind::Acos: return integral(leading(), negate(inverse_root(subtract(one(), square()))), x);
-      case Kind::Asinh: return integral(leading(), inverse_root(add(square(), one())), x);
-      case Kind::Acosh: return integral(leading(), inverse_root(subtract(square(), one())), x);
-      case Kind::Erf: {   // f' = 2/√π exp(−x²) x'
+      case Kind::Log:
+        return integral(leading(), inverse(x), x);
+      case Kind::Atan:
+        return integral(leading(), inverse(add(one(), square())), x);
+      case Kind::Atanh:
+        return integral(leading(), inverse(subtract(one(), square())), x);
+      case Kind::Asin:
+        return integral(leading(), inverse_root(subtract(one(), square())), x);
+      case Kind::Acos:
+        return integral(leading(), negate(inverse_root(subtract(one(), square()))), x);
+      case Kind::Asinh:
+        return integral(leading(), inverse_root(add(square(), one())), x);
+      case Kind::Acosh:
+        return integral(leading(), inverse_root(subtract(square(), one())), x);
+      case Kind::Erf: {  // f' = 2/√π exp(−x²) x'
         const Scalar factor = base_.multiply(base_.number(2), base_.inverse(base_.square_root(base_.pi())));
         return integral(leading(), scale(values[tape.gaussian(at)], factor), x);
       }
-      case Kind::LambertW: return lambert_w(leading(), x);
-      case Kind::Atan2: return atan2(leading(), x, values[tape.argument(at, 1)]);
-      case Kind::Abs: return base_.sign(argument, x(0, 0)) < 0 ? negate(x) : x;
-      case Kind::Sign: case Kind::Step: return constant(leading());
-      case Kind::Min: case Kind::Max: {
+      case Kind::LambertW:
+        return lambert_w(leading(), x);
+      case Kind::Atan2:
+        return atan2(leading(), x, values[tape.argument(at, 1)]);
+      case Kind::Abs:
+        return base_.sign(argument, x(0, 0)) < 0 ? negate(x) : x;
+      case Kind::Sign:
+      case Kind::Step:
+        return constant(leading());
+      case Kind::Min:
+      case Kind::Max: {
         const Value& y = values[tape.argument(at, 1)];
         return chosen_first(leading(), x(0, 0)) ? x : y;
       }
-      case Kind::Piecewise: return piecewise(tape, at, values);
-      case Kind::Less: case Kind::LessEqual: case Kind::And: case Kind::Or: return constant(zero_);   // asked by `holds` of the base
-      case Kind::Number: case Kind::Pi: case Kind::Symbol: case Kind::Sum: case Kind::Product: break;
+      case Kind::Piecewise:
+        return piecewise(tape, at, values);
+      case Kind::Less:
+      case Kind::LessEqual:
+      case Kind::And:
+      case Kind::Or:
+        return constant(zero_);  // asked by `holds` of the base
+      case Kind::Number:
+      case Kind::Pi:
+      case Kind::Symbol:
+      case Kind::Sum:
+      case Kind::Product:
+        break;
     }
     throw unknown_kind(tape.kind(at), "a series");
   }
@@ -177,7 +207,8 @@ class JetNumbers {
     Value f = constant(first);
     for (std::size_t k = 1; k < orders_; ++k) {
       Scalar sum = zero_;
-      for (std::size_t j = 1; j <= k; ++j) sum = base_.add(sum, times(static_cast<long>(j), base_.multiply(x(0, j), slope(0, k - j))));
+      for (std::size_t j = 1; j <= k; ++j)
+        sum = base_.add(sum, times(static_cast<long>(j), base_.multiply(x(0, j), slope(0, k - j))));
       f(0, k) = base_.multiply(sum, reciprocal(k));
     }
     return with_variations(f, slope, x);
@@ -189,7 +220,8 @@ class JetNumbers {
     Value f = constant(first);
     for (std::size_t k = 1; k < orders_; ++k) {
       Scalar sum = zero_;
-      for (std::size_t j = 1; j <= k; ++j) sum = base_.add(sum, times(static_cast<long>(j), base_.multiply(x(0, j), f(0, k - j))));
+      for (std::size_t j = 1; j <= k; ++j)
+        sum = base_.add(sum, times(static_cast<long>(j), base_.multiply(x(0, j), f(0, k - j))));
       f(0, k) = base_.multiply(sum, reciprocal(k));
     }
     return with_variations(f, f, x);
@@ -284,7 +316,9 @@ class JetNumbers {
     return f;
   }
 
-  bool chosen_first(const Scalar& chosen, const Scalar& first) const { return base_.is_zero(base_.subtract(chosen, first)); }
+  bool chosen_first(const Scalar& chosen, const Scalar& first) const {
+    return base_.is_zero(base_.subtract(chosen, first));
+  }
 
   Value piecewise(const Tape& tape, Position at, const std::vector<Value>& values) {
     const auto arguments = tape.arguments(at);

@@ -13,8 +13,8 @@ constexpr std::size_t argument_budget = 64;
 
 /// The image of such a function over a prime field depends on the terms of its argument, not on their sum alone.
 bool takes_flat_argument(Kind kind) {
-  return kind == Kind::Exp || kind == Kind::Sin || kind == Kind::Cos || kind == Kind::Tan || kind == Kind::Sinh || kind == Kind::Cosh ||
-         kind == Kind::Tanh;
+  return kind == Kind::Exp || kind == Kind::Sin || kind == Kind::Cos || kind == Kind::Tan || kind == Kind::Sinh ||
+         kind == Kind::Cosh || kind == Kind::Tanh;
 }
 
 /// A sum of numbers times monomials already, without a sum inside that could be multiplied out?
@@ -62,8 +62,10 @@ std::vector<Expr> flatten_arguments(std::span<const Expr> roots) {
       Expr argument = changed.empty() ? node[i] : current(node[i]);
       const bool has_logarithm = node.is(Kind::Log) || (node.is(Kind::Power) && !node[1].is_number());
       const bool is_exponent = node.is(Kind::Power) && i == 1 && !argument.is_number();
-      if (has_logarithm && i == 0) argument = flat_factors(argument);
-      else if (is_exponent || takes_flat_argument(node.kind())) argument = flat(argument);
+      if (has_logarithm && i == 0)
+        argument = flat_factors(argument);
+      else if (is_exponent || takes_flat_argument(node.kind()))
+        argument = flat(argument);
       differs |= argument != node[i];
       arguments.push_back(argument);
     }

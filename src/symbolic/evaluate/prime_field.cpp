@@ -9,7 +9,7 @@ namespace maupertuis::evaluation {
 
 PrimeField::PrimeField(std::uint64_t prime) : prime_(prime) {
   MAUP_REQUIRE(prime % 2 == 1 && prime < (1ull << 62));
-  std::uint64_t inverse = prime;                       // Newton's iteration for 1/p modulo 2^64
+  std::uint64_t inverse = prime;  // Newton's iteration for 1/p modulo 2^64
   for (int i = 0; i < 6; ++i) inverse *= 2 - prime * inverse;
   negative_inverse_ = ~inverse + 1;
   const auto radix = static_cast<std::uint64_t>((static_cast<Wide>(1) << 64) % prime);
@@ -112,9 +112,12 @@ std::array<bool, count> sieve(std::uint64_t r0, std::uint64_t m, const std::vect
   keep.fill(true);
   for (const std::uint64_t l : primes) {
     // The residue classes of r that a divisor l forbids: 0, and the inverses of m and m/2.
-    const std::uint64_t inverse = m % l == 0 ? 0 : static_cast<std::uint64_t>(small_inverse(static_cast<std::int64_t>(m % l), static_cast<std::int64_t>(l)));
+    const std::uint64_t inverse =
+        m % l == 0
+            ? 0
+            : static_cast<std::uint64_t>(small_inverse(static_cast<std::int64_t>(m % l), static_cast<std::int64_t>(l)));
     for (const std::uint64_t forbidden : {std::uint64_t{0}, inverse, 2 * inverse % l}) {
-      std::uint64_t start = (forbidden + l - r0 % l) % l;      // r0 + start is in the class; r grows by 2
+      std::uint64_t start = (forbidden + l - r0 % l) % l;  // r0 + start is in the class; r grows by 2
       if (start % 2) start += l;
       for (std::uint64_t k = start / 2; k < count; k += l) keep[k] = false;
     }
@@ -134,7 +137,7 @@ PrimeTriple random_prime_triple(std::uint64_t m, std::uint64_t seed) {
   MAUP_REQUIRE(m % 840 == 0 && m < (1ull << 24));
   constexpr std::size_t window = 2048;
   const auto primes = small_primes();
-  const std::uint64_t span = (1ull << 60) / m;         // r in [2^60/m, 2^61/m): p has 61 bits
+  const std::uint64_t span = (1ull << 60) / m;  // r in [2^60/m, 2^61/m): p has 61 bits
   for (;; seed = mix(seed)) {
     const std::uint64_t r0 = (span + mix(seed) % (span - 2 * window)) | 1;
     const auto keep = sieve<window>(r0, m, primes);

@@ -13,7 +13,7 @@ inline std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-__extension__ typedef unsigned __int128 Wide;   // g++ and clang have it, ISO C++ does not
+__extension__ typedef unsigned __int128 Wide;  // g++ and clang have it, ISO C++ does not
 
 /// Residues modulo an odd prime below 2^62, in Montgomery form (x is kept as x·2^64 mod p).
 class PrimeField {
@@ -28,7 +28,10 @@ class PrimeField {
   std::uint64_t residue(Value a) const { return reduce(a); }
   Value from(const Rational& value) const;
 
-  Value add(Value a, Value b) const { const Value s = a + b; return s >= prime_ ? s - prime_ : s; }
+  Value add(Value a, Value b) const {
+    const Value s = a + b;
+    return s >= prime_ ? s - prime_ : s;
+  }
   Value subtract(Value a, Value b) const { return a >= b ? a - b : a + prime_ - b; }
   Value negate(Value a) const { return a == 0 ? 0 : prime_ - a; }
   Value multiply(Value a, Value b) const { return reduce(static_cast<Wide>(a) * b); }

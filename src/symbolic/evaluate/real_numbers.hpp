@@ -30,8 +30,16 @@ class RealNumbers {
 
   explicit RealNumbers(Lookup symbols) : symbols_(std::move(symbols)) {}
 
-  Real number(const Rational& value) const { Real out; from_rational(out, value); return out; }
-  Real pi() const { Real out; set_pi(out); return out; }
+  Real number(const Rational& value) const {
+    Real out;
+    from_rational(out, value);
+    return out;
+  }
+  Real pi() const {
+    Real out;
+    set_pi(out);
+    return out;
+  }
   Real symbol(Expr e) const { return symbols_(e); }
   Real add(const Real& a, const Real& b) const { return a + b; }
   Real subtract(const Real& a, const Real& b) const { return a - b; }
@@ -43,16 +51,27 @@ class RealNumbers {
     const auto arg = [&](std::size_t i) -> const Real& { return v[tape.argument(at, i)]; };
     const Kind kind = tape.kind(at);
     switch (family_of(kind)) {
-      case Family::Function: return functions::value(kind, arg(0));
-      case Family::Switch: return with_switch(kind, arg(0));
-      case Family::Angle: { using std::atan2; return atan2(arg(0), arg(1)); }
-      case Family::Extremum: return choose(kind == Kind::Min ? less(arg(1), arg(0)) : less(arg(0), arg(1)), arg(1), arg(0));
-      case Family::Piecewise: return piecewise(tape, at, v);
-      case Family::Comparison: case Family::Logic: return number(0);  // asked by `holds`
+      case Family::Function:
+        return functions::value(kind, arg(0));
+      case Family::Switch:
+        return with_switch(kind, arg(0));
+      case Family::Angle: {
+        using std::atan2;
+        return atan2(arg(0), arg(1));
+      }
+      case Family::Extremum:
+        return choose(kind == Kind::Min ? less(arg(1), arg(0)) : less(arg(0), arg(1)), arg(1), arg(0));
+      case Family::Piecewise:
+        return piecewise(tape, at, v);
+      case Family::Comparison:
+      case Family::Logic:
+        return number(0);  // asked by `holds`
       case Family::Algebra:
         if (kind == Kind::Power) return power(tape, at, v);
         break;
-      case Family::Leaf: case Family::TimeDerivative: break;
+      case Family::Leaf:
+      case Family::TimeDerivative:
+        break;
     }
     throw unknown_kind(kind, "an evaluation over real numbers");
   }
@@ -65,7 +84,7 @@ class RealNumbers {
       return greater ? std::optional<bool>(!*greater) : std::nullopt;
     }
     const auto first = holds(tape, a, v), second = holds(tape, b, v);
-    const bool decisive = tape.kind(at) == Kind::Or;   // `true` decides an or, `false` an and
+    const bool decisive = tape.kind(at) == Kind::Or;  // `true` decides an or, `false` an and
     if ((first && *first == decisive) || (second && *second == decisive)) return decisive;
     return first && second ? std::optional<bool>(!decisive) : std::nullopt;
   }

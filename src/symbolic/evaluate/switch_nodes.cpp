@@ -32,7 +32,8 @@ constexpr double on_the_switch = 1e-9;
 /// What the values of a tape at one point decide, and what is left of its nodes.
 class Decisions {
  public:
-  Decisions(const Tape& tape, const std::vector<bool>& switching, const Bindings& at) : tape_(tape), switching_(switching) {
+  Decisions(const Tape& tape, const std::vector<bool>& switching, const Bindings& at)
+      : tape_(tape), switching_(switching) {
     RealNumbers<double> numbers([&](Expr symbol) { return at.at(symbol); });
     run(tape, numbers, values_);
   }
@@ -49,21 +50,30 @@ class Decisions {
  private:
   Expr build(Position at, Expr e) {
     switch (family_of(tape_.kind(at))) {
-      case Family::Switch: return of_one_argument(at, e);
+      case Family::Switch:
+        return of_one_argument(at, e);
       case Family::Extremum:
         if (const auto side = sign(tape_.argument(at, 1), tape_.argument(at, 0)))
           return in_force(tape_.argument(at, (*side > 0) == e.is(Kind::Min) ? 0 : 1));
         break;
-      case Family::Piecewise: return piecewise(at, e);
-      case Family::Leaf: case Family::Algebra: case Family::Function: case Family::Angle: case Family::Comparison:
-      case Family::Logic: case Family::TimeDerivative: break;
+      case Family::Piecewise:
+        return piecewise(at, e);
+      case Family::Leaf:
+      case Family::Algebra:
+      case Family::Function:
+      case Family::Angle:
+      case Family::Comparison:
+      case Family::Logic:
+      case Family::TimeDerivative:
+        break;
     }
     return with_arguments_in_force(at, e);
   }
 
   Expr with_arguments_in_force(Position at, Expr e) {
     std::unordered_map<NodeId, Expr> arguments;
-    for (const Position argument : tape_.arguments(at)) arguments.emplace(tape_.expression(argument).id(), in_force(argument));
+    for (const Position argument : tape_.arguments(at))
+      arguments.emplace(tape_.expression(argument).id(), in_force(argument));
     return rebuild(e, [&](Expr argument) { return arguments.at(argument.id()); });
   }
 
@@ -82,7 +92,8 @@ class Decisions {
     for (; i + 1 < e.size(); i += 2) {
       const auto condition = holds(tape_.argument(at, i));
       if (condition && *condition) break;
-      if (!condition) kept.push_back(in_force(tape_.argument(at, i))), kept.push_back(in_force(tape_.argument(at, i + 1)));
+      if (!condition)
+        kept.push_back(in_force(tape_.argument(at, i))), kept.push_back(in_force(tape_.argument(at, i + 1)));
     }
     kept.push_back(in_force(tape_.argument(at, i + 1 < e.size() ? i + 1 : i)));
     return kept.size() == 1 ? kept.front() : e.context().function(Kind::Piecewise, kept);
@@ -109,7 +120,7 @@ class Decisions {
       return side ? std::optional<bool>(*side < 0) : std::nullopt;
     }
     const auto first = holds(a), second = holds(b);
-    const bool decisive = tape_.kind(condition) == Kind::Or;   // `true` decides an or, `false` an and
+    const bool decisive = tape_.kind(condition) == Kind::Or;  // `true` decides an or, `false` an and
     if ((first && *first == decisive) || (second && *second == decisive)) return decisive;
     return first && second ? std::optional<bool>(!decisive) : std::nullopt;
   }
@@ -122,7 +133,8 @@ class Decisions {
 
 }  // namespace
 
-Branches::Branches(std::vector<Expr> functions) : functions_(std::move(functions)), tape_(functions_), switching_(tape_.size()) {
+Branches::Branches(std::vector<Expr> functions)
+    : functions_(std::move(functions)), tape_(functions_), switching_(tape_.size()) {
   for (Position at = 0; at < tape_.size(); ++at) {
     const auto arguments = tape_.arguments(at);
     switching_[at] = has_switch(tape_.kind(at)) ||

@@ -21,8 +21,8 @@ using evaluation::Real100;
 using evaluation::Tape;
 
 const Real100 far_off("1e-20"), close_by("1e-40"), root_width("1e-90"), rounding("1e-70");
-constexpr double falls = 1e-2;   // what vanishes like a power of the distance above 0.1 falls by at least that
-constexpr double grows = 1e3;    // from 1e-20 to 1e-40: a singularity
+constexpr double falls = 1e-2;  // what vanishes like a power of the distance above 0.1 falls by at least that
+constexpr double grows = 1e3;   // from 1e-20 to 1e-40: a singularity
 constexpr int most_halvings = 700;
 constexpr int most_brackets_of_a_line = 3;
 constexpr std::size_t most_together = 24;  // switches whose combinations of signs are looked for
@@ -65,8 +65,10 @@ std::optional<Root> refine(const Tape& g, const Bracket& bracket) {
     const Real100 here = value(middle);
     if (!isfinite(here)) return std::nullopt;
     if (here == 0) return Root{middle, rises};
-    if ((here > 0) == rises) high = middle, at_high = here;
-    else low = middle, at_low = here;
+    if ((here > 0) == rises)
+      high = middle, at_high = here;
+    else
+      low = middle, at_low = here;
   }
   return Root{(low + high) / 2, rises};
 }
@@ -103,7 +105,8 @@ std::vector<Bracket> brackets(const BranchSearch& own, const Bindings& base, std
   return out;
 }
 
-SwitchSample both_sides(const Branches& functions, std::span<const Expr> beside, const Bracket& bracket, const Root& root) {
+SwitchSample both_sides(const Branches& functions, std::span<const Expr> beside, const Bracket& bracket,
+                        const Root& root) {
   SwitchSample out;
   const Real100 size = abs(root.at) + Real100(bracket.high - bracket.low);
   out.at = bracket.point;
@@ -113,9 +116,11 @@ SwitchSample both_sides(const Branches& functions, std::span<const Expr> beside,
   const Tape tape(around);
   if (abs(root.at) < size * Real100(1e-16)) out.at[bracket.symbol] = 0;
   const auto values = [&](const Real100& off) {
-    return precise_values(tape, bracket.point, bracket.symbol, root.rises ? root.at + size * off : root.at - size * off);
+    return precise_values(tape, bracket.point, bracket.symbol,
+                          root.rises ? root.at + size * off : root.at - size * off);
   };
-  const auto above_far = values(far_off), below_far = values(-far_off), above = values(close_by), below = values(-close_by);
+  const auto above_far = values(far_off), below_far = values(-far_off), above = values(close_by),
+             below = values(-close_by);
   for (std::size_t i = 0; i < above.size(); ++i) {
     out.below.push_back(static_cast<double>(below[i]));
     out.above.push_back(static_cast<double>(above[i]));
@@ -127,7 +132,8 @@ SwitchSample both_sides(const Branches& functions, std::span<const Expr> beside,
 }  // namespace
 
 struct SwitchSampler::Impl {
-  Impl(std::vector<Expr> f, std::span<const Expr> switches, SwitchSearch s) : search(std::move(s)), functions(std::move(f)) {
+  Impl(std::vector<Expr> f, std::span<const Expr> switches, SwitchSearch s)
+      : search(std::move(s)), functions(std::move(f)) {
     bases.push_back(search.center);
     BranchSearch all(switches, search);
     if (all.moving().size() < 2 && search.moving.size() < 2) return;  // the root is the same from any other base
@@ -165,7 +171,9 @@ SwitchSampler& SwitchSampler::operator=(SwitchSampler&&) noexcept = default;
 
 const std::vector<Expr>& SwitchSampler::functions() const { return impl_->functions.functions(); }
 const SwitchSearch& SwitchSampler::search() const { return impl_->search; }
-std::vector<SwitchSample> SwitchSampler::sample(Expr g, std::span<const Expr> beside) const { return impl_->sample(g, beside); }
+std::vector<SwitchSample> SwitchSampler::sample(Expr g, std::span<const Expr> beside) const {
+  return impl_->sample(g, beside);
+}
 
 std::vector<SwitchSample> sample_switches(std::span<const Expr> functions, std::span<const Expr> switches,
                                           const SwitchSearch& search) {

@@ -50,7 +50,8 @@ Expr difference(Expr a, Expr b) {
   std::vector<Expr> left = arguments_of(a), right = arguments_of(b), common;
   take_out_common(left, right, common);
   if (a.is(Kind::Sum))
-    return left.size() == 1 && right.size() == 1 ? difference(left.front(), right.front()) : context.sum(left) - context.sum(right);
+    return left.size() == 1 && right.size() == 1 ? difference(left.front(), right.front())
+                                                 : context.sum(left) - context.sum(right);
   common.push_back(left.size() == 1 && right.size() == 1 ? difference(left.front(), right.front())
                                                          : context.product(left) - context.product(right));
   return context.product(common);

@@ -13,9 +13,9 @@ namespace maupertuis {
 namespace {
 
 using evaluation::BranchSearch;
-using evaluation::Signs;
 using evaluation::difference_of;
 using evaluation::opposite;
+using evaluation::Signs;
 
 constexpr std::size_t few_switches = 6;  // of which all combinations are looked for
 constexpr std::size_t most_combinations = 400;
@@ -73,7 +73,8 @@ std::vector<Expr> switches_of(std::span<const Expr> roots) {
   for (const Expr& node : topological_order(roots)) {
     const Expr g = difference_of(node);
     if (!g || g.is_number()) continue;
-    if (std::find(out.begin(), out.end(), g) == out.end() && std::find(out.begin(), out.end(), opposite(g)) == out.end())
+    if (std::find(out.begin(), out.end(), g) == out.end() &&
+        std::find(out.begin(), out.end(), opposite(g)) == out.end())
       out.push_back(g);
   }
   return out;

@@ -14,14 +14,16 @@ Tape::Tape(std::span<const Expr> roots) { lay_out(topological_order(roots), root
 /// `order`: children before parents, whatever their ids.
 void Tape::lay_out(const std::vector<Expr>& order, std::span<const Expr> roots) {
   if (order.empty()) return;
-  const NodeId top = std::max_element(order.begin(), order.end(), [](const Expr& a, const Expr& b) { return a.id() < b.id(); })->id();
+  const NodeId top =
+      std::max_element(order.begin(), order.end(), [](const Expr& a, const Expr& b) { return a.id() < b.id(); })->id();
   // Only the entries of its nodes are ever written or read.
   const std::unique_ptr<Position[]> position(new Position[top + 1]);
   nodes_.reserve(order.size());
   for (const Expr& e : order) {
     const auto ids = e.argument_ids();
     position[e.id()] = static_cast<Position>(nodes_.size());
-    nodes_.push_back({e, static_cast<std::uint32_t>(arguments_.size()), static_cast<std::uint32_t>(ids.size()), e.kind()});
+    nodes_.push_back(
+        {e, static_cast<std::uint32_t>(arguments_.size()), static_cast<std::uint32_t>(ids.size()), e.kind()});
     for (const NodeId id : ids) arguments_.push_back(position[id]);
   }
   for (const Expr& root : roots) roots_.push_back(position[root.id()]);
@@ -41,7 +43,7 @@ Tape Tape::with_gaussians(std::span<const Expr> roots) {
   std::vector<Expr> order;
   std::unordered_map<NodeId, Position> places;
   Tape tape;
-  for (const Expr& e : topological_order(roots)) {   // an erf within another comes first
+  for (const Expr& e : topological_order(roots)) {  // an erf within another comes first
     if (!e.is(Kind::Erf)) continue;
     const Expr gaussian = flatten_arguments(std::array{apply(Kind::Exp, -pow(e[0], Rational(2)))}).front();
     append_below(gaussian, order, places);
@@ -56,7 +58,8 @@ Tape Tape::with_gaussians(std::span<const Expr> roots) {
 
 Position Tape::gaussian(Position erf) const {
   const auto found = gaussians_.find(erf);
-  if (found == gaussians_.end()) throw std::logic_error("a series of erf was asked for on a tape without Gaussians; please report");
+  if (found == gaussians_.end())
+    throw std::logic_error("a series of erf was asked for on a tape without Gaussians; please report");
   return found->second;
 }
 

@@ -16,9 +16,9 @@ Bindings random_real_point(const Tape& tape, int trial, std::uint64_t seed) {
     if (tape.kind(at) != Kind::Symbol) continue;
     const Expr symbol = tape.expression(at);
     const std::uint64_t random = mix(mix(seed ^ static_cast<std::uint64_t>(trial)) ^ symbol.id());
-    const double unit = static_cast<double>(random >> 11) * 0x1p-53;           // [0, 1)
+    const double unit = static_cast<double>(random >> 11) * 0x1p-53;  // [0, 1)
     double value = 0.25 + 2 * unit;
-    if (trial % 4 == 3) value = std::pow(10.0, 8 * unit - 3);                   // for what happens far out
+    if (trial % 4 == 3) value = std::pow(10.0, 8 * unit - 3);  // for what happens far out
     // Parameters are positive in most models; the others have either sign, and all have it in every other trial.
     const bool may_be_negative = symbol.role() != Role::Parameter && symbol.role() != Role::Constant;
     if ((trial % 2 == 1 || may_be_negative) && trial % 3 != 2 && (mix(random) & 1)) value = -value;
@@ -42,7 +42,10 @@ std::optional<Witness> find_witness(const Tape& tape, int points, std::uint64_t 
   for (int trial = 0; trial < points; ++trial) {
     interrupt_of(tape.expression(0).context()).throw_if_asked();
     const Bindings point = random_real_point(tape, trial, seed);
-    RealNumbers<Range> numbers([&](Expr symbol) { const double x = point.at(symbol); return Range{x, x}; });
+    RealNumbers<Range> numbers([&](Expr symbol) {
+      const double x = point.at(symbol);
+      return Range{x, x};
+    });
     run(tape, numbers, values);
     for (std::size_t i = 0; i < tape.roots().size(); ++i) {
       const Range& v = values[tape.roots()[i]];
@@ -64,7 +67,10 @@ std::vector<bool> seen_nonzero(std::span<const Expr> expressions) {
   std::vector<Range> values;
   for (int trial = 0; trial < 2; ++trial) {
     const Bindings point = random_real_point(tape, trial, ZeroTestOptions{}.seed);
-    RealNumbers<Range> numbers([&](Expr symbol) { const double x = point.at(symbol); return Range{x, x}; });
+    RealNumbers<Range> numbers([&](Expr symbol) {
+      const double x = point.at(symbol);
+      return Range{x, x};
+    });
     run(tape, numbers, values);
     for (std::size_t i = 0; i < seen.size(); ++i)
       if (excludes_zero(values[tape.roots()[i]])) seen[i] = true;

@@ -10,7 +10,7 @@ namespace maupertuis::evaluation {
 struct Witness {
   Bindings point;
   double value = 0;
-  std::size_t root = 0;    // which difference
+  std::size_t root = 0;  // which difference
 };
 
 /// A real point at which interval arithmetic proves one of the roots to differ from 0; `points` are tried.

@@ -12,7 +12,10 @@ template <class Real>
 std::optional<Witness> witness_at(const Tape& tape, const Bindings& point) {
   using std::isfinite;
   std::vector<Interval<Real>> values;
-  RealNumbers<Interval<Real>> numbers([&](Expr symbol) { const Real x = point.at(symbol); return Interval<Real>{x, x}; });
+  RealNumbers<Interval<Real>> numbers([&](Expr symbol) {
+    const Real x = point.at(symbol);
+    return Interval<Real>{x, x};
+  });
   run(tape, numbers, values);
   for (std::size_t i = 0; i < tape.roots().size(); ++i) {
     const Interval<Real>& v = values[tape.roots()[i]];

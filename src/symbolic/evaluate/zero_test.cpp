@@ -20,7 +20,8 @@ struct FieldResult {
   double smallest_group = 1;
 };
 
-FieldResult test_over_primes(const Tape& tape, const FieldHints& hints, int points_per_prime, std::uint64_t seed, const Interrupt& interrupt) {
+FieldResult test_over_primes(const Tape& tape, const FieldHints& hints, int points_per_prime, std::uint64_t seed,
+                             const Interrupt& interrupt) {
   FieldResult result;
   std::vector<FieldNumbers::Value> values;
   for (int prime = 0; prime < 2; ++prime) {
@@ -48,10 +49,16 @@ FieldResult test_over_primes(const Tape& tape, const FieldHints& hints, int poin
         ++found;
         ++result.points;
         for (const Position root : tape.roots())
-          if (values[root] != 0) { result.outcome = FieldResult::Outcome::SomeNonzero; return result; }
+          if (values[root] != 0) {
+            result.outcome = FieldResult::Outcome::SomeNonzero;
+            return result;
+          }
       }
     }
-    if (found < points_per_prime) { result.outcome = FieldResult::Outcome::NoPoint; return result; }
+    if (found < points_per_prime) {
+      result.outcome = FieldResult::Outcome::NoPoint;
+      return result;
+    }
   }
   return result;
 }
@@ -98,9 +105,10 @@ ZeroTest zero_test(std::span<const Expr> differences, const ZeroTestOptions& opt
   if (const auto witness = find_witness(tape, 24, options.seed + 1)) return nonzero(*witness);
   if (const auto witness = find_witness_in_branches(roots, options.seed + 3)) return nonzero(*witness);
   if (const auto witness = find_precise_witness(tape, 8, options.seed + 2)) return nonzero(*witness);
-  test.reason = field.outcome == FieldResult::Outcome::NoPoint
-                    ? "no point was found at which every root and logarithm is defined"
-                    : "it does not vanish as a formula, but at every real point that was tried it is 0 to 80 digits or undefined";
+  test.reason =
+      field.outcome == FieldResult::Outcome::NoPoint
+          ? "no point was found at which every root and logarithm is defined"
+          : "it does not vanish as a formula, but at every real point that was tried it is 0 to 80 digits or undefined";
   return test;
 }
 

@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <random>
 
-/// Identities on a manifold. No exact arithmetic reaches its points, so that these are found to double precision by Newton's
-/// method and then to 100 digits by the same method with the Jacobian held: each turn adds some fifteen digits.
-/// What counts as 0 is measured by the sizes of the terms, and by what a change of the unknowns by their own size would
-/// make: the relation ψ'' = 0 has one term, which is never small beside itself.
+/// Identities on a manifold. No exact arithmetic reaches its points, so that these are found to double precision by
+/// Newton's method and then to 100 digits by the same method with the Jacobian held: each turn adds some fifteen
+/// digits. What counts as 0 is measured by the sizes of the terms, and by what a change of the unknowns by their own
+/// size would make: the relation ψ'' = 0 has one term, which is never small beside itself.
 namespace maupertuis {
 namespace {
 
@@ -22,8 +22,8 @@ using Vector = Eigen::VectorXd;
 using Index = Eigen::Index;
 using Precise = std::unordered_map<Expr, Real100, ExprHash>;
 
-constexpr double on_relations = 1e-9;   // relative: from here the refinement takes over
-constexpr double independent = 1e-5;    // of the largest pivot
+constexpr double on_relations = 1e-9;  // relative: from here the refinement takes over
+constexpr double independent = 1e-5;   // of the largest pivot
 constexpr int newton_turns = 60, refining_turns = 12, attempts_per_point = 12;
 const Real100 refined("1e-75"), vanishing("1e-60");
 
@@ -88,7 +88,8 @@ class OnRelations {
     for (const Expr& unknown : unknowns_) unknown_levels_.push_back(level_of({&unknown, 1}));
     rows_ = static_cast<Index>(relations.size());
     reach_.resize(static_cast<Index>(unknowns_.size()));
-    for (std::size_t i = 0; i < unknowns_.size(); ++i) reach_[static_cast<Index>(i)] = own_size(center.at(unknowns_[i]));
+    for (std::size_t i = 0; i < unknowns_.size(); ++i)
+      reach_[static_cast<Index>(i)] = own_size(center.at(unknowns_[i]));
   }
 
   std::vector<Expr> rows_of(std::span<const Expr> functions) const {
@@ -140,8 +141,8 @@ class OnRelations {
   }
   Matrix jacobian(const Bindings& at) const { return matrix(jacobian_, at); }
 
-  /// Positions first, then velocities by those, then accelerations and multipliers: all at once would be drawn to where coordinates fail (Euler angles at
-  /// θ = 0), since there an equation of motion holds whatever the accelerations are.
+  /// Positions first, then velocities by those, then accelerations and multipliers: all at once would be drawn to where
+  /// coordinates fail (Euler angles at θ = 0), since there an equation of motion holds whatever the accelerations are.
   bool approach(Bindings& at) const {
     for (int level = 0; level <= 2; ++level) {
       Bindings nearer = at;
@@ -169,11 +170,15 @@ class OnRelations {
       double worst = 0;
       for (std::size_t i = 0; i < value.size(); ++i) {
         value[i] *= marked[static_cast<Index>(i)];
-        worst = std::max(worst, !std::isfinite(value[i]) ? HUGE_VAL : value[i] == 0 ? 0 : std::abs(value[i]) / (size[i] + change[static_cast<Index>(i)]));
+        worst = std::max(worst, !std::isfinite(value[i]) ? HUGE_VAL
+                                : value[i] == 0          ? 0
+                                                : std::abs(value[i]) / (size[i] + change[static_cast<Index>(i)]));
       }
       return worst;
     };
-    const auto norm = [&](const Vector& weight) { return weight.cwiseProduct(Eigen::Map<const Vector>(value.data(), rows_)).norm(); };
+    const auto norm = [&](const Vector& weight) {
+      return weight.cwiseProduct(Eigen::Map<const Vector>(value.data(), rows_)).norm();
+    };
     double error = measure();
     for (int turn = 0; turn < newton_turns && error > on_relations; ++turn) {
       const Matrix j = marked.asDiagonal() * jacobian(at) * moving.asDiagonal();
@@ -184,7 +189,8 @@ class OnRelations {
       const double merit = norm(weight);
       bool closer = false;
       for (double damping = 1; !closer && damping > 1e-6; damping /= 2) {
-        for (std::size_t i = 0; i < unknowns_.size(); ++i) at[unknowns_[i]] = before.at(unknowns_[i]) - damping * step[static_cast<Index>(i)];
+        for (std::size_t i = 0; i < unknowns_.size(); ++i)
+          at[unknowns_[i]] = before.at(unknowns_[i]) - damping * step[static_cast<Index>(i)];
         error = measure();
         closer = norm(weight) < merit;
       }
@@ -222,13 +228,16 @@ class OnRelations {
       for (std::size_t i = 0; i < value.size(); ++i) {
         if (!isfinite(value[i])) return std::nullopt;
         largest = std::max(largest, Real100(abs(value[i])));
-        if (value[i] != 0) worst = std::max(worst, Real100(abs(value[i]) / (size[i] + Real100(change[static_cast<Index>(i)]))));
+        if (value[i] != 0)
+          worst = std::max(worst, Real100(abs(value[i]) / (size[i] + Real100(change[static_cast<Index>(i)]))));
       }
       if (worst < refined) return point;
       Vector scaled(rows_);
-      for (Index i = 0; i < rows_; ++i) scaled[i] = weight[i] * static_cast<double>(Real100(value[static_cast<std::size_t>(i)] / largest));
+      for (Index i = 0; i < rows_; ++i)
+        scaled[i] = weight[i] * static_cast<double>(Real100(value[static_cast<std::size_t>(i)] / largest));
       const Vector step = solver.solve(scaled);
-      for (std::size_t i = 0; i < unknowns_.size(); ++i) point[unknowns_[i]] -= largest * Real100(step[static_cast<Index>(i)]);
+      for (std::size_t i = 0; i < unknowns_.size(); ++i)
+        point[unknowns_[i]] -= largest * Real100(step[static_cast<Index>(i)]);
     }
     return std::nullopt;
   }
@@ -252,8 +261,10 @@ struct Judged {
   std::optional<double> difference;  // the first that does not vanish
 };
 
-/// What is 0 is measured by its terms and by what the unknowns' own sizes change in it. Nothing where a value is not finite.
-std::optional<Judged> judge(const Precise& point, const Sums& sums, const std::vector<Expr>& rows, const OnRelations& manifold) {
+/// What is 0 is measured by its terms and by what the unknowns' own sizes change in it. Nothing where a value is not
+/// finite.
+std::optional<Judged> judge(const Precise& point, const Sums& sums, const std::vector<Expr>& rows,
+                            const OnRelations& manifold) {
   std::vector<Real100> value, size;
   sums.evaluate<Real100>([&](Expr s) { return point.at(s); }, value, size);
   if (!std::all_of(value.begin(), value.end(), [](const Real100& v) { return isfinite(v); })) return std::nullopt;
@@ -262,7 +273,8 @@ std::optional<Judged> judge(const Precise& point, const Sums& sums, const std::v
   const Vector change = manifold.changes(rows, out.point);
   if (!change.allFinite()) return std::nullopt;
   for (std::size_t i = 0; i < value.size() && !out.difference; ++i)
-    if (!(abs(value[i]) <= vanishing * (size[i] + Real100(change[static_cast<Index>(i)])))) out.difference = static_cast<double>(value[i]);
+    if (!(abs(value[i]) <= vanishing * (size[i] + Real100(change[static_cast<Index>(i)]))))
+      out.difference = static_cast<double>(value[i]);
   return out;
 }
 
@@ -274,8 +286,8 @@ ZeroTest zero_test_where(std::span<const Expr> differences, std::span<const Expr
   const Sums sums(differences);
   const std::vector<Expr> rows = manifold.rows_of(differences);
   std::mt19937_64 random(options.seed);
-  // Where coordinates fail (Euler angles at θ = 0) the relations hold for accelerations that no motion has: points count where their rank is
-  // as large as it gets.
+  // Where coordinates fail (Euler angles at θ = 0) the relations hold for accelerations that no motion has: points
+  // count where their rank is as large as it gets.
   Index rank = 0;
   std::vector<Judged> regular;
   const auto wanted = static_cast<std::size_t>(options.points);
@@ -299,8 +311,10 @@ ZeroTest zero_test_where(std::span<const Expr> differences, std::span<const Expr
     test.witness = judged.point;
     return test;
   }
-  if (regular.size() == wanted) test.verdict = Verdict::Zero;
-  else test.reason = "no point was found at which the constraints hold";
+  if (regular.size() == wanted)
+    test.verdict = Verdict::Zero;
+  else
+    test.reason = "no point was found at which the constraints hold";
   return test;
 }
 

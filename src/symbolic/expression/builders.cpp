@@ -73,7 +73,10 @@ Expr Context::sum(std::span<const Expr> terms) {
   entries.reserve(terms.size());
   Rational constant = 0;
   for (const Expr& term : terms) {
-    if (term.is_number()) { constant += term.number(); continue; }
+    if (term.is_number()) {
+      constant += term.number();
+      continue;
+    }
     ScaledTerm scaled = split_coefficient(term);
     entries.push_back({scaled.rest.id(), std::move(scaled.coefficient)});
   }
@@ -94,7 +97,10 @@ namespace {
 
 /// Appends the factors of a product, a power or any other factor; numbers go into the coefficient.
 void gather_factor(const Expr& factor, std::vector<Entry>& entries, Rational& coefficient) {
-  if (factor.is_number()) { coefficient *= factor.number(); return; }
+  if (factor.is_number()) {
+    coefficient *= factor.number();
+    return;
+  }
   if (factor.is(Kind::Product)) {
     for (const NodeId id : factor.argument_ids()) gather_factor(Expr(&factor.context(), id), entries, coefficient);
     return;
@@ -114,11 +120,14 @@ Expr Context::product(std::span<const Expr> factors) {
   collect(entries);
   std::vector<NodeId> arguments;
   arguments.reserve(entries.size() + 1);
-  bool regroup = false;   // a power fell apart into other bases, which may stand here already
+  bool regroup = false;  // a power fell apart into other bases, which may stand here already
   for (const Entry& entry : entries) {
     const Expr base(this, entry.id);
     const Expr factor = entry.value.is_one() ? base : power(base, number(entry.value));
-    if (factor.is_number()) { coefficient *= factor.number(); continue; }
+    if (factor.is_number()) {
+      coefficient *= factor.number();
+      continue;
+    }
     regroup |= factor.is(Kind::Product) || split_power(factor).base != base;
     arguments.push_back(factor.id());
   }
@@ -194,7 +203,8 @@ std::optional<Rational> folded_function(Kind kind, const Rational& x) {
 
 Expr Context::function(Kind kind, std::span<const Expr> arguments) {
   const KindInfo& info = kind_info(kind);
-  MAUP_REQUIRE(family_of(kind) != Family::Leaf && (info.arity < 0 || arguments.size() == static_cast<std::size_t>(info.arity)));
+  MAUP_REQUIRE(family_of(kind) != Family::Leaf &&
+               (info.arity < 0 || arguments.size() == static_cast<std::size_t>(info.arity)));
   if (arguments.size() == 1) {
     const Expr x = arguments.front();
     if (x.is_number())
@@ -223,9 +233,16 @@ namespace {
 Expr symbol_derivative(const Expr& symbol) {
   Context& context = symbol.context();
   switch (symbol.role()) {
-    case Role::Coordinate: case Role::Input: return context.symbol(symbol.name(), symbol.role(), symbol.order() + 1);
-    case Role::Time: return context.number(1);
-    case Role::Parameter: case Role::Constant: case Role::Multiplier: case Role::Auxiliary: break;
+    case Role::Coordinate:
+    case Role::Input:
+      return context.symbol(symbol.name(), symbol.role(), symbol.order() + 1);
+    case Role::Time:
+      return context.number(1);
+    case Role::Parameter:
+    case Role::Constant:
+    case Role::Multiplier:
+    case Role::Auxiliary:
+      break;
   }
   return context.number(0);
 }

@@ -67,7 +67,8 @@ Expr Context::symbol(std::string_view name, Role role, int order) {
     Storage::Node node;
     node.kind = Kind::Symbol;
     node.payload = static_cast<std::uint32_t>(storage_->symbols.size());
-    node.time_dependent = role == Role::Coordinate || role == Role::Input || role == Role::Time || role == Role::Multiplier;
+    node.time_dependent =
+        role == Role::Coordinate || role == Role::Input || role == Role::Time || role == Role::Multiplier;
     storage_->symbols.push_back({std::string(name), role, order});
     id = storage_->append(node);
     if (role == Role::Time) {
@@ -87,7 +88,7 @@ std::vector<Expr> topological_order(std::span<const Expr> roots) {
   NodeId top = 0;
   for (const Expr& root : roots) top = std::max(top, root.id());
   std::vector<std::uint64_t> reached(top / 64 + 1, 0);
-  std::vector<NodeId> found;   // grows while it is walked
+  std::vector<NodeId> found;  // grows while it is walked
   const auto reach = [&](NodeId id) {
     std::uint64_t& word = reached[id / 64];
     const std::uint64_t bit = 1ull << (id % 64);

@@ -13,8 +13,9 @@ constexpr KindInfo structure(Kind kind, std::string_view name, int arity) {
 }
 
 constexpr std::array before_functions{
-    structure(Kind::Number, "number", 0), structure(Kind::Pi, "pi", 0),     structure(Kind::Symbol, "symbol", 0),
-    structure(Kind::Sum, "add", -1),      structure(Kind::Product, "mul", -1), structure(Kind::Power, "pow", 2),
+    structure(Kind::Number, "number", 0),      structure(Kind::Pi, "pi", 0),
+    structure(Kind::Symbol, "symbol", 0),      structure(Kind::Sum, "add", -1),
+    structure(Kind::Product, "mul", -1),       structure(Kind::Power, "pow", 2),
     structure(Kind::TimeDerivative, "ddt", 1),
 };
 constexpr std::array after_functions{
@@ -25,8 +26,10 @@ constexpr std::array after_functions{
     KindInfo{Kind::Min, "min", 2, Parity::None, "\\min", "min", false},
     KindInfo{Kind::Max, "max", 2, Parity::None, "\\max", "max", false},
     structure(Kind::Piecewise, "piecewise", -1),
-    structure(Kind::Less, "less", 2), structure(Kind::LessEqual, "less_equal", 2),
-    structure(Kind::And, "and", 2), structure(Kind::Or, "or", 2),
+    structure(Kind::Less, "less", 2),
+    structure(Kind::LessEqual, "less_equal", 2),
+    structure(Kind::And, "and", 2),
+    structure(Kind::Or, "or", 2),
 };
 
 constexpr std::size_t count = before_functions.size() + functions::count + after_functions.size();
@@ -35,9 +38,11 @@ constexpr std::array<KindInfo, count> make_table() {
   std::array<KindInfo, count> table{};
   std::size_t next = 0;
   for (const KindInfo& info : before_functions) table[next++] = info;
-  std::apply([&](const auto&... row) {
-    ((table[next++] = {row.kind, row.name, 1, row.parity, row.latex, row.mathml, row.bare}), ...);
-  }, functions::rows);
+  std::apply(
+      [&](const auto&... row) {
+        ((table[next++] = {row.kind, row.name, 1, row.parity, row.latex, row.mathml, row.bare}), ...);
+      },
+      functions::rows);
   for (const KindInfo& info : after_functions) table[next++] = info;
   return table;
 }

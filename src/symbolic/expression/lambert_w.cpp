@@ -9,7 +9,10 @@ constexpr double inverse_e = 0x1.78b56362cef38p-2, rest_of_inverse_e = -0x1.ca8a
 /// In powers of p = √(2(e x + 1)), for p < 0.004.
 /// Source: R. M. Corless et al., Adv. Comput. Math. 5 (1996), eq. 4.22.
 double near_the_end(double p) {
-  return -1 + p * (1 + p * (-1.0 / 3 + p * (11.0 / 72 + p * (-43.0 / 540 + p * (769.0 / 17280 + p * (-221.0 / 8505 + p * (680863.0 / 43545600)))))));
+  return -1 +
+         p * (1 + p * (-1.0 / 3 +
+                       p * (11.0 / 72 + p * (-43.0 / 540 +
+                                             p * (769.0 / 17280 + p * (-221.0 / 8505 + p * (680863.0 / 43545600)))))));
 }
 
 /// A few digits, for x > −0.36787 and not 0.

@@ -15,7 +15,7 @@ struct Context::Storage {
   struct Node {
     const NodeId* arguments = nullptr;
     std::uint32_t count = 0;
-    std::uint32_t payload = 0;   // index of a number or of a symbol
+    std::uint32_t payload = 0;  // index of a number or of a symbol
     Kind kind = Kind::Number;
     bool time_dependent = false;
     bool has_time_derivative = false;
@@ -24,21 +24,21 @@ struct Context::Storage {
     std::string name;
     Role role;
     int order;
-    NodeId next = 0;             // its time derivative, 0: not made yet
+    NodeId next = 0;  // its time derivative, 0: not made yet
   };
 
   std::vector<Node> nodes;
   std::deque<Rational> numbers;
   std::deque<Symbol> symbols;
   std::unordered_map<std::string, std::vector<NodeId>> symbols_by_name;  // [order]
-  NodeId time = 0;               // the one symbol of Role::Time, 0: not made yet
+  NodeId time = 0;  // the one symbol of Role::Time, 0: not made yet
 
-  std::vector<NodeId> table;     // open addressing, 0: empty (node 0 is a sentinel)
+  std::vector<NodeId> table;  // open addressing, 0: empty (node 0 is a sentinel)
   std::vector<std::unique_ptr<NodeId[]>> chunks;
   std::size_t chunk_used = 0, chunk_size = 0;
 
-  mutable Interrupt interrupt;           // not of the expressions, but of the work on them: see InterruptScope
-  std::uint32_t until_look = 1;          // nodes still to be asked for before it is looked at again
+  mutable Interrupt interrupt;   // not of the expressions, but of the work on them: see InterruptScope
+  std::uint32_t until_look = 1;  // nodes still to be asked for before it is looked at again
 
   Storage();
   NodeId intern(Kind kind, std::span<const NodeId> arguments);

@@ -16,8 +16,10 @@ std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
     if (std::string_view("#$%&_{}").find(c) != std::string_view::npos) result += '\\';
-    if (c == '\\' || c == '^' || c == '~') result += "\\char" + std::to_string(static_cast<int>(c)) + " ";
-    else result += c;
+    if (c == '\\' || c == '^' || c == '~')
+      result += "\\char" + std::to_string(static_cast<int>(c)) + " ";
+    else
+      result += c;
   }
   return result;
 }
@@ -42,8 +44,10 @@ std::string write_word(std::string_view word) {
     plain.clear();
   };
   for (const std::string_view letter : letters_of(word)) {
-    if (letter.size() == 1) plain += escaped(letter);
-    else end_plain(), text += braces(write_letter(letter));   // \theta before a letter
+    if (letter.size() == 1)
+      plain += escaped(letter);
+    else
+      end_plain(), text += braces(write_letter(letter));  // \theta before a letter
   }
   end_plain();
   return text;
@@ -67,22 +71,30 @@ std::string write_index(const std::string& part) {
   return write_letter(name.body) + write_below(name.below);
 }
 
-std::string write_body(const std::string& body) { return letter_count(body) == 1 ? write_letter(body) : write_word(body); }
+std::string write_body(const std::string& body) {
+  return letter_count(body) == 1 ? write_letter(body) : write_word(body);
+}
 
 std::string dotted(const std::string& body, int order) {
   switch (order) {
-    case 0: return body;
-    case 1: return "\\dot" + braces(body);
-    case 2: return "\\ddot" + braces(body);
-    case 3: return "\\dddot" + braces(body);
-    default: return body + "^" + braces("(" + std::to_string(order) + ")");
+    case 0:
+      return body;
+    case 1:
+      return "\\dot" + braces(body);
+    case 2:
+      return "\\ddot" + braces(body);
+    case 3:
+      return "\\dddot" + braces(body);
+    default:
+      return body + "^" + braces("(" + std::to_string(order) + ")");
   }
 }
 
 std::string write_name(const std::string& text, int dots, bool primes = false) {
   const SymbolName name = split_name(text);
   const std::string body = dotted(write_body(name.body), primes ? 0 : dots);
-  const std::string marks = primes ? std::string(static_cast<std::size_t>(dots), '\'') : std::string();  // after what stands below
+  const std::string marks =
+      primes ? std::string(static_cast<std::size_t>(dots), '\'') : std::string();  // after what stands below
   return name.below.empty() ? body + marks : body + write_below(name.below) + marks;
 }
 
@@ -132,8 +144,10 @@ std::string joined(const std::vector<Layout>& parts, const char* separator) {
 std::string write_sum(const Layout& l) {
   std::string text;
   for (std::size_t i = 0; i < l.parts.size(); ++i) {
-    if (i == 0) text += l.minus[i] ? "-" : "";
-    else text += l.minus[i] ? " - " : " + ";
+    if (i == 0)
+      text += l.minus[i] ? "-" : "";
+    else
+      text += l.minus[i] ? " - " : " + ";
     text += write_part(l.parts, i);
   }
   return text;
@@ -153,8 +167,9 @@ bool ends_with_large_bracket(const Layout& l) { return l.shape == Shape::Apply &
 std::string write_product(const Layout& l) {
   std::string text;
   for (std::size_t i = 0; i < l.parts.size(); ++i) {
-    const bool spaced = i > 0 && (is_fraction_or_large_bracket(l.parts, i) || begins_with_function(l.parts[i]) ||
-                                  is_fraction_or_large_bracket(l.parts, i - 1) || ends_with_large_bracket(l.parts[i - 1]));
+    const bool spaced =
+        i > 0 && (is_fraction_or_large_bracket(l.parts, i) || begins_with_function(l.parts[i]) ||
+                  is_fraction_or_large_bracket(l.parts, i - 1) || ends_with_large_bracket(l.parts[i - 1]));
     if (i > 0) text += starts_with_number(l.parts[i]) ? " \\cdot " : spaced ? " " : "\\, ";
     text += write_part(l.parts, i);
   }
@@ -211,7 +226,8 @@ std::string write_rate(const Layout& l) {
 
 std::string write_matrix(const Layout& l) {
   std::string text = "\\begin{pmatrix} ";
-  for (std::size_t i = 0; i < l.parts.size(); ++i) text += (i % l.columns ? " & " : i ? " \\\\ " : "") + write(l.parts[i]);
+  for (std::size_t i = 0; i < l.parts.size(); ++i)
+    text += (i % l.columns ? " & " : i ? " \\\\ " : "") + write(l.parts[i]);
   return text + " \\end{pmatrix}";
 }
 
@@ -222,8 +238,10 @@ std::string write_row(const Layout& l) {
     const Layout& part = l.parts[i];
     const bool sign = part.shape == Shape::Sign && !part.negative && part.text != "/";
     const bool glued = text.empty() || std::string_view(" (-/|").find(text.back()) != std::string_view::npos;
-    if (sign) text += (text.empty() ? "{} " : " ") + write(part) + " ";
-    else text += (glued || part.shape == Shape::Close || part.shape == Shape::Sign ? "" : "\\, ") + write(part);
+    if (sign)
+      text += (text.empty() ? "{} " : " ") + write(part) + " ";
+    else
+      text += (glued || part.shape == Shape::Close || part.shape == Shape::Sign ? "" : "\\, ") + write(part);
   }
   while (!text.empty() && text.back() == ' ') text.pop_back();
   return text;
@@ -242,33 +260,60 @@ std::string write_close(const Layout& l) {
 
 std::string write_unsigned(const Layout& l) {
   switch (l.shape) {
-    case Shape::Empty: return {};
-    case Shape::Number: return l.text;
-    case Shape::Symbol: return write_symbol(l.symbol, l.text);
-    case Shape::Pi: return "\\pi";
-    case Shape::Sum: return write_sum(l);
-    case Shape::Product: return write_product(l);
-    case Shape::Quotient: return "\\frac" + braces(write(l.parts[0])) + braces(write(l.parts[1]));
-    case Shape::Power: return write_base(l.parts[0]) + "^" + braces(write_exponent(l.parts[1]));
-    case Shape::Root: return "\\sqrt" + braces(write(l.parts[0]));
-    case Shape::Apply: return write_apply(l);
-    case Shape::Derivative: return "\\frac{\\mathrm{d}}{\\mathrm{d} " + write_name(l.text, 0) + "}" + bracketed(l.parts[0]);
-    case Shape::Comparison: return joined(l.parts, l.function == Kind::Less ? " < " : " \\le ");
-    case Shape::Logic: return write_logic(l);
-    case Shape::Cases: return write_cases(l);
-    case Shape::Name: return write_name(l.text, l.dots, l.primes);
-    case Shape::Bold: return write_bold(l);
-    case Shape::Words: return "\\text" + braces(escaped(l.text));
-    case Shape::Indexed: return write_indexed(l);
-    case Shape::Partial: return "\\frac{\\partial " + write(l.parts[0]) + "}{\\partial " + write(l.parts[1]) + "}";
-    case Shape::Rate: return write_rate(l);
-    case Shape::Braces: return "\\{" + joined(l.parts, ", ") + "\\}";
-    case Shape::Matrix: return write_matrix(l);
-    case Shape::Labelled: return write(l.parts[0]);
-    case Shape::Row: return write_row(l);
-    case Shape::Sign: return l.text == "⋅" ? "\\cdot" : l.text;
-    case Shape::Open: return write_open(l);
-    case Shape::Close: return write_close(l);
+    case Shape::Empty:
+      return {};
+    case Shape::Number:
+      return l.text;
+    case Shape::Symbol:
+      return write_symbol(l.symbol, l.text);
+    case Shape::Pi:
+      return "\\pi";
+    case Shape::Sum:
+      return write_sum(l);
+    case Shape::Product:
+      return write_product(l);
+    case Shape::Quotient:
+      return "\\frac" + braces(write(l.parts[0])) + braces(write(l.parts[1]));
+    case Shape::Power:
+      return write_base(l.parts[0]) + "^" + braces(write_exponent(l.parts[1]));
+    case Shape::Root:
+      return "\\sqrt" + braces(write(l.parts[0]));
+    case Shape::Apply:
+      return write_apply(l);
+    case Shape::Derivative:
+      return "\\frac{\\mathrm{d}}{\\mathrm{d} " + write_name(l.text, 0) + "}" + bracketed(l.parts[0]);
+    case Shape::Comparison:
+      return joined(l.parts, l.function == Kind::Less ? " < " : " \\le ");
+    case Shape::Logic:
+      return write_logic(l);
+    case Shape::Cases:
+      return write_cases(l);
+    case Shape::Name:
+      return write_name(l.text, l.dots, l.primes);
+    case Shape::Bold:
+      return write_bold(l);
+    case Shape::Words:
+      return "\\text" + braces(escaped(l.text));
+    case Shape::Indexed:
+      return write_indexed(l);
+    case Shape::Partial:
+      return "\\frac{\\partial " + write(l.parts[0]) + "}{\\partial " + write(l.parts[1]) + "}";
+    case Shape::Rate:
+      return write_rate(l);
+    case Shape::Braces:
+      return "\\{" + joined(l.parts, ", ") + "\\}";
+    case Shape::Matrix:
+      return write_matrix(l);
+    case Shape::Labelled:
+      return write(l.parts[0]);
+    case Shape::Row:
+      return write_row(l);
+    case Shape::Sign:
+      return l.text == "⋅" ? "\\cdot" : l.text;
+    case Shape::Open:
+      return write_open(l);
+    case Shape::Close:
+      return write_close(l);
   }
   return {};
 }

@@ -55,17 +55,26 @@ class Builder {
 
   Layout build(Expr e) const {
     switch (family_of(e.kind())) {
-      case Family::Leaf: return leaf(e);
-      case Family::Algebra: return e.is(Kind::Sum) ? sum(e, SumPlace::Inside) : product(e);
+      case Family::Leaf:
+        return leaf(e);
+      case Family::Algebra:
+        return e.is(Kind::Sum) ? sum(e, SumPlace::Inside) : product(e);
       case Family::TimeDerivative: {
         Layout layout = combined(Shape::Derivative, {build(e[0])});
         layout.text = independent_name(e.context());
         return layout;
       }
-      case Family::Comparison: return with_function(Shape::Comparison, e);
-      case Family::Logic: return with_function(Shape::Logic, e);
-      case Family::Piecewise: return with_function(Shape::Cases, e);
-      case Family::Function: case Family::Switch: case Family::Angle: case Family::Extremum: return function(e, {});
+      case Family::Comparison:
+        return with_function(Shape::Comparison, e);
+      case Family::Logic:
+        return with_function(Shape::Logic, e);
+      case Family::Piecewise:
+        return with_function(Shape::Cases, e);
+      case Family::Function:
+      case Family::Switch:
+      case Family::Angle:
+      case Family::Extremum:
+        return function(e, {});
     }
     throw unknown_kind(e.kind(), "the printer");
   }
@@ -94,8 +103,10 @@ class Builder {
   /// A sum under a sum with coefficient 1 is no structure that a reader can see.
   static void flatten(Expr sum, std::vector<Expr>& terms) {
     for (std::size_t i = 0; i < sum.size(); ++i) {
-      if (sum[i].is(Kind::Sum)) flatten(sum[i], terms);
-      else terms.push_back(sum[i]);
+      if (sum[i].is(Kind::Sum))
+        flatten(sum[i], terms);
+      else
+        terms.push_back(sum[i]);
     }
   }
 
@@ -104,11 +115,13 @@ class Builder {
     flatten(e, terms);
     std::vector<std::pair<Rank, Layout>> ordered;
     for (const Expr& term : terms)
-      ordered.emplace_back(place == SumPlace::Angle ? ranks_.angle_term(term) : ranks_.term(term, place == SumPlace::Top), build(term));
+      ordered.emplace_back(
+          place == SumPlace::Angle ? ranks_.angle_term(term) : ranks_.term(term, place == SumPlace::Top), build(term));
     std::stable_sort(ordered.begin(), ordered.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     // a − b, not −b + a: the first positive term leads, except before accelerations, whose order means something.
     const bool equation = place != SumPlace::Angle && ordered.front().first.front() == 0;
-    const auto positive = std::find_if(ordered.begin(), ordered.end(), [](const auto& t) { return !t.second.negative; });
+    const auto positive =
+        std::find_if(ordered.begin(), ordered.end(), [](const auto& t) { return !t.second.negative; });
     if (!equation && positive != ordered.end()) std::rotate(ordered.begin(), positive, positive + 1);
     Layout layout = combined(Shape::Sum, {});
     for (auto& [rank, part] : ordered) {
@@ -231,7 +244,7 @@ class Builder {
   }
 
   ReadingRanks ranks_;
-  std::string body_;   // ball.qw is shown as q_w where no other body has such coordinates
+  std::string body_;  // ball.qw is shown as q_w where no other body has such coordinates
 };
 
 bool decimal_digits(std::string denominator, int& digits) {
@@ -247,7 +260,8 @@ bool decimal_digits(std::string denominator, int& digits) {
 
 std::string decimal_text(const Rational& value, int digits) {
   std::string text = (value * maupertuis::pow(Rational(10), digits)).numerator_string();
-  if (text.size() <= static_cast<std::size_t>(digits)) text.insert(0, static_cast<std::size_t>(digits) + 1 - text.size(), '0');
+  if (text.size() <= static_cast<std::size_t>(digits))
+    text.insert(0, static_cast<std::size_t>(digits) + 1 - text.size(), '0');
   text.insert(text.size() - static_cast<std::size_t>(digits), ".");
   return text;
 }
@@ -260,7 +274,8 @@ Layout lay_out_number(const Rational& value) {
   const std::string denominator = value.denominator_string();
   int digits = 0;
   const bool decimal = decimal_digits(denominator, digits);
-  const bool plain_fraction = denominator.size() == 1 || (denominator.size() == 2 && denominator.back() != '0' && denominator != "25");
+  const bool plain_fraction =
+      denominator.size() == 1 || (denominator.size() == 2 && denominator.back() != '0' && denominator != "25");
   if (decimal && !plain_fraction) return number_text(decimal_text(value, digits));
   return combined(Shape::Quotient, {number_text(value.numerator_string()), number_text(denominator)});
 }
@@ -290,10 +305,10 @@ bool needs_brackets(const std::vector<Layout>& parts, std::size_t i) {
 
 bool is_simple_base(const Layout& base) {
   if (base.negative) return false;
-  if (base.shape == Shape::Labelled) return is_simple_base(base.parts[0]);   // v_A²
+  if (base.shape == Shape::Labelled) return is_simple_base(base.parts[0]);  // v_A²
   if (base.shape == Shape::Symbol) return base.symbol.role() != Role::Constant;
-  return base.shape == Shape::Number || base.shape == Shape::Pi || base.shape == Shape::Name || base.shape == Shape::Bold ||
-         base.shape == Shape::Indexed;
+  return base.shape == Shape::Number || base.shape == Shape::Pi || base.shape == Shape::Name ||
+         base.shape == Shape::Bold || base.shape == Shape::Indexed;
 }
 
 bool has_bare_argument(const Layout& apply) {
@@ -315,7 +330,7 @@ bool is_tall(const Layout& l) {
   if (l.shape == Shape::Quotient || l.shape == Shape::Root || l.shape == Shape::Cases || l.shape == Shape::Matrix ||
       l.shape == Shape::Derivative || l.shape == Shape::Partial || l.shape == Shape::Rate)
     return true;
-  const std::size_t count = l.shape == Shape::Power ? 1 : l.parts.size();   // an exponent stands on one line
+  const std::size_t count = l.shape == Shape::Power ? 1 : l.parts.size();  // an exponent stands on one line
   return std::any_of(l.parts.begin(), l.parts.begin() + static_cast<std::ptrdiff_t>(count), is_tall);
 }
 
@@ -324,7 +339,7 @@ bool is_tall(const Layout& l) {
 Layout lay_out(Expr e, const ReadingOrder& order) { return print::Builder(order).build_top(e); }
 
 Layout lay_out(const ReadableForm& form, const ReadingOrder& order) {
-  places_of(order);   // before the copy, which shares them
+  places_of(order);  // before the copy, which shares them
   ReadingOrder with_own = order;
   with_own.own = form.own;
   return lay_out(form.value, with_own);
@@ -375,7 +390,9 @@ Layout matrix(std::vector<Layout> entries, std::size_t columns) {
   layout.columns = columns;
   return layout;
 }
-Layout labelled(std::string plain, Layout typeset) { return with_text(Shape::Labelled, std::move(plain), {std::move(typeset)}); }
+Layout labelled(std::string plain, Layout typeset) {
+  return with_text(Shape::Labelled, std::move(plain), {std::move(typeset)});
+}
 
 }  // namespace layouts
 }  // namespace maupertuis

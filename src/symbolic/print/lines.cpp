@@ -27,8 +27,10 @@ Layout row(std::vector<Layout> parts) {
 
 /// Rows inside rows are one row.
 void put_before(Layout& piece, std::vector<Layout> parts) {
-  if (piece.shape == Shape::Row) parts.insert(parts.end(), piece.parts.begin(), piece.parts.end());
-  else parts.push_back(std::move(piece));
+  if (piece.shape == Shape::Row)
+    parts.insert(parts.end(), piece.parts.begin(), piece.parts.end());
+  else
+    parts.push_back(std::move(piece));
   piece = row(std::move(parts));
 }
 void put_behind(Layout& piece, const std::vector<Layout>& parts) {
@@ -47,8 +49,10 @@ class Breaker {
     Pieces pieces;
     for (std::size_t i = 0; i < l.parts.size(); ++i) {
       Pieces of_term = needs_brackets(l.parts, i) ? in_brackets(l.parts[i], {}) : term(l.parts[i]);
-      if (i > 0) put_before(of_term.front(), {sign(l.minus[i] ? "-" : "+")});
-      else if (l.minus[i]) put_before(of_term.front(), {sign("-", true)});
+      if (i > 0)
+        put_before(of_term.front(), {sign(l.minus[i] ? "-" : "+")});
+      else if (l.minus[i])
+        put_before(of_term.front(), {sign("-", true)});
       pieces.insert(pieces.end(), of_term.begin(), of_term.end());
     }
     return pieces;
@@ -67,17 +71,41 @@ class Breaker {
       return pieces;
     }
     switch (l.shape) {
-      case Shape::Product: return product(l.parts);
-      case Shape::Quotient: return quotient(l.parts[0], l.parts[1]);
-      case Shape::Power: return in_brackets(l.parts[0], l.parts[1]);
-      case Shape::Root: return in_brackets(l.parts[0], layouts::number("1/2"));
-      case Shape::Apply: return application(l);
-      case Shape::Sum: return formula(l);
-      case Shape::Labelled: return term(l.parts[0]);
-      case Shape::Empty: case Shape::Number: case Shape::Symbol: case Shape::Pi: case Shape::Derivative: case Shape::Comparison:
-      case Shape::Logic: case Shape::Cases: case Shape::Name: case Shape::Bold: case Shape::Words: case Shape::Indexed:
-      case Shape::Partial: case Shape::Rate: case Shape::Braces: case Shape::Matrix: case Shape::Row: case Shape::Sign:
-      case Shape::Open: case Shape::Close: break;
+      case Shape::Product:
+        return product(l.parts);
+      case Shape::Quotient:
+        return quotient(l.parts[0], l.parts[1]);
+      case Shape::Power:
+        return in_brackets(l.parts[0], l.parts[1]);
+      case Shape::Root:
+        return in_brackets(l.parts[0], layouts::number("1/2"));
+      case Shape::Apply:
+        return application(l);
+      case Shape::Sum:
+        return formula(l);
+      case Shape::Labelled:
+        return term(l.parts[0]);
+      case Shape::Empty:
+      case Shape::Number:
+      case Shape::Symbol:
+      case Shape::Pi:
+      case Shape::Derivative:
+      case Shape::Comparison:
+      case Shape::Logic:
+      case Shape::Cases:
+      case Shape::Name:
+      case Shape::Bold:
+      case Shape::Words:
+      case Shape::Indexed:
+      case Shape::Partial:
+      case Shape::Rate:
+      case Shape::Braces:
+      case Shape::Matrix:
+      case Shape::Row:
+      case Shape::Sign:
+      case Shape::Open:
+      case Shape::Close:
+        break;
     }
     return {l};
   }
@@ -144,7 +172,8 @@ class Breaker {
     return std::move(parts.front());
   }
 
-  /// (a + b)/c with a wide numerator reads 1/c (a + b); with a wide denominator the two stand on either side of a slash.
+  /// (a + b)/c with a wide numerator reads 1/c (a + b); with a wide denominator the two stand on either side of a
+  /// slash.
   Pieces quotient(const Layout& above, const Layout& below) const {
     if (fits(below) && above.shape == Shape::Number) {
       Layout whole;
@@ -157,8 +186,10 @@ class Breaker {
       inverse.shape = Shape::Quotient;
       inverse.parts = {layouts::number("1"), below};
       std::vector<Layout> parts{inverse};
-      if (above.shape == Shape::Product) parts.insert(parts.end(), above.parts.begin(), above.parts.end());
-      else parts.push_back(above);
+      if (above.shape == Shape::Product)
+        parts.insert(parts.end(), above.parts.begin(), above.parts.end());
+      else
+        parts.push_back(above);
       return product(parts);
     }
     Pieces pieces = needs_brackets_above_slash(above) ? in_brackets(above, {}) : term(above);
@@ -182,7 +213,8 @@ std::vector<Layout> pieces(const Layout& left, const Layout& right, double line)
   if (right.empty()) return all;
   std::vector<Layout> further = breaker.formula(right);
   if (all.empty()) return further;
-  // `= 0` stays with the last term, and so does what follows a short left side; a longer right side begins with its sign.
+  // `= 0` stays with the last term, and so does what follows a short left side; a longer right side begins with its
+  // sign.
   const bool together = print::is_short(further) || (all.size() == 1 && width(all.front()) <= line / 6);
   print::put_before(further.front(), {print::sign("=")});
   if (together) {

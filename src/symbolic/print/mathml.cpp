@@ -10,7 +10,7 @@ namespace print {
 namespace {
 
 const std::string thin_space = "<mspace width=\"0.17em\"/>";
-const std::string times = "<mo>&#x2062;</mo>" + thin_space;       // invisible, and a space that keeps names apart
+const std::string times = "<mo>&#x2062;</mo>" + thin_space;  // invisible, and a space that keeps names apart
 const std::string application = "<mo>&#x2061;</mo>";
 const std::string minus_sign = "<mo>&#x2212;</mo>";
 
@@ -22,10 +22,14 @@ std::string row(const std::string& content) { return tag("mrow", content); }
 std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
-    if (c == '&') result += "&amp;";
-    else if (c == '<') result += "&lt;";
-    else if (c == '>') result += "&gt;";
-    else result += c;
+    if (c == '&')
+      result += "&amp;";
+    else if (c == '<')
+      result += "&lt;";
+    else if (c == '>')
+      result += "&gt;";
+    else
+      result += c;
   }
   return result;
 }
@@ -45,7 +49,8 @@ std::string write_index(const std::string& part) {
 std::string write_below(const std::vector<std::string>& parts) {
   if (parts.size() == 1) return write_index(parts[0]);
   std::string text;
-  for (const std::string& part : parts) text += (text.empty() ? "" : "<mo separator=\"true\">,</mo>") + write_index(part);
+  for (const std::string& part : parts)
+    text += (text.empty() ? "" : "<mo separator=\"true\">,</mo>") + write_index(part);
   return row(text);
 }
 
@@ -58,7 +63,7 @@ std::string dotted(const std::string& body, int order) {
 
 /// A name in its parts, so that an exponent can stand above what is below it. Without primes, dots stand on the body.
 struct Script {
-  std::string base, below, above;   // the elements; empty: none
+  std::string base, below, above;  // the elements; empty: none
 
   std::string text() const {
     if (!below.empty() && !above.empty()) return tag("msubsup", base + below + above);
@@ -119,8 +124,10 @@ std::string joined(const std::vector<Layout>& parts, const std::string& separato
 std::string write_sum(const Layout& l) {
   std::string text;
   for (std::size_t i = 0; i < l.parts.size(); ++i) {
-    if (l.minus[i]) text += minus_sign;
-    else if (i > 0) text += "<mo>+</mo>";
+    if (l.minus[i])
+      text += minus_sign;
+    else if (i > 0)
+      text += "<mo>+</mo>";
     text += write_part(l.parts, i);
   }
   return row(text);
@@ -152,8 +159,10 @@ Script script_of(const Layout& l) {
 std::string write_power(const Layout& l) {
   if (!is_simple_base(l.parts[0])) return tag("msup", bracketed(l.parts[0]) + write_exponent(l.parts[1]));
   Script base = script_of(l.parts[0]);
-  if (base.above.empty()) base.above = write_exponent(l.parts[1]);
-  else base = {row(base.text()), {}, write_exponent(l.parts[1])};   // y'^2
+  if (base.above.empty())
+    base.above = write_exponent(l.parts[1]);
+  else
+    base = {row(base.text()), {}, write_exponent(l.parts[1])};  // y'^2
   return base.text();
 }
 
@@ -238,8 +247,11 @@ std::string write_close(const Layout& l) {
 std::string write_row(const Layout& l) {
   std::string text;
   for (std::size_t i = 0; i < l.parts.size(); ++i) {
-    const auto is_factor = [](const Layout& part) { return part.shape != Shape::Sign && part.shape != Shape::Open && part.shape != Shape::Close; };
-    if (i > 0 && is_factor(l.parts[i]) && (is_factor(l.parts[i - 1]) || l.parts[i - 1].shape == Shape::Close)) text += times;
+    const auto is_factor = [](const Layout& part) {
+      return part.shape != Shape::Sign && part.shape != Shape::Open && part.shape != Shape::Close;
+    };
+    if (i > 0 && is_factor(l.parts[i]) && (is_factor(l.parts[i - 1]) || l.parts[i - 1].shape == Shape::Close))
+      text += times;
     text += write(l.parts[i]);
   }
   return row(text);
@@ -247,34 +259,61 @@ std::string write_row(const Layout& l) {
 
 std::string write_unsigned(const Layout& l) {
   switch (l.shape) {
-    case Shape::Empty: return {};
-    case Shape::Number: return tag("mn", l.text);
-    case Shape::Symbol: case Shape::Name: return script_of(l).text();
-    case Shape::Pi: return tag("mi", "π");
-    case Shape::Sum: return write_sum(l);
-    case Shape::Product: return write_product(l);
-    case Shape::Quotient: return tag("mfrac", write(l.parts[0]) + write(l.parts[1]));
-    case Shape::Power: return write_power(l);
-    case Shape::Root: return tag("msqrt", write(l.parts[0]));
-    case Shape::Apply: return write_apply(l);
+    case Shape::Empty:
+      return {};
+    case Shape::Number:
+      return tag("mn", l.text);
+    case Shape::Symbol:
+    case Shape::Name:
+      return script_of(l).text();
+    case Shape::Pi:
+      return tag("mi", "π");
+    case Shape::Sum:
+      return write_sum(l);
+    case Shape::Product:
+      return write_product(l);
+    case Shape::Quotient:
+      return tag("mfrac", write(l.parts[0]) + write(l.parts[1]));
+    case Shape::Power:
+      return write_power(l);
+    case Shape::Root:
+      return tag("msqrt", write(l.parts[0]));
+    case Shape::Apply:
+      return write_apply(l);
     case Shape::Derivative:
-      return row("<mfrac><mi mathvariant=\"normal\">d</mi>" + row("<mi mathvariant=\"normal\">d</mi>" + script_of(l.text, 0, false).text()) +
-                 "</mfrac>" + bracketed(l.parts[0]));
-    case Shape::Comparison: return row(joined(l.parts, l.function == Kind::Less ? "<mo>&lt;</mo>" : "<mo>&#x2264;</mo>"));
-    case Shape::Logic: return write_logic(l);
-    case Shape::Cases: return write_cases(l);
-    case Shape::Bold: return dotted("<mi mathvariant=\"bold\">" + escaped(l.text) + "</mi>", l.dots);
-    case Shape::Words: return tag("mtext", escaped(l.text));
-    case Shape::Indexed: return write_indexed(l);
-    case Shape::Partial: return write_partial(l);
-    case Shape::Rate: return write_rate(l);
-    case Shape::Braces: return row("<mo>{</mo>" + joined(l.parts, "<mo separator=\"true\">,</mo>") + "<mo>}</mo>");
-    case Shape::Matrix: return write_matrix(l);
-    case Shape::Labelled: return write(l.parts[0]);
-    case Shape::Row: return write_row(l);
-    case Shape::Sign: return write_sign(l);
-    case Shape::Open: return write_open(l);
-    case Shape::Close: return write_close(l);
+      return row("<mfrac><mi mathvariant=\"normal\">d</mi>" +
+                 row("<mi mathvariant=\"normal\">d</mi>" + script_of(l.text, 0, false).text()) + "</mfrac>" +
+                 bracketed(l.parts[0]));
+    case Shape::Comparison:
+      return row(joined(l.parts, l.function == Kind::Less ? "<mo>&lt;</mo>" : "<mo>&#x2264;</mo>"));
+    case Shape::Logic:
+      return write_logic(l);
+    case Shape::Cases:
+      return write_cases(l);
+    case Shape::Bold:
+      return dotted("<mi mathvariant=\"bold\">" + escaped(l.text) + "</mi>", l.dots);
+    case Shape::Words:
+      return tag("mtext", escaped(l.text));
+    case Shape::Indexed:
+      return write_indexed(l);
+    case Shape::Partial:
+      return write_partial(l);
+    case Shape::Rate:
+      return write_rate(l);
+    case Shape::Braces:
+      return row("<mo>{</mo>" + joined(l.parts, "<mo separator=\"true\">,</mo>") + "<mo>}</mo>");
+    case Shape::Matrix:
+      return write_matrix(l);
+    case Shape::Labelled:
+      return write(l.parts[0]);
+    case Shape::Row:
+      return write_row(l);
+    case Shape::Sign:
+      return write_sign(l);
+    case Shape::Open:
+      return write_open(l);
+    case Shape::Close:
+      return write_close(l);
   }
   return {};
 }
@@ -286,7 +325,9 @@ std::string write(const Layout& l) {
 }  // namespace
 }  // namespace print
 
-std::string to_mathml(const Layout& layout) { return layout.empty() ? std::string() : "<mrow>" + print::write(layout) + "</mrow>"; }
+std::string to_mathml(const Layout& layout) {
+  return layout.empty() ? std::string() : "<mrow>" + print::write(layout) + "</mrow>";
+}
 
 std::string to_mathml(Expr e, const ReadingOrder& order) { return to_mathml(lay_out(e, order)); }
 

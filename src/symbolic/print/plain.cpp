@@ -13,15 +13,39 @@ enum Level { SumLevel, ProductLevel, PowerLevel, AtomLevel };
 
 Level level(const Layout& l) {
   switch (l.shape) {
-    case Shape::Sum: case Shape::Comparison: case Shape::Logic: return SumLevel;
-    case Shape::Product: case Shape::Quotient: return ProductLevel;
-    case Shape::Power: return PowerLevel;
-    case Shape::Apply: return l.text.empty() ? AtomLevel : PowerLevel;
-    case Shape::Row: return SumLevel;
-    case Shape::Labelled: case Shape::Number: case Shape::Symbol: case Shape::Pi: case Shape::Root: case Shape::Derivative:
-    case Shape::Cases: case Shape::Empty: case Shape::Name: case Shape::Bold: case Shape::Words: case Shape::Indexed:
-    case Shape::Partial: case Shape::Rate: case Shape::Braces: case Shape::Matrix: case Shape::Sign: case Shape::Open:
-    case Shape::Close: break;
+    case Shape::Sum:
+    case Shape::Comparison:
+    case Shape::Logic:
+      return SumLevel;
+    case Shape::Product:
+    case Shape::Quotient:
+      return ProductLevel;
+    case Shape::Power:
+      return PowerLevel;
+    case Shape::Apply:
+      return l.text.empty() ? AtomLevel : PowerLevel;
+    case Shape::Row:
+      return SumLevel;
+    case Shape::Labelled:
+    case Shape::Number:
+    case Shape::Symbol:
+    case Shape::Pi:
+    case Shape::Root:
+    case Shape::Derivative:
+    case Shape::Cases:
+    case Shape::Empty:
+    case Shape::Name:
+    case Shape::Bold:
+    case Shape::Words:
+    case Shape::Indexed:
+    case Shape::Partial:
+    case Shape::Rate:
+    case Shape::Braces:
+    case Shape::Matrix:
+    case Shape::Sign:
+    case Shape::Open:
+    case Shape::Close:
+      break;
   }
   return AtomLevel;
 }
@@ -42,8 +66,10 @@ std::string join(const std::vector<Layout>& parts, const char* separator) {
 std::string write_sum(const Layout& l) {
   std::string text;
   for (std::size_t i = 0; i < l.parts.size(); ++i) {
-    if (i == 0) text += l.minus[i] ? "-" : "";
-    else text += l.minus[i] ? " - " : " + ";
+    if (i == 0)
+      text += l.minus[i] ? "-" : "";
+    else
+      text += l.minus[i] ? " - " : " + ";
     text += write_at(l.parts[i], ProductLevel);
   }
   return text;
@@ -57,8 +83,10 @@ std::string write_product(const Layout& l) {
     const Layout& part = l.parts[i];
     const bool leading_fraction = i == 0 && part.shape == Shape::Quotient && part.parts[0].shape == Shape::Number;
     if (i) text += ' ';
-    if (i > 0 && starts_with_number(part)) text += "(" + write(part) + ")";
-    else text += leading_fraction ? write(part) : write_at(part, PowerLevel);
+    if (i > 0 && starts_with_number(part))
+      text += "(" + write(part) + ")";
+    else
+      text += leading_fraction ? write(part) : write_at(part, PowerLevel);
   }
   return text;
 }
@@ -118,35 +146,61 @@ std::string name_with_dots(const Layout& l) { return l.text + std::string(static
 
 std::string write_unsigned(const Layout& l) {
   switch (l.shape) {
-    case Shape::Number: return l.text;
-    case Shape::Symbol: return symbol_to_plain(l.symbol);
-    case Shape::Pi: return "pi";
-    case Shape::Sum: return write_sum(l);
-    case Shape::Product: return write_product(l);
-    case Shape::Quotient: return write_quotient(l);
-    case Shape::Power: return write_at(l.parts[0], AtomLevel) + "^" + write_at(l.parts[1], AtomLevel);
-    case Shape::Root: return "sqrt(" + write(l.parts[0]) + ")";
-    case Shape::Apply: return write_apply(l);
-    case Shape::Derivative: return "dot(" + write(l.parts[0]) + ")";
-    case Shape::Comparison: return join(l.parts, l.function == Kind::Less ? " < " : " <= ");
-    case Shape::Logic: return write_logic(l);
-    case Shape::Cases: return write_cases(l);
-    case Shape::Empty: return {};
-    case Shape::Name: case Shape::Bold: return name_with_dots(l);
-    case Shape::Words: return l.text;
+    case Shape::Number:
+      return l.text;
+    case Shape::Symbol:
+      return symbol_to_plain(l.symbol);
+    case Shape::Pi:
+      return "pi";
+    case Shape::Sum:
+      return write_sum(l);
+    case Shape::Product:
+      return write_product(l);
+    case Shape::Quotient:
+      return write_quotient(l);
+    case Shape::Power:
+      return write_at(l.parts[0], AtomLevel) + "^" + write_at(l.parts[1], AtomLevel);
+    case Shape::Root:
+      return "sqrt(" + write(l.parts[0]) + ")";
+    case Shape::Apply:
+      return write_apply(l);
+    case Shape::Derivative:
+      return "dot(" + write(l.parts[0]) + ")";
+    case Shape::Comparison:
+      return join(l.parts, l.function == Kind::Less ? " < " : " <= ");
+    case Shape::Logic:
+      return write_logic(l);
+    case Shape::Cases:
+      return write_cases(l);
+    case Shape::Empty:
+      return {};
+    case Shape::Name:
+    case Shape::Bold:
+      return name_with_dots(l);
+    case Shape::Words:
+      return l.text;
     case Shape::Indexed: {
       const std::vector<Layout> below(l.parts.begin() + 1, l.parts.end());
       return write(l.parts[0]) + "[" + join(below, ", ") + "]";
     }
-    case Shape::Partial: return "∂" + write(l.parts[0]) + "/∂" + write(l.parts[1]);
-    case Shape::Rate: return write_rate(l);
-    case Shape::Braces: return "{" + join(l.parts, ", ") + "}";
-    case Shape::Matrix: return write_matrix(l);
-    case Shape::Labelled: return l.text;
-    case Shape::Row: return write_row(l);
-    case Shape::Sign: return l.text == "⋅" ? "*" : l.text;
-    case Shape::Open: return (l.function == Kind::Number ? std::string() : std::string(name_of(l.function))) + "(";
-    case Shape::Close: return ")" + (l.parts.empty() ? std::string() : "^" + write_at(l.parts[0], AtomLevel));
+    case Shape::Partial:
+      return "∂" + write(l.parts[0]) + "/∂" + write(l.parts[1]);
+    case Shape::Rate:
+      return write_rate(l);
+    case Shape::Braces:
+      return "{" + join(l.parts, ", ") + "}";
+    case Shape::Matrix:
+      return write_matrix(l);
+    case Shape::Labelled:
+      return l.text;
+    case Shape::Row:
+      return write_row(l);
+    case Shape::Sign:
+      return l.text == "⋅" ? "*" : l.text;
+    case Shape::Open:
+      return (l.function == Kind::Number ? std::string() : std::string(name_of(l.function))) + "(";
+    case Shape::Close:
+      return ")" + (l.parts.empty() ? std::string() : "^" + write_at(l.parts[0], AtomLevel));
   }
   return {};
 }

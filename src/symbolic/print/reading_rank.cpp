@@ -8,7 +8,8 @@
 namespace maupertuis {
 
 std::shared_ptr<const ReadingPlaces> places_of(const ReadingOrder& order) {
-  if (order.places && order.places->listed_parameters == order.parameters && order.places->listed_coordinates == order.coordinates)
+  if (order.places && order.places->listed_parameters == order.parameters &&
+      order.places->listed_coordinates == order.coordinates)
     return order.places;
   const auto out = std::make_shared<ReadingPlaces>(ReadingPlaces{order.parameters, order.coordinates, {}, {}});
   std::uint32_t next = 1;
@@ -27,7 +28,7 @@ constexpr std::uint32_t unlisted = 1u << 20;
 
 /// What an expression is made of, as far as its place in a line depends on it.
 struct Contents {
-  int highest_order = -1;   // of coordinates: −1 none, 0 positions, 1 velocities, 2 accelerations
+  int highest_order = -1;  // of coordinates: −1 none, 0 positions, 1 velocities, 2 accelerations
   bool function_of_position = false;
   bool time = false, input = false, multiplier = false;
   Expr first_parameter;
@@ -45,15 +46,25 @@ void look_into(Expr e, bool inside_function, Contents& contents) {
         contents.highest_order = std::max(contents.highest_order, e.order());
         contents.function_of_position |= inside_function;
         break;
-      case Role::Time: contents.time = true; break;
-      case Role::Input: contents.input = true; break;
-      case Role::Multiplier: contents.multiplier = true; break;
-      case Role::Parameter: case Role::Constant: case Role::Auxiliary: break;
+      case Role::Time:
+        contents.time = true;
+        break;
+      case Role::Input:
+        contents.input = true;
+        break;
+      case Role::Multiplier:
+        contents.multiplier = true;
+        break;
+      case Role::Parameter:
+      case Role::Constant:
+      case Role::Auxiliary:
+        break;
     }
     return;
   }
   const bool root = e.is(Kind::Power) && !(e[1].is_number() && e[1].number().is_integer());
-  for (std::size_t i = 0; i < e.size(); ++i) look_into(e[i], inside_function || root || acts_as_function(e.kind()), contents);
+  for (std::size_t i = 0; i < e.size(); ++i)
+    look_into(e[i], inside_function || root || acts_as_function(e.kind()), contents);
 }
 
 Contents contents_of(Expr e) {
@@ -70,11 +81,11 @@ std::vector<Expr> factors_of(Expr e) {
 }
 
 /// A velocity, or a momentum in its place.
-bool is_rate(Expr e) {
-  return e.is_symbol() && e.role() == Role::Coordinate && e.order() == 1;
-}
+bool is_rate(Expr e) { return e.is_symbol() && e.role() == Role::Coordinate && e.order() == 1; }
 
-bool is_momentum(Expr e) { return e.is_symbol() && e.role() == Role::Coordinate && e.order() == 1 && is_integral(e.name()); }
+bool is_momentum(Expr e) {
+  return e.is_symbol() && e.role() == Role::Coordinate && e.order() == 1 && is_integral(e.name());
+}
 
 /// Of the highest term: 2 for (p_x + m Ω y)².
 std::uint32_t degree_in_momenta(Expr e) {
@@ -106,8 +117,21 @@ std::uint32_t count_of_functions(Expr term) {
   return count;
 }
 
-enum FactorClass : std::uint32_t { Constants, ParameterSums, Circle, Parameters, ParameterFunctions, Times, Inputs,
-                                   Positions, Momenta, Functions, Velocities, Accelerations, Multipliers };
+enum FactorClass : std::uint32_t {
+  Constants,
+  ParameterSums,
+  Circle,
+  Parameters,
+  ParameterFunctions,
+  Times,
+  Inputs,
+  Positions,
+  Momenta,
+  Functions,
+  Velocities,
+  Accelerations,
+  Multipliers
+};
 
 }  // namespace
 
@@ -137,29 +161,40 @@ Rank ReadingRanks::factor(Expr factor) const {
   if (base.is_symbol()) {
     const std::uint32_t rank = symbol_rank(base);
     switch (base.role()) {
-      case Role::Constant: return {Constants, rank};
-      case Role::Time: return {Times, rank};
-      case Role::Input: return {Inputs, rank, static_cast<std::uint32_t>(base.order())};
+      case Role::Constant:
+        return {Constants, rank};
+      case Role::Time:
+        return {Times, rank};
+      case Role::Input:
+        return {Inputs, rank, static_cast<std::uint32_t>(base.order())};
       case Role::Coordinate:
-        if (base.order() == 1 && is_integral(base.name())) return {Momenta, rank};   // p_ψ cos θ
+        if (base.order() == 1 && is_integral(base.name())) return {Momenta, rank};  // p_ψ cos θ
         return {base.order() == 0 ? Positions : base.order() == 1 ? Velocities : Accelerations, rank};
-      case Role::Multiplier: return {Multipliers, rank};
-      case Role::Parameter: case Role::Auxiliary: break;
+      case Role::Multiplier:
+        return {Multipliers, rank};
+      case Role::Parameter:
+      case Role::Auxiliary:
+        break;
     }
     return {Parameters, rank};
   }
   const Contents contents = contents_of(base);
   const bool sum = base.is(Kind::Sum) && split_power(factor).exponent.is_integer();
   std::uint32_t place = Functions;
-  if (contents.highest_order == 2) place = Accelerations;
-  else if (contents.highest_order == 1 && sum) place = Velocities;
-  else if (contents.highest_order < 0 && !contents.time && !contents.input) place = sum ? ParameterSums : ParameterFunctions;
-  else if (sum && !contents.function_of_position && !contents.input) place = Positions;
+  if (contents.highest_order == 2)
+    place = Accelerations;
+  else if (contents.highest_order == 1 && sum)
+    place = Velocities;
+  else if (contents.highest_order < 0 && !contents.time && !contents.input)
+    place = sum ? ParameterSums : ParameterFunctions;
+  else if (sum && !contents.function_of_position && !contents.input)
+    place = Positions;
   Rank rank{place, sum ? 1u : 0u};
   // Functions of one coordinate follow the order of coordinates, sines before cosines; then those of several.
   std::uint32_t first = unlisted, last = 0;
   for (const Expr& s : symbols_of({&base, 1}))
-    if (s.role() == Role::Coordinate) first = std::min(first, declared_rank(s)), last = std::max(last, declared_rank(s));
+    if (s.role() == Role::Coordinate)
+      first = std::min(first, declared_rank(s)), last = std::max(last, declared_rank(s));
   if (place == Functions) rank.push_back(first != last ? 1 : 0);
   rank.insert(rank.end(), {first, last, static_cast<std::uint32_t>(base.kind()), base.id()});
   return rank;
@@ -168,12 +203,16 @@ Rank ReadingRanks::factor(Expr factor) const {
 Rank ReadingRanks::rank_of_rest(Expr term) const {
   const Contents contents = contents_of(term);
   std::uint32_t place = 1;
-  if (term.is_number()) place = 0;
-  else if (contents.input || (contents.time && contents.highest_order < 0)) place = 4;
-  else if (contents.function_of_position) place = 3;
-  else if (contents.highest_order >= 0) place = 2;
+  if (term.is_number())
+    place = 0;
+  else if (contents.input || (contents.time && contents.highest_order < 0))
+    place = 4;
+  else if (contents.function_of_position)
+    place = 3;
+  else if (contents.highest_order >= 0)
+    place = 2;
   Rank rank{place};
-  if (place == 3) rank.push_back(~count_of_functions(term));   // sin θ cos θ before sin θ: inertia before gravity
+  if (place == 3) rank.push_back(~count_of_functions(term));  // sin θ cos θ before sin θ: inertia before gravity
   std::vector<Rank> factors;
   for (const Expr& f : factors_of(term))
     if (!f.is_number() && !is_denominator(f)) factors.push_back(factor(f));
@@ -201,7 +240,7 @@ Rank ReadingRanks::term(Expr term, bool own_first) const {
   Rank rank;
   const std::uint32_t degree = degree_in_momenta(term);
   if (contents.multiplier) {
-    rank = {3};   // forces of constraints after the others
+    rank = {3};  // forces of constraints after the others
     for (const Expr& s : symbols_of({&term, 1}))
       if (s.role() == Role::Multiplier) rank.push_back(symbol_rank(s));
   } else if (contents.highest_order >= 2) {
@@ -210,7 +249,8 @@ Rank ReadingRanks::term(Expr term, bool own_first) const {
     for (const Expr& s : symbols_of({&term, 1}))
       if (s.role() == Role::Coordinate && s.order() >= 2) first = std::min(first, rate_rank(s, own_first));
     rank.push_back(first);
-  } else if (degree > 0 && contents.highest_order == 1) {   // a Hamiltonian: kinetic energy first, whatever it is grouped by
+  } else if (degree > 0 &&
+             contents.highest_order == 1) {  // a Hamiltonian: kinetic energy first, whatever it is grouped by
     std::uint32_t first = ~0u;
     for (const Expr& s : symbols_of({&term, 1}))
       if (is_momentum(s)) first = std::min(first, declared_rank(s));

@@ -8,9 +8,9 @@ namespace maupertuis {
 
 /// The place of each name of a ReadingOrder.
 struct ReadingPlaces {
-  std::vector<Expr> listed_parameters, listed_coordinates;       // that these are the places of
+  std::vector<Expr> listed_parameters, listed_coordinates;  // that these are the places of
   std::unordered_map<NodeId, std::uint32_t> parameters;
-  std::unordered_map<std::string, std::uint32_t> coordinates;    // by name, so that primes do not matter
+  std::unordered_map<std::string, std::uint32_t> coordinates;  // by name, so that primes do not matter
 };
 
 /// Cost: once for an order and its copies, then a comparison of the lists.
@@ -30,7 +30,8 @@ class ReadingRanks {
 
   /// number, parameter sums, parameters, time and inputs, coordinates, momenta, functions, velocities, accelerations.
   Rank factor(Expr factor) const;
-  /// Accelerations (the own one first, if asked), velocities (squares, products, single ones), then what has none of them.
+  /// Accelerations (the own one first, if asked), velocities (squares, products, single ones), then what has none of
+  /// them.
   Rank term(Expr term, bool own_first) const;
   /// Inside sin( ) and cos( ): coordinates before everything, in declared order.
   Rank angle_term(Expr term) const;

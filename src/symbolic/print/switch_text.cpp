@@ -45,7 +45,9 @@ std::string text_with(const Relation& relation, const char* sign) {
 
 }  // namespace
 
-std::string switch_text(Expr difference, const ReadingOrder& order) { return text_with(relation_of(difference, order), " = "); }
+std::string switch_text(Expr difference, const ReadingOrder& order) {
+  return text_with(relation_of(difference, order), " = ");
+}
 
 std::string side_text(Expr difference, bool above, const ReadingOrder& order) {
   const Relation relation = relation_of(difference, order);

@@ -1,5 +1,5 @@
-#include "symbolic/expression/storage.hpp"
 #include "symbolic/print/symbol_name.hpp"
+#include "symbolic/expression/storage.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,18 +13,21 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// A combining mark of U+0300 to U+036F, as in λ̃.
 bool is_mark(std::string_view letter) {
-  return letter.size() == 2 && (letter[0] == '\xcc' || (letter[0] == '\xcd' && static_cast<unsigned char>(letter[1]) <= 0xaf));
+  return letter.size() == 2 &&
+         (letter[0] == '\xcc' || (letter[0] == '\xcd' && static_cast<unsigned char>(letter[1]) <= 0xaf));
 }
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 49> greek{{
-    {"α", "\\alpha"}, {"β", "\\beta"}, {"γ", "\\gamma"}, {"δ", "\\delta"}, {"ε", "\\varepsilon"}, {"ζ", "\\zeta"},
-    {"η", "\\eta"}, {"θ", "\\theta"}, {"ι", "\\iota"}, {"κ", "\\kappa"}, {"λ", "\\lambda"}, {"μ", "\\mu"},
-    {"ν", "\\nu"}, {"ξ", "\\xi"}, {"ο", "o"}, {"π", "\\pi"}, {"ρ", "\\rho"}, {"σ", "\\sigma"}, {"ς", "\\varsigma"},
-    {"τ", "\\tau"}, {"υ", "\\upsilon"}, {"φ", "\\varphi"}, {"χ", "\\chi"}, {"ψ", "\\psi"}, {"ω", "\\omega"},
-    {"Α", "A"}, {"Β", "B"}, {"Γ", "\\Gamma"}, {"Δ", "\\Delta"}, {"Ε", "E"}, {"Ζ", "Z"}, {"Η", "H"},
-    {"Θ", "\\Theta"}, {"Ι", "I"}, {"Κ", "K"}, {"Λ", "\\Lambda"}, {"Μ", "M"}, {"Ν", "N"}, {"Ξ", "\\Xi"}, {"Ο", "O"},
-    {"Π", "\\Pi"}, {"Ρ", "P"}, {"Σ", "\\Sigma"}, {"Τ", "T"}, {"Υ", "\\Upsilon"}, {"Φ", "\\Phi"}, {"Χ", "X"},
-    {"Ψ", "\\Psi"}, {"Ω", "\\Omega"}}};
+constexpr std::array<std::pair<std::string_view, std::string_view>, 49> greek{
+    {{"α", "\\alpha"},   {"β", "\\beta"},   {"γ", "\\gamma"}, {"δ", "\\delta"},    {"ε", "\\varepsilon"},
+     {"ζ", "\\zeta"},    {"η", "\\eta"},    {"θ", "\\theta"}, {"ι", "\\iota"},     {"κ", "\\kappa"},
+     {"λ", "\\lambda"},  {"μ", "\\mu"},     {"ν", "\\nu"},    {"ξ", "\\xi"},       {"ο", "o"},
+     {"π", "\\pi"},      {"ρ", "\\rho"},    {"σ", "\\sigma"}, {"ς", "\\varsigma"}, {"τ", "\\tau"},
+     {"υ", "\\upsilon"}, {"φ", "\\varphi"}, {"χ", "\\chi"},   {"ψ", "\\psi"},      {"ω", "\\omega"},
+     {"Α", "A"},         {"Β", "B"},        {"Γ", "\\Gamma"}, {"Δ", "\\Delta"},    {"Ε", "E"},
+     {"Ζ", "Z"},         {"Η", "H"},        {"Θ", "\\Theta"}, {"Ι", "I"},          {"Κ", "K"},
+     {"Λ", "\\Lambda"},  {"Μ", "M"},        {"Ν", "N"},       {"Ξ", "\\Xi"},       {"Ο", "O"},
+     {"Π", "\\Pi"},      {"Ρ", "P"},        {"Σ", "\\Sigma"}, {"Τ", "T"},          {"Υ", "\\Upsilon"},
+     {"Φ", "\\Phi"},     {"Χ", "X"},        {"Ψ", "\\Psi"},   {"Ω", "\\Omega"}}};
 
 }  // namespace
 
@@ -39,8 +42,11 @@ std::vector<std::string_view> letters_of(std::string_view text) {
     std::size_t end = at + 1;
     while (end < text.size() && (text[end] & 0xC0) == 0x80) ++end;
     const std::string_view letter = text.substr(at, end - at);
-    if (is_mark(letter) && !letters.empty()) letters.back() = text.substr(static_cast<std::size_t>(letters.back().data() - text.data()), letters.back().size() + letter.size());
-    else letters.push_back(letter);
+    if (is_mark(letter) && !letters.empty())
+      letters.back() = text.substr(static_cast<std::size_t>(letters.back().data() - text.data()),
+                                   letters.back().size() + letter.size());
+    else
+      letters.push_back(letter);
     at = end;
   }
   return letters;

@@ -9,11 +9,11 @@
 namespace maupertuis::print {
 
 /// A name of the model language as typography sees it. What follows an underscore stands below, and so do digits at the
-/// end: θ_max, l12, θ1_max (θ with 1, max below). Two letters are a letter with one below: mt is m_t, Jw is J_w. More are an
-/// upright word. A component of a body, ball.qw, has the body below: q with w, ball.
+/// end: θ_max, l12, θ1_max (θ with 1, max below). Two letters are a letter with one below: mt is m_t, Jw is J_w. More
+/// are an upright word. A component of a body, ball.qw, has the body below: q with w, ball.
 struct SymbolName {
-  std::string body;                  // one letter, or a word
-  std::vector<std::string> below;    // separated by commas
+  std::string body;                // one letter, or a word
+  std::vector<std::string> below;  // separated by commas
 };
 SymbolName split_name(std::string_view name);
 
@@ -40,7 +40,7 @@ QuantityName split_quantity(std::string_view name);
 struct ShownSymbol {
   std::string name;
   int dots = 0;
-  bool primes = false;         // y' in the place of ẏ: the independent variable is not t
+  bool primes = false;  // y' in the place of ẏ: the independent variable is not t
 };
 /// `within_body`: the name that a layout has in its place, without that of the only body; empty: the symbol's own.
 ShownSymbol shown_symbol(Expr symbol, const std::string& within_body = {});

@@ -17,24 +17,26 @@ int CandidateChooser::reading_sign(const Polynomial& sum) const {
     if (t.monomial == 0 && t.harmonic == 0) rank = 2 * late;
     for (const Factor& f : algebra_.monomial(t.monomial)) {
       const Expr e = algebra_.info(f.atom).expr;
-      if (e.is(Kind::Power) && f.exponent.num > 0) rank = std::min(rank, late);   // r - l for a root r
-      else is_function |= !e.is_symbol() || f.exponent.num < 0;
+      if (e.is(Kind::Power) && f.exponent.num > 0)
+        rank = std::min(rank, late);  // r - l for a root r
+      else
+        is_function |= !e.is_symbol() || f.exponent.num < 0;
       if (!e.is_symbol() || f.exponent.num < 0) continue;
       std::size_t symbol_rank = late + late / 2 + e.id() % (late / 2);
-      if (e.role() == Role::Coordinate && is_integral(e.name())) {   // p - q B y, but x p_y - y p_x
+      if (e.role() == Role::Coordinate && is_integral(e.name())) {  // p - q B y, but x p_y - y p_x
         symbol_rank = algebra_.monomial(t.monomial).size() == 1 && !t.harmonic ? 0 : late + late / 4;
       } else if (e.role() == Role::Coordinate) {
         const Expr position = e.context().symbol(e.name(), Role::Coordinate);
         const auto place = ranks_.find(position.id());
         symbol_rank = place == ranks_.end() ? late : place->second + 1;
         if (own_ && position == own_) symbol_rank = 0;
-        if (e.order() > 0) symbol_rank += late + late / 4;   // c^2 - v^2
+        if (e.order() > 0) symbol_rank += late + late / 4;  // c^2 - v^2
       } else if (const auto place = ranks_.find(e.id()); place != ranks_.end()) {
         symbol_rank = late + place->second;
       }
       rank = std::min(rank, symbol_rank);
     }
-    if (is_function) rank += 3 * late;   // 1 - l0/r, l - a cos θ: what is no function leads
+    if (is_function) rank += 3 * late;  // 1 - l0/r, l - a cos θ: what is no function leads
     if (rank < first) {
       first = rank;
       sign = t.coefficient.sign();
@@ -96,7 +98,8 @@ Expr CandidateChooser::factored(const Polynomial& p) {
 Factored CandidateChooser::factored_parts(const Polynomial& p) {
   const Rational content = rational_content(p);
   const MonomialId common = common_monomial(algebra_, p);
-  const Polynomial rest = algebra_.scale(algebra_.times_monomial(p, algebra_.power(common, {-1, 1})), Rational(1) / content);
+  const Polynomial rest =
+      algebra_.scale(algebra_.times_monomial(p, algebra_.power(common, {-1, 1})), Rational(1) / content);
   const std::string key = key_text(rest);
   auto known = known_factors_.find(key);
   if (known == known_factors_.end()) known = known_factors_.emplace(key, factor(algebra_, rest)).first;

@@ -11,8 +11,8 @@ bool CandidateChooser::is_parametric(const Polynomial& p) const {
   return std::all_of(p.begin(), p.end(), [&](const Term& t) {
     const Monomial& m = algebra_.monomial(t.monomial);
     return t.harmonic == p.front().harmonic && std::all_of(m.begin(), m.end(), [&](const Factor& f) {
-      return part_of(f.atom) == Part::Parameter && algebra_.info(f.atom).kind == AtomKind::Symbol;
-    });
+             return part_of(f.atom) == Part::Parameter && algebra_.info(f.atom).kind == AtomKind::Symbol;
+           });
   });
 }
 
@@ -135,7 +135,8 @@ MonomialId CandidateChooser::common_denominator(const Polynomial& p) {
   if (sums.empty()) return 0;
   // Single names go below the bar with them, also where only some terms have them there.
   Monomial names = algebra_.monomial(lowest_powers(algebra_, p));
-  std::erase_if(names, [&](const Factor& f) { return f.exponent.num > 0 || algebra_.info(f.atom).kind != AtomKind::Symbol; });
+  std::erase_if(names,
+                [&](const Factor& f) { return f.exponent.num > 0 || algebra_.info(f.atom).kind != AtomKind::Symbol; });
   return algebra_.product(algebra_.intern(sums), algebra_.intern(names));
 }
 

@@ -56,7 +56,7 @@ void CandidateChooser::prepare_atoms() {
       std::vector<Expr> arguments;
       for (const Polynomial& argument : atom.arguments) arguments.push_back(best(argument));
       Context& context = algebra_.context();
-      if (arguments.size() == 1 && atom.expr.is(Kind::Power)) continue;   // a root made on the way, shown already
+      if (arguments.size() == 1 && atom.expr.is(Kind::Power)) continue;  // a root made on the way, shown already
       const Expr shown = atom.expr.is(Kind::Power) ? context.power(arguments[0], arguments[1])
                                                    : context.function(atom.expr.kind(), arguments);
       algebra_.show(static_cast<AtomId>(prepared_), shown);
@@ -68,8 +68,10 @@ void CandidateChooser::prepare_atoms() {
 Expr CandidateChooser::flat_sum(const std::vector<Expr>& parts) {
   std::vector<Expr> terms;
   for (const Expr& part : parts) {
-    if (!part.is(Kind::Sum)) terms.push_back(part);
-    else for (std::size_t i = 0; i < part.size(); ++i) terms.push_back(part[i]);
+    if (!part.is(Kind::Sum))
+      terms.push_back(part);
+    else
+      for (std::size_t i = 0; i < part.size(); ++i) terms.push_back(part[i]);
   }
   return algebra_.context().sum(terms);
 }
@@ -115,7 +117,7 @@ Expr CandidateChooser::search_best(const Polynomial& p) {
       consider(choice, by_velocities(form));
     if (const Expr collected = by_one_parameter(form, false)) consider(choice, collected);
   };
-  if (is_parametric(p)) {   // no angles, no coordinates: only the factoring is open
+  if (is_parametric(p)) {  // no angles, no coordinates: only the factoring is open
     consider(choice, by_functions(p));
     if (const Expr collected = by_one_parameter(p, false)) consider(choice, collected);
     return choice.value;

@@ -86,9 +86,9 @@ class CandidateChooser {
   TermAlgebra algebra_;
   PolynomialReader reader_;
   ReadingCost cost_;
-  std::unordered_map<NodeId, std::size_t> ranks_;   // of symbols: coordinates, then parameters
+  std::unordered_map<NodeId, std::size_t> ranks_;  // of symbols: coordinates, then parameters
   Expr own_;
-  std::size_t prepared_ = 0;                        // atoms whose shown form is set
+  std::size_t prepared_ = 0;  // atoms whose shown form is set
   std::unordered_map<std::string, Expr> known_bases_, known_best_;
   std::unordered_map<std::string, Factored> known_factors_;
 };

@@ -50,8 +50,7 @@ Polynomial over_common_denominators(TermAlgebra& algebra, const Polynomial& p) {
   for (const AtomId base : bases) {
     const auto less = [](Fraction a, Fraction b) { return a < b; };
     std::map<Fraction, Polynomial, decltype(less)> classes(less);
-    for (const Term& t : result)
-      classes[fractional_part(exponent_of(algebra.monomial(t.monomial), base))].push_back(t);
+    for (const Term& t : result) classes[fractional_part(exponent_of(algebra.monomial(t.monomial), base))].push_back(t);
     Polynomial combined;
     for (const auto& [part, terms] : classes) combined = algebra.add(combined, combined_class(algebra, terms, base));
     result = std::move(combined);

@@ -50,8 +50,8 @@ Expr atan2_derivative(Expr node, std::size_t index) {
 Expr extremum_derivative(Expr node, std::size_t index) {
   Context& context = node.context();
   const bool minimum = node.is(Kind::Min);
-  const Expr first_in_force = minimum ? comparison(Kind::LessEqual, node[0], node[1])
-                                      : comparison(Kind::LessEqual, node[1], node[0]);
+  const Expr first_in_force =
+      minimum ? comparison(Kind::LessEqual, node[0], node[1]) : comparison(Kind::LessEqual, node[1], node[0]);
   const Expr one = context.number(1), zero = context.number(0);
   return index == 0 ? indicator(first_in_force, one, zero) : indicator(first_in_force, zero, one);
 }
@@ -77,13 +77,22 @@ Expr partial_derivative(Expr node, std::size_t index) {
     case Family::Algebra:
       if (node.is(Kind::Sum)) return context.number(1);
       return node.is(Kind::Product) ? product_without(node, index) : power_derivative(node, index);
-    case Family::Function: return functions::derivative(node.kind(), node[0], node);
-    case Family::Switch: return switch_derivative(node);
-    case Family::Angle: return atan2_derivative(node, index);
-    case Family::Extremum: return extremum_derivative(node, index);
-    case Family::Piecewise: return branch_derivative(node, index);
-    case Family::Comparison: case Family::Logic: return context.number(0);
-    case Family::Leaf: case Family::TimeDerivative: break;
+    case Family::Function:
+      return functions::derivative(node.kind(), node[0], node);
+    case Family::Switch:
+      return switch_derivative(node);
+    case Family::Angle:
+      return atan2_derivative(node, index);
+    case Family::Extremum:
+      return extremum_derivative(node, index);
+    case Family::Piecewise:
+      return branch_derivative(node, index);
+    case Family::Comparison:
+    case Family::Logic:
+      return context.number(0);
+    case Family::Leaf:
+    case Family::TimeDerivative:
+      break;
   }
   throw unknown_kind(node.kind(), "a partial derivative");
 }

@@ -29,7 +29,8 @@ Expr differentiate(Expr e, Expr symbol) {
   Memo derivatives;  // of nodes that depend on the symbol; others are absent
   const auto order = topological_order({&e, 1});
   for (const Expr& node : order) {
-    if (node == symbol) derivatives.emplace(node.id(), context.number(1));
+    if (node == symbol)
+      derivatives.emplace(node.id(), context.number(1));
     else if (node.size() > 0) {
       const Expr d = chain(node, derivatives);
       if (!d.is_zero()) derivatives.emplace(node.id(), d);

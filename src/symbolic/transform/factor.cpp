@@ -17,7 +17,8 @@ class Variables {
     for (const Polynomial* p : polynomials)
       for (const Term& t : *p) {
         for (const Factor& f : algebra.monomial(t.monomial)) add(f.atom, f.exponent);
-        if (t.harmonic != 0 && harmonics_.emplace(t.harmonic, count()).second) names_.push_back({true, t.harmonic, {1, 1}});
+        if (t.harmonic != 0 && harmonics_.emplace(t.harmonic, count()).second)
+          names_.push_back({true, t.harmonic, {1, 1}});
       }
     if (count() > most_variables) throw NotWorthIt{};
   }
@@ -82,7 +83,7 @@ class Variables {
 }  // namespace
 
 MonomialId lowest_powers(TermAlgebra& algebra, const Polynomial& p) {
-  std::unordered_map<AtomId, std::pair<Fraction, std::size_t>> lowest;   // and in how many terms
+  std::unordered_map<AtomId, std::pair<Fraction, std::size_t>> lowest;  // and in how many terms
   for (const Term& t : p)
     for (const Factor& f : algebra.monomial(t.monomial)) {
       const auto [place, fresh] = lowest.try_emplace(f.atom, f.exponent, 0);
@@ -187,7 +188,8 @@ Polynomial with_square_of_root(TermAlgebra& algebra, const Polynomial& p, AtomId
     const Variables variables(algebra, {&whole, &radicand});
     const Division division = divide(variables.small(whole), variables.small(radicand));
     if (division.quotient.empty()) return {};
-    const Polynomial squares = algebra.multiply(variables.large(division.quotient), algebra.of_atom(root, Fraction{2, 1}));
+    const Polynomial squares =
+        algebra.multiply(variables.large(division.quotient), algebra.of_atom(root, Fraction{2, 1}));
     const Polynomial found = algebra.add(squares, variables.large(division.rest));
     return algebra.add(result, algebra.times_monomial(found, lowest));
   } catch (const NotWorthIt&) {

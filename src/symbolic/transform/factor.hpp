@@ -13,11 +13,11 @@ struct Factored {
   Rational coefficient = 1;
   MonomialId monomial = 0;
   struct Part {
-    Polynomial sum;            // at least two terms, coprime integer coefficients
+    Polynomial sum;  // at least two terms, coprime integer coefficients
     int multiplicity = 1;
   };
-  std::vector<Part> parts;     // empty: the polynomial is a single term
-  bool split = false;          // something came apart beyond the common monomial
+  std::vector<Part> parts;  // empty: the polynomial is a single term
+  bool split = false;       // something came apart beyond the common monomial
 };
 
 /// Harmonics are taken as one more variable each. Precondition: p is not empty.

@@ -37,7 +37,7 @@ class FreshNames {
   Expr symbol(const std::string& name) { return context_.symbol(name, Role::Auxiliary); }
 
   Context& context_;
-  std::unordered_map<NodeId, std::size_t> places_;   // of the coordinates
+  std::unordered_map<NodeId, std::size_t> places_;  // of the coordinates
   std::unordered_set<std::string> taken_;
   int last_ = 0;
 };
@@ -62,7 +62,7 @@ bool is_condition(Kind kind) {
 
 /// Σ (∂R/∂q_j'') q_j'' + R at q'' = 0: the coefficients of a row that is linear in the accelerations.
 struct Row {
-  std::vector<Expr> coefficients;   // by accelerations
+  std::vector<Expr> coefficients;  // by accelerations
   Expr rest;
 };
 
@@ -83,8 +83,10 @@ std::vector<Row> split(std::span<const Expr> rows, const std::vector<Expr>& acce
       const auto inside = symbols_of({&c, 1});
       return std::any_of(inside.begin(), inside.end(), [&](const Expr& s) { return at_rest.count(s) != 0; });
     });
-    if (linear) result.push_back({std::move(coefficients), substitute(row, at_rest)});
-    else result.push_back({std::vector<Expr>(accelerations.size(), row.context().number(0)), row});
+    if (linear)
+      result.push_back({std::move(coefficients), substitute(row, at_rest)});
+    else
+      result.push_back({std::vector<Expr>(accelerations.size(), row.context().number(0)), row});
   }
   return result;
 }
@@ -103,8 +105,10 @@ class NamedParts {
       for (const NodeId argument : node.argument_ids()) ++uses[argument];
     for (const Expr& node : nodes) {
       Expr value = rebuild(node, [&](Expr argument) { return written_.at(argument.id()); });
-      if (const auto name = known_.find(value); name != known_.end()) value = name->second;
-      else if (uses[node.id()] > 1 && !is_small(value) && !is_condition(node.kind())) value = named(value);
+      if (const auto name = known_.find(value); name != known_.end())
+        value = name->second;
+      else if (uses[node.id()] > 1 && !is_small(value) && !is_condition(node.kind()))
+        value = named(value);
       written_.emplace(node.id(), value);
     }
   }
@@ -119,7 +123,7 @@ class NamedParts {
   }
 
   FreshNames names_;
-  ExprMap known_;                                // values that have a name already
+  ExprMap known_;  // values that have a name already
   std::unordered_map<NodeId, Expr> written_;
 };
 
@@ -146,8 +150,10 @@ std::vector<ReadableForm> with_intermediates(std::span<const Expr> rows, const R
     std::vector<Expr> terms;
     for (std::size_t j = 0; j < rates.size(); ++j) terms.push_back(parts.written(row.coefficients[j]) * rates[j]);
     const Expr rest = parts.written(row.rest);
-    if (!rest.is(Kind::Sum)) terms.push_back(rest);
-    else for (std::size_t i = 0; i < rest.size(); ++i) terms.push_back(rest[i]);
+    if (!rest.is(Kind::Sum))
+      terms.push_back(rest);
+    else
+      for (std::size_t i = 0; i < rest.size(); ++i) terms.push_back(rest[i]);
     forms.push_back({context.sum(terms), parts.intermediates, {}});
   }
   return forms;

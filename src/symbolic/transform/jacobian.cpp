@@ -20,7 +20,7 @@ std::vector<SparseGradient::Entry> SparseGradient::operator()(Expr e) const {
 }
 
 std::optional<std::vector<DerivativeEntry>> sparse_jacobian(std::span<const Expr> rows, std::span<const Expr> symbols,
-                                                          std::size_t most) {
+                                                            std::size_t most) {
   const SparseGradient gradient(symbols);
   std::vector<DerivativeEntry> entries;
   for (std::size_t row = 0; row < rows.size(); ++row) {

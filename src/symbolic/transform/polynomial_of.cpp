@@ -87,9 +87,8 @@ std::vector<Frequency> PolynomialReader::angles(const Polynomial& argument) {
 
 Polynomial PolynomialReader::read_circular(Expr e) {
   const Polynomial& argument = known_.at(e[0].id());
-  const bool readable = std::all_of(argument.begin(), argument.end(), [](const Term& t) {
-    return fits_fraction(t.coefficient);
-  });
+  const bool readable =
+      std::all_of(argument.begin(), argument.end(), [](const Term& t) { return fits_fraction(t.coefficient); });
   if (trigonometry_ == Trigonometry::Opaque || !readable) return read_function(e);
   std::vector<Frequency> angle = angles(argument);
   for (const Frequency& f : angle) {

@@ -39,8 +39,8 @@ class Circle {
       Monomial rest = m;
       rest[static_cast<std::size_t>(place - m.begin())].exponent = Fraction{place->exponent.num % 2, 1};
       if (place->exponent.num % 2 == 0) rest.erase(rest.begin() + (place - m.begin()));
-      const Polynomial one_minus_square = algebra_.add(
-          algebra_.constant(1), algebra_.scale(algebra_.of_atom(kept_, Fraction{2, 1}), -1));
+      const Polynomial one_minus_square =
+          algebra_.add(algebra_.constant(1), algebra_.scale(algebra_.of_atom(kept_, Fraction{2, 1}), -1));
       const Polynomial power = algebra_.power(one_minus_square, Fraction{squares, 1});
       const MonomialId monomial = algebra_.intern(rest);
       result = algebra_.add(result, algebra_.multiply(power, Polynomial{Term{monomial, t.harmonic, t.coefficient}}));
@@ -67,7 +67,8 @@ class Circle {
 bool split_argument(const std::vector<Frequency>& argument, const std::vector<Frequency>& angle, int& multiple,
                     std::vector<Frequency>& rest) {
   const Frequency& pivot = angle.front();
-  const auto place = std::find_if(argument.begin(), argument.end(), [&](const Frequency& f) { return f.angle == pivot.angle; });
+  const auto place =
+      std::find_if(argument.begin(), argument.end(), [&](const Frequency& f) { return f.angle == pivot.angle; });
   if (place == argument.end()) return false;
   const Fraction k = place->multiple / pivot.multiple;
   if (!k.is_integer() || std::abs(k.num) > largest_multiple) return false;
@@ -89,7 +90,8 @@ bool split_argument(const std::vector<Frequency>& argument, const std::vector<Fr
 
 }  // namespace
 
-Polynomial power_form(TermAlgebra& algebra, const Polynomial& p, const std::vector<Frequency>& angle, Eliminate eliminate) {
+Polynomial power_form(TermAlgebra& algebra, const Polynomial& p, const std::vector<Frequency>& angle,
+                      Eliminate eliminate) {
   Circle circle(algebra, angle, eliminate);
   Polynomial result;
   std::vector<Frequency> rest;
@@ -125,14 +127,14 @@ std::vector<std::vector<Frequency>> candidate_angles(const TermAlgebra& algebra,
   std::vector<std::vector<Frequency>> combinations;
   for (const Term& t : p) {
     const Harmonic& h = algebra.harmonic(t.harmonic);
-    Fraction whole{0, 1};   // the argument is this many times a primitive combination of units
+    Fraction whole{0, 1};  // the argument is this many times a primitive combination of units
     for (const Frequency& f : h.argument) {
       const auto unit = units.find(f.angle);
       const Fraction size = unit == units.end() ? f.multiple : unit->second;
       offer({{f.angle, size}});
       whole = gcd(whole, f.multiple / size);
     }
-    if (h.argument.size() < 2 || whole.num < 2) continue;   // a product of two sines of it would leave its double
+    if (h.argument.size() < 2 || whole.num < 2) continue;  // a product of two sines of it would leave its double
     std::vector<Frequency> combination = h.argument;
     for (Frequency& f : combination) f.multiple = f.multiple / whole;
     combinations.push_back(std::move(combination));
@@ -141,7 +143,8 @@ std::vector<std::vector<Frequency>> candidate_angles(const TermAlgebra& algebra,
   return result;
 }
 
-bool has_multiple_angle(const TermAlgebra& algebra, const Polynomial& p, const std::unordered_map<NodeId, Fraction>& units) {
+bool has_multiple_angle(const TermAlgebra& algebra, const Polynomial& p,
+                        const std::unordered_map<NodeId, Fraction>& units) {
   for (const Term& t : p)
     for (const Frequency& f : algebra.harmonic(t.harmonic).argument) {
       const auto unit = units.find(f.angle);

@@ -97,7 +97,7 @@ std::vector<ReadableForm> readable_equations(std::span<const Expr> residuals, co
     }
   } catch (const terms::TooManyTerms&) {
     rows = expanded.size() > most_rows_listed_whole ? by_shared_parts(expanded, order)
-                                                     : terms::with_intermediates(expanded, order);
+                                                    : terms::with_intermediates(expanded, order);
     for (std::size_t i = 0; rows_are_coordinates && i < rows.size(); ++i) rows[i].own = order.coordinates[i];
   }
   return rows;

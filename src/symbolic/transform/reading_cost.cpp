@@ -77,8 +77,10 @@ double ReadingCost::of_power(Expr e) {
 double ReadingCost::of_product(Expr e) {
   double total = 0;
   for (std::size_t i = 0; i < e.size(); ++i) {
-    if (e[i].is_number()) total += coefficient_cost(e[i].number());
-    else total += (*this)(e[i]) + (e[i].is(Kind::Sum) ? brackets_around(e[i]) : 0);
+    if (e[i].is_number())
+      total += coefficient_cost(e[i].number());
+    else
+      total += (*this)(e[i]) + (e[i].is(Kind::Sum) ? brackets_around(e[i]) : 0);
   }
   return total;
 }

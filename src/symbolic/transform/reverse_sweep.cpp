@@ -29,8 +29,8 @@ Expr passed_to_argument(Expr node, std::size_t index, Expr adjoint) {
 using Places = std::unordered_map<NodeId, std::size_t>;
 using Contributions = std::unordered_map<NodeId, std::vector<Expr>>;
 
-/// From so many arguments on a piecewise node is differentiated branch by branch: what one branch alone contributes is as
-/// long as the node, so that n of them would be n² in size.
+/// From so many arguments on a piecewise node is differentiated branch by branch: what one branch alone contributes is
+/// as long as the node, so that n of them would be n² in size.
 constexpr std::size_t many_arguments = 16;
 
 bool by_branches(Expr node) {
@@ -42,7 +42,8 @@ void pass_by_branches(Expr node, Expr adjoint, const Places& wanted, Contributio
   Context& context = node.context();
   std::unordered_map<NodeId, std::vector<Expr>> derivatives;  // [wanted] arguments of a piecewise node
   std::vector<Expr> arguments;                                // the same of one that is 0 everywhere
-  for (std::size_t i = 0; i < node.size(); ++i) arguments.push_back(i % 2 == 0 && i + 1 < node.size() ? node[i] : context.number(0));
+  for (std::size_t i = 0; i < node.size(); ++i)
+    arguments.push_back(i % 2 == 0 && i + 1 < node.size() ? node[i] : context.number(0));
   for (std::size_t i = 0; i < node.size(); ++i) {
     if (i % 2 == 0 && i + 1 < node.size()) continue;
     for (const auto& [id, derivative] : reverse_sweep(node[i], wanted))

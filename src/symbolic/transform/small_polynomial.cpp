@@ -5,7 +5,7 @@
 namespace maupertuis::terms {
 namespace {
 
-constexpr std::size_t largest_size = 400;   // terms of an intermediate result
+constexpr std::size_t largest_size = 400;  // terms of an intermediate result
 
 void accumulate(SmallPolynomial& into, const Exponents& exponents, const Rational& value) {
   if (value.is_zero()) return;
@@ -240,8 +240,10 @@ namespace {
 void append(std::vector<SmallFactor>& all, const std::vector<SmallFactor>& more, int multiplicity = 1) {
   for (const SmallFactor& f : more) {
     const auto same = std::find_if(all.begin(), all.end(), [&](const SmallFactor& g) { return g.value == f.value; });
-    if (same != all.end()) same->multiplicity += f.multiplicity * multiplicity;
-    else all.push_back({f.value, f.multiplicity * multiplicity});
+    if (same != all.end())
+      same->multiplicity += f.multiplicity * multiplicity;
+    else
+      all.push_back({f.value, f.multiplicity * multiplicity});
   }
 }
 

@@ -9,7 +9,7 @@
 /// A small polynomial in numbered variables with whole exponents: what factoring works on.
 namespace maupertuis::terms {
 
-using Exponents = std::vector<std::int16_t>;           // by variable
+using Exponents = std::vector<std::int16_t>;            // by variable
 using SmallPolynomial = std::map<Exponents, Rational>;  // lexicographic; no zero coefficients
 
 /// Thrown when the work would exceed what a factor is worth; the caller keeps the unfactored form.

@@ -9,9 +9,7 @@ namespace {
 
 std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) { return (std::uint64_t{a} << 32) | b; }
 
-void mix(std::size_t& seed, std::uint64_t value) {
-  seed ^= value + 0x9E3779B97F4A7C15ull + (seed << 6) + (seed >> 2);
-}
+void mix(std::size_t& seed, std::uint64_t value) { seed ^= value + 0x9E3779B97F4A7C15ull + (seed << 6) + (seed >> 2); }
 
 bool same_key(const Term& a, const Term& b) { return a.monomial == b.monomial && a.harmonic == b.harmonic; }
 bool key_less(const Term& a, const Term& b) {
@@ -77,8 +75,10 @@ MonomialId TermAlgebra::product(MonomialId a, MonomialId b) {
   merged.reserve(x.size() + y.size());
   std::size_t i = 0, j = 0;
   while (i < x.size() || j < y.size()) {
-    if (j == y.size() || (i < x.size() && x[i].atom < y[j].atom)) merged.push_back(x[i++]);
-    else if (i == x.size() || y[j].atom < x[i].atom) merged.push_back(y[j++]);
+    if (j == y.size() || (i < x.size() && x[i].atom < y[j].atom))
+      merged.push_back(x[i++]);
+    else if (i == x.size() || y[j].atom < x[i].atom)
+      merged.push_back(y[j++]);
     else {
       const Fraction exponent = x[i].exponent + y[j].exponent;
       if (!exponent.is_zero()) merged.push_back({x[i].atom, exponent});
@@ -104,9 +104,7 @@ Polynomial TermAlgebra::constant(const Rational& value) const {
   return {Term{0, 0, value}};
 }
 
-Polynomial TermAlgebra::of_atom(AtomId id, Fraction exponent) {
-  return {Term{intern(Monomial{{id, exponent}}), 0, 1}};
-}
+Polynomial TermAlgebra::of_atom(AtomId id, Fraction exponent) { return {Term{intern(Monomial{{id, exponent}}), 0, 1}}; }
 
 Polynomial TermAlgebra::normalized(std::vector<Term> raw) {
   std::sort(raw.begin(), raw.end(), key_less);
@@ -146,8 +144,10 @@ Polynomial TermAlgebra::add(const Polynomial& a, const Polynomial& b) const {
   result.reserve(a.size() + b.size());
   std::size_t i = 0, j = 0;
   while (i < a.size() || j < b.size()) {
-    if (j == b.size() || (i < a.size() && key_less(a[i], b[j]))) result.push_back(a[i++]);
-    else if (i == a.size() || key_less(b[j], a[i])) result.push_back(b[j++]);
+    if (j == b.size() || (i < a.size() && key_less(a[i], b[j])))
+      result.push_back(a[i++]);
+    else if (i == a.size() || key_less(b[j], a[i]))
+      result.push_back(b[j++]);
     else {
       Rational total = a[i].coefficient + b[j].coefficient;
       if (!total.is_zero()) result.push_back({a[i].monomial, a[i].harmonic, std::move(total)});

@@ -35,7 +35,7 @@ struct Fraction {
   bool is_integer() const { return den == 1; }
   friend bool operator==(Fraction, Fraction) = default;
 };
-Fraction fraction(std::int64_t num, std::int64_t den = 1);   // throws TooManyTerms beyond 2^20
+Fraction fraction(std::int64_t num, std::int64_t den = 1);  // throws TooManyTerms beyond 2^20
 bool fits_fraction(const Rational& value);
 Fraction to_fraction(const Rational& value);
 Fraction operator+(Fraction a, Fraction b);
@@ -52,16 +52,16 @@ struct Factor {
   Fraction exponent;
   friend bool operator==(const Factor&, const Factor&) = default;
 };
-using Monomial = std::vector<Factor>;   // ascending atoms, no zero exponents
+using Monomial = std::vector<Factor>;  // ascending atoms, no zero exponents
 
 struct Frequency {
-  NodeId angle;        // an expression of one term: θ, Ω t, π
+  NodeId angle;  // an expression of one term: θ, Ω t, π
   Fraction multiple;
   friend bool operator==(const Frequency&, const Frequency&) = default;
 };
 struct Harmonic {
   bool sine = false;
-  std::vector<Frequency> argument;   // ascending angles, the first multiple positive; empty: cos 0 = 1
+  std::vector<Frequency> argument;  // ascending angles, the first multiple positive; empty: cos 0 = 1
   friend bool operator==(const Harmonic&, const Harmonic&) = default;
 };
 
@@ -70,21 +70,21 @@ struct Term {
   HarmonicId harmonic;
   Rational coefficient;
 };
-using Polynomial = std::vector<Term>;   // ascending (monomial, harmonic), no zero coefficients
+using Polynomial = std::vector<Term>;  // ascending (monomial, harmonic), no zero coefficients
 
 enum class AtomKind : std::uint8_t {
   Symbol,
-  Function,      // a function that is no polynomial; its arguments are kept as polynomials
-  Base,          // a sum under a negative or fractional power; its one argument is the sum
-  Exponential,   // exp(x) of one term x: exp(a + b) is a product, so that exponentials cancel
-  Harmonic,      // sin or cos of one angle as an indeterminate of the power form
+  Function,     // a function that is no polynomial; its arguments are kept as polynomials
+  Base,         // a sum under a negative or fractional power; its one argument is the sum
+  Exponential,  // exp(x) of one term x: exp(a + b) is a product, so that exponentials cancel
+  Harmonic,     // sin or cos of one angle as an indeterminate of the power form
 };
 
 struct Atom {
-  Expr expr;                            // canonical
+  Expr expr;  // canonical
   AtomKind kind = AtomKind::Symbol;
-  std::vector<Polynomial> arguments;    // Function, Base, Exponential
-  Expr shown;                           // what a reader sees; the canonical expression until a pass sets it
+  std::vector<Polynomial> arguments;  // Function, Base, Exponential
+  Expr shown;                         // what a reader sees; the canonical expression until a pass sets it
 };
 
 /// Owns the atoms, monomials and harmonics that polynomials of one context refer to.
@@ -146,12 +146,12 @@ class TermAlgebra {
 
   Context* context_;
   std::size_t budget_;
-  std::size_t work_ = 0;   // products of terms so far
+  std::size_t work_ = 0;  // products of terms so far
   std::function<Expr(const Polynomial&)> exponent_form_;
   std::vector<Atom> atoms_;
   std::unordered_map<NodeId, AtomId> atom_ids_;
   std::vector<Monomial> monomials_;
-  std::vector<char> whole_base_power_;   // by monomial: a Base atom stands in it with an exponent of at least 1
+  std::vector<char> whole_base_power_;  // by monomial: a Base atom stands in it with an exponent of at least 1
   std::unordered_map<Monomial, MonomialId, KeyHash> monomial_ids_;
   std::unordered_map<std::uint64_t, MonomialId> products_;
   std::vector<Harmonic> harmonics_;

@@ -31,8 +31,10 @@ int take_quarter_turns(std::vector<Frequency>& argument, NodeId pi) {
   const std::int64_t twice = 2 * std::int64_t{place->multiple.num}, den = place->multiple.den;
   const std::int64_t quarters = twice >= 0 ? twice / den : -((-twice + den - 1) / den);
   const Fraction rest = fraction(twice - quarters * den, 2 * den);
-  if (rest.is_zero()) argument.erase(place);
-  else place->multiple = rest;
+  if (rest.is_zero())
+    argument.erase(place);
+  else
+    place->multiple = rest;
   return static_cast<int>(((quarters % 4) + 4) % 4);
 }
 
@@ -48,8 +50,8 @@ Term TermAlgebra::harmonic_term(bool sine, std::vector<Frequency> argument, Rati
   const NodeId pi = context_->pi().id();
   // The sign is decided by the first angle that is not π, so that cos(π/3 − θ) and cos(θ − π/3) are one.
   const auto first = std::find_if(argument.begin(), argument.end(), [&](const Frequency& f) { return f.angle != pi; });
-  const bool flip = (first == argument.end() ? !argument.empty() && argument.front().multiple.num < 0
-                                             : first->multiple.num < 0);
+  const bool flip =
+      (first == argument.end() ? !argument.empty() && argument.front().multiple.num < 0 : first->multiple.num < 0);
   if (flip) {
     for (Frequency& f : argument) f.multiple.num = -f.multiple.num;
     if (sine) coefficient = -coefficient;

@@ -11,7 +11,7 @@ namespace maupertuis::terms {
 Polynomial TermAlgebra::power(const Polynomial& a, Fraction exponent) {
   if (exponent.is_zero()) return constant(1);
   if (a.empty()) {
-    if (exponent.num < 0) throw TooManyTerms{};   // 1/0: left as it stands
+    if (exponent.num < 0) throw TooManyTerms{};  // 1/0: left as it stands
     return {};
   }
   if (a.size() == 1 && (a[0].harmonic == 0 || !exponent.is_integer() || exponent.num < 0))

@@ -12,7 +12,10 @@ namespace maupertuis {
 template <class Done, class Visit>
 void walk_new(Expr root, Done done, Visit visit) {
   if (done(root)) return;
-  struct Frame { Expr node; std::size_t next; };
+  struct Frame {
+    Expr node;
+    std::size_t next;
+  };
   std::vector<Frame> stack{{root, 0}};
   while (!stack.empty()) {
     Frame& top = stack.back();

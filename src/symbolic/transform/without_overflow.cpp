@@ -6,8 +6,8 @@
 #include <cmath>
 #include <optional>
 
-/// 1/(1 + exp(u)), sinh u/cosh³ u, log(1 + exp(u)): finite where exp(u) is not. Beyond |u| = 300 each is a constant, zero or a straight line to 130 digits, so that
-/// u may stay at ±300 there:
+/// 1/(1 + exp(u)), sinh u/cosh³ u, log(1 + exp(u)): finite where exp(u) is not. Beyond |u| = 300 each is a constant,
+/// zero or a straight line to 130 digits, so that u may stay at ±300 there:
 ///
 ///     1 ┤▔▔▔▔▔▔▔▔▔▔╲                       exp(u) in it is exp(w),       w  300 ┤      ╱▔▔▔▔
 ///       │           ╲                      w = max(min(u, 300), −300)           │    ╱
@@ -21,7 +21,7 @@ namespace {
 constexpr double bound = 300, most = 600;  // of u; of exponents, exp(709) being the largest in double
 /// Coefficients beside exponentials lie between its inverse and it: exp(300) outweighs them by 70 digits.
 constexpr double largest_coefficient = 1e60;
-constexpr double largest_shift = 50;       // of one exponent against another
+constexpr double largest_shift = 50;  // of one exponent against another
 
 bool is_exponential(Expr e) { return e.is(Kind::Exp) || e.is(Kind::Cosh) || e.is(Kind::Sinh); }
 
@@ -59,7 +59,10 @@ class Exponents {
   ExprMap with(Expr w) const {
     ExprMap out;
     for (const auto& [exponential, multiple] : multiples_)
-      out[exponential] = apply(exponential.kind(), exponential[0] == u_ ? w : expand(exponential[0] - Rational::from_double(multiple) * u_) + Rational::from_double(multiple) * w);
+      out[exponential] = apply(exponential.kind(), exponential[0] == u_
+                                                       ? w
+                                                       : expand(exponential[0] - Rational::from_double(multiple) * u_) +
+                                                             Rational::from_double(multiple) * w);
     return out;
   }
 
@@ -133,7 +136,8 @@ class Quotient {
     return out;
   }
 
-  /// Factors without exponentials do not grow; nothing where exponentials stand in another way, or beside what may be of any size.
+  /// Factors without exponentials do not grow; nothing where exponentials stand in another way, or beside what may be
+  /// of any size.
   std::optional<Growth> growth_of(Expr base) {
     if (is_exponential(base)) return exponents_.take(base) ? std::optional(exponents_.growth(base)) : std::nullopt;
     if (!base.is(Kind::Sum)) return holds_exponentials(base) ? std::nullopt : std::optional(Growth{});
@@ -176,7 +180,8 @@ class Quotient {
 
 /// log D(u) = log D(w) + (growth of D) · (u − w), where both sides are kept.
 Expr logarithm(Expr node) {
-  const auto quotient = node[0].is(Kind::Sum) || node[0].is(Kind::Cosh) ? Quotient::of_logarithm(node[0]) : std::nullopt;
+  const auto quotient =
+      node[0].is(Kind::Sum) || node[0].is(Kind::Cosh) ? Quotient::of_logarithm(node[0]) : std::nullopt;
   if (!quotient || (quotient->total().up <= 0 && quotient->total().down <= 0)) return node;
   Context& c = node.context();
   const Growth growth = quotient->total();
@@ -209,8 +214,10 @@ std::vector<Expr> without_overflow(std::span<const Expr> roots) {
   };
   for (const Expr& node : nodes) {
     Expr value = node;
-    if (node.is(Kind::Log)) value = logarithm(node);
-    else if (node.is(Kind::Product) || node.is(Kind::Power)) value = quotient(node);
+    if (node.is(Kind::Log))
+      value = logarithm(node);
+    else if (node.is(Kind::Product) || node.is(Kind::Power))
+      value = quotient(node);
     if (value == node) value = rebuild(node, replaced);
     if (value != node) done.emplace(node, value);
   }

@@ -21,7 +21,8 @@ class Collection {
     for (const std::string& line : lines_of(document.substr(0, from)))
       if (seen_.insert(line).second) head_ += line + "\n";
     // What is wrong is found by the title in the log.
-    body_ += "\\typeout{MODEL " + title + "}\n" + document.substr(from + begin.size(), to - from - begin.size()) + "\n\\clearpage\n";
+    body_ += "\\typeout{MODEL " + title + "}\n" + document.substr(from + begin.size(), to - from - begin.size()) +
+             "\n\\clearpage\n";
   }
 
   std::string document() const { return head_ + "\\begin{document}\n" + body_ + "\\end{document}\n"; }
@@ -39,7 +40,8 @@ std::string complaints(const std::string& log, double tolerance) {
     std::smatch found;
     if (line.rfind("MODEL ", 0) == 0) model = line.substr(6);
     const bool error = line.rfind("!", 0) == 0;
-    const bool wide = std::regex_search(line, found, std::regex("Overfull .hbox \\(([0-9.]+)pt")) && std::stod(found[1]) > tolerance;
+    const bool wide =
+        std::regex_search(line, found, std::regex("Overfull .hbox \\(([0-9.]+)pt")) && std::stod(found[1]) > tolerance;
     if ((error || wide) && ++count <= 20) out += model + ": " + line + "\n";
   }
   return out;
@@ -48,7 +50,9 @@ std::string complaints(const std::string& log, double tolerance) {
 void compile(const Collection& all) {
   const Folder folder;
   folder.write("all.tex", all.document());
-  const Outcome outcome = shell("cd " + folder.path("") + " && timeout 300 pdflatex -interaction=nonstopmode -file-line-error=0 all.tex >all.out 2>&1; cat all.log");
+  const Outcome outcome =
+      shell("cd " + folder.path("") +
+            " && timeout 300 pdflatex -interaction=nonstopmode -file-line-error=0 all.tex >all.out 2>&1; cat all.log");
   const std::string wrong = complaints(outcome.out, 1.0);
   CHECK_MESSAGE(wrong.empty(), wrong);
   CHECK(contains(read(folder.path("all.pdf")).substr(0, 5), "%PDF"));
@@ -63,7 +67,7 @@ void compile_all(const std::vector<std::string>& files, const std::vector<std::v
       arguments.insert(arguments.begin() + 1, file);
       arguments.push_back("--latex");
       const Outcome outcome = maup(arguments);
-      if (outcome.code == 1) continue;   // too long for this form, or no model of a motion: told by its code
+      if (outcome.code == 1) continue;  // too long for this form, or no model of a motion: told by its code
       std::string title = name_of(file);
       for (const std::string& word : command) title += " " + word;
       CHECK_MESSAGE(outcome.code == 0, title, ": ", outcome.err);
@@ -77,8 +81,13 @@ void compile_all(const std::vector<std::string>& files, const std::vector<std::v
 }  // namespace
 
 TEST_CASE("the models of the gallery, in every form") {
-  compile_all(models_in("models"), {{"derive"}, {"derive", "--form", "solved"}, {"derive", "--form", "matrix"}, {"derive", "--form", "residual"},
-                                    {"derive", "--eliminate"}, {"derive", "--steps"}, {"hamiltonian"}});
+  compile_all(models_in("models"), {{"derive"},
+                                    {"derive", "--form", "solved"},
+                                    {"derive", "--form", "matrix"},
+                                    {"derive", "--form", "residual"},
+                                    {"derive", "--eliminate"},
+                                    {"derive", "--steps"},
+                                    {"hamiltonian"}});
 }
 
 TEST_CASE("the models of the literature, with their derivation") {
@@ -90,8 +99,9 @@ TEST_CASE("the models of the literature, with their derivation") {
 
 TEST_CASE("names with underscores, letters of other alphabets and signs of LaTeX") {
   const Folder folder;
-  folder.write("names.lag", "system s\nparam m_ü = 1 kg, größe = 2 m, ж = 3 m, k_close_x = 1 N/m\ncoord x_far_left, y_1 : length\n"
-                            "T = 1/2 m_ü (x_far_left'^2 + y_1'^2)\nV = 1/2 k_close_x (größe - x_far_left)^2 + k_close_x ж y_1\n"
-                            "constraint x_far_left^2 + y_1^2 = größe^2 name close_x\n");
+  folder.write("names.lag",
+               "system s\nparam m_ü = 1 kg, größe = 2 m, ж = 3 m, k_close_x = 1 N/m\ncoord x_far_left, y_1 : length\n"
+               "T = 1/2 m_ü (x_far_left'^2 + y_1'^2)\nV = 1/2 k_close_x (größe - x_far_left)^2 + k_close_x ж y_1\n"
+               "constraint x_far_left^2 + y_1^2 = größe^2 name close_x\n");
   compile_all({folder.path("names.lag")}, {{"derive", "--steps"}, {"derive", "--form", "matrix"}, {"hamiltonian"}});
 }

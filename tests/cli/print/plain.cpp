@@ -25,7 +25,7 @@ void expect_equations(const std::string& file, const std::vector<std::string>& o
   arguments.insert(arguments.end(), options.begin(), options.end());
   const Outcome derived = maup(arguments);
   const bool must_exist = options.empty() || options.back() == "residual";
-  if (derived.code == 1 && !must_exist) return;   // too long for this form
+  if (derived.code == 1 && !must_exist) return;  // too long for this form
   if (holds_an_integral(derived)) return;
   CHECK_MESSAGE(derived.code == 0, derived.err);
   const Folder folder;
@@ -38,8 +38,8 @@ void expect_equations(const std::string& file, const std::vector<std::string>& o
 
 TEST_CASE("every equation of the gallery passes as an expectation of its own model") {
   for (const std::string& file : models_in("models"))
-    for (const std::vector<std::string>& options : std::vector<std::vector<std::string>>{
-             {}, {"--form", "solved"}, {"--eliminate"}, {"--form", "residual"}}) {
+    for (const std::vector<std::string>& options :
+         std::vector<std::vector<std::string>>{{}, {"--form", "solved"}, {"--eliminate"}, {"--form", "residual"}}) {
       CAPTURE(file);
       expect_equations(file, options);
     }

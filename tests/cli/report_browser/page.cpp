@@ -40,25 +40,36 @@ Drawing drawn(const char* text, Q q) {
   return evaluate_drawing(*model, run).value();
 }
 
-// A cart on a rail with a pendulum, a spring and a dashpot to the wall, a box, a wheel and a label; and a point that is lost at the end.
+// A cart on a rail with a pendulum, a spring and a dashpot to the wall, a box, a wheel and a label; and a point that is
+// lost at the end.
 Drawing plane_drawing() {
-  return drawn("system plane\nparam m = 1 kg, k = 3 N/m, c = 1 N s/m, l = 80 cm, w = 1.2 m, R = 10 cm, T0 = 6 s\ncoord x : length, θ : angle\n"
-               "point cart mass 4 m at (x, 0)\npoint bob mass m at cart + l (sin θ, -cos θ)\nframe wheel at (x, R) rotation angle -x/R\n"
-               "point lost at (w sqrt(1 - t/T0), 3 R)\nspring (-w, 0) - cart stiffness k length w\ndamper (-w, -R) - cart coefficient c\n"
-               "gravity (0, -9.81 [m/s^2])\nrun 8 s\n"
-               "draw trail bob, box cart 0.4 m by 0.2 m, cart - bob, hoop wheel R, circle lost R, label bob, wall at (-w, 0), ground at (0, -R)\n",
-               [](std::size_t k, double t) { return k == 0 ? 0.4 * std::cos(2 * t) : 0.9 * std::cos(3.1 * t); });
+  return drawn(
+      "system plane\nparam m = 1 kg, k = 3 N/m, c = 1 N s/m, l = 80 cm, w = 1.2 m, R = 10 cm, T0 = 6 s\ncoord x : "
+      "length, θ : angle\n"
+      "point cart mass 4 m at (x, 0)\npoint bob mass m at cart + l (sin θ, -cos θ)\nframe wheel at (x, R) rotation "
+      "angle -x/R\n"
+      "point lost at (w sqrt(1 - t/T0), 3 R)\nspring (-w, 0) - cart stiffness k length w\ndamper (-w, -R) - cart "
+      "coefficient c\n"
+      "gravity (0, -9.81 [m/s^2])\nrun 8 s\n"
+      "draw trail bob, box cart 0.4 m by 0.2 m, cart - bob, hoop wheel R, circle lost R, label bob, wall at (-w, 0), "
+      "ground at (0, -R)\n",
+      [](std::size_t k, double t) { return k == 0 ? 0.4 * std::cos(2 * t) : 0.9 * std::cos(3.1 * t); });
 }
 
-// Everything that space has: rods, a ball that turns, a box, a disc that rolls its spokes, a hoop that follows an axis, a spring, the floor.
+// Everything that space has: rods, a ball that turns, a box, a disc that rolls its spokes, a hoop that follows an axis,
+// a spring, the floor.
 Drawing space_drawing() {
-  return drawn("system space\nparam m = 1 kg, k = 3 N/m, l = 1 m, I = 1 kg m^2, r = 20 cm\ncoord θ, φ : angle\n"
-               "point bob mass m at l (sin θ cos φ, sin θ sin φ, -cos θ)\nbody ball mass m inertia diag(I, I, I) at (l/2, l/2, 0) rotation euler zxz (φ, θ, 3 φ)\n"
-               "frame wheel at (-l/2, l/2, -l/2) rotation axis (0, 1, 0) angle 4 φ\nframe crate at (-l/2, -l/2, 0) rotation axis (1, 0, 0) angle φ\n"
-               "spring (0, 0, l) - ball stiffness k\ngravity (0, 0, -9.81 [m/s^2])\nrun 8 s\n"
-               "draw trail bob, O - bob, ellipsoid ball r by 2 r by r/2, disc wheel 2 r axis (0, 1, 0), box crate r by 2 r by 3 r,\n"
-               "    hoop O r axis (sin θ cos φ, sin θ sin φ, cos θ), label bob \"B\"\n",
-               [](std::size_t k, double t) { return k == 0 ? 0.8 + 0.3 * std::sin(5 * t) : 1.7 * t; });
+  return drawn(
+      "system space\nparam m = 1 kg, k = 3 N/m, l = 1 m, I = 1 kg m^2, r = 20 cm\ncoord θ, φ : angle\n"
+      "point bob mass m at l (sin θ cos φ, sin θ sin φ, -cos θ)\nbody ball mass m inertia diag(I, I, I) at (l/2, l/2, "
+      "0) rotation euler zxz (φ, θ, 3 φ)\n"
+      "frame wheel at (-l/2, l/2, -l/2) rotation axis (0, 1, 0) angle 4 φ\nframe crate at (-l/2, -l/2, 0) rotation "
+      "axis (1, 0, 0) angle φ\n"
+      "spring (0, 0, l) - ball stiffness k\ngravity (0, 0, -9.81 [m/s^2])\nrun 8 s\n"
+      "draw trail bob, O - bob, ellipsoid ball r by 2 r by r/2, disc wheel 2 r axis (0, 1, 0), box crate r by 2 r by 3 "
+      "r,\n"
+      "    hoop O r axis (sin θ cos φ, sin θ sin φ, cos θ), label bob \"B\"\n",
+      [](std::size_t k, double t) { return k == 0 ? 0.8 + 0.3 * std::sin(5 * t) : 1.7 * t; });
 }
 
 Trajectory trajectory() {
@@ -84,9 +95,11 @@ PlotOptions plot_of(std::vector<std::string> columns, std::string against = {}) 
 
 ReportContent::Formula equation_of_cart() {
   const Layout coupling = product({symbol("m"), symbol("l"), words("cos"), symbol("θ"), symbol("θ", 2)});
-  const Layout centrifugal = product({symbol("m"), symbol("l"), words("sin"), symbol("θ"), power(symbol("θ", 1), number("2"))});
-  return {sum({product({sum({symbol("M"), symbol("m")}), symbol("x", 2)}), coupling, centrifugal, product({symbol("b"), symbol("x", 1)}),
-               product({symbol("k"), symbol("x")}), product({symbol("F_0"), words("cos"), symbol("ω"), symbol("t")})}),
+  const Layout centrifugal =
+      product({symbol("m"), symbol("l"), words("sin"), symbol("θ"), power(symbol("θ", 1), number("2"))});
+  return {sum({product({sum({symbol("M"), symbol("m")}), symbol("x", 2)}), coupling, centrifugal,
+               product({symbol("b"), symbol("x", 1)}), product({symbol("k"), symbol("x")}),
+               product({symbol("F_0"), words("cos"), symbol("ω"), symbol("t")})}),
           number("0"), "Euler-Lagrange", ""};
 }
 
@@ -96,27 +109,38 @@ ReportContent content(bool space) {
   c.title = space ? "Spherical pendulum <3-D> & friends" : "Driven cart with friction";
   c.source = "A textbook, 3rd edition, §4.2";
   c.file = "cart_pendulum.lag";
-  c.model_text = "system cart_pendulum \"Driven cart # 1\"\nparam M = 2 kg, m = 500 g   # </script><b>masses</b>\ncoord x : length, θ : angle\n";
+  c.model_text =
+      "system cart_pendulum \"Driven cart # 1\"\nparam M = 2 kg, m = 500 g   # </script><b>masses</b>\ncoord x : "
+      "length, θ : angle\n";
   c.summary = {{"freedoms", "2"}, {"space", space ? "three dimensions" : "two dimensions"}};
-  c.messages = {{Severity::Warning, "W0408", "the start is off by 2e-3 m", "The rod is longer.", "Take `l = 0.8 m`.", 2, "param M = 2 kg"}};
+  c.messages = {{Severity::Warning, "W0408", "the start is off by 2e-3 m", "The rod is longer.", "Take `l = 0.8 m`.", 2,
+                 "param M = 2 kg"}};
   c.drawing = space ? space_drawing() : plane_drawing();
   c.coordinates = {{symbol("x"), symbol("x", 1), "", "length in m", "0.4 m", "0 m/s"},
                    {symbol("θ"), symbol("θ", 1), "", "angle in rad", "0.9 rad", "0 rad/s"}};
   c.parameters = {{symbol("M"), "2", "kg", ""}, {symbol("m"), "500", "g", "0.5 kg"}, {symbol("b"), "0.4", "N s/m", ""}};
   c.equations = {equation_of_cart(), equation_of_cart()};
   c.energies = {{symbol("T"), product({number("1/2"), symbol("M"), power(symbol("x", 1), number("2"))}), "", ""}};
-  c.derivation = {{"Coordinates", {{{}, {}, "choice of generalized coordinates", "2 generalized coordinates: x and θ."}}},
-                  {"Equation of x",
-                   {{layouts::partial(symbol("L"), symbol("x", 1)), product({symbol("M"), symbol("x", 1)}), "partial derivative", ""},
-                    equation_of_cart()}}};
+  c.derivation = {
+      {"Coordinates", {{{}, {}, "choice of generalized coordinates", "2 generalized coordinates: x and θ."}}},
+      {"Equation of x",
+       {{layouts::partial(symbol("L"), symbol("x", 1)), product({symbol("M"), symbol("x", 1)}), "partial derivative",
+         ""},
+        equation_of_cart()}}};
   c.certified = true;
   c.certificate = {{"jet_residual", "M q̈ + h equals the residual obtained by jets of L.", "zero", true, true, 6, 3e-17},
                    {"dalembert", "d'Alembert's principle gives the same equations.", "no points", true, false, 0, 1}};
-  c.conserved = {{"The energy function is conserved.", {symbol("h"), sum({symbol("T"), symbol("V")}), "", ""}, "1.25 J", "3.2e-15"}};
+  c.conserved = {{"The energy function is conserved.",
+                  {symbol("h"), sum({symbol("T"), symbol("V")}), "", ""},
+                  "1.25 J",
+                  "3.2e-15"}};
   c.statistics = {{"steps", "96"}, {"energy drift", "3.2e-15"}};
   c.expectations = {{4, "expect θ at 1 s = 0.5 rad ± 1e-9", false, true, "0.5 rad", "", "", "", ""}};
   c.trajectory = trajectory();
-  c.pictures = {{"Coordinates", plot_of({"x", "θ"})}, {"Velocities", plot_of({"x'", "θ'"})}, {"Energy drift", plot_of({"energy drift"})}, {"Phase portrait", plot_of({"θ'"}, "θ")}};
+  c.pictures = {{"Coordinates", plot_of({"x", "θ"})},
+                {"Velocities", plot_of({"x'", "θ'"})},
+                {"Energy drift", plot_of({"energy drift"})},
+                {"Phase portrait", plot_of({"θ'"}, "θ")}};
   return c;
 }
 
@@ -138,9 +162,12 @@ std::string scene(const Drawing& drawing) {
   for (const double elapsed : {0.0, 1.234, 5.5, 7.9}) {
     out += (out.back() == '[' ? "{\"elapsed\":" : ",{\"elapsed\":") + std::to_string(elapsed) + ",\"items\":[";
     for (const FrameItem& item : frame_items(drawing, view, elapsed, options))
-      out += (out.back() == '[' ? "{\"id\":" : ",{\"id\":") + std::to_string(item.id) + ",\"closed\":" + (item.closed ? "true" : "false") +
-             ",\"width\":" + std::to_string(item.width) + ",\"radius\":" + std::to_string(item.radius) + ",\"fill\":" + std::to_string(item.fill.ink == FrameColour::Ink::None ? 0 : item.fill.strength) +
-             ",\"stroke\":" + std::to_string(item.stroke.ink == FrameColour::Ink::None ? 0 : item.stroke.strength) + ",\"points\":" + numbers(item.points) + "}";
+      out += (out.back() == '[' ? "{\"id\":" : ",{\"id\":") + std::to_string(item.id) +
+             ",\"closed\":" + (item.closed ? "true" : "false") + ",\"width\":" + std::to_string(item.width) +
+             ",\"radius\":" + std::to_string(item.radius) +
+             ",\"fill\":" + std::to_string(item.fill.ink == FrameColour::Ink::None ? 0 : item.fill.strength) +
+             ",\"stroke\":" + std::to_string(item.stroke.ink == FrameColour::Ink::None ? 0 : item.stroke.strength) +
+             ",\"points\":" + numbers(item.points) + "}";
     out += "]}";
   }
   return out + "]}";
@@ -151,7 +178,9 @@ std::string scene(const Drawing& drawing) {
 int main(int count, char** arguments) {
   if (count != 3) return 2;
   const std::string what = arguments[1];
-  const std::string text = what == "scene-plane" ? scene(plane_drawing()) : what == "scene-space" ? scene(space_drawing()) : report_html(content(what == "space"));
+  const std::string text = what == "scene-plane"   ? scene(plane_drawing())
+                           : what == "scene-space" ? scene(space_drawing())
+                                                   : report_html(content(what == "space"));
   const std::string problem = write_file(arguments[2], text);
   if (problem.empty()) return 0;
   std::fprintf(stderr, "%s\n", problem.c_str());

@@ -1,4 +1,5 @@
-// Arguments: every command and option of the program's own table, with values that fit, that nearly fit, and that do not.
+// Arguments: every command and option of the program's own table, with values that fit, that nearly fit, and that do
+// not.
 #include "input.hpp"
 
 #include <stdexcept>
@@ -9,9 +10,12 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-const Words times{"0.1s", "0.2 s", "300ms", "0.5", "0.01 min"}, odd_times{"0", "-0.3s", "1e-300s", "3kg", "", "s", "0.1s,0.2s", "1e400s"};
-const Words counts{"1", "2", "3", "4", "6", "12"}, odd_counts{"0", "-1", "1e-8", "1e-3", "0.5", "20", "abc", "1e999", "", "99999999999999999999"};
-const Words files{"out.csv", "out.npy", "out.json", "out.svg", "out.html", "out.lag", "out.png", "out", "", "model.lag", "nowhere/out.csv", "-", ".", "/dev/full"};
+const Words times{"0.1s", "0.2 s", "300ms", "0.5", "0.01 min"},
+    odd_times{"0", "-0.3s", "1e-300s", "3kg", "", "s", "0.1s,0.2s", "1e400s"};
+const Words counts{"1", "2", "3", "4", "6", "12"},
+    odd_counts{"0", "-1", "1e-8", "1e-3", "0.5", "20", "abc", "1e999", "", "99999999999999999999"};
+const Words files{"out.csv", "out.npy", "out.json",  "out.svg",         "out.html", "out.lag", "out.png",
+                  "out",     "",        "model.lag", "nowhere/out.csv", "-",        ".",       "/dev/full"};
 const Words junk{"", "-", "--", "x", "=", "θ", "0", "'", "\"", "(", "x = ", "a\nb", "#", "é", "\xff", "{}", "%s"};
 
 const std::string border = "----\n";
@@ -20,18 +24,23 @@ bool has(const std::string& text, const char* part) { return text.find(part) != 
 
 }  // namespace
 
-std::string Generator::value_for(const app::OptionRow& row, const std::vector<std::string>& names, Random& random) const {
+std::string Generator::value_for(const app::OptionRow& row, const std::vector<std::string>& names,
+                                 Random& random) const {
   if (random.one_in(40)) return random.of(junk);
   const bool odd = random.one_in(5);
   if (!row.words.empty()) return random.one_in(12) ? random.of(words_) : random.of(row.words);
-  const auto formula = [&] { return random.one_in(2) && !names.empty() ? random.of(names) : grammar_.sentence("formula", names, random); };
+  const auto formula = [&] {
+    return random.one_in(2) && !names.empty() ? random.of(names) : grammar_.sentence("formula", names, random);
+  };
   const std::string name = names.empty() ? "x" : random.of(names);
   const std::string& value = row.value;
   if (value.rfind("FILE", 0) == 0) return random.of(files);
-  if (has(value, "NAME=VALUE")) return name + (random.one_in(6) ? "'" : "") + "=" + grammar_.sentence("quantity", names, random);
+  if (has(value, "NAME=VALUE"))
+    return name + (random.one_in(6) ? "'" : "") + "=" + grammar_.sentence("quantity", names, random);
   if (has(value, "POINT")) return random.one_in(3) ? random.of(odd ? odd_times : times) : name + "=" + formula();
   if (has(value, "TIME") || has(value, "PERIOD")) return random.of(odd ? odd_times : times);
-  if (has(value, "NUMBER") || has(value, "INT") || has(value, "FLOAT") || value == "N") return random.of(odd ? odd_counts : counts);
+  if (has(value, "NUMBER") || has(value, "INT") || has(value, "FLOAT") || value == "N")
+    return random.of(odd ? odd_counts : counts);
   if (has(value, "EQUATION")) return formula() + " = " + formula() + (random.one_in(3) ? " rising" : "");
   if (has(value, "SWEEP")) return name + " = 0 .. 2 steps " + std::to_string(2 + random.below(6));
   if (has(value, "ENDS")) return "(" + random.of(counts) + ") at 0 to (" + random.of(counts) + ") at 1 s";
@@ -67,7 +76,10 @@ std::vector<std::string> Generator::arguments(const std::string& model, Random& 
     if (row.positional) {
       const bool is_model = has(row.what, "odel");
       if (random.one_in(50)) continue;
-      out.push_back(is_model ? random.one_in(3) ? "-" : random.one_in(40) ? "missing.lag" : "model.lag" : value_for(row, names, random));
+      out.push_back(is_model ? random.one_in(3)    ? "-"
+                               : random.one_in(40) ? "missing.lag"
+                                                   : "model.lag"
+                             : value_for(row, names, random));
     } else {
       const bool is_length = row.names.back() == "--duration";
       if (is_length) length = &row;
@@ -94,9 +106,12 @@ std::string to_text(const Input& input) {
   std::string out;
   for (const std::string& argument : input.arguments) {
     for (const char c : argument)
-      if (c == '\n') out += "\\n";
-      else if (c == '\\') out += "\\\\";
-      else out += c;
+      if (c == '\n')
+        out += "\\n";
+      else if (c == '\\')
+        out += "\\\\";
+      else
+        out += c;
     out += '\n';
   }
   return out + border + input.model;
@@ -104,14 +119,18 @@ std::string to_text(const Input& input) {
 
 Input from_text(const std::string& text) {
   const auto at = text.rfind(border, 0) == 0 ? 0 : text.find(std::string("\n") + border) + 1;
-  if (at == 0 && text.rfind(border, 0) != 0) throw std::runtime_error("no line of dashes between the arguments and the model");
+  if (at == 0 && text.rfind(border, 0) != 0)
+    throw std::runtime_error("no line of dashes between the arguments and the model");
   Input out;
   out.model = text.substr(at + border.size());
   std::string argument;
   for (std::size_t i = 0; i < at; ++i)
-    if (text[i] == '\n') out.arguments.push_back(std::exchange(argument, {}));
-    else if (text[i] == '\\' && i + 1 < at) argument += text[++i] == 'n' ? '\n' : text[i];
-    else argument += text[i];
+    if (text[i] == '\n')
+      out.arguments.push_back(std::exchange(argument, {}));
+    else if (text[i] == '\\' && i + 1 < at)
+      argument += text[++i] == 'n' ? '\n' : text[i];
+    else
+      argument += text[i];
   return out;
 }
 

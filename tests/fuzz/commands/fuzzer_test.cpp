@@ -4,13 +4,13 @@
 
 #include <doctest/doctest.h>
 
+#include <unistd.h>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <unistd.h>
 
 using namespace maupertuis::fuzz;
 
@@ -19,7 +19,9 @@ namespace {
 const std::set<int> documented{0, 1, 2, 3};
 const std::set<std::string> catalogue{"E0101"};
 
-std::optional<std::string> judge(const Input& input, const Outcome& outcome) { return failure(input, outcome, documented, catalogue); }
+std::optional<std::string> judge(const Input& input, const Outcome& outcome) {
+  return failure(input, outcome, documented, catalogue);
+}
 
 /// A program that does what its first argument says.
 int pretender(int count, char** words) {
@@ -27,7 +29,9 @@ int pretender(int count, char** words) {
   if (what == "crash") std::raise(SIGSEGV);
   if (what == "abort") std::fputs("maup: internal precondition broken: x (y:1)\n", stderr), std::abort();
   if (what == "leave") std::exit(0);
-  if (what == "hang") for (std::atomic<int> i = 0;; ++i) {}
+  if (what == "hang")
+    for (std::atomic<int> i = 0;; ++i) {
+    }
   if (what == "odd") return std::puts("word"), 77;
   if (what == "silent") return 3;
   if (what == "report") std::fputs("internal error. Please report it\n", stderr);
@@ -50,8 +54,10 @@ std::map<std::string, std::string> told(const std::vector<Input>& inputs, std::u
   Limits limits;
   limits.seconds = 0.3;
   Supervisor supervisor(pretender, limits);
-  supervisor.run(0, inputs.size(), [&](std::uint64_t i) { return inputs[i]; }, judge,
-                 [&](std::uint64_t i, const std::string& wrong, const Outcome&) { out[inputs[i].arguments[0]] = wrong; }, [] { return false; });
+  supervisor.run(
+      0, inputs.size(), [&](std::uint64_t i) { return inputs[i]; }, judge,
+      [&](std::uint64_t i, const std::string& wrong, const Outcome&) { out[inputs[i].arguments[0]] = wrong; },
+      [] { return false; });
   counted = supervisor.counts().inputs;
   return out;
 }
@@ -60,7 +66,8 @@ std::map<std::string, std::string> told(const std::vector<Input>& inputs, std::u
 
 TEST_CASE("each kind of failure is told, and what follows it still runs") {
   std::vector<Input> inputs;
-  for (const char* what : {"fine", "crash", "abort", "leave", "hang", "odd", "silent", "report", "code", "number", "file", "escape", "fine", "fine"})
+  for (const char* what : {"fine", "crash", "abort", "leave", "hang", "odd", "silent", "report", "code", "number",
+                           "file", "escape", "fine", "fine"})
     inputs.push_back({{what}, "system a\n"});
   inputs.push_back({{"json", "--json"}, ""});
   std::uint64_t counted = 0;

@@ -9,7 +9,8 @@ namespace {
 using Node = Grammar::Node;
 using Kind = Node::Kind;
 
-/// ISO 14977 as far as the grammar of models uses it: , | [ ] { } ( ) "…" '…' ? … ? (* … *), and an exception `- …`, which is passed over.
+/// ISO 14977 as far as the grammar of models uses it: , | [ ] { } ( ) "…" '…' ? … ? (* … *), and an exception `- …`,
+/// which is passed over.
 class Reader {
  public:
   Reader(const std::string& text, std::set<std::string>& words) : text_(text), words_(words) {}
@@ -32,9 +33,12 @@ class Reader {
 
   void skip() {
     while (at_ < text_.size())
-      if (std::isspace(static_cast<unsigned char>(text_[at_]))) ++at_;
-      else if (text_.compare(at_, 2, "(*") == 0) at_ = text_.find("*)", at_) == std::string::npos ? text_.size() : text_.find("*)", at_) + 2;
-      else return;
+      if (std::isspace(static_cast<unsigned char>(text_[at_])))
+        ++at_;
+      else if (text_.compare(at_, 2, "(*") == 0)
+        at_ = text_.find("*)", at_) == std::string::npos ? text_.size() : text_.find("*)", at_) + 2;
+      else
+        return;
   }
   char peek() { return skip(), at_ < text_.size() ? text_[at_] : '\0'; }
   bool accept(char c) { return peek() == c && ++at_; }
@@ -113,13 +117,21 @@ class Writer {
   void write(const Node& node, int depth) {
     if (++written_ > most) depth = deep + 1;
     switch (node.kind) {
-      case Kind::Word: add(node.text); return;
-      case Kind::Free: add(node.text == "any character" ? "x" : random_.one_in(2) ? "zxz" : "θ"); return;
-      case Kind::Rule: rule(node.text, depth); return;
+      case Kind::Word:
+        add(node.text);
+        return;
+      case Kind::Free:
+        add(node.text == "any character" ? "x" : random_.one_in(2) ? "zxz" : "θ");
+        return;
+      case Kind::Rule:
+        rule(node.text, depth);
+        return;
       case Kind::All:
         for (const Node& part : node.parts) write(part, depth);
         return;
-      case Kind::One: write(choice(node, depth), depth); return;
+      case Kind::One:
+        write(choice(node, depth), depth);
+        return;
       case Kind::Maybe:
         if (random_.one_in(depth > deep ? 8 : 2)) write(node.parts[0], depth);
         return;
@@ -138,34 +150,47 @@ class Writer {
   const Node& choice(const Node& node, int depth) {
     if (depth > deep)
       for (const Node& part : node.parts)
-        if (part.kind == Kind::Word || (part.kind == Kind::Rule && (part.text == "name" || part.text == "number"))) return part;
+        if (part.kind == Kind::Word || (part.kind == Kind::Rule && (part.text == "name" || part.text == "number")))
+          return part;
     return random_.of(node.parts);
   }
 
   /// What a person would write, of names that were declared.
   std::string plain_formula(int height) {
-    static const std::vector<std::string> functions{"sin", "cos", "exp", "sqrt", "log", "abs", "tanh", "atan", "sign", "step", "norm"};
+    static const std::vector<std::string> functions{"sin",  "cos",  "exp",  "sqrt", "log", "abs",
+                                                    "tanh", "atan", "sign", "step", "norm"};
     const auto part = [&] { return plain_formula(height - 1); };
     if (height <= 0) {
       if (names_.empty() || random_.one_in(4)) return std::to_string(random_.below(5));
       return random_.of(names_) + (random_.one_in(8) ? "'" : "");
     }
     switch (random_.below(9)) {
-      case 0: return part() + " + " + part();
-      case 1: return part() + " - " + part();
-      case 2: return part() + "/(" + part() + ")";
-      case 3: return "(" + part() + ")^" + std::to_string(random_.below(5));
-      case 4: return random_.of(functions) + "(" + part() + ")";
-      case 5: return "-(" + part() + ")";
-      case 6: return random_.one_in(4) ? "(" + part() + ", " + part() + ")" : part() + " + 1";
-      default: return "(" + part() + ") (" + part() + ")";
+      case 0:
+        return part() + " + " + part();
+      case 1:
+        return part() + " - " + part();
+      case 2:
+        return part() + "/(" + part() + ")";
+      case 3:
+        return "(" + part() + ")^" + std::to_string(random_.below(5));
+      case 4:
+        return random_.of(functions) + "(" + part() + ")";
+      case 5:
+        return "-(" + part() + ")";
+      case 6:
+        return random_.one_in(4) ? "(" + part() + ", " + part() + ")" : part() + " + 1";
+      default:
+        return "(" + part() + ") (" + part() + ")";
     }
   }
 
   void rule(const std::string& name, int depth) {
-    static const std::vector<std::string> numbers{"0", "1", "2", "-1", "0.5", "9.81", "1e-3", "3", "1/3", "1e300", "1e-300", "0.1", "12345678901234567890"};
-    static const std::vector<std::string> units{"kg", "m", "s", "rad", "deg", "N", "J", "m/s", "m/s^2", "N/m", "kg m^2", "Hz", "1", "A", "V", "mm", "h"};
-    if (name == "name") return add(names_.empty() || random_.one_in(12) ? "q" + std::to_string(random_.below(4)) : random_.of(names_));
+    static const std::vector<std::string> numbers{
+        "0", "1", "2", "-1", "0.5", "9.81", "1e-3", "3", "1/3", "1e300", "1e-300", "0.1", "12345678901234567890"};
+    static const std::vector<std::string> units{"kg",  "m",      "s",  "rad", "deg", "N", "J",  "m/s", "m/s^2",
+                                                "N/m", "kg m^2", "Hz", "1",   "A",   "V", "mm", "h"};
+    if (name == "name")
+      return add(names_.empty() || random_.one_in(12) ? "q" + std::to_string(random_.below(4)) : random_.of(names_));
     if (name == "digits") return add(std::to_string(random_.one_in(20) ? random_.below(100000) : random_.below(5)));
     if (name == "number") return add(random_.one_in(6) ? random_.of(numbers) : std::to_string(random_.below(4)));
     if (name == "units" && !random_.one_in(4)) return add(random_.of(units));
@@ -179,7 +204,8 @@ class Writer {
   }
 
   void add(const std::string& word) {
-    if (!out_.empty() && out_.back() != '\n' && out_.back() != '(' && word != "'" && word != ")" && word != ",") out_ += ' ';
+    if (!out_.empty() && out_.back() != '\n' && out_.back() != '(' && word != "'" && word != ")" && word != ",")
+      out_ += ' ';
     out_ += word;
   }
 

@@ -15,7 +15,8 @@ class Grammar {
   /// Throws std::runtime_error where the text is no grammar.
   explicit Grammar(const std::string& ebnf);
 
-  /// A sentence of a rule. `names`: for the rule `name`, so that what is used was often declared. Deep rules come to an end by themselves.
+  /// A sentence of a rule. `names`: for the rule `name`, so that what is used was often declared. Deep rules come to an
+  /// end by themselves.
   std::string sentence(const std::string& rule, const std::vector<std::string>& names, Random& random) const;
 
   const std::set<std::string>& words() const { return words_; }

@@ -8,7 +8,8 @@
 
 namespace maupertuis::fuzz {
 
-/// What the program is given: arguments without its own name, and the model, which is the file model.lag and standard input alike.
+/// What the program is given: arguments without its own name, and the model, which is the file model.lag and standard
+/// input alike.
 struct Input {
   std::vector<std::string> arguments;
   std::string model;
@@ -18,12 +19,16 @@ struct Input {
 std::string to_text(const Input& input);
 Input from_text(const std::string& text);
 
-/// Draws inputs: models from the grammar and from stored ones that are changed at random, arguments from the program's own table of options.
+/// Draws inputs: models from the grammar and from stored ones that are changed at random, arguments from the program's
+/// own table of options.
 class Generator {
  public:
   /// `stored`: texts of models. `table`: see CommandLine::table.
   Generator(Grammar grammar, std::vector<std::string> stored, app::OptionTable table, std::uint64_t seed)
-      : grammar_(std::move(grammar)), stored_(std::move(stored)), table_(std::move(table)), seed_(seed),
+      : grammar_(std::move(grammar)),
+        stored_(std::move(stored)),
+        table_(std::move(table)),
+        seed_(seed),
         words_(grammar_.words().begin(), grammar_.words().end()) {}
 
   Input input(std::uint64_t number) const;

@@ -18,11 +18,13 @@ struct Outcome {
   std::map<std::string, std::string> files;  // that it wrote
 };
 
-/// One sentence of what is wrong, the same for all inputs with the same cause; nothing where all is well. `documented`: exit codes;
-/// `catalogue`: codes of messages that `maup explain` knows.
-std::optional<std::string> failure(const Input& input, const Outcome& outcome, const std::set<int>& documented, const std::set<std::string>& catalogue);
+/// One sentence of what is wrong, the same for all inputs with the same cause; nothing where all is well. `documented`:
+/// exit codes; `catalogue`: codes of messages that `maup explain` knows.
+std::optional<std::string> failure(const Input& input, const Outcome& outcome, const std::set<int>& documented,
+                                   const std::set<std::string>& catalogue);
 
-/// The command runs motions, whose length is what the model asks for; such a run may take long, if it ends when it is asked to.
+/// The command runs motions, whose length is what the model asks for; such a run may take long, if it ends when it is
+/// asked to.
 bool runs_motions(const Input& input);
 
 }  // namespace maupertuis::fuzz

@@ -1,7 +1,7 @@
 // fuzz_commands: every command of the program, called within this process, on drawn models with drawn options.
-//   fuzz_commands run [--seed S] [--first N] [--count N] [--seconds T] [--keep FOLDER]   draws inputs; failures are made small and kept
-//   fuzz_commands replay FILE|FOLDER...                                               inputs that were kept
-//   fuzz_commands show NUMBER [--seed S]                                              one drawn input
+//   fuzz_commands run [--seed S] [--first N] [--count N] [--seconds T] [--keep FOLDER]   draws inputs; failures are
+//   made small and kept fuzz_commands replay FILE|FOLDER...                                               inputs that
+//   were kept fuzz_commands show NUMBER [--seed S]                                              one drawn input
 // Exit 0: all is well; 1: a failure, which is told with its input.
 #include "codes.hpp"
 #include "command_line.hpp"
@@ -43,9 +43,11 @@ std::vector<fs::path> files_in(const fs::path& from) {
 /// The models of the project, those that are refused too; large ones are left out, which take their time.
 std::vector<std::string> stored_models() {
   std::vector<std::string> out;
-  for (const char* folder : {"models", "tests/problems", "tests/golden/accept", "tests/golden/reject", "tests/fuzz/corpus"})
+  for (const char* folder :
+       {"models", "tests/problems", "tests/golden/accept", "tests/golden/reject", "tests/fuzz/corpus"})
     for (const fs::path& path : files_in(fs::path(PROJECT_DIR) / folder))
-      if ((path.extension() == ".lag" || path.extension().empty()) && fs::file_size(path) < 3000) out.push_back(content(path));
+      if ((path.extension() == ".lag" || path.extension().empty()) && fs::file_size(path) < 3000)
+        out.push_back(content(path));
   if (out.size() < 100) throw std::runtime_error("the stored models are not here");
   return out;
 }
@@ -78,12 +80,18 @@ Asked read_arguments(int count, char** words) {
       if (i + 1 >= count) throw std::runtime_error(word + " wants a value");
       return words[++i];
     };
-    if (word == "--seed") out.seed = std::stoull(next());
-    else if (word == "--first") out.first = std::stoull(next());
-    else if (word == "--count") out.count = std::stoull(next());
-    else if (word == "--seconds") out.seconds = std::stod(next());
-    else if (word == "--keep") out.keep = next();
-    else out.rest.push_back(word);
+    if (word == "--seed")
+      out.seed = std::stoull(next());
+    else if (word == "--first")
+      out.first = std::stoull(next());
+    else if (word == "--count")
+      out.count = std::stoull(next());
+    else if (word == "--seconds")
+      out.seconds = std::stod(next());
+    else if (word == "--keep")
+      out.keep = next();
+    else
+      out.rest.push_back(word);
   }
   return out;
 }
@@ -96,7 +104,8 @@ int program(int count, char** words) {
 }
 
 Generator generator(std::uint64_t seed) {
-  return {Grammar(content(fs::path(PROJECT_DIR) / "docs/manual/grammar.ebnf")), stored_models(), app::option_table(), seed};
+  return {Grammar(content(fs::path(PROJECT_DIR) / "docs/manual/grammar.ebnf")), stored_models(), app::option_table(),
+          seed};
 }
 
 void print(const Input& input) { std::printf("%s\n", to_text(input).c_str()); }
@@ -114,27 +123,36 @@ int draw(const Asked& asked) {
   const Rules by = rules();
   const auto begin = std::chrono::steady_clock::now();
   const auto passed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
-  const auto judge = [&](const Input& input, const Outcome& outcome) { return failure(input, outcome, by.documented, by.catalogue); };
+  const auto judge = [&](const Input& input, const Outcome& outcome) {
+    return failure(input, outcome, by.documented, by.catalogue);
+  };
   std::map<std::string, std::uint64_t> failures;  // by what is wrong
   Supervisor supervisor(program, {});
   const auto tell = [&](std::uint64_t number, const std::string& wrong, const Outcome&) {
     if (failures[wrong]++ >= 2) return;
     const Input small = minimized(drawn.input(number), wrong, program, judge);
-    std::printf("\n== input %llu of seed %llu: %s\n", static_cast<unsigned long long>(number), static_cast<unsigned long long>(asked.seed), wrong.c_str());
+    std::printf("\n== input %llu of seed %llu: %s\n", static_cast<unsigned long long>(number),
+                static_cast<unsigned long long>(asked.seed), wrong.c_str());
     print(small);
     std::fflush(stdout);
     if (asked.keep.empty()) return;
     fs::create_directories(asked.keep);
-    std::ofstream(fs::path(asked.keep) / (std::to_string(asked.seed) + "_" + std::to_string(number) + ".fuzz"), std::ios::binary) << to_text(small);
+    std::ofstream(fs::path(asked.keep) / (std::to_string(asked.seed) + "_" + std::to_string(number) + ".fuzz"),
+                  std::ios::binary)
+        << to_text(small);
   };
-  supervisor.run(asked.first, asked.count, [&](std::uint64_t number) { return drawn.input(number); }, judge, tell,
-                 [&] { return asked_to_end || passed() > asked.seconds; });
+  supervisor.run(
+      asked.first, asked.count, [&](std::uint64_t number) { return drawn.input(number); }, judge, tell,
+      [&] { return asked_to_end || passed() > asked.seconds; });
   const auto& counts = supervisor.counts();
-  std::printf("\n%llu inputs in %.0f s; runs longer than 20 s that ended when asked: %llu; exit codes:", static_cast<unsigned long long>(counts.inputs), passed(),
+  std::printf("\n%llu inputs in %.0f s; runs longer than 20 s that ended when asked: %llu; exit codes:",
+              static_cast<unsigned long long>(counts.inputs), passed(),
               static_cast<unsigned long long>(counts.long_runs));
-  for (const auto& [code, count] : counts.by_code) std::printf(" %d: %llu", code, static_cast<unsigned long long>(count));
+  for (const auto& [code, count] : counts.by_code)
+    std::printf(" %d: %llu", code, static_cast<unsigned long long>(count));
   std::printf("\n");
-  for (const auto& [wrong, count] : failures) std::printf("%8llu  %s\n", static_cast<unsigned long long>(count), wrong.c_str());
+  for (const auto& [wrong, count] : failures)
+    std::printf("%8llu  %s\n", static_cast<unsigned long long>(count), wrong.c_str());
   return failures.empty() && counts.inputs > 0 ? 0 : 1;
 }
 
@@ -147,14 +165,17 @@ int replay(const Asked& asked) {
   for (const fs::path& path : paths) inputs.push_back(from_text(content(path)));
   if (inputs.empty()) throw std::runtime_error("nothing to replay");
   bool well = true;
-  Supervisor(program, {}).run(
-      0, inputs.size(), [&](std::uint64_t number) { return inputs[number]; },
-      [&](const Input& input, const Outcome& outcome) { return failure(input, outcome, by.documented, by.catalogue); },
-      [&](std::uint64_t number, const std::string& wrong, const Outcome& outcome) {
-        well = false;
-        std::printf("%s: %s\n%s\n", paths[number].c_str(), wrong.c_str(), outcome.err.c_str());
-      },
-      [] { return false; });
+  Supervisor(program, {})
+      .run(
+          0, inputs.size(), [&](std::uint64_t number) { return inputs[number]; },
+          [&](const Input& input, const Outcome& outcome) {
+            return failure(input, outcome, by.documented, by.catalogue);
+          },
+          [&](std::uint64_t number, const std::string& wrong, const Outcome& outcome) {
+            well = false;
+            std::printf("%s: %s\n%s\n", paths[number].c_str(), wrong.c_str(), outcome.err.c_str());
+          },
+          [] { return false; });
   std::printf("%zu inputs\n", inputs.size());
   return well ? 0 : 1;
 }

@@ -26,12 +26,16 @@ std::string joined(const Lines& lines) {
 
 /// Words, numbers, single signs; what is between them stays with the one before.
 Lines tokens_of(const std::string& text) {
-  const auto in_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || static_cast<unsigned char>(c) >= 0x80; };
+  const auto in_word = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || static_cast<unsigned char>(c) >= 0x80;
+  };
   Lines out;
   for (std::size_t i = 0; i < text.size();) {
     std::size_t end = i + 1;
     if (in_word(text[i]))
-      while (end < text.size() && (in_word(text[end]) || (text[end] == '.' && std::isdigit(static_cast<unsigned char>(text[i]))))) ++end;
+      while (end < text.size() &&
+             (in_word(text[end]) || (text[end] == '.' && std::isdigit(static_cast<unsigned char>(text[i])))))
+        ++end;
     while (end < text.size() && text[end] == ' ') ++end;
     out.push_back(text.substr(i, end - i));
     i = end;
@@ -39,7 +43,9 @@ Lines tokens_of(const std::string& text) {
   return out;
 }
 
-const Lines numbers{"0", "1", "-1", "2", "1e-9", "1e9", "1e300", "1e-300", "0.5", "1/3", "3.14159", "100", "1e16", "4503599627370497", "0.1", ".5", "1e400"};
+const Lines numbers{"0",      "1",   "-1",   "2",       "1e-9", "1e9",  "1e300",
+                    "1e-300", "0.5", "1/3",  "3.14159", "100",  "1e16", "4503599627370497",
+                    "0.1",    ".5",  "1e400"};
 
 /// Runs of stored models last for hours of their own time; what is looked for is found in its first moments.
 std::string with_short_runs(const std::string& text) {
@@ -80,8 +86,11 @@ std::string Generator::from_grammar(Random& random) const {
   lines.push_back(dimensionless ? "param m = 1, k = 2" : "param m = 1 kg, k = 2 N/m");
   lines.push_back("coord " + coordinates + (dimensionless ? " : number" : " : length"));
   const std::size_t way = random.below(4);
-  if (way == 0) lines.push_back("L = " + formula());
-  else lines.push_back("T = " + kinetic + (way == 1 ? " + " + formula() : "")), lines.push_back("V = " + (way == 2 ? "1/2 k x^2" : formula()));
+  if (way == 0)
+    lines.push_back("L = " + formula());
+  else
+    lines.push_back("T = " + kinetic + (way == 1 ? " + " + formula() : "")),
+        lines.push_back("V = " + (way == 2 ? "1/2 k x^2" : formula()));
   while (random.one_in(2)) lines.push_back(grammar_.sentence("statement", names, random));
   if (random.one_in(3)) lines.push_back("constraint " + formula() + " = " + formula());
   if (random.one_in(4)) lines.push_back("force on x = " + formula());
@@ -96,18 +105,29 @@ std::string Generator::changed(std::string text, Random& random) const {
   for (std::size_t changes = random.below(4); changes-- && !lines.empty();) {
     const std::size_t at = random.below(lines.size());
     switch (random.below(9)) {
-      case 0: lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(at)); break;
-      case 1: lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(at), lines[random.below(lines.size())]); break;
-      case 2: std::swap(lines[at], lines[random.below(lines.size())]); break;
+      case 0:
+        lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(at));
+        break;
+      case 1:
+        lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(at), lines[random.below(lines.size())]);
+        break;
+      case 2:
+        std::swap(lines[at], lines[random.below(lines.size())]);
+        break;
       case 3: {  // a line of another model
         const Lines others = lines_of(random.of(stored_));
         if (!others.empty()) lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(at), random.of(others));
         break;
       }
-      case 4: lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(at), grammar_.sentence("statement", names_in(text), random)); break;
+      case 4:
+        lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(at),
+                     grammar_.sentence("statement", names_in(text), random));
+        break;
       case 5: {  // bytes
         std::string& line = lines[at];
-        if (!line.empty()) line[random.below(line.size())] = static_cast<char>(random.one_in(4) ? random.below(256) : 32 + random.below(95));
+        if (!line.empty())
+          line[random.below(line.size())] =
+              static_cast<char>(random.one_in(4) ? random.below(256) : 32 + random.below(95));
         break;
       }
       default: {  // a word, a number or a sign of a line
@@ -115,11 +135,16 @@ std::string Generator::changed(std::string text, Random& random) const {
         if (tokens.empty()) break;
         std::string& token = tokens[random.below(tokens.size())];
         const bool number = std::isdigit(static_cast<unsigned char>(token[0]));
-        if (number && !random.one_in(4)) token = random.of(numbers) + " ";
-        else if (random.one_in(3)) token = random.of(words_) + " ";
-        else if (const auto names = names_in(text); !names.empty() && random.one_in(2)) token = random.of(names) + " ";
-        else if (random.one_in(2)) token.clear();
-        else token = grammar_.sentence("formula", names_in(text), random) + " ";
+        if (number && !random.one_in(4))
+          token = random.of(numbers) + " ";
+        else if (random.one_in(3))
+          token = random.of(words_) + " ";
+        else if (const auto names = names_in(text); !names.empty() && random.one_in(2))
+          token = random.of(names) + " ";
+        else if (random.one_in(2))
+          token.clear();
+        else
+          token = grammar_.sentence("formula", names_in(text), random) + " ";
         lines[at].clear();
         for (const std::string& part : tokens) lines[at] += part;
       }

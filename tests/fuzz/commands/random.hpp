@@ -16,7 +16,9 @@ class Random {
   std::size_t below(std::size_t count) { return static_cast<std::size_t>(next() % count); }
   bool one_in(std::size_t count) { return below(count) == 0; }
   template <class Container>
-  const auto& of(const Container& items) { return items[below(items.size())]; }
+  const auto& of(const Container& items) {
+    return items[below(items.size())];
+  }
 
  private:
   static std::uint64_t mixed(std::uint64_t x) {  // splitmix64

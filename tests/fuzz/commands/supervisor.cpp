@@ -1,5 +1,9 @@
 #include "supervisor.hpp"
 
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -12,10 +16,6 @@
 #include <iostream>
 #include <iterator>
 #include <stdexcept>
-#include <sys/mman.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace maupertuis::fuzz {
 namespace fs = std::filesystem;
@@ -25,8 +25,8 @@ struct Supervisor::Shared {
   std::atomic<std::uint64_t> at;        // the input that is running, or the next one
   std::atomic<double> processor_begin;  // when it began, in seconds of the process
   std::atomic<double> clock_begin;
-  std::atomic<bool> failed;             // it was judged, and waits to be told
-  std::atomic<bool> interrupted;        // it was asked to end, and has ended by itself
+  std::atomic<bool> failed;       // it was judged, and waits to be told
+  std::atomic<bool> interrupted;  // it was asked to end, and has ended by itself
   std::atomic<std::uint64_t> codes[256];
   int code;
   char words[1024];
@@ -70,7 +70,8 @@ Supervisor::Supervisor(Program program, Limits limits) : program_(std::move(prog
   void* const memory = mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) throw std::runtime_error("no shared memory");
   shared_ = new (memory) Shared{};
-  std::string pattern = (fs::exists("/dev/shm") ? "/dev/shm" : fs::temp_directory_path().string()) + "/maup_fuzz_XXXXXX";
+  std::string pattern =
+      (fs::exists("/dev/shm") ? "/dev/shm" : fs::temp_directory_path().string()) + "/maup_fuzz_XXXXXX";
   if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
   folder_ = pattern;
   in_ = memory_file("in"), out_ = memory_file("out"), err_ = memory_file("err");
@@ -106,7 +107,8 @@ Outcome Supervisor::carry_out(const Input& input) {
   std::fflush(nullptr);
   outcome.out = whole(out_), outcome.err = whole(err_);
   for (const auto& entry : fs::directory_iterator(folder_))
-    if (entry.is_regular_file() && entry.file_size() < 20'000'000) outcome.files[entry.path().filename()] = content(entry.path());
+    if (entry.is_regular_file() && entry.file_size() < 20'000'000)
+      outcome.files[entry.path().filename()] = content(entry.path());
   return outcome;
 }
 
@@ -163,7 +165,8 @@ void Supervisor::run(std::uint64_t first, std::uint64_t count, const Draw& draw,
       usleep(2000);
       const double now = seconds_of(CLOCK_MONOTONIC);
       if (stop()) kill(pid, SIGKILL), stopped = true;
-      const bool over = seconds_of(clock) - shared_->processor_begin > limits_.seconds || now - shared_->clock_begin > limits_.waiting;
+      const bool over = seconds_of(clock) - shared_->processor_begin > limits_.seconds ||
+                        now - shared_->clock_begin > limits_.waiting;
       if (over && asked == 0 && !shared_->failed) kill(pid, SIGTERM), asked = now;
       if (asked != 0 && now - asked > 5) kill(pid, SIGKILL);
     }
@@ -183,8 +186,10 @@ void Supervisor::run(std::uint64_t first, std::uint64_t count, const Draw& draw,
       outcome.out = whole(out_), outcome.err = whole(err_);
       ++counts_.inputs;
       const auto wrong = shared_->failed ? std::optional<std::string>(shared_->words) : judge(draw(at), outcome);
-      if (wrong) tell(at, *wrong, outcome);
-      else ++counts_.long_runs;
+      if (wrong)
+        tell(at, *wrong, outcome);
+      else
+        ++counts_.long_runs;
       shared_->at = at + 1;
     }
   }

@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-/// How good stated errors are, against runs of 113 bits. MAUP_CERTAIN_DIGITS=N in the environment takes N models, and MAUP_CERTAIN_DIGITS_FROM another
-/// first seed (docs/design/certain_digits.md has the numbers).
+/// How good stated errors are, against runs of 113 bits. MAUP_CERTAIN_DIGITS=N in the environment takes N models, and
+/// MAUP_CERTAIN_DIGITS_FROM another first seed (docs/design/certain_digits.md has the numbers).
 namespace maupertuis::property {
 namespace {
 
@@ -60,7 +60,8 @@ void compare(const std::string& text, Count& count) {
       if (!std::isnan(off_q)) count.add(s.errors->q[i], off_q);
       if (!std::isnan(off_v)) count.add(s.errors->v[i], off_v);
       if (off_q > s.errors->q[i] || off_v > s.errors->v[i])
-        std::printf("not covered: coordinate %zu at %g: %.2g > %.2g or %.2g > %.2g in\n%s\n", i, s.t, off_q, s.errors->q[i], off_v, s.errors->v[i], text.c_str());
+        std::printf("not covered: coordinate %zu at %g: %.2g > %.2g or %.2g > %.2g in\n%s\n", i, s.t, off_q,
+                    s.errors->q[i], off_v, s.errors->v[i], text.c_str());
     }
 }
 
@@ -70,8 +71,9 @@ Count measure(int models, std::uint64_t first_seed, int least_unknowns, int most
     RandomModel random(first_seed + static_cast<std::uint64_t>(i));
     compare(random.text(least_unknowns + i % (most_unknowns - least_unknowns + 1), 12), count);
   }
-  std::printf("%d to %d unknowns, %d models: %zu values, %zu saturated; covered %.3f %%, within a factor 100 %.2f %%\n", least_unknowns, most_unknowns, models,
-              count.values, count.saturated, 100 * count.part_covered(), 100 * count.part_within());
+  std::printf("%d to %d unknowns, %d models: %zu values, %zu saturated; covered %.3f %%, within a factor 100 %.2f %%\n",
+              least_unknowns, most_unknowns, models, count.values, count.saturated, 100 * count.part_covered(),
+              100 * count.part_within());
   return count;
 }
 

@@ -6,7 +6,8 @@
 
 #include <fmt/format.h>
 
-/// Random smooth models as text: coupled kinetic energies, polynomial and periodic potentials, numbers that double does not hold.
+/// Random smooth models as text: coupled kinetic energies, polynomial and periodic potentials, numbers that double does
+/// not hold.
 namespace maupertuis::property {
 
 class RandomModel {
@@ -25,13 +26,15 @@ class RandomModel {
       start += (i ? ", " : "") + fmt::format("{} = {}, {}' = {}", x, number(-1.4, 1.4), x, number(-1, 1));
       if (i == 0) continue;
       const std::string y = names[i - 1];
-      kinetic += fmt::format(" + {} {} {}' {}'", number(0.05, 0.3), one_of({"cos(" + y + " - " + x + ")", "cos(" + x + ")", "(1/3)"}), y, x);
-      potential += " + " + one_of({fmt::format("1/2 {} ({} - {})^2", number(0.1, 2), y, x), fmt::format("{} {}^2 {}^2", number(0.05, 0.5), y, x),
-                                  fmt::format("{} cos({} - 2 {})", number(0.1, 1.5), y, x)});
+      kinetic += fmt::format(" + {} {} {}' {}'", number(0.05, 0.3),
+                             one_of({"cos(" + y + " - " + x + ")", "cos(" + x + ")", "(1/3)"}), y, x);
+      potential += " + " + one_of({fmt::format("1/2 {} ({} - {})^2", number(0.1, 2), y, x),
+                                   fmt::format("{} {}^2 {}^2", number(0.05, 0.5), y, x),
+                                   fmt::format("{} cos({} - 2 {})", number(0.1, 1.5), y, x)});
     }
     const std::string friction = coin(0.25) ? fmt::format("D = 1/2 {} a'^2\n", number(0.05, 0.5)) : "";
-    return "system random\ndimensionless\ncoord " + coordinates + " : number\nT = " + kinetic + "\nV = " + potential + "\n" + friction + "start " +
-           start + fmt::format("\nrun {}\n", duration);
+    return "system random\ndimensionless\ncoord " + coordinates + " : number\nT = " + kinetic + "\nV = " + potential +
+           "\n" + friction + "start " + start + fmt::format("\nrun {}\n", duration);
   }
 
  private:
@@ -41,9 +44,10 @@ class RandomModel {
   /// Three decimals.
   std::string number(double low, double high) { return fmt::format("({:.3f})", uniform(low, high)); }
   std::string well(const std::string& x) {
-    return one_of({fmt::format("1/2 {} {}^2", number(0.4, 6), x), fmt::format("1/2 {} {}^2 + {} {}^4", number(-1, 3), x, number(0.1, 1), x),
-                  fmt::format("{} (1 - cos {})", number(1, 9), x), fmt::format("{} sqrt(1 + {}^2)", number(0.5, 4), x),
-                  fmt::format("{} (exp(0.4 {}) + exp(-0.4 {}))", number(0.5, 3), x, x)});
+    return one_of({fmt::format("1/2 {} {}^2", number(0.4, 6), x),
+                   fmt::format("1/2 {} {}^2 + {} {}^4", number(-1, 3), x, number(0.1, 1), x),
+                   fmt::format("{} (1 - cos {})", number(1, 9), x), fmt::format("{} sqrt(1 + {}^2)", number(0.5, 4), x),
+                   fmt::format("{} (exp(0.4 {}) + exp(-0.4 {}))", number(0.5, 3), x, x)});
   }
 
   std::mt19937_64 random_;

@@ -111,7 +111,8 @@ TEST_CASE("a path through a kink gets no index, and the search says what it may 
   // Beside the kink all is as ever: x'' = -1 up to x > 0 all along.
   const auto beside = stationary_paths(m.model, m.equations, fixed_ends({1}, 0, {1}, 1), {}, told);
   REQUIRE(beside);
-  const bool minimum = std::any_of(beside->paths.begin(), beside->paths.end(), [](const StationaryPath& p) { return p.second.index == 0u; });
+  const bool minimum = std::any_of(beside->paths.begin(), beside->paths.end(),
+                                   [](const StationaryPath& p) { return p.second.index == 0u; });
   CHECK(minimum);
   // max(x, 0)^2 has a continuous derivative: no kink.
   const ModelText smooth("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = max(x, 0)^2\n");

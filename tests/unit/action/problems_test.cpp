@@ -124,7 +124,8 @@ TEST_CASE("the brachistochrone, from a point of the cycloid") {
   CHECK(p.action == doctest::Approx((pi - first) / std::sqrt(9.81)).epsilon(1e-11));
   REQUIRE(p.second.index);
   CHECK(*p.second.index == 0);
-  for (const double a : {0.5, 1.5, 2.5}) CHECK(p.path.at(a - std::sin(a)).q[0] == doctest::Approx(1 - std::cos(a)).epsilon(1e-9));
+  for (const double a : {0.5, 1.5, 2.5})
+    CHECK(p.path.at(a - std::sin(a)).q[0] == doctest::Approx(1 - std::cos(a)).epsilon(1e-9));
 }
 
 TEST_CASE("the brachistochrone from rest, where L is infinite") {
@@ -181,12 +182,16 @@ expect action of (4 t + 7 + 1/1000 t (t - 10) sin t, 3 t + 5 + 1/1000 t (t - 10)
   Diagnostics diagnostics;
   const double wanted[] = {435, 436.29121428571428571};
   for (std::size_t k = 0; k < 2; ++k) {
-    const auto found = action_of_path(m.model, m.equations, std::get<expectation::ActionAlong>(m.model.experiment.expectations[k].kind).along.q, 0, 10, std::nullopt, {}, diagnostics);
+    const auto found = action_of_path(
+        m.model, m.equations, std::get<expectation::ActionAlong>(m.model.experiment.expectations[k].kind).along.q, 0,
+        10, std::nullopt, {}, diagnostics);
     REQUIRE(found);
     CHECK(found->action == doctest::Approx(wanted[k]).epsilon(1e-13));
     CHECK(found->stationary == (k == 0));
   }
-  CHECK_FALSE(action_of_path(m.model, m.equations, std::get<expectation::ActionAlong>(m.model.experiment.expectations[0].kind).along.q, 0, 10, fixed_ends({7, 5, 1}, 0, {47, 35, 22}, 10), {}, diagnostics));
+  CHECK_FALSE(action_of_path(m.model, m.equations,
+                             std::get<expectation::ActionAlong>(m.model.experiment.expectations[0].kind).along.q, 0, 10,
+                             fixed_ends({7, 5, 1}, 0, {47, 35, 22}, 10), {}, diagnostics));
   REQUIRE(diagnostics.items().size() == 1);
   CHECK(diagnostics.items().front().code == "E1205");
 }
@@ -215,11 +220,13 @@ TEST_CASE("a closed orbit of the pendulum: both counts agree, and the abbreviate
   REQUIRE(found->path.second.index);
   // ∮ p dq = 4 ∫ √(2 (cos θ − cos 1)) dθ over [0, 1] = 16 (E(k) − (1 − k²) K(k)), k = sin ½
   const double k = std::sin(0.5);
-  CHECK(found->abbreviated == doctest::Approx(16 * (std::comp_ellint_2(k) - (1 - k * k) * std::comp_ellint_1(k))).epsilon(1e-10));
+  CHECK(found->abbreviated ==
+        doctest::Approx(16 * (std::comp_ellint_2(k) - (1 - k * k) * std::comp_ellint_1(k))).epsilon(1e-10));
 }
 
 TEST_CASE("along the motion: a minimum up to the first conjugate point") {
-  const ModelText m("system o\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\nstart x = 1, x' = 0.3\nrun 5\n");
+  const ModelText m(
+      "system o\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\nstart x = 1, x' = 0.3\nrun 5\n");
   Diagnostics diagnostics;
   const auto found = action_of_motion(m.model, m.equations, {}, diagnostics);
   REQUIRE(found);
@@ -227,7 +234,8 @@ TEST_CASE("along the motion: a minimum up to the first conjugate point") {
   CHECK(*found->path.second.index == 1);
   CHECK(found->path.second.conjugate.at(0).t == doctest::Approx(pi).epsilon(1e-11));
   const double x = std::cos(5) + 0.3 * std::sin(5);
-  CHECK(found->path.action == doctest::Approx(1 / (2 * std::sin(5)) * ((1 + x * x) * std::cos(5) - 2 * x)).epsilon(1e-11));
+  CHECK(found->path.action ==
+        doctest::Approx(1 / (2 * std::sin(5)) * ((1 + x * x) * std::cos(5) - 2 * x)).epsilon(1e-11));
 }
 
 TEST_CASE("random quadratic actions: both counts agree") {
@@ -238,10 +246,12 @@ TEST_CASE("random quadratic actions: both counts agree") {
   };
   std::size_t largest = 0;
   for (int trial = 0; trial < 12; ++trial) {
-    const ModelText m("system r\ndimensionless\nparam a = " + std::to_string(1.3 + random()) + ", b = " + std::to_string(random()) + ", c = " +
-                      std::to_string(8 * random()) + ", d = " + std::to_string(8 * random()) + ", e = " + std::to_string(4 * random()) + ", g = " +
-                      std::to_string(2 * random()) +
-                      "\ncoord x, y : number\nL = 1/2 (a x'^2 + 2 b x' y' + y'^2) - 1/2 (c x^2 + 2 e x y + d y^2) + g (x y' - y x')\n");
+    const ModelText m("system r\ndimensionless\nparam a = " + std::to_string(1.3 + random()) +
+                      ", b = " + std::to_string(random()) + ", c = " + std::to_string(8 * random()) +
+                      ", d = " + std::to_string(8 * random()) + ", e = " + std::to_string(4 * random()) +
+                      ", g = " + std::to_string(2 * random()) +
+                      "\ncoord x, y : number\nL = 1/2 (a x'^2 + 2 b x' y' + y'^2) - 1/2 (c x^2 + 2 e x y + d y^2) + g "
+                      "(x y' - y x')\n");
     const PathSearch found = paths_of(m, fixed_ends({random(), random()}, 0, {random(), random()}, 4 + 3 * random()));
     REQUIRE(found.paths.size() == 1);
     REQUIRE(found.paths[0].second.index);
@@ -253,17 +263,25 @@ TEST_CASE("random quadratic actions: both counts agree") {
 TEST_CASE("what has no action, ends off the constraints, ends in the wrong order") {
   const ModelText damped("system d\ndimensionless\ncoord x : number\nL = 1/2 x'^2\nD = 1/2 x'^2\n");
   CHECK(code_of_search(damped, fixed_ends({0}, 0, {1}, 1)) == "E1201");
-  const ModelText knife("system k\ndimensionless\ncoord x, y, φ : number\nT = 1/2 (x'^2 + y'^2 + φ'^2)\nconstraint x' sin φ = y' cos φ\n");
+  const ModelText knife(
+      "system k\ndimensionless\ncoord x, y, φ : number\nT = 1/2 (x'^2 + y'^2 + φ'^2)\nconstraint x' sin φ = y' cos "
+      "φ\n");
   CHECK(code_of_search(knife, fixed_ends({0, 0, 0}, 0, {1, 0, 0}, 1)) == "E1201");
-  const ModelText circle("system c\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nconstraint x^2 + y^2 = 1 name ring\n");
+  const ModelText circle(
+      "system c\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nconstraint x^2 + y^2 = 1 name ring\n");
   CHECK(code_of_search(circle, fixed_ends({1, 0}, 0, {1, 1}, 1)) == "E1202");
   CHECK(code_of_search(circle, fixed_ends({1, 0}, 1, {0, 1}, 0)) == "E1203");
 }
 
-TEST_CASE("conjugate points of a double pendulum: det ∂q/∂q̇(0) of differences in 113 bits changes its sign at 3.935433753879") {
+TEST_CASE(
+    "conjugate points of a double pendulum: det ∂q/∂q̇(0) of differences in 113 bits changes its sign at "
+    "3.935433753879") {
   for (const std::string run : {"6", "5.3"}) {
-    const ModelText m("system dp\ndimensionless\ncoord a, b : angle\nL = a'^2 + 1/2 b'^2 + a' b' cos(a - b) + 9.81 (2 cos a + cos b)\n"
-                      "start a = 1.2, b = -0.4\nrun " + run + "\n");
+    const ModelText m(
+        "system dp\ndimensionless\ncoord a, b : angle\nL = a'^2 + 1/2 b'^2 + a' b' cos(a - b) + 9.81 (2 cos a + cos "
+        "b)\n"
+        "start a = 1.2, b = -0.4\nrun " +
+        run + "\n");
     Diagnostics diagnostics;
     const auto found = action_of_motion(m.model, m.equations, {}, diagnostics);
     REQUIRE(found);

@@ -18,7 +18,8 @@ inline maupertuis::ActionEnds fixed_ends(std::vector<double> from, double start,
   return out;
 }
 
-inline maupertuis::PathSearch paths_of(const ModelText& m, const maupertuis::ActionEnds& ends, maupertuis::ActionOptions options = {}) {
+inline maupertuis::PathSearch paths_of(const ModelText& m, const maupertuis::ActionEnds& ends,
+                                       maupertuis::ActionOptions options = {}) {
   maupertuis::Diagnostics diagnostics;
   auto result = maupertuis::stationary_paths(m.model, m.equations, ends, options, diagnostics);
   INFO(maupertuis::render(diagnostics, m.source));

@@ -53,7 +53,9 @@ TEST_CASE("conversion to double rounds to nearest") {
 
 TEST_CASE("field axioms hold across the boundary of the small representation") {
   rc::check([](std::int64_t a, std::int64_t b, std::int64_t c) {
-    const auto scale = [](std::int64_t v) { return std::max<std::int64_t>(v, -std::numeric_limits<std::int64_t>::max()); };
+    const auto scale = [](std::int64_t v) {
+      return std::max<std::int64_t>(v, -std::numeric_limits<std::int64_t>::max());
+    };
     const Rational x(scale(a)), y(scale(b)), z = Rational(scale(c)) / Rational(7);
     RC_ASSERT((x + y) * z == x * z + y * z);
     RC_ASSERT(x - x == Rational(0));

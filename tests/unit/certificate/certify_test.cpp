@@ -159,9 +159,10 @@ dimensionless
 param m = 1
 coord x : number
 L = 1/2 m exp(t) x'^2
-)", [](EquationsOfMotion& e) {
-    e.residual[0] = e.residual[0] - differentiate(e.momenta[0], e.system->context->time());
-  });
+)",
+                             [](EquationsOfMotion& e) {
+                               e.residual[0] = e.residual[0] - differentiate(e.momenta[0], e.system->context->time());
+                             });
   CHECK(names == Names{"forms_agree", "jet_residual", "power_balance"});
 }
 
@@ -234,7 +235,8 @@ TEST_CASE("points at which nothing is defined are no evidence") {
   ModelText model("dimensionless\nparam m = 1\ncoord x : number\nT = 1/2 m x'^2\nV = x\n");
   Context& c = *model.system->context;
   const Expr nowhere = sqrt(-sqrt(c.number(3) + Rational(2) * sqrt(c.number(2))) - pow(model.q(0), Rational(2)));
-  model.equations.residual[0] = model.equations.residual[0] + nowhere - nowhere * (c.number(1) + pow(model.q(0), Rational(2)));
+  model.equations.residual[0] =
+      model.equations.residual[0] + nowhere - nowhere * (c.number(1) + pow(model.q(0), Rational(2)));
   const Certificate certificate = certify(model.equations, nullptr);
   CHECK_FALSE(certificate.passed());
   for (const CertificateCheck& check : certificate.checks)
@@ -264,7 +266,8 @@ TEST_CASE("a missing u' term") {
   x.acceleration = context.symbol("x", Role::Coordinate, 2);
   system->coordinates.push_back(x);
   const Expr u = context.symbol("u", Role::Input), m = context.symbol("m", Role::Parameter);
-  system->lagrangian_given = EnergyTerm{Rational(1, 2) * m * pow(x.velocity, Rational(2)) + x.velocity * sin(u) + x.q * u, "L", {}};
+  system->lagrangian_given =
+      EnergyTerm{Rational(1, 2) * m * pow(x.velocity, Rational(2)) + x.velocity * sin(u) + x.q * u, "L", {}};
   Diagnostics diagnostics;
   auto equations = euler_lagrange(system, diagnostics);
   REQUIRE(equations);
@@ -281,8 +284,11 @@ TEST_CASE("the row that fails is named") {
 }
 
 TEST_CASE("wrong momenta, energy function or power are seen") {
-  CHECK(caught(driven_cart, [](EquationsOfMotion& e) { e.momenta[0] = e.momenta[0] * Rational(2); }).count("jet_residual"));
-  CHECK(caught(driven_cart, [](EquationsOfMotion& e) { e.energy_function = e.energy_function * Rational(2); }) == Names{"power_balance"});
+  CHECK(caught(driven_cart, [](EquationsOfMotion& e) {
+          e.momenta[0] = e.momenta[0] * Rational(2);
+        }).count("jet_residual"));
+  CHECK(caught(driven_cart, [](EquationsOfMotion& e) { e.energy_function = e.energy_function * Rational(2); }) ==
+        Names{"power_balance"});
   CHECK(caught(driven_cart, [](EquationsOfMotion& e) { e.power = -e.power; }) == Names{"power_balance"});
 }
 

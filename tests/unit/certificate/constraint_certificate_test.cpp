@@ -138,7 +138,8 @@ TEST_CASE("the row of a constraint's own failure is no coordinate") {
 }
 
 TEST_CASE("a power without the work of a driven constraint") {
-  CHECK(caught(pendulum, [](EquationsOfMotion& e) { e.power = e.power.context().number(0); }) == Names{"power_balance"});
+  CHECK(caught(pendulum, [](EquationsOfMotion& e) { e.power = e.power.context().number(0); }) ==
+        Names{"power_balance"});
   CHECK(caught(appell, [](EquationsOfMotion& e) { e.power = -e.power; }) == Names{"power_balance"});
 }
 
@@ -180,36 +181,43 @@ torque on sat = (τ, 0, 0)
 }
 
 TEST_CASE("the norm of a quaternion in another form") {
-  for (const std::string norm : {"2 w^2 + 2 x^2 + 2 y^2 + 2 z^2 = 2", "sqrt(w^2 + x^2 + y^2 + z^2) = 1", "1 = w^2 + x^2 + y^2 + z^2"}) {
+  for (const std::string norm :
+       {"2 w^2 + 2 x^2 + 2 y^2 + 2 z^2 = 2", "sqrt(w^2 + x^2 + y^2 + z^2) = 1", "1 = w^2 + x^2 + y^2 + z^2"}) {
     CAPTURE(norm);
-    const ModelText model("system s\nparam I1 = 1 kg m^2, I2 = 2 kg m^2, I3 = 3 kg m^2\ncoord w, x, y, z : number\n"
-                          "body B inertia diag(I1, I2, I3) rotation quaternion (w, x, y, z)\nconstraint " + norm + "\n");
+    const ModelText model(
+        "system s\nparam I1 = 1 kg m^2, I2 = 2 kg m^2, I3 = 3 kg m^2\ncoord w, x, y, z : number\n"
+        "body B inertia diag(I1, I2, I3) rotation quaternion (w, x, y, z)\nconstraint " +
+        norm + "\n");
     CHECK(certify(model.equations, nullptr).passed());
   }
 }
 
 TEST_CASE("d'Alembert's principle says nothing of a quaternion that may stretch") {
-  const ModelText model("system s\nparam I1 = 1 kg m^2, I2 = 2 kg m^2, I3 = 3 kg m^2\ncoord w, x, y, z : number\n"
-                        "body B inertia diag(I1, I2, I3) rotation quaternion (w, x, y, z)\n");
+  const ModelText model(
+      "system s\nparam I1 = 1 kg m^2, I2 = 2 kg m^2, I3 = 3 kg m^2\ncoord w, x, y, z : number\n"
+      "body B inertia diag(I1, I2, I3) rotation quaternion (w, x, y, z)\n");
   for (const CertificateCheck& check : certify(model.equations, nullptr).checks) {
     const bool dalembert = check.name == "dalembert";
     CHECK(check.applies != dalembert);
-    if (dalembert) CHECK(check.statement.find("quaternion of B") != std::string::npos);
-    else CHECK(check.error_bound < 1e-6);
+    if (dalembert)
+      CHECK(check.statement.find("quaternion of B") != std::string::npos);
+    else
+      CHECK(check.error_bound < 1e-6);
   }
 }
 
 TEST_CASE("four coordinates of a constraint that is no sphere are tried off the unit sphere too") {
   // A mistake that vanishes where x² + y² + u² + v² = 1, where a quaternion of norm 1 would be.
-  const char* const dumbbell = "system dumbbell\ndimensionless\nparam m = 1, l = 1\ncoord x, y, u, v : number\n"
-                               "point A mass m at (x, y)\npoint B mass m at (u, v)\nconstraint (x - u)^2 + (y - v)^2 = l^2\n";
+  const char* const dumbbell =
+      "system dumbbell\ndimensionless\nparam m = 1, l = 1\ncoord x, y, u, v : number\n"
+      "point A mass m at (x, y)\npoint B mass m at (u, v)\nconstraint (x - u)^2 + (y - v)^2 = l^2\n";
   for (const std::string body : {"", "coord θ : number\nbody wheel inertia m rotation angle θ\n"}) {
-  ModelText model(dumbbell + body);
-  CHECK(certify(model.equations, nullptr).passed());
-  Expr beyond = -model.system->context->number(1);
-  for (std::size_t i = 0; i < 4; ++i) beyond = beyond + pow(model.q(i), Rational(2));
-  model.equations.residual[0] = model.equations.residual[0] + beyond;
-  CHECK(failed(certify(model.equations, nullptr)).count("dalembert"));
+    ModelText model(dumbbell + body);
+    CHECK(certify(model.equations, nullptr).passed());
+    Expr beyond = -model.system->context->number(1);
+    for (std::size_t i = 0; i < 4; ++i) beyond = beyond + pow(model.q(i), Rational(2));
+    model.equations.residual[0] = model.equations.residual[0] + beyond;
+    CHECK(failed(certify(model.equations, nullptr)).count("dalembert"));
   }
 }
 
@@ -224,7 +232,8 @@ TEST_CASE("a constraint with an input needs the second derivative of the input")
   auto equations = euler_lagrange(driven, diagnostics);
   REQUIRE(equations);
   CHECK(failed(certify(*equations, nullptr)).empty());
-  equations->constraint_accelerations[0] = equations->constraint_accelerations[0] + driven->context->time_derivative(rate);
+  equations->constraint_accelerations[0] =
+      equations->constraint_accelerations[0] + driven->context->time_derivative(rate);
   CHECK(failed(certify(*equations, nullptr)) == Names{"constraint_rows"});
 }
 

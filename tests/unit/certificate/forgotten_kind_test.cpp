@@ -1,4 +1,5 @@
-// V holds a function that the passes do not know. Taken for a constant it would leave the free particle, m x'' = 0, certified.
+// V holds a function that the passes do not know. Taken for a constant it would leave the free particle, m x'' = 0,
+// certified.
 #include "../forgotten_kind.hpp"
 #include "../model_text.hpp"
 
@@ -27,8 +28,11 @@ TEST_CASE("a force of a forgotten kind is neither derived, nor certified as none
 }
 
 TEST_CASE("potentials of erf and of Lambert's W are certified by every route") {
-  for (const char* v : {"V = erf(sqrt(x^2 + y^2)) - y erf(x - 2 y)", "V = lambert_w(1 + x^2) + x lambert_w(y)", "V = exp(-lambert_w(x^2 + 1)) erf(erf(x y))"}) {
-    const ModelText model(std::string("system s\ndimensionless\nparam m = 1\ncoord x, y : number\npoint P mass m at (x, y)\n") + v + "\n");
+  for (const char* v : {"V = erf(sqrt(x^2 + y^2)) - y erf(x - 2 y)", "V = lambert_w(1 + x^2) + x lambert_w(y)",
+                        "V = exp(-lambert_w(x^2 + 1)) erf(erf(x y))"}) {
+    const ModelText model(
+        std::string("system s\ndimensionless\nparam m = 1\ncoord x, y : number\npoint P mass m at (x, y)\n") + v +
+        "\n");
     const Derivation readable = readable_derivation(model.equations, false);
     const Certificate certificate = certify(model.equations, &readable);
     CAPTURE(std::string(v));

@@ -289,17 +289,18 @@ TEST_CASE("maps that cannot be read") {
 namespace {
 
 std::string particle(const std::string& rest) {
-  return "system particle\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n" + rest + "\nstart x = 1\nrun 1\n";
+  return "system particle\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n" + rest +
+         "\nstart x = 1\nrun 1\n";
 }
 
 }  // namespace
 
 TEST_CASE("motions that part in a branch far from the start are told apart") {
   const std::string plain = particle("V = x");
-  for (const char* other :
-       {"V = x\nforce x = max(x - 5, 0)^2 step(y - 7)", "V = x + max(x - 5, 0)^2 max(y - 7, 0)^2",
-        "V = x + piecewise(x > 40 and y < -70 : (x - 40)^2 (y + 70)^2, else : 0)", "V = x\nforce y = step(exp(-100 (x - 3)^2) - 0.5)",
-        "V = x\nforce y = max(x - 5, 0) max(y - 7, 0) max(t - 90, 0)"}) {
+  for (const char* other : {"V = x\nforce x = max(x - 5, 0)^2 step(y - 7)", "V = x + max(x - 5, 0)^2 max(y - 7, 0)^2",
+                            "V = x + piecewise(x > 40 and y < -70 : (x - 40)^2 (y + 70)^2, else : 0)",
+                            "V = x\nforce y = step(exp(-100 (x - 3)^2) - 0.5)",
+                            "V = x\nforce y = max(x - 5, 0) max(y - 7, 0) max(t - 90, 0)"}) {
     for (const bool turned : {false, true}) {
       const Compared c = turned ? compare_texts(particle(other), plain) : compare_texts(plain, particle(other));
       INFO(other, c.result.reason);
@@ -310,7 +311,8 @@ TEST_CASE("motions that part in a branch far from the start are told apart") {
 }
 
 TEST_CASE("the same branches written otherwise are the same, proved") {
-  const Compared c = compare_texts(particle("V = max(x, 0)^2 + abs(y)"), particle("V = piecewise(x > 0 : x^2, else : 0) + max(y, -y)"));
+  const Compared c = compare_texts(particle("V = max(x, 0)^2 + abs(y)"),
+                                   particle("V = piecewise(x > 0 : x^2, else : 0) + max(y, -y)"));
   CHECK(c.result.verdict == Sameness::Same);
   CHECK(c.result.proved());
 }

@@ -19,7 +19,13 @@ struct Pendulum {
     system.context = std::make_shared<Context>();
     Context& c = *system.context;
     const Expr theta = c.symbol("θ", Role::Coordinate), length = c.symbol("l", Role::Parameter);
-    system.coordinates.push_back({"θ", theta, c.symbol("θ", Role::Coordinate, 1), c.symbol("θ", Role::Coordinate, 2), dimensions::angle(), "angle", {}});
+    system.coordinates.push_back({"θ",
+                                  theta,
+                                  c.symbol("θ", Role::Coordinate, 1),
+                                  c.symbol("θ", Role::Coordinate, 2),
+                                  dimensions::angle(),
+                                  "angle",
+                                  {}});
     system.parameters.push_back({"l", length, c.number(2), 2, dimensions::length(), "m", false, {}});
     const Expr mass = c.symbol("m", Role::Parameter);
     system.parameters.push_back({"m", mass, c.number(3), 3, dimensions::mass(), "kg", false, {}});
@@ -34,7 +40,8 @@ struct Pendulum {
     }
   }
 
-  void draw(syntax::DrawItem::Kind kind, std::vector<std::string> names, std::vector<ExprVector> path, std::vector<Expr> sizes = {}) {
+  void draw(syntax::DrawItem::Kind kind, std::vector<std::string> names, std::vector<ExprVector> path,
+            std::vector<Expr> sizes = {}) {
     model.experiment.drawing.push_back({kind, std::move(path), std::move(sizes), std::move(names)});
   }
   ExprVector origin() const { return {model.system.context->number(0), model.system.context->number(0)}; }
@@ -80,7 +87,8 @@ TEST_CASE("a box has its sizes and turns with its body") {
   Body body;
   body.name = "plate";
   body.position = p.model.system.points[0].position;
-  body.rotation = {2, 2, {cos(c.number(4) * theta), -sin(c.number(4) * theta), sin(c.number(4) * theta), cos(c.number(4) * theta)}};
+  body.rotation = {
+      2, 2, {cos(c.number(4) * theta), -sin(c.number(4) * theta), sin(c.number(4) * theta), cos(c.number(4) * theta)}};
   p.model.system.bodies.push_back(body);
   p.draw(syntax::DrawItem::Kind::Box, {"plate"}, {body.position}, {p.model.system.parameters[0].symbol, c.number(1)});
   const auto drawing = evaluate_drawing(p.model, p.run);
@@ -119,4 +127,3 @@ TEST_CASE("no rows, one row") {
   REQUIRE(drawing);
   CHECK(drawing->times.size() == 1);
 }
-

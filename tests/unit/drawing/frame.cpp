@@ -23,7 +23,8 @@ Trajectory prescribed(const MechanicalSystem& system, double duration, Q q) {
     const double t = duration * r / (rows - 1), h = 1e-6;
     run.times.push_back(t);
     for (std::size_t i = 0; i < system.coordinates.size(); ++i) run.values.push_back(q(i, t));
-    for (std::size_t i = 0; i < system.coordinates.size(); ++i) run.values.push_back((q(i, t + h) - q(i, t - h)) / (2 * h));
+    for (std::size_t i = 0; i < system.coordinates.size(); ++i)
+      run.values.push_back((q(i, t + h) - q(i, t - h)) / (2 * h));
   }
   return run;
 }
@@ -71,7 +72,8 @@ TEST_CASE("a hoop that is tilted is seen as the ellipse that perspective makes o
     CHECK(box.right - box.left == doctest::Approx(2 * r / std::sqrt(1 - k * k)).epsilon(2e-3));  // of 72 corners
     CHECK(box.bottom - box.top == doctest::Approx(2 * r * std::cos(angle) / (1 - k * k)).epsilon(2e-3));
     // All corners lie on that ellipse.
-    const double a = r / std::sqrt(1 - k * k), b = r * std::cos(angle) / (1 - k * k), y0 = 240 - r * std::cos(angle) * k / (1 - k * k);
+    const double a = r / std::sqrt(1 - k * k), b = r * std::cos(angle) / (1 - k * k),
+                 y0 = 240 - r * std::cos(angle) * k / (1 - k * k);
     for (std::size_t i = 0; i < items[0].points.size(); i += 2) {
       const double x = (items[0].points[i] - 360) / a, y = (items[0].points[i + 1] - y0) / b;
       CHECK(x * x + y * y == doctest::Approx(1).epsilon(1e-9));
@@ -96,15 +98,20 @@ TEST_CASE("a ball is seen as the circle in which the rays of the eye touch it") 
 }
 
 TEST_CASE("a body is drawn as the ellipsoid of its inertia where nothing is said") {
-  const ModelText m("system s\nparam m = 2 kg\ncoord φ : angle\nbody b mass m inertia diag(1 [kg m^2], 1 [kg m^2], 1.6 [kg m^2]) at (0, 0, 0) "
-                    "rotation axis (0, 0, 1) angle φ\nrun 1 s\n");
+  const ModelText m(
+      "system s\nparam m = 2 kg\ncoord φ : angle\nbody b mass m inertia diag(1 [kg m^2], 1 [kg m^2], 1.6 [kg m^2]) at "
+      "(0, 0, 0) "
+      "rotation axis (0, 0, 1) angle φ\nrun 1 s\n");
   const auto drawing = evaluate_drawing(m.model, prescribed(*m.system, 1, [](std::size_t, double t) { return t; }));
   REQUIRE(drawing);
-  const auto solid = std::find_if(drawing->elements.begin(), drawing->elements.end(), [](const auto& e) { return e.kind == Drawing::Kind::Solid; });
+  const auto solid = std::find_if(drawing->elements.begin(), drawing->elements.end(),
+                                  [](const auto& e) { return e.kind == Drawing::Kind::Solid; });
   REQUIRE(solid != drawing->elements.end());
   CHECK(solid->shape.ball);
   const double* pose = solid->positions.data();
-  const auto reach = [&](int a) { return std::hypot(pose[3 * a] - pose[0], pose[3 * a + 1] - pose[1], pose[3 * a + 2] - pose[2]); };
+  const auto reach = [&](int a) {
+    return std::hypot(pose[3 * a] - pose[0], pose[3 * a + 1] - pose[1], pose[3 * a + 2] - pose[2]);
+  };
   CHECK(reach(1) == doctest::Approx(std::sqrt(2.5 * 1.6 / 2)));  // a² = 5 (I2 + I3 − I1)/(2 m)
   CHECK(reach(3) == doctest::Approx(std::sqrt(2.5 * 0.4 / 2)));
 }
@@ -120,16 +127,20 @@ TEST_CASE("of a cuboid three faces are seen at most, and of a plate one") {
 }
 
 TEST_CASE("a rolling wheel has six spokes, which turn by the way it rolls") {
-  const ModelText m("system s\nparam m = 1 kg, R = 20 cm\ncoord x : length\nbody wheel mass m inertia m R^2/2 at (x, R) rotation angle -x/R\n"
-                    "gravity (0, -9.81 [m/s^2])\nrun 2 s\ndraw disc wheel R, ground at (0, 0)\n");
-  const auto drawing = evaluate_drawing(m.model, prescribed(*m.system, 2, [](std::size_t, double t) { return 0.3 * t; }));
+  const ModelText m(
+      "system s\nparam m = 1 kg, R = 20 cm\ncoord x : length\nbody wheel mass m inertia m R^2/2 at (x, R) rotation "
+      "angle -x/R\n"
+      "gravity (0, -9.81 [m/s^2])\nrun 2 s\ndraw disc wheel R, ground at (0, 0)\n");
+  const auto drawing =
+      evaluate_drawing(m.model, prescribed(*m.system, 2, [](std::size_t, double t) { return 0.3 * t; }));
   REQUIRE(drawing);
   const FrameOptions options;
   const View view(*drawing, options);
   const auto spokes = [&](double t) {
     std::vector<double> angles;
     for (const FrameItem& item : frame_items(*drawing, view, t, options))
-      if (item.points.size() == 4 && std::hypot(item.points[2] - item.points[0], item.points[3] - item.points[1]) == doctest::Approx(0.2 * view.scale()).epsilon(1e-6))
+      if (item.points.size() == 4 && std::hypot(item.points[2] - item.points[0], item.points[3] - item.points[1]) ==
+                                         doctest::Approx(0.2 * view.scale()).epsilon(1e-6))
         angles.push_back(std::atan2(item.points[1] - item.points[3], item.points[2] - item.points[0]));
     return angles;
   };
@@ -142,27 +153,33 @@ TEST_CASE("a rolling wheel has six spokes, which turn by the way it rolls") {
   double lowest = 0, line = 0;
   for (const FrameItem& item : frame_items(*drawing, view, 0.5, options)) {
     if (item.closed && item.points.size() == 144) lowest = Box(item.points).bottom;
-    if (item.points.size() == 4 && item.points[1] == item.points[3] && std::abs(item.points[2] - item.points[0]) > 200) line = item.points[1];
+    if (item.points.size() == 4 && item.points[1] == item.points[3] && std::abs(item.points[2] - item.points[0]) > 200)
+      line = item.points[1];
   }
   CHECK(lowest == doctest::Approx(line).epsilon(1e-3));
 }
 
 TEST_CASE("a wheel that does not turn about its axis has no spokes") {
-  const ModelText m("system s\nparam R = 1 m\ncoord φ : angle\nframe ring at (0, 0, 0) rotation axis (0, 0, 1) angle φ\n"
-                    "point P mass 1 [kg] at R (cos φ, sin φ, 0)\nrun 1 s\ndraw hoop ring R axis (0, 1, 0)\n");
+  const ModelText m(
+      "system s\nparam R = 1 m\ncoord φ : angle\nframe ring at (0, 0, 0) rotation axis (0, 0, 1) angle φ\n"
+      "point P mass 1 [kg] at R (cos φ, sin φ, 0)\nrun 1 s\ndraw hoop ring R axis (0, 1, 0)\n");
   const auto run = prescribed(*m.system, 1, [](std::size_t, double t) { return 3 * t; });
   const auto drawing = evaluate_drawing(m.model, run);
   REQUIRE(drawing);
   CHECK(drawing->elements[0].shape.lines.size() == 1);
-  const ModelText spun("system s\nparam R = 1 m\ncoord φ : angle\nframe ring at (0, 0, 0) rotation axis (0, 1, 0) angle φ\n"
-                       "point P mass 1 [kg] at R (cos φ, sin φ, 0)\nrun 1 s\ndraw hoop ring R axis (0, 1, 0)\n");
+  const ModelText spun(
+      "system s\nparam R = 1 m\ncoord φ : angle\nframe ring at (0, 0, 0) rotation axis (0, 1, 0) angle φ\n"
+      "point P mass 1 [kg] at R (cos φ, sin φ, 0)\nrun 1 s\ndraw hoop ring R axis (0, 1, 0)\n");
   CHECK(evaluate_drawing(spun.model, run)->elements[0].shape.lines.size() == 7);
 }
 
 TEST_CASE("near things are painted over far ones; a plate lies under what stands on the side of the eye") {
-  const ModelText m("system s\nparam R = 1 m\ncoord φ : angle\npoint A mass 1 [kg] at R (cos φ, sin φ, 0)\npoint B mass 1 [kg] at -R (cos φ, sin φ, 0)\n"
-                    "run 1 s\ndraw circle A 30 cm, circle B 30 cm\n");
-  const auto drawing = evaluate_drawing(m.model, prescribed(*m.system, 1, [](std::size_t, double t) { return 2 * pi * t; }));
+  const ModelText m(
+      "system s\nparam R = 1 m\ncoord φ : angle\npoint A mass 1 [kg] at R (cos φ, sin φ, 0)\npoint B mass 1 [kg] at -R "
+      "(cos φ, sin φ, 0)\n"
+      "run 1 s\ndraw circle A 30 cm, circle B 30 cm\n");
+  const auto drawing =
+      evaluate_drawing(m.model, prescribed(*m.system, 1, [](std::size_t, double t) { return 2 * pi * t; }));
   REQUIRE(drawing);
   FrameOptions options;
   options.camera = {0, 0.1, false};  // the eye on the x axis: A is near at first, far half a turn later
@@ -170,17 +187,22 @@ TEST_CASE("near things are painted over far ones; a plate lies under what stands
   CHECK(frame_items(*drawing, view, 0, options).front().id > frame_items(*drawing, view, 0, options).back().id);
   CHECK(frame_items(*drawing, view, 0.5, options).front().id < frame_items(*drawing, view, 0.5, options).back().id);
 
-  const ModelText table("system s\nparam R = 1 m\ncoord φ : angle\nframe top at (0, 0, 0) rotation axis (0, 0, 1) angle φ\n"
-                        "point A mass 1 [kg] at (-R/2, 0, 10 [cm])\npoint C mass 1 [kg] at R (cos φ, sin φ, 0)\nrun 1 s\ndraw circle A 10 cm, disc top R\n");
-  const auto laid = evaluate_drawing(table.model, prescribed(*table.system, 1, [](std::size_t, double t) { return t; }));
+  const ModelText table(
+      "system s\nparam R = 1 m\ncoord φ : angle\nframe top at (0, 0, 0) rotation axis (0, 0, 1) angle φ\n"
+      "point A mass 1 [kg] at (-R/2, 0, 10 [cm])\npoint C mass 1 [kg] at R (cos φ, sin φ, 0)\nrun 1 s\ndraw circle A "
+      "10 cm, disc top R\n");
+  const auto laid =
+      evaluate_drawing(table.model, prescribed(*table.system, 1, [](std::size_t, double t) { return t; }));
   REQUIRE(laid);
   const auto items = frame_items(*laid, View(*laid, options), 0, options);
   CHECK(items.back().id < 4096);  // the ball, of the first element, though it is farther than the middle of the table
 }
 
 TEST_CASE("the area of a bob follows its mass, and no bob swallows its rod") {
-  const ModelText m("system s\nparam l = 1 m\ncoord a, b : angle\npoint A mass 4 [kg] at l (sin a, -cos a)\npoint B mass 1 [kg] at A + l (sin b, -cos b)\n"
-                    "gravity (0, -9.81 [m/s^2])\nrun 1 s\ndraw O - A - B\n");
+  const ModelText m(
+      "system s\nparam l = 1 m\ncoord a, b : angle\npoint A mass 4 [kg] at l (sin a, -cos a)\npoint B mass 1 [kg] at A "
+      "+ l (sin b, -cos b)\n"
+      "gravity (0, -9.81 [m/s^2])\nrun 1 s\ndraw O - A - B\n");
   const auto run = prescribed(*m.system, 1, [](std::size_t i, double t) { return i == 0 ? t : -t; });
   const auto drawing = evaluate_drawing(m.model, run);
   REQUIRE(drawing);
@@ -189,25 +211,30 @@ TEST_CASE("the area of a bob follows its mass, and no bob swallows its rod") {
   CHECK(e.radii[1] * e.radii[1] / (e.radii[2] * e.radii[2]) == doctest::Approx(4));
   CHECK(e.radii[0] < e.radii[2]);
   for (const double r : e.radii) CHECK(r <= 0.3);
-  const ModelText close("system s\nparam l = 1 m, d = 1 cm\ncoord a, b : angle\npoint A mass 4 [kg] at l (sin a, -cos a)\n"
-                        "point B mass 1 [kg] at A + d (sin b, -cos b)\ngravity (0, -9.81 [m/s^2])\nrun 1 s\ndraw O - A - B\n");
+  const ModelText close(
+      "system s\nparam l = 1 m, d = 1 cm\ncoord a, b : angle\npoint A mass 4 [kg] at l (sin a, -cos a)\n"
+      "point B mass 1 [kg] at A + d (sin b, -cos b)\ngravity (0, -9.81 [m/s^2])\nrun 1 s\ndraw O - A - B\n");
   const Drawing near_each_other = evaluate_drawing(close.model, run).value();
   for (const double r : near_each_other.elements.back().radii) CHECK(r <= 0.003 + 1e-12);
 }
 
 TEST_CASE("springs and dampers are drawn by themselves, once, and stand on something") {
-  const std::string model = "system s\nparam m = 1 kg, k = 10 N/m, c = 1 N s/m, a = 1 m\ncoord x : length\npoint P mass m at (x, 0)\n"
-                            "spring (-a, 0) - P stiffness k length a\ndamper (-a, -a/4) - P coefficient c\nrun 1 s\n";
+  const std::string model =
+      "system s\nparam m = 1 kg, k = 10 N/m, c = 1 N s/m, a = 1 m\ncoord x : length\npoint P mass m at (x, 0)\n"
+      "spring (-a, 0) - P stiffness k length a\ndamper (-a, -a/4) - P coefficient c\nrun 1 s\n";
   const auto solids = [&](const std::string& draw) {
     const ModelText m(model + draw);
-    const auto drawing = evaluate_drawing(m.model, prescribed(*m.system, 1, [](std::size_t, double t) { return 0.3 * std::sin(6 * t); }));
+    const auto drawing = evaluate_drawing(
+        m.model, prescribed(*m.system, 1, [](std::size_t, double t) { return 0.3 * std::sin(6 * t); }));
     REQUIRE(drawing);
-    return std::count_if(drawing->elements.begin(), drawing->elements.end(), [](const auto& e) { return e.kind == Drawing::Kind::Solid; });
+    return std::count_if(drawing->elements.begin(), drawing->elements.end(),
+                         [](const auto& e) { return e.kind == Drawing::Kind::Solid; });
   };
-  CHECK(solids("") == 5);                             // the coil, cup and plate, two anchors
+  CHECK(solids("") == 5);  // the coil, cup and plate, two anchors
   CHECK(solids("draw trail P\n") == 5);
-  CHECK(solids("draw spring (-a, 0) - P\n") == 5);    // not a second time
-  CHECK(solids("draw P - (-a, 0)\n") == 4);           // the line stands for the spring: its pivot, and the dashpot with its anchor
+  CHECK(solids("draw spring (-a, 0) - P\n") == 5);  // not a second time
+  CHECK(solids("draw P - (-a, 0)\n") ==
+        4);  // the line stands for the spring: its pivot, and the dashpot with its anchor
 }
 
 TEST_CASE("rods are found where a distance is kept, and nowhere else") {
@@ -215,32 +242,45 @@ TEST_CASE("rods are found where a distance is kept, and nowhere else") {
     const ModelText m(text);
     const auto drawing = evaluate_drawing(m.model, prescribed(*m.system, 1, q));
     REQUIRE(drawing);
-    return std::count_if(drawing->elements.begin(), drawing->elements.end(), [](const auto& e) { return e.kind == Drawing::Kind::Path && e.points == 2; });
+    return std::count_if(drawing->elements.begin(), drawing->elements.end(),
+                         [](const auto& e) { return e.kind == Drawing::Kind::Path && e.points == 2; });
   };
   const auto circle = [](std::size_t i, double t) { return i == 0 ? std::sin(t) : -std::cos(t); };
-  CHECK(rods("system s\nparam l = 1 m, m = 1 kg\ncoord θ : angle\npoint P mass m at l (sin θ, -cos θ)\nrun 1 s\n", [](std::size_t, double t) { return t; }) == 1);
+  CHECK(rods("system s\nparam l = 1 m, m = 1 kg\ncoord θ : angle\npoint P mass m at l (sin θ, -cos θ)\nrun 1 s\n",
+             [](std::size_t, double t) { return t; }) == 1);
   // On a circle by chance: no rod. On a circle by a constraint: a rod.
-  CHECK(rods("system s\nparam l = 1 m, m = 1 kg\ncoord x, y : length\npoint P mass m at (x, y)\nrun 1 s\n", circle) == 0);
-  CHECK(rods("system s\nparam l = 1 m, m = 1 kg\ncoord x, y : length\npoint P mass m at (x, y)\nconstraint x^2 + y^2 = l^2\nrun 1 s\n", circle) == 1);
+  CHECK(rods("system s\nparam l = 1 m, m = 1 kg\ncoord x, y : length\npoint P mass m at (x, y)\nrun 1 s\n", circle) ==
+        0);
+  CHECK(rods("system s\nparam l = 1 m, m = 1 kg\ncoord x, y : length\npoint P mass m at (x, y)\nconstraint x^2 + y^2 = "
+             "l^2\nrun 1 s\n",
+             circle) == 1);
 }
 
 TEST_CASE("a camera that follows keeps its point in place, and sees no more than it needs") {
-  const std::string model = "system s\nparam m = 1 kg, R = 20 cm\ncoord x : length\nbody wheel mass m inertia m R^2/2 at (x, R) rotation angle -x/R\nrun 2 s\n";
+  const std::string model =
+      "system s\nparam m = 1 kg, R = 20 cm\ncoord x : length\nbody wheel mass m inertia m R^2/2 at (x, R) rotation "
+      "angle -x/R\nrun 2 s\n";
   const auto run = [](std::size_t, double t) { return 30 * t; };
   const ModelText still(model + "draw disc wheel R\n"), going(model + "draw disc wheel R, follow wheel\n");
-  const auto a = evaluate_drawing(still.model, prescribed(*still.system, 2, run)), b = evaluate_drawing(going.model, prescribed(*going.system, 2, run));
+  const auto a = evaluate_drawing(still.model, prescribed(*still.system, 2, run)),
+             b = evaluate_drawing(going.model, prescribed(*going.system, 2, run));
   REQUIRE(a);
   REQUIRE(b);
   CHECK(a->high[0] - a->low[0] > 60);
   CHECK(b->high[0] - b->low[0] < 1);
   const FrameOptions options;
   const View view(*b, options);
-  const auto middle = [&](double t) { const Box box(frame_items(*b, view, t, options)[0].points); return (box.left + box.right) / 2; };
+  const auto middle = [&](double t) {
+    const Box box(frame_items(*b, view, t, options)[0].points);
+    return (box.left + box.right) / 2;
+  };
   CHECK(middle(0.2) == doctest::Approx(middle(1.7)).epsilon(1e-6));
 }
 
 TEST_CASE("labels stand at their points, with the name as it is set or the words that are given") {
-  const ModelText m("system s\nparam m = 1 kg\ncoord x : length\npoint P1 mass m at (x, 0)\nrun 1 s\ndraw label P1, label P1 \"a & b\"\n");
+  const ModelText m(
+      "system s\nparam m = 1 kg\ncoord x : length\npoint P1 mass m at (x, 0)\nrun 1 s\ndraw label P1, label P1 \"a & "
+      "b\"\n");
   const auto drawing = evaluate_drawing(m.model, prescribed(*m.system, 1, [](std::size_t, double t) { return t; }));
   REQUIRE(drawing);
   const std::string svg = frame_svg(*drawing, 0, {});
@@ -266,8 +306,10 @@ TEST_CASE("an animated picture has a value for each frame; things that pass each
     for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
     return n;
   };
-  const ModelText plane("system s\nparam m = 1 kg\ncoord x : length\npoint P mass m at (x, 0)\nrun 1 s\ndraw circle P 10 cm\n");
-  const auto flat = evaluate_drawing(plane.model, prescribed(*plane.system, 1, [](std::size_t, double t) { return t; }));
+  const ModelText plane(
+      "system s\nparam m = 1 kg\ncoord x : length\npoint P mass m at (x, 0)\nrun 1 s\ndraw circle P 10 cm\n");
+  const auto flat =
+      evaluate_drawing(plane.model, prescribed(*plane.system, 1, [](std::size_t, double t) { return t; }));
   REQUIRE(flat);
   FrameOptions options;
   options.trail = TrailLength::None;
@@ -282,15 +324,20 @@ TEST_CASE("an animated picture has a value for each frame; things that pass each
   playback.loop = false;
   CHECK(count(animated_svg(*flat, playback, options), "repeatCount") == 0);
 
-  const ModelText space("system s\nparam R = 1 m\ncoord φ : angle\npoint A mass 1 [kg] at R (cos φ, sin φ, 0)\npoint B mass 1 [kg] at -R (cos φ, sin φ, 0)\n"
-                        "run 1 s\ndraw circle A 30 cm, circle B 30 cm\n");
-  const auto passing = evaluate_drawing(space.model, prescribed(*space.system, 1, [](std::size_t, double t) { return 2 * pi * t; }));
+  const ModelText space(
+      "system s\nparam R = 1 m\ncoord φ : angle\npoint A mass 1 [kg] at R (cos φ, sin φ, 0)\npoint B mass 1 [kg] at -R "
+      "(cos φ, sin φ, 0)\n"
+      "run 1 s\ndraw circle A 30 cm, circle B 30 cm\n");
+  const auto passing =
+      evaluate_drawing(space.model, prescribed(*space.system, 1, [](std::size_t, double t) { return 2 * pi * t; }));
   REQUIRE(passing);
   CHECK(count(animated_svg(*passing, playback, options), "<g visibility") == 5);
 }
 
 TEST_CASE("positions without a value leave their element out, and the rest stays") {
-  const ModelText m("system s\nparam m = 1 kg, a = 1 m\ncoord x : length\npoint P mass m at (x, 0)\npoint Q at (0, sqrt(a^2 - x^2))\nrun 1 s\ndraw circle P 10 cm, circle Q 10 cm\n");
+  const ModelText m(
+      "system s\nparam m = 1 kg, a = 1 m\ncoord x : length\npoint P mass m at (x, 0)\npoint Q at (0, sqrt(a^2 - "
+      "x^2))\nrun 1 s\ndraw circle P 10 cm, circle Q 10 cm\n");
   const auto drawing = evaluate_drawing(m.model, prescribed(*m.system, 1, [](std::size_t, double t) { return 2 * t; }));
   REQUIRE(drawing);
   const FrameOptions options;

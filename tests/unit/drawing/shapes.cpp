@@ -17,7 +17,8 @@ Matrix diagonal(double a, double b, double c) { return {{{a, 0, 0}, {0, b, 0}, {
 
 TEST_CASE("the ellipsoid of a homogeneous ellipsoid is itself, its axes in order") {
   const double m = 3, a = 0.2, b = 0.5, c = 0.9;
-  const auto e = shapes::ellipsoid_of_inertia(diagonal(m / 5 * (b * b + c * c), m / 5 * (a * a + c * c), m / 5 * (a * a + b * b)), m);
+  const auto e = shapes::ellipsoid_of_inertia(
+      diagonal(m / 5 * (b * b + c * c), m / 5 * (a * a + c * c), m / 5 * (a * a + b * b)), m);
   CHECK(e.semi_axes[0] == doctest::Approx(a));
   CHECK(e.semi_axes[1] == doctest::Approx(b));
   CHECK(e.semi_axes[2] == doctest::Approx(c));
@@ -34,7 +35,8 @@ TEST_CASE("the ellipsoid of a box is √(5/3) of its half sides") {
 TEST_CASE("an inertia about turned axes gives the turned ellipsoid, right-handed") {
   const double m = 1, a = 0.3, b = 0.2, c = 0.1, angle = 0.6, s = std::sin(angle), k = std::cos(angle);
   const double A = m / 5 * (b * b + c * c), B = m / 5 * (a * a + c * c), C = m / 5 * (a * a + b * b);
-  const Matrix inertia{{{k * k * A + s * s * B, k * s * (A - B), 0}, {k * s * (A - B), s * s * A + k * k * B, 0}, {0, 0, C}}};
+  const Matrix inertia{
+      {{k * k * A + s * s * B, k * s * (A - B), 0}, {k * s * (A - B), s * s * A + k * k * B, 0}, {0, 0, C}}};
   const auto e = shapes::ellipsoid_of_inertia(inertia, m);
   for (std::size_t i = 0; i < 3; ++i) {
     if (std::abs(e.semi_axes[i] - a) < 1e-9) CHECK(std::abs(e.axes[i][0] * k + e.axes[i][1] * s) == doctest::Approx(1));
@@ -43,7 +45,9 @@ TEST_CASE("an inertia about turned axes gives the turned ellipsoid, right-handed
     CHECK(length == doctest::Approx(1));
   }
   const auto& x = e.axes;
-  const double volume = x[0][0] * (x[1][1] * x[2][2] - x[1][2] * x[2][1]) - x[0][1] * (x[1][0] * x[2][2] - x[1][2] * x[2][0]) + x[0][2] * (x[1][0] * x[2][1] - x[1][1] * x[2][0]);
+  const double volume = x[0][0] * (x[1][1] * x[2][2] - x[1][2] * x[2][1]) -
+                        x[0][1] * (x[1][0] * x[2][2] - x[1][2] * x[2][0]) +
+                        x[0][2] * (x[1][0] * x[2][1] - x[1][1] * x[2][0]);
   CHECK(volume == doctest::Approx(1));
 }
 

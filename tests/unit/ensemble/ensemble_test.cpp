@@ -82,7 +82,8 @@ TEST_CASE("results depend neither on the width nor on the number of threads, to 
   Trajectories input = pendulums(23);
   input.times = {0, 0.1, 0.5, 1, 2.2};
   const EnsembleResult expected = advance_ensemble(kernel, input.start(), with(1, 1, 2));
-  for (const auto& [width, threads] : std::vector<std::pair<int, int>>{{2, 1}, {4, 1}, {8, 1}, {16, 1}, {0, 0}, {8, 2}, {4, 3}, {1, 4}}) {
+  for (const auto& [width, threads] :
+       std::vector<std::pair<int, int>>{{2, 1}, {4, 1}, {8, 1}, {16, 1}, {0, 0}, {8, 2}, {4, 3}, {1, 4}}) {
     CAPTURE(width);
     CAPTURE(threads);
     CHECK(same(advance_ensemble(kernel, input.start(), with(width, threads, 2)), expected));
@@ -102,7 +103,8 @@ TEST_CASE("results depend neither on the order of the trajectories nor on their 
       some.parameters.insert(some.parameters.end(), {input.parameters[2 * i], input.parameters[2 * i + 1]});
     }
     if (chosen.size() <= 1) some.end.assign(1, some.end.empty() ? 1.0 : some.end[0]);
-    const EnsembleResult found = advance_ensemble(kernel, some.start(), with(*rc::gen::element(1, 4, 8), *rc::gen::element(1, 2)));
+    const EnsembleResult found =
+        advance_ensemble(kernel, some.start(), with(*rc::gen::element(1, 4, 8), *rc::gen::element(1, 2)));
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       RC_ASSERT(distance(found.q_of(k), expected.q_of(chosen[k])) == 0);
       RC_ASSERT(distance(found.v_of(k), expected.v_of(chosen[k])) == 0);
@@ -114,8 +116,8 @@ TEST_CASE("results depend neither on the order of the trajectories nor on their 
 TEST_CASE("every trajectory has its own parameters, begin and end, forwards or backwards") {
   System s;  // x'' = −w² x + f t
   const auto x = s.coordinate("x"), w = s.parameter("w"), f = s.parameter("f");
-  const Kernel kernel = s.natural(Rational(1, 2) * s.rate_squared(x),
-                                  Rational(1, 2) * pow(w, 2) * pow(x, 2) - f * s.context.time() * x);
+  const Kernel kernel =
+      s.natural(Rational(1, 2) * s.rate_squared(x), Rational(1, 2) * pow(w, 2) * pow(x, 2) - f * s.context.time() * x);
   Trajectories input;
   for (int i = 0; i < 21; ++i) {
     input.add({0.3}, {0.5}, i % 2 == 0 ? 3.0 + i : -2.0 - i);
@@ -222,7 +224,8 @@ TEST_CASE("an energy with an angle in it counts the turns") {
     CHECK(result.q[i] > 4000);
     CHECK(result.endings[i].energy_drift < 1e-14);
     // θ'² − 2 cos θ − 2 θ stays.
-    const double q = input.q[i], v = input.v[i], at_end = result.v[i] * result.v[i] - 2 * std::cos(result.q[i]) - 2 * result.q[i];
+    const double q = input.q[i], v = input.v[i],
+                 at_end = result.v[i] * result.v[i] - 2 * std::cos(result.q[i]) - 2 * result.q[i];
     CHECK(std::abs(at_end - (v * v - 2 * std::cos(q) - 2 * q)) < 1e-10);
   }
 }
@@ -337,7 +340,8 @@ TEST_CASE("a coarser tolerance takes fewer steps, at the order that it asks for"
   double rough_drift = 0, fine_drift = 0;
   for (std::size_t i = 0; i < input.count(); ++i) {
     rough_steps += rough.endings[i].steps, fine_steps += fine.endings[i].steps;
-    rough_drift = std::max(rough_drift, rough.endings[i].energy_drift), fine_drift = std::max(fine_drift, fine.endings[i].energy_drift);
+    rough_drift = std::max(rough_drift, rough.endings[i].energy_drift),
+    fine_drift = std::max(fine_drift, fine.endings[i].energy_drift);
   }
   CHECK(rough_steps < fine_steps);
   CHECK(rough_drift > fine_drift);

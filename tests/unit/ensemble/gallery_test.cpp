@@ -66,7 +66,8 @@ void check_agreement(const Agreement& a) {
     TaylorStepper stepper(kernel, input.parameters, {});
     stepper.start(0, input.q_of(i), input.v_of(i));
     while (stepper.time() != a.duration) REQUIRE(stepper.step(a.duration).ending == StepEnding::None);
-    CHECK(std::abs(static_cast<double>(result.endings[i].steps) - static_cast<double>(stepper.steps())) <= 1 + 0.02 * static_cast<double>(stepper.steps()));
+    CHECK(std::abs(static_cast<double>(result.endings[i].steps) - static_cast<double>(stepper.steps())) <=
+          1 + 0.02 * static_cast<double>(stepper.steps()));
     for (std::size_t k = 0; k < input.n; ++k) {
       CHECK(std::abs(result.q_of(i)[k] - stepper.q()[k]) <= a.bound * (1 + std::abs(stepper.q()[k])));
       CHECK(std::abs(result.v_of(i)[k] - stepper.v()[k]) <= a.bound * (1 + std::abs(stepper.v()[k])));

@@ -53,7 +53,8 @@ inline maupertuis::Kernel double_pendulum() {
   const auto a = s.coordinate("a"), b = s.coordinate("b"), g = s.parameter("g"), l = s.parameter("l");
   const auto x1 = l * sin(a), y1 = -(l * cos(a)), x2 = x1 + l * sin(b), y2 = y1 - l * cos(b);
   const maupertuis::Rational half(1, 2);
-  return s.natural(half * (s.rate_squared(x1) + s.rate_squared(y1) + s.rate_squared(x2) + s.rate_squared(y2)), g * (y1 + y2));
+  return s.natural(half * (s.rate_squared(x1) + s.rate_squared(y1) + s.rate_squared(x2) + s.rate_squared(y2)),
+                   g * (y1 + y2));
 }
 
 /// Kepler's problem, attracted by 1/r.

@@ -1,15 +1,16 @@
 #include "equations/antiderivative.hpp"
 
 #include <doctest/doctest.h>
-#include <maupertuis/transform.hpp>
 #include <maupertuis/evaluate.hpp>
+#include <maupertuis/transform.hpp>
 
 using namespace maupertuis;
 
 TEST_CASE("powers times functions are integrated by parts, up to the twelfth power") {
   Context context;
   const Expr z = context.symbol("z", Role::Coordinate), a = context.symbol("a", Role::Parameter);
-  for (const Expr& f : {sin(a * z), cos(a * z), apply(Kind::Exp, a * z), apply(Kind::Sinh, a * z), apply(Kind::Cosh, a * z)}) {
+  for (const Expr& f :
+       {sin(a * z), cos(a * z), apply(Kind::Exp, a * z), apply(Kind::Sinh, a * z), apply(Kind::Cosh, a * z)}) {
     for (const int n : {1, 2, 5, 12}) {
       CAPTURE(n);
       const Expr e = pow(z, Rational(n)) * f, integral = antiderivative(e, z);

@@ -101,13 +101,16 @@ constraint x' cos ψ + y' sin ψ - b ψ' = R φ2' name right
   for (std::size_t i = 0; i < 5; ++i)
     for (std::size_t j = 0; j < i; ++j)
       CHECK(zero_test(differentiate(f, m.q(i)) * differentiate(wanted, m.q(j)) -
-                      differentiate(f, m.q(j)) * differentiate(wanted, m.q(i))).verdict == Verdict::Zero);
+                      differentiate(f, m.q(j)) * differentiate(wanted, m.q(i)))
+                .verdict == Verdict::Zero);
 }
 
 TEST_CASE("a combination names the constraints that it is made of, wherever they stand") {
-  const std::string text = "param m = 1 kg, R = 20 cm, b = 30 cm\ncoord x, y : length\ncoord ψ, φ1, φ2 : angle\n"
-                           "T = 1/2 m (x'^2 + y'^2) + 1/2 m b^2 ψ'^2 + 1/4 m R^2 (φ1'^2 + φ2'^2)\n";
-  const std::string blade = "constraint y' cos ψ = x' sin ψ\n", left = "constraint x' cos ψ + y' sin ψ + b ψ' = R φ1'\n",
+  const std::string text =
+      "param m = 1 kg, R = 20 cm, b = 30 cm\ncoord x, y : length\ncoord ψ, φ1, φ2 : angle\n"
+      "T = 1/2 m (x'^2 + y'^2) + 1/2 m b^2 ψ'^2 + 1/4 m R^2 (φ1'^2 + φ2'^2)\n";
+  const std::string blade = "constraint y' cos ψ = x' sin ψ\n",
+                    left = "constraint x' cos ψ + y' sin ψ + b ψ' = R φ1'\n",
                     right = "constraint x' cos ψ + y' sin ψ - b ψ' = R φ2'\n";
   const auto named = [&](const std::string& constraints) {
     const Analysed m(text + constraints);
@@ -133,8 +136,10 @@ constraint φr = 0
 
 TEST_CASE("a blade, and the sleigh of Chaplygin") {
   for (const std::string offset : {"0", "a ψ'"}) {
-    const Analysed m("param m = 1 kg, a = 1 m\ncoord x, y : length\ncoord ψ : angle\n"
-                     "T = 1/2 m (x'^2 + y'^2) + 1/2 m a^2 ψ'^2\nconstraint y' cos ψ - x' sin ψ = " + offset + "\n");
+    const Analysed m(
+        "param m = 1 kg, a = 1 m\ncoord x, y : length\ncoord ψ : angle\n"
+        "T = 1/2 m (x'^2 + y'^2) + 1/2 m a^2 ψ'^2\nconstraint y' cos ψ - x' sin ψ = " +
+        offset + "\n");
     CHECK(m.class_of(0) == nonholonomic);
     CHECK(m.found.configuration_freedoms == 3);
     CHECK(m.found.instantaneous_freedoms == 2);
@@ -209,8 +214,9 @@ TEST_CASE("constraints that exclude each other are named, and no more than these
 }
 
 TEST_CASE("integrals are certified: their differential is a multiple of the form") {
-  const std::string forms[] = {"x y' = a y x'", "x' cos x = y' sin y", "z' = x' x sin x + y' exp(a y)", "(x^2 + y^2) z' = x' x + y' y",
-                               "x' / x = y' / y", "x' x / sqrt(x^2 + 1) = z'", "x' sin y + x y' cos y = z' z", "x' = a t y'^1 * 0 + a t"};
+  const std::string forms[] = {
+      "x y' = a y x'",   "x' cos x = y' sin y",       "z' = x' x sin x + y' exp(a y)", "(x^2 + y^2) z' = x' x + y' y",
+      "x' / x = y' / y", "x' x / sqrt(x^2 + 1) = z'", "x' sin y + x y' cos y = z' z",  "x' = a t y'^1 * 0 + a t"};
   for (const std::string& form : forms) {
     CAPTURE(form);
     const Analysed m(space("constraint " + form));
@@ -226,18 +232,20 @@ TEST_CASE("integrals are certified: their differential is a multiple of the form
 TEST_CASE("integrals are written without logarithms of lengths") {
   CHECK(Analysed(space("constraint x y' = y x'")).integral(0) == "x/y");
   CHECK(Analysed(space("constraint y' = a y x'")).class_of(0) == integrable);
-  CHECK(Analysed("param m = 1 kg, k = 1 [1/m]\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint y' = k y x'\n").integral(0) ==
-        "y exp(-k x)");
+  CHECK(Analysed("param m = 1 kg, k = 1 [1/m]\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint y' = k y x'\n")
+            .integral(0) == "y exp(-k x)");
 }
 
 TEST_CASE("a car with three trailers goes everywhere, by brackets of brackets of brackets") {
-  std::string text = "param m = 1 kg, a = 1 m\ncoord x, y : length\ncoord δ, θ0, θ1, θ2, θ3 : angle\n"
-                     "T = 1/2 m (x'^2 + y'^2) + 1/2 m a^2 (δ'^2 + θ0'^2 + θ1'^2 + θ2'^2 + θ3'^2)\n"
-                     "constraint x' sin(θ0 + δ) - y' cos(θ0 + δ) - a θ0' cos δ = 0\n";
+  std::string text =
+      "param m = 1 kg, a = 1 m\ncoord x, y : length\ncoord δ, θ0, θ1, θ2, θ3 : angle\n"
+      "T = 1/2 m (x'^2 + y'^2) + 1/2 m a^2 (δ'^2 + θ0'^2 + θ1'^2 + θ2'^2 + θ3'^2)\n"
+      "constraint x' sin(θ0 + δ) - y' cos(θ0 + δ) - a θ0' cos δ = 0\n";
   for (int i = 0; i < 4; ++i) {  // no wheel slips sideways
     const std::string own = "θ" + std::to_string(i);
     text += "constraint y' cos " + own + " - x' sin " + own;
-    for (int k = 1; k <= i; ++k) text += " - a θ" + std::to_string(k) + "' cos(θ" + std::to_string(k) + " - " + own + ")";
+    for (int k = 1; k <= i; ++k)
+      text += " - a θ" + std::to_string(k) + "' cos(θ" + std::to_string(k) + " - " + own + ")";
     text += " = 0\n";
   }
   const Analysed m(text);

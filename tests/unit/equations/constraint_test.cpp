@@ -75,8 +75,9 @@ TEST_CASE("A and b of the bordered system") {
 }
 
 TEST_CASE("a driven rod does work: the power is −λ ∂φ/∂t") {
-  const ModelText m("system s\nparam m = 1 kg, l = 1 m, v = 1 m/s\ncoord x, y : length\npoint P mass m at (x, y)\n"
-                    "constraint x^2 + y^2 = (l + v t)^2 name rod\n");
+  const ModelText m(
+      "system s\nparam m = 1 kg, l = 1 m, v = 1 m/s\ncoord x, y : length\npoint P mass m at (x, y)\n"
+      "constraint x^2 + y^2 = (l + v t)^2 name rod\n");
   const Expr length = m.p("l") + m.p("v") * m.system->context->time();
   CHECK(equal(m.equations.power, Rational(2) * m.equations.multipliers[0] * length * m.p("v")));
   CHECK_FALSE(conserved_quantities(m.equations).energy_conserved);
@@ -91,7 +92,8 @@ TEST_CASE("a momentum is conserved only where no constraint acts") {
 }
 
 TEST_CASE("velocity constraints of any degree in the velocities do no work, affine ones do") {
-  const std::string head = "system s\nparam m = 1 kg, c = 2 m/s\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\n";
+  const std::string head =
+      "system s\nparam m = 1 kg, c = 2 m/s\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\n";
   CHECK(conserved_quantities(ModelText(head + "constraint x'^2 + y'^2 = z'^2\n").equations).energy_conserved);
   CHECK(conserved_quantities(ModelText(head + "constraint x' = y'\n").equations).energy_conserved);
   CHECK_FALSE(conserved_quantities(ModelText(head + "constraint x'^2 + y'^2 = c^2\n").equations).energy_conserved);
@@ -105,7 +107,8 @@ TEST_CASE("accelerations and multipliers solve the bordered system, also where M
     REQUIRE(motion);
     ExprMap solution;
     for (std::size_t i = 0; i < motion->accelerations.size(); ++i) solution.emplace(m.a(i), motion->accelerations[i]);
-    for (std::size_t k = 0; k < motion->multipliers.size(); ++k) solution.emplace(m.equations.multipliers[k], motion->multipliers[k]);
+    for (std::size_t k = 0; k < motion->multipliers.size(); ++k)
+      solution.emplace(m.equations.multipliers[k], motion->multipliers[k]);
     ExprVector rows = m.equations.balance();
     rows.insert(rows.end(), m.equations.constraint_accelerations.begin(), m.equations.constraint_accelerations.end());
     CHECK(zero_test(substitute(expand_time_derivatives(rows), solution)).verdict == Verdict::Zero);
@@ -127,8 +130,9 @@ TEST_CASE("a planetary gear speeds up as its reduced inertia says") {
 }
 
 TEST_CASE("redundant constraints have no unique multipliers") {
-  const ModelText m("system s\nparam m = 1 kg\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\n"
-                    "constraint x = y name a\nconstraint 2 x = 2 y name b\n");
+  const ModelText m(
+      "system s\nparam m = 1 kg\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\n"
+      "constraint x = y name a\nconstraint 2 x = 2 y name b\n");
   CHECK_FALSE(accelerations_and_multipliers(m.equations));
   CHECK_FALSE(eliminate_multipliers(m.equations));
 }
@@ -147,7 +151,9 @@ TEST_CASE("multipliers eliminated") {
 }
 
 TEST_CASE("a denominator that a whole row of A shares is left out") {
-  const ModelText m("system s\nparam m = 1 kg, l = 1 m\ncoord x, y : length\npoint P mass m at (x, y)\nconstraint norm(P) = l name rod\n");
+  const ModelText m(
+      "system s\nparam m = 1 kg, l = 1 m\ncoord x, y : length\npoint P mass m at (x, y)\nconstraint norm(P) = l name "
+      "rod\n");
   const Derivation d = readable_derivation(m.equations, false);
   CHECK(to_plain(d.constraint_forces[0], m.equations.order) == "x λ_rod/sqrt(x^2 + y^2)");
   const auto eliminated = eliminate_multipliers(m.equations);
@@ -200,9 +206,12 @@ TEST_CASE("Chetaev's rule is told where velocities stand in A, and only there") 
   const auto told = [](const char* text) {
     const ModelText m(text);
     const Derivation d = readable_derivation(m.equations, true);
-    return std::any_of(d.steps.begin(), d.steps.end(), [](const DerivationStep& step) { return step.rule == "Chetaev's rule"; });
+    return std::any_of(d.steps.begin(), d.steps.end(),
+                       [](const DerivationStep& step) { return step.rule == "Chetaev's rule"; });
   };
-  CHECK(told("param m = 1 kg, a = 2\ncoord x, y, z : length\npoint P mass m at (x, y, z)\nconstraint sqrt(x'^2 + y'^2) = a z'\n"));
+  CHECK(
+      told("param m = 1 kg, a = 2\ncoord x, y, z : length\npoint P mass m at (x, y, z)\nconstraint sqrt(x'^2 + y'^2) = "
+           "a z'\n"));
   CHECK_FALSE(told(rolling_disk));
   CHECK_FALSE(told(pendulum));
 }

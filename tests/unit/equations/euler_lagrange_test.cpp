@@ -38,9 +38,11 @@ TEST_CASE("mass matrix, bias and momenta of the double pendulum") {
   CHECK(equal(mass.at(0, 1), m.p("m2") * m.p("l1") * m.p("l2") * cos(m.q(0) - m.q(1))));
   CHECK(equal(mass.at(0, 1), mass.at(1, 0)));
   const ExprVector h = bias(m.equations);
-  CHECK(equal(h[1], m.p("m2") * m.p("l2") * (m.p("g") * sin(m.q(1)) - m.p("l1") * sin(m.q(0) - m.q(1)) * square(m.v(0)))));
+  CHECK(equal(h[1],
+              m.p("m2") * m.p("l2") * (m.p("g") * sin(m.q(1)) - m.p("l1") * sin(m.q(0) - m.q(1)) * square(m.v(0)))));
   for (std::size_t i = 0; i < 2; ++i)
-    CHECK(equal(expand_time_derivatives(m.equations.residual[i]), mass.at(i, 0) * m.a(0) + mass.at(i, 1) * m.a(1) + h[i]));
+    CHECK(equal(expand_time_derivatives(m.equations.residual[i]),
+                mass.at(i, 0) * m.a(0) + mass.at(i, 1) * m.a(1) + h[i]));
 }
 
 TEST_CASE("conserved at a glance: the double pendulum keeps its energy and nothing else") {
@@ -52,7 +54,8 @@ TEST_CASE("conserved at a glance: the double pendulum keeps its energy and nothi
 }
 
 TEST_CASE("a cyclic coordinate with friction does not keep its momentum") {
-  const ModelText m("system s\nparam m = 1 kg, c = 1 N s/m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nD = 1/2 c x'^2\n");
+  const ModelText m(
+      "system s\nparam m = 1 kg, c = 1 N s/m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nD = 1/2 c x'^2\n");
   const ConservedQuantities c = conserved_quantities(m.equations);
   CHECK(c.cyclic.size() == 2);
   CHECK(c.conserved_momenta == std::vector<std::size_t>{1});
@@ -71,8 +74,9 @@ gravity (0, 0, -g)
   const ConservedQuantities c = conserved_quantities(m.equations);
   CHECK(c.energy_conserved);
   CHECK_FALSE(c.energy_is_t_plus_v);
-  const Expr jacobi = m.p("m") * square(m.p("R")) * (square(m.v(0)) - square(m.p("Ω")) * square(sin(m.q(0)))) / Rational(2) -
-                      m.p("m") * m.p("g") * m.p("R") * cos(m.q(0));
+  const Expr jacobi =
+      m.p("m") * square(m.p("R")) * (square(m.v(0)) - square(m.p("Ω")) * square(sin(m.q(0)))) / Rational(2) -
+      m.p("m") * m.p("g") * m.p("R") * cos(m.q(0));
   CHECK(equal(m.equations.energy_function, jacobi));
 }
 
@@ -107,7 +111,8 @@ TEST_CASE("a singular mass matrix has no accelerations") {
 }
 
 TEST_CASE("solved form: uncoupled coordinates are solved one by one") {
-  const ModelText m("system s\nparam m = 1 kg, k = 1 N/m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = 1/2 k (x - y)^2\n");
+  const ModelText m(
+      "system s\nparam m = 1 kg, k = 1 N/m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = 1/2 k (x - y)^2\n");
   const auto solved = solved_accelerations(m.equations);
   REQUIRE(solved.size() == 2);
   CHECK(solved[0].coupled_with.size() == 1);
@@ -150,7 +155,8 @@ V = 1/2 k φ^2
   CHECK(to_plain(d.equations[0], m.equations.order) == "I φ'' + k φ");
   REQUIRE(d.intermediates.size() == 1);
   CHECK(to_plain(d.intermediates[0].value, m.equations.order) == "1/2 m R^2");
-  CHECK(equal(substitute(d.equations[0].value, m.system->definition_values()), expand_time_derivatives(m.equations.residual[0])));
+  CHECK(equal(substitute(d.equations[0].value, m.system->definition_values()),
+              expand_time_derivatives(m.equations.residual[0])));
 }
 
 TEST_CASE("the textbook path shows every chain-rule term") {
@@ -176,6 +182,7 @@ TEST_CASE("the steps of a derivation stand in their sections, in the order of th
   std::vector<std::string> sections;
   for (const DerivationStep& step : readable_derivation(m.equations, true).steps)
     if (sections.empty() || sections.back() != step.section) sections.push_back(step.section);
-  CHECK(sections == std::vector<std::string>{"Coordinates", "Positions", "Velocities", "Speeds", "Kinetic energy", "Potential energy", "Lagrangian",
-                                             "Equation of θ1", "Equation of θ2", "Solved for the accelerations"});
+  CHECK(sections == std::vector<std::string>{"Coordinates", "Positions", "Velocities", "Speeds", "Kinetic energy",
+                                             "Potential energy", "Lagrangian", "Equation of θ1", "Equation of θ2",
+                                             "Solved for the accelerations"});
 }

@@ -26,9 +26,15 @@ struct Space {
     for (int k = 0; k < 2; ++k) {
       const Expr u = variables[static_cast<std::size_t>(pick(4))], w = variables[static_cast<std::size_t>(pick(4))];
       switch (pick(3)) {
-        case 0: out = out + number(1 + pick(3)) * u * w; break;
-        case 1: out = out + sin(u); break;
-        default: out = out + number(1 + pick(2)) * cos(u + w); break;
+        case 0:
+          out = out + number(1 + pick(3)) * u * w;
+          break;
+        case 1:
+          out = out + sin(u);
+          break;
+        default:
+          out = out + number(1 + pick(2)) * cos(u + w);
+          break;
       }
     }
     return out;
@@ -136,13 +142,16 @@ TEST_CASE("two forms: brackets agree with dω ∧ ω₁ ∧ ω₂ = 0") {
   CHECK(others > 5);
 }
 
-TEST_CASE("hundreds of velocity constraints that share nothing are looked at one by one, and put back in their places") {
-  // Wheels that roll along a line (each integrable), knife edges (none is), and pairs of which a combination is: x' = z w' and x' = z w' + y'.
+TEST_CASE(
+    "hundreds of velocity constraints that share nothing are looked at one by one, and put back in their places") {
+  // Wheels that roll along a line (each integrable), knife edges (none is), and pairs of which a combination is: x' = z
+  // w' and x' = z w' + y'.
   std::string text = "dimensionless\n";
   const int count = 100;
   for (int i = 0; i < count; ++i) {
     const std::string n = std::to_string(i);
-    text += "coord s" + n + ", φ" + n + ", u" + n + ", v" + n + ", α" + n + ", x" + n + ", y" + n + ", z" + n + ", w" + n + " : number\n";
+    text += "coord s" + n + ", φ" + n + ", u" + n + ", v" + n + ", α" + n + ", x" + n + ", y" + n + ", z" + n + ", w" +
+            n + " : number\n";
     for (const char* name : {"s", "φ", "u", "v", "α", "x", "y", "z", "w"}) text += "T += 1/2 " + (name + n) + "'^2\n";
     text += "constraint s" + n + "' = 2 φ" + n + "'\n";
     text += "constraint u" + n + "' sin α" + n + " = v" + n + "' cos α" + n + "\n";
@@ -158,7 +167,8 @@ TEST_CASE("hundreds of velocity constraints that share nothing are looked at one
   CHECK(analysis.combinations.size() == count);
   for (std::size_t i = 0; i < count; ++i) {
     CHECK(analysis.constraints[4 * i].constraint_class == ConstraintClass::Integrable);
-    for (std::size_t k = 1; k < 4; ++k) CHECK(analysis.constraints[4 * i + k].constraint_class == ConstraintClass::Nonholonomic);
+    for (std::size_t k = 1; k < 4; ++k)
+      CHECK(analysis.constraints[4 * i + k].constraint_class == ConstraintClass::Nonholonomic);
     CHECK(analysis.combinations[i].constraints == std::vector<std::size_t>{4 * i + 2, 4 * i + 3});
   }
 }

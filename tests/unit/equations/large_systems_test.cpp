@@ -1,5 +1,5 @@
-// Systems of sizes at which anything that grows with the square of the coordinates, or faster, is seen: by its counts, or
-// because it would not come back.
+// Systems of sizes at which anything that grows with the square of the coordinates, or faster, is seen: by its counts,
+// or because it would not come back.
 #include "../model_text.hpp"
 #include "equations/row_reduction.hpp"
 #include "equations/sparse_rows.hpp"
@@ -20,7 +20,8 @@ namespace {
 
 std::string list(int first, int last, const std::string& name) {
   std::string out;
-  for (int i = first; i <= last; ++i) out += (i == first ? "" : i % 8 == 0 ? ",\n    " : ", ") + name + std::to_string(i);
+  for (int i = first; i <= last; ++i)
+    out += (i == first ? "" : i % 8 == 0 ? ",\n    " : ", ") + name + std::to_string(i);
   return out;
 }
 
@@ -34,11 +35,13 @@ std::string pendulum_chain(int links) {
 }
 
 std::string chain_of_rods(int links) {
-  std::string text = "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord " + list(1, links, "x") + ", " + list(1, links, "y") + " : length\n";
+  std::string text = "param m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord " + list(1, links, "x") + ", " +
+                     list(1, links, "y") + " : length\n";
   for (int i = 1; i <= links; ++i) {
     const std::string n = std::to_string(i), p = std::to_string(i - 1);
     text += "point P" + n + " mass m at (x" + n + ", y" + n + ")\n";
-    const std::string dx = i == 1 ? "x1" : "(x" + n + " - x" + p + ")", dy = i == 1 ? "y1" : "(y" + n + " - y" + p + ")";
+    const std::string dx = i == 1 ? "x1" : "(x" + n + " - x" + p + ")",
+                      dy = i == 1 ? "y1" : "(y" + n + " - y" + p + ")";
     text += "constraint " + dx + "^2 + " + dy + "^2 = l^2 name rod" + n + "\n";
   }
   return text + "gravity (0, -g)\n";
@@ -46,15 +49,18 @@ std::string chain_of_rods(int links) {
 
 std::string chain_of_equalities(int count, const std::string& more) {
   std::string text = "param m = 1 kg\ncoord " + list(0, count, "x") + " : length\n";
-  for (int i = 0; i <= count; ++i) text += "point P" + std::to_string(i) + " mass m at (x" + std::to_string(i) + ", 0)\n";
+  for (int i = 0; i <= count; ++i)
+    text += "point P" + std::to_string(i) + " mass m at (x" + std::to_string(i) + ", 0)\n";
   for (int i = 1; i <= count; ++i) text += "constraint x" + std::to_string(i) + " = x" + std::to_string(i - 1) + "\n";
   return text + more;
 }
 
 Eigen::MatrixXd dense(const SparseRows& a) {
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(a.rows.size()), static_cast<Eigen::Index>(a.columns));
+  Eigen::MatrixXd out =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(a.rows.size()), static_cast<Eigen::Index>(a.columns));
   for (std::size_t i = 0; i < a.rows.size(); ++i)
-    for (const auto& [column, value] : a.rows[i]) out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(column)) = value;
+    for (const auto& [column, value] : a.rows[i])
+      out(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(column)) = value;
   return out;
 }
 
@@ -110,7 +116,8 @@ TEST_CASE("the sparse step onto the constraints is the least one in the metric o
       entries.push_back({i, j, a(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j))});
     }
   for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j) of_mass.push_back({i, j, mass(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j))});
+    for (std::size_t j = 0; j < n; ++j)
+      of_mass.push_back({i, j, mass(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j))});
   SparseStep step(n, {0, 1, 2, 3, 4, 5});
   const Eigen::VectorXd weight = step.set_rows(entries, {0, 1});
   step.set_metric(of_mass);
@@ -152,7 +159,8 @@ TEST_CASE("a long chain of pendulums is written by shared parts, a few for each 
   ExprMap meaning;
   for (const Intermediate& i : d.intermediates) meaning[i.symbol] = substitute(i.value, meaning);
   ExprVector differences;
-  for (std::size_t i = 0; i < links; ++i) differences.push_back(substitute(d.equations[i].value, meaning) - m.equations.residual[i]);
+  for (std::size_t i = 0; i < links; ++i)
+    differences.push_back(substitute(d.equations[i].value, meaning) - m.equations.residual[i]);
   CHECK(zero_test(differences).verdict == Verdict::Zero);
 }
 

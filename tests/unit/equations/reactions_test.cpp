@@ -10,7 +10,6 @@ using namespace maupertuis;
 
 namespace {
 
-
 const char* const cartesian_pendulum = R"(system pendulum
 param m = 2 kg, l = 70 cm, g = 9.81 m/s^2
 coord x, y : length
@@ -36,7 +35,8 @@ double value_at(const ModelText& m, Expr value, const std::vector<double>& q, co
   REQUIRE(motion);
   ExprMap solution;
   for (std::size_t i = 0; i < q.size(); ++i) solution.emplace(m.a(i), motion->accelerations[i]);
-  for (std::size_t k = 0; k < motion->multipliers.size(); ++k) solution.emplace(m.equations.multipliers[k], motion->multipliers[k]);
+  for (std::size_t k = 0; k < motion->multipliers.size(); ++k)
+    solution.emplace(m.equations.multipliers[k], motion->multipliers[k]);
   Bindings at;
   for (const Parameter& p : m.system->parameters) at[p.symbol] = p.si_value;
   for (std::size_t i = 0; i < q.size(); ++i) at[m.q(i)] = q[i], at[m.v(i)] = v[i];
@@ -63,7 +63,7 @@ TEST_CASE("the tension of a pendulum in x and y: m l θ'² + m g cos θ") {
 TEST_CASE("the arrow of a pulled rod points from the mass to the pivot, with the size of the tension") {
   const ModelText m(cartesian_pendulum);
   const Reaction rod = only_reaction(m);
-  REQUIRE(rod.arrows.size() == 1);   // the pivot stands still: no arrow
+  REQUIRE(rod.arrows.size() == 1);  // the pivot stands still: no arrow
   CHECK(rod.arrows[0].point == "P");
   const double fy = value_at(m, rod.arrows[0].force[1], {0, -0.7}, {0.5, 0});
   CHECK(fy == doctest::Approx(2 * (0.25 / 0.7 + 9.81)));
@@ -84,7 +84,8 @@ reaction rod = release l
 }
 
 TEST_CASE("both rods of a double pendulum: released lengths against multipliers of four Cartesian coordinates") {
-  const std::string head = "param m1 = 1 kg, m2 = 3 kg, l1 = 80 cm, l2 = 50 cm, g = 9.81 m/s^2, F = 2 N\ngravity (0, -g)\n";
+  const std::string head =
+      "param m1 = 1 kg, m2 = 3 kg, l1 = 80 cm, l2 = 50 cm, g = 9.81 m/s^2, F = 2 N\ngravity (0, -g)\n";
   const ModelText polar("system s\n" + head + R"(coord θ1, θ2 : angle
 point A mass m1 at l1 (sin θ1, -cos θ1)
 point B mass m2 at A + l2 (sin θ2, -cos θ2)
@@ -122,8 +123,10 @@ constraint (x1 - x2)^2 + (y1 - y2)^2 = l2^2 name lower
 TEST_CASE("the force that holds a length is Lagrange's for the length as a coordinate") {
   // The same model with l as a parameter and as a coordinate; spring, damper, force, torque, a body and a driven pivot.
   const auto text = [](const std::string& length, const std::string& rest) {
-    return "system s\nparam m = 1 kg, M = 2 kg, J = 3 kg m^2, k = 5 N/m, r = 1 m, c = 2 N s/m, F = 3 N, τ = 4 N m, g = 9.81 m/s^2, "
-           "w = 2 rad/s, a = 1 m" + length + "\ncoord θ, φ : angle" + rest +
+    return "system s\nparam m = 1 kg, M = 2 kg, J = 3 kg m^2, k = 5 N/m, r = 1 m, c = 2 N s/m, F = 3 N, τ = 4 N m, g = "
+           "9.81 m/s^2, "
+           "w = 2 rad/s, a = 1 m" +
+           length + "\ncoord θ, φ : angle" + rest +
            "point A mass m at (a sin(w t), 0) + l (sin θ, -cos θ)\n"
            "body B mass M inertia J at A + l (sin φ, cos φ) rotation angle φ + θ\npoint W at (a, a)\ngravity (0, -g)\n"
            "spring B - W stiffness k length r\ndamper A - B coefficient c\ndamper A - W coefficient c\n"
@@ -131,9 +134,12 @@ TEST_CASE("the force that holds a length is Lagrange's for the length as a coord
   };
   const ModelText held(text(", l = 2 m", "\n") + "reaction rod = release l\n");
   const ModelText free(text("", ", l : length\n"));
-  Bindings at_free, at_held;   // the same state, l at rest
+  Bindings at_free, at_held;  // the same state, l at rest
   double value = 0.3;
-  const auto bind = [&](Expr a, Expr b, double x) { at_free[a] = x; at_held[b] = x; };
+  const auto bind = [&](Expr a, Expr b, double x) {
+    at_free[a] = x;
+    at_held[b] = x;
+  };
   for (const Parameter& p : free.system->parameters) bind(p.symbol, held.p(p.name), p.si_value);
   for (std::size_t i = 0; i < 2; ++i) {
     bind(free.q(i), held.q(i), value += 0.41);
@@ -159,7 +165,7 @@ reaction rod = release l
 )");
   // The damper pulls P with c d' along the line to W.
   const Expr dx = m.p("l") * sin(m.q(0)) - m.p("w"), dy = -(m.p("l") * cos(m.q(0)));
-  const Expr d2 = square(dx) + square(dy), rate = (dx * cos(m.q(0)) + dy * sin(m.q(0))) * m.p("l") * m.v(0);   // d d'
+  const Expr d2 = square(dx) + square(dy), rate = (dx * cos(m.q(0)) + dy * sin(m.q(0))) * m.p("l") * m.v(0);  // d d'
   const Expr along = dx * sin(m.q(0)) - dy * cos(m.q(0));
   const Expr closed = m.p("m") * m.p("l") * square(m.v(0)) - m.p("c") * rate * along / d2;
   CHECK(equal(only_reaction(m).value, closed));
@@ -201,7 +207,8 @@ TEST_CASE("the multiplier of a quaternion's norm is no force, and that is said")
 }
 
 TEST_CASE("a length in a given T has no reaction, and the reason is said") {
-  const ModelText m("system s\nparam m = 1 kg, l = 1 m\ncoord θ : angle\nT = 1/2 m l^2 θ'^2\nreaction rod = release l\n");
+  const ModelText m(
+      "system s\nparam m = 1 kg, l = 1 m\ncoord θ : angle\nT = 1/2 m l^2 θ'^2\nreaction rod = release l\n");
   const auto all = reactions(m.equations);
   REQUIRE(all.size() == 1);
   CHECK_FALSE(all[0].value);
@@ -238,18 +245,21 @@ constraint y = x^2 / a name wire
   const double x = 0.3, slope = 2 * x / 0.5;
   CHECK(value_at(m, wire.value, {x, x * x / 0.5}, {0, 0}) == doctest::Approx(9.81 / std::sqrt(1 + slope * slope)));
   REQUIRE(wire.arrows.size() == 1);
-  CHECK(value_at(m, wire.arrows[0].force[0], {x, x * x / 0.5}, {0, 0}) == doctest::Approx(-9.81 * slope / (1 + slope * slope)));
+  CHECK(value_at(m, wire.arrows[0].force[0], {x, x * x / 0.5}, {0, 0}) ==
+        doctest::Approx(-9.81 * slope / (1 + slope * slope)));
 }
 
 TEST_CASE("a floor pushes; a polar length pulls; a knife edge holds sideways") {
-  const ModelText floor("system s\nparam m = 1 kg, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\n"
-                        "gravity (0, -g)\nconstraint y = 0 name floor\n");
+  const ModelText floor(
+      "system s\nparam m = 1 kg, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\n"
+      "gravity (0, -g)\nconstraint y = 0 name floor\n");
   const Reaction push = only_reaction(floor);
   CHECK(push.kind == Reaction::Kind::Contact);
   CHECK(value_at(floor, push.value, {1, 0}, {0, 0}) == doctest::Approx(9.81));
 
-  const ModelText polar("system s\nparam m = 1 kg, l = 2 m\ncoord r : length, θ : angle\n"
-                        "point P mass m at r (cos θ, sin θ)\nconstraint r = l name string\n");
+  const ModelText polar(
+      "system s\nparam m = 1 kg, l = 2 m\ncoord r : length, θ : angle\n"
+      "point P mass m at r (cos θ, sin θ)\nconstraint r = l name string\n");
   const Reaction pull = only_reaction(polar);
   CHECK(pull.kind == Reaction::Kind::Tension);
   CHECK(value_at(polar, pull.value, {2, 0.4}, {0, 3}) == doctest::Approx(18));
@@ -265,7 +275,7 @@ constraint x' sin ψ = y' cos ψ name edge
   CHECK(edge.dimension.same_as(dimensions::force()));
   CHECK(edge.kind == Reaction::Kind::Contact);
   CHECK(equal(edge.value, knife.equations.multipliers[0]));
-  CHECK(value_at(knife, edge.value, {0, 0, 0}, {0, 0, 0}) == doctest::Approx(4));   // against F: along −(left − right)
+  CHECK(value_at(knife, edge.value, {0, 0, 0}, {0, 0, 0}) == doctest::Approx(4));  // against F: along −(left − right)
 }
 
 TEST_CASE("a coupler between two cranks is a rod") {
@@ -282,12 +292,15 @@ constraint (A.x - B.x)^2 + (A.y - B.y)^2 = c^2 name coupler
 }
 
 TEST_CASE("relations that are no rods") {
-  const ModelText m("system s\nparam m = 1 kg, l = 1 m\ncoord x, y : length\npoint P mass m at (x, y)\n"
-                    "constraint x^2 + 2 y^2 = l^2 name track\n");
+  const ModelText m(
+      "system s\nparam m = 1 kg, l = 1 m\ncoord x, y : length\npoint P mass m at (x, y)\n"
+      "constraint x^2 + 2 y^2 = l^2 name track\n");
   CHECK(only_reaction(m).kind == Reaction::Kind::Contact);
-  const ModelText given("system s\nparam m = 1 kg, l = 1 m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\n"
-                        "constraint x^2 + y^2 = l^2 name rod\n");
+  const ModelText given(
+      "system s\nparam m = 1 kg, l = 1 m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\n"
+      "constraint x^2 + y^2 = l^2 name rod\n");
   const Reaction r = only_reaction(given);
   CHECK(r.kind == Reaction::Kind::Generalized);
-  CHECK(equal(square(r.value), Rational(4) * square(given.equations.multipliers[0]) * (square(given.q(0)) + square(given.q(1)))));
+  CHECK(equal(square(r.value),
+              Rational(4) * square(given.equations.multipliers[0]) * (square(given.q(0)) + square(given.q(1)))));
 }

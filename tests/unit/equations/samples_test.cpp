@@ -11,7 +11,9 @@
 using namespace maupertuis;
 
 TEST_CASE("samples of a manifold satisfy the constraints, and lie on all sides of the start") {
-  const ModelText m("param m = 1 kg, l = 2 m\ncoord x, y, z : length\npoint P mass m at (x, y, z)\nconstraint x^2 + y^2 + z^2 = l^2\n");
+  const ModelText m(
+      "param m = 1 kg, l = 2 m\ncoord x, y, z : length\npoint P mass m at (x, y, z)\nconstraint x^2 + y^2 + z^2 = "
+      "l^2\n");
   const ConstraintManifold manifold(m.equations, {});
   const double place = 2 / std::sqrt(3.0);
   const MotionState start{0, {place, place, place}, {0, 0, 0}};
@@ -37,14 +39,16 @@ TEST_CASE("samples of a manifold satisfy the constraints, and lie on all sides o
 }
 
 TEST_CASE("a function that jumps at a switch with parameters in it is found out, one that goes on is not") {
-  const ModelText m("param m = 1 kg, a = 3 m, k = 2 N/m, E = 5 J\ncoord x : length\nT = 1/2 m x'^2\nV = k max(x - a, 0 m)^2\n");
+  const ModelText m(
+      "param m = 1 kg, a = 3 m, k = 2 N/m, E = 5 J\ncoord x : length\nT = 1/2 m x'^2\nV = k max(x - a, 0 m)^2\n");
   const Expr x = m.q(0), distance = x - m.p("a");
   const AcrossSwitches wall = across_switches(*m.system, m.p("E") * apply(Kind::Step, distance), m.equations.order);
   CHECK(wall.switches == 1);
   REQUIRE(wall.jump);
   CHECK(std::abs(wall.jump->jump) == doctest::Approx(5));
   CHECK(wall.jump->at.at(x) == doctest::Approx(3).epsilon(1e-6));
-  const AcrossSwitches spring = across_switches(*m.system, m.p("E") * distance * apply(Kind::Step, distance), m.equations.order);
+  const AcrossSwitches spring =
+      across_switches(*m.system, m.p("E") * distance * apply(Kind::Step, distance), m.equations.order);
   CHECK(spring.switches == 1);
   CHECK(spring.points > 0);
   CHECK_FALSE(spring.jump);

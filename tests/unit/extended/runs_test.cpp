@@ -15,8 +15,10 @@ std::string text_of_model(const std::string& name) {
   return out.str();
 }
 
-const std::string two_links = "system chain\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ1, θ2 : angle\npoint A mass m at l (sin θ1, -cos θ1)\n"
-                              "point B mass m at A + l (sin θ2, -cos θ2)\ngravity (0, -g)\nstart θ1 = 2.0 rad, θ2 = 2.5 rad\nrun 2 s\n";
+const std::string two_links =
+    "system chain\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ1, θ2 : angle\npoint A mass m at l (sin θ1, -cos "
+    "θ1)\n"
+    "point B mass m at A + l (sin θ2, -cos θ2)\ngravity (0, -g)\nstart θ1 = 2.0 rad, θ2 = 2.5 rad\nrun 2 s\n";
 
 std::string code_of(const std::string& model, const ExtendedSimulationOptions& options) {
   const ModelText m(model);
@@ -67,8 +69,9 @@ TEST_CASE("quad and 100 digits agree on every digit that quad claims, and the mo
 }
 
 TEST_CASE("the gallery: what double computes, to its accuracy") {
-  for (const char* const name : {"pendulum", "double_pendulum", "elastic_pendulum", "kepler", "cart_pendulum", "bead_on_hoop",
-                                 "bead_on_wire", "cartesian_pendulum", "four_bar", "knife_edge", "rolling_disk", "satellite"}) {
+  for (const char* const name :
+       {"pendulum", "double_pendulum", "elastic_pendulum", "kepler", "cart_pendulum", "bead_on_hoop", "bead_on_wire",
+        "cartesian_pendulum", "four_bar", "knife_edge", "rolling_disk", "satellite"}) {
     CAPTURE(name);
     const ModelText m(text_of_model(name));
     Diagnostics diagnostics;

@@ -19,15 +19,17 @@ TEST_CASE("the zeros of |x| as a force, located to 100 digits") {
 }
 
 TEST_CASE("dry friction: the motion stops where both sides push back, and says so") {
-  const ModelText m("system s\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nforce x = -0.3 sign(x')\nstart x' = 1\nrun 7\n");
+  const ModelText m(
+      "system s\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nforce x = -0.3 sign(x')\nstart x' = 1\nrun 7\n");
   const ExtendedResult r = run(m, {});
   CHECK(r.ending == Ending::Sliding);
   CHECK(r.reached == doctest::Approx(1 / 0.3).epsilon(1e-14));
 }
 
 TEST_CASE("run until: the time of a throw, to 100 digits") {
-  const ModelText m("system throw\nparam m = 1 kg, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\ngravity (0, -g)\n"
-                    "start y = 2 m, x' = 1 m/s, y' = 3 m/s\nrun until y = 0 within 10 s\n");
+  const ModelText m(
+      "system throw\nparam m = 1 kg, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\ngravity (0, -g)\n"
+      "start y = 2 m, x' = 1 m/s, y' = 3 m/s\nrun until y = 0 within 10 s\n");
   const ExtendedResult r = run(m, digits100());
   CHECK(r.ending == Ending::UntilReached);
   const Decimal g("9.81"), fall = (3 + sqrt(9 + 4 * g)) / g;
@@ -37,7 +39,9 @@ TEST_CASE("run until: the time of a throw, to 100 digits") {
 }
 
 TEST_CASE("run until: not reached") {
-  const ModelText m("system throw\nparam m = 1 kg\ncoord x : length\npoint P mass m at (x, 0 [m])\nstart x' = 1 m/s\nrun until x = 5 m within 2 s\n");
+  const ModelText m(
+      "system throw\nparam m = 1 kg\ncoord x : length\npoint P mass m at (x, 0 [m])\nstart x' = 1 m/s\nrun until x = 5 "
+      "m within 2 s\n");
   const ExtendedResult r = run(m, {});
   CHECK(r.ending == Ending::UntilNotReached);
   check_digits(r.final.q[0], 2, 32);

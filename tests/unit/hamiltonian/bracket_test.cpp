@@ -47,19 +47,22 @@ TEST_CASE("angular momenta close under brackets, and commute with H, as the Lapl
 TEST_CASE("Jacobi's identity and the product rule") {
   const PhaseSpaceOf p("dimensionless\ncoord x, y : number\nL = 1/2 x'^2 + 1/2 (1 + x^2) y'^2 + x' y' sin y\n");
   const Expr a = p.q(0) * p.mom(1), b = pow(p.mom(0), 2) + sin(p.q(1)), c = p.q(0) * p.q(1) * p.mom(0);
-  CHECK(p.equal(bracket(p, a, bracket(p, b, c)) + bracket(p, b, bracket(p, c, a)) + bracket(p, c, bracket(p, a, b)), p.number(0)));
+  CHECK(p.equal(bracket(p, a, bracket(p, b, c)) + bracket(p, b, bracket(p, c, a)) + bracket(p, c, bracket(p, a, b)),
+                p.number(0)));
   CHECK(p.equal(bracket(p, a * b, c), a * bracket(p, b, c) + b * bracket(p, a, c)));
 }
 
 TEST_CASE("{A, H} + ∂A/∂t is dA/dt along Lagrange's equations") {
-  const PhaseSpaceOf p("param m = 1 kg, l = 2 m, g = 9.81 m/s^2, w = 3 rad/s\ncoord θ : angle, s : length\n"
-                       "point P mass m at (s + l sin θ, -l cos θ + 0.1 [m] cos(w t))\npoint Q mass 2 m at (s, 0)\ngravity (0, -g)\n");
+  const PhaseSpaceOf p(
+      "param m = 1 kg, l = 2 m, g = 9.81 m/s^2, w = 3 rad/s\ncoord θ : angle, s : length\n"
+      "point P mass m at (s + l sin θ, -l cos θ + 0.1 [m] cos(w t))\npoint Q mass 2 m at (s, 0)\ngravity (0, -g)\n");
   const Expr a = p.mom(0) * sin(p.q(1) / p.p("l")) + p.t() * p.mom(1) * p.p("l");
   const Expr rate = bracket(p, a, p.h.value) + differentiate(a, p.t());
   ExprMap momenta;
   for (std::size_t i = 0; i < 2; ++i) momenta.emplace(p.mom(i), p.h.momentum_values[i]);
   const auto motion = accelerations(p.equations);
   REQUIRE(motion);
-  const Expr along = substitute(total_time_derivative(substitute(a, momenta)), {{p.a(0), (*motion)[0]}, {p.a(1), (*motion)[1]}});
+  const Expr along =
+      substitute(total_time_derivative(substitute(a, momenta)), {{p.a(0), (*motion)[0]}, {p.a(1), (*motion)[1]}});
   CHECK(p.equal(along, substitute(rate, momenta)));
 }

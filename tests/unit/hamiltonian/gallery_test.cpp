@@ -18,12 +18,14 @@ std::string text_of(const std::filesystem::path& path) {
   return text.str();
 }
 
-/// Largest difference of the two motions. The heavy top turns 400 rad in two seconds as a quaternion: against a run in 113 bits
-/// Lagrange's equations are off by 2.0e-11 of it, the canonical ones by 2.4e-12.
+/// Largest difference of the two motions. The heavy top turns 400 rad in two seconds as a quaternion: against a run in
+/// 113 bits Lagrange's equations are off by 2.0e-11 of it, the canonical ones by 2.4e-12.
 double allowed(const std::string& name) { return name == "heavy_top" ? 1e-10 : 1e-11; }
 
-/// Motions that part from each other exponentially: their runs are compared over a time in which an error of rounding stays small.
-const std::set<std::string> chaotic = {"double_pendulum", "chain", "elastic_pendulum", "cart_pendulum", "rattleback", "tumbling_satellite"};
+/// Motions that part from each other exponentially: their runs are compared over a time in which an error of rounding
+/// stays small.
+const std::set<std::string> chaotic = {"double_pendulum", "chain",      "elastic_pendulum",
+                                       "cart_pendulum",   "rattleback", "tumbling_satellite"};
 
 }  // namespace
 
@@ -35,14 +37,16 @@ TEST_CASE("the gallery in phase space") {
     CAPTURE(name);
     const PhaseSpaceOf p(text_of(entry.path()));
     CHECK_MESSAGE(p.certified(), name);
-    if (const auto r = routhian(p.equations, p.h); r && r->value) CHECK_MESSAGE(certify(*r, p.h, p.equations).passed(), name);
+    if (const auto r = routhian(p.equations, p.h); r && r->value)
+      CHECK_MESSAGE(certify(*r, p.h, p.equations).passed(), name);
     if (p.model.experiment.path) continue;  // between two ends, and no motion from a start
     SimulationOptions options;
     options.backend = Backend::Interpreter;
     options.method = StepMethod::Taylor;
     const double longest = chaotic.count(name) ? 1 : 3;
     const Expr duration = p.model.experiment.duration ? p.model.experiment.duration : p.number(100);
-    if (evaluate(in_terms_of_motion(*p.system, {&duration, 1}).front(), parameter_bindings(*p.system)) > longest) options.duration = longest;
+    if (evaluate(in_terms_of_motion(*p.system, {&duration, 1}).front(), parameter_bindings(*p.system)) > longest)
+      options.duration = longest;
     Diagnostics diagnostics;
     const auto run = simulate(p.model, p.equations, options, diagnostics);
     REQUIRE_MESSAGE(run, name);
@@ -54,10 +58,11 @@ TEST_CASE("the gallery in phase space") {
     }
     ++compared;
     CHECK_MESSAGE(motion->ending.empty(), name << ": " << motion->ending);
-    CHECK_MESSAGE(motion->difference < allowed(name), name << ": " << motion->difference << " in " << motion->difference_name);
+    CHECK_MESSAGE(motion->difference < allowed(name),
+                  name << ": " << motion->difference << " in " << motion->difference_name);
   }
   CHECK(compared >= 20);
-  CHECK(singular >= 2);   // quaternions
+  CHECK(singular >= 2);  // quaternions
 }
 
 TEST_CASE("a multiplier that is zero but for rounding does not hold up a motion: three cranks from many angles") {
@@ -65,7 +70,9 @@ TEST_CASE("a multiplier that is zero but for rounding does not hold up a motion:
   for (int degrees = 20; degrees <= 80; degrees += 3) {
     CAPTURE(degrees);
     std::string changed = text.substr(0, text.find("start "));
-    changed += fmt::format("start θ1 = {0} deg, θ2 = {0} deg, θ3 = {0} deg, x = l sin({0} pi/180), y = -l cos({0} pi/180)\nrun 3 s\n", degrees);
+    changed += fmt::format(
+        "start θ1 = {0} deg, θ2 = {0} deg, θ3 = {0} deg, x = l sin({0} pi/180), y = -l cos({0} pi/180)\nrun 3 s\n",
+        degrees);
     const PhaseSpaceOf p(changed);
     SimulationOptions options;
     options.backend = Backend::Interpreter;
@@ -80,8 +87,10 @@ TEST_CASE("a multiplier that is zero but for rounding does not hold up a motion:
 }
 
 TEST_CASE("a multiplier decides how long a step of a motion may be that is a polynomial") {
-  const PhaseSpaceOf p("system lift\nparam m = 1 kg, a = 1 N, w = 1 rad/s, u = 1 m/s\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = 0 [J]\n"
-                       "force y = a sin(w t)\nconstraint y = u t name lift\nstart x = 0 m, y = 0 m, x' = 1 m/s, y' = u\nrun 390 s\n");
+  const PhaseSpaceOf p(
+      "system lift\nparam m = 1 kg, a = 1 N, w = 1 rad/s, u = 1 m/s\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = "
+      "0 [J]\n"
+      "force y = a sin(w t)\nconstraint y = u t name lift\nstart x = 0 m, y = 0 m, x' = 1 m/s, y' = u\nrun 390 s\n");
   SimulationOptions options;
   options.backend = Backend::Interpreter;
   Diagnostics diagnostics;

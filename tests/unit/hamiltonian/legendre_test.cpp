@@ -30,19 +30,22 @@ TEST_CASE("the top of Lagrange has the Hamiltonian of the textbooks, as complete
   // SICM 3.4, Goldstein 5.7
   const Expr expected = (A * C * top.p("mgl") * pow(s, 2) * c + A * pow(top.mom(2), 2) * pow(s, 2) / 2 +
                          C * pow(top.mom(2), 2) * pow(c, 2) / 2 + C * pow(top.mom(0), 2) * pow(s, 2) / 2 -
-                         C * top.mom(1) * top.mom(2) * c + C * pow(top.mom(1), 2) / 2) / (A * C * pow(s, 2));
+                         C * top.mom(1) * top.mom(2) * c + C * pow(top.mom(1), 2) / 2) /
+                        (A * C * pow(s, 2));
   CHECK(top.equal(top.h.value, expected));
   CHECK(top.plain() == "p_θ^2/(2 A) + (p_φ - p_ψ cos θ)^2/(2 A sin^2 θ) + p_ψ^2/(2 C) + mgl cos θ");
   CHECK(top.certified());
 }
 
 TEST_CASE("a free body in Euler angles: the squares are those of the angular momenta about its own axes") {
-  const PhaseSpaceOf p("param I1 = 1 kg m^2, I2 = 2 kg m^2, I3 = 2.5 kg m^2\ncoord φ, θ, ψ : angle\n"
-                       "body sat inertia diag(I1, I2, I3) rotation euler zxz (φ, θ, ψ)\n");
+  const PhaseSpaceOf p(
+      "param I1 = 1 kg m^2, I2 = 2 kg m^2, I3 = 2.5 kg m^2\ncoord φ, θ, ψ : angle\n"
+      "body sat inertia diag(I1, I2, I3) rotation euler zxz (φ, θ, ψ)\n");
   const Expr c = p.mom(0) - p.mom(2) * cos(p.q(1)), s = sin(p.q(1)), a = p.q(2);
   // SICM 3.3.3 in other letters; Whittaker, Analytical Dynamics, §69
   const Expr expected = pow(c * sin(a) + p.mom(1) * s * cos(a), 2) / (2 * p.p("I1") * pow(s, 2)) +
-                        pow(c * cos(a) - p.mom(1) * s * sin(a), 2) / (2 * p.p("I2") * pow(s, 2)) + pow(p.mom(2), 2) / (2 * p.p("I3"));
+                        pow(c * cos(a) - p.mom(1) * s * sin(a), 2) / (2 * p.p("I2") * pow(s, 2)) +
+                        pow(p.mom(2), 2) / (2 * p.p("I3"));
   CHECK(p.equal(p.h.value, expected));
   CHECK(p.plain().find("2 ψ") == std::string::npos);
   CHECK(p.plain().size() < 180);
@@ -52,7 +55,8 @@ TEST_CASE("a free body in Euler angles: the squares are those of the angular mom
 TEST_CASE("the double pendulum by Cramer's rule") {
   const PhaseSpaceOf p(kDoublePendulum);
   const Expr m1 = p.p("m1"), m2 = p.p("m2"), l1 = p.p("l1"), l2 = p.p("l2"), g = p.p("g"), c = cos(p.q(0) - p.q(1));
-  const Expr top = m2 * pow(l2, 2) * pow(p.mom(0), 2) + (m1 + m2) * pow(l1, 2) * pow(p.mom(1), 2) - 2 * m2 * l1 * l2 * p.mom(0) * p.mom(1) * c;
+  const Expr top = m2 * pow(l2, 2) * pow(p.mom(0), 2) + (m1 + m2) * pow(l1, 2) * pow(p.mom(1), 2) -
+                   2 * m2 * l1 * l2 * p.mom(0) * p.mom(1) * c;
   const Expr expected = top / (2 * m2 * pow(l1 * l2, 2) * (m1 + m2 * pow(sin(p.q(0) - p.q(1)), 2))) -
                         (m1 + m2) * g * l1 * cos(p.q(0)) - m2 * g * l2 * cos(p.q(1));
   CHECK(p.h.legendre.blocks.size() == 1);
@@ -62,7 +66,8 @@ TEST_CASE("the double pendulum by Cramer's rule") {
 }
 
 TEST_CASE("groups that M does not couple are transformed apart") {
-  const PhaseSpaceOf p("param m = 1 kg, k = 1 J\ncoord r : length, φ : angle\nT = 1/2 m (r'^2 + r^2 φ'^2)\nV = k log(r / 1 [m])\n");
+  const PhaseSpaceOf p(
+      "param m = 1 kg, k = 1 J\ncoord r : length, φ : angle\nT = 1/2 m (r'^2 + r^2 φ'^2)\nV = k log(r / 1 [m])\n");
   CHECK(p.h.legendre.blocks.size() == 2);
   CHECK(p.plain(p.h.velocities[1].right.value) == "p_φ/(m r^2)");
   CHECK(p.plain(p.h.forces[0].right.value).find("p_φ^2/(m r^3)") != std::string::npos);
@@ -71,7 +76,8 @@ TEST_CASE("groups that M does not couple are transformed apart") {
 }
 
 TEST_CASE("explicit time: H of the Caldirola-Kanai oscillator") {
-  const PhaseSpaceOf p("dimensionless\nparam m = 1, γ = 0.3, w = 2\ncoord x : number\nL = exp(γ t) (1/2 m x'^2 - 1/2 m w^2 x^2)\n");
+  const PhaseSpaceOf p(
+      "dimensionless\nparam m = 1, γ = 0.3, w = 2\ncoord x : number\nL = exp(γ t) (1/2 m x'^2 - 1/2 m w^2 x^2)\n");
   const Expr e = apply(Kind::Exp, p.p("γ") * p.t());
   CHECK(p.equal(p.h.value, pow(p.mom(0), 2) / (2 * p.p("m") * e) + e * p.p("m") * pow(p.p("w") * p.q(0), 2) / 2));
   CHECK(p.certified());
@@ -88,30 +94,35 @@ gravity (0, -g)
   // SICM 3.1 (emmy ch3_test p. 221)
   const Expr expected = (-pow(a * l * m * w * sin(phase) * cos(p.q(0)), 2) / 2 + a * g * pow(l * m, 2) * cos(phase) +
                          a * l * m * w * p.mom(0) * sin(phase) * sin(p.q(0)) - g * pow(l, 3) * pow(m, 2) * cos(p.q(0)) +
-                         pow(p.mom(0), 2) / 2) / (pow(l, 2) * m);
+                         pow(p.mom(0), 2) / 2) /
+                        (pow(l, 2) * m);
   CHECK(p.equal(p.h.value, expected));
   CHECK(p.certified());
 }
 
 TEST_CASE("a uniformly rotating frame: the centrifugal part of T cancels against the shift") {
   const PhaseSpaceOf p("param m = 1 kg, Ω = 2 rad/s\ncoord x, y : length\nT = 1/2 m ((x' - Ω y)^2 + (y' + Ω x)^2)\n");
-  CHECK(p.equal(p.h.value, (pow(p.mom(0), 2) + pow(p.mom(1), 2)) / (2 * p.p("m")) + p.p("Ω") * (p.q(1) * p.mom(0) - p.q(0) * p.mom(1))));
+  CHECK(p.equal(p.h.value, (pow(p.mom(0), 2) + pow(p.mom(1), 2)) / (2 * p.p("m")) +
+                               p.p("Ω") * (p.q(1) * p.mom(0) - p.q(0) * p.mom(1))));
   CHECK(p.plain().find("Ω^2") == std::string::npos);
   CHECK(p.certified());
 }
 
 TEST_CASE("a relativistic particle is solved through its root") {
-  const PhaseSpaceOf p("dimensionless\nparam m = 2, c = 3, k = 0.1\ncoord x, y : number\n"
-                       "L = -m c^2 sqrt(1 - (x'^2 + y'^2)/c^2) - 1/2 k x^2\nstart x' = 0.5\n");
+  const PhaseSpaceOf p(
+      "dimensionless\nparam m = 2, c = 3, k = 0.1\ncoord x, y : number\n"
+      "L = -m c^2 sqrt(1 - (x'^2 + y'^2)/c^2) - 1/2 k x^2\nstart x' = 0.5\n");
   CHECK(p.h.legendre.blocks[0].kind == LegendreKind::Root);
-  Bindings at{{p.p("m"), 2.0}, {p.p("c"), 3.0}, {p.p("k"), 0.1}, {p.q(0), 0.4}, {p.q(1), -1.0}, {p.mom(0), 4.0}, {p.mom(1), -3.0}};
+  Bindings at{{p.p("m"), 2.0}, {p.p("c"), 3.0}, {p.p("k"), 0.1}, {p.q(0), 0.4},
+              {p.q(1), -1.0},  {p.mom(0), 4.0}, {p.mom(1), -3.0}};
   CHECK(evaluate(p.h.value, at) == doctest::Approx(std::sqrt(4.0 * 81 + 25.0 * 9) + 0.5 * 0.1 * 0.16).epsilon(1e-14));
   CHECK(p.certified());
 }
 
 TEST_CASE("a relativistic charge in a magnetic field beside a heavy body that is not") {
-  const PhaseSpaceOf p("dimensionless\nparam m = 2, q = 0.7, B = 1.5, M = 5\ncoord x, y, z : number\n"
-                       "L = -m sqrt(1 - x'^2 - y'^2) + 1/2 q B (x y' - y x') + 1/2 M z'^2 - x z\n");
+  const PhaseSpaceOf p(
+      "dimensionless\nparam m = 2, q = 0.7, B = 1.5, M = 5\ncoord x, y, z : number\n"
+      "L = -m sqrt(1 - x'^2 - y'^2) + 1/2 q B (x y' - y x') + 1/2 M z'^2 - x z\n");
   CHECK(p.h.legendre.blocks.size() == 2);
   CHECK(p.certified());
 }
@@ -132,8 +143,10 @@ gravity (0, -g)
 }
 
 TEST_CASE("dissipation and forces enter p'") {
-  const PhaseSpaceOf p("param m = 1 kg, k = 3 N/m, c = 2 N s/m, F = 1 N\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\nD = 1/2 c x'^2\n"
-                       "force x = F cos(2 [1/s] t)\n");
+  const PhaseSpaceOf p(
+      "param m = 1 kg, k = 3 N/m, c = 2 N s/m, F = 1 N\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\nD = 1/2 c "
+      "x'^2\n"
+      "force x = F cos(2 [1/s] t)\n");
   CHECK(p.plain(p.h.forces[0].right.value).find("c p_x/m") != std::string::npos);
   CHECK(p.certified());
 }

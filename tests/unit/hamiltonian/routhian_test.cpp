@@ -34,12 +34,15 @@ V = mgl cos θ
 }
 
 TEST_CASE("a coordinate that is not cyclic may be replaced: L − Σ p q' (SICM's example, opposite sign)") {
-  const RouthianOf p("dimensionless\nparam mx = 1.1, kx = 2, my = 0.7, ky = 1.3\ncoord x, y : number\n"
-                     "T = 1/2 (mx x'^2 + my y'^2)\nV = 1/2 (kx x^2 + ky y^2) + x y^2\n", {1});
+  const RouthianOf p(
+      "dimensionless\nparam mx = 1.1, kx = 2, my = 0.7, ky = 1.3\ncoord x, y : number\n"
+      "T = 1/2 (mx x'^2 + my y'^2)\nV = 1/2 (kx x^2 + ky y^2) + x y^2\n",
+      {1});
   REQUIRE(p.r);
   const Expr x = p.q(0), y = p.q(1), my = p.p("my");
-  const Expr of_source = (p.p("kx") * my * pow(x, 2) / 2 + p.p("ky") * my * pow(y, 2) / 2 - p.p("mx") * my * pow(p.v(0), 2) / 2 +
-                          my * x * pow(y, 2) + pow(p.mom(1), 2) / 2) / my;
+  const Expr of_source = (p.p("kx") * my * pow(x, 2) / 2 + p.p("ky") * my * pow(y, 2) / 2 -
+                          p.p("mx") * my * pow(p.v(0), 2) / 2 + my * x * pow(y, 2) + pow(p.mom(1), 2) / 2) /
+                         my;
   CHECK(p.equal(p.r->value, -of_source));
   CHECK_FALSE(p.r->conserved);
   CHECK(p.r->equations.empty());

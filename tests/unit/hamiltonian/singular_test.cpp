@@ -7,7 +7,8 @@ namespace {
 
 std::vector<Expr> primary_constraints(const Hamiltonian& h) {
   std::vector<Expr> all;
-  for (const LegendreBlock& block : h.legendre.blocks) all.insert(all.end(), block.primary_constraints.begin(), block.primary_constraints.end());
+  for (const LegendreBlock& block : h.legendre.blocks)
+    all.insert(all.end(), block.primary_constraints.begin(), block.primary_constraints.end());
   return all;
 }
 
@@ -40,7 +41,8 @@ TEST_CASE("only a sum of velocities has inertia: the difference of the momenta i
 }
 
 TEST_CASE("a quaternion: q·p = 0") {
-  const PhaseSpaceOf p("param I1 = 1 kg m^2, I2 = 2 kg m^2, I3 = 3 kg m^2\nbody sat inertia diag(I1, I2, I3) rotation quaternion\n");
+  const PhaseSpaceOf p(
+      "param I1 = 1 kg m^2, I2 = 2 kg m^2, I3 = 3 kg m^2\nbody sat inertia diag(I1, I2, I3) rotation quaternion\n");
   const auto constraints = primary_constraints(p.h);
   REQUIRE(constraints.size() == 1);
   Expr product = p.number(0);

@@ -299,10 +299,12 @@ TEST_CASE("no integral across a jump: what one side has is told apart") {
   const Found pushed("coord x : number\nT = 1/2 x'^2\nforce x = -step(x)\n");
   for (const ConservedFunction& i : pushed.result.integrals)
     for (const double x : {1e-12, -1e-12}) {
-      const auto at = [&](double q) { return evaluate(i.value, {{pushed.m.q(0), q}, {pushed.m.v(0), 0.7}, {pushed.m.system->context->time(), 2}}); };
+      const auto at = [&](double q) {
+        return evaluate(i.value, {{pushed.m.q(0), q}, {pushed.m.v(0), 0.7}, {pushed.m.system->context->time(), 2}});
+      };
       CHECK(std::abs(at(x) - at(-x)) < 1e-11);
     }
-  CHECK(pushed.result.integrals.size() == 1);  // 1/2 x'^2 + x step(x)
+  CHECK(pushed.result.integrals.size() == 1);        // 1/2 x'^2 + x step(x)
   REQUIRE_FALSE(pushed.result.on_one_side.empty());  // x' + t step(x)
   CHECK(pushed.result.on_one_side[0].place == "x = 0");
 

@@ -23,7 +23,9 @@ struct Found {
 }  // namespace
 
 TEST_CASE("the three components of J of a charge in the field of a monopole") {
-  const Found f("dimensionless\nparam m = 1.3, q = 0.7\ncoord r, θ, φ : number\nT = 1/2 m (r'^2 + r^2 θ'^2 + r^2 sin(θ)^2 φ'^2)\nU = q cos(θ) φ'\n");
+  const Found f(
+      "dimensionless\nparam m = 1.3, q = 0.7\ncoord r, θ, φ : number\nT = 1/2 m (r'^2 + r^2 θ'^2 + r^2 sin(θ)^2 "
+      "φ'^2)\nU = q cos(θ) φ'\n");
   const Expr r = f.m.q(0), sθ = sin(f.m.q(1)), cθ = cos(f.m.q(1)), sφ = sin(f.m.q(2)), cφ = cos(f.m.q(2));
   const Expr m = f.m.p("m"), q = f.m.p("q"), vθ = f.m.v(1), vφ = f.m.v(2);
   CHECK(f.has(m * r * r * sθ * sθ * vφ - q * cθ));
@@ -44,7 +46,8 @@ TEST_CASE("the integral of the swinging Atwood machine with the mass ratio 3") {
   const Found three(machine("3 m"));
   CHECK(three.has(integral(three.m)));
   bool listed = false;
-  for (const ConservedFunction& i : three.invariants->integrals) listed |= i.kind == IntegralKind::Hidden && i.velocity_degree == 2;
+  for (const ConservedFunction& i : three.invariants->integrals)
+    listed |= i.kind == IntegralKind::Hidden && i.velocity_degree == 2;
   CHECK(listed);
   const Found two(machine("2 m"));
   CHECK_FALSE(two.has(integral(two.m)));

@@ -20,9 +20,8 @@ Invariants found_in(const ModelText& m) {
 
 bool names_hidden_ones(Expr value, const Invariants& found) {
   const auto nodes = topological_order({&value, 1});
-  return std::any_of(found.symbols.begin() + static_cast<std::ptrdiff_t>(found.shown), found.symbols.end(), [&](const Expr& s) {
-    return std::find(nodes.begin(), nodes.end(), s) != nodes.end();
-  });
+  return std::any_of(found.symbols.begin() + static_cast<std::ptrdiff_t>(found.shown), found.symbols.end(),
+                     [&](const Expr& s) { return std::find(nodes.begin(), nodes.end(), s) != nodes.end(); });
 }
 
 /// Each bracket, computed anew from what the symbols stand for, has the value that is told.
@@ -38,7 +37,9 @@ void check_brackets(const ModelText& m, const Invariants& found) {
     Expr sum = m.system->context->number(0);
     for (const Coordinate& c : m.system->coordinates) {
       const auto slope = [&](std::size_t i, Expr s) { return differentiate(found.integrals[i].value, s); };
-      sum = sum + (slope(b.first, c.q) * slope(b.second, c.velocity) - slope(b.first, c.velocity) * slope(b.second, c.q)) / mass;
+      sum = sum +
+            (slope(b.first, c.q) * slope(b.second, c.velocity) - slope(b.first, c.velocity) * slope(b.second, c.q)) /
+                mass;
     }
     CHECK(zero_test(sum - substitute(b.value.value, values)).verdict == Verdict::Zero);
   }
@@ -49,8 +50,9 @@ void check_brackets(const ModelText& m, const Invariants& found) {
 }  // namespace
 
 TEST_CASE("a falling particle: charges without a name that are functions of others are hidden") {
-  const ModelText m("system fall\nparam m = 1 kg, g = 9.81 m/s^2\ncoord x, y, z : length\n"
-                    "point P mass m at (x, y, z)\ngravity (0, 0, -g)\n");
+  const ModelText m(
+      "system fall\nparam m = 1 kg, g = 9.81 m/s^2\ncoord x, y, z : length\n"
+      "point P mass m at (x, y, z)\ngravity (0, 0, -g)\n");
   const Invariants found = found_in(m);
   CHECK(found.integrals.size() == 14);
   CHECK(found.shown == 10);
@@ -61,11 +63,12 @@ TEST_CASE("a falling particle: charges without a name that are functions of othe
 }
 
 TEST_CASE("an oscillator in the plane: what brackets of shown ones lead to is shown") {
-  const ModelText m("system oscillator\nparam m = 1 kg, k = 2 N/m\ncoord x, y : length\n"
-                    "point P mass m at (x, y)\nV = 1/2 k (x^2 + y^2)\n");
+  const ModelText m(
+      "system oscillator\nparam m = 1 kg, k = 2 N/m\ncoord x, y : length\n"
+      "point P mass m at (x, y)\nV = 1/2 k (x^2 + y^2)\n");
   const Invariants found = found_in(m);
   CHECK(found.integrals.size() == 10);
-  CHECK(found.shown == 8);   // energy, L, two Fradkin components, four of the phase
+  CHECK(found.shown == 8);  // energy, L, two Fradkin components, four of the phase
   for (std::size_t i = found.shown; i < found.integrals.size(); ++i) CHECK_FALSE(found.integrals[i].independent);
   check_brackets(m, found);
 }

@@ -70,11 +70,12 @@ TEST_CASE("random bordered systems are solved to rounding, whatever their units"
   }
 }
 
-TEST_CASE("a mass matrix that is singular alone is regular with its constraint: a point on a circle in polar coordinates") {
+TEST_CASE(
+    "a mass matrix that is singular alone is regular with its constraint: a point on a circle in polar coordinates") {
   const Problem p{2, 1, {0, 0, 0, 1}, {1, 0}};  // no inertia along r, and r is held
   std::vector<double> x{3, 2, -5};
   p.factored().solve(x);
-  CHECK(x[0] == 5);   // −A x = −5
+  CHECK(x[0] == 5);  // −A x = −5
   CHECK(x[1] == 2);
   CHECK(x[2] == -3);  // M x − Aᵀλ = 3
 }

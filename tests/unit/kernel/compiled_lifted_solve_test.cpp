@@ -4,11 +4,12 @@
 #include <limits>
 
 TEST_CASE("chains, trees and combs: unknowns and tangents as by the loops, M x = b with M in closed form") {
-  for (const auto& [parent, count] : {std::pair<Parents, int>{chain, 20}, {chain, 100}, {binary_tree, 63}, {comb, 50}}) {
+  for (const auto& [parent, count] :
+       {std::pair<Parents, int>{chain, 20}, {chain, 100}, {binary_tree, 63}, {comb, 50}}) {
     Rods rods(count, parent);
     Lifted loops(build_kernel(rods.source)), code(build_kernel(rods.source));
     code.solve.compile({.cache = false, .long_run = count != 100, .processor = {}});  // factors by code too, and not
-    CHECK_FALSE(code.solve.compile_report());  // no pivots yet
+    CHECK_FALSE(code.solve.compile_report());                                         // no pivots yet
     const auto n = static_cast<std::size_t>(count);
     for (unsigned seed = 1; seed <= 3; ++seed) {
       const Point p = random_point(n, seed);
@@ -39,7 +40,8 @@ TEST_CASE("chains, trees and combs: unknowns and tangents as by the loops, M x =
         }
         const Slot stored = code.packed.program.stored_end[2];
         double largest = 0;
-        for (Slot slot = 0; slot < stored; ++slot) largest = std::max(largest, std::abs(loops.solve.tangents(later)[slot]));
+        for (Slot slot = 0; slot < stored; ++slot)
+          largest = std::max(largest, std::abs(loops.solve.tangents(later)[slot]));
         for (Slot slot = 0; slot < stored; ++slot)
           CHECK(std::abs(code.solve.tangents(later)[slot] - loops.solve.tangents(later)[slot]) <= 1e-10 * largest);
       }
@@ -125,7 +127,8 @@ TEST_CASE("a workspace whose expansions are not compiled has compiled solutions:
   for (int k = 2; k <= 9; ++k) {
     double largest = 0;
     for (std::size_t i = 0; i < 30; ++i) largest = std::max(largest, std::abs(loops.coordinate(k)[i]));
-    for (std::size_t i = 0; i < 30; ++i) CHECK(std::abs(code.coordinate(k)[i] - loops.coordinate(k)[i]) <= 1e-10 * largest);
+    for (std::size_t i = 0; i < 30; ++i)
+      CHECK(std::abs(code.coordinate(k)[i] - loops.coordinate(k)[i]) <= 1e-10 * largest);
   }
 }
 

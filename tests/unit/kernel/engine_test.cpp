@@ -1,7 +1,7 @@
 #include "kernel/packed/engine.hpp"
 
-#include <boost/align/aligned_allocator.hpp>
 #include <doctest/doctest.h>
+#include <boost/align/aligned_allocator.hpp>
 
 #include <cmath>
 #include <limits>
@@ -50,7 +50,8 @@ TEST_CASE("engine: −M⁻¹ solves for the accelerations") {
     REQUIRE(packed::engine().negative_inverse(m.data(), n, inverse.data()));
     std::vector<Slot> residual;
     for (std::size_t i = 0; i < n; ++i) residual.push_back(static_cast<Slot>(39 - 2 * i));
-    CHECK(packed::engine().solve_by_inverse(inverse.data(), padded(n), row.data(), residual.data(), n, solution.data()));
+    CHECK(
+        packed::engine().solve_by_inverse(inverse.data(), padded(n), row.data(), residual.data(), n, solution.data()));
     for (std::size_t i = 0; i < n; ++i) {
       double left = row[residual[i]];
       for (std::size_t j = 0; j < n; ++j) left += m[i * n + j] * solution[j];
@@ -58,7 +59,8 @@ TEST_CASE("engine: −M⁻¹ solves for the accelerations") {
     }
     for (std::size_t i = n; i < padded(n); ++i) CHECK(solution[i] == 0);
     row[residual[n - 1]] = std::numeric_limits<double>::infinity();
-    CHECK_FALSE(packed::engine().solve_by_inverse(inverse.data(), padded(n), row.data(), residual.data(), n, solution.data()));
+    CHECK_FALSE(
+        packed::engine().solve_by_inverse(inverse.data(), padded(n), row.data(), residual.data(), n, solution.data()));
   }
 }
 
@@ -111,7 +113,8 @@ TEST_CASE("engine: stages by −M⁻¹ give accelerations and what the coefficie
     CAPTURE(n);
     CAPTURE(side_by_side);
     const std::vector<double> m = positive_matrix(n);
-    Doubles inverse(padded(n) * padded(n)), answers(n * stride), values = random_numbers(n * stride, 2), rows = random_numbers(8 * stride, 1);
+    Doubles inverse(padded(n) * padded(n)), answers(n * stride), values = random_numbers(n * stride, 2),
+                                                                 rows = random_numbers(8 * stride, 1);
     REQUIRE(packed::engine().negative_inverse(m.data(), n, inverse.data()));
     std::vector<Slot> residual;
     for (std::size_t i = 0; i < n; ++i) residual.push_back(static_cast<Slot>(side_by_side ? 50 + i : 71 - 2 * i));
@@ -122,23 +125,30 @@ TEST_CASE("engine: stages by −M⁻¹ give accelerations and what the coefficie
     const std::vector<packed::Order> orders = packed::orders_of(rows.data(), stride, 8);
     tables.orders = orders.data();
     const packed::TangentMatrix tangents{values.data(), stride, n, 16, {24, 28, 40}};
-    const std::vector<std::int8_t> own{-1, static_cast<std::int8_t>(turn % 4 < 2 ? 0 : -1), static_cast<std::int8_t>(n > 8 ? 1 : turn % 3 == 0 ? 0 : -1)};
+    const std::vector<std::int8_t> own{-1, static_cast<std::int8_t>(turn % 4 < 2 ? 0 : -1),
+                                       static_cast<std::int8_t>(n > 8           ? 1
+                                                                : turn % 3 == 0 ? 0
+                                                                                : -1)};
     for (std::size_t vector = 0; vector < own.size(); ++vector)
       for (std::size_t d = 0; own[vector] >= 0 && d < n; ++d)
         for (std::size_t lane = 0; lane < 8; ++lane)
           if (d != static_cast<std::size_t>(own[vector]) * 8 + lane) values[d * stride + 16 + 8 * vector + lane] = 0;
-    const packed::InverseSolution solution{inverse.data(), residual.data(), side_by_side, tangents, own.data(), answers.data()};
+    const packed::InverseSolution solution{inverse.data(), residual.data(), side_by_side,
+                                           tangents,       own.data(),      answers.data()};
     for (int stage = 1; stage <= 5; ++stage) {
       CAPTURE(stage);
       const Doubles before = rows;
       Doubles expected(padded(n));
-      packed::engine().solve_by_inverse(inverse.data(), padded(n), rows.data() + static_cast<std::size_t>(stage) * stride, residual.data(), n, expected.data());
+      packed::engine().solve_by_inverse(inverse.data(), padded(n),
+                                        rows.data() + static_cast<std::size_t>(stage) * stride, residual.data(), n,
+                                        expected.data());
       packed::engine().run_stages_by_inverse(tables, solution, stage, stage + 1, true);
       const auto change = [&](int order, std::size_t slot) {
         const std::size_t place = static_cast<std::size_t>(order) * stride + slot;
         return rows[place] - (slot < padded(n) ? 0 : before[place]);
       };
-      for (std::size_t i = 0; i < n; ++i) CHECK(change(stage + 2, i) == doctest::Approx(expected[i] / ((stage + 1) * (stage + 2))).epsilon(1e-13));
+      for (std::size_t i = 0; i < n; ++i)
+        CHECK(change(stage + 2, i) == doctest::Approx(expected[i] / ((stage + 1) * (stage + 2))).epsilon(1e-13));
       for (std::size_t slot = 16; slot < 40; ++slot) {
         const int lag = slot < 24 ? 0 : slot < 32 ? 1 : 2;
         double owed = 0;

@@ -72,28 +72,45 @@ std::vector<Case> cases() {
   const auto add = [&](std::string name, Kind kind, ComplexFunction f, double t0, long double radius = 0.35L) {
     list.push_back({std::move(name), [kind](Expr u) { return apply(kind, u); }, std::move(f), t0, radius});
   };
-  add("sin", Kind::Sin, [](Complex u) { return std::sin(u); }, 0.7, 3);
-  add("cos", Kind::Cos, [](Complex u) { return std::cos(u); }, 0.7, 3);
-  add("tan", Kind::Tan, [](Complex u) { return std::tan(u); }, 0.4);
-  add("asin", Kind::Asin, [](Complex u) { return std::asin(u); }, 0.3);
-  add("acos", Kind::Acos, [](Complex u) { return std::acos(u); }, 0.3);
-  add("atan", Kind::Atan, [](Complex u) { return std::atan(u); }, 0.6);
-  add("sinh", Kind::Sinh, [](Complex u) { return std::sinh(u); }, 0.7, 3);
-  add("cosh", Kind::Cosh, [](Complex u) { return std::cosh(u); }, 0.7, 3);
-  add("tanh", Kind::Tanh, [](Complex u) { return std::tanh(u); }, 0.5);
-  add("asinh", Kind::Asinh, [](Complex u) { return std::asinh(u); }, 0.5);
-  add("acosh", Kind::Acosh, [](Complex u) { return std::acosh(u); }, 1.5);
-  add("atanh", Kind::Atanh, [](Complex u) { return std::atanh(u); }, 0.3);
-  add("exp", Kind::Exp, [](Complex u) { return std::exp(u); }, 0.9, 3);
-  add("log", Kind::Log, [](Complex u) { return std::log(u); }, 1.1);
+  add(
+      "sin", Kind::Sin, [](Complex u) { return std::sin(u); }, 0.7, 3);
+  add(
+      "cos", Kind::Cos, [](Complex u) { return std::cos(u); }, 0.7, 3);
+  add(
+      "tan", Kind::Tan, [](Complex u) { return std::tan(u); }, 0.4);
+  add(
+      "asin", Kind::Asin, [](Complex u) { return std::asin(u); }, 0.3);
+  add(
+      "acos", Kind::Acos, [](Complex u) { return std::acos(u); }, 0.3);
+  add(
+      "atan", Kind::Atan, [](Complex u) { return std::atan(u); }, 0.6);
+  add(
+      "sinh", Kind::Sinh, [](Complex u) { return std::sinh(u); }, 0.7, 3);
+  add(
+      "cosh", Kind::Cosh, [](Complex u) { return std::cosh(u); }, 0.7, 3);
+  add(
+      "tanh", Kind::Tanh, [](Complex u) { return std::tanh(u); }, 0.5);
+  add(
+      "asinh", Kind::Asinh, [](Complex u) { return std::asinh(u); }, 0.5);
+  add(
+      "acosh", Kind::Acosh, [](Complex u) { return std::acosh(u); }, 1.5);
+  add(
+      "atanh", Kind::Atanh, [](Complex u) { return std::atanh(u); }, 0.3);
+  add(
+      "exp", Kind::Exp, [](Complex u) { return std::exp(u); }, 0.9, 3);
+  add(
+      "log", Kind::Log, [](Complex u) { return std::log(u); }, 1.1);
   add("erf", Kind::Erf, complex_erf, 0.5, 1);
   add("lambert_w", Kind::LambertW, complex_lambert_w, 0.6);
   list.push_back({"square", [](Expr u) { return power_of(u, 2, 1); }, [](Complex u) { return u * u; }, 0.9, 1});
-  list.push_back({"fifth power", [](Expr u) { return power_of(u, 5, 1); }, [](Complex u) { return u * u * u * u * u; }, 0.9, 1});
+  list.push_back(
+      {"fifth power", [](Expr u) { return power_of(u, 5, 1); }, [](Complex u) { return u * u * u * u * u; }, 0.9, 1});
   list.push_back({"reciprocal", [](Expr u) { return power_of(u, -1, 1); }, [](Complex u) { return 1.0L / u; }, 0.9});
-  list.push_back({"inverse cube", [](Expr u) { return power_of(u, -3, 1); }, [](Complex u) { return 1.0L / (u * u * u); }, 0.9});
+  list.push_back(
+      {"inverse cube", [](Expr u) { return power_of(u, -3, 1); }, [](Complex u) { return 1.0L / (u * u * u); }, 0.9});
   list.push_back({"sqrt", [](Expr u) { return power_of(u, 1, 2); }, [](Complex u) { return std::sqrt(u); }, 0.9});
-  list.push_back({"power -3/2", [](Expr u) { return power_of(u, -3, 2); }, [](Complex u) { return std::pow(u, -1.5L); }, 0.9});
+  list.push_back(
+      {"power -3/2", [](Expr u) { return power_of(u, -3, 2); }, [](Complex u) { return std::pow(u, -1.5L); }, 0.9});
   list.push_back({"power of itself", [](Expr u) { return u.context().power(u, u); },
                   [](Complex u) { return std::exp(u * std::log(u)); }, 0.9});
   list.push_back({"product", [](Expr u) { return sin(u) * apply(Kind::Exp, u) * u; },
@@ -102,7 +119,8 @@ std::vector<Case> cases() {
                   [](Complex u) { return std::sin(u) / (u + 2.0L); }, 0.6});
   list.push_back({"sum of products", [](Expr u) { return Rational(3) * u * sin(u) - u * cos(u) + Rational(1, 7); },
                   [](Complex u) { return 3.0L * u * std::sin(u) - u * std::cos(u) + 1.0L / 7; }, 0.6, 3});
-  list.push_back({"atan2", [](Expr u) {
+  list.push_back({"atan2",
+                  [](Expr u) {
                     const std::vector<Expr> arguments{u * u, u + Rational(1)};
                     return u.context().function(Kind::Atan2, arguments);
                   },
@@ -122,12 +140,15 @@ void check_series(const Case& c, const KernelWorkspace& work) {
 
 TEST_CASE("the cases are all functions of the table") {
   const auto list = cases();
-  std::apply([&](const auto&... row) {
-    const auto check = [&](std::string_view name) {
-      CHECK_MESSAGE(std::any_of(list.begin(), list.end(), [&](const Case& c) { return c.name == name; }), std::string(name));
-    };
-    (check(row.name), ...);
-  }, functions::rows);
+  std::apply(
+      [&](const auto&... row) {
+        const auto check = [&](std::string_view name) {
+          CHECK_MESSAGE(std::any_of(list.begin(), list.end(), [&](const Case& c) { return c.name == name; }),
+                        std::string(name));
+        };
+        (check(row.name), ...);
+      },
+      functions::rows);
 }
 
 TEST_CASE("jets of every function agree with Cauchy's integral, as functions of time") {

@@ -5,7 +5,9 @@
 
 namespace {
 
-bool is_scan(const packed::Pack& pack) { return pack.kind == packed::Pack::Scan || pack.kind == packed::Pack::ScanDown; }
+bool is_scan(const packed::Pack& pack) {
+  return pack.kind == packed::Pack::Scan || pack.kind == packed::Pack::ScanDown;
+}
 
 /// The vectors that running sums read begin where vectors do.
 void check_lanes(const packed::PackedProgram& p) {
@@ -20,7 +22,8 @@ void check_lanes(const packed::PackedProgram& p) {
 }
 
 std::size_t count_beginnings(const packed::PackedProgram& p) {
-  return static_cast<std::size_t>(std::count_if(p.packs.begin(), p.packs.end(), [](const auto& pack) { return is_scan(pack) && pack.carry == no_slot; }));
+  return static_cast<std::size_t>(std::count_if(
+      p.packs.begin(), p.packs.end(), [](const auto& pack) { return is_scan(pack) && pack.carry == no_slot; }));
 }
 
 }  // namespace
@@ -33,7 +36,8 @@ TEST_CASE("chains of points: positions and forces are running sums in the lanes 
     check_lanes(p);
     CHECK(count_beginnings(p) == 4);  // x, y, and what they carry
     // Of the products of a residual and a sine only the first and the last links read forces from elsewhere.
-    const auto copied = std::count_if(p.blocks.begin(), p.blocks.end(), [](const packed::Block& b) { return !b.direct && !b.weighted; });
+    const auto copied = std::count_if(p.blocks.begin(), p.blocks.end(),
+                                      [](const packed::Block& b) { return !b.direct && !b.weighted; });
     CHECK(copied <= 4);
     for (const packed::Pack& pack : p.packs) CHECK(pack.kind != packed::Pack::Scalar);
   }
@@ -48,7 +52,8 @@ TEST_CASE("chains of rods: the joints are running sums, whatever else begins at 
     source.coordinates.push_back(angle);
     const Expr across = x + sin(angle) * Rational(2, 5), down = y - cos(angle) * Rational(2, 5);
     x = x + sin(angle) * Rational(4, 5), y = y - cos(angle) * Rational(4, 5);
-    lagrangian = lagrangian + pow(context.time_derivative(across), 2) + pow(context.time_derivative(down), 2) + pow(context.time_derivative(angle), 2) - down;
+    lagrangian = lagrangian + pow(context.time_derivative(across), 2) + pow(context.time_derivative(down), 2) +
+                 pow(context.time_derivative(angle), 2) - down;
   }
   source.residual = variational_residual(lagrangian, source.coordinates);
   CHECK(count_beginnings(packed::pack(build_kernel(source).program())) >= 4);
@@ -73,7 +78,8 @@ TEST_CASE("chains that are solved in parts: what belongs to them stands in the l
     std::size_t joins = 0;
     for (const packed::Pack& pack : p.packs) {
       joins += pack.kind == packed::Pack::Join || pack.kind == packed::Pack::JoinDown;
-      if (pack.kind == packed::Pack::Join || pack.kind == packed::Pack::JoinDown) CHECK(pack.strands * packed::lanes == strip.whole);
+      if (pack.kind == packed::Pack::Join || pack.kind == packed::Pack::JoinDown)
+        CHECK(pack.strands * packed::lanes == strip.whole);
       if (pack.kind != packed::Pack::Strand) continue;
       for (std::uint32_t c = pack.first_column; c < pack.last_column; ++c) {
         const packed::Column& column = p.columns[c];
@@ -83,8 +89,10 @@ TEST_CASE("chains that are solved in parts: what belongs to them stands in the l
     }
     CHECK(joins == 4);  // x, y, and what they carry
     // Forces are read where they stand but for those at the ends, coordinates are copied.
-    CHECK(std::count_if(p.blocks.begin(), p.blocks.end(), [](const packed::Block& b) { return !b.direct && !b.weighted; }) <= 4);
-    CHECK(std::count_if(p.blocks.begin(), p.blocks.end(), [&](const packed::Block& b) { return p.copies_coordinates(b); }) >=
-          static_cast<std::ptrdiff_t>(strip.whole / packed::lanes));
+    CHECK(std::count_if(p.blocks.begin(), p.blocks.end(),
+                        [](const packed::Block& b) { return !b.direct && !b.weighted; }) <= 4);
+    CHECK(std::count_if(p.blocks.begin(), p.blocks.end(), [&](const packed::Block& b) {
+            return p.copies_coordinates(b);
+          }) >= static_cast<std::ptrdiff_t>(strip.whole / packed::lanes));
   }
 }

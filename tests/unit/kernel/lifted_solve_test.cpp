@@ -1,4 +1,5 @@
-// Large systems are solved through their tangents: the same motion as by the full matrix, whatever the shape of the tree.
+// Large systems are solved through their tangents: the same motion as by the full matrix, whatever the shape of the
+// tree.
 #include "rods.hpp"
 
 TEST_CASE("chains, trees and combs: M x = b with M in closed form") {
@@ -54,7 +55,8 @@ TEST_CASE("the cost of chains grows as their length") {
 }
 
 TEST_CASE("accelerations of large systems satisfy Lagrange's equations, whatever the size and the shape") {
-  for (const auto& [parent, count] : {std::pair<Parents, int>{chain, 17}, {chain, 50}, {chain, 200}, {binary_tree, 127}, {comb, 90}}) {
+  for (const auto& [parent, count] :
+       {std::pair<Parents, int>{chain, 17}, {chain, 50}, {chain, 200}, {binary_tree, 127}, {comb, 90}}) {
     Rods rods(count, parent);
     const auto n = static_cast<std::size_t>(count);
     KernelWorkspace work(build_kernel(rods.source), 4);

@@ -43,14 +43,16 @@ TEST_CASE("a chain of pendulums costs one sincos and two products a link") {
 
 TEST_CASE("what turns about one point is accelerated across its radius by the angle's acceleration: no products") {
   struct Turning {
-    int across, along;                  // sizes of x − X and y
-    bool moves;                         // X is a coordinate
+    int across, along;  // sizes of x − X and y
+    bool moves;         // X is a coordinate
     std::size_t products;
   };
-  for (const Turning& t : {Turning{1, -1, false, 0}, Turning{-3, 3, false, 0}, Turning{1, -1, true, 1}, Turning{1, -2, false, 1}}) {
+  for (const Turning& t :
+       {Turning{1, -1, false, 0}, Turning{-3, 3, false, 0}, Turning{1, -1, true, 1}, Turning{1, -2, false, 1}}) {
     CAPTURE(t.across);
     Context context;
-    const Expr angle = context.symbol("θ", Role::Coordinate), m = context.symbol("m", Role::Parameter), l = context.symbol("l", Role::Parameter);
+    const Expr angle = context.symbol("θ", Role::Coordinate), m = context.symbol("m", Role::Parameter),
+               l = context.symbol("l", Role::Parameter);
     KernelSource source;
     source.coordinates = {angle};
     source.parameters = {m, l};
@@ -77,7 +79,8 @@ TEST_CASE("sinh and cosh do not turn, and unlike sizes are not collected") {
   };
   const Expr sinh = apply(Kind::Sinh, u), cosh = apply(Kind::Cosh, u);
   CHECK(products(m * cos(u) * second(sin(u)) - m * sin(u) * second(cos(u))) == 0);
-  CHECK(products(m * cos(u) * context.time_derivative(sin(u)) - m * sin(u) * context.time_derivative(cos(u)) + second(u)) == 0);
+  CHECK(products(m * cos(u) * context.time_derivative(sin(u)) - m * sin(u) * context.time_derivative(cos(u)) +
+                 second(u)) == 0);
   CHECK(products(cosh * second(sinh) - sinh * second(cosh)) == 1);
   CHECK(products(m * cos(u) * second(sin(u)) - sin(u) * second(cos(u))) == 1);
 }
@@ -119,7 +122,8 @@ TEST_CASE("equal switch functions are one switch, whatever their factor") {
   const Expr q = context.symbol("q", Role::Coordinate);
   KernelSource source;
   source.coordinates = {q};
-  source.residual = {context.symbol("q", Role::Coordinate, 2) + apply(Kind::Sign, q) + apply(Kind::Abs, Rational(-2) * q)};
+  source.residual = {context.symbol("q", Role::Coordinate, 2) + apply(Kind::Sign, q) +
+                     apply(Kind::Abs, Rational(-2) * q)};
   CHECK(build_kernel(source).switches().size() == 1);
 }
 

@@ -44,7 +44,8 @@ void check_motion(System& system, int order, double tolerance) {
   for (std::size_t i = 0; i < written_out.size(); ++i) {
     double size = 1;
     for (int k = 0; k < order; ++k) {
-      for (std::size_t j = 0; j < system.q.size(); ++j) size = std::max(size, std::abs(work.coordinate(k + 2)[j]) * (k + 1) * (k + 2));
+      for (std::size_t j = 0; j < system.q.size(); ++j)
+        size = std::max(size, std::abs(work.coordinate(k + 2)[j]) * (k + 1) * (k + 2));
       CAPTURE(i);
       CAPTURE(k);
       CHECK(std::abs(work.event(i, k)) <= tolerance * size * (k + 1));
@@ -83,10 +84,12 @@ TEST_CASE("chains of rods with their centres, damped, on a shaken support: runni
       const Expr across = x + half * l * sin(angle), down = y - half * l * cos(angle);
       x = x + l * sin(angle);
       y = y - l * cos(angle);
-      lagrangian = lagrangian + half * m * (pow(s.dot(across), 2) + pow(s.dot(down), 2)) + half * m * Rational(1, 10) * pow(s.dot(angle), 2) - m * Rational(981, 100) * down;
+      lagrangian = lagrangian + half * m * (pow(s.dot(across), 2) + pow(s.dot(down), 2)) +
+                   half * m * Rational(1, 10) * pow(s.dot(angle), 2) - m * Rational(981, 100) * down;
     }
     s.from_lagrangian(lagrangian);
-    for (std::size_t i = 0; i < s.source.coordinates.size(); ++i) s.source.residual[i] = s.source.residual[i] + c * s.dot(s.source.coordinates[i]);
+    for (std::size_t i = 0; i < s.source.coordinates.size(); ++i)
+      s.source.residual[i] = s.source.residual[i] + c * s.dot(s.source.coordinates[i]);
     check_motion(s, 6, 1e-12);
   }
 }
@@ -103,7 +106,8 @@ TEST_CASE("running sums of coordinates: without a leaf 1, with an operand twice,
       if (which == 1 && i == 6) sum = sum + c * q[0], sum = sum + q[0];
       if (which == 2 && i == 6) sum = sum + Rational(1, 7) + q[6], sum = sum - (q[7] + Rational(2, 7));
       sum = sum + q[i];
-      s.source.residual.push_back(s.context.symbol("q" + std::to_string(i), Role::Coordinate, 2) + sum + (which > 0 && i == 0 ? Rational(1) : Rational(0)));
+      s.source.residual.push_back(s.context.symbol("q" + std::to_string(i), Role::Coordinate, 2) + sum +
+                                  (which > 0 && i == 0 ? Rational(1) : Rational(0)));
     }
     check_motion(s, 8, 1e-13);
   }
@@ -115,7 +119,10 @@ TEST_CASE("quotients and roots of some lanes of a vector, beside coordinates in 
     for (int i = 0; i < 17; ++i) {
       const std::string name = "q" + std::to_string(i);
       const Expr q = s.coordinate(name, 0.5, 0.25), two = s.context.number(2);
-      const Expr force = i >= members ? q : members == 3 ? q / (two + q) : members == 5 ? sqrt(two + q) : apply(Kind::Log, two + q);
+      const Expr force = i >= members   ? q
+                         : members == 3 ? q / (two + q)
+                         : members == 5 ? sqrt(two + q)
+                                        : apply(Kind::Log, two + q);
       s.source.residual.push_back(s.context.symbol(name, Role::Coordinate, 2) + force);
     }
     check_motion(s, 8, 1e-13);
@@ -141,7 +148,8 @@ TEST_CASE("functions beside stored accelerations: corrections keep to their rows
   const Expr l = s.parameter("l", 0.7), m = s.parameter("m", 1.3), two = s.context.number(2);
   const Expr x = s.coordinate("x", 0.4, 0.3), y = s.coordinate("y", 0.19, 0.63), z = s.coordinate("z", -0.22, 0.74);
   const Expr w = x - m * z, potential = x / (two + y * y) + l * apply(Kind::Log, two + w * w) * y;
-  s.from_lagrangian(Rational(1, 2) * (m * pow(s.dot(x), 2) + pow(s.dot(y), 2) + m * pow(s.dot(z), 2)) - Rational(1, 2) * potential);
+  s.from_lagrangian(Rational(1, 2) * (m * pow(s.dot(x), 2) + pow(s.dot(y), 2) + m * pow(s.dot(z), 2)) -
+                    Rational(1, 2) * potential);
   s.source.residual[0] = s.source.residual[0] + Rational(1, 3) * pow(s.dot(z), 3);
   check_motion(s, 12, 1e-12);
 }
@@ -179,7 +187,8 @@ TEST_CASE("an indefinite mass matrix with zero diagonal is solved") {
 TEST_CASE("units do not make a mass matrix singular") {
   System s;
   const Expr x = s.coordinate("x", 1e-9, 0), y = s.coordinate("y", 1, 0);
-  s.from_lagrangian(Rational::parse("1e-24").value() * pow(s.dot(x), 2) + Rational::parse("1e12").value() * pow(s.dot(y), 2) - pow(y, 2));
+  s.from_lagrangian(Rational::parse("1e-24").value() * pow(s.dot(x), 2) +
+                    Rational::parse("1e12").value() * pow(s.dot(y), 2) - pow(y, 2));
   KernelWorkspace work(build_kernel(s.source), 8);
   CHECK(work.expand(0, s.q, s.v) == KernelStatus::Ok);
 }
@@ -197,7 +206,8 @@ TEST_CASE("no freedoms: functions of time alone") {
 }
 
 TEST_CASE("an entry of M without a counterpart counts, however small it is") {
-  // x'' = 1 moves y, z, … as little as ε, and they are moved by nothing else. Up to 16 unknowns by an inverse, beyond by factors.
+  // x'' = 1 moves y, z, … as little as ε, and they are moved by nothing else. Up to 16 unknowns by an inverse, beyond
+  // by factors.
   for (const int followers : {1, 7, 15, 20})
     for (const double size : {1e-3, 1e-9, 1e-12, 1e-15, 1e-18}) {
       CAPTURE(followers);
@@ -213,6 +223,7 @@ TEST_CASE("an entry of M without a counterpart counts, however small it is") {
       work.set_parameters(s.parameters);
       REQUIRE(work.expand(0, s.q, s.v) == KernelStatus::Ok);
       CHECK(work.acceleration(0) == doctest::Approx(1).epsilon(1e-15));
-      for (int i = 1; i <= followers; ++i) CHECK(work.acceleration(static_cast<std::size_t>(i)) * i / size == doctest::Approx(-1).epsilon(1e-14));
+      for (int i = 1; i <= followers; ++i)
+        CHECK(work.acceleration(static_cast<std::size_t>(i)) * i / size == doctest::Approx(-1).epsilon(1e-14));
     }
 }

@@ -1,6 +1,6 @@
 #pragma once
-#include "kernel/workspace/lifted_solve.hpp"
 #include "kernel/packed/code.hpp"
+#include "kernel/workspace/lifted_solve.hpp"
 
 #include <doctest/doctest.h>
 #include <maupertuis/transform.hpp>
@@ -9,7 +9,6 @@
 #include <functional>
 #include <numbers>
 #include <random>
-
 
 using namespace maupertuis;
 
@@ -21,7 +20,8 @@ struct Rods {
   KernelSource source;
 
   Rods(int count, const Parents& parent) {
-    const Expr l = context.symbol("l", Role::Parameter), zero = context.number(0), half = context.number(Rational(1, 2));
+    const Expr l = context.symbol("l", Role::Parameter), zero = context.number(0),
+               half = context.number(Rational(1, 2));
     source.parameters = {l};
     std::vector<Expr> x, y;
     Expr lagrangian = zero;
@@ -39,7 +39,8 @@ struct Rods {
 };
 
 /// M of the rods in closed form: M_ij = (points that both carry) l² cos(a_i − a_j).
-inline double mass_of_rods(int count, const Parents& parent, const std::vector<double>& a, std::size_t i, std::size_t j) {
+inline double mass_of_rods(int count, const Parents& parent, const std::vector<double>& a, std::size_t i,
+                           std::size_t j) {
   int shared = 0;
   for (int point = 0; point < count; ++point) {
     bool has_i = false, has_j = false;
@@ -73,9 +74,12 @@ inline constexpr int later = 5;
 /// The lifted system of a program at a point, as a workspace uses it.
 struct Lifted {
   explicit Lifted(const Kernel& k)
-      : kernel(k), program(kernel.program()),
-        strip(program.unknowns > packed::most_by_inverse ? sparse::strip_of(program) : sparse::Strip{}), packed(packed::pack(program, {strip.order, strip.whole})),
-        memory(packed.program, 1 - program.first_stage, packed.cells), solve(program, strip, packed, memory.stride) {
+      : kernel(k),
+        program(kernel.program()),
+        strip(program.unknowns > packed::most_by_inverse ? sparse::strip_of(program) : sparse::Strip{}),
+        packed(packed::pack(program, {strip.order, strip.whole})),
+        memory(packed.program, 1 - program.first_stage, packed.cells),
+        solve(program, strip, packed, memory.stride) {
     reference::compute_constants(memory, one, {});
     solve.set_constants(memory);
   }

@@ -22,8 +22,8 @@ struct Angles {
   }
   Expr dot(Expr e) { return context.time_derivative(e); }
   const Winding& with(Expr potential) {
-    source.residual = variational_residual((pow(dot(a), 2) + pow(dot(b), 2) + dot(a) * dot(b) * cos(a - b)) / Rational(2) - potential,
-                                           source.coordinates);
+    source.residual = variational_residual(
+        (pow(dot(a), 2) + pow(dot(b), 2) + dot(a) * dot(b) * cos(a - b)) / Rational(2) - potential, source.coordinates);
     kernel = build_kernel(source);
     return winding(*kernel);
   }
@@ -39,7 +39,8 @@ TEST_CASE("angles wind where they enter through sines and cosines of whole multi
   CHECK(m.with(cos(m.a / Rational(2))).coordinates == std::vector<bool>{false, true});
   CHECK(m.with(cos(m.k * m.b)).coordinates == std::vector<bool>{true, false});
   CHECK(m.with(apply(Kind::Exp, m.a - m.b)).coordinates == std::vector<bool>{false, false});
-  CHECK(m.with(m.k * apply(Kind::Tanh, sin(m.a)) + m.k * m.b).coordinates == std::vector<bool>{true, true});  // a force k has no angle in it
+  CHECK(m.with(m.k * apply(Kind::Tanh, sin(m.a)) + m.k * m.b).coordinates ==
+        std::vector<bool>{true, true});  // a force k has no angle in it
 }
 
 TEST_CASE("observables say what a turn adds to them, events forbid it") {

@@ -1,5 +1,5 @@
-// Bounds on disks against the functions themselves, in complex numbers on the circle: each rule must cover what a value does there, must not be absurdly
-// wide, and must say ∞ where the disk reaches a singularity.
+// Bounds on disks against the functions themselves, in complex numbers on the circle: each rule must cover what a value
+// does there, must not be absurdly wide, and must say ∞ where the disk reaches a singularity.
 #include "followed.hpp"
 
 #include <doctest/doctest.h>
@@ -55,7 +55,8 @@ TEST_CASE("tails cover what the polynomial leaves out") {
         const double exact = a.value(f.polynomial(0, s), f.polynomial(1, s), f.t0 + s).real();
         double by_series = 0;
         for (int k = order + 1; k >= 0; --k) by_series = by_series * s + f.retrace->row(k)[f.slot];
-        CHECK(std::abs(exact - by_series) <= tail * std::pow(std::abs(x), order + 2) / (1 - std::abs(x)) + 1e-14 * (1 + std::abs(exact)));
+        CHECK(std::abs(exact - by_series) <=
+              tail * std::pow(std::abs(x), order + 2) / (1 - std::abs(x)) + 1e-14 * (1 + std::abs(exact)));
       }
     }
     CHECK(finite > 0);

@@ -1,6 +1,7 @@
-// One bound for many motions: whatever motion keeps below the sizes that an envelope was asked for, its functions keep below the envelope's tail.
-#include "followed.hpp"
+// One bound for many motions: whatever motion keeps below the sizes that an envelope was asked for, its functions keep
+// below the envelope's tail.
 #include "kernel/disks/envelope.hpp"
+#include "followed.hpp"
 
 #include <doctest/doctest.h>
 
@@ -22,7 +23,11 @@ struct Sizes {
     for (const std::vector<double>& c : f.c) {
       double sums[3] = {0, 0, 0};
       for (int k = 1; k <= order + 1; ++k)
-        for (int d = 0; d < 3; ++d) sums[d] += std::abs(c[static_cast<std::size_t>(k)]) * std::pow(r, k - d) * (d == 0 ? 1 : d == 1 ? k : k * (k - 1));
+        for (int d = 0; d < 3; ++d)
+          sums[d] += std::abs(c[static_cast<std::size_t>(k)]) * std::pow(r, k - d) *
+                     (d == 0   ? 1
+                      : d == 1 ? k
+                               : k * (k - 1));
       centre.push_back(widened * std::abs(c[0]));
       reach.push_back(widened * sums[0]), rate.push_back(widened * sums[1]), acceleration.push_back(widened * sums[2]);
     }
@@ -35,8 +40,10 @@ struct Sizes {
   bool cover(const Sizes& other) const {
     bool below = other.time <= time;
     for (std::size_t i = 0; i < 2; ++i)
-      below = below && other.centre[i] <= centre[i] && other.reach[i] <= reach[i] && other.rate[i] <= rate[i] && other.acceleration[i] <= acceleration[i];
-    for (std::size_t i = 0; i < least.size(); ++i) below = below && least[i] <= other.least[i] && other.most[i] <= most[i];
+      below = below && other.centre[i] <= centre[i] && other.reach[i] <= reach[i] && other.rate[i] <= rate[i] &&
+              other.acceleration[i] <= acceleration[i];
+    for (std::size_t i = 0; i < least.size(); ++i)
+      below = below && least[i] <= other.least[i] && other.most[i] <= most[i];
     return below;
   }
 };
@@ -62,7 +69,8 @@ Complex derivative(const Followed& f, const Case& a, Complex s, int n) {
   return sum * (n == 2 ? 2.0 : 1.0) / double(points);
 }
 
-/// The n-th derivative of the case in the residual; the tail has to cover how far it is from its centre: nothing in it is a polynomial.
+/// The n-th derivative of the case in the residual; the tail has to cover how far it is from its centre: nothing in it
+/// is a polynomial.
 void check(const Case& a, int n, double r, bool may_be_unbounded, int& checked) {
   CAPTURE(std::string(a.name));
   CAPTURE(n);
@@ -95,7 +103,8 @@ void check(const Case& a, int n, double r, bool may_be_unbounded, int& checked) 
     if (!sizes.cover(Sizes(g, envelope, r, 1))) continue;
     ++motions;
     const Complex centre = derivative(g, a, 0, n);
-    for (int k = 0; k < 32; ++k) largest = std::max(largest, std::abs(derivative(g, a, on_circle(r, k, 32), n) - (n == 2 ? 0.0 : centre)));
+    for (int k = 0; k < 32; ++k)
+      largest = std::max(largest, std::abs(derivative(g, a, on_circle(r, k, 32), n) - (n == 2 ? 0.0 : centre)));
   }
   if (motions == 0) return;  // what is observed may change by less than these motions do
   ++checked;
@@ -117,13 +126,15 @@ TEST_CASE("tails of an envelope cover all motions of its sizes, and not absurdly
     int checked = 0;
     const bool has_no_rule = std::string(a.name) == "atan2(y, x)";
     for (const double r : {0.5, 0.2, 0.05}) check(a, 0, r, r > 0.1 || has_no_rule, checked);
-    CHECK((checked > 0 || has_no_rule || std::string(a.name) == "logistic"));  // exp(−300 x) changes by more than an observed value may
+    CHECK((checked > 0 || has_no_rule ||
+           std::string(a.name) == "logistic"));  // exp(−300 x) changes by more than an observed value may
   }
 }
 
 TEST_CASE("derivatives in the residual: tails of an envelope cover them") {
   int checked = 0;
-  for (const char* name : {"x y", "x^2", "x^9", "1/x", "y/(x + 1)", "sqrt(x)", "x^(5/3)", "x^(-3/2)", "sin 3x", "cos 3x", "sinh 2x", "cosh 2x"})
+  for (const char* name : {"x y", "x^2", "x^9", "1/x", "y/(x + 1)", "sqrt(x)", "x^(5/3)", "x^(-3/2)", "sin 3x",
+                           "cos 3x", "sinh 2x", "cosh 2x"})
     for (const int n : {1, 2}) check(named(name), n, 0.1, false, checked);
   for (const char* name : {"exp(-4x)", "log x", "tanh x"}) check(named(name), 1, 0.1, false, checked);
   CHECK(checked == 27);
@@ -150,7 +161,8 @@ TEST_CASE("motions that use up their sizes are covered too") {
         if (!(tail < infinity) || std::string(a.name) == "sin(5 t) x + t^3") continue;
         const Complex centre = n == 0 ? derivative(f, a, 0, 0) : 0.0;
         double largest = 0;
-        for (int k = 0; k < 64; ++k) largest = std::max(largest, std::abs(derivative(f, a, std::polar(r, 2 * pi * k / 64), n) - centre));
+        for (int k = 0; k < 64; ++k)
+          largest = std::max(largest, std::abs(derivative(f, a, std::polar(r, 2 * pi * k / 64), n) - centre));
         CHECK(tail >= largest * (1 - 1e-6) - 1e-11);  // rounding of the derivatives
       }
 }

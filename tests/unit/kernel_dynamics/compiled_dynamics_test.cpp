@@ -12,9 +12,11 @@ std::string chain(int links, const std::string& rest = "") {
   for (int i = 1; i <= links; ++i) {
     const std::string k = std::to_string(i);
     names += (i > 1 ? ", q" : "q") + k;
-    points += "point P" + k + " mass m at " + (i > 1 ? "P" + std::to_string(i - 1) + " + " : "") + "l (sin q" + k + ", -cos q" + k + ")\n";
+    points += "point P" + k + " mass m at " + (i > 1 ? "P" + std::to_string(i - 1) + " + " : "") + "l (sin q" + k +
+              ", -cos q" + k + ")\n";
   }
-  return "system chain\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord " + names + " : angle\n" + points + "gravity (0, -g)\n" + rest;
+  return "system chain\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord " + names + " : angle\n" + points +
+         "gravity (0, -g)\n" + rest;
 }
 
 /// Both at random points: to rounding, in units of what the sums are made of.
@@ -23,7 +25,8 @@ int compare(Dynamics& a, Dynamics& b, double size, const Numbers& u = {}) {
   std::mt19937 random(11);
   int compared = 0;
   for (int trial = 0; trial < 4; ++trial) {
-    const Numbers q = random_numbers(n, size, random), v = random_numbers(n, 1, random), given = random_numbers(n, 3, random);
+    const Numbers q = random_numbers(n, size, random), v = random_numbers(n, 1, random),
+                  given = random_numbers(n, 3, random);
     Numbers x(n), y(n), rest(n, 0.0), weight(n), mass(n * n);
     if (b.dynamics.accelerations(0.3, q, v, u, y) != KernelStatus::Ok) continue;
     REQUIRE(a.dynamics.accelerations(0.3, q, v, u, x) == KernelStatus::Ok);
@@ -92,7 +95,8 @@ TEST_CASE("inputs of the call, and parameters that are set anew without another 
 TEST_CASE("other pivots, other code: masses of one end or the other that nearly vanish") {
   const std::string text =
       "system s\nparam m1 = 1 kg, m2 = 1e-9 kg, l = 1 m, g = 9.81 m/s^2\ncoord a, b, c : angle, x : length\n"
-      "point A mass m1 at (x + l sin a, -l cos a)\npoint B mass m2 at A + l (sin b, -cos b)\npoint C mass m1 at B + l (sin c, -cos c)\n"
+      "point A mass m1 at (x + l sin a, -l cos a)\npoint B mass m2 at A + l (sin b, -cos b)\npoint C mass m1 at B + l "
+      "(sin c, -cos c)\n"
       "gravity (0, -g)\n";
   Dynamics a(text, compiled), b(text, interpreted);
   REQUIRE(a.dynamics.compile_report().compiled);
@@ -111,7 +115,9 @@ TEST_CASE("other pivots, other code: masses of one end or the other that nearly 
 }
 
 TEST_CASE("small pivots are left to the interpreter, which tells what is singular") {
-  Dynamics d("system s\nparam m = 1 kg, k = 1 N\ncoord r : length, φ : angle\npoint P mass m at r (cos φ, sin φ)\nV = k r\n", compiled);
+  Dynamics d(
+      "system s\nparam m = 1 kg, k = 1 N\ncoord r : length, φ : angle\npoint P mass m at r (cos φ, sin φ)\nV = k r\n",
+      compiled);
   REQUIRE(d.dynamics.compile_report().compiled);
   Numbers a{7, 7};
   REQUIRE(d.dynamics.accelerations(0, Numbers{0.0, 1.0}, Numbers{0.0, 0.0}, {}, a) == KernelStatus::SingularMass);
@@ -142,7 +148,8 @@ TEST_CASE("a residual by hand, whose mass matrix is not symmetric") {
   const Expr factor = cos(source.coordinates[0]);
   for (int i = 0; i < 8; ++i) {
     ExprVector terms{context.number(Rational(-1))};
-    for (int j = 0; j < 8; ++j) terms.push_back(Rational(8 + (i == j ? 32 : 0) + i, 8) * factor * accelerations[static_cast<std::size_t>(j)]);
+    for (int j = 0; j < 8; ++j)
+      terms.push_back(Rational(8 + (i == j ? 32 : 0) + i, 8) * factor * accelerations[static_cast<std::size_t>(j)]);
     source.residual.push_back(context.sum(terms));
   }
   const Kernel kernel = build_kernel(source);
@@ -155,7 +162,8 @@ TEST_CASE("a residual by hand, whose mass matrix is not symmetric") {
   REQUIRE(other.accelerations(0, at, rest, {}, b) == KernelStatus::Ok);
   for (int i = 0; i < 8; ++i) {
     double sum = 0;
-    for (std::size_t j = 0; j < 8; ++j) sum += (1 + (static_cast<int>(j) == i ? 4 : 0) + i / 8.0) * std::cos(0.5) * a[j];
+    for (std::size_t j = 0; j < 8; ++j)
+      sum += (1 + (static_cast<int>(j) == i ? 4 : 0) + i / 8.0) * std::cos(0.5) * a[j];
     CHECK(sum == doctest::Approx(1).epsilon(1e-14));
   }
   for (std::size_t i = 0; i < 8; ++i) CHECK(a[i] == doctest::Approx(b[i]).epsilon(1e-13));

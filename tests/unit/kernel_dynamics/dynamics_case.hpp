@@ -20,10 +20,13 @@ struct Dynamics {
   ForwardDynamics dynamics;
 
   explicit Dynamics(const EquationsOfMotion& equations, const ForwardDynamicsOptions& options = {})
-      : source(dynamics_source(equations)), kernel(build_kernel(source.kernel)), dynamics(kernel, source.inputs, options) {
+      : source(dynamics_source(equations)),
+        kernel(build_kernel(source.kernel)),
+        dynamics(kernel, source.inputs, options) {
     dynamics.set_parameters(source.parameters);
   }
-  explicit Dynamics(const std::string& text, const ForwardDynamicsOptions& options = {}) : Dynamics(ModelText(text).equations, options) {}
+  explicit Dynamics(const std::string& text, const ForwardDynamicsOptions& options = {})
+      : Dynamics(ModelText(text).equations, options) {}
   std::size_t n() const { return kernel.freedoms(); }
 };
 

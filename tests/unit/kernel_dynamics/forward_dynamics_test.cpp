@@ -97,7 +97,8 @@ TEST_CASE("inverse dynamics at any acceleration is M a + h, and its power is tha
         for (std::size_t c = j + 1; c < k; ++c) l[i * n + c] -= l[i * n + j] * l[j * n + c] / pivot;
     }
   }
-  // d/dt (½ q̇ M q̇) by a difference quotient along the motion q + v s + ½ a s², against the power of f and of gravity and damping.
+  // d/dt (½ q̇ M q̇) by a difference quotient along the motion q + v s + ½ a s², against the power of f and of gravity
+  // and damping.
   const auto kinetic = [&](double s) {
     Numbers qs(n), vs(n), ms(n * n);
     for (std::size_t i = 0; i < n; ++i) qs[i] = q[i] + v[i] * s + a[i] * s * s / 2, vs[i] = v[i] + a[i] * s;
@@ -128,7 +129,8 @@ TEST_CASE("with constraints the accelerations obey them") {
 }
 
 TEST_CASE("a singular M is told, with the coordinate, and other states work on") {
-  Dynamics d("system s\nparam m = 1 kg, k = 1 N\ncoord r : length, φ : angle\npoint P mass m at r (cos φ, sin φ)\nV = k r\n");
+  Dynamics d(
+      "system s\nparam m = 1 kg, k = 1 N\ncoord r : length, φ : angle\npoint P mass m at r (cos φ, sin φ)\nV = k r\n");
   Numbers a(2);
   REQUIRE(d.dynamics.accelerations(0, Numbers{0.0, 1.0}, Numbers{0.0, 0.0}, {}, a) == KernelStatus::SingularMass);
   CHECK(d.dynamics.singular_coordinate() == 1);
@@ -138,8 +140,9 @@ TEST_CASE("a singular M is told, with the coordinate, and other states work on")
 }
 
 TEST_CASE("an input that L depends on: a pendulum on a moving pivot, with the input's rates") {
-  Dynamics d("system s\nparam m = 1 kg, l = 2 m, g = 9.81 m/s^2\ncoord θ : angle\ninput u : [m] = 1 [m]\n"
-             "point P mass m at (u + l sin θ, -l cos θ)\ngravity (0, -g)\n");
+  Dynamics d(
+      "system s\nparam m = 1 kg, l = 2 m, g = 9.81 m/s^2\ncoord θ : angle\ninput u : [m] = 1 [m]\n"
+      "point P mass m at (u + l sin θ, -l cos θ)\ngravity (0, -g)\n");
   REQUIRE(d.source.inputs.size() == 3);
   Numbers a(1);
   const double q = 0.7, acceleration = 3;

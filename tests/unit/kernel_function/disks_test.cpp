@@ -34,20 +34,32 @@ const std::vector<Case>& cases() {
       {"sin", [](Expr x, Expr) { return sin(x); }, [](Complex x, Complex) { return std::sin(x); }},
       {"cos", [](Expr x, Expr) { return cos(x); }, [](Complex x, Complex) { return std::cos(x); }},
       {"tan", [](Expr x, Expr) { return apply(Kind::Tan, x); }, [](Complex x, Complex) { return std::tan(x); }},
-      {"asin", [](Expr x, Expr) { return apply(Kind::Asin, x / 8); }, [](Complex x, Complex) { return std::asin(x / 8.0); }},
-      {"acos", [](Expr x, Expr) { return apply(Kind::Acos, x / 8); }, [](Complex x, Complex) { return std::acos(x / 8.0); }},
+      {"asin", [](Expr x, Expr) { return apply(Kind::Asin, x / 8); },
+       [](Complex x, Complex) { return std::asin(x / 8.0); }},
+      {"acos", [](Expr x, Expr) { return apply(Kind::Acos, x / 8); },
+       [](Complex x, Complex) { return std::acos(x / 8.0); }},
       {"atan", [](Expr x, Expr) { return apply(Kind::Atan, x); }, [](Complex x, Complex) { return std::atan(x); }},
       {"sinh", [](Expr x, Expr) { return apply(Kind::Sinh, x); }, [](Complex x, Complex) { return std::sinh(x); }},
       {"cosh", [](Expr x, Expr) { return apply(Kind::Cosh, x); }, [](Complex x, Complex) { return std::cosh(x); }},
-      {"tanh", [](Expr x, Expr) { return apply(Kind::Tanh, 3 * x); }, [](Complex x, Complex) { return std::tanh(3.0 * x); }},
+      {"tanh", [](Expr x, Expr) { return apply(Kind::Tanh, 3 * x); },
+       [](Complex x, Complex) { return std::tanh(3.0 * x); }},
       {"asinh", [](Expr x, Expr) { return apply(Kind::Asinh, x); }, [](Complex x, Complex) { return std::asinh(x); }},
-      {"acosh", [](Expr x, Expr) { return apply(Kind::Acosh, x + 4); }, [](Complex x, Complex) { return std::acosh(x + 4.0); }},
-      {"atanh", [](Expr x, Expr) { return apply(Kind::Atanh, x / 8); }, [](Complex x, Complex) { return std::atanh(x / 8.0); }},
-      {"exp", [](Expr x, Expr) { return apply(Kind::Exp, Rational(-3) * x * x); }, [](Complex x, Complex) { return std::exp(-3.0 * x * x); }},
+      {"acosh", [](Expr x, Expr) { return apply(Kind::Acosh, x + 4); },
+       [](Complex x, Complex) { return std::acosh(x + 4.0); }},
+      {"atanh", [](Expr x, Expr) { return apply(Kind::Atanh, x / 8); },
+       [](Complex x, Complex) { return std::atanh(x / 8.0); }},
+      {"exp", [](Expr x, Expr) { return apply(Kind::Exp, Rational(-3) * x * x); },
+       [](Complex x, Complex) { return std::exp(-3.0 * x * x); }},
       {"log", [](Expr x, Expr) { return apply(Kind::Log, x); }, [](Complex x, Complex) { return std::log(x); }},
-      {"atan2", [](Expr x, Expr y) { return x.context().function(Kind::Atan2, std::array{x, y}); }, [](Complex x, Complex y) { return std::atan(x / y); }},
-      {"abs", [](Expr x, Expr) { return apply(Kind::Abs, x); }, [](Complex x, Complex) { return x.real() < 0 ? -x : x; }},
-      {"logistic", [](Expr x, Expr) { return 1 / (apply(Kind::Exp, Rational(-200) * x) + 1); }, [](Complex x, Complex) { return 1.0 / (1.0 + std::exp(-200.0 * x)); }},
+      {"atan2",
+       [](Expr x, Expr y) {
+         return x.context().function(Kind::Atan2, std::array{x, y});
+       },
+       [](Complex x, Complex y) { return std::atan(x / y); }},
+      {"abs", [](Expr x, Expr) { return apply(Kind::Abs, x); },
+       [](Complex x, Complex) { return x.real() < 0 ? -x : x; }},
+      {"logistic", [](Expr x, Expr) { return 1 / (apply(Kind::Exp, Rational(-200) * x) + 1); },
+       [](Complex x, Complex) { return 1.0 / (1.0 + std::exp(-200.0 * x)); }},
   };
   return all;
 }
@@ -82,7 +94,8 @@ TEST_CASE("a disk contains the values of each function on it") {
               const double angle = 2 * pi * k / 64;
               const Complex s = std::polar(radius, angle), u = std::polar(0.6 * radius, angle + turn);
               Complex change = c.value(x0 + s, y0 + u) - value;
-              if (std::string(c.name) == "atan2") change -= pi * std::round(change.real() / pi);  // the branch of atan is not atan2's
+              if (std::string(c.name) == "atan2")
+                change -= pi * std::round(change.real() / pi);  // the branch of atan is not atan2's
               largest = std::max(largest, std::abs(change));
             }
           CHECK(largest <= disks.reach(0) * (1 + 1e-12));
@@ -111,7 +124,8 @@ TEST_CASE("a disk is not much larger than what it contains, and does not bound w
   CHECK(bounds(apply(Kind::Exp, Rational(-1) * pow(400 * (x - 6), 2)), 1, 1).first < 1e-300);
   CHECK(bounds(1 / (apply(Kind::Exp, Rational(-50) * (x - 9)) + 1), 1, 2).first < 1e-100);
   CHECK(bounds(apply(Kind::Tanh, 50 * x), 5, 1).first < 1e-100);
-  for (const Expr e : {1 / x, sqrt(x), apply(Kind::Log, x), apply(Kind::Sign, x), apply(Kind::Abs, x), apply(Kind::Step, x)}) {
+  for (const Expr e :
+       {1 / x, sqrt(x), apply(Kind::Log, x), apply(Kind::Sign, x), apply(Kind::Abs, x), apply(Kind::Step, x)}) {
     CHECK(bounds(e, 0.5, 0.6).second == HUGE_VAL);
     CHECK(bounds(e, 0.5, 0.4).second < 100);
   }

@@ -24,10 +24,15 @@ struct Symbols {
   std::vector<Expr> zoo() {
     std::vector<Expr> all;
     // Every function has a value either below 1 or above.
-    std::apply([&](const auto&... row) {
-      (all.push_back(apply(row.kind, row.kind == Kind::Acosh ? context.number(1) + x * x : (sin(x) + Rational(3)) / Rational(5))), ...);
-    }, functions::rows);
-    for (const Kind kind : {Kind::Sin, Kind::Tanh, Kind::Exp, Kind::Erf, Kind::Abs, Kind::Sign, Kind::Step}) all.push_back(apply(kind, x * y - k));
+    std::apply(
+        [&](const auto&... row) {
+          (all.push_back(apply(
+               row.kind, row.kind == Kind::Acosh ? context.number(1) + x * x : (sin(x) + Rational(3)) / Rational(5))),
+           ...);
+        },
+        functions::rows);
+    for (const Kind kind : {Kind::Sin, Kind::Tanh, Kind::Exp, Kind::Erf, Kind::Abs, Kind::Sign, Kind::Step})
+      all.push_back(apply(kind, x * y - k));
     for (const Kind kind : {Kind::Atan2, Kind::Min, Kind::Max}) all.push_back(f(kind, {x, y * v}));
     const Expr less = f(Kind::Less, {x, y}), at_most = f(Kind::LessEqual, {v, t});
     all.push_back(f(Kind::Piecewise, {f(Kind::And, {less, at_most}), x, f(Kind::Or, {less, at_most}), y, k}));
@@ -69,7 +74,10 @@ TEST_CASE("values agree with the evaluation of the expressions, for every kind o
 
 TEST_CASE("at the switch itself: sign(0) = 0, step(0) = 1, and what has no value stays so") {
   Symbols s;
-  const FunctionKernel kernel = build_function({{s.x}, {}, {apply(Kind::Sign, s.x), apply(Kind::Step, s.x), apply(Kind::Log, s.x), s.f(Kind::Min, {s.x, s.context.number(1)})}});
+  const FunctionKernel kernel = build_function({{s.x},
+                                                {},
+                                                {apply(Kind::Sign, s.x), apply(Kind::Step, s.x), apply(Kind::Log, s.x),
+                                                 s.f(Kind::Min, {s.x, s.context.number(1)})}});
   const auto zero = at_point(kernel, {0}, {});
   CHECK(zero[0] == 0);
   CHECK(zero[1] == 1);
@@ -87,7 +95,8 @@ TEST_CASE("derivatives are exact, and only those that do not vanish are outputs"
   CHECK(got[0] == doctest::Approx(0.98));
   for (std::size_t i = 0; i < kernel.entries.size(); ++i) {
     const auto [row, column] = kernel.entries[i];
-    const double expected = evaluate(differentiate(functions[row], inputs[column]), {{s.x, 0.7}, {s.y, -1.1}, {s.v, 3}, {s.k, 2}});
+    const double expected =
+        evaluate(differentiate(functions[row], inputs[column]), {{s.x, 0.7}, {s.y, -1.1}, {s.v, 3}, {s.k, 2}});
     CHECK(got[3 + i] == doctest::Approx(expected).epsilon(1e-15));
   }
   CHECK(kernel.values.uses(0));

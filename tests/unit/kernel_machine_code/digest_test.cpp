@@ -58,5 +58,6 @@ TEST_CASE("every field of a program counts") {
 TEST_CASE("texts of equal beginning, length apart, differ") {
   std::set<std::string> seen;
   const std::string zeros(40, '\0');
-  for (std::size_t n = 0; n <= zeros.size(); ++n) CHECK(seen.insert(digest_of(std::span(zeros.data(), n)).hex()).second);
+  for (std::size_t n = 0; n <= zeros.size(); ++n)
+    CHECK(seen.insert(digest_of(std::span(zeros.data(), n)).hex()).second);
 }

@@ -39,7 +39,12 @@ TEST_CASE("the module is looked for where the environment says, and nowhere else
 TEST_CASE("damaged objects are declined, not run") {
   std::string trouble;
   const auto resolve = [](const std::string&) -> void* { return nullptr; };
-  const std::string nothing, text(1000, 'x'), head = std::string("\x7f" "ELF\x02\x01\x01", 7) + std::string(200, '\xff');
+  const std::string nothing, text(1000, 'x'),
+      head = std::string(
+                 "\x7f"
+                 "ELF\x02\x01\x01",
+                 7) +
+             std::string(200, '\xff');
   for (const std::string& object : {nothing, text, head}) {
     trouble.clear();
     CHECK(!LoadedObject::load(object, resolve, trouble));
@@ -47,6 +52,4 @@ TEST_CASE("damaged objects are declined, not run") {
   }
 }
 
-TEST_CASE("the processor has one identity") {
-  CHECK(processor_identity() == processor_identity());
-}
+TEST_CASE("the processor has one identity") { CHECK(processor_identity() == processor_identity()); }

@@ -2,11 +2,11 @@
 
 #include <doctest/doctest.h>
 
-#include <fstream>
 #include <sys/stat.h>
 #include <sys/wait.h>
-#include <thread>
 #include <unistd.h>
+#include <fstream>
+#include <thread>
 
 using namespace maupertuis::machine_code;
 namespace fs = std::filesystem;

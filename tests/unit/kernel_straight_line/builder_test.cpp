@@ -30,7 +30,9 @@ TEST_CASE("zeros, ones and signs are folded") {
   CHECK(evaluate(line, {{5, 3}, {0}}).arrays[1][0] == -2);
 }
 
-TEST_CASE("values of several widths: what is gathered in order is the value itself, and a number where all lanes are the same") {
+TEST_CASE(
+    "values of several widths: what is gathered in order is the value itself, and a number where all lanes are the "
+    "same") {
   Builder to;
   const Value a = to.wide_given(0, 0, 4), b = to.wide_given(0, 4, 2), x = to.given(0, 6);
   CHECK(to.wide_given(0, 0, 4) == a);
@@ -55,7 +57,9 @@ TEST_CASE("values of several widths: what is gathered in order is the value itse
   CHECK(to.width(to.sum({{1, x, x}})) == 1);
 }
 
-TEST_CASE("what nothing needs is not there; what is needed stands before its use, from the anchor on in the order of writing") {
+TEST_CASE(
+    "what nothing needs is not there; what is needed stands before its use, from the anchor on in the order of "
+    "writing") {
   Builder to;
   const Value x = to.given(0, 0), a = to.product(2, x), unused = to.product(3, x, x);
   CHECK(unused != a);
@@ -80,9 +84,12 @@ TEST_CASE("in the order of urgency: what the end waits for longest is first") {
     Builder copy = to;
     const StraightLine line = copy.finish(2, 1, 0, most_sorted);
     CHECK(evaluate(line, {{2, 3}, {0}}).arrays[1][0] == doctest::Approx(9.4));
-    const auto place_of = [&](auto&& is) { return std::find_if(line.nodes.begin(), line.nodes.end(), is) - line.nodes.begin(); };
+    const auto place_of = [&](auto&& is) {
+      return std::find_if(line.nodes.begin(), line.nodes.end(), is) - line.nodes.begin();
+    };
     const auto quotient = place_of([](const Node& node) { return node.what == Node::Sum && node.b != none; });
-    const auto square = place_of([&](const Node& node) { return node.what == Node::Sum && node.b == none && node.last - node.first == 1; });
+    const auto square = place_of(
+        [&](const Node& node) { return node.what == Node::Sum && node.b == none && node.last - node.first == 1; });
     CHECK((quotient < square) == (most_sorted > 0));
   }
 }

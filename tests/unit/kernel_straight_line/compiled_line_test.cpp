@@ -26,7 +26,8 @@ TEST_CASE("random lines, short ones and ones that are cut into functions, for th
       const Evaluated expected = evaluate(line, {x, std::vector<double>(30, 0.0)});
       std::vector<double> y(30), scratch(scratch_size(line));
       code(1, x.data(), y.data(), scratch.data());
-      for (std::size_t i = 0; i < y.size(); ++i) CHECK(y[i] == doctest::Approx(expected.arrays[1][i]).epsilon(1e-9).scale(1));
+      for (std::size_t i = 0; i < y.size(); ++i)
+        CHECK(y[i] == doctest::Approx(expected.arrays[1][i]).epsilon(1e-9).scale(1));
       CHECK(scratch[0] == doctest::Approx(expected.margin).epsilon(1e-9));
       CHECK(sound(scratch.data()) == (expected.margin > 0));
     }
@@ -60,7 +61,8 @@ namespace {
 std::vector<double> various_angles() {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(-1, 1);
-  std::vector<double> out{0.0, -0.0, 0x1p-1000, 0x1.921fb54442d18p0, 0x1.921fb54442d18p-1, 0x1p20, -0x1p20, 1e22, INFINITY, NAN};
+  std::vector<double> out{0.0,  -0.0,     0x1p-1000, 0x1.921fb54442d18p0, 0x1.921fb54442d18p-1, 0x1p20, -0x1p20,
+                          1e22, INFINITY, NAN};
   for (int i = 0; i < 20'000; ++i) out.push_back(unit(random) * std::ldexp(1.0, i % 24 - 2));
   for (int k = 1; k < 20'000; ++k) {
     const double near = static_cast<double>(k * (k % 3 == 0 ? 31 : 1) * 0x1.921fb54442d18469898cc51701b8p0L);
@@ -103,7 +105,8 @@ TEST_CASE("sines and cosines: within a unit in the last place, and the same to t
         CHECK(std::isnan(c[i]));
         continue;
       }
-      worst = std::max({worst, units_apart(s[i], std::sin(static_cast<long double>(x))), units_apart(c[i], std::cos(static_cast<long double>(x)))});
+      worst = std::max({worst, units_apart(s[i], std::sin(static_cast<long double>(x))),
+                        units_apart(c[i], std::cos(static_cast<long double>(x)))});
       if (x == 0) CHECK(std::signbit(s[i]) == std::signbit(x));
     }
     for (std::size_t k = 0; k + 1 < counts.size(); ++k)

@@ -26,7 +26,8 @@ TEST_CASE("wide lines, short ones and ones that are cut into functions, for this
         std::vector<double> scratch(scratch_size(*wide));
         code(0, arrays[0].data(), arrays[1].data(), arrays[2].data(), arrays[3].data(), scratch.data());
         for (const std::size_t array : {1, 3})
-          for (std::size_t i = 0; i < LineInParts::stored; ++i) CHECK(arrays[array][i] == doctest::Approx(expected.arrays[array][i]).epsilon(1e-9).scale(1));
+          for (std::size_t i = 0; i < LineInParts::stored; ++i)
+            CHECK(arrays[array][i] == doctest::Approx(expected.arrays[array][i]).epsilon(1e-9).scale(1));
         CHECK(scratch[0] == doctest::Approx(expected.margin).epsilon(1e-9));
         CHECK(sound(scratch.data()) == (expected.margin > 0));
       }

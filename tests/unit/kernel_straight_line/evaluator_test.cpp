@@ -23,7 +23,8 @@ TEST_CASE("random lines, whether what is given changes from call to call or seld
       CHECK(often(given.data(), y.data()) == (expected.margin > 0));
       seldom.set(given.data(), unused);
       CHECK(seldom(unused, z.data()) == (expected.margin > 0));
-      for (std::size_t i = 0; i < y.size(); ++i) CHECK(y[i] == doctest::Approx(expected.arrays[1][i]).epsilon(1e-12).scale(1));
+      for (std::size_t i = 0; i < y.size(); ++i)
+        CHECK(y[i] == doctest::Approx(expected.arrays[1][i]).epsilon(1e-12).scale(1));
       CHECK(y == z);
     }
   }

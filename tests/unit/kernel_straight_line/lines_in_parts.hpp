@@ -6,8 +6,9 @@
 #include <numeric>
 #include <random>
 
-/// A line of random sums in parts that are alike: each part has numbers of its own in arrays 0 and 2, reads some that all parts know, and
-/// is added up by what belongs to none; then parts go on with that. Results go to array 1, and some to array 3.
+/// A line of random sums in parts that are alike: each part has numbers of its own in arrays 0 and 2, reads some that
+/// all parts know, and is added up by what belongs to none; then parts go on with that. Results go to array 1, and some
+/// to array 3.
 struct LineInParts {
   static constexpr std::uint32_t given = 64, stored = 40, factors = 128;
   maupertuis::straight::StraightLine line;
@@ -28,8 +29,12 @@ inline LineInParts line_in_parts(unsigned seed, std::uint32_t parts, int length,
       std::vector<Value> values{to.given(0, 7 * part), to.given(0, 7 * part + 1), totals[random() % totals.size()]};
       to.set_part(part);
       for (int i = 0; i < length; ++i) {
-        const auto any = [&] { return values[values.size() - 1 - random() % std::min<std::size_t>(values.size(), 20)]; };
-        const auto factor = [&] { return to.given(2, (3 * static_cast<std::uint32_t>(i) + round) % 12 * parts + (5 * part) % parts); };
+        const auto any = [&] {
+          return values[values.size() - 1 - random() % std::min<std::size_t>(values.size(), 20)];
+        };
+        const auto factor = [&] {
+          return to.given(2, (3 * static_cast<std::uint32_t>(i) + round) % 12 * parts + (5 * part) % parts);
+        };
         std::vector<Term> terms{{1, factor(), any()}, {-1, any(), any()}, {0.5, any()}, {0.25}};
         if (odd && part == 2 && i == length / 2) terms.push_back({2, any()});
         const Value sum = random() % 4 ? to.sum(terms) : to.sum(terms, any(), to.larger(any(), to.literal(2)));
@@ -50,8 +55,9 @@ inline LineInParts line_in_parts(unsigned seed, std::uint32_t parts, int length,
 }
 
 inline std::vector<std::vector<double>> arrays_of_parts() {
-  std::vector<std::vector<double>> arrays{std::vector<double>(LineInParts::given), std::vector<double>(LineInParts::stored, 0.0),
-                                          std::vector<double>(LineInParts::factors), std::vector<double>(LineInParts::stored, 0.0)};
+  std::vector<std::vector<double>> arrays{
+      std::vector<double>(LineInParts::given), std::vector<double>(LineInParts::stored, 0.0),
+      std::vector<double>(LineInParts::factors), std::vector<double>(LineInParts::stored, 0.0)};
   for (std::size_t i = 0; i < LineInParts::given; ++i) arrays[0][i] = std::sin(1.0 + static_cast<double>(i));
   for (std::size_t i = 0; i < LineInParts::factors; ++i) arrays[2][i] = std::cos(2.0 + static_cast<double>(i));
   return arrays;

@@ -17,7 +17,8 @@ TEST_CASE("parts that are alike become lanes with the same results") {
     const Evaluated expected = evaluate(line.line, arrays_of_parts()), actual = evaluate(*wide, arrays_of_parts());
     CHECK(actual.margin == doctest::Approx(expected.margin).epsilon(1e-14));
     for (const std::size_t array : {1, 3})
-      for (std::size_t i = 0; i < LineInParts::stored; ++i) CHECK(actual.arrays[array][i] == doctest::Approx(expected.arrays[array][i]).epsilon(1e-13));
+      for (std::size_t i = 0; i < LineInParts::stored; ++i)
+        CHECK(actual.arrays[array][i] == doctest::Approx(expected.arrays[array][i]).epsilon(1e-13));
   }
 }
 

@@ -1,7 +1,8 @@
 #include "../processors.hpp"
 #include "lane_systems.hpp"
 
-// Compiled lanes against the reference interpreter, coefficient by coefficient; and against themselves at every width, to the bit.
+// Compiled lanes against the reference interpreter, coefficient by coefficient; and against themselves at every width,
+// to the bit.
 
 namespace {
 
@@ -21,7 +22,8 @@ CompileOptions long_run() {
 
 void check_same(const Expansion& found, const Expansion& expected) {
   CHECK(same_bits(found.quality, expected.quality));
-  for (std::size_t i = 0; i < expected.coefficients.size(); ++i) CHECK(same_bits(found.coefficients[i], expected.coefficients[i]));
+  for (std::size_t i = 0; i < expected.coefficients.size(); ++i)
+    CHECK(same_bits(found.coefficients[i], expected.coefficients[i]));
 }
 
 }  // namespace
@@ -36,12 +38,15 @@ void check_against_interpreter(const Kernel& kernel, const std::vector<Motion>& 
       for (std::size_t j = 0; j < n; ++j) size = std::max(size, std::abs(expected.coefficients[i][k * n + j]));
       for (std::size_t j = 0; j < n; ++j) {
         CAPTURE(k);
-        CHECK(std::abs(found.coefficients[i][k * n + j] - expected.coefficients[i][k * n + j]) <= 1e-13 * static_cast<double>(k + 1) * size);
+        CHECK(std::abs(found.coefficients[i][k * n + j] - expected.coefficients[i][k * n + j]) <=
+              1e-13 * static_cast<double>(k + 1) * size);
       }
     }
 }
 
-TEST_CASE("random programs: compiled lanes agree with interpreted ones and the reference, and with each other at every width to the bit") {
+TEST_CASE(
+    "random programs: compiled lanes agree with interpreted ones and the reference, and with each other at every width "
+    "to the bit") {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     CAPTURE(seed);
     System s;
@@ -52,7 +57,8 @@ TEST_CASE("random programs: compiled lanes agree with interpreted ones and the r
     check_against_interpreter(kernel, motions, found);
     for (std::size_t i = 0; i < motions.size(); ++i)
       check_against_reference(kernel, motions[i], found.coefficients[i], found.quality[i]);
-    // Where a value takes several registers, LLVM's time grows as the square of the program: two short ones are wide enough.
+    // Where a value takes several registers, LLVM's time grows as the square of the program: two short ones are wide
+    // enough.
     if (seed != 3 && seed != 6) continue;
     check_same(expand(kernel, motions, compiled(kernel, 1)), found);
     check_same(expand(kernel, motions, compiled(kernel, 8)), found);
@@ -71,7 +77,8 @@ TEST_CASE("other processors: without AVX-512 the same bits, without fused produc
       options.processor = processor;
       return expand(kernel, motions, compiled(kernel, 4, options));
     };
-    if (has_instruction_set(InstructionSet::Avx2)) check_same(on("x86-64-v3"), expand(kernel, motions, compiled(kernel, 4)));
+    if (has_instruction_set(InstructionSet::Avx2))
+      check_same(on("x86-64-v3"), expand(kernel, motions, compiled(kernel, 4)));
     for (const std::string& level : levels_here({"x86-64-v2"})) check_against_interpreter(kernel, motions, on(level));
   }
 }
@@ -118,7 +125,8 @@ TEST_CASE("compiled lanes give the same bits at every width") {
 }
 
 /// One motion: the expansion as a whole in code, or in rolled code, against the interpreter of packs.
-void check_compiled_workspace(const System& s, const Kernel& kernel, bool as_a_whole, const std::string& processor = {}) {
+void check_compiled_workspace(const System& s, const Kernel& kernel, bool as_a_whole,
+                              const std::string& processor = {}) {
   KernelWorkspace work = compiled_workspace(kernel, order, as_a_whole, processor);
   const auto interpreted = expand(kernel, motions_near(s.start, 5), 1, InstructionSet::Best);
   std::size_t index = 0;
@@ -126,7 +134,8 @@ void check_compiled_workspace(const System& s, const Kernel& kernel, bool as_a_w
     work.set_parameters(m.parameters);
     REQUIRE(work.expand(m.t, m.q, m.v) == KernelStatus::Ok);
     std::vector<double> found;
-    for (int k = 0; k <= order + 1; ++k) found.insert(found.end(), work.coordinate(k), work.coordinate(k) + kernel.freedoms());
+    for (int k = 0; k <= order + 1; ++k)
+      found.insert(found.end(), work.coordinate(k), work.coordinate(k) + kernel.freedoms());
     // The sums run in other orders, and 1/k is a product.
     check_against_reference(kernel, m, found, interpreted.quality[index++] / 4);
   }
@@ -139,7 +148,8 @@ TEST_CASE("one motion compiled: every instruction agrees with the interpreter") 
       CAPTURE(s->name);
       check_compiled_workspace(*s, build_kernel(s->source), as_a_whole);
       if (s->name == "friction")  // no fused products
-        for (const std::string& level : levels_here({"x86-64-v2"})) check_compiled_workspace(*s, build_kernel(s->source), as_a_whole, level);
+        for (const std::string& level : levels_here({"x86-64-v2"}))
+          check_compiled_workspace(*s, build_kernel(s->source), as_a_whole, level);
     }
     for (unsigned seed = 1; seed <= 4; ++seed) {
       CAPTURE(seed);

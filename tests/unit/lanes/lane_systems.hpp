@@ -61,7 +61,8 @@ void add_function(Systems& list, const std::string& name, double q0, const std::
   System& s = add(list, name);
   const Expr q = s.coordinate("q", q0, 0.4), r = s.coordinate("r", 0.2, -0.3), c = s.parameter("c", 0.7);
   const Expr u = q + q * q / Rational(3), rate = s.dot(f(u));
-  s.from_lagrangian(Rational(1, 2) * pow(s.dot(q), 2) + Rational(1, 2) * pow(s.dot(r) + rate, 2) - c * f(u) * (r + Rational(2)));
+  s.from_lagrangian(Rational(1, 2) * pow(s.dot(q), 2) + Rational(1, 2) * pow(s.dot(r) + rate, 2) -
+                    c * f(u) * (r + Rational(2)));
 }
 
 void add_functions(Systems& list) {
@@ -69,9 +70,11 @@ void add_functions(Systems& list) {
     add_function(list, name, q0, [k](Expr u) { return apply(k, u); });
   };
   kind(Kind::Sin, "sin", 0.7), kind(Kind::Cos, "cos", 0.7), kind(Kind::Tan, "tan", 0.4), kind(Kind::Asin, "asin", 0.3);
-  kind(Kind::Acos, "acos", 0.3), kind(Kind::Atan, "atan", 0.6), kind(Kind::Sinh, "sinh", 0.7), kind(Kind::Cosh, "cosh", 0.7);
+  kind(Kind::Acos, "acos", 0.3), kind(Kind::Atan, "atan", 0.6), kind(Kind::Sinh, "sinh", 0.7),
+      kind(Kind::Cosh, "cosh", 0.7);
   kind(Kind::Tanh, "tanh", 0.5), kind(Kind::Asinh, "asinh", 0.5), kind(Kind::Acosh, "acosh", 1.5);
-  kind(Kind::Atanh, "atanh", 0.3), kind(Kind::Exp, "exp", 0.9), kind(Kind::Log, "log", 1.1), kind(Kind::Erf, "erf", 0.5);
+  kind(Kind::Atanh, "atanh", 0.3), kind(Kind::Exp, "exp", 0.9), kind(Kind::Log, "log", 1.1),
+      kind(Kind::Erf, "erf", 0.5);
   kind(Kind::LambertW, "lambert_w", 0.6);
   for (const auto& [p, d] : std::vector<std::pair<int, int>>{{2, 1}, {5, 1}, {-1, 1}, {-3, 1}, {1, 2}, {-3, 2}})
     add_function(list, "power " + std::to_string(p) + "/" + std::to_string(d), 0.9,
@@ -131,7 +134,8 @@ void add_undefined_operand(Systems& list) {
 void add_friction(Systems& list) {
   System& s = add(list, "friction");
   const Expr x = s.coordinate("x", 0.7, -0.4), y = s.coordinate("y", -0.3, 0.9), c = s.parameter("c", 0.6);
-  s.source.residual = {s.acceleration("x") + c * (s.dot(x) - s.dot(y)) + sin(x), 2 * s.acceleration("y") + c * (s.dot(y) - s.dot(x)) + sin(y)};
+  s.source.residual = {s.acceleration("x") + c * (s.dot(x) - s.dot(y)) + sin(x),
+                       2 * s.acceleration("y") + c * (s.dot(y) - s.dot(x)) + sin(y)};
 }
 
 /// Its equation holds derivatives of a function of t alone, which are found stages ahead.
@@ -148,8 +152,8 @@ void add_mixed_angles(Systems& list) {
   System& s = add(list, "mixed angles");
   const Expr x = s.coordinate("x", 0.4, 0.3), y = s.coordinate("y", -0.6, 0.5), c = s.parameter("c", 0.8);
   const Expr first = x - y, second = y + s.context.time();
-  s.from_lagrangian(Rational(1, 2) * (pow(s.dot(x), 2) + pow(s.dot(y), 2)) + pow(s.dot(sin(first) * c), 2) + pow(s.dot(sin(second)), 2) -
-                    cos(first) * sin(second));
+  s.from_lagrangian(Rational(1, 2) * (pow(s.dot(x), 2) + pow(s.dot(y), 2)) + pow(s.dot(sin(first) * c), 2) +
+                    pow(s.dot(sin(second)), 2) - cos(first) * sin(second));
   s.start.t = 0.2;
 }
 
@@ -163,17 +167,28 @@ class RandomExpressions {
     const Expr x = make(depth - 1), y = make(depth - 1 - static_cast<int>(random_() % static_cast<unsigned>(depth)));
     const Expr two = x.context().number(2);
     switch (random_() % 11) {
-      case 0: return x + Rational(1, 3) * y;
-      case 1: return x * y;
-      case 2: return x * x - y;
-      case 3: return sin(x) - cos(y);
-      case 4: return x / (two + y * y);
-      case 5: return sqrt(two + x * x);
-      case 6: return pow(two + x * x, Rational(-3, 2)) * y;
-      case 7: return apply(Kind::Tanh, x) + apply(Kind::Atan, y);
-      case 8: return apply(Kind::Exp, sin(x));
-      case 9: return apply(Kind::Log, two + x * x) - y;
-      default: return apply(Kind::Cosh, sin(x)) * y;
+      case 0:
+        return x + Rational(1, 3) * y;
+      case 1:
+        return x * y;
+      case 2:
+        return x * x - y;
+      case 3:
+        return sin(x) - cos(y);
+      case 4:
+        return x / (two + y * y);
+      case 5:
+        return sqrt(two + x * x);
+      case 6:
+        return pow(two + x * x, Rational(-3, 2)) * y;
+      case 7:
+        return apply(Kind::Tanh, x) + apply(Kind::Atan, y);
+      case 8:
+        return apply(Kind::Exp, sin(x));
+      case 9:
+        return apply(Kind::Log, two + x * x) - y;
+      default:
+        return apply(Kind::Cosh, sin(x)) * y;
     }
   }
 
@@ -221,7 +236,8 @@ class RandomExpressions {
 }
 
 /// One motion by machine code: rolled, or straight-line code where the program is small and `long_run` asks for it.
-[[maybe_unused]] KernelWorkspace compiled_workspace(const Kernel& kernel, int orders, bool long_run, const std::string& processor) {
+[[maybe_unused]] KernelWorkspace compiled_workspace(const Kernel& kernel, int orders, bool long_run,
+                                                    const std::string& processor) {
   KernelWorkspace work(kernel, orders);
   CompileOptions options;
   options.cache = false;
@@ -238,13 +254,16 @@ struct Expansion {
 };
 
 void place(LaneWorkspace& work, int lane, const Motion& m) {
-  const auto at = [&](std::size_t i) { return i * static_cast<std::size_t>(work.width()) + static_cast<std::size_t>(lane); };
+  const auto at = [&](std::size_t i) {
+    return i * static_cast<std::size_t>(work.width()) + static_cast<std::size_t>(lane);
+  };
   work.set_parameters(lane, m.parameters);
   work.time()[lane] = m.t;
   for (std::size_t i = 0; i < m.q.size(); ++i) work.coordinate(0)[at(i)] = m.q[i], work.coordinate(1)[at(i)] = m.v[i];
 }
 
-Expansion expand(const Kernel& kernel, const std::vector<Motion>& motions, std::shared_ptr<const LaneExpansion> expansion) {
+Expansion expand(const Kernel& kernel, const std::vector<Motion>& motions,
+                 std::shared_ptr<const LaneExpansion> expansion) {
   const int width = expansion->width();
   LaneWorkspace work(kernel, order, std::move(expansion));
   Expansion out;
@@ -264,7 +283,8 @@ Expansion expand(const Kernel& kernel, const std::vector<Motion>& motions, std::
   return out;
 }
 
-[[maybe_unused]] Expansion expand(const Kernel& kernel, const std::vector<Motion>& motions, int width, InstructionSet set) {
+[[maybe_unused]] Expansion expand(const Kernel& kernel, const std::vector<Motion>& motions, int width,
+                                  InstructionSet set) {
   return expand(kernel, motions, interpreted_lanes(kernel, width, set));
 }
 
@@ -273,7 +293,8 @@ Expansion expand(const Kernel& kernel, const std::vector<Motion>& motions, std::
 }
 
 /// Rounding errors, which the solve magnifies by as much as the mass matrix is ill-conditioned.
-[[maybe_unused]] void check_against_reference(const Kernel& kernel, const Motion& m, const std::vector<double>& found, double quality) {
+[[maybe_unused]] void check_against_reference(const Kernel& kernel, const Motion& m, const std::vector<double>& found,
+                                              double quality) {
   KernelWorkspace work(kernel, order);
   work.set_parameters(m.parameters);
   REQUIRE(work.expand(m.t, m.q, m.v) == KernelStatus::Ok);
@@ -284,7 +305,8 @@ Expansion expand(const Kernel& kernel, const std::vector<Motion>& motions, std::
     for (std::size_t i = 0; i < n; ++i) {
       CAPTURE(k);
       CAPTURE(i);
-      CHECK(std::abs(found[static_cast<std::size_t>(k) * n + i] - work.coordinate(k)[i]) <= 1e-14 * (k + 1) * size / quality);
+      CHECK(std::abs(found[static_cast<std::size_t>(k) * n + i] - work.coordinate(k)[i]) <=
+            1e-14 * (k + 1) * size / quality);
     }
   }
 }

@@ -1,7 +1,7 @@
 #include "lane_systems.hpp"
 
-// Lanes against the reference interpreter, coefficient by coefficient; and against themselves at every width and on every
-// instruction set, to the bit.
+// Lanes against the reference interpreter, coefficient by coefficient; and against themselves at every width and on
+// every instruction set, to the bit.
 
 TEST_CASE("every instruction in lanes agrees with the reference interpreter") {
   for (const auto& system : systems()) {
@@ -23,8 +23,10 @@ namespace {
 std::vector<InstructionSet> sets_here() {
   std::vector<InstructionSet> out{InstructionSet::Baseline};
   for (const auto& [set, name] : {std::pair{InstructionSet::Avx2, "AVX2"}, {InstructionSet::Avx512, "AVX-512"}})
-    if (has_instruction_set(set)) out.push_back(set);
-    else MESSAGE("skipped: this processor has no ", name);
+    if (has_instruction_set(set))
+      out.push_back(set);
+    else
+      MESSAGE("skipped: this processor has no ", name);
   return out;
 }
 
@@ -43,7 +45,8 @@ TEST_CASE("lanes give the same bits at every width and on every instruction set"
         CAPTURE(static_cast<int>(set));
         const Expansion found = expand(kernel, motions, width, set);
         CHECK(same_bits(found.quality, expected.quality));
-        for (std::size_t i = 0; i < motions.size(); ++i) CHECK(same_bits(found.coefficients[i], expected.coefficients[i]));
+        for (std::size_t i = 0; i < motions.size(); ++i)
+          CHECK(same_bits(found.coefficients[i], expected.coefficients[i]));
       }
     }
   }
@@ -57,7 +60,8 @@ TEST_CASE("sine and cosine in lanes are right to one unit in the last place, for
   std::vector<Motion> motions;
   const auto with_angle = [&](double angle) { motions.push_back({0, {angle, angle}, {0, 0}, {}}); };
   for (int i = -2000; i <= 2000; ++i) with_angle(i * 0.00371 + 1e-9 * i * i);
-  for (int i = 0; i < 1000; ++i) with_angle(i * (std::acos(-1.0) / 2)), with_angle(-i * 3.14159265358979), with_angle(i * 1e3 + 0.1);
+  for (int i = 0; i < 1000; ++i)
+    with_angle(i * (std::acos(-1.0) / 2)), with_angle(-i * 3.14159265358979), with_angle(i * 1e3 + 0.1);
   for (const double big : {1048575.9, 1048576.0, 1e9, -3e15, 1e22, 1e-300, -0.0}) with_angle(big);
   const Expansion found = expand(kernel, motions, 8, InstructionSet::Best);
   double worst = 0;
@@ -92,7 +96,8 @@ TEST_CASE("the quality is the smallest pivot of the scaled mass matrix") {
   const auto quality_of = [](double coupling) {
     System s;  // M = [1 c; c 1] and [4 2c; 2c 1]: pivots 1 and 1 − c², whatever the units
     const Expr x = s.coordinate("x", 0.1, 0), y = s.coordinate("y", 0.2, 0), c = s.parameter("c", coupling);
-    s.from_lagrangian(Rational(2) * pow(s.dot(x), 2) + Rational(1, 2) * pow(s.dot(y), 2) + Rational(2) * c * s.dot(x) * s.dot(y) - x * y);
+    s.from_lagrangian(Rational(2) * pow(s.dot(x), 2) + Rational(1, 2) * pow(s.dot(y), 2) +
+                      Rational(2) * c * s.dot(x) * s.dot(y) - x * y);
     return expand(build_kernel(s.source), {s.start}, 1, InstructionSet::Best).quality[0];
   };
   CHECK(quality_of(0) == 1);

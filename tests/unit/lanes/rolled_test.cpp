@@ -21,7 +21,8 @@ void add_damped_chain(Systems& list, int links) {
     before = rate;
     s.start.q[i] = 2 + 0.5 * static_cast<double>(i) / links, s.start.v[i] = 0.1 * static_cast<double>(i % 3);
   }
-  s.source.residual.back() = s.source.residual.back() - sin(Rational(2) * s.context.time()) * cos(s.source.coordinates.back());
+  s.source.residual.back() =
+      s.source.residual.back() - sin(Rational(2) * s.context.time()) * cos(s.source.coordinates.back());
   s.source.integrands = {pow(s.dot(s.source.coordinates.back()), 2) * c};
 }
 
@@ -40,7 +41,8 @@ void add_rods(Systems& list, int rods) {
     const Expr length = pow(x - before_x, 2) + pow(y - before_y, 2) - l * l;
     s.source.multipliers.push_back(multiplier);
     s.source.constraints.push_back({length, 0, "rod " + number});
-    lagrangian = lagrangian + Rational(1, 2) * m * (pow(s.dot(x), 2) + pow(s.dot(y), 2)) - m * g * y + multiplier * length;
+    lagrangian =
+        lagrangian + Rational(1, 2) * m * (pow(s.dot(x), 2) + pow(s.dot(y), 2)) - m * g * y + multiplier * length;
     before_x = x, before_y = y;
   }
   s.from_lagrangian(lagrangian);
@@ -76,7 +78,8 @@ double difference(const KernelWorkspace& found, const KernelWorkspace& expected,
   return worst / size / (0x1p-52 * (k + 1));
 }
 
-KernelWorkspace rolled_workspace(const Kernel& kernel, bool long_run = false, const std::string& processor = {}, int orders = rolled_order) {
+KernelWorkspace rolled_workspace(const Kernel& kernel, bool long_run = false, const std::string& processor = {},
+                                 int orders = rolled_order) {
   return compiled_workspace(kernel, orders, long_run, processor);
 }
 
@@ -90,13 +93,15 @@ void make_larger(System& s, int oscillators) {
 }
 
 /// `tolerance`: in units of rounding errors, which the solution magnifies.
-void check_rolled(const System& s, double tolerance, bool long_run = false, const std::string& processor = {}, int orders = rolled_order) {
+void check_rolled(const System& s, double tolerance, bool long_run = false, const std::string& processor = {},
+                  int orders = rolled_order) {
   CAPTURE(s.name);
   CAPTURE(orders);
   const Kernel kernel = build_kernel(s.source);
   KernelWorkspace rolled = rolled_workspace(kernel, long_run, processor, orders), engine(kernel, orders);
   const std::size_t unknowns = kernel.freedoms() + kernel.constraints();
-  for (const Motion& m : s.source.constraints.empty() ? motions_near(s.start, 3) : std::vector<Motion>{s.start, s.start}) {
+  for (const Motion& m :
+       s.source.constraints.empty() ? motions_near(s.start, 3) : std::vector<Motion>{s.start, s.start}) {
     rolled.set_parameters(m.parameters), engine.set_parameters(m.parameters);
     REQUIRE(engine.expand(m.t, m.q, m.v) == KernelStatus::Ok);
     CHECK(rolled.expand(m.t, m.q, m.v) == KernelStatus::Ok);
@@ -118,7 +123,9 @@ TEST_CASE("rolled code: chains of many links, damped and pushed") {
   for (const auto& s : list) check_rolled(*s, 1000), check_rolled(*s, 1000, true);
 }
 
-TEST_CASE("rolled code: every instruction, in systems too large to be written out, solved by a matrix and by its sparse factors") {
+TEST_CASE(
+    "rolled code: every instruction, in systems too large to be written out, solved by a matrix and by its sparse "
+    "factors") {
   for (const int oscillators : {9, 16}) {  // 11 unknowns are written out in long runs
     Systems list = systems();
     for (unsigned seed = 1; seed <= 6; ++seed) make_random(add(list, "random " + std::to_string(seed)), seed);
@@ -146,8 +153,10 @@ TEST_CASE("rolled code: all stages in one loop, where nothing is asked for besid
     s->source.integrands.clear(), s->source.events.clear(), s->source.observables.clear();
     check_rolled(*s, 1000, true);
   }
-  for (const int orders : {1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 13}) check_rolled(*list[1], 1000, true, {}, orders), check_rolled(*list[4], 1000, true, {}, orders);
-  for (const std::string& processor : levels_here({"x86-64", "x86-64-v3"})) check_rolled(*list[1], 1000, true, processor), check_rolled(*list[6], 1000, true, processor);
+  for (const int orders : {1, 2, 3, 4, 5, 6, 7, 8, 9, 12, 13})
+    check_rolled(*list[1], 1000, true, {}, orders), check_rolled(*list[4], 1000, true, {}, orders);
+  for (const std::string& processor : levels_here({"x86-64", "x86-64-v3"}))
+    check_rolled(*list[1], 1000, true, processor), check_rolled(*list[6], 1000, true, processor);
 }
 
 TEST_CASE("rolled code: M that becomes unsymmetric with a parameter, at a state of no forces") {
@@ -158,7 +167,8 @@ TEST_CASE("rolled code: M that becomes unsymmetric with a parameter, at a state 
     for (int i = 0; i < count; ++i) {
       const std::string word = "q" + std::to_string(i);
       const Expr q = s.coordinate(word, 0, i == 4 ? 1 : 0);
-      s.source.residual.push_back(Rational(2) * s.acceleration(word) + q + (i > 0 ? c * s.acceleration("q" + std::to_string(i - 1)) : c * Rational(0)));
+      s.source.residual.push_back(Rational(2) * s.acceleration(word) + q +
+                                  (i > 0 ? c * s.acceleration("q" + std::to_string(i - 1)) : c * Rational(0)));
     }
     const Kernel kernel = build_kernel(s.source);
     KernelWorkspace rolled = rolled_workspace(kernel, true), engine(kernel, rolled_order);
@@ -167,7 +177,8 @@ TEST_CASE("rolled code: M that becomes unsymmetric with a parameter, at a state 
       rolled.set_parameters({{value}}), engine.set_parameters({{value}});
       REQUIRE(engine.expand(0, s.start.q, s.start.v) == KernelStatus::Ok);
       REQUIRE(rolled.expand(0, s.start.q, s.start.v) == KernelStatus::Ok);
-      for (int k = 2; k <= rolled_order + 1; ++k) CHECK(difference(rolled, engine, static_cast<std::size_t>(count), k) <= 1000);
+      for (int k = 2; k <= rolled_order + 1; ++k)
+        CHECK(difference(rolled, engine, static_cast<std::size_t>(count), k) <= 1000);
       double before = 0;  // 2 a_i + q_i + c a_{i−1} = 0
       for (std::size_t i = 0; i < s.start.q.size(); ++i) {
         before = -(s.start.q[i] + value * before) / 2;
@@ -179,7 +190,8 @@ TEST_CASE("rolled code: M that becomes unsymmetric with a parameter, at a state 
 
 TEST_CASE("rolled code: an expansion that is not finite leaves nothing behind") {
   Systems list;
-  System& s = add(list, "points on a line by the distances between them");  // sums of coordinates up, and of what moves them down
+  System& s = add(
+      list, "points on a line by the distances between them");  // sums of coordinates up, and of what moves them down
   Expr x = s.context.number(0), lagrangian = x;
   for (int i = 0; i < 19; ++i) {
     x = x + s.coordinate("q" + std::to_string(i), 0.1 + 0.01 * i, 0.3 - 0.02 * i);
@@ -252,5 +264,6 @@ TEST_CASE("rolled code for other processors") {
   add_damped_chain(list, 9);
   add_rods(list, 3);
   for (const auto& s : list)
-    for (const std::string& processor : levels_here({"x86-64", "x86-64-v3"})) check_rolled(*s, 1000, false, processor), check_rolled(*s, 1000, true, processor);
+    for (const std::string& processor : levels_here({"x86-64", "x86-64-v3"}))
+      check_rolled(*s, 1000, false, processor), check_rolled(*s, 1000, true, processor);
 }

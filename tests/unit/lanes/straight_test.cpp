@@ -4,8 +4,8 @@
 
 #include <array>
 
-// One motion in straight-line code, the whole expansion at once, against the engine of packs: coefficients, M, and what a step asks of the rows besides.
-// compiled_lanes_test.cpp has every instruction.
+// One motion in straight-line code, the whole expansion at once, against the engine of packs: coefficients, M, and what
+// a step asks of the rows besides. compiled_lanes_test.cpp has every instruction.
 
 namespace {
 
@@ -22,12 +22,15 @@ void expand_both(KernelWorkspace& code, KernelWorkspace& engine, const Motion& m
   REQUIRE(engine.expand(m.t, m.q, m.v) == KernelStatus::Ok);
 }
 
-/// What bounds on disks read at the centre: every value, and the first coefficients of what is differentiated. Sums that hold q̈ and enter R alone, R itself too,
-/// may be left as they were before q̈ was there: no product reads them, and their rounding is bounded by that of their terms.
+/// What bounds on disks read at the centre: every value, and the first coefficients of what is differentiated. Sums
+/// that hold q̈ and enter R alone, R itself too, may be left as they were before q̈ was there: no product reads them, and
+/// their rounding is bounded by that of their terms.
 void check_centre(const KernelWorkspace& code, const KernelWorkspace& engine) {
   const Program& program = engine.program();
   const auto check = [&](Slot slot, int k) {
-    if (slot == no_slot || (slot >= program.stored_end[2] && program.lags[slot] - k == 2 && program.tangent_lags[slot] != Program::unmoved)) return;
+    if (slot == no_slot || (slot >= program.stored_end[2] && program.lags[slot] - k == 2 &&
+                            program.tangent_lags[slot] != Program::unmoved))
+      return;
     CAPTURE(slot);
     CHECK(code.coordinate(k)[slot] == doctest::Approx(engine.coordinate(k)[slot]).epsilon(1e-11).scale(100));
   };
@@ -35,21 +38,25 @@ void check_centre(const KernelWorkspace& code, const KernelWorkspace& engine) {
     for (std::uint32_t at = run.first; at < run.last; ++at) {
       const Instruction& i = program.instructions[at];
       check(i.out, 0), check(i.second, 0);
-      for (std::uint32_t t = i.first_term; t < i.last_term; ++t) check(program.terms[t].a, static_cast<int>(program.terms[t].shift));
+      for (std::uint32_t t = i.first_term; t < i.last_term; ++t)
+        check(program.terms[t].a, static_cast<int>(program.terms[t].shift));
     }
 }
 
 /// Rounding errors are magnified by functions near their singularities and by the solution.
-void check_coefficients(const KernelWorkspace& code, const KernelWorkspace& engine, std::size_t n, double tolerance, int orders = straight_order) {
+void check_coefficients(const KernelWorkspace& code, const KernelWorkspace& engine, std::size_t n, double tolerance,
+                        int orders = straight_order) {
   for (int k = 0; k <= orders + 1; ++k) {
     CAPTURE(k);
     double size = 1e-300;
     for (std::size_t i = 0; i < n; ++i) size = std::max(size, std::abs(engine.coordinate(k)[i]));
-    for (std::size_t i = 0; i < n; ++i) CHECK(std::abs(code.coordinate(k)[i] - engine.coordinate(k)[i]) <= tolerance * (k + 1) * epsilon * size);
+    for (std::size_t i = 0; i < n; ++i)
+      CHECK(std::abs(code.coordinate(k)[i] - engine.coordinate(k)[i]) <= tolerance * (k + 1) * epsilon * size);
   }
   check_centre(code, engine);
   for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j) CHECK(code.mass(i, j) == doctest::Approx(engine.mass(i, j)).epsilon(1e-12).scale(1e-12));
+    for (std::size_t j = 0; j < n; ++j)
+      CHECK(code.mass(i, j) == doctest::Approx(engine.mass(i, j)).epsilon(1e-12).scale(1e-12));
 }
 
 /// The definition of KernelWorkspace::radius, term by term.
@@ -60,7 +67,8 @@ double radius_by_definition(const KernelWorkspace& work, std::size_t n, double h
     double size = epsilon * std::abs(work.coordinate(0)[i]) / h;
     for (int k = 0; k <= 3; ++k) size = std::max(size, speed(k) * std::pow(h, k));
     for (int k = straight_order - 5; k <= straight_order; ++k)
-      if (speed(k) > 0) least = std::min(least, std::pow(size / speed(k), 1.0 / k) * (k < straight_order - 1 ? 1.25 : 1));
+      if (speed(k) > 0)
+        least = std::min(least, std::pow(size / speed(k), 1.0 / k) * (k < straight_order - 1 ? 1.25 : 1));
   }
   return least;
 }
@@ -74,7 +82,8 @@ std::array<std::vector<double>, 2> increments_of(const KernelWorkspace& work, st
 /// Both ways to the radius, and increments against Horner's rule.
 void check_step(const KernelWorkspace& code, const KernelWorkspace& engine, std::size_t n) {
   const double h = 0.1 * radius_by_definition(engine, n, 0.1);
-  for (const KernelWorkspace* work : {&code, &engine}) CHECK(work->radius(h) == doctest::Approx(radius_by_definition(*work, n, h)).epsilon(2e-4));
+  for (const KernelWorkspace* work : {&code, &engine})
+    CHECK(work->radius(h) == doctest::Approx(radius_by_definition(*work, n, h)).epsilon(2e-4));
   for (const double tau : {h, -0.3 * h})
     for (const KernelWorkspace* work : {&code, &engine}) {
       const auto [dq, dv] = increments_of(*work, n, tau);

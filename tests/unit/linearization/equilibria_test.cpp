@@ -157,13 +157,16 @@ TEST_CASE("What has no equilibrium says so") {
   const auto first_code = [](Linearized& m, bool at) {
     Diagnostics told;
     const std::vector<StartValue> one{{0, 0, m.number(0.3), {}}};
-    const bool found = at ? modal_study_at(m.at, m.start, one, told).has_value() : modal_study(m.at, m.start, told).has_value();
+    const bool found =
+        at ? modal_study_at(m.at, m.start, one, told).has_value() : modal_study(m.at, m.start, told).has_value();
     CHECK_FALSE(found);
     return told.items().empty() ? std::string() : told.items()[0].code;
   };
   Linearized fall("system fall\nparam m = 1 kg, g = 9.81 m/s^2\ncoord z : length\nT = 1/2 m z'^2\nV = m g z\n");
   CHECK(first_code(fall, false) == "E1301");
-  Linearized driven("system driven\nparam m = 1 kg, k = 1 N/m, F = 1 N, w = 2 rad/s\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\nforce x = F cos(w t)\n");
+  Linearized driven(
+      "system driven\nparam m = 1 kg, k = 1 N/m, F = 1 N, w = 2 rad/s\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k "
+      "x^2\nforce x = F cos(w t)\n");
   CHECK(first_code(driven, false) == "E1303");
   Linearized pendulum(double_pendulum);
   CHECK(first_code(pendulum, true) == "E1302");
@@ -193,7 +196,8 @@ TEST_CASE("An equilibrium on a kink has the stiffness of each side, never one th
   CHECK(study.entries[1].side == "x < 0");
   CHECK(frequencies(study.entries[1].analysis) == std::vector<double>{1});
   // Pieces that agree to second order are one side; so does a kink elsewhere.
-  for (const char* smooth : {"V = 1/2 x^2 + max(x, 0)^3", "V = 1/2 x^2 + max(x - 1, 0)", "V = 1/2 x^2\nD = abs(x')^3"}) {
+  for (const char* smooth :
+       {"V = 1/2 x^2 + max(x, 0)^3", "V = 1/2 x^2 + max(x - 1, 0)", "V = 1/2 x^2\nD = abs(x')^3"}) {
     Linearized same(std::string("dimensionless\ncoord x : number\nT = 1/2 x'^2\n") + smooth + "\n");
     const ModalStudy one = same.study();
     REQUIRE(one.entries.size() == 1);
@@ -203,7 +207,8 @@ TEST_CASE("An equilibrium on a kink has the stiffness of each side, never one th
 }
 
 TEST_CASE("Rest where a force jumps has no linearization") {
-  for (const char* text : {"V = abs(x)", "V = 1/2 x^2 + abs(x)", "V = 1/2 x^2\nD = abs(x')", "V = 1/2 x^2\nforce x = -sign(x')"}) {
+  for (const char* text :
+       {"V = abs(x)", "V = 1/2 x^2 + abs(x)", "V = 1/2 x^2\nD = abs(x')", "V = 1/2 x^2\nforce x = -sign(x')"}) {
     Linearized m(std::string("dimensionless\ncoord x : number\nT = 1/2 x'^2\n") + text + "\n");
     Diagnostics diagnostics;
     CHECK_FALSE(modal_study(m.at, m.start, diagnostics));

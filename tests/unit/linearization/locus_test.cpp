@@ -56,7 +56,9 @@ TEST_CASE("Formulas of the linearization") {
     CHECK(to_plain(s->equilibrium[0].first, m.equations.order) == "cos θ");
     // ω² = Ω² − g²/(R² Ω²)
     const Expr w = m.p("Ω"), g = m.p("g"), R = m.p("R");
-    CHECK(zero_test(s->square - (pow(w, Rational(2)) - pow(g, Rational(2)) / (pow(R, Rational(2)) * pow(w, Rational(2))))).verdict == Verdict::Zero);
+    CHECK(
+        zero_test(s->square - (pow(w, Rational(2)) - pow(g, Rational(2)) / (pow(R, Rational(2)) * pow(w, Rational(2)))))
+            .verdict == Verdict::Zero);
   }
   CHECK(tilted == 2);
 }
@@ -82,7 +84,9 @@ start r = 1.1 m
 }
 
 TEST_CASE("A part of π that it is only for these numbers is not taken for the formula") {
-  Linearized m("system twist\nparam J = 1 kg m^2, k = 1 N m, τ = 0.78539816339744830962 N m\ncoord θ : angle\nT = 1/2 J θ'^2\nV = 1/2 k θ^2 - τ θ\n");
+  Linearized m(
+      "system twist\nparam J = 1 kg m^2, k = 1 N m, τ = 0.78539816339744830962 N m\ncoord θ : angle\nT = 1/2 J θ'^2\nV "
+      "= 1/2 k θ^2 - τ θ\n");
   const ModalStudy study = m.study();
   const auto s = symbolic_linearization(m.equations, study.entries.at(0).linearization, study.translations);
   REQUIRE(s);

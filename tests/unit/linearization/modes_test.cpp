@@ -50,7 +50,8 @@ V = k ((x2 - x1)^2 + (x3 - x2)^2)/2
 }
 
 TEST_CASE("Degenerate modes are told") {
-  Linearized m("system plane\nparam m = 1 kg, k = 4 N/m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = 1/2 k (x^2 + y^2)\n");
+  Linearized m(
+      "system plane\nparam m = 1 kg, k = 4 N/m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = 1/2 k (x^2 + y^2)\n");
   const ModalEntry e = m.here();
   REQUIRE(e.analysis.modes.size() == 2);
   CHECK(e.analysis.modes[0].multiplicity == 2);
@@ -99,7 +100,9 @@ L = T - V + m W (x y' - y x')
 }
 
 TEST_CASE("A charge in a magnetic field: gyration, and zeros that do not drift") {
-  Linearized m("system charge\nparam m = 2 kg, B = 6 kg/s\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nL = T + 1/2 B (x y' - y x')\n");
+  Linearized m(
+      "system charge\nparam m = 2 kg, B = 6 kg/s\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nL = T + 1/2 B (x y' - "
+      "y x')\n");
   const ModalEntry e = m.here();
   const auto w = frequencies(e.analysis);
   REQUIRE(w.size() == 1);
@@ -135,7 +138,8 @@ param A = 2 kg m^2, C = 1 kg m^2, h = 3 N m
 coord α, β, ψ : angle
 T = 1/2 A (α'^2 cos^2 β + β'^2) + 1/2 C (ψ' + α' sin β)^2
 V = h cos α cos β
-start ψ' = )" + std::to_string(spin) + " rad/s\n";
+start ψ' = )" +
+         std::to_string(spin) + " rad/s\n";
 }
 
 }  // namespace
@@ -168,7 +172,8 @@ T = m (x'^2 + y'^2 + Z'^2)/2 + m r^2 (u1^2 + 2 u2^2 + u3^2)/8
 V = m g Z
 constraint x' - r (u2 cos q1 + u1 sin q1 cos q2) = 0
 constraint y' - r (u2 sin q1 - u1 cos q1 cos q2) = 0
-start x' = )" + std::to_string(spin) + " m/s, q3' = " + std::to_string(spin) + " rad/s\n";
+start x' = )" +
+           std::to_string(spin) + " m/s, q3' = " + std::to_string(spin) + " rad/s\n";
   };
   Linearized fast(disc(0.8));
   const ModalEntry rolling = fast.here({4});
@@ -189,10 +194,12 @@ TEST_CASE("A long chain of masses: 2 √(k/m) sin(j π/(2n + 2))") {
   for (int i = 1; i <= n; ++i) {
     text += (i > 1 ? ", x" : "x") + std::to_string(i);
     t += (i > 1 ? " + x" : "x") + std::to_string(i) + "'^2";
-    v += i < n ? " + (x" + std::to_string(i + 1) + " - x" + std::to_string(i) + ")^2" : " + x" + std::to_string(n) + "^2";
+    v += i < n ? " + (x" + std::to_string(i + 1) + " - x" + std::to_string(i) + ")^2"
+               : " + x" + std::to_string(n) + "^2";
   }
   Linearized m(text + " : number\nT = 1/2 (" + t + ")\nV = k/2 (" + v + ")\n");
   const auto w = frequencies(m.here().analysis);
   REQUIRE(w.size() == n);
-  for (int j = 1; j <= n; ++j) CHECK(near(w[static_cast<std::size_t>(j - 1)], 2 * std::sin(j * std::numbers::pi / (2 * n + 2)), 1e-12));
+  for (int j = 1; j <= n; ++j)
+    CHECK(near(w[static_cast<std::size_t>(j - 1)], 2 * std::sin(j * std::numbers::pi / (2 * n + 2)), 1e-12));
 }

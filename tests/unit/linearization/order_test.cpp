@@ -6,19 +6,24 @@ using namespace maupertuis;
 namespace {
 
 std::string pendulum_from(const char* start) {
-  return std::string("system pendulum\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ1, θ2 : angle\n"
-                     "V = -m g l (cos θ1 + cos θ2)\nT = 1/2 m l^2 (θ1'^2 + θ2'^2)\nstart θ1 = ") + start + "\n";
+  return std::string(
+             "system pendulum\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ1, θ2 : angle\n"
+             "V = -m g l (cos θ1 + cos θ2)\nT = 1/2 m l^2 (θ1'^2 + θ2'^2)\nstart θ1 = ") +
+         start + "\n";
 }
 
 /// A potential of r in the plane, in units of 1 m and 1 J, given in `s` = r².
 std::string in_the_plane(const char* potential, const char* start) {
-  return std::string("system troughs\nparam m = 1 kg, a = 1 m, E = 1 J\ncoord x, y : length\n"
-                     "let s = (x^2 + y^2)/a^2\nT = 1/2 m (x'^2 + y'^2)\nV = E ") + potential + "\nstart " + start + "\n";
+  return std::string(
+             "system troughs\nparam m = 1 kg, a = 1 m, E = 1 J\ncoord x, y : length\n"
+             "let s = (x^2 + y^2)/a^2\nT = 1/2 m (x'^2 + y'^2)\nV = E ") +
+         potential + "\nstart " + start + "\n";
 }
 
 std::vector<double> radii(const ModalStudy& study) {
   std::vector<double> out;
-  for (const ModalEntry& e : study.entries) out.push_back(std::hypot(e.equilibrium.point.q[0], e.equilibrium.point.q[1]));
+  for (const ModalEntry& e : study.entries)
+    out.push_back(std::hypot(e.equilibrium.point.q[0], e.equilibrium.point.q[1]));
   return out;
 }
 
@@ -29,7 +34,7 @@ TEST_CASE("The equilibrium nearest to the start comes first, the others by energ
   const ModalStudy from_low = low.study();
   REQUIRE(from_low.entries.size() == 4);
   CHECK(point_text(*low.system, from_low.entries[0].equilibrium, {}) == "θ1 = 0, θ2 = 0");
-  Linearized high(pendulum_from("-3 rad"));   // the shorter way to π goes through −π
+  Linearized high(pendulum_from("-3 rad"));  // the shorter way to π goes through −π
   const ModalStudy from_high = high.study();
   REQUIRE(from_high.entries.size() == 4);
   CHECK(point_text(*high.system, from_high.entries[0].equilibrium, {}) == "θ1 = π, θ2 = 0");
@@ -45,7 +50,7 @@ TEST_CASE("A ring of equilibria is one family, and two rings are two") {
   CHECK(near(std::hypot(first.point.q[0], first.point.q[1]), 1, 1e-9));
   CHECK(first.family == 1);
   CHECK(first.family_along == std::vector<std::size_t>{0, 1});
-  CHECK(std::abs(first.point.q[1]) < 0.3);   // the member near the start
+  CHECK(std::abs(first.point.q[1]) < 0.3);  // the member near the start
   CHECK(ring.entries[1].equilibrium.family == 0);
   // Minima at r = 1 and 2 of one energy, a ridge between them at r² = 5/2, and the hill in the middle.
   Linearized two(in_the_plane("(s - 1)^2 (s - 4)^2", "x = 1.9 m, y = 0 m"));
@@ -61,8 +66,9 @@ TEST_CASE("A ring of equilibria is one family, and two rings are two") {
 }
 
 TEST_CASE("A potential that repeats in a length: those near the start are shown, the others counted") {
-  Linearized m("system lattice\nparam m = 1 kg, E = 1 J, a = 1 m\ncoord x : length\nT = 1/2 m x'^2\n"
-               "V = E cos(2 pi x/a) + E (x/a)^2/10^5\nstart x = 0.4 m\n");
+  Linearized m(
+      "system lattice\nparam m = 1 kg, E = 1 J, a = 1 m\ncoord x : length\nT = 1/2 m x'^2\n"
+      "V = E cos(2 pi x/a) + E (x/a)^2/10^5\nstart x = 0.4 m\n");
   const ModalStudy study = m.study();
   REQUIRE(study.entries.size() > 2);
   CHECK(near(study.entries[0].equilibrium.point.q[0], 0.5, 1e-3));

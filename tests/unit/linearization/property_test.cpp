@@ -6,12 +6,14 @@ using namespace maupertuis;
 
 namespace {
 
-/// Three coordinates, M = 1 + small couplings, K of any sign, damping, gyroscopic and follower forces: coefficients in tenths.
+/// Three coordinates, M = 1 + small couplings, K of any sign, damping, gyroscopic and follower forces: coefficients in
+/// tenths.
 std::string random_system() {
   const auto tenth = [](int low, int high) { return "(" + std::to_string(*rc::gen::inRange(low, high)) + "/10)"; };
   std::string text = "system random\ndimensionless\ncoord x, y, z : number\n";
   text += "T = 1/2 (x'^2 + 2 y'^2 + 3 z'^2) + " + tenth(-6, 7) + " x' y' + " + tenth(-6, 7) + " y' z'\n";
-  text += "V = " + tenth(-20, 40) + " x^2 + " + tenth(-20, 40) + " y^2 + " + tenth(-20, 40) + " z^2 + " + tenth(-9, 10) + " x y + " + tenth(-9, 10) + " y z\n";
+  text += "V = " + tenth(-20, 40) + " x^2 + " + tenth(-20, 40) + " y^2 + " + tenth(-20, 40) + " z^2 + " +
+          tenth(-9, 10) + " x y + " + tenth(-9, 10) + " y z\n";
   text += "D = " + tenth(0, 9) + " x'^2 + " + tenth(0, 9) + " (y' - z')^2\n";
   text += "L = T - V + " + tenth(-9, 10) + " (x y' - y x') + " + tenth(-9, 10) + " (y z' - z y')\n";
   text += "force x = " + tenth(-9, 10) + " y\n";
@@ -41,14 +43,16 @@ TEST_CASE("Random linear systems: eigenvalues are roots of the characteristic po
 TEST_CASE("Random conservative systems: an energy minimum is never called unstable, a saddle never stable") {
   CHECK(rc::check([] {
     const auto tenth = [](int low, int high) { return "(" + std::to_string(*rc::gen::inRange(low, high)) + "/10)"; };
-    Linearized m("system random\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2) + 1/4 x' y'\nV = " + tenth(-20, 40) + " x^2 + " +
-                 tenth(-20, 40) + " y^2 + " + tenth(-30, 31) + " x y\nL = T - V + " + tenth(-9, 10) + " (x y' - y x')\n");
+    Linearized m("system random\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2) + 1/4 x' y'\nV = " +
+                 tenth(-20, 40) + " x^2 + " + tenth(-20, 40) + " y^2 + " + tenth(-30, 31) + " x y\nL = T - V + " +
+                 tenth(-9, 10) + " (x y' - y x')\n");
     const ModalEntry e = m.here();
     const RealMatrix& k = e.linearization.stiffness;
     const double determinant = k.at(0, 0) * k.at(1, 1) - k.at(0, 1) * k.at(1, 0);
     const Stability verdict = e.analysis.stability.verdict;
     if (k.at(0, 0) > 1e-9 && determinant > 1e-9) RC_ASSERT(verdict == Stability::Energetic);
-    if (determinant < -1e-9) RC_ASSERT(verdict == Stability::Unstable);  // an odd number of negative directions (Kelvin and Chetaev)
+    if (determinant < -1e-9)
+      RC_ASSERT(verdict == Stability::Unstable);  // an odd number of negative directions (Kelvin and Chetaev)
     if (k.at(0, 0) < -1e-9 && determinant > 1e-9) RC_ASSERT(verdict != Stability::Energetic);
   }));
 }

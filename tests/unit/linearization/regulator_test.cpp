@@ -12,7 +12,8 @@ RealMatrix diagonal(const std::vector<double>& x) {
   return out;
 }
 
-const char* const free_mass = "system carriage\nparam m = 1 kg\ncoord x : length\ninput u : [N] = 0\nT = 1/2 m x'^2\nforce x = u\n";
+const char* const free_mass =
+    "system carriage\nparam m = 1 kg\ncoord x : length\ninput u : [N] = 0\nT = 1/2 m x'^2\nforce x = u\n";
 
 std::string code_of(Linearized& m, const RealMatrix& q, const RealMatrix& r) {
   Diagnostics told;
@@ -37,7 +38,9 @@ TEST_CASE("A free mass: F = (√(q/r), √(q'/r + 2 √(q/r)))") {
 
 TEST_CASE("Units of states that differ by nine powers of ten") {
   if (!has_lapack()) return;
-  Linearized m("system small\nparam m = 1 mg, k = 1 N/m\ncoord x : length\ninput u : [N] = 0\nT = 1/2 m x'^2\nV = 1/2 k x^2\nforce x = u\n");
+  Linearized m(
+      "system small\nparam m = 1 mg, k = 1 N/m\ncoord x : length\ninput u : [N] = 0\nT = 1/2 m x'^2\nV = 1/2 k "
+      "x^2\nforce x = u\n");
   Diagnostics told;
   const auto r = linear_quadratic_regulator(m.here().linearization, diagonal({1e12, 1e-3}), diagonal({1}), told);
   REQUIRE(r);
@@ -52,7 +55,8 @@ TEST_CASE("What a regulator cannot do is told") {
   CHECK(code_of(free, diagonal({1, -1}), diagonal({1})) == "E1311");
   CHECK(code_of(free, diagonal({1, 1}), diagonal({-1})) == "E1311");
   CHECK(code_of(free, diagonal({0, 1}), diagonal({1})) == "E1313");
-  Linearized two("system two\nparam m = 1 kg\ncoord x, y : length\ninput u : [N] = 0\nT = 1/2 m (x'^2 + y'^2)\nforce x = u\n");
+  Linearized two(
+      "system two\nparam m = 1 kg\ncoord x, y : length\ninput u : [N] = 0\nT = 1/2 m (x'^2 + y'^2)\nforce x = u\n");
   CHECK(code_of(two, diagonal({1, 1, 1, 1}), diagonal({1})) == "E1312");  // nothing acts on y
   Linearized without("system without\nparam m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n");
   CHECK(code_of(without, diagonal({1, 1}), {}) == "E1310");

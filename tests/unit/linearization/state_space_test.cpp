@@ -11,8 +11,8 @@ std::vector<double> accelerations_at(const Linearized& m, const MotionState& s) 
   return point->a;
 }
 
-/// The column of A for one independent position or velocity, by central differences along the manifold: `move` says how the
-/// dependent ones follow.
+/// The column of A for one independent position or velocity, by central differences along the manifold: `move` says how
+/// the dependent ones follow.
 template <class Move>
 void check_against_differences(const Linearized& m, const MotionState& at, Move&& move, double tolerance) {
   const auto point = operating_point(m.at, at);
@@ -23,8 +23,10 @@ void check_against_differences(const Linearized& m, const MotionState& at, Move&
   for (std::size_t column = 0; column < f + g; ++column) {
     const auto shifted = [&](double by) {
       MotionState s = at;
-      if (column < f) s.q[l.independent[column]] += by;
-      else s.v[l.independent_velocities[column - f]] += by;
+      if (column < f)
+        s.q[l.independent[column]] += by;
+      else
+        s.v[l.independent_velocities[column - f]] += by;
       move(s);
       return s;
     };
@@ -32,7 +34,8 @@ void check_against_differences(const Linearized& m, const MotionState& at, Move&
     const auto al = accelerations_at(m, low), ah = accelerations_at(m, high);
     for (std::size_t i = 0; i < g; ++i) {
       const std::size_t c = l.independent_velocities[i];
-      CHECK(std::abs(l.a.at(f + i, column) - (ah[c] - al[c]) / (2 * h)) < tolerance * (1 + std::abs(l.a.at(f + i, column))));
+      CHECK(std::abs(l.a.at(f + i, column) - (ah[c] - al[c]) / (2 * h)) <
+            tolerance * (1 + std::abs(l.a.at(f + i, column))));
     }
     for (std::size_t i = 0; i < f; ++i) {
       const std::size_t c = l.independent[i];
@@ -52,7 +55,8 @@ point B mass m at A + l (sin θ2, -cos θ2)
 gravity (0, -g)
 D = 1/2 b θ1'^2
 )");
-  check_against_differences(m, {0, {0.7, -1.1}, {2.3, -0.4}}, [](MotionState&) {}, 1e-7);
+  check_against_differences(
+      m, {0, {0.7, -1.1}, {2.3, -0.4}}, [](MotionState&) {}, 1e-7);
 }
 
 TEST_CASE("A of a constrained motion, against differences on the constraint") {
@@ -82,8 +86,8 @@ force on cart = (u, 0)
   const Linearization& l = e.linearization;
   REQUIRE(l.b.columns == 1);
   CHECK(l.b.at(0, 0) == 0);
-  CHECK(near(l.b.at(2, 0), 1 / 2.0, 1e-14));            // ẍ = (u + m g θ)/M
-  CHECK(near(l.b.at(3, 0), -1 / (2.0 * 0.6), 1e-14));   // θ̈ = −ẍ/l − g θ/l
+  CHECK(near(l.b.at(2, 0), 1 / 2.0, 1e-14));           // ẍ = (u + m g θ)/M
+  CHECK(near(l.b.at(3, 0), -1 / (2.0 * 0.6), 1e-14));  // θ̈ = −ẍ/l − g θ/l
   CHECK(near(l.a.at(2, 1), 0.5 * 9.81 / 2, 1e-14));
   CHECK(near(l.a.at(3, 1), -9.81 / 0.6 * (1 + 0.25), 1e-14));
   for (std::size_t i = 0; i < 4; ++i)

@@ -174,25 +174,31 @@ TEST_CASE(
 
 TEST_CASE("Kapitza's pendulum: an equilibrium of a driven system has multipliers, by Hill's determinant") {
   const auto kapitza = [](const std::string& rest) {
-    return ModelText("system kapitza\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2, a = 0.1 m\ncoord θ : angle\n"
-                     "gravity (0, -g)\nrun 2 s\n" + rest);
+    return ModelText(
+        "system kapitza\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2, a = 0.1 m\ncoord θ : angle\n"
+        "gravity (0, -g)\nrun 2 s\n" +
+        rest);
   };
   const std::string point = "point P mass m at (l sin θ, a cos(Ω t) - l cos θ)\n";
   for (const double w : {100.0, 40.0})
     for (const bool up : {false, true}) {
       CAPTURE(w);
       CAPTURE(up);
-      const FloquetResult r = floquet_of(kapitza("param Ω = " + std::to_string(w) + " rad/s\n" + point + "start θ = " + (up ? "pi" : "0") + "\n"));
+      const FloquetResult r = floquet_of(
+          kapitza("param Ω = " + std::to_string(w) + " rad/s\n" + point + "start θ = " + (up ? "pi" : "0") + "\n"));
       CHECK(r.motion.rests);
-      CHECK(r.trace == doctest::Approx(trace_by_hill((up ? -4 : 4) * 9.81 / (w * w), 0.2)).epsilon(1e-7));  // of the rows of the determinant
-      CHECK(r.stability == (up && w < 44 ? OrbitalStability::Unstable : OrbitalStability::Neutral));  // a Ω against √(2 g l)
+      CHECK(r.trace == doctest::Approx(trace_by_hill((up ? -4 : 4) * 9.81 / (w * w), 0.2))
+                           .epsilon(1e-7));  // of the rows of the determinant
+      CHECK(r.stability ==
+            (up && w < 44 ? OrbitalStability::Unstable : OrbitalStability::Neutral));  // a Ω against √(2 g l)
     }
 }
 
 TEST_CASE("equilibria of a driven system are judged by multipliers, not by frozen frequencies") {
   const auto verdicts = [](double w, const std::string& more) {
-    const ModelText m("system kapitza\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2, a = 0.1 m\ncoord θ : angle\nparam Ω = " + std::to_string(w) +
-                      " rad/s\npoint P mass m at (l sin θ, a cos(Ω t) - l cos θ)\ngravity (0, -g)\n" + more);
+    const ModelText m(
+        "system kapitza\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2, a = 0.1 m\ncoord θ : angle\nparam Ω = " +
+        std::to_string(w) + " rad/s\npoint P mass m at (l sin θ, a cos(Ω t) - l cos θ)\ngravity (0, -g)\n" + more);
     const PointEquations points(m.equations);
     Diagnostics told;
     auto study = modal_study(points, {0, {0.0}, {0.0}}, told);

@@ -16,7 +16,8 @@ Trajectory waves(std::size_t rows) {
   for (std::size_t i = 0; i < rows; ++i) {
     const double t = 0.01 * static_cast<double>(i);
     trajectory.times.push_back(t);
-    for (const double v : {std::sin(t), std::cos(t), std::cos(t), 2 * std::sin(t), std::cos(t)}) trajectory.values.push_back(v);
+    for (const double v : {std::sin(t), std::cos(t), std::cos(t), 2 * std::sin(t), std::cos(t)})
+      trajectory.values.push_back(v);
   }
   return trajectory;
 }
@@ -38,7 +39,8 @@ bool well_formed(const std::string& xml) {
     if (tag[0] == '/') {
       if (open.empty() || open.back() != tag.substr(1)) return false;
       open.pop_back();
-    } else if (tag.back() != '/') open.push_back(tag.substr(0, tag.find(' ')));
+    } else if (tag.back() != '/')
+      open.push_back(tag.substr(0, tag.find(' ')));
   }
   return open.empty();
 }
@@ -72,7 +74,7 @@ std::vector<double> attributes(const std::string& svg, const std::string& elemen
 TEST_CASE("one panel for each unit, one legend entry for each of several curves") {
   const std::string svg = plot(waves(500), columns({"θ1", "θ1'", "θ2"}));
   CHECK(count(svg, "class=\"axis\"") == 2);
-  CHECK(count(svg, "class=\"curve s1\"") == 3);   // two curves and a legend entry
+  CHECK(count(svg, "class=\"curve s1\"") == 3);  // two curves and a legend entry
   CHECK(count(svg, "class=\"curve s2\"") == 2);
   CHECK(count(svg, "(rad)") == 1);
   CHECK(count(svg, "(rad/s)") == 1);

@@ -20,7 +20,8 @@ double distance_to_segment(Pixel p, Pixel a, Pixel b) {
 
 double distance_to_line(Pixel p, const Polyline& line) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i + 1 < line.size(); ++i) nearest = std::min(nearest, distance_to_segment(p, line[i], line[i + 1]));
+  for (std::size_t i = 0; i + 1 < line.size(); ++i)
+    nearest = std::min(nearest, distance_to_segment(p, line[i], line[i + 1]));
   return nearest;
 }
 
@@ -29,7 +30,8 @@ Polyline random_walk(unsigned seed, std::size_t count, double step) {
   std::normal_distribution<double> normal(0, step);
   Polyline line{{300, 200}};
   while (line.size() < count)
-    line.push_back({std::clamp(line.back().x + normal(random), 0.0, 600.0), std::clamp(line.back().y + normal(random), 0.0, 400.0)});
+    line.push_back({std::clamp(line.back().x + normal(random), 0.0, 600.0),
+                    std::clamp(line.back().y + normal(random), 0.0, 400.0)});
   return line;
 }
 

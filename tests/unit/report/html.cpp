@@ -35,7 +35,8 @@ TEST_CASE("the page asks nobody for anything") {
   content.title = "A";
   const std::string page = report_html(content);
   CHECK(has(page, "default-src 'none'"));
-  for (const char* outside : {"https://", "<script src", "<link rel=\"stylesheet\"", "@import", "url(", "fetch(", "XMLHttpRequest"})
+  for (const char* outside :
+       {"https://", "<script src", "<link rel=\"stylesheet\"", "@import", "url(", "fetch(", "XMLHttpRequest"})
     CHECK_FALSE(has(page, outside));
 }
 

@@ -17,7 +17,8 @@ using namespace maupertuis;
 namespace {
 
 const char* const text =
-    "param m1 = 1 kg, m2 = 2 kg, l1 = 1 m, l2 = 2 m, g = 9.81 m/s^2\ncoord a, b : angle\npoint A mass m1 at l1 (sin a, -cos a)\n"
+    "param m1 = 1 kg, m2 = 2 kg, l1 = 1 m, l2 = 2 m, g = 9.81 m/s^2\ncoord a, b : angle\npoint A mass m1 at l1 (sin a, "
+    "-cos a)\n"
     "point B mass m2 at A + l2 (sin b, -cos b)\ngravity (0, -g)\nstart a = 0.1 rad\nrun 1 s\n";
 
 struct Work {
@@ -37,7 +38,8 @@ void search_invariants(const ModelText& m) {
 }
 
 const Work all[] = {
-    {"equations", [](const ModelText& m) {
+    {"equations",
+     [](const ModelText& m) {
        Diagnostics unheard;
        euler_lagrange(m.system, unheard);
      }},
@@ -82,10 +84,11 @@ TEST_CASE("a section of a page that is given up leaves nothing behind, the other
   const Derivation derivation = readable_derivation(m.equations, true);
   const Certificate certificate = certify(m.equations, &derivation, {});
   const auto without = [&](std::string_view left_out) {
-    return compose_report(m.model, m.source, m.equations, derivation, certificate, {}, [&](std::string_view name, const std::function<void()>& work) {
-      work();
-      return name != left_out;
-    });
+    return compose_report(m.model, m.source, m.equations, derivation, certificate, {},
+                          [&](std::string_view name, const std::function<void()>& work) {
+                            work();
+                            return name != left_out;
+                          });
   };
   const ReportContent whole = without("none");
   CHECK(whole.equations.size() == 2);

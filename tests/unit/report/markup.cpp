@@ -37,7 +37,8 @@ TEST_CASE("units and numbers as in print") {
 TEST_CASE("a short equation is one formula, a long sum breaks before its signs") {
   const Layout x = layouts::name("x"), ten = layouts::name("abcdefghij"), zero = layouts::number("0");
   CHECK(display_math(layouts::name("T"), x) ==
-        "<div class=\"formula\"><math displaystyle=\"true\"><mrow><mrow><mi>T</mi><mo form=\"infix\">=</mo><mi>x</mi></mrow></mrow></math></div>");
+        "<div class=\"formula\"><math displaystyle=\"true\"><mrow><mrow><mi>T</mi><mo "
+        "form=\"infix\">=</mo><mi>x</mi></mrow></mrow></math></div>");
   const Layout term = layouts::product({ten, layouts::sum({ten, ten})});
   Layout sum = layouts::sum({term, ten, ten, ten});
   sum.minus[2] = true;
@@ -46,14 +47,16 @@ TEST_CASE("a short equation is one formula, a long sum breaks before its signs")
   CHECK(count(html, "<wbr>") == 3);
   CHECK(count(html, "<mi>abcdefghij</mi><mo>+</mo><mi>abcdefghij</mi>") == 1);  // signs inside a term do not break
   CHECK(html.find("<mrow><mo form=\"infix\">&#x2212;</mo><mi>abcdefghij</mi></mrow>") != std::string::npos);
-  CHECK(html.find("<mi>abcdefghij</mi><mo form=\"infix\">=</mo><mn>0</mn></mrow>") != std::string::npos);  // = 0 stays with the last term
+  CHECK(html.find("<mi>abcdefghij</mi><mo form=\"infix\">=</mo><mn>0</mn></mrow>") !=
+        std::string::npos);  // = 0 stays with the last term
   CHECK(inline_math({}) == "");
 }
 
 TEST_CASE("a bracket longer than a line breaks inside") {
   const Layout long_name = layouts::name("abcdefghijklmnopqrst");
   const Layout bracket = layouts::sum({long_name, long_name, long_name, long_name, long_name});
-  const std::string html = display_math(layouts::product({layouts::name("m"), bracket, layouts::name("x")}), layouts::number("0"));
+  const std::string html =
+      display_math(layouts::product({layouts::name("m"), bracket, layouts::name("x")}), layouts::number("0"));
   CHECK(count(html, "<math") == 5);
   CHECK(count(html, ">(</mo>") == 1);
   CHECK(count(html, ">)</mo>") == 1);

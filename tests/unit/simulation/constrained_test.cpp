@@ -27,7 +27,8 @@ double reaction(const SimulationResult& r, const std::string& name) {
 }
 
 const char* cartesian =
-    "system p\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\ngravity (0, -g)\n"
+    "system p\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\ngravity (0, "
+    "-g)\n"
     "constraint x^2 + y^2 = l^2 name rod\n";
 
 }  // namespace
@@ -45,8 +46,9 @@ TEST_CASE("a pendulum in x and y: a hundred thousand steps without drift, and th
 
 TEST_CASE("the same motion by every method, and by the angle") {
   ModelText m(std::string(cartesian) + "start x = 1 m\n");
-  ModelText angle("system p\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ : angle\npoint P mass m at l (sin θ, -cos θ)\n"
-                  "gravity (0, -g)\nstart θ = 90 deg\n");
+  ModelText angle(
+      "system p\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ : angle\npoint P mass m at l (sin θ, -cos θ)\n"
+      "gravity (0, -g)\nstart θ = 90 deg\n");
   const double x = std::sin(run(angle, 3).final.q[0]);
   CHECK(std::abs(run(m, 3).final.q[0] - x) < 1e-13);
   SimulationOptions variational;
@@ -60,8 +62,9 @@ TEST_CASE("the same motion by every method, and by the angle") {
 }
 
 TEST_CASE("a free body turned by a unit quaternion, whose M has rank 3 of 4") {
-  ModelText m("system top\nparam A = 1 kg m^2, C = 2 kg m^2\nbody top inertia diag(A, A, C) rotation quaternion\n"
-              "start top.ω = (1, 0, 3) rad/s\n");
+  ModelText m(
+      "system top\nparam A = 1 kg m^2, C = 2 kg m^2\nbody top inertia diag(A, A, C) rotation quaternion\n"
+      "start top.ω = (1, 0, 3) rad/s\n");
   const auto r = run(m, 2000);
   CHECK(r.statistics.constraint_residual < 1e-13);
   CHECK(r.statistics.energy_drift < 1e-12);
@@ -76,24 +79,28 @@ TEST_CASE("a free body turned by a unit quaternion, whose M has rank 3 of 4") {
 }
 
 TEST_CASE("a coordinate without kinetic energy that a constraint ties: every method") {
-  ModelText m("system massless\nparam Is = 1e-5 kg m^2, τ = 0.1 N m\ncoord a, b : angle\nT = 1/2 Is a'^2\nforce a = τ\nconstraint a + b = 0\n");
+  ModelText m(
+      "system massless\nparam Is = 1e-5 kg m^2, τ = 0.1 N m\ncoord a, b : angle\nT = 1/2 Is a'^2\nforce a = "
+      "τ\nconstraint a + b = 0\n");
   for (const StepMethod method : {StepMethod::Taylor, StepMethod::Variational, StepMethod::Stiff}) {
     if (method == StepMethod::Stiff && !has_stiff_method()) continue;
     SimulationOptions options;
     options.method = method;
     options.step = 0.001;
     const auto r = run(m, 0.02, options);
-    CHECK(r.final.q[0] == doctest::Approx(2).epsilon(1e-7));   // τ t² / 2 Is
+    CHECK(r.final.q[0] == doctest::Approx(2).epsilon(1e-7));  // τ t² / 2 Is
     CHECK(r.final.q[1] == doctest::Approx(-2).epsilon(1e-7));
   }
 }
 
 TEST_CASE("a rolling disk runs in a circle of radius R φ'/ψ'") {
-  ModelText m("system disk\nparam m = 1 kg, R = 20 cm\nlet I = 1/2 m R^2, J = 1/4 m R^2\ncoord x, y : length\ncoord φ, ψ : angle\n"
-              "T = 1/2 m (x'^2 + y'^2) + 1/2 I φ'^2 + 1/2 J ψ'^2\nconstraint x' = R φ' cos ψ\nconstraint y' = R φ' sin ψ\n"
-              "start φ' = 2 rad/s, ψ' = 1 rad/s\n");
+  ModelText m(
+      "system disk\nparam m = 1 kg, R = 20 cm\nlet I = 1/2 m R^2, J = 1/4 m R^2\ncoord x, y : length\ncoord φ, ψ : "
+      "angle\n"
+      "T = 1/2 m (x'^2 + y'^2) + 1/2 I φ'^2 + 1/2 J ψ'^2\nconstraint x' = R φ' cos ψ\nconstraint y' = R φ' sin ψ\n"
+      "start φ' = 2 rad/s, ψ' = 1 rad/s\n");
   const auto r = run(m, 10);
-  CHECK(r.start.v[2] == 2);           // kept as written
+  CHECK(r.start.v[2] == 2);  // kept as written
   CHECK(r.start.v[0] == doctest::Approx(0.4).epsilon(1e-15));
   CHECK(r.final.q[0] == doctest::Approx(0.4 * std::sin(10.0)).epsilon(1e-12));
   CHECK(r.final.q[1] == doctest::Approx(0.4 * (1 - std::cos(10.0))).epsilon(1e-12));
@@ -101,8 +108,9 @@ TEST_CASE("a rolling disk runs in a circle of radius R φ'/ψ'") {
 }
 
 TEST_CASE("a constraint that moves with time: a bead on a rod that turns, r = r0 cosh Ωt") {
-  ModelText m("system bead\nparam m = 1 kg, Ω = 2 rad/s\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\n"
-              "constraint y cos(Ω t) = x sin(Ω t) name rod\nstart x = 1 m, x' = 0\n");
+  ModelText m(
+      "system bead\nparam m = 1 kg, Ω = 2 rad/s\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\n"
+      "constraint y cos(Ω t) = x sin(Ω t) name rod\nstart x = 1 m, x' = 0\n");
   const auto r = run(m, 2);
   CHECK(std::hypot(r.final.q[0], r.final.q[1]) == doctest::Approx(std::cosh(4.0)).epsilon(1e-12));
   CHECK(r.statistics.energy_drift < 1e-12);  // the rod does work: h_E follows it
@@ -110,8 +118,11 @@ TEST_CASE("a constraint that moves with time: a bead on a rod that turns, r = r0
 }
 
 TEST_CASE("redundant constraints: the motion is unique, the shares of the forces are not") {
-  const std::string free = "system p\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\ngravity (0, -g)\n";
-  ModelText twice(free + "constraint x^2 + y^2 = l^2 name rod\nconstraint 2 x^2 + 2 y^2 = 2 l^2 name wire\nstart x = 1 m\n");
+  const std::string free =
+      "system p\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\ngravity (0, "
+      "-g)\n";
+  ModelText twice(free +
+                  "constraint x^2 + y^2 = l^2 name rod\nconstraint 2 x^2 + 2 y^2 = 2 l^2 name wire\nstart x = 1 m\n");
   ModelText once(std::string(cartesian) + "start x = 1 m\n");
   const auto r = run(twice, 3);
   CHECK(std::abs(r.final.q[0] - run(once, 3).final.q[0]) < 1e-13);
@@ -149,8 +160,9 @@ TEST_CASE("a written start is kept, the rest moves; contradictions move with a w
 }
 
 TEST_CASE("constraints that exclude each other are named, and only they") {
-  ModelText m("system p\nparam m = 1 kg\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\n"
-              "constraint x + y = 1 [m] name near\nconstraint z = x name other\nconstraint x + y = 2 [m] name far\nrun 1 s\n");
+  ModelText m(
+      "system p\nparam m = 1 kg\ncoord x, y, z : length\nT = 1/2 m (x'^2 + y'^2 + z'^2)\n"
+      "constraint x + y = 1 [m] name near\nconstraint z = x name other\nconstraint x + y = 2 [m] name far\nrun 1 s\n");
   CHECK(!consistent_start(m.model, m.equations, m.diagnostics));
   REQUIRE(m.diagnostics.items().size() == 1);
   CHECK(m.diagnostics.items()[0].code == "E0708");
@@ -158,12 +170,14 @@ TEST_CASE("constraints that exclude each other are named, and only they") {
 }
 
 TEST_CASE("a loop that cannot close, and velocities that cannot be") {
-  ModelText loop("system p\nparam m = 1 kg, a = 1 m, b = 1 m, d = 3 m\ncoord α, β : angle\nT = 1/2 m a^2 (α'^2 + β'^2)\n"
-                 "constraint a cos α + b cos β = d name closing\nconstraint a sin α + b sin β = 0 name level\nrun 1 s\n");
+  ModelText loop(
+      "system p\nparam m = 1 kg, a = 1 m, b = 1 m, d = 3 m\ncoord α, β : angle\nT = 1/2 m a^2 (α'^2 + β'^2)\n"
+      "constraint a cos α + b cos β = d name closing\nconstraint a sin α + b sin β = 0 name level\nrun 1 s\n");
   CHECK(!consistent_start(loop.model, loop.equations, loop.diagnostics));
   CHECK(loop.diagnostics.items()[0].code == "E0708");
-  ModelText speeds("system p\nparam m = 1 kg, c = 1 m/s\ncoord x : length\nT = 1/2 m x'^2\nconstraint x' = c name drive\n"
-                   "constraint x' = 2 c name faster\nrun 1 s\n");
+  ModelText speeds(
+      "system p\nparam m = 1 kg, c = 1 m/s\ncoord x : length\nT = 1/2 m x'^2\nconstraint x' = c name drive\n"
+      "constraint x' = 2 c name faster\nrun 1 s\n");
   CHECK(!consistent_start(speeds.model, speeds.equations, speeds.diagnostics));
   CHECK(speeds.diagnostics.items()[0].code == "E0709");
 }
@@ -171,8 +185,9 @@ TEST_CASE("a loop that cannot close, and velocities that cannot be") {
 TEST_CASE("a singular configuration ends the run with the reason, or is passed where the motion is determined") {
   // The wire y² = x² has a double point at the origin: which branch the bead takes is not determined by the constraint,
   // but its velocity goes on.
-  ModelText cross("system bead\nparam m = 1 kg\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint y^2 = x^2 name wire\n"
-                  "start x = -1 m, y = -1 m, x' = 1 m/s, y' = 1 m/s\n");
+  ModelText cross(
+      "system bead\nparam m = 1 kg\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nconstraint y^2 = x^2 name wire\n"
+      "start x = -1 m, y = -1 m, x' = 1 m/s, y' = 1 m/s\n");
   const auto r = run(cross, 3);
   if (r.ok()) {
     CHECK(r.final.q[0] == doctest::Approx(2).epsilon(1e-9));
@@ -182,8 +197,9 @@ TEST_CASE("a singular configuration ends the run with the reason, or is passed w
     CHECK(r.final.t <= 1.0 + 1e-9);
   }
   // At the cusp of y³ = x² the velocity cannot go on.
-  ModelText cusp("system bead\ndimensionless\nparam m = 1, g = 1\ncoord x, y : number\nT = 1/2 m (x'^2 + y'^2)\nV = m g y\n"
-                 "constraint y^3 = x^2 name wire\nstart x = 1, y = 1\n");
+  ModelText cusp(
+      "system bead\ndimensionless\nparam m = 1, g = 1\ncoord x, y : number\nT = 1/2 m (x'^2 + y'^2)\nV = m g y\n"
+      "constraint y^3 = x^2 name wire\nstart x = 1, y = 1\n");
   const auto end = run(cusp, 30);
   CHECK(!end.ok());
   CHECK(!end.reason.empty());
@@ -191,9 +207,11 @@ TEST_CASE("a singular configuration ends the run with the reason, or is passed w
 }
 
 TEST_CASE("a parallelogram through its flat position: on with the motion where no force is needed, else the reason") {
-  const std::string linkage = "system p\nparam l = 1 m, d = 2 m, J = 1 kg m^2\ncoord a, b, c : angle\nT = 1/2 J (a'^2 + b'^2 + c'^2)\n"
-                              "constraint l cos a + d cos c = d + l cos b name horizontal\nconstraint l sin a + d sin c = l sin b name vertical\n"
-                              "start a = 60 deg, a' = -1 rad/s, c = 0, b = 60 deg\n";
+  const std::string linkage =
+      "system p\nparam l = 1 m, d = 2 m, J = 1 kg m^2\ncoord a, b, c : angle\nT = 1/2 J (a'^2 + b'^2 + c'^2)\n"
+      "constraint l cos a + d cos c = d + l cos b name horizontal\nconstraint l sin a + d sin c = l sin b name "
+      "vertical\n"
+      "start a = 60 deg, a' = -1 rad/s, c = 0, b = 60 deg\n";
   ModelText free(linkage);
   const auto through = run(free, 5);
   CHECK(through.ok());
@@ -209,8 +227,9 @@ TEST_CASE("a parallelogram through its flat position: on with the motion where n
 }
 
 TEST_CASE("the stiff method takes over where stability limits the steps, and says so") {
-  ModelText m("system s\ndimensionless\nparam k = 1e7, c = 1e7\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 k x^2\nD = 1/2 c x'^2\n"
-              "start x = 1\n");
+  ModelText m(
+      "system s\ndimensionless\nparam k = 1e7, c = 1e7\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 k x^2\nD = 1/2 c x'^2\n"
+      "start x = 1\n");
   const auto r = run(m, 1);  // x' ≈ −(k/c) x once the fast part is gone
   CHECK(r.statistics.method == (has_stiff_method() ? "stiff" : "taylor"));
   CHECK(r.final.q[0] == doctest::Approx(std::exp(-1.0)).epsilon(1e-6));

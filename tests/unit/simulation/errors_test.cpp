@@ -63,20 +63,26 @@ TEST_CASE("the stated error covers the true one: an oscillator whose frequency i
 
 TEST_CASE("what is rounded counts, what is exact does not: companions move 0.3 and 1/3, not 1/2") {
   // Free fall: no step to be wrong in, and the error is that of g alone, ½ t² ulp(g).
-  const std::string fall = "system fall\nparam m = 1 kg, g = 9.81 m/s^2\ncoord x : length\nT = 1/2 m x'^2\nV = m g x\nstart x = 1 m\nrun 100 s\n";
+  const std::string fall =
+      "system fall\nparam m = 1 kg, g = 9.81 m/s^2\ncoord x : length\nT = 1/2 m x'^2\nV = m g x\nstart x = 1 m\nrun "
+      "100 s\n";
   const double rounded = run(fall).final.errors->q[0];
   CHECK(rounded > 0.5 * 100 * 100 * 8.8e-16);
-  const std::string exact = "system fall\nparam m = 1 kg, g = 9.75 m/s^2\ncoord x : length\nT = 1/2 m x'^2\nV = m g x\nstart x = 1 m\nrun 100 s\n";
+  const std::string exact =
+      "system fall\nparam m = 1 kg, g = 9.75 m/s^2\ncoord x : length\nT = 1/2 m x'^2\nV = m g x\nstart x = 1 m\nrun "
+      "100 s\n";
   const SimulationResult r = run(exact);
   CHECK(r.final.errors->q[0] == epsilon * std::abs(r.final.q[0]));
   // A literal within a formula is a number as well.
-  const std::string literal = "system fall\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/3 x\nstart x = 1\nrun 100\n";
+  const std::string literal =
+      "system fall\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/3 x\nstart x = 1\nrun 100\n";
   CHECK(run(literal).final.errors->q[0] > 1e-13);
 }
 
 TEST_CASE("zero by symmetry and given starts are exact") {
-  const std::string text = "system two\nparam m = 1 kg, k = 2 N/m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = 1/2 k (x^2 + y^2)\n"
-                           "start x = 0.1 m\nrun 5 s\n";
+  const std::string text =
+      "system two\nparam m = 1 kg, k = 2 N/m\ncoord x, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = 1/2 k (x^2 + y^2)\n"
+      "start x = 0.1 m\nrun 5 s\n";
   const SimulationResult r = run(text, at({0, 5}));
   CHECK(r.at[0].errors->q[0] == 0);
   CHECK(r.at[0].errors->v[0] == 0);
@@ -122,8 +128,9 @@ TEST_CASE("equal runs have equal errors, and each row has one where that is aske
 }
 
 TEST_CASE("the time of run until has an error, and so has the state there") {
-  const std::string text = "system throw\nparam m = 1 kg, g = 9.81 m/s^2\ncoord x : length, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = m g y\n"
-                           "start x' = 3 m/s, y = 100 m\nrun until y = 0 within 60 s\n";
+  const std::string text =
+      "system throw\nparam m = 1 kg, g = 9.81 m/s^2\ncoord x : length, y : length\nT = 1/2 m (x'^2 + y'^2)\nV = m g y\n"
+      "start x' = 3 m/s, y = 100 m\nrun until y = 0 within 60 s\n";
   const SimulationResult r = run(text);
   REQUIRE(r.ending == Ending::UntilReached);
   const long double right = std::sqrt(200 / 9.81L);
@@ -145,8 +152,10 @@ TEST_CASE("tolerances show: a coarse run knows that it is coarse") {
 }
 
 TEST_CASE("constraints, switches, stiff and variational runs are compared with companions of their own") {
-  const std::string pendulum = "system pendulum\nparam m = 1 kg, l = 0.7 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\ngravity (0, -g)\n"
-                               "constraint x^2 + y^2 = l^2 name rod\nstart x = 0.5 m, y = -0.4 m\nrun 10 s\n";
+  const std::string pendulum =
+      "system pendulum\nparam m = 1 kg, l = 0.7 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, "
+      "y)\ngravity (0, -g)\n"
+      "constraint x^2 + y^2 = l^2 name rod\nstart x = 0.5 m, y = -0.4 m\nrun 10 s\n";
   const SimulationResult rod = run(pendulum, at({0, 4}));
   CHECK(rod.statistics.companions == 3);
   REQUIRE(rod.at[1].errors->reactions.size() == 1);
@@ -154,7 +163,9 @@ TEST_CASE("constraints, switches, stiff and variational runs are compared with c
   CHECK(rod.at[1].errors->reactions[0] < 1e-10);
   CHECK(rod.at[1].errors->multipliers[0] > 0);
 
-  const std::string kinked = "system kink\nparam m = 1 kg, k = 1.3 N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2 + 3 [N] abs(x)\nstart x = 1 m\nrun 10 s\n";
+  const std::string kinked =
+      "system kink\nparam m = 1 kg, k = 1.3 N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2 + 3 [N] abs(x)\nstart "
+      "x = 1 m\nrun 10 s\n";
   const SimulationResult kink = run(kinked);
   CHECK(kink.statistics.switches > 3);
   CHECK(kink.final.errors->q[0] > 0);
@@ -187,8 +198,9 @@ TEST_CASE("probes have errors of their own") {
 
 TEST_CASE("rounding noise about zero is no motion that was lost") {
   // 0.1 + 0.2 − 0.3 is nothing but rounding: it moves y by some 1e-17 beside an x of 1.
-  const SimulationResult r = run("system s\ndimensionless\nparam a = 0.1, b = 0.2, c = 0.3\ncoord x, y : number\n"
-                                 "T = 1/2 (x'^2 + y'^2)\nV = 1/2 (x^2 + y^2) + (a + b - c) x y\nstart x = 1\nrun 10\n");
+  const SimulationResult r =
+      run("system s\ndimensionless\nparam a = 0.1, b = 0.2, c = 0.3\ncoord x, y : number\n"
+          "T = 1/2 (x'^2 + y'^2)\nV = 1/2 (x^2 + y^2) + (a + b - c) x y\nstart x = 1\nrun 10\n");
   REQUIRE(r.final.errors);
   CHECK(std::abs(r.final.q[1]) < 1e-14);
   CHECK(r.final.errors->q[1] > 0);

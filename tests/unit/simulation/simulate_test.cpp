@@ -51,8 +51,9 @@ TEST_CASE("the harmonic oscillator follows its closed form, forwards and backwar
 }
 
 TEST_CASE("a pendulum let go at 90°: every fourth coefficient alone differs from zero, the last two vanish") {
-  const ModelText m("system p\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ : angle\npoint P mass m at l (sin θ, -cos θ)\n"
-                    "gravity (0, -g)\nstart θ = 90 deg\nrun 10 s\n");
+  const ModelText m(
+      "system p\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ : angle\npoint P mass m at l (sin θ, -cos θ)\n"
+      "gravity (0, -g)\nstart θ = 90 deg\nrun 10 s\n");
   const SimulationResult r = run(m);
   CHECK(r.statistics.energy_drift < 1e-14);
   // 20 digits of the elliptic functions: sin θ(10 s), from the reference case of the pendulum in x and y.
@@ -74,7 +75,8 @@ run 20 s
   REQUIRE(r.ok());
   // The work of the drive varies faster than the motion, whose error alone sets the step: see docs/theory/measures.md.
   CHECK(r.statistics.energy_drift < 1e-11);
-  // Steady response of the driven oscillator: amplitude F / |k − m w² + i c w| after the transient has died (e^{−0.15 t}).
+  // Steady response of the driven oscillator: amplitude F / |k − m w² + i c w| after the transient has died (e^{−0.15
+  // t}).
   SimulationOptions late;
   late.duration = 300;
   late.at = {299, 299.3, 299.7};
@@ -162,7 +164,9 @@ TEST_CASE("an output interval has to be a positive time, and leave rows that can
 }
 
 TEST_CASE("multipliers without a name have their units: of positions an energy over φ, of velocities an action") {
-  const std::string point = "system s\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\ngravity (0, -g)\n";
+  const std::string point =
+      "system s\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord x, y : length\npoint P mass m at (x, y)\ngravity (0, "
+      "-g)\n";
   const auto unit = [&](const std::string& constraint) {
     const SimulationResult r = run(ModelText(point + constraint + "\nstart x = 1 m\nrun 0.1 s\n"));
     REQUIRE(r.reactions.size() == 1);
@@ -204,17 +208,20 @@ start θ1 = 2.0 rad, θ2 = 2.5 rad
                                  {-0.753128874295, 1.627933082054}};
   const double tolerance[4] = {1e-13, 1e-13, 5e-12, 1e-6};
   for (int k = 0; k < 4; ++k)
-    for (std::size_t i = 0; i < 2; ++i) CHECK(std::abs(r.at[static_cast<std::size_t>(k)].q[i] - expected[k][i]) <= tolerance[k]);
+    for (std::size_t i = 0; i < 2; ++i)
+      CHECK(std::abs(r.at[static_cast<std::size_t>(k)].q[i] - expected[k][i]) <= tolerance[k]);
 }
 
 TEST_CASE("what is switched in time does work at once: the books close") {
   // x'' + (2 + sign(cos t)) x = 0, Meissner: two frequencies in turns, √3 until π/2, then 1 until 3π/2.
-  const ModelText m("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 (2 + sign(cos(t))) x^2\nstart x = 1\nrun 4\n");
+  const ModelText m(
+      "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 (2 + sign(cos(t))) x^2\nstart x = 1\nrun 4\n");
   const SimulationResult r = run(m);
   CHECK(r.statistics.energy_drift < 1e-14);
   const double w = std::sqrt(3.0), quarter = std::acos(0.0), later = 4 - quarter;
   const double x = std::cos(w * quarter), v = -w * std::sin(w * quarter);
   CHECK(r.final.q[0] == doctest::Approx(x * std::cos(later) + v * std::sin(later)).epsilon(1e-13));
   // A kink of V does no work.
-  CHECK(run(ModelText("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = abs(x)\nstart x = 1\nrun 20\n")).statistics.energy_drift < 1e-14);
+  CHECK(run(ModelText("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = abs(x)\nstart x = 1\nrun 20\n"))
+            .statistics.energy_drift < 1e-14);
 }

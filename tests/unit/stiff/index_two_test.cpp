@@ -17,7 +17,9 @@ using std::numbers::pi;
 
 struct Stiff : ModelText {
   explicit Stiff(const std::string& text, const std::vector<Expr>& events = {})
-      : ModelText(text), functions(motion_functions(equations, {{}, events, {}})), parameters(parameter_values(*system)) {}
+      : ModelText(text),
+        functions(motion_functions(equations, {{}, events, {}})),
+        parameters(parameter_values(*system)) {}
   StiffStepper stepper(double tolerance) const {
     StiffOptions options;
     options.tolerance = tolerance;
@@ -55,7 +57,8 @@ struct Jacobi {
 };
 
 const std::string kPendulum =
-    "system pendulum\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = 9.81 y\nconstraint x^2 + y^2 = 1 name rod\n";
+    "system pendulum\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = 9.81 y\nconstraint x^2 + y^2 = 1 "
+    "name rod\n";
 
 const std::string kGovernor =
     "system governor\ndimensionless\n"
@@ -80,10 +83,12 @@ std::pair<State, State> governor_state(double phi, double b, double s, double ph
 }  // namespace
 
 TEST_CASE("the matrix of Newton's iteration is c ∂F/∂ẏ + ∂F/∂y, off the constraints and with μ too") {
-  const Stiff m("system mixed\ndimensionless\nparam k = 3\ncoord x, y, z, u : number\n"
-                "T = 1/2 (1 + x^2) x'^2 + 1/2 y'^2 + x' z' sin(y) + z'^2 + 1/2 u'^2\nV = k x y^2 + cos z + u^2\nD = 1/2 (x' y)^2\n"
-                "constraint x^2 y + sin(z t) = 1 name one\nconstraint x' u + z' cos(x) = t name two\n"
-                "constraint 2 x^2 y + 2 sin(z t) = 2 name again\n");
+  const Stiff m(
+      "system mixed\ndimensionless\nparam k = 3\ncoord x, y, z, u : number\n"
+      "T = 1/2 (1 + x^2) x'^2 + 1/2 y'^2 + x' z' sin(y) + z'^2 + 1/2 u'^2\nV = k x y^2 + cos z + u^2\nD = 1/2 (x' "
+      "y)^2\n"
+      "constraint x^2 y + sin(z t) = 1 name one\nconstraint x' u + z' cos(x) = t name two\n"
+      "constraint 2 x^2 y + 2 sin(z t) = 2 name again\n");
   stiff::Motion motion(m.functions, m.parameters, {});
   stiff::IndexTwoSystem system(motion);
   const std::size_t rows[] = {0, 1};
@@ -91,7 +96,8 @@ TEST_CASE("the matrix of Newton's iteration is c ∂F/∂ẏ + ∂F/∂y, off th
   const std::size_t size = system.size();
   REQUIRE(size == 14);
   State y(size), rate(size), low(size), high(size);
-  for (std::size_t i = 0; i < size; ++i) y[i] = 0.3 + 0.7 * std::sin(3.0 * static_cast<double>(i)), rate[i] = std::cos(2.0 * static_cast<double>(i));
+  for (std::size_t i = 0; i < size; ++i)
+    y[i] = 0.3 + 0.7 * std::sin(3.0 * static_cast<double>(i)), rate[i] = std::cos(2.0 * static_cast<double>(i));
   const double t = 0.8, c = 7;
   Eigen::MatrixXd exact(size, size);
   REQUIRE(system.jacobian(t, c, y, rate, exact));
@@ -106,7 +112,8 @@ TEST_CASE("the matrix of Newton's iteration is c ∂F/∂ẏ + ∂F/∂y, off th
     for (std::size_t i = 0; i < size; ++i) {
       CAPTURE(i);
       CAPTURE(j);
-      CHECK(std::abs(exact(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) - (high[i] - low[i]) / (2 * h)) < 1e-7);
+      CHECK(std::abs(exact(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) - (high[i] - low[i]) / (2 * h)) <
+            1e-7);
     }
   }
 }
@@ -144,10 +151,12 @@ TEST_CASE("a stiff governor with its rods as constraints: the reference states, 
   auto stepper = m.stepper(1e-12);
   const auto [q, v] = governor_state(0, pi / 6, 0.5, 2 * pi, 0, 0);
   stepper.start(0, q, v);
-  const double reference[][7] = {
-      {0.1, 0.622106681402688, 0.4961738690759, 0.523836475569576, 6.10371780883086, -0.52267392975398, 0.459271810436134},
-      {0.5, 2.8076794883679, 0.259491381543413, 0.743249424786326, 5.10341542197154, -0.0539052184987426, 0.0521197801583733},
-      {1, 5.58634696586901, 0.521833301625546, 0.501420922379568, 6.27112574187655, 0.140885579479527, -0.122151492897729}};
+  const double reference[][7] = {{0.1, 0.622106681402688, 0.4961738690759, 0.523836475569576, 6.10371780883086,
+                                  -0.52267392975398, 0.459271810436134},
+                                 {0.5, 2.8076794883679, 0.259491381543413, 0.743249424786326, 5.10341542197154,
+                                  -0.0539052184987426, 0.0521197801583733},
+                                 {1, 5.58634696586901, 0.521833301625546, 0.501420922379568, 6.27112574187655,
+                                  0.140885579479527, -0.122151492897729}};
   for (const auto& row : reference) {
     run(stepper, row[0]);
     const auto [x, u] = governor_state(row[1], row[2], row[3], row[4], row[5], row[6]);
@@ -161,9 +170,10 @@ TEST_CASE("a stiff governor with its rods as constraints: the reference states, 
 }
 
 TEST_CASE("a disk that rolls upright on a slope, in closed form; its constraints between velocities in all samples") {
-  const Stiff m("system disk\ndimensionless\nparam R = 0.5, I = 0.2, G = 3\ncoord x, y : number, θ, φ : angle\n"
-                "T = 1/2 (x'^2 + y'^2 + I φ'^2 + 0.1 θ'^2)\nV = -G x\n"
-                "constraint x' = R φ' cos θ name along\nconstraint y' = R φ' sin θ name across\n");
+  const Stiff m(
+      "system disk\ndimensionless\nparam R = 0.5, I = 0.2, G = 3\ncoord x, y : number, θ, φ : angle\n"
+      "T = 1/2 (x'^2 + y'^2 + I φ'^2 + 0.1 θ'^2)\nV = -G x\n"
+      "constraint x' = R φ' cos θ name along\nconstraint y' = R φ' sin θ name across\n");
   const double w = 1.5, end = 4, strength = 0.25 * 3 / (0.25 + 0.2);  // R² G/(R² + I)
   auto stepper = m.stepper(1e-11);
   stepper.start(0, State{0, 0, 0, 0}, State{0, 0, w, 0});
@@ -173,7 +183,8 @@ TEST_CASE("a disk that rolls upright on a slope, in closed form; its constraints
     REQUIRE(step.ending == StepEnding::None);
     for (const double x : {0.4, 1.0}) {
       const Sample s = stepper.sample(std::min(step.end, step.begin + x * (step.end - step.begin)));
-      worst = std::max({worst, std::abs(s.v[0] - 0.5 * s.v[3] * std::cos(s.q[2])), std::abs(s.v[1] - 0.5 * s.v[3] * std::sin(s.q[2]))});
+      worst = std::max({worst, std::abs(s.v[0] - 0.5 * s.v[3] * std::cos(s.q[2])),
+                        std::abs(s.v[1] - 0.5 * s.v[3] * std::sin(s.q[2]))});
     }
   }
   CHECK(worst < 1e-15);
@@ -183,8 +194,9 @@ TEST_CASE("a disk that rolls upright on a slope, in closed form; its constraints
 }
 
 TEST_CASE("a bead on a wire that turns: r = r0 cosh ωt, pushed sideways with 2 ω r', on the wire in all samples") {
-  const Stiff m("system bead\ndimensionless\nparam w = 2\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2)\n"
-                "constraint y cos(w t) = x sin(w t) name wire\n");
+  const Stiff m(
+      "system bead\ndimensionless\nparam w = 2\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2)\n"
+      "constraint y cos(w t) = x sin(w t) name wire\n");
   const double w = 2, end = 2;
   auto stepper = m.stepper(1e-11);
   stepper.start(0, State{0.1, 0}, State{0, 0.2});
@@ -216,9 +228,12 @@ TEST_CASE("a run with constraints ends with its reason") {
   };
   const std::string on_line = "dimensionless\ncoord x, y : number\nconstraint x = y\n";
   CHECK(ending("system fall\n" + on_line + "L = 1/2 (x'^2 + y'^2) + 1/x^2\n", {1, 1}, {0, 0}) != StepEnding::None);
-  CHECK(ending("system undefined\n" + on_line + "L = 1/2 (x'^2 + y'^2) - x sqrt(x)\n", {-1, -1}, {0, 0}) == StepEnding::Overflow);
-  CHECK(ending("system flat\n" + on_line + "L = 1/2 (x' - y')^2 - x^2 - y\n", {1, 1}, {0, 0}) == StepEnding::SingularMass);
+  CHECK(ending("system undefined\n" + on_line + "L = 1/2 (x'^2 + y'^2) - x sqrt(x)\n", {-1, -1}, {0, 0}) ==
+        StepEnding::Overflow);
+  CHECK(ending("system flat\n" + on_line + "L = 1/2 (x' - y')^2 - x^2 - y\n", {1, 1}, {0, 0}) ==
+        StepEnding::SingularMass);
   // The hinge moves away faster than the rod can follow: no state meets the constraint after t = 1.
-  CHECK(ending("system gone\ndimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2)\nconstraint x = 0\nconstraint x^2 + y^2 = 1 - t\n", {0, 1},
-               {0, -0.5}) != StepEnding::None);
+  CHECK(ending("system gone\ndimensionless\ncoord x, y : number\nL = 1/2 (x'^2 + y'^2)\nconstraint x = 0\nconstraint "
+               "x^2 + y^2 = 1 - t\n",
+               {0, 1}, {0, -0.5}) != StepEnding::None);
 }

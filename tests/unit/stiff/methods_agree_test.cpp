@@ -51,7 +51,8 @@ TEST_CASE("variational, stiff and independent coordinates give one motion, and o
   const double a = 0.5, b = -0.4, end = 2;
   const Vector q{std::sin(a), -std::cos(a), std::sin(a) + 0.8 * std::sin(b), -std::cos(a) - 0.8 * std::cos(b)};
   const Vector v{0.3, 0, 0.3, 0};  // the hinge starts with 3/10; both angles at rest
-  const Vector one = run(*variational, q, v, end), two = run(*stiff, q, v, end), three = run(*independent, {a, b}, {0, 0}, end);
+  const Vector one = run(*variational, q, v, end), two = run(*stiff, q, v, end),
+               three = run(*independent, {a, b}, {0, 0}, end);
   REQUIRE(one.size() == 6);
   for (std::size_t i = 0; i < 6; ++i) CHECK(two[i] == doctest::Approx(one[i]).epsilon(1e-7));
   const double x1 = std::sin(6.0) / 10 + std::sin(three[0]);
@@ -61,14 +62,15 @@ TEST_CASE("variational, stiff and independent coordinates give one motion, and o
   CHECK(stiff->constraint_residual() < 1e-15);
 }
 
-TEST_CASE("the slider crank of the SUNDIALS examples, recomputed to 24 digits: both methods, with the work of the damper") {
+TEST_CASE(
+    "the slider crank of the SUNDIALS examples, recomputed to 24 digits: both methods, with the work of the damper") {
   const ModelText m(
       "system crank\ndimensionless\nparam a = 0.5, J1 = 1, m2 = 1, J2 = 2, l0 = 1, k = 1, c = 1, F = 1\n"
       "coord q : angle, x : number, p : angle\nlet l = sqrt(x^2 - x (cos p + a cos q) + (1 + a^2)/4 + a cos(p - q)/2)\n"
       "T = J1 q'^2/2 + m2 x'^2/2 + J2 p'^2/2\nV = k (l - l0)^2/2\nD = c l'^2/2\nforce x = F\nforce p = -F sin p\n"
       "constraint x = cos p + a cos q name along\nconstraint 0 = sin p + a sin q name across\n");
-  const Vector reference{-1.429996967647227372640421, 0.9390306135782662263334509, 0.5178947564898862480481259,
-                        0.05499161053776447944428012, 0.02942223164778110036987099, -0.004440989758956746845820136};
+  const Vector reference{-1.429996967647227372640421,  0.9390306135782662263334509,  0.5178947564898862480481259,
+                         0.05499161053776447944428012, 0.02942223164778110036987099, -0.004440989758956746845820136};
   Diagnostics diagnostics;
   VariationalOptions fine;
   fine.step = 0.02, fine.order = 8;

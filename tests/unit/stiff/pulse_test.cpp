@@ -22,7 +22,8 @@ End run(const std::string& text, double q, double v, double end, double toleranc
   StiffOptions options;
   options.tolerance = tolerance;
   options.maximum_steps = 200000;
-  StiffStepper stepper(motion_functions(m.equations, {{}, {}, {m.equations.power}}), parameter_values(*m.system), options);
+  StiffStepper stepper(motion_functions(m.equations, {{}, {}, {m.equations.power}}), parameter_values(*m.system),
+                       options);
   stepper.start(0, {&q, 1}, {&v, 1});
   End out;
   while (stepper.time() != end && out.ending == StepEnding::None) out.ending = stepper.step(end).ending;

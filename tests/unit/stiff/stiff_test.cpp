@@ -15,7 +15,8 @@ using State = std::vector<double>;
 
 struct Stiff : ModelText {
   explicit Stiff(const std::string& text, const WantedFunctions& wanted = {})
-      : ModelText(text), functions(motion_functions(equations, {wanted.observables, wanted.events, {equations.power}})),
+      : ModelText(text),
+        functions(motion_functions(equations, {wanted.observables, wanted.events, {equations.power}})),
         parameters(parameter_values(*system)) {}
   StiffStepper stepper(double tolerance) const {
     StiffOptions options;
@@ -47,10 +48,12 @@ StepEnding ending(const std::string& text, const State& q, const State& v, doubl
 }
 
 constexpr const char* kOscillator =
-    "system oscillator\ndimensionless\nparam k = 1e8, c = 1e6\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 k x^2\nD = 1/2 c x'^2\nforce x = k cos t\n";
+    "system oscillator\ndimensionless\nparam k = 1e8, c = 1e6\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 k x^2\nD = 1/2 "
+    "c x'^2\nforce x = k cos t\n";
 
 constexpr const char* kPendulum =
-    "system pendulum\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = 9.81 y\nconstraint x^2 + y^2 = 1 name rod\n";
+    "system pendulum\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = 9.81 y\nconstraint x^2 + y^2 = 1 "
+    "name rod\n";
 
 constexpr const char* kGovernor =
     "system governor\ndimensionless\n"
@@ -60,7 +63,8 @@ constexpr const char* kGovernor =
     "let x1 = d/2 + l/2 cos b1\nlet z1 = H - l/2 sin b1\nlet X1 = d/2 + l cos b1\nlet Z1 = H - l sin b1\n"
     "let x2 = d/2 + l/2 cos b2\nlet z2 = H - l/2 sin b2\nlet X2 = d/2 + l cos b2\nlet Z2 = H - l sin b2\n"
     "let e1 = sqrt((x1 - ds/2)^2 + (z1 - s)^2)\nlet e2 = sqrt((x2 - ds/2)^2 + (z2 - s)^2)\n"
-    "T = (Jsh + Jsl) phi'^2/2 + ms s'^2/2 + mr (x1'^2 + z1'^2 + x2'^2 + z2'^2 + (x1^2 + x2^2) phi'^2)/2 + mr (l^2 + wd^2)/24 (b1'^2 + b2'^2)"
+    "T = (Jsh + Jsl) phi'^2/2 + ms s'^2/2 + mr (x1'^2 + z1'^2 + x2'^2 + z2'^2 + (x1^2 + x2^2) phi'^2)/2 + mr (l^2 + "
+    "wd^2)/24 (b1'^2 + b2'^2)"
     " + (mr (l^2 + wd^2)/12 (cos(b1)^2 + cos(b2)^2) + mr wd^2/6 (sin(b1)^2 + sin(b2)^2)) phi'^2/2"
     " + mp (X1'^2 + Z1'^2 + X2'^2 + Z2'^2 + (X1^2 + X2^2) phi'^2)/2\n"
     "V = g (ms s + mr (z1 + z2) + mp (Z1 + Z2)) + K ((e1 - l0)^2 + (e2 - l0)^2)/2\n"
@@ -85,7 +89,8 @@ TEST_CASE("a driven oscillator whose modes decay in 10 ms and 1 µs, in closed f
       const double t = std::min(step.end, step.begin + x * (step.end - step.begin));
       State q(1), v(1);
       stepper.state(t, q, v);
-      worst = std::max(worst, std::abs(q[0] - (p * std::cos(t) + r * std::sin(t) + a * std::exp(slow * t) + b * std::exp(fast * t))));
+      worst = std::max(worst, std::abs(q[0] - (p * std::cos(t) + r * std::sin(t) + a * std::exp(slow * t) +
+                                               b * std::exp(fast * t))));
     }
   }
   CHECK(worst < 5e-8);
@@ -93,7 +98,9 @@ TEST_CASE("a driven oscillator whose modes decay in 10 ms and 1 µs, in closed f
 }
 
 TEST_CASE("the relaxation oscillation of van der Pol: reference values of the Test Set for IVP Solvers") {
-  const Stiff m("system vanderpol\ndimensionless\nparam ε = 1e-6\ncoord y : number\nL = 1/2 ε y'^2 - 1/2 y^2\nforce y = (1 - y^2) y'\n");
+  const Stiff m(
+      "system vanderpol\ndimensionless\nparam ε = 1e-6\ncoord y : number\nL = 1/2 ε y'^2 - 1/2 y^2\nforce y = (1 - "
+      "y^2) y'\n");
   auto stepper = m.stepper(1e-11);
   stepper.start(0, State{2}, State{0});
   run(stepper, 2);
@@ -104,10 +111,12 @@ TEST_CASE("the relaxation oscillation of van der Pol: reference values of the Te
 
 TEST_CASE("a stiff flyball governor: the reference states of 80-bit extrapolation") {
   const Stiff m(kGovernor);
-  const State reference[] = {
-      {0.1, 0.622106681402688, 0.4961738690759, 0.4961738690759, 0.523836475569576, 6.10371780883086, -0.52267392975398, -0.52267392975398, 0.459271810436134},
-      {0.5, 2.8076794883679, 0.259491381543413, 0.259491381543413, 0.743249424786326, 5.10341542197154, -0.0539052184987426, -0.0539052184987426, 0.0521197801583733},
-      {1, 5.58634696586901, 0.521833301625546, 0.521833301625546, 0.501420922379568, 6.27112574187655, 0.140885579479527, 0.140885579479527, -0.122151492897729}};
+  const State reference[] = {{0.1, 0.622106681402688, 0.4961738690759, 0.4961738690759, 0.523836475569576,
+                              6.10371780883086, -0.52267392975398, -0.52267392975398, 0.459271810436134},
+                             {0.5, 2.8076794883679, 0.259491381543413, 0.259491381543413, 0.743249424786326,
+                              5.10341542197154, -0.0539052184987426, -0.0539052184987426, 0.0521197801583733},
+                             {1, 5.58634696586901, 0.521833301625546, 0.521833301625546, 0.501420922379568,
+                              6.27112574187655, 0.140885579479527, 0.140885579479527, -0.122151492897729}};
   auto stepper = m.stepper(1e-12);
   stepper.start(0, State{0, std::numbers::pi / 6, std::numbers::pi / 6, 0.5}, State{2 * std::numbers::pi, 0, 0, 0});
   for (const State& row : reference) {
@@ -132,7 +141,8 @@ TEST_CASE("a Cartesian pendulum: the angle's own equation, constraints to roundi
     REQUIRE(step.ending == StepEnding::None);
     for (const double x : {0.3, 1.0}) {
       const Sample s = stepper.sample(std::min(step.end, step.begin + x * (step.end - step.begin)));
-      worst = std::max({worst, std::abs(s.q[0] * s.q[0] + s.q[1] * s.q[1] - 1), std::abs(s.q[0] * s.v[0] + s.q[1] * s.v[1])});
+      worst = std::max(
+          {worst, std::abs(s.q[0] * s.q[0] + s.q[1] * s.q[1] - 1), std::abs(s.q[0] * s.v[0] + s.q[1] * s.v[1])});
       CHECK(2 * s.multipliers[0] == doctest::Approx(-s.v[0] * s.v[0] - s.v[1] * s.v[1] + 9.81 * s.q[1]).epsilon(1e-9));
     }
   }
@@ -173,8 +183,10 @@ TEST_CASE("a redundant constraint is left out; its multiplier is not made up") {
 
 TEST_CASE("a constraint between velocities: a skate on a slope comes back") {
   // Chaplygin's skate, Neimark and Fufaev: x = g sin α/(2ω²) sin² ωt from rest with spin ω.
-  const Stiff m("system skate\ndimensionless\nparam G = 2\ncoord x, y : number, φ : angle\nT = 1/2 (x'^2 + y'^2 + φ'^2)\nV = -G x\n"
-                "constraint x' sin φ = y' cos φ\n");
+  const Stiff m(
+      "system skate\ndimensionless\nparam G = 2\ncoord x, y : number, φ : angle\nT = 1/2 (x'^2 + y'^2 + φ'^2)\nV = -G "
+      "x\n"
+      "constraint x' sin φ = y' cos φ\n");
   CHECK_FALSE(m.functions.holonomic);
   auto stepper = m.stepper(1e-11);
   stepper.start(0, State{0, 0, 0}, State{0, 0, 1.5});
@@ -213,9 +225,14 @@ TEST_CASE("energy and the integral of the power agree; backwards brings back the
 }
 
 TEST_CASE("a run ends with its reason") {
-  CHECK(ending("system fall\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - sqrt(x)\n", {1}, {0}, 10) != StepEnding::None);
-  CHECK(ending("system flat\ndimensionless\ncoord x, y : number\nL = 1/2 (x' + y')^2 - x^2 - y\n", {1, 0}, {0, 0}, 1) == StepEnding::SingularMass);
-  CHECK(ending("system collide\ndimensionless\ncoord x : number\nL = 1/2 x'^2 + 1/x^2\n", {1}, {0}, 10) != StepEnding::None);
-  CHECK(ending("system rubbing\ndimensionless\ncoord x : number\nL = 1/2 x'^2\nforce x = -sign(x')\n", {0}, {1}, 3) == StepEnding::StepUnderflow);
-  CHECK(ending("system undefined\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - x sqrt(x)\n", {-1}, {0}, 10) == StepEnding::Overflow);
+  CHECK(ending("system fall\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - sqrt(x)\n", {1}, {0}, 10) !=
+        StepEnding::None);
+  CHECK(ending("system flat\ndimensionless\ncoord x, y : number\nL = 1/2 (x' + y')^2 - x^2 - y\n", {1, 0}, {0, 0}, 1) ==
+        StepEnding::SingularMass);
+  CHECK(ending("system collide\ndimensionless\ncoord x : number\nL = 1/2 x'^2 + 1/x^2\n", {1}, {0}, 10) !=
+        StepEnding::None);
+  CHECK(ending("system rubbing\ndimensionless\ncoord x : number\nL = 1/2 x'^2\nforce x = -sign(x')\n", {0}, {1}, 3) ==
+        StepEnding::StepUnderflow);
+  CHECK(ending("system undefined\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - x sqrt(x)\n", {-1}, {0}, 10) ==
+        StepEnding::Overflow);
 }

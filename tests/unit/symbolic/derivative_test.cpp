@@ -11,7 +11,8 @@ namespace {
 struct Pendulum {
   Context c;
   Expr m = c.symbol("m", Role::Parameter), l = c.symbol("l", Role::Parameter), g = c.symbol("g", Role::Parameter);
-  Expr q = c.symbol("θ", Role::Coordinate), v = c.symbol("θ", Role::Coordinate, 1), a = c.symbol("θ", Role::Coordinate, 2);
+  Expr q = c.symbol("θ", Role::Coordinate), v = c.symbol("θ", Role::Coordinate, 1),
+       a = c.symbol("θ", Role::Coordinate, 2);
 };
 Expr square(Expr e) { return pow(e, Rational(2)); }
 }  // namespace

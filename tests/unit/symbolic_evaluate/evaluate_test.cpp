@@ -60,9 +60,9 @@ TEST_CASE("intervals contain the exact value") {
 }
 
 TEST_CASE("prime fields") {
-  CHECK(is_prime(2305843009213693951ull));     // 2^61 − 1
+  CHECK(is_prime(2305843009213693951ull));  // 2^61 − 1
   CHECK(!is_prime(2305843009213693951ull - 2));
-  CHECK(!is_prime(3215031751ull));             // a strong pseudoprime to the bases 2, 3, 5, 7
+  CHECK(!is_prime(3215031751ull));  // a strong pseudoprime to the bases 2, 3, 5, 7
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const PrimeTriple t = random_prime_triple(840 * (seed + 1), seed);
     CHECK(is_prime(t.p));

@@ -1,4 +1,5 @@
-// Nothing goes on with a kind that a pass has no rule for: what it would take the value or the derivative for could be certified.
+// Nothing goes on with a kind that a pass has no rule for: what it would take the value or the derivative for could be
+// certified.
 #include "../forgotten_kind.hpp"
 
 #include "symbolic/evaluate/field_numbers.hpp"
@@ -24,7 +25,8 @@ TEST_CASE("the tables and the constructors refuse a kind that is not there") {
   CHECK_THROWS_AS(functions::derivative(forgotten_kind, x[0], x[0]), std::logic_error);
   CHECK_THROWS_AS(c.function(forgotten_kind, x), std::logic_error);
   // What is no function has no row.
-  for (const Kind kind : {Kind::Abs, Kind::Sum, Kind::Symbol, Kind::Less}) CHECK_THROWS_AS(functions::value(kind, 0.5), std::logic_error);
+  for (const Kind kind : {Kind::Abs, Kind::Sum, Kind::Symbol, Kind::Less})
+    CHECK_THROWS_AS(functions::value(kind, 0.5), std::logic_error);
 }
 
 TEST_CASE("derivatives, values and the zero test throw on a node of a kind that they do not know") {

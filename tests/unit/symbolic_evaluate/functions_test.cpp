@@ -32,7 +32,10 @@ Rational inside(Kind kind) { return kind == Kind::Acosh ? Rational(17, 10) : Rat
 
 Real100 at_100_digits(Expr e, Expr x, const Real100& value) {
   const evaluation::Tape tape({&e, 1});
-  evaluation::RealNumbers<Real100> numbers([&](Expr s) { REQUIRE(s == x); return value; });
+  evaluation::RealNumbers<Real100> numbers([&](Expr s) {
+    REQUIRE(s == x);
+    return value;
+  });
   std::vector<Real100> values;
   evaluation::run(tape, numbers, values);
   return values[tape.roots()[0]];
@@ -71,7 +74,8 @@ TEST_CASE("the exact number of every row, and its parity") {
   for (const Kind kind : functions_of_the_table()) {
     CAPTURE(std::string(name_of(kind)));
     Context c;
-    const auto [at, exactly, parity] = functions::of_row(kind, [](const auto& row) { return std::tuple(row.at, row.exactly, row.parity); });
+    const auto [at, exactly, parity] =
+        functions::of_row(kind, [](const auto& row) { return std::tuple(row.at, row.exactly, row.parity); });
     CHECK(functions::value(kind, static_cast<double>(at)) == exactly);
     CHECK(apply(kind, c.number(at)) == c.number(exactly));
     if (parity == Parity::None) continue;
@@ -88,7 +92,8 @@ TEST_CASE("the series of the certificate, by rules of their own, have the deriva
     CAPTURE(std::string(name_of(kind)));
     Context c;
     const Expr x = c.symbol("x", Role::Coordinate), y = c.symbol("y", Role::Coordinate);
-    const Expr f = apply(kind, sqrt(x * x + y * y) * Rational(2, 3) + Rational(1)), first = differentiate(f, x), second = differentiate(first, x);
+    const Expr f = apply(kind, sqrt(x * x + y * y) * Rational(2, 3) + Rational(1)), first = differentiate(f, x),
+               second = differentiate(first, x);
     const auto roots = evaluation::flatten_arguments(std::array{f, first, second});
     const auto tape = evaluation::Tape::with_gaussians(roots);
     const auto hints = evaluation::field_hints(tape);
@@ -104,7 +109,8 @@ TEST_CASE("the series of the certificate, by rules of their own, have the deriva
         });
         std::vector<FieldJet> values;
         evaluation::run(tape, jets, values);
-        const FieldJet &of_f = values[tape.roots()[0]], &of_first = values[tape.roots()[1]], &of_second = values[tape.roots()[2]];
+        const FieldJet &of_f = values[tape.roots()[0]], &of_first = values[tape.roots()[1]],
+                       &of_second = values[tape.roots()[2]];
         CHECK(of_f(0, 1) == of_first(0, 0));
         CHECK(of_f(1, 0) == of_first(0, 0));
         CHECK(of_f(1, 1) == of_second(0, 0));
@@ -132,14 +138,16 @@ TEST_CASE("identities of erf and of Lambert's W") {
   CHECK(is_zero(differentiate(erf(a * x), x) - 2 * a / sqrt(c.pi()) * exp(-a * a * x * x)));
   CHECK(is_zero(erf(x - a) + erf(a - x)));
   CHECK(is_zero(erf((x + a) * (x - a)) - erf(x * x - a * a)));
-  for (const Expr& e : {w(x) * exp(w(x)) - 2 * x, w(x) - x, log(w(a)) - log(a) - w(a), erf(x) - x, erf(2 * x) - 2 * erf(x),
-                        differentiate(erf(x), x) - exp(-x * x), w(-x) + w(x), erf(x) - apply(Kind::Tanh, x)})
+  for (const Expr& e :
+       {w(x) * exp(w(x)) - 2 * x, w(x) - x, log(w(a)) - log(a) - w(a), erf(x) - x, erf(2 * x) - 2 * erf(x),
+        differentiate(erf(x), x) - exp(-x * x), w(-x) + w(x), erf(x) - apply(Kind::Tanh, x)})
     CHECK(zero_test(e).verdict == Verdict::Nonzero);
 }
 
 TEST_CASE("Lambert's W on its whole domain, against Boost with 100 digits") {
   using Quiet = boost::math::policies::policy<boost::math::policies::domain_error<boost::math::policies::ignore_error>>;
-  for (const double x : {-0.36787944117144228, -0.3678794411714, -0.367877, -0.3678767, -0.36787, -0.36, -0.2, -1e-3, -1e-17, 1e-300, 5e-9, 0.1, 1.0, 2.8, 50.0, 1e10, 1e300}) {
+  for (const double x : {-0.36787944117144228, -0.3678794411714, -0.367877, -0.3678767, -0.36787, -0.36, -0.2, -1e-3,
+                         -1e-17, 1e-300, 5e-9, 0.1, 1.0, 2.8, 50.0, 1e10, 1e300}) {
     CAPTURE(x);
     const Real100 exact = boost::math::lambert_w0(Real100(x), Quiet());
     const double w = lambert_w(x);

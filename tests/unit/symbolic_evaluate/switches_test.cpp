@@ -15,11 +15,14 @@ namespace {
 
 struct Fixture {
   Context context;
-  Expr x = context.symbol("x", Role::Coordinate), y = context.symbol("y", Role::Coordinate), t = context.symbol("t", Role::Time);
+  Expr x = context.symbol("x", Role::Coordinate), y = context.symbol("y", Role::Coordinate),
+       t = context.symbol("t", Role::Time);
 
   Expr number(const Rational& r) { return context.number(r); }
   Expr less(Expr a, Expr b) { return context.function(Kind::Less, std::array{a, b}); }
-  Expr piecewise(Expr condition, Expr yes, Expr no) { return context.function(Kind::Piecewise, std::array{condition, yes, no}); }
+  Expr piecewise(Expr condition, Expr yes, Expr no) {
+    return context.function(Kind::Piecewise, std::array{condition, yes, no});
+  }
   Expr max(Expr a, Expr b) { return context.function(Kind::Max, std::array{a, b}); }
   Expr step(Expr a) { return apply(Kind::Step, a); }
   Expr abs(Expr a) { return apply(Kind::Abs, a); }
@@ -38,16 +41,17 @@ struct Fixture {
 }  // namespace
 
 TEST_CASE_FIXTURE(Fixture, "each switch is listed once, whatever its sign and however often it stands there") {
-  const std::array roots{abs(x - y) + step(y - x) + max(x, y), piecewise(less(x, y), x, y), apply(Kind::Sign, t), sin(x)};
+  const std::array roots{abs(x - y) + step(y - x) + max(x, y), piecewise(less(x, y), x, y), apply(Kind::Sign, t),
+                         sin(x)};
   CHECK(switches_of(roots).size() == 2);  // x − y and t
 }
 
 TEST_CASE_FIXTURE(Fixture, "jumps are told from kinks and from pieces that meet") {
   const Expr third = number(Rational(1, 3));
   for (const Expr& continuous :
-       {abs(x), sqrt(abs(x)), pow(max(x, number(0)), Rational(3, 2)), pow(abs(x), Rational(1, 5)), x * apply(Kind::Sign, x),
-        abs(abs(x) - third), piecewise(less(x, third), pow(x, Rational(2)), third * x), max(sin(x), cos(y)),
-        (x - third) * step(x - third) * y, apply(Kind::Exp, -pow(abs(x), Rational(-1)))}) {
+       {abs(x), sqrt(abs(x)), pow(max(x, number(0)), Rational(3, 2)), pow(abs(x), Rational(1, 5)),
+        x * apply(Kind::Sign, x), abs(abs(x) - third), piecewise(less(x, third), pow(x, Rational(2)), third * x),
+        max(sin(x), cos(y)), (x - third) * step(x - third) * y, apply(Kind::Exp, -pow(abs(x), Rational(-1)))}) {
     const auto [jump, samples] = largest_jump(continuous);
     CHECK(samples > 0);
     CHECK(jump == 0);
@@ -56,7 +60,8 @@ TEST_CASE_FIXTURE(Fixture, "jumps are told from kinks and from pieces that meet"
   CHECK(largest_jump(apply(Kind::Sign, x - y)).first == 2);
   CHECK(largest_jump(Rational(2, 5) * step(x - third)).first == doctest::Approx(0.4).epsilon(1e-15));
   // By 1e-12 only, where everything is of order one.
-  CHECK(largest_jump(piecewise(less(x, third), x, x + Rational(1, 1000000000000))).first == doctest::Approx(1e-12).epsilon(1e-9));
+  CHECK(largest_jump(piecewise(less(x, third), x, x + Rational(1, 1000000000000))).first ==
+        doctest::Approx(1e-12).epsilon(1e-9));
   // The difference of two kinks.
   CHECK(largest_jump(abs(x) * pow(x, Rational(-1))).first == 2);
 }
@@ -72,7 +77,8 @@ TEST_CASE_FIXTURE(Fixture, "a jump in a corner that no random point meets") {
 }
 
 TEST_CASE_FIXTURE(Fixture, "samples lie on their switch, below and above are its sides") {
-  const Expr g = pow(x, Rational(2)) + pow(y, Rational(2)) - Rational(4), f = piecewise(less(g, number(0)), number(5), number(7));
+  const Expr g = pow(x, Rational(2)) + pow(y, Rational(2)) - Rational(4),
+             f = piecewise(less(g, number(0)), number(5), number(7));
   const std::vector<Expr> switches = switches_of({&f, 1});
   REQUIRE(switches.size() == 1);
   const auto samples = sample_switches({&f, 1}, switches, search());
@@ -90,7 +96,8 @@ TEST_CASE_FIXTURE(Fixture, "a side that is undefined or unbounded has no jump to
   const std::vector<Expr> switches = switches_of({&f, 1});
   for (const SwitchSample& s : sample_switches({&f, 1}, switches, search())) CHECK(std::isnan(s.jump[0]));
   const Expr wall = step(x) * pow(x, Rational(-1));
-  for (const SwitchSample& s : sample_switches({&wall, 1}, switches_of({&wall, 1}), search())) CHECK(std::isnan(s.jump[0]));
+  for (const SwitchSample& s : sample_switches({&wall, 1}, switches_of({&wall, 1}), search()))
+    CHECK(std::isnan(s.jump[0]));
 }
 
 TEST_CASE_FIXTURE(Fixture, "all branches of nested switches are found, and what excludes itself is counted") {
@@ -108,7 +115,8 @@ TEST_CASE_FIXTURE(Fixture, "all branches of nested switches are found, and what 
 }
 
 TEST_CASE_FIXTURE(Fixture, "narrow bands between two constants are found, in several coordinates at once") {
-  const std::array switches{x - Rational(1000), x - Rational(1001), y - Rational(2000), y - Rational(2001), t - Rational(7000), t - Rational(7001)};
+  const std::array switches{x - Rational(1000), x - Rational(1001), y - Rational(2000),
+                            y - Rational(2001), t - Rational(7000), t - Rational(7001)};
   const BranchPoints found = points_in_branches(switches, search());
   CHECK(found.combinations == 64);
   CHECK(found.missing == 64 - 27);  // below, in and above each band
@@ -132,14 +140,15 @@ TEST_CASE_FIXTURE(Fixture, "of a sum and of its multiples a switch decides the t
   CHECK(uses.terms_with(y - x) == std::vector<Expr>{number(3) * t * held, number(0)});
   CHECK(uses.terms_with(t) == std::vector<Expr>{number(3) * t * abs(t), abs(t)});
   CHECK(uses.terms_with(x) == std::vector<Expr>{number(0), number(0)});
-  const Expr both = step(t) * abs(t);   // no sum: the whole
+  const Expr both = step(t) * abs(t);  // no sum: the whole
   CHECK(SwitchUses({&both, 1}).terms_with(t).front() == both);
 }
 
 TEST_CASE_FIXTURE(Fixture, "the jump across a switch leaves out what both sides have, and is their difference") {
   const Expr f = y * (sin(x) + pow(abs(t) - number(2), Rational(2)) + abs(x)) + cos(y);
   const Expr jump = jump_across({&f, 1}, t).front();
-  CHECK(zero_test(jump - (on_side({&f, 1}, t, true).front() - on_side({&f, 1}, t, false).front())).verdict == Verdict::Zero);
+  CHECK(zero_test(jump - (on_side({&f, 1}, t, true).front() - on_side({&f, 1}, t, false).front())).verdict ==
+        Verdict::Zero);
   const auto symbols = symbols_of({&jump, 1});
   CHECK(std::find(symbols.begin(), symbols.end(), x) == symbols.end());
   const Expr g = y * step(t);
@@ -178,7 +187,8 @@ TEST_CASE_FIXTURE(Fixture, "a function of a thousand pieces is differentiated in
     const int k = static_cast<int>(std::floor(at)) + 1;
     const Bindings point{{x, at}, {y, 0.375}, {t, 1}};
     const double value = k < 1000 ? k * at * at + k % 3 * 0.375 * std::sin(at) : 0.375;
-    const double by_x = k < 1000 ? 2 * k * at + k % 3 * 0.375 * std::cos(at) : 0, by_y = k < 1000 ? k % 3 * std::sin(at) : 1;
+    const double by_x = k < 1000 ? 2 * k * at + k % 3 * 0.375 * std::cos(at) : 0,
+                 by_y = k < 1000 ? k % 3 * std::sin(at) : 1;
     CHECK(evaluate(slopes[0], point) == doctest::Approx(std::cos(value) * by_x + 1).epsilon(1e-9));
     CHECK(evaluate(slopes[1], point) == doctest::Approx(std::cos(value) * by_y).epsilon(1e-9));
     CHECK(slopes[2].is_zero());

@@ -25,14 +25,21 @@ Expr power(Expr e, int k) { return pow(e, Rational(k)); }
 
 TEST_CASE_FIXTURE(Line, "quotients of exponentials are finite where exponentials are not") {
   const Expr e = exponential(x), cosh = apply(Kind::Cosh, x), sinh = apply(Kind::Sinh, x);
-  struct Case { Expr given; double far_left, far_right; };
-  for (const Case& k : {Case{power(one + e, -1), 1, 0}, Case{e * power(one + e, -1), 0, 1}, Case{e * power(one + e, -2), 0, 0},
-                        Case{sinh * power(cosh, -1), -1, 1}, Case{sinh * power(cosh, -3), 0, 0}, Case{power(e + exponential(-x), -1), 0, 0},
-                        Case{(e - exponential(-x)) * power(e + exponential(-x), -1), -1, 1}, Case{exponential(Rational(2) * x) * power(one + e, -2), 0, 1},
-                        Case{exponential(x + Rational(3)) * power(one + e, -1), 0, std::exp(3.0)}, Case{power(one + e, -1) * exponential(-Rational(2) * x) * power(one + exponential(-x), -2), 1, 0}}) {
+  struct Case {
+    Expr given;
+    double far_left, far_right;
+  };
+  for (const Case& k :
+       {Case{power(one + e, -1), 1, 0}, Case{e * power(one + e, -1), 0, 1}, Case{e * power(one + e, -2), 0, 0},
+        Case{sinh * power(cosh, -1), -1, 1}, Case{sinh * power(cosh, -3), 0, 0},
+        Case{power(e + exponential(-x), -1), 0, 0}, Case{(e - exponential(-x)) * power(e + exponential(-x), -1), -1, 1},
+        Case{exponential(Rational(2) * x) * power(one + e, -2), 0, 1},
+        Case{exponential(x + Rational(3)) * power(one + e, -1), 0, std::exp(3.0)},
+        Case{power(one + e, -1) * exponential(-Rational(2) * x) * power(one + exponential(-x), -2), 1, 0}}) {
     const Expr finite = rewritten(k.given);
     CHECK(finite != k.given);
-    for (const int u : {-299, -40, -3, 0, 2, 35, 299}) CHECK(value(finite, u) == doctest::Approx(value(k.given, u)).epsilon(1e-14));
+    for (const int u : {-299, -40, -3, 0, 2, 35, 299})
+      CHECK(value(finite, u) == doctest::Approx(value(k.given, u)).epsilon(1e-14));
     for (const int u : {720, 5000, 2000000}) {
       CHECK(std::abs(value(finite, u) - k.far_right) <= 1e-14 * std::abs(k.far_right) + 1e-120);
       CHECK(std::abs(value(finite, -u) - k.far_left) <= 1e-14 * std::abs(k.far_left) + 1e-120);
@@ -44,7 +51,8 @@ TEST_CASE_FIXTURE(Line, "logarithms of sums of exponentials become straight line
   const auto log = [](Expr e) { return apply(Kind::Log, e); };
   const Expr softplus = rewritten(log(one + exponential(x))), cosh = rewritten(log(apply(Kind::Cosh, x)));
   for (const int u : {-290, -5, 0, 7, 290}) {
-    CHECK(value(softplus, u) == doctest::Approx(u > 0 ? u + std::log1p(std::exp(-u)) : std::log1p(std::exp(u))).epsilon(1e-14));
+    CHECK(value(softplus, u) ==
+          doctest::Approx(u > 0 ? u + std::log1p(std::exp(-u)) : std::log1p(std::exp(u))).epsilon(1e-14));
     CHECK(value(cosh, u) == doctest::Approx(std::log(std::cosh(u))).epsilon(1e-14));
   }
   for (const int u : {400, 5000}) {
@@ -57,9 +65,11 @@ TEST_CASE_FIXTURE(Line, "logarithms of sums of exponentials become straight line
 TEST_CASE_FIXTURE(Line, "what grows, or may begin elsewhere, stays") {
   const Expr e = exponential(x), y = c.symbol("y", Role::Coordinate);
   const Rational tiny = Rational::from_double(0x1p-300);
-  for (const Expr& given : {e, exponential(-x), x * e, sqrt(one + e), power(one + tiny * e, -1), power(one + a * e, -1), power(one + y * e, -1),
-                            power(one + e + exponential(x + Rational(400)), -1), power(one + e + exponential(a * x), -1), power(one + e + exponential(x + y), -1),
-                            power(one + exponential(exponential(x)) * e, -1), apply(Kind::Log, x), power(one + exponential(a), -1)})
+  for (const Expr& given :
+       {e, exponential(-x), x * e, sqrt(one + e), power(one + tiny * e, -1), power(one + a * e, -1),
+        power(one + y * e, -1), power(one + e + exponential(x + Rational(400)), -1),
+        power(one + e + exponential(a * x), -1), power(one + e + exponential(x + y), -1),
+        power(one + exponential(exponential(x)) * e, -1), apply(Kind::Log, x), power(one + exponential(a), -1)})
     CHECK(rewritten(given) == given);
   // It grows to the right, where it keeps its u; to the left exp(−u) overflows and does not count.
   const Expr grows = power(e, 2) * power(one + exponential(-x), -1), finite = rewritten(grows);

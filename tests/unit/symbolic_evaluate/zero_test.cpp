@@ -17,7 +17,9 @@ struct Names {
   Expr t = c.time(), pi = c.pi();
 
   Expr number(std::int64_t up, std::int64_t down = 1) { return c.number(Rational(up, down)); }
-  Expr fn(Kind kind, std::initializer_list<Expr> arguments) { return c.function(kind, {arguments.begin(), arguments.size()}); }
+  Expr fn(Kind kind, std::initializer_list<Expr> arguments) {
+    return c.function(kind, {arguments.begin(), arguments.size()});
+  }
   Expr abs(Expr e) { return apply(Kind::Abs, e); }
   Expr sign(Expr e) { return apply(Kind::Sign, e); }
   Expr exp(Expr e) { return apply(Kind::Exp, e); }
@@ -57,7 +59,8 @@ TEST_CASE_FIXTURE(Names, "sines and cosines over a common basis") {
   is_zero(cos(x) * cos(y) + sin(x) * sin(y) - cos(x - y));
   is_zero(sq(sin(x / Rational(2))) - (Rational(1, 2) * number(1) - Rational(1, 2) * cos(x)));
   is_zero(sin(a * (t - b)) - sin(a * t) * cos(a * b) + cos(a * t) * sin(a * b));
-  is_zero(apply(Kind::Tan, x + y) * (number(1) - apply(Kind::Tan, x) * apply(Kind::Tan, y)) - apply(Kind::Tan, x) - apply(Kind::Tan, y));
+  is_zero(apply(Kind::Tan, x + y) * (number(1) - apply(Kind::Tan, x) * apply(Kind::Tan, y)) - apply(Kind::Tan, x) -
+          apply(Kind::Tan, y));
   is_zero(sin(x + number(1)) - sin(x) * cos(number(1)) - cos(x) * sin(number(1)));
   is_nonzero(sin(x + y) - sin(x) - sin(y));
   is_nonzero(sin(x) * cos(y) + cos(x) * sin(y) - sin(x - y));
@@ -110,7 +113,7 @@ TEST_CASE_FIXTURE(Names, "powers with symbolic exponents") {
   is_zero(c.power(a, n) - a * c.power(a, n - number(1)));
   is_zero(c.power(a, 2 * n) - sq(c.power(a, n)));
   is_zero(c.power(a, n) - exp(n * log(a)));
-  is_zero(c.power(a * b, n) * c.power(a, -n) - c.power(b, n), false);   // two bases: no bound is claimed
+  is_zero(c.power(a * b, n) * c.power(a, -n) - c.power(b, n), false);  // two bases: no bound is claimed
   is_nonzero(c.power(a, n) - c.power(a, n + number(1)));
   is_zero(pow(a, Rational(1, 3)) * pow(a, Rational(2, 3)) - a);
 }
@@ -173,7 +176,8 @@ TEST_CASE_FIXTURE(Names, "values near zero are told apart from zero") {
   is_nonzero(exp(x + almost) - exp(x), false);
   // Rump's example: in double and in long double the terms cancel to a wrong value.
   const Expr u = number(77617), v = number(33096);
-  const Expr w = number(1335, 4) * pow(y, Rational(6)) + sq(x) * (11 * sq(x) * sq(y) - pow(y, Rational(6)) - 121 * pow(y, Rational(4)) - Rational(2)) +
+  const Expr w = number(1335, 4) * pow(y, Rational(6)) +
+                 sq(x) * (11 * sq(x) * sq(y) - pow(y, Rational(6)) - 121 * pow(y, Rational(4)) - Rational(2)) +
                  number(11, 2) * pow(y, Rational(8)) + x / (2 * y);
   is_nonzero(substitute(w, {{x, u}, {y, v}}) + number(54767, 66192) + sin(almost), false);
   is_zero(substitute(w, {{x, u}, {y, v}}) + number(54767, 66192));

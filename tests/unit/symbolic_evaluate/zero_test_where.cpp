@@ -12,7 +12,7 @@ struct Circle {
   Context c;
   Expr x = c.symbol("x", Role::Coordinate), y = c.symbol("y", Role::Coordinate), l = c.symbol("l", Role::Parameter);
   Expr vx = c.symbol("x", Role::Coordinate, 1), vy = c.symbol("y", Role::Coordinate, 1);
-  std::array<Expr, 2> relations{x * x + y * y - l * l, x * vx + y * vy};
+  std::array<Expr, 2> relations{x * x + y * y - l * l, x* vx + y* vy};
   std::array<Expr, 4> unknowns{x, y, vx, vy};
   Bindings center{{x, 0.6}, {y, 0.8}, {l, 1}, {vx, 0}, {vy, 0}};
 
@@ -22,7 +22,8 @@ struct Circle {
 }  // namespace
 
 TEST_CASE_FIXTURE(Circle, "what vanishes on the circle alone") {
-  for (const Expr e : {x * x + y * y - l * l, sqrt(x * x + y * y) - l, (x * vy - y * vx) * (x * vy - y * vx) - l * l * (vx * vx + vy * vy)}) {
+  for (const Expr e : {x * x + y * y - l * l, sqrt(x * x + y * y) - l,
+                       (x * vy - y * vx) * (x * vy - y * vx) - l * l * (vx * vx + vy * vy)}) {
     const ZeroTest test = this->test(e);
     CHECK(test.verdict == Verdict::Zero);
     CHECK(test.points == 3);
@@ -36,7 +37,8 @@ TEST_CASE_FIXTURE(Circle, "what does not vanish there, were it by 1e-30") {
   const ZeroTest test = this->test(x * x + y * y - l * l + tiny * x);
   CHECK(test.verdict == Verdict::Nonzero);
   CHECK(test.witness_value != 0);
-  CHECK(std::abs(test.witness.at(x) * test.witness.at(x) + test.witness.at(y) * test.witness.at(y) - test.witness.at(l) * test.witness.at(l)) < 1e-14);
+  CHECK(std::abs(test.witness.at(x) * test.witness.at(x) + test.witness.at(y) * test.witness.at(y) -
+                 test.witness.at(l) * test.witness.at(l)) < 1e-14);
 }
 
 TEST_CASE("relations that nothing satisfies leave the question open") {

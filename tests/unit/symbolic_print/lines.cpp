@@ -55,7 +55,8 @@ TEST_CASE("what is wider than a line is opened: brackets, fractions, roots, func
 
 TEST_CASE("no line of sums is wider than asked for") {
   std::vector<Layout> terms;
-  for (int i = 0; i < 40; ++i) terms.push_back(product({ten(), sum({ten(), name("x"), power(sum({ten(), ten()}), number("2"))})}));
+  for (int i = 0; i < 40; ++i)
+    terms.push_back(product({ten(), sum({ten(), name("x"), power(sum({ten(), ten()}), number("2"))})}));
   for (const double line : {20.0, 30.0, 48.0})
     for (const Layout& one : broken_lines(sum(terms), number("0"), line, line - 2)) CHECK(width(one) <= line);
 }

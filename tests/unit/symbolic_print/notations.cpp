@@ -176,10 +176,12 @@ TEST_CASE("MathML") {
         "<mrow><mrow><msub><mi>m</mi><mn>1</mn></msub><mo>&#x2062;</mo><mspace width=\"0.17em\"/>"
         "<msub><mover accent=\"true\"><mi>θ</mi><mo>&#x00A8;</mo></mover><mn>1</mn></msub></mrow></mrow>");
   CHECK(n.mathml(sin(n.a)) ==
-        "<mrow><mrow><mi>sin</mi><mo>&#x2061;</mo><mspace width=\"0.17em\"/><msub><mi>θ</mi><mn>1</mn></msub></mrow></mrow>");
+        "<mrow><mrow><mi>sin</mi><mo>&#x2061;</mo><mspace "
+        "width=\"0.17em\"/><msub><mi>θ</mi><mn>1</mn></msub></mrow></mrow>");
   const std::array branches{n.c.function(Kind::Less, std::array{n.x, n.c.number(0)}), -n.k * n.x, n.k * n.x};
   const Expr everything = n.c.function(Kind::Piecewise, branches) + sqrt(n.x + n.l) * pow(cos(n.a - n.b), Rational(2)) +
-                          pow(n.x + n.l, Rational(-3, 2)) + apply(Kind::Abs, n.x) + n.c.symbol("3 [N/m]", Role::Constant);
+                          pow(n.x + n.l, Rational(-3, 2)) + apply(Kind::Abs, n.x) +
+                          n.c.symbol("3 [N/m]", Role::Constant);
   CHECK(well_formed(n.mathml(everything)));
   CHECK(n.mathml(everything).find("&lt;") != std::string::npos);
 }
@@ -242,8 +244,10 @@ TEST_CASE("the step function is no Θ, which is a name") {
 
 TEST_CASE("cases are closed by brackets where something follows, or inside and") {
   Names n;
-  const Expr less = n.c.function(Kind::Less, std::array{n.x, n.l}), other = n.c.function(Kind::Less, std::array{n.k, n.x});
-  const Expr either = n.c.function(Kind::Or, std::array{less, other}), both = n.c.function(Kind::And, std::array{less, either});
+  const Expr less = n.c.function(Kind::Less, std::array{n.x, n.l}),
+             other = n.c.function(Kind::Less, std::array{n.k, n.x});
+  const Expr either = n.c.function(Kind::Or, std::array{less, other}),
+             both = n.c.function(Kind::And, std::array{less, either});
   const Expr cases = n.c.function(Kind::Piecewise, std::array{both, n.k, n.m});
   CHECK(n.plain(cases) == "piecewise(x < l and (x < l or k < x) : k, else : m)");
   CHECK(n.latex(n.m * cases).find("\\left(") == std::string::npos);
@@ -256,8 +260,9 @@ TEST_CASE("left sides of derivations") {
   const Layout velocity = lay_out(n.dot(n.a), n.order), momentum = partial(name("L"), velocity);
   CHECK(to_plain(momentum) == "∂L/∂θ1'");
   CHECK(to_latex(momentum) == "\\frac{\\partial L}{\\partial \\dot{\\theta}_1}");
-  CHECK(to_mathml(momentum) == "<mrow><mfrac><mrow><mo>∂</mo><mi>L</mi></mrow><mrow><mo>∂</mo><msub><mover accent=\"true\"><mi>θ</mi>"
-                               "<mo>&#x02D9;</mo></mover><mn>1</mn></msub></mrow></mfrac></mrow>");
+  CHECK(to_mathml(momentum) ==
+        "<mrow><mfrac><mrow><mo>∂</mo><mi>L</mi></mrow><mrow><mo>∂</mo><msub><mover accent=\"true\"><mi>θ</mi>"
+        "<mo>&#x02D9;</mo></mover><mn>1</mn></msub></mrow></mfrac></mrow>");
   const Layout total = rate(momentum, lay_out(n.c.time(), n.order), true);
   CHECK(to_plain(total) == "d/dt ∂L/∂θ1'");
   CHECK(to_latex(total) == "\\frac{\\mathrm{d}}{\\mathrm{d} t}\\, \\frac{\\partial L}{\\partial \\dot{\\theta}_1}");
@@ -265,7 +270,8 @@ TEST_CASE("left sides of derivations") {
   const Layout speed = power(labelled("v_A", indexed(name("v"), {name("A")})), number("2"));
   CHECK(to_plain(speed) == "v_A^2");
   CHECK(to_latex(speed) == "v_{A}^{2}");
-  CHECK(to_mathml(indexed(name("Q"), {lay_out(n.a, n.order)})) == "<mrow><msub><mi>Q</mi><mrow><msub><mi>θ</mi><mn>1</mn></msub></mrow></msub></mrow>");
+  CHECK(to_mathml(indexed(name("Q"), {lay_out(n.a, n.order)})) ==
+        "<mrow><msub><mi>Q</mi><mrow><msub><mi>θ</mi><mn>1</mn></msub></mrow></msub></mrow>");
   CHECK(to_latex(name("y", 2, true)) == "y''");
   CHECK(to_latex(words("close_x & y")) == "\\text{close\\_x \\& y}");
   CHECK(to_plain(braces(velocity, number("1"))) == "{θ1', 1}");

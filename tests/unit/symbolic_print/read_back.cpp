@@ -49,8 +49,9 @@ double evaluate(const syntax::Expression& e) {
     if (e.op == O::Or) return arg(0) != 0 || arg(1) != 0;
   }
   if (e.kind == K::Call) {
-    const std::map<std::string, double (*)(double)> functions{
-        {"sin", std::sin}, {"cos", std::cos}, {"tan", std::tan}, {"exp", std::exp}, {"sqrt", std::sqrt}, {"abs", std::fabs}};
+    const std::map<std::string, double (*)(double)> functions{{"sin", std::sin},   {"cos", std::cos},
+                                                              {"tan", std::tan},   {"exp", std::exp},
+                                                              {"sqrt", std::sqrt}, {"abs", std::fabs}};
     if (e.text == "min") return std::min(arg(0), arg(1));
     if (e.text == "step") return arg(0) >= 0;
     if (e.text == "log") return std::log(arg(0));
@@ -64,8 +65,16 @@ double evaluate(Expr e) {
   if (e.is_number()) return e.number().to_double();
   if (e.is(Kind::Pi)) return std::acos(-1.0);
   if (e.is_symbol()) return value_of_name(e.name(), e.order());
-  if (e.is(Kind::Sum)) { double s = 0; for (std::size_t i = 0; i < e.size(); ++i) s += arg(i); return s; }
-  if (e.is(Kind::Product)) { double p = 1; for (std::size_t i = 0; i < e.size(); ++i) p *= arg(i); return p; }
+  if (e.is(Kind::Sum)) {
+    double s = 0;
+    for (std::size_t i = 0; i < e.size(); ++i) s += arg(i);
+    return s;
+  }
+  if (e.is(Kind::Product)) {
+    double p = 1;
+    for (std::size_t i = 0; i < e.size(); ++i) p *= arg(i);
+    return p;
+  }
   if (e.is(Kind::Power)) return std::pow(arg(0), arg(1));
   if (e.is(Kind::Sin)) return std::sin(arg(0));
   if (e.is(Kind::Cos)) return std::cos(arg(0));
@@ -88,29 +97,51 @@ Expr random_expression(Context& c, const std::vector<int>& choices, std::size_t&
   const auto sub = [&] { return random_expression(c, choices, next, depth - 1); };
   if (depth == 0) {
     switch (pick(4)) {
-      case 0: return c.number(Rational(pick(41) - 20, 1 + pick(12)));
-      case 1: return c.symbol(parameters[static_cast<std::size_t>(pick(4))], Role::Parameter);
-      case 2: return pick(5) == 0 ? c.pi() : c.symbol(parameters[static_cast<std::size_t>(pick(4))], Role::Parameter);
-      default: return c.symbol(coordinates[static_cast<std::size_t>(pick(3))], Role::Coordinate, pick(3));
+      case 0:
+        return c.number(Rational(pick(41) - 20, 1 + pick(12)));
+      case 1:
+        return c.symbol(parameters[static_cast<std::size_t>(pick(4))], Role::Parameter);
+      case 2:
+        return pick(5) == 0 ? c.pi() : c.symbol(parameters[static_cast<std::size_t>(pick(4))], Role::Parameter);
+      default:
+        return c.symbol(coordinates[static_cast<std::size_t>(pick(3))], Role::Coordinate, pick(3));
     }
   }
   switch (pick(15)) {
-    case 0: case 1: return sub() + sub();
-    case 2: return sub() - sub();
-    case 3: case 4: return sub() * sub();
-    case 5: return sub() / (sub() + Rational(7, 3));
-    case 6: return pow(sub(), Rational(1 + pick(3)));
-    case 7: return pow(pow(sub(), Rational(2)) + Rational(1), Rational(pick(7) - 3, 2));
-    case 8: return apply(pick(2) ? Kind::Sin : Kind::Cos, c.symbol("θ1", Role::Coordinate, pick(2)));
-    case 9: return apply(pick(2) ? Kind::Tan : Kind::Exp, c.symbol("x", Role::Coordinate) * Rational(pick(5) - 2, 2));
-    case 10: return c.power(apply(Kind::Abs, sub()) + Rational(1), sub());
-    case 11: return c.power(c.number(Rational(3, 2)), sub() / (c.symbol("k", Role::Parameter) * c.symbol("x", Role::Coordinate)));
-    case 12: return c.power(c.symbol("a", Role::Parameter), -(sub() / c.symbol("b", Role::Parameter)));
-    case 13: return c.function(Kind::Min, std::array{sub(), sub()}) * apply(pick(2) ? Kind::Step : Kind::Log, c.symbol("x", Role::Coordinate));
+    case 0:
+    case 1:
+      return sub() + sub();
+    case 2:
+      return sub() - sub();
+    case 3:
+    case 4:
+      return sub() * sub();
+    case 5:
+      return sub() / (sub() + Rational(7, 3));
+    case 6:
+      return pow(sub(), Rational(1 + pick(3)));
+    case 7:
+      return pow(pow(sub(), Rational(2)) + Rational(1), Rational(pick(7) - 3, 2));
+    case 8:
+      return apply(pick(2) ? Kind::Sin : Kind::Cos, c.symbol("θ1", Role::Coordinate, pick(2)));
+    case 9:
+      return apply(pick(2) ? Kind::Tan : Kind::Exp, c.symbol("x", Role::Coordinate) * Rational(pick(5) - 2, 2));
+    case 10:
+      return c.power(apply(Kind::Abs, sub()) + Rational(1), sub());
+    case 11:
+      return c.power(c.number(Rational(3, 2)),
+                     sub() / (c.symbol("k", Role::Parameter) * c.symbol("x", Role::Coordinate)));
+    case 12:
+      return c.power(c.symbol("a", Role::Parameter), -(sub() / c.symbol("b", Role::Parameter)));
+    case 13:
+      return c.function(Kind::Min, std::array{sub(), sub()}) *
+             apply(pick(2) ? Kind::Step : Kind::Log, c.symbol("x", Role::Coordinate));
     default: {
       const std::array sides{c.symbol("a", Role::Parameter), c.symbol("x", Role::Coordinate)};
-      const Expr less = c.function(Kind::Less, sides), other = c.function(Kind::LessEqual, std::array{c.symbol("b", Role::Parameter), sides[1]});
-      const Expr either = c.function(Kind::Or, std::array{less, other}), both = c.function(Kind::And, std::array{less, either});
+      const Expr less = c.function(Kind::Less, sides),
+                 other = c.function(Kind::LessEqual, std::array{c.symbol("b", Role::Parameter), sides[1]});
+      const Expr either = c.function(Kind::Or, std::array{less, other}),
+                 both = c.function(Kind::And, std::array{less, either});
       const std::array branches{pick(2) ? less : pick(2) ? either : both, sub(), sub()};
       return c.function(Kind::Piecewise, branches);
     }
@@ -141,7 +172,9 @@ TEST_CASE("what is printed can be read back") {
   CHECK(rc::check([] {
     Case it;
     const std::string text = to_plain(it.e, it.order);
-    const SourceText source("test.lag", "system s\nparam a = 1, b = 1, m1 = 1, k = 1\ncoord x : length, θ1, θ2 : angle\nlet z = " + text + "\n");
+    const SourceText source(
+        "test.lag",
+        "system s\nparam a = 1, b = 1, m1 = 1, k = 1\ncoord x : length, θ1, θ2 : angle\nlet z = " + text + "\n");
     Diagnostics diagnostics;
     const syntax::SyntaxTree tree = syntax::parse(source, diagnostics);
     if (diagnostics.has_errors()) RC_FAIL(text + ": " + diagnostics.items().front().message);
@@ -167,9 +200,11 @@ TEST_CASE("a line that was broken says the same in its pieces") {
     const Layout layout = lay_out(it.e, it.order);
     for (const double line : {3.0, 8.0, 20.0}) {
       std::string latex, mathml;
-      for (const Layout& piece : broken_lines(layout, {}, line, line)) latex += " " + to_latex(piece), mathml += to_mathml(piece);
+      for (const Layout& piece : broken_lines(layout, {}, line, line))
+        latex += " " + to_latex(piece), mathml += to_mathml(piece);
       for (const char* size : {"\\bigl", "\\bigr", "\\Bigl", "\\Bigr", "{}"})
-        for (auto at = latex.find(size); at != std::string::npos; at = latex.find(size)) latex.erase(at, std::string(size).size());
+        for (auto at = latex.find(size); at != std::string::npos; at = latex.find(size))
+          latex.erase(at, std::string(size).size());
       if (!same_value(typeset_reader::value_of_latex(latex, value_of_name), evaluate(it.e))) RC_FAIL(latex);
       if (!same_value(typeset_reader::value_of_mathml(mathml, value_of_name), evaluate(it.e))) RC_FAIL(mathml);
     }
@@ -180,21 +215,24 @@ TEST_CASE("every function of the table is a word of the language, and is printed
   Context c;
   ReadingOrder order;
   const Expr x = c.symbol("x", Role::Coordinate);
-  std::apply([&](const auto&... row) {
-    const auto read_back = [&](Kind kind, std::string_view name) {
-      const std::string text = to_plain(apply(kind, Rational(2) * x), order);
-      CHECK(text == std::string(name).append("(2 x)"));
-      const SourceText source("test.lag", "system s\ncoord x : number\nlet z = " + text + "\n");
-      Diagnostics diagnostics;
-      const syntax::SyntaxTree tree = syntax::parse(source, diagnostics);
-      INFO(render(diagnostics, source));
-      REQUIRE_FALSE(diagnostics.has_errors());
-      const syntax::Expression& call = *std::get<syntax::LetStatement>(tree.statements.back().body).items.front().value;
-      CHECK(call.kind == syntax::Expression::Kind::Call);
-      CHECK(call.text == name);
-    };
-    (read_back(row.kind, row.name), ...);
-  }, functions::rows);
+  std::apply(
+      [&](const auto&... row) {
+        const auto read_back = [&](Kind kind, std::string_view name) {
+          const std::string text = to_plain(apply(kind, Rational(2) * x), order);
+          CHECK(text == std::string(name).append("(2 x)"));
+          const SourceText source("test.lag", "system s\ncoord x : number\nlet z = " + text + "\n");
+          Diagnostics diagnostics;
+          const syntax::SyntaxTree tree = syntax::parse(source, diagnostics);
+          INFO(render(diagnostics, source));
+          REQUIRE_FALSE(diagnostics.has_errors());
+          const syntax::Expression& call =
+              *std::get<syntax::LetStatement>(tree.statements.back().body).items.front().value;
+          CHECK(call.kind == syntax::Expression::Kind::Call);
+          CHECK(call.text == name);
+        };
+        (read_back(row.kind, row.name), ...);
+      },
+      functions::rows);
 }
 
 TEST_CASE("no notation writes a kind that it does not know") {

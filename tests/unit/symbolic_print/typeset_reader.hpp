@@ -8,14 +8,16 @@
 #include <string_view>
 #include <vector>
 
-/// Reads LaTeX and MathML as a mathematician does, and gives the value: what stands side by side is a product, a slash divides by the next factor alone, the
-/// name of a function takes the next factor, brackets group, and nothing else does. Written for these tests, apart from the printers.
+/// Reads LaTeX and MathML as a mathematician does, and gives the value: what stands side by side is a product, a slash
+/// divides by the next factor alone, the name of a function takes the next factor, brackets group, and nothing else
+/// does. Written for these tests, apart from the printers.
 namespace typeset_reader {
 
 using ValueOfName = std::function<double(const std::string& name, int dots)>;
 
 inline const std::map<std::string, std::string>& greek() {
-  static const std::map<std::string, std::string> names{{"\\theta", "θ"}, {"\\varphi", "φ"}, {"\\lambda", "λ"}, {"\\omega", "ω"}, {"\\Theta", "Θ"}, {"\\psi", "ψ"}};
+  static const std::map<std::string, std::string> names{{"\\theta", "θ"}, {"\\varphi", "φ"}, {"\\lambda", "λ"},
+                                                        {"\\omega", "ω"}, {"\\Theta", "Θ"},  {"\\psi", "ψ"}};
   return names;
 }
 
@@ -30,13 +32,18 @@ class Latex {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const { throw std::runtime_error(what + " in " + std::string(text_)); }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw std::runtime_error(what + " in " + std::string(text_));
+  }
 
   void skip() {
     while (at_ < text_.size()) {
-      if (text_[at_] == ' ' || text_[at_] == '\n') ++at_;
-      else if (text_.substr(at_, 2) == "\\,") at_ += 2;
-      else break;
+      if (text_[at_] == ' ' || text_[at_] == '\n')
+        ++at_;
+      else if (text_.substr(at_, 2) == "\\,")
+        at_ += 2;
+      else
+        break;
     }
   }
 
@@ -49,7 +56,8 @@ class Latex {
       return std::string(text_.substr(at_, std::max(end, at_ + 2) - at_));
     }
     std::size_t end = at_ + 1;
-    if (is_digit(text_[at_])) while (end < text_.size() && (is_digit(text_[end]) || text_[end] == '.')) ++end;
+    if (is_digit(text_[at_]))
+      while (end < text_.size() && (is_digit(text_[end]) || text_[end] == '.')) ++end;
     while (end < text_.size() && (text_[end] & 0xC0) == 0x80) ++end;
     return std::string(text_.substr(at_, end - at_));
   }
@@ -90,25 +98,34 @@ class Latex {
   double sum() {
     double value = take("-") ? -product() : product();
     while (true) {
-      if (take("+")) value += product();
-      else if (take("-")) value -= product();
-      else return value;
+      if (take("+"))
+        value += product();
+      else if (take("-"))
+        value -= product();
+      else
+        return value;
     }
   }
 
   bool factor_follows() {
     const std::string t = peek();
-    static const std::vector<std::string> ends{"", "+", "-", ")", "}", ",", "&", "\\\\", "<", "\\le", "\\wedge", "\\vee", "\\right", "\\end", "/", "\\cdot", "|"};
+    static const std::vector<std::string> ends{"",        "+",     "-", ")",      "}",       ",",
+                                               "&",       "\\\\",  "<", "\\le",   "\\wedge", "\\vee",
+                                               "\\right", "\\end", "/", "\\cdot", "|"};
     return std::find(ends.begin(), ends.end(), t) == ends.end();
   }
 
   double product() {
     double value = factor();
     while (true) {
-      if (take("\\cdot")) value *= factor();
-      else if (take("/")) value /= factor();
-      else if (factor_follows()) value *= factor();
-      else return value;
+      if (take("\\cdot"))
+        value *= factor();
+      else if (take("/"))
+        value /= factor();
+      else if (factor_follows())
+        value *= factor();
+      else
+        return value;
     }
   }
 
@@ -127,8 +144,10 @@ class Latex {
 
   double bracketed() {
     const double value = alternatives();
-    if (take("\\right")) expect(")");
-    else expect(")");
+    if (take("\\right"))
+      expect(")");
+    else
+      expect(")");
     return value;
   }
 
@@ -161,7 +180,8 @@ class Latex {
   }
 
   static bool is_function(const std::string& token) {
-    return token == "\\sin" || token == "\\cos" || token == "\\tan" || token == "\\exp" || token == "\\ln" || token == "\\min" || token == "\\max";
+    return token == "\\sin" || token == "\\cos" || token == "\\tan" || token == "\\exp" || token == "\\ln" ||
+           token == "\\min" || token == "\\max";
   }
 
   double application() {
@@ -256,7 +276,8 @@ class Latex {
   std::size_t at_ = 0;
 };
 
-/// MathML as LaTeX, element by element: elements side by side stay side by side, and an <mrow> groups nothing for the eye.
+/// MathML as LaTeX, element by element: elements side by side stay side by side, and an <mrow> groups nothing for the
+/// eye.
 class Mathml {
  public:
   explicit Mathml(std::string_view text) : text_(text) {}
@@ -281,8 +302,10 @@ class Mathml {
     std::string leaf;
     while (text_.substr(at_, 2) != "</") {
       if (at_ >= text_.size()) fail();
-      if (text_[at_] == '<') parts.push_back(element());
-      else leaf += text_[at_++];
+      if (text_[at_] == '<')
+        parts.push_back(element());
+      else
+        leaf += text_[at_++];
     }
     at_ = text_.find('>', at_) + 1;
     return as_latex(tag, parts, leaf);
@@ -295,9 +318,12 @@ class Mathml {
   }
 
   std::string as_latex(const std::string& tag, const std::vector<std::string>& parts, const std::string& leaf) const {
-    static const std::map<std::string, std::string> signs{{"&#x2062;", " "}, {"&#x2061;", " "}, {"&#x2212;", "-"}, {"&#x22C5;", " \\cdot "}, {"⋅", " \\cdot "}, {"&lt;", "<"},
-                                                          {"&#x2264;", " \\le "}, {"&#x2227;", " \\wedge "}, {"&#x2228;", " \\vee "}};
-    if (tag == "mrow") return joined(parts).rfind("{", 0) == 0 ? joined(parts).substr(1) : joined(parts);   // the brace before cases
+    static const std::map<std::string, std::string> signs{
+        {"&#x2062;", " "},        {"&#x2061;", " "},         {"&#x2212;", "-"},
+        {"&#x22C5;", " \\cdot "}, {"⋅", " \\cdot "},         {"&lt;", "<"},
+        {"&#x2264;", " \\le "},   {"&#x2227;", " \\wedge "}, {"&#x2228;", " \\vee "}};
+    if (tag == "mrow")
+      return joined(parts).rfind("{", 0) == 0 ? joined(parts).substr(1) : joined(parts);  // the brace before cases
     if (tag == "mn") return " " + leaf + " ";
     if (tag == "mo") return signs.count(leaf) ? signs.at(leaf) : leaf;
     if (tag == "mi") return identifier(leaf);
@@ -307,7 +333,8 @@ class Mathml {
     if (tag == "msub") return parts.at(0) + "_{" + parts.at(1) + "}";
     if (tag == "msubsup") return parts.at(0) + "_{" + parts.at(1) + "}^{" + parts.at(2) + "}";
     if (tag == "mover") return (parts.at(1) == "&#x02D9;" ? "\\dot{" : "\\ddot{") + parts.at(0) + "}";
-    if (tag == "mtable") return "\\begin{cases}" + joined(parts).substr(0, joined(parts).rfind("\\\\")) + "\\end{cases}";
+    if (tag == "mtable")
+      return "\\begin{cases}" + joined(parts).substr(0, joined(parts).rfind("\\\\")) + "\\end{cases}";
     if (tag == "mtr") return parts.at(0) + "&" + parts.at(1) + "\\\\";
     if (tag == "mtd") return joined(parts);
     if (tag == "mtext") return "\\text{" + leaf + "}";
@@ -315,7 +342,8 @@ class Mathml {
   }
 
   static std::string identifier(const std::string& leaf) {
-    static const std::vector<std::string> functions{"sin", "cos", "tan", "exp", "ln", "sgn", "step", "min", "max", "atan2"};
+    static const std::vector<std::string> functions{"sin", "cos",  "tan", "exp", "ln",
+                                                    "sgn", "step", "min", "max", "atan2"};
     if (std::find(functions.begin(), functions.end(), leaf) != functions.end()) return "\\operatorname{" + leaf + "}";
     return " " + leaf + " ";
   }
@@ -325,6 +353,8 @@ class Mathml {
 };
 
 inline double value_of_latex(const std::string& text, const ValueOfName& value) { return Latex(text, value).read(); }
-inline double value_of_mathml(const std::string& text, const ValueOfName& value) { return Latex(Mathml(text).latex(), value).read(); }
+inline double value_of_mathml(const std::string& text, const ValueOfName& value) {
+  return Latex(Mathml(text).latex(), value).read();
+}
 
 }  // namespace typeset_reader

@@ -26,7 +26,13 @@ TEST_CASE("each factor stands once, with its multiplicity, and their product is 
     std::size_t factors;
     int sum_of_multiplicities;
   };
-  for (const Case& k : {Case{a * b, 2, 2}, {a * a, 1, 2}, {a * a * b, 2, 3}, {a * b * a * b, 2, 4}, {c * a * c, 2, 3}, {a * a * a * b, 2, 4}, {a * b * c, 3, 3}}) {
+  for (const Case& k : {Case{a * b, 2, 2},
+                        {a * a, 1, 2},
+                        {a * a * b, 2, 3},
+                        {a * b * a * b, 2, 4},
+                        {c * a * c, 2, 3},
+                        {a * a * a * b, 2, 4},
+                        {a * b * c, 3, 3}}) {
     Rational content;
     const auto found = factors(primitive(k.product, content));
     CHECK(found.size() == k.factors);
@@ -43,7 +49,8 @@ TEST_CASE("each factor stands once, with its multiplicity, and their product is 
 
 TEST_CASE("angles add in one order, whichever came first") {
   Context context;
-  const Expr a = context.symbol("a", Role::Coordinate), b = context.symbol("b", Role::Coordinate), c = context.symbol("c", Role::Coordinate);
+  const Expr a = context.symbol("a", Role::Coordinate), b = context.symbol("b", Role::Coordinate),
+             c = context.symbol("c", Role::Coordinate);
   const Expr early[] = {b, c, c * c, b * c, apply(Kind::Exp, c), apply(Kind::Exp, c) * b};
   const Expr sum = sin(a + b + c), parts = sin(a) * cos(b + c) + cos(a) * sin(b) * cos(c) + cos(a) * cos(b) * sin(c);
   for (const Expr& first : early)

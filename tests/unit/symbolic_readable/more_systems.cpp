@@ -13,8 +13,8 @@ const Rational half(1, 2);
 
 TEST_CASE("pendulum on a driven cart with friction") {
   Lagrangian s;
-  const Expr M = s.parameter("M"), m = s.parameter("m"), g = s.parameter("g"), l = s.parameter("l"), c = s.parameter("c"),
-             F = s.parameter("F0"), w = s.parameter("ω");
+  const Expr M = s.parameter("M"), m = s.parameter("m"), g = s.parameter("g"), l = s.parameter("l"),
+             c = s.parameter("c"), F = s.parameter("F0"), w = s.parameter("ω");
   const Expr x = s.coordinate("x"), a = s.coordinate("θ");
   s.value = s.kinetic(M, {x}) + s.kinetic(m, {x + l * sin(a), -l * cos(a)}) + m * g * l * cos(a);
   auto rows = s.residuals();
@@ -50,7 +50,8 @@ TEST_CASE("relativistic particle: one fraction") {
 
 TEST_CASE("charged particle in a magnetic field") {
   Lagrangian s;
-  const Expr m = s.parameter("m"), q = s.parameter("q"), B = s.parameter("B"), x = s.coordinate("x"), y = s.coordinate("y");
+  const Expr m = s.parameter("m"), q = s.parameter("q"), B = s.parameter("B"), x = s.coordinate("x"),
+             y = s.coordinate("y");
   s.value = s.kinetic(m, {x, y}) + half * q * B * (x * s.dot(y) - y * s.dot(x));
   CHECK(s.equations()[0] == "m x'' - q B y'");
   CHECK(s.equations()[1] == "m y'' + q B x'");
@@ -58,8 +59,8 @@ TEST_CASE("charged particle in a magnetic field") {
 
 TEST_CASE("springs between points") {
   Lagrangian s;
-  const Expr m = s.parameter("m"), g = s.parameter("g"), k = s.parameter("k"), l = s.parameter("l"), a = s.parameter("a"),
-             l0 = s.parameter("l0");
+  const Expr m = s.parameter("m"), g = s.parameter("g"), k = s.parameter("k"), l = s.parameter("l"),
+             a = s.parameter("a"), l0 = s.parameter("l0");
   const Expr t = s.coordinate("θ");
   const Expr x = l * sin(t), y = -l * cos(t), length = sqrt(square(x - a) + square(y));
   const Expr V = m * g * y + half * k * square(length - l0);
@@ -106,7 +107,8 @@ TEST_CASE("springs and masses in line") {
 
 TEST_CASE("potentials that are no polynomials") {
   Lagrangian s;
-  const Expr m = s.parameter("m"), k = s.parameter("k"), n = s.parameter("n"), a = s.parameter("a"), x0 = s.parameter("x0");
+  const Expr m = s.parameter("m"), k = s.parameter("k"), n = s.parameter("n"), a = s.parameter("a"),
+             x0 = s.parameter("x0");
   const Expr x = s.coordinate("x");
   const auto row = [&](Expr V) {
     s.value = s.kinetic(m, {x}) - V;
@@ -161,6 +163,7 @@ TEST_CASE("no number is taken out that makes the others longer") {
   Lagrangian s;
   const Expr k = s.parameter("k"), x = s.coordinate("x"), y = s.coordinate("y");
   const auto number = [&](const char* text) { return s.context.number(*Rational::parse(text)); };
-  CHECK(s.text(number("1.99999985") * square(x) - number("0.00000005") * square(y)) == "1.99999985 x^2 - 0.00000005 y^2");
+  CHECK(s.text(number("1.99999985") * square(x) - number("0.00000005") * square(y)) ==
+        "1.99999985 x^2 - 0.00000005 y^2");
   CHECK(s.text(half * k * square(x) + half * k * square(y)) == "1/2 k (x^2 + y^2)");
 }

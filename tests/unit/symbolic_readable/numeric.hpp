@@ -26,8 +26,16 @@ class Point {
     if (e.is_number()) return e.number().to_double();
     if (e.is(Kind::Pi)) return std::acos(-1.0);
     if (e.is_symbol()) return std::uniform_real_distribution<double>(0.3, 1.7)(random_);
-    if (e.is(Kind::Sum)) { double s = 0; for (std::size_t i = 0; i < e.size(); ++i) s += arg(i); return s; }
-    if (e.is(Kind::Product)) { double p = 1; for (std::size_t i = 0; i < e.size(); ++i) p *= arg(i); return p; }
+    if (e.is(Kind::Sum)) {
+      double s = 0;
+      for (std::size_t i = 0; i < e.size(); ++i) s += arg(i);
+      return s;
+    }
+    if (e.is(Kind::Product)) {
+      double p = 1;
+      for (std::size_t i = 0; i < e.size(); ++i) p *= arg(i);
+      return p;
+    }
     if (e.is(Kind::Power)) return std::pow(arg(0), arg(1));
     if (is_function(e.kind())) return functions::value(e.kind(), arg(0));
     if (e.is(Kind::Abs)) return std::abs(arg(0));
@@ -53,7 +61,7 @@ inline bool agree(Expr a, Expr b, unsigned seed, double tolerance = 1e-8) {
   const Expr both[] = {a, b};
   for (const Expr& s : symbols_of(both)) point(s);
   const double x = point(a), y = point(b);
-  if (!std::isfinite(x) || std::abs(x) > 1e12) return true;   // no test at this point
+  if (!std::isfinite(x) || std::abs(x) > 1e12) return true;  // no test at this point
   return std::abs(x - y) <= tolerance * std::max({1.0, std::abs(x), std::abs(y)});
 }
 

@@ -26,17 +26,25 @@ class Grower {
   Expr trigonometric(int depth) {
     if (depth == 0 || pick(4) == 0) {
       switch (pick(5)) {
-        case 0: return context_.number(Rational(pick(7) - 3, 1 + pick(3)));
-        case 1: return context_.symbol(pick(2) ? "a" : "b", Role::Parameter);
-        case 2: return context_.symbol("x", Role::Coordinate, pick(3));
-        case 3: return sin(angle());
-        default: return cos(angle());
+        case 0:
+          return context_.number(Rational(pick(7) - 3, 1 + pick(3)));
+        case 1:
+          return context_.symbol(pick(2) ? "a" : "b", Role::Parameter);
+        case 2:
+          return context_.symbol("x", Role::Coordinate, pick(3));
+        case 3:
+          return sin(angle());
+        default:
+          return cos(angle());
       }
     }
     switch (pick(3)) {
-      case 0: return trigonometric(depth - 1) + trigonometric(depth - 1);
-      case 1: return trigonometric(depth - 1) * trigonometric(depth - 1);
-      default: return pow(trigonometric(depth - 1), Rational(2));
+      case 0:
+        return trigonometric(depth - 1) + trigonometric(depth - 1);
+      case 1:
+        return trigonometric(depth - 1) * trigonometric(depth - 1);
+      default:
+        return pow(trigonometric(depth - 1), Rational(2));
     }
   }
 
@@ -44,16 +52,28 @@ class Grower {
     if (depth == 0) return trigonometric(1);
     const Expr x = any(depth - 1);
     switch (pick(10)) {
-      case 0: return x + any(depth - 1);
-      case 1: return x * any(depth - 1);
-      case 2: return pow(pow(x, Rational(2)) + any(0) * any(0) + Rational(3), Rational(pick(5) - 3, 2));
-      case 3: return pow(x + context_.symbol("b", Role::Parameter), Rational(-1 - pick(2)));
-      case 4: return apply(Kind::Exp, sin(flat(x)) + trigonometric(1) / Rational(4));
-      case 5: return apply(Kind::Tan, angle()) * x;
-      case 6: return pow(cos(angle()), Rational(-1 - pick(2))) * x;
-      case 7: return context_.power(context_.symbol("r", Role::Coordinate), context_.symbol("s", Role::Parameter) - Rational(pick(3))) * x;
-      case 8: return apply(pick(2) ? Kind::Abs : Kind::Sign, x) + trigonometric(1);
-      default: return sin(flat(x)) * trigonometric(1);
+      case 0:
+        return x + any(depth - 1);
+      case 1:
+        return x * any(depth - 1);
+      case 2:
+        return pow(pow(x, Rational(2)) + any(0) * any(0) + Rational(3), Rational(pick(5) - 3, 2));
+      case 3:
+        return pow(x + context_.symbol("b", Role::Parameter), Rational(-1 - pick(2)));
+      case 4:
+        return apply(Kind::Exp, sin(flat(x)) + trigonometric(1) / Rational(4));
+      case 5:
+        return apply(Kind::Tan, angle()) * x;
+      case 6:
+        return pow(cos(angle()), Rational(-1 - pick(2))) * x;
+      case 7:
+        return context_.power(context_.symbol("r", Role::Coordinate),
+                              context_.symbol("s", Role::Parameter) - Rational(pick(3))) *
+               x;
+      case 8:
+        return apply(pick(2) ? Kind::Abs : Kind::Sign, x) + trigonometric(1);
+      default:
+        return sin(flat(x)) * trigonometric(1);
     }
   }
 
@@ -69,9 +89,7 @@ class Grower {
   std::size_t next_ = 0;
 };
 
-std::vector<int> choices() {
-  return *rc::gen::container<std::vector<int>>(60, rc::gen::inRange(0, 5040));
-}
+std::vector<int> choices() { return *rc::gen::container<std::vector<int>>(60, rc::gen::inRange(0, 5040)); }
 
 ReadingOrder order_of(Context& c) {
   ReadingOrder order;
@@ -138,7 +156,8 @@ TEST_CASE("the Fourier form tells apart") {
   const Expr a = c.symbol("θ", Role::Coordinate), b = c.symbol("φ", Role::Coordinate);
   CHECK(fourier_form(sin(a) * cos(b)) != fourier_form(cos(a) * sin(b)));
   CHECK(fourier_form(cos(a - b)) == fourier_form(cos(b - a)));
-  CHECK(fourier_form(cos(a / Rational(2)) * cos(a / Rational(2))) == fourier_form((cos(a) + Rational(1)) / Rational(2)));
+  CHECK(fourier_form(cos(a / Rational(2)) * cos(a / Rational(2))) ==
+        fourier_form((cos(a) + Rational(1)) / Rational(2)));
   CHECK(fourier_form(sin(a + c.pi() / Rational(2))) == cos(a));
   CHECK(!fourier_form(pow(cos(a) + cos(b), Rational(60)), 50));
 }

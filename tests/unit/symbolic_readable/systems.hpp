@@ -11,7 +11,7 @@ namespace maupertuis::test {
 struct Lagrangian {
   Context context;
   ReadingOrder order;
-  Expr value;   // L
+  Expr value;  // L
 
   Expr parameter(const std::string& name) {
     const Expr p = context.symbol(name, Role::Parameter);

@@ -15,7 +15,8 @@ TEST_CASE("double pendulum from massive points") {
   const Expr x1 = l1 * sin(a), y1 = -l1 * cos(a), x2 = x1 + l2 * sin(b), y2 = y1 - l2 * cos(b);
   s.value = s.kinetic(m1, {x1, y1}) + s.kinetic(m2, {x2, y2}) - m1 * g * y1 - m2 * g * y2;
   const auto lines = s.equations();
-  CHECK(lines[0] == "(m1 + m2) l1^2 θ1'' + m2 l1 l2 cos(θ1 - θ2) θ2'' + m2 l1 l2 sin(θ1 - θ2) θ2'^2 + (m1 + m2) g l1 sin θ1");
+  CHECK(lines[0] ==
+        "(m1 + m2) l1^2 θ1'' + m2 l1 l2 cos(θ1 - θ2) θ2'' + m2 l1 l2 sin(θ1 - θ2) θ2'^2 + (m1 + m2) g l1 sin θ1");
   CHECK(lines[1] == "m2 l2^2 θ2'' + m2 l1 l2 cos(θ1 - θ2) θ1'' - m2 l1 l2 sin(θ1 - θ2) θ1'^2 + m2 g l2 sin θ2");
 }
 
@@ -51,7 +52,8 @@ TEST_CASE("elastic pendulum") {
 
 TEST_CASE("Lagrange top") {
   Lagrangian s;
-  const Expr m = s.parameter("m"), I1 = s.parameter("I1"), I3 = s.parameter("I3"), g = s.parameter("g"), l = s.parameter("l");
+  const Expr m = s.parameter("m"), I1 = s.parameter("I1"), I3 = s.parameter("I3"), g = s.parameter("g"),
+             l = s.parameter("l");
   const Expr f = s.coordinate("φ"), a = s.coordinate("θ"), p = s.coordinate("ψ");
   const Expr fd = s.context.time_derivative(f), ad = s.context.time_derivative(a), pd = s.context.time_derivative(p);
   const Rational half(1, 2), two(2);
@@ -62,8 +64,7 @@ TEST_CASE("Lagrange top") {
   CHECK(lines[0] == "(I1 sin^2 θ + I3 cos^2 θ) φ'' + I3 cos θ ψ'' + 2 (I1 - I3) sin θ cos θ φ' θ' - I3 sin θ θ' ψ'");
   CHECK(lines[1] == "I1 θ'' - (I1 - I3) sin θ cos θ φ'^2 + I3 sin θ φ' ψ' - m g l sin θ");
   CHECK(lines[2] == "I3 ψ'' + I3 cos θ φ'' - I3 sin θ φ' θ'");
-  CHECK(to_plain(readable(T, s.order).value, s.order) ==
-        "1/2 I1 (sin^2 θ φ'^2 + θ'^2) + 1/2 I3 (cos θ φ' + ψ')^2");
+  CHECK(to_plain(readable(T, s.order).value, s.order) == "1/2 I1 (sin^2 θ φ'^2 + θ'^2) + 1/2 I3 (cos θ φ' + ψ')^2");
 }
 
 TEST_CASE("eight links from points") {

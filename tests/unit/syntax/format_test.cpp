@@ -47,13 +47,15 @@ TEST_CASE("canonical layout") {
   CHECK(formatted("coord x,y:length,theta:angle\n") == "coord x, y : length, θ : angle\n");
   CHECK(formatted("input u:[ N ]=3 [ N ]*t\n") == "input u : [N] = 3 [N]*t\n");
   CHECK(formatted("T+=a·b×c\n") == "T += a · b × c\n");
-  CHECK(formatted("body B inertia diag (1,2,3) rotation euler zxz(a,b,c)\n") == "body B inertia diag(1, 2, 3) rotation euler zxz (a, b, c)\n");
+  CHECK(formatted("body B inertia diag (1,2,3) rotation euler zxz(a,b,c)\n") ==
+        "body B inertia diag(1, 2, 3) rotation euler zxz (a, b, c)\n");
   CHECK(formatted("start x=-10deg,y=60°\n") == "start x = -10 deg, y = 60 deg\n");
   CHECK(formatted("run -10 s\n") == "run -10 s\n");
   CHECK(formatted("expect conserved -x\n") == "expect conserved -x\n");
   CHECK(formatted("expect θ at 3 s=1±1e-3\n") == "expect θ at 3 s = 1 ± 1e-3\n");
   CHECK(formatted("draw O-A-( 0,1 ),trail B\n") == "draw O - A - (0, 1), trail B\n");
-  CHECK(formatted("let a = piecewise(x<0 and y≥1:-x,else:x)\n") == "let a = piecewise(x < 0 and y >= 1 : -x, else : x)\n");
+  CHECK(formatted("let a = piecewise(x<0 and y≥1:-x,else:x)\n") ==
+        "let a = piecewise(x < 0 and y >= 1 : -x, else : x)\n");
   CHECK(formatted("source “a \"quoted\" title”\n") == "source “a \"quoted\" title”\n");
   CHECK(formatted("system a “title”\n") == "system a \"title\"\n");
 }
@@ -63,7 +65,8 @@ TEST_CASE("lines, comments and blank lines stay") {
         "# head\n\nparam m = 1  #mass\n    # inside\n    , l = 2\n# next\ncoord x : number\n");
   CHECK(formatted("param m = 1 # a\nparam long = 2 # b\n\nparam n = 3 # c") ==
         "param m = 1     # a\nparam long = 2  # b\n\nparam n = 3  # c\n");
-  CHECK(formatted("  param m = 1\r\n  param n = (2 + # two\r\n3)\r\n") == "param m = 1\nparam n = (2 +  # two\n    3)\n");
+  CHECK(formatted("  param m = 1\r\n  param n = (2 + # two\r\n3)\r\n") ==
+        "param m = 1\nparam n = (2 +  # two\n    3)\n");
   CHECK(formatted("\xEF\xBB\xBF# a\nparam m = 1\n") == "# a\nparam m = 1\n");
 }
 

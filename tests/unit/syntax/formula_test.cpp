@@ -68,7 +68,8 @@ TEST_CASE("circular functions without brackets take one name") {
 
 TEST_CASE("time derivatives") {
   for (const char* text : {"θ'", "θ̇", "dot(θ)", "theta'", "\u03b8\u2032", "θ’"}) CHECK(shape_of(text) == "θ'");
-  for (const char* text : {"ẍ", "x\u0308", "x''", "dot(dot(x))", "dot(x')", "dot(ẋ)", "ẋ'", "x″"}) CHECK(shape_of(text) == "x''");
+  for (const char* text : {"ẍ", "x\u0308", "x''", "dot(dot(x))", "dot(x')", "dot(ẋ)", "ẋ'", "x″"})
+    CHECK(shape_of(text) == "x''");
   CHECK(shape_of("θ̇1") == "θ1'");
   CHECK(shape_of("θ̇₁") == "θ1'");
   CHECK(shape_of("θ₁̇") == "θ1'");

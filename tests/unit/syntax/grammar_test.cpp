@@ -55,6 +55,8 @@ TEST_CASE("every word of the grammar file stands in a rule that uses it") {
   for (const auto& [name, words] : rules()) {
     if (name != "statement word" && name != "clause word") used.insert(words.begin(), words.end());
   }
-  for (const std::string_view word : statement_words()) CHECK_MESSAGE(used.count(std::string(word)) == 1, std::string(word));
-  for (const std::string_view word : clause_words()) CHECK_MESSAGE(used.count(std::string(word)) == 1, std::string(word));
+  for (const std::string_view word : statement_words())
+    CHECK_MESSAGE(used.count(std::string(word)) == 1, std::string(word));
+  for (const std::string_view word : clause_words())
+    CHECK_MESSAGE(used.count(std::string(word)) == 1, std::string(word));
 }

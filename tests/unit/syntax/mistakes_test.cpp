@@ -13,8 +13,8 @@ namespace {
 struct Mistake {
   const char* text;
   const char* code;
-  const char* marked;   // what the caret is under
-  const char* says;     // stands in the message, the reason or the help
+  const char* marked;  // what the caret is under
+  const char* says;    // stands in the message, the reason or the help
 };
 
 }  // namespace
@@ -91,7 +91,8 @@ TEST_CASE("one mistake gives one message, under the right words, with a way out"
 }
 
 TEST_CASE("all mistakes of a text are told at once, in their places") {
-  Parsed parsed("param m = 1 kg, l = , g = 9.81 m/s^2, k = 3 [N\ncoord x :\nlet a = 1e999, b = sqrt x, c = 2\nlet d = 3\nfoo\n");
+  Parsed parsed(
+      "param m = 1 kg, l = , g = 9.81 m/s^2, k = 3 [N\ncoord x :\nlet a = 1e999, b = sqrt x, c = 2\nlet d = 3\nfoo\n");
   CHECK(parsed.codes() == "E0106 E0129 E0105 E0110");
   Parsed list("param m = 1 kg, l = , g = 9.81 m/s^2, k = sqrt x, j = 2 3\n");
   CHECK(list.codes() == "E0111 E0113 E0123");
@@ -107,7 +108,9 @@ TEST_CASE("names of statements that were left out are kept for the stages after"
 TEST_CASE("texts that are no models") {
   CHECK(Parsed("").codes() == "E0109");
   CHECK(Parsed("\n\n# only a comment\n").codes() == "E0109");
-  CHECK(Parsed("\x7F" "ELF\x02\x01\x01").codes() == "E0103");
+  CHECK(Parsed("\x7F"
+               "ELF\x02\x01\x01")
+            .codes() == "E0103");
   CHECK(Parsed(std::string("param m = 1\0kg\n", 15)).codes() == "E0103");
   CHECK(Parsed("param m = 60\xB0\n").codes() == "E0102");
   CHECK(Parsed("param m = \xC0\xAF\n").codes() == "E0102");          // overlong

@@ -42,15 +42,16 @@ ExpressionPtr random_condition(Random& random, int size) {
   const bool joined = size > 2 && below(random, 2) == 0;
   e->op = joined ? pick(random, {Operator::And, Operator::Or})
                  : pick(random, {Operator::Less, Operator::LessEqual, Operator::Greater, Operator::GreaterEqual});
-  for (int i = 0; i < 2; ++i) e->arguments.push_back(joined ? random_condition(random, size / 2) : random_tree(random, size / 2));
+  for (int i = 0; i < 2; ++i)
+    e->arguments.push_back(joined ? random_condition(random, size / 2) : random_tree(random, size / 2));
   return e;
 }
 
 ExpressionPtr random_binary(Random& random, int size) {
   auto e = std::make_shared<Expression>();
   e->kind = Kind::Binary;
-  e->op = pick(random, {Operator::Add, Operator::Subtract, Operator::Multiply, Operator::Juxtapose, Operator::Juxtapose, Operator::Divide,
-                        Operator::Dot, Operator::Cross, Operator::Power});
+  e->op = pick(random, {Operator::Add, Operator::Subtract, Operator::Multiply, Operator::Juxtapose, Operator::Juxtapose,
+                        Operator::Divide, Operator::Dot, Operator::Cross, Operator::Power});
   e->arguments = {random_tree(random, size / 2), random_tree(random, size - size / 2)};
   return e;
 }
@@ -67,13 +68,16 @@ ExpressionPtr random_tree(Random& random, int size) {
       e->op = Operator::Negate;
       return e;
     }
-    case 1: return make(Kind::Call, {part()}, pick(random, {"sin", "sqrt", "exp", "cosh", "abs"}));
+    case 1:
+      return make(Kind::Call, {part()}, pick(random, {"sin", "sqrt", "exp", "cosh", "abs"}));
     case 2: {
-      auto e = std::make_shared<Expression>(*make(Kind::Call, {random_name(random)}, pick(random, {"sin", "cos", "sech"})));
+      auto e =
+          std::make_shared<Expression>(*make(Kind::Call, {random_name(random)}, pick(random, {"sin", "cos", "sech"})));
       e->bare = true;
       return e;
     }
-    case 3: return make(Kind::Vector, {part(), part()});
+    case 3:
+      return make(Kind::Vector, {part(), part()});
     case 4: {
       auto e = std::make_shared<Expression>(*make(Kind::Member, {make(Kind::Name, {}, "P")}, pick(random, {"x", "ω"})));
       e->primes = below(random, 2);
@@ -84,14 +88,16 @@ ExpressionPtr random_tree(Random& random, int size) {
       e->primes = 1 + below(random, 2);
       return e;
     }
-    case 6: return make(Kind::Piecewise, {random_condition(random, size / 2), part(), part()}, "piecewise");
+    case 6:
+      return make(Kind::Piecewise, {random_condition(random, size / 2), part(), part()}, "piecewise");
     case 7: {
       auto e = std::make_shared<Expression>(*make(Kind::Quantity, {make(Kind::Number, {}, "3")}));
       e->unit = UnitExpression{{{"kg", 1, 1, {}}, {"s", -2, 1, {}}, {"m", 1, 2, {}}}, {}};
       e->unit_bracketed = true;
       return e;
     }
-    default: return random_binary(random, size);
+    default:
+      return random_binary(random, size);
   }
 }
 
@@ -99,11 +105,73 @@ constexpr const char* kDeclarations = "param x = 1, θ1 = 1, m = 1, l_rod = 1, �
 
 // A text from pieces of the language, in an order that mostly makes no sense.
 std::string random_soup(Random& random, int size) {
-  static const char* const pieces[] = {
-      "param ", "coord ", "let ", "point ", "T = ", "expect ", "start ", "draw ", "run ", "constraint ", "\n", "\n    ", "  ", "#c\n", "x", "θ̇₁",
-      "m", "1", "2.5e3", "½", "²", "√", "(", ")", "[", "]", ",", ":", "=", "+", "-", "−", "*", "/", "^", "'", ".", "..", "±", "<", ">=", "·",
-      "sin ", "cos", "sqrt(", "dot(", "piecewise(", "else", "and", "kg", "m/s", "at ", "mass ", "rel ", "until ", "name ", "\"t\"", "θ", "°",
-      "system s", "body B inertia diag(", "field u(", "event e when ", "@", "\t", "not conserved", "reaction "};
+  static const char* const pieces[] = {"param ",
+                                       "coord ",
+                                       "let ",
+                                       "point ",
+                                       "T = ",
+                                       "expect ",
+                                       "start ",
+                                       "draw ",
+                                       "run ",
+                                       "constraint ",
+                                       "\n",
+                                       "\n    ",
+                                       "  ",
+                                       "#c\n",
+                                       "x",
+                                       "θ̇₁",
+                                       "m",
+                                       "1",
+                                       "2.5e3",
+                                       "½",
+                                       "²",
+                                       "√",
+                                       "(",
+                                       ")",
+                                       "[",
+                                       "]",
+                                       ",",
+                                       ":",
+                                       "=",
+                                       "+",
+                                       "-",
+                                       "−",
+                                       "*",
+                                       "/",
+                                       "^",
+                                       "'",
+                                       ".",
+                                       "..",
+                                       "±",
+                                       "<",
+                                       ">=",
+                                       "·",
+                                       "sin ",
+                                       "cos",
+                                       "sqrt(",
+                                       "dot(",
+                                       "piecewise(",
+                                       "else",
+                                       "and",
+                                       "kg",
+                                       "m/s",
+                                       "at ",
+                                       "mass ",
+                                       "rel ",
+                                       "until ",
+                                       "name ",
+                                       "\"t\"",
+                                       "θ",
+                                       "°",
+                                       "system s",
+                                       "body B inertia diag(",
+                                       "field u(",
+                                       "event e when ",
+                                       "@",
+                                       "\t",
+                                       "not conserved",
+                                       "reaction "};
   std::string text;
   for (int i = 0; i < size; ++i) text += pick(random, pieces);
   return text;
@@ -146,9 +214,17 @@ TEST_CASE("random models keep their tree when formatted") {
     for (int i = 0; i < statements; ++i) {
       const std::string e = to_string(*random_tree(random, 1 + below(random, 60)));
       const std::string f = to_string(*random_tree(random, 1 + below(random, 20)));
-      const char* const forms[] = {"let a = {}, b = {}", "T += {}", "point Q mass {} at {}", "force x = {}", "expect equation {} = {}",
-                                   "claim {} = {}", "constraint {} = {} name c", "event h when {} = {} : stop", "start x = {}, θ1' = {}",
-                                   "run until {} = {} within 3 s", "contact {} >= {} restitution 0"};
+      const char* const forms[] = {"let a = {}, b = {}",
+                                   "T += {}",
+                                   "point Q mass {} at {}",
+                                   "force x = {}",
+                                   "expect equation {} = {}",
+                                   "claim {} = {}",
+                                   "constraint {} = {} name c",
+                                   "event h when {} = {} : stop",
+                                   "start x = {}, θ1' = {}",
+                                   "run until {} = {} within 3 s",
+                                   "contact {} >= {} restitution 0"};
       std::string form = pick(random, forms);
       for (const std::string& part : {e, f}) {
         const std::size_t at = form.find("{}");

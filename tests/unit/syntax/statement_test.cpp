@@ -64,14 +64,17 @@ TEST_CASE("places and masses") {
   CHECK(axis.rotation->kind == Rotation::Kind::AxisAngle);
   CHECK(text_of(axis.rotation->axis) == "(0, 0, 1)");
 
-  const auto body = only<BodyStatement>("body B mass m inertia diag(I1, I2, I3) at (0, 0, l) rotation euler zxz (φ, θ, ψ)");
+  const auto body =
+      only<BodyStatement>("body B mass m inertia diag(I1, I2, I3) at (0, 0, l) rotation euler zxz (φ, θ, ψ)");
   CHECK(body.inertia_kind == BodyStatement::Inertia::Diagonal);
   CHECK(body.inertia.size() == 3);
   CHECK(body.rotation->sequence == "zxz");
   CHECK(body.rotation->values.size() == 3);
   CHECK(only<BodyStatement>("body B inertia full(1, 2, 3, 0, 0, 0) rotation rpy (a, b, c)").inertia.size() == 6);
-  CHECK(only<BodyStatement>("body B mass m inertia 1/12 m l^2 at (x, y) rotation angle θ").inertia_kind == BodyStatement::Inertia::Scalar);
-  CHECK(only<BodyStatement>("body B inertia 1 rotation quaternion").rotation->kind == Rotation::Kind::QuaternionCoordinates);
+  CHECK(only<BodyStatement>("body B mass m inertia 1/12 m l^2 at (x, y) rotation angle θ").inertia_kind ==
+        BodyStatement::Inertia::Scalar);
+  CHECK(only<BodyStatement>("body B inertia 1 rotation quaternion").rotation->kind ==
+        Rotation::Kind::QuaternionCoordinates);
   CHECK(only<BodyStatement>("body B rotation quaternion (a, b, c, d)").rotation->kind == Rotation::Kind::Quaternion);
   CHECK(codes("body B rotation euler zzx (a, b, c)") == "E0111");
   CHECK(codes("body B rotation euler zxz (a, b)") == "E0116");
@@ -121,7 +124,8 @@ TEST_CASE("experiments") {
   CHECK(text_of(only<OutputStatement>("output every 10 ms").every) == "10 ms");
   CHECK(codes("run until x = 0") == "E0127");
 
-  const auto draw = only<DrawStatement>("draw O - A - B, trail B, box cart 0.4 m by 0.2 m, circle A r, spring A - (0, 1), reaction rod");
+  const auto draw = only<DrawStatement>(
+      "draw O - A - B, trail B, box cart 0.4 m by 0.2 m, circle A r, spring A - (0, 1), reaction rod");
   REQUIRE(draw.items.size() == 6);
   CHECK(draw.items[0].path.size() == 3);
   CHECK(draw.items[1].kind == DrawItem::Kind::Trail);
@@ -149,14 +153,16 @@ Kind expected(const std::string& line) {
 
 TEST_CASE("expectations about neighbours of a point or a periodic motion") {
   using namespace expectation;
-  const auto place = expected<Equilibrium>("expect equilibrium at x = 0.8369151 m ± 1e-7, y = 0 rel 1e-3, z = 1 is stable");
+  const auto place =
+      expected<Equilibrium>("expect equilibrium at x = 0.8369151 m ± 1e-7, y = 0 rel 1e-3, z = 1 is stable");
   REQUIRE(place.at.size() == 3);
   CHECK(text_of(place.at[0].tolerance.size) == "1e-7");
   CHECK_FALSE(place.at[0].tolerance.relative);
   CHECK(place.at[1].tolerance.relative);
   CHECK_FALSE(place.at[2].tolerance.size);
   CHECK(place.word.text == "stable");
-  const auto values = expected<Eigenvalues>("expect eigenvalues at θ = 0 : -5.6 1/s, (-0.2, 1.3) 1/s, 0 rel 1e-9").expected;
+  const auto values =
+      expected<Eigenvalues>("expect eigenvalues at θ = 0 : -5.6 1/s, (-0.2, 1.3) 1/s, 0 rel 1e-9").expected;
   REQUIRE(values.real.size() == 3);
   CHECK_FALSE(values.imaginary[0]);
   CHECK(shape(*values.imaginary[1]) == "[1.3 s:-1]");

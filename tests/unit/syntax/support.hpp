@@ -41,18 +41,27 @@ inline std::string shape(const Expression& e) {
     for (const ExpressionPtr& argument : e.arguments) head += " " + shape(*argument);
     return "(" + head + ")";
   };
-  static const char* const operators[] = {"+", "-", "*", "_", "/", "·", "×", "^", "neg", "<", "<=", ">", ">=", "and", "or"};
+  static const char* const operators[] = {"+",   "-", "*",  "_", "/",  "·",   "×", "^",
+                                          "neg", "<", "<=", ">", ">=", "and", "or"};
   switch (e.kind) {
-    case Expression::Kind::Number: return e.text;
-    case Expression::Kind::Name: return e.text + primes;
-    case Expression::Kind::Member: return shape(*e.arguments[0]) + "." + e.text + primes;
-    case Expression::Kind::Vector: return all("vector");
-    case Expression::Kind::TimeDerivative: return all("dt" + primes);
+    case Expression::Kind::Number:
+      return e.text;
+    case Expression::Kind::Name:
+      return e.text + primes;
+    case Expression::Kind::Member:
+      return shape(*e.arguments[0]) + "." + e.text + primes;
+    case Expression::Kind::Vector:
+      return all("vector");
+    case Expression::Kind::TimeDerivative:
+      return all("dt" + primes);
     case Expression::Kind::Piecewise:
-    case Expression::Kind::Call: return all(e.text);
+    case Expression::Kind::Call:
+      return all(e.text);
     case Expression::Kind::Binary:
-    case Expression::Kind::Unary: return all(operators[static_cast<int>(e.op)]);
-    case Expression::Kind::Quantity: break;
+    case Expression::Kind::Unary:
+      return all(operators[static_cast<int>(e.op)]);
+    case Expression::Kind::Quantity:
+      break;
   }
   std::string units;
   for (const auto& factor : e.unit->factors) {

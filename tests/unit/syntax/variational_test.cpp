@@ -69,12 +69,14 @@ TEST_CASE("path: one value a coordinate, free where none is asked for") {
   CHECK(shape(*path.to.at) == "1");
   const auto one = only<PathStatement>("path from 0 at 0 s to -l/2 at T0");
   CHECK(shapes(one.to.configuration) == Shapes{"(neg (/ l 2))"});
-  CHECK(shapes(only<PathStatement>("path from (0) at 0 to (a + b)/2 at 1").to.configuration) == Shapes{"(/ (+ a b) 2)"});
+  CHECK(shapes(only<PathStatement>("path from (0) at 0 to (a + b)/2 at 1").to.configuration) ==
+        Shapes{"(/ (+ a b) 2)"});
   CHECK(shapes(only<PathStatement>("path from (0) at 0 to (a + b) at 1").to.configuration) == Shapes{"(+ a b)"});
   const auto units = only<PathStatement>("path from (60 deg, -0.1 m) at 0 s to (1, free) rad at 2 s");
   CHECK(shapes(units.from.configuration) == Shapes{"[60 deg:1]", "(neg [0.1 m:1])"});
   CHECK(shapes(units.to.configuration) == Shapes{"[1 rad:1]", "free"});
-  CHECK(shapes(only<PathStatement>("path from (1, 2, 3, 4, 5) at 0 to (free, free, 3, 4, 5) at 1").to.configuration).size() == 5);
+  CHECK(shapes(only<PathStatement>("path from (1, 2, 3, 4, 5) at 0 to (free, free, 3, 4, 5) at 1").to.configuration)
+            .size() == 5);
 }
 
 TEST_CASE("path: what is missing is said") {
@@ -162,13 +164,17 @@ TEST_CASE("variational statements keep their text and their tree when formatted"
 }
 
 TEST_CASE("golden: the tree of variational statements") {
-  Parsed parsed("independent x : [m]\npath from (0, 1 m) at 0 to free at 2 m\nconstraint integral y = 1 name area\n"
-                "expect action of (x) from 0 to 1 m = 2 ± 1\nexpect path y at 1 m = 2 ± 1\n");
+  Parsed parsed(
+      "independent x : [m]\npath from (0, 1 m) at 0 to free at 2 m\nconstraint integral y = 1 name area\n"
+      "expect action of (x) from 0 to 1 m = 2 ± 1\nexpect path y at 1 m = 2 ± 1\n");
   REQUIRE_MESSAGE(parsed.fine(), parsed.messages());
   CHECK(dump(parsed.tree) ==
         "independent x\n  kind unit m\n"
-        "path\n  from:\n    number 0\n  from:\n    quantity m\n      number 1\n  at:\n    number 0\n  to free\n  at:\n    quantity m\n      number 2\n"
+        "path\n  from:\n    number 0\n  from:\n    quantity m\n      number 1\n  at:\n    number 0\n  to free\n  at:\n "
+        "   quantity m\n      number 2\n"
         "integral constraint area\n  left:\n    name y\n  right:\n    number 1\n"
-        "expect action\n  along:\n    name x\n  from:\n    number 0\n  to:\n    quantity m\n      number 1\n  value:\n    number 2\n  tolerance:\n    number 1\n"
-        "expect path at\n  subject:\n    name y\n  time:\n    quantity m\n      number 1\n  value:\n    number 2\n  tolerance:\n    number 1\n");
+        "expect action\n  along:\n    name x\n  from:\n    number 0\n  to:\n    quantity m\n      number 1\n  value:\n "
+        "   number 2\n  tolerance:\n    number 1\n"
+        "expect path at\n  subject:\n    name y\n  time:\n    quantity m\n      number 1\n  value:\n    number 2\n  "
+        "tolerance:\n    number 1\n");
 }

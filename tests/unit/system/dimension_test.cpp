@@ -101,7 +101,9 @@ TEST_CASE("numbers with units in formulas become anonymous constants, angles do 
 
 TEST_CASE("a bracket is measured by the product of its sides over an action") {
   const std::string model = "param m = 1 kg, k = 2 N/m\ncoord x : length\nT = 1/2 m x'^2\nV = 1/2 k x^2\n";
-  for (const char* line : {"expect bracket (x, p_x) = 1", "expect bracket (p_x, x) = -1", "expect bracket (x^2, p_x) = 2 x", "expect bracket (p_x, k x^2) = -2 k x", "expect bracket (x, x) = 0"}) {
+  for (const char* line :
+       {"expect bracket (x, p_x) = 1", "expect bracket (p_x, x) = -1", "expect bracket (x^2, p_x) = 2 x",
+        "expect bracket (p_x, k x^2) = -2 k x", "expect bracket (x, x) = 0"}) {
     const Elaborated e(model + line + "\n");
     CHECK_MESSAGE(e.codes() == "", line << ": " << e.messages());
     CHECK(e.experiment().expectations.size() == 1);

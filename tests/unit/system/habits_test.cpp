@@ -12,8 +12,9 @@ struct Habit {
   const char *line, *code, *marked, *says;
 };
 
-const std::string kHead = "param m = 1 kg, l = 1 m, g = 9.81 m/s^2, ω = 2 rad/s, m1 = 2 kg\ncoord θ, θ1 : angle, x : length\n"
-                          "T = 1/2 m l^2 (θ'^2 + θ1'^2) + 1/2 m x'^2 + 1/2 m1 x'^2\nlet used = g ω\n";
+const std::string kHead =
+    "param m = 1 kg, l = 1 m, g = 9.81 m/s^2, ω = 2 rad/s, m1 = 2 kg\ncoord θ, θ1 : angle, x : length\n"
+    "T = 1/2 m l^2 (θ'^2 + θ1'^2) + 1/2 m x'^2 + 1/2 m1 x'^2\nlet used = g ω\n";
 
 }  // namespace
 
@@ -70,7 +71,8 @@ TEST_CASE("habits of paper are told with what to write") {
 }
 
 TEST_CASE("a declared name is a name, whatever it looks like") {
-  const Elaborated e("dimensionless\nparam e = 2, d = 3, dt = 4, mgl = 5, ln = 6, xdot = 7\ncoord x : number\nT = 1/2 mgl x'^2\n"
-                     "V = e^x + d/dt x + ln x + xdot x\n");
+  const Elaborated e(
+      "dimensionless\nparam e = 2, d = 3, dt = 4, mgl = 5, ln = 6, xdot = 7\ncoord x : number\nT = 1/2 mgl x'^2\n"
+      "V = e^x + d/dt x + ln x + xdot x\n");
   CHECK_MESSAGE(e.model.has_value(), e.messages());
 }

@@ -116,7 +116,8 @@ TEST_CASE("places in frames: components along the axes of the frame, points of t
       "frame F at (x, 0) rotation angle θ\nframe G at (a, 0) rotation angle φ in F\n"
       "point P mass m at (b, 0) in G\npoint Q mass m at P + (0, b) in F\npoint R mass m at (P + Q)/2\n"
       "let d = (b, b)\npoint S mass m at d in G\n"
-      "let there = P - Q, back = -Q + P, far = -(Q - 2 P) - P\npoint U at there in F\npoint V at back in F\npoint W at far in F\n");
+      "let there = P - Q, back = -Q + P, far = -(Q - 2 P) - P\npoint U at there in F\npoint V at back in F\npoint W at "
+      "far in F\n");
   const double x = 0.4, th = 0.7, phi = -0.3, a = 2, b = 3;
   const auto at = e.at({x, th, phi}, {0, 0, 0});
   const auto place = [&](const char* name, int k) {

@@ -91,7 +91,9 @@ TEST_CASE("a quaternion of given components needs its norm, whatever holds it") 
 }
 
 TEST_CASE("energies that jump at a switch are refused; kinks, pieces that meet and forces that jump are not") {
-  const auto codes = [](const std::string& text) { return Elaborated("dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n" + text).codes(); };
+  const auto codes = [](const std::string& text) {
+    return Elaborated("dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n" + text).codes();
+  };
   for (const char* fine :
        {"V = abs(x) + max(y, 0)^1.5", "V = piecewise(x^2 + y^2 < 4 : 0, else : (sqrt(x^2 + y^2) - 2)^2)",
         "V = min(x^2, y^2)", "force x = step(x - 1)", "D = 1/2 step(x) x'^2", "D = abs(x')", "V = x^2/(1 + abs(x)/x)",
@@ -105,9 +107,10 @@ TEST_CASE("energies that jump at a switch are refused; kinks, pieces that meet a
         "param a = 0.1, b = 0.3\nV = piecewise(x < a + 0.2 : x, else : b)", "V = step(x)/x"})
     CHECK_MESSAGE(codes(fine).find("E04") == std::string::npos, fine);
   for (const char* wrong :
-       {"V = step(x)", "V = piecewise(x < 2 : x^2, else : 1)", "V = y step(x)", "V = x^2\nU = sign(y) x'", "V = x^2\nU = step(t - 1) x'",
-        "T += 1/2 step(t - 1) x'^2", "T += 1/2 step(x) x'^2", "T += 1/2 step(x' - 1) x'^2", "L = 1/2 (x'^2 + y'^2) - 1e-9 step(x)",
-        "D = step(x' - 1)", "V = max(x - 50, 0)^2 step(y - 70)", "V = step(x - t)"})
+       {"V = step(x)", "V = piecewise(x < 2 : x^2, else : 1)", "V = y step(x)", "V = x^2\nU = sign(y) x'",
+        "V = x^2\nU = step(t - 1) x'", "T += 1/2 step(t - 1) x'^2", "T += 1/2 step(x) x'^2",
+        "T += 1/2 step(x' - 1) x'^2", "L = 1/2 (x'^2 + y'^2) - 1e-9 step(x)", "D = step(x' - 1)",
+        "V = max(x - 50, 0)^2 step(y - 70)", "V = step(x - t)"})
     CHECK_MESSAGE(codes(wrong).find("E0430") != std::string::npos, wrong);
   CHECK(codes("V = x^2\nU = abs(x' - 1)") == "E0432");
   CHECK(codes("T += 1/2 max(x', 0)^2").empty());  // the momentum has a kink, no jump
@@ -143,8 +146,8 @@ TEST_CASE("one jump among thousands of pieces, or behind one of hundreds of spri
     int level = 0;
     for (int i = 1; i < pieces; ++i) {
       const int slope = 1 + i % 7;
-      text += "x/L < " + std::to_string(i) + " : " + std::to_string(slope) + " (x/L - " + std::to_string(i - 1) + ") + " +
-              std::to_string(level + (i == wrong ? 1 : 0)) + ",\n  ";
+      text += "x/L < " + std::to_string(i) + " : " + std::to_string(slope) + " (x/L - " + std::to_string(i - 1) +
+              ") + " + std::to_string(level + (i == wrong ? 1 : 0)) + ",\n  ";
       level += slope;
     }
     return text + "else : " + std::to_string(level) + ")\n";
@@ -156,8 +159,10 @@ TEST_CASE("one jump among thousands of pieces, or behind one of hundreds of spri
 
   const auto springs = [](int count, const std::string& more) {
     std::string text = "param m = 1 kg, k = 100 N/m, l = 1 m\n";
-    for (int i = 0; i < count; ++i) text += "coord x" + std::to_string(i) + " : length\nT += 1/2 m x" + std::to_string(i) + "'^2\n";
-    for (int i = 1; i < count; ++i) text += "V += 1/2 k (abs(x" + std::to_string(i) + " - x" + std::to_string(i - 1) + ") - l)^2\n";
+    for (int i = 0; i < count; ++i)
+      text += "coord x" + std::to_string(i) + " : length\nT += 1/2 m x" + std::to_string(i) + "'^2\n";
+    for (int i = 1; i < count; ++i)
+      text += "V += 1/2 k (abs(x" + std::to_string(i) + " - x" + std::to_string(i - 1) + ") - l)^2\n";
     return text + more;
   };
   CHECK(Elaborated(springs(300, "")).fine());

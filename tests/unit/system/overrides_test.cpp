@@ -101,7 +101,8 @@ TEST_CASE("what stands in the place of the model's own is not looked at there") 
   const std::string text = std::string(kModel) + "run 2 kg\n";
   CHECK(Elaborated(text).codes() == "E0304");
   CHECK(Elaborated(text, {{OverrideKind::Run, "run", "2 s"}}).fine());
-  const Elaborated until(std::string(kModel) + "run 2 s\nexpect until at 1 s ± 1\n", {{OverrideKind::Until, "end", "θ = 0"}});
+  const Elaborated until(std::string(kModel) + "run 2 s\nexpect until at 1 s ± 1\n",
+                         {{OverrideKind::Until, "end", "θ = 0"}});
   CHECK_MESSAGE(until.fine(), until.messages());
 }
 
@@ -122,7 +123,9 @@ TEST_CASE("every kind of text has its mistakes in it") {
 TEST_CASE("a path by formulas: every coordinate once, in any order") {
   const std::string plane = "dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\n";
   const auto path = [&](const std::string& formulas) {
-    return Elaborated(plane, {{OverrideKind::GivenPath, "path", formulas}, {OverrideKind::GivenFrom, "from", "1"}, {OverrideKind::GivenTo, "to", "1 + 2"}});
+    return Elaborated(plane, {{OverrideKind::GivenPath, "path", formulas},
+                              {OverrideKind::GivenFrom, "from", "1"},
+                              {OverrideKind::GivenTo, "to", "1 + 2"}});
   };
   const Elaborated good = path("y = 2 t, x = 1");
   REQUIRE_MESSAGE(good.fine(), good.messages());

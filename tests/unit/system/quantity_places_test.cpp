@@ -30,24 +30,33 @@ TEST_CASE("a number with its unit follows each keyword that a quantity follows")
   for (const Same& same : {
            Same{"point P mass 2 kg at (x, 0)", "point P mass 2 [kg] at (x, 0)"},
            Same{"point P mass 2 kg at (x, 3 m)", "point P mass 2 [kg] at (x, 3 [m])"},
-           Same{"point P mass 500 g at (x, 0)\ngravity (0, -9.81) m/s^2", "point P mass 0.5 [kg] at (x, 0)\ngravity (0, -9.81) [m/s^2]"},
-           Same{"point P mass 2 kg at (x, x)\ngravity (0, -9.81 m/s^2)", "point P mass 2 [kg] at (x, x)\ngravity (0, -9.81 [m/s^2])"},
+           Same{"point P mass 500 g at (x, 0)\ngravity (0, -9.81) m/s^2",
+                "point P mass 0.5 [kg] at (x, 0)\ngravity (0, -9.81) [m/s^2]"},
+           Same{"point P mass 2 kg at (x, x)\ngravity (0, -9.81 m/s^2)",
+                "point P mass 2 [kg] at (x, x)\ngravity (0, -9.81 [m/s^2])"},
            Same{"body B mass 2 kg inertia 0.1 kg m^2 at (x, 0)", "body B mass 2 [kg] inertia 0.1 [kg m^2] at (x, 0)"},
-           Same{"point P mass 2 kg at (x, 0)\nspring O - P stiffness 40 N/m length 10 cm", "point P mass 2 [kg] at (x, 0)\nspring O - P stiffness 40 [N/m] length 0.1 [m]"},
-           Same{"point P mass 2 kg at (x, 0)\nspring O - P stiffness 40 N/m length 1/2 m", "point P mass 2 [kg] at (x, 0)\nspring O - P stiffness 40 [N/m] length 0.5 [m]"},
-           Same{"point P mass 2 kg at (x, 0)\nspring O - P stiffness 4*10^1 N/m", "point P mass 2 [kg] at (x, 0)\nspring O - P stiffness 40 [N/m]"},
+           Same{"point P mass 2 kg at (x, 0)\nspring O - P stiffness 40 N/m length 10 cm",
+                "point P mass 2 [kg] at (x, 0)\nspring O - P stiffness 40 [N/m] length 0.1 [m]"},
+           Same{"point P mass 2 kg at (x, 0)\nspring O - P stiffness 40 N/m length 1/2 m",
+                "point P mass 2 [kg] at (x, 0)\nspring O - P stiffness 40 [N/m] length 0.5 [m]"},
+           Same{"point P mass 2 kg at (x, 0)\nspring O - P stiffness 4*10^1 N/m",
+                "point P mass 2 [kg] at (x, 0)\nspring O - P stiffness 40 [N/m]"},
            Same{"frame F at (1, 2) m rotation angle 30 deg\npoint P mass 2 kg at (x, 1 m) in F\ngravity (0, -1) m/s^2",
-                "frame F at (1, 2) [m] rotation angle 30 [deg]\npoint P mass 2 [kg] at (x, 1 [m]) in F\ngravity (0, -1) [m/s^2]"},
+                "frame F at (1, 2) [m] rotation angle 30 [deg]\npoint P mass 2 [kg] at (x, 1 [m]) in F\ngravity (0, "
+                "-1) [m/s^2]"},
        }) {
     CAPTURE(same.plain);
-    CHECK(lagrangian(head + same.plain + "\n", {0.3}, {0.7}) == Approx(lagrangian(head + same.bracketed + "\n", {0.3}, {0.7})).epsilon(1e-14));
+    CHECK(lagrangian(head + same.plain + "\n", {0.3}, {0.7}) ==
+          Approx(lagrangian(head + same.bracketed + "\n", {0.3}, {0.7})).epsilon(1e-14));
   }
 }
 
 TEST_CASE("a torsion spring, a damper, forces, an input and constraints take quantities") {
-  const Elaborated e("param J = 1 kg m^2\ncoord θ : angle, x : length\nT = 1/2 J θ'^2\npoint P mass 1 kg at (x, 0)\n"
-                     "torsion spring θ stiffness 5 N m rest 90 deg\ndamper O - P coefficient 3 N s/m\nforce θ = 2 N m\nforce on P = (3, 4) N\n"
-                     "input u : [N] = 7 N\nconstraint x^2 = 4 m^2\n");
+  const Elaborated e(
+      "param J = 1 kg m^2\ncoord θ : angle, x : length\nT = 1/2 J θ'^2\npoint P mass 1 kg at (x, 0)\n"
+      "torsion spring θ stiffness 5 N m rest 90 deg\ndamper O - P coefficient 3 N s/m\nforce θ = 2 N m\nforce on P = "
+      "(3, 4) N\n"
+      "input u : [N] = 7 N\nconstraint x^2 = 4 m^2\n");
   REQUIRE_MESSAGE(e.model.has_value(), e.messages());
   const MechanicalSystem& s = e.system();
   const Bindings at = e.at({0, 2}, {0, 1});
@@ -60,8 +69,10 @@ TEST_CASE("a torsion spring, a damper, forces, an input and constraints take qua
 }
 
 TEST_CASE("a body in space: inertia with one unit behind the bracket, angles of rotations") {
-  const Elaborated e("coord φ : angle\nbody B mass 1 kg inertia diag(1, 2, 3) kg m^2 rotation axis (0, 0, 1) angle φ\n"
-                     "body C mass 1 kg inertia full(2, 2, 3, 0, 0, 0.1) kg m^2 at (0, 0, 1 m) rotation euler zxz (10 deg, 20 deg, φ)\n");
+  const Elaborated e(
+      "coord φ : angle\nbody B mass 1 kg inertia diag(1, 2, 3) kg m^2 rotation axis (0, 0, 1) angle φ\n"
+      "body C mass 1 kg inertia full(2, 2, 3, 0, 0, 0.1) kg m^2 at (0, 0, 1 m) rotation euler zxz (10 deg, 20 deg, "
+      "φ)\n");
   REQUIRE_MESSAGE(e.model.has_value(), e.messages());
   CHECK(value(e.system().kinetic_energy(), e.at({0.2}, {2})) == Approx(0.5 * 3 * 4 + 0.5 * 3 * 4));
 }
@@ -70,7 +81,8 @@ TEST_CASE("names and units: the reading whose dimension fits is taken, and two t
   const std::string head = "param m = 3 kg, l = 2 m, g = 9.81 m/s^2\ncoord x : length\n";
   // `2 m` is a length after `length` and a mass after `mass`; `2 g` after `mass` is in grams, since g is no mass.
   CHECK(lagrangian(head + "point P mass 2 m at (x, 0)\n", {0}, {1}) == Approx(0.5 * 6));
-  CHECK(lagrangian("param g = 9.81 m/s^2\ncoord x : length\npoint P mass 2 g at (x, x)\ngravity (0, -g)\n", {0}, {1}) == Approx(0.002));
+  CHECK(lagrangian("param g = 9.81 m/s^2\ncoord x : length\npoint P mass 2 g at (x, x)\ngravity (0, -g)\n", {0}, {1}) ==
+        Approx(0.002));
   CHECK(lagrangian(head + "point P mass m at (x, 2 m)\ngravity (0, -g)\n", {0}, {0}) == Approx(-3 * 9.81 * 2));
   CHECK(lagrangian(head + "point P mass 1/2 m at (x, 2 l)\ngravity (0, -g)\n", {0}, {0}) == Approx(-1.5 * 9.81 * 4));
   const Elaborated both("param N = 5 N\ncoord x : length\nT = 1/2 (1 [kg]) x'^2\nforce x = 2 N\n");
@@ -84,27 +96,33 @@ TEST_CASE("names and units: the reading whose dimension fits is taken, and two t
 }
 
 TEST_CASE("without units a number before names is a product, t among them") {
-  const Elaborated e("dimensionless\nparam m = 2\ncoord x : number\nT = 1/2 m x'^2\nforce x = 3 m + t\nforce x = 2 t\n");
+  const Elaborated e(
+      "dimensionless\nparam m = 2\ncoord x : number\nT = 1/2 m x'^2\nforce x = 3 m + t\nforce x = 2 t\n");
   REQUIRE_MESSAGE(e.model.has_value(), e.messages());
   CHECK(value(e.system().forces[1].components[0], e.at({0}, {0}, 5)) == Approx(10));
 }
 
 TEST_CASE("numbers with π and powers are quantities") {
-  const Elaborated e("param ω = 10 pi rad/s, p = 2*10^5 Pa, n = 1/2, q = sqrt(2) m, a = 10 pi [rad/s], w = pi/2 rad\ncoord x : length\nT = 1/2 (1 [kg]) x'^2\n");
+  const Elaborated e(
+      "param ω = 10 pi rad/s, p = 2*10^5 Pa, n = 1/2, q = sqrt(2) m, a = 10 pi [rad/s], w = pi/2 rad\ncoord x : "
+      "length\nT = 1/2 (1 [kg]) x'^2\n");
   REQUIRE_MESSAGE(e.model.has_value(), e.messages());
   const double pi = std::acos(-1);
-  const std::vector<std::pair<std::string, double>> values = {{"ω", 10 * pi}, {"p", 2e5}, {"n", 0.5}, {"q", std::sqrt(2.0)}, {"a", 10 * pi}, {"w", pi / 2}};
-  for (const auto& [name, si] : values)
-    CHECK(e.system().find_parameter(name)->si_value == Approx(si).epsilon(1e-15));
+  const std::vector<std::pair<std::string, double>> values = {{"ω", 10 * pi},        {"p", 2e5},     {"n", 0.5},
+                                                              {"q", std::sqrt(2.0)}, {"a", 10 * pi}, {"w", pi / 2}};
+  for (const auto& [name, si] : values) CHECK(e.system().find_parameter(name)->si_value == Approx(si).epsilon(1e-15));
   CHECK(e.system().find_parameter("ω")->unit == "rad/s");
 }
 
 TEST_CASE("a unit after what has one is refused") {
-  CHECK(Elaborated("coord x : length\npoint P mass 1 kg at (1 m, 2 m) m\nT = 1/2 (1 [kg]) x'^2\n").codes().find("E0302") == 0);
+  CHECK(Elaborated("coord x : length\npoint P mass 1 kg at (1 m, 2 m) m\nT = 1/2 (1 [kg]) x'^2\n")
+            .codes()
+            .find("E0302") == 0);
 }
 
 TEST_CASE("one bare end of a sweep has the unit of the other") {
-  const Elaborated e("param Ω = 1 rad/s\ncoord θ : angle\nT = 1/2 (1 [kg m^2]) (θ' - Ω)^2\nsweep Ω = 20 .. 200 rad/s steps 3\n");
+  const Elaborated e(
+      "param Ω = 1 rad/s\ncoord θ : angle\nT = 1/2 (1 [kg m^2]) (θ' - Ω)^2\nsweep Ω = 20 .. 200 rad/s steps 3\n");
   REQUIRE_MESSAGE(e.model.has_value(), e.messages());
   CHECK(evaluate(e.experiment().sweep->from, {}) == Approx(20));
 }

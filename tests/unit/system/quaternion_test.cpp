@@ -137,8 +137,9 @@ TEST_CASE("the coordinates of a quaternion stand in starts, expectations, lets a
   CHECK(evaluate(m.experiment().start_rates[1].value, {}) == doctest::Approx(2));
   CHECK(m.expected<expectation::ValueAt>(0).subject == m.system().coordinates[1].q);
 
-  const Elaborated o(std::string(kSatellite) + "start sat.ω.y = 1 rad/s\n",
-                     {{OverrideKind::Start, "--start", "sat.qw=0.5"}, {OverrideKind::Start, "--start", "sat.ω=(7,8,9)rad/s"}});
+  const Elaborated o(
+      std::string(kSatellite) + "start sat.ω.y = 1 rad/s\n",
+      {{OverrideKind::Start, "--start", "sat.qw=0.5"}, {OverrideKind::Start, "--start", "sat.ω=(7,8,9)rad/s"}});
   REQUIRE_MESSAGE(o.experiment().start_rates.size() == 3, o.messages());
   CHECK(evaluate(o.experiment().start_rates[1].value, {}) == doctest::Approx(8));
   REQUIRE(o.experiment().start.size() == 1);

@@ -35,8 +35,10 @@ TEST_CASE("x in the place of t: velocities, the integrand and times are measured
   const Elaborated seconds(brachistochrone + "run 2 s\n");
   CHECK(seconds.codes() == "E0304");
   CHECK(seconds.first_message() == "the duration of a run is a length (m), this is a time (s)");
-  CHECK(Elaborated(brachistochrone + "start at 2 s\n").first_message() == "the start x is a length (m), this is a time (s)");
-  CHECK(Elaborated(brachistochrone + "expect y at 2 s = 1 m ± 1e-9\n").first_message() == "x of an expectation is a length (m), this is a time (s)");
+  CHECK(Elaborated(brachistochrone + "start at 2 s\n").first_message() ==
+        "the start x is a length (m), this is a time (s)");
+  CHECK(Elaborated(brachistochrone + "expect y at 2 s = 1 m ± 1e-9\n").first_message() ==
+        "x of an expectation is a length (m), this is a time (s)");
 }
 
 TEST_CASE("sums of different dimensions in an integrand are found with dq/dx") {
@@ -64,8 +66,9 @@ TEST_CASE("kinds of the independent variable") {
 
 TEST_CASE("mechanics needs the time") {
   const std::string x = "independent x : length\ncoord y : length\nparam m = 1 kg, g = 9.81 m/s^2, k = 1 N/m\n";
-  for (const char* line : {"T = 1/2 m y'^2\n", "V = m g y\n", "point P mass m at (0, y)\n", "gravity (0, -g)\n", "spring O - O stiffness k\n",
-                           "force y = 1 [N]\n", "D = 1/2 k y'^2\n", "frame F at (0, y)\n"}) {
+  for (const char* line :
+       {"T = 1/2 m y'^2\n", "V = m g y\n", "point P mass m at (0, y)\n", "gravity (0, -g)\n",
+        "spring O - O stiffness k\n", "force y = 1 [N]\n", "D = 1/2 k y'^2\n", "frame F at (0, y)\n"}) {
     CAPTURE(line);
     const Elaborated m(x + line);
     CHECK(m.codes().find("E0240") != std::string::npos);
@@ -80,11 +83,13 @@ TEST_CASE("mechanics needs the time") {
 
 TEST_CASE("names of the independent variable") {
   CHECK(Elaborated("independent x\ncoord x : length\nL = x'^2\n").codes().find("E0202") != std::string::npos);
-  CHECK(Elaborated("param x = 1 m\nindependent x\ncoord y : length\nL = y'^2\n").codes().find("E0202") != std::string::npos);
+  CHECK(Elaborated("param x = 1 m\nindependent x\ncoord y : length\nL = y'^2\n").codes().find("E0202") !=
+        std::string::npos);
   CHECK(Elaborated("independent x\nindependent s\ncoord y : length\nL = y'^2\n").codes() == "E0208");
   const Elaborated t("independent x : length\ncoord y : length\nL = sqrt(1 + y'^2) + t\n");
   CHECK(t.codes() == "E0201");
-  CHECK(t.diagnostics.items()[0].reason == "The independent variable of this model is x: it stands in the place of the time.");
+  CHECK(t.diagnostics.items()[0].reason ==
+        "The independent variable of this model is x: it stands in the place of the time.");
   const Elaborated spacetime("dimensionless\nindependent s\ncoord t, r : number\nL = 1/2 (r'^2 - t'^2)\n");
   REQUIRE_MESSAGE(spacetime.fine(), spacetime.messages());
   CHECK(spacetime.system().coordinates[0].name == "t");
@@ -102,8 +107,9 @@ TEST_CASE("the ends of a path") {
   CHECK(evaluate(path.to[0], at) == 6);
   CHECK(evaluate(path.end, at) == 3);
 
-  const Elaborated units("param m = 1 kg\ncoord x : length, θ : angle\nT = 1/2 m x'^2 + 0.5 [kg m^2] θ'^2\n"
-                         "path from (10 cm, 90 deg) at 0 s to (free, 1 rad) at 500 ms\n");
+  const Elaborated units(
+      "param m = 1 kg\ncoord x : length, θ : angle\nT = 1/2 m x'^2 + 0.5 [kg m^2] θ'^2\n"
+      "path from (10 cm, 90 deg) at 0 s to (free, 1 rad) at 500 ms\n");
   REQUIRE_MESSAGE(units.fine(), units.messages());
   CHECK(number(units.experiment().path->from[0]) == 0.1);
   CHECK(number(units.experiment().path->from[1]) == doctest::Approx(std::acos(0.0)).epsilon(1e-15));
@@ -124,22 +130,26 @@ TEST_CASE("mistakes in a path, with their places") {
   CHECK(mistake("path from (0, x) at 0 to (1, 2) at 1") == "E0222 x");
   CHECK(mistake("path from (0, t) at 0 to (1, 2) at 1") == "E0222 t");
   CHECK(mistake("path from (0, b) at 0 to (1, 2) at 1") == "E0201 b");
-  CHECK(mistake("path from (0, 0) at 0 to (1, 2) at 1\npath from (0, 0) at 0 to (1, 2) at 1") == "E0208 path from (0, 0) at 0 to (1, 2) at 1");
+  CHECK(mistake("path from (0, 0) at 0 to (1, 2) at 1\npath from (0, 0) at 0 to (1, 2) at 1") ==
+        "E0208 path from (0, 0) at 0 to (1, 2) at 1");
   const Elaborated units("param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\npath from 1 s at 0 s to 2 m at 1 s\n");
   CHECK(units.codes() == "E0304");
   CHECK(units.first_message() == "`x` at the end of a path is a length (m), this is a time (s)");
-  CHECK(Elaborated("param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\npath from 1 m at 0 s to 2 m at 1 m\n").codes() == "E0304");
+  CHECK(Elaborated("param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\npath from 1 m at 0 s to 2 m at 1 m\n").codes() ==
+        "E0304");
 }
 
 TEST_CASE("--set goes into the ends of a path") {
   const Elaborated m(two + "path from (0, 1) at 0 to (2 l, free) at l\n", {{OverrideKind::Parameters, "--set", "l=5"}});
   CHECK(evaluate(m.experiment().path->to[0], m.at({0, 0}, {0, 0})) == 10);
-  CHECK(Elaborated(two + "path from (0, 1) at 0 to (2, free) at l\n", {{OverrideKind::Parameters, "--set", "l=-5"}}).codes() == "E0242");
+  CHECK(Elaborated(two + "path from (0, 1) at 0 to (2, free) at l\n", {{OverrideKind::Parameters, "--set", "l=-5"}})
+            .codes() == "E0242");
 }
 
 TEST_CASE("definitions of parameters are expanded in ends, integrals and expectations") {
-  const Elaborated m(two + "let a = 2 l\npath from (0, 1) at 0 to (a, free) at a\nconstraint integral a y = a\n"
-                           "expect action of (a t, 1) from 0 to a = 2 a ± 1e-9\nexpect path a x at a/2 = a ± 1e-9\n");
+  const Elaborated m(two +
+                     "let a = 2 l\npath from (0, 1) at 0 to (a, free) at a\nconstraint integral a y = a\n"
+                     "expect action of (a t, 1) from 0 to a = 2 a ± 1e-9\nexpect path a x at a/2 = a ± 1e-9\n");
   REQUIRE_MESSAGE(m.fine(), m.messages());
   const Bindings at = m.at({7, 11}, {0, 0}, 1);
   const Experiment& x = m.experiment();
@@ -175,11 +185,13 @@ TEST_CASE("an integrand that a held integral curves is no singular model") {
   CHECK(Elaborated(dido).codes() == "E0407");
   CHECK(Elaborated(dido).first_message() == "the integrand is not curved in `y'`");
   CHECK(Elaborated(dido + "constraint integral sqrt(1 + y'^2) = 3 m\n").fine());
-  CHECK(Elaborated("independent s : number\ncoord x, y : length\nL = sqrt(x'^2 + y'^2)\n").codes().find("E0408") != std::string::npos);
+  CHECK(Elaborated("independent s : number\ncoord x, y : length\nL = sqrt(x'^2 + y'^2)\n").codes().find("E0408") !=
+        std::string::npos);
 }
 
 TEST_CASE("expectations of paths: dimensions, ends and counts") {
-  const std::string m = "param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n", path = "path from 0 m at 0 s to 1 m at 2 s\n";
+  const std::string m = "param m = 1 kg\ncoord x : length\nT = 1/2 m x'^2\n",
+                    path = "path from 0 m at 0 s to 1 m at 2 s\n";
   const auto codes = [&](const std::string& line) { return Elaborated(m + line + "\n").codes(); };
   CHECK(codes(path + "expect action = 1 J s ± 1e-9") == "");
   CHECK(codes(path + "expect action = 1 J ± 1e-9") == "E0304");
@@ -207,9 +219,12 @@ TEST_CASE("expectations of paths: dimensions, ends and counts") {
 }
 
 TEST_CASE("where an integral is held, expectations are about paths") {
-  const std::string m = "dimensionless\ncoord x : number\nL = 1/2 x'^2\nconstraint integral x = 1 name area\npath from 0 at 0 to 0 at 1\n";
+  const std::string m =
+      "dimensionless\ncoord x : number\nL = 1/2 x'^2\nconstraint integral x = 1 name area\npath from 0 at 0 to 0 at "
+      "1\n";
   CHECK(Elaborated(m + "expect path x at 1/2 = 3/2 ± 1e-9\nexpect action = 6 ± 1e-9\nexpect index = 0\n").fine());
-  for (const char* line : {"expect x at 1 = 0 ± 1e-9", "expect energy conserved rel 1e-9", "claim x'' = 0", "expect freedoms = 1"}) {
+  for (const char* line :
+       {"expect x at 1 = 0 ± 1e-9", "expect energy conserved rel 1e-9", "claim x'' = 0", "expect freedoms = 1"}) {
     CAPTURE(line);
     CHECK(Elaborated(m + line + "\n").codes() == "E0244");
   }

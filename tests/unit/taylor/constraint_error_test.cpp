@@ -22,7 +22,8 @@ struct Tied {
   Expr x = context.symbol("x", Role::Coordinate), y = context.symbol("y", Role::Coordinate);
   KernelWorkspace work;
 
-  Tied(const std::function<Expr(Expr, Expr)>& constraint, int mass_x, int mass_y, std::vector<double> q, std::vector<double> v)
+  Tied(const std::function<Expr(Expr, Expr)>& constraint, int mass_x, int mass_y, std::vector<double> q,
+       std::vector<double> v)
       : work(kernel(constraint(x, y), mass_x, mass_y), 4) {
     work.set_parameters({});
     REQUIRE(work.evaluate(0, q, v) == KernelStatus::Ok);
@@ -33,7 +34,8 @@ struct Tied {
     KernelSource source;
     source.coordinates = {x, y};
     source.multipliers = {multiplier};
-    source.residual = {Rational(mass_x) * second(x) - multiplier * differentiate(phi, x), Rational(mass_y) * second(y) - multiplier * differentiate(phi, y)};
+    source.residual = {Rational(mass_x) * second(x) - multiplier * differentiate(phi, x),
+                       Rational(mass_y) * second(y) - multiplier * differentiate(phi, y)};
     source.constraints = {{phi, 0, "tie"}};
     return build_kernel(source);
   }
@@ -62,7 +64,9 @@ TEST_CASE("a rate that moves the constraint by less than the rounding of far coo
 TEST_CASE("corrections are measured by what moves, in the metric of M") {
   const Tied tied([](Expr, Expr y) { return y; }, 2, 1, {0, 0}, {3, 0});
   const std::vector<double> none{0, 0};
-  CHECK(taylor::correction_size(tied.work, none, std::vector<double>{0, 0.03}, 1) == doctest::Approx(0.03 / (3 * std::sqrt(2.0))));
-  CHECK(taylor::correction_size(tied.work, std::vector<double>{0, 0.03}, none, 0.5) == doctest::Approx(0.03 / (0.5 * 3 * std::sqrt(2.0))));
+  CHECK(taylor::correction_size(tied.work, none, std::vector<double>{0, 0.03}, 1) ==
+        doctest::Approx(0.03 / (3 * std::sqrt(2.0))));
+  CHECK(taylor::correction_size(tied.work, std::vector<double>{0, 0.03}, none, 0.5) ==
+        doctest::Approx(0.03 / (0.5 * 3 * std::sqrt(2.0))));
   CHECK(taylor::correction_size(tied.work, none, none, 1) == 0);
 }

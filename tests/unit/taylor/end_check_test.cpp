@@ -32,7 +32,9 @@ struct Step {
     return a;
   }
   bool agrees(std::size_t i, double by) const { return check.agrees(off(i, by), half_a.data(), 1, h); }
-  bool agrees_on_the_whole(std::size_t i, double by) const { return check.agrees_on_the_whole(off(i, by), half_a.data(), h); }
+  bool agrees_on_the_whole(std::size_t i, double by) const {
+    return check.agrees_on_the_whole(off(i, by), half_a.data(), h);
+  }
   bool agrees_but_for(double rounding, std::size_t i, double by) const {
     const std::vector<double> roundings{rounding, rounding}, a = off(i, 0);
     return check.agrees_but_for_rounding(off(i, by), a, roundings, h);
@@ -103,7 +105,8 @@ TEST_CASE("roundings of the equations reach the accelerations through the invers
   CHECK(bordered[0] == doctest::Approx(4));
   const double of_residual = disks.residual_rounding(0, 0.1);
   CHECK(of_residual > 12 * std::sin(1.0));
-  CHECK(taylor::acceleration_roundings(bordered, 1, 0, disks, 0.1, epsilon)[0] == doctest::Approx(epsilon * of_residual / 4));
+  CHECK(taylor::acceleration_roundings(bordered, 1, 0, disks, 0.1, epsilon)[0] ==
+        doctest::Approx(epsilon * of_residual / 4));
   const double infinity = std::numeric_limits<double>::infinity();
   CHECK(taylor::acceleration_roundings({infinity}, 1, 0, disks, 0.1, epsilon)[0] == 0);
   CHECK(taylor::acceleration_roundings({0}, 1, 0, disks, 0.1, epsilon)[0] == 0);

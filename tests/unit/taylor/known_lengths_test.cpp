@@ -1,8 +1,8 @@
 // What is known of lengths belongs to motions that are no larger, and to no others.
 #include "integrator/taylor/known_lengths.hpp"
 
-#include <cmath>
 #include <doctest/doctest.h>
+#include <cmath>
 #include <maupertuis/kernel.hpp>
 #include <maupertuis/transform.hpp>
 
@@ -19,7 +19,8 @@ constexpr double ratio = 5;
 using enum KnownLengths::Answer;
 using enum KnownLengths::Limits;
 
-/// x'' + 1/(x + 2) + y² sin 3x = 0, y'' + x y = 0, with a motion through (x, y) = (0.3, 0.5). Driven: x sin 2t = 0 instead of 1/(x + 2) = 0.
+/// x'' + 1/(x + 2) + y² sin 3x = 0, y'' + x y = 0, with a motion through (x, y) = (0.3, 0.5). Driven: x sin 2t = 0
+/// instead of 1/(x + 2) = 0.
 struct Motion {
   Context context;
   Kernel kernel;
@@ -36,7 +37,9 @@ struct Motion {
     const Expr x = context.symbol("x", Role::Coordinate), y = context.symbol("y", Role::Coordinate);
     const auto second = [&](const Expr& q) { return context.time_derivative(context.time_derivative(q)); };
     source.coordinates = {x, y};
-    source.residual = {second(x) + (driven ? x * sin(context.time() * Rational(2)) : pow(x + Rational(2), -1)) + y * y * sin(x * Rational(3)), second(y) + x * y};
+    source.residual = {second(x) + (driven ? x * sin(context.time() * Rational(2)) : pow(x + Rational(2), -1)) +
+                           y * y * sin(x * Rational(3)),
+                       second(y) + x * y};
     return build_kernel(source);
   }
   SlotCoefficients coefficients() const { return {rows.data(), work.row_stride(), order, 1}; }
@@ -47,10 +50,13 @@ struct Known {
   std::unique_ptr<Disks> disks;
   KnownLengths lengths;
   explicit Known(const Motion& m, bool for_several = false)
-      : disks(std::make_unique<Disks>(m.work.program())), lengths(m.work.program(), disks->degrees(), ratio, for_several) {
+      : disks(std::make_unique<Disks>(m.work.program())),
+        lengths(m.work.program(), disks->degrees(), ratio, for_several) {
     lengths.adopt(m.work.constants());
   }
-  KnownLengths::Answer ask(const Motion& m, const std::vector<double>& allowed, double h = 0.05, double t = 0) { return lengths.ask(m.coefficients(), t, h, allowed); }
+  KnownLengths::Answer ask(const Motion& m, const std::vector<double>& allowed, double h = 0.05, double t = 0) {
+    return lengths.ask(m.coefficients(), t, h, allowed);
+  }
   /// Asks about the motion at time t and bounds its like.
   void bound(const Motion& m, const std::vector<double>& allowed, KnownLengths::Limits limits, double t = 0) {
     ask(m, allowed, 0.05, t);
@@ -162,7 +168,8 @@ TEST_CASE("what a step leaves out is h d x^p/(1 - x)") {
   for (std::size_t i = 0; i < 2; ++i) {
     double sums[3] = {0, 0, 0};
     for (int k = 1; k <= order + 1; ++k)
-      for (int d = 0; d < 3; ++d) sums[d] += std::abs(m.coefficient(k, i)) * std::pow(r, k - d) * (d == 0 ? 1 : d == 1 ? k : k * (k - 1));
+      for (int d = 0; d < 3; ++d)
+        sums[d] += std::abs(m.coefficient(k, i)) * std::pow(r, k - d) * (d == 0 ? 1 : d == 1 ? k : k * (k - 1));
     sizes[0].push_back(std::abs(m.coefficient(0, i)));
     for (std::size_t d = 0; d < 3; ++d) sizes[d + 1].push_back(sums[d]);
   }

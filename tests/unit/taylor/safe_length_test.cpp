@@ -1,5 +1,6 @@
-// Safe lengths against closed forms. A point of mass 1 flies by at speed 1, hardly moved by a force f along s whose Taylor series is known. Its first term
-// left out makes the true bound of the length; Cauchy's estimate cannot allow more, and has to allow nearly as much.
+// Safe lengths against closed forms. A point of mass 1 flies by at speed 1, hardly moved by a force f along s whose
+// Taylor series is known. Its first term left out makes the true bound of the length; Cauchy's estimate cannot allow
+// more, and has to allow nearly as much.
 #include "integrator/taylor/safe_length.hpp"
 
 #include <doctest/doctest.h>
@@ -24,7 +25,8 @@ struct Passage {
   int order;
 
   /// Of mass 10^{16 · heavy}.
-  Passage(const std::function<Expr(Expr)>& force, int p, int heavy = 0) : work(kernel(context, force, heavy), p), order(p) {
+  Passage(const std::function<Expr(Expr)>& force, int p, int heavy = 0)
+      : work(kernel(context, force, heavy), p), order(p) {
     work.set_parameters({});
     const double at[] = {0}, rate[] = {1};
     REQUIRE(work.expand(0, at, rate) == KernelStatus::Ok);
@@ -34,7 +36,8 @@ struct Passage {
     KernelSource source;
     source.coordinates = {x};
     Expr acceleration = context.time_derivative(context.time_derivative(x)), load = force(x);
-    for (int i = 0; i < heavy; ++i) acceleration = acceleration * Rational(10'000'000'000'000'000), load = load * Rational(10'000'000'000'000'000);
+    for (int i = 0; i < heavy; ++i)
+      acceleration = acceleration * Rational(10'000'000'000'000'000), load = load * Rational(10'000'000'000'000'000);
     source.residual = {acceleration - load};
     return build_kernel(source);
   }
@@ -125,9 +128,11 @@ TEST_CASE("a wanted length that is safe is kept to the bit, a longer one is cut"
   const Passage passage = steep_force(Rational(1, 1000), order);
   SafeLength bounds = passage.bounds(1e-10);
   const double found = bounds.within(passage.coefficients(), 0, infinity, 1);
-  for (const double part : {0.123, 0.7, 0.97, 1.03}) CHECK(bounds.within(passage.coefficients(), 0, part * found, 1) == part * found);
+  for (const double part : {0.123, 0.7, 0.97, 1.03})
+    CHECK(bounds.within(passage.coefficients(), 0, part * found, 1) == part * found);
   const double best = by_cauchy(1e-3, 1e-10);
-  for (const double part : {1.01, 1.5, 4.0, 1e3}) CHECK(bounds.within(passage.coefficients(), 0, part * best, 1) <= best);
+  for (const double part : {1.01, 1.5, 4.0, 1e3})
+    CHECK(bounds.within(passage.coefficients(), 0, part * best, 1) <= best);
   CHECK(bounds.within(passage.coefficients(), 0, infinity, found / 2) == infinity);  // the run ends before
 }
 
@@ -181,7 +186,9 @@ TEST_CASE("with a hundred digits a mass of 1e192 has the lengths of a mass of 1"
 
 TEST_CASE("what is known of motions with other constants allows nothing") {
   constexpr double tolerance = 1e-4, h = 0.1;
-  const auto force = [](Rational size, Rational steep) { return Passage([=](Expr x) { return size * apply(Kind::Exp, x * steep); }, order); };
+  const auto force = [](Rational size, Rational steep) {
+    return Passage([=](Expr x) { return size * apply(Kind::Exp, x * steep); }, order);
+  };
   // The second force is smaller in all that the step knows of it, and 10⁵ times larger at its end.
   const Passage gentle = force(Rational(2), Rational(1, 2)), steep = force(Rational(1, 100'000'000), Rational(300));
   REQUIRE(gentle.work.program().constants.size() == steep.work.program().constants.size());

@@ -9,11 +9,12 @@ using namespace maupertuis;
 
 namespace {
 
-/// The length that λ allows of a step of length 1. A point of mass 1 is led along x = t at speed 1 against the force strength/(1.1 − t), so that λ is its
-/// opposite and its series converges slowly; a second point rests at y = 0.
+/// The length that λ allows of a step of length 1. A point of mass 1 is led along x = t at speed 1 against the force
+/// strength/(1.1 − t), so that λ is its opposite and its series converges slowly; a second point rests at y = 0.
 double allowed(Rational strength) {
   Context context;
-  const Expr x = context.symbol("x", Role::Coordinate), y = context.symbol("y", Role::Coordinate), push = context.symbol("λ", Role::Multiplier), t = context.time();
+  const Expr x = context.symbol("x", Role::Coordinate), y = context.symbol("y", Role::Coordinate),
+             push = context.symbol("λ", Role::Multiplier), t = context.time();
   const auto second = [&](const Expr& e) { return context.time_derivative(context.time_derivative(e)); };
   KernelSource source;
   source.coordinates = {x, y};

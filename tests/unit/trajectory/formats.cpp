@@ -2,8 +2,8 @@
 #include <maupertuis/trajectory.hpp>
 
 #include <doctest/doctest.h>
-#include <nlohmann/json.hpp>
 #include <rapidcheck.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <cstdint>
@@ -32,14 +32,18 @@ std::vector<std::vector<std::string>> read_csv(const std::string& text) {
   bool inside = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    if (inside && c == '"' && i + 1 < text.size() && text[i + 1] == '"') record.back() += text[++i];
-    else if (c == '"') inside = !inside;
-    else if (!inside && c == ',') record.emplace_back();
+    if (inside && c == '"' && i + 1 < text.size() && text[i + 1] == '"')
+      record.back() += text[++i];
+    else if (c == '"')
+      inside = !inside;
+    else if (!inside && c == ',')
+      record.emplace_back();
     else if (!inside && c == '\r') {
       REQUIRE(text.at(++i) == '\n');
       records.push_back(record);
       record = {""};
-    } else record.back() += c;
+    } else
+      record.back() += c;
   }
   REQUIRE(record == std::vector<std::string>{""});
   return records;
@@ -171,7 +175,8 @@ TEST_CASE("another independent variable heads the first column of every format")
   curve.times = {0, 1};
   curve.values = {2, 3};
   CHECK(to_csv(curve).rfind("x [m],t [s]\r\n0,2\r\n", 0) == 0);
-  CHECK(to_json(curve).find("\"columns\": [{\"name\": \"x\", \"unit\": \"m\"}, {\"name\": \"t\", \"unit\": \"s\"}]") != std::string::npos);
+  CHECK(to_json(curve).find("\"columns\": [{\"name\": \"x\", \"unit\": \"m\"}, {\"name\": \"t\", \"unit\": \"s\"}]") !=
+        std::string::npos);
   CHECK(to_npy(curve).find("(('x [m]','x'),'<f8'),(('t [s]','t'),'<f8'),") != std::string::npos);
   curve.independent.unit.clear();
   CHECK(to_csv(curve).rfind("x,t [s]\r\n", 0) == 0);

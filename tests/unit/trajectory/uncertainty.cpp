@@ -33,14 +33,14 @@ Read read(const std::string& text) {
 }  // namespace
 
 TEST_CASE("numbers stand with the digits that are certain") {
-  CHECK(with_uncertainty(-5.003407250541227, 3e-8) == "-5.00340725(4)");   // 3e-8, and 5e-10 of rounding: up
+  CHECK(with_uncertainty(-5.003407250541227, 3e-8) == "-5.00340725(4)");  // 3e-8, and 5e-10 of rounding: up
   CHECK(with_uncertainty(-0.48546178042110844, 9.6e-9) == "-0.48546178(2)");
   CHECK(with_uncertainty(9.9996, 4e-3) == "10.000(5)");
-  CHECK(with_uncertainty(9.9996e-9, 4e-12) == "1.0000(5)e-8");             // the leading digit changes with rounding
+  CHECK(with_uncertainty(9.9996e-9, 4e-12) == "1.0000(5)e-8");  // the leading digit changes with rounding
   CHECK(with_uncertainty(9.99996e-9, 4e-13) == "1.00000(5)e-8");
   CHECK(with_uncertainty(9.7e-9, 1e-9) == "1.0(2)e-8");
   CHECK(with_uncertainty(1234567, 12) == "1.23457(2)e6");
-  CHECK(with_uncertainty(-3e-5, 0.004) == "0.000(5)");                     // no minus before zero
+  CHECK(with_uncertainty(-3e-5, 0.004) == "0.000(5)");  // no minus before zero
   CHECK(with_uncertainty(1e-18, 1e-16) == "0(2)e-16");
   CHECK(with_uncertainty(7e-300, 1e-310) == "7.0000000000(1)e-300");
 }
@@ -74,5 +74,6 @@ TEST_CASE("errors become columns after all others") {
   run.values = {1, 2, 3, 4};
   CHECK(to_csv(with_error_columns(run)) == to_csv(run));
   run.errors = {0, 0.25, 0.5, infinity};
-  CHECK(to_csv(with_error_columns(run)) == "t [s],x [m],x' [m/s],error(x) [m],error(x') [m/s]\r\n0,1,2,0,0.25\r\n1,3,4,0.5,inf\r\n");
+  CHECK(to_csv(with_error_columns(run)) ==
+        "t [s],x [m],x' [m/s],error(x) [m],error(x') [m/s]\r\n0,1,2,0,0.25\r\n1,3,4,0.5,inf\r\n");
 }

@@ -3,14 +3,14 @@
 
 #include <doctest/doctest.h>
 
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <sys/resource.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace fs = std::filesystem;
 using maupertuis::write_file;
@@ -118,7 +118,8 @@ TEST_CASE("no permission: the folder or the file is protected") {
   const Folder folder;
   std::ofstream(folder / "a.csv") << "old";
   // The superuser is not stopped by permissions: a child without them tries instead.
-  fs::permissions(folder / "a.csv", fs::perms::all & ~fs::perms::owner_write & ~fs::perms::group_write & ~fs::perms::others_write);
+  fs::permissions(folder / "a.csv",
+                  fs::perms::all & ~fs::perms::owner_write & ~fs::perms::group_write & ~fs::perms::others_write);
   fs::permissions(folder.path, fs::perms::owner_read | fs::perms::owner_exec | fs::perms::group_read |
                                    fs::perms::group_exec | fs::perms::others_read | fs::perms::others_exec);
   int channel[2];

@@ -117,10 +117,10 @@ TEST_CASE("derived SI units follow from the base units") {
 }
 
 TEST_CASE("exact names beat prefixes, and only SI units take prefixes") {
-  CHECK(dimension("min") == "s");      // no milli-inch
-  CHECK(dimension("ft") == "m");       // no femtotonne
-  CHECK(dimension("cd") == "cd");      // no centiday
-  CHECK(dimension("Pa") == "Pa");      // no petayear
+  CHECK(dimension("min") == "s");  // no milli-inch
+  CHECK(dimension("ft") == "m");   // no femtotonne
+  CHECK(dimension("cd") == "cd");  // no centiday
+  CHECK(dimension("Pa") == "Pa");  // no petayear
   CHECK(dimension("T") == "T");
   CHECK(value("dam") == 10);
   CHECK_FALSE(find_unit("kmin"));

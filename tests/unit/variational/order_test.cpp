@@ -18,8 +18,8 @@ constexpr const char* kMovingPendulum =
     "system moving\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = 9.81 y\n"
     "constraint (x - sin(2 t)/5)^2 + y^2 = 1\n";
 
-double error_at(const Variational& m, int order, double h, double end, const std::vector<double>& q, const std::vector<double>& v,
-                const std::vector<double>& exact) {
+double error_at(const Variational& m, int order, double h, double end, const std::vector<double>& q,
+                const std::vector<double>& v, const std::vector<double>& exact) {
   auto stepper = m.stepper(h, order);
   stepper.start(0, q, v);
   run(stepper, end);
@@ -57,22 +57,26 @@ TEST_CASE("double pendulum: orders 2, 4, 6, 8") {
   check_orders(Variational(kDoublePendulum), 1, {0.6, -0.5}, {0.3, 0.5}, {{2, 400}, {4, 80}, {6, 40}, {8, 60}});
 }
 
-TEST_CASE("a Lagrangian that does not separate, with velocities beyond the second power and with time: orders 2, 4, 6, 8") {
+TEST_CASE(
+    "a Lagrangian that does not separate, with velocities beyond the second power and with time: orders 2, 4, 6, 8") {
   check_orders(Variational(kNotSeparable), 2, {0.9, -0.4}, {0.5, 0.7}, {{2, 200}, {4, 50}, {6, 10}, {8, 5}});
 }
 
 TEST_CASE("a moving constraint: orders 2, 4, 6, 8") {
-  check_orders(Variational(kMovingPendulum), 1, {std::sin(0.7), -std::cos(0.7)}, {0.4, 0}, {{2, 200}, {4, 40}, {6, 16}, {8, 10}});
+  check_orders(Variational(kMovingPendulum), 1, {std::sin(0.7), -std::cos(0.7)}, {0.4, 0},
+               {{2, 200}, {4, 40}, {6, 16}, {8, 10}});
 }
 
 TEST_CASE("forces by the principle of Lagrange and d'Alembert: the damped driven oscillator in closed form") {
   // x'' + 0.3 x' + 4 x = cos t from rest at 1.
-  const Variational m("system damped\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 2 x^2\nD = 0.15 x'^2\nforce x = cos t\n");
+  const Variational m(
+      "system damped\ndimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 2 x^2\nD = 0.15 x'^2\nforce x = cos t\n");
   const double c = 0.3, k = 4, w = std::sqrt(k - c * c / 4), end = 3;
   const double d = (k - 1) * (k - 1) + c * c, p = (k - 1) / d, r = c / d;  // the driven motion: p cos t + r sin t
   const double A = 1 - p, B = (-r + c / 2 * A) / w, decay = std::exp(-c / 2 * end);
   const double x = decay * (A * std::cos(w * end) + B * std::sin(w * end)) + p * std::cos(end) + r * std::sin(end);
-  const double v = decay * (-c / 2 * (A * std::cos(w * end) + B * std::sin(w * end)) + w * (B * std::cos(w * end) - A * std::sin(w * end))) -
+  const double v = decay * (-c / 2 * (A * std::cos(w * end) + B * std::sin(w * end)) +
+                            w * (B * std::cos(w * end) - A * std::sin(w * end))) -
                    p * std::sin(end) + r * std::cos(end);
   for (const auto& step : {std::pair(2, 200), {4, 40}, {6, 15}, {8, 8}}) {
     const int order = step.first, parts = step.second;

@@ -44,10 +44,13 @@ TEST_CASE("a pulse between the nodes ends the run before it, with the reason; sh
 }
 
 TEST_CASE("a pulse beside gravity, a window and a wall are seen too") {
-  CHECK(run_to_its_end("V = 9.81 x\nforce x = 30 exp(-((t - 6)/0.05)^2)\n", 0, 0, 10, 0.5, 4).last.ending == StepEnding::NoConvergence);
-  CHECK(run_to_its_end("force x = piecewise(t < 4.25 : 0, t < 4.27 : 30, else : 0)\n", 0, 0, 10, 0.5, 4).last.ending == StepEnding::NoConvergence);
+  CHECK(run_to_its_end("V = 9.81 x\nforce x = 30 exp(-((t - 6)/0.05)^2)\n", 0, 0, 10, 0.5, 4).last.ending ==
+        StepEnding::NoConvergence);
+  CHECK(run_to_its_end("force x = piecewise(t < 4.25 : 0, t < 4.27 : 30, else : 0)\n", 0, 0, 10, 0.5, 4).last.ending ==
+        StepEnding::NoConvergence);
   // A node within the window takes it for half of the step.
-  CHECK(run_to_its_end("force x = piecewise(t < 4.1 : 0, t < 4.12 : 30, else : 0)\n", 0, 0, 10, 0.5, 4).last.ending == StepEnding::NoConvergence);
+  CHECK(run_to_its_end("force x = piecewise(t < 4.1 : 0, t < 4.12 : 30, else : 0)\n", 0, 0, 10, 0.5, 4).last.ending ==
+        StepEnding::NoConvergence);
   CHECK(run_to_its_end("V = exp(-((x - 6.3)/0.02)^2)\n", 0, 1, 20, 0.5, 4).last.ending == StepEnding::NoConvergence);
   CHECK(run_to_its_end("force x = sin(400 t)\n", 0, 0, 1, 0.1, 4).last.ending == StepEnding::NoConvergence);
 }
@@ -56,7 +59,8 @@ TEST_CASE("coarse steps of smooth motions go on, and steps over switches") {
   for (const int order : {2, 4, 6, 8, 10, 12}) {
     CAPTURE(order);
     CHECK(run_to_its_end("V = 1/2 x^2\n", 1, 0, 200, 0.8, order).last.ending == StepEnding::None);
-    CHECK(run_to_its_end("V = -cos x\nD = 0.05 x'^2\nforce x = 0.4 cos(0.7 t)\n", 1, 0, 100, 0.5, order).last.ending == StepEnding::None);
+    CHECK(run_to_its_end("V = -cos x\nD = 0.05 x'^2\nforce x = 0.4 cos(0.7 t)\n", 1, 0, 100, 0.5, order).last.ending ==
+          StepEnding::None);
     CHECK(run_to_its_end("V = 9.81 x\n", 0, 3, 10, 0.5, order).last.ending == StepEnding::None);
     CHECK(run_to_its_end("force x = -sign(x) - 0.2 x\n", 1, 0, 20, 0.01, order).last.ending == StepEnding::None);
   }

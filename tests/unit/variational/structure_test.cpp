@@ -13,9 +13,11 @@ constexpr const char* kEntangled =
 
 /// A spherical pendulum as a particle: three coordinates and a rod.
 constexpr const char* kParticleOnRod =
-    "system rod\ndimensionless\ncoord x, y, z : number\nT = 1/2 (x'^2 + y'^2 + z'^2)\nV = 9.81 z\nconstraint x^2 + y^2 + z^2 = 1 name rod\n";
+    "system rod\ndimensionless\ncoord x, y, z : number\nT = 1/2 (x'^2 + y'^2 + z'^2)\nV = 9.81 z\nconstraint x^2 + y^2 "
+    "+ z^2 = 1 name rod\n";
 
-double largest_energy_error(const Variational& m, VariationalStepper& stepper, std::size_t steps, double h, double reference) {
+double largest_energy_error(const Variational& m, VariationalStepper& stepper, std::size_t steps, double h,
+                            double reference) {
   double worst = 0;
   for (std::size_t i = 0; i < steps; ++i) {
     REQUIRE(stepper.step(h > 0 ? 1e9 : -1e9).ending == StepEnding::None);
@@ -47,7 +49,12 @@ TEST_CASE("the map of a step preserves the symplectic form: its derivative by (q
       for (std::size_t i = 0; i < 4; ++i) {
         constexpr double d = 2e-3;
         double sums[2] = {};
-        for (const auto& [shift, weight] : {std::pair(-3, -1.0 / 60), {-2, 9.0 / 60}, {-1, -45.0 / 60}, {1, 45.0 / 60}, {2, -9.0 / 60}, {3, 1.0 / 60}}) {
+        for (const auto& [shift, weight] : {std::pair(-3, -1.0 / 60),
+                                            {-2, 9.0 / 60},
+                                            {-1, -45.0 / 60},
+                                            {1, 45.0 / 60},
+                                            {2, -9.0 / 60},
+                                            {3, 1.0 / 60}}) {
           State moved = base;
           moved[k] += shift * d;
           const auto [before, now] = after(moved);
@@ -67,7 +74,8 @@ TEST_CASE("the map of a step preserves the symplectic form: its derivative by (q
 }
 
 TEST_CASE("angular momentum of a central force stays to rounding, at steps that are far from exact") {
-  const Variational m("system kepler\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = -1/sqrt(x^2 + y^2)\n");
+  const Variational m(
+      "system kepler\ndimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = -1/sqrt(x^2 + y^2)\n");
   for (const int order : {2, 4}) {
     auto stepper = m.stepper(0.1, order);
     stepper.start(0, State{0.5, 0}, State{0, 1.7});
@@ -107,7 +115,8 @@ TEST_CASE("a particle on a rod: constraint, velocity constraint and momentum to 
   for (const int order : {2, 4, 6}) {
     auto stepper = m.stepper(0.02, order);
     const double angle = 1.1;
-    stepper.start(0, State{std::sin(angle), 0, -std::cos(angle)}, State{0.5 * std::cos(angle), 1.3, 0.5 * std::sin(angle)});
+    stepper.start(0, State{std::sin(angle), 0, -std::cos(angle)},
+                  State{0.5 * std::cos(angle), 1.3, 0.5 * std::sin(angle)});
     const double momentum = std::sin(angle) * 1.3, energy = m.energy(stepper);
     double residual = 0, momentum_error = 0;
     const double early = largest_energy_error(m, stepper, 2000, 1, energy);
@@ -155,7 +164,8 @@ TEST_CASE("there and back again: the method is its own inverse") {
 }
 
 TEST_CASE("redundant constraints: the motion is the same, and the multipliers that are not determined are NaN") {
-  const std::string twice = std::string(kParticleOnRod) + "constraint 3 x^2 + 3 y^2 + 3 z^2 = 3 name again\nconstraint y = 0 name plane\n";
+  const std::string twice =
+      std::string(kParticleOnRod) + "constraint 3 x^2 + 3 y^2 + 3 z^2 = 3 name again\nconstraint y = 0 name plane\n";
   const Variational m(twice), plane(std::string(kParticleOnRod) + "constraint y = 0 name plane\n");
   auto one = m.stepper(0.05, 4), other = plane.stepper(0.05, 4);
   for (auto* s : {&one, &other}) {
@@ -182,15 +192,19 @@ TEST_CASE("a run ends with its reason: a step too long, a singular mass, a value
       }
     return StepEnding::None;
   };
-  CHECK(ending("system fall\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - sqrt(x)\n", {1}, {0}, 0.1) == StepEnding::Overflow);
-  CHECK(ending("system flat\ndimensionless\ncoord x, y : number\nL = 1/2 (x' + y')^2 - x^2 - y\n", {1, 0}, {0, 0}, 0.1) == StepEnding::SingularMass);
-  CHECK(ending("system stiff\ndimensionless\ncoord a : angle\nL = 1/2 a'^2 + 1000 cos(a + sin a)\n", {1}, {70}, 3) == StepEnding::NoConvergence);
+  CHECK(ending("system fall\ndimensionless\ncoord x : number\nL = 1/2 x'^2 - sqrt(x)\n", {1}, {0}, 0.1) ==
+        StepEnding::Overflow);
+  CHECK(ending("system flat\ndimensionless\ncoord x, y : number\nL = 1/2 (x' + y')^2 - x^2 - y\n", {1, 0}, {0, 0},
+               0.1) == StepEnding::SingularMass);
+  CHECK(ending("system stiff\ndimensionless\ncoord a : angle\nL = 1/2 a'^2 + 1000 cos(a + sin a)\n", {1}, {70}, 3) ==
+        StepEnding::NoConvergence);
 }
 
 TEST_CASE("of two events in one step the earlier one ends it") {
   const ModelText model("system line\ndimensionless\ncoord x : number\nL = 1/2 x'^2\n");
   const Expr x = model.q(0);
-  const VariationalFunctions functions = variational_functions(model.equations, {{}, {x - Rational(3, 5), x - Rational(11, 20)}, {}});
+  const VariationalFunctions functions =
+      variational_functions(model.equations, {{}, {x - Rational(3, 5), x - Rational(11, 20)}, {}});
   VariationalOptions options;
   options.step = 1, options.order = 2;
   VariationalStepper stepper(functions, {}, options);

@@ -31,7 +31,9 @@ struct Variational : ModelText {
     }
     return maupertuis::evaluate(maupertuis::expand_time_derivatives(e), bindings);
   }
-  double energy(const maupertuis::VariationalStepper& s) const { return value(equations.energy_function, s.time(), s.q(), s.v()); }
+  double energy(const maupertuis::VariationalStepper& s) const {
+    return value(equations.energy_function, s.time(), s.q(), s.v());
+  }
 
   maupertuis::VariationalFunctions functions;
   std::vector<double> parameters;

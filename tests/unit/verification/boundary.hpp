@@ -7,7 +7,8 @@
 
 /// Each form of an expectation passes just inside its tolerance and fails just outside.
 
-inline maupertuis::Verification verify_text(const std::string& text, const maupertuis::SimulationOptions& options = {}) {
+inline maupertuis::Verification verify_text(const std::string& text,
+                                            const maupertuis::SimulationOptions& options = {}) {
   const ModelText m(text);
   maupertuis::Diagnostics diagnostics;
   return maupertuis::verify(m.model, m.equations, m.source, options, diagnostics);

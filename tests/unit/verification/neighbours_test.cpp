@@ -10,7 +10,8 @@ namespace {
 
 // λ = −0.1 ± i √0.99
 const std::string damped = "dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\nforce x = -1/5 x'\n";
-const std::string driven = "dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2 + x cos(t)\nD = 1/10 x'^2\nstart x = 0, x' = 5\nrun 20\n";
+const std::string driven =
+    "dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2 + x cos(t)\nD = 1/10 x'^2\nstart x = 0, x' = 5\nrun 20\n";
 const std::string pendulum = "dimensionless\ncoord θ : angle\nL = 1/2 θ'^2 + cos θ\nstart θ = 1\nrun 20\n";
 const std::string hoop = R"(param m = 1 kg, R = 50 cm, Ω = 2 rad/s, g = 9.81 m/s^2
 coord θ : angle
@@ -32,7 +33,8 @@ coord θ1, θ2 : angle
 point A mass m1 at l1 (sin θ1, -cos θ1)
 point B mass m2 at A + l2 (sin θ2, -cos θ2)
 )";
-const std::string falling = "param m = 1 kg, g = 9.81 m/s^2\ncoord y : length\nT = 1/2 m y'^2\nV = m g y\nstart y = 1 m\n";
+const std::string falling =
+    "param m = 1 kg, g = 9.81 m/s^2\ncoord y : length\nT = 1/2 m y'^2\nV = m g y\nstart y = 1 m\n";
 const std::string until = falling + "run until y = 0 within 60 s\n";
 
 }  // namespace
@@ -40,7 +42,8 @@ const std::string until = falling + "run until y = 0 within 60 s\n";
 TEST_CASE("eigenvalues: real and complex, in any order, with their conjugates") {
   boundary(damped, "expect eigenvalues at x = 0 : (-0.1, 1) ± TOL", 1 - 0.99498743710661997);
   boundary(damped, "expect eigenvalues at x = 0 : (-0.1, 1) rel TOL", (1 - 0.99498743710661997) / 1.0049875621120890);
-  boundary(damped, "expect eigenvalues at x = 0 : (-0.11, 0.99498743710661997), (-0.11, -0.99498743710661997) ± TOL", 0.01);
+  boundary(damped, "expect eigenvalues at x = 0 : (-0.11, 0.99498743710661997), (-0.11, -0.99498743710661997) ± TOL",
+           0.01);
   fails(damped, "expect eigenvalues at x = 0 : -0.1 ± 10");
   fails(damped, "expect eigenvalues at x = 0 : -0.1, (-0.1, 1) ± 10");
   passes(cart_pole, "expect eigenvalues at θ = 180 deg : 5.5651 1/s, 0, -5.6041 1/s, -0.1428 1/s ± 5e-5");
@@ -49,10 +52,14 @@ TEST_CASE("eigenvalues: real and complex, in any order, with their conjugates") 
 
 TEST_CASE("matrices of the linearization: whole, in another order, and one entry") {
   passes(cart_pole,
-         "expect A in (x, x', θ, θ') at x = 0 m, θ = 180 deg :\n    ((0, 1, 0, 0), (0, -0.1818, 2.6727, 0), (0, 0, 0, 1), (0, -0.4545, 31.1818, 0)) ± 5e-5");
+         "expect A in (x, x', θ, θ') at x = 0 m, θ = 180 deg :\n    ((0, 1, 0, 0), (0, -0.1818, 2.6727, 0), (0, 0, 0, "
+         "1), (0, -0.4545, 31.1818, 0)) ± 5e-5");
   fails(cart_pole,
-        "expect A in (x, x', θ, θ') at x = 0 m, θ = 180 deg :\n    ((0, 1, 0, 0), (0, -0.1818, 2.6729, 0), (0, 0, 0, 1), (0, -0.4545, 31.1818, 0)) ± 5e-5");
-  passes(cart_pole, "expect A at θ = 180 deg : ((0, 0, 1, 0), (0, 0, 0, 1), (0, 2.6727, -0.1818, 0), (0, 31.1818, -0.4545, 0)) ± 5e-5");
+        "expect A in (x, x', θ, θ') at x = 0 m, θ = 180 deg :\n    ((0, 1, 0, 0), (0, -0.1818, 2.6729, 0), (0, 0, 0, "
+        "1), (0, -0.4545, 31.1818, 0)) ± 5e-5");
+  passes(cart_pole,
+         "expect A at θ = 180 deg : ((0, 0, 1, 0), (0, 0, 0, 1), (0, 2.6727, -0.1818, 0), (0, 31.1818, -0.4545, 0)) ± "
+         "5e-5");
   passes(cart_pole, "expect B at θ = 180 deg : ((0), (0), (1.8182), (4.5455)) ± 5e-5");
   boundary(cart_pole, "expect A in θ' by θ at θ = 180 deg : 31.18 1/s^2 ± TOL", 31.181818181818181 - 31.18);
   boundary(cart_pole, "expect B in x' by u at θ = 180 deg : 1.82 1/kg rel TOL", (1.82 - 1.8181818181818181) / 1.82);
@@ -81,14 +88,16 @@ TEST_CASE("critical parameters: the change lies within the tolerance, and the ve
   CHECK_FALSE(elsewhere.passed);
   CHECK(elsewhere.actual.find("Ω < 4.42944691") != std::string::npos);
   // The stiffness (k − 1)(k − 2)(k − 4) changes its sign at 4, and below 2 once more.
-  const std::string cubic = "dimensionless\nparam k = 4\ncoord x : number\nL = 1/2 x'^2 - 1/2 (k - 1) (k - 2) (k - 4) x^2\n";
+  const std::string cubic =
+      "dimensionless\nparam k = 4\ncoord x : number\nL = 1/2 x'^2 - 1/2 (k - 1) (k - 2) (k - 4) x^2\n";
   passes(cubic, "expect stable for k > 4 ± 1e-6 at x = 0");
   fails(cubic, "expect unstable for k < 4 ± 1e-6 at x = 0");
   passes(cubic + "sweep k = 2.5 .. 5 steps 3\n", "expect unstable for k < 4 ± 1e-6 at x = 0");
 }
 
 TEST_CASE("periodic motions: multipliers, trace and period") {
-  boundary(driven, "expect multipliers over 2 pi : (0.53322, 0.017) ± TOL", std::hypot(0.53322 - 0.5332235225267918, 0.017 - 0.01679935594447845));
+  boundary(driven, "expect multipliers over 2 pi : (0.53322, 0.017) ± TOL",
+           std::hypot(0.53322 - 0.5332235225267918, 0.017 - 0.01679935594447845));
   boundary(driven, "expect trace over 2 pi = 1.07 ± TOL", 1.07 - 1.0664470450535837);
   fails(driven, "expect multipliers over 2 pi : 0.5 ± 10");
   boundary(pendulum, "expect period = 6.7 ± TOL", 6.7 - 6.699975664370453);
@@ -109,7 +118,8 @@ TEST_CASE("the end of `run until`: its time, and values there") {
 }
 
 TEST_CASE("conservation on a level") {
-  const std::string kepler = "dimensionless\ncoord r, φ : number\nL = 1/2 (r'^2 + r^2 φ'^2) + 1/r\nstart r = 1, φ' = 1\n";
+  const std::string kepler =
+      "dimensionless\ncoord r, φ : number\nL = 1/2 (r'^2 + r^2 φ'^2) + 1/r\nstart r = 1, φ' = 1\n";
   passes(kepler, "expect conserved 1/2 r'^2 - 1/r where p_φ = 0");
   fails(kepler, "expect conserved 1/2 r'^2 - 1/r");
   fails(kepler, "expect conserved 1/2 r'^2 - 1.000000000001/r where p_φ = 0");
@@ -131,7 +141,9 @@ start φ = 0.3, θ = 1.1, ψ = 0.4, θ' = 0.2, ψ' = 1
 }
 
 TEST_CASE("a model says how its runs step, and is overruled") {
-  const ModelText m("dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\nstart x = 1\nrun 1\nmethod variational order 2 step 0.1\n");
+  const ModelText m(
+      "dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\nstart x = 1\nrun 1\nmethod variational order 2 step "
+      "0.1\n");
   Diagnostics told;
   const auto run = simulate(m.model, m.equations, {}, told);
   CHECK(run->statistics.method == "variational");
@@ -153,9 +165,11 @@ TEST_CASE("a model says with how many digits it is tested") {
   const std::string oscillator = "dimensionless\ncoord x : number\nL = 1/2 x'^2 - 1/2 x^2\nstart x = 1\nrun 1\n";
   passes(oscillator + "precision quad\n", "expect x at 1 = 0.540302305868139717400936607443 ± 1e-29");
   boundary(oscillator + "precision quad\n", "expect x at 1 = 0.5403023058681397174009366 ± TOL", 7.44297660e-27);
-  boundary(oscillator + "precision 100\n", "expect x' at 1 = -0.84147098480789650665250232163029 rel TOL", 8.99962256e-33 / 0.8414709848);
+  boundary(oscillator + "precision 100\n", "expect x' at 1 = -0.84147098480789650665250232163029 rel TOL",
+           8.99962256e-33 / 0.8414709848);
   fails(oscillator, "expect x at 1 = 0.540302305868139717400936607443 ± 1e-18");
-  const ExpectationResult too_many = only(oscillator + "precision quad\nexpect x at 1 = 0.5403023058681397174009366074429766037 ± 1e-36\n");
+  const ExpectationResult too_many =
+      only(oscillator + "precision quad\nexpect x at 1 = 0.5403023058681397174009366074429766037 ± 1e-36\n");
   CHECK_FALSE(too_many.passed);
   CHECK(too_many.message.find("Two runs") != std::string::npos);
 }

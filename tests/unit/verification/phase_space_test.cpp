@@ -8,9 +8,10 @@ using namespace maupertuis;
 
 namespace {
 
-const std::string spherical = "system spherical\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ, φ : angle\n"
-                              "point P mass m at l (sin θ cos φ, sin θ sin φ, -cos θ)\ngravity (0, 0, -g)\n"
-                              "start θ = 1 rad, φ' = 2 rad/s\nrun 1 s\n";
+const std::string spherical =
+    "system spherical\nparam m = 1 kg, l = 1 m, g = 9.81 m/s^2\ncoord θ, φ : angle\n"
+    "point P mass m at l (sin θ cos φ, sin θ sin φ, -cos θ)\ngravity (0, 0, -g)\n"
+    "start θ = 1 rad, φ' = 2 rad/s\nrun 1 s\n";
 
 ExpectationResult only(const std::string& line) {
   const ModelText m(spherical + line + "\n");
@@ -32,13 +33,14 @@ TEST_CASE("H, the Routhian and brackets: the closed forms hold, and no others") 
   struct Line {
     const char *text, *message;  // "": it holds
   };
-  for (const Line& line : {Line{"expect hamiltonian = p_θ^2/(2 m l^2) + p_φ^2/(2 m l^2 sin^2 θ) - m g l cos θ", ""},
-                           {"expect hamiltonian = p_θ^2/(2 m l^2) + p_φ^2/(2 m l^2 sin^2 θ) + m g l cos θ", "The hamiltonian is"},
-                           {"expect routhian of φ = 1/2 m l^2 θ'^2 - p_φ^2/(2 m l^2 sin^2 θ) + m g l cos θ", ""},
-                           {"expect routhian of φ = 1/2 m l^2 θ'^2 + p_φ^2/(2 m l^2 sin^2 θ) + m g l cos θ", "The routhian is"},
-                           {"expect bracket (θ, p_θ) = 1", ""},
-                           {"expect bracket (p_θ, θ) = 1", "The bracket is"},
-                           {"expect bracket (θ, p_φ) = 0", ""}}) {
+  for (const Line& line :
+       {Line{"expect hamiltonian = p_θ^2/(2 m l^2) + p_φ^2/(2 m l^2 sin^2 θ) - m g l cos θ", ""},
+        {"expect hamiltonian = p_θ^2/(2 m l^2) + p_φ^2/(2 m l^2 sin^2 θ) + m g l cos θ", "The hamiltonian is"},
+        {"expect routhian of φ = 1/2 m l^2 θ'^2 - p_φ^2/(2 m l^2 sin^2 θ) + m g l cos θ", ""},
+        {"expect routhian of φ = 1/2 m l^2 θ'^2 + p_φ^2/(2 m l^2 sin^2 θ) + m g l cos θ", "The routhian is"},
+        {"expect bracket (θ, p_θ) = 1", ""},
+        {"expect bracket (p_θ, θ) = 1", "The bracket is"},
+        {"expect bracket (θ, p_φ) = 0", ""}}) {
     const ExpectationResult r = only(line.text);
     INFO(line.text, " | ", r.message);
     CHECK(r.passed == (*line.message == '\0'));

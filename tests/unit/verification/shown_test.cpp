@@ -65,9 +65,13 @@ TEST_CASE("a model without a run is not run for lines that need none") {
 }
 
 TEST_CASE("a run that cannot start says so once, whatever lines need it") {
-  const std::string torn = "dimensionless\ncoord x, y : number\nL = 1/2 x'^2 + 1/2 y'^2\nconstraint x^2 + y^2 = -1\nstart x = 1\nrun until x = 2 within 3\n";
-  const std::string lines[] = {"expect until at 1 ± 1\n", "expect x at 1 = 1 ± 1\n", "expect energy conserved rel 1e-3\n"};
-  for (const std::string& text : {lines[0], lines[1], lines[2], lines[0] + lines[1], lines[0] + lines[2], lines[0] + lines[1] + lines[2]}) {
+  const std::string torn =
+      "dimensionless\ncoord x, y : number\nL = 1/2 x'^2 + 1/2 y'^2\nconstraint x^2 + y^2 = -1\nstart x = 1\nrun until "
+      "x = 2 within 3\n";
+  const std::string lines[] = {"expect until at 1 ± 1\n", "expect x at 1 = 1 ± 1\n",
+                               "expect energy conserved rel 1e-3\n"};
+  for (const std::string& text :
+       {lines[0], lines[1], lines[2], lines[0] + lines[1], lines[0] + lines[2], lines[0] + lines[1] + lines[2]}) {
     CAPTURE(text);
     std::size_t errors = 0;
     const Diagnostics diagnostics = heard(torn + text);

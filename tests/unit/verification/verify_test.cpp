@@ -52,8 +52,9 @@ claim sin θ φ'' = -2 cos θ θ' φ'
 }
 
 TEST_CASE("false statements fail, each with what came out") {
-  for (const char* line : {"expect freedoms = 3", "expect conserved θ'", "expect conserved θ' rel 1e-3", "expect θ at 1 s = 0 rad ± 1e-3",
-                           "expect m l^2 sin^2 θ φ' not conserved", "expect equation θ'' = 0"}) {
+  for (const char* line :
+       {"expect freedoms = 3", "expect conserved θ'", "expect conserved θ' rel 1e-3", "expect θ at 1 s = 0 rad ± 1e-3",
+        "expect m l^2 sin^2 θ φ' not conserved", "expect equation θ'' = 0"}) {
     const ExpectationResult r = only(spherical + line + "\n");
     INFO(line, ": ", r.message, " ", r.actual);
     CHECK_FALSE(r.passed);
@@ -73,7 +74,10 @@ TEST_CASE("a false claim is recognised by the mistake that it follows from") {
   check_pitfall(pendulum + "D = 1/2 (1 [N m s]) θ'^2\nclaim θ'' = -g/l sin θ\n", "left out");
   check_pitfall(pendulum + "D = 1/2 (1 [N m s]) θ'^2\nclaim m l^2 θ'' = -m g l sin θ + (1 [N m s]) θ'\n", "wrong sign");
   // With units on, θ for θ' is an error of dimension before it is a false claim.
-  check_pitfall("system p\ndimensionless\nparam m = 1, l = 2, g = 9.81\ncoord θ : angle\nT = 1/2 m l^2 θ'^2\nV = -m g l cos θ\nclaim l θ = g sin θ\n", "(l θ)²");
+  check_pitfall(
+      "system p\ndimensionless\nparam m = 1, l = 2, g = 9.81\ncoord θ : angle\nT = 1/2 m l^2 θ'^2\nV = -m g l cos "
+      "θ\nclaim l θ = g sin θ\n",
+      "(l θ)²");
   check_pitfall(spherical + "claim θ'' = -sin θ cos θ φ'^2 - g/l sin θ\n", "conserved momentum");
 }
 
@@ -101,7 +105,8 @@ TEST_CASE("an expected error is compared with what was found") {
 }
 
 TEST_CASE("expect integral: what the search finds, and functions of it") {
-  const std::string kepler = "dimensionless\nparam m = 1, k = 1\ncoord x, y : number\nT = 1/2 m (x'^2 + y'^2)\nV = -k/sqrt(x^2 + y^2)\n";
+  const std::string kepler =
+      "dimensionless\nparam m = 1, k = 1\ncoord x, y : number\nT = 1/2 m (x'^2 + y'^2)\nV = -k/sqrt(x^2 + y^2)\n";
   CHECK(only(kepler + "expect integral x y' - y x'\n").passed);
   CHECK(only(kepler + "expect integral m y' (x y' - y x') - k x/sqrt(x^2 + y^2)\n").passed);
   CHECK(only(kepler + "expect integral (x y' - y x')^2 exp(1/2 m (x'^2 + y'^2) - k/sqrt(x^2 + y^2))\n").passed);
@@ -118,7 +123,8 @@ TEST_CASE("what is constant on each side of a switch and jumps there is not cons
   CHECK(step.message.find("jumps by 1 (SI units) where x = 0") != std::string::npos);
   CHECK(only(pushed + "expect step(x) not conserved\n").passed);
   CHECK_FALSE(only(pushed + "expect conserved x' + t step(x)\n").passed);  // jumps by t
-  for (const char* energy : {"1/2 x'^2 + max(x, 0)", "1/2 x'^2 + x step(x)", "1/2 x'^2 + piecewise(x < 0 : 0, else : x)"}) {
+  for (const char* energy :
+       {"1/2 x'^2 + max(x, 0)", "1/2 x'^2 + x step(x)", "1/2 x'^2 + piecewise(x < 0 : 0, else : x)"}) {
     const ExpectationResult r = only(pushed + "expect conserved " + energy + "\n");
     CHECK_MESSAGE(r.passed, energy);
     CHECK(r.message.find("it does not jump") != std::string::npos);
@@ -131,18 +137,20 @@ TEST_CASE("what is constant on each side of a switch and jumps there is not cons
 
 TEST_CASE("a switch that no motion passes does not count") {
   const std::string decaying = "dimensionless\ncoord x : number\nT = 1/2 x'^2\nD = 1/2 x'^2\nstart x' = 1\nrun 3\n";
-  CHECK(only(decaying + "expect conserved sign(x')\n").passed);        // x' = 0 is never reached
+  CHECK(only(decaying + "expect conserved sign(x')\n").passed);          // x' = 0 is never reached
   CHECK(only(decaying + "expect conserved sign(x + x' - 2)\n").passed);  // x + x' is conserved
   CHECK_FALSE(only(decaying + "expect conserved sign(x - 2)\n").passed);
 }
 
 TEST_CASE("energy that a switch in time changes") {
-  const std::string meissner = "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 (2 + sign(cos(t))) x^2\nstart x = 1\nrun 10\n";
+  const std::string meissner =
+      "dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = 1/2 (2 + sign(cos(t))) x^2\nstart x = 1\nrun 10\n";
   const ExpectationResult energy = only(meissner + "expect energy conserved\n");
   CHECK_FALSE(energy.passed);
   CHECK(energy.message.find("jumps where cos t = 0") != std::string::npos);
   CHECK_FALSE(only(meissner + "expect conserved 1/2 x'^2 + 1/2 (2 + sign(cos(t))) x^2\n").passed);
-  CHECK(only("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = abs(x)\nstart x = 1\nrun 5\nexpect energy conserved\n").passed);
+  CHECK(only("dimensionless\ncoord x : number\nT = 1/2 x'^2\nV = abs(x)\nstart x = 1\nrun 5\nexpect energy conserved\n")
+            .passed);
 }
 
 TEST_CASE("what fails an identity is named: the derivative of a quantity, the difference of the sides of an equation") {
@@ -150,6 +158,8 @@ TEST_CASE("what fails an identity is named: the derivative of a quantity, the di
       "system fall\nparam m = 1 kg, g = 9.81 m/s^2\ncoord y : length\npoint P mass m at (0, y)\ngravity (0, -g)\n";
   CHECK(only(fall + "expect conserved m y'\n").message == "Its time derivative along the motion is -m g, not 0.");
   CHECK(only(fall + "expect conserved p_y\n").message == "Its time derivative along the motion is -m g, not 0.");
-  CHECK(only(fall + "expect equation m y = 2 m y\n").message == "Along the motion, left side − right side is -m y, not 0.");
-  CHECK(only(fall + "expect equation y''^2 = g y''\n").message == "Along the motion, left side − right side is 2 g^2, not 0.");
+  CHECK(only(fall + "expect equation m y = 2 m y\n").message ==
+        "Along the motion, left side − right side is -m y, not 0.");
+  CHECK(only(fall + "expect equation y''^2 = g y''\n").message ==
+        "Along the motion, left side − right side is 2 g^2, not 0.");
 }
