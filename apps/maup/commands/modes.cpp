@@ -123,6 +123,12 @@ std::optional<RealMatrix> weights(const char* option, const std::string& text, s
 }
 
 std::optional<Regulator> regulator_of(const ModesOptions& options, const ModalStudy& found, Study& study) {
+  if (found.entries.empty()) {
+    study.diagnostics().error("E0809", {}, "--Q has no equilibrium to work about.",
+                              "A regulator holds a system at a point, and no point with a linearization was found.",
+                              "Give one with --at.");
+    return std::nullopt;
+  }
   const Linearization& l = found.entries.front().linearization;
   const auto q = weights("--Q", options.q, l.a.rows, study);
   const auto r = weights("--R", options.r.empty() ? "1" : options.r, l.b.columns, study);
