@@ -13,15 +13,18 @@ using Places = std::map<std::string, std::string>;
 
 bool is_catalogue(const source_tree::File& file) { return std::filesystem::path(file.path).filename() == "codes.cpp"; }
 
-/// An entry opens an initializer: {"E0101", "title", …}.
+/// An entry opens an initializer: {"E0101", "title", …}, on the line of the brace or on the next one.
 Places entries() {
   Places found;
-  const std::regex entry(R"re(.*\{\s*"([EWN]\d{4})",.*)re");
+  const std::regex entry(R"re(.*\{\s*"([EWN]\d{4})",.*)re"), continued(R"re(\s*"([EWN]\d{4})",.*)re"),
+      open(R"re(.*\{\s*)re");
   for (const source_tree::File& file : source_tree::sources({"src", "apps"})) {
     if (!is_catalogue(file)) continue;
     for (std::size_t i = 0; i < file.lines.size(); ++i) {
       std::smatch m;
-      if (!std::regex_match(file.lines[i], m, entry)) continue;
+      const bool follows = i > 0 && std::regex_match(file.lines[i - 1], open);
+      if (!std::regex_match(file.lines[i], m, entry) && !(follows && std::regex_match(file.lines[i], m, continued)))
+        continue;
       const std::string place = file.path + ":" + std::to_string(i + 1);
       CHECK_MESSAGE(found.emplace(m[1], place).second, place << ": " << m[1].str() << " has two entries");
     }
