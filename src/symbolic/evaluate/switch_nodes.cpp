@@ -29,13 +29,13 @@ namespace {
 
 constexpr double on_the_switch = 1e-9;
 
-/// What the values of a tape at one point decide, and what is left of its nodes.
+/// What the values of a tape at two points decide, and what is left of its nodes.
 class Decisions {
  public:
-  Decisions(const Tape& tape, const std::vector<bool>& switching, const Bindings& at)
+  Decisions(const Tape& tape, const std::vector<bool>& switching, const Bindings& from, const Bindings& to)
       : tape_(tape), switching_(switching) {
-    RealNumbers<double> numbers([&](Expr symbol) { return at.at(symbol); });
-    run(tape, numbers, values_);
+    fill(from, from_);
+    fill(to, to_);
   }
 
   Expr in_force(Position at) {
@@ -79,9 +79,10 @@ class Decisions {
 
   Expr of_one_argument(Position at, Expr e) {
     const Position x = tape_.argument(at, 0);
-    if (!(std::abs(values_[x]) > on_the_switch * size(x))) return with_arguments_in_force(at, e);
+    const int side = sign_at(x, from_);
+    if (side == 0 || side != sign_at(x, to_)) return with_arguments_in_force(at, e);
     const Expr argument = in_force(x);
-    const bool above = values_[x] > 0;
+    const bool above = side > 0;
     if (e.is(Kind::Abs)) return above ? argument : -argument;
     return e.context().number(above ? 1 : e.is(Kind::Sign) ? -1 : 0);
   }
@@ -99,18 +100,27 @@ class Decisions {
     return kept.size() == 1 ? kept.front() : e.context().function(Kind::Piecewise, kept);
   }
 
+  void fill(const Bindings& at, std::vector<double>& values) const {
+    RealNumbers<double> numbers([&](Expr symbol) { return at.at(symbol); });
+    run(tape_, numbers, values);
+  }
+
   /// What a sum came from: rounding is measured by that.
-  double size(Position at) const {
-    if (tape_.kind(at) != Kind::Sum) return std::abs(values_[at]);
+  double size(Position at, const std::vector<double>& values) const {
+    if (tape_.kind(at) != Kind::Sum) return std::abs(values[at]);
     double sum = 0;
-    for (const Position term : tape_.arguments(at)) sum += std::abs(values_[term]);
+    for (const Position term : tape_.arguments(at)) sum += std::abs(values[term]);
     return sum;
   }
 
+  /// 0: none that is certain.
+  static int certain_sign(double x, double size) { return std::abs(x) > on_the_switch * size ? (x > 0 ? 1 : -1) : 0; }
+  int sign_at(Position x, const std::vector<double>& values) const { return certain_sign(values[x], size(x, values)); }
+
   std::optional<int> sign(Position a, Position b) const {
-    const double difference = values_[a] - values_[b];
-    if (!(std::abs(difference) > on_the_switch * (size(a) + size(b)))) return std::nullopt;
-    return difference > 0 ? 1 : -1;
+    const auto at = [&](const std::vector<double>& v) { return certain_sign(v[a] - v[b], size(a, v) + size(b, v)); };
+    const int side = at(from_);
+    return side != 0 && side == at(to_) ? std::optional<int>(side) : std::nullopt;
   }
 
   std::optional<bool> holds(Position condition) const {
@@ -127,7 +137,7 @@ class Decisions {
 
   const Tape& tape_;
   const std::vector<bool>& switching_;
-  std::vector<double> values_;
+  std::vector<double> from_, to_;
   std::unordered_map<Position, Expr> built_;
 };
 
@@ -142,8 +152,8 @@ Branches::Branches(std::vector<Expr> functions)
   }
 }
 
-std::vector<Expr> Branches::in_force(const Bindings& at) const {
-  Decisions decisions(tape_, switching_, at);
+std::vector<Expr> Branches::in_force(const Bindings& from, const Bindings& to) const {
+  Decisions decisions(tape_, switching_, from, to);
   std::vector<Expr> out;
   for (const Position root : tape_.roots()) out.push_back(decisions.in_force(root));
   return out;

@@ -20,10 +20,11 @@ class Branches {
   explicit Branches(std::vector<Expr> functions);
 
   const std::vector<Expr>& functions() const { return functions_; }
-  /// The functions around a point: of what switches, branches that other sides would have are left out. What is on a
-  /// switch to within 1e-9 of the size of its terms keeps both. Precondition: `at` has every symbol. Cost: one
-  /// evaluation in double; then what is in force alone is visited.
-  std::vector<Expr> in_force(const Bindings& at) const;
+  /// The functions between two points that lie close together: of what switches, branches that other sides would have
+  /// are left out. What has not the same sign at both, or is 0 to within 1e-9 of the size of its terms, keeps both
+  /// branches. Precondition: the points have every symbol. Cost: two evaluations in double; then what is in force alone
+  /// is visited.
+  std::vector<Expr> in_force(const Bindings& from, const Bindings& to) const;
 
  private:
   std::vector<Expr> functions_;

@@ -21,8 +21,9 @@ using evaluation::Real100;
 using evaluation::Tape;
 
 const Real100 far_off("1e-20"), close_by("1e-40"), root_width("1e-90"), rounding("1e-70");
-constexpr double falls = 1e-2;  // what vanishes like a power of the distance above 0.1 falls by at least that
-constexpr double grows = 1e3;   // from 1e-20 to 1e-40: a singularity
+constexpr double falls = 1e-2;        // what vanishes like a power of the distance above 0.1 falls by at least that
+constexpr double grows = 1e3;         // from 1e-20 to 1e-40: a singularity
+constexpr double beside_root = 1e-9;  // of its size: what switches there as well is evaluated on both of its sides
 constexpr int most_halvings = 700;
 constexpr int most_brackets_of_a_line = 3;
 constexpr std::size_t most_together = 24;  // switches whose combinations of signs are looked for
@@ -110,8 +111,11 @@ SwitchSample both_sides(const Branches& functions, std::span<const Expr> beside,
   SwitchSample out;
   const Real100 size = abs(root.at) + Real100(bracket.high - bracket.low);
   out.at = bracket.point;
+  Bindings from = out.at, to = out.at;
+  from[bracket.symbol] = static_cast<double>(Real100(root.at - size * Real100(beside_root)));
+  to[bracket.symbol] = static_cast<double>(Real100(root.at + size * Real100(beside_root)));
   out.at[bracket.symbol] = static_cast<double>(root.at);
-  std::vector<Expr> around = functions.in_force(out.at);
+  std::vector<Expr> around = functions.in_force(from, to);
   around.insert(around.end(), beside.begin(), beside.end());
   const Tape tape(around);
   if (abs(root.at) < size * Real100(1e-16)) out.at[bracket.symbol] = 0;

@@ -194,3 +194,14 @@ TEST_CASE_FIXTURE(Fixture, "a function of a thousand pieces is differentiated in
     CHECK(slopes[2].is_zero());
   }
 }
+
+TEST_CASE_FIXTURE(Fixture, "a switch that is no sum is 0 at its root up to rounding, and has both branches there") {
+  // cos t at the double next to pi/2 is 6e-17; t^3 and a product are as small beside 0.
+  for (const Expr& g : {apply(Kind::Cos, t), pow(t - number(1), Rational(3)), (t - number(1)) * (number(2) + sin(x))}) {
+    const Expr f = step(g) * (number(2) + y * y) + apply(Kind::Sign, sin(x) + number(5));
+    const SwitchSampler sampler({f}, search());
+    const std::vector<SwitchSample> samples = sampler.sample(g);
+    CHECK(samples.size() >= 4);
+    for (const SwitchSample& s : samples) CHECK(s.jump[0] == doctest::Approx(2 + s.at.at(y) * s.at.at(y)));
+  }
+}
