@@ -208,9 +208,11 @@ class Continuity {
         x.at.insert(search_.center.begin(), search_.center.end());
         if (wrong(x, slopes_at(slopes, x.at))) found.push_back(std::move(x));
       };
-      for (SwitchSample& x : decided->sampler.sample(places[k])) take(std::move(x));
+      std::vector<SwitchSample> samples = decided->sampler.sample(places[k]);
+      const bool met = !samples.empty();
+      for (SwitchSample& x : samples) take(std::move(x));
       if (found.empty())
-        for (SwitchSample& x : where_the_zero_test_points(decided->sampler, places[k])) take(std::move(x));
+        for (SwitchSample& x : where_the_zero_test_points(decided->sampler, places[k], met)) take(std::move(x));
       if (!found.empty()) report(switches[k], found, functions.size(), parts);
     }
   }
@@ -233,16 +235,20 @@ class Continuity {
   }
 
   /// Where g = 0 can be solved for a symbol the jump is a function of the others, which the zero test decides: what the
-  /// samples did not meet has a witness. Where nothing else moves they have met all there is.
-  static std::vector<SwitchSample> where_the_zero_test_points(const SwitchSampler& sampler, Expr g) {
-    if (sampler.search().moving.size() < 2) return {};
+  /// samples did not meet has a witness. Where nothing else moves, samples have met all there is; without any, nothing.
+  static std::vector<SwitchSample> where_the_zero_test_points(const SwitchSampler& sampler, Expr g, bool met) {
+    if (met && sampler.search().moving.size() < 2) return {};
     for (const Expr& x : sampler.search().moving) {
       const Expr slope = differentiate(g, x);
       if (!slope.is_number() || slope.is_zero()) continue;
-      const ZeroTest test = zero_test(substitute(jump_across(sampler.functions(), g), {{x, x - g / slope}}));
-      if (test.verdict != Verdict::Nonzero || test.witness.empty()) return {};
+      const Expr solved = x - g / slope;
+      const ZeroTest test = zero_test(substitute(jump_across(sampler.functions(), g), {{x, solved}}));
+      if (test.verdict != Verdict::Nonzero) return {};
       SwitchSearch there = sampler.search();
       for (const auto& [symbol, value] : test.witness) there.center[symbol] = value;
+      // However far away the switch is: from beyond it.
+      const double root = evaluate(solved, there.center);
+      there.center[x] = root + std::copysign(1 + std::abs(root) / 2, root);
       there.points = 1;
       return sample_switches(sampler.functions(), {&g, 1}, there);
     }

@@ -170,3 +170,14 @@ TEST_CASE("one jump among thousands of pieces, or behind one of hundreds of spri
   CHECK(torn.codes() == "E0430");
   CHECK(torn.first_message().find("V jumps by 50 J where x199 - x200 = 0") != std::string::npos);
 }
+
+TEST_CASE("a jump far from everything that is tried is found by solving for its place") {
+  for (const char* jump : {"step(x - 1e6)*1e-3", "step(x - 1234567)", "2 step(x - 1e13)", "step(-x - 3e9)",
+                           "abs(x) + step(x - 4e7)", "x*step(y - 5e8)", "step(t - 7e8)*0 + step(x - 7e8)"})
+    CHECK_MESSAGE(
+        Elaborated("dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = " + std::string(jump) + "\n")
+                .codes() == "E0430",
+        jump);
+  CHECK(
+      Elaborated("dimensionless\ncoord x, y : number\nT = 1/2 (x'^2 + y'^2)\nV = max(x, 1e9) + abs(y - 3e8)\n").fine());
+}
