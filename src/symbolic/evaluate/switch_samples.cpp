@@ -91,7 +91,11 @@ std::vector<Bracket> brackets(const BranchSearch& own, const Bindings& base, std
   const Expr x = own.moving()[symbol];
   Bindings point = base;
   double before = 0, at_before = 0;
-  for (const double value : own.values_to_try(symbol)) {
+  std::vector<double> tried = own.values_to_try(symbol);
+  // A root at the largest constant of all lies between two values as well.
+  tried.insert(tried.begin(), 2 * tried.front());
+  tried.push_back(2 * tried.back());
+  for (const double value : tried) {
     point[x] = value;
     const double here = own.values(point).front();
     if (!(std::isfinite(here)) || here == 0) continue;  // the next one brackets a root that is met exactly

@@ -205,3 +205,7 @@ TEST_CASE_FIXTURE(Fixture, "a switch that is no sum is 0 at its root up to round
     for (const SwitchSample& s : samples) CHECK(s.jump[0] == doctest::Approx(2 + s.at.at(y) * s.at.at(y)));
   }
 }
+
+TEST_CASE_FIXTURE(Fixture, "a switch at a constant larger than all other values is met") {
+  for (const int far : {2'000'000, 40'000'000, -900'000'000}) CHECK(largest_jump(step(x - number(far))).first == 1);
+}
