@@ -71,7 +71,7 @@ std::vector<SwitchSample> sample_switches(std::span<const Expr> functions, std::
                                           const SwitchSearch& search);
 
 /// Samples one switch after the other of functions that hold many. Of more than 24 the combinations of signs are not
-/// looked for: points are drawn. Cost a switch: one evaluation of the functions in double a sample, four of the
+/// looked for: points are drawn. Cost a switch: two evaluations of the functions in double a sample, four of the
 /// branches in force there with 100 digits.
 class SwitchSampler {
  public:
