@@ -65,6 +65,15 @@ struct ValueAtUntil {
 struct UntilAt {
   Number expected;
 };  // until at 1.2 s ± 1e-9
+struct Event {  // event hit 3 at 0.45 s ± 1e-11: the third time it happens
+  std::string name, change;  // change of a contact: impact, made, lost, stick, slip; empty: any
+  int occurrence = 1;
+  Number time;
+};
+struct EventCount {  // event floor impact = 12: as often along the run
+  std::string name, change;
+  Expr number;
+};
 struct EnergyConserved {
   Tolerance tolerance;
 };  // energy conserved rel 1e-13; without one 1e-12
@@ -202,7 +211,8 @@ struct Error {
 using Kind =
     std::variant<ValueAt, ValueAtUntil, UntilAt, EnergyConserved, ConservedAlongRun, Conserved, NotConserved, Integral,
                  Equation, Hamiltonian, Routhian, Bracket, Freedoms, ConstraintClass, Frequencies, Eigenvalues, Matrix,
-                 Equilibrium, Stable, Multipliers, Trace, Period, Action, ActionAlong, MorseIndex, PathAt, Error>;
+                 Equilibrium, Stable, Multipliers, Trace, Period, Action, ActionAlong, MorseIndex, PathAt, Event,
+                 EventCount, Error>;
 
 }  // namespace expectation
 

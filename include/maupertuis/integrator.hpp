@@ -52,6 +52,18 @@ class TaylorStepper {
   int order() const;
   /// Begins a run; integrals and statistics start at zero.
   void start(double t, std::span<const double> q, std::span<const double> v);
+  /// After start(): event functions that vanish here, to rounding. They are on the side that the motion goes to.
+  void put_at_zero(std::span<const std::size_t> events);
+  /// After start(): the motion here under a bound on the time to look ahead. Ending: None where there is one.
+  /// sides [events]: on which side of zero each event function is just after, 0 where rounding hides it.
+  struct Outlook {
+    StepEnding ending = StepEnding::None;
+    std::string reason;
+    std::vector<std::int8_t> sides;
+    std::vector<double> values;         // [events]
+    std::vector<double> accelerations;  // [n]
+  };
+  Outlook outlook(double bound);
   /// One step towards `bound`, at most up to it; time() == bound exactly when it is reached. Backwards if bound <
   /// time().
   Step step(double bound);

@@ -1,4 +1,5 @@
 #pragma once
+#include <maupertuis/contact.hpp>
 #include <maupertuis/diagnostic.hpp>
 #include <maupertuis/expectation.hpp>
 #include <maupertuis/expression.hpp>
@@ -132,6 +133,9 @@ struct Constraint {
   Span span;
 };
 
+/// A contact as the constraint g = 0 that it is while it is closed.
+Constraint as_constraint(const Contact& contact);
+
 /// reaction NAME = release PARAMETER: the force that holds the parameter constant.
 struct Release {
   std::string name;
@@ -190,6 +194,9 @@ struct MechanicalSystem {
   std::vector<Constraint> constraints;  // as written; those of quaternions at the end
   std::vector<Release> releases;
   std::vector<IntegralConstraint> integral_constraints;
+  std::vector<Contact> contacts;    // inequalities; their equations are those of a mode (contact_mode.hpp)
+  std::vector<Friction> frictions;  // of coordinates
+  ImpactLaw impact_law = ImpactLaw::Sequential;
 
   /// The same system with the symbols of definitions of parameters kept (`I φ''` instead of `1/2 m R^2 φ''`): what
   /// readable forms are derived from. Null if there are no such symbols. Substituting definition_values() turns its
@@ -197,6 +204,8 @@ struct MechanicalSystem {
   std::shared_ptr<const MechanicalSystem> written;
 
   bool constrained() const { return !constraints.empty(); }
+  /// Whether its motion goes through modes: contacts that open and close, friction that sticks and slides.
+  bool has_modes() const { return !contacts.empty() || !frictions.empty(); }
   /// The unit of the independent variable: "s", "m"; empty for a bare number.
   std::string independent_unit() const;
   /// "t = 3 s", "x = 3 m".
@@ -217,6 +226,8 @@ struct MechanicalSystem {
   const Point* find_point(std::string_view name) const;
   const Body* find_body(std::string_view name) const;
   const Constraint* find_constraint(std::string_view name) const;
+  /// How messages call a contact: `floor`, "contact 2" where it has no name.
+  std::string contact_label(std::size_t index) const;
   /// How messages call a constraint: `rod`, "constraint 2" where it has no name, "the norm of sat".
   std::string constraint_label(std::size_t index) const;
 };
@@ -290,6 +301,7 @@ struct Experiment {
   std::optional<NumberFormat> precision;
   std::optional<Sweep> sweep;
   std::optional<PathEnds> path;
+  std::vector<ModelEvent> events;
   std::vector<DrawElement> drawing;
   std::vector<Expectation> expectations;
   std::vector<AskedFormula> asked;  // in the order of the overrides

@@ -31,7 +31,8 @@ struct Reaction {
   std::vector<ForceArrow> arrows;  // where it is known on which points it acts: the force on each of them
 };
 
-/// Of every constraint, in the order of the system, then of every `reaction NAME = release PARAMETER`.
+/// Of every constraint, in the order of the system, then of every contact with a name (in λ of the contact, which is 0
+/// while it is open), then of every `reaction NAME = release PARAMETER`.
 /// Signs: with φ = left − right the force on the coordinates is λ ∂φ/∂q. Whether φ fixes the distance d of two points
 /// (∇φ parallel to ∇d²) is decided by the zero test; then the tension is −λ dφ/dd. A released parameter p is held by
 /// Q = Σ m r̈·∂r/∂p + Σ d/dt(I ω)·∂θ/∂p + ∂V/∂p + ∂D/∂ṗ − Σ F·∂r/∂p − Σ τ·∂θ/∂p − λ·∂φ/∂p at constant p, which is

@@ -62,6 +62,9 @@ enum class Ending {
   StepUnderflow,
   Sliding,
   TooManySteps,
+  Stopped,      // by an event of the model that stops the run
+  Paradox,      // no mode, or none that is known, fits contacts and friction here
+  Unending,     // events follow each other without end and without getting denser
 };
 
 struct SimulationStatistics {
@@ -86,6 +89,35 @@ struct Uncertainty {
   bool everything = false;           // these are all that move
 };
 
+/// What happens at an instant of a run with contacts, friction or events.
+struct Happening {
+  enum class Kind {
+    Impact,  // a contact was hit
+    Made,    // a contact is closed from here on
+    Lost,    // a contact opens
+    Stick,   // friction holds from here on
+    Slip,    // friction gives way, or goes the other way
+    Event,   // of the model
+  } kind = Kind::Event;
+  double t = 0;
+  double error = 0;     // by how much t may be off; 0 where nobody asked
+  std::string name;     // of the contact, the coordinate with friction, or the event
+  double impulse = 0;   // Impact: Λ, in the unit of λ times s
+  double speed = 0;     // Impact: −ġ before
+  std::string remark{};   // "the end of infinitely many bounces at t = 4.0637 s"
+  std::string mode{};     // that the motion is in afterwards: "floor, wall sliding"; empty: free
+  std::vector<double> q, v;  // [n] just after
+};
+std::string_view word_of(Happening::Kind kind);
+
+/// Where the energy of a run with contacts and friction went, J. What the terms of h_E lost is their sum to rounding.
+struct EnergyBooks {
+  double impacts = 0;   // lost at impacts, ½ Λ (1 − e) |ġ⁻| each
+  double moving = 0;    // gained from contacts that move at impacts, −Λ ∂g/∂t
+  double friction = 0;  // lost by friction while sliding
+  double dampers = 0;   // lost by D
+};
+
 struct SimulationResult {
   Trajectory trajectory;
   std::vector<Trajectory::Column> reactions;  // names and units: columns of the trajectory as well
@@ -93,9 +125,15 @@ struct SimulationResult {
   std::vector<State> at;  // in the order asked; q is empty where the run ended before
   SimulationStatistics statistics;
   Uncertainty uncertain;
+  std::string first_mode;              // in which the run begins; empty: no contact is closed, nothing sticks
+  std::vector<Happening> happenings;   // in the order of the run
+  std::optional<EnergyBooks> books{};  // where the model has contacts or friction
+  std::vector<std::string> remarks{};  // what the run has to say of its impacts and of friction, a sentence each
   Ending ending = Ending::Finished;
   std::string reason;  // one sentence for every ending but Finished
-  bool ok() const { return ending == Ending::Finished || ending == Ending::UntilReached; }
+  bool ok() const {
+    return ending == Ending::Finished || ending == Ending::UntilReached || ending == Ending::Stopped;
+  }
 };
 
 /// Expressions with the values of reactions in place of their symbols. A reaction that the model does not determine
@@ -140,6 +178,9 @@ struct Probe {
   std::vector<std::vector<double>> values;  // [at][expressions], filled by the run
   std::vector<std::vector<double>> errors;  // [at][expressions] as in StateErrors; empty without companions
 };
+
+/// Whether its motion is one through modes and events: contacts, friction, `event` statements.
+bool goes_through_modes(const Model& model);
 
 /// Runs the experiment of a model. What was computed is kept whatever the ending. Unless options.errors says no,
 /// companion runs tell the errors: seven in the lanes of vector registers up to 4 unknowns, which take about as long

@@ -17,6 +17,14 @@ enum class StepEnding {
   TooManySteps,
   Interrupted,
   NoConvergence,  // the equations of an implicit step were not solved, or no step meets the tolerance
+  Paradox,        // no mode of contacts and friction fits here
+  Unending,       // events without end
+};
+
+/// A root of an event function: 1 rising, −1 falling, 0 where it comes to zero and goes back.
+struct EventRoot {
+  std::size_t event = 0;
+  int direction = 0;
 };
 
 /// One step, or the reason why there is none: then begin == end and the state is the one reached before.
@@ -25,6 +33,7 @@ struct Step {
   StepEnding ending = StepEnding::None;
   std::string reason;                // one sentence for every ending but None
   std::optional<std::size_t> event;  // the step ended at a root of this event function
+  std::vector<EventRoot> events;     // all of them that have a root there, within rounding
   int switches = 0;                  // switch functions whose root the step ended at
 };
 

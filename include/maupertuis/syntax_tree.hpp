@@ -378,10 +378,15 @@ struct PathAt {
   Number expected;
 };  // path 2 x at 0.5 s = …
 struct Event {
-  Name name;
+  Name name;             // of an event or a contact
+  Name change;           // of a contact: impact, made, lost, stick, slip; empty: any
   int occurrence = 1;
   Number time;
-};  // event hit 3 at 0.45 s ± 1e-11
+};  // event hit 3 at 0.45 s ± 1e-11;  event floor lost at 0.9 s ± 1e-11
+struct EventCount {
+  Name name, change;
+  ExpressionPtr number;
+};  // event floor impact = 12: as often along the run
 struct Error {
   Name code;
 };  // error E0412
@@ -389,7 +394,7 @@ struct Error {
 using Kind = std::variant<ValueAt, ValueAtUntil, UntilAt, EnergyConserved, ConservedAlongRun, Conserved, NotConserved,
                           Integral, Equation, Hamiltonian, Routhian, Bracket, Freedoms, ConstraintClass, Frequencies,
                           Eigenvalues, Matrix, Equilibrium, Stable, Multipliers, Trace, Period, Action, ActionAlong,
-                          MorseIndex, PathAt, Event, Error>;
+                          MorseIndex, PathAt, Event, EventCount, Error>;
 
 }  // namespace expectation
 
@@ -426,11 +431,38 @@ struct PathStatement {
   } from, to;
 };
 
-/// A statement of the grammar that a later version carries out: contact, friction, event, impact,
-/// field, density. It is parsed whole (formatting and messages work) and kept as its expressions.
+/// contact EXPR >= EXPR restitution e friction μ static μs slip EXPR name floor;  … slip EXPR sticking
+struct ContactStatement {
+  ExpressionPtr left, right;
+  bool at_most = false;                                           // <=
+  ExpressionPtr restitution, friction, static_friction, slip;  // null: not written
+  bool sticking = false;
+  std::optional<Name> name;
+};
+
+/// friction q coefficient μ static μs normal EXPR,   friction q limit EXPR static EXPR
+struct FrictionStatement {
+  ExpressionPtr coordinate, coefficient, static_friction, normal, limit;  // null: not written
+};
+
+/// event hit when EXPR = EXPR rising : record / stop / set x' = -x', y' = y'
+struct EventStatement {
+  Name name;
+  ExpressionPtr left, right;
+  int direction = 0;  // 1: rising, -1: falling, 0: both
+  enum class Action { Record, Stop, Set } action = Action::Record;
+  std::vector<StartStatement::Item> sets;
+};
+
+/// impact sequential / simultaneous
+struct ImpactStatement {
+  bool simultaneous = false;
+};
+
+/// A statement of the grammar that a later version carries out: field, density. It is parsed whole (formatting and messages work) and kept as its expressions.
 struct LaterStatement {
   std::string what;         // its first word
-  std::vector<Name> names;  // that it declares: the field and its variable, an event, a constraint
+  std::vector<Name> names;  // that it declares: the field and its variable
   std::vector<ExpressionPtr> expressions;
 };
 
@@ -440,7 +472,7 @@ using StatementBody =
                  DamperStatement, TorsionSpringStatement, EnergyStatement, ForceStatement, StartStatement, RunStatement,
                  OutputStatement, MethodStatement, PrecisionStatement, DrawStatement, ReactionStatement,
                  ExpectStatement, ConstraintStatement, SweepStatement, IndependentStatement, PathStatement,
-                 LaterStatement>;
+                 ContactStatement, FrictionStatement, EventStatement, ImpactStatement, LaterStatement>;
 
 struct Statement {
   StatementBody body;

@@ -278,6 +278,7 @@ class Rewriter {
   bool is_lost(const syntax::expectation::Trace&) const { return false; }
   bool is_lost(const syntax::expectation::Period&) const { return false; }
   bool is_lost(const syntax::expectation::Event&) const { return false; }
+  bool is_lost(const syntax::expectation::EventCount&) const { return false; }
   bool is_lost(const syntax::expectation::Error&) const { return false; }
 
   void expectation(Span span, const ExpectStatement& s) {

@@ -231,6 +231,16 @@ std::vector<Reaction> reactions(const EquationsOfMotion& equations) {
     }
     all.push_back(reaction_of(tie, system.constraint_label(k)));
   }
+  for (std::size_t k = 0; k < system.contacts.size(); ++k) {
+    if (system.contacts[k].name.empty()) continue;
+    const Constraint closed = as_constraint(system.contacts[k]);
+    Tie tie{system, closed, {}, {}};
+    for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
+      tie.row.push_back(differentiate(closed.value, system.coordinates[i].q));
+      if (!tie.row[i].is_zero()) tie.coordinates.push_back(i);
+    }
+    all.push_back(reaction_of(tie, closed.name));
+  }
   for (const Release& release : system.releases) all.push_back(reaction_of(equations, release));
   return all;
 }

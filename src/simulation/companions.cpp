@@ -1,5 +1,6 @@
 #include "simulation/companions.hpp"
 
+#include "simulation/hybrid_motion.hpp"
 #include "simulation/methods.hpp"
 
 #include <maupertuis/ensemble.hpp>
@@ -153,12 +154,21 @@ Companions one_after_the_other(const CompanionPlan& plan, const WantedFunctions&
   for (int k = 0; k < (taylor ? 3 : 2); ++k) {
     RoundedNumbers::Draw draw = numbers.draw(seed + static_cast<std::uint64_t>(k));
     if (!taylor) draw.q = plan.run.q, draw.v = plan.run.v;  // rounding is nothing beside their tolerances
+    HybridMotion* through_modes = nullptr;
+    const auto hybrid = [&] {
+      auto made = std::make_unique<HybridMotion>(plan.model, plan.equations, wanted, draw.parameters,
+                                                 taylor_options(plan, k));
+      through_modes = made.get();
+      return made;
+    };
     const std::unique_ptr<Method> method =
-        taylor            ? method_of(TaylorStepper(numbers.kernel(), draw.parameters, taylor_options(plan, k)))
+        goes_through_modes(plan.model) ? std::unique_ptr<Method>(hybrid())
+        : taylor            ? method_of(TaylorStepper(numbers.kernel(), draw.parameters, taylor_options(plan, k)))
         : name == "stiff" ? finer_stiff(plan, wanted, k)
                           : finer_variational(plan, wanted, k);
     auto run = Recorder(plan, *method).record(draw);
     if (!run) return interrupted();
+    if (through_modes) run->happenings = through_modes->record().happenings;
     take_in(out, std::move(*run), plan);
   }
   return out;
@@ -270,7 +280,7 @@ class SideBySide {
 }  // namespace
 
 Companions run_companions(const CompanionPlan& plan, const WantedFunctions& wanted, const RoundedNumbers& numbers) {
-  if (fit_side_by_side(plan, numbers.kernel()))
+  if (!goes_through_modes(plan.model) && fit_side_by_side(plan, numbers.kernel()))
     if (auto found = SideBySide(plan, numbers).run()) return std::move(*found);
   return one_after_the_other(plan, wanted, numbers);
 }

@@ -20,10 +20,21 @@ Ending ending_of(StepEnding ending) {
       return Ending::TooManySteps;
     case StepEnding::Interrupted:
       return Ending::Interrupted;
+    case StepEnding::Paradox:
+      return Ending::Paradox;
+    case StepEnding::Unending:
+      return Ending::Unending;
     case StepEnding::None:
       break;
   }
   return Ending::Finished;
 }
+
+std::string_view word_of(Happening::Kind kind) {
+  static constexpr std::string_view words[] = {"impact", "made", "lost", "stick", "slip", "event"};
+  return words[static_cast<int>(kind)];
+}
+
+bool goes_through_modes(const Model& model) { return model.system.has_modes() || !model.experiment.events.empty(); }
 
 }  // namespace maupertuis

@@ -42,10 +42,23 @@ class Teller {
       result_.final.errors->t =
           error_of(result_.final.t, [](const CompanionRun& run) { return run.final ? run.final->t : infinity; });
     if (plan_.whole_rows) tell_rows();
+    tell_happenings();
     if (probe) tell_probe(*probe);
   }
 
  private:
+  /// Times of events: by those of the companions, as long as the same things happen in the same order.
+  void tell_happenings() {
+    for (std::size_t k = 0; k < result_.happenings.size(); ++k) {
+      Happening& h = result_.happenings[k];
+      h.error = error_of(h.t, [&](const CompanionRun& run) {
+        if (k >= run.happenings.size()) return infinity;
+        const Happening& other = run.happenings[k];
+        return other.kind == h.kind && other.name == h.name ? other.t : infinity;
+      });
+    }
+  }
+
   static const Sample* sample_or_null(const Sample& sample) { return sample.q.empty() ? nullptr : &sample; }
 
   /// factor · √(mean of (x_k − x)²); infinite where a companion has no value: it ended before.

@@ -54,10 +54,12 @@ RoundedNumbers::RoundedNumbers(const Model& model, const EquationsOfMotion& equa
     parameters_.push_back({p.si_value, is_rounded(p.value, p.si_value)});
     symbols_.push_back(p.symbol);
   }
-  KernelSource source =
-      motion_source(equations, {wanted.observables, plan.until ? wanted.events : std::vector<Expr>{}, {}});
-  take_literals(source);
-  kernel_ = build_kernel(source);
+  if (!goes_through_modes(model)) {  // else each mode has a kernel of its own
+    KernelSource source =
+        motion_source(equations, {wanted.observables, plan.until ? wanted.events : std::vector<Expr>{}, {}});
+    take_literals(source);
+    kernel_ = build_kernel(source);
+  }
   take_start(model, plan);
 }
 

@@ -7,6 +7,7 @@
 #include "simulation/ending.hpp"
 #include "simulation/energy_terms.hpp"
 #include "simulation/errors.hpp"
+#include "simulation/hybrid_motion.hpp"
 #include "simulation/methods.hpp"
 #include "simulation/motion_kernel.hpp"
 #include "simulation/observables.hpp"
@@ -29,8 +30,7 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-std::unique_ptr<Method> taylor_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
-                                      const SimulationOptions& options) {
+TaylorOptions taylor_options(const SimulationOptions& options) {
   TaylorOptions out;
   out.tolerance = options.tolerance;
   out.order = options.order;
@@ -38,7 +38,13 @@ std::unique_ptr<Method> taylor_method(const EquationsOfMotion& equations, const 
   out.interrupt = options.interrupt;
   out.backend = options.backend;
   out.cache = options.cache;
-  return method_of(TaylorStepper(motion_kernel(equations, wanted), parameter_values(*equations.system), out));
+  return out;
+}
+
+std::unique_ptr<Method> taylor_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
+                                      const SimulationOptions& options) {
+  return method_of(
+      TaylorStepper(motion_kernel(equations, wanted), parameter_values(*equations.system), taylor_options(options)));
 }
 
 double stiff_tolerance(const SimulationOptions& options) {
@@ -52,6 +58,20 @@ std::unique_ptr<Method> stiff_method(const EquationsOfMotion& equations, const W
   out.maximum_steps = options.maximum_steps;
   out.interrupt = options.interrupt;
   return stiff_method(equations, wanted, out, diagnostics);
+}
+
+/// Contacts, friction and events go through modes, by Taylor's steps.
+std::unique_ptr<HybridMotion> hybrid_method(const Model& model, const EquationsOfMotion& equations,
+                                            const WantedFunctions& wanted, const SimulationOptions& options,
+                                            Diagnostics& diagnostics) {
+  if (options.method == StepMethod::Stiff || options.method == StepMethod::Variational) {
+    diagnostics.error("E0727", std::nullopt, "this method does not go through contacts, friction or events",
+                      "They are located on the polynomials of Taylor's steps.",
+                      "Use --method taylor, or leave the method out.");
+    return nullptr;
+  }
+  return std::make_unique<HybridMotion>(model, equations, wanted, parameter_values(model.system),
+                                        taylor_options(options));
 }
 
 std::unique_ptr<Method> first_method(const EquationsOfMotion& equations, const WantedFunctions& wanted,
@@ -120,7 +140,8 @@ class Run {
  public:
   /// `stiff` makes the method that takes over where stability limits the steps; it may be empty.
   Run(const Model& model, const SimulationOptions& options, const RunPlan& plan, const Observables& observables,
-      std::unique_ptr<Method> method, std::function<std::unique_ptr<Method>()> stiff, Probe* probe, bool energy_jumps)
+      std::unique_ptr<Method> method, std::function<std::unique_ptr<Method>()> stiff, Probe* probe, bool energy_jumps,
+      const HybridMotion* hybrid)
       : model_(model),
         options_(options),
         plan_(plan),
@@ -128,6 +149,7 @@ class Run {
         probe_(probe),
         method_(std::move(method)),
         stiff_(std::move(stiff)),
+        hybrid_(hybrid),
         energy_jumps_(energy_jumps),
         balance_(observables.energy_terms) {
     result_.statistics.method = word_of(*options.method);
@@ -184,6 +206,13 @@ class Run {
     if (step.ending != StepEnding::None) {
       result_.ending = ending_of(step.ending);
       result_.reason = step.reason;
+      record_covered();
+      return false;
+    }
+    if (step.event && hybrid_ && hybrid_->record().stopped_by) {
+      result_.ending = Ending::Stopped;
+      result_.reason = fmt::format("the event `{}` stopped the run at {}", *hybrid_->record().stopped_by,
+                                   model_.system.moment(fmt::format("{:.17g}", method_->time())));
       record_covered();
       return false;
     }
@@ -272,6 +301,18 @@ class Run {
     result_.statistics.switches = method_->switches();
     result_.statistics.constraint_residual = std::max(residual_before_, method_->constraint_residual());
     result_.statistics.energy_drift = balance_.drift();
+    if (hybrid_) take_record(last);
+  }
+
+  void take_record(const Sample& last) {
+    const HybridRecord& record = hybrid_->record();
+    result_.first_mode = record.first_mode;
+    result_.happenings = record.happenings;
+    result_.remarks = record.remarks;
+    if (!model_.system.has_modes()) return;
+    result_.books = record.books;
+    result_.books->friction = last.integrals[1];
+    result_.books->dampers = last.integrals[2];
   }
 
   const Model& model_;
@@ -281,6 +322,7 @@ class Run {
   Probe* probe_;
   std::unique_ptr<Method> method_;
   std::function<std::unique_ptr<Method>()> stiff_;
+  const HybridMotion* hybrid_;  // the method, where the model has contacts, friction or events
   StiffnessWatch watch_;
   BackendUse backend_;
   bool turned_stiff_ = false;
@@ -362,14 +404,20 @@ std::optional<SimulationResult> simulate(const Model& model, const EquationsOfMo
   WantedFunctions wanted{observables.expressions, {}, {}};
   if (!equations.power.is_zero()) wanted.integrands.push_back(equations.power);
   if (plan->until) wanted.events.push_back(plan->condition);
-  auto method = first_method(equations, wanted, options, diagnostics);
+  const bool is_hybrid = goes_through_modes(model);
+  std::unique_ptr<HybridMotion> through_modes;
+  if (is_hybrid) through_modes = hybrid_method(model, equations, wanted, options, diagnostics);
+  const HybridMotion* const hybrid = through_modes.get();
+  std::unique_ptr<Method> method = is_hybrid ? std::unique_ptr<Method>(std::move(through_modes))
+                                             : first_method(equations, wanted, options, diagnostics);
   if (!method) return std::nullopt;
   std::function<std::unique_ptr<Method>()> stiff;
-  if (options.method == StepMethod::Automatic && has_stiff_method())
+  if (!is_hybrid && options.method == StepMethod::Automatic && has_stiff_method())
     stiff = [&] { return stiff_method(equations, wanted, options, diagnostics); };
   const bool energy_jumps =
       across_switches(*equations.system, equations.energy_function, equations.order).jump.has_value();
-  Run run(model, options, *plan, observables, std::move(method), std::move(stiff), probe, energy_jumps);
+  Run run(model, options, *plan, observables, std::move(method), std::move(stiff), probe, energy_jumps,
+          hybrid);
   const double compile_seconds = seconds_since(begin);
 
   SimulationResult result = run.carry_out();

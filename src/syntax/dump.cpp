@@ -192,7 +192,12 @@ class Dumper {
         expected(x.expected);
   }
   void operator()(const expectation::Event& x) {
-    head(expectation_, "event at"), word("name", x.name.text), number("occurrence", x.occurrence), expected(x.time);
+    head(expectation_, "event at"), word("name", x.name.text), word("change", x.change.text),
+        number("occurrence", x.occurrence), expected(x.time);
+  }
+  void operator()(const expectation::EventCount& x) {
+    head(expectation_, "event count"), word("name", x.name.text), word("change", x.change.text),
+        child("value", x.number);
   }
   void operator()(const expectation::Error& x) { head(expectation_, "error"), word("name", x.code.text); }
   void operator()(const ConstraintStatement& s) {
@@ -213,6 +218,23 @@ class Dumper {
       child("at", end->at);
     }
   }
+  void operator()(const ContactStatement& s) {
+    head("contact", s.name ? s.name->text : ""), child("left", s.left), word("at most", s.at_most ? "yes" : ""),
+        child("right", s.right), child("restitution", s.restitution), child("friction", s.friction),
+        child("static", s.static_friction), child("slip", s.slip), word("sticking", s.sticking ? "yes" : "");
+  }
+  void operator()(const FrictionStatement& s) {
+    head("friction"), child("coordinate", s.coordinate), child("coefficient", s.coefficient),
+        child("static", s.static_friction), child("normal", s.normal), child("limit", s.limit);
+  }
+  void operator()(const EventStatement& s) {
+    static constexpr const char* directions[] = {"falling", "", "rising"};
+    static constexpr const char* actions[] = {"record", "stop", "set"};
+    head("event", s.name.text), child("left", s.left), child("right", s.right),
+        word("direction", directions[s.direction + 1]), word("action", actions[static_cast<int>(s.action)]),
+        assignments(s.sets);
+  }
+  void operator()(const ImpactStatement& s) { head("impact", s.simultaneous ? "simultaneous" : "sequential"); }
   void operator()(const LaterStatement& s) {
     head("later", s.what);
     for (const Name& name : s.names) word("name", name.text);

@@ -212,8 +212,13 @@ expectation::Kind StatementParser::expect_phase_space() {
 
 // hit 3 at 0.45 s ± 1e-11
 expectation::Kind StatementParser::expect_event() {
-  expectation::Event event;
-  event.name = used_name("the name of an event");
+  const Name name = used_name("the name of an event or a contact");
+  Name change;
+  for (const char* word : {"impact", "made", "lost", "stick", "slip"})
+    if (peek().is(word)) change = {std::string(peek().text), peek().span};
+  if (!change.text.empty()) next();
+  if (accept("=")) return expectation::EventCount{name, change, quantity()};
+  expectation::Event event{name, change, 1, {}};
   if (peek().kind == Token::Kind::Number) {
     const Token& count = peek();
     event.occurrence = whole_number().value_or(0);

@@ -66,11 +66,12 @@ class StatementParser : private ExpressionParser {
   StatementBody constraint_statement();
   StatementBody independent_statement();
   StatementBody path_statement();
-  // later_statements.cpp
+  // contact_statements.cpp
   StatementBody contact_statement();
   StatementBody friction_statement();
   StatementBody event_statement();
   StatementBody impact_statement();
+  // later_statements.cpp
   StatementBody field_statement();
   StatementBody density_statement();
 

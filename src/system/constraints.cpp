@@ -9,22 +9,6 @@ namespace {
 
 using syntax::ConstraintStatement;
 
-/// A relation is differentiated twice along the motion: a drive in it is taken as the formula of t that it is.
-Expr with_inputs_as_formulas(const MechanicalSystem& s, Expr value) {
-  ExprMap formulas;
-  const Expr roots[] = {value};
-  for (const Expr& symbol : symbols_of(roots)) {
-    if (symbol.role() != Role::Input) continue;
-    for (const Input& u : s.inputs) {
-      if (u.name != symbol.name()) continue;
-      Expr derivative = u.formula;
-      for (int order = 0; order < symbol.order(); ++order) derivative = total_time_derivative(derivative);
-      formulas[symbol] = derivative;
-    }
-  }
-  return formulas.empty() ? value : substitute(value, formulas);
-}
-
 ExprVector velocities_in(Expr value) {
   ExprVector out;
   const Expr roots[] = {value};
@@ -100,6 +84,21 @@ void name_multipliers(Elaboration& e, std::size_t written) {
 }
 
 }  // namespace
+
+Expr with_inputs_as_formulas(const MechanicalSystem& s, Expr value) {
+  ExprMap formulas;
+  const Expr roots[] = {value};
+  for (const Expr& symbol : symbols_of(roots)) {
+    if (symbol.role() != Role::Input) continue;
+    for (const Input& u : s.inputs) {
+      if (u.name != symbol.name()) continue;
+      Expr derivative = u.formula;
+      for (int order = 0; order < symbol.order(); ++order) derivative = total_time_derivative(derivative);
+      formulas[symbol] = derivative;
+    }
+  }
+  return formulas.empty() ? value : substitute(value, formulas);
+}
 
 void elaborate_constraints(Elaboration& e) {
   for (const syntax::Statement& statement : e.tree.statements) {

@@ -27,6 +27,10 @@ const char* word_of(Kind kind) {
       return "constraint";
     case Kind::Reaction:
       return "reaction";
+    case Kind::Contact:
+      return "contact";
+    case Kind::Event:
+      return "event";
     case Kind::Independent:
       return "variable";
     case Kind::Energy:
@@ -80,6 +84,9 @@ SymbolTable::SymbolTable(const syntax::SyntaxTree& tree, const SourceTexts& text
     if (const auto* c = std::get_if<syntax::ConstraintStatement>(&s.body))
       if (c->name) add(Kind::Constraint, *c->name, s, 0);
     if (const auto* r = std::get_if<syntax::ReactionStatement>(&s.body)) add(Kind::Reaction, r->name, s, 0);
+    if (const auto* c = std::get_if<syntax::ContactStatement>(&s.body))
+      if (c->name) add(Kind::Contact, *c->name, s, 0);
+    if (const auto* v = std::get_if<syntax::EventStatement>(&s.body)) add(Kind::Event, v->name, s, 0);
     if (const auto* v = std::get_if<syntax::IndependentStatement>(&s.body)) add(Kind::Independent, v->name, s, 0);
     if (const auto* later = std::get_if<syntax::LaterStatement>(&s.body))
       for (const syntax::Name& n : later->names) lost_.emplace(n.text, true);
@@ -94,12 +101,14 @@ void SymbolTable::add(Kind kind, const syntax::Name& name, const syntax::Stateme
   d.span = name.span;
   d.statement = &statement;
   d.item = item;
-  if (kind == Kind::Constraint || kind == Kind::Reaction)  // T and V stand in formulas, a constraint does not
+  const bool stands_in_no_formula =
+      kind == Kind::Constraint || kind == Kind::Reaction || kind == Kind::Contact || kind == Kind::Event;
+  if (stands_in_no_formula)  // T and V do
     for (std::size_t i = 0; i < 5; ++i)
       if (name.text == kShort[i] || name.text == kLong[i]) {
         diagnostics_.error("E0202", name.span, fmt::format("`{}` is declared twice", name.text),
                            fmt::format("It is the {} already.", name_of_energy(static_cast<Which>(i))),
-                           "Give the constraint another name.");
+                           fmt::format("Give the {} another name.", word_of(kind)));
         return;
       }
   const auto [found, added] = by_name_.emplace(name.text, declarations_.size());

@@ -20,6 +20,8 @@ struct Declaration {
     Body,
     Constraint,
     Reaction,
+    Contact,
+    Event,
     Independent,
     Energy
   };

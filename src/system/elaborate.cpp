@@ -109,6 +109,8 @@ void elaborate_declaration(Elaboration& e, DeclarationId id) {
       return elaborate_body(e, d);
     case Kind::Constraint:
     case Kind::Reaction:
+    case Kind::Contact:
+    case Kind::Event:
       return;  // nothing is defined from them
     case Kind::Energy:
       return elaborate_energy(e, static_cast<syntax::EnergyStatement::Which>(id), d);
@@ -183,6 +185,7 @@ std::optional<Model> elaborate(const syntax::SyntaxTree& tree, const SourceText&
   for (const DeclarationId id : definition_order(e.table, tree, diagnostics)) elaborate_declaration(e, id);
   elaborate_forces(e);
   elaborate_constraints(e);
+  elaborate_contacts(e);
   elaborate_experiment(e);
   override_start(e);
   start_quaternions(e);

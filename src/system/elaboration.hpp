@@ -125,6 +125,16 @@ void elaborate_energy(Elaboration& e, syntax::EnergyStatement::Which which, Decl
 void elaborate_forces(Elaboration& e);
 /// Fills `constraints`, and names their multipliers.
 void elaborate_constraints(Elaboration& e);
+/// Contacts, friction and the law of impacts; after the constraints.
+void elaborate_contacts(Elaboration& e);
+/// `event` statements; after the contacts.
+void elaborate_event(Elaboration& e, const syntax::EventStatement& s, Span span);
+/// A relation is differentiated twice along the motion: a drive in it is taken as the formula of t that it is.
+Expr with_inputs_as_formulas(const MechanicalSystem& s, Expr value);
+/// left − right of a condition along the motion; an empty handle after a mistake.
+Expr condition(Elaboration& e, const syntax::Expression& left, const syntax::Expression& right, const char* what);
+/// The coordinate or velocity that `x` names; nothing, and a message, if it is none.
+std::optional<StartValue> start_variable(Elaboration& e, const syntax::Expression& x);
 /// The name of a constraint or of a release; false, and a message, if it is none.
 bool names_a_reaction(Elaboration& e, const syntax::Name& name);
 /// `expect constraint roll is nonholonomic`: whether there is such a constraint, and such a class.

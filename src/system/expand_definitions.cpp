@@ -48,6 +48,16 @@ void for_each_expression(MechanicalSystem& s, const std::function<void(Expr&)>& 
     vector(f.lever);
   }
   for (Constraint& c : s.constraints) visit(c.value);
+  const auto friction = [&](Friction& f) {
+    vector(f.slip);
+    for (Expr* x : {&f.kinetic, &f.static_, &f.normal})
+      if (*x) visit(*x);
+  };
+  for (Contact& c : s.contacts) {
+    visit(c.gap), visit(c.restitution);
+    friction(c.friction);
+  }
+  for (Friction& f : s.frictions) friction(f);
   for (IntegralConstraint& c : s.integral_constraints)
     for (Expr* x : {&c.integrand, &c.value}) visit(*x);
 }
@@ -100,6 +110,8 @@ struct ExpectationVisitor {
   void operator()(expectation::ActionAlong& x) const { path(x.along), number(x.expected); }
   void operator()(expectation::MorseIndex& x) const { visit(x.index); }
   void operator()(expectation::PathAt& x) const { visit(x.subject), visit(x.time), number(x.expected); }
+  void operator()(expectation::Event& x) const { number(x.time); }
+  void operator()(expectation::EventCount& x) const { visit(x.number); }
   void operator()(expectation::Error&) const {}
 };
 
@@ -120,6 +132,10 @@ void for_each_expression(Experiment& x, const std::function<void(Expr&)>& visit)
     for (Expr* e : {&r.rate, &r.value}) visit(*e);
   for (Expr* e : {&x.start_time, &x.duration, &x.until, &x.within, &x.output_every}) present(*e);
   if (x.method) present(x.method->step);
+  for (ModelEvent& event : x.events) {
+    visit(event.function);
+    for (ModelEvent::Assignment& a : event.sets) visit(a.value);
+  }
   for (DrawElement& d : x.drawing) {
     for (ExprVector& p : d.path)
       for (Expr& e : p) visit(e);

@@ -364,10 +364,41 @@ Expected meaning_of(Elaboration& e, const written::Equilibrium& x, Span) {
 // ----------------------------------------------------------------------------------------------------------------
 // others
 
-Expected meaning_of(Elaboration& e, const written::Event&, Span line) {
-  e.diagnostics.error("E0503", line, "not supported yet: an expected event",
-                      "Contacts and events are carried out by a later version.", "Leave this line out for now.");
-  return std::nullopt;
+/// Whether the model has such an event or contact, which a change is told of.
+bool names_an_event(Elaboration& e, const syntax::Name& name, const syntax::Name& change) {
+  const Declaration* d = e.table.find(name.text);
+  const bool event = d && d->kind == Declaration::Kind::Event;
+  bool known = event || (d && d->kind == Declaration::Kind::Contact);
+  for (const Friction& f : e.system().frictions) known = known || f.name == name.text;
+  if (known && !(event && !change.text.empty())) return true;
+  if (known) {
+    e.diagnostics.error("E0261", change.span, fmt::format("`{}` is an event, which is not {}", name.text, change.text),
+                        "Contacts are hit, made and lost; friction sticks and slips; an event happens.",
+                        fmt::format("Write `expect event {} at …`.", name.text));
+    return false;
+  }
+  std::vector<std::string> names;
+  for (const Declaration& other : e.table.declarations())
+    if (other.kind == Declaration::Kind::Event || other.kind == Declaration::Kind::Contact)
+      names.push_back(other.name);
+  const std::string near = did_you_mean(name.text, names);
+  e.diagnostics.error("E0261", name.span, fmt::format("the model has no event or contact `{}`", name.text),
+                      "An event is named by its statement, a contact by the name at its end.",
+                      near.empty() ? "Name it: contact … >= … name floor, or event hit when … = … : record."
+                                   : fmt::format("Did you mean `{}`?", near));
+  return false;
+}
+
+Expected meaning_of(Elaboration& e, const written::Event& x, Span) {
+  const auto time = expected_number(e, x.time, e.time(), in_words(e, "the time of an event"));
+  if (!names_an_event(e, x.name, x.change) || !time) return std::nullopt;
+  return expectation::Event{x.name.text, x.change.text, x.occurrence, *time};
+}
+
+Expected meaning_of(Elaboration& e, const written::EventCount& x, Span) {
+  const Value number = constant_of(e, *x.number, Dimension{}, "how often something happens");
+  if (!names_an_event(e, x.name, x.change) || number.poisoned) return std::nullopt;
+  return expectation::EventCount{x.name.text, x.change.text, number.scalar()};
 }
 
 Expected meaning_of(Elaboration&, const written::Error& x, Span) { return expectation::Error{x.code.text}; }

@@ -20,7 +20,8 @@ bool refuse_acceleration_of_start(Elaboration& e, const Expression& x) {
   return true;
 }
 
-/// Which coordinate, and which derivative of it, a start names.
+}  // namespace
+
 std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
   if (const std::optional<std::size_t> q = quaternion_component(e, x)) {
     if (refuse_acceleration_of_start(e, x)) return std::nullopt;
@@ -61,6 +62,8 @@ std::optional<StartValue> start_variable(Elaboration& e, const Expression& x) {
   s.coordinate = d->index;
   return s;
 }
+
+namespace {
 
 void duplicate_start(Elaboration& e, Span second, Span first) {
   e.diagnostics.error("E0208", second, fmt::format("`{}` starts twice", e.texts.slice(second)),
@@ -168,7 +171,8 @@ void start(Elaboration& e, const syntax::StartStatement& s) {
   }
 }
 
-/// left − right of a condition along the motion; an empty handle after a mistake.
+}  // namespace
+
 Expr condition(Elaboration& e, const Expression& left_side, const Expression& right_side, const char* what) {
   Place along_motion;
   along_motion.reactions = true;
@@ -185,6 +189,8 @@ Expr condition(Elaboration& e, const Expression& left_side, const Expression& ri
       scalar_of(e, right_side, left.dimension, fmt::format("`{}`", e.texts.slice(left_side.span)), place);
   return right.poisoned ? Expr() : left.scalar() - right.scalar();
 }
+
+namespace {
 
 void run(Elaboration& e, const syntax::RunStatement& s) {
   Experiment& x = e.experiment();
@@ -340,6 +346,7 @@ void elaborate_experiment(Elaboration& e) {
     if (const auto* x = std::get_if<syntax::SweepStatement>(&s.body); x && !e.overrides.sweep) sweep(e, *x, s.span);
     if (const auto* x = std::get_if<syntax::PathStatement>(&s.body); x && !e.overrides.path)
       elaborate_path(e, *x, s.span);
+    if (const auto* x = std::get_if<syntax::EventStatement>(&s.body)) elaborate_event(e, *x, s.span);
     if (const auto* x = std::get_if<syntax::DrawStatement>(&s.body)) elaborate_drawing(e, *x);
     if (const auto* x = std::get_if<syntax::ExpectStatement>(&s.body)) elaborate_expectation(e, *x, s.span);
   }

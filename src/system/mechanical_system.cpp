@@ -86,6 +86,21 @@ const Constraint* MechanicalSystem::find_constraint(std::string_view name) const
   return find_by_name(constraints, name);
 }
 
+Constraint as_constraint(const Contact& contact) {
+  Constraint c;
+  c.name = contact.name;
+  c.value = contact.gap;
+  c.multiplier = contact.multiplier;
+  c.reaction = contact.reaction;
+  c.dimension = contact.dimension;
+  c.span = contact.span;
+  return c;
+}
+
+std::string MechanicalSystem::contact_label(std::size_t index) const {
+  return contacts[index].name.empty() ? "contact " + std::to_string(index + 1) : contacts[index].name;
+}
+
 std::string MechanicalSystem::constraint_label(std::size_t index) const {
   const Constraint& c = constraints[index];
   if (!c.body.empty()) return "the norm of " + c.body;

@@ -203,7 +203,8 @@ Value value_of_name(Elaboration& e, const Expression& x, const Place& place) {
       d->used = true;
       return derivative_of_coordinate(e, d->value, x.primes);
     }
-    if (d->kind == Kind::Constraint || d->kind == Kind::Reaction) return refuse_as_quantity(e, *d, x);
+    if (d->kind == Kind::Constraint || d->kind == Kind::Reaction || d->kind == Kind::Contact || d->kind == Kind::Event)
+      return refuse_as_quantity(e, *d, x);
     return time_derivative(e, meaning(*d, place), x.primes, x);
   }
   if (e.table.is_lost(x.text)) return Value::poison();

@@ -57,10 +57,10 @@ Declaration* find_named(Elaboration& e, const syntax::Name& name) {
                         "Its multiplier is one number of a whole path, which `maup action` finds.", "");
     return nullptr;
   }
-  if (d && (d->kind == Kind::Constraint || d->kind == Kind::Reaction)) return d;
+  if (d && (d->kind == Kind::Constraint || d->kind == Kind::Reaction || d->kind == Kind::Contact)) return d;
   std::vector<std::string> names;
   for (const Declaration& other : e.table.declarations())
-    if (other.kind == Kind::Constraint || other.kind == Kind::Reaction) names.push_back(other.name);
+    if (other.kind == Kind::Constraint || other.kind == Kind::Reaction || other.kind == Kind::Contact) names.push_back(other.name);
   const std::string near = did_you_mean(name.text, names);
   e.diagnostics.error("E0226", name.span,
                       d && d->statement ? fmt::format("`{}` is a {}, not a constraint", name.text, word_of(d->kind))
@@ -108,6 +108,8 @@ Value value_of_reaction(Elaboration& e, const Expression& x, const Place& place)
   const bool multiplier = x.text == "multiplier";
   for (const Constraint& c : e.system().constraints)
     if (c.name == name.text) return of_constraint(e, c, multiplier);
+  for (const Contact& c : e.system().contacts)
+    if (c.name == name.text) return of_constraint(e, as_constraint(c), multiplier);
   for (const Release& r : e.system().releases)
     if (r.name == name.text) return of_release(e, r, multiplier, x);
   return Value::poison();  // its own line has a mistake
@@ -119,9 +121,12 @@ bool check_class_of_constraint(Elaboration& e, const syntax::expectation::Constr
   static const std::array<std::string, 5> classes = {"holonomic", "nonholonomic", "scleronomic", "rheonomic",
                                                      "integrable"};
   Declaration* d = find_named(e, x.constraint);
-  if (d && d->kind == Kind::Reaction) {
-    e.diagnostics.error("E0226", x.constraint.span, fmt::format("`{}` is a reaction, not a constraint", d->name),
-                        "The choice of coordinates has removed its constraint.", "");
+  if (d && d->kind != Kind::Constraint) {
+    e.diagnostics.error("E0226", x.constraint.span,
+                        fmt::format("`{}` is a {}, not a constraint", d->name, word_of(d->kind)),
+                        d->kind == Kind::Contact ? "An inequality holds as a constraint only while it is closed."
+                                                 : "The choice of coordinates has removed its constraint.",
+                        "");
     d = nullptr;
   }
   if (std::find(classes.begin(), classes.end(), x.word.text) != classes.end()) return d != nullptr;

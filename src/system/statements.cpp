@@ -8,11 +8,6 @@
 namespace maupertuis::elaboration {
 namespace {
 
-const char* reason_for(const std::string& what) {
-  if (what == "field" || what == "density") return "Fields are carried out by a later version.";
-  return "Contacts, Coulomb friction and events are carried out by a later version.";
-}
-
 void once(Elaboration& e, std::optional<Span>& first, Span span, const char* what) {
   if (!first) {
     first = span;
@@ -30,13 +25,13 @@ void refuse_later_statements(Elaboration& e) {
     const auto* later = std::get_if<syntax::LaterStatement>(&s.body);
     if (!later || !told.insert(later->what).second) continue;
     if (later->what == "density" && told.count("field")) continue;  // it belongs to the field
-    e.diagnostics.error("E0501", s.span, fmt::format("not supported yet: {}", later->what), reason_for(later->what),
+    e.diagnostics.error("E0501", s.span, fmt::format("not supported yet: {}", later->what), "Fields are carried out by a later version.",
                         "Leave this statement out for now.");
   }
 }
 
 void check_statement_counts(Elaboration& e) {
-  std::optional<Span> gravity, run, output, method, precision, source, sweep, path, independent;
+  std::optional<Span> gravity, run, output, method, precision, source, sweep, path, independent, impact;
   for (const syntax::Statement& s : e.tree.statements) {
     if (std::get_if<syntax::GravityStatement>(&s.body)) once(e, gravity, s.span, "gravity");
     if (std::get_if<syntax::RunStatement>(&s.body)) once(e, run, s.span, "the run");
@@ -46,6 +41,7 @@ void check_statement_counts(Elaboration& e) {
     if (std::get_if<syntax::SweepStatement>(&s.body)) once(e, sweep, s.span, "the sweep");
     if (std::get_if<syntax::PathStatement>(&s.body)) once(e, path, s.span, "the path");
     if (std::get_if<syntax::IndependentStatement>(&s.body)) once(e, independent, s.span, "the independent variable");
+    if (std::get_if<syntax::ImpactStatement>(&s.body)) once(e, impact, s.span, "the law of impacts");
     if (std::get_if<syntax::SourceStatement>(&s.body)) once(e, source, s.span, "the source");
   }
 }

@@ -33,14 +33,36 @@ void report_drift(ExpectationResult& result, double drift, double tolerance) {
   if (!result.passed) result.message = "It changes more than the tolerance along the run.";
 }
 
+/// Whether a happening is one of those that are asked for: without a word for the change a contact's impacts and
+/// changes, where one that is hit and stays closed counts once.
+std::vector<const Happening*> happenings_of(const SimulationResult& run, const std::string& name,
+                                            const std::string& change) {
+  std::vector<const Happening*> out;
+  for (const Happening& h : run.happenings) {
+    if (h.name != name || (!change.empty() && word_of(h.kind) != change)) continue;
+    const bool same_as_last = change.empty() && !out.empty() && h.kind == Happening::Kind::Made &&
+                              out.back()->kind == Happening::Kind::Impact && out.back()->t == h.t;
+    if (!same_as_last) out.push_back(&h);
+  }
+  return out;
+}
+
+std::string called(const std::string& name, const std::string& change) {
+  return change.empty() ? name : name + " " + change;
+}
+
 }  // namespace
+
+bool RunClaims::watches_whole_run() const {
+  return !(energies_.empty() && drifts_.empty() && events_.empty() && counts_.empty());
+}
 
 double RunClaims::number(Expr e, double otherwise) const { return number_of(model_.system, e, otherwise); }
 
 void RunClaims::carry_out(std::vector<ExpectationResult>& results) {
   take_timed(results);
   find_end(results);
-  if (values_.empty() && drifts_.empty() && energies_.empty()) return;
+  if (values_.empty() && !watches_whole_run()) return;
   run_direction(true, results);
   run_direction(false, results);
 }
@@ -66,7 +88,7 @@ void RunClaims::take_timed(std::vector<ExpectationResult>& results) {
 void RunClaims::find_end(std::vector<ExpectationResult>& results) {
   if (ends_.empty()) return;
   Diagnostics unheard;  // a run that cannot start says so once
-  const bool alone = values_.empty() && drifts_.empty() && energies_.empty();
+  const bool alone = values_.empty() && !watches_whole_run();
   const auto run = simulate(model_, equations_, options_, alone ? diagnostics_ : unheard);
   for (const End& end : ends_) {
     ExpectationResult& result = results[end.line];
@@ -87,7 +109,7 @@ void RunClaims::run_direction(bool forwards, std::vector<ExpectationResult>& res
   std::vector<Value> values;
   std::copy_if(values_.begin(), values_.end(), std::back_inserter(values),
                [&](const Value& v) { return (v.time >= begin) == forwards; });
-  const bool whole_run = forwards && !(energies_.empty() && drifts_.empty());
+  const bool whole_run = forwards && watches_whole_run();
   if (values.empty() && !whole_run) return;
 
   SimulationOptions options = options_;
@@ -109,6 +131,8 @@ void RunClaims::run_direction(bool forwards, std::vector<ExpectationResult>& res
   for (std::size_t i = 0; i < drifts_.size(); ++i)
     judge_drift(drifts_[i], values.size() + i, run, probe, results[drifts_[i].line]);
   for (const Energy& e : energies_) judge_energy(e, run, results[e.line]);
+  for (const Event& e : events_) judge_event(e, run, results[e.line]);
+  for (const EventCount& e : counts_) judge_count(e, run, results[e.line]);
 }
 
 /// 200 times along the run.
@@ -172,6 +196,40 @@ void RunClaims::judge_drift(const Drift& drift, std::size_t column, const std::o
     largest = std::max(largest, std::abs(row[column]));
   }
   report_drift(result, largest > 0 ? (high - low) / largest : 0, number(drift.expectation->tolerance.size));
+}
+
+void RunClaims::judge_event(const Event& event, const std::optional<SimulationResult>& run,
+                            ExpectationResult& result) const {
+  const expectation::Event& e = *event.expectation;
+  if (!run) {
+    result.message = kNoStart;
+    return;
+  }
+  const auto found = happenings_of(*run, e.name, e.change);
+  if (found.size() >= static_cast<std::size_t>(e.occurrence)) {
+    const Happening& h = *found[static_cast<std::size_t>(e.occurrence) - 1];
+    judge_value(e.time, h.t, h.error, result);
+    return;
+  }
+  result.actual = fmt::format("{} times", found.size());
+  result.expected = fmt::format("at least {}", e.occurrence);
+  result.message = fmt::format("`{}` happens {} times along the run.", called(e.name, e.change), found.size());
+  if (!run->ok()) result.message += " " + ended_before(*run);
+}
+
+void RunClaims::judge_count(const EventCount& count, const std::optional<SimulationResult>& run,
+                            ExpectationResult& result) const {
+  const expectation::EventCount& e = *count.expectation;
+  if (!run) {
+    result.message = kNoStart;
+    return;
+  }
+  const double found = static_cast<double>(happenings_of(*run, e.name, e.change).size()), expected = number(e.number);
+  result.actual = fmt::format("{:g}", found);
+  result.expected = fmt::format("{:g}", expected);
+  result.passed = found == expected && run->ok();
+  result.message = run->ok() ? fmt::format("`{}` happens {:g} times along the run", called(e.name, e.change), found)
+                             : ended_before(*run);
 }
 
 void RunClaims::judge_energy(const Energy& energy, const std::optional<SimulationResult>& run,

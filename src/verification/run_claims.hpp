@@ -32,6 +32,9 @@ class RunClaims {
     energies_.push_back({line, &expectation});
   }
 
+  void ask(const expectation::Event& expectation, std::size_t line) { events_.push_back({line, &expectation}); }
+  void ask(const expectation::EventCount& expectation, std::size_t line) { counts_.push_back({line, &expectation}); }
+
   void carry_out(std::vector<ExpectationResult>& results);
 
  private:
@@ -55,7 +58,17 @@ class RunClaims {
     const expectation::EnergyConserved* expectation;
   };
 
+  struct Event {
+    std::size_t line;
+    const expectation::Event* expectation;
+  };
+  struct EventCount {
+    std::size_t line;
+    const expectation::EventCount* expectation;
+  };
+
   double number(Expr e, double otherwise = 0) const;
+  bool watches_whole_run() const;
   void take_timed(std::vector<ExpectationResult>& results);
   void find_end(std::vector<ExpectationResult>& results);
   void run_direction(bool forwards, std::vector<ExpectationResult>& results);
@@ -67,6 +80,9 @@ class RunClaims {
                    ExpectationResult& result) const;
   void judge_drift(const Drift& drift, std::size_t column, const std::optional<SimulationResult>& run,
                    const Probe& probe, ExpectationResult& result) const;
+  void judge_event(const Event& event, const std::optional<SimulationResult>& run, ExpectationResult& result) const;
+  void judge_count(const EventCount& count, const std::optional<SimulationResult>& run,
+                   ExpectationResult& result) const;
   void judge_energy(const Energy& energy, const std::optional<SimulationResult>& run, ExpectationResult& result) const;
 
   const Model& model_;
@@ -78,6 +94,8 @@ class RunClaims {
   std::vector<End> ends_;
   std::vector<Drift> drifts_;
   std::vector<Energy> energies_;
+  std::vector<Event> events_;
+  std::vector<EventCount> counts_;
 };
 
 }  // namespace maupertuis

@@ -48,6 +48,9 @@ class Verifier {
   void decide(const expectation::EnergyConserved& e, ExpectationResult&) { runs_.ask(e, line_); }
   void decide(const expectation::ConservedAlongRun& e, ExpectationResult&) { runs_.ask(e, line_); }
 
+  void decide(const expectation::Event& e, ExpectationResult&) { runs_.ask(e, line_); }
+  void decide(const expectation::EventCount& e, ExpectationResult&) { runs_.ask(e, line_); }
+
   void decide(const expectation::Conserved& e, ExpectationResult& result) { identities_.decide(e, result); }
   void decide(const expectation::NotConserved& e, ExpectationResult& result) { identities_.decide(e, result); }
   void decide(const expectation::Integral& e, ExpectationResult& result) { identities_.decide(e, result); }

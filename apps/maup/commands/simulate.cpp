@@ -86,6 +86,20 @@ Json uncertain_json(const SimulationResult& result) {
   return {{"from", result.uncertain.from}, {"what", std::move(names)}, {"everything", result.uncertain.everything}};
 }
 
+Json happening_json(const Happening& h, const MechanicalSystem& system) {
+  Json state = Json::object();
+  for (std::size_t i = 0; i < h.q.size(); ++i) {
+    state[system.coordinates[i].name] = number_or_null(h.q[i]);
+    state[system.coordinates[i].name + "'"] = number_or_null(h.v[i]);
+  }
+  Json out = {{"t", h.t}, {"error", number_or_null(h.error)}, {"what", word_of(h.kind)}, {"name", h.name},
+              {"state", std::move(state)}};
+  if (h.kind == Happening::Kind::Impact) out["impulse"] = h.impulse, out["speed"] = h.speed;
+  if (system.has_modes()) out["mode"] = h.mode;
+  if (!h.remark.empty()) out["remark"] = h.remark;
+  return out;
+}
+
 Json document_of(const SimulationResult& result, const MechanicalSystem& system) {
   Json document = json_document("simulate");
   document["system"] = system.name;
@@ -108,6 +122,14 @@ Json document_of(const SimulationResult& result, const MechanicalSystem& system)
                             {"companion_seconds", s.companion_seconds}};
   document["uncertain"] = uncertain_json(result);
   document["events"] = Json::array();
+  for (const Happening& h : result.happenings) document["events"].push_back(happening_json(h, system));
+  if (system.has_modes()) document["first_mode"] = result.first_mode;
+  if (result.books)
+    document["energy_books"] = {{"impacts", result.books->impacts},
+                                {"moving_contacts", result.books->moving},
+                                {"friction", result.books->friction},
+                                {"dampers", result.books->dampers}};
+  document["remarks"] = result.remarks;
   document["ended"] = {{"reason", result.reason.empty() ? ending_name(result.ending) : result.reason},
                        {"kind", ending_name(result.ending)},
                        {"ok", result.ok()}};
@@ -161,8 +183,39 @@ std::string uncertain_text(const SimulationResult& result, const MechanicalSyste
                               : fmt::format("From {} on no digit is certain of {}.\n", from, names);
 }
 
-std::string text_of(const SimulationResult& result, const MechanicalSystem& system) {
+/// The first and the last of them, a line each.
+std::string happenings_text(const SimulationResult& result, const MechanicalSystem& system) {
+  constexpr std::size_t most = 24, first = 16;
   std::string out;
+  if (system.has_modes())
+    out += fmt::format("begins {}\n", result.first_mode.empty() ? "without contact" : "in the mode " + result.first_mode);
+  const std::size_t count = result.happenings.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    if (count > most && k == first) {
+      k = count - (most - first);
+      out += fmt::format("  … {} more, all with --json …\n", k - first);
+    }
+    const Happening& h = result.happenings[k];
+    const std::string time = h.error == 0          ? exact(h.t)
+                             : std::isinf(h.error) ? exact(h.t) + " (no digit is certain)"
+                                                   : with_uncertainty(h.t, h.error);
+    out += fmt::format("  {}  {} {}", system.moment(time), h.name, word_of(h.kind));
+    if (h.kind == Happening::Kind::Impact) out += fmt::format(", impulse {:.6g}", h.impulse);
+    if (!h.remark.empty()) out += ": " + h.remark;
+    if (system.has_modes() && !(h.kind == Happening::Kind::Event || h.kind == Happening::Kind::Impact))
+      out += h.mode.empty() ? " → free" : " → " + h.mode;
+    out += "\n";
+  }
+  for (const std::string& remark : result.remarks) out += "  " + remark + "\n";
+  if (result.books)
+    out += fmt::format("energy lost: impacts {}, friction {}, dampers {}{}\n", brief(result.books->impacts),
+                       brief(result.books->friction), brief(result.books->dampers),
+                       result.books->moving == 0 ? "" : "; gained from moving contacts " + brief(result.books->moving));
+  return out;
+}
+
+std::string text_of(const SimulationResult& result, const MechanicalSystem& system) {
+  std::string out = happenings_text(result, system);
   for (const State& state : result.at) out += state_text(state, result, system);
   if (result.at.empty() || result.at.back().t != result.final.t) out += state_text(result.final, result, system);
   const SimulationStatistics& s = result.statistics;

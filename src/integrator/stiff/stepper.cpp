@@ -42,7 +42,7 @@ struct StiffStepper::Impl {
   void begin_anew(double bound, std::vector<double>& next);
   void bound_steps(double length);
   bool stands_still(double bound);
-  Step ended(StepEnding ending, std::string reason) const { return {t, t, ending, std::move(reason), {}, 0}; }
+  Step ended(StepEnding ending, std::string reason) const { return {t, t, ending, std::move(reason), {}, {}, 0}; }
   Sample sample(double time) const;
   void state_at(double time, std::span<double> out) const;
 

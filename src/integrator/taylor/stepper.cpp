@@ -194,6 +194,27 @@ void TaylorStepper::start(double t, std::span<const double> q, std::span<const d
   s.last.start_sample = s.last.sample(t, s.probe);
 }
 
+void TaylorStepper::put_at_zero(std::span<const std::size_t> events) {
+  for (const std::size_t i : events) impl_->watched.put_at_zero(i);
+}
+
+TaylorStepper::Outlook TaylorStepper::outlook(double bound) {
+  Impl& s = *impl_;
+  Outlook out;
+  Step result;
+  result.begin = result.end = s.state.t.hi;
+  s.state.wind();
+  s.expanded = s.expand(bound, result);
+  out.ending = result.ending;
+  out.reason = result.reason;
+  if (!s.expanded) return out;
+  const double h = std::min(taylor::step_size(s.work, s.n, s.control, s.length), std::abs(s.remaining(bound)));
+  out.sides = s.watched.sides_of_events(s.work, std::copysign(h, s.remaining(bound)));
+  for (std::size_t i = 0; i < s.kernel.events(); ++i) out.values.push_back(s.work.event(i, 0));
+  for (std::size_t i = 0; i < s.n; ++i) out.accelerations.push_back(s.work.acceleration(i));
+  return out;
+}
+
 Step TaylorStepper::step(double bound) { return impl_->step(bound); }
 
 double TaylorStepper::time() const { return impl_->state.t.hi; }

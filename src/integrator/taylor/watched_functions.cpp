@@ -10,12 +10,13 @@ namespace {
 std::int8_t sign(double x) { return static_cast<std::int8_t>((x > 0) - (x < 0)); }
 
 /// Roots that rounding does not tell apart are one crossing.
-void note(Crossing& crossing, double x, std::size_t index, double together) {
+void note(Crossing& crossing, double x, std::size_t index, double together, int direction) {
   if (crossing.found && x > crossing.x * (1 + together) + together) return;
-  if (x < crossing.x * (1 - together) - together) crossing.roots.clear();
+  if (x < crossing.x * (1 - together) - together) crossing.roots.clear(), crossing.directions.clear();
   crossing.x = std::min(crossing.x, x);
   crossing.found = true;
   crossing.roots.push_back(index);
+  crossing.directions.push_back(direction);
 }
 
 /// The side that an event function has as the step begins. True if it is not the one that it had as the last step
@@ -77,10 +78,11 @@ Crossing WatchedFunctions::first_crossing(const KernelWorkspace& work, const Com
     const bool is_switch = i < count;
     Watched& watched = out.after[i];
     if (is_switch && watched.side == 0) continue;  // it vanishes along the motion
-    if (!is_switch && begins_past_root(work, i - count, h, watched)) note(out, 0, i, together);
+    if (!is_switch && begins_past_root(work, i - count, h, watched)) note(out, 0, i, together, watched.side);
     const double until = std::min(1.0, out.x * (1 + together) + together);
     const Slot slot = is_switch ? work.program().switch_slots[i] : work.program().events[i - count];
-    if (const auto root = roots_->first(slot, watched, until, !is_switch, is_switch)) note(out, root->x, i, together);
+    if (const auto root = roots_->first(slot, watched, until, !is_switch, is_switch))
+      note(out, root->x, i, together, root->kind == RootKind::Touching ? 0 : -watched.side);
   }
   // A step of no length leaves the others where they were.
   for (std::size_t i = 0; i < count && out.x == 0; ++i) out.after[i].at_zero = switches[i].at_zero;
@@ -91,15 +93,28 @@ Crossing WatchedFunctions::first_crossing(const KernelWorkspace& work, const Com
   return out;
 }
 
+std::vector<std::int8_t> WatchedFunctions::sides_of_events(const KernelWorkspace& work, double h) const {
+  std::vector<std::int8_t> out;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const auto polynomial = judged(event_polynomial(work, i, h));
+    const bool at_zero = events[i].at_zero || polynomial.begins_at_zero();
+    out.push_back(at_zero ? polynomial.direction() : sign(polynomial.p[0]));
+  }
+  return out;
+}
+
 void WatchedFunctions::leave(const Crossing& crossing, Step& result) {
   const std::size_t count = switches.size();
   for (std::size_t i = 0; i < crossing.after.size(); ++i)
     (i < count ? switches[i] : events[i - count]) = crossing.after[i];
-  for (const std::size_t i : crossing.roots) {
-    if (i < count)
+  for (std::size_t k = 0; k < crossing.roots.size(); ++k) {
+    const std::size_t i = crossing.roots[k];
+    if (i < count) {
       ++result.switches;
-    else if (!result.event)
-      result.event = i - count;
+      continue;
+    }
+    if (!result.event) result.event = i - count;
+    result.events.push_back({i - count, crossing.directions[k]});
   }
 }
 

@@ -15,6 +15,7 @@ struct Crossing {
   double x = 1;  // fraction of the step
   bool found = false;
   std::vector<std::size_t> roots;  // switches, then events
+  std::vector<int> directions;     // [roots] 1: rising, −1: falling, 0: touching
   std::vector<Watched> after;      // the same, as the step leaves them
 };
 
@@ -34,6 +35,11 @@ class WatchedFunctions {
   void choose_first_sides(KernelWorkspace& work, const MotionState& state);
   /// The first roots of the step of length h that the workspace holds. Switches may change at jumps too, events not.
   Crossing first_crossing(const KernelWorkspace& work, const Compensated& t, double h);
+  /// An event that begins at a zero: its side is the one that the motion goes to.
+  void put_at_zero(std::size_t event) { events[event] = {0, true}; }
+  /// The sides that events take as the motion of the workspace begins, judged over h: 0 where all that they do is lost
+  /// in rounding.
+  std::vector<std::int8_t> sides_of_events(const KernelWorkspace& work, double h) const;
   /// The sides that a step leaves behind; how many switches changed, and which event was met, go to the result.
   void leave(const Crossing& crossing, Step& result);
 

@@ -1,0 +1,35 @@
+#pragma once
+#include <maupertuis/mechanical_system.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace maupertuis {
+
+/// What a friction does in a mode. None: its contact is open, or there is none.
+enum class FrictionState : std::int8_t { None, Stick, Forward, Backward };
+
+/// Which contacts are closed and what each friction does: between events a system moves by the equations of one mode.
+struct ContactMode {
+  std::vector<bool> closed;             // [contacts]
+  std::vector<FrictionState> friction;  // [contacts + frictions]: those of the contacts, then those of coordinates
+  std::vector<std::int8_t> normal_sign;  // [frictions] sign of a normal force that is made of multipliers; else 1
+  friend bool operator==(const ContactMode&, const ContactMode&) = default;
+};
+
+/// All contacts open, coordinates with friction stuck.
+ContactMode open_mode(const MechanicalSystem& system);
+/// Friction number i of a mode: of contact i, then of the coordinates.
+const Friction& friction_of(const MechanicalSystem& system, std::size_t index);
+
+/// "floor, wall sliding, x sticking"; empty where all is open and nothing rubs.
+std::string mode_text(const MechanicalSystem& system, const ContactMode& mode);
+
+/// The system as it moves in a mode, without inequalities: closed contacts are constraints g = 0 at the end of its
+/// constraints, sticking ones constraints between velocities v_t = 0 after them; sliding ones have the generalized
+/// force −σ μ N ∂v_t/∂q̇ with σ = ±1, which holds the multiplier of the contact. Its equations are those of any system,
+/// and are certified as such. Reactions in normal forces have been replaced (see contact_normals).
+MechanicalSystem system_in_mode(const MechanicalSystem& system, const ContactMode& mode);
+
+}  // namespace maupertuis

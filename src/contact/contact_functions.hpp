@@ -1,0 +1,53 @@
+#pragma once
+#include "linear_algebra/dense.hpp"
+
+#include <maupertuis/equations_of_motion.hpp>
+#include <maupertuis/function_kernel.hpp>
+
+#include <span>
+#include <vector>
+
+namespace maupertuis {
+
+/// A row of ∂g/∂q or ∂v_t/∂q̇ without its zeros.
+using SparseRow = std::vector<std::pair<std::size_t, double>>;
+
+/// What contacts and frictions are at one point.
+struct ContactValues {
+  std::vector<double> gap, gap_scale;    // [contacts] g, Σ |terms of g|
+  std::vector<double> rate, drive;       // [contacts] ġ, and its part ∂g/∂t
+  std::vector<double> rate_scale;        // [contacts] Σ |∂g/∂q_i q̇_i| + |∂g/∂t|
+  std::vector<SparseRow> normal;         // [contacts] ∂g/∂q
+  std::vector<double> slip, slip_scale;  // [contacts + frictions] v_t, Σ |∂v_t/∂q̇_i q̇_i| + |rest|; 0 without friction
+  std::vector<SparseRow> tangent;        // [contacts + frictions] ∂v_t/∂q̇
+  std::vector<double> kinetic, fixed;    // [contacts + frictions] μ and μ_s, or the limits of the force
+  std::vector<double> restitution;       // [contacts]
+};
+
+/// The functions of contacts and frictions, and M and A, at points. Inputs: q, q̇, t.
+class ContactFunctions {
+ public:
+  /// `equations`: of the system with its contacts, none of them in force.
+  /// Cost: the symbolic gradients of the gaps and of L.
+  ContactFunctions(const EquationsOfMotion& equations, std::span<const double> parameters);
+
+  const ContactValues& at(double t, std::span<const double> q, std::span<const double> v);
+  /// x [n × columns] of M x = rows, A x = 0: what impulses along `rows` change in q̇. M may be singular where A is not.
+  Eigen::MatrixXd response(double t, std::span<const double> q, std::span<const double> v,
+                           std::span<const SparseRow> rows);
+
+ private:
+  void evaluate(FunctionWorkspace& work, std::vector<double>& out, double t, std::span<const double> q,
+                std::span<const double> v);
+
+  std::size_t n_, m_, contacts_, frictions_;
+  DifferentiableKernel gaps_, slips_;  // by q; by q̇
+  FunctionKernel rates_, matrices_;
+  FunctionWorkspace gaps_work_, slips_work_, rates_work_, matrices_work_;
+  std::vector<double> point_, gaps_out_, slips_out_, rates_out_, matrices_out_;
+  ContactValues values_;
+};
+
+double dot(const SparseRow& row, const Eigen::VectorXd& x);
+
+}  // namespace maupertuis

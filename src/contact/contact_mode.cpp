@@ -1,0 +1,108 @@
+#include <maupertuis/contact_mode.hpp>
+#include <maupertuis/transform.hpp>
+
+#include <fmt/format.h>
+
+namespace maupertuis {
+namespace {
+
+std::string label_of_friction(const MechanicalSystem& system, std::size_t index) {
+  return index < system.contacts.size() ? system.contact_label(index)
+                                        : system.frictions[index - system.contacts.size()].name;
+}
+
+/// N of friction `index`; empty where its limit is a force already.
+Expr normal_force(const MechanicalSystem& system, std::size_t index, const ContactMode& mode) {
+  if (index < system.contacts.size()) return system.contacts[index].multiplier;
+  const std::size_t own = index - system.contacts.size();
+  const Expr normal = system.frictions[own].normal;
+  if (!normal) return normal;
+  return mode.normal_sign[own] < 0 ? -normal : normal;
+}
+
+void add_sticking(MechanicalSystem& out, const Friction& friction, const std::string& label) {
+  Context& context = *out.context;
+  for (std::size_t k = 0; k < friction.slip.size(); ++k) {
+    Constraint c;
+    c.level = Constraint::Level::Velocity;
+    c.name = friction.slip.size() == 1 ? "stick of " + label : fmt::format("stick {} of {}", k + 1, label);
+    c.value = friction.slip[k];
+    c.multiplier = friction.multipliers[k];
+    c.reaction = context.symbol(fmt::format("reaction({})", c.name), Role::Multiplier);
+    c.dimension = out.dimensionless ? Dimension{} : dimensions::length() / out.independent_dimension;
+    c.span = friction.span;
+    out.constraints.push_back(std::move(c));
+  }
+}
+
+/// −σ μ N ∂v_t/∂q̇
+void add_sliding(MechanicalSystem& out, const Friction& friction, Expr normal, int direction) {
+  Expr force = normal ? friction.kinetic * normal : friction.kinetic;
+  if (direction > 0) force = -force;
+  for (std::size_t i = 0; i < out.coordinates.size(); ++i) {
+    const Expr lever = differentiate(friction.slip[0], out.coordinates[i].velocity);
+    if (lever.is_zero()) continue;
+    AppliedForce f;
+    f.kind = AppliedForce::Kind::Generalized;
+    f.target = out.coordinates[i].name;
+    f.coordinate = i;
+    f.components = {force * lever};
+    f.span = friction.span;
+    out.forces.push_back(std::move(f));
+  }
+}
+
+}  // namespace
+
+ContactMode open_mode(const MechanicalSystem& system) {
+  ContactMode mode;
+  mode.closed.assign(system.contacts.size(), false);
+  mode.friction.assign(system.contacts.size(), FrictionState::None);
+  mode.friction.resize(system.contacts.size() + system.frictions.size(), FrictionState::Stick);
+  mode.normal_sign.assign(system.frictions.size(), 1);
+  return mode;
+}
+
+const Friction& friction_of(const MechanicalSystem& system, std::size_t index) {
+  const std::size_t contacts = system.contacts.size();
+  return index < contacts ? system.contacts[index].friction : system.frictions[index - contacts];
+}
+
+std::string mode_text(const MechanicalSystem& system, const ContactMode& mode) {
+  std::string out;
+  const auto add = [&](const std::string& part) { out += (out.empty() ? "" : ", ") + part; };
+  for (std::size_t i = 0; i < mode.friction.size(); ++i) {
+    const bool contact = i < mode.closed.size();
+    if (contact && !mode.closed[i]) continue;
+    const std::string label = label_of_friction(system, i);
+    const FrictionState state = mode.friction[i];
+    add(state == FrictionState::None    ? label
+        : state == FrictionState::Stick ? label + " sticking"
+                                        : label + (state == FrictionState::Forward ? " sliding +" : " sliding −"));
+  }
+  return out;
+}
+
+MechanicalSystem system_in_mode(const MechanicalSystem& system, const ContactMode& mode) {
+  MechanicalSystem out = system;
+  out.contacts.clear();
+  out.frictions.clear();
+  for (std::size_t i = 0; i < system.contacts.size(); ++i)
+    if (mode.closed[i]) {
+      Constraint c = as_constraint(system.contacts[i]);
+      if (c.name.empty()) c.name = system.contact_label(i);
+      out.constraints.push_back(std::move(c));
+    }
+  for (std::size_t i = 0; i < mode.friction.size(); ++i) {
+    if (mode.friction[i] == FrictionState::None) continue;
+    const Friction& friction = friction_of(system, i);
+    if (mode.friction[i] == FrictionState::Stick)
+      add_sticking(out, friction, label_of_friction(system, i));
+    else
+      add_sliding(out, friction, normal_force(system, i, mode), mode.friction[i] == FrictionState::Forward ? 1 : -1);
+  }
+  if (system.written) out.written = std::make_shared<const MechanicalSystem>(system_in_mode(*system.written, mode));
+  return out;
+}
+
+}  // namespace maupertuis

@@ -1,0 +1,188 @@
+#include "contact/impact.hpp"
+
+#include "linear_algebra/complementarity.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace maupertuis {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr std::size_t most_impulses = 1000;  // a contact
+
+Index at(std::size_t i) { return static_cast<Index>(i); }
+
+double rate(const ImpactProblem& p, std::size_t i, const VectorXd& v) { return dot(p.normal[i], v) + p.drive[i]; }
+
+/// The closing contact that comes next; nothing where none closes.
+std::optional<std::size_t> next_contact(const ImpactProblem& p, const VectorXd& v, ImpactOrder order) {
+  std::optional<std::size_t> best;
+  double best_speed = 0;
+  for (std::size_t i = 0; i < p.contacts.size(); ++i) {
+    const double closing = -rate(p, i, v);
+    if (!(closing > p.rest[i])) continue;
+    const double speed = closing / std::sqrt(dot(p.normal[i], p.response.col(at(i))));
+    const bool first = order == ImpactOrder::FastestFirst;
+    // Equal speeds: the first of the text, or the last.
+    if (!best || (first ? speed > best_speed * (1 + 1e-12) : speed <= best_speed * (1 + 1e-12)))
+      best = i, best_speed = speed;
+  }
+  return best;
+}
+
+bool has_friction(const ImpactProblem& p, std::size_t i) {
+  return !p.tangent[i].empty() && (p.sticking[i] || p.friction[i] > 0 || p.static_friction[i] > 0);
+}
+
+/// −Λ ġ averaged over the impulse is what it takes from the motion; without friction ½ Λ (1 − e)|ġ⁻| for contacts at
+/// rest. With friction kinetic energy before and after tells.
+Impulse apply(const ImpactProblem& p, std::size_t i, VectorXd& v, ImpactResult& out) {
+  const double before = rate(p, i, v), w = dot(p.normal[i], p.response.col(at(i)));
+  Impulse impulse;
+  impulse.contact = p.contacts[i];
+  impulse.speed = -before;
+  if (!has_friction(p, i)) {
+    impulse.normal = (1 + p.restitution[i]) * -before / w;
+    v += impulse.normal * p.response.col(at(i));
+    impulse.loss = 0.5 * impulse.normal * (1 - p.restitution[i]) * -before;
+  } else {
+    const double slip = dot(p.tangent[i], v) + p.slip_drive[i];
+    const double w_nt = dot(p.normal[i], p.tangent_response.col(at(i))), w_tt = dot(p.tangent[i], p.tangent_response.col(at(i)));
+    const PlaneImpulse found = frictional_impulse(w, w_nt, w_tt, before, slip, p.friction[i], p.static_friction[i],
+                                                  p.sticking[i], p.restitution[i]);
+    impulse.normal = found.normal, impulse.tangential = found.tangential;
+    v += found.normal * p.response.col(at(i)) + found.tangential * p.tangent_response.col(at(i));
+    const double after = rate(p, i, v), slip_after = dot(p.tangent[i], v) + p.slip_drive[i];
+    impulse.loss = -0.5 * (found.normal * (before + after) + found.tangential * (slip + slip_after));
+    out.moving -= found.tangential * p.slip_drive[i];
+  }
+  out.moving -= impulse.normal * p.drive[i];
+  out.loss += impulse.loss;
+  return impulse;
+}
+
+}  // namespace
+
+ImpactResult sequential_impact(const ImpactProblem& p, const VectorXd& v, ImpactOrder order) {
+  ImpactResult out;
+  out.v = v;
+  while (const auto i = next_contact(p, out.v, order)) {
+    if (out.impulses.size() >= most_impulses * p.contacts.size()) {
+      ImpactResult rest = simultaneous_impact(p, out.v, true);
+      rest.impulses.insert(rest.impulses.begin(), out.impulses.begin(), out.impulses.end());
+      rest.moving += out.moving, rest.loss += out.loss;
+      rest.bounded = true;
+      return rest;
+    }
+    out.impulses.push_back(apply(p, *i, out.v, out));
+  }
+  return out;
+}
+
+ImpactResult simultaneous_impact(const ImpactProblem& p, const VectorXd& v, bool plastic) {
+  ImpactResult out;
+  out.v = v;
+  const std::size_t count = p.contacts.size();
+  std::vector<std::size_t> in;  // closing, or at rest
+  for (std::size_t i = 0; i < count; ++i)
+    if (rate(p, i, v) <= p.rest[i]) in.push_back(i);
+  Eigen::MatrixXd w(at(in.size()), at(in.size()));
+  VectorXd q(at(in.size()));
+  for (std::size_t a = 0; a < in.size(); ++a) {
+    for (std::size_t b = 0; b < in.size(); ++b) w(at(a), at(b)) = dot(p.normal[in[a]], p.response.col(at(in[b])));
+    const double before = rate(p, in[a], v);
+    q(at(a)) = (1 + (plastic || before > 0 ? 0 : p.restitution[in[a]])) * before;
+  }
+  const auto found = linear_complementarity(w, q);
+  if (!found) {
+    out.unsolved = true;
+    return out;
+  }
+  for (std::size_t a = 0; a < in.size(); ++a) out.v += (*found)(at(a)) * p.response.col(at(in[a]));
+  for (std::size_t a = 0; a < in.size(); ++a) {
+    const double impulse = (*found)(at(a));
+    if (!(impulse > 0)) continue;
+    const double before = rate(p, in[a], v), after = rate(p, in[a], out.v);
+    out.impulses.push_back({p.contacts[in[a]], impulse, 0, -before, -0.5 * impulse * (before + after)});
+    out.moving -= impulse * p.drive[in[a]];
+    out.loss += out.impulses.back().loss;
+  }
+  return out;
+}
+
+namespace {
+
+/// The course of an impact over the normal impulse p: v_n, v_t and the work of the normal force are piecewise simple.
+///
+///     v_n │╲                 ╱ restitution until its work is e² times that of compression
+///         │ ╲ compression   ╱
+///       0 ┼──╲─────────────╱──── p
+struct Course {
+  double w_nn, w_nt, w_tt, friction, static_friction;
+  bool sticking;
+  double v_n, v_t, p = 0, p_t = 0, work = 0;
+
+  /// dp_t/dp while it slides in a direction, or sticks.
+  double slope() const {
+    if (v_t != 0 && !sticking) return v_t > 0 ? -friction : friction;
+    const double hold = w_tt > 0 ? -w_nt / w_tt : 0;  // keeps v_t = 0
+    if (sticking || std::abs(hold) <= static_friction) return hold;
+    return hold > 0 ? friction : -friction;  // as near to holding as friction goes: v_t moves the other way
+  }
+  double normal_slope(double f) const { return w_nn + w_nt * f; }
+  double slip_slope(double f) const { return w_nt + w_tt * f; }
+
+  void advance(double dp, double f) {
+    work += (v_n + 0.5 * normal_slope(f) * dp) * dp;
+    v_n += normal_slope(f) * dp;
+    v_t += slip_slope(f) * dp;
+    p += dp;
+    p_t += f * dp;
+  }
+  /// Impulse until the slip stops in this phase; infinite if it does not.
+  double until_stop(double f) const {
+    const double s = slip_slope(f);
+    return v_t != 0 && s * v_t < 0 ? -v_t / s : HUGE_VAL;
+  }
+};
+
+}  // namespace
+
+PlaneImpulse frictional_impulse(double w_nn, double w_nt, double w_tt, double v_n, double v_t, double friction,
+                                double static_friction, bool sticking, double restitution) {
+  Course c{w_nn, w_nt, w_tt, friction, static_friction, sticking, v_n, v_t};
+  if (sticking && v_t != 0) {  // what never slides takes the slip at once, in proportion to the normal impulse
+    const double total = w_nn * w_tt - w_nt * w_nt;
+    const double n = (-(1 + restitution) * v_n * w_tt + v_t * w_nt) / total;
+    return {n, -(v_t + w_nt * n) / w_tt};
+  }
+  constexpr int most_phases = 8;
+  for (int phase = 0; phase < most_phases && c.v_n < 0; ++phase) {  // compression
+    const double f = c.slope(), stop = c.until_stop(f), slope = c.normal_slope(f);
+    const double end = slope > 0 ? -c.v_n / slope : HUGE_VAL;
+    if (std::isinf(std::min(stop, end))) return {0, 0};  // jammed: friction presses more than it gives way
+    c.advance(std::min(stop, end), f);
+    if (stop <= end) c.v_t = 0;
+    if (end <= stop) c.v_n = 0;
+  }
+  double give_back = -restitution * restitution * c.work;
+  c.work = 0;
+  for (int phase = 0; phase < most_phases && give_back > 0; ++phase) {  // restitution
+    const double f = c.slope(), stop = c.until_stop(f), slope = c.normal_slope(f);
+    if (!(slope > 0)) break;
+    // v_n dp + ½ slope dp² = give_back
+    const double end = (std::sqrt(c.v_n * c.v_n + 2 * slope * give_back) - c.v_n) / slope;
+    const double before = c.work;
+    c.advance(std::min(stop, end), f);
+    give_back -= c.work - before;
+    if (end <= stop) break;
+    c.v_t = 0;
+  }
+  return {c.p, c.p_t};
+}
+
+}  // namespace maupertuis

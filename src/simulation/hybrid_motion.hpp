@@ -1,0 +1,124 @@
+#pragma once
+#include "contact/contact_functions.hpp"
+#include "contact/impact.hpp"
+#include "simulation/function_kernels.hpp"
+#include "simulation/method.hpp"
+
+#include <maupertuis/contact_mode.hpp>
+#include <maupertuis/simulation.hpp>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace maupertuis {
+
+/// What a run through modes tells besides the motion.
+struct HybridRecord {
+  std::string first_mode;
+  std::vector<Happening> happenings;
+  EnergyBooks books;                     // friction and dampers: at the end of the run
+  std::vector<std::string> remarks;      // a sentence each, each once
+  std::optional<std::string> stopped_by;  // the event that stopped the run
+};
+
+/// A motion with contacts, friction and events: Taylor's steps in one mode after the other, impacts between them
+/// (docs/theory/contacts.md). Its steps end where something happens; the next one begins in the mode after it.
+///
+///     mode "floor" ──── λ = 0 ──── mode "" ──── g = 0, ġ < 0: impact ──── mode "" or "floor" ────
+///
+/// Integrals of its samples: the work on h_E, that of impacts included; what friction took; what D took.
+class HybridMotion final : public Method {
+ public:
+  /// `wanted`: observables in λ of contacts too; its first event, if there is one, ends the run.
+  /// `parameters` [p].
+  HybridMotion(const Model& model, const EquationsOfMotion& equations, const WantedFunctions& wanted,
+               std::vector<double> parameters, const TaylorOptions& options);
+  ~HybridMotion() override;
+
+  int order() const override;
+  void start(double t, std::span<const double> q, std::span<const double> v) override;
+  Step step(double bound) override;
+  double time() const override;
+  bool covers(double t) const override;
+  Sample sample(double t) const override;
+  void state(double t, std::span<double> q, std::span<double> v) const override;
+  const Sample& step_start() const override;
+  std::size_t steps() const override;
+  std::size_t rejected() const override;
+  std::size_t switches() const override;
+  double constraint_residual() const override;
+  BackendUse backend() const override;
+
+  const HybridRecord& record() const { return record_; }
+
+ private:
+  struct Watch;
+  struct ModeMotion;
+  struct Pending;
+  struct Choice;
+
+  ModeMotion& motion_in(const ContactMode& mode);
+  void watch_contacts(ModeMotion& motion, std::vector<Expr>& events);
+  void watch_frictions(ModeMotion& motion, std::vector<Expr>& events);
+  void leave_mode();
+  Sample adjusted(Sample sample) const;
+
+  // What happens at an instant.
+  void classify(Step& step);
+  void happen(const ModelEvent& event, Step& step);
+  std::optional<Step> settle(double bound);
+  bool carry_out_sets(std::string& reason);
+  std::vector<std::size_t> touching(const ContactValues& values) const;
+  bool hit(const std::vector<std::size_t>& touching, std::string& reason);
+  ImpactProblem impact_problem(const std::vector<std::size_t>& touching, const ContactValues& values);
+  void note_order(const ImpactProblem& problem, const ImpactResult& first, const Eigen::VectorXd& v);
+  void record_impulses(const ImpactResult& result);
+  std::optional<double> accumulation(std::size_t contact, double speed);
+  double rest_speed(std::size_t contact, const ContactValues& values) const;
+  double rest_slip(std::size_t friction, const ContactValues& values) const;
+
+  // The mode after it.
+  bool choose_mode(const std::vector<std::size_t>& touching, double bound, std::string& reason);
+  std::vector<Choice> choices(const std::vector<std::size_t>& touching, const ContactValues& values) const;
+  bool fits(const ContactMode& mode, const std::vector<std::size_t>& touching, double bound, bool lenient,
+            std::vector<double>* accelerations);
+  bool may_be_several(const ContactMode& mode, const ContactValues& values);
+  void record_changes(const ContactMode& before, const ContactMode& after);
+  void add(Happening::Kind kind, const std::string& name, double impulse = 0, double speed = 0,
+           const std::string& remark = {});
+  void remark(const std::string& sentence);
+  Step ended(StepEnding ending, std::string reason) const;
+
+  const Model& model_;
+  const EquationsOfMotion& equations_;
+  WantedFunctions wanted_;
+  std::vector<double> parameters_;
+  TaylorOptions options_;
+  MechanicalSystem system_;  // with reactions in normal forces put in
+  ContactFunctions functions_;
+  std::map<std::string, std::unique_ptr<ModeMotion>> modes_;
+  ModeMotion* now_ = nullptr;
+  std::unique_ptr<Pending> pending_;
+  std::optional<Step> failed_;  // the start allows no motion
+
+  double t_ = 0;
+  std::vector<double> q_, v_;
+  bool forwards_ = true, started_ = false;
+  double carried_[3] = {0, 0, 0};  // integrals of the modes before
+  mutable Sample step_start_;
+  std::size_t steps_before_ = 0, rejected_before_ = 0, switches_before_ = 0, same_time_ = 0;
+  double residual_before_ = 0;
+  std::vector<double> fastest_, fastest_slip_;  // speeds of each contact and friction so far
+  struct Bounces {
+    std::vector<std::pair<double, double>> last;  // (t, speed) of the last impacts
+  };
+  std::vector<Bounces> bounces_;  // [contacts]
+  std::optional<std::string> accumulated_;
+  double accumulated_at_ = 0;
+  HybridRecord record_;
+};
+
+}  // namespace maupertuis
